@@ -1,0 +1,23 @@
+#ifndef ELASTIMATE_APPS_COMMANDS_H_
+#define ELASTIMATE_APPS_COMMANDS_H_
+
+#include <string>
+#include <vector>
+
+namespace elastimate {
+
+// The commands of the program.  Each takes the arguments that are no flags,
+// reads its flags, and returns the exit code; wrong input throws
+// std::invalid_argument.
+
+int RunEstimate(const std::vector<std::string>& arguments);
+int RunSimulate(const std::vector<std::string>& arguments);
+int RunGenerate(const std::vector<std::string>& arguments);
+int RunEstimators(const std::vector<std::string>& arguments);
+
+/// Checks the flags that estimate and simulate share, and sets the threads.
+void ApplyComputingFlags();
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_APPS_COMMANDS_H_

@@ -1,0 +1,111 @@
+#include "apps/result_fields.h"
+
+#include "elastimate/core/forward_model.h"
+#include "elastimate/core/loads.h"
+#include "elastimate/core/stiffness_product.h"
+#include "elastimate/core/strain_energy.h"
+#include "elastimate/estimators/estimator.h"
+
+namespace elastimate {
+namespace {
+
+std::string CaseSuffix(Eigen::Index load_case) {
+  return load_case == 0 ? "" : "_" + std::to_string(load_case + 1);
+}
+
+// K u - f, where u is 3 num_nodes x num_load_cases.
+Eigen::MatrixXd Imbalance(const Scene& scene,
+                          const IsotropicElasticity& elasticity,
+                          const Eigen::MatrixXd& displacement,
+                          const Eigen::MatrixXd& force) {
+  const StiffnessProducts products =
+      MultiplyStiffnessBasis(scene.mesh, displacement);
+  return elasticity.StiffnessScale() *
+             (products.h + elasticity.poisson_ratio * products.j) -
+         force;
+}
+
+class FieldCollector {
+ public:
+  FieldCollector(const Scene& scene, Fields& fields)
+      : scene_(scene), fields_(fields) {}
+
+  void AddPoint(const std::string& name, Eigen::Index load_case,
+                const Eigen::MatrixXd& all) {
+    fields_.point.push_back(
+        {name + CaseSuffix(load_case),
+         all.col(load_case).reshaped(3, scene_.mesh.NumNodes())});
+  }
+
+  void AddStrainEnergy(const IsotropicElasticity& elasticity,
+                       Eigen::Index load_case, const Eigen::MatrixXd& all) {
+    fields_.cell.push_back({"strain_energy_density" + CaseSuffix(load_case),
+                            StrainEnergyDensity(scene_.mesh, elasticity,
+                                                all.col(load_case).reshaped(
+                                                    3, scene_.mesh.NumNodes()))
+                                .transpose()});
+  }
+
+ private:
+  const Scene& scene_;
+  Fields& fields_;
+};
+
+Eigen::MatrixXd MeasuredMinus(const Scene& scene,
+                              const Eigen::MatrixXd& displacement) {
+  Eigen::MatrixXd difference =
+      Eigen::MatrixXd::Zero(displacement.rows(), displacement.cols());
+  for (Eigen::Index k = 0; k < displacement.cols(); ++k) {
+    const LoadCase& load_case = scene.load_cases[k];
+    for (Eigen::Index dof = 0; dof < displacement.rows(); ++dof) {
+      if (IsObserved(load_case, dof % 3, dof / 3)) {
+        difference(dof, k) =
+            load_case.displacement(dof % 3, dof / 3) - displacement(dof, k);
+      }
+    }
+  }
+  return difference;
+}
+
+}  // namespace
+
+Fields ResultFields(const Scene& scene, const Estimate& estimate) {
+  Fields fields = SceneFields(scene);
+  if (!estimate.elasticity.IsPhysical()) {
+    return fields;
+  }
+  FieldCollector collector(scene, fields);
+  const Eigen::MatrixXd force = AssembleLoadCases(scene);
+  const Eigen::Index num_cases = force.cols();
+  const auto held = scene.supports.held.reshaped();
+  if (!WhyNotHeld(scene.mesh, scene.supports).empty()) {
+    const Eigen::MatrixXd measured =
+        MeasuredMinus(scene, Eigen::MatrixXd::Zero(force.rows(), num_cases));
+    const Eigen::MatrixXd residual =
+        Imbalance(scene, estimate.elasticity, measured, force);
+    for (Eigen::Index k = 0; k < num_cases; ++k) {
+      collector.AddPoint("force_residual", k, residual);
+      collector.AddStrainEnergy(estimate.elasticity, k, measured);
+    }
+    return fields;
+  }
+  ForwardModel model(scene.mesh, scene.supports, force);
+  if (!model.SetPoissonRatio(estimate.elasticity.poisson_ratio)) {
+    return fields;
+  }
+  const Eigen::MatrixXd fitted =
+      model.Displacement(estimate.elasticity.youngs_modulus);
+  const Eigen::MatrixXd difference = MeasuredMinus(scene, fitted);
+  Eigen::MatrixXd reaction =
+      Imbalance(scene, estimate.elasticity, fitted, force);
+  reaction = held.replicate(1, num_cases).select(reaction.array(), 0.0);
+  for (Eigen::Index k = 0; k < num_cases; ++k) {
+    collector.AddPoint("fitted_displacement", k, fitted);
+    collector.AddPoint("displacement_residual", k, difference);
+    collector.AddPoint("reaction_force", k, reaction);
+    collector.AddStrainEnergy(estimate.elasticity, k, fitted);
+  }
+  return fields;
+}
+
+}  // namespace elastimate

@@ -1,0 +1,23 @@
+#ifndef ELASTIMATE_APPS_RESULT_FIELDS_H_
+#define ELASTIMATE_APPS_RESULT_FIELDS_H_
+
+#include "elastimate/core/scene.h"
+#include "elastimate/estimators/estimate.h"
+#include "elastimate/io/vtu_writer.h"
+
+namespace elastimate {
+
+/// The scene with what the estimate makes of it, for each load case (k > 1
+/// with suffix `_k`).
+///
+/// With a physical E and nu and a specimen that is held: `fitted_displacement`,
+/// `displacement_residual` (measured minus fitted where observed, else zero),
+/// `reaction_force` at the held degrees of freedom, and per cell the
+/// `strain_energy_density` of the fitted displacement.  When nothing holds the
+/// specimen: `force_residual` and `strain_energy_density` of the measured
+/// displacement.  Otherwise the scene alone.
+Fields ResultFields(const Scene& scene, const Estimate& estimate);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_APPS_RESULT_FIELDS_H_

@@ -1,0 +1,104 @@
+#include <glog/logging.h>
+
+#include <cmath>
+#include <random>
+#include <stdexcept>
+
+#include "apps/commands.h"
+#include "apps/flags.h"
+#include "apps/progress.h"
+#include "elastimate/core/forward_model.h"
+#include "elastimate/core/loads.h"
+#include "elastimate/io/file_output.h"
+#include "elastimate/io/scene_reader.h"
+#include "elastimate/io/vtu_writer.h"
+
+namespace elastimate {
+namespace {
+
+IsotropicElasticity ElasticityFromFlags() {
+  if (!IsGiven("youngs") || !IsGiven("nu")) {
+    throw std::invalid_argument("simulate needs --youngs=E and --nu=NU");
+  }
+  const IsotropicElasticity elasticity{FLAGS_youngs, FLAGS_nu};
+  if (!elasticity.IsPhysical()) {
+    throw std::invalid_argument(
+        "--youngs must be positive and --nu between -1 and 0.5");
+  }
+  return elasticity;
+}
+
+void CheckNoiseFlags() {
+  if (FLAGS_noise < 0) {
+    throw std::invalid_argument("--noise must not be negative");
+  }
+  if (FLAGS_noise_law != "uniform" && FLAGS_noise_law != "gaussian") {
+    throw std::invalid_argument("--noise_law=" + FLAGS_noise_law +
+                                "; it is uniform or gaussian");
+  }
+}
+
+// Noise on the free components, of norm --noise times that of the
+// displacement.
+Eigen::VectorXd DrawNoise(const Eigen::VectorXd& displacement,
+                          std::mt19937_64& generator) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::normal_distribution<double> gaussian;
+  Eigen::VectorXd noise(displacement.size());
+  for (double& value : noise) {
+    value =
+        FLAGS_noise_law == "uniform" ? uniform(generator) : gaussian(generator);
+  }
+  return FLAGS_noise * displacement.norm() / noise.norm() * noise;
+}
+
+}  // namespace
+
+int RunSimulate(const std::vector<std::string>& arguments) {
+  if (arguments.size() != 1) {
+    throw std::invalid_argument("simulate needs one scene file");
+  }
+  if (FLAGS_out.empty()) {
+    throw std::invalid_argument("simulate needs --out=FILE.vtu");
+  }
+  const IsotropicElasticity elasticity = ElasticityFromFlags();
+  CheckNoiseFlags();
+  ApplyComputingFlags();
+  CheckWritable(FLAGS_out);
+  Progress progress("reading " + arguments[0]);
+  SceneReading reading = ReadScene({arguments[0]}, Measurement::kOptional);
+  for (const std::string& notice : reading.notices) {
+    LOG(WARNING) << notice;
+  }
+  Scene& scene = reading.scene;
+
+  progress.Show("factorising");
+  const std::string why_not_held = WhyNotHeld(scene.mesh, scene.supports);
+  if (!why_not_held.empty()) {
+    throw std::invalid_argument(arguments[0] + ": " + why_not_held);
+  }
+  ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene));
+  if (!model.SetPoissonRatio(elasticity.poisson_ratio)) {
+    throw std::runtime_error(
+        arguments[0] +
+        ": the stiffness matrix is singular to working precision; check the "
+        "mesh for slivers and --nu");
+  }
+  Eigen::MatrixXd displacement = model.Displacement(elasticity.youngs_modulus);
+  const std::vector<Eigen::Index>& free = model.Dofs().free;
+  std::mt19937_64 generator(FLAGS_seed);
+  for (Eigen::Index k = 0; k < displacement.cols(); ++k) {
+    LoadCase& load_case = scene.load_cases[k];
+    if (FLAGS_noise > 0) {
+      displacement.col(k)(free) +=
+          DrawNoise(displacement.col(k)(free), generator);
+    }
+    load_case.displacement =
+        displacement.col(k).reshaped(3, scene.mesh.NumNodes());
+  }
+  progress.Show("writing " + FLAGS_out);
+  WriteVtu(FLAGS_out, scene.mesh, SceneFields(scene));
+  return 0;
+}
+
+}  // namespace elastimate

@@ -1,0 +1,104 @@
+#include "apps/summary.h"
+
+#include <cmath>
+#include <iomanip>
+#include <optional>
+#include <sstream>
+
+namespace elastimate {
+namespace {
+
+constexpr double kDegreesPerRadian = 57.295779513082323;
+
+std::string Number(double value, int digits) {
+  std::ostringstream text;
+  text << std::setprecision(digits) << value;
+  return text.str();
+}
+
+void Line(const std::string& name, const std::string& value,
+          std::ostringstream& text) {
+  text << std::left << std::setw(22) << name << value << "\n";
+}
+
+std::string WithError(double value, const std::optional<double>& error) {
+  if (!std::isfinite(value)) {
+    return "none";
+  }
+  // Digits down to the second of the standard error say what is known.
+  int digits = 6;
+  if (error && *error > 0 && value != 0) {
+    const double ratio = std::abs(value) / *error;
+    digits = std::min(10, std::max(3, 2 + int(std::ceil(std::log10(ratio)))));
+  }
+  return Number(value, digits) +
+         (error ? " +- " + Number(*error, 2) : " (no standard error)");
+}
+
+void AddDiagnostics(const Estimate& estimate, std::ostringstream& text) {
+  if (estimate.noise_sd) {
+    Line("noise sd", Number(*estimate.noise_sd, 3), text);
+  }
+  if (estimate.force_residual) {
+    Line("force residual", Number(*estimate.force_residual, 3) + " of the load",
+         text);
+  }
+  if (estimate.displacement_residual) {
+    Line("displacement residual",
+         Number(*estimate.displacement_residual, 3) + " of the measured", text);
+  }
+  if (estimate.noise_attenuation) {
+    Line("noise attenuation", Number(*estimate.noise_attenuation, 3), text);
+  }
+  if (estimate.identifiability_angle) {
+    Line("identifiability angle",
+         Number(kDegreesPerRadian * *estimate.identifiability_angle, 3) +
+             " degrees",
+         text);
+  }
+}
+
+}  // namespace
+
+std::string Summary(const Estimate& estimate, const Scene& scene) {
+  std::ostringstream text;
+  const IsotropicElasticity& elasticity = estimate.elasticity;
+  Line("scene",
+       std::to_string(scene.mesh.NumNodes()) + " nodes, " +
+           std::to_string(scene.mesh.NumElements()) + " tetrahedra, " +
+           std::to_string(scene.load_cases.size()) + " load case" +
+           (scene.load_cases.size() == 1 ? "" : "s"),
+       text);
+  Line("estimator", estimate.estimator, text);
+  Line("status",
+       std::string(StatusName(estimate.status)) +
+           (estimate.IsUsable() ? "" : ": NOT USABLE"),
+       text);
+  if (!estimate.message.empty()) {
+    Line("", estimate.message, text);
+  }
+  Line("Young's modulus E",
+       WithError(elasticity.youngs_modulus,
+                 estimate.YoungsModulusStandardError()),
+       text);
+  Line(
+      "Poisson's ratio nu",
+      WithError(elasticity.poisson_ratio, estimate.PoissonRatioStandardError()),
+      text);
+  if (!estimate.why_no_standard_error.empty()) {
+    Line("", "no standard error: " + estimate.why_no_standard_error, text);
+  }
+  AddDiagnostics(estimate, text);
+  Line("work",
+       std::to_string(estimate.work.element_passes) + " element passes, " +
+           std::to_string(estimate.work.factorizations) + " factorisations, " +
+           std::to_string(estimate.work.solves) + " solves, " +
+           Number(estimate.seconds, 3) + " s",
+       text);
+  for (const std::string& warning : estimate.warnings) {
+    Line("warning", warning, text);
+  }
+  return text.str();
+}
+
+}  // namespace elastimate

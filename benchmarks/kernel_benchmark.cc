@@ -1,0 +1,360 @@
+// Times of the kernels, and of two estimators, on a cube of tetrahedra.
+//
+//   elastimate_kernel_benchmark
+//
+// runs all but the benchmarks whose names begin with "Large", which take
+// minutes and gigabytes; those are run by
+//
+//   elastimate_kernel_benchmark --benchmark_filter=Large
+//
+// A cube of 21, 39 and 58 cells along an edge has 46 305, 296 595 and 975 560
+// tetrahedra.  `per_tetrahedron` is the time for each tetrahedron (and each
+// column of an element pass).  At the end stands how much faster the element
+// pass is than the textbook's, in the same run; both have one thread.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <iterator>
+#include <map>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "benchmarks/naive_stiffness_product.h"
+#include "elastimate/core/cholesky.h"
+#include "elastimate/core/degrees_of_freedom.h"
+#include "elastimate/core/forward_model.h"
+#include "elastimate/core/loads.h"
+#include "elastimate/core/node_graph.h"
+#include "elastimate/core/stiffness_assembly.h"
+#include "elastimate/core/stiffness_product.h"
+#include "elastimate/core/stiffness_traces.h"
+#include "elastimate/estimators/registry.h"
+#include "elastimate/io/example_scenes.h"
+
+namespace elastimate {
+namespace {
+
+// A cube with this number of cells along each edge, made once.
+const Scene& Cube(std::int64_t cells) {
+  static std::map<std::int64_t, Scene> scenes;
+  const auto known = scenes.find(cells);
+  if (known != scenes.end()) {
+    return known->second;
+  }
+  CuboidOptions options;
+  options.cells.setConstant(static_cast<int>(cells));
+  options.size.setOnes();
+  return scenes.emplace(cells, CuboidScene(options)).first->second;
+}
+
+// Values in [-1, 1), the same on every run.
+Eigen::MatrixXd RandomMatrix(Eigen::Index rows, Eigen::Index columns) {
+  std::mt19937_64 generator(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  return Eigen::MatrixXd::NullaryExpr(rows, columns,
+                                      [&] { return uniform(generator); });
+}
+
+void CountTetrahedra(benchmark::State& state, const Mesh& mesh,
+                     std::int64_t columns = 1) {
+  state.counters["tetrahedra"] = static_cast<double>(mesh.NumElements());
+  state.counters["per_tetrahedron"] =
+      benchmark::Counter(static_cast<double>(mesh.NumElements() * columns),
+                         benchmark::Counter::kIsIterationInvariantRate |
+                             benchmark::Counter::kInvert);
+}
+
+// ---------------------------------------------------------------------------
+// Element passes.
+
+void ElementPass(benchmark::State& state) {
+  const Mesh& mesh = Cube(state.range(0)).mesh;
+  const Eigen::MatrixXd q = RandomMatrix(3 * mesh.NumNodes(), state.range(1));
+  while (state.KeepRunning()) {
+    benchmark::DoNotOptimize(MultiplyStiffnessBasis(mesh, q));
+  }
+  CountTetrahedra(state, mesh, state.range(1));
+}
+
+void NaivePass(benchmark::State& state) {
+  const Mesh& mesh = Cube(state.range(0)).mesh;
+  const Eigen::VectorXd q = RandomMatrix(3 * mesh.NumNodes(), 1);
+  const StiffnessProducts fast = MultiplyStiffnessBasis(mesh, q);
+  const StiffnessProducts naive = MultiplyNaively(mesh, q);
+  if (!naive.h.isApprox(fast.h, 1e-12) || !naive.j.isApprox(fast.j, 1e-12)) {
+    state.SkipWithError("the two element passes differ");
+    return;
+  }
+  while (state.KeepRunning()) {
+    benchmark::DoNotOptimize(MultiplyNaively(mesh, q));
+  }
+  CountTetrahedra(state, mesh);
+}
+
+void TracesExact(benchmark::State& state) {
+  const Scene& scene = Cube(state.range(0));
+  const DegreesOfFreedom dofs(scene.supports);
+  while (state.KeepRunning()) {
+    benchmark::DoNotOptimize(StiffnessTraces(scene.mesh, dofs));
+  }
+  CountTetrahedra(state, scene.mesh);
+}
+
+void TracesEstimated(benchmark::State& state) {
+  const Scene& scene = Cube(state.range(0));
+  const DegreesOfFreedom dofs(scene.supports);
+  while (state.KeepRunning()) {
+    benchmark::DoNotOptimize(EstimateStiffnessTraces(scene.mesh, dofs));
+  }
+  CountTetrahedra(state, scene.mesh);
+}
+
+// ---------------------------------------------------------------------------
+// Assembly.
+
+void GraphOfNodes(benchmark::State& state) {
+  const Mesh& mesh = Cube(state.range(0)).mesh;
+  while (state.KeepRunning()) {
+    const NodeGraph graph(mesh);
+    benchmark::DoNotOptimize(graph.row.data());
+  }
+  CountTetrahedra(state, mesh);
+}
+
+// Graph, pattern and values.
+void Assembly(benchmark::State& state) {
+  const Scene& scene = Cube(state.range(0));
+  const DegreesOfFreedom dofs(scene.supports);
+  while (state.KeepRunning()) {
+    const StiffnessAssembly assembly(scene.mesh, dofs);
+    benchmark::DoNotOptimize(assembly.H().data());
+  }
+  CountTetrahedra(state, scene.mesh);
+}
+
+void Reassembly(benchmark::State& state) {
+  const Scene& scene = Cube(state.range(0));
+  StiffnessAssembly assembly(scene.mesh, DegreesOfFreedom(scene.supports));
+  while (state.KeepRunning()) {
+    assembly.Assemble(scene.mesh);
+    benchmark::DoNotOptimize(assembly.H().data());
+  }
+  CountTetrahedra(state, scene.mesh);
+}
+
+void Combine(benchmark::State& state) {
+  const Scene& scene = Cube(state.range(0));
+  const StiffnessAssembly assembly(scene.mesh,
+                                   DegreesOfFreedom(scene.supports));
+  while (state.KeepRunning()) {
+    benchmark::DoNotOptimize(assembly.Combine(0.3));
+  }
+  CountTetrahedra(state, scene.mesh);
+}
+
+// ---------------------------------------------------------------------------
+// Factorisation.
+
+void CholeskyAnalysis(benchmark::State& state) {
+  const Scene& scene = Cube(state.range(0));
+  const DegreesOfFreedom dofs(scene.supports);
+  const StiffnessAssembly assembly(scene.mesh, dofs);
+  while (state.KeepRunning()) {
+    const Cholesky cholesky(assembly, dofs);
+    benchmark::DoNotOptimize(cholesky.FactorValues());
+  }
+  CountTetrahedra(state, scene.mesh);
+}
+
+void CholeskyFactorization(benchmark::State& state) {
+  const Scene& scene = Cube(state.range(0));
+  const DegreesOfFreedom dofs(scene.supports);
+  const StiffnessAssembly assembly(scene.mesh, dofs);
+  Cholesky cholesky(assembly, dofs);
+  const Eigen::VectorXd values = assembly.Combine(0.3);
+  while (state.KeepRunning()) {
+    if (!cholesky.Factorize(values)) {
+      state.SkipWithError("the stiffness is not positive definite");
+      break;
+    }
+  }
+  CountTetrahedra(state, scene.mesh);
+  state.counters["gigabytes"] = 8e-9 * cholesky.FactorValues();
+}
+
+void CholeskySolve(benchmark::State& state) {
+  const Scene& scene = Cube(state.range(0));
+  const DegreesOfFreedom dofs(scene.supports);
+  const StiffnessAssembly assembly(scene.mesh, dofs);
+  Cholesky cholesky(assembly, dofs);
+  if (!cholesky.Factorize(assembly.Combine(0.3))) {
+    state.SkipWithError("the stiffness is not positive definite");
+    return;
+  }
+  const Eigen::MatrixXd b = RandomMatrix(dofs.NumFree(), state.range(1));
+  while (state.KeepRunning()) {
+    benchmark::DoNotOptimize(cholesky.Solve(b));
+  }
+  CountTetrahedra(state, scene.mesh);
+}
+
+// ---------------------------------------------------------------------------
+// Estimators, end to end, on noise-free displacements of E = 10 kPa, nu = 0.3.
+
+void RunEstimator(benchmark::State& state, const char* name) {
+  Scene scene = Cube(state.range(0));
+  {
+    ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene));
+    model.SetPoissonRatio(0.3);
+    scene.load_cases[0].displacement =
+        model.Displacement(1e4).reshaped(3, scene.mesh.NumNodes());
+  }
+  const auto estimator = MakeEstimator(name);
+  Estimate estimate;
+  while (state.KeepRunning()) {
+    estimate = estimator->Run(scene, {});
+  }
+  if (!estimate.IsUsable()) {
+    state.SkipWithError(estimate.message.c_str());
+  }
+  CountTetrahedra(state, scene.mesh);
+  state.counters["factorizations"] = estimate.work.factorizations;
+}
+
+// ---------------------------------------------------------------------------
+
+constexpr std::int64_t kSmall = 21;
+constexpr std::int64_t kMedium = 39;
+constexpr std::int64_t kBig = 58;
+
+void RegisterBenchmarks() {
+  for (const std::int64_t cells : {kSmall, kMedium, kBig}) {
+    const auto single_threaded = [cells](const char* name, auto function) {
+      return benchmark::RegisterBenchmark(name, function)
+          ->ArgNames({"cells"})
+          ->Args({cells})
+          ->Unit(benchmark::kMillisecond)
+          ->MinTime(0.2);
+    };
+    // Repeated, because the shortest of three times is the least disturbed.
+    benchmark::RegisterBenchmark("ElementPass", ElementPass)
+        ->ArgNames({"cells", "columns"})
+        ->Args({cells, 1})
+        ->Args({cells, 8})
+        ->Unit(benchmark::kMillisecond)
+        ->MinTime(0.2)
+        ->Repetitions(3);
+    single_threaded("NaivePass", NaivePass)->Repetitions(3);
+    single_threaded("TracesExact", TracesExact);
+    single_threaded("TracesEstimated", TracesEstimated);
+    single_threaded("NodeGraph", GraphOfNodes);
+    single_threaded("Assembly", Assembly);
+    single_threaded("Reassembly", Reassembly);
+    single_threaded("Combine", Combine);
+  }
+  for (const std::int64_t cells : {kSmall, kMedium}) {
+    // BLAS has threads of its own: the time that counts is that of the clock.
+    const auto threaded = [cells](const std::string& name, auto function) {
+      const std::string prefix = cells == kSmall ? "" : "Large/";
+      return benchmark::RegisterBenchmark((prefix + name).c_str(), function)
+          ->Unit(benchmark::kMillisecond)
+          ->UseRealTime();
+    };
+    threaded("CholeskyAnalysis", CholeskyAnalysis)
+        ->ArgNames({"cells"})
+        ->Args({cells});
+    threaded("CholeskyFactorization", CholeskyFactorization)
+        ->ArgNames({"cells"})
+        ->Args({cells});
+    threaded("CholeskySolve", CholeskySolve)
+        ->ArgNames({"cells", "columns"})
+        ->Args({cells, 1})
+        ->Args({cells, 4});
+    for (const char* const name : {"closed-form", "iterative-fe"}) {
+      threaded(std::string("Estimate/") + name,
+               [name](benchmark::State& state) { RunEstimator(state, name); })
+          ->ArgNames({"cells"})
+          ->Args({cells});
+    }
+  }
+}
+
+// Prints all runs but not their statistics, and keeps the shortest processor
+// time of each benchmark.
+class ComparingReporter : public benchmark::ConsoleReporter {
+ public:
+  // Without colours, so that the output can go to a file.
+  ComparingReporter() : ConsoleReporter(OO_None) {}
+
+  void ReportRuns(const std::vector<Run>& runs) override {
+    std::vector<Run> measured;
+    std::copy_if(
+        runs.begin(), runs.end(), std::back_inserter(measured),
+        [](const Run& run) { return run.run_type == Run::RT_Iteration; });
+    ConsoleReporter::ReportRuns(measured);
+    for (const Run& run : measured) {
+      if (!run.error_occurred) {
+        const std::string name =
+            run.run_name.function_name + "/" + run.run_name.args;
+        const double milliseconds = run.GetAdjustedCPUTime();
+        const auto shortest = shortest_.emplace(name, milliseconds).first;
+        shortest->second = std::min(shortest->second, milliseconds);
+      }
+    }
+  }
+
+  void PrintComparison() const {
+    for (const std::int64_t cells : {kSmall, kMedium, kBig}) {
+      const std::string size = "cells:" + std::to_string(cells);
+      const auto naive = shortest_.find("NaivePass/" + size);
+      const auto fast = shortest_.find("ElementPass/" + size + "/columns:1");
+      const auto eight = shortest_.find("ElementPass/" + size + "/columns:8");
+      if (naive == shortest_.end() || fast == shortest_.end() ||
+          eight == shortest_.end()) {
+        continue;
+      }
+      const double tetrahedra =
+          5.0 * static_cast<double>(cells * cells * cells);
+      std::printf(
+          "%7.0f tetrahedra: textbook %5.1f, one column %5.1f, eight columns "
+          "%5.1f ns each; the element pass is %.1f times as fast\n",
+          tetrahedra, naive->second * 1e6 / tetrahedra,
+          fast->second * 1e6 / tetrahedra, eight->second * 1e6 / tetrahedra / 8,
+          naive->second / fast->second);
+    }
+  }
+
+ private:
+  std::map<std::string, double> shortest_;  // [ms]
+};
+
+int Main(int argc, char** argv) {
+  const bool has_filter =
+      std::any_of(argv + 1, argv + argc, [](std::string_view argument) {
+        return argument.rfind("--benchmark_filter", 0) == 0;
+      });
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) {
+    return 1;
+  }
+  RegisterBenchmarks();
+  ComparingReporter reporter;
+  if (has_filter) {
+    benchmark::RunSpecifiedBenchmarks(&reporter);
+  } else {
+    benchmark::RunSpecifiedBenchmarks(&reporter, "-^Large/");
+  }
+  reporter.PrintComparison();
+  benchmark::Shutdown();
+  return 0;
+}
+
+}  // namespace
+}  // namespace elastimate
+
+int main(int argc, char** argv) { return elastimate::Main(argc, argv); }

@@ -1,0 +1,51 @@
+# How the project's libraries, programs and package are made.
+
+# In the build tree as in an installed one, headers are included as "elastimate/<folder>/<header>.h".
+function(elastimate_prepare_include_directory)
+  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include/elastimate)
+  foreach(folder ${ARGN})
+    file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${PROJECT_BINARY_DIR}/include/elastimate/${folder} SYMBOLIC)
+  endforeach()
+endfunction()
+
+# Warnings are errors in the project's own sources only.
+function(elastimate_compile_options target)
+  target_compile_features(${target} PUBLIC cxx_std_17)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Werror)
+endfunction()
+
+# elastimate_add_library(<component> SOURCES ... PUBLIC_HEADERS ... PUBLIC <libraries> PRIVATE <libraries>)
+function(elastimate_add_library component)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC_HEADERS;PUBLIC;PRIVATE" ${ARGN})
+  set(target elastimate_${component})
+  add_library(${target} ${ARG_SOURCES})
+  add_library(elastimate::${component} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${component} POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
+                                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(
+    ${target}
+    PUBLIC ${ARG_PUBLIC}
+    PRIVATE ${ARG_PRIVATE})
+  elastimate_compile_options(${target})
+  install(TARGETS ${target} EXPORT elastimateTargets)
+  install(FILES ${ARG_PUBLIC_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/elastimate/${component})
+endfunction()
+
+function(elastimate_install_package)
+  include(CMakePackageConfigHelpers)
+  set(destination ${CMAKE_INSTALL_LIBDIR}/cmake/elastimate)
+  configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/elastimate-config.cmake.in
+                                ${PROJECT_BINARY_DIR}/elastimate-config.cmake INSTALL_DESTINATION ${destination})
+  write_basic_package_version_file(${PROJECT_BINARY_DIR}/elastimate-config-version.cmake
+                                   COMPATIBILITY SameMinorVersion)
+  install(
+    FILES ${PROJECT_BINARY_DIR}/elastimate-config.cmake
+          ${PROJECT_BINARY_DIR}/elastimate-config-version.cmake
+          ${PROJECT_SOURCE_DIR}/cmake/ElastimateDependencies.cmake
+          ${PROJECT_SOURCE_DIR}/cmake/FindCHOLMOD.cmake
+          ${PROJECT_SOURCE_DIR}/cmake/FindGmsh.cmake
+    DESTINATION ${destination})
+  install(EXPORT elastimateTargets NAMESPACE elastimate:: DESTINATION ${destination})
+endfunction()

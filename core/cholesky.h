@@ -1,0 +1,47 @@
+#ifndef ELASTIMATE_CORE_CHOLESKY_H_
+#define ELASTIMATE_CORE_CHOLESKY_H_
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "elastimate/core/stiffness_assembly.h"
+
+namespace elastimate {
+
+/// Supernodal sparse Cholesky factorisation (CHOLMOD) of the matrices that
+/// share the pattern of one StiffnessAssembly: analysed once, factorised for
+/// each set of values.
+///
+/// The fill-reducing ordering is METIS nested dissection of the graph of the
+/// nodes, whose components stay together: a third of the vertices of the graph
+/// of the degrees of freedom, and as good.
+class Cholesky {
+ public:
+  /// Ordering and symbolic analysis.  `assembly` must outlive this object.
+  /// Throws std::bad_alloc when there is not enough memory.
+  Cholesky(const StiffnessAssembly& assembly,
+           const DegreesOfFreedom& degrees_of_freedom);
+  ~Cholesky();
+  Cholesky(const Cholesky&) = delete;
+  Cholesky& operator=(const Cholesky&) = delete;
+
+  /// L L^T = the matrix of these values (in the order of the pattern).  False
+  /// when the matrix is not positive definite to working precision.
+  /// Throws std::bad_alloc when there is not enough memory.
+  bool Factorize(const Eigen::VectorXd& values);
+
+  /// The solution for each column of `right_hand_sides`, size x n.
+  /// Precondition: the last Factorize returned true.
+  Eigen::MatrixXd Solve(const Eigen::MatrixXd& right_hand_sides);
+
+  /// Number of stored values of the factor.
+  double FactorValues() const;
+
+ private:
+  struct Workspace;
+  std::unique_ptr<Workspace> workspace_;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_CHOLESKY_H_

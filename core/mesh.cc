@@ -1,0 +1,183 @@
+#include "elastimate/core/mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "elastimate/core/tetrahedron.h"
+
+namespace elastimate {
+namespace {
+
+// Below this ratio of smallest height to longest edge a tetrahedron is flat:
+// far below any sliver worth computing with (a dihedral angle of 0.1 degrees
+// has 1e-3), and above what single precision coordinates leave of a zero.
+constexpr double kFlatHeight = 1e-6;
+
+// The faces of a tetrahedron of positive orientation, each counter-clockwise
+// seen from outside; face i is opposite to node i.
+constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+
+std::string ElementName(const Mesh& mesh, Eigen::Index element) {
+  std::ostringstream name;
+  name << "tetrahedron " << element << " (nodes "
+       << mesh.elements.col(element).transpose() << ")";
+  return name.str();
+}
+
+// Smallest height over longest edge.
+double RelativeHeight(const TetrahedronNodes& x) {
+  double longest_edge = 0;
+  double largest_face_area = 0;
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < i; ++j) {
+      longest_edge = std::max(longest_edge, (x.col(i) - x.col(j)).norm());
+    }
+    const Eigen::Vector3d p = x.col(kFaces[i][0]);
+    const Eigen::Vector3d e = x.col(kFaces[i][1]) - p;
+    const Eigen::Vector3d f = x.col(kFaces[i][2]) - p;
+    largest_face_area = std::max(largest_face_area, e.cross(f).norm() / 2);
+  }
+  if (largest_face_area == 0) {
+    return 0;
+  }
+  return 3 * TetrahedronVolume(x) / largest_face_area / longest_edge;
+}
+
+void ValidateNodes(const Mesh& mesh) {
+  for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
+    if (!mesh.nodes.col(node).allFinite()) {
+      throw std::invalid_argument(
+          "node " + std::to_string(node) +
+          " has a position that is not finite; correct the mesh");
+    }
+  }
+}
+
+void ValidateElements(const Mesh& mesh) {
+  if (mesh.elements.cols() == 0) {
+    throw std::invalid_argument(
+        "the mesh has no tetrahedra; mesh the volume, not only its surface");
+  }
+  if (mesh.elements.rows() != 4) {
+    throw std::invalid_argument("the mesh has " +
+                                std::to_string(mesh.elements.rows()) +
+                                " nodes per element; tetrahedra have 4");
+  }
+  for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
+    const auto corners = mesh.elements.col(element);
+    if (corners.minCoeff() < 0 || corners.maxCoeff() >= mesh.NumNodes()) {
+      throw std::invalid_argument(
+          ElementName(mesh, element) + " has a node index outside 0.." +
+          std::to_string(mesh.NumNodes() - 1) + "; correct the mesh");
+    }
+    if (RelativeHeight(GatherTetrahedron(mesh, element)) < kFlatHeight) {
+      throw std::invalid_argument(
+          ElementName(mesh, element) +
+          " is flat (no volume); remove it or mesh again");
+    }
+  }
+}
+
+void ValidateEveryNodeIsUsed(const Mesh& mesh) {
+  std::vector<bool> used(mesh.NumNodes(), false);
+  for (const int node : mesh.elements.reshaped()) {
+    used[node] = true;
+  }
+  const auto unused = std::find(used.begin(), used.end(), false);
+  if (unused != used.end()) {
+    throw std::invalid_argument("node " +
+                                std::to_string(unused - used.begin()) +
+                                " belongs to no tetrahedron; remove it");
+  }
+}
+
+}  // namespace
+
+void ValidateMesh(const Mesh& mesh) {
+  ValidateNodes(mesh);
+  ValidateElements(mesh);
+  ValidateEveryNodeIsUsed(mesh);
+  if (mesh.regions.size() != 0 && mesh.regions.size() != mesh.NumElements()) {
+    throw std::invalid_argument(
+        "there are " + std::to_string(mesh.regions.size()) +
+        " region ids for " + std::to_string(mesh.NumElements()) +
+        " tetrahedra; give one for each, or none");
+  }
+}
+
+Eigen::MatrixXi BoundaryFacets(const Mesh& mesh) {
+  struct Face {
+    std::array<int, 3> sorted;
+    Eigen::Index element;
+    int index;
+  };
+  std::vector<Face> faces;
+  faces.reserve(4 * mesh.NumElements());
+  for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
+    for (int i = 0; i < 4; ++i) {
+      std::array<int, 3> nodes;
+      for (int k = 0; k < 3; ++k) {
+        nodes[k] = mesh.elements(kFaces[i][k], element);
+      }
+      std::sort(nodes.begin(), nodes.end());
+      faces.push_back({nodes, element, i});
+    }
+  }
+  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
+    return std::tie(a.sorted, a.element) < std::tie(b.sorted, b.element);
+  });
+
+  std::vector<Face> boundary;
+  for (std::size_t i = 0; i < faces.size();) {
+    std::size_t end = i + 1;
+    while (end < faces.size() && faces[end].sorted == faces[i].sorted) {
+      ++end;
+    }
+    if (end == i + 1) {
+      boundary.push_back(faces[i]);
+    }
+    i = end;
+  }
+  std::sort(boundary.begin(), boundary.end(), [](const Face& a, const Face& b) {
+    return std::tie(a.element, a.index) < std::tie(b.element, b.index);
+  });
+
+  Eigen::MatrixXi facets(3, boundary.size());
+  for (std::size_t i = 0; i < boundary.size(); ++i) {
+    const Face& face = boundary[i];
+    for (int k = 0; k < 3; ++k) {
+      facets(k, i) = mesh.elements(kFaces[face.index][k], face.element);
+    }
+    if (SignedTetrahedronVolume(GatherTetrahedron(mesh, face.element)) < 0) {
+      std::swap(facets(1, i), facets(2, i));
+    }
+  }
+  return facets;
+}
+
+Eigen::VectorXd SmallestDihedralAngles(const Mesh& mesh) {
+  Eigen::VectorXd smallest(mesh.NumElements());
+  for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
+    const TetrahedronGradients gradients(GatherTetrahedron(mesh, element));
+    // Shape function gradients are the inward face normals.
+    const Eigen::Matrix<double, 3, 4> normals =
+        gradients.gradient.colwise().normalized();
+    double largest_cosine = -1;
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < i; ++j) {
+        largest_cosine =
+            std::max(largest_cosine, -normals.col(i).dot(normals.col(j)));
+      }
+    }
+    smallest(element) = std::acos(std::min(largest_cosine, 1.0));
+  }
+  return smallest;
+}
+
+}  // namespace elastimate

@@ -1,0 +1,87 @@
+#ifndef ELASTIMATE_CORE_SCENE_H_
+#define ELASTIMATE_CORE_SCENE_H_
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "elastimate/core/mesh.h"
+
+namespace elastimate {
+
+/// One flag per displacement component: 3 x num_nodes.
+using ComponentMask = Eigen::Array<bool, 3, Eigen::Dynamic>;
+
+/// The held degrees of freedom, and the displacement they are held at.
+struct Supports {
+  ComponentMask held;             ///< 3 x num_nodes.
+  Eigen::Matrix3Xd displacement;  ///< 3 x num_nodes [length]; used where
+                                  ///< `held`, ignored elsewhere.
+};
+
+/// Forces that act on nodes.
+struct NodalForces {
+  Eigen::Matrix3Xd force;  ///< 3 x num_nodes [force].
+};
+
+/// A uniform force per volume, such as gravity.
+struct BodyForce {
+  Eigen::Vector3d force_density;  ///< [force / length^3].
+};
+
+/// A uniform force per (undeformed) area on some facets.
+struct Traction {
+  Eigen::MatrixXi
+      facets;  ///< nodes_per_facet x num_facets, zero-based node indices.
+  Eigen::Vector3d traction;  ///< [force / length^2].
+};
+
+/// A uniform pressure on some facets; positive pushes against the outward
+/// normal.
+struct Pressure {
+  Eigen::MatrixXi facets;  ///< nodes_per_facet x num_facets, counter-clockwise
+                           ///< seen from outside.
+  double pressure;         ///< [force / length^2].
+};
+
+/// Loads are kept as what they physically are, so that each discretisation can
+/// assemble its own nodal forces.
+using Load = std::variant<NodalForces, BodyForce, Traction, Pressure>;
+
+/// One experiment on the specimen: what pushed, and what was measured.
+struct LoadCase {
+  std::vector<Load> loads;
+  Eigen::Matrix3Xd displacement;  ///< Measured, 3 x num_nodes [length]; empty
+                                  ///< when nothing was measured.
+  ComponentMask
+      observed;  ///< 3 x num_nodes, or empty when every component was measured.
+  std::optional<double> noise_sd;  ///< Standard deviation of the measured
+                                   ///< displacement per component [length].
+};
+
+/// Geometry, supports, and one or more load cases.
+struct Scene {
+  Mesh mesh;
+  Supports supports;
+  std::vector<LoadCase> load_cases;
+};
+
+/// Throws std::invalid_argument with one sentence that names the load case, the
+/// array, and the node or element, unless: the mesh is valid (ValidateMesh);
+/// every array has its shape; every number is finite (displacements only where
+/// they are observed); every facet has nodes in range; noise standard
+/// deviations are positive; there is a load case; and at least one degree of
+/// freedom is free.  O(num_elements + num_nodes * num_load_cases).
+void ValidateScene(const Scene& scene);
+
+/// Why the supports do not hold the specimen: a sentence that names a motion
+/// without strain which they allow (a translation or a rotation of a connected
+/// part of the mesh), or an empty string when there is none. A finite element
+/// solution exists only when it is empty.  O(num_elements).
+std::string WhyNotHeld(const Mesh& mesh, const Supports& supports);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_SCENE_H_

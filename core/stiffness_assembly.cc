@@ -1,0 +1,73 @@
+#include "elastimate/core/stiffness_assembly.h"
+
+namespace elastimate {
+
+StiffnessAssembly::StiffnessAssembly(const Mesh& mesh,
+                                     const DegreesOfFreedom& degrees_of_freedom)
+    : graph_(mesh), free_components_(mesh.NumNodes(), 0) {
+  for (const Eigen::Index dof : degrees_of_freedom.free) {
+    free_components_[dof / 3] |= 1U << (dof % 3);
+  }
+  BuildPattern(degrees_of_freedom);
+  Assemble(mesh);
+}
+
+void StiffnessAssembly::BuildPattern(
+    const DegreesOfFreedom& degrees_of_freedom) {
+  const Eigen::Index num_nodes = Eigen::Index(free_components_.size());
+  pattern_.column_start.assign(1, 0);
+  pattern_.column_start.reserve(degrees_of_freedom.NumFree() + 1);
+  pair_values_.assign(3 * graph_.NumPairs(), -1);
+  for (Eigen::Index node = 0; node < num_nodes; ++node) {
+    for (int component = 0; component < 3; ++component) {
+      if (degrees_of_freedom.place[3 * node + component] < 0) {
+        continue;
+      }
+      for (Eigen::Index k = graph_.start[node]; k < graph_.start[node + 1];
+           ++k) {
+        pair_values_[3 * k + component] =
+            static_cast<std::int64_t>(pattern_.row.size());
+        const Eigen::Index first = 3 * Eigen::Index(graph_.row[k]);
+        // Above the diagonal there is nothing to store.
+        const int first_component = graph_.row[k] == node ? component : 0;
+        for (int i = first_component; i < 3; ++i) {
+          if (degrees_of_freedom.place[first + i] >= 0) {
+            pattern_.row.push_back(degrees_of_freedom.place[first + i]);
+          }
+        }
+      }
+      pattern_.column_start.push_back(
+          static_cast<std::int64_t>(pattern_.row.size()));
+    }
+  }
+}
+
+void StiffnessAssembly::Assemble(const Mesh& mesh) {
+  const Eigen::Matrix3Xd products = GradientProducts(mesh, graph_);
+  h_.resize(static_cast<Eigen::Index>(pattern_.row.size()));
+  j_.resize(h_.size());
+  for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
+    for (Eigen::Index k = graph_.start[node]; k < graph_.start[node + 1]; ++k) {
+      const Eigen::Matrix3d m = products.middleCols<3>(3 * k);
+      const Eigen::Matrix3d block_h = StiffnessBlockH(m);
+      const Eigen::Matrix3d block_j = StiffnessBlockJ(m);
+      const unsigned free_rows = free_components_[graph_.row[k]];
+      for (int component = 0; component < 3; ++component) {
+        Eigen::Index value = pair_values_[3 * k + component];
+        if (value < 0) {
+          continue;
+        }
+        const int first_component = graph_.row[k] == node ? component : 0;
+        for (int i = first_component; i < 3; ++i) {
+          if ((free_rows >> i & 1U) != 0) {
+            h_(value) = block_h(i, component);
+            j_(value) = block_j(i, component);
+            ++value;
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace elastimate

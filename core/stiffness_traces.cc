@@ -1,0 +1,59 @@
+#include "elastimate/core/stiffness_traces.h"
+
+#include <random>
+
+#include "elastimate/core/node_graph.h"
+#include "elastimate/core/stiffness_product.h"
+
+namespace elastimate {
+
+Eigen::Matrix2d StiffnessTraces(const Mesh& mesh,
+                                const DegreesOfFreedom& degrees_of_freedom) {
+  const NodeGraph graph(mesh);
+  const Eigen::Matrix3Xd products = GradientProducts(mesh, graph);
+  const auto free = [&](Eigen::Index node) {
+    Eigen::Vector3d mask;
+    for (int i = 0; i < 3; ++i) {
+      mask(i) = degrees_of_freedom.place[3 * node + i] >= 0 ? 1 : 0;
+    }
+    return mask;
+  };
+  Eigen::Matrix2d traces = Eigen::Matrix2d::Zero();
+  for (Eigen::Index j = 0; j < mesh.NumNodes(); ++j) {
+    const Eigen::Vector3d free_j = free(j);
+    for (Eigen::Index k = graph.start[j]; k < graph.start[j + 1]; ++k) {
+      const int i = graph.row[k];
+      const Eigen::Matrix3d mask = free(i) * free_j.transpose();
+      const Eigen::Matrix3d m = products.middleCols<3>(3 * k);
+      const Eigen::Matrix3d block_h = StiffnessBlockH(m).cwiseProduct(mask);
+      const Eigen::Matrix3d block_j = StiffnessBlockJ(m).cwiseProduct(mask);
+      // A pair of different nodes stands for two blocks of the matrix.
+      const double weight = i == j ? 1 : 2;
+      traces(0, 0) += weight * block_h.squaredNorm();
+      traces(0, 1) += weight * block_h.cwiseProduct(block_j).sum();
+      traces(1, 1) += weight * block_j.squaredNorm();
+    }
+  }
+  traces(1, 0) = traces(0, 1);
+  return traces;
+}
+
+Eigen::Matrix2d EstimateStiffnessTraces(
+    const Mesh& mesh, const DegreesOfFreedom& degrees_of_freedom) {
+  constexpr Eigen::Index kNumProbes = 2;
+  std::mt19937_64 generator(20071107);
+  Eigen::MatrixXd signs(degrees_of_freedom.NumFree(), kNumProbes);
+  for (double& sign : signs.reshaped()) {
+    sign = (generator() & 1U) != 0 ? 1 : -1;
+  }
+  const StiffnessProducts products =
+      MultiplyStiffnessBasis(mesh, degrees_of_freedom.Extend(signs));
+  const Eigen::MatrixXd h = degrees_of_freedom.Restrict(products.h);
+  const Eigen::MatrixXd j = degrees_of_freedom.Restrict(products.j);
+  Eigen::Matrix2d traces;
+  traces << h.squaredNorm(), h.cwiseProduct(j).sum(), h.cwiseProduct(j).sum(),
+      j.squaredNorm();
+  return traces / kNumProbes;
+}
+
+}  // namespace elastimate

@@ -1,0 +1,67 @@
+#include "elastimate/estimators/closed_form.h"
+
+#include <sstream>
+
+#include "elastimate/estimators/force_residual.h"
+
+namespace elastimate {
+
+std::string_view ClosedForm::Name() const { return "closed-form"; }
+
+std::string_view ClosedForm::Description() const {
+  return "linear least squares of the force residual, one pass over the "
+         "elements; exact without noise, biased with it [Becker & Teschner "
+         "2007, eq. 20-23]";
+}
+
+std::string ClosedForm::WhyUnsupported(const Scene& scene,
+                                       const EstimatorOptions& options) const {
+  if (options.poisson_ratio.AreGiven() || options.youngs_modulus.AreGiven()) {
+    return "it cannot keep bounds; use bounded or iterative-fe";
+  }
+  if (options.loss != Loss::kNone) {
+    return "a loss function needs displacement residuals; use iterative-fe";
+  }
+  return ForceResidual::WhyUnsupported(scene);
+}
+
+Estimate ClosedForm::DoRun(const Scene& scene,
+                           const EstimatorOptions& options) const {
+  const ForceResidual residual(scene);
+  Estimate estimate;
+  estimate.status = Status::kOk;
+  estimate.message = "";
+  estimate.work = residual.WorkDone();
+  const bool free_poisson_ratio = !options.known_poisson_ratio;
+  const std::optional<double> nu = free_poisson_ratio
+                                       ? residual.PoissonRatio()
+                                       : options.known_poisson_ratio;
+  if (!nu) {
+    estimate.status = Status::kNotIdentifiable;
+    estimate.message = residual.WhyNotIdentifiable();
+    estimate.why_no_standard_error = "the parameters are not determined";
+    return estimate;
+  }
+  estimate.elasticity = residual.At(*nu);
+  residual.Describe(true, free_poisson_ratio, estimate);
+  if (!estimate.elasticity.IsPhysical()) {
+    std::ostringstream text;
+    text << "E = " << estimate.elasticity.youngs_modulus << ", nu = " << *nu
+         << " is not physical: "
+         << (free_poisson_ratio
+                 ? "displacement noise pulls nu of this method towards 2/3 and "
+                   "E below zero; use iterative-fe, which noise does not bias, "
+                   "or give Poisson's ratio"
+                 : "the measured displacements oppose the loads; check their "
+                   "signs, order and units");
+    estimate.status = Status::kUnphysical;
+    estimate.message = text.str();
+    estimate.covariance.setConstant(Estimate::kUnknown);
+    estimate.why_no_standard_error = "the estimate is not physical";
+  } else if (free_poisson_ratio) {
+    JudgeNoiseBias(residual, Bounds{}, estimate);
+  }
+  return estimate;
+}
+
+}  // namespace elastimate

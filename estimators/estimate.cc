@@ -1,0 +1,43 @@
+#include "elastimate/estimators/estimate.h"
+
+#include <cmath>
+
+namespace elastimate {
+namespace {
+
+std::optional<double> FiniteOrNothing(double value) {
+  return std::isfinite(value) ? std::optional<double>(value) : std::nullopt;
+}
+
+}  // namespace
+
+std::string_view StatusName(Status status) {
+  switch (status) {
+    case Status::kOk:
+      return "ok";
+    case Status::kNotIdentifiable:
+      return "not_identifiable";
+    case Status::kUnphysical:
+      return "unphysical";
+    case Status::kIterationLimit:
+      return "iteration_limit";
+    case Status::kNumericalFailure:
+      break;
+  }
+  return "numerical_failure";
+}
+
+std::optional<double> Estimate::YoungsModulusStandardError() const {
+  return FiniteOrNothing(std::sqrt(covariance(0, 0)));
+}
+
+std::optional<double> Estimate::PoissonRatioStandardError() const {
+  return FiniteOrNothing(std::sqrt(covariance(1, 1)));
+}
+
+std::optional<double> Estimate::Correlation() const {
+  return FiniteOrNothing(covariance(0, 1) /
+                         std::sqrt(covariance(0, 0) * covariance(1, 1)));
+}
+
+}  // namespace elastimate

@@ -1,0 +1,87 @@
+#ifndef ELASTIMATE_ESTIMATORS_ESTIMATE_H_
+#define ELASTIMATE_ESTIMATORS_ESTIMATE_H_
+
+#include <Eigen/Core>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "elastimate/core/elasticity.h"
+#include "elastimate/core/forward_model.h"
+
+namespace elastimate {
+
+/// How an estimator came out.
+enum class Status {
+  kOk,                ///< The estimate is usable.
+  kNotIdentifiable,   ///< The data, or this method, leave E or nu undetermined.
+  kUnphysical,        ///< E <= 0 or nu outside (-1, 1/2).
+  kIterationLimit,    ///< The iteration did not converge.
+  kNumericalFailure,  ///< A factorisation or an evaluation failed.
+};
+
+/// "ok", "not_identifiable", "unphysical", "iteration_limit" or
+/// "numerical_failure".
+std::string_view StatusName(Status status);
+
+/// Seconds that a stage of an estimator took.
+struct StageTime {
+  std::string stage;
+  double seconds;
+};
+
+/// What an estimator says about a scene.  Starts out as a failure, so that it
+/// cannot be mistaken for a result before an estimator has filled it in.
+struct Estimate {
+  std::string estimator;
+  Status status = Status::kNumericalFailure;
+  /// Why the status is not ok, and what to do; empty when it is.
+  std::string message = "the estimator was not run";
+
+  /// E [pressure] and nu [-]; NaN where there is no number at all.
+  IsotropicElasticity elasticity = {kUnknown, kUnknown};
+  /// Covariance of (E, nu).  NaN in the row and column of a parameter that was
+  /// given, or that is held by a bound, or of both when unknown.
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kUnknown);
+  /// Why a standard error is missing; empty when none is.
+  std::string why_no_standard_error;
+
+  /// Estimated (or given, when it is known) noise standard deviation of a
+  /// measured displacement component [length]; of the first load case when
+  /// they differ.
+  std::optional<double> noise_sd;
+  /// ||A(nu) q - t f|| / ||t f|| over the free degrees of freedom.
+  std::optional<double> force_residual;
+  /// ||u - q|| / ||q|| over the observed free components.
+  std::optional<double> displacement_residual;
+  /// Angle between the sensitivities of the observed displacements to ln E and
+  /// to nu [rad]: small when the data determine one combination of them only.
+  std::optional<double> identifiability_angle;
+  /// rho: the share by which displacement noise has pulled nu towards the
+  /// value that pure noise has (about 2/3); 0 without noise, 1 when the noise
+  /// hides nu altogether.
+  std::optional<double> noise_attenuation;
+  /// Bounds that the estimate lies on, such as "nu_max".
+  std::vector<std::string> active_bounds;
+  /// Sentences for the user, about a result that is usable all the same.
+  std::vector<std::string> warnings;
+
+  Work work;
+  std::vector<StageTime> stages;
+  double seconds = 0;  ///< Time of the whole estimator.
+
+  bool IsUsable() const { return status == Status::kOk; }
+  /// Square roots of the diagonal of `covariance`; empty when unknown.
+  std::optional<double> YoungsModulusStandardError() const;
+  std::optional<double> PoissonRatioStandardError() const;
+  /// Correlation of the errors of E and nu; empty when unknown.
+  std::optional<double> Correlation() const;
+
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_ESTIMATE_H_

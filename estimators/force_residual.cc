@@ -1,0 +1,330 @@
+#include "elastimate/estimators/force_residual.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "elastimate/core/degrees_of_freedom.h"
+#include "elastimate/core/loads.h"
+#include "elastimate/core/stiffness_product.h"
+#include "elastimate/core/stiffness_traces.h"
+#include "elastimate/estimators/statistics.h"
+
+namespace elastimate {
+namespace {
+
+// The sine of the angle between b and f below which rounding, not the data,
+// decides on nu.
+constexpr double kCollinear = 1e-11;
+
+// Up to here the exact traces take milliseconds; beyond, estimated ones are
+// good to better than 1 %, and standard errors to half of that.
+constexpr Eigen::Index kMostElementsForExactTraces = 10000;
+
+// Factor between the force residual and what the given noise explains from
+// which on the model is in doubt.
+constexpr double kUnexplainedResidual = 1.5;
+
+// The triangle of a QR factorisation of the columns, in blocks of rows that
+// stay in the cache.
+Eigen::Matrix3d BlockwiseTriangle(
+    const Eigen::Matrix<double, Eigen::Dynamic, 3>& columns) {
+  constexpr Eigen::Index kBlockRows = 512;
+  Eigen::Matrix3d triangle = Eigen::Matrix3d::Zero();
+  Eigen::Matrix<double, Eigen::Dynamic, 3> block;
+  for (Eigen::Index row = 0; row < columns.rows(); row += kBlockRows) {
+    const Eigen::Index rows = std::min(kBlockRows, columns.rows() - row);
+    block.resize(3 + rows, 3);
+    block << triangle, columns.middleRows(row, rows);
+    const Eigen::HouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 3>> qr(
+        block);
+    triangle = qr.matrixQR().topRows<3>().triangularView<Eigen::Upper>();
+  }
+  return triangle;
+}
+
+std::string Percent(double ratio) {
+  std::ostringstream text;
+  text.precision(2);
+  text << 100 * ratio << " %";
+  return text.str();
+}
+
+}  // namespace
+
+std::string ForceResidual::WhyUnsupported(const Scene& scene) {
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
+      for (int i = 0; i < 3; ++i) {
+        if (!scene.supports.held(i, node) &&
+            !IsObserved(scene.load_cases[k], i, node)) {
+          return "the force residual needs the displacement of every node, "
+                 "and node " +
+                 std::to_string(node) + " (" + "xyz"[i] + ") of load case " +
+                 std::to_string(k + 1) +
+                 " was not observed; iterative-fe can do without";
+        }
+      }
+    }
+  }
+  return "";
+}
+
+ForceResidual::ForceResidual(const Scene& scene) {
+  const DegreesOfFreedom dofs(scene.supports);
+  const Eigen::VectorXd held_displacement = HeldDisplacement(scene.supports);
+  const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
+  known_noise_sd_ = scene.load_cases.front().noise_sd;
+
+  Eigen::MatrixXd q(dofs.NumAll(), num_cases);
+  Eigen::MatrixXd f = AssembleLoadCases(scene);
+  for (Eigen::Index k = 0; k < num_cases; ++k) {
+    const LoadCase& load_case = scene.load_cases[k];
+    const double weight = 1 / load_case.noise_sd.value_or(1);
+    q.col(k) = weight * held_displacement;
+    q.col(k)(dofs.free) = weight * load_case.displacement.reshaped()(dofs.free);
+    f.col(k) *= weight;
+  }
+
+  const StiffnessProducts products = MultiplyStiffnessBasis(scene.mesh, q);
+  ++work_.element_passes;
+  num_equations_ = dofs.NumFree() * num_cases;
+  Eigen::Matrix<double, Eigen::Dynamic, 3> columns(num_equations_, 3);
+  columns << dofs.Restrict(f).reshaped(), dofs.Restrict(products.j).reshaped(),
+      dofs.Restrict(products.h).reshaped();
+  triangle_ = BlockwiseTriangle(columns);
+
+  Eigen::MatrixXd b_and_f(dofs.NumFree(), 2 * num_cases);
+  b_and_f << columns.col(1).reshaped(dofs.NumFree(), num_cases),
+      columns.col(0).reshaped(dofs.NumFree(), num_cases);
+  const StiffnessProducts again =
+      MultiplyStiffnessBasis(scene.mesh, dofs.Extend(b_and_f));
+  ++work_.element_passes;
+  const Eigen::MatrixXd h = dofs.Restrict(again.h);
+  const Eigen::MatrixXd j = dofs.Restrict(again.j);
+  Eigen::Matrix<double, Eigen::Dynamic, 4> stiffened(num_equations_, 4);
+  stiffened << h.leftCols(num_cases).reshaped(),
+      j.leftCols(num_cases).reshaped(), h.rightCols(num_cases).reshaped(),
+      j.rightCols(num_cases).reshaped();
+  product_gram_ = stiffened.transpose() * stiffened;
+
+  traces_ = num_cases * (scene.mesh.NumElements() <= kMostElementsForExactTraces
+                             ? StiffnessTraces(scene.mesh, dofs)
+                             : EstimateStiffnessTraces(scene.mesh, dofs));
+  ++work_.element_passes;
+}
+
+std::optional<double> ForceResidual::PoissonRatio() const {
+  const double b_norm = triangle_.col(1).norm();
+  if (std::abs(triangle_(1, 1)) <= kCollinear * b_norm) {
+    return std::nullopt;
+  }
+  return -triangle_(1, 2) / triangle_(1, 1);
+}
+
+std::string ForceResidual::WhyNotIdentifiable() const {
+  // Along dt / dnu = b.f / f.f the residual does not change.
+  constexpr double kAnyPoissonRatio = 0.25;
+  const double nu = kAnyPoissonRatio;
+  const double dt_dnu = triangle_(0, 1) / triangle_(0, 0);
+  return DescribeCollinear(
+      At(nu),
+      {1 / (1 + nu) - 2 / (1 - 2 * nu) - dt_dnu / ComplianceScale(nu), 1});
+}
+
+double ForceResidual::ComplianceScale(double poisson_ratio) const {
+  return (triangle_(0, 2) + poisson_ratio * triangle_(0, 1)) / triangle_(0, 0);
+}
+
+IsotropicElasticity ForceResidual::At(double poisson_ratio) const {
+  return IsotropicElasticity::FromComplianceScale(
+      ComplianceScale(poisson_ratio), poisson_ratio);
+}
+
+double ForceResidual::RelativeResidual(
+    const IsotropicElasticity& elasticity) const {
+  const double t = elasticity.ComplianceScale();
+  return (triangle_ * Eigen::Vector3d(-t, elasticity.poisson_ratio, 1)).norm() /
+         std::abs(t * triangle_(0, 0));
+}
+
+Eigen::Matrix2d ForceResidual::StiffenedGram(double poisson_ratio) const {
+  Eigen::Matrix<double, 4, 2> combine;
+  combine << 1, 0, poisson_ratio, 0, 0, 1, 0, poisson_ratio;
+  return combine.transpose() * product_gram_ * combine;
+}
+
+Eigen::Matrix2d ForceResidual::ProjectedTraces() const {
+  const double f_squared = triangle_(0, 0) * triangle_(0, 0);
+  return traces_ - product_gram_.bottomRightCorner<2, 2>() / f_squared;
+}
+
+double ForceResidual::ErrorsInVariablesPoissonRatio() const {
+  // Minimises (||a~ + nu b~||^2) / (noise of a + nu b), where ~ is the part
+  // orthogonal to f, in the basis where the noise is isotropic.
+  const Eigen::LLT<Eigen::Matrix2d> noise(ProjectedTraces());
+  Eigen::Matrix2d b_then_a;
+  b_then_a << triangle_(1, 1), triangle_(1, 2), 0, triangle_(2, 2);
+  const Eigen::Matrix2d a_then_b = b_then_a.rowwise().reverse();
+  const Eigen::Matrix2d normalized =
+      noise.matrixL().solve(a_then_b.transpose()).transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix2d> svd(normalized, Eigen::ComputeFullV);
+  const Eigen::Vector2d direction = noise.matrixU().solve(svd.matrixV().col(1));
+  return direction(1) / direction(0);
+}
+
+std::optional<double> ForceResidual::ResidualVariance(
+    double poisson_ratio, bool free_poisson_ratio) const {
+  const Eigen::Vector2d weights(1, poisson_ratio);
+  const double all_noise = weights.dot(traces_ * weights);
+  const Eigen::Matrix2d stiffened = StiffenedGram(poisson_ratio);
+  double fitted_noise = 0;
+  if (free_poisson_ratio) {
+    const Eigen::Matrix2d r = (Eigen::Matrix2d() << triangle_(0, 1),
+                               triangle_(0, 0), triangle_(1, 1), 0)
+                                  .finished();
+    fitted_noise = ((r.transpose() * r).inverse() * stiffened).trace();
+  } else {
+    fitted_noise = stiffened(1, 1) / (triangle_(0, 0) * triangle_(0, 0));
+  }
+  const Eigen::Index num_unknowns = free_poisson_ratio ? 2 : 1;
+  if (num_equations_ <= num_unknowns || !(fitted_noise < all_noise)) {
+    return std::nullopt;
+  }
+  const double orthogonal = triangle_(1, 2) + poisson_ratio * triangle_(1, 1);
+  return (orthogonal * orthogonal + triangle_(2, 2) * triangle_(2, 2)) /
+         (all_noise - fitted_noise);
+}
+
+std::optional<double> ForceResidual::NoiseVariance(
+    const Estimate& estimate, bool free_poisson_ratio) const {
+  return ResidualVariance(free_poisson_ratio
+                              ? ErrorsInVariablesPoissonRatio()
+                              : estimate.elasticity.poisson_ratio,
+                          free_poisson_ratio);
+}
+
+std::optional<double> ForceResidual::UnbiasedPoissonRatio() const {
+  if (!known_noise_sd_) {
+    const double nu = ErrorsInVariablesPoissonRatio();
+    return std::isfinite(nu) ? std::optional<double>(nu) : std::nullopt;
+  }
+  const Eigen::Matrix2d noise = ProjectedTraces();
+  const double r11 = triangle_(1, 1);
+  const double b_squared = r11 * r11 - noise(1, 1);
+  if (!(b_squared > 0)) {
+    return std::nullopt;
+  }
+  return -(r11 * triangle_(1, 2) - noise(0, 1)) / b_squared;
+}
+
+Eigen::Matrix2d ForceResidual::Covariance(const IsotropicElasticity& elasticity,
+                                          double noise_variance,
+                                          bool free_youngs_modulus,
+                                          bool free_poisson_ratio) const {
+  // r depends on (nu, t) through the columns [b, -f]; the noise of r is
+  // sigma^2 A A^T, so that least squares has a sandwich covariance.
+  Eigen::Matrix2d columns;
+  columns << triangle_(0, 1), -triangle_(0, 0), triangle_(1, 1), 0;
+  Eigen::Matrix2d gram = StiffenedGram(elasticity.poisson_ratio);
+  gram(0, 1) *= -1;
+  gram(1, 0) *= -1;
+  std::vector<Eigen::Index> free;
+  if (free_youngs_modulus) {
+    free.push_back(0);
+  }
+  if (free_poisson_ratio) {
+    free.push_back(1);
+  }
+  const Eigen::MatrixXd directions =
+      ComplianceScaleJacobian(elasticity)(Eigen::all, free);
+  const Eigen::MatrixXd x = columns * directions;
+  const Eigen::MatrixXd inverse =
+      (x.transpose() * x).inverse() * directions.transpose();
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(Estimate::kUnknown);
+  covariance(free, free) =
+      noise_variance * inverse * gram * inverse.transpose();
+  return covariance;
+}
+
+void ForceResidual::Describe(bool free_youngs_modulus, bool free_poisson_ratio,
+                             Estimate& estimate) const {
+  estimate.force_residual = RelativeResidual(estimate.elasticity);
+  const std::optional<double> residual_variance =
+      NoiseVariance(estimate, free_poisson_ratio);
+  if (!known_noise_sd_ && !residual_variance) {
+    estimate.why_no_standard_error =
+        "there are no more equations than unknowns, so that the noise cannot "
+        "be estimated; give its standard deviation";
+    return;
+  }
+  const double noise_sd_ratio = std::sqrt(residual_variance.value_or(1));
+  double variance = residual_variance.value_or(1);
+  estimate.noise_sd = known_noise_sd_.value_or(noise_sd_ratio);
+  if (known_noise_sd_) {
+    variance = 1;
+    if (noise_sd_ratio > kUnexplainedResidual) {
+      std::ostringstream text;
+      text.precision(2);
+      text << "the force residual is " << noise_sd_ratio
+           << " times what the given noise explains, and the standard errors "
+              "are widened to match; the mesh, the supports or the loads do "
+              "not describe the experiment";
+      estimate.warnings.push_back(text.str());
+      variance = *residual_variance;
+    }
+  }
+  if (free_poisson_ratio) {
+    const double b_squared = triangle_(1, 1) * triangle_(1, 1);
+    estimate.noise_attenuation =
+        std::min(1.0, variance * ProjectedTraces()(1, 1) / b_squared);
+  }
+  if (free_youngs_modulus || free_poisson_ratio) {
+    estimate.covariance = Covariance(estimate.elasticity, variance,
+                                     free_youngs_modulus, free_poisson_ratio);
+  }
+}
+
+void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,
+                    Estimate& estimate) {
+  constexpr double kUnusableBias = 0.1;
+  constexpr double kNotableBias = 0.01;
+  const std::string advice =
+      "use iterative-fe, which noise does not bias, or give Poisson's ratio";
+  const std::optional<double> unbiased_nu = residual.UnbiasedPoissonRatio();
+  double bias = std::numeric_limits<double>::infinity();
+  if (unbiased_nu) {
+    const double nu = std::clamp(*unbiased_nu, bounds.lower.value_or(-1),
+                                 bounds.upper.value_or(0.5));
+    const double unbiased = residual.At(nu).youngs_modulus;
+    bias = estimate.elasticity.youngs_modulus / unbiased - 1;
+    if (!(unbiased > 0)) {
+      bias = std::numeric_limits<double>::infinity();
+    }
+  }
+  if (!(std::abs(bias) <= kUnusableBias)) {
+    estimate.status = Status::kNotIdentifiable;
+    estimate.message =
+        "displacement noise biases this estimate of Young's modulus by about " +
+        (std::isfinite(bias) ? Percent(bias) : std::string("its whole size")) +
+        ", more than the 10 % that are usable; " + advice;
+    estimate.covariance.setConstant(Estimate::kUnknown);
+    estimate.why_no_standard_error =
+        "the bias is larger than any standard error";
+    return;
+  }
+  const double standard_error =
+      estimate.YoungsModulusStandardError().value_or(0) /
+      estimate.elasticity.youngs_modulus;
+  if (std::abs(bias) > std::max(kNotableBias, standard_error)) {
+    estimate.warnings.push_back(
+        "displacement noise biases this estimate of Young's modulus by about " +
+        Percent(bias) + ", more than its standard error; " + advice);
+  }
+}
+
+}  // namespace elastimate

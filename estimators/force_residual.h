@@ -1,0 +1,101 @@
+#ifndef ELASTIMATE_ESTIMATORS_FORCE_RESIDUAL_H_
+#define ELASTIMATE_ESTIMATORS_FORCE_RESIDUAL_H_
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+
+#include "elastimate/core/elasticity.h"
+#include "elastimate/core/scene.h"
+#include "elastimate/estimators/estimate.h"
+#include "elastimate/estimators/estimator.h"
+
+namespace elastimate {
+
+/// The force residual r(nu, t) = a + nu b - t f of a scene, a = H q, b = J q,
+/// over the free degrees of freedom of all load cases, compressed to what its
+/// least-squares estimators need [Becker & Teschner 2007, eq. 20-24].
+///
+/// Load cases are weighted by 1 / noise_sd when it is known, so that the noise
+/// of the weighted displacements has standard deviation 1.
+class ForceResidual {
+ public:
+  /// One element pass for a and b, and two for the statistics.
+  /// Preconditions: what Estimator::Run checks, and WhyUnsupported is empty.
+  explicit ForceResidual(const Scene& scene);
+
+  /// Why the force residual of this scene cannot be formed: it needs the
+  /// displacement of every free component.  Empty when it can.
+  static std::string WhyUnsupported(const Scene& scene);
+
+  /// Minimiser of ||r|| over nu and t, unbounded; empty when b and f are
+  /// collinear, so that the data determine one combination of nu and t only.
+  std::optional<double> PoissonRatio() const;
+
+  /// A sentence about what is determined when PoissonRatio is empty.
+  std::string WhyNotIdentifiable() const;
+
+  /// t that minimises ||r|| at this nu, t = f.(a + nu b) / f.f [eq. 20].
+  double ComplianceScale(double poisson_ratio) const;
+
+  /// (E, nu) with the t of ComplianceScale.
+  IsotropicElasticity At(double poisson_ratio) const;
+
+  /// ||r|| / ||t f||.
+  double RelativeResidual(const IsotropicElasticity& elasticity) const;
+
+  const Work& WorkDone() const { return work_; }
+
+  /// The triangle R of the QR factorisation of [f b a]: ||r|| = ||R (-t, nu,
+  /// 1)^T||.
+  const Eigen::Matrix3d& Triangle() const { return triangle_; }
+
+  /// Noise level, noise bias and covariance of an estimate of this residual.
+  /// `free_youngs_modulus` and `free_poisson_ratio` say which parameters were
+  /// estimated (not given, not held by a bound).  Fills in the noise, residual
+  /// and covariance entries of `estimate`, and its warnings.
+  void Describe(bool free_youngs_modulus, bool free_poisson_ratio,
+                Estimate& estimate) const;
+
+  /// The minimiser without the bias of displacement noise (errors in
+  /// variables): its nu, or empty when the noise hides it.
+  std::optional<double> UnbiasedPoissonRatio() const;
+
+ private:
+  /// Estimate of the variance of the weighted noise from the residual at this
+  /// nu; empty when there are too few equations.
+  std::optional<double> ResidualVariance(double poisson_ratio,
+                                         bool free_poisson_ratio) const;
+  /// Variance of the weighted noise: 1 when known, else from the smallest
+  /// singular value of the noise-normalised residual.
+  std::optional<double> NoiseVariance(const Estimate& estimate,
+                                      bool free_poisson_ratio) const;
+  double ErrorsInVariablesPoissonRatio() const;
+  /// Gram matrix of A(nu) [b f].
+  Eigen::Matrix2d StiffenedGram(double poisson_ratio) const;
+  /// T without the directions that t fits: rows and columns (a, b).
+  Eigen::Matrix2d ProjectedTraces() const;
+  Eigen::Matrix2d Covariance(const IsotropicElasticity& elasticity,
+                             double noise_variance, bool free_youngs_modulus,
+                             bool free_poisson_ratio) const;
+
+  Eigen::Matrix3d triangle_;
+  /// Sum of StiffnessTraces over the load cases.
+  Eigen::Matrix2d traces_;
+  /// Gram matrix of [H b, J b, H f, J f].
+  Eigen::Matrix4d product_gram_;
+  Eigen::Index num_equations_;
+  /// Standard deviation of the noise of the first load case, when known.
+  std::optional<double> known_noise_sd_;
+  Work work_;
+};
+
+/// Sets `estimate` to not usable when the bias that displacement noise puts on
+/// E is above 10 %, and warns when it is above 1 % and one standard error.
+/// `bounds` are those that the estimate of nu had to keep.
+void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,
+                    Estimate& estimate);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_FORCE_RESIDUAL_H_

@@ -1,0 +1,47 @@
+#include "elastimate/estimators/registry.h"
+
+#include <stdexcept>
+#include <string>
+
+#include "elastimate/estimators/bounded.h"
+#include "elastimate/estimators/closed_form.h"
+#include "elastimate/estimators/iterative_fe.h"
+
+namespace elastimate {
+namespace {
+
+template <typename T>
+std::unique_ptr<Estimator> Make() {
+  return std::make_unique<T>();
+}
+
+constexpr std::unique_ptr<Estimator> (*kEstimators[])() = {
+    Make<ClosedForm>,
+    Make<Bounded>,
+    Make<IterativeFe>,
+};
+
+}  // namespace
+
+std::vector<std::string_view> EstimatorNames() {
+  std::vector<std::string_view> names;
+  for (const auto make : kEstimators) {
+    names.push_back(make()->Name());
+  }
+  return names;
+}
+
+std::unique_ptr<Estimator> MakeEstimator(std::string_view name) {
+  std::string known;
+  for (const auto make : kEstimators) {
+    std::unique_ptr<Estimator> estimator = make();
+    if (estimator->Name() == name) {
+      return estimator;
+    }
+    known += (known.empty() ? "" : ", ") + std::string(estimator->Name());
+  }
+  throw std::invalid_argument("unknown estimator '" + std::string(name) +
+                              "'; the estimators are " + known);
+}
+
+}  // namespace elastimate

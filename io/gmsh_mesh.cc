@@ -1,0 +1,349 @@
+#include "elastimate/io/gmsh_mesh.h"
+
+#include <gmsh.h>
+
+#include <algorithm>
+#include <cctype>
+#include <exception>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "elastimate/io/input_error.h"
+
+namespace elastimate {
+namespace {
+
+constexpr int kTriangle = 2;  // Gmsh's element types.
+constexpr int kTetrahedron = 4;
+
+[[noreturn]] void ThrowDamaged(const std::filesystem::path& path,
+                               const std::string& reason) {
+  ThrowInputError(path, "the file is damaged or of another format (" + reason +
+                            "); write it again");
+}
+
+/// Gmsh runs a .msh file that does not begin like one as a script.
+void CheckMshBegin(const std::filesystem::path& path) {
+  std::string begin(16, '\0');
+  std::ifstream(path, std::ios::binary)
+      .read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  if (begin.rfind("$MeshFormat", 0) != 0 && begin.rfind("$NOD", 0) != 0 &&
+      begin.rfind("$Comments", 0) != 0) {
+    ThrowDamaged(path, "it does not begin with $MeshFormat or $NOD");
+  }
+}
+
+/// Gmsh takes many a file that was cut for a whole one.
+void CheckEnd(const std::filesystem::path& path) {
+  static const std::map<std::string, std::string> kLastLines = {
+      {".msh", "$END"}, {".mesh", "END"}, {".unv", "-1"}, {".bdf", "ENDDATA"}};
+  const std::string& expected = kLastLines.at(path.extension().string());
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  const std::streamoff size = file.tellg();
+  std::string end(std::min<std::streamoff>(size, 256), '\0');
+  file.seekg(size - static_cast<std::streamoff>(end.size()))
+      .read(end.data(), static_cast<std::streamsize>(end.size()));
+  end.erase(end.find_last_not_of(" \t\r\n") + 1);
+  end.erase(0, end.find_last_of("\r\n") + 1);
+  end.erase(0, end.find_first_not_of(" \t"));
+  std::transform(end.begin(), end.end(), end.begin(),
+                 [](unsigned char c) { return std::toupper(c); });
+  if (end.rfind(expected, 0) != 0) {
+    ThrowDamaged(path, "its last line does not begin with " + expected);
+  }
+}
+
+class GmshSession {
+ public:
+  GmshSession() {
+    gmsh::initialize(0, nullptr, false);
+    gmsh::option::setNumber("General.Terminal", 0);
+    gmsh::logger::start();
+  }
+  ~GmshSession() {
+    try {
+      gmsh::logger::stop();  // The log would outlive the session.
+      gmsh::finalize();
+    } catch (...) {  // NOLINT(bugprone-empty-catch): nothing left to undo.
+    }
+  }
+  GmshSession(const GmshSession&) = delete;
+  GmshSession& operator=(const GmshSession&) = delete;
+};
+
+/// The position of each of Gmsh's numbers in an ascending list of them.
+class Numbering {
+ public:
+  explicit Numbering(std::vector<std::size_t> numbers)
+      : numbers_(std::move(numbers)) {}
+
+  /// -1 when `number` is not in the list.
+  int Find(std::size_t number) const {
+    const auto found =
+        std::lower_bound(numbers_.begin(), numbers_.end(), number);
+    return found == numbers_.end() || *found != number
+               ? -1
+               : static_cast<int>(found - numbers_.begin());
+  }
+  const std::vector<std::size_t>& Numbers() const { return numbers_; }
+
+ private:
+  std::vector<std::size_t> numbers_;
+};
+
+/// The permutation that sorts `values`.
+std::vector<std::size_t> SortingOrder(const std::vector<std::size_t>& values) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return values[a] < values[b];
+  });
+  return order;
+}
+
+/// Merges the file; the number of nodes that Gmsh says it has, or -1.
+Eigen::Index Merge(const std::filesystem::path& path) {
+  gmsh::merge(path.string());
+  std::vector<std::string> log;
+  gmsh::logger::get(log);
+  Eigen::Index num_nodes = -1;
+  const std::string info = "Info: ";
+  const std::string unit = " nodes";
+  for (const std::string& line : log) {
+    if (line.rfind("Error: ", 0) == 0) {
+      ThrowDamaged(path, line.substr(7));
+    }
+    if (line.size() > info.size() + unit.size() &&
+        line.compare(line.size() - unit.size(), unit.size(), unit) == 0) {
+      const std::string count =
+          line.substr(info.size(), line.size() - info.size() - unit.size());
+      if (count.size() < 12 &&
+          count.find_first_not_of("0123456789") == std::string::npos) {
+        num_nodes = std::stoll(count);
+      }
+    }
+  }
+  return num_nodes;
+}
+
+Numbering ReadNodes(MeshFile& mesh) {
+  std::vector<std::size_t> numbers;
+  std::vector<double> positions;
+  std::vector<double> unused;
+  gmsh::model::mesh::getNodes(numbers, positions, unused);
+  if (numbers.size() > std::numeric_limits<int>::max()) {
+    ThrowInputError(mesh.path, "the mesh has more than 2^31 nodes; coarsen it");
+  }
+  const std::vector<std::size_t> order = SortingOrder(numbers);
+  mesh.nodes = Eigen::Map<const Eigen::Matrix3Xd>(
+      positions.data(), 3, numbers.size())(Eigen::all, order);
+  for (const std::size_t i : order) {
+    mesh.node_numbers.push_back(numbers[i]);
+  }
+  return Numbering(mesh.node_numbers);
+}
+
+int NodePosition(const MeshFile& mesh, const Numbering& nodes,
+                 std::size_t number) {
+  const int node = nodes.Find(number);
+  if (node < 0) {
+    ThrowDamaged(mesh.path, "an element names node number " +
+                                std::to_string(number) +
+                                ", which the file does not have");
+  }
+  return node;
+}
+
+std::string ElementTypeName(int type) {
+  std::string name;
+  int dimension = 0;
+  int order = 0;
+  int num_nodes = 0;
+  int num_primary_nodes = 0;
+  std::vector<double> local_positions;
+  gmsh::model::mesh::getElementProperties(type, name, dimension, order,
+                                          num_nodes, local_positions,
+                                          num_primary_nodes);
+  return name;
+}
+
+/// The tetrahedra in ascending order of their element numbers.
+Numbering ReadTetrahedra(const Numbering& nodes, MeshFile& mesh) {
+  std::vector<int> types;
+  std::vector<std::vector<std::size_t>> numbers;
+  std::vector<std::vector<std::size_t>> corners;
+  gmsh::model::mesh::getElements(types, numbers, corners);
+  Numbering tetrahedra({});
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    if (types[i] != kTetrahedron) {
+      mesh.has_other_cells = true;
+      continue;
+    }
+    const std::vector<std::size_t> order = SortingOrder(numbers[i]);
+    mesh.tetrahedra.resize(4, order.size());
+    std::vector<std::size_t> sorted;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      sorted.push_back(numbers[i][order[k]]);
+      for (std::size_t corner = 0; corner < 4; ++corner) {
+        mesh.tetrahedra(corner, k) =
+            NodePosition(mesh, nodes, corners[i][4 * order[k] + corner]);
+      }
+    }
+    tetrahedra = Numbering(std::move(sorted));
+  }
+  return tetrahedra;
+}
+
+void CheckVolumeElements(const std::filesystem::path& path) {
+  std::vector<int> types;
+  std::vector<std::vector<std::size_t>> numbers;
+  std::vector<std::vector<std::size_t>> corners;
+  gmsh::model::mesh::getElements(types, numbers, corners, 3);
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    if (types[i] != kTetrahedron && !numbers[i].empty()) {
+      ThrowInputError(path, "element number " + std::to_string(numbers[i][0]) +
+                                " is a " + ElementTypeName(types[i]) +
+                                ", but only linear tetrahedra are supported; "
+                                "mesh the specimen with those");
+    }
+  }
+}
+
+void AddEntity(const Numbering& nodes, int entity, const MeshFile& mesh,
+               PhysicalGroup& group) {
+  std::vector<int> types;
+  std::vector<std::vector<std::size_t>> numbers;
+  std::vector<std::vector<std::size_t>> corners;
+  gmsh::model::mesh::getElements(types, numbers, corners, group.dimension,
+                                 entity);
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    std::vector<int> positions;
+    positions.reserve(corners[i].size());
+    for (const std::size_t number : corners[i]) {
+      positions.push_back(NodePosition(mesh, nodes, number));
+    }
+    group.nodes.insert(group.nodes.end(), positions.begin(), positions.end());
+    if (types[i] == kTriangle) {
+      const Eigen::Index before = group.triangles.cols();
+      const Eigen::Index count = numbers[i].size();
+      group.triangles.conservativeResize(3, before + count);
+      group.triangles.rightCols(count) =
+          Eigen::Map<const Eigen::MatrixXi>(positions.data(), 3, count);
+    }
+  }
+}
+
+void ReadPhysicalGroups(const Numbering& nodes, MeshFile& mesh) {
+  gmsh::vectorpair groups;
+  gmsh::model::getPhysicalGroups(groups);
+  for (const auto& [dimension, number] : groups) {
+    PhysicalGroup group;
+    group.dimension = dimension;
+    group.number = number;
+    gmsh::model::getPhysicalName(dimension, number, group.name);
+    std::vector<int> entities;
+    gmsh::model::getEntitiesForPhysicalGroup(dimension, number, entities);
+    for (const int entity : entities) {
+      AddEntity(nodes, entity, mesh, group);
+    }
+    std::sort(group.nodes.begin(), group.nodes.end());
+    group.nodes.erase(std::unique(group.nodes.begin(), group.nodes.end()),
+                      group.nodes.end());
+    mesh.groups.push_back(std::move(group));
+  }
+}
+
+/// One column per entry of `numbering`; not a number where the file has none.
+Eigen::MatrixXd Scatter(const std::vector<std::size_t>& numbers,
+                        const std::vector<double>& data, int num_components,
+                        const Numbering& numbering) {
+  Eigen::MatrixXd values =
+      Eigen::MatrixXd::Constant(num_components, numbering.Numbers().size(),
+                                std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const int position = numbering.Find(numbers[i]);
+    if (position >= 0) {
+      values.col(position) = Eigen::Map<const Eigen::VectorXd>(
+          &data[i * num_components], num_components);
+    }
+  }
+  return values;
+}
+
+void ReadViews(const Numbering& nodes, const Numbering& tetrahedra,
+               MeshFile& mesh) {
+  std::vector<int> views;
+  gmsh::view::getTags(views);
+  for (const int view : views) {
+    const std::string option =
+        "View[" + std::to_string(gmsh::view::getIndex(view)) + "].";
+    std::string name;
+    gmsh::option::getString(option + "Name", name);
+    double num_steps = 0;
+    gmsh::option::getNumber(option + "NbTimeStep", num_steps);
+    if (num_steps != 1) {
+      ThrowInputError(mesh.path, "its data '" + name +
+                                     "' has several time steps; keep one");
+    }
+    std::string kind;
+    std::vector<std::size_t> numbers;
+    std::vector<double> data;
+    double time = 0;
+    int num_components = 0;
+    gmsh::view::getHomogeneousModelData(view, 0, kind, numbers, data, time,
+                                        num_components);
+    if (num_components < 1 || data.size() != numbers.size() * num_components) {
+      ThrowDamaged(mesh.path, "its data '" + name + "' cannot be read");
+    }
+    if (kind == "NodeData") {
+      mesh.node_arrays.push_back(
+          {name, Scatter(numbers, data, num_components, nodes)});
+    } else if (kind == "ElementData") {
+      mesh.tetrahedron_arrays.push_back(
+          {name, Scatter(numbers, data, num_components, tetrahedra)});
+    }
+  }
+}
+
+MeshFile ReadInSession(const std::filesystem::path& path) {
+  MeshFile mesh;
+  mesh.path = path;
+  mesh.is_vtk = false;
+  try {
+    const GmshSession session;
+    const Eigen::Index num_nodes = Merge(path);
+    CheckVolumeElements(path);
+    const Numbering nodes = ReadNodes(mesh);
+    if (num_nodes > mesh.nodes.cols()) {
+      mesh.num_nodes_left_out = num_nodes - mesh.nodes.cols();
+    }
+    const Numbering tetrahedra = ReadTetrahedra(nodes, mesh);
+    ReadPhysicalGroups(nodes, mesh);
+    ReadViews(nodes, tetrahedra, mesh);
+  } catch (const std::string& message) {
+    ThrowDamaged(path, message);  // Gmsh throws strings.
+  } catch (const std::invalid_argument&) {
+    throw;
+  } catch (const std::exception& error) {
+    // Counts beyond all memory, most often.
+    ThrowDamaged(path, error.what());
+  }
+  return mesh;
+}
+
+}  // namespace
+
+MeshFile ReadGmshMesh(const std::filesystem::path& path) {
+  if (path.extension() == ".msh") {
+    CheckMshBegin(path);
+  }
+  CheckEnd(path);
+  return ReadInSession(path);
+}
+
+}  // namespace elastimate

@@ -1,0 +1,18 @@
+#ifndef ELASTIMATE_IO_INPUT_ERROR_H_
+#define ELASTIMATE_IO_INPUT_ERROR_H_
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+namespace elastimate {
+
+/// Throws std::invalid_argument: "FILE: sentence".
+[[noreturn]] inline void ThrowInputError(const std::filesystem::path& file,
+                                         const std::string& sentence) {
+  throw std::invalid_argument(file.string() + ": " + sentence);
+}
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_IO_INPUT_ERROR_H_

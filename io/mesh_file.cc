@@ -1,0 +1,111 @@
+#include "elastimate/io/mesh_file.h"
+
+#include <fstream>
+#include <set>
+#include <system_error>
+
+#include "elastimate/io/gmsh_mesh.h"
+#include "elastimate/io/input_error.h"
+#include "elastimate/io/vtk_mesh.h"
+
+namespace elastimate {
+namespace {
+
+void MarkUsedNodes(MeshFile& mesh) {
+  mesh.used.setConstant(mesh.nodes.cols(), false);
+  for (const int node : mesh.tetrahedra.reshaped()) {
+    mesh.used[node] = true;
+  }
+}
+
+void CheckPositions(const MeshFile& mesh) {
+  for (Eigen::Index node = 0; node < mesh.nodes.cols(); ++node) {
+    if (mesh.used[node] && !mesh.nodes.col(node).allFinite()) {
+      ThrowInputError(mesh.path, "the position of " + NodeName(mesh, node) +
+                                     " is not a finite number; correct it");
+    }
+  }
+}
+
+}  // namespace
+
+MeshFile ReadMeshFile(const std::filesystem::path& path) {
+  CheckReadable(path);
+  // Exactly these: Gmsh runs a file of any other name as a script.
+  const std::string extension = path.extension().string();
+  MeshFile mesh;
+  if (extension == ".vtu") {
+    mesh = ReadVtuMesh(path);
+  } else if (extension == ".vtk") {
+    mesh = ReadLegacyVtkMesh(path);
+  } else if (std::set<std::string>{".msh", ".mesh", ".unv", ".bdf"}.count(
+                 extension) > 0) {
+    mesh = ReadGmshMesh(path);
+  } else {
+    ThrowInputError(path,
+                    "the file name does not end in .vtu, .vtk, .msh, "
+                    ".mesh, .unv, .bdf or .json; give a file of one of "
+                    "these formats");
+  }
+  if (mesh.tetrahedra.cols() == 0) {
+    ThrowInputError(path,
+                    "the mesh has no tetrahedra; give a volume mesh of "
+                    "linear tetrahedra");
+  }
+  mesh.path = path;
+  MarkUsedNodes(mesh);
+  CheckPositions(mesh);
+  return mesh;
+}
+
+void CheckReadable(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status status =
+      std::filesystem::status(path, error);
+  if (status.type() == std::filesystem::file_type::not_found) {
+    ThrowInputError(path, "no such file; check the path");
+  }
+  if (std::filesystem::is_directory(status)) {
+    ThrowInputError(path, "this is a folder; give a file");
+  }
+  if (!std::filesystem::is_regular_file(status)) {
+    ThrowInputError(path, "this is not a regular file; give a file");
+  }
+  if (!std::ifstream(path, std::ios::binary)) {
+    ThrowInputError(path, "the file cannot be opened; check its permissions");
+  }
+  if (std::filesystem::file_size(path, error) == 0) {
+    ThrowInputError(path, "the file is empty; write it again");
+  }
+}
+
+const Eigen::MatrixXd* FindArray(const std::vector<FileArray>& arrays,
+                                 const std::string& name) {
+  for (const FileArray& array : arrays) {
+    if (array.name == name) {
+      return &array.values;
+    }
+  }
+  return nullptr;
+}
+
+std::string NodeName(const MeshFile& mesh, Eigen::Index node) {
+  if (mesh.node_numbers.empty()) {
+    return "node " + std::to_string(node);
+  }
+  return "node " + std::to_string(node) + " (number " +
+         std::to_string(mesh.node_numbers[node]) + " in Gmsh)";
+}
+
+void RequireNodePositions(const MeshFile& mesh) {
+  if (mesh.num_nodes_left_out > 0) {
+    ThrowInputError(
+        mesh.path,
+        "Gmsh leaves out " + std::to_string(mesh.num_nodes_left_out) +
+            " nodes that no element uses, so that nodes cannot be told by "
+            "their place in the file; save the mesh without these nodes "
+            "(gmsh -save does)");
+  }
+}
+
+}  // namespace elastimate

@@ -1,0 +1,38 @@
+#ifndef ELASTIMATE_IO_ORGAN_MESH_H_
+#define ELASTIMATE_IO_ORGAN_MESH_H_
+
+#include <Eigen/Core>
+
+#include "elastimate/core/mesh.h"
+
+namespace elastimate {
+
+/// The organ is the image of the unit ball under this smooth, invertible map:
+/// an ellipsoid whose height and depth taper from the right lobe (x = -1/2) to
+/// the left lobe (x = 1/2), whose lower edge is thin, and which is bent around
+/// what lies behind (+y) and below (-z) it.  Its extent along x is 1.
+Eigen::Vector3d OrganPoint(const Eigen::Vector3d& ball_point);
+
+/// The inverse of OrganPoint: of norm 1 for a point of the organ's surface,
+/// below 1 inside.
+Eigen::Vector3d BallPoint(const Eigen::Vector3d& organ_point);
+
+/// A tetrahedral mesh of the organ by the Gmsh library, of uniform size, with
+/// the wanted number of tetrahedra within 5 %.  The nodes of its surface are
+/// points of the organ's surface, up to rounding; two of them are at
+/// x = -1/2 and x = 1/2.  The nodes are numbered as Gmsh left them.
+///
+/// Up to 100 000 tetrahedra, a mesh with a dihedral angle below 15 degrees is
+/// made again with slightly different edges, seven times at most; beyond, the
+/// first is taken.  Quality and cost are stated at OrganScene.  One thread; the
+/// same mesh on every run.
+///
+/// Throws std::runtime_error, naming the step, when Gmsh fails, and when no
+/// mesh size gives the wanted number.  Starts and ends the Gmsh library, whose
+/// state belongs to the process: not for a program that is using it, nor for
+/// two threads at once.
+Mesh OrganMesh(int tetrahedra);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_IO_ORGAN_MESH_H_

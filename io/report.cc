@@ -1,0 +1,93 @@
+#include "elastimate/io/report.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+namespace elastimate {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegreesPerRadian = 57.295779513082323;
+
+Json OrNull(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
+
+Json OptionsJson(const EstimatorOptions& options) {
+  const char* const loss_names[] = {"none", "huber", "cauchy"};
+  return {{"nu", OrNull(options.known_poisson_ratio)},
+          {"nu_min", OrNull(options.poisson_ratio.lower)},
+          {"nu_max", OrNull(options.poisson_ratio.upper)},
+          {"youngs_min", OrNull(options.youngs_modulus.lower)},
+          {"youngs_max", OrNull(options.youngs_modulus.upper)},
+          {"loss", loss_names[static_cast<int>(options.loss)]},
+          {"max_iterations", options.max_iterations}};
+}
+
+Json DiagnosticsJson(const Estimate& estimate) {
+  std::optional<double> angle = estimate.identifiability_angle;
+  if (angle) {
+    *angle *= kDegreesPerRadian;
+  }
+  return {{"identifiability_angle_deg", OrNull(angle)},
+          {"noise_attenuation", OrNull(estimate.noise_attenuation)},
+          {"active_bounds", estimate.active_bounds},
+          {"why_no_standard_error", estimate.why_no_standard_error},
+          {"warnings", estimate.warnings}};
+}
+
+Json SecondsJson(const Estimate& estimate, const ReportTimes& times) {
+  Json stages = Json::object();
+  for (const StageTime& stage : estimate.stages) {
+    stages[stage.stage] = stage.seconds;
+  }
+  return {{"read", times.read},
+          {"estimate", estimate.seconds},
+          {"total", times.total},
+          {"stages", stages}};
+}
+
+}  // namespace
+
+std::string Version() { return ELASTIMATE_VERSION; }
+
+std::string JsonReport(const Estimate& estimate, const Scene& scene,
+                       const EstimatorOptions& options,
+                       const ReportTimes& times) {
+  const IsotropicElasticity& elasticity = estimate.elasticity;
+  const Json report = {
+      {"elastimate", Version()},
+      {"estimator", estimate.estimator},
+      {"status", StatusName(estimate.status)},
+      {"usable", estimate.IsUsable()},
+      {"message", estimate.message},
+      {"youngs_modulus", OrNull(elasticity.youngs_modulus)},
+      {"poisson_ratio", OrNull(elasticity.poisson_ratio)},
+      {"standard_error",
+       {{"youngs_modulus", OrNull(estimate.YoungsModulusStandardError())},
+        {"poisson_ratio", OrNull(estimate.PoissonRatioStandardError())}}},
+      {"correlation", OrNull(estimate.Correlation())},
+      {"shear_modulus", OrNull(elasticity.ShearModulus())},
+      {"bulk_modulus", OrNull(elasticity.BulkModulus())},
+      {"noise_sd", OrNull(estimate.noise_sd)},
+      {"mesh",
+       {{"nodes", scene.mesh.NumNodes()},
+        {"tetrahedra", scene.mesh.NumElements()},
+        {"load_cases", scene.load_cases.size()},
+        {"order", 1}}},
+      {"residual",
+       {{"force_relative", OrNull(estimate.force_residual)},
+        {"displacement_relative", OrNull(estimate.displacement_residual)}}},
+      {"diagnostics", DiagnosticsJson(estimate)},
+      {"work",
+       {{"element_passes", estimate.work.element_passes},
+        {"factorizations", estimate.work.factorizations},
+        {"solves", estimate.work.solves}}},
+      {"options", OptionsJson(options)},
+      {"seconds", SecondsJson(estimate, times)}};
+  return report.dump(2) + "\n";
+}
+
+}  // namespace elastimate

@@ -1,0 +1,29 @@
+#ifndef ELASTIMATE_IO_REPORT_H_
+#define ELASTIMATE_IO_REPORT_H_
+
+#include <string>
+
+#include "elastimate/core/scene.h"
+#include "elastimate/estimators/estimate.h"
+#include "elastimate/estimators/estimator.h"
+
+namespace elastimate {
+
+/// The version of the library, such as "0.1.0".
+std::string Version();
+
+/// Wall-clock seconds around an estimate.
+struct ReportTimes {
+  double read;   ///< Reading the scene.
+  double total;  ///< From the start of the program to the report.
+};
+
+/// The report of an estimate as a JSON text, described in the README.  Numbers
+/// round-trip; what the estimator cannot know is null.
+std::string JsonReport(const Estimate& estimate, const Scene& scene,
+                       const EstimatorOptions& options,
+                       const ReportTimes& times);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_IO_REPORT_H_

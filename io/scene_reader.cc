@@ -1,0 +1,181 @@
+#include "elastimate/io/scene_reader.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "elastimate/io/array_scene.h"
+#include "elastimate/io/file_scene.h"
+#include "elastimate/io/input_error.h"
+#include "elastimate/io/json_scene.h"
+#include "elastimate/io/mesh_file.h"
+
+namespace elastimate {
+namespace {
+
+/// Files in text keep fewer digits than others of the same mesh.
+constexpr double kSameLength = 1e-6;  // Of the largest coordinate.
+
+bool AreClose(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
+  return (a - b).cwiseAbs().maxCoeff() <= kSameLength * a.cwiseAbs().maxCoeff();
+}
+
+/// What differs between the specimens of two scenes; empty when nothing does.
+std::string WhyDifferent(const Scene& first, const Scene& other) {
+  const Mesh& mesh = first.mesh;
+  if (mesh.NumNodes() != other.mesh.NumNodes()) {
+    return "it has " + std::to_string(other.mesh.NumNodes()) +
+           " nodes instead of " + std::to_string(mesh.NumNodes());
+  }
+  if (!AreClose(mesh.nodes, other.mesh.nodes)) {
+    return "its nodes are at other positions";
+  }
+  if (mesh.elements.cols() != other.mesh.elements.cols() ||
+      mesh.elements != other.mesh.elements) {
+    return "its cells differ";
+  }
+  if (mesh.regions.size() != other.mesh.regions.size() ||
+      mesh.regions != other.mesh.regions) {
+    return "its array 'region' differs";
+  }
+  if ((first.supports.held != other.supports.held).any()) {
+    return "it holds other components (the array 'fixed', or the supports)";
+  }
+  if (!AreClose(first.supports.displacement, other.supports.displacement)) {
+    return "it holds them at another displacement (the array 'prescribed', or "
+           "the supports)";
+  }
+  return "";
+}
+
+/// Keeps the nodes that tetrahedra use, in their order.
+class UnusedNodeFilter {
+ public:
+  explicit UnusedNodeFilter(const MeshFile& mesh)
+      : position_(mesh.used.size()) {
+    for (Eigen::Index node = 0; node < mesh.used.size(); ++node) {
+      position_[node] = static_cast<int>(kept_.size());
+      if (mesh.used[node]) {
+        kept_.push_back(node);
+      }
+    }
+  }
+
+  Eigen::Index NumDropped() const { return position_.size() - kept_.size(); }
+
+  Scene Filter(Scene scene) const {
+    if (NumDropped() == 0) {
+      return scene;
+    }
+    KeepColumns(scene.mesh.nodes);
+    Renumber(scene.mesh.elements);
+    KeepColumns(scene.supports.held);
+    KeepColumns(scene.supports.displacement);
+    for (LoadCase& load_case : scene.load_cases) {
+      KeepColumns(load_case.displacement);
+      KeepColumns(load_case.observed);
+      for (Load& load : load_case.loads) {
+        std::visit([this](auto& kind) { FilterLoad(kind); }, load);
+      }
+    }
+    return scene;
+  }
+
+ private:
+  void FilterLoad(NodalForces& load) const { KeepColumns(load.force); }
+  void FilterLoad(BodyForce& /*load*/) const {}
+  void FilterLoad(Traction& load) const { Renumber(load.facets); }
+  void FilterLoad(Pressure& load) const { Renumber(load.facets); }
+
+  template <typename Columns>
+  void KeepColumns(Columns& columns) const {
+    if (columns.size() > 0) {
+      columns = Columns(columns(Eigen::all, kept_));
+    }
+  }
+  void Renumber(Eigen::MatrixXi& nodes) const {
+    nodes = nodes.unaryExpr([this](int node) { return position_[node]; });
+  }
+
+  std::vector<int> position_;
+  std::vector<Eigen::Index> kept_;
+};
+
+void CheckObserved(const std::filesystem::path& path, const Scene& scene) {
+  for (std::size_t i = 0; i < scene.load_cases.size(); ++i) {
+    const LoadCase& load_case = scene.load_cases[i];
+    if (load_case.observed.size() > 0 && !load_case.observed.any()) {
+      ThrowInputError(path, "nothing is observed in load case " +
+                                std::to_string(i + 1) +
+                                "; mark what was measured");
+    }
+  }
+}
+
+/// The scene without the nodes that no tetrahedron uses, valid.
+Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
+                  std::vector<std::string>& notices) {
+  const MeshFile& mesh = file_scene.mesh;
+  notices.insert(notices.end(), file_scene.notices.begin(),
+                 file_scene.notices.end());
+  const UnusedNodeFilter filter(mesh);
+  const Eigen::Index num_dropped =
+      filter.NumDropped() + mesh.num_nodes_left_out;
+  if (num_dropped > 0) {
+    notices.push_back(mesh.path.string() + ": dropped " +
+                      std::to_string(num_dropped) +
+                      " points that no tetrahedron uses");
+  }
+  Scene scene = filter.Filter(std::move(file_scene.scene));
+  try {
+    ValidateScene(scene);
+  } catch (const std::invalid_argument& error) {
+    const bool numbers_differ = num_dropped > 0 || mesh.has_other_cells;
+    ThrowInputError(
+        path, error.what() + std::string(numbers_differ
+                                             ? " (counting only tetrahedra "
+                                               "and the nodes they use)"
+                                             : ""));
+  }
+  CheckObserved(path, scene);
+  return scene;
+}
+
+FileScene ReadFileScene(const std::filesystem::path& path,
+                        Measurement measurement) {
+  return path.extension() == ".json"
+             ? ReadJsonScene(path, measurement)
+             : SceneFromArrays(ReadMeshFile(path), measurement);
+}
+
+}  // namespace
+
+SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
+                       Measurement measurement) {
+  if (paths.empty()) {
+    throw std::invalid_argument("no scene file is given; name one");
+  }
+  SceneReading reading;
+  for (const std::filesystem::path& path : paths) {
+    Scene scene =
+        FinishScene(path, ReadFileScene(path, measurement), reading.notices);
+    if (&path == &paths.front()) {
+      reading.scene = std::move(scene);
+      continue;
+    }
+    const std::string difference = WhyDifferent(reading.scene, scene);
+    if (!difference.empty()) {
+      ThrowInputError(path, "this is no further load case of '" +
+                                paths.front().string() + "': " + difference +
+                                "; use the same mesh and supports");
+    }
+    for (LoadCase& load_case : scene.load_cases) {
+      reading.scene.load_cases.push_back(std::move(load_case));
+    }
+  }
+  return reading;
+}
+
+}  // namespace elastimate

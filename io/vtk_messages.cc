@@ -1,0 +1,92 @@
+#include "elastimate/io/vtk_messages.h"
+
+#include <vtkLogger.h>
+#include <vtkObject.h>
+#include <vtkObjectFactory.h>
+#include <vtkOutputWindow.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace elastimate {
+
+class VtkMessageWindow : public vtkOutputWindow {
+ public:
+  static VtkMessageWindow* New();
+
+  void DisplayText(const char* /*text*/) override {}
+  void DisplayWarningText(const char* text) override {
+    if (warnings_are_errors_) {
+      DisplayErrorText(text);
+    }
+  }
+  void DisplayGenericWarningText(const char* /*text*/) override {}
+  void DisplayDebugText(const char* /*text*/) override {}
+  void DisplayErrorText(const char* text) override {
+    // About what is noted beside an array, not about its data: VTK cannot read
+    // the infinite ranges that it writes there, nor keys of other versions.
+    if (text != nullptr &&
+        (std::strstr(text, "InformationKey") != nullptr ||
+         std::strstr(text, "Could not locate key") != nullptr)) {
+      return;
+    }
+    has_error_ = true;
+    if (first_error_.empty() && text != nullptr) {
+      first_error_ = text;
+    }
+  }
+
+  bool warnings_are_errors_ = false;
+  bool has_error_ = false;
+  std::string first_error_;
+
+ protected:
+  VtkMessageWindow() = default;
+  ~VtkMessageWindow() override = default;
+  VtkMessageWindow(const VtkMessageWindow&) = delete;
+  VtkMessageWindow& operator=(const VtkMessageWindow&) = delete;
+};
+
+vtkStandardNewMacro(VtkMessageWindow);
+
+VtkMessages::VtkMessages(Warnings warnings)
+    : previous_window_(vtkOutputWindow::GetInstance()),
+      window_(vtkSmartPointer<VtkMessageWindow>::New()),
+      previous_display_(vtkObject::GetGlobalWarningDisplay()),
+      previous_verbosity_(std::min<int>(vtkLogger::GetCurrentVerbosityCutoff(),
+                                        vtkLogger::VERBOSITY_INFO)) {
+  window_->warnings_are_errors_ = warnings == Warnings::kAreErrors;
+  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+  vtkOutputWindow::SetInstance(window_);
+  // Switched off, VTK would not even tell that something failed.
+  vtkObject::GlobalWarningDisplayOn();
+}
+
+VtkMessages::~VtkMessages() {
+  vtkOutputWindow::SetInstance(previous_window_);
+  vtkObject::SetGlobalWarningDisplay(previous_display_);
+  vtkLogger::SetStderrVerbosity(
+      static_cast<vtkLogger::Verbosity>(previous_verbosity_));
+}
+
+bool VtkMessages::HasError() const { return window_->has_error_; }
+
+std::string VtkMessages::FirstError() const {
+  // "ERROR: In FILE, line N\nCLASS (ADDRESS): MESSAGE\n\n", or "Warning: ..."
+  std::string message = window_->first_error_;
+  if (const auto line_end = message.find('\n');
+      message.find(": In ") < line_end && line_end != std::string::npos) {
+    message.erase(0, line_end + 1);
+  }
+  if (const auto address_end = message.find("): ");
+      address_end != std::string::npos) {
+    message.erase(0, address_end + 3);
+  }
+  message.erase(message.find_last_not_of(" .\n") + 1);
+  for (char& c : message) {
+    c = c == '\n' ? ' ' : c;
+  }
+  return message;
+}
+
+}  // namespace elastimate

@@ -1,0 +1,420 @@
+// Runs the built program as a user does.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "elastimate/estimators/registry.h"
+#include "elastimate/io/scene_reader.h"
+#include "tests/apps/program.h"
+
+namespace elastimate {
+namespace {
+
+using testing::ProgramRun;
+using testing::ProgramTest;
+using testing::ReadText;
+using testing::WriteText;
+
+class CommandLine : public ProgramTest {
+ protected:
+  /// cuboid.vtu, measured at E = 10 kPa, nu = 0.33: exact.vtu.
+  void MakeExactScene() {
+    Succeed("generate cuboid --out=cuboid.vtu");
+    Succeed("simulate cuboid.vtu --youngs=1e4 --nu=0.33 --out=exact.vtu");
+  }
+
+  Scene Read(const std::string& file) const {
+    return ReadScene({folder_ / file}, Measurement::kOptional).scene;
+  }
+};
+
+TEST_F(CommandLine, HelpNamesEveryCommandAndFlag) {
+  const std::string help = Succeed("--help").output;
+  for (const std::string words :
+       {"elastimate estimate SCENE...", "elastimate simulate SCENE",
+        "elastimate generate cuboid|organ", "elastimate estimators",
+        "--estimator", "--nu_min", "--youngs_max", "--noise_sd", "--loss",
+        "--noise_law", "--json", "--out", "--cells", "Exit code"}) {
+    EXPECT_NE(help.find(words), std::string::npos) << words;
+  }
+  EXPECT_EQ(Succeed("estimate --help").output, help);
+}
+
+TEST_F(CommandLine, VersionNamesTheBlasInUse) {
+  const std::string version = Succeed("--version").output;
+  EXPECT_EQ(version.find("elastimate 0."), 0U) << version;
+  EXPECT_NE(version.find("BLAS: OpenBLAS"), std::string::npos) << version;
+  EXPECT_NE(version.find("libopenblas"), std::string::npos) << version;
+}
+
+TEST_F(CommandLine, ListsTheEstimators) {
+  const std::string list = Succeed("estimators").output;
+  for (const std::string_view name : EstimatorNames()) {
+    EXPECT_NE(list.find(std::string(name) + " "), std::string::npos) << list;
+  }
+}
+
+TEST_F(CommandLine, GeneratesThePapersCuboid) {
+  const ProgramRun run = Succeed("generate cuboid --out=cuboid.vtu");
+  EXPECT_NE(run.output.find("250 tetrahedra"), std::string::npos) << run.output;
+  const Scene scene = Read("cuboid.vtu");
+  EXPECT_EQ(scene.mesh.NumElements(), 250);
+  EXPECT_EQ(WhyNotHeld(scene.mesh, scene.supports), "");
+}
+
+TEST_F(CommandLine, GeneratesCuboidsOfAnySize) {
+  Succeed(
+      "generate cuboid --cells=2,3,4 --size=1,2,3 --force=1,0,-2 "
+      "--out=cuboid.vtu");
+  const Scene scene = Read("cuboid.vtu");
+  EXPECT_EQ(scene.mesh.NumElements(), 5 * 2 * 3 * 4);
+  EXPECT_EQ(scene.mesh.nodes.rowwise().maxCoeff(), Eigen::Vector3d(1, 2, 3));
+}
+
+TEST_F(CommandLine, GeneratesAnOrgan) {
+  Succeed("generate organ --tetrahedra=600 --length=0.3 --out=organ.vtu");
+  const Scene scene = Read("organ.vtu");
+  EXPECT_NEAR(double(scene.mesh.NumElements()) / 600, 1, 0.05);
+  const Eigen::Vector3d extent = scene.mesh.nodes.rowwise().maxCoeff() -
+                                 scene.mesh.nodes.rowwise().minCoeff();
+  EXPECT_NEAR(extent(0), 0.3, 0.003);
+}
+
+TEST_F(CommandLine, EveryEstimatorFindsWhatWasSimulated) {
+  MakeExactScene();
+  for (const std::string_view name : EstimatorNames()) {
+    const nlohmann::json report =
+        Succeed("estimate exact.vtu --json=- --estimator=" + std::string(name))
+            .Json();
+    EXPECT_EQ(report["estimator"], name);
+    EXPECT_EQ(report["status"], "ok");
+    EXPECT_EQ(report["usable"], true);
+    EXPECT_NEAR(report["youngs_modulus"].get<double>() / 1e4, 1, 1e-6);
+    EXPECT_NEAR(report["poisson_ratio"].get<double>(), 0.33, 1e-6);
+  }
+}
+
+TEST_F(CommandLine, TheReportHasTheDocumentedKeys) {
+  MakeExactScene();
+  const nlohmann::json report =
+      Succeed("estimate exact.vtu --json=- --estimator=iterative-fe").Json();
+  for (const std::string key : {"/elastimate",
+                                "/estimator",
+                                "/status",
+                                "/usable",
+                                "/message",
+                                "/youngs_modulus",
+                                "/poisson_ratio",
+                                "/standard_error/youngs_modulus",
+                                "/standard_error/poisson_ratio",
+                                "/correlation",
+                                "/shear_modulus",
+                                "/bulk_modulus",
+                                "/noise_sd",
+                                "/mesh/nodes",
+                                "/mesh/tetrahedra",
+                                "/mesh/load_cases",
+                                "/mesh/order",
+                                "/residual/force_relative",
+                                "/residual/displacement_relative",
+                                "/diagnostics/identifiability_angle_deg",
+                                "/diagnostics/noise_attenuation",
+                                "/diagnostics/warnings",
+                                "/work/element_passes",
+                                "/work/factorizations",
+                                "/work/solves",
+                                "/seconds/read",
+                                "/seconds/estimate",
+                                "/seconds/total"}) {
+    EXPECT_TRUE(report.contains(nlohmann::json::json_pointer(key))) << key;
+  }
+  EXPECT_EQ(report["mesh"]["tetrahedra"], 250);
+  // iterative-fe has no force residual; it says so with a null.
+  EXPECT_TRUE(report["residual"]["force_relative"].is_null());
+  EXPECT_GT(report["diagnostics"]["identifiability_angle_deg"], 0);
+  // mu = E / (2 (1 + nu)), kappa = E / (3 (1 - 2 nu)).
+  EXPECT_NEAR(report["shear_modulus"], 1e4 / 2.66, 0.1);
+  EXPECT_NEAR(report["bulk_modulus"], 1e4 / 1.02, 0.1);
+}
+
+TEST_F(CommandLine, PrintsATableForPeople) {
+  MakeExactScene();
+  const std::string table = Succeed("estimate exact.vtu").output;
+  for (const std::string words : {"Young's modulus E", "10000", "+-", "0.33",
+                                  "closed-form", "status", "ok"}) {
+    EXPECT_NE(table.find(words), std::string::npos) << table;
+  }
+}
+
+TEST_F(CommandLine, ASceneThatIsNotUsableExitsWithOneAndStillReports) {
+  Succeed("generate organ --out=organ.vtu");
+  Succeed(
+      "simulate organ.vtu --youngs=5e4 --nu=0.3 --noise=0.05 --seed=1 "
+      "--out=noisy.vtu");
+  const ProgramRun run = Run("estimate noisy.vtu --json=report.json");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_NE(run.output.find("NOT USABLE"), std::string::npos) << run.output;
+  const nlohmann::json report =
+      nlohmann::json::parse(ReadText(folder_ / "report.json"));
+  EXPECT_EQ(report["usable"], false);
+  EXPECT_NE(report["status"], "ok");
+  EXPECT_TRUE(report["standard_error"]["youngs_modulus"].is_null());
+
+  const nlohmann::json fit =
+      Succeed("estimate noisy.vtu --json=- --estimator=iterative-fe").Json();
+  EXPECT_NEAR((fit["youngs_modulus"].get<double>() - 5e4) /
+                  fit["standard_error"]["youngs_modulus"].get<double>(),
+              0, 4);
+}
+
+TEST_F(CommandLine, BoundsAndKnownValuesAreHonoured) {
+  MakeExactScene();
+  const nlohmann::json known =
+      Succeed("estimate exact.vtu --nu=0.33 --json=-").Json();
+  EXPECT_EQ(known["poisson_ratio"], 0.33);
+  EXPECT_TRUE(known["standard_error"]["poisson_ratio"].is_null());
+  EXPECT_EQ(known["options"]["nu"], 0.33);
+  for (const std::string name : {"bounded", "iterative-fe"}) {
+    const nlohmann::json bounded =
+        Run("estimate exact.vtu --nu_max=0.3 --json=- --estimator=" + name)
+            .Json();
+    EXPECT_NEAR(bounded["poisson_ratio"].get<double>(), 0.3, 1e-9);
+    EXPECT_EQ(bounded["diagnostics"]["active_bounds"],
+              nlohmann::json({"nu_max"}));
+    EXPECT_TRUE(bounded["standard_error"]["poisson_ratio"].is_null());
+  }
+}
+
+TEST_F(CommandLine, NoiseHasTheNormThatWasAskedFor) {
+  MakeExactScene();
+  const Scene exact = Read("exact.vtu");
+  for (const std::string law : {"uniform", "gaussian"}) {
+    Succeed(
+        "simulate cuboid.vtu --youngs=1e4 --nu=0.33 --noise=0.1 --seed=7 "
+        "--out=noisy.vtu --noise_law=" +
+        law);
+    const Scene noisy = Read("noisy.vtu");
+    const Eigen::Matrix3Xd noise =
+        noisy.load_cases[0].displacement - exact.load_cases[0].displacement;
+    EXPECT_NEAR(noise.norm() / exact.load_cases[0].displacement.norm(), 0.1,
+                1e-12);
+    const auto held = exact.supports.held;
+    EXPECT_EQ(held.select(noise.array(), 0.0).matrix().norm(), 0);
+    // The largest of 216 draws, in standard deviations: below sqrt(3) for the
+    // uniform law, above 2 for a Gaussian (but for a chance of 5e-5).
+    const double largest =
+        noise.cwiseAbs().maxCoeff() /
+        std::sqrt(noise.squaredNorm() / double((!held).count()));
+    EXPECT_EQ(law == "uniform", largest < 2) << law;
+  }
+  const std::string first = ReadText(folder_ / "noisy.vtu");
+  Succeed(
+      "simulate cuboid.vtu --youngs=1e4 --nu=0.33 --noise=0.1 --seed=7 "
+      "--out=again.vtu --noise_law=gaussian");
+  Succeed(
+      "simulate cuboid.vtu --youngs=1e4 --nu=0.33 --noise=0.1 --seed=8 "
+      "--out=other.vtu --noise_law=gaussian");
+  EXPECT_EQ(Read("again.vtu").load_cases[0].displacement,
+            Read("noisy.vtu").load_cases[0].displacement);
+  EXPECT_NE(Read("other.vtu").load_cases[0].displacement,
+            Read("noisy.vtu").load_cases[0].displacement);
+}
+
+TEST_F(CommandLine, SeveralFilesAreLoadCases) {
+  for (const std::string force : {"1,0,0", "0,0,-3"}) {
+    Succeed("generate cuboid --force=" + force + " --out=" + force + ".vtu");
+    Succeed("simulate " + force + ".vtu --youngs=1e4 --nu=0.2 --out=m" + force +
+            ".vtu");
+  }
+  const nlohmann::json report =
+      Succeed("estimate m1,0,0.vtu m0,0,-3.vtu --json=-").Json();
+  EXPECT_EQ(report["mesh"]["load_cases"], 2);
+  EXPECT_NEAR(report["poisson_ratio"].get<double>(), 0.2, 1e-9);
+  Succeed("generate cuboid --cells=2,2,2 --out=small.vtu");
+  Succeed("simulate small.vtu --youngs=1e4 --nu=0.2 --out=msmall.vtu");
+  Refuse("estimate m1,0,0.vtu msmall.vtu", "msmall.vtu");
+}
+
+TEST_F(CommandLine, ReadsASceneThatIsWrittenOut) {
+  Succeed("generate cuboid --out=cuboid.vtu");
+  WriteText(folder_ / "scene.json", R"({
+    "mesh": "cuboid.vtu",
+    "supports": [{"nodes": {"box": [[-1, -1, -0.01], [2, 2, 0.01]]}}],
+    "cases": [{"loads": [
+      {"type": "traction", "value": [0, 0, -500],
+       "surface": {"box": [[-1, -1, 0.39], [2, 2, 0.41]]}},
+      {"type": "body_force", "value": [0, 0, -9810]}]}]
+  })");
+  Succeed("simulate scene.json --youngs=1e5 --nu=0.4 --out=measured.vtu");
+  // 500 Pa on 1 m^2 and 9810 N/m^3 in 0.4 m^3.
+  const Scene scene = Read("measured.vtu");
+  EXPECT_NEAR(
+      std::get<NodalForces>(scene.load_cases[0].loads[0]).force.row(2).sum(),
+      -500 - 0.4 * 9810, 1e-9);
+  const nlohmann::json report =
+      Succeed("estimate measured.vtu --json=-").Json();
+  EXPECT_NEAR(report["youngs_modulus"].get<double>() / 1e5, 1, 1e-9);
+}
+
+TEST_F(CommandLine, WritesWhatParaViewShows) {
+  MakeExactScene();
+  for (const std::string name : {"closed-form", "iterative-fe"}) {
+    Succeed("estimate exact.vtu --out=result.vtu --estimator=" + name);
+    const std::string result = ReadText(folder_ / "result.vtu");
+    for (const std::string array :
+         {"displacement", "force", "fixed", "fitted_displacement",
+          "displacement_residual", "reaction_force", "strain_energy_density"}) {
+      EXPECT_NE(result.find("Name=\"" + array + "\""), std::string::npos)
+          << array;
+    }
+    // It is a scene again.
+    EXPECT_NEAR(Succeed("estimate result.vtu --json=-")
+                    .Json()["poisson_ratio"]
+                    .get<double>(),
+                0.33, 1e-9);
+  }
+}
+
+TEST_F(CommandLine, RefusesWrongFlags) {
+  MakeExactScene();
+  Refuse("", "give a command");
+  Refuse("estmate exact.vtu", "unknown command 'estmate'");
+  Refuse("estimate", "needs a scene file");
+  Refuse("estimate exact.vtu --poisson=0.3", "unknown flag --poisson");
+  Refuse("estimate exact.vtu --youngs=1", "takes no flag --youngs");
+  Refuse("estimate exact.vtu --estimator=magic",
+         "unknown estimator 'magic'; the estimators are closed-form");
+  Refuse("estimate exact.vtu --nu=0.5", "0.5; it must be above -1");
+  Refuse("estimate exact.vtu --nu=-1", "-1; it must be above -1");
+  Refuse("estimate exact.vtu --nu=abc", "--nu needs a finite number");
+  Refuse("estimate exact.vtu --nu=nan", "--nu needs a finite number");
+  Refuse("estimate exact.vtu --nu", "--nu needs a finite number");
+  Refuse("estimate exact.vtu --nu=", "--nu needs a finite number");
+  Refuse("estimate exact.vtu --estimator=bounded --nu_min=0.4 --nu_max=0.2",
+         "bounds on Poisson's ratio are crossed");
+  Refuse("estimate exact.vtu --estimator=bounded --youngs_min=-1",
+         "bound on Young's modulus is -1");
+  Refuse("estimate exact.vtu --nu_max=0.4", "closed-form: it cannot keep");
+  Refuse("estimate exact.vtu --loss=huber", "loss function needs");
+  Refuse("estimate exact.vtu --loss=tukey", "none, huber or cauchy");
+  Refuse("estimate exact.vtu --order=2", "--order=2");
+  Refuse("estimate exact.vtu --noise_sd=0", "--noise_sd must be positive");
+  Refuse("estimate exact.vtu --threads=-1", "--threads=-1");
+  Refuse("estimate exact.vtu --seed=-1", "--seed needs an integer from 0 on");
+  Refuse("estimators exact.vtu", "takes no arguments");
+  Refuse("simulate cuboid.vtu --youngs=1 --nu=0.3", "needs --out");
+  Refuse("simulate cuboid.vtu --youngs=1 --out=a.vtu", "--nu=NU");
+  Refuse("simulate cuboid.vtu --youngs=0 --nu=0.3 --out=a.vtu",
+         "--youngs must be positive");
+  Refuse("simulate cuboid.vtu --youngs=1 --nu=0.3 --noise=-1 --out=a.vtu",
+         "--noise must not be negative");
+  Refuse("simulate cuboid.vtu --youngs=1 --nu=0.3 --noise_law=x --out=a.vtu",
+         "uniform or gaussian");
+  Refuse("simulate --youngs=1 --nu=0.3 --out=a.vtu", "one scene file");
+  Refuse("generate sphere --out=a.vtu", "cuboid or organ");
+  Refuse("generate cuboid", "needs --out");
+  Refuse("generate cuboid --tetrahedra=9 --out=a.vtu",
+         "takes no flag --tetrahedra");
+  Refuse("generate cuboid --cells=0,1,1 --out=a.vtu", "cells");
+  Refuse("generate cuboid --cells=1,1 --out=a.vtu", "three numbers");
+  Refuse("generate organ --tetrahedra=1 --out=a.vtu", "tetrahedra");
+}
+
+TEST_F(CommandLine, RefusesWrongFilesByName) {
+  MakeExactScene();
+  Refuse("estimate nothing.vtu", "nothing.vtu");
+  Refuse("estimate .", ".: this is a folder");
+  Refuse("estimate cuboid.vtu", "displacement");
+  WriteText(folder_ / "empty.vtu", "");
+  Refuse("estimate empty.vtu", "empty.vtu");
+  WriteText(folder_ / "text.vtu", "no VTK file at all");
+  Refuse("estimate text.vtu", "text.vtu");
+  const std::string whole = ReadText(folder_ / "exact.vtu");
+  WriteText(folder_ / "cut.vtu", whole.substr(0, whole.size() / 2));
+  Refuse("estimate cut.vtu --json=report.json --out=out.vtu", "cut.vtu");
+  WriteText(folder_ / "scene.json", R"({"mesh": "cuboid.vtu", "loads": []})");
+  Refuse("estimate scene.json", "loads");
+  Refuse("estimate exact.vtu --json=no/such/folder/report.json",
+         "no/such/folder");
+  Refuse("estimate exact.vtu --out=no/such/folder/out.vtu", "no/such/folder");
+  Refuse("generate cuboid --out=exact.vtu/out.vtu", "exact.vtu/out.vtu");
+}
+
+TEST_F(CommandLine, NeedsSupportsForAFiniteElementFitOnly) {
+  Succeed("generate cuboid --out=cuboid.vtu");
+  WriteText(folder_ / "scene.json", R"({
+    "mesh": "cuboid.vtu", "supports": [],
+    "cases": [{"loads": [{"type": "nodal_force", "value": [0, 0, 1],
+                          "nodes": "all"}]}]
+  })");
+  Refuse("simulate scene.json --youngs=1 --nu=0.3 --out=a.vtu",
+         "without strain");
+}
+
+// The figures that an independent finite element code and an independent
+// maximum-likelihood fit gave for these scenes.
+class IndependentScenes : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    if (!std::filesystem::exists(Path("liver_same_mesh.vtu"))) {
+      GTEST_SKIP() << "no measured scenes in " << ELASTIMATE_SHARED_DATA;
+    }
+  }
+  static std::string Path(const std::string& file) {
+    return std::string(ELASTIMATE_SHARED_DATA "/") + file;
+  }
+};
+
+TEST_F(IndependentScenes, EveryEstimatorReturnsTheTruthWithoutNoise) {
+  for (const std::string_view name : EstimatorNames()) {
+    const nlohmann::json report =
+        Succeed("estimate --json=- --estimator=" + std::string(name) + " " +
+                Path("liver_same_mesh.vtu"))
+            .Json();
+    EXPECT_NEAR(report["youngs_modulus"].get<double>() / 5e4, 1, 1e-6);
+    EXPECT_NEAR(report["poisson_ratio"].get<double>(), 0.3, 1e-6);
+  }
+}
+
+TEST_F(IndependentScenes, TheFitAgreesUnderNoise) {
+  const nlohmann::json report =
+      Succeed("estimate --json=- --estimator=iterative-fe " +
+              Path("liver_same_mesh_noise5.vtu"))
+          .Json();
+  EXPECT_NEAR(report["youngs_modulus"].get<double>(), 49890, 5);
+  EXPECT_NEAR(report["poisson_ratio"].get<double>(), 0.3080, 5e-5);
+  EXPECT_NEAR(report["standard_error"]["youngs_modulus"].get<double>(), 118,
+              0.5);
+  EXPECT_NEAR(report["standard_error"]["poisson_ratio"].get<double>(), 0.0061,
+              5e-5);
+}
+
+TEST_F(IndependentScenes, TheClosedFormAgreesAndSaysThatItIsNotUsable) {
+  const ProgramRun run =
+      Run("estimate --json=- " + Path("liver_same_mesh_noise5.vtu"));
+  EXPECT_EQ(run.exit_code, 1);
+  const nlohmann::json report = run.Json();
+  EXPECT_NEAR(report["youngs_modulus"].get<double>(), -144820, 5);
+  EXPECT_NEAR(report["poisson_ratio"].get<double>(), 0.598, 5e-4);
+  EXPECT_EQ(report["usable"], false);
+}
+
+TEST_F(IndependentScenes, DataFromAFinerWorld) {
+  const nlohmann::json fit =
+      Succeed("estimate --json=- --estimator=iterative-fe " +
+              Path("cylinder_finer_world.vtu"))
+          .Json();
+  EXPECT_NEAR(fit["youngs_modulus"].get<double>(), 6590, 5);
+  EXPECT_NEAR(fit["poisson_ratio"].get<double>(), 0.435, 5e-4);
+  EXPECT_LE(fit["work"]["factorizations"].get<int>(), 12);
+  const nlohmann::json closed =
+      Run("estimate --json=- " + Path("cylinder_finer_world.vtu")).Json();
+  EXPECT_NEAR(closed["youngs_modulus"].get<double>(), 7624, 1);
+  EXPECT_NEAR(closed["poisson_ratio"].get<double>(), 0.426, 5e-4);
+}
+
+}  // namespace
+}  // namespace elastimate

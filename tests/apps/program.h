@@ -1,0 +1,90 @@
+#ifndef ELASTIMATE_TESTS_APPS_PROGRAM_H_
+#define ELASTIMATE_TESTS_APPS_PROGRAM_H_
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+namespace elastimate::testing {
+
+/// What a run of the program left.
+struct ProgramRun {
+  int exit_code;
+  std::string output;  ///< Standard output.
+  std::string errors;  ///< Standard error.
+
+  nlohmann::json Json() const { return nlohmann::json::parse(output); }
+};
+
+inline std::string ReadText(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+inline void WriteText(const std::filesystem::path& path,
+                      const std::string& text) {
+  std::ofstream(path) << text;
+}
+
+/// A test in an empty folder of its own, which is the current one of the
+/// program; removed afterwards.
+class ProgramTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern =
+        (std::filesystem::temp_directory_path() / "elastimate-XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  /// Runs the built program with these arguments, as a shell reads them.
+  ProgramRun Run(const std::string& arguments) const {
+    const std::string command = "cd '" + folder_.string() +
+                                "' && '" ELASTIMATE_PROGRAM "' " + arguments +
+                                " >.output 2>.errors </dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1,
+            ReadText(folder_ / ".output"), ReadText(folder_ / ".errors")};
+  }
+
+  /// Runs it and demands success.
+  ProgramRun Succeed(const std::string& arguments) const {
+    const ProgramRun run = Run(arguments);
+    EXPECT_EQ(run.exit_code, 0) << arguments << "\n" << run.errors;
+    return run;
+  }
+
+  /// Runs it and demands exit code 2, one line of error that contains `says`,
+  /// nothing on standard output, and no new file.
+  void Refuse(const std::string& arguments, const std::string& says) const {
+    SCOPED_TRACE(arguments);
+    const auto count = [this] {
+      return std::distance(std::filesystem::directory_iterator(folder_), {});
+    };
+    WriteText(folder_ / ".output", "");
+    WriteText(folder_ / ".errors", "");
+    const auto files = count();
+    const ProgramRun run = Run(arguments);
+    EXPECT_EQ(run.exit_code, 2) << run.errors;
+    EXPECT_NE(run.errors.find(says), std::string::npos) << run.errors;
+    EXPECT_EQ(run.errors.find("elastimate: "), 0U) << run.errors;
+    EXPECT_EQ(std::count(run.errors.begin(), run.errors.end(), '\n'), 1)
+        << run.errors;
+    EXPECT_EQ(run.output, "");
+    EXPECT_EQ(count(), files);
+  }
+
+  std::filesystem::path folder_;
+};
+
+}  // namespace elastimate::testing
+
+#endif  // ELASTIMATE_TESTS_APPS_PROGRAM_H_

@@ -1,0 +1,194 @@
+#include "elastimate/core/loads.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "elastimate/core/mesh.h"
+#include "tests/scenes.h"
+
+namespace elastimate {
+namespace {
+
+using testing::BoxMesh;
+using testing::Distorted;
+using testing::SmallScene;
+
+// Sums of some hundred numbers of size 1 to 10: rounding is far below.
+constexpr double kTolerance = 1e-12;
+
+Eigen::Vector3d Moment(const Mesh& mesh, const Eigen::Matrix3Xd& force) {
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
+    moment += Eigen::Vector3d(mesh.nodes.col(node))
+                  .cross(Eigen::Vector3d(force.col(node)));
+  }
+  return moment;
+}
+
+// The boundary facets all of whose nodes have this coordinate.
+Eigen::MatrixXi FacetsAt(const Mesh& mesh, int axis, double coordinate) {
+  const Eigen::MatrixXi facets = BoundaryFacets(mesh);
+  std::vector<Eigen::Index> chosen;
+  for (Eigen::Index i = 0; i < facets.cols(); ++i) {
+    bool all = true;
+    for (const int node : facets.col(i)) {
+      all = all && mesh.nodes(axis, node) == coordinate;
+    }
+    if (all) {
+      chosen.push_back(i);
+    }
+  }
+  return facets(Eigen::all, chosen);
+}
+
+// The box [0, 2] x [0, 3] x [0, 4], some elements of negative orientation.
+class LoadedBox : public ::testing::Test {
+ protected:
+  LoadedBox() : mesh_(BoxMesh({2, 3, 2}, {2, 3, 4})) {
+    mesh_.elements.row(1).head(30).swap(mesh_.elements.row(2).head(30));
+  }
+
+  Mesh mesh_;
+};
+
+TEST_F(LoadedBox, BodyForceIsVolumeTimesDensityAtTheCentroid) {
+  const Eigen::Vector3d density(0.5, -1, 2);
+  const Eigen::Matrix3Xd force = AssembleLoads(mesh_, {BodyForce{density}});
+  const Eigen::Vector3d total = 24 * density;
+  EXPECT_NEAR((force.rowwise().sum() - total).norm(), 0, kTolerance * 60);
+  const Eigen::Vector3d moment = Eigen::Vector3d(1, 1.5, 2).cross(total);
+  EXPECT_NEAR((Moment(mesh_, force) - moment).norm(), 0, kTolerance * 100);
+}
+
+TEST_F(LoadedBox, BodyForceOfOneTetrahedronIsAQuarterPerNode) {
+  Mesh mesh;
+  mesh.nodes.resize(3, 4);
+  mesh.nodes << 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1;
+  for (const Eigen::Vector4i& nodes :
+       {Eigen::Vector4i(0, 1, 2, 3), Eigen::Vector4i(1, 0, 2, 3)}) {
+    mesh.elements = nodes;
+    const Eigen::Matrix3Xd force = AssembleLoads(mesh, {BodyForce{{0, 0, 24}}});
+    EXPECT_TRUE(force.row(2).isConstant(1, kTolerance)) << force;
+    EXPECT_TRUE(force.topRows(2).isZero(0)) << force;
+  }
+}
+
+TEST_F(LoadedBox, TractionIsAreaTimesTractionAtTheMiddleOfTheFace) {
+  const Eigen::Vector3d traction(0.5, -1, 2);
+  const Eigen::Matrix3Xd force =
+      AssembleLoads(mesh_, {Traction{FacetsAt(mesh_, 0, 2), traction}});
+  const Eigen::Vector3d total = 12 * traction;
+  EXPECT_NEAR((force.rowwise().sum() - total).norm(), 0, kTolerance * 30);
+  const Eigen::Vector3d moment = Eigen::Vector3d(2, 1.5, 2).cross(total);
+  EXPECT_NEAR((Moment(mesh_, force) - moment).norm(), 0, kTolerance * 100);
+}
+
+TEST_F(LoadedBox, TractionDoesNotDependOnTheOrderOfFacetNodes) {
+  Eigen::MatrixXi facets = FacetsAt(mesh_, 2, 4);
+  const Eigen::Matrix3Xd force =
+      AssembleLoads(mesh_, {Traction{facets, {1, 2, 3}}});
+  facets.row(0).swap(facets.row(1));
+  const Eigen::Matrix3Xd swapped =
+      AssembleLoads(mesh_, {Traction{facets, {1, 2, 3}}});
+  EXPECT_NEAR((force - swapped).norm(), 0, kTolerance * force.norm());
+}
+
+TEST_F(LoadedBox, PressureOnAFacePushesAgainstItsNormal) {
+  const Eigen::Vector3d edges(2, 3, 4);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const bool far : {false, true}) {
+      const Eigen::MatrixXi facets =
+          FacetsAt(mesh_, axis, far ? edges(axis) : 0);
+      const Eigen::Matrix3Xd force =
+          AssembleLoads(mesh_, {Pressure{facets, 2.5}});
+      const double area = 24 / edges(axis);
+      const Eigen::Vector3d total =
+          (far ? -1 : 1) * 2.5 * area * Eigen::Vector3d::Unit(axis);
+      EXPECT_NEAR((force.rowwise().sum() - total).norm(), 0, kTolerance * 30);
+    }
+  }
+}
+
+// A closed surface has no vector area; the moment vanishes because the curl of
+// a position does.
+TEST_F(LoadedBox, PressureAllAroundHasNoResultant) {
+  const Mesh mesh = Distorted(mesh_);
+  const Eigen::Matrix3Xd force =
+      AssembleLoads(mesh, {Pressure{BoundaryFacets(mesh), 3}});
+  EXPECT_GT(force.norm(), 1);
+  EXPECT_NEAR(force.rowwise().sum().norm(), 0, kTolerance * force.norm() * 10);
+  EXPECT_NEAR(Moment(mesh, force).norm(), 0, kTolerance * force.norm() * 50);
+}
+
+// Linear elements represent u = G x + c exactly, so that the virtual work of
+// the nodal forces is the integral over the face: A tau . u(middle).
+TEST_F(LoadedBox, VirtualWorkOfATractionIsExactForLinearFields) {
+  Eigen::Matrix3d gradient;
+  gradient << 1, 2, 3, -4, 5, 6, 7, 8, -9;
+  const Eigen::Vector3d shift(1, -2, 3);
+  const Eigen::Matrix3Xd u = (gradient * mesh_.nodes).colwise() + shift;
+  const Eigen::Vector3d traction(0.5, -1, 2);
+  const Eigen::Matrix3Xd force =
+      AssembleLoads(mesh_, {Traction{FacetsAt(mesh_, 2, 4), traction}});
+  const double exact =
+      6 * traction.dot(gradient * Eigen::Vector3d(1, 1.5, 4) + shift);
+  EXPECT_NEAR(force.cwiseProduct(u).sum(), exact, kTolerance * 1000);
+}
+
+// p = -virtual work per change of volume: for u = G x it is -p tr(G) V.
+TEST_F(LoadedBox, VirtualWorkOfAPressureIsMinusPressureTimesVolumeChange) {
+  Eigen::Matrix3d gradient;
+  gradient << 1, 2, 3, -4, 5, 6, 7, 8, -9;
+  const Eigen::Matrix3Xd u = gradient * mesh_.nodes;
+  const Eigen::Matrix3Xd force =
+      AssembleLoads(mesh_, {Pressure{BoundaryFacets(mesh_), 0.25}});
+  EXPECT_NEAR(force.cwiseProduct(u).sum(), -0.25 * gradient.trace() * 24,
+              kTolerance * 1000);
+}
+
+TEST_F(LoadedBox, LoadsAddUp) {
+  const Eigen::MatrixXi facets = BoundaryFacets(mesh_);
+  const std::vector<Load> loads = {
+      NodalForces{Eigen::Matrix3Xd::Constant(3, mesh_.NumNodes(), 0.5)},
+      BodyForce{{1, 2, 3}}, Traction{facets, {-1, 0, 1}}, Pressure{facets, 2}};
+  Eigen::Matrix3Xd sum = Eigen::Matrix3Xd::Zero(3, mesh_.NumNodes());
+  for (const Load& load : loads) {
+    sum += AssembleLoads(mesh_, {load});
+  }
+  const Eigen::Matrix3Xd force = AssembleLoads(mesh_, loads);
+  EXPECT_NEAR((force - sum).norm(), 0, kTolerance * sum.norm());
+}
+
+TEST_F(LoadedBox, NodalForcesAreTakenAsTheyAre) {
+  const NodalForces load{mesh_.nodes};
+  EXPECT_EQ(AssembleLoads(mesh_, {load}), mesh_.nodes);
+}
+
+TEST_F(LoadedBox, WithoutLoadsThereIsNoForce) {
+  const Eigen::Matrix3Xd force = AssembleLoads(mesh_, {});
+  EXPECT_EQ(force.cols(), mesh_.NumNodes());
+  EXPECT_TRUE(force.isZero(0));
+}
+
+TEST(AssembleLoadCases, HasOneColumnForEachLoadCase) {
+  Scene scene = SmallScene("organ");
+  scene.load_cases.resize(3);
+  scene.load_cases[1].loads = {BodyForce{{0, 0, -1}}, BodyForce{{2, 0, 0}}};
+  const Eigen::MatrixXd force = AssembleLoadCases(scene);
+  ASSERT_EQ(force.rows(), 3 * scene.mesh.NumNodes());
+  ASSERT_EQ(force.cols(), 3);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Eigen::Matrix3Xd expected =
+        AssembleLoads(scene.mesh, scene.load_cases[i].loads);
+    for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
+      for (int component = 0; component < 3; ++component) {
+        EXPECT_EQ(force(3 * node + component, i), expected(component, node));
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace elastimate

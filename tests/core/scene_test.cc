@@ -1,0 +1,346 @@
+#include "elastimate/core/scene.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "tests/scenes.h"
+#include "tests/throws.h"
+
+namespace elastimate {
+namespace {
+
+using testing::BoxMesh;
+using ::testing::ContainsRegex;
+using testing::Distorted;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::SmallScene;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// A valid scene: everything of which may then be broken once.
+class ValidatedScene : public ::testing::Test {
+ protected:
+  ValidatedScene() : scene_(SmallScene("cuboid")) {
+    const Eigen::MatrixXi facets = BoundaryFacets(scene_.mesh);
+    LoadCase second;
+    second.loads.emplace_back(BodyForce{{0, 0, -9.81}});
+    second.loads.emplace_back(Traction{facets, {1, 0, 0}});
+    second.loads.emplace_back(Pressure{facets, 2.0});
+    second.displacement = Eigen::Matrix3Xd::Zero(3, NumNodes());
+    second.observed = ComponentMask::Constant(3, NumNodes(), true);
+    second.noise_sd = 1e-3;
+    scene_.load_cases.push_back(second);
+  }
+
+  Eigen::Index NumNodes() const { return scene_.mesh.NumNodes(); }
+  LoadCase& Second() { return scene_.load_cases[1]; }
+  template <typename LoadType>
+  LoadType& SecondLoad(int index) {
+    return std::get<LoadType>(Second().loads[index]);
+  }
+
+  Scene scene_;
+};
+
+TEST_F(ValidatedScene, IsValid) { EXPECT_NO_THROW(ValidateScene(scene_)); }
+
+TEST_F(ValidatedScene, MayHaveNoMeasurementAndNoMask) {
+  Second().displacement.resize(3, 0);
+  Second().observed.resize(3, 0);
+  Second().noise_sd.reset();
+  EXPECT_NO_THROW(ValidateScene(scene_));
+}
+
+TEST_F(ValidatedScene, MayBeFree) {
+  scene_.supports.held.setConstant(false);
+  EXPECT_NO_THROW(ValidateScene(scene_));
+}
+
+TEST_F(ValidatedScene, NeedsAValidMesh) {
+  scene_.mesh.nodes(0, 3) = kNan;
+  EXPECT_THROWS_WITH(ValidateScene(scene_), "node 3 .*not finite");
+}
+
+TEST_F(ValidatedScene, NeedsAFlagForEachComponent) {
+  scene_.supports.held.resize(3, 5);
+  EXPECT_THROWS_WITH(
+      ValidateScene(scene_),
+      "mask of held components has 5 columns for 48 nodes; give one for each");
+}
+
+TEST_F(ValidatedScene, NeedsASupportDisplacementForEachNode) {
+  scene_.supports.displacement.resize(3, 47);
+  EXPECT_THROWS_WITH(
+      ValidateScene(scene_),
+      "displacement of the supports has 47 columns for 48 nodes");
+}
+
+TEST_F(ValidatedScene, NeedsFiniteSupportDisplacements) {
+  for (const double bad : {kNan, kInfinity, -kInfinity}) {
+    scene_.supports.displacement(1, 2) = bad;
+    EXPECT_THROWS_WITH(ValidateScene(scene_),
+                       "displacement of the supports of node 2 is not finite");
+  }
+}
+
+TEST_F(ValidatedScene, NeedsAFreeDegreeOfFreedom) {
+  scene_.supports.held.setConstant(true);
+  EXPECT_THROWS_WITH(ValidateScene(scene_), "every degree of freedom is held");
+  scene_.supports.held(1, 7) = false;
+  EXPECT_NO_THROW(ValidateScene(scene_));
+}
+
+TEST_F(ValidatedScene, NeedsALoadCase) {
+  scene_.load_cases.clear();
+  EXPECT_THROWS_WITH(ValidateScene(scene_), "no load case");
+}
+
+TEST_F(ValidatedScene, NeedsANodalForceForEachNode) {
+  Second().loads[1] = NodalForces{Eigen::Matrix3Xd::Zero(3, 49)};
+  EXPECT_THROWS_WITH(
+      ValidateScene(scene_),
+      "the force in load 2 of load case 2 has 49 columns for 48 nodes");
+}
+
+TEST_F(ValidatedScene, NeedsFiniteNodalForces) {
+  std::get<NodalForces>(scene_.load_cases[0].loads[0]).force(2, 11) = kInfinity;
+  EXPECT_THROWS_WITH(
+      ValidateScene(scene_),
+      "the force in load 1 of load case 1 of node 11 is not finite");
+}
+
+TEST_F(ValidatedScene, NeedsAFiniteBodyForce) {
+  SecondLoad<BodyForce>(0).force_density(2) = kNan;
+  EXPECT_THROWS_WITH(ValidateScene(scene_),
+                     "the body force in load 1 of load case 2 is not finite");
+}
+
+TEST_F(ValidatedScene, NeedsAFiniteTraction) {
+  SecondLoad<Traction>(1).traction(0) = kNan;
+  EXPECT_THROWS_WITH(ValidateScene(scene_),
+                     "the traction in load 2 of load case 2 is not finite");
+}
+
+TEST_F(ValidatedScene, NeedsAFinitePressure) {
+  SecondLoad<Pressure>(2).pressure = -kInfinity;
+  EXPECT_THROWS_WITH(ValidateScene(scene_),
+                     "the pressure in load 3 of load case 2 is not finite");
+}
+
+TEST_F(ValidatedScene, NeedsFacets) {
+  Second().loads[1] = Traction{Eigen::MatrixXi(3, 0), {1, 0, 0}};
+  EXPECT_THROWS_WITH(ValidateScene(scene_),
+                     "the traction in load 2 of load case 2 acts on no facet");
+  Second().loads[1] = Pressure{Eigen::MatrixXi(), 1};
+  EXPECT_THROWS_WITH(ValidateScene(scene_),
+                     "the pressure in load 2 of load case 2 acts on no facet");
+}
+
+TEST_F(ValidatedScene, NeedsTriangles) {
+  SecondLoad<Traction>(1).facets = Eigen::MatrixXi::Zero(4, 2);
+  EXPECT_THROWS_WITH(ValidateScene(scene_), "traction .*4 nodes per facet");
+  SecondLoad<Traction>(1).facets = BoundaryFacets(scene_.mesh);
+  SecondLoad<Pressure>(2).facets = Eigen::MatrixXi::Zero(6, 2);
+  EXPECT_THROWS_WITH(ValidateScene(scene_), "pressure .*6 nodes per facet");
+}
+
+TEST_F(ValidatedScene, NeedsFacetNodesInRange) {
+  for (const int bad : {-1, 48}) {
+    Eigen::MatrixXi facets = BoundaryFacets(scene_.mesh);
+    facets(1, 5) = bad;
+    SecondLoad<Traction>(1).facets = facets;
+    EXPECT_THROWS_WITH(ValidateScene(scene_),
+                       "facet 5 of the traction .*outside 0..47");
+    SecondLoad<Traction>(1).facets = BoundaryFacets(scene_.mesh);
+    SecondLoad<Pressure>(2).facets = facets;
+    EXPECT_THROWS_WITH(ValidateScene(scene_),
+                       "facet 5 of the pressure .*outside 0..47");
+    SecondLoad<Pressure>(2).facets = BoundaryFacets(scene_.mesh);
+  }
+}
+
+TEST_F(ValidatedScene, NeedsAMeasurementOfEachNode) {
+  Second().displacement.resize(3, 40);
+  EXPECT_THROWS_WITH(
+      ValidateScene(scene_),
+      "measured displacement of load case 2 has 40 columns for 48 nodes");
+}
+
+TEST_F(ValidatedScene, NeedsAnObservationFlagForEachNode) {
+  Second().observed.resize(3, 1);
+  EXPECT_THROWS_WITH(ValidateScene(scene_),
+                     "mask of observed components of load case 2 has 1 column");
+}
+
+TEST_F(ValidatedScene, NeedsFiniteDisplacementsWhereObserved) {
+  for (const double bad : {kNan, kInfinity}) {
+    Second().displacement(1, 40) = bad;
+    EXPECT_THROWS_WITH(
+        ValidateScene(scene_),
+        "node 40 \\(y\\) in load case 2 is not finite; .*not observed");
+  }
+  Second().observed.resize(3, 0);
+  EXPECT_THROWS_WITH(ValidateScene(scene_), "node 40 \\(y\\)");
+}
+
+TEST_F(ValidatedScene, IgnoresDisplacementsThatWereNotObserved) {
+  Second().displacement(1, 40) = kNan;
+  Second().observed(1, 40) = false;
+  EXPECT_NO_THROW(ValidateScene(scene_));
+}
+
+TEST_F(ValidatedScene, NeedsAPositiveNoise) {
+  for (const double bad : {0.0, -1e-3, kNan, kInfinity}) {
+    Second().noise_sd = bad;
+    EXPECT_THROWS_WITH(ValidateScene(scene_),
+                       "noise standard deviation of load case 2 is .*positive");
+  }
+}
+
+// Supports of a mesh, held one component at a time.
+class HeldBox : public ::testing::Test {
+ protected:
+  // Node i + 3 (j + 3 k) is at (i, j, k) / 2 of the edges 1, 2, 3.
+  HeldBox() : mesh_(BoxMesh({2, 2, 2}, {1, 2, 3})) { Release(); }
+
+  void Release() {
+    supports_.held = ComponentMask::Constant(3, mesh_.NumNodes(), false);
+    supports_.displacement = Eigen::Matrix3Xd::Zero(3, mesh_.NumNodes());
+  }
+  void Hold(int node, const std::string& components) {
+    for (const char component : components) {
+      supports_.held(component - 'x', node) = true;
+    }
+  }
+  std::string Why() const { return WhyNotHeld(mesh_, supports_); }
+
+  static constexpr int kOrigin = 0;
+  static constexpr int kAlongX = 2;
+  static constexpr int kAlongY = 6;
+  static constexpr int kAlongZ = 18;
+  static constexpr int kOpposite = 26;
+
+  Mesh mesh_;
+  Supports supports_;
+};
+
+TEST_F(HeldBox, WithoutSupportsMoves) {
+  EXPECT_THAT(Why(), ContainsRegex("the part of the mesh around node 0 "
+                                   "(move along|rotate about) [xyz] "
+                                   "without strain; hold more components"));
+}
+
+TEST_F(HeldBox, AtOneNodeRotates) {
+  for (const int node : {kOrigin, kAlongX, kAlongY, kAlongZ, kOpposite, 13}) {
+    Release();
+    Hold(node, "xyz");
+    EXPECT_THAT(Why(), ContainsRegex("rotate about [xyz]")) << node;
+  }
+}
+
+TEST_F(HeldBox, AtTwoNodesTurnsAboutTheirLine) {
+  Hold(kOrigin, "xyz");
+  Hold(kAlongZ, "xyz");
+  EXPECT_THAT(Why(), HasSubstr("rotate about z"));
+  Release();
+  Hold(kOrigin, "xyz");
+  Hold(kAlongX, "xyz");
+  EXPECT_THAT(Why(), HasSubstr("rotate about x"));
+  Release();
+  Hold(kOrigin, "xyz");
+  Hold(kOpposite, "xyz");
+  EXPECT_THAT(Why(), ContainsRegex("rotate about [xyz]"));
+}
+
+TEST_F(HeldBox, AtThreeNodesOfALineTurnsAboutIt) {
+  Hold(kOrigin, "xyz");
+  Hold(3, "xyz");
+  Hold(kAlongY, "xyz");
+  EXPECT_THAT(Why(), HasSubstr("rotate about y"));
+}
+
+TEST_F(HeldBox, AtThreeNodesIsHeld) {
+  Hold(kOrigin, "xyz");
+  Hold(kAlongX, "xyz");
+  Hold(kAlongY, "xyz");
+  EXPECT_THAT(Why(), IsEmpty());
+}
+
+TEST_F(HeldBox, InOneComponentEverywhereSlides) {
+  for (int axis = 0; axis < 3; ++axis) {
+    Release();
+    supports_.held.row(axis).setConstant(true);
+    EXPECT_THAT(Why(), ContainsRegex("(move along|rotate about) [xyz]"));
+  }
+}
+
+TEST_F(HeldBox, InTwoComponentsEverywhereMovesAlongTheThird) {
+  supports_.held.topRows(2).setConstant(true);
+  EXPECT_THAT(Why(), HasSubstr("move along z"));
+}
+
+// 3 + 2 + 1 components: each takes away one of the six rigid motions.
+TEST_F(HeldBox, IsHeldByAStaticallyDeterminateSupport) {
+  Hold(kOrigin, "xyz");
+  Hold(kAlongX, "yz");
+  Hold(kAlongY, "z");
+  EXPECT_THAT(Why(), IsEmpty());
+  const ComponentMask enough = supports_.held;
+  for (Eigen::Index dof = 0; dof < enough.size(); ++dof) {
+    if (enough.data()[dof]) {
+      supports_.held = enough;
+      supports_.held.data()[dof] = false;
+      EXPECT_NE(Why(), "") << "without component " << dof;
+    }
+  }
+}
+
+// x of the second node says nothing that x of the first did not.
+TEST_F(HeldBox, IsNotHeldByAnySixComponents) {
+  Hold(kOrigin, "xyz");
+  Hold(kAlongX, "xy");
+  Hold(kAlongY, "z");
+  EXPECT_THAT(Why(), HasSubstr("rotate about y"));
+}
+
+TEST_F(HeldBox, DoesNotDependOnUnitsOrPlace) {
+  const Eigen::Matrix3Xd nodes = Distorted(mesh_).nodes;
+  for (const double unit : {1e-9, 1e-3, 1.0, 1e3, 1e9}) {
+    for (const double place : {0.0, 100.0}) {
+      mesh_.nodes = unit * (nodes.array() + place).matrix();
+      Release();
+      Hold(kOrigin, "xyz");
+      Hold(kAlongX, "yz");
+      EXPECT_NE(Why(), "") << unit << " " << place;
+      Hold(kAlongY, "z");
+      EXPECT_EQ(Why(), "") << unit << " " << place;
+    }
+  }
+}
+
+TEST(WhyNotHeld, NamesThePartThatIsFree) {
+  const Mesh box = BoxMesh({1, 1, 1}, {1, 1, 1});
+  Mesh mesh;
+  mesh.nodes.resize(3, 16);
+  mesh.nodes << box.nodes, (box.nodes.array() + 5).matrix();
+  mesh.elements.resize(4, 12);
+  mesh.elements << box.elements, (box.elements.array() + 8).matrix();
+  Supports supports{ComponentMask::Constant(3, 16, false),
+                    Eigen::Matrix3Xd::Zero(3, 16)};
+  supports.held.leftCols(8).setConstant(true);
+  EXPECT_THAT(WhyNotHeld(mesh, supports),
+              HasSubstr("the part of the mesh around node 8 "));
+  supports.held.rightCols(3).setConstant(true);
+  EXPECT_EQ(WhyNotHeld(mesh, supports), "");
+  supports.held.leftCols(8).setConstant(false);
+  EXPECT_THAT(WhyNotHeld(mesh, supports),
+              HasSubstr("the part of the mesh around node 0 "));
+}
+
+}  // namespace
+}  // namespace elastimate

@@ -1,0 +1,109 @@
+#include "elastimate/core/strain_energy.h"
+
+#include <gtest/gtest.h>
+
+#include "elastimate/core/forward_model.h"
+#include "elastimate/core/loads.h"
+#include "elastimate/core/tetrahedron.h"
+#include "tests/core/random_values.h"
+#include "tests/dense_reference.h"
+#include "tests/scenes.h"
+
+namespace elastimate {
+namespace {
+
+using testing::BoxMesh;
+using testing::DenseStiffness;
+using testing::Distorted;
+using testing::HookeMatrix;
+using testing::RandomMatrix;
+using testing::SmallScene;
+using testing::WithBothOrientations;
+
+Eigen::VectorXd Volumes(const Mesh& mesh) {
+  Eigen::VectorXd volumes(mesh.NumElements());
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    volumes(e) = TetrahedronVolume(GatherTetrahedron(mesh, e));
+  }
+  return volumes;
+}
+
+class StrainEnergy : public ::testing::TestWithParam<double> {
+ protected:
+  StrainEnergy()
+      : mesh_(
+            WithBothOrientations(Distorted(BoxMesh({2, 3, 2}, {1, 0.8, 1.2})))),
+        elasticity_{2.5, GetParam()} {}
+
+  // The same density in each element, for u = gradient * x.  Strains lose one
+  // or two digits to the differences of node positions.
+  void ExpectDensity(const Eigen::Matrix3d& gradient, double expected) const {
+    const Eigen::VectorXd density =
+        StrainEnergyDensity(mesh_, elasticity_, gradient * mesh_.nodes);
+    ASSERT_EQ(density.size(), mesh_.NumElements());
+    const double scale = elasticity_.StiffnessScale() * gradient.squaredNorm();
+    EXPECT_LT((density.array() - expected).abs().maxCoeff(), 1e-13 * scale);
+  }
+
+  Mesh mesh_;
+  IsotropicElasticity elasticity_;
+};
+
+// E / 2 times the square of the strain, where nothing holds the sides.
+TEST_P(StrainEnergy, OfUniaxialStress) {
+  const Eigen::Vector3d strain(-GetParam(), -GetParam(), 1);
+  ExpectDensity((0.01 * strain).asDiagonal(),
+                elasticity_.youngs_modulus / 2 * 1e-4);
+}
+
+TEST_P(StrainEnergy, OfSimpleShear) {
+  Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
+  gradient(0, 2) = 0.01;
+  ExpectDensity(gradient, elasticity_.ShearModulus() / 2 * 1e-4);
+}
+
+TEST_P(StrainEnergy, OfSwelling) {
+  // The volume grows by 3 percent.
+  ExpectDensity(0.01 * Eigen::Matrix3d::Identity(),
+                elasticity_.BulkModulus() / 2 * 9e-4);
+}
+
+TEST_P(StrainEnergy, OfAnInfinitesimalRotationIsZero) {
+  Eigen::Matrix3d gradient;
+  gradient << 0, -3, 2, 3, 0, -1, -2, 1, 0;
+  ExpectDensity(gradient, 0);
+}
+
+TEST_P(StrainEnergy, SumsUpToHalfOfDisplacementTimesStiffness) {
+  const Eigen::Matrix3Xd u = RandomMatrix(3, mesh_.NumNodes(), 4);
+  const Eigen::Matrix<double, 6, 6> hooke =
+      HookeMatrix<double>(elasticity_.youngs_modulus, GetParam());
+  const double expected =
+      0.5 *
+      u.reshaped().dot(DenseStiffness<double>(mesh_, hooke) * u.reshaped());
+  const double energy =
+      Volumes(mesh_).dot(StrainEnergyDensity(mesh_, elasticity_, u));
+  EXPECT_NEAR(energy / expected, 1, 1e-12);
+}
+
+// Clapeyron: at equilibrium the energy is half the work of the loads.
+TEST_P(StrainEnergy, IsHalfTheWorkOfTheLoads) {
+  const Scene scene = SmallScene("organ");
+  const Eigen::MatrixXd force = AssembleLoadCases(scene);
+  ForwardModel model(scene.mesh, scene.supports, force);
+  ASSERT_TRUE(model.SetPoissonRatio(GetParam()));
+  const Eigen::VectorXd u = model.Displacement(elasticity_.youngs_modulus);
+  const double energy =
+      Volumes(scene.mesh)
+          .dot(StrainEnergyDensity(scene.mesh, elasticity_,
+                                   u.reshaped(3, scene.mesh.NumNodes())));
+  // A condition number of 1e3 / (1 - 2 nu) is on the safe side.
+  EXPECT_NEAR(energy / (0.5 * force.col(0).dot(u)), 1,
+              1e-12 / (1 - 2 * GetParam()));
+}
+
+INSTANTIATE_TEST_SUITE_P(PoissonRatios, StrainEnergy,
+                         ::testing::Values(-0.5, 0.0, 0.3, 0.49));
+
+}  // namespace
+}  // namespace elastimate

@@ -1,0 +1,425 @@
+// What every estimator of the registry promises; a new one is tested here
+// without a further line.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <string>
+
+#include "elastimate/core/loads.h"
+#include "elastimate/estimators/registry.h"
+#include "tests/dense_reference.h"
+#include "tests/scenes.h"
+#include "tests/throws.h"
+
+namespace elastimate {
+namespace {
+
+using testing::AddNoise;
+using testing::Measure;
+using testing::SmallScene;
+using testing::SmallSceneNames;
+using testing::WithThreeForces;
+
+// An iterative estimator stops short of rounding.
+constexpr double kConverged = 1e-6;
+// Noise small enough for the first-order statistics of any estimator.
+constexpr double kSmallNoise = 1e-4;
+
+class Conformance : public ::testing::TestWithParam<std::string_view> {
+ protected:
+  Estimate Run(const Scene& scene, const EstimatorOptions& options = {}) const {
+    return MakeEstimator(GetParam())->Run(scene, options);
+  }
+};
+
+void ExpectSame(const Estimate& actual, double youngs_modulus,
+                const Estimate& expected) {
+  ASSERT_EQ(actual.status, Status::kOk) << actual.message;
+  const double youngs_ratio =
+      youngs_modulus / expected.elasticity.youngs_modulus;
+  EXPECT_NEAR(actual.elasticity.youngs_modulus / youngs_modulus, 1, kConverged);
+  EXPECT_NEAR(actual.elasticity.poisson_ratio,
+              expected.elasticity.poisson_ratio, kConverged);
+  EXPECT_NEAR(*actual.YoungsModulusStandardError() /
+                  (youngs_ratio * *expected.YoungsModulusStandardError()),
+              1, 1e-3);
+  EXPECT_NEAR(*actual.PoissonRatioStandardError() /
+                  *expected.PoissonRatioStandardError(),
+              1, 1e-3);
+}
+
+TEST_P(Conformance, RecoversTheTruthFromExactData) {
+  for (const std::string& shape : SmallSceneNames()) {
+    for (const double nu : {-0.5, 0.0, 0.3, 0.45, 0.499}) {
+      SCOPED_TRACE(shape + ", nu = " + std::to_string(nu));
+      Scene scene = SmallScene(shape);
+      Measure({5e4, nu}, scene);
+      const Estimate estimate = Run(scene);
+      ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+      EXPECT_NEAR(estimate.elasticity.youngs_modulus / 5e4, 1, kConverged);
+      EXPECT_NEAR(estimate.elasticity.poisson_ratio, nu, kConverged);
+      EXPECT_EQ(estimate.message, "");
+      EXPECT_EQ(estimate.estimator, GetParam());
+    }
+  }
+}
+
+TEST_P(Conformance, RecoversYoungsModulusWithAKnownPoissonRatio) {
+  Scene scene = SmallScene("organ");
+  Measure({5e4, 0.35}, scene);
+  EstimatorOptions options;
+  options.known_poisson_ratio = 0.35;
+  const Estimate estimate = Run(scene, options);
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  EXPECT_NEAR(estimate.elasticity.youngs_modulus / 5e4, 1, kConverged);
+  EXPECT_EQ(estimate.elasticity.poisson_ratio, 0.35);
+  EXPECT_TRUE(estimate.YoungsModulusStandardError().has_value());
+  EXPECT_FALSE(estimate.PoissonRatioStandardError().has_value());
+}
+
+TEST_P(Conformance, RecoversTheTruthWithDisplacedSupports) {
+  Scene scene = SmallScene("cuboid");
+  for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
+    scene.supports.displacement.col(node) << 0.01 * scene.mesh.nodes(1, node),
+        -0.02, 0.03;
+  }
+  Measure({5e4, 0.3}, scene);
+  const Estimate estimate = Run(scene);
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  EXPECT_NEAR(estimate.elasticity.youngs_modulus / 5e4, 1, kConverged);
+  EXPECT_NEAR(estimate.elasticity.poisson_ratio, 0.3, kConverged);
+}
+
+TEST_P(Conformance, DoesNotDependOnThePositionOfTheSpecimen) {
+  Scene scene = SmallScene("organ");
+  Measure({5e4, 0.3}, scene);
+  AddNoise(kSmallNoise, 1, scene);
+  Scene moved = scene;
+  const Eigen::Matrix3d rotation =
+      Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized())
+          .toRotationMatrix();
+  moved.mesh.nodes =
+      (rotation * scene.mesh.nodes).colwise() + Eigen::Vector3d(10, -20, 5);
+  LoadCase& load_case = moved.load_cases[0];
+  load_case.displacement = rotation * load_case.displacement;
+  Eigen::Matrix3Xd& force = std::get<NodalForces>(load_case.loads[0]).force;
+  force = rotation * force;
+  ExpectSame(Run(moved), Run(scene).elasticity.youngs_modulus, Run(scene));
+}
+
+TEST_P(Conformance, DoesNotDependOnUnits) {
+  Scene scene = SmallScene("organ");
+  Measure({5e4, 0.3}, scene);
+  AddNoise(kSmallNoise, 1, scene);
+  // From m, N, Pa to mm, N, MPa.
+  Scene millimetres = scene;
+  millimetres.mesh.nodes *= 1e3;
+  millimetres.load_cases[0].displacement *= 1e3;
+  const Estimate expected = Run(scene);
+  ExpectSame(Run(millimetres), expected.elasticity.youngs_modulus * 1e-6,
+             expected);
+}
+
+TEST_P(Conformance, DoesNotDependOnNumbering) {
+  Scene scene = SmallScene("organ");
+  Measure({5e4, 0.3}, scene);
+  AddNoise(kSmallNoise, 1, scene);
+  std::vector<int> new_node(scene.mesh.NumNodes());
+  std::iota(new_node.begin(), new_node.end(), 0);
+  std::mt19937_64 generator(3);
+  std::shuffle(new_node.begin(), new_node.end(), generator);
+  Scene shuffled = scene;
+  NodalForces forces{std::get<NodalForces>(scene.load_cases[0].loads[0])};
+  for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
+    const int to = new_node[node];
+    shuffled.mesh.nodes.col(to) = scene.mesh.nodes.col(node);
+    shuffled.supports.held.col(to) = scene.supports.held.col(node);
+    shuffled.load_cases[0].displacement.col(to) =
+        scene.load_cases[0].displacement.col(node);
+    forces.force.col(to) =
+        std::get<NodalForces>(scene.load_cases[0].loads[0]).force.col(node);
+  }
+  shuffled.load_cases[0].loads = {forces};
+  for (Eigen::Index e = 0; e < scene.mesh.NumElements(); ++e) {
+    const Eigen::Index to = scene.mesh.NumElements() - 1 - e;
+    for (int i = 0; i < 4; ++i) {
+      // An odd permutation of the corners turns the orientation around.
+      shuffled.mesh.elements(3 - i, to) = new_node[scene.mesh.elements(i, e)];
+    }
+    std::swap(shuffled.mesh.elements(0, to), shuffled.mesh.elements(1, to));
+  }
+  ExpectSame(Run(shuffled), Run(scene).elasticity.youngs_modulus, Run(scene));
+}
+
+TEST_P(Conformance, DoesNotDependOnTheSizeOfTheLoad) {
+  Scene scene = SmallScene("cuboid");
+  Measure({5e4, 0.3}, scene);
+  AddNoise(kSmallNoise, 1, scene);
+  Scene larger = scene;
+  larger.load_cases[0].displacement *= 100;
+  std::get<NodalForces>(larger.load_cases[0].loads[0]).force *= 100;
+  ExpectSame(Run(larger), Run(scene).elasticity.youngs_modulus, Run(scene));
+}
+
+TEST_P(Conformance, YoungsModulusScalesWithTheForce) {
+  Scene scene = SmallScene("cuboid");
+  Measure({5e4, 0.3}, scene);
+  AddNoise(kSmallNoise, 1, scene);
+  Scene stronger = scene;
+  std::get<NodalForces>(stronger.load_cases[0].loads[0]).force *= 7;
+  ExpectSame(Run(stronger), 7 * Run(scene).elasticity.youngs_modulus,
+             Run(scene));
+}
+
+TEST_P(Conformance, TheErrorHalvesWhenTheNoiseHalves) {
+  Scene exact = SmallScene("organ");
+  Measure({5e4, 0.3}, exact);
+  Scene noisy = exact;
+  // The next order of the error grows with the square of the noise.
+  AddNoise(kSmallNoise / 10, 2, noisy);
+  Scene half = exact;
+  half.load_cases[0].displacement =
+      (exact.load_cases[0].displacement + noisy.load_cases[0].displacement) / 2;
+  const IsotropicElasticity full_estimate = Run(noisy).elasticity;
+  const IsotropicElasticity half_estimate = Run(half).elasticity;
+  EXPECT_NEAR((full_estimate.youngs_modulus - 5e4) /
+                  (half_estimate.youngs_modulus - 5e4),
+              2, 0.02);
+  EXPECT_NEAR(
+      (full_estimate.poisson_ratio - 0.3) / (half_estimate.poisson_ratio - 0.3),
+      2, 0.02);
+}
+
+TEST_P(Conformance, StandardErrorsCoverTheTruth) {
+  constexpr int kSeeds = 200;
+  for (const std::string shape : {"cuboid", "organ"}) {
+    for (const bool noise_is_known : {false, true}) {
+      SCOPED_TRACE(shape);
+      Scene exact = SmallScene(shape);
+      Measure({5e4, 0.3}, exact);
+      int youngs_covered = 0;
+      int nu_covered = 0;
+      for (int seed = 1; seed <= kSeeds; ++seed) {
+        Scene scene = exact;
+        const double sd = AddNoise(kSmallNoise, seed, scene);
+        if (noise_is_known) {
+          scene.load_cases[0].noise_sd = sd;
+        }
+        const Estimate estimate = Run(scene);
+        ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+        youngs_covered += std::abs(estimate.elasticity.youngs_modulus - 5e4) <
+                          1.96 * *estimate.YoungsModulusStandardError();
+        nu_covered += std::abs(estimate.elasticity.poisson_ratio - 0.3) <
+                      1.96 * *estimate.PoissonRatioStandardError();
+      }
+      // Seeds 1 to 200; the number covered is binomial, mean 190, sd 3.1.
+      const double sd = std::sqrt(kSeeds * 0.95 * 0.05);
+      EXPECT_NEAR(youngs_covered, 0.95 * kSeeds, 3.5 * sd);
+      EXPECT_NEAR(nu_covered, 0.95 * kSeeds, 3.5 * sd);
+    }
+  }
+}
+
+TEST_P(Conformance, FindsTheNoiseLevel) {
+  Scene scene = SmallScene("organ");
+  Measure({5e4, 0.3}, scene);
+  const double sd = AddNoise(kSmallNoise, 5, scene);
+  const Estimate estimate = Run(scene);
+  ASSERT_TRUE(estimate.noise_sd.has_value());
+  // 240 free components: relative sd 0.046 for white residuals, and up to
+  // twice that where a stiffness matrix colours them.
+  EXPECT_NEAR(*estimate.noise_sd / sd, 1, 4 * 2 * 0.046);
+}
+
+TEST_P(Conformance, KnownNoiseThatDoesNotExplainTheResidualIsSaid) {
+  Scene scene = SmallScene("organ");
+  Measure({5e4, 0.3}, scene);
+  const double sd = AddNoise(kSmallNoise, 5, scene);
+  Scene modest = scene;
+  modest.load_cases[0].noise_sd = sd;
+  EXPECT_TRUE(Run(modest).warnings.empty());
+  Scene bold = scene;
+  bold.load_cases[0].noise_sd = sd / 10;
+  const Estimate estimate = Run(bold);
+  ASSERT_FALSE(estimate.warnings.empty());
+  EXPECT_NE(estimate.warnings[0].find("given noise"), std::string::npos);
+  EXPECT_NEAR(*estimate.YoungsModulusStandardError() /
+                  *Run(scene).YoungsModulusStandardError(),
+              1, 0.01);
+}
+
+TEST_P(Conformance, SeveralLoadCasesBeatOne) {
+  constexpr int kSeeds = 40;
+  Scene three = WithThreeForces(SmallScene("cuboid"));
+  Measure({5e4, 0.3}, three);
+  double square_sum_one = 0;
+  double square_sum_three = 0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    Scene scene = three;
+    AddNoise(kSmallNoise, seed, scene);
+    const Estimate all = Run(scene);
+    scene.load_cases.resize(1);
+    const Estimate first = Run(scene);
+    EXPECT_LT(*all.YoungsModulusStandardError(),
+              *first.YoungsModulusStandardError());
+    EXPECT_LT(*all.PoissonRatioStandardError(),
+              *first.PoissonRatioStandardError());
+    square_sum_one += std::pow(first.elasticity.poisson_ratio - 0.3, 2);
+    square_sum_three += std::pow(all.elasticity.poisson_ratio - 0.3, 2);
+  }
+  EXPECT_LT(square_sum_three, square_sum_one);
+}
+
+// A block in simple shear, u = (g y, 0, 0): without change of volume, so that
+// the shear modulus alone acts.  Statically determinate supports.
+Scene ShearedBlock() {
+  Scene scene = SmallScene("cuboid");
+  const Mesh& mesh = scene.mesh;
+  Eigen::Matrix3Xd displacement = Eigen::Matrix3Xd::Zero(3, mesh.NumNodes());
+  displacement.row(0) = 0.01 * mesh.nodes.row(1);
+  const Eigen::MatrixXd stiffness =
+      testing::DenseStiffness<double>(mesh, testing::HookeMatrix(5e4, 0.3));
+  NodalForces forces{
+      (stiffness * displacement.reshaped()).reshaped(3, mesh.NumNodes())};
+  // Corners at the origin, along x, and along y.
+  scene.supports.held.setConstant(false);
+  scene.supports.held.col(0).setConstant(true);
+  scene.supports.held.col(3) << false, true, true;
+  scene.supports.held.col(12) << false, false, true;
+  scene.load_cases[0].loads = {forces};
+  scene.load_cases[0].displacement = displacement;
+  return scene;
+}
+
+TEST_P(Conformance, SaysWhatPureShearDetermines) {
+  const Estimate estimate = Run(ShearedBlock());
+  EXPECT_EQ(estimate.status, Status::kNotIdentifiable);
+  EXPECT_FALSE(estimate.IsUsable());
+  // mu = 5e4 / 2.6.
+  EXPECT_NE(estimate.message.find("the shear modulus = 19230.8"),
+            std::string::npos)
+      << estimate.message;
+  EXPECT_FALSE(estimate.PoissonRatioStandardError().has_value());
+  EXPECT_FALSE(estimate.why_no_standard_error.empty());
+}
+
+TEST_P(Conformance, PureShearWithAKnownPoissonRatioIsEnough) {
+  EstimatorOptions options;
+  options.known_poisson_ratio = 0.3;
+  const Estimate estimate = Run(ShearedBlock(), options);
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  EXPECT_NEAR(estimate.elasticity.youngs_modulus / 5e4, 1, kConverged);
+}
+
+TEST_P(Conformance, ForcesOfTheWrongSignAreUnphysical) {
+  Scene scene = SmallScene("cuboid");
+  Measure({5e4, 0.3}, scene);
+  scene.load_cases[0].displacement *= -1;
+  for (const bool nu_is_known : {false, true}) {
+    EstimatorOptions options;
+    if (nu_is_known) {
+      options.known_poisson_ratio = 0.3;
+    }
+    const Estimate estimate = Run(scene, options);
+    EXPECT_EQ(estimate.status, Status::kUnphysical);
+    EXPECT_FALSE(estimate.message.empty());
+    EXPECT_FALSE(estimate.YoungsModulusStandardError().has_value());
+    EXPECT_FALSE(estimate.why_no_standard_error.empty());
+  }
+}
+
+TEST_P(Conformance, AMovingSupportIsSaid) {
+  Scene scene = SmallScene("cuboid");
+  Measure({5e4, 0.3}, scene);
+  EXPECT_TRUE(Run(scene).warnings.empty());
+  for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
+    if (scene.supports.held(0, node)) {
+      scene.load_cases[0].displacement(0, node) = 1;
+    }
+  }
+  const Estimate estimate = Run(scene);
+  ASSERT_FALSE(estimate.warnings.empty());
+  EXPECT_NE(estimate.warnings[0].find("held nodes"), std::string::npos);
+}
+
+TEST_P(Conformance, ThrowsForWrongInput) {
+  Scene good = SmallScene("cuboid");
+  Measure({5e4, 0.3}, good);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  {
+    Scene scene = good;
+    scene.load_cases[0].displacement(1, 20) = nan;
+    EXPECT_THROWS_WITH(Run(scene), "node 20 \\(y\\) .*not finite");
+  }
+  {
+    Scene scene = good;
+    scene.load_cases[0].displacement.setZero();
+    EXPECT_THROWS_WITH(Run(scene), "load case 1 is zero at every free node");
+  }
+  {
+    Scene scene = good;
+    scene.load_cases[0].displacement.resize(3, 0);
+    EXPECT_THROWS_WITH(Run(scene), "load case 1 has no measured");
+  }
+  {
+    Scene scene = good;
+    scene.load_cases[0].loads.clear();
+    EXPECT_THROWS_WITH(Run(scene), "loads are zero on every free");
+  }
+  {
+    Scene scene = good;
+    scene.load_cases[0].observed =
+        ComponentMask::Constant(3, scene.mesh.NumNodes(), false);
+    EXPECT_THROWS_WITH(Run(scene), "no free component .* load case 1");
+  }
+  {
+    Scene scene = good;
+    scene.supports.held.setConstant(true);
+    EXPECT_THROWS_WITH(Run(scene), "every degree of freedom is held");
+  }
+  {
+    Scene scene = good;
+    scene.load_cases.push_back(scene.load_cases[0]);
+    scene.load_cases[1].noise_sd = 1e-3;
+    EXPECT_THROWS_WITH(Run(scene), "some load cases only");
+  }
+  for (const double nu : {0.5, -1.0, 0.7, nan}) {
+    EstimatorOptions options;
+    options.known_poisson_ratio = nu;
+    EXPECT_THROWS_WITH(Run(good, options), "known Poisson's ratio is");
+  }
+  {
+    EstimatorOptions options;
+    options.poisson_ratio = {0.4, 0.3};
+    EXPECT_THROWS_WITH(Run(good, options), "bounds on Poisson's .* crossed");
+  }
+}
+
+TEST_P(Conformance, TheSameInputGivesTheSameBits) {
+  Scene scene = SmallScene("organ");
+  Measure({5e4, 0.3}, scene);
+  AddNoise(kSmallNoise, 1, scene);
+  const Estimate first = Run(scene);
+  const Estimate second = Run(scene);
+  EXPECT_EQ(first.elasticity.youngs_modulus, second.elasticity.youngs_modulus);
+  EXPECT_EQ(first.elasticity.poisson_ratio, second.elasticity.poisson_ratio);
+  EXPECT_TRUE(first.covariance == second.covariance);
+}
+
+std::string TestName(
+    const ::testing::TestParamInfo<std::string_view>& estimator) {
+  std::string name(estimator.param);
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Estimators, Conformance,
+                         ::testing::ValuesIn(EstimatorNames()), TestName);
+
+}  // namespace
+}  // namespace elastimate

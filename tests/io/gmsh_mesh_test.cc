@@ -1,0 +1,171 @@
+#include "elastimate/io/gmsh_mesh.h"
+
+#include <gmock/gmock.h>
+#include <gmsh.h>
+#include <gtest/gtest.h>
+
+#include "elastimate/io/scene_reader.h"
+#include "tests/io/gmsh_files.h"
+#include "tests/io/scene_files.h"
+#include "tests/throws.h"
+
+namespace elastimate {
+namespace {
+
+using ::testing::ElementsAre;
+
+class GmshMeshTest : public ::testing::Test {
+ protected:
+  MeshFile Read(const std::string& name, const std::string& content) const {
+    return ReadMeshFile(folder_.Write(name, content));
+  }
+  MeshFile Read(const std::string& content) const {
+    return Read("mesh.msh", content);
+  }
+
+  const TemporaryFolder folder_;
+};
+
+void ExpectTwoTetrahedra(const MeshFile& mesh) {
+  EXPECT_THAT(mesh.node_numbers, ElementsAre(2, 3, 5, 7, 10));
+  EXPECT_EQ(mesh.nodes.col(4), Eigen::Vector3d(0, 0, 0));
+  EXPECT_EQ(mesh.nodes.col(3), Eigen::Vector3d(0, 0, -1));
+  Eigen::MatrixXi tetrahedra(4, 2);
+  tetrahedra.transpose() << 4, 0, 1, 2, 4, 0, 1, 3;
+  EXPECT_EQ(mesh.tetrahedra, tetrahedra);
+  EXPECT_TRUE(mesh.used.all());
+}
+
+TEST_F(GmshMeshTest, ReadsVersions1And2And4) {
+  for (const std::string& content :
+       {GmshVersion1Mesh(), GmshVersion2Mesh(), GmshVersion4Mesh()}) {
+    ::testing::internal::CaptureStderr();
+    ::testing::internal::CaptureStdout();
+    const MeshFile mesh = Read(content);
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+    EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
+    ExpectTwoTetrahedra(mesh);
+    ASSERT_FALSE(mesh.groups.empty());
+    EXPECT_EQ(mesh.groups[0].dimension, 2);
+    EXPECT_EQ(mesh.groups[0].number, 70);
+    EXPECT_THAT(mesh.groups[0].nodes, ElementsAre(0, 1, 2, 4));
+    EXPECT_EQ(mesh.groups[0].triangles.cols(), 2);
+  }
+}
+
+TEST_F(GmshMeshTest, ReadsWhatGmshWrites) {
+  const auto source = folder_.Write("source.msh", GmshVersion2Mesh());
+  gmsh::initialize(0, nullptr, false);
+  gmsh::option::setNumber("General.Terminal", 0);
+  gmsh::merge(source.string());
+  gmsh::option::setNumber("Mesh.SaveAll", 1);
+  std::vector<std::filesystem::path> paths;
+  const auto write = [&](const std::string& name, double version, int binary) {
+    paths.push_back(folder_.Path() / name);
+    gmsh::option::setNumber("Mesh.MshFileVersion", version);
+    gmsh::option::setNumber("Mesh.Binary", binary);
+    gmsh::write(paths.back().string());
+  };
+  write("v1.msh", 1.0, 0);
+  write("v2.msh", 2.2, 0);
+  write("v2_binary.msh", 2.2, 1);
+  write("v40.msh", 4.0, 0);
+  write("v41.msh", 4.1, 0);
+  write("v41_binary.msh", 4.1, 1);
+  write("m.unv", 4.1, 0);
+  write("m.bdf", 4.1, 0);
+  write("m.mesh", 4.1, 0);
+  gmsh::finalize();
+  for (const auto& path : paths) {
+    SCOPED_TRACE(path);
+    const MeshFile mesh = ReadMeshFile(path);
+    EXPECT_EQ(mesh.nodes.cols(), 5);
+    EXPECT_EQ(mesh.tetrahedra.cols(), 2);
+    EXPECT_EQ(mesh.nodes.rowwise().sum(), Eigen::Vector3d(1, 1, 0));
+    if (path.stem() == "v41" || path.stem() == "v41_binary") {
+      ExpectTwoTetrahedra(mesh);  // The others give nodes new numbers.
+    }
+  }
+}
+
+TEST_F(GmshMeshTest, ReadsASceneFromNodeData) {
+  for (const std::string& content :
+       {GmshVersion1Scene(), GmshVersion2Scene(), GmshVersion4Scene()}) {
+    const auto path = folder_.Write("scene.msh", content);
+    const Scene scene = ReadScene({path}, Measurement::kRequired).scene;
+    EXPECT_TRUE(scene.supports.held.col(4).all());
+    EXPECT_FALSE(scene.supports.held.col(2).any());
+    const LoadCase& load_case = scene.load_cases.at(0);
+    EXPECT_EQ(load_case.displacement.col(2), Eigen::Vector3d(.001, .002, .003));
+    EXPECT_EQ(std::get<NodalForces>(load_case.loads[0]).force.col(2),
+              Eigen::Vector3d(1, 2, 3));
+  }
+}
+
+TEST_F(GmshMeshTest, NamesNodesWithoutData) {
+  const auto path = folder_.Write(
+      "scene.msh", Replaced(GmshVersion2Scene(), "3\n5\n10 0 0 0\n", "3\n4\n"));
+  EXPECT_THROWS_WITH(ReadScene({path}, Measurement::kRequired),
+                     "scene.msh: the point array 'displacement' of node 4 "
+                     "\\(number 10 in Gmsh\\) \\(x\\) is nan");
+}
+
+TEST_F(GmshMeshTest, ReadsRegionsFromElementData) {
+  const auto path = folder_.Write(
+      "scene.msh", GmshVersion2Scene() +
+                       "$ElementData\n1\n\"region\"\n1\n0\n3\n0\n1\n2\n5 8\n"
+                       "4 7\n$EndElementData\n");
+  EXPECT_EQ(ReadScene({path}, Measurement::kRequired).scene.mesh.regions,
+            Eigen::Vector2i(7, 8));
+}
+
+TEST_F(GmshMeshTest, SaysThatAMeshIsNoScene) {
+  const auto path = folder_.Write("liver.msh", GmshVersion1Mesh());
+  EXPECT_THROWS_WITH(ReadScene({path}, Measurement::kRequired),
+                     "liver.msh: a mesh alone is not a scene; write a "
+                     "scene.json with \"mesh\": \"liver.msh\"");
+}
+
+TEST_F(GmshMeshTest, KnowsOfNodesThatGmshLeavesOut) {
+  const MeshFile mesh =
+      Read(Replaced(GmshVersion2Mesh(), "$Nodes\n5\n", "$Nodes\n6\n1 7 7 7\n"));
+  EXPECT_EQ(mesh.num_nodes_left_out, 1);
+  EXPECT_EQ(mesh.nodes.cols(), 5);
+}
+
+TEST_F(GmshMeshTest, ErrsOnOtherVolumeElements) {
+  EXPECT_THROWS_WITH(Read(Replaced(GmshVersion2Mesh(), "5 4 2 1 1 10 2 3 7",
+                                   "5 7 2 1 1 10 2 3 7 5")),
+                     "mesh.msh: element number 5 is a Pyramid 5, but only "
+                     "linear tetrahedra");
+}
+
+TEST_F(GmshMeshTest, ErrsOnDamage) {
+  const std::string whole = GmshVersion2Mesh();
+  EXPECT_THROWS_WITH(
+      Read(Replaced(whole, "5 4 2 1 1 10 2 3 7", "5 4 2 1 1 10 2 3 77")),
+      "mesh.msh: .*Wrong node index 77");
+  EXPECT_THROWS_WITH(Read(whole.substr(0, whole.size() - 20)),
+                     "its last line does not begin with \\$END");
+  EXPECT_THROWS_WITH(Read("Printf(\"a script\");\n$End\n"),
+                     "it does not begin with \\$MeshFormat");
+  EXPECT_THROWS_WITH(Read("mesh.mesh", "MeshVersionFormatted 2\nDimension 3\n"),
+                     "mesh.mesh: .*its last line does not begin with END");
+}
+
+TEST_F(GmshMeshTest, ReadsOnAfterAnError) {
+  EXPECT_THROWS_WITH(Read(Replaced(GmshVersion2Mesh(), "5 4 2 1 1 10 2 3 7",
+                                   "5 4 2 1 1 10 2 3 77")),
+                     "Wrong node index 77");
+  ExpectTwoTetrahedra(Read(GmshVersion2Mesh()));
+}
+
+TEST_F(GmshMeshTest, ErrsOnAMeshWithoutTetrahedra) {
+  EXPECT_THROWS_WITH(
+      Read("$NOD\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$ENDNOD\n$ELM\n1\n"
+           "1 2 1 1 3 1 2 3\n$ENDELM\n"),
+      "mesh.msh: the mesh has no tetrahedra");
+}
+
+}  // namespace
+}  // namespace elastimate

@@ -1,0 +1,44 @@
+#ifndef ELASTIMATE_TESTS_SCENES_H_
+#define ELASTIMATE_TESTS_SCENES_H_
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "elastimate/core/elasticity.h"
+#include "elastimate/core/scene.h"
+
+namespace elastimate::testing {
+
+/// A box of nx x ny x nz cubes, each cut into six tetrahedra, one corner at
+/// the origin.
+Mesh BoxMesh(const Eigen::Vector3i& cells, const Eigen::Vector3d& size);
+
+/// The same mesh with its nodes moved by a smooth map: bent, twisted and
+/// tapered.
+Mesh Distorted(Mesh mesh);
+
+/// A scene of this mesh, held where z = 0 before any distortion (pass
+/// `reference`), with one load case of nodal forces on every free node.
+Scene HeldAtBottom(const Mesh& mesh, const Mesh& reference,
+                   const Eigen::Vector3d& force_per_node);
+
+/// A small scene by name: "cuboid", "bar" (slender), "organ" (distorted).
+Scene SmallScene(const std::string& shape);
+std::vector<std::string> SmallSceneNames();
+
+/// Measures every load case without noise, by the forward model.
+void Measure(const IsotropicElasticity& elasticity, Scene& scene);
+
+/// Adds independent Gaussian noise to the free components; its standard
+/// deviation is `relative` times the root mean square of the free displacement
+/// of each load case.  Returns that of the first.
+double AddNoise(double relative, std::uint64_t seed, Scene& scene);
+
+/// The load cases of a scene under forces along x, y and z in turn.
+Scene WithThreeForces(const Scene& scene);
+
+}  // namespace elastimate::testing
+
+#endif  // ELASTIMATE_TESTS_SCENES_H_
