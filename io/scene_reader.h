@@ -18,12 +18,22 @@ struct SceneReading {
   std::vector<std::string> notices;  ///< For people: points dropped, ...
 };
 
-/// Reads a scene from VTK files (.vtu, .vtk) or from one scene.json; the README
-/// describes both.  Several files are further load cases of the same mesh.
+/// Reads a scene from files whose arrays make it up (.vtu, .vtk, or .msh with
+/// node data), or from a scene.json over a mesh file (.vtu, .vtk, .msh, .mesh,
+/// .unv, .bdf); the README describes both.  Several files are further load
+/// cases of one specimen: the same nodes (to a millionth of the largest
+/// coordinate), cells, regions and supports.
+///
+/// The array `prescribed` (3 components, optional) is the displacement at which
+/// held components are held.  A node is known by its zero-based position among
+/// all nodes of its file, also those without a tetrahedron: in the order of the
+/// points of a VTK file, by ascending node number in a Gmsh file.  That is what
+/// ids and CSV rows in a scene.json refer to, and what messages name.
 ///
 /// The scene returned is valid (ValidateScene).  Throws std::invalid_argument
 /// with one sentence that names the file and the array, key, node or element
-/// for anything wrong with the input.
+/// for anything wrong with the input.  VTK and Gmsh keep global state: not for
+/// concurrent calls.
 SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
                        Measurement measurement);
 

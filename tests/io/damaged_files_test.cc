@@ -11,11 +11,6 @@
 #include "tests/io/scene_files.h"
 #include "tests/io/vtk_files.h"
 
-/// VTK's reader leaks arrays when it gives up.
-extern "C" const char* __lsan_default_suppressions() {  // NOLINT
-  return "leak:libvtk";
-}
-
 namespace elastimate {
 namespace {
 
