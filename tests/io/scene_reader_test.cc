@@ -346,8 +346,7 @@ TEST_F(SceneReaderTest, SaysHowFilesDiffer) {
 }
 
 TEST_F(SceneReaderTest, ReadsTheScenesOfAnIndependentCode) {
-#ifdef ELASTIMATE_SHARED_DATA_DIR
-  const std::filesystem::path folder = ELASTIMATE_SHARED_DATA_DIR;
+  const std::filesystem::path folder = ELASTIMATE_SHARED_DATA;
   if (!std::filesystem::exists(folder / "liver_same_mesh.vtu")) {
     GTEST_SKIP() << "no scenes in " << folder;
   }
@@ -358,9 +357,6 @@ TEST_F(SceneReaderTest, ReadsTheScenesOfAnIndependentCode) {
   EXPECT_THROWS_WITH(
       ReadScene({folder / "liver.msh"}, Measurement::kRequired),
       "liver.msh: a mesh alone is not a scene; write a scene.json");
-#else
-  GTEST_SKIP() << "built without ELASTIMATE_SHARED_DATA_DIR";
-#endif
 }
 
 }  // namespace
