@@ -105,35 +105,62 @@ int OpenNewFile(const fs::path& target, fs::path& name) {
   return descriptor;
 }
 
-void ReplaceFile(const fs::path& path, const std::string& content) {
+}  // namespace
+
+StagedFiles::~StagedFiles() {
+  for (const Part& part : parts_) {
+    unlink(part.name.c_str());
+  }
+}
+
+void StagedFiles::Add(const fs::path& path, const std::string& content) {
+  CheckWritable(path);
+  if (IsWrittenInPlace(path)) {
+    WriteInPlace(path, content);
+    return;
+  }
   const fs::path target = FollowLinks(path);
-  fs::path part;
-  FileDescriptor file(OpenNewFile(target, part));
+  fs::path name;
+  FileDescriptor file(OpenNewFile(target, name));
   if (file.Get() < 0) {
     ThrowErrno(path, errno);
   }
+  parts_.push_back({path, target, name});
   struct stat old = {};
   const bool written = (stat(target.c_str(), &old) != 0 ||
                         fchmod(file.Get(), old.st_mode & 07777) == 0) &&
                        WriteAll(file.Get(), content) &&
-                       fsync(file.Get()) == 0 && file.Close() &&
-                       rename(part.c_str(), target.c_str()) == 0;
+                       fsync(file.Get()) == 0 && file.Close();
   if (!written) {
-    const int error = errno;
-    unlink(part.c_str());
-    ThrowErrno(path, error);
+    ThrowErrno(path, errno);
   }
 }
 
-}  // namespace
+void StagedFiles::Commit() {
+  for (; !parts_.empty(); parts_.pop_back()) {
+    const Part& part = parts_.back();
+    if (rename(part.name.c_str(), part.target.c_str()) != 0) {
+      ThrowErrno(part.path, errno);
+    }
+  }
+}
 
 void WriteWholeFile(const fs::path& path, const std::string& content) {
-  CheckWritable(path);
-  if (IsWrittenInPlace(path)) {
-    WriteInPlace(path, content);
-  } else {
-    ReplaceFile(path, content);
+  StagedFiles files;
+  files.Add(path, content);
+  files.Commit();
+}
+
+bool AreSameFile(const fs::path& first, const fs::path& second) {
+  std::error_code error;
+  if (fs::equivalent(first, second, error)) {
+    return true;
   }
+  const auto place = [&error](const fs::path& path) {
+    return fs::weakly_canonical(fs::absolute(FollowLinks(path), error), error);
+  };
+  const fs::path first_place = place(first);
+  return !error && first_place == place(second);
 }
 
 void CheckWritable(const fs::path& path) {

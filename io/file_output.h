@@ -3,8 +3,36 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace elastimate {
+
+/// Files that appear together, each whole, or not at all: each is written to a
+/// new file in its folder, which takes the name when all are written.
+class StagedFiles {
+ public:
+  StagedFiles() = default;
+  /// Leaves no trace of what was not committed.
+  ~StagedFiles();
+  StagedFiles(const StagedFiles&) = delete;
+  StagedFiles& operator=(const StagedFiles&) = delete;
+
+  /// Writes `content` beside `path`; to a device or a pipe at once, so that
+  /// these are best added last.  Throws std::invalid_argument, naming the file,
+  /// when it cannot be written.
+  void Add(const std::filesystem::path& path, const std::string& content);
+
+  /// Lets the files appear, in place of what had their names.
+  void Commit();
+
+ private:
+  struct Part {
+    std::filesystem::path path;    ///< As the user calls it.
+    std::filesystem::path target;  ///< What links lead to.
+    std::filesystem::path name;    ///< Where it is written until then.
+  };
+  std::vector<Part> parts_;
+};
 
 /// Writes `content` to `path` so that the file appears whole or not at all: to
 /// a new file in the same folder, which then takes the name.  Throws
@@ -15,6 +43,10 @@ void WriteWholeFile(const std::filesystem::path& path,
 /// Throws std::invalid_argument, naming the file, when `path` could not be
 /// written: so that long work does not start in vain.  Creates nothing.
 void CheckWritable(const std::filesystem::path& path);
+
+/// Whether the two names lead to one file, which need not exist.
+bool AreSameFile(const std::filesystem::path& first,
+                 const std::filesystem::path& second);
 
 }  // namespace elastimate
 

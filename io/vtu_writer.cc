@@ -113,9 +113,8 @@ Fields SceneFields(const Scene& scene) {
   return fields;
 }
 
-void WriteVtu(const std::filesystem::path& path, const Mesh& mesh,
-              const Fields& fields) {
-  CheckWritable(path);
+std::string VtuContent(const std::filesystem::path& path, const Mesh& mesh,
+                       const Fields& fields) {
   const VtkMessages messages(VtkMessages::Warnings::kIgnored);
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
   writer->SetInputData(ToVtkGrid(path, mesh, fields));
@@ -126,7 +125,13 @@ void WriteVtu(const std::filesystem::path& path, const Mesh& mesh,
       messages.HasError()) {
     ThrowInputError(path, "cannot be written (" + messages.FirstError() + ")");
   }
-  WriteWholeFile(path, writer->GetOutputString());
+  return writer->GetOutputString();
+}
+
+void WriteVtu(const std::filesystem::path& path, const Mesh& mesh,
+              const Fields& fields) {
+  CheckWritable(path);
+  WriteWholeFile(path, VtuContent(path, mesh, fields));
 }
 
 }  // namespace elastimate

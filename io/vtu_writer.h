@@ -28,9 +28,15 @@ struct Fields {
 /// `displacement` and `observed` where there are any.
 Fields SceneFields(const Scene& scene);
 
-/// Writes the mesh with its fields as a VTU file (binary, Float64) that
-/// ParaView opens.  The file appears whole or not at all.  Throws
-/// std::invalid_argument, naming the file, when it cannot be written.
+/// The mesh with its fields as the content of a VTU file (binary, Float64) that
+/// ParaView opens.  Throws std::invalid_argument, naming the file, for fields
+/// that do not fit the mesh.
+std::string VtuContent(const std::filesystem::path& path, const Mesh& mesh,
+                       const Fields& fields);
+
+/// Writes the mesh with its fields as a VTU file.  The file appears whole or
+/// not at all.  Throws std::invalid_argument, naming the file, when it cannot
+/// be written.
 void WriteVtu(const std::filesystem::path& path, const Mesh& mesh,
               const Fields& fields);
 

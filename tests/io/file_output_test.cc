@@ -95,6 +95,47 @@ TEST_F(FileOutputTest, LeavesTheOldFileWhenItFails) {
   EXPECT_EQ(NumFiles(), 1);
 }
 
+TEST_F(FileOutputTest, FilesAppearTogetherOrNotAtAll) {
+  const fs::path old = folder_.Write("old.json", "old");
+  const fs::path other = folder_.Path() / "new.vtu";
+  {
+    StagedFiles files;
+    files.Add(other, "new");
+    files.Add(old, "newer");
+    EXPECT_THROWS_WITH(files.Add("/dev/full", "x"), "/dev/full: cannot be");
+  }
+  EXPECT_EQ(ReadFile(old), "old");
+  EXPECT_EQ(NumFiles(), 1);
+  StagedFiles files;
+  files.Add(other, "new");
+  files.Add(old, "newer");
+  EXPECT_FALSE(fs::exists(other));
+  EXPECT_EQ(ReadFile(old), "old");
+  files.Commit();
+  EXPECT_EQ(ReadFile(other), "new");
+  EXPECT_EQ(ReadFile(old), "newer");
+  EXPECT_EQ(NumFiles(), 2);
+}
+
+TEST_F(FileOutputTest, KnowsAFileByItsOtherNames) {
+  const fs::path file = folder_.Write("file", "");
+  const fs::path missing = folder_.Path() / "missing";
+  fs::create_symlink("file", folder_.Path() / "link");
+  fs::create_symlink("missing", folder_.Path() / "dangling");
+  fs::create_hard_link(file, folder_.Path() / "twin");
+  for (const std::string name : {"file", "./file", "link", "twin"}) {
+    EXPECT_TRUE(AreSameFile(file, folder_.Path() / name)) << name;
+    EXPECT_FALSE(AreSameFile(missing, folder_.Path() / name)) << name;
+  }
+  for (const std::string name : {"missing", "./missing", "dangling"}) {
+    EXPECT_TRUE(AreSameFile(missing, folder_.Path() / name)) << name;
+    EXPECT_FALSE(AreSameFile(file, folder_.Path() / name)) << name;
+  }
+  EXPECT_TRUE(AreSameFile("missing", fs::current_path() / "missing"));
+  EXPECT_FALSE(AreSameFile("missing", "other"));
+  EXPECT_FALSE(AreSameFile("", "other"));
+}
+
 TEST_F(FileOutputTest, ErrsWithTheReason) {
   const fs::path file = folder_.Write("file", "");
   for (const auto& write :
