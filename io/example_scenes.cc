@@ -1,8 +1,8 @@
 #include "elastimate/io/example_scenes.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -15,51 +15,76 @@ namespace {
 
 constexpr int kMinOrganTetrahedra = 200;
 constexpr int kMaxOrganTetrahedra = 2000000;
+constexpr int kMaxCuboidTetrahedra = 10000000;
+constexpr int kTetrahedraPerCell = 5;
+
+// Volumes, and the squares of areas, of tetrahedra of these sizes are within
+// double precision.
+constexpr double kMinLength = 1e-50;
+constexpr double kMaxLength = 1e50;
+
+// Beyond, the reader takes the tetrahedra of a cell for flat.
+constexpr double kMaxCellAspect = 1e5;
 
 template <typename Value>
-void Require(bool condition, const std::string& option, const Value& value,
-             const std::string& rule) {
-  if (condition) {
-    return;
-  }
-  std::ostringstream sentence;
-  sentence << option << " = " << value << ", but it must " << rule << ".";
-  throw std::invalid_argument(sentence.str());
+std::string Text(const Value& value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
 }
 
-bool IsPositive(double value) { return std::isfinite(value) && value > 0.0; }
+template <typename Triple>
+std::string TripleText(const Triple& triple) {
+  return Text(triple[0]) + "," + Text(triple[1]) + "," + Text(triple[2]);
+}
+
+void Require(bool condition, const std::string& option,
+             const std::string& value, const std::string& rule) {
+  if (!condition) {
+    throw std::invalid_argument(option + "=" + value + "; " + rule);
+  }
+}
+
+std::string LengthRange() {
+  return "from " + Text(kMinLength) + " to " + Text(kMaxLength);
+}
+
+bool IsLength(double value) {
+  return value >= kMinLength && value <= kMaxLength;
+}
+
+void CheckForce(const Eigen::Vector3d& force) {
+  Require(force.allFinite(), "force", TripleText(force), "each must be finite");
+}
 
 void CheckOptions(const CuboidOptions& options) {
-  for (int i = 0; i < 3; ++i) {
-    const std::string component = "[" + std::to_string(i) + "]";
-    Require(options.cells[i] >= 1, "CuboidOptions::cells" + component,
-            options.cells[i], "be at least 1");
-    Require(IsPositive(options.size[i]), "CuboidOptions::size" + component,
-            options.size[i], "be positive and finite");
-    Require(std::isfinite(options.force[i]), "CuboidOptions::force" + component,
-            options.force[i], "be finite");
-  }
-  // In floating point, where the product cannot overflow.
+  Require(options.cells.minCoeff() >= 1, "cells", TripleText(options.cells),
+          "each must be at least 1");
   const Eigen::Vector3d cells = options.cells.cast<double>();
-  Require(5.0 * cells.prod() <= std::numeric_limits<int>::max() &&
-              (cells.array() + 1.0).prod() <= std::numeric_limits<int>::max(),
-          "CuboidOptions::cells", options.cells.transpose(),
-          "give no more than 2^31 - 1 tetrahedra and nodes");
+  Require(kTetrahedraPerCell * cells.prod() <= kMaxCuboidTetrahedra, "cells",
+          TripleText(options.cells),
+          "the product must be at most " +
+              std::to_string(kMaxCuboidTetrahedra / kTetrahedraPerCell));
+  Require(std::all_of(options.size.begin(), options.size.end(), IsLength),
+          "size", TripleText(options.size), "each must be " + LengthRange());
+  const Eigen::Array3d edges = options.size.array() / cells.array();
+  Require(edges.maxCoeff() <= kMaxCellAspect * edges.minCoeff(), "size",
+          TripleText(options.size),
+          "a cell of " + TripleText(edges) +
+              " is too flat; its longest edge must be at most " +
+              Text(kMaxCellAspect) + " times its shortest");
+  CheckForce(options.force);
 }
 
 void CheckOptions(const OrganOptions& options) {
   Require(options.tetrahedra >= kMinOrganTetrahedra &&
               options.tetrahedra <= kMaxOrganTetrahedra,
-          "OrganOptions::tetrahedra", options.tetrahedra,
-          "be from " + std::to_string(kMinOrganTetrahedra) + " to " +
+          "tetrahedra", Text(options.tetrahedra),
+          "it must be from " + std::to_string(kMinOrganTetrahedra) + " to " +
               std::to_string(kMaxOrganTetrahedra));
-  Require(IsPositive(options.length), "OrganOptions::length", options.length,
-          "be positive and finite");
-  for (int i = 0; i < 3; ++i) {
-    Require(std::isfinite(options.force[i]),
-            "OrganOptions::force[" + std::to_string(i) + "]", options.force[i],
-            "be finite");
-  }
+  Require(IsLength(options.length), "length", Text(options.length),
+          "it must be " + LengthRange());
+  CheckForce(options.force);
 }
 
 Eigen::Matrix3Xd CuboidNodes(const CuboidOptions& options) {
@@ -81,7 +106,7 @@ Eigen::Matrix3Xd CuboidNodes(const CuboidOptions& options) {
 
 /// Five tetrahedra of a cell: four corners cut off, and what remains. Bits 0, 1
 /// and 2 of a corner are its steps along x, y and z.
-using CellCut = std::array<std::array<int, 4>, 5>;
+using CellCut = std::array<std::array<int, 4>, kTetrahedraPerCell>;
 
 /// Faces of neighbouring cells have the same diagonal when every other cell is
 /// cut the mirrored way.
@@ -93,7 +118,7 @@ constexpr CellCut kOddCut = {
 Eigen::MatrixXi CuboidElements(const Eigen::Vector3i& cells) {
   const int row = cells.x() + 1;
   const int layer = row * (cells.y() + 1);
-  Eigen::MatrixXi elements(4, Eigen::Index{5} * cells.prod());
+  Eigen::MatrixXi elements(4, Eigen::Index{kTetrahedraPerCell} * cells.prod());
   Eigen::Index element = 0;
   for (int k = 0; k < cells.z(); ++k) {
     for (int j = 0; j < cells.y(); ++j) {

@@ -11,17 +11,19 @@ namespace elastimate {
 /// 250 tetrahedra, like the cuboid of Becker & Teschner 2007, section 5 (the
 /// paper states neither its size nor its supports).
 struct CuboidOptions {
-  /// Number of cells along x, y, z; at least 1 each, and no more than 2^31 - 1
-  /// tetrahedra and nodes in all.
+  /// Number of cells along x, y, z; at least 1 each, and no more than
+  /// 2 000 000 in all.
   Eigen::Vector3i cells = {5, 5, 2};
-  Eigen::Vector3d size = {1.0, 1.0, 0.4};     ///< Edge lengths [m].
+  /// Edge lengths [m], 1e-50 to 1e50; the longest edge of a cell is no more
+  /// than 100 000 times the shortest.
+  Eigen::Vector3d size = {1.0, 1.0, 0.4};
   Eigen::Vector3d force = {0.0, 0.0, -30.0};  ///< Force on every free node [N].
 };
 
 /// A cuboid with one corner at the origin, held at z = 0, with one load case
 /// and no measurement.  The nodes are numbered along x first, then y, then z.
-/// Throws std::invalid_argument for an option out of its range.
-/// O(num_elements): 0.03 s for a million tetrahedra.
+/// Throws std::invalid_argument, beginning with the option's name, for an
+/// option out of its range.  O(num_elements): 0.03 s for a million tetrahedra.
 Scene CuboidScene(const CuboidOptions& options);
 
 /// A smooth, closed, liver-like solid: a big right lobe (small x) that tapers
@@ -32,7 +34,7 @@ Scene CuboidScene(const CuboidOptions& options);
 struct OrganOptions {
   int tetrahedra = 1970;  ///< Wanted number of tetrahedra, reached within 5 %;
                           ///< 200 to 2 000 000.
-  double length = 0.2;    ///< Extent along x [m].
+  double length = 0.2;    ///< Extent along x [m]; 1e-50 to 1e50.
   /// Force on every free node [N].  The default adds up to about the organ's
   /// weight for the default number of tetrahedra, and moves it by up to 5 % of
   /// its length for E = 50 kPa and nu = 0.3.  The sum grows with the number of
@@ -52,8 +54,9 @@ struct OrganOptions {
 /// be made again for its number or its angles.  One thread; the same scene on
 /// every run.
 ///
-/// Throws std::invalid_argument for an option out of its range, and
-/// std::runtime_error, naming the step, when the meshing fails.  Starts and
+/// Throws std::invalid_argument, beginning with the option's name, for an
+/// option out of its range, and std::runtime_error, naming the step, when the
+/// meshing fails.  Starts and
 /// ends Gmsh, whose state belongs to the process: not for a program that is
 /// using Gmsh, nor for two threads at once.
 Scene OrganScene(const OrganOptions& options);

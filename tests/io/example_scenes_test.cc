@@ -202,19 +202,32 @@ TEST(CuboidSceneTest, NamesTheOptionOutOfRange) {
     return WhyInvalid([&] { CuboidScene(options); });
   };
   EXPECT_EQ(why([](CuboidOptions& o) { o.cells.y() = 0; }),
-            "CuboidOptions::cells[1] = 0, but it must be at least 1.");
-  EXPECT_EQ(why([](CuboidOptions& o) { o.size.z() = 0.0; }),
-            "CuboidOptions::size[2] = 0, but it must be positive and finite.");
-  EXPECT_EQ(
-      why([](CuboidOptions& o) { o.size.x() = kInfinity; }),
-      "CuboidOptions::size[0] = inf, but it must be positive and finite.");
-  EXPECT_EQ(why([](CuboidOptions& o) { o.force.x() = kInfinity; }),
-            "CuboidOptions::force[0] = inf, but it must be finite.");
+            "cells=5,0,2; each must be at least 1");
   EXPECT_EQ(why([](CuboidOptions& o) {
               o.cells = {755, 755, 755};
             }),
-            "CuboidOptions::cells = 755 755 755, but it must give no more than "
-            "2^31 - 1 tetrahedra and nodes.");
+            "cells=755,755,755; the product must be at most 2000000");
+  EXPECT_EQ(why([](CuboidOptions& o) { o.cells.setConstant(2147483647); }),
+            "cells=2147483647,2147483647,2147483647; the product must be at "
+            "most 2000000");
+  EXPECT_EQ(why([](CuboidOptions& o) { o.size.z() = 0.0; }),
+            "size=1,1,0; each must be from 1e-50 to 1e+50");
+  EXPECT_EQ(why([](CuboidOptions& o) { o.size.x() = kInfinity; }),
+            "size=inf,1,0.4; each must be from 1e-50 to 1e+50");
+  EXPECT_EQ(why([](CuboidOptions& o) { o.size.x() = 1e-9; }),
+            "size=1e-09,1,0.4; a cell of 2e-10,0.2,0.2 is too flat; its "
+            "longest edge must be at most 100000 times its shortest");
+  EXPECT_EQ(why([](CuboidOptions& o) { o.force.x() = kInfinity; }),
+            "force=inf,0,-30; each must be finite");
+}
+
+TEST(CuboidSceneTest, IsValidAtTheEndsOfTheRanges) {
+  for (const double length : {1e-50, 1.0, 1e45}) {
+    CuboidOptions options;
+    options.size = length * Eigen::Vector3d(1e5, 1, 1);
+    options.cells = {1, 1, 1};
+    EXPECT_NO_THROW(ValidateScene(CuboidScene(options))) << length;
+  }
 }
 
 class OrganSceneSizes : public testing::TestWithParam<int> {
@@ -345,17 +358,17 @@ TEST(OrganSceneTest, NamesTheOptionOutOfRange) {
     return WhyInvalid([&] { OrganScene(options); });
   };
   EXPECT_EQ(why([](OrganOptions& o) { o.tetrahedra = 199; }),
-            "OrganOptions::tetrahedra = 199, but it must be from 200 to "
-            "2000000.");
+            "tetrahedra=199; it must be from 200 to 2000000");
   EXPECT_EQ(why([](OrganOptions& o) { o.tetrahedra = 2000001; }),
-            "OrganOptions::tetrahedra = 2000001, but it must be from 200 to "
-            "2000000.");
+            "tetrahedra=2000001; it must be from 200 to 2000000");
   EXPECT_EQ(why([](OrganOptions& o) { o.length = -0.2; }),
-            "OrganOptions::length = -0.2, but it must be positive and finite.");
+            "length=-0.2; it must be from 1e-50 to 1e+50");
+  EXPECT_EQ(why([](OrganOptions& o) { o.length = 1e200; }),
+            "length=1e+200; it must be from 1e-50 to 1e+50");
   EXPECT_EQ(why([](OrganOptions& o) { o.length = std::nan(""); }),
-            "OrganOptions::length = nan, but it must be positive and finite.");
+            "length=nan; it must be from 1e-50 to 1e+50");
   EXPECT_EQ(why([](OrganOptions& o) { o.force.y() = kInfinity; }),
-            "OrganOptions::force[1] = inf, but it must be finite.");
+            "force=0,inf,-0.02; each must be finite");
 }
 
 TEST(OrganShapeTest, BallPointInvertsOrganPoint) {
