@@ -1,19 +1,20 @@
-#include <glog/logging.h>
-
 #include <chrono>
-#include <cmath>
-#include <filesystem>
-#include <iostream>
+#include <memory>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "apps/commands.h"
+#include "apps/estimator_flags.h"
 #include "apps/flags.h"
 #include "apps/linear_algebra.h"
+#include "apps/outputs.h"
 #include "apps/progress.h"
 #include "apps/result_fields.h"
 #include "apps/summary.h"
+#include "elastimate/core/loads.h"
 #include "elastimate/estimators/registry.h"
 #include "elastimate/io/file_output.h"
 #include "elastimate/io/report.h"
@@ -29,58 +30,47 @@ double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-std::optional<double> Given(const std::string& flag, double value) {
-  return IsGiven(flag) ? std::optional<double>(value) : std::nullopt;
+// The estimators square displacements and forces, and cube lengths.
+void CheckMagnitude(const std::string& what, double magnitude, double smallest,
+                    double largest) {
+  // Zero is for the estimator to judge.
+  if (magnitude != 0 && !(magnitude >= smallest && magnitude <= largest)) {
+    std::ostringstream sentence;
+    sentence << what << " is " << magnitude << ", outside of " << smallest
+             << " to " << largest
+             << ", where numbers neither overflow nor underflow; choose other "
+                "units";
+    throw std::invalid_argument(sentence.str());
+  }
 }
 
-Loss LossNamed(const std::string& name) {
-  if (name == "none") {
-    return Loss::kNone;
-  }
-  if (name == "huber") {
-    return Loss::kHuber;
-  }
-  if (name == "cauchy") {
-    return Loss::kCauchy;
-  }
-  throw std::invalid_argument("--loss=" + name +
-                              "; it is none, huber or cauchy");
-}
-
-EstimatorOptions OptionsFromFlags() {
-  EstimatorOptions options;
-  options.known_poisson_ratio = Given("nu", FLAGS_nu);
-  options.poisson_ratio = {Given("nu_min", FLAGS_nu_min),
-                           Given("nu_max", FLAGS_nu_max)};
-  options.youngs_modulus = {Given("youngs_min", FLAGS_youngs_min),
-                            Given("youngs_max", FLAGS_youngs_max)};
-  options.loss = LossNamed(FLAGS_loss);
-  const std::string why_invalid = options.WhyInvalid();
-  if (!why_invalid.empty()) {
-    throw std::invalid_argument(why_invalid);
-  }
-  return options;
-}
-
-void CheckOutputs() {
-  if (!FLAGS_json.empty() && FLAGS_json != "-") {
-    CheckWritable(FLAGS_json);
-  }
-  if (!FLAGS_out.empty()) {
-    CheckWritable(FLAGS_out);
+void CheckMagnitudes(const Scene& scene) {
+  const Eigen::Vector3d extent = scene.mesh.nodes.rowwise().maxCoeff() -
+                                 scene.mesh.nodes.rowwise().minCoeff();
+  CheckMagnitude("the largest extent of the mesh", extent.maxCoeff(), 1e-50,
+                 1e50);
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    const LoadCase& load_case = scene.load_cases[k];
+    const std::string of_case = scene.load_cases.size() == 1
+                                    ? ""
+                                    : " of load case " + std::to_string(k + 1);
+    Eigen::Array3Xd measured = load_case.displacement;
+    if (load_case.observed.size() > 0) {
+      measured = load_case.observed.select(measured, 0.0);
+    }
+    CheckMagnitude("the largest measured displacement" + of_case,
+                   measured.abs().maxCoeff(), 1e-100, 1e100);
+    CheckMagnitude(
+        "the largest nodal force" + of_case,
+        AssembleLoads(scene.mesh, load_case.loads).cwiseAbs().maxCoeff(),
+        1e-100, 1e100);
   }
 }
 
 SceneReading Read(const std::vector<std::string>& arguments) {
   SceneReading reading =
       ReadScene({arguments.begin(), arguments.end()}, Measurement::kRequired);
-  for (const std::string& notice : reading.notices) {
-    LOG(WARNING) << notice;
-  }
   if (IsGiven("noise_sd")) {
-    if (!(FLAGS_noise_sd > 0)) {
-      throw std::invalid_argument("--noise_sd must be positive");
-    }
     for (LoadCase& load_case : reading.scene.load_cases) {
       load_case.noise_sd = FLAGS_noise_sd;
     }
@@ -97,6 +87,22 @@ std::string Sources(const std::vector<std::string>& arguments) {
   return sources;
 }
 
+Estimate RunEstimator(const Estimator& estimator, const Scene& scene,
+                      const EstimatorOptions& options,
+                      const std::string& sources) {
+  try {
+    CheckMagnitudes(scene);
+    return estimator.Run(scene, options);
+  } catch (const std::invalid_argument& error) {
+    const bool flags_are_to_blame =
+        !estimator.WhyUnsupported(scene, options).empty() &&
+        estimator.WhyUnsupported(scene, {}).empty();
+    throw std::invalid_argument(
+        (flags_are_to_blame ? GivenOptionFlags() : sources) + ": " +
+        error.what());
+  }
+}
+
 }  // namespace
 
 int RunEstimate(const std::vector<std::string>& arguments) {
@@ -107,8 +113,11 @@ int RunEstimate(const std::vector<std::string>& arguments) {
   }
   const std::unique_ptr<Estimator> estimator = MakeEstimator(FLAGS_estimator);
   EstimatorOptions options = OptionsFromFlags();
+  if (IsGiven("noise_sd") && !(FLAGS_noise_sd > 0)) {
+    throw std::invalid_argument(AsGiven("noise_sd") + "; it must be positive");
+  }
   ApplyComputingFlags();
-  CheckOutputs();
+  CheckOutputFlags(arguments);
 
   std::optional<Progress> progress("reading " + Sources(arguments));
   const SceneReading reading = Read(arguments);
@@ -119,31 +128,25 @@ int RunEstimate(const std::vector<std::string>& arguments) {
     progress->Show(FLAGS_estimator + ": factorisation " +
                    std::to_string(count));
   };
-  Estimate estimate;
-  try {
-    estimate = estimator->Run(reading.scene, options);
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(Sources(arguments) + ": " + error.what());
-  }
+  const Estimate estimate =
+      RunEstimator(*estimator, reading.scene, options, Sources(arguments));
+  StagedFiles files;
   if (!FLAGS_out.empty()) {
     progress->Show("writing " + FLAGS_out);
-    WriteVtu(FLAGS_out, reading.scene.mesh,
-             ResultFields(reading.scene, estimate));
+    files.Add(FLAGS_out, VtuContent(FLAGS_out, reading.scene.mesh,
+                                    ResultFields(reading.scene, estimate)));
   }
   progress.reset();
 
-  if (!FLAGS_json.empty()) {
-    const std::string report = JsonReport(estimate, reading.scene, options,
-                                          {read_seconds, SecondsSince(start)});
-    if (FLAGS_json == "-") {
-      std::cout << report;
-    } else {
-      WriteWholeFile(FLAGS_json, report);
-    }
+  const std::string report = JsonReport(estimate, reading.scene, options,
+                                        {read_seconds, SecondsSince(start)});
+  if (!FLAGS_json.empty() && FLAGS_json != "-") {
+    files.Add(FLAGS_json, report);
   }
-  if (FLAGS_json != "-") {
-    std::cout << Summary(estimate, reading.scene);
-  }
+  WriteStandardOutput(FLAGS_json == "-" ? report
+                                        : Summary(estimate, reading.scene));
+  files.Commit();
+  PrintNotices(reading.notices);
   return estimate.IsUsable() ? 0 : 1;
 }
 
@@ -151,21 +154,23 @@ int RunEstimators(const std::vector<std::string>& arguments) {
   if (!arguments.empty()) {
     throw std::invalid_argument("estimators takes no arguments");
   }
+  std::string list;
   for (const std::string_view name : EstimatorNames()) {
-    std::cout << name << std::string(16 - name.size(), ' ')
-              << MakeEstimator(name)->Description() << "\n";
+    list += std::string(name) + std::string(16 - name.size(), ' ') +
+            std::string(MakeEstimator(name)->Description()) + "\n";
   }
+  WriteStandardOutput(list);
   return 0;
 }
 
 void ApplyComputingFlags() {
   if (FLAGS_order != 1) {
-    throw std::invalid_argument("--order=" + std::to_string(FLAGS_order) +
-                                "; this version has linear elements only "
-                                "(--order=1)");
+    throw std::invalid_argument(AsGiven("order") +
+                                "; this version has linear elements only, "
+                                "--order=1");
   }
   if (FLAGS_threads < 0) {
-    throw std::invalid_argument("--threads=" + std::to_string(FLAGS_threads) +
+    throw std::invalid_argument(AsGiven("threads") +
                                 "; it must not be negative");
   }
   if (FLAGS_threads > 0) {

@@ -3,71 +3,105 @@
 #include <gflags/gflags.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstdlib>
+#include <iomanip>
+#include <map>
 #include <sstream>
 #include <stdexcept>
 
 DEFINE_string(estimator, "closed-form",
               "method; 'elastimate estimators' lists them");
-DEFINE_double(nu, 0, "Poisson's ratio, when it is known [-]");
-DEFINE_double(nu_min, 0, "lower bound on Poisson's ratio [-]");
-DEFINE_double(nu_max, 0, "upper bound on Poisson's ratio [-]");
-DEFINE_double(youngs, 0, "Young's modulus [pressure]");
-DEFINE_double(youngs_min, 0, "lower bound on Young's modulus [pressure]");
-DEFINE_double(youngs_max, 0, "upper bound on Young's modulus [pressure]");
+DEFINE_double(nu, 0,
+              "Poisson's ratio, when it is known; above -1 and below 0.5 [-]");
+DEFINE_double(nu_min, 0, "lower bound on Poisson's ratio, from -1 on [-]");
+DEFINE_double(nu_max, 0, "upper bound on Poisson's ratio, up to 0.5 [-]");
+DEFINE_double(youngs, 0, "Young's modulus, positive [pressure]");
+DEFINE_double(youngs_min, 0,
+              "lower bound on Young's modulus, positive [pressure]");
+DEFINE_double(youngs_max, 0,
+              "upper bound on Young's modulus, positive [pressure]");
 DEFINE_double(noise_sd, 0,
-              "standard deviation of the measured displacement per component "
-              "[length]; overrides that of the scene");
+              "standard deviation of the measured displacement per component, "
+              "positive [length]; overrides that of the scene");
 DEFINE_double(noise, 0,
               "norm of the added noise relative to that of the free "
-              "displacement [-]");
+              "displacement, from 0 on [-]; none without this flag");
 DEFINE_string(noise_law, "uniform", "uniform or gaussian");
 DEFINE_string(loss, "none", "treatment of outliers: none, huber or cauchy");
 DEFINE_int32(order, 1, "element order; 1 in this version");
 DEFINE_int32(threads, 0,
-             "largest number of threads of the linear algebra; 0 for all "
-             "processors");
+             "largest number of threads of the linear algebra; 0, or without "
+             "this flag, all processors");
 DEFINE_uint64(seed, 1,
-              "seed of random numbers (the noise of simulate; the estimators "
-              "are deterministic)");
+              "seed of random numbers, from 0 on (the noise of simulate; the "
+              "estimators are deterministic)");
 DEFINE_string(json, "", "report as JSON to this file, - for standard output");
-DEFINE_string(out, "", "VTU file to write");
-DEFINE_string(cells, "5,5,2", "cells of the cuboid along x,y,z");
-DEFINE_string(size, "1,1,0.4", "edge lengths of the cuboid [length]");
-DEFINE_string(force, "0,0,-30", "force on every free node [force]");
-DEFINE_int32(tetrahedra, 1970, "number of tetrahedra of the organ, about");
-DEFINE_double(length, 0.2, "length of the organ [length]");
+DEFINE_string(out, "", "VTU file to write; its name ends in .vtu");
+DEFINE_string(cells, "5,5,2",
+              "of the cuboid: cells along x,y,z, integers from 1 on whose "
+              "product is at most 2000000; five tetrahedra each");
+DEFINE_string(size, "1,1,0.4",
+              "of the cuboid: edge lengths along x,y,z, from 1e-50 to 1e50 "
+              "[length]");
+DEFINE_string(force, "",
+              "force along x,y,z on every free node [force] (default 0,0,-30 "
+              "for the cuboid, 0,0,-0.02 for the organ)");
+DEFINE_int32(tetrahedra, 1970,
+             "of the organ: number of tetrahedra within 5 %, from 200 to "
+             "2000000");
+DEFINE_double(length, 0.2,
+              "of the organ: extent along x, from 1e-50 to 1e50 [length]");
 
 namespace elastimate {
 namespace {
 
-// "name" and "value" of --name=value; a flag without a value is an error,
-// since none is a switch.
-std::pair<std::string, std::string> SplitFlag(const std::string& argument) {
-  const std::size_t name_start = argument.find_first_not_of('-');
-  const std::size_t equals = argument.find('=');
-  if (name_start == std::string::npos) {
-    throw std::invalid_argument("'" + argument + "' is not a flag");
+std::string TypeOf(const std::string& flag) {
+  gflags::CommandLineFlagInfo info;
+  gflags::GetCommandLineFlagInfo(flag.c_str(), &info);
+  return info.type;
+}
+
+bool Takes(const Command& command, const std::string& flag) {
+  return std::find(command.flags.begin(), command.flags.end(), flag) !=
+         command.flags.end();
+}
+
+void CheckIsTaken(const Command& command, const std::string& flag) {
+  if (Takes(command, flag)) {
+    return;
   }
-  const std::string name = argument.substr(name_start, equals - name_start);
-  return {name, equals == std::string::npos ? "" : argument.substr(equals + 1)};
+  const bool elsewhere =
+      std::any_of(Commands().begin(), Commands().end(),
+                  [&flag](const Command& other) { return Takes(other, flag); });
+  throw std::invalid_argument(
+      (elsewhere ? command.name + " takes no flag --" : "unknown flag --") +
+      flag + "; see elastimate --help");
+}
+
+// In --flag VALUE a flag that follows is not the value, but -1 and - are.
+bool MayBeValue(const std::string& argument) {
+  return argument.size() < 2 || argument[0] != '-' || argument[1] == '.' ||
+         std::isdigit(static_cast<unsigned char>(argument[1])) != 0;
 }
 
 void SetFlag(const std::string& name, const std::string& value) {
-  gflags::CommandLineFlagInfo info;
-  gflags::GetCommandLineFlagInfo(name.c_str(), &info);
+  const std::string type = TypeOf(name);
   const bool accepted =
       !value.empty() &&
       !gflags::SetCommandLineOption(name.c_str(), value.c_str()).empty();
-  const bool finite = info.type != "double" || !accepted ||
+  const bool finite = type != "double" || !accepted ||
                       std::isfinite(std::strtod(value.c_str(), nullptr));
   if (!accepted || !finite) {
-    const std::string kind = info.type == "double"   ? "a finite number"
-                             : info.type == "int32"  ? "an integer"
-                             : info.type == "uint64" ? "an integer from 0 on"
-                                                     : "a value";
-    throw std::invalid_argument("--" + name + " needs " + kind + ", as in --" +
-                                name + "=...; it got '" + value + "'");
+    const std::string kind =
+        type == "double"   ? "a finite number"
+        : type == "int32"  ? "an integer of at most 2147483647"
+        : type == "uint64" ? "an integer from 0 to 18446744073709551615"
+                           : "a value";
+    throw std::invalid_argument(
+        "--" + name + " needs " + kind +
+        (value.empty() ? ", as in --" + name + "=VALUE" : "; it got " + value));
   }
 }
 
@@ -97,32 +131,36 @@ const std::vector<Command>& Commands() {
 std::vector<std::string> ParseFlags(const Command& command,
                                     const std::vector<std::string>& arguments) {
   std::vector<std::string> others;
+  std::map<std::string, std::string> values;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const std::string& argument = arguments[i];
-    if (argument.size() < 2 || argument[0] != '-') {
+    if (argument.empty()) {
+      throw std::invalid_argument(
+          "an argument of " + command.name +
+          " is empty; leave it out, or check the variable behind it");
+    }
+    if (argument == "-" || argument[0] != '-') {
       others.push_back(argument);
       continue;
     }
-    auto [name, value] = SplitFlag(argument);
-    if (std::find(command.flags.begin(), command.flags.end(), name) ==
-        command.flags.end()) {
-      gflags::CommandLineFlagInfo info;
-      const bool elsewhere =
-          std::any_of(Commands().begin(), Commands().end(),
-                      [&name = name](const Command& other) {
-                        return std::find(other.flags.begin(), other.flags.end(),
-                                         name) != other.flags.end();
-                      });
-      throw std::invalid_argument(
-          (elsewhere ? "elastimate " + command.name + " takes no flag --"
-                     : "unknown flag --") +
-          name + "; see elastimate --help");
-    }
-    // --name value, as gflags has it.
-    if (argument.find('=') == std::string::npos && i + 1 < arguments.size()) {
+    const std::size_t equals = argument.find('=');
+    // gflags takes -flag as well.
+    const std::size_t start = argument.compare(0, 2, "--") == 0 ? 2 : 1;
+    const std::string name = argument.substr(start, equals - start);
+    CheckIsTaken(command, name);
+    std::string value;
+    if (equals != std::string::npos) {
+      value = argument.substr(equals + 1);
+    } else if (i + 1 < arguments.size() && MayBeValue(arguments[i + 1])) {
       value = arguments[++i];
     }
     SetFlag(name, value);
+    const auto [earlier, is_first] = values.emplace(name, value);
+    if (!is_first && earlier->second != value) {
+      throw std::invalid_argument("--" + name + " is given twice, as " +
+                                  earlier->second + " and as " + value +
+                                  "; give it once");
+    }
   }
   return others;
 }
@@ -131,6 +169,21 @@ bool IsGiven(const std::string& flag) {
   gflags::CommandLineFlagInfo info;
   return gflags::GetCommandLineFlagInfo(flag.c_str(), &info) &&
          !info.is_default;
+}
+
+std::string AsGiven(const std::string& flag) {
+  gflags::CommandLineFlagInfo info;
+  gflags::GetCommandLineFlagInfo(flag.c_str(), &info);
+  std::ostringstream text;
+  text << "--" << flag << "=";
+  if (info.type == "double") {
+    // gflags has all digits of 0.1, which nobody typed.
+    text << std::setprecision(15)
+         << std::strtod(info.current_value.c_str(), nullptr);
+  } else {
+    text << info.current_value;
+  }
+  return text.str();
 }
 
 std::string Help() {

@@ -41,13 +41,17 @@ struct Command {
 const std::vector<Command>& Commands();
 
 /// Sets the flags of `command` from `arguments` and returns the other ones.
-/// Throws std::invalid_argument for a flag that it does not take, or a value
-/// that is not of the flag's type or not finite.
+/// Throws std::invalid_argument for a flag that it does not take, one that is
+/// given two values, a value that is not of the flag's type or not finite, and
+/// an empty argument.
 std::vector<std::string> ParseFlags(const Command& command,
                                     const std::vector<std::string>& arguments);
 
 /// Whether the flag was given.
 bool IsGiven(const std::string& flag);
+
+/// The flag with its value, such as "--nu=0.3".
+std::string AsGiven(const std::string& flag);
 
 /// Usage of all commands and the meaning of their flags.
 std::string Help();

@@ -1,10 +1,12 @@
-#include <cmath>
-#include <iostream>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "apps/commands.h"
 #include "apps/flags.h"
+#include "apps/outputs.h"
 #include "apps/progress.h"
 #include "elastimate/core/mesh.h"
 #include "elastimate/io/example_scenes.h"
@@ -14,10 +16,10 @@
 namespace elastimate {
 namespace {
 
-// Three numbers separated by commas.
+// Three numbers separated by commas; `kind` names them.
 template <typename T>
-Eigen::Matrix<T, 3, 1> Triple(const std::string& flag,
-                              const std::string& value) {
+Eigen::Matrix<T, 3, 1> Triple(const std::string& flag, const std::string& value,
+                              const std::string& kind) {
   std::istringstream text(value);
   Eigen::Matrix<T, 3, 1> triple;
   char comma[2] = {};
@@ -27,8 +29,8 @@ Eigen::Matrix<T, 3, 1> Triple(const std::string& flag,
                     text.peek() == std::istringstream::traits_type::eof();
   if (!read) {
     throw std::invalid_argument("--" + flag + "=" + value +
-                                "; it needs three numbers, as in --" + flag +
-                                "=1,2,3");
+                                "; it needs three " + kind + ", as in --" +
+                                flag + "=1,2,3");
   }
   return triple;
 }
@@ -43,24 +45,43 @@ void RejectFlags(const std::string& geometry,
   }
 }
 
+// The library's sentences begin with an option, which has the name of its flag.
+template <typename Make>
+Scene FlagsNamed(Make make) {
+  try {
+    return make();
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string("--") + error.what());
+  }
+}
+
 Scene CuboidFromFlags() {
-  RejectFlags("cuboid", {"tetrahedra", "length"});
   CuboidOptions options;
-  options.cells = Triple<int>("cells", FLAGS_cells);
-  options.size = Triple<double>("size", FLAGS_size);
-  options.force = Triple<double>("force", FLAGS_force);
-  return CuboidScene(options);
+  options.cells = Triple<int>("cells", FLAGS_cells, "integers below 2^31");
+  options.size = Triple<double>("size", FLAGS_size, "finite numbers");
+  if (IsGiven("force")) {
+    options.force = Triple<double>("force", FLAGS_force, "finite numbers");
+  }
+  return FlagsNamed([&] { return CuboidScene(options); });
 }
 
 Scene OrganFromFlags() {
-  RejectFlags("organ", {"cells", "size"});
   OrganOptions options;
   options.tetrahedra = FLAGS_tetrahedra;
   options.length = FLAGS_length;
   if (IsGiven("force")) {
-    options.force = Triple<double>("force", FLAGS_force);
+    options.force = Triple<double>("force", FLAGS_force, "finite numbers");
   }
-  return OrganScene(options);
+  return FlagsNamed([&] { return OrganScene(options); });
+}
+
+Scene SceneFromFlags(const std::string& geometry) {
+  if (geometry == "cuboid") {
+    RejectFlags("cuboid", {"tetrahedra", "length"});
+    return CuboidFromFlags();
+  }
+  RejectFlags("organ", {"cells", "size"});
+  return OrganFromFlags();
 }
 
 }  // namespace
@@ -73,16 +94,20 @@ int RunGenerate(const std::vector<std::string>& arguments) {
   if (FLAGS_out.empty()) {
     throw std::invalid_argument("generate needs --out=FILE.vtu");
   }
-  CheckWritable(FLAGS_out);
-  const Progress progress("meshing");
-  const Scene scene =
-      arguments[0] == "cuboid" ? CuboidFromFlags() : OrganFromFlags();
-  WriteVtu(FLAGS_out, scene.mesh, SceneFields(scene));
+  CheckOutputFlags({});
+  std::optional<Progress> progress("meshing");
+  const Scene scene = SceneFromFlags(arguments[0]);
+  StagedFiles files;
+  files.Add(FLAGS_out, VtuContent(FLAGS_out, scene.mesh, SceneFields(scene)));
+  progress.reset();
   constexpr double kDegreesPerRadian = 57.295779513082323;
-  std::cout << scene.mesh.NumNodes() << " nodes, " << scene.mesh.NumElements()
-            << " tetrahedra, smallest dihedral angle "
-            << kDegreesPerRadian * SmallestDihedralAngles(scene.mesh).minCoeff()
-            << " degrees\n";
+  std::ostringstream text;
+  text << scene.mesh.NumNodes() << " nodes, " << scene.mesh.NumElements()
+       << " tetrahedra, smallest dihedral angle "
+       << kDegreesPerRadian * SmallestDihedralAngles(scene.mesh).minCoeff()
+       << " degrees\n";
+  WriteStandardOutput(text.str());
+  files.Commit();
   return 0;
 }
 

@@ -2,8 +2,11 @@
 #include <glog/logging.h>
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <csignal>
 #include <iostream>
 #include <new>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -11,13 +14,13 @@
 #include "apps/commands.h"
 #include "apps/flags.h"
 #include "apps/linear_algebra.h"
+#include "apps/outputs.h"
 #include "elastimate/io/report.h"
 
 namespace elastimate {
 namespace {
 
-constexpr int kNotUsable = 1;
-constexpr int kWrongInput = 2;
+constexpr int kNoEstimate = 2;
 
 int RunCommand(const std::string& name,
                const std::vector<std::string>& arguments) {
@@ -37,6 +40,10 @@ int RunCommand(const std::string& name,
     }
     return RunEstimators(others);
   }
+  if (name[0] == '-') {
+    throw std::invalid_argument("the command comes first, then its flags; '" +
+                                name + "' came first; see elastimate --help");
+  }
   throw std::invalid_argument("unknown command '" + name +
                               "'; see elastimate --help");
 }
@@ -45,17 +52,21 @@ int Run(const std::vector<std::string>& arguments) {
   if (arguments.empty()) {
     throw std::invalid_argument("give a command; see elastimate --help");
   }
-  for (const std::string& argument : arguments) {
-    if (argument == "--help" || argument == "-h" || argument == "help") {
-      std::cout << Help();
-      return 0;
-    }
+  const auto asks_for_help = [](const std::string& argument) {
+    return argument == "--help" || argument == "-h";
+  };
+  if (arguments[0] == "help" ||
+      std::any_of(arguments.begin(), arguments.end(), asks_for_help)) {
+    WriteStandardOutput(Help());
+    return 0;
   }
   if (arguments[0] == "--version") {
-    std::cout << "elastimate " << Version() << "\nBLAS: " << DescribeBlas()
-              << "\nCeres Solver: " << CERES_VERSION_STRING
-              << "\nEigen: " << EIGEN_WORLD_VERSION << "."
-              << EIGEN_MAJOR_VERSION << "." << EIGEN_MINOR_VERSION << "\n";
+    std::ostringstream text;
+    text << "elastimate " << Version() << "\nBLAS: " << DescribeBlas()
+         << "\nCeres Solver: " << CERES_VERSION_STRING
+         << "\nEigen: " << EIGEN_WORLD_VERSION << "." << EIGEN_MAJOR_VERSION
+         << "." << EIGEN_MINOR_VERSION << "\n";
+    WriteStandardOutput(text.str());
     return 0;
   }
   return RunCommand(arguments[0], {arguments.begin() + 1, arguments.end()});
@@ -65,19 +76,21 @@ int Run(const std::vector<std::string>& arguments) {
 }  // namespace elastimate
 
 int main(int argc, char** argv) {
+  elastimate::OpenClosedStandardStreams();
+  // Output that nobody reads any more is an error like any other.
+  std::signal(SIGPIPE, SIG_IGN);
+  // The status of an estimate says what Ceres would have warned of.
+  FLAGS_minloglevel = google::GLOG_FATAL;
   FLAGS_logtostderr = true;
   google::InitGoogleLogging(argv[0]);
   try {
     return elastimate::Run({argv + 1, argv + argc});
-  } catch (const std::invalid_argument& error) {
-    std::cerr << "elastimate: " << error.what() << "\n";
-    return elastimate::kWrongInput;
   } catch (const std::bad_alloc&) {
-    std::cerr << "elastimate: there is not enough memory for this scene; "
-                 "coarsen the mesh, or use closed-form\n";
-    return elastimate::kNotUsable;
+    std::cerr << "elastimate: there is not enough memory for this mesh; "
+                 "coarsen it, or estimate with --estimator=closed-form, which "
+                 "needs the least\n";
   } catch (const std::exception& error) {
     std::cerr << "elastimate: " << error.what() << "\n";
-    return elastimate::kNotUsable;
   }
+  return elastimate::kNoEstimate;
 }

@@ -1,15 +1,14 @@
-#include <glog/logging.h>
-
-#include <cmath>
+#include <optional>
 #include <random>
 #include <stdexcept>
 
 #include "apps/commands.h"
+#include "apps/estimator_flags.h"
 #include "apps/flags.h"
+#include "apps/outputs.h"
 #include "apps/progress.h"
 #include "elastimate/core/forward_model.h"
 #include "elastimate/core/loads.h"
-#include "elastimate/io/file_output.h"
 #include "elastimate/io/scene_reader.h"
 #include "elastimate/io/vtu_writer.h"
 
@@ -20,17 +19,16 @@ IsotropicElasticity ElasticityFromFlags() {
   if (!IsGiven("youngs") || !IsGiven("nu")) {
     throw std::invalid_argument("simulate needs --youngs=E and --nu=NU");
   }
-  const IsotropicElasticity elasticity{FLAGS_youngs, FLAGS_nu};
-  if (!elasticity.IsPhysical()) {
-    throw std::invalid_argument(
-        "--youngs must be positive and --nu between -1 and 0.5");
+  if (!(FLAGS_youngs > 0)) {
+    throw std::invalid_argument(AsGiven("youngs") + "; it must be positive");
   }
-  return elasticity;
+  CheckPoissonRatioFlag();
+  return {FLAGS_youngs, FLAGS_nu};
 }
 
 void CheckNoiseFlags() {
   if (FLAGS_noise < 0) {
-    throw std::invalid_argument("--noise must not be negative");
+    throw std::invalid_argument(AsGiven("noise") + "; it must not be negative");
   }
   if (FLAGS_noise_law != "uniform" && FLAGS_noise_law != "gaussian") {
     throw std::invalid_argument("--noise_law=" + FLAGS_noise_law +
@@ -64,22 +62,19 @@ int RunSimulate(const std::vector<std::string>& arguments) {
   const IsotropicElasticity elasticity = ElasticityFromFlags();
   CheckNoiseFlags();
   ApplyComputingFlags();
-  CheckWritable(FLAGS_out);
-  Progress progress("reading " + arguments[0]);
+  CheckOutputFlags(arguments);
+  std::optional<Progress> progress("reading " + arguments[0]);
   SceneReading reading = ReadScene({arguments[0]}, Measurement::kOptional);
-  for (const std::string& notice : reading.notices) {
-    LOG(WARNING) << notice;
-  }
   Scene& scene = reading.scene;
 
-  progress.Show("factorising");
+  progress->Show("factorising");
   const std::string why_not_held = WhyNotHeld(scene.mesh, scene.supports);
   if (!why_not_held.empty()) {
     throw std::invalid_argument(arguments[0] + ": " + why_not_held);
   }
   ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene));
   if (!model.SetPoissonRatio(elasticity.poisson_ratio)) {
-    throw std::runtime_error(
+    throw std::invalid_argument(
         arguments[0] +
         ": the stiffness matrix is singular to working precision; check the "
         "mesh for slivers and --nu");
@@ -96,8 +91,15 @@ int RunSimulate(const std::vector<std::string>& arguments) {
     load_case.displacement =
         displacement.col(k).reshaped(3, scene.mesh.NumNodes());
   }
-  progress.Show("writing " + FLAGS_out);
+  if (!displacement.allFinite()) {
+    throw std::invalid_argument(
+        arguments[0] + ": the displacement overflows with " +
+        AsGiven("youngs") + "; choose other units for it or the loads");
+  }
+  progress->Show("writing " + FLAGS_out);
   WriteVtu(FLAGS_out, scene.mesh, SceneFields(scene));
+  progress.reset();
+  PrintNotices(reading.notices);
   return 0;
 }
 

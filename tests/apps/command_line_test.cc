@@ -1,11 +1,14 @@
 // Runs the built program as a user does.
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
+#include <sstream>
 #include <string>
 
 #include "elastimate/estimators/registry.h"
+#include "elastimate/io/example_scenes.h"
 #include "elastimate/io/scene_reader.h"
 #include "tests/apps/program.h"
 
@@ -280,46 +283,325 @@ TEST_F(CommandLine, WritesWhatParaViewShows) {
 TEST_F(CommandLine, RefusesWrongFlags) {
   MakeExactScene();
   Refuse("", "give a command");
+  Refuse("''", "unknown command ''");
   Refuse("estmate exact.vtu", "unknown command 'estmate'");
+  Refuse("--nu=0.3 estimate exact.vtu", "the command comes first");
   Refuse("estimate", "needs a scene file");
+  Refuse("estimate ''", "an argument of estimate is empty");
+  Refuse("estimate exact.vtu ''", "an argument of estimate is empty");
   Refuse("estimate exact.vtu --poisson=0.3", "unknown flag --poisson");
-  Refuse("estimate exact.vtu --youngs=1", "takes no flag --youngs");
+  Refuse("estimate exact.vtu --", "unknown flag --;");
+  Refuse("estimate exact.vtu --youngs=1",
+         "elastimate: estimate takes no flag --youngs");
   Refuse("estimate exact.vtu --estimator=magic",
          "unknown estimator 'magic'; the estimators are closed-form");
-  Refuse("estimate exact.vtu --nu=0.5", "0.5; it must be above -1");
-  Refuse("estimate exact.vtu --nu=-1", "-1; it must be above -1");
-  Refuse("estimate exact.vtu --nu=abc", "--nu needs a finite number");
-  Refuse("estimate exact.vtu --nu=nan", "--nu needs a finite number");
-  Refuse("estimate exact.vtu --nu", "--nu needs a finite number");
-  Refuse("estimate exact.vtu --nu=", "--nu needs a finite number");
-  Refuse("estimate exact.vtu --estimator=bounded --nu_min=0.4 --nu_max=0.2",
-         "bounds on Poisson's ratio are crossed");
-  Refuse("estimate exact.vtu --estimator=bounded --youngs_min=-1",
-         "bound on Young's modulus is -1");
-  Refuse("estimate exact.vtu --nu_max=0.4", "closed-form: it cannot keep");
-  Refuse("estimate exact.vtu --loss=huber", "loss function needs");
-  Refuse("estimate exact.vtu --loss=tukey", "none, huber or cauchy");
   Refuse("estimate exact.vtu --order=2", "--order=2");
-  Refuse("estimate exact.vtu --noise_sd=0", "--noise_sd must be positive");
+  Refuse("estimate exact.vtu --noise_sd=0",
+         "--noise_sd=0; it must be positive");
   Refuse("estimate exact.vtu --threads=-1", "--threads=-1");
-  Refuse("estimate exact.vtu --seed=-1", "--seed needs an integer from 0 on");
+  Refuse("estimate exact.vtu --seed=-1", "--seed needs an integer from 0 to");
   Refuse("estimators exact.vtu", "takes no arguments");
+}
+
+TEST_F(CommandLine, RefusesWrongValues) {
+  MakeExactScene();
+  for (const std::string value : {"abc", "nan", "inf", "1e999", "0.3x"}) {
+    Refuse("estimate exact.vtu --nu=" + value,
+           "--nu needs a finite number; it got " + value);
+  }
+  for (const std::string flag : {"--nu", "--nu=", "--nu ''"}) {
+    Refuse("estimate exact.vtu " + flag,
+           "--nu needs a finite number, as in --nu=VALUE");
+  }
+  Refuse("estimate exact.vtu --json",
+         "--json needs a value, as in --json=VALUE");
+  Refuse("estimate exact.vtu --json --out=result.vtu",
+         "--json needs a value, as in --json=VALUE");
+  Refuse("estimate exact.vtu --threads=99999999999",
+         "--threads needs an integer of at most 2147483647");
+  Refuse("estimate exact.vtu --nu=0.3 --nu=0.2",
+         "--nu is given twice, as 0.3 and as 0.2");
+  Refuse("estimate exact.vtu --nu 0.3 --nu=-0.2",
+         "--nu is given twice, as 0.3 and as -0.2");
+  Succeed("estimate exact.vtu --nu=0.3 --nu 0.3");
+  Succeed("simulate cuboid.vtu --youngs 1 --nu -0.2 --out a.vtu");
+}
+
+TEST_F(CommandLine, RefusesWrongParametersByTheirFlags) {
+  MakeExactScene();
+  Refuse("estimate exact.vtu --nu=0.5",
+         "--nu=0.5; it must be above -1 and below 0.5");
+  Refuse("estimate exact.vtu --nu=-1",
+         "--nu=-1; it must be above -1 and below 0.5");
+  const std::string bounded = "estimate exact.vtu --estimator=bounded ";
+  Refuse(bounded + "--nu=0.3 --nu_max=0.4",
+         "--nu=0.3 says that Poisson's ratio is known, and --nu_max=0.4");
+  Refuse(bounded + "--nu_min=0.4 --nu_max=0.2",
+         "--nu_min=0.4 is not below --nu_max=0.2");
+  Refuse(bounded + "--nu_min=-1.1", "--nu_min=-1.1; it must be from -1");
+  Refuse(bounded + "--nu_min=0.5", "--nu_min=0.5; it must be from -1");
+  Refuse(bounded + "--nu_max=0.6", "--nu_max=0.6; it must be from above");
+  Refuse(bounded + "--nu_max=-1", "--nu_max=-1; it must be from above");
+  Refuse(bounded + "--youngs_min=-1", "--youngs_min=-1; it must be positive");
+  Refuse(bounded + "--youngs_max=0", "--youngs_max=0; it must be positive");
+  Refuse(bounded + "--youngs_min=2 --youngs_max=1",
+         "--youngs_min=2 is not below --youngs_max=1");
+  Refuse("estimate exact.vtu --nu_max=0.4 --youngs_min=1",
+         "--nu_max=0.4 --youngs_min=1: closed-form: it cannot keep bounds");
+  Refuse("estimate exact.vtu --loss=huber",
+         "--loss=huber: closed-form: a loss function needs");
+  Refuse("estimate exact.vtu --loss=tukey",
+         "--loss=tukey; it is none, huber or cauchy");
+}
+
+TEST_F(CommandLine, RefusesWrongSimulations) {
+  Succeed("generate cuboid --out=cuboid.vtu");
   Refuse("simulate cuboid.vtu --youngs=1 --nu=0.3", "needs --out");
   Refuse("simulate cuboid.vtu --youngs=1 --out=a.vtu", "--nu=NU");
   Refuse("simulate cuboid.vtu --youngs=0 --nu=0.3 --out=a.vtu",
-         "--youngs must be positive");
+         "--youngs=0; it must be positive");
+  Refuse("simulate cuboid.vtu --youngs=1 --nu=0.5 --out=a.vtu",
+         "--nu=0.5; it must be above -1 and below 0.5");
   Refuse("simulate cuboid.vtu --youngs=1 --nu=0.3 --noise=-1 --out=a.vtu",
-         "--noise must not be negative");
+         "--noise=-1; it must not be negative");
   Refuse("simulate cuboid.vtu --youngs=1 --nu=0.3 --noise_law=x --out=a.vtu",
          "uniform or gaussian");
   Refuse("simulate --youngs=1 --nu=0.3 --out=a.vtu", "one scene file");
+  Refuse("simulate cuboid.vtu --youngs=1 --nu=0.49999999999999994 --out=a.vtu",
+         "cuboid.vtu: ");
+}
+
+TEST_F(CommandLine, RefusesWrongGeometriesByTheirFlags) {
   Refuse("generate sphere --out=a.vtu", "cuboid or organ");
+  Refuse("generate cuboid organ --out=a.vtu", "one geometry");
   Refuse("generate cuboid", "needs --out");
-  Refuse("generate cuboid --tetrahedra=9 --out=a.vtu",
-         "takes no flag --tetrahedra");
-  Refuse("generate cuboid --cells=0,1,1 --out=a.vtu", "cells");
-  Refuse("generate cuboid --cells=1,1 --out=a.vtu", "three numbers");
-  Refuse("generate organ --tetrahedra=1 --out=a.vtu", "tetrahedra");
+  const std::string cuboid = "generate cuboid --out=a.vtu ";
+  Refuse(cuboid + "--tetrahedra=9", "takes no flag --tetrahedra");
+  for (const std::string cells :
+       {"1,1", "1.5,2,2", "1,2,3,", "99999999999,1,1", "a,b,c", "1,2,3x"}) {
+    Refuse(cuboid + "--cells=" + cells,
+           "--cells=" + cells + "; it needs three integers");
+  }
+  Refuse(cuboid + "--cells=0,1,1", "--cells=0,1,1; each must be at least 1");
+  Refuse(cuboid + "--cells=1000,1000,1000",
+         "--cells=1000,1000,1000; the product must be at most");
+  Refuse(cuboid + "--size=1e400,1,1", "it needs three finite numbers");
+  Refuse(cuboid + "--size=1e200,1,1", "--size=1e+200,1,1; each must be from");
+  Refuse(cuboid + "--size=1,1e-9,1", "--size=1,1e-09,1; a cell");
+  Refuse(cuboid + "--force=nan,0,0", "it needs three finite numbers");
+  Refuse(cuboid + "--force=0,0,inf", "it needs three finite numbers");
+  const std::string organ = "generate organ --out=a.vtu ";
+  Refuse(organ + "--cells=1,1,1", "takes no flag --cells");
+  Refuse(organ + "--tetrahedra=1", "--tetrahedra=1; it must be from 200");
+  Refuse(organ + "--tetrahedra=1e3", "--tetrahedra needs an integer");
+  Refuse(organ + "--length=1e-200", "--length=1e-200; it must be from 1e-50");
+  Refuse(organ + "--length=1e200", "--length=1e+200; it must be from 1e-50");
+  Refuse(organ + "--length=0", "--length=0; it must be from 1e-50");
+  Refuse(organ + "--force=1,2", "--force=1,2; it needs three finite numbers");
+}
+
+TEST_F(CommandLine, SaysWhenStandardOutputIsLost) {
+  MakeExactScene();
+  for (const std::string arguments :
+       {"--help", "help", "--version", "estimators", "estimate exact.vtu",
+        "estimate exact.vtu --json=-",
+        "estimate exact.vtu --json=report.json --out=result.vtu",
+        "generate cuboid --out=result.vtu"}) {
+    Refuse(arguments,
+           "standard output cannot be written (No space left on device)",
+           ">/dev/full");
+    Refuse(arguments, "standard output cannot be written (Bad file descriptor)",
+           ">&-");
+  }
+  // It has nothing to say there.
+  EXPECT_EQ(
+      Run("simulate cuboid.vtu --youngs=1 --nu=0 --out=a.vtu", ">&-").exit_code,
+      0);
+  EXPECT_EQ(Read("a.vtu").mesh.NumElements(), 250);
+}
+
+TEST_F(CommandLine, SaysWhenTheReaderOfStandardOutputIsGone) {
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  // The shell's descriptor 3 lets the pipe open for writing; then it closes.
+  Refuse("--help", "standard output cannot be written (Broken pipe)",
+         "3<>pipe >pipe 3<&-");
+}
+
+TEST_F(CommandLine, WorksWithClosedStandardStreams) {
+  MakeExactScene();
+  EXPECT_EQ(Run("estimate exact.vtu --json=report.json --out=result.vtu",
+                ">.output <&- 2>&-")
+                .exit_code,
+            0);
+  EXPECT_EQ(nlohmann::json::parse(ReadText(folder_ / "report.json"))["usable"],
+            true);
+  EXPECT_EQ(Read("result.vtu").mesh.NumElements(), 250);
+}
+
+TEST_F(CommandLine, NeverOverwritesAnInput) {
+  MakeExactScene();
+  std::filesystem::create_directory(folder_ / "folder");
+  std::filesystem::create_symlink("../exact.vtu",
+                                  folder_ / "folder" / "link.vtu");
+  for (const std::string name :
+       {"exact.vtu", "./exact.vtu", "folder/../exact.vtu", "folder/link.vtu"}) {
+    Refuse("estimate exact.vtu --out=" + name,
+           "--out=" + name + " would overwrite the input exact.vtu");
+    Refuse("estimate cuboid.vtu exact.vtu --json=" + name,
+           "--json=" + name + " would overwrite the input exact.vtu");
+    Refuse("simulate exact.vtu --youngs=1 --nu=0 --out=" + name,
+           "would overwrite the input exact.vtu");
+  }
+  Refuse("estimate folder/link.vtu --out=exact.vtu",
+         "would overwrite the input folder/link.vtu");
+  WriteText(folder_ / "folder" / "scene.json",
+            R"({"mesh": "../cuboid.vtu", "supports": [], "cases": []})");
+  Refuse("estimate folder/scene.json --json=folder/scene.json",
+         "would overwrite the input folder/scene.json");
+  Refuse("simulate folder/scene.json --youngs=1 --nu=0 --out=cuboid.vtu",
+         "would overwrite the input folder/../cuboid.vtu");
+}
+
+TEST_F(CommandLine, RefusesTwoOutputsInOnePlace) {
+  MakeExactScene();
+  std::filesystem::create_symlink("result.vtu", folder_ / "link.json");
+  for (const std::string json : {"result.vtu", "./result.vtu", "link.json"}) {
+    Refuse("estimate exact.vtu --out=result.vtu --json=" + json,
+           "--json=" + json + " and --out=result.vtu name the same file");
+  }
+  std::filesystem::create_symlink("/dev/stdout", folder_ / "link.vtu");
+  Refuse("estimate exact.vtu --json=- --out=link.vtu",
+         "--out=link.vtu is where standard output goes");
+  Refuse("estimate exact.vtu --json=/dev/stdout",
+         "--json=/dev/stdout is where standard output goes; choose another "
+         "file, or --json=-");
+  const std::string report = ".output";
+  Refuse("estimate exact.vtu --json=" + report,
+         "--json=.output is where standard output goes");
+  Succeed("estimate exact.vtu --json=/dev/null");
+  EXPECT_EQ(Run("estimate exact.vtu --json=/dev/null", ">/dev/null").exit_code,
+            0);
+}
+
+TEST_F(CommandLine, WritesAllOutputsOrNone) {
+  MakeExactScene();
+  Refuse("estimate exact.vtu --out=result.vtu --json=/dev/full",
+         "/dev/full: cannot be written (No space left on device)");
+  WriteText(folder_ / "result.vtu", "old");
+  Refuse("estimate exact.vtu --out=result.vtu --json=/dev/full",
+         "/dev/full: cannot be written");
+  Refuse("estimate exact.vtu --json=report.json --out=no/result.vtu",
+         "no/result.vtu: there is no folder");
+}
+
+TEST_F(CommandLine, WritesVtuFilesOnly) {
+  MakeExactScene();
+  for (const std::string command :
+       {"estimate exact.vtu", "simulate cuboid.vtu --youngs=1 --nu=0",
+        "generate cuboid", "generate organ"}) {
+    for (const std::string name : {"out", "out.vtk", "vtu", "/dev/stdout"}) {
+      Refuse(command + " --out=" + name,
+             "--out=" + name + "; what is written is a VTU file");
+    }
+  }
+  Succeed("estimate exact.vtu --out=RESULT.VTU");
+}
+
+TEST_F(CommandLine, PrintsTheNoticesOfTheReader) {
+  WriteText(folder_ / "points.vtk",
+            "# vtk DataFile Version 3.0\n"
+            "a point too many\n"
+            "ASCII\n"
+            "DATASET UNSTRUCTURED_GRID\n"
+            "POINTS 5 double\n"
+            "0 0 0  1 0 0  0 1 0  0 0 1  9 9 9\n"
+            "CELLS 1 5\n"
+            "4 0 1 2 3\n"
+            "CELL_TYPES 1\n"
+            "10\n"
+            "POINT_DATA 5\n"
+            "SCALARS fixed int 1\n"
+            "LOOKUP_TABLE default\n"
+            "1 1 1 0 0\n"
+            "VECTORS force double\n"
+            "0 0 0  0 0 0  0 0 0  1 0 1  0 0 0\n");
+  const std::string notice =
+      "elastimate: notice: points.vtk: dropped 1 points that no tetrahedron "
+      "uses\n";
+  EXPECT_EQ(
+      Succeed("simulate points.vtk --youngs=1 --nu=0.25 --out=a.vtu").errors,
+      notice);
+  WriteText(folder_ / "points.vtk", ReadText(folder_ / "points.vtk") +
+                                        "VECTORS displacement double\n"
+                                        "0 0 0  0 0 0  0 0 0  1 0 1  0 0 0\n");
+  EXPECT_EQ(Run("estimate points.vtk").errors, notice);
+  // An error stays the only sentence.
+  Refuse("estimate points.vtk --nu_max=0.3", "cannot keep bounds");
+}
+
+TEST_F(CommandLine, OrdinaryOutcomesAreSilentOnStandardError) {
+  MakeExactScene();
+  for (const std::string flags :
+       {"--estimator=bounded --youngs_min=1e300",
+        "--estimator=bounded --youngs_max=1e-300",
+        "--estimator=iterative-fe --youngs_min=1e300",
+        "--estimator=iterative-fe --youngs_max=1e-300",
+        "--estimator=iterative-fe --nu=0.4999999999999999"}) {
+    const ProgramRun run = Run("estimate exact.vtu " + flags);
+    EXPECT_NE(run.exit_code, 2) << flags;
+    EXPECT_EQ(run.errors, "") << flags;
+  }
+}
+
+TEST_F(CommandLine, HelpStatesTheDefaultsOfTheExampleScenes) {
+  const std::string help = Succeed("--help").output;
+  const auto text = [](const auto& triple) {
+    std::ostringstream stream;
+    stream << triple[0] << "," << triple[1] << "," << triple[2];
+    return stream.str();
+  };
+  const CuboidOptions cuboid;
+  const OrganOptions organ;
+  for (const std::string& words :
+       {"(default " + text(cuboid.cells) + ")",
+        "(default " + text(cuboid.size) + ")",
+        "(default " + text(cuboid.force) + " for the cuboid, " +
+            text(organ.force) + " for the organ)",
+        "(default " + std::to_string(organ.tetrahedra) + ")"}) {
+    EXPECT_NE(help.find(words), std::string::npos) << words;
+  }
+  Succeed("generate cuboid --out=cuboid.vtu");
+  EXPECT_EQ(Read("cuboid.vtu").mesh.nodes, CuboidScene(cuboid).mesh.nodes);
+}
+
+TEST_F(CommandLine, SaysWhenNumbersLeaveDoublePrecision) {
+  Succeed("generate cuboid --out=cuboid.vtu");
+  const auto write_scene = [this](const std::string& displacement,
+                                  const std::string& force) {
+    std::string rows = "ux,uy,uz\n";
+    for (Eigen::Index node = 0; node < Read("cuboid.vtu").mesh.NumNodes();
+         ++node) {
+      rows += "0,0," + displacement + "\n";
+    }
+    WriteText(folder_ / "u.csv", rows);
+    WriteText(folder_ / "scene.json",
+              R"({"mesh": "cuboid.vtu",
+                  "supports": [{"nodes": {"box": [[-1, -1, 0], [2, 2, 0]]}}],
+                  "cases": [{"displacement": {"file": "u.csv"}, "loads": [
+                    {"type": "nodal_force", "nodes": "free",
+                     "value": [0, 0, )" +
+                  force + "]}]}]}");
+  };
+  for (const std::string value : {"1e-300", "1e+300"}) {
+    write_scene(value, "1");
+    Refuse("estimate scene.json",
+           "scene.json: the largest measured displacement is " + value);
+    write_scene("1", value);
+    Refuse("estimate scene.json",
+           "scene.json: the largest nodal force is " + value);
+  }
+  Refuse("simulate cuboid.vtu --youngs=1e-307 --nu=0 --out=a.vtu",
+         "cuboid.vtu: the displacement overflows with --youngs=1e-307");
 }
 
 TEST_F(CommandLine, RefusesWrongFilesByName) {

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -45,11 +47,14 @@ class ProgramTest : public ::testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  /// Runs the built program with these arguments, as a shell reads them.
-  ProgramRun Run(const std::string& arguments) const {
+  /// Runs the built program with these arguments, as a shell reads them, and
+  /// with its standard output sent elsewhere if wanted.
+  ProgramRun Run(const std::string& arguments,
+                 const std::string& output = ">.output") const {
+    WriteText(folder_ / ".output", "");
     const std::string command = "cd '" + folder_.string() +
                                 "' && '" ELASTIMATE_PROGRAM "' " + arguments +
-                                " >.output 2>.errors </dev/null";
+                                " 2>.errors </dev/null " + output;
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1,
             ReadText(folder_ / ".output"), ReadText(folder_ / ".errors")};
@@ -63,23 +68,35 @@ class ProgramTest : public ::testing::Test {
   }
 
   /// Runs it and demands exit code 2, one line of error that contains `says`,
-  /// nothing on standard output, and no new file.
-  void Refuse(const std::string& arguments, const std::string& says) const {
-    SCOPED_TRACE(arguments);
-    const auto count = [this] {
-      return std::distance(std::filesystem::directory_iterator(folder_), {});
-    };
-    WriteText(folder_ / ".output", "");
-    WriteText(folder_ / ".errors", "");
-    const auto files = count();
-    const ProgramRun run = Run(arguments);
+  /// nothing on standard output, and all files as they were.
+  void Refuse(const std::string& arguments, const std::string& says,
+              const std::string& output = ">.output") const {
+    SCOPED_TRACE(arguments + " " + output);
+    const auto before = Files();
+    const ProgramRun run = Run(arguments, output);
     EXPECT_EQ(run.exit_code, 2) << run.errors;
     EXPECT_NE(run.errors.find(says), std::string::npos) << run.errors;
     EXPECT_EQ(run.errors.find("elastimate: "), 0U) << run.errors;
+    EXPECT_EQ(run.errors.find("elastimate: elastimate"), std::string::npos)
+        << run.errors;
     EXPECT_EQ(std::count(run.errors.begin(), run.errors.end(), '\n'), 1)
         << run.errors;
     EXPECT_EQ(run.output, "");
-    EXPECT_EQ(count(), files);
+    EXPECT_TRUE(Files() == before);
+  }
+
+  /// The content of every file, but for those of the standard streams.
+  std::map<std::string, std::string> Files() const {
+    std::map<std::string, std::string> files;
+    for (const auto& entry :
+         std::filesystem::recursive_directory_iterator(folder_)) {
+      const std::string name = entry.path().string();
+      if (entry.is_regular_file() && entry.path().filename() != ".output" &&
+          entry.path().filename() != ".errors") {
+        files[name] = ReadText(name);
+      }
+    }
+    return files;
   }
 
   std::filesystem::path folder_;

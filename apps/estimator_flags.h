@@ -1,0 +1,23 @@
+#ifndef ELASTIMATE_APPS_ESTIMATOR_FLAGS_H_
+#define ELASTIMATE_APPS_ESTIMATOR_FLAGS_H_
+
+#include <string>
+
+#include "elastimate/estimators/estimator.h"
+
+namespace elastimate {
+
+/// The options that the flags give.  Throws std::invalid_argument, naming the
+/// flags, for what the library would refuse by its own names.
+EstimatorOptions OptionsFromFlags();
+
+/// Throws std::invalid_argument unless --nu is a Poisson's ratio.
+void CheckPoissonRatioFlag();
+
+/// The flags behind the options as they were given, such as "--nu_min=0.2
+/// --loss=huber"; empty when there are none.
+std::string GivenOptionFlags();
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_APPS_ESTIMATOR_FLAGS_H_

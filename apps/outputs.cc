@@ -1,0 +1,126 @@
+#include "apps/outputs.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cctype>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "apps/flags.h"
+#include "elastimate/io/file_output.h"
+
+namespace elastimate {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string LowercaseExtension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& character : extension) {
+    character =
+        static_cast<char>(std::tolower(static_cast<unsigned char>(character)));
+  }
+  return extension;
+}
+
+// The input, and whatever a scene.json might name: its mesh and its fields.
+std::vector<fs::path> FilesBehind(const fs::path& input) {
+  using Json = nlohmann::json;
+  std::vector<fs::path> files = {input};
+  if (LowercaseExtension(input) == ".json") {
+    const auto collect = [&](int, Json::parse_event_t event, Json& value) {
+      if (event == Json::parse_event_t::value && value.is_string()) {
+        files.push_back(input.parent_path() / value.get<std::string>());
+      }
+      return true;
+    };
+    std::ifstream text(input);
+    // What is wrong with the text is for the reader to say.
+    const Json ignored = Json::parse(text, collect, false);
+  }
+  return files;
+}
+
+// A terminal or /dev/null may well be both.
+bool IsWhereStandardOutputGoes(const fs::path& path) {
+  struct stat file = {};
+  struct stat output = {};
+  return stat(path.c_str(), &file) == 0 && fstat(STDOUT_FILENO, &output) == 0 &&
+         !S_ISCHR(output.st_mode) && file.st_dev == output.st_dev &&
+         file.st_ino == output.st_ino;
+}
+
+void CheckOutputFlag(const std::string& flag, const std::string& file,
+                     const std::vector<std::string>& inputs) {
+  CheckWritable(file);
+  const std::string given = "--" + flag + "=" + file;
+  for (const std::string& input : inputs) {
+    for (const fs::path& behind : FilesBehind(input)) {
+      if (AreSameFile(file, behind)) {
+        throw std::invalid_argument(given + " would overwrite the input " +
+                                    behind.string() + "; choose another file");
+      }
+    }
+  }
+  if (IsWhereStandardOutputGoes(file)) {
+    throw std::invalid_argument(
+        given + " is where standard output goes; choose another file" +
+        (flag == "json" ? ", or --json=-" : ""));
+  }
+}
+
+}  // namespace
+
+void OpenClosedStandardStreams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(stream, F_GETFD) == -1) {
+      // The lowest free descriptor, which is the stream's; for reading, so that
+      // what is written there does not seem to arrive.
+      open("/dev/null", O_RDONLY);
+    }
+  }
+}
+
+void CheckOutputFlags(const std::vector<std::string>& inputs) {
+  if (!FLAGS_out.empty()) {
+    if (LowercaseExtension(FLAGS_out) != ".vtu") {
+      throw std::invalid_argument("--out=" + FLAGS_out +
+                                  "; what is written is a VTU file, so the "
+                                  "name must end in .vtu");
+    }
+    CheckOutputFlag("out", FLAGS_out, inputs);
+  }
+  if (!FLAGS_json.empty() && FLAGS_json != "-") {
+    CheckOutputFlag("json", FLAGS_json, inputs);
+    if (!FLAGS_out.empty() && AreSameFile(FLAGS_json, FLAGS_out)) {
+      throw std::invalid_argument("--json=" + FLAGS_json +
+                                  " and --out=" + FLAGS_out +
+                                  " name the same file; choose two");
+    }
+  }
+}
+
+void WriteStandardOutput(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() ||
+      std::fflush(stdout) != 0) {
+    throw std::invalid_argument("standard output cannot be written (" +
+                                std::string(strerror(errno)) +
+                                "); send it elsewhere");
+  }
+}
+
+void PrintNotices(const std::vector<std::string>& notices) {
+  for (const std::string& notice : notices) {
+    std::cerr << "elastimate: notice: " << notice << "\n";
+  }
+}
+
+}  // namespace elastimate
