@@ -18,6 +18,9 @@ int RunEstimators(const std::vector<std::string>& arguments);
 /// Checks the flags that estimate and simulate share, and sets the threads.
 void ApplyComputingFlags();
 
+/// Ends a sentence on wrong arguments: "; it got a b".
+std::string ButGot(const std::vector<std::string>& arguments);
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_APPS_COMMANDS_H_

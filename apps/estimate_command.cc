@@ -152,7 +152,8 @@ int RunEstimate(const std::vector<std::string>& arguments) {
 
 int RunEstimators(const std::vector<std::string>& arguments) {
   if (!arguments.empty()) {
-    throw std::invalid_argument("estimators takes no arguments");
+    throw std::invalid_argument("estimators takes no arguments" +
+                                ButGot(arguments));
   }
   std::string list;
   for (const std::string_view name : EstimatorNames()) {

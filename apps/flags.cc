@@ -13,8 +13,10 @@
 
 DEFINE_string(estimator, "closed-form",
               "method; 'elastimate estimators' lists them");
-DEFINE_double(nu, 0,
-              "Poisson's ratio, when it is known; above -1 and below 0.5 [-]");
+DEFINE_double(
+    nu, 0,
+    "Poisson's ratio, above -1 and below 0.5 [-]; estimate takes it as "
+    "known");
 DEFINE_double(nu_min, 0, "lower bound on Poisson's ratio, from -1 on [-]");
 DEFINE_double(nu_max, 0, "upper bound on Poisson's ratio, up to 0.5 [-]");
 DEFINE_double(youngs, 0, "Young's modulus, positive [pressure]");
@@ -68,6 +70,17 @@ bool Takes(const Command& command, const std::string& flag) {
          command.flags.end();
 }
 
+// As people write it: gflags has all digits of 0.1.
+std::string ValueText(const gflags::CommandLineFlagInfo& info,
+                      const std::string& value) {
+  if (info.type != "double") {
+    return value;
+  }
+  std::ostringstream text;
+  text << std::setprecision(15) << std::strtod(value.c_str(), nullptr);
+  return text.str();
+}
+
 void CheckIsTaken(const Command& command, const std::string& flag) {
   if (Takes(command, flag)) {
     return;
@@ -94,11 +107,11 @@ void SetFlag(const std::string& name, const std::string& value) {
   const bool finite = type != "double" || !accepted ||
                       std::isfinite(std::strtod(value.c_str(), nullptr));
   if (!accepted || !finite) {
-    const std::string kind =
-        type == "double"   ? "a finite number"
-        : type == "int32"  ? "an integer of at most 2147483647"
-        : type == "uint64" ? "an integer from 0 to 18446744073709551615"
-                           : "a value";
+    const std::string kind = type == "double"  ? "a finite number"
+                             : type == "int32" ? "an integer up to 2147483647"
+                             : type == "uint64"
+                                 ? "an integer from 0 to 18446744073709551615"
+                                 : "a value";
     throw std::invalid_argument(
         "--" + name + " needs " + kind +
         (value.empty() ? ", as in --" + name + "=VALUE" : "; it got " + value));
@@ -174,16 +187,7 @@ bool IsGiven(const std::string& flag) {
 std::string AsGiven(const std::string& flag) {
   gflags::CommandLineFlagInfo info;
   gflags::GetCommandLineFlagInfo(flag.c_str(), &info);
-  std::ostringstream text;
-  text << "--" << flag << "=";
-  if (info.type == "double") {
-    // gflags has all digits of 0.1, which nobody typed.
-    text << std::setprecision(15)
-         << std::strtod(info.current_value.c_str(), nullptr);
-  } else {
-    text << info.current_value;
-  }
-  return text.str();
+  return "--" + flag + "=" + ValueText(info, info.current_value);
 }
 
 std::string Help() {
@@ -200,13 +204,15 @@ std::string Help() {
       const bool shows_default =
           !info.default_value.empty() && info.default_value != "0";
       help << "      --" << flag << "  " << info.description
-           << (shows_default ? " (default " + info.default_value + ")" : "")
+           << (shows_default
+                   ? " (default " + ValueText(info, info.default_value) + ")"
+                   : "")
            << "\n";
     }
   }
   help << "\nelastimate --help | --version\n"
           "\nExit code: 0 usable estimate; 1 the result is not usable, the "
-          "status says why;\n2 wrong input or flags.\n";
+          "status says why;\n2 wrong input or flags, nothing is written.\n";
   return help.str();
 }
 

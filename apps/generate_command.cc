@@ -89,7 +89,8 @@ Scene SceneFromFlags(const std::string& geometry) {
 int RunGenerate(const std::vector<std::string>& arguments) {
   if (arguments.size() != 1 ||
       (arguments[0] != "cuboid" && arguments[0] != "organ")) {
-    throw std::invalid_argument("generate needs one geometry: cuboid or organ");
+    throw std::invalid_argument("generate needs one geometry, cuboid or organ" +
+                                ButGot(arguments));
   }
   if (FLAGS_out.empty()) {
     throw std::invalid_argument("generate needs --out=FILE.vtu");

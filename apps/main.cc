@@ -73,12 +73,23 @@ int Run(const std::vector<std::string>& arguments) {
 }
 
 }  // namespace
+
+std::string ButGot(const std::vector<std::string>& arguments) {
+  std::string end = "; it got";
+  for (const std::string& argument : arguments) {
+    end += " " + argument;
+  }
+  return end + (arguments.empty() ? " none" : "");
+}
+
 }  // namespace elastimate
 
 int main(int argc, char** argv) {
   elastimate::OpenClosedStandardStreams();
-  // Output that nobody reads any more is an error like any other.
+  // Output that nobody reads, or that grows too large, is an error like any
+  // other.
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
   // The status of an estimate says what Ceres would have warned of.
   FLAGS_minloglevel = google::GLOG_FATAL;
   FLAGS_logtostderr = true;

@@ -54,7 +54,8 @@ Eigen::VectorXd DrawNoise(const Eigen::VectorXd& displacement,
 
 int RunSimulate(const std::vector<std::string>& arguments) {
   if (arguments.size() != 1) {
-    throw std::invalid_argument("simulate needs one scene file");
+    throw std::invalid_argument("simulate needs one scene file" +
+                                ButGot(arguments));
   }
   if (FLAGS_out.empty()) {
     throw std::invalid_argument("simulate needs --out=FILE.vtu");
@@ -93,8 +94,9 @@ int RunSimulate(const std::vector<std::string>& arguments) {
   }
   if (!displacement.allFinite()) {
     throw std::invalid_argument(
-        arguments[0] + ": the displacement overflows with " +
-        AsGiven("youngs") + "; choose other units for it or the loads");
+        arguments[0] +
+        ": the displacement overflows; choose other units for the loads and "
+        "--youngs, or less --noise");
   }
   progress->Show("writing " + FLAGS_out);
   WriteVtu(FLAGS_out, scene.mesh, SceneFields(scene));
