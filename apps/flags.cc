@@ -118,6 +118,15 @@ void SetFlag(const std::string& name, const std::string& value) {
   }
 }
 
+// gflags would silently take the last value.
+void CheckIsTheSame(const std::string& flag, const std::string& first,
+                    const std::string& value) {
+  if (first != value) {
+    throw std::invalid_argument("--" + flag + " is given twice, as " + first +
+                                " and as " + value + "; give it once");
+  }
+}
+
 }  // namespace
 
 const std::vector<Command>& Commands() {
@@ -168,12 +177,7 @@ std::vector<std::string> ParseFlags(const Command& command,
       value = arguments[++i];
     }
     SetFlag(name, value);
-    const auto [earlier, is_first] = values.emplace(name, value);
-    if (!is_first && earlier->second != value) {
-      throw std::invalid_argument("--" + name + " is given twice, as " +
-                                  earlier->second + " and as " + value +
-                                  "; give it once");
-    }
+    CheckIsTheSame(name, values.emplace(name, value).first->second, value);
   }
   return others;
 }

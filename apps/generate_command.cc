@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -37,11 +38,10 @@ Eigen::Matrix<T, 3, 1> Triple(const std::string& flag, const std::string& value,
 
 void RejectFlags(const std::string& geometry,
                  const std::vector<std::string>& flags) {
-  for (const std::string& flag : flags) {
-    if (IsGiven(flag)) {
-      throw std::invalid_argument("generate " + geometry + " takes no flag --" +
-                                  flag + "; see elastimate --help");
-    }
+  const auto given = std::find_if(flags.begin(), flags.end(), IsGiven);
+  if (given != flags.end()) {
+    throw std::invalid_argument("generate " + geometry + " takes no flag --" +
+                                *given + "; see elastimate --help");
   }
 }
 

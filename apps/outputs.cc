@@ -35,7 +35,8 @@ std::string LowercaseExtension(const fs::path& path) {
 std::vector<fs::path> FilesBehind(const fs::path& input) {
   using Json = nlohmann::json;
   std::vector<fs::path> files = {input};
-  if (LowercaseExtension(input) == ".json") {
+  // A pipe could not be read twice.
+  if (LowercaseExtension(input) == ".json" && fs::is_regular_file(input)) {
     const auto collect = [&](int, Json::parse_event_t event, Json& value) {
       if (event == Json::parse_event_t::value && value.is_string()) {
         files.push_back(input.parent_path() / value.get<std::string>());

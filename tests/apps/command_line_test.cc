@@ -227,11 +227,13 @@ TEST_F(CommandLine, NoiseHasTheNormThatWasAskedFor) {
 }
 
 TEST_F(CommandLine, SeveralFilesAreLoadCases) {
-  for (const std::string force : {"1,0,0", "0,0,-3"}) {
+  const auto measure = [this](const std::string& force) {
     Succeed("generate cuboid --force=" + force + " --out=" + force + ".vtu");
     Succeed("simulate " + force + ".vtu --youngs=1e4 --nu=0.2 --out=m" + force +
             ".vtu");
-  }
+  };
+  measure("1,0,0");
+  measure("0,0,-3");
   const nlohmann::json report =
       Succeed("estimate m1,0,0.vtu m0,0,-3.vtu --json=-").Json();
   EXPECT_EQ(report["mesh"]["load_cases"], 2);
@@ -383,8 +385,8 @@ TEST_F(CommandLine, RefusesWrongGeometriesByTheirFlags) {
   Refuse(cuboid + "--tetrahedra=9", "takes no flag --tetrahedra");
   for (const std::string cells :
        {"1,1", "1.5,2,2", "1,2,3,", "99999999999,1,1", "a,b,c", "1,2,3x"}) {
-    Refuse(cuboid + "--cells=" + cells,
-           "--cells=" + cells + "; it needs three integers");
+    const std::string flag = "--cells=" + cells;
+    Refuse(cuboid + flag, flag + "; it needs three integers");
   }
   Refuse(cuboid + "--cells=0,1,1", "--cells=0,1,1; each must be at least 1");
   Refuse(cuboid + "--cells=1000,1000,1000",
@@ -479,8 +481,7 @@ TEST_F(CommandLine, RefusesTwoOutputsInOnePlace) {
   Refuse("estimate exact.vtu --json=/dev/stdout",
          "--json=/dev/stdout is where standard output goes; choose another "
          "file, or --json=-");
-  const std::string report = ".output";
-  Refuse("estimate exact.vtu --json=" + report,
+  Refuse("estimate exact.vtu --json=.output",
          "--json=.output is where standard output goes");
   Succeed("estimate exact.vtu --json=/dev/null");
   EXPECT_EQ(Run("estimate exact.vtu --json=/dev/null", ">/dev/null").exit_code,
@@ -511,8 +512,8 @@ TEST_F(CommandLine, WritesVtuFilesOnly) {
        {"estimate exact.vtu", "simulate cuboid.vtu --youngs=1 --nu=0",
         "generate cuboid", "generate organ"}) {
     for (const std::string name : {"out", "out.vtk", "vtu", "/dev/stdout"}) {
-      Refuse(command + " --out=" + name,
-             "--out=" + name + "; what is written is a VTU file");
+      const std::string flag = " --out=" + name;
+      Refuse(command + flag, flag + "; what is written is a VTU file");
     }
   }
   Succeed("estimate exact.vtu --out=RESULT.VTU");

@@ -62,7 +62,7 @@ class ProgramTest : public ::testing::Test {
 
   /// Runs it and demands success.
   ProgramRun Succeed(const std::string& arguments) const {
-    const ProgramRun run = Run(arguments);
+    ProgramRun run = Run(arguments);
     EXPECT_EQ(run.exit_code, 0) << arguments << "\n" << run.errors;
     return run;
   }

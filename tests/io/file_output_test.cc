@@ -27,7 +27,7 @@ class FileOutputTest : public ::testing::Test {
 
 TEST_F(FileOutputTest, WritesAndReplaces) {
   const fs::path path = folder_.Path() / "out.json";
-  std::string content = "a\0b\n";
+  std::string content("a\0b\n", 4);
   WriteWholeFile(path, content);
   EXPECT_EQ(ReadFile(path), content);
   content.assign(3000000, 'x');
