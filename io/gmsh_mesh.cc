@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <clocale>
 #include <exception>
 #include <fstream>
+#include <future>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -13,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "elastimate/io/gmsh_text_check.h"
 #include "elastimate/io/input_error.h"
 
 namespace elastimate {
@@ -42,7 +45,7 @@ void CheckMshBegin(const std::filesystem::path& path) {
 void CheckEnd(const std::filesystem::path& path) {
   static const std::map<std::string, std::string> kLastLines = {
       {".msh", "$END"}, {".mesh", "END"}, {".unv", "-1"}, {".bdf", "ENDDATA"}};
-  const std::string& expected = kLastLines.at(path.extension().string());
+  const std::string& expected = kLastLines.at(FileExtension(path));
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   const std::streamoff size = file.tellg();
   std::string end(std::min<std::streamoff>(size, 256), '\0');
@@ -60,8 +63,8 @@ void CheckEnd(const std::filesystem::path& path) {
 
 class GmshSession {
  public:
-  GmshSession() {
-    gmsh::initialize(0, nullptr, false);
+  GmshSession() : number_locale_(std::setlocale(LC_NUMERIC, nullptr)) {
+    gmsh::initialize(0, nullptr, false);  // Sets the locale to "C".
     gmsh::option::setNumber("General.Terminal", 0);
     gmsh::logger::start();
   }
@@ -71,9 +74,13 @@ class GmshSession {
       gmsh::finalize();
     } catch (...) {  // NOLINT(bugprone-empty-catch): nothing left to undo.
     }
+    std::setlocale(LC_NUMERIC, number_locale_.c_str());
   }
   GmshSession(const GmshSession&) = delete;
   GmshSession& operator=(const GmshSession&) = delete;
+
+ private:
+  const std::string number_locale_;
 };
 
 /// The position of each of Gmsh's numbers in an ascending list of them.
@@ -339,11 +346,16 @@ MeshFile ReadInSession(const std::filesystem::path& path) {
 }  // namespace
 
 MeshFile ReadGmshMesh(const std::filesystem::path& path) {
-  if (path.extension() == ".msh") {
+  if (FileExtension(path) == ".msh") {
     CheckMshBegin(path);
   }
   CheckEnd(path);
-  return ReadInSession(path);
+  if (const std::string damage = WhyGmshTextIsDamaged(path); !damage.empty()) {
+    ThrowDamaged(path, damage);
+  }
+  // In a thread of its own: Gmsh sets the number of OpenMP threads of the
+  // thread that starts it to one.
+  return std::async(std::launch::async, ReadInSession, path).get();
 }
 
 }  // namespace elastimate

@@ -72,6 +72,16 @@ void AddSupport(const JsonValue& support, const MeshFile& mesh,
   }
 }
 
+MeshFile ReadNamedMesh(const JsonValue& name) {
+  const std::filesystem::path path = ResolvePath(name);
+  if (FileExtension(path) == ".json") {
+    name.Fail("is '" + name.String() +
+              "', which is a scene; name a mesh file (.vtu, .vtk, .msh, .mesh, "
+              ".unv or .bdf)");
+  }
+  return ReadMeshFile(path);
+}
+
 Supports ReadSupports(const JsonValue& document, const MeshFile& mesh) {
   Supports supports;
   supports.held.setConstant(3, mesh.nodes.cols(), false);
@@ -196,7 +206,7 @@ FileScene ReadJsonScene(const std::filesystem::path& path,
   const JsonValue document(path, parsed);
   document.CheckKeys({"mesh", "supports", "cases"});
   FileScene file_scene;
-  file_scene.mesh = ReadMeshFile(ResolvePath(document.At("mesh")));
+  file_scene.mesh = ReadNamedMesh(document.At("mesh"));
   const MeshFile& mesh = file_scene.mesh;
   file_scene.scene.mesh = SceneMesh(mesh);
   file_scene.scene.supports = ReadSupports(document, mesh);

@@ -1,5 +1,6 @@
 #include "elastimate/io/mesh_file.h"
 
+#include <cctype>
 #include <fstream>
 #include <set>
 #include <system_error>
@@ -31,8 +32,7 @@ void CheckPositions(const MeshFile& mesh) {
 
 MeshFile ReadMeshFile(const std::filesystem::path& path) {
   CheckReadable(path);
-  // Exactly these: Gmsh runs a file of any other name as a script.
-  const std::string extension = path.extension().string();
+  const std::string extension = FileExtension(path);
   MeshFile mesh;
   if (extension == ".vtu") {
     mesh = ReadVtuMesh(path);
@@ -43,9 +43,9 @@ MeshFile ReadMeshFile(const std::filesystem::path& path) {
     mesh = ReadGmshMesh(path);
   } else {
     ThrowInputError(path,
-                    "the file name does not end in .vtu, .vtk, .msh, "
-                    ".mesh, .unv, .bdf or .json; give a file of one of "
-                    "these formats");
+                    "the file name does not end in .vtu, .vtk, .msh, .mesh, "
+                    ".unv or .bdf (a mesh) or in .json (a scene); give a file "
+                    "of one of these formats");
   }
   if (mesh.tetrahedra.cols() == 0) {
     ThrowInputError(path,
@@ -56,6 +56,18 @@ MeshFile ReadMeshFile(const std::filesystem::path& path) {
   MarkUsedNodes(mesh);
   CheckPositions(mesh);
   return mesh;
+}
+
+std::string FileExtension(const std::filesystem::path& path) {
+  std::string small = path.extension().string();
+  std::string capital = small;
+  for (char& c : small) {
+    c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  for (char& c : capital) {
+    c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  }
+  return path.extension() == capital ? small : path.extension().string();
 }
 
 void CheckReadable(const std::filesystem::path& path) {

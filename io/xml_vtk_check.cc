@@ -6,6 +6,7 @@
 #include <vtkXMLDataParser.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cstdint>
 #include <fstream>
@@ -173,26 +174,61 @@ class XmlVtkCheck {
             : static_cast<double>(num_tuples) *
                   static_cast<double>(std::max<std::int64_t>(components, 1));
     const std::string_view format = Attribute(array, "format");
+    const auto word_size =
+        static_cast<double>(WordSize(Attribute(array, "type")));
     if (format != "binary" && format != "appended") {
-      if (num_words > static_cast<double>(file_size_)) {
+      if (word_size > 0) {
+        CheckNumWords(name, CountInlineWords(array), num_words);
+      } else if (num_words > static_cast<double>(file_size_)) {
         damage_ = "its array '" + name + "' is shorter than it says";
       }
-    } else if (!HasItsData(array, format == "appended",
-                           num_words * static_cast<double>(WordSize(
-                                           Attribute(array, "type"))))) {
+      return;
+    }
+    const double size = DataSize(array, format == "appended");
+    if (size < 0) {
       damage_ = "the data of its array '" + name + "' are not all there";
+    } else if (word_size > 0) {
+      CheckNumWords(name, size / word_size, num_words);
     }
   }
 
-  /// Whether the sizes ahead of the data of an array fit the file and its
-  /// expected number of bytes (negative: any).
-  bool HasItsData(vtkXMLDataElement* array, bool is_appended, double expected) {
+  /// VTK ignores what is beyond the due number; any number is right when that
+  /// is negative.
+  void CheckNumWords(const std::string& name, double num_words, double due) {
+    if (due >= 0 && num_words != due) {
+      damage_ = "its array '" + name + "' has " + Text(num_words) +
+                " values where " + Text(due) + " are due";
+    }
+  }
+
+  static std::string Text(double count) {
+    return std::to_string(static_cast<std::int64_t>(count));
+  }
+
+  double CountInlineWords(vtkXMLDataElement* array) {
+    file_.clear();
+    file_.seekg(parser_->FindInlineData(array));
+    std::int64_t count = 0;
+    bool was_space = true;
+    std::streambuf& buffer = *file_.rdbuf();
+    for (int c = buffer.sbumpc();
+         c != std::char_traits<char>::eof() && c != '<'; c = buffer.sbumpc()) {
+      const bool is_space = std::isspace(c) != 0;
+      count += was_space && !is_space ? 1 : 0;
+      was_space = is_space;
+    }
+    return static_cast<double>(count);
+  }
+
+  /// The number of bytes that the sizes ahead of the data of an array give, or
+  /// -1 where these do not fit the file.
+  double DataSize(vtkXMLDataElement* array, bool is_appended) {
     std::int64_t position = 0;
     if (is_appended) {
       const std::int64_t offset = Count(array, "offset", -1);
       position = parser_->GetAppendedDataPosition();
       if (offset < 0 || offset > file_size_ - position) {
-        return false;
+        return -1;
       }
       position += offset;
     } else {
@@ -202,39 +238,42 @@ class XmlVtkCheck {
     const bool is_base64 = !is_appended || AppendedIsBase64();
     if (!is_compressed_) {
       const auto size = ReadHeader(position, is_base64, 1);
-      return size.size() == 1 && size[0] <= Available(position) &&
-             size[0] >= expected;
+      return size.size() == 1 && size[0] <= Available(position) ? size[0] : -1;
     }
     const auto sizes = ReadHeader(position, is_base64, 3);
-    return sizes.size() == 3 && BlocksFit(position, is_base64, sizes[0],
-                                          sizes[1], sizes[2], expected);
+    return sizes.size() == 3
+               ? BlocksSize(position, is_base64, sizes[0], sizes[1], sizes[2])
+               : -1;
   }
 
-  bool BlocksFit(std::int64_t position, bool is_base64, double num_blocks,
-                 double block_size, double last_block_size, double expected) {
+  /// The same for compressed data.
+  double BlocksSize(std::int64_t position, bool is_base64, double num_blocks,
+                    double block_size, double last_block_size) {
     const double available = Available(position);
     if (num_blocks * static_cast<double>(header_size_) > available ||
         last_block_size > block_size) {
-      return false;
+      return -1;
+    }
+    if (num_blocks == 0) {
+      return 0;
     }
     const double size = last_block_size > 0
                             ? (num_blocks - 1) * block_size + last_block_size
                             : num_blocks * block_size;
-    if (num_blocks == 0) {
-      return expected <= 0;
-    }
     const auto header = ReadHeader(position, is_base64,
                                    3 + static_cast<std::int64_t>(num_blocks));
     if (static_cast<double>(header.size()) != 3 + num_blocks) {
-      return false;
+      return -1;
     }
     double compressed_size = 0;
     for (std::size_t i = 3; i < header.size(); ++i) {
       compressed_size += header[i];
     }
-    return compressed_size <= available && size >= expected &&
-           std::max(size, block_size) <=
-               kLargestCompression * (compressed_size + 64);
+    return compressed_size <= available &&
+                   std::max(size, block_size) <=
+                       kLargestCompression * (compressed_size + 64)
+               ? size
+               : -1;
   }
 
   double Available(std::int64_t position) const {

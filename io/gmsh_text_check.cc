@@ -1,0 +1,165 @@
+#include "elastimate/io/gmsh_text_check.h"
+
+#include <cctype>
+#include <cstdint>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <vector>
+
+#include "elastimate/io/mesh_file.h"
+
+namespace elastimate {
+namespace {
+
+/// Walks over the lines of a file, one for each node and element; throws Damage
+/// where they are not as many as counted.
+class GmshTextCheck {
+ public:
+  struct Damage {
+    std::string reason;
+  };
+
+  explicit GmshTextCheck(const std::filesystem::path& path)
+      : file_(path, std::ios::binary) {}
+
+  void WalkMsh() {
+    static const std::set<std::string> kNodes = {"$NOD", "$NOE", "$Nodes",
+                                                 "$ParametricNodes"};
+    static const std::set<std::string> kElements = {"$ELM", "$Elements"};
+    double version = 1;
+    while (TakeLine()) {
+      section_ = line_;
+      if (section_ == "$MeshFormat") {
+        const std::vector<double> format = TakeNumbers(2);
+        version = format[0];
+        const bool is_binary = format[1] != 0;
+        if (is_binary) {
+          return;
+        }
+      } else if (kNodes.count(section_) > 0) {
+        // Version 4.1 has the numbers of a block ahead of its positions.
+        WalkMshSection(version >= 4, version >= 4.1 ? 2 : 1);
+      } else if (kElements.count(section_) > 0) {
+        WalkMshSection(version >= 4, 1);
+      }
+    }
+  }
+
+  void WalkMesh() {
+    static const std::set<std::string> kCounted = {
+        "Vertices",    "Edges",          "EdgesP2",    "Triangles",
+        "TrianglesP2", "Quadrilaterals", "Tetrahedra", "TetrahedraP2",
+        "Hexahedra",   "Prisms",         "Pyramids"};
+    while (TakeLine()) {
+      section_ = line_;
+      if (kCounted.count(section_) > 0) {
+        const double count = TakeNumbers(1)[0];
+        SkipEntries(count, 1);
+        RequireEnd(count);
+      }
+    }
+  }
+
+ private:
+  void WalkMshSection(bool has_blocks, int lines_per_entry) {
+    if (!has_blocks) {
+      const double count = TakeNumbers(1)[0];
+      SkipEntries(count, lines_per_entry);
+      RequireEnd(count);
+      return;
+    }
+    const std::vector<double> counts = TakeNumbers(2);
+    double total = 0;
+    for (double block = 0; block < counts[0]; ++block) {
+      const double count = TakeNumbers(4)[3];
+      SkipEntries(count, lines_per_entry);
+      total += count;
+    }
+    RequireEnd(total);
+    if (total != counts[1]) {
+      throw Damage{"the blocks of its section " + section_ +
+                   " have more or fewer entries than it counts"};
+    }
+  }
+
+  void SkipEntries(double count, int lines_per_entry) {
+    for (double i = 0; i < count * lines_per_entry; ++i) {
+      if (!TakeLine() || !IsEntry()) {
+        throw Damage{"its section " + section_ + " ends before the " +
+                     Text(count) + " entries that it counts"};
+      }
+    }
+  }
+
+  void RequireEnd(double count) {
+    if (TakeLine() && IsEntry()) {
+      throw Damage{"its section " + section_ + " goes on after the " +
+                   Text(count) + " entries that it counts"};
+    }
+    is_line_kept_ = true;
+  }
+
+  /// Neither a keyword of .msh nor one of .mesh.
+  bool IsEntry() const {
+    return line_[0] != '$' &&
+           std::isupper(static_cast<unsigned char>(line_[0])) == 0;
+  }
+
+  /// The next line that has something other than a comment; false at the end.
+  bool TakeLine() {
+    if (is_line_kept_) {
+      is_line_kept_ = false;
+      return !line_.empty();
+    }
+    while (std::getline(file_, line_)) {
+      line_.erase(line_.find_last_not_of(" \t\r") + 1);
+      line_.erase(0, line_.find_first_not_of(" \t"));
+      if (!line_.empty() && line_[0] != '#') {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  std::vector<double> TakeNumbers(std::size_t at_least) {
+    std::vector<double> numbers;
+    if (TakeLine()) {
+      std::istringstream line(line_);
+      for (double number = 0; line >> number;) {
+        numbers.push_back(number);
+      }
+    }
+    if (numbers.size() < at_least) {
+      throw Damage{"its section " + section_ + " lacks a count"};
+    }
+    return numbers;
+  }
+
+  static std::string Text(double count) {
+    return std::to_string(static_cast<std::int64_t>(count));
+  }
+
+  std::ifstream file_;
+  std::string line_;           ///< Empty at the end of the file.
+  bool is_line_kept_ = false;  ///< To be taken once more.
+  std::string section_;
+};
+
+}  // namespace
+
+std::string WhyGmshTextIsDamaged(const std::filesystem::path& path) {
+  GmshTextCheck check(path);
+  try {
+    if (FileExtension(path) == ".mesh") {
+      check.WalkMesh();
+    } else {
+      check.WalkMsh();
+    }
+  } catch (const GmshTextCheck::Damage& damage) {
+    return damage.reason;
+  }
+  return "";
+}
+
+}  // namespace elastimate
