@@ -16,9 +16,9 @@ inline void RequireMagnitude(double largest, const std::string& what) {
   constexpr double kLargest = 1e50;
   if (largest != 0 && (largest < kSmallest || largest > kLargest)) {
     std::ostringstream message;
-    message << what << " is at most " << largest
-            << " in magnitude; choose units in which this is between "
-            << kSmallest << " and " << kLargest;
+    message << what << " has the magnitude " << largest
+            << "; choose units in which it is between " << kSmallest << " and "
+            << kLargest;
     throw std::invalid_argument(message.str());
   }
 }

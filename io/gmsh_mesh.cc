@@ -291,6 +291,11 @@ void ReadViews(const Numbering& nodes, const Numbering& tetrahedra,
         "View[" + std::to_string(gmsh::view::getIndex(view)) + "].";
     std::string name;
     gmsh::option::getString(option + "Name", name);
+    if (FindArray(mesh.node_arrays, name) != nullptr ||
+        FindArray(mesh.tetrahedron_arrays, name) != nullptr) {
+      ThrowInputError(mesh.path,
+                      "it has the data '" + name + "' twice; keep one");
+    }
     double num_steps = 0;
     gmsh::option::getNumber(option + "NbTimeStep", num_steps);
     if (num_steps != 1) {

@@ -95,7 +95,7 @@ Supports ReadSupports(const JsonValue& document, const MeshFile& mesh) {
 /// Three numbers per node, from the one of the keys `file` and `array` that
 /// `value` has; finite where `mask` says.
 Eigen::Matrix3Xd ReadField(const JsonValue& value, const MeshFile& mesh,
-                           const ComponentMask& mask) {
+                           const ComponentMask& mask, const std::string& mend) {
   if (value.Has("file") == value.Has("array")) {
     value.Fail("must have exactly one of the keys file, array");
   }
@@ -111,7 +111,7 @@ Eigen::Matrix3Xd ReadField(const JsonValue& value, const MeshFile& mesh,
     field = NamedNodeArray(value.At("array"), mesh, 3);
     what = "the point array '" + value.At("array").String() + "'";
   }
-  RequireFinite(file, what, mesh, field, mask);
+  RequireFinite(file, what, mesh, field, mask, mend);
   return field;
 }
 
@@ -123,7 +123,8 @@ NodalForces ReadNodalForces(const JsonValue& load, const Context& context) {
     }
     return {
         ReadField(load, context.mesh,
-                  ComponentMask::Constant(3, context.mesh.nodes.cols(), true))};
+                  ComponentMask::Constant(3, context.mesh.nodes.cols(), true),
+                  "correct it")};
   }
   const Eigen::Vector3d value = load.At("value").Vector();
   const NodeMask nodes =
@@ -192,7 +193,8 @@ LoadCase ReadLoadCase(const JsonValue& value, const Context& context,
         displacement, context.mesh,
         load_case.observed.size() > 0
             ? load_case.observed
-            : ComponentMask::Constant(3, context.mesh.nodes.cols(), true));
+            : ComponentMask::Constant(3, context.mesh.nodes.cols(), true),
+        "correct it or leave it out of the observed nodes");
     ClearUnobserved(load_case);
   }
   return load_case;

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <fstream>
 #include <map>
+#include <set>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -93,30 +94,38 @@ class XmlVtkCheck {
     parser_->SetStream(&file_);
   }
 
-  std::string Run() {
+  XmlVtkFrame Run() {
+    CheckRoot();
+    return frame_;
+  }
+
+ private:
+  void CheckRoot() {
     if (parser_->Parse() == 0 || parser_->GetRootElement() == nullptr) {
-      return "its XML cannot be parsed";
+      frame_.damage = "its XML cannot be parsed";
+      return;
     }
     vtkXMLDataElement* root = parser_->GetRootElement();
     const std::string type(Attribute(root, "type"));
     if (type != "UnstructuredGrid") {
-      return "its type is '" + type + "' instead of 'UnstructuredGrid'";
+      frame_.damage =
+          "its type is '" + type + "' instead of 'UnstructuredGrid'";
+      return;
     }
     const std::string_view header = Attribute(root, "header_type");
     header_size_ = header.empty() ? 4 : WordSize(header);
     if (header_size_ < 4) {
-      return "its header_type is unknown";
+      frame_.damage = "its header_type is unknown";
+      return;
     }
     is_big_endian_ = Attribute(root, "byte_order") == "BigEndian";
     is_compressed_ = !Attribute(root, "compressor").empty();
     CheckChildren(root);
-    return damage_;
   }
 
- private:
   void CheckChildren(vtkXMLDataElement* element) {
     for (int i = 0; i < element->GetNumberOfNestedElements(); ++i) {
-      if (damage_.empty()) {
+      if (frame_.damage.empty()) {
         CheckElement(element->GetNestedElement(i), element);
       }
     }
@@ -134,9 +143,10 @@ class XmlVtkCheck {
       // Positions do not shrink to less than a hundredth of a byte.
       if (std::min(num_points_, num_cells_) < 0 ||
           std::max(num_points_, num_cells_) > 100 * file_size_) {
-        damage_ = "its NumberOfPoints or NumberOfCells is wrong";
+        frame_.damage = "its NumberOfPoints or NumberOfCells is wrong";
       }
     }
+    names_.clear();
     CheckChildren(element);
   }
 
@@ -155,16 +165,41 @@ class XmlVtkCheck {
     return -1;
   }
 
+  /// VTK takes the last of several arrays of one name.
+  void CheckName(const std::string& name, const std::string& parent) {
+    if (parent != "PointData" && parent != "CellData") {
+      return;
+    }
+    if (name.empty()) {
+      frame_.damage = "an array of its " + parent + " has no name";
+    } else if (!names_.insert(name).second) {
+      frame_.damage = "its " + parent + " has two arrays '" + name + "'";
+    }
+  }
+
+  void NoteTextArray(const std::string& name, const std::string& parent) {
+    if (parent == "PointData") {
+      frame_.text_point_arrays.push_back(name);
+    } else if (parent == "CellData") {
+      frame_.text_cell_arrays.push_back(name);
+    }
+  }
+
   void CheckArray(vtkXMLDataElement* array, vtkXMLDataElement* parent) {
     const std::string name(Attribute(array, "Name"));
+    CheckName(name, parent->GetName());
+    if (Attribute(array, "type") == "String") {
+      NoteTextArray(name, parent->GetName());
+    }
     const std::int64_t components = Count(array, "NumberOfComponents", 1);
     if (components < 0 || components > 100000) {
-      damage_ = "the NumberOfComponents of its array '" + name + "' is wrong";
+      frame_.damage =
+          "the NumberOfComponents of its array '" + name + "' is wrong";
       return;
     }
     if (Count(array, "NumberOfTuples", 0) < 0 ||
         Count(array, "NumberOfTuples", 0) > 100 * file_size_) {
-      damage_ = "the NumberOfTuples of its array '" + name + "' is wrong";
+      frame_.damage = "the NumberOfTuples of its array '" + name + "' is wrong";
       return;
     }
     const std::int64_t num_tuples = NumTuples(array, parent);
@@ -180,13 +215,13 @@ class XmlVtkCheck {
       if (word_size > 0) {
         CheckNumWords(name, CountInlineWords(array), num_words);
       } else if (num_words > static_cast<double>(file_size_)) {
-        damage_ = "its array '" + name + "' is shorter than it says";
+        frame_.damage = "its array '" + name + "' is shorter than it says";
       }
       return;
     }
     const double size = DataSize(array, format == "appended");
     if (size < 0) {
-      damage_ = "the data of its array '" + name + "' are not all there";
+      frame_.damage = "the data of its array '" + name + "' are not all there";
     } else if (word_size > 0) {
       CheckNumWords(name, size / word_size, num_words);
     }
@@ -196,8 +231,8 @@ class XmlVtkCheck {
   /// is negative.
   void CheckNumWords(const std::string& name, double num_words, double due) {
     if (due >= 0 && num_words != due) {
-      damage_ = "its array '" + name + "' has " + Text(num_words) +
-                " values where " + Text(due) + " are due";
+      frame_.damage = "its array '" + name + "' has " + Text(num_words) +
+                      " values where " + Text(due) + " are due";
     }
   }
 
@@ -328,12 +363,13 @@ class XmlVtkCheck {
   bool is_compressed_ = false;
   std::int64_t num_points_ = 0;
   std::int64_t num_cells_ = 0;
-  std::string damage_;  ///< What was found first.
+  XmlVtkFrame frame_;            ///< With the damage that was found first.
+  std::set<std::string> names_;  ///< Of the point or cell data walked over.
 };
 
 }  // namespace
 
-std::string WhyXmlVtkIsDamaged(const std::filesystem::path& path) {
+XmlVtkFrame CheckXmlVtk(const std::filesystem::path& path) {
   return XmlVtkCheck(path).Run();
 }
 

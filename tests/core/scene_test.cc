@@ -215,42 +215,46 @@ TEST_F(ValidatedScene, NeedsUnitsWhoseSquaresAreNumbers) {
   for (const double unit : {1e-60, 1e60, 1e200}) {
     scene_.mesh.nodes = unit * valid.mesh.nodes;
     EXPECT_THROWS_WITH(ValidateScene(scene_),
-                       "^the extent of the mesh is at most .*e[+-].* in "
-                       "magnitude; choose units in which this is between "
-                       "1e-50 and 1e\\+50$");
+                       "^the extent of the mesh has the magnitude .*e[+-].*; "
+                       "choose units in which it is between 1e-50 and "
+                       "1e\\+50$");
     scene_ = valid;
     Second().displacement(1, 40) = unit;
-    EXPECT_THROWS_WITH(ValidateScene(scene_),
-                       "the measured displacement of load case 2 is at most "
-                       ".*; choose units");
+    EXPECT_THROWS_WITH(
+        ValidateScene(scene_),
+        "the measured displacement of load case 2 has the magnitude "
+        ".*; choose units");
     Second().observed(1, 40) = false;
     EXPECT_NO_THROW(ValidateScene(scene_));
     scene_ = valid;
     scene_.supports.held(1, 2) = true;
     scene_.supports.displacement(1, 2) = -unit;
     EXPECT_THROWS_WITH(ValidateScene(scene_),
-                       "the displacement of the supports is at most");
+                       "the displacement of the supports has the magnitude");
     scene_ = valid;
     Second().loads[1] =
         NodalForces{Eigen::Matrix3Xd::Constant(3, NumNodes(), unit)};
     EXPECT_THROWS_WITH(ValidateScene(scene_),
-                       "the force in load 2 of load case 2 is at most");
+                       "the force in load 2 of load case 2 has the magnitude");
     scene_ = valid;
     SecondLoad<BodyForce>(0).force_density(2) = unit;
-    EXPECT_THROWS_WITH(ValidateScene(scene_),
-                       "the body force in load 1 of load case 2 is at most");
+    EXPECT_THROWS_WITH(
+        ValidateScene(scene_),
+        "the body force in load 1 of load case 2 has the magnitude");
     scene_ = valid;
     SecondLoad<Traction>(1).traction *= unit;
-    EXPECT_THROWS_WITH(ValidateScene(scene_),
-                       "the traction in load 2 of load case 2 is at most");
+    EXPECT_THROWS_WITH(
+        ValidateScene(scene_),
+        "the traction in load 2 of load case 2 has the magnitude");
     scene_ = valid;
     SecondLoad<Pressure>(2).pressure = -unit;
-    EXPECT_THROWS_WITH(ValidateScene(scene_),
-                       "the pressure in load 3 of load case 2 is at most");
+    EXPECT_THROWS_WITH(
+        ValidateScene(scene_),
+        "the pressure in load 3 of load case 2 has the magnitude");
     scene_ = valid;
     Second().noise_sd = unit;
     EXPECT_THROWS_WITH(ValidateScene(scene_),
-                       "the noise standard deviation of load case 2 is at");
+                       "the noise standard deviation of load case 2 has");
     scene_ = valid;
   }
 }

@@ -177,6 +177,14 @@ TEST_F(JsonSceneTest, ReadsNodalForces) {
             Eigen::Vector3d(1, 2, 3));
 }
 
+TEST_F(JsonSceneTest, SaysThatNothingIsFree) {
+  EXPECT_THROWS_WITH(
+      Read(Replaced(WithLoad(R"({"type": "nodal_force", "value": [0, 0, 1],
+                                 "nodes": "free"})"),
+                    R"({"ids": [0, 1, 4]})", R"("all")")),
+      "loads\\[0\\].nodes is \"free\", but the supports hold every node");
+}
+
 TEST_F(JsonSceneTest, SelectsOutwardFacets) {
   for (const std::string surface :
        {R"({"physical": "top"})", R"({"physical": 70})"}) {
@@ -229,7 +237,8 @@ TEST_F(JsonSceneTest, ReadsWhatWasObserved) {
   folder_.Write("u.csv", Replaced(kField, "0,0,0", "nan,0,inf"));
   EXPECT_TRUE((observed(R"("free")") == expected).all());
   EXPECT_THROWS_WITH(observed(R"("all")"),
-                     "u.csv: the row of node 0 .* \\(x\\) is nan");
+                     "u.csv: the row of node 0 .* \\(x\\) is nan; correct it "
+                     "or leave it out of the observed nodes");
 }
 
 TEST_F(JsonSceneTest, ReadsObservedComponentsFromAnArray) {

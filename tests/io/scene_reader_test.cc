@@ -175,6 +175,65 @@ TEST_F(SceneReaderTest, NamesLoadCasesOutOfSequence) {
   EXPECT_THROWS_WITH(Read(scene_.mesh, fields), "'force_2' is missing");
 }
 
+TEST_F(SceneReaderTest, RefusesSupportsOfOneLoadCase) {
+  for (const std::string name : {"fixed", "prescribed"}) {
+    Fields fields = fields_;
+    fields.point.push_back(FieldOf(fields, name));
+    fields.point.back().name += "_2";
+    EXPECT_THROWS_WITH(Read(scene_.mesh, fields),
+                       "array '" + name +
+                           "_2' belongs to no load case, since "
+                           "all have the same supports");
+  }
+}
+
+TEST_F(SceneReaderTest, ErrsOnTwoArraysOfOneName) {
+  EXPECT_THROWS_WITH(
+      Read(LegacySceneText() + "VECTORS displacement double\n"
+                               "0 0 0 0 0 0 7 7 7 0 0 0 .1 .2 .3 .4 .5 .6\n"),
+      "scene.vtk: .*it has two arrays 'displacement'");
+  const auto path = folder_.Path() / "scene.vtu";
+  WriteEncoded(path, scene_.mesh, fields_, AllVtkEncodings()[2]);
+  const std::string whole = ReadFile(path);
+  EXPECT_THROWS_WITH(
+      ReadScene({folder_.Write(
+                    "a.vtu", Replaced(whole, "\"force\"", "\"displacement\""))},
+                Measurement::kRequired),
+      "a.vtu: .*its PointData has two arrays 'displacement'");
+  EXPECT_THROWS_WITH(
+      ReadScene({folder_.Write("a.vtu", Replaced(whole, "Name=\"force\"", ""))},
+                Measurement::kRequired),
+      "a.vtu: .*an array of its PointData has no name");
+  EXPECT_THROWS_WITH(
+      ReadScene({folder_.Write("a.msh", GmshVersion2Scene() +
+                                            GmshNodeData("force", "1 2 3"))},
+                Measurement::kRequired),
+      "a.msh: it has the data 'force' twice");
+}
+
+// VTK crashes on strings that do not end.
+TEST_F(SceneReaderTest, LeavesArraysOfStringsAlone) {
+  const auto path = folder_.Path() / "scene.vtu";
+  WriteEncoded(path, scene_.mesh, fields_, AllVtkEncodings()[0]);
+  const std::string whole = ReadFile(path);
+  for (const std::string text : {"104 0 104 0 104 0 104 0 104 0", "104", ""}) {
+    const std::string array =
+        R"(<Array type="String" Name="name" format="ascii">)" + text +
+        "</Array>";
+    const auto with_text = folder_.Write(
+        "text.vtu", Replaced(whole, "</PointData>", array + "</PointData>"));
+    ExpectSameScene(ReadScene({with_text}, Measurement::kRequired).scene,
+                    scene_, 1e-9);
+  }
+  EXPECT_THROWS_WITH(
+      ReadScene(
+          {folder_.Write("text.vtu",
+                         Replaced(whole, "type=\"Float64\" Name=\"force\"",
+                                  "type=\"String\" Name=\"force\""))},
+          Measurement::kRequired),
+      "text.vtu: the point array 'force' is missing");
+}
+
 TEST_F(SceneReaderTest, NamesNodesThatAreNotFinite) {
   for (const std::string name :
        {"fixed", "force", "displacement_2", "observed_2"}) {
@@ -186,6 +245,11 @@ TEST_F(SceneReaderTest, NamesNodesThatAreNotFinite) {
           "scene.vtu: the point array '" + name + "' of node 3 \\(y\\) is");
     }
   }
+  Fields fields = fields_;
+  FieldOf(fields, "displacement_2").values(1, 3) = kNan;
+  EXPECT_THROWS_WITH(Read(scene_.mesh, fields),
+                     "node 3 \\(y\\) is nan; correct it or mark it as not "
+                     "measured in the array 'observed_2'");
   FieldOf(fields_, "prescribed").values(0, 1) = kNan;
   EXPECT_THROWS_WITH(Read(scene_.mesh, fields_),
                      "'prescribed' of node 1 \\(x\\) is nan");
@@ -216,6 +280,8 @@ TEST_F(SceneReaderTest, ErrsOnRegionsThatAreNoIntegers) {
   EXPECT_THROWS_WITH(Read(scene_.mesh, fields_), "'region' is 0.5.*integers");
   fields_.cell[0].values(0, 1) = kNan;
   EXPECT_THROWS_WITH(Read(scene_.mesh, fields_), "'region' is nan");
+  fields_.cell[0].values(0, 1) = 1e300;
+  EXPECT_THROWS_WITH(Read(scene_.mesh, fields_), "'region' is 1e\\+300 at");
 }
 
 TEST_F(SceneReaderTest, ErrsOnFlatTetrahedra) {
