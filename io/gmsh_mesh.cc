@@ -11,6 +11,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -113,29 +114,58 @@ std::vector<std::size_t> SortingOrder(const std::vector<std::size_t>& values) {
   return order;
 }
 
-/// Merges the file; the number of nodes that Gmsh says it has, or -1.
-Eigen::Index Merge(const std::filesystem::path& path) {
+/// What Gmsh says that the file has; -1 where it says nothing.
+struct FileCounts {
+  Eigen::Index nodes = -1;
+  Eigen::Index elements = -1;
+};
+
+/// The count in a line like "Info: 12 nodes", or `otherwise`.
+Eigen::Index CountIn(const std::string& line, const std::string& unit,
+                     Eigen::Index otherwise) {
+  std::istringstream words(line);
+  std::string info;
+  std::string last;
+  Eigen::Index count = 0;
+  return words >> info >> count >> last && info == "Info:" && last == unit &&
+                 words.eof()
+             ? count
+             : otherwise;
+}
+
+FileCounts Merge(const std::filesystem::path& path) {
   gmsh::merge(path.string());
   std::vector<std::string> log;
   gmsh::logger::get(log);
-  Eigen::Index num_nodes = -1;
-  const std::string info = "Info: ";
-  const std::string unit = " nodes";
+  FileCounts counts;
   for (const std::string& line : log) {
     if (line.rfind("Error: ", 0) == 0) {
       ThrowDamaged(path, line.substr(7));
     }
-    if (line.size() > info.size() + unit.size() &&
-        line.compare(line.size() - unit.size(), unit.size(), unit) == 0) {
-      const std::string count =
-          line.substr(info.size(), line.size() - info.size() - unit.size());
-      if (count.size() < 12 &&
-          count.find_first_not_of("0123456789") == std::string::npos) {
-        num_nodes = std::stoll(count);
-      }
-    }
+    counts.nodes = CountIn(line, "nodes", counts.nodes);
+    counts.elements = CountIn(line, "elements", counts.elements);
   }
-  return num_nodes;
+  return counts;
+}
+
+/// Gmsh 4.8 drops elements of a number it has already, and hides those of
+/// another order than the first of their volume.
+void CheckNoElementIsLost(const std::filesystem::path& path,
+                          Eigen::Index num_elements) {
+  std::vector<int> types;
+  std::vector<std::vector<std::size_t>> numbers;
+  std::vector<std::vector<std::size_t>> corners;
+  gmsh::model::mesh::getElements(types, numbers, corners);
+  Eigen::Index num_read = 0;
+  for (const std::vector<std::size_t>& of_type : numbers) {
+    num_read += static_cast<Eigen::Index>(of_type.size());
+  }
+  if (num_read < num_elements) {
+    ThrowInputError(path, "Gmsh can use only " + std::to_string(num_read) +
+                              " of its " + std::to_string(num_elements) +
+                              " elements; give each a number of its own, and "
+                              "all the same order");
+  }
 }
 
 Numbering ReadNodes(MeshFile& mesh) {
@@ -282,6 +312,21 @@ Eigen::MatrixXd Scatter(const std::vector<std::size_t>& numbers,
   return values;
 }
 
+void CheckNodesOfData(const MeshFile& mesh, const Numbering& nodes,
+                      const std::string& name,
+                      const std::vector<std::size_t>& numbers) {
+  // Nodes that Gmsh left out may have data all the same.
+  for (std::size_t i = 0; i < numbers.size() && mesh.num_nodes_left_out == 0;
+       ++i) {
+    if (nodes.Find(numbers[i]) < 0) {
+      ThrowInputError(mesh.path, "its data '" + name + "' name node number " +
+                                     std::to_string(numbers[i]) +
+                                     ", which the file does not have; correct "
+                                     "them");
+    }
+  }
+}
+
 void ReadViews(const Numbering& nodes, const Numbering& tetrahedra,
                MeshFile& mesh) {
   std::vector<int> views;
@@ -313,6 +358,7 @@ void ReadViews(const Numbering& nodes, const Numbering& tetrahedra,
       ThrowDamaged(mesh.path, "its data '" + name + "' cannot be read");
     }
     if (kind == "NodeData") {
+      CheckNodesOfData(mesh, nodes, name, numbers);
       mesh.node_arrays.push_back(
           {name, Scatter(numbers, data, num_components, nodes)});
     } else if (kind == "ElementData") {
@@ -328,12 +374,12 @@ MeshFile ReadInSession(const std::filesystem::path& path) {
   mesh.is_vtk = false;
   try {
     const GmshSession session;
-    const Eigen::Index num_nodes = Merge(path);
+    const FileCounts counts = Merge(path);
     CheckVolumeElements(path);
+    CheckNoElementIsLost(path, counts.elements);
     const Numbering nodes = ReadNodes(mesh);
-    if (num_nodes > mesh.nodes.cols()) {
-      mesh.num_nodes_left_out = num_nodes - mesh.nodes.cols();
-    }
+    mesh.num_nodes_left_out =
+        std::max<Eigen::Index>(counts.nodes - mesh.nodes.cols(), 0);
     const Numbering tetrahedra = ReadTetrahedra(nodes, mesh);
     ReadPhysicalGroups(nodes, mesh);
     ReadViews(nodes, tetrahedra, mesh);

@@ -58,12 +58,11 @@ json ParseJsonFile(const std::filesystem::path& path) {
     return json::parse(file, RepeatedKeyCheck(path, last_key));
   } catch (const json::out_of_range& error) {
     // "[json.exception...] number overflow parsing '1e999'"; without a place.
-    const std::string message = error.what();
-    ThrowInputError(
-        path, "the number " +
-                  message.substr(std::min(message.find('\''), message.size())) +
-                  " of the key \"" + last_key +
-                  "\" is beyond the range of a double; correct it");
+    std::string number = error.what();
+    number.erase(0, number.find('\'') + 1);
+    number.erase(std::min<std::size_t>(number.find('\''), 40));
+    ThrowInputError(path, "the number " + number + " of the key \"" + last_key +
+                              "\" is beyond the range of a double; correct it");
   } catch (const json::exception& error) {
     // "[json.exception...] parse error at line 3, column 7: ..."
     std::string message = error.what();

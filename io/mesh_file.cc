@@ -1,9 +1,12 @@
 #include "elastimate/io/mesh_file.h"
 
+#include <algorithm>
+#include <array>
 #include <cctype>
 #include <fstream>
 #include <set>
 #include <system_error>
+#include <tuple>
 
 #include "elastimate/io/gmsh_mesh.h"
 #include "elastimate/io/input_error.h"
@@ -25,6 +28,39 @@ void CheckPositions(const MeshFile& mesh) {
       ThrowInputError(mesh.path, "the position of " + NodeName(mesh, node) +
                                      " is not a finite number; correct it");
     }
+  }
+}
+
+/// A tetrahedron that comes twice is twice as stiff.
+void CheckTetrahedraDiffer(const MeshFile& mesh) {
+  struct Tetrahedron {
+    std::array<int, 4> nodes;
+    Eigen::Index index;
+  };
+  std::vector<Tetrahedron> tetrahedra;
+  tetrahedra.reserve(mesh.tetrahedra.cols());
+  for (Eigen::Index i = 0; i < mesh.tetrahedra.cols(); ++i) {
+    const auto corners = mesh.tetrahedra.col(i);
+    tetrahedra.push_back({{corners(0), corners(1), corners(2), corners(3)}, i});
+    std::sort(tetrahedra.back().nodes.begin(), tetrahedra.back().nodes.end());
+  }
+  std::sort(tetrahedra.begin(), tetrahedra.end(),
+            [](const Tetrahedron& a, const Tetrahedron& b) {
+              return std::tie(a.nodes, a.index) < std::tie(b.nodes, b.index);
+            });
+  const auto twin =
+      std::adjacent_find(tetrahedra.begin(), tetrahedra.end(),
+                         [](const Tetrahedron& a, const Tetrahedron& b) {
+                           return a.nodes == b.nodes;
+                         });
+  if (twin != tetrahedra.end()) {
+    ThrowInputError(
+        mesh.path,
+        "tetrahedra " + std::to_string(twin->index) + " and " +
+            std::to_string((twin + 1)->index) + " have the same nodes; " +
+            (mesh.is_vtk ? "keep one of them"
+                         : "save the mesh as .msh of version 4 (older ones "
+                           "repeat what is in several physical groups)"));
   }
 }
 
@@ -55,6 +91,7 @@ MeshFile ReadMeshFile(const std::filesystem::path& path) {
   mesh.path = path;
   MarkUsedNodes(mesh);
   CheckPositions(mesh);
+  CheckTetrahedraDiffer(mesh);
   return mesh;
 }
 

@@ -49,8 +49,8 @@ struct MeshFile {
 
 /// Reads .vtu, .vtk, .msh, .mesh, .unv and .bdf files; the extension may be in
 /// capital letters.  Node positions are
-/// finite where a tetrahedron uses them; arrays are as the file has them.
-/// Throws std::invalid_argument, naming the file.
+/// finite where a tetrahedron uses them; no tetrahedron comes twice; arrays are
+/// as the file has them. Throws std::invalid_argument, naming the file.
 ///
 /// VTK and Gmsh report through global state: not for concurrent calls.
 MeshFile ReadMeshFile(const std::filesystem::path& path);

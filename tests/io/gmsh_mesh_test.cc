@@ -185,6 +185,31 @@ TEST_F(GmshMeshTest, ErrsOnCountsThatAreTooSmallOrTooLarge) {
   expect(v4, "3 1 4 2\n", "3 1 4\n", ".Elements lacks a count");
 }
 
+TEST_F(GmshMeshTest, ErrsOnElementsThatGmshLoses) {
+  const auto expect = [this](const std::string& last) {
+    EXPECT_THROWS_WITH(
+        Read(Replaced(GmshVersion2Mesh(), "5 4 2 1 1 10 2 3 7", last)),
+        "mesh.msh: Gmsh can use only 4 of its 5 elements");
+  };
+  expect("4 4 2 1 1 10 2 3 7");
+  expect("5 11 2 1 1 10 2 3 7 10 2 3 5 7 2");
+}
+
+TEST_F(GmshMeshTest, ErrsOnTetrahedraThatComeTwice) {
+  EXPECT_THROWS_WITH(Read(Replaced(GmshVersion2Mesh(), "5 4 2 1 1 10 2 3 7",
+                                   "5 4 2 2 1 2 10 3 5")),
+                     "mesh.msh: tetrahedra 0 and 1 have the same nodes; save "
+                     "the mesh as .msh of version 4");
+}
+
+TEST_F(GmshMeshTest, ErrsOnDataOfNodesThatAreNotThere) {
+  const std::string data = GmshNodeData("u", "1 2 3");
+  EXPECT_THROWS_WITH(
+      Read(GmshVersion2Mesh() + Replaced(Replaced(data, "3\n5\n", "3\n6\n"),
+                                         "$End", "99 1 1 1\n$End")),
+      "mesh.msh: its data 'u' name node number 99, which the file does not");
+}
+
 TEST_F(GmshMeshTest, ErrsOnCountsOfMeditFiles) {
   const std::string whole =
       "MeshVersionFormatted 2\nDimension\n3\n"

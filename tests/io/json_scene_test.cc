@@ -307,7 +307,7 @@ TEST_F(JsonSceneTest, PlacesSyntaxErrors) {
   EXPECT_THROWS_WITH(Read(Replaced(kDocument, "\"supports\":", "\"supports\"")),
                      "scene.json: line 3, column 14: syntax error");
   EXPECT_THROWS_WITH(Read(Replaced(kDocument, "1e-5", "1e999")),
-                     "^[^ ]*scene.json: the number '1e999' of the key "
+                     "^[^ ]*scene.json: the number 1e999 of the key "
                      "\"noise_sd\" is beyond the range of a double; correct "
                      "it$");
   EXPECT_THROWS_WITH(Read(Replaced(kDocument, "1e-5", "1e-5, \"noise_sd\": 1")),

@@ -290,6 +290,14 @@ TEST_F(SceneReaderTest, ErrsOnFlatTetrahedra) {
   EXPECT_THROWS_WITH(Read(mesh, fields_), "scene.vtu: .*1.* is flat");
 }
 
+TEST_F(SceneReaderTest, ErrsOnTetrahedraThatComeTwice) {
+  Mesh mesh = scene_.mesh;
+  mesh.elements.col(1) = mesh.elements.col(0).reverse().eval();
+  EXPECT_THROWS_WITH(Read(mesh, fields_),
+                     "scene.vtu: tetrahedra 0 and 1 have the same nodes; keep "
+                     "one of them");
+}
+
 TEST_F(SceneReaderTest, ErrsWhenEverythingIsHeld) {
   FieldOf(fields_, "fixed").values.setOnes();
   EXPECT_THROWS_WITH(Read(scene_.mesh, fields_),
