@@ -1,7 +1,9 @@
 #include "elastimate/io/gmsh_text_check.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cstdint>
+#include <cstdlib>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -40,6 +42,7 @@ class GmshTextCheck {
       } else if (kNodes.count(section_) > 0) {
         // Version 4.1 has the numbers of a block ahead of its positions.
         WalkMshSection(version >= 4, version >= 4.1 ? 2 : 1);
+        CheckNumbersDiffer();
       } else if (kElements.count(section_) > 0) {
         WalkMshSection(version >= 4, 1);
       }
@@ -63,6 +66,7 @@ class GmshTextCheck {
 
  private:
   void WalkMshSection(bool has_blocks, int lines_per_entry) {
+    numbers_.clear();
     if (!has_blocks) {
       const double count = TakeNumbers(1)[0];
       SkipEntries(count, lines_per_entry);
@@ -89,6 +93,19 @@ class GmshTextCheck {
         throw Damage{"its section " + section_ + " ends before the " +
                      Text(count) + " entries that it counts"};
       }
+      if (i < count) {
+        numbers_.push_back(std::strtoull(line_.c_str(), nullptr, 10));
+      }
+    }
+  }
+
+  /// Gmsh takes the last of several nodes of one number.
+  void CheckNumbersDiffer() {
+    std::sort(numbers_.begin(), numbers_.end());
+    const auto twin = std::adjacent_find(numbers_.begin(), numbers_.end());
+    if (twin != numbers_.end()) {
+      throw Damage{"its section " + section_ + " has the number " +
+                   std::to_string(*twin) + " twice"};
     }
   }
 
@@ -144,6 +161,7 @@ class GmshTextCheck {
   std::string line_;           ///< Empty at the end of the file.
   bool is_line_kept_ = false;  ///< To be taken once more.
   std::string section_;
+  std::vector<unsigned long long> numbers_;  ///< First ones of the entries.
 };
 
 }  // namespace

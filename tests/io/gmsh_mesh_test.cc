@@ -185,6 +185,14 @@ TEST_F(GmshMeshTest, ErrsOnCountsThatAreTooSmallOrTooLarge) {
   expect(v4, "3 1 4 2\n", "3 1 4\n", ".Elements lacks a count");
 }
 
+TEST_F(GmshMeshTest, ErrsOnNodeNumbersThatComeTwice) {
+  EXPECT_THROWS_WITH(
+      Read(Replaced(GmshVersion2Mesh(), "$Nodes\n5\n", "$Nodes\n6\n5 9 9 9\n")),
+      "its section .Nodes has the number 5 twice");
+  EXPECT_THROWS_WITH(Read(Replaced(GmshVersion4Mesh(), "\n5\n7\n", "\n5\n5\n")),
+                     "its section .Nodes has the number 5 twice");
+}
+
 TEST_F(GmshMeshTest, ErrsOnElementsThatGmshLoses) {
   const auto expect = [this](const std::string& last) {
     EXPECT_THROWS_WITH(
