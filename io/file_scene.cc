@@ -50,7 +50,7 @@ void RequireFinite(const std::filesystem::path& file, const std::string& what,
       if (mask(axis, node) && !std::isfinite(value)) {
         ThrowInputError(file, what + " of " + NodeName(mesh, node) + " (" +
                                   kAxis[axis] + ") is " +
-                                  std::to_string(value) + "; " + mend);
+                                  std::to_string(value).append("; " + mend));
       }
     }
   }

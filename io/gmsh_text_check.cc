@@ -33,18 +33,19 @@ class GmshTextCheck {
     while (TakeLine()) {
       section_ = line_;
       if (section_ == "$MeshFormat") {
-        const std::vector<double> format = TakeNumbers(2);
-        version = format[0];
-        const bool is_binary = format[1] != 0;
+        TakeLine();
+        std::istringstream format(line_);
+        bool is_binary = false;
+        format >> version >> is_binary;
         if (is_binary) {
           return;
         }
       } else if (kNodes.count(section_) > 0) {
         // Version 4.1 has the numbers of a block ahead of its positions.
-        WalkMshSection(version >= 4, version >= 4.1 ? 2 : 1);
+        WalkMshSection(version >= 4, version >= 4.1);
         CheckNumbersDiffer();
       } else if (kElements.count(section_) > 0) {
-        WalkMshSection(version >= 4, 1);
+        WalkMshSection(version >= 4, false);
       }
     }
   }
@@ -57,28 +58,33 @@ class GmshTextCheck {
     while (TakeLine()) {
       section_ = line_;
       if (kCounted.count(section_) > 0) {
-        const double count = TakeNumbers(1)[0];
-        SkipEntries(count, 1);
+        const std::int64_t count = TakeCounts(1)[0];
+        SkipEntries(count);
         RequireEnd(count);
       }
     }
   }
 
  private:
-  void WalkMshSection(bool has_blocks, int lines_per_entry) {
+  void WalkMshSection(bool has_blocks, bool has_numbers_ahead) {
     numbers_.clear();
     if (!has_blocks) {
-      const double count = TakeNumbers(1)[0];
-      SkipEntries(count, lines_per_entry);
+      const std::int64_t count = TakeCounts(1)[0];
+      SkipEntries(count);
       RequireEnd(count);
       return;
     }
-    const std::vector<double> counts = TakeNumbers(2);
-    double total = 0;
-    for (double block = 0; block < counts[0]; ++block) {
-      const double count = TakeNumbers(4)[3];
-      SkipEntries(count, lines_per_entry);
+    const std::vector<std::int64_t> counts = TakeCounts(2);
+    std::int64_t total = 0;
+    for (std::int64_t block = 0; block < counts[0]; ++block) {
+      const std::int64_t count = TakeCounts(4)[3];
+      SkipEntries(count);
       total += count;
+      if (has_numbers_ahead) {
+        const std::size_t num_numbers = numbers_.size();
+        SkipEntries(count);
+        numbers_.resize(num_numbers);
+      }
     }
     RequireEnd(total);
     if (total != counts[1]) {
@@ -87,15 +93,17 @@ class GmshTextCheck {
     }
   }
 
-  void SkipEntries(double count, int lines_per_entry) {
-    for (double i = 0; i < count * lines_per_entry; ++i) {
+  void SkipEntries(std::int64_t count) {
+    if (count < 0) {
+      throw Damage{"its section " + section_ + " counts " +
+                   std::to_string(count) + " entries"};
+    }
+    for (std::int64_t i = 0; i < count; ++i) {
       if (!TakeLine() || !IsEntry()) {
         throw Damage{"its section " + section_ + " ends before the " +
-                     Text(count) + " entries that it counts"};
+                     std::to_string(count) + " entries that it counts"};
       }
-      if (i < count) {
-        numbers_.push_back(std::strtoull(line_.c_str(), nullptr, 10));
-      }
+      numbers_.push_back(std::strtoull(line_.c_str(), nullptr, 10));
     }
   }
 
@@ -109,10 +117,10 @@ class GmshTextCheck {
     }
   }
 
-  void RequireEnd(double count) {
+  void RequireEnd(std::int64_t count) {
     if (TakeLine() && IsEntry()) {
       throw Damage{"its section " + section_ + " goes on after the " +
-                   Text(count) + " entries that it counts"};
+                   std::to_string(count) + " entries that it counts"};
     }
     is_line_kept_ = true;
   }
@@ -139,29 +147,25 @@ class GmshTextCheck {
     return false;
   }
 
-  std::vector<double> TakeNumbers(std::size_t at_least) {
-    std::vector<double> numbers;
+  std::vector<std::int64_t> TakeCounts(std::size_t at_least) {
+    std::vector<std::int64_t> counts;
     if (TakeLine()) {
       std::istringstream line(line_);
-      for (double number = 0; line >> number;) {
-        numbers.push_back(number);
+      for (std::int64_t count = 0; line >> count;) {
+        counts.push_back(count);
       }
     }
-    if (numbers.size() < at_least) {
+    if (counts.size() < at_least) {
       throw Damage{"its section " + section_ + " lacks a count"};
     }
-    return numbers;
-  }
-
-  static std::string Text(double count) {
-    return std::to_string(static_cast<std::int64_t>(count));
+    return counts;
   }
 
   std::ifstream file_;
   std::string line_;           ///< Empty at the end of the file.
   bool is_line_kept_ = false;  ///< To be taken once more.
   std::string section_;
-  std::vector<unsigned long long> numbers_;  ///< First ones of the entries.
+  std::vector<std::uint64_t> numbers_;  ///< First ones of the entries.
 };
 
 }  // namespace

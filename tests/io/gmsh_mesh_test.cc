@@ -169,7 +169,7 @@ TEST_F(GmshMeshTest, ErrsOnCountsThatAreTooSmallOrTooLarge) {
   expect(v1, "$NOD\n5", "$NOD\n4", ".NOD goes on after the 4 entries");
   expect(v1, "$ELM\n4", "$ELM\n3", ".ELM goes on after the 3 entries");
   expect(v1, "$ELM\n4", "$ELM\n5", ".ELM ends before the 5 entries");
-  expect(v1, "$ELM\n4", "$ELM\n-4", ".ELM goes on after the -4 entries");
+  expect(v1, "$ELM\n4", "$ELM\n-4", ".ELM counts -4 entries");
   const std::string v2 = GmshVersion2Mesh();
   expect(v2, "$Nodes\n5", "$Nodes\n4", ".Nodes goes on after the 4 entries");
   expect(v2, "$Elements\n5", "$Elements\n4", ".Elements goes on after the 4");
