@@ -9,6 +9,7 @@
 #include <tuple>
 #include <vector>
 
+#include "elastimate/core/magnitude.h"
 #include "elastimate/core/tetrahedron.h"
 
 namespace elastimate {
@@ -57,6 +58,11 @@ void ValidateNodes(const Mesh& mesh) {
           " has a position that is not finite; correct the mesh");
     }
   }
+  if (mesh.NumNodes() > 0) {
+    const Eigen::Vector3d extent =
+        mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff();
+    RequireMagnitude(extent.maxCoeff(), "the extent of the mesh");
+  }
 }
 
 void ValidateElements(const Mesh& mesh) {
@@ -79,7 +85,8 @@ void ValidateElements(const Mesh& mesh) {
     if (RelativeHeight(GatherTetrahedron(mesh, element)) < kFlatHeight) {
       throw std::invalid_argument(
           ElementName(mesh, element) +
-          " is flat (no volume); remove it or mesh again");
+          " is flat (its smallest height is less than a millionth of its "
+          "longest edge); remove it or mesh again");
     }
   }
 }

@@ -22,9 +22,10 @@ struct Mesh {
 
 /// Throws std::invalid_argument, naming the node or the element, unless `mesh`
 /// is one that the element kernels accept: at least one element, four nodes per
-/// element, finite positions, node indices in range, every node used by an
-/// element, no flat element (smallest height below 1e-6 of the longest edge),
-/// and region ids for all elements or for none.  O(num_elements).
+/// element, finite positions, an extent between 1e-50 and 1e50, node indices in
+/// range, every node used by an element, no flat element (smallest height below
+/// 1e-6 of the longest edge), and region ids for all elements or for none.
+/// O(num_elements).
 void ValidateMesh(const Mesh& mesh);
 
 /// The outer surface: `3 x num_facets` node indices of the element faces that

@@ -4,8 +4,12 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <numeric>
+#include <sstream>
 #include <stdexcept>
+
+#include "elastimate/core/magnitude.h"
 
 namespace elastimate {
 namespace {
@@ -35,13 +39,15 @@ void RequireFinite(const Eigen::Matrix3Xd& values, const std::string& what) {
            " is not finite; correct it");
     }
   }
+  RequireMagnitude(values.cwiseAbs().maxCoeff(), what);
 }
 
 void ValidateSupports(const Mesh& mesh, const Supports& supports) {
   RequireColumns(supports.held.cols(), mesh, "the mask of held components");
   RequireColumns(supports.displacement.cols(), mesh,
                  "the displacement of the supports");
-  RequireFinite(supports.displacement, "the displacement of the supports");
+  RequireFinite(supports.held.select(supports.displacement.array(), 0.0),
+                "the displacement of the supports");
   if (supports.held.all()) {
     Fail("every degree of freedom is held; free the nodes that could move");
   }
@@ -79,18 +85,23 @@ struct LoadValidator {
     if (!load.force_density.allFinite()) {
       Fail("the body force in " + where + " is not finite; correct it");
     }
+    RequireMagnitude(load.force_density.cwiseAbs().maxCoeff(),
+                     "the body force in " + where);
   }
   void operator()(const Traction& load) const {
     ValidateFacets(mesh, load.facets, "the traction in " + where);
     if (!load.traction.allFinite()) {
       Fail("the traction in " + where + " is not finite; correct it");
     }
+    RequireMagnitude(load.traction.cwiseAbs().maxCoeff(),
+                     "the traction in " + where);
   }
   void operator()(const Pressure& load) const {
     ValidateFacets(mesh, load.facets, "the pressure in " + where);
     if (!std::isfinite(load.pressure)) {
       Fail("the pressure in " + where + " is not finite; correct it");
     }
+    RequireMagnitude(std::abs(load.pressure), "the pressure in " + where);
   }
 };
 
@@ -105,22 +116,31 @@ void ValidateMeasurement(const Mesh& mesh, const LoadCase& load_case,
     Fail("the noise standard deviation of " + name + " is " +
          std::to_string(*load_case.noise_sd) + "; it must be positive");
   }
+  RequireMagnitude(load_case.noise_sd.value_or(0),
+                   "the noise standard deviation of " + name);
   if (load_case.displacement.size() == 0) {
     return;
   }
   RequireColumns(load_case.displacement.cols(), mesh,
                  "the measured displacement of " + name);
+  double largest = 0;
   for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
     for (int i = 0; i < 3; ++i) {
       const bool observed =
           load_case.observed.size() == 0 || load_case.observed(i, node);
-      if (observed && !std::isfinite(load_case.displacement(i, node))) {
+      if (!observed) {
+        continue;
+      }
+      const double value = load_case.displacement(i, node);
+      largest = std::max(largest, std::abs(value));
+      if (!std::isfinite(value)) {
         Fail("the measured displacement of node " + std::to_string(node) +
              " (" + kAxis[i] + ") in " + name +
              " is not finite; correct it or mark it as not observed");
       }
     }
   }
+  RequireMagnitude(largest, "the measured displacement of " + name);
 }
 
 // The part of the mesh that each node belongs to: nodes connected by elements
@@ -161,11 +181,40 @@ Eigen::Matrix<double, 1, 6> RigidMotionRow(const Eigen::Vector3d& arm,
   return row;
 }
 
-std::string DescribeRigidMotion(const Eigen::Matrix<double, 6, 1>& motion) {
-  Eigen::Index strongest = 0;
-  motion.cwiseAbs().maxCoeff(&strongest);
-  return strongest < 3 ? std::string("move along ") + kAxis[strongest]
-                       : std::string("rotate about ") + kAxis[strongest - 3];
+// Of the directions that the orthonormal columns of `span` span, the one
+// closest to an axis: "x", or "(0.6, 0.8, 0)".
+std::string DescribeDirection(const Eigen::Matrix3Xd& span) {
+  const Eigen::Matrix3d projection = span * span.transpose();
+  Eigen::Index axis = 0;
+  projection.diagonal().maxCoeff(&axis);
+  const Eigen::Vector3d direction = projection.col(axis).normalized();
+  if (direction(axis) > 0.9999) {
+    return kAxis[axis];
+  }
+  std::ostringstream text;
+  text << std::setprecision(2);
+  for (int i = 0; i < 3; ++i) {
+    text << (i == 0 ? "(" : ", ")
+         << (std::abs(direction(i)) < 0.005 ? 0.0 : direction(i));
+  }
+  text << ")";
+  return text.str();
+}
+
+// One of the rigid motions that the orthonormal columns span; a translation if
+// there is one, since any rotation about an axis off the centroid moves that
+// too.
+std::string DescribeRigidMotion(const Eigen::Matrix<double, 6, -1>& motions) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> rotations(
+      motions.bottomRows<3>(), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Index rank = (rotations.singularValues().array() > 1e-5).count();
+  if (rank < motions.cols()) {
+    return "move along " + DescribeDirection(motions.topRows<3>() *
+                                             rotations.matrixV().rightCols(
+                                                 motions.cols() - rank));
+  }
+  return "rotate about " +
+         DescribeDirection(rotations.matrixU().leftCols(rank));
 }
 
 }  // namespace
@@ -227,10 +276,12 @@ std::string WhyNotHeld(const Mesh& mesh, const Supports& supports) {
     // Squares of lever arms below 1e-6 of the part's radius hold nothing.
     const Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>> svd(
         parts[node].gram, Eigen::ComputeFullV);
-    if (svd.singularValues()(5) < 1e-12) {
+    const Eigen::Index num_free =
+        (svd.singularValues().array() < 1e-12).count();
+    if (num_free > 0) {
       return "the supports let the part of the mesh around node " +
              std::to_string(node) + " " +
-             DescribeRigidMotion(svd.matrixV().col(5)) +
+             DescribeRigidMotion(svd.matrixV().rightCols(num_free)) +
              " without strain; hold more components";
     }
   }

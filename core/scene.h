@@ -70,10 +70,11 @@ struct Scene {
 
 /// Throws std::invalid_argument with one sentence that names the load case, the
 /// array, and the node or element, unless: the mesh is valid (ValidateMesh);
-/// every array has its shape; every number is finite (displacements only where
-/// they are observed); every facet has nodes in range; noise standard
-/// deviations are positive; there is a load case; and at least one degree of
-/// freedom is free.  O(num_elements + num_nodes * num_load_cases).
+/// every array has its shape; every number is finite, and no array's largest
+/// one beyond 1e-50 to 1e50 unless zero (displacements only where they are
+/// observed or held); every facet has nodes in range; noise standard deviations
+/// are positive; there is a load case; and at least one degree of freedom is
+/// free.  O(num_elements + num_nodes * num_load_cases).
 void ValidateScene(const Scene& scene);
 
 /// Why the supports do not hold the specimen: a sentence that names a motion

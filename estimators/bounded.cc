@@ -54,6 +54,10 @@ std::optional<IsotropicElasticity> Start(const ForceResidual& residual,
   return std::nullopt;
 }
 
+// The range of ln(E / E0) where no bound is given: what leaves it runs to zero
+// or infinity.
+constexpr double kLargestLogarithm = 50;
+
 // ln(E / E0) and nu.
 struct Parameters {
   BoundedParameter log_youngs_modulus;
@@ -62,7 +66,7 @@ struct Parameters {
 
 Parameters MakeParameters(const EstimatorOptions& options,
                           const IsotropicElasticity& start) {
-  Bounds log_bounds;
+  Bounds log_bounds = {-kLargestLogarithm, kLargestLogarithm};
   if (options.youngs_modulus.lower) {
     log_bounds.lower =
         std::log(*options.youngs_modulus.lower / start.youngs_modulus);
@@ -145,6 +149,14 @@ Estimate Bounded::DoRun(const Scene& scene,
   const ceres::Solver::Summary summary = Minimize(residual, *start, parameters);
   if (!summary.IsSolutionUsable()) {
     Fail(Status::kNumericalFailure, summary.message, estimate);
+    return estimate;
+  }
+  if (std::abs(parameters.log_youngs_modulus.Value()) == kLargestLogarithm) {
+    Fail(Status::kUnphysical,
+         "the data pull Young's modulus to zero or infinity: they are mostly "
+         "noise, or the mesh, the supports or the loads do not describe the "
+         "experiment",
+         estimate);
     return estimate;
   }
   estimate.elasticity = {

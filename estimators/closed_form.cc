@@ -48,10 +48,11 @@ Estimate ClosedForm::DoRun(const Scene& scene,
     std::ostringstream text;
     text << "E = " << estimate.elasticity.youngs_modulus << ", nu = " << *nu
          << " is not physical: "
-         << (free_poisson_ratio
+         << (residual.ComplianceScale(*nu) > 0
                  ? "displacement noise pulls nu of this method towards 2/3 and "
-                   "E below zero; use iterative-fe, which noise does not bias, "
-                   "or give Poisson's ratio"
+                   "E below zero, and so may a mesh, supports or loads that do "
+                   "not describe the experiment; use iterative-fe, which noise "
+                   "does not bias, or give Poisson's ratio"
                  : "the measured displacements oppose the loads; check their "
                    "signs, order and units");
     estimate.status = Status::kUnphysical;

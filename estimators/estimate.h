@@ -63,6 +63,9 @@ struct Estimate {
   /// value that pure noise has (about 2/3); 0 without noise, 1 when the noise
   /// hides nu altogether.
   std::optional<double> noise_attenuation;
+  /// Correlation of the displacement residuals of neighbouring nodes: near 0
+  /// for independent noise, near 1 when the model misses something smooth.
+  std::optional<double> residual_correlation;
   /// Bounds that the estimate lies on, such as "nu_max".
   std::vector<std::string> active_bounds;
   /// Sentences for the user, about a result that is usable all the same.

@@ -12,10 +12,6 @@
 namespace elastimate {
 namespace {
 
-// A standard error of nu above this says that the data do not determine nu:
-// its whole physical range for common materials is 0 to 0.5.
-constexpr double kLargestPoissonRatioError = 0.15;
-
 std::string Text(double value) {
   std::ostringstream text;
   text << value;
@@ -137,6 +133,16 @@ void CheckResult(const EstimatorOptions& options, Estimate& estimate) {
                  kLargestPoissonRatioError) {
     estimate.status = Status::kNotIdentifiable;
     estimate.message = DescribeWhatIsDetermined(estimate);
+  } else if (estimate.YoungsModulusStandardError().value_or(0) >
+             kLargestYoungsModulusError * elasticity.youngs_modulus) {
+    estimate.status = Status::kNotIdentifiable;
+    estimate.message =
+        "the data do not determine Young's modulus: E = " +
+        Text(elasticity.youngs_modulus) + " has a standard error of " +
+        Text(*estimate.YoungsModulusStandardError()) +
+        (estimate.warnings.empty()
+             ? "; measure larger displacements, or more load cases"
+             : "; see the warnings");
   }
 }
 

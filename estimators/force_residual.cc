@@ -47,12 +47,14 @@ Eigen::Matrix3d BlockwiseTriangle(
   return triangle;
 }
 
-std::string Percent(double ratio) {
+std::string Number(double value) {
   std::ostringstream text;
   text.precision(2);
-  text << 100 * ratio << " %";
+  text << value;
   return text.str();
 }
+
+std::string Percent(double ratio) { return Number(100 * ratio) + " %"; }
 
 }  // namespace
 
@@ -292,26 +294,38 @@ void ForceResidual::Describe(bool free_youngs_modulus, bool free_poisson_ratio,
 void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,
                     Estimate& estimate) {
   constexpr double kUnusableBias = 0.1;
+  constexpr double kUnusablePoissonRatioBias = 0.03;
   constexpr double kNotableBias = 0.01;
+  const std::string cause =
+      "displacement noise (or a mesh, supports or loads that do not describe "
+      "the experiment) biases ";
   const std::string advice =
       "use iterative-fe, which noise does not bias, or give Poisson's ratio";
+  const IsotropicElasticity& elasticity = estimate.elasticity;
   const std::optional<double> unbiased_nu = residual.UnbiasedPoissonRatio();
   double bias = std::numeric_limits<double>::infinity();
+  double nu_bias = bias;
   if (unbiased_nu) {
     const double nu = std::clamp(*unbiased_nu, bounds.lower.value_or(-1),
                                  bounds.upper.value_or(0.5));
     const double unbiased = residual.At(nu).youngs_modulus;
-    bias = estimate.elasticity.youngs_modulus / unbiased - 1;
-    if (!(unbiased > 0)) {
-      bias = std::numeric_limits<double>::infinity();
+    if (unbiased > 0) {
+      bias = elasticity.youngs_modulus / unbiased - 1;
+      nu_bias = elasticity.poisson_ratio - nu;
     }
   }
+  std::string what;
   if (!(std::abs(bias) <= kUnusableBias)) {
+    what = "Young's modulus by about " +
+           (std::isfinite(bias) ? Percent(bias) : "its whole size") +
+           ", more than the 10 % that are usable";
+  } else if (!(std::abs(nu_bias) <= kUnusablePoissonRatioBias)) {
+    what = "Poisson's ratio by about " + Number(nu_bias) +
+           ", more than the 0.03 that are usable";
+  }
+  if (!what.empty()) {
     estimate.status = Status::kNotIdentifiable;
-    estimate.message =
-        "displacement noise biases this estimate of Young's modulus by about " +
-        (std::isfinite(bias) ? Percent(bias) : std::string("its whole size")) +
-        ", more than the 10 % that are usable; " + advice;
+    estimate.message = cause + what + "; " + advice;
     estimate.covariance.setConstant(Estimate::kUnknown);
     estimate.why_no_standard_error =
         "the bias is larger than any standard error";
@@ -319,11 +333,17 @@ void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,
   }
   const double standard_error =
       estimate.YoungsModulusStandardError().value_or(0) /
-      estimate.elasticity.youngs_modulus;
+      elasticity.youngs_modulus;
   if (std::abs(bias) > std::max(kNotableBias, standard_error)) {
-    estimate.warnings.push_back(
-        "displacement noise biases this estimate of Young's modulus by about " +
-        Percent(bias) + ", more than its standard error; " + advice);
+    what = "Young's modulus by about " + Percent(bias);
+  } else if (std::abs(nu_bias) >
+             std::max(kNotableBias,
+                      estimate.PoissonRatioStandardError().value_or(0))) {
+    what = "Poisson's ratio by about " + Number(nu_bias);
+  }
+  if (!what.empty()) {
+    estimate.warnings.push_back(cause + what +
+                                ", more than its standard error; " + advice);
   }
 }
 

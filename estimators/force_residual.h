@@ -91,7 +91,8 @@ class ForceResidual {
 };
 
 /// Sets `estimate` to not usable when the bias that displacement noise puts on
-/// E is above 10 %, and warns when it is above 1 % and one standard error.
+/// it is above 10 % of E or 0.03 in nu, and warns when it is above 1 % or 0.01
+/// and one standard error.  The bias is the distance to UnbiasedPoissonRatio.
 /// `bounds` are those that the estimate of nu had to keep.
 void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,
                     Estimate& estimate);

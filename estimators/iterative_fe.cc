@@ -2,21 +2,20 @@
 
 #include <ceres/cost_function.h>
 #include <ceres/evaluation_callback.h>
-#include <ceres/loss_function.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
-#include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
-#include <memory>
-#include <sstream>
+#include <functional>
 
 #include "elastimate/core/forward_model.h"
 #include "elastimate/core/loads.h"
 #include "elastimate/estimators/bounded_parameter.h"
+#include "elastimate/estimators/displacement_fit.h"
+#include "elastimate/estimators/node_losses.h"
+#include "elastimate/estimators/observed_displacements.h"
 #include "elastimate/estimators/statistics.h"
 
 namespace elastimate {
@@ -29,38 +28,6 @@ namespace {
 constexpr double kStartPoissonRatios[] = {-0.5, 0.45, 0.3};
 // Steps below this part of a standard error end the fit.
 constexpr double kSmallestStep = 1e-2;
-// Huber's and Cauchy's constants, in standard deviations.
-constexpr double kHuber = 1.345;
-constexpr double kCauchy = 2.385;
-// The sine of the identifiability angle below which rounding decides: it comes
-// from the square root of a difference, which has half the digits.
-constexpr double kCollinear = 1e-6;
-
-// The observed free components of one node in one load case.
-struct ObservedNode {
-  Eigen::Index load_case;
-  int num_components;
-  std::array<Eigen::Index, 3> dofs;  // 3 * node + component.
-};
-
-std::vector<ObservedNode> ObservedNodes(const Scene& scene) {
-  std::vector<ObservedNode> nodes;
-  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-    for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
-      ObservedNode observed{Eigen::Index(k), 0, {}};
-      for (int i = 0; i < 3; ++i) {
-        if (!scene.supports.held(i, node) &&
-            IsObserved(scene.load_cases[k], i, node)) {
-          observed.dofs[observed.num_components++] = 3 * node + i;
-        }
-      }
-      if (observed.num_components > 0) {
-        nodes.push_back(observed);
-      }
-    }
-  }
-  return nodes;
-}
 
 // What the first parameter of the fit is; the second is nu.
 enum class Scale {
@@ -72,32 +39,14 @@ enum class Scale {
   kLogYoungsModulus,
 };
 
-// The displacements of the model at the parameters that Ceres asks for, and
-// their residuals against the measurement, weighted and normalised so that the
-// measurement has norm 1.
+// The residual of the displacements at the parameters that Ceres asks for.
 class DisplacementResidual : public ceres::EvaluationCallback {
  public:
   DisplacementResidual(const Scene& scene, const EstimatorOptions& options)
       : model_(scene.mesh, scene.supports, AssembleLoadCases(scene)),
-        nodes_(ObservedNodes(scene)),
-        on_factorization_(options.on_factorization) {
-    for (const LoadCase& load_case : scene.load_cases) {
-      measured_.emplace_back(load_case.displacement.reshaped());
-      weights_.push_back(1 / load_case.noise_sd.value_or(1));
-    }
-    double square_sum = 0;
-    for (const ObservedNode& node : nodes_) {
-      for (int i = 0; i < node.num_components; ++i) {
-        const double q = Measured(node, i) * weights_[node.load_case];
-        square_sum += q * q;
-        ++num_residuals_;
-      }
-    }
-    norm_ = std::sqrt(square_sum);
-    for (double& weight : weights_) {
-      weight /= norm_;
-    }
-  }
+        num_load_cases_(Eigen::Index(scene.load_cases.size())),
+        observed_(scene),
+        on_factorization_(options.on_factorization) {}
 
   // The parameters that evaluations are asked for at.
   void SetParameters(Scale scale, const BoundedParameter* scale_parameter,
@@ -112,13 +61,38 @@ class DisplacementResidual : public ceres::EvaluationCallback {
     if (new_evaluation_point) {
       is_valid_ = SetPoissonRatio(poisson_ratio_->Value());
       if (is_valid_) {
-        displacement_ = model_.Displacement(Elasticity().youngs_modulus);
+        fit_.residual = observed_.Restrict(
+                            model_.Displacement(Elasticity().youngs_modulus)) -
+                        observed_.Measured();
       }
     }
     if (evaluate_jacobians && is_valid_) {
-      sensitivities_ = model_.Sensitivities(Elasticity().youngs_modulus);
-      log_youngs_modulus_slope_ = LogYoungsModulusSlope();
+      const DisplacementSensitivities sensitivities =
+          model_.Sensitivities(Elasticity().youngs_modulus);
+      fit_.sensitivities.resize(observed_.Size(), 2);
+      fit_.sensitivities << observed_.Restrict(
+          sensitivities.log_youngs_modulus),
+          observed_.Restrict(sensitivities.poisson_ratio);
+      const double sign = scale_ == Scale::kLogYoungsModulus ? 1 : -1;
+      jacobian_.resize(observed_.Size(), 2);
+      jacobian_ << sign * fit_.sensitivities.col(0),
+          fit_.sensitivities.col(1) +
+              LogYoungsModulusSlope() * fit_.sensitivities.col(0);
     }
+  }
+
+  bool SetPoissonRatio(double poisson_ratio) {
+    if (poisson_ratio == model_.PoissonRatio()) {
+      return true;
+    }
+    if (on_factorization_) {
+      on_factorization_(model_.WorkDone().factorizations + 1);
+    }
+    if (!model_.SetPoissonRatio(poisson_ratio)) {
+      return false;
+    }
+    unit_load_response_ = observed_.Restrict(model_.UnitLoadResponse());
+    return true;
   }
 
   // At the parameters.  Precondition: the model is at their nu.
@@ -128,129 +102,61 @@ class DisplacementResidual : public ceres::EvaluationCallback {
       return {std::exp(scale_parameter_->Value()), nu};
     }
     return IsotropicElasticity::FromComplianceScale(
-        std::exp(scale_parameter_->Value()) / ResponseNorm(), nu);
+        std::exp(scale_parameter_->Value()) / unit_load_response_.norm(), nu);
   }
 
-  // ||w|| at the observed components, weighted.
-  double ResponseNorm() const {
-    return std::sqrt(
-        WeightedDot(model_.UnitLoadResponse(), model_.UnitLoadResponse()));
+  // The rows of w and of v at the nu of the model.
+  const Eigen::VectorXd& UnitLoadResponse() const {
+    return unit_load_response_;
   }
-
-  bool SetPoissonRatio(double poisson_ratio) {
-    if (on_factorization_ && poisson_ratio != model_.PoissonRatio()) {
-      on_factorization_(model_.WorkDone().factorizations + 1);
-    }
-    return model_.SetPoissonRatio(poisson_ratio);
-  }
-
-  struct ComplianceFit {
-    double compliance_scale;
-    double square_sum;
-  };
-  // The t that fits the measurement best at the model's nu.
-  ComplianceFit FitComplianceScale() const {
-    double numerator = 0;
-    double denominator = 0;
-    double rest_square_sum = 0;
-    for (const ObservedNode& node : nodes_) {
-      for (int i = 0; i < node.num_components; ++i) {
-        const Eigen::Index dof = node.dofs[i];
-        const double weight = weights_[node.load_case];
-        const double w =
-            weight * model_.UnitLoadResponse()(dof, node.load_case);
-        const double rest =
-            weight * (Measured(node, i) - model_.SupportResponse()(dof));
-        numerator += w * rest;
-        denominator += w * w;
-        rest_square_sum += rest * rest;
-      }
-    }
-    const double t = numerator / denominator;
-    return {t, rest_square_sum - t * numerator};
+  Eigen::VectorXd SupportResponse() const {
+    return observed_.Restrict(
+        model_.SupportResponse().replicate(1, num_load_cases_));
   }
 
   bool IsValid() const { return is_valid_; }
-  const std::vector<ObservedNode>& Nodes() const { return nodes_; }
-  Eigen::Index NumResiduals() const { return num_residuals_; }
-  /// The norm of the weighted measurement.
-  double Norm() const { return norm_; }
+  const ObservedDisplacements& Observed() const { return observed_; }
+  /// At the last evaluation, with derivatives by (ln E, nu).
+  const DisplacementFit& Fit() const { return fit_; }
+  /// Derivatives of the residual by the two parameters of the fit.
+  const Eigen::Matrix<double, Eigen::Dynamic, 2>& Jacobian() const {
+    return jacobian_;
+  }
   const Work& WorkDone() const { return model_.WorkDone(); }
 
-  // Derivatives with respect to the two parameters of the fit.
-  double ScaleDerivative(const ObservedNode& node, int i) const {
-    const double derivative = LogYoungsModulusDerivative(node, i);
-    return scale_ == Scale::kLogYoungsModulus ? derivative : -derivative;
-  }
-  double PoissonRatioDerivativeAtScale(const ObservedNode& node, int i) const {
-    return PoissonRatioDerivative(node, i) +
-           log_youngs_modulus_slope_ * LogYoungsModulusDerivative(node, i);
-  }
-
-  double Residual(const ObservedNode& node, int i) const {
-    return weights_[node.load_case] *
-           (displacement_(node.dofs[i], node.load_case) - Measured(node, i));
-  }
-  double LogYoungsModulusDerivative(const ObservedNode& node, int i) const {
-    return weights_[node.load_case] *
-           sensitivities_.log_youngs_modulus(node.dofs[i], node.load_case);
-  }
-  double PoissonRatioDerivative(const ObservedNode& node, int i) const {
-    return weights_[node.load_case] *
-           sensitivities_.poisson_ratio(node.dofs[i], node.load_case);
-  }
-
  private:
-  double Measured(const ObservedNode& node, int i) const {
-    return measured_[node.load_case](node.dofs[i]);
-  }
-
   // d ln E / d nu at fixed scale.
   double LogYoungsModulusSlope() const {
     if (scale_ == Scale::kLogYoungsModulus) {
       return 0;
     }
     const double nu = poisson_ratio_->Value();
-    const Eigen::MatrixXd& w = model_.UnitLoadResponse();
     return 1 / (1 + nu) - 2 / (1 - 2 * nu) +
-           WeightedDot(w, model_.UnitLoadResponseDerivative()) /
-               WeightedDot(w, w);
-  }
-
-  double WeightedDot(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) const {
-    double sum = 0;
-    for (const ObservedNode& node : nodes_) {
-      const double weight = weights_[node.load_case];
-      for (int i = 0; i < node.num_components; ++i) {
-        sum += weight * weight * a(node.dofs[i], node.load_case) *
-               b(node.dofs[i], node.load_case);
-      }
-    }
-    return sum;
+           unit_load_response_.dot(
+               observed_.Restrict(model_.UnitLoadResponseDerivative())) /
+               unit_load_response_.squaredNorm();
   }
 
   ForwardModel model_;
-  std::vector<ObservedNode> nodes_;
+  Eigen::Index num_load_cases_;
+  ObservedDisplacements observed_;
   std::function<void(int)> on_factorization_;
-  std::vector<Eigen::VectorXd> measured_;
-  std::vector<double> weights_;
-  Eigen::Index num_residuals_ = 0;
-  double norm_ = 0;
   Scale scale_ = Scale::kLogResponseNorm;
   const BoundedParameter* scale_parameter_ = nullptr;
   const BoundedParameter* poisson_ratio_ = nullptr;
-  double log_youngs_modulus_slope_ = 0;
   bool is_valid_ = false;
-  Eigen::MatrixXd displacement_;
-  DisplacementSensitivities sensitivities_;
+  Eigen::VectorXd unit_load_response_;
+  DisplacementFit fit_;
+  Eigen::Matrix<double, Eigen::Dynamic, 2> jacobian_;
 };
 
 // The residuals of one node, looked up in the evaluation that all share.
 class NodeCost : public ceres::CostFunction {
  public:
-  NodeCost(const DisplacementResidual& residual, const ObservedNode& node)
+  NodeCost(const DisplacementResidual& residual,
+           const ObservedDisplacements::Node& node)
       : residual_(residual), node_(node) {
-    set_num_residuals(node.num_components);
+    set_num_residuals(node.count);
     *mutable_parameter_block_sizes() = {1, 1};
   }
 
@@ -259,13 +165,13 @@ class NodeCost : public ceres::CostFunction {
     if (!residual_.IsValid()) {
       return false;
     }
-    for (int i = 0; i < node_.num_components; ++i) {
-      residuals[i] = residual_.Residual(node_, i);
-      if (jacobians != nullptr && jacobians[0] != nullptr) {
-        jacobians[0][i] = residual_.ScaleDerivative(node_, i);
-      }
-      if (jacobians != nullptr && jacobians[1] != nullptr) {
-        jacobians[1][i] = residual_.PoissonRatioDerivativeAtScale(node_, i);
+    for (int i = 0; i < node_.count; ++i) {
+      const Eigen::Index row = node_.first + i;
+      residuals[i] = residual_.Fit().residual(row);
+      for (int parameter = 0; parameter < 2; ++parameter) {
+        if (jacobians != nullptr && jacobians[parameter] != nullptr) {
+          jacobians[parameter][i] = residual_.Jacobian()(row, parameter);
+        }
       }
     }
     return true;
@@ -273,26 +179,8 @@ class NodeCost : public ceres::CostFunction {
 
  private:
   const DisplacementResidual& residual_;
-  const ObservedNode& node_;
+  const ObservedDisplacements::Node& node_;
 };
-
-// One loss for nodes of one, two and three observed components; null entries
-// are least squares.
-using NodeLosses = std::array<std::unique_ptr<ceres::LossFunction>, 3>;
-
-// The norm of n residuals is sqrt(n) standard deviations in the mean.
-NodeLosses MakeLosses(Loss loss, double residual_sd) {
-  NodeLosses losses;
-  for (int n = 1; n <= 3; ++n) {
-    const double scale = std::sqrt(n) * residual_sd;
-    if (loss == Loss::kHuber) {
-      losses[n - 1] = std::make_unique<ceres::HuberLoss>(kHuber * scale);
-    } else if (loss == Loss::kCauchy) {
-      losses[n - 1] = std::make_unique<ceres::CauchyLoss>(kCauchy * scale);
-    }
-  }
-  return losses;
-}
 
 ceres::Solver::Summary Minimize(DisplacementResidual& residual,
                                 const NodeLosses& losses, int max_iterations,
@@ -302,10 +190,10 @@ ceres::Solver::Summary Minimize(DisplacementResidual& residual,
   problem_options.evaluation_callback = &residual;
   problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(problem_options);
-  for (const ObservedNode& node : residual.Nodes()) {
+  for (const ObservedDisplacements::Node& node : residual.Observed().Nodes()) {
     problem.AddResidualBlock(new NodeCost(residual, node),
-                             losses[node.num_components - 1].get(),
-                             scale.Block(), poisson_ratio.Block());
+                             losses.ForCount(node.count), scale.Block(),
+                             poisson_ratio.Block());
   }
 
   ceres::Solver::Options options;
@@ -316,151 +204,15 @@ ceres::Solver::Summary Minimize(DisplacementResidual& residual,
   options.initial_trust_region_radius = 1e8;
   // A step of k standard errors lowers the cost by about k^2 / m of itself.
   options.function_tolerance = kSmallestStep * kSmallestStep /
-                               static_cast<double>(residual.NumResiduals());
+                               static_cast<double>(residual.Observed().Size());
   options.gradient_tolerance = 1e-12;
   options.parameter_tolerance = 1e-9;
   options.logging_type = ceres::SILENT;
   return MinimizeWithinBounds(options, {&scale, &poisson_ratio}, problem);
 }
 
-// 1.4826 MAD of the residuals, which is their standard deviation when they are
-// Gaussian.
-double RobustResidualSd(const DisplacementResidual& residual) {
-  std::vector<double> magnitudes;
-  magnitudes.reserve(residual.NumResiduals());
-  for (const ObservedNode& node : residual.Nodes()) {
-    for (int i = 0; i < node.num_components; ++i) {
-      magnitudes.push_back(std::abs(residual.Residual(node, i)));
-    }
-  }
-  return 1.4826 * Median(std::move(magnitudes));
-}
-
-// Sums over the observed nodes that the statistics are made of.  Derivatives
-// are with respect to (ln E, nu); without a loss the bread is S^T S.
-struct ResidualSums {
-  double square_sum = 0;
-  Eigen::Matrix2d sensitivity_gram = Eigen::Matrix2d::Zero();
-  Eigen::Matrix2d bread = Eigen::Matrix2d::Zero();
-  Eigen::Matrix2d meat = Eigen::Matrix2d::Zero();
-};
-
-ResidualSums SumResiduals(const DisplacementResidual& residual,
-                          const NodeLosses& losses) {
-  ResidualSums sums;
-  for (const ObservedNode& node : residual.Nodes()) {
-    const int n = node.num_components;
-    Eigen::Vector3d r = Eigen::Vector3d::Zero();
-    Eigen::Matrix<double, 3, 2> s = Eigen::Matrix<double, 3, 2>::Zero();
-    for (int i = 0; i < n; ++i) {
-      r(i) = residual.Residual(node, i);
-      s(i, 0) = residual.LogYoungsModulusDerivative(node, i);
-      s(i, 1) = residual.PoissonRatioDerivative(node, i);
-    }
-    double rho[3] = {r.squaredNorm(), 1, 0};
-    if (losses[n - 1] != nullptr) {
-      losses[n - 1]->Evaluate(r.squaredNorm(), rho);
-    }
-    const Eigen::Vector2d gradient = s.transpose() * r;
-    const Eigen::Matrix2d gram = s.transpose() * s;
-    sums.square_sum += r.squaredNorm();
-    sums.sensitivity_gram += gram;
-    sums.bread += rho[1] * gram + 2 * rho[2] * gradient * gradient.transpose();
-    sums.meat += rho[1] * rho[1] * gradient * gradient.transpose();
-  }
-  return sums;
-}
-
-double IdentifiabilityAngle(const Eigen::Matrix2d& gram) {
-  const double cosine_product = std::abs(gram(0, 1));
-  const double sine_product = std::sqrt(std::max(0.0, gram.determinant()));
-  return std::atan2(sine_product, cosine_product);
-}
-
-// Variance of the normalised residuals: from the residuals themselves, or as
-// given when they do not contradict it.
-std::optional<double> ResidualVariance(const DisplacementResidual& residual,
-                                       const Scene& scene, double square_sum,
-                                       Eigen::Index num_free,
-                                       Estimate& estimate) {
-  const Eigen::Index redundancy = residual.NumResiduals() - num_free;
-  const double norm_squared = residual.Norm() * residual.Norm();
-  const std::optional<double>& given = scene.load_cases.front().noise_sd;
-  if (redundancy <= 0 && !given) {
-    estimate.why_no_standard_error =
-        "there are no more measured components than unknowns, so that the "
-        "noise cannot be estimated; give its standard deviation";
-    return std::nullopt;
-  }
-  const double m = static_cast<double>(std::max<Eigen::Index>(redundancy, 1));
-  const double variance = square_sum / m;
-  estimate.noise_sd = given ? *given : std::sqrt(variance) * residual.Norm();
-  if (!given) {
-    return variance;
-  }
-  // chi^2 has mean m and variance 2 m.
-  const double ratio = variance * norm_squared;
-  if (redundancy > 0 && ratio > 1 + 5 * std::sqrt(2 / m)) {
-    std::ostringstream text;
-    text.precision(2);
-    text << "the displacement residual is " << std::sqrt(ratio)
-         << " times the given noise, and the standard errors are widened to "
-            "match; the mesh, the supports or the loads do not describe the "
-            "experiment";
-    estimate.warnings.push_back(text.str());
-    return variance;
-  }
-  return 1 / norm_squared;
-}
-
-void Describe(const DisplacementResidual& residual, const Scene& scene,
-              const NodeLosses& losses, const ActiveBounds& active,
-              bool poisson_ratio_is_known, Estimate& estimate) {
-  const ResidualSums sums = SumResiduals(residual, losses);
-  estimate.displacement_residual = std::sqrt(sums.square_sum);
-  estimate.identifiability_angle = IdentifiabilityAngle(sums.sensitivity_gram);
-  std::vector<Eigen::Index> free;
-  if (active.youngs_modulus == BoundedParameter::Side::kNone) {
-    free.push_back(0);
-  }
-  if (!poisson_ratio_is_known &&
-      active.poisson_ratio == BoundedParameter::Side::kNone) {
-    free.push_back(1);
-  }
-  if (free.size() == 2 &&
-      std::sin(*estimate.identifiability_angle) < kCollinear) {
-    estimate.status = Status::kNotIdentifiable;
-    estimate.message = DescribeCollinear(
-        estimate.elasticity,
-        {-sums.sensitivity_gram(0, 1) / sums.sensitivity_gram(0, 0), 1});
-    estimate.elasticity = {Estimate::kUnknown, Estimate::kUnknown};
-    estimate.why_no_standard_error = "the parameters are not determined";
-    return;
-  }
-  const bool has_loss = losses[0] != nullptr;
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(Estimate::kUnknown);
-  const Eigen::MatrixXd inverse_bread =
-      Eigen::MatrixXd(sums.bread(free, free)).inverse();
-  if (has_loss) {
-    estimate.noise_sd = RobustResidualSd(residual) * residual.Norm();
-    covariance(free, free) =
-        inverse_bread * sums.meat(free, free) * inverse_bread;
-  } else {
-    const std::optional<double> variance = ResidualVariance(
-        residual, scene, sums.square_sum, Eigen::Index(free.size()), estimate);
-    if (!variance) {
-      return;
-    }
-    covariance(free, free) = *variance * inverse_bread;
-  }
-  const Eigen::Vector2d scale(estimate.elasticity.youngs_modulus, 1);
-  estimate.covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
-  if (!estimate.active_bounds.empty()) {
-    estimate.why_no_standard_error = "a parameter on a bound has none";
-  }
-}
-
-// Fits, with the scale of the loss from the residuals of the fit before.
+// Fits; with a loss, its scale comes from the residuals of the start, and then
+// from those of the fit before.
 ceres::Solver::Summary Fit(const EstimatorOptions& options,
                            DisplacementResidual& residual,
                            BoundedParameter& scale_parameter,
@@ -469,25 +221,55 @@ ceres::Solver::Summary Fit(const EstimatorOptions& options,
   constexpr int kMaxRescalings = 5;
   constexpr double kScaleTolerance = 0.01;
   constexpr double kExactFit = 1e-12;
-  ceres::Solver::Summary summary = Minimize(
-      residual, losses, options.max_iterations, scale_parameter, poisson_ratio);
   if (options.loss == Loss::kNone) {
-    return summary;
+    return Minimize(residual, losses, options.max_iterations, scale_parameter,
+                    poisson_ratio);
   }
+  ceres::Solver::Summary summary;
   double scale = 0;
-  for (int i = 0; i < kMaxRescalings && summary.IsSolutionUsable(); ++i) {
-    residual.PrepareForEvaluation(true, true);
-    const double new_scale = RobustResidualSd(residual);
-    if (std::abs(new_scale - scale) <= kScaleTolerance * new_scale ||
-        new_scale < kExactFit) {
+  for (int i = 0; i <= kMaxRescalings; ++i) {
+    residual.PrepareForEvaluation(false, true);
+    if (!residual.IsValid()) {
       break;
     }
-    scale = new_scale;
-    losses = MakeLosses(options.loss, scale);
+    const double new_scale = RobustStandardDeviation(residual.Fit().residual);
+    if (i > 0 && (std::abs(new_scale - scale) <= kScaleTolerance * new_scale ||
+                  new_scale < kExactFit)) {
+      break;
+    }
+    scale = std::max(new_scale, kExactFit);
+    losses = NodeLosses(options.loss, scale);
     summary = Minimize(residual, losses, options.max_iterations,
                        scale_parameter, poisson_ratio);
+    if (!summary.IsSolutionUsable()) {
+      break;
+    }
   }
   return summary;
+}
+
+// The t that fits the measurement best at the model's nu, and what it leaves.
+struct ComplianceFit {
+  double compliance_scale;
+  double cost;
+};
+
+// Without a loss by least squares; with one by least absolute deviations, so
+// that outliers do not choose the start.
+ComplianceFit FitComplianceScale(Loss loss,
+                                 const DisplacementResidual& residual) {
+  const Eigen::VectorXd& w = residual.UnitLoadResponse();
+  const Eigen::VectorXd rest =
+      residual.Observed().Measured() - residual.SupportResponse();
+  if (w.isZero(0)) {
+    return {Estimate::kUnknown, std::numeric_limits<double>::infinity()};
+  }
+  if (loss == Loss::kNone) {
+    const double t = w.dot(rest) / w.squaredNorm();
+    return {t, (rest - t * w).squaredNorm()};
+  }
+  const double t = LeastAbsoluteDeviations(w, rest);
+  return {t, (rest - t * w).lpNorm<1>()};
 }
 
 // The best of the start points within the bounds, with the E that fits best
@@ -507,20 +289,20 @@ std::optional<IsotropicElasticity> FindStart(const EstimatorOptions& options,
                      candidates.end());
   }
   std::optional<IsotropicElasticity> best;
-  double best_square_sum = 0;
+  double best_cost = 0;
   for (const double nu : candidates) {
     if (!residual.SetPoissonRatio(nu)) {
       continue;
     }
-    const auto fit = residual.FitComplianceScale();
+    const ComplianceFit fit = FitComplianceScale(options.loss, residual);
     const IsotropicElasticity elasticity =
         IsotropicElasticity::FromComplianceScale(fit.compliance_scale, nu);
     const bool is_better =
         !best || (elasticity.IsPhysical() &&
-                  (!best->IsPhysical() || fit.square_sum <= best_square_sum));
+                  (!best->IsPhysical() || fit.cost <= best_cost));
     if (is_better) {
       best = elasticity;
-      best_square_sum = fit.square_sum;
+      best_cost = fit.cost;
     }
   }
   return best;
@@ -597,7 +379,8 @@ Estimate IterativeFe::DoRun(const Scene& scene,
 
   residual.SetPoissonRatio(start->poisson_ratio);
   BoundedParameter scale(
-      std::log(start->ComplianceScale() * residual.ResponseNorm()), Bounds{});
+      std::log(start->ComplianceScale() * residual.UnitLoadResponse().norm()),
+      Bounds{});
   BoundedParameter poisson_ratio =
       options.known_poisson_ratio
           ? BoundedParameter::Constant(*options.known_poisson_ratio)
@@ -636,8 +419,8 @@ Estimate IterativeFe::DoRun(const Scene& scene,
     estimate.message = summary.message;
   }
   if (residual.IsValid()) {
-    Describe(residual, scene, losses, active,
-             options.known_poisson_ratio.has_value(), estimate);
+    DescribeDisplacementFit(scene, options, residual.Observed(), residual.Fit(),
+                            losses, active, estimate);
   }
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
   estimate.work = residual.WorkDone();

@@ -49,6 +49,26 @@ double Median(std::vector<double> values) {
   return (*middle + *std::max_element(values.begin(), middle)) / 2;
 }
 
+double LeastAbsoluteDeviations(const Eigen::VectorXd& x,
+                               const Eigen::VectorXd& y) {
+  std::vector<std::pair<double, double>> ratios;  // y / x and its weight.
+  double all_weights = 0;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    if (x(i) != 0) {
+      ratios.emplace_back(y(i) / x(i), std::abs(x(i)));
+      all_weights += std::abs(x(i));
+    }
+  }
+  std::sort(ratios.begin(), ratios.end());
+  double weights = 0;
+  std::size_t middle = 0;
+  while (middle + 1 < ratios.size() &&
+         (weights += ratios[middle].second) < all_weights / 2) {
+    ++middle;
+  }
+  return ratios[middle].first;
+}
+
 std::string DescribeWhatIsDetermined(const Estimate& estimate) {
   const Eigen::Vector2d to_logarithm(1 / estimate.elasticity.youngs_modulus, 1);
   const Eigen::Matrix2d covariance = to_logarithm.asDiagonal() *

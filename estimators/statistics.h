@@ -9,9 +9,22 @@
 
 namespace elastimate {
 
+/// A standard error of nu above this says that the data do not determine nu:
+/// its whole range for common materials is 0 to 0.5.
+constexpr double kLargestPoissonRatioError = 0.15;
+
+/// A relative standard error of E above this says that the data do not
+/// determine E: zero and infinity are within three standard errors.
+constexpr double kLargestYoungsModulusError = 1.0 / 3;
+
 /// The median; the mean of the middle two of an even number of values.
 /// Precondition: not empty.  O(n).
 double Median(std::vector<double> values);
+
+/// The minimiser t of the sum of |y_i - t x_i|: the median of y_i / x_i with
+/// weights |x_i|.  Precondition: some x_i is not zero.  O(n log n).
+double LeastAbsoluteDeviations(const Eigen::VectorXd& x,
+                               const Eigen::VectorXd& y);
 
 /// One sentence about an estimate whose nu is not determined: which modulus
 /// the covariance says is determined all the same (E, mu, kappa or none, to

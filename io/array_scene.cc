@@ -100,7 +100,10 @@ LoadCase ReadLoadCase(const MeshFile& mesh, int number,
   }
   RequireFinite(mesh.path, "the point array '" + name + "'", mesh,
                 load_case.displacement,
-                load_case.observed.size() > 0 ? load_case.observed : all);
+                load_case.observed.size() > 0 ? load_case.observed : all,
+                "correct it or mark it as not measured in the array "
+                "'observed" +
+                    suffix + "'");
   ClearUnobserved(load_case);
   return load_case;
 }
@@ -117,20 +120,31 @@ int CountLoadCases(const MeshFile& mesh) {
   return count;
 }
 
+bool IsNumber(const std::string& text) {
+  return !text.empty() &&
+         text.find_first_not_of("0123456789") == std::string::npos;
+}
+
 /// An array with the number of no load case would otherwise be ignored
 /// silently.
 void CheckCaseNumbers(const MeshFile& mesh, int num_cases) {
   for (const FileArray& array : mesh.node_arrays) {
     const std::size_t underscore = array.name.find('_');
     const std::string stem = array.name.substr(0, underscore);
-    if (underscore == std::string::npos ||
-        (stem != "displacement" && stem != "force" && stem != "observed")) {
+    if (underscore == std::string::npos) {
       continue;
     }
     const std::string number = array.name.substr(underscore + 1);
-    bool is_load_case =
-        number.empty() ||
-        number.find_first_not_of("0123456789") != std::string::npos;
+    if ((stem == "fixed" || stem == "prescribed") && IsNumber(number)) {
+      ThrowInputError(mesh.path,
+                      "the point array '" + array.name +
+                          "' belongs to no load case, since all have the same "
+                          "supports; rename it or leave it out");
+    }
+    if (stem != "displacement" && stem != "force" && stem != "observed") {
+      continue;
+    }
+    bool is_load_case = !IsNumber(number);
     for (int i = 2; i <= num_cases && !is_load_case; ++i) {
       is_load_case = number == std::to_string(i);
     }

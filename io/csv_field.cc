@@ -63,7 +63,7 @@ double ParseNumber(const std::filesystem::path& path, std::string_view cell,
       std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error == std::errc::result_out_of_range) {
     ThrowInputError(path, Place(line, column) + "'" + std::string(cell) +
-                              "' is beyond the range of a double");
+                              "' is beyond the range of a double; correct it");
   }
   if (error != std::errc() || end != digits.data() + digits.size()) {
     ThrowInputError(path, Place(line, column) + "'" + std::string(cell) +

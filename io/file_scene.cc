@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 #include "elastimate/io/input_error.h"
 
@@ -24,10 +25,11 @@ Eigen::VectorXi ReadRegions(const MeshFile& mesh) {
     const double value = (*array)(0, i);
     if (value != std::floor(value) ||
         std::abs(value) > std::numeric_limits<int>::max()) {
-      ThrowInputError(mesh.path, "the cell array 'region' is " +
-                                     std::to_string(value) +
+      std::ostringstream number;  // Of few digits, whatever its magnitude.
+      number << value;
+      ThrowInputError(mesh.path, "the cell array 'region' is " + number.str() +
                                      " at tetrahedron " + std::to_string(i) +
-                                     "; give it integers");
+                                     "; give it integers below 2^31");
     }
   }
   return array->row(0).transpose().cast<int>();
@@ -41,14 +43,14 @@ Mesh SceneMesh(const MeshFile& mesh) {
 
 void RequireFinite(const std::filesystem::path& file, const std::string& what,
                    const MeshFile& mesh, const Eigen::Matrix3Xd& values,
-                   const ComponentMask& mask) {
+                   const ComponentMask& mask, const std::string& mend) {
   for (Eigen::Index node = 0; node < values.cols(); ++node) {
     for (Eigen::Index axis = 0; axis < 3 && mesh.used[node]; ++axis) {
       const double value = values(axis, node);
       if (mask(axis, node) && !std::isfinite(value)) {
         ThrowInputError(file, what + " of " + NodeName(mesh, node) + " (" +
                                   kAxis[axis] + ") is " +
-                                  std::to_string(value) + "; correct it");
+                                  std::to_string(value).append("; " + mend));
       }
     }
   }

@@ -24,10 +24,11 @@ Mesh SceneMesh(const MeshFile& mesh);
 
 /// Throws std::invalid_argument unless `values`, 3 x num_nodes, are finite
 /// where `mask` says and a tetrahedron uses the node: "FILE: WHAT of node 7
-/// (x) is nan; ...".
+/// (x) is nan; MEND".
 void RequireFinite(const std::filesystem::path& file, const std::string& what,
                    const MeshFile& mesh, const Eigen::Matrix3Xd& values,
-                   const ComponentMask& mask);
+                   const ComponentMask& mask,
+                   const std::string& mend = "correct it");
 
 /// One flag per component from one or three numbers per node, set where they
 /// are not zero.  Throws std::invalid_argument, naming the file, for nan.

@@ -4,15 +4,19 @@
 
 #include <algorithm>
 #include <cctype>
+#include <clocale>
 #include <exception>
 #include <fstream>
+#include <future>
 #include <limits>
 #include <map>
 #include <numeric>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "elastimate/io/gmsh_text_check.h"
 #include "elastimate/io/input_error.h"
 
 namespace elastimate {
@@ -42,7 +46,7 @@ void CheckMshBegin(const std::filesystem::path& path) {
 void CheckEnd(const std::filesystem::path& path) {
   static const std::map<std::string, std::string> kLastLines = {
       {".msh", "$END"}, {".mesh", "END"}, {".unv", "-1"}, {".bdf", "ENDDATA"}};
-  const std::string& expected = kLastLines.at(path.extension().string());
+  const std::string& expected = kLastLines.at(FileExtension(path));
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   const std::streamoff size = file.tellg();
   std::string end(std::min<std::streamoff>(size, 256), '\0');
@@ -60,8 +64,8 @@ void CheckEnd(const std::filesystem::path& path) {
 
 class GmshSession {
  public:
-  GmshSession() {
-    gmsh::initialize(0, nullptr, false);
+  GmshSession() : number_locale_(std::setlocale(LC_NUMERIC, nullptr)) {
+    gmsh::initialize(0, nullptr, false);  // Sets the locale to "C".
     gmsh::option::setNumber("General.Terminal", 0);
     gmsh::logger::start();
   }
@@ -71,9 +75,13 @@ class GmshSession {
       gmsh::finalize();
     } catch (...) {  // NOLINT(bugprone-empty-catch): nothing left to undo.
     }
+    std::setlocale(LC_NUMERIC, number_locale_.c_str());
   }
   GmshSession(const GmshSession&) = delete;
   GmshSession& operator=(const GmshSession&) = delete;
+
+ private:
+  const std::string number_locale_;
 };
 
 /// The position of each of Gmsh's numbers in an ascending list of them.
@@ -106,29 +114,58 @@ std::vector<std::size_t> SortingOrder(const std::vector<std::size_t>& values) {
   return order;
 }
 
-/// Merges the file; the number of nodes that Gmsh says it has, or -1.
-Eigen::Index Merge(const std::filesystem::path& path) {
+/// What Gmsh says that the file has; -1 where it says nothing.
+struct FileCounts {
+  Eigen::Index nodes = -1;
+  Eigen::Index elements = -1;
+};
+
+/// The count in a line like "Info: 12 nodes", or `otherwise`.
+Eigen::Index CountIn(const std::string& line, const std::string& unit,
+                     Eigen::Index otherwise) {
+  std::istringstream words(line);
+  std::string info;
+  std::string last;
+  Eigen::Index count = 0;
+  return words >> info >> count >> last && info == "Info:" && last == unit &&
+                 words.eof()
+             ? count
+             : otherwise;
+}
+
+FileCounts Merge(const std::filesystem::path& path) {
   gmsh::merge(path.string());
   std::vector<std::string> log;
   gmsh::logger::get(log);
-  Eigen::Index num_nodes = -1;
-  const std::string info = "Info: ";
-  const std::string unit = " nodes";
+  FileCounts counts;
   for (const std::string& line : log) {
     if (line.rfind("Error: ", 0) == 0) {
       ThrowDamaged(path, line.substr(7));
     }
-    if (line.size() > info.size() + unit.size() &&
-        line.compare(line.size() - unit.size(), unit.size(), unit) == 0) {
-      const std::string count =
-          line.substr(info.size(), line.size() - info.size() - unit.size());
-      if (count.size() < 12 &&
-          count.find_first_not_of("0123456789") == std::string::npos) {
-        num_nodes = std::stoll(count);
-      }
-    }
+    counts.nodes = CountIn(line, "nodes", counts.nodes);
+    counts.elements = CountIn(line, "elements", counts.elements);
   }
-  return num_nodes;
+  return counts;
+}
+
+/// Gmsh 4.8 drops elements of a number it has already, and hides those of
+/// another order than the first of their volume.
+void CheckNoElementIsLost(const std::filesystem::path& path,
+                          Eigen::Index num_elements) {
+  std::vector<int> types;
+  std::vector<std::vector<std::size_t>> numbers;
+  std::vector<std::vector<std::size_t>> corners;
+  gmsh::model::mesh::getElements(types, numbers, corners);
+  Eigen::Index num_read = 0;
+  for (const std::vector<std::size_t>& of_type : numbers) {
+    num_read += static_cast<Eigen::Index>(of_type.size());
+  }
+  if (num_read < num_elements) {
+    ThrowInputError(path, "Gmsh can use only " + std::to_string(num_read) +
+                              " of its " + std::to_string(num_elements) +
+                              " elements; give each a number of its own, and "
+                              "all the same order");
+  }
 }
 
 Numbering ReadNodes(MeshFile& mesh) {
@@ -275,6 +312,21 @@ Eigen::MatrixXd Scatter(const std::vector<std::size_t>& numbers,
   return values;
 }
 
+void CheckNodesOfData(const MeshFile& mesh, const Numbering& nodes,
+                      const std::string& name,
+                      const std::vector<std::size_t>& numbers) {
+  // Nodes that Gmsh left out may have data all the same.
+  for (std::size_t i = 0; i < numbers.size() && mesh.num_nodes_left_out == 0;
+       ++i) {
+    if (nodes.Find(numbers[i]) < 0) {
+      ThrowInputError(mesh.path, "its data '" + name + "' name node number " +
+                                     std::to_string(numbers[i]) +
+                                     ", which the file does not have; correct "
+                                     "them");
+    }
+  }
+}
+
 void ReadViews(const Numbering& nodes, const Numbering& tetrahedra,
                MeshFile& mesh) {
   std::vector<int> views;
@@ -284,6 +336,11 @@ void ReadViews(const Numbering& nodes, const Numbering& tetrahedra,
         "View[" + std::to_string(gmsh::view::getIndex(view)) + "].";
     std::string name;
     gmsh::option::getString(option + "Name", name);
+    if (FindArray(mesh.node_arrays, name) != nullptr ||
+        FindArray(mesh.tetrahedron_arrays, name) != nullptr) {
+      ThrowInputError(mesh.path,
+                      "it has the data '" + name + "' twice; keep one");
+    }
     double num_steps = 0;
     gmsh::option::getNumber(option + "NbTimeStep", num_steps);
     if (num_steps != 1) {
@@ -301,6 +358,7 @@ void ReadViews(const Numbering& nodes, const Numbering& tetrahedra,
       ThrowDamaged(mesh.path, "its data '" + name + "' cannot be read");
     }
     if (kind == "NodeData") {
+      CheckNodesOfData(mesh, nodes, name, numbers);
       mesh.node_arrays.push_back(
           {name, Scatter(numbers, data, num_components, nodes)});
     } else if (kind == "ElementData") {
@@ -316,12 +374,12 @@ MeshFile ReadInSession(const std::filesystem::path& path) {
   mesh.is_vtk = false;
   try {
     const GmshSession session;
-    const Eigen::Index num_nodes = Merge(path);
+    const FileCounts counts = Merge(path);
     CheckVolumeElements(path);
+    CheckNoElementIsLost(path, counts.elements);
     const Numbering nodes = ReadNodes(mesh);
-    if (num_nodes > mesh.nodes.cols()) {
-      mesh.num_nodes_left_out = num_nodes - mesh.nodes.cols();
-    }
+    mesh.num_nodes_left_out =
+        std::max<Eigen::Index>(counts.nodes - mesh.nodes.cols(), 0);
     const Numbering tetrahedra = ReadTetrahedra(nodes, mesh);
     ReadPhysicalGroups(nodes, mesh);
     ReadViews(nodes, tetrahedra, mesh);
@@ -339,11 +397,16 @@ MeshFile ReadInSession(const std::filesystem::path& path) {
 }  // namespace
 
 MeshFile ReadGmshMesh(const std::filesystem::path& path) {
-  if (path.extension() == ".msh") {
+  if (FileExtension(path) == ".msh") {
     CheckMshBegin(path);
   }
   CheckEnd(path);
-  return ReadInSession(path);
+  if (const std::string damage = WhyGmshTextIsDamaged(path); !damage.empty()) {
+    ThrowDamaged(path, damage);
+  }
+  // In a thread of its own: Gmsh sets the number of OpenMP threads of the
+  // thread that starts it to one.
+  return std::async(std::launch::async, ReadInSession, path).get();
 }
 
 }  // namespace elastimate

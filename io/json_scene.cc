@@ -72,6 +72,16 @@ void AddSupport(const JsonValue& support, const MeshFile& mesh,
   }
 }
 
+MeshFile ReadNamedMesh(const JsonValue& name) {
+  const std::filesystem::path path = ResolvePath(name);
+  if (FileExtension(path) == ".json") {
+    name.Fail("is '" + name.String() +
+              "', which is a scene; name a mesh file (.vtu, .vtk, .msh, .mesh, "
+              ".unv or .bdf)");
+  }
+  return ReadMeshFile(path);
+}
+
 Supports ReadSupports(const JsonValue& document, const MeshFile& mesh) {
   Supports supports;
   supports.held.setConstant(3, mesh.nodes.cols(), false);
@@ -85,7 +95,7 @@ Supports ReadSupports(const JsonValue& document, const MeshFile& mesh) {
 /// Three numbers per node, from the one of the keys `file` and `array` that
 /// `value` has; finite where `mask` says.
 Eigen::Matrix3Xd ReadField(const JsonValue& value, const MeshFile& mesh,
-                           const ComponentMask& mask) {
+                           const ComponentMask& mask, const std::string& mend) {
   if (value.Has("file") == value.Has("array")) {
     value.Fail("must have exactly one of the keys file, array");
   }
@@ -101,7 +111,7 @@ Eigen::Matrix3Xd ReadField(const JsonValue& value, const MeshFile& mesh,
     field = NamedNodeArray(value.At("array"), mesh, 3);
     what = "the point array '" + value.At("array").String() + "'";
   }
-  RequireFinite(file, what, mesh, field, mask);
+  RequireFinite(file, what, mesh, field, mask, mend);
   return field;
 }
 
@@ -113,7 +123,8 @@ NodalForces ReadNodalForces(const JsonValue& load, const Context& context) {
     }
     return {
         ReadField(load, context.mesh,
-                  ComponentMask::Constant(3, context.mesh.nodes.cols(), true))};
+                  ComponentMask::Constant(3, context.mesh.nodes.cols(), true),
+                  "correct it")};
   }
   const Eigen::Vector3d value = load.At("value").Vector();
   const NodeMask nodes =
@@ -182,7 +193,8 @@ LoadCase ReadLoadCase(const JsonValue& value, const Context& context,
         displacement, context.mesh,
         load_case.observed.size() > 0
             ? load_case.observed
-            : ComponentMask::Constant(3, context.mesh.nodes.cols(), true));
+            : ComponentMask::Constant(3, context.mesh.nodes.cols(), true),
+        "correct it or leave it out of the observed nodes");
     ClearUnobserved(load_case);
   }
   return load_case;
@@ -196,7 +208,7 @@ FileScene ReadJsonScene(const std::filesystem::path& path,
   const JsonValue document(path, parsed);
   document.CheckKeys({"mesh", "supports", "cases"});
   FileScene file_scene;
-  file_scene.mesh = ReadMeshFile(ResolvePath(document.At("mesh")));
+  file_scene.mesh = ReadNamedMesh(document.At("mesh"));
   const MeshFile& mesh = file_scene.mesh;
   file_scene.scene.mesh = SceneMesh(mesh);
   file_scene.scene.supports = ReadSupports(document, mesh);

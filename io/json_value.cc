@@ -15,24 +15,28 @@ using nlohmann::json;
 /// Without this, the last of several equal keys would silently win.
 class RepeatedKeyCheck {
  public:
-  explicit RepeatedKeyCheck(const std::filesystem::path& path) : path_(path) {}
+  RepeatedKeyCheck(const std::filesystem::path& path, std::string& last_key)
+      : path_(path), last_key_(last_key) {}
 
   bool operator()(int /*depth*/, json::parse_event_t event, json& parsed) {
     if (event == json::parse_event_t::object_start) {
       keys_.emplace_back();
     } else if (event == json::parse_event_t::object_end) {
       keys_.pop_back();
-    } else if (event == json::parse_event_t::key &&
-               !keys_.back().insert(parsed.get<std::string>()).second) {
-      ThrowInputError(path_, "the key \"" + parsed.get<std::string>() +
-                                 "\" is given twice in one object; remove "
-                                 "one");
+    } else if (event == json::parse_event_t::key) {
+      last_key_ = parsed.get<std::string>();
+      if (!keys_.back().insert(last_key_).second) {
+        ThrowInputError(path_, "the key \"" + last_key_ +
+                                   "\" is given twice in one object; remove "
+                                   "one");
+      }
     }
     return true;
   }
 
  private:
   const std::filesystem::path& path_;
+  std::string& last_key_;
   std::vector<std::set<std::string>> keys_;
 };
 
@@ -49,8 +53,16 @@ std::string Join(const std::vector<std::string>& words) {
 json ParseJsonFile(const std::filesystem::path& path) {
   CheckReadable(path);
   std::ifstream file(path, std::ios::binary);
+  std::string last_key;
   try {
-    return json::parse(file, RepeatedKeyCheck(path));
+    return json::parse(file, RepeatedKeyCheck(path, last_key));
+  } catch (const json::out_of_range& error) {
+    // "[json.exception...] number overflow parsing '1e999'"; without a place.
+    std::string number = error.what();
+    number.erase(0, number.find('\'') + 1);
+    number.erase(std::min<std::size_t>(number.find('\''), 40));
+    ThrowInputError(path, "the number " + number + " of the key \"" + last_key +
+                              "\" is beyond the range of a double; correct it");
   } catch (const json::exception& error) {
     // "[json.exception...] parse error at line 3, column 7: ..."
     std::string message = error.what();

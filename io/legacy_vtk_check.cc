@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <fstream>
 #include <map>
+#include <set>
 #include <string_view>
 #include <system_error>
 
@@ -186,6 +187,7 @@ class LegacyVtkCheck {
       num_cell_types_ = TakeCount();
       Skip(num_cell_types_, "INT");
     } else if (section_ == "POINT_DATA" || section_ == "CELL_DATA") {
+      names_.clear();
       num_tuples_ = TakeCount();
     } else if (section_ == "METADATA") {
       SkipMetadata();
@@ -251,9 +253,17 @@ class LegacyVtkCheck {
         name = TakeWord();
       }
       section_ = "FIELD, array '" + std::string(name) + "'";
+      NoteArray(std::string(name));
       const std::int64_t num_components = TakeCount();
       const std::int64_t num_tuples = TakeCount();
       Skip(num_components * num_tuples, UpperCase(TakeWord()));
+    }
+  }
+
+  /// VTK takes the last of several arrays of one name.
+  void NoteArray(const std::string& name) {
+    if (!names_.insert(name).second) {
+      throw Damage{"it has two arrays '" + name.substr(0, 40) + "'"};
     }
   }
 
@@ -262,7 +272,11 @@ class LegacyVtkCheck {
         {"VECTORS", 3},  {"NORMALS", 3},    {"TENSORS", 9},
         {"TENSORS6", 6}, {"GLOBAL_IDS", 1}, {"PEDIGREE_IDS", 1}};
     const std::string kind = section_;
-    section_ += " '" + std::string(TakeWord()) + "'";
+    const std::string name(TakeWord());
+    section_ += " '" + name + "'";
+    if (kind != "LOOKUP_TABLE") {
+      NoteArray(name);
+    }
     if (kind == "SCALARS") {
       WalkScalars();
     } else if (kind == "COLOR_SCALARS") {
@@ -303,6 +317,7 @@ class LegacyVtkCheck {
   bool is_version_5_ = false;
   std::int64_t num_cells_ = 0;
   std::int64_t num_cell_types_ = 0;
+  std::set<std::string> names_;  ///< Of the point or cell data walked over.
   std::int64_t num_tuples_ = 0;  ///< Of the point or cell data walked over.
 };
 

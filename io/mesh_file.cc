@@ -1,8 +1,12 @@
 #include "elastimate/io/mesh_file.h"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <fstream>
 #include <set>
 #include <system_error>
+#include <tuple>
 
 #include "elastimate/io/gmsh_mesh.h"
 #include "elastimate/io/input_error.h"
@@ -27,12 +31,44 @@ void CheckPositions(const MeshFile& mesh) {
   }
 }
 
+/// A tetrahedron that comes twice is twice as stiff.
+void CheckTetrahedraDiffer(const MeshFile& mesh) {
+  struct Tetrahedron {
+    std::array<int, 4> nodes;
+    Eigen::Index index;
+  };
+  std::vector<Tetrahedron> tetrahedra;
+  tetrahedra.reserve(mesh.tetrahedra.cols());
+  for (Eigen::Index i = 0; i < mesh.tetrahedra.cols(); ++i) {
+    const auto corners = mesh.tetrahedra.col(i);
+    tetrahedra.push_back({{corners(0), corners(1), corners(2), corners(3)}, i});
+    std::sort(tetrahedra.back().nodes.begin(), tetrahedra.back().nodes.end());
+  }
+  std::sort(tetrahedra.begin(), tetrahedra.end(),
+            [](const Tetrahedron& a, const Tetrahedron& b) {
+              return std::tie(a.nodes, a.index) < std::tie(b.nodes, b.index);
+            });
+  const auto twin =
+      std::adjacent_find(tetrahedra.begin(), tetrahedra.end(),
+                         [](const Tetrahedron& a, const Tetrahedron& b) {
+                           return a.nodes == b.nodes;
+                         });
+  if (twin != tetrahedra.end()) {
+    ThrowInputError(
+        mesh.path,
+        "tetrahedra " + std::to_string(twin->index) + " and " +
+            std::to_string((twin + 1)->index) + " have the same nodes; " +
+            (mesh.is_vtk ? "keep one of them"
+                         : "save the mesh as .msh of version 4 (older ones "
+                           "repeat what is in several physical groups)"));
+  }
+}
+
 }  // namespace
 
 MeshFile ReadMeshFile(const std::filesystem::path& path) {
   CheckReadable(path);
-  // Exactly these: Gmsh runs a file of any other name as a script.
-  const std::string extension = path.extension().string();
+  const std::string extension = FileExtension(path);
   MeshFile mesh;
   if (extension == ".vtu") {
     mesh = ReadVtuMesh(path);
@@ -43,9 +79,9 @@ MeshFile ReadMeshFile(const std::filesystem::path& path) {
     mesh = ReadGmshMesh(path);
   } else {
     ThrowInputError(path,
-                    "the file name does not end in .vtu, .vtk, .msh, "
-                    ".mesh, .unv, .bdf or .json; give a file of one of "
-                    "these formats");
+                    "the file name does not end in .vtu, .vtk, .msh, .mesh, "
+                    ".unv or .bdf (a mesh) or in .json (a scene); give a file "
+                    "of one of these formats");
   }
   if (mesh.tetrahedra.cols() == 0) {
     ThrowInputError(path,
@@ -55,7 +91,20 @@ MeshFile ReadMeshFile(const std::filesystem::path& path) {
   mesh.path = path;
   MarkUsedNodes(mesh);
   CheckPositions(mesh);
+  CheckTetrahedraDiffer(mesh);
   return mesh;
+}
+
+std::string FileExtension(const std::filesystem::path& path) {
+  std::string small = path.extension().string();
+  std::string capital = small;
+  for (char& c : small) {
+    c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  for (char& c : capital) {
+    c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  }
+  return path.extension() == capital ? small : path.extension().string();
 }
 
 void CheckReadable(const std::filesystem::path& path) {

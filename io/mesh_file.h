@@ -47,12 +47,18 @@ struct MeshFile {
   Eigen::Index num_nodes_left_out = 0;
 };
 
-/// Reads .vtu, .vtk, .msh, .mesh, .unv and .bdf files.  Node positions are
-/// finite where a tetrahedron uses them; arrays are as the file has them.
-/// Throws std::invalid_argument, naming the file.
+/// Reads .vtu, .vtk, .msh, .mesh, .unv and .bdf files; the extension may be in
+/// capital letters.  Node positions are
+/// finite where a tetrahedron uses them; no tetrahedron comes twice; arrays are
+/// as the file has them. Throws std::invalid_argument, naming the file.
 ///
 /// VTK and Gmsh report through global state: not for concurrent calls.
 MeshFile ReadMeshFile(const std::filesystem::path& path);
+
+/// ".vtu" of "a.vtu" and of "A.VTU".  Of "a.Vtu" it is ".Vtu": Gmsh tells its
+/// formats by names in all small or all capital letters, and runs a file of any
+/// other name as a script.
+std::string FileExtension(const std::filesystem::path& path);
 
 /// Throws std::invalid_argument unless `path` is a regular file with content.
 void CheckReadable(const std::filesystem::path& path);

@@ -137,6 +137,9 @@ NodeMask SelectNodes(const JsonValue& selection, const MeshFile& mesh,
       mask.setConstant(true);
     } else if (word == "free" && free != nullptr) {
       mask = *free;
+      if (!mask.any()) {
+        selection.Fail("is \"free\", but the supports hold every node");
+      }
     } else if (word == "free") {
       selection.Fail("is \"free\", which cannot be used here");
     } else {

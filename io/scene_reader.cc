@@ -2,10 +2,12 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 #include <variant>
 
+#include "elastimate/core/loads.h"
 #include "elastimate/io/array_scene.h"
 #include "elastimate/io/file_scene.h"
 #include "elastimate/io/input_error.h"
@@ -143,9 +145,55 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
   return scene;
 }
 
+/// Data counted twice would make the standard errors too small.
+void CheckPathsDiffer(const std::vector<std::filesystem::path>& paths) {
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      std::error_code error;
+      if (std::filesystem::equivalent(paths[k], paths[i], error)) {
+        ThrowInputError(paths[i], "this file is given twice, also as '" +
+                                      paths[k].string() +
+                                      "'; give each load case only once");
+      }
+    }
+  }
+}
+
+bool AreSameMeasurement(const Mesh& mesh, const LoadCase& a,
+                        const LoadCase& b) {
+  return a.displacement.size() > 0 &&
+         a.displacement.size() == b.displacement.size() &&
+         a.displacement == b.displacement &&
+         a.observed.size() == b.observed.size() &&
+         (a.observed == b.observed).all() &&
+         AssembleLoads(mesh, a.loads) == AssembleLoads(mesh, b.loads);
+}
+
+/// Where each of the load cases that were read comes from: "load case 1 of
+/// 'first.vtu'".
+using CaseNames = std::vector<std::string>;
+
+/// Appends the load cases of `path` to the scene, each of which must be new.
+void AddLoadCases(const std::filesystem::path& path,
+                  std::vector<LoadCase> load_cases, Scene& scene,
+                  CaseNames& names) {
+  for (std::size_t i = 0; i < load_cases.size(); ++i) {
+    const std::string number = std::to_string(i + 1);
+    for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+      if (AreSameMeasurement(scene.mesh, scene.load_cases[k], load_cases[i])) {
+        ThrowInputError(path, "load case " + number +
+                                  " has the displacements and forces of " +
+                                  names[k] + "; give each load case only once");
+      }
+    }
+    names.push_back("load case " + number + " of '" + path.string() + "'");
+    scene.load_cases.push_back(std::move(load_cases[i]));
+  }
+}
+
 FileScene ReadFileScene(const std::filesystem::path& path,
                         Measurement measurement) {
-  return path.extension() == ".json"
+  return FileExtension(path) == ".json"
              ? ReadJsonScene(path, measurement)
              : SceneFromArrays(ReadMeshFile(path), measurement);
 }
@@ -157,23 +205,24 @@ SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
   if (paths.empty()) {
     throw std::invalid_argument("no scene file is given; name one");
   }
+  CheckPathsDiffer(paths);
   SceneReading reading;
+  CaseNames names;
   for (const std::filesystem::path& path : paths) {
     Scene scene =
         FinishScene(path, ReadFileScene(path, measurement), reading.notices);
+    std::vector<LoadCase> load_cases = std::move(scene.load_cases);
     if (&path == &paths.front()) {
+      scene.load_cases.clear();
       reading.scene = std::move(scene);
-      continue;
-    }
-    const std::string difference = WhyDifferent(reading.scene, scene);
-    if (!difference.empty()) {
+    } else if (const std::string difference =
+                   WhyDifferent(reading.scene, scene);
+               !difference.empty()) {
       ThrowInputError(path, "this is no further load case of '" +
                                 paths.front().string() + "': " + difference +
                                 "; use the same mesh and supports");
     }
-    for (LoadCase& load_case : scene.load_cases) {
-      reading.scene.load_cases.push_back(std::move(load_case));
-    }
+    AddLoadCases(path, std::move(load_cases), reading.scene, names);
   }
   return reading;
 }

@@ -22,7 +22,8 @@ struct SceneReading {
 /// node data), or from a scene.json over a mesh file (.vtu, .vtk, .msh, .mesh,
 /// .unv, .bdf); the README describes both.  Several files are further load
 /// cases of one specimen: the same nodes (to a millionth of the largest
-/// coordinate), cells, regions and supports.
+/// coordinate), cells, regions and supports.  A load case given twice is an
+/// error: its noise would count as that of two measurements.
 ///
 /// The array `prescribed` (3 components, optional) is the displacement at which
 /// held components are held.  A node is known by its zero-based position among

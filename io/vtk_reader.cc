@@ -2,6 +2,7 @@
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
+#include <vtkDataArraySelection.h>
 #include <vtkDoubleArray.h>
 #include <vtkIdTypeArray.h>
 #include <vtkNew.h>
@@ -92,11 +93,18 @@ VtkGrid Read(const std::filesystem::path& path, const VtkMessages& messages,
 VtkGrid ReadXmlVtk(const std::filesystem::path& path) {
   const VtkMessages messages(VtkMessages::Warnings::kIgnored);
   try {
-    const std::string damage = WhyXmlVtkIsDamaged(path);
-    if (messages.HasError() || !damage.empty()) {
-      ThrowDamaged(path, messages.HasError() ? messages.FirstError() : damage);
+    const XmlVtkFrame frame = CheckXmlVtk(path);
+    if (messages.HasError() || !frame.damage.empty()) {
+      ThrowDamaged(path,
+                   messages.HasError() ? messages.FirstError() : frame.damage);
     }
     vtkNew<vtkXMLUnstructuredGridReader> reader;
+    for (const std::string& name : frame.text_point_arrays) {
+      reader->GetPointDataArraySelection()->DisableArray(name.c_str());
+    }
+    for (const std::string& name : frame.text_cell_arrays) {
+      reader->GetCellDataArraySelection()->DisableArray(name.c_str());
+    }
     return Read(path, messages, reader.Get());
   } catch (const std::bad_alloc&) {
     ThrowDamaged(path, "its sizes exceed the memory");

@@ -6,10 +6,12 @@
 #include <vtkXMLDataParser.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cstdint>
 #include <fstream>
 #include <map>
+#include <set>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -92,30 +94,38 @@ class XmlVtkCheck {
     parser_->SetStream(&file_);
   }
 
-  std::string Run() {
+  XmlVtkFrame Run() {
+    CheckRoot();
+    return frame_;
+  }
+
+ private:
+  void CheckRoot() {
     if (parser_->Parse() == 0 || parser_->GetRootElement() == nullptr) {
-      return "its XML cannot be parsed";
+      frame_.damage = "its XML cannot be parsed";
+      return;
     }
     vtkXMLDataElement* root = parser_->GetRootElement();
     const std::string type(Attribute(root, "type"));
     if (type != "UnstructuredGrid") {
-      return "its type is '" + type + "' instead of 'UnstructuredGrid'";
+      frame_.damage =
+          "its type is '" + type + "' instead of 'UnstructuredGrid'";
+      return;
     }
     const std::string_view header = Attribute(root, "header_type");
     header_size_ = header.empty() ? 4 : WordSize(header);
     if (header_size_ < 4) {
-      return "its header_type is unknown";
+      frame_.damage = "its header_type is unknown";
+      return;
     }
     is_big_endian_ = Attribute(root, "byte_order") == "BigEndian";
     is_compressed_ = !Attribute(root, "compressor").empty();
     CheckChildren(root);
-    return damage_;
   }
 
- private:
   void CheckChildren(vtkXMLDataElement* element) {
     for (int i = 0; i < element->GetNumberOfNestedElements(); ++i) {
-      if (damage_.empty()) {
+      if (frame_.damage.empty()) {
         CheckElement(element->GetNestedElement(i), element);
       }
     }
@@ -133,9 +143,10 @@ class XmlVtkCheck {
       // Positions do not shrink to less than a hundredth of a byte.
       if (std::min(num_points_, num_cells_) < 0 ||
           std::max(num_points_, num_cells_) > 100 * file_size_) {
-        damage_ = "its NumberOfPoints or NumberOfCells is wrong";
+        frame_.damage = "its NumberOfPoints or NumberOfCells is wrong";
       }
     }
+    names_.clear();
     CheckChildren(element);
   }
 
@@ -154,16 +165,41 @@ class XmlVtkCheck {
     return -1;
   }
 
+  /// VTK takes the last of several arrays of one name.
+  void CheckName(const std::string& name, const std::string& parent) {
+    if (parent != "PointData" && parent != "CellData") {
+      return;
+    }
+    if (name.empty()) {
+      frame_.damage = "an array of its " + parent + " has no name";
+    } else if (!names_.insert(name).second) {
+      frame_.damage = "its " + parent + " has two arrays '" + name + "'";
+    }
+  }
+
+  void NoteTextArray(const std::string& name, const std::string& parent) {
+    if (parent == "PointData") {
+      frame_.text_point_arrays.push_back(name);
+    } else if (parent == "CellData") {
+      frame_.text_cell_arrays.push_back(name);
+    }
+  }
+
   void CheckArray(vtkXMLDataElement* array, vtkXMLDataElement* parent) {
     const std::string name(Attribute(array, "Name"));
+    CheckName(name, parent->GetName());
+    if (Attribute(array, "type") == "String") {
+      NoteTextArray(name, parent->GetName());
+    }
     const std::int64_t components = Count(array, "NumberOfComponents", 1);
     if (components < 0 || components > 100000) {
-      damage_ = "the NumberOfComponents of its array '" + name + "' is wrong";
+      frame_.damage =
+          "the NumberOfComponents of its array '" + name + "' is wrong";
       return;
     }
     if (Count(array, "NumberOfTuples", 0) < 0 ||
         Count(array, "NumberOfTuples", 0) > 100 * file_size_) {
-      damage_ = "the NumberOfTuples of its array '" + name + "' is wrong";
+      frame_.damage = "the NumberOfTuples of its array '" + name + "' is wrong";
       return;
     }
     const std::int64_t num_tuples = NumTuples(array, parent);
@@ -173,26 +209,61 @@ class XmlVtkCheck {
             : static_cast<double>(num_tuples) *
                   static_cast<double>(std::max<std::int64_t>(components, 1));
     const std::string_view format = Attribute(array, "format");
+    const auto word_size =
+        static_cast<double>(WordSize(Attribute(array, "type")));
     if (format != "binary" && format != "appended") {
-      if (num_words > static_cast<double>(file_size_)) {
-        damage_ = "its array '" + name + "' is shorter than it says";
+      if (word_size > 0) {
+        CheckNumWords(name, CountInlineWords(array), num_words);
+      } else if (num_words > static_cast<double>(file_size_)) {
+        frame_.damage = "its array '" + name + "' is shorter than it says";
       }
-    } else if (!HasItsData(array, format == "appended",
-                           num_words * static_cast<double>(WordSize(
-                                           Attribute(array, "type"))))) {
-      damage_ = "the data of its array '" + name + "' are not all there";
+      return;
+    }
+    const double size = DataSize(array, format == "appended");
+    if (size < 0) {
+      frame_.damage = "the data of its array '" + name + "' are not all there";
+    } else if (word_size > 0) {
+      CheckNumWords(name, size / word_size, num_words);
     }
   }
 
-  /// Whether the sizes ahead of the data of an array fit the file and its
-  /// expected number of bytes (negative: any).
-  bool HasItsData(vtkXMLDataElement* array, bool is_appended, double expected) {
+  /// VTK ignores what is beyond the due number; any number is right when that
+  /// is negative.
+  void CheckNumWords(const std::string& name, double num_words, double due) {
+    if (due >= 0 && num_words != due) {
+      frame_.damage = "its array '" + name + "' has " + Text(num_words) +
+                      " values where " + Text(due) + " are due";
+    }
+  }
+
+  static std::string Text(double count) {
+    return std::to_string(static_cast<std::int64_t>(count));
+  }
+
+  double CountInlineWords(vtkXMLDataElement* array) {
+    file_.clear();
+    file_.seekg(parser_->FindInlineData(array));
+    std::int64_t count = 0;
+    bool was_space = true;
+    std::streambuf& buffer = *file_.rdbuf();
+    for (int c = buffer.sbumpc();
+         c != std::char_traits<char>::eof() && c != '<'; c = buffer.sbumpc()) {
+      const bool is_space = std::isspace(c) != 0;
+      count += was_space && !is_space ? 1 : 0;
+      was_space = is_space;
+    }
+    return static_cast<double>(count);
+  }
+
+  /// The number of bytes that the sizes ahead of the data of an array give, or
+  /// -1 where these do not fit the file.
+  double DataSize(vtkXMLDataElement* array, bool is_appended) {
     std::int64_t position = 0;
     if (is_appended) {
       const std::int64_t offset = Count(array, "offset", -1);
       position = parser_->GetAppendedDataPosition();
       if (offset < 0 || offset > file_size_ - position) {
-        return false;
+        return -1;
       }
       position += offset;
     } else {
@@ -202,39 +273,42 @@ class XmlVtkCheck {
     const bool is_base64 = !is_appended || AppendedIsBase64();
     if (!is_compressed_) {
       const auto size = ReadHeader(position, is_base64, 1);
-      return size.size() == 1 && size[0] <= Available(position) &&
-             size[0] >= expected;
+      return size.size() == 1 && size[0] <= Available(position) ? size[0] : -1;
     }
     const auto sizes = ReadHeader(position, is_base64, 3);
-    return sizes.size() == 3 && BlocksFit(position, is_base64, sizes[0],
-                                          sizes[1], sizes[2], expected);
+    return sizes.size() == 3
+               ? BlocksSize(position, is_base64, sizes[0], sizes[1], sizes[2])
+               : -1;
   }
 
-  bool BlocksFit(std::int64_t position, bool is_base64, double num_blocks,
-                 double block_size, double last_block_size, double expected) {
+  /// The same for compressed data.
+  double BlocksSize(std::int64_t position, bool is_base64, double num_blocks,
+                    double block_size, double last_block_size) {
     const double available = Available(position);
     if (num_blocks * static_cast<double>(header_size_) > available ||
         last_block_size > block_size) {
-      return false;
+      return -1;
+    }
+    if (num_blocks == 0) {
+      return 0;
     }
     const double size = last_block_size > 0
                             ? (num_blocks - 1) * block_size + last_block_size
                             : num_blocks * block_size;
-    if (num_blocks == 0) {
-      return expected <= 0;
-    }
     const auto header = ReadHeader(position, is_base64,
                                    3 + static_cast<std::int64_t>(num_blocks));
     if (static_cast<double>(header.size()) != 3 + num_blocks) {
-      return false;
+      return -1;
     }
     double compressed_size = 0;
     for (std::size_t i = 3; i < header.size(); ++i) {
       compressed_size += header[i];
     }
-    return compressed_size <= available && size >= expected &&
-           std::max(size, block_size) <=
-               kLargestCompression * (compressed_size + 64);
+    return compressed_size <= available &&
+                   std::max(size, block_size) <=
+                       kLargestCompression * (compressed_size + 64)
+               ? size
+               : -1;
   }
 
   double Available(std::int64_t position) const {
@@ -289,12 +363,13 @@ class XmlVtkCheck {
   bool is_compressed_ = false;
   std::int64_t num_points_ = 0;
   std::int64_t num_cells_ = 0;
-  std::string damage_;  ///< What was found first.
+  XmlVtkFrame frame_;            ///< With the damage that was found first.
+  std::set<std::string> names_;  ///< Of the point or cell data walked over.
 };
 
 }  // namespace
 
-std::string WhyXmlVtkIsDamaged(const std::filesystem::path& path) {
+XmlVtkFrame CheckXmlVtk(const std::filesystem::path& path) {
   return XmlVtkCheck(path).Run();
 }
 

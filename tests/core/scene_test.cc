@@ -88,6 +88,12 @@ TEST_F(ValidatedScene, NeedsFiniteSupportDisplacements) {
   }
 }
 
+TEST_F(ValidatedScene, IgnoresSupportDisplacementsOfFreeComponents) {
+  scene_.supports.held.col(7).setConstant(false);
+  scene_.supports.displacement.col(7).setConstant(kNan);
+  EXPECT_NO_THROW(ValidateScene(scene_));
+}
+
 TEST_F(ValidatedScene, NeedsAFreeDegreeOfFreedom) {
   scene_.supports.held.setConstant(true);
   EXPECT_THROWS_WITH(ValidateScene(scene_), "every degree of freedom is held");
@@ -202,6 +208,57 @@ TEST_F(ValidatedScene, NeedsAPositiveNoise) {
   }
 }
 
+// Beyond these, squares and products of three lengths leave the range of a
+// double.
+TEST_F(ValidatedScene, NeedsUnitsWhoseSquaresAreNumbers) {
+  const Scene valid = scene_;
+  for (const double unit : {1e-60, 1e60, 1e200}) {
+    scene_.mesh.nodes = unit * valid.mesh.nodes;
+    EXPECT_THROWS_WITH(ValidateScene(scene_),
+                       "^the extent of the mesh has the magnitude .*e[+-].*; "
+                       "choose units in which it is between 1e-50 and "
+                       "1e\\+50$");
+    scene_ = valid;
+    Second().displacement(1, 40) = unit;
+    EXPECT_THROWS_WITH(
+        ValidateScene(scene_),
+        "the measured displacement of load case 2 has the magnitude "
+        ".*; choose units");
+    Second().observed(1, 40) = false;
+    EXPECT_NO_THROW(ValidateScene(scene_));
+    scene_ = valid;
+    scene_.supports.held(1, 2) = true;
+    scene_.supports.displacement(1, 2) = -unit;
+    EXPECT_THROWS_WITH(ValidateScene(scene_),
+                       "the displacement of the supports has the magnitude");
+    scene_ = valid;
+    Second().loads[1] =
+        NodalForces{Eigen::Matrix3Xd::Constant(3, NumNodes(), unit)};
+    EXPECT_THROWS_WITH(ValidateScene(scene_),
+                       "the force in load 2 of load case 2 has the magnitude");
+    scene_ = valid;
+    SecondLoad<BodyForce>(0).force_density(2) = unit;
+    EXPECT_THROWS_WITH(
+        ValidateScene(scene_),
+        "the body force in load 1 of load case 2 has the magnitude");
+    scene_ = valid;
+    SecondLoad<Traction>(1).traction *= unit;
+    EXPECT_THROWS_WITH(
+        ValidateScene(scene_),
+        "the traction in load 2 of load case 2 has the magnitude");
+    scene_ = valid;
+    SecondLoad<Pressure>(2).pressure = -unit;
+    EXPECT_THROWS_WITH(
+        ValidateScene(scene_),
+        "the pressure in load 3 of load case 2 has the magnitude");
+    scene_ = valid;
+    Second().noise_sd = unit;
+    EXPECT_THROWS_WITH(ValidateScene(scene_),
+                       "the noise standard deviation of load case 2 has");
+    scene_ = valid;
+  }
+}
+
 // Supports of a mesh, held one component at a time.
 class HeldBox : public ::testing::Test {
  protected:
@@ -254,7 +311,25 @@ TEST_F(HeldBox, AtTwoNodesTurnsAboutTheirLine) {
   Release();
   Hold(kOrigin, "xyz");
   Hold(kOpposite, "xyz");
-  EXPECT_THAT(Why(), ContainsRegex("rotate about [xyz]"));
+  EXPECT_THAT(Why(), HasSubstr("rotate about (0.27, 0.53, 0.8) without"));
+}
+
+// About an axis at a corner, the centroid moves along z by more than either
+// component of the rotation.
+TEST_F(HeldBox, TurnsAboutAnAxisFarFromItsCentroid) {
+  mesh_ = BoxMesh({10, 10, 1}, {1, 1, 0.01});
+  Release();
+  Hold(9 + 11 * 10, "xyz");
+  Hold(10 + 11 * 9, "xyz");
+  EXPECT_THAT(Why(),
+              ContainsRegex("rotate about \\(-?0.71, -?0.71, 0\\) without"));
+}
+
+TEST_F(HeldBox, MovesWhenItCanMoveAndRotate) {
+  supports_.held.row(2).setConstant(true);
+  EXPECT_THAT(Why(), ContainsRegex(" move along [xy] "));
+  Release();
+  EXPECT_THAT(Why(), ContainsRegex(" move along [xyz] "));
 }
 
 TEST_F(HeldBox, AtThreeNodesOfALineTurnsAboutIt) {

@@ -160,6 +160,20 @@ TEST(ClosedForm, SaysThatNoiseMakesItUnusable) {
   EXPECT_FALSE(estimate.why_no_standard_error.empty());
 }
 
+// Twenty measurements under noise that biases nu by more than E.
+TEST(ClosedForm, SaysThatNoiseBiasesNu) {
+  for (int seed = 1; seed <= 20; ++seed) {
+    Scene scene = testing::SmallScene("bar");
+    testing::Measure({5e4, 0.3}, scene);
+    testing::AddNoise(3e-3, seed, scene);
+    const Estimate estimate = ClosedForm().Run(scene, {});
+    if (estimate.IsUsable()) {
+      EXPECT_NEAR(estimate.elasticity.poisson_ratio, 0.3,
+                  0.03 + 3 * *estimate.PoissonRatioStandardError());
+    }
+  }
+}
+
 TEST(ClosedForm, AKnownPoissonRatioLeavesNoBias) {
   constexpr int kSeeds = 200;
   Scene exact = SmallScene("organ");

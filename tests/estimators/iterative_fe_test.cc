@@ -172,6 +172,27 @@ TEST(IterativeFe, LossesRejectOutliers) {
   EXPECT_LT(robust[1], 2 * clean);
 }
 
+TEST(IterativeFe, LossesStandManyGrossOutliers) {
+  Scene scene = SmallScene("organ");
+  Measure({5e4, 0.3}, scene);
+  const double sd = AddNoise(0.01, 1, scene);
+  std::mt19937_64 generator(2);
+  std::normal_distribution<double> normal(0, 1e4 * sd);
+  for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); node += 3) {
+    scene.load_cases[0].displacement.col(node) += Eigen::Vector3d(
+        normal(generator), normal(generator), normal(generator));
+  }
+  for (const Loss loss : {Loss::kHuber, Loss::kCauchy}) {
+    EstimatorOptions options;
+    options.loss = loss;
+    const Estimate estimate = IterativeFe().Run(scene, options);
+    ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+    EXPECT_NEAR(estimate.elasticity.youngs_modulus, 5e4,
+                4 * *estimate.YoungsModulusStandardError());
+    EXPECT_LT(*estimate.YoungsModulusStandardError(), 2e3);
+  }
+}
+
 TEST(IterativeFe, LossesCostLittleOnCleanAndExactData) {
   Scene scene = SmallScene("organ");
   Measure({5e4, 0.3}, scene);

@@ -14,6 +14,25 @@ TEST(Median, OfOddAndEvenNumbersOfValues) {
   EXPECT_EQ(Median({1e9, -1e9, 0, 1}), 0.5);
 }
 
+TEST(LeastAbsoluteDeviations, IsNotMovedByOutliers) {
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(50, -3, 4);
+  Eigen::VectorXd y = 2.5 * x;
+  for (Eigen::Index i = 0; i < y.size(); i += 3) {
+    y(i) -= 1e6 * x(i);
+  }
+  EXPECT_NEAR(LeastAbsoluteDeviations(x, y), 2.5, 1e-12);
+}
+
+TEST(LeastAbsoluteDeviations, MinimisesTheSumOfAbsoluteDeviations) {
+  const Eigen::VectorXd x = Eigen::VectorXd::Random(21);
+  const Eigen::VectorXd y = Eigen::VectorXd::Random(21);
+  const double t = LeastAbsoluteDeviations(x, y);
+  const double least = (y - t * x).lpNorm<1>();
+  for (const double other : {t - 1, t - 1e-3, t + 1e-3, t + 1}) {
+    EXPECT_GT((y - other * x).lpNorm<1>(), least);
+  }
+}
+
 Estimate WithCovariance(double youngs_sd, double nu_sd, double correlation) {
   Estimate estimate;
   estimate.elasticity = {100, 0.25};

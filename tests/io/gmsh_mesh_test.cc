@@ -1,8 +1,11 @@
 #include "elastimate/io/gmsh_mesh.h"
 
+#include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gmsh.h>
 #include <gtest/gtest.h>
+
+#include <clocale>
 
 #include "elastimate/io/scene_reader.h"
 #include "tests/io/gmsh_files.h"
@@ -151,6 +154,102 @@ TEST_F(GmshMeshTest, ErrsOnDamage) {
                      "it does not begin with \\$MeshFormat");
   EXPECT_THROWS_WITH(Read("mesh.mesh", "MeshVersionFormatted 2\nDimension 3\n"),
                      "mesh.mesh: .*its last line does not begin with END");
+}
+
+// Gmsh stops at the count and loses what follows.
+TEST_F(GmshMeshTest, ErrsOnCountsThatAreTooSmallOrTooLarge) {
+  const auto expect = [this](const std::string& whole, const std::string& from,
+                             const std::string& to,
+                             const std::string& pattern) {
+    EXPECT_THROWS_WITH(
+        Read(Replaced(whole, from, to)),
+        "mesh.msh: the file is damaged .*its section " + pattern);
+  };
+  const std::string v1 = GmshVersion1Mesh();
+  expect(v1, "$NOD\n5", "$NOD\n4", ".NOD goes on after the 4 entries");
+  expect(v1, "$ELM\n4", "$ELM\n3", ".ELM goes on after the 3 entries");
+  expect(v1, "$ELM\n4", "$ELM\n5", ".ELM ends before the 5 entries");
+  expect(v1, "$ELM\n4", "$ELM\n-4", ".ELM counts -4 entries");
+  const std::string v2 = GmshVersion2Mesh();
+  expect(v2, "$Nodes\n5", "$Nodes\n4", ".Nodes goes on after the 4 entries");
+  expect(v2, "$Elements\n5", "$Elements\n4", ".Elements goes on after the 4");
+  expect(v2, "$Nodes\n5", "$Nodes\n6", ".Nodes ends before the 6 entries");
+  expect(v2, "$Nodes\n5\n", "$Nodes\n", ".Nodes");
+  const std::string v4 = GmshVersion4Mesh();
+  expect(v4, "3 1 0 5\n", "3 1 0 4\n", ".Nodes goes on after the 4 entries");
+  expect(v4, "3 1 4 2\n", "3 1 4 1\n", ".Elements goes on after the 3");
+  expect(v4, "$Elements\n2", "$Elements\n1",
+         ".Elements goes on after the 2 entries");
+  expect(v4, "$Elements\n2 4", "$Elements\n2 3",
+         ".Elements have more or fewer entries");
+  expect(v4, "3 1 4 2\n", "3 1 4\n", ".Elements lacks a count");
+}
+
+TEST_F(GmshMeshTest, ErrsOnNodeNumbersThatComeTwice) {
+  EXPECT_THROWS_WITH(
+      Read(Replaced(GmshVersion2Mesh(), "$Nodes\n5\n", "$Nodes\n6\n5 9 9 9\n")),
+      "its section .Nodes has the number 5 twice");
+  EXPECT_THROWS_WITH(Read(Replaced(GmshVersion4Mesh(), "\n5\n7\n", "\n5\n5\n")),
+                     "its section .Nodes has the number 5 twice");
+}
+
+TEST_F(GmshMeshTest, ErrsOnElementsThatGmshLoses) {
+  const auto expect = [this](const std::string& last) {
+    EXPECT_THROWS_WITH(
+        Read(Replaced(GmshVersion2Mesh(), "5 4 2 1 1 10 2 3 7", last)),
+        "mesh.msh: Gmsh can use only 4 of its 5 elements");
+  };
+  expect("4 4 2 1 1 10 2 3 7");
+  expect("5 11 2 1 1 10 2 3 7 10 2 3 5 7 2");
+}
+
+TEST_F(GmshMeshTest, ErrsOnTetrahedraThatComeTwice) {
+  EXPECT_THROWS_WITH(Read(Replaced(GmshVersion2Mesh(), "5 4 2 1 1 10 2 3 7",
+                                   "5 4 2 2 1 2 10 3 5")),
+                     "mesh.msh: tetrahedra 0 and 1 have the same nodes; save "
+                     "the mesh as .msh of version 4");
+}
+
+TEST_F(GmshMeshTest, ErrsOnDataOfNodesThatAreNotThere) {
+  const std::string data = GmshNodeData("u", "1 2 3");
+  EXPECT_THROWS_WITH(
+      Read(GmshVersion2Mesh() + Replaced(Replaced(data, "3\n5\n", "3\n6\n"),
+                                         "$End", "99 1 1 1\n$End")),
+      "mesh.msh: its data 'u' name node number 99, which the file does not");
+}
+
+TEST_F(GmshMeshTest, ErrsOnCountsOfMeditFiles) {
+  const std::string whole =
+      "MeshVersionFormatted 2\nDimension\n3\n"
+      "Vertices\n5\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 1\n0 0 -1 1\n"
+      "Tetrahedra\n2\n1 2 3 4 1\n1 2 3 5 1\nEnd\n";
+  EXPECT_EQ(Read("a.mesh", whole).tetrahedra.cols(), 2);
+  EXPECT_THROWS_WITH(
+      Read("a.mesh", Replaced(whole, "Tetrahedra\n2", "Tetrahedra\n1")),
+      "a.mesh: .*its section Tetrahedra goes on after the 1 entries");
+  EXPECT_THROWS_WITH(
+      Read("a.mesh", Replaced(whole, "Vertices\n5", "Vertices\n6")),
+      "a.mesh: .*its section Vertices ends before the 6 entries");
+}
+
+// A program that uses the library keeps its own settings.
+TEST_F(GmshMeshTest, LeavesTheProcessAsItWas) {
+  using Get = int (*)();
+  using Set = void (*)(int);
+  const auto get =
+      reinterpret_cast<Get>(dlsym(RTLD_DEFAULT, "omp_get_max_threads"));
+  const auto set =
+      reinterpret_cast<Set>(dlsym(RTLD_DEFAULT, "omp_set_num_threads"));
+  ASSERT_NE(get, nullptr);
+  ASSERT_NE(set, nullptr);
+  const int num_threads = get();
+  set(7);
+  ASSERT_NE(std::setlocale(LC_NUMERIC, "C.UTF-8"), nullptr);
+  Read(GmshVersion2Mesh());
+  EXPECT_EQ(get(), 7);
+  EXPECT_STREQ(std::setlocale(LC_NUMERIC, nullptr), "C.UTF-8");
+  std::setlocale(LC_NUMERIC, "C");
+  set(num_threads);
 }
 
 TEST_F(GmshMeshTest, ReadsOnAfterAnError) {

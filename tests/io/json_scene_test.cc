@@ -177,6 +177,14 @@ TEST_F(JsonSceneTest, ReadsNodalForces) {
             Eigen::Vector3d(1, 2, 3));
 }
 
+TEST_F(JsonSceneTest, SaysThatNothingIsFree) {
+  EXPECT_THROWS_WITH(
+      Read(Replaced(WithLoad(R"({"type": "nodal_force", "value": [0, 0, 1],
+                                 "nodes": "free"})"),
+                    R"({"ids": [0, 1, 4]})", R"("all")")),
+      "loads\\[0\\].nodes is \"free\", but the supports hold every node");
+}
+
 TEST_F(JsonSceneTest, SelectsOutwardFacets) {
   for (const std::string surface :
        {R"({"physical": "top"})", R"({"physical": 70})"}) {
@@ -229,7 +237,8 @@ TEST_F(JsonSceneTest, ReadsWhatWasObserved) {
   folder_.Write("u.csv", Replaced(kField, "0,0,0", "nan,0,inf"));
   EXPECT_TRUE((observed(R"("free")") == expected).all());
   EXPECT_THROWS_WITH(observed(R"("all")"),
-                     "u.csv: the row of node 0 .* \\(x\\) is nan");
+                     "u.csv: the row of node 0 .* \\(x\\) is nan; correct it "
+                     "or leave it out of the observed nodes");
 }
 
 TEST_F(JsonSceneTest, ReadsObservedComponentsFromAnArray) {
@@ -298,7 +307,9 @@ TEST_F(JsonSceneTest, PlacesSyntaxErrors) {
   EXPECT_THROWS_WITH(Read(Replaced(kDocument, "\"supports\":", "\"supports\"")),
                      "scene.json: line 3, column 14: syntax error");
   EXPECT_THROWS_WITH(Read(Replaced(kDocument, "1e-5", "1e999")),
-                     "scene.json: .*1e999");
+                     "^[^ ]*scene.json: the number 1e999 of the key "
+                     "\"noise_sd\" is beyond the range of a double; correct "
+                     "it$");
   EXPECT_THROWS_WITH(Read(Replaced(kDocument, "1e-5", "1e-5, \"noise_sd\": 1")),
                      "scene.json: the key \"noise_sd\" is given twice");
   for (std::size_t size = 1; size < kDocument.size() - 2; size += 7) {
@@ -313,15 +324,33 @@ TEST_F(JsonSceneTest, NamesTheFilesItNeeds) {
   EXPECT_THROWS_WITH(Read(Replaced(kDocument, "u.csv", "no.csv")),
                      "no.csv: no such file");
   EXPECT_THROWS_WITH(Read(Replaced(kDocument, "mesh.msh", "scene.json")),
-                     "scene.json: the file name does not end in");
+                     "scene.json: mesh is 'scene.json', which is a scene; "
+                     "name a mesh file");
+  EXPECT_THROWS_WITH(
+      Read(Replaced(kDocument, "mesh.msh",
+                    folder_.Write("mesh.stl", "solid").filename())),
+      "mesh.stl: the file name does not end in");
 }
 
 TEST_F(JsonSceneTest, JoinsWithOtherFilesOfTheMesh) {
   const auto json = folder_.Write("scene.json", kDocument);
   const auto msh = folder_.Write("scene.msh", GmshVersion2Scene());
-  EXPECT_EQ(ReadScene({json, msh, json}, Measurement::kRequired)
-                .scene.load_cases.size(),
-            3);
+  EXPECT_EQ(
+      ReadScene({json, msh}, Measurement::kRequired).scene.load_cases.size(),
+      2);
+}
+
+TEST_F(JsonSceneTest, ErrsOnALoadCaseGivenTwice) {
+  const std::string load_case = kDocument.substr(
+      kDocument.find("{ \"displacement"),
+      kDocument.rfind("]") - kDocument.find("{ \"displacement"));
+  const std::string twice =
+      Replaced(kDocument, load_case, load_case + ", " + load_case);
+  EXPECT_THROWS_WITH(
+      Read(twice),
+      "scene.json: load case 2 has the displacements and forces of load case 1 "
+      "of '.*scene.json'; give each load case only once");
+  EXPECT_NO_THROW(Read(Replaced(twice, "-9810", "-9811")));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "tests/io/gmsh_files.h"
 #include "tests/io/scene_files.h"
 #include "tests/io/vtk_files.h"
 #include "tests/throws.h"
@@ -174,6 +175,65 @@ TEST_F(SceneReaderTest, NamesLoadCasesOutOfSequence) {
   EXPECT_THROWS_WITH(Read(scene_.mesh, fields), "'force_2' is missing");
 }
 
+TEST_F(SceneReaderTest, RefusesSupportsOfOneLoadCase) {
+  for (const std::string name : {"fixed", "prescribed"}) {
+    Fields fields = fields_;
+    fields.point.push_back(FieldOf(fields, name));
+    fields.point.back().name += "_2";
+    EXPECT_THROWS_WITH(Read(scene_.mesh, fields),
+                       "array '" + name +
+                           "_2' belongs to no load case, since "
+                           "all have the same supports");
+  }
+}
+
+TEST_F(SceneReaderTest, ErrsOnTwoArraysOfOneName) {
+  EXPECT_THROWS_WITH(
+      Read(LegacySceneText() + "VECTORS displacement double\n"
+                               "0 0 0 0 0 0 7 7 7 0 0 0 .1 .2 .3 .4 .5 .6\n"),
+      "scene.vtk: .*it has two arrays 'displacement'");
+  const auto path = folder_.Path() / "scene.vtu";
+  WriteEncoded(path, scene_.mesh, fields_, AllVtkEncodings()[2]);
+  const std::string whole = ReadFile(path);
+  EXPECT_THROWS_WITH(
+      ReadScene({folder_.Write(
+                    "a.vtu", Replaced(whole, "\"force\"", "\"displacement\""))},
+                Measurement::kRequired),
+      "a.vtu: .*its PointData has two arrays 'displacement'");
+  EXPECT_THROWS_WITH(
+      ReadScene({folder_.Write("a.vtu", Replaced(whole, "Name=\"force\"", ""))},
+                Measurement::kRequired),
+      "a.vtu: .*an array of its PointData has no name");
+  EXPECT_THROWS_WITH(
+      ReadScene({folder_.Write("a.msh", GmshVersion2Scene() +
+                                            GmshNodeData("force", "1 2 3"))},
+                Measurement::kRequired),
+      "a.msh: it has the data 'force' twice");
+}
+
+// VTK crashes on strings that do not end.
+TEST_F(SceneReaderTest, LeavesArraysOfStringsAlone) {
+  const auto path = folder_.Path() / "scene.vtu";
+  WriteEncoded(path, scene_.mesh, fields_, AllVtkEncodings()[0]);
+  const std::string whole = ReadFile(path);
+  for (const std::string text : {"104 0 104 0 104 0 104 0 104 0", "104", ""}) {
+    const std::string array =
+        R"(<Array type="String" Name="name" format="ascii">)" + text +
+        "</Array>";
+    const auto with_text = folder_.Write(
+        "text.vtu", Replaced(whole, "</PointData>", array + "</PointData>"));
+    ExpectSameScene(ReadScene({with_text}, Measurement::kRequired).scene,
+                    scene_, 1e-9);
+  }
+  EXPECT_THROWS_WITH(
+      ReadScene(
+          {folder_.Write("text.vtu",
+                         Replaced(whole, "type=\"Float64\" Name=\"force\"",
+                                  "type=\"String\" Name=\"force\""))},
+          Measurement::kRequired),
+      "text.vtu: the point array 'force' is missing");
+}
+
 TEST_F(SceneReaderTest, NamesNodesThatAreNotFinite) {
   for (const std::string name :
        {"fixed", "force", "displacement_2", "observed_2"}) {
@@ -185,6 +245,11 @@ TEST_F(SceneReaderTest, NamesNodesThatAreNotFinite) {
           "scene.vtu: the point array '" + name + "' of node 3 \\(y\\) is");
     }
   }
+  Fields fields = fields_;
+  FieldOf(fields, "displacement_2").values(1, 3) = kNan;
+  EXPECT_THROWS_WITH(Read(scene_.mesh, fields),
+                     "node 3 \\(y\\) is nan; correct it or mark it as not "
+                     "measured in the array 'observed_2'");
   FieldOf(fields_, "prescribed").values(0, 1) = kNan;
   EXPECT_THROWS_WITH(Read(scene_.mesh, fields_),
                      "'prescribed' of node 1 \\(x\\) is nan");
@@ -215,12 +280,22 @@ TEST_F(SceneReaderTest, ErrsOnRegionsThatAreNoIntegers) {
   EXPECT_THROWS_WITH(Read(scene_.mesh, fields_), "'region' is 0.5.*integers");
   fields_.cell[0].values(0, 1) = kNan;
   EXPECT_THROWS_WITH(Read(scene_.mesh, fields_), "'region' is nan");
+  fields_.cell[0].values(0, 1) = 1e300;
+  EXPECT_THROWS_WITH(Read(scene_.mesh, fields_), "'region' is 1e\\+300 at");
 }
 
 TEST_F(SceneReaderTest, ErrsOnFlatTetrahedra) {
   Mesh mesh = scene_.mesh;
   mesh.nodes(2, 4) = 0.0;
   EXPECT_THROWS_WITH(Read(mesh, fields_), "scene.vtu: .*1.* is flat");
+}
+
+TEST_F(SceneReaderTest, ErrsOnTetrahedraThatComeTwice) {
+  Mesh mesh = scene_.mesh;
+  mesh.elements.col(1) = mesh.elements.col(0).reverse().eval();
+  EXPECT_THROWS_WITH(Read(mesh, fields_),
+                     "scene.vtu: tetrahedra 0 and 1 have the same nodes; keep "
+                     "one of them");
 }
 
 TEST_F(SceneReaderTest, ErrsWhenEverythingIsHeld) {
@@ -294,6 +369,97 @@ TEST_F(SceneReaderTest, ErrsOnOtherKindsOfVtkData) {
                                "</VTKFile>")},
                 Measurement::kRequired),
       "its type is 'PolyData' instead of 'UnstructuredGrid'");
+}
+
+TEST_F(SceneReaderTest, ErrsOnArraysOfAnotherLength) {
+  for (const VtkEncoding& encoding : AllVtkEncodings()) {
+    SCOPED_TRACE(encoding.name);
+    for (const std::string name : {"displacement", "fixed", "region"}) {
+      Fields fields = fields_;
+      Field& field = name == "region" ? fields.cell[0] : FieldOf(fields, name);
+      const Eigen::MatrixXd values = field.values;
+      field.values.resize(values.rows(), values.cols() + 1);
+      field.values << values, values.col(0);
+      const auto path = folder_.Path() / ("scene" + encoding.Extension());
+      WriteEncoded(path, scene_.mesh, fields, encoding);
+      EXPECT_THROWS_WITH(ReadScene({path}, Measurement::kRequired),
+                         "the file is damaged .*" + name);
+    }
+  }
+}
+
+TEST_F(SceneReaderTest, NamesTextArraysThatAreTooLongOrTooShort) {
+  const auto path = folder_.Path() / "scene.vtu";
+  WriteEncoded(path, scene_.mesh, fields_, AllVtkEncodings()[0]);
+  const std::string whole = ReadFile(path);
+  EXPECT_THROWS_WITH(
+      ReadScene({folder_.Write("a.vtu", Replaced(whole, "NumberOfPoints=\"5",
+                                                 "NumberOfPoints=\"4"))},
+                Measurement::kRequired),
+      "a.vtu: .*its array '.*' has 15 values where 12 are due");
+  EXPECT_THROWS_WITH(
+      ReadScene({folder_.Write("a.vtu", Replaced(whole, "NumberOfPoints=\"5",
+                                                 "NumberOfPoints=\"6"))},
+                Measurement::kRequired),
+      "a.vtu: .*its array '.*' has 15 values where 18 are due");
+  EXPECT_THROWS_WITH(
+      ReadScene({folder_.Write("a.vtu", Replaced(whole, "NumberOfCells=\"2",
+                                                 "NumberOfCells=\"1"))},
+                Measurement::kRequired),
+      "a.vtu: .*its array 'region' has 2 values where 1 are due");
+}
+
+TEST_F(SceneReaderTest, AcceptsExtensionsInCapitals) {
+  const auto expect_same = [this](const std::string& small,
+                                  const std::string& capital) {
+    const auto path = folder_.Path() / small;
+    std::filesystem::copy_file(path, folder_.Path() / capital);
+    const Scene scene = ReadScene({path}, Measurement::kRequired).scene;
+    ExpectSameScene(
+        ReadScene({folder_.Path() / capital}, Measurement::kRequired).scene,
+        scene, 0.0);
+  };
+  WriteEncoded(folder_.Path() / "s.vtu", scene_.mesh, fields_,
+               AllVtkEncodings()[0]);
+  expect_same("s.vtu", "S.VTU");
+  WriteEncoded(folder_.Path() / "s.vtk", scene_.mesh, fields_,
+               AllVtkEncodings()[10]);
+  expect_same("s.vtk", "S.VTK");
+  folder_.Write("s.msh", GmshVersion2Scene());
+  expect_same("s.msh", "S.MSH");
+  folder_.Write(
+      "s.json",
+      R"({"mesh": "S.MSH", "supports": [{"nodes": {"array": "fixed"}}],
+          "cases": [{"displacement": {"array": "displacement"},
+                     "loads": [{"type": "nodal_force", "array": "force"}]}]})");
+  expect_same("s.json", "S.JSON");
+  // Gmsh would run this as a script.
+  EXPECT_THROWS_WITH(
+      ReadScene({folder_.Write("s.Mesh", "Exit;\n")}, Measurement::kRequired),
+      "s.Mesh: the file name does not end in");
+}
+
+TEST_F(SceneReaderTest, ErrsOnAFileGivenTwice) {
+  const auto path = folder_.Path() / "scene.vtu";
+  WriteEncoded(path, scene_.mesh, fields_, AllVtkEncodings()[2]);
+  const auto again = folder_.Path() / "." / "scene.vtu";
+  EXPECT_THROWS_WITH(ReadScene({path, again}, Measurement::kRequired),
+                     "scene.vtu: this file is given twice, also as "
+                     "'.*scene.vtu'; give each load case only once");
+  const auto copy = folder_.Path() / "copy.vtu";
+  std::filesystem::copy_file(path, copy);
+  EXPECT_THROWS_WITH(ReadScene({path, copy}, Measurement::kRequired),
+                     "copy.vtu: load case 1 has the displacements and forces "
+                     "of load case 1 of '.*scene.vtu'; give each");
+  FieldOf(fields_, "displacement_2").values =
+      FieldOf(fields_, "displacement").values;
+  FieldOf(fields_, "observed_2").values.setOnes();
+  EXPECT_NO_THROW(Read(scene_.mesh, fields_));  // By other forces.
+  FieldOf(fields_, "force_2").values = FieldOf(fields_, "force").values;
+  FieldOf(fields_, "observed_2").name = "other";
+  EXPECT_THROWS_WITH(Read(scene_.mesh, fields_),
+                     "scene.vtu: load case 2 has the displacements and forces "
+                     "of load case 1 of");
 }
 
 TEST_F(SceneReaderTest, JoinsFilesOfOneMesh) {

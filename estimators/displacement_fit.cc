@@ -1,0 +1,287 @@
+#include "elastimate/estimators/displacement_fit.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "elastimate/core/node_graph.h"
+#include "elastimate/estimators/statistics.h"
+
+namespace elastimate {
+namespace {
+
+// The sine of the identifiability angle below which rounding decides: it comes
+// from the square root of a difference, which has half the digits.
+constexpr double kCollinear = 1e-6;
+
+// Standard scores beyond this do not come from independent noise.
+constexpr double kSignificantScore = 5;
+
+// A relative standard error of E that a user wants to be told of.
+constexpr double kNotableError = 0.01;
+
+// Sums over the observed nodes that the statistics are made of.  Derivatives
+// are with respect to (ln E, nu); without a loss the bread is S^T S.
+struct ResidualSums {
+  Eigen::Matrix2d sensitivity_gram = Eigen::Matrix2d::Zero();
+  Eigen::Matrix2d bread = Eigen::Matrix2d::Zero();
+  Eigen::Matrix2d meat = Eigen::Matrix2d::Zero();
+  // The residuals as they count: a loss takes from those of bad nodes.
+  Eigen::VectorXd weighted_residual;
+};
+
+ResidualSums SumResiduals(const ObservedDisplacements& observed,
+                          const DisplacementFit& fit,
+                          const NodeLosses& losses) {
+  ResidualSums sums;
+  sums.weighted_residual = fit.residual;
+  for (const ObservedDisplacements::Node& node : observed.Nodes()) {
+    const auto r = fit.residual.segment(node.first, node.count);
+    const auto s = fit.sensitivities.middleRows(node.first, node.count);
+    const std::array<double, 3> rho =
+        losses.Evaluate(node.count, r.squaredNorm());
+    const Eigen::Vector2d gradient = s.transpose() * r;
+    const Eigen::Matrix2d gram = s.transpose() * s;
+    sums.sensitivity_gram += gram;
+    sums.bread += rho[1] * gram + 2 * rho[2] * gradient * gradient.transpose();
+    sums.meat += rho[1] * rho[1] * gradient * gradient.transpose();
+    sums.weighted_residual.segment(node.first, node.count) *= std::sqrt(rho[1]);
+  }
+  return sums;
+}
+
+double IdentifiabilityAngle(const Eigen::Matrix2d& gram) {
+  const double cosine_product = std::abs(gram(0, 1));
+  const double sine_product = std::sqrt(std::max(0.0, gram.determinant()));
+  return std::atan2(sine_product, cosine_product);
+}
+
+// Variance of the normalised residuals, and whether it is that of the noise.
+struct ResidualVariance {
+  double variance;
+  bool is_explained_by_given_noise;
+};
+
+// From the residuals themselves, or as given when they do not contradict it.
+std::optional<ResidualVariance> EstimateVariance(
+    const ObservedDisplacements& observed, const Scene& scene,
+    double square_sum, Eigen::Index num_free, Estimate& estimate) {
+  const Eigen::Index redundancy = observed.Size() - num_free;
+  const double norm_squared = observed.Norm() * observed.Norm();
+  const std::optional<double>& given = scene.load_cases.front().noise_sd;
+  if (redundancy <= 0 && !given) {
+    estimate.why_no_standard_error =
+        "there are no more measured components than unknowns, so that the "
+        "noise cannot be estimated; give its standard deviation";
+    return std::nullopt;
+  }
+  const double m = static_cast<double>(std::max<Eigen::Index>(redundancy, 1));
+  const double variance = square_sum / m;
+  estimate.noise_sd = given ? *given : std::sqrt(variance) * observed.Norm();
+  if (!given) {
+    return ResidualVariance{variance, false};
+  }
+  // chi^2 has mean m and variance 2 m.
+  const double ratio = variance * norm_squared;
+  if (redundancy > 0 && ratio > 1 + kSignificantScore * std::sqrt(2 / m)) {
+    std::ostringstream text;
+    text.precision(2);
+    text << "the displacement residual is " << std::sqrt(ratio)
+         << " times the given noise, and the standard errors are widened to "
+            "match; the mesh, the supports or the loads do not describe the "
+            "experiment";
+    estimate.warnings.push_back(text.str());
+    return ResidualVariance{variance, false};
+  }
+  return ResidualVariance{1 / norm_squared, true};
+}
+
+// The square sum of the part of the residual that neighbours share; zero when
+// independent noise explains what they share.
+double SmoothSquareSum(const Scene& scene,
+                       const ObservedDisplacements& observed,
+                       const Eigen::VectorXd& residual, Estimate& estimate) {
+  const std::optional<NeighbourCorrelation> neighbours =
+      CorrelateNeighbours(scene.mesh, observed, residual);
+  if (!neighbours) {
+    return 0;
+  }
+  estimate.residual_correlation = neighbours->correlation;
+  return neighbours->standard_score > kSignificantScore
+             ? neighbours->correlation * residual.squaredNorm()
+             : 0;
+}
+
+void WarnOfSmoothResidual(double relative_error, Estimate& estimate) {
+  if (!(relative_error > kNotableError)) {
+    return;
+  }
+  std::ostringstream text;
+  text.precision(2);
+  text << "the displacement residual is alike at neighbouring nodes "
+          "(correlation "
+       << *estimate.residual_correlation
+       << "), as noise is not: the mesh, the supports or the loads do not "
+          "describe the experiment, or the measurement was smoothed; the "
+          "standard errors are widened to allow for it";
+  estimate.warnings.push_back(text.str());
+}
+
+// For nu on a bound: whether the data or the bound decide on it.
+// `slope` = d ln E / d nu of the parameters that fit alike, `standard_error`
+// that of nu without the bound.
+void JudgePoissonRatioOnBound(const EstimatorOptions& options,
+                              const ActiveBounds& active, double slope,
+                              double standard_error, Estimate& estimate) {
+  if (active.is_physical_limit &&
+      active.poisson_ratio == BoundedParameter::Side::kLower) {
+    estimate.status = Status::kUnphysical;
+    estimate.message =
+        "the data pull Poisson's ratio to -1, where no material is; check the "
+        "loads, the supports and the mesh";
+    return;
+  }
+  if (standard_error <= kLargestPoissonRatioError) {
+    return;
+  }
+  const Bounds bounds = EffectivePoissonRatioBounds(options);
+  const double uniform_sd = (*bounds.upper - *bounds.lower) / std::sqrt(12.0);
+  const double youngs_modulus_error =
+      std::abs(slope) * std::min(standard_error, uniform_sd);
+  if (active.is_physical_limit ||
+      youngs_modulus_error > kLargestYoungsModulusError) {
+    estimate.status = Status::kNotIdentifiable;
+    estimate.message =
+        "Poisson's ratio lies on its bound, but the data do not determine "
+        "it: " +
+        DescribeCollinear(estimate.elasticity, {slope, 1});
+  }
+}
+
+}  // namespace
+
+std::optional<NeighbourCorrelation> CorrelateNeighbours(
+    const Mesh& mesh, const ObservedDisplacements& observed,
+    const Eigen::VectorXd& residual) {
+  const double square_sum = residual.squaredNorm();
+  const NodeGraph graph(mesh);
+  double product_sum = 0;
+  Eigen::Index num_products = 0;
+  // Row of each component of each node in the present load case, or -1.
+  Eigen::Matrix<Eigen::Index, 3, Eigen::Dynamic> rows(3, mesh.NumNodes());
+  const auto& nodes = observed.Nodes();
+  for (auto begin = nodes.begin(); begin != nodes.end();) {
+    const auto end = std::find_if(begin, nodes.end(), [&](const auto& node) {
+      return node.load_case != begin->load_case;
+    });
+    rows.setConstant(-1);
+    for (auto node = begin; node != end; ++node) {
+      for (int k = 0; k < node->count; ++k) {
+        const Eigen::Index row = node->first + k;
+        rows(observed.Component(row), node->node) = row;
+      }
+    }
+    for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
+      for (Eigen::Index k = graph.start[node] + 1; k < graph.start[node + 1];
+           ++k) {
+        for (int i = 0; i < 3; ++i) {
+          const Eigen::Index row = rows(i, node);
+          const Eigen::Index other = rows(i, graph.row[k]);
+          if (row >= 0 && other >= 0) {
+            product_sum += residual(row) * residual(other);
+            ++num_products;
+          }
+        }
+      }
+    }
+    begin = end;
+  }
+  if (num_products == 0 || square_sum == 0) {
+    return std::nullopt;
+  }
+  const double n = static_cast<double>(num_products);
+  const double variance = square_sum / static_cast<double>(residual.size());
+  const double correlation = product_sum / (n * variance);
+  return NeighbourCorrelation{correlation, correlation * std::sqrt(n)};
+}
+
+void DescribeDisplacementFit(const Scene& scene,
+                             const EstimatorOptions& options,
+                             const ObservedDisplacements& observed,
+                             const DisplacementFit& fit,
+                             const NodeLosses& losses,
+                             const ActiveBounds& active, Estimate& estimate) {
+  const ResidualSums sums = SumResiduals(observed, fit, losses);
+  const Eigen::Matrix2d& gram = sums.sensitivity_gram;
+  const double slope = -gram(0, 1) / gram(0, 0);
+  const double square_sum = fit.residual.squaredNorm();
+  estimate.displacement_residual = std::sqrt(square_sum);
+  estimate.identifiability_angle = IdentifiabilityAngle(gram);
+  const bool is_collinear =
+      std::sin(*estimate.identifiability_angle) < kCollinear;
+
+  std::vector<Eigen::Index> free;
+  if (active.youngs_modulus == BoundedParameter::Side::kNone) {
+    free.push_back(0);
+  }
+  if (!options.known_poisson_ratio &&
+      active.poisson_ratio == BoundedParameter::Side::kNone) {
+    free.push_back(1);
+  }
+  if (free.size() == 2 && is_collinear) {
+    estimate.status = Status::kNotIdentifiable;
+    estimate.message = DescribeCollinear(estimate.elasticity, {slope, 1});
+    estimate.elasticity = {Estimate::kUnknown, Estimate::kUnknown};
+    estimate.why_no_standard_error = "the parameters are not determined";
+    return;
+  }
+
+  std::optional<ResidualVariance> variance;
+  if (losses.IsLeastSquares()) {
+    variance = EstimateVariance(observed, scene, square_sum,
+                                Eigen::Index(free.size()), estimate);
+    if (!variance) {
+      return;
+    }
+  } else {
+    estimate.noise_sd = RobustStandardDeviation(fit.residual) * observed.Norm();
+  }
+  const double smooth_square_sum =
+      variance && variance->is_explained_by_given_noise
+          ? 0
+          : SmoothSquareSum(scene, observed, sums.weighted_residual, estimate);
+
+  // Of the parameters that vary together.
+  const auto covariance_of = [&](const std::vector<Eigen::Index>& parameters) {
+    const Eigen::MatrixXd inverse_bread =
+        Eigen::MatrixXd(sums.bread(parameters, parameters)).inverse();
+    const Eigen::MatrixXd of_noise =
+        variance ? Eigen::MatrixXd(variance->variance * inverse_bread)
+                 : Eigen::MatrixXd(inverse_bread *
+                                   sums.meat(parameters, parameters) *
+                                   inverse_bread);
+    return Eigen::MatrixXd(
+        of_noise + smooth_square_sum *
+                       Eigen::MatrixXd(gram(parameters, parameters)).inverse());
+  };
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(Estimate::kUnknown);
+  covariance(free, free) = covariance_of(free);
+  const Eigen::Vector2d scale(estimate.elasticity.youngs_modulus, 1);
+  estimate.covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
+  if (smooth_square_sum > 0) {
+    WarnOfSmoothResidual(std::sqrt(covariance(0, 0)), estimate);
+  }
+  if (!estimate.active_bounds.empty()) {
+    estimate.why_no_standard_error = "a parameter on a bound has none";
+  }
+  if (estimate.status == Status::kOk &&
+      active.poisson_ratio != BoundedParameter::Side::kNone) {
+    const double standard_error = is_collinear
+                                      ? std::numeric_limits<double>::infinity()
+                                      : std::sqrt(covariance_of({0, 1})(1, 1));
+    JudgePoissonRatioOnBound(options, active, slope, standard_error, estimate);
+  }
+}
+
+}  // namespace elastimate

@@ -1,0 +1,57 @@
+#ifndef ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_H_
+#define ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_H_
+
+#include <Eigen/Core>
+
+#include "elastimate/core/scene.h"
+#include "elastimate/estimators/bounded_parameter.h"
+#include "elastimate/estimators/estimate.h"
+#include "elastimate/estimators/estimator.h"
+#include "elastimate/estimators/node_losses.h"
+#include "elastimate/estimators/observed_displacements.h"
+
+namespace elastimate {
+
+/// A finite element model at the parameters that fit the measured
+/// displacements best, in the rows of ObservedDisplacements.
+struct DisplacementFit {
+  Eigen::VectorXd residual;  ///< u - q.
+  /// du / d (ln E, nu).
+  Eigen::Matrix<double, Eigen::Dynamic, 2> sensitivities;
+};
+
+/// How alike the residuals of neighbouring nodes are [Moran 1950].
+struct NeighbourCorrelation {
+  /// Mean product of the residuals of two nodes that share an element, over
+  /// the mean square: near 0 for independent noise, near 1 for a smooth field.
+  double correlation;
+  /// `correlation` over its standard deviation for independent noise.
+  double standard_score;
+};
+
+/// Empty when no two neighbours were observed, or all residuals are zero.
+/// Cost: O(num_elements) time and memory.
+std::optional<NeighbourCorrelation> CorrelateNeighbours(
+    const Mesh& mesh, const ObservedDisplacements& observed,
+    const Eigen::VectorXd& residual);
+
+/// Judges a least-squares (or, with `losses`, robust) fit of the displacements
+/// and fills in status, covariance, noise, residual statistics,
+/// identifiability and warnings of `estimate`, whose elasticity and active
+/// bounds are set.
+///
+/// Without a loss the covariance is sigma^2 (S^T S)^-1, the Cramer-Rao bound,
+/// with sigma^2 as given, or from the residual; with one it is the sandwich of
+/// M-estimation.  A residual that is significantly alike at neighbouring nodes
+/// is not noise: its smooth part may hide an error of its own size along the
+/// sensitivities, and ||smooth part||^2 (S^T S)^-1 is added.
+void DescribeDisplacementFit(const Scene& scene,
+                             const EstimatorOptions& options,
+                             const ObservedDisplacements& observed,
+                             const DisplacementFit& fit,
+                             const NodeLosses& losses,
+                             const ActiveBounds& active, Estimate& estimate);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_H_
