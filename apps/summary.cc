@@ -47,6 +47,11 @@ void AddDiagnostics(const Estimate& estimate, std::ostringstream& text) {
     Line("displacement residual",
          Number(*estimate.displacement_residual, 3) + " of the measured", text);
   }
+  if (estimate.residual_correlation) {
+    Line("residual correlation",
+         Number(*estimate.residual_correlation, 2) + " between neighbours",
+         text);
+  }
   if (estimate.noise_attenuation) {
     Line("noise attenuation", Number(*estimate.noise_attenuation, 3), text);
   }

@@ -73,15 +73,17 @@ class ForwardModel {
   /// pass and num_load_cases solves (one more with held displacements).
   DisplacementSensitivities Sensitivities(double youngs_modulus);
 
+  /// A^-1 of the free rows of each column of `all` ((3 num_nodes) x n), zero in
+  /// the held rows, at the present nu.
+  /// Precondition: SetPoissonRatio returned true.
+  Eigen::MatrixXd SolveFree(const Eigen::MatrixXd& all);
+
   /// nu of the present factorisation; NaN when there is none.
   double PoissonRatio() const { return poisson_ratio_; }
   const DegreesOfFreedom& Dofs() const { return degrees_of_freedom_; }
   const Work& WorkDone() const { return work_; }
 
  private:
-  /// A^-1 of the free rows of `all`, extended by zeros.
-  Eigen::MatrixXd SolveFree(const Eigen::MatrixXd& all);
-
   const Mesh& mesh_;
   DegreesOfFreedom degrees_of_freedom_;
   Eigen::MatrixXd force_;

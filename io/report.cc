@@ -33,6 +33,7 @@ Json DiagnosticsJson(const Estimate& estimate) {
   }
   return {{"identifiability_angle_deg", OrNull(angle)},
           {"noise_attenuation", OrNull(estimate.noise_attenuation)},
+          {"residual_correlation", OrNull(estimate.residual_correlation)},
           {"active_bounds", estimate.active_bounds},
           {"why_no_standard_error", estimate.why_no_standard_error},
           {"warnings", estimate.warnings}};
