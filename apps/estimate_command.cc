@@ -1,7 +1,6 @@
 #include <chrono>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -14,7 +13,6 @@
 #include "apps/progress.h"
 #include "apps/result_fields.h"
 #include "apps/summary.h"
-#include "elastimate/core/loads.h"
 #include "elastimate/estimators/registry.h"
 #include "elastimate/io/file_output.h"
 #include "elastimate/io/report.h"
@@ -28,43 +26,6 @@ using Clock = std::chrono::steady_clock;
 
 double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-// The estimators square displacements and forces, and cube lengths.
-void CheckMagnitude(const std::string& what, double magnitude, double smallest,
-                    double largest) {
-  // Zero is for the estimator to judge.
-  if (magnitude != 0 && !(magnitude >= smallest && magnitude <= largest)) {
-    std::ostringstream sentence;
-    sentence << what << " is " << magnitude << ", outside of " << smallest
-             << " to " << largest
-             << ", where numbers neither overflow nor underflow; choose other "
-                "units";
-    throw std::invalid_argument(sentence.str());
-  }
-}
-
-void CheckMagnitudes(const Scene& scene) {
-  const Eigen::Vector3d extent = scene.mesh.nodes.rowwise().maxCoeff() -
-                                 scene.mesh.nodes.rowwise().minCoeff();
-  CheckMagnitude("the largest extent of the mesh", extent.maxCoeff(), 1e-50,
-                 1e50);
-  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-    const LoadCase& load_case = scene.load_cases[k];
-    const std::string of_case = scene.load_cases.size() == 1
-                                    ? ""
-                                    : " of load case " + std::to_string(k + 1);
-    Eigen::Array3Xd measured = load_case.displacement;
-    if (load_case.observed.size() > 0) {
-      measured = load_case.observed.select(measured, 0.0);
-    }
-    CheckMagnitude("the largest measured displacement" + of_case,
-                   measured.abs().maxCoeff(), 1e-100, 1e100);
-    CheckMagnitude(
-        "the largest nodal force" + of_case,
-        AssembleLoads(scene.mesh, load_case.loads).cwiseAbs().maxCoeff(),
-        1e-100, 1e100);
-  }
 }
 
 SceneReading Read(const std::vector<std::string>& arguments) {
@@ -91,7 +52,6 @@ Estimate RunEstimator(const Estimator& estimator, const Scene& scene,
                       const EstimatorOptions& options,
                       const std::string& sources) {
   try {
-    CheckMagnitudes(scene);
     return estimator.Run(scene, options);
   } catch (const std::invalid_argument& error) {
     const bool flags_are_to_blame =
