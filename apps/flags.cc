@@ -48,8 +48,9 @@ DEFINE_string(size, "1,1,0.4",
               "of the cuboid: edge lengths along x,y,z, from 1e-50 to 1e50 "
               "[length]");
 DEFINE_string(force, "",
-              "force along x,y,z on every free node [force] (default 0,0,-30 "
-              "for the cuboid, 0,0,-0.02 for the organ)");
+              "force along x,y,z on every free node, of magnitude 1e-50 to "
+              "1e50 or zero [force] (default 0,0,-30 for the cuboid, 0,0,-0.02 "
+              "for the organ)");
 DEFINE_int32(tetrahedra, 1970,
              "of the organ: number of tetrahedra within 5 %, from 200 to "
              "2000000");

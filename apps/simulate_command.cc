@@ -1,3 +1,4 @@
+#include <limits>
 #include <optional>
 #include <random>
 #include <stdexcept>
@@ -9,6 +10,7 @@
 #include "apps/progress.h"
 #include "elastimate/core/forward_model.h"
 #include "elastimate/core/loads.h"
+#include "elastimate/core/magnitude.h"
 #include "elastimate/io/scene_reader.h"
 #include "elastimate/io/vtu_writer.h"
 
@@ -92,11 +94,13 @@ int RunSimulate(const std::vector<std::string>& arguments) {
     load_case.displacement =
         displacement.col(k).reshaped(3, scene.mesh.NumNodes());
   }
-  if (!displacement.allFinite()) {
-    throw std::invalid_argument(
-        arguments[0] +
-        ": the displacement overflows; choose other units for the loads and "
-        "--youngs, or less --noise");
+  try {
+    RequireMagnitude(displacement.allFinite()
+                         ? displacement.cwiseAbs().maxCoeff()
+                         : std::numeric_limits<double>::infinity(),
+                     "the simulated displacement");
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(arguments[0] + ": " + error.what());
   }
   progress->Show("writing " + FLAGS_out);
   WriteVtu(FLAGS_out, scene.mesh, SceneFields(scene));

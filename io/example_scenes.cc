@@ -18,10 +18,9 @@ constexpr int kMaxOrganTetrahedra = 2000000;
 constexpr int kMaxCuboidTetrahedra = 10000000;
 constexpr int kTetrahedraPerCell = 5;
 
-// Volumes, and the squares of areas, of tetrahedra of these sizes are within
-// double precision.
-constexpr double kMinLength = 1e-50;
-constexpr double kMaxLength = 1e50;
+// The magnitudes that a scene may have (RequireMagnitude).
+constexpr double kSmallest = 1e-50;
+constexpr double kLargest = 1e50;
 
 // Beyond, the reader takes the tetrahedra of a cell for flat.
 constexpr double kMaxCellAspect = 1e5;
@@ -45,16 +44,17 @@ void Require(bool condition, const std::string& option,
   }
 }
 
-std::string LengthRange() {
-  return "from " + Text(kMinLength) + " to " + Text(kMaxLength);
+std::string Range() {
+  return "from " + Text(kSmallest) + " to " + Text(kLargest);
 }
 
-bool IsLength(double value) {
-  return value >= kMinLength && value <= kMaxLength;
-}
+bool IsInRange(double value) { return value >= kSmallest && value <= kLargest; }
 
 void CheckForce(const Eigen::Vector3d& force) {
-  Require(force.allFinite(), "force", TripleText(force), "each must be finite");
+  Require(force.allFinite() &&
+              (force.isZero(0) || IsInRange(force.cwiseAbs().maxCoeff())),
+          "force", TripleText(force),
+          "the largest must be " + Range() + ", or all zero");
 }
 
 void CheckOptions(const CuboidOptions& options) {
@@ -65,8 +65,8 @@ void CheckOptions(const CuboidOptions& options) {
           TripleText(options.cells),
           "the product must be at most " +
               std::to_string(kMaxCuboidTetrahedra / kTetrahedraPerCell));
-  Require(std::all_of(options.size.begin(), options.size.end(), IsLength),
-          "size", TripleText(options.size), "each must be " + LengthRange());
+  Require(std::all_of(options.size.begin(), options.size.end(), IsInRange),
+          "size", TripleText(options.size), "each must be " + Range());
   const Eigen::Array3d edges = options.size.array() / cells.array();
   Require(edges.maxCoeff() <= kMaxCellAspect * edges.minCoeff(), "size",
           TripleText(options.size),
@@ -82,8 +82,8 @@ void CheckOptions(const OrganOptions& options) {
           "tetrahedra", Text(options.tetrahedra),
           "it must be from " + std::to_string(kMinOrganTetrahedra) + " to " +
               std::to_string(kMaxOrganTetrahedra));
-  Require(IsLength(options.length), "length", Text(options.length),
-          "it must be " + LengthRange());
+  Require(IsInRange(options.length), "length", Text(options.length),
+          "it must be " + Range());
   CheckForce(options.force);
 }
 

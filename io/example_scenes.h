@@ -17,7 +17,8 @@ struct CuboidOptions {
   /// Edge lengths [m], 1e-50 to 1e50; the longest edge of a cell is no more
   /// than 100 000 times the shortest.
   Eigen::Vector3d size = {1.0, 1.0, 0.4};
-  Eigen::Vector3d force = {0.0, 0.0, -30.0};  ///< Force on every free node [N].
+  /// Force on every free node [N]; of magnitude 1e-50 to 1e50, or zero.
+  Eigen::Vector3d force = {0.0, 0.0, -30.0};
 };
 
 /// A cuboid with one corner at the origin, held at z = 0, with one load case
@@ -35,10 +36,10 @@ struct OrganOptions {
   int tetrahedra = 1970;  ///< Wanted number of tetrahedra, reached within 5 %;
                           ///< 200 to 2 000 000.
   double length = 0.2;    ///< Extent along x [m]; 1e-50 to 1e50.
-  /// Force on every free node [N].  The default adds up to about the organ's
-  /// weight for the default number of tetrahedra, and moves it by up to 5 % of
-  /// its length for E = 50 kPa and nu = 0.3.  The sum grows with the number of
-  /// nodes.
+  /// Force on every free node [N]; of magnitude 1e-50 to 1e50, or zero.  The
+  /// default adds up to about the organ's weight for the default number of
+  /// tetrahedra, and moves it by up to 5 % of its length for E = 50 kPa and
+  /// nu = 0.3.  The sum grows with the number of nodes.
   Eigen::Vector3d force = {0.0, 0.0, -0.02};
 };
 

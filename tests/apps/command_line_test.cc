@@ -396,6 +396,9 @@ TEST_F(CommandLine, RefusesWrongGeometriesByTheirFlags) {
   Refuse(cuboid + "--size=1,1e-9,1", "--size=1,1e-09,1; a cell");
   Refuse(cuboid + "--force=nan,0,0", "it needs three finite numbers");
   Refuse(cuboid + "--force=0,0,inf", "it needs three finite numbers");
+  Refuse(cuboid + "--force=1e60,0,0",
+         "--force=1e+60,0,0; the largest must be from 1e-50 to 1e+50");
+  Succeed(cuboid + "--force=0,0,0");
   const std::string organ = "generate organ --out=a.vtu ";
   Refuse(organ + "--cells=1,1,1", "takes no flag --cells");
   Refuse(organ + "--tetrahedra=1", "--tetrahedra=1; it must be from 200");
@@ -612,10 +615,12 @@ TEST_F(CommandLine, SaysWhenNumbersLeaveDoublePrecision) {
            "magnitude " +
                value);
     write_scene("1", value);
-    Refuse("estimate scene.json", "has the magnitude " + value);
+    Refuse("estimate scene.json",
+           "scene.json: the force in load 1 of load case 1 has the magnitude " +
+               value);
   }
   Refuse("simulate cuboid.vtu --youngs=1e-307 --nu=0 --out=a.vtu",
-         "cuboid.vtu: the displacement overflows");
+         "cuboid.vtu: the simulated displacement has the magnitude inf");
 }
 
 TEST_F(CommandLine, RefusesWrongFilesByName) {

@@ -218,7 +218,8 @@ TEST(CuboidSceneTest, NamesTheOptionOutOfRange) {
             "size=1e-09,1,0.4; a cell of 2e-10,0.2,0.2 is too flat; its "
             "longest edge must be at most 100000 times its shortest");
   EXPECT_EQ(why([](CuboidOptions& o) { o.force.x() = kInfinity; }),
-            "force=inf,0,-30; each must be finite");
+            "force=inf,0,-30; the largest must be from 1e-50 to 1e+50, or all "
+            "zero");
 }
 
 TEST(CuboidSceneTest, IsValidAtTheEndsOfTheRanges) {
@@ -367,8 +368,10 @@ TEST(OrganSceneTest, NamesTheOptionOutOfRange) {
             "length=1e+200; it must be from 1e-50 to 1e+50");
   EXPECT_EQ(why([](OrganOptions& o) { o.length = std::nan(""); }),
             "length=nan; it must be from 1e-50 to 1e+50");
-  EXPECT_EQ(why([](OrganOptions& o) { o.force.y() = kInfinity; }),
-            "force=0,inf,-0.02; each must be finite");
+  EXPECT_EQ(
+      why([](OrganOptions& o) { o.force.y() = kInfinity; }),
+      "force=0,inf,-0.02; the largest must be from 1e-50 to 1e+50, or all "
+      "zero");
 }
 
 TEST(OrganShapeTest, BallPointInvertsOrganPoint) {
