@@ -8,11 +8,16 @@ function(elastimate_prepare_include_directory)
   endforeach()
 endfunction()
 
-# Warnings are errors in the project's own sources only.
+# Warnings are errors in the project's own sources only.  What is linked into a program stays hidden in it: else the
+# program's instances of Eigen's templates stand in for those within Gmsh, which was built with another allocator.
 function(elastimate_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_17)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Werror)
+  get_target_property(type ${target} TYPE)
+  if(NOT type STREQUAL SHARED_LIBRARY)
+    set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  endif()
 endfunction()
 
 # elastimate_add_library(<component> SOURCES ... PUBLIC_HEADERS ... PUBLIC <libraries> PRIVATE <libraries>)
