@@ -1,4 +1,4 @@
-// Times of the kernels, and of two estimators, on a cube of tetrahedra.
+// Times of the kernels, and of estimators, on a cube of tetrahedra.
 //
 //   elastimate_kernel_benchmark
 //
@@ -33,11 +33,15 @@
 #include "elastimate/core/stiffness_assembly.h"
 #include "elastimate/core/stiffness_product.h"
 #include "elastimate/core/stiffness_traces.h"
+#include "elastimate/estimators/reduced_fe.h"
 #include "elastimate/estimators/registry.h"
 #include "elastimate/io/example_scenes.h"
 
 namespace elastimate {
 namespace {
+
+// The noise of the measurements that fits of displacements are timed on.
+constexpr double kNoise = 0.01;
 
 // A cube with this number of cells along each edge, made once.
 const Scene& Cube(std::int64_t cells) {
@@ -204,16 +208,24 @@ void CholeskySolve(benchmark::State& state) {
 }
 
 // ---------------------------------------------------------------------------
-// Estimators, end to end, on noise-free displacements of E = 10 kPa, nu = 0.3.
+// Estimators, end to end, on displacements of E = 10 kPa, nu = 0.3.
 
-void RunEstimator(benchmark::State& state, const char* name) {
-  Scene scene = Cube(state.range(0));
-  {
-    ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene));
-    model.SetPoissonRatio(0.3);
-    scene.load_cases[0].displacement =
-        model.Displacement(1e4).reshaped(3, scene.mesh.NumNodes());
-  }
+// With independent noise of this norm, relative to that of the displacement.
+Scene MeasuredCube(std::int64_t cells, double noise) {
+  Scene scene = Cube(cells);
+  ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene));
+  model.SetPoissonRatio(0.3);
+  const Eigen::VectorXd displacement = model.Displacement(1e4);
+  const Eigen::VectorXd random =
+      model.Dofs().Extend(RandomMatrix(model.Dofs().NumFree(), 1));
+  scene.load_cases[0].displacement =
+      (displacement + noise * displacement.norm() / random.norm() * random)
+          .reshaped(3, scene.mesh.NumNodes());
+  return scene;
+}
+
+void RunEstimator(benchmark::State& state, const char* name, double noise) {
+  const Scene scene = MeasuredCube(state.range(0), noise);
   const auto estimator = MakeEstimator(name);
   Estimate estimate;
   while (state.KeepRunning()) {
@@ -224,6 +236,22 @@ void RunEstimator(benchmark::State& state, const char* name) {
   }
   CountTetrahedra(state, scene.mesh);
   state.counters["factorizations"] = estimate.work.factorizations;
+  state.counters["solves"] = estimate.work.solves;
+}
+
+// A further measurement of a scene that reduced-fe knows.
+void MeasureAgain(benchmark::State& state) {
+  const Scene scene = MeasuredCube(state.range(0), kNoise);
+  PreparedReducedFe prepared(scene, {});
+  const std::vector<Eigen::Matrix3Xd> displacements = {
+      scene.load_cases[0].displacement};
+  prepared.Run(displacements);
+  Estimate estimate;
+  while (state.KeepRunning()) {
+    estimate = prepared.Run(displacements);
+  }
+  CountTetrahedra(state, scene.mesh);
+  state.counters["solves"] = estimate.work.solves;
 }
 
 // ---------------------------------------------------------------------------
@@ -275,12 +303,18 @@ void RegisterBenchmarks() {
         ->ArgNames({"cells", "columns"})
         ->Args({cells, 1})
         ->Args({cells, 4});
-    for (const char* const name : {"closed-form", "iterative-fe"}) {
+    // The closed form is for data without noise.
+    for (const char* const name :
+         {"closed-form", "reduced-fe", "iterative-fe"}) {
+      const double noise = std::string(name) == "closed-form" ? 0 : kNoise;
       threaded(std::string("Estimate/") + name,
-               [name](benchmark::State& state) { RunEstimator(state, name); })
+               [name, noise](benchmark::State& state) {
+                 RunEstimator(state, name, noise);
+               })
           ->ArgNames({"cells"})
           ->Args({cells});
     }
+    threaded("MeasureAgain", MeasureAgain)->ArgNames({"cells"})->Args({cells});
   }
 }
 

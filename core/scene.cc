@@ -232,7 +232,13 @@ void ValidateScene(const Scene& scene) {
           "load " + std::to_string(k + 1) + " of " + CaseName(i);
       std::visit(LoadValidator{scene.mesh, where}, load_case.loads[k]);
     }
-    ValidateMeasurement(scene.mesh, load_case, CaseName(i));
+  }
+  ValidateMeasurements(scene);
+}
+
+void ValidateMeasurements(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.load_cases.size(); ++i) {
+    ValidateMeasurement(scene.mesh, scene.load_cases[i], CaseName(i));
   }
 }
 

@@ -77,6 +77,11 @@ struct Scene {
 /// free.  O(num_elements + num_nodes * num_load_cases).
 void ValidateScene(const Scene& scene);
 
+/// The part of ValidateScene that is about observed components, displacements
+/// and noise: for another measurement of a valid scene.
+/// O(num_nodes * num_load_cases).
+void ValidateMeasurements(const Scene& scene);
+
 /// Why the supports do not hold the specimen: a sentence that names a motion
 /// without strain which they allow (a translation or a rotation of a connected
 /// part of the mesh), or an empty string when there is none. A finite element

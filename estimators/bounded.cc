@@ -186,12 +186,14 @@ Estimate Bounded::DoRun(const Scene& scene,
     // E runs to zero or infinity with 1 - 2 nu: its value says nothing.
     estimate.elasticity.youngs_modulus = Estimate::kUnknown;
     Fail(Status::kUnphysical,
-         "the data pull Poisson's ratio out of its physical range, as "
+         "the data pull Poisson's ratio to the end of its range, as "
          "displacement noise does with this method; give bounds that the "
          "material is known to keep, or use iterative-fe",
          estimate);
   } else if (!options.known_poisson_ratio && free_youngs_modulus) {
     JudgeNoiseBias(residual, EffectivePoissonRatioBounds(options), estimate);
+  } else if (options.known_poisson_ratio && free_youngs_modulus) {
+    JudgeKnownPoissonRatio(residual, estimate);
   }
   return estimate;
 }

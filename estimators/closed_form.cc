@@ -48,7 +48,7 @@ Estimate ClosedForm::DoRun(const Scene& scene,
     std::ostringstream text;
     text << "E = " << estimate.elasticity.youngs_modulus << ", nu = " << *nu
          << " is not physical: "
-         << (residual.ComplianceScale(*nu) > 0
+         << (!(*nu > -1 && *nu < 0.5)
                  ? "displacement noise pulls nu of this method towards 2/3 and "
                    "E below zero, and so may a mesh, supports or loads that do "
                    "not describe the experiment; use iterative-fe, which noise "
@@ -61,6 +61,8 @@ Estimate ClosedForm::DoRun(const Scene& scene,
     estimate.why_no_standard_error = "the estimate is not physical";
   } else if (free_poisson_ratio) {
     JudgeNoiseBias(residual, Bounds{}, estimate);
+  } else {
+    JudgeKnownPoissonRatio(residual, estimate);
   }
   return estimate;
 }

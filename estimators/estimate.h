@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "elastimate/core/elasticity.h"
-#include "elastimate/core/forward_model.h"
+#include "elastimate/core/stiffness_solver.h"
 
 namespace elastimate {
 

@@ -203,7 +203,14 @@ std::optional<double> ForceResidual::ResidualVariance(
 }
 
 std::optional<double> ForceResidual::NoiseVariance(
-    const Estimate& estimate, bool free_poisson_ratio) const {
+    const Estimate& estimate, bool free_youngs_modulus,
+    bool free_poisson_ratio) const {
+  if (!free_youngs_modulus) {
+    const Eigen::Vector2d weights(1, estimate.elasticity.poisson_ratio);
+    const double norm = RelativeResidual(estimate.elasticity) *
+                        estimate.elasticity.ComplianceScale() * triangle_(0, 0);
+    return norm * norm / weights.dot(traces_ * weights);
+  }
   return ResidualVariance(free_poisson_ratio
                               ? ErrorsInVariablesPoissonRatio()
                               : estimate.elasticity.poisson_ratio,
@@ -222,6 +229,23 @@ std::optional<double> ForceResidual::UnbiasedPoissonRatio() const {
     return std::nullopt;
   }
   return -(r11 * triangle_(1, 2) - noise(0, 1)) / b_squared;
+}
+
+std::optional<double> ForceResidual::UnbiasedPoissonRatioError() const {
+  constexpr double kLargestAttenuation = 0.5;
+  const std::optional<double> nu = UnbiasedPoissonRatio();
+  const std::optional<double> variance =
+      nu ? ResidualVariance(*nu, true) : std::nullopt;
+  if (!variance) {
+    return std::nullopt;
+  }
+  const double attenuation =
+      *variance * ProjectedTraces()(1, 1) / (triangle_(1, 1) * triangle_(1, 1));
+  if (!(attenuation < kLargestAttenuation)) {
+    return std::nullopt;
+  }
+  return std::sqrt(Covariance(At(*nu), *variance, true, true)(1, 1)) /
+         (1 - attenuation);
 }
 
 Eigen::Matrix2d ForceResidual::Covariance(const IsotropicElasticity& elasticity,
@@ -257,7 +281,7 @@ void ForceResidual::Describe(bool free_youngs_modulus, bool free_poisson_ratio,
                              Estimate& estimate) const {
   estimate.force_residual = RelativeResidual(estimate.elasticity);
   const std::optional<double> residual_variance =
-      NoiseVariance(estimate, free_poisson_ratio);
+      NoiseVariance(estimate, free_youngs_modulus, free_poisson_ratio);
   if (!known_noise_sd_ && !residual_variance) {
     estimate.why_no_standard_error =
         "there are no more equations than unknowns, so that the noise cannot "
@@ -289,6 +313,35 @@ void ForceResidual::Describe(bool free_youngs_modulus, bool free_poisson_ratio,
     estimate.covariance = Covariance(estimate.elasticity, variance,
                                      free_youngs_modulus, free_poisson_ratio);
   }
+}
+
+void JudgeKnownPoissonRatio(const ForceResidual& residual, Estimate& estimate) {
+  constexpr double kSignificant = 5;
+  constexpr double kUnusableChange = 0.1;
+  const std::optional<double> nu = residual.UnbiasedPoissonRatio();
+  const std::optional<double> error = residual.UnbiasedPoissonRatioError();
+  const double given = estimate.elasticity.poisson_ratio;
+  // Rounding has no standard error.
+  constexpr double kRounding = 1e-6;
+  if (!residual.PoissonRatio() || !nu || !error ||
+      !(std::abs(*nu - given) > kSignificant * *error + kRounding)) {
+    return;
+  }
+  const double ratio =
+      residual.At(*nu).youngs_modulus / estimate.elasticity.youngs_modulus;
+  const std::string what =
+      "the data contradict the given Poisson's ratio: they ask for " +
+      Number(*nu) + " +- " + Number(*error) +
+      ", unless the mesh, the supports or the loads do not describe the "
+      "experiment";
+  if (std::abs(ratio - 1) <= kUnusableChange) {
+    estimate.warnings.push_back(what);
+    return;
+  }
+  estimate.status = Status::kNotIdentifiable;
+  estimate.message = what;
+  estimate.covariance.setConstant(Estimate::kUnknown);
+  estimate.why_no_standard_error = "the model contradicts the data";
 }
 
 void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,

@@ -6,6 +6,7 @@
 #include "elastimate/estimators/bounded.h"
 #include "elastimate/estimators/closed_form.h"
 #include "elastimate/estimators/iterative_fe.h"
+#include "elastimate/estimators/reduced_fe.h"
 
 namespace elastimate {
 namespace {
@@ -19,6 +20,7 @@ constexpr std::unique_ptr<Estimator> (*kEstimators[])() = {
     Make<ClosedForm>,
     Make<Bounded>,
     Make<IterativeFe>,
+    Make<ReducedFe>,
 };
 
 }  // namespace

@@ -194,6 +194,32 @@ TEST(ClosedForm, AKnownPoissonRatioLeavesNoBias) {
   EXPECT_NEAR(error_sum / kSeeds, 0, 4 * std::sqrt(variance_sum) / kSeeds);
 }
 
+TEST(ClosedForm, SaysThatTheDataContradictAKnownPoissonRatio) {
+  Scene scene = SmallScene("cuboid");
+  MeasureDensely({5e4, 0.3}, scene);
+  EstimatorOptions options;
+  options.known_poisson_ratio = 0.45;
+  for (const double noise : {0.0, 1e-3}) {
+    AddNoise(noise, 1, scene);
+    const Estimate estimate = ClosedForm().Run(scene, options);
+    EXPECT_EQ(estimate.status, Status::kNotIdentifiable);
+    EXPECT_NE(estimate.message.find("they ask for 0.3 "), std::string::npos)
+        << estimate.message;
+    EXPECT_FALSE(estimate.YoungsModulusStandardError().has_value());
+  }
+}
+
+TEST(ClosedForm, BlamesNoiseForANuAboveOneHalf) {
+  Scene scene = SmallScene("organ");
+  MeasureDensely({5e4, 0.45}, scene);
+  AddNoise(0.1, 1, scene);
+  const Estimate estimate = ClosedForm().Run(scene, {});
+  ASSERT_EQ(estimate.status, Status::kUnphysical);
+  ASSERT_GT(estimate.elasticity.poisson_ratio, 0.5);
+  EXPECT_NE(estimate.message.find("displacement noise"), std::string::npos);
+  EXPECT_EQ(estimate.message.find("oppose the loads"), std::string::npos);
+}
+
 TEST(ClosedForm, RefusesWhatItCannotHonour) {
   Scene scene = SmallScene("cuboid");
   Measure({5e4, 0.3}, scene);
