@@ -1,5 +1,6 @@
 #include "elastimate/estimators/checks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -47,6 +48,37 @@ MeasurementSummary Summarize(const Scene& scene, const LoadCase& load_case) {
     }
   }
   return summary;
+}
+
+// 95 % of a normal distribution, two-sided and one-sided.
+void AddPoissonRatioInterval(Estimate& estimate) {
+  constexpr double kTwoSided = 1.960;
+  constexpr double kOneSided = 1.645;
+  const std::optional<double> error = estimate.PoissonRatioStandardError();
+  if (estimate.poisson_ratio_interval || !error) {
+    return;
+  }
+  const double nu = estimate.elasticity.poisson_ratio;
+  if (nu + kOneSided * *error > 0.5) {
+    estimate.poisson_ratio_interval = {nu - kOneSided * *error, 0.5};
+  } else if (nu - kOneSided * *error < -1) {
+    estimate.poisson_ratio_interval = {-1, nu + kOneSided * *error};
+  } else {
+    estimate.poisson_ratio_interval = {std::max(-1.0, nu - kTwoSided * *error),
+                                       std::min(0.5, nu + kTwoSided * *error)};
+  }
+}
+
+void WarnOfLocking(const Mesh& mesh, Estimate& estimate) {
+  constexpr double kLocking = 0.45;
+  constexpr Eigen::Index kNodesOfLinearTetrahedron = 4;
+  if (mesh.elements.rows() == kNodesOfLinearTetrahedron &&
+      estimate.elasticity.poisson_ratio >= kLocking) {
+    estimate.warnings.emplace_back(
+        "linear tetrahedra are too stiff from nu = 0.45 on (they lock), which "
+        "biases E and nu and makes their standard errors too small, unless the "
+        "displacements come from the same mesh");
+  }
 }
 
 void CheckResult(const EstimatorOptions& options, Estimate& estimate) {
@@ -145,13 +177,18 @@ std::vector<std::string> CheckMeasurements(const Scene& scene) {
   return warnings;
 }
 
-void FinishEstimate(const Estimator& estimator, const EstimatorOptions& options,
+void FinishEstimate(const Estimator& estimator, const Scene& scene,
+                    const EstimatorOptions& options,
                     const std::vector<std::string>& warnings,
                     Estimate& estimate) {
   estimate.estimator = estimator.Name();
   estimate.warnings.insert(estimate.warnings.begin(), warnings.begin(),
                            warnings.end());
   CheckResult(options, estimate);
+  if (estimate.IsUsable()) {
+    AddPoissonRatioInterval(estimate);
+    WarnOfLocking(scene.mesh, estimate);
+  }
 }
 
 }  // namespace elastimate

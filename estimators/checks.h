@@ -22,10 +22,13 @@ void CheckSupported(const Estimator& estimator, const Scene& scene,
 /// what each estimator needs: see Estimator::Run.  Returns warnings.
 std::vector<std::string> CheckMeasurements(const Scene& scene);
 
-/// Enters the estimator's name and the warnings, and turns an estimate that
+/// Enters the estimator's name, the warnings, and an interval of nu where only
+/// its standard error is known; warns of what linear elements do near nu = 1/2;
+/// and turns an estimate that
 /// claims to be ok into what it is, when it is not finite, not physical, or not
 /// determined.
-void FinishEstimate(const Estimator& estimator, const EstimatorOptions& options,
+void FinishEstimate(const Estimator& estimator, const Scene& scene,
+                    const EstimatorOptions& options,
                     const std::vector<std::string>& warnings,
                     Estimate& estimate);
 

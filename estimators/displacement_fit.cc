@@ -280,12 +280,10 @@ std::optional<NeighbourCorrelation> CorrelateNeighbours(
   return NeighbourCorrelation{correlation, correlation * std::sqrt(n)};
 }
 
-void DescribeDisplacementFit(const Scene& scene, const NodeGraph& graph,
-                             const EstimatorOptions& options,
-                             const ObservedDisplacements& observed,
-                             const DisplacementFit& fit,
-                             const NodeLosses& losses,
-                             const ActiveBounds& active, Estimate& estimate) {
+std::optional<double> DescribeDisplacementFit(
+    const Scene& scene, const NodeGraph& graph, const EstimatorOptions& options,
+    const ObservedDisplacements& observed, const DisplacementFit& fit,
+    const NodeLosses& losses, const ActiveBounds& active, Estimate& estimate) {
   const ResidualSums sums = SumResiduals(observed, fit, losses);
   const Eigen::Matrix2d& gram = sums.sensitivity_gram;
   const double slope = -gram(0, 1) / gram(0, 0);
@@ -313,7 +311,7 @@ void DescribeDisplacementFit(const Scene& scene, const NodeGraph& graph,
     estimate.message = DescribeCollinear(estimate.elasticity, {slope, 1});
     estimate.elasticity = {Estimate::kUnknown, Estimate::kUnknown};
     estimate.why_no_standard_error = "the parameters are not determined";
-    return;
+    return std::nullopt;
   }
 
   // Below three the variance of Student's t is infinite.
@@ -329,7 +327,7 @@ void DescribeDisplacementFit(const Scene& scene, const NodeGraph& graph,
           " measured components are too few to tell how good the estimate is; "
           "measure more, or give the standard deviation of the noise";
     }
-    return;
+    return std::nullopt;
   }
   std::optional<ResidualVariance> variance;
   if (losses.IsLeastSquares()) {
@@ -383,6 +381,15 @@ void DescribeDisplacementFit(const Scene& scene, const NodeGraph& graph,
                                       : std::sqrt(covariance_of({0, 1})(1, 1));
     JudgePoissonRatioOnBound(options, active, slope, standard_error, estimate);
   }
+  if (std::find(free.begin(), free.end(), 1) == free.end()) {
+    return active.is_physical_limit && variance
+               ? std::optional<double>(variance->variance)
+               : std::nullopt;
+  }
+  const Eigen::MatrixXd inverse_bread =
+      Eigen::MatrixXd(sums.bread(free, free)).inverse();
+  return covariance(1, 1) /
+         inverse_bread(inverse_bread.rows() - 1, inverse_bread.cols() - 1);
 }
 
 }  // namespace elastimate

@@ -45,13 +45,16 @@ std::optional<NeighbourCorrelation> CorrelateNeighbours(
 /// with sigma^2 as given, or from the residual; with one it is the sandwich of
 /// M-estimation.  A residual that is significantly alike at neighbouring nodes
 /// is not noise: its smooth part may hide an error of its own size along the
-/// sensitivities, and ||smooth part||^2 (S^T S)^-1 is added.
-void DescribeDisplacementFit(const Scene& scene, const NodeGraph& graph,
-                             const EstimatorOptions& options,
-                             const ObservedDisplacements& observed,
-                             const DisplacementFit& fit,
-                             const NodeLosses& losses,
-                             const ActiveBounds& active, Estimate& estimate);
+/// sensitivities, and ||smooth part||^2 (S^T S)^-1 is added.  So is the square
+/// of what the outliers of a fit without a loss pull the parameters by.
+///
+/// Returns the variance of a row of the residual that the standard error of nu
+/// amounts to, or would, were nu not at the end of its physical range; empty
+/// when there is none.
+std::optional<double> DescribeDisplacementFit(
+    const Scene& scene, const NodeGraph& graph, const EstimatorOptions& options,
+    const ObservedDisplacements& observed, const DisplacementFit& fit,
+    const NodeLosses& losses, const ActiveBounds& active, Estimate& estimate);
 
 }  // namespace elastimate
 

@@ -32,6 +32,12 @@ struct StageTime {
   double seconds;
 };
 
+/// Ends of an interval.
+struct Interval {
+  double lower;
+  double upper;
+};
+
 /// What an estimator says about a scene.  Starts out as a failure, so that it
 /// cannot be mistaken for a result before an estimator has filled it in.
 struct Estimate {
@@ -45,6 +51,9 @@ struct Estimate {
   /// Covariance of (E, nu).  NaN in the row and column of a parameter that was
   /// given, or that is held by a bound, or of both when unknown.
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kUnknown);
+  /// Where nu lies with a probability of 95 %: one-sided when it reaches -1 or
+  /// 1/2, where a standard error says little.  Empty when unknown.
+  std::optional<Interval> poisson_ratio_interval;
   /// Why a standard error is missing; empty when none is.
   std::string why_no_standard_error;
 
@@ -81,6 +90,10 @@ struct Estimate {
   std::optional<double> PoissonRatioStandardError() const;
   /// Correlation of the errors of E and nu; empty when unknown.
   std::optional<double> Correlation() const;
+  /// Of mu and of 1 / kappa, to first order; empty unless the covariance of
+  /// both E and nu is known.
+  std::optional<double> ShearModulusStandardError() const;
+  std::optional<double> BulkComplianceStandardError() const;
 
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 };

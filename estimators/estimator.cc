@@ -71,7 +71,7 @@ Estimate Estimator::Run(const Scene& scene,
   const std::vector<std::string> warnings = CheckMeasurements(scene);
   CheckSupported(*this, scene, options);
   Estimate estimate = DoRun(scene, options);
-  FinishEstimate(*this, options, warnings, estimate);
+  FinishEstimate(*this, scene, options, warnings, estimate);
   estimate.seconds = stopwatch.Lap();
   return estimate;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -182,6 +183,27 @@ class AdaptiveFit {
     return is_regular_;
   }
 
+  // Where nu of the last fit without a loss lies with a probability of 95 %,
+  // for residuals of this variance.
+  Interval ProfileInterval(const ObservedDisplacements& observed,
+                           double variance) const {
+    // Quantiles of chi^2 of one degree of freedom: 95 %, and 90 % for the end
+    // of a one-sided interval.
+    constexpr double kTwoSided = 3.841;
+    constexpr double kOneSided = 2.706;
+    const auto interval = [&](double quantile) {
+      return least_squares_->ProfileInterval(observed.Measured(), fit_.point,
+                                             quantile * variance);
+    };
+    Interval both = interval(kTwoSided);
+    const bool reaches_upper = both.upper >= kLargestPoissonRatio;
+    const bool reaches_lower = both.lower <= kSmallestPoissonRatio;
+    if (reaches_upper != reaches_lower) {
+      both = interval(kOneSided);
+    }
+    return {reaches_lower ? -1 : both.lower, reaches_upper ? 0.5 : both.upper};
+  }
+
   const ModelFit& Best() const { return fit_; }
   bool HasConverged() const { return has_converged_; }
   const Bounds& PoissonRatioBounds() const { return poisson_ratio_; }
@@ -288,6 +310,14 @@ BoundedParameter::Side BoundOf(const Bounds& bounds, double value) {
   return BoundedParameter::Side::kNone;
 }
 
+bool IsNearPhysicalLimit(const Estimate& estimate) {
+  constexpr double kStandardErrors = 3;
+  const double nu = estimate.elasticity.poisson_ratio;
+  const double range =
+      kStandardErrors * estimate.PoissonRatioStandardError().value_or(0);
+  return nu + range > 0.5 || nu - range < -1;
+}
+
 // Fits, and describes the fit.
 Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
                         const ObservedDisplacements& observed,
@@ -332,10 +362,15 @@ Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
       options,
       BoundOf(options.youngs_modulus, estimate.elasticity.youngs_modulus),
       poisson_ratio, estimate);
-  DescribeDisplacementFit(
+  const std::optional<double> variance = DescribeDisplacementFit(
       scene, adaptive.Model().Graph(), options, observed,
       ExpandFit(adaptive.Model(), observed, estimate.elasticity), best.losses,
       active, estimate);
+  if (variance && options.loss == Loss::kNone && estimate.IsUsable() &&
+      (active.is_physical_limit || IsNearPhysicalLimit(estimate))) {
+    estimate.poisson_ratio_interval =
+        adaptive.ProfileInterval(observed, *variance);
+  }
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
   return estimate;
 }
@@ -424,7 +459,7 @@ Estimate PreparedReducedFe::Run(
   Estimate estimate = RunAdaptiveFit(scene, state_->options, *state_->observed,
                                      state_->adaptive);
   estimate.work = state_->adaptive.Model().WorkDone() - before;
-  FinishEstimate(ReducedFe(), state_->options, warnings, estimate);
+  FinishEstimate(ReducedFe(), scene, state_->options, warnings, estimate);
   estimate.seconds = stopwatch.Lap();
   return estimate;
 }

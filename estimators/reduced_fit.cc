@@ -109,6 +109,38 @@ ReducedFit::Point ReducedFit::Fit(const Eigen::VectorXd& measured) const {
   return IsBetter(minimum, best) ? minimum : best;
 }
 
+Interval ReducedFit::ProfileInterval(const Eigen::VectorXd& measured,
+                                     const Point& best, double excess) const {
+  const Projection projection = Project(measured);
+  const double limit = best.square_sum + excess;
+  const auto is_inside = [&](double nu) {
+    const Point point = At(nu, projection);
+    return point.compliance_scale > 0 && point.square_sum <= limit;
+  };
+  const auto end_towards = [&](double scan_end, Eigen::Index step) {
+    double inside = best.poisson_ratio;
+    double outside = scan_end;
+    bool found = false;
+    for (Eigen::Index i = step > 0 ? 0 : scan_.size() - 1;
+         i >= 0 && i < scan_.size() && !found; i += step) {
+      if ((scan_(i) - best.poisson_ratio) * static_cast<double>(step) > 0) {
+        found = !is_inside(scan_(i));
+        (found ? outside : inside) = scan_(i);
+      }
+    }
+    if (!found) {
+      return scan_end;
+    }
+    constexpr int kHalvings = 40;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = (inside + outside) / 2;
+      (is_inside(middle) ? inside : outside) = middle;
+    }
+    return inside;
+  };
+  return {end_towards(scan_(0), -1), end_towards(scan_(scan_.size() - 1), 1)};
+}
+
 ReducedFit::Projection ReducedFit::Project(
     const Eigen::VectorXd& measured) const {
   Projection projection;
