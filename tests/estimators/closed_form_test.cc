@@ -6,6 +6,7 @@
 
 #include "elastimate/core/degrees_of_freedom.h"
 #include "elastimate/core/loads.h"
+#include "elastimate/core/quadratic_scene.h"
 #include "tests/dense_reference.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
@@ -208,6 +209,24 @@ TEST(ClosedForm, RefusesWhatItCannotHonour) {
   scene.load_cases[0].observed(1, 20) = false;
   EXPECT_THROWS_WITH(ClosedForm().Run(scene, {}),
                      "node 20 \\(y\\) of load case 1 was not observed");
+}
+
+TEST(ClosedForm, SaysThatMidEdgeNodesAreNotMeasured) {
+  const std::string why =
+      ClosedForm().WhyUnsupported(QuadraticScene(SmallScene("cuboid")), {});
+  EXPECT_NE(why.find("order 2"), std::string::npos) << why;
+  EXPECT_NE(why.find("use iterative-fe"), std::string::npos) << why;
+}
+
+// As somebody could who simulates.
+TEST(ClosedForm, TakesQuadraticElementsMeasuredAtEveryNode) {
+  Scene scene = QuadraticScene(SmallScene("organ"));
+  Measure({5e4, 0.3}, scene);
+  scene.load_cases[0].observed.resize(3, 0);
+  const Estimate estimate = ClosedForm().Run(scene, {});
+  EXPECT_TRUE(estimate.IsUsable()) << estimate.message;
+  EXPECT_NEAR(estimate.elasticity.youngs_modulus / 5e4, 1, 1e-8);
+  EXPECT_NEAR(estimate.elasticity.poisson_ratio, 0.3, 1e-8);
 }
 
 TEST(ClosedForm, DoesNotNeedHeldNodesToBeObserved) {
