@@ -56,7 +56,7 @@ class LoadAssembler {
   }
 
  private:
-  void Add(Eigen::Ref<const Eigen::VectorXi> nodes,
+  void Add(const Eigen::Ref<const Eigen::VectorXi>& nodes,
            const Eigen::Vector3d& share) {
     for (const int node : nodes) {
       force_.col(node) += share;
@@ -64,7 +64,7 @@ class LoadAssembler {
   }
 
   // The vertices of a quadratic triangle get nothing.
-  void AddToFacet(Eigen::Ref<const Eigen::VectorXi> nodes,
+  void AddToFacet(const Eigen::Ref<const Eigen::VectorXi>& nodes,
                   const Eigen::Vector3d& total) {
     Add(nodes.tail<3>(), total / 3);
   }

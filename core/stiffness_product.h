@@ -28,7 +28,7 @@ struct StiffnessProducts {
 ///
 /// Precondition: a valid mesh (ValidateMesh) and 3 num_nodes rows.
 /// Cost: one element pass, O(num_elements * num_columns) time (for quadratic
-/// tetrahedra about five times that for linear ones), no memory beyond the
+/// tetrahedra about nine times that for linear ones), no memory beyond the
 /// result.  Single-threaded; the same input gives the same bits.
 StiffnessProducts MultiplyStiffnessBasis(const Mesh& mesh,
                                          const Eigen::MatrixXd& displacement);

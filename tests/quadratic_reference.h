@@ -152,8 +152,9 @@ inline Eigen::MatrixXd QuadraticDenseStiffness(
     });
     for (int i = 0; i < 10; ++i) {
       for (int j = 0; j < 10; ++j) {
-        stiffness.block<3, 3>(3 * mesh.elements(i, e),
-                              3 * mesh.elements(j, e)) +=
+        const Eigen::Index row = mesh.elements(i, e);
+        const Eigen::Index column = mesh.elements(j, e);
+        stiffness.block<3, 3>(3 * row, 3 * column) +=
             element.block<3, 3>(3 * i, 3 * j);
       }
     }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "elastimate/core/forward_model.h"
 #include "elastimate/core/loads.h"
@@ -160,7 +161,8 @@ double ManufacturedError(const IsotropicElasticity& elasticity, int n) {
     const QuadraticShapeFunctions shape(mesh, e);
     Eigen::Matrix<double, 3, 10> u;
     for (int i = 0; i < 10; ++i) {
-      u.col(i) = solution.middleRows<3>(3 * mesh.elements(i, e));
+      const Eigen::Index node = mesh.elements(i, e);
+      u.col(i) = solution.middleRows<3>(3 * node);
     }
     ForEachGaussPoint([&](const Eigen::Vector4d& point, double weight) {
       const Eigen::Vector3d x = shape.Position(point);

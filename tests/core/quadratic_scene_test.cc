@@ -19,9 +19,7 @@ namespace elastimate {
 namespace {
 
 using testing::BoxMesh;
-using testing::Distorted;
 using testing::RandomMatrix;
-using testing::RandomSupports;
 using testing::SmallScene;
 using testing::WithBothOrientations;
 using testing::WithMidEdgeNodes;

@@ -92,8 +92,9 @@ TEST_F(QuadraticTetrahedra, GradientProductsAreThoseOfTheShapeFunctions) {
           shape.Gradients(shape.Position(point));
       for (int i = 0; i < 10; ++i) {
         for (int j = 0; j < 10; ++j) {
-          expected.block<3, 3>(3 * mesh_.elements(i, e),
-                               3 * mesh_.elements(j, e)) +=
+          const Eigen::Index row = mesh_.elements(i, e);
+          const Eigen::Index column = mesh_.elements(j, e);
+          expected.block<3, 3>(3 * row, 3 * column) +=
               shape.Volume() * weight * gradients.row(i).transpose() *
               gradients.row(j);
         }
@@ -225,10 +226,11 @@ TEST_F(QuadraticTetrahedra, ContainTheLinearOnes) {
   constexpr int kEnds[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
   for (Eigen::Index e = 0; e < mesh_.NumElements(); ++e) {
     for (int i = 0; i < 6; ++i) {
-      interpolated.segment<3>(3 * mesh_.elements(4 + i, e)) =
-          (linear.segment<3>(3 * linear_.elements(kEnds[i][0], e)) +
-           linear.segment<3>(3 * linear_.elements(kEnds[i][1], e))) /
-          2;
+      const Eigen::Index node = mesh_.elements(4 + i, e);
+      const Eigen::Index a = linear_.elements(kEnds[i][0], e);
+      const Eigen::Index b = linear_.elements(kEnds[i][1], e);
+      interpolated.segment<3>(3 * node) =
+          (linear.segment<3>(3 * a) + linear.segment<3>(3 * b)) / 2;
     }
   }
   const StiffnessProducts expected = MultiplyStiffnessBasis(linear_, linear);
