@@ -150,8 +150,8 @@ inline Eigen::MatrixXd QuadraticDenseStiffness(
           shape.StrainDisplacement(shape.Position(point));
       element += shape.Volume() * weight * b.transpose() * d * b;
     });
-    for (int i = 0; i < 10; ++i) {
-      for (int j = 0; j < 10; ++j) {
+    for (Eigen::Index i = 0; i < 10; ++i) {
+      for (Eigen::Index j = 0; j < 10; ++j) {
         const Eigen::Index row = mesh.elements(i, e);
         const Eigen::Index column = mesh.elements(j, e);
         stiffness.block<3, 3>(3 * row, 3 * column) +=
