@@ -32,7 +32,9 @@ DEFINE_double(noise, 0,
               "displacement, from 0 on [-]; none without this flag");
 DEFINE_string(noise_law, "uniform", "uniform or gaussian");
 DEFINE_string(loss, "none", "treatment of outliers: none, huber or cauchy");
-DEFINE_int32(order, 1, "element order; 1 in this version");
+DEFINE_int32(order, 1,
+             "element order: 1 for linear tetrahedra, 2 for quadratic ones on "
+             "the same mesh (not with closed-form, bounded)");
 DEFINE_int32(threads, 0,
              "largest number of threads of the linear algebra; 0, or without "
              "this flag, all processors");

@@ -75,8 +75,9 @@ std::string Summary(const Estimate& estimate, const Scene& scene) {
   std::ostringstream text;
   const IsotropicElasticity& elasticity = estimate.elasticity;
   Line("scene",
-       std::to_string(scene.mesh.NumNodes()) + " nodes, " +
-           std::to_string(scene.mesh.NumElements()) + " tetrahedra, " +
+       std::to_string(scene.mesh.NumVertices()) + " nodes, " +
+           std::to_string(scene.mesh.NumElements()) +
+           (scene.mesh.Order() == 2 ? " quadratic" : "") + " tetrahedra, " +
            std::to_string(scene.load_cases.size()) + " load case" +
            (scene.load_cases.size() == 1 ? "" : "s"),
        text);

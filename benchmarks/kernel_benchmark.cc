@@ -7,10 +7,11 @@
 //
 //   elastimate_kernel_benchmark --benchmark_filter=Large
 //
-// A cube of 21, 39 and 58 cells along an edge has 46 305, 296 595 and 975 560
-// tetrahedra.  `per_tetrahedron` is the time for each tetrahedron (and each
-// column of an element pass).  At the end stands how much faster the element
-// pass is than the textbook's, in the same run; both have one thread.
+// A cube of 10, 21, 39 and 58 cells along an edge has 5000, 46 305, 296 595 and
+// 975 560 tetrahedra, quadratic ones where the name says so.  `per_tetrahedron`
+// is the time for each tetrahedron (and each column of an element pass).  At
+// the end stands how much faster the element pass is than the textbook's, in
+// the same run; both have one thread.
 
 #include <benchmark/benchmark.h>
 
@@ -30,6 +31,7 @@
 #include "elastimate/core/forward_model.h"
 #include "elastimate/core/loads.h"
 #include "elastimate/core/node_graph.h"
+#include "elastimate/core/quadratic_scene.h"
 #include "elastimate/core/stiffness_assembly.h"
 #include "elastimate/core/stiffness_product.h"
 #include "elastimate/core/stiffness_traces.h"
@@ -56,6 +58,17 @@ const Scene& Cube(std::int64_t cells) {
   return scenes.emplace(cells, CuboidScene(options)).first->second;
 }
 
+// The same with quadratic elements.
+const Scene& QuadraticCube(std::int64_t cells) {
+  static std::map<std::int64_t, Scene> scenes;
+  const auto known = scenes.find(cells);
+  return known != scenes.end()
+             ? known->second
+             : scenes.emplace(cells, QuadraticScene(Cube(cells))).first->second;
+}
+
+using SceneOfCells = const Scene& (*)(std::int64_t);
+
 // Values in [-1, 1), the same on every run.
 Eigen::MatrixXd RandomMatrix(Eigen::Index rows, Eigen::Index columns) {
   std::mt19937_64 generator(1);
@@ -76,8 +89,9 @@ void CountTetrahedra(benchmark::State& state, const Mesh& mesh,
 // ---------------------------------------------------------------------------
 // Element passes.
 
+template <SceneOfCells kScene>
 void ElementPass(benchmark::State& state) {
-  const Mesh& mesh = Cube(state.range(0)).mesh;
+  const Mesh& mesh = kScene(state.range(0)).mesh;
   const Eigen::MatrixXd q = RandomMatrix(3 * mesh.NumNodes(), state.range(1));
   while (state.KeepRunning()) {
     benchmark::DoNotOptimize(MultiplyStiffnessBasis(mesh, q));
@@ -131,8 +145,9 @@ void GraphOfNodes(benchmark::State& state) {
 }
 
 // Graph, pattern and values.
+template <SceneOfCells kScene>
 void Assembly(benchmark::State& state) {
-  const Scene& scene = Cube(state.range(0));
+  const Scene& scene = kScene(state.range(0));
   const DegreesOfFreedom dofs(scene.supports);
   while (state.KeepRunning()) {
     const StiffnessAssembly assembly(scene.mesh, dofs);
@@ -141,8 +156,9 @@ void Assembly(benchmark::State& state) {
   CountTetrahedra(state, scene.mesh);
 }
 
+template <SceneOfCells kScene>
 void Reassembly(benchmark::State& state) {
-  const Scene& scene = Cube(state.range(0));
+  const Scene& scene = kScene(state.range(0));
   StiffnessAssembly assembly(scene.mesh, DegreesOfFreedom(scene.supports));
   while (state.KeepRunning()) {
     assembly.Assemble(scene.mesh);
@@ -164,8 +180,9 @@ void Combine(benchmark::State& state) {
 // ---------------------------------------------------------------------------
 // Factorisation.
 
+template <SceneOfCells kScene>
 void CholeskyAnalysis(benchmark::State& state) {
-  const Scene& scene = Cube(state.range(0));
+  const Scene& scene = kScene(state.range(0));
   const DegreesOfFreedom dofs(scene.supports);
   const StiffnessAssembly assembly(scene.mesh, dofs);
   while (state.KeepRunning()) {
@@ -175,8 +192,9 @@ void CholeskyAnalysis(benchmark::State& state) {
   CountTetrahedra(state, scene.mesh);
 }
 
+template <SceneOfCells kScene>
 void CholeskyFactorization(benchmark::State& state) {
-  const Scene& scene = Cube(state.range(0));
+  const Scene& scene = kScene(state.range(0));
   const DegreesOfFreedom dofs(scene.supports);
   const StiffnessAssembly assembly(scene.mesh, dofs);
   Cholesky cholesky(assembly, dofs);
@@ -191,8 +209,9 @@ void CholeskyFactorization(benchmark::State& state) {
   state.counters["gigabytes"] = 8e-9 * cholesky.FactorValues();
 }
 
+template <SceneOfCells kScene>
 void CholeskySolve(benchmark::State& state) {
-  const Scene& scene = Cube(state.range(0));
+  const Scene& scene = kScene(state.range(0));
   const DegreesOfFreedom dofs(scene.supports);
   const StiffnessAssembly assembly(scene.mesh, dofs);
   Cholesky cholesky(assembly, dofs);
@@ -256,9 +275,30 @@ void MeasureAgain(benchmark::State& state) {
 
 // ---------------------------------------------------------------------------
 
+constexpr std::int64_t kTiny = 10;
 constexpr std::int64_t kSmall = 21;
 constexpr std::int64_t kMedium = 39;
 constexpr std::int64_t kBig = 58;
+
+void RegisterQuadraticBenchmarks() {
+  for (const std::int64_t cells : {kTiny, kSmall}) {
+    const auto add = [cells](const std::string& name, auto function) {
+      return benchmark::RegisterBenchmark(name.c_str(), function)
+          ->ArgNames({"cells", "columns"})
+          ->Args({cells, 1})
+          ->Unit(benchmark::kMillisecond)
+          ->UseRealTime();
+    };
+    add("Quadratic/ElementPass", ElementPass<QuadraticCube>)->Args({cells, 8});
+    add("Quadratic/Assembly", Assembly<QuadraticCube>);
+    add("Quadratic/Reassembly", Reassembly<QuadraticCube>);
+    const std::string prefix = cells == kSmall ? "Large/" : "";
+    add(prefix + "Quadratic/CholeskyAnalysis", CholeskyAnalysis<QuadraticCube>);
+    add(prefix + "Quadratic/CholeskyFactorization",
+        CholeskyFactorization<QuadraticCube>);
+    add(prefix + "Quadratic/CholeskySolve", CholeskySolve<QuadraticCube>);
+  }
+}
 
 void RegisterBenchmarks() {
   for (const std::int64_t cells : {kSmall, kMedium, kBig}) {
@@ -270,7 +310,7 @@ void RegisterBenchmarks() {
           ->MinTime(0.2);
     };
     // Repeated, because the shortest of three times is the least disturbed.
-    benchmark::RegisterBenchmark("ElementPass", ElementPass)
+    benchmark::RegisterBenchmark("ElementPass", ElementPass<Cube>)
         ->ArgNames({"cells", "columns"})
         ->Args({cells, 1})
         ->Args({cells, 8})
@@ -281,25 +321,25 @@ void RegisterBenchmarks() {
     single_threaded("TracesExact", TracesExact);
     single_threaded("TracesEstimated", TracesEstimated);
     single_threaded("NodeGraph", GraphOfNodes);
-    single_threaded("Assembly", Assembly);
-    single_threaded("Reassembly", Reassembly);
+    single_threaded("Assembly", Assembly<Cube>);
+    single_threaded("Reassembly", Reassembly<Cube>);
     single_threaded("Combine", Combine);
   }
-  for (const std::int64_t cells : {kSmall, kMedium}) {
+  for (const std::int64_t cells : {kTiny, kSmall, kMedium}) {
     // BLAS has threads of its own: the time that counts is that of the clock.
     const auto threaded = [cells](const std::string& name, auto function) {
-      const std::string prefix = cells == kSmall ? "" : "Large/";
+      const std::string prefix = cells == kMedium ? "Large/" : "";
       return benchmark::RegisterBenchmark((prefix + name).c_str(), function)
           ->Unit(benchmark::kMillisecond)
           ->UseRealTime();
     };
-    threaded("CholeskyAnalysis", CholeskyAnalysis)
+    threaded("CholeskyAnalysis", CholeskyAnalysis<Cube>)
         ->ArgNames({"cells"})
         ->Args({cells});
-    threaded("CholeskyFactorization", CholeskyFactorization)
+    threaded("CholeskyFactorization", CholeskyFactorization<Cube>)
         ->ArgNames({"cells"})
         ->Args({cells});
-    threaded("CholeskySolve", CholeskySolve)
+    threaded("CholeskySolve", CholeskySolve<Cube>)
         ->ArgNames({"cells", "columns"})
         ->Args({cells, 1})
         ->Args({cells, 4});
@@ -377,6 +417,7 @@ int Main(int argc, char** argv) {
     return 1;
   }
   RegisterBenchmarks();
+  RegisterQuadraticBenchmarks();
   ComparingReporter reporter;
   if (has_filter) {
     benchmark::RunSpecifiedBenchmarks(&reporter);

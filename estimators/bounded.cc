@@ -126,7 +126,7 @@ std::string_view Bounded::Description() const {
 std::string Bounded::WhyUnsupported(const Scene& scene,
                                     const EstimatorOptions& options) const {
   if (options.loss != Loss::kNone) {
-    return "a loss function needs displacement residuals; use iterative-fe";
+    return "a loss function needs displacement residuals; use reduced-fe";
   }
   return ForceResidual::WhyUnsupported(scene);
 }
@@ -188,7 +188,7 @@ Estimate Bounded::DoRun(const Scene& scene,
     Fail(Status::kUnphysical,
          "the data pull Poisson's ratio to the end of its range, as "
          "displacement noise does with this method; give bounds that the "
-         "material is known to keep, or use iterative-fe",
+         "material is known to keep, or use reduced-fe",
          estimate);
   } else if (!options.known_poisson_ratio && free_youngs_modulus) {
     JudgeNoiseBias(residual, EffectivePoissonRatioBounds(options), estimate);

@@ -71,13 +71,12 @@ void AddPoissonRatioInterval(Estimate& estimate) {
 
 void WarnOfLocking(const Mesh& mesh, Estimate& estimate) {
   constexpr double kLocking = 0.45;
-  constexpr Eigen::Index kNodesOfLinearTetrahedron = 4;
-  if (mesh.elements.rows() == kNodesOfLinearTetrahedron &&
-      estimate.elasticity.poisson_ratio >= kLocking) {
+  if (mesh.Order() == 1 && estimate.elasticity.poisson_ratio >= kLocking) {
     estimate.warnings.emplace_back(
         "linear tetrahedra are too stiff from nu = 0.45 on (they lock), which "
         "biases E and nu and makes their standard errors too small, unless the "
-        "displacements come from the same mesh");
+        "displacements come from the same mesh; quadratic ones (order 2) "
+        "hardly do");
   }
 }
 

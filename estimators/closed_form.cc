@@ -17,10 +17,10 @@ std::string_view ClosedForm::Description() const {
 std::string ClosedForm::WhyUnsupported(const Scene& scene,
                                        const EstimatorOptions& options) const {
   if (options.poisson_ratio.AreGiven() || options.youngs_modulus.AreGiven()) {
-    return "it cannot keep bounds; use bounded or iterative-fe";
+    return "it cannot keep bounds; use bounded or reduced-fe";
   }
   if (options.loss != Loss::kNone) {
-    return "a loss function needs displacement residuals; use iterative-fe";
+    return "a loss function needs displacement residuals; use reduced-fe";
   }
   return ForceResidual::WhyUnsupported(scene);
 }
@@ -51,7 +51,7 @@ Estimate ClosedForm::DoRun(const Scene& scene,
          << (!(*nu > -1 && *nu < 0.5)
                  ? "displacement noise pulls nu of this method towards 2/3 and "
                    "E below zero, and so may a mesh, supports or loads that do "
-                   "not describe the experiment; use iterative-fe, which noise "
+                   "not describe the experiment; use reduced-fe, which noise "
                    "does not bias, or give Poisson's ratio"
                  : "the measured displacements oppose the loads; check their "
                    "signs, order and units");

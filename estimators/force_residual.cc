@@ -59,16 +59,23 @@ std::string Percent(double ratio) { return Number(100 * ratio) + " %"; }
 }  // namespace
 
 std::string ForceResidual::WhyUnsupported(const Scene& scene) {
+  const Eigen::Index num_vertices = scene.mesh.NumVertices();
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
       for (int i = 0; i < 3; ++i) {
         if (!scene.supports.held(i, node) &&
             !IsObserved(scene.load_cases[k], i, node)) {
+          if (node >= num_vertices) {
+            return "the force residual needs the displacement of every node, "
+                   "and those of the mid-edge nodes of quadratic elements "
+                   "(order 2) were not measured; use reduced-fe, which can "
+                   "do without, or linear elements (order 1)";
+          }
           return "the force residual needs the displacement of every node, "
                  "and node " +
                  std::to_string(node) + " (" + "xyz"[i] + ") of load case " +
                  std::to_string(k + 1) +
-                 " was not observed; iterative-fe can do without";
+                 " was not observed; reduced-fe can do without";
         }
       }
     }
@@ -353,7 +360,7 @@ void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,
       "displacement noise (or a mesh, supports or loads that do not describe "
       "the experiment) biases ";
   const std::string advice =
-      "use iterative-fe, which noise does not bias, or give Poisson's ratio";
+      "use reduced-fe, which noise does not bias, or give Poisson's ratio";
   const IsotropicElasticity& elasticity = estimate.elasticity;
   const std::optional<double> unbiased_nu = residual.UnbiasedPoissonRatio();
   double bias = std::numeric_limits<double>::infinity();

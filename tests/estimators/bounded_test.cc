@@ -145,7 +145,7 @@ TEST(Bounded, SaysWhenTheNoiseBiasesItWithinItsBounds) {
 TEST(Bounded, RefusesALoss) {
   EstimatorOptions options;
   options.loss = Loss::kCauchy;
-  EXPECT_THROWS_WITH(Bounded().Run(NoisyScene(0), options), "use iterative-fe");
+  EXPECT_THROWS_WITH(Bounded().Run(NoisyScene(0), options), "use reduced-fe");
 }
 
 }  // namespace

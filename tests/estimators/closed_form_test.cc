@@ -6,6 +6,7 @@
 
 #include "elastimate/core/degrees_of_freedom.h"
 #include "elastimate/core/loads.h"
+#include "elastimate/core/quadratic_scene.h"
 #include "tests/dense_reference.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
@@ -155,7 +156,7 @@ TEST(ClosedForm, SaysThatNoiseMakesItUnusable) {
   const Estimate estimate = ClosedForm().Run(scene, {});
   EXPECT_FALSE(estimate.IsUsable());
   EXPECT_NE(estimate.message.find("noise"), std::string::npos);
-  EXPECT_NE(estimate.message.find("iterative-fe"), std::string::npos);
+  EXPECT_NE(estimate.message.find("reduced-fe"), std::string::npos);
   EXPECT_FALSE(estimate.YoungsModulusStandardError().has_value());
   EXPECT_FALSE(estimate.why_no_standard_error.empty());
 }
@@ -228,12 +229,30 @@ TEST(ClosedForm, RefusesWhatItCannotHonour) {
   EXPECT_THROWS_WITH(ClosedForm().Run(scene, bounds), "use bounded");
   EstimatorOptions loss;
   loss.loss = Loss::kHuber;
-  EXPECT_THROWS_WITH(ClosedForm().Run(scene, loss), "use iterative-fe");
+  EXPECT_THROWS_WITH(ClosedForm().Run(scene, loss), "use reduced-fe");
   scene.load_cases[0].observed =
       ComponentMask::Constant(3, scene.mesh.NumNodes(), true);
   scene.load_cases[0].observed(1, 20) = false;
   EXPECT_THROWS_WITH(ClosedForm().Run(scene, {}),
                      "node 20 \\(y\\) of load case 1 was not observed");
+}
+
+TEST(ClosedForm, SaysThatMidEdgeNodesAreNotMeasured) {
+  const std::string why =
+      ClosedForm().WhyUnsupported(QuadraticScene(SmallScene("cuboid")), {});
+  EXPECT_NE(why.find("order 2"), std::string::npos) << why;
+  EXPECT_NE(why.find("use reduced-fe"), std::string::npos) << why;
+}
+
+// As somebody could who simulates.
+TEST(ClosedForm, TakesQuadraticElementsMeasuredAtEveryNode) {
+  Scene scene = QuadraticScene(SmallScene("organ"));
+  Measure({5e4, 0.3}, scene);
+  scene.load_cases[0].observed.resize(3, 0);
+  const Estimate estimate = ClosedForm().Run(scene, {});
+  EXPECT_TRUE(estimate.IsUsable()) << estimate.message;
+  EXPECT_NEAR(estimate.elasticity.youngs_modulus / 5e4, 1, 1e-8);
+  EXPECT_NEAR(estimate.elasticity.poisson_ratio, 0.3, 1e-8);
 }
 
 TEST(ClosedForm, DoesNotNeedHeldNodesToBeObserved) {
