@@ -128,37 +128,6 @@ void WarnOfSmoothResidual(double relative_error, Estimate& estimate) {
   estimate.warnings.push_back(text.str());
 }
 
-// For nu on a bound: whether the data or the bound decide on it.
-// `slope` = d ln E / d nu of the parameters that fit alike, `standard_error`
-// that of nu without the bound.
-void JudgePoissonRatioOnBound(const EstimatorOptions& options,
-                              const ActiveBounds& active, double slope,
-                              double standard_error, Estimate& estimate) {
-  if (active.is_physical_limit &&
-      active.poisson_ratio == BoundedParameter::Side::kLower) {
-    estimate.status = Status::kUnphysical;
-    estimate.message =
-        "the data pull Poisson's ratio to -1, where no material is; check the "
-        "loads, the supports and the mesh";
-    return;
-  }
-  if (standard_error <= kLargestPoissonRatioError) {
-    return;
-  }
-  const Bounds bounds = EffectivePoissonRatioBounds(options);
-  const double uniform_sd = (*bounds.upper - *bounds.lower) / std::sqrt(12.0);
-  const double youngs_modulus_error =
-      std::abs(slope) * std::min(standard_error, uniform_sd);
-  if (active.is_physical_limit ||
-      youngs_modulus_error > kLargestYoungsModulusError) {
-    estimate.status = Status::kNotIdentifiable;
-    estimate.message =
-        "Poisson's ratio lies on its bound, but the data do not determine "
-        "it: " +
-        DescribeCollinear(estimate.elasticity, {slope, 1});
-  }
-}
-
 }  // namespace
 
 std::optional<NeighbourCorrelation> CorrelateNeighbours(

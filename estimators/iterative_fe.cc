@@ -342,8 +342,11 @@ std::string_view IterativeFe::Description() const {
          "solution at each step; unbiased, costs factorisations (reference)";
 }
 
-std::string IterativeFe::WhyUnsupported(
-    const Scene& scene, const EstimatorOptions& /*options*/) const {
+std::string IterativeFe::WhyUnsupported(const Scene& scene,
+                                        const EstimatorOptions& options) const {
+  if (options.virtual_field_degree) {
+    return "it has no virtual fields to take a degree; use virtual-fields";
+  }
   const std::string why_not_held = WhyNotHeld(scene.mesh, scene.supports);
   return why_not_held.empty()
              ? ""

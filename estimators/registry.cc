@@ -6,6 +6,7 @@
 #include "elastimate/estimators/bounded.h"
 #include "elastimate/estimators/closed_form.h"
 #include "elastimate/estimators/iterative_fe.h"
+#include "elastimate/estimators/virtual_fields.h"
 
 namespace elastimate {
 namespace {
@@ -18,6 +19,7 @@ std::unique_ptr<Estimator> Make() {
 constexpr std::unique_ptr<Estimator> (*kEstimators[])() = {
     Make<ClosedForm>,
     Make<Bounded>,
+    Make<VirtualFields>,
     Make<IterativeFe>,
 };
 
