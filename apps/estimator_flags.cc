@@ -81,6 +81,11 @@ EstimatorOptions OptionsFromFlags() {
   options.youngs_modulus = {Given("youngs_min", FLAGS_youngs_min),
                             Given("youngs_max", FLAGS_youngs_max)};
   options.loss = LossFromFlag();
+  if (IsGiven("degree")) {
+    Require(FLAGS_degree >= 1 && FLAGS_degree <= 3, "degree",
+            "it must be 1, 2 or 3");
+    options.virtual_field_degree = FLAGS_degree;
+  }
   CheckPoissonRatioFlags(options);
   CheckYoungsModulusFlags(options.youngs_modulus);
   return options;
@@ -93,8 +98,8 @@ void CheckPoissonRatioFlag() {
 
 std::string GivenOptionFlags() {
   std::string given;
-  for (const std::string flag :
-       {"nu", "nu_min", "nu_max", "youngs_min", "youngs_max", "loss"}) {
+  for (const std::string flag : {"nu", "nu_min", "nu_max", "youngs_min",
+                                 "youngs_max", "loss", "degree"}) {
     if (IsGiven(flag)) {
       given += (given.empty() ? "" : " ") + AsGiven(flag);
     }

@@ -32,9 +32,10 @@ DEFINE_double(noise, 0,
               "displacement, from 0 on [-]; none without this flag");
 DEFINE_string(noise_law, "uniform", "uniform or gaussian");
 DEFINE_string(loss, "none", "treatment of outliers: none, huber or cauchy");
+DEFINE_int32(degree, 2, "degree of the polynomial virtual fields, 1 to 3");
 DEFINE_int32(order, 1,
              "element order: 1 for linear tetrahedra, 2 for quadratic ones on "
-             "the same mesh (not with closed-form, bounded)");
+             "the same mesh (not with estimators of the force residual)");
 DEFINE_int32(threads, 0,
              "largest number of threads of the linear algebra; 0, or without "
              "this flag, all processors");
@@ -139,7 +140,8 @@ const std::vector<Command>& Commands() {
        "Young's modulus and Poisson's ratio of a scene (VTK, Gmsh or "
        "scene.json); several files are further load cases",
        {"estimator", "nu", "nu_min", "nu_max", "youngs_min", "youngs_max",
-        "order", "noise_sd", "loss", "threads", "seed", "json", "out"}},
+        "order", "noise_sd", "loss", "degree", "threads", "seed", "json",
+        "out"}},
       {"simulate",
        "SCENE",
        "displacements of a scene for given parameters, with noise if wanted",

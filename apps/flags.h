@@ -17,6 +17,7 @@ DECLARE_double(noise_sd);
 DECLARE_double(noise);
 DECLARE_string(noise_law);
 DECLARE_string(loss);
+DECLARE_int32(degree);
 DECLARE_int32(order);
 DECLARE_int32(threads);
 DECLARE_uint64(seed);

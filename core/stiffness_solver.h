@@ -18,6 +18,11 @@ struct Work {
   int solves = 0;          ///< Right-hand sides solved with a factorisation.
 };
 
+inline Work operator+(const Work& a, const Work& b) {
+  return {a.element_passes + b.element_passes,
+          a.factorizations + b.factorizations, a.solves + b.solves};
+}
+
 inline Work operator-(const Work& a, const Work& b) {
   return {a.element_passes - b.element_passes,
           a.factorizations - b.factorizations, a.solves - b.solves};

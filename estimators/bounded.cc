@@ -128,6 +128,9 @@ std::string Bounded::WhyUnsupported(const Scene& scene,
   if (options.loss != Loss::kNone) {
     return "a loss function needs displacement residuals; use reduced-fe";
   }
+  if (options.virtual_field_degree) {
+    return "it has no virtual fields to take a degree; use virtual-fields";
+  }
   return ForceResidual::WhyUnsupported(scene);
 }
 

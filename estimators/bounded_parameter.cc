@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "elastimate/estimators/statistics.h"
+
 namespace elastimate {
 namespace {
 
@@ -150,6 +152,34 @@ ActiveBounds NoteActiveBounds(const EstimatorOptions& options,
               "standard error hold only if the bound is the true value");
   }
   return active;
+}
+
+void JudgePoissonRatioOnBound(const EstimatorOptions& options,
+                              const ActiveBounds& active, double slope,
+                              double standard_error, Estimate& estimate) {
+  if (active.is_physical_limit &&
+      active.poisson_ratio == BoundedParameter::Side::kLower) {
+    estimate.status = Status::kUnphysical;
+    estimate.message =
+        "the data pull Poisson's ratio to -1, where no material is; check the "
+        "loads, the supports and the mesh";
+    return;
+  }
+  if (standard_error <= kLargestPoissonRatioError) {
+    return;
+  }
+  const Bounds bounds = EffectivePoissonRatioBounds(options);
+  const double uniform_sd = (*bounds.upper - *bounds.lower) / std::sqrt(12.0);
+  const double youngs_modulus_error =
+      std::abs(slope) * std::min(standard_error, uniform_sd);
+  if (active.is_physical_limit ||
+      youngs_modulus_error > kLargestYoungsModulusError) {
+    estimate.status = Status::kNotIdentifiable;
+    estimate.message =
+        "Poisson's ratio lies on its bound, but the data do not determine "
+        "it: " +
+        DescribeCollinear(estimate.elasticity, {slope, 1});
+  }
 }
 
 }  // namespace elastimate

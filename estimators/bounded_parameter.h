@@ -75,6 +75,13 @@ ActiveBounds NoteActiveBounds(const EstimatorOptions& options,
                               const BoundedParameter& poisson_ratio,
                               Estimate& estimate);
 
+/// For nu on a bound: sets `estimate` to not usable unless the data decide on
+/// nu, or at least on E.  `slope` = d ln E / d nu of the parameters that fit
+/// alike; `standard_error` is that of nu without the bound.
+void JudgePoissonRatioOnBound(const EstimatorOptions& options,
+                              const ActiveBounds& active, double slope,
+                              double standard_error, Estimate& estimate);
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_ESTIMATORS_BOUNDED_PARAMETER_H_

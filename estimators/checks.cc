@@ -69,14 +69,18 @@ void AddPoissonRatioInterval(Estimate& estimate) {
   }
 }
 
-void WarnOfLocking(const Mesh& mesh, Estimate& estimate) {
+constexpr char kLockingWarning[] =
+    "linear tetrahedra are too stiff from nu = 0.45 on (they lock), which "
+    "biases E and nu and makes their standard errors too small, unless the "
+    "displacements come from the same mesh; quadratic ones (order 2) hardly do";
+
+void WarnOfLocking(Estimate& estimate) {
   constexpr double kLocking = 0.45;
-  if (mesh.Order() == 1 && estimate.elasticity.poisson_ratio >= kLocking) {
-    estimate.warnings.emplace_back(
-        "linear tetrahedra are too stiff from nu = 0.45 on (they lock), which "
-        "biases E and nu and makes their standard errors too small, unless the "
-        "displacements come from the same mesh; quadratic ones (order 2) "
-        "hardly do");
+  const bool is_told = std::any_of(estimate.warnings.begin(),
+                                   estimate.warnings.end(), IsWarningOfLocking);
+  if (estimate.element_order == 1 && !is_told &&
+      estimate.elasticity.poisson_ratio >= kLocking) {
+    estimate.warnings.emplace_back(kLockingWarning);
   }
 }
 
@@ -113,6 +117,10 @@ void CheckResult(const EstimatorOptions& options, Estimate& estimate) {
 }
 
 }  // namespace
+
+bool IsWarningOfLocking(const std::string& warning) {
+  return warning == kLockingWarning;
+}
 
 void CheckOptions(const EstimatorOptions& options) {
   const std::string why_invalid = options.WhyInvalid();
@@ -181,12 +189,15 @@ void FinishEstimate(const Estimator& estimator, const Scene& scene,
                     const std::vector<std::string>& warnings,
                     Estimate& estimate) {
   estimate.estimator = estimator.Name();
+  if (estimate.element_order == 0) {
+    estimate.element_order = scene.mesh.Order();
+  }
   estimate.warnings.insert(estimate.warnings.begin(), warnings.begin(),
                            warnings.end());
   CheckResult(options, estimate);
   if (estimate.IsUsable()) {
     AddPoissonRatioInterval(estimate);
-    WarnOfLocking(scene.mesh, estimate);
+    WarnOfLocking(estimate);
   }
 }
 

@@ -22,6 +22,9 @@ void CheckSupported(const Estimator& estimator, const Scene& scene,
 /// what each estimator needs: see Estimator::Run.  Returns warnings.
 std::vector<std::string> CheckMeasurements(const Scene& scene);
 
+/// Whether FinishEstimate gave this warning of linear elements near nu = 1/2.
+bool IsWarningOfLocking(const std::string& warning);
+
 /// Enters the estimator's name, the warnings, and an interval of nu where only
 /// its standard error is known; warns of what linear elements do near nu = 1/2;
 /// and turns an estimate that

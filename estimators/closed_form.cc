@@ -22,6 +22,9 @@ std::string ClosedForm::WhyUnsupported(const Scene& scene,
   if (options.loss != Loss::kNone) {
     return "a loss function needs displacement residuals; use reduced-fe";
   }
+  if (options.virtual_field_degree) {
+    return "it has no virtual fields to take a degree; use virtual-fields";
+  }
   return ForceResidual::WhyUnsupported(scene);
 }
 

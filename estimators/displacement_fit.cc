@@ -113,7 +113,8 @@ double SmoothSquareSum(const NodeGraph& graph,
   }
   estimate.residual_correlation =
       std::clamp(neighbours->correlation, -1.0, 1.0);
-  return neighbours->standard_score > kSignificantScore
+  estimate.is_residual_smooth = neighbours->standard_score > kSignificantScore;
+  return estimate.is_residual_smooth
              ? *estimate.residual_correlation * residual.squaredNorm()
              : 0;
 }
@@ -203,37 +204,15 @@ void JudgeLargeResidual(double smooth, bool is_explained, Estimate& estimate) {
   }
 }
 
-// For nu on a bound: whether the data or the bound decide on it.
-// `slope` = d ln E / d nu of the parameters that fit alike, `standard_error`
-// that of nu without the bound.
-void JudgePoissonRatioOnBound(const EstimatorOptions& options,
-                              const ActiveBounds& active, double slope,
-                              double standard_error, Estimate& estimate) {
-  if (standard_error <= kLargestPoissonRatioError) {
-    if (active.is_physical_limit &&
-        active.poisson_ratio == BoundedParameter::Side::kLower) {
-      estimate.status = Status::kUnphysical;
-      estimate.message =
-          "the data pull Poisson's ratio to -1, where no material is; check "
-          "the loads, the supports and the mesh";
-    }
-    return;
-  }
-  const Bounds bounds = EffectivePoissonRatioBounds(options);
-  const double uniform_sd = (*bounds.upper - *bounds.lower) / std::sqrt(12.0);
-  const double youngs_modulus_error =
-      std::abs(slope) * std::min(standard_error, uniform_sd);
-  if (active.is_physical_limit ||
-      youngs_modulus_error > kLargestYoungsModulusError) {
-    estimate.status = Status::kNotIdentifiable;
-    estimate.message =
-        "Poisson's ratio lies on its bound, but the data do not determine "
-        "it: " +
-        DescribeCollinear(estimate.elasticity, {slope, 1});
-  }
-}
-
 }  // namespace
+
+std::string WhyNoDisplacementFit(const Scene& scene) {
+  std::string why = WhyNotHeld(scene.mesh, scene.supports);
+  if (!why.empty() && scene.mesh.Order() == 1) {
+    why += ", or use closed-form or virtual-fields, which need no supports";
+  }
+  return why;
+}
 
 std::optional<NeighbourCorrelation> CorrelateNeighbours(
     const NodeGraph& graph, const ObservedDisplacements& observed,

@@ -38,6 +38,26 @@ struct Interval {
   double upper;
 };
 
+/// The disagreement of two estimators, one of which leans on the model less.
+struct ModelMismatch {
+  double statistic;  ///< chi^2 with 2 degrees of freedom when the model holds.
+  double p_value;    ///< Probability of a larger one when the model holds.
+  bool matters;      ///< Whether they differ by 1 % of E or 0.01 in nu.
+};
+
+/// An estimator that `auto` ran, or passed over.
+struct Rung {
+  std::string estimator;
+  int element_order = 1;
+  /// Empty when it was passed over.
+  std::optional<Status> status;
+  IsotropicElasticity elasticity = {};
+  Work work;
+  double seconds = 0;
+  /// Why the ladder went on, or stopped.
+  std::string decision;
+};
+
 /// What an estimator says about a scene.  Starts out as a failure, so that it
 /// cannot be mistaken for a result before an estimator has filled it in.
 struct Estimate {
@@ -75,11 +95,20 @@ struct Estimate {
   /// Correlation of the displacement residuals of neighbouring nodes: near 0
   /// for independent noise, near 1 when the model misses something smooth.
   std::optional<double> residual_correlation;
+  /// Whether `residual_correlation` is more than independent noise has.
+  bool is_residual_smooth = false;
+  /// What virtual-fields says of the model of reduced-fe, where both were run.
+  std::optional<ModelMismatch> model_mismatch;
   /// Bounds that the estimate lies on, such as "nu_max".
   std::vector<std::string> active_bounds;
   /// Sentences for the user, about a result that is usable all the same.
   std::vector<std::string> warnings;
 
+  /// The order of the elements: 1 for linear ones, 2 for quadratic ones; 0 as
+  /// long as no estimator was run.
+  int element_order = 0;
+  /// What `auto` ran, in order; empty for other estimators.
+  std::vector<Rung> rungs;
   Work work;
   std::vector<StageTime> stages;
   double seconds = 0;  ///< Time of the whole estimator.

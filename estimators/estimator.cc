@@ -60,6 +60,11 @@ std::string EstimatorOptions::WhyInvalid() const {
     why = "the largest number of iterations is " +
           std::to_string(max_iterations) + "; it must be at least 1";
   }
+  if (why.empty() && virtual_field_degree &&
+      !(*virtual_field_degree >= 1 && *virtual_field_degree <= 3)) {
+    why = "the degree of the virtual fields is " +
+          std::to_string(*virtual_field_degree) + "; it must be 1, 2 or 3";
+  }
   return why;
 }
 

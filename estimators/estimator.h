@@ -47,6 +47,9 @@ struct EstimatorOptions {
 
   /// Treatment of outliers among the measured displacements.
   Loss loss = Loss::kNone;
+  /// Degree of the polynomial virtual fields, 1 to 3, for the estimators that
+  /// have some; the others refuse it.
+  std::optional<int> virtual_field_degree;
   /// Iterations after which an iterative estimator gives up; at least 1.
   int max_iterations = 50;
   /// Called by estimators that factorise before each factorisation, with its

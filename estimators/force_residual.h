@@ -65,11 +65,16 @@ class ForceResidual {
   /// empty when the noise makes up half of b or more.
   std::optional<double> UnbiasedPoissonRatioError() const;
 
- private:
   /// Estimate of the variance of the weighted noise from the residual at this
-  /// nu; empty when there are too few equations.
+  /// nu, with the t that fits it; empty when there are too few equations.
+  /// `free_poisson_ratio` says whether nu was fitted to this residual.
   std::optional<double> ResidualVariance(double poisson_ratio,
                                          bool free_poisson_ratio) const;
+
+  /// The free degrees of freedom times the load cases.
+  Eigen::Index NumEquations() const { return num_equations_; }
+
+ private:
   /// Variance of the weighted noise from the residual: at the estimate with E
   /// on a bound, else from the smallest singular value of the noise-normalised
   /// residual.

@@ -329,12 +329,12 @@ std::string_view IterativeFe::Description() const {
          "solution at each step; unbiased, costs factorisations (reference)";
 }
 
-std::string IterativeFe::WhyUnsupported(
-    const Scene& scene, const EstimatorOptions& /*options*/) const {
-  const std::string why_not_held = WhyNotHeld(scene.mesh, scene.supports);
-  return why_not_held.empty()
-             ? ""
-             : why_not_held + ", or use closed-form, which needs no supports";
+std::string IterativeFe::WhyUnsupported(const Scene& scene,
+                                        const EstimatorOptions& options) const {
+  if (options.virtual_field_degree) {
+    return "it has no virtual fields to take a degree; use virtual-fields";
+  }
+  return WhyNoDisplacementFit(scene);
 }
 
 Estimate IterativeFe::DoRun(const Scene& scene,

@@ -385,12 +385,12 @@ std::string_view ReducedFe::Description() const {
          "factorisations";
 }
 
-std::string ReducedFe::WhyUnsupported(
-    const Scene& scene, const EstimatorOptions& /*options*/) const {
-  const std::string why_not_held = WhyNotHeld(scene.mesh, scene.supports);
-  return why_not_held.empty()
-             ? ""
-             : why_not_held + ", or use closed-form, which needs no supports";
+std::string ReducedFe::WhyUnsupported(const Scene& scene,
+                                      const EstimatorOptions& options) const {
+  if (options.virtual_field_degree) {
+    return "it has no virtual fields to take a degree; use virtual-fields";
+  }
+  return WhyNoDisplacementFit(scene);
 }
 
 Estimate ReducedFe::DoRun(const Scene& scene,

@@ -7,6 +7,7 @@
 #include "elastimate/estimators/closed_form.h"
 #include "elastimate/estimators/iterative_fe.h"
 #include "elastimate/estimators/reduced_fe.h"
+#include "elastimate/estimators/virtual_fields.h"
 
 namespace elastimate {
 namespace {
@@ -17,10 +18,8 @@ std::unique_ptr<Estimator> Make() {
 }
 
 constexpr std::unique_ptr<Estimator> (*kEstimators[])() = {
-    Make<ClosedForm>,
-    Make<Bounded>,
-    Make<IterativeFe>,
-    Make<ReducedFe>,
+    Make<ClosedForm>,  Make<Bounded>,   Make<VirtualFields>,
+    Make<IterativeFe>, Make<ReducedFe>,
 };
 
 }  // namespace

@@ -23,6 +23,9 @@ Json OptionsJson(const EstimatorOptions& options) {
           {"youngs_min", OrNull(options.youngs_modulus.lower)},
           {"youngs_max", OrNull(options.youngs_modulus.upper)},
           {"loss", loss_names[static_cast<int>(options.loss)]},
+          {"degree", options.virtual_field_degree
+                         ? Json(*options.virtual_field_degree)
+                         : Json(nullptr)},
           {"max_iterations", options.max_iterations}};
 }
 

@@ -1,0 +1,294 @@
+#include "elastimate/estimators/virtual_fields.h"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <sstream>
+
+#include "elastimate/core/loads.h"
+#include "elastimate/estimators/force_residual.h"
+#include "elastimate/estimators/statistics.h"
+#include "elastimate/estimators/stopwatch.h"
+#include "elastimate/estimators/virtual_work.h"
+
+namespace elastimate {
+namespace {
+
+using Side = BoundedParameter::Side;
+
+// Standard scores beyond this do not come from independent noise.
+constexpr double kSignificantScore = 5;
+
+// A relative standard error of E that a user wants to be told of.
+constexpr double kNotableError = 0.01;
+
+// The share of the loads out of balance that is notable, and that which may
+// put E off by more than is usable.
+constexpr double kNotableImbalance = 0.01;
+constexpr double kUnusableImbalance = 0.1;
+
+std::string Number(double value) {
+  std::ostringstream text;
+  text.precision(2);
+  text << value;
+  return text.str();
+}
+
+void Fail(Status status, const std::string& message, Estimate& estimate) {
+  estimate.status = status;
+  estimate.message = message;
+  estimate.covariance.setConstant(Estimate::kUnknown);
+  estimate.why_no_standard_error = "the estimate is not usable";
+}
+
+// What the residual says about its causes.
+struct ResidualJudgement {
+  /// Of the weighted noise.
+  double noise_variance;
+  /// The square sum that may hide an error of the model of its own size.
+  double model_square_sum;
+};
+
+// Whether something other than independent noise is in the balance of virtual
+// work: against the given noise, else against the noise that the force residual
+// shows.  Empty, with the reason, where there is nothing to learn from.
+std::optional<ResidualJudgement> JudgeResidual(
+    const VirtualWorkFit& fit, Eigen::Index redundancy,
+    const ForceResidual& force_residual,
+    const std::optional<double>& given_noise_sd, Estimate& estimate) {
+  if (redundancy <= 0 && !given_noise_sd) {
+    estimate.why_no_standard_error =
+        "there are no more virtual fields than unknowns, so that the noise "
+        "cannot be estimated; give its standard deviation";
+    return std::nullopt;
+  }
+  const double m = static_cast<double>(std::max<Eigen::Index>(redundancy, 1));
+  const double variance = fit.square_sum / m;
+  estimate.noise_sd = given_noise_sd.value_or(std::sqrt(variance));
+  if (given_noise_sd) {
+    // chi^2 has mean m and variance 2 m.
+    if (redundancy <= 0 ||
+        variance <= 1 + kSignificantScore * std::sqrt(2 / m)) {
+      return ResidualJudgement{1, 0};
+    }
+    estimate.warnings.push_back(
+        "the balance of virtual work is off by " + Number(std::sqrt(variance)) +
+        " times what the given noise explains, and the standard errors are "
+        "widened to match; the mesh, the supports or the loads do not describe "
+        "the experiment");
+  }
+  const std::optional<double> rough_variance =
+      force_residual.ResidualVariance(fit.poisson_ratio, false);
+  // The stiffness colours the force residual, which takes up to three quarters
+  // of its degrees of freedom.
+  const double rough_m = static_cast<double>(force_residual.NumEquations()) / 4;
+  const bool is_noise =
+      !rough_variance ||
+      variance <= *rough_variance *
+                      (1 + kSignificantScore * std::sqrt(2 / m + 2 / rough_m));
+  return ResidualJudgement{variance, is_noise ? 0 : fit.square_sum};
+}
+
+// Information about (ln E, nu), and covariances from it.
+class Information {
+ public:
+  Information(const VirtualWorkInformation& information,
+              const IsotropicElasticity& elasticity,
+              const ResidualJudgement& residual)
+      : residual_(residual) {
+    const Eigen::Matrix2d jacobian =
+        ComplianceScaleJacobian(elasticity) *
+        Eigen::Vector2d(elasticity.youngs_modulus, 1).asDiagonal();
+    score_ = jacobian.transpose() * information.score * jacobian;
+    bread_ = jacobian.transpose() * information.Bread(residual.noise_variance) *
+             jacobian;
+  }
+
+  // d ln E / d nu of the parameters that fit alike.
+  double Slope() const { return -bread_(0, 1) / bread_(0, 0); }
+
+  // Of the parameters that vary together; empty when they are not determined.
+  std::optional<Eigen::MatrixXd> Covariance(
+      const std::vector<Eigen::Index>& parameters) const {
+    const Eigen::MatrixXd bread = bread_(parameters, parameters);
+    if (!(bread.diagonal().minCoeff() > 0 && bread.determinant() > 0)) {
+      return std::nullopt;
+    }
+    const Eigen::MatrixXd inverse = bread.inverse();
+    return residual_.noise_variance * inverse * score_(parameters, parameters) *
+               inverse +
+           residual_.model_square_sum * inverse;
+  }
+
+ private:
+  ResidualJudgement residual_;
+  Eigen::Matrix2d score_;
+  Eigen::Matrix2d bread_;
+};
+
+void WarnOfModelError(double relative_error, Estimate& estimate) {
+  if (relative_error > kNotableError) {
+    estimate.warnings.emplace_back(
+        "the balance of virtual work is off by more than the noise in the "
+        "force residual explains: the mesh, the supports or the loads do not "
+        "describe the experiment, or the measurement was smoothed; the "
+        "standard errors are widened to allow for it");
+  }
+}
+
+// Fills in covariance, noise and what they say about a fit of which one
+// parameter at least is free.
+void Describe(const EstimatorOptions& options, const ActiveBounds& active,
+              const std::vector<Eigen::Index>& free,
+              const Information& information, Estimate& estimate) {
+  const std::optional<Eigen::MatrixXd> covariance =
+      information.Covariance(free);
+  if (!covariance) {
+    Fail(Status::kNotIdentifiable,
+         "displacement noise hides Poisson's ratio from these virtual fields; "
+         "give Poisson's ratio, raise the degree of the fields, or use "
+         "reduced-fe",
+         estimate);
+    return;
+  }
+  const Eigen::Vector2d scale(estimate.elasticity.youngs_modulus, 1);
+  Eigen::Matrix2d both = Eigen::Matrix2d::Constant(Estimate::kUnknown);
+  both(free, free) = *covariance;
+  estimate.covariance = scale.asDiagonal() * both * scale.asDiagonal();
+  if (!estimate.active_bounds.empty()) {
+    estimate.why_no_standard_error = "a parameter on a bound has none";
+  }
+  if (active.poisson_ratio != Side::kNone) {
+    const std::optional<Eigen::MatrixXd> unbounded =
+        information.Covariance({0, 1});
+    JudgePoissonRatioOnBound(options, active, information.Slope(),
+                             unbounded
+                                 ? std::sqrt((*unbounded)(1, 1))
+                                 : std::numeric_limits<double>::infinity(),
+                             estimate);
+  }
+}
+
+// Warns of loads that the motions left free are not in balance with; whether
+// they can be used.
+bool JudgeImbalance(double imbalance, Estimate& estimate) {
+  if (imbalance <= kNotableImbalance) {
+    return true;
+  }
+  const std::string text =
+      "the supports leave the specimen free to move, and " +
+      Number(100 * imbalance) +
+      " % of the loads push it that way; complete the supports or the loads";
+  if (imbalance <= kUnusableImbalance) {
+    estimate.warnings.push_back(text);
+    return true;
+  }
+  Fail(Status::kNotIdentifiable, text, estimate);
+  return false;
+}
+
+}  // namespace
+
+std::string_view VirtualFields::Name() const { return "virtual-fields"; }
+
+std::string_view VirtualFields::Description() const {
+  return "virtual work of polynomial fields, weighted by its own covariance; "
+         "noise does not bias it, no factorisation [Avril & Pierron 2007]";
+}
+
+std::string VirtualFields::WhyUnsupported(
+    const Scene& scene, const EstimatorOptions& options) const {
+  if (options.loss != Loss::kNone) {
+    return "a loss function needs displacement residuals; use reduced-fe";
+  }
+  return ForceResidual::WhyUnsupported(scene);
+}
+
+Estimate VirtualFields::DoRun(const Scene& scene,
+                              const EstimatorOptions& options) const {
+  Estimate estimate;
+  Stopwatch stopwatch;
+  const VirtualWork work(scene.mesh, scene.supports,
+                         options.virtual_field_degree.value_or(kDefaultDegree));
+  estimate.stages.push_back({"prepare mesh", stopwatch.Lap()});
+  const VirtualWorkBalance balance(work, scene);
+  const ForceResidual force_residual(scene);
+  estimate.work = force_residual.WorkDone();
+  // The fields, and the measurement.
+  estimate.work.element_passes += 2;
+  estimate.status = Status::kOk;
+  estimate.message = "";
+  if (!JudgeImbalance(work.Imbalance(AssembleLoadCases(scene)), estimate)) {
+    return estimate;
+  }
+  if (!balance.LoadsDoWork()) {
+    Fail(Status::kNotIdentifiable,
+         "the loads do no work on the virtual fields; raise their degree, or "
+         "use reduced-fe",
+         estimate);
+    return estimate;
+  }
+  const std::optional<double> collinear_slope =
+      options.known_poisson_ratio ? std::nullopt : balance.CollinearSlope();
+  const VirtualWorkFit fit =
+      options.known_poisson_ratio
+          ? balance.FitAt(*options.known_poisson_ratio, options.youngs_modulus)
+          : balance.Minimize(EffectivePoissonRatioBounds(options),
+                             options.youngs_modulus);
+  estimate.elasticity = IsotropicElasticity::FromComplianceScale(
+      fit.compliance_scale, fit.poisson_ratio);
+  if (!(fit.free_compliance_scale > 0)) {
+    estimate.elasticity = IsotropicElasticity::FromComplianceScale(
+        fit.free_compliance_scale, fit.poisson_ratio);
+    Fail(Status::kUnphysical,
+         "the measured displacements oppose the loads; check their signs, "
+         "order and units",
+         estimate);
+    return estimate;
+  }
+  if (collinear_slope) {
+    const double nu = fit.poisson_ratio;
+    Fail(Status::kNotIdentifiable,
+         DescribeCollinear(estimate.elasticity,
+                           {1 / (1 + nu) - 2 / (1 - 2 * nu) -
+                                *collinear_slope / fit.compliance_scale,
+                            1}),
+         estimate);
+    estimate.elasticity = {Estimate::kUnknown, Estimate::kUnknown};
+    return estimate;
+  }
+
+  const BoundedParameter poisson_ratio =
+      options.known_poisson_ratio
+          ? BoundedParameter::Constant(fit.poisson_ratio)
+          : BoundedParameter(fit.poisson_ratio,
+                             EffectivePoissonRatioBounds(options));
+  const ActiveBounds active = NoteActiveBounds(
+      options, fit.youngs_modulus_bound, poisson_ratio, estimate);
+  std::vector<Eigen::Index> free;
+  if (active.youngs_modulus == Side::kNone) {
+    free.push_back(0);
+  }
+  if (!options.known_poisson_ratio && active.poisson_ratio == Side::kNone) {
+    free.push_back(1);
+  }
+  estimate.force_residual =
+      force_residual.RelativeResidual(estimate.elasticity);
+  const std::optional<ResidualJudgement> residual = JudgeResidual(
+      fit, balance.NumEquations() - Eigen::Index(free.size()), force_residual,
+      scene.load_cases.front().noise_sd, estimate);
+  if (residual && !free.empty()) {
+    Describe(
+        options, active, free,
+        Information(balance.InformationAt(fit), estimate.elasticity, *residual),
+        estimate);
+    if (residual->model_square_sum > 0) {
+      WarnOfModelError(estimate.YoungsModulusStandardError().value_or(0) /
+                           estimate.elasticity.youngs_modulus,
+                       estimate);
+    }
+  }
+  estimate.stages.push_back({"fit", stopwatch.Lap()});
+  return estimate;
+}
+
+}  // namespace elastimate
