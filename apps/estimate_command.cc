@@ -14,6 +14,7 @@
 #include "apps/progress.h"
 #include "apps/result_fields.h"
 #include "apps/summary.h"
+#include "elastimate/core/quadratic_scene.h"
 #include "elastimate/estimators/registry.h"
 #include "elastimate/io/file_output.h"
 #include "elastimate/io/report.h"
@@ -108,20 +109,26 @@ int RunEstimate(const std::vector<std::string>& arguments) {
   };
   const Estimate estimate =
       RunEstimator(*estimator, scene, modelled, options, Sources(arguments));
+  // An estimator may have raised the order itself.
+  const std::optional<Scene> raised =
+      estimate.element_order > modelled.mesh.Order()
+          ? std::optional<Scene>(QuadraticScene(scene))
+          : std::nullopt;
+  const Scene& reported = raised ? *raised : modelled;
   StagedFiles files;
   if (!FLAGS_out.empty()) {
     progress->Show("writing " + FLAGS_out);
     files.Add(FLAGS_out, VtuContent(FLAGS_out, scene.mesh,
-                                    ResultFields(scene, modelled, estimate)));
+                                    ResultFields(scene, reported, estimate)));
   }
   progress.reset();
 
-  const std::string report = JsonReport(estimate, modelled, options,
+  const std::string report = JsonReport(estimate, reported, options,
                                         {read_seconds, SecondsSince(start)});
   if (!FLAGS_json.empty() && FLAGS_json != "-") {
     files.Add(FLAGS_json, report);
   }
-  WriteStandardOutput(FLAGS_json == "-" ? report : Summary(estimate, modelled));
+  WriteStandardOutput(FLAGS_json == "-" ? report : Summary(estimate, reported));
   files.Commit();
   PrintNotices(reading.notices);
   return estimate.IsUsable() ? 0 : 1;

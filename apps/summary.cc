@@ -122,6 +122,14 @@ std::string Summary(const Estimate& estimate, const Scene& scene) {
            std::to_string(estimate.work.solves) + " solves, " +
            Number(estimate.seconds, 3) + " s",
        text);
+  for (const Rung& rung : estimate.rungs) {
+    Line("rung",
+         rung.estimator +
+             (rung.element_order == 2 ? " with quadratic elements" : "") +
+             (rung.status ? ", " + Number(rung.seconds, 2) + " s, " : ", ") +
+             rung.decision,
+         text);
+  }
   for (const std::string& warning : estimate.warnings) {
     Line("warning", warning, text);
   }

@@ -51,7 +51,8 @@ struct Rung {
   int element_order = 1;
   /// Empty when it was passed over.
   std::optional<Status> status;
-  IsotropicElasticity elasticity = {};
+  IsotropicElasticity elasticity = {std::numeric_limits<double>::quiet_NaN(),
+                                    std::numeric_limits<double>::quiet_NaN()};
   Work work;
   double seconds = 0;
   /// Why the ladder went on, or stopped.

@@ -18,14 +18,14 @@ namespace {
 
 // Where there are no virtual fields to start from.
 constexpr double kStart = 0.3;
-constexpr int kMostSteps = 8;
+constexpr int kMostSteps = 20;
 
 // The fit after a step, linear in the change of the parameters.
 struct Step {
-  double poisson_ratio;
-  double compliance_scale;
+  double poisson_ratio = Estimate::kUnknown;
+  double compliance_scale = Estimate::kUnknown;
   /// Of nu, by the residual that is left.
-  double standard_error;
+  double standard_error = Estimate::kUnknown;
   Eigen::VectorXd residual;
   /// Columns w and t0 w' + v'.
   Eigen::MatrixXd responses;

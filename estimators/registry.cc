@@ -3,9 +3,11 @@
 #include <stdexcept>
 #include <string>
 
+#include "elastimate/estimators/auto.h"
 #include "elastimate/estimators/bounded.h"
 #include "elastimate/estimators/closed_form.h"
 #include "elastimate/estimators/iterative_fe.h"
+#include "elastimate/estimators/one_step.h"
 #include "elastimate/estimators/reduced_fe.h"
 #include "elastimate/estimators/virtual_fields.h"
 
@@ -18,8 +20,8 @@ std::unique_ptr<Estimator> Make() {
 }
 
 constexpr std::unique_ptr<Estimator> (*kEstimators[])() = {
-    Make<ClosedForm>,  Make<Bounded>,   Make<VirtualFields>,
-    Make<IterativeFe>, Make<ReducedFe>,
+    Make<ClosedForm>, Make<Bounded>,     Make<VirtualFields>, Make<OneStep>,
+    Make<ReducedFe>,  Make<IterativeFe>, Make<Auto>,
 };
 
 }  // namespace

@@ -273,9 +273,12 @@ TEST_P(Conformance, KnownNoiseThatDoesNotExplainTheResidualIsSaid) {
   const Estimate estimate = Run(bold);
   ASSERT_FALSE(estimate.warnings.empty());
   EXPECT_NE(estimate.warnings[0].find("given noise"), std::string::npos);
-  EXPECT_NEAR(*estimate.YoungsModulusStandardError() /
-                  *Run(scene).YoungsModulusStandardError(),
-              1, 0.01);
+  // A ladder goes on to another estimator.
+  if (estimate.rungs.empty()) {
+    EXPECT_NEAR(*estimate.YoungsModulusStandardError() /
+                    *Run(scene).YoungsModulusStandardError(),
+                1, 0.01);
+  }
 }
 
 TEST_P(Conformance, SeveralLoadCasesBeatOne) {
