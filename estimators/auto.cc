@@ -81,7 +81,7 @@ std::string WhyTheModelIsNotEnough(const EstimatorOptions& options,
     return "virtual-fields disagrees by more than noise explains (p = " +
            Number(estimate.model_mismatch->p_value) + ")";
   }
-  if (estimate.is_residual_smooth) {
+  if (estimate.is_model_in_doubt) {
     const std::string why = WhyNotWithinTolerance(options, estimate);
     if (!why.empty()) {
       return "the residual is no noise, and " + why;

@@ -8,6 +8,7 @@
 
 #include "elastimate/estimators/bounded_parameter.h"
 #include "elastimate/estimators/force_residual.h"
+#include "elastimate/estimators/virtual_work_check.h"
 
 namespace elastimate {
 namespace {
@@ -198,6 +199,7 @@ Estimate Bounded::DoRun(const Scene& scene,
   } else if (options.known_poisson_ratio && free_youngs_modulus) {
     JudgeKnownPoissonRatio(residual, estimate);
   }
+  CheckByVirtualWork(scene, options, estimate);
   return estimate;
 }
 

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "elastimate/estimators/force_residual.h"
+#include "elastimate/estimators/virtual_work_check.h"
 
 namespace elastimate {
 
@@ -67,6 +68,7 @@ Estimate ClosedForm::DoRun(const Scene& scene,
   } else {
     JudgeKnownPoissonRatio(residual, estimate);
   }
+  CheckByVirtualWork(scene, options, estimate);
   return estimate;
 }
 

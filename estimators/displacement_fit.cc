@@ -113,8 +113,8 @@ double SmoothSquareSum(const NodeGraph& graph,
   }
   estimate.residual_correlation =
       std::clamp(neighbours->correlation, -1.0, 1.0);
-  estimate.is_residual_smooth = neighbours->standard_score > kSignificantScore;
-  return estimate.is_residual_smooth
+  estimate.is_model_in_doubt = neighbours->standard_score > kSignificantScore;
+  return estimate.is_model_in_doubt
              ? *estimate.residual_correlation * residual.squaredNorm()
              : 0;
 }

@@ -96,8 +96,9 @@ struct Estimate {
   /// Correlation of the displacement residuals of neighbouring nodes: near 0
   /// for independent noise, near 1 when the model misses something smooth.
   std::optional<double> residual_correlation;
-  /// Whether `residual_correlation` is more than independent noise has.
-  bool is_residual_smooth = false;
+  /// Whether the residual is none that independent noise leaves, so that the
+  /// mesh, the supports or the loads are not those of the experiment.
+  bool is_model_in_doubt = false;
   /// What virtual-fields says of the model of reduced-fe, where both were run.
   std::optional<ModelMismatch> model_mismatch;
   /// Bounds that the estimate lies on, such as "nu_max".

@@ -281,7 +281,8 @@ Estimate VirtualFields::DoRun(const Scene& scene,
         options, active, free,
         Information(balance.InformationAt(fit), estimate.elasticity, *residual),
         estimate);
-    if (residual->model_square_sum > 0) {
+    estimate.is_model_in_doubt = residual->model_square_sum > 0;
+    if (estimate.is_model_in_doubt) {
       WarnOfModelError(estimate.YoungsModulusStandardError().value_or(0) /
                            estimate.elasticity.youngs_modulus,
                        estimate);

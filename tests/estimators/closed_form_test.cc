@@ -210,6 +210,39 @@ TEST(ClosedForm, SaysThatTheDataContradictAKnownPoissonRatio) {
   }
 }
 
+TEST(ClosedForm, DoesNotBelieveLoadsThatContradictTheData) {
+  Scene exact = SmallScene("cuboid");
+  MeasureDensely({5e4, 0.3}, exact);
+  const Eigen::Matrix3Xd force =
+      std::get<NodalForces>(exact.load_cases[0].loads[0]).force;
+  Eigen::Matrix3Xd at_one_node = Eigen::Matrix3Xd::Zero(3, force.cols());
+  at_one_node.rightCols<1>() = force.rowwise().sum();
+  Eigen::Matrix3Xd turned = force;
+  turned.row(0) = 0.7 * force.row(2);
+  Eigen::Matrix3Xd uneven = force;
+  for (Eigen::Index node = 0; node < force.cols(); ++node) {
+    uneven.col(node) *= exact.mesh.nodes(0, node);
+  }
+  for (const Eigen::Matrix3Xd& wrong : {at_one_node, turned, uneven}) {
+    for (const double noise : {0.0, 1e-2}) {
+      Scene scene = exact;
+      scene.load_cases[0].loads = {NodalForces{wrong}};
+      AddNoise(noise, 1, scene);
+      for (const bool is_known : {false, true}) {
+        EstimatorOptions options;
+        if (is_known) {
+          options.known_poisson_ratio = 0.3;
+        }
+        const Estimate estimate = ClosedForm().Run(scene, options);
+        const double error = std::abs(estimate.elasticity.youngs_modulus - 5e4);
+        if (estimate.IsUsable() && error > 0.1 * 5e4) {
+          EXPECT_LT(error, 3 * *estimate.YoungsModulusStandardError());
+        }
+      }
+    }
+  }
+}
+
 TEST(ClosedForm, BlamesNoiseForANuAboveOneHalf) {
   Scene scene = SmallScene("organ");
   MeasureDensely({5e4, 0.45}, scene);
