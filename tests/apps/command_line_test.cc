@@ -878,6 +878,15 @@ TEST_F(IndependentScenes, TheClosedFormAgreesAndSaysThatItIsNotUsable) {
   EXPECT_EQ(report["usable"], false);
 }
 
+TEST_F(IndependentScenes, AutoStopsAtTheClosedFormWithoutNoise) {
+  const nlohmann::json report = Succeed("estimate --json=- --estimator=auto " +
+                                        Path("liver_same_mesh.vtu"))
+                                    .Json();
+  ASSERT_EQ(report["rungs"].size(), 1);
+  EXPECT_EQ(report["rungs"][0]["estimator"], "closed-form");
+  EXPECT_EQ(report["work"]["factorizations"], 0);
+}
+
 TEST_F(IndependentScenes, DataFromAFinerWorld) {
   const nlohmann::json fit =
       Succeed("estimate --json=- --estimator=iterative-fe " +
@@ -924,6 +933,19 @@ TEST_F(FinerWorld, QuadraticElementsFindYoungsModulus) {
   };
   EXPECT_NEAR(youngs("1"), 6590, 5);
   EXPECT_NEAR(youngs("2") / 8000, 1, 0.01);
+}
+
+TEST_F(FinerWorld, AutoEndsAtQuadraticElements) {
+  const ProgramRun run =
+      Succeed("estimate scene.json --json=- --estimator=auto --out=auto.vtu");
+  const nlohmann::json report = run.Json();
+  EXPECT_EQ(report["mesh"]["order"], 2);
+  EXPECT_EQ(report["mesh"]["nodes"], 1160);
+  EXPECT_NEAR(report["youngs_modulus"].get<double>() / 8000, 1, 0.01);
+  ASSERT_EQ(report["rungs"].size(), 4);
+  EXPECT_EQ(report["rungs"][3]["estimator"], "reduced-fe");
+  EXPECT_EQ(report["rungs"][3]["order"], 2);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "auto.vtu"));
 }
 
 // The other code held every node below 24 mm, so also mid-edge nodes of edges

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <random>
 
 #include "elastimate/estimators/iterative_fe.h"
 #include "tests/scenes.h"
@@ -54,6 +56,49 @@ TEST(ReducedFe, AgreesWithTheIterativeFitForFewFactorizations) {
   }
 }
 
+// What the condition number of the stiffness, 1 / (1 - 2 nu), leaves of the
+// digits.
+TEST(ReducedFe, KeepsItsDigitsNearOneHalf) {
+  for (const std::string& shape : SmallSceneNames()) {
+    for (const double nu : {0.49, 0.499, 0.4999}) {
+      SCOPED_TRACE(shape + ", nu " + std::to_string(nu));
+      Scene scene = SmallScene(shape);
+      Measure({5e4, nu}, scene);
+      const Estimate estimate = ReducedFe().Run(scene, {});
+      ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+      EXPECT_NEAR(estimate.elasticity.youngs_modulus / 5e4, 1, 1e-6);
+      EXPECT_NEAR((0.5 - estimate.elasticity.poisson_ratio) / (0.5 - nu), 1,
+                  1e-5);
+    }
+  }
+}
+
+// At 20 % noise nu = 0.4999 cannot be told from 1/2.  The number of intervals
+// that cover it is binomial: three standard deviations below 95 %.
+TEST(PreparedReducedFe, BoundsNuOnOneSideNearOneHalf) {
+  constexpr int kSeeds = 200;
+  constexpr double kTrueNu = 0.4999;
+  Scene exact = SmallScene("cuboid");
+  Measure({5e4, kTrueNu}, exact);
+  PreparedReducedFe prepared(exact, {});
+  int num_one_sided = 0;
+  int num_covering = 0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    SCOPED_TRACE(seed);
+    Scene scene = exact;
+    AddNoise(0.2, seed, scene);
+    const Estimate estimate = prepared.Run({scene.load_cases[0].displacement});
+    ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+    ASSERT_TRUE(estimate.poisson_ratio_interval.has_value());
+    const auto [lower, upper] = *estimate.poisson_ratio_interval;
+    num_one_sided += upper == 0.5 ? 1 : 0;
+    num_covering += lower <= kTrueNu && kTrueNu <= upper ? 1 : 0;
+  }
+  EXPECT_GE(num_one_sided, kSeeds / 2);
+  EXPECT_GE(num_covering,
+            kSeeds * (0.95 - 3 * std::sqrt(0.95 * 0.05 / kSeeds)));
+}
+
 // A slender bar in bending has a second minimum, which a fit that starts on
 // its side does not leave.
 TEST(ReducedFe, FindsTheBestOfSeveralMinima) {
@@ -90,6 +135,51 @@ TEST(PreparedReducedFe, GivesWhatTheEstimatorGives) {
       EXPECT_NEAR(*estimate.noise_sd / *expected.noise_sd, 1, 1e-3);
     }
   }
+}
+
+// 2 % of the nodes displaced by 20 standard deviations of the noise.
+TEST(PreparedReducedFe, HuberHardlyFeelsAFewGrossOutliers) {
+  constexpr int kSeeds = 400;
+  constexpr double kNoise = 0.01;
+  Scene exact = SmallScene("organ");
+  Measure({5e4, 0.3}, exact);
+  const Eigen::Index num_nodes = exact.mesh.NumNodes();
+  EstimatorOptions huber;
+  huber.loss = Loss::kHuber;
+  PreparedReducedFe plain(exact, {});
+  PreparedReducedFe robust(exact, huber);
+  double clean = 0;
+  double contaminated = 0;
+  double rejected = 0;
+  const auto squared_error = [](const Estimate& estimate) {
+    return std::pow(estimate.elasticity.youngs_modulus / 5e4 - 1, 2);
+  };
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    Scene scene = exact;
+    const double sd = AddNoise(kNoise, seed, scene);
+    Eigen::Matrix3Xd& displacement = scene.load_cases[0].displacement;
+    clean += squared_error(plain.Run({displacement}));
+    std::mt19937_64 generator(seed);
+    std::normal_distribution<double> normal;
+    const int num_outliers = int(std::lround(0.02 * double(num_nodes)));
+    for (int i = 0; i < num_outliers; ++i) {
+      const Eigen::Index node = std::uniform_int_distribution<Eigen::Index>(
+          16, num_nodes - 1)(generator);
+      displacement.col(node) +=
+          20 * sd *
+          Eigen::Vector3d(normal(generator), normal(generator),
+                          normal(generator))
+              .normalized();
+    }
+    contaminated += squared_error(plain.Run({displacement}));
+    rejected += squared_error(robust.Run({displacement}));
+  }
+  // The same noise is in all three: their ratios are far better known than
+  // each.
+  EXPECT_GT(std::sqrt(contaminated / clean), 1.5);
+  EXPECT_LT(std::sqrt(rejected / clean), 1.15);
+  std::printf("error with outliers over error without: %.3f, with huber %.3f\n",
+              std::sqrt(contaminated / clean), std::sqrt(rejected / clean));
 }
 
 TEST(PreparedReducedFe, FurtherMeasurementsCostNoSolve) {
