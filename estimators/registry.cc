@@ -6,6 +6,7 @@
 #include "elastimate/estimators/bounded.h"
 #include "elastimate/estimators/closed_form.h"
 #include "elastimate/estimators/iterative_fe.h"
+#include "elastimate/estimators/total_least_squares.h"
 #include "elastimate/estimators/virtual_fields.h"
 
 namespace elastimate {
@@ -17,10 +18,8 @@ std::unique_ptr<Estimator> Make() {
 }
 
 constexpr std::unique_ptr<Estimator> (*kEstimators[])() = {
-    Make<ClosedForm>,
-    Make<Bounded>,
-    Make<VirtualFields>,
-    Make<IterativeFe>,
+    Make<ClosedForm>,    Make<Bounded>,     Make<TotalLeastSquares>,
+    Make<VirtualFields>, Make<IterativeFe>,
 };
 
 }  // namespace
