@@ -8,6 +8,7 @@
 #include "elastimate/core/stiffness_product.h"
 #include "elastimate/estimators/force_residual.h"
 #include "elastimate/estimators/statistics.h"
+#include "elastimate/estimators/virtual_fields.h"
 
 namespace elastimate {
 namespace {
@@ -103,6 +104,55 @@ void Fail(Status status, const std::string& message, Estimate& estimate) {
   estimate.why_no_standard_error = "the estimate is not usable";
 }
 
+// Relative to its standard error, a difference that is no chance; and a
+// relative standard error of E that a user wants to be told of.
+constexpr double kSignificantScore = 5;
+constexpr double kNotableError = 0.01;
+
+// Holds the estimate against that of the virtual fields of lowest degree, since
+// the force residual cannot tell an error of the model from noise: it is rough
+// either way.  Where that one doubts the model, or the two differ by more than
+// noise does [Hausman 1978], the difference and the uncertainty of the other
+// one are added to the covariance.
+void CompareWithVirtualFields(const Scene& scene, EstimatorOptions options,
+                              Estimate& estimate) {
+  options.virtual_field_degree = 1;
+  const Estimate other = VirtualFields().Run(scene, options);
+  estimate.work = estimate.work + other.work;
+  if (!other.IsUsable()) {
+    Fail(Status::kNotIdentifiable,
+         "virtual-fields of degree 1, against which this method is held since "
+         "it does not see errors of the mesh, the supports and the loads, are "
+         "not usable: " +
+             other.message,
+         estimate);
+    return;
+  }
+  std::vector<Eigen::Index> free = {0};
+  if (!options.known_poisson_ratio) {
+    free.push_back(1);
+  }
+  const Eigen::VectorXd difference = Eigen::Vector2d(
+      estimate.elasticity.youngs_modulus - other.elasticity.youngs_modulus,
+      estimate.elasticity.poisson_ratio - other.elasticity.poisson_ratio)(free);
+  const Eigen::MatrixXd both =
+      (estimate.covariance + other.covariance)(free, free);
+  const double score = std::sqrt(difference.dot(both.inverse() * difference));
+  if (!other.is_model_in_doubt && score <= kSignificantScore) {
+    return;
+  }
+  estimate.is_model_in_doubt = true;
+  estimate.covariance(free, free) = both + difference * difference.transpose();
+  const double relative_error = *estimate.YoungsModulusStandardError() /
+                                estimate.elasticity.youngs_modulus;
+  if (relative_error > kNotableError) {
+    estimate.warnings.emplace_back(
+        "virtual-fields say that the mesh, the supports or the loads do not "
+        "describe the experiment; the standard errors are widened to allow for "
+        "it");
+  }
+}
+
 // Fails an estimate out of the physical range, with the reason.
 void JudgeUnphysical(const ForceResidual& residual, Estimate& estimate) {
   const IsotropicElasticity& elasticity = estimate.elasticity;
@@ -120,7 +170,7 @@ void JudgeUnphysical(const ForceResidual& residual, Estimate& estimate) {
        << (is_noise ? "displacement noise hides it from this method"
                     : "the mesh, the supports or the loads do not describe the "
                       "experiment, or displacement noise is large")
-       << "; use virtual-fields or iterative-fe, or give Poisson's ratio";
+       << "; use virtual-fields or reduced-fe, or give Poisson's ratio";
   Fail(is_noise ? Status::kNotIdentifiable : Status::kUnphysical, text.str(),
        estimate);
 }
@@ -139,10 +189,10 @@ std::string_view TotalLeastSquares::Description() const {
 std::string TotalLeastSquares::WhyUnsupported(
     const Scene& scene, const EstimatorOptions& options) const {
   if (options.poisson_ratio.AreGiven() || options.youngs_modulus.AreGiven()) {
-    return "it cannot keep bounds; use bounded, virtual-fields or iterative-fe";
+    return "it cannot keep bounds; use bounded, virtual-fields or reduced-fe";
   }
   if (options.loss != Loss::kNone) {
-    return "a loss function needs displacement residuals; use iterative-fe";
+    return "a loss function needs displacement residuals; use reduced-fe";
   }
   if (options.virtual_field_degree) {
     return "it has no virtual fields to take a degree; use virtual-fields";
@@ -177,7 +227,7 @@ Estimate TotalLeastSquares::DoRun(const Scene& scene,
     if (!nu || !std::isfinite(*nu)) {
       Fail(Status::kNotIdentifiable,
            "displacement noise hides Poisson's ratio from this method; use "
-           "virtual-fields or iterative-fe, or give Poisson's ratio",
+           "virtual-fields or reduced-fe, or give Poisson's ratio",
            estimate);
       return estimate;
     }
@@ -202,6 +252,8 @@ Estimate TotalLeastSquares::DoRun(const Scene& scene,
   }
   if (!estimate.elasticity.IsPhysical()) {
     JudgeUnphysical(residual, estimate);
+  } else if (variance) {
+    CompareWithVirtualFields(scene, options, estimate);
   }
   return estimate;
 }

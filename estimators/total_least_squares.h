@@ -21,10 +21,13 @@ namespace elastimate {
 /// Needs what closed-form needs; keeps no bounds.  This removes the bias, not
 /// the variance: expect standard errors of 50 to 600 times the Cramer-Rao bound
 /// at 0.1 to 1 % noise.  They are sigma ||d(E, nu) / dq||, and at most sqrt(2)
-/// too large where the estimate is no longer linear in the noise.
+/// too large where the estimate is no longer linear in the noise.  The force
+/// residual cannot tell errors of the mesh, the supports and the loads from
+/// noise, so that the estimate is held against virtual-fields of degree 1.
 ///
-/// Cost: five element passes of one to three columns per load case; no
-/// factorisation.  Single-threaded, deterministic.
+/// Cost: five element passes of one to three columns per load case, and that of
+/// virtual-fields of degree 1; no factorisation.  Single-threaded,
+/// deterministic.
 class TotalLeastSquares : public Estimator {
  public:
   std::string_view Name() const override;
