@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/commands.h"
+#include "apps/element_order.h"
 #include "apps/estimator_flags.h"
 #include "apps/flags.h"
 #include "apps/linear_algebra.h"
@@ -13,6 +14,7 @@
 #include "apps/progress.h"
 #include "apps/result_fields.h"
 #include "apps/summary.h"
+#include "elastimate/core/quadratic_scene.h"
 #include "elastimate/estimators/registry.h"
 #include "elastimate/io/file_output.h"
 #include "elastimate/io/report.h"
@@ -48,17 +50,30 @@ std::string Sources(const std::vector<std::string>& arguments) {
   return sources;
 }
 
+// What of the command line the estimator cannot serve; the scene, unless other
+// flags would help.
+std::string WhatToBlame(const Estimator& estimator, const Scene& scene,
+                        const Scene& modelled, const EstimatorOptions& options,
+                        const std::string& sources) {
+  if (estimator.WhyUnsupported(modelled, options).empty()) {
+    return sources;
+  }
+  if (estimator.WhyUnsupported(scene, options).empty()) {
+    return AsGiven("order");
+  }
+  return estimator.WhyUnsupported(scene, {}).empty() ? GivenOptionFlags()
+                                                     : sources;
+}
+
+// `modelled` is `scene` at the element order that was asked for.
 Estimate RunEstimator(const Estimator& estimator, const Scene& scene,
-                      const EstimatorOptions& options,
+                      const Scene& modelled, const EstimatorOptions& options,
                       const std::string& sources) {
   try {
-    return estimator.Run(scene, options);
+    return estimator.Run(modelled, options);
   } catch (const std::invalid_argument& error) {
-    const bool flags_are_to_blame =
-        !estimator.WhyUnsupported(scene, options).empty() &&
-        estimator.WhyUnsupported(scene, {}).empty();
     throw std::invalid_argument(
-        (flags_are_to_blame ? GivenOptionFlags() : sources) + ": " +
+        WhatToBlame(estimator, scene, modelled, options, sources) + ": " +
         error.what());
   }
 }
@@ -80,8 +95,12 @@ int RunEstimate(const std::vector<std::string>& arguments) {
   CheckOutputFlags(arguments);
 
   std::optional<Progress> progress("reading " + Sources(arguments));
-  const SceneReading reading = Read(arguments);
+  SceneReading reading = Read(arguments);
   const double read_seconds = SecondsSince(start);
+  const Scene& scene = reading.scene;
+  const std::optional<Scene> quadratic =
+      QuadraticSceneIfAsked(scene, reading.notices);
+  const Scene& modelled = quadratic ? *quadratic : scene;
 
   progress->Show(FLAGS_estimator);
   options.on_factorization = [&progress](int count) {
@@ -89,22 +108,27 @@ int RunEstimate(const std::vector<std::string>& arguments) {
                    std::to_string(count));
   };
   const Estimate estimate =
-      RunEstimator(*estimator, reading.scene, options, Sources(arguments));
+      RunEstimator(*estimator, scene, modelled, options, Sources(arguments));
+  // An estimator may have raised the order itself.
+  const std::optional<Scene> raised =
+      estimate.element_order > modelled.mesh.Order()
+          ? std::optional<Scene>(QuadraticScene(scene))
+          : std::nullopt;
+  const Scene& reported = raised ? *raised : modelled;
   StagedFiles files;
   if (!FLAGS_out.empty()) {
     progress->Show("writing " + FLAGS_out);
-    files.Add(FLAGS_out, VtuContent(FLAGS_out, reading.scene.mesh,
-                                    ResultFields(reading.scene, estimate)));
+    files.Add(FLAGS_out, VtuContent(FLAGS_out, scene.mesh,
+                                    ResultFields(scene, reported, estimate)));
   }
   progress.reset();
 
-  const std::string report = JsonReport(estimate, reading.scene, options,
+  const std::string report = JsonReport(estimate, reported, options,
                                         {read_seconds, SecondsSince(start)});
   if (!FLAGS_json.empty() && FLAGS_json != "-") {
     files.Add(FLAGS_json, report);
   }
-  WriteStandardOutput(FLAGS_json == "-" ? report
-                                        : Summary(estimate, reading.scene));
+  WriteStandardOutput(FLAGS_json == "-" ? report : Summary(estimate, reported));
   files.Commit();
   PrintNotices(reading.notices);
   return estimate.IsUsable() ? 0 : 1;
@@ -125,11 +149,7 @@ int RunEstimators(const std::vector<std::string>& arguments) {
 }
 
 void ApplyComputingFlags() {
-  if (FLAGS_order != 1) {
-    throw std::invalid_argument(AsGiven("order") +
-                                "; this version has linear elements only, "
-                                "--order=1");
-  }
+  CheckOrderFlag();
   if (FLAGS_threads < 0) {
     throw std::invalid_argument(AsGiven("threads") +
                                 "; it must not be negative");

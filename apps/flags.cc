@@ -33,7 +33,9 @@ DEFINE_double(noise, 0,
 DEFINE_string(noise_law, "uniform", "uniform or gaussian");
 DEFINE_string(loss, "none", "treatment of outliers: none, huber or cauchy");
 DEFINE_int32(degree, 2, "degree of the polynomial virtual fields, 1 to 3");
-DEFINE_int32(order, 1, "element order; 1 in this version");
+DEFINE_int32(order, 1,
+             "element order: 1 for linear tetrahedra, 2 for quadratic ones on "
+             "the same mesh (not with estimators of the force residual)");
 DEFINE_int32(threads, 0,
              "largest number of threads of the linear algebra; 0, or without "
              "this flag, all processors");

@@ -98,8 +98,8 @@ int main(int argc, char** argv) {
     return elastimate::Run({argv + 1, argv + argc});
   } catch (const std::bad_alloc&) {
     std::cerr << "elastimate: there is not enough memory for this mesh; "
-                 "coarsen it, or estimate with --estimator=closed-form, which "
-                 "needs the least\n";
+                 "coarsen it, or estimate with --order=1 and "
+                 "--estimator=closed-form, which need the least\n";
   } catch (const std::exception& error) {
     std::cerr << "elastimate: " << error.what() << "\n";
   }

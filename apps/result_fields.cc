@@ -2,6 +2,7 @@
 
 #include "elastimate/core/forward_model.h"
 #include "elastimate/core/loads.h"
+#include "elastimate/core/quadratic_scene.h"
 #include "elastimate/core/stiffness_product.h"
 #include "elastimate/core/strain_energy.h"
 #include "elastimate/estimators/estimator.h"
@@ -27,27 +28,28 @@ Eigen::MatrixXd Imbalance(const Scene& scene,
 
 class FieldCollector {
  public:
-  FieldCollector(const Scene& scene, Fields& fields)
-      : scene_(scene), fields_(fields) {}
+  // Shows the first `num_points` nodes, which are the vertices.
+  FieldCollector(Eigen::Index num_points, Fields& fields)
+      : num_points_(num_points), fields_(fields) {}
 
   void AddPoint(const std::string& name, Eigen::Index load_case,
                 const Eigen::MatrixXd& all) {
     fields_.point.push_back(
         {name + CaseSuffix(load_case),
-         all.col(load_case).reshaped(3, scene_.mesh.NumNodes())});
+         all.col(load_case).head(3 * num_points_).reshaped(3, num_points_)});
   }
 
-  void AddStrainEnergy(const IsotropicElasticity& elasticity,
+  void AddStrainEnergy(const Mesh& mesh, const IsotropicElasticity& elasticity,
                        Eigen::Index load_case, const Eigen::MatrixXd& all) {
-    fields_.cell.push_back({"strain_energy_density" + CaseSuffix(load_case),
-                            StrainEnergyDensity(scene_.mesh, elasticity,
-                                                all.col(load_case).reshaped(
-                                                    3, scene_.mesh.NumNodes()))
-                                .transpose()});
+    fields_.cell.push_back(
+        {"strain_energy_density" + CaseSuffix(load_case),
+         StrainEnergyDensity(mesh, elasticity,
+                             all.col(load_case).reshaped(3, mesh.NumNodes()))
+             .transpose()});
   }
 
  private:
-  const Scene& scene_;
+  Eigen::Index num_points_;
   Fields& fields_;
 };
 
@@ -69,41 +71,45 @@ Eigen::MatrixXd MeasuredMinus(const Scene& scene,
 
 }  // namespace
 
-Fields ResultFields(const Scene& scene, const Estimate& estimate) {
+Fields ResultFields(const Scene& scene, const Scene& modelled,
+                    const Estimate& estimate) {
   Fields fields = SceneFields(scene);
   if (!estimate.elasticity.IsPhysical()) {
     return fields;
   }
-  FieldCollector collector(scene, fields);
-  const Eigen::MatrixXd force = AssembleLoadCases(scene);
-  const Eigen::Index num_cases = force.cols();
-  const auto held = scene.supports.held.reshaped();
+  FieldCollector collector(scene.mesh.NumNodes(), fields);
+  const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
   if (!WhyNotHeld(scene.mesh, scene.supports).empty()) {
+    const Eigen::MatrixXd force = AssembleLoadCases(scene);
     const Eigen::MatrixXd measured =
         MeasuredMinus(scene, Eigen::MatrixXd::Zero(force.rows(), num_cases));
     const Eigen::MatrixXd residual =
         Imbalance(scene, estimate.elasticity, measured, force);
     for (Eigen::Index k = 0; k < num_cases; ++k) {
       collector.AddPoint("force_residual", k, residual);
-      collector.AddStrainEnergy(estimate.elasticity, k, measured);
+      collector.AddStrainEnergy(scene.mesh, estimate.elasticity, k, measured);
     }
     return fields;
   }
-  ForwardModel model(scene.mesh, scene.supports, force);
+  const Eigen::MatrixXd force = AssembleLoadCases(modelled);
+  ForwardModel model(modelled.mesh, modelled.supports, force);
   if (!model.SetPoissonRatio(estimate.elasticity.poisson_ratio)) {
     return fields;
   }
   const Eigen::MatrixXd fitted =
       model.Displacement(estimate.elasticity.youngs_modulus);
-  const Eigen::MatrixXd difference = MeasuredMinus(scene, fitted);
-  Eigen::MatrixXd reaction =
-      Imbalance(scene, estimate.elasticity, fitted, force);
-  reaction = held.replicate(1, num_cases).select(reaction.array(), 0.0);
+  const Eigen::MatrixXd difference = MeasuredMinus(modelled, fitted);
+  const Eigen::MatrixXd imbalance =
+      Imbalance(modelled, estimate.elasticity, fitted, force);
+  const Eigen::MatrixXd reaction =
+      VertexForces(modelled.mesh, modelled.supports.held.reshaped()
+                                      .replicate(1, num_cases)
+                                      .select(imbalance.array(), 0.0));
   for (Eigen::Index k = 0; k < num_cases; ++k) {
     collector.AddPoint("fitted_displacement", k, fitted);
     collector.AddPoint("displacement_residual", k, difference);
     collector.AddPoint("reaction_force", k, reaction);
-    collector.AddStrainEnergy(estimate.elasticity, k, fitted);
+    collector.AddStrainEnergy(modelled.mesh, estimate.elasticity, k, fitted);
   }
   return fields;
 }

@@ -8,15 +8,19 @@
 namespace elastimate {
 
 /// The scene with what the estimate makes of it, for each load case (k > 1
-/// with suffix `_k`).
+/// with suffix `_k`).  `modelled` is the scene that was estimated: `scene`, or
+/// its QuadraticScene, of which the values at the vertices are shown.
 ///
 /// With a physical E and nu and a specimen that is held: `fitted_displacement`,
 /// `displacement_residual` (measured minus fitted where observed, else zero),
-/// `reaction_force` at the held degrees of freedom, and per cell the
+/// `reaction_force` at the held degrees of freedom (of quadratic elements, with
+/// half of the reaction at each mid-edge node at either end of its edge, which
+/// keeps resultant and moment: VertexForces), and per cell the
 /// `strain_energy_density` of the fitted displacement.  When nothing holds the
 /// specimen: `force_residual` and `strain_energy_density` of the measured
-/// displacement.  Otherwise the scene alone.
-Fields ResultFields(const Scene& scene, const Estimate& estimate);
+/// displacement, with linear elements.  Otherwise the scene alone.
+Fields ResultFields(const Scene& scene, const Scene& modelled,
+                    const Estimate& estimate);
 
 }  // namespace elastimate
 

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "apps/commands.h"
+#include "apps/element_order.h"
 #include "apps/estimator_flags.h"
 #include "apps/flags.h"
 #include "apps/outputs.h"
@@ -75,15 +76,21 @@ int RunSimulate(const std::vector<std::string>& arguments) {
   if (!why_not_held.empty()) {
     throw std::invalid_argument(arguments[0] + ": " + why_not_held);
   }
-  ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene));
+  const std::optional<Scene> quadratic =
+      QuadraticSceneIfAsked(scene, reading.notices);
+  const Scene& modelled = quadratic ? *quadratic : scene;
+  ForwardModel model(modelled.mesh, modelled.supports,
+                     AssembleLoadCases(modelled));
   if (!model.SetPoissonRatio(elasticity.poisson_ratio)) {
     throw std::invalid_argument(
         arguments[0] +
         ": the stiffness matrix is singular to working precision; check the "
         "mesh for slivers and --nu");
   }
-  Eigen::MatrixXd displacement = model.Displacement(elasticity.youngs_modulus);
-  const std::vector<Eigen::Index>& free = model.Dofs().free;
+  // At the vertices, which come first: what is measured and written.
+  Eigen::MatrixXd displacement = model.Displacement(elasticity.youngs_modulus)
+                                     .topRows(3 * scene.mesh.NumNodes());
+  const std::vector<Eigen::Index> free = DegreesOfFreedom(scene.supports).free;
   std::mt19937_64 generator(FLAGS_seed);
   for (Eigen::Index k = 0; k < displacement.cols(); ++k) {
     LoadCase& load_case = scene.load_cases[k];
@@ -101,6 +108,13 @@ int RunSimulate(const std::vector<std::string>& arguments) {
                      "the simulated displacement");
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(arguments[0] + ": " + error.what());
+  }
+  if (quadratic && !HasNodalForcesOnly(scene)) {
+    reading.notices.push_back(
+        FLAGS_out +
+        " has the loads as nodal forces of linear elements; to estimate with "
+        "--order=2, use a scene.json with the loads of " +
+        arguments[0] + " and the displacement of " + FLAGS_out);
   }
   progress->Show("writing " + FLAGS_out);
   WriteVtu(FLAGS_out, scene.mesh, SceneFields(scene));

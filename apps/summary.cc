@@ -35,6 +35,12 @@ std::string WithError(double value, const std::optional<double>& error) {
          (error ? " +- " + Number(*error, 2) : " (no standard error)");
 }
 
+// Near nu = 1/2 and -1, E and nu are not what the data determine.
+bool ReachesLimit(const Estimate& estimate) {
+  return estimate.poisson_ratio_interval->upper == 0.5 ||
+         estimate.poisson_ratio_interval->lower == -1;
+}
+
 void AddDiagnostics(const Estimate& estimate, std::ostringstream& text) {
   if (estimate.noise_sd) {
     Line("noise sd", Number(*estimate.noise_sd, 3), text);
@@ -69,8 +75,9 @@ std::string Summary(const Estimate& estimate, const Scene& scene) {
   std::ostringstream text;
   const IsotropicElasticity& elasticity = estimate.elasticity;
   Line("scene",
-       std::to_string(scene.mesh.NumNodes()) + " nodes, " +
-           std::to_string(scene.mesh.NumElements()) + " tetrahedra, " +
+       std::to_string(scene.mesh.NumVertices()) + " nodes, " +
+           std::to_string(scene.mesh.NumElements()) +
+           (scene.mesh.Order() == 2 ? " quadratic" : "") + " tetrahedra, " +
            std::to_string(scene.load_cases.size()) + " load case" +
            (scene.load_cases.size() == 1 ? "" : "s"),
        text);
@@ -90,6 +97,21 @@ std::string Summary(const Estimate& estimate, const Scene& scene) {
       "Poisson's ratio nu",
       WithError(elasticity.poisson_ratio, estimate.PoissonRatioStandardError()),
       text);
+  if (estimate.poisson_ratio_interval && ReachesLimit(estimate)) {
+    Line("",
+         "between " + Number(estimate.poisson_ratio_interval->lower, 4) +
+             " and " + Number(estimate.poisson_ratio_interval->upper, 4) +
+             " (95 %)",
+         text);
+    Line("shear modulus mu",
+         WithError(elasticity.ShearModulus(),
+                   estimate.ShearModulusStandardError()),
+         text);
+    Line("1 / bulk modulus",
+         WithError(elasticity.BulkCompliance(),
+                   estimate.BulkComplianceStandardError()),
+         text);
+  }
   if (!estimate.why_no_standard_error.empty()) {
     Line("", "no standard error: " + estimate.why_no_standard_error, text);
   }
@@ -100,6 +122,14 @@ std::string Summary(const Estimate& estimate, const Scene& scene) {
            std::to_string(estimate.work.solves) + " solves, " +
            Number(estimate.seconds, 3) + " s",
        text);
+  for (const Rung& rung : estimate.rungs) {
+    Line("rung",
+         rung.estimator +
+             (rung.element_order == 2 ? " with quadratic elements" : "") +
+             (rung.status ? ", " + Number(rung.seconds, 2) + " s, " : ", ") +
+             rung.decision,
+         text);
+  }
   for (const std::string& warning : estimate.warnings) {
     Line("warning", warning, text);
   }

@@ -9,7 +9,8 @@
 namespace elastimate {
 
 /// A short table for people: the estimate with its standard errors, the
-/// status, and what the diagnostics advise.
+/// status, and what the diagnostics advise.  `scene` is the one that was
+/// estimated, of either element order.
 std::string Summary(const Estimate& estimate, const Scene& scene);
 
 }  // namespace elastimate

@@ -1,4 +1,4 @@
-// Times of the kernels, and of two estimators, on a cube of tetrahedra.
+// Times of the kernels, and of estimators, on a cube of tetrahedra.
 //
 //   elastimate_kernel_benchmark
 //
@@ -7,10 +7,11 @@
 //
 //   elastimate_kernel_benchmark --benchmark_filter=Large
 //
-// A cube of 21, 39 and 58 cells along an edge has 46 305, 296 595 and 975 560
-// tetrahedra.  `per_tetrahedron` is the time for each tetrahedron (and each
-// column of an element pass).  At the end stands how much faster the element
-// pass is than the textbook's, in the same run; both have one thread.
+// A cube of 10, 21, 39 and 58 cells along an edge has 5000, 46 305, 296 595 and
+// 975 560 tetrahedra, quadratic ones where the name says so.  `per_tetrahedron`
+// is the time for each tetrahedron (and each column of an element pass).  At
+// the end stands how much faster the element pass is than the textbook's, in
+// the same run; both have one thread.
 
 #include <benchmark/benchmark.h>
 
@@ -30,14 +31,19 @@
 #include "elastimate/core/forward_model.h"
 #include "elastimate/core/loads.h"
 #include "elastimate/core/node_graph.h"
+#include "elastimate/core/quadratic_scene.h"
 #include "elastimate/core/stiffness_assembly.h"
 #include "elastimate/core/stiffness_product.h"
 #include "elastimate/core/stiffness_traces.h"
+#include "elastimate/estimators/reduced_fe.h"
 #include "elastimate/estimators/registry.h"
 #include "elastimate/io/example_scenes.h"
 
 namespace elastimate {
 namespace {
+
+// The noise of the measurements that fits of displacements are timed on.
+constexpr double kNoise = 0.01;
 
 // A cube with this number of cells along each edge, made once.
 const Scene& Cube(std::int64_t cells) {
@@ -51,6 +57,17 @@ const Scene& Cube(std::int64_t cells) {
   options.size.setOnes();
   return scenes.emplace(cells, CuboidScene(options)).first->second;
 }
+
+// The same with quadratic elements.
+const Scene& QuadraticCube(std::int64_t cells) {
+  static std::map<std::int64_t, Scene> scenes;
+  const auto known = scenes.find(cells);
+  return known != scenes.end()
+             ? known->second
+             : scenes.emplace(cells, QuadraticScene(Cube(cells))).first->second;
+}
+
+using SceneOfCells = const Scene& (*)(std::int64_t);
 
 // Values in [-1, 1), the same on every run.
 Eigen::MatrixXd RandomMatrix(Eigen::Index rows, Eigen::Index columns) {
@@ -72,8 +89,9 @@ void CountTetrahedra(benchmark::State& state, const Mesh& mesh,
 // ---------------------------------------------------------------------------
 // Element passes.
 
+template <SceneOfCells kScene>
 void ElementPass(benchmark::State& state) {
-  const Mesh& mesh = Cube(state.range(0)).mesh;
+  const Mesh& mesh = kScene(state.range(0)).mesh;
   const Eigen::MatrixXd q = RandomMatrix(3 * mesh.NumNodes(), state.range(1));
   while (state.KeepRunning()) {
     benchmark::DoNotOptimize(MultiplyStiffnessBasis(mesh, q));
@@ -127,8 +145,9 @@ void GraphOfNodes(benchmark::State& state) {
 }
 
 // Graph, pattern and values.
+template <SceneOfCells kScene>
 void Assembly(benchmark::State& state) {
-  const Scene& scene = Cube(state.range(0));
+  const Scene& scene = kScene(state.range(0));
   const DegreesOfFreedom dofs(scene.supports);
   while (state.KeepRunning()) {
     const StiffnessAssembly assembly(scene.mesh, dofs);
@@ -137,8 +156,9 @@ void Assembly(benchmark::State& state) {
   CountTetrahedra(state, scene.mesh);
 }
 
+template <SceneOfCells kScene>
 void Reassembly(benchmark::State& state) {
-  const Scene& scene = Cube(state.range(0));
+  const Scene& scene = kScene(state.range(0));
   StiffnessAssembly assembly(scene.mesh, DegreesOfFreedom(scene.supports));
   while (state.KeepRunning()) {
     assembly.Assemble(scene.mesh);
@@ -160,8 +180,9 @@ void Combine(benchmark::State& state) {
 // ---------------------------------------------------------------------------
 // Factorisation.
 
+template <SceneOfCells kScene>
 void CholeskyAnalysis(benchmark::State& state) {
-  const Scene& scene = Cube(state.range(0));
+  const Scene& scene = kScene(state.range(0));
   const DegreesOfFreedom dofs(scene.supports);
   const StiffnessAssembly assembly(scene.mesh, dofs);
   while (state.KeepRunning()) {
@@ -171,8 +192,9 @@ void CholeskyAnalysis(benchmark::State& state) {
   CountTetrahedra(state, scene.mesh);
 }
 
+template <SceneOfCells kScene>
 void CholeskyFactorization(benchmark::State& state) {
-  const Scene& scene = Cube(state.range(0));
+  const Scene& scene = kScene(state.range(0));
   const DegreesOfFreedom dofs(scene.supports);
   const StiffnessAssembly assembly(scene.mesh, dofs);
   Cholesky cholesky(assembly, dofs);
@@ -187,8 +209,9 @@ void CholeskyFactorization(benchmark::State& state) {
   state.counters["gigabytes"] = 8e-9 * cholesky.FactorValues();
 }
 
+template <SceneOfCells kScene>
 void CholeskySolve(benchmark::State& state) {
-  const Scene& scene = Cube(state.range(0));
+  const Scene& scene = kScene(state.range(0));
   const DegreesOfFreedom dofs(scene.supports);
   const StiffnessAssembly assembly(scene.mesh, dofs);
   Cholesky cholesky(assembly, dofs);
@@ -204,16 +227,24 @@ void CholeskySolve(benchmark::State& state) {
 }
 
 // ---------------------------------------------------------------------------
-// Estimators, end to end, on noise-free displacements of E = 10 kPa, nu = 0.3.
+// Estimators, end to end, on displacements of E = 10 kPa, nu = 0.3.
 
-void RunEstimator(benchmark::State& state, const char* name) {
-  Scene scene = Cube(state.range(0));
-  {
-    ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene));
-    model.SetPoissonRatio(0.3);
-    scene.load_cases[0].displacement =
-        model.Displacement(1e4).reshaped(3, scene.mesh.NumNodes());
-  }
+// With independent noise of this norm, relative to that of the displacement.
+Scene MeasuredCube(std::int64_t cells, double noise) {
+  Scene scene = Cube(cells);
+  ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene));
+  model.SetPoissonRatio(0.3);
+  const Eigen::VectorXd displacement = model.Displacement(1e4);
+  const Eigen::VectorXd random =
+      model.Dofs().Extend(RandomMatrix(model.Dofs().NumFree(), 1));
+  scene.load_cases[0].displacement =
+      (displacement + noise * displacement.norm() / random.norm() * random)
+          .reshaped(3, scene.mesh.NumNodes());
+  return scene;
+}
+
+void RunEstimator(benchmark::State& state, const char* name, double noise) {
+  const Scene scene = MeasuredCube(state.range(0), noise);
   const auto estimator = MakeEstimator(name);
   Estimate estimate;
   while (state.KeepRunning()) {
@@ -224,13 +255,50 @@ void RunEstimator(benchmark::State& state, const char* name) {
   }
   CountTetrahedra(state, scene.mesh);
   state.counters["factorizations"] = estimate.work.factorizations;
+  state.counters["solves"] = estimate.work.solves;
+}
+
+// A further measurement of a scene that reduced-fe knows.
+void MeasureAgain(benchmark::State& state) {
+  const Scene scene = MeasuredCube(state.range(0), kNoise);
+  PreparedReducedFe prepared(scene, {});
+  const std::vector<Eigen::Matrix3Xd> displacements = {
+      scene.load_cases[0].displacement};
+  prepared.Run(displacements);
+  Estimate estimate;
+  while (state.KeepRunning()) {
+    estimate = prepared.Run(displacements);
+  }
+  CountTetrahedra(state, scene.mesh);
+  state.counters["solves"] = estimate.work.solves;
 }
 
 // ---------------------------------------------------------------------------
 
+constexpr std::int64_t kTiny = 10;
 constexpr std::int64_t kSmall = 21;
 constexpr std::int64_t kMedium = 39;
 constexpr std::int64_t kBig = 58;
+
+void RegisterQuadraticBenchmarks() {
+  for (const std::int64_t cells : {kTiny, kSmall}) {
+    const auto add = [cells](const std::string& name, auto function) {
+      return benchmark::RegisterBenchmark(name.c_str(), function)
+          ->ArgNames({"cells", "columns"})
+          ->Args({cells, 1})
+          ->Unit(benchmark::kMillisecond)
+          ->UseRealTime();
+    };
+    add("Quadratic/ElementPass", ElementPass<QuadraticCube>)->Args({cells, 8});
+    add("Quadratic/Assembly", Assembly<QuadraticCube>);
+    add("Quadratic/Reassembly", Reassembly<QuadraticCube>);
+    const std::string prefix = cells == kSmall ? "Large/" : "";
+    add(prefix + "Quadratic/CholeskyAnalysis", CholeskyAnalysis<QuadraticCube>);
+    add(prefix + "Quadratic/CholeskyFactorization",
+        CholeskyFactorization<QuadraticCube>);
+    add(prefix + "Quadratic/CholeskySolve", CholeskySolve<QuadraticCube>);
+  }
+}
 
 void RegisterBenchmarks() {
   for (const std::int64_t cells : {kSmall, kMedium, kBig}) {
@@ -242,7 +310,7 @@ void RegisterBenchmarks() {
           ->MinTime(0.2);
     };
     // Repeated, because the shortest of three times is the least disturbed.
-    benchmark::RegisterBenchmark("ElementPass", ElementPass)
+    benchmark::RegisterBenchmark("ElementPass", ElementPass<Cube>)
         ->ArgNames({"cells", "columns"})
         ->Args({cells, 1})
         ->Args({cells, 8})
@@ -253,34 +321,40 @@ void RegisterBenchmarks() {
     single_threaded("TracesExact", TracesExact);
     single_threaded("TracesEstimated", TracesEstimated);
     single_threaded("NodeGraph", GraphOfNodes);
-    single_threaded("Assembly", Assembly);
-    single_threaded("Reassembly", Reassembly);
+    single_threaded("Assembly", Assembly<Cube>);
+    single_threaded("Reassembly", Reassembly<Cube>);
     single_threaded("Combine", Combine);
   }
-  for (const std::int64_t cells : {kSmall, kMedium}) {
+  for (const std::int64_t cells : {kTiny, kSmall, kMedium}) {
     // BLAS has threads of its own: the time that counts is that of the clock.
     const auto threaded = [cells](const std::string& name, auto function) {
-      const std::string prefix = cells == kSmall ? "" : "Large/";
+      const std::string prefix = cells == kMedium ? "Large/" : "";
       return benchmark::RegisterBenchmark((prefix + name).c_str(), function)
           ->Unit(benchmark::kMillisecond)
           ->UseRealTime();
     };
-    threaded("CholeskyAnalysis", CholeskyAnalysis)
+    threaded("CholeskyAnalysis", CholeskyAnalysis<Cube>)
         ->ArgNames({"cells"})
         ->Args({cells});
-    threaded("CholeskyFactorization", CholeskyFactorization)
+    threaded("CholeskyFactorization", CholeskyFactorization<Cube>)
         ->ArgNames({"cells"})
         ->Args({cells});
-    threaded("CholeskySolve", CholeskySolve)
+    threaded("CholeskySolve", CholeskySolve<Cube>)
         ->ArgNames({"cells", "columns"})
         ->Args({cells, 1})
         ->Args({cells, 4});
-    for (const char* const name : {"closed-form", "iterative-fe"}) {
+    // The closed form is for data without noise.
+    for (const char* const name :
+         {"closed-form", "reduced-fe", "iterative-fe"}) {
+      const double noise = std::string(name) == "closed-form" ? 0 : kNoise;
       threaded(std::string("Estimate/") + name,
-               [name](benchmark::State& state) { RunEstimator(state, name); })
+               [name, noise](benchmark::State& state) {
+                 RunEstimator(state, name, noise);
+               })
           ->ArgNames({"cells"})
           ->Args({cells});
     }
+    threaded("MeasureAgain", MeasureAgain)->ArgNames({"cells"})->Args({cells});
   }
 }
 
@@ -343,6 +417,7 @@ int Main(int argc, char** argv) {
     return 1;
   }
   RegisterBenchmarks();
+  RegisterQuadraticBenchmarks();
   ComparingReporter reporter;
   if (has_filter) {
     benchmark::RunSpecifiedBenchmarks(&reporter);

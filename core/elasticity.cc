@@ -34,6 +34,10 @@ double IsotropicElasticity::BulkModulus() const {
   return youngs_modulus / (3 * (1 - 2 * poisson_ratio));
 }
 
+double IsotropicElasticity::BulkCompliance() const {
+  return 3 * (1 - 2 * poisson_ratio) / youngs_modulus;
+}
+
 double IsotropicElasticity::StiffnessScale() const {
   return youngs_modulus / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio));
 }
@@ -44,6 +48,16 @@ double IsotropicElasticity::ComplianceScale() const {
 
 bool IsotropicElasticity::IsPhysical() const {
   return youngs_modulus > 0 && poisson_ratio > -1 && poisson_ratio < 0.5;
+}
+
+Eigen::Matrix2d ShearAndBulkJacobian(const IsotropicElasticity& elasticity) {
+  const double youngs = elasticity.youngs_modulus;
+  const double nu = elasticity.poisson_ratio;
+  Eigen::Matrix2d jacobian;
+  jacobian << elasticity.ShearModulus() / youngs,
+      -elasticity.ShearModulus() / (1 + nu),  //
+      -elasticity.BulkCompliance() / youngs, -6 / youngs;
+  return jacobian;
 }
 
 Eigen::Matrix2d ComplianceScaleJacobian(const IsotropicElasticity& elasticity) {

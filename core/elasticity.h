@@ -31,6 +31,9 @@ struct IsotropicElasticity {
   double LameLambda() const;
   /// kappa = E / (3 (1 - 2 nu)).
   double BulkModulus() const;
+  /// 1 / kappa = 3 (1 - 2 nu) / E, which is well determined near nu = 1/2 where
+  /// kappa is not.
+  double BulkCompliance() const;
   /// s = E / ((1 + nu)(1 - 2 nu)), the factor of K = s (H + nu J) [Becker &
   /// Teschner 2007, eq. 14-22].
   double StiffnessScale() const;
@@ -40,6 +43,9 @@ struct IsotropicElasticity {
   /// E > 0 and -1 < nu < 1/2 (NaN is not physical).
   bool IsPhysical() const;
 };
+
+/// d (mu, 1 / kappa) / d (E, nu): rows (mu, 1 / kappa), columns (E, nu).
+Eigen::Matrix2d ShearAndBulkJacobian(const IsotropicElasticity& elasticity);
 
 /// d (nu, t) / d (E, nu): rows (nu, t), columns (E, nu), with t = (1 + nu)(1 -
 /// 2 nu) / E.

@@ -2,22 +2,12 @@
 #define ELASTIMATE_CORE_FORWARD_MODEL_H_
 
 #include <Eigen/Core>
-#include <memory>
 
-#include "elastimate/core/cholesky.h"
-#include "elastimate/core/degrees_of_freedom.h"
 #include "elastimate/core/elasticity.h"
 #include "elastimate/core/scene.h"
-#include "elastimate/core/stiffness_assembly.h"
+#include "elastimate/core/stiffness_solver.h"
 
 namespace elastimate {
-
-/// How much computing was done; counted where it happens.
-struct Work {
-  int element_passes = 0;  ///< Passes over all elements, for any columns.
-  int factorizations = 0;  ///< Numeric Cholesky factorisations.
-  int solves = 0;          ///< Right-hand sides solved with a factorisation.
-};
 
 /// Derivatives of the displacement, (3 num_nodes) x num_load_cases each.
 struct DisplacementSensitivities {
@@ -69,39 +59,36 @@ class ForwardModel {
   /// The part v of u that the held displacements cause, one column [length].
   const Eigen::VectorXd& SupportResponse() const { return support_response_; }
 
+  /// dv/dnu.  Precondition: as above.
+  const Eigen::VectorXd& SupportResponseDerivative() const {
+    return support_response_derivative_;
+  }
+
   /// Derivatives at the present nu.  The first call at a nu costs an element
   /// pass and num_load_cases solves (one more with held displacements).
   DisplacementSensitivities Sensitivities(double youngs_modulus);
 
-  /// A^-1 of the free rows of each column of `all` ((3 num_nodes) x n), zero in
-  /// the held rows, at the present nu.
-  /// Precondition: SetPoissonRatio returned true.
-  Eigen::MatrixXd SolveFree(const Eigen::MatrixXd& all);
-
   /// nu of the present factorisation; NaN when there is none.
-  double PoissonRatio() const { return poisson_ratio_; }
-  const DegreesOfFreedom& Dofs() const { return degrees_of_freedom_; }
-  const Work& WorkDone() const { return work_; }
+  double PoissonRatio() const { return solver_.PoissonRatio(); }
+  const DegreesOfFreedom& Dofs() const { return solver_.Dofs(); }
+  const NodeGraph& Graph() const { return solver_.Graph(); }
+  Work WorkDone() const;
 
  private:
   const Mesh& mesh_;
-  DegreesOfFreedom degrees_of_freedom_;
+  StiffnessSolver solver_;
   Eigen::MatrixXd force_;
   Eigen::VectorXd held_displacement_;
   bool has_held_displacement_;
-  std::unique_ptr<StiffnessAssembly> assembly_;
-  std::unique_ptr<Cholesky> cholesky_;
   /// (H u_c, J u_c) for the held displacements alone.
   Eigen::VectorXd held_h_;
   Eigen::VectorXd held_j_;
-  /// The nu of the factorisation; NaN before the first and after a failed one.
-  double poisson_ratio_;
   bool has_derivatives_ = false;
   Eigen::MatrixXd load_response_;
   Eigen::VectorXd support_response_;
   Eigen::MatrixXd load_response_derivative_;
   Eigen::VectorXd support_response_derivative_;
-  Work work_;
+  int element_passes_ = 0;
 };
 
 }  // namespace elastimate

@@ -29,7 +29,13 @@ class LoadAssembler {
     for (Eigen::Index element = 0; element < mesh_.NumElements(); ++element) {
       const double volume =
           TetrahedronVolume(GatherTetrahedron(mesh_, element));
-      Distribute(mesh_.elements.col(element), volume * load.force_density);
+      const Eigen::Vector3d total = volume * load.force_density;
+      if (mesh_.Order() == 1) {
+        Add(mesh_.elements.col(element), total / 4);
+      } else {
+        Add(mesh_.elements.col(element).head<4>(), -total / 20);
+        Add(mesh_.elements.col(element).tail<6>(), total / 5);
+      }
     }
   }
 
@@ -37,25 +43,30 @@ class LoadAssembler {
     for (Eigen::Index facet = 0; facet < load.facets.cols(); ++facet) {
       const double area =
           DoubleAreaNormal(mesh_, load.facets, facet).norm() / 2;
-      Distribute(load.facets.col(facet), area * load.traction);
+      AddToFacet(load.facets.col(facet), area * load.traction);
     }
   }
 
   void operator()(const Pressure& load) {
     for (Eigen::Index facet = 0; facet < load.facets.cols(); ++facet) {
-      Distribute(
+      AddToFacet(
           load.facets.col(facet),
           -load.pressure / 2 * DoubleAreaNormal(mesh_, load.facets, facet));
     }
   }
 
  private:
-  // Equal parts of `total` on each of `nodes`.
-  void Distribute(Eigen::Ref<const Eigen::VectorXi> nodes,
-                  const Eigen::Vector3d& total) {
+  void Add(const Eigen::Ref<const Eigen::VectorXi>& nodes,
+           const Eigen::Vector3d& share) {
     for (const int node : nodes) {
-      force_.col(node) += total / static_cast<double>(nodes.size());
+      force_.col(node) += share;
     }
+  }
+
+  // The vertices of a quadratic triangle get nothing.
+  void AddToFacet(const Eigen::Ref<const Eigen::VectorXi>& nodes,
+                  const Eigen::Vector3d& total) {
+    Add(nodes.tail<3>(), total / 3);
   }
 
   const Mesh& mesh_;

@@ -9,10 +9,12 @@
 
 namespace elastimate {
 
-/// The consistent nodal forces of `loads` on linear elements, 3 x num_nodes
-/// [force]: f_i = integral of N_i times the load.  A uniform body force puts a
-/// quarter of an element's share on each node, a uniform traction or pressure
-/// a third of a facet's.
+/// The consistent nodal forces of `loads`, 3 x num_nodes [force]: f_i =
+/// integral of N_i times the load.  On linear elements a uniform body force
+/// puts a quarter of an element's share on each node, a uniform traction or
+/// pressure a third of a facet's; on quadratic ones it is -1/20 at the vertices
+/// and 1/5 at the mid-edge nodes of an element, 0 and 1/3 of a facet
+/// [Zienkiewicz & Taylor, The Finite Element Method].
 /// Precondition: a valid scene (ValidateScene).
 /// O(num_nodes + num_elements + num_facets) per load.
 Eigen::Matrix3Xd AssembleLoads(const Mesh& mesh,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "elastimate/core/magnitude.h"
+#include "elastimate/core/quadratic_tetrahedron.h"
 #include "elastimate/core/tetrahedron.h"
 
 namespace elastimate {
@@ -27,7 +28,7 @@ constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 std::string ElementName(const Mesh& mesh, Eigen::Index element) {
   std::ostringstream name;
   name << "tetrahedron " << element << " (nodes "
-       << mesh.elements.col(element).transpose() << ")";
+       << mesh.elements.col(element).head<4>().transpose() << ")";
   return name.str();
 }
 
@@ -70,14 +71,14 @@ void ValidateElements(const Mesh& mesh) {
     throw std::invalid_argument(
         "the mesh has no tetrahedra; mesh the volume, not only its surface");
   }
-  if (mesh.elements.rows() != 4) {
-    throw std::invalid_argument("the mesh has " +
-                                std::to_string(mesh.elements.rows()) +
-                                " nodes per element; tetrahedra have 4");
+  if (mesh.elements.rows() != 4 && mesh.elements.rows() != 10) {
+    throw std::invalid_argument(
+        "the mesh has " + std::to_string(mesh.elements.rows()) +
+        " nodes per element; linear tetrahedra have 4, quadratic ones 10");
   }
   for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
-    const auto corners = mesh.elements.col(element);
-    if (corners.minCoeff() < 0 || corners.maxCoeff() >= mesh.NumNodes()) {
+    const auto nodes = mesh.elements.col(element);
+    if (nodes.minCoeff() < 0 || nodes.maxCoeff() >= mesh.NumNodes()) {
       throw std::invalid_argument(
           ElementName(mesh, element) + " has a node index outside 0.." +
           std::to_string(mesh.NumNodes() - 1) + "; correct the mesh");
@@ -87,6 +88,30 @@ void ValidateElements(const Mesh& mesh) {
           ElementName(mesh, element) +
           " is flat (its smallest height is less than a millionth of its "
           "longest edge); remove it or mesh again");
+    }
+  }
+}
+
+void ValidateMidEdgeNodes(const Mesh& mesh) {
+  const Eigen::Index num_vertices = mesh.NumVertices();
+  for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
+    for (int i = 0; i < 6; ++i) {
+      const int node = mesh.elements(4 + i, element);
+      const int a = mesh.elements(kTetrahedronEdges[i][0], element);
+      const int b = mesh.elements(kTetrahedronEdges[i][1], element);
+      if (node < num_vertices) {
+        throw std::invalid_argument(
+            "mid-edge node " + std::to_string(node) + " of " +
+            ElementName(mesh, element) + " is numbered before vertex " +
+            std::to_string(num_vertices - 1) + "; number all vertices first");
+      }
+      if (!IsInTheMiddle(mesh, node, a, b)) {
+        throw std::invalid_argument(
+            "mid-edge node " + std::to_string(node) + " of " +
+            ElementName(mesh, element) + " is not in the middle between " +
+            std::to_string(a) + " and " + std::to_string(b) +
+            "; straighten the edges, and order the nodes as VTK does");
+      }
     }
   }
 }
@@ -109,6 +134,9 @@ void ValidateEveryNodeIsUsed(const Mesh& mesh) {
 void ValidateMesh(const Mesh& mesh) {
   ValidateNodes(mesh);
   ValidateElements(mesh);
+  if (mesh.Order() == 2) {
+    ValidateMidEdgeNodes(mesh);
+  }
   ValidateEveryNodeIsUsed(mesh);
   if (mesh.regions.size() != 0 && mesh.regions.size() != mesh.NumElements()) {
     throw std::invalid_argument(
@@ -155,14 +183,21 @@ Eigen::MatrixXi BoundaryFacets(const Mesh& mesh) {
     return std::tie(a.element, a.index) < std::tie(b.element, b.index);
   });
 
-  Eigen::MatrixXi facets(3, boundary.size());
+  Eigen::MatrixXi facets(mesh.Order() == 2 ? 6 : 3, boundary.size());
   for (std::size_t i = 0; i < boundary.size(); ++i) {
     const Face& face = boundary[i];
-    for (int k = 0; k < 3; ++k) {
-      facets(k, i) = mesh.elements(kFaces[face.index][k], face.element);
-    }
+    std::array<int, 3> vertices = {kFaces[face.index][0], kFaces[face.index][1],
+                                   kFaces[face.index][2]};
     if (SignedTetrahedronVolume(GatherTetrahedron(mesh, face.element)) < 0) {
-      std::swap(facets(1, i), facets(2, i));
+      std::swap(vertices[1], vertices[2]);
+    }
+    for (int k = 0; k < 3; ++k) {
+      facets(k, i) = mesh.elements(vertices[k], face.element);
+    }
+    for (int k = 3; k < facets.rows(); ++k) {
+      const auto& [a, b] = kTriangleEdges[k - 3];
+      facets(k, i) =
+          mesh.elements(kMidEdgeNodes[vertices[a]][vertices[b]], face.element);
     }
   }
   return facets;

@@ -33,6 +33,7 @@ struct NodeGraph {
 ///
 ///   H_ij = (M_ij^T + tr(M_ij) I) / 2,   J_ij = M_ij - M_ij^T - tr(M_ij) I.
 ///
+/// Exact for linear and for quadratic tetrahedra.
 /// Cost: one element pass.
 Eigen::Matrix3Xd GradientProducts(const Mesh& mesh, const NodeGraph& graph);
 

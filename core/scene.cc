@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "elastimate/core/magnitude.h"
+#include "elastimate/core/quadratic_tetrahedron.h"
 
 namespace elastimate {
 namespace {
@@ -58,9 +59,12 @@ void ValidateFacets(const Mesh& mesh, const Eigen::MatrixXi& facets,
   if (facets.cols() == 0) {
     Fail(what + " acts on no facet; name a part of the surface");
   }
-  if (facets.rows() != 3) {
+  const Eigen::Index nodes_per_facet = mesh.Order() == 2 ? 6 : 3;
+  if (facets.rows() != nodes_per_facet) {
     Fail(what + " has " + std::to_string(facets.rows()) +
-         " nodes per facet; the facets of tetrahedra have 3");
+         " nodes per facet; the facets of " +
+         (mesh.Order() == 2 ? "quadratic " : "") + "tetrahedra have " +
+         std::to_string(nodes_per_facet));
   }
   for (Eigen::Index facet = 0; facet < facets.cols(); ++facet) {
     if (facets.col(facet).minCoeff() < 0 ||
@@ -68,6 +72,15 @@ void ValidateFacets(const Mesh& mesh, const Eigen::MatrixXi& facets,
       Fail("facet " + std::to_string(facet) + " of " + what +
            " has a node index outside 0.." +
            std::to_string(mesh.NumNodes() - 1));
+    }
+    for (Eigen::Index i = 3; i < facets.rows(); ++i) {
+      const auto& [a, b] = kTriangleEdges[i - 3];
+      if (!IsInTheMiddle(mesh, facets(i, facet), facets(a, facet),
+                         facets(b, facet))) {
+        Fail("node " + std::to_string(facets(i, facet)) + " of facet " +
+             std::to_string(facet) + " of " + what +
+             " is not in the middle of its edge; order the nodes as VTK does");
+      }
     }
   }
 }
@@ -232,7 +245,13 @@ void ValidateScene(const Scene& scene) {
           "load " + std::to_string(k + 1) + " of " + CaseName(i);
       std::visit(LoadValidator{scene.mesh, where}, load_case.loads[k]);
     }
-    ValidateMeasurement(scene.mesh, load_case, CaseName(i));
+  }
+  ValidateMeasurements(scene);
+}
+
+void ValidateMeasurements(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.load_cases.size(); ++i) {
+    ValidateMeasurement(scene.mesh, scene.load_cases[i], CaseName(i));
   }
 }
 

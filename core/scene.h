@@ -34,15 +34,16 @@ struct BodyForce {
 /// A uniform force per (undeformed) area on some facets.
 struct Traction {
   Eigen::MatrixXi
-      facets;  ///< nodes_per_facet x num_facets, zero-based node indices.
+      facets;  ///< nodes_per_facet x num_facets, zero-based node indices: 3,
+               ///< for quadratic tetrahedra 6 as in BoundaryFacets.
   Eigen::Vector3d traction;  ///< [force / length^2].
 };
 
 /// A uniform pressure on some facets; positive pushes against the outward
 /// normal.
 struct Pressure {
-  Eigen::MatrixXi facets;  ///< nodes_per_facet x num_facets, counter-clockwise
-                           ///< seen from outside.
+  Eigen::MatrixXi facets;  ///< As those of a traction, counter-clockwise seen
+                           ///< from outside.
   double pressure;         ///< [force / length^2].
 };
 
@@ -72,10 +73,16 @@ struct Scene {
 /// array, and the node or element, unless: the mesh is valid (ValidateMesh);
 /// every array has its shape; every number is finite, and no array's largest
 /// one beyond 1e-50 to 1e50 unless zero (displacements only where they are
-/// observed or held); every facet has nodes in range; noise standard deviations
-/// are positive; there is a load case; and at least one degree of freedom is
-/// free.  O(num_elements + num_nodes * num_load_cases).
+/// observed or held); every facet has nodes in range (and mid-edge nodes in the
+/// middle); noise standard deviations are positive; there is a load case; and
+/// at least one degree of freedom is free.  O(num_elements + num_nodes *
+/// num_load_cases).
 void ValidateScene(const Scene& scene);
+
+/// The part of ValidateScene that is about observed components, displacements
+/// and noise: for another measurement of a valid scene.
+/// O(num_nodes * num_load_cases).
+void ValidateMeasurements(const Scene& scene);
 
 /// Why the supports do not hold the specimen: a sentence that names a motion
 /// without strain which they allow (a translation or a rotation of a connected

@@ -3,6 +3,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "elastimate/core/quadratic_stiffness_product.h"
+
 namespace elastimate {
 namespace {
 
@@ -111,17 +113,11 @@ inline void AddColumn(const ElementGeometry& g, const int* corners,
   Add(p3, p + n3);
 }
 
-}  // namespace
-
-StiffnessProducts MultiplyStiffnessBasis(const Mesh& mesh,
-                                         const Eigen::MatrixXd& displacement) {
-  assert(mesh.elements.rows() == 4);
-  assert(displacement.rows() == 3 * mesh.NumNodes());
+void AddLinearStrainProducts(const Mesh& mesh,
+                             const Eigen::MatrixXd& displacement,
+                             Eigen::MatrixXd& a, Eigen::MatrixXd& p) {
   const Eigen::Index rows = displacement.rows();
   const Eigen::Index columns = displacement.cols();
-  StiffnessProducts products;
-  products.h = Eigen::MatrixXd::Zero(rows, columns);
-  products.j = Eigen::MatrixXd::Zero(rows, columns);
   const int* corners = mesh.elements.data();
   for (Eigen::Index element = 0; element < mesh.NumElements();
        ++element, corners += 4) {
@@ -129,8 +125,23 @@ StiffnessProducts MultiplyStiffnessBasis(const Mesh& mesh,
     for (Eigen::Index column = 0; column < columns; ++column) {
       const Eigen::Index offset = column * rows;
       AddColumn(geometry, corners, displacement.data() + offset,
-                products.h.data() + offset, products.j.data() + offset);
+                a.data() + offset, p.data() + offset);
     }
+  }
+}
+
+}  // namespace
+
+StiffnessProducts MultiplyStiffnessBasis(const Mesh& mesh,
+                                         const Eigen::MatrixXd& displacement) {
+  assert(displacement.rows() == 3 * mesh.NumNodes());
+  StiffnessProducts products;
+  products.h = Eigen::MatrixXd::Zero(displacement.rows(), displacement.cols());
+  products.j = products.h;
+  if (mesh.Order() == 1) {
+    AddLinearStrainProducts(mesh, displacement, products.h, products.j);
+  } else {
+    AddQuadraticStrainProducts(mesh, displacement, products.h, products.j);
   }
   products.j -= 2 * products.h;
   return products;

@@ -18,15 +18,18 @@ struct StiffnessProducts {
 ///
 /// `displacement` is (3 num_nodes) x num_columns, row 3 * node + component
 /// [length]; the products have its shape.  With the strain tensor
-/// e = sym(sum_i q_i grad(N_i)^T), constant in a linear tetrahedron,
+/// e = sym(sum_i q_i grad(N_i)^T),
 ///
-///   a_i = V e grad(N_i),   b_i = V tr(e) grad(N_i) - 2 a_i,
+///   a_i = integral of e grad(N_i),
+///   b_i = integral of tr(e) grad(N_i) - 2 a_i,
 ///
-/// so that no element matrix is formed.
+/// so that no element matrix is formed.  In a linear tetrahedron both factors
+/// are constant, in a quadratic one both are linear, and the integrals exact.
 ///
 /// Precondition: a valid mesh (ValidateMesh) and 3 num_nodes rows.
-/// Cost: one element pass, O(num_elements * num_columns) time, no memory beyond
-/// the result.  Single-threaded; the same input gives the same bits.
+/// Cost: one element pass, O(num_elements * num_columns) time (for quadratic
+/// tetrahedra about nine times that for linear ones), no memory beyond the
+/// result.  Single-threaded; the same input gives the same bits.
 StiffnessProducts MultiplyStiffnessBasis(const Mesh& mesh,
                                          const Eigen::MatrixXd& displacement);
 

@@ -9,7 +9,8 @@
 namespace elastimate {
 
 /// Strain energy per volume of each element,
-/// mu e:e + (lambda / 2) tr(e)^2 [energy / length^3], num_elements values.
+/// mu e:e + (lambda / 2) tr(e)^2 [energy / length^3], num_elements values; in
+/// quadratic tetrahedra, where the strain e varies, its mean.
 /// `displacement` is 3 x num_nodes.  Precondition: a valid mesh.
 /// Cost: one element pass.
 Eigen::VectorXd StrainEnergyDensity(const Mesh& mesh,

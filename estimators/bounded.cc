@@ -8,6 +8,7 @@
 
 #include "elastimate/estimators/bounded_parameter.h"
 #include "elastimate/estimators/force_residual.h"
+#include "elastimate/estimators/virtual_work_check.h"
 
 namespace elastimate {
 namespace {
@@ -126,7 +127,7 @@ std::string_view Bounded::Description() const {
 std::string Bounded::WhyUnsupported(const Scene& scene,
                                     const EstimatorOptions& options) const {
   if (options.loss != Loss::kNone) {
-    return "a loss function needs displacement residuals; use iterative-fe";
+    return "a loss function needs displacement residuals; use reduced-fe";
   }
   if (options.virtual_field_degree) {
     return "it has no virtual fields to take a degree; use virtual-fields";
@@ -189,13 +190,16 @@ Estimate Bounded::DoRun(const Scene& scene,
     // E runs to zero or infinity with 1 - 2 nu: its value says nothing.
     estimate.elasticity.youngs_modulus = Estimate::kUnknown;
     Fail(Status::kUnphysical,
-         "the data pull Poisson's ratio out of its physical range, as "
+         "the data pull Poisson's ratio to the end of its range, as "
          "displacement noise does with this method; give bounds that the "
-         "material is known to keep, or use iterative-fe",
+         "material is known to keep, or use reduced-fe",
          estimate);
   } else if (!options.known_poisson_ratio && free_youngs_modulus) {
     JudgeNoiseBias(residual, EffectivePoissonRatioBounds(options), estimate);
+  } else if (options.known_poisson_ratio && free_youngs_modulus) {
+    JudgeKnownPoissonRatio(residual, estimate);
   }
+  CheckByVirtualWork(scene, options, estimate);
   return estimate;
 }
 

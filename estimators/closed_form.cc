@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "elastimate/estimators/force_residual.h"
+#include "elastimate/estimators/virtual_work_check.h"
 
 namespace elastimate {
 
@@ -17,10 +18,10 @@ std::string_view ClosedForm::Description() const {
 std::string ClosedForm::WhyUnsupported(const Scene& scene,
                                        const EstimatorOptions& options) const {
   if (options.poisson_ratio.AreGiven() || options.youngs_modulus.AreGiven()) {
-    return "it cannot keep bounds; use bounded or iterative-fe";
+    return "it cannot keep bounds; use bounded or reduced-fe";
   }
   if (options.loss != Loss::kNone) {
-    return "a loss function needs displacement residuals; use iterative-fe";
+    return "a loss function needs displacement residuals; use reduced-fe";
   }
   if (options.virtual_field_degree) {
     return "it has no virtual fields to take a degree; use virtual-fields";
@@ -51,10 +52,10 @@ Estimate ClosedForm::DoRun(const Scene& scene,
     std::ostringstream text;
     text << "E = " << estimate.elasticity.youngs_modulus << ", nu = " << *nu
          << " is not physical: "
-         << (residual.ComplianceScale(*nu) > 0
+         << (!(*nu > -1 && *nu < 0.5)
                  ? "displacement noise pulls nu of this method towards 2/3 and "
                    "E below zero, and so may a mesh, supports or loads that do "
-                   "not describe the experiment; use iterative-fe, which noise "
+                   "not describe the experiment; use reduced-fe, which noise "
                    "does not bias, or give Poisson's ratio"
                  : "the measured displacements oppose the loads; check their "
                    "signs, order and units");
@@ -64,7 +65,10 @@ Estimate ClosedForm::DoRun(const Scene& scene,
     estimate.why_no_standard_error = "the estimate is not physical";
   } else if (free_poisson_ratio) {
     JudgeNoiseBias(residual, Bounds{}, estimate);
+  } else {
+    JudgeKnownPoissonRatio(residual, estimate);
   }
+  CheckByVirtualWork(scene, options, estimate);
   return estimate;
 }
 

@@ -19,7 +19,9 @@ namespace elastimate {
 /// says itself when that makes it unusable.  With a known nu, E has no bias.
 ///
 /// Cost: one element pass, and two more for the standard errors and the noise
-/// diagnostics; no factorisation.  Single-threaded, deterministic.
+/// diagnostics (and one of 12 columns for a usable estimate whose force
+/// residual is above a tenth of the load, to see whether noise explains it); no
+/// factorisation.  Single-threaded, deterministic.
 class ClosedForm : public Estimator {
  public:
   std::string_view Name() const override;

@@ -1,11 +1,11 @@
 #include "elastimate/estimators/displacement_fit.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
-#include "elastimate/core/node_graph.h"
 #include "elastimate/estimators/statistics.h"
 
 namespace elastimate {
@@ -20,6 +20,15 @@ constexpr double kSignificantScore = 5;
 
 // A relative standard error of E that a user wants to be told of.
 constexpr double kNotableError = 0.01;
+
+// A residual of this part of the measurement is told of, and, when it is
+// smooth, says that the model is another one than that of the experiment.
+constexpr double kLargeResidual = 0.2;
+
+// From this root mean square of the residuals on, relative to their robust
+// standard deviation, outliers are looked for: 1 for Gaussian noise, 1.4 for
+// Laplacian.
+constexpr double kHeavyTails = 1.2;
 
 // Sums over the observed nodes that the statistics are made of.  Derivatives
 // are with respect to (ln E, nu); without a loss the bread is S^T S.
@@ -64,23 +73,18 @@ struct ResidualVariance {
 };
 
 // From the residuals themselves, or as given when they do not contradict it.
-std::optional<ResidualVariance> EstimateVariance(
-    const ObservedDisplacements& observed, const Scene& scene,
-    double square_sum, Eigen::Index num_free, Estimate& estimate) {
+ResidualVariance EstimateVariance(const ObservedDisplacements& observed,
+                                  const Scene& scene, double square_sum,
+                                  Eigen::Index num_free, Estimate& estimate) {
   const Eigen::Index redundancy = observed.Size() - num_free;
   const double norm_squared = observed.Norm() * observed.Norm();
   const std::optional<double>& given = scene.load_cases.front().noise_sd;
-  if (redundancy <= 0 && !given) {
-    estimate.why_no_standard_error =
-        "there are no more measured components than unknowns, so that the "
-        "noise cannot be estimated; give its standard deviation";
-    return std::nullopt;
-  }
   const double m = static_cast<double>(std::max<Eigen::Index>(redundancy, 1));
   const double variance = square_sum / m;
   estimate.noise_sd = given ? *given : std::sqrt(variance) * observed.Norm();
   if (!given) {
-    return ResidualVariance{variance, false};
+    // Student's t of m degrees of freedom has the variance m / (m - 2).
+    return ResidualVariance{variance * m / (m - 2), false};
   }
   // chi^2 has mean m and variance 2 m.
   const double ratio = variance * norm_squared;
@@ -99,22 +103,25 @@ std::optional<ResidualVariance> EstimateVariance(
 
 // The square sum of the part of the residual that neighbours share; zero when
 // independent noise explains what they share.
-double SmoothSquareSum(const Scene& scene,
+double SmoothSquareSum(const NodeGraph& graph,
                        const ObservedDisplacements& observed,
                        const Eigen::VectorXd& residual, Estimate& estimate) {
   const std::optional<NeighbourCorrelation> neighbours =
-      CorrelateNeighbours(scene.mesh, observed, residual);
+      CorrelateNeighbours(graph, observed, residual);
   if (!neighbours) {
     return 0;
   }
-  estimate.residual_correlation = neighbours->correlation;
-  return neighbours->standard_score > kSignificantScore
-             ? neighbours->correlation * residual.squaredNorm()
+  estimate.residual_correlation =
+      std::clamp(neighbours->correlation, -1.0, 1.0);
+  estimate.is_model_in_doubt = neighbours->standard_score > kSignificantScore;
+  return estimate.is_model_in_doubt
+             ? *estimate.residual_correlation * residual.squaredNorm()
              : 0;
 }
 
 void WarnOfSmoothResidual(double relative_error, Estimate& estimate) {
-  if (!(relative_error > kNotableError)) {
+  // Not a number for an E on a bound.
+  if (relative_error <= kNotableError) {
     return;
   }
   std::ostringstream text;
@@ -128,17 +135,94 @@ void WarnOfSmoothResidual(double relative_error, Estimate& estimate) {
   estimate.warnings.push_back(text.str());
 }
 
+// The change of (ln E, nu) from the least-squares fit to a robust one, in the
+// linear model u + S delta: the weighted least squares of Huber's loss.
+Eigen::Vector2d RobustChange(const ObservedDisplacements& observed,
+                             const DisplacementFit& fit,
+                             const std::vector<Eigen::Index>& free) {
+  constexpr int kReweightings = 50;
+  Eigen::Vector2d change = Eigen::Vector2d::Zero();
+  for (int i = 0; i < kReweightings; ++i) {
+    DisplacementFit moved = fit;
+    moved.residual += fit.sensitivities * change;
+    const NodeLosses losses(Loss::kHuber,
+                            RobustStandardDeviation(moved.residual));
+    Eigen::Matrix2d gram = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
+    for (const ObservedDisplacements::Node& node : observed.Nodes()) {
+      const auto r = moved.residual.segment(node.first, node.count);
+      const auto s = fit.sensitivities.middleRows(node.first, node.count);
+      const double weight = losses.Evaluate(node.count, r.squaredNorm())[1];
+      gram += weight * s.transpose() * s;
+      gradient += weight * s.transpose() * r;
+    }
+    change(free) -= Eigen::MatrixXd(gram(free, free))
+                        .ldlt()
+                        .solve(Eigen::VectorXd(gradient(free)));
+  }
+  return change;
+}
+
+// Whether some residuals are much larger than the bulk of them.
+bool HasHeavyTails(const Eigen::VectorXd& residual) {
+  const double n = static_cast<double>(residual.size());
+  // The standard deviation of 1.4826 MAD is 1.17 / sqrt(n) of itself.
+  const double threshold =
+      kHeavyTails + kSignificantScore * 1.17 / std::sqrt(n);
+  return residual.norm() / std::sqrt(n) >
+         threshold * RobustStandardDeviation(residual);
+}
+
+void WarnOfOutliers(const Eigen::Vector2d& change, Estimate& estimate) {
+  std::ostringstream text;
+  text.precision(2);
+  text << "some nodes lie far off, and without their pull E would change by "
+       << 100 * change(0) << " % and nu by " << change(1)
+       << ", which the standard errors allow for: use a loss (huber or cauchy)";
+  estimate.warnings.push_back(text.str());
+}
+
+// `smooth` is the smooth part of the residual, relative to the measurement.
+void JudgeLargeResidual(double smooth, bool is_explained, Estimate& estimate) {
+  std::ostringstream text;
+  text.precision(2);
+  if (smooth > kLargeResidual && estimate.status == Status::kOk) {
+    text << "the model misses a smooth part of the measured displacement, "
+         << 100 * smooth
+         << " % of it: the mesh, the supports, the loads or a known Poisson's "
+            "ratio do not describe the experiment";
+    estimate.status = Status::kNotIdentifiable;
+    estimate.message = text.str();
+  } else if (*estimate.displacement_residual > kLargeResidual && smooth == 0 &&
+             !is_explained) {
+    text << "the displacement residual is "
+         << 100 * *estimate.displacement_residual
+         << " % of the measured displacement: either the noise is as large, or "
+            "the mesh, the supports or the loads do not describe the "
+            "experiment";
+    estimate.warnings.push_back(text.str());
+  }
+}
+
 }  // namespace
 
+std::string WhyNoDisplacementFit(const Scene& scene) {
+  std::string why = WhyNotHeld(scene.mesh, scene.supports);
+  if (!why.empty() && scene.mesh.Order() == 1) {
+    why += ", or use closed-form or virtual-fields, which need no supports";
+  }
+  return why;
+}
+
 std::optional<NeighbourCorrelation> CorrelateNeighbours(
-    const Mesh& mesh, const ObservedDisplacements& observed,
+    const NodeGraph& graph, const ObservedDisplacements& observed,
     const Eigen::VectorXd& residual) {
   const double square_sum = residual.squaredNorm();
-  const NodeGraph graph(mesh);
+  const Eigen::Index num_nodes = Eigen::Index(graph.start.size()) - 1;
   double product_sum = 0;
   Eigen::Index num_products = 0;
   // Row of each component of each node in the present load case, or -1.
-  Eigen::Matrix<Eigen::Index, 3, Eigen::Dynamic> rows(3, mesh.NumNodes());
+  Eigen::Matrix<Eigen::Index, 3, Eigen::Dynamic> rows(3, num_nodes);
   const auto& nodes = observed.Nodes();
   for (auto begin = nodes.begin(); begin != nodes.end();) {
     const auto end = std::find_if(begin, nodes.end(), [&](const auto& node) {
@@ -151,7 +235,7 @@ std::optional<NeighbourCorrelation> CorrelateNeighbours(
         rows(observed.Component(row), node->node) = row;
       }
     }
-    for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
+    for (Eigen::Index node = 0; node < num_nodes; ++node) {
       for (Eigen::Index k = graph.start[node] + 1; k < graph.start[node + 1];
            ++k) {
         for (int i = 0; i < 3; ++i) {
@@ -175,17 +259,16 @@ std::optional<NeighbourCorrelation> CorrelateNeighbours(
   return NeighbourCorrelation{correlation, correlation * std::sqrt(n)};
 }
 
-void DescribeDisplacementFit(const Scene& scene,
-                             const EstimatorOptions& options,
-                             const ObservedDisplacements& observed,
-                             const DisplacementFit& fit,
-                             const NodeLosses& losses,
-                             const ActiveBounds& active, Estimate& estimate) {
+std::optional<double> DescribeDisplacementFit(
+    const Scene& scene, const NodeGraph& graph, const EstimatorOptions& options,
+    const ObservedDisplacements& observed, const DisplacementFit& fit,
+    const NodeLosses& losses, const ActiveBounds& active, Estimate& estimate) {
   const ResidualSums sums = SumResiduals(observed, fit, losses);
   const Eigen::Matrix2d& gram = sums.sensitivity_gram;
   const double slope = -gram(0, 1) / gram(0, 0);
   const double square_sum = fit.residual.squaredNorm();
-  estimate.displacement_residual = std::sqrt(square_sum);
+  estimate.displacement_residual =
+      std::sqrt(square_sum) / observed.Measured().norm();
   estimate.identifiability_angle = IdentifiabilityAngle(gram);
   const bool is_collinear =
       std::sin(*estimate.identifiability_angle) < kCollinear;
@@ -198,28 +281,44 @@ void DescribeDisplacementFit(const Scene& scene,
       active.poisson_ratio == BoundedParameter::Side::kNone) {
     free.push_back(1);
   }
-  if (free.size() == 2 && is_collinear) {
+  const bool is_bound_given =
+      active.poisson_ratio != BoundedParameter::Side::kNone &&
+      !active.is_physical_limit;
+  if (active.youngs_modulus == BoundedParameter::Side::kNone &&
+      !options.known_poisson_ratio && !is_bound_given && is_collinear) {
     estimate.status = Status::kNotIdentifiable;
     estimate.message = DescribeCollinear(estimate.elasticity, {slope, 1});
     estimate.elasticity = {Estimate::kUnknown, Estimate::kUnknown};
     estimate.why_no_standard_error = "the parameters are not determined";
-    return;
+    return std::nullopt;
   }
 
+  // Below three the variance of Student's t is infinite.
+  constexpr Eigen::Index kLeastRedundancy = 3;
+  if (observed.Size() - Eigen::Index(free.size()) < kLeastRedundancy &&
+      !scene.load_cases.front().noise_sd) {
+    estimate.why_no_standard_error =
+        "there are too few measured components to estimate their noise from";
+    if (estimate.status == Status::kOk) {
+      estimate.status = Status::kNotIdentifiable;
+      estimate.message =
+          std::to_string(observed.Size()) +
+          " measured components are too few to tell how good the estimate is; "
+          "measure more, or give the standard deviation of the noise";
+    }
+    return std::nullopt;
+  }
   std::optional<ResidualVariance> variance;
   if (losses.IsLeastSquares()) {
     variance = EstimateVariance(observed, scene, square_sum,
                                 Eigen::Index(free.size()), estimate);
-    if (!variance) {
-      return;
-    }
   } else {
     estimate.noise_sd = RobustStandardDeviation(fit.residual) * observed.Norm();
   }
   const double smooth_square_sum =
       variance && variance->is_explained_by_given_noise
           ? 0
-          : SmoothSquareSum(scene, observed, sums.weighted_residual, estimate);
+          : SmoothSquareSum(graph, observed, sums.weighted_residual, estimate);
 
   // Of the parameters that vary together.
   const auto covariance_of = [&](const std::vector<Eigen::Index>& parameters) {
@@ -236,11 +335,21 @@ void DescribeDisplacementFit(const Scene& scene,
   };
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(Estimate::kUnknown);
   covariance(free, free) = covariance_of(free);
+  if (losses.IsLeastSquares() && !free.empty() && HasHeavyTails(fit.residual)) {
+    const Eigen::Vector2d change = RobustChange(observed, fit, free);
+    covariance += change * change.transpose();
+    if (std::abs(change(0)) > kNotableError) {
+      WarnOfOutliers(change, estimate);
+    }
+  }
   const Eigen::Vector2d scale(estimate.elasticity.youngs_modulus, 1);
   estimate.covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
   if (smooth_square_sum > 0) {
     WarnOfSmoothResidual(std::sqrt(covariance(0, 0)), estimate);
   }
+  JudgeLargeResidual(std::sqrt(smooth_square_sum) / observed.Measured().norm(),
+                     variance && variance->is_explained_by_given_noise,
+                     estimate);
   if (!estimate.active_bounds.empty()) {
     estimate.why_no_standard_error = "a parameter on a bound has none";
   }
@@ -251,6 +360,15 @@ void DescribeDisplacementFit(const Scene& scene,
                                       : std::sqrt(covariance_of({0, 1})(1, 1));
     JudgePoissonRatioOnBound(options, active, slope, standard_error, estimate);
   }
+  if (std::find(free.begin(), free.end(), 1) == free.end()) {
+    return active.is_physical_limit && variance
+               ? std::optional<double>(variance->variance)
+               : std::nullopt;
+  }
+  const Eigen::MatrixXd inverse_bread =
+      Eigen::MatrixXd(sums.bread(free, free)).inverse();
+  return covariance(1, 1) /
+         inverse_bread(inverse_bread.rows() - 1, inverse_bread.cols() - 1);
 }
 
 }  // namespace elastimate

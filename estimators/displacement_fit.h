@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "elastimate/core/node_graph.h"
 #include "elastimate/core/scene.h"
 #include "elastimate/estimators/bounded_parameter.h"
 #include "elastimate/estimators/estimate.h"
@@ -20,6 +21,11 @@ struct DisplacementFit {
   Eigen::Matrix<double, Eigen::Dynamic, 2> sensitivities;
 };
 
+/// Why no displacements can be computed to fit to those of this scene: its
+/// supports do not hold the specimen.  Empty when they can.  Precondition: a
+/// valid scene.
+std::string WhyNoDisplacementFit(const Scene& scene);
+
 /// How alike the residuals of neighbouring nodes are [Moran 1950].
 struct NeighbourCorrelation {
   /// Mean product of the residuals of two nodes that share an element, over
@@ -30,27 +36,30 @@ struct NeighbourCorrelation {
 };
 
 /// Empty when no two neighbours were observed, or all residuals are zero.
-/// Cost: O(num_elements) time and memory.
+/// `graph` is that of the mesh.  Cost: O(num_pairs) time for each load case.
 std::optional<NeighbourCorrelation> CorrelateNeighbours(
-    const Mesh& mesh, const ObservedDisplacements& observed,
+    const NodeGraph& graph, const ObservedDisplacements& observed,
     const Eigen::VectorXd& residual);
 
 /// Judges a least-squares (or, with `losses`, robust) fit of the displacements
 /// and fills in status, covariance, noise, residual statistics,
 /// identifiability and warnings of `estimate`, whose elasticity and active
-/// bounds are set.
+/// bounds are set.  `graph` is that of the mesh of the scene.
 ///
 /// Without a loss the covariance is sigma^2 (S^T S)^-1, the Cramer-Rao bound,
 /// with sigma^2 as given, or from the residual; with one it is the sandwich of
 /// M-estimation.  A residual that is significantly alike at neighbouring nodes
 /// is not noise: its smooth part may hide an error of its own size along the
-/// sensitivities, and ||smooth part||^2 (S^T S)^-1 is added.
-void DescribeDisplacementFit(const Scene& scene,
-                             const EstimatorOptions& options,
-                             const ObservedDisplacements& observed,
-                             const DisplacementFit& fit,
-                             const NodeLosses& losses,
-                             const ActiveBounds& active, Estimate& estimate);
+/// sensitivities, and ||smooth part||^2 (S^T S)^-1 is added.  So is the square
+/// of what the outliers of a fit without a loss pull the parameters by.
+///
+/// Returns the variance of a row of the residual that the standard error of nu
+/// amounts to, or would, were nu not at the end of its physical range; empty
+/// when there is none.
+std::optional<double> DescribeDisplacementFit(
+    const Scene& scene, const NodeGraph& graph, const EstimatorOptions& options,
+    const ObservedDisplacements& observed, const DisplacementFit& fit,
+    const NodeLosses& losses, const ActiveBounds& active, Estimate& estimate);
 
 }  // namespace elastimate
 

@@ -35,6 +35,16 @@ std::optional<double> Estimate::PoissonRatioStandardError() const {
   return FiniteOrNothing(std::sqrt(covariance(1, 1)));
 }
 
+std::optional<double> Estimate::ShearModulusStandardError() const {
+  const Eigen::RowVector2d row = ShearAndBulkJacobian(elasticity).row(0);
+  return FiniteOrNothing(std::sqrt(row * covariance * row.transpose()));
+}
+
+std::optional<double> Estimate::BulkComplianceStandardError() const {
+  const Eigen::RowVector2d row = ShearAndBulkJacobian(elasticity).row(1);
+  return FiniteOrNothing(std::sqrt(row * covariance * row.transpose()));
+}
+
 std::optional<double> Estimate::Correlation() const {
   return FiniteOrNothing(covariance(0, 1) /
                          std::sqrt(covariance(0, 0) * covariance(1, 1)));

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "elastimate/core/elasticity.h"
-#include "elastimate/core/forward_model.h"
+#include "elastimate/core/stiffness_solver.h"
 
 namespace elastimate {
 
@@ -32,6 +32,33 @@ struct StageTime {
   double seconds;
 };
 
+/// Ends of an interval.
+struct Interval {
+  double lower;
+  double upper;
+};
+
+/// The disagreement of two estimators, one of which leans on the model less.
+struct ModelMismatch {
+  double statistic;  ///< chi^2 with 2 degrees of freedom when the model holds.
+  double p_value;    ///< Probability of a larger one when the model holds.
+  bool matters;      ///< Whether they differ by 1 % of E or 0.01 in nu.
+};
+
+/// An estimator that `auto` ran, or passed over.
+struct Rung {
+  std::string estimator;
+  int element_order = 1;
+  /// Empty when it was passed over.
+  std::optional<Status> status;
+  IsotropicElasticity elasticity = {std::numeric_limits<double>::quiet_NaN(),
+                                    std::numeric_limits<double>::quiet_NaN()};
+  Work work;
+  double seconds = 0;
+  /// Why the ladder went on, or stopped.
+  std::string decision;
+};
+
 /// What an estimator says about a scene.  Starts out as a failure, so that it
 /// cannot be mistaken for a result before an estimator has filled it in.
 struct Estimate {
@@ -45,6 +72,9 @@ struct Estimate {
   /// Covariance of (E, nu).  NaN in the row and column of a parameter that was
   /// given, or that is held by a bound, or of both when unknown.
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kUnknown);
+  /// Where nu lies with a probability of 95 %: one-sided when it reaches -1 or
+  /// 1/2, where a standard error says little.  Empty when unknown.
+  std::optional<Interval> poisson_ratio_interval;
   /// Why a standard error is missing; empty when none is.
   std::string why_no_standard_error;
 
@@ -66,11 +96,21 @@ struct Estimate {
   /// Correlation of the displacement residuals of neighbouring nodes: near 0
   /// for independent noise, near 1 when the model misses something smooth.
   std::optional<double> residual_correlation;
+  /// Whether the residual is none that independent noise leaves, so that the
+  /// mesh, the supports or the loads are not those of the experiment.
+  bool is_model_in_doubt = false;
+  /// What virtual-fields says of the model of reduced-fe, where both were run.
+  std::optional<ModelMismatch> model_mismatch;
   /// Bounds that the estimate lies on, such as "nu_max".
   std::vector<std::string> active_bounds;
   /// Sentences for the user, about a result that is usable all the same.
   std::vector<std::string> warnings;
 
+  /// The order of the elements: 1 for linear ones, 2 for quadratic ones; 0 as
+  /// long as no estimator was run.
+  int element_order = 0;
+  /// What `auto` ran, in order; empty for other estimators.
+  std::vector<Rung> rungs;
   Work work;
   std::vector<StageTime> stages;
   double seconds = 0;  ///< Time of the whole estimator.
@@ -81,6 +121,10 @@ struct Estimate {
   std::optional<double> PoissonRatioStandardError() const;
   /// Correlation of the errors of E and nu; empty when unknown.
   std::optional<double> Correlation() const;
+  /// Of mu and of 1 / kappa, to first order; empty unless the covariance of
+  /// both E and nu is known.
+  std::optional<double> ShearModulusStandardError() const;
+  std::optional<double> BulkComplianceStandardError() const;
 
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 };

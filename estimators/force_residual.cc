@@ -77,16 +77,23 @@ WeightedLoadCases WeightLoadCases(const Scene& scene,
 }
 
 std::string ForceResidual::WhyUnsupported(const Scene& scene) {
+  const Eigen::Index num_vertices = scene.mesh.NumVertices();
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
       for (int i = 0; i < 3; ++i) {
         if (!scene.supports.held(i, node) &&
             !IsObserved(scene.load_cases[k], i, node)) {
+          if (node >= num_vertices) {
+            return "the force residual needs the displacement of every node, "
+                   "and those of the mid-edge nodes of quadratic elements "
+                   "(order 2) were not measured; use reduced-fe, which can "
+                   "do without, or linear elements (order 1)";
+          }
           return "the force residual needs the displacement of every node, "
                  "and node " +
                  std::to_string(node) + " (" + "xyz"[i] + ") of load case " +
                  std::to_string(k + 1) +
-                 " was not observed; iterative-fe can do without";
+                 " was not observed; reduced-fe can do without";
         }
       }
     }
@@ -211,7 +218,14 @@ std::optional<double> ForceResidual::ResidualVariance(
 }
 
 std::optional<double> ForceResidual::NoiseVariance(
-    const Estimate& estimate, bool free_poisson_ratio) const {
+    const Estimate& estimate, bool free_youngs_modulus,
+    bool free_poisson_ratio) const {
+  if (!free_youngs_modulus) {
+    const Eigen::Vector2d weights(1, estimate.elasticity.poisson_ratio);
+    const double norm = RelativeResidual(estimate.elasticity) *
+                        estimate.elasticity.ComplianceScale() * triangle_(0, 0);
+    return norm * norm / weights.dot(traces_ * weights);
+  }
   return ResidualVariance(free_poisson_ratio
                               ? ErrorsInVariablesPoissonRatio()
                               : estimate.elasticity.poisson_ratio,
@@ -230,6 +244,23 @@ std::optional<double> ForceResidual::UnbiasedPoissonRatio() const {
     return std::nullopt;
   }
   return -(r11 * triangle_(1, 2) - noise(0, 1)) / b_squared;
+}
+
+std::optional<double> ForceResidual::UnbiasedPoissonRatioError() const {
+  constexpr double kLargestAttenuation = 0.5;
+  const std::optional<double> nu = UnbiasedPoissonRatio();
+  const std::optional<double> variance =
+      nu ? ResidualVariance(*nu, true) : std::nullopt;
+  if (!variance) {
+    return std::nullopt;
+  }
+  const double attenuation =
+      *variance * ProjectedTraces()(1, 1) / (triangle_(1, 1) * triangle_(1, 1));
+  if (!(attenuation < kLargestAttenuation)) {
+    return std::nullopt;
+  }
+  return std::sqrt(Covariance(At(*nu), *variance, true, true)(1, 1)) /
+         (1 - attenuation);
 }
 
 Eigen::Matrix2d ForceResidual::Covariance(const IsotropicElasticity& elasticity,
@@ -261,10 +292,11 @@ Eigen::Matrix2d ForceResidual::Covariance(const IsotropicElasticity& elasticity,
   return covariance;
 }
 
-std::optional<double> ForceResidual::DescribeNoise(bool free_poisson_ratio,
+std::optional<double> ForceResidual::DescribeNoise(bool free_youngs_modulus,
+                                                   bool free_poisson_ratio,
                                                    Estimate& estimate) const {
   const std::optional<double> residual_variance =
-      NoiseVariance(estimate, free_poisson_ratio);
+      NoiseVariance(estimate, free_youngs_modulus, free_poisson_ratio);
   if (!known_noise_sd_ && !residual_variance) {
     estimate.why_no_standard_error =
         "there are no more equations than unknowns, so that the noise cannot "
@@ -299,7 +331,7 @@ void ForceResidual::Describe(bool free_youngs_modulus, bool free_poisson_ratio,
                              Estimate& estimate) const {
   estimate.force_residual = RelativeResidual(estimate.elasticity);
   const std::optional<double> variance =
-      DescribeNoise(free_poisson_ratio, estimate);
+      DescribeNoise(free_youngs_modulus, free_poisson_ratio, estimate);
   if (!variance) {
     return;
   }
@@ -307,6 +339,35 @@ void ForceResidual::Describe(bool free_youngs_modulus, bool free_poisson_ratio,
     estimate.covariance = Covariance(estimate.elasticity, *variance,
                                      free_youngs_modulus, free_poisson_ratio);
   }
+}
+
+void JudgeKnownPoissonRatio(const ForceResidual& residual, Estimate& estimate) {
+  constexpr double kSignificant = 5;
+  constexpr double kUnusableChange = 0.1;
+  const std::optional<double> nu = residual.UnbiasedPoissonRatio();
+  const std::optional<double> error = residual.UnbiasedPoissonRatioError();
+  const double given = estimate.elasticity.poisson_ratio;
+  // Rounding has no standard error.
+  constexpr double kRounding = 1e-6;
+  if (!residual.PoissonRatio() || !nu || !error ||
+      !(std::abs(*nu - given) > kSignificant * *error + kRounding)) {
+    return;
+  }
+  const double ratio =
+      residual.At(*nu).youngs_modulus / estimate.elasticity.youngs_modulus;
+  const std::string what =
+      "the data contradict the given Poisson's ratio: they ask for " +
+      Number(*nu) + " +- " + Number(*error) +
+      ", unless the mesh, the supports or the loads do not describe the "
+      "experiment";
+  if (std::abs(ratio - 1) <= kUnusableChange) {
+    estimate.warnings.push_back(what);
+    return;
+  }
+  estimate.status = Status::kNotIdentifiable;
+  estimate.message = what;
+  estimate.covariance.setConstant(Estimate::kUnknown);
+  estimate.why_no_standard_error = "the model contradicts the data";
 }
 
 void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,
@@ -318,7 +379,7 @@ void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,
       "displacement noise (or a mesh, supports or loads that do not describe "
       "the experiment) biases ";
   const std::string advice =
-      "use iterative-fe, which noise does not bias, or give Poisson's ratio";
+      "use reduced-fe, which noise does not bias, or give Poisson's ratio";
   const IsotropicElasticity& elasticity = estimate.elasticity;
   const std::optional<double> unbiased_nu = residual.UnbiasedPoissonRatio();
   double bias = std::numeric_limits<double>::infinity();

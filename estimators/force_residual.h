@@ -67,7 +67,8 @@ class ForceResidual {
   /// from the residual where nothing is given or the residual contradicts it,
   /// of which it warns.  Fills in the noise of `estimate`, or the reason why
   /// there are no standard errors when it is empty.
-  std::optional<double> DescribeNoise(bool free_poisson_ratio,
+  std::optional<double> DescribeNoise(bool free_youngs_modulus,
+                                      bool free_poisson_ratio,
                                       Estimate& estimate) const;
 
   /// Noise level, noise bias and covariance of an estimate of this residual.
@@ -80,6 +81,10 @@ class ForceResidual {
   /// The minimiser without the bias of displacement noise (errors in
   /// variables): its nu, or empty when the noise hides it.
   std::optional<double> UnbiasedPoissonRatio() const;
+
+  /// The standard error of UnbiasedPoissonRatio to first order in the noise;
+  /// empty when the noise makes up half of b or more.
+  std::optional<double> UnbiasedPoissonRatioError() const;
 
   /// Estimate of the variance of the weighted noise from the residual at this
   /// nu, with the t that fits it; empty when there are too few equations.
@@ -97,9 +102,11 @@ class ForceResidual {
   Eigen::Index NumEquations() const { return num_equations_; }
 
  private:
-  /// Variance of the weighted noise: 1 when known, else from the smallest
-  /// singular value of the noise-normalised residual.
+  /// Variance of the weighted noise from the residual: at the estimate with E
+  /// on a bound, else from the smallest singular value of the noise-normalised
+  /// residual.
   std::optional<double> NoiseVariance(const Estimate& estimate,
+                                      bool free_youngs_modulus,
                                       bool free_poisson_ratio) const;
   /// Gram matrix of A(nu) [b f].
   Eigen::Matrix2d StiffenedGram(double poisson_ratio) const;
@@ -117,6 +124,11 @@ class ForceResidual {
   std::optional<double> known_noise_sd_;
   Work work_;
 };
+
+/// For a given nu: sets `estimate` to not usable when the errors-in-variables
+/// nu of the data lies further from it than noise explains (5 standard errors),
+/// and E would be another by more than 10 %; warns when by less.
+void JudgeKnownPoissonRatio(const ForceResidual& residual, Estimate& estimate);
 
 /// Sets `estimate` to not usable when the bias that displacement noise puts on
 /// it is above 10 % of E or 0.03 in nu, and warns when it is above 1 % or 0.01

@@ -6,7 +6,6 @@
 #include <ceres/solver.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 
@@ -17,6 +16,7 @@
 #include "elastimate/estimators/node_losses.h"
 #include "elastimate/estimators/observed_displacements.h"
 #include "elastimate/estimators/statistics.h"
+#include "elastimate/estimators/stopwatch.h"
 
 namespace elastimate {
 namespace {
@@ -122,7 +122,8 @@ class DisplacementResidual : public ceres::EvaluationCallback {
   const Eigen::Matrix<double, Eigen::Dynamic, 2>& Jacobian() const {
     return jacobian_;
   }
-  const Work& WorkDone() const { return model_.WorkDone(); }
+  const NodeGraph& Graph() const { return model_.Graph(); }
+  Work WorkDone() const { return model_.WorkDone(); }
 
  private:
   // d ln E / d nu at fixed scale.
@@ -319,20 +320,6 @@ BoundedParameter::Side ViolatedBound(const Bounds& bounds,
   return BoundedParameter::Side::kNone;
 }
 
-class Stopwatch {
- public:
-  double Lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return seconds;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ =
-      std::chrono::steady_clock::now();
-};
-
 }  // namespace
 
 std::string_view IterativeFe::Name() const { return "iterative-fe"; }
@@ -347,10 +334,7 @@ std::string IterativeFe::WhyUnsupported(const Scene& scene,
   if (options.virtual_field_degree) {
     return "it has no virtual fields to take a degree; use virtual-fields";
   }
-  const std::string why_not_held = WhyNotHeld(scene.mesh, scene.supports);
-  return why_not_held.empty()
-             ? ""
-             : why_not_held + ", or use closed-form, which needs no supports";
+  return WhyNoDisplacementFit(scene);
 }
 
 Estimate IterativeFe::DoRun(const Scene& scene,
@@ -422,8 +406,9 @@ Estimate IterativeFe::DoRun(const Scene& scene,
     estimate.message = summary.message;
   }
   if (residual.IsValid()) {
-    DescribeDisplacementFit(scene, options, residual.Observed(), residual.Fit(),
-                            losses, active, estimate);
+    DescribeDisplacementFit(scene, residual.Graph(), options,
+                            residual.Observed(), residual.Fit(), losses, active,
+                            estimate);
   }
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
   estimate.work = residual.WorkDone();

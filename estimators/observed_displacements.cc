@@ -10,6 +10,7 @@ ObservedDisplacements::ObservedDisplacements(const Scene& scene) {
   std::vector<double> measured;
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     const LoadCase& load_case = scene.load_cases[k];
+    case_start_.push_back(Eigen::Index(places_.size()));
     const double weight = 1 / load_case.noise_sd.value_or(1);
     for (Eigen::Index node = 0; node < num_nodes; ++node) {
       const Eigen::Index first = Eigen::Index(places_.size());
@@ -26,6 +27,7 @@ ObservedDisplacements::ObservedDisplacements(const Scene& scene) {
       }
     }
   }
+  case_start_.push_back(Eigen::Index(places_.size()));
   measured_ = Eigen::Map<Eigen::VectorXd>(measured.data(),
                                           Eigen::Index(measured.size()));
   weights_ =
@@ -35,9 +37,28 @@ ObservedDisplacements::ObservedDisplacements(const Scene& scene) {
   weights_ /= norm_;
 }
 
+void ObservedDisplacements::Remeasure(const Scene& scene) {
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    const Eigen::Index first = case_start_[k];
+    measured_.segment(first, case_start_[k + 1] - first) = RestrictToCase(
+        Eigen::Index(k), scene.load_cases[k].displacement.reshaped());
+  }
+}
+
 Eigen::VectorXd ObservedDisplacements::Restrict(
     const Eigen::MatrixXd& displacements) const {
   return displacements.reshaped()(places_).cwiseProduct(weights_);
+}
+
+Eigen::VectorXd ObservedDisplacements::RestrictToCase(
+    Eigen::Index k, const Eigen::VectorXd& displacement) const {
+  const Eigen::Index first = case_start_[k];
+  Eigen::VectorXd rows(case_start_[k + 1] - first);
+  for (Eigen::Index i = 0; i < rows.size(); ++i) {
+    rows(i) = weights_(first + i) *
+              displacement(places_[first + i] - k * displacement.size());
+  }
+  return rows;
 }
 
 }  // namespace elastimate

@@ -3,9 +3,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "elastimate/estimators/auto.h"
 #include "elastimate/estimators/bounded.h"
 #include "elastimate/estimators/closed_form.h"
 #include "elastimate/estimators/iterative_fe.h"
+#include "elastimate/estimators/one_step.h"
+#include "elastimate/estimators/reduced_fe.h"
 #include "elastimate/estimators/total_least_squares.h"
 #include "elastimate/estimators/virtual_fields.h"
 
@@ -18,8 +21,9 @@ std::unique_ptr<Estimator> Make() {
 }
 
 constexpr std::unique_ptr<Estimator> (*kEstimators[])() = {
-    Make<ClosedForm>,    Make<Bounded>,     Make<TotalLeastSquares>,
-    Make<VirtualFields>, Make<IterativeFe>,
+    Make<ClosedForm>,    Make<Bounded>, Make<TotalLeastSquares>,
+    Make<VirtualFields>, Make<OneStep>, Make<ReducedFe>,
+    Make<IterativeFe>,   Make<Auto>,
 };
 
 }  // namespace

@@ -216,7 +216,7 @@ Estimate TotalLeastSquares::DoRun(const Scene& scene,
     estimate.elasticity = residual.At(*options.known_poisson_ratio);
   }
   const std::optional<double> variance =
-      residual.DescribeNoise(free_poisson_ratio, estimate);
+      residual.DescribeNoise(true, free_poisson_ratio, estimate);
   // What the residual contradicts is not subtracted.
   const bool noise_is_given =
       scene.load_cases.front().noise_sd && variance == 1.0;
@@ -252,8 +252,13 @@ Estimate TotalLeastSquares::DoRun(const Scene& scene,
   }
   if (!estimate.elasticity.IsPhysical()) {
     JudgeUnphysical(residual, estimate);
-  } else if (variance) {
+    return estimate;
+  }
+  if (variance) {
     CompareWithVirtualFields(scene, options, estimate);
+  }
+  if (!free_poisson_ratio && estimate.status == Status::kOk) {
+    JudgeKnownPoissonRatio(residual, estimate);
   }
   return estimate;
 }

@@ -1,13 +1,13 @@
 #include "elastimate/estimators/virtual_fields.h"
 
 #include <Eigen/LU>
-#include <chrono>
 #include <cmath>
 #include <sstream>
 
 #include "elastimate/core/loads.h"
 #include "elastimate/estimators/force_residual.h"
 #include "elastimate/estimators/statistics.h"
+#include "elastimate/estimators/stopwatch.h"
 #include "elastimate/estimators/virtual_work.h"
 
 namespace elastimate {
@@ -146,7 +146,7 @@ void Describe(const EstimatorOptions& options, const ActiveBounds& active,
     Fail(Status::kNotIdentifiable,
          "displacement noise hides Poisson's ratio from these virtual fields; "
          "give Poisson's ratio, raise the degree of the fields, or use "
-         "iterative-fe",
+         "reduced-fe",
          estimate);
     return;
   }
@@ -186,20 +186,6 @@ bool JudgeImbalance(double imbalance, Estimate& estimate) {
   return false;
 }
 
-class Stopwatch {
- public:
-  double Lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return seconds;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ =
-      std::chrono::steady_clock::now();
-};
-
 }  // namespace
 
 std::string_view VirtualFields::Name() const { return "virtual-fields"; }
@@ -212,7 +198,7 @@ std::string_view VirtualFields::Description() const {
 std::string VirtualFields::WhyUnsupported(
     const Scene& scene, const EstimatorOptions& options) const {
   if (options.loss != Loss::kNone) {
-    return "a loss function needs displacement residuals; use iterative-fe";
+    return "a loss function needs displacement residuals; use reduced-fe";
   }
   return ForceResidual::WhyUnsupported(scene);
 }
@@ -237,7 +223,7 @@ Estimate VirtualFields::DoRun(const Scene& scene,
   if (!balance.LoadsDoWork()) {
     Fail(Status::kNotIdentifiable,
          "the loads do no work on the virtual fields; raise their degree, or "
-         "use iterative-fe",
+         "use reduced-fe",
          estimate);
     return estimate;
   }
@@ -295,7 +281,8 @@ Estimate VirtualFields::DoRun(const Scene& scene,
         options, active, free,
         Information(balance.InformationAt(fit), estimate.elasticity, *residual),
         estimate);
-    if (residual->model_square_sum > 0) {
+    estimate.is_model_in_doubt = residual->model_square_sum > 0;
+    if (estimate.is_model_in_doubt) {
       WarnOfModelError(estimate.YoungsModulusStandardError().value_or(0) /
                            estimate.elasticity.youngs_modulus,
                        estimate);

@@ -29,6 +29,36 @@ Json OptionsJson(const EstimatorOptions& options) {
           {"max_iterations", options.max_iterations}};
 }
 
+Json MismatchJson(const Estimate& estimate) {
+  if (!estimate.model_mismatch) {
+    return nullptr;
+  }
+  return {{"chi_squared", estimate.model_mismatch->statistic},
+          {"p_value", estimate.model_mismatch->p_value}};
+}
+
+Json WorkJson(const Work& work) {
+  return {{"element_passes", work.element_passes},
+          {"factorizations", work.factorizations},
+          {"solves", work.solves}};
+}
+
+Json RungsJson(const Estimate& estimate) {
+  Json rungs = Json::array();
+  for (const Rung& rung : estimate.rungs) {
+    rungs.push_back({{"estimator", rung.estimator},
+                     {"order", rung.element_order},
+                     {"status", rung.status ? Json(StatusName(*rung.status))
+                                            : Json(nullptr)},
+                     {"youngs_modulus", OrNull(rung.elasticity.youngs_modulus)},
+                     {"poisson_ratio", OrNull(rung.elasticity.poisson_ratio)},
+                     {"work", WorkJson(rung.work)},
+                     {"seconds", rung.seconds},
+                     {"decision", rung.decision}});
+  }
+  return rungs;
+}
+
 Json DiagnosticsJson(const Estimate& estimate) {
   std::optional<double> angle = estimate.identifiability_angle;
   if (angle) {
@@ -37,6 +67,7 @@ Json DiagnosticsJson(const Estimate& estimate) {
   return {{"identifiability_angle_deg", OrNull(angle)},
           {"noise_attenuation", OrNull(estimate.noise_attenuation)},
           {"residual_correlation", OrNull(estimate.residual_correlation)},
+          {"model_mismatch", MismatchJson(estimate)},
           {"active_bounds", estimate.active_bounds},
           {"why_no_standard_error", estimate.why_no_standard_error},
           {"warnings", estimate.warnings}};
@@ -61,6 +92,7 @@ std::string JsonReport(const Estimate& estimate, const Scene& scene,
                        const EstimatorOptions& options,
                        const ReportTimes& times) {
   const IsotropicElasticity& elasticity = estimate.elasticity;
+  const std::optional<Interval>& interval = estimate.poisson_ratio_interval;
   const Json report = {
       {"elastimate", Version()},
       {"estimator", estimate.estimator},
@@ -71,24 +103,27 @@ std::string JsonReport(const Estimate& estimate, const Scene& scene,
       {"poisson_ratio", OrNull(elasticity.poisson_ratio)},
       {"standard_error",
        {{"youngs_modulus", OrNull(estimate.YoungsModulusStandardError())},
-        {"poisson_ratio", OrNull(estimate.PoissonRatioStandardError())}}},
+        {"poisson_ratio", OrNull(estimate.PoissonRatioStandardError())},
+        {"shear_modulus", OrNull(estimate.ShearModulusStandardError())},
+        {"bulk_compliance", OrNull(estimate.BulkComplianceStandardError())}}},
       {"correlation", OrNull(estimate.Correlation())},
+      {"poisson_ratio_interval",
+       interval ? Json({interval->lower, interval->upper}) : Json(nullptr)},
       {"shear_modulus", OrNull(elasticity.ShearModulus())},
       {"bulk_modulus", OrNull(elasticity.BulkModulus())},
+      {"bulk_compliance", OrNull(elasticity.BulkCompliance())},
       {"noise_sd", OrNull(estimate.noise_sd)},
       {"mesh",
-       {{"nodes", scene.mesh.NumNodes()},
+       {{"nodes", scene.mesh.NumVertices()},
         {"tetrahedra", scene.mesh.NumElements()},
         {"load_cases", scene.load_cases.size()},
-        {"order", 1}}},
+        {"order", scene.mesh.Order()}}},
       {"residual",
        {{"force_relative", OrNull(estimate.force_residual)},
         {"displacement_relative", OrNull(estimate.displacement_residual)}}},
       {"diagnostics", DiagnosticsJson(estimate)},
-      {"work",
-       {{"element_passes", estimate.work.element_passes},
-        {"factorizations", estimate.work.factorizations},
-        {"solves", estimate.work.solves}}},
+      {"work", WorkJson(estimate.work)},
+      {"rungs", RungsJson(estimate)},
       {"options", OptionsJson(options)},
       {"seconds", SecondsJson(estimate, times)}};
   return report.dump(2) + "\n";

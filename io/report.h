@@ -18,8 +18,10 @@ struct ReportTimes {
   double total;  ///< From the start of the program to the report.
 };
 
-/// The report of an estimate as a JSON text, described in the README.  Numbers
-/// round-trip; what the estimator cannot know is null.
+/// The report of an estimate as a JSON text, described in the README.  `scene`
+/// is the one that was estimated, of either element order; its nodes are
+/// counted without those in the middle of edges.  Numbers round-trip; what the
+/// estimator cannot know is null.
 std::string JsonReport(const Estimate& estimate, const Scene& scene,
                        const EstimatorOptions& options,
                        const ReportTimes& times);

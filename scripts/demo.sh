@@ -13,7 +13,7 @@ fi
 
 elastimate=build/release/apps/elastimate
 for arguments in \
-  "examples/scenes/organ.vtu --estimator=iterative-fe" \
+  "examples/scenes/organ.vtu --estimator=reduced-fe" \
   "examples/scenes/organ.vtu"; do
   echo
   echo "\$ elastimate estimate $arguments"

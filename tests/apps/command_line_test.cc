@@ -4,10 +4,12 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <sstream>
 #include <string>
 
+#include "elastimate/core/quadratic_scene.h"
 #include "elastimate/estimators/registry.h"
 #include "elastimate/io/example_scenes.h"
 #include "elastimate/io/scene_reader.h"
@@ -298,7 +300,12 @@ TEST_F(CommandLine, RefusesWrongFlags) {
          "elastimate: estimate takes no flag --youngs");
   Refuse("estimate exact.vtu --estimator=magic",
          "unknown estimator 'magic'; the estimators are closed-form");
-  Refuse("estimate exact.vtu --order=2", "--order=2");
+  for (const std::string order : {"0", "3", "-1"}) {
+    Refuse("estimate exact.vtu --order=" + order,
+           "--order=" + order + "; it is 1 for linear elements or 2");
+    Refuse("simulate exact.vtu --youngs=1 --nu=0 --out=a.vtu --order=" + order,
+           "--order=" + order + "; it is 1 for linear elements or 2");
+  }
   Refuse("estimate exact.vtu --noise_sd=0",
          "--noise_sd=0; it must be positive");
   Refuse("estimate exact.vtu --threads=-1", "--threads=-1");
@@ -654,12 +661,180 @@ TEST_F(CommandLine, NeedsSupportsForAFiniteElementFitOnly) {
          "without strain");
 }
 
+// ---------------------------------------------------------------------------
+// Quadratic elements.
+
+class QuadraticElements : public CommandLine {
+ protected:
+  /// scene.json: cuboid.vtu with a traction and a body force, and the
+  /// displacement of `measured` where that is given.
+  void WriteScene(const std::string& measured) const {
+    WriteText(folder_ / "scene.json",
+              R"({
+      "mesh": ")" +
+                  (measured.empty() ? "cuboid.vtu" : measured) +
+                  R"(",
+      "supports": [{"nodes": {"box": [[-1, -1, -0.01], [2, 2, 0.01]]}}],
+      "cases": [{)" +
+                  (measured.empty()
+                       ? ""
+                       : R"("displacement": {"array": "displacement"},)") +
+                  R"("loads": [
+        {"type": "traction", "value": [100, 0, -500],
+         "surface": {"box": [[-1, -1, 0.39], [2, 2, 0.41]]}},
+        {"type": "body_force", "value": [0, 0, -9810]}]}]
+    })");
+  }
+
+  /// cuboid.vtu and, measured at E = 100 kPa, nu = 0.3 with quadratic elements
+  /// and `flags`, measured.vtu; scene.json takes both together.
+  void MakeMeasuredScene(const std::string& flags = "") const {
+    Succeed("generate cuboid --cells=3,3,2 --out=cuboid.vtu");
+    WriteScene("");
+    Succeed(
+        "simulate scene.json --youngs=1e5 --nu=0.3 --order=2 --out=measured.vtu"
+        " " +
+        flags);
+    WriteScene("measured.vtu");
+  }
+
+  /// The array of a result as the displacement of a scene that names it.
+  Eigen::Matrix3Xd Array(const std::string& file,
+                         const std::string& array) const {
+    WriteText(folder_ / "array.json", R"({
+      "mesh": ")" + file + R"(", "supports": [],
+      "cases": [{"displacement": {"array": ")" +
+                                          array + R"("}, "loads": []}]})");
+    return Read("array.json").load_cases[0].displacement;
+  }
+};
+
+TEST_F(QuadraticElements, RecoverWhatTheyMeasured) {
+  MakeMeasuredScene();
+  const nlohmann::json report =
+      Succeed("estimate scene.json --estimator=iterative-fe --order=2 --json=-")
+          .Json();
+  // An iterative estimator stops short of rounding.
+  EXPECT_NEAR(report["youngs_modulus"].get<double>() / 1e5, 1, 1e-6);
+  EXPECT_NEAR(report["poisson_ratio"].get<double>(), 0.3, 1e-6);
+  EXPECT_EQ(report["mesh"]["order"], 2);
+  EXPECT_EQ(report["mesh"]["nodes"], 4 * 4 * 3);
+  EXPECT_EQ(report["mesh"]["tetrahedra"], 5 * 3 * 3 * 2);
+  const nlohmann::json linear =
+      Succeed("estimate scene.json --estimator=iterative-fe --order=1 --json=-")
+          .Json();
+  EXPECT_EQ(linear["mesh"]["order"], 1);
+  // Linear elements are too stiff for this specimen.
+  EXPECT_LT(linear["youngs_modulus"].get<double>(), 0.99e5);
+}
+
+TEST_F(QuadraticElements, AreSaidInTheTable) {
+  MakeMeasuredScene();
+  const std::string table =
+      Succeed("estimate scene.json --estimator=iterative-fe --order=2").output;
+  EXPECT_NE(table.find("48 nodes, 90 quadratic tetrahedra"), std::string::npos)
+      << table;
+}
+
+TEST_F(QuadraticElements, WriteTheLinearMesh) {
+  MakeMeasuredScene();
+  const Scene scene = Read("cuboid.vtu");
+  const Scene measured = Read("measured.vtu");
+  EXPECT_EQ(measured.mesh.nodes, scene.mesh.nodes);
+  EXPECT_EQ(measured.mesh.elements, scene.mesh.elements);
+  Succeed(
+      "estimate scene.json --estimator=iterative-fe --order=2 "
+      "--out=result.vtu");
+  EXPECT_EQ(Read("result.vtu").mesh.elements, scene.mesh.elements);
+  const Eigen::Matrix3Xd& displacement = measured.load_cases[0].displacement;
+  EXPECT_LT((Array("result.vtu", "fitted_displacement") - displacement).norm(),
+            1e-7 * displacement.norm());
+  EXPECT_LT(Array("result.vtu", "displacement_residual").norm(),
+            1e-7 * displacement.norm());
+}
+
+// 500 and 100 Pa on 1 m^2 and 9810 N/m^3 in 0.4 m^3, about the origin.
+TEST_F(QuadraticElements, ReactionsBalanceTheLoads) {
+  MakeMeasuredScene();
+  Succeed(
+      "estimate scene.json --estimator=iterative-fe --order=2 "
+      "--out=result.vtu");
+  const Scene scene = Read("cuboid.vtu");
+  const Eigen::Matrix3Xd reaction = Array("result.vtu", "reaction_force");
+  const Eigen::Vector3d traction(100, 0, -500);
+  const Eigen::Vector3d weight(0, 0, -0.4 * 9810);
+  EXPECT_LT((reaction.rowwise().sum() + traction + weight).norm(), 1e-6);
+  Eigen::Vector3d moment = Eigen::Vector3d(0.5, 0.5, 0.4).cross(traction) +
+                           Eigen::Vector3d(0.5, 0.5, 0.2).cross(weight);
+  for (Eigen::Index node = 0; node < reaction.cols(); ++node) {
+    const Eigen::Vector3d x = scene.mesh.nodes.col(node);
+    const Eigen::Vector3d force = reaction.col(node);
+    moment += x.cross(force);
+    EXPECT_TRUE(x(2) == 0 || force.isZero(0));
+  }
+  EXPECT_LT(moment.norm(), 1e-6);
+}
+
+TEST_F(QuadraticElements, NoiseIsRelativeToTheVertices) {
+  MakeMeasuredScene();
+  const Eigen::Matrix3Xd exact =
+      Read("measured.vtu").load_cases[0].displacement;
+  MakeMeasuredScene("--noise=0.1 --seed=7");
+  const Eigen::Matrix3Xd noise =
+      Read("measured.vtu").load_cases[0].displacement - exact;
+  EXPECT_NEAR(noise.norm() / exact.norm(), 0.1, 1e-12);
+}
+
+TEST_F(QuadraticElements, NoticeWhatNodalForcesMean) {
+  MakeExactScene();
+  const std::string notice = "notice: nodal forces act at the vertices only";
+  // Whether the estimate is usable or not.
+  const auto has_notice = [&](const std::string& arguments) {
+    return Run(arguments).errors.find(notice) != std::string::npos;
+  };
+  EXPECT_TRUE(
+      has_notice("estimate exact.vtu --estimator=iterative-fe --order=2"));
+  EXPECT_FALSE(
+      has_notice("estimate exact.vtu --estimator=iterative-fe --order=1"));
+  EXPECT_TRUE(has_notice(
+      "simulate cuboid.vtu --youngs=1 --nu=0 --order=2 --out=a.vtu"));
+  WriteScene("exact.vtu");
+  EXPECT_FALSE(
+      has_notice("estimate scene.json --estimator=iterative-fe --order=2"));
+}
+
+// What is written as nodal forces was a traction.
+TEST_F(QuadraticElements, NoticeWhatBecomesOfOtherLoads) {
+  Succeed("generate cuboid --out=cuboid.vtu");
+  WriteScene("");
+  const ProgramRun run = Succeed(
+      "simulate scene.json --youngs=1 --nu=0 --order=2 --out=measured.vtu");
+  EXPECT_NE(run.errors.find("notice: measured.vtu has the loads as nodal "
+                            "forces of linear elements"),
+            std::string::npos)
+      << run.errors;
+  EXPECT_EQ(Succeed("simulate scene.json --youngs=1 --nu=0 --out=a.vtu").errors,
+            "");
+}
+
+TEST_F(QuadraticElements, AreRefusedByEstimatorsThatCannot) {
+  MakeMeasuredScene();
+  for (const std::string name : {"closed-form", "bounded"}) {
+    Refuse("estimate scene.json --order=2 --estimator=" + name,
+           "elastimate: --order=2: " + name + ": the force residual");
+    Refuse("estimate scene.json --order=2 --estimator=" + name,
+           "not measured; use reduced-fe");
+  }
+  Refuse("estimate scene.json --order=2 --nu_min=0.1",
+         "--nu_min=0.1: closed-form: it cannot keep bounds");
+}
+
 // The figures that an independent finite element code and an independent
 // maximum-likelihood fit gave for these scenes.
-class IndependentScenes : public ProgramTest {
+class IndependentScenes : public CommandLine {
  protected:
   void SetUp() override {
-    ProgramTest::SetUp();
+    CommandLine::SetUp();
     if (!std::filesystem::exists(Path("liver_same_mesh.vtu"))) {
       GTEST_SKIP() << "no measured scenes in " << ELASTIMATE_SHARED_DATA;
     }
@@ -715,6 +890,53 @@ TEST_F(IndependentScenes, DataFromAFinerWorld) {
       Run("estimate --json=- " + Path("cylinder_finer_world.vtu")).Json();
   EXPECT_NEAR(closed["youngs_modulus"].get<double>(), 7624, 1);
   EXPECT_NEAR(closed["poisson_ratio"].get<double>(), 0.426, 5e-4);
+}
+
+// The same scene with its load as what it is.
+class FinerWorld : public IndependentScenes {
+ protected:
+  void SetUp() override {
+    IndependentScenes::SetUp();
+    if (!IsSkipped()) {
+      // Every node below 24 mm is held, every facet above 276 mm is loaded.
+      WriteText(folder_ / "scene.json",
+                R"({
+        "mesh": ")" +
+                    Path("cylinder_finer_world.vtu") +
+                    R"(",
+        "supports": [{"nodes": {"array": "fixed"}}],
+        "cases": [{"displacement": {"array": "displacement"}, "loads": [
+          {"type": "traction",
+           "value": [0.11002454283021695, 0, 0.3143558366577627],
+           "surface": {"box": [[-1, -1, 0.276], [1, 1, 1]]}}]}]})");
+    }
+  }
+};
+
+TEST_F(FinerWorld, QuadraticElementsFindYoungsModulus) {
+  const auto youngs = [&](const std::string& order) {
+    return Succeed(
+               "estimate scene.json --json=- --estimator=iterative-fe "
+               "--order=" +
+               order)
+        .Json()["youngs_modulus"]
+        .get<double>();
+  };
+  EXPECT_NEAR(youngs("1"), 6590, 5);
+  EXPECT_NEAR(youngs("2") / 8000, 1, 0.01);
+}
+
+// The other code held every node below 24 mm, so also mid-edge nodes of edges
+// with a free upper end.  With these held, both codes have the same equations.
+TEST_F(FinerWorld, QuadraticElementsAreThoseOfTheOtherCode) {
+  Scene scene = QuadraticScene(Read("scene.json"));
+  scene.supports.held =
+      scene.supports.held ||
+      (scene.mesh.nodes.row(2).array() < 0.024).replicate<3, 1>();
+  const Estimate estimate = MakeEstimator("iterative-fe")->Run(scene, {});
+  EXPECT_EQ(estimate.status, Status::kOk);
+  EXPECT_NEAR(estimate.elasticity.youngs_modulus / 8000, 1, 1e-6);
+  EXPECT_NEAR(estimate.elasticity.poisson_ratio, 0.4, 1e-6);
 }
 
 }  // namespace

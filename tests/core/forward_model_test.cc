@@ -13,8 +13,10 @@
 #include <vector>
 
 #include "elastimate/core/loads.h"
+#include "tests/core/plane_waves.h"
 #include "tests/core/random_values.h"
 #include "tests/dense_reference.h"
+#include "tests/quadratic_reference.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
 
@@ -24,7 +26,9 @@ namespace {
 using testing::BoxMesh;
 using testing::DenseStiffness;
 using testing::Distorted;
+using testing::ForEachGaussPoint;
 using testing::HookeMatrix;
+using testing::PlaneWaves;
 using testing::RandomMatrix;
 using testing::SmallScene;
 using testing::WithBothOrientations;
@@ -169,53 +173,6 @@ TEST_P(ForNu, PrescribedFaceCompressesABar) {
 
 // ---------------------------------------------------------------------------
 // Convergence to a manufactured solution.
-
-// Each component is a plane wave, u_i = c_i sin(k_i . x + p_i), so that the
-// Laplacian of u is -|k_i|^2 u_i and grad(div u) is -sum_i k_ii k_i u_i.
-struct PlaneWaves {
-  Eigen::Vector3d amplitude{1, -0.8, 0.6};
-  Eigen::Vector3d phase{0.3, 1.1, -0.4};
-  Eigen::Matrix3d wave;  // Row i is k_i.
-
-  PlaneWaves() { wave << 2, 1, -1, 1, 2.5, 0.5, -0.5, 1, 2; }
-
-  Eigen::Vector3d Displacement(const Eigen::Vector3d& x) const {
-    return amplitude.array() * (wave * x + phase).array().sin();
-  }
-  // -div sigma = -mu Laplacian(u) - (lambda + mu) grad(div u).
-  Eigen::Vector3d BodyForce(const IsotropicElasticity& elasticity,
-                            const Eigen::Vector3d& x) const {
-    const double mu = elasticity.ShearModulus();
-    const double lambda = elasticity.LameLambda();
-    const Eigen::Vector3d u = Displacement(x);
-    const Eigen::Vector3d gradient_of_divergence =
-        -wave.transpose() * wave.diagonal().cwiseProduct(u);
-    const Eigen::Vector3d laplacian =
-        -wave.rowwise().squaredNorm().cwiseProduct(u);
-    return -mu * laplacian - (lambda + mu) * gradient_of_divergence;
-  }
-};
-
-// Calls visit(shape function values, weight) at 3 x 3 x 3 Gauss points of the
-// cube collapsed onto the tetrahedron; exact for polynomials of degree 3.  The
-// weights add up to 1.
-template <typename Visitor>
-void ForEachGaussPoint(const Visitor& visit) {
-  const double point[3] = {0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)};
-  const double weight[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      for (int k = 0; k < 3; ++k) {
-        const double a = point[i];
-        const double b = (1 - a) * point[j];
-        const double c = (1 - a) * (1 - point[j]) * point[k];
-        visit(Eigen::Vector4d(1 - a - b - c, a, b, c),
-              6 * weight[i] * weight[j] * weight[k] * (1 - a) * (1 - a) *
-                  (1 - point[j]));
-      }
-    }
-  }
-}
 
 // The L2 norm of the error on a distorted box of n^3 cubes.
 double ManufacturedError(const IsotropicElasticity& elasticity, int n) {

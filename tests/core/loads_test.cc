@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <utility>
 #include <vector>
 
 #include "elastimate/core/mesh.h"
+#include "tests/quadratic_reference.h"
 #include "tests/scenes.h"
 
 namespace elastimate {
@@ -13,7 +15,9 @@ namespace {
 
 using testing::BoxMesh;
 using testing::Distorted;
+using testing::QuadraticField;
 using testing::SmallScene;
+using testing::WithMidEdgeNodes;
 
 // Sums of some hundred numbers of size 1 to 10: rounding is far below.
 constexpr double kTolerance = 1e-12;
@@ -170,6 +174,88 @@ TEST_F(LoadedBox, WithoutLoadsThereIsNoForce) {
   const Eigen::Matrix3Xd force = AssembleLoads(mesh_, {});
   EXPECT_EQ(force.cols(), mesh_.NumNodes());
   EXPECT_TRUE(force.isZero(0));
+}
+
+// ---------------------------------------------------------------------------
+// Quadratic tetrahedra.
+
+// The same box.
+class QuadraticLoadedBox : public LoadedBox {
+ protected:
+  QuadraticLoadedBox() : linear_(mesh_) { mesh_ = WithMidEdgeNodes(mesh_); }
+
+  Mesh linear_;
+};
+
+TEST_F(QuadraticLoadedBox, BodyForceOfOneTetrahedron) {
+  Mesh mesh;
+  mesh.nodes.resize(3, 4);
+  mesh.nodes << 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1;
+  for (const Eigen::Vector4i& nodes :
+       {Eigen::Vector4i(0, 1, 2, 3), Eigen::Vector4i(1, 0, 2, 3)}) {
+    mesh.elements = nodes;
+    const Eigen::Matrix3Xd force =
+        AssembleLoads(WithMidEdgeNodes(mesh), {BodyForce{{0, 0, 120}}});
+    EXPECT_TRUE(force.row(2).head<4>().isConstant(-1, kTolerance)) << force;
+    EXPECT_TRUE(force.row(2).tail<6>().isConstant(4, kTolerance)) << force;
+    EXPECT_TRUE(force.topRows(2).isZero(0)) << force;
+  }
+}
+
+TEST_F(QuadraticLoadedBox, LoadsHaveTheResultantAndMomentOfLinearElements) {
+  const Mesh linear = Distorted(linear_);
+  const Mesh mesh = WithMidEdgeNodes(linear);
+  const Eigen::MatrixXi facets = BoundaryFacets(mesh).leftCols(20);
+  const Eigen::MatrixXi linear_facets = BoundaryFacets(linear).leftCols(20);
+  const std::vector<std::pair<Load, Load>> loads = {
+      {BodyForce{{1, 2, 3}}, BodyForce{{1, 2, 3}}},
+      {Traction{facets, {1, 2, 3}}, Traction{linear_facets, {1, 2, 3}}},
+      {Pressure{facets, 2}, Pressure{linear_facets, 2}}};
+  for (const auto& [load, linear_load] : loads) {
+    const Eigen::Matrix3Xd force = AssembleLoads(mesh, {load});
+    const Eigen::Matrix3Xd expected = AssembleLoads(linear, {linear_load});
+    const double scale = expected.cwiseAbs().sum();
+    EXPECT_NEAR((force.rowwise().sum() - expected.rowwise().sum()).norm(), 0,
+                kTolerance * scale);
+    EXPECT_NEAR((Moment(mesh, force) - Moment(linear, expected)).norm(), 0,
+                kTolerance * scale * 10);
+  }
+}
+
+// The integral of x, y, z and of their products over [0, a] x [0, b] (x [0,
+// c]), so that the virtual work is exact for quadratic fields.
+TEST_F(QuadraticLoadedBox, VirtualWorkIsExactForQuadraticFields) {
+  const QuadraticField field;
+  const Eigen::Matrix3Xd u = field.Displacements(mesh_.nodes);
+  const Eigen::Vector3d load(0.5, -1, 2);
+  // Mean of x x^T over a box: middles m and edges e, m m^T + diag(e^2) / 12.
+  const auto mean = [&](const Eigen::Vector3d& middle,
+                        const Eigen::Vector3d& edges) {
+    Eigen::Vector3d value = field.Displacement(middle);
+    for (int i = 0; i < 3; ++i) {
+      value(i) += field.curvature[i].diagonal().dot(edges.cwiseAbs2()) / 12 / 2;
+    }
+    return value;
+  };
+  const Eigen::Matrix3Xd body = AssembleLoads(mesh_, {BodyForce{load}});
+  EXPECT_NEAR(body.cwiseProduct(u).sum(),
+              24 * load.dot(mean({1, 1.5, 2}, {2, 3, 4})), kTolerance * 1000);
+  const Eigen::Matrix3Xd traction =
+      AssembleLoads(mesh_, {Traction{FacetsAt(mesh_, 2, 4), load}});
+  EXPECT_NEAR(traction.cwiseProduct(u).sum(),
+              6 * load.dot(mean({1, 1.5, 4}, {2, 3, 0})), kTolerance * 1000);
+  const Eigen::Matrix3Xd pressure =
+      AssembleLoads(mesh_, {Pressure{FacetsAt(mesh_, 0, 2), 2.5}});
+  EXPECT_NEAR(pressure.cwiseProduct(u).sum(),
+              -2.5 * 12 * mean({2, 1.5, 2}, {0, 3, 4})(0), kTolerance * 1000);
+}
+
+TEST_F(QuadraticLoadedBox, TractionActsAtTheMiddlesOfTheEdges) {
+  const Eigen::Matrix3Xd force =
+      AssembleLoads(mesh_, {Traction{FacetsAt(mesh_, 2, 4), {1, 2, 3}}});
+  EXPECT_TRUE(force.leftCols(linear_.NumNodes()).isZero(0));
+  // Inside of the face an edge has two facets of area 1/2.
+  EXPECT_NEAR(force.row(0).maxCoeff(), 2 * 0.5 / 3, kTolerance);
 }
 
 TEST(AssembleLoadCases, HasOneColumnForEachLoadCase) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "tests/quadratic_reference.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
 
@@ -16,6 +17,7 @@ namespace {
 
 using testing::BoxMesh;
 using testing::Distorted;
+using testing::WithMidEdgeNodes;
 
 Mesh OneTetrahedron() {
   Mesh mesh;
@@ -51,6 +53,45 @@ TEST(ValidateMesh, RejectsOtherNumbersOfNodesPerElement) {
   Mesh mesh = OneTetrahedron();
   mesh.elements = Eigen::MatrixXi::Zero(3, 1);
   EXPECT_THROWS_WITH(ValidateMesh(mesh), "3 nodes per element");
+}
+
+TEST(ValidateMesh, AcceptsQuadraticTetrahedra) {
+  for (const double unit : {1e-6, 1.0, 1e6}) {
+    Mesh mesh = WithMidEdgeNodes(Distorted(BoxMesh({2, 1, 1}, {1, 1, 1})));
+    mesh.nodes *= unit;
+    EXPECT_NO_THROW(ValidateMesh(mesh));
+    // As single precision has it.
+    mesh.nodes = mesh.nodes.cast<float>().cast<double>().eval();
+    EXPECT_NO_THROW(ValidateMesh(mesh));
+  }
+}
+
+TEST(ValidateMesh, NamesAMidEdgeNodeThatIsNotInTheMiddle) {
+  Mesh mesh = WithMidEdgeNodes(OneTetrahedron());
+  mesh.nodes(2, 5) += 1e-5;
+  EXPECT_THROWS_WITH(
+      ValidateMesh(mesh),
+      "mid-edge node 5 of tetrahedron 0 \\(nodes 0 1 2 3\\) is not in the "
+      "middle between 1 and 2");
+  // Another order than that of VTK.
+  mesh = WithMidEdgeNodes(OneTetrahedron());
+  std::swap(mesh.elements(4), mesh.elements(7));
+  EXPECT_THROWS_WITH(ValidateMesh(mesh), "mid-edge node 7 .*as VTK does");
+}
+
+TEST(ValidateMesh, NamesAMidEdgeNodeBeforeTheVertices) {
+  Mesh mesh = WithMidEdgeNodes(OneTetrahedron());
+  mesh.nodes.col(0).swap(mesh.nodes.col(4));
+  mesh.elements(0) = 4;
+  mesh.elements(4) = 0;
+  EXPECT_THROWS_WITH(ValidateMesh(mesh),
+                     "mid-edge node 0 of tetrahedron 0 .*before vertex 4");
+}
+
+TEST(ValidateMesh, NamesAQuadraticElementWithANodeOutOfRange) {
+  Mesh mesh = WithMidEdgeNodes(OneTetrahedron());
+  mesh.elements(9) = 10;
+  EXPECT_THROWS_WITH(ValidateMesh(mesh), "tetrahedron 0 .*outside 0..9");
 }
 
 TEST(ValidateMesh, NamesAnElementWithANodeOutOfRange) {

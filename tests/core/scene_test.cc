@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "tests/quadratic_reference.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
 
@@ -153,6 +154,28 @@ TEST_F(ValidatedScene, NeedsTriangles) {
   SecondLoad<Traction>(1).facets = BoundaryFacets(scene_.mesh);
   SecondLoad<Pressure>(2).facets = Eigen::MatrixXi::Zero(6, 2);
   EXPECT_THROWS_WITH(ValidateScene(scene_), "pressure .*6 nodes per facet");
+}
+
+TEST_F(ValidatedScene, NeedsQuadraticFacetsOnQuadraticTetrahedra) {
+  const Mesh mesh = testing::WithMidEdgeNodes(scene_.mesh);
+  Scene scene;
+  scene.mesh = mesh;
+  scene.supports.held = ComponentMask::Constant(3, mesh.NumNodes(), false);
+  scene.supports.displacement = Eigen::Matrix3Xd::Zero(3, mesh.NumNodes());
+  scene.load_cases.resize(1);
+  Traction traction{BoundaryFacets(mesh), {1, 0, 0}};
+  scene.load_cases[0].loads = {traction};
+  EXPECT_NO_THROW(ValidateScene(scene));
+  std::swap(traction.facets(3, 2), traction.facets(4, 2));
+  scene.load_cases[0].loads = {traction};
+  EXPECT_THROWS_WITH(
+      ValidateScene(scene),
+      "of facet 2 of the traction in load 1 of load case 1 is not in the "
+      "middle");
+  scene.load_cases[0].loads = {Pressure{BoundaryFacets(scene_.mesh), 1}};
+  EXPECT_THROWS_WITH(ValidateScene(scene),
+                     "3 nodes per facet; the facets of quadratic tetrahedra "
+                     "have 6");
 }
 
 TEST_F(ValidatedScene, NeedsFacetNodesInRange) {

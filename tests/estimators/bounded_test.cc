@@ -113,7 +113,10 @@ TEST(Bounded, KeepsBoundsOnYoungsModulus) {
     EXPECT_EQ(estimate.active_bounds,
               std::vector<std::string>{upper ? "youngs_max" : "youngs_min"});
     EXPECT_FALSE(estimate.YoungsModulusStandardError().has_value());
-    EXPECT_TRUE(estimate.PoissonRatioStandardError().has_value());
+    // A bound on the wrong side of the truth contradicts the data.
+    EXPECT_EQ(estimate.PoissonRatioStandardError().has_value(),
+              estimate.IsUsable());
+    EXPECT_TRUE(estimate.is_model_in_doubt);
   }
 }
 
@@ -145,7 +148,7 @@ TEST(Bounded, SaysWhenTheNoiseBiasesItWithinItsBounds) {
 TEST(Bounded, RefusesALoss) {
   EstimatorOptions options;
   options.loss = Loss::kCauchy;
-  EXPECT_THROWS_WITH(Bounded().Run(NoisyScene(0), options), "use iterative-fe");
+  EXPECT_THROWS_WITH(Bounded().Run(NoisyScene(0), options), "use reduced-fe");
 }
 
 }  // namespace

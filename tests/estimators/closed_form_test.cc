@@ -6,6 +6,7 @@
 
 #include "elastimate/core/degrees_of_freedom.h"
 #include "elastimate/core/loads.h"
+#include "elastimate/core/quadratic_scene.h"
 #include "tests/dense_reference.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
@@ -155,7 +156,7 @@ TEST(ClosedForm, SaysThatNoiseMakesItUnusable) {
   const Estimate estimate = ClosedForm().Run(scene, {});
   EXPECT_FALSE(estimate.IsUsable());
   EXPECT_NE(estimate.message.find("noise"), std::string::npos);
-  EXPECT_NE(estimate.message.find("iterative-fe"), std::string::npos);
+  EXPECT_NE(estimate.message.find("reduced-fe"), std::string::npos);
   EXPECT_FALSE(estimate.YoungsModulusStandardError().has_value());
   EXPECT_FALSE(estimate.why_no_standard_error.empty());
 }
@@ -194,6 +195,65 @@ TEST(ClosedForm, AKnownPoissonRatioLeavesNoBias) {
   EXPECT_NEAR(error_sum / kSeeds, 0, 4 * std::sqrt(variance_sum) / kSeeds);
 }
 
+TEST(ClosedForm, SaysThatTheDataContradictAKnownPoissonRatio) {
+  Scene scene = SmallScene("cuboid");
+  MeasureDensely({5e4, 0.3}, scene);
+  EstimatorOptions options;
+  options.known_poisson_ratio = 0.45;
+  for (const double noise : {0.0, 1e-3}) {
+    AddNoise(noise, 1, scene);
+    const Estimate estimate = ClosedForm().Run(scene, options);
+    EXPECT_EQ(estimate.status, Status::kNotIdentifiable);
+    EXPECT_NE(estimate.message.find("they ask for 0.3 "), std::string::npos)
+        << estimate.message;
+    EXPECT_FALSE(estimate.YoungsModulusStandardError().has_value());
+  }
+}
+
+TEST(ClosedForm, DoesNotBelieveLoadsThatContradictTheData) {
+  Scene exact = SmallScene("cuboid");
+  MeasureDensely({5e4, 0.3}, exact);
+  const Eigen::Matrix3Xd force =
+      std::get<NodalForces>(exact.load_cases[0].loads[0]).force;
+  Eigen::Matrix3Xd at_one_node = Eigen::Matrix3Xd::Zero(3, force.cols());
+  at_one_node.rightCols<1>() = force.rowwise().sum();
+  Eigen::Matrix3Xd turned = force;
+  turned.row(0) = 0.7 * force.row(2);
+  Eigen::Matrix3Xd uneven = force;
+  for (Eigen::Index node = 0; node < force.cols(); ++node) {
+    uneven.col(node) *= exact.mesh.nodes(0, node);
+  }
+  for (const Eigen::Matrix3Xd& wrong : {at_one_node, turned, uneven}) {
+    for (const double noise : {0.0, 1e-2}) {
+      Scene scene = exact;
+      scene.load_cases[0].loads = {NodalForces{wrong}};
+      AddNoise(noise, 1, scene);
+      for (const bool is_known : {false, true}) {
+        EstimatorOptions options;
+        if (is_known) {
+          options.known_poisson_ratio = 0.3;
+        }
+        const Estimate estimate = ClosedForm().Run(scene, options);
+        const double error = std::abs(estimate.elasticity.youngs_modulus - 5e4);
+        if (estimate.IsUsable() && error > 0.1 * 5e4) {
+          EXPECT_LT(error, 3 * *estimate.YoungsModulusStandardError());
+        }
+      }
+    }
+  }
+}
+
+TEST(ClosedForm, BlamesNoiseForANuAboveOneHalf) {
+  Scene scene = SmallScene("organ");
+  MeasureDensely({5e4, 0.45}, scene);
+  AddNoise(0.1, 1, scene);
+  const Estimate estimate = ClosedForm().Run(scene, {});
+  ASSERT_EQ(estimate.status, Status::kUnphysical);
+  ASSERT_GT(estimate.elasticity.poisson_ratio, 0.5);
+  EXPECT_NE(estimate.message.find("displacement noise"), std::string::npos);
+  EXPECT_EQ(estimate.message.find("oppose the loads"), std::string::npos);
+}
+
 TEST(ClosedForm, RefusesWhatItCannotHonour) {
   Scene scene = SmallScene("cuboid");
   Measure({5e4, 0.3}, scene);
@@ -202,12 +262,30 @@ TEST(ClosedForm, RefusesWhatItCannotHonour) {
   EXPECT_THROWS_WITH(ClosedForm().Run(scene, bounds), "use bounded");
   EstimatorOptions loss;
   loss.loss = Loss::kHuber;
-  EXPECT_THROWS_WITH(ClosedForm().Run(scene, loss), "use iterative-fe");
+  EXPECT_THROWS_WITH(ClosedForm().Run(scene, loss), "use reduced-fe");
   scene.load_cases[0].observed =
       ComponentMask::Constant(3, scene.mesh.NumNodes(), true);
   scene.load_cases[0].observed(1, 20) = false;
   EXPECT_THROWS_WITH(ClosedForm().Run(scene, {}),
                      "node 20 \\(y\\) of load case 1 was not observed");
+}
+
+TEST(ClosedForm, SaysThatMidEdgeNodesAreNotMeasured) {
+  const std::string why =
+      ClosedForm().WhyUnsupported(QuadraticScene(SmallScene("cuboid")), {});
+  EXPECT_NE(why.find("order 2"), std::string::npos) << why;
+  EXPECT_NE(why.find("use reduced-fe"), std::string::npos) << why;
+}
+
+// As somebody could who simulates.
+TEST(ClosedForm, TakesQuadraticElementsMeasuredAtEveryNode) {
+  Scene scene = QuadraticScene(SmallScene("organ"));
+  Measure({5e4, 0.3}, scene);
+  scene.load_cases[0].observed.resize(3, 0);
+  const Estimate estimate = ClosedForm().Run(scene, {});
+  EXPECT_TRUE(estimate.IsUsable()) << estimate.message;
+  EXPECT_NEAR(estimate.elasticity.youngs_modulus / 5e4, 1, 1e-8);
+  EXPECT_NEAR(estimate.elasticity.poisson_ratio, 0.3, 1e-8);
 }
 
 TEST(ClosedForm, DoesNotNeedHeldNodesToBeObserved) {

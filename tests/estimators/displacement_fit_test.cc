@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <string>
 
 #include "elastimate/estimators/iterative_fe.h"
 #include "tests/scenes.h"
@@ -21,6 +22,14 @@ Scene MeasuredOrgan() {
   return scene;
 }
 
+std::string Joined(const std::vector<std::string>& sentences) {
+  std::string all;
+  for (const std::string& sentence : sentences) {
+    all += sentence + "\n";
+  }
+  return all;
+}
+
 TEST(CorrelateNeighbours, IsNearZeroForIndependentNoise) {
   constexpr int kSeeds = 100;
   const Scene scene = testing::WithThreeForces(MeasuredOrgan());
@@ -36,7 +45,8 @@ TEST(CorrelateNeighbours, IsNearZeroForIndependentNoise) {
       value = normal(generator);
     }
     square_sum += std::pow(
-        CorrelateNeighbours(measured.mesh, observed, residual)->standard_score,
+        CorrelateNeighbours(NodeGraph(measured.mesh), observed, residual)
+            ->standard_score,
         2);
   }
   // chi^2 of 100 degrees of freedom.
@@ -47,11 +57,12 @@ TEST(CorrelateNeighbours, IsNearOneForASmoothField) {
   const Scene scene = MeasuredOrgan();
   const ObservedDisplacements observed(scene);
   const auto constant = CorrelateNeighbours(
-      scene.mesh, observed, Eigen::VectorXd::Ones(observed.Size()));
+      NodeGraph(scene.mesh), observed, Eigen::VectorXd::Ones(observed.Size()));
   EXPECT_NEAR(constant->correlation, 1, 1e-12);
   EXPECT_GT(constant->standard_score, 20);
   const Eigen::MatrixXd linear = scene.mesh.nodes.reshaped();
-  EXPECT_GT(CorrelateNeighbours(scene.mesh, observed, observed.Restrict(linear))
+  EXPECT_GT(CorrelateNeighbours(NodeGraph(scene.mesh), observed,
+                                observed.Restrict(linear))
                 ->correlation,
             0.5);
 }
@@ -63,9 +74,9 @@ TEST(CorrelateNeighbours, KnowsOnlyObservedNeighbours) {
   mask(2, scene.mesh.NumNodes() - 1) = true;
   const ObservedDisplacements observed(scene);
   ASSERT_EQ(observed.Size(), 1);
-  EXPECT_FALSE(
-      CorrelateNeighbours(scene.mesh, observed, Eigen::VectorXd::Ones(1))
-          .has_value());
+  EXPECT_FALSE(CorrelateNeighbours(NodeGraph(scene.mesh), observed,
+                                   Eigen::VectorXd::Ones(1))
+                   .has_value());
 }
 
 TEST(DisplacementFit, IndependentNoiseDoesNotWidenTheStandardErrors) {
@@ -177,6 +188,67 @@ TEST(DisplacementFit, NuAtTheLowerEndOfItsRangeIsNotBelieved) {
   ASSERT_LT(estimate.elasticity.poisson_ratio, -0.9998);
   EXPECT_EQ(estimate.status, Status::kUnphysical);
   EXPECT_NE(estimate.message.find("to -1"), std::string::npos)
+      << estimate.message;
+}
+
+// The load of a fit is what most nodes say; zeros are a common way to mark what
+// was not tracked.
+TEST(DisplacementFit, OutliersWidenTheStandardErrors) {
+  for (int seed = 1; seed <= 10; ++seed) {
+    Scene scene = MeasuredOrgan();
+    AddNoise(0.01, seed, scene);
+    std::mt19937_64 generator(seed);
+    for (int i = 0; i < 6; ++i) {
+      const Eigen::Index node = std::uniform_int_distribution<Eigen::Index>(
+          16, scene.mesh.NumNodes() - 1)(generator);
+      scene.load_cases[0].displacement.col(node).setZero();
+    }
+    const Estimate estimate = IterativeFe().Run(scene, {});
+    EXPECT_NE(Joined(estimate.warnings).find("use a loss"), std::string::npos);
+    if (estimate.IsUsable()) {
+      EXPECT_NEAR(estimate.elasticity.youngs_modulus, 5e4,
+                  3 * *estimate.YoungsModulusStandardError());
+    }
+  }
+}
+
+TEST(DisplacementFit, TooFewComponentsAreNotUsable) {
+  Scene scene = MeasuredOrgan();
+  AddNoise(0.01, 1, scene);
+  ComponentMask& mask = scene.load_cases[0].observed;
+  mask = ComponentMask::Constant(3, scene.mesh.NumNodes(), false);
+  mask.rightCols<1>().setConstant(true);
+  mask(0, scene.mesh.NumNodes() - 2) = true;
+  const Estimate estimate = IterativeFe().Run(scene, {});
+  EXPECT_EQ(estimate.status, Status::kNotIdentifiable);
+  EXPECT_NE(estimate.message.find("too few"), std::string::npos);
+  EXPECT_FALSE(estimate.why_no_standard_error.empty());
+
+  // One unknown less, or a fifth component, is enough.
+  EstimatorOptions known;
+  known.known_poisson_ratio = 0.3;
+  EXPECT_EQ(IterativeFe().Run(scene, known).why_no_standard_error, "");
+  mask(1, scene.mesh.NumNodes() - 2) = true;
+  EXPECT_EQ(IterativeFe().Run(scene, {}).why_no_standard_error, "");
+}
+
+TEST(DisplacementFit, AModelThatMissesMuchIsNotUsable) {
+  Scene scene = MeasuredOrgan();
+  // Told to be held at the bottom, held at the top as well.
+  Scene other = scene;
+  const double top = scene.mesh.nodes.row(2).maxCoeff();
+  for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
+    if (scene.mesh.nodes(2, node) > 0.9 * top) {
+      other.supports.held.col(node).setConstant(true);
+    }
+  }
+  Measure({5e4, 0.3}, other);
+  scene.load_cases[0].displacement = other.load_cases[0].displacement;
+  EstimatorOptions options;
+  options.known_poisson_ratio = 0.3;
+  const Estimate estimate = IterativeFe().Run(scene, options);
+  EXPECT_EQ(estimate.status, Status::kNotIdentifiable);
+  EXPECT_NE(estimate.message.find("smooth part"), std::string::npos)
       << estimate.message;
 }
 

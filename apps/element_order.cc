@@ -1,0 +1,56 @@
+#include "apps/element_order.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "apps/flags.h"
+#include "elastimate/core/quadratic_scene.h"
+
+namespace elastimate {
+namespace {
+
+bool IsNodal(const Load& load) {
+  return std::holds_alternative<NodalForces>(load);
+}
+
+bool HasNodalForces(const Scene& scene) {
+  return std::any_of(scene.load_cases.begin(), scene.load_cases.end(),
+                     [](const LoadCase& load_case) {
+                       return std::any_of(load_case.loads.begin(),
+                                          load_case.loads.end(), IsNodal);
+                     });
+}
+
+}  // namespace
+
+void CheckOrderFlag() {
+  if (FLAGS_order != 1 && FLAGS_order != 2) {
+    throw std::invalid_argument(
+        AsGiven("order") +
+        "; it is 1 for linear elements or 2 for quadratic ones");
+  }
+}
+
+std::optional<Scene> QuadraticSceneIfAsked(const Scene& scene,
+                                           std::vector<std::string>& notices) {
+  if (FLAGS_order == 1) {
+    return std::nullopt;
+  }
+  if (HasNodalForces(scene)) {
+    notices.emplace_back(
+        "nodal forces act at the vertices only, with --order=2 too; where they "
+        "stand for a traction, a pressure or a body force, give that, in a "
+        "scene.json");
+  }
+  return QuadraticScene(scene);
+}
+
+bool HasNodalForcesOnly(const Scene& scene) {
+  return std::all_of(scene.load_cases.begin(), scene.load_cases.end(),
+                     [](const LoadCase& load_case) {
+                       return std::all_of(load_case.loads.begin(),
+                                          load_case.loads.end(), IsNodal);
+                     });
+}
+
+}  // namespace elastimate

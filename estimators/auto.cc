@@ -1,0 +1,224 @@
+#include "elastimate/estimators/auto.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "elastimate/core/quadratic_scene.h"
+#include "elastimate/estimators/checks.h"
+#include "elastimate/estimators/closed_form.h"
+#include "elastimate/estimators/model_mismatch.h"
+#include "elastimate/estimators/reduced_fe.h"
+#include "elastimate/estimators/virtual_fields.h"
+
+namespace elastimate {
+namespace {
+
+constexpr double kYoungsModulusTolerance = 0.01;  // Relative.
+constexpr double kPoissonRatioTolerance = 0.01;
+
+// A disagreement that noise explains less often than this is one.
+constexpr double kSignificance = 1e-3;
+
+// Quadratic elements take some 45 KiB each in the factor.
+constexpr Eigen::Index kMostQuadraticElements = 100000;
+
+std::string Number(double value) {
+  std::ostringstream text;
+  text.precision(2);
+  text << value;
+  return text.str();
+}
+
+EstimatorOptions WithoutDegree(EstimatorOptions options) {
+  options.virtual_field_degree.reset();
+  return options;
+}
+
+// Why the standard errors of an estimate are too large; empty when they are
+// not.
+std::string WhyNotWithinTolerance(const EstimatorOptions& options,
+                                  const Estimate& estimate) {
+  const std::optional<double> youngs = estimate.YoungsModulusStandardError();
+  const std::optional<double> poisson = estimate.PoissonRatioStandardError();
+  if (!estimate.active_bounds.empty()) {
+    return "a parameter lies on a bound";
+  }
+  if (!youngs || (!poisson && !options.known_poisson_ratio)) {
+    return "no standard error is known";
+  }
+  const double relative = *youngs / estimate.elasticity.youngs_modulus;
+  if (relative > kYoungsModulusTolerance) {
+    return "the standard error of E is " + Number(100 * relative) + " %";
+  }
+  if (poisson.value_or(0) > kPoissonRatioTolerance) {
+    return "the standard error of nu is " + Number(*poisson);
+  }
+  return "";
+}
+
+// For a rung whose errors may come from its method; empty when it will do.
+std::string WhyNotEnough(const EstimatorOptions& options,
+                         const Estimate& estimate) {
+  if (!estimate.IsUsable()) {
+    return "not usable: " + estimate.message;
+  }
+  for (const std::string& warning : estimate.warnings) {
+    if (!IsWarningOfLocking(warning)) {
+      return "it warns: " + warning;
+    }
+  }
+  return WhyNotWithinTolerance(options, estimate);
+}
+
+// For a fit at the statistical limit; empty when its elements will do.
+std::string WhyTheModelIsNotEnough(const EstimatorOptions& options,
+                                   const Estimate& estimate) {
+  if (!estimate.IsUsable()) {
+    return "not usable: " + estimate.message;
+  }
+  if (estimate.model_mismatch && estimate.model_mismatch->matters &&
+      estimate.model_mismatch->p_value < kSignificance) {
+    return "virtual-fields disagrees by more than noise explains (p = " +
+           Number(estimate.model_mismatch->p_value) + ")";
+  }
+  if (estimate.is_model_in_doubt) {
+    const std::string why = WhyNotWithinTolerance(options, estimate);
+    if (!why.empty()) {
+      return "the residual is no noise, and " + why;
+    }
+  }
+  return "";
+}
+
+// Climbs, and keeps the books.
+class Ladder {
+ public:
+  // Runs an estimator as the next rung; false when it does not support the
+  // scene.
+  bool Climb(const Estimator& estimator, const Scene& scene,
+             const EstimatorOptions& options) {
+    const std::string why_not = estimator.WhyUnsupported(scene, options);
+    Rung rung;
+    rung.estimator = estimator.Name();
+    rung.element_order = scene.mesh.Order();
+    if (!why_not.empty()) {
+      rung.decision = "passed over: " + why_not;
+      rungs_.push_back(rung);
+      return false;
+    }
+    estimate_ = estimator.Run(scene, options);
+    work_ = work_ + estimate_.work;
+    for (const StageTime& stage : estimate_.stages) {
+      stages_.push_back({std::string(estimator.Name()) +
+                             (rung.element_order == 2 ? " (order 2): " : ": ") +
+                             stage.stage,
+                         stage.seconds});
+    }
+    rung.status = estimate_.status;
+    rung.elasticity = estimate_.elasticity;
+    rung.work = estimate_.work;
+    rung.seconds = estimate_.seconds;
+    rungs_.push_back(rung);
+    return true;
+  }
+
+  void Decide(const std::string& decision) {
+    rungs_.back().decision = decision;
+  }
+  /// Of the last rung that ran.
+  Estimate& Last() { return estimate_; }
+  void Return(const Estimate& estimate) { estimate_ = estimate; }
+
+  Estimate Finish() {
+    estimate_.work = work_;
+    estimate_.stages = stages_;
+    estimate_.rungs = rungs_;
+    return estimate_;
+  }
+
+ private:
+  Estimate estimate_;
+  Work work_;
+  std::vector<StageTime> stages_;
+  std::vector<Rung> rungs_;
+};
+
+// Decides about the last rung; whether it is the last one.
+bool StopsHere(const std::string& why_not_enough, Ladder& ladder) {
+  ladder.Decide(why_not_enough.empty() ? "stopped: within tolerance"
+                                       : "went on: " + why_not_enough);
+  return why_not_enough.empty();
+}
+
+}  // namespace
+
+std::string_view Auto::Name() const { return "auto"; }
+
+std::string_view Auto::Description() const {
+  return "climbs from closed-form over virtual-fields to reduced-fe and "
+         "quadratic elements, as far as the scene needs";
+}
+
+std::string Auto::WhyUnsupported(const Scene& scene,
+                                 const EstimatorOptions& options) const {
+  const std::string why_not =
+      ReducedFe().WhyUnsupported(scene, WithoutDegree(options));
+  if (why_not.empty() ||
+      VirtualFields().WhyUnsupported(scene, options).empty()) {
+    return "";
+  }
+  return why_not;
+}
+
+Estimate Auto::DoRun(const Scene& scene,
+                     const EstimatorOptions& options) const {
+  const EstimatorOptions without_degree = WithoutDegree(options);
+  Ladder ladder;
+  if (ladder.Climb(ClosedForm(), scene, without_degree) &&
+      StopsHere(WhyNotEnough(options, ladder.Last()), ladder)) {
+    return ladder.Finish();
+  }
+  std::optional<Estimate> virtual_fields;
+  if (ladder.Climb(VirtualFields(), scene, options)) {
+    virtual_fields = ladder.Last();
+    if (StopsHere(WhyNotEnough(options, *virtual_fields), ladder)) {
+      return ladder.Finish();
+    }
+  }
+  if (!ladder.Climb(ReducedFe(), scene, without_degree)) {
+    return ladder.Finish();
+  }
+  Estimate& linear = ladder.Last();
+  if (virtual_fields) {
+    linear.model_mismatch = FindModelMismatch(*virtual_fields, linear);
+  }
+  std::string why_not_enough = WhyTheModelIsNotEnough(options, linear);
+  if (!why_not_enough.empty() && scene.mesh.Order() == 1 &&
+      scene.mesh.NumElements() > kMostQuadraticElements) {
+    linear.warnings.push_back(why_not_enough +
+                              ": quadratic elements (order 2) may mend it, but "
+                              "are many for this mesh");
+    ladder.Decide("stopped: too many elements for order 2");
+    return ladder.Finish();
+  }
+  if (why_not_enough.empty() || scene.mesh.Order() == 2) {
+    ladder.Decide(why_not_enough.empty()
+                      ? "stopped: at the statistical limit of the data"
+                      : "stopped: there is no rung above");
+    return ladder.Finish();
+  }
+  ladder.Decide("went on: " + why_not_enough);
+  const Estimate of_linear = linear;
+  ladder.Climb(ReducedFe(), QuadraticScene(scene), without_degree);
+  const Estimate& quadratic = ladder.Last();
+  if (of_linear.displacement_residual && quadratic.displacement_residual &&
+      *of_linear.displacement_residual < *quadratic.displacement_residual) {
+    ladder.Decide("stopped: linear elements fit better, and are kept");
+    ladder.Return(of_linear);
+  } else {
+    ladder.Decide("stopped: there is no rung above");
+  }
+  return ladder.Finish();
+}
+
+}  // namespace elastimate

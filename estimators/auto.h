@@ -1,0 +1,40 @@
+#ifndef ELASTIMATE_ESTIMATORS_AUTO_H_
+#define ELASTIMATE_ESTIMATORS_AUTO_H_
+
+#include "elastimate/estimators/estimator.h"
+
+namespace elastimate {
+
+/// Models no more than the scene needs: climbs
+///
+///   closed-form, virtual-fields, reduced-fe, reduced-fe with quadratic
+///   elements
+///
+/// and stops at the first rung that is usable, has nothing to warn of, and
+/// whose standard errors are within 1 % of E and 0.01 in nu.  reduced-fe is at
+/// the statistical limit of the data, so that there a larger standard error is
+/// no reason to climb: what sends it to quadratic elements is a residual that
+/// is no noise, or a disagreement with virtual-fields that noise does not
+/// explain (Hausman), where it matters by more than these tolerances.  Of the
+/// two orders the one with the smaller displacement residual is taken.
+///
+/// A rung that does not support the scene or the options is passed over.  The
+/// estimate is that of the last rung, with the work of all of them;
+/// Estimate::rungs says why each went on or stopped.
+///
+/// Needs and cost: those of the rungs it climbs.
+class Auto : public Estimator {
+ public:
+  std::string_view Name() const override;
+  std::string_view Description() const override;
+  std::string WhyUnsupported(const Scene& scene,
+                             const EstimatorOptions& options) const override;
+
+ protected:
+  Estimate DoRun(const Scene& scene,
+                 const EstimatorOptions& options) const override;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_AUTO_H_

@@ -1,0 +1,40 @@
+#ifndef ELASTIMATE_ESTIMATORS_CHECKS_H_
+#define ELASTIMATE_ESTIMATORS_CHECKS_H_
+
+#include <string>
+#include <vector>
+
+#include "elastimate/core/scene.h"
+#include "elastimate/estimators/estimate.h"
+#include "elastimate/estimators/estimator.h"
+
+namespace elastimate {
+
+/// Throws std::invalid_argument unless the options are valid.
+void CheckOptions(const EstimatorOptions& options);
+
+/// Throws std::invalid_argument unless `estimator` supports a valid scene and
+/// valid options.
+void CheckSupported(const Estimator& estimator, const Scene& scene,
+                    const EstimatorOptions& options);
+
+/// Throws std::invalid_argument unless every load case of a valid scene has
+/// what each estimator needs: see Estimator::Run.  Returns warnings.
+std::vector<std::string> CheckMeasurements(const Scene& scene);
+
+/// Whether FinishEstimate gave this warning of linear elements near nu = 1/2.
+bool IsWarningOfLocking(const std::string& warning);
+
+/// Enters the estimator's name, the warnings, and an interval of nu where only
+/// its standard error is known; warns of what linear elements do near nu = 1/2;
+/// and turns an estimate that
+/// claims to be ok into what it is, when it is not finite, not physical, or not
+/// determined.
+void FinishEstimate(const Estimator& estimator, const Scene& scene,
+                    const EstimatorOptions& options,
+                    const std::vector<std::string>& warnings,
+                    Estimate& estimate);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_CHECKS_H_

@@ -1,0 +1,300 @@
+#include "elastimate/estimators/reduced_fit.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace elastimate {
+namespace {
+
+// Intervals of the scan over nu, closer at the ends of the range, where the
+// displacements change faster.
+constexpr int kScanIntervals = 200;
+
+// (1 + nu)(1 - 2 nu) = E t, and its derivative.
+double ComplianceFactor(double nu) { return (1 + nu) * (1 - 2 * nu); }
+double ComplianceFactorSlope(double nu) { return -(1 + 4 * nu); }
+
+bool IsBetter(const ReducedFit::Point& a, const ReducedFit::Point& b) {
+  const bool a_is_positive = a.compliance_scale > 0;
+  const bool b_is_positive = b.compliance_scale > 0;
+  return a_is_positive == b_is_positive ? a.square_sum < b.square_sum
+                                        : a_is_positive;
+}
+
+// From `lower` to `upper`, both exactly.
+Eigen::VectorXd ScanPoints(double lower, double upper) {
+  if (lower == upper) {
+    return Eigen::VectorXd::Constant(1, lower);
+  }
+  const double pi = std::acos(-1.0);
+  Eigen::VectorXd points(kScanIntervals + 1);
+  for (int i = 0; i <= kScanIntervals; ++i) {
+    const double share = (1 - std::cos(pi * i / kScanIntervals)) / 2;
+    points(i) = (1 - share) * lower + share * upper;
+  }
+  return points;
+}
+
+}  // namespace
+
+ReducedFit::ReducedFit(const ReducedModel& model,
+                       const ObservedDisplacements& observed,
+                       const Eigen::VectorXd& row_weights,
+                       const Bounds& poisson_ratio,
+                       const Bounds& youngs_modulus)
+    : youngs_modulus_(youngs_modulus),
+      row_weights_(row_weights),
+      scan_(ScanPoints(*poisson_ratio.lower, *poisson_ratio.upper)) {
+  const Eigen::Index num_cases = model.NumLoadCases();
+  for (Eigen::Index k = 0; k < num_cases; ++k) {
+    const Eigen::Index first = observed.CaseStart(k);
+    const Eigen::Index rows = observed.CaseStart(k + 1) - first;
+    const Eigen::Index load_columns = model.Basis(k).cols();
+    const Eigen::Index support_columns =
+        model.HasSupportResponse() ? model.Basis(num_cases).cols() : 0;
+    Eigen::MatrixXd bases(rows, load_columns + support_columns);
+    for (Eigen::Index i = 0; i < bases.cols(); ++i) {
+      bases.col(i) =
+          row_weights.segment(first, rows)
+              .cwiseProduct(observed.RestrictToCase(
+                  k, i < load_columns
+                         ? model.Basis(k).col(i)
+                         : model.Basis(num_cases).col(i - load_columns)));
+    }
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(bases);
+    const Eigen::Index rank = std::min(rows, bases.cols());
+    const Eigen::MatrixXd triangle =
+        qr.matrixQR().topRows(rank).triangularView<Eigen::Upper>();
+    LoadCaseFit fit;
+    fit.q = qr.householderQ() * Eigen::MatrixXd::Identity(rows, rank);
+    fit.load = model.Modes(k);
+    fit.load_modes = triangle.leftCols(load_columns) * fit.load.vectors;
+    if (model.HasSupportResponse()) {
+      fit.support = model.Modes(num_cases);
+      fit.support_modes =
+          triangle.rightCols(support_columns) * fit.support.vectors;
+    }
+    load_cases_.push_back(fit);
+    num_projected_ += rank;
+  }
+  scan_w_.resize(num_projected_, scan_.size());
+  scan_v_.resize(num_projected_, scan_.size());
+  for (Eigen::Index i = 0; i < scan_.size(); ++i) {
+    const Responses responses = Combine(&ReducedModes::At, scan_(i));
+    scan_w_.col(i) = responses.w;
+    scan_v_.col(i) = responses.v;
+  }
+}
+
+ReducedFit::Point ReducedFit::Fit(const Eigen::VectorXd& measured) const {
+  const Projection projection = Project(measured);
+  Point best;
+  Eigen::Index at = 0;
+  for (Eigen::Index i = 0; i < scan_.size(); ++i) {
+    const Point point =
+        PointOf(scan_(i), scan_w_.col(i), scan_v_.col(i), projection);
+    if (i == 0 || IsBetter(point, best)) {
+      best = point;
+      at = i;
+    }
+  }
+  const double slope = SlopeAt(scan_(at), projection);
+  const Eigen::Index other = slope > 0 ? at - 1 : at + 1;
+  if (other < 0 || other == scan_.size()) {
+    return best;
+  }
+  const Point minimum =
+      At(FindMinimum(scan_(at), slope, scan_(other), projection), projection);
+  return IsBetter(minimum, best) ? minimum : best;
+}
+
+Interval ReducedFit::ProfileInterval(const Eigen::VectorXd& measured,
+                                     const Point& best, double excess) const {
+  const Projection projection = Project(measured);
+  const double limit = best.square_sum + excess;
+  const auto is_inside = [&](double nu) {
+    const Point point = At(nu, projection);
+    return point.compliance_scale > 0 && point.square_sum <= limit;
+  };
+  const auto end_towards = [&](double scan_end, Eigen::Index step) {
+    double inside = best.poisson_ratio;
+    double outside = scan_end;
+    bool found = false;
+    for (Eigen::Index i = step > 0 ? 0 : scan_.size() - 1;
+         i >= 0 && i < scan_.size() && !found; i += step) {
+      if ((scan_(i) - best.poisson_ratio) * static_cast<double>(step) > 0) {
+        found = !is_inside(scan_(i));
+        (found ? outside : inside) = scan_(i);
+      }
+    }
+    if (!found) {
+      return scan_end;
+    }
+    constexpr int kHalvings = 40;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = (inside + outside) / 2;
+      (is_inside(middle) ? inside : outside) = middle;
+    }
+    return inside;
+  };
+  return {end_towards(scan_(0), -1), end_towards(scan_(scan_.size() - 1), 1)};
+}
+
+ReducedFit::Projection ReducedFit::Project(
+    const Eigen::VectorXd& measured) const {
+  Projection projection;
+  projection.measured.resize(scan_w_.rows());
+  projection.rest_square_sum = 0;
+  Eigen::Index first = 0;
+  Eigen::Index first_projected = 0;
+  for (const LoadCaseFit& load_case : load_cases_) {
+    const Eigen::Index rows = load_case.q.rows();
+    const Eigen::VectorXd weighted =
+        row_weights_.segment(first, rows)
+            .cwiseProduct(measured.segment(first, rows));
+    auto projected =
+        projection.measured.segment(first_projected, load_case.q.cols());
+    projected.noalias() = load_case.q.transpose() * weighted;
+    projection.rest_square_sum +=
+        std::max(0.0, weighted.squaredNorm() - projected.squaredNorm());
+    first += rows;
+    first_projected += projected.size();
+  }
+  return projection;
+}
+
+ReducedFit::Responses ReducedFit::Combine(
+    Eigen::VectorXd (ReducedModes::*values)(double) const,
+    double poisson_ratio) const {
+  Responses responses = {Eigen::VectorXd::Zero(num_projected_),
+                         Eigen::VectorXd::Zero(num_projected_)};
+  Eigen::Index first = 0;
+  for (const LoadCaseFit& load_case : load_cases_) {
+    const Eigen::Index rank = load_case.q.cols();
+    responses.w.segment(first, rank).noalias() =
+        load_case.load_modes * (load_case.load.*values)(poisson_ratio);
+    if (load_case.support_modes.cols() > 0) {
+      responses.v.segment(first, rank).noalias() =
+          load_case.support_modes * (load_case.support.*values)(poisson_ratio);
+    }
+    first += rank;
+  }
+  return responses;
+}
+
+double ReducedFit::ComplianceScale(
+    double poisson_ratio, const Eigen::Ref<const Eigen::VectorXd>& w,
+    const Eigen::Ref<const Eigen::VectorXd>& rest) const {
+  // E > 0 asks for t > 0, which no bound on E says.
+  double t = w.dot(rest) / w.squaredNorm();
+  if (youngs_modulus_.upper) {
+    t = std::max(t, ComplianceFactor(poisson_ratio) / *youngs_modulus_.upper);
+  }
+  if (youngs_modulus_.lower) {
+    t = std::min(t, ComplianceFactor(poisson_ratio) / *youngs_modulus_.lower);
+  }
+  return t;
+}
+
+ReducedFit::Point ReducedFit::PointOf(
+    double poisson_ratio, const Eigen::Ref<const Eigen::VectorXd>& w,
+    const Eigen::Ref<const Eigen::VectorXd>& v,
+    const Projection& projection) const {
+  const Eigen::VectorXd rest = projection.measured - v;
+  const double t = ComplianceScale(poisson_ratio, w, rest);
+  return {poisson_ratio, t,
+          projection.rest_square_sum + (rest - t * w).squaredNorm()};
+}
+
+ReducedFit::Point ReducedFit::At(double poisson_ratio,
+                                 const Projection& projection) const {
+  const Responses responses = Combine(&ReducedModes::At, poisson_ratio);
+  return PointOf(poisson_ratio, responses.w, responses.v, projection);
+}
+
+double ReducedFit::SlopeAt(double poisson_ratio,
+                           const Projection& projection) const {
+  const Responses responses = Combine(&ReducedModes::At, poisson_ratio);
+  const Responses slopes = Combine(&ReducedModes::DerivativeAt, poisson_ratio);
+  const Eigen::VectorXd rest = projection.measured - responses.v;
+  const double t = ComplianceScale(poisson_ratio, responses.w, rest);
+  const Eigen::VectorXd residual = rest - t * responses.w;
+  // Where t is free, the residual is orthogonal to w and dt/dnu has no effect;
+  // on a bound t = (1 + nu)(1 - 2 nu) / E.
+  const double dt_dnu = t * ComplianceFactorSlope(poisson_ratio) /
+                        ComplianceFactor(poisson_ratio);
+  return -2 * residual.dot(t * slopes.w + dt_dnu * responses.w + slopes.v);
+}
+
+double ReducedFit::FindMinimum(double inner, double inner_slope, double outer,
+                               const Projection& projection) const {
+  constexpr int kMostSteps = 60;
+  constexpr double kTolerance = 1e-13;
+  double outer_slope = SlopeAt(outer, projection);
+  double point = inner;
+  // The false position with Illinois' rule; by halves as long as the slopes
+  // enclose no zero.
+  bool was_inner = false;
+  bool was_outer = false;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const bool encloses = inner_slope * outer_slope <= 0;
+    const double previous = point;
+    point = inner +
+            (outer - inner) *
+                (encloses ? inner_slope / (inner_slope - outer_slope) : 0.5);
+    if (std::abs(point - previous) <= kTolerance) {
+      break;
+    }
+    const double slope = SlopeAt(point, projection);
+    const bool is_inner = slope * inner_slope > 0;
+    (is_inner ? inner : outer) = point;
+    (is_inner ? inner_slope : outer_slope) = slope;
+    if (is_inner && was_inner) {
+      outer_slope /= 2;
+    } else if (!is_inner && was_outer) {
+      inner_slope /= 2;
+    }
+    was_inner = is_inner;
+    was_outer = !is_inner;
+  }
+  return point;
+}
+
+DisplacementFit ExpandFit(const ReducedModel& model,
+                          const ObservedDisplacements& observed,
+                          const IsotropicElasticity& elasticity) {
+  const Eigen::Index num_cases = model.NumLoadCases();
+  const double nu = elasticity.poisson_ratio;
+  const double t = elasticity.ComplianceScale();
+  const double dt_dnu = ComplianceFactorSlope(nu) / elasticity.youngs_modulus;
+  // Value and derivative.
+  const auto response = [&model, nu](Eigen::Index k) {
+    const ReducedModes& modes = model.Modes(k);
+    Eigen::MatrixXd coefficients(modes.theta.size(), 2);
+    coefficients << modes.At(nu), modes.DerivativeAt(nu);
+    return Eigen::MatrixXd(model.Basis(k) * (modes.vectors * coefficients));
+  };
+  const Eigen::Index num_rows = model.Basis(0).rows();
+  const Eigen::MatrixXd support = model.HasSupportResponse()
+                                      ? response(num_cases)
+                                      : Eigen::MatrixXd::Zero(num_rows, 2);
+  Eigen::MatrixXd displacement(num_rows, num_cases);
+  Eigen::MatrixXd by_log_youngs_modulus(num_rows, num_cases);
+  Eigen::MatrixXd by_poisson_ratio(num_rows, num_cases);
+  for (Eigen::Index k = 0; k < num_cases; ++k) {
+    const Eigen::MatrixXd load = response(k);
+    displacement.col(k) = t * load.col(0) + support.col(0);
+    by_log_youngs_modulus.col(k) = -t * load.col(0);
+    by_poisson_ratio.col(k) =
+        dt_dnu * load.col(0) + t * load.col(1) + support.col(1);
+  }
+  DisplacementFit fit;
+  fit.residual = observed.Restrict(displacement) - observed.Measured();
+  fit.sensitivities.resize(observed.Size(), 2);
+  fit.sensitivities << observed.Restrict(by_log_youngs_modulus),
+      observed.Restrict(by_poisson_ratio);
+  return fit;
+}
+
+}  // namespace elastimate

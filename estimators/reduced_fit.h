@@ -1,0 +1,110 @@
+#ifndef ELASTIMATE_ESTIMATORS_REDUCED_FIT_H_
+#define ELASTIMATE_ESTIMATORS_REDUCED_FIT_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "elastimate/estimators/displacement_fit.h"
+#include "elastimate/estimators/estimator.h"
+#include "elastimate/estimators/observed_displacements.h"
+#include "elastimate/estimators/reduced_model.h"
+
+namespace elastimate {
+
+/// The weighted least-squares fit of a ReducedModel to observed displacements,
+///
+///   min over nu and t of ||W (t w(nu) + v(nu) - q)||^2,
+///
+/// compressed: with the QR factorisation of the observed rows of the bases of
+/// each load case, the sum of squares is one over the basis vectors and a
+/// constant.  What does not depend on q is prepared once.
+class ReducedFit {
+ public:
+  /// The best fit at one nu.
+  struct Point {
+    double poisson_ratio;
+    double compliance_scale;
+    double square_sum;
+  };
+
+  /// `row_weights` (one for each row of `observed`) are the diagonal of W.
+  /// Precondition: both bounds on nu are given.
+  /// Cost: O(rows m^2) for m basis vectors of a load case.
+  ReducedFit(const ReducedModel& model, const ObservedDisplacements& observed,
+             const Eigen::VectorXd& row_weights, const Bounds& poisson_ratio,
+             const Bounds& youngs_modulus);
+
+  /// The best fit to `measured`, rows as in ObservedDisplacements: the whole
+  /// range of nu is scanned, and the zero of the slope beside the best point
+  /// found.  A fit with a positive E is better than any without.
+  /// Cost: O(rows m), then about 200 m + 20 m^2 operations.
+  Point Fit(const Eigen::VectorXd& measured) const;
+
+  /// The values of nu around `best` = Fit(measured) whose best sum of squares
+  /// exceeds that of `best` by no more than `excess`: the profile likelihood.
+  /// The ends of the scan where the sum of squares stays below.
+  Interval ProfileInterval(const Eigen::VectorXd& measured, const Point& best,
+                           double excess) const;
+
+ private:
+  // The observed rows of w and v in an orthonormal basis: stacked over the load
+  // cases.
+  struct Responses {
+    Eigen::VectorXd w;
+    Eigen::VectorXd v;
+  };
+  struct LoadCaseFit {
+    /// Orthonormal columns, rows x rank.
+    Eigen::MatrixXd q;
+    /// The modes of the load case and of the held displacements in them.
+    Eigen::MatrixXd load_modes;
+    Eigen::MatrixXd support_modes;
+    ReducedModes load;
+    ReducedModes support;
+  };
+  /// A measurement in the orthonormal bases.
+  struct Projection {
+    Eigen::VectorXd measured;
+    double rest_square_sum;
+  };
+
+  Projection Project(const Eigen::VectorXd& measured) const;
+  /// `values` of all modes.
+  Responses Combine(Eigen::VectorXd (ReducedModes::*values)(double) const,
+                    double poisson_ratio) const;
+  /// The best t within the bounds on E.
+  double ComplianceScale(double poisson_ratio,
+                         const Eigen::Ref<const Eigen::VectorXd>& w,
+                         const Eigen::Ref<const Eigen::VectorXd>& rest) const;
+  Point PointOf(double poisson_ratio,
+                const Eigen::Ref<const Eigen::VectorXd>& w,
+                const Eigen::Ref<const Eigen::VectorXd>& v,
+                const Projection& projection) const;
+  Point At(double poisson_ratio, const Projection& projection) const;
+  /// d (sum of squares) / d nu along the best t.
+  double SlopeAt(double poisson_ratio, const Projection& projection) const;
+  /// The zero of the slope between two values of nu, from the first of which
+  /// the sum of squares falls towards the second.
+  double FindMinimum(double inner, double inner_slope, double outer,
+                     const Projection& projection) const;
+
+  Bounds youngs_modulus_;
+  Eigen::VectorXd row_weights_;
+  std::vector<LoadCaseFit> load_cases_;
+  /// Of the orthonormal bases of all load cases.
+  Eigen::Index num_projected_ = 0;
+  Eigen::VectorXd scan_;
+  /// The responses at the points of the scan, one column each.
+  Eigen::MatrixXd scan_w_;
+  Eigen::MatrixXd scan_v_;
+};
+
+/// Residual and sensitivities of the model at (E, nu), in the rows of
+/// `observed`.  O(num_nodes m).
+DisplacementFit ExpandFit(const ReducedModel& model,
+                          const ObservedDisplacements& observed,
+                          const IsotropicElasticity& elasticity);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_REDUCED_FIT_H_

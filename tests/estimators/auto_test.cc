@@ -1,0 +1,120 @@
+#include "elastimate/estimators/auto.h"
+
+#include <gtest/gtest.h>
+
+#include "elastimate/core/quadratic_scene.h"
+#include "elastimate/estimators/reduced_fe.h"
+#include "tests/scenes.h"
+#include "tests/throws.h"
+
+namespace elastimate {
+namespace {
+
+using testing::AddNoise;
+using testing::Measure;
+using testing::SmallScene;
+
+// Measured on quadratic elements, which linear ones cannot follow, under a
+// load that is the same for both.
+Scene FinerWorld(const std::string& shape, const IsotropicElasticity& truth) {
+  Scene scene = SmallScene(shape);
+  scene.load_cases[0].loads = {BodyForce{{100, 20, -300}}};
+  Scene quadratic = QuadraticScene(scene);
+  Measure(truth, quadratic);
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    scene.load_cases[k].displacement =
+        quadratic.load_cases[k].displacement.leftCols(scene.mesh.NumNodes());
+  }
+  return scene;
+}
+
+void ExpectBooksToBalance(const Estimate& estimate) {
+  Work work;
+  for (const Rung& rung : estimate.rungs) {
+    work = work + rung.work;
+    EXPECT_NE(rung.decision, "");
+    EXPECT_EQ(rung.decision.find("passed over") == 0, !rung.status);
+  }
+  EXPECT_EQ(estimate.work.element_passes, work.element_passes);
+  EXPECT_EQ(estimate.work.factorizations, work.factorizations);
+  EXPECT_EQ(estimate.work.solves, work.solves);
+}
+
+TEST(Auto, StopsAtTheClosedFormWithoutNoise) {
+  Scene scene = SmallScene("organ");
+  Measure({5e4, 0.3}, scene);
+  const Estimate estimate = Auto().Run(scene, {});
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  ASSERT_EQ(estimate.rungs.size(), 1);
+  EXPECT_EQ(estimate.rungs[0].estimator, "closed-form");
+  EXPECT_EQ(estimate.work.factorizations, 0);
+  EXPECT_EQ(estimate.element_order, 1);
+  ExpectBooksToBalance(estimate);
+}
+
+TEST(Auto, ClimbsWhereNoiseAsksForIt) {
+  Scene scene = SmallScene("organ");
+  Measure({5e4, 0.3}, scene);
+  AddNoise(0.05, 1, scene);
+  const Estimate estimate = Auto().Run(scene, {});
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  ASSERT_EQ(estimate.rungs.size(), 3);
+  EXPECT_EQ(estimate.rungs[2].estimator, "reduced-fe");
+  EXPECT_EQ(estimate.rungs[2].decision,
+            "stopped: at the statistical limit of the data");
+  EXPECT_EQ(estimate.element_order, 1);
+  ASSERT_TRUE(estimate.model_mismatch.has_value());
+  EXPECT_GT(estimate.model_mismatch->p_value, 1e-3);
+  const Estimate fit = ReducedFe().Run(scene, {});
+  EXPECT_EQ(estimate.elasticity.youngs_modulus, fit.elasticity.youngs_modulus);
+  EXPECT_EQ(estimate.estimator, "auto");
+  ExpectBooksToBalance(estimate);
+}
+
+TEST(Auto, RaisesTheOrderWhereLinearElementsAreNotEnough) {
+  for (const std::string shape : {"cuboid", "organ"}) {
+    SCOPED_TRACE(shape);
+    const Scene scene = FinerWorld(shape, {5e4, 0.3});
+    const Estimate linear = ReducedFe().Run(scene, {});
+    ASSERT_GT(std::abs(linear.elasticity.youngs_modulus / 5e4 - 1), 0.02);
+    const Estimate estimate = Auto().Run(scene, {});
+    ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+    EXPECT_EQ(estimate.element_order, 2);
+    EXPECT_NEAR(estimate.elasticity.youngs_modulus / 5e4, 1, 1e-6);
+    EXPECT_NEAR(estimate.elasticity.poisson_ratio, 0.3, 1e-6);
+    ASSERT_EQ(estimate.rungs.size(), 4);
+    EXPECT_EQ(estimate.rungs[3].element_order, 2);
+    ExpectBooksToBalance(estimate);
+  }
+}
+
+TEST(Auto, DoesNotRaiseTheOrderForNoise) {
+  for (int seed = 1; seed <= 20; ++seed) {
+    Scene scene = SmallScene("organ");
+    Measure({5e4, 0.47}, scene);
+    AddNoise(0.05, seed, scene);
+    EXPECT_EQ(Auto().Run(scene, {}).element_order, 1) << seed;
+  }
+}
+
+TEST(Auto, PassesOverWhatCannotServe) {
+  Scene scene = SmallScene("organ");
+  Measure({5e4, 0.3}, scene);
+  AddNoise(0.01, 1, scene);
+  EstimatorOptions options;
+  options.loss = Loss::kHuber;
+  const Estimate robust = Auto().Run(scene, options);
+  ASSERT_EQ(robust.status, Status::kOk) << robust.message;
+  ASSERT_EQ(robust.rungs.size(), 3);
+  EXPECT_FALSE(robust.rungs[0].status.has_value());
+  EXPECT_FALSE(robust.rungs[1].status.has_value());
+  EXPECT_EQ(robust.rungs[2].estimator, "reduced-fe");
+  ExpectBooksToBalance(robust);
+
+  Scene loose = scene;
+  loose.supports.held.setConstant(false);
+  EXPECT_THROWS_WITH(Auto().Run(loose, options), "without strain");
+}
+
+}  // namespace
+}  // namespace elastimate

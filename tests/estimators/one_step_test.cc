@@ -1,0 +1,79 @@
+#include "elastimate/estimators/one_step.h"
+
+#include <gtest/gtest.h>
+
+#include "elastimate/estimators/iterative_fe.h"
+#include "tests/scenes.h"
+#include "tests/throws.h"
+
+namespace elastimate {
+namespace {
+
+using testing::AddNoise;
+using testing::Measure;
+using testing::SmallScene;
+
+TEST(OneStep, IsAsGoodAsTheIterativeFit) {
+  for (const std::string shape : {"cuboid", "organ"}) {
+    for (const double nu : {0.0, 0.3, 0.45}) {
+      for (const double noise : {1e-3, 1e-2, 5e-2}) {
+        SCOPED_TRACE(shape + ", nu " + std::to_string(nu) + ", noise " +
+                     std::to_string(noise));
+        Scene scene = SmallScene(shape);
+        Measure({5e4, nu}, scene);
+        AddNoise(noise, 1, scene);
+        const Estimate step = OneStep().Run(scene, {});
+        const Estimate fit = IterativeFe().Run(scene, {});
+        ASSERT_EQ(step.status, Status::kOk) << step.message;
+        // Half a standard error of nu is what a step may miss.
+        EXPECT_NEAR(step.elasticity.poisson_ratio, fit.elasticity.poisson_ratio,
+                    0.5 * *fit.PoissonRatioStandardError());
+        EXPECT_NEAR(step.elasticity.youngs_modulus,
+                    fit.elasticity.youngs_modulus,
+                    0.5 * *fit.YoungsModulusStandardError());
+        EXPECT_LE(step.work.factorizations, 3);
+        EXPECT_LT(step.work.factorizations, fit.work.factorizations);
+      }
+    }
+  }
+}
+
+TEST(OneStep, TakesOneFactorizationWhereVirtualFieldsAreClose) {
+  Scene scene = SmallScene("cuboid");
+  Measure({5e4, 0.3}, scene);
+  AddNoise(1e-2, 1, scene);
+  const Estimate estimate = OneStep().Run(scene, {});
+  EXPECT_EQ(estimate.work.factorizations, 1);
+  EXPECT_EQ(estimate.work.solves, 2);
+}
+
+TEST(OneStep, StartsWithoutVirtualFieldsWhereNotAllIsObserved) {
+  Scene scene = SmallScene("organ");
+  Measure({5e4, 0.4}, scene);
+  AddNoise(1e-3, 1, scene);
+  scene.load_cases[0].observed =
+      ComponentMask::Constant(3, scene.mesh.NumNodes(), true);
+  scene.load_cases[0].observed.row(1).setConstant(false);
+  scene.load_cases[0].displacement.row(1).setConstant(1e3);
+  const Estimate step = OneStep().Run(scene, {});
+  const Estimate fit = IterativeFe().Run(scene, {});
+  ASSERT_EQ(step.status, Status::kOk) << step.message;
+  EXPECT_NEAR(step.elasticity.poisson_ratio, fit.elasticity.poisson_ratio,
+              0.5 * *fit.PoissonRatioStandardError());
+}
+
+TEST(OneStep, RefusesWhatItCannotHonour) {
+  Scene scene = SmallScene("cuboid");
+  Measure({5e4, 0.3}, scene);
+  EstimatorOptions bounds;
+  bounds.poisson_ratio.upper = 0.4;
+  EXPECT_THROWS_WITH(OneStep().Run(scene, bounds), "use reduced-fe");
+  EstimatorOptions loss;
+  loss.loss = Loss::kHuber;
+  EXPECT_THROWS_WITH(OneStep().Run(scene, loss), "use reduced-fe");
+  scene.supports.held.setConstant(false);
+  EXPECT_THROWS_WITH(OneStep().Run(scene, {}), "without strain");
+}
+
+}  // namespace
+}  // namespace elastimate
