@@ -58,6 +58,24 @@ std::string Percent(double ratio) { return Number(100 * ratio) + " %"; }
 
 }  // namespace
 
+WeightedLoadCases WeightLoadCases(const Scene& scene,
+                                  const DegreesOfFreedom& degrees_of_freedom) {
+  const std::vector<Eigen::Index>& free = degrees_of_freedom.free;
+  const Eigen::VectorXd held_displacement = HeldDisplacement(scene.supports);
+  const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
+  WeightedLoadCases weighted;
+  weighted.q.resize(degrees_of_freedom.NumAll(), num_cases);
+  weighted.f = AssembleLoadCases(scene);
+  for (Eigen::Index k = 0; k < num_cases; ++k) {
+    const LoadCase& load_case = scene.load_cases[k];
+    const double weight = 1 / load_case.noise_sd.value_or(1);
+    weighted.q.col(k) = weight * held_displacement;
+    weighted.q.col(k)(free) = weight * load_case.displacement.reshaped()(free);
+    weighted.f.col(k) *= weight;
+  }
+  return weighted;
+}
+
 std::string ForceResidual::WhyUnsupported(const Scene& scene) {
   const Eigen::Index num_vertices = scene.mesh.NumVertices();
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
@@ -85,19 +103,9 @@ std::string ForceResidual::WhyUnsupported(const Scene& scene) {
 
 ForceResidual::ForceResidual(const Scene& scene) {
   const DegreesOfFreedom dofs(scene.supports);
-  const Eigen::VectorXd held_displacement = HeldDisplacement(scene.supports);
   const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
   known_noise_sd_ = scene.load_cases.front().noise_sd;
-
-  Eigen::MatrixXd q(dofs.NumAll(), num_cases);
-  Eigen::MatrixXd f = AssembleLoadCases(scene);
-  for (Eigen::Index k = 0; k < num_cases; ++k) {
-    const LoadCase& load_case = scene.load_cases[k];
-    const double weight = 1 / load_case.noise_sd.value_or(1);
-    q.col(k) = weight * held_displacement;
-    q.col(k)(dofs.free) = weight * load_case.displacement.reshaped()(dofs.free);
-    f.col(k) *= weight;
-  }
+  const auto [q, f] = WeightLoadCases(scene, dofs);
 
   const StiffnessProducts products = MultiplyStiffnessBasis(scene.mesh, q);
   ++work_.element_passes;
@@ -284,16 +292,16 @@ Eigen::Matrix2d ForceResidual::Covariance(const IsotropicElasticity& elasticity,
   return covariance;
 }
 
-void ForceResidual::Describe(bool free_youngs_modulus, bool free_poisson_ratio,
-                             Estimate& estimate) const {
-  estimate.force_residual = RelativeResidual(estimate.elasticity);
+std::optional<double> ForceResidual::DescribeNoise(bool free_youngs_modulus,
+                                                   bool free_poisson_ratio,
+                                                   Estimate& estimate) const {
   const std::optional<double> residual_variance =
       NoiseVariance(estimate, free_youngs_modulus, free_poisson_ratio);
   if (!known_noise_sd_ && !residual_variance) {
     estimate.why_no_standard_error =
         "there are no more equations than unknowns, so that the noise cannot "
         "be estimated; give its standard deviation";
-    return;
+    return std::nullopt;
   }
   const double noise_sd_ratio = std::sqrt(residual_variance.value_or(1));
   double variance = residual_variance.value_or(1);
@@ -316,8 +324,19 @@ void ForceResidual::Describe(bool free_youngs_modulus, bool free_poisson_ratio,
     estimate.noise_attenuation =
         std::min(1.0, variance * ProjectedTraces()(1, 1) / b_squared);
   }
+  return variance;
+}
+
+void ForceResidual::Describe(bool free_youngs_modulus, bool free_poisson_ratio,
+                             Estimate& estimate) const {
+  estimate.force_residual = RelativeResidual(estimate.elasticity);
+  const std::optional<double> variance =
+      DescribeNoise(free_youngs_modulus, free_poisson_ratio, estimate);
+  if (!variance) {
+    return;
+  }
   if (free_youngs_modulus || free_poisson_ratio) {
-    estimate.covariance = Covariance(estimate.elasticity, variance,
+    estimate.covariance = Covariance(estimate.elasticity, *variance,
                                      free_youngs_modulus, free_poisson_ratio);
   }
 }

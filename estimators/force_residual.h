@@ -5,12 +5,25 @@
 #include <optional>
 #include <string>
 
+#include "elastimate/core/degrees_of_freedom.h"
 #include "elastimate/core/elasticity.h"
 #include "elastimate/core/scene.h"
 #include "elastimate/estimators/estimate.h"
 #include "elastimate/estimators/estimator.h"
 
 namespace elastimate {
+
+/// The measurement as the methods without a finite element solution take it,
+/// one column per load case, weighted by 1 / noise_sd where it is known.
+struct WeightedLoadCases {
+  Eigen::MatrixXd q;  ///< Measured where free, given where held: (3 num_nodes)
+                      ///< x num_load_cases.
+  Eigen::MatrixXd f;  ///< Loads, of the same shape.
+};
+
+/// Precondition: every free component is observed.
+WeightedLoadCases WeightLoadCases(const Scene& scene,
+                                  const DegreesOfFreedom& degrees_of_freedom);
 
 /// The force residual r(nu, t) = a + nu b - t f of a scene, a = H q, b = J q,
 /// over the free degrees of freedom of all load cases, compressed to what its
@@ -50,6 +63,14 @@ class ForceResidual {
   /// 1)^T||.
   const Eigen::Matrix3d& Triangle() const { return triangle_; }
 
+  /// The variance of the weighted noise for the standard errors: as given, or
+  /// from the residual where nothing is given or the residual contradicts it,
+  /// of which it warns.  Fills in the noise of `estimate`, or the reason why
+  /// there are no standard errors when it is empty.
+  std::optional<double> DescribeNoise(bool free_youngs_modulus,
+                                      bool free_poisson_ratio,
+                                      Estimate& estimate) const;
+
   /// Noise level, noise bias and covariance of an estimate of this residual.
   /// `free_youngs_modulus` and `free_poisson_ratio` say which parameters were
   /// estimated (not given, not held by a bound).  Fills in the noise, residual
@@ -71,6 +92,12 @@ class ForceResidual {
   std::optional<double> ResidualVariance(double poisson_ratio,
                                          bool free_poisson_ratio) const;
 
+  /// T without the directions that t fits: rows and columns (a, b).
+  Eigen::Matrix2d ProjectedTraces() const;
+
+  /// nu of total least squares, the unbiased one when the noise is not known.
+  double ErrorsInVariablesPoissonRatio() const;
+
   /// The free degrees of freedom times the load cases.
   Eigen::Index NumEquations() const { return num_equations_; }
 
@@ -81,11 +108,8 @@ class ForceResidual {
   std::optional<double> NoiseVariance(const Estimate& estimate,
                                       bool free_youngs_modulus,
                                       bool free_poisson_ratio) const;
-  double ErrorsInVariablesPoissonRatio() const;
   /// Gram matrix of A(nu) [b f].
   Eigen::Matrix2d StiffenedGram(double poisson_ratio) const;
-  /// T without the directions that t fits: rows and columns (a, b).
-  Eigen::Matrix2d ProjectedTraces() const;
   Eigen::Matrix2d Covariance(const IsotropicElasticity& elasticity,
                              double noise_variance, bool free_youngs_modulus,
                              bool free_poisson_ratio) const;

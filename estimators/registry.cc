@@ -9,6 +9,7 @@
 #include "elastimate/estimators/iterative_fe.h"
 #include "elastimate/estimators/one_step.h"
 #include "elastimate/estimators/reduced_fe.h"
+#include "elastimate/estimators/total_least_squares.h"
 #include "elastimate/estimators/virtual_fields.h"
 
 namespace elastimate {
@@ -20,8 +21,9 @@ std::unique_ptr<Estimator> Make() {
 }
 
 constexpr std::unique_ptr<Estimator> (*kEstimators[])() = {
-    Make<ClosedForm>, Make<Bounded>,     Make<VirtualFields>, Make<OneStep>,
-    Make<ReducedFe>,  Make<IterativeFe>, Make<Auto>,
+    Make<ClosedForm>,    Make<Bounded>, Make<TotalLeastSquares>,
+    Make<VirtualFields>, Make<OneStep>, Make<ReducedFe>,
+    Make<IterativeFe>,   Make<Auto>,
 };
 
 }  // namespace

@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "elastimate/core/degrees_of_freedom.h"
-#include "elastimate/core/loads.h"
 #include "elastimate/core/stiffness_product.h"
+#include "elastimate/estimators/force_residual.h"
 
 namespace elastimate {
 namespace {
@@ -292,17 +292,7 @@ VirtualWorkBalance::VirtualWorkBalance(const VirtualWork& work,
                                        const Scene& scene)
     : work_(work) {
   const DegreesOfFreedom dofs(scene.supports);
-  const Eigen::VectorXd held_displacement = HeldDisplacement(scene.supports);
-  const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
-  Eigen::MatrixXd q(dofs.NumAll(), num_cases);
-  Eigen::MatrixXd f = AssembleLoadCases(scene);
-  for (Eigen::Index k = 0; k < num_cases; ++k) {
-    const LoadCase& load_case = scene.load_cases[k];
-    const double weight = 1 / load_case.noise_sd.value_or(1);
-    q.col(k) = weight * held_displacement;
-    q.col(k)(dofs.free) = weight * load_case.displacement.reshaped()(dofs.free);
-    f.col(k) *= weight;
-  }
+  const auto [q, f] = WeightLoadCases(scene, dofs);
   const StiffnessProducts products = MultiplyStiffnessBasis(scene.mesh, q);
   internal_h_ = work.Of(products.h);
   internal_j_ = work.Of(products.j);
