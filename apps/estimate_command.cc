@@ -141,7 +141,7 @@ int RunEstimators(const std::vector<std::string>& arguments) {
   }
   std::string list;
   for (const std::string_view name : EstimatorNames()) {
-    list += std::string(name) + std::string(16 - name.size(), ' ') +
+    list += std::string(name) + std::string(21 - name.size(), ' ') +
             std::string(MakeEstimator(name)->Description()) + "\n";
   }
   WriteStandardOutput(list);
