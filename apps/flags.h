@@ -4,7 +4,8 @@
 #include <gflags/gflags_declare.h>
 
 #include <string>
-#include <vector>
+
+#include "apps/flag_parser.h"
 
 DECLARE_string(estimator);
 DECLARE_double(nu);
@@ -31,28 +32,8 @@ DECLARE_double(length);
 
 namespace elastimate {
 
-/// A command, the flags it takes, and what it is called with.
-struct Command {
-  std::string name;
-  std::string arguments;  ///< For people, such as "SCENE...".
-  std::string summary;
-  std::vector<std::string> flags;
-};
-
-const std::vector<Command>& Commands();
-
-/// Sets the flags of `command` from `arguments` and returns the other ones.
-/// Throws std::invalid_argument for a flag that it does not take, one that is
-/// given two values, a value that is not of the flag's type or not finite, and
-/// an empty argument.
-std::vector<std::string> ParseFlags(const Command& command,
-                                    const std::vector<std::string>& arguments);
-
-/// Whether the flag was given.
-bool IsGiven(const std::string& flag);
-
-/// The flag with its value, such as "--nu=0.3".
-std::string AsGiven(const std::string& flag);
+/// The program `elastimate`.
+const Program& Elastimate();
 
 /// Usage of all commands and the meaning of their flags.
 std::string Help();

@@ -2,7 +2,6 @@
 #include <glog/logging.h>
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <csignal>
 #include <iostream>
 #include <new>
@@ -24,39 +23,26 @@ constexpr int kNoEstimate = 2;
 
 int RunCommand(const std::string& name,
                const std::vector<std::string>& arguments) {
-  for (const Command& command : Commands()) {
-    if (command.name != name) {
-      continue;
-    }
-    const std::vector<std::string> others = ParseFlags(command, arguments);
-    if (name == "estimate") {
-      return RunEstimate(others);
-    }
-    if (name == "simulate") {
-      return RunSimulate(others);
-    }
-    if (name == "generate") {
-      return RunGenerate(others);
-    }
-    return RunEstimators(others);
+  const Command& command = FindCommand(Elastimate(), name);
+  const std::vector<std::string> others =
+      ParseFlags(Elastimate(), command, arguments);
+  if (name == "estimate") {
+    return RunEstimate(others);
   }
-  if (name[0] == '-') {
-    throw std::invalid_argument("the command comes first, then its flags; '" +
-                                name + "' came first; see elastimate --help");
+  if (name == "simulate") {
+    return RunSimulate(others);
   }
-  throw std::invalid_argument("unknown command '" + name +
-                              "'; see elastimate --help");
+  if (name == "generate") {
+    return RunGenerate(others);
+  }
+  return RunEstimators(others);
 }
 
 int Run(const std::vector<std::string>& arguments) {
   if (arguments.empty()) {
     throw std::invalid_argument("give a command; see elastimate --help");
   }
-  const auto asks_for_help = [](const std::string& argument) {
-    return argument == "--help" || argument == "-h";
-  };
-  if (arguments[0] == "help" ||
-      std::any_of(arguments.begin(), arguments.end(), asks_for_help)) {
+  if (AsksForHelp(arguments)) {
     WriteStandardOutput(Help());
     return 0;
   }

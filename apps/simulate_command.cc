@@ -9,9 +9,11 @@
 #include "apps/flags.h"
 #include "apps/outputs.h"
 #include "apps/progress.h"
+#include "elastimate/core/degrees_of_freedom.h"
 #include "elastimate/core/forward_model.h"
 #include "elastimate/core/loads.h"
 #include "elastimate/core/magnitude.h"
+#include "elastimate/core/simulated_measurement.h"
 #include "elastimate/io/scene_reader.h"
 #include "elastimate/io/vtu_writer.h"
 
@@ -37,20 +39,6 @@ void CheckNoiseFlags() {
     throw std::invalid_argument("--noise_law=" + FLAGS_noise_law +
                                 "; it is uniform or gaussian");
   }
-}
-
-// Noise on the free components, of norm --noise times that of the
-// displacement.
-Eigen::VectorXd DrawNoise(const Eigen::VectorXd& displacement,
-                          std::mt19937_64& generator) {
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  std::normal_distribution<double> gaussian;
-  Eigen::VectorXd noise(displacement.size());
-  for (double& value : noise) {
-    value =
-        FLAGS_noise_law == "uniform" ? uniform(generator) : gaussian(generator);
-  }
-  return FLAGS_noise * displacement.norm() / noise.norm() * noise;
 }
 
 }  // namespace
@@ -90,13 +78,17 @@ int RunSimulate(const std::vector<std::string>& arguments) {
   // At the vertices, which come first: what is measured and written.
   Eigen::MatrixXd displacement = model.Displacement(elasticity.youngs_modulus)
                                      .topRows(3 * scene.mesh.NumNodes());
-  const std::vector<Eigen::Index> free = DegreesOfFreedom(scene.supports).free;
+  const DegreesOfFreedom dofs(scene.supports);
+  const NoiseLaw law =
+      FLAGS_noise_law == "uniform" ? NoiseLaw::kUniform : NoiseLaw::kGaussian;
   std::mt19937_64 generator(FLAGS_seed);
   for (Eigen::Index k = 0; k < displacement.cols(); ++k) {
     LoadCase& load_case = scene.load_cases[k];
     if (FLAGS_noise > 0) {
-      displacement.col(k)(free) +=
-          DrawNoise(displacement.col(k)(free), generator);
+      const double norm =
+          FLAGS_noise * dofs.Restrict(displacement.col(k)).norm();
+      displacement.col(k) +=
+          dofs.Extend(DrawNoise(law, dofs.NumFree(), norm, generator));
     }
     load_case.displacement =
         displacement.col(k).reshaped(3, scene.mesh.NumNodes());

@@ -5,8 +5,6 @@
 #include <stdexcept>
 
 #include "elastimate/core/degrees_of_freedom.h"
-#include "elastimate/core/forward_model.h"
-#include "elastimate/core/loads.h"
 
 namespace elastimate::testing {
 
@@ -102,19 +100,6 @@ Scene SmallScene(const std::string& shape) {
     return HeldAtBottom(Distorted(box), box, {5, -10, 20});
   }
   throw std::invalid_argument("no scene " + shape);
-}
-
-void Measure(const IsotropicElasticity& elasticity, Scene& scene) {
-  ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene));
-  if (!model.SetPoissonRatio(elasticity.poisson_ratio)) {
-    throw std::runtime_error("the test scene has a singular stiffness");
-  }
-  const Eigen::MatrixXd displacement =
-      model.Displacement(elasticity.youngs_modulus);
-  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-    scene.load_cases[k].displacement =
-        displacement.col(Eigen::Index(k)).reshaped(3, scene.mesh.NumNodes());
-  }
 }
 
 double AddNoise(double relative, std::uint64_t seed, Scene& scene) {

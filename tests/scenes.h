@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "elastimate/core/elasticity.h"
 #include "elastimate/core/scene.h"
+#include "elastimate/core/simulated_measurement.h"
 
 namespace elastimate::testing {
 
@@ -28,8 +28,7 @@ Scene HeldAtBottom(const Mesh& mesh, const Mesh& reference,
 Scene SmallScene(const std::string& shape);
 std::vector<std::string> SmallSceneNames();
 
-/// Measures every load case without noise, by the forward model.
-void Measure(const IsotropicElasticity& elasticity, Scene& scene);
+using elastimate::Measure;
 
 /// Adds independent Gaussian noise to the free components; its standard
 /// deviation is `relative` times the root mean square of the free displacement

@@ -1,0 +1,179 @@
+#include "apps/flag_parser.h"
+
+#include <gflags/gflags.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+#include <iomanip>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+
+namespace elastimate {
+namespace {
+
+std::string TypeOf(const std::string& flag) {
+  gflags::CommandLineFlagInfo info;
+  gflags::GetCommandLineFlagInfo(flag.c_str(), &info);
+  return info.type;
+}
+
+bool Takes(const Command& command, const std::string& flag) {
+  return std::find(command.flags.begin(), command.flags.end(), flag) !=
+         command.flags.end();
+}
+
+// As people write it: gflags has all digits of 0.1.
+std::string ValueText(const gflags::CommandLineFlagInfo& info,
+                      const std::string& value) {
+  if (info.type != "double") {
+    return value;
+  }
+  std::ostringstream text;
+  text << std::setprecision(15) << std::strtod(value.c_str(), nullptr);
+  return text.str();
+}
+
+void CheckIsTaken(const Program& program, const Command& command,
+                  const std::string& flag) {
+  if (Takes(command, flag)) {
+    return;
+  }
+  const bool elsewhere =
+      std::any_of(program.commands.begin(), program.commands.end(),
+                  [&flag](const Command& other) { return Takes(other, flag); });
+  throw std::invalid_argument(
+      (elsewhere ? command.name + " takes no flag --" : "unknown flag --") +
+      flag + "; see " + program.name + " --help");
+}
+
+// In --flag VALUE a flag that follows is not the value, but -1 and - are.
+bool MayBeValue(const std::string& argument) {
+  return argument.size() < 2 || argument[0] != '-' || argument[1] == '.' ||
+         std::isdigit(static_cast<unsigned char>(argument[1])) != 0;
+}
+
+void SetFlag(const std::string& name, const std::string& value) {
+  const std::string type = TypeOf(name);
+  const bool accepted =
+      !value.empty() &&
+      !gflags::SetCommandLineOption(name.c_str(), value.c_str()).empty();
+  const bool finite = type != "double" || !accepted ||
+                      std::isfinite(std::strtod(value.c_str(), nullptr));
+  if (!accepted || !finite) {
+    const std::string kind = type == "double"  ? "a finite number"
+                             : type == "int32" ? "an integer up to 2147483647"
+                             : type == "uint64"
+                                 ? "an integer from 0 to 18446744073709551615"
+                                 : "a value";
+    throw std::invalid_argument(
+        "--" + name + " needs " + kind +
+        (value.empty() ? ", as in --" + name + "=VALUE" : "; it got " + value));
+  }
+}
+
+// gflags would silently take the last value.
+void CheckIsTheSame(const std::string& flag, const std::string& first,
+                    const std::string& value) {
+  if (first != value) {
+    throw std::invalid_argument("--" + flag + " is given twice, as " + first +
+                                " and as " + value + "; give it once");
+  }
+}
+
+}  // namespace
+
+const Command& FindCommand(const Program& program, const std::string& name) {
+  for (const Command& command : program.commands) {
+    if (command.name == name) {
+      return command;
+    }
+  }
+  throw std::invalid_argument(
+      (name[0] == '-' ? "the command comes first, then its flags; '" + name +
+                            "' came first"
+                      : "unknown command '" + name + "'") +
+      "; see " + program.name + " --help");
+}
+
+std::vector<std::string> ParseFlags(const Program& program,
+                                    const Command& command,
+                                    const std::vector<std::string>& arguments) {
+  std::vector<std::string> others;
+  std::map<std::string, std::string> values;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string& argument = arguments[i];
+    if (argument.empty()) {
+      throw std::invalid_argument(
+          "an argument of " + command.name +
+          " is empty; leave it out, or check the variable behind it");
+    }
+    if (argument == "-" || argument[0] != '-') {
+      others.push_back(argument);
+      continue;
+    }
+    const std::size_t equals = argument.find('=');
+    // gflags takes -flag as well.
+    const std::size_t start = argument.compare(0, 2, "--") == 0 ? 2 : 1;
+    const std::string name = argument.substr(start, equals - start);
+    CheckIsTaken(program, command, name);
+    std::string value;
+    if (equals != std::string::npos) {
+      value = argument.substr(equals + 1);
+    } else if (TypeOf(name) == "bool") {
+      value = "true";
+    } else if (i + 1 < arguments.size() && MayBeValue(arguments[i + 1])) {
+      value = arguments[++i];
+    }
+    SetFlag(name, value);
+    CheckIsTheSame(name, values.emplace(name, value).first->second, value);
+  }
+  return others;
+}
+
+bool IsGiven(const std::string& flag) {
+  gflags::CommandLineFlagInfo info;
+  return gflags::GetCommandLineFlagInfo(flag.c_str(), &info) &&
+         !info.is_default;
+}
+
+std::string AsGiven(const std::string& flag) {
+  gflags::CommandLineFlagInfo info;
+  gflags::GetCommandLineFlagInfo(flag.c_str(), &info);
+  return "--" + flag + "=" + ValueText(info, info.current_value);
+}
+
+std::string CommandsHelp(const Program& program) {
+  std::ostringstream help;
+  for (const Command& command : program.commands) {
+    help << "\n"
+         << program.name << " " << command.name << " " << command.arguments
+         << "\n    " << command.summary << "\n";
+    for (const std::string& flag : command.flags) {
+      gflags::CommandLineFlagInfo info;
+      gflags::GetCommandLineFlagInfo(flag.c_str(), &info);
+      // A default of 0 stands for "not given", except where it means itself.
+      const bool shows_default = !info.default_value.empty() &&
+                                 info.default_value != "0" &&
+                                 info.type != "bool";
+      help << "      --" << flag << "  " << info.description
+           << (shows_default
+                   ? " (default " + ValueText(info, info.default_value) + ")"
+                   : "")
+           << "\n";
+    }
+  }
+  return help.str();
+}
+
+bool AsksForHelp(const std::vector<std::string>& arguments) {
+  return (!arguments.empty() && arguments[0] == "help") ||
+         std::any_of(arguments.begin(), arguments.end(),
+                     [](const std::string& argument) {
+                       return argument == "--help" || argument == "-h";
+                     });
+}
+
+}  // namespace elastimate

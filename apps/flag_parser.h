@@ -1,0 +1,48 @@
+#ifndef ELASTIMATE_APPS_FLAG_PARSER_H_
+#define ELASTIMATE_APPS_FLAG_PARSER_H_
+
+#include <string>
+#include <vector>
+
+namespace elastimate {
+
+/// A command, the flags it takes, and what it is called with.
+struct Command {
+  std::string name;
+  std::string arguments;  ///< For people, such as "SCENE...".
+  std::string summary;
+  std::vector<std::string> flags;
+};
+
+/// A program and all its commands.
+struct Program {
+  std::string name;
+  std::vector<Command> commands;
+};
+
+/// The command of this name.  Throws std::invalid_argument when there is none.
+const Command& FindCommand(const Program& program, const std::string& name);
+
+/// Sets the flags of `command` from `arguments` and returns the other ones.
+/// Throws std::invalid_argument for a flag that it does not take, one that is
+/// given two values, a value that is not of the flag's type or not finite, and
+/// an empty argument.
+std::vector<std::string> ParseFlags(const Program& program,
+                                    const Command& command,
+                                    const std::vector<std::string>& arguments);
+
+/// Whether the flag was given.
+bool IsGiven(const std::string& flag);
+
+/// The flag with its value, such as "--nu=0.3".
+std::string AsGiven(const std::string& flag);
+
+/// Usage of all commands and the meaning of their flags.
+std::string CommandsHelp(const Program& program);
+
+/// Whether the arguments ask for help, by "help", "--help" or "-h".
+bool AsksForHelp(const std::vector<std::string>& arguments);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_APPS_FLAG_PARSER_H_
