@@ -1,0 +1,282 @@
+#!/usr/bin/python3
+"""Draws the tables of `elastimate_benchmark study` to SVG and PNG.
+
+    benchmarks/plot.py FOLDER
+
+Each CSV file of FOLDER that has a function in FIGURES becomes one figure beside
+it, of the same name.  Needs matplotlib (Debian: python3-matplotlib).
+"""
+
+import csv
+import pathlib
+import sys
+from collections import defaultdict
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+# Okabe & Ito 2008: told apart by colour-blind readers; marker and line tell
+# them apart in print.
+STYLES = {
+    "closed-form": {"color": "#D55E00", "marker": "o", "linestyle": "-"},
+    "bounded": {"color": "#CC79A7", "marker": "v", "linestyle": "-"},
+    "total-least-squares": {"color": "#E69F00", "marker": "D", "linestyle": "--"},
+    "virtual-fields": {"color": "#009E73", "marker": "^", "linestyle": "-."},
+    "one-step": {"color": "#56B4E9", "marker": "P", "linestyle": "--"},
+    "iterative-fe": {"color": "#F0E442", "marker": "X", "linestyle": ":"},
+    "reduced-fe": {"color": "#0072B2", "marker": "s", "linestyle": "--"},
+    "auto": {"color": "#000000", "marker": "*", "linestyle": "-"},
+    "Cramér-Rao bound": {"color": "#000000", "marker": "", "linestyle": ":"},
+    "prediction": {"color": "#000000", "marker": "", "linestyle": "-."},
+}
+
+YOUNGS = "youngs_modulus"
+NU = "poisson_ratio"
+DEVIATION = "displacement_deviation [1]"
+DEVIATION_LABEL = "deviation of the displacement [%]"
+ERROR_LABELS = {
+    YOUNGS: "error of Young's modulus $E$ [%]",
+    NU: r"error of Poisson's ratio $\nu$ [%]",
+}
+
+# Of a normal distribution of standard deviation 1: the 90 % quantile, and the
+# median of the absolute value.
+NORMAL_90_PERCENT = 1.2816
+NORMAL_ABSOLUTE_MEDIAN = 0.6745
+
+# ---------------------------------------------------------------------------
+# What all figures share.
+
+
+def set_style():
+    plt.rcParams.update({
+        "svg.hashsalt": "elastimate",
+        "font.size": 9,
+        "axes.grid": True,
+        "grid.color": "#DDDDDD",
+        "axes.axisbelow": True,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "lines.markersize": 4,
+        "lines.linewidth": 1.4,
+        "legend.frameon": False,
+        "figure.constrained_layout.use": True,
+        "savefig.bbox": "tight",
+    })
+
+
+def save(figure, path):
+    """Beside the table, without a date, so that the same table gives the same
+    file."""
+    figure.savefig(path.with_suffix(".svg"), metadata={"Date": None})
+    figure.savefig(path.with_suffix(".png"), dpi=150, metadata={"Software": None})
+    plt.close(figure)
+
+
+def read(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def group(rows, *columns):
+    """The rows by the values of these columns, in order of appearance."""
+    groups = defaultdict(list)
+    for row in rows:
+        groups[tuple(row[column] for column in columns)].append(row)
+    return groups
+
+
+def numbers(rows, column):
+    return np.array([float(row[column] or "nan") for row in rows])
+
+
+def percent_errors(rows, parameter):
+    """Of the truth: E is stored relative to it, nu is not."""
+    errors = 100 * numbers(rows, parameter + "_error [1]")
+    return errors if parameter == YOUNGS else errors / numbers(rows, "true_poisson_ratio [1]")
+
+
+def percent_bound(rows, parameter):
+    bound = 100 * numbers(rows, parameter + "_cramer_rao [1]")
+    return bound if parameter == YOUNGS else bound / numbers(rows, "true_poisson_ratio [1]")
+
+
+def draw_band(axes, x, samples, name):
+    """Median with a band from the 10 % to the 90 % quantile."""
+    low, median, high = (np.array([np.nanquantile(sample, share) for sample in samples])
+                         for share in (0.1, 0.5, 0.9))
+    axes.fill_between(x, low, high, color=STYLES[name]["color"], alpha=0.2, linewidth=0)
+    axes.plot(x, median, label=f"{name}, median and 10-90 %", **STYLES[name])
+
+
+def draw_trials(axes, rows, setting, parameter, scale, absolute=False):
+    """Each estimator's errors against the setting, and the same quantiles at the
+    Cramér-Rao bound."""
+    for (name,), own in group(rows, "estimator").items():
+        cells = group(own, setting)
+        x = np.array([scale * float(key[0]) for key in cells])
+        samples = [percent_errors(cell, parameter) for cell in cells.values()]
+        draw_band(axes, x, [np.abs(s) for s in samples] if absolute else samples, name)
+    bound = np.array([percent_bound(cell, parameter)[0] for cell in cells.values()])
+    if absolute:
+        axes.plot(x, NORMAL_ABSOLUTE_MEDIAN * bound, label="Cramér-Rao bound, median",
+                  **STYLES["Cramér-Rao bound"])
+    else:
+        for sign in (-1, 1):
+            axes.plot(x, sign * NORMAL_90_PERCENT * bound, label="Cramér-Rao bound, 10-90 %",
+                      **STYLES["Cramér-Rao bound"])
+    axes.set_ylabel(("absolute " if absolute else "") + ERROR_LABELS[parameter])
+
+
+def two_panels(height=3.4):
+    return plt.subplots(1, 2, figsize=(8, height))
+
+
+def finish(figure, title, columns=2):
+    """Title above all panels, and one legend below."""
+    entries = {}
+    for axes in figure.axes:
+        for handle, label in zip(*axes.get_legend_handles_labels()):
+            entries.setdefault(label, handle)
+    figure.legend(entries.values(), entries.keys(), loc="upper center",
+                  bbox_to_anchor=(0.5, 0), ncol=columns)
+    figure.suptitle(title, fontsize=10)
+
+
+# ---------------------------------------------------------------------------
+# One function for each figure: from the path of the table to a figure.
+
+
+def paper_noise(path):
+    rows = read(path)
+    prediction = read(path.with_name("paper_noise_prediction.csv"))
+    figure, panels = two_panels()
+    for axes, parameter in zip(panels, (YOUNGS, NU)):
+        draw_trials(axes, rows, DEVIATION, parameter, 100)
+        truth = 1 if parameter == YOUNGS else numbers(rows, "true_poisson_ratio [1]")[0]
+        axes.plot(100 * numbers(prediction, DEVIATION),
+                  100 * numbers(prediction, parameter + "_error [1]") / truth,
+                  label="closed-form, predicted bias", **STYLES["prediction"])
+        axes.set_xlabel(DEVIATION_LABEL)
+    finish(figure, "Cuboid, one measurement, noise of increasing magnitude")
+    return figure
+
+
+def paper_spatial_noise(path):
+    rows = read(path)
+    figure, panels = two_panels(3.6)
+    for axes, names in zip(panels, (("closed-form", "reduced-fe"), ("reduced-fe",))):
+        for name in names:
+            own = [row for row in rows if row["estimator"] == name]
+            axes.plot(percent_errors(own, YOUNGS), percent_errors(own, NU), label=name,
+                      **{**STYLES[name], "linestyle": "", "markersize": 2.5, "alpha": 0.6})
+        sigma = (percent_bound(rows, YOUNGS)[0], percent_bound(rows, NU)[0])
+        for axis, value in zip("xy", sigma):
+            for sign in (-1, 1):
+                line = axes.axvline if axis == "x" else axes.axhline
+                line(sign * value, linewidth=1,
+                     label="Cramér-Rao bound, ± one standard deviation",
+                     **{**STYLES["Cramér-Rao bound"], "marker": None})
+        axes.plot(0, 0, "k+", markersize=10, label="truth")
+        axes.set_xlabel(ERROR_LABELS[YOUNGS])
+        axes.set_ylabel(ERROR_LABELS[NU])
+    panels[1].set_title("the surroundings of the truth", fontsize=9)
+    finish(figure, f"{len(own)} noises of one magnitude, deviation 10 %", 4)
+    return figure
+
+
+def several(path, setting, xlabel, title):
+    rows = read(path)
+    figure, panels = plt.subplots(2, 2, figsize=(8, 5.6), sharex=True)
+    for column, parameter in enumerate((YOUNGS, NU)):
+        draw_trials(panels[0, column], rows, setting, parameter, 1)
+        draw_trials(panels[1, column], rows, setting, parameter, 1, absolute=True)
+        panels[1, column].set_yscale("log")
+        panels[1, column].set_xlabel(xlabel)
+        panels[1, column].set_xticks([1, 5, 10, 15, 20])
+    finish(figure, title)
+    return figure
+
+
+def paper_measurements(path):
+    return several(path, "measurements [1]", "measurements of one force [1]",
+                   "Cuboid, several measurements of one force, deviation 9 %")
+
+
+def paper_forces(path):
+    return several(path, "forces [1]", "different forces [1]",
+                   "Cuboid, several forces, deviation 9 %")
+
+
+def paper_organ(path):
+    rows = read(path)
+    figure, panels = two_panels()
+    draw_trials(panels[0], rows, DEVIATION, YOUNGS, 100)
+    draw_trials(panels[1], rows, DEVIATION, YOUNGS, 100, absolute=True)
+    for axes in panels:
+        axes.set_xlabel(DEVIATION_LABEL)
+        axes.set_xticks([0, 5, 10, 15, 20])
+    finish(figure, r"Organ, $\nu \leq 0.3$, noise of increasing magnitude")
+    return figure
+
+
+def paper_cuboid_choice(path):
+    rows = read(path)
+    figure, panels = plt.subplots(2, 2, figsize=(8.6, 6), sharey=True)
+    choices = list(group(rows, "size", "support"))
+    for line, deviation in enumerate(group(rows, DEVIATION)):
+        for axes, parameter in zip(panels[line], (YOUNGS, NU)):
+            for offset, (name,) in zip((0.15, -0.15), group(rows, "estimator")):
+                cells = group([row for row in rows if row["estimator"] == name
+                               and row[DEVIATION] == deviation[0]], "size", "support")
+                errors = [percent_errors(cells[choice], parameter) for choice in choices]
+                low, median, high = (np.array([np.nanquantile(e, q) for e in errors])
+                                     for q in (0.1, 0.5, 0.9))
+                y = -np.arange(len(choices)) + offset
+                axes.errorbar(median, y, xerr=(median - low, high - median), capsize=2,
+                              label=f"{name}, median and 10-90 %",
+                              **{**STYLES[name], "linestyle": ""})
+            # The bound is that of the scene, the same for all estimators.
+            bound = NORMAL_90_PERCENT * np.array(
+                [percent_bound(cells[choice], parameter)[0] for choice in choices])
+            for sign in (-1, 1):
+                axes.plot(sign * bound, -np.arange(len(choices)), "|", color="k", markersize=9,
+                          label="Cramér-Rao bound, 10-90 %")
+            axes.axvline(0, color="k", linewidth=0.8)
+            axes.set_xscale("symlog", linthresh=1)
+            axes.set_yticks(-np.arange(len(choices)),
+                            [f"{size}, {support}" for size, support in choices])
+            axes.set_title(f"deviation {100 * float(deviation[0]):g} %", fontsize=9)
+            axes.set_xlabel(ERROR_LABELS[parameter])
+    finish(figure, "Cuboids of 250 tetrahedra: shapes and supports", 3)
+    return figure
+
+
+FIGURES = {
+    function.__name__: function
+    for function in (paper_noise, paper_spatial_noise, paper_measurements, paper_forces,
+                     paper_organ, paper_cuboid_choice)
+}
+
+
+def main(arguments):
+    if len(arguments) != 1 or not pathlib.Path(arguments[0]).is_dir():
+        print("plot.py: give one folder with the tables of a study", file=sys.stderr)
+        return 2
+    set_style()
+    drawn = 0
+    for path in sorted(pathlib.Path(arguments[0]).glob("*.csv")):
+        if path.stem in FIGURES:
+            save(FIGURES[path.stem](path), path)
+            drawn += 1
+    if drawn == 0:
+        print(f"plot.py: there is no table of a study in {arguments[0]}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

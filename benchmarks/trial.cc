@@ -1,0 +1,80 @@
+#include "benchmarks/trial.h"
+
+#include <cmath>
+#include <random>
+
+#include "elastimate/core/degrees_of_freedom.h"
+#include "elastimate/core/simulated_measurement.h"
+
+namespace elastimate {
+namespace {
+
+double FreeNorm(const LoadCase& load_case, const DegreesOfFreedom& dofs) {
+  return dofs.Restrict(load_case.displacement.reshaped()).norm();
+}
+
+}  // namespace
+
+double Trial::YoungsModulusError() const {
+  return estimate.elasticity.youngs_modulus / truth.youngs_modulus - 1;
+}
+
+double Trial::PoissonRatioError() const {
+  return estimate.elasticity.poisson_ratio - truth.poisson_ratio;
+}
+
+std::vector<std::string> TrialColumns() {
+  return {"estimator",
+          "seed",
+          "status",
+          "youngs_modulus_error [1]",
+          "poisson_ratio_error [1]",
+          "youngs_modulus_standard_error [1]",
+          "poisson_ratio_standard_error [1]",
+          "youngs_modulus_cramer_rao [1]",
+          "poisson_ratio_cramer_rao [1]",
+          "true_poisson_ratio [1]",
+          "time [s]",
+          "factorizations [1]"};
+}
+
+std::vector<Value> TrialCells(const Trial& trial) {
+  const Estimate& estimate = trial.estimate;
+  const double youngs_modulus = trial.truth.youngs_modulus;
+  return {estimate.estimator,
+          trial.seed,
+          std::string(StatusName(estimate.status)),
+          trial.YoungsModulusError(),
+          trial.PoissonRatioError(),
+          estimate.YoungsModulusStandardError().value_or(Estimate::kUnknown) /
+              youngs_modulus,
+          estimate.PoissonRatioStandardError().value_or(Estimate::kUnknown),
+          std::sqrt(trial.cramer_rao(0, 0)) / youngs_modulus,
+          std::sqrt(trial.cramer_rao(1, 1)),
+          trial.truth.poisson_ratio,
+          estimate.seconds,
+          std::int64_t{estimate.work.factorizations}};
+}
+
+Eigen::VectorXd NoiseSd(const Scene& scene, double deviation) {
+  const DegreesOfFreedom dofs(scene.supports);
+  Eigen::VectorXd noise_sd(Eigen::Index(scene.load_cases.size()));
+  for (Eigen::Index k = 0; k < noise_sd.size(); ++k) {
+    noise_sd(k) = deviation * FreeNorm(scene.load_cases[k], dofs) /
+                  std::sqrt(static_cast<double>(dofs.NumFree()));
+  }
+  return noise_sd;
+}
+
+Scene WithNoise(Scene scene, double deviation, std::uint64_t seed) {
+  const DegreesOfFreedom dofs(scene.supports);
+  std::mt19937_64 generator(seed);
+  for (LoadCase& load_case : scene.load_cases) {
+    const double norm = deviation * FreeNorm(load_case, dofs);
+    load_case.displacement.reshaped() += dofs.Extend(
+        DrawNoise(NoiseLaw::kUniform, dofs.NumFree(), norm, generator));
+  }
+  return scene;
+}
+
+}  // namespace elastimate

@@ -1,0 +1,47 @@
+#ifndef ELASTIMATE_BENCHMARKS_TRIAL_H_
+#define ELASTIMATE_BENCHMARKS_TRIAL_H_
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "benchmarks/table.h"
+#include "elastimate/core/elasticity.h"
+#include "elastimate/core/scene.h"
+#include "elastimate/estimators/estimate.h"
+
+namespace elastimate {
+
+/// An estimate from a measurement of which the truth is known.
+struct Trial {
+  std::int64_t seed;
+  IsotropicElasticity truth;
+  /// Covariance of (E, nu) that no unbiased estimator is below.
+  Eigen::Matrix2d cramer_rao;
+  Estimate estimate;
+
+  /// E / E_true - 1.
+  double YoungsModulusError() const;
+  /// nu - nu_true.
+  double PoissonRatioError() const;
+};
+
+/// The columns that all tables of trials have, for the cells of TrialCells.
+/// Errors, standard errors and Cramer-Rao bounds (as standard deviations) of E
+/// are relative to the true E, those of nu are absolute.
+std::vector<std::string> TrialColumns();
+std::vector<Value> TrialCells(const Trial& trial);
+
+/// For each load case, the standard deviation of noise whose norm over the free
+/// components is `deviation` times that of the displacement [length].
+Eigen::VectorXd NoiseSd(const Scene& scene, double deviation);
+
+/// The scene with uniform noise of exactly that norm in each load case.  The
+/// same seed with another deviation scales the same noise, and the noise of a
+/// load case does not depend on those behind it.
+Scene WithNoise(Scene scene, double deviation, std::uint64_t seed);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_BENCHMARKS_TRIAL_H_
