@@ -67,7 +67,8 @@ void SetFlag(const std::string& name, const std::string& value) {
                              : type == "int32" ? "an integer up to 2147483647"
                              : type == "uint64"
                                  ? "an integer from 0 to 18446744073709551615"
-                                 : "a value";
+                             : type == "bool" ? "true or false"
+                                              : "a value";
     throw std::invalid_argument(
         "--" + name + " needs " + kind +
         (value.empty() ? ", as in --" + name + "=VALUE" : "; it got " + value));

@@ -42,7 +42,7 @@ struct NumTrials {
 };
 
 constexpr NumTrials kFull = {200, 500, 100, 100, 50};
-constexpr NumTrials kQuick = {100, 50, 20, 40, 10};
+constexpr NumTrials kQuick = {200, 50, 20, 40, 10};
 
 // The paper's method and reduced-fe on measurements of one scene.
 class Comparison {

@@ -13,7 +13,7 @@
 #include "elastimate/estimators/registry.h"
 #include "elastimate/io/example_scenes.h"
 #include "elastimate/io/scene_reader.h"
-#include "tests/apps/program.h"
+#include "tests/program.h"
 
 namespace elastimate {
 namespace {

@@ -7,6 +7,7 @@
 #include "elastimate/core/degrees_of_freedom.h"
 #include "elastimate/core/loads.h"
 #include "elastimate/core/quadratic_scene.h"
+#include "tests/bias_law.h"
 #include "tests/dense_reference.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
@@ -98,36 +99,16 @@ TEST(ClosedForm, IsTheLeastSquaresSolutionUnderNoise) {
               1, 1e-8);
 }
 
-// E[nu_hat] = nu + rho (nu_n - nu): nu is drawn towards that of pure noise,
-// with T from the dense matrices.
+// E[nu_hat] = nu + rho (nu_n - nu): nu is drawn towards that of pure noise.
 TEST(ClosedForm, FollowsTheBiasLaw) {
   constexpr int kSeeds = 400;
   constexpr double kNu = 0.3;
   Scene exact = SmallScene("organ");
   Measure({5e4, kNu}, exact);
-  const DegreesOfFreedom dofs(exact.supports);
-  const Eigen::MatrixXd h =
-      testing::DenseStiffness<double>(exact.mesh, testing::DenseDH());
-  const Eigen::MatrixXd j =
-      testing::DenseStiffness<double>(exact.mesh, testing::DenseDJ());
-  const Eigen::MatrixXd h_free = h(dofs.free, dofs.free);
-  const Eigen::MatrixXd j_free = j(dofs.free, dofs.free);
-  const Eigen::VectorXd f =
-      Eigen::VectorXd(AssembleLoadCases(exact).col(0)(dofs.free)).normalized();
-  // Without the direction of f, which t takes.
-  const Eigen::MatrixXd h_part = h_free - f * (f.transpose() * h_free);
-  const Eigen::MatrixXd j_part = j_free - f * (f.transpose() * j_free);
-  const double t_jj = j_part.squaredNorm();
-  const double t_hj = h_part.cwiseProduct(j_part).sum();
-  const Eigen::VectorXd q =
-      exact.load_cases[0].displacement.reshaped()(dofs.free);
-  const double b_squared = (j_part * q).squaredNorm();
-
   const double relative_noise = 0.02;
-  const double variance =
-      relative_noise * relative_noise * q.squaredNorm() / double(q.size());
-  const double rho = variance * t_jj / (b_squared + variance * t_jj);
-  const double expected = kNu + rho * (-t_hj / t_jj - kNu);
+  const auto [rho, noise_poisson_ratio] =
+      testing::BiasLawOf(exact, relative_noise);
+  const double expected = kNu + rho * (noise_poisson_ratio - kNu);
   double sum = 0;
   double square_sum = 0;
   double attenuation_sum = 0;

@@ -1,5 +1,5 @@
-#ifndef ELASTIMATE_TESTS_APPS_PROGRAM_H_
-#define ELASTIMATE_TESTS_APPS_PROGRAM_H_
+#ifndef ELASTIMATE_TESTS_PROGRAM_H_
+#define ELASTIMATE_TESTS_PROGRAM_H_
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -76,8 +76,10 @@ class ProgramTest : public ::testing::Test {
     const ProgramRun run = Run(arguments, output);
     EXPECT_EQ(run.exit_code, 2) << run.errors;
     EXPECT_NE(run.errors.find(says), std::string::npos) << run.errors;
-    EXPECT_EQ(run.errors.find("elastimate: "), 0U) << run.errors;
-    EXPECT_EQ(run.errors.find("elastimate: elastimate"), std::string::npos)
+    const std::string prefix =
+        std::filesystem::path(ELASTIMATE_PROGRAM).filename().string() + ": ";
+    EXPECT_EQ(run.errors.find(prefix), 0U) << run.errors;
+    EXPECT_EQ(run.errors.find(prefix + prefix), std::string::npos)
         << run.errors;
     EXPECT_EQ(std::count(run.errors.begin(), run.errors.end(), '\n'), 1)
         << run.errors;
@@ -104,4 +106,4 @@ class ProgramTest : public ::testing::Test {
 
 }  // namespace elastimate::testing
 
-#endif  // ELASTIMATE_TESTS_APPS_PROGRAM_H_
+#endif  // ELASTIMATE_TESTS_PROGRAM_H_
