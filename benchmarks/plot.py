@@ -47,6 +47,8 @@ ERROR_LABELS = {
 NORMAL_90_PERCENT = 1.2816
 NORMAL_ABSOLUTE_MEDIAN = 0.6745
 
+BOUND_LABEL = "Cramér-Rao bound (10-90 %; of absolute errors, median)"
+
 # ---------------------------------------------------------------------------
 # What all figures share.
 
@@ -122,11 +124,11 @@ def draw_trials(axes, rows, setting, parameter, scale, absolute=False):
         draw_band(axes, x, [np.abs(s) for s in samples] if absolute else samples, name)
     bound = np.array([percent_bound(cell, parameter)[0] for cell in cells.values()])
     if absolute:
-        axes.plot(x, NORMAL_ABSOLUTE_MEDIAN * bound, label="Cramér-Rao bound, median",
+        axes.plot(x, NORMAL_ABSOLUTE_MEDIAN * bound, label=BOUND_LABEL,
                   **STYLES["Cramér-Rao bound"])
     else:
         for sign in (-1, 1):
-            axes.plot(x, sign * NORMAL_90_PERCENT * bound, label="Cramér-Rao bound, 10-90 %",
+            axes.plot(x, sign * NORMAL_90_PERCENT * bound, label=BOUND_LABEL,
                       **STYLES["Cramér-Rao bound"])
     axes.set_ylabel(("absolute " if absolute else "") + ERROR_LABELS[parameter])
 
