@@ -1,13 +1,13 @@
 #include "elastimate/estimators/auto.h"
 
 #include <cmath>
-#include <sstream>
 
 #include "elastimate/core/quadratic_scene.h"
 #include "elastimate/estimators/checks.h"
 #include "elastimate/estimators/closed_form.h"
 #include "elastimate/estimators/model_mismatch.h"
 #include "elastimate/estimators/reduced_fe.h"
+#include "elastimate/estimators/statistics.h"
 #include "elastimate/estimators/virtual_fields.h"
 
 namespace elastimate {
@@ -21,13 +21,6 @@ constexpr double kSignificance = 1e-3;
 
 // Quadratic elements take some 45 KiB each in the factor.
 constexpr Eigen::Index kMostQuadraticElements = 100000;
-
-std::string Number(double value) {
-  std::ostringstream text;
-  text.precision(2);
-  text << value;
-  return text.str();
-}
 
 EstimatorOptions WithoutDegree(EstimatorOptions options) {
   options.virtual_field_degree.reset();
@@ -48,10 +41,10 @@ std::string WhyNotWithinTolerance(const EstimatorOptions& options,
   }
   const double relative = *youngs / estimate.elasticity.youngs_modulus;
   if (relative > kYoungsModulusTolerance) {
-    return "the standard error of E is " + Number(100 * relative) + " %";
+    return "the standard error of E is " + TwoDigits(100 * relative) + " %";
   }
   if (poisson.value_or(0) > kPoissonRatioTolerance) {
-    return "the standard error of nu is " + Number(*poisson);
+    return "the standard error of nu is " + TwoDigits(*poisson);
   }
   return "";
 }
@@ -79,7 +72,7 @@ std::string WhyTheModelIsNotEnough(const EstimatorOptions& options,
   if (estimate.model_mismatch && estimate.model_mismatch->matters &&
       estimate.model_mismatch->p_value < kSignificance) {
     return "virtual-fields disagrees by more than noise explains (p = " +
-           Number(estimate.model_mismatch->p_value) + ")";
+           TwoDigits(estimate.model_mismatch->p_value) + ")";
   }
   if (estimate.is_model_in_doubt) {
     const std::string why = WhyNotWithinTolerance(options, estimate);
@@ -161,7 +154,7 @@ std::string_view Auto::Description() const {
 
 std::string Auto::WhyUnsupported(const Scene& scene,
                                  const EstimatorOptions& options) const {
-  const std::string why_not =
+  std::string why_not =
       ReducedFe().WhyUnsupported(scene, WithoutDegree(options));
   if (why_not.empty() ||
       VirtualFields().WhyUnsupported(scene, options).empty()) {

@@ -108,13 +108,6 @@ ceres::Solver::Summary Minimize(const ForceResidual& residual,
       problem);
 }
 
-void Fail(Status status, const std::string& message, Estimate& estimate) {
-  estimate.status = status;
-  estimate.message = message;
-  estimate.covariance.setConstant(Estimate::kUnknown);
-  estimate.why_no_standard_error = "the estimate is not usable";
-}
-
 }  // namespace
 
 std::string_view Bounded::Name() const { return "bounded"; }
@@ -142,25 +135,25 @@ Estimate Bounded::DoRun(const Scene& scene,
   estimate.work = residual.WorkDone();
   const std::optional<IsotropicElasticity> start = Start(residual, options);
   if (!start) {
-    Fail(Status::kUnphysical,
-         "no Poisson's ratio within the bounds gives a positive Young's "
-         "modulus: the measured displacements oppose the loads; check their "
-         "signs, order and units",
-         estimate);
+    estimate.Fail(
+        Status::kUnphysical,
+        "no Poisson's ratio within the bounds gives a positive Young's "
+        "modulus: the measured displacements oppose the loads; check their "
+        "signs, order and units");
     return estimate;
   }
   Parameters parameters = MakeParameters(options, *start);
   const ceres::Solver::Summary summary = Minimize(residual, *start, parameters);
   if (!summary.IsSolutionUsable()) {
-    Fail(Status::kNumericalFailure, summary.message, estimate);
+    estimate.Fail(Status::kNumericalFailure, summary.message);
     return estimate;
   }
   if (std::abs(parameters.log_youngs_modulus.Value()) == kLargestLogarithm) {
-    Fail(Status::kUnphysical,
-         "the data pull Young's modulus to zero or infinity: they are mostly "
-         "noise, or the mesh, the supports or the loads do not describe the "
-         "experiment",
-         estimate);
+    estimate.Fail(
+        Status::kUnphysical,
+        "the data pull Young's modulus to zero or infinity: they are mostly "
+        "noise, or the mesh, the supports or the loads do not describe the "
+        "experiment");
     return estimate;
   }
   estimate.elasticity = {
@@ -177,7 +170,7 @@ Estimate Bounded::DoRun(const Scene& scene,
   if (!options.known_poisson_ratio && free_youngs_modulus &&
       !residual.PoissonRatio()) {
     estimate.elasticity = {Estimate::kUnknown, Estimate::kUnknown};
-    Fail(Status::kNotIdentifiable, residual.WhyNotIdentifiable(), estimate);
+    estimate.Fail(Status::kNotIdentifiable, residual.WhyNotIdentifiable());
     return estimate;
   }
   estimate.status = Status::kOk;
@@ -189,11 +182,11 @@ Estimate Bounded::DoRun(const Scene& scene,
   if (active.is_physical_limit) {
     // E runs to zero or infinity with 1 - 2 nu: its value says nothing.
     estimate.elasticity.youngs_modulus = Estimate::kUnknown;
-    Fail(Status::kUnphysical,
-         "the data pull Poisson's ratio to the end of its range, as "
-         "displacement noise does with this method; give bounds that the "
-         "material is known to keep, or use reduced-fe",
-         estimate);
+    estimate.Fail(
+        Status::kUnphysical,
+        "the data pull Poisson's ratio to the end of its range, as "
+        "displacement noise does with this method; give bounds that the "
+        "material is known to keep, or use reduced-fe");
   } else if (!options.known_poisson_ratio && free_youngs_modulus) {
     JudgeNoiseBias(residual, EffectivePoissonRatioBounds(options), estimate);
   } else if (options.known_poisson_ratio && free_youngs_modulus) {

@@ -165,6 +165,14 @@ void JudgePoissonRatioOnBound(const EstimatorOptions& options,
         "loads, the supports and the mesh";
     return;
   }
+  if (active.is_physical_limit && estimate.is_model_in_doubt) {
+    estimate.Fail(Status::kNotIdentifiable,
+                  "the data pull Poisson's ratio to 1/2 and leave a residual "
+                  "that is not noise: the mesh, the supports or the loads do "
+                  "not describe the experiment",
+                  "the model contradicts the data");
+    return;
+  }
   if (standard_error <= kLargestPoissonRatioError) {
     return;
   }

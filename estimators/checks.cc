@@ -192,8 +192,14 @@ void FinishEstimate(const Estimator& estimator, const Scene& scene,
   if (estimate.element_order == 0) {
     estimate.element_order = scene.mesh.Order();
   }
-  estimate.warnings.insert(estimate.warnings.begin(), warnings.begin(),
-                           warnings.end());
+  // An estimator that ran another has its warnings already.
+  for (auto warning = warnings.rbegin(); warning != warnings.rend();
+       ++warning) {
+    if (std::find(estimate.warnings.begin(), estimate.warnings.end(),
+                  *warning) == estimate.warnings.end()) {
+      estimate.warnings.insert(estimate.warnings.begin(), *warning);
+    }
+  }
   CheckResult(options, estimate);
   if (estimate.IsUsable()) {
     AddPoissonRatioInterval(estimate);

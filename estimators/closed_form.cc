@@ -41,9 +41,8 @@ Estimate ClosedForm::DoRun(const Scene& scene,
                                        ? residual.PoissonRatio()
                                        : options.known_poisson_ratio;
   if (!nu) {
-    estimate.status = Status::kNotIdentifiable;
-    estimate.message = residual.WhyNotIdentifiable();
-    estimate.why_no_standard_error = "the parameters are not determined";
+    estimate.Fail(Status::kNotIdentifiable, residual.WhyNotIdentifiable(),
+                  "the parameters are not determined");
     return estimate;
   }
   estimate.elasticity = residual.At(*nu);
@@ -57,12 +56,9 @@ Estimate ClosedForm::DoRun(const Scene& scene,
                    "E below zero, and so may a mesh, supports or loads that do "
                    "not describe the experiment; use reduced-fe, which noise "
                    "does not bias, or give Poisson's ratio"
-                 : "the measured displacements oppose the loads; check their "
-                   "signs, order and units");
-    estimate.status = Status::kUnphysical;
-    estimate.message = text.str();
-    estimate.covariance.setConstant(Estimate::kUnknown);
-    estimate.why_no_standard_error = "the estimate is not physical";
+                 : kDisplacementsOpposeLoads);
+    estimate.Fail(Status::kUnphysical, text.str(),
+                  "the estimate is not physical");
   } else if (free_poisson_ratio) {
     JudgeNoiseBias(residual, Bounds{}, estimate);
   } else {

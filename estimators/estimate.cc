@@ -1,6 +1,7 @@
 #include "elastimate/estimators/estimate.h"
 
 #include <cmath>
+#include <utility>
 
 namespace elastimate {
 namespace {
@@ -25,6 +26,14 @@ std::string_view StatusName(Status status) {
       break;
   }
   return "numerical_failure";
+}
+
+void Estimate::Fail(Status why_not_ok, std::string what,
+                    std::string why_no_error) {
+  status = why_not_ok;
+  message = std::move(what);
+  covariance.setConstant(kUnknown);
+  why_no_standard_error = std::move(why_no_error);
 }
 
 std::optional<double> Estimate::YoungsModulusStandardError() const {

@@ -59,6 +59,11 @@ struct Rung {
   std::string decision;
 };
 
+/// The message of an estimate whose E is negative.
+inline constexpr char kDisplacementsOpposeLoads[] =
+    "the measured displacements oppose the loads; check their signs, order and "
+    "units";
+
 /// What an estimator says about a scene.  Starts out as a failure, so that it
 /// cannot be mistaken for a result before an estimator has filled it in.
 struct Estimate {
@@ -116,6 +121,9 @@ struct Estimate {
   double seconds = 0;  ///< Time of the whole estimator.
 
   bool IsUsable() const { return status == Status::kOk; }
+  /// Makes it one that is not usable, without standard errors.
+  void Fail(Status why_not_ok, std::string what,
+            std::string why_no_error = "the estimate is not usable");
   /// Square roots of the diagonal of `covariance`; empty when unknown.
   std::optional<double> YoungsModulusStandardError() const;
   std::optional<double> PoissonRatioStandardError() const;

@@ -47,14 +47,7 @@ Eigen::Matrix3d BlockwiseTriangle(
   return triangle;
 }
 
-std::string Number(double value) {
-  std::ostringstream text;
-  text.precision(2);
-  text << value;
-  return text.str();
-}
-
-std::string Percent(double ratio) { return Number(100 * ratio) + " %"; }
+std::string Percent(double ratio) { return TwoDigits(100 * ratio) + " %"; }
 
 }  // namespace
 
@@ -357,17 +350,15 @@ void JudgeKnownPoissonRatio(const ForceResidual& residual, Estimate& estimate) {
       residual.At(*nu).youngs_modulus / estimate.elasticity.youngs_modulus;
   const std::string what =
       "the data contradict the given Poisson's ratio: they ask for " +
-      Number(*nu) + " +- " + Number(*error) +
+      TwoDigits(*nu) + " +- " + TwoDigits(*error) +
       ", unless the mesh, the supports or the loads do not describe the "
       "experiment";
   if (std::abs(ratio - 1) <= kUnusableChange) {
     estimate.warnings.push_back(what);
     return;
   }
-  estimate.status = Status::kNotIdentifiable;
-  estimate.message = what;
-  estimate.covariance.setConstant(Estimate::kUnknown);
-  estimate.why_no_standard_error = "the model contradicts the data";
+  estimate.Fail(Status::kNotIdentifiable, what,
+                "the model contradicts the data");
 }
 
 void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,
@@ -399,15 +390,12 @@ void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,
            (std::isfinite(bias) ? Percent(bias) : "its whole size") +
            ", more than the 10 % that are usable";
   } else if (!(std::abs(nu_bias) <= kUnusablePoissonRatioBias)) {
-    what = "Poisson's ratio by about " + Number(nu_bias) +
+    what = "Poisson's ratio by about " + TwoDigits(nu_bias) +
            ", more than the 0.03 that are usable";
   }
   if (!what.empty()) {
-    estimate.status = Status::kNotIdentifiable;
-    estimate.message = cause + what + "; " + advice;
-    estimate.covariance.setConstant(Estimate::kUnknown);
-    estimate.why_no_standard_error =
-        "the bias is larger than any standard error";
+    estimate.Fail(Status::kNotIdentifiable, cause + what + "; " + advice,
+                  "the bias is larger than any standard error");
     return;
   }
   const double standard_error =
@@ -418,7 +406,7 @@ void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,
   } else if (std::abs(nu_bias) >
              std::max(kNotableBias,
                       estimate.PoissonRatioStandardError().value_or(0))) {
-    what = "Poisson's ratio by about " + Number(nu_bias);
+    what = "Poisson's ratio by about " + TwoDigits(nu_bias);
   }
   if (!what.empty()) {
     estimate.warnings.push_back(cause + what +

@@ -6,8 +6,10 @@
 #include <ceres/solver.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <vector>
 
 #include "elastimate/core/forward_model.h"
 #include "elastimate/core/loads.h"
@@ -21,11 +23,12 @@
 namespace elastimate {
 namespace {
 
-// Where the fit looks for a start.  The sum of squares can have a minimum on
-// either side of zero (a slender bar in bending does), and steps towards 1/2
-// are short: one point each, the likeliest last, where its factorisation is
-// still at hand for the first step.
-constexpr double kStartPoissonRatios[] = {-0.5, 0.45, 0.3};
+// Where the fit looks for a start: in each decade of (1 + nu) / (1 - 2 nu),
+// the scale on which the stiffness changes evenly, since the sum of squares can
+// have several minima (that of a slender bar or a plate in bending has).  The
+// likeliest is last, where its factorisation is still at hand for the first
+// step.
+constexpr double kStartPoissonRatios[] = {-0.85, -0.5, 0.0, 0.45, 0.495, 0.3};
 // Steps below this part of a standard error end the fit.
 constexpr double kSmallestStep = 1e-2;
 
@@ -273,11 +276,16 @@ ComplianceFit FitComplianceScale(Loss loss,
   return {t, (rest - t * w).lpNorm<1>()};
 }
 
-// The best of the start points within the bounds, with the E that fits best
-// there.  Empty when the stiffness is singular at all of them; E is not
-// positive when it is at none of them.
-std::optional<IsotropicElasticity> FindStart(const EstimatorOptions& options,
-                                             DisplacementResidual& residual) {
+// The best fit at one nu.
+struct ProfilePoint {
+  IsotropicElasticity elasticity;
+  double cost;
+};
+
+// The start points within the bounds, with the E that fits best there, unless
+// the stiffness is singular.
+std::vector<ProfilePoint> EvaluateStarts(const EstimatorOptions& options,
+                                         DisplacementResidual& residual) {
   std::vector<double> candidates;
   if (options.known_poisson_ratio) {
     candidates = {*options.known_poisson_ratio};
@@ -289,24 +297,71 @@ std::optional<IsotropicElasticity> FindStart(const EstimatorOptions& options,
     candidates.erase(std::unique(candidates.begin(), candidates.end()),
                      candidates.end());
   }
-  std::optional<IsotropicElasticity> best;
-  double best_cost = 0;
+  std::vector<ProfilePoint> starts;
   for (const double nu : candidates) {
-    if (!residual.SetPoissonRatio(nu)) {
-      continue;
-    }
-    const ComplianceFit fit = FitComplianceScale(options.loss, residual);
-    const IsotropicElasticity elasticity =
-        IsotropicElasticity::FromComplianceScale(fit.compliance_scale, nu);
-    const bool is_better =
-        !best || (elasticity.IsPhysical() &&
-                  (!best->IsPhysical() || fit.cost <= best_cost));
-    if (is_better) {
-      best = elasticity;
-      best_cost = fit.cost;
+    if (residual.SetPoissonRatio(nu)) {
+      const ComplianceFit fit = FitComplianceScale(options.loss, residual);
+      starts.push_back(
+          {IsotropicElasticity::FromComplianceScale(fit.compliance_scale, nu),
+           fit.cost});
     }
   }
-  return best;
+  return starts;
+}
+
+// E is not positive when it is at none of the starts.  Precondition: not empty.
+IsotropicElasticity BestStart(const std::vector<ProfilePoint>& starts) {
+  ProfilePoint best = starts.front();
+  for (const ProfilePoint& start : starts) {
+    if (start.elasticity.IsPhysical() &&
+        (!best.elasticity.IsPhysical() || start.cost <= best.cost)) {
+      best = start;
+    }
+  }
+  return best.elasticity;
+}
+
+// Widens the standard errors to what the profile likelihood says, as far as the
+// search for a start has seen it: the square root of what the sum of squares
+// grows by is taken as linear between the fit and the nearest start on either
+// side, and so is E.  A start too far off says nothing.
+void DescribeProfile(const std::vector<ProfilePoint>& starts,
+                     double least_square_sum, double variance,
+                     Estimate& estimate) {
+  constexpr double kTwoSided = 1.960;
+  constexpr double kFarStandardErrors = 5;
+  // Beyond this the interval has no end.
+  constexpr double kMostGrowth = 10;
+  const IsotropicElasticity best = estimate.elasticity;
+  const double nu = best.poisson_ratio;
+  const double standard_error = *estimate.PoissonRatioStandardError();
+  std::array<IsotropicElasticity, 2> ends = {best, best};
+  std::array<double, 2> nearest = {kFarStandardErrors * standard_error,
+                                   kFarStandardErrors * standard_error};
+  for (const ProfilePoint& start : starts) {
+    const double distance = start.elasticity.poisson_ratio - nu;
+    const std::size_t side = distance < 0 ? 0 : 1;
+    if (!(std::abs(distance) < nearest[side])) {
+      continue;
+    }
+    nearest[side] = std::abs(distance);
+    const double expected = variance * std::pow(distance / standard_error, 2);
+    const double growth = std::max(start.cost - least_square_sum, 0.0);
+    const double stretch =
+        std::clamp(std::sqrt(expected / growth), 1.0, kMostGrowth);
+    const double share =
+        stretch * kTwoSided * standard_error / std::abs(distance);
+    ends[side] = {
+        best.youngs_modulus +
+            share * (start.elasticity.youngs_modulus - best.youngs_modulus),
+        nu + share * distance};
+  }
+  for (IsotropicElasticity& end : ends) {
+    if (end.poisson_ratio == nu) {
+      end.poisson_ratio = kLargestPoissonRatio;  // Left out.
+    }
+  }
+  WidenToProfile(ends[0], ends[1], estimate);
 }
 
 BoundedParameter::Side ViolatedBound(const Bounds& bounds,
@@ -344,8 +399,8 @@ Estimate IterativeFe::DoRun(const Scene& scene,
   DisplacementResidual residual(scene, options);
   estimate.stages.push_back({"assemble and analyse", stopwatch.Lap()});
 
-  const std::optional<IsotropicElasticity> start = FindStart(options, residual);
-  if (!start) {
+  const std::vector<ProfilePoint> starts = EvaluateStarts(options, residual);
+  if (starts.empty()) {
     estimate.message =
         "the stiffness matrix is singular to working precision; check the "
         "mesh for slivers and loose parts, and the supports";
@@ -353,25 +408,23 @@ Estimate IterativeFe::DoRun(const Scene& scene,
     estimate.work = residual.WorkDone();
     return estimate;
   }
-  if (!start->IsPhysical() || !std::isfinite(start->youngs_modulus)) {
-    estimate.status = Status::kUnphysical;
-    estimate.elasticity = *start;
-    estimate.message =
-        "the measured displacements oppose the loads; check their signs, "
-        "order and units";
-    estimate.why_no_standard_error = "the estimate is not physical";
+  const IsotropicElasticity start = BestStart(starts);
+  if (!start.IsPhysical() || !std::isfinite(start.youngs_modulus)) {
+    estimate.elasticity = start;
+    estimate.Fail(Status::kUnphysical, kDisplacementsOpposeLoads,
+                  "the estimate is not physical");
     estimate.work = residual.WorkDone();
     return estimate;
   }
 
-  residual.SetPoissonRatio(start->poisson_ratio);
+  residual.SetPoissonRatio(start.poisson_ratio);
   BoundedParameter scale(
-      std::log(start->ComplianceScale() * residual.UnitLoadResponse().norm()),
+      std::log(start.ComplianceScale() * residual.UnitLoadResponse().norm()),
       Bounds{});
   BoundedParameter poisson_ratio =
       options.known_poisson_ratio
           ? BoundedParameter::Constant(*options.known_poisson_ratio)
-          : BoundedParameter(start->poisson_ratio,
+          : BoundedParameter(start.poisson_ratio,
                              EffectivePoissonRatioBounds(options));
   residual.SetParameters(Scale::kLogResponseNorm, &scale, &poisson_ratio);
   NodeLosses losses;
@@ -406,9 +459,15 @@ Estimate IterativeFe::DoRun(const Scene& scene,
     estimate.message = summary.message;
   }
   if (residual.IsValid()) {
-    DescribeDisplacementFit(scene, residual.Graph(), options,
-                            residual.Observed(), residual.Fit(), losses, active,
-                            estimate);
+    const std::optional<double> variance = DescribeDisplacementFit(
+        scene, residual.Graph(), options, residual.Observed(), residual.Fit(),
+        losses, active, estimate);
+    if (variance && options.loss == Loss::kNone && estimate.IsUsable() &&
+        estimate.active_bounds.empty() &&
+        ShareOfDistanceToPole(estimate) > kLargestLinearShare) {
+      DescribeProfile(starts, residual.Fit().residual.squaredNorm(), *variance,
+                      estimate);
+    }
   }
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
   estimate.work = residual.WorkDone();

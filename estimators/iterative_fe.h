@@ -14,15 +14,17 @@ namespace elastimate {
 /// that a loss rejects a bad node as a whole; analytic derivatives
 /// du/dtheta = -K^-1 (dK/dtheta) u; one factorisation for each nu tried,
 /// shared by E and all load cases; bounds on E and nu.  It starts from the
-/// best of nu = -0.5, 0.45 and 0.3 (moved into the bounds), with the E that
-/// fits best there: the sum of squares can have several minima.
+/// best of nu = -0.85, -0.5, 0, 0.3, 0.45 and 0.495 (moved into the bounds),
+/// with the E that fits best there: the sum of squares can have several minima.
+/// Where the standard error of nu is large (kLargestLinearShare), what these
+/// say of the profile likelihood widens the standard errors.
 ///
 /// Needs supports that hold the specimen; any observed components will do.
 /// Reaches the Cramer-Rao bound as long as the mesh describes the specimen.
 /// With a loss (scale 1.4826 MAD of the residuals, Huber k = 1.345, Cauchy
 /// c = 2.385), the fit is repeated with the scale of a first one without.
 ///
-/// Cost: about 6 to 12 factorisations; memory is that of the factor.
+/// Cost: about 8 to 14 factorisations; memory is that of the factor.
 /// Deterministic for a given number of BLAS threads.
 class IterativeFe : public Estimator {
  public:

@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "elastimate/core/forward_model.h"
 #include "elastimate/core/loads.h"
@@ -10,6 +11,7 @@
 #include "elastimate/estimators/displacement_fit.h"
 #include "elastimate/estimators/node_losses.h"
 #include "elastimate/estimators/observed_displacements.h"
+#include "elastimate/estimators/statistics.h"
 #include "elastimate/estimators/stopwatch.h"
 #include "elastimate/estimators/virtual_fields.h"
 
@@ -19,6 +21,8 @@ namespace {
 // Where there are no virtual fields to start from.
 constexpr double kStart = 0.3;
 constexpr int kMostSteps = 20;
+// Of ShareOfDistanceToPole: a larger one is not that of a linear model.
+constexpr double kLargestShare = 0.1;
 
 // The fit after a step, linear in the change of the parameters.
 struct Step {
@@ -156,19 +160,15 @@ Estimate OneStep::DoRun(const Scene& scene,
   estimate.elasticity = IsotropicElasticity::FromComplianceScale(
       step.compliance_scale, step.poisson_ratio);
   if (!(step.compliance_scale > 0)) {
-    estimate.status = Status::kUnphysical;
-    estimate.message =
-        "the measured displacements oppose the loads; check their signs, "
-        "order and units";
-    estimate.why_no_standard_error = "the estimate is not physical";
+    estimate.Fail(Status::kUnphysical, kDisplacementsOpposeLoads,
+                  "the estimate is not physical");
     return estimate;
   }
   if (!estimate.elasticity.IsPhysical()) {
-    estimate.status = Status::kUnphysical;
-    estimate.message =
-        "the steps lead out of the range of Poisson's ratio; use reduced-fe, "
-        "which keeps it";
-    estimate.why_no_standard_error = "the estimate is not physical";
+    estimate.Fail(Status::kUnphysical,
+                  "the steps lead out of the range of Poisson's ratio; use "
+                  "reduced-fe, which keeps it",
+                  "the estimate is not physical");
     return estimate;
   }
   if (has_converged) {
@@ -181,6 +181,15 @@ Estimate OneStep::DoRun(const Scene& scene,
   DescribeDisplacementFit(scene, model.Graph(), options, observed,
                           DescribeStep(step), NodeLosses(), ActiveBounds(),
                           estimate);
+  if (estimate.IsUsable() && !options.known_poisson_ratio &&
+      ShareOfDistanceToPole(estimate) > kLargestShare) {
+    std::ostringstream text;
+    text << "nu = " << estimate.elasticity.poisson_ratio
+         << " has a standard error of "
+         << TwoDigits(*estimate.PoissonRatioStandardError())
+         << ", too large for one step of a linear model; use reduced-fe";
+    estimate.Fail(Status::kNotIdentifiable, text.str());
+  }
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
   return estimate;
 }

@@ -23,6 +23,8 @@ namespace elastimate {
 /// where virtual-fields cannot give a start, it is nu0 = 0.3.  Reaches the
 /// Cramer-Rao bound as long as the mesh describes the specimen.  A start on the
 /// wrong side of two minima stays there; reduced-fe does not have that problem.
+/// An estimate of nu whose standard error is above a tenth of the distance to
+/// the nearer of -1 and 1/2 is not usable: the model is not linear that far.
 ///
 /// Cost: virtual-fields, then 1 to 3 factorisations and 2 solves for each load
 /// case and factorisation.

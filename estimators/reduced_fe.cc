@@ -183,25 +183,36 @@ class AdaptiveFit {
     return is_regular_;
   }
 
-  // Where nu of the last fit without a loss lies with a probability of 95 %,
-  // for residuals of this variance.
-  Interval ProfileInterval(const ObservedDisplacements& observed,
-                           double variance) const {
+  // Enters where nu of the last fit without a loss lies with a probability of
+  // 95 %, for residuals of this variance, and widens the standard errors to it.
+  void DescribeProfile(const ObservedDisplacements& observed, double variance,
+                       Estimate& estimate) const {
     // Quantiles of chi^2 of one degree of freedom: 95 %, and 90 % for the end
     // of a one-sided interval.
     constexpr double kTwoSided = 3.841;
     constexpr double kOneSided = 2.706;
-    const auto interval = [&](double quantile) {
-      return least_squares_->ProfileInterval(observed.Measured(), fit_.point,
-                                             quantile * variance);
+    const auto profile = [&](double quantile) {
+      return least_squares_->ProfileEnds(observed.Measured(), fit_.point,
+                                         quantile * variance);
     };
-    Interval both = interval(kTwoSided);
-    const bool reaches_upper = both.upper >= kLargestPoissonRatio;
-    const bool reaches_lower = both.lower <= kSmallestPoissonRatio;
+    const auto elasticity_of = [](const ReducedFit::Point& point) {
+      return IsotropicElasticity::FromComplianceScale(point.compliance_scale,
+                                                      point.poisson_ratio);
+    };
+    const ReducedFit::Profile both = profile(kTwoSided);
+    WidenToProfile(elasticity_of(both.lower), elasticity_of(both.upper),
+                   estimate);
+    double lower = both.lower.poisson_ratio;
+    double upper = both.upper.poisson_ratio;
+    const bool reaches_upper = upper >= kLargestPoissonRatio;
+    const bool reaches_lower = lower <= kSmallestPoissonRatio;
     if (reaches_upper != reaches_lower) {
-      both = interval(kOneSided);
+      const ReducedFit::Profile one = profile(kOneSided);
+      lower = one.lower.poisson_ratio;
+      upper = one.upper.poisson_ratio;
     }
-    return {reaches_lower ? -1 : both.lower, reaches_upper ? 0.5 : both.upper};
+    estimate.poisson_ratio_interval = {reaches_lower ? -1 : lower,
+                                       reaches_upper ? 0.5 : upper};
   }
 
   const ModelFit& Best() const { return fit_; }
@@ -310,14 +321,6 @@ BoundedParameter::Side BoundOf(const Bounds& bounds, double value) {
   return BoundedParameter::Side::kNone;
 }
 
-bool IsNearPhysicalLimit(const Estimate& estimate) {
-  constexpr double kStandardErrors = 3;
-  const double nu = estimate.elasticity.poisson_ratio;
-  const double range =
-      kStandardErrors * estimate.PoissonRatioStandardError().value_or(0);
-  return nu + range > 0.5 || nu - range < -1;
-}
-
 // Fits, and describes the fit.
 Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
                         const ObservedDisplacements& observed,
@@ -338,11 +341,8 @@ Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
       best.point.compliance_scale, best.point.poisson_ratio);
   if (!estimate.elasticity.IsPhysical() ||
       !std::isfinite(estimate.elasticity.youngs_modulus)) {
-    estimate.status = Status::kUnphysical;
-    estimate.message =
-        "the measured displacements oppose the loads; check their signs, "
-        "order and units";
-    estimate.why_no_standard_error = "the estimate is not physical";
+    estimate.Fail(Status::kUnphysical, kDisplacementsOpposeLoads,
+                  "the estimate is not physical");
     return estimate;
   }
   if (adaptive.HasConverged()) {
@@ -367,9 +367,9 @@ Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
       ExpandFit(adaptive.Model(), observed, estimate.elasticity), best.losses,
       active, estimate);
   if (variance && options.loss == Loss::kNone && estimate.IsUsable() &&
-      (active.is_physical_limit || IsNearPhysicalLimit(estimate))) {
-    estimate.poisson_ratio_interval =
-        adaptive.ProfileInterval(observed, *variance);
+      (active.is_physical_limit ||
+       ShareOfDistanceToPole(estimate) > kLargestLinearShare)) {
+    adaptive.DescribeProfile(observed, *variance, estimate);
   }
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
   return estimate;

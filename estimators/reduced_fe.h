@@ -23,6 +23,10 @@ namespace elastimate {
 /// by iterative reweighting from the least absolute deviations, with its scale
 /// from 1.4826 MAD of the residuals.
 ///
+/// Where the standard error of nu is large (kLargestLinearShare), the 95 %
+/// interval of nu is that of the profile likelihood, and the standard errors of
+/// nu and E are widened to it.
+///
 /// Needs supports that hold the specimen; any observed components will do.
 /// Reaches the Cramer-Rao bound as long as the mesh describes the specimen.
 ///

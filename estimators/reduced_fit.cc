@@ -109,8 +109,9 @@ ReducedFit::Point ReducedFit::Fit(const Eigen::VectorXd& measured) const {
   return IsBetter(minimum, best) ? minimum : best;
 }
 
-Interval ReducedFit::ProfileInterval(const Eigen::VectorXd& measured,
-                                     const Point& best, double excess) const {
+ReducedFit::Profile ReducedFit::ProfileEnds(const Eigen::VectorXd& measured,
+                                            const Point& best,
+                                            double excess) const {
   const Projection projection = Project(measured);
   const double limit = best.square_sum + excess;
   const auto is_inside = [&](double nu) {
@@ -138,7 +139,8 @@ Interval ReducedFit::ProfileInterval(const Eigen::VectorXd& measured,
     }
     return inside;
   };
-  return {end_towards(scan_(0), -1), end_towards(scan_(scan_.size() - 1), 1)};
+  return {At(end_towards(scan_(0), -1), projection),
+          At(end_towards(scan_(scan_.size() - 1), 1), projection)};
 }
 
 ReducedFit::Projection ReducedFit::Project(

@@ -40,11 +40,16 @@ class ReducedFit {
   /// Cost: O(rows m), then about 200 m + 20 m^2 operations.
   Point Fit(const Eigen::VectorXd& measured) const;
 
-  /// The values of nu around `best` = Fit(measured) whose best sum of squares
-  /// exceeds that of `best` by no more than `excess`: the profile likelihood.
-  /// The ends of the scan where the sum of squares stays below.
-  Interval ProfileInterval(const Eigen::VectorXd& measured, const Point& best,
-                           double excess) const;
+  /// The best fits at the ends of the interval of nu around `best` =
+  /// Fit(measured) in which the best sum of squares exceeds that of `best` by
+  /// no more than `excess`: the profile likelihood.  At the ends of the scan
+  /// where the sum of squares stays below.
+  struct Profile {
+    Point lower;
+    Point upper;
+  };
+  Profile ProfileEnds(const Eigen::VectorXd& measured, const Point& best,
+                      double excess) const;
 
  private:
   // The observed rows of w and v in an orthonormal basis: stacked over the load

@@ -69,6 +69,13 @@ double LeastAbsoluteDeviations(const Eigen::VectorXd& x,
   return ratios[middle].first;
 }
 
+std::string TwoDigits(double value) {
+  std::ostringstream text;
+  text.precision(2);
+  text << value;
+  return text.str();
+}
+
 std::string DescribeWhatIsDetermined(const Estimate& estimate) {
   const Eigen::Vector2d to_logarithm(1 / estimate.elasticity.youngs_modulus, 1);
   const Eigen::Matrix2d covariance = to_logarithm.asDiagonal() *

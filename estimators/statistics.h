@@ -26,6 +26,9 @@ double Median(std::vector<double> values);
 double LeastAbsoluteDeviations(const Eigen::VectorXd& x,
                                const Eigen::VectorXd& y);
 
+/// A number for a sentence, to two significant digits.
+std::string TwoDigits(double value);
+
 /// One sentence about an estimate whose nu is not determined: which modulus
 /// the covariance says is determined all the same (E, mu, kappa or none, to
 /// 10 %), and what to do.  Precondition: a finite elasticity.

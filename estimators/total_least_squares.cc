@@ -97,13 +97,6 @@ class Derivatives {
   Eigen::MatrixXd f_;
 };
 
-void Fail(Status status, const std::string& message, Estimate& estimate) {
-  estimate.status = status;
-  estimate.message = message;
-  estimate.covariance.setConstant(Estimate::kUnknown);
-  estimate.why_no_standard_error = "the estimate is not usable";
-}
-
 // Relative to its standard error, a difference that is no chance; and a
 // relative standard error of E that a user wants to be told of.
 constexpr double kSignificantScore = 5;
@@ -119,13 +112,13 @@ void CompareWithVirtualFields(const Scene& scene, EstimatorOptions options,
   options.virtual_field_degree = 1;
   const Estimate other = VirtualFields().Run(scene, options);
   estimate.work = estimate.work + other.work;
-  if (!other.IsUsable()) {
-    Fail(Status::kNotIdentifiable,
-         "virtual-fields of degree 1, against which this method is held since "
-         "it does not see errors of the mesh, the supports and the loads, are "
-         "not usable: " +
-             other.message,
-         estimate);
+  if (!other.IsUsable() || !other.active_bounds.empty()) {
+    estimate.Fail(
+        Status::kNotIdentifiable,
+        "virtual-fields of degree 1, against which this method is held since "
+        "it does not see errors of the mesh, the supports and the loads, are "
+        "not usable: " +
+            (other.IsUsable() ? other.warnings.back() : other.message));
     return;
   }
   std::vector<Eigen::Index> free = {0};
@@ -157,10 +150,7 @@ void CompareWithVirtualFields(const Scene& scene, EstimatorOptions options,
 void JudgeUnphysical(const ForceResidual& residual, Estimate& estimate) {
   const IsotropicElasticity& elasticity = estimate.elasticity;
   if (!(residual.ComplianceScale(elasticity.poisson_ratio) > 0)) {
-    Fail(Status::kUnphysical,
-         "the measured displacements oppose the loads; check their signs, "
-         "order and units",
-         estimate);
+    estimate.Fail(Status::kUnphysical, kDisplacementsOpposeLoads);
     return;
   }
   const bool is_noise = !(estimate.PoissonRatioStandardError().value_or(0) <=
@@ -171,8 +161,8 @@ void JudgeUnphysical(const ForceResidual& residual, Estimate& estimate) {
                     : "the mesh, the supports or the loads do not describe the "
                       "experiment, or displacement noise is large")
        << "; use virtual-fields or reduced-fe, or give Poisson's ratio";
-  Fail(is_noise ? Status::kNotIdentifiable : Status::kUnphysical, text.str(),
-       estimate);
+  estimate.Fail(is_noise ? Status::kNotIdentifiable : Status::kUnphysical,
+                text.str());
 }
 
 }  // namespace
@@ -209,7 +199,7 @@ Estimate TotalLeastSquares::DoRun(const Scene& scene,
   estimate.work = residual.WorkDone();
   const bool free_poisson_ratio = !options.known_poisson_ratio;
   if (free_poisson_ratio && !residual.PoissonRatio()) {
-    Fail(Status::kNotIdentifiable, residual.WhyNotIdentifiable(), estimate);
+    estimate.Fail(Status::kNotIdentifiable, residual.WhyNotIdentifiable());
     return estimate;
   }
   if (!free_poisson_ratio) {
@@ -225,10 +215,10 @@ Estimate TotalLeastSquares::DoRun(const Scene& scene,
         noise_is_given ? residual.UnbiasedPoissonRatio()
                        : residual.ErrorsInVariablesPoissonRatio();
     if (!nu || !std::isfinite(*nu)) {
-      Fail(Status::kNotIdentifiable,
-           "displacement noise hides Poisson's ratio from this method; use "
-           "virtual-fields or reduced-fe, or give Poisson's ratio",
-           estimate);
+      estimate.Fail(
+          Status::kNotIdentifiable,
+          "displacement noise hides Poisson's ratio from this method; use "
+          "virtual-fields or reduced-fe, or give Poisson's ratio");
       return estimate;
     }
     estimate.elasticity = residual.At(*nu);

@@ -2,7 +2,6 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <sstream>
 
 #include "elastimate/core/loads.h"
 #include "elastimate/estimators/force_residual.h"
@@ -25,20 +24,6 @@ constexpr double kNotableError = 0.01;
 // put E off by more than is usable.
 constexpr double kNotableImbalance = 0.01;
 constexpr double kUnusableImbalance = 0.1;
-
-std::string Number(double value) {
-  std::ostringstream text;
-  text.precision(2);
-  text << value;
-  return text.str();
-}
-
-void Fail(Status status, const std::string& message, Estimate& estimate) {
-  estimate.status = status;
-  estimate.message = message;
-  estimate.covariance.setConstant(Estimate::kUnknown);
-  estimate.why_no_standard_error = "the estimate is not usable";
-}
 
 // What the residual says about its causes.
 struct ResidualJudgement {
@@ -71,13 +56,18 @@ std::optional<ResidualJudgement> JudgeResidual(
       return ResidualJudgement{1, 0};
     }
     estimate.warnings.push_back(
-        "the balance of virtual work is off by " + Number(std::sqrt(variance)) +
+        "the balance of virtual work is off by " +
+        TwoDigits(std::sqrt(variance)) +
         " times what the given noise explains, and the standard errors are "
         "widened to match; the mesh, the supports or the loads do not describe "
         "the experiment");
   }
+  // On a bound the force residual is that of the bound, too.
   const std::optional<double> rough_variance =
-      force_residual.ResidualVariance(fit.poisson_ratio, false);
+      estimate.active_bounds.empty()
+          ? force_residual.ResidualVariance(fit.poisson_ratio, false)
+          : force_residual.ResidualVariance(
+                force_residual.ErrorsInVariablesPoissonRatio(), true);
   // The stiffness colours the force residual, which takes up to three quarters
   // of its degrees of freedom.
   const double rough_m = static_cast<double>(force_residual.NumEquations()) / 4;
@@ -143,11 +133,11 @@ void Describe(const EstimatorOptions& options, const ActiveBounds& active,
   const std::optional<Eigen::MatrixXd> covariance =
       information.Covariance(free);
   if (!covariance) {
-    Fail(Status::kNotIdentifiable,
-         "displacement noise hides Poisson's ratio from these virtual fields; "
-         "give Poisson's ratio, raise the degree of the fields, or use "
-         "reduced-fe",
-         estimate);
+    estimate.Fail(
+        Status::kNotIdentifiable,
+        "displacement noise hides Poisson's ratio from these virtual fields; "
+        "give Poisson's ratio, raise the degree of the fields, or use "
+        "reduced-fe");
     return;
   }
   const Eigen::Vector2d scale(estimate.elasticity.youngs_modulus, 1);
@@ -168,6 +158,47 @@ void Describe(const EstimatorOptions& options, const ActiveBounds& active,
   }
 }
 
+// `correction` is the smallest change of the displacements that brings the
+// virtual work of all fields into balance, relative to them.
+void JudgeCorrection(double correction, Estimate& estimate) {
+  constexpr double kUnusableCorrection = 0.2;
+  if (!estimate.IsUsable() || !(correction > kUnusableCorrection)) {
+    return;
+  }
+  estimate.Fail(Status::kNotIdentifiable,
+                "the loads are in balance only with displacements that differ "
+                "from the measured ones by " +
+                    TwoDigits(100 * correction) +
+                    " % of them: the mesh, the supports, the loads, a bound or "
+                    "a given Poisson's ratio do not describe the experiment, "
+                    "or the measurement is mostly noise",
+                "the model contradicts the data");
+}
+
+// Whether the data contradict the bound on E that `bounded` lies on.
+void JudgeYoungsModulusBound(const VirtualWorkFit& bounded,
+                             const VirtualWorkFit& unbounded,
+                             Eigen::Index num_equations, Estimate& estimate) {
+  constexpr double kUnusableChange = 0.1;
+  const double without_bound =
+      IsotropicElasticity::FromComplianceScale(unbounded.compliance_scale,
+                                               unbounded.poisson_ratio)
+          .youngs_modulus;
+  const double variance =
+      unbounded.square_sum / static_cast<double>(num_equations);
+  const double excess = bounded.square_sum - unbounded.square_sum;
+  const double change =
+      std::abs(without_bound / estimate.elasticity.youngs_modulus - 1);
+  if (estimate.IsUsable() && change > kUnusableChange &&
+      excess > kSignificantScore * kSignificantScore * variance) {
+    estimate.Fail(Status::kNotIdentifiable,
+                  "the data contradict the bound on Young's modulus: without "
+                  "it, E is " +
+                      TwoDigits(without_bound),
+                  "the model contradicts the data");
+  }
+}
+
 // Warns of loads that the motions left free are not in balance with; whether
 // they can be used.
 bool JudgeImbalance(double imbalance, Estimate& estimate) {
@@ -176,13 +207,13 @@ bool JudgeImbalance(double imbalance, Estimate& estimate) {
   }
   const std::string text =
       "the supports leave the specimen free to move, and " +
-      Number(100 * imbalance) +
+      TwoDigits(100 * imbalance) +
       " % of the loads push it that way; complete the supports or the loads";
   if (imbalance <= kUnusableImbalance) {
     estimate.warnings.push_back(text);
     return true;
   }
-  Fail(Status::kNotIdentifiable, text, estimate);
+  estimate.Fail(Status::kNotIdentifiable, text);
   return false;
 }
 
@@ -221,10 +252,10 @@ Estimate VirtualFields::DoRun(const Scene& scene,
     return estimate;
   }
   if (!balance.LoadsDoWork()) {
-    Fail(Status::kNotIdentifiable,
-         "the loads do no work on the virtual fields; raise their degree, or "
-         "use reduced-fe",
-         estimate);
+    estimate.Fail(
+        Status::kNotIdentifiable,
+        "the loads do no work on the virtual fields; raise their degree, or "
+        "use reduced-fe");
     return estimate;
   }
   const std::optional<double> collinear_slope =
@@ -239,20 +270,17 @@ Estimate VirtualFields::DoRun(const Scene& scene,
   if (!(fit.free_compliance_scale > 0)) {
     estimate.elasticity = IsotropicElasticity::FromComplianceScale(
         fit.free_compliance_scale, fit.poisson_ratio);
-    Fail(Status::kUnphysical,
-         "the measured displacements oppose the loads; check their signs, "
-         "order and units",
-         estimate);
+    estimate.Fail(Status::kUnphysical, kDisplacementsOpposeLoads);
     return estimate;
   }
   if (collinear_slope) {
     const double nu = fit.poisson_ratio;
-    Fail(Status::kNotIdentifiable,
-         DescribeCollinear(estimate.elasticity,
-                           {1 / (1 + nu) - 2 / (1 - 2 * nu) -
-                                *collinear_slope / fit.compliance_scale,
-                            1}),
-         estimate);
+    estimate.Fail(
+        Status::kNotIdentifiable,
+        DescribeCollinear(estimate.elasticity,
+                          {1 / (1 + nu) - 2 / (1 - 2 * nu) -
+                               *collinear_slope / fit.compliance_scale,
+                           1}));
     estimate.elasticity = {Estimate::kUnknown, Estimate::kUnknown};
     return estimate;
   }
@@ -277,17 +305,24 @@ Estimate VirtualFields::DoRun(const Scene& scene,
       fit, balance.NumEquations() - Eigen::Index(free.size()), force_residual,
       scene.load_cases.front().noise_sd, estimate);
   if (residual && !free.empty()) {
+    estimate.is_model_in_doubt = residual->model_square_sum > 0;
     Describe(
         options, active, free,
         Information(balance.InformationAt(fit), estimate.elasticity, *residual),
         estimate);
-    estimate.is_model_in_doubt = residual->model_square_sum > 0;
     if (estimate.is_model_in_doubt) {
       WarnOfModelError(estimate.YoungsModulusStandardError().value_or(0) /
                            estimate.elasticity.youngs_modulus,
                        estimate);
     }
   }
+  if (active.youngs_modulus != Side::kNone && !options.known_poisson_ratio) {
+    JudgeYoungsModulusBound(
+        fit, balance.Minimize(EffectivePoissonRatioBounds(options), Bounds{}),
+        balance.NumEquations(), estimate);
+  }
+  JudgeCorrection(std::sqrt(fit.square_sum) / balance.DisplacementNorm(),
+                  estimate);
   estimate.stages.push_back({"fit", stopwatch.Lap()});
   return estimate;
 }

@@ -297,6 +297,7 @@ VirtualWorkBalance::VirtualWorkBalance(const VirtualWork& work,
   internal_h_ = work.Of(products.h);
   internal_j_ = work.Of(products.j);
   external_ = work.Of(f);
+  displacement_norm_ = dofs.Restrict(q).norm();
   loads_do_work_ = external_.norm() > kRounding * dofs.Restrict(f).norm();
 }
 

@@ -143,6 +143,10 @@ class VirtualWorkBalance {
   /// k times the number of load cases.
   Eigen::Index NumEquations() const { return internal_h_.size(); }
 
+  /// Norm of the displacements on the free degrees of freedom, of which the
+  /// square sum of a fit is a correction.
+  double DisplacementNorm() const { return displacement_norm_; }
+
   /// Whether the loads do work on the fields at all, beyond rounding.
   bool LoadsDoWork() const { return loads_do_work_; }
 
@@ -176,6 +180,7 @@ class VirtualWorkBalance {
   Eigen::MatrixXd internal_h_;
   Eigen::MatrixXd internal_j_;
   Eigen::MatrixXd external_;
+  double displacement_norm_;
   bool loads_do_work_;
 };
 

@@ -16,7 +16,7 @@ void CheckByVirtualWork(const Scene& scene, const EstimatorOptions& options,
   of_degree_one.virtual_field_degree = 1;
   const Estimate check = VirtualFields().Run(scene, of_degree_one);
   estimate.work = estimate.work + check.work;
-  if (!check.is_model_in_doubt) {
+  if (check.IsUsable() && !check.is_model_in_doubt) {
     return;
   }
   estimate.is_model_in_doubt = true;
@@ -33,10 +33,8 @@ void CheckByVirtualWork(const Scene& scene, const EstimatorOptions& options,
                                 "virtual-fields");
     return;
   }
-  estimate.status = Status::kNotIdentifiable;
-  estimate.message = text.str();
-  estimate.covariance.setConstant(Estimate::kUnknown);
-  estimate.why_no_standard_error = "the model contradicts the data";
+  estimate.Fail(Status::kNotIdentifiable, text.str(),
+                "the model contradicts the data");
 }
 
 }  // namespace elastimate

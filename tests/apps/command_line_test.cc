@@ -115,9 +115,13 @@ TEST_F(CommandLine, TheReportHasTheDocumentedKeys) {
                                 "/poisson_ratio",
                                 "/standard_error/youngs_modulus",
                                 "/standard_error/poisson_ratio",
+                                "/standard_error/shear_modulus",
+                                "/standard_error/bulk_compliance",
                                 "/correlation",
+                                "/poisson_ratio_interval",
                                 "/shear_modulus",
                                 "/bulk_modulus",
+                                "/bulk_compliance",
                                 "/noise_sd",
                                 "/mesh/nodes",
                                 "/mesh/tetrahedra",
@@ -143,6 +147,29 @@ TEST_F(CommandLine, TheReportHasTheDocumentedKeys) {
   // mu = E / (2 (1 + nu)), kappa = E / (3 (1 - 2 nu)).
   EXPECT_NEAR(report["shear_modulus"], 1e4 / 2.66, 0.1);
   EXPECT_NEAR(report["bulk_modulus"], 1e4 / 1.02, 0.1);
+}
+
+TEST_F(CommandLine, NearOneHalfItGivesAnIntervalOfOneSide) {
+  Succeed("generate cuboid --out=cuboid.vtu");
+  Succeed(
+      "simulate cuboid.vtu --youngs=1e4 --nu=0.4999 --noise=0.5 "
+      "--noise_law=gaussian --seed=1 --out=soft.vtu");
+  const std::string command = "estimate soft.vtu --estimator=reduced-fe";
+  const nlohmann::json report = Succeed(command + " --json=-").Json();
+  EXPECT_EQ(report["poisson_ratio_interval"][1], 0.5);
+  EXPECT_LT(report["poisson_ratio_interval"][0], 0.4999);
+  // mu and 1 / kappa are determined there: mu = E / (2 (1 + nu)).
+  EXPECT_NEAR((report["shear_modulus"].get<double>() - 1e4 / 2.9998) /
+                  report["standard_error"]["shear_modulus"].get<double>(),
+              0, 4);
+  EXPECT_NEAR((report["bulk_compliance"].get<double>() - 3 * 2e-4 / 1e4) /
+                  report["standard_error"]["bulk_compliance"].get<double>(),
+              0, 4);
+  const std::string table = Succeed(command).output;
+  for (const std::string words :
+       {"and 0.5 (95 %)", "shear modulus mu", "1 / bulk modulus"}) {
+    EXPECT_NE(table.find(words), std::string::npos) << table;
+  }
 }
 
 TEST_F(CommandLine, PrintsATableForPeople) {

@@ -63,6 +63,25 @@ TEST_P(Conversions, JacobianMatchesFiniteDifferences) {
   EXPECT_EQ(jacobian(0, 1), 1);
 }
 
+TEST_P(Conversions, ShearAndBulkJacobianMatchesFiniteDifferences) {
+  const double youngs = 2.5;
+  const double nu = GetParam();
+  const Eigen::Matrix2d jacobian = ShearAndBulkJacobian({youngs, nu});
+  const double step = 1e-6;
+  const auto difference = [&](double in_youngs, double in_nu) {
+    const IsotropicElasticity above = {youngs + in_youngs, nu + in_nu};
+    const IsotropicElasticity below = {youngs - in_youngs, nu - in_nu};
+    return Eigen::Vector2d(
+        (above.ShearModulus() - below.ShearModulus()) / (2 * step),
+        (1 / above.BulkModulus() - 1 / below.BulkModulus()) / (2 * step));
+  };
+  const double scale = jacobian.cwiseAbs().maxCoeff();
+  EXPECT_LE((jacobian.col(0) - difference(step, 0)).norm(), 1e-7 * scale);
+  EXPECT_LE((jacobian.col(1) - difference(0, step)).norm(), 1e-7 * scale);
+  const IsotropicElasticity elasticity = {youngs, nu};
+  EXPECT_NEAR(elasticity.BulkCompliance() * elasticity.BulkModulus(), 1, 1e-12);
+}
+
 INSTANTIATE_TEST_SUITE_P(PoissonRatios, Conversions,
                          ::testing::Values(-0.9, -0.5, 0.0, 0.3, 0.49, 0.4999));
 

@@ -5,11 +5,14 @@
 
 #include <cmath>
 #include <cstdio>
+#include <iostream>
+#include <memory>
 #include <string>
 #include <tuple>
 
 #include "elastimate/estimators/cramer_rao.h"
 #include "elastimate/estimators/reduced_fe.h"
+#include "elastimate/estimators/registry.h"
 #include "tests/scenes.h"
 
 namespace elastimate {
@@ -81,6 +84,100 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Combine(::testing::Values("cuboid", "organ"),
                        ::testing::Values(0.0, 0.3, 0.45, 0.49),
                        ::testing::Values(1e-3, 1e-2, 1e-1)));
+
+struct CoverageCase {
+  std::string estimator;
+  int degree;
+  std::string shape;
+  double noise;
+  // Of 1.96 standard errors: 95 %, or that of Student's t where the noise is
+  // estimated from few equations, 12, 30 and 60 less the two unknowns.
+  double coverage;
+};
+
+std::ostream& operator<<(std::ostream& out, const CoverageCase& parameters) {
+  return out << parameters.estimator << " " << parameters.degree << ", "
+             << parameters.shape << ", noise " << parameters.noise;
+}
+
+class CoverageWithoutFactorization
+    : public ::testing::TestWithParam<CoverageCase> {};
+
+TEST_P(CoverageWithoutFactorization, IsThatOfItsStandardErrors) {
+  constexpr int kFewerSeeds = 400;
+  const IsotropicElasticity truth = {5e4, 0.3};
+  Scene exact = SmallScene(GetParam().shape);
+  Measure(truth, exact);
+  Scene noisy = exact;
+  const double sd = AddNoise(GetParam().noise, 1, noisy);
+  const Eigen::Matrix2d bound =
+      CramerRaoBound(exact, truth, Eigen::VectorXd::Constant(1, sd));
+  const std::unique_ptr<Estimator> estimator =
+      MakeEstimator(GetParam().estimator);
+  EstimatorOptions options;
+  if (GetParam().degree > 0) {
+    options.virtual_field_degree = GetParam().degree;
+  }
+  Eigen::Array2d sum = Eigen::Array2d::Zero();
+  Eigen::Array2d square_sum = Eigen::Array2d::Zero();
+  Eigen::Array2d num_covering = Eigen::Array2d::Zero();
+  Eigen::Array2d standard_error_sum = Eigen::Array2d::Zero();
+  int num_usable = 0;
+  for (int seed = 1; seed <= kFewerSeeds; ++seed) {
+    noisy.load_cases[0].displacement = exact.load_cases[0].displacement;
+    AddNoise(GetParam().noise, std::uint64_t(seed), noisy);
+    const Estimate estimate = estimator->Run(noisy, options);
+    if (!estimate.IsUsable()) {
+      continue;
+    }
+    ++num_usable;
+    const Eigen::Array2d error(
+        estimate.elasticity.youngs_modulus - truth.youngs_modulus,
+        estimate.elasticity.poisson_ratio - truth.poisson_ratio);
+    const Eigen::Array2d standard_error(*estimate.YoungsModulusStandardError(),
+                                        *estimate.PoissonRatioStandardError());
+    sum += error;
+    square_sum += error.square();
+    standard_error_sum += standard_error;
+    num_covering += (error.abs() < 1.96 * standard_error).cast<double>();
+  }
+  const double n = num_usable;
+  const Eigen::Array2d rms = (square_sum / n).sqrt();
+  const Eigen::Array2d bias = (sum / n).abs() / rms * std::sqrt(n);
+  const Eigen::Array2d over_bound = rms / bound.diagonal().array().sqrt();
+  const Eigen::Array2d coverage = num_covering / n;
+  std::cout << GetParam() << ": " << num_usable << " of " << kFewerSeeds
+            << " usable, error over Cramer-Rao " << over_bound.transpose()
+            << ", over the standard error "
+            << (rms * n / standard_error_sum).transpose()
+            << ", bias in standard deviations of the mean " << bias.transpose()
+            << ", coverage " << coverage.transpose() << " (E, nu)\n";
+  EXPECT_EQ(num_usable, kFewerSeeds);
+  EXPECT_LT(bias.maxCoeff(), 4);
+  // Three standard deviations of a root mean square, and of a frequency.
+  EXPECT_GT(over_bound.minCoeff(), 1 - 3 / std::sqrt(2.0 * kFewerSeeds));
+  const double expected = GetParam().coverage;
+  EXPECT_GT(coverage.minCoeff(),
+            expected - 3 * std::sqrt(expected * (1 - expected) / kFewerSeeds));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, CoverageWithoutFactorization,
+    ::testing::Values(
+        CoverageCase{"virtual-fields", 1, "cuboid", 1e-2, 0.9216},
+        CoverageCase{"virtual-fields", 2, "cuboid", 1e-2, 0.9401},
+        CoverageCase{"virtual-fields", 2, "cuboid", 1e-1, 0.9401},
+        CoverageCase{"virtual-fields", 3, "cuboid", 1e-1, 0.9451},
+        CoverageCase{"virtual-fields", 1, "organ", 1e-2, 0.9216},
+        CoverageCase{"virtual-fields", 2, "organ", 1e-2, 0.9401},
+        CoverageCase{"virtual-fields", 2, "organ", 1e-1, 0.9401},
+        CoverageCase{"virtual-fields", 3, "organ", 1e-1, 0.9451},
+        CoverageCase{"total-least-squares", 0, "cuboid", 1e-4, 0.95},
+        CoverageCase{"total-least-squares", 0, "cuboid", 1e-3, 0.95},
+        CoverageCase{"total-least-squares", 0, "cuboid", 1e-2, 0.95},
+        CoverageCase{"total-least-squares", 0, "organ", 1e-4, 0.95},
+        CoverageCase{"total-least-squares", 0, "organ", 1e-3, 0.95},
+        CoverageCase{"total-least-squares", 0, "organ", 1e-2, 0.95}));
 
 }  // namespace
 }  // namespace elastimate

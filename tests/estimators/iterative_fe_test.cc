@@ -34,5 +34,22 @@ TEST(IterativeFe, SaysWhenItRunsOutOfIterations) {
   EXPECT_NE(estimate.message.find("1 iterations"), std::string::npos);
 }
 
+// Bending has minima on several sides of its starts.
+TEST(IterativeFe, FindsTheBestOfSeveralMinima) {
+  for (const std::string& shape : testing::SmallSceneNames()) {
+    for (const double nu : {-0.95, -0.9, -0.3, 0.1, 0.35, 0.495}) {
+      SCOPED_TRACE(shape + ", nu " + std::to_string(nu));
+      Scene scene = SmallScene(shape);
+      Measure({5e4, nu}, scene);
+      testing::AddNoise(1e-4, 1, scene);
+      const Estimate estimate = IterativeFe().Run(scene, {});
+      ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+      EXPECT_NEAR((estimate.elasticity.poisson_ratio - nu) /
+                      *estimate.PoissonRatioStandardError(),
+                  0, 5);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace elastimate

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <random>
 
+#include "elastimate/estimators/displacement_fit.h"
 #include "elastimate/estimators/iterative_fe.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
@@ -29,8 +30,19 @@ void ExpectSame(const Estimate& actual, const Estimate& expected,
               expected.elasticity.youngs_modulus, tolerance * youngs_error);
   EXPECT_NEAR(actual.elasticity.poisson_ratio,
               expected.elasticity.poisson_ratio, tolerance * poisson_error);
-  EXPECT_NEAR(*actual.YoungsModulusStandardError() / youngs_error, 1, 1e-2);
-  EXPECT_NEAR(*actual.PoissonRatioStandardError() / poisson_error, 1, 1e-2);
+  const double youngs_ratio =
+      *actual.YoungsModulusStandardError() / youngs_error;
+  const double poisson_ratio =
+      *actual.PoissonRatioStandardError() / poisson_error;
+  // Beyond the linear range iterative-fe sees the profile likelihood at its
+  // starts only, and errs on the wide side.
+  if (ShareOfDistanceToPole(expected) <= kLargestLinearShare) {
+    EXPECT_NEAR(youngs_ratio, 1, 1e-2);
+    EXPECT_NEAR(poisson_ratio, 1, 1e-2);
+  } else {
+    EXPECT_LT(youngs_ratio, 1.1);
+    EXPECT_LT(poisson_ratio, 1.1);
+  }
 }
 
 TEST(ReducedFe, AgreesWithTheIterativeFitForFewFactorizations) {
@@ -109,6 +121,40 @@ TEST(ReducedFe, FindsTheBestOfSeveralMinima) {
     ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
     EXPECT_NEAR(estimate.elasticity.poisson_ratio, nu, 1e-6);
   }
+}
+
+// At nu = 0 a plate in bending hardly resists by its Poisson's ratio: E follows
+// nu on a curve, along which it does not change to first order.
+TEST(PreparedReducedFe, KnowsTheUncertaintyOfABentPlate) {
+  constexpr int kSeeds = 200;
+  const IsotropicElasticity truth = {5e4, 0};
+  const Mesh mesh = testing::BoxMesh({1, 6, 6}, {0.1, 1, 1});
+  Scene exact = testing::HeldAtBottom(mesh, mesh, {1, 0, 0});
+  Measure(truth, exact);
+  PreparedReducedFe prepared(exact, {});
+  int num_usable = 0;
+  int num_covering = 0;
+  double largest_score = 0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    Scene scene = exact;
+    AddNoise(0.05, seed, scene);
+    const Estimate estimate = prepared.Run({scene.load_cases[0].displacement});
+    if (!estimate.IsUsable()) {
+      continue;
+    }
+    ++num_usable;
+    const double score =
+        std::abs(estimate.elasticity.youngs_modulus - truth.youngs_modulus) /
+        *estimate.YoungsModulusStandardError();
+    largest_score = std::max(largest_score, score);
+    num_covering += score < 1.96 ? 1 : 0;
+  }
+  std::printf("%d of %d usable, %d covering, largest score %.2f\n", num_usable,
+              kSeeds, num_covering, largest_score);
+  EXPECT_GE(num_usable, kSeeds / 4);
+  EXPECT_GE(num_covering,
+            num_usable * (0.95 - 3 * std::sqrt(0.95 * 0.05 / num_usable)));
+  EXPECT_LT(largest_score, 5);
 }
 
 TEST(PreparedReducedFe, GivesWhatTheEstimatorGives) {
