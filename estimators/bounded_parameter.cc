@@ -159,10 +159,9 @@ void JudgePoissonRatioOnBound(const EstimatorOptions& options,
                               double standard_error, Estimate& estimate) {
   if (active.is_physical_limit &&
       active.poisson_ratio == BoundedParameter::Side::kLower) {
-    estimate.status = Status::kUnphysical;
-    estimate.message =
-        "the data pull Poisson's ratio to -1, where no material is; check the "
-        "loads, the supports and the mesh";
+    estimate.Fail(Status::kUnphysical,
+                  "the data pull Poisson's ratio to -1, where no material is; "
+                  "check the loads, the supports and the mesh");
     return;
   }
   if (active.is_physical_limit && estimate.is_model_in_doubt) {

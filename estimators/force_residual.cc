@@ -409,9 +409,12 @@ void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,
     what = "Poisson's ratio by about " + TwoDigits(nu_bias);
   }
   if (!what.empty()) {
-    estimate.warnings.push_back(cause + what +
-                                ", more than its standard error; " + advice);
+    estimate.warnings.push_back(
+        cause + what + ", which the standard errors allow for; " + advice);
   }
+  const Eigen::Vector2d both(elasticity.youngs_modulus * bias / (1 + bias),
+                             nu_bias);
+  estimate.covariance += both * both.transpose();
 }
 
 }  // namespace elastimate

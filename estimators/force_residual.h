@@ -132,7 +132,8 @@ void JudgeKnownPoissonRatio(const ForceResidual& residual, Estimate& estimate);
 
 /// Sets `estimate` to not usable when the bias that displacement noise puts on
 /// it is above 10 % of E or 0.03 in nu, and warns when it is above 1 % or 0.01
-/// and one standard error.  The bias is the distance to UnbiasedPoissonRatio.
+/// and one standard error.  The square of the bias is added to the covariance.
+/// The bias is the distance to UnbiasedPoissonRatio.
 /// `bounds` are those that the estimate of nu had to keep.
 void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,
                     Estimate& estimate);
