@@ -6,6 +6,7 @@
 #include "elastimate/estimators/checks.h"
 #include "elastimate/estimators/closed_form.h"
 #include "elastimate/estimators/model_mismatch.h"
+#include "elastimate/estimators/observed_displacements.h"
 #include "elastimate/estimators/reduced_fe.h"
 #include "elastimate/estimators/statistics.h"
 #include "elastimate/estimators/virtual_fields.h"
@@ -81,6 +82,25 @@ std::string WhyTheModelIsNotEnough(const EstimatorOptions& options,
     }
   }
   return "";
+}
+
+// Whether a residual that lacked quadratic elements has shrunk with them: by
+// more than noise lets it, and by far where it is no noise still.
+bool DoesMuchBetter(const Estimate& quadratic, const Estimate& linear,
+                    Eigen::Index num_observed) {
+  // Twice the difference of the logarithms of the likelihoods, in standard
+  // scores.
+  constexpr double kSignificantScore = 5;
+  constexpr double kLargestShare = 0.5;
+  if (!linear.displacement_residual || !quadratic.displacement_residual) {
+    return true;
+  }
+  const double share =
+      *quadratic.displacement_residual / *linear.displacement_residual;
+  return quadratic.is_model_in_doubt
+             ? share <= kLargestShare
+             : -2 * static_cast<double>(num_observed) * std::log(share) >
+                   kSignificantScore * kSignificantScore;
 }
 
 // Climbs, and keeps the books.
@@ -204,9 +224,10 @@ Estimate Auto::DoRun(const Scene& scene,
   const Estimate of_linear = linear;
   ladder.Climb(ReducedFe(), QuadraticScene(scene), without_degree);
   const Estimate& quadratic = ladder.Last();
-  if (of_linear.displacement_residual && quadratic.displacement_residual &&
-      *of_linear.displacement_residual < *quadratic.displacement_residual) {
-    ladder.Decide("stopped: linear elements fit better, and are kept");
+  if (!DoesMuchBetter(quadratic, of_linear,
+                      ObservedDisplacements(scene).Size())) {
+    ladder.Decide(
+        "stopped: the residual is not that of linear elements, which are kept");
     ladder.Return(of_linear);
   } else {
     ladder.Decide("stopped: there is no rung above");

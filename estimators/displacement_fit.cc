@@ -371,39 +371,4 @@ std::optional<double> DescribeDisplacementFit(
          inverse_bread(inverse_bread.rows() - 1, inverse_bread.cols() - 1);
 }
 
-double ShareOfDistanceToPole(const Estimate& estimate) {
-  const double nu = estimate.elasticity.poisson_ratio;
-  return estimate.PoissonRatioStandardError().value_or(0) /
-         std::min(0.5 - nu, 1 + nu);
-}
-
-void WidenToProfile(const IsotropicElasticity& lower,
-                    const IsotropicElasticity& upper, Estimate& estimate) {
-  constexpr double kTwoSided = 1.960;
-  Eigen::Vector2d square_sum = Eigen::Vector2d::Zero();
-  int num_ends = 0;
-  for (const IsotropicElasticity& end : {lower, upper}) {
-    if (end.poisson_ratio > kSmallestPoissonRatio &&
-        end.poisson_ratio < kLargestPoissonRatio) {
-      square_sum += Eigen::Vector2d(
-                        end.youngs_modulus - estimate.elasticity.youngs_modulus,
-                        end.poisson_ratio - estimate.elasticity.poisson_ratio)
-                        .cwiseAbs2();
-      ++num_ends;
-    }
-  }
-  if (num_ends == 0) {
-    return;
-  }
-  const Eigen::Vector2d error = (square_sum / num_ends).cwiseSqrt() / kTwoSided;
-  // Of a parameter that varies; NaN compares false.
-  const auto factor = [&](int i) {
-    const double ratio = error(i) / std::sqrt(estimate.covariance(i, i));
-    return ratio > 1 ? ratio : 1;
-  };
-  const Eigen::Vector2d factors(factor(0), factor(1));
-  estimate.covariance =
-      factors.asDiagonal() * estimate.covariance * factors.asDiagonal();
-}
-
 }  // namespace elastimate

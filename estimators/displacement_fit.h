@@ -61,20 +61,6 @@ std::optional<double> DescribeDisplacementFit(
     const ObservedDisplacements& observed, const DisplacementFit& fit,
     const NodeLosses& losses, const ActiveBounds& active, Estimate& estimate);
 
-/// The standard error of nu over the distance of nu to the nearer of -1 and
-/// 1/2, where the responses have their poles: the displacements are linear in
-/// nu within a small share of it.  Zero when there is no standard error.
-double ShareOfDistanceToPole(const Estimate& estimate);
-
-/// Of ShareOfDistanceToPole; beyond it the profile likelihood tells.
-constexpr double kLargestLinearShare = 0.03;
-
-/// Widens the standard errors to the profile likelihood, whose 95 % interval of
-/// nu ends at `lower` and `upper`, each with the E that fits best there.  An
-/// end at the limit of the range is left out.
-void WidenToProfile(const IsotropicElasticity& lower,
-                    const IsotropicElasticity& upper, Estimate& estimate);
-
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_H_

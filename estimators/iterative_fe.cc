@@ -17,6 +17,7 @@
 #include "elastimate/estimators/displacement_fit.h"
 #include "elastimate/estimators/node_losses.h"
 #include "elastimate/estimators/observed_displacements.h"
+#include "elastimate/estimators/profile_likelihood.h"
 #include "elastimate/estimators/statistics.h"
 #include "elastimate/estimators/stopwatch.h"
 
@@ -325,9 +326,9 @@ IsotropicElasticity BestStart(const std::vector<ProfilePoint>& starts) {
 // search for a start has seen it: the square root of what the sum of squares
 // grows by is taken as linear between the fit and the nearest start on either
 // side, and so is E.  A start too far off says nothing.
-void DescribeProfile(const std::vector<ProfilePoint>& starts,
-                     double least_square_sum, double variance,
-                     Estimate& estimate) {
+void WidenByStarts(const std::vector<ProfilePoint>& starts,
+                   double least_square_sum, double variance,
+                   Estimate& estimate) {
   constexpr double kTwoSided = 1.960;
   constexpr double kFarStandardErrors = 5;
   // Beyond this the interval has no end.
@@ -361,7 +362,7 @@ void DescribeProfile(const std::vector<ProfilePoint>& starts,
       end.poisson_ratio = kLargestPoissonRatio;  // Left out.
     }
   }
-  WidenToProfile(ends[0], ends[1], estimate);
+  WidenToProfile({ends[0], ends[1]}, estimate);
 }
 
 BoundedParameter::Side ViolatedBound(const Bounds& bounds,
@@ -465,8 +466,8 @@ Estimate IterativeFe::DoRun(const Scene& scene,
     if (variance && options.loss == Loss::kNone && estimate.IsUsable() &&
         estimate.active_bounds.empty() &&
         ShareOfDistanceToPole(estimate) > kLargestLinearShare) {
-      DescribeProfile(starts, residual.Fit().residual.squaredNorm(), *variance,
-                      estimate);
+      WidenByStarts(starts, residual.Fit().residual.squaredNorm(), *variance,
+                    estimate);
     }
   }
   estimate.stages.push_back({"statistics", stopwatch.Lap()});

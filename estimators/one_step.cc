@@ -11,6 +11,7 @@
 #include "elastimate/estimators/displacement_fit.h"
 #include "elastimate/estimators/node_losses.h"
 #include "elastimate/estimators/observed_displacements.h"
+#include "elastimate/estimators/profile_likelihood.h"
 #include "elastimate/estimators/statistics.h"
 #include "elastimate/estimators/stopwatch.h"
 #include "elastimate/estimators/virtual_fields.h"

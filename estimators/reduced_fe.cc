@@ -12,6 +12,7 @@
 #include "elastimate/estimators/displacement_fit.h"
 #include "elastimate/estimators/node_losses.h"
 #include "elastimate/estimators/observed_displacements.h"
+#include "elastimate/estimators/profile_likelihood.h"
 #include "elastimate/estimators/reduced_fit.h"
 #include "elastimate/estimators/reduced_model.h"
 #include "elastimate/estimators/statistics.h"
@@ -183,36 +184,17 @@ class AdaptiveFit {
     return is_regular_;
   }
 
-  // Enters where nu of the last fit without a loss lies with a probability of
-  // 95 %, for residuals of this variance, and widens the standard errors to it.
-  void DescribeProfile(const ObservedDisplacements& observed, double variance,
-                       Estimate& estimate) const {
-    // Quantiles of chi^2 of one degree of freedom: 95 %, and 90 % for the end
-    // of a one-sided interval.
-    constexpr double kTwoSided = 3.841;
-    constexpr double kOneSided = 2.706;
-    const auto profile = [&](double quantile) {
-      return least_squares_->ProfileEnds(observed.Measured(), fit_.point,
-                                         quantile * variance);
-    };
+  // The ends of the interval of nu in which the sum of squares of the last fit
+  // without a loss exceeds its least by no more than `excess`.
+  Profile ProfileEnds(const ObservedDisplacements& observed,
+                      double excess) const {
     const auto elasticity_of = [](const ReducedFit::Point& point) {
       return IsotropicElasticity::FromComplianceScale(point.compliance_scale,
                                                       point.poisson_ratio);
     };
-    const ReducedFit::Profile both = profile(kTwoSided);
-    WidenToProfile(elasticity_of(both.lower), elasticity_of(both.upper),
-                   estimate);
-    double lower = both.lower.poisson_ratio;
-    double upper = both.upper.poisson_ratio;
-    const bool reaches_upper = upper >= kLargestPoissonRatio;
-    const bool reaches_lower = lower <= kSmallestPoissonRatio;
-    if (reaches_upper != reaches_lower) {
-      const ReducedFit::Profile one = profile(kOneSided);
-      lower = one.lower.poisson_ratio;
-      upper = one.upper.poisson_ratio;
-    }
-    estimate.poisson_ratio_interval = {reaches_lower ? -1 : lower,
-                                       reaches_upper ? 0.5 : upper};
+    const auto [lower, upper] =
+        least_squares_->ProfileEnds(observed.Measured(), fit_.point, excess);
+    return {elasticity_of(lower), elasticity_of(upper)};
   }
 
   const ModelFit& Best() const { return fit_; }
@@ -369,7 +351,11 @@ Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
   if (variance && options.loss == Loss::kNone && estimate.IsUsable() &&
       (active.is_physical_limit ||
        ShareOfDistanceToPole(estimate) > kLargestLinearShare)) {
-    adaptive.DescribeProfile(observed, *variance, estimate);
+    DescribeProfile(
+        [&](double quantile) {
+          return adaptive.ProfileEnds(observed, quantile * *variance);
+        },
+        estimate);
   }
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
   return estimate;

@@ -109,9 +109,8 @@ ReducedFit::Point ReducedFit::Fit(const Eigen::VectorXd& measured) const {
   return IsBetter(minimum, best) ? minimum : best;
 }
 
-ReducedFit::Profile ReducedFit::ProfileEnds(const Eigen::VectorXd& measured,
-                                            const Point& best,
-                                            double excess) const {
+std::pair<ReducedFit::Point, ReducedFit::Point> ReducedFit::ProfileEnds(
+    const Eigen::VectorXd& measured, const Point& best, double excess) const {
   const Projection projection = Project(measured);
   const double limit = best.square_sum + excess;
   const auto is_inside = [&](double nu) {

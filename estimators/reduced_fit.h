@@ -2,6 +2,7 @@
 #define ELASTIMATE_ESTIMATORS_REDUCED_FIT_H_
 
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
 #include "elastimate/estimators/displacement_fit.h"
@@ -44,12 +45,8 @@ class ReducedFit {
   /// Fit(measured) in which the best sum of squares exceeds that of `best` by
   /// no more than `excess`: the profile likelihood.  At the ends of the scan
   /// where the sum of squares stays below.
-  struct Profile {
-    Point lower;
-    Point upper;
-  };
-  Profile ProfileEnds(const Eigen::VectorXd& measured, const Point& best,
-                      double excess) const;
+  std::pair<Point, Point> ProfileEnds(const Eigen::VectorXd& measured,
+                                      const Point& best, double excess) const;
 
  private:
   // The observed rows of w and v in an orthonormal basis: stacked over the load

@@ -1,10 +1,12 @@
 #include "elastimate/estimators/virtual_fields.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "elastimate/core/loads.h"
 #include "elastimate/estimators/force_residual.h"
+#include "elastimate/estimators/profile_likelihood.h"
 #include "elastimate/estimators/statistics.h"
 #include "elastimate/estimators/stopwatch.h"
 #include "elastimate/estimators/virtual_work.h"
@@ -175,6 +177,44 @@ void JudgeCorrection(double correction, Estimate& estimate) {
                 "the model contradicts the data");
 }
 
+// The standard errors of the sandwich, carried over to the profile of S.
+void DescribeProfileOf(const VirtualWorkBalance& balance,
+                       const VirtualWorkFit& fit,
+                       const ResidualJudgement& residual, Estimate& estimate) {
+  const VirtualWorkInformation raw = balance.InformationAt(fit);
+  const std::optional<Eigen::MatrixXd> covariance =
+      Information(raw, estimate.elasticity, residual).Covariance({0, 1});
+  if (!covariance) {
+    return;
+  }
+  // Of (nu, t), as the entry of nu is of (E, nu).
+  const double variance =
+      (*covariance)(1, 1) /
+      raw.Bread(residual.noise_variance).inverse().eval()(0, 0);
+  const auto elasticity_of = [](const VirtualWorkFit& at) {
+    return IsotropicElasticity::FromComplianceScale(at.compliance_scale,
+                                                    at.poisson_ratio);
+  };
+  DescribeProfile(
+      [&](double quantile) {
+        const auto [lower, upper] =
+            balance.ProfileEnds(fit, quantile * variance);
+        return Profile{elasticity_of(lower), elasticity_of(upper)};
+      },
+      estimate);
+  constexpr double kTwoSided = 1.960;
+  const Interval& interval = *estimate.poisson_ratio_interval;
+  if (std::max(interval.upper - estimate.elasticity.poisson_ratio,
+               estimate.elasticity.poisson_ratio - interval.lower) >
+      kTwoSided * kLargestPoissonRatioError) {
+    estimate.Fail(Status::kNotIdentifiable,
+                  "virtual work leaves Poisson's ratio between " +
+                      TwoDigits(interval.lower) + " and " +
+                      TwoDigits(interval.upper) +
+                      "; give Poisson's ratio, or use reduced-fe");
+  }
+}
+
 // Whether the data contradict the bound on E that `bounded` lies on.
 void JudgeYoungsModulusBound(const VirtualWorkFit& bounded,
                              const VirtualWorkFit& unbounded,
@@ -320,6 +360,13 @@ Estimate VirtualFields::DoRun(const Scene& scene,
     JudgeYoungsModulusBound(
         fit, balance.Minimize(EffectivePoissonRatioBounds(options), Bounds{}),
         balance.NumEquations(), estimate);
+  }
+  if (residual && estimate.IsUsable() && !options.known_poisson_ratio &&
+      active.youngs_modulus == Side::kNone &&
+      (active.is_physical_limit ||
+       (active.poisson_ratio == Side::kNone &&
+        ShareOfDistanceToPole(estimate) > kLargestLinearShare))) {
+    DescribeProfileOf(balance, fit, *residual, estimate);
   }
   JudgeCorrection(std::sqrt(fit.square_sum) / balance.DisplacementNorm(),
                   estimate);

@@ -425,6 +425,51 @@ VirtualWorkFit VirtualWorkBalance::Minimize(
   return best;
 }
 
+std::pair<VirtualWorkFit, VirtualWorkFit> VirtualWorkBalance::ProfileEnds(
+    const VirtualWorkFit& best, double excess) const {
+  const auto is_inside = [&](const VirtualWorkFit& fit) {
+    return fit.square_sum <= best.square_sum + excess;
+  };
+  const auto halve = [&](VirtualWorkFit inside, double outside) {
+    constexpr int kHalvings = 12;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = (inside.poisson_ratio + outside) / 2;
+      VirtualWorkFit fit = FitAt(middle, Bounds{});
+      if (is_inside(fit)) {
+        inside = std::move(fit);
+      } else {
+        outside = middle;
+      }
+    }
+    return inside;
+  };
+  VirtualWorkFit upper = best;
+  for (auto noise = work_.Scan().begin(); noise != work_.Scan().end();
+       ++noise) {
+    if (noise->poisson_ratio > best.poisson_ratio) {
+      VirtualWorkFit fit = Evaluate(*noise, Bounds{});
+      if (!is_inside(fit)) {
+        upper = halve(upper, fit.poisson_ratio);
+        break;
+      }
+      upper = std::move(fit);
+    }
+  }
+  VirtualWorkFit lower = best;
+  for (auto noise = work_.Scan().rbegin(); noise != work_.Scan().rend();
+       ++noise) {
+    if (noise->poisson_ratio < best.poisson_ratio) {
+      VirtualWorkFit fit = Evaluate(*noise, Bounds{});
+      if (!is_inside(fit)) {
+        lower = halve(lower, fit.poisson_ratio);
+        break;
+      }
+      lower = std::move(fit);
+    }
+  }
+  return {lower, upper};
+}
+
 VirtualWorkInformation VirtualWorkBalance::InformationAt(
     const VirtualWorkFit& fit) const {
   const VirtualWork::NoiseFactor noise = work_.FactorNoise(fit.poisson_ratio);

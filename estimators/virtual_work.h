@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "elastimate/core/elasticity.h"
@@ -164,6 +165,12 @@ class VirtualWorkBalance {
   /// Precondition: LoadsDoWork.
   VirtualWorkFit Minimize(const Bounds& poisson_ratio,
                           const Bounds& youngs_modulus) const;
+
+  /// The fits, without bounds on E, at the ends of the interval of nu around
+  /// that of `best` in which S exceeds its own by no more than `excess`; at
+  /// the limits of the range where it never does.
+  std::pair<VirtualWorkFit, VirtualWorkFit> ProfileEnds(
+      const VirtualWorkFit& best, double excess) const;
 
   VirtualWorkInformation InformationAt(const VirtualWorkFit& fit) const;
 

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <random>
 
-#include "elastimate/estimators/displacement_fit.h"
 #include "elastimate/estimators/iterative_fe.h"
+#include "elastimate/estimators/profile_likelihood.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
 

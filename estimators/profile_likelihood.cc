@@ -1,0 +1,64 @@
+#include "elastimate/estimators/profile_likelihood.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "elastimate/estimators/estimator.h"
+
+namespace elastimate {
+
+double ShareOfDistanceToPole(const Estimate& estimate) {
+  const double nu = estimate.elasticity.poisson_ratio;
+  return estimate.PoissonRatioStandardError().value_or(0) /
+         std::min(0.5 - nu, 1 + nu);
+}
+
+void WidenToProfile(const Profile& profile, Estimate& estimate) {
+  constexpr double kTwoSided = 1.960;
+  Eigen::Vector2d square_sum = Eigen::Vector2d::Zero();
+  int num_ends = 0;
+  for (const IsotropicElasticity& end : {profile.lower, profile.upper}) {
+    if (end.poisson_ratio > kSmallestPoissonRatio &&
+        end.poisson_ratio < kLargestPoissonRatio) {
+      square_sum += Eigen::Vector2d(
+                        end.youngs_modulus - estimate.elasticity.youngs_modulus,
+                        end.poisson_ratio - estimate.elasticity.poisson_ratio)
+                        .cwiseAbs2();
+      ++num_ends;
+    }
+  }
+  if (num_ends == 0) {
+    return;
+  }
+  const Eigen::Vector2d error = (square_sum / num_ends).cwiseSqrt() / kTwoSided;
+  // Of a parameter that varies; NaN compares false.
+  const auto factor = [&](int i) {
+    const double ratio = error(i) / std::sqrt(estimate.covariance(i, i));
+    return ratio > 1 ? ratio : 1;
+  };
+  const Eigen::Vector2d factors(factor(0), factor(1));
+  estimate.covariance =
+      factors.asDiagonal() * estimate.covariance * factors.asDiagonal();
+}
+
+void DescribeProfile(const std::function<Profile(double quantile)>& profile_of,
+                     Estimate& estimate) {
+  // Quantiles of chi^2 of one degree of freedom: 95 %, and 90 % for the end of
+  // a one-sided interval.
+  constexpr double kTwoSided = 3.841;
+  constexpr double kOneSided = 2.706;
+  Profile profile = profile_of(kTwoSided);
+  WidenToProfile(profile, estimate);
+  const bool reaches_upper =
+      profile.upper.poisson_ratio >= kLargestPoissonRatio;
+  const bool reaches_lower =
+      profile.lower.poisson_ratio <= kSmallestPoissonRatio;
+  if (reaches_upper != reaches_lower) {
+    profile = profile_of(kOneSided);
+  }
+  estimate.poisson_ratio_interval = {
+      reaches_lower ? -1 : profile.lower.poisson_ratio,
+      reaches_upper ? 0.5 : profile.upper.poisson_ratio};
+}
+
+}  // namespace elastimate
