@@ -319,6 +319,7 @@ def speed_accuracy_points(path):
                     draw_methods(axes, points, parameter)
                     axes.set_xscale("log")
                     axes.set_yscale("log")
+                    axes.minorticks_off()  # They take most of the time of drawing.
                     axes.set_title(f"{scene[0]}, {points[0]['tetrahedra [1]']} tetrahedra\n"
                                    f"{world[0]}", fontsize=9)
             for axes in panels[-1]:
