@@ -15,6 +15,8 @@
 #include "apps/progress.h"
 #include "benchmarks/metadata.h"
 #include "benchmarks/paper_study.h"
+#include "benchmarks/scaling_study.h"
+#include "benchmarks/speed_accuracy_study.h"
 #include "benchmarks/study.h"
 #include "elastimate/io/file_output.h"
 
@@ -34,6 +36,10 @@ struct NamedStudy {
 constexpr NamedStudy kStudies[] = {
     {"paper", "the experiments of Becker & Teschner 2007, section 5",
      RunPaperStudy},
+    {"speed_accuracy", "time against error of every estimator",
+     RunSpeedAccuracyStudy},
+    {"scaling", "time and memory against the number of tetrahedra",
+     RunScalingStudy},
 };
 
 const Program& Benchmark() {

@@ -4,10 +4,11 @@
     benchmarks/plot.py FOLDER
 
 Each CSV file of FOLDER that has a function in FIGURES becomes one figure beside
-it, of the same name.  Needs matplotlib (Debian: python3-matplotlib).
+it, of the same name, or several of the names that the function gives them.  Needs matplotlib (Debian: python3-matplotlib).
 """
 
 import csv
+import json
 import pathlib
 import sys
 from collections import defaultdict
@@ -149,7 +150,7 @@ def finish(figure, title, columns=2):
 
 
 # ---------------------------------------------------------------------------
-# One function for each figure: from the path of the table to a figure.
+# One function for each table: from its path to a figure, or to several by name.
 
 
 def paper_noise(path):
@@ -257,10 +258,120 @@ def paper_cuboid_choice(path):
     return figure
 
 
+LARGEST_SHOWN_ERROR = 1000  # [%]; what is beyond lies on the upper edge.
+
+
+def draw_pareto_front(axes, points, error):
+    """Of the methods that never failed: the smallest error for each time."""
+    best = np.inf
+    front = []
+    for time, value in sorted((float(p["processor_time [s]"]), float(p[error] or "inf"))
+                              for p in points if float(p["failure_rate [1]"]) == 0):
+        if value < best:
+            best = value
+            front.append((1000 * time, 100 * value))
+    if front:
+        axes.step(*zip(*front), where="post", color="#777777", linewidth=5, alpha=0.3,
+                  label="Pareto front of methods without failures", zorder=1)
+
+
+def draw_methods(axes, points, parameter):
+    """Each estimator's methods, joined in the order of their knob, which the size
+    of the marker shows."""
+    error = parameter + "_rms_error [1]"
+    for (name,), own in group(points, "estimator").items():
+        time = 1000 * numbers(own, "processor_time [s]")
+        value = np.minimum(100 * numbers(own, error), LARGEST_SHOWN_ERROR)
+        failure_rate = numbers(own, "failure_rate [1]")
+        style = {**STYLES[name], "linestyle": ""}
+        axes.plot(time, value, color=style["color"], linewidth=0.9, zorder=2)
+        for i, (x, y) in enumerate(zip(time, value)):
+            size = 10 if name == "auto" else 5 + 2 * i
+            axes.plot(x, y, label=name, markersize=size, markeredgecolor="k",
+                      markeredgewidth=0.4, zorder=3, **style)
+        for marks, size, label in (
+                (failure_rate == 1, 9, "every trial failed (error of all shown)"),
+                ((failure_rate > 0) & (failure_rate < 1), 5,
+                 "some trials failed (error of the others shown)")):
+            axes.plot(time[marks], value[marks], "kx", markersize=size, markeredgewidth=1.2,
+                      zorder=4, label=label)
+    draw_pareto_front(axes, points, error)
+    row = points[0]
+    bound = 100 * float(row[error]) / float(row[parameter + "_rms_error [Cramer-Rao]"])
+    axes.axhline(bound, label="Cramér-Rao bound", linewidth=1,
+                 color=STYLES["Cramér-Rao bound"]["color"], linestyle=":")
+
+
+def speed_accuracy_points(path):
+    """A figure for each parameter and magnitude of noise."""
+    rows = read(path)
+    scenes = list(group(rows, "scene"))
+    worlds = list(group(rows, "world"))
+    figures = {}
+    for (deviation,), own in group(rows, DEVIATION).items():
+        for parameter in (YOUNGS, NU):
+            figure, panels = plt.subplots(len(worlds), len(scenes), squeeze=False,
+                                          figsize=(2.6 * len(scenes), 5.4), sharey=True)
+            cells = group(own, "world", "scene")
+            for line, world in zip(panels, worlds):
+                for axes, scene in zip(line, scenes):
+                    points = cells[world + scene]
+                    draw_methods(axes, points, parameter)
+                    axes.set_xscale("log")
+                    axes.set_yscale("log")
+                    axes.minorticks_off()  # They take most of the time of drawing.
+                    axes.set_title(f"{scene[0]}, {points[0]['tetrahedra [1]']} tetrahedra\n"
+                                   f"{world[0]}", fontsize=9)
+            for axes in panels[-1]:
+                axes.set_xlabel("processor time [ms]")
+            for axes in panels[:, 0]:
+                axes.set_ylabel("RMS " + (r"error of $E$ [%]" if parameter == YOUNGS
+                                          else r"error of $\nu$ [0.01]"))
+            percent = f"{100 * float(deviation):g}"
+            finish(figure, f"Noise of {percent} % (a larger marker: higher degree or order)", 4)
+            name = f"speed_accuracy_{parameter}_noise_{percent}_percent".replace(".", "_")
+            figures[name] = figure
+    return figures
+
+
+def scaling(path):
+    rows = read(path)
+    slopes = {row["estimator"]: row for row in read(path.with_name("scaling_slopes.csv"))}
+    with open(path.with_name("scaling.json"), encoding="utf-8") as file:
+        parameters = json.load(file)["parameters"]
+    figure, panels = two_panels(4)
+    quantities = (("processor_time [s]", "processor_time_slope [1]", "time_limit",
+                   parameters["limit_of_processor_time [s]"]),
+                  ("own_memory [MiB]", "own_memory_slope [1]", "memory_limit",
+                   parameters["limit_of_memory [MiB]"]))
+    for axes, (quantity, slope, outcome, limit) in zip(panels, quantities):
+        for (name,), own in group(rows, "estimator").items():
+            size = numbers(own, "tetrahedra [1]")
+            exponents = [slopes[name][q[1]] for q in quantities]
+            text = ", ".join(f"{what} {float(exponent):.2f}" if exponent else f"{what} ?"
+                             for what, exponent in zip(("time", "memory"), exponents))
+            value = numbers(own, quantity)
+            shown = (value > 0) & np.array([row["outcome"] == "measured" for row in own])
+            axes.plot(size[shown], value[shown], label=f"{name}: slopes {text}",
+                      **{**STYLES[name], "markeredgecolor": "k", "markeredgewidth": 0.3})
+            stopped = np.array([row["outcome"] == outcome for row in own])
+            axes.plot(size[stopped], np.full(np.sum(stopped), limit), "x", markersize=8,
+                      color=STYLES[name]["color"], markeredgewidth=2)
+        axes.axhline(limit, color="k", linewidth=0.8, linestyle=":",
+                     label="limit (x: ended there; larger sizes not run)")
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        axes.set_xlabel("tetrahedra [1]")
+    panels[0].set_ylabel("processor time [s]")
+    panels[1].set_ylabel("peak memory beyond that of the scene [MiB]")
+    finish(figure, "Cube, noise of 1 %, one BLAS thread")
+    return figure
+
+
 FIGURES = {
     function.__name__: function
     for function in (paper_noise, paper_spatial_noise, paper_measurements, paper_forces,
-                     paper_organ, paper_cuboid_choice)
+                     paper_organ, paper_cuboid_choice, speed_accuracy_points, scaling)
 }
 
 
@@ -272,7 +383,10 @@ def main(arguments):
     drawn = 0
     for path in sorted(pathlib.Path(arguments[0]).glob("*.csv")):
         if path.stem in FIGURES:
-            save(FIGURES[path.stem](path), path)
+            figures = FIGURES[path.stem](path)
+            for name, figure in (figures if isinstance(figures, dict)
+                                 else {path.stem: figures}).items():
+                save(figure, path.with_name(name + ".csv"))
             drawn += 1
     if drawn == 0:
         print(f"plot.py: there is no table of a study in {arguments[0]}", file=sys.stderr)

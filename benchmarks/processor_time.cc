@@ -1,0 +1,14 @@
+#include "benchmarks/processor_time.h"
+
+#include <ctime>
+
+namespace elastimate {
+
+double ProcessorSeconds() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) +
+         1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+}  // namespace elastimate

@@ -1,0 +1,227 @@
+#include "benchmarks/scaling_study.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/linear_algebra.h"
+#include "benchmarks/child_process.h"
+#include "benchmarks/processor_time.h"
+#include "benchmarks/trial.h"
+#include "elastimate/core/stiffness_product.h"
+#include "elastimate/estimators/registry.h"
+#include "elastimate/io/example_scenes.h"
+
+namespace elastimate {
+namespace {
+
+constexpr IsotropicElasticity kElasticity = {10e3, 0.33};
+constexpr double kDeviation = 0.01;
+constexpr std::uint64_t kSeed = 1;
+constexpr ProcessLimits kLimits = {60, std::int64_t{16} << 30};
+
+// Runs are repeated for a median while they take less than this together.
+constexpr double kRepeatSeconds = 1;
+constexpr std::size_t kMostRepetitions = 11;
+
+// Of the line through the largest sizes.
+constexpr std::size_t kSizesOfSlope = 3;
+
+constexpr double kMebibyte = 1024.0 * 1024.0;
+
+// Cells along each edge, of five tetrahedra each.
+std::vector<int> Sizes(bool is_quick) {
+  return is_quick ? std::vector<int>{6, 9}
+                  : std::vector<int>{6, 9, 13, 19, 27, 40, 58};
+}
+
+// A unit cube with the displacement
+//   u = z (0.02 x + 0.01 z, 0.01 y - 0.02 x z, -0.05 - 0.03 x y)
+// at its nodes, and the nodal forces f = K u that cause it: an exact
+// measurement for which nothing has to be factorised.
+Scene MeasuredCube(int cells) {
+  CuboidOptions options;
+  options.cells.setConstant(cells);
+  options.size.setOnes();
+  Scene scene = CuboidScene(options);
+  const auto x = scene.mesh.nodes.row(0).array();
+  const auto y = scene.mesh.nodes.row(1).array();
+  const auto z = scene.mesh.nodes.row(2).array();
+  Eigen::Matrix3Xd displacement(3, scene.mesh.NumNodes());
+  displacement.row(0) = z * (0.02 * x + 0.01 * z);
+  displacement.row(1) = z * (0.01 * y - 0.02 * x * z);
+  displacement.row(2) = z * (-0.05 - 0.03 * x * y);
+  const StiffnessProducts products =
+      MultiplyStiffnessBasis(scene.mesh, displacement.reshaped());
+  const double nu = kElasticity.poisson_ratio;
+  const double scale = kElasticity.youngs_modulus / ((1 + nu) * (1 - 2 * nu));
+  NodalForces forces{(scale * (products.h + nu * products.j))
+                         .reshaped(3, displacement.cols())};
+  forces.force = scene.supports.held.select(0, forces.force);
+  scene.load_cases[0].loads = {forces};
+  scene.load_cases[0].displacement = displacement;
+  return WithNoise(scene, kDeviation, kSeed);
+}
+
+struct Run {
+  int cells = 0;
+  ProcessReport report;
+  std::string status;
+  double processor_seconds = std::numeric_limits<double>::quiet_NaN();
+  int repetitions = 0;
+  int factorizations = 0;
+  double own_memory = std::numeric_limits<double>::quiet_NaN();  // Byte.
+
+  bool IsMeasured() const { return repetitions > 0; }
+};
+
+std::string RunEstimator(std::string_view name, int cells) {
+  const Scene scene = MeasuredCube(cells);
+  const std::unique_ptr<Estimator> estimator = MakeEstimator(name);
+  std::vector<double> seconds;
+  Estimate estimate;
+  const double start = ProcessorSeconds();
+  do {
+    const double before = ProcessorSeconds();
+    estimate = estimator->Run(scene, {});
+    seconds.push_back(ProcessorSeconds() - before);
+  } while (seconds.size() < kMostRepetitions &&
+           ProcessorSeconds() - start < kRepeatSeconds);
+  std::nth_element(seconds.begin(), seconds.begin() + seconds.size() / 2,
+                   seconds.end());
+  std::ostringstream output;
+  output << StatusName(estimate.status) << " " << seconds[seconds.size() / 2]
+         << " " << seconds.size() << " " << estimate.work.factorizations;
+  return output.str();
+}
+
+Run Measure(std::string_view name, int cells, double scene_memory) {
+  Run run;
+  run.cells = cells;
+  run.report =
+      RunInChildProcess(kLimits, [&] { return RunEstimator(name, cells); });
+  if (run.report.outcome == ProcessOutcome::kFinished) {
+    std::istringstream(run.report.output) >> run.status >>
+        run.processor_seconds >> run.repetitions >> run.factorizations;
+    run.own_memory = static_cast<double>(run.report.peak_memory) - scene_memory;
+  }
+  return run;
+}
+
+const char* OutcomeName(ProcessOutcome outcome) {
+  switch (outcome) {
+    case ProcessOutcome::kFinished:
+      return "measured";
+    case ProcessOutcome::kTimeLimit:
+      return "time_limit";
+    case ProcessOutcome::kMemoryLimit:
+      return "memory_limit";
+  }
+  return "";
+}
+
+// Of the line through the logarithms, by least squares, at the largest sizes;
+// NaN with fewer than two of them that are above zero.
+double Slope(const std::vector<Run>& runs, double Run::*value) {
+  std::vector<std::pair<double, double>> points;
+  for (const Run& run : runs) {
+    if (run.*value > 0) {
+      points.emplace_back(3 * std::log(run.cells), std::log(run.*value));
+    }
+  }
+  points.erase(points.begin(),
+               points.end() - std::min(points.size(), kSizesOfSlope));
+  Eigen::MatrixX2d lines(points.size(), 2);
+  Eigen::VectorXd values(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    lines.row(i) << 1, points[i].first;
+    values(i) = points[i].second;
+  }
+  return points.size() < 2
+             ? std::numeric_limits<double>::quiet_NaN()
+             : lines.colPivHouseholderQr().solve(values).eval()(1);
+}
+
+std::int64_t NumTetrahedra(int cells) {
+  return std::int64_t{5} * cells * cells * cells;
+}
+
+}  // namespace
+
+StudyResult RunScalingStudy(bool is_quick, Progress& progress) {
+  SetBlasThreads(1);
+  const std::vector<int> sizes = Sizes(is_quick);
+  std::map<int, double> scene_memory;
+  for (const int cells : sizes) {
+    progress.Show("scaling: scene of " + std::to_string(NumTetrahedra(cells)) +
+                  " tetrahedra");
+    const auto make_scene = [cells] {
+      return std::to_string(MeasuredCube(cells).mesh.NumNodes());
+    };
+    scene_memory[cells] =
+        static_cast<double>(RunInChildProcess(kLimits, make_scene).peak_memory);
+  }
+  Table table("scaling",
+              {"estimator", "tetrahedra [1]", "outcome", "status",
+               "processor_time [s]", "repetitions [1]", "factorizations [1]",
+               "peak_memory [MiB]", "scene_memory [MiB]", "own_memory [MiB]"});
+  Table slopes("scaling_slopes",
+               {"estimator", "sizes [1]", "processor_time_slope [1]",
+                "own_memory_slope [1]"});
+  for (const std::string_view name : EstimatorNames()) {
+    std::vector<Run> measured;
+    std::string limit;
+    for (const int cells : sizes) {
+      const double scene = scene_memory[cells];
+      if (!limit.empty()) {
+        const double none = std::numeric_limits<double>::quiet_NaN();
+        table.AddRow({std::string(name), NumTetrahedra(cells),
+                      "not run: " + limit + " at a smaller size", "", none,
+                      std::int64_t{0}, none, none, scene / kMebibyte, none});
+        continue;
+      }
+      progress.Show("scaling: " + std::string(name) + " with " +
+                    std::to_string(NumTetrahedra(cells)) + " tetrahedra");
+      const Run run = Measure(name, cells, scene);
+      const bool is_measured = run.IsMeasured();
+      table.AddRow({std::string(name), NumTetrahedra(cells),
+                    OutcomeName(run.report.outcome), run.status,
+                    run.processor_seconds, std::int64_t{run.repetitions},
+                    is_measured ? double(run.factorizations)
+                                : std::numeric_limits<double>::quiet_NaN(),
+                    static_cast<double>(run.report.peak_memory) / kMebibyte,
+                    scene / kMebibyte, run.own_memory / kMebibyte});
+      if (is_measured) {
+        measured.push_back(run);
+      } else {
+        limit = OutcomeName(run.report.outcome);
+      }
+    }
+    slopes.AddRow({std::string(name),
+                   std::int64_t(std::min(measured.size(), kSizesOfSlope)),
+                   Slope(measured, &Run::processor_seconds),
+                   Slope(measured, &Run::own_memory)});
+  }
+  return {{table, slopes},
+          {{"cube", "of five tetrahedra in each of n x n x n cells"},
+           {"displacement_deviation", kDeviation},
+           {"noise_seed", kSeed},
+           {"limit_of_processor_time [s]", kLimits.processor_seconds},
+           {"limit_of_memory [MiB]",
+            static_cast<double>(kLimits.memory) / kMebibyte},
+           {"limits", "of a process with its scene and all repetitions"},
+           {"blas_threads", 1},
+           {"peak_memory",
+            "largest resident memory of a process of its own, program and "
+            "scene included; of one that a limit ended, up to then"},
+           {"own_memory", "what is beyond that of a process with the scene"},
+           {"slopes", "of the three largest measured sizes"}}};
+}
+
+}  // namespace elastimate
