@@ -15,6 +15,7 @@
 #include "apps/progress.h"
 #include "benchmarks/metadata.h"
 #include "benchmarks/paper_study.h"
+#include "benchmarks/stability_study.h"
 #include "benchmarks/study.h"
 #include "elastimate/io/file_output.h"
 
@@ -34,6 +35,8 @@ struct NamedStudy {
 constexpr NamedStudy kStudies[] = {
     {"paper", "the experiments of Becker & Teschner 2007, section 5",
      RunPaperStudy},
+    {"stability", "where each estimator fails, and whether it says so",
+     RunStabilityStudy},
 };
 
 const Program& Benchmark() {
