@@ -261,9 +261,8 @@ def paper_cuboid_choice(path):
 # scale.
 STABILITY_MAPS = (
     ("median_youngs_modulus_error [1]",
-     "median absolute error of Young's modulus $E$ [%], whatever the status (grey: not run, or no number)",
-     "cividis_r",
-     matplotlib.colors.LogNorm(0.01, 100)),
+     "median absolute error of Young's modulus $E$ [%], whatever the status"
+     " (grey: not run, or no number)", "cividis_r", matplotlib.colors.LogNorm(0.01, 100)),
     ("failure_rate [1]", "failure rate [%]: not usable, or not supported (–)", "Blues",
      matplotlib.colors.Normalize(0, 100)),
     ("dishonest_share [1]",
