@@ -256,6 +256,7 @@ StudyResult RunStabilityStudy(bool is_quick, Progress& progress) {
             "the displacement 1 %"},
            {"noise_law", "uniform"},
            {"noise_seeds", "1 to the number of trials; column seed"},
+           {"seeds_of_chosen_nodes", "1000000 + column seed"},
            {"dishonest_standard_errors", kStandardErrors},
            {"dishonest_youngs_modulus_error", kYoungsModulusTolerance},
            {"dishonest_poisson_ratio_error", kPoissonRatioTolerance}}};
