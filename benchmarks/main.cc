@@ -17,6 +17,7 @@
 #include "benchmarks/paper_study.h"
 #include "benchmarks/scaling_study.h"
 #include "benchmarks/speed_accuracy_study.h"
+#include "benchmarks/stability_study.h"
 #include "benchmarks/study.h"
 #include "elastimate/io/file_output.h"
 
@@ -40,6 +41,8 @@ constexpr NamedStudy kStudies[] = {
      RunSpeedAccuracyStudy},
     {"scaling", "time and memory against the number of tetrahedra",
      RunScalingStudy},
+    {"stability", "where each estimator fails, and whether it says so",
+     RunStabilityStudy},
 };
 
 const Program& Benchmark() {

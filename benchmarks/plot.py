@@ -365,13 +365,95 @@ def scaling(path):
     panels[0].set_ylabel("processor time [s]")
     panels[1].set_ylabel("peak memory beyond that of the scene [MiB]")
     finish(figure, "Cube, noise of 1 %, one BLAS thread")
+
+
+# Of each heat map: column of the table, title, colours (light is good), and
+# scale.
+STABILITY_MAPS = (
+    ("median_youngs_modulus_error [1]",
+     "median absolute error of Young's modulus $E$ [%], whatever the status"
+     " (grey: not run, or no number)", "cividis_r", matplotlib.colors.LogNorm(0.01, 100)),
+    ("failure_rate [1]", "failure rate [%]: not usable, or not supported (–)", "Blues",
+     matplotlib.colors.Normalize(0, 100)),
+    ("dishonest_share [1]",
+     "dishonest [%]: wrong, and status ok (?: wrong, and the data cannot show it)", "Reds",
+     matplotlib.colors.Normalize(0, 100)),
+)
+
+
+def stability_text(row, column, percent):
+    if column.startswith("median"):
+        if np.isnan(percent):
+            return "–"
+        if percent < 0.005:
+            return "0"
+        return f"{percent:.1g}".lstrip("0") if percent < 1 else (
+            f"{percent:.0f}" if percent < 1000 else ">999")
+    if column.startswith("failure") and float(row["unsupported_share [1]"]) == 1:
+        return "–"
+    if column.startswith("dishonest") and float(row["not_knowable_share [1]"]) > 0:
+        return "?"
+    return f"{percent:.0f}" if percent > 0 else ""
+
+
+def draw_stability_strip(axes, cells, factors, names, column, colors, scale):
+    """One factor beside the other, estimators from top to bottom."""
+    colors = plt.get_cmap(colors).with_extremes(bad="#E8E8E8")
+    left, ticks, labels = 0, [], []
+    for factor in factors:
+        levels = list(dict.fromkeys(level for (own, level, _) in cells if own == factor))
+        percents = np.full((len(names), len(levels)), np.nan)
+        for line, name in enumerate(names):
+            for place, level in enumerate(levels):
+                row = cells.get((factor, level, name))
+                if row is None:
+                    continue
+                percent = 100 * float(row[column] or "nan")
+                percents[line, place] = percent
+                is_dark = scale(max(percent, 1e-9)) > 0.55
+                axes.text(left + place + 0.5, line + 0.5, stability_text(row, column, percent),
+                          ha="center", va="center", fontsize=5.5,
+                          color="white" if is_dark else "black")
+        image = axes.pcolormesh(left + np.arange(len(levels) + 1), np.arange(len(names) + 1),
+                                np.ma.masked_invalid(np.maximum(percents, 1e-9)), cmap=colors,
+                                norm=scale, edgecolors="white", linewidth=0.4)
+        axes.text(left, -0.25, factor.replace(" [", "\n[") if " [" in factor else factor + "\n",
+                  ha="left", va="bottom", fontsize=6, linespacing=0.95)
+        ticks += [left + place + 0.5 for place in range(len(levels))]
+        labels += levels
+        left += len(levels) + 0.6
+    axes.set_xticks(ticks, labels, rotation=90, fontsize=6)
+    axes.set_yticks(np.arange(len(names)) + 0.5, names, fontsize=6.5)
+    axes.set(xlim=(0, left - 0.6), ylim=(len(names), 0))
+    axes.tick_params(length=0)
+    axes.grid(False)
+    axes.spines[:].set_visible(False)
+    return image
+
+
+def stability_cells(path):
+    rows = read(path)
+    names = list(dict.fromkeys(row["estimator"] for row in rows))
+    factors = list(dict.fromkeys(row["factor"] for row in rows))
+    cells = {(row["factor"], row["level"], row["estimator"]): row for row in rows}
+    half = len(factors) // 2
+    figure = plt.figure(figsize=(10.5, 15.5))
+    for part, (column, title, colors, scale) in zip(
+            figure.subfigures(len(STABILITY_MAPS), 1), STABILITY_MAPS):
+        panels = part.subplots(2, 1)
+        for axes, some in zip(panels, (factors[:half], factors[half:])):
+            image = draw_stability_strip(axes, cells, some, names, column, colors, scale)
+        part.suptitle(title, fontsize=10)
+        part.colorbar(image, ax=panels, shrink=0.6, pad=0.01, aspect=30, extend="both"
+                      if column.startswith("median") else "neither")
     return figure
 
 
 FIGURES = {
     function.__name__: function
     for function in (paper_noise, paper_spatial_noise, paper_measurements, paper_forces,
-                     paper_organ, paper_cuboid_choice, speed_accuracy_points, scaling)
+                     paper_organ, paper_cuboid_choice, speed_accuracy_points, scaling,
+                     stability_cells)
 }
 
 

@@ -1,0 +1,219 @@
+// Runs the quick stability study, and holds its trials against theory.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "tests/benchmarks/tables.h"
+#include "tests/program.h"
+
+namespace elastimate {
+namespace {
+
+using testing::ReadTable;
+using testing::TableRow;
+
+constexpr const char* kYoungsModulusError = "youngs_modulus_error [1]";
+constexpr const char* kPoissonRatioError = "poisson_ratio_error [1]";
+
+// Of numbers with seven digits, of which one was subtracted.
+constexpr double kTableRounding = 1e-6;
+
+/// Trials by factor, level, estimator and seed.
+using Key = std::tuple<std::string, std::string, std::string, std::string>;
+using Trials = std::map<Key, TableRow>;
+
+Trials Index(const std::vector<TableRow>& rows) {
+  Trials trials;
+  for (const TableRow& row : rows) {
+    trials.emplace(Key{row.Text("factor"), row.Text("level"),
+                       row.Text("estimator"), row.Text("seed")},
+                   row);
+  }
+  return trials;
+}
+
+void ExpectExactDataGiveTheTruth(const Trials& trials) {
+  int count = 0;
+  for (const auto& [key, row] : trials) {
+    const auto& [factor, level, estimator, seed] = key;
+    if (factor == "noise [%]" && level == "0") {
+      SCOPED_TRACE(estimator);
+      EXPECT_EQ(row.Text("status"), "ok");
+      EXPECT_LT(std::abs(row.Number(kYoungsModulusError)), 1e-10);
+      EXPECT_LT(std::abs(row.Number(kPoissonRatioError)), 1e-10);
+      ++count;
+    }
+  }
+  EXPECT_GT(count, 0);
+}
+
+// The first level of each factor is one at which the model is right, and the
+// noise 1 % or none.
+void ExpectHonestyWhereNothingIsWrong(const std::vector<TableRow>& rows) {
+  std::map<std::string, std::string> first_levels;
+  for (const TableRow& row : rows) {
+    const std::string& first =
+        first_levels.emplace(row.Text("factor"), row.Text("level"))
+            .first->second;
+    if (row.Text("level") == first) {
+      EXPECT_NE(row.Text("outcome"), "dishonest")
+          << row.Text("factor") << ", " << row.Text("estimator");
+    }
+  }
+}
+
+// E is proportional to the force, and nu does not depend on it.
+void ExpectTheForceScalesE(const Trials& trials) {
+  int count = 0;
+  for (const auto& [key, row] : trials) {
+    const auto& [factor, level, estimator, seed] = key;
+    if (factor != "force scale [1]") {
+      continue;
+    }
+    SCOPED_TRACE(estimator + ", scale " + level);
+    const TableRow& right = trials.at({factor, "1", estimator, seed});
+    const double scale = std::stod(level);
+    EXPECT_NEAR((1 + row.Number(kYoungsModulusError)) / scale,
+                1 + right.Number(kYoungsModulusError), kTableRounding);
+    EXPECT_NEAR(row.Number(kPoissonRatioError),
+                right.Number(kPoissonRatioError), kTableRounding);
+    EXPECT_EQ(row.Text("status"), right.Text("status"));
+    ++count;
+  }
+  EXPECT_GT(count, 0);
+}
+
+// A block with an inclusion of its own material, which a dense solution of two
+// materials measured, is the base scene.
+void ExpectInclusionOfTheSameMaterialIsNone(const Trials& trials) {
+  int count = 0;
+  for (const auto& [key, row] : trials) {
+    const auto& [factor, level, estimator, seed] = key;
+    if (factor == "inclusion stiffness [1]" && level == "1") {
+      SCOPED_TRACE(estimator);
+      const TableRow& base = trials.at({"load", "oblique", estimator, seed});
+      EXPECT_NEAR(row.Number(kYoungsModulusError),
+                  base.Number(kYoungsModulusError), kTableRounding);
+      EXPECT_NEAR(row.Number(kPoissonRatioError),
+                  base.Number(kPoissonRatioError), kTableRounding);
+      ++count;
+    }
+  }
+  EXPECT_GT(count, 0);
+}
+
+double SquareSum(const Trials& trials, const std::string& estimator) {
+  double sum = 0;
+  for (const auto& [key, row] : trials) {
+    if (std::get<0>(key) == "outliers [% of nodes]" &&
+        std::get<1>(key) == "10" && std::get<2>(key) == estimator) {
+      sum += std::pow(row.Number(kYoungsModulusError), 2);
+      sum += std::pow(row.Number(kPoissonRatioError), 2);
+    }
+  }
+  EXPECT_GT(sum, 0) << estimator;
+  return sum;
+}
+
+void ExpectHuberWithstandsOutliers(const Trials& trials) {
+  for (const std::string estimator : {"reduced-fe", "iterative-fe"}) {
+    EXPECT_LT(SquareSum(trials, estimator + " huber"),
+              SquareSum(trials, estimator));
+  }
+}
+
+// Methods of the force balance need all displacements; those that compute
+// displacements need supports.
+void ExpectUnsupportedWhereDataAreMissing(const std::vector<TableRow>& rows) {
+  for (const TableRow& row : rows) {
+    const std::string& estimator = row.Text("estimator");
+    if (row.Text("factor") == "observed nodes" && row.Text("level") == "5") {
+      EXPECT_EQ(row.Text("status") == "unsupported",
+                estimator == "closed-form" || estimator == "bounded" ||
+                    estimator == "total-least-squares" ||
+                    estimator == "virtual-fields")
+          << estimator;
+    }
+    if (row.Text("factor") == "support nodes left free [%]" &&
+        row.Text("level") == "100" &&
+        (estimator == "reduced-fe" || estimator == "iterative-fe" ||
+         estimator == "one-step")) {
+      EXPECT_EQ(row.Text("status"), "unsupported") << estimator;
+    }
+  }
+}
+
+// The definition of the README, from the columns of the table.
+bool IsDishonest(const TableRow& row) {
+  const auto or_zero = [](double value) {
+    return std::isnan(value) ? 0. : value;
+  };
+  const double e = std::abs(row.Number(kYoungsModulusError));
+  const double nu_error = row.Number(kPoissonRatioError);
+  const double nu = row.Number("true_poisson_ratio [1]");
+  return row.Text("status") == "ok" &&
+         row.Text("factor") != "force scale [1]" &&
+         ((e > 0.1 &&
+           e > 3 * or_zero(row.Number("youngs_modulus_standard_error [1]"))) ||
+          (std::abs(nu_error) > 0.03 &&
+           std::abs(nu_error) >
+               3 * or_zero(row.Number("poisson_ratio_standard_error [1]")) &&
+           !(row.Number("poisson_ratio_lower [1]") <= nu &&
+             nu <= row.Number("poisson_ratio_upper [1]"))));
+}
+
+void ExpectCellsAddUpTrials(const std::vector<TableRow>& rows,
+                            const std::vector<TableRow>& cells) {
+  using CellKey = std::tuple<std::string, std::string, std::string>;
+  const auto key = [](const TableRow& row) {
+    return CellKey{row.Text("factor"), row.Text("level"),
+                   row.Text("estimator")};
+  };
+  std::map<CellKey, int> num_dishonest;
+  std::map<CellKey, int> num_failed;
+  for (const TableRow& row : rows) {
+    num_dishonest[key(row)] += IsDishonest(row);
+    num_failed[key(row)] += row.Text("status") != "ok";
+    EXPECT_EQ(row.Text("outcome") == "dishonest", IsDishonest(row));
+  }
+  EXPECT_EQ(num_failed.size(), cells.size());
+  for (const TableRow& cell : cells) {
+    const double trials = cell.Number("trials [1]");
+    EXPECT_NEAR(cell.Number("dishonest_share [1]") * trials,
+                num_dishonest.at(key(cell)), kTableRounding * trials);
+    EXPECT_NEAR(cell.Number("failure_rate [1]") * trials,
+                num_failed.at(key(cell)), kTableRounding * trials);
+  }
+}
+
+class StabilityStudy : public testing::ProgramTest {};
+
+TEST_F(StabilityStudy, FindsWhatTheoryPredicts) {
+  Succeed("study --name=stability --out=. --quick");
+  const std::vector<TableRow> rows = ReadTable(folder_ / "stability.csv");
+  const Trials trials = Index(rows);
+  ExpectExactDataGiveTheTruth(trials);
+  ExpectHonestyWhereNothingIsWrong(rows);
+  ExpectTheForceScalesE(trials);
+  ExpectInclusionOfTheSameMaterialIsNone(trials);
+  ExpectHuberWithstandsOutliers(trials);
+  ExpectUnsupportedWhereDataAreMissing(rows);
+  ExpectCellsAddUpTrials(rows, ReadTable(folder_ / "stability_cells.csv"));
+
+  const std::string plot =
+      std::string(ELASTIMATE_PLOT) + " '" + folder_.string() + "'";
+  ASSERT_EQ(std::system(plot.c_str()), 0);
+  for (const char* chart : {"stability_cells.svg", "stability_cells.png"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder_ / chart)) << chart;
+  }
+}
+
+}  // namespace
+}  // namespace elastimate
