@@ -365,6 +365,7 @@ def scaling(path):
     panels[0].set_ylabel("processor time [s]")
     panels[1].set_ylabel("peak memory beyond that of the scene [MiB]")
     finish(figure, "Cube, noise of 1 %, one BLAS thread")
+    return figure
 
 
 # Of each heat map: column of the table, title, colours (light is good), and
