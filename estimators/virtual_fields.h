@@ -24,7 +24,12 @@ namespace elastimate {
 /// Newey & Windmeijer, Econometrica 77 (2009) 687, eq. 3, which knows that b is
 /// noisy.  On blocks they are 1 to 3 times the Cramer-Rao bound, and the
 /// higher the degree the smaller; low degrees describe slender and
-/// many-limbed shapes poorly, which the standard errors show.
+/// many-limbed shapes poorly, which the standard errors show.  Where that of nu
+/// is large (kLargestLinearShare) or nu at the end of its range, the interval
+/// of nu is that of the profile of the minimum over t, and the standard errors
+/// are widened to it; one that reaches further than 1.96 times 0.15 is not
+/// usable.  Nor is an estimate whose bound on E the data contradict, or whose
+/// balance needs displacements that differ by more than a fifth.
 ///
 /// The square sum over the noise is chi^2 with k num_load_cases - 2 degrees of
 /// freedom when the mesh, the supports and the loads describe the experiment.
