@@ -460,14 +460,14 @@ Estimate IterativeFe::DoRun(const Scene& scene,
     estimate.message = summary.message;
   }
   if (residual.IsValid()) {
+    const DisplacementFit fit = residual.Fit();
     const std::optional<double> variance = DescribeDisplacementFit(
-        scene, residual.Graph(), options, residual.Observed(), residual.Fit(),
-        losses, active, estimate);
+        scene, residual.Graph(), options, residual.Observed(), fit, losses,
+        active, estimate);
     if (variance && options.loss == Loss::kNone && estimate.IsUsable() &&
         estimate.active_bounds.empty() &&
         ShareOfDistanceToPole(estimate) > kLargestLinearShare) {
-      WidenByStarts(starts, residual.Fit().residual.squaredNorm(), *variance,
-                    estimate);
+      WidenByStarts(starts, fit.residual.squaredNorm(), *variance, estimate);
     }
   }
   estimate.stages.push_back({"statistics", stopwatch.Lap()});

@@ -430,8 +430,21 @@ std::pair<VirtualWorkFit, VirtualWorkFit> VirtualWorkBalance::ProfileEnds(
   const auto is_inside = [&](const VirtualWorkFit& fit) {
     return fit.square_sum <= best.square_sum + excess;
   };
-  const auto halve = [&](VirtualWorkFit inside, double outside) {
+  // Along the scan from `noise` on, away from the best fit.
+  const auto end_along = [&](auto noise, auto scan_end) {
     constexpr int kHalvings = 12;
+    VirtualWorkFit inside = best;
+    for (; noise != scan_end; ++noise) {
+      VirtualWorkFit fit = Evaluate(*noise, Bounds{});
+      if (!is_inside(fit)) {
+        break;
+      }
+      inside = std::move(fit);
+    }
+    if (noise == scan_end) {
+      return inside;
+    }
+    double outside = noise->poisson_ratio;
     for (int i = 0; i < kHalvings; ++i) {
       const double middle = (inside.poisson_ratio + outside) / 2;
       VirtualWorkFit fit = FitAt(middle, Bounds{});
@@ -443,31 +456,18 @@ std::pair<VirtualWorkFit, VirtualWorkFit> VirtualWorkBalance::ProfileEnds(
     }
     return inside;
   };
-  VirtualWorkFit upper = best;
-  for (auto noise = work_.Scan().begin(); noise != work_.Scan().end();
-       ++noise) {
-    if (noise->poisson_ratio > best.poisson_ratio) {
-      VirtualWorkFit fit = Evaluate(*noise, Bounds{});
-      if (!is_inside(fit)) {
-        upper = halve(upper, fit.poisson_ratio);
-        break;
-      }
-      upper = std::move(fit);
-    }
-  }
-  VirtualWorkFit lower = best;
-  for (auto noise = work_.Scan().rbegin(); noise != work_.Scan().rend();
-       ++noise) {
-    if (noise->poisson_ratio < best.poisson_ratio) {
-      VirtualWorkFit fit = Evaluate(*noise, Bounds{});
-      if (!is_inside(fit)) {
-        lower = halve(lower, fit.poisson_ratio);
-        break;
-      }
-      lower = std::move(fit);
-    }
-  }
-  return {lower, upper};
+  const std::vector<VirtualWork::NoiseFactor>& scan = work_.Scan();
+  const double nu = best.poisson_ratio;
+  return {end_along(std::find_if(scan.rbegin(), scan.rend(),
+                                 [&](const auto& noise) {
+                                   return noise.poisson_ratio < nu;
+                                 }),
+                    scan.rend()),
+          end_along(std::find_if(scan.begin(), scan.end(),
+                                 [&](const auto& noise) {
+                                   return noise.poisson_ratio > nu;
+                                 }),
+                    scan.end())};
 }
 
 VirtualWorkInformation VirtualWorkBalance::InformationAt(
