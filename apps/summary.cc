@@ -58,6 +58,11 @@ void AddDiagnostics(const Estimate& estimate, std::ostringstream& text) {
          Number(*estimate.residual_correlation, 2) + " between neighbours",
          text);
   }
+  if (estimate.discretization_error) {
+    Line("discretisation error",
+         Number(*estimate.discretization_error, 2) + " of the strain energy",
+         text);
+  }
   if (estimate.noise_attenuation) {
     Line("noise attenuation", Number(*estimate.noise_attenuation, 3), text);
   }

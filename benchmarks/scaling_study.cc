@@ -24,7 +24,7 @@ namespace {
 constexpr IsotropicElasticity kElasticity = {10e3, 0.33};
 constexpr double kDeviation = 0.01;
 constexpr std::uint64_t kSeed = 1;
-constexpr ProcessLimits kLimits = {60, std::int64_t{16} << 30};
+constexpr ProcessLimits kLimits = {600, std::int64_t{16} << 30};
 
 // Runs are repeated for a median while they take less than this together.
 constexpr double kRepeatSeconds = 1;

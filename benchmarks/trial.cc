@@ -1,6 +1,8 @@
 #include "benchmarks/trial.h"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 
 #include "elastimate/core/degrees_of_freedom.h"
@@ -23,6 +25,31 @@ double Trial::PoissonRatioError() const {
   return estimate.elasticity.poisson_ratio - truth.poisson_ratio;
 }
 
+bool IsWrong(const Trial& trial, double discretization_error) {
+  const Estimate& estimate = trial.estimate;
+  const auto tolerance = [discretization_error](
+                             double least,
+                             const std::optional<double>& standard_error) {
+    return std::max(
+        least, kWrongStandardErrors * std::hypot(standard_error.value_or(0),
+                                                 discretization_error));
+  };
+  std::optional<double> youngs_modulus = estimate.YoungsModulusStandardError();
+  if (youngs_modulus) {
+    *youngs_modulus /= trial.truth.youngs_modulus;
+  }
+  const double nu = trial.truth.poisson_ratio;
+  const std::optional<Interval>& interval = estimate.poisson_ratio_interval;
+  const bool is_in_interval =
+      interval && interval->lower <= nu && nu <= interval->upper;
+  return std::abs(trial.YoungsModulusError()) >
+             tolerance(kWrongYoungsModulus, youngs_modulus) ||
+         (std::abs(trial.PoissonRatioError()) >
+              tolerance(kWrongPoissonRatio,
+                        estimate.PoissonRatioStandardError()) &&
+          !is_in_interval);
+}
+
 std::vector<std::string> TrialColumns() {
   return {"estimator",
           "seed",
@@ -31,6 +58,7 @@ std::vector<std::string> TrialColumns() {
           "poisson_ratio_error [1]",
           "youngs_modulus_standard_error [1]",
           "poisson_ratio_standard_error [1]",
+          "discretization_error [1]",
           "youngs_modulus_cramer_rao [1]",
           "poisson_ratio_cramer_rao [1]",
           "true_poisson_ratio [1]",
@@ -49,6 +77,7 @@ std::vector<Value> TrialCells(const Trial& trial) {
           estimate.YoungsModulusStandardError().value_or(Estimate::kUnknown) /
               youngs_modulus,
           estimate.PoissonRatioStandardError().value_or(Estimate::kUnknown),
+          estimate.discretization_error.value_or(Estimate::kUnknown),
           std::sqrt(trial.cramer_rao(0, 0)) / youngs_modulus,
           std::sqrt(trial.cramer_rao(1, 1)),
           trial.truth.poisson_ratio,

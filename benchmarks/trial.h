@@ -27,6 +27,18 @@ struct Trial {
   double PoissonRatioError() const;
 };
 
+/// Whether an estimate is wrong by more than it states: by more than 10 % of E
+/// or 0.03 in nu, and by more than three times the standard error and the
+/// discretisation error together; nu must also be outside its interval.  A
+/// missing standard error counts as zero.  `discretization_error` is what the
+/// estimate states where the truth is not that of its elements, else zero.
+bool IsWrong(const Trial& trial, double discretization_error);
+
+/// What counts as wrong.
+inline constexpr double kWrongStandardErrors = 3;
+inline constexpr double kWrongYoungsModulus = 0.1;  // Relative.
+inline constexpr double kWrongPoissonRatio = 0.03;
+
 /// The columns that all tables of trials have, for the cells of TrialCells.
 /// Errors, standard errors and Cramer-Rao bounds (as standard deviations) of E
 /// are relative to the true E, those of nu are absolute.

@@ -75,6 +75,11 @@ std::string WhyTheModelIsNotEnough(const EstimatorOptions& options,
     return "virtual-fields disagrees by more than noise explains (p = " +
            TwoDigits(estimate.model_mismatch->p_value) + ")";
   }
+  if (IsDiscretizationErrorNotable(estimate)) {
+    return "the elements miss about " +
+           TwoDigits(100 * *estimate.discretization_error) +
+           " % of the strain energy";
+  }
   if (estimate.is_model_in_doubt) {
     const std::string why = WhyNotWithinTolerance(options, estimate);
     if (!why.empty()) {
@@ -84,20 +89,21 @@ std::string WhyTheModelIsNotEnough(const EstimatorOptions& options,
   return "";
 }
 
-// Whether a residual that lacked quadratic elements has shrunk with them: by
-// more than noise lets it, and by far where it is no noise still.
-bool DoesMuchBetter(const Estimate& quadratic, const Estimate& linear,
-                    Eigen::Index num_observed) {
+// Whether one of two fits to the same displacements, of as many parameters,
+// explains them far better than the other: by more than noise lets it, and by
+// far where its residual is no noise.
+bool ExplainsFarBetter(const Estimate& one, const Estimate& other,
+                       Eigen::Index num_observed) {
   // Twice the difference of the logarithms of the likelihoods, in standard
   // scores.
   constexpr double kSignificantScore = 5;
   constexpr double kLargestShare = 0.5;
-  if (!linear.displacement_residual || !quadratic.displacement_residual) {
-    return true;
+  if (!one.displacement_residual || !other.displacement_residual) {
+    return one.displacement_residual.has_value();
   }
   const double share =
-      *quadratic.displacement_residual / *linear.displacement_residual;
-  return quadratic.is_model_in_doubt
+      *one.displacement_residual / *other.displacement_residual;
+  return one.is_model_in_doubt
              ? share <= kLargestShare
              : -2 * static_cast<double>(num_observed) * std::log(share) >
                    kSignificantScore * kSignificantScore;
@@ -163,6 +169,31 @@ bool StopsHere(const std::string& why_not_enough, Ladder& ladder) {
   return why_not_enough.empty();
 }
 
+// Of the rungs of both orders, when the lower one was not enough.
+void ChooseOrder(const Estimate& linear, Eigen::Index num_observed,
+                 Ladder& ladder) {
+  Estimate& quadratic = ladder.Last();
+  const bool is_coarse = IsDiscretizationErrorNotable(linear);
+  const bool is_better = ExplainsFarBetter(quadratic, linear, num_observed);
+  if (is_coarse ? ExplainsFarBetter(linear, quadratic, num_observed)
+                : !is_better) {
+    ladder.Decide(is_coarse ? "stopped: linear elements, which are kept, "
+                              "explain the displacements far better"
+                            : "stopped: the residual is not that of linear "
+                              "elements, which are kept");
+    ladder.Return(linear);
+    return;
+  }
+  ladder.Decide("stopped: there is no rung above");
+  if (!is_better && quadratic.IsUsable()) {
+    quadratic.warnings.push_back(
+        "linear elements explain the displacements as well, with E = " +
+        TwoDigits(linear.elasticity.youngs_modulus) +
+        " and nu = " + TwoDigits(linear.elasticity.poisson_ratio) +
+        ", but only a simulation with these very elements is that stiff");
+  }
+}
+
 }  // namespace
 
 std::string_view Auto::Name() const { return "auto"; }
@@ -223,15 +254,7 @@ Estimate Auto::DoRun(const Scene& scene,
   ladder.Decide("went on: " + why_not_enough);
   const Estimate of_linear = linear;
   ladder.Climb(ReducedFe(), QuadraticScene(scene), without_degree);
-  const Estimate& quadratic = ladder.Last();
-  if (!DoesMuchBetter(quadratic, of_linear,
-                      ObservedDisplacements(scene).Size())) {
-    ladder.Decide(
-        "stopped: the residual is not that of linear elements, which are kept");
-    ladder.Return(of_linear);
-  } else {
-    ladder.Decide("stopped: there is no rung above");
-  }
+  ChooseOrder(of_linear, ObservedDisplacements(scene).Size(), ladder);
   return ladder.Finish();
 }
 

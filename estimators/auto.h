@@ -15,8 +15,11 @@ namespace elastimate {
 /// the statistical limit of the data, so that there a larger standard error is
 /// no reason to climb: what sends it to quadratic elements is a residual that
 /// is no noise, or a disagreement with virtual-fields that noise does not
-/// explain (Hausman), where it matters by more than these tolerances.  Of the
-/// two orders the one with the smaller displacement residual is taken.
+/// explain (Hausman), where it matters by more than these tolerances; or a
+/// discretisation error above 1 % and two standard errors of E.  Quadratic
+/// elements then have to explain the displacements far better than linear ones
+/// to be taken; after a notable discretisation error it is the linear ones that
+/// have to, as they do for displacements that were computed with them.
 ///
 /// A rung that does not support the scene or the options is passed over.  The
 /// estimate is that of the last rung, with the work of all of them;

@@ -74,13 +74,30 @@ constexpr char kLockingWarning[] =
     "biases E and nu and makes their standard errors too small, unless the "
     "displacements come from the same mesh; quadratic ones (order 2) hardly do";
 
-void WarnOfLocking(Estimate& estimate) {
+void WarnOnce(const std::string& warning, Estimate& estimate) {
+  if (std::find(estimate.warnings.begin(), estimate.warnings.end(), warning) ==
+      estimate.warnings.end()) {
+    estimate.warnings.push_back(warning);
+  }
+}
+
+void WarnOfElements(Estimate& estimate) {
   constexpr double kLocking = 0.45;
-  const bool is_told = std::any_of(estimate.warnings.begin(),
-                                   estimate.warnings.end(), IsWarningOfLocking);
-  if (estimate.element_order == 1 && !is_told &&
+  if (estimate.element_order == 1 &&
       estimate.elasticity.poisson_ratio >= kLocking) {
-    estimate.warnings.emplace_back(kLockingWarning);
+    WarnOnce(kLockingWarning, estimate);
+  }
+  if (IsDiscretizationErrorNotable(estimate)) {
+    WarnOnce("the elements miss about " +
+                 TwoDigits(100 * *estimate.discretization_error) +
+                 " % of the strain energy, which makes E and nu wrong by about "
+                 "as much, on top of the standard errors, unless the "
+                 "displacements were computed with these very elements: refine "
+                 "the mesh" +
+                 (estimate.element_order == 1
+                      ? ", or use quadratic elements (order 2)"
+                      : ""),
+             estimate);
   }
 }
 
@@ -117,6 +134,16 @@ void CheckResult(const EstimatorOptions& options, Estimate& estimate) {
 }
 
 }  // namespace
+
+bool IsDiscretizationErrorNotable(const Estimate& estimate) {
+  constexpr double kNotable = 0.01;
+  constexpr double kStandardErrors = 2;
+  const double standard_error =
+      estimate.YoungsModulusStandardError().value_or(0) /
+      estimate.elasticity.youngs_modulus;
+  return estimate.discretization_error.value_or(0) >
+         std::max(kNotable, kStandardErrors * standard_error);
+}
 
 bool IsWarningOfLocking(const std::string& warning) {
   return warning == kLockingWarning;
@@ -203,7 +230,7 @@ void FinishEstimate(const Estimator& estimator, const Scene& scene,
   CheckResult(options, estimate);
   if (estimate.IsUsable()) {
     AddPoissonRatioInterval(estimate);
-    WarnOfLocking(estimate);
+    WarnOfElements(estimate);
   }
 }
 

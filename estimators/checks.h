@@ -25,10 +25,14 @@ std::vector<std::string> CheckMeasurements(const Scene& scene);
 /// Whether FinishEstimate gave this warning of linear elements near nu = 1/2.
 bool IsWarningOfLocking(const std::string& warning);
 
+/// Whether the discretisation error is larger than 1 % and than two standard
+/// errors of E.
+bool IsDiscretizationErrorNotable(const Estimate& estimate);
+
 /// Enters the estimator's name, the warnings, and an interval of nu where only
-/// its standard error is known; warns of what linear elements do near nu = 1/2;
-/// and turns an estimate that
-/// claims to be ok into what it is, when it is not finite, not physical, or not
+/// its standard error is known; warns of what linear elements do near nu = 1/2
+/// and of a notable discretisation error; and turns an estimate that claims to
+/// be ok into what it is, when it is not finite, not physical, or not
 /// determined.
 void FinishEstimate(const Estimator& estimator, const Scene& scene,
                     const EstimatorOptions& options,

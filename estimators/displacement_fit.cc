@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "elastimate/core/strain_energy.h"
 #include "elastimate/estimators/statistics.h"
 
 namespace elastimate {
@@ -269,6 +270,8 @@ std::optional<double> DescribeDisplacementFit(
   const double square_sum = fit.residual.squaredNorm();
   estimate.displacement_residual =
       std::sqrt(square_sum) / observed.Measured().norm();
+  estimate.discretization_error =
+      DiscretizationError(scene.mesh, estimate.elasticity, fit.displacement);
   estimate.identifiability_angle = IdentifiabilityAngle(gram);
   const bool is_collinear =
       std::sin(*estimate.identifiability_angle) < kCollinear;

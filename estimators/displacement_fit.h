@@ -14,8 +14,11 @@
 namespace elastimate {
 
 /// A finite element model at the parameters that fit the measured
-/// displacements best, in the rows of ObservedDisplacements.
+/// displacements best; residual and sensitivities in the rows of
+/// ObservedDisplacements.
 struct DisplacementFit {
+  /// u of all nodes, (3 num_nodes) x num_load_cases.
+  Eigen::MatrixXd displacement;
   Eigen::VectorXd residual;  ///< u - q.
   /// du / d (ln E, nu).
   Eigen::Matrix<double, Eigen::Dynamic, 2> sensitivities;
@@ -42,9 +45,9 @@ std::optional<NeighbourCorrelation> CorrelateNeighbours(
     const Eigen::VectorXd& residual);
 
 /// Judges a least-squares (or, with `losses`, robust) fit of the displacements
-/// and fills in status, covariance, noise, residual statistics,
-/// identifiability and warnings of `estimate`, whose elasticity and active
-/// bounds are set.  `graph` is that of the mesh of the scene.
+/// and fills in status, covariance, noise, residual statistics, discretisation
+/// error, identifiability and warnings of `estimate`, whose elasticity and
+/// active bounds are set.  `graph` is that of the mesh of the scene.
 ///
 /// Without a loss the covariance is sigma^2 (S^T S)^-1, the Cramer-Rao bound,
 /// with sigma^2 as given, or from the residual; with one it is the sandwich of

@@ -101,6 +101,11 @@ struct Estimate {
   /// Correlation of the displacement residuals of neighbouring nodes: near 0
   /// for independent noise, near 1 when the model misses something smooth.
   std::optional<double> residual_correlation;
+  /// The share of the strain energy that the elements miss, as Zienkiewicz &
+  /// Zhu estimate it: about the relative error that it causes in E, and about
+  /// that in nu, on top of the standard errors, unless the displacements were
+  /// computed with these very elements.
+  std::optional<double> discretization_error;
   /// Whether the residual is none that independent noise leaves, so that the
   /// mesh, the supports or the loads are not those of the experiment.
   bool is_model_in_doubt = false;

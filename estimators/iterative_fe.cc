@@ -65,9 +65,9 @@ class DisplacementResidual : public ceres::EvaluationCallback {
     if (new_evaluation_point) {
       is_valid_ = SetPoissonRatio(poisson_ratio_->Value());
       if (is_valid_) {
-        fit_.residual = observed_.Restrict(
-                            model_.Displacement(Elasticity().youngs_modulus)) -
-                        observed_.Measured();
+        fit_.displacement = model_.Displacement(Elasticity().youngs_modulus);
+        fit_.residual =
+            observed_.Restrict(fit_.displacement) - observed_.Measured();
       }
     }
     if (evaluate_jacobians && is_valid_) {

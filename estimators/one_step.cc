@@ -70,11 +70,13 @@ Step TakeStep(const ObservedDisplacements& observed,
 }
 
 // Du / d (ln E, nu) from the columns w and t w' + v'.
-DisplacementFit DescribeStep(const Step& step) {
+DisplacementFit DescribeStep(const ForwardModel& model, const Step& step) {
   const double nu = step.poisson_ratio;
   const double t = step.compliance_scale;
   const double dt_dnu = -(1 + 4 * nu) * t / ((1 + nu) * (1 - 2 * nu));
   DisplacementFit fit;
+  fit.displacement = t * model.UnitLoadResponse();
+  fit.displacement.colwise() += model.SupportResponse();
   fit.residual = step.residual;
   fit.sensitivities.resize(step.residual.size(), 2);
   fit.sensitivities << -t * step.responses.col(0),
@@ -180,8 +182,8 @@ Estimate OneStep::DoRun(const Scene& scene,
     estimate.message = "the steps do not settle; use reduced-fe";
   }
   DescribeDisplacementFit(scene, model.Graph(), options, observed,
-                          DescribeStep(step), NodeLosses(), ActiveBounds(),
-                          estimate);
+                          DescribeStep(model, step), NodeLosses(),
+                          ActiveBounds(), estimate);
   if (estimate.IsUsable() && !options.known_poisson_ratio &&
       ShareOfDistanceToPole(estimate) > kLargestShare) {
     std::ostringstream text;

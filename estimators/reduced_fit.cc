@@ -295,6 +295,7 @@ DisplacementFit ExpandFit(const ReducedModel& model,
   fit.sensitivities.resize(observed.Size(), 2);
   fit.sensitivities << observed.Restrict(by_log_youngs_modulus),
       observed.Restrict(by_poisson_ratio);
+  fit.displacement = std::move(displacement);
   return fit;
 }
 

@@ -101,8 +101,7 @@ class ReducedFit {
   Eigen::MatrixXd scan_v_;
 };
 
-/// Residual and sensitivities of the model at (E, nu), in the rows of
-/// `observed`.  O(num_nodes m).
+/// The model at (E, nu).  O(num_nodes m).
 DisplacementFit ExpandFit(const ReducedModel& model,
                           const ObservedDisplacements& observed,
                           const IsotropicElasticity& elasticity);

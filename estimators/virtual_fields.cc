@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "elastimate/core/loads.h"
+#include "elastimate/core/strain_energy.h"
 #include "elastimate/estimators/force_residual.h"
+#include "elastimate/estimators/monomials.h"
 #include "elastimate/estimators/profile_likelihood.h"
 #include "elastimate/estimators/statistics.h"
 #include "elastimate/estimators/stopwatch.h"
@@ -239,6 +241,22 @@ void JudgeYoungsModulusBound(const VirtualWorkFit& bounded,
   }
 }
 
+// The displacements of all load cases without most of their noise, and without
+// what varies faster than a cubic: (3 num_nodes) x num_load_cases.
+Eigen::MatrixXd SmoothDisplacements(const Scene& scene) {
+  constexpr int kDegree = 3;
+  const Eigen::Index num_nodes = scene.mesh.NumNodes();
+  Eigen::MatrixXd smooth(3 * num_nodes, Eigen::Index(scene.load_cases.size()));
+  for (Eigen::Index k = 0; k < smooth.cols(); ++k) {
+    const Eigen::Matrix3Xd displacement = scene.supports.held.select(
+        scene.supports.displacement, scene.load_cases[k].displacement);
+    smooth.col(k).reshaped(3, num_nodes) =
+        SmoothByPolynomials(scene.mesh.nodes, displacement.transpose(), kDegree)
+            .transpose();
+  }
+  return smooth;
+}
+
 // Warns of loads that the motions left free are not in balance with; whether
 // they can be used.
 bool JudgeImbalance(double imbalance, Estimate& estimate) {
@@ -370,6 +388,10 @@ Estimate VirtualFields::DoRun(const Scene& scene,
   }
   JudgeCorrection(std::sqrt(fit.square_sum) / balance.DisplacementNorm(),
                   estimate);
+  if (estimate.IsUsable()) {
+    estimate.discretization_error = DiscretizationError(
+        scene.mesh, estimate.elasticity, SmoothDisplacements(scene));
+  }
   estimate.stages.push_back({"fit", stopwatch.Lap()});
   return estimate;
 }

@@ -36,6 +36,9 @@ namespace elastimate {
 /// It is held against the given noise, or against that which the force residual
 /// shows, most of which lies in wavelengths far below those of the fields.
 ///
+/// The discretisation error is that of the measured displacements smoothed by
+/// a cubic, since those of a fit are not known.
+///
 /// Cost: one element pass of 12, 30 or 60 columns for the degrees 1, 2 and 3 of
 /// EstimatorOptions::virtual_field_degree and a QR factorisation of as many
 /// columns twice, which depend on the mesh only, and four passes of one to

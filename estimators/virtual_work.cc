@@ -10,57 +10,20 @@
 #include "elastimate/core/degrees_of_freedom.h"
 #include "elastimate/core/stiffness_product.h"
 #include "elastimate/estimators/force_residual.h"
+#include "elastimate/estimators/monomials.h"
 
 namespace elastimate {
 namespace {
 
 using Side = BoundedParameter::Side;
 
-// Relative to the largest, what is smaller is rounding: a polynomial that
-// depends on the others, a motion without strain, the work of loads that do
-// none.  What is not rounding is far larger in all three.
+// Relative to the largest, what is smaller is rounding: a motion without
+// strain, the work of loads that do none.  What is not rounding is far larger.
 constexpr double kRounding = 1e-10;
 
 // The sine of the angle between two vectors of virtual work below which
 // rounding, not the data, decides.
 constexpr double kCollinear = 1e-10;
-
-// Positions as coordinates of zero mean and unit covariance over the given
-// nodes: polynomials of a degree are the same in them, and well conditioned
-// for slender specimens too.
-Eigen::Matrix3Xd Standardize(const Mesh& mesh,
-                             const std::vector<Eigen::Index>& nodes) {
-  Eigen::Matrix3Xd x = mesh.nodes(Eigen::all, nodes);
-  x.colwise() -= x.rowwise().mean().eval();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(
-      x * x.transpose() / static_cast<double>(x.cols()));
-  const Eigen::Vector3d extent = axes.eigenvalues().cwiseMax(0).cwiseSqrt();
-  Eigen::Matrix3Xd coordinates = axes.eigenvectors().transpose() * x;
-  for (int i = 0; i < 3; ++i) {
-    // Free nodes may lie in a plane.
-    const bool is_flat = !(extent(i) > kRounding * extent(2));
-    coordinates.row(i) *= is_flat ? 0 : 1 / extent(i);
-  }
-  return coordinates;
-}
-
-// The monomials of degree <= `degree` at each point: num_points x m.
-Eigen::MatrixXd Monomials(const Eigen::Matrix3Xd& x, int degree) {
-  Eigen::MatrixXd monomials(x.cols(),
-                            (degree + 1) * (degree + 2) * (degree + 3) / 6);
-  monomials.col(0).setOnes();
-  Eigen::Index column = 0;
-  for (int i = 0; i <= degree; ++i) {
-    for (int j = 0; i + j <= degree; ++j) {
-      for (int k = 0; i + j + k <= degree; ++k) {
-        monomials.col(column++) = x.row(0).array().pow(i) *
-                                  x.row(1).array().pow(j) *
-                                  x.row(2).array().pow(k);
-      }
-    }
-  }
-  return monomials;
-}
 
 // An orthonormal basis of the polynomials on the nodes where `component` is
 // free, zero elsewhere: num_nodes x m.
@@ -76,9 +39,10 @@ Eigen::MatrixXd OrthonormalPolynomials(const Mesh& mesh,
   if (free_nodes.empty()) {
     return Eigen::MatrixXd(mesh.NumNodes(), 0);
   }
-  Eigen::MatrixXd monomials = Monomials(Standardize(mesh, free_nodes), degree);
+  Eigen::MatrixXd monomials =
+      Monomials(mesh.nodes(Eigen::all, free_nodes), degree);
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(monomials);
-  qr.setThreshold(kRounding);
+  qr.setThreshold(kDependentMonomial);
   const Eigen::Index rank = qr.rank();
   Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(mesh.NumNodes(), rank);
   basis(free_nodes, Eigen::all) =

@@ -38,6 +38,13 @@ double AddNoise(double relative, std::uint64_t seed, Scene& scene);
 /// The load cases of a scene under forces along x, y and z in turn.
 Scene WithThreeForces(const Scene& scene);
 
+/// The scene with one load case of a force per volume, which is the same load
+/// for linear and for quadratic elements.
+Scene UnderBodyForce(Scene scene);
+
+/// The displacements of quadratic elements on the same mesh, at its vertices.
+void MeasureInFinerWorld(const IsotropicElasticity& truth, Scene& scene);
+
 }  // namespace elastimate::testing
 
 #endif  // ELASTIMATE_TESTS_SCENES_H_

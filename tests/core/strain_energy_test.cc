@@ -4,6 +4,8 @@
 
 #include "elastimate/core/forward_model.h"
 #include "elastimate/core/loads.h"
+#include "elastimate/core/quadratic_scene.h"
+#include "elastimate/core/quadratic_tetrahedron.h"
 #include "elastimate/core/tetrahedron.h"
 #include "tests/core/random_values.h"
 #include "tests/dense_reference.h"
@@ -100,6 +102,83 @@ TEST_P(StrainEnergy, IsHalfTheWorkOfTheLoads) {
   // A condition number of 1e3 / (1 - 2 nu) is on the safe side.
   EXPECT_NEAR(energy / (0.5 * force.col(0).dot(u)), 1,
               1e-12 / (1 - 2 * GetParam()));
+}
+
+// A displacement that is quadratic in the position.
+Eigen::Matrix3Xd Bent(const Eigen::Matrix3Xd& x) {
+  Eigen::Matrix3Xd u(3, x.cols());
+  u.row(0) =
+      x.row(2).array().square() - 0.5 * x.row(0).array() * x.row(1).array();
+  u.row(1) =
+      0.3 * x.row(1).array().square() + x.row(0).array() * x.row(2).array();
+  u.row(2) =
+      x.row(0).array().square() - 2 * x.row(0).array() * x.row(2).array();
+  return u;
+}
+
+Scene Unloaded(const Mesh& mesh) {
+  return testing::HeldAtBottom(mesh, mesh, Eigen::Vector3d::Zero());
+}
+
+TEST_P(StrainEnergy, NoneIsMissedOfWhatTheElementsCanDo) {
+  const Eigen::Matrix3d gradient = RandomMatrix(3, 3, 1);
+  const Eigen::MatrixXd linear = (gradient * mesh_.nodes).reshaped();
+  EXPECT_LT(DiscretizationError(mesh_, elasticity_, linear), 1e-20);
+  const Mesh quadratic = QuadraticScene(Unloaded(mesh_)).mesh;
+  const Eigen::MatrixXd bent = Bent(quadratic.nodes).reshaped();
+  EXPECT_LT(DiscretizationError(quadratic, elasticity_, bent), 1e-20);
+  EXPECT_EQ(DiscretizationError(mesh_, elasticity_, 0 * linear), 0);
+}
+
+// Of the linear elements that interpolate a quadratic displacement, which
+// quadratic elements have exactly.
+TEST_P(StrainEnergy, WhatLinearElementsMissIsFound) {
+  for (const int cells : {3, 6, 12}) {
+    SCOPED_TRACE(cells);
+    const Mesh mesh = BoxMesh({cells, cells, cells}, {1, 1, 1});
+    const Mesh quadratic = QuadraticScene(Unloaded(mesh)).mesh;
+    const Eigen::Matrix3Xd bent = Bent(quadratic.nodes);
+    Eigen::Matrix3Xd difference = bent;
+    const Eigen::Index num_vertices = mesh.NumNodes();
+    difference.leftCols(num_vertices).setZero();
+    for (Eigen::Index e = 0; e < quadratic.NumElements(); ++e) {
+      for (int i = 0; i < 6; ++i) {
+        const auto& corners = kTetrahedronEdges[i];
+        const int middle = quadratic.elements(4 + i, e);
+        difference.col(middle) =
+            bent.col(middle) -
+            0.5 * (bent.col(quadratic.elements(corners[0], e)) +
+                   bent.col(quadratic.elements(corners[1], e)));
+      }
+    }
+    const Eigen::VectorXd volumes = Volumes(mesh);
+    const Eigen::Matrix3Xd at_vertices = bent.leftCols(num_vertices);
+    const double missed =
+        volumes.dot(StrainEnergyDensity(quadratic, elasticity_, difference));
+    const double energy =
+        volumes.dot(StrainEnergyDensity(mesh, elasticity_, at_vertices));
+    const double found =
+        DiscretizationError(mesh, elasticity_, at_vertices.reshaped());
+    // At the surface the recovered strain is that of one side.
+    EXPECT_NEAR(found / (missed / energy), 1, 1.5 / cells);
+  }
+}
+
+// Both load cases count by their energy.
+TEST_P(StrainEnergy, LoadCasesAreSummed) {
+  Eigen::MatrixXd both(3 * mesh_.NumNodes(), 2);
+  both << RandomMatrix(3, mesh_.NumNodes(), 1).reshaped(),
+      2 * RandomMatrix(3, mesh_.NumNodes(), 2).reshaped();
+  Eigen::Vector2d energy;
+  Eigen::Vector2d missed;
+  for (int k = 0; k < 2; ++k) {
+    energy(k) = Volumes(mesh_).dot(StrainEnergyDensity(
+        mesh_, elasticity_, both.col(k).reshaped(3, mesh_.NumNodes())));
+    missed(k) =
+        energy(k) * DiscretizationError(mesh_, elasticity_, both.col(k));
+  }
+  EXPECT_NEAR(DiscretizationError(mesh_, elasticity_, both),
+              missed.sum() / energy.sum(), 1e-12);
 }
 
 INSTANTIATE_TEST_SUITE_P(PoissonRatios, StrainEnergy,

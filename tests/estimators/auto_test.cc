@@ -6,25 +6,31 @@
 #include "elastimate/estimators/reduced_fe.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
+#include "tests/warnings.h"
 
 namespace elastimate {
 namespace {
 
 using testing::AddNoise;
 using testing::Measure;
+using testing::MeasureInFinerWorld;
 using testing::SmallScene;
+using testing::UnderBodyForce;
+using testing::WarnsOf;
 
 // Measured on quadratic elements, which linear ones cannot follow, under a
 // load that is the same for both.
 Scene FinerWorld(const std::string& shape, const IsotropicElasticity& truth) {
-  Scene scene = SmallScene(shape);
-  scene.load_cases[0].loads = {BodyForce{{100, 20, -300}}};
-  Scene quadratic = QuadraticScene(scene);
-  Measure(truth, quadratic);
-  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-    scene.load_cases[k].displacement =
-        quadratic.load_cases[k].displacement.leftCols(scene.mesh.NumNodes());
-  }
+  Scene scene = UnderBodyForce(SmallScene(shape));
+  MeasureInFinerWorld(truth, scene);
+  return scene;
+}
+
+// Bends in a direction in which it has two cells.
+Scene SlenderBar() {
+  const Mesh mesh = testing::BoxMesh({2, 2, 20}, {0.1, 0.1, 1});
+  Scene scene = testing::HeldAtBottom(mesh, mesh, Eigen::Vector3d::Zero());
+  scene.load_cases[0].loads = {BodyForce{{1e4, 0, 0}}};
   return scene;
 }
 
@@ -58,10 +64,12 @@ TEST(Auto, ClimbsWhereNoiseAsksForIt) {
   AddNoise(0.05, 1, scene);
   const Estimate estimate = Auto().Run(scene, {});
   ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
-  ASSERT_EQ(estimate.rungs.size(), 3);
+  ASSERT_EQ(estimate.rungs.size(), 4);
   EXPECT_EQ(estimate.rungs[2].estimator, "reduced-fe");
-  EXPECT_EQ(estimate.rungs[2].decision,
-            "stopped: at the statistical limit of the data");
+  EXPECT_NE(estimate.rungs[2].decision.find("strain energy"),
+            std::string::npos);
+  EXPECT_NE(estimate.rungs[3].decision.find("linear elements, which are kept"),
+            std::string::npos);
   EXPECT_EQ(estimate.element_order, 1);
   ASSERT_TRUE(estimate.model_mismatch.has_value());
   EXPECT_GT(estimate.model_mismatch->p_value, 1e-3);
@@ -97,6 +105,30 @@ TEST(Auto, DoesNotRaiseTheOrderForNoise) {
   }
 }
 
+// Where the noise hides which elements the displacements come from, they come
+// from a specimen.
+TEST(Auto, TakesQuadraticElementsForACoarseMesh) {
+  constexpr double kNoise = 0.01;
+  for (int seed = 1; seed <= 5; ++seed) {
+    SCOPED_TRACE(seed);
+    Scene scene = SlenderBar();
+    MeasureInFinerWorld({1e7, 0.3}, scene);
+    AddNoise(kNoise, seed, scene);
+    const Estimate estimate = Auto().Run(scene, {});
+    ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+    EXPECT_EQ(estimate.element_order, 2);
+    EXPECT_NEAR(estimate.elasticity.youngs_modulus, 1e7,
+                4 * *estimate.YoungsModulusStandardError());
+
+    Measure({1e7, 0.3}, scene);
+    AddNoise(kNoise, seed, scene);
+    const Estimate of_linear = Auto().Run(scene, {});
+    EXPECT_EQ(of_linear.element_order, 2);
+    EXPECT_TRUE(WarnsOf(of_linear,
+                        "linear elements explain the displacements as well"));
+  }
+}
+
 TEST(Auto, PassesOverWhatCannotServe) {
   Scene scene = SmallScene("organ");
   Measure({5e4, 0.3}, scene);
@@ -105,7 +137,7 @@ TEST(Auto, PassesOverWhatCannotServe) {
   options.loss = Loss::kHuber;
   const Estimate robust = Auto().Run(scene, options);
   ASSERT_EQ(robust.status, Status::kOk) << robust.message;
-  ASSERT_EQ(robust.rungs.size(), 3);
+  ASSERT_EQ(robust.rungs.size(), 4);
   EXPECT_FALSE(robust.rungs[0].status.has_value());
   EXPECT_FALSE(robust.rungs[1].status.has_value());
   EXPECT_EQ(robust.rungs[2].estimator, "reduced-fe");

@@ -16,6 +16,7 @@
 #include "tests/dense_reference.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
+#include "tests/warnings.h"
 
 namespace elastimate {
 namespace {
@@ -24,6 +25,7 @@ using testing::AddNoise;
 using testing::Measure;
 using testing::SmallScene;
 using testing::SmallSceneNames;
+using testing::WarnsOf;
 using testing::WithThreeForces;
 
 // An iterative estimator stops short of rounding.
@@ -267,12 +269,11 @@ TEST_P(Conformance, KnownNoiseThatDoesNotExplainTheResidualIsSaid) {
   const double sd = AddNoise(kSmallNoise, 5, scene);
   Scene modest = scene;
   modest.load_cases[0].noise_sd = sd;
-  EXPECT_TRUE(Run(modest).warnings.empty());
+  EXPECT_FALSE(WarnsOf(Run(modest), "given noise"));
   Scene bold = scene;
   bold.load_cases[0].noise_sd = sd / 10;
   const Estimate estimate = Run(bold);
-  ASSERT_FALSE(estimate.warnings.empty());
-  EXPECT_NE(estimate.warnings[0].find("given noise"), std::string::npos);
+  EXPECT_TRUE(WarnsOf(estimate, "given noise"));
   // A ladder goes on to another estimator.
   if (estimate.rungs.empty()) {
     EXPECT_NEAR(*estimate.YoungsModulusStandardError() /
@@ -364,15 +365,46 @@ TEST_P(Conformance, ForcesOfTheWrongSignAreUnphysical) {
 TEST_P(Conformance, AMovingSupportIsSaid) {
   Scene scene = SmallScene("cuboid");
   Measure({5e4, 0.3}, scene);
-  EXPECT_TRUE(Run(scene).warnings.empty());
+  EXPECT_FALSE(WarnsOf(Run(scene), "held nodes"));
   for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
     if (scene.supports.held(0, node)) {
       scene.load_cases[0].displacement(0, node) = 1;
     }
   }
-  const Estimate estimate = Run(scene);
-  ASSERT_FALSE(estimate.warnings.empty());
-  EXPECT_NE(estimate.warnings[0].find("held nodes"), std::string::npos);
+  EXPECT_TRUE(WarnsOf(Run(scene), "held nodes"));
+}
+
+// Displacements of quadratic elements: a usable estimate by linear ones is off
+// by no more than three times what it states, standard error and discretisation
+// error together.
+TEST_P(Conformance, SaysHowWrongItsElementsAre) {
+  std::vector<Scene> scenes;
+  for (const std::string& shape : SmallSceneNames()) {
+    scenes.push_back(testing::UnderBodyForce(SmallScene(shape)));
+  }
+  for (const int cells : {2, 4}) {
+    const Mesh mesh = testing::BoxMesh({cells, cells, 40 / cells}, {1, 1, 10});
+    scenes.push_back(testing::UnderBodyForce(
+        testing::HeldAtBottom(mesh, mesh, Eigen::Vector3d::Zero())));
+  }
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    SCOPED_TRACE(i);
+    testing::MeasureInFinerWorld({5e4, 0.3}, scenes[i]);
+    AddNoise(kSmallNoise, 1, scenes[i]);
+    const Estimate estimate = Run(scenes[i]);
+    if (!estimate.IsUsable()) {
+      continue;
+    }
+    const double discretization = estimate.discretization_error.value_or(0);
+    const double youngs_modulus = *estimate.YoungsModulusStandardError() / 5e4;
+    EXPECT_LT(std::abs(estimate.elasticity.youngs_modulus / 5e4 - 1),
+              3 * std::hypot(youngs_modulus, discretization));
+    EXPECT_LT(
+        std::abs(estimate.elasticity.poisson_ratio - 0.3),
+        3 * std::hypot(*estimate.PoissonRatioStandardError(), discretization));
+    EXPECT_EQ(WarnsOf(estimate, "of the strain energy"),
+              discretization > std::max(0.01, 2 * youngs_modulus));
+  }
 }
 
 TEST_P(Conformance, ThrowsForWrongInput) {
