@@ -1,5 +1,6 @@
 #include "elastimate/estimators/auto.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "elastimate/core/quadratic_scene.h"
@@ -89,13 +90,27 @@ std::string WhyTheModelIsNotEnough(const EstimatorOptions& options,
   return "";
 }
 
-// Whether one of two fits to the same displacements, of as many parameters,
-// explains them far better than the other: by more than noise lets it, and by
-// far where its residual is no noise.
+// What fits of a scene of different orders are held against.
+struct Observations {
+  Eigen::Index redundancy;  // Rows without those that fix the parameters.
+  /// Of all rows over their noise; empty where that is not given.
+  std::optional<double> norm_over_noise;
+
+  Observations(const Scene& scene, const EstimatorOptions& options) {
+    const ObservedDisplacements observed(scene);
+    redundancy = std::max<Eigen::Index>(
+        observed.Size() - (options.known_poisson_ratio ? 1 : 2), 0);
+    if (scene.load_cases.front().noise_sd) {
+      norm_over_noise = observed.Norm() * observed.Measured().norm();
+    }
+  }
+};
+
+// Whether one of two fits, of as many parameters, explains the displacements
+// far better than the other: by more than noise lets it, and by far where its
+// residual is no noise.
 bool ExplainsFarBetter(const Estimate& one, const Estimate& other,
-                       Eigen::Index num_observed) {
-  // Twice the difference of the logarithms of the likelihoods, in standard
-  // scores.
+                       const Observations& observations) {
   constexpr double kSignificantScore = 5;
   constexpr double kLargestShare = 0.5;
   if (!one.displacement_residual || !other.displacement_residual) {
@@ -103,10 +118,17 @@ bool ExplainsFarBetter(const Estimate& one, const Estimate& other,
   }
   const double share =
       *one.displacement_residual / *other.displacement_residual;
-  return one.is_model_in_doubt
-             ? share <= kLargestShare
-             : -2 * static_cast<double>(num_observed) * std::log(share) >
-                   kSignificantScore * kSignificantScore;
+  if (one.is_model_in_doubt) {
+    return share <= kLargestShare;
+  }
+  // Twice the difference of the logarithms of the likelihoods.
+  const double gain =
+      observations.norm_over_noise
+          ? std::pow(*observations.norm_over_noise, 2) *
+                (std::pow(*other.displacement_residual, 2) -
+                 std::pow(*one.displacement_residual, 2))
+          : -2 * static_cast<double>(observations.redundancy) * std::log(share);
+  return gain > kSignificantScore * kSignificantScore;
 }
 
 // Climbs, and keeps the books.
@@ -170,12 +192,12 @@ bool StopsHere(const std::string& why_not_enough, Ladder& ladder) {
 }
 
 // Of the rungs of both orders, when the lower one was not enough.
-void ChooseOrder(const Estimate& linear, Eigen::Index num_observed,
+void ChooseOrder(const Estimate& linear, const Observations& observations,
                  Ladder& ladder) {
   Estimate& quadratic = ladder.Last();
   const bool is_coarse = IsDiscretizationErrorNotable(linear);
-  const bool is_better = ExplainsFarBetter(quadratic, linear, num_observed);
-  if (is_coarse ? ExplainsFarBetter(linear, quadratic, num_observed)
+  const bool is_better = ExplainsFarBetter(quadratic, linear, observations);
+  if (is_coarse ? ExplainsFarBetter(linear, quadratic, observations)
                 : !is_better) {
     ladder.Decide(is_coarse ? "stopped: linear elements, which are kept, "
                               "explain the displacements far better"
@@ -254,7 +276,7 @@ Estimate Auto::DoRun(const Scene& scene,
   ladder.Decide("went on: " + why_not_enough);
   const Estimate of_linear = linear;
   ladder.Climb(ReducedFe(), QuadraticScene(scene), without_degree);
-  ChooseOrder(of_linear, ObservedDisplacements(scene).Size(), ladder);
+  ChooseOrder(of_linear, Observations(scene, options), ladder);
   return ladder.Finish();
 }
 
