@@ -18,6 +18,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.patheffects import withStroke
 
 # Okabe & Ito 2008: told apart by colour-blind readers; marker and line tell
 # them apart in print.
@@ -275,6 +276,9 @@ def draw_pareto_front(axes, points, error):
                   label="Pareto front of methods without failures", zorder=1)
 
 
+ON_BLACK = [withStroke(linewidth=2.8, foreground="w")]
+
+
 def draw_methods(axes, points, parameter):
     """Each estimator's methods, joined in the order of their knob, which the size
     of the marker shows."""
@@ -294,7 +298,7 @@ def draw_methods(axes, points, parameter):
                 ((failure_rate > 0) & (failure_rate < 1), 5,
                  "some trials failed (error of the others shown)")):
             axes.plot(time[marks], value[marks], "kx", markersize=size, markeredgewidth=1.2,
-                      zorder=4, label=label)
+                      zorder=4, label=label, path_effects=ON_BLACK)
     draw_pareto_front(axes, points, error)
     row = points[0]
     bound = 100 * float(row[error]) / float(row[parameter + "_rms_error [Cramer-Rao]"])

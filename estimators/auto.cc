@@ -204,6 +204,9 @@ void ChooseOrder(const Estimate& linear, const Observations& observations,
                             : "stopped: the residual is not that of linear "
                               "elements, which are kept");
     ladder.Return(linear);
+    if (is_coarse) {
+      AcceptElements(ladder.Last());
+    }
     return;
   }
   ladder.Decide("stopped: there is no rung above");

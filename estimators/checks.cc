@@ -74,6 +74,8 @@ constexpr char kLockingWarning[] =
     "biases E and nu and makes their standard errors too small, unless the "
     "displacements come from the same mesh; quadratic ones (order 2) hardly do";
 
+const std::string kDiscretizationWarning = "the elements miss about ";
+
 void WarnOnce(const std::string& warning, Estimate& estimate) {
   if (std::find(estimate.warnings.begin(), estimate.warnings.end(), warning) ==
       estimate.warnings.end()) {
@@ -88,7 +90,7 @@ void WarnOfElements(Estimate& estimate) {
     WarnOnce(kLockingWarning, estimate);
   }
   if (IsDiscretizationErrorNotable(estimate)) {
-    WarnOnce("the elements miss about " +
+    WarnOnce(kDiscretizationWarning +
                  TwoDigits(100 * *estimate.discretization_error) +
                  " % of the strain energy, which makes E and nu wrong by about "
                  "as much, on top of the standard errors, unless the "
@@ -143,6 +145,16 @@ bool IsDiscretizationErrorNotable(const Estimate& estimate) {
       estimate.elasticity.youngs_modulus;
   return estimate.discretization_error.value_or(0) >
          std::max(kNotable, kStandardErrors * standard_error);
+}
+
+void AcceptElements(Estimate& estimate) {
+  estimate.discretization_error = 0;
+  const auto is_told = [](const std::string& warning) {
+    return warning.find(kDiscretizationWarning) == 0;
+  };
+  estimate.warnings.erase(std::remove_if(estimate.warnings.begin(),
+                                         estimate.warnings.end(), is_told),
+                          estimate.warnings.end());
 }
 
 bool IsWarningOfLocking(const std::string& warning) {

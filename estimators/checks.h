@@ -29,6 +29,10 @@ bool IsWarningOfLocking(const std::string& warning);
 /// errors of E.
 bool IsDiscretizationErrorNotable(const Estimate& estimate);
 
+/// Takes back the discretisation error, and the warning of FinishEstimate of it:
+/// the displacements were found to come from these very elements.
+void AcceptElements(Estimate& estimate);
+
 /// Enters the estimator's name, the warnings, and an interval of nu where only
 /// its standard error is known; warns of what linear elements do near nu = 1/2
 /// and of a notable discretisation error; and turns an estimate that claims to

@@ -104,7 +104,7 @@ struct Estimate {
   /// The share of the strain energy that the elements miss, as Zienkiewicz &
   /// Zhu estimate it: about the relative error that it causes in E, and about
   /// that in nu, on top of the standard errors, unless the displacements were
-  /// computed with these very elements.
+  /// computed with these very elements; zero where `auto` found that they were.
   std::optional<double> discretization_error;
   /// Whether the residual is none that independent noise leaves, so that the
   /// mesh, the supports or the loads are not those of the experiment.

@@ -277,16 +277,11 @@ ComplianceFit FitComplianceScale(Loss loss,
   return {t, (rest - t * w).lpNorm<1>()};
 }
 
-// The best fit at one nu.
-struct ProfilePoint {
-  IsotropicElasticity elasticity;
-  double cost;
-};
-
-// The start points within the bounds, with the E that fits best there, unless
-// the stiffness is singular.
-std::vector<ProfilePoint> EvaluateStarts(const EstimatorOptions& options,
-                                         DisplacementResidual& residual) {
+// The start point within the bounds that fits best, with the E that fits best
+// there; not physical where E is positive at none of them, and empty where the
+// stiffness is singular at all.
+std::optional<IsotropicElasticity> BestStart(const EstimatorOptions& options,
+                                             DisplacementResidual& residual) {
   std::vector<double> candidates;
   if (options.known_poisson_ratio) {
     candidates = {*options.known_poisson_ratio};
@@ -298,71 +293,82 @@ std::vector<ProfilePoint> EvaluateStarts(const EstimatorOptions& options,
     candidates.erase(std::unique(candidates.begin(), candidates.end()),
                      candidates.end());
   }
-  std::vector<ProfilePoint> starts;
+  std::optional<IsotropicElasticity> best;
+  double least_cost = std::numeric_limits<double>::infinity();
   for (const double nu : candidates) {
-    if (residual.SetPoissonRatio(nu)) {
-      const ComplianceFit fit = FitComplianceScale(options.loss, residual);
-      starts.push_back(
-          {IsotropicElasticity::FromComplianceScale(fit.compliance_scale, nu),
-           fit.cost});
-    }
-  }
-  return starts;
-}
-
-// E is not positive when it is at none of the starts.  Precondition: not empty.
-IsotropicElasticity BestStart(const std::vector<ProfilePoint>& starts) {
-  ProfilePoint best = starts.front();
-  for (const ProfilePoint& start : starts) {
-    if (start.elasticity.IsPhysical() &&
-        (!best.elasticity.IsPhysical() || start.cost <= best.cost)) {
-      best = start;
-    }
-  }
-  return best.elasticity;
-}
-
-// Widens the standard errors to what the profile likelihood says, as far as the
-// search for a start has seen it: the square root of what the sum of squares
-// grows by is taken as linear between the fit and the nearest start on either
-// side, and so is E.  A start too far off says nothing.
-void WidenByStarts(const std::vector<ProfilePoint>& starts,
-                   double least_square_sum, double variance,
-                   Estimate& estimate) {
-  constexpr double kTwoSided = 1.960;
-  constexpr double kFarStandardErrors = 5;
-  // Beyond this the interval has no end.
-  constexpr double kMostGrowth = 10;
-  const IsotropicElasticity best = estimate.elasticity;
-  const double nu = best.poisson_ratio;
-  const double standard_error = *estimate.PoissonRatioStandardError();
-  std::array<IsotropicElasticity, 2> ends = {best, best};
-  std::array<double, 2> nearest = {kFarStandardErrors * standard_error,
-                                   kFarStandardErrors * standard_error};
-  for (const ProfilePoint& start : starts) {
-    const double distance = start.elasticity.poisson_ratio - nu;
-    const std::size_t side = distance < 0 ? 0 : 1;
-    if (!(std::abs(distance) < nearest[side])) {
+    if (!residual.SetPoissonRatio(nu)) {
       continue;
     }
-    nearest[side] = std::abs(distance);
-    const double expected = variance * std::pow(distance / standard_error, 2);
-    const double growth = std::max(start.cost - least_square_sum, 0.0);
-    const double stretch =
-        std::clamp(std::sqrt(expected / growth), 1.0, kMostGrowth);
-    const double share =
-        stretch * kTwoSided * standard_error / std::abs(distance);
-    ends[side] = {
-        best.youngs_modulus +
-            share * (start.elasticity.youngs_modulus - best.youngs_modulus),
-        nu + share * distance};
-  }
-  for (IsotropicElasticity& end : ends) {
-    if (end.poisson_ratio == nu) {
-      end.poisson_ratio = kLargestPoissonRatio;  // Left out.
+    const ComplianceFit fit = FitComplianceScale(options.loss, residual);
+    const IsotropicElasticity start =
+        IsotropicElasticity::FromComplianceScale(fit.compliance_scale, nu);
+    if (!best || (start.IsPhysical() && fit.cost <= least_cost)) {
+      best = start;
+      least_cost = start.IsPhysical() ? fit.cost : least_cost;
     }
   }
-  WidenToProfile({ends[0], ends[1]}, estimate);
+  return best;
+}
+
+// The best fit at an end of the interval of nu, between `best` and `limit`, in
+// which the sum of squares exceeds `least_square_sum` by no more than `excess`;
+// at the limit where it never does.  `step` leads from `best` to about there.
+IsotropicElasticity ProfileEnd(const IsotropicElasticity& best, double step,
+                               double limit, double least_square_sum,
+                               double excess, DisplacementResidual& residual) {
+  constexpr int kMostEvaluations = 10;
+  constexpr double kTolerance = 0.05;
+  constexpr double kLargestStretch = 4;
+  const double nu = best.poisson_ratio;
+  // Distances from nu, to the side of the limit.
+  double distance = std::min(step, std::abs(limit - nu));
+  double inner = 0;
+  double outer = std::abs(limit - nu);
+  IsotropicElasticity end = best;
+  for (int i = 0; i < kMostEvaluations; ++i) {
+    const double at = distance == std::abs(limit - nu)
+                          ? limit
+                          : nu + std::copysign(distance, limit - nu);
+    if (!residual.SetPoissonRatio(at)) {
+      return {end.youngs_modulus, limit};
+    }
+    const ComplianceFit fit = FitComplianceScale(Loss::kNone, residual);
+    end = IsotropicElasticity::FromComplianceScale(fit.compliance_scale, at);
+    // Linear in the distance where the model is.
+    const double growth =
+        std::sqrt(std::max(fit.cost - least_square_sum, 0.0) / excess);
+    if (std::abs(growth - 1) <= kTolerance || (at == limit && growth < 1)) {
+      break;
+    }
+    (growth < 1 ? inner : outer) = distance;
+    distance /= std::max(growth, 1 / kLargestStretch);
+    if (distance <= inner || distance >= outer) {
+      const bool is_limit_untried = outer == std::abs(limit - nu) && growth < 1;
+      distance = is_limit_untried ? outer : (inner + outer) / 2;
+    }
+  }
+  return end;
+}
+
+// Takes the interval of nu from the profile likelihood.
+void DescribeProfileOf(const Bounds& poisson_ratio, double least_square_sum,
+                       double variance, DisplacementResidual& residual,
+                       Estimate& estimate) {
+  const IsotropicElasticity best = estimate.elasticity;
+  const double standard_error =
+      estimate.PoissonRatioStandardError().value_or(kLargestPoissonRatioError);
+  DescribeProfile(
+      [&](double quantile) {
+        const auto end = [&](double limit) {
+          return limit == best.poisson_ratio
+                     ? best
+                     : ProfileEnd(best, std::sqrt(quantile) * standard_error,
+                                  limit, least_square_sum, quantile * variance,
+                                  residual);
+        };
+        return Profile{end(*poisson_ratio.lower), end(*poisson_ratio.upper)};
+      },
+      estimate);
 }
 
 BoundedParameter::Side ViolatedBound(const Bounds& bounds,
@@ -400,8 +406,8 @@ Estimate IterativeFe::DoRun(const Scene& scene,
   DisplacementResidual residual(scene, options);
   estimate.stages.push_back({"assemble and analyse", stopwatch.Lap()});
 
-  const std::vector<ProfilePoint> starts = EvaluateStarts(options, residual);
-  if (starts.empty()) {
+  const std::optional<IsotropicElasticity> start = BestStart(options, residual);
+  if (!start) {
     estimate.message =
         "the stiffness matrix is singular to working precision; check the "
         "mesh for slivers and loose parts, and the supports";
@@ -409,23 +415,22 @@ Estimate IterativeFe::DoRun(const Scene& scene,
     estimate.work = residual.WorkDone();
     return estimate;
   }
-  const IsotropicElasticity start = BestStart(starts);
-  if (!start.IsPhysical() || !std::isfinite(start.youngs_modulus)) {
-    estimate.elasticity = start;
+  if (!start->IsPhysical() || !std::isfinite(start->youngs_modulus)) {
+    estimate.elasticity = *start;
     estimate.Fail(Status::kUnphysical, kDisplacementsOpposeLoads,
                   "the estimate is not physical");
     estimate.work = residual.WorkDone();
     return estimate;
   }
 
-  residual.SetPoissonRatio(start.poisson_ratio);
+  residual.SetPoissonRatio(start->poisson_ratio);
   BoundedParameter scale(
-      std::log(start.ComplianceScale() * residual.UnitLoadResponse().norm()),
+      std::log(start->ComplianceScale() * residual.UnitLoadResponse().norm()),
       Bounds{});
   BoundedParameter poisson_ratio =
       options.known_poisson_ratio
           ? BoundedParameter::Constant(*options.known_poisson_ratio)
-          : BoundedParameter(start.poisson_ratio,
+          : BoundedParameter(start->poisson_ratio,
                              EffectivePoissonRatioBounds(options));
   residual.SetParameters(Scale::kLogResponseNorm, &scale, &poisson_ratio);
   NodeLosses losses;
@@ -465,9 +470,11 @@ Estimate IterativeFe::DoRun(const Scene& scene,
         scene, residual.Graph(), options, residual.Observed(), fit, losses,
         active, estimate);
     if (variance && options.loss == Loss::kNone && estimate.IsUsable() &&
-        estimate.active_bounds.empty() &&
-        ShareOfDistanceToPole(estimate) > kLargestLinearShare) {
-      WidenByStarts(starts, fit.residual.squaredNorm(), *variance, estimate);
+        (active.is_physical_limit ||
+         ShareOfDistanceToPole(estimate) > kLargestLinearShare)) {
+      DescribeProfileOf(EffectivePoissonRatioBounds(options),
+                        fit.residual.squaredNorm(), *variance, residual,
+                        estimate);
     }
   }
   estimate.stages.push_back({"statistics", stopwatch.Lap()});

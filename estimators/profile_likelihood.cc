@@ -7,12 +7,11 @@
 
 namespace elastimate {
 
-double ShareOfDistanceToPole(const Estimate& estimate) {
-  const double nu = estimate.elasticity.poisson_ratio;
-  return estimate.PoissonRatioStandardError().value_or(0) /
-         std::min(0.5 - nu, 1 + nu);
-}
+namespace {
 
+// Widens the standard errors to a profile likelihood with a 95 % interval of
+// nu, each end with the E that fits best there.  An end at the limit of the
+// range is left out.
 void WidenToProfile(const Profile& profile, Estimate& estimate) {
   constexpr double kTwoSided = 1.960;
   Eigen::Vector2d square_sum = Eigen::Vector2d::Zero();
@@ -39,6 +38,14 @@ void WidenToProfile(const Profile& profile, Estimate& estimate) {
   const Eigen::Vector2d factors(factor(0), factor(1));
   estimate.covariance =
       factors.asDiagonal() * estimate.covariance * factors.asDiagonal();
+}
+
+}  // namespace
+
+double ShareOfDistanceToPole(const Estimate& estimate) {
+  const double nu = estimate.elasticity.poisson_ratio;
+  return estimate.PoissonRatioStandardError().value_or(0) /
+         std::min(0.5 - nu, 1 + nu);
 }
 
 void DescribeProfile(const std::function<Profile(double quantile)>& profile_of,

@@ -22,11 +22,6 @@ struct Profile {
   IsotropicElasticity upper;
 };
 
-/// Widens the standard errors to a profile likelihood with a 95 % interval of
-/// nu, each end with the E that fits best there.  An end at the limit of the
-/// range is left out.
-void WidenToProfile(const Profile& profile, Estimate& estimate);
-
 /// Enters the 95 % interval of nu, one-sided where it reaches -1 or 1/2, and
 /// widens the standard errors to it.  `profile_of` gives the ends within which
 /// the sum of squares over its variance exceeds its least by no more than a

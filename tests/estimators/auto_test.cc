@@ -71,6 +71,8 @@ TEST(Auto, ClimbsWhereNoiseAsksForIt) {
   EXPECT_NE(estimate.rungs[3].decision.find("linear elements, which are kept"),
             std::string::npos);
   EXPECT_EQ(estimate.element_order, 1);
+  EXPECT_EQ(estimate.discretization_error, 0);
+  EXPECT_TRUE(estimate.warnings.empty());
   ASSERT_TRUE(estimate.model_mismatch.has_value());
   EXPECT_GT(estimate.model_mismatch->p_value, 1e-3);
   const Estimate fit = ReducedFe().Run(scene, {});
