@@ -107,7 +107,8 @@ Table TrialTable() {
                                       "outcome",
                                       "poisson_ratio_lower [1]",
                                       "poisson_ratio_upper [1]",
-                                      "warnings [1]"};
+                                      "warnings [1]",
+                                      "element_order [1]"};
   const std::vector<std::string> trial_columns = TrialColumns();
   columns.insert(columns.end(), trial_columns.begin(), trial_columns.end());
   return {"stability", columns};
@@ -125,7 +126,8 @@ void AddTrial(const StabilityLevel& level, const Judged& judged, Table& table) {
   }
   table.AddRow(
       {level.factor, level.level, OutcomeName(judged.outcome), interval.lower,
-       interval.upper, std::int64_t(estimate.warnings.size())},
+       interval.upper, std::int64_t(estimate.warnings.size()),
+       std::int64_t{estimate.element_order}},
       cells);
 }
 

@@ -160,6 +160,7 @@ bool IsDishonest(const TableRow& row) {
   const double nu = row.Number("true_poisson_ratio [1]");
   return row.Text("status") == "ok" &&
          row.Text("factor") != "force scale [1]" &&
+         row.Number("element_order [1]") == 1 &&
          ((e > 0.1 &&
            e > 3 * or_zero(row.Number("youngs_modulus_standard_error [1]"))) ||
           (std::abs(nu_error) > 0.03 &&
