@@ -276,7 +276,7 @@ def draw_pareto_front(axes, points, error):
                   label="Pareto front of methods without failures", zorder=1)
 
 
-ON_BLACK = [withStroke(linewidth=2.8, foreground="w")]
+ON_BLACK = [withStroke(linewidth=2.4, foreground="w")]
 
 
 def draw_methods(axes, points, parameter):
@@ -298,7 +298,8 @@ def draw_methods(axes, points, parameter):
                 ((failure_rate > 0) & (failure_rate < 1), 5,
                  "some trials failed (error of the others shown)")):
             axes.plot(time[marks], value[marks], "kx", markersize=size, markeredgewidth=1.2,
-                      zorder=4, label=label, path_effects=ON_BLACK)
+                      zorder=4, label=label,
+                      path_effects=ON_BLACK if name == "auto" else None)
     draw_pareto_front(axes, points, error)
     row = points[0]
     bound = 100 * float(row[error]) / float(row[parameter + "_rms_error [Cramer-Rao]"])

@@ -146,7 +146,8 @@ Estimate OneStep::DoRun(const Scene& scene,
     }
     step = TakeStep(observed, options, model);
     const double missed = std::pow(step.poisson_ratio - nu, 2) /
-                          std::abs(0.5 - step.poisson_ratio);
+                          std::min(std::abs(0.5 - step.poisson_ratio),
+                                   std::abs(1 + step.poisson_ratio));
     has_converged = missed <= std::max(0.5 * step.standard_error, 1e-9);
     // Half of the way to a limit that the step leaves the range by.
     nu = std::clamp(step.poisson_ratio, (nu - 1) / 2, (nu + 0.5) / 2);
