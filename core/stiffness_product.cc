@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "elastimate/core/quadratic_stiffness_product.h"
+#include "elastimate/core/vector_stiffness_product.h"
 
 namespace elastimate {
 namespace {
@@ -118,8 +119,10 @@ void AddLinearStrainProducts(const Mesh& mesh,
                              Eigen::MatrixXd& a, Eigen::MatrixXd& p) {
   const Eigen::Index rows = displacement.rows();
   const Eigen::Index columns = displacement.cols();
-  const int* corners = mesh.elements.data();
-  for (Eigen::Index element = 0; element < mesh.NumElements();
+  const Eigen::Index first =
+      AddVectorStrainProducts(mesh, displacement, a, p);
+  const int* corners = mesh.elements.data() + 4 * first;
+  for (Eigen::Index element = first; element < mesh.NumElements();
        ++element, corners += 4) {
     const ElementGeometry geometry = MakeGeometry(mesh.nodes.data(), corners);
     for (Eigen::Index column = 0; column < columns; ++column) {
