@@ -2,34 +2,12 @@
 
 #include <algorithm>
 
+#include "elastimate/core/elements_of_nodes.h"
 #include "elastimate/core/quadratic_tetrahedron.h"
 #include "elastimate/core/tetrahedron.h"
 
 namespace elastimate {
 namespace {
-
-// The elements around each node: those of node n are
-// element[start[n]] .. element[start[n + 1] - 1].
-struct ElementsOfNodes {
-  std::vector<Eigen::Index> start;
-  std::vector<Eigen::Index> element;
-
-  explicit ElementsOfNodes(const Mesh& mesh)
-      : start(mesh.NumNodes() + 1, 0), element(mesh.elements.size()) {
-    for (const int node : mesh.elements.reshaped()) {
-      ++start[node + 1];
-    }
-    for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
-      start[node + 1] += start[node];
-    }
-    std::vector<Eigen::Index> next(start.begin(), start.end() - 1);
-    for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
-      for (const int node : mesh.elements.col(e)) {
-        element[next[node]++] = e;
-      }
-    }
-  }
-};
 
 void AddLinearProducts(const Mesh& mesh, const NodeGraph& graph,
                        Eigen::Matrix3Xd& products) {
