@@ -684,8 +684,12 @@ void MultiplyLinearTetrahedra(const Mesh& mesh, const std::vector<int>& places,
     most_nodes = std::max(most_nodes, block.NumNodes());
   }
   const std::ptrdiff_t num_blocks = std::ptrdiff_t(blocks.size());
-  const int threads = static_cast<int>(
-      std::min<std::ptrdiff_t>(num_threads, (num_blocks + 1) / 2));
+  // Waiting for a thread may take longer than a fraction of a millisecond of
+  // work does.
+  constexpr std::ptrdiff_t kElementsPerThread = 16384;
+  const int threads = static_cast<int>(std::clamp<std::ptrdiff_t>(
+      std::min(mesh.NumElements() / kElementsPerThread, (num_blocks + 1) / 2),
+      1, num_threads));
   const std::vector<Records> records = AllocateRecords(
       most_nodes * HWY_DYNAMIC_DISPATCH(RecordSize)(displacement.cols()),
       threads);

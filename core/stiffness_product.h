@@ -29,7 +29,7 @@ struct StiffnessProducts {
 ///
 /// Precondition: a valid mesh (ValidateMesh) and 3 num_nodes rows.
 /// Cost: one element pass, O(num_elements * num_columns) time (for quadratic
-/// tetrahedra about nine times that for linear ones).  Single-threaded; the
+/// tetrahedra about 20 times that for linear ones).  Single-threaded; the
 /// same input gives the same bits on the same kind of processor.
 StiffnessProducts MultiplyStiffnessBasis(const Mesh& mesh,
                                          const Eigen::MatrixXd& displacement);
@@ -49,9 +49,9 @@ class StiffnessOperator {
   /// Refers to `mesh`, which has to stay as it is.  Precondition: a valid mesh,
   /// and at least one thread.
   ///
-  /// Threads are OpenMP's, for linear tetrahedra only.  There is one unless
-  /// more are asked for: a pass is short, and its callers may have threads of
-  /// their own, which a library cannot know.
+  /// Threads are OpenMP's, for linear tetrahedra, one for each 16384 of them at
+  /// most.  There is one unless more are asked for: a pass is short, and its
+  /// callers may have threads of their own, which a library cannot know.
   ///
   /// Cost: O(num_elements) time; nothing but a look at the numbering if that is
   /// good, and else several element passes (OrderForLocality).
