@@ -32,8 +32,8 @@ class StiffnessAssembly {
                     const DegreesOfFreedom& degrees_of_freedom);
 
   /// Assembles the values of H and J again, for moved nodes of the same mesh.
-  /// Cost: one element pass.  Keeps 72 byte for each pair of nodes (100 MB for a
-  /// million tetrahedra), since new memory would take as long as the pass.
+  /// Cost: one element pass.  Keeps 72 byte for each pair of nodes (100 MB for
+  /// a million tetrahedra), so that no new memory has to be mapped.
   void Assemble(const Mesh& mesh);
 
   const NodeGraph& Graph() const { return graph_; }
