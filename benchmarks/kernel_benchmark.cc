@@ -1,4 +1,6 @@
-// Times of the kernels, and of estimators, on a cube of tetrahedra.
+// Times of factorisations, of what quadratic elements take, and of estimators,
+// on a cube of tetrahedra.  The kernels for linear tetrahedra are timed by
+// `elastimate_benchmark kernels`.
 //
 //   elastimate_kernel_benchmark
 //
@@ -9,23 +11,18 @@
 //
 // A cube of 10, 21, 39 and 58 cells along an edge has 5000, 46 305, 296 595 and
 // 975 560 tetrahedra, quadratic ones where the name says so.  `per_tetrahedron`
-// is the time for each tetrahedron (and each column of an element pass).  At
-// the end stands how much faster the element pass is than the textbook's, in
-// the same run; both have one thread.
+// is the time for each tetrahedron (and each column of an element pass).
 
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
-#include <iterator>
 #include <map>
 #include <random>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "benchmarks/naive_stiffness_product.h"
 #include "elastimate/core/cholesky.h"
 #include "elastimate/core/degrees_of_freedom.h"
 #include "elastimate/core/forward_model.h"
@@ -99,21 +96,6 @@ void ElementPass(benchmark::State& state) {
   CountTetrahedra(state, mesh, state.range(1));
 }
 
-void NaivePass(benchmark::State& state) {
-  const Mesh& mesh = Cube(state.range(0)).mesh;
-  const Eigen::VectorXd q = RandomMatrix(3 * mesh.NumNodes(), 1);
-  const StiffnessProducts fast = MultiplyStiffnessBasis(mesh, q);
-  const StiffnessProducts naive = MultiplyNaively(mesh, q);
-  if (!naive.h.isApprox(fast.h, 1e-12) || !naive.j.isApprox(fast.j, 1e-12)) {
-    state.SkipWithError("the two element passes differ");
-    return;
-  }
-  while (state.KeepRunning()) {
-    benchmark::DoNotOptimize(MultiplyNaively(mesh, q));
-  }
-  CountTetrahedra(state, mesh);
-}
-
 void TracesExact(benchmark::State& state) {
   const Scene& scene = Cube(state.range(0));
   const DegreesOfFreedom dofs(scene.supports);
@@ -163,16 +145,6 @@ void Reassembly(benchmark::State& state) {
   while (state.KeepRunning()) {
     assembly.Assemble(scene.mesh);
     benchmark::DoNotOptimize(assembly.H().data());
-  }
-  CountTetrahedra(state, scene.mesh);
-}
-
-void Combine(benchmark::State& state) {
-  const Scene& scene = Cube(state.range(0));
-  const StiffnessAssembly assembly(scene.mesh,
-                                   DegreesOfFreedom(scene.supports));
-  while (state.KeepRunning()) {
-    benchmark::DoNotOptimize(assembly.Combine(0.3));
   }
   CountTetrahedra(state, scene.mesh);
 }
@@ -309,21 +281,10 @@ void RegisterBenchmarks() {
           ->Unit(benchmark::kMillisecond)
           ->MinTime(0.2);
     };
-    // Repeated, because the shortest of three times is the least disturbed.
-    benchmark::RegisterBenchmark("ElementPass", ElementPass<Cube>)
-        ->ArgNames({"cells", "columns"})
-        ->Args({cells, 1})
-        ->Args({cells, 8})
-        ->Unit(benchmark::kMillisecond)
-        ->MinTime(0.2)
-        ->Repetitions(3);
-    single_threaded("NaivePass", NaivePass)->Repetitions(3);
     single_threaded("TracesExact", TracesExact);
     single_threaded("TracesEstimated", TracesEstimated);
     single_threaded("NodeGraph", GraphOfNodes);
     single_threaded("Assembly", Assembly<Cube>);
-    single_threaded("Reassembly", Reassembly<Cube>);
-    single_threaded("Combine", Combine);
   }
   for (const std::int64_t cells : {kTiny, kSmall, kMedium}) {
     // BLAS has threads of its own: the time that counts is that of the clock.
@@ -358,55 +319,6 @@ void RegisterBenchmarks() {
   }
 }
 
-// Prints all runs but not their statistics, and keeps the shortest processor
-// time of each benchmark.
-class ComparingReporter : public benchmark::ConsoleReporter {
- public:
-  // Without colours, so that the output can go to a file.
-  ComparingReporter() : ConsoleReporter(OO_None) {}
-
-  void ReportRuns(const std::vector<Run>& runs) override {
-    std::vector<Run> measured;
-    std::copy_if(
-        runs.begin(), runs.end(), std::back_inserter(measured),
-        [](const Run& run) { return run.run_type == Run::RT_Iteration; });
-    ConsoleReporter::ReportRuns(measured);
-    for (const Run& run : measured) {
-      if (!run.error_occurred) {
-        const std::string name =
-            run.run_name.function_name + "/" + run.run_name.args;
-        const double milliseconds = run.GetAdjustedCPUTime();
-        const auto shortest = shortest_.emplace(name, milliseconds).first;
-        shortest->second = std::min(shortest->second, milliseconds);
-      }
-    }
-  }
-
-  void PrintComparison() const {
-    for (const std::int64_t cells : {kSmall, kMedium, kBig}) {
-      const std::string size = "cells:" + std::to_string(cells);
-      const auto naive = shortest_.find("NaivePass/" + size);
-      const auto fast = shortest_.find("ElementPass/" + size + "/columns:1");
-      const auto eight = shortest_.find("ElementPass/" + size + "/columns:8");
-      if (naive == shortest_.end() || fast == shortest_.end() ||
-          eight == shortest_.end()) {
-        continue;
-      }
-      const double tetrahedra =
-          5.0 * static_cast<double>(cells * cells * cells);
-      std::printf(
-          "%7.0f tetrahedra: textbook %5.1f, one column %5.1f, eight columns "
-          "%5.1f ns each; the element pass is %.1f times as fast\n",
-          tetrahedra, naive->second * 1e6 / tetrahedra,
-          fast->second * 1e6 / tetrahedra, eight->second * 1e6 / tetrahedra / 8,
-          naive->second / fast->second);
-    }
-  }
-
- private:
-  std::map<std::string, double> shortest_;  // [ms]
-};
-
 int Main(int argc, char** argv) {
   const bool has_filter =
       std::any_of(argv + 1, argv + argc, [](std::string_view argument) {
@@ -418,13 +330,11 @@ int Main(int argc, char** argv) {
   }
   RegisterBenchmarks();
   RegisterQuadraticBenchmarks();
-  ComparingReporter reporter;
   if (has_filter) {
-    benchmark::RunSpecifiedBenchmarks(&reporter);
+    benchmark::RunSpecifiedBenchmarks();
   } else {
-    benchmark::RunSpecifiedBenchmarks(&reporter, "-^Large/");
+    benchmark::RunSpecifiedBenchmarks("-^Large/");
   }
-  reporter.PrintComparison();
   benchmark::Shutdown();
   return 0;
 }

@@ -1,10 +1,12 @@
-// The studies behind the charts of benchmarks/README.md.
+// The kernel times, and the studies behind the charts of benchmarks/README.md.
 
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <iomanip>
 #include <iostream>
 #include <sstream>
 #include <stdexcept>
@@ -13,6 +15,7 @@
 
 #include "apps/flag_parser.h"
 #include "apps/progress.h"
+#include "benchmarks/kernels.h"
 #include "benchmarks/metadata.h"
 #include "benchmarks/paper_study.h"
 #include "benchmarks/scaling_study.h"
@@ -23,7 +26,7 @@
 
 DEFINE_string(name, "", "the study, as listed below");
 DEFINE_string(out, "", "existing folder for the CSV and JSON files");
-DEFINE_bool(quick, false, "fewer trials");
+DEFINE_bool(quick, false, "fewer trials, smaller meshes");
 
 namespace elastimate {
 namespace {
@@ -46,23 +49,31 @@ constexpr NamedStudy kStudies[] = {
 };
 
 const Program& Benchmark() {
-  static const Program program = {"elastimate_benchmark",
-                                  {{"study",
-                                    "",
-                                    "runs a study and writes its tables",
-                                    {"name", "out", "quick"}}}};
+  static const Program program = {
+      "elastimate_benchmark",
+      {{"study",
+        "",
+        "runs a study and writes its tables",
+        {"name", "out", "quick"}},
+       {"kernels",
+        "",
+        "times the kernels, prints the table and, with --out, writes it",
+        {"out", "quick"}}}};
   return program;
 }
 
 std::string Help() {
   std::ostringstream help;
-  help << "elastimate_benchmark: the studies that compare the estimators.\n"
+  help << "elastimate_benchmark: the studies that compare the estimators, and "
+          "the "
+          "times of the kernels.\n"
        << CommandsHelp(Benchmark()) << "\nStudies:\n";
   for (const NamedStudy& study : kStudies) {
     help << "      " << study.name << "  " << study.summary << "\n";
   }
-  help << "\nExit code: 0, or 2 for wrong flags, or an output that cannot be "
-          "written.\n";
+  help << "\nExit code: 0; 1 when the kernels are slower than the recorded "
+          "bounds; 2 "
+          "for\nwrong flags, or an output that cannot be written.\n";
   return help.str();
 }
 
@@ -80,6 +91,20 @@ const NamedStudy& StudyFromFlags() {
       "; the studies are " + names);
 }
 
+void WriteResult(const StudyResult& result,
+                 const std::filesystem::path& metadata_file,
+                 nlohmann::ordered_json metadata) {
+  metadata["parameters"] = result.parameters;
+  StagedFiles files;
+  for (const Table& table : result.tables) {
+    files.Add(metadata_file.parent_path() / (table.Name() + ".csv"),
+              table.Csv());
+    metadata["tables"].push_back(table.Name() + ".csv");
+  }
+  files.Add(metadata_file, metadata.dump(2) + "\n");
+  files.Commit();
+}
+
 void RunStudy(const std::string& command) {
   const NamedStudy& study = StudyFromFlags();
   if (FLAGS_out.empty()) {
@@ -92,15 +117,59 @@ void RunStudy(const std::string& command) {
 
   nlohmann::ordered_json metadata = DescribeRun(command);
   Progress progress(study.name);
-  const StudyResult result = study.run(FLAGS_quick, progress);
-  metadata["parameters"] = result.parameters;
-  StagedFiles files;
-  for (const Table& table : result.tables) {
-    files.Add(folder / (table.Name() + ".csv"), table.Csv());
-    metadata["tables"].push_back(table.Name() + ".csv");
+  WriteResult(study.run(FLAGS_quick, progress), metadata_file, metadata);
+}
+
+// The table of comma-separated cells in columns, for people.
+std::string Aligned(const std::string& csv) {
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::size_t> widths;
+  std::istringstream lines(csv);
+  for (std::string line; std::getline(lines, line);) {
+    rows.emplace_back();
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) {
+      const std::size_t column = rows.back().size();
+      widths.resize(std::max(widths.size(), column + 1));
+      widths[column] = std::max(widths[column], cell.size());
+      rows.back().push_back(cell);
+    }
   }
-  files.Add(metadata_file, metadata.dump(2) + "\n");
-  files.Commit();
+  std::ostringstream text;
+  for (const std::vector<std::string>& row : rows) {
+    for (std::size_t column = 0; column < row.size(); ++column) {
+      text << std::left << std::setw(static_cast<int>(widths[column]) + 2)
+           << row[column];
+    }
+    text << "\n";
+  }
+  return text.str();
+}
+
+// Returns the exit code.
+int RunKernels(const std::string& command) {
+  const std::filesystem::path metadata_file =
+      std::filesystem::path(FLAGS_out) / "kernels.json";
+  if (!FLAGS_out.empty()) {
+    CheckWritable(metadata_file);
+  }
+  KernelTimes times;
+  {
+    const nlohmann::ordered_json metadata = DescribeRun(command);
+    Progress progress("kernels");
+    times = TimeKernels(FLAGS_quick, progress);
+    if (!FLAGS_out.empty()) {
+      WriteResult(times.result, metadata_file, metadata);
+    }
+  }
+  std::cout << Aligned(times.result.tables[0].Csv()) << "\n";
+  for (const std::string& ratio : times.ratios) {
+    std::cout << ratio << "\n";
+  }
+  for (const std::string& regression : times.regressions) {
+    std::cerr << "elastimate_benchmark: " << regression << "\n";
+  }
+  return times.regressions.empty() ? 0 : 1;
 }
 
 std::string Joined(const std::vector<std::string>& words) {
@@ -111,7 +180,8 @@ std::string Joined(const std::vector<std::string>& words) {
   return text;
 }
 
-void Run(const std::vector<std::string>& words) {
+// Returns the exit code.
+int Run(const std::vector<std::string>& words) {
   const std::vector<std::string> arguments(words.begin() + 1, words.end());
   if (arguments.empty()) {
     throw std::invalid_argument(
@@ -119,16 +189,20 @@ void Run(const std::vector<std::string>& words) {
   }
   if (AsksForHelp(arguments)) {
     std::cout << Help();
-    return;
+    return 0;
   }
   const std::vector<std::string> others =
       ParseFlags(Benchmark(), FindCommand(Benchmark(), arguments[0]),
                  {arguments.begin() + 1, arguments.end()});
   if (!others.empty()) {
-    throw std::invalid_argument("study takes flags only; it got " +
+    throw std::invalid_argument(arguments[0] + " takes flags only; it got " +
                                 Joined(others));
   }
+  if (arguments[0] == "kernels") {
+    return RunKernels(Joined(words));
+  }
   RunStudy(Joined(words));
+  return 0;
 }
 
 }  // namespace
@@ -140,8 +214,7 @@ int main(int argc, char** argv) {
   FLAGS_logtostderr = true;
   google::InitGoogleLogging(argv[0]);
   try {
-    elastimate::Run({argv, argv + argc});
-    return 0;
+    return elastimate::Run({argv, argv + argc});
   } catch (const std::exception& error) {
     std::cerr << "elastimate_benchmark: " << error.what() << "\n";
   }

@@ -12,11 +12,10 @@
 
 #include "apps/linear_algebra.h"
 #include "benchmarks/child_process.h"
+#include "benchmarks/measured_cube.h"
 #include "benchmarks/processor_time.h"
 #include "benchmarks/trial.h"
-#include "elastimate/core/stiffness_product.h"
 #include "elastimate/estimators/registry.h"
-#include "elastimate/io/example_scenes.h"
 
 namespace elastimate {
 namespace {
@@ -41,32 +40,8 @@ std::vector<int> Sizes(bool is_quick) {
                   : std::vector<int>{6, 9, 13, 19, 27, 40, 58};
 }
 
-// A unit cube with the displacement
-//   u = z (0.02 x + 0.01 z, 0.01 y - 0.02 x z, -0.05 - 0.03 x y)
-// at its nodes, and the nodal forces f = K u that cause it: an exact
-// measurement for which nothing has to be factorised.
-Scene MeasuredCube(int cells) {
-  CuboidOptions options;
-  options.cells.setConstant(cells);
-  options.size.setOnes();
-  Scene scene = CuboidScene(options);
-  const auto x = scene.mesh.nodes.row(0).array();
-  const auto y = scene.mesh.nodes.row(1).array();
-  const auto z = scene.mesh.nodes.row(2).array();
-  Eigen::Matrix3Xd displacement(3, scene.mesh.NumNodes());
-  displacement.row(0) = z * (0.02 * x + 0.01 * z);
-  displacement.row(1) = z * (0.01 * y - 0.02 * x * z);
-  displacement.row(2) = z * (-0.05 - 0.03 * x * y);
-  const StiffnessProducts products =
-      MultiplyStiffnessBasis(scene.mesh, displacement.reshaped());
-  const double nu = kElasticity.poisson_ratio;
-  const double scale = kElasticity.youngs_modulus / ((1 + nu) * (1 - 2 * nu));
-  NodalForces forces{(scale * (products.h + nu * products.j))
-                         .reshaped(3, displacement.cols())};
-  forces.force = scene.supports.held.select(0, forces.force);
-  scene.load_cases[0].loads = {forces};
-  scene.load_cases[0].displacement = displacement;
-  return WithNoise(scene, kDeviation, kSeed);
+Scene NoisyCube(int cells) {
+  return WithNoise(MeasuredCube(cells, kElasticity), kDeviation, kSeed);
 }
 
 struct Run {
@@ -82,7 +57,7 @@ struct Run {
 };
 
 std::string RunEstimator(std::string_view name, int cells) {
-  const Scene scene = MeasuredCube(cells);
+  const Scene scene = NoisyCube(cells);
   const std::unique_ptr<Estimator> estimator = MakeEstimator(name);
   std::vector<double> seconds;
   Estimate estimate;
@@ -162,7 +137,7 @@ StudyResult RunScalingStudy(bool is_quick, Progress& progress) {
     progress.Show("scaling: scene of " + std::to_string(NumTetrahedra(cells)) +
                   " tetrahedra");
     const auto make_scene = [cells] {
-      return std::to_string(MeasuredCube(cells).mesh.NumNodes());
+      return std::to_string(NoisyCube(cells).mesh.NumNodes());
     };
     scene_memory[cells] =
         static_cast<double>(RunInChildProcess(kLimits, make_scene).peak_memory);

@@ -12,6 +12,8 @@ endif()
 find_dependency(Eigen3 3.4)
 find_dependency(OpenBLAS)
 find_dependency(CHOLMOD)
+find_dependency(hwy 1.0)
+find_dependency(OpenMP COMPONENTS CXX)
 
 if("estimators" IN_LIST ELASTIMATE_COMPONENTS OR "io" IN_LIST ELASTIMATE_COMPONENTS)
   find_dependency(Ceres 2.1)

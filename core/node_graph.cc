@@ -1,35 +1,30 @@
 #include "elastimate/core/node_graph.h"
 
 #include <algorithm>
+#include <array>
 
+#include "elastimate/core/elements_of_nodes.h"
 #include "elastimate/core/quadratic_tetrahedron.h"
 #include "elastimate/core/tetrahedron.h"
 
 namespace elastimate {
 namespace {
 
-// The elements around each node: those of node n are
-// element[start[n]] .. element[start[n + 1] - 1].
-struct ElementsOfNodes {
-  std::vector<Eigen::Index> start;
-  std::vector<Eigen::Index> element;
-
-  explicit ElementsOfNodes(const Mesh& mesh)
-      : start(mesh.NumNodes() + 1, 0), element(mesh.elements.size()) {
-    for (const int node : mesh.elements.reshaped()) {
-      ++start[node + 1];
-    }
-    for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
-      start[node + 1] += start[node];
-    }
-    std::vector<Eigen::Index> next(start.begin(), start.end() - 1);
-    for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
-      for (const int node : mesh.elements.col(e)) {
-        element[next[node]++] = e;
-      }
-    }
+// The corners of an element by descending node index, so that the pair of any
+// two in this order is one of the graph.  Without branches: the order is as
+// good as random.
+std::array<int, 4> CornersByDescendingNode(const int* nodes) {
+  std::array<int, 4> corners = {0, 1, 2, 3};
+  constexpr int kComparisons[5][2] = {{0, 1}, {2, 3}, {0, 2}, {1, 3}, {1, 2}};
+  for (const auto& [i, j] : kComparisons) {
+    const int first = corners[i];
+    const int second = corners[j];
+    const bool is_descending = nodes[first] > nodes[second];
+    corners[i] = is_descending ? first : second;
+    corners[j] = is_descending ? second : first;
   }
-};
+  return corners;
+}
 
 void AddLinearProducts(const Mesh& mesh, const NodeGraph& graph,
                        Eigen::Matrix3Xd& products) {
@@ -37,12 +32,21 @@ void AddLinearProducts(const Mesh& mesh, const NodeGraph& graph,
     const TetrahedronGradients element(GatherTetrahedron(mesh, e));
     const Eigen::Matrix<double, 3, 4> weighted =
         element.volume * element.gradient;
+    const std::array<int, 4> corners =
+        CornersByDescendingNode(mesh.elements.data() + 4 * e);
+    const int* const pairs = graph.element_pairs.data() + 16 * e;
     for (int i = 0; i < 4; ++i) {
-      for (int j = 0; j < 4; ++j) {
-        const int pair = graph.element_pairs(4 * i + j, e);
-        if (pair >= 0) {
-          products.middleCols<3>(3 * Eigen::Index(pair)).noalias() +=
-              weighted.col(i) * element.gradient.col(j).transpose();
+      const double* const row = weighted.data() + 3 * corners[i];
+      for (int j = i; j < 4; ++j) {
+        const double* const column = element.gradient.data() + 3 * corners[j];
+        const double outer[9] = {
+            row[0] * column[0], row[1] * column[0], row[2] * column[0],
+            row[0] * column[1], row[1] * column[1], row[2] * column[1],
+            row[0] * column[2], row[1] * column[2], row[2] * column[2]};
+        const Eigen::Index pair = pairs[4 * corners[i] + corners[j]];
+        double* const product = products.data() + 9 * pair;
+        for (int k = 0; k < 9; ++k) {
+          product[k] += outer[k];
         }
       }
     }
@@ -166,13 +170,19 @@ NodeGraph::NodeGraph(const Mesh& mesh)
   start[mesh.NumNodes()] = NumPairs();
 }
 
-Eigen::Matrix3Xd GradientProducts(const Mesh& mesh, const NodeGraph& graph) {
-  Eigen::Matrix3Xd products = Eigen::Matrix3Xd::Zero(3, 3 * graph.NumPairs());
+void GradientProducts(const Mesh& mesh, const NodeGraph& graph,
+                      Eigen::Matrix3Xd& products) {
+  products.setZero(3, 3 * graph.NumPairs());
   if (mesh.Order() == 1) {
     AddLinearProducts(mesh, graph, products);
   } else {
     AddQuadraticProducts(mesh, graph, products);
   }
+}
+
+Eigen::Matrix3Xd GradientProducts(const Mesh& mesh, const NodeGraph& graph) {
+  Eigen::Matrix3Xd products;
+  GradientProducts(mesh, graph, products);
   return products;
 }
 

@@ -36,6 +36,9 @@ struct NodeGraph {
 /// Exact for linear and for quadratic tetrahedra.
 /// Cost: one element pass.
 Eigen::Matrix3Xd GradientProducts(const Mesh& mesh, const NodeGraph& graph);
+/// The same into a matrix that is used again.
+void GradientProducts(const Mesh& mesh, const NodeGraph& graph,
+                      Eigen::Matrix3Xd& products);
 
 /// H_ij from M_ij.
 inline Eigen::Matrix3d StiffnessBlockH(const Eigen::Matrix3d& m) {

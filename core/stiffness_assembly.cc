@@ -10,6 +10,7 @@ StiffnessAssembly::StiffnessAssembly(const Mesh& mesh,
   }
   BuildPattern(degrees_of_freedom);
   Assemble(mesh);
+  products_.resize(3, 0);
 }
 
 void StiffnessAssembly::BuildPattern(
@@ -43,26 +44,35 @@ void StiffnessAssembly::BuildPattern(
 }
 
 void StiffnessAssembly::Assemble(const Mesh& mesh) {
-  const Eigen::Matrix3Xd products = GradientProducts(mesh, graph_);
+  GradientProducts(mesh, graph_, products_);
   h_.resize(static_cast<Eigen::Index>(pattern_.row.size()));
   j_.resize(h_.size());
+  constexpr unsigned kAllFree = 7;
   for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
     for (Eigen::Index k = graph_.start[node]; k < graph_.start[node + 1]; ++k) {
-      const Eigen::Matrix3d m = products.middleCols<3>(3 * k);
+      const Eigen::Matrix3d m = products_.middleCols<3>(3 * k);
       const Eigen::Matrix3d block_h = StiffnessBlockH(m);
       const Eigen::Matrix3d block_j = StiffnessBlockJ(m);
-      const unsigned free_rows = free_components_[graph_.row[k]];
+      const int row = graph_.row[k];
+      const bool is_whole = row != node && free_components_[row] == kAllFree;
       for (int component = 0; component < 3; ++component) {
-        Eigen::Index value = pair_values_[3 * k + component];
+        const Eigen::Index value = pair_values_[3 * k + component];
         if (value < 0) {
           continue;
         }
-        const int first_component = graph_.row[k] == node ? component : 0;
-        for (int i = first_component; i < 3; ++i) {
-          if ((free_rows >> i & 1U) != 0) {
-            h_(value) = block_h(i, component);
-            j_(value) = block_j(i, component);
-            ++value;
+        // Nearly all blocks: no component of the row is held or above the
+        // diagonal.
+        if (is_whole) {
+          h_.segment<3>(value) = block_h.col(component);
+          j_.segment<3>(value) = block_j.col(component);
+          continue;
+        }
+        Eigen::Index next = value;
+        for (int i = row == node ? component : 0; i < 3; ++i) {
+          if ((free_components_[row] >> i & 1U) != 0) {
+            h_(next) = block_h(i, component);
+            j_(next) = block_j(i, component);
+            ++next;
           }
         }
       }

@@ -32,7 +32,8 @@ class StiffnessAssembly {
                     const DegreesOfFreedom& degrees_of_freedom);
 
   /// Assembles the values of H and J again, for moved nodes of the same mesh.
-  /// Cost: one element pass.
+  /// Cost: one element pass.  Keeps 72 byte for each pair of nodes (100 MB for
+  /// a million tetrahedra), so that no new memory has to be mapped.
   void Assemble(const Mesh& mesh);
 
   const NodeGraph& Graph() const { return graph_; }
@@ -43,6 +44,10 @@ class StiffnessAssembly {
   /// The values of H + nu J.
   Eigen::VectorXd Combine(double poisson_ratio) const {
     return h_ + poisson_ratio * j_;
+  }
+  /// The same into memory that is used again, which takes half the time.
+  void Combine(double poisson_ratio, Eigen::VectorXd& values) const {
+    values = h_ + poisson_ratio * j_;
   }
 
  private:
@@ -55,6 +60,8 @@ class StiffnessAssembly {
   /// For each pair of nodes and each of the three components of its column
   /// node: where the rows of its row node begin in the values, -1 when held.
   std::vector<std::int64_t> pair_values_;
+  /// Memory for GradientProducts, empty until values are assembled again.
+  Eigen::Matrix3Xd products_;
   Eigen::VectorXd h_;
   Eigen::VectorXd j_;
 };

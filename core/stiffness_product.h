@@ -2,6 +2,7 @@
 #define ELASTIMATE_CORE_STIFFNESS_PRODUCT_H_
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "elastimate/core/mesh.h"
 
@@ -28,10 +29,50 @@ struct StiffnessProducts {
 ///
 /// Precondition: a valid mesh (ValidateMesh) and 3 num_nodes rows.
 /// Cost: one element pass, O(num_elements * num_columns) time (for quadratic
-/// tetrahedra about nine times that for linear ones), no memory beyond the
-/// result.  Single-threaded; the same input gives the same bits.
+/// tetrahedra about 20 times that for linear ones).  Single-threaded; the
+/// same input gives the same bits on the same kind of processor.
 StiffnessProducts MultiplyStiffnessBasis(const Mesh& mesh,
                                          const Eigen::MatrixXd& displacement);
+
+/// The stiffness bases H and J of a mesh, to be multiplied many times: what
+/// MultiplyStiffnessBasis does, with threads, and after the mesh has been
+/// numbered for locality if its own numbering has none.
+///
+///   const StiffnessOperator stiffness(mesh, 2);
+///   StiffnessProducts products;
+///   stiffness.Multiply(q, products);
+///
+/// Rounding differs from that of MultiplyStiffnessBasis where the elements are
+/// visited in another order.
+class StiffnessOperator {
+ public:
+  /// Refers to `mesh`, which has to stay as it is.  Precondition: a valid mesh,
+  /// and at least one thread.
+  ///
+  /// Threads are OpenMP's, for linear tetrahedra, one for each 16384 of them at
+  /// most.  There is one unless more are asked for: a pass is short, and its
+  /// callers may have threads of their own, which a library cannot know.
+  ///
+  /// Cost: O(num_elements) time; nothing but a look at the numbering if that is
+  /// good, and else several element passes (OrderForLocality).
+  explicit StiffnessOperator(const Mesh& mesh, int num_threads = 1);
+
+  /// Whether the mesh was numbered again.
+  bool IsReordered() const { return !places_.empty(); }
+
+  /// As MultiplyStiffnessBasis; matrices of the right shape in `products` are
+  /// used again.  The bits do not depend on the number of threads.
+  void Multiply(const Eigen::MatrixXd& displacement,
+                StiffnessProducts& products) const;
+
+ private:
+  const Mesh& mesh_;
+  int num_threads_;
+  /// Numbered for locality, and the place of its nodes in mesh_; both empty
+  /// where the numbering of mesh_ is good.
+  Mesh reordered_;
+  std::vector<int> places_;
+};
 
 }  // namespace elastimate
 

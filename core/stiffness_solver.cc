@@ -26,7 +26,8 @@ bool StiffnessSolver::Factorize(double poisson_ratio) {
     return false;
   }
   ++work_.factorizations;
-  if (!cholesky_->Factorize(assembly_->Combine(poisson_ratio))) {
+  assembly_->Combine(poisson_ratio, values_);
+  if (!cholesky_->Factorize(values_)) {
     return false;
   }
   poisson_ratio_ = poisson_ratio;

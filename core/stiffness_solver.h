@@ -55,6 +55,7 @@ class StiffnessSolver {
  private:
   DegreesOfFreedom degrees_of_freedom_;
   std::unique_ptr<StiffnessAssembly> assembly_;
+  Eigen::VectorXd values_;  ///< Of the last H + nu J, memory to be used again.
   std::unique_ptr<Cholesky> cholesky_;
   /// NaN before the first factorisation and after a failed one.
   double poisson_ratio_;

@@ -5,7 +5,7 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build
   libceres-dev libeigen3-dev libsuitesparse-dev libopenblas-pthread-dev
-  libgoogle-glog-dev libgflags-dev libgtest-dev libgmock-dev libbenchmark-dev
+  libhwy-dev libgoogle-glog-dev libgflags-dev libgtest-dev libgmock-dev libbenchmark-dev
   nlohmann-json3-dev libvtk9-dev libgmsh-dev
   python3-matplotlib
 )

@@ -14,7 +14,8 @@ class BenchmarkCommandLine : public testing::ProgramTest {};
 TEST_F(BenchmarkCommandLine, HelpNamesCommandFlagsAndStudies) {
   const std::string help = Succeed("--help").output;
   for (const std::string words :
-       {"elastimate_benchmark study", "--name", "--out", "--quick", "paper"}) {
+       {"elastimate_benchmark study", "elastimate_benchmark kernels", "--name",
+        "--out", "--quick", "paper"}) {
     EXPECT_NE(help.find(words), std::string::npos) << words;
   }
 }
@@ -30,6 +31,12 @@ TEST_F(BenchmarkCommandLine, RefusesWrongArguments) {
   Refuse("study --name=paper --out=. --quick=fast",
          "--quick needs true or false; it got fast");
   Refuse("study --name=paper --out=. --fast", "unknown flag --fast");
+}
+
+TEST_F(BenchmarkCommandLine, RefusesWrongArgumentsOfKernels) {
+  Refuse("kernels quick", "kernels takes flags only; it got quick");
+  Refuse("kernels --name=paper", "--name");
+  Refuse("kernels --out=nowhere", "make the folder first");
 }
 
 TEST_F(BenchmarkCommandLine, RefusesAFolderThatCannotBeWritten) {

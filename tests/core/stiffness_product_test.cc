@@ -1,8 +1,14 @@
 #include "elastimate/core/stiffness_product.h"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <random>
+#include <string>
 #include <vector>
 
 #include "tests/core/random_values.h"
@@ -178,6 +184,170 @@ TEST_F(StiffnessProduct, DoesNotDependOnTheOrderOfAnElementsNodes) {
   const double tolerance = kRounding * Scale(q_);
   EXPECT_LT((of_turned.h - products.h).cwiseAbs().maxCoeff(), tolerance);
   EXPECT_LT((of_turned.j - products.j).cwiseAbs().maxCoeff(), tolerance);
+}
+
+// Each kind of vector instruction that this processor has, and the least of
+// them, which every processor of its architecture has.
+class InstructionSet : public ::testing::TestWithParam<std::int64_t> {
+ protected:
+  InstructionSet() {
+    hwy::SetSupportedTargetsForTest(GetParam());
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+  ~InstructionSet() override {
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+};
+
+std::vector<std::int64_t> InstructionSets() {
+  std::vector<std::int64_t> targets;
+  const auto supported =
+      static_cast<std::uint64_t>(hwy::SupportedTargets() & HWY_TARGETS);
+  for (int bit = 0; bit < 64; ++bit) {
+    const std::uint64_t target = std::uint64_t{1} << bit;
+    if ((supported & target) != 0) {
+      targets.push_back(static_cast<std::int64_t>(target));
+    }
+  }
+  return targets;
+}
+
+// The last batch of elements and the last block of columns may be full or not.
+TEST_P(InstructionSet, EqualsTheTextbookStiffnessForAnyCount) {
+  const Mesh whole =
+      WithBothOrientations(Distorted(BoxMesh({2, 2, 1}, {1, 0.8, 1.2})));
+  const Eigen::MatrixXd q = RandomMatrix(3 * whole.NumNodes(), 17, 2);
+  for (int num_elements = 1; num_elements <= 20; ++num_elements) {
+    Mesh mesh = whole;
+    mesh.elements.conservativeResize(4, num_elements);
+    const Eigen::MatrixXd h = DenseStiffness<double>(mesh, DenseDH());
+    const Eigen::MatrixXd j = DenseStiffness<double>(mesh, DenseDJ());
+    const double tolerance =
+        kRounding * (j.cwiseAbs() * q.cwiseAbs()).maxCoeff();
+    for (const int num_columns : {1, 2, 3, 4, 5, 8, 9, 17}) {
+      SCOPED_TRACE(std::to_string(num_elements) + " elements, " +
+                   std::to_string(num_columns) + " columns");
+      const Eigen::MatrixXd columns = q.leftCols(num_columns);
+      const StiffnessProducts products = MultiplyStiffnessBasis(mesh, columns);
+      EXPECT_LT((products.h - h * columns).cwiseAbs().maxCoeff(), tolerance);
+      EXPECT_LT((products.j - j * columns).cwiseAbs().maxCoeff(), tolerance);
+    }
+  }
+}
+
+TEST_P(InstructionSet, OfSeveralColumnsIsThatOfEachBitForBit) {
+  const Mesh mesh =
+      WithBothOrientations(Distorted(BoxMesh({3, 2, 3}, {1, 0.8, 1.2})));
+  const Eigen::MatrixXd q = RandomMatrix(3 * mesh.NumNodes(), 9, 3);
+  const StiffnessProducts all = MultiplyStiffnessBasis(mesh, q);
+  for (Eigen::Index i = 0; i < q.cols(); ++i) {
+    const StiffnessProducts one = MultiplyStiffnessBasis(mesh, q.col(i));
+    EXPECT_EQ(one.h, all.h.col(i));
+    EXPECT_EQ(one.j, all.j.col(i));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Supported, InstructionSet,
+                         ::testing::ValuesIn(InstructionSets()),
+                         [](const auto& test) {
+                           return std::string(hwy::TargetName(test.param));
+                         });
+
+// A mesh of many blocks of elements.
+class LargeMesh : public ::testing::Test {
+ protected:
+  LargeMesh()
+      : mesh_(Distorted(BoxMesh({16, 16, 40}, {1, 1, 3}))),
+        q_(RandomMatrix(3 * mesh_.NumNodes(), 5, 4)),
+        products_(MultiplyStiffnessBasis(mesh_, q_)) {}
+
+  static std::vector<int> Shuffled(Eigen::Index size, std::uint32_t seed) {
+    std::vector<int> order(size);
+    std::iota(order.begin(), order.end(), 0);
+    std::shuffle(order.begin(), order.end(), std::mt19937(seed));
+    return order;
+  }
+
+  void ExpectSame(const StiffnessProducts& a, const StiffnessProducts& b) {
+    const double tolerance = 1e-13 * a.h.cwiseAbs().maxCoeff();
+    EXPECT_LT((a.h - b.h).cwiseAbs().maxCoeff(), tolerance);
+    EXPECT_LT((a.j - b.j).cwiseAbs().maxCoeff(), tolerance);
+  }
+
+  Mesh mesh_;
+  Eigen::MatrixXd q_;
+  StiffnessProducts products_;
+};
+
+// Element by element, the products are those of one-element meshes.
+TEST_F(LargeMesh, ProductsAreSumsOverTheElements) {
+  StiffnessProducts sum;
+  sum.h.setZero(q_.rows(), q_.cols());
+  sum.j = sum.h;
+  Mesh one;
+  one.nodes.resize(3, 4);
+  one.elements = Eigen::Vector4i(0, 1, 2, 3);
+  for (Eigen::Index e = 0; e < mesh_.NumElements(); ++e) {
+    const Eigen::Vector4i nodes = mesh_.elements.col(e);
+    Eigen::MatrixXd q(12, q_.cols());
+    for (int i = 0; i < 4; ++i) {
+      one.nodes.col(i) = mesh_.nodes.col(nodes(i));
+      q.middleRows<3>(3 * i) = q_.middleRows<3>(3 * nodes(i));
+    }
+    const StiffnessProducts products = MultiplyStiffnessBasis(one, q);
+    for (int i = 0; i < 4; ++i) {
+      sum.h.middleRows<3>(3 * nodes(i)) += products.h.middleRows<3>(3 * i);
+      sum.j.middleRows<3>(3 * nodes(i)) += products.j.middleRows<3>(3 * i);
+    }
+  }
+  ExpectSame(products_, sum);
+}
+
+TEST_F(LargeMesh, OperatorHasTheSameBitsForAnyNumberOfThreads) {
+  for (const int num_threads : {1, 2, 3, 16}) {
+    SCOPED_TRACE(num_threads);
+    const StiffnessOperator stiffness(mesh_, num_threads);
+    EXPECT_FALSE(stiffness.IsReordered());
+    // Wrong values in matrices of the right, and of a wrong, shape.
+    StiffnessProducts products{2 * q_, Eigen::MatrixXd::Ones(2, 2)};
+    stiffness.Multiply(q_, products);
+    EXPECT_EQ(products.h, products_.h);
+    EXPECT_EQ(products.j, products_.j);
+  }
+}
+
+TEST_F(LargeMesh, OperatorOrdersARandomNumberingAgain) {
+  const std::vector<int> nodes = Shuffled(mesh_.NumNodes(), 1);
+  const std::vector<int> elements = Shuffled(mesh_.NumElements(), 2);
+  Mesh mesh = mesh_;
+  Eigen::MatrixXd q(q_.rows(), q_.cols());
+  StiffnessProducts expected{q, q};
+  for (Eigen::Index i = 0; i < mesh_.NumNodes(); ++i) {
+    mesh.nodes.col(nodes[i]) = mesh_.nodes.col(i);
+    q.middleRows<3>(3 * nodes[i]) = q_.middleRows<3>(3 * i);
+    expected.h.middleRows<3>(3 * nodes[i]) = products_.h.middleRows<3>(3 * i);
+    expected.j.middleRows<3>(3 * nodes[i]) = products_.j.middleRows<3>(3 * i);
+  }
+  for (Eigen::Index e = 0; e < mesh_.NumElements(); ++e) {
+    for (int i = 0; i < 4; ++i) {
+      mesh.elements(i, e) = nodes[mesh_.elements(i, elements[e])];
+    }
+  }
+  ExpectSame(expected, MultiplyStiffnessBasis(mesh, q));
+  StiffnessProducts first;
+  for (const int num_threads : {1, 2}) {
+    const StiffnessOperator stiffness(mesh, num_threads);
+    EXPECT_TRUE(stiffness.IsReordered());
+    StiffnessProducts products;
+    stiffness.Multiply(q, products);
+    ExpectSame(expected, products);
+    if (num_threads == 1) {
+      first = products;
+    }
+    EXPECT_EQ(products.h, first.h);
+    EXPECT_EQ(products.j, first.j);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,376 @@
+#include "benchmarks/kernels.h"
+
+#include <hwy/targets.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <iomanip>
+#include <limits>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <random>
+#include <sstream>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "apps/linear_algebra.h"
+#include "benchmarks/machine_limits.h"
+#include "benchmarks/measured_cube.h"
+#include "benchmarks/naive_stiffness_product.h"
+#include "elastimate/core/stiffness_assembly.h"
+#include "elastimate/core/stiffness_product.h"
+#include "elastimate/estimators/registry.h"
+
+namespace elastimate {
+namespace {
+
+constexpr IsotropicElasticity kElasticity = {10e3, 0.33};
+constexpr std::uint64_t kSeed = 1;
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+// Kernels take turns, so that a disturbance of the machine hits them alike; the
+// shortest time of each counts.
+constexpr int kRounds = 9;
+
+// How many times as fast as the textbook pass the element pass is at least, in
+// the same run: half of what was measured, so that only a real loss is told.
+constexpr double kLeastSpeedupOfFours = 15;
+constexpr double kLeastSpeedupOfOnes = 8;
+
+std::int64_t Tetrahedra(int cells) {
+  return std::int64_t{5} * cells * cells * cells;
+}
+
+double SecondsOf(const std::function<void()>& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
+      .count();
+}
+
+void UseInstructions(std::int64_t targets) {
+  hwy::SetSupportedTargetsForTest(targets);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+// The instructions that every processor of this architecture has.
+std::int64_t BaselineInstructions() {
+  auto targets = static_cast<std::uint64_t>(hwy::SupportedTargets());
+  while ((targets & (targets - 1)) != 0) {
+    targets &= targets - 1;
+  }
+  return static_cast<std::int64_t>(targets);
+}
+
+bool HasVectorsOfFour() {
+  return (hwy::SupportedTargets() & (HWY_AVX2 | HWY_AVX3 | HWY_AVX3_DL)) != 0;
+}
+
+Eigen::MatrixXd RandomMatrix(Eigen::Index rows, Eigen::Index columns) {
+  std::mt19937_64 generator(kSeed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  return Eigen::MatrixXd::NullaryExpr(rows, columns,
+                                      [&] { return uniform(generator); });
+}
+
+std::vector<int> RandomOrder(Eigen::Index size) {
+  std::vector<int> order(size);
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), std::mt19937_64(kSeed));
+  return order;
+}
+
+Mesh RandomlyNumbered(const Mesh& mesh) {
+  const std::vector<int> nodes = RandomOrder(mesh.NumNodes());
+  const std::vector<int> elements = RandomOrder(mesh.NumElements());
+  Mesh random = mesh;
+  for (Eigen::Index i = 0; i < mesh.NumNodes(); ++i) {
+    random.nodes.col(nodes[i]) = mesh.nodes.col(i);
+  }
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    for (int i = 0; i < 4; ++i) {
+      random.elements(i, e) = nodes[mesh.elements(i, elements[e])];
+    }
+  }
+  return random;
+}
+
+// What a kernel has to do for each tetrahedron and column: memory that is read
+// or written at least once, floating-point operations.
+struct Work {
+  double bytes;
+  double flops;
+};
+
+// 16 bytes of node indices, and for each node its position, and q, a and b of
+// each column.
+Work WorkOfPass(const Mesh& mesh, int columns) {
+  constexpr double kGeometry = 42;
+  constexpr double kColumn = 155;
+  const double nodes = static_cast<double>(mesh.NumNodes()) /
+                       static_cast<double>(mesh.NumElements());
+  return {16.0 / columns + nodes * (24.0 / columns + 72),
+          kGeometry / columns + kColumn};
+}
+
+struct Kernel {
+  std::string name;
+  std::string numbering;
+  int threads;
+  int columns;
+  Work work;
+  std::function<void()> run;
+  double set_up_seconds = kUnknown;
+  std::function<void()> before = [] {};
+  std::function<void()> after = [] {};
+  double seconds = std::numeric_limits<double>::infinity();
+};
+
+void TimeInTurns(std::vector<Kernel>& kernels, Progress& progress,
+                 const std::string& size) {
+  for (int round = 0; round < kRounds; ++round) {
+    for (Kernel& kernel : kernels) {
+      progress.Show("kernels: " + size + " tetrahedra, " + kernel.name);
+      kernel.before();
+      kernel.seconds = std::min(kernel.seconds, SecondsOf(kernel.run));
+      kernel.after();
+    }
+  }
+}
+
+// Everything that the kernels of one size work on.
+class Cube {
+ public:
+  explicit Cube(int cells)
+      : scene_(MeasuredCube(cells, kElasticity)),
+        random_(RandomlyNumbered(scene_.mesh)),
+        one_(RandomMatrix(3 * scene_.mesh.NumNodes(), 1)),
+        eight_(RandomMatrix(3 * scene_.mesh.NumNodes(), 8)),
+        assembly_(scene_.mesh, DegreesOfFreedom(scene_.supports)),
+        closed_form_(MakeEstimator("closed-form")) {
+    CheckPasses();
+  }
+
+  std::vector<Kernel> Kernels() {
+    std::vector<Kernel> kernels;
+    const Mesh& mesh = scene_.mesh;
+    kernels.push_back({"naive", "natural", 1, 1, WorkOfPass(mesh, 1),
+                       [&] { products_ = MultiplyNaively(mesh, one_); }});
+    for (const int columns : {1, 8}) {
+      AddOperator("scalar", "natural", mesh, 1, columns, kernels);
+      kernels.back().before = [] { UseInstructions(BaselineInstructions()); };
+      kernels.back().after = [] { UseInstructions(0); };
+    }
+    for (const int threads : {1, 2}) {
+      for (const int columns : {1, 8}) {
+        AddOperator("vector", "natural", mesh, threads, columns, kernels);
+      }
+    }
+    for (const int columns : {1, 8}) {
+      kernels.push_back({"vector", "random", 1, columns,
+                         WorkOfPass(mesh, columns), [this, columns] {
+                           products_ = MultiplyStiffnessBasis(random_,
+                                                              Columns(columns));
+                         }});
+    }
+    for (const int threads : {1, 2}) {
+      for (const int columns : {1, 8}) {
+        AddOperator("vector", "reordered", random_, threads, columns, kernels);
+      }
+    }
+    AddAssembly(kernels);
+    kernels.push_back(
+        {"closed-form", "natural", 1, 1, {kUnknown, kUnknown}, [&] {
+           closed_form_->Run(scene_, {});
+         }});
+    return kernels;
+  }
+
+ private:
+  const Eigen::MatrixXd& Columns(int columns) const {
+    return columns == 1 ? one_ : eight_;
+  }
+
+  void AddOperator(const std::string& name, const std::string& numbering,
+                   const Mesh& mesh, int threads, int columns,
+                   std::vector<Kernel>& kernels) {
+    std::shared_ptr<StiffnessOperator> stiffness;
+    const double set_up = SecondsOf([&] {
+      stiffness = std::make_shared<StiffnessOperator>(mesh, threads);
+    });
+    kernels.push_back({name, numbering, threads, columns,
+                       WorkOfPass(mesh, columns),
+                       [this, stiffness, columns] {
+                         StiffnessProducts& products =
+                             columns == 1 ? one_products_ : eight_products_;
+                         stiffness->Multiply(Columns(columns), products);
+                       },
+                       stiffness->IsReordered() ? set_up : kUnknown});
+  }
+
+  void AddAssembly(std::vector<Kernel>& kernels) {
+    // For each value of H and J: gradients once per element, ten blocks.
+    constexpr double kFlops = 42 + 21 + 10 * 18;
+    const double elements = static_cast<double>(scene_.mesh.NumElements());
+    const double values = static_cast<double>(assembly_.H().size()) / elements;
+    const double nodes = static_cast<double>(scene_.mesh.NumNodes()) / elements;
+    kernels.push_back({"re-assembly of H and J",
+                       "natural",
+                       1,
+                       1,
+                       {16 + 64 + 24 * nodes + 16 * values, kFlops},
+                       [this] { assembly_.Assemble(scene_.mesh); }});
+    kernels.push_back(
+        {"K from H and J", "natural", 1, 1, {24 * values, 2 * values}, [this] {
+           assembly_.Combine(0.3, stiffness_);
+         }});
+  }
+
+  void CheckPasses() {
+    const StiffnessProducts naive = MultiplyNaively(scene_.mesh, one_);
+    const StiffnessProducts fast = MultiplyStiffnessBasis(scene_.mesh, one_);
+    if (!naive.h.isApprox(fast.h, 1e-12) || !naive.j.isApprox(fast.j, 1e-12)) {
+      throw std::logic_error("the naive and the fast element pass differ");
+    }
+  }
+
+  Scene scene_;
+  Mesh random_;
+  Eigen::MatrixXd one_;
+  Eigen::MatrixXd eight_;
+  StiffnessAssembly assembly_;
+  Eigen::VectorXd stiffness_;
+  std::unique_ptr<Estimator> closed_form_;
+  StiffnessProducts products_;
+  StiffnessProducts one_products_;
+  StiffnessProducts eight_products_;
+};
+
+// Of one size: the time for each tetrahedron and column, by name, numbering,
+// threads and columns [s].
+class Times {
+ public:
+  explicit Times(const std::vector<Kernel>& kernels) {
+    for (const Kernel& kernel : kernels) {
+      times_[{kernel.name, kernel.numbering, kernel.threads, kernel.columns}] =
+          kernel.seconds / kernel.columns;
+    }
+  }
+
+  double Of(const std::string& name, const std::string& numbering = "natural",
+            int threads = 1, int columns = 1) const {
+    return times_.at({name, numbering, threads, columns});
+  }
+
+ private:
+  std::map<std::tuple<std::string, std::string, int, int>, double> times_;
+};
+
+std::vector<std::string> Ratios(std::int64_t tetrahedra, const Times& times) {
+  const double pass = times.Of("vector");
+  const std::pair<const char*, double> ratios[] = {
+      {"naive / vector", times.Of("naive") / pass},
+      {"scalar / vector", times.Of("scalar") / pass},
+      {"each of 8 columns / one", times.Of("vector", "natural", 1, 8) / pass},
+      {"reordered / natural", times.Of("vector", "reordered") / pass},
+      {"reordered / natural, 8 columns",
+       times.Of("vector", "reordered", 1, 8) /
+           times.Of("vector", "natural", 1, 8)},
+      {"one thread / two", pass / times.Of("vector", "natural", 2)},
+      {"closed-form / pass", times.Of("closed-form") / pass},
+  };
+  std::vector<std::string> lines;
+  for (const auto& [name, ratio] : ratios) {
+    std::ostringstream line;
+    line << tetrahedra << " tetrahedra, " << name << ": " << std::fixed
+         << std::setprecision(2) << ratio;
+    lines.push_back(line.str());
+  }
+  return lines;
+}
+
+std::string WhyRegressed(const Times& times) {
+  const double least =
+      HasVectorsOfFour() ? kLeastSpeedupOfFours : kLeastSpeedupOfOnes;
+  const double speedup = times.Of("naive") / times.Of("vector");
+  if (speedup >= least) {
+    return "";
+  }
+  std::ostringstream text;
+  text << "the element pass is " << speedup
+       << " times as fast as the textbook's, less than the recorded " << least;
+  return text.str();
+}
+
+}  // namespace
+
+KernelTimes TimeKernels(bool is_quick, Progress& progress) {
+  SetBlasThreads(1);
+  progress.Show("kernels: memory bandwidth and peak flops");
+  std::map<int, MachineLimits> limits;
+  for (const int threads : {1, 2}) {
+    limits[threads] = MeasureMachineLimits(threads);
+  }
+  Table table(
+      "kernels",
+      {"kernel", "tetrahedra [1]", "numbering", "threads [1]", "columns [1]",
+       "time_per_tetrahedron_and_column [ns]", "set_up_per_tetrahedron [ns]",
+       "memory_bandwidth_fraction [1]", "peak_flops_fraction [1]"});
+  KernelTimes times;
+  const std::vector<int> sizes =
+      is_quick ? std::vector<int>{13, 27} : std::vector<int>{13, 27, 58};
+  for (const int cells : sizes) {
+    const std::int64_t tetrahedra = Tetrahedra(cells);
+    progress.Show("kernels: " + std::to_string(tetrahedra) + " tetrahedra");
+    Cube cube(cells);
+    std::vector<Kernel> kernels = cube.Kernels();
+    TimeInTurns(kernels, progress, std::to_string(tetrahedra));
+    for (const Kernel& kernel : kernels) {
+      const double count = static_cast<double>(tetrahedra);
+      const double time = kernel.seconds / count / kernel.columns;
+      const MachineLimits& machine = limits.at(kernel.threads);
+      table.AddRow({kernel.name, tetrahedra, kernel.numbering,
+                    std::int64_t{kernel.threads}, std::int64_t{kernel.columns},
+                    1e9 * time, 1e9 * kernel.set_up_seconds / count,
+                    kernel.work.bytes / time / machine.memory_bandwidth,
+                    kernel.work.flops / time / machine.peak_flops});
+    }
+    const Times of_size(kernels);
+    for (const std::string& line : Ratios(tetrahedra, of_size)) {
+      times.ratios.push_back(line);
+    }
+    if (cells == sizes.back()) {
+      const std::string why = WhyRegressed(of_size);
+      if (!why.empty()) {
+        times.regressions.push_back(why);
+      }
+    }
+  }
+  nlohmann::ordered_json machine;
+  for (const auto& [threads, limit] : limits) {
+    machine[std::to_string(threads) + " threads"] = {
+        {"memory_bandwidth [GB/s]", 1e-9 * limit.memory_bandwidth},
+        {"peak [Gflop/s]", 1e-9 * limit.peak_flops}};
+  }
+  times.result = {
+      {table},
+      {{"cube", "of five tetrahedra in each of n x n x n cells"},
+       {"instructions",
+        hwy::TargetName(hwy::SupportedTargets() & -hwy::SupportedTargets())},
+       {"machine", machine},
+       {"times", "shortest of " + std::to_string(kRounds) + " rounds, clock"},
+       {"bytes",
+        "read or written at least once: 16 for the nodes of an element, 24 for "
+        "the position of a node, 72 for q, a and b of each column"},
+       {"flops", "42 for each tetrahedron, 155 for each of its columns"},
+       {"seed", kSeed},
+       {"blas_threads", 1},
+       {"ratios", times.ratios}}};
+  return times;
+}
+
+}  // namespace elastimate

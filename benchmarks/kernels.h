@@ -1,0 +1,29 @@
+#ifndef ELASTIMATE_BENCHMARKS_KERNELS_H_
+#define ELASTIMATE_BENCHMARKS_KERNELS_H_
+
+#include <string>
+#include <vector>
+
+#include "apps/progress.h"
+#include "benchmarks/study.h"
+
+namespace elastimate {
+
+/// Times of the kernels.
+struct KernelTimes {
+  StudyResult result;
+  /// What compares them within this run, one line each.
+  std::vector<std::string> ratios;
+  /// The recorded bounds that this run missed.
+  std::vector<std::string> regressions;
+};
+
+/// Times the element pass (naive, scalar, vector; natural, random and reordered
+/// numbering; one and eight columns; one and two threads), assembly and the
+/// closed form on cubes of 10 000 to a million tetrahedra, beside the memory
+/// bandwidth and the peak flops of the same run.  `is_quick` stops at 100 000.
+KernelTimes TimeKernels(bool is_quick, Progress& progress);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_BENCHMARKS_KERNELS_H_

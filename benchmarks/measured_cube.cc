@@ -1,0 +1,32 @@
+#include "benchmarks/measured_cube.h"
+
+#include "elastimate/core/stiffness_product.h"
+#include "elastimate/io/example_scenes.h"
+
+namespace elastimate {
+
+Scene MeasuredCube(int cells, const IsotropicElasticity& elasticity) {
+  CuboidOptions options;
+  options.cells.setConstant(cells);
+  options.size.setOnes();
+  Scene scene = CuboidScene(options);
+  const auto x = scene.mesh.nodes.row(0).array();
+  const auto y = scene.mesh.nodes.row(1).array();
+  const auto z = scene.mesh.nodes.row(2).array();
+  Eigen::Matrix3Xd displacement(3, scene.mesh.NumNodes());
+  displacement.row(0) = z * (0.02 * x + 0.01 * z);
+  displacement.row(1) = z * (0.01 * y - 0.02 * x * z);
+  displacement.row(2) = z * (-0.05 - 0.03 * x * y);
+  const StiffnessProducts products =
+      MultiplyStiffnessBasis(scene.mesh, displacement.reshaped());
+  const double nu = elasticity.poisson_ratio;
+  const double scale = elasticity.youngs_modulus / ((1 + nu) * (1 - 2 * nu));
+  NodalForces forces{(scale * (products.h + nu * products.j))
+                         .reshaped(3, displacement.cols())};
+  forces.force = scene.supports.held.select(0, forces.force);
+  scene.load_cases[0].loads = {forces};
+  scene.load_cases[0].displacement = displacement;
+  return scene;
+}
+
+}  // namespace elastimate
