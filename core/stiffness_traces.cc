@@ -3,7 +3,6 @@
 #include <random>
 
 #include "elastimate/core/node_graph.h"
-#include "elastimate/core/stiffness_product.h"
 
 namespace elastimate {
 
@@ -38,22 +37,31 @@ Eigen::Matrix2d StiffnessTraces(const Mesh& mesh,
   return traces;
 }
 
-Eigen::Matrix2d EstimateStiffnessTraces(
-    const Mesh& mesh, const DegreesOfFreedom& degrees_of_freedom) {
+Eigen::MatrixXd TraceProbes(const DegreesOfFreedom& degrees_of_freedom) {
   constexpr Eigen::Index kNumProbes = 2;
   std::mt19937_64 generator(20071107);
-  Eigen::MatrixXd signs(degrees_of_freedom.NumFree(), kNumProbes);
-  for (double& sign : signs.reshaped()) {
-    sign = (generator() & 1U) != 0 ? 1 : -1;
+  Eigen::MatrixXd probes =
+      Eigen::MatrixXd::Zero(degrees_of_freedom.NumAll(), kNumProbes);
+  for (auto probe : probes.colwise()) {
+    for (const Eigen::Index dof : degrees_of_freedom.free) {
+      probe(dof) = (generator() & 1U) != 0 ? 1 : -1;
+    }
   }
-  const StiffnessProducts products =
-      MultiplyStiffnessBasis(mesh, degrees_of_freedom.Extend(signs));
-  const Eigen::MatrixXd h = degrees_of_freedom.Restrict(products.h);
-  const Eigen::MatrixXd j = degrees_of_freedom.Restrict(products.j);
-  Eigen::Matrix2d traces;
-  traces << h.squaredNorm(), h.cwiseProduct(j).sum(), h.cwiseProduct(j).sum(),
-      j.squaredNorm();
-  return traces / kNumProbes;
+  return probes;
+}
+
+Eigen::Matrix2d EstimateStiffnessTraces(
+    const DegreesOfFreedom& degrees_of_freedom,
+    const Eigen::Ref<const Eigen::MatrixXd>& h,
+    const Eigen::Ref<const Eigen::MatrixXd>& j) {
+  Eigen::Matrix2d traces = Eigen::Matrix2d::Zero();
+  for (Eigen::Index k = 0; k < h.cols(); ++k) {
+    for (const Eigen::Index dof : degrees_of_freedom.free) {
+      const Eigen::Vector2d products(h(dof, k), j(dof, k));
+      traces += products * products.transpose();
+    }
+  }
+  return traces / static_cast<double>(h.cols());
 }
 
 }  // namespace elastimate

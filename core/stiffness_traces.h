@@ -22,11 +22,17 @@ namespace elastimate {
 Eigen::Matrix2d StiffnessTraces(const Mesh& mesh,
                                 const DegreesOfFreedom& degrees_of_freedom);
 
-/// An unbiased estimate of StiffnessTraces from products with random signs,
-/// z^T X Y z (Hutchinson 1990), of relative standard error below about
-/// 1 / sqrt(num_free).  Deterministic.  Cost: one element pass of two columns.
+/// Columns of random signs z in the free rows, zero in the held ones:
+/// (3 num_nodes) x 2.  Deterministic.
+Eigen::MatrixXd TraceProbes(const DegreesOfFreedom& degrees_of_freedom);
+
+/// An unbiased estimate of StiffnessTraces from the products H z and J z of
+/// TraceProbes, (3 num_nodes) x 2: the mean of z^T X Y z (Hutchinson 1990), of
+/// relative standard error below about 1 / sqrt(num_free).  O(num_free).
 Eigen::Matrix2d EstimateStiffnessTraces(
-    const Mesh& mesh, const DegreesOfFreedom& degrees_of_freedom);
+    const DegreesOfFreedom& degrees_of_freedom,
+    const Eigen::Ref<const Eigen::MatrixXd>& h,
+    const Eigen::Ref<const Eigen::MatrixXd>& j);
 
 }  // namespace elastimate
 

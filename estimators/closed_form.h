@@ -18,7 +18,8 @@ namespace elastimate {
 /// 2/3 and E towards and below zero, the more the finer the mesh: the estimate
 /// says itself when that makes it unusable.  With a known nu, E has no bias.
 ///
-/// Cost: one element pass, and two more for the standard errors and the noise
+/// Cost: one element pass, and one more of four columns (up to 10 000 elements
+/// one of two, and the exact traces) for the standard errors and the noise
 /// diagnostics (and one of 12 columns for a usable estimate whose force
 /// residual is above a tenth of the load, to see whether noise explains it); no
 /// factorisation.  Single-threaded, deterministic.

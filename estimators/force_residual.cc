@@ -29,22 +29,47 @@ constexpr Eigen::Index kMostElementsForExactTraces = 10000;
 // which on the model is in doubt.
 constexpr double kUnexplainedResidual = 1.5;
 
-// The triangle of a QR factorisation of the columns, in blocks of rows that
-// stay in the cache.
-Eigen::Matrix3d BlockwiseTriangle(
-    const Eigen::Matrix<double, Eigen::Dynamic, 3>& columns) {
-  constexpr Eigen::Index kBlockRows = 512;
+// The triangle of a QR factorisation of the free rows of all columns of f, b
+// and a, side by side, in blocks of rows that stay in the cache.
+Eigen::Matrix3d BlockwiseTriangle(const std::vector<Eigen::Index>& free,
+                                  const Eigen::MatrixXd& f,
+                                  const Eigen::MatrixXd& b,
+                                  const Eigen::MatrixXd& a) {
+  constexpr std::size_t kBlockRows = 512;
   Eigen::Matrix3d triangle = Eigen::Matrix3d::Zero();
   Eigen::Matrix<double, Eigen::Dynamic, 3> block;
-  for (Eigen::Index row = 0; row < columns.rows(); row += kBlockRows) {
-    const Eigen::Index rows = std::min(kBlockRows, columns.rows() - row);
-    block.resize(3 + rows, 3);
-    block << triangle, columns.middleRows(row, rows);
-    const Eigen::HouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 3>> qr(
-        block);
-    triangle = qr.matrixQR().topRows<3>().triangularView<Eigen::Upper>();
+  for (Eigen::Index k = 0; k < f.cols(); ++k) {
+    for (std::size_t first = 0; first < free.size(); first += kBlockRows) {
+      const std::size_t rows = std::min(kBlockRows, free.size() - first);
+      block.resize(3 + Eigen::Index(rows), 3);
+      block.topRows<3>() = triangle;
+      for (std::size_t i = 0; i < rows; ++i) {
+        const Eigen::Index dof = free[first + i];
+        block.row(3 + Eigen::Index(i)) << f(dof, k), b(dof, k), a(dof, k);
+      }
+      const Eigen::HouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 3>> qr(
+          block);
+      triangle = qr.matrixQR().topRows<3>().triangularView<Eigen::Upper>();
+    }
   }
   return triangle;
+}
+
+// The products with each other of the free rows of H b, J b, H f and J f,
+// summed over the load cases.  `h` and `j` begin with the columns of b, then of
+// f.
+Eigen::Matrix4d ProductGram(const std::vector<Eigen::Index>& free,
+                            Eigen::Index num_cases, const Eigen::MatrixXd& h,
+                            const Eigen::MatrixXd& j) {
+  Eigen::Matrix4d gram = Eigen::Matrix4d::Zero();
+  for (Eigen::Index k = 0; k < num_cases; ++k) {
+    for (const Eigen::Index dof : free) {
+      const Eigen::Vector4d row(h(dof, k), j(dof, k), h(dof, num_cases + k),
+                                j(dof, num_cases + k));
+      gram += row * row.transpose();
+    }
+  }
+  return gram;
 }
 
 std::string Percent(double ratio) { return TwoDigits(100 * ratio) + " %"; }
@@ -103,29 +128,32 @@ ForceResidual::ForceResidual(const Scene& scene) {
   const StiffnessProducts products = MultiplyStiffnessBasis(scene.mesh, q);
   ++work_.element_passes;
   num_equations_ = dofs.NumFree() * num_cases;
-  Eigen::Matrix<double, Eigen::Dynamic, 3> columns(num_equations_, 3);
-  columns << dofs.Restrict(f).reshaped(), dofs.Restrict(products.j).reshaped(),
-      dofs.Restrict(products.h).reshaped();
-  triangle_ = BlockwiseTriangle(columns);
+  triangle_ = BlockwiseTriangle(dofs.free, f, products.j, products.h);
 
-  Eigen::MatrixXd b_and_f(dofs.NumFree(), 2 * num_cases);
-  b_and_f << columns.col(1).reshaped(dofs.NumFree(), num_cases),
-      columns.col(0).reshaped(dofs.NumFree(), num_cases);
-  const StiffnessProducts again =
-      MultiplyStiffnessBasis(scene.mesh, dofs.Extend(b_and_f));
+  // H and J times b, f and, where the traces are estimated, their probes.
+  const bool is_small = scene.mesh.NumElements() <= kMostElementsForExactTraces;
+  const Eigen::MatrixXd probes =
+      is_small ? Eigen::MatrixXd(dofs.NumAll(), 0) : TraceProbes(dofs);
+  Eigen::MatrixXd again(dofs.NumAll(), 2 * num_cases + probes.cols());
+  again << products.j, f, probes;
+  for (Eigen::Index dof = 0; dof < dofs.NumAll(); ++dof) {
+    if (dofs.place[dof] < 0) {
+      again.row(dof).setZero();
+    }
+  }
+  const StiffnessProducts stiffened = MultiplyStiffnessBasis(scene.mesh, again);
   ++work_.element_passes;
-  const Eigen::MatrixXd h = dofs.Restrict(again.h);
-  const Eigen::MatrixXd j = dofs.Restrict(again.j);
-  Eigen::Matrix<double, Eigen::Dynamic, 4> stiffened(num_equations_, 4);
-  stiffened << h.leftCols(num_cases).reshaped(),
-      j.leftCols(num_cases).reshaped(), h.rightCols(num_cases).reshaped(),
-      j.rightCols(num_cases).reshaped();
-  product_gram_ = stiffened.transpose() * stiffened;
+  product_gram_ = ProductGram(dofs.free, num_cases, stiffened.h, stiffened.j);
 
-  traces_ = num_cases * (scene.mesh.NumElements() <= kMostElementsForExactTraces
-                             ? StiffnessTraces(scene.mesh, dofs)
-                             : EstimateStiffnessTraces(scene.mesh, dofs));
-  ++work_.element_passes;
+  if (is_small) {
+    traces_ = StiffnessTraces(scene.mesh, dofs);
+    ++work_.element_passes;
+  } else {
+    traces_ =
+        EstimateStiffnessTraces(dofs, stiffened.h.rightCols(probes.cols()),
+                                stiffened.j.rightCols(probes.cols()));
+  }
+  traces_ *= static_cast<double>(num_cases);
 }
 
 std::optional<double> ForceResidual::PoissonRatio() const {

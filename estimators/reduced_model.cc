@@ -48,7 +48,7 @@ Eigen::VectorXd ReducedModes::DerivativeAt(double poisson_ratio) const {
 }
 
 ReducedModel::ReducedModel(const Scene& scene)
-    : mesh_(scene.mesh),
+    : stiffness_(scene.mesh),
       solver_(scene.mesh, scene.supports),
       num_load_cases_(Eigen::Index(scene.load_cases.size())) {
   const DegreesOfFreedom& dofs = solver_.Dofs();
@@ -65,7 +65,8 @@ ReducedModel::ReducedModel(const Scene& scene)
   }
   const Eigen::VectorXd held = HeldDisplacement(scene.supports);
   if (!held.isZero(0)) {
-    const StiffnessProducts products = MultiplyStiffnessBasis(mesh_, held);
+    StiffnessProducts products;
+    stiffness_.Multiply(held, products);
     ++element_passes_;
     Response response;
     response.g0 = -free_rows(products.h);
@@ -97,7 +98,8 @@ double ReducedModel::Refine(double poisson_ratio, double tolerance) {
                                           response.modes.At(poisson_ratio));
     }
   }
-  const StiffnessProducts products = MultiplyStiffnessBasis(mesh_, solution);
+  StiffnessProducts products;
+  stiffness_.Multiply(solution, products);
   ++element_passes_;
   const Eigen::MatrixXd reaction = products.h + poisson_ratio * products.j;
   residual -= dofs.Extend(dofs.Restrict(reaction));
@@ -134,7 +136,8 @@ void ReducedModel::Append(const Eigen::MatrixXd& residual,
           gram.solve(response.basis.transpose() * residual.col(k));
     }
   }
-  const StiffnessProducts products = MultiplyStiffnessBasis(mesh_, correction);
+  StiffnessProducts products;
+  stiffness_.Multiply(correction, products);
   ++element_passes_;
   for (Eigen::Index k = 0; k < correction.cols(); ++k) {
     Response& response = responses_[k];

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "elastimate/core/scene.h"
+#include "elastimate/core/stiffness_product.h"
 #include "elastimate/core/stiffness_solver.h"
 
 namespace elastimate {
@@ -93,7 +94,7 @@ class ReducedModel {
   /// Adds the parts of `correction` = A_pole^-1 `residual` that the bases lack.
   void Append(const Eigen::MatrixXd& residual, Eigen::MatrixXd correction);
 
-  const Mesh& mesh_;
+  StiffnessOperator stiffness_;
   StiffnessSolver solver_;
   Eigen::Index num_load_cases_;
   std::vector<Response> responses_;

@@ -307,7 +307,7 @@ TEST(ClosedForm, StandardErrorsOfLargeMeshesAreAsGood) {
   const Estimate estimate = ClosedForm().Run(scene, {});
   // 6084 free components: 0.9 % for white residuals; and the probes' error.
   EXPECT_NEAR(*estimate.noise_sd / sd, 1, 4 * 2 * 0.009);
-  EXPECT_EQ(estimate.work.element_passes, 3);
+  EXPECT_EQ(estimate.work.element_passes, 2);
 }
 
 }  // namespace
