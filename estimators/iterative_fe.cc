@@ -277,11 +277,16 @@ ComplianceFit FitComplianceScale(Loss loss,
   return {t, (rest - t * w).lpNorm<1>()};
 }
 
-// The start point within the bounds that fits best, with the E that fits best
-// there; not physical where E is positive at none of them, and empty where the
-// stiffness is singular at all.
-std::optional<IsotropicElasticity> BestStart(const EstimatorOptions& options,
-                                             DisplacementResidual& residual) {
+// The best fit at one nu.
+struct ProfilePoint {
+  IsotropicElasticity elasticity;
+  double cost;
+};
+
+// The start points within the bounds, with the E that fits best there, unless
+// the stiffness is singular.
+std::vector<ProfilePoint> EvaluateStarts(const EstimatorOptions& options,
+                                         DisplacementResidual& residual) {
   std::vector<double> candidates;
   if (options.known_poisson_ratio) {
     candidates = {*options.known_poisson_ratio};
@@ -293,83 +298,79 @@ std::optional<IsotropicElasticity> BestStart(const EstimatorOptions& options,
     candidates.erase(std::unique(candidates.begin(), candidates.end()),
                      candidates.end());
   }
-  std::optional<IsotropicElasticity> best;
-  double least_cost = std::numeric_limits<double>::infinity();
+  std::vector<ProfilePoint> starts;
   for (const double nu : candidates) {
-    if (!residual.SetPoissonRatio(nu)) {
-      continue;
+    if (residual.SetPoissonRatio(nu)) {
+      const ComplianceFit fit = FitComplianceScale(options.loss, residual);
+      starts.push_back(
+          {IsotropicElasticity::FromComplianceScale(fit.compliance_scale, nu),
+           fit.cost});
     }
-    const ComplianceFit fit = FitComplianceScale(options.loss, residual);
-    const IsotropicElasticity start =
-        IsotropicElasticity::FromComplianceScale(fit.compliance_scale, nu);
-    if (!best || (start.IsPhysical() && fit.cost <= least_cost)) {
+  }
+  return starts;
+}
+
+// E is not positive when it is at none of the starts.  Precondition: not empty.
+IsotropicElasticity BestStart(const std::vector<ProfilePoint>& starts) {
+  ProfilePoint best = starts.front();
+  for (const ProfilePoint& start : starts) {
+    if (start.elasticity.IsPhysical() &&
+        (!best.elasticity.IsPhysical() || start.cost <= best.cost)) {
       best = start;
-      least_cost = start.IsPhysical() ? fit.cost : least_cost;
     }
   }
-  return best;
+  return best.elasticity;
 }
 
-// The best fit at an end of the interval of nu, between `best` and `limit`, in
-// which the sum of squares exceeds `least_square_sum` by no more than `excess`;
-// at the limit where it never does.  `step` leads from `best` to about there.
-IsotropicElasticity ProfileEnd(const IsotropicElasticity& best, double step,
-                               double limit, double least_square_sum,
-                               double excess, DisplacementResidual& residual) {
-  constexpr int kMostEvaluations = 10;
-  constexpr double kTolerance = 0.05;
-  constexpr double kLargestStretch = 4;
-  const double nu = best.poisson_ratio;
-  // Distances from nu, to the side of the limit.
-  double distance = std::min(step, std::abs(limit - nu));
-  double inner = 0;
-  double outer = std::abs(limit - nu);
-  IsotropicElasticity end = best;
-  for (int i = 0; i < kMostEvaluations; ++i) {
-    const double at = distance == std::abs(limit - nu)
-                          ? limit
-                          : nu + std::copysign(distance, limit - nu);
-    if (!residual.SetPoissonRatio(at)) {
-      return {end.youngs_modulus, limit};
-    }
-    const ComplianceFit fit = FitComplianceScale(Loss::kNone, residual);
-    end = IsotropicElasticity::FromComplianceScale(fit.compliance_scale, at);
-    // Linear in the distance where the model is.
-    const double growth =
-        std::sqrt(std::max(fit.cost - least_square_sum, 0.0) / excess);
-    if (std::abs(growth - 1) <= kTolerance || (at == limit && growth < 1)) {
-      break;
-    }
-    (growth < 1 ? inner : outer) = distance;
-    distance /= std::max(growth, 1 / kLargestStretch);
-    if (distance <= inner || distance >= outer) {
-      const bool is_limit_untried = outer == std::abs(limit - nu) && growth < 1;
-      distance = is_limit_untried ? outer : (inner + outer) / 2;
-    }
+// The profile likelihood as far as the search for a start has seen it: the
+// starts, with the fit itself as the best.
+class StartProfile {
+ public:
+  StartProfile(std::vector<ProfilePoint> starts, const ProfilePoint& best)
+      : starts_(std::move(starts)), best_(best) {
+    std::sort(starts_.begin(), starts_.end(), [this](auto& a, auto& b) {
+      return DistanceOf(a) < DistanceOf(b);
+    });
   }
-  return end;
-}
 
-// Takes the interval of nu from the profile likelihood.
-void DescribeProfileOf(const Bounds& poisson_ratio, double least_square_sum,
-                       double variance, DisplacementResidual& residual,
-                       Estimate& estimate) {
-  const IsotropicElasticity best = estimate.elasticity;
-  const double standard_error =
-      estimate.PoissonRatioStandardError().value_or(kLargestPoissonRatioError);
-  DescribeProfile(
-      [&](double quantile) {
-        const auto end = [&](double limit) {
-          return limit == best.poisson_ratio
-                     ? best
-                     : ProfileEnd(best, std::sqrt(quantile) * standard_error,
-                                  limit, least_square_sum, quantile * variance,
-                                  residual);
+  // The best fit where, towards `limit`, the cost exceeds the least by
+  // `excess`: between two starts the root of what it exceeds by is taken as
+  // linear, and so is E.  At the limit where no start exceeds it.
+  IsotropicElasticity EndTowards(double limit, double excess) const {
+    const double nu = best_.elasticity.poisson_ratio;
+    ProfilePoint inner = best_;
+    double inner_root = 0;
+    for (const ProfilePoint& outer : starts_) {
+      if ((outer.elasticity.poisson_ratio - nu) * (limit - nu) <= 0) {
+        continue;
+      }
+      const double outer_root =
+          std::sqrt(std::max(outer.cost - best_.cost, 0.0) / excess);
+      if (outer_root >= 1) {
+        const double share = (1 - inner_root) / (outer_root - inner_root);
+        const auto between = [share](double a, double b) {
+          return a + share * (b - a);
         };
-        return Profile{end(*poisson_ratio.lower), end(*poisson_ratio.upper)};
-      },
-      estimate);
-}
+        return {between(inner.elasticity.youngs_modulus,
+                        outer.elasticity.youngs_modulus),
+                between(inner.elasticity.poisson_ratio,
+                        outer.elasticity.poisson_ratio)};
+      }
+      inner = outer;
+      inner_root = outer_root;
+    }
+    return {inner.elasticity.youngs_modulus, limit};
+  }
+
+ private:
+  double DistanceOf(const ProfilePoint& point) const {
+    return std::abs(point.elasticity.poisson_ratio -
+                    best_.elasticity.poisson_ratio);
+  }
+
+  std::vector<ProfilePoint> starts_;
+  ProfilePoint best_;
+};
 
 BoundedParameter::Side ViolatedBound(const Bounds& bounds,
                                      const IsotropicElasticity& elasticity) {
@@ -406,8 +407,8 @@ Estimate IterativeFe::DoRun(const Scene& scene,
   DisplacementResidual residual(scene, options);
   estimate.stages.push_back({"assemble and analyse", stopwatch.Lap()});
 
-  const std::optional<IsotropicElasticity> start = BestStart(options, residual);
-  if (!start) {
+  const std::vector<ProfilePoint> starts = EvaluateStarts(options, residual);
+  if (starts.empty()) {
     estimate.message =
         "the stiffness matrix is singular to working precision; check the "
         "mesh for slivers and loose parts, and the supports";
@@ -415,22 +416,23 @@ Estimate IterativeFe::DoRun(const Scene& scene,
     estimate.work = residual.WorkDone();
     return estimate;
   }
-  if (!start->IsPhysical() || !std::isfinite(start->youngs_modulus)) {
-    estimate.elasticity = *start;
+  const IsotropicElasticity start = BestStart(starts);
+  if (!start.IsPhysical() || !std::isfinite(start.youngs_modulus)) {
+    estimate.elasticity = start;
     estimate.Fail(Status::kUnphysical, kDisplacementsOpposeLoads,
                   "the estimate is not physical");
     estimate.work = residual.WorkDone();
     return estimate;
   }
 
-  residual.SetPoissonRatio(start->poisson_ratio);
+  residual.SetPoissonRatio(start.poisson_ratio);
   BoundedParameter scale(
-      std::log(start->ComplianceScale() * residual.UnitLoadResponse().norm()),
+      std::log(start.ComplianceScale() * residual.UnitLoadResponse().norm()),
       Bounds{});
   BoundedParameter poisson_ratio =
       options.known_poisson_ratio
           ? BoundedParameter::Constant(*options.known_poisson_ratio)
-          : BoundedParameter(start->poisson_ratio,
+          : BoundedParameter(start.poisson_ratio,
                              EffectivePoissonRatioBounds(options));
   residual.SetParameters(Scale::kLogResponseNorm, &scale, &poisson_ratio);
   NodeLosses losses;
@@ -472,9 +474,16 @@ Estimate IterativeFe::DoRun(const Scene& scene,
     if (variance && options.loss == Loss::kNone && estimate.IsUsable() &&
         (active.is_physical_limit ||
          ShareOfDistanceToPole(estimate) > kLargestLinearShare)) {
-      DescribeProfileOf(EffectivePoissonRatioBounds(options),
-                        fit.residual.squaredNorm(), *variance, residual,
-                        estimate);
+      const StartProfile profile(
+          starts, {estimate.elasticity, fit.residual.squaredNorm()});
+      const Bounds bounds = EffectivePoissonRatioBounds(options);
+      DescribeProfile(
+          [&](double quantile) {
+            const double excess = quantile * *variance;
+            return Profile{profile.EndTowards(*bounds.lower, excess),
+                           profile.EndTowards(*bounds.upper, excess)};
+          },
+          estimate);
     }
   }
   estimate.stages.push_back({"statistics", stopwatch.Lap()});

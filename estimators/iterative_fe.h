@@ -17,9 +17,8 @@ namespace elastimate {
 /// best of nu = -0.85, -0.5, 0, 0.3, 0.45 and 0.495 (moved into the bounds),
 /// with the E that fits best there: the sum of squares can have several minima.
 /// Where the standard error of nu is large (kLargestLinearShare) or nu at the
-/// end of its range, the interval of nu is that of the profile likelihood,
-/// which takes some 10 more factorisations, and the standard errors are widened
-/// to it.
+/// end of its range, the interval of nu is that of the profile likelihood
+/// between these starts, and the standard errors are widened to it.
 ///
 /// Needs supports that hold the specimen; any observed components will do.
 /// Reaches the Cramer-Rao bound as long as the mesh describes the specimen.
