@@ -59,9 +59,15 @@ void AddDiagnostics(const Estimate& estimate, std::ostringstream& text) {
          text);
   }
   if (estimate.discretization_error) {
-    Line("discretisation error",
-         Number(*estimate.discretization_error, 2) + " of the strain energy",
-         text);
+    Line(
+        "discretisation error",
+        Number(*estimate.discretization_error, 2) + " of the strain energy" +
+            (estimate.poisson_ratio_discretization_error
+                 ? ", up to " +
+                       Number(*estimate.poisson_ratio_discretization_error, 2) +
+                       " in nu"
+                 : ""),
+        text);
   }
   if (estimate.noise_attenuation) {
     Line("noise attenuation", Number(*estimate.noise_attenuation, 3), text);

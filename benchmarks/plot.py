@@ -471,7 +471,12 @@ def main(arguments):
     drawn = 0
     for path in sorted(pathlib.Path(arguments[0]).glob("*.csv")):
         if path.stem in FIGURES:
-            figures = FIGURES[path.stem](path)
+            try:
+                figures = FIGURES[path.stem](path)
+            except (OSError, KeyError, ValueError, IndexError) as error:
+                print(f"plot.py: {path} cannot be drawn, or a table beside it is missing: "
+                      f"{error}; run the study again", file=sys.stderr)
+                return 2
             for name, figure in (figures if isinstance(figures, dict)
                                  else {path.stem: figures}).items():
                 save(figure, path.with_name(name + ".csv"))

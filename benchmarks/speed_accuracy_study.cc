@@ -253,11 +253,7 @@ double DishonestShare(const World& world, const Point& point) {
   const auto dishonest = std::count_if(
       point.trials.begin(), point.trials.end(), [&](const MethodTrial& t) {
         const Estimate& estimate = t.trial.estimate;
-        return estimate.IsUsable() &&
-               IsWrong(t.trial,
-                       world.is_same_mesh
-                           ? 0
-                           : estimate.discretization_error.value_or(0));
+        return estimate.IsUsable() && IsWrong(t.trial, !world.is_same_mesh);
       });
   return static_cast<double>(dishonest) /
          static_cast<double>(point.trials.size());

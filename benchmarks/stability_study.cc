@@ -88,7 +88,7 @@ Judged Judge(const Method& method, const Scene& scene,
     if (!trial.estimate.IsUsable()) {
       return {trial, Outcome::kNotUsable};
     }
-    if (!IsWrong(trial, 0)) {
+    if (!IsWrong(trial, false)) {
       return {trial, Outcome::kHonest};
     }
     // All measurements come from linear elements; quadratic ones are taken

@@ -25,28 +25,32 @@ double Trial::PoissonRatioError() const {
   return estimate.elasticity.poisson_ratio - truth.poisson_ratio;
 }
 
-bool IsWrong(const Trial& trial, double discretization_error) {
+bool IsWrong(const Trial& trial, bool has_discretization_error) {
   const Estimate& estimate = trial.estimate;
-  const auto tolerance = [discretization_error](
-                             double least,
-                             const std::optional<double>& standard_error) {
+  const auto tolerance = [has_discretization_error](
+                             double least, double standard_error,
+                             double discretization_error) {
     return std::max(
-        least, kWrongStandardErrors * std::hypot(standard_error.value_or(0),
-                                                 discretization_error));
+        least,
+        kWrongStandardErrors *
+            std::hypot(standard_error,
+                       has_discretization_error ? discretization_error : 0));
   };
-  std::optional<double> youngs_modulus = estimate.YoungsModulusStandardError();
-  if (youngs_modulus) {
-    *youngs_modulus /= trial.truth.youngs_modulus;
-  }
+  const double youngs_modulus =
+      tolerance(kWrongYoungsModulus,
+                estimate.YoungsModulusStandardError().value_or(0) /
+                    trial.truth.youngs_modulus,
+                estimate.discretization_error.value_or(0));
+  const double poisson_ratio = tolerance(
+      kWrongPoissonRatio, estimate.PoissonRatioStandardError().value_or(0),
+      estimate.poisson_ratio_discretization_error.value_or(
+          estimate.discretization_error.value_or(0)));
   const double nu = trial.truth.poisson_ratio;
   const std::optional<Interval>& interval = estimate.poisson_ratio_interval;
   const bool is_in_interval =
       interval && interval->lower <= nu && nu <= interval->upper;
-  return std::abs(trial.YoungsModulusError()) >
-             tolerance(kWrongYoungsModulus, youngs_modulus) ||
-         (std::abs(trial.PoissonRatioError()) >
-              tolerance(kWrongPoissonRatio,
-                        estimate.PoissonRatioStandardError()) &&
+  return std::abs(trial.YoungsModulusError()) > youngs_modulus ||
+         (std::abs(trial.PoissonRatioError()) > poisson_ratio &&
           !is_in_interval);
 }
 
@@ -59,6 +63,7 @@ std::vector<std::string> TrialColumns() {
           "youngs_modulus_standard_error [1]",
           "poisson_ratio_standard_error [1]",
           "discretization_error [1]",
+          "poisson_ratio_discretization_error [1]",
           "youngs_modulus_cramer_rao [1]",
           "poisson_ratio_cramer_rao [1]",
           "true_poisson_ratio [1]",
@@ -69,20 +74,22 @@ std::vector<std::string> TrialColumns() {
 std::vector<Value> TrialCells(const Trial& trial) {
   const Estimate& estimate = trial.estimate;
   const double youngs_modulus = trial.truth.youngs_modulus;
-  return {estimate.estimator,
-          trial.seed,
-          std::string(StatusName(estimate.status)),
-          trial.YoungsModulusError(),
-          trial.PoissonRatioError(),
-          estimate.YoungsModulusStandardError().value_or(Estimate::kUnknown) /
-              youngs_modulus,
-          estimate.PoissonRatioStandardError().value_or(Estimate::kUnknown),
-          estimate.discretization_error.value_or(Estimate::kUnknown),
-          std::sqrt(trial.cramer_rao(0, 0)) / youngs_modulus,
-          std::sqrt(trial.cramer_rao(1, 1)),
-          trial.truth.poisson_ratio,
-          estimate.seconds,
-          std::int64_t{estimate.work.factorizations}};
+  return {
+      estimate.estimator,
+      trial.seed,
+      std::string(StatusName(estimate.status)),
+      trial.YoungsModulusError(),
+      trial.PoissonRatioError(),
+      estimate.YoungsModulusStandardError().value_or(Estimate::kUnknown) /
+          youngs_modulus,
+      estimate.PoissonRatioStandardError().value_or(Estimate::kUnknown),
+      estimate.discretization_error.value_or(Estimate::kUnknown),
+      estimate.poisson_ratio_discretization_error.value_or(Estimate::kUnknown),
+      std::sqrt(trial.cramer_rao(0, 0)) / youngs_modulus,
+      std::sqrt(trial.cramer_rao(1, 1)),
+      trial.truth.poisson_ratio,
+      estimate.seconds,
+      std::int64_t{estimate.work.factorizations}};
 }
 
 Eigen::VectorXd NoiseSd(const Scene& scene, double deviation) {

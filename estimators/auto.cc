@@ -79,7 +79,12 @@ std::string WhyTheModelIsNotEnough(const EstimatorOptions& options,
   if (IsDiscretizationErrorNotable(estimate)) {
     return "the elements miss about " +
            TwoDigits(100 * *estimate.discretization_error) +
-           " % of the strain energy";
+           " % of the strain energy" +
+           (estimate.poisson_ratio_discretization_error
+                ? ", up to " +
+                      TwoDigits(*estimate.poisson_ratio_discretization_error) +
+                      " in nu"
+                : "");
   }
   if (estimate.is_model_in_doubt) {
     const std::string why = WhyNotWithinTolerance(options, estimate);
@@ -195,22 +200,33 @@ bool StopsHere(const std::string& why_not_enough, Ladder& ladder) {
 void ChooseOrder(const Estimate& linear, const Observations& observations,
                  Ladder& ladder) {
   Estimate& quadratic = ladder.Last();
-  const bool is_coarse = IsDiscretizationErrorNotable(linear);
-  const bool is_better = ExplainsFarBetter(quadratic, linear, observations);
-  if (is_coarse ? ExplainsFarBetter(linear, quadratic, observations)
-                : !is_better) {
-    ladder.Decide(is_coarse ? "stopped: linear elements, which are kept, "
-                              "explain the displacements far better"
-                            : "stopped: the residual is not that of linear "
-                              "elements, which are kept");
+  if (quadratic.status == Status::kNumericalFailure) {
+    ladder.Decide("stopped: it failed, and linear elements are kept: " +
+                  quadratic.message);
     ladder.Return(linear);
-    if (is_coarse) {
-      AcceptElements(ladder.Last());
-    }
+    return;
+  }
+  const bool is_coarse =
+      IsDiscretizationErrorNotable(linear) ||
+      (!linear.IsUsable() &&
+       linear.discretization_error.value_or(0) > kYoungsModulusTolerance);
+  const bool is_better = ExplainsFarBetter(quadratic, linear, observations);
+  if (is_coarse && ExplainsFarBetter(linear, quadratic, observations)) {
+    ladder.Decide(
+        "stopped: linear elements, which are kept, explain the displacements "
+        "far better");
+    ladder.Return(linear);
+    AcceptElements(ladder.Last());
+    return;
+  }
+  if (!is_coarse && !is_better) {
+    ladder.Decide(
+        "stopped: the residual is not that of linear elements, which are kept");
+    ladder.Return(linear);
     return;
   }
   ladder.Decide("stopped: there is no rung above");
-  if (!is_better && quadratic.IsUsable()) {
+  if (!is_better && quadratic.IsUsable() && linear.IsUsable()) {
     quadratic.warnings.push_back(
         "linear elements explain the displacements as well, with E = " +
         TwoDigits(linear.elasticity.youngs_modulus) +

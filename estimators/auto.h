@@ -16,7 +16,7 @@ namespace elastimate {
 /// no reason to climb: what sends it to quadratic elements is a residual that
 /// is no noise, or a disagreement with virtual-fields that noise does not
 /// explain (Hausman), where it matters by more than these tolerances; or a
-/// discretisation error above 1 % and two standard errors of E.  Quadratic
+/// discretisation error above 1 % (0.01 in nu) and half a standard error.  Quadratic
 /// elements then have to explain the displacements far better than linear ones
 /// to be taken; after a notable discretisation error it is the linear ones that
 /// have to, as they do for displacements that were computed with them.

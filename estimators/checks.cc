@@ -90,12 +90,22 @@ void WarnOfElements(Estimate& estimate) {
     WarnOnce(kLockingWarning, estimate);
   }
   if (IsDiscretizationErrorNotable(estimate)) {
-    WarnOnce(kDiscretizationWarning +
-                 TwoDigits(100 * *estimate.discretization_error) +
-                 " % of the strain energy, which makes E and nu wrong by about "
-                 "as much, on top of the standard errors, unless the "
-                 "displacements were computed with these very elements: refine "
-                 "the mesh" +
+    // Beyond this the estimate says no more than that E is far too low.
+    constexpr double kHopeless = 0.5;
+    const double error = *estimate.discretization_error;
+    std::string effect = "so that E may be many times larger, ";
+    if (error < kHopeless) {
+      effect = "which makes E wrong by about as much";
+      if (estimate.poisson_ratio_discretization_error) {
+        effect += " and nu by up to " +
+                  TwoDigits(*estimate.poisson_ratio_discretization_error);
+      }
+      effect += ", on top of the standard errors, ";
+    }
+    WarnOnce(kDiscretizationWarning + TwoDigits(100 * error) +
+                 " % of the strain energy, " + effect +
+                 "unless the displacements were computed with these very "
+                 "elements: refine the mesh" +
                  (estimate.element_order == 1
                       ? ", or use quadratic elements (order 2)"
                       : ""),
@@ -139,16 +149,20 @@ void CheckResult(const EstimatorOptions& options, Estimate& estimate) {
 
 bool IsDiscretizationErrorNotable(const Estimate& estimate) {
   constexpr double kNotable = 0.01;
-  constexpr double kStandardErrors = 2;
-  const double standard_error =
+  constexpr double kStandardErrors = 0.5;
+  const double youngs_modulus =
       estimate.YoungsModulusStandardError().value_or(0) /
       estimate.elasticity.youngs_modulus;
+  const double poisson_ratio = estimate.PoissonRatioStandardError().value_or(0);
   return estimate.discretization_error.value_or(0) >
-         std::max(kNotable, kStandardErrors * standard_error);
+             std::max(kNotable, kStandardErrors * youngs_modulus) ||
+         estimate.poisson_ratio_discretization_error.value_or(0) >
+             std::max(kNotable, kStandardErrors * poisson_ratio);
 }
 
 void AcceptElements(Estimate& estimate) {
   estimate.discretization_error = 0;
+  estimate.poisson_ratio_discretization_error = 0;
   const auto is_told = [](const std::string& warning) {
     return warning.find(kDiscretizationWarning) == 0;
   };

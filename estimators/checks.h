@@ -25,12 +25,12 @@ std::vector<std::string> CheckMeasurements(const Scene& scene);
 /// Whether FinishEstimate gave this warning of linear elements near nu = 1/2.
 bool IsWarningOfLocking(const std::string& warning);
 
-/// Whether the discretisation error is larger than 1 % and than two standard
-/// errors of E.
+/// Whether the discretisation error is larger than 1 % and than half a standard
+/// error of E, or that of nu than 0.01 and half its standard error.
 bool IsDiscretizationErrorNotable(const Estimate& estimate);
 
-/// Takes back the discretisation error, and the warning of FinishEstimate of it:
-/// the displacements were found to come from these very elements.
+/// Takes back the discretisation error, and the warning of FinishEstimate of
+/// it: the displacements were found to come from these very elements.
 void AcceptElements(Estimate& estimate);
 
 /// Enters the estimator's name, the warnings, and an interval of nu where only

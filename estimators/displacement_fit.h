@@ -56,6 +56,10 @@ std::optional<NeighbourCorrelation> CorrelateNeighbours(
 /// sensitivities, and ||smooth part||^2 (S^T S)^-1 is added.  So is the square
 /// of what the outliers of a fit without a loss pull the parameters by.
 ///
+/// A discretisation error e is taken as an error e ||q|| of the displacements
+/// in the worst direction for nu, which changes nu by e ||q|| sqrt([(S^T
+/// S)^-1]_nu,nu).
+///
 /// Returns the variance of a row of the residual that the standard error of nu
 /// amounts to, or would, were nu not at the end of its physical range; empty
 /// when there is none.

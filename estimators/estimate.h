@@ -102,10 +102,13 @@ struct Estimate {
   /// for independent noise, near 1 when the model misses something smooth.
   std::optional<double> residual_correlation;
   /// The share of the strain energy that the elements miss, as Zienkiewicz &
-  /// Zhu estimate it: about the relative error that it causes in E, and about
-  /// that in nu, on top of the standard errors, unless the displacements were
-  /// computed with these very elements; zero where `auto` found that they were.
+  /// Zhu estimate it: about the relative error that it causes in E, on top of
+  /// the standard error, unless the displacements were computed with these very
+  /// elements; zero where `auto` found that they were.
   std::optional<double> discretization_error;
+  /// What an error of this share of the displacements does to nu at most: much
+  /// where they hardly depend on nu.  Of fits of displacements with a free nu.
+  std::optional<double> poisson_ratio_discretization_error;
   /// Whether the residual is none that independent noise leaves, so that the
   /// mesh, the supports or the loads are not those of the experiment.
   bool is_model_in_doubt = false;

@@ -388,7 +388,7 @@ Estimate VirtualFields::DoRun(const Scene& scene,
   }
   JudgeCorrection(std::sqrt(fit.square_sum) / balance.DisplacementNorm(),
                   estimate);
-  if (estimate.IsUsable()) {
+  if (estimate.IsUsable() && scene.mesh.NumElements() > 1) {
     estimate.discretization_error = DiscretizationError(
         scene.mesh, estimate.elasticity, SmoothDisplacements(scene));
   }

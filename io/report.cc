@@ -68,6 +68,8 @@ Json DiagnosticsJson(const Estimate& estimate) {
           {"noise_attenuation", OrNull(estimate.noise_attenuation)},
           {"residual_correlation", OrNull(estimate.residual_correlation)},
           {"discretization_error", OrNull(estimate.discretization_error)},
+          {"poisson_ratio_discretization_error",
+           OrNull(estimate.poisson_ratio_discretization_error)},
           {"model_mismatch", MismatchJson(estimate)},
           {"active_bounds", estimate.active_bounds},
           {"why_no_standard_error", estimate.why_no_standard_error},

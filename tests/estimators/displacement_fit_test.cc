@@ -204,6 +204,22 @@ TEST(DisplacementFit, OutliersWidenTheStandardErrors) {
   }
 }
 
+TEST(DisplacementFit, ASingleElementHasNoDiscretizationError) {
+  Scene scene;
+  scene.mesh.nodes.resize(3, 4);
+  scene.mesh.nodes << 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1;
+  scene.mesh.elements = Eigen::Vector4i(0, 1, 2, 3);
+  scene.supports.held = ComponentMask::Constant(3, 4, true);
+  scene.supports.held.col(3).setConstant(false);
+  scene.supports.displacement = Eigen::Matrix3Xd::Zero(3, 4);
+  Eigen::Matrix3Xd force = Eigen::Matrix3Xd::Zero(3, 4);
+  force.col(3) << 1, 2, -3;
+  scene.load_cases.resize(1);
+  scene.load_cases[0].loads = {NodalForces{force}};
+  Measure({5e4, 0.3}, scene);
+  EXPECT_FALSE(IterativeFe().Run(scene, {}).discretization_error.has_value());
+}
+
 TEST(DisplacementFit, TooFewComponentsAreNotUsable) {
   Scene scene = MeasuredOrgan();
   AddNoise(0.01, 1, scene);
