@@ -25,9 +25,9 @@ constexpr double kDeviation = 0.01;
 constexpr std::uint64_t kSeed = 1;
 constexpr ProcessLimits kLimits = {600, std::int64_t{16} << 30};
 
-// Runs are repeated for a median while they take less than this together.
-constexpr double kRepeatSeconds = 1;
-constexpr std::size_t kMostRepetitions = 11;
+// Runs are repeated for a mean until they have taken this together: the clock
+// of a virtual processor may stand still for milliseconds.
+constexpr double kRepeatSeconds = 0.5;
 
 // Of the line through the largest sizes.
 constexpr std::size_t kSizesOfSlope = 3;
@@ -59,20 +59,18 @@ struct Run {
 std::string RunEstimator(std::string_view name, int cells) {
   const Scene scene = NoisyCube(cells);
   const std::unique_ptr<Estimator> estimator = MakeEstimator(name);
-  std::vector<double> seconds;
   Estimate estimate;
+  int repetitions = 0;
+  double seconds = 0;
   const double start = ProcessorSeconds();
   do {
-    const double before = ProcessorSeconds();
     estimate = estimator->Run(scene, {});
-    seconds.push_back(ProcessorSeconds() - before);
-  } while (seconds.size() < kMostRepetitions &&
-           ProcessorSeconds() - start < kRepeatSeconds);
-  std::nth_element(seconds.begin(), seconds.begin() + seconds.size() / 2,
-                   seconds.end());
+    ++repetitions;
+    seconds = ProcessorSeconds() - start;
+  } while (seconds < kRepeatSeconds);
   std::ostringstream output;
-  output << StatusName(estimate.status) << " " << seconds[seconds.size() / 2]
-         << " " << seconds.size() << " " << estimate.work.factorizations;
+  output << StatusName(estimate.status) << " " << seconds / repetitions << " "
+         << repetitions << " " << estimate.work.factorizations;
   return output.str();
 }
 
