@@ -211,6 +211,13 @@ void ChooseOrder(const Estimate& linear, const Observations& observations,
       (!linear.IsUsable() &&
        linear.discretization_error.value_or(0) > kYoungsModulusTolerance);
   const bool is_better = ExplainsFarBetter(quadratic, linear, observations);
+  if (!linear.IsUsable() && quadratic.IsUsable() && !is_better) {
+    ladder.Decide(
+        "stopped: it does not explain the displacements far better, so that "
+        "what linear elements were refused for stands");
+    ladder.Return(linear);
+    return;
+  }
   if (is_coarse && ExplainsFarBetter(linear, quadratic, observations)) {
     ladder.Decide(
         "stopped: linear elements, which are kept, explain the displacements "
