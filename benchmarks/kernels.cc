@@ -3,7 +3,6 @@
 #include <hwy/targets.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <iomanip>
@@ -21,9 +20,11 @@
 #include "benchmarks/machine_limits.h"
 #include "benchmarks/measured_cube.h"
 #include "benchmarks/naive_stiffness_product.h"
+#include "benchmarks/random_matrix.h"
 #include "elastimate/core/stiffness_assembly.h"
 #include "elastimate/core/stiffness_product.h"
 #include "elastimate/estimators/registry.h"
+#include "elastimate/estimators/stopwatch.h"
 
 namespace elastimate {
 namespace {
@@ -46,10 +47,9 @@ std::int64_t Tetrahedra(int cells) {
 }
 
 double SecondsOf(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
+  Stopwatch stopwatch;
   work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
-      .count();
+  return stopwatch.Lap();
 }
 
 void UseInstructions(std::int64_t targets) {
@@ -68,13 +68,6 @@ std::int64_t BaselineInstructions() {
 
 bool HasVectorsOfFour() {
   return (hwy::SupportedTargets() & (HWY_AVX2 | HWY_AVX3 | HWY_AVX3_DL)) != 0;
-}
-
-Eigen::MatrixXd RandomMatrix(Eigen::Index rows, Eigen::Index columns) {
-  std::mt19937_64 generator(kSeed);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  return Eigen::MatrixXd::NullaryExpr(rows, columns,
-                                      [&] { return uniform(generator); });
 }
 
 std::vector<int> RandomOrder(Eigen::Index size) {
@@ -148,8 +141,8 @@ class Cube {
   explicit Cube(int cells)
       : scene_(MeasuredCube(cells, kElasticity)),
         random_(RandomlyNumbered(scene_.mesh)),
-        one_(RandomMatrix(3 * scene_.mesh.NumNodes(), 1)),
-        eight_(RandomMatrix(3 * scene_.mesh.NumNodes(), 8)),
+        one_(RandomMatrix(3 * scene_.mesh.NumNodes(), 1, kSeed)),
+        eight_(RandomMatrix(3 * scene_.mesh.NumNodes(), 8, kSeed)),
         assembly_(scene_.mesh, DegreesOfFreedom(scene_.supports)),
         closed_form_(MakeEstimator("closed-form")) {
     CheckPasses();

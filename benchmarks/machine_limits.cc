@@ -1,10 +1,11 @@
 #include "benchmarks/machine_limits.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <limits>
 #include <vector>
+
+#include "elastimate/estimators/stopwatch.h"
 
 // The rest of this file is compiled once for each kind of processor.
 #undef HWY_TARGET_INCLUDE
@@ -63,11 +64,9 @@ template <class Work>
 double ShortestTime(const Work& work) {
   double shortest = std::numeric_limits<double>::infinity();
   for (int run = 0; run < kRuns; ++run) {
-    const auto start = std::chrono::steady_clock::now();
+    Stopwatch stopwatch;
     work();
-    const std::chrono::duration<double> time =
-        std::chrono::steady_clock::now() - start;
-    shortest = std::min(shortest, time.count());
+    shortest = std::min(shortest, stopwatch.Lap());
   }
   return shortest;
 }

@@ -65,15 +65,13 @@ const Program& Benchmark() {
 std::string Help() {
   std::ostringstream help;
   help << "elastimate_benchmark: the studies that compare the estimators, and "
-          "the "
-          "times of the kernels.\n"
+          "the times of the kernels.\n"
        << CommandsHelp(Benchmark()) << "\nStudies:\n";
   for (const NamedStudy& study : kStudies) {
     help << "      " << study.name << "  " << study.summary << "\n";
   }
   help << "\nExit code: 0; 1 when the kernels are slower than the recorded "
-          "bounds; 2 "
-          "for\nwrong flags, or an output that cannot be written.\n";
+          "bounds; 2 for\nwrong flags, or an output that cannot be written.\n";
   return help.str();
 }
 

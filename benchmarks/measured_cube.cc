@@ -19,9 +19,8 @@ Scene MeasuredCube(int cells, const IsotropicElasticity& elasticity) {
   displacement.row(2) = z * (-0.05 - 0.03 * x * y);
   const StiffnessProducts products =
       MultiplyStiffnessBasis(scene.mesh, displacement.reshaped());
-  const double nu = elasticity.poisson_ratio;
-  const double scale = elasticity.youngs_modulus / ((1 + nu) * (1 - 2 * nu));
-  NodalForces forces{(scale * (products.h + nu * products.j))
+  NodalForces forces{(elasticity.StiffnessScale() *
+                      (products.h + elasticity.poisson_ratio * products.j))
                          .reshaped(3, displacement.cols())};
   forces.force = scene.supports.held.select(0, forces.force);
   scene.load_cases[0].loads = {forces};

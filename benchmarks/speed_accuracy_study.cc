@@ -111,17 +111,15 @@ std::vector<Specimen> Specimens(bool is_quick) {
 std::array<World, 2> Worlds(const Specimen& specimen) {
   Scene same = specimen.scene;
   Measure(specimen.truth, same);
-  Scene quadratic = QuadraticScene(specimen.scene);
-  Measure(specimen.truth, quadratic);
   Scene finer = specimen.scene;
-  finer.load_cases[0].displacement =
-      quadratic.load_cases[0].displacement.leftCols(finer.mesh.NumNodes());
+  MeasureInFinerWorld(specimen.truth, finer);
   const Eigen::VectorXd same_noise = NoiseSd(same, 1);
   const Eigen::VectorXd finer_noise = NoiseSd(finer, 1);
   return {World{"same mesh", true, same,
                 CramerRaoBound(same, specimen.truth, same_noise)},
           World{"finer world", false, finer,
-                CramerRaoBound(quadratic, specimen.truth, finer_noise)}};
+                CramerRaoBound(QuadraticScene(specimen.scene), specimen.truth,
+                               finer_noise)}};
 }
 
 // All estimators, and what can be chosen about them.

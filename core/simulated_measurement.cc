@@ -4,6 +4,7 @@
 
 #include "elastimate/core/forward_model.h"
 #include "elastimate/core/loads.h"
+#include "elastimate/core/quadratic_scene.h"
 
 namespace elastimate {
 
@@ -18,6 +19,15 @@ void Measure(const IsotropicElasticity& elasticity, Scene& scene) {
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     scene.load_cases[k].displacement =
         displacement.col(Eigen::Index(k)).reshaped(3, scene.mesh.NumNodes());
+  }
+}
+
+void MeasureInFinerWorld(const IsotropicElasticity& elasticity, Scene& scene) {
+  Scene quadratic = QuadraticScene(scene);
+  Measure(elasticity, quadratic);
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    scene.load_cases[k].displacement =
+        quadratic.load_cases[k].displacement.leftCols(scene.mesh.NumNodes());
   }
 }
 

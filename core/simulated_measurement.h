@@ -20,6 +20,10 @@ enum class NoiseLaw {
 /// when the stiffness is singular to working precision.  One factorisation.
 void Measure(const IsotropicElasticity& elasticity, Scene& scene);
 
+/// The same with quadratic tetrahedra on the mesh of linear ones
+/// (QuadraticScene), of which the displacements of the vertices are measured.
+void MeasureInFinerWorld(const IsotropicElasticity& elasticity, Scene& scene);
+
 /// Independent noise of mean zero, scaled to exactly this norm.
 Eigen::VectorXd DrawNoise(NoiseLaw law, Eigen::Index size, double norm,
                           std::mt19937_64& generator);

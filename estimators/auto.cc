@@ -77,9 +77,7 @@ std::string WhyTheModelIsNotEnough(const EstimatorOptions& options,
            TwoDigits(estimate.model_mismatch->p_value) + ")";
   }
   if (IsDiscretizationErrorNotable(estimate)) {
-    return "the elements miss about " +
-           TwoDigits(100 * *estimate.discretization_error) +
-           " % of the strain energy" +
+    return DescribeDiscretizationError(estimate) +
            (estimate.poisson_ratio_discretization_error
                 ? ", up to " +
                       TwoDigits(*estimate.poisson_ratio_discretization_error) +

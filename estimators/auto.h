@@ -16,10 +16,11 @@ namespace elastimate {
 /// no reason to climb: what sends it to quadratic elements is a residual that
 /// is no noise, or a disagreement with virtual-fields that noise does not
 /// explain (Hausman), where it matters by more than these tolerances; or a
-/// discretisation error above 1 % (0.01 in nu) and half a standard error.  Quadratic
-/// elements then have to explain the displacements far better than linear ones
-/// to be taken; after a notable discretisation error it is the linear ones that
-/// have to, as they do for displacements that were computed with them.
+/// discretisation error above 1 % (0.01 in nu) and half a standard error.
+/// Quadratic elements then have to explain the displacements far better than
+/// linear ones to be taken; after a notable discretisation error it is the
+/// linear ones that have to, as they do for displacements that were computed
+/// with them.
 ///
 /// A rung that does not support the scene or the options is passed over.  The
 /// estimate is that of the last rung, with the work of all of them;

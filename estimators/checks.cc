@@ -74,8 +74,6 @@ constexpr char kLockingWarning[] =
     "biases E and nu and makes their standard errors too small, unless the "
     "displacements come from the same mesh; quadratic ones (order 2) hardly do";
 
-const std::string kDiscretizationWarning = "the elements miss about ";
-
 void WarnOnce(const std::string& warning, Estimate& estimate) {
   if (std::find(estimate.warnings.begin(), estimate.warnings.end(), warning) ==
       estimate.warnings.end()) {
@@ -92,9 +90,8 @@ void WarnOfElements(Estimate& estimate) {
   if (IsDiscretizationErrorNotable(estimate)) {
     // Beyond this the estimate says no more than that E is far too low.
     constexpr double kHopeless = 0.5;
-    const double error = *estimate.discretization_error;
     std::string effect = "so that E may be many times larger, ";
-    if (error < kHopeless) {
+    if (*estimate.discretization_error < kHopeless) {
       effect = "which makes E wrong by about as much";
       if (estimate.poisson_ratio_discretization_error) {
         effect += " and nu by up to " +
@@ -102,8 +99,7 @@ void WarnOfElements(Estimate& estimate) {
       }
       effect += ", on top of the standard errors, ";
     }
-    WarnOnce(kDiscretizationWarning + TwoDigits(100 * error) +
-                 " % of the strain energy, " + effect +
+    WarnOnce(DescribeDiscretizationError(estimate) + ", " + effect +
                  "unless the displacements were computed with these very "
                  "elements: refine the mesh" +
                  (estimate.element_order == 1
@@ -160,15 +156,22 @@ bool IsDiscretizationErrorNotable(const Estimate& estimate) {
              std::max(kNotable, kStandardErrors * poisson_ratio);
 }
 
+std::string DescribeDiscretizationError(const Estimate& estimate) {
+  return "the elements miss about " +
+         TwoDigits(100 * *estimate.discretization_error) +
+         " % of the strain energy";
+}
+
 void AcceptElements(Estimate& estimate) {
-  estimate.discretization_error = 0;
-  estimate.poisson_ratio_discretization_error = 0;
-  const auto is_told = [](const std::string& warning) {
-    return warning.find(kDiscretizationWarning) == 0;
+  const auto is_told = [what = DescribeDiscretizationError(estimate)](
+                           const std::string& warning) {
+    return warning.find(what) == 0;
   };
   estimate.warnings.erase(std::remove_if(estimate.warnings.begin(),
                                          estimate.warnings.end(), is_told),
                           estimate.warnings.end());
+  estimate.discretization_error = 0;
+  estimate.poisson_ratio_discretization_error = 0;
 }
 
 bool IsWarningOfLocking(const std::string& warning) {

@@ -29,8 +29,13 @@ bool IsWarningOfLocking(const std::string& warning);
 /// error of E, or that of nu than 0.01 and half its standard error.
 bool IsDiscretizationErrorNotable(const Estimate& estimate);
 
+/// "the elements miss about 15 % of the strain energy".
+/// Precondition: there is a discretisation error.
+std::string DescribeDiscretizationError(const Estimate& estimate);
+
 /// Takes back the discretisation error, and the warning of FinishEstimate of
 /// it: the displacements were found to come from these very elements.
+/// Precondition: there is a discretisation error.
 void AcceptElements(Estimate& estimate);
 
 /// Enters the estimator's name, the warnings, and an interval of nu where only

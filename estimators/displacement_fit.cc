@@ -270,11 +270,6 @@ std::optional<double> DescribeDisplacementFit(
   const double square_sum = fit.residual.squaredNorm();
   estimate.displacement_residual =
       std::sqrt(square_sum) / observed.Measured().norm();
-  // There is nothing to compare the strain of a single element with.
-  if (scene.mesh.NumElements() > 1) {
-    estimate.discretization_error =
-        DiscretizationError(scene.mesh, estimate.elasticity, fit.displacement);
-  }
   estimate.identifiability_angle = IdentifiabilityAngle(gram);
   const bool is_collinear =
       std::sin(*estimate.identifiability_angle) < kCollinear;
@@ -296,15 +291,20 @@ std::optional<double> DescribeDisplacementFit(
                   DescribeCollinear(estimate.elasticity, {slope, 1}),
                   "the parameters are not determined");
     estimate.elasticity = {Estimate::kUnknown, Estimate::kUnknown};
-    estimate.discretization_error.reset();
     return std::nullopt;
   }
 
-  if (estimate.discretization_error && !free.empty() && free.back() == 1) {
-    const Eigen::MatrixXd inverse = Eigen::MatrixXd(gram(free, free)).inverse();
-    estimate.poisson_ratio_discretization_error =
-        *estimate.discretization_error * observed.Measured().norm() *
-        std::sqrt(inverse(inverse.rows() - 1, inverse.cols() - 1));
+  // There is nothing to compare the strain of a single element with.
+  if (scene.mesh.NumElements() > 1) {
+    estimate.discretization_error =
+        DiscretizationError(scene.mesh, estimate.elasticity, fit.displacement);
+    if (!free.empty() && free.back() == 1) {
+      const Eigen::MatrixXd inverse =
+          Eigen::MatrixXd(gram(free, free)).inverse();
+      estimate.poisson_ratio_discretization_error =
+          *estimate.discretization_error * observed.Measured().norm() *
+          std::sqrt(inverse(inverse.rows() - 1, inverse.cols() - 1));
+    }
   }
 
   // Below three the variance of Student's t is infinite.

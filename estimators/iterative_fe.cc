@@ -6,7 +6,6 @@
 #include <ceres/solver.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -467,7 +466,7 @@ Estimate IterativeFe::DoRun(const Scene& scene,
     estimate.message = summary.message;
   }
   if (residual.IsValid()) {
-    const DisplacementFit fit = residual.Fit();
+    const DisplacementFit& fit = residual.Fit();
     const std::optional<double> variance = DescribeDisplacementFit(
         scene, residual.Graph(), options, residual.Observed(), fit, losses,
         active, estimate);

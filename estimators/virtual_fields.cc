@@ -246,15 +246,22 @@ void JudgeYoungsModulusBound(const VirtualWorkFit& bounded,
 Eigen::MatrixXd SmoothDisplacements(const Scene& scene) {
   constexpr int kDegree = 3;
   const Eigen::Index num_nodes = scene.mesh.NumNodes();
-  Eigen::MatrixXd smooth(3 * num_nodes, Eigen::Index(scene.load_cases.size()));
-  for (Eigen::Index k = 0; k < smooth.cols(); ++k) {
+  const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
+  // The components of all load cases side by side: num_nodes x 3 num_cases.
+  Eigen::MatrixXd measured(num_nodes, 3 * num_cases);
+  for (Eigen::Index k = 0; k < num_cases; ++k) {
     const Eigen::Matrix3Xd displacement = scene.supports.held.select(
         scene.supports.displacement, scene.load_cases[k].displacement);
-    smooth.col(k).reshaped(3, num_nodes) =
-        SmoothByPolynomials(scene.mesh.nodes, displacement.transpose(), kDegree)
-            .transpose();
+    measured.middleCols<3>(3 * k) = displacement.transpose();
   }
-  return smooth;
+  const Eigen::MatrixXd smooth =
+      SmoothByPolynomials(scene.mesh.nodes, measured, kDegree);
+  Eigen::MatrixXd displacements(3 * num_nodes, num_cases);
+  for (Eigen::Index k = 0; k < num_cases; ++k) {
+    displacements.col(k).reshaped(3, num_nodes) =
+        smooth.middleCols<3>(3 * k).transpose();
+  }
+  return displacements;
 }
 
 // Warns of loads that the motions left free are not in balance with; whether

@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "elastimate/core/degrees_of_freedom.h"
-#include "elastimate/core/quadratic_scene.h"
 
 namespace elastimate::testing {
 
@@ -145,15 +144,6 @@ Scene UnderBodyForce(Scene scene) {
   scene.load_cases.resize(1);
   scene.load_cases[0].loads = {BodyForce{{100, 20, -300}}};
   return scene;
-}
-
-void MeasureInFinerWorld(const IsotropicElasticity& truth, Scene& scene) {
-  Scene quadratic = QuadraticScene(scene);
-  Measure(truth, quadratic);
-  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-    scene.load_cases[k].displacement =
-        quadratic.load_cases[k].displacement.leftCols(scene.mesh.NumNodes());
-  }
 }
 
 }  // namespace elastimate::testing

@@ -29,6 +29,7 @@ Scene SmallScene(const std::string& shape);
 std::vector<std::string> SmallSceneNames();
 
 using elastimate::Measure;
+using elastimate::MeasureInFinerWorld;
 
 /// Adds independent Gaussian noise to the free components; its standard
 /// deviation is `relative` times the root mean square of the free displacement
@@ -41,9 +42,6 @@ Scene WithThreeForces(const Scene& scene);
 /// The scene with one load case of a force per volume, which is the same load
 /// for linear and for quadratic elements.
 Scene UnderBodyForce(Scene scene);
-
-/// The displacements of quadratic elements on the same mesh, at its vertices.
-void MeasureInFinerWorld(const IsotropicElasticity& truth, Scene& scene);
 
 }  // namespace elastimate::testing
 

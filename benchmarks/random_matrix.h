@@ -1,0 +1,21 @@
+#ifndef ELASTIMATE_BENCHMARKS_RANDOM_MATRIX_H_
+#define ELASTIMATE_BENCHMARKS_RANDOM_MATRIX_H_
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <random>
+
+namespace elastimate {
+
+/// Independent values, uniform in [-1, 1); the same for a seed on every run.
+inline Eigen::MatrixXd RandomMatrix(Eigen::Index rows, Eigen::Index columns,
+                                    std::uint64_t seed) {
+  std::mt19937_64 generator(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  return Eigen::MatrixXd::NullaryExpr(rows, columns,
+                                      [&] { return uniform(generator); });
+}
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_BENCHMARKS_RANDOM_MATRIX_H_
