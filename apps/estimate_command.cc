@@ -119,7 +119,8 @@ int RunEstimate(const std::vector<std::string>& arguments) {
   if (!FLAGS_out.empty()) {
     progress->Show("writing " + FLAGS_out);
     files.Add(FLAGS_out, VtuContent(FLAGS_out, scene.mesh,
-                                    ResultFields(scene, reported, estimate)));
+                                    ResultFields(scene, reported, estimate,
+                                                 options.solver)));
   }
   progress.reset();
 

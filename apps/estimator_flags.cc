@@ -73,6 +73,17 @@ Loss LossFromFlag() {
 
 }  // namespace
 
+SolverKind SolverFromFlag() {
+  Require(FLAGS_solver == "automatic" || FLAGS_solver == "cholesky" ||
+              FLAGS_solver == "multigrid",
+          "solver", "it is automatic, cholesky or multigrid");
+  Require(FLAGS_solver != "multigrid" || HasMultigrid(), "solver",
+          "it is not there, for it needs a build with PETSc; use cholesky");
+  return FLAGS_solver == "cholesky"    ? SolverKind::kCholesky
+         : FLAGS_solver == "multigrid" ? SolverKind::kMultigrid
+                                       : SolverKind::kAutomatic;
+}
+
 EstimatorOptions OptionsFromFlags() {
   EstimatorOptions options;
   options.known_poisson_ratio = Given("nu", FLAGS_nu);
@@ -81,6 +92,7 @@ EstimatorOptions OptionsFromFlags() {
   options.youngs_modulus = {Given("youngs_min", FLAGS_youngs_min),
                             Given("youngs_max", FLAGS_youngs_max)};
   options.loss = LossFromFlag();
+  options.solver = SolverFromFlag();
   if (IsGiven("degree")) {
     Require(FLAGS_degree >= 1 && FLAGS_degree <= 3, "degree",
             "it must be 1, 2 or 3");

@@ -11,6 +11,10 @@ namespace elastimate {
 /// flags, for what the library would refuse by its own names.
 EstimatorOptions OptionsFromFlags();
 
+/// That of --solver.  Throws std::invalid_argument for any other word, and for
+/// multigrid in a build without PETSc.
+SolverKind SolverFromFlag();
+
 /// Throws std::invalid_argument unless --nu is a Poisson's ratio.
 void CheckPoissonRatioFlag();
 

@@ -27,6 +27,9 @@ DEFINE_int32(degree, 2, "degree of the polynomial virtual fields, 1 to 3");
 DEFINE_int32(order, 1,
              "element order: 1 for linear tetrahedra, 2 for quadratic ones on "
              "the same mesh (not with estimators of the force residual)");
+DEFINE_string(solver, "automatic",
+              "how displacements are solved for: cholesky, multigrid, or "
+              "automatic, which is multigrid for large scenes");
 DEFINE_int32(threads, 0,
              "largest number of threads of the linear algebra; 0, or without "
              "this flag, all processors");
@@ -61,13 +64,13 @@ const Program& Elastimate() {
         "Young's modulus and Poisson's ratio of a scene (VTK, Gmsh or "
         "scene.json); several files are further load cases",
         {"estimator", "nu", "nu_min", "nu_max", "youngs_min", "youngs_max",
-         "order", "noise_sd", "loss", "degree", "threads", "seed", "json",
-         "out"}},
+         "order", "noise_sd", "loss", "degree", "solver", "threads", "seed",
+         "json", "out"}},
        {"simulate",
         "SCENE",
         "displacements of a scene for given parameters, with noise if wanted",
-        {"youngs", "nu", "order", "noise", "noise_law", "seed", "threads",
-         "out"}},
+        {"youngs", "nu", "order", "noise", "noise_law", "seed", "solver",
+         "threads", "out"}},
        {"generate",
         "cuboid|organ",
         "an example geometry with supports and forces",

@@ -20,6 +20,7 @@ DECLARE_string(noise_law);
 DECLARE_string(loss);
 DECLARE_int32(degree);
 DECLARE_int32(order);
+DECLARE_string(solver);
 DECLARE_int32(threads);
 DECLARE_uint64(seed);
 DECLARE_string(json);

@@ -72,7 +72,7 @@ Eigen::MatrixXd MeasuredMinus(const Scene& scene,
 }  // namespace
 
 Fields ResultFields(const Scene& scene, const Scene& modelled,
-                    const Estimate& estimate) {
+                    const Estimate& estimate, SolverKind solver) {
   Fields fields = SceneFields(scene);
   if (!estimate.elasticity.IsPhysical()) {
     return fields;
@@ -92,7 +92,7 @@ Fields ResultFields(const Scene& scene, const Scene& modelled,
     return fields;
   }
   const Eigen::MatrixXd force = AssembleLoadCases(modelled);
-  ForwardModel model(modelled.mesh, modelled.supports, force);
+  ForwardModel model(modelled.mesh, modelled.supports, force, solver);
   if (!model.SetPoissonRatio(estimate.elasticity.poisson_ratio)) {
     return fields;
   }

@@ -2,6 +2,7 @@
 #define ELASTIMATE_APPS_RESULT_FIELDS_H_
 
 #include "elastimate/core/scene.h"
+#include "elastimate/core/stiffness_solver.h"
 #include "elastimate/estimators/estimate.h"
 #include "elastimate/io/vtu_writer.h"
 
@@ -20,7 +21,7 @@ namespace elastimate {
 /// specimen: `force_residual` and `strain_energy_density` of the measured
 /// displacement, with linear elements.  Otherwise the scene alone.
 Fields ResultFields(const Scene& scene, const Scene& modelled,
-                    const Estimate& estimate);
+                    const Estimate& estimate, SolverKind solver);
 
 }  // namespace elastimate
 

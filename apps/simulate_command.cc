@@ -53,6 +53,7 @@ int RunSimulate(const std::vector<std::string>& arguments) {
   }
   const IsotropicElasticity elasticity = ElasticityFromFlags();
   CheckNoiseFlags();
+  const SolverKind solver = SolverFromFlag();
   ApplyComputingFlags();
   CheckOutputFlags(arguments);
   std::optional<Progress> progress("reading " + arguments[0]);
@@ -68,7 +69,7 @@ int RunSimulate(const std::vector<std::string>& arguments) {
       QuadraticSceneIfAsked(scene, reading.notices);
   const Scene& modelled = quadratic ? *quadratic : scene;
   ForwardModel model(modelled.mesh, modelled.supports,
-                     AssembleLoadCases(modelled));
+                     AssembleLoadCases(modelled), solver);
   if (!model.SetPoissonRatio(elasticity.poisson_ratio)) {
     throw std::invalid_argument(
         arguments[0] +
@@ -111,6 +112,9 @@ int RunSimulate(const std::vector<std::string>& arguments) {
   progress->Show("writing " + FLAGS_out);
   WriteVtu(FLAGS_out, scene.mesh, SceneFields(scene));
   progress.reset();
+  if (!model.Notice().empty()) {
+    reading.notices.push_back(model.Notice());
+  }
   PrintNotices(reading.notices);
   return 0;
 }

@@ -80,6 +80,18 @@ void AddDiagnostics(const Estimate& estimate, std::ostringstream& text) {
   }
 }
 
+std::string Solving(const Work& work) {
+  const std::string solves = std::to_string(work.solves) + " solves";
+  const std::string factorizations =
+      std::to_string(work.factorizations) + " factorisations, ";
+  if (work.multigrid_set_ups == 0) {
+    return factorizations + solves + ", ";
+  }
+  return (work.factorizations == 0 ? "" : factorizations) +
+         std::to_string(work.multigrid_set_ups) + " set-ups of multigrid, " +
+         solves + " in " + std::to_string(work.iterations) + " iterations, ";
+}
+
 }  // namespace
 
 std::string Summary(const Estimate& estimate, const Scene& scene) {
@@ -129,9 +141,7 @@ std::string Summary(const Estimate& estimate, const Scene& scene) {
   AddDiagnostics(estimate, text);
   Line("work",
        std::to_string(estimate.work.element_passes) + " element passes, " +
-           std::to_string(estimate.work.factorizations) + " factorisations, " +
-           std::to_string(estimate.work.solves) + " solves, " +
-           Number(estimate.seconds, 3) + " s",
+           Solving(estimate.work) + Number(estimate.seconds, 3) + " s",
        text);
   for (const Rung& rung : estimate.rungs) {
     Line("rung",

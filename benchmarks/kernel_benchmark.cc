@@ -188,7 +188,7 @@ void CholeskySolve(benchmark::State& state) {
   }
   const Eigen::MatrixXd b = RandomMatrix(dofs.NumFree(), state.range(1), kSeed);
   while (state.KeepRunning()) {
-    benchmark::DoNotOptimize(cholesky.Solve(b));
+    benchmark::DoNotOptimize(cholesky.Solve(b, 0));
   }
   CountTetrahedra(state, scene.mesh);
 }

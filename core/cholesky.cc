@@ -79,6 +79,7 @@ struct Cholesky::Workspace {
   const SymmetricPattern& pattern;
   cholmod_common common;
   cholmod_factor* factor = nullptr;
+  double factorization_flops = 0;
   cholmod_dense* solution = nullptr;
   cholmod_dense* forward = nullptr;
   cholmod_dense* permuted = nullptr;
@@ -120,6 +121,7 @@ Cholesky::Cholesky(const StiffnessAssembly& assembly,
       cholmod_l_analyze_p(&matrix, order.data(), nullptr, 0, common);
   ThrowIfOutOfMemory(*common);
   assert(workspace_->factor != nullptr);
+  workspace_->factorization_flops = common->fl;
 }
 
 Cholesky::~Cholesky() = default;
@@ -136,7 +138,8 @@ bool Cholesky::Factorize(const Eigen::VectorXd& values) {
          cholmod_l_rcond(workspace_->factor, common) > kSmallestPivotRatio;
 }
 
-Eigen::MatrixXd Cholesky::Solve(const Eigen::MatrixXd& right_hand_sides) {
+std::optional<Eigen::MatrixXd> Cholesky::Solve(
+    const Eigen::MatrixXd& right_hand_sides, double /*tolerance*/) {
   if (right_hand_sides.cols() == 0) {
     return right_hand_sides;  // CHOLMOD refuses.
   }
@@ -158,6 +161,10 @@ Eigen::MatrixXd Cholesky::Solve(const Eigen::MatrixXd& right_hand_sides) {
   return Eigen::Map<const Eigen::MatrixXd>(
       static_cast<const double*>(workspace_->solution->x),
       right_hand_sides.rows(), right_hand_sides.cols());
+}
+
+double Cholesky::FactorizationFlops() const {
+  return workspace_->factorization_flops;
 }
 
 double Cholesky::FactorValues() const {

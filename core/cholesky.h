@@ -3,7 +3,9 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 
+#include "elastimate/core/linear_solver.h"
 #include "elastimate/core/stiffness_assembly.h"
 
 namespace elastimate {
@@ -15,25 +17,23 @@ namespace elastimate {
 /// The fill-reducing ordering is METIS nested dissection of the graph of the
 /// nodes, whose components stay together: a third of the vertices of the graph
 /// of the degrees of freedom, and as good.
-class Cholesky {
+class Cholesky : public LinearSolver {
  public:
   /// Ordering and symbolic analysis.  `assembly` must outlive this object.
   /// Throws std::bad_alloc when there is not enough memory.
   Cholesky(const StiffnessAssembly& assembly,
            const DegreesOfFreedom& degrees_of_freedom);
-  ~Cholesky();
-  Cholesky(const Cholesky&) = delete;
-  Cholesky& operator=(const Cholesky&) = delete;
+  ~Cholesky() override;
 
   /// L L^T = the matrix of these values (in the order of the pattern).  False
   /// when the matrix is not positive definite to working precision.
-  /// Throws std::bad_alloc when there is not enough memory.
-  bool Factorize(const Eigen::VectorXd& values);
+  bool Factorize(const Eigen::VectorXd& values) override;
 
-  /// The solution for each column of `right_hand_sides`, size x n.
-  /// Precondition: the last Factorize returned true.
-  Eigen::MatrixXd Solve(const Eigen::MatrixXd& right_hand_sides);
+  std::optional<Eigen::MatrixXd> Solve(const Eigen::MatrixXd& right_hand_sides,
+                                       double tolerance) override;
 
+  /// Floating-point operations of a factorisation.
+  double FactorizationFlops() const;
   /// Number of stored values of the factor.
   double FactorValues() const;
 

@@ -7,9 +7,9 @@
 namespace elastimate {
 
 ForwardModel::ForwardModel(const Mesh& mesh, const Supports& supports,
-                           const Eigen::MatrixXd& force)
+                           const Eigen::MatrixXd& force, SolverKind solver)
     : mesh_(mesh),
-      solver_(mesh, supports),
+      solver_(mesh, supports, solver),
       force_(force),
       held_displacement_(HeldDisplacement(supports)),
       has_held_displacement_(!held_displacement_.isZero(0)),
@@ -38,7 +38,7 @@ bool ForwardModel::SetPoissonRatio(double poisson_ratio) {
     support_response_ =
         held_displacement_ - solver_.Solve(held_h_ + poisson_ratio * held_j_);
   }
-  return true;
+  return solver_.PoissonRatio() == poisson_ratio;
 }
 
 Eigen::MatrixXd ForwardModel::Displacement(double youngs_modulus) const {

@@ -2,6 +2,7 @@
 #define ELASTIMATE_CORE_FORWARD_MODEL_H_
 
 #include <Eigen/Core>
+#include <string>
 
 #include "elastimate/core/elasticity.h"
 #include "elastimate/core/scene.h"
@@ -35,11 +36,13 @@ class ForwardModel {
   /// Assembles and analyses.  `force` is (3 num_nodes) x num_load_cases
   /// [force]; its rows at held degrees of freedom have no effect.
   /// `mesh` must outlive this object.
-  /// Precondition: a valid scene.  Throws std::invalid_argument with the
-  /// sentence of WhyNotHeld when the supports do not hold the specimen, and
-  /// std::bad_alloc when the factor does not fit into memory.
+  /// Preconditions: a valid scene; HasMultigrid() for kMultigrid.
+  /// Throws std::invalid_argument with the sentence of WhyNotHeld when the
+  /// supports do not hold the specimen, and std::bad_alloc when the factor does
+  /// not fit into memory.
   ForwardModel(const Mesh& mesh, const Supports& supports,
-               const Eigen::MatrixXd& force);
+               const Eigen::MatrixXd& force,
+               SolverKind solver = SolverKind::kAutomatic);
 
   /// Factorises A(nu) and solves for w and v; does nothing when nu is the
   /// present one.  False when A(nu) is singular to working precision (nu at or
@@ -73,6 +76,8 @@ class ForwardModel {
   const DegreesOfFreedom& Dofs() const { return solver_.Dofs(); }
   const NodeGraph& Graph() const { return solver_.Graph(); }
   Work WorkDone() const;
+  /// That of StiffnessSolver.
+  const std::string& Notice() const { return solver_.Notice(); }
 
  private:
   const Mesh& mesh_;

@@ -240,6 +240,12 @@ std::vector<std::string> CheckMeasurements(const Scene& scene) {
   return warnings;
 }
 
+void NoteSolver(const std::string& notice, Estimate& estimate) {
+  if (!notice.empty()) {
+    WarnOnce(notice, estimate);
+  }
+}
+
 void FinishEstimate(const Estimator& estimator, const Scene& scene,
                     const EstimatorOptions& options,
                     const std::vector<std::string>& warnings,

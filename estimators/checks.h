@@ -22,6 +22,9 @@ void CheckSupported(const Estimator& estimator, const Scene& scene,
 /// what each estimator needs: see Estimator::Run.  Returns warnings.
 std::vector<std::string> CheckMeasurements(const Scene& scene);
 
+/// Makes the notice of a StiffnessSolver, if there is one, a warning.
+void NoteSolver(const std::string& notice, Estimate& estimate);
+
 /// Whether FinishEstimate gave this warning of linear elements near nu = 1/2.
 bool IsWarningOfLocking(const std::string& warning);
 

@@ -65,6 +65,11 @@ std::string EstimatorOptions::WhyInvalid() const {
     why = "the degree of the virtual fields is " +
           std::to_string(*virtual_field_degree) + "; it must be 1, 2 or 3";
   }
+  if (why.empty() && solver == SolverKind::kMultigrid && !HasMultigrid()) {
+    why =
+        "the solver is multigrid, which is not there: it needs a build with "
+        "PETSc; use cholesky";
+  }
   return why;
 }
 

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "elastimate/core/scene.h"
+#include "elastimate/core/stiffness_solver.h"
 #include "elastimate/estimators/estimate.h"
 
 namespace elastimate {
@@ -52,8 +53,10 @@ struct EstimatorOptions {
   std::optional<int> virtual_field_degree;
   /// Iterations after which an iterative estimator gives up; at least 1.
   int max_iterations = 50;
-  /// Called by estimators that factorise before each factorisation, with its
-  /// number, from 1 on.  May be empty.
+  /// How estimators that solve for displacements do so.
+  SolverKind solver = SolverKind::kAutomatic;
+  /// Called by those before each factorisation, or set-up of multigrid, with
+  /// its number, from 1 on.  May be empty.
   std::function<void(int)> on_factorization;
 
   /// A sentence that names the option, its value and the broken rule; empty

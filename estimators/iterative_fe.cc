@@ -13,6 +13,7 @@
 #include "elastimate/core/forward_model.h"
 #include "elastimate/core/loads.h"
 #include "elastimate/estimators/bounded_parameter.h"
+#include "elastimate/estimators/checks.h"
 #include "elastimate/estimators/displacement_fit.h"
 #include "elastimate/estimators/node_losses.h"
 #include "elastimate/estimators/observed_displacements.h"
@@ -46,7 +47,8 @@ enum class Scale {
 class DisplacementResidual : public ceres::EvaluationCallback {
  public:
   DisplacementResidual(const Scene& scene, const EstimatorOptions& options)
-      : model_(scene.mesh, scene.supports, AssembleLoadCases(scene)),
+      : model_(scene.mesh, scene.supports, AssembleLoadCases(scene),
+               options.solver),
         num_load_cases_(Eigen::Index(scene.load_cases.size())),
         observed_(scene),
         on_factorization_(options.on_factorization) {}
@@ -89,7 +91,7 @@ class DisplacementResidual : public ceres::EvaluationCallback {
       return true;
     }
     if (on_factorization_) {
-      on_factorization_(model_.WorkDone().factorizations + 1);
+      on_factorization_(++num_factorizations_);
     }
     if (!model_.SetPoissonRatio(poisson_ratio)) {
       return false;
@@ -127,6 +129,7 @@ class DisplacementResidual : public ceres::EvaluationCallback {
   }
   const NodeGraph& Graph() const { return model_.Graph(); }
   Work WorkDone() const { return model_.WorkDone(); }
+  const std::string& SolverNotice() const { return model_.Notice(); }
 
  private:
   // d ln E / d nu at fixed scale.
@@ -145,6 +148,7 @@ class DisplacementResidual : public ceres::EvaluationCallback {
   Eigen::Index num_load_cases_;
   ObservedDisplacements observed_;
   std::function<void(int)> on_factorization_;
+  int num_factorizations_ = 0;
   Scale scale_ = Scale::kLogResponseNorm;
   const BoundedParameter* scale_parameter_ = nullptr;
   const BoundedParameter* poisson_ratio_ = nullptr;
@@ -485,6 +489,7 @@ Estimate IterativeFe::DoRun(const Scene& scene,
           estimate);
     }
   }
+  NoteSolver(residual.SolverNotice(), estimate);
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
   estimate.work = residual.WorkDone();
   return estimate;

@@ -8,6 +8,7 @@
 #include "elastimate/core/forward_model.h"
 #include "elastimate/core/loads.h"
 #include "elastimate/estimators/bounded_parameter.h"
+#include "elastimate/estimators/checks.h"
 #include "elastimate/estimators/displacement_fit.h"
 #include "elastimate/estimators/node_losses.h"
 #include "elastimate/estimators/observed_displacements.h"
@@ -129,7 +130,8 @@ Estimate OneStep::DoRun(const Scene& scene,
   Stopwatch stopwatch;
   double nu = StartFrom(scene, options, estimate);
   estimate.stages.push_back({"start", stopwatch.Lap()});
-  ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene));
+  ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene),
+                     options.solver);
   const ObservedDisplacements observed(scene);
   estimate.stages.push_back({"assemble and analyse", stopwatch.Lap()});
 
@@ -175,6 +177,7 @@ Estimate OneStep::DoRun(const Scene& scene,
                   "the estimate is not physical");
     return estimate;
   }
+  NoteSolver(model.Notice(), estimate);
   if (has_converged) {
     estimate.status = Status::kOk;
     estimate.message = "";

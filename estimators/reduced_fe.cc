@@ -143,7 +143,7 @@ class AdaptiveFit {
                            ? Bounds{options.known_poisson_ratio,
                                     options.known_poisson_ratio}
                            : EffectivePoissonRatioBounds(options)),
-        model_(scene) {
+        model_(scene, options.solver) {
     const auto within = [this](double nu) {
       return std::clamp(nu, *poisson_ratio_.lower, *poisson_ratio_.upper);
     };
@@ -211,7 +211,7 @@ class AdaptiveFit {
 
   bool SetPole(double nu) {
     if (options_.on_factorization) {
-      options_.on_factorization(model_.WorkDone().factorizations + 1);
+      options_.on_factorization(num_poles_ + 1);
     }
     ++num_poles_;
     num_vectors_of_pole_ = 0;
@@ -357,6 +357,7 @@ Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
         },
         estimate);
   }
+  NoteSolver(adaptive.Model().Notice(), estimate);
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
   return estimate;
 }

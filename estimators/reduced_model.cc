@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "elastimate/core/degrees_of_freedom.h"
 #include "elastimate/core/loads.h"
@@ -15,6 +16,10 @@ namespace {
 // A vector whose energy falls by this factor when it is made orthogonal to a
 // basis was rounding.
 constexpr double kDependent = 1e-20;
+
+// Of iterative solves: a vector of the basis serves as well when it is only
+// near to where the exact one is, for the next one mends that.
+constexpr double kSolveTolerance = 1e-3;
 
 // Makes a symmetric matrix one larger.
 void AppendSymmetric(const Eigen::VectorXd& column, Eigen::MatrixXd& matrix) {
@@ -47,9 +52,9 @@ Eigen::VectorXd ReducedModes::DerivativeAt(double poisson_ratio) const {
          (1 + (poisson_ratio - pole) * theta.array());
 }
 
-ReducedModel::ReducedModel(const Scene& scene)
+ReducedModel::ReducedModel(const Scene& scene, SolverKind solver)
     : stiffness_(scene.mesh),
-      solver_(scene.mesh, scene.supports),
+      solver_(scene.mesh, scene.supports, solver),
       num_load_cases_(Eigen::Index(scene.load_cases.size())) {
   const DegreesOfFreedom& dofs = solver_.Dofs();
   const auto free_rows = [&dofs](const Eigen::MatrixXd& all) {
@@ -103,7 +108,10 @@ double ReducedModel::Refine(double poisson_ratio, double tolerance) {
   ++element_passes_;
   const Eigen::MatrixXd reaction = products.h + poisson_ratio * products.j;
   residual -= dofs.Extend(dofs.Restrict(reaction));
-  const Eigen::MatrixXd correction = solver_.Solve(residual);
+  const Eigen::MatrixXd correction = solver_.Solve(residual, kSolveTolerance);
+  if (!correction.allFinite()) {
+    return std::numeric_limits<double>::infinity();
+  }
   double largest = 0;
   for (Eigen::Index k = 0; k < num_responses; ++k) {
     const double square =

@@ -2,6 +2,7 @@
 #define ELASTIMATE_ESTIMATORS_REDUCED_MODEL_H_
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "elastimate/core/scene.h"
@@ -45,7 +46,8 @@ class ReducedModel {
  public:
   /// Assembles and analyses; `scene` must outlive this object.
   /// Preconditions and exceptions: those of StiffnessSolver.
-  explicit ReducedModel(const Scene& scene);
+  explicit ReducedModel(const Scene& scene,
+                        SolverKind solver = SolverKind::kAutomatic);
 
   /// Factorises A(nu), whose residuals will be solved with from now on.
   /// False when it is singular to working precision.
@@ -58,6 +60,10 @@ class ReducedModel {
   ///                                              (1 + nu) / (1 + pole))).
   ///
   /// Where it is above `tolerance`, the spaces are enlarged by A_p^-1 r.
+  /// The solves may be inexact, for what is appended is taken as it is, and the
+  /// residual of the whole is computed anew.  Of the bound, a part of half the
+  /// square of their relative error is missing.
+  /// Infinite when a solve failed.
   /// Precondition: SetPole returned true.  Cost: an element pass (two where it
   /// enlarges) and a solve for each response.
   double Refine(double poisson_ratio, double tolerance);
@@ -79,6 +85,8 @@ class ReducedModel {
   int Version() const { return version_; }
   const NodeGraph& Graph() const { return solver_.Graph(); }
   Work WorkDone() const;
+  /// That of StiffnessSolver.
+  const std::string& Notice() const { return solver_.Notice(); }
 
  private:
   struct Response {

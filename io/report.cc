@@ -17,6 +17,7 @@ Json OrNull(const std::optional<double>& value) {
 
 Json OptionsJson(const EstimatorOptions& options) {
   const char* const loss_names[] = {"none", "huber", "cauchy"};
+  const char* const solver_names[] = {"automatic", "cholesky", "multigrid"};
   return {{"nu", OrNull(options.known_poisson_ratio)},
           {"nu_min", OrNull(options.poisson_ratio.lower)},
           {"nu_max", OrNull(options.poisson_ratio.upper)},
@@ -26,7 +27,8 @@ Json OptionsJson(const EstimatorOptions& options) {
           {"degree", options.virtual_field_degree
                          ? Json(*options.virtual_field_degree)
                          : Json(nullptr)},
-          {"max_iterations", options.max_iterations}};
+          {"max_iterations", options.max_iterations},
+          {"solver", solver_names[static_cast<int>(options.solver)]}};
 }
 
 Json MismatchJson(const Estimate& estimate) {
@@ -40,7 +42,9 @@ Json MismatchJson(const Estimate& estimate) {
 Json WorkJson(const Work& work) {
   return {{"element_passes", work.element_passes},
           {"factorizations", work.factorizations},
-          {"solves", work.solves}};
+          {"multigrid_set_ups", work.multigrid_set_ups},
+          {"solves", work.solves},
+          {"iterations", work.iterations}};
 }
 
 Json RungsJson(const Estimate& estimate) {

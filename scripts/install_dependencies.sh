@@ -7,6 +7,7 @@ packages=(
   libceres-dev libeigen3-dev libsuitesparse-dev libopenblas-pthread-dev
   libhwy-dev libgoogle-glog-dev libgflags-dev libgtest-dev libgmock-dev libbenchmark-dev
   nlohmann-json3-dev libvtk9-dev libgmsh-dev
+  petsc-dev pkg-config
   python3-matplotlib
 )
 

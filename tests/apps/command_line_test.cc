@@ -134,7 +134,10 @@ TEST_F(CommandLine, TheReportHasTheDocumentedKeys) {
                                 "/diagnostics/warnings",
                                 "/work/element_passes",
                                 "/work/factorizations",
+                                "/work/multigrid_set_ups",
                                 "/work/solves",
+                                "/work/iterations",
+                                "/options/solver",
                                 "/seconds/read",
                                 "/seconds/estimate",
                                 "/seconds/total"}) {
@@ -217,6 +220,32 @@ TEST_F(CommandLine, BoundsAndKnownValuesAreHonoured) {
     EXPECT_EQ(bounded["diagnostics"]["active_bounds"],
               nlohmann::json({"nu_max"}));
     EXPECT_TRUE(bounded["standard_error"]["poisson_ratio"].is_null());
+  }
+}
+
+TEST_F(CommandLine, SolvesByMultigridWhereAskedTo) {
+  MakeExactScene();
+  if (!HasMultigrid()) {
+    Refuse("estimate exact.vtu --solver=multigrid", "needs a build with PETSc");
+    return;
+  }
+  const std::string simulate = "simulate exact.vtu --youngs=1e4 --nu=0.33 ";
+  Succeed(simulate + "--solver=multigrid --out=multigrid.vtu");
+  for (const std::string name : {"iterative-fe", "one-step", "reduced-fe"}) {
+    const std::string estimate = "estimate multigrid.vtu --estimator=" + name;
+    const nlohmann::json report =
+        Succeed(estimate + " --solver=multigrid --json=- --out=" + name +
+                ".vtu")
+            .Json();
+    EXPECT_NEAR(report["youngs_modulus"].get<double>(), 1e4, 1);
+    EXPECT_NEAR(report["poisson_ratio"].get<double>(), 0.33, 1e-4);
+    EXPECT_EQ(report["work"]["factorizations"], 0);
+    EXPECT_GE(report["work"]["multigrid_set_ups"], 1);
+    EXPECT_GE(report["work"]["iterations"], 1);
+    EXPECT_EQ(report["options"]["solver"], "multigrid");
+    EXPECT_NE(Succeed(estimate + " --solver=multigrid")
+                  .output.find(" set-ups of multigrid, "),
+              std::string::npos);
   }
 }
 
@@ -387,6 +416,8 @@ TEST_F(CommandLine, RefusesWrongParametersByTheirFlags) {
          "--nu_max=0.4 --youngs_min=1: closed-form: it cannot keep bounds");
   Refuse("estimate exact.vtu --loss=huber",
          "--loss=huber: closed-form: a loss function needs");
+  Refuse("estimate exact.vtu --solver=gmres",
+         "--solver=gmres; it is automatic, cholesky or multigrid");
   Refuse("estimate exact.vtu --loss=tukey",
          "--loss=tukey; it is none, huber or cauchy");
 }
@@ -403,6 +434,8 @@ TEST_F(CommandLine, RefusesWrongSimulations) {
          "--noise=-1; it must not be negative");
   Refuse("simulate cuboid.vtu --youngs=1 --nu=0.3 --noise_law=x --out=a.vtu",
          "uniform or gaussian");
+  Refuse("simulate cuboid.vtu --youngs=1 --nu=0.3 --solver=x --out=a.vtu",
+         "--solver=x; it is automatic, cholesky or multigrid");
   Refuse("simulate --youngs=1 --nu=0.3 --out=a.vtu",
          "one scene file; it got none");
   Refuse("simulate a.vtu b.vtu --youngs=1 --nu=0.3 --out=c.vtu",

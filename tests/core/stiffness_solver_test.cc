@@ -1,9 +1,11 @@
 #include "elastimate/core/stiffness_solver.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "elastimate/core/loads.h"
 #include "tests/core/random_values.h"
 #include "tests/dense_reference.h"
 #include "tests/scenes.h"
@@ -12,15 +14,18 @@
 namespace elastimate {
 namespace {
 
+using testing::BoxMesh;
 using testing::DenseDH;
 using testing::DenseDJ;
 using testing::DenseStiffness;
+using ::testing::HasSubstr;
+using testing::HeldAtBottom;
 using testing::RandomMatrix;
 using testing::SmallScene;
 
 TEST(StiffnessSolver, SolvesOnTheFreeDegreesOfFreedom) {
   const Scene scene = SmallScene("organ");
-  StiffnessSolver solver(scene.mesh, scene.supports);
+  StiffnessSolver solver(scene.mesh, scene.supports, SolverKind::kCholesky);
   const auto& free = solver.Dofs().free;
   const Eigen::MatrixXd forces = RandomMatrix(3 * scene.mesh.NumNodes(), 3, 1);
   for (const double nu : {-0.5, 0.3, 0.45}) {
@@ -40,7 +45,7 @@ TEST(StiffnessSolver, SolvesOnTheFreeDegreesOfFreedom) {
 
 TEST(StiffnessSolver, CountsItsWorkAndDoesNoneTwice) {
   const Scene scene = SmallScene("cuboid");
-  StiffnessSolver solver(scene.mesh, scene.supports);
+  StiffnessSolver solver(scene.mesh, scene.supports, SolverKind::kCholesky);
   EXPECT_TRUE(std::isnan(solver.PoissonRatio()));
   EXPECT_EQ(solver.WorkDone().element_passes, 1);
   EXPECT_EQ(solver.WorkDone().factorizations, 0);
@@ -54,17 +59,72 @@ TEST(StiffnessSolver, CountsItsWorkAndDoesNoneTwice) {
 
 TEST(StiffnessSolver, SaysWhereTheStiffnessIsSingular) {
   const Scene scene = SmallScene("cuboid");
-  StiffnessSolver solver(scene.mesh, scene.supports);
+  StiffnessSolver solver(scene.mesh, scene.supports, SolverKind::kCholesky);
   ASSERT_TRUE(solver.Factorize(0.3));
   EXPECT_FALSE(solver.Factorize(-1));
   EXPECT_TRUE(std::isnan(solver.PoissonRatio()));
   EXPECT_TRUE(solver.Factorize(0.3));
 }
 
+TEST(StiffnessSolver, FactorisesWhatAFactorisationIsBestFor) {
+  const Mesh plate = BoxMesh({80, 80, 1}, {1, 1, 0.1});
+  const Scene scene = HeldAtBottom(plate, plate, Eigen::Vector3d::Zero());
+  const StiffnessSolver solver(scene.mesh, scene.supports,
+                               SolverKind::kAutomatic);
+  EXPECT_FALSE(solver.UsesMultigrid());
+  EXPECT_EQ(solver.Notice(), "");
+}
+
+TEST(StiffnessSolver, ChoosesMultigridForALargeBodyOrSaysWhyNot) {
+  const Mesh cube = BoxMesh({44, 44, 44}, {1, 1, 1});
+  const Scene scene = HeldAtBottom(cube, cube, Eigen::Vector3d::Zero());
+  const StiffnessSolver solver(scene.mesh, scene.supports,
+                               SolverKind::kAutomatic);
+  EXPECT_EQ(solver.UsesMultigrid(), HasMultigrid());
+  EXPECT_THAT(solver.Notice(), HasSubstr(HasMultigrid() ? "" : "PETSc"));
+  EXPECT_EQ(solver.Notice().empty(), HasMultigrid());
+  EXPECT_FALSE(
+      StiffnessSolver(scene.mesh, scene.supports, SolverKind::kCholesky)
+          .UsesMultigrid());
+}
+
+// The number of iterations grows with 1 / (1 - 2 nu).
+TEST(StiffnessSolver, FactorisesWhereMultigridDoesNotConverge) {
+  if (!HasMultigrid()) {
+    GTEST_SKIP() << "built without PETSc";
+  }
+  const Mesh cube = BoxMesh({6, 6, 6}, {1, 1, 1});
+  const Scene scene = HeldAtBottom(cube, cube, {0, 0, 1});
+  const Eigen::MatrixXd force = AssembleLoadCases(scene);
+  StiffnessSolver direct(scene.mesh, scene.supports, SolverKind::kCholesky);
+  StiffnessSolver solver(scene.mesh, scene.supports, SolverKind::kMultigrid);
+  ASSERT_TRUE(solver.Factorize(0.3));
+  solver.Solve(force);
+  EXPECT_TRUE(solver.UsesMultigrid());
+  EXPECT_EQ(solver.Notice(), "");
+  EXPECT_EQ(solver.WorkDone().factorizations, 0);
+  EXPECT_EQ(solver.WorkDone().multigrid_set_ups, 1);
+
+  constexpr double kNearlyIncompressible = 0.49999999;
+  ASSERT_TRUE(direct.Factorize(kNearlyIncompressible));
+  ASSERT_TRUE(solver.Factorize(kNearlyIncompressible));
+  EXPECT_EQ(solver.Solve(force), direct.Solve(force));
+  EXPECT_EQ(solver.PoissonRatio(), kNearlyIncompressible);
+  EXPECT_FALSE(solver.UsesMultigrid());
+  EXPECT_THAT(solver.Notice(),
+              HasSubstr("did not converge at nu = 0.49999999"));
+  EXPECT_EQ(solver.WorkDone().factorizations, 1);
+  ASSERT_TRUE(solver.Factorize(0.4));
+  EXPECT_EQ(solver.WorkDone().factorizations, 2);
+  EXPECT_EQ(solver.WorkDone().multigrid_set_ups, 2);
+}
+
 TEST(StiffnessSolver, ThrowsWhereNothingHoldsTheSpecimen) {
   Scene scene = SmallScene("cuboid");
   scene.supports.held.setConstant(false);
-  EXPECT_THROWS_WITH(StiffnessSolver(scene.mesh, scene.supports), "hold");
+  EXPECT_THROWS_WITH(
+      StiffnessSolver(scene.mesh, scene.supports, SolverKind::kAutomatic),
+      "hold");
 }
 
 }  // namespace

@@ -68,6 +68,39 @@ TEST(ReducedFe, AgreesWithTheIterativeFitForFewFactorizations) {
   }
 }
 
+TEST(ReducedFe, EstimatesTheSameByMultigrid) {
+  if (!HasMultigrid()) {
+    GTEST_SKIP() << "built without PETSc";
+  }
+  EstimatorOptions direct;
+  direct.solver = SolverKind::kCholesky;
+  EstimatorOptions multigrid;
+  multigrid.solver = SolverKind::kMultigrid;
+  for (const std::string& shape : SmallSceneNames()) {
+    for (const double nu : {-0.5, 0.3, 0.49}) {
+      for (const double noise : {1e-3, 1e-1}) {
+        SCOPED_TRACE(shape + ", nu " + std::to_string(nu) + ", noise " +
+                     std::to_string(noise));
+        Scene scene = SmallScene(shape);
+        Measure({5e4, nu}, scene);
+        AddNoise(noise, 1, scene);
+        const Estimate expected = ReducedFe().Run(scene, direct);
+        const Estimate estimate = ReducedFe().Run(scene, multigrid);
+        if (expected.status == Status::kOk && expected.active_bounds.empty()) {
+          ExpectSame(estimate, expected, 0.1);
+        } else {
+          EXPECT_EQ(estimate.status, expected.status);
+        }
+        EXPECT_EQ(estimate.work.factorizations, 0);
+        EXPECT_GE(estimate.work.multigrid_set_ups, 1);
+        EXPECT_GE(estimate.work.iterations, estimate.work.solves);
+        EXPECT_EQ(expected.work.multigrid_set_ups, 0);
+        EXPECT_EQ(expected.work.iterations, 0);
+      }
+    }
+  }
+}
+
 // What the condition number of the stiffness, 1 / (1 - 2 nu), leaves of the
 // digits.
 TEST(ReducedFe, KeepsItsDigitsNearOneHalf) {
