@@ -82,7 +82,8 @@ void AddDiagnostics(const Estimate& estimate, std::ostringstream& text) {
 
 }  // namespace
 
-std::string Summary(const Estimate& estimate, const Scene& scene) {
+std::string Summary(const Estimate& estimate, const Scene& scene,
+                    const ReportTimes& times) {
   std::ostringstream text;
   const IsotropicElasticity& elasticity = estimate.elasticity;
   Line("scene",
@@ -132,6 +133,10 @@ std::string Summary(const Estimate& estimate, const Scene& scene) {
            std::to_string(estimate.work.factorizations) + " factorisations, " +
            std::to_string(estimate.work.solves) + " solves, " +
            Number(estimate.seconds, 3) + " s",
+       text);
+  Line("time",
+       Number(times.read, 3) + " s to read the scene, " +
+           Number(times.total, 3) + " s in all",
        text);
   for (const Rung& rung : estimate.rungs) {
     Line("rung",

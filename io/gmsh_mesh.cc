@@ -92,6 +92,13 @@ class Numbering {
 
   /// -1 when `number` is not in the list.
   int Find(std::size_t number) const {
+    // Where none is left out, as in most files, its place is known.
+    if (!numbers_.empty() &&
+        numbers_.back() - numbers_.front() + 1 == numbers_.size()) {
+      return number < numbers_.front() || number > numbers_.back()
+                 ? -1
+                 : static_cast<int>(number - numbers_.front());
+    }
     const auto found =
         std::lower_bound(numbers_.begin(), numbers_.end(), number);
     return found == numbers_.end() || *found != number
