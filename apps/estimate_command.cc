@@ -124,12 +124,13 @@ int RunEstimate(const std::vector<std::string>& arguments) {
   }
   progress.reset();
 
-  const std::string report = JsonReport(estimate, reported, options,
-                                        {read_seconds, SecondsSince(start)});
+  const ReportTimes times = {read_seconds, SecondsSince(start)};
+  const std::string report = JsonReport(estimate, reported, options, times);
   if (!FLAGS_json.empty() && FLAGS_json != "-") {
     files.Add(FLAGS_json, report);
   }
-  WriteStandardOutput(FLAGS_json == "-" ? report : Summary(estimate, reported));
+  WriteStandardOutput(FLAGS_json == "-" ? report
+                                        : Summary(estimate, reported, times));
   files.Commit();
   PrintNotices(reading.notices);
   return estimate.IsUsable() ? 0 : 1;

@@ -94,7 +94,8 @@ std::string Solving(const Work& work) {
 
 }  // namespace
 
-std::string Summary(const Estimate& estimate, const Scene& scene) {
+std::string Summary(const Estimate& estimate, const Scene& scene,
+                    const ReportTimes& times) {
   std::ostringstream text;
   const IsotropicElasticity& elasticity = estimate.elasticity;
   Line("scene",
@@ -142,6 +143,10 @@ std::string Summary(const Estimate& estimate, const Scene& scene) {
   Line("work",
        std::to_string(estimate.work.element_passes) + " element passes, " +
            Solving(estimate.work) + Number(estimate.seconds, 3) + " s",
+       text);
+  Line("time",
+       Number(times.read, 3) + " s to read the scene, " +
+           Number(times.total, 3) + " s in all",
        text);
   for (const Rung& rung : estimate.rungs) {
     Line("rung",

@@ -5,13 +5,15 @@
 
 #include "elastimate/core/scene.h"
 #include "elastimate/estimators/estimate.h"
+#include "elastimate/io/report.h"
 
 namespace elastimate {
 
 /// A short table for people: the estimate with its standard errors, the
-/// status, and what the diagnostics advise.  `scene` is the one that was
-/// estimated, of either element order.
-std::string Summary(const Estimate& estimate, const Scene& scene);
+/// status, what the diagnostics advise, and the times.  `scene` is the one that
+/// was estimated, of either element order.
+std::string Summary(const Estimate& estimate, const Scene& scene,
+                    const ReportTimes& times);
 
 }  // namespace elastimate
 

@@ -20,7 +20,7 @@ Eigen::Vector3d DoubleAreaNormal(const Mesh& mesh,
 // Adds each load's nodal forces; one overload per kind of load.
 class LoadAssembler {
  public:
-  LoadAssembler(const Mesh& mesh, Eigen::Matrix3Xd& force)
+  LoadAssembler(const Mesh& mesh, Eigen::Ref<Eigen::Matrix3Xd> force)
       : mesh_(mesh), force_(force) {}
 
   void operator()(const NodalForces& load) { force_ += load.force; }
@@ -70,28 +70,39 @@ class LoadAssembler {
   }
 
   const Mesh& mesh_;
-  Eigen::Matrix3Xd& force_;
+  Eigen::Ref<Eigen::Matrix3Xd> force_;
 };
+
+void AddLoads(const Mesh& mesh, const std::vector<Load>& loads,
+              Eigen::Ref<Eigen::Matrix3Xd> force) {
+  LoadAssembler assembler(mesh, force);
+  for (const Load& load : loads) {
+    std::visit(assembler, load);
+  }
+}
 
 }  // namespace
 
 Eigen::Matrix3Xd AssembleLoads(const Mesh& mesh,
                                const std::vector<Load>& loads) {
   Eigen::Matrix3Xd force = Eigen::Matrix3Xd::Zero(3, mesh.NumNodes());
-  LoadAssembler assembler(mesh, force);
-  for (const Load& load : loads) {
-    std::visit(assembler, load);
-  }
+  AddLoads(mesh, loads, force);
   return force;
 }
 
 Eigen::MatrixXd AssembleLoadCases(const Scene& scene) {
   Eigen::MatrixXd force(3 * scene.mesh.NumNodes(), scene.load_cases.size());
-  for (Eigen::Index i = 0; i < force.cols(); ++i) {
-    force.col(i) =
-        AssembleLoads(scene.mesh, scene.load_cases[i].loads).reshaped();
-  }
+  AssembleLoadCases(scene, force);
   return force;
+}
+
+void AssembleLoadCases(const Scene& scene, Eigen::Ref<Eigen::MatrixXd> force) {
+  force.setZero();
+  for (Eigen::Index i = 0; i < force.cols(); ++i) {
+    AddLoads(scene.mesh, scene.load_cases[i].loads,
+             Eigen::Map<Eigen::Matrix3Xd>(force.col(i).data(), 3,
+                                          scene.mesh.NumNodes()));
+  }
 }
 
 }  // namespace elastimate

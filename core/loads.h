@@ -23,6 +23,8 @@ Eigen::Matrix3Xd AssembleLoads(const Mesh& mesh,
 /// AssembleLoads for each load case, one column each:
 /// (3 num_nodes) x num_load_cases, row 3 * node + component.
 Eigen::MatrixXd AssembleLoadCases(const Scene& scene);
+/// The same into columns that are there.
+void AssembleLoadCases(const Scene& scene, Eigen::Ref<Eigen::MatrixXd> force);
 
 }  // namespace elastimate
 

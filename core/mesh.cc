@@ -38,17 +38,25 @@ bool IsFlat(const TetrahedronNodes& x) {
   const Eigen::Vector3d e1 = x.col(1) - x.col(0);
   const Eigen::Vector3d e2 = x.col(2) - x.col(0);
   const Eigen::Vector3d e3 = x.col(3) - x.col(0);
-  const double largest_edge_square =
-      std::max({e1.squaredNorm(), e2.squaredNorm(), e3.squaredNorm(),
-                (e2 - e1).squaredNorm(), (e3 - e2).squaredNorm(),
-                (e1 - e3).squaredNorm()});
   const Eigen::Vector3d c1 = e2.cross(e3);
+  const double six_volumes = std::abs(e1.dot(c1));
+  const double edge_square_at_node_0 =
+      std::max({e1.squaredNorm(), e2.squaredNorm(), e3.squaredNorm()});
+  // All that most elements need: no edge is more than twice as long as the
+  // longest at node 0, and twice an area at most the square of an edge.
+  if (six_volumes * six_volumes >
+      64 * kFlatHeight * kFlatHeight * edge_square_at_node_0 *
+          edge_square_at_node_0 * edge_square_at_node_0) {
+    return false;
+  }
+  const double largest_edge_square =
+      std::max({edge_square_at_node_0, (e2 - e1).squaredNorm(),
+                (e3 - e2).squaredNorm(), (e1 - e3).squaredNorm()});
   const Eigen::Vector3d c2 = e3.cross(e1);
   const Eigen::Vector3d c3 = e1.cross(e2);
   const double largest_area_square =
       std::max({c1.squaredNorm(), c2.squaredNorm(), c3.squaredNorm(),
                 (c1 + c2 + c3).squaredNorm()});
-  const double six_volumes = std::abs(e1.dot(c1));
   // Squares cost less than roots, but may underflow.
   return !(six_volumes * six_volumes > kFlatHeight * kFlatHeight *
                                            largest_edge_square *
@@ -58,21 +66,26 @@ bool IsFlat(const TetrahedronNodes& x) {
 }
 
 void ValidateNodes(const Mesh& mesh) {
+  if (mesh.NumNodes() == 0) {
+    return;
+  }
+  Eigen::Array3d smallest = mesh.nodes.col(0);
+  Eigen::Array3d largest = smallest;
   for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
-    if (!mesh.nodes.col(node).allFinite()) {
+    const Eigen::Array3d position = mesh.nodes.col(node);
+    if (!position.allFinite()) {
       throw std::invalid_argument(
           "node " + std::to_string(node) +
           " has a position that is not finite; correct the mesh");
     }
+    smallest = smallest.min(position);
+    largest = largest.max(position);
   }
-  if (mesh.NumNodes() > 0) {
-    const Eigen::Vector3d extent =
-        mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff();
-    RequireMagnitude(extent.maxCoeff(), "the extent of the mesh");
-  }
+  RequireMagnitude((largest - smallest).maxCoeff(), "the extent of the mesh");
 }
 
-void ValidateElements(const Mesh& mesh) {
+// Returns, for each node, whether an element uses it.
+std::vector<char> ValidateElements(const Mesh& mesh) {
   if (mesh.elements.cols() == 0) {
     throw std::invalid_argument(
         "the mesh has no tetrahedra; mesh the volume, not only its surface");
@@ -82,6 +95,8 @@ void ValidateElements(const Mesh& mesh) {
         "the mesh has " + std::to_string(mesh.elements.rows()) +
         " nodes per element; linear tetrahedra have 4, quadratic ones 10");
   }
+  // Of characters, which are faster to write than bits.
+  std::vector<char> used(mesh.NumNodes(), 0);
   for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
     const int* const nodes = mesh.elements.col(element).data();
     if (std::any_of(nodes, nodes + mesh.elements.rows(), [&](int node) {
@@ -97,7 +112,11 @@ void ValidateElements(const Mesh& mesh) {
           " is flat (its smallest height is less than a millionth of its "
           "longest edge); remove it or mesh again");
     }
+    for (Eigen::Index i = 0; i < mesh.elements.rows(); ++i) {
+      used[nodes[i]] = 1;
+    }
   }
+  return used;
 }
 
 void ValidateMidEdgeNodes(const Mesh& mesh) {
@@ -124,11 +143,13 @@ void ValidateMidEdgeNodes(const Mesh& mesh) {
   }
 }
 
-void ValidateEveryNodeIsUsed(const Mesh& mesh) {
-  // Of characters, which are faster to write than bits.
-  std::vector<char> used(mesh.NumNodes(), 0);
-  for (const int node : mesh.elements.reshaped()) {
-    used[node] = 1;
+}  // namespace
+
+void ValidateMesh(const Mesh& mesh) {
+  ValidateNodes(mesh);
+  const std::vector<char> used = ValidateElements(mesh);
+  if (mesh.Order() == 2) {
+    ValidateMidEdgeNodes(mesh);
   }
   const auto unused = std::find(used.begin(), used.end(), 0);
   if (unused != used.end()) {
@@ -136,17 +157,6 @@ void ValidateEveryNodeIsUsed(const Mesh& mesh) {
                                 std::to_string(unused - used.begin()) +
                                 " belongs to no tetrahedron; remove it");
   }
-}
-
-}  // namespace
-
-void ValidateMesh(const Mesh& mesh) {
-  ValidateNodes(mesh);
-  ValidateElements(mesh);
-  if (mesh.Order() == 2) {
-    ValidateMidEdgeNodes(mesh);
-  }
-  ValidateEveryNodeIsUsed(mesh);
   if (mesh.regions.size() != 0 && mesh.regions.size() != mesh.NumElements()) {
     throw std::invalid_argument(
         "there are " + std::to_string(mesh.regions.size()) +

@@ -27,8 +27,9 @@ std::array<int, 4> CornersByDescendingNode(const int* nodes) {
 }
 
 void AddLinearProducts(const Mesh& mesh, const NodeGraph& graph,
-                       Eigen::Matrix3Xd& products) {
-  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+                       Eigen::Index first, Eigen::Index end,
+                       Eigen::Index pair_mask, Eigen::Matrix3Xd& products) {
+  for (Eigen::Index e = first; e < end; ++e) {
     const TetrahedronGradients element(GatherTetrahedron(mesh, e));
     const Eigen::Matrix<double, 3, 4> weighted =
         element.volume * element.gradient;
@@ -44,7 +45,7 @@ void AddLinearProducts(const Mesh& mesh, const NodeGraph& graph,
             row[0] * column[1], row[1] * column[1], row[2] * column[1],
             row[0] * column[2], row[1] * column[2], row[2] * column[2]};
         const Eigen::Index pair = pairs[4 * corners[i] + corners[j]];
-        double* const product = products.data() + 9 * pair;
+        double* const product = products.data() + 9 * (pair & pair_mask);
         for (int k = 0; k < 9; ++k) {
           product[k] += outer[k];
         }
@@ -92,17 +93,18 @@ class QuadraticElementProducts {
 };
 
 void AddQuadraticProducts(const Mesh& mesh, const NodeGraph& graph,
-                          Eigen::Matrix3Xd& products) {
-  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+                          Eigen::Index first, Eigen::Index end,
+                          Eigen::Index pair_mask, Eigen::Matrix3Xd& products) {
+  for (Eigen::Index e = first; e < end; ++e) {
     const QuadraticElementProducts element(
         TetrahedronGradients(GatherTetrahedron(mesh, e)));
     const auto add = [&](int i, int j, const Eigen::Matrix3d& block) {
       const int pair = graph.element_pairs(10 * i + j, e);
       if (pair >= 0) {
-        products.middleCols<3>(3 * Eigen::Index(pair)) += block;
+        products.middleCols<3>(3 * (pair & pair_mask)) += block;
       } else {
         const int transposed = graph.element_pairs(10 * j + i, e);
-        products.middleCols<3>(3 * Eigen::Index(transposed)) +=
+        products.middleCols<3>(3 * (transposed & pair_mask)) +=
             block.transpose();
       }
     };
@@ -170,20 +172,21 @@ NodeGraph::NodeGraph(const Mesh& mesh)
   start[mesh.NumNodes()] = NumPairs();
 }
 
-void GradientProducts(const Mesh& mesh, const NodeGraph& graph,
-                      Eigen::Matrix3Xd& products) {
-  products.setZero(3, 3 * graph.NumPairs());
-  if (mesh.Order() == 1) {
-    AddLinearProducts(mesh, graph, products);
-  } else {
-    AddQuadraticProducts(mesh, graph, products);
-  }
+Eigen::Matrix3Xd GradientProducts(const Mesh& mesh, const NodeGraph& graph) {
+  constexpr Eigen::Index kEveryPair = -1;
+  Eigen::Matrix3Xd products = Eigen::Matrix3Xd::Zero(3, 3 * graph.NumPairs());
+  AddGradientProducts(mesh, graph, 0, mesh.NumElements(), kEveryPair, products);
+  return products;
 }
 
-Eigen::Matrix3Xd GradientProducts(const Mesh& mesh, const NodeGraph& graph) {
-  Eigen::Matrix3Xd products;
-  GradientProducts(mesh, graph, products);
-  return products;
+void AddGradientProducts(const Mesh& mesh, const NodeGraph& graph,
+                         Eigen::Index first, Eigen::Index end,
+                         Eigen::Index pair_mask, Eigen::Matrix3Xd& products) {
+  if (mesh.Order() == 1) {
+    AddLinearProducts(mesh, graph, first, end, pair_mask, products);
+  } else {
+    AddQuadraticProducts(mesh, graph, first, end, pair_mask, products);
+  }
 }
 
 }  // namespace elastimate

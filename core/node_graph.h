@@ -36,9 +36,13 @@ struct NodeGraph {
 /// Exact for linear and for quadratic tetrahedra.
 /// Cost: one element pass.
 Eigen::Matrix3Xd GradientProducts(const Mesh& mesh, const NodeGraph& graph);
-/// The same into a matrix that is used again.
-void GradientProducts(const Mesh& mesh, const NodeGraph& graph,
-                      Eigen::Matrix3Xd& products);
+
+/// Adds what the elements from `first` to before `end` contribute to M.  The
+/// block of pair k is number k & pair_mask, so that memory for the pairs of a
+/// front of nodes is enough where the rest is done with.
+void AddGradientProducts(const Mesh& mesh, const NodeGraph& graph,
+                         Eigen::Index first, Eigen::Index end,
+                         Eigen::Index pair_mask, Eigen::Matrix3Xd& products);
 
 /// H_ij from M_ij.
 inline Eigen::Matrix3d StiffnessBlockH(const Eigen::Matrix3d& m) {

@@ -33,14 +33,19 @@ void RequireColumns(Eigen::Index columns, const Mesh& mesh,
   }
 }
 
-void RequireFinite(const Eigen::Matrix3Xd& values, const std::string& what) {
+// `values` may be an expression; it is not kept.
+template <class Values>
+void RequireFinite(const Values& values, const std::string& what) {
+  double largest = 0;
   for (Eigen::Index node = 0; node < values.cols(); ++node) {
-    if (!values.col(node).allFinite()) {
+    const Eigen::Vector3d of_node = values.col(node);
+    if (!of_node.allFinite()) {
       Fail(what + " of node " + std::to_string(node) +
            " is not finite; correct it");
     }
+    largest = std::max(largest, of_node.cwiseAbs().maxCoeff());
   }
-  RequireMagnitude(values.cwiseAbs().maxCoeff(), what);
+  RequireMagnitude(largest, what);
 }
 
 void ValidateSupports(const Mesh& mesh, const Supports& supports) {

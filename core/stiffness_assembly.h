@@ -32,8 +32,9 @@ class StiffnessAssembly {
                     const DegreesOfFreedom& degrees_of_freedom);
 
   /// Assembles the values of H and J again, for moved nodes of the same mesh.
-  /// Cost: one element pass.  Keeps 72 byte for each pair of nodes (100 MB for
-  /// a million tetrahedra), so that no new memory has to be mapped.
+  /// Cost: one element pass, in memory for the pairs of a front of nodes: 72
+  /// byte for each (2 MB for a million tetrahedra of good numbering, 100 MB of
+  /// a random one), so that most of it stays in the cache.
   void Assemble(const Mesh& mesh);
 
   const NodeGraph& Graph() const { return graph_; }
@@ -51,6 +52,16 @@ class StiffnessAssembly {
   }
 
  private:
+  /// The elements up to `end_element`, after which no element has one of the
+  /// first `num_complete_nodes`.
+  struct Stage {
+    Eigen::Index end_element;
+    Eigen::Index num_complete_nodes;
+  };
+
+  void PlanStages(const Mesh& mesh);
+  /// Writes the values of the pairs of a node.
+  void WriteColumns(Eigen::Index node);
   void BuildPattern(const DegreesOfFreedom& degrees_of_freedom);
 
   NodeGraph graph_;
@@ -60,7 +71,9 @@ class StiffnessAssembly {
   /// For each pair of nodes and each of the three components of its column
   /// node: where the rows of its row node begin in the values, -1 when held.
   std::vector<std::int64_t> pair_values_;
-  /// Memory for GradientProducts, empty until values are assembled again.
+  std::vector<Stage> stages_;
+  /// For AddGradientProducts: the pairs at work, zero between assemblies.
+  Eigen::Index pair_mask_;
   Eigen::Matrix3Xd products_;
   Eigen::VectorXd h_;
   Eigen::VectorXd j_;

@@ -37,28 +37,31 @@ Eigen::Matrix2d StiffnessTraces(const Mesh& mesh,
   return traces;
 }
 
-Eigen::MatrixXd TraceProbes(const DegreesOfFreedom& degrees_of_freedom) {
-  constexpr Eigen::Index kNumProbes = 2;
+void SetTraceProbes(const ComponentMask& held,
+                    Eigen::Ref<Eigen::MatrixXd> probes) {
+  // Looked up, since a branch could not be predicted.
+  constexpr double kSigns[2] = {-1, 1};
   std::mt19937_64 generator(20071107);
-  Eigen::MatrixXd probes =
-      Eigen::MatrixXd::Zero(degrees_of_freedom.NumAll(), kNumProbes);
+  probes.setZero();
   for (auto probe : probes.colwise()) {
-    for (const Eigen::Index dof : degrees_of_freedom.free) {
-      probe(dof) = (generator() & 1U) != 0 ? 1 : -1;
+    for (Eigen::Index dof = 0; dof < held.size(); ++dof) {
+      if (!held.data()[dof]) {
+        probe(dof) = kSigns[generator() & 1U];
+      }
     }
   }
-  return probes;
 }
 
 Eigen::Matrix2d EstimateStiffnessTraces(
-    const DegreesOfFreedom& degrees_of_freedom,
-    const Eigen::Ref<const Eigen::MatrixXd>& h,
+    const ComponentMask& held, const Eigen::Ref<const Eigen::MatrixXd>& h,
     const Eigen::Ref<const Eigen::MatrixXd>& j) {
   Eigen::Matrix2d traces = Eigen::Matrix2d::Zero();
   for (Eigen::Index k = 0; k < h.cols(); ++k) {
-    for (const Eigen::Index dof : degrees_of_freedom.free) {
-      const Eigen::Vector2d products(h(dof, k), j(dof, k));
-      traces += products * products.transpose();
+    for (Eigen::Index dof = 0; dof < held.size(); ++dof) {
+      if (!held.data()[dof]) {
+        const Eigen::Vector2d products(h(dof, k), j(dof, k));
+        traces += products * products.transpose();
+      }
     }
   }
   return traces / static_cast<double>(h.cols());

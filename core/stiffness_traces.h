@@ -5,6 +5,7 @@
 
 #include "elastimate/core/degrees_of_freedom.h"
 #include "elastimate/core/mesh.h"
+#include "elastimate/core/scene.h"
 
 namespace elastimate {
 
@@ -22,16 +23,16 @@ namespace elastimate {
 Eigen::Matrix2d StiffnessTraces(const Mesh& mesh,
                                 const DegreesOfFreedom& degrees_of_freedom);
 
-/// Columns of random signs z in the free rows, zero in the held ones:
-/// (3 num_nodes) x 2.  Deterministic.
-Eigen::MatrixXd TraceProbes(const DegreesOfFreedom& degrees_of_freedom);
+/// Makes `probes`, of 3 num_nodes rows, columns of random signs z in the free
+/// rows, zero in the held ones.  Deterministic.
+void SetTraceProbes(const ComponentMask& held,
+                    Eigen::Ref<Eigen::MatrixXd> probes);
 
 /// An unbiased estimate of StiffnessTraces from the products H z and J z of
-/// TraceProbes, (3 num_nodes) x 2: the mean of z^T X Y z (Hutchinson 1990), of
-/// relative standard error below about 1 / sqrt(num_free).  O(num_free).
+/// probes: the mean of z^T X Y z (Hutchinson 1990), with two of them of
+/// relative standard error below about 1 / sqrt(num_free).  O(num_nodes).
 Eigen::Matrix2d EstimateStiffnessTraces(
-    const DegreesOfFreedom& degrees_of_freedom,
-    const Eigen::Ref<const Eigen::MatrixXd>& h,
+    const ComponentMask& held, const Eigen::Ref<const Eigen::MatrixXd>& h,
     const Eigen::Ref<const Eigen::MatrixXd>& j);
 
 }  // namespace elastimate

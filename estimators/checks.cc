@@ -17,22 +17,33 @@ std::string Text(double value) {
   return text.str();
 }
 
+// Whether the loads act on a free degree of freedom.
+bool IsLoaded(const Scene& scene, const LoadCase& load_case) {
+  const auto acts = [&](const Eigen::Matrix3Xd& force) {
+    return (!scene.supports.held && force.array() != 0).any();
+  };
+  const NodalForces* const nodal_forces =
+      load_case.loads.size() == 1
+          ? std::get_if<NodalForces>(&load_case.loads.front())
+          : nullptr;
+  return nodal_forces != nullptr
+             ? acts(nodal_forces->force)
+             : acts(AssembleLoads(scene.mesh, load_case.loads));
+}
+
 // What one load case measured at the free degrees of freedom.
 struct MeasurementSummary {
   bool any_observed = false;
   bool any_displacement = false;
-  bool any_force = false;
   double free_square_sum = 0;
   double held_deviation_square_sum = 0;
 };
 
 MeasurementSummary Summarize(const Scene& scene, const LoadCase& load_case) {
   MeasurementSummary summary;
-  const Eigen::Matrix3Xd force = AssembleLoads(scene.mesh, load_case.loads);
   for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
     for (int i = 0; i < 3; ++i) {
       const bool held = scene.supports.held(i, node);
-      summary.any_force |= !held && force(i, node) != 0;
       if (!IsObserved(load_case, i, node)) {
         continue;
       }
@@ -217,7 +228,7 @@ std::vector<std::string> CheckMeasurements(const Scene& scene) {
           " is zero at every free node; nothing moved, so nothing can be "
           "estimated");
     }
-    any_force |= summary.any_force;
+    any_force = any_force || IsLoaded(scene, load_case);
     num_with_noise_sd += load_case.noise_sd ? 1 : 0;
     // Measurement noise on held nodes is no contradiction; a motion is.
     if (summary.held_deviation_square_sum > 0.01 * summary.free_square_sum) {

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "elastimate/core/degrees_of_freedom.h"
+#include "elastimate/core/large_pages.h"
 #include "elastimate/core/loads.h"
 #include "elastimate/core/stiffness_product.h"
 #include "elastimate/core/stiffness_traces.h"
@@ -24,6 +25,7 @@ constexpr double kCollinear = 1e-11;
 // Up to here the exact traces take milliseconds; beyond, estimated ones are
 // good to better than 1 %, and standard errors to half of that.
 constexpr Eigen::Index kMostElementsForExactTraces = 10000;
+constexpr Eigen::Index kNumTraceProbes = 2;
 
 // Factor between the force residual and what the given noise explains from
 // which on the model is in doubt.
@@ -31,67 +33,91 @@ constexpr double kUnexplainedResidual = 1.5;
 
 // The triangle of a QR factorisation of the free rows of all columns of f, b
 // and a, side by side, in blocks of rows that stay in the cache.
-Eigen::Matrix3d BlockwiseTriangle(const std::vector<Eigen::Index>& free,
-                                  const Eigen::MatrixXd& f,
-                                  const Eigen::MatrixXd& b,
-                                  const Eigen::MatrixXd& a) {
-  constexpr std::size_t kBlockRows = 512;
-  Eigen::Matrix3d triangle = Eigen::Matrix3d::Zero();
-  Eigen::Matrix<double, Eigen::Dynamic, 3> block;
+Eigen::Matrix3d BlockwiseTriangle(const ComponentMask& held,
+                                  const Eigen::Ref<const Eigen::MatrixXd>& f,
+                                  const Eigen::Ref<const Eigen::MatrixXd>& b,
+                                  const Eigen::Ref<const Eigen::MatrixXd>& a) {
+  using Block = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+  constexpr Eigen::Index kBlockRows = 512;
+  // The triangle of the rows before, and below it further rows.
+  Block block = Block::Zero(3 + kBlockRows, 3);
+  Eigen::Index num_rows = 3;
+  const auto factorize = [&] {
+    const Eigen::HouseholderQR<Block> qr(block.topRows(num_rows));
+    block.topRows<3>() =
+        qr.matrixQR().topRows<3>().triangularView<Eigen::Upper>();
+    num_rows = 3;
+  };
   for (Eigen::Index k = 0; k < f.cols(); ++k) {
-    for (std::size_t first = 0; first < free.size(); first += kBlockRows) {
-      const std::size_t rows = std::min(kBlockRows, free.size() - first);
-      block.resize(3 + Eigen::Index(rows), 3);
-      block.topRows<3>() = triangle;
-      for (std::size_t i = 0; i < rows; ++i) {
-        const Eigen::Index dof = free[first + i];
-        block.row(3 + Eigen::Index(i)) << f(dof, k), b(dof, k), a(dof, k);
+    for (Eigen::Index dof = 0; dof < held.size(); ++dof) {
+      if (held.data()[dof]) {
+        continue;
       }
-      const Eigen::HouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 3>> qr(
-          block);
-      triangle = qr.matrixQR().topRows<3>().triangularView<Eigen::Upper>();
+      block.row(num_rows++) << f(dof, k), b(dof, k), a(dof, k);
+      if (num_rows == block.rows()) {
+        factorize();
+      }
     }
   }
-  return triangle;
+  factorize();
+  return block.topRows<3>();
 }
 
 // The products with each other of the free rows of H b, J b, H f and J f,
-// summed over the load cases.  `h` and `j` begin with the columns of b, then of
-// f.
-Eigen::Matrix4d ProductGram(const std::vector<Eigen::Index>& free,
-                            Eigen::Index num_cases, const Eigen::MatrixXd& h,
-                            const Eigen::MatrixXd& j) {
+// summed over the load cases.
+Eigen::Matrix4d ProductGram(const ComponentMask& held,
+                            const StiffnessProducts& of_b,
+                            const Eigen::Ref<const Eigen::MatrixXd>& hf,
+                            const Eigen::Ref<const Eigen::MatrixXd>& jf) {
   Eigen::Matrix4d gram = Eigen::Matrix4d::Zero();
-  for (Eigen::Index k = 0; k < num_cases; ++k) {
-    for (const Eigen::Index dof : free) {
-      const Eigen::Vector4d row(h(dof, k), j(dof, k), h(dof, num_cases + k),
-                                j(dof, num_cases + k));
-      gram += row * row.transpose();
+  for (Eigen::Index k = 0; k < hf.cols(); ++k) {
+    for (Eigen::Index dof = 0; dof < held.size(); ++dof) {
+      if (!held.data()[dof]) {
+        const Eigen::Vector4d row(of_b.h(dof, k), of_b.j(dof, k), hf(dof, k),
+                                  jf(dof, k));
+        gram += row * row.transpose();
+      }
     }
   }
   return gram;
+}
+
+void SetHeldRowsToZero(const ComponentMask& held,
+                       Eigen::Ref<Eigen::MatrixXd> columns) {
+  for (auto column : columns.colwise()) {
+    for (Eigen::Index dof = 0; dof < held.size(); ++dof) {
+      if (held.data()[dof]) {
+        column(dof) = 0;
+      }
+    }
+  }
 }
 
 std::string Percent(double ratio) { return TwoDigits(100 * ratio) + " %"; }
 
 }  // namespace
 
-WeightedLoadCases WeightLoadCases(const Scene& scene,
-                                  const DegreesOfFreedom& degrees_of_freedom) {
-  const std::vector<Eigen::Index>& free = degrees_of_freedom.free;
-  const Eigen::VectorXd held_displacement = HeldDisplacement(scene.supports);
+WeightedLoadCases WeightLoadCases(const Scene& scene) {
+  const Eigen::Index num_rows = 3 * scene.mesh.NumNodes();
   const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
-  WeightedLoadCases weighted;
-  weighted.q.resize(degrees_of_freedom.NumAll(), num_cases);
-  weighted.f = AssembleLoadCases(scene);
-  for (Eigen::Index k = 0; k < num_cases; ++k) {
+  WeightedLoadCases weighted = {Eigen::MatrixXd(num_rows, num_cases),
+                                Eigen::MatrixXd(num_rows, num_cases)};
+  WeightLoadCases(scene, weighted.q, weighted.f);
+  return weighted;
+}
+
+void WeightLoadCases(const Scene& scene, Eigen::Ref<Eigen::MatrixXd> q,
+                     Eigen::Ref<Eigen::MatrixXd> f) {
+  const Supports& supports = scene.supports;
+  AssembleLoadCases(scene, f);
+  for (Eigen::Index k = 0; k < q.cols(); ++k) {
     const LoadCase& load_case = scene.load_cases[k];
     const double weight = 1 / load_case.noise_sd.value_or(1);
-    weighted.q.col(k) = weight * held_displacement;
-    weighted.q.col(k)(free) = weight * load_case.displacement.reshaped()(free);
-    weighted.f.col(k) *= weight;
+    q.col(k).reshaped(3, scene.mesh.NumNodes()) =
+        weight *
+        supports.held.select(supports.displacement, load_case.displacement);
+    f.col(k) *= weight;
   }
-  return weighted;
 }
 
 std::string ForceResidual::WhyUnsupported(const Scene& scene) {
@@ -120,39 +146,43 @@ std::string ForceResidual::WhyUnsupported(const Scene& scene) {
 }
 
 ForceResidual::ForceResidual(const Scene& scene) {
-  const DegreesOfFreedom dofs(scene.supports);
+  const ComponentMask& held = scene.supports.held;
   const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
-  known_noise_sd_ = scene.load_cases.front().noise_sd;
-  const auto [q, f] = WeightLoadCases(scene, dofs);
-
-  const StiffnessProducts products = MultiplyStiffnessBasis(scene.mesh, q);
-  ++work_.element_passes;
-  num_equations_ = dofs.NumFree() * num_cases;
-  triangle_ = BlockwiseTriangle(dofs.free, f, products.j, products.h);
-
-  // H and J times b, f and, where the traces are estimated, their probes.
   const bool is_small = scene.mesh.NumElements() <= kMostElementsForExactTraces;
-  const Eigen::MatrixXd probes =
-      is_small ? Eigen::MatrixXd(dofs.NumAll(), 0) : TraceProbes(dofs);
-  Eigen::MatrixXd again(dofs.NumAll(), 2 * num_cases + probes.cols());
-  again << products.j, f, probes;
-  for (Eigen::Index dof = 0; dof < dofs.NumAll(); ++dof) {
-    if (dofs.place[dof] < 0) {
-      again.row(dof).setZero();
-    }
-  }
-  const StiffnessProducts stiffened = MultiplyStiffnessBasis(scene.mesh, again);
-  ++work_.element_passes;
-  product_gram_ = ProductGram(dofs.free, num_cases, stiffened.h, stiffened.j);
+  const Eigen::Index num_probes = is_small ? 0 : kNumTraceProbes;
+  known_noise_sd_ = scene.load_cases.front().noise_sd;
+  num_equations_ = (held.size() - held.count()) * num_cases;
 
+  // q, f and, where the traces are estimated, their probes, in one matrix:
+  // memory is dear where a pass is as short as writing it.
+  Eigen::MatrixXd columns;
+  ResizeInLargePages(held.size(), 2 * num_cases + num_probes, columns);
+  auto f = columns.middleCols(num_cases, num_cases);
+  WeightLoadCases(scene, columns.leftCols(num_cases), f);
+  SetHeldRowsToZero(held, f);
+  SetTraceProbes(held, columns.rightCols(num_probes));
+  const StiffnessProducts products =
+      MultiplyStiffnessBasis(scene.mesh, columns);
+  ++work_.element_passes;
+  triangle_ = BlockwiseTriangle(held, f, products.j.leftCols(num_cases),
+                                products.h.leftCols(num_cases));
   if (is_small) {
-    traces_ = StiffnessTraces(scene.mesh, dofs);
+    traces_ = StiffnessTraces(scene.mesh, DegreesOfFreedom(scene.supports));
     ++work_.element_passes;
   } else {
-    traces_ =
-        EstimateStiffnessTraces(dofs, stiffened.h.rightCols(probes.cols()),
-                                stiffened.j.rightCols(probes.cols()));
+    traces_ = EstimateStiffnessTraces(held, products.h.rightCols(num_probes),
+                                      products.j.rightCols(num_probes));
   }
+
+  Eigen::MatrixXd b;
+  ResizeInLargePages(held.size(), num_cases, b);
+  b = products.j.leftCols(num_cases);
+  SetHeldRowsToZero(held, b);
+  const StiffnessProducts of_b = MultiplyStiffnessBasis(scene.mesh, b);
+  ++work_.element_passes;
+  product_gram_ =
+      ProductGram(held, of_b, products.h.middleCols(num_cases, num_cases),
+                  products.j.middleCols(num_cases, num_cases));
   traces_ *= static_cast<double>(num_cases);
 }
 

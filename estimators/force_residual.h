@@ -22,8 +22,10 @@ struct WeightedLoadCases {
 };
 
 /// Precondition: every free component is observed.
-WeightedLoadCases WeightLoadCases(const Scene& scene,
-                                  const DegreesOfFreedom& degrees_of_freedom);
+WeightedLoadCases WeightLoadCases(const Scene& scene);
+/// The same into columns that are there.
+void WeightLoadCases(const Scene& scene, Eigen::Ref<Eigen::MatrixXd> q,
+                     Eigen::Ref<Eigen::MatrixXd> f);
 
 /// The force residual r(nu, t) = a + nu b - t f of a scene, a = H q, b = J q,
 /// over the free degrees of freedom of all load cases, compressed to what its
@@ -33,7 +35,8 @@ WeightedLoadCases WeightLoadCases(const Scene& scene,
 /// of the weighted displacements has standard deviation 1.
 class ForceResidual {
  public:
-  /// One element pass for a and b, and two for the statistics.
+  /// One element pass for a and b and what of the statistics does not depend on
+  /// them, and one or two for the rest.
   /// Preconditions: what Estimator::Run checks, and WhyUnsupported is empty.
   explicit ForceResidual(const Scene& scene);
 

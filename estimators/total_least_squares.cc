@@ -51,7 +51,7 @@ class Derivatives {
  public:
   explicit Derivatives(const Scene& scene)
       : mesh_(scene.mesh), dofs_(scene.supports) {
-    const auto [q, f] = WeightLoadCases(scene, dofs_);
+    const auto [q, f] = WeightLoadCases(scene);
     const StiffnessProducts products = MultiplyStiffnessBasis(mesh_, q);
     a_ = dofs_.Restrict(products.h);
     b_ = dofs_.Restrict(products.j);

@@ -256,7 +256,7 @@ VirtualWorkBalance::VirtualWorkBalance(const VirtualWork& work,
                                        const Scene& scene)
     : work_(work) {
   const DegreesOfFreedom dofs(scene.supports);
-  const auto [q, f] = WeightLoadCases(scene, dofs);
+  const auto [q, f] = WeightLoadCases(scene);
   const StiffnessProducts products = MultiplyStiffnessBasis(scene.mesh, q);
   internal_h_ = work.Of(products.h);
   internal_j_ = work.Of(products.j);

@@ -80,11 +80,10 @@ LoadCase ReadLoadCase(const MeshFile& mesh, int number,
   const std::string suffix = CaseSuffix(number);
   const ComponentMask all = ComponentMask::Constant(3, mesh.nodes.cols(), true);
   LoadCase load_case;
-  const Eigen::Matrix3Xd force =
-      RequireNodeArray(mesh, "force" + suffix, false);
-  RequireFinite(mesh.path, "the point array 'force" + suffix + "'", mesh, force,
-                all);
-  load_case.loads = {NodalForces{force}};
+  NodalForces forces{RequireNodeArray(mesh, "force" + suffix, false)};
+  RequireFinite(mesh.path, "the point array 'force" + suffix + "'", mesh,
+                forces.force, all);
+  load_case.loads.emplace_back(std::move(forces));
   const std::string name = "displacement" + suffix;
   const Eigen::MatrixXd* displacement = FindNodeArray(mesh, name, false);
   if (displacement == nullptr) {
@@ -178,7 +177,7 @@ void NoteLostForces(FileScene& file_scene) {
 
 FileScene SceneFromArrays(MeshFile mesh, Measurement measurement) {
   FileScene file_scene;
-  file_scene.scene.mesh = SceneMesh(mesh);
+  file_scene.scene.mesh.regions = ReadRegions(mesh);
   const int num_cases = CountLoadCases(mesh);
   for (int number = 1; number <= num_cases; ++number) {
     file_scene.scene.load_cases.push_back(
@@ -186,6 +185,8 @@ FileScene SceneFromArrays(MeshFile mesh, Measurement measurement) {
   }
   CheckCaseNumbers(mesh, num_cases);
   file_scene.scene.supports = ReadSupports(mesh);
+  file_scene.scene.mesh.nodes = std::move(mesh.nodes);
+  file_scene.scene.mesh.elements = std::move(mesh.tetrahedra);
   file_scene.mesh = std::move(mesh);
   NoteLostForces(file_scene);
   return file_scene;

@@ -11,6 +11,8 @@ namespace {
 
 const char* const kAxis[3] = {"x", "y", "z"};
 
+}  // namespace
+
 Eigen::VectorXi ReadRegions(const MeshFile& mesh) {
   const Eigen::MatrixXd* array = FindArray(mesh.tetrahedron_arrays, "region");
   if (array == nullptr) {
@@ -33,12 +35,6 @@ Eigen::VectorXi ReadRegions(const MeshFile& mesh) {
     }
   }
   return array->row(0).transpose().cast<int>();
-}
-
-}  // namespace
-
-Mesh SceneMesh(const MeshFile& mesh) {
-  return {mesh.nodes, mesh.tetrahedra, ReadRegions(mesh)};
 }
 
 void RequireFinite(const std::filesystem::path& file, const std::string& what,

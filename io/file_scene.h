@@ -12,15 +12,14 @@ namespace elastimate {
 /// A scene over all nodes of its mesh file, those without a tetrahedron
 /// included, so that messages can name nodes as the file does.
 struct FileScene {
-  MeshFile mesh;
+  MeshFile mesh;  ///< Nodes and tetrahedra may have moved to the scene.
   Scene scene;
   std::vector<std::string> notices;
 };
 
-/// What every scene over `mesh` has: the nodes, the tetrahedra and, from the
-/// cell array `region`, the regions.  Throws std::invalid_argument, naming the
-/// file, when that array is not one of integers.
-Mesh SceneMesh(const MeshFile& mesh);
+/// The regions from the cell array `region`; empty when there is none.  Throws
+/// std::invalid_argument, naming the file, when it is not one of integers.
+Eigen::VectorXi ReadRegions(const MeshFile& mesh);
 
 /// Throws std::invalid_argument unless `values`, 3 x num_nodes, are finite
 /// where `mask` says and a tetrahedron uses the node: "FILE: WHAT of node 7

@@ -88,10 +88,20 @@ class GmshSession {
 class Numbering {
  public:
   explicit Numbering(std::vector<std::size_t> numbers)
-      : numbers_(std::move(numbers)) {}
+      : numbers_(std::move(numbers)),
+        has_no_gap_(std::adjacent_find(numbers_.begin(), numbers_.end(),
+                                       [](std::size_t a, std::size_t b) {
+                                         return b != a + 1;
+                                       }) == numbers_.end()) {}
 
   /// -1 when `number` is not in the list.
   int Find(std::size_t number) const {
+    // As in most files.
+    if (has_no_gap_ && !numbers_.empty()) {
+      return number < numbers_.front() || number > numbers_.back()
+                 ? -1
+                 : static_cast<int>(number - numbers_.front());
+    }
     const auto found =
         std::lower_bound(numbers_.begin(), numbers_.end(), number);
     return found == numbers_.end() || *found != number
@@ -102,6 +112,7 @@ class Numbering {
 
  private:
   std::vector<std::size_t> numbers_;
+  bool has_no_gap_;
 };
 
 /// The permutation that sorts `values`.

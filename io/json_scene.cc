@@ -210,7 +210,7 @@ FileScene ReadJsonScene(const std::filesystem::path& path,
   FileScene file_scene;
   file_scene.mesh = ReadNamedMesh(document.At("mesh"));
   const MeshFile& mesh = file_scene.mesh;
-  file_scene.scene.mesh = SceneMesh(mesh);
+  file_scene.scene.mesh = {mesh.nodes, mesh.tetrahedra, ReadRegions(mesh)};
   file_scene.scene.supports = ReadSupports(document, mesh);
   const Context context = {
       mesh, !file_scene.scene.supports.held.colwise().all() && mesh.used,

@@ -4,9 +4,11 @@
 #include <array>
 #include <cctype>
 #include <fstream>
+#include <numeric>
 #include <set>
 #include <system_error>
-#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "elastimate/io/gmsh_mesh.h"
 #include "elastimate/io/input_error.h"
@@ -33,34 +35,40 @@ void CheckPositions(const MeshFile& mesh) {
 
 /// A tetrahedron that comes twice is twice as stiff.
 void CheckTetrahedraDiffer(const MeshFile& mesh) {
-  struct Tetrahedron {
-    std::array<int, 4> nodes;
-    Eigen::Index index;
-  };
-  std::vector<Tetrahedron> tetrahedra;
-  tetrahedra.reserve(mesh.tetrahedra.cols());
+  // Ordered by the smallest node, which few have in common.
+  std::vector<Eigen::Index> end(mesh.nodes.cols() + 1, 0);
   for (Eigen::Index i = 0; i < mesh.tetrahedra.cols(); ++i) {
-    const auto corners = mesh.tetrahedra.col(i);
-    tetrahedra.push_back({{corners(0), corners(1), corners(2), corners(3)}, i});
-    std::sort(tetrahedra.back().nodes.begin(), tetrahedra.back().nodes.end());
+    ++end[mesh.tetrahedra.col(i).minCoeff() + 1];
   }
-  std::sort(tetrahedra.begin(), tetrahedra.end(),
-            [](const Tetrahedron& a, const Tetrahedron& b) {
-              return std::tie(a.nodes, a.index) < std::tie(b.nodes, b.index);
-            });
-  const auto twin =
-      std::adjacent_find(tetrahedra.begin(), tetrahedra.end(),
-                         [](const Tetrahedron& a, const Tetrahedron& b) {
-                           return a.nodes == b.nodes;
-                         });
-  if (twin != tetrahedra.end()) {
-    ThrowInputError(
-        mesh.path,
-        "tetrahedra " + std::to_string(twin->index) + " and " +
-            std::to_string((twin + 1)->index) + " have the same nodes; " +
-            (mesh.is_vtk ? "keep one of them"
-                         : "save the mesh as .msh of version 4 (older ones "
-                           "repeat what is in several physical groups)"));
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<Eigen::Index> order(mesh.tetrahedra.cols());
+  for (Eigen::Index i = 0; i < mesh.tetrahedra.cols(); ++i) {
+    order[end[mesh.tetrahedra.col(i).minCoeff()]++] = i;
+  }
+  // The nodes of those of one smallest node, ascending, and their indices.
+  std::vector<std::pair<std::array<int, 4>, Eigen::Index>> some;
+  Eigen::Index first = 0;
+  for (Eigen::Index node = 0; node < mesh.nodes.cols(); ++node) {
+    some.clear();
+    for (; first < end[node]; ++first) {
+      const auto corners = mesh.tetrahedra.col(order[first]);
+      some.push_back(
+          {{corners(0), corners(1), corners(2), corners(3)}, order[first]});
+      std::sort(some.back().first.begin(), some.back().first.end());
+    }
+    std::sort(some.begin(), some.end());
+    const auto twin = std::adjacent_find(
+        some.begin(), some.end(),
+        [](const auto& a, const auto& b) { return a.first == b.first; });
+    if (twin != some.end()) {
+      ThrowInputError(
+          mesh.path,
+          "tetrahedra " + std::to_string(twin->second) + " and " +
+              std::to_string((twin + 1)->second) + " have the same nodes; " +
+              (mesh.is_vtk ? "keep one of them"
+                           : "save the mesh as .msh of version 4 (older ones "
+                             "repeat what is in several physical groups)"));
+    }
   }
 }
 

@@ -1,8 +1,10 @@
 #ifndef ELASTIMATE_IO_VTK_GRID_H_
 #define ELASTIMATE_IO_VTK_GRID_H_
 
+#include <vtkCellArray.h>
+#include <vtkSmartPointer.h>
+
 #include <Eigen/Core>
-#include <cstdint>
 #include <vector>
 
 #include "elastimate/io/mesh_file.h"
@@ -13,10 +15,9 @@ namespace elastimate {
 /// checked.
 struct VtkGrid {
   Eigen::Matrix3Xd points;
-  std::vector<std::int64_t> cell_types;
-  std::vector<std::int64_t> offsets;  ///< Of each cell in `connectivity`, and
-                                      ///< of its end.
-  std::vector<std::int64_t> connectivity;
+  std::vector<unsigned char> cell_types;
+  vtkSmartPointer<vtkCellArray> cells;  ///< Stored in 64 bits; null when there
+                                        ///< are none.
   std::vector<FileArray> point_arrays;
   std::vector<FileArray> cell_arrays;
 };

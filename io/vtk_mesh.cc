@@ -1,9 +1,13 @@
 #include "elastimate/io/vtk_mesh.h"
 
+#include <vtkCellArray.h>
 #include <vtkCellType.h>
 #include <vtkCellTypes.h>
+#include <vtkTypeInt64Array.h>
 
+#include <algorithm>
 #include <cctype>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <utility>
@@ -22,11 +26,8 @@ namespace {
 }
 
 /// "vtkQuadraticTetra" as "quadratic tetra".
-std::string CellTypeName(std::int64_t type) {
-  const std::string class_name =
-      type < 0 || type > 255
-          ? ""
-          : vtkCellTypes::GetClassNameFromTypeId(static_cast<int>(type));
+std::string CellTypeName(int type) {
+  const std::string class_name = vtkCellTypes::GetClassNameFromTypeId(type);
   if (class_name.rfind("vtk", 0) != 0) {
     return "cell of unknown type " + std::to_string(type);
   }
@@ -40,56 +41,63 @@ std::string CellTypeName(std::int64_t type) {
   return name;
 }
 
-bool IsIgnoredCell(std::int64_t type) {
+bool IsIgnoredCell(int type) {
   return type == VTK_VERTEX || type == VTK_POLY_VERTEX || type == VTK_LINE ||
          type == VTK_POLY_LINE || type == VTK_TRIANGLE;
 }
 
 void CheckOffsets(const std::filesystem::path& path, const VtkGrid& grid) {
-  const std::size_t count = grid.cell_types.size();
-  bool consistent = grid.offsets.size() == count + 1 && grid.offsets[0] == 0;
-  for (std::size_t cell = 0; cell < count && consistent; ++cell) {
-    consistent = grid.offsets[cell] <= grid.offsets[cell + 1];
+  const vtkTypeInt64Array& offsets = *grid.cells->GetOffsetsArray64();
+  const auto count = static_cast<vtkIdType>(grid.cell_types.size());
+  bool consistent =
+      offsets.GetNumberOfValues() == count + 1 && offsets.GetValue(0) == 0;
+  for (vtkIdType cell = 0; cell < count && consistent; ++cell) {
+    consistent = offsets.GetValue(cell) <= offsets.GetValue(cell + 1);
   }
-  if (!consistent || grid.offsets[count] !=
-                         static_cast<std::int64_t>(grid.connectivity.size())) {
+  if (!consistent ||
+      offsets.GetValue(count) != grid.cells->GetNumberOfConnectivityIds()) {
     ThrowInconsistent(path,
                       "its cell types, offsets and connectivity disagree");
   }
 }
 
-/// The cells that are tetrahedra.
-std::vector<std::size_t> FindTetrahedra(const std::filesystem::path& path,
-                                        const VtkGrid& grid) {
-  std::vector<std::size_t> tetrahedra;
-  tetrahedra.reserve(grid.cell_types.size());
-  for (std::size_t cell = 0; cell < grid.cell_types.size(); ++cell) {
-    const std::int64_t type = grid.cell_types[cell];
-    if (type == VTK_TETRA) {
-      if (grid.offsets[cell + 1] - grid.offsets[cell] != 4) {
-        ThrowInconsistent(path, "cell " + std::to_string(cell) +
-                                    " is a tetrahedron without four points");
-      }
-      tetrahedra.push_back(cell);
-    } else if (!IsIgnoredCell(type)) {
-      ThrowInputError(path, "cell " + std::to_string(cell) + " is a " +
-                                CellTypeName(type) +
-                                ", but only linear tetrahedra are supported; "
-                                "mesh the specimen with those");
-    }
-  }
-  return tetrahedra;
+bool IsTetrahedron(const VtkGrid& grid, std::size_t cell) {
+  return grid.cell_types[cell] == VTK_TETRA;
 }
 
-void CopyTetrahedra(const VtkGrid& grid,
-                    const std::vector<std::size_t>& tetrahedra,
-                    MeshFile& mesh) {
+/// Checks the kind of each cell.
+void CheckCellTypes(const std::filesystem::path& path, const VtkGrid& grid) {
+  const vtkTypeInt64Array& offsets = *grid.cells->GetOffsetsArray64();
+  for (std::size_t cell = 0; cell < grid.cell_types.size(); ++cell) {
+    const auto index = static_cast<vtkIdType>(cell);
+    if (!IsTetrahedron(grid, cell)) {
+      if (!IsIgnoredCell(grid.cell_types[cell])) {
+        ThrowInputError(path, "cell " + std::to_string(cell) + " is a " +
+                                  CellTypeName(grid.cell_types[cell]) +
+                                  ", but only linear tetrahedra are supported; "
+                                  "mesh the specimen with those");
+      }
+    } else if (offsets.GetValue(index + 1) - offsets.GetValue(index) != 4) {
+      ThrowInconsistent(path, "cell " + std::to_string(cell) +
+                                  " is a tetrahedron without four points");
+    }
+  }
+}
+
+void CopyTetrahedra(const VtkGrid& grid, MeshFile& mesh) {
+  const vtkTypeInt64Array& offsets = *grid.cells->GetOffsetsArray64();
+  const vtkTypeInt64Array& connectivity = *grid.cells->GetConnectivityArray64();
   const std::int64_t num_points = grid.points.cols();
-  mesh.tetrahedra.resize(4, static_cast<Eigen::Index>(tetrahedra.size()));
+  mesh.tetrahedra.resize(
+      4, std::count(grid.cell_types.begin(), grid.cell_types.end(), VTK_TETRA));
   Eigen::Index column = 0;
-  for (const std::size_t cell : tetrahedra) {
+  for (std::size_t cell = 0; cell < grid.cell_types.size(); ++cell) {
+    if (!IsTetrahedron(grid, cell)) {
+      continue;
+    }
+    const std::int64_t first = offsets.GetValue(static_cast<vtkIdType>(cell));
     for (int corner = 0; corner < 4; ++corner) {
-      const std::int64_t node = grid.connectivity[grid.offsets[cell] + corner];
+      const std::int64_t node = connectivity.GetValue(first + corner);
       if (node < 0 || node >= num_points) {
         ThrowInputError(
             mesh.path, "cell " + std::to_string(cell) + " names point " +
@@ -100,6 +108,19 @@ void CopyTetrahedra(const VtkGrid& grid,
       mesh.tetrahedra(corner, column) = static_cast<int>(node);
     }
     ++column;
+  }
+}
+
+/// Of the columns of cells, those of tetrahedra.
+void KeepTetrahedra(const VtkGrid& grid, std::vector<FileArray>& arrays) {
+  std::vector<std::size_t> tetrahedra;
+  for (std::size_t cell = 0; cell < grid.cell_types.size(); ++cell) {
+    if (IsTetrahedron(grid, cell)) {
+      tetrahedra.push_back(cell);
+    }
+  }
+  for (FileArray& array : arrays) {
+    array.values = Eigen::MatrixXd(array.values(Eigen::all, tetrahedra));
   }
 }
 
@@ -126,19 +147,18 @@ MeshFile ToMeshFile(const std::filesystem::path& path, VtkGrid grid) {
     return mesh;
   }
   CheckOffsets(path, grid);
-  const std::vector<std::size_t> tetrahedra = FindTetrahedra(path, grid);
-  CopyTetrahedra(grid, tetrahedra, mesh);
+  CheckCellTypes(path, grid);
+  CopyTetrahedra(grid, mesh);
   CheckArrayLengths(path, grid.point_arrays, grid.points.cols());
   CheckArrayLengths(path, grid.cell_arrays,
                     static_cast<Eigen::Index>(grid.cell_types.size()));
   mesh.nodes = std::move(grid.points);
   mesh.node_arrays = std::move(grid.point_arrays);
   mesh.tetrahedron_arrays = std::move(grid.cell_arrays);
-  mesh.has_other_cells = tetrahedra.size() != grid.cell_types.size();
+  mesh.has_other_cells = mesh.tetrahedra.cols() !=
+                         static_cast<Eigen::Index>(grid.cell_types.size());
   if (mesh.has_other_cells) {
-    for (FileArray& array : mesh.tetrahedron_arrays) {
-      array.values = Eigen::MatrixXd(array.values(Eigen::all, tetrahedra));
-    }
+    KeepTetrahedra(grid, mesh.tetrahedron_arrays);
   }
   return mesh;
 }

@@ -4,7 +4,6 @@
 #include <vtkCellData.h>
 #include <vtkDataArraySelection.h>
 #include <vtkDoubleArray.h>
-#include <vtkIdTypeArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
@@ -13,10 +12,12 @@
 #include <vtkUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <algorithm>
 #include <new>
 #include <stdexcept>
 #include <string>
 
+#include "elastimate/core/large_pages.h"
 #include "elastimate/io/input_error.h"
 #include "elastimate/io/legacy_vtk_check.h"
 #include "elastimate/io/vtk_messages.h"
@@ -33,20 +34,29 @@ namespace {
                       reason + "); write it again");
 }
 
-/// Any numeric array as doubles, one column per tuple.
-Eigen::MatrixXd ToMatrix(vtkDataArray* array) {
-  vtkNew<vtkDoubleArray> doubles;
-  doubles->DeepCopy(array);
-  return Eigen::Map<const Eigen::MatrixXd>(doubles->GetPointer(0),
-                                           doubles->GetNumberOfComponents(),
-                                           doubles->GetNumberOfTuples());
+/// The values of an array of any numeric type, at once in the type and the
+/// place where they are wanted.
+template <typename Value>
+void CopyValues(vtkDataArray* array, Value* to) {
+  switch (array->GetDataType()) {
+    vtkTemplateMacro(
+        std::copy_n(static_cast<const VTK_TT*>(array->GetVoidPointer(0)),
+                    array->GetNumberOfValues(), to));
+    default: {  // Bits.
+      vtkNew<vtkDoubleArray> doubles;
+      doubles->DeepCopy(array);
+      std::copy_n(doubles->GetPointer(0), doubles->GetNumberOfValues(), to);
+    }
+  }
 }
 
-std::vector<std::int64_t> ToIntegers(vtkDataArray* array) {
-  vtkNew<vtkIdTypeArray> integers;
-  integers->DeepCopy(array);
-  const vtkIdType* begin = integers->GetPointer(0);
-  return {begin, begin + integers->GetNumberOfValues()};
+/// One column per tuple.
+Eigen::MatrixXd ToMatrix(vtkDataArray* array) {
+  Eigen::MatrixXd matrix;
+  ResizeInLargePages(array->GetNumberOfComponents(), array->GetNumberOfTuples(),
+                     matrix);
+  CopyValues(array, matrix.data());
+  return matrix;
 }
 
 /// The named numeric arrays; strings are left out.
@@ -64,12 +74,14 @@ std::vector<FileArray> ToArrays(vtkDataSetAttributes* attributes) {
 VtkGrid ToVtkGrid(vtkUnstructuredGrid* from) {
   VtkGrid grid;
   if (from->GetPoints() != nullptr) {
-    grid.points = ToMatrix(from->GetPoints()->GetData());
+    grid.points.resize(3, from->GetNumberOfPoints());
+    CopyValues(from->GetPoints()->GetData(), grid.points.data());
   }
   if (from->GetCells() != nullptr && from->GetCellTypesArray() != nullptr) {
-    grid.cell_types = ToIntegers(from->GetCellTypesArray());
-    grid.offsets = ToIntegers(from->GetCells()->GetOffsetsArray());
-    grid.connectivity = ToIntegers(from->GetCells()->GetConnectivityArray());
+    grid.cell_types.resize(from->GetCellTypesArray()->GetNumberOfValues());
+    CopyValues(from->GetCellTypesArray(), grid.cell_types.data());
+    grid.cells = from->GetCells();
+    grid.cells->ConvertTo64BitStorage();
   }
   grid.point_arrays = ToArrays(from->GetPointData());
   grid.cell_arrays = ToArrays(from->GetCellData());

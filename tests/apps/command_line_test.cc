@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <regex>
 #include <sstream>
 #include <string>
 
@@ -182,6 +183,10 @@ TEST_F(CommandLine, PrintsATableForPeople) {
                                   "closed-form", "status", "ok"}) {
     EXPECT_NE(table.find(words), std::string::npos) << table;
   }
+  EXPECT_TRUE(std::regex_search(
+      table,
+      std::regex("time +[0-9.e-]+ s to read the scene, [0-9.e-]+ s in all\n")))
+      << table;
 }
 
 TEST_F(CommandLine, ASceneThatIsNotUsableExitsWithOneAndStillReports) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -112,6 +114,25 @@ TEST(ValidateMesh, NamesAFlatElement) {
   EXPECT_THROWS_WITH(ValidateMesh(mesh), "tetrahedron 0 .*flat");
   mesh.nodes.setZero();
   EXPECT_THROWS_WITH(ValidateMesh(mesh), "tetrahedron 0 .*flat");
+}
+
+TEST(ValidateMesh, FlatnessDoesNotDependOnTheOrderOfTheNodes) {
+  // The longest edge is 1, and opposite to the first node in some orders; the
+  // smallest height is just below and just above a millionth.
+  for (const double ratio : {0.99, 1.01}) {
+    Mesh mesh = OneTetrahedron();
+    mesh.nodes.col(2) << 0.5, 0.1, 0;
+    mesh.nodes.col(3) << 0.5, 0.05, 1e-6 * ratio;
+    std::array<int, 4> order = {0, 1, 2, 3};
+    do {
+      mesh.elements = Eigen::Map<Eigen::Vector4i>(order.data());
+      if (ratio < 1) {
+        EXPECT_THROWS_WITH(ValidateMesh(mesh), "flat");
+      } else {
+        EXPECT_NO_THROW(ValidateMesh(mesh));
+      }
+    } while (std::next_permutation(order.begin(), order.end()));
+  }
 }
 
 TEST(ValidateMesh, AcceptsASliver) {

@@ -4,6 +4,7 @@
 
 #include <tuple>
 
+#include "elastimate/core/stiffness_product.h"
 #include "tests/core/random_values.h"
 #include "tests/dense_reference.h"
 #include "tests/scenes.h"
@@ -117,6 +118,47 @@ TEST_P(Assembly, AgainAfterMovingNodesEqualsAFreshOne) {
 }
 
 INSTANTIATE_TEST_SUITE_P(RandomSupports, Assembly, ::testing::Range(0, 6));
+
+// A x of the symmetric matrix A with these values.
+Eigen::VectorXd Multiply(const SymmetricPattern& pattern,
+                         const Eigen::VectorXd& values,
+                         const Eigen::VectorXd& x) {
+  Eigen::VectorXd product = Eigen::VectorXd::Zero(x.size());
+  for (std::int64_t j = 0; j < pattern.Size(); ++j) {
+    for (std::int64_t k = pattern.column_start[j];
+         k < pattern.column_start[j + 1]; ++k) {
+      const std::int64_t i = pattern.row[k];
+      product(i) += values(k) * x(j);
+      product(j) += i == j ? 0.0 : values(k) * x(i);
+    }
+  }
+  return product;
+}
+
+// Whether or not later elements come back to the nodes of earlier ones.
+TEST(StiffnessAssembly, OfALargeMeshMultipliesAsTheElementPassDoes) {
+  const Mesh mesh = Distorted(BoxMesh({3, 4, 90}, {0.3, 0.4, 9}));
+  Mesh reversed = mesh;
+  reversed.elements = mesh.elements.rowwise().reverse().eval();
+  Mesh mixed = mesh;
+  for (Eigen::Index e = 0; e < mesh.NumElements() / 2; e += 2) {
+    mixed.elements.col(e).swap(mixed.elements.col(mesh.NumElements() - 1 - e));
+  }
+  const DegreesOfFreedom dofs(RandomSupports(mesh.NumNodes(), 1));
+  const Eigen::VectorXd x = testing::RandomMatrix(dofs.NumFree(), 1, 2);
+  const StiffnessProducts expected =
+      MultiplyStiffnessBasis(mesh, dofs.Extend(x));
+  for (const Mesh& numbered : {mesh, reversed, mixed}) {
+    StiffnessAssembly assembly(numbered, dofs);
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_TRUE(Multiply(assembly.Pattern(), assembly.H(), x)
+                      .isApprox(dofs.Restrict(expected.h), 1e-12));
+      EXPECT_TRUE(Multiply(assembly.Pattern(), assembly.J(), x)
+                      .isApprox(dofs.Restrict(expected.j), 1e-12));
+      assembly.Assemble(numbered);
+    }
+  }
+}
 
 TEST(StiffnessAssembly, OfOneTetrahedronWithOneFreeDegreeOfFreedom) {
   Mesh mesh;
