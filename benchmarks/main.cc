@@ -19,6 +19,7 @@
 #include "benchmarks/metadata.h"
 #include "benchmarks/paper_study.h"
 #include "benchmarks/scaling_study.h"
+#include "benchmarks/solver_study.h"
 #include "benchmarks/speed_accuracy_study.h"
 #include "benchmarks/stability_study.h"
 #include "benchmarks/study.h"
@@ -44,6 +45,7 @@ constexpr NamedStudy kStudies[] = {
      RunSpeedAccuracyStudy},
     {"scaling", "time and memory against the number of tetrahedra",
      RunScalingStudy},
+    {"solvers", "time and memory of the linear solvers", RunSolverStudy},
     {"stability", "where each estimator fails, and whether it says so",
      RunStabilityStudy},
 };
