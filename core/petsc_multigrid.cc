@@ -99,12 +99,19 @@ struct PetscMultigrid::Workspace {
   Vec right_hand_side = nullptr;
   Vec solution = nullptr;
   KSP solver = nullptr;
+  /// False when PETSc failed before there was a matrix to set up.
+  bool is_ready = false;
   int num_iterations = 0;
 
   Workspace(const StiffnessAssembly& stiffness, const DegreesOfFreedom& dofs)
       : assembly(stiffness), degrees_of_freedom(dofs) {}
   ~Workspace() {
     const std::lock_guard lock(PetscMutex());
+    PetscBool has_ended = PETSC_FALSE;
+    PetscFinalized(&has_ended);
+    if (has_ended == PETSC_TRUE) {
+      return;  // An object of static lifetime.
+    }
     KSPDestroy(&solver);
     VecDestroy(&right_hand_side);
     VecDestroy(&solution);
@@ -288,16 +295,21 @@ PetscMultigrid::PetscMultigrid(const Mesh& mesh,
                                const DegreesOfFreedom& degrees_of_freedom)
     : workspace_(std::make_unique<Workspace>(assembly, degrees_of_freedom)) {
   const std::lock_guard lock(PetscMutex());
-  StartPetsc();
-  const QuietErrors quiet;
-  workspace_->BuildPattern();
-  workspace_->CreateSolver(mesh);
+  try {
+    StartPetsc();
+    const QuietErrors quiet;
+    workspace_->BuildPattern();
+    workspace_->CreateSolver(mesh);
+    workspace_->is_ready = true;
+  } catch (const PetscFailure&) {
+    // Factorize tells.
+  }
 }
 
 PetscMultigrid::~PetscMultigrid() = default;
 
 bool PetscMultigrid::Factorize(const Eigen::VectorXd& values) {
-  if (!values.allFinite()) {
+  if (!workspace_->is_ready || !values.allFinite()) {
     return false;
   }
   const std::lock_guard lock(PetscMutex());
