@@ -27,7 +27,6 @@ endif()
 
 if("io" IN_LIST ELASTIMATE_COMPONENTS)
   find_dependency(VTK 9.1 COMPONENTS CommonCore CommonDataModel IOXML IOXMLParser IOLegacy)
-  find_dependency(Gmsh 4.8)
   find_dependency(nlohmann_json 3.9)
   find_dependency(Threads)
 endif()

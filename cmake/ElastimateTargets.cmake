@@ -38,6 +38,19 @@ function(elastimate_add_library component)
   install(FILES ${ARG_PUBLIC_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/elastimate/${component})
 endfunction()
 
+# elastimate_add_module(<target> SOURCES ... LIBRARIES ...)
+#
+# A shared library that is loaded when it is used, because what it links takes long to load (core/module.h).
+function(elastimate_add_module target)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  add_library(${target} MODULE ${ARG_SOURCES})
+  set_target_properties(${target} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${ELASTIMATE_MODULE_DIRECTORY})
+  target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/include)
+  target_link_libraries(${target} PRIVATE ${ARG_LIBRARIES})
+  elastimate_compile_options(${target})
+  install(TARGETS ${target} DESTINATION ${CMAKE_INSTALL_LIBDIR})
+endfunction()
+
 function(elastimate_install_package)
   include(CMakePackageConfigHelpers)
   set(destination ${CMAKE_INSTALL_LIBDIR}/cmake/elastimate)
@@ -50,7 +63,6 @@ function(elastimate_install_package)
           ${PROJECT_BINARY_DIR}/elastimate-config-version.cmake
           ${PROJECT_SOURCE_DIR}/cmake/ElastimateDependencies.cmake
           ${PROJECT_SOURCE_DIR}/cmake/FindCHOLMOD.cmake
-          ${PROJECT_SOURCE_DIR}/cmake/FindGmsh.cmake
     DESTINATION ${destination})
   install(EXPORT elastimateTargets NAMESPACE elastimate:: DESTINATION ${destination})
 endfunction()

@@ -1,8 +1,9 @@
 #include "elastimate/core/multigrid.h"
 
-#include <dlfcn.h>
-
 #include <cassert>
+#include <string>
+
+#include "elastimate/core/module.h"
 
 namespace elastimate {
 namespace {
@@ -13,18 +14,12 @@ using Maker = LinearSolver* (*)(const Mesh&, const StiffnessAssembly&,
 // Null when the module is not there.
 Maker FindMaker() {
 #ifdef ELASTIMATE_MULTIGRID_MODULE
-  // Beside the program, then where it was to be installed.
-  for (const char* const module :
-       {ELASTIMATE_MULTIGRID_MODULE,
-        ELASTIMATE_INSTALLED_LIBRARIES "/" ELASTIMATE_MULTIGRID_MODULE}) {
-    void* const library = dlopen(module, RTLD_LAZY | RTLD_LOCAL);
-    if (library != nullptr) {
-      return reinterpret_cast<Maker>(
-          dlsym(library, "elastimate_make_multigrid"));
-    }
-  }
-#endif
+  std::string why;
+  return reinterpret_cast<Maker>(FindInModule(
+      ELASTIMATE_MULTIGRID_MODULE, "elastimate_make_multigrid", why));
+#else
   return nullptr;
+#endif
 }
 
 Maker TheMaker() {

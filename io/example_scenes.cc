@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "elastimate/io/organ_mesh.h"
+#include "elastimate/io/organ_shape.h"
 
 namespace elastimate {
 namespace {

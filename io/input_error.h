@@ -13,6 +13,12 @@ namespace elastimate {
   throw std::invalid_argument(file.string() + ": " + sentence);
 }
 
+[[noreturn]] inline void ThrowDamagedFile(const std::filesystem::path& file,
+                                          const std::string& reason) {
+  ThrowInputError(file, "the file is damaged or of another format (" + reason +
+                            "); write it again");
+}
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_IO_INPUT_ERROR_H_

@@ -136,16 +136,6 @@ void CheckReadable(const std::filesystem::path& path) {
   }
 }
 
-const Eigen::MatrixXd* FindArray(const std::vector<FileArray>& arrays,
-                                 const std::string& name) {
-  for (const FileArray& array : arrays) {
-    if (array.name == name) {
-      return &array.values;
-    }
-  }
-  return nullptr;
-}
-
 std::string NodeName(const MeshFile& mesh, Eigen::Index node) {
   if (mesh.node_numbers.empty()) {
     return "node " + std::to_string(node);

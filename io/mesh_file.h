@@ -64,8 +64,15 @@ std::string FileExtension(const std::filesystem::path& path);
 void CheckReadable(const std::filesystem::path& path);
 
 /// The array called `name`, or null.
-const Eigen::MatrixXd* FindArray(const std::vector<FileArray>& arrays,
-                                 const std::string& name);
+inline const Eigen::MatrixXd* FindArray(const std::vector<FileArray>& arrays,
+                                        const std::string& name) {
+  for (const FileArray& array : arrays) {
+    if (array.name == name) {
+      return &array.values;
+    }
+  }
+  return nullptr;
+}
 
 /// "node 7" or "node 7 (number 12 in Gmsh)", for error messages.
 std::string NodeName(const MeshFile& mesh, Eigen::Index node);

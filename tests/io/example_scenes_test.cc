@@ -18,7 +18,7 @@
 
 #include "elastimate/core/mesh.h"
 #include "elastimate/core/scene.h"
-#include "elastimate/io/organ_mesh.h"
+#include "elastimate/io/organ_shape.h"
 
 namespace elastimate {
 namespace {
