@@ -78,7 +78,7 @@ SolverKind SolverFromFlag() {
               FLAGS_solver == "multigrid",
           "solver", "it is automatic, cholesky or multigrid");
   Require(FLAGS_solver != "multigrid" || HasMultigrid(), "solver",
-          "it is not there, for it needs a build with PETSc; use cholesky");
+          "it is not there (" + WhyNoMultigrid() + "); use cholesky");
   return FLAGS_solver == "cholesky"    ? SolverKind::kCholesky
          : FLAGS_solver == "multigrid" ? SolverKind::kMultigrid
                                        : SolverKind::kAutomatic;

@@ -22,7 +22,7 @@ class LinearSolver {
   virtual bool Factorize(const Eigen::VectorXd& values) = 0;
 
   /// The solution x for each column of `right_hand_sides`, size x n, whose
-  /// error is at most about `tolerance` |x| in the energy norm
+  /// error is at most `tolerance` |x| in the energy norm
   /// |x|^2 = x^T A x; a direct solver does as well as it can.  Empty when that
   /// was not reached.
   /// Precondition: the last Factorize returned true.

@@ -11,32 +11,35 @@ namespace {
 using Maker = LinearSolver* (*)(const Mesh&, const StiffnessAssembly&,
                                 const DegreesOfFreedom&);
 
-// Null when the module is not there.
-Maker FindMaker() {
-#ifdef ELASTIMATE_MULTIGRID_MODULE
-  std::string why;
-  return reinterpret_cast<Maker>(FindInModule(
-      ELASTIMATE_MULTIGRID_MODULE, "elastimate_make_multigrid", why));
-#else
-  return nullptr;
-#endif
-}
+struct Module {
+  Maker make = nullptr;
+  std::string why_not;
 
-Maker TheMaker() {
-  static const Maker maker = FindMaker();
-  return maker;
+  Module() {
+#ifdef ELASTIMATE_MULTIGRID_MODULE
+    make = reinterpret_cast<Maker>(FindInModule(
+        ELASTIMATE_MULTIGRID_MODULE, "elastimate_make_multigrid", why_not));
+#else
+    why_not = "it needs a build with PETSc";
+#endif
+  }
+};
+
+const Module& TheModule() {
+  static const Module module;
+  return module;
 }
 
 }  // namespace
 
-bool HasMultigrid() { return TheMaker() != nullptr; }
+const std::string& WhyNoMultigrid() { return TheModule().why_not; }
 
 std::unique_ptr<LinearSolver> MakeMultigrid(
     const Mesh& mesh, const StiffnessAssembly& assembly,
     const DegreesOfFreedom& degrees_of_freedom) {
   assert(HasMultigrid());
   return std::unique_ptr<LinearSolver>(
-      TheMaker()(mesh, assembly, degrees_of_freedom));
+      TheModule().make(mesh, assembly, degrees_of_freedom));
 }
 
 }  // namespace elastimate

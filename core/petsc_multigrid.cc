@@ -1,15 +1,23 @@
 #include "elastimate/core/petsc_multigrid.h"
 
+#include <fcntl.h>
 #include <petscksp.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <limits>
 #include <mutex>
 #include <new>
+#include <optional>
+#include <string>
 #include <vector>
 
 #ifdef ELASTIMATE_HAS_ML
@@ -21,6 +29,11 @@ namespace elastimate {
 namespace {
 
 constexpr int kMostIterations = 500;
+// The norm in which the iterations are stopped, sqrt(r^T B r) for the
+// preconditioner B, is that of the energy of the error where B is A^-1, and
+// smaller in soft modes that B has not got.  Those show as small eigenvalues of
+// B A when the iterations go on; what they make of the norm is checked then.
+constexpr double kStricter = 1e-3;
 
 // An error of PETSc other than that memory is short.
 struct PetscFailure {};
@@ -54,15 +67,63 @@ constexpr char kOptions[] =
     "-elastimate_mg_levels_ksp_max_it 2 "
     "-elastimate_mg_levels_pc_type jacobi";
 
+// Whether MPI can be started here: where it cannot (no folder for temporary
+// files, no network interface, few files), it ends the process that tries.
+bool CanStartMpi() {
+  constexpr int kMostMilliseconds = 20000;
+  int ends[2];
+  if (pipe(ends) != 0) {
+    return false;
+  }
+  const pid_t child = fork();
+  if (child == 0) {
+    const int nowhere = open("/dev/null", O_WRONLY);
+    dup2(nowhere, STDOUT_FILENO);
+    dup2(nowhere, STDERR_FILENO);
+    const bool is_started = MPI_Init(nullptr, nullptr) == MPI_SUCCESS &&
+                            MPI_Finalize() == MPI_SUCCESS;
+    const char answer = 'y';
+    _exit(is_started && write(ends[1], &answer, 1) == 1 ? 0 : 1);
+  }
+  close(ends[1]);
+  char answer = 'n';
+  if (child > 0) {
+    pollfd answered = {ends[0], POLLIN, 0};
+    if (poll(&answered, 1, kMostMilliseconds) <= 0 ||
+        read(ends[0], &answer, 1) != 1) {
+      answer = 'n';
+    }
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+  }
+  close(ends[0]);
+  return answer == 'y';
+}
+
 void StartPetsc() {
   PetscBool is_running = PETSC_FALSE;
   PetscInitialized(&is_running);
   if (is_running == PETSC_FALSE) {
-    // Neither the files of options nor the handlers of signals are for a
-    // program that only wants its equations solved.
+    int has_mpi = 0;
+    MPI_Initialized(&has_mpi);
+    // One process needs no daemon to start others.
+    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+    if (has_mpi == 0 && !CanStartMpi()) {
+      throw PetscFailure();
+    }
+    // Neither options, from files or the environment, nor handlers of signals
+    // are for a program that only wants its equations solved.
+    const char* const given = std::getenv("PETSC_OPTIONS");
+    const std::optional<std::string> options =
+        given == nullptr ? std::nullopt : std::optional<std::string>(given);
+    unsetenv("PETSC_OPTIONS");
     PetscOptionsSetValue(nullptr, "-skip_petscrc", "true");
     PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");
-    Check(PetscInitializeNoArguments());
+    const PetscErrorCode error = PetscInitializeNoArguments();
+    if (options) {
+      setenv("PETSC_OPTIONS", options->c_str(), 1);
+    }
+    Check(error);
     std::atexit([] { PetscFinalize(); });
   }
   Check(PetscOptionsInsertString(nullptr, kOptions));
@@ -124,7 +185,24 @@ struct PetscMultigrid::Workspace {
   void Fill(const Eigen::VectorXd& values, double* entries) const;
   Eigen::MatrixXd RigidMotions(const Mesh& mesh) const;
   void CreateSolver(const Mesh& mesh);
+  /// Of the last solution, relative to it: ||e||_A^2 = r^T A^-1 r is at most
+  /// r^T B r / (smallest eigenvalue of B A).
+  double EnergyErrorBound(PetscInt iterations) const;
 };
+
+double PetscMultigrid::Workspace::EnergyErrorBound(PetscInt iterations) const {
+  if (iterations == 0) {
+    return 0;  // Of no force.
+  }
+  double norm = 0;
+  double largest = 0;
+  double smallest = 0;
+  double energy = 0;
+  Check(KSPGetResidualNorm(solver, &norm));
+  Check(KSPComputeExtremeSingularValues(solver, &largest, &smallest));
+  Check(VecDot(right_hand_side, solution, &energy));
+  return norm / std::sqrt(smallest * energy);
+}
 
 void PetscMultigrid::Workspace::BuildPattern() {
   const NodeGraph& graph = assembly.Graph();
@@ -287,6 +365,7 @@ void PetscMultigrid::Workspace::CreateSolver(const Mesh& mesh) {
   }
   Check(KSPCreate(PETSC_COMM_SELF, &solver));
   Check(KSPSetOptionsPrefix(solver, "elastimate_"));
+  Check(KSPSetComputeSingularValues(solver, PETSC_TRUE));
   Check(KSPSetFromOptions(solver));
 }
 
@@ -340,8 +419,8 @@ std::optional<Eigen::MatrixXd> PetscMultigrid::Solve(
   Eigen::MatrixXd solutions(right_hand_sides.rows(), right_hand_sides.cols());
   try {
     constexpr double kNoMatterTheUnits = 0;
-    Check(KSPSetTolerances(work.solver, tolerance, kNoMatterTheUnits,
-                           PETSC_DEFAULT, kMostIterations));
+    Check(KSPSetTolerances(work.solver, kStricter * tolerance,
+                           kNoMatterTheUnits, PETSC_DEFAULT, kMostIterations));
     for (Eigen::Index column = 0; column < right_hand_sides.cols(); ++column) {
       double* values = nullptr;
       Check(VecSet(work.right_hand_side, 0));
@@ -365,6 +444,9 @@ std::optional<Eigen::MatrixXd> PetscMultigrid::Solve(
         solutions(i, column) = solution[work.row_of_free[i]];
       }
       Check(VecRestoreArrayRead(work.solution, &solution));
+      if (!(work.EnergyErrorBound(iterations) <= tolerance)) {
+        return std::nullopt;
+      }
     }
   } catch (const PetscFailure&) {
     return std::nullopt;

@@ -18,10 +18,6 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 // multigrid on linear and on quadratic elements.
 constexpr double kMostFlops[] = {2e6, 6e6};
 
-constexpr char kNoMultigrid[] =
-    "multigrid, which solves for so many nodes in less time and memory than a "
-    "Cholesky factorisation, is not there: it needs a build with PETSc";
-
 }  // namespace
 
 StiffnessSolver::StiffnessSolver(const Mesh& mesh, const Supports& supports,
@@ -43,7 +39,11 @@ StiffnessSolver::StiffnessSolver(const Mesh& mesh, const Supports& supports,
     if (kind == SolverKind::kAutomatic &&
         cholesky->FactorizationFlops() > most_flops) {
       is_multigrid_ = HasMultigrid();
-      notice_ = HasMultigrid() ? "" : kNoMultigrid;
+      notice_ = HasMultigrid()
+                    ? ""
+                    : "multigrid, which solves for so many nodes in less time "
+                      "and memory than a factorisation, is not there (" +
+                          WhyNoMultigrid() + ")";
     }
     if (!is_multigrid_) {
       solver_ = std::move(cholesky);

@@ -50,7 +50,7 @@ enum class SolverKind {
 class StiffnessSolver {
  public:
   /// The relative error, in the energy norm, that iterations leave.
-  static constexpr double kAccurate = 1e-10;
+  static constexpr double kAccurate = 1e-8;
 
   /// Assembles H and J and analyses their pattern: one element pass.
   /// Preconditions: a valid scene; HasMultigrid() for kMultigrid.  Throws

@@ -66,9 +66,8 @@ std::string EstimatorOptions::WhyInvalid() const {
           std::to_string(*virtual_field_degree) + "; it must be 1, 2 or 3";
   }
   if (why.empty() && solver == SolverKind::kMultigrid && !HasMultigrid()) {
-    why =
-        "the solver is multigrid, which is not there: it needs a build with "
-        "PETSc; use cholesky";
+    why = "the solver is multigrid, which is not there (" + WhyNoMultigrid() +
+          "); use cholesky";
   }
   return why;
 }

@@ -62,7 +62,7 @@ class ReducedModel {
   /// Where it is above `tolerance`, the spaces are enlarged by A_p^-1 r.
   /// The solves may be inexact, for what is appended is taken as it is, and the
   /// residual of the whole is computed anew.  Of the bound, a part of half the
-  /// square of their relative error is missing.
+  /// square of their relative error, 1e-3 at most, is missing.
   /// Infinite when a solve failed.
   /// Precondition: SetPole returned true.  Cost: an element pass (two where it
   /// enlarges) and a solve for each response.

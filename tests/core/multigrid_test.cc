@@ -67,8 +67,6 @@ class SolvedTwice : public ::testing::TestWithParam<int> {
 INSTANTIATE_TEST_SUITE_P(Order, SolvedTwice, ::testing::Values(1, 2),
                          ::testing::PrintToStringParamName());
 
-// The norm that iterations end by is that of the energy but for the quality of
-// the preconditioner, which these iteration counts show.
 TEST_P(SolvedTwice, AgreesInEnergyToTheTolerance) {
   const Eigen::MatrixXd b = RandomMatrix(dofs_.NumFree(), 2, 1);
   for (const double nu : {-0.5, 0.3, 0.45}) {
@@ -84,7 +82,7 @@ TEST_P(SolvedTwice, AgreesInEnergyToTheTolerance) {
       EXPECT_LE(multigrid_->NumIterations() - before, 2 * 100);
       for (int k = 0; k < 2; ++k) {
         EXPECT_LE(Energy(values, solution->col(k) - exact.col(k)),
-                  std::pow(3 * tolerance, 2) * Energy(values, exact.col(k)))
+                  std::pow(tolerance, 2) * Energy(values, exact.col(k)))
             << "nu " << nu << ", tolerance " << tolerance;
       }
     }
@@ -150,7 +148,7 @@ TEST(Multigrid, SolvesForOneTetrahedron) {
   ASSERT_TRUE(multigrid->Factorize(values));
   const Eigen::MatrixXd b = Eigen::Vector3d(1, -2, 3);
   EXPECT_TRUE(
-      multigrid->Solve(b, 1e-12)->isApprox(*cholesky.Solve(b, 0), 1e-10));
+      multigrid->Solve(b, 1e-10)->isApprox(*cholesky.Solve(b, 0), 1e-10));
 }
 
 }  // namespace
