@@ -55,7 +55,6 @@ std::vector<Body> Bodies(bool is_quick) {
           cube(27, 1),
           cube(33, 1),
           cube(40, 1),
-          cube(58, 1),
           {"plate", {120, 120, 4}, {1, 1, 0.04}, 1},
           {"bar", {200, 12, 12}, {10, 1, 1}, 1},
           cube(13, 2),

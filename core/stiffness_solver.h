@@ -39,7 +39,7 @@ inline Work operator-(const Work& a, const Work& b) {
 /// How linear systems are solved.
 enum class SolverKind {
   /// Multigrid where a factorisation takes longer, as its analysis tells: from
-  /// about 70 000 nodes on in a compact body of linear tetrahedra, from 200 000
+  /// about 100 000 nodes on in a compact body of linear tetrahedra, 200 000
   /// of quadratic ones, and from many more in plates and bars.
   kAutomatic,
   kCholesky,   ///< Direct.  In a compact body, time grows with nodes squared.
