@@ -12,7 +12,7 @@ namespace elastimate {
 EstimatorOptions OptionsFromFlags();
 
 /// That of --solver.  Throws std::invalid_argument for any other word, and for
-/// multigrid in a build without PETSc.
+/// multigrid where it is not there.
 SolverKind SolverFromFlag();
 
 /// Throws std::invalid_argument unless --nu is a Poisson's ratio.

@@ -138,13 +138,13 @@ class BareCholmod {
 template <typename Work>
 double ShortestSeconds(const Work& work) {
   double shortest = std::numeric_limits<double>::infinity();
-  Stopwatch all;
   double total = 0;
   do {
     Stopwatch stopwatch;
     work();
-    shortest = std::min(shortest, stopwatch.Lap());
-    total += all.Lap();
+    const double seconds = stopwatch.Lap();
+    shortest = std::min(shortest, seconds);
+    total += seconds;
   } while (total < kRepeatSeconds);
   return shortest;
 }

@@ -10,8 +10,10 @@ void* FindInModule(const std::string& module, const char* function,
   for (const std::string& file :
        {module, ELASTIMATE_INSTALLED_LIBRARIES "/" + module}) {
     void* const library = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
-    if (library != nullptr) {
-      return dlsym(library, function);
+    void* const found = library == nullptr ? nullptr : dlsym(library, function);
+    if (found != nullptr) {
+      why.clear();
+      return found;
     }
     why += (why.empty() ? "" : "; ") + std::string(dlerror());
   }

@@ -13,6 +13,13 @@ namespace elastimate {
 void* FindInModule(const std::string& module, const char* function,
                    std::string& why);
 
+/// The same for a function of this type.
+template <typename Function>
+Function* FindInModule(const std::string& module, const char* function,
+                       std::string& why) {
+  return reinterpret_cast<Function*>(FindInModule(module, function, why));
+}
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_CORE_MODULE_H_

@@ -4,21 +4,19 @@
 #include <string>
 
 #include "elastimate/core/module.h"
+#include "elastimate/core/petsc_multigrid.h"
 
 namespace elastimate {
 namespace {
 
-using Maker = LinearSolver* (*)(const Mesh&, const StiffnessAssembly&,
-                                const DegreesOfFreedom&);
-
 struct Module {
-  Maker make = nullptr;
+  decltype(elastimate_make_multigrid)* make = nullptr;
   std::string why_not;
 
   Module() {
 #ifdef ELASTIMATE_MULTIGRID_MODULE
-    make = reinterpret_cast<Maker>(FindInModule(
-        ELASTIMATE_MULTIGRID_MODULE, "elastimate_make_multigrid", why_not));
+    make = FindInModule<decltype(elastimate_make_multigrid)>(
+        ELASTIMATE_MULTIGRID_MODULE, "elastimate_make_multigrid", why_not);
 #else
     why_not = "it needs a build with PETSc";
 #endif

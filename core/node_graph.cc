@@ -173,7 +173,6 @@ NodeGraph::NodeGraph(const Mesh& mesh)
 }
 
 Eigen::Matrix3Xd GradientProducts(const Mesh& mesh, const NodeGraph& graph) {
-  constexpr Eigen::Index kEveryPair = -1;
   Eigen::Matrix3Xd products = Eigen::Matrix3Xd::Zero(3, 3 * graph.NumPairs());
   AddGradientProducts(mesh, graph, 0, mesh.NumElements(), kEveryPair, products);
   return products;

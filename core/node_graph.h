@@ -37,6 +37,9 @@ struct NodeGraph {
 /// Cost: one element pass.
 Eigen::Matrix3Xd GradientProducts(const Mesh& mesh, const NodeGraph& graph);
 
+/// A pair_mask that keeps every pair.
+constexpr Eigen::Index kEveryPair = -1;
+
 /// Adds what the elements from `first` to before `end` contribute to M.  The
 /// block of pair k is number k & pair_mask, so that memory for the pairs of a
 /// front of nodes is enough where the rest is done with.

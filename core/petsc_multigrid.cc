@@ -141,8 +141,8 @@ class QuietErrors {
 }  // namespace
 
 // Multigrid needs blocks of equal size, so that the matrix is that of all
-// components of the nodes that have a free one, with 1 on the diagonal where
-// a component is held, in the scale of its node.
+// components of the nodes that have a free one; where a component is held, its
+// row has only a diagonal entry, of the size of the others of its node.
 struct PetscMultigrid::Workspace {
   const StiffnessAssembly& assembly;
   const DegreesOfFreedom& degrees_of_freedom;
@@ -458,9 +458,7 @@ int PetscMultigrid::NumIterations() const { return workspace_->num_iterations; }
 
 }  // namespace elastimate
 
-// What MakeMultigrid looks up in this module.
-extern "C" __attribute__((visibility("default"))) elastimate::LinearSolver*
-elastimate_make_multigrid(
+elastimate::LinearSolver* elastimate_make_multigrid(
     const elastimate::Mesh& mesh, const elastimate::StiffnessAssembly& assembly,
     const elastimate::DegreesOfFreedom& degrees_of_freedom) {
   return new elastimate::PetscMultigrid(mesh, assembly, degrees_of_freedom);

@@ -40,4 +40,10 @@ class PetscMultigrid : public LinearSolver {
 
 }  // namespace elastimate
 
+/// What MakeMultigrid looks up in the module.
+extern "C" __attribute__((visibility("default"))) elastimate::LinearSolver*
+elastimate_make_multigrid(
+    const elastimate::Mesh& mesh, const elastimate::StiffnessAssembly& assembly,
+    const elastimate::DegreesOfFreedom& degrees_of_freedom);
+
 #endif  // ELASTIMATE_CORE_PETSC_MULTIGRID_H_

@@ -1,7 +1,6 @@
 #include "elastimate/core/stiffness_assembly.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace elastimate {
 
@@ -50,9 +49,7 @@ void StiffnessAssembly::PlanStages(const Mesh& mesh) {
   while (size < most_pairs) {
     size *= 2;
   }
-  pair_mask_ = size < graph_.NumPairs()
-                   ? size - 1
-                   : std::numeric_limits<Eigen::Index>::max();
+  pair_mask_ = size < graph_.NumPairs() ? size - 1 : kEveryPair;
   products_.setZero(3, 3 * std::min(size, graph_.NumPairs()));
 }
 

@@ -11,14 +11,15 @@ namespace {
 template <typename Function>
 Function* Find(const char* name) {
   std::string why;
-  void* const function = FindInModule(ELASTIMATE_GMSH_MODULE, name, why);
+  Function* const function =
+      FindInModule<Function>(ELASTIMATE_GMSH_MODULE, name, why);
   if (function == nullptr) {
     throw std::runtime_error(
         "the module " ELASTIMATE_GMSH_MODULE
         ", which reads Gmsh files and meshes organs, is not found (" +
         why + "); install it, or name its folder in LD_LIBRARY_PATH");
   }
-  return reinterpret_cast<Function*>(function);
+  return function;
 }
 
 }  // namespace

@@ -21,5 +21,11 @@ TEST(Module, SaysWhyItIsNotFound) {
   EXPECT_THAT(why, ::testing::HasSubstr("libnone_of_this_name.so"));
 }
 
+TEST(Module, SaysWhyItsFunctionIsNotFound) {
+  std::string why;
+  EXPECT_EQ(FindInModule("libm.so.6", "none_of_this_name", why), nullptr);
+  EXPECT_THAT(why, ::testing::HasSubstr("none_of_this_name"));
+}
+
 }  // namespace
 }  // namespace elastimate
