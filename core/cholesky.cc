@@ -2,9 +2,11 @@
 
 #include <cholmod.h>
 
-#include <algorithm>
+#include <Eigen/SparseCore>
 #include <cassert>
+#include <cmath>
 #include <new>
+#include <random>
 #include <type_traits>
 #include <vector>
 
@@ -13,9 +15,11 @@ namespace {
 
 static_assert(sizeof(SuiteSparse_long) == sizeof(std::int64_t));
 
-// The smallest ratio of pivots (a cheap condition estimate) with which a
-// solution still has correct digits.
+// Ratios of pivots (a cheap condition estimate): below the first a solution has
+// no correct digit, below the second rounding may have made a pivot of what
+// should be zero.
 constexpr double kSmallestPivotRatio = 1e-15;
+constexpr double kSuspiciousPivotRatio = 1e-9;
 
 // A view of our arrays as a symmetric matrix of which the lower triangle is
 // stored; CHOLMOD does not write to it.
@@ -134,8 +138,31 @@ bool Cholesky::Factorize(const Eigen::VectorXd& values) {
   }
   cholmod_l_factorize(&matrix, workspace_->factor, common);
   ThrowIfOutOfMemory(*common);
-  return common->status == CHOLMOD_OK &&
-         cholmod_l_rcond(workspace_->factor, common) > kSmallestPivotRatio;
+  if (common->status != CHOLMOD_OK) {
+    return false;
+  }
+  const double pivot_ratio = cholmod_l_rcond(workspace_->factor, common);
+  return pivot_ratio > kSuspiciousPivotRatio ||
+         (pivot_ratio > kSmallestPivotRatio && FactorHasTheEnergyOf(values));
+}
+
+// Where rounding has made the smallest pivot, the solution x for nearly any
+// right-hand side b is a motion that the matrix does not resist, and x^T A x is
+// not x^T b.
+bool Cholesky::FactorHasTheEnergyOf(const Eigen::VectorXd& values) {
+  constexpr double kLargestError = 0.1;
+  const SymmetricPattern& pattern = workspace_->pattern;
+  std::mt19937_64 generator(20071107);
+  const Eigen::VectorXd b = Eigen::VectorXd::NullaryExpr(
+      pattern.Size(), [&] { return (generator() & 1U) != 0 ? 1.0 : -1.0; });
+  const Eigen::VectorXd x = *Solve(b, 0);
+  const Eigen::Map<
+      const Eigen::SparseMatrix<double, Eigen::ColMajor, std::int64_t>>
+      matrix(pattern.Size(), pattern.Size(), values.size(),
+             pattern.column_start.data(), pattern.row.data(), values.data());
+  const double energy = x.dot(matrix.selfadjointView<Eigen::Lower>() * x);
+  const double work = x.dot(b);
+  return std::abs(energy - work) <= kLargestError * work;
 }
 
 std::optional<Eigen::MatrixXd> Cholesky::Solve(

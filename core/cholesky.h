@@ -38,6 +38,8 @@ class Cholesky : public LinearSolver {
   double FactorValues() const;
 
  private:
+  bool FactorHasTheEnergyOf(const Eigen::VectorXd& values);
+
   struct Workspace;
   std::unique_ptr<Workspace> workspace_;
 };
