@@ -176,9 +176,10 @@ void JudgePoissonRatioOnBound(const EstimatorOptions& options,
     return;
   }
   const Bounds bounds = EffectivePoissonRatioBounds(options);
-  const double uniform_sd = (*bounds.upper - *bounds.lower) / std::sqrt(12.0);
+  // Root mean square of what a nu that may be anywhere is off the bound.
+  const double distance = (*bounds.upper - *bounds.lower) / std::sqrt(3.0);
   const double youngs_modulus_error =
-      std::abs(slope) * std::min(standard_error, uniform_sd);
+      std::abs(slope) * std::min(standard_error, distance);
   if (active.is_physical_limit ||
       youngs_modulus_error > kLargestYoungsModulusError) {
     estimate.status = Status::kNotIdentifiable;
