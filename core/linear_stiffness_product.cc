@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <new>
-#include <utility>
 
 #include "elastimate/core/large_pages.h"
 
@@ -24,16 +23,6 @@
 #define ELASTIMATE_CORE_NODE_RECORDS_
 namespace elastimate {
 namespace {
-
-// Contiguous elements, and the range of nodes that they touch.
-struct ElementBlock {
-  std::ptrdiff_t first_element;
-  std::ptrdiff_t end_element;
-  std::ptrdiff_t first_node;
-  std::ptrdiff_t end_node;
-
-  std::ptrdiff_t NumNodes() const { return end_node - first_node; }
-};
 
 // Columns of the same 3 num_nodes rows.
 struct Columns {
@@ -446,7 +435,7 @@ HWY_INLINE void Prefetch(const NumberedMesh& mesh, const ElementBlock& block,
                          std::ptrdiff_t node, const double* values,
                          const Columns& columns) {
   constexpr std::ptrdiff_t kNodesAhead = 16;
-  if (mesh.places == nullptr || node + kNodesAhead >= block.end_node) {
+  if (mesh.places == nullptr || node + kNodesAhead >= block.nodes.end) {
     return;
   }
   values += mesh.Row(node + kNodesAhead);
@@ -472,7 +461,7 @@ template <class Layout>
 void FillRecords(const NumberedMesh& mesh, const Columns& columns,
                  const ElementBlock& block, double* records) {
   double* record = records;
-  for (std::ptrdiff_t node = block.first_node; node < block.end_node;
+  for (std::ptrdiff_t node = block.nodes.first; node < block.nodes.end;
        ++node, record += Layout::kSize) {
     Prefetch(mesh, block, node, columns.displacement, columns);
     ClearValues<Layout>(record);
@@ -494,7 +483,7 @@ template <class Layout, bool kIsFirst>
 void CollectSums(const NumberedMesh& mesh, const Columns& columns,
                  const ElementBlock& block, const double* records) {
   const double* record = records;
-  for (std::ptrdiff_t node = block.first_node; node < block.end_node;
+  for (std::ptrdiff_t node = block.nodes.first; node < block.nodes.end;
        ++node, record += Layout::kSize) {
     Prefetch(mesh, block, node, columns.h, columns);
     Prefetch(mesh, block, node, columns.j, columns);
@@ -518,9 +507,9 @@ void MultiplyElements(const NumberedMesh& mesh, const Columns& columns,
                       double* records) {
   FillRecords<Layout>(mesh, columns, block, records);
   const std::uintptr_t origin =
-      OriginOf(records, block.first_node, Layout::kSize);
-  const int* corners = mesh.corners + 4 * block.first_element;
-  std::ptrdiff_t remaining = block.end_element - block.first_element;
+      OriginOf(records, block.nodes.first, Layout::kSize);
+  const int* corners = mesh.corners + 4 * block.first;
+  std::ptrdiff_t remaining = block.end - block.first;
   for (; remaining >= kLanes; remaining -= kLanes, corners += 4 * kLanes) {
     AddBatch(Corners(corners, origin, Layout::kSize, kLanes), kLanes, Layout());
   }
@@ -571,100 +560,10 @@ HWY_EXPORT(MultiplyBlock);
 HWY_EXPORT(ColumnsAtATime);
 HWY_EXPORT(RecordSize);
 
-std::vector<ElementBlock> BlocksOf(const Mesh& mesh,
-                                   std::ptrdiff_t elements_per_block) {
-  std::vector<ElementBlock> blocks;
-  for (std::ptrdiff_t first = 0; first < mesh.NumElements();
-       first += elements_per_block) {
-    const std::ptrdiff_t end =
-        std::min(first + elements_per_block, mesh.NumElements());
-    int first_node = mesh.elements(0, first);
-    int last_node = first_node;
-    for (std::ptrdiff_t corner = 4 * first; corner < 4 * end; ++corner) {
-      const int node = mesh.elements.data()[corner];
-      first_node = std::min(first_node, node);
-      last_node = std::max(last_node, node);
-    }
-    blocks.push_back({first, end, first_node, last_node + 1});
-  }
-  return blocks;
-}
-
-// Each two neighbours as one.
-std::vector<ElementBlock> Merged(const std::vector<ElementBlock>& blocks) {
-  std::vector<ElementBlock> merged;
-  for (std::size_t i = 0; i < blocks.size(); i += 2) {
-    const ElementBlock& first = blocks[i];
-    const ElementBlock& second = blocks[std::min(i + 1, blocks.size() - 1)];
-    merged.push_back({first.first_element, second.end_element,
-                      std::min(first.first_node, second.first_node),
-                      std::max(first.end_node, second.end_node)});
-  }
-  return merged;
-}
-
-using NodeRange = std::pair<std::ptrdiff_t, std::ptrdiff_t>;
-
-// Those of the blocks first, first + 2, .., in ascending order.
-std::vector<NodeRange> NodeRanges(const std::vector<ElementBlock>& blocks,
-                                  std::size_t first) {
-  std::vector<NodeRange> ranges;
-  for (std::size_t i = first; i < blocks.size(); i += 2) {
-    ranges.emplace_back(blocks[i].first_node, blocks[i].end_node);
-  }
-  std::sort(ranges.begin(), ranges.end());
-  return ranges;
-}
-
-bool AreDisjoint(const std::vector<NodeRange>& ranges) {
-  for (std::size_t i = 1; i < ranges.size(); ++i) {
-    if (ranges[i].first < ranges[i - 1].second) {
-      return false;
-    }
-  }
-  return true;
-}
-
-// Blocks that are as small as they can be while every second one can be worked
-// on at the same time, and few nodes are in two.  A mesh whose numbering has no
-// locality is one block.
-std::vector<ElementBlock> ChooseBlocks(const Mesh& mesh) {
-  constexpr std::ptrdiff_t kSmallestBlock = 4096;
-  constexpr double kMostCopies = 1.5;
-  std::vector<ElementBlock> blocks = BlocksOf(mesh, kSmallestBlock);
-  const auto are_suitable = [&] {
-    std::ptrdiff_t num_copies = 0;
-    for (const ElementBlock& block : blocks) {
-      num_copies += block.NumNodes();
-    }
-    return static_cast<double>(num_copies) <=
-               kMostCopies * static_cast<double>(mesh.NumNodes()) &&
-           AreDisjoint(NodeRanges(blocks, 0)) &&
-           AreDisjoint(NodeRanges(blocks, 1));
-  };
-  while (blocks.size() > 1 && !are_suitable()) {
-    blocks = Merged(blocks);
-  }
-  return blocks;
-}
-
-// The nodes that are in none of the disjoint ranges.
-std::vector<NodeRange> Gaps(const std::vector<NodeRange>& ranges,
-                            std::ptrdiff_t num_nodes) {
-  std::vector<NodeRange> gaps;
-  std::ptrdiff_t end = 0;
-  for (const NodeRange& range : ranges) {
-    gaps.emplace_back(end, range.first);
-    end = range.second;
-  }
-  gaps.emplace_back(end, num_nodes);
-  return gaps;
-}
-
 void SetZero(const NumberedMesh& mesh, const std::vector<NodeRange>& nodes,
              const Columns& columns) {
-  for (const auto& [first, end] : nodes) {
-    for (std::ptrdiff_t node = first; node < end; ++node) {
+  for (const NodeRange& range : nodes) {
+    for (std::ptrdiff_t node = range.first; node < range.end; ++node) {
       for (std::ptrdiff_t k = 0; k < columns.num_columns; ++k) {
         const std::ptrdiff_t value = mesh.Row(node) + k * columns.num_rows;
         std::fill_n(columns.h + value, 3, 0.0);
@@ -690,19 +589,13 @@ std::vector<Records> AllocateRecords(std::size_t num_values, int num_threads) {
 
 }  // namespace
 
-void MultiplyLinearTetrahedra(const Mesh& mesh, const std::vector<int>& places,
+void MultiplyLinearTetrahedra(const Mesh& mesh, const ElementBlocks& blocks,
+                              const std::vector<int>& places,
                               const Eigen::MatrixXd& displacement,
                               int num_threads, StiffnessProducts& products) {
-  const std::vector<ElementBlock> blocks = ChooseBlocks(mesh);
-  const std::vector<NodeRange> gaps =
-      Gaps(NodeRanges(blocks, 0), mesh.NumNodes());
   const NumberedMesh numbered = {mesh.elements.data(), mesh.nodes.data(),
                                  places.empty() ? nullptr : places.data()};
-  std::ptrdiff_t most_nodes = 0;
-  for (const ElementBlock& block : blocks) {
-    most_nodes = std::max(most_nodes, block.NumNodes());
-  }
-  const std::ptrdiff_t num_blocks = std::ptrdiff_t(blocks.size());
+  const std::ptrdiff_t num_blocks = std::ptrdiff_t(blocks.blocks.size());
   // Waiting for a thread may take longer than a fraction of a millisecond of
   // work does.
   constexpr std::ptrdiff_t kElementsPerThread = 16384;
@@ -710,7 +603,7 @@ void MultiplyLinearTetrahedra(const Mesh& mesh, const std::vector<int>& places,
       std::min(mesh.NumElements() / kElementsPerThread, (num_blocks + 1) / 2),
       1, num_threads));
   const std::vector<Records> records = AllocateRecords(
-      most_nodes * HWY_DYNAMIC_DISPATCH(RecordSize)(displacement.cols()),
+      blocks.most_nodes * HWY_DYNAMIC_DISPATCH(RecordSize)(displacement.cols()),
       threads);
   const auto multiply_block = HWY_DYNAMIC_DISPATCH(MultiplyBlock);
   const std::ptrdiff_t columns_at_a_time =
@@ -725,11 +618,11 @@ void MultiplyLinearTetrahedra(const Mesh& mesh, const std::vector<int>& places,
         products.h.data() + first * num_rows,
         products.j.data() + first * num_rows, num_rows,
         std::min(columns_at_a_time, displacement.cols() - first)};
-    SetZero(numbered, gaps, columns);
+    SetZero(numbered, blocks.gaps, columns);
     for (const std::ptrdiff_t parity : {0, 1}) {
 #pragma omp parallel for num_threads(threads) schedule(static) if (threads > 1)
       for (std::ptrdiff_t i = parity; i < num_blocks; i += 2) {
-        multiply_block(numbered, columns, blocks[i], parity == 0,
+        multiply_block(numbered, columns, blocks.blocks[i], parity == 0,
                        records[omp_get_thread_num()].get());
       }
     }

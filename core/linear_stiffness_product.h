@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "elastimate/core/element_blocks.h"
 #include "elastimate/core/mesh.h"
 #include "elastimate/core/stiffness_product.h"
 
@@ -29,12 +30,13 @@ namespace elastimate {
 /// several as many columns at a time.  On one processor the values of a column
 /// do not depend on the other columns.
 ///
-/// Elements are worked on in blocks, whose nodes are copied to memory that
-/// stays in the cache: first every second block, each by one of `num_threads`
-/// threads, then those in between.  Blocks of the same turn share no nodes, so
-/// that the bits do not depend on the number of threads.  A mesh whose
-/// numbering has no locality is a single block, and is worked on by one thread.
-void MultiplyLinearTetrahedra(const Mesh& mesh, const std::vector<int>& places,
+/// Elements are worked on in the blocks that ChooseElementBlocks finds, whose
+/// nodes are copied to memory that stays in the cache: first every second
+/// block, each by one of `num_threads` threads, then those in between.  Blocks
+/// of the same turn share no nodes, so that the bits do not depend on the
+/// number of threads.  A single block is worked on by one thread.
+void MultiplyLinearTetrahedra(const Mesh& mesh, const ElementBlocks& blocks,
+                              const std::vector<int>& places,
                               const Eigen::MatrixXd& displacement,
                               int num_threads, StiffnessProducts& products);
 

@@ -26,7 +26,8 @@ StiffnessProducts MultiplyStiffnessBasis(const Mesh& mesh,
   assert(displacement.rows() == 3 * mesh.NumNodes());
   StiffnessProducts products;
   if (mesh.Order() == 1) {
-    MultiplyLinearTetrahedra(mesh, {}, displacement, 1, products);
+    MultiplyLinearTetrahedra(mesh, ChooseElementBlocks(mesh), {}, displacement,
+                             1, products);
   } else {
     MultiplyQuadraticTetrahedra(mesh, displacement, products);
   }
@@ -36,19 +37,23 @@ StiffnessProducts MultiplyStiffnessBasis(const Mesh& mesh,
 StiffnessOperator::StiffnessOperator(const Mesh& mesh, int num_threads)
     : mesh_(mesh), num_threads_(num_threads) {
   assert(num_threads >= 1);
-  if (mesh.Order() == 1 && !HasLocality(mesh)) {
+  if (mesh.Order() == 2) {
+    return;
+  }
+  if (!HasLocality(mesh)) {
     OrderedMesh ordered = OrderForLocality(mesh);
     reordered_ = std::move(ordered.mesh);
     places_ = std::move(ordered.places);
   }
+  blocks_ = ChooseElementBlocks(IsReordered() ? reordered_ : mesh);
 }
 
 void StiffnessOperator::Multiply(const Eigen::MatrixXd& displacement,
                                  StiffnessProducts& products) const {
   assert(displacement.rows() == 3 * mesh_.NumNodes());
   if (mesh_.Order() == 1) {
-    MultiplyLinearTetrahedra(IsReordered() ? reordered_ : mesh_, places_,
-                             displacement, num_threads_, products);
+    MultiplyLinearTetrahedra(IsReordered() ? reordered_ : mesh_, blocks_,
+                             places_, displacement, num_threads_, products);
   } else {
     MultiplyQuadraticTetrahedra(mesh_, displacement, products);
   }
