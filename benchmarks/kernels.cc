@@ -215,7 +215,7 @@ class Cube {
                        "natural",
                        1,
                        1,
-                       {16 + 64 + 24 * nodes + 16 * values, kFlops},
+                       {16 + 40 + 24 * nodes + 16 * values, kFlops},
                        [this] { assembly_.Assemble(scene_.mesh); }});
     kernels.push_back(
         {"K from H and J", "natural", 1, 1, {24 * values, 2 * values}, [this] {

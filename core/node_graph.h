@@ -16,46 +16,20 @@ namespace elastimate {
 struct NodeGraph {
   std::vector<Eigen::Index> start;  ///< num_nodes + 1.
   std::vector<int> row;             ///< num_pairs.
-  /// The pair of each two nodes of an element, (nodes_per_element^2) x
-  /// num_elements: row i * nodes_per_element + j is the pair of local nodes i
-  /// and j when node i >= node j, and -1 otherwise.
+  /// The pair of each two of the n nodes of an element, (n (n + 1) / 2) x
+  /// num_elements: that of its nodes i and j is in row LocalPair(i, j).
   Eigen::MatrixXi element_pairs;
 
   /// O(num_elements) time and memory.
   explicit NodeGraph(const Mesh& mesh);
 
   Eigen::Index NumPairs() const { return Eigen::Index(row.size()); }
+
+  /// (0, 0), (1, 0), (1, 1), (2, 0) and so on.
+  static Eigen::Index LocalPair(Eigen::Index i, Eigen::Index j) {
+    return i < j ? LocalPair(j, i) : i * (i + 1) / 2 + j;
+  }
 };
-
-/// M_ij = integral of grad(N_i) grad(N_j)^T for each pair of the graph, 3 x 3
-/// blocks side by side: 3 x (3 num_pairs) [length].  Every isotropic stiffness
-/// block follows from it:
-///
-///   H_ij = (M_ij^T + tr(M_ij) I) / 2,   J_ij = M_ij - M_ij^T - tr(M_ij) I.
-///
-/// Exact for linear and for quadratic tetrahedra.
-/// Cost: one element pass.
-Eigen::Matrix3Xd GradientProducts(const Mesh& mesh, const NodeGraph& graph);
-
-/// A pair_mask that keeps every pair.
-constexpr Eigen::Index kEveryPair = -1;
-
-/// Adds what the elements from `first` to before `end` contribute to M.  The
-/// block of pair k is number k & pair_mask, so that memory for the pairs of a
-/// front of nodes is enough where the rest is done with.
-void AddGradientProducts(const Mesh& mesh, const NodeGraph& graph,
-                         Eigen::Index first, Eigen::Index end,
-                         Eigen::Index pair_mask, Eigen::Matrix3Xd& products);
-
-/// H_ij from M_ij.
-inline Eigen::Matrix3d StiffnessBlockH(const Eigen::Matrix3d& m) {
-  return 0.5 * (m.transpose() + m.trace() * Eigen::Matrix3d::Identity());
-}
-
-/// J_ij from M_ij.
-inline Eigen::Matrix3d StiffnessBlockJ(const Eigen::Matrix3d& m) {
-  return m - m.transpose() - m.trace() * Eigen::Matrix3d::Identity();
-}
 
 }  // namespace elastimate
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "elastimate/core/gradient_products.h"
+
 namespace elastimate {
 
 StiffnessAssembly::StiffnessAssembly(const Mesh& mesh,
@@ -50,7 +52,7 @@ void StiffnessAssembly::PlanStages(const Mesh& mesh) {
     size *= 2;
   }
   pair_mask_ = size < graph_.NumPairs() ? size - 1 : kEveryPair;
-  products_.setZero(3, 3 * std::min(size, graph_.NumPairs()));
+  products_.setZero(4, 3 * std::min(size, graph_.NumPairs()));
 }
 
 void StiffnessAssembly::BuildPattern(
@@ -101,7 +103,7 @@ void StiffnessAssembly::Assemble(const Mesh& mesh) {
 void StiffnessAssembly::WriteColumns(Eigen::Index node) {
   constexpr unsigned kAllFree = 7;
   for (Eigen::Index k = graph_.start[node]; k < graph_.start[node + 1]; ++k) {
-    auto product = products_.middleCols<3>(3 * (k & pair_mask_));
+    auto product = products_.block<3, 3>(0, 3 * (k & pair_mask_));
     const Eigen::Matrix3d m = product;
     product.setZero();
     const Eigen::Matrix3d block_h = StiffnessBlockH(m);

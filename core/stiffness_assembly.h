@@ -32,7 +32,7 @@ class StiffnessAssembly {
                     const DegreesOfFreedom& degrees_of_freedom);
 
   /// Assembles the values of H and J again, for moved nodes of the same mesh.
-  /// Cost: one element pass, in memory for the pairs of a front of nodes: 72
+  /// Cost: one element pass, in memory for the pairs of a front of nodes: 96
   /// byte for each (2 MB for a million tetrahedra of good numbering, 100 MB of
   /// a random one), so that most of it stays in the cache.
   void Assemble(const Mesh& mesh);
@@ -74,7 +74,7 @@ class StiffnessAssembly {
   std::vector<Stage> stages_;
   /// For AddGradientProducts: the pairs at work, zero between assemblies.
   Eigen::Index pair_mask_;
-  Eigen::Matrix3Xd products_;
+  Eigen::Matrix4Xd products_;
   Eigen::VectorXd h_;
   Eigen::VectorXd j_;
 };

@@ -2,14 +2,14 @@
 
 #include <random>
 
-#include "elastimate/core/node_graph.h"
+#include "elastimate/core/gradient_products.h"
 
 namespace elastimate {
 
 Eigen::Matrix2d StiffnessTraces(const Mesh& mesh,
                                 const DegreesOfFreedom& degrees_of_freedom) {
   const NodeGraph graph(mesh);
-  const Eigen::Matrix3Xd products = GradientProducts(mesh, graph);
+  const Eigen::Matrix4Xd products = GradientProducts(mesh, graph);
   const auto free = [&](Eigen::Index node) {
     Eigen::Vector3d mask;
     for (int i = 0; i < 3; ++i) {
@@ -23,7 +23,7 @@ Eigen::Matrix2d StiffnessTraces(const Mesh& mesh,
     for (Eigen::Index k = graph.start[j]; k < graph.start[j + 1]; ++k) {
       const int i = graph.row[k];
       const Eigen::Matrix3d mask = free(i) * free_j.transpose();
-      const Eigen::Matrix3d m = products.middleCols<3>(3 * k);
+      const Eigen::Matrix3d m = products.block<3, 3>(0, 3 * k);
       const Eigen::Matrix3d block_h = StiffnessBlockH(m).cwiseProduct(mask);
       const Eigen::Matrix3d block_j = StiffnessBlockJ(m).cwiseProduct(mask);
       // A pair of different nodes stands for two blocks of the matrix.

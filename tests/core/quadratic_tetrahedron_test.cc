@@ -7,8 +7,8 @@
 
 #include "elastimate/core/degrees_of_freedom.h"
 #include "elastimate/core/elasticity.h"
+#include "elastimate/core/gradient_products.h"
 #include "elastimate/core/mesh.h"
-#include "elastimate/core/node_graph.h"
 #include "elastimate/core/quadratic_scene.h"
 #include "elastimate/core/stiffness_assembly.h"
 #include "elastimate/core/stiffness_product.h"
@@ -102,14 +102,14 @@ TEST_F(QuadraticTetrahedra, GradientProductsAreThoseOfTheShapeFunctions) {
     });
   }
   const NodeGraph graph(mesh_);
-  const Eigen::Matrix3Xd products = GradientProducts(mesh_, graph);
+  const Eigen::Matrix4Xd products = GradientProducts(mesh_, graph);
   ASSERT_EQ(products.cols(), 3 * graph.NumPairs());
   const double tolerance = kReferenceRounding * expected.cwiseAbs().maxCoeff();
   for (Eigen::Index j = 0; j < mesh_.NumNodes(); ++j) {
     for (Eigen::Index k = graph.start[j]; k < graph.start[j + 1]; ++k) {
       const Eigen::Matrix3d block =
           expected.block<3, 3>(3 * Eigen::Index(graph.row[k]), 3 * j);
-      EXPECT_LT((products.middleCols<3>(3 * k) - block).norm(), tolerance);
+      EXPECT_LT((products.block<3, 3>(0, 3 * k) - block).norm(), tolerance);
     }
   }
 }

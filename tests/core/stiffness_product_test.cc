@@ -1,7 +1,6 @@
 #include "elastimate/core/stiffness_product.h"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/core/instruction_sets.h"
 #include "tests/core/random_values.h"
 #include "tests/dense_reference.h"
 #include "tests/scenes.h"
@@ -186,35 +186,10 @@ TEST_F(StiffnessProduct, DoesNotDependOnTheOrderOfAnElementsNodes) {
   EXPECT_LT((of_turned.j - products.j).cwiseAbs().maxCoeff(), tolerance);
 }
 
-// Each kind of vector instruction that this processor has, and the least of
-// them, which every processor of its architecture has.
-class InstructionSet : public ::testing::TestWithParam<std::int64_t> {
- protected:
-  InstructionSet() {
-    hwy::SetSupportedTargetsForTest(GetParam());
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-  ~InstructionSet() override {
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-};
-
-std::vector<std::int64_t> InstructionSets() {
-  std::vector<std::int64_t> targets;
-  const auto supported =
-      static_cast<std::uint64_t>(hwy::SupportedTargets() & HWY_TARGETS);
-  for (int bit = 0; bit < 64; ++bit) {
-    const std::uint64_t target = std::uint64_t{1} << bit;
-    if ((supported & target) != 0) {
-      targets.push_back(static_cast<std::int64_t>(target));
-    }
-  }
-  return targets;
-}
+using ProductByInstructionSet = testing::InstructionSet;
 
 // The last batch of elements and the last block of columns may be full or not.
-TEST_P(InstructionSet, EqualsTheTextbookStiffnessForAnyCount) {
+TEST_P(ProductByInstructionSet, EqualsTheTextbookStiffnessForAnyCount) {
   const Mesh whole =
       WithBothOrientations(Distorted(BoxMesh({2, 2, 1}, {1, 0.8, 1.2})));
   const Eigen::MatrixXd q = RandomMatrix(3 * whole.NumNodes(), 17, 2);
@@ -236,7 +211,7 @@ TEST_P(InstructionSet, EqualsTheTextbookStiffnessForAnyCount) {
   }
 }
 
-TEST_P(InstructionSet, OfSeveralColumnsIsThatOfEachBitForBit) {
+TEST_P(ProductByInstructionSet, OfSeveralColumnsIsThatOfEachBitForBit) {
   const Mesh mesh =
       WithBothOrientations(Distorted(BoxMesh({3, 2, 3}, {1, 0.8, 1.2})));
   const Eigen::MatrixXd q = RandomMatrix(3 * mesh.NumNodes(), 9, 3);
@@ -248,11 +223,9 @@ TEST_P(InstructionSet, OfSeveralColumnsIsThatOfEachBitForBit) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Supported, InstructionSet,
-                         ::testing::ValuesIn(InstructionSets()),
-                         [](const auto& test) {
-                           return std::string(hwy::TargetName(test.param));
-                         });
+INSTANTIATE_TEST_SUITE_P(Supported, ProductByInstructionSet,
+                         ::testing::ValuesIn(testing::InstructionSets()),
+                         testing::InstructionSetName);
 
 // A mesh of many blocks of elements.
 class LargeMesh : public ::testing::Test {
