@@ -77,8 +77,11 @@ SolverKind SolverFromFlag() {
   Require(FLAGS_solver == "automatic" || FLAGS_solver == "cholesky" ||
               FLAGS_solver == "multigrid",
           "solver", "it is automatic, cholesky or multigrid");
-  Require(FLAGS_solver != "multigrid" || HasMultigrid(), "solver",
-          "it is not there (" + WhyNoMultigrid() + "); use cholesky");
+  // To ask whether it is there loads it.
+  if (FLAGS_solver == "multigrid") {
+    Require(HasMultigrid(), "solver",
+            "it is not there (" + WhyNoMultigrid() + "); use cholesky");
+  }
   return FLAGS_solver == "cholesky"    ? SolverKind::kCholesky
          : FLAGS_solver == "multigrid" ? SolverKind::kMultigrid
                                        : SolverKind::kAutomatic;

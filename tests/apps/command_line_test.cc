@@ -7,6 +7,8 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <sstream>
 #include <string>
 
@@ -174,6 +176,25 @@ TEST_F(CommandLine, NearOneHalfItGivesAnIntervalOfOneSide) {
        {"and 0.5 (95 %)", "shear modulus mu", "1 / bulk modulus"}) {
     EXPECT_NE(table.find(words), std::string::npos) << table;
   }
+}
+
+// They take longer to load than everything else.
+TEST_F(CommandLine, LoadsNoModuleThatItDoesNotNeed) {
+  MakeExactScene();
+  const std::string loaded = (folder_ / "loaded").string();
+  setenv("LD_DEBUG", "files", 1);
+  setenv("LD_DEBUG_OUTPUT", loaded.c_str(), 1);
+  Succeed("estimate exact.vtu");
+  unsetenv("LD_DEBUG");
+  unsetenv("LD_DEBUG_OUTPUT");
+  std::string files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+    if (entry.path().string().rfind(loaded, 0) == 0) {
+      files += ReadText(entry.path());
+    }
+  }
+  EXPECT_NE(files.find("libvtk"), std::string::npos);
+  EXPECT_EQ(files.find("libelastimate_"), std::string::npos);
 }
 
 TEST_F(CommandLine, PrintsATableForPeople) {
