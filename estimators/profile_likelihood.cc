@@ -2,18 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "elastimate/estimators/estimator.h"
+#include "elastimate/estimators/statistics.h"
 
 namespace elastimate {
-
 namespace {
+
+// Standard deviations of a normal distribution that hold 95 % of it.
+constexpr double kTwoSidedErrors = 1.960;
 
 // Widens the standard errors to a profile likelihood with a 95 % interval of
 // nu, each end with the E that fits best there.  An end at the limit of the
 // range is left out.
 void WidenToProfile(const Profile& profile, Estimate& estimate) {
-  constexpr double kTwoSided = 1.960;
   Eigen::Vector2d square_sum = Eigen::Vector2d::Zero();
   int num_ends = 0;
   for (const IsotropicElasticity& end : {profile.lower, profile.upper}) {
@@ -29,7 +32,8 @@ void WidenToProfile(const Profile& profile, Estimate& estimate) {
   if (num_ends == 0) {
     return;
   }
-  const Eigen::Vector2d error = (square_sum / num_ends).cwiseSqrt() / kTwoSided;
+  const Eigen::Vector2d error =
+      (square_sum / num_ends).cwiseSqrt() / kTwoSidedErrors;
   // Of a parameter that varies; NaN compares false.
   const auto factor = [&](int i) {
     const double ratio = error(i) / std::sqrt(estimate.covariance(i, i));
@@ -66,6 +70,18 @@ void DescribeProfile(const std::function<Profile(double quantile)>& profile_of,
   estimate.poisson_ratio_interval = {
       reaches_lower ? -1 : profile.lower.poisson_ratio,
       reaches_upper ? 0.5 : profile.upper.poisson_ratio};
+  constexpr double kFar = kTwoSidedErrors * kLargestPoissonRatioError;
+  const double nu = estimate.elasticity.poisson_ratio;
+  if ((reaches_lower && nu + 1 > kFar) || (reaches_upper && 0.5 - nu > kFar)) {
+    const Interval& interval = *estimate.poisson_ratio_interval;
+    estimate.Fail(Status::kNotIdentifiable,
+                  "the data leave Poisson's ratio between " +
+                      TwoDigits(interval.lower) + " and " +
+                      TwoDigits(interval.upper) +
+                      "; give it, or measure larger displacements or other "
+                      "load cases",
+                  "Poisson's ratio is not determined");
+  }
 }
 
 }  // namespace elastimate

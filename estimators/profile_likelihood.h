@@ -27,6 +27,9 @@ struct Profile {
 /// the sum of squares over its variance exceeds its least by no more than a
 /// quantile of chi^2; ends at kSmallestPoissonRatio and kLargestPoissonRatio
 /// where it never does.
+///
+/// Where the sum of squares does not exceed the least up to a far end of the
+/// range, the data do not determine nu, whatever the curvature at nu is.
 void DescribeProfile(const std::function<Profile(double quantile)>& profile_of,
                      Estimate& estimate);
 
