@@ -3,6 +3,7 @@
 #include "elastimate/core/forward_model.h"
 #include "elastimate/core/loads.h"
 #include "elastimate/core/quadratic_scene.h"
+#include "elastimate/core/rigid_motion.h"
 #include "elastimate/core/stiffness_product.h"
 #include "elastimate/core/strain_energy.h"
 #include "elastimate/estimators/estimator.h"

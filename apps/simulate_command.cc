@@ -13,6 +13,7 @@
 #include "elastimate/core/forward_model.h"
 #include "elastimate/core/loads.h"
 #include "elastimate/core/magnitude.h"
+#include "elastimate/core/rigid_motion.h"
 #include "elastimate/core/simulated_measurement.h"
 #include "elastimate/io/scene_reader.h"
 #include "elastimate/io/vtu_writer.h"

@@ -1,11 +1,7 @@
 #include "elastimate/core/scene.h"
 
-#include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <numeric>
 #include <sstream>
 #include <stdexcept>
 
@@ -161,80 +157,6 @@ void ValidateMeasurement(const Mesh& mesh, const LoadCase& load_case,
   RequireMagnitude(largest, "the measured displacement of " + name);
 }
 
-// The part of the mesh that each node belongs to: nodes connected by elements
-// have the same label, the smallest node index of the part.
-std::vector<int> ConnectedParts(const Mesh& mesh) {
-  std::vector<int> parent(mesh.NumNodes());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&parent](int node) {
-    while (parent[node] != node) {
-      parent[node] = parent[parent[node]];
-      node = parent[node];
-    }
-    return node;
-  };
-  for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
-    int first = root(mesh.elements(0, element));
-    for (Eigen::Index i = 1; i < mesh.elements.rows(); ++i) {
-      const int other = root(mesh.elements(i, element));
-      parent[std::max(first, other)] = std::min(first, other);
-      first = std::min(first, other);
-    }
-  }
-  for (int node = 0; node < mesh.NumNodes(); ++node) {
-    parent[node] = root(node);
-  }
-  return parent;
-}
-
-// Coefficients of the six rigid motions (translations, then rotations about
-// axes through the part's centroid) in the displacement of one component.
-Eigen::Matrix<double, 1, 6> RigidMotionRow(const Eigen::Vector3d& arm,
-                                           int component) {
-  Eigen::Matrix<double, 1, 6> row = Eigen::Matrix<double, 1, 6>::Zero();
-  row(component) = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    row(3 + axis) = Eigen::Vector3d::Unit(axis).cross(arm)(component);
-  }
-  return row;
-}
-
-// Of the directions that the orthonormal columns of `span` span, the one
-// closest to an axis: "x", or "(0.6, 0.8, 0)".
-std::string DescribeDirection(const Eigen::Matrix3Xd& span) {
-  const Eigen::Matrix3d projection = span * span.transpose();
-  Eigen::Index axis = 0;
-  projection.diagonal().maxCoeff(&axis);
-  const Eigen::Vector3d direction = projection.col(axis).normalized();
-  if (direction(axis) > 0.9999) {
-    return kAxis[axis];
-  }
-  std::ostringstream text;
-  text << std::setprecision(2);
-  for (int i = 0; i < 3; ++i) {
-    text << (i == 0 ? "(" : ", ")
-         << (std::abs(direction(i)) < 0.005 ? 0.0 : direction(i));
-  }
-  text << ")";
-  return text.str();
-}
-
-// One of the rigid motions that the orthonormal columns span; a translation if
-// there is one, since any rotation about an axis off the centroid moves that
-// too.
-std::string DescribeRigidMotion(const Eigen::Matrix<double, 6, -1>& motions) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> rotations(
-      motions.bottomRows<3>(), Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Index rank = (rotations.singularValues().array() > 1e-5).count();
-  if (rank < motions.cols()) {
-    return "move along " + DescribeDirection(motions.topRows<3>() *
-                                             rotations.matrixV().rightCols(
-                                                 motions.cols() - rank));
-  }
-  return "rotate about " +
-         DescribeDirection(rotations.matrixU().leftCols(rank));
-}
-
 }  // namespace
 
 void ValidateScene(const Scene& scene) {
@@ -258,58 +180,6 @@ void ValidateMeasurements(const Scene& scene) {
   for (std::size_t i = 0; i < scene.load_cases.size(); ++i) {
     ValidateMeasurement(scene.mesh, scene.load_cases[i], CaseName(i));
   }
-}
-
-std::string WhyNotHeld(const Mesh& mesh, const Supports& supports) {
-  struct Part {
-    Eigen::Index num_nodes = 0;
-    Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
-    double radius = 0;
-    Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Zero();
-  };
-  const std::vector<int> label = ConnectedParts(mesh);
-  std::vector<Part> parts(mesh.NumNodes());
-  for (int node = 0; node < mesh.NumNodes(); ++node) {
-    Part& part = parts[label[node]];
-    ++part.num_nodes;
-    part.centroid += mesh.nodes.col(node);
-  }
-  for (Part& part : parts) {
-    part.centroid /= std::max<double>(part.num_nodes, 1);
-  }
-  for (int node = 0; node < mesh.NumNodes(); ++node) {
-    Part& part = parts[label[node]];
-    part.radius =
-        std::max(part.radius, (mesh.nodes.col(node) - part.centroid).norm());
-  }
-  for (int node = 0; node < mesh.NumNodes(); ++node) {
-    Part& part = parts[label[node]];
-    const Eigen::Vector3d arm =
-        (mesh.nodes.col(node) - part.centroid) / part.radius;
-    for (int i = 0; i < 3; ++i) {
-      if (supports.held(i, node)) {
-        const Eigen::Matrix<double, 1, 6> row = RigidMotionRow(arm, i);
-        part.gram += row.transpose() * row;
-      }
-    }
-  }
-  for (int node = 0; node < mesh.NumNodes(); ++node) {
-    if (parts[node].num_nodes == 0) {
-      continue;
-    }
-    // Squares of lever arms below 1e-6 of the part's radius hold nothing.
-    const Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>> svd(
-        parts[node].gram, Eigen::ComputeFullV);
-    const Eigen::Index num_free =
-        (svd.singularValues().array() < 1e-12).count();
-    if (num_free > 0) {
-      return "the supports let the part of the mesh around node " +
-             std::to_string(node) + " " +
-             DescribeRigidMotion(svd.matrixV().rightCols(num_free)) +
-             " without strain; hold more components";
-    }
-  }
-  return "";
 }
 
 }  // namespace elastimate

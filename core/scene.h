@@ -84,12 +84,6 @@ void ValidateScene(const Scene& scene);
 /// O(num_nodes * num_load_cases).
 void ValidateMeasurements(const Scene& scene);
 
-/// Why the supports do not hold the specimen: a sentence that names a motion
-/// without strain which they allow (a translation or a rotation of a connected
-/// part of the mesh), or an empty string when there is none. A finite element
-/// solution exists only when it is empty.  O(num_elements).
-std::string WhyNotHeld(const Mesh& mesh, const Supports& supports);
-
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_CORE_SCENE_H_

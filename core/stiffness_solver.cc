@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "elastimate/core/cholesky.h"
+#include "elastimate/core/rigid_motion.h"
 
 namespace elastimate {
 namespace {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "elastimate/core/rigid_motion.h"
 #include "elastimate/core/strain_energy.h"
 #include "elastimate/estimators/statistics.h"
 

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "elastimate/core/quadratic_scene.h"
+#include "elastimate/core/rigid_motion.h"
 #include "elastimate/estimators/registry.h"
 #include "elastimate/io/example_scenes.h"
 #include "elastimate/io/scene_reader.h"

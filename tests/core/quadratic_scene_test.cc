@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "elastimate/core/loads.h"
+#include "elastimate/core/rigid_motion.h"
 #include "tests/core/random_values.h"
 #include "tests/quadratic_reference.h"
 #include "tests/scenes.h"

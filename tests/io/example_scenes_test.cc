@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "elastimate/core/mesh.h"
+#include "elastimate/core/rigid_motion.h"
 #include "elastimate/core/scene.h"
 #include "elastimate/io/organ_shape.h"
 

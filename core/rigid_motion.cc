@@ -1,0 +1,292 @@
+#include "elastimate/core/rigid_motion.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <numeric>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+namespace elastimate {
+namespace {
+
+// Sets that are joined one by one; the label of a set is its smallest member.
+class DisjointSets {
+ public:
+  explicit DisjointSets(Eigen::Index size) : parent_(size) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+
+  int Label(int member) {
+    while (parent_[member] != member) {
+      parent_[member] = parent_[parent_[member]];
+      member = parent_[member];
+    }
+    return member;
+  }
+
+  void Join(int a, int b) {
+    a = Label(a);
+    b = Label(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+struct Face {
+  std::array<int, 3> nodes;  // Ascending.
+  int element;
+
+  bool operator<(const Face& other) const { return nodes < other.nodes; }
+};
+
+// The tetrahedra that are connected through faces.
+DisjointSets ElementsJoinedByFaces(const Mesh& mesh) {
+  std::vector<Face> faces;
+  faces.reserve(4 * mesh.NumElements());
+  for (int e = 0; e < mesh.NumElements(); ++e) {
+    std::array<int, 4> nodes;
+    std::copy_n(mesh.elements.col(e).data(), 4, nodes.begin());
+    std::sort(nodes.begin(), nodes.end());
+    for (int left_out = 0; left_out < 4; ++left_out) {
+      Face face{{}, e};
+      std::copy_if(nodes.begin(), nodes.end(), face.nodes.begin(),
+                   [&](int node) { return node != nodes[left_out]; });
+      faces.push_back(face);
+    }
+  }
+  std::sort(faces.begin(), faces.end());
+  DisjointSets sets(mesh.NumElements());
+  for (std::size_t i = 1; i < faces.size(); ++i) {
+    if (faces[i].nodes == faces[i - 1].nodes) {
+      sets.Join(faces[i].element, faces[i - 1].element);
+    }
+  }
+  return sets;
+}
+
+// A rigid body, with its nodes.
+struct Body {
+  std::vector<int> nodes;
+  Eigen::Vector3d centroid;
+  double radius;
+};
+
+// Bodies by their smallest nodes.
+std::vector<Body> BodiesOf(const Mesh& mesh) {
+  DisjointSets joined = ElementsJoinedByFaces(mesh);
+  std::vector<std::pair<int, int>> nodes;  // Of the label of a body.
+  nodes.reserve(mesh.NumNodes());
+  std::vector<int> first(mesh.NumNodes(), -1);
+  for (int e = 0; e < mesh.NumElements(); ++e) {
+    const int label = joined.Label(e);
+    for (const int node : mesh.elements.col(e)) {
+      if (first[node] < 0) {
+        first[node] = label;
+      }
+      // Elements around a node nearly always belong to one body.
+      if (first[node] != label) {
+        nodes.emplace_back(label, node);
+      }
+    }
+  }
+  for (int node = 0; node < mesh.NumNodes(); ++node) {
+    nodes.emplace_back(first[node], node);
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+
+  std::vector<Body> bodies;
+  for (auto begin = nodes.begin(); begin != nodes.end();) {
+    const auto end = std::find_if(begin, nodes.end(), [&](const auto& node) {
+      return node.first != begin->first;
+    });
+    Body body{{}, Eigen::Vector3d::Zero(), 0};
+    for (; begin != end; ++begin) {
+      body.nodes.push_back(begin->second);
+      body.centroid += mesh.nodes.col(begin->second);
+    }
+    body.centroid /= static_cast<double>(body.nodes.size());
+    for (const int node : body.nodes) {
+      body.radius =
+          std::max(body.radius, (mesh.nodes.col(node) - body.centroid).norm());
+    }
+    bodies.push_back(std::move(body));
+  }
+  std::sort(bodies.begin(), bodies.end(), [](const Body& a, const Body& b) {
+    return a.nodes.front() < b.nodes.front();
+  });
+  return bodies;
+}
+
+// Coefficients of the six rigid motions (translations, then rotations about
+// axes through the centroid) in the displacement of one component.
+Eigen::Matrix<double, 1, 6> RigidMotionRow(const Eigen::Vector3d& arm,
+                                           int component) {
+  Eigen::Matrix<double, 1, 6> row = Eigen::Matrix<double, 1, 6>::Zero();
+  row(component) = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    row(3 + axis) = Eigen::Vector3d::Unit(axis).cross(arm)(component);
+  }
+  return row;
+}
+
+const char* const kAxis[3] = {"x", "y", "z"};
+
+// Of the directions that the orthonormal columns of `span` span, the one
+// closest to an axis: "x", or "(0.6, 0.8, 0)".
+std::string DescribeDirection(const Eigen::Matrix3Xd& span) {
+  const Eigen::Matrix3d projection = span * span.transpose();
+  Eigen::Index axis = 0;
+  projection.diagonal().maxCoeff(&axis);
+  const Eigen::Vector3d direction = projection.col(axis).normalized();
+  if (direction(axis) > 0.9999) {
+    return kAxis[axis];
+  }
+  std::ostringstream text;
+  text << std::setprecision(2);
+  for (int i = 0; i < 3; ++i) {
+    text << (i == 0 ? "(" : ", ")
+         << (std::abs(direction(i)) < 0.005 ? 0.0 : direction(i));
+  }
+  text << ")";
+  return text.str();
+}
+
+// One of the rigid motions that the orthonormal columns span; a translation if
+// there is one, since any rotation about an axis off the centroid moves that
+// too.
+std::string DescribeRigidMotion(const Eigen::Matrix<double, 6, -1>& motions) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> rotations(
+      motions.bottomRows<3>(), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Index rank = (rotations.singularValues().array() > 1e-5).count();
+  if (rank < motions.cols()) {
+    return "move along " + DescribeDirection(motions.topRows<3>() *
+                                             rotations.matrixV().rightCols(
+                                                 motions.cols() - rank));
+  }
+  return "rotate about " +
+         DescribeDirection(rotations.matrixU().leftCols(rank));
+}
+
+// Coefficients of the rigid motions of a body in the displacement of a node.
+Eigen::Matrix<double, 1, 6> RowOf(const Mesh& mesh, const Body& body, int node,
+                                  int component) {
+  return RigidMotionRow((mesh.nodes.col(node) - body.centroid) / body.radius,
+                        component);
+}
+
+// What holds some bodies: the sum of the squares of what moves their held
+// components, and of how far those that share a node move apart there, is a
+// quadratic form of six coordinates for each body.
+Eigen::MatrixXd HoldingForm(const Mesh& mesh, const Supports& supports,
+                            const std::vector<const Body*>& bodies) {
+  const Eigen::Index size = 6 * Eigen::Index(bodies.size());
+  Eigen::MatrixXd form = Eigen::MatrixXd::Zero(size, size);
+  std::vector<std::pair<int, Eigen::Index>> nodes;
+  for (Eigen::Index b = 0; b < Eigen::Index(bodies.size()); ++b) {
+    for (const int node : bodies[b]->nodes) {
+      nodes.emplace_back(node, b);
+      for (int i = 0; i < 3; ++i) {
+        if (supports.held(i, node)) {
+          const auto row = RowOf(mesh, *bodies[b], node, i);
+          form.block<6, 6>(6 * b, 6 * b) += row.transpose() * row;
+        }
+      }
+    }
+  }
+  std::sort(nodes.begin(), nodes.end());
+  for (std::size_t k = 1; k < nodes.size(); ++k) {
+    const auto [node, b] = nodes[k];
+    const auto [previous, a] = nodes[k - 1];
+    if (node != previous) {
+      continue;
+    }
+    for (int i = 0; i < 3; ++i) {
+      Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(size);
+      row.segment<6>(6 * a) = RowOf(mesh, *bodies[a], node, i);
+      row.segment<6>(6 * b) = -RowOf(mesh, *bodies[b], node, i);
+      form += row.transpose() * row;
+    }
+  }
+  return form;
+}
+
+// The smallest node of body `b` that none of the others has, if there is one.
+int NodeOfItsOwn(Eigen::Index b, const std::vector<const Body*>& bodies) {
+  const std::vector<int>& nodes = bodies[b]->nodes;
+  const auto is_shared = [&](int node) {
+    return std::any_of(bodies.begin(), bodies.end(), [&](const Body* other) {
+      return other != bodies[b] &&
+             std::binary_search(other->nodes.begin(), other->nodes.end(), node);
+    });
+  };
+  const auto own = std::find_if_not(nodes.begin(), nodes.end(), is_shared);
+  return own == nodes.end() ? nodes.front() : *own;
+}
+
+// A sentence about the first of the bodies that moves; empty when none does.
+std::string WhyNotHeld(const Mesh& mesh, const Supports& supports,
+                       const std::vector<const Body*>& bodies) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+      HoldingForm(mesh, supports, bodies));
+  // Squares of lever arms below 1e-6 of a radius hold nothing.
+  const Eigen::Index num_free = (eigen.eigenvalues().array() < 1e-12).count();
+  if (num_free == 0) {
+    return "";
+  }
+  const auto motions = eigen.eigenvectors().leftCols(num_free);
+  constexpr double kMoves = 1e-3;
+  Eigen::Index b = 0;
+  while (motions.middleRows<6>(6 * b).norm() < kMoves) {
+    ++b;
+  }
+  const bool is_hinged = bodies.size() > 1;
+  return "the supports let the part of the mesh around node " +
+         std::to_string(NodeOfItsOwn(b, bodies)) + " " +
+         DescribeRigidMotion(motions.middleRows<6>(6 * b)) +
+         " without strain; hold more components" +
+         (is_hinged ? ", or mend the mesh: it shares but edges or nodes with "
+                      "the rest"
+                    : "");
+}
+
+}  // namespace
+
+std::string WhyNotHeld(const Mesh& mesh, const Supports& supports) {
+  constexpr std::size_t kMostBodies = 64;
+  const std::vector<Body> bodies = BodiesOf(mesh);
+  std::vector<int> first(mesh.NumNodes(), -1);
+  DisjointSets hinged(Eigen::Index(bodies.size()));
+  for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
+    for (const int node : bodies[b].nodes) {
+      if (first[node] < 0) {
+        first[node] = b;
+      }
+      hinged.Join(first[node], b);
+    }
+  }
+  std::vector<std::vector<const Body*>> groups(bodies.size());
+  for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
+    groups[hinged.Label(b)].push_back(&bodies[b]);
+  }
+  for (const std::vector<const Body*>& group : groups) {
+    if (group.empty() || group.size() > kMostBodies) {
+      continue;
+    }
+    const std::string why = WhyNotHeld(mesh, supports, group);
+    if (!why.empty()) {
+      return why;
+    }
+  }
+  return "";
+}
+
+}  // namespace elastimate
