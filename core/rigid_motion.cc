@@ -253,7 +253,7 @@ std::string WhyNotHeld(const Mesh& mesh, const Supports& supports,
          std::to_string(NodeOfItsOwn(b, bodies)) + " " +
          DescribeRigidMotion(motions.middleRows<6>(6 * b)) +
          " without strain; hold more components" +
-         (is_hinged ? ", or mend the mesh: it shares but edges or nodes with "
+         (is_hinged ? ", or mend the mesh: it shares only edges or nodes with "
                       "the rest"
                     : "");
 }

@@ -14,7 +14,7 @@ namespace elastimate {
 /// exists only when it is empty.
 ///
 /// Tetrahedra that are connected through their faces move as a rigid body where
-/// they have no strain; bodies that share but an edge or a node are hinged
+/// they have no strain; bodies that share only an edge or a node are hinged
 /// there.  Of specimens of more than 64 bodies that are connected by hinges
 /// only whether they move as a whole is known.
 ///
