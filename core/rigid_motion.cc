@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "elastimate/core/elements_of_nodes.h"
+
 namespace elastimate {
 namespace {
 
@@ -40,43 +42,59 @@ class DisjointSets {
   std::vector<int> parent_;
 };
 
+// The other two corners of a face, ascending, whose smallest node is known.
 struct Face {
-  std::array<int, 3> nodes;  // Ascending.
+  std::array<int, 2> others;
   int element;
 
-  bool operator<(const Face& other) const { return nodes < other.nodes; }
+  bool operator<(const Face& other) const { return others < other.others; }
 };
 
 // The tetrahedra that are connected through faces.
 DisjointSets ElementsJoinedByFaces(const Mesh& mesh) {
-  std::vector<Face> faces;
-  faces.reserve(4 * mesh.NumElements());
-  for (int e = 0; e < mesh.NumElements(); ++e) {
-    std::array<int, 4> nodes;
-    std::copy_n(mesh.elements.col(e).data(), 4, nodes.begin());
-    std::sort(nodes.begin(), nodes.end());
-    for (int left_out = 0; left_out < 4; ++left_out) {
-      Face face{{}, e};
-      std::copy_if(nodes.begin(), nodes.end(), face.nodes.begin(),
-                   [&](int node) { return node != nodes[left_out]; });
-      faces.push_back(face);
-    }
-  }
-  std::sort(faces.begin(), faces.end());
+  const ElementsOfNodes around(mesh);
   DisjointSets sets(mesh.NumElements());
-  for (std::size_t i = 1; i < faces.size(); ++i) {
-    if (faces[i].nodes == faces[i - 1].nodes) {
-      sets.Join(faces[i].element, faces[i - 1].element);
+  std::vector<Face> faces;  // Whose smallest node is the same.
+  for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
+    faces.clear();
+    for (Eigen::Index i = around.start[node]; i < around.start[node + 1]; ++i) {
+      const int e = static_cast<int>(around.element[i]);
+      const auto corners = mesh.elements.col(e);
+      for (int a = 0; a < 4; ++a) {
+        for (int b = a + 1; b < 4; ++b) {
+          const auto [smaller, larger] = std::minmax({corners(a), corners(b)});
+          if (smaller > node) {
+            faces.push_back({{smaller, larger}, e});
+          }
+        }
+      }
+    }
+    std::sort(faces.begin(), faces.end());
+    for (std::size_t i = 1; i < faces.size(); ++i) {
+      if (faces[i].others == faces[i - 1].others) {
+        sets.Join(faces[i].element, faces[i - 1].element);
+      }
     }
   }
   return sets;
 }
 
-// A rigid body, with its nodes.
+// A rigid body.
 struct Body {
-  std::vector<int> nodes;
-  Eigen::Vector3d centroid;
-  double radius;
+  std::vector<int> nodes;  // Ascending.
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+  double radius = 0;
+
+  Body(const Mesh& mesh, std::vector<int> its_nodes)
+      : nodes(std::move(its_nodes)) {
+    for (const int node : nodes) {
+      centroid += mesh.nodes.col(node);
+    }
+    centroid /= static_cast<double>(nodes.size());
+    for (const int node : nodes) {
+      radius = std::max(radius, (mesh.nodes.col(node) - centroid).norm());
+    }
+  }
 };
 
 // Bodies by their smallest nodes.
@@ -108,34 +126,16 @@ std::vector<Body> BodiesOf(const Mesh& mesh) {
     const auto end = std::find_if(begin, nodes.end(), [&](const auto& node) {
       return node.first != begin->first;
     });
-    Body body{{}, Eigen::Vector3d::Zero(), 0};
+    std::vector<int> of_body;
     for (; begin != end; ++begin) {
-      body.nodes.push_back(begin->second);
-      body.centroid += mesh.nodes.col(begin->second);
+      of_body.push_back(begin->second);
     }
-    body.centroid /= static_cast<double>(body.nodes.size());
-    for (const int node : body.nodes) {
-      body.radius =
-          std::max(body.radius, (mesh.nodes.col(node) - body.centroid).norm());
-    }
-    bodies.push_back(std::move(body));
+    bodies.emplace_back(mesh, std::move(of_body));
   }
   std::sort(bodies.begin(), bodies.end(), [](const Body& a, const Body& b) {
     return a.nodes.front() < b.nodes.front();
   });
   return bodies;
-}
-
-// Coefficients of the six rigid motions (translations, then rotations about
-// axes through the centroid) in the displacement of one component.
-Eigen::Matrix<double, 1, 6> RigidMotionRow(const Eigen::Vector3d& arm,
-                                           int component) {
-  Eigen::Matrix<double, 1, 6> row = Eigen::Matrix<double, 1, 6>::Zero();
-  row(component) = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    row(3 + axis) = Eigen::Vector3d::Unit(axis).cross(arm)(component);
-  }
-  return row;
 }
 
 const char* const kAxis[3] = {"x", "y", "z"};
@@ -176,11 +176,18 @@ std::string DescribeRigidMotion(const Eigen::Matrix<double, 6, -1>& motions) {
          DescribeDirection(rotations.matrixU().leftCols(rank));
 }
 
-// Coefficients of the rigid motions of a body in the displacement of a node.
-Eigen::Matrix<double, 1, 6> RowOf(const Mesh& mesh, const Body& body, int node,
-                                  int component) {
-  return RigidMotionRow((mesh.nodes.col(node) - body.centroid) / body.radius,
-                        component);
+// Coefficients of the six rigid motions of a body (translations, then rotations
+// about axes through its centroid, by radii) in the displacement of a node.
+Eigen::Matrix<double, 1, 6> RigidMotionRow(const Mesh& mesh, const Body& body,
+                                           int node, int component) {
+  const Eigen::Vector3d arm =
+      (mesh.nodes.col(node) - body.centroid) / body.radius;
+  Eigen::Matrix<double, 1, 6> row = Eigen::Matrix<double, 1, 6>::Zero();
+  row(component) = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    row(3 + axis) = Eigen::Vector3d::Unit(axis).cross(arm)(component);
+  }
+  return row;
 }
 
 // What holds some bodies: the sum of the squares of what moves their held
@@ -196,7 +203,7 @@ Eigen::MatrixXd HoldingForm(const Mesh& mesh, const Supports& supports,
       nodes.emplace_back(node, b);
       for (int i = 0; i < 3; ++i) {
         if (supports.held(i, node)) {
-          const auto row = RowOf(mesh, *bodies[b], node, i);
+          const auto row = RigidMotionRow(mesh, *bodies[b], node, i);
           form.block<6, 6>(6 * b, 6 * b) += row.transpose() * row;
         }
       }
@@ -211,8 +218,8 @@ Eigen::MatrixXd HoldingForm(const Mesh& mesh, const Supports& supports,
     }
     for (int i = 0; i < 3; ++i) {
       Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(size);
-      row.segment<6>(6 * a) = RowOf(mesh, *bodies[a], node, i);
-      row.segment<6>(6 * b) = -RowOf(mesh, *bodies[b], node, i);
+      row.segment<6>(6 * a) = RigidMotionRow(mesh, *bodies[a], node, i);
+      row.segment<6>(6 * b) = -RigidMotionRow(mesh, *bodies[b], node, i);
       form += row.transpose() * row;
     }
   }
@@ -230,6 +237,16 @@ int NodeOfItsOwn(Eigen::Index b, const std::vector<const Body*>& bodies) {
   };
   const auto own = std::find_if_not(nodes.begin(), nodes.end(), is_shared);
   return own == nodes.end() ? nodes.front() : *own;
+}
+
+Body Union(const Mesh& mesh, const std::vector<const Body*>& bodies) {
+  std::vector<int> nodes;
+  for (const Body* const body : bodies) {
+    nodes.insert(nodes.end(), body->nodes.begin(), body->nodes.end());
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return Body(mesh, std::move(nodes));
 }
 
 // A sentence about the first of the bodies that moves; empty when none does.
@@ -278,10 +295,16 @@ std::string WhyNotHeld(const Mesh& mesh, const Supports& supports) {
     groups[hinged.Label(b)].push_back(&bodies[b]);
   }
   for (const std::vector<const Body*>& group : groups) {
-    if (group.empty() || group.size() > kMostBodies) {
+    if (group.empty()) {
       continue;
     }
-    const std::string why = WhyNotHeld(mesh, supports, group);
+    std::string why;
+    if (group.size() <= kMostBodies) {
+      why = WhyNotHeld(mesh, supports, group);
+    } else {
+      const Body whole = Union(mesh, group);
+      why = WhyNotHeld(mesh, supports, {&whole});
+    }
     if (!why.empty()) {
       return why;
     }

@@ -175,6 +175,29 @@ TEST(WhyNotHeld, NamesThePartThatIsFree) {
               HasSubstr("the part of the mesh around node 0 "));
 }
 
+// A chain of tetrahedra, each of which shares a node with the next.
+TEST(WhyNotHeld, KnowsWhetherManyBodiesMoveAsAWhole) {
+  constexpr int kBodies = 100;
+  Mesh mesh;
+  mesh.nodes.resize(3, 3 * kBodies + 1);
+  mesh.elements.resize(4, kBodies);
+  mesh.nodes.col(0).setZero();
+  for (int e = 0; e < kBodies; ++e) {
+    const Eigen::Vector3d shared = mesh.nodes.col(3 * e);
+    mesh.nodes.middleCols(3 * e + 1, 3) =
+        Eigen::Matrix3d::Identity().colwise() + shared;
+    mesh.elements.col(e) << 3 * e, 3 * e + 1, 3 * e + 2, 3 * e + 3;
+  }
+  Supports supports{ComponentMask::Constant(3, mesh.NumNodes(), false),
+                    Eigen::Matrix3Xd::Zero(3, mesh.NumNodes())};
+  supports.held.row(0).setConstant(true);
+  EXPECT_THAT(WhyNotHeld(mesh, supports),
+              ContainsRegex("the part of the mesh around node 0 move along "
+                            "[yz] without strain; hold more components$"));
+  supports.held.setConstant(true);
+  EXPECT_THAT(WhyNotHeld(mesh, supports), IsEmpty());
+}
+
 // Two boxes of many tetrahedra that share the nodes of one edge, or one node.
 class HingedBoxes : public ::testing::Test {
  protected:
