@@ -33,7 +33,7 @@ class StiffnessAssembly {
 
   /// Assembles the values of H and J again, for moved nodes of the same mesh.
   /// Cost: one element pass, in memory for the pairs of a front of nodes: 96
-  /// byte for each (2 MB for a million tetrahedra of good numbering, 100 MB of
+  /// byte for each (3 MB for a million tetrahedra of good numbering, 135 MB of
   /// a random one), so that most of it stays in the cache.
   void Assemble(const Mesh& mesh);
 

@@ -70,9 +70,9 @@ void DescribeProfile(const std::function<Profile(double quantile)>& profile_of,
   estimate.poisson_ratio_interval = {
       reaches_lower ? -1 : profile.lower.poisson_ratio,
       reaches_upper ? 0.5 : profile.upper.poisson_ratio};
-  constexpr double kFar = kTwoSidedErrors * kLargestPoissonRatioError;
   const double nu = estimate.elasticity.poisson_ratio;
-  if ((reaches_lower && nu + 1 > kFar) || (reaches_upper && 0.5 - nu > kFar)) {
+  if ((reaches_lower && nu + 1 > kLargestPoissonRatioDistance) ||
+      (reaches_upper && 0.5 - nu > kLargestPoissonRatioDistance)) {
     const Interval& interval = *estimate.poisson_ratio_interval;
     estimate.Fail(Status::kNotIdentifiable,
                   "the data leave Poisson's ratio between " +

@@ -29,7 +29,8 @@ struct Profile {
 /// where it never does.
 ///
 /// Where the sum of squares does not exceed the least up to a far end of the
-/// range, the data do not determine nu, whatever the curvature at nu is.
+/// range, the data do not determine nu, whatever the curvature at nu is, and
+/// the estimate fails.
 void DescribeProfile(const std::function<Profile(double quantile)>& profile_of,
                      Estimate& estimate);
 

@@ -13,6 +13,11 @@ namespace elastimate {
 /// its whole range for common materials is 0 to 0.5.
 constexpr double kLargestPoissonRatioError = 0.15;
 
+/// An end of the 95 % interval of nu further than this from the estimate says
+/// the same.
+constexpr double kLargestPoissonRatioDistance =
+    1.960 * kLargestPoissonRatioError;
+
 /// A relative standard error of E above this says that the data do not
 /// determine E: zero and infinity are within three standard errors.
 constexpr double kLargestYoungsModulusError = 1.0 / 3;

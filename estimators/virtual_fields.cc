@@ -204,11 +204,10 @@ void DescribeProfileOf(const VirtualWorkBalance& balance,
         return Profile{elasticity_of(lower), elasticity_of(upper)};
       },
       estimate);
-  constexpr double kTwoSided = 1.960;
   const Interval& interval = *estimate.poisson_ratio_interval;
   if (std::max(interval.upper - estimate.elasticity.poisson_ratio,
                estimate.elasticity.poisson_ratio - interval.lower) >
-      kTwoSided * kLargestPoissonRatioError) {
+      kLargestPoissonRatioDistance) {
     estimate.Fail(Status::kNotIdentifiable,
                   "virtual work leaves Poisson's ratio between " +
                       TwoDigits(interval.lower) + " and " +
