@@ -430,11 +430,13 @@ HWY_INLINE void AddBatch(const Corners& corners, std::ptrdiff_t count,
 }
 
 // Nodes of a mesh that was numbered again are scattered over the columns: asks
-// for the values of a later one, so that many are on their way at a time.
+// for the values of a later one, so that as many are on their way at a time as
+// a processor can wait for.
+template <class Layout>
 HWY_INLINE void Prefetch(const NumberedMesh& mesh, const ElementBlock& block,
                          std::ptrdiff_t node, const double* values,
                          const Columns& columns) {
-  constexpr std::ptrdiff_t kNodesAhead = 16;
+  constexpr std::ptrdiff_t kNodesAhead = Layout::kColumns == 1 ? 64 : 16;
   if (mesh.places == nullptr || node + kNodesAhead >= block.nodes.end) {
     return;
   }
@@ -457,25 +459,117 @@ HWY_INLINE void ClearValues(double* record) {
   }
 }
 
+// Sets the displacements of a record to those of a node, whose values in the
+// first column begin at `q`.
+template <class Layout>
+HWY_INLINE void FillDisplacement(const double* q, const Columns&,
+                                 double* record, Layout layout) {
+  std::copy_n(q, 3, record + layout.kDisplacement);
+}
+
+// Sets the products at a node to a and b = p - 2 a of its record, or adds
+// these.
+template <bool kIsFirst, class Layout>
+HWY_INLINE void CollectNode(const double* record, const Columns&, double* h,
+                            double* j, Layout layout) {
+  for (int i = 0; i < 3; ++i) {
+    const double a = record[layout.kA + i];
+    const double b = record[layout.kP + i] - 2 * a;
+    h[i] = kIsFirst ? a : h[i] + a;
+    j[i] = kIsFirst ? b : j[i] + b;
+  }
+}
+
+#if ELASTIMATE_HAS_BATCHES
+
+// The three values of a node in a column, and one that nothing depends on.
+template <class D>
+HWY_INLINE hn::Vec<D> LoadThree(D d, const double* p) {
+  const hn::Half<D> two;
+  return hn::Combine(d, hn::Set(two, p[2]), hn::LoadU(two, p));
+}
+
+// A column in each lane; lanes beyond the last column repeat it.
+HWY_INLINE void FillDisplacement(const double* q, const Columns& columns,
+                                 double* record, SeveralColumns layout) {
+  const auto column = [&](std::ptrdiff_t k) {
+    return q + std::min(k, columns.num_columns - 1) * columns.num_rows;
+  };
+  const auto row = [&](std::ptrdiff_t k) HWY_ATTR {
+#if HWY_CAP_GE512
+    const hn::Half<Lanes> half;
+    return hn::Combine(Lanes(), LoadThree(half, column(k + 4)),
+                       LoadThree(half, column(k)));
+#else
+    return LoadThree(Lanes(), column(k));
+#endif
+  };
+  const Rows components = Transpose({row(0), row(1), row(2), row(3)});
+  StoreColumns({components.row0, components.row1, components.row2},
+               record + layout.kDisplacement);
+}
+
+// Sets three values of a column to the first three of `v`, or adds these.
+template <bool kIsFirst, class V>
+HWY_INLINE void CollectThree(V v, double* p) {
+  const hn::Half<hn::DFromV<V>> two;
+  const auto low = hn::LowerHalf(two, v);
+  const double last = hn::GetLane(hn::UpperHalf(two, v));
+  hn::StoreU(kIsFirst ? low : hn::Add(hn::LoadU(two, p), low), two, p);
+  p[2] = kIsFirst ? last : p[2] + last;
+}
+
+// The first four lanes of row k are for column k, the next for column k + 4.
+template <bool kIsFirst>
+HWY_INLINE void CollectRows(const Rows& rows, const Columns& columns,
+                            double* p) {
+  const Values of[4] = {rows.row0, rows.row1, rows.row2, rows.row3};
+  for (std::ptrdiff_t k = 0;
+       k < std::min<std::ptrdiff_t>(columns.num_columns, 4); ++k) {
+#if HWY_CAP_GE512
+    const hn::Half<Lanes> half;
+    CollectThree<kIsFirst>(hn::LowerHalf(half, of[k]),
+                           p + k * columns.num_rows);
+    if (k + 4 < columns.num_columns) {
+      CollectThree<kIsFirst>(hn::UpperHalf(half, of[k]),
+                             p + (k + 4) * columns.num_rows);
+    }
+#else
+    CollectThree<kIsFirst>(of[k], p + k * columns.num_rows);
+#endif
+  }
+}
+
+template <bool kIsFirst>
+HWY_INLINE void CollectNode(const double* record, const Columns& columns,
+                            double* h, double* j, SeveralColumns layout) {
+  const Values zero = hn::Zero(Lanes());
+  const Values minus_two = hn::Set(Lanes(), -2.0);
+  const Vector a = LoadColumns(record + layout.kA);
+  const Vector p = LoadColumns(record + layout.kP);
+  CollectRows<kIsFirst>(Transpose({a.x, a.y, a.z, zero}), columns, h);
+  CollectRows<kIsFirst>(Transpose({hn::MulAdd(minus_two, a.x, p.x),
+                                   hn::MulAdd(minus_two, a.y, p.y),
+                                   hn::MulAdd(minus_two, a.z, p.z), zero}),
+                        columns, j);
+}
+
+#endif
+
 template <class Layout>
 void FillRecords(const NumberedMesh& mesh, const Columns& columns,
                  const ElementBlock& block, double* records) {
   double* record = records;
   for (std::ptrdiff_t node = block.nodes.first; node < block.nodes.end;
        ++node, record += Layout::kSize) {
-    Prefetch(mesh, block, node, columns.displacement, columns);
+    Prefetch<Layout>(mesh, block, node, columns.displacement, columns);
     ClearValues<Layout>(record);
     for (int i = 0; i < 3; ++i) {
       record[i] = mesh.nodes[3 * node + i];
     }
     record[3] = 0;
-    const double* q = columns.displacement + mesh.Row(node);
-    for (std::ptrdiff_t k = 0; k < columns.num_columns;
-         ++k, q += columns.num_rows) {
-      for (int i = 0; i < 3; ++i) {
-        record[Layout::kDisplacement + i * Layout::kStride + k] = q[i];
-      }
-    }
+    const std::ptrdiff_t row = mesh.Row(node);
+    FillDisplacement(columns.displacement + row, columns, record, Layout());
   }
 }
 
@@ -485,19 +579,10 @@ void CollectSums(const NumberedMesh& mesh, const Columns& columns,
   const double* record = records;
   for (std::ptrdiff_t node = block.nodes.first; node < block.nodes.end;
        ++node, record += Layout::kSize) {
-    Prefetch(mesh, block, node, columns.h, columns);
-    Prefetch(mesh, block, node, columns.j, columns);
-    double* h = columns.h + mesh.Row(node);
-    double* j = columns.j + mesh.Row(node);
-    for (std::ptrdiff_t k = 0; k < columns.num_columns;
-         ++k, h += columns.num_rows, j += columns.num_rows) {
-      for (int i = 0; i < 3; ++i) {
-        const double a = record[Layout::kA + i * Layout::kStride + k];
-        const double b = record[Layout::kP + i * Layout::kStride + k] - 2 * a;
-        h[i] = kIsFirst ? a : h[i] + a;
-        j[i] = kIsFirst ? b : j[i] + b;
-      }
-    }
+    Prefetch<Layout>(mesh, block, node, columns.h, columns);
+    Prefetch<Layout>(mesh, block, node, columns.j, columns);
+    CollectNode<kIsFirst>(record, columns, columns.h + mesh.Row(node),
+                          columns.j + mesh.Row(node), Layout());
   }
 }
 
@@ -530,8 +615,16 @@ void MultiplyElements(const NumberedMesh& mesh, const Columns& columns,
 void MultiplyBlock(const NumberedMesh& mesh, const Columns& columns,
                    const ElementBlock& block, bool is_first, double* records) {
 #if ELASTIMATE_HAS_BATCHES
-  if (columns.num_columns == 1) {
-    MultiplyElements<OneColumn>(mesh, columns, block, is_first, records);
+  // One after the other where most lanes would be idle.
+  if (4 * columns.num_columns <= kLanes) {
+    for (std::ptrdiff_t k = 0; k < columns.num_columns; ++k) {
+      const std::ptrdiff_t first = k * columns.num_rows;
+      MultiplyElements<OneColumn>(
+          mesh,
+          {columns.displacement + first, columns.h + first, columns.j + first,
+           columns.num_rows, 1},
+          block, is_first, records);
+    }
     return;
   }
 #endif
