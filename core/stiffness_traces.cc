@@ -1,5 +1,6 @@
 #include "elastimate/core/stiffness_traces.h"
 
+#include <cstdint>
 #include <random>
 
 #include "elastimate/core/gradient_products.h"
@@ -44,9 +45,14 @@ void SetTraceProbes(const ComponentMask& held,
   std::mt19937_64 generator(20071107);
   probes.setZero();
   for (auto probe : probes.colwise()) {
-    for (Eigen::Index dof = 0; dof < held.size(); ++dof) {
+    // A sign in each bit.
+    std::uint64_t signs = 0;
+    for (Eigen::Index dof = 0; dof < held.size(); ++dof, signs >>= 1U) {
+      if (dof % 64 == 0) {
+        signs = generator();
+      }
       if (!held.data()[dof]) {
-        probe(dof) = kSigns[generator() & 1U];
+        probe(dof) = kSigns[signs & 1U];
       }
     }
   }
