@@ -66,8 +66,10 @@ std::int64_t BaselineInstructions() {
   return static_cast<std::int64_t>(targets);
 }
 
+constexpr std::int64_t kAvx512 = HWY_AVX3 | HWY_AVX3_DL;
+
 bool HasVectorsOfFour() {
-  return (hwy::SupportedTargets() & (HWY_AVX2 | HWY_AVX3 | HWY_AVX3_DL)) != 0;
+  return (hwy::SupportedTargets() & (HWY_AVX2 | kAvx512)) != 0;
 }
 
 std::vector<int> RandomOrder(Eigen::Index size) {
@@ -153,10 +155,9 @@ class Cube {
     const Mesh& mesh = scene_.mesh;
     kernels.push_back({"naive", "natural", 1, 1, WorkOfPass(mesh, 1),
                        [&] { products_ = MultiplyNaively(mesh, one_); }});
-    for (const int columns : {1, 8}) {
-      AddOperator("scalar", "natural", mesh, 1, columns, kernels);
-      kernels.back().before = [] { UseInstructions(BaselineInstructions()); };
-      kernels.back().after = [] { UseInstructions(0); };
+    AddOperatorsWith(BaselineInstructions(), "scalar", kernels);
+    if ((hwy::SupportedTargets() & kAvx512) != 0) {
+      AddOperatorsWith(hwy::SupportedTargets() & ~kAvx512, "AVX2", kernels);
     }
     for (const int threads : {1, 2}) {
       for (const int columns : {1, 8}) {
@@ -203,6 +204,15 @@ class Cube {
                          stiffness->Multiply(Columns(columns), products);
                        },
                        stiffness->IsReordered() ? set_up : kUnknown});
+  }
+
+  void AddOperatorsWith(std::int64_t targets, const std::string& name,
+                        std::vector<Kernel>& kernels) {
+    for (const int columns : {1, 8}) {
+      AddOperator(name, "natural", scene_.mesh, 1, columns, kernels);
+      kernels.back().before = [targets] { UseInstructions(targets); };
+      kernels.back().after = [] { UseInstructions(0); };
+    }
   }
 
   void AddAssembly(std::vector<Kernel>& kernels) {
@@ -254,6 +264,10 @@ class Times {
     }
   }
 
+  bool Have(const std::string& name) const {
+    return times_.count({name, "natural", 1, 1}) > 0;
+  }
+
   double Of(const std::string& name, const std::string& numbering = "natural",
             int threads = 1, int columns = 1) const {
     return times_.at({name, numbering, threads, columns});
@@ -265,7 +279,7 @@ class Times {
 
 std::vector<std::string> Ratios(std::int64_t tetrahedra, const Times& times) {
   const double pass = times.Of("vector");
-  const std::pair<const char*, double> ratios[] = {
+  std::vector<std::pair<std::string, double>> ratios = {
       {"naive / vector", times.Of("naive") / pass},
       {"scalar / vector", times.Of("scalar") / pass},
       {"each of 8 columns / one", times.Of("vector", "natural", 1, 8) / pass},
@@ -276,6 +290,14 @@ std::vector<std::string> Ratios(std::int64_t tetrahedra, const Times& times) {
       {"one thread / two", pass / times.Of("vector", "natural", 2)},
       {"closed-form / pass", times.Of("closed-form") / pass},
   };
+  if (times.Have("AVX2")) {
+    const double with_avx2 = times.Of("AVX2");
+    ratios.insert(ratios.end(),
+                  {{"naive / AVX2", times.Of("naive") / with_avx2},
+                   {"scalar / AVX2", times.Of("scalar") / with_avx2},
+                   {"AVX2, each of 8 columns / one",
+                    times.Of("AVX2", "natural", 1, 8) / with_avx2}});
+  }
   std::vector<std::string> lines;
   for (const auto& [name, ratio] : ratios) {
     std::ostringstream line;
