@@ -187,10 +187,12 @@ Estimate Bounded::DoRun(const Scene& scene,
         "the data pull Poisson's ratio to the end of its range, as "
         "displacement noise does with this method; give bounds that the "
         "material is known to keep, or use reduced-fe");
-  } else if (!options.known_poisson_ratio && free_youngs_modulus) {
-    JudgeNoiseBias(residual, EffectivePoissonRatioBounds(options), estimate);
-  } else if (options.known_poisson_ratio && free_youngs_modulus) {
+  } else if (!free_youngs_modulus) {
+    residual.JudgeYoungsModulusOnBound(options, estimate);
+  } else if (options.known_poisson_ratio) {
     JudgeKnownPoissonRatio(residual, estimate);
+  } else {
+    JudgeNoiseBias(residual, EffectivePoissonRatioBounds(options), estimate);
   }
   CheckByVirtualWork(scene, options, estimate);
   return estimate;

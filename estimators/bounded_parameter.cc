@@ -16,6 +16,12 @@ constexpr double kOnBound = 1e-9;
 // Relative to the cost, the gradient that is more than rounding.
 constexpr double kInwardGradient = 1e-6;
 
+// Root mean square of what a parameter that may be anywhere between its bounds
+// is off one of them.
+double DistanceFromBound(double lower, double upper) {
+  return (upper - lower) / std::sqrt(3.0);
+}
+
 }  // namespace
 
 Bounds EffectivePoissonRatioBounds(const EstimatorOptions& options) {
@@ -176,10 +182,9 @@ void JudgePoissonRatioOnBound(const EstimatorOptions& options,
     return;
   }
   const Bounds bounds = EffectivePoissonRatioBounds(options);
-  // Root mean square of what a nu that may be anywhere is off the bound.
-  const double distance = (*bounds.upper - *bounds.lower) / std::sqrt(3.0);
   const double youngs_modulus_error =
-      std::abs(slope) * std::min(standard_error, distance);
+      std::abs(slope) *
+      std::min(standard_error, DistanceFromBound(*bounds.lower, *bounds.upper));
   if (active.is_physical_limit ||
       youngs_modulus_error > kLargestYoungsModulusError) {
     estimate.status = Status::kNotIdentifiable;
@@ -188,6 +193,30 @@ void JudgePoissonRatioOnBound(const EstimatorOptions& options,
         "it: " +
         DescribeCollinear(estimate.elasticity, {slope, 1});
   }
+}
+
+void JudgeYoungsModulusOnBound(const EstimatorOptions& options, double slope,
+                               double standard_error, Estimate& estimate) {
+  if (standard_error <= kLargestYoungsModulusError) {
+    return;
+  }
+  const Bounds& bounds = options.youngs_modulus;
+  const double distance =
+      bounds.lower && bounds.upper
+          ? DistanceFromBound(std::log(*bounds.lower), std::log(*bounds.upper))
+          : std::numeric_limits<double>::infinity();
+  const double error = std::min(standard_error, distance);
+  // Not a number for a slope that the data do not determine.
+  if (error <= kLargestYoungsModulusError &&
+      std::abs(slope) * error <= kLargestPoissonRatioError) {
+    return;
+  }
+  estimate.status = Status::kNotIdentifiable;
+  estimate.message =
+      "Young's modulus lies on its bound, but the data do not determine it" +
+      (options.known_poisson_ratio
+           ? " (standard error " + TwoDigits(100 * standard_error) + " %)"
+           : ": " + DescribeCollinear(estimate.elasticity, {1, slope}));
 }
 
 }  // namespace elastimate

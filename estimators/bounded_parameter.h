@@ -82,6 +82,13 @@ void JudgePoissonRatioOnBound(const EstimatorOptions& options,
                               const ActiveBounds& active, double slope,
                               double standard_error, Estimate& estimate);
 
+/// For E on a bound: sets `estimate` to not usable unless the data decide on E,
+/// or the bounds leave it so little room that E and nu are determined all the
+/// same.  `slope` = d nu / d ln E of the parameters that fit alike;
+/// `standard_error` is that of ln E without the bound.
+void JudgeYoungsModulusOnBound(const EstimatorOptions& options, double slope,
+                               double standard_error, Estimate& estimate);
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_ESTIMATORS_BOUNDED_PARAMETER_H_

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -135,6 +136,17 @@ void WarnOfSmoothResidual(double relative_error, Estimate& estimate) {
           "describe the experiment, or the measurement was smoothed; the "
           "standard errors are widened to allow for it";
   estimate.warnings.push_back(text.str());
+}
+
+// The square sum of the residual that these parameters would leave in the
+// linear model u + S delta, were they free, over that of the fit: a bound that
+// the data contradict leaves much that is no noise.
+double ShareThatIsLeft(const DisplacementFit& fit,
+                       const std::vector<Eigen::Index>& parameters) {
+  const Eigen::MatrixXd s = fit.sensitivities(Eigen::all, parameters);
+  const Eigen::VectorXd left =
+      fit.residual - s * s.colPivHouseholderQr().solve(fit.residual);
+  return left.squaredNorm() / fit.residual.squaredNorm();
 }
 
 // The change of (ln E, nu) from the least-squares fit to a robust one, in the
@@ -374,6 +386,19 @@ std::optional<double> DescribeDisplacementFit(
                                       ? std::numeric_limits<double>::infinity()
                                       : std::sqrt(covariance_of({0, 1})(1, 1));
     JudgePoissonRatioOnBound(options, active, slope, standard_error, estimate);
+  }
+  if (estimate.status == Status::kOk &&
+      active.youngs_modulus != BoundedParameter::Side::kNone) {
+    const bool is_known = options.known_poisson_ratio.has_value();
+    const std::vector<Eigen::Index> parameters =
+        is_known ? std::vector<Eigen::Index>{0}
+                 : std::vector<Eigen::Index>{0, 1};
+    const double standard_error =
+        !is_known && is_collinear ? std::numeric_limits<double>::infinity()
+                                  : std::sqrt(ShareThatIsLeft(fit, parameters) *
+                                              covariance_of(parameters)(0, 0));
+    JudgeYoungsModulusOnBound(options, is_known ? 0 : -gram(0, 1) / gram(1, 1),
+                              standard_error, estimate);
   }
   if (std::find(free.begin(), free.end(), 1) == free.end()) {
     return active.is_physical_limit && variance

@@ -6,6 +6,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "elastimate/core/degrees_of_freedom.h"
@@ -13,6 +14,7 @@
 #include "elastimate/core/loads.h"
 #include "elastimate/core/stiffness_product.h"
 #include "elastimate/core/stiffness_traces.h"
+#include "elastimate/estimators/bounded_parameter.h"
 #include "elastimate/estimators/statistics.h"
 
 namespace elastimate {
@@ -314,14 +316,20 @@ std::optional<double> ForceResidual::UnbiasedPoissonRatioError() const {
          (1 - attenuation);
 }
 
+Eigen::Matrix2d ForceResidual::Jacobian(
+    const IsotropicElasticity& elasticity) const {
+  // r depends on (nu, t) through the columns [b, -f].
+  Eigen::Matrix2d columns;
+  columns << triangle_(0, 1), -triangle_(0, 0), triangle_(1, 1), 0;
+  return columns * ComplianceScaleJacobian(elasticity);
+}
+
 Eigen::Matrix2d ForceResidual::Covariance(const IsotropicElasticity& elasticity,
                                           double noise_variance,
                                           bool free_youngs_modulus,
                                           bool free_poisson_ratio) const {
-  // r depends on (nu, t) through the columns [b, -f]; the noise of r is
-  // sigma^2 A A^T, so that least squares has a sandwich covariance.
-  Eigen::Matrix2d columns;
-  columns << triangle_(0, 1), -triangle_(0, 0), triangle_(1, 1), 0;
+  // The noise of r is sigma^2 A A^T, so that least squares has a sandwich
+  // covariance.
   Eigen::Matrix2d gram = StiffenedGram(elasticity.poisson_ratio);
   gram(0, 1) *= -1;
   gram(1, 0) *= -1;
@@ -334,7 +342,7 @@ Eigen::Matrix2d ForceResidual::Covariance(const IsotropicElasticity& elasticity,
   }
   const Eigen::MatrixXd directions =
       ComplianceScaleJacobian(elasticity)(Eigen::all, free);
-  const Eigen::MatrixXd x = columns * directions;
+  const Eigen::MatrixXd x = Jacobian(elasticity)(Eigen::all, free);
   const Eigen::MatrixXd inverse =
       (x.transpose() * x).inverse() * directions.transpose();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(Estimate::kUnknown);
@@ -390,6 +398,31 @@ void ForceResidual::Describe(bool free_youngs_modulus, bool free_poisson_ratio,
     estimate.covariance = Covariance(estimate.elasticity, *variance,
                                      free_youngs_modulus, free_poisson_ratio);
   }
+}
+
+void ForceResidual::JudgeYoungsModulusOnBound(const EstimatorOptions& options,
+                                              Estimate& estimate) const {
+  const bool free_poisson_ratio = !options.known_poisson_ratio;
+  const IsotropicElasticity& elasticity = estimate.elasticity;
+  // That of the bound may contradict it, which is not for noise to explain.
+  const std::optional<double> variance =
+      known_noise_sd_ ? 1
+                      : ResidualVariance(free_poisson_ratio
+                                             ? ErrorsInVariablesPoissonRatio()
+                                             : elasticity.poisson_ratio,
+                                         free_poisson_ratio);
+  const bool is_determined =
+      variance && (!free_poisson_ratio || PoissonRatio());
+  const double standard_error =
+      is_determined ? std::sqrt(Covariance(elasticity, *variance, true,
+                                           free_poisson_ratio)(0, 0)) /
+                          elasticity.youngs_modulus
+                    : std::numeric_limits<double>::infinity();
+  const Eigen::Matrix2d x = Jacobian(elasticity);
+  const double slope = -elasticity.youngs_modulus * x.col(0).dot(x.col(1)) /
+                       x.col(1).squaredNorm();
+  elastimate::JudgeYoungsModulusOnBound(options, free_poisson_ratio ? slope : 0,
+                                        standard_error, estimate);
 }
 
 void JudgeKnownPoissonRatio(const ForceResidual& residual, Estimate& estimate) {

@@ -81,6 +81,10 @@ class ForceResidual {
   void Describe(bool free_youngs_modulus, bool free_poisson_ratio,
                 Estimate& estimate) const;
 
+  /// JudgeYoungsModulusOnBound with what the residual says about a free E.
+  void JudgeYoungsModulusOnBound(const EstimatorOptions& options,
+                                 Estimate& estimate) const;
+
   /// The minimiser without the bias of displacement noise (errors in
   /// variables): its nu, or empty when the noise hides it.
   std::optional<double> UnbiasedPoissonRatio() const;
@@ -113,6 +117,8 @@ class ForceResidual {
                                       bool free_poisson_ratio) const;
   /// Gram matrix of A(nu) [b f].
   Eigen::Matrix2d StiffenedGram(double poisson_ratio) const;
+  /// Derivatives of Q^T r by (E, nu), where Q is that of Triangle.
+  Eigen::Matrix2d Jacobian(const IsotropicElasticity& elasticity) const;
   Eigen::Matrix2d Covariance(const IsotropicElasticity& elasticity,
                              double noise_variance, bool free_youngs_modulus,
                              bool free_poisson_ratio) const;

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "elastimate/core/loads.h"
 #include "elastimate/core/strain_energy.h"
@@ -97,8 +98,10 @@ class Information {
              jacobian;
   }
 
-  // d ln E / d nu of the parameters that fit alike.
-  double Slope() const { return -bread_(0, 1) / bread_(0, 0); }
+  // d ln E / d nu of the parameters that fit alike at a given nu.
+  double YoungsModulusSlope() const { return -bread_(0, 1) / bread_(0, 0); }
+  // d nu / d ln E of those that do at a given E.
+  double PoissonRatioSlope() const { return -bread_(0, 1) / bread_(1, 1); }
 
   // Of the parameters that vary together; empty when they are not determined.
   std::optional<Eigen::MatrixXd> Covariance(
@@ -129,10 +132,8 @@ void WarnOfModelError(double relative_error, Estimate& estimate) {
   }
 }
 
-// Fills in covariance, noise and what they say about a fit of which one
-// parameter at least is free.
-void Describe(const EstimatorOptions& options, const ActiveBounds& active,
-              const std::vector<Eigen::Index>& free,
+// Fills in the covariance of a fit of which one parameter at least is free.
+void Describe(const std::vector<Eigen::Index>& free,
               const Information& information, Estimate& estimate) {
   const std::optional<Eigen::MatrixXd> covariance =
       information.Covariance(free);
@@ -151,15 +152,12 @@ void Describe(const EstimatorOptions& options, const ActiveBounds& active,
   if (!estimate.active_bounds.empty()) {
     estimate.why_no_standard_error = "a parameter on a bound has none";
   }
-  if (active.poisson_ratio != Side::kNone) {
-    const std::optional<Eigen::MatrixXd> unbounded =
-        information.Covariance({0, 1});
-    JudgePoissonRatioOnBound(options, active, information.Slope(),
-                             unbounded
-                                 ? std::sqrt((*unbounded)(1, 1))
-                                 : std::numeric_limits<double>::infinity(),
-                             estimate);
-  }
+}
+
+double StandardErrorOrInfinity(const std::optional<Eigen::MatrixXd>& covariance,
+                               Eigen::Index parameter) {
+  return covariance ? std::sqrt((*covariance)(parameter, parameter))
+                    : std::numeric_limits<double>::infinity();
 }
 
 // `correction` is the smallest change of the displacements that brings the
@@ -217,9 +215,9 @@ void DescribeProfileOf(const VirtualWorkBalance& balance,
 }
 
 // Whether the data contradict the bound on E that `bounded` lies on.
-void JudgeYoungsModulusBound(const VirtualWorkFit& bounded,
-                             const VirtualWorkFit& unbounded,
-                             Eigen::Index num_equations, Estimate& estimate) {
+void JudgeContradictedBound(const VirtualWorkFit& bounded,
+                            const VirtualWorkFit& unbounded,
+                            Eigen::Index num_equations, Estimate& estimate) {
   constexpr double kUnusableChange = 0.1;
   const double without_bound =
       IsotropicElasticity::FromComplianceScale(unbounded.compliance_scale,
@@ -368,12 +366,18 @@ Estimate VirtualFields::DoRun(const Scene& scene,
   const std::optional<ResidualJudgement> residual = JudgeResidual(
       fit, balance.NumEquations() - Eigen::Index(free.size()), force_residual,
       scene.load_cases.front().noise_sd, estimate);
-  if (residual && !free.empty()) {
+  if (residual) {
     estimate.is_model_in_doubt = residual->model_square_sum > 0;
-    Describe(
-        options, active, free,
-        Information(balance.InformationAt(fit), estimate.elasticity, *residual),
-        estimate);
+    const Information information(balance.InformationAt(fit),
+                                  estimate.elasticity, *residual);
+    if (!free.empty()) {
+      Describe(free, information, estimate);
+    }
+    if (estimate.IsUsable() && active.poisson_ratio != Side::kNone) {
+      JudgePoissonRatioOnBound(
+          options, active, information.YoungsModulusSlope(),
+          StandardErrorOrInfinity(information.Covariance({0, 1}), 1), estimate);
+    }
     if (estimate.is_model_in_doubt) {
       WarnOfModelError(estimate.YoungsModulusStandardError().value_or(0) /
                            estimate.elasticity.youngs_modulus,
@@ -381,9 +385,22 @@ Estimate VirtualFields::DoRun(const Scene& scene,
     }
   }
   if (active.youngs_modulus != Side::kNone && !options.known_poisson_ratio) {
-    JudgeYoungsModulusBound(
+    JudgeContradictedBound(
         fit, balance.Minimize(EffectivePoissonRatioBounds(options), Bounds{}),
         balance.NumEquations(), estimate);
+  }
+  if (residual && estimate.IsUsable() && active.youngs_modulus != Side::kNone) {
+    const Information information(balance.InformationAt(fit),
+                                  estimate.elasticity, *residual);
+    if (options.known_poisson_ratio) {
+      JudgeYoungsModulusOnBound(
+          options, 0, StandardErrorOrInfinity(information.Covariance({0}), 0),
+          estimate);
+    } else {
+      JudgeYoungsModulusOnBound(
+          options, information.PoissonRatioSlope(),
+          StandardErrorOrInfinity(information.Covariance({0, 1}), 0), estimate);
+    }
   }
   if (residual && estimate.IsUsable() && !options.known_poisson_ratio &&
       active.youngs_modulus == Side::kNone &&

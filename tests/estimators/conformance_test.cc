@@ -337,6 +337,24 @@ TEST_P(Conformance, SaysWhatPureShearDetermines) {
   EXPECT_FALSE(estimate.why_no_standard_error.empty());
 }
 
+// Every E up to 3 mu has its nu.
+TEST_P(Conformance, BoundsOnYoungsModulusDoNotDetermineIt) {
+  const Scene scene = ShearedBlock();
+  const double mu = 5e4 / 2.6;
+  for (const Bounds& bounds :
+       {Bounds{1.2 * mu, 2.8 * mu}, Bounds{{}, mu}, Bounds{2.9 * mu, {}}}) {
+    EstimatorOptions options;
+    options.youngs_modulus = bounds;
+    if (!MakeEstimator(GetParam())->WhyUnsupported(scene, options).empty()) {
+      GTEST_SKIP() << "keeps no bounds";
+    }
+    const Estimate estimate = Run(scene, options);
+    EXPECT_FALSE(estimate.IsUsable())
+        << "E = " << estimate.elasticity.youngs_modulus
+        << ", nu = " << estimate.elasticity.poisson_ratio;
+  }
+}
+
 TEST_P(Conformance, PureShearWithAKnownPoissonRatioIsEnough) {
   EstimatorOptions options;
   options.known_poisson_ratio = 0.3;

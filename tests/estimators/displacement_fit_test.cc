@@ -1,5 +1,6 @@
 #include "elastimate/estimators/displacement_fit.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +15,9 @@ namespace elastimate {
 namespace {
 
 using testing::AddNoise;
+using ::testing::HasSubstr;
 using testing::Measure;
+using ::testing::Not;
 using testing::SmallScene;
 using testing::WarnsOf;
 
@@ -170,6 +173,58 @@ TEST(DisplacementFit, BoundsDoNotHideThatTheDataDoNotDetermineNu) {
       EXPECT_EQ(narrow.status, Status::kOk) << narrow.message;
     }
   }
+}
+
+TEST(DisplacementFit, BoundsDoNotHideThatTheDataDoNotDetermineE) {
+  // E = 3 kappa (1 - 2 nu), for any nu.
+  const double kappa = 5e4 / 1.2;
+  for (const Bounds& bounds :
+       {Bounds{0.1 * kappa, 2 * kappa}, Bounds{{}, kappa}, Bounds{kappa, {}}}) {
+    for (int seed = 1; seed <= 20; ++seed) {
+      SCOPED_TRACE(seed);
+      Scene scene = UnderHydrostaticPressure();
+      AddNoise(0.05, seed, scene);
+      EstimatorOptions options;
+      options.youngs_modulus = bounds;
+      EXPECT_EQ(IterativeFe().Run(scene, options).status,
+                Status::kNotIdentifiable);
+      // Bounds that leave nu little room determine it.
+      options.youngs_modulus = {4.99e4, 5.01e4};
+      const Estimate narrow = IterativeFe().Run(scene, options);
+      if (!narrow.active_bounds.empty()) {
+        EXPECT_EQ(narrow.status, Status::kOk) << narrow.message;
+        EXPECT_NEAR(narrow.elasticity.poisson_ratio, 0.3, 0.01);
+      }
+    }
+  }
+}
+
+TEST(DisplacementFit, AKnownNuDoesNotDetermineE) {
+  int num_on_bound = 0;
+  for (int seed = 1; seed <= 20; ++seed) {
+    Scene scene = MeasuredOrgan();
+    AddNoise(100, seed, scene);
+    EstimatorOptions options;
+    options.known_poisson_ratio = 0.3;
+    options.youngs_modulus = {4e4, 1e6};
+    const Estimate estimate = IterativeFe().Run(scene, options);
+    if (!estimate.active_bounds.empty()) {
+      ++num_on_bound;
+      EXPECT_FALSE(estimate.IsUsable()) << seed;
+      EXPECT_THAT(estimate.message, HasSubstr("on its bound")) << seed;
+    }
+  }
+  EXPECT_GT(num_on_bound, 0);
+}
+
+TEST(DisplacementFit, ABoundThatTheDataContradictIsNotCalledUndetermined) {
+  Scene scene = MeasuredOrgan();
+  AddNoise(0.01, 1, scene);
+  EstimatorOptions options;
+  options.youngs_modulus = {1e5, 1e6};
+  const Estimate estimate = IterativeFe().Run(scene, options);
+  ASSERT_FALSE(estimate.active_bounds.empty());
+  EXPECT_THAT(estimate.message, Not(HasSubstr("do not determine")));
 }
 
 TEST(DisplacementFit, NuAtTheLowerEndOfItsRangeIsNotBelieved) {
