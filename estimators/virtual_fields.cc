@@ -107,7 +107,10 @@ class Information {
   std::optional<Eigen::MatrixXd> Covariance(
       const std::vector<Eigen::Index>& parameters) const {
     const Eigen::MatrixXd bread = bread_(parameters, parameters);
-    if (!(bread.diagonal().minCoeff() > 0 && bread.determinant() > 0)) {
+    // A smaller determinant is rounding.
+    constexpr double kSingular = 1e-12;
+    if (!(bread.diagonal().minCoeff() > 0 &&
+          bread.determinant() > kSingular * bread.diagonal().prod())) {
       return std::nullopt;
     }
     const Eigen::MatrixXd inverse = bread.inverse();
@@ -177,6 +180,19 @@ void JudgeCorrection(double correction, Estimate& estimate) {
                 "the model contradicts the data");
 }
 
+// The nu around a fit whose S exceeds that of the fit by no more than chance:
+// where the data know nothing of nu, S is sigma^2 chi^2 of k degrees of freedom
+// at each nu.  Two standard deviations of the difference of two of them.
+Interval IntervalByChance(const VirtualWorkBalance& balance,
+                          const VirtualWorkFit& fit,
+                          const ResidualJudgement& residual) {
+  const double excess =
+      4 * std::sqrt(static_cast<double>(balance.NumEquations()));
+  const auto [lower, upper] =
+      balance.ProfileEnds(fit, excess * residual.noise_variance);
+  return {lower.poisson_ratio, upper.poisson_ratio};
+}
+
 // The standard errors of the sandwich, carried over to the profile of S.
 void DescribeProfileOf(const VirtualWorkBalance& balance,
                        const VirtualWorkFit& fit,
@@ -202,7 +218,12 @@ void DescribeProfileOf(const VirtualWorkBalance& balance,
         return Profile{elasticity_of(lower), elasticity_of(upper)};
       },
       estimate);
-  const Interval& interval = *estimate.poisson_ratio_interval;
+  Interval interval = *estimate.poisson_ratio_interval;
+  if (interval.lower == -1 || interval.upper == 0.5) {
+    const Interval by_chance = IntervalByChance(balance, fit, residual);
+    interval = {std::min(interval.lower, by_chance.lower),
+                std::max(interval.upper, by_chance.upper)};
+  }
   if (std::max(interval.upper - estimate.elasticity.poisson_ratio,
                estimate.elasticity.poisson_ratio - interval.lower) >
       kLargestPoissonRatioDistance) {
@@ -236,6 +257,40 @@ void JudgeContradictedBound(const VirtualWorkFit& bounded,
                       TwoDigits(without_bound),
                   "the model contradicts the data");
   }
+}
+
+// What the data say of E and nu where E lies on a bound.
+void JudgeYoungsModulusBound(const EstimatorOptions& options,
+                             const VirtualWorkBalance& balance,
+                             const VirtualWorkFit& fit,
+                             const std::optional<ResidualJudgement>& residual,
+                             Estimate& estimate) {
+  const auto information = [&] {
+    return Information(balance.InformationAt(fit), estimate.elasticity,
+                       *residual);
+  };
+  if (options.known_poisson_ratio) {
+    if (residual && estimate.IsUsable()) {
+      JudgeYoungsModulusOnBound(
+          options, 0, StandardErrorOrInfinity(information().Covariance({0}), 0),
+          estimate);
+    }
+    return;
+  }
+  const VirtualWorkFit unbounded =
+      balance.Minimize(EffectivePoissonRatioBounds(options), Bounds{});
+  JudgeContradictedBound(fit, unbounded, balance.NumEquations(), estimate);
+  if (!residual || !estimate.IsUsable()) {
+    return;
+  }
+  const Interval by_chance = IntervalByChance(balance, unbounded, *residual);
+  const bool is_open =
+      by_chance.upper - by_chance.lower > 2 * kLargestPoissonRatioDistance;
+  JudgeYoungsModulusOnBound(
+      options, information().PoissonRatioSlope(),
+      is_open ? std::numeric_limits<double>::infinity()
+              : StandardErrorOrInfinity(information().Covariance({0, 1}), 0),
+      estimate);
 }
 
 // The displacements of all load cases without most of their noise, and without
@@ -384,23 +439,8 @@ Estimate VirtualFields::DoRun(const Scene& scene,
                        estimate);
     }
   }
-  if (active.youngs_modulus != Side::kNone && !options.known_poisson_ratio) {
-    JudgeContradictedBound(
-        fit, balance.Minimize(EffectivePoissonRatioBounds(options), Bounds{}),
-        balance.NumEquations(), estimate);
-  }
-  if (residual && estimate.IsUsable() && active.youngs_modulus != Side::kNone) {
-    const Information information(balance.InformationAt(fit),
-                                  estimate.elasticity, *residual);
-    if (options.known_poisson_ratio) {
-      JudgeYoungsModulusOnBound(
-          options, 0, StandardErrorOrInfinity(information.Covariance({0}), 0),
-          estimate);
-    } else {
-      JudgeYoungsModulusOnBound(
-          options, information.PoissonRatioSlope(),
-          StandardErrorOrInfinity(information.Covariance({0, 1}), 0), estimate);
-    }
+  if (active.youngs_modulus != Side::kNone) {
+    JudgeYoungsModulusBound(options, balance, fit, residual, estimate);
   }
   if (residual && estimate.IsUsable() && !options.known_poisson_ratio &&
       active.youngs_modulus == Side::kNone &&

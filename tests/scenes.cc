@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "elastimate/core/degrees_of_freedom.h"
+#include "tests/dense_reference.h"
 
 namespace elastimate::testing {
 
@@ -143,6 +144,25 @@ Scene WithThreeForces(const Scene& scene) {
 Scene UnderBodyForce(Scene scene) {
   scene.load_cases.resize(1);
   scene.load_cases[0].loads = {BodyForce{{100, 20, -300}}};
+  return scene;
+}
+
+Scene ShearedBlock() {
+  Scene scene = SmallScene("cuboid");
+  const Mesh& mesh = scene.mesh;
+  Eigen::Matrix3Xd displacement = Eigen::Matrix3Xd::Zero(3, mesh.NumNodes());
+  displacement.row(0) = 0.01 * mesh.nodes.row(1);
+  const Eigen::MatrixXd stiffness =
+      DenseStiffness<double>(mesh, HookeMatrix(5e4, 0.3));
+  NodalForces forces{
+      (stiffness * displacement.reshaped()).reshaped(3, mesh.NumNodes())};
+  // Corners at the origin, along x, and along y.
+  scene.supports.held.setConstant(false);
+  scene.supports.held.col(0).setConstant(true);
+  scene.supports.held.col(3) << false, true, true;
+  scene.supports.held.col(12) << false, false, true;
+  scene.load_cases[0].loads = {forces};
+  scene.load_cases[0].displacement = displacement;
   return scene;
 }
 

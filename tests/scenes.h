@@ -43,6 +43,11 @@ Scene WithThreeForces(const Scene& scene);
 /// for linear and for quadratic elements.
 Scene UnderBodyForce(Scene scene);
 
+/// A block with E = 5e4, nu = 0.3 in simple shear, u = (0.01 y, 0, 0), under
+/// exact forces: without change of volume, so that the shear modulus alone
+/// acts.  Statically determinate supports.
+Scene ShearedBlock();
+
 }  // namespace elastimate::testing
 
 #endif  // ELASTIMATE_TESTS_SCENES_H_

@@ -13,7 +13,6 @@
 #include "elastimate/core/loads.h"
 #include "elastimate/core/quadratic_scene.h"
 #include "elastimate/estimators/registry.h"
-#include "tests/dense_reference.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
 #include "tests/warnings.h"
@@ -23,6 +22,7 @@ namespace {
 
 using testing::AddNoise;
 using testing::Measure;
+using testing::ShearedBlock;
 using testing::SmallScene;
 using testing::SmallSceneNames;
 using testing::WarnsOf;
@@ -302,27 +302,6 @@ TEST_P(Conformance, SeveralLoadCasesBeatOne) {
     square_sum_three += std::pow(all.elasticity.poisson_ratio - 0.3, 2);
   }
   EXPECT_LT(square_sum_three, square_sum_one);
-}
-
-// A block in simple shear, u = (g y, 0, 0): without change of volume, so that
-// the shear modulus alone acts.  Statically determinate supports.
-Scene ShearedBlock() {
-  Scene scene = SmallScene("cuboid");
-  const Mesh& mesh = scene.mesh;
-  Eigen::Matrix3Xd displacement = Eigen::Matrix3Xd::Zero(3, mesh.NumNodes());
-  displacement.row(0) = 0.01 * mesh.nodes.row(1);
-  const Eigen::MatrixXd stiffness =
-      testing::DenseStiffness<double>(mesh, testing::HookeMatrix(5e4, 0.3));
-  NodalForces forces{
-      (stiffness * displacement.reshaped()).reshaped(3, mesh.NumNodes())};
-  // Corners at the origin, along x, and along y.
-  scene.supports.held.setConstant(false);
-  scene.supports.held.col(0).setConstant(true);
-  scene.supports.held.col(3) << false, true, true;
-  scene.supports.held.col(12) << false, false, true;
-  scene.load_cases[0].loads = {forces};
-  scene.load_cases[0].displacement = displacement;
-  return scene;
 }
 
 TEST_P(Conformance, SaysWhatPureShearDetermines) {

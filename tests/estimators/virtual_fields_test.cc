@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <iostream>
+
 #include "elastimate/estimators/bounded.h"
 #include "elastimate/estimators/closed_form.h"
 #include "tests/scenes.h"
@@ -52,6 +54,30 @@ TEST(VirtualFields, DenyLoadsOfAnotherDirection) {
   EstimatorOptions known;
   known.known_poisson_ratio = 0.3;
   EXPECT_FALSE(ClosedForm().Run(scene, known).IsUsable());
+}
+
+// Any nu fits pure shear: which one the noise prefers says nothing.
+TEST(VirtualFields, DoNotTakeNoiseForInformation) {
+  const double mu = 5e4 / 2.6;
+  for (const Bounds& bounds : {Bounds{}, Bounds{1.2 * mu, 2.8 * mu},
+                               Bounds{{}, mu}, Bounds{2.9 * mu, {}}}) {
+    EstimatorOptions options;
+    options.youngs_modulus = bounds;
+    for (const double noise : {1e-6, 1e-4, 1e-2}) {
+      constexpr int kSeeds = 40;
+      int num_usable = 0;
+      for (int seed = 1; seed <= kSeeds; ++seed) {
+        Scene scene = testing::ShearedBlock();
+        testing::AddNoise(noise, seed, scene);
+        num_usable += VirtualFields().Run(scene, options).IsUsable() ? 1 : 0;
+      }
+      std::cout << "noise " << noise << ", seeds 1 to " << kSeeds << ": "
+                << num_usable << " usable\n";
+      // One in twenty is what an interval of 95 % allows, which chance
+      // makes more than 6 of 40 in one of 300 experiments.
+      EXPECT_LE(num_usable, 6);
+    }
+  }
 }
 
 }  // namespace
