@@ -464,7 +464,9 @@ HWY_INLINE void ClearValues(double* record) {
 template <class Layout>
 HWY_INLINE void FillDisplacement(const double* q, const Columns&,
                                  double* record, Layout layout) {
-  std::copy_n(q, 3, record + layout.kDisplacement);
+  for (int i = 0; i < 3; ++i) {
+    record[layout.kDisplacement + i] = q[i];
+  }
 }
 
 // Sets the products at a node to a and b = p - 2 a of its record, or adds
