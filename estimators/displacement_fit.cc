@@ -93,8 +93,7 @@ ResidualVariance EstimateVariance(const ObservedDisplacements& observed,
   const double ratio = variance * norm_squared;
   if (redundancy > 0 && ratio > 1 + kSignificantScore * std::sqrt(2 / m)) {
     std::ostringstream text;
-    text.precision(2);
-    text << "the displacement residual is " << std::sqrt(ratio)
+    text << "the displacement residual is " << TwoDigits(std::sqrt(ratio))
          << " times the given noise, and the standard errors are widened to "
             "match; the mesh, the supports or the loads do not describe the "
             "experiment";
@@ -128,10 +127,9 @@ void WarnOfSmoothResidual(double relative_error, Estimate& estimate) {
     return;
   }
   std::ostringstream text;
-  text.precision(2);
   text << "the displacement residual is alike at neighbouring nodes "
           "(correlation "
-       << *estimate.residual_correlation
+       << TwoDigits(*estimate.residual_correlation)
        << "), as noise is not: the mesh, the supports or the loads do not "
           "describe the experiment, or the measurement was smoothed; the "
           "standard errors are widened to allow for it";
@@ -189,9 +187,8 @@ bool HasHeavyTails(const Eigen::VectorXd& residual) {
 
 void WarnOfOutliers(const Eigen::Vector2d& change, Estimate& estimate) {
   std::ostringstream text;
-  text.precision(2);
   text << "some nodes lie far off, and without their pull E would change by "
-       << 100 * change(0) << " % and nu by " << change(1)
+       << TwoDigits(100 * change(0)) << " % and nu by " << TwoDigits(change(1))
        << ", which the standard errors allow for: use a loss (huber or cauchy)";
   estimate.warnings.push_back(text.str());
 }
@@ -199,10 +196,9 @@ void WarnOfOutliers(const Eigen::Vector2d& change, Estimate& estimate) {
 // `smooth` is the smooth part of the residual, relative to the measurement.
 void JudgeLargeResidual(double smooth, bool is_explained, Estimate& estimate) {
   std::ostringstream text;
-  text.precision(2);
   if (smooth > kLargeResidual && estimate.status == Status::kOk) {
     text << "the model misses a smooth part of the measured displacement, "
-         << 100 * smooth
+         << TwoDigits(100 * smooth)
          << " % of it: the mesh, the supports, the loads or a known Poisson's "
             "ratio do not describe the experiment";
     estimate.status = Status::kNotIdentifiable;
@@ -210,7 +206,7 @@ void JudgeLargeResidual(double smooth, bool is_explained, Estimate& estimate) {
   } else if (*estimate.displacement_residual > kLargeResidual && smooth == 0 &&
              !is_explained) {
     text << "the displacement residual is "
-         << 100 * *estimate.displacement_residual
+         << TwoDigits(100 * *estimate.displacement_residual)
          << " % of the measured displacement: either the noise is as large, or "
             "the mesh, the supports or the loads do not describe the "
             "experiment";

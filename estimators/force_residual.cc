@@ -369,8 +369,7 @@ std::optional<double> ForceResidual::DescribeNoise(bool free_youngs_modulus,
     variance = 1;
     if (noise_sd_ratio > kUnexplainedResidual) {
       std::ostringstream text;
-      text.precision(2);
-      text << "the force residual is " << noise_sd_ratio
+      text << "the force residual is " << TwoDigits(noise_sd_ratio)
            << " times what the given noise explains, and the standard errors "
               "are widened to match; the mesh, the supports or the loads do "
               "not describe the experiment";

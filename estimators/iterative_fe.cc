@@ -467,7 +467,11 @@ Estimate IterativeFe::DoRun(const Scene& scene,
     estimate.message = "the fit did not converge in " +
                        std::to_string(options.max_iterations) + " iterations";
   } else {
-    estimate.message = summary.message;
+    estimate.message =
+        "the search for the best fit ended without one (Ceres: " +
+        summary.message +
+        "): the stiffness may be singular to working precision; check the mesh "
+        "for slivers, or use reduced-fe";
   }
   if (residual.IsValid()) {
     const DisplacementFit& fit = residual.Fit();

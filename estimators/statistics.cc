@@ -71,8 +71,13 @@ double LeastAbsoluteDeviations(const Eigen::VectorXd& x,
 
 std::string TwoDigits(double value) {
   std::ostringstream text;
-  text.precision(2);
-  text << value;
+  if (value == 0 || !std::isfinite(value)) {
+    text << value;
+    return text.str();
+  }
+  // By precision(2), 100 is 1e+02.
+  const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) - 1);
+  text << std::round(value / unit) * unit;
   return text.str();
 }
 

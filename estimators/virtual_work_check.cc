@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "elastimate/estimators/statistics.h"
 #include "elastimate/estimators/virtual_fields.h"
 
 namespace elastimate {
@@ -21,8 +22,7 @@ void CheckByVirtualWork(const Scene& scene, const EstimatorOptions& options,
   }
   estimate.is_model_in_doubt = true;
   std::ostringstream text;
-  text.precision(2);
-  text << "the force residual is " << *estimate.force_residual
+  text << "the force residual is " << TwoDigits(*estimate.force_residual)
        << " of the load, and virtual work (virtual-fields) shows more than "
           "noise in it: the mesh, the supports, the loads, a bound or a given "
           "Poisson's ratio do not describe the experiment";

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <string>
 
 namespace elastimate {
@@ -31,6 +32,18 @@ TEST(LeastAbsoluteDeviations, MinimisesTheSumOfAbsoluteDeviations) {
   for (const double other : {t - 1, t - 1e-3, t + 1e-3, t + 1}) {
     EXPECT_GT((y - other * x).lpNorm<1>(), least);
   }
+}
+
+TEST(TwoDigits, AreForSentences) {
+  EXPECT_EQ(TwoDigits(0), "0");
+  EXPECT_EQ(TwoDigits(0.01234), "0.012");
+  EXPECT_EQ(TwoDigits(-0.07), "-0.07");
+  EXPECT_EQ(TwoDigits(0.9951), "1");
+  EXPECT_EQ(TwoDigits(3), "3");
+  EXPECT_EQ(TwoDigits(99.9), "100");
+  EXPECT_EQ(TwoDigits(1234), "1200");
+  EXPECT_EQ(TwoDigits(1.26e7), "1.3e+07");
+  EXPECT_EQ(TwoDigits(std::numeric_limits<double>::infinity()), "inf");
 }
 
 Estimate WithCovariance(double youngs_sd, double nu_sd, double correlation) {
