@@ -187,11 +187,12 @@ void JudgePoissonRatioOnBound(const EstimatorOptions& options,
       std::min(standard_error, DistanceFromBound(*bounds.lower, *bounds.upper));
   if (active.is_physical_limit ||
       youngs_modulus_error > kLargestYoungsModulusError) {
-    estimate.status = Status::kNotIdentifiable;
-    estimate.message =
+    estimate.Fail(
+        Status::kNotIdentifiable,
         "Poisson's ratio lies on its bound, but the data do not determine "
         "it: " +
-        DescribeCollinear(estimate.elasticity, {slope, 1});
+            DescribeCollinear(estimate.elasticity, {slope, 1}),
+        "the parameters are not determined");
   }
 }
 
@@ -211,12 +212,13 @@ void JudgeYoungsModulusOnBound(const EstimatorOptions& options, double slope,
       std::abs(slope) * error <= kLargestPoissonRatioError) {
     return;
   }
-  estimate.status = Status::kNotIdentifiable;
-  estimate.message =
+  estimate.Fail(
+      Status::kNotIdentifiable,
       "Young's modulus lies on its bound, but the data do not determine it" +
-      (options.known_poisson_ratio
-           ? " (standard error " + TwoDigits(100 * standard_error) + " %)"
-           : ": " + DescribeCollinear(estimate.elasticity, {1, slope}));
+          (options.known_poisson_ratio
+               ? " (standard error " + TwoDigits(100 * standard_error) + " %)"
+               : ": " + DescribeCollinear(estimate.elasticity, {1, slope})),
+      "the parameters are not determined");
 }
 
 }  // namespace elastimate

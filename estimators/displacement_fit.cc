@@ -141,6 +141,9 @@ void WarnOfSmoothResidual(double relative_error, Estimate& estimate) {
 // the data contradict leaves much that is no noise.
 double ShareThatIsLeft(const DisplacementFit& fit,
                        const std::vector<Eigen::Index>& parameters) {
+  if (fit.residual.isZero(0)) {
+    return 1;
+  }
   const Eigen::MatrixXd s = fit.sensitivities(Eigen::all, parameters);
   const Eigen::VectorXd left =
       fit.residual - s * s.colPivHouseholderQr().solve(fit.residual);
