@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -160,13 +162,19 @@ std::string DescribeDirection(const Eigen::Matrix3Xd& span) {
   return text.str();
 }
 
-// One of the rigid motions that the orthonormal columns span; a translation if
-// there is one, since any rotation about an axis off the centroid moves that
-// too.
-std::string DescribeRigidMotion(const Eigen::Matrix<double, 6, -1>& motions) {
+// One of the rigid motions that the columns span; a translation if there is
+// one, since any rotation about an axis off the centroid moves that too.
+std::string DescribeRigidMotion(const Eigen::Matrix<double, 6, -1>& columns) {
+  // Of a part, columns may be dependent.
+  constexpr double kSmall = 1e-5;
+  const Eigen::JacobiSVD<Eigen::MatrixXd> span(columns, Eigen::ComputeFullU);
+  const Eigen::Matrix<double, 6, -1> motions = span.matrixU().leftCols(
+      (span.singularValues().array() > kSmall * span.singularValues()(0))
+          .count());
   const Eigen::JacobiSVD<Eigen::MatrixXd> rotations(
       motions.bottomRows<3>(), Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Index rank = (rotations.singularValues().array() > 1e-5).count();
+  const Eigen::Index rank =
+      (rotations.singularValues().array() > kSmall).count();
   if (rank < motions.cols()) {
     return "move along " + DescribeDirection(motions.topRows<3>() *
                                              rotations.matrixV().rightCols(
@@ -193,21 +201,31 @@ Eigen::Matrix<double, 1, 6> RigidMotionRow(const Mesh& mesh, const Body& body,
 // What holds some bodies: the sum of the squares of what moves their held
 // components, and of how far those that share a node move apart there, is a
 // quadratic form of six coordinates for each body.
-Eigen::MatrixXd HoldingForm(const Mesh& mesh, const Supports& supports,
-                            const std::vector<const Body*>& bodies) {
-  const Eigen::Index size = 6 * Eigen::Index(bodies.size());
-  Eigen::MatrixXd form = Eigen::MatrixXd::Zero(size, size);
+Eigen::SparseMatrix<double> HoldingForm(
+    const Mesh& mesh, const Supports& supports,
+    const std::vector<const Body*>& bodies) {
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto add = [&](Eigen::Index a, Eigen::Index b,
+                       const Eigen::Matrix<double, 6, 6>& block) {
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      for (Eigen::Index j = 0; j < 6; ++j) {
+        entries.emplace_back(6 * a + i, 6 * b + j, block(i, j));
+      }
+    }
+  };
   std::vector<std::pair<int, Eigen::Index>> nodes;
   for (Eigen::Index b = 0; b < Eigen::Index(bodies.size()); ++b) {
+    Eigen::Matrix<double, 6, 6> held = Eigen::Matrix<double, 6, 6>::Zero();
     for (const int node : bodies[b]->nodes) {
       nodes.emplace_back(node, b);
       for (int i = 0; i < 3; ++i) {
         if (supports.held(i, node)) {
           const auto row = RigidMotionRow(mesh, *bodies[b], node, i);
-          form.block<6, 6>(6 * b, 6 * b) += row.transpose() * row;
+          held += row.transpose() * row;
         }
       }
     }
+    add(b, b, held);
   }
   std::sort(nodes.begin(), nodes.end());
   for (std::size_t k = 1; k < nodes.size(); ++k) {
@@ -217,13 +235,50 @@ Eigen::MatrixXd HoldingForm(const Mesh& mesh, const Supports& supports,
       continue;
     }
     for (int i = 0; i < 3; ++i) {
-      Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(size);
-      row.segment<6>(6 * a) = RigidMotionRow(mesh, *bodies[a], node, i);
-      row.segment<6>(6 * b) = -RigidMotionRow(mesh, *bodies[b], node, i);
-      form += row.transpose() * row;
+      const auto row_a = RigidMotionRow(mesh, *bodies[a], node, i);
+      const auto row_b = RigidMotionRow(mesh, *bodies[b], node, i);
+      add(a, a, row_a.transpose() * row_a);
+      add(b, b, row_b.transpose() * row_b);
+      add(a, b, -row_a.transpose() * row_b);
+      add(b, a, -row_b.transpose() * row_a);
     }
   }
+  const Eigen::Index size = 6 * Eigen::Index(bodies.size());
+  Eigen::SparseMatrix<double> form(size, size);
+  form.setFromTriplets(entries.begin(), entries.end());
   return form;
+}
+
+// Squares of lever arms below 1e-6 of a radius hold nothing.
+constexpr double kHoldsNothing = 1e-12;
+
+// An orthonormal basis of the motions that nothing holds.
+Eigen::MatrixXd FreeMotions(const Eigen::SparseMatrix<double>& form) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+      (Eigen::MatrixXd(form)));
+  const Eigen::Index num_free =
+      (eigen.eigenvalues().array() < kHoldsNothing).count();
+  return eigen.eigenvectors().leftCols(num_free);
+}
+
+// One of them, by inverse iteration; no column where there is none.
+Eigen::MatrixXd AFreeMotion(const Eigen::SparseMatrix<double>& form) {
+  constexpr int kIterations = 5;
+  Eigen::SparseMatrix<double> identity(form.rows(), form.cols());
+  identity.setIdentity();
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> inverse(
+      form + 0.1 * kHoldsNothing * identity);
+  // Any vector does that has a part along each motion.
+  Eigen::VectorXd motion = Eigen::VectorXd::NullaryExpr(
+      form.rows(),
+      [](Eigen::Index i) { return std::cos(static_cast<double>(i * i)); });
+  for (int i = 0; i < kIterations; ++i) {
+    motion = inverse.solve(motion).normalized();
+  }
+  if (motion.dot(form * motion) < kHoldsNothing) {
+    return motion;
+  }
+  return Eigen::MatrixXd(form.rows(), 0);
 }
 
 // The smallest node of body `b` that none of the others has, if there is one.
@@ -252,17 +307,18 @@ Body Union(const Mesh& mesh, const std::vector<const Body*>& bodies) {
 // A sentence about the first of the bodies that moves; empty when none does.
 std::string WhyNotHeld(const Mesh& mesh, const Supports& supports,
                        const std::vector<const Body*>& bodies) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-      HoldingForm(mesh, supports, bodies));
-  // Squares of lever arms below 1e-6 of a radius hold nothing.
-  const Eigen::Index num_free = (eigen.eigenvalues().array() < 1e-12).count();
-  if (num_free == 0) {
+  // The time of all motions grows with the third power.
+  constexpr std::size_t kMostBodies = 64;
+  const Eigen::SparseMatrix<double> form = HoldingForm(mesh, supports, bodies);
+  const Eigen::MatrixXd motions =
+      bodies.size() <= kMostBodies ? FreeMotions(form) : AFreeMotion(form);
+  if (motions.cols() == 0) {
     return "";
   }
-  const auto motions = eigen.eigenvectors().leftCols(num_free);
   constexpr double kMoves = 1e-3;
   Eigen::Index b = 0;
-  while (motions.middleRows<6>(6 * b).norm() < kMoves) {
+  while (motions.middleRows<6>(6 * b).norm() <
+         kMoves / std::sqrt(static_cast<double>(bodies.size()))) {
     ++b;
   }
   const bool is_hinged = bodies.size() > 1;
@@ -278,7 +334,6 @@ std::string WhyNotHeld(const Mesh& mesh, const Supports& supports,
 }  // namespace
 
 std::string WhyNotHeld(const Mesh& mesh, const Supports& supports) {
-  constexpr std::size_t kMostBodies = 64;
   const std::vector<Body> bodies = BodiesOf(mesh);
   std::vector<int> first(mesh.NumNodes(), -1);
   DisjointSets hinged(Eigen::Index(bodies.size()));
@@ -298,12 +353,11 @@ std::string WhyNotHeld(const Mesh& mesh, const Supports& supports) {
     if (group.empty()) {
       continue;
     }
-    std::string why;
-    if (group.size() <= kMostBodies) {
+    // As a whole, and then part by part.
+    const Body whole = Union(mesh, group);
+    std::string why = WhyNotHeld(mesh, supports, {&whole});
+    if (why.empty() && group.size() > 1) {
       why = WhyNotHeld(mesh, supports, group);
-    } else {
-      const Body whole = Union(mesh, group);
-      why = WhyNotHeld(mesh, supports, {&whole});
     }
     if (!why.empty()) {
       return why;

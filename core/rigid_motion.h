@@ -15,10 +15,10 @@ namespace elastimate {
 ///
 /// Tetrahedra that are connected through their faces move as a rigid body where
 /// they have no strain; bodies that share only an edge or a node are hinged
-/// there.  Of specimens of more than 64 bodies that are connected by hinges
-/// only whether they move as a whole is known.
+/// there.
 ///
-/// Precondition: a valid mesh.  O(num_elements log(num_elements)).
+/// Precondition: a valid mesh.  O(num_elements log(num_elements)), and a sparse
+/// factorisation with six unknowns for each hinged body.
 std::string WhyNotHeld(const Mesh& mesh, const Supports& supports);
 
 }  // namespace elastimate

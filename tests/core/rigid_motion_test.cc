@@ -175,28 +175,62 @@ TEST(WhyNotHeld, NamesThePartThatIsFree) {
               HasSubstr("the part of the mesh around node 0 "));
 }
 
-// A chain of tetrahedra, each of which shares a node with the next.
-TEST(WhyNotHeld, KnowsWhetherManyBodiesMoveAsAWhole) {
-  constexpr int kBodies = 100;
-  Mesh mesh;
-  mesh.nodes.resize(3, 3 * kBodies + 1);
-  mesh.elements.resize(4, kBodies);
-  mesh.nodes.col(0).setZero();
-  for (int e = 0; e < kBodies; ++e) {
-    const Eigen::Vector3d shared = mesh.nodes.col(3 * e);
-    mesh.nodes.middleCols(3 * e + 1, 3) =
-        Eigen::Matrix3d::Identity().colwise() + shared;
-    mesh.elements.col(e) << 3 * e, 3 * e + 1, 3 * e + 2, 3 * e + 3;
+// Tetrahedra, each of which shares a node with the next.
+class Chain : public ::testing::TestWithParam<int> {
+ protected:
+  Chain() {
+    const int num_bodies = GetParam();
+    mesh_.nodes.resize(3, 3 * num_bodies + 1);
+    mesh_.elements.resize(4, num_bodies);
+    mesh_.nodes.col(0).setZero();
+    for (int e = 0; e < num_bodies; ++e) {
+      const Eigen::Vector3d shared = mesh_.nodes.col(3 * e);
+      mesh_.nodes.middleCols(3 * e + 1, 3) =
+          Eigen::Matrix3d::Identity().colwise() + shared;
+      mesh_.elements.col(e) << 3 * e, 3 * e + 1, 3 * e + 2, 3 * e + 3;
+    }
+    supports_.held = ComponentMask::Constant(3, mesh_.NumNodes(), false);
+    supports_.displacement = Eigen::Matrix3Xd::Zero(3, mesh_.NumNodes());
   }
-  Supports supports{ComponentMask::Constant(3, mesh.NumNodes(), false),
-                    Eigen::Matrix3Xd::Zero(3, mesh.NumNodes())};
-  supports.held.row(0).setConstant(true);
-  EXPECT_THAT(WhyNotHeld(mesh, supports),
+
+  Mesh mesh_;
+  Supports supports_;
+};
+
+TEST_P(Chain, MovesAsAWhole) {
+  supports_.held.row(0).setConstant(true);
+  EXPECT_THAT(WhyNotHeld(mesh_, supports_),
               ContainsRegex("the part of the mesh around node 0 move along "
                             "[yz] without strain; hold more components$"));
-  supports.held.setConstant(true);
-  EXPECT_THAT(WhyNotHeld(mesh, supports), IsEmpty());
 }
+
+TEST_P(Chain, OfHeldNodesIsHeld) {
+  supports_.held.setConstant(true);
+  EXPECT_THAT(WhyNotHeld(mesh_, supports_), IsEmpty());
+}
+
+// The rest is held at its nodes, and the part in the middle by its neighbours
+// at two of its own.
+TEST_P(Chain, TurnsInTheMiddle) {
+  const int middle = GetParam() / 2;
+  supports_.held.setConstant(true);
+  supports_.held.middleCols(3 * middle + 1, 2).setConstant(false);
+  EXPECT_THAT(WhyNotHeld(mesh_, supports_),
+              ContainsRegex("around node " + std::to_string(3 * middle + 1) +
+                            " rotate about .* without strain; .* mend the "
+                            "mesh"));
+  supports_.held(0, 3 * middle + 2) = true;
+  EXPECT_THAT(WhyNotHeld(mesh_, supports_), IsEmpty());
+}
+
+TEST_P(Chain, HeldAtItsEndsTurns) {
+  supports_.held.leftCols(4).setConstant(true);
+  supports_.held.rightCols(3).setConstant(true);
+  EXPECT_THAT(WhyNotHeld(mesh_, supports_),
+              ContainsRegex("around node 4 rotate about .* mend the mesh"));
+}
+
+INSTANTIATE_TEST_SUITE_P(NumBodies, Chain, ::testing::Values(3, 64, 65, 1000));
 
 // Two boxes of many tetrahedra that share the nodes of one edge, or one node.
 class HingedBoxes : public ::testing::Test {
