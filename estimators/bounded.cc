@@ -195,6 +195,10 @@ Estimate Bounded::DoRun(const Scene& scene,
     JudgeNoiseBias(residual, EffectivePoissonRatioBounds(options), estimate);
   }
   CheckByVirtualWork(scene, options, estimate);
+  if (estimate.IsUsable() && !free_youngs_modulus &&
+      !options.known_poisson_ratio) {
+    JudgeNoiseBias(residual, EffectivePoissonRatioBounds(options), estimate);
+  }
   return estimate;
 }
 

@@ -196,11 +196,24 @@ void JudgePoissonRatioOnBound(const EstimatorOptions& options,
   }
 }
 
+void JudgeContradictedBound(double excess, double variance,
+                            double without_bound, Estimate& estimate) {
+  constexpr double kSignificant = 5;
+  constexpr double kUnusableChange = 0.1;
+  const double change =
+      std::abs(without_bound / estimate.elasticity.youngs_modulus - 1);
+  if (estimate.IsUsable() && change > kUnusableChange &&
+      excess > kSignificant * kSignificant * variance) {
+    estimate.Fail(Status::kNotIdentifiable,
+                  "the data contradict the bound on Young's modulus: without "
+                  "it, E is " +
+                      TwoDigits(without_bound),
+                  "the model contradicts the data");
+  }
+}
+
 void JudgeYoungsModulusOnBound(const EstimatorOptions& options, double slope,
                                double standard_error, Estimate& estimate) {
-  if (standard_error <= kLargestYoungsModulusError) {
-    return;
-  }
   const Bounds& bounds = options.youngs_modulus;
   const double distance =
       bounds.lower && bounds.upper
@@ -210,6 +223,7 @@ void JudgeYoungsModulusOnBound(const EstimatorOptions& options, double slope,
   // Not a number for a slope that the data do not determine.
   if (error <= kLargestYoungsModulusError &&
       std::abs(slope) * error <= kLargestPoissonRatioError) {
+    estimate.covariance(1, 1) += std::pow(slope * error, 2);
     return;
   }
   estimate.Fail(

@@ -82,10 +82,16 @@ void JudgePoissonRatioOnBound(const EstimatorOptions& options,
                               const ActiveBounds& active, double slope,
                               double standard_error, Estimate& estimate);
 
-/// For E on a bound: sets `estimate` to not usable unless the data decide on E,
-/// or the bounds leave it so little room that E and nu are determined all the
-/// same.  `slope` = d nu / d ln E of the parameters that fit alike;
-/// `standard_error` is that of ln E without the bound.
+/// For E on a bound: sets `estimate` to not usable where E is more than 10 %
+/// off `without_bound`, the E that fits best, and the square sum exceeds its
+/// least significantly: by `excess`, where each residual has `variance`.
+void JudgeContradictedBound(double excess, double variance,
+                            double without_bound, Estimate& estimate);
+
+/// For E on a bound: sets `estimate` to not usable unless the data, or the room
+/// that the bounds leave, determine E and with it nu; adds what E may be off by
+/// to the variance of nu.  `slope` = d nu / d ln E of the parameters that fit
+/// alike; `standard_error` is that of ln E without the bound.
 void JudgeYoungsModulusOnBound(const EstimatorOptions& options, double slope,
                                double standard_error, Estimate& estimate);
 

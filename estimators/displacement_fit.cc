@@ -136,18 +136,44 @@ void WarnOfSmoothResidual(double relative_error, Estimate& estimate) {
   estimate.warnings.push_back(text.str());
 }
 
-// The square sum of the residual that these parameters would leave in the
-// linear model u + S delta, were they free, over that of the fit: a bound that
-// the data contradict leaves much that is no noise.
-double ShareThatIsLeft(const DisplacementFit& fit,
-                       const std::vector<Eigen::Index>& parameters) {
-  if (fit.residual.isZero(0)) {
-    return 1;
-  }
+// What is left of the residual, and the change of ln E, where these parameters
+// are free in the linear model u + S delta: a bound that the data contradict
+// leaves much that is no noise.
+struct LinearFit {
+  Eigen::VectorXd residual;
+  double log_youngs_modulus_change;
+};
+
+LinearFit FitLinearly(const DisplacementFit& fit,
+                      const std::vector<Eigen::Index>& parameters) {
   const Eigen::MatrixXd s = fit.sensitivities(Eigen::all, parameters);
-  const Eigen::VectorXd left =
-      fit.residual - s * s.colPivHouseholderQr().solve(fit.residual);
-  return left.squaredNorm() / fit.residual.squaredNorm();
+  const Eigen::VectorXd change = -s.colPivHouseholderQr().solve(fit.residual);
+  return {fit.residual + s * change, change(0)};
+}
+
+// For E on a bound.  `standard_error` is that of ln E for the residual of the
+// fit; `slope` = d nu / d ln E.
+void JudgeYoungsModulus(const EstimatorOptions& options,
+                        const DisplacementFit& fit,
+                        const std::vector<Eigen::Index>& parameters,
+                        double slope, double standard_error,
+                        Estimate& estimate) {
+  const double square_sum = fit.residual.squaredNorm();
+  if (square_sum == 0) {
+    return;
+  }
+  const LinearFit linear = FitLinearly(fit, parameters);
+  const double least = linear.residual.squaredNorm();
+  JudgeContradictedBound(square_sum - least,
+                         least / static_cast<double>(fit.residual.size()),
+                         estimate.elasticity.youngs_modulus *
+                             std::exp(linear.log_youngs_modulus_change),
+                         estimate);
+  if (estimate.IsUsable()) {
+    JudgeYoungsModulusOnBound(options, slope,
+                              std::sqrt(least / square_sum) * standard_error,
+                              estimate);
+  }
 }
 
 // The change of (ln E, nu) from the least-squares fit to a robust one, in the
@@ -373,18 +399,8 @@ std::optional<double> DescribeDisplacementFit(
   if (smooth_square_sum > 0) {
     WarnOfSmoothResidual(std::sqrt(covariance(0, 0)), estimate);
   }
-  JudgeLargeResidual(std::sqrt(smooth_square_sum) / observed.Measured().norm(),
-                     variance && variance->is_explained_by_given_noise,
-                     estimate);
   if (!estimate.active_bounds.empty()) {
     estimate.why_no_standard_error = "a parameter on a bound has none";
-  }
-  if (estimate.status == Status::kOk &&
-      active.poisson_ratio != BoundedParameter::Side::kNone) {
-    const double standard_error = is_collinear
-                                      ? std::numeric_limits<double>::infinity()
-                                      : std::sqrt(covariance_of({0, 1})(1, 1));
-    JudgePoissonRatioOnBound(options, active, slope, standard_error, estimate);
   }
   if (estimate.status == Status::kOk &&
       active.youngs_modulus != BoundedParameter::Side::kNone) {
@@ -394,10 +410,20 @@ std::optional<double> DescribeDisplacementFit(
                  : std::vector<Eigen::Index>{0, 1};
     const double standard_error =
         !is_known && is_collinear ? std::numeric_limits<double>::infinity()
-                                  : std::sqrt(ShareThatIsLeft(fit, parameters) *
-                                              covariance_of(parameters)(0, 0));
-    JudgeYoungsModulusOnBound(options, is_known ? 0 : -gram(0, 1) / gram(1, 1),
-                              standard_error, estimate);
+                                  : std::sqrt(covariance_of(parameters)(0, 0));
+    JudgeYoungsModulus(options, fit, parameters,
+                       is_known ? 0 : -gram(0, 1) / gram(1, 1), standard_error,
+                       estimate);
+  }
+  JudgeLargeResidual(std::sqrt(smooth_square_sum) / observed.Measured().norm(),
+                     variance && variance->is_explained_by_given_noise,
+                     estimate);
+  if (estimate.status == Status::kOk &&
+      active.poisson_ratio != BoundedParameter::Side::kNone) {
+    const double standard_error = is_collinear
+                                      ? std::numeric_limits<double>::infinity()
+                                      : std::sqrt(covariance_of({0, 1})(1, 1));
+    JudgePoissonRatioOnBound(options, active, slope, standard_error, estimate);
   }
   if (std::find(free.begin(), free.end(), 1) == free.end()) {
     return active.is_physical_limit && variance

@@ -457,8 +457,10 @@ void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,
   constexpr double kUnusablePoissonRatioBias = 0.03;
   constexpr double kNotableBias = 0.01;
   const std::string cause =
-      "displacement noise (or a mesh, supports or loads that do not describe "
-      "the experiment) biases ";
+      "displacement noise (or a mesh, supports" +
+      std::string(estimate.active_bounds.empty() ? " or loads"
+                                                 : ", loads or bounds") +
+      " that do not describe the experiment) biases ";
   const std::string advice =
       "use reduced-fe, which noise does not bias, or give Poisson's ratio";
   const IsotropicElasticity& elasticity = estimate.elasticity;

@@ -478,7 +478,9 @@ Estimate IterativeFe::DoRun(const Scene& scene,
     const std::optional<double> variance = DescribeDisplacementFit(
         scene, residual.Graph(), options, residual.Observed(), fit, losses,
         active, estimate);
+    // The starts have an E without bounds.
     if (variance && options.loss == Loss::kNone && estimate.IsUsable() &&
+        active.youngs_modulus == BoundedParameter::Side::kNone &&
         (active.is_physical_limit ||
          ShareOfDistanceToPole(estimate) > kLargestLinearShare)) {
       const StartProfile profile(

@@ -235,61 +235,42 @@ void DescribeProfileOf(const VirtualWorkBalance& balance,
   }
 }
 
-// Whether the data contradict the bound on E that `bounded` lies on.
-void JudgeContradictedBound(const VirtualWorkFit& bounded,
-                            const VirtualWorkFit& unbounded,
-                            Eigen::Index num_equations, Estimate& estimate) {
-  constexpr double kUnusableChange = 0.1;
-  const double without_bound =
+// What the data say of E and nu where E lies on a bound.
+void JudgeYoungsModulus(const EstimatorOptions& options,
+                        const VirtualWorkBalance& balance,
+                        const VirtualWorkFit& fit,
+                        const std::optional<ResidualJudgement>& residual,
+                        Estimate& estimate) {
+  const bool is_known = options.known_poisson_ratio.has_value();
+  const VirtualWorkFit unbounded =
+      is_known
+          ? balance.FitAt(fit.poisson_ratio, Bounds{})
+          : balance.Minimize(EffectivePoissonRatioBounds(options), Bounds{});
+  JudgeContradictedBound(
+      fit.square_sum - unbounded.square_sum,
+      unbounded.square_sum / static_cast<double>(balance.NumEquations()),
       IsotropicElasticity::FromComplianceScale(unbounded.compliance_scale,
                                                unbounded.poisson_ratio)
-          .youngs_modulus;
-  const double variance =
-      unbounded.square_sum / static_cast<double>(num_equations);
-  const double excess = bounded.square_sum - unbounded.square_sum;
-  const double change =
-      std::abs(without_bound / estimate.elasticity.youngs_modulus - 1);
-  if (estimate.IsUsable() && change > kUnusableChange &&
-      excess > kSignificantScore * kSignificantScore * variance) {
-    estimate.Fail(Status::kNotIdentifiable,
-                  "the data contradict the bound on Young's modulus: without "
-                  "it, E is " +
-                      TwoDigits(without_bound),
-                  "the model contradicts the data");
-  }
-}
-
-// What the data say of E and nu where E lies on a bound.
-void JudgeYoungsModulusBound(const EstimatorOptions& options,
-                             const VirtualWorkBalance& balance,
-                             const VirtualWorkFit& fit,
-                             const std::optional<ResidualJudgement>& residual,
-                             Estimate& estimate) {
-  const auto information = [&] {
-    return Information(balance.InformationAt(fit), estimate.elasticity,
-                       *residual);
-  };
-  if (options.known_poisson_ratio) {
-    if (residual && estimate.IsUsable()) {
-      JudgeYoungsModulusOnBound(
-          options, 0, StandardErrorOrInfinity(information().Covariance({0}), 0),
-          estimate);
-    }
+          .youngs_modulus,
+      estimate);
+  if (!residual || !estimate.IsUsable()) {
     return;
   }
-  const VirtualWorkFit unbounded =
-      balance.Minimize(EffectivePoissonRatioBounds(options), Bounds{});
-  JudgeContradictedBound(fit, unbounded, balance.NumEquations(), estimate);
-  if (!residual || !estimate.IsUsable()) {
+  const Information information(balance.InformationAt(fit), estimate.elasticity,
+                                *residual);
+  if (is_known) {
+    JudgeYoungsModulusOnBound(
+        options, 0, StandardErrorOrInfinity(information.Covariance({0}), 0),
+        estimate);
     return;
   }
   const Interval by_chance = IntervalByChance(balance, unbounded, *residual);
   const bool is_open =
       by_chance.upper - by_chance.lower > 2 * kLargestPoissonRatioDistance;
   JudgeYoungsModulusOnBound(
-      options, information().PoissonRatioSlope(),
+      options, information.PoissonRatioSlope(),
       is_open ? std::numeric_limits<double>::infinity()
-              : StandardErrorOrInfinity(information().Covariance({0, 1}), 0),
+              : StandardErrorOrInfinity(information.Covariance({0, 1}), 0),
       estimate);
 }
 
@@ -440,7 +421,7 @@ Estimate VirtualFields::DoRun(const Scene& scene,
     }
   }
   if (active.youngs_modulus != Side::kNone) {
-    JudgeYoungsModulusBound(options, balance, fit, residual, estimate);
+    JudgeYoungsModulus(options, balance, fit, residual, estimate);
   }
   if (residual && estimate.IsUsable() && !options.known_poisson_ratio &&
       active.youngs_modulus == Side::kNone &&

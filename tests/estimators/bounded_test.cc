@@ -145,6 +145,20 @@ TEST(Bounded, SaysWhenTheNoiseBiasesItWithinItsBounds) {
   EXPECT_NE(estimate.message.find("noise"), std::string::npos);
 }
 
+TEST(Bounded, SaysWhenTheNoiseBiasesNuBesideABoundOnYoungsModulus) {
+  for (int seed = 1; seed <= 8; ++seed) {
+    Scene scene = SmallScene("organ");
+    Measure({5e4, 0.3}, scene);
+    AddNoise(0.05, seed, scene);
+    for (const Bounds& bounds : {Bounds{4.95e4, 5.05e4}, Bounds{4.5e4, {}}}) {
+      const Estimate estimate = Bounded().Run(scene, WithBounds({}, bounds));
+      ASSERT_FALSE(estimate.active_bounds.empty());
+      EXPECT_FALSE(estimate.IsUsable())
+          << seed << ": nu = " << estimate.elasticity.poisson_ratio;
+    }
+  }
+}
+
 TEST(Bounded, RefusesALoss) {
   EstimatorOptions options;
   options.loss = Loss::kCauchy;
