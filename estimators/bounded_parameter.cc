@@ -166,8 +166,9 @@ void JudgePoissonRatioOnBound(const EstimatorOptions& options,
   if (active.is_physical_limit &&
       active.poisson_ratio == BoundedParameter::Side::kLower) {
     estimate.Fail(Status::kUnphysical,
-                  "the data pull Poisson's ratio to -1, where no material is; "
-                  "check the loads, the supports and the mesh");
+                  "the data pull Poisson's ratio to -1, where no material is: "
+                  "they may not determine it, or the loads, the supports or "
+                  "the mesh do not describe the experiment");
     return;
   }
   if (active.is_physical_limit && estimate.is_model_in_doubt) {

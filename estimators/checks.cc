@@ -149,6 +149,14 @@ void CheckResult(const EstimatorOptions& options, Estimate& estimate) {
         (estimate.warnings.empty()
              ? "; measure larger displacements, or more load cases"
              : "; see the warnings");
+  } else {
+    return;
+  }
+  // What a method without a finite element solution does not know, the data
+  // may.
+  if (estimate.status == Status::kNotIdentifiable &&
+      !estimate.displacement_residual) {
+    estimate.message += "; reduced-fe takes more from the same data";
   }
 }
 

@@ -62,7 +62,7 @@ struct Rung {
 /// The message of an estimate whose E is negative.
 inline constexpr char kDisplacementsOpposeLoads[] =
     "the measured displacements oppose the loads; check their signs, order and "
-    "units";
+    "units, and whether noise outweighs them";
 
 /// What an estimator says about a scene.  Starts out as a failure, so that it
 /// cannot be mistaken for a result before an estimator has filled it in.

@@ -37,6 +37,9 @@ struct Step {
   Eigen::MatrixXd responses;
 };
 
+// (1 + nu)(1 - 2 nu), which is t E.
+double ScaleOf(double nu) { return (1 + nu) * (1 - 2 * nu); }
+
 Step TakeStep(const ObservedDisplacements& observed,
               const EstimatorOptions& options, ForwardModel& model) {
   // The derivatives are those at E = 1, where t = (1 + nu)(1 - 2 nu).
@@ -57,8 +60,20 @@ Step TakeStep(const ObservedDisplacements& observed,
   if (!options.known_poisson_ratio) {
     change = step.responses.colPivHouseholderQr().solve(rest - t0 * w);
   }
-  step.poisson_ratio = model.PoissonRatio() + change(1);
+  const double nu = model.PoissonRatio();
+  step.poisson_ratio = nu + change(1);
   step.compliance_scale = t0 + change(0);
+  if (step.poisson_ratio > -1 && step.poisson_ratio < 0.5) {
+    // ||t w|| is what the data know best, and ||w|| is not linear in nu, but
+    // nearly exponential at fixed E.
+    const double slope =
+        w.dot(observed.Restrict(model.UnitLoadResponseDerivative())) /
+        w.squaredNorm();
+    const double slope_at_fixed_e = slope + 1 / (1 + nu) - 2 / (1 - 2 * nu);
+    step.compliance_scale = (t0 + change(0) + t0 * slope * change(1)) *
+                            std::exp(-slope_at_fixed_e * change(1)) *
+                            ScaleOf(step.poisson_ratio) / ScaleOf(nu);
+  }
   step.residual = step.responses * change + t0 * w - rest;
   // The part of the derivative that w does not explain.
   const double derivative =
@@ -147,10 +162,17 @@ Estimate OneStep::DoRun(const Scene& scene,
       break;
     }
     step = TakeStep(observed, options, model);
-    const double missed = std::pow(step.poisson_ratio - nu, 2) /
-                          std::min(std::abs(0.5 - step.poisson_ratio),
-                                   std::abs(1 + step.poisson_ratio));
-    has_converged = missed <= std::max(0.5 * step.standard_error, 1e-9);
+    const double change = std::abs(step.poisson_ratio - nu);
+    const double distance = std::min(std::abs(0.5 - step.poisson_ratio),
+                                     std::abs(1 + step.poisson_ratio));
+    // Where nu is uncertain, the derivatives, and with them the error of E,
+    // have to be those at the estimate.
+    const bool is_linear =
+        change <= step.standard_error ||
+        step.standard_error <= kLargestLinearShare * distance;
+    has_converged = change * change / distance <=
+                        std::max(0.5 * step.standard_error, 1e-9) &&
+                    is_linear;
     // Half of the way to a limit that the step leaves the range by.
     nu = std::clamp(step.poisson_ratio, (nu - 1) / 2, (nu + 0.5) / 2);
   }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <variant>
+
 #include "elastimate/estimators/iterative_fe.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
@@ -10,6 +12,8 @@ namespace elastimate {
 namespace {
 
 using testing::AddNoise;
+using testing::BoxMesh;
+using testing::HeldAtBottom;
 using testing::Measure;
 using testing::SmallScene;
 
@@ -94,6 +98,29 @@ TEST(OneStep, RefusesWhatItCannotHonour) {
   EXPECT_THROWS_WITH(OneStep().Run(scene, loss), "use reduced-fe");
   scene.supports.held.setConstant(false);
   EXPECT_THROWS_WITH(OneStep().Run(scene, {}), "without strain");
+}
+
+// E is known far better than nu in a slender bar, and what a step in nu misses
+// is soon much for it.
+TEST(OneStep, AgreesOnEWithTheIterativeFitOfABar) {
+  const Mesh mesh = BoxMesh({2, 2, 20}, {1, 1, 10});
+  for (const double stretching : {0, 2, 20}) {
+    for (int seed = 1; seed <= 20; ++seed) {
+      Scene scene = HeldAtBottom(mesh, mesh, {-1, 0, stretching});
+      // At the end only.
+      std::get<NodalForces>(scene.load_cases[0].loads[0])
+          .force.leftCols(9 * 20)
+          .setZero();
+      Measure({1e4, 0.3}, scene);
+      AddNoise(0.01, seed, scene);
+      const Estimate step = OneStep().Run(scene, {});
+      const Estimate fit = IterativeFe().Run(scene, {});
+      ASSERT_TRUE(step.IsUsable() && fit.IsUsable()) << seed;
+      EXPECT_NEAR(step.elasticity.youngs_modulus, fit.elasticity.youngs_modulus,
+                  0.25 * *step.YoungsModulusStandardError())
+          << seed;
+    }
+  }
 }
 
 }  // namespace
