@@ -66,15 +66,14 @@ using Values = hn::Vec<Lanes>;
 constexpr std::ptrdiff_t kLanes = hn::MaxLanes(Lanes());
 
 // Where the values of a node are in its record, counted in doubles: position,
-// displacement, and the sums of a and of p.  Component i of column k of the
-// latter is kStride i + k after the first.
+// displacement, and the sums of a and of p.  Component i of column k of these
+// three is kColumns i + k after their first.
 struct OneColumn {
   // Fours, which are loaded whole.
   static constexpr std::ptrdiff_t kDisplacement = 4;
   static constexpr std::ptrdiff_t kA = 8;
   static constexpr std::ptrdiff_t kP = 12;
   static constexpr std::ptrdiff_t kSize = 16;
-  static constexpr std::ptrdiff_t kStride = 1;
   static constexpr std::ptrdiff_t kColumns = 1;
 };
 
@@ -83,7 +82,6 @@ struct SeveralColumns {
   static constexpr std::ptrdiff_t kA = kDisplacement + 3 * kLanes;
   static constexpr std::ptrdiff_t kP = kA + 3 * kLanes;
   static constexpr std::ptrdiff_t kSize = kP + 3 * kLanes;
-  static constexpr std::ptrdiff_t kStride = kLanes;
   static constexpr std::ptrdiff_t kColumns = kLanes;
 };
 

@@ -354,9 +354,12 @@ std::string WhyNotHeld(const Mesh& mesh, const Supports& supports) {
       continue;
     }
     // As a whole, and then part by part.
-    const Body whole = Union(mesh, group);
-    std::string why = WhyNotHeld(mesh, supports, {&whole});
-    if (why.empty() && group.size() > 1) {
+    std::string why;
+    if (group.size() > 1) {
+      const Body whole = Union(mesh, group);
+      why = WhyNotHeld(mesh, supports, {&whole});
+    }
+    if (why.empty()) {
       why = WhyNotHeld(mesh, supports, group);
     }
     if (!why.empty()) {

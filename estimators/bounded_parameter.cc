@@ -221,10 +221,12 @@ void JudgeYoungsModulusOnBound(const EstimatorOptions& options, double slope,
           ? DistanceFromBound(std::log(*bounds.lower), std::log(*bounds.upper))
           : std::numeric_limits<double>::infinity();
   const double error = std::min(standard_error, distance);
+  const double poisson_ratio_error =
+      options.known_poisson_ratio ? 0 : std::abs(slope) * error;
   // Not a number for a slope that the data do not determine.
   if (error <= kLargestYoungsModulusError &&
-      std::abs(slope) * error <= kLargestPoissonRatioError) {
-    estimate.covariance(1, 1) += std::pow(slope * error, 2);
+      poisson_ratio_error <= kLargestPoissonRatioError) {
+    estimate.covariance(1, 1) += poisson_ratio_error * poisson_ratio_error;
     return;
   }
   estimate.Fail(

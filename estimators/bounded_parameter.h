@@ -90,8 +90,9 @@ void JudgeContradictedBound(double excess, double variance,
 
 /// For E on a bound: sets `estimate` to not usable unless the data, or the room
 /// that the bounds leave, determine E and with it nu; adds what E may be off by
-/// to the variance of nu.  `slope` = d nu / d ln E of the parameters that fit
-/// alike; `standard_error` is that of ln E without the bound.
+/// to the variance of nu, unless nu is known.  `slope` = d nu / d ln E of the
+/// parameters that fit alike; `standard_error` is that of ln E without the
+/// bound.
 void JudgeYoungsModulusOnBound(const EstimatorOptions& options, double slope,
                                double standard_error, Estimate& estimate);
 

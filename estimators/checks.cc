@@ -149,8 +149,6 @@ void CheckResult(const EstimatorOptions& options, Estimate& estimate) {
         (estimate.warnings.empty()
              ? "; measure larger displacements, or more load cases"
              : "; see the warnings");
-  } else {
-    return;
   }
   // What a method without a finite element solution does not know, the data
   // may.

@@ -136,23 +136,9 @@ void WarnOfSmoothResidual(double relative_error, Estimate& estimate) {
   estimate.warnings.push_back(text.str());
 }
 
-// What is left of the residual, and the change of ln E, where these parameters
-// are free in the linear model u + S delta: a bound that the data contradict
-// leaves much that is no noise.
-struct LinearFit {
-  Eigen::VectorXd residual;
-  double log_youngs_modulus_change;
-};
-
-LinearFit FitLinearly(const DisplacementFit& fit,
-                      const std::vector<Eigen::Index>& parameters) {
-  const Eigen::MatrixXd s = fit.sensitivities(Eigen::all, parameters);
-  const Eigen::VectorXd change = -s.colPivHouseholderQr().solve(fit.residual);
-  return {fit.residual + s * change, change(0)};
-}
-
-// For E on a bound.  `standard_error` is that of ln E for the residual of the
-// fit; `slope` = d nu / d ln E.
+// For E on a bound.  `parameters` are those that are free without it,
+// `standard_error` is that of ln E for the residual of the fit, `slope` =
+// d nu / d ln E.
 void JudgeYoungsModulus(const EstimatorOptions& options,
                         const DisplacementFit& fit,
                         const std::vector<Eigen::Index>& parameters,
@@ -162,13 +148,14 @@ void JudgeYoungsModulus(const EstimatorOptions& options,
   if (square_sum == 0) {
     return;
   }
-  const LinearFit linear = FitLinearly(fit, parameters);
-  const double least = linear.residual.squaredNorm();
-  JudgeContradictedBound(square_sum - least,
-                         least / static_cast<double>(fit.residual.size()),
-                         estimate.elasticity.youngs_modulus *
-                             std::exp(linear.log_youngs_modulus_change),
-                         estimate);
+  // The fit without the bound in the linear model u + S delta: a bound that the
+  // data contradict leaves much that is no noise.
+  const Eigen::MatrixXd s = fit.sensitivities(Eigen::all, parameters);
+  const Eigen::VectorXd change = -s.colPivHouseholderQr().solve(fit.residual);
+  const double least = (fit.residual + s * change).squaredNorm();
+  JudgeContradictedBound(
+      square_sum - least, least / static_cast<double>(fit.residual.size()),
+      estimate.elasticity.youngs_modulus * std::exp(change(0)), estimate);
   if (estimate.IsUsable()) {
     JudgeYoungsModulusOnBound(options, slope,
                               std::sqrt(least / square_sum) * standard_error,
@@ -411,9 +398,8 @@ std::optional<double> DescribeDisplacementFit(
     const double standard_error =
         !is_known && is_collinear ? std::numeric_limits<double>::infinity()
                                   : std::sqrt(covariance_of(parameters)(0, 0));
-    JudgeYoungsModulus(options, fit, parameters,
-                       is_known ? 0 : -gram(0, 1) / gram(1, 1), standard_error,
-                       estimate);
+    JudgeYoungsModulus(options, fit, parameters, -gram(0, 1) / gram(1, 1),
+                       standard_error, estimate);
   }
   JudgeLargeResidual(std::sqrt(smooth_square_sum) / observed.Measured().norm(),
                      variance && variance->is_explained_by_given_noise,

@@ -420,8 +420,8 @@ void ForceResidual::JudgeYoungsModulusOnBound(const EstimatorOptions& options,
   const Eigen::Matrix2d x = Jacobian(elasticity);
   const double slope = -elasticity.youngs_modulus * x.col(0).dot(x.col(1)) /
                        x.col(1).squaredNorm();
-  elastimate::JudgeYoungsModulusOnBound(options, free_poisson_ratio ? slope : 0,
-                                        standard_error, estimate);
+  elastimate::JudgeYoungsModulusOnBound(options, slope, standard_error,
+                                        estimate);
 }
 
 void JudgeKnownPoissonRatio(const ForceResidual& residual, Estimate& estimate) {

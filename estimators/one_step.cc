@@ -37,9 +37,6 @@ struct Step {
   Eigen::MatrixXd responses;
 };
 
-// (1 + nu)(1 - 2 nu), which is t E.
-double ScaleOf(double nu) { return (1 + nu) * (1 - 2 * nu); }
-
 Step TakeStep(const ObservedDisplacements& observed,
               const EstimatorOptions& options, ForwardModel& model) {
   // The derivatives are those at E = 1, where t = (1 + nu)(1 - 2 nu).
@@ -70,9 +67,11 @@ Step TakeStep(const ObservedDisplacements& observed,
         w.dot(observed.Restrict(model.UnitLoadResponseDerivative())) /
         w.squaredNorm();
     const double slope_at_fixed_e = slope + 1 / (1 + nu) - 2 / (1 - 2 * nu);
-    step.compliance_scale = (t0 + change(0) + t0 * slope * change(1)) *
-                            std::exp(-slope_at_fixed_e * change(1)) *
-                            ScaleOf(step.poisson_ratio) / ScaleOf(nu);
+    step.compliance_scale =
+        (t0 + change(0) + t0 * slope * change(1)) *
+        std::exp(-slope_at_fixed_e * change(1)) *
+        IsotropicElasticity{1, step.poisson_ratio}.ComplianceScale() /
+        IsotropicElasticity{1, nu}.ComplianceScale();
   }
   step.residual = step.responses * change + t0 * w - rest;
   // The part of the derivative that w does not explain.

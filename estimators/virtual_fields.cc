@@ -258,20 +258,17 @@ void JudgeYoungsModulus(const EstimatorOptions& options,
   }
   const Information information(balance.InformationAt(fit), estimate.elasticity,
                                 *residual);
+  std::optional<Eigen::MatrixXd> covariance;
   if (is_known) {
-    JudgeYoungsModulusOnBound(
-        options, 0, StandardErrorOrInfinity(information.Covariance({0}), 0),
-        estimate);
-    return;
+    covariance = information.Covariance({0});
+  } else {
+    const Interval by_chance = IntervalByChance(balance, unbounded, *residual);
+    if (by_chance.upper - by_chance.lower <= 2 * kLargestPoissonRatioDistance) {
+      covariance = information.Covariance({0, 1});
+    }
   }
-  const Interval by_chance = IntervalByChance(balance, unbounded, *residual);
-  const bool is_open =
-      by_chance.upper - by_chance.lower > 2 * kLargestPoissonRatioDistance;
-  JudgeYoungsModulusOnBound(
-      options, information.PoissonRatioSlope(),
-      is_open ? std::numeric_limits<double>::infinity()
-              : StandardErrorOrInfinity(information.Covariance({0, 1}), 0),
-      estimate);
+  JudgeYoungsModulusOnBound(options, information.PoissonRatioSlope(),
+                            StandardErrorOrInfinity(covariance, 0), estimate);
 }
 
 // The displacements of all load cases without most of their noise, and without

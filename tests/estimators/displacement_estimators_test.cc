@@ -211,6 +211,10 @@ TEST_P(DisplacementEstimators, ErrorsOfNuAllowForTheRoomOfE) {
     }
   }
   std::cout << "seeds 1 to 40: " << num_on_bound << " on a bound and usable\n";
+  // reduced-fe says that the data leave nu open, whatever the bounds.
+  if (GetParam() == "iterative-fe") {
+    EXPECT_GT(num_on_bound, 20);
+  }
 }
 
 TEST_P(DisplacementEstimators, KnowsTheIdentifiabilityOfAGivenPoissonRatio) {
