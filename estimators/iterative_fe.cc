@@ -8,6 +8,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "elastimate/core/forward_model.h"
@@ -20,16 +24,16 @@
 #include "elastimate/estimators/profile_likelihood.h"
 #include "elastimate/estimators/statistics.h"
 #include "elastimate/estimators/stopwatch.h"
+#include "elastimate/estimators/virtual_fields.h"
 
 namespace elastimate {
 namespace {
 
-// Where the fit looks for a start: in each decade of (1 + nu) / (1 - 2 nu),
-// the scale on which the stiffness changes evenly, since the sum of squares can
-// have several minima (that of a slender bar or a plate in bending has).  The
-// likeliest is last, where its factorisation is still at hand for the first
-// step.
-constexpr double kStartPoissonRatios[] = {-0.85, -0.5, 0.0, 0.45, 0.495, 0.3};
+// Where the fit looks for a start, besides virtual-fields: in each decade of
+// (1 + nu) / (1 - 2 nu), the scale on which the stiffness changes evenly, since
+// the sum of squares can have several minima (that of a slender bar or a plate
+// in bending has).
+constexpr double kStartPoissonRatios[] = {-0.85, -0.5, 0.0, 0.3, 0.45, 0.495};
 // Steps below this part of a standard error end the fit.
 constexpr double kSmallestStep = 1e-2;
 
@@ -117,6 +121,19 @@ class DisplacementResidual : public ceres::EvaluationCallback {
   Eigen::VectorXd SupportResponse() const {
     return observed_.Restrict(
         model_.SupportResponse().replicate(1, num_load_cases_));
+  }
+
+  // The rows of du/dnu at the nu of the model: at fixed E, or else at fixed t.
+  Eigen::VectorXd PoissonRatioSlope(const IsotropicElasticity& elasticity,
+                                    bool at_fixed_youngs_modulus) {
+    const double nu = elasticity.poisson_ratio;
+    const DisplacementSensitivities sensitivities =
+        model_.Sensitivities(elasticity.youngs_modulus);
+    const double log_youngs_modulus_slope =
+        at_fixed_youngs_modulus ? 0 : 1 / (1 + nu) - 2 / (1 - 2 * nu);
+    return observed_.Restrict(sensitivities.poisson_ratio) +
+           log_youngs_modulus_slope *
+               observed_.Restrict(sensitivities.log_youngs_modulus);
   }
 
   bool IsValid() const { return is_valid_; }
@@ -256,73 +273,120 @@ ceres::Solver::Summary Fit(const EstimatorOptions& options,
   return summary;
 }
 
-// The t that fits the measurement best at the model's nu, and what it leaves.
-struct ComplianceFit {
-  double compliance_scale;
+// The best fit at one nu.
+struct ProfilePoint {
+  IsotropicElasticity elasticity;
+  /// The sum of squares; with a loss that of absolute deviations, so that
+  /// outliers do not choose the start.
   double cost;
+  /// Its derivative by nu.
+  double slope = 0;
 };
 
-// Without a loss by least squares; with one by least absolute deviations, so
-// that outliers do not choose the start.
-ComplianceFit FitComplianceScale(Loss loss,
-                                 const DisplacementResidual& residual) {
+double CostOf(Loss loss, const Eigen::VectorXd& residual) {
+  return loss == Loss::kNone ? residual.squaredNorm() : residual.lpNorm<1>();
+}
+
+// At the nu of the model, with the best E within its bounds.
+ProfilePoint EvaluateProfile(const EstimatorOptions& options,
+                             DisplacementResidual& residual, double nu) {
   const Eigen::VectorXd& w = residual.UnitLoadResponse();
   const Eigen::VectorXd rest =
       residual.Observed().Measured() - residual.SupportResponse();
   if (w.isZero(0)) {
-    return {Estimate::kUnknown, std::numeric_limits<double>::infinity()};
+    return {{Estimate::kUnknown, nu}, std::numeric_limits<double>::infinity()};
   }
-  if (loss == Loss::kNone) {
-    const double t = w.dot(rest) / w.squaredNorm();
-    return {t, (rest - t * w).squaredNorm()};
+  const double t = options.loss == Loss::kNone
+                       ? w.dot(rest) / w.squaredNorm()
+                       : LeastAbsoluteDeviations(w, rest);
+  IsotropicElasticity elasticity =
+      IsotropicElasticity::FromComplianceScale(t, nu);
+  if (!elasticity.IsPhysical()) {
+    return {elasticity, CostOf(options.loss, rest - t * w)};
   }
-  const double t = LeastAbsoluteDeviations(w, rest);
-  return {t, (rest - t * w).lpNorm<1>()};
+  double& youngs_modulus = elasticity.youngs_modulus;
+  youngs_modulus = std::max(
+      youngs_modulus, options.youngs_modulus.lower.value_or(youngs_modulus));
+  youngs_modulus = std::min(
+      youngs_modulus, options.youngs_modulus.upper.value_or(youngs_modulus));
+  const Eigen::VectorXd misfit = elasticity.ComplianceScale() * w - rest;
+  const Eigen::VectorXd change = residual.PoissonRatioSlope(
+      elasticity,
+      youngs_modulus !=
+          IsotropicElasticity::FromComplianceScale(t, nu).youngs_modulus);
+  const double slope = options.loss == Loss::kNone
+                           ? 2 * misfit.dot(change)
+                           : misfit.cwiseSign().dot(change);
+  return {elasticity, CostOf(options.loss, misfit), slope};
 }
 
-// The best fit at one nu.
-struct ProfilePoint {
-  IsotropicElasticity elasticity;
-  double cost;
-};
+// nu of virtual-fields, where it has one.
+std::optional<double> VirtualFieldsPoissonRatio(
+    const Scene& scene, const EstimatorOptions& options) {
+  EstimatorOptions virtual_options;
+  virtual_options.poisson_ratio = options.poisson_ratio;
+  const VirtualFields virtual_fields;
+  if (!virtual_fields.WhyUnsupported(scene, virtual_options).empty()) {
+    return std::nullopt;
+  }
+  const double nu =
+      virtual_fields.Run(scene, virtual_options).elasticity.poisson_ratio;
+  return std::isfinite(nu) ? std::optional<double>(nu) : std::nullopt;
+}
 
-// The start points within the bounds, with the E that fits best there, unless
-// the stiffness is singular.
-std::vector<ProfilePoint> EvaluateStarts(const EstimatorOptions& options,
+// The start points within the bounds, ascending, with the E that fits best
+// there, unless the stiffness is singular.
+std::vector<ProfilePoint> EvaluateStarts(const Scene& scene,
+                                         const EstimatorOptions& options,
                                          DisplacementResidual& residual) {
   std::vector<double> candidates;
   if (options.known_poisson_ratio) {
     candidates = {*options.known_poisson_ratio};
   } else {
     const Bounds bounds = EffectivePoissonRatioBounds(options);
-    for (const double nu : kStartPoissonRatios) {
-      candidates.push_back(std::clamp(nu, *bounds.lower, *bounds.upper));
+    candidates.assign(std::begin(kStartPoissonRatios),
+                      std::end(kStartPoissonRatios));
+    const std::optional<double> nu = VirtualFieldsPoissonRatio(scene, options);
+    if (nu) {
+      candidates.push_back(*nu);
     }
+    for (double& candidate : candidates) {
+      candidate = std::clamp(candidate, *bounds.lower, *bounds.upper);
+    }
+    std::sort(candidates.begin(), candidates.end());
     candidates.erase(std::unique(candidates.begin(), candidates.end()),
                      candidates.end());
   }
   std::vector<ProfilePoint> starts;
   for (const double nu : candidates) {
     if (residual.SetPoissonRatio(nu)) {
-      const ComplianceFit fit = FitComplianceScale(options.loss, residual);
-      starts.push_back(
-          {IsotropicElasticity::FromComplianceScale(fit.compliance_scale, nu),
-           fit.cost});
+      starts.push_back(EvaluateProfile(options, residual, nu));
     }
   }
   return starts;
 }
 
-// E is not positive when it is at none of the starts.  Precondition: not empty.
-IsotropicElasticity BestStart(const std::vector<ProfilePoint>& starts) {
-  ProfilePoint best = starts.front();
-  for (const ProfilePoint& start : starts) {
-    if (start.elasticity.IsPhysical() &&
-        (!best.elasticity.IsPhysical() || start.cost <= best.cost)) {
-      best = start;
+// Where to descend from: the better end of every interval into which the cost
+// falls from both sides, and the first and the last start where it falls
+// beyond them.  Starts without a positive E are left out.
+std::vector<IsotropicElasticity> BasinsOf(std::vector<ProfilePoint> starts) {
+  starts.erase(std::remove_if(starts.begin(), starts.end(),
+                              [](const ProfilePoint& start) {
+                                return !start.elasticity.IsPhysical();
+                              }),
+               starts.end());
+  std::vector<IsotropicElasticity> basins;
+  for (std::size_t i = 0; i <= starts.size() && !starts.empty(); ++i) {
+    const bool falls_from_left = i == 0 || starts[i - 1].slope <= 0;
+    const bool falls_from_right = i == starts.size() || starts[i].slope >= 0;
+    if (!falls_from_left || !falls_from_right) {
+      continue;
     }
+    const bool is_left_better =
+        i == starts.size() || (i > 0 && starts[i - 1].cost < starts[i].cost);
+    basins.push_back(starts[is_left_better ? i - 1 : i].elasticity);
   }
-  return best.elasticity;
+  return basins;
 }
 
 // The profile likelihood as far as the search for a start has seen it: the
@@ -386,6 +450,131 @@ BoundedParameter::Side ViolatedBound(const Bounds& bounds,
   return BoundedParameter::Side::kNone;
 }
 
+// A minimum of the cost.
+struct Minimum {
+  BoundedParameter scale;
+  BoundedParameter poisson_ratio;
+  Scale meaning;
+  BoundedParameter::Side violated;
+  NodeLosses losses;
+  ceres::Solver::Summary summary;
+  double cost;
+};
+
+// The minimum that is reached from a start, with E free or on a bound.
+Minimum DescendWith(BoundedParameter::Side side,
+                    const EstimatorOptions& options,
+                    const IsotropicElasticity& start,
+                    DisplacementResidual& residual) {
+  residual.SetPoissonRatio(start.poisson_ratio);
+  const bool is_free = side == BoundedParameter::Side::kNone;
+  const double scale =
+      is_free ? start.ComplianceScale() * residual.UnitLoadResponse().norm()
+      : side == BoundedParameter::Side::kLower ? *options.youngs_modulus.lower
+                                               : *options.youngs_modulus.upper;
+  Minimum minimum = {
+      is_free ? BoundedParameter(std::log(scale), Bounds{})
+              : BoundedParameter::Constant(std::log(scale)),
+      options.known_poisson_ratio
+          ? BoundedParameter::Constant(*options.known_poisson_ratio)
+          : BoundedParameter(start.poisson_ratio,
+                             EffectivePoissonRatioBounds(options)),
+      is_free ? Scale::kLogResponseNorm : Scale::kLogYoungsModulus,
+      side,
+      {},
+      {},
+      std::numeric_limits<double>::infinity()};
+  residual.SetParameters(minimum.meaning, &minimum.scale,
+                         &minimum.poisson_ratio);
+  minimum.summary = Fit(options, residual, minimum.scale, minimum.poisson_ratio,
+                        minimum.losses);
+  residual.PrepareForEvaluation(false, true);
+  if (residual.IsValid()) {
+    minimum.cost = CostOf(options.loss, residual.Fit().residual);
+  }
+  return minimum;
+}
+
+// The minimum within the bounds on E that is reached from a start: where the
+// one with a free E lies beyond a bound, that on the bound.
+Minimum Descend(const EstimatorOptions& options,
+                const IsotropicElasticity& start,
+                DisplacementResidual& residual) {
+  Minimum minimum =
+      DescendWith(BoundedParameter::Side::kNone, options, start, residual);
+  if (!residual.IsValid()) {
+    return minimum;
+  }
+  const BoundedParameter::Side side =
+      ViolatedBound(options.youngs_modulus, residual.Elasticity());
+  if (side == BoundedParameter::Side::kNone) {
+    return minimum;
+  }
+  // The bounded minimum may lie on either side of the two.
+  const IsotropicElasticity unbounded = residual.Elasticity();
+  minimum = DescendWith(side, options, start, residual);
+  Minimum other = DescendWith(side, options, unbounded, residual);
+  return other.cost < minimum.cost ? std::move(other) : std::move(minimum);
+}
+
+// The best of all that is reached, at which the residual is evaluated.
+Minimum BestMinimum(const EstimatorOptions& options,
+                    const std::vector<IsotropicElasticity>& basins,
+                    DisplacementResidual& residual) {
+  Minimum best = Descend(options, basins.front(), residual);
+  for (std::size_t i = 1; i < basins.size(); ++i) {
+    Minimum other = Descend(options, basins[i], residual);
+    if (other.cost < best.cost) {
+      best = std::move(other);
+    }
+  }
+  return best;
+}
+
+void JudgeSummary(const EstimatorOptions& options,
+                  const ceres::Solver::Summary& summary, Estimate& estimate) {
+  if (summary.termination_type == ceres::CONVERGENCE) {
+    estimate.status = Status::kOk;
+    estimate.message = "";
+  } else if (summary.termination_type == ceres::NO_CONVERGENCE) {
+    estimate.status = Status::kIterationLimit;
+    estimate.message = "the fit did not converge in " +
+                       std::to_string(options.max_iterations) + " iterations";
+  } else {
+    estimate.message =
+        "the search for the best fit ended without one (Ceres: " +
+        summary.message +
+        "): the stiffness may be singular to working precision; check the mesh "
+        "for slivers, or use reduced-fe";
+  }
+}
+
+// Fills in what follows from the fit.  `starts` are for the interval of nu.
+void DescribeFit(const Scene& scene, const EstimatorOptions& options,
+                 const std::vector<ProfilePoint>& starts,
+                 const ActiveBounds& active, const NodeLosses& losses,
+                 const DisplacementResidual& residual, Estimate& estimate) {
+  const DisplacementFit& fit = residual.Fit();
+  const std::optional<double> variance = DescribeDisplacementFit(
+      scene, residual.Graph(), options, residual.Observed(), fit, losses,
+      active, estimate);
+  if (variance && options.loss == Loss::kNone && estimate.IsUsable() &&
+      active.youngs_modulus == BoundedParameter::Side::kNone &&
+      (active.is_physical_limit ||
+       ShareOfDistanceToPole(estimate) > kLargestLinearShare)) {
+    const StartProfile profile(
+        starts, {estimate.elasticity, fit.residual.squaredNorm()});
+    const Bounds bounds = EffectivePoissonRatioBounds(options);
+    DescribeProfile(
+        [&](double quantile) {
+          const double excess = quantile * *variance;
+          return Profile{profile.EndTowards(*bounds.lower, excess),
+                         profile.EndTowards(*bounds.upper, excess)};
+        },
+        estimate);
+  }
+}
+
 }  // namespace
 
 std::string_view IterativeFe::Name() const { return "iterative-fe"; }
@@ -410,7 +599,8 @@ Estimate IterativeFe::DoRun(const Scene& scene,
   DisplacementResidual residual(scene, options);
   estimate.stages.push_back({"assemble and analyse", stopwatch.Lap()});
 
-  const std::vector<ProfilePoint> starts = EvaluateStarts(options, residual);
+  const std::vector<ProfilePoint> starts =
+      EvaluateStarts(scene, options, residual);
   if (starts.empty()) {
     estimate.message =
         "the stiffness matrix is singular to working precision; check the "
@@ -419,81 +609,25 @@ Estimate IterativeFe::DoRun(const Scene& scene,
     estimate.work = residual.WorkDone();
     return estimate;
   }
-  const IsotropicElasticity start = BestStart(starts);
-  if (!start.IsPhysical() || !std::isfinite(start.youngs_modulus)) {
-    estimate.elasticity = start;
+  const std::vector<IsotropicElasticity> basins = BasinsOf(starts);
+  if (basins.empty()) {
+    estimate.elasticity = starts.front().elasticity;
     estimate.Fail(Status::kUnphysical, kDisplacementsOpposeLoads,
                   "the estimate is not physical");
     estimate.work = residual.WorkDone();
     return estimate;
   }
-
-  residual.SetPoissonRatio(start.poisson_ratio);
-  BoundedParameter scale(
-      std::log(start.ComplianceScale() * residual.UnitLoadResponse().norm()),
-      Bounds{});
-  BoundedParameter poisson_ratio =
-      options.known_poisson_ratio
-          ? BoundedParameter::Constant(*options.known_poisson_ratio)
-          : BoundedParameter(start.poisson_ratio,
-                             EffectivePoissonRatioBounds(options));
-  residual.SetParameters(Scale::kLogResponseNorm, &scale, &poisson_ratio);
-  NodeLosses losses;
-  ceres::Solver::Summary summary =
-      Fit(options, residual, scale, poisson_ratio, losses);
+  const Minimum best = BestMinimum(options, basins, residual);
+  residual.SetParameters(best.meaning, &best.scale, &best.poisson_ratio);
   residual.PrepareForEvaluation(true, true);
-
-  // A minimum beyond a bound on E has the bounded one on that bound.
-  const BoundedParameter::Side violated =
-      ViolatedBound(options.youngs_modulus, residual.Elasticity());
-  if (violated != BoundedParameter::Side::kNone) {
-    scale = BoundedParameter::Constant(
-        std::log(violated == BoundedParameter::Side::kLower
-                     ? *options.youngs_modulus.lower
-                     : *options.youngs_modulus.upper));
-    residual.SetParameters(Scale::kLogYoungsModulus, &scale, &poisson_ratio);
-    summary = Fit(options, residual, scale, poisson_ratio, losses);
-    residual.PrepareForEvaluation(true, true);
-  }
   estimate.stages.push_back({"fit", stopwatch.Lap()});
-  estimate.elasticity = residual.Elasticity();
-  const ActiveBounds active =
-      NoteActiveBounds(options, violated, poisson_ratio, estimate);
-  if (summary.termination_type == ceres::CONVERGENCE) {
-    estimate.status = Status::kOk;
-    estimate.message = "";
-  } else if (summary.termination_type == ceres::NO_CONVERGENCE) {
-    estimate.status = Status::kIterationLimit;
-    estimate.message = "the fit did not converge in " +
-                       std::to_string(options.max_iterations) + " iterations";
-  } else {
-    estimate.message =
-        "the search for the best fit ended without one (Ceres: " +
-        summary.message +
-        "): the stiffness may be singular to working precision; check the mesh "
-        "for slivers, or use reduced-fe";
-  }
+  JudgeSummary(options, best.summary, estimate);
   if (residual.IsValid()) {
-    const DisplacementFit& fit = residual.Fit();
-    const std::optional<double> variance = DescribeDisplacementFit(
-        scene, residual.Graph(), options, residual.Observed(), fit, losses,
-        active, estimate);
-    // The starts have an E without bounds.
-    if (variance && options.loss == Loss::kNone && estimate.IsUsable() &&
-        active.youngs_modulus == BoundedParameter::Side::kNone &&
-        (active.is_physical_limit ||
-         ShareOfDistanceToPole(estimate) > kLargestLinearShare)) {
-      const StartProfile profile(
-          starts, {estimate.elasticity, fit.residual.squaredNorm()});
-      const Bounds bounds = EffectivePoissonRatioBounds(options);
-      DescribeProfile(
-          [&](double quantile) {
-            const double excess = quantile * *variance;
-            return Profile{profile.EndTowards(*bounds.lower, excess),
-                           profile.EndTowards(*bounds.upper, excess)};
-          },
-          estimate);
-    }
+    estimate.elasticity = residual.Elasticity();
+    const ActiveBounds active =
+        NoteActiveBounds(options, best.violated, best.poisson_ratio, estimate);
+    DescribeFit(scene, options, starts, active, best.losses, residual,
+                estimate);
   }
   NoteSolver(residual.SolverNotice(), estimate);
   estimate.stages.push_back({"statistics", stopwatch.Lap()});

@@ -13,9 +13,11 @@ namespace elastimate {
 /// with Ceres: one residual block for each observed node and load case, so
 /// that a loss rejects a bad node as a whole; analytic derivatives
 /// du/dtheta = -K^-1 (dK/dtheta) u; one factorisation for each nu tried,
-/// shared by E and all load cases; bounds on E and nu.  It starts from the
-/// best of nu = -0.85, -0.5, 0, 0.3, 0.45 and 0.495 (moved into the bounds),
-/// with the E that fits best there: the sum of squares can have several minima.
+/// shared by E and all load cases; bounds on E and nu.  The sum of squares can
+/// have several minima: it and its slope are taken at nu = -0.85, -0.5, 0, 0.3,
+/// 0.45, 0.495 and that of virtual-fields (moved into the bounds), with the E
+/// that fits best there, and the fit descends into every basin that these show
+/// and keeps the best.
 /// Where the standard error of nu is large (kLargestLinearShare) or nu at the
 /// end of its range, the interval of nu is that of the profile likelihood
 /// between these starts, and the standard errors are widened to it.
@@ -25,7 +27,7 @@ namespace elastimate {
 /// With a loss (scale 1.4826 MAD of the residuals, Huber k = 1.345, Cauchy
 /// c = 2.385), the fit is repeated with the scale of a first one without.
 ///
-/// Cost: about 8 to 14 factorisations; memory is that of the factor.
+/// Cost: about 12 to 20 factorisations; memory is that of the factor.
 /// Deterministic for a given number of BLAS threads.
 class IterativeFe : public Estimator {
  public:
