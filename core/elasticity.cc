@@ -1,5 +1,7 @@
 #include "elastimate/core/elasticity.h"
 
+#include <cmath>
+
 namespace elastimate {
 
 IsotropicElasticity IsotropicElasticity::FromLame(double lame_lambda,
@@ -48,6 +50,15 @@ double IsotropicElasticity::ComplianceScale() const {
 
 bool IsotropicElasticity::IsPhysical() const {
   return youngs_modulus > 0 && poisson_ratio > -1 && poisson_ratio < 0.5;
+}
+
+double LogStiffnessRatio(double poisson_ratio) {
+  return std::log((1 + poisson_ratio) / (1 - 2 * poisson_ratio));
+}
+
+double PoissonRatioOfLogStiffnessRatio(double log_stiffness_ratio) {
+  const double ratio = std::exp(log_stiffness_ratio);
+  return (ratio - 1) / (1 + 2 * ratio);
 }
 
 Eigen::Matrix2d ShearAndBulkJacobian(const IsotropicElasticity& elasticity) {

@@ -44,6 +44,13 @@ struct IsotropicElasticity {
   bool IsPhysical() const;
 };
 
+/// ln((1 + nu) / (1 - 2 nu)) = ln(3 kappa / (2 mu)): the scale on which the
+/// stiffness changes evenly over the whole range of nu.
+double LogStiffnessRatio(double poisson_ratio);
+
+/// nu of a LogStiffnessRatio.
+double PoissonRatioOfLogStiffnessRatio(double log_stiffness_ratio);
+
 /// d (mu, 1 / kappa) / d (E, nu): rows (mu, 1 / kappa), columns (E, nu).
 Eigen::Matrix2d ShearAndBulkJacobian(const IsotropicElasticity& elasticity);
 

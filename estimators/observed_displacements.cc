@@ -1,10 +1,13 @@
 #include "elastimate/estimators/observed_displacements.h"
 
+#include <algorithm>
+
 #include "elastimate/estimators/estimator.h"
 
 namespace elastimate {
 
-ObservedDisplacements::ObservedDisplacements(const Scene& scene) {
+ObservedDisplacements::ObservedDisplacements(const Scene& scene)
+    : num_dofs_(3 * scene.mesh.NumNodes()) {
   const Eigen::Index num_nodes = scene.mesh.NumNodes();
   std::vector<double> weights;
   std::vector<double> measured;
@@ -48,6 +51,15 @@ void ObservedDisplacements::Remeasure(const Scene& scene) {
 Eigen::VectorXd ObservedDisplacements::Restrict(
     const Eigen::MatrixXd& displacements) const {
   return displacements.reshaped()(places_).cwiseProduct(weights_);
+}
+
+Eigen::VectorXd ObservedDisplacements::LargestWeights() const {
+  Eigen::VectorXd largest = Eigen::VectorXd::Zero(num_dofs_);
+  for (Eigen::Index row = 0; row < Size(); ++row) {
+    double& weight = largest(places_[row] % num_dofs_);
+    weight = std::max(weight, weights_(row));
+  }
+  return largest;
 }
 
 Eigen::VectorXd ObservedDisplacements::RestrictToCase(

@@ -45,6 +45,9 @@ class ObservedDisplacements {
   /// The same rows of other displacements, (3 num_nodes) x num_load_cases,
   /// with the same weights and normalisation.
   Eigen::VectorXd Restrict(const Eigen::MatrixXd& displacements) const;
+  /// For each of the 3 num_nodes degrees of freedom the largest of its weights
+  /// over the load cases, normalisation included; zero where none observes it.
+  Eigen::VectorXd LargestWeights() const;
   /// The rows of load case `k` of one displacement, 3 num_nodes values.
   Eigen::VectorXd RestrictToCase(Eigen::Index k,
                                  const Eigen::VectorXd& displacement) const;
@@ -57,6 +60,7 @@ class ObservedDisplacements {
   Eigen::VectorXd weights_;
   Eigen::VectorXd measured_;
   double norm_;
+  Eigen::Index num_dofs_;
 };
 
 }  // namespace elastimate

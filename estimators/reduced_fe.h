@@ -17,11 +17,16 @@ namespace elastimate {
 ///   min over nu of min over t of sum over observed nodes of
 ///   loss(||t w(nu) + v(nu) - q||^2).
 ///
-/// No initial guess; bounds are kept exactly.  The model is refined until its
-/// certified error at the estimate is below a tenth of the noise, with a new
-/// factorisation at the estimate where one does not do.  A loss is minimised
-/// by iterative reweighting from the least absolute deviations, with its scale
-/// from 1.4826 MAD of the residuals.
+/// No initial guess; bounds are kept exactly.  The model is refined until it is
+/// certified (AdaptiveFit) that its error at the estimate is below a tenth of
+/// the noise, and that the full model leaves no less at any other nu from -0.95
+/// (or from a lower bound, and from -0.9999 where the fit goes there) to
+/// 0.49999: the minimum is the global one.  Where rounding does not allow that,
+/// as in plates a thousand times wider than thick, the status is
+/// iteration_limit.  A loss is minimised by iterative reweighting from the
+/// least absolute deviations, with its scale from 1.4826 MAD of the residuals;
+/// the certificate is then that of the fit without a loss, on whose model it is
+/// made.
 ///
 /// Where the standard error of nu is large (kLargestLinearShare), the 95 %
 /// interval of nu is that of the profile likelihood, and the standard errors of
@@ -30,8 +35,10 @@ namespace elastimate {
 /// Needs supports that hold the specimen; any observed components will do.
 /// Reaches the Cramer-Rao bound as long as the mesh describes the specimen.
 ///
-/// Cost: 1 factorisation, 2 near nu = 1/2; about 10 to 20 solves for each load
-/// case; memory is that of the factor and about 60 vectors for each load case.
+/// Cost: 2 factorisations (1 where bounds keep nu below 0.49; 3 or 4 near nu =
+/// 1/2 or without noise), about 45 solves for each load case, of which ten
+/// serve all; memory is that of the factor and about 80 vectors for each load
+/// case.
 /// Deterministic for a given number of BLAS threads.
 class ReducedFe : public Estimator {
  public:

@@ -3,13 +3,13 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace elastimate {
 namespace {
 
-// Intervals of the scan over nu, closer at the ends of the range, where the
-// displacements change faster.
-constexpr int kScanIntervals = 200;
+// Intervals of the scan over nu.
+constexpr int kScanIntervals = 220;
 
 // (1 + nu)(1 - 2 nu) = E t, and its derivative.
 double ComplianceFactor(double nu) { return (1 + nu) * (1 - 2 * nu); }
@@ -22,17 +22,17 @@ bool IsBetter(const ReducedFit::Point& a, const ReducedFit::Point& b) {
                                         : a_is_positive;
 }
 
-// From `lower` to `upper`, both exactly.
+// From `lower` to `upper`, both exactly; even in ln((1 + nu) / (1 - 2 nu)).
 Eigen::VectorXd ScanPoints(double lower, double upper) {
   if (lower == upper) {
     return Eigen::VectorXd::Constant(1, lower);
   }
-  const double pi = std::acos(-1.0);
-  Eigen::VectorXd points(kScanIntervals + 1);
-  for (int i = 0; i <= kScanIntervals; ++i) {
-    const double share = (1 - std::cos(pi * i / kScanIntervals)) / 2;
-    points(i) = (1 - share) * lower + share * upper;
-  }
+  Eigen::VectorXd points =
+      Eigen::VectorXd::LinSpaced(kScanIntervals + 1, LogStiffnessRatio(lower),
+                                 LogStiffnessRatio(upper))
+          .unaryExpr(&PoissonRatioOfLogStiffnessRatio);
+  points(0) = lower;
+  points(kScanIntervals) = upper;
   return points;
 }
 
@@ -89,24 +89,66 @@ ReducedFit::ReducedFit(const ReducedModel& model,
 
 ReducedFit::Point ReducedFit::Fit(const Eigen::VectorXd& measured) const {
   const Projection projection = Project(measured);
-  Point best;
-  Eigen::Index at = 0;
+  std::vector<Point> points;
   for (Eigen::Index i = 0; i < scan_.size(); ++i) {
-    const Point point =
-        PointOf(scan_(i), scan_w_.col(i), scan_v_.col(i), projection);
-    if (i == 0 || IsBetter(point, best)) {
+    points.push_back(
+        PointOf(scan_(i), scan_w_.col(i), scan_v_.col(i), projection));
+  }
+  Point best = points[0];
+  const auto take_if_better = [&best](const Point& point) {
+    if (IsBetter(point, best)) {
       best = point;
-      at = i;
+    }
+  };
+  const std::size_t last = points.size() - 1;
+  for (std::size_t i = 0; i <= last; ++i) {
+    take_if_better(points[i]);
+    const bool is_minimum = !(i > 0 && IsBetter(points[i - 1], points[i])) &&
+                            !(i < last && IsBetter(points[i + 1], points[i]));
+    if (!is_minimum) {
+      continue;
+    }
+    const double slope = SlopeAt(points[i].poisson_ratio, projection);
+    if (slope > 0 ? i > 0 : i < last) {
+      const Point& other = points[slope > 0 ? i - 1 : i + 1];
+      take_if_better(At(FindMinimum(points[i].poisson_ratio, slope,
+                                    other.poisson_ratio, projection),
+                        projection));
     }
   }
-  const double slope = SlopeAt(scan_(at), projection);
-  const Eigen::Index other = slope > 0 ? at - 1 : at + 1;
-  if (other < 0 || other == scan_.size()) {
-    return best;
+  return best;
+}
+
+std::vector<ReducedFit::ResidualBracket> ReducedFit::BracketResiduals(
+    const Eigen::VectorXd& measured,
+    const std::vector<ModelError>& errors) const {
+  const Projection projection = Project(measured);
+  std::vector<ResidualBracket> brackets;
+  for (Eigen::Index i = 0; i < scan_.size(); ++i) {
+    const auto w = scan_w_.col(i);
+    const Eigen::VectorXd rest = projection.measured - scan_v_.col(i);
+    const double w_norm = w.norm();
+    const double t_best = w.dot(rest) / w.squaredNorm();
+    const double rest_norm = std::sqrt(projection.rest_square_sum +
+                                       (rest - t_best * w).squaredNorm());
+    // The least of ||rest - t w|| - t error over t, which is convex.
+    const ModelError& error = errors[i];
+    const double sine = error.w / w_norm;
+    const double t_least =
+        sine < 1
+            ? t_best + rest_norm * sine / (w_norm * std::sqrt(1 - sine * sine))
+            : std::numeric_limits<double>::infinity();
+    const double t = WithinBounds(scan_(i), std::max(0.0, t_least));
+    const auto residual_at = [&](double scale) {
+      return std::hypot(rest_norm, (scale - t_best) * w_norm);
+    };
+    brackets.push_back(
+        {std::isfinite(t)
+             ? std::max(0.0, residual_at(t) - t * error.w - error.v)
+             : 0,
+         residual_at(WithinBounds(scan_(i), std::max(0.0, t_best)))});
   }
-  const Point minimum =
-      At(FindMinimum(scan_(at), slope, scan_(other), projection), projection);
-  return IsBetter(minimum, best) ? minimum : best;
+  return brackets;
 }
 
 std::pair<ReducedFit::Point, ReducedFit::Point> ReducedFit::ProfileEnds(
@@ -184,11 +226,8 @@ ReducedFit::Responses ReducedFit::Combine(
   return responses;
 }
 
-double ReducedFit::ComplianceScale(
-    double poisson_ratio, const Eigen::Ref<const Eigen::VectorXd>& w,
-    const Eigen::Ref<const Eigen::VectorXd>& rest) const {
+double ReducedFit::WithinBounds(double poisson_ratio, double t) const {
   // E > 0 asks for t > 0, which no bound on E says.
-  double t = w.dot(rest) / w.squaredNorm();
   if (youngs_modulus_.upper) {
     t = std::max(t, ComplianceFactor(poisson_ratio) / *youngs_modulus_.upper);
   }
@@ -196,6 +235,12 @@ double ReducedFit::ComplianceScale(
     t = std::min(t, ComplianceFactor(poisson_ratio) / *youngs_modulus_.lower);
   }
   return t;
+}
+
+double ReducedFit::ComplianceScale(
+    double poisson_ratio, const Eigen::Ref<const Eigen::VectorXd>& w,
+    const Eigen::Ref<const Eigen::VectorXd>& rest) const {
+  return WithinBounds(poisson_ratio, w.dot(rest) / w.squaredNorm());
 }
 
 ReducedFit::Point ReducedFit::PointOf(

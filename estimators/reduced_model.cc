@@ -13,13 +13,13 @@
 namespace elastimate {
 namespace {
 
-// A vector whose energy falls by this factor when it is made orthogonal to a
-// basis was rounding.
-constexpr double kDependent = 1e-20;
+// A vector whose energy falls by this factor when it is made orthogonal to
+// others was rounding.
+constexpr double kDependent = 1e-24;
 
-// Of iterative solves: a vector of the basis serves as well when it is only
-// near to where the exact one is, for the next one mends that.
-constexpr double kSolveTolerance = 1e-3;
+// Vectors whose inner products are below this part of their norms count as
+// orthogonal.
+constexpr double kOrthogonal = 1e-10;
 
 // Makes a symmetric matrix one larger.
 void AppendSymmetric(const Eigen::VectorXd& column, Eigen::MatrixXd& matrix) {
@@ -27,17 +27,6 @@ void AppendSymmetric(const Eigen::VectorXd& column, Eigen::MatrixXd& matrix) {
   matrix.conservativeResize(m, m);
   matrix.col(m - 1) = column;
   matrix.row(m - 1) = column.transpose();
-}
-
-// With J z = theta A_pole z, z^T A_pole z = 1, for the reduced matrices.
-ReducedModes FindModes(const Eigen::MatrixXd& h, const Eigen::MatrixXd& j,
-                       double pole, const Eigen::VectorXd& g0,
-                       const Eigen::VectorXd& g1) {
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
-      j, h + pole * j);
-  const Eigen::MatrixXd& vectors = solver.eigenvectors();
-  return {pole, vectors, solver.eigenvalues(), vectors.transpose() * g0,
-          vectors.transpose() * g1};
 }
 
 }  // namespace
@@ -52,15 +41,16 @@ Eigen::VectorXd ReducedModes::DerivativeAt(double poisson_ratio) const {
          (1 + (poisson_ratio - pole) * theta.array());
 }
 
+double ReducedModes::EnergyNorm(double poisson_ratio) const {
+  return std::sqrt(
+      std::max(0.0, At(poisson_ratio).dot(g0 + poisson_ratio * g1)));
+}
+
 ReducedModel::ReducedModel(const Scene& scene, SolverKind solver)
     : stiffness_(scene.mesh),
       solver_(scene.mesh, scene.supports, solver),
       num_load_cases_(Eigen::Index(scene.load_cases.size())) {
-  const DegreesOfFreedom& dofs = solver_.Dofs();
-  const auto free_rows = [&dofs](const Eigen::MatrixXd& all) {
-    return dofs.Extend(dofs.Restrict(all));
-  };
-  const Eigen::MatrixXd force = free_rows(AssembleLoadCases(scene));
+  const Eigen::MatrixXd force = FreeRows(AssembleLoadCases(scene));
   for (Eigen::Index k = 0; k < num_load_cases_; ++k) {
     Response response;
     response.g0 = force.col(k);
@@ -70,104 +60,210 @@ ReducedModel::ReducedModel(const Scene& scene, SolverKind solver)
   }
   const Eigen::VectorXd held = HeldDisplacement(scene.supports);
   if (!held.isZero(0)) {
-    StiffnessProducts products;
-    stiffness_.Multiply(held, products);
-    ++element_passes_;
+    const StiffnessProducts products = Multiply(held);
     Response response;
-    response.g0 = -free_rows(products.h);
-    response.g1 = -free_rows(products.j);
+    response.g0 = -products.h;
+    response.g1 = -products.j;
     response.basis.resize(force.rows(), 0);
     responses_.push_back(response);
   }
 }
 
+Eigen::MatrixXd ReducedModel::FreeRows(const Eigen::MatrixXd& all) const {
+  return solver_.Dofs().Extend(solver_.Dofs().Restrict(all));
+}
+
+StiffnessProducts ReducedModel::Multiply(const Eigen::MatrixXd& x) {
+  StiffnessProducts products;
+  stiffness_.Multiply(x, products);
+  ++element_passes_;
+  return {FreeRows(products.h), FreeRows(products.j)};
+}
+
 bool ReducedModel::SetPole(double poisson_ratio) {
-  return solver_.Factorize(poisson_ratio);
-}
-
-double ReducedModel::Refine(double poisson_ratio, double tolerance) {
-  const DegreesOfFreedom& dofs = solver_.Dofs();
-  const double pole = solver_.PoissonRatio();
-  const double smallest_ratio =
-      std::min((1 - 2 * poisson_ratio) / (1 - 2 * pole),
-               (1 + poisson_ratio) / (1 + pole));
-  const Eigen::Index num_responses = Eigen::Index(responses_.size());
-  Eigen::MatrixXd solution =
-      Eigen::MatrixXd::Zero(dofs.NumAll(), num_responses);
-  Eigen::MatrixXd residual(dofs.NumAll(), num_responses);
-  for (Eigen::Index k = 0; k < num_responses; ++k) {
-    const Response& response = responses_[k];
-    residual.col(k) = response.g0 + poisson_ratio * response.g1;
-    if (response.basis.cols() > 0) {
-      solution.col(k) = response.basis * (response.modes.vectors *
-                                          response.modes.At(poisson_ratio));
-    }
+  if (!solver_.Factorize(poisson_ratio)) {
+    return false;
   }
-  StiffnessProducts products;
-  stiffness_.Multiply(solution, products);
-  ++element_passes_;
-  const Eigen::MatrixXd reaction = products.h + poisson_ratio * products.j;
-  residual -= dofs.Extend(dofs.Restrict(reaction));
-  const Eigen::MatrixXd correction = solver_.Solve(residual, kSolveTolerance);
-  if (!correction.allFinite()) {
-    return std::numeric_limits<double>::infinity();
+  const double tolerance =
+      solver_.UsesMultigrid() ? StiffnessSolver::kAccurate : 0;
+  Eigen::MatrixXd loads(responses_[0].g0.size(), NumResponses());
+  for (Eigen::Index k = 0; k < NumResponses(); ++k) {
+    loads.col(k) = responses_[k].g0 + poisson_ratio * responses_[k].g1;
   }
-  double largest = 0;
-  for (Eigen::Index k = 0; k < num_responses; ++k) {
-    const double square =
-        std::max(0.0, residual.col(k).dot(correction.col(k))) / smallest_ratio;
-    const double energy = solution.col(k).dot(reaction.col(k));
-    if (square > 0) {
-      largest = std::max(largest, std::sqrt(square / energy));
-    }
+  const Eigen::MatrixXd x = solver_.Solve(loads);
+  if (!x.allFinite()) {
+    return false;
   }
-  if (!(largest <= tolerance)) {
-    Append(residual, correction);
+  const StiffnessProducts of_x = Multiply(x);
+  for (Eigen::Index k = 0; k < NumResponses(); ++k) {
+    loads.col(k) = responses_[k].g1 - of_x.j.col(k);
   }
-  return largest;
-}
-
-void ReducedModel::Append(const Eigen::MatrixXd& residual,
-                          Eigen::MatrixXd correction) {
-  const double pole = solver_.PoissonRatio();
-  const Eigen::VectorXd energy_before =
-      correction.cwiseProduct(residual).colwise().sum();
-  for (Eigen::Index k = 0; k < correction.cols(); ++k) {
-    const Response& response = responses_[k];
-    if (response.basis.cols() > 0) {
-      // The solution of a Galerkin residual is orthogonal to a basis of the
-      // same pole already, but for rounding.
-      const Eigen::LLT<Eigen::MatrixXd> gram(response.reduced_h +
-                                             pole * response.reduced_j);
-      correction.col(k) -=
-          response.basis *
-          gram.solve(response.basis.transpose() * residual.col(k));
-    }
+  const Eigen::MatrixXd direction = solver_.Solve(loads);
+  if (!direction.allFinite()) {
+    return false;
   }
-  StiffnessProducts products;
-  stiffness_.Multiply(correction, products);
-  ++element_passes_;
-  for (Eigen::Index k = 0; k < correction.cols(); ++k) {
+  const StiffnessProducts of_direction = Multiply(direction);
+  const auto norm = [poisson_ratio](const auto& vector, const auto& h,
+                                    const auto& j) {
+    return std::sqrt(std::max(0.0, vector.dot(h + poisson_ratio * j)));
+  };
+  for (Eigen::Index k = 0; k < NumResponses(); ++k) {
     Response& response = responses_[k];
-    const Eigen::VectorXd h = products.h.col(k);
-    const Eigen::VectorXd j = products.j.col(k);
-    const double energy = correction.col(k).dot(h + pole * j);
-    if (!(energy > kDependent * energy_before(k)) || !(energy > 0)) {
-      continue;
+    const double x_norm = norm(x.col(k), of_x.h.col(k), of_x.j.col(k));
+    const double start_norm =
+        norm(direction.col(k), of_direction.h.col(k), of_direction.j.col(k));
+    response.bounds.emplace_back(poisson_ratio, start_norm, tolerance * x_norm,
+                                 tolerance * start_norm);
+    Append(x.col(k), of_x.h.col(k), of_x.j.col(k), response);
+    response.krylov.resize(x.rows(), 0);
+    if (start_norm > 0) {
+      response.krylov = direction.col(k) / start_norm;
+      response.next_product = of_direction.j.col(k) / start_norm;
+      Append(direction.col(k), of_direction.h.col(k), of_direction.j.col(k),
+             response);
     }
-    const double scale = 1 / std::sqrt(energy);
-    const Eigen::Index m = response.basis.cols() + 1;
-    response.basis.conservativeResize(Eigen::NoChange, m);
-    response.basis.col(m - 1) = scale * correction.col(k);
-    AppendSymmetric(scale * (response.basis.transpose() * h),
-                    response.reduced_h);
-    AppendSymmetric(scale * (response.basis.transpose() * j),
-                    response.reduced_j);
-    response.modes = FindModes(response.reduced_h, response.reduced_j, pole,
-                               response.basis.transpose() * response.g0,
-                               response.basis.transpose() * response.g1);
+    FindModes(response);
   }
   ++version_;
+  return true;
+}
+
+bool ReducedModel::Enlarge(double tolerance) {
+  const double pole = Pole();
+  std::vector<Response*> growing;
+  for (Response& response : responses_) {
+    if (response.krylov.cols() > 0) {
+      growing.push_back(&response);
+    }
+  }
+  const Eigen::Index num_growing = Eigen::Index(growing.size());
+  if (num_growing == 0) {
+    return false;
+  }
+  Eigen::MatrixXd z(responses_[0].g0.size(), num_growing);
+  for (Eigen::Index k = 0; k < num_growing; ++k) {
+    z.col(k) = growing[k]->next_product;
+  }
+  z = solver_.Solve(z, tolerance);
+  if (!z.allFinite()) {
+    return false;
+  }
+  std::vector<Eigen::VectorXd> columns;
+  for (Eigen::Index k = 0; k < num_growing; ++k) {
+    const Response& response = *growing[k];
+    columns.emplace_back(response.krylov.transpose() * response.next_product);
+    z.col(k) -= response.krylov * columns.back();
+  }
+  StiffnessProducts products = Multiply(z);
+  // What an inexact solve has left along the vectors: of the size of its error.
+  std::vector<double> errors;
+  bool is_orthogonal = true;
+  for (Eigen::Index k = 0; k < num_growing; ++k) {
+    const Eigen::VectorXd rest = growing[k]->krylov.transpose() *
+                                 (products.h.col(k) + pole * products.j.col(k));
+    z.col(k) -= growing[k]->krylov * rest;
+    errors.push_back(rest.norm());
+    is_orthogonal =
+        is_orthogonal && rest.norm() <= kOrthogonal * columns[k].norm();
+  }
+  if (!is_orthogonal) {
+    products = Multiply(z);
+  }
+  const bool is_inexact = solver_.UsesMultigrid();
+  for (Eigen::Index k = 0; k < num_growing; ++k) {
+    Response& response = *growing[k];
+    const Eigen::VectorXd h = products.h.col(k);
+    const Eigen::VectorXd j = products.j.col(k);
+    const double energy = z.col(k).dot(h + pole * j);
+    const double energy_before = energy + columns[k].squaredNorm();
+    const bool is_new = energy > kDependent * energy_before;
+    const double error = std::max(
+        errors[k], is_inexact ? tolerance * std::sqrt(energy_before) : 0.0);
+    const double remainder = is_new ? std::sqrt(energy) : 0;
+    response.bounds.back().Extend(columns[k], error, remainder);
+    if (!is_new) {
+      response.krylov.resize(z.rows(), 0);
+      continue;
+    }
+    Append(z.col(k), h, j, response);
+    FindModes(response);
+    response.krylov.conservativeResize(Eigen::NoChange,
+                                       response.krylov.cols() + 1);
+    response.krylov.rightCols<1>() = z.col(k) / remainder;
+    response.next_product = j / remainder;
+  }
+  ++version_;
+  return true;
+}
+
+void ReducedModel::Append(const Eigen::VectorXd& x, const Eigen::VectorXd& h,
+                          const Eigen::VectorXd& j, Response& response) {
+  // Below this share of the energy, rounding decides on what is left.
+  constexpr double kMostlyDependent = 1e-4;
+  const double pole = Pole();
+  const double energy_before = x.dot(h + pole * j);
+  Eigen::VectorXd rest = x;
+  Eigen::VectorXd rest_h = h;
+  Eigen::VectorXd rest_j = j;
+  double energy = energy_before;
+  const Eigen::Index m = response.basis.cols();
+  if (m > 0) {
+    const Eigen::LLT<Eigen::MatrixXd> gram(response.reduced_h +
+                                           pole * response.reduced_j);
+    for (int i = 0; i < 2; ++i) {
+      rest -= response.basis *
+              gram.solve(response.basis.transpose() * (rest_h + pole * rest_j));
+      const StiffnessProducts products = Multiply(rest);
+      rest_h = products.h;
+      rest_j = products.j;
+      energy = rest.dot(rest_h + pole * rest_j);
+      if (energy > kMostlyDependent * energy_before) {
+        break;
+      }
+    }
+  }
+  if (!(energy > kDependent * energy_before) || !(energy > 0)) {
+    return;
+  }
+  const double scale = 1 / std::sqrt(energy);
+  response.basis.conservativeResize(Eigen::NoChange, m + 1);
+  response.basis.col(m) = scale * rest;
+  AppendSymmetric(scale * (response.basis.transpose() * rest_h),
+                  response.reduced_h);
+  AppendSymmetric(scale * (response.basis.transpose() * rest_j),
+                  response.reduced_j);
+}
+
+// With J z = theta A_pole z, z^T A_pole z = 1, for the reduced matrices.
+void ReducedModel::FindModes(Response& response) const {
+  const double pole = Pole();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
+      response.reduced_j, response.reduced_h + pole * response.reduced_j);
+  const Eigen::MatrixXd& vectors = solver.eigenvectors();
+  response.modes = {
+      pole, vectors, solver.eigenvalues(),
+      vectors.transpose() * (response.basis.transpose() * response.g0),
+      vectors.transpose() * (response.basis.transpose() * response.g1)};
+}
+
+double ReducedModel::ErrorBound(Eigen::Index k, double poisson_ratio) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const KrylovBound& bound : responses_[k].bounds) {
+    least = std::min(least, bound.At(poisson_ratio));
+  }
+  return least;
+}
+
+double ReducedModel::RelativeErrorBound(double poisson_ratio) const {
+  double largest = 0;
+  for (Eigen::Index k = 0; k < NumResponses(); ++k) {
+    const double error = ErrorBound(k, poisson_ratio);
+    if (error > 0) {
+      largest = std::max(largest,
+                         error / responses_[k].modes.EnergyNorm(poisson_ratio));
+    }
+  }
+  return largest;
 }
 
 Work ReducedModel::WorkDone() const {

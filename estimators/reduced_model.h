@@ -8,6 +8,8 @@
 #include "elastimate/core/scene.h"
 #include "elastimate/core/stiffness_product.h"
 #include "elastimate/core/stiffness_solver.h"
+#include "elastimate/estimators/compliance_norm.h"
+#include "elastimate/estimators/krylov_bound.h"
 
 namespace elastimate {
 
@@ -27,6 +29,8 @@ struct ReducedModes {
   Eigen::VectorXd At(double poisson_ratio) const;
   /// dy / dnu.  O(m).
   Eigen::VectorXd DerivativeAt(double poisson_ratio) const;
+  /// The energy norm of x in A(nu).  O(m).
+  double EnergyNorm(double poisson_ratio) const;
 };
 
 /// The finite element displacements of a scene for any nu, from a few
@@ -38,10 +42,10 @@ struct ReducedModes {
 ///   u = t w + v,   A w = f,   A v = -(h_c + nu j_c),
 ///
 /// where h_c, j_c are the products of the held displacements with H and J.
-/// Each x is sought in a space of its own, spanned by A_p^-1 r for residuals
-/// r = g0 + nu g1 - A(nu) x, with the factorisation of A_p = A(pole).  For one
-/// pole that is the Krylov space of A_p^-1 J.  x is analytic in nu on (-1,
-/// 1/2), so that few vectors do.
+/// Each x is sought in a space of its own: the sum of the spaces of KrylovBound
+/// at some poles.  x is analytic in nu on (-1, 1/2), so that few vectors do.
+/// Since Galerkin's solution is the best of its space in the energy norm of
+/// A(nu), the least of the bounds of all poles holds.
 class ReducedModel {
  public:
   /// Assembles and analyses; `scene` must outlive this object.
@@ -49,24 +53,33 @@ class ReducedModel {
   explicit ReducedModel(const Scene& scene,
                         SolverKind solver = SolverKind::kAutomatic);
 
-  /// Factorises A(nu), whose residuals will be solved with from now on.
-  /// False when it is singular to working precision.
+  /// Factorises A(nu), with which Enlarge will solve from now on, and adds the
+  /// responses at nu and their derivatives to the spaces.  False when A(nu) is
+  /// singular to working precision, or a solve failed.
+  /// Cost: a factorisation, and two element passes and two solves for each
+  /// response.
   bool SetPole(double poisson_ratio);
 
-  /// An upper bound of the error of every response at nu, in the energy norm,
-  /// relative to the response:
-  ///
-  ///   ||x - x_m||_A <= ||r||_{A_p^-1} / sqrt(min((1 - 2 nu) / (1 - 2 pole),
-  ///                                              (1 + nu) / (1 + pole))).
-  ///
-  /// Where it is above `tolerance`, the spaces are enlarged by A_p^-1 r.
-  /// The solves may be inexact, for what is appended is taken as it is, and the
-  /// residual of the whole is computed anew.  Of the bound, a part of half the
-  /// square of their relative error, 1e-3 at most, is missing.
-  /// Infinite when a solve failed.
-  /// Precondition: SetPole returned true.  Cost: an element pass (two where it
-  /// enlarges) and a solve for each response.
-  double Refine(double poisson_ratio, double tolerance);
+  /// Adds the next vector of the Krylov space at the pole to each response.
+  /// False when there is none, or a solve failed.
+  /// `tolerance` is that of iterative solves.
+  /// Precondition: SetPole returned true.  Cost: an element pass (two where the
+  /// solves are inexact) and a solve for each response.
+  bool Enlarge(double tolerance = StiffnessSolver::kAccurate);
+
+  /// An upper bound of the error of response `k` at nu, in the energy norm of
+  /// A(nu).  Infinite before the first pole.  O(m^2) for each pole.
+  double ErrorBound(Eigen::Index k, double poisson_ratio) const;
+  /// The largest over all responses of ErrorBound over the response's own norm.
+  double RelativeErrorBound(double poisson_ratio) const;
+
+  /// ComplianceNorm of the present pole.
+  double ComplianceNormAtPole(const Eigen::VectorXd& weights) {
+    return ComplianceNorm(weights, solver_);
+  }
+
+  /// nu of the present pole.
+  double Pole() const { return solver_.PoissonRatio(); }
 
   /// The modes of load case `k`, and for `k` = num_load_cases, where there are
   /// held displacements, of the response to those.
@@ -78,9 +91,8 @@ class ReducedModel {
     return responses_[k].basis;
   }
   Eigen::Index NumLoadCases() const { return num_load_cases_; }
-  bool HasSupportResponse() const {
-    return Eigen::Index(responses_.size()) > num_load_cases_;
-  }
+  Eigen::Index NumResponses() const { return Eigen::Index(responses_.size()); }
+  bool HasSupportResponse() const { return NumResponses() > num_load_cases_; }
   /// Steps with every change of a basis.
   int Version() const { return version_; }
   const NodeGraph& Graph() const { return solver_.Graph(); }
@@ -97,10 +109,21 @@ class ReducedModel {
     Eigen::MatrixXd reduced_h;
     Eigen::MatrixXd reduced_j;
     ReducedModes modes;
+    std::vector<KrylovBound> bounds;  ///< One for each pole.
+    /// v_1 ... v_{m+1} of the present pole, and J v_{m+1}; no columns where the
+    /// space is invariant.
+    Eigen::MatrixXd krylov;
+    Eigen::VectorXd next_product;
   };
 
-  /// Adds the parts of `correction` = A_pole^-1 `residual` that the bases lack.
-  void Append(const Eigen::MatrixXd& residual, Eigen::MatrixXd correction);
+  Eigen::MatrixXd FreeRows(const Eigen::MatrixXd& all) const;
+  /// H x and J x in the free rows.
+  StiffnessProducts Multiply(const Eigen::MatrixXd& x);
+  /// Adds the part of x that the basis of a response lacks; `h` = H x, `j` =
+  /// J x.
+  void Append(const Eigen::VectorXd& x, const Eigen::VectorXd& h,
+              const Eigen::VectorXd& j, Response& response);
+  void FindModes(Response& response) const;
 
   StiffnessOperator stiffness_;
   StiffnessSolver solver_;

@@ -153,17 +153,6 @@ Eigen::MatrixXd ComponentRows(const Eigen::MatrixXd& all, int component) {
   return all(Eigen::seq(component, Eigen::last, 3), Eigen::all);
 }
 
-// ln((1 + nu) / (1 - 2 nu)), which is ln(3 kappa / (2 mu)): the scale on which
-// the stiffness changes evenly over the whole range of nu.
-double LogStiffnessRatio(double poisson_ratio) {
-  return std::log((1 + poisson_ratio) / (1 - 2 * poisson_ratio));
-}
-
-double PoissonRatioOf(double log_stiffness_ratio) {
-  const double ratio = std::exp(log_stiffness_ratio);
-  return (ratio - 1) / (1 + 2 * ratio);
-}
-
 }  // namespace
 
 VirtualWork::VirtualWork(const Mesh& mesh, const Supports& supports,
@@ -193,8 +182,8 @@ VirtualWork::VirtualWork(const Mesh& mesh, const Supports& supports,
   const double last = LogStiffnessRatio(kLargestPoissonRatio);
   scan_.reserve(kScanPoints);
   for (int i = 0; i < kScanPoints; ++i) {
-    scan_.push_back(FactorNoise(
-        PoissonRatioOf(first + (last - first) * i / (kScanPoints - 1))));
+    scan_.push_back(FactorNoise(PoissonRatioOfLogStiffnessRatio(
+        first + (last - first) * i / (kScanPoints - 1))));
   }
 }
 
@@ -345,7 +334,8 @@ VirtualWorkFit VirtualWorkBalance::Refine(VirtualWorkFit falling,
     if (!(x > left && x < right)) {
       break;  // The ends are neighbours, to rounding.
     }
-    VirtualWorkFit fit = FitAt(PoissonRatioOf(x), youngs_modulus);
+    VirtualWorkFit fit =
+        FitAt(PoissonRatioOfLogStiffnessRatio(x), youngs_modulus);
     if (fit.slope < 0) {
       left = x;
       left_slope = fit.slope;

@@ -97,5 +97,17 @@ TEST(IsotropicElasticity, KnowsWhatIsPhysical) {
   EXPECT_FALSE((IsotropicElasticity{1, nan}.IsPhysical()));
 }
 
+TEST(IsotropicElasticity, LogStiffnessRatioIsThatOfTheModuli) {
+  for (const double nu : {-0.9999, -0.5, 0.0, 0.3, 0.49999}) {
+    const IsotropicElasticity elasticity = {2, nu};
+    EXPECT_NEAR(LogStiffnessRatio(nu),
+                std::log(3 * elasticity.BulkModulus() /
+                         (2 * elasticity.ShearModulus())),
+                1e-10);
+    EXPECT_NEAR(PoissonRatioOfLogStiffnessRatio(LogStiffnessRatio(nu)), nu,
+                1e-14);
+  }
+}
+
 }  // namespace
 }  // namespace elastimate
