@@ -18,6 +18,16 @@
 #include "elastimate/io/printable.h"
 
 namespace elastimate {
+
+/// The name of a staged file, where a signal handler finds it.  Places for
+/// names are used again, but never freed.
+struct StagedName {
+  enum class State { kFree, kTaken, kNamed };
+  std::atomic<State> state = State::kTaken;
+  char name[PATH_MAX] = {};
+  StagedName* next = nullptr;
+};
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -126,64 +136,35 @@ void WriteInPlace(const fs::path& path, const std::string& content) {
   }
 }
 
-/// The names of the files that are staged in this process, where a signal
-/// handler finds them.  Places are used again, but never freed.
-class StagedNames {
- public:
-  /// Notes the name, which must have an end within PATH_MAX.
-  static void Add(const fs::path& name) {
-    Place* place = first.load();
-    while (place != nullptr && !Take(*place)) {
-      place = place->next;
-    }
-    if (place == nullptr) {
-      place = new Place;
-      place->next = first.load();
-      while (!first.compare_exchange_weak(place->next, place)) {
-      }
-    }
-    std::strncpy(place->name, name.c_str(), sizeof place->name - 1);
-    place->state = State::kNamed;
-  }
+static_assert(std::atomic<StagedName::State>::is_always_lock_free &&
+                  std::atomic<StagedName*>::is_always_lock_free,
+              "a signal handler may not wait for a lock");
 
-  static void Remove(const fs::path& name) {
-    for (Place* place = first; place != nullptr; place = place->next) {
-      if (place->state == State::kNamed && name == place->name) {
-        place->state = State::kFree;
-        return;
-      }
+std::atomic<StagedName*> first_staged_name = nullptr;
+
+bool Take(StagedName& place) {
+  auto free = StagedName::State::kFree;
+  return place.state.compare_exchange_strong(free, StagedName::State::kTaken);
+}
+
+/// Notes a name, which must have its end within PATH_MAX, until it is released.
+StagedName* Note(const fs::path& name) {
+  StagedName* place = first_staged_name;
+  while (place != nullptr && !Take(*place)) {
+    place = place->next;
+  }
+  if (place == nullptr) {
+    place = new StagedName;
+    place->next = first_staged_name;
+    while (!first_staged_name.compare_exchange_weak(place->next, place)) {
     }
   }
+  std::strncpy(place->name, name.c_str(), sizeof place->name - 1);
+  place->state = StagedName::State::kNamed;
+  return place;
+}
 
-  /// Safe in a signal handler.
-  static void Unlink() {
-    for (Place* place = first; place != nullptr; place = place->next) {
-      if (place->state == State::kNamed) {
-        unlink(place->name);
-      }
-    }
-  }
-
- private:
-  enum class State { kFree, kTaken, kNamed };
-  struct Place {
-    std::atomic<State> state = State::kTaken;
-    char name[PATH_MAX] = {};
-    Place* next = nullptr;
-  };
-  static_assert(std::atomic<State>::is_always_lock_free &&
-                    std::atomic<Place*>::is_always_lock_free,
-                "a signal handler may not wait for a lock");
-
-  static bool Take(Place& place) {
-    State free = State::kFree;
-    return place.state.compare_exchange_strong(free, State::kTaken);
-  }
-
-  static std::atomic<Place*> first;
-};
-
-std::atomic<StagedNames::Place*> StagedNames::first = nullptr;
+void Release(StagedName* place) { place->state = StagedName::State::kFree; }
 
 /// A name beside `target` that no other process takes, not even one of the same
 /// number in another container.
@@ -196,8 +177,9 @@ fs::path PartName(const fs::path& target) {
                            std::to_string(random) + ".part");
 }
 
-/// Opens a new file beside `target`, whose name goes to `name`.
-int OpenNewFile(const fs::path& target, fs::path& name) {
+/// Opens a new file beside `target`, whose name goes to `name`; noted at
+/// `place` when that succeeds.
+int OpenNewFile(const fs::path& target, fs::path& name, StagedName*& place) {
   int descriptor = -1;
   for (int attempt = 0; attempt < 100; ++attempt) {
     name = PartName(target);
@@ -206,7 +188,7 @@ int OpenNewFile(const fs::path& target, fs::path& name) {
       return -1;
     }
     // Before there is a file, so that none is ever without its name here.
-    StagedNames::Add(name);
+    place = Note(name);
     // Unlike mkstemp's, its permissions follow the user's umask.
     descriptor =
         open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -214,7 +196,7 @@ int OpenNewFile(const fs::path& target, fs::path& name) {
       break;
     }
     const int reason = errno;
-    StagedNames::Remove(name);
+    Release(place);
     errno = reason;
     if (reason != EEXIST) {
       break;
@@ -225,12 +207,19 @@ int OpenNewFile(const fs::path& target, fs::path& name) {
 
 }  // namespace
 
-void UnlinkStagedFiles() { StagedNames::Unlink(); }
+void UnlinkStagedFiles() {
+  for (const StagedName* place = first_staged_name; place != nullptr;
+       place = place->next) {
+    if (place->state == StagedName::State::kNamed) {
+      unlink(place->name);
+    }
+  }
+}
 
 StagedFiles::~StagedFiles() {
   for (const Part& part : parts_) {
     unlink(part.name.c_str());
-    StagedNames::Remove(part.name);
+    Release(part.place);
   }
 }
 
@@ -242,11 +231,12 @@ void StagedFiles::Add(const fs::path& path, const std::string& content) {
   }
   const fs::path target = FollowLinks(path);
   fs::path name;
-  FileDescriptor file(OpenNewFile(target, name));
+  StagedName* place = nullptr;
+  FileDescriptor file(OpenNewFile(target, name, place));
   if (file.Get() < 0) {
     ThrowErrno(path, errno);
   }
-  parts_.push_back({path, target, name});
+  parts_.push_back({path, target, name, place});
   struct stat old = {};
   const bool written = (stat(target.c_str(), &old) != 0 ||
                         fchmod(file.Get(), old.st_mode & 07777) == 0) &&
@@ -263,7 +253,7 @@ void StagedFiles::Commit() {
     if (rename(part.name.c_str(), part.target.c_str()) != 0) {
       ThrowErrno(part.path, errno);
     }
-    StagedNames::Remove(part.name);
+    Release(part.place);
   }
 }
 

@@ -7,6 +7,8 @@
 
 namespace elastimate {
 
+struct StagedName;
+
 /// Files that appear together, each whole, or not at all: each is written to a
 /// new file in its folder, which takes the name when all are written.
 class StagedFiles {
@@ -30,6 +32,7 @@ class StagedFiles {
     std::filesystem::path path;    ///< As the user calls it.
     std::filesystem::path target;  ///< What links lead to.
     std::filesystem::path name;    ///< Where it is written until then.
+    StagedName* place;             ///< Where a signal handler finds `name`.
   };
   std::vector<Part> parts_;
 };

@@ -18,7 +18,6 @@
 
 #include "elastimate/io/printable.h"
 
-
 namespace elastimate {
 namespace {
 

@@ -160,6 +160,7 @@ TEST_F(FileOutputTest, UnlinksOnlyWhatIsStaged) {
 // Places for names are used again, by several threads at once.
 TEST_F(FileOutputTest, WritesFromSeveralThreads) {
   std::vector<std::thread> threads;
+  threads.reserve(4);
   for (int thread = 0; thread < 4; ++thread) {
     threads.emplace_back([this, thread] {
       for (int i = 0; i < 20; ++i) {

@@ -29,7 +29,7 @@ TEST(Printable, EscapesControlCharacters) {
   // turn the direction: "gpj.exe" would look like "exe.jpg".
   EXPECT_EQ(Printable("\u009b31m"), "\\u009b31m");
   EXPECT_EQ(Printable("a\u2028b"), "a\\u2028b");
-  EXPECT_EQ(Printable("\u202egpj.exe"), "\\u202egpj.exe");
+  EXPECT_EQ(Printable("\u202egpj\u202c.exe"), "\\u202egpj\\u202c.exe");
 }
 
 TEST(Printable, EscapesWhatIsNoUtf8) {
