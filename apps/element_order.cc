@@ -39,8 +39,8 @@ std::optional<Scene> QuadraticSceneIfAsked(const Scene& scene,
   if (HasNodalForces(scene)) {
     notices.emplace_back(
         "nodal forces act at the vertices only, with --order=2 too; where they "
-        "stand for a traction, a pressure or a body force, give that, in a "
-        "scene.json");
+        "stand for a force on a surface, a traction, a pressure or a body "
+        "force, give that, in a scene.json");
   }
   return QuadraticScene(scene);
 }

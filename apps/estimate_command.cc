@@ -17,6 +17,7 @@
 #include "elastimate/core/quadratic_scene.h"
 #include "elastimate/estimators/registry.h"
 #include "elastimate/io/file_output.h"
+#include "elastimate/io/printable.h"
 #include "elastimate/io/report.h"
 #include "elastimate/io/scene_reader.h"
 #include "elastimate/io/vtu_writer.h"
@@ -45,7 +46,7 @@ SceneReading Read(const std::vector<std::string>& arguments) {
 std::string Sources(const std::vector<std::string>& arguments) {
   std::string sources;
   for (const std::string& argument : arguments) {
-    sources += (sources.empty() ? "" : ", ") + argument;
+    sources += (sources.empty() ? "" : ", ") + PrintablePath(argument);
   }
   return sources;
 }
@@ -86,7 +87,8 @@ int RunEstimate(const std::vector<std::string>& arguments) {
     throw std::invalid_argument(
         "estimate needs a scene file (.vtu, .vtk, .msh or .json)");
   }
-  const std::unique_ptr<Estimator> estimator = MakeEstimator(FLAGS_estimator);
+  const std::unique_ptr<Estimator> estimator =
+      MakeEstimator(Printable(FLAGS_estimator));
   EstimatorOptions options = OptionsFromFlags();
   if (IsGiven("noise_sd") && !(FLAGS_noise_sd > 0)) {
     throw std::invalid_argument(AsGiven("noise_sd") + "; it must be positive");
@@ -117,7 +119,7 @@ int RunEstimate(const std::vector<std::string>& arguments) {
   const Scene& reported = raised ? *raised : modelled;
   StagedFiles files;
   if (!FLAGS_out.empty()) {
-    progress->Show("writing " + FLAGS_out);
+    progress->Show("writing " + PrintablePath(FLAGS_out));
     files.Add(FLAGS_out, VtuContent(FLAGS_out, scene.mesh,
                                     ResultFields(scene, reported, estimate,
                                                  options.solver)));
@@ -125,7 +127,8 @@ int RunEstimate(const std::vector<std::string>& arguments) {
   progress.reset();
 
   const ReportTimes times = {read_seconds, SecondsSince(start)};
-  const std::string report = JsonReport(estimate, reported, options, times);
+  const std::string report =
+      JsonReport(estimate, reported, options, times, reading.notices);
   if (!FLAGS_json.empty() && FLAGS_json != "-") {
     files.Add(FLAGS_json, report);
   }

@@ -11,8 +11,12 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "elastimate/io/printable.h"
+
 namespace elastimate {
 namespace {
+
+constexpr const char* kEndOfFlags = "--";
 
 std::string TypeOf(const std::string& flag) {
   gflags::CommandLineFlagInfo info;
@@ -46,7 +50,7 @@ void CheckIsTaken(const Program& program, const Command& command,
                   [&flag](const Command& other) { return Takes(other, flag); });
   throw std::invalid_argument(
       (elsewhere ? command.name + " takes no flag --" : "unknown flag --") +
-      flag + "; see " + program.name + " --help");
+      Printable(flag) + "; see " + program.name + " --help");
 }
 
 // In --flag VALUE a flag that follows is not the value, but -1 and - are.
@@ -69,9 +73,10 @@ void SetFlag(const std::string& name, const std::string& value) {
                                  ? "an integer from 0 to 18446744073709551615"
                              : type == "bool" ? "true or false"
                                               : "a value";
-    throw std::invalid_argument(
-        "--" + name + " needs " + kind +
-        (value.empty() ? ", as in --" + name + "=VALUE" : "; it got " + value));
+    throw std::invalid_argument("--" + name + " needs " + kind +
+                                (value.empty()
+                                     ? ", as in --" + name + "=VALUE"
+                                     : "; it got " + Printable(value)));
   }
 }
 
@@ -79,8 +84,9 @@ void SetFlag(const std::string& name, const std::string& value) {
 void CheckIsTheSame(const std::string& flag, const std::string& first,
                     const std::string& value) {
   if (first != value) {
-    throw std::invalid_argument("--" + flag + " is given twice, as " + first +
-                                " and as " + value + "; give it once");
+    throw std::invalid_argument("--" + flag + " is given twice, as " +
+                                Printable(first) + " and as " +
+                                Printable(value) + "; give it once");
   }
 }
 
@@ -93,9 +99,9 @@ const Command& FindCommand(const Program& program, const std::string& name) {
     }
   }
   throw std::invalid_argument(
-      (name[0] == '-' ? "the command comes first, then its flags; '" + name +
-                            "' came first"
-                      : "unknown command '" + name + "'") +
+      (name[0] == '-' ? "the command comes first, then its flags; '" +
+                            Printable(name) + "' came first"
+                      : "unknown command '" + Printable(name) + "'") +
       "; see " + program.name + " --help");
 }
 
@@ -104,6 +110,7 @@ std::vector<std::string> ParseFlags(const Program& program,
                                     const std::vector<std::string>& arguments) {
   std::vector<std::string> others;
   std::map<std::string, std::string> values;
+  bool is_past_flags = false;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const std::string& argument = arguments[i];
     if (argument.empty()) {
@@ -111,7 +118,11 @@ std::vector<std::string> ParseFlags(const Program& program,
           "an argument of " + command.name +
           " is empty; leave it out, or check the variable behind it");
     }
-    if (argument == "-" || argument[0] != '-') {
+    if (argument == kEndOfFlags && !is_past_flags) {
+      is_past_flags = true;
+      continue;
+    }
+    if (is_past_flags || argument == "-" || argument[0] != '-') {
       others.push_back(argument);
       continue;
     }
@@ -143,7 +154,7 @@ bool IsGiven(const std::string& flag) {
 std::string AsGiven(const std::string& flag) {
   gflags::CommandLineFlagInfo info;
   gflags::GetCommandLineFlagInfo(flag.c_str(), &info);
-  return "--" + flag + "=" + ValueText(info, info.current_value);
+  return "--" + flag + "=" + Printable(ValueText(info, info.current_value));
 }
 
 std::string CommandsHelp(const Program& program) {
@@ -171,7 +182,8 @@ std::string CommandsHelp(const Program& program) {
 
 bool AsksForHelp(const std::vector<std::string>& arguments) {
   return (!arguments.empty() && arguments[0] == "help") ||
-         std::any_of(arguments.begin(), arguments.end(),
+         std::any_of(arguments.begin(),
+                     std::find(arguments.begin(), arguments.end(), kEndOfFlags),
                      [](const std::string& argument) {
                        return argument == "--help" || argument == "-h";
                      });

@@ -23,7 +23,8 @@ struct Program {
 /// The command of this name.  Throws std::invalid_argument when there is none.
 const Command& FindCommand(const Program& program, const std::string& name);
 
-/// Sets the flags of `command` from `arguments` and returns the other ones.
+/// Sets the flags of `command` from `arguments` and returns the other ones, to
+/// which belongs all that follows "--".
 /// Throws std::invalid_argument for a flag that it does not take, one that is
 /// given two values, a value that is not of the flag's type or not finite, and
 /// an empty argument.
@@ -40,7 +41,8 @@ std::string AsGiven(const std::string& flag);
 /// Usage of all commands and the meaning of their flags.
 std::string CommandsHelp(const Program& program);
 
-/// Whether the arguments ask for help, by "help", "--help" or "-h".
+/// Whether the arguments ask for help, by "help", or by "--help" or "-h" before
+/// any "--".
 bool AsksForHelp(const std::vector<std::string>& arguments);
 
 }  // namespace elastimate

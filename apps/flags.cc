@@ -84,6 +84,8 @@ std::string Help() {
          "loads and\nmeasured displacements.\n" +
          CommandsHelp(Elastimate()) +
          "\nelastimate --help | --version\n"
+         "\nAfter -- every argument is a file name, also one that begins with "
+         "-.\n"
          "\nExit code: 0 usable estimate; 1 the result is not usable, the "
          "status says why;\n2 wrong input or flags, nothing is written.\n";
 }

@@ -29,9 +29,8 @@ Eigen::Matrix<T, 3, 1> Triple(const std::string& flag, const std::string& value,
                     comma[0] == ',' && comma[1] == ',' &&
                     text.peek() == std::istringstream::traits_type::eof();
   if (!read) {
-    throw std::invalid_argument("--" + flag + "=" + value +
-                                "; it needs three " + kind + ", as in --" +
-                                flag + "=1,2,3");
+    throw std::invalid_argument(AsGiven(flag) + "; it needs three " + kind +
+                                ", as in --" + flag + "=1,2,3");
   }
   return triple;
 }

@@ -14,6 +14,8 @@
 #include "apps/flags.h"
 #include "apps/linear_algebra.h"
 #include "apps/outputs.h"
+#include "apps/signals.h"
+#include "elastimate/io/printable.h"
 #include "elastimate/io/report.h"
 
 namespace elastimate {
@@ -63,7 +65,7 @@ int Run(const std::vector<std::string>& arguments) {
 std::string ButGot(const std::vector<std::string>& arguments) {
   std::string end = "; it got";
   for (const std::string& argument : arguments) {
-    end += " " + argument;
+    end += " " + Printable(argument);
   }
   return end + (arguments.empty() ? " none" : "");
 }
@@ -76,6 +78,7 @@ int main(int argc, char** argv) {
   // other.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+  elastimate::CleanUpOnSignals();
   // The status of an estimate says what Ceres would have warned of.
   FLAGS_minloglevel = google::GLOG_FATAL;
   FLAGS_logtostderr = true;
@@ -87,7 +90,10 @@ int main(int argc, char** argv) {
                  "coarsen it, or estimate with --order=1 and "
                  "--estimator=closed-form, which need the least\n";
   } catch (const std::exception& error) {
-    std::cerr << "elastimate: " << error.what() << "\n";
+    std::cerr << "elastimate: "
+              << elastimate::Printable(error.what(),
+                                       elastimate::kLongestSentence)
+              << "\n";
   }
   return elastimate::kNoEstimate;
 }

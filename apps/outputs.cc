@@ -16,6 +16,7 @@
 
 #include "apps/flags.h"
 #include "elastimate/io/file_output.h"
+#include "elastimate/io/printable.h"
 
 namespace elastimate {
 namespace {
@@ -50,32 +51,38 @@ std::vector<fs::path> FilesBehind(const fs::path& input) {
   return files;
 }
 
-// A terminal or /dev/null may well be both.
-bool IsWhereStandardOutputGoes(const fs::path& path) {
+// Whether the file is where the stream goes.  A terminal or /dev/null may well
+// be both.
+bool IsStream(const fs::path& path, int stream) {
   struct stat file = {};
   struct stat output = {};
-  return stat(path.c_str(), &file) == 0 && fstat(STDOUT_FILENO, &output) == 0 &&
+  return stat(path.c_str(), &file) == 0 && fstat(stream, &output) == 0 &&
          !S_ISCHR(output.st_mode) && file.st_dev == output.st_dev &&
          file.st_ino == output.st_ino;
 }
 
 void CheckOutputFlag(const std::string& flag, const std::string& file,
                      const std::vector<std::string>& inputs) {
-  CheckWritable(file);
-  const std::string given = "--" + flag + "=" + file;
+  const std::string given = "--" + flag + "=" + PrintablePath(file);
   for (const std::string& input : inputs) {
     for (const fs::path& behind : FilesBehind(input)) {
       if (AreSameFile(file, behind)) {
         throw std::invalid_argument(given + " would overwrite the input " +
-                                    behind.string() + "; choose another file");
+                                    PrintablePath(behind) +
+                                    "; choose another file");
       }
     }
   }
-  if (IsWhereStandardOutputGoes(file)) {
+  if (IsStream(file, STDOUT_FILENO)) {
     throw std::invalid_argument(
         given + " is where standard output goes; choose another file" +
         (flag == "json" ? ", or --json=-" : ""));
   }
+  if (IsStream(file, STDERR_FILENO)) {
+    throw std::invalid_argument(
+        given + " is where standard error goes; choose another file");
+  }
+  CheckWritable(file);
 }
 
 }  // namespace
@@ -93,7 +100,7 @@ void OpenClosedStandardStreams() {
 void CheckOutputFlags(const std::vector<std::string>& inputs) {
   if (!FLAGS_out.empty()) {
     if (LowercaseExtension(FLAGS_out) != ".vtu") {
-      throw std::invalid_argument("--out=" + FLAGS_out +
+      throw std::invalid_argument("--out=" + PrintablePath(FLAGS_out) +
                                   "; what is written is a VTU file, so the "
                                   "name must end in .vtu");
     }
@@ -102,8 +109,8 @@ void CheckOutputFlags(const std::vector<std::string>& inputs) {
   if (!FLAGS_json.empty() && FLAGS_json != "-") {
     CheckOutputFlag("json", FLAGS_json, inputs);
     if (!FLAGS_out.empty() && AreSameFile(FLAGS_json, FLAGS_out)) {
-      throw std::invalid_argument("--json=" + FLAGS_json +
-                                  " and --out=" + FLAGS_out +
+      throw std::invalid_argument("--json=" + PrintablePath(FLAGS_json) +
+                                  " and --out=" + PrintablePath(FLAGS_out) +
                                   " name the same file; choose two");
     }
   }
@@ -120,7 +127,8 @@ void WriteStandardOutput(const std::string& text) {
 
 void PrintNotices(const std::vector<std::string>& notices) {
   for (const std::string& notice : notices) {
-    std::cerr << "elastimate: notice: " << notice << "\n";
+    std::cerr << "elastimate: notice: " << Printable(notice, kLongestSentence)
+              << "\n";
   }
 }
 

@@ -15,6 +15,7 @@
 #include "elastimate/core/magnitude.h"
 #include "elastimate/core/rigid_motion.h"
 #include "elastimate/core/simulated_measurement.h"
+#include "elastimate/io/printable.h"
 #include "elastimate/io/scene_reader.h"
 #include "elastimate/io/vtu_writer.h"
 
@@ -37,7 +38,7 @@ void CheckNoiseFlags() {
     throw std::invalid_argument(AsGiven("noise") + "; it must not be negative");
   }
   if (FLAGS_noise_law != "uniform" && FLAGS_noise_law != "gaussian") {
-    throw std::invalid_argument("--noise_law=" + FLAGS_noise_law +
+    throw std::invalid_argument(AsGiven("noise_law") +
                                 "; it is uniform or gaussian");
   }
 }
@@ -57,14 +58,15 @@ int RunSimulate(const std::vector<std::string>& arguments) {
   const SolverKind solver = SolverFromFlag();
   ApplyComputingFlags();
   CheckOutputFlags(arguments);
-  std::optional<Progress> progress("reading " + arguments[0]);
+  std::optional<Progress> progress("reading " + PrintablePath(arguments[0]));
   SceneReading reading = ReadScene({arguments[0]}, Measurement::kOptional);
   Scene& scene = reading.scene;
 
   progress->Show("factorising");
   const std::string why_not_held = WhyNotHeld(scene.mesh, scene.supports);
   if (!why_not_held.empty()) {
-    throw std::invalid_argument(arguments[0] + ": " + why_not_held);
+    throw std::invalid_argument(PrintablePath(arguments[0]) + ": " +
+                                why_not_held);
   }
   const std::optional<Scene> quadratic =
       QuadraticSceneIfAsked(scene, reading.notices);
@@ -73,7 +75,7 @@ int RunSimulate(const std::vector<std::string>& arguments) {
                      AssembleLoadCases(modelled), solver);
   if (!model.SetPoissonRatio(elasticity.poisson_ratio)) {
     throw std::invalid_argument(
-        arguments[0] +
+        PrintablePath(arguments[0]) +
         ": the stiffness matrix is singular to working precision; check the "
         "mesh for slivers and --nu");
   }
@@ -101,16 +103,18 @@ int RunSimulate(const std::vector<std::string>& arguments) {
                          : std::numeric_limits<double>::infinity(),
                      "the simulated displacement");
   } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(arguments[0] + ": " + error.what());
+    throw std::invalid_argument(PrintablePath(arguments[0]) + ": " +
+                                error.what());
   }
   if (quadratic && !HasNodalForcesOnly(scene)) {
     reading.notices.push_back(
-        FLAGS_out +
+        PrintablePath(FLAGS_out) +
         " has the loads as nodal forces of linear elements; to estimate with "
         "--order=2, use a scene.json with the loads of " +
-        arguments[0] + " and the displacement of " + FLAGS_out);
+        PrintablePath(arguments[0]) + " and the displacement of " +
+        PrintablePath(FLAGS_out));
   }
-  progress->Show("writing " + FLAGS_out);
+  progress->Show("writing " + PrintablePath(FLAGS_out));
   WriteVtu(FLAGS_out, scene.mesh, SceneFields(scene));
   progress.reset();
   if (!model.Notice().empty()) {

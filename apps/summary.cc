@@ -4,6 +4,9 @@
 #include <iomanip>
 #include <optional>
 #include <sstream>
+#include <vector>
+
+#include "elastimate/core/loads.h"
 
 namespace elastimate {
 namespace {
@@ -92,6 +95,57 @@ std::string Solving(const Work& work) {
          solves + " in " + std::to_string(work.iterations) + " iterations, ";
 }
 
+std::string Triple(const Eigen::Vector3d& values) {
+  // What is left of zero by rounding is zero.
+  const double rounding = 1e-12 * values.cwiseAbs().maxCoeff();
+  std::string text;
+  for (const double value : values) {
+    text += (text.empty() ? "(" : ", ") +
+            Number(std::abs(value) > rounding ? value : 0, 4);
+  }
+  return text + ")";
+}
+
+// The loads of one case: each on a line, or all on one where they are many.
+void AddLoads(const std::string& name, const Mesh& mesh,
+              const std::vector<Load>& loads, std::ostringstream& text) {
+  constexpr std::size_t kMany = 4;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Load& load : loads) {
+    const LoadResultant resultant = ResultantOf(mesh, load);
+    sum += resultant.force;
+    if (loads.size() <= kMany) {
+      Line(name,
+           std::string(resultant.type) + ", resultant " +
+               Triple(resultant.force) +
+               (resultant.area ? " on an area of " + Number(*resultant.area, 4)
+                               : ""),
+           text);
+    }
+  }
+  if (loads.size() > kMany) {
+    Line(name,
+         std::to_string(loads.size()) + " loads, resultant " + Triple(sum),
+         text);
+  }
+}
+
+void AddLoads(const Scene& scene, std::ostringstream& text) {
+  constexpr std::size_t kMany = 8;
+  const std::size_t num_cases = scene.load_cases.size();
+  const std::size_t num_shown = num_cases > kMany ? kMany - 1 : num_cases;
+  for (std::size_t i = 0; i < num_shown; ++i) {
+    AddLoads(num_cases == 1 ? "load" : "load case " + std::to_string(i + 1),
+             scene.mesh, scene.load_cases[i].loads, text);
+  }
+  if (num_shown < num_cases) {
+    Line("load cases",
+         "and " + std::to_string(num_cases - num_shown) +
+             " more; --json has the loads of all",
+         text);
+  }
+}
+
 }  // namespace
 
 std::string Summary(const Estimate& estimate, const Scene& scene,
@@ -105,6 +159,7 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
            std::to_string(scene.load_cases.size()) + " load case" +
            (scene.load_cases.size() == 1 ? "" : "s"),
        text);
+  AddLoads(scene, text);
   Line("estimator", estimate.estimator, text);
   Line("status",
        std::string(StatusName(estimate.status)) +

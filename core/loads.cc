@@ -55,6 +55,10 @@ class LoadAssembler {
     }
   }
 
+  void operator()(const SurfaceForce& load) {
+    (*this)(Traction{load.facets, load.force / FacetArea(mesh_, load.facets)});
+  }
+
  private:
   void Add(const Eigen::Ref<const Eigen::VectorXi>& nodes,
            const Eigen::Vector3d& share) {
@@ -71,6 +75,37 @@ class LoadAssembler {
 
   const Mesh& mesh_;
   Eigen::Ref<Eigen::Matrix3Xd> force_;
+};
+
+// The resultant of each kind of load.
+struct Summation {
+  const Mesh& mesh;
+
+  LoadResultant operator()(const NodalForces& load) const {
+    return {"nodal_force", load.force.rowwise().sum(), std::nullopt};
+  }
+  LoadResultant operator()(const BodyForce& load) const {
+    double volume = 0;
+    for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
+      volume += TetrahedronVolume(GatherTetrahedron(mesh, element));
+    }
+    return {"body_force", volume * load.force_density, std::nullopt};
+  }
+  LoadResultant operator()(const Traction& load) const {
+    const double area = FacetArea(mesh, load.facets);
+    return {"traction", area * load.traction, area};
+  }
+  LoadResultant operator()(const Pressure& load) const {
+    Eigen::Vector3d double_area_normal = Eigen::Vector3d::Zero();
+    for (Eigen::Index facet = 0; facet < load.facets.cols(); ++facet) {
+      double_area_normal += DoubleAreaNormal(mesh, load.facets, facet);
+    }
+    return {"pressure", -load.pressure / 2 * double_area_normal,
+            FacetArea(mesh, load.facets)};
+  }
+  LoadResultant operator()(const SurfaceForce& load) const {
+    return {"force", load.force, FacetArea(mesh, load.facets)};
+  }
 };
 
 void AddLoads(const Mesh& mesh, const std::vector<Load>& loads,
@@ -103,6 +138,18 @@ void AssembleLoadCases(const Scene& scene, Eigen::Ref<Eigen::MatrixXd> force) {
              Eigen::Map<Eigen::Matrix3Xd>(force.col(i).data(), 3,
                                           scene.mesh.NumNodes()));
   }
+}
+
+double FacetArea(const Mesh& mesh, const Eigen::MatrixXi& facets) {
+  double double_area = 0;
+  for (Eigen::Index facet = 0; facet < facets.cols(); ++facet) {
+    double_area += DoubleAreaNormal(mesh, facets, facet).norm();
+  }
+  return double_area / 2;
+}
+
+LoadResultant ResultantOf(const Mesh& mesh, const Load& load) {
+  return std::visit(Summation{mesh}, load);
 }
 
 }  // namespace elastimate

@@ -128,7 +128,7 @@ Eigen::MatrixXi WithMidEdgeNodes(const Eigen::MatrixXi& facets,
       if (edge < 0) {
         throw std::invalid_argument(
             "facet " + std::to_string(facet) +
-            " of a traction or pressure is no face of a tetrahedron; take the "
+            " of a load is no face of a tetrahedron; take the "
             "facets from the mesh");
       }
       quadratic(3 + i, facet) = static_cast<int>(mesh.NumNodes() + edge);
@@ -152,6 +152,9 @@ struct LoadConverter {
   }
   Load operator()(const Pressure& load) const {
     return Pressure{WithMidEdgeNodes(load.facets, mesh, edges), load.pressure};
+  }
+  Load operator()(const SurfaceForce& load) const {
+    return SurfaceForce{WithMidEdgeNodes(load.facets, mesh, edges), load.force};
   }
 };
 

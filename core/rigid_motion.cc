@@ -349,10 +349,10 @@ std::string WhyNotHeld(const Mesh& mesh, const Supports& supports) {
   for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
     groups[hinged.Label(b)].push_back(&bodies[b]);
   }
+  groups.erase(std::remove_if(groups.begin(), groups.end(),
+                              [](const auto& group) { return group.empty(); }),
+               groups.end());
   for (const std::vector<const Body*>& group : groups) {
-    if (group.empty()) {
-      continue;
-    }
     // As a whole, and then part by part.
     std::string why;
     if (group.size() > 1) {
@@ -361,6 +361,11 @@ std::string WhyNotHeld(const Mesh& mesh, const Supports& supports) {
     }
     if (why.empty()) {
       why = WhyNotHeld(mesh, supports, group);
+    }
+    if (!why.empty() && groups.size() > 1) {
+      why +=
+          " (it shares no node with the rest of the mesh, even if nodes of "
+          "both lie at the same place)";
     }
     if (!why.empty()) {
       return why;

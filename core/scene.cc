@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "elastimate/core/loads.h"
 #include "elastimate/core/magnitude.h"
 #include "elastimate/core/quadratic_tetrahedron.h"
 
@@ -116,6 +117,18 @@ struct LoadValidator {
       Fail("the pressure in " + where + " is not finite; correct it");
     }
     RequireMagnitude(std::abs(load.pressure), "the pressure in " + where);
+  }
+  void operator()(const SurfaceForce& load) const {
+    ValidateFacets(mesh, load.facets, "the force on a surface in " + where);
+    if (!load.force.allFinite()) {
+      Fail("the force on a surface in " + where + " is not finite; correct it");
+    }
+    RequireMagnitude(load.force.cwiseAbs().maxCoeff(),
+                     "the force on a surface in " + where);
+    if (!(FacetArea(mesh, load.facets) > 0)) {
+      Fail("the force on a surface in " + where +
+           " acts on facets without area; name a part of the surface");
+    }
   }
 };
 

@@ -47,9 +47,17 @@ struct Pressure {
   double pressure;         ///< [force / length^2].
 };
 
+/// A total force that is spread uniformly over some facets: the traction
+/// force / area, where area is that of all of them.
+struct SurfaceForce {
+  Eigen::MatrixXi facets;  ///< As those of a traction; not all without area.
+  Eigen::Vector3d force;   ///< [force].
+};
+
 /// Loads are kept as what they physically are, so that each discretisation can
 /// assemble its own nodal forces.
-using Load = std::variant<NodalForces, BodyForce, Traction, Pressure>;
+using Load =
+    std::variant<NodalForces, BodyForce, Traction, Pressure, SurfaceForce>;
 
 /// One experiment on the specimen: what pushed, and what was measured.
 struct LoadCase {
@@ -74,9 +82,9 @@ struct Scene {
 /// every array has its shape; every number is finite, and no array's largest
 /// one beyond 1e-50 to 1e50 unless zero (displacements only where they are
 /// observed or held); every facet has nodes in range (and mid-edge nodes in the
-/// middle); noise standard deviations are positive; there is a load case; and
-/// at least one degree of freedom is free.  O(num_elements + num_nodes *
-/// num_load_cases).
+/// middle); the facets of a surface force have an area; noise standard
+/// deviations are positive; there is a load case; and at least one degree of
+/// freedom is free.  O(num_elements + num_nodes * num_load_cases).
 void ValidateScene(const Scene& scene);
 
 /// The part of ValidateScene that is about observed components, displacements

@@ -17,7 +17,8 @@ int main(int argc, char** argv) {
     options.poisson_ratio.upper = 0.495;
     const elastimate::Estimate estimate =
         elastimate::MakeEstimator("iterative-fe")->Run(reading.scene, options);
-    std::cout << elastimate::JsonReport(estimate, reading.scene, options, {});
+    std::cout << elastimate::JsonReport(estimate, reading.scene, options, {},
+                                        reading.notices);
     return estimate.IsUsable() ? 0 : 1;
   } catch (const std::exception& error) {
     std::cerr << error.what() << "\n";

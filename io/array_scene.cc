@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "elastimate/io/input_error.h"
+#include "elastimate/io/printable.h"
 
 namespace elastimate {
 namespace {
@@ -16,7 +17,7 @@ std::string CaseSuffix(int number) {
 std::string ArrayNames(const MeshFile& mesh) {
   std::string names;
   for (const FileArray& array : mesh.node_arrays) {
-    names += (names.empty() ? "" : ", ") + array.name;
+    names += (names.empty() ? "" : ", ") + Printable(array.name);
   }
   return names.empty() ? "none" : names;
 }
@@ -26,7 +27,7 @@ std::string ArrayNames(const MeshFile& mesh) {
     ThrowInputError(mesh.path,
                     "a mesh alone is not a scene; write a scene.json with "
                     "\"mesh\": \"" +
-                        mesh.path.filename().string() +
+                        PrintablePath(mesh.path.filename()) +
                         "\" that also says what was held, pushed and measured");
   }
   ThrowInputError(mesh.path, "the point array '" + name +
@@ -136,7 +137,7 @@ void CheckCaseNumbers(const MeshFile& mesh, int num_cases) {
     const std::string number = array.name.substr(underscore + 1);
     if ((stem == "fixed" || stem == "prescribed") && IsNumber(number)) {
       ThrowInputError(mesh.path,
-                      "the point array '" + array.name +
+                      "the point array '" + Printable(array.name) +
                           "' belongs to no load case, since all have the same "
                           "supports; rename it or leave it out");
     }
@@ -149,7 +150,7 @@ void CheckCaseNumbers(const MeshFile& mesh, int num_cases) {
     }
     if (!is_load_case) {
       ThrowInputError(mesh.path,
-                      "the point array '" + array.name +
+                      "the point array '" + Printable(array.name) +
                           "' belongs to no load case; number the further load "
                           "cases from 2 without a gap (displacement_2, "
                           "force_2, displacement_3, ...)");
@@ -165,7 +166,7 @@ void NoteLostForces(FileScene& file_scene) {
         ((force.array() != 0).colwise().any() && !file_scene.mesh.used).count();
     if (lost > 0) {
       file_scene.notices.push_back(
-          file_scene.mesh.path.string() + ": the array 'force" +
+          PrintablePath(file_scene.mesh.path) + ": the array 'force" +
           CaseSuffix(static_cast<int>(i) + 1) + "' has forces on " +
           std::to_string(lost) +
           " points that no tetrahedron uses; they are dropped with the points");

@@ -9,6 +9,7 @@
 
 #include "elastimate/io/input_error.h"
 #include "elastimate/io/mesh_file.h"
+#include "elastimate/io/printable.h"
 
 namespace elastimate {
 namespace {
@@ -62,11 +63,11 @@ double ParseNumber(const std::filesystem::path& path, std::string_view cell,
   const auto [end, error] =
       std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error == std::errc::result_out_of_range) {
-    ThrowInputError(path, Place(line, column) + "'" + std::string(cell) +
+    ThrowInputError(path, Place(line, column) + "'" + Printable(cell) +
                               "' is beyond the range of a double; correct it");
   }
   if (error != std::errc() || end != digits.data() + digits.size()) {
-    ThrowInputError(path, Place(line, column) + "'" + std::string(cell) +
+    ThrowInputError(path, Place(line, column) + "'" + Printable(cell) +
                               "' is not a number; correct it");
   }
   return value;

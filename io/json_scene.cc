@@ -1,12 +1,15 @@
 #include "elastimate/io/json_scene.h"
 
+#include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "elastimate/io/csv_field.h"
 #include "elastimate/io/input_error.h"
 #include "elastimate/io/json_value.h"
 #include "elastimate/io/node_selection.h"
+#include "elastimate/io/printable.h"
 
 namespace elastimate {
 namespace {
@@ -16,6 +19,7 @@ struct Context {
   const MeshFile& mesh;
   NodeMask free;             ///< Nodes with a component that is not held.
   Eigen::MatrixXi boundary;  ///< BoundaryFacets.
+  std::vector<std::string>& notices;
 };
 
 std::filesystem::path ResolvePath(const JsonValue& value) {
@@ -75,7 +79,7 @@ void AddSupport(const JsonValue& support, const MeshFile& mesh,
 MeshFile ReadNamedMesh(const JsonValue& name) {
   const std::filesystem::path path = ResolvePath(name);
   if (FileExtension(path) == ".json") {
-    name.Fail("is '" + name.String() +
+    name.Fail("is '" + Printable(name.String()) +
               "', which is a scene; name a mesh file (.vtu, .vtk, .msh, .mesh, "
               ".unv or .bdf)");
   }
@@ -109,10 +113,34 @@ Eigen::Matrix3Xd ReadField(const JsonValue& value, const MeshFile& mesh,
     what = "the row";
   } else {
     field = NamedNodeArray(value.At("array"), mesh, 3);
-    what = "the point array '" + value.At("array").String() + "'";
+    what = "the point array '" + Printable(value.At("array").String()) + "'";
   }
   RequireFinite(file, what, mesh, field, mask, mend);
   return field;
+}
+
+std::string ListText(const Eigen::Vector3d& values) {
+  std::ostringstream text;
+  text << "[" << values[0] << ", " << values[1] << ", " << values[2] << "]";
+  return text.str();
+}
+
+/// A total that is given as a nodal force would be as many times too large as
+/// there are nodes, and Young's modulus with it.
+void NoteForcePerNode(const JsonValue& load, const Eigen::Vector3d& value,
+                      Eigen::Index num_nodes, const Context& context) {
+  const JsonValue nodes = load.At("nodes");
+  const bool names_a_part = !nodes.IsString() && !nodes.Has("ids");
+  if (!names_a_part || num_nodes == 1 || value.isZero(0)) {
+    return;
+  }
+  context.notices.push_back(
+      PrintablePath(load.File()) + ": " + load.Place() +
+      " is a nodal_force, which acts once per node: " + ListText(value) +
+      " on each of " + std::to_string(num_nodes) + " nodes, " +
+      ListText(static_cast<double>(num_nodes) * value) + " in total; if " +
+      ListText(value) +
+      " is the total, give it as \"type\": \"force\" with a \"surface\"");
 }
 
 NodalForces ReadNodalForces(const JsonValue& load, const Context& context) {
@@ -129,6 +157,7 @@ NodalForces ReadNodalForces(const JsonValue& load, const Context& context) {
   const Eigen::Vector3d value = load.At("value").Vector();
   const NodeMask nodes =
       SelectNodes(load.At("nodes"), context.mesh, &context.free);
+  NoteForcePerNode(load, value, nodes.count(), context);
   return {value * nodes.cast<double>().matrix()};
 }
 
@@ -154,9 +183,13 @@ Load ReadLoad(const JsonValue& load, const Context& context) {
     load.CheckKeys({"type", "value", "surface"});
     return Pressure{facets(), load.At("value").Number()};
   }
-  type.Fail("is \"" + name +
-            "\"; the types known here are nodal_force, body_force, traction, "
-            "pressure");
+  if (name == "force") {
+    load.CheckKeys({"type", "value", "surface"});
+    return SurfaceForce{facets(), load.At("value").Vector()};
+  }
+  type.Fail("is \"" + Printable(name) +
+            "\"; the types known here are force, nodal_force, body_force, "
+            "traction, pressure");
 }
 
 ComponentMask ReadObserved(const JsonValue& observed, const Context& context) {
@@ -164,7 +197,8 @@ ComponentMask ReadObserved(const JsonValue& observed, const Context& context) {
   if (!observed.IsString() && observed.Has("array")) {
     observed.CheckKeys({"array"});
     const JsonValue name = observed.At("array");
-    return ToComponentMask(mesh.path, "the point array '" + name.String() + "'",
+    return ToComponentMask(mesh.path,
+                           "the point array '" + Printable(name.String()) + "'",
                            mesh, NamedNodeArray(name, mesh, 3, 1));
   }
   return SelectNodes(observed, mesh, &context.free).replicate(3, 1);
@@ -214,7 +248,7 @@ FileScene ReadJsonScene(const std::filesystem::path& path,
   file_scene.scene.supports = ReadSupports(document, mesh);
   const Context context = {
       mesh, !file_scene.scene.supports.held.colwise().all() && mesh.used,
-      BoundaryFacets(file_scene.scene.mesh)};
+      BoundaryFacets(file_scene.scene.mesh), file_scene.notices};
   const std::vector<JsonValue> cases = document.At("cases").Items();
   if (cases.empty()) {
     document.At("cases").Fail("is empty; give at least one load case");

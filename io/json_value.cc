@@ -6,11 +6,15 @@
 
 #include "elastimate/io/input_error.h"
 #include "elastimate/io/mesh_file.h"
+#include "elastimate/io/printable.h"
 
 namespace elastimate {
 namespace {
 
 using nlohmann::json;
+
+/// Characters of the parser's own messages, which quote the text.
+constexpr std::size_t kLongestMessage = 160;
 
 /// Without this, the last of several equal keys would silently win.
 class RepeatedKeyCheck {
@@ -26,7 +30,7 @@ class RepeatedKeyCheck {
     } else if (event == json::parse_event_t::key) {
       last_key_ = parsed.get<std::string>();
       if (!keys_.back().insert(last_key_).second) {
-        ThrowInputError(path_, "the key \"" + last_key_ +
+        ThrowInputError(path_, "the key \"" + Printable(last_key_) +
                                    "\" is given twice in one object; remove "
                                    "one");
       }
@@ -60,8 +64,9 @@ json ParseJsonFile(const std::filesystem::path& path) {
     // "[json.exception...] number overflow parsing '1e999'"; without a place.
     std::string number = error.what();
     number.erase(0, number.find('\'') + 1);
-    number.erase(std::min<std::size_t>(number.find('\''), 40));
-    ThrowInputError(path, "the number " + number + " of the key \"" + last_key +
+    number.erase(std::min(number.find('\''), number.size()));
+    ThrowInputError(path, "the number " + Printable(number) + " of the key \"" +
+                              Printable(last_key) +
                               "\" is beyond the range of a double; correct it");
   } catch (const json::exception& error) {
     // "[json.exception...] parse error at line 3, column 7: ..."
@@ -70,7 +75,8 @@ json ParseJsonFile(const std::filesystem::path& path) {
     if (const auto found = message.find(place); found != std::string::npos) {
       message.erase(0, found + place.size());
     }
-    ThrowInputError(path, message + "; correct the JSON");
+    ThrowInputError(path,
+                    Printable(message, kLongestMessage) + "; correct the JSON");
   }
 }
 
@@ -85,8 +91,8 @@ void JsonValue::CheckKeys(const std::vector<std::string>& keys) const {
   }
   for (const auto& [key, value] : value_->items()) {
     if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
-      Fail("has the unknown key \"" + key + "\"; the keys known here are " +
-           Join(keys));
+      Fail("has the unknown key \"" + Printable(key) +
+           "\"; the keys known here are " + Join(keys));
     }
   }
 }

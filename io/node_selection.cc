@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "elastimate/io/printable.h"
+
 namespace elastimate {
 namespace {
 
@@ -44,8 +46,8 @@ void SelectByArray(const JsonValue& name, const MeshFile& mesh,
   const Eigen::MatrixXd& values = NamedNodeArray(name, mesh, 1);
   for (Eigen::Index node = 0; node < values.cols(); ++node) {
     if (mesh.used[node] && std::isnan(values(0, node))) {
-      name.Fail("names the array '" + name.String() + "', which is nan at " +
-                NodeName(mesh, node));
+      name.Fail("names the array '" + Printable(name.String()) +
+                "', which is nan at " + NodeName(mesh, node));
     }
   }
   mask = values.row(0).array() != 0;
@@ -56,7 +58,7 @@ std::string GroupNames(const MeshFile& mesh) {
   for (const PhysicalGroup& group : mesh.groups) {
     names += (names.empty() ? "" : ", ") + std::to_string(group.number);
     if (!group.name.empty()) {
-      names += " \"" + group.name + "\"";
+      names += " \"" + Printable(group.name) + "\"";
     }
   }
   return names.empty() ? "none" : names;
@@ -78,7 +80,7 @@ std::vector<const PhysicalGroup*> FindGroups(const JsonValue& name,
     }
   }
   if (groups.empty()) {
-    name.Fail("names no physical group of '" + mesh.path.string() +
+    name.Fail("names no physical group of '" + PrintablePath(mesh.path) +
               "'; its groups are: " + GroupNames(mesh));
   }
   return groups;
@@ -143,8 +145,8 @@ NodeMask SelectNodes(const JsonValue& selection, const MeshFile& mesh,
     } else if (word == "free") {
       selection.Fail("is \"free\", which cannot be used here");
     } else {
-      selection.Fail("is \"" + word + "\"; the words known here are \"all\" " +
-                     "and \"free\"");
+      selection.Fail("is \"" + Printable(word) +
+                     "\"; the words known here are \"all\" " + "and \"free\"");
     }
   } else {
     selection.CheckKeys({"ids", "box", "array", "physical"});
@@ -203,11 +205,11 @@ const Eigen::MatrixXd& NamedNodeArray(const JsonValue& name,
                                       int other_components) {
   const Eigen::MatrixXd* array = FindArray(mesh.node_arrays, name.String());
   if (array == nullptr) {
-    name.Fail("names the array '" + name.String() + "', which '" +
-              mesh.path.string() + "' does not have");
+    name.Fail("names the array '" + Printable(name.String()) + "', which '" +
+              PrintablePath(mesh.path) + "' does not have");
   }
   if (array->rows() != components && array->rows() != other_components) {
-    name.Fail("names the array '" + name.String() + "', which has " +
+    name.Fail("names the array '" + Printable(name.String()) + "', which has " +
               std::to_string(array->rows()) + " components where " +
               std::to_string(components) +
               (other_components == 0

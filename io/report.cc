@@ -4,6 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "elastimate/core/loads.h"
+#include "elastimate/io/printable.h"
+
 namespace elastimate {
 namespace {
 
@@ -29,6 +32,31 @@ Json OptionsJson(const EstimatorOptions& options) {
                          : Json(nullptr)},
           {"max_iterations", options.max_iterations},
           {"solver", solver_names[static_cast<int>(options.solver)]}};
+}
+
+Json LoadsJson(const Scene& scene) {
+  Json cases = Json::array();
+  for (const LoadCase& load_case : scene.load_cases) {
+    Json loads = Json::array();
+    for (const Load& load : load_case.loads) {
+      const LoadResultant resultant = ResultantOf(scene.mesh, load);
+      loads.push_back(
+          {{"type", resultant.type},
+           {"resultant",
+            {resultant.force[0], resultant.force[1], resultant.force[2]}},
+           {"area", OrNull(resultant.area)}});
+    }
+    cases.push_back(loads);
+  }
+  return cases;
+}
+
+Json NoticesJson(const std::vector<std::string>& notices) {
+  Json list = Json::array();
+  for (const std::string& notice : notices) {
+    list.push_back(Printable(notice, kLongestSentence));
+  }
+  return list;
 }
 
 Json MismatchJson(const Estimate& estimate) {
@@ -97,7 +125,8 @@ std::string Version() { return ELASTIMATE_VERSION; }
 
 std::string JsonReport(const Estimate& estimate, const Scene& scene,
                        const EstimatorOptions& options,
-                       const ReportTimes& times) {
+                       const ReportTimes& times,
+                       const std::vector<std::string>& notices) {
   const IsotropicElasticity& elasticity = estimate.elasticity;
   const std::optional<Interval>& interval = estimate.poisson_ratio_interval;
   const Json report = {
@@ -125,6 +154,8 @@ std::string JsonReport(const Estimate& estimate, const Scene& scene,
         {"tetrahedra", scene.mesh.NumElements()},
         {"load_cases", scene.load_cases.size()},
         {"order", scene.mesh.Order()}}},
+      {"loads", LoadsJson(scene)},
+      {"notices", NoticesJson(notices)},
       {"residual",
        {{"force_relative", OrNull(estimate.force_residual)},
         {"displacement_relative", OrNull(estimate.displacement_residual)}}},

@@ -2,6 +2,7 @@
 #define ELASTIMATE_IO_REPORT_H_
 
 #include <string>
+#include <vector>
 
 #include "elastimate/core/scene.h"
 #include "elastimate/estimators/estimate.h"
@@ -20,11 +21,13 @@ struct ReportTimes {
 
 /// The report of an estimate as a JSON text, described in the README.  `scene`
 /// is the one that was estimated, of either element order; its nodes are
-/// counted without those in the middle of edges.  Numbers round-trip; what the
-/// estimator cannot know is null.
+/// counted without those in the middle of edges.  `notices` are what the reader
+/// had to say about it.  Numbers round-trip; what the estimator cannot know is
+/// null.
 std::string JsonReport(const Estimate& estimate, const Scene& scene,
                        const EstimatorOptions& options,
-                       const ReportTimes& times);
+                       const ReportTimes& times,
+                       const std::vector<std::string>& notices = {});
 
 }  // namespace elastimate
 

@@ -1,18 +1,23 @@
 #include "elastimate/io/scene_reader.h"
 
+#include <array>
 #include <cmath>
+#include <set>
+#include <sstream>
 #include <stdexcept>
 #include <system_error>
 #include <type_traits>
 #include <utility>
 #include <variant>
 
+#include "elastimate/core/coincident_nodes.h"
 #include "elastimate/core/loads.h"
 #include "elastimate/io/array_scene.h"
 #include "elastimate/io/file_scene.h"
 #include "elastimate/io/input_error.h"
 #include "elastimate/io/json_scene.h"
 #include "elastimate/io/mesh_file.h"
+#include "elastimate/io/printable.h"
 
 namespace elastimate {
 namespace {
@@ -90,6 +95,7 @@ class UnusedNodeFilter {
   void FilterLoad(BodyForce& /*load*/) const {}
   void FilterLoad(Traction& load) const { Renumber(load.facets); }
   void FilterLoad(Pressure& load) const { Renumber(load.facets); }
+  void FilterLoad(SurfaceForce& load) const { Renumber(load.facets); }
 
   template <typename Columns>
   void KeepColumns(Columns& columns) const {
@@ -116,6 +122,30 @@ void CheckObserved(const std::filesystem::path& path, const Scene& scene) {
   }
 }
 
+/// What of a mesh may be meant otherwise than it is read.
+void NoteMesh(const std::filesystem::path& path, const Mesh& mesh,
+              std::vector<std::string>& notices) {
+  const std::set<int> regions(mesh.regions.begin(), mesh.regions.end());
+  if (regions.size() > 1) {
+    notices.push_back(PrintablePath(path) + ": the array 'region' has " +
+                      std::to_string(regions.size()) +
+                      " different ids, but all regions share one material: E "
+                      "and nu are those of the mesh as a whole");
+  }
+  const std::vector<std::array<int, 2>> coincident = CoincidentNodes(mesh);
+  if (!coincident.empty()) {
+    const auto place = mesh.nodes.col(coincident.front()[0]);
+    std::ostringstream first;
+    first << "(" << place.x() << ", " << place.y() << ", " << place.z() << ")";
+    notices.push_back(
+        PrintablePath(path) + ": " + std::to_string(coincident.size()) +
+        " nodes lie at the same place as another node, such as at " +
+        first.str() +
+        ", so that the parts around them are not connected; merge them in the "
+        "mesh tool if the parts should be one");
+  }
+}
+
 /// The scene without the nodes that no tetrahedron uses, valid.
 Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
                   std::vector<std::string>& notices) {
@@ -126,7 +156,7 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
   const Eigen::Index num_dropped =
       filter.NumDropped() + mesh.num_nodes_left_out;
   if (num_dropped > 0) {
-    notices.push_back(mesh.path.string() + ": dropped " +
+    notices.push_back(PrintablePath(mesh.path) + ": dropped " +
                       std::to_string(num_dropped) +
                       " points that no tetrahedron uses");
   }
@@ -152,7 +182,7 @@ void CheckPathsDiffer(const std::vector<std::filesystem::path>& paths) {
       std::error_code error;
       if (std::filesystem::equivalent(paths[k], paths[i], error)) {
         ThrowInputError(paths[i], "this file is given twice, also as '" +
-                                      paths[k].string() +
+                                      PrintablePath(paths[k]) +
                                       "'; give each load case only once");
       }
     }
@@ -186,7 +216,8 @@ void AddLoadCases(const std::filesystem::path& path,
                                   names[k] + "; give each load case only once");
       }
     }
-    names.push_back("load case " + number + " of '" + path.string() + "'");
+    names.push_back("load case " + number + " of '" + PrintablePath(path) +
+                    "'");
     scene.load_cases.push_back(std::move(load_cases[i]));
   }
 }
@@ -209,17 +240,20 @@ SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
   SceneReading reading;
   CaseNames names;
   for (const std::filesystem::path& path : paths) {
-    Scene scene =
-        FinishScene(path, ReadFileScene(path, measurement), reading.notices);
+    FileScene file_scene = ReadFileScene(path, measurement);
+    const std::filesystem::path mesh_path = file_scene.mesh.path;
+    Scene scene = FinishScene(path, std::move(file_scene), reading.notices);
     std::vector<LoadCase> load_cases = std::move(scene.load_cases);
     if (&path == &paths.front()) {
+      NoteMesh(mesh_path, scene.mesh, reading.notices);
       scene.load_cases.clear();
       reading.scene = std::move(scene);
     } else if (const std::string difference =
                    WhyDifferent(reading.scene, scene);
                !difference.empty()) {
       ThrowInputError(path, "this is no further load case of '" +
-                                paths.front().string() + "': " + difference +
+                                PrintablePath(paths.front()) +
+                                "': " + difference +
                                 "; use the same mesh and supports");
     }
     AddLoadCases(path, std::move(load_cases), reading.scene, names);

@@ -15,7 +15,9 @@ enum class Measurement { kRequired, kOptional };
 /// A scene as read, and what the reader has to say about it.
 struct SceneReading {
   Scene scene;
-  std::vector<std::string> notices;  ///< For people: points dropped, ...
+  /// For people: what was left out, and what may be meant otherwise than it is
+  /// read (forces per node, regions, nodes at one place).
+  std::vector<std::string> notices;
 };
 
 /// Reads a scene from files whose arrays make it up (.vtu, .vtk, or .msh with

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "elastimate/io/input_error.h"
+#include "elastimate/io/printable.h"
 #include "elastimate/io/vtk_grid.h"
 #include "elastimate/io/vtk_reader.h"
 
@@ -129,7 +130,7 @@ void CheckArrayLengths(const std::filesystem::path& path,
                        Eigen::Index length) {
   for (const FileArray& array : arrays) {
     if (array.values.cols() != length) {
-      ThrowInconsistent(path, "its array '" + array.name + "' has " +
+      ThrowInconsistent(path, "its array '" + Printable(array.name) + "' has " +
                                   std::to_string(array.values.cols()) +
                                   " rows where " + std::to_string(length) +
                                   " are due");

@@ -8,7 +8,14 @@
 #include <algorithm>
 #include <cstring>
 
+#include "elastimate/io/printable.h"
+
 namespace elastimate {
+namespace {
+
+constexpr std::size_t kLongestMessage = 240;  // Which may quote the file.
+
+}  // namespace
 
 class VtkMessageWindow : public vtkOutputWindow {
  public:
@@ -86,7 +93,7 @@ std::string VtkMessages::FirstError() const {
   for (char& c : message) {
     c = c == '\n' ? ' ' : c;
   }
-  return message;
+  return Printable(message, kLongestMessage);
 }
 
 }  // namespace elastimate

@@ -16,6 +16,8 @@
 #include <system_error>
 #include <vector>
 
+#include "elastimate/io/printable.h"
+
 namespace elastimate {
 namespace {
 
@@ -109,7 +111,7 @@ class XmlVtkCheck {
     const std::string type(Attribute(root, "type"));
     if (type != "UnstructuredGrid") {
       frame_.damage =
-          "its type is '" + type + "' instead of 'UnstructuredGrid'";
+          "its type is '" + Printable(type) + "' instead of 'UnstructuredGrid'";
       return;
     }
     const std::string_view header = Attribute(root, "header_type");
@@ -173,7 +175,8 @@ class XmlVtkCheck {
     if (name.empty()) {
       frame_.damage = "an array of its " + parent + " has no name";
     } else if (!names_.insert(name).second) {
-      frame_.damage = "its " + parent + " has two arrays '" + name + "'";
+      frame_.damage =
+          "its " + parent + " has two arrays '" + Printable(name) + "'";
     }
   }
 
@@ -193,13 +196,14 @@ class XmlVtkCheck {
     }
     const std::int64_t components = Count(array, "NumberOfComponents", 1);
     if (components < 0 || components > 100000) {
-      frame_.damage =
-          "the NumberOfComponents of its array '" + name + "' is wrong";
+      frame_.damage = "the NumberOfComponents of its array '" +
+                      Printable(name) + "' is wrong";
       return;
     }
     if (Count(array, "NumberOfTuples", 0) < 0 ||
         Count(array, "NumberOfTuples", 0) > 100 * file_size_) {
-      frame_.damage = "the NumberOfTuples of its array '" + name + "' is wrong";
+      frame_.damage =
+          "the NumberOfTuples of its array '" + Printable(name) + "' is wrong";
       return;
     }
     const std::int64_t num_tuples = NumTuples(array, parent);
@@ -215,13 +219,15 @@ class XmlVtkCheck {
       if (word_size > 0) {
         CheckNumWords(name, CountInlineWords(array), num_words);
       } else if (num_words > static_cast<double>(file_size_)) {
-        frame_.damage = "its array '" + name + "' is shorter than it says";
+        frame_.damage =
+            "its array '" + Printable(name) + "' is shorter than it says";
       }
       return;
     }
     const double size = DataSize(array, format == "appended");
     if (size < 0) {
-      frame_.damage = "the data of its array '" + name + "' are not all there";
+      frame_.damage =
+          "the data of its array '" + Printable(name) + "' are not all there";
     } else if (word_size > 0) {
       CheckNumWords(name, size / word_size, num_words);
     }
@@ -231,8 +237,9 @@ class XmlVtkCheck {
   /// is negative.
   void CheckNumWords(const std::string& name, double num_words, double due) {
     if (due >= 0 && num_words != due) {
-      frame_.damage = "its array '" + name + "' has " + Text(num_words) +
-                      " values where " + Text(due) + " are due";
+      frame_.damage = "its array '" + Printable(name) + "' has " +
+                      Text(num_words) + " values where " + Text(due) +
+                      " are due";
     }
   }
 

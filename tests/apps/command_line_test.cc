@@ -1,16 +1,25 @@
 // Runs the built program as a user does.
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <iomanip>
 #include <sstream>
 #include <string>
+#include <thread>
+#include <utility>
 
 #include "elastimate/core/quadratic_scene.h"
 #include "elastimate/core/rigid_motion.h"
@@ -131,6 +140,8 @@ TEST_F(CommandLine, TheReportHasTheDocumentedKeys) {
                                 "/mesh/tetrahedra",
                                 "/mesh/load_cases",
                                 "/mesh/order",
+                                "/loads",
+                                "/notices",
                                 "/residual/force_relative",
                                 "/residual/displacement_relative",
                                 "/diagnostics/identifiability_angle_deg",
@@ -377,7 +388,6 @@ TEST_F(CommandLine, RefusesWrongFlags) {
   Refuse("estimate ''", "an argument of estimate is empty");
   Refuse("estimate exact.vtu ''", "an argument of estimate is empty");
   Refuse("estimate exact.vtu --poisson=0.3", "unknown flag --poisson");
-  Refuse("estimate exact.vtu --", "unknown flag --;");
   Refuse("estimate exact.vtu --youngs=1",
          "elastimate: estimate takes no flag --youngs");
   Refuse("estimate exact.vtu --estimator=magic",
@@ -393,6 +403,23 @@ TEST_F(CommandLine, RefusesWrongFlags) {
   Refuse("estimate exact.vtu --threads=-1", "--threads=-1");
   Refuse("estimate exact.vtu --seed=-1", "--seed needs an integer from 0 to");
   Refuse("estimators exact.vtu", "takes no arguments; it got exact.vtu");
+}
+
+TEST_F(CommandLine, TakesWhatFollowsTwoDashesForFiles) {
+  MakeExactScene();
+  std::filesystem::copy_file(folder_ / "exact.vtu", folder_ / "-nu=0.1.vtu");
+  std::filesystem::copy_file(folder_ / "exact.vtu", folder_ / "--help");
+  EXPECT_EQ(Succeed("estimate --json=- -- -nu=0.1.vtu").Json()["usable"], true);
+  EXPECT_EQ(Succeed("estimate --json=- exact.vtu --").Json()["usable"], true);
+  EXPECT_EQ(Succeed("estimate exact.vtu --json=- --").Json()["usable"], true);
+  Refuse("estimate -nu=0.1.vtu", "--nu needs a finite number");
+  Refuse("estimate -- --help", "elastimate: --help: the file name does not");
+  Refuse("estimate -- --", "elastimate: --: no such file");
+  Refuse("estimate exact.vtu --nu --", "--nu needs a finite number");
+  Refuse("estimate --", "needs a scene file");
+  Refuse("-- estimate exact.vtu", "the command comes first");
+  EXPECT_NE(Succeed("--help").output.find("After -- every argument"),
+            std::string::npos);
 }
 
 TEST_F(CommandLine, RefusesWrongValues) {
@@ -602,6 +629,44 @@ TEST_F(CommandLine, WritesAllOutputsOrNone) {
          "no/result.vtu: there is no folder");
 }
 
+TEST_F(CommandLine, WritesWholeFilesUnderADeviceFolderToo) {
+  if (access("/dev/shm", W_OK) != 0) {
+    GTEST_SKIP() << "no writable folder /dev/shm";
+  }
+  MakeExactScene();
+  const std::string name = "/dev/shm/" + folder_.filename().string() + ".vtu";
+  Succeed("estimate exact.vtu --out=" + name);
+  const std::string once = ReadText(name);
+  Succeed("estimate exact.vtu --out=" + name);
+  EXPECT_EQ(ReadText(name), once);
+  Succeed("estimate exact.vtu --json=" + name);
+  EXPECT_EQ(nlohmann::json::parse(ReadText(name))["usable"], true);
+  std::filesystem::remove(name);
+}
+
+TEST_F(CommandLine, RefusesToWriteToAnOpenFile) {
+  MakeExactScene();
+  const std::string says = "this is the number of an open file, which could be";
+  std::filesystem::create_symlink("/dev/fd/3", folder_ / "link.vtu");
+  WriteText(folder_ / "open.json", "what was there");
+  for (const std::string flag :
+       {"--json=/dev/fd/3", "--json=/proc/self/fd/3", "--out=link.vtu"}) {
+    Refuse("estimate exact.vtu " + flag, says, ">.output 3>>open.json");
+  }
+  Refuse("estimate exact.vtu --json=/dev/fd/987", says);
+  Refuse("estimate exact.vtu --json=/dev/stderr",
+         "--json=/dev/stderr is where standard error goes");
+  Refuse("estimate exact.vtu --json=.errors",
+         "--json=.errors is where standard error goes");
+  Refuse("estimate exact.vtu --json=/dev/fd/3 --out=link.vtu", "same file",
+         ">.output 3>/dev/null");
+  // As a shell makes of >(command).
+  EXPECT_EQ(Run("estimate exact.vtu --json=/dev/fd/3 3>&1 >/dev/null",
+                "| cat >.output")
+                .Json()["usable"],
+            true);
+}
+
 TEST_F(CommandLine, WritesVtuFilesOnly) {
   MakeExactScene();
   for (const std::string command :
@@ -745,6 +810,237 @@ TEST_F(CommandLine, NeedsSupportsForAFiniteElementFitOnly) {
   })");
   Refuse("simulate scene.json --youngs=1 --nu=0.3 --out=a.vtu",
          "without strain");
+}
+
+// ---------------------------------------------------------------------------
+// Text of others in messages.
+
+TEST_F(CommandLine, QuotesOnlyWhatIsFitToPrint) {
+  MakeExactScene();
+  const std::string longest(2000, 'a');
+  const std::string cut = std::string(37, 'a') + "..." + std::string(20, 'a');
+  const std::string control = "$(printf 'a\\033[2J\\nb\\377')";
+  const std::string shown = "a\\x1b[2J\\nb\\xff";
+  for (const auto& [text, quoted] :
+       {std::pair(longest, cut), std::pair("\"" + control + "\"", shown)}) {
+    Refuse(text + " exact.vtu", "unknown command '" + quoted + "'");
+    Refuse("estimate exact.vtu --" + text, "unknown flag --" + quoted + ";");
+    Refuse("estimate exact.vtu --nu=" + text, "it got " + quoted + "\n");
+    Refuse("estimate exact.vtu --loss=" + text, "--loss=" + quoted + ";");
+    Refuse("estimate exact.vtu --solver=" + text, "--solver=" + quoted + ";");
+    Refuse("estimate exact.vtu --estimator=" + text,
+           "unknown estimator '" + quoted + "'");
+    Refuse(
+        "simulate cuboid.vtu --youngs=1 --nu=0 --out=a.vtu --noise_law=" + text,
+        "--noise_law=" + quoted + ";");
+    Refuse("generate " + text + " --out=a.vtu", "it got " + quoted + "\n");
+    Refuse("generate cuboid --out=a.vtu --cells=" + text,
+           "--cells=" + quoted + ";");
+    Refuse("estimators " + text, "it got " + quoted + "\n");
+  }
+  Refuse("estimate \"" + control + ".vtu\"", shown + ".vtu: ");
+  Refuse("estimate exact.vtu --json=\"" + control + "/r.json\"",
+         shown + "/r.json: ");
+  Refuse("estimate exact.vtu --out=\"" + control + "\"", "--out=" + shown);
+  Refuse("estimate " + longest + ".vtu", std::string(157, 'a') + "...");
+  Refuse("estimate Prüfkörper.vtu", "elastimate: Prüfkörper.vtu: no such file");
+  const std::string name = "\"$(printf 'n\\033[2J.vtu')\"";
+  Succeed("generate cuboid --out=" + name);
+  const std::string says = "n\\x1b[2J.vtu";
+  Refuse("estimate " + name,
+         "elastimate: " + says + ": the point array 'displacement' is missing");
+  Refuse("estimate exact.vtu " + name, "elastimate: " + says + ": ");
+  Refuse("simulate " + name + " --youngs=1 --nu=0 --out=" + name,
+         "--out=" + says + " would overwrite the input " + says);
+}
+
+// ---------------------------------------------------------------------------
+// Signals.
+
+class Signals : public CommandLine {
+ protected:
+  /// Sends the signal while the program has written one output and waits for a
+  /// reader of the other one; the status that it ends with.
+  int Interrupt(int signal_number, void (*disposition)(int) = SIG_DFL) {
+    const pid_t child = fork();
+    if (child == 0) {
+      std::signal(signal_number, disposition);
+      const int null = open("/dev/null", O_RDWR);
+      dup2(null, STDIN_FILENO);
+      dup2(null, STDOUT_FILENO);
+      dup2(null, STDERR_FILENO);
+      if (chdir(folder_.c_str()) == 0) {
+        execl(ELASTIMATE_PROGRAM, ELASTIMATE_PROGRAM, "estimate", "exact.vtu",
+              "--out=result.vtu", "--json=pipe", nullptr);
+      }
+      _exit(99);
+    }
+    // The part is there, and whole: that is when the pipe is opened.
+    for (int i = 0; i < 3000 && NumParts() == 0; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_EQ(NumParts(), 1);
+    kill(child, signal_number);
+    if (disposition == SIG_IGN) {
+      ReadText(folder_ / "pipe");
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    return status;
+  }
+
+  std::ptrdiff_t NumParts() const {
+    const std::filesystem::directory_iterator entries(folder_);
+    return std::count_if(begin(entries), end(entries), [](const auto& entry) {
+      return entry.path().extension() == ".part";
+    });
+  }
+};
+
+TEST_F(Signals, LeaveNoPartOfAnOutput) {
+  MakeExactScene();
+  WriteText(folder_ / "result.vtu", "old");
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  for (const int signal_number : {SIGHUP, SIGINT, SIGQUIT, SIGTERM}) {
+    const int status = Interrupt(signal_number);
+    EXPECT_TRUE(WIFSIGNALED(status)) << signal_number;
+    EXPECT_EQ(WTERMSIG(status), signal_number);
+    EXPECT_EQ(NumParts(), 0);
+    EXPECT_EQ(ReadText(folder_ / "result.vtu"), "old");
+  }
+}
+
+// As nohup tells it.
+TEST_F(Signals, StayIgnoredWhereTheCallerSaysSo) {
+  MakeExactScene();
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  const int status = Interrupt(SIGHUP, SIG_IGN);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_EQ(NumParts(), 0);
+  EXPECT_EQ(Read("result.vtu").mesh.NumElements(), 250);
+}
+
+// ---------------------------------------------------------------------------
+// Loads.
+
+/// A block under the total force F on its top of area A, which slides on three
+/// of its sides: u = (F / (A E)) (-nu x, -nu y, z).
+class Loads : public CommandLine {
+ protected:
+  static constexpr double kForce = -5;
+
+  /// scene.json with these loads, and the displacement of E = 100 kPa and
+  /// nu = 0.3.
+  void WriteScene(const std::string& cells, const std::string& loads) const {
+    Succeed("generate cuboid --size=2,3,0.4 --out=block.vtu --cells=" + cells);
+    const double strain = kForce / (2 * 3 * 1e5);
+    std::ostringstream rows;
+    rows << std::setprecision(17) << "ux,uy,uz\n";
+    const Mesh mesh = Read("block.vtu").mesh;
+    for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
+      const Eigen::Vector3d x = mesh.nodes.col(node);
+      rows << -0.3 * strain * x(0) << "," << -0.3 * strain * x(1) << ","
+           << strain * x(2) << "\n";
+    }
+    WriteText(folder_ / "u.csv", rows.str());
+    WriteText(folder_ / "scene.json", R"({
+      "mesh": "block.vtu",
+      "supports": [
+        {"nodes": {"box": [[-1, -1, 0], [9, 9, 0]]}, "components": "z"},
+        {"nodes": {"box": [[0, -1, -1], [0, 9, 9]]}, "components": "x"},
+        {"nodes": {"box": [[-1, 0, -1], [9, 0, 9]]}, "components": "y"}],
+      "cases": [{"displacement": {"file": "u.csv"}, "loads": [)" +
+                                          loads + "]}]}");
+  }
+
+  static std::string OnTop(const std::string& type, const std::string& value,
+                           const std::string& where = "surface") {
+    return R"({"type": ")" + type + R"(", "value": )" + value + R"(, ")" +
+           where + R"(": {"box": [[-1, -1, 0.39], [9, 9, 0.41]]}})";
+  }
+};
+
+TEST_F(Loads, ATotalForceGivesYoungsModulusOnAnyMesh) {
+  for (const std::string cells : {"1,1,1", "3,2,2", "6,7,3"}) {
+    WriteScene(cells, OnTop("force", "[0, 0, -5]"));
+    for (const std::string flags :
+         {"--estimator=closed-form", "--estimator=reduced-fe",
+          "--estimator=reduced-fe --order=2"}) {
+      SCOPED_TRACE(cells + " " + flags);
+      const nlohmann::json report =
+          Succeed("estimate scene.json --json=- " + flags).Json();
+      EXPECT_NEAR(report["youngs_modulus"].get<double>() / 1e5, 1, 1e-6);
+      EXPECT_NEAR(report["poisson_ratio"].get<double>(), 0.3, 1e-6);
+      ASSERT_EQ(report["loads"].size(), 1);
+      ASSERT_EQ(report["loads"][0].size(), 1);
+      const nlohmann::json& load = report["loads"][0][0];
+      EXPECT_EQ(load["type"], "force");
+      EXPECT_EQ(load["resultant"], nlohmann::json({0., 0., -5.}));
+      EXPECT_NEAR(load["area"].get<double>(), 6, 1e-12);
+      EXPECT_TRUE(report["notices"].empty());
+    }
+  }
+}
+
+TEST_F(Loads, ANodalForceThatIsMeantAsATotalIsNoted) {
+  WriteScene("3,2,2", OnTop("nodal_force", "[0, 0, -5]", "nodes"));
+  const ProgramRun run = Run("estimate scene.json --json=-");
+  const nlohmann::json report = run.Json();
+  EXPECT_EQ(report["loads"], nlohmann::json::parse(R"([[{"type": "nodal_force",
+                                        "resultant": [0, 0, -60],
+                                        "area": null}]])"));
+  ASSERT_EQ(report["notices"].size(), 1);
+  const std::string notice = report["notices"][0];
+  EXPECT_EQ(run.errors, "elastimate: notice: " + notice + "\n");
+  EXPECT_NE(notice.find("[0, 0, -5] on each of 12 nodes, [0, 0, -60] in total"),
+            std::string::npos)
+      << notice;
+}
+
+TEST_F(Loads, AreInTheTable) {
+  WriteScene("3,2,2", OnTop("force", "[0, 0, -5]") + "," +
+                          OnTop("traction", "[0, 0.5, 0]") + "," +
+                          OnTop("pressure", "0.25") + "," +
+                          R"({"type": "body_force", "value": [0, 0, -10]})");
+  const auto table = [this] { return Run("estimate scene.json").output; };
+  for (const std::string line :
+       {"load                  force, resultant (0, 0, -5) on an area of 6\n",
+        "load                  traction, resultant (0, 3, 0) on an area of 6\n",
+        "load                  pressure, resultant (0, 0, -1.5) on an area of "
+        "6\n",
+        "load                  body_force, resultant (0, 0, -24)\n"}) {
+    EXPECT_NE(table().find(line), std::string::npos) << table();
+  }
+  std::string many = OnTop("force", "[0, 0, -5]");
+  for (int i = 0; i < 5; ++i) {
+    many += "," + OnTop("force", "[1, 0, 0]");
+  }
+  WriteScene("3,2,2", many);
+  EXPECT_NE(table().find("load                  6 loads, resultant (5, 0, -5)"),
+            std::string::npos)
+      << table();
+}
+
+TEST_F(Loads, OfNodalForcesFromAFileAreOneEntryForEachCase) {
+  Succeed("generate cuboid --force=0,0,-30 --out=a.vtu");
+  Succeed("generate cuboid --force=2,0,0 --out=b.vtu");
+  Succeed("simulate a.vtu --youngs=1e4 --nu=0.3 --out=ma.vtu");
+  Succeed("simulate b.vtu --youngs=1e4 --nu=0.3 --out=mb.vtu");
+  const nlohmann::json loads =
+      Succeed("estimate ma.vtu mb.vtu --json=-").Json()["loads"];
+  // On each of the 6 x 6 x 2 free nodes.
+  EXPECT_EQ(loads, nlohmann::json::parse(
+                       R"([[{"type": "nodal_force", "resultant": [0, 0, -2160],
+                "area": null}],
+              [{"type": "nodal_force", "resultant": [144, 0, 0],
+                "area": null}]])"));
+  const std::string table = Succeed("estimate ma.vtu mb.vtu").output;
+  for (const std::string line :
+       {"load case 1           nodal_force, resultant (0, 0, -2160)\n",
+        "load case 2           nodal_force, resultant (144, 0, 0)\n"}) {
+    EXPECT_NE(table.find(line), std::string::npos) << table;
+  }
 }
 
 // ---------------------------------------------------------------------------

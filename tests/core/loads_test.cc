@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -152,11 +154,90 @@ TEST_F(LoadedBox, VirtualWorkOfAPressureIsMinusPressureTimesVolumeChange) {
               kTolerance * 1000);
 }
 
+// The closed form: on facets of any shape, linear elements take a third of each
+// facet's share at each of its nodes.
+TEST_F(LoadedBox, SurfaceForceIsSpreadByArea) {
+  const Mesh mesh = Distorted(mesh_);
+  const Eigen::MatrixXi facets = BoundaryFacets(mesh).leftCols(20);
+  const Eigen::Vector3d total(0.5, -1, 2);
+  Eigen::VectorXd area(facets.cols());
+  for (Eigen::Index i = 0; i < facets.cols(); ++i) {
+    const Eigen::Vector3d origin = mesh.nodes.col(facets(0, i));
+    const Eigen::Vector3d e1 = mesh.nodes.col(facets(1, i)) - origin;
+    const Eigen::Vector3d e2 = mesh.nodes.col(facets(2, i)) - origin;
+    area(i) = e1.cross(e2).norm() / 2;
+  }
+  Eigen::Matrix3Xd expected = Eigen::Matrix3Xd::Zero(3, mesh.NumNodes());
+  for (Eigen::Index i = 0; i < facets.cols(); ++i) {
+    for (const int node : facets.col(i)) {
+      expected.col(node) += area(i) / area.sum() / 3 * total;
+    }
+  }
+  const Eigen::Matrix3Xd force =
+      AssembleLoads(mesh, {SurfaceForce{facets, total}});
+  EXPECT_NEAR((force - expected).norm(), 0, kTolerance * total.norm());
+  EXPECT_NEAR((force.rowwise().sum() - total).norm(), 0, kTolerance * 30);
+}
+
+TEST_F(LoadedBox, SurfaceForceActsAtTheMiddleOfTheFaceHoweverFineTheMesh) {
+  const Eigen::Vector3d total(0.5, -1, 2);
+  const Eigen::Vector3d moment = Eigen::Vector3d(1, 1.5, 4).cross(total);
+  for (const int cells : {1, 2, 5}) {
+    const Mesh linear = BoxMesh({cells, cells + 1, 2}, {2, 3, 4});
+    for (const Mesh& mesh : {linear, WithMidEdgeNodes(linear)}) {
+      const Eigen::Matrix3Xd force =
+          AssembleLoads(mesh, {SurfaceForce{FacetsAt(mesh, 2, 4), total}});
+      EXPECT_NEAR((force.rowwise().sum() - total).norm(), 0, kTolerance * 30);
+      EXPECT_NEAR((Moment(mesh, force) - moment).norm(), 0, kTolerance * 100);
+    }
+  }
+}
+
+// [0, 2] x [0, 3] x [0, 4]: a face of 12 at x = 2, one of 8 at y = 3.
+TEST_F(LoadedBox, ResultantsFollowFromTheGeometry) {
+  Eigen::Matrix3Xd nodal = Eigen::Matrix3Xd::Zero(3, mesh_.NumNodes());
+  nodal.col(1) << 1, 2, 3;
+  nodal.col(7) << 1, -2, 4;
+  struct Expected {
+    Load load;
+    std::string type;
+    Eigen::Vector3d force;
+    std::optional<double> area;
+  };
+  for (const Mesh& mesh : {mesh_, WithMidEdgeNodes(mesh_)}) {
+    Eigen::Matrix3Xd all = Eigen::Matrix3Xd::Zero(3, mesh.NumNodes());
+    all.leftCols(nodal.cols()) = nodal;
+    const Eigen::MatrixXi side = FacetsAt(mesh, 0, 2);
+    const std::vector<Expected> cases = {
+        {NodalForces{all}, "nodal_force", {2, 0, 7}, std::nullopt},
+        {BodyForce{{0, 1, -10}}, "body_force", {0, 24, -240}, std::nullopt},
+        {Traction{side, {1, 0, -3}}, "traction", {12, 0, -36}, 12},
+        {Pressure{FacetsAt(mesh, 1, 3), 5}, "pressure", {0, -40, 0}, 8},
+        {Pressure{BoundaryFacets(mesh), 5}, "pressure", {0, 0, 0}, 52},
+        {SurfaceForce{side, {0, 0, -3}}, "force", {0, 0, -3}, 12}};
+    for (const Expected& expected : cases) {
+      SCOPED_TRACE(expected.type);
+      const LoadResultant resultant = ResultantOf(mesh, expected.load);
+      EXPECT_EQ(resultant.type, expected.type);
+      EXPECT_NEAR((resultant.force - expected.force).norm(), 0,
+                  kTolerance * 300);
+      ASSERT_EQ(resultant.area.has_value(), expected.area.has_value());
+      EXPECT_NEAR(resultant.area.value_or(0), expected.area.value_or(0),
+                  kTolerance * 60);
+      EXPECT_NEAR((AssembleLoads(mesh, {expected.load}).rowwise().sum() -
+                   expected.force)
+                      .norm(),
+                  0, kTolerance * 300);
+    }
+  }
+}
+
 TEST_F(LoadedBox, LoadsAddUp) {
   const Eigen::MatrixXi facets = BoundaryFacets(mesh_);
   const std::vector<Load> loads = {
       NodalForces{Eigen::Matrix3Xd::Constant(3, mesh_.NumNodes(), 0.5)},
-      BodyForce{{1, 2, 3}}, Traction{facets, {-1, 0, 1}}, Pressure{facets, 2}};
+      BodyForce{{1, 2, 3}}, Traction{facets, {-1, 0, 1}}, Pressure{facets, 2},
+      SurfaceForce{facets, {3, 2, 1}}};
   Eigen::Matrix3Xd sum = Eigen::Matrix3Xd::Zero(3, mesh_.NumNodes());
   for (const Load& load : loads) {
     sum += AssembleLoads(mesh_, {load});
@@ -210,7 +291,9 @@ TEST_F(QuadraticLoadedBox, LoadsHaveTheResultantAndMomentOfLinearElements) {
   const std::vector<std::pair<Load, Load>> loads = {
       {BodyForce{{1, 2, 3}}, BodyForce{{1, 2, 3}}},
       {Traction{facets, {1, 2, 3}}, Traction{linear_facets, {1, 2, 3}}},
-      {Pressure{facets, 2}, Pressure{linear_facets, 2}}};
+      {Pressure{facets, 2}, Pressure{linear_facets, 2}},
+      {SurfaceForce{facets, {1, 2, 3}},
+       SurfaceForce{linear_facets, {1, 2, 3}}}};
   for (const auto& [load, linear_load] : loads) {
     const Eigen::Matrix3Xd force = AssembleLoads(mesh, {load});
     const Eigen::Matrix3Xd expected = AssembleLoads(linear, {linear_load});

@@ -49,7 +49,8 @@ class ConvertedOrgan : public ::testing::Test {
     const Eigen::MatrixXi facets = BoundaryFacets(scene_.mesh);
     LoadCase second;
     second.loads = {BodyForce{{0, 0, -9.81}}, Traction{facets, {1, 2, 3}},
-                    Pressure{facets.leftCols(7), 2}};
+                    Pressure{facets.leftCols(7), 2},
+                    SurfaceForce{facets.leftCols(5), {3, 2, 1}}};
     second.displacement = RandomMatrix(3, num_nodes, 2);
     second.observed = RandomMatrix(3, num_nodes, 3).array() > 0;
     second.noise_sd = 1e-3;
@@ -155,6 +156,9 @@ TEST_F(ConvertedOrgan, KeepsWhatTheOtherLoadsAre) {
   const auto& pressure = std::get<Pressure>(loads[2]);
   EXPECT_EQ(pressure.pressure, 2);
   EXPECT_EQ(pressure.facets, BoundaryFacets(quadratic_.mesh).leftCols(7));
+  const auto& force = std::get<SurfaceForce>(loads[3]);
+  EXPECT_EQ(force.force, Eigen::Vector3d(3, 2, 1));
+  EXPECT_EQ(force.facets, BoundaryFacets(quadratic_.mesh).leftCols(5));
 }
 
 // On the displacements of linear elements, the loads do the same work.

@@ -209,6 +209,25 @@ TEST_P(Chain, OfHeldNodesIsHeld) {
   EXPECT_THAT(WhyNotHeld(mesh_, supports_), IsEmpty());
 }
 
+TEST(SeparateBoxes, AreSaidToShareNoNode) {
+  // The second box stands on the first one, on nodes of its own.
+  const Mesh box = BoxMesh({1, 1, 1}, {1, 1, 1});
+  Mesh mesh;
+  mesh.nodes.resize(3, 2 * box.NumNodes());
+  mesh.nodes << box.nodes, box.nodes.colwise() + Eigen::Vector3d::UnitZ();
+  mesh.elements.resize(4, 2 * box.NumElements());
+  mesh.elements << box.elements,
+      box.elements.array() + static_cast<int>(box.NumNodes());
+  Supports supports;
+  supports.held = ComponentMask::Constant(3, mesh.NumNodes(), false);
+  supports.held.leftCols(4).setConstant(true);
+  supports.displacement = Eigen::Matrix3Xd::Zero(3, mesh.NumNodes());
+  EXPECT_THAT(
+      WhyNotHeld(mesh, supports),
+      ContainsRegex("around node 8 .* hold more components \\(it shares "
+                    "no node with the rest of the mesh"));
+}
+
 // The rest is held at its nodes, and the part in the middle by its neighbours
 // at two of its own.
 TEST_P(Chain, TurnsInTheMiddle) {

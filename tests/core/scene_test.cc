@@ -28,6 +28,7 @@ class ValidatedScene : public ::testing::Test {
     second.loads.emplace_back(BodyForce{{0, 0, -9.81}});
     second.loads.emplace_back(Traction{facets, {1, 0, 0}});
     second.loads.emplace_back(Pressure{facets, 2.0});
+    second.loads.emplace_back(SurfaceForce{facets, {0, 0, -5}});
     second.displacement = Eigen::Matrix3Xd::Zero(3, NumNodes());
     second.observed = ComponentMask::Constant(3, NumNodes(), true);
     second.noise_sd = 1e-3;
@@ -127,6 +128,28 @@ TEST_F(ValidatedScene, NeedsAFiniteTraction) {
   SecondLoad<Traction>(1).traction(0) = kNan;
   EXPECT_THROWS_WITH(ValidateScene(scene_),
                      "the traction in load 2 of load case 2 is not finite");
+}
+
+TEST_F(ValidatedScene, NeedsAFiniteForceOnASurface) {
+  SecondLoad<SurfaceForce>(3).force(1) = kInfinity;
+  EXPECT_THROWS_WITH(ValidateScene(scene_),
+                     "the force on a surface in load 4 of load case 2 is not "
+                     "finite");
+  SecondLoad<SurfaceForce>(3).force(1) = 1e60;
+  EXPECT_THROWS_WITH(ValidateScene(scene_),
+                     "the force on a surface in load 4 of load case 2 has the "
+                     "magnitude 1e\\+60");
+}
+
+TEST_F(ValidatedScene, NeedsAreaUnderAForceOnASurface) {
+  SecondLoad<SurfaceForce>(3).facets.setConstant(3);
+  EXPECT_THROWS_WITH(ValidateScene(scene_),
+                     "the force on a surface in load 4 of load case 2 acts on "
+                     "facets without area");
+  SecondLoad<SurfaceForce>(3).facets.resize(3, 0);
+  EXPECT_THROWS_WITH(ValidateScene(scene_),
+                     "the force on a surface in load 4 of load case 2 acts on "
+                     "no facet");
 }
 
 TEST_F(ValidatedScene, NeedsAFinitePressure) {

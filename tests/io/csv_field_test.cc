@@ -46,6 +46,18 @@ TEST_F(CsvFieldTest, NamesLineAndColumn) {
   EXPECT_THROWS_WITH(Read("x,y,z\n1,2,3\n\n4,5,6\n"), "line 3");
 }
 
+TEST_F(CsvFieldTest, QuotesOnlyWhatIsFitToPrint) {
+  using namespace std::string_literals;
+  EXPECT_THROWS_WITH(Read("x,y,z\n1,\033[31m\0\xFF,3\n4,5,6\n"s),
+                     "line 2, column 2: '\\\\x1b\\[31m\\\\x00\\\\xff' is not");
+  EXPECT_THROWS_WITH(Read("x,y,z\n1," + std::string(2000, 'x') + ",3\n"),
+                     "column 2: 'x{37}\\.\\.\\.x{20}' is not a number");
+  EXPECT_THROWS_WITH(Read("x,y,z\n1," + std::string(2000, '7') + ",3\n"),
+                     "column 2: '7{37}\\.\\.\\.7{20}' is beyond the range");
+  EXPECT_THROWS_WITH(Read("\033[2Jx,y,z\n1,2,3\n"),
+                     "line 1: the header must be");
+}
+
 TEST_F(CsvFieldTest, CountsRows) {
   EXPECT_THROWS_WITH(Read("x,y,z\n1,2,3\n"),
                      "u.csv: the file has 1 rows below its header, but the "

@@ -1,12 +1,19 @@
 #include "elastimate/io/file_output.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
+#include <cstring>
 #include <iterator>
 #include <thread>
+#include <vector>
 
 #include "tests/io/scene_files.h"
 #include "tests/throws.h"
@@ -78,6 +85,96 @@ TEST_F(FileOutputTest, WritesToPipesInPlace) {
   EXPECT_EQ(received, "through the pipe");
   EXPECT_TRUE(fs::is_fifo(pipe));
   EXPECT_NO_THROW(WriteWholeFile("/dev/null", "gone"));
+}
+
+// Memory under a device folder, as /dev/shm is, holds files like any other.
+TEST_F(FileOutputTest, ReplacesFilesUnderADeviceFolder) {
+  if (access("/dev/shm", W_OK) != 0) {
+    GTEST_SKIP() << "no writable folder /dev/shm";
+  }
+  std::string name = "/dev/shm/elastimate-XXXXXX";
+  const int descriptor = mkstemp(name.data());
+  ASSERT_GE(descriptor, 0);
+  close(descriptor);
+  WriteWholeFile(name, "first");
+  WriteWholeFile(name, "second");
+  EXPECT_EQ(ReadFile(name), "second");
+  unlink(name.c_str());
+}
+
+TEST_F(FileOutputTest, RefusesOpenFilesByTheirNumber) {
+  const fs::path file = folder_.Write("open.json", "what was there");
+  const int descriptor = open(file.c_str(), O_WRONLY | O_APPEND);
+  ASSERT_GE(descriptor, 0);
+  const std::string number = std::to_string(descriptor);
+  fs::create_symlink("/dev/fd/" + number, folder_.Path() / "link.json");
+  for (const fs::path& name :
+       {fs::path("/dev/fd/" + number), fs::path("/proc/self/fd/" + number),
+        folder_.Path() / "link.json", fs::path("/dev/fd/987")}) {
+    EXPECT_THROWS_WITH(CheckWritable(name),
+                       "this is the number of an open file");
+    EXPECT_THROWS_WITH(WriteWholeFile(name, "x"),
+                       "this is the number of an open file");
+  }
+  close(descriptor);
+  EXPECT_EQ(ReadFile(file), "what was there");
+  // A pipe has no name of its own: the shell gives it so.
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  WriteWholeFile("/dev/fd/" + std::to_string(ends[1]), "through the pipe");
+  close(ends[1]);
+  char received[32] = {};
+  EXPECT_EQ(read(ends[0], received, sizeof received), 16);
+  EXPECT_STREQ(received, "through the pipe");
+  close(ends[0]);
+}
+
+TEST_F(FileOutputTest, RefusesWhatIsNoFile) {
+  const int descriptor = socket(AF_UNIX, SOCK_STREAM, 0);
+  ASSERT_GE(descriptor, 0);
+  const fs::path path = folder_.Path() / "socket";
+  sockaddr_un address = {};
+  address.sun_family = AF_UNIX;
+  std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
+  ASSERT_EQ(bind(descriptor, reinterpret_cast<const sockaddr*>(&address),
+                 sizeof address),
+            0);
+  EXPECT_THROWS_WITH(WriteWholeFile(path, "x"), "this is a disk or a socket");
+  close(descriptor);
+}
+
+TEST_F(FileOutputTest, UnlinksOnlyWhatIsStaged) {
+  const fs::path old = folder_.Write("old.json", "old");
+  const fs::path other = folder_.Path() / "new.vtu";
+  StagedFiles files;
+  files.Add(old, "newer");
+  files.Add(other, "new");
+  WriteWholeFile(folder_.Path() / "whole.json", "whole");
+  EXPECT_EQ(NumFiles(), 4);
+  UnlinkStagedFiles();
+  EXPECT_EQ(NumFiles(), 2);
+  EXPECT_EQ(ReadFile(old), "old");
+  EXPECT_EQ(ReadFile(folder_.Path() / "whole.json"), "whole");
+}
+
+// Places for names are used again, by several threads at once.
+TEST_F(FileOutputTest, WritesFromSeveralThreads) {
+  std::vector<std::thread> threads;
+  threads.reserve(4);
+  for (int thread = 0; thread < 4; ++thread) {
+    threads.emplace_back([this, thread] {
+      for (int i = 0; i < 20; ++i) {
+        WriteWholeFile(folder_.Path() / std::to_string(thread),
+                       std::to_string(i));
+      }
+    });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  UnlinkStagedFiles();
+  EXPECT_EQ(NumFiles(), 4);
+  EXPECT_EQ(ReadFile(folder_.Path() / "3"), "19");
 }
 
 TEST_F(FileOutputTest, LeavesTheOldFileWhenItFails) {

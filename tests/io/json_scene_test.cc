@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <utility>
+
 #include "elastimate/core/loads.h"
 #include "tests/io/gmsh_files.h"
 #include "tests/io/scene_files.h"
@@ -104,7 +107,9 @@ TEST_F(JsonSceneTest, SelectsNodesByArray) {
   EXPECT_THAT(Held(document), ElementsAre(0, 1, 2));
   EXPECT_EQ(reading.scene.load_cases[0].displacement.col(3),
             Eigen::Vector3d(.1, .2, .3));
-  EXPECT_THAT(reading.notices, ElementsAre(::testing::HasSubstr("dropped 1")));
+  EXPECT_THAT(reading.notices,
+              ElementsAre(::testing::HasSubstr("dropped 1"),
+                          ::testing::HasSubstr("regions share one material")));
   EXPECT_THROWS_WITH(Read(Replaced(document, "\"fixed\"", "\"none\"")),
                      "supports\\[0\\].nodes.array names the array 'none', "
                      "which '.*mesh.vtk' does not have");
@@ -205,14 +210,104 @@ TEST_F(JsonSceneTest, SelectsOutwardFacets) {
   EXPECT_EQ(traction.facets.cols(), 3);  // The inner face is none of them.
 }
 
+TEST_F(JsonSceneTest, ReadsATotalForceOnASurface) {
+  const auto force =
+      std::get<SurfaceForce>(ReadLoad(R"({"type": "force", "value": [1, 0, -5],
+                   "surface": {"physical": "top"}})"));
+  EXPECT_EQ(force.force, Eigen::Vector3d(1, 0, -5));
+  EXPECT_EQ(force.facets.cols(), 2);
+  const Scene scene = Read(kDocument).scene;
+  const LoadResultant resultant = ResultantOf(scene.mesh, force);
+  // Half a square and an equilateral triangle of edge sqrt(2).
+  EXPECT_NEAR(*resultant.area, 0.5 + std::sqrt(3) / 2, 1e-15);
+  EXPECT_TRUE(AssembleLoads(scene.mesh, {force})
+                  .rowwise()
+                  .sum()
+                  .isApprox(Eigen::Vector3d(1, 0, -5), 1e-15));
+  const auto other =
+      std::get<SurfaceForce>(ReadLoad(R"({"type": "force", "value": [1, 0, -5],
+                   "surface": {"box": [[0, 0, 0], [1, 1, 1]]}})"));
+  EXPECT_EQ(other.facets.cols(), 3);
+}
+
+// Facets are numbered anew where points are dropped.
+TEST_F(JsonSceneTest, PutsATotalForceOnNodesThatAreKept) {
+  folder_.Write("mesh.vtk", LegacySceneText());
+  const std::string document =
+      Replaced(Replaced(WithLoad(R"({"type": "force", "value": [0, 0, -5],
+                            "surface": {"ids": [0, 1, 4]}})"),
+                        "mesh.msh", "mesh.vtk"),
+               R"({"file": "u.csv"})", R"({"array": "displacement"})");
+  const Scene scene = Read(document).scene;
+  const auto force = AssembleLoads(scene.mesh, scene.load_cases[0].loads);
+  EXPECT_THAT(force.row(2),
+              ::testing::Pointwise(::testing::DoubleEq(),
+                                   {-5. / 3, -5. / 3, 0., -5. / 3, 0.}));
+}
+
+TEST_F(JsonSceneTest, ErrsOnAForceThatIsNone) {
+  const auto expect = [&](const std::string& load, const std::string& pattern) {
+    EXPECT_THROWS_WITH(ReadLoad(load),
+                       "scene.json: cases\\[0\\].loads\\[0\\]" + pattern);
+  };
+  expect(R"({"type": "force", "value": [0, 0, -5], "nodes": "free"})",
+         " has the unknown key \"nodes\"; the keys known here are type, value, "
+         "surface");
+  expect(R"({"type": "force", "value": [0, 0, -5]})",
+         ".surface is missing; add it");
+  expect(R"({"type": "force", "surface": {"physical": "top"}})",
+         ".value is missing; add it");
+  for (const std::string value : {"-5", "[0, -5]", "[0, 0, -5, 0]", "\"5\""}) {
+    expect(R"({"type": "force", "surface": {"physical": "top"}, "value": )" +
+               value + "}",
+           ".value must be a list of 3 numbers");
+  }
+  expect(R"({"type": "forces", "value": [0, 0, -5]})",
+         ".type is \"forces\"; the types known here are force, nodal_force, ");
+}
+
+TEST_F(JsonSceneTest, NotesANodalForceThatMayBeMeantAsATotal) {
+  const auto notices = [&](const std::string& nodes) {
+    return Read(
+               WithLoad(
+                   R"({"type": "nodal_force", "value": [0, 0, -0.5], "nodes": )" +
+                   nodes + "}"))
+        .notices;
+  };
+  for (const std::string nodes :
+       {R"({"physical": "top"})", R"({"box": [[0, 0, 0], [1, 1, 1]]})"}) {
+    EXPECT_THAT(
+        notices(nodes),
+        ElementsAre(::testing::EndsWith(
+            "scene.json: cases[0].loads[0] is a nodal_force, which acts once "
+            "per node: [0, 0, -0.5] on each of 4 nodes, [0, 0, -2] in total; "
+            "if [0, 0, -0.5] is the total, give it as \"type\": \"force\" with "
+            "a \"surface\"")));
+  }
+  // The load of the paper, one node, nodes one by one, no force.
+  for (const std::string nodes : {R"("free")", R"("all")", R"({"ids": [1, 2]})",
+                                  R"({"box": [[0, 0, 1], [1, 1, 1]]})"}) {
+    EXPECT_THAT(notices(nodes), ::testing::IsEmpty()) << nodes;
+  }
+  EXPECT_THAT(Read(WithLoad(R"({"type": "nodal_force", "value": [0, 0, 0],
+                                "nodes": {"physical": "top"}})"))
+                  .notices,
+              ::testing::IsEmpty());
+}
+
 TEST_F(JsonSceneTest, ErrsOnSurfacesThatAreNone) {
   const std::string load =
-      R"({"type": "pressure", "value": 1, "surface": SURFACE})";
+      R"({"type": "TYPE", "value": VALUE, "surface": SURFACE})";
   const auto expect = [&](const std::string& surface,
                           const std::string& pattern) {
-    EXPECT_THROWS_WITH(
-        ReadLoad(Replaced(load, "SURFACE", surface)),
-        "scene.json: cases\\[0\\].loads\\[0\\].surface" + pattern);
+    for (const auto& [type, value] :
+         {std::pair("pressure", "1"), std::pair("force", "[0, 0, 1]")}) {
+      EXPECT_THROWS_WITH(
+          ReadLoad(
+              Replaced(Replaced(Replaced(load, "TYPE", type), "VALUE", value),
+                       "SURFACE", surface)),
+          "scene.json: cases\\[0\\].loads\\[0\\].surface" + pattern);
+    }
   };
   expect(R"({"physical": "inside"})",
          " names a physical group whose triangle 0 is not a face on the "
@@ -301,6 +396,45 @@ TEST_F(JsonSceneTest, ErrsOnWhatIsNotInTheSchema) {
                               "cases": []})"),
                      "scene.json: cases is empty");
   EXPECT_THROWS_WITH(Read("[1, 2]"), "scene.json: the document must be");
+}
+
+// A terminal obeys ESC sequences; a long token hides the rest of the sentence.
+TEST_F(JsonSceneTest, QuotesOnlyWhatIsFitToPrint) {
+  const std::string control = "\\u001b[2J\\n\\u0000";
+  const std::string shown = "\\\\x1b\\[2J\\\\n\\\\x00";
+  const std::string longest(2000, 'a');
+  const std::string cut =
+      std::string(37, 'a') + "\\.\\.\\." + std::string(20, 'a');
+  for (const auto& [text, quoted] :
+       {std::pair(control, shown), std::pair(longest, cut)}) {
+    const auto expect = [&](const std::string& from, const std::string& to,
+                            const std::string& pattern) {
+      EXPECT_THROWS_WITH(Read(Replaced(kDocument, from, to)), pattern + quoted);
+    };
+    expect("\"mesh\"", "\"" + text + "\"", "has the unknown key \"");
+    expect("body_force", text, "type is \"");
+    expect("{\"ids\": [0, 1, 4]}", "\"" + text + "\"", "nodes is \"");
+    expect("{\"ids\": [0, 1, 4]}", "{\"array\": \"" + text + "\"}",
+           "names the array '");
+    expect("\"noise_sd\"", "\"" + text + "\": 1, \"" + text + "\"",
+           "the key \"");
+    expect("\"noise_sd\": 1e-5", "\"" + text + "\": 1e999",
+           "the number 1e999 of the key \"");
+  }
+  // Of the parser's own message the ends are kept.
+  for (const std::string& text :
+       {"\033]0;title\a" + longest, "\xFF" + longest, longest}) {
+    try {
+      Read(Replaced(kDocument, "1e-5", text));
+      ADD_FAILURE() << "no error";
+    } catch (const std::invalid_argument& error) {
+      const std::string sentence = error.what();
+      EXPECT_LT(sentence.size(), 400);
+      EXPECT_THAT(sentence, ::testing::HasSubstr("line 7, column "));
+      EXPECT_THAT(sentence, ::testing::EndsWith("; correct the JSON"));
+      EXPECT_EQ(sentence.find_first_of("\033\a\n\xFF"), std::string::npos);
+    }
+  }
 }
 
 TEST_F(JsonSceneTest, PlacesSyntaxErrors) {

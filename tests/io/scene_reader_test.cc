@@ -54,7 +54,8 @@ TEST_P(VtkEncodingTest, IsReadWithoutAWordOnStandardError) {
   ::testing::internal::CaptureStderr();
   const SceneReading reading = ReadScene({path}, Measurement::kRequired);
   EXPECT_THAT(::testing::internal::GetCapturedStderr(), IsEmpty());
-  EXPECT_THAT(reading.notices, IsEmpty());
+  EXPECT_THAT(reading.notices,
+              ElementsAre(HasSubstr("regions share one material")));
   const bool is_text = GetParam().data == VtkEncoding::Data::kAscii;
   ExpectSameScene(reading.scene, scene, is_text ? 1e-9 : 0.0);
 }
@@ -109,7 +110,8 @@ TEST_F(SceneReaderTest, DropsUnusedPointsAndIgnoresLinesAndTriangles) {
   EXPECT_EQ(scene.load_cases[0].displacement.col(4),
             Eigen::Vector3d(.4, .5, .6));
   EXPECT_THAT(reading.notices,
-              ElementsAre(HasSubstr("dropped 1 points that no tetrahedron")));
+              ElementsAre(HasSubstr("dropped 1 points that no tetrahedron"),
+                          HasSubstr("regions share one material")));
 }
 
 TEST_F(SceneReaderTest, TellsOfForcesThatAreDroppedWithTheirPoints) {
@@ -117,7 +119,79 @@ TEST_F(SceneReaderTest, TellsOfForcesThatAreDroppedWithTheirPoints) {
       LegacySceneText(), "0 0 0 0 0 0 0 0 0 0", "0 0 0 0 0 0 0 9 0 0"));
   EXPECT_THAT(reading.notices,
               ElementsAre(HasSubstr("'force' has forces on 1 points"),
-                          HasSubstr("dropped 1 points")));
+                          HasSubstr("dropped 1 points"),
+                          HasSubstr("regions share one material")));
+}
+
+TEST_F(SceneReaderTest, NotesRegionsOnce) {
+  const auto first = folder_.Path() / "first.vtu";
+  const auto second = folder_.Path() / "second.vtu";
+  WriteEncoded(first, scene_.mesh, fields_, AllVtkEncodings()[2]);
+  FieldOf(fields_, "force").values *= 2;
+  FieldOf(fields_, "force_2").values *= 2;
+  WriteEncoded(second, scene_.mesh, fields_, AllVtkEncodings()[2]);
+  EXPECT_THAT(
+      ReadScene({first, second}, Measurement::kRequired).notices,
+      ElementsAre(::testing::EndsWith(
+          "first.vtu: the array 'region' has 2 different ids, but all regions "
+          "share one material: E and nu are those of the mesh as a whole")));
+  fields_.cell[0].values.setConstant(7);
+  EXPECT_THAT(Read(scene_.mesh, fields_).notices, IsEmpty());
+}
+
+TEST_F(SceneReaderTest, NotesNodesAtOnePlace) {
+  // The second tetrahedron has the face of the first in nodes of its own, and
+  // a point that nothing uses lies there too.
+  const std::string apart = Replaced(
+      Replaced(Replaced(Replaced(Replaced(Replaced(LegacySceneText(),
+                                                   "POINTS 6", "POINTS 9"),
+                                          "9 9 9", "0 0 0"),
+                                 "0.25 0.25 -1\n",
+                                 "0.25 0.25 -1  0 0 0  1 0 0  0 1 1e-7\n"),
+                        "4 0 1 3 5", "4 6 7 8 5"),
+               "-5 7 -6 8", "7 7 7 7"),
+      "POINT_DATA 6", "POINT_DATA 9");
+  const std::string fixed =
+      Replaced(apart, "1 1 0 1 0 0\n", "1 1 0 1 0 0 1 1 1\n");
+  const std::string zeros = " 0 0 0 0 0 0 0 0 0\n";
+  const SceneReading reading =
+      Read(Replaced(Replaced(Replaced(fixed, ".4 .5 .6\n", ".4 .5 .6" + zeros),
+                             "force 3 6 int", "force 3 9 int"),
+                    "4 5 6\n", "4 5 6" + zeros));
+  EXPECT_THAT(
+      reading.notices,
+      ElementsAre(
+          HasSubstr("dropped 1 points"),
+          ::testing::EndsWith(
+              "scene.vtk: 6 nodes lie at the same place as another node, such "
+              "as at (0, 0, 0), so that the parts around them are not "
+              "connected; merge them in the mesh tool if the parts should be "
+              "one")));
+}
+
+TEST_F(SceneReaderTest, QuotesOnlyWhatIsFitToPrint) {
+  // VTK decodes the names of a legacy file.
+  EXPECT_THROWS_WITH(Read(Replaced(LegacySceneText(), "SCALARS fixed",
+                                   "SCALARS f%1B[31mixed%0A")),
+                     "the point arrays of this file are: "
+                     ".*f\\\\x1b\\[31mixed\\\\n.*\\)$");
+  const auto read = [&] { return Read(scene_.mesh, fields_); };
+  fields_.point[0].name = std::string(2000, 'a');
+  EXPECT_THROWS_WITH(read(),
+                     "the point arrays of this file are: "
+                     ".*a{37}\\.\\.\\.a{20}.*\\)$");
+  fields_ = SceneFields(scene_);
+  fields_.point.push_back(
+      {"force_" + std::string(2000, '9'), Eigen::MatrixXd::Zero(3, 5)});
+  EXPECT_THROWS_WITH(read(),
+                     "the point array 'force_9{31}\\.\\.\\.9{20}' "
+                     "belongs to no load case");
+  EXPECT_THROWS_WITH(
+      ReadScene({folder_.Path() / "a\n\033[2J.vtu"}, Measurement::kRequired),
+      "a\\\\n\\\\x1b\\[2J.vtu: no such file");
+  EXPECT_THROWS_WITH(
+      ReadScene({folder_.Path() / "Größe.vtu"}, Measurement::kRequired),
+      "/Größe.vtu: no such file");
 }
 
 TEST_F(SceneReaderTest, AcceptsThatNothingIsHeld) {

@@ -1,0 +1,46 @@
+#include "apps/signals.h"
+
+#include <pthread.h>
+
+#include <cerrno>
+#include <csignal>
+
+#include "elastimate/io/file_output.h"
+
+namespace elastimate {
+namespace {
+
+pthread_t main_thread;
+
+// The main thread, which writes the outputs, must not make another one after
+// they are removed: so it is the one that removes them.
+void CleanUpAndEnd(int signal_number) {
+  const int reason = errno;
+  if (pthread_equal(pthread_self(), main_thread) == 0) {
+    pthread_kill(main_thread, signal_number);
+    errno = reason;
+    return;
+  }
+  UnlinkStagedFiles();
+  // Whoever waits for the program sees that a signal ended it.
+  signal(signal_number, SIG_DFL);
+  raise(signal_number);
+}
+
+}  // namespace
+
+void CleanUpOnSignals() {
+  main_thread = pthread_self();
+  struct sigaction action = {};
+  action.sa_handler = CleanUpAndEnd;
+  action.sa_flags = SA_RESTART;
+  for (const int signal_number : {SIGHUP, SIGINT, SIGQUIT, SIGTERM}) {
+    struct sigaction previous = {};
+    if (sigaction(signal_number, nullptr, &previous) == 0 &&
+        previous.sa_handler != SIG_IGN) {
+      sigaction(signal_number, &action, nullptr);
+    }
+  }
+}
+
+}  // namespace elastimate
