@@ -32,7 +32,7 @@ namespace elastimate {
 ///
 /// Cost: 1 factorisation, 2 near nu = 1/2; about 10 to 20 solves for each load
 /// case; memory is that of the factor and about 60 vectors for each load case.
-/// Deterministic for a given number of BLAS threads.
+/// Deterministic for a given number of BLAS threads (Estimator::Run).
 class ReducedFe : public Estimator {
  public:
   std::string_view Name() const override;
