@@ -5,6 +5,7 @@
 #include <Eigen/SparseCore>
 #include <cassert>
 #include <cmath>
+#include <mutex>
 #include <new>
 #include <random>
 #include <type_traits>
@@ -16,8 +17,8 @@ namespace {
 static_assert(sizeof(SuiteSparse_long) == sizeof(std::int64_t));
 
 // Ratios of pivots (a cheap condition estimate): below the first a solution has
-// no correct digit, below the second rounding may have made a pivot of what
-// should be zero.
+// no correct digit, below the second rounding may have made the smallest pivot,
+// which one solution tells.
 constexpr double kSmallestPivotRatio = 1e-15;
 constexpr double kSuspiciousPivotRatio = 1e-9;
 
@@ -60,10 +61,16 @@ std::vector<std::int64_t> NestedDissection(
   cholmod_sparse pattern =
       SymmetricView(start.data(), row.data(), nullptr, num_nodes, row.size());
   std::vector<SuiteSparse_long> node_order(num_nodes);
-  if (cholmod_l_metis(&pattern, nullptr, 0, 1, node_order.data(), common) ==
-      0) {
-    ThrowIfOutOfMemory(*common);
-    assert(false && "cholmod_l_metis refused the graph");
+  {
+    // METIS seeds and draws from rand(), whose state threads share: at once,
+    // two would have other orders, and results that differ by rounding.
+    static std::mutex one_at_a_time;
+    const std::lock_guard<std::mutex> lock(one_at_a_time);
+    if (cholmod_l_metis(&pattern, nullptr, 0, 1, node_order.data(), common) ==
+        0) {
+      ThrowIfOutOfMemory(*common);
+      assert(false && "cholmod_l_metis refused the graph");
+    }
   }
   std::vector<std::int64_t> order;
   order.reserve(degrees_of_freedom.NumFree());

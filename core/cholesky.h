@@ -26,7 +26,14 @@ class Cholesky : public LinearSolver {
   ~Cholesky() override;
 
   /// L L^T = the matrix of these values (in the order of the pattern).  False
-  /// when the matrix is not positive definite to working precision.
+  /// when the matrix is not positive definite to working precision, so that a
+  /// solution would have no correct digit.
+  ///
+  /// Precondition: the supports hold the mesh (WhyNotHeld).  The values cannot
+  /// tell: assembled, a motion that nothing resists has a stiffness of up to
+  /// 1e-14 of the diagonal next to nu = 1/2, made of nothing but rounding, and
+  /// a plate of quadratic elements that is a thousandth as thick as it is wide
+  /// has one of 1e-15 that is right to a few per cent.
   bool Factorize(const Eigen::VectorXd& values) override;
 
   std::optional<Eigen::MatrixXd> Solve(const Eigen::MatrixXd& right_hand_sides,

@@ -79,7 +79,13 @@ class Estimator {
   /// does not support (WhyUnsupported), a load case without measured
   /// displacements or with zero displacement, and loads that are zero on all
   /// free degrees of freedom.  Numerical outcomes never throw: they are
-  /// statuses of the estimate.  Deterministic.
+  /// statuses of the estimate.
+  ///
+  /// May be called from several threads at once.  The same input gives the same
+  /// bits in each of them and on every call, on the same kind of processor with
+  /// the same number of BLAS threads, unless another thread calls rand()
+  /// meanwhile, which the ordering of a factorisation (METIS) seeds and draws
+  /// from.
   Estimate Run(const Scene& scene, const EstimatorOptions& options) const;
 
   /// The name by which the registry knows it, such as "closed-form".

@@ -28,7 +28,7 @@ namespace elastimate {
 /// c = 2.385), the fit is repeated with the scale of a first one without.
 ///
 /// Cost: about 12 to 20 factorisations; memory is that of the factor.
-/// Deterministic for a given number of BLAS threads.
+/// Deterministic for a given number of BLAS threads (Estimator::Run).
 class IterativeFe : public Estimator {
  public:
   std::string_view Name() const override;

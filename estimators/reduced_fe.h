@@ -39,7 +39,7 @@ namespace elastimate {
 /// 1/2 or without noise), about 45 solves for each load case, of which ten
 /// serve all; memory is that of the factor and about 80 vectors for each load
 /// case.
-/// Deterministic for a given number of BLAS threads.
+/// Deterministic for a given number of BLAS threads (Estimator::Run).
 class ReducedFe : public Estimator {
  public:
   std::string_view Name() const override;

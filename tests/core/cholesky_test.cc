@@ -137,30 +137,6 @@ TEST_F(SparseCholesky, FactorHoldsAtLeastTheMatrix) {
             static_cast<double>(assembly_.Pattern().row.size()));
 }
 
-TEST(Cholesky, RefusesAMechanism) {
-  // Two tetrahedra that share an edge turn about it; only one is held.
-  Mesh mesh;
-  mesh.nodes.resize(3, 6);
-  mesh.nodes << 0, 0, 1, 0, -1, 0.1,  //
-      0, 0, 0.2, 1, 0.3, -1,          //
-      0, 1, 0.3, 0.4, 0.5, 0.6;
-  mesh.elements.resize(4, 2);
-  mesh.elements << 0, 0, 1, 1, 2, 4, 3, 5;
-  Supports supports{ComponentMask::Constant(3, 6, false),
-                    Eigen::Matrix3Xd::Zero(3, 6)};
-  supports.held.leftCols(4).setConstant(true);
-  // Rounding decides what is left of the last pivot: up to 4e-12 of the first.
-  const Eigen::Matrix3Xd nodes = mesh.nodes;
-  for (std::uint64_t seed = 0; seed < 50; ++seed) {
-    SCOPED_TRACE(seed);
-    const DegreesOfFreedom degrees_of_freedom(supports);
-    const StiffnessAssembly assembly(mesh, degrees_of_freedom);
-    Cholesky cholesky(assembly, degrees_of_freedom);
-    EXPECT_FALSE(cholesky.Factorize(assembly.Combine(0.3)));
-    mesh.nodes = nodes + 0.3 * RandomMatrix(3, 6, seed);
-  }
-}
-
 TEST(Cholesky, OfASingleDegreeOfFreedom) {
   const Scene scene = SmallScene("cuboid");
   Supports supports = scene.supports;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "elastimate/core/loads.h"
+#include "elastimate/core/quadratic_scene.h"
 #include "tests/core/random_values.h"
 #include "tests/dense_reference.h"
 #include "tests/scenes.h"
@@ -117,6 +118,59 @@ TEST(StiffnessSolver, FactorisesWhereMultigridDoesNotConverge) {
   ASSERT_TRUE(solver.Factorize(0.4));
   EXPECT_EQ(solver.WorkDone().factorizations, 2);
   EXPECT_EQ(solver.WorkDone().multigrid_set_ups, 2);
+}
+
+// Two tetrahedra of random shape, the first of which is held, that share an
+// edge and turn about it, or a node.  Rounding decides what the elimination
+// leaves of the last pivot; it must not decide here.
+TEST(StiffnessSolver, ThrowsForAMechanismOfAnyShape) {
+  constexpr int kSeeds = 500;
+  Mesh hinged;
+  hinged.nodes.resize(3, 6);
+  hinged.nodes << 0, 0, 1, 0, -1, 0.1,  //
+      0, 0, 0.2, 1, 0.3, -1,            //
+      0, 1, 0.3, 0.4, 0.5, 0.6;
+  hinged.elements.resize(4, 2);
+  hinged.elements << 0, 0, 1, 1, 2, 4, 3, 5;
+  Mesh pinned = hinged;
+  pinned.nodes.conservativeResize(3, 7);
+  pinned.nodes.col(6) << -0.2, 0.1, -1;
+  pinned.elements(1, 1) = 6;
+  for (const Mesh& shape : {hinged, pinned}) {
+    Supports supports{ComponentMask::Constant(3, shape.NumNodes(), false),
+                      Eigen::Matrix3Xd::Zero(3, shape.NumNodes())};
+    supports.held.leftCols(4).setConstant(true);
+    for (int seed = 0; seed < kSeeds; ++seed) {
+      SCOPED_TRACE(seed);
+      Mesh mesh = shape;
+      mesh.nodes += 0.3 * RandomMatrix(3, mesh.NumNodes(), seed);
+      EXPECT_THROWS_WITH(StiffnessSolver(mesh, supports, SolverKind::kCholesky),
+                         "rotate about .* without strain");
+      Supports enough = supports;
+      enough.held.leftCols(mesh.NumNodes() - 1).setConstant(true);
+      EXPECT_TRUE(
+          StiffnessSolver(mesh, enough, SolverKind::kCholesky).Factorize(0.3));
+    }
+  }
+}
+
+// Plates a thousandth as thick as wide, held at one edge: ill-conditioned and
+// well posed.
+TEST(StiffnessSolver, FactorisesThinPlatesNextToIncompressibility) {
+  for (const int cells : {6, 12}) {
+    const Mesh plate = BoxMesh({cells, cells, 1}, {1, 1, 1e-3});
+    Scene scene = HeldAtBottom(plate, plate, Eigen::Vector3d::Zero());
+    scene.supports.held = (plate.nodes.row(0).array() == 0).replicate<3, 1>();
+    for (const int order : {1, 2}) {
+      const Scene modelled = order == 1 ? scene : QuadraticScene(scene);
+      StiffnessSolver solver(modelled.mesh, modelled.supports,
+                             SolverKind::kCholesky);
+      for (const double nu : {-0.9, 0.0, 0.3, 0.49, 0.4999}) {
+        EXPECT_TRUE(solver.Factorize(nu))
+            << cells << " cells, order " << order << ", nu " << nu;
+      }
+    }
+  }
 }
 
 TEST(StiffnessSolver, ThrowsWhereNothingHoldsTheSpecimen) {

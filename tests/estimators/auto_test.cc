@@ -98,7 +98,7 @@ TEST(Auto, RaisesTheOrderWhereLinearElementsAreNotEnough) {
   }
 }
 
-TEST(Auto, DoesNotRaiseTheOrderForNoise) {
+TEST(AutoStatistics, DoesNotRaiseTheOrderForNoise) {
   for (int seed = 1; seed <= 20; ++seed) {
     Scene scene = SmallScene("organ");
     Measure({5e4, 0.47}, scene);
@@ -107,7 +107,7 @@ TEST(Auto, DoesNotRaiseTheOrderForNoise) {
   }
 }
 
-TEST(Auto, TellsWhichElementsTheDisplacementsComeFrom) {
+TEST(AutoStatistics, TellsWhichElementsTheDisplacementsComeFrom) {
   EstimatorOptions options;
   options.known_poisson_ratio = 0.3;
   for (const int order : {1, 2}) {

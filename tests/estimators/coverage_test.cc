@@ -1,5 +1,5 @@
 // Monte Carlo: errors against the Cramer-Rao bound, and how often the intervals
-// hold the truth.
+// hold the truth, under more noise than that of the conformance tests.
 
 #include <gtest/gtest.h>
 
@@ -26,11 +26,11 @@ using testing::SmallScene;
 // of 0.5 % over these many, and a root mean square of errors one of 1.6 %.
 constexpr int kSeeds = 2000;
 
-class Coverage
+class CoverageStatistics
     : public ::testing::TestWithParam<std::tuple<std::string, double, double>> {
 };
 
-TEST_P(Coverage, OfReducedFeIsThatOfItsIntervals) {
+TEST_P(CoverageStatistics, OfReducedFeIsThatOfItsIntervals) {
   const auto& [shape, nu, noise] = GetParam();
   const IsotropicElasticity truth = {5e4, nu};
   Scene exact = SmallScene(shape);
@@ -80,7 +80,7 @@ TEST_P(Coverage, OfReducedFeIsThatOfItsIntervals) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Scenes, Coverage,
+    Scenes, CoverageStatistics,
     ::testing::Combine(::testing::Values("cuboid", "organ"),
                        ::testing::Values(0.0, 0.3, 0.45, 0.49),
                        ::testing::Values(1e-3, 1e-2, 1e-1)));
@@ -100,10 +100,10 @@ std::ostream& operator<<(std::ostream& out, const CoverageCase& parameters) {
              << parameters.shape << ", noise " << parameters.noise;
 }
 
-class CoverageWithoutFactorization
+class CoverageWithoutFactorizationStatistics
     : public ::testing::TestWithParam<CoverageCase> {};
 
-TEST_P(CoverageWithoutFactorization, IsThatOfItsStandardErrors) {
+TEST_P(CoverageWithoutFactorizationStatistics, IsThatOfItsStandardErrors) {
   constexpr int kFewerSeeds = 400;
   const IsotropicElasticity truth = {5e4, 0.3};
   Scene exact = SmallScene(GetParam().shape);
@@ -162,7 +162,7 @@ TEST_P(CoverageWithoutFactorization, IsThatOfItsStandardErrors) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Scenes, CoverageWithoutFactorization,
+    Scenes, CoverageWithoutFactorizationStatistics,
     ::testing::Values(
         CoverageCase{"virtual-fields", 1, "cuboid", 1e-2, 0.9216},
         CoverageCase{"virtual-fields", 2, "cuboid", 1e-2, 0.9401},
@@ -172,10 +172,8 @@ INSTANTIATE_TEST_SUITE_P(
         CoverageCase{"virtual-fields", 2, "organ", 1e-2, 0.9401},
         CoverageCase{"virtual-fields", 2, "organ", 1e-1, 0.9401},
         CoverageCase{"virtual-fields", 3, "organ", 1e-1, 0.9451},
-        CoverageCase{"total-least-squares", 0, "cuboid", 1e-4, 0.95},
         CoverageCase{"total-least-squares", 0, "cuboid", 1e-3, 0.95},
         CoverageCase{"total-least-squares", 0, "cuboid", 1e-2, 0.95},
-        CoverageCase{"total-least-squares", 0, "organ", 1e-4, 0.95},
         CoverageCase{"total-least-squares", 0, "organ", 1e-3, 0.95},
         CoverageCase{"total-least-squares", 0, "organ", 1e-2, 0.95}));
 

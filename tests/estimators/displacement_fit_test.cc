@@ -154,7 +154,7 @@ Scene UnderHydrostaticPressure() {
   return scene;
 }
 
-TEST(DisplacementFit, BoundsDoNotHideThatTheDataDoNotDetermineNu) {
+TEST(DisplacementFitStatistics, BoundsDoNotHideThatTheDataDoNotDetermineNu) {
   // Rounding decides where in the bounds, or on which of them, a fit ends.
   for (int seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
@@ -175,7 +175,7 @@ TEST(DisplacementFit, BoundsDoNotHideThatTheDataDoNotDetermineNu) {
   }
 }
 
-TEST(DisplacementFit, BoundsDoNotHideThatTheDataDoNotDetermineE) {
+TEST(DisplacementFitStatistics, BoundsDoNotHideThatTheDataDoNotDetermineE) {
   // E = 3 kappa (1 - 2 nu), for any nu.
   const double kappa = 5e4 / 1.2;
   for (const Bounds& bounds :

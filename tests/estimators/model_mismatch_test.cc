@@ -47,7 +47,7 @@ TEST(ModelMismatch, IsEmptyWithoutCovariances) {
                    .has_value());
 }
 
-TEST(ModelMismatch, IsAsRareAsItSaysWhenTheModelHolds) {
+TEST(ModelMismatchStatistics, IsAsRareAsItSaysWhenTheModelHolds) {
   constexpr int kSeeds = 300;
   Scene exact = testing::SmallScene("cuboid");
   testing::Measure({5e4, 0.3}, exact);

@@ -102,7 +102,7 @@ TEST(OneStep, RefusesWhatItCannotHonour) {
 
 // E is known far better than nu in a slender bar, and what a step in nu misses
 // is soon much for it.
-TEST(OneStep, AgreesOnEWithTheIterativeFitOfABar) {
+TEST(OneStepStatistics, AgreesOnEWithTheIterativeFitOfABar) {
   const Mesh mesh = BoxMesh({2, 2, 20}, {1, 1, 10});
   for (const double stretching : {0, 2, 20}) {
     for (int seed = 1; seed <= 20; ++seed) {

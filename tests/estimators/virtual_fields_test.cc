@@ -57,7 +57,7 @@ TEST(VirtualFields, DenyLoadsOfAnotherDirection) {
 }
 
 // Any nu fits pure shear: which one the noise prefers says nothing.
-TEST(VirtualFields, DoNotTakeNoiseForInformation) {
+TEST(VirtualFieldsStatistics, DoNotTakeNoiseForInformation) {
   const double mu = 5e4 / 2.6;
   for (const Bounds& bounds : {Bounds{}, Bounds{1.2 * mu, 2.8 * mu},
                                Bounds{{}, mu}, Bounds{2.9 * mu, {}}}) {

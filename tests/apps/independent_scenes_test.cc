@@ -1,0 +1,259 @@
+// The figures that an independent finite element code and an independent
+// maximum-likelihood fit gave.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "elastimate/core/quadratic_scene.h"
+#include "elastimate/estimators/registry.h"
+#include "elastimate/io/scene_reader.h"
+#include "tests/program.h"
+
+namespace elastimate {
+namespace {
+
+using testing::ProgramRun;
+using testing::ProgramTest;
+using testing::WriteText;
+
+// What the reports of two fits to the same data may differ by.
+constexpr double kSmallPart = 0.05;  // Of a standard error.
+constexpr double kStandardErrorsDiffer = 0.02;
+
+// tests/data/hook/README.md tells how the scenes were made.
+class Hook : public ProgramTest {
+ protected:
+  static std::string Path(const std::string& file) {
+    return std::string(ELASTIMATE_TEST_DATA "/hook/") + file;
+  }
+  nlohmann::json ReportOf(const std::string& estimator,
+                          const std::string& arguments) const {
+    return Run("estimate --json=- --estimator=" + estimator + " " + arguments)
+        .Json();
+  }
+};
+
+TEST_F(Hook, EveryEstimatorReturnsTheTruthWithoutNoise) {
+  for (const std::string_view name : EstimatorNames()) {
+    SCOPED_TRACE(name);
+    const nlohmann::json report =
+        ReportOf(std::string(name), Path("hook_same_mesh.vtu"));
+    EXPECT_EQ(report["status"], "ok");
+    EXPECT_NEAR(report["youngs_modulus"].get<double>() / 2e4, 1, 1e-6);
+    EXPECT_NEAR(report["poisson_ratio"].get<double>(), 0.35, 1e-6);
+  }
+}
+
+TEST_F(Hook, TheFitsAgreeUnderNoise) {
+  for (const std::string name : {"iterative-fe", "reduced-fe"}) {
+    SCOPED_TRACE(name);
+    const nlohmann::json report =
+        ReportOf(name, Path("hook_same_mesh_noise5.vtu"));
+    EXPECT_EQ(report["status"], "ok");
+    EXPECT_NEAR(report["youngs_modulus"].get<double>(), 19980,
+                kSmallPart * 102);
+    EXPECT_NEAR(report["poisson_ratio"].get<double>(), 0.3528,
+                kSmallPart * 0.0060);
+    const nlohmann::json error = report["standard_error"];
+    EXPECT_NEAR(error["youngs_modulus"].get<double>() / 102, 1,
+                kStandardErrorsDiffer);
+    EXPECT_NEAR(error["poisson_ratio"].get<double>() / 0.0060, 1,
+                kStandardErrorsDiffer);
+  }
+}
+
+TEST_F(Hook, TheClosedFormAgreesAndSaysThatItIsNotUsable) {
+  const ProgramRun run =
+      Run("estimate --json=- " + Path("hook_same_mesh_noise5.vtu"));
+  EXPECT_EQ(run.exit_code, 1);
+  const nlohmann::json report = run.Json();
+  EXPECT_NEAR(report["youngs_modulus"].get<double>(), -3694, 0.5);
+  EXPECT_NEAR(report["poisson_ratio"].get<double>(), 0.640, 5e-4);
+  EXPECT_EQ(report["status"], "unphysical");
+  EXPECT_EQ(report["usable"], false);
+}
+
+// The hook is so coarse that linear elements do not determine nu.
+TEST_F(Hook, LinearElementsAgreeInAFinerWorldAndSayThatTheyAreNotUsable) {
+  // The same loads, as nodal forces and as a body force.
+  for (const std::string file :
+       {"hook_finer_world.vtu", "hook_finer_world.json"}) {
+    for (const std::string name : {"iterative-fe", "reduced-fe"}) {
+      SCOPED_TRACE(file + " " + name);
+      const nlohmann::json report = ReportOf(name, Path(file));
+      EXPECT_EQ(report["status"], "not_identifiable");
+      EXPECT_NEAR(report["youngs_modulus"].get<double>(), 13065, 0.5);
+      EXPECT_NEAR(report["poisson_ratio"].get<double>(), 0.195, 5e-4);
+    }
+  }
+}
+
+TEST_F(Hook, QuadraticElementsComeCloseInAFinerWorld) {
+  for (const std::string name : {"iterative-fe", "reduced-fe"}) {
+    SCOPED_TRACE(name);
+    const nlohmann::json report =
+        ReportOf(name, "--order=2 " + Path("hook_finer_world.json"));
+    EXPECT_EQ(report["status"], "ok");
+    EXPECT_NEAR(report["youngs_modulus"].get<double>(), 19800, kSmallPart * 33);
+    EXPECT_NEAR(report["poisson_ratio"].get<double>(), 0.3496,
+                kSmallPart * 0.008);
+    const nlohmann::json error = report["standard_error"];
+    EXPECT_NEAR(error["youngs_modulus"].get<double>() / 33, 1,
+                kStandardErrorsDiffer);
+    EXPECT_NEAR(error["poisson_ratio"].get<double>() / 0.008, 1,
+                kStandardErrorsDiffer);
+  }
+}
+
+TEST_F(Hook, AutoClimbsAsFarAsTheDataDemand) {
+  const nlohmann::json exact = ReportOf("auto", Path("hook_same_mesh.vtu"));
+  ASSERT_EQ(exact["rungs"].size(), 1);
+  EXPECT_EQ(exact["rungs"][0]["estimator"], "closed-form");
+  EXPECT_EQ(exact["work"]["factorizations"], 0);
+  const nlohmann::json noisy =
+      ReportOf("auto", Path("hook_same_mesh_noise5.vtu"));
+  EXPECT_EQ(noisy["status"], "ok");
+  EXPECT_EQ(noisy["mesh"]["order"], 1);
+  EXPECT_NEAR(noisy["youngs_modulus"].get<double>(), 19980, kSmallPart * 102);
+  const nlohmann::json finer = ReportOf("auto", Path("hook_finer_world.json"));
+  EXPECT_EQ(finer["status"], "ok");
+  EXPECT_EQ(finer["mesh"]["order"], 2);
+  EXPECT_NEAR(finer["youngs_modulus"].get<double>(), 19800, kSmallPart * 33);
+}
+
+// Scenes on the meshes of other projects, which are not part of this one.
+class IndependentScenes : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    if (!std::filesystem::exists(Path("liver_same_mesh.vtu"))) {
+      GTEST_SKIP() << "no measured scenes in " << ELASTIMATE_SHARED_DATA;
+    }
+  }
+  static std::string Path(const std::string& file) {
+    return std::string(ELASTIMATE_SHARED_DATA "/") + file;
+  }
+};
+
+TEST_F(IndependentScenes, EveryEstimatorReturnsTheTruthWithoutNoise) {
+  for (const std::string_view name : EstimatorNames()) {
+    const nlohmann::json report =
+        Succeed("estimate --json=- --estimator=" + std::string(name) + " " +
+                Path("liver_same_mesh.vtu"))
+            .Json();
+    EXPECT_NEAR(report["youngs_modulus"].get<double>() / 5e4, 1, 1e-6);
+    EXPECT_NEAR(report["poisson_ratio"].get<double>(), 0.3, 1e-6);
+  }
+}
+
+TEST_F(IndependentScenes, TheFitAgreesUnderNoise) {
+  const nlohmann::json report =
+      Succeed("estimate --json=- --estimator=iterative-fe " +
+              Path("liver_same_mesh_noise5.vtu"))
+          .Json();
+  EXPECT_NEAR(report["youngs_modulus"].get<double>(), 49890, 5);
+  EXPECT_NEAR(report["poisson_ratio"].get<double>(), 0.3080, 5e-5);
+  EXPECT_NEAR(report["standard_error"]["youngs_modulus"].get<double>(), 118,
+              0.5);
+  EXPECT_NEAR(report["standard_error"]["poisson_ratio"].get<double>(), 0.0061,
+              5e-5);
+}
+
+TEST_F(IndependentScenes, TheClosedFormAgreesAndSaysThatItIsNotUsable) {
+  const ProgramRun run =
+      Run("estimate --json=- " + Path("liver_same_mesh_noise5.vtu"));
+  EXPECT_EQ(run.exit_code, 1);
+  const nlohmann::json report = run.Json();
+  EXPECT_NEAR(report["youngs_modulus"].get<double>(), -144820, 5);
+  EXPECT_NEAR(report["poisson_ratio"].get<double>(), 0.598, 5e-4);
+  EXPECT_EQ(report["usable"], false);
+}
+
+TEST_F(IndependentScenes, AutoStopsAtTheClosedFormWithoutNoise) {
+  const nlohmann::json report = Succeed("estimate --json=- --estimator=auto " +
+                                        Path("liver_same_mesh.vtu"))
+                                    .Json();
+  ASSERT_EQ(report["rungs"].size(), 1);
+  EXPECT_EQ(report["rungs"][0]["estimator"], "closed-form");
+  EXPECT_EQ(report["work"]["factorizations"], 0);
+}
+
+TEST_F(IndependentScenes, DataFromAFinerWorld) {
+  const nlohmann::json fit =
+      Succeed("estimate --json=- --estimator=iterative-fe " +
+              Path("cylinder_finer_world.vtu"))
+          .Json();
+  EXPECT_NEAR(fit["youngs_modulus"].get<double>(), 6590, 5);
+  EXPECT_NEAR(fit["poisson_ratio"].get<double>(), 0.435, 5e-4);
+  EXPECT_LE(fit["work"]["factorizations"].get<int>(), 12);
+  const nlohmann::json closed =
+      Run("estimate --json=- " + Path("cylinder_finer_world.vtu")).Json();
+  EXPECT_NEAR(closed["youngs_modulus"].get<double>(), 7624, 1);
+  EXPECT_NEAR(closed["poisson_ratio"].get<double>(), 0.426, 5e-4);
+}
+
+// The same scene with its load as what it is.
+class FinerWorld : public IndependentScenes {
+ protected:
+  void SetUp() override {
+    IndependentScenes::SetUp();
+    if (!IsSkipped()) {
+      // Every node below 24 mm is held, every facet above 276 mm is loaded.
+      WriteText(folder_ / "scene.json",
+                R"({
+        "mesh": ")" +
+                    Path("cylinder_finer_world.vtu") +
+                    R"(",
+        "supports": [{"nodes": {"array": "fixed"}}],
+        "cases": [{"displacement": {"array": "displacement"}, "loads": [
+          {"type": "traction",
+           "value": [0.11002454283021695, 0, 0.3143558366577627],
+           "surface": {"box": [[-1, -1, 0.276], [1, 1, 1]]}}]}]})");
+    }
+  }
+};
+
+TEST_F(FinerWorld, QuadraticElementsFindYoungsModulus) {
+  const auto youngs = [&](const std::string& order) {
+    return Succeed(
+               "estimate scene.json --json=- --estimator=iterative-fe "
+               "--order=" +
+               order)
+        .Json()["youngs_modulus"]
+        .get<double>();
+  };
+  EXPECT_NEAR(youngs("1"), 6590, 5);
+  EXPECT_NEAR(youngs("2") / 8000, 1, 0.01);
+}
+
+TEST_F(FinerWorld, AutoEndsAtQuadraticElements) {
+  const ProgramRun run =
+      Succeed("estimate scene.json --json=- --estimator=auto --out=auto.vtu");
+  const nlohmann::json report = run.Json();
+  EXPECT_EQ(report["mesh"]["order"], 2);
+  EXPECT_EQ(report["mesh"]["nodes"], 1160);
+  EXPECT_NEAR(report["youngs_modulus"].get<double>() / 8000, 1, 0.01);
+  ASSERT_EQ(report["rungs"].size(), 4);
+  EXPECT_EQ(report["rungs"][3]["estimator"], "reduced-fe");
+  EXPECT_EQ(report["rungs"][3]["order"], 2);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "auto.vtu"));
+}
+
+// The other code held every node below 24 mm, so also mid-edge nodes of edges
+// with a free upper end.  With these held, both codes have the same equations.
+TEST_F(FinerWorld, QuadraticElementsAreThoseOfTheOtherCode) {
+  Scene scene = QuadraticScene(
+      ReadScene({folder_ / "scene.json"}, Measurement::kRequired).scene);
+  scene.supports.held =
+      scene.supports.held ||
+      (scene.mesh.nodes.row(2).array() < 0.024).replicate<3, 1>();
+  const Estimate estimate = MakeEstimator("iterative-fe")->Run(scene, {});
+  EXPECT_EQ(estimate.status, Status::kOk);
+  EXPECT_NEAR(estimate.elasticity.youngs_modulus / 8000, 1, 1e-6);
+  EXPECT_NEAR(estimate.elasticity.poisson_ratio, 0.4, 1e-6);
+}
+
+}  // namespace
+}  // namespace elastimate
