@@ -51,6 +51,14 @@ double NuAtDistance(double nu, double distance) {
   return PoissonRatioOfLogStiffnessRatio(LogStiffnessRatio(nu) + distance);
 }
 
+// Of iterative solves: an inexact vector counts by its share of the response,
+// which is about the present error.
+double SolveTolerance(double error, double limit) {
+  constexpr double kUsualLimit = 1e-6;
+  constexpr double kShare = 0.1;
+  return std::clamp(kShare * std::min(limit, kUsualLimit) / error, 1e-9, 1e-2);
+}
+
 }  // namespace
 
 AdaptiveFit::AdaptiveFit(const Scene& scene, const EstimatorOptions& options)
@@ -98,7 +106,8 @@ bool AdaptiveFit::EnlargeUntil(double nu, double limit) {
   while (error > limit) {
     for (int i = 0; i < kStep; ++i) {
       ++num_vectors_of_pole_;
-      if (num_vectors_of_pole_ > kMostVectorsOfAPole || !model_.Enlarge()) {
+      if (num_vectors_of_pole_ > kMostVectorsOfAPole ||
+          !model_.Enlarge(SolveTolerance(error, limit))) {
         return false;
       }
     }

@@ -61,7 +61,7 @@ void ExpectSameMinimum(const MeasuredScene& measured,
               1e-3 * *iterative.displacement_residual + 1e-6);
 }
 
-TEST(GlobalMinimum, OfManyShapes) {
+TEST(GlobalMinimumStatistics, OfManyShapes) {
   std::uint64_t seed = 0;
   for (const std::string& shape : ShapeNames()) {
     for (const std::string load : {"torsion", "gravity"}) {
@@ -77,7 +77,7 @@ TEST(GlobalMinimum, OfManyShapes) {
 }
 
 // The narrow minimum next to 1/2 is easily passed over.
-TEST(GlobalMinimum, OfATwistedDumbbellNextToOneHalf) {
+TEST(GlobalMinimumStatistics, OfATwistedDumbbellNextToOneHalf) {
   for (const double nu : {0.499, 0.4992, 0.4994, 0.4996, 0.4997}) {
     for (int seed = 1; seed <= 6; ++seed) {
       SCOPED_TRACE(std::to_string(nu) + ", seed " + std::to_string(seed));
