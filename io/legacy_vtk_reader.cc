@@ -95,9 +95,9 @@ MeshFile ReadByLegacyVtk(const std::filesystem::path& path) {
     reader->ReadAllFieldsOn();
     reader->ReadAllNormalsOn();
     reader->ReadAllTensorsOn();
-    MeshFile mesh = ReadByVtk(path, messages, reader.Get());
+    ReadByVtk(path, messages, reader.Get());
     CheckHeaders(path, reader->GetOutput()->GetNumberOfCells());
-    return mesh;
+    return ToMeshFile(path, reader->GetOutput());
   } catch (const std::length_error&) {
     ThrowDamagedVtk(path, "its sizes exceed the memory");
   }

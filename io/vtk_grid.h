@@ -22,18 +22,17 @@ MeshFile ToMeshFile(const std::filesystem::path& path,
 [[noreturn]] void ThrowDamagedVtk(const std::filesystem::path& path,
                                   const std::string& reason);
 
-/// Has one of VTK's readers read the file.  Throws as ToMeshFile does, and for
-/// whatever VTK complains of.
+/// Has one of VTK's readers read the file.  Throws std::invalid_argument, naming
+/// the file, for whatever VTK complains of.
 template <typename Reader>
-MeshFile ReadByVtk(const std::filesystem::path& path,
-                   const VtkMessages& messages, Reader* reader) {
+void ReadByVtk(const std::filesystem::path& path, const VtkMessages& messages,
+               Reader* reader) {
   reader->SetFileName(path.c_str());
   reader->Update();
   if (messages.HasError() || reader->GetErrorCode() != 0) {
     ThrowDamagedVtk(path, messages.HasError() ? messages.FirstError()
                                               : "VTK could not read it");
   }
-  return ToMeshFile(path, reader->GetOutput());
 }
 
 }  // namespace elastimate

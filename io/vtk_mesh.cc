@@ -31,7 +31,8 @@ MeshFile ReadVtuMesh(const std::filesystem::path& path) {
     for (const std::string& name : frame.text_cell_arrays) {
       reader->GetCellDataArraySelection()->DisableArray(name.c_str());
     }
-    return ReadByVtk(path, messages, reader.Get());
+    ReadByVtk(path, messages, reader.Get());
+    return ToMeshFile(path, reader->GetOutput());
   } catch (const std::length_error&) {
     ThrowDamagedVtk(path, "its sizes exceed the memory");
   }
