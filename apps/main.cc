@@ -26,6 +26,7 @@ int RunCommand(const std::string& name,
   const Command& command = FindCommand(Elastimate(), name);
   const std::vector<std::string> others =
       ParseFlags(Elastimate(), command, arguments);
+  ReserveBlasMemory();
   if (name == "estimate") {
     return RunEstimate(others);
   }
