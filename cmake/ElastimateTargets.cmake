@@ -31,7 +31,12 @@ function(elastimate_add_library component)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
                                               $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   get_target_property(type ${target} TYPE)
-  if(type STREQUAL STATIC_LIBRARY)
+  if(type STREQUAL SHARED_LIBRARY)
+    set_target_properties(${target} PROPERTIES VERSION ${PROJECT_VERSION}
+                                               SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+                                               LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/elastimate.map)
+    target_link_options(${target} PRIVATE LINKER:--version-script=${PROJECT_SOURCE_DIR}/cmake/elastimate.map)
+  else()
     # Where the modules and helper programs are, wherever the package is installed (core/package_file.h).
     target_link_options(${target} INTERFACE
                         $<INSTALL_INTERFACE:LINKER:-rpath,$<INSTALL_PREFIX>/${ELASTIMATE_PACKAGE_FILES}>)

@@ -5,12 +5,15 @@
 #include <stdexcept>
 #include <string>
 
+#include "elastimate/io/printable.h"
+
 namespace elastimate {
 
-/// Throws std::invalid_argument: "FILE: sentence".
+/// Throws std::invalid_argument: "FILE: sentence", both made printable.
 [[noreturn]] inline void ThrowInputError(const std::filesystem::path& file,
                                          const std::string& sentence) {
-  throw std::invalid_argument(file.string() + ": " + sentence);
+  throw std::invalid_argument(PrintablePath(file) + ": " +
+                              Printable(sentence, kLongestSentence));
 }
 
 [[noreturn]] inline void ThrowDamagedFile(const std::filesystem::path& file,

@@ -16,6 +16,13 @@
 
 #include "elastimate/io/mesh_message.h"
 
+#ifdef __SANITIZE_ADDRESS__
+/// Stands in for the limit of memory, which cannot be set then.
+extern "C" const char* __asan_default_options() {  // NOLINT
+  return "max_allocation_size_mb=1000:detect_leaks=0";
+}
+#endif
+
 namespace elastimate {
 namespace {
 
