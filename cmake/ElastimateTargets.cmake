@@ -69,7 +69,8 @@ endfunction()
 function(elastimate_add_helper target)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
   add_executable(${target} ${ARG_SOURCES})
-  set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${ELASTIMATE_BUILT_PACKAGE_FILES})
+  set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${ELASTIMATE_BUILT_PACKAGE_FILES}
+                                             INSTALL_RPATH $ORIGIN/..)
   target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/include)
   target_link_libraries(${target} PRIVATE ${ARG_LIBRARIES})
   target_link_options(${target} PRIVATE LINKER:--as-needed)  # It starts for each file.
