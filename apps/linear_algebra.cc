@@ -29,6 +29,9 @@ namespace {
 /// What OpenBLAS 0.3 takes of the address space for each thread, at most.
 constexpr rlim_t kBlasMemory = rlim_t{1} << 27;
 
+/// What a small scene takes beside that.  Not all libraries bear to get less.
+constexpr rlim_t kSmallSceneMemory = rlim_t{1} << 25;
+
 /// RLIM_INFINITY where there is no limit (ulimit -v).
 rlim_t AddressSpace() {
   rlimit limit{};
@@ -129,16 +132,17 @@ void ReserveBlasMemory() {
   if (AddressSpace() == RLIM_INFINITY) {
     return;
   }
-  void* const memory = mmap(nullptr, kBlasMemory, PROT_READ | PROT_WRITE,
+  constexpr rlim_t kNeeded = kBlasMemory + kSmallSceneMemory;
+  void* const memory = mmap(nullptr, kNeeded, PROT_READ | PROT_WRITE,
                             MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (memory == MAP_FAILED) {
     throw std::runtime_error(
-        "there is too little memory: the linear algebra takes " +
-        std::to_string(kBlasMemory >> 20) +
+        "there is too little memory: even a small scene takes " +
+        std::to_string(kNeeded >> 20) +
         " MiB of the address space beside the program, whose limit is " +
         std::to_string(AddressSpace() >> 20) + " MiB; raise it (ulimit -v)");
   }
-  munmap(memory, kBlasMemory);
+  munmap(memory, kNeeded);
   // It keeps what it has taken once.
   const int size = 64;
   const double one = 1;

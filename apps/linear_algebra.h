@@ -15,7 +15,7 @@ void SetBlasThreads(int num_threads);
 
 /// Has the BLAS take the memory it works with, which it would wait for forever
 /// when it is not there.  Throws std::runtime_error where the process may not
-/// take that much (ulimit -v).
+/// take that much and what a small scene needs (ulimit -v).
 ///
 /// So that its other threads, which start before the program does, find theirs,
 /// this file starts the program anew, with fewer of them, where the process may
