@@ -48,8 +48,8 @@ struct MeshFile {
 };
 
 /// Reads .vtu, .vtk, .msh, .mesh, .unv and .bdf files; the extension may be in
-/// capital letters.  Node positions are finite where a tetrahedron uses them; no
-/// tetrahedron comes twice; arrays are as the file has them.  Throws as
+/// capital letters.  Node positions are finite where a tetrahedron uses them;
+/// no tetrahedron comes twice; arrays are as the file has them.  Throws as
 /// ReadScene does.
 MeshFile ReadMeshFile(const std::filesystem::path& path);
 

@@ -22,8 +22,8 @@ MeshFile ToMeshFile(const std::filesystem::path& path,
 [[noreturn]] void ThrowDamagedVtk(const std::filesystem::path& path,
                                   const std::string& reason);
 
-/// Has one of VTK's readers read the file.  Throws std::invalid_argument, naming
-/// the file, for whatever VTK complains of.
+/// Has one of VTK's readers read the file.  Throws std::invalid_argument,
+/// naming the file, for whatever VTK complains of.
 template <typename Reader>
 void ReadByVtk(const std::filesystem::path& path, const VtkMessages& messages,
                Reader* reader) {
