@@ -5,6 +5,8 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <memory>
+#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -15,6 +17,16 @@
 #include "elastimate/io/xml_vtk_check.h"
 
 namespace elastimate {
+namespace {
+
+/// Whether there is as much memory as a sound file takes.
+bool HasMemoryFor(const std::filesystem::path& path) {
+  const std::unique_ptr<char[]> some(new (
+      std::nothrow) char[16'000'000 + 20 * std::filesystem::file_size(path)]);
+  return some != nullptr;
+}
+
+}  // namespace
 
 MeshFile ReadVtuMesh(const std::filesystem::path& path) {
   const VtkMessages messages(VtkMessages::Warnings::kIgnored);
@@ -33,6 +45,11 @@ MeshFile ReadVtuMesh(const std::filesystem::path& path) {
     }
     ReadByVtk(path, messages, reader.Get());
     return ToMeshFile(path, reader->GetOutput());
+  } catch (const std::bad_alloc&) {
+    if (!HasMemoryFor(path)) {
+      throw;
+    }
+    ThrowDamagedVtk(path, "its sizes exceed the memory");
   } catch (const std::length_error&) {
     ThrowDamagedVtk(path, "its sizes exceed the memory");
   }
