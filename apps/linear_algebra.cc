@@ -1,14 +1,115 @@
 #include "apps/linear_algebra.h"
 
 #include <dlfcn.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 // What cblas.h of OpenBLAS declares; other BLAS have a cblas.h without it.
 extern "C" {
 char* openblas_get_config();
 void openblas_set_num_threads(int num_threads);
+void dgemm_(const char* transpose_a, const char* transpose_b, const int* m,
+            const int* n, const int* k, const double* alpha, const double* a,
+            const int* lda, const double* b, const int* ldb, const double* beta,
+            double* c, const int* ldc);
 }
 
 namespace elastimate {
+namespace {
+
+/// What OpenBLAS 0.3 takes of the address space for each thread, at most.
+constexpr rlim_t kBlasMemory = rlim_t{1} << 27;
+
+/// What a small scene takes beside that.  Not all libraries bear to get less.
+constexpr rlim_t kSmallSceneMemory = rlim_t{1} << 25;
+
+/// RLIM_INFINITY where there is no limit (ulimit -v).
+rlim_t AddressSpace() {
+  rlimit limit{};
+  getrlimit(RLIMIT_AS, &limit);
+  return limit.rlim_cur;
+}
+
+/// As many as take a quarter of what the process may take, one at least.
+int LargestNumThreads() {
+  const rlim_t memory = AddressSpace();
+  return memory == RLIM_INFINITY
+             ? CPU_SETSIZE
+             : static_cast<int>(std::clamp<rlim_t>(memory / (4 * kBlasMemory),
+                                                   1, CPU_SETSIZE));
+}
+
+int NumProcessors() {
+  cpu_set_t processors;
+  CPU_ZERO(&processors);
+  sched_getaffinity(0, sizeof processors, &processors);
+  return CPU_COUNT(&processors);
+}
+
+/// Sets a number of threads in the environment, which is `otherwise` where it
+/// is not there, to what there may be; true when that changes it.
+bool LimitThreads(const std::string& name, int otherwise,
+                  std::vector<std::string>& variables) {
+  const std::string begin = name + "=";
+  const auto old = std::find_if(
+      variables.begin(), variables.end(),
+      [&](const std::string& text) { return text.rfind(begin, 0) == 0; });
+  const int given =
+      old == variables.end() ? 0 : std::atoi(old->c_str() + begin.size());
+  const int largest = LargestNumThreads();
+  if ((given > 0 ? given : otherwise) <= largest) {
+    return false;
+  }
+  if (old != variables.end()) {
+    variables.erase(old);
+  }
+  variables.push_back(begin + std::to_string(largest));
+  return true;
+}
+
+/// Starts the program anew with fewer threads where they need more memory than
+/// there may be.  Runs ahead of all libraries: OpenBLAS starts its threads when
+/// it is loaded, and each tries forever to get its memory.
+void FitThreadsToMemory(int /*argc*/, char** argv, char** environment) {
+  if (AddressSpace() == RLIM_INFINITY) {
+    return;
+  }
+  std::vector<std::string> variables;
+  for (char** variable = environment; *variable != nullptr; ++variable) {
+    variables.emplace_back(*variable);
+  }
+  const bool blas_changes =
+      LimitThreads("OPENBLAS_NUM_THREADS", NumProcessors(), variables);
+  // CHOLMOD takes four, whatever OMP_NUM_THREADS says.
+  const bool others_change =
+      LimitThreads("OMP_THREAD_LIMIT", CPU_SETSIZE, variables);
+  if (blas_changes || others_change) {
+    std::vector<char*> pointers;
+    for (std::string& variable : variables) {
+      pointers.push_back(variable.data());
+    }
+    pointers.push_back(nullptr);
+    // Where it cannot be, it goes on with all threads.
+    execve("/proc/self/exe", argv, pointers.data());
+  }
+}
+
+#ifndef __SANITIZE_ADDRESS__  // It does not work with little memory.
+[[gnu::section(".preinit_array"),
+  gnu::used]] void (*const before_libraries)(int, char**,
+                                             char**) = FitThreadsToMemory;
+#endif
+
+}  // namespace
 
 std::string DescribeBlas() {
   // CHOLMOD's calls are bound to the first dgemm_ in the scope of the program,
@@ -23,6 +124,32 @@ std::string DescribeBlas() {
          " (" + file + ")";
 }
 
-void SetBlasThreads(int num_threads) { openblas_set_num_threads(num_threads); }
+void SetBlasThreads(int num_threads) {
+  openblas_set_num_threads(std::min(num_threads, LargestNumThreads()));
+}
+
+void ReserveBlasMemory() {
+  if (AddressSpace() == RLIM_INFINITY) {
+    return;
+  }
+  constexpr rlim_t kNeeded = kBlasMemory + kSmallSceneMemory;
+  void* const memory = mmap(nullptr, kNeeded, PROT_READ | PROT_WRITE,
+                            MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (memory == MAP_FAILED) {
+    throw std::runtime_error(
+        "there is too little memory: even a small scene takes " +
+        std::to_string(kNeeded >> 20) +
+        " MiB of the address space beside the program, whose limit is " +
+        std::to_string(AddressSpace() >> 20) + " MiB; raise it (ulimit -v)");
+  }
+  munmap(memory, kNeeded);
+  // It keeps what it has taken once.
+  const int size = 64;
+  const double one = 1;
+  const std::vector<double> a(size * size, 0.0);
+  std::vector<double> c(size * size, 0.0);
+  dgemm_("N", "N", &size, &size, &size, &one, a.data(), &size, a.data(), &size,
+         &one, c.data(), &size);
+}
 
 }  // namespace elastimate

@@ -1,8 +1,11 @@
 #include <ceres/version.h>
 #include <glog/logging.h>
+#include <unistd.h>
 
 #include <Eigen/Core>
 #include <csignal>
+#include <cstdlib>
+#include <exception>
 #include <iostream>
 #include <new>
 #include <sstream>
@@ -23,11 +26,44 @@ namespace {
 
 constexpr int kNoEstimate = 2;
 
+[[noreturn]] void EndForLackOfMemory() {
+  std::cerr << "elastimate: there is not enough memory for this mesh; "
+               "coarsen it, or estimate with --order=1 and "
+               "--estimator=closed-form, which need the least\n";
+  _exit(kNoEstimate);
+}
+
+/// Whether the end of the program is none of its own making.
+bool is_at_work = false;
+
+/// Some libraries do not report that they get no memory: they throw where
+/// nobody can catch it, or end the program (OpenMP, the multigrid of ML).
+void WatchForLackOfMemory() {
+  is_at_work = true;
+  std::atexit([] {
+    if (is_at_work) {
+      EndForLackOfMemory();
+    }
+  });
+  std::set_terminate([] {
+    try {
+      if (const std::exception_ptr error = std::current_exception()) {
+        std::rethrow_exception(error);
+      }
+    } catch (const std::bad_alloc&) {
+      EndForLackOfMemory();
+    } catch (...) {  // NOLINT(bugprone-empty-catch): aborts, as it should.
+    }
+    std::abort();
+  });
+}
+
 int RunCommand(const std::string& name,
                const std::vector<std::string>& arguments) {
   const Command& command = FindCommand(Elastimate(), name);
   const std::vector<std::string> others =
       ParseFlags(Elastimate(), command, arguments);
+  ReserveBlasMemory();
   if (name == "estimate") {
     return RunEstimate(others);
   }
@@ -83,17 +119,18 @@ int main(int argc, char** argv) {
   FLAGS_minloglevel = google::GLOG_FATAL;
   FLAGS_logtostderr = true;
   google::InitGoogleLogging(argv[0]);
+  elastimate::WatchForLackOfMemory();
+  int exit_code = elastimate::kNoEstimate;
   try {
-    return elastimate::Run({argv + 1, argv + argc});
+    exit_code = elastimate::Run({argv + 1, argv + argc});
   } catch (const std::bad_alloc&) {
-    std::cerr << "elastimate: there is not enough memory for this mesh; "
-                 "coarsen it, or estimate with --order=1 and "
-                 "--estimator=closed-form, which need the least\n";
+    elastimate::EndForLackOfMemory();
   } catch (const std::exception& error) {
     std::cerr << "elastimate: "
               << elastimate::Printable(error.what(),
                                        elastimate::kLongestSentence)
               << "\n";
   }
-  return elastimate::kNoEstimate;
+  elastimate::is_at_work = false;
+  return exit_code;
 }

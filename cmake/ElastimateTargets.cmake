@@ -9,7 +9,8 @@ function(elastimate_prepare_include_directory)
 endfunction()
 
 # Warnings are errors in the project's own sources only.  What is linked into a program stays hidden in it: else the
-# program's instances of Eigen's templates stand in for those within Gmsh, which was built with another allocator.
+# program's instances of Eigen's templates stand in for those within other libraries, which may have been built with
+# another allocator.
 function(elastimate_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_17)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
@@ -29,6 +30,17 @@ function(elastimate_add_library component)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${component} POSITION_INDEPENDENT_CODE ON)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
                                               $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL SHARED_LIBRARY)
+    set_target_properties(${target} PROPERTIES VERSION ${PROJECT_VERSION}
+                                               SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+                                               LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/elastimate.map)
+    target_link_options(${target} PRIVATE LINKER:--version-script=${PROJECT_SOURCE_DIR}/cmake/elastimate.map)
+  else()
+    # Where the modules and helper programs are, wherever the package is installed (core/package_file.h).
+    target_link_options(${target} INTERFACE
+                        $<INSTALL_INTERFACE:LINKER:-rpath,$<INSTALL_PREFIX>/${ELASTIMATE_PACKAGE_FILES}>)
+  endif()
   target_link_libraries(
     ${target}
     PUBLIC ${ARG_PUBLIC}
@@ -44,11 +56,26 @@ endfunction()
 function(elastimate_add_module target)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
   add_library(${target} MODULE ${ARG_SOURCES})
-  set_target_properties(${target} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${ELASTIMATE_MODULE_DIRECTORY})
+  set_target_properties(${target} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${ELASTIMATE_BUILT_PACKAGE_FILES})
   target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/include)
   target_link_libraries(${target} PRIVATE ${ARG_LIBRARIES})
   elastimate_compile_options(${target})
-  install(TARGETS ${target} DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(TARGETS ${target} DESTINATION ${ELASTIMATE_PACKAGE_FILES})
+endfunction()
+
+# elastimate_add_helper(<target> SOURCES ... LIBRARIES ...)
+#
+# A program that a library starts in a process of its own (io/mesh_program.h).
+function(elastimate_add_helper target)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  add_executable(${target} ${ARG_SOURCES})
+  set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${ELASTIMATE_BUILT_PACKAGE_FILES}
+                                             INSTALL_RPATH $ORIGIN/..)
+  target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/include)
+  target_link_libraries(${target} PRIVATE ${ARG_LIBRARIES})
+  target_link_options(${target} PRIVATE LINKER:--as-needed)  # It starts for each file.
+  elastimate_compile_options(${target})
+  install(TARGETS ${target} RUNTIME DESTINATION ${ELASTIMATE_PACKAGE_FILES})
 endfunction()
 
 function(elastimate_install_package)

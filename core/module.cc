@@ -2,22 +2,21 @@
 
 #include <dlfcn.h>
 
+#include "elastimate/core/package_file.h"
+
 namespace elastimate {
 
 void* FindInModule(const std::string& module, const char* function,
                    std::string& why) {
   why.clear();
-  for (const std::string& file :
-       {module, ELASTIMATE_INSTALLED_LIBRARIES "/" + module}) {
-    void* const library = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
-    void* const found = library == nullptr ? nullptr : dlsym(library, function);
-    if (found != nullptr) {
-      why.clear();
-      return found;
-    }
-    why += (why.empty() ? "" : "; ") + std::string(dlerror());
+  const std::string path = FindPackageFile(module);
+  void* const library = dlopen(path.empty() ? module.c_str() : path.c_str(),
+                               RTLD_LAZY | RTLD_LOCAL);
+  void* const found = library == nullptr ? nullptr : dlsym(library, function);
+  if (found == nullptr) {
+    why = dlerror();
   }
-  return nullptr;
+  return found;
 }
 
 }  // namespace elastimate

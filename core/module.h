@@ -6,10 +6,9 @@
 namespace elastimate {
 
 /// The function called `function` of a module, a shared library that is loaded
-/// when it is used because it takes long to load.  It is looked for in the run
-/// path of the program and in the system's folders, then where this library was
-/// to be installed.  Null when it is not found, and `why` is what the system
-/// says then.
+/// when it is used because it takes long to load.  It is looked for as
+/// FindPackageFile says, then in the system's folders.  Null when it is not
+/// found, and `why` is what the system says then.
 void* FindInModule(const std::string& module, const char* function,
                    std::string& why);
 

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
-#include <future>
 #include <map>
 #include <string>
 
-#include "elastimate/io/gmsh_module.h"
 #include "elastimate/io/gmsh_text_check.h"
 #include "elastimate/io/input_error.h"
 
@@ -47,6 +45,11 @@ void CheckEnd(const std::filesystem::path& path) {
 
 }  // namespace
 
+MeshProgram GmshProgram() {
+  return {"elastimate-gmsh", "Gmsh", "reads Gmsh files and meshes organs",
+          "open it in Gmsh and save it again"};
+}
+
 MeshFile ReadGmshMesh(const std::filesystem::path& path) {
   if (FileExtension(path) == ".msh") {
     CheckMshBegin(path);
@@ -55,16 +58,7 @@ MeshFile ReadGmshMesh(const std::filesystem::path& path) {
   if (const std::string damage = WhyGmshTextIsDamaged(path); !damage.empty()) {
     ThrowDamagedFile(path, damage);
   }
-  // In a thread of its own: Gmsh sets the number of OpenMP threads of the
-  // thread that starts it to one.
-  const GmshModule& module = LoadGmshModule();
-  return std::async(std::launch::async,
-                    [&] {
-                      MeshFile mesh;
-                      module.read_mesh(path, mesh);
-                      return mesh;
-                    })
-      .get();
+  return ReadByProgram(GmshProgram(), {"read"}, path);
 }
 
 }  // namespace elastimate

@@ -4,15 +4,19 @@
 #include <filesystem>
 
 #include "elastimate/io/mesh_file.h"
+#include "elastimate/io/mesh_program_call.h"
 
 namespace elastimate {
+
+/// The program that runs Gmsh, "read FILE" or "organ N".  Beside what it can do
+/// for the safety of this process, it keeps Gmsh's 90 libraries out of it,
+/// which take ten times as long to load as all others.
+MeshProgram GmshProgram();
 
 /// Reads .msh (versions 1, 2 and 4; with the node and element data in it),
 /// .mesh, .unv and .bdf files through the Gmsh library.  Elements of lower
 /// dimension only make up the physical groups; any other volume element but the
-/// linear tetrahedron is an error.  Throws std::invalid_argument, naming the
-/// file.  Starts and ends the Gmsh library, whose state belongs to the process:
-/// not for a program that is using Gmsh, nor for two threads at once.
+/// linear tetrahedron is an error.  Throws as ReadByProgram does.
 MeshFile ReadGmshMesh(const std::filesystem::path& path);
 
 }  // namespace elastimate

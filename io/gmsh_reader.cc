@@ -1,19 +1,18 @@
-// The part of the module libelastimate_gmsh that reads files.
+#include "elastimate/io/gmsh_reader.h"
 
 #include <gmsh.h>
 
 #include <algorithm>
-#include <clocale>
 #include <exception>
 #include <limits>
 #include <map>
+#include <new>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "elastimate/io/gmsh_module.h"
 #include "elastimate/io/input_error.h"
 
 namespace elastimate {
@@ -22,27 +21,11 @@ namespace {
 constexpr int kTriangle = 2;  // Gmsh's element types.
 constexpr int kTetrahedron = 4;
 
-class GmshSession {
- public:
-  GmshSession() : number_locale_(std::setlocale(LC_NUMERIC, nullptr)) {
-    gmsh::initialize(0, nullptr, false);  // Sets the locale to "C".
-    gmsh::option::setNumber("General.Terminal", 0);
-    gmsh::logger::start();
-  }
-  ~GmshSession() {
-    try {
-      gmsh::logger::stop();  // The log would outlive the session.
-      gmsh::finalize();
-    } catch (...) {  // NOLINT(bugprone-empty-catch): nothing left to undo.
-    }
-    std::setlocale(LC_NUMERIC, number_locale_.c_str());
-  }
-  GmshSession(const GmshSession&) = delete;
-  GmshSession& operator=(const GmshSession&) = delete;
-
- private:
-  const std::string number_locale_;
-};
+void StartGmsh() {
+  gmsh::initialize(0, nullptr, false);
+  gmsh::option::setNumber("General.Terminal", 0);
+  gmsh::logger::start();
+}
 
 /// The position of each of Gmsh's numbers in an ascending list of them.
 class Numbering {
@@ -152,6 +135,12 @@ Numbering ReadNodes(MeshFile& mesh) {
       positions.data(), 3, numbers.size())(Eigen::all, order);
   for (const std::size_t i : order) {
     mesh.node_numbers.push_back(numbers[i]);
+  }
+  const auto twin =
+      std::adjacent_find(mesh.node_numbers.begin(), mesh.node_numbers.end());
+  if (twin != mesh.node_numbers.end()) {
+    ThrowDamagedFile(mesh.path, "it has the node number " +
+                                    std::to_string(*twin) + " twice");
   }
   return Numbering(mesh.node_numbers);
 }
@@ -340,15 +329,13 @@ void ReadViews(const Numbering& nodes, const Numbering& tetrahedra,
 }
 
 }  // namespace
-}  // namespace elastimate
 
-void elastimate_read_gmsh_mesh(const std::filesystem::path& path,
-                               elastimate::MeshFile& mesh) {
-  using namespace elastimate;  // NOLINT(google-build-using-namespace)
+MeshFile ReadByGmsh(const std::filesystem::path& path) {
+  MeshFile mesh;
   mesh.path = path;
   mesh.is_vtk = false;
   try {
-    const GmshSession session;
+    StartGmsh();
     const FileCounts counts = Merge(path);
     CheckVolumeElements(path);
     CheckNoElementIsLost(path, counts.elements);
@@ -360,10 +347,14 @@ void elastimate_read_gmsh_mesh(const std::filesystem::path& path,
     ReadViews(nodes, tetrahedra, mesh);
   } catch (const std::string& message) {
     ThrowDamagedFile(path, message);  // Gmsh throws strings.
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::invalid_argument&) {
     throw;
   } catch (const std::exception& error) {
-    // Counts beyond all memory, most often.
     ThrowDamagedFile(path, error.what());
   }
+  return mesh;
 }
+
+}  // namespace elastimate

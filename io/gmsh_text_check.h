@@ -6,11 +6,11 @@
 
 namespace elastimate {
 
-/// What is wrong with the counts of nodes and elements in a text file of Gmsh
-/// (.msh, any version) or Medit (.mesh), or with Gmsh's node numbers, in a few
-/// words, or an empty string.  Gmsh 4.8 stops at a count that is too small, and
-/// so loses what follows, and takes the last of several nodes of one number.
-/// Binary files are not looked into.
+/// What Gmsh 4.8 does not mind in a text file of nodes and elements (.msh, any
+/// version, or .mesh), although it makes another mesh of it, in a few words, or
+/// an empty string: it stops at a count that is too small, and so loses what
+/// follows, and of several nodes of one number takes the last.  Binary files
+/// are not looked into.
 std::string WhyGmshTextIsDamaged(const std::filesystem::path& path);
 
 }  // namespace elastimate

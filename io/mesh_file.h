@@ -48,11 +48,9 @@ struct MeshFile {
 };
 
 /// Reads .vtu, .vtk, .msh, .mesh, .unv and .bdf files; the extension may be in
-/// capital letters.  Node positions are
-/// finite where a tetrahedron uses them; no tetrahedron comes twice; arrays are
-/// as the file has them. Throws std::invalid_argument, naming the file.
-///
-/// VTK and Gmsh report through global state: not for concurrent calls.
+/// capital letters.  Node positions are finite where a tetrahedron uses them;
+/// no tetrahedron comes twice; arrays are as the file has them.  Throws as
+/// ReadScene does.
 MeshFile ReadMeshFile(const std::filesystem::path& path);
 
 /// ".vtu" of "a.vtu" and of "A.VTU".  Of "a.Vtu" it is ".Vtu": Gmsh tells its

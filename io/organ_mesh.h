@@ -16,9 +16,7 @@ namespace elastimate {
 /// same mesh on every run.
 ///
 /// Throws std::runtime_error, naming the step, when Gmsh fails, and when no
-/// mesh size gives the wanted number.  Starts and ends the Gmsh library, whose
-/// state belongs to the process: not for a program that is using it, nor for
-/// two threads at once.
+/// mesh size gives the wanted number.  Gmsh runs in a process of its own.
 Mesh OrganMesh(int tetrahedra);
 
 }  // namespace elastimate

@@ -1,16 +1,17 @@
-// The part of the module libelastimate_gmsh that meshes the organ.
+#include "elastimate/io/organ_mesher.h"
 
 #include <gmsh.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "elastimate/io/gmsh_module.h"
 #include "elastimate/io/organ_shape.h"
 
 namespace elastimate {
@@ -69,6 +70,8 @@ constexpr int kLine = 1;  // Gmsh's element types.
 constexpr int kTriangle = 2;
 constexpr int kTetrahedron = 4;
 constexpr int kPoint = 15;
+
+constexpr double kDegree = 0.017453292519943295;
 
 /// |k| of a lattice point.
 int Rest(int i, int j) { return kSteps - std::abs(i) - std::abs(j); }
@@ -228,11 +231,8 @@ Mesh CurrentMesh() {
   return mesh;
 }
 
-}  // namespace
-}  // namespace elastimate
-
-void elastimate_mesh_organ(double edge_length, elastimate::Mesh& mesh) {
-  using namespace elastimate;  // NOLINT(google-build-using-namespace)
+Mesh MeshWithEdges(double edge_length) {
+  Mesh mesh;
   Run("start", [&] {
     const GmshSession session(edge_length);
     Run("add the organ's surface", AddSurface);
@@ -241,4 +241,55 @@ void elastimate_mesh_organ(double edge_length, elastimate::Mesh& mesh) {
     Run("optimise the organ's mesh", Optimize);
     Run("hand over the organ's mesh", [&] { mesh = CurrentMesh(); });
   });
+  return mesh;
 }
+
+/// The edge length that gave `tetrahedra` tetrahedra, by a fit to meshes of
+/// 200 to 2 000 000.
+double EstimatedEdgeLength(double tetrahedra) {
+  double edge_length = 0.1;
+  for (int i = 0; i < 20; ++i) {
+    edge_length = std::cbrt((0.475 + 1.5 * edge_length) / tetrahedra);
+  }
+  return edge_length;
+}
+
+}  // namespace
+
+Mesh MeshOrgan(int tetrahedra) {
+  constexpr int kMaxTrials = 30;
+  constexpr double kTolerance = 0.05;
+  constexpr double kGoodAngle = 15.0 * kDegree;
+  // Beyond, another mesh takes too long, and is as likely to have a sliver.
+  constexpr int kMaxTetrahedraToRepeat = 100000;
+  const int max_fitting = tetrahedra <= kMaxTetrahedraToRepeat ? 8 : 1;
+  Mesh best;
+  double best_angle = -1.0;
+  int num_fitting = 0;
+  double edge_length = EstimatedEdgeLength(tetrahedra);
+  for (int trial = 0; trial < kMaxTrials; ++trial) {
+    Mesh mesh = MeshWithEdges(edge_length);
+    const double ratio = static_cast<double>(mesh.NumElements()) / tetrahedra;
+    if (std::abs(ratio - 1.0) <= kTolerance) {
+      const double angle = SmallestDihedralAngles(mesh).minCoeff();
+      if (angle > best_angle) {
+        best = std::move(mesh);
+        best_angle = angle;
+      }
+      if (best_angle >= kGoodAngle || ++num_fitting == max_fitting) {
+        return best;
+      }
+    }
+    // The number goes about as the inverse cube of the edge length.  A small
+    // step more, so that no edge length is tried twice.
+    edge_length *= 0.999 * std::cbrt(ratio);
+  }
+  if (num_fitting > 0) {
+    return best;
+  }
+  throw std::runtime_error("No mesh of the organ has " +
+                           std::to_string(tetrahedra) +
+                           " tetrahedra within 5 %.");
+}
+
+}  // namespace elastimate

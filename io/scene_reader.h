@@ -35,8 +35,12 @@ struct SceneReading {
 ///
 /// The scene returned is valid (ValidateScene).  Throws std::invalid_argument
 /// with one sentence that names the file and the array, key, node or element
-/// for anything wrong with the input.  VTK and Gmsh keep global state: not for
-/// concurrent calls.
+/// for anything wrong with the input, std::bad_alloc where memory is lacking,
+/// and std::runtime_error when a helper program of the package is not there.
+///
+/// For concurrent calls.  What Gmsh and VTK's reader of .vtk files parse, and
+/// may crash on, is read in a child process; .vtu files are read by one thread
+/// after the other.
 SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
                        Measurement measurement);
 

@@ -1,177 +1,64 @@
 #include "elastimate/io/vtk_mesh.h"
 
-#include <vtkCellArray.h>
-#include <vtkCellType.h>
-#include <vtkCellTypes.h>
-#include <vtkTypeInt64Array.h>
+#include <vtkDataArraySelection.h>
+#include <vtkNew.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLUnstructuredGridReader.h>
 
-#include <algorithm>
-#include <cctype>
-#include <cstdint>
-#include <limits>
+#include <memory>
+#include <new>
+#include <stdexcept>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "elastimate/io/input_error.h"
-#include "elastimate/io/printable.h"
+#include "elastimate/io/mesh_program_call.h"
 #include "elastimate/io/vtk_grid.h"
-#include "elastimate/io/vtk_reader.h"
+#include "elastimate/io/vtk_messages.h"
+#include "elastimate/io/xml_vtk_check.h"
 
 namespace elastimate {
 namespace {
 
-[[noreturn]] void ThrowInconsistent(const std::filesystem::path& path,
-                                    const std::string& reason) {
-  ThrowInputError(path, "the file is damaged (" + reason + "); write it again");
-}
-
-/// "vtkQuadraticTetra" as "quadratic tetra".
-std::string CellTypeName(int type) {
-  const std::string class_name = vtkCellTypes::GetClassNameFromTypeId(type);
-  if (class_name.rfind("vtk", 0) != 0) {
-    return "cell of unknown type " + std::to_string(type);
-  }
-  std::string name;
-  for (const char c : class_name.substr(3)) {
-    if (std::isupper(static_cast<unsigned char>(c)) != 0 && !name.empty()) {
-      name += ' ';
-    }
-    name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  return name;
-}
-
-bool IsIgnoredCell(int type) {
-  return type == VTK_VERTEX || type == VTK_POLY_VERTEX || type == VTK_LINE ||
-         type == VTK_POLY_LINE || type == VTK_TRIANGLE;
-}
-
-void CheckOffsets(const std::filesystem::path& path, const VtkGrid& grid) {
-  const vtkTypeInt64Array& offsets = *grid.cells->GetOffsetsArray64();
-  const auto count = static_cast<vtkIdType>(grid.cell_types.size());
-  bool consistent =
-      offsets.GetNumberOfValues() == count + 1 && offsets.GetValue(0) == 0;
-  for (vtkIdType cell = 0; cell < count && consistent; ++cell) {
-    consistent = offsets.GetValue(cell) <= offsets.GetValue(cell + 1);
-  }
-  if (!consistent ||
-      offsets.GetValue(count) != grid.cells->GetNumberOfConnectivityIds()) {
-    ThrowInconsistent(path,
-                      "its cell types, offsets and connectivity disagree");
-  }
-}
-
-bool IsTetrahedron(const VtkGrid& grid, std::size_t cell) {
-  return grid.cell_types[cell] == VTK_TETRA;
-}
-
-/// Checks the kind of each cell.
-void CheckCellTypes(const std::filesystem::path& path, const VtkGrid& grid) {
-  const vtkTypeInt64Array& offsets = *grid.cells->GetOffsetsArray64();
-  for (std::size_t cell = 0; cell < grid.cell_types.size(); ++cell) {
-    const auto index = static_cast<vtkIdType>(cell);
-    if (!IsTetrahedron(grid, cell)) {
-      if (!IsIgnoredCell(grid.cell_types[cell])) {
-        ThrowInputError(path, "cell " + std::to_string(cell) + " is a " +
-                                  CellTypeName(grid.cell_types[cell]) +
-                                  ", but only linear tetrahedra are supported; "
-                                  "mesh the specimen with those");
-      }
-    } else if (offsets.GetValue(index + 1) - offsets.GetValue(index) != 4) {
-      ThrowInconsistent(path, "cell " + std::to_string(cell) +
-                                  " is a tetrahedron without four points");
-    }
-  }
-}
-
-void CopyTetrahedra(const VtkGrid& grid, MeshFile& mesh) {
-  const vtkTypeInt64Array& offsets = *grid.cells->GetOffsetsArray64();
-  const vtkTypeInt64Array& connectivity = *grid.cells->GetConnectivityArray64();
-  const std::int64_t num_points = grid.points.cols();
-  mesh.tetrahedra.resize(
-      4, std::count(grid.cell_types.begin(), grid.cell_types.end(), VTK_TETRA));
-  Eigen::Index column = 0;
-  for (std::size_t cell = 0; cell < grid.cell_types.size(); ++cell) {
-    if (!IsTetrahedron(grid, cell)) {
-      continue;
-    }
-    const std::int64_t first = offsets.GetValue(static_cast<vtkIdType>(cell));
-    for (int corner = 0; corner < 4; ++corner) {
-      const std::int64_t node = connectivity.GetValue(first + corner);
-      if (node < 0 || node >= num_points) {
-        ThrowInputError(
-            mesh.path, "cell " + std::to_string(cell) + " names point " +
-                           std::to_string(node) + ", but the file has " +
-                           std::to_string(num_points) +
-                           " points, counted from 0; correct its connectivity");
-      }
-      mesh.tetrahedra(corner, column) = static_cast<int>(node);
-    }
-    ++column;
-  }
-}
-
-/// Of the columns of cells, those of tetrahedra.
-void KeepTetrahedra(const VtkGrid& grid, std::vector<FileArray>& arrays) {
-  std::vector<std::size_t> tetrahedra;
-  for (std::size_t cell = 0; cell < grid.cell_types.size(); ++cell) {
-    if (IsTetrahedron(grid, cell)) {
-      tetrahedra.push_back(cell);
-    }
-  }
-  for (FileArray& array : arrays) {
-    array.values = Eigen::MatrixXd(array.values(Eigen::all, tetrahedra));
-  }
-}
-
-void CheckArrayLengths(const std::filesystem::path& path,
-                       const std::vector<FileArray>& arrays,
-                       Eigen::Index length) {
-  for (const FileArray& array : arrays) {
-    if (array.values.cols() != length) {
-      ThrowInconsistent(path, "its array '" + Printable(array.name) + "' has " +
-                                  std::to_string(array.values.cols()) +
-                                  " rows where " + std::to_string(length) +
-                                  " are due");
-    }
-  }
-}
-
-MeshFile ToMeshFile(const std::filesystem::path& path, VtkGrid grid) {
-  MeshFile mesh;
-  mesh.path = path;
-  if (grid.points.cols() > std::numeric_limits<int>::max()) {
-    ThrowInputError(path, "the mesh has more than 2^31 points; coarsen it");
-  }
-  if (grid.cell_types.empty()) {
-    return mesh;
-  }
-  CheckOffsets(path, grid);
-  CheckCellTypes(path, grid);
-  CopyTetrahedra(grid, mesh);
-  CheckArrayLengths(path, grid.point_arrays, grid.points.cols());
-  CheckArrayLengths(path, grid.cell_arrays,
-                    static_cast<Eigen::Index>(grid.cell_types.size()));
-  mesh.nodes = std::move(grid.points);
-  mesh.node_arrays = std::move(grid.point_arrays);
-  mesh.tetrahedron_arrays = std::move(grid.cell_arrays);
-  mesh.has_other_cells = mesh.tetrahedra.cols() !=
-                         static_cast<Eigen::Index>(grid.cell_types.size());
-  if (mesh.has_other_cells) {
-    KeepTetrahedra(grid, mesh.tetrahedron_arrays);
-  }
-  return mesh;
+/// Whether there is as much memory as a sound file takes.
+bool HasMemoryFor(const std::filesystem::path& path) {
+  const std::unique_ptr<char[]> some(new (
+      std::nothrow) char[16'000'000 + 20 * std::filesystem::file_size(path)]);
+  return some != nullptr;
 }
 
 }  // namespace
 
 MeshFile ReadVtuMesh(const std::filesystem::path& path) {
-  return ToMeshFile(path, ReadXmlVtk(path));
+  const VtkMessages messages(VtkMessages::Warnings::kIgnored);
+  try {
+    const XmlVtkFrame frame = CheckXmlVtk(path);
+    if (messages.HasError() || !frame.damage.empty()) {
+      ThrowDamagedVtk(
+          path, messages.HasError() ? messages.FirstError() : frame.damage);
+    }
+    vtkNew<vtkXMLUnstructuredGridReader> reader;
+    for (const std::string& name : frame.text_point_arrays) {
+      reader->GetPointDataArraySelection()->DisableArray(name.c_str());
+    }
+    for (const std::string& name : frame.text_cell_arrays) {
+      reader->GetCellDataArraySelection()->DisableArray(name.c_str());
+    }
+    ReadByVtk(path, messages, reader.Get());
+    return ToMeshFile(path, reader->GetOutput());
+  } catch (const std::bad_alloc&) {
+    if (!HasMemoryFor(path)) {
+      throw;
+    }
+    ThrowDamagedVtk(path, "its sizes exceed the memory");
+  } catch (const std::length_error&) {
+    ThrowDamagedVtk(path, "its sizes exceed the memory");
+  }
 }
 
 MeshFile ReadLegacyVtkMesh(const std::filesystem::path& path) {
-  return ToMeshFile(path, ReadLegacyVtk(path));
+  return ReadByProgram(
+      {"elastimate-legacy-vtk", "VTK", "reads .vtk files", "write it again"},
+      {}, path);
 }
 
 }  // namespace elastimate

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <thread>
 
 #include "elastimate/io/printable.h"
 
@@ -14,6 +15,10 @@ namespace elastimate {
 namespace {
 
 constexpr std::size_t kLongestMessage = 240;  // Which may quote the file.
+std::mutex& TheMutex() {
+  static std::mutex mutex;
+  return mutex;
+}
 
 }  // namespace
 
@@ -21,15 +26,41 @@ class VtkMessageWindow : public vtkOutputWindow {
  public:
   static VtkMessageWindow* New();
 
-  void DisplayText(const char* /*text*/) override {}
-  void DisplayWarningText(const char* text) override {
-    if (warnings_are_errors_) {
-      DisplayErrorText(text);
+  void DisplayText(const char* text) override {
+    if (!IsOwnThread()) {
+      others_->DisplayText(text);
     }
   }
-  void DisplayGenericWarningText(const char* /*text*/) override {}
-  void DisplayDebugText(const char* /*text*/) override {}
+  void DisplayDebugText(const char* text) override {
+    if (!IsOwnThread()) {
+      others_->DisplayDebugText(text);
+    }
+  }
+  void DisplayWarningText(const char* text) override {
+    if (!IsOwnThread()) {
+      others_->DisplayWarningText(text);
+    } else if (warnings_are_errors_) {
+      NoteError(text);
+    }
+  }
+  void DisplayGenericWarningText(const char* text) override {
+    if (!IsOwnThread()) {
+      others_->DisplayGenericWarningText(text);
+    } else if (warnings_are_errors_) {
+      NoteError(text);
+    }
+  }
   void DisplayErrorText(const char* text) override {
+    if (!IsOwnThread()) {
+      others_->DisplayErrorText(text);
+    } else {
+      NoteError(text);
+    }
+  }
+
+  bool IsOwnThread() const { return std::this_thread::get_id() == thread_; }
+
+  void NoteError(const char* text) {
     // About what is noted beside an array, not about its data: VTK cannot read
     // the infinite ranges that it writes there, nor keys of other versions.
     if (text != nullptr &&
@@ -43,6 +74,8 @@ class VtkMessageWindow : public vtkOutputWindow {
     }
   }
 
+  const std::thread::id thread_ = std::this_thread::get_id();
+  vtkSmartPointer<vtkOutputWindow> others_;  ///< For other threads.
   bool warnings_are_errors_ = false;
   bool has_error_ = false;
   std::string first_error_;
@@ -57,11 +90,13 @@ class VtkMessageWindow : public vtkOutputWindow {
 vtkStandardNewMacro(VtkMessageWindow);
 
 VtkMessages::VtkMessages(Warnings warnings)
-    : previous_window_(vtkOutputWindow::GetInstance()),
+    : lock_(TheMutex()),
+      previous_window_(vtkOutputWindow::GetInstance()),
       window_(vtkSmartPointer<VtkMessageWindow>::New()),
       previous_display_(vtkObject::GetGlobalWarningDisplay()),
       previous_verbosity_(std::min<int>(vtkLogger::GetCurrentVerbosityCutoff(),
                                         vtkLogger::VERBOSITY_INFO)) {
+  window_->others_ = previous_window_;
   window_->warnings_are_errors_ = warnings == Warnings::kAreErrors;
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
   vtkOutputWindow::SetInstance(window_);

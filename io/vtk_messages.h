@@ -3,6 +3,7 @@
 
 #include <vtkSmartPointer.h>
 
+#include <mutex>
 #include <string>
 
 class vtkOutputWindow;
@@ -11,8 +12,10 @@ namespace elastimate {
 
 class VtkMessageWindow;
 
-/// While it lives, what VTK reports is kept here instead of being printed.
-/// VTK's output window and log are global: not for concurrent use.
+/// While it lives, what VTK reports in this thread is kept here instead of
+/// being printed.  VTK's output window and log are global: another thread that
+/// makes such an object waits until this one has gone, and what VTK reports in
+/// a thread that makes none goes where it went before.
 class VtkMessages {
  public:
   enum class Warnings { kIgnored, kAreErrors };
@@ -28,6 +31,7 @@ class VtkMessages {
   std::string FirstError() const;
 
  private:
+  std::unique_lock<std::mutex> lock_;
   vtkSmartPointer<vtkOutputWindow> previous_window_;
   vtkSmartPointer<VtkMessageWindow> window_;
   int previous_display_;

@@ -436,7 +436,7 @@ TEST_F(SceneReaderTest, ErrsOnFilesThatAreNone) {
 TEST_F(SceneReaderTest, ErrsOnOtherKindsOfVtkData) {
   EXPECT_THROWS_WITH(
       Read(Replaced(LegacySceneText(), "UNSTRUCTURED_GRID", "POLYDATA")),
-      "its dataset is 'POLYDATA'");
+      "Cannot read dataset type: polydata");
   EXPECT_THROWS_WITH(
       ReadScene({folder_.Write("p.vtu",
                                "<VTKFile type=\"PolyData\"><PolyData/>"

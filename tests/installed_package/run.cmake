@@ -1,4 +1,5 @@
-# Installs the build in BUILD to a fresh folder, builds the examples of SOURCE against it, and runs them.
+# Installs the build in BUILD to a fresh folder, which is not the one that it was configured for, and builds the examples
+# of SOURCE and the project beside this file against it with FLAGS, and runs them.  MULTIGRID tells whether it was built.
 
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
@@ -11,9 +12,13 @@ endfunction()
 set(work ${BUILD}/installed_package_test)
 file(REMOVE_RECURSE ${work})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${work}/prefix)
-run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE}/examples -B ${work}/examples -D CMAKE_PREFIX_PATH=${work}/prefix
-    -D CMAKE_BUILD_TYPE=Release -Wno-dev)
-run(${CMAKE_COMMAND} --build ${work}/examples)
+function(build source folder)
+  run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${source} -B ${work}/${folder} -D CMAKE_PREFIX_PATH=${work}/prefix
+      -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_FLAGS=${FLAGS} -Wno-dev)
+  run(${CMAKE_COMMAND} --build ${work}/${folder})
+endfunction()
+build(${SOURCE}/examples examples)
+build(${CMAKE_CURRENT_LIST_DIR} user)
 
 run(${work}/examples/01_estimate)
 if(NOT output MATCHES "E = 20000 Pa, nu = 0\\.4")
@@ -24,6 +29,21 @@ if(NOT output MATCHES "\"status\": \"ok\"")
   message(FATAL_ERROR "02_estimate_file printed ${output}")
 endif()
 run(${work}/prefix/bin/elastimate --version)
+
+# The build may have the modules and helper programs, the installed package has to find its own.
+file(GLOB built ${BUILD}/package_files/*)
+foreach(file IN LISTS built)
+  cmake_path(GET file FILENAME name)
+  file(GLOB_RECURSE installed ${work}/prefix/*/${name})
+  if(NOT installed)
+    message(FATAL_ERROR "${name} is not installed")
+  endif()
+endforeach()
+if(MULTIGRID)
+  set(multigrid multigrid)
+endif()
+run(${work}/user/user_program ${work}/user ${SOURCE}/examples/scenes/organ.vtu ${multigrid})
+run(${work}/prefix/bin/elastimate generate organ --tetrahedra=300 --out=${work}/organ.vtu)
 
 # The code of the README is a part of the first example.
 file(READ ${SOURCE}/README.md readme)

@@ -1,0 +1,35 @@
+// The program elastimate-gmsh: reads a file through the Gmsh library, or meshes
+// the organ with it.
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "elastimate/io/gmsh_reader.h"
+#include "elastimate/io/mesh_program.h"
+#include "elastimate/io/organ_mesher.h"
+
+namespace elastimate {
+namespace {
+
+MeshFile MakeMesh(const std::vector<std::string>& arguments) {
+  if (arguments.size() != 2) {
+    throw std::runtime_error("elastimate-gmsh takes 'read FILE' or 'organ N'");
+  }
+  if (arguments[0] == "read") {
+    return ReadByGmsh(arguments[1]);
+  }
+  Mesh organ = MeshOrgan(std::stoi(arguments[1]));
+  MeshFile mesh;
+  mesh.nodes = std::move(organ.nodes);
+  mesh.tetrahedra = std::move(organ.elements);
+  return mesh;
+}
+
+}  // namespace
+}  // namespace elastimate
+
+int main(int argc, char** argv) {
+  return elastimate::RunMeshProgram(argc, argv, elastimate::MakeMesh);
+}
