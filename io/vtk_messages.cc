@@ -15,6 +15,7 @@ namespace elastimate {
 namespace {
 
 constexpr std::size_t kLongestMessage = 240;  // Which may quote the file.
+
 std::mutex& TheMutex() {
   static std::mutex mutex;
   return mutex;
