@@ -21,21 +21,18 @@ constexpr double kFirstTolerance = 1e-2;
 constexpr int kMostVectorsOfAPole = 30;
 constexpr int kMostPoles = 8;
 // The error of the observed displacements that may remain, relative to the
-// noise, to the residual, and to the displacements.
+// noise, to the residual, and to the displacements: of direct solves, and of
+// multigrid, which leaves errors of StiffnessSolver::kAccurate.
 constexpr double kErrorOverNoise = 0.1;
 constexpr double kErrorOverResidual = 5e-4;
 constexpr double kSmallestError = 1e-8;
+constexpr double kSmallestErrorOfMultigrid = 1e-6;
 
-Bounds RangeToSearch(const EstimatorOptions& options) {
+Bounds LargestRange(const EstimatorOptions& options) {
   if (options.known_poisson_ratio) {
     return {options.known_poisson_ratio, options.known_poisson_ratio};
   }
-  Bounds range = EffectivePoissonRatioBounds(options);
-  if (!options.poisson_ratio.lower &&
-      *range.upper > AdaptiveFit::kUsualSmallest) {
-    range.lower = AdaptiveFit::kUsualSmallest;
-  }
-  return range;
+  return EffectivePoissonRatioBounds(options);
 }
 
 double MiddleOf(double nu, double other) {
@@ -64,8 +61,18 @@ double SolveTolerance(double error, double limit) {
 AdaptiveFit::AdaptiveFit(const Scene& scene, const EstimatorOptions& options)
     : options_(options),
       given_noise_sd_(scene.load_cases.front().noise_sd),
-      searched_(RangeToSearch(options)),
-      model_(scene, options.solver) {
+      model_(scene, options.solver),
+      largest_range_(LargestRange(options)),
+      searched_(largest_range_) {
+  if (!options.known_poisson_ratio) {
+    if (!options.poisson_ratio.lower && *searched_.upper > kUsualSmallest) {
+      searched_.lower = kUsualSmallest;
+    }
+    if (!options.poisson_ratio.upper && model_.UsesMultigrid() &&
+        *searched_.lower < kUsualLargestOfMultigrid) {
+      searched_.upper = kUsualLargestOfMultigrid;
+    }
+  }
   const double lower = *searched_.lower;
   const double upper = *searched_.upper;
   const double main = std::clamp(kMainPole, lower, upper);
@@ -137,21 +144,18 @@ bool AdaptiveFit::Run(const ObservedDisplacements& observed) {
   }
   for (;;) {
     Fit(observed);
-    if (fit_.point.poisson_ratio <= *searched_.lower && SearchFurther()) {
+    std::vector<ReducedFit::ModelError> errors;
+    for (const double nu : least_squares_->Scan()) {
+      errors.push_back(ErrorAt(nu));
+    }
+    const std::vector<ReducedFit::ResidualBracket> brackets =
+        least_squares_->BracketResiduals(observed.Measured(), errors);
+    if (SearchFurther(observed, brackets)) {
       continue;
     }
     std::optional<Doubt> doubt = DoubtAtTheEstimate(observed);
     if (!doubt) {
-      std::vector<ReducedFit::ModelError> errors;
-      for (const double nu : least_squares_->Scan()) {
-        errors.push_back(ErrorAt(nu));
-      }
-      const std::vector<ReducedFit::ResidualBracket> brackets =
-          least_squares_->BracketResiduals(observed.Measured(), errors);
       doubt = DoubtElsewhere(observed, brackets);
-      if (!doubt && MayLieFurther(observed, brackets) && SearchFurther()) {
-        continue;
-      }
     }
     has_converged_ = !doubt;
     if (has_converged_ || !Improve(*doubt)) {
@@ -183,6 +187,10 @@ double AdaptiveFit::NoiseOf(const ObservedDisplacements& observed) const {
              : fit_.standard_deviation;
 }
 
+double AdaptiveFit::SmallestError() const {
+  return model_.UsesMultigrid() ? kSmallestErrorOfMultigrid : kSmallestError;
+}
+
 ReducedFit::ModelError AdaptiveFit::ErrorAt(double nu) const {
   const double of_energy =
       compliance_norm_ / std::sqrt(SmallestEnergyRatio(nu, compliance_pole_));
@@ -205,7 +213,7 @@ std::optional<AdaptiveFit::Doubt> AdaptiveFit::DoubtAtTheEstimate(
   const ReducedFit::ModelError error = ErrorAt(nu);
   const double size = std::abs(fit_.point.compliance_scale) * error.w + error.v;
   const double allowed =
-      std::max(kSmallestError, kErrorOverNoise * NoiseOf(observed));
+      std::max(SmallestError(), kErrorOverNoise * NoiseOf(observed));
   if (size <= allowed) {
     return std::nullopt;
   }
@@ -217,8 +225,8 @@ std::optional<AdaptiveFit::Doubt> AdaptiveFit::DoubtElsewhere(
     const std::vector<ReducedFit::ResidualBracket>& brackets) const {
   const double residual = std::sqrt(least_squares_point_.square_sum);
   const double allowed =
-      std::max(kSmallestError, std::min(kErrorOverNoise * NoiseOf(observed),
-                                        kErrorOverResidual * residual));
+      std::max(SmallestError(), std::min(kErrorOverNoise * NoiseOf(observed),
+                                         kErrorOverResidual * residual));
   const Eigen::VectorXd& scan = least_squares_->Scan();
   const Eigen::Index size = scan.size();
   const auto is_in_doubt = [&](Eigen::Index i) {
@@ -265,27 +273,33 @@ bool AdaptiveFit::Improve(const Doubt& doubt) {
   return model_.Version() != version;
 }
 
-bool AdaptiveFit::MayLieFurther(
+bool AdaptiveFit::SearchFurther(
     const ObservedDisplacements& observed,
-    const std::vector<ReducedFit::ResidualBracket>& brackets) const {
+    const std::vector<ReducedFit::ResidualBracket>& brackets) {
   // Beyond this excess of the sum of squares over its least, in variances, no
   // interval of nu ends.
   constexpr double kFarExcess = 10;
-  const double excess = brackets.front().reduced * brackets.front().reduced -
-                        least_squares_point_.square_sum;
   const double variance =
       least_squares_point_.square_sum / static_cast<double>(observed.Size());
-  return excess <= kFarExcess * variance;
-}
-
-bool AdaptiveFit::SearchFurther() {
-  if (options_.poisson_ratio.lower || options_.known_poisson_ratio ||
-      *searched_.lower == kSmallestPoissonRatio) {
-    return false;
+  const auto is_near_least = [&](const ReducedFit::ResidualBracket& end) {
+    return end.reduced * end.reduced - least_squares_point_.square_sum <=
+           kFarExcess * variance;
+  };
+  bool has_grown = false;
+  if (*searched_.lower > *largest_range_.lower &&
+      is_near_least(brackets.front())) {
+    searched_.lower = largest_range_.lower;
+    has_grown = true;
   }
-  searched_.lower = kSmallestPoissonRatio;
-  least_squares_.reset();
-  return true;
+  if (*searched_.upper < *largest_range_.upper &&
+      is_near_least(brackets.back())) {
+    searched_.upper = largest_range_.upper;
+    has_grown = true;
+  }
+  if (has_grown) {
+    least_squares_.reset();
+  }
+  return has_grown;
 }
 
 Profile AdaptiveFit::ProfileEnds(const ObservedDisplacements& observed,
@@ -298,9 +312,11 @@ Profile AdaptiveFit::ProfileEnds(const ObservedDisplacements& observed,
       observed.Measured(), least_squares_point_, excess);
   Profile profile = {elasticity_of(lower), elasticity_of(upper)};
   // Where it reaches the end of the search, it may go on beyond.
-  if (!options_.poisson_ratio.lower &&
-      profile.lower.poisson_ratio <= *searched_.lower) {
-    profile.lower.poisson_ratio = kSmallestPoissonRatio;
+  if (profile.lower.poisson_ratio <= *searched_.lower) {
+    profile.lower.poisson_ratio = *largest_range_.lower;
+  }
+  if (profile.upper.poisson_ratio >= *searched_.upper) {
+    profile.upper.poisson_ratio = *largest_range_.upper;
   }
   return profile;
 }

@@ -33,11 +33,15 @@ namespace elastimate {
 /// loss, (2) holds for the fit without it, on whose model the fit with the loss
 /// is made.
 ///
-/// nu is searched from kUsualSmallest, unless a bound asks for less or the
-/// residual there is near the least, and then from kSmallestPoissonRatio.
+/// nu is searched within the bounds, and where there are none from
+/// kUsualSmallest to kLargestPoissonRatio, by multigrid, which does not
+/// converge next to 1/2, to kUsualLargestOfMultigrid.  Where the residual at an
+/// end that no bound has set is near the least, the search goes on beyond it,
+/// to kSmallestPoissonRatio or kLargestPoissonRatio.
 class AdaptiveFit {
  public:
   static constexpr double kUsualSmallest = -0.95;
+  static constexpr double kUsualLargestOfMultigrid = 0.495;
 
   /// Factorises once, and once more where nu may be near 1/2 or near -1.
   /// `scene` must outlive this object.  Preconditions and exceptions: those of
@@ -75,16 +79,14 @@ class AdaptiveFit {
   /// that would take more vectors than a pole gets.
   bool EnlargeUntil(double nu, double limit);
   bool Improve(const Doubt& doubt);
-  /// Whether the residual at the lower end of the search is near the least.
-  bool MayLieFurther(
-      const ObservedDisplacements& observed,
-      const std::vector<ReducedFit::ResidualBracket>& brackets) const;
-  /// Searches from kSmallestPoissonRatio on; false where that was done, or is
-  /// not allowed.
-  bool SearchFurther();
+  /// Moves the ends of the search at which the residual is near the least to
+  /// those of the largest range; false where there are none.
+  bool SearchFurther(const ObservedDisplacements& observed,
+                     const std::vector<ReducedFit::ResidualBracket>& brackets);
 
   void Fit(const ObservedDisplacements& observed);
   double NoiseOf(const ObservedDisplacements& observed) const;
+  double SmallestError() const;
   ReducedFit::ModelError ErrorAt(double nu) const;
   std::optional<Doubt> DoubtAtTheEstimate(
       const ObservedDisplacements& observed) const;
@@ -94,8 +96,9 @@ class AdaptiveFit {
 
   EstimatorOptions options_;
   std::optional<double> given_noise_sd_;
-  Bounds searched_;
   ReducedModel model_;
+  Bounds largest_range_;
+  Bounds searched_;
   bool is_regular_ = true;
   /// ComplianceNorm of the observed components at a pole; zero before.
   double compliance_norm_ = 0;

@@ -19,14 +19,14 @@ namespace elastimate {
 ///
 /// No initial guess; bounds are kept exactly.  The model is refined until it is
 /// certified (AdaptiveFit) that its error at the estimate is below a tenth of
-/// the noise, and that the full model leaves no less at any other nu from -0.95
-/// (or from a lower bound, and from -0.9999 where the fit goes there) to
-/// 0.49999: the minimum is the global one.  Where rounding does not allow that,
-/// as in plates a thousand times wider than thick, the status is
-/// iteration_limit.  A loss is minimised by iterative reweighting from the
-/// least absolute deviations, with its scale from 1.4826 MAD of the residuals;
-/// the certificate is then that of the fit without a loss, on whose model it is
-/// made.
+/// the noise, and that the full model leaves no less at any other nu that is
+/// searched (from -0.95 to 0.49999, by multigrid to 0.495, or between the
+/// bounds; further where the fit asks for it): the minimum is the global one.
+/// Where rounding does not allow that, as in plates a thousand times wider than
+/// thick, the status is iteration_limit.  A loss is minimised by iterative
+/// reweighting from the least absolute deviations, with its scale from 1.4826
+/// MAD of the residuals; the certificate is then that of the fit without a
+/// loss, on whose model it is made.
 ///
 /// Where the standard error of nu is large (kLargestLinearShare), the 95 %
 /// interval of nu is that of the profile likelihood, and the standard errors of

@@ -78,6 +78,9 @@ class ReducedModel {
     return ComplianceNorm(weights, solver_);
   }
 
+  /// Whether solves are inexact.
+  bool UsesMultigrid() const { return solver_.UsesMultigrid(); }
+
   /// nu of the present pole.
   double Pole() const { return solver_.PoissonRatio(); }
 

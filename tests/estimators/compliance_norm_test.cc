@@ -29,7 +29,7 @@ double DenseNorm(const Scene& scene, double nu,
 
 // All components, and few, where the spectrum is another one.
 TEST(ComplianceNorm, IsAnUpperBoundAndNearTheLargestCompliance) {
-  for (const std::string shape : {"bracket", "dumbbell", "ring"}) {
+  for (const std::string shape : {"bracket", "dome"}) {
     for (const double nu : {-0.5, 0.3, 0.499}) {
       const Scene scene = testing::ShapeScene(shape, "tension");
       StiffnessSolver solver(scene.mesh, scene.supports, SolverKind::kCholesky);
