@@ -27,7 +27,7 @@ namespace elastimate {
 /// With a loss (scale 1.4826 MAD of the residuals, Huber k = 1.345, Cauchy
 /// c = 2.385), the fit is repeated with the scale of a first one without.
 ///
-/// Cost: about 8 to 20 factorisations; memory is that of the factor.
+/// Cost: about 12 factorisations, up to 30 where several basins show; memory is that of the factor.
 /// Deterministic for a given number of BLAS threads (Estimator::Run).
 class IterativeFe : public Estimator {
  public:
