@@ -154,8 +154,10 @@ ActiveBounds NoteActiveBounds(const EstimatorOptions& options,
     estimate.warnings.emplace_back(
         active.is_physical_limit
             ? "Poisson's ratio has run to the end of its physical range"
-            : "Poisson's ratio lies on its bound; Young's modulus and its "
-              "standard error hold only if the bound is the true value");
+            : "Poisson's ratio lies on its bound; Young's modulus holds only "
+              "if "
+              "the bound is the true value, and its standard error allows for "
+              "the room that the data and the bounds leave");
   }
   return active;
 }
@@ -179,21 +181,24 @@ void JudgePoissonRatioOnBound(const EstimatorOptions& options,
                   "the model contradicts the data");
     return;
   }
-  if (standard_error <= kLargestPoissonRatioError) {
-    return;
-  }
   const Bounds bounds = EffectivePoissonRatioBounds(options);
   const double youngs_modulus_error =
       std::abs(slope) *
       std::min(standard_error, DistanceFromBound(*bounds.lower, *bounds.upper));
-  if (active.is_physical_limit ||
-      youngs_modulus_error > kLargestYoungsModulusError) {
+  if (standard_error > kLargestPoissonRatioError &&
+      (active.is_physical_limit ||
+       youngs_modulus_error > kLargestYoungsModulusError)) {
     estimate.Fail(
         Status::kNotIdentifiable,
         "Poisson's ratio lies on its bound, but the data do not determine "
         "it: " +
             DescribeCollinear(estimate.elasticity, {slope, 1}),
         "the parameters are not determined");
+    return;
+  }
+  if (!active.is_physical_limit) {
+    estimate.covariance(0, 0) +=
+        std::pow(youngs_modulus_error * estimate.elasticity.youngs_modulus, 2);
   }
 }
 

@@ -76,7 +76,8 @@ ActiveBounds NoteActiveBounds(const EstimatorOptions& options,
                               Estimate& estimate);
 
 /// For nu on a bound: sets `estimate` to not usable unless the data decide on
-/// nu, or at least on E.  `slope` = d ln E / d nu of the parameters that fit
+/// nu, or at least on E; adds what nu may be off by to the variance of E.
+/// `slope` = d ln E / d nu of the parameters that fit
 /// alike; `standard_error` is that of nu without the bound.
 void JudgePoissonRatioOnBound(const EstimatorOptions& options,
                               const ActiveBounds& active, double slope,

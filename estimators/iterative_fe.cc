@@ -33,7 +33,8 @@ namespace {
 // (1 + nu) / (1 - 2 nu), the scale on which the stiffness changes evenly, since
 // the sum of squares can have several minima (that of a slender bar or a plate
 // in bending has).
-constexpr double kStartPoissonRatios[] = {-0.85, -0.5, 0.0, 0.3, 0.45, 0.495};
+constexpr double kStartPoissonRatios[] = {-0.85, -0.5, 0.0,   0.3,
+                                          0.45,  0.48, 0.495, 0.499};
 // Steps below this part of a standard error end the fit.
 constexpr double kSmallestStep = 1e-2;
 
@@ -281,6 +282,9 @@ struct ProfilePoint {
   double cost;
   /// Its derivative by nu.
   double slope = 0;
+  /// Without bounds on E.
+  IsotropicElasticity unbounded = elasticity;
+  double unbounded_cost = cost;
 };
 
 double CostOf(Loss loss, const Eigen::VectorXd& residual) {
@@ -304,6 +308,7 @@ ProfilePoint EvaluateProfile(const EstimatorOptions& options,
   if (!elasticity.IsPhysical()) {
     return {elasticity, CostOf(options.loss, rest - t * w)};
   }
+  const IsotropicElasticity unbounded = elasticity;
   double& youngs_modulus = elasticity.youngs_modulus;
   youngs_modulus = std::max(
       youngs_modulus, options.youngs_modulus.lower.value_or(youngs_modulus));
@@ -317,7 +322,8 @@ ProfilePoint EvaluateProfile(const EstimatorOptions& options,
   const double slope = options.loss == Loss::kNone
                            ? 2 * misfit.dot(change)
                            : misfit.cwiseSign().dot(change);
-  return {elasticity, CostOf(options.loss, misfit), slope};
+  return {elasticity, CostOf(options.loss, misfit), slope, unbounded,
+          CostOf(options.loss, rest - t * w)};
 }
 
 // nu of virtual-fields, where it has one.
@@ -366,9 +372,21 @@ std::vector<ProfilePoint> EvaluateStarts(const Scene& scene,
   return starts;
 }
 
-// Where to descend from: the better end of every interval into which the cost
-// falls from both sides, and the first and the last start where it falls
-// beyond them.  Starts without a positive E are left out.
+// Whether cost and slopes show a minimum between two starts: the cost falls
+// into the interval from both ends, or rises into it to an end that is lower.
+bool HasMinimumBetween(const ProfilePoint& left, const ProfilePoint& right) {
+  if (left.slope > 0 && right.slope >= 0) {
+    return right.cost < left.cost;
+  }
+  if (left.slope <= 0 && right.slope < 0) {
+    return left.cost < right.cost;
+  }
+  return left.slope <= 0 && right.slope >= 0;
+}
+
+// Where to descend from: the better end of every interval between starts that
+// has a minimum, and the first and the last start where the cost falls beyond
+// them.  Starts without a positive E are left out.
 std::vector<IsotropicElasticity> BasinsOf(std::vector<ProfilePoint> starts) {
   starts.erase(std::remove_if(starts.begin(), starts.end(),
                               [](const ProfilePoint& start) {
@@ -376,66 +394,79 @@ std::vector<IsotropicElasticity> BasinsOf(std::vector<ProfilePoint> starts) {
                               }),
                starts.end());
   std::vector<IsotropicElasticity> basins;
-  for (std::size_t i = 0; i <= starts.size() && !starts.empty(); ++i) {
-    const bool falls_from_left = i == 0 || starts[i - 1].slope <= 0;
-    const bool falls_from_right = i == starts.size() || starts[i].slope >= 0;
-    if (!falls_from_left || !falls_from_right) {
-      continue;
+  if (starts.empty()) {
+    return basins;
+  }
+  if (starts.front().slope >= 0) {
+    basins.push_back(starts.front().elasticity);
+  }
+  for (std::size_t i = 1; i < starts.size(); ++i) {
+    if (HasMinimumBetween(starts[i - 1], starts[i])) {
+      const bool is_left_better = starts[i - 1].cost < starts[i].cost;
+      basins.push_back(starts[is_left_better ? i - 1 : i].elasticity);
     }
-    const bool is_left_better =
-        i == starts.size() || (i > 0 && starts[i - 1].cost < starts[i].cost);
-    basins.push_back(starts[is_left_better ? i - 1 : i].elasticity);
+  }
+  if (starts.back().slope <= 0) {
+    basins.push_back(starts.back().elasticity);
   }
   return basins;
 }
 
-// The profile likelihood as far as the search for a start has seen it: the
-// starts, with the fit itself as the best.
-class StartProfile {
+// The profile likelihood without bounds on E, as far as it has been evaluated:
+// the starts, and the fit itself as the best.
+class EvaluatedProfile {
  public:
-  StartProfile(std::vector<ProfilePoint> starts, const ProfilePoint& best)
-      : starts_(std::move(starts)), best_(best) {
-    std::sort(starts_.begin(), starts_.end(), [this](auto& a, auto& b) {
-      return DistanceOf(a) < DistanceOf(b);
-    });
+  EvaluatedProfile(const std::vector<ProfilePoint>& points,
+                   const ProfilePoint& best)
+      : best_(best) {
+    for (const ProfilePoint& point : points) {
+      Add(point);
+    }
   }
 
-  // The best fit where, towards `limit`, the cost exceeds the least by
-  // `excess`: between two starts the root of what it exceeds by is taken as
-  // linear, and so is E.  At the limit where no start exceeds it.
+  void Add(const ProfilePoint& point) { points_.push_back(point); }
+
+  // The outermost fit where, towards `limit`, the cost exceeds the least by
+  // `excess`: between two points the root of what it exceeds by is taken as
+  // linear, and so is E.  At the limit where the last point does not exceed it.
   IsotropicElasticity EndTowards(double limit, double excess) const {
-    const double nu = best_.elasticity.poisson_ratio;
-    ProfilePoint inner = best_;
-    double inner_root = 0;
-    for (const ProfilePoint& outer : starts_) {
-      if ((outer.elasticity.poisson_ratio - nu) * (limit - nu) <= 0) {
-        continue;
+    const double nu = best_.unbounded.poisson_ratio;
+    std::vector<ProfilePoint> side = {best_};
+    for (const ProfilePoint& point : points_) {
+      if ((point.unbounded.poisson_ratio - nu) * (limit - nu) > 0) {
+        side.push_back(point);
       }
-      const double outer_root =
-          std::sqrt(std::max(outer.cost - best_.cost, 0.0) / excess);
-      if (outer_root >= 1) {
-        const double share = (1 - inner_root) / (outer_root - inner_root);
-        const auto between = [share](double a, double b) {
-          return a + share * (b - a);
-        };
-        return {between(inner.elasticity.youngs_modulus,
-                        outer.elasticity.youngs_modulus),
-                between(inner.elasticity.poisson_ratio,
-                        outer.elasticity.poisson_ratio)};
-      }
-      inner = outer;
-      inner_root = outer_root;
     }
-    return {inner.elasticity.youngs_modulus, limit};
+    std::sort(side.begin(), side.end(),
+              [nu](const ProfilePoint& a, const ProfilePoint& b) {
+                return std::abs(a.unbounded.poisson_ratio - nu) <
+                       std::abs(b.unbounded.poisson_ratio - nu);
+              });
+    const auto root_of = [&](const ProfilePoint& point) {
+      return std::sqrt(
+          std::max(point.unbounded_cost - best_.unbounded_cost, 0.0) / excess);
+    };
+    std::size_t inner = side.size() - 1;
+    while (root_of(side[inner]) >= 1) {
+      --inner;  // The best is inside.
+    }
+    const IsotropicElasticity& inside = side[inner].unbounded;
+    if (inner + 1 == side.size()) {
+      return {inside.youngs_modulus, limit};
+    }
+    const IsotropicElasticity& outside = side[inner + 1].unbounded;
+    const double inner_root = root_of(side[inner]);
+    const double share =
+        (1 - inner_root) / (root_of(side[inner + 1]) - inner_root);
+    const auto between = [share](double a, double b) {
+      return a + share * (b - a);
+    };
+    return {between(inside.youngs_modulus, outside.youngs_modulus),
+            between(inside.poisson_ratio, outside.poisson_ratio)};
   }
 
  private:
-  double DistanceOf(const ProfilePoint& point) const {
-    return std::abs(point.elasticity.poisson_ratio -
-                    best_.elasticity.poisson_ratio);
-  }
-
-  std::vector<ProfilePoint> starts_;
+  std::vector<ProfilePoint> points_;
   ProfilePoint best_;
 };
 
@@ -517,13 +548,27 @@ Minimum Descend(const EstimatorOptions& options,
   return other.cost < minimum.cost ? std::move(other) : std::move(minimum);
 }
 
-// The best of all that is reached, at which the residual is evaluated.
+// The profile at the nu of a minimum; of infinite cost where it was not
+// reached.
+ProfilePoint PointOf(const Minimum& minimum, DisplacementResidual& residual,
+                     const EstimatorOptions& options) {
+  const double nu = minimum.poisson_ratio.Value();
+  if (!std::isfinite(minimum.cost) || !residual.SetPoissonRatio(nu)) {
+    return {{Estimate::kUnknown, nu}, std::numeric_limits<double>::infinity()};
+  }
+  return EvaluateProfile(options, residual, nu);
+}
+
+// The best of all that is reached.  Each is a point of the profile.
 Minimum BestMinimum(const EstimatorOptions& options,
                     const std::vector<IsotropicElasticity>& basins,
-                    DisplacementResidual& residual) {
+                    DisplacementResidual& residual,
+                    std::vector<ProfilePoint>& points) {
   Minimum best = Descend(options, basins.front(), residual);
+  points.push_back(PointOf(best, residual, options));
   for (std::size_t i = 1; i < basins.size(); ++i) {
     Minimum other = Descend(options, basins[i], residual);
+    points.push_back(PointOf(other, residual, options));
     if (other.cost < best.cost) {
       best = std::move(other);
     }
@@ -549,29 +594,56 @@ void JudgeSummary(const EstimatorOptions& options,
   }
 }
 
-// Fills in what follows from the fit.  `starts` are for the interval of nu.
+// Enters the interval of nu, after two looks at where each end may be.
+void DescribeProfileOf(const EstimatorOptions& options,
+                       const std::vector<ProfilePoint>& points, double variance,
+                       DisplacementResidual& residual, Estimate& estimate) {
+  constexpr int kLooks = 2;
+  EvaluatedProfile profile(
+      points, {estimate.elasticity, residual.Fit().residual.squaredNorm()});
+  const Bounds bounds = EffectivePoissonRatioBounds(options);
+  for (int i = 0; i < kLooks; ++i) {
+    for (const double limit : {*bounds.lower, *bounds.upper}) {
+      const double nu =
+          profile.EndTowards(limit, kTwoSidedQuantile * variance).poisson_ratio;
+      if (nu != limit && residual.SetPoissonRatio(nu)) {
+        profile.Add(EvaluateProfile(options, residual, nu));
+      }
+    }
+  }
+  DescribeProfile(
+      [&](double quantile) {
+        const double excess = quantile * variance;
+        return Profile{profile.EndTowards(*bounds.lower, excess),
+                       profile.EndTowards(*bounds.upper, excess)};
+      },
+      estimate);
+}
+
+// Fills in what follows from the fit.  `points` of the profile are for the
+// interval of nu.
 void DescribeFit(const Scene& scene, const EstimatorOptions& options,
-                 const std::vector<ProfilePoint>& starts,
+                 const std::vector<ProfilePoint>& points,
                  const ActiveBounds& active, const NodeLosses& losses,
-                 const DisplacementResidual& residual, Estimate& estimate) {
-  const DisplacementFit& fit = residual.Fit();
+                 DisplacementResidual& residual, Estimate& estimate) {
   const std::optional<double> variance = DescribeDisplacementFit(
-      scene, residual.Graph(), options, residual.Observed(), fit, losses,
-      active, estimate);
-  if (variance && options.loss == Loss::kNone && estimate.IsUsable() &&
-      active.youngs_modulus == BoundedParameter::Side::kNone &&
-      (active.is_physical_limit ||
-       ShareOfDistanceToPole(estimate) > kLargestLinearShare)) {
-    const StartProfile profile(
-        starts, {estimate.elasticity, fit.residual.squaredNorm()});
-    const Bounds bounds = EffectivePoissonRatioBounds(options);
-    DescribeProfile(
-        [&](double quantile) {
-          const double excess = quantile * *variance;
-          return Profile{profile.EndTowards(*bounds.lower, excess),
-                         profile.EndTowards(*bounds.upper, excess)};
-        },
-        estimate);
+      scene, residual.Graph(), options, residual.Observed(), residual.Fit(),
+      losses, active, estimate);
+  if (!variance || options.loss != Loss::kNone || !estimate.IsUsable() ||
+      active.youngs_modulus != BoundedParameter::Side::kNone) {
+    return;
+  }
+  const double least = residual.Fit().residual.squaredNorm();
+  const double nu = estimate.elasticity.poisson_ratio;
+  const double far = 4 * estimate.PoissonRatioStandardError().value_or(0);
+  const bool has_rival =
+      std::any_of(points.begin(), points.end(), [&](const ProfilePoint& point) {
+        return point.unbounded_cost <= least + kTwoSidedQuantile * *variance &&
+               std::abs(point.unbounded.poisson_ratio - nu) > far;
+      });
+  if (active.is_physical_limit || has_rival ||
+      ShareOfDistanceToPole(estimate) > kLargestLinearShare) {
+    DescribeProfileOf(options, points, *variance, residual, estimate);
   }
 }
 
@@ -599,9 +671,8 @@ Estimate IterativeFe::DoRun(const Scene& scene,
   DisplacementResidual residual(scene, options);
   estimate.stages.push_back({"assemble and analyse", stopwatch.Lap()});
 
-  const std::vector<ProfilePoint> starts =
-      EvaluateStarts(scene, options, residual);
-  if (starts.empty()) {
+  std::vector<ProfilePoint> points = EvaluateStarts(scene, options, residual);
+  if (points.empty()) {
     estimate.message =
         "the stiffness matrix is singular to working precision; check the "
         "mesh for slivers and loose parts, and the supports";
@@ -609,15 +680,15 @@ Estimate IterativeFe::DoRun(const Scene& scene,
     estimate.work = residual.WorkDone();
     return estimate;
   }
-  const std::vector<IsotropicElasticity> basins = BasinsOf(starts);
+  const std::vector<IsotropicElasticity> basins = BasinsOf(points);
   if (basins.empty()) {
-    estimate.elasticity = starts.front().elasticity;
+    estimate.elasticity = points.front().elasticity;
     estimate.Fail(Status::kUnphysical, kDisplacementsOpposeLoads,
                   "the estimate is not physical");
     estimate.work = residual.WorkDone();
     return estimate;
   }
-  const Minimum best = BestMinimum(options, basins, residual);
+  const Minimum best = BestMinimum(options, basins, residual, points);
   residual.SetParameters(best.meaning, &best.scale, &best.poisson_ratio);
   residual.PrepareForEvaluation(true, true);
   estimate.stages.push_back({"fit", stopwatch.Lap()});
@@ -626,7 +697,7 @@ Estimate IterativeFe::DoRun(const Scene& scene,
     estimate.elasticity = residual.Elasticity();
     const ActiveBounds active =
         NoteActiveBounds(options, best.violated, best.poisson_ratio, estimate);
-    DescribeFit(scene, options, starts, active, best.losses, residual,
+    DescribeFit(scene, options, points, active, best.losses, residual,
                 estimate);
   }
   NoteSolver(residual.SolverNotice(), estimate);

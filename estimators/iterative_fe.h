@@ -15,9 +15,9 @@ namespace elastimate {
 /// du/dtheta = -K^-1 (dK/dtheta) u; one factorisation for each nu tried,
 /// shared by E and all load cases; bounds on E and nu.  The sum of squares can
 /// have several minima: it and its slope are taken at nu = -0.85, -0.5, 0, 0.3,
-/// 0.45, 0.495 and that of virtual-fields (moved into the bounds), with the E
-/// that fits best there, and the fit descends into every basin that these show
-/// and keeps the best.
+/// 0.45, 0.48, 0.495, 0.499 and that of virtual-fields (moved into the bounds),
+/// with the E that fits best there, and the fit descends into every basin that
+/// these show and keeps the best.
 /// Where the standard error of nu is large (kLargestLinearShare) or nu at the
 /// end of its range, the interval of nu is that of the profile likelihood
 /// between these starts, and the standard errors are widened to it.
@@ -27,8 +27,9 @@ namespace elastimate {
 /// With a loss (scale 1.4826 MAD of the residuals, Huber k = 1.345, Cauchy
 /// c = 2.385), the fit is repeated with the scale of a first one without.
 ///
-/// Cost: about 12 factorisations, up to 30 where several basins show; memory is that of the factor.
-/// Deterministic for a given number of BLAS threads (Estimator::Run).
+/// Cost: 12 to 40 factorisations, the more the more basins show; memory is
+/// that of the factor. Deterministic for a given number of BLAS threads
+/// (Estimator::Run).
 class IterativeFe : public Estimator {
  public:
   std::string_view Name() const override;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "elastimate/estimators/estimator.h"
@@ -12,6 +13,9 @@ namespace {
 
 // Standard deviations of a normal distribution that hold 95 % of it.
 constexpr double kTwoSidedErrors = 1.960;
+
+// 90 %, for the end of a one-sided interval of 95 %.
+constexpr double kOneSidedQuantile = 2.706;
 
 // Widens the standard errors to a profile likelihood with a 95 % interval of
 // nu, each end with the E that fits best there.  An end at the limit of the
@@ -52,20 +56,26 @@ double ShareOfDistanceToPole(const Estimate& estimate) {
          std::min(0.5 - nu, 1 + nu);
 }
 
+bool HasRivalMinimum(const std::function<Profile(double quantile)>& profile_of,
+                     const Estimate& estimate) {
+  constexpr double kFar = 4;
+  const Profile profile = profile_of(kTwoSidedQuantile);
+  const double nu = estimate.elasticity.poisson_ratio;
+  const std::optional<double> error = estimate.PoissonRatioStandardError();
+  return error && (profile.upper.poisson_ratio - nu > kFar * *error ||
+                   nu - profile.lower.poisson_ratio > kFar * *error);
+}
+
 void DescribeProfile(const std::function<Profile(double quantile)>& profile_of,
                      Estimate& estimate) {
-  // Quantiles of chi^2 of one degree of freedom: 95 %, and 90 % for the end of
-  // a one-sided interval.
-  constexpr double kTwoSided = 3.841;
-  constexpr double kOneSided = 2.706;
-  Profile profile = profile_of(kTwoSided);
+  Profile profile = profile_of(kTwoSidedQuantile);
   WidenToProfile(profile, estimate);
   const bool reaches_upper =
       profile.upper.poisson_ratio >= kLargestPoissonRatio;
   const bool reaches_lower =
       profile.lower.poisson_ratio <= kSmallestPoissonRatio;
   if (reaches_upper != reaches_lower) {
-    profile = profile_of(kOneSided);
+    profile = profile_of(kOneSidedQuantile);
   }
   estimate.poisson_ratio_interval = {
       reaches_lower ? -1 : profile.lower.poisson_ratio,

@@ -16,11 +16,19 @@ double ShareOfDistanceToPole(const Estimate& estimate);
 /// Of ShareOfDistanceToPole; beyond it the profile likelihood tells.
 constexpr double kLargestLinearShare = 0.03;
 
+/// The quantile of chi^2 of one degree of freedom that holds 95 %.
+constexpr double kTwoSidedQuantile = 3.841;
+
 /// The best fits at the two ends of an interval of nu.
 struct Profile {
   IsotropicElasticity lower;
   IsotropicElasticity upper;
 };
+
+/// Whether the 95 % interval of the profile reaches several standard errors
+/// further than these, to another minimum that is nearly as good.
+bool HasRivalMinimum(const std::function<Profile(double quantile)>& profile_of,
+                     const Estimate& estimate);
 
 /// Enters the 95 % interval of nu, one-sided where it reaches -1 or 1/2, and
 /// widens the standard errors to it.  `profile_of` gives the ends within which

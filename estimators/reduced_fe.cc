@@ -69,14 +69,15 @@ Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
   // What looks like a pull to -1 may be data that say nothing of nu.
   const bool is_at_minus_one = estimate.status == Status::kUnphysical;
   if (variance && options.loss == Loss::kNone &&
-      (estimate.IsUsable() || is_at_minus_one) &&
-      (active.is_physical_limit ||
-       ShareOfDistanceToPole(estimate) > kLargestLinearShare)) {
-    DescribeProfile(
-        [&](double quantile) {
-          return adaptive.ProfileEnds(observed, quantile * *variance);
-        },
-        estimate);
+      (estimate.IsUsable() || is_at_minus_one)) {
+    const auto profile_of = [&](double quantile) {
+      return adaptive.ProfileEnds(observed, quantile * *variance);
+    };
+    if (active.is_physical_limit ||
+        ShareOfDistanceToPole(estimate) > kLargestLinearShare ||
+        HasRivalMinimum(profile_of, estimate)) {
+      DescribeProfile(profile_of, estimate);
+    }
   }
   if (!adaptive.HasConverged() && estimate.IsUsable()) {
     estimate.Fail(Status::kIterationLimit,

@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace elastimate {
@@ -34,6 +35,17 @@ Eigen::VectorXd ScanPoints(double lower, double upper) {
   points(0) = lower;
   points(kScanIntervals) = upper;
   return points;
+}
+
+// The last point inside between one inside and one outside.
+double RefineEnd(const std::function<bool(double)>& is_inside, double inside,
+                 double outside) {
+  constexpr int kHalvings = 40;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = (inside + outside) / 2;
+    (is_inside(middle) ? inside : outside) = middle;
+  }
+  return inside;
 }
 
 }  // namespace
@@ -159,29 +171,23 @@ std::pair<ReducedFit::Point, ReducedFit::Point> ReducedFit::ProfileEnds(
     const Point point = At(nu, projection);
     return point.compliance_scale > 0 && point.square_sum <= limit;
   };
-  const auto end_towards = [&](double scan_end, Eigen::Index step) {
-    double inside = best.poisson_ratio;
-    double outside = scan_end;
-    bool found = false;
-    for (Eigen::Index i = step > 0 ? 0 : scan_.size() - 1;
-         i >= 0 && i < scan_.size() && !found; i += step) {
-      if ((scan_(i) - best.poisson_ratio) * static_cast<double>(step) > 0) {
-        found = !is_inside(scan_(i));
-        (found ? outside : inside) = scan_(i);
+  // From the far end inwards, so that a second minimum nearly as good is
+  // inside.
+  const auto end_towards = [&](Eigen::Index far, Eigen::Index step) {
+    double outside = scan_(far);
+    for (Eigen::Index i = far;
+         i >= 0 && i < scan_.size() &&
+         (scan_(i) - best.poisson_ratio) * static_cast<double>(step) < 0;
+         i += step) {
+      if (is_inside(scan_(i))) {
+        return i == far ? scan_(far) : RefineEnd(is_inside, scan_(i), outside);
       }
+      outside = scan_(i);
     }
-    if (!found) {
-      return scan_end;
-    }
-    constexpr int kHalvings = 40;
-    for (int i = 0; i < kHalvings; ++i) {
-      const double middle = (inside + outside) / 2;
-      (is_inside(middle) ? inside : outside) = middle;
-    }
-    return inside;
+    return RefineEnd(is_inside, best.poisson_ratio, outside);
   };
-  return {At(end_towards(scan_(0), -1), projection),
-          At(end_towards(scan_(scan_.size() - 1), 1), projection)};
+  return {At(end_towards(0, 1), projection),
+          At(end_towards(scan_.size() - 1, -1), projection)};
 }
 
 ReducedFit::Projection ReducedFit::Project(

@@ -62,10 +62,10 @@ class ReducedFit {
   /// nu of the scan, ascending.
   const Eigen::VectorXd& Scan() const { return scan_; }
 
-  /// The best fits at the ends of the interval of nu around `best` =
-  /// Fit(measured) in which the best sum of squares exceeds that of `best` by
-  /// no more than `excess`: the profile likelihood.  At the ends of the scan
-  /// where the sum of squares stays below.
+  /// The best fits at the outermost nu at which the best sum of squares exceeds
+  /// that of `best` = Fit(measured) by no more than `excess`: the profile
+  /// likelihood, with every minimum that is nearly as good inside.  At the ends
+  /// of the scan where the sum of squares stays below.
   std::pair<Point, Point> ProfileEnds(const Eigen::VectorXd& measured,
                                       const Point& best, double excess) const;
 

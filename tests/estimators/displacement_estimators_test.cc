@@ -194,6 +194,27 @@ TEST_P(DisplacementEstimators, SayThatTheDataContradictABound) {
   }
 }
 
+// The truth is within narrow bounds, and E what the nu in them leave open.
+TEST_P(DisplacementEstimators, ErrorsOfEAllowForTheRoomOfNu) {
+  int num_on_bound = 0;
+  for (int seed = 1; seed <= 40; ++seed) {
+    Scene scene = SmallScene("cuboid");
+    Measure({5e4, 0.3}, scene);
+    AddNoise(5e-2, seed, scene);
+    EstimatorOptions options;
+    options.poisson_ratio = {0.299, 0.301};
+    const Estimate estimate = Run(scene, options);
+    if (estimate.IsUsable() && !estimate.active_bounds.empty()) {
+      ++num_on_bound;
+      EXPECT_LT(std::abs(estimate.elasticity.youngs_modulus - 5e4),
+                3.5 * *estimate.YoungsModulusStandardError())
+          << seed;
+    }
+  }
+  std::cout << "seeds 1 to 40: " << num_on_bound << " on a bound and usable\n";
+  EXPECT_GT(num_on_bound, 10);
+}
+
 // What the shear modulus alone determines stays open, however narrow the bounds
 // on E are.
 TEST_P(DisplacementEstimators, ANarrowEDoesNotHideACollinearNu) {

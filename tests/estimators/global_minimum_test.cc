@@ -97,6 +97,16 @@ TEST(GlobalMinimumStatistics, OfATwistedDumbbellNextToOneHalf) {
   }
 }
 
+// A crest lies between the start at 0.45 and the minimum.
+TEST(GlobalMinimum, BehindACrest) {
+  for (const std::string shape : {"ring", "dumbbell", "spring"}) {
+    for (const double nu : {0.48, 0.485, 0.49, 0.4925, 0.495}) {
+      SCOPED_TRACE(shape + ", nu " + std::to_string(nu));
+      ExpectSameMinimum(MeasureShape(shape, "tension", nu, 2e-2, 1), {});
+    }
+  }
+}
+
 // Bounds that hold the truth may not become the answer.
 TEST(GlobalMinimum, IsNotTrappedByABound) {
   struct Case {

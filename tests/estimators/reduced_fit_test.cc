@@ -207,6 +207,51 @@ TEST(ReducedFit, LowerBoundsHoldWhereTheModelIsPoor) {
   }
 }
 
+// Bending of a bar can have two minima: both are inside where neither is
+// excluded, and nothing outside is.
+TEST(ReducedFit, ProfileEndsHoldEveryMinimumThatIsNearlyAsGood) {
+  const Bounds range = {-0.95, 0.4995};
+  int num_with_a_crest_inside = 0;
+  for (const double truth : {-0.8, -0.3, 0.1, 0.35, 0.45}) {
+    Scene scene = SmallScene("bar");
+    Measure({5e4, truth}, scene);
+    AddNoise(1e-4, 1, scene);
+    const ObservedDisplacements observed(scene);
+    ReducedModel model(scene);
+    for (const double pole : {0.495, -0.8, 0.3}) {
+      ASSERT_TRUE(model.SetPole(pole));
+      for (int i = 0; i < 8; ++i) {
+        ASSERT_TRUE(model.Enlarge());
+      }
+    }
+    const Eigen::VectorXd ones = Eigen::VectorXd::Ones(observed.Size());
+    const ReducedFit fit(model, observed, ones, range, {});
+    const ReducedFit::Point best = fit.Fit(observed.Measured());
+    std::vector<ReducedFit::Point> points;
+    for (double nu = *range.lower; nu <= *range.upper; nu += 0.01) {
+      points.push_back(ReducedFit(model, observed, ones, {nu, nu}, {})
+                           .Fit(observed.Measured()));
+    }
+    for (double excess = 1e-8; excess < 1e-1; excess *= 1.2) {
+      SCOPED_TRACE(std::to_string(truth) + ", " + std::to_string(excess));
+      const auto [lower, upper] =
+          fit.ProfileEnds(observed.Measured(), best, excess);
+      const double limit = best.square_sum + excess;
+      bool has_crest = false;
+      for (const ReducedFit::Point& point : points) {
+        if (point.poisson_ratio < lower.poisson_ratio ||
+            point.poisson_ratio > upper.poisson_ratio) {
+          EXPECT_GT(point.square_sum, limit * (1 - 1e-9));
+        } else {
+          has_crest = has_crest || point.square_sum > limit * (1 + 1e-9);
+        }
+      }
+      num_with_a_crest_inside += has_crest ? 1 : 0;
+    }
+  }
+  EXPECT_GT(num_with_a_crest_inside, 0);
+}
+
 TEST(ReducedFit, KeepsAKnownPoissonRatio) {
   const Fixture fixture;
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(fixture.observed.Size());
