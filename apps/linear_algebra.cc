@@ -79,7 +79,8 @@ bool LimitThreads(const std::string& name, int otherwise,
 /// Starts the program anew with fewer threads where they need more memory than
 /// there may be.  Runs ahead of all libraries: OpenBLAS starts its threads when
 /// it is loaded, and each tries forever to get its memory.
-void FitThreadsToMemory(int /*argc*/, char** argv, char** environment) {
+[[maybe_unused]] void FitThreadsToMemory(int /*argc*/, char** argv,
+                                         char** environment) {
   if (AddressSpace() == RLIM_INFINITY) {
     return;
   }
