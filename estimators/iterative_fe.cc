@@ -316,9 +316,7 @@ ProfilePoint EvaluateProfile(const EstimatorOptions& options,
       youngs_modulus, options.youngs_modulus.upper.value_or(youngs_modulus));
   const Eigen::VectorXd misfit = elasticity.ComplianceScale() * w - rest;
   const Eigen::VectorXd change = residual.PoissonRatioSlope(
-      elasticity,
-      youngs_modulus !=
-          IsotropicElasticity::FromComplianceScale(t, nu).youngs_modulus);
+      elasticity, youngs_modulus != unbounded.youngs_modulus);
   const double slope = options.loss == Loss::kNone
                            ? 2 * misfit.dot(change)
                            : misfit.cwiseSign().dot(change);
