@@ -1,6 +1,5 @@
 #include "benchmarks/scaling_study.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,6 +14,7 @@
 #include "benchmarks/measured_cube.h"
 #include "benchmarks/processor_time.h"
 #include "benchmarks/trial.h"
+#include "elastimate/core/dense_algebra.h"
 #include "elastimate/estimators/registry.h"
 
 namespace elastimate {
@@ -116,9 +116,8 @@ double Slope(const std::vector<Run>& runs, double Run::*value) {
     lines.row(i) << 1, points[i].first;
     values(i) = points[i].second;
   }
-  return points.size() < 2
-             ? std::numeric_limits<double>::quiet_NaN()
-             : lines.colPivHouseholderQr().solve(values).eval()(1);
+  return points.size() < 2 ? std::numeric_limits<double>::quiet_NaN()
+                           : SolveLeastSquares(lines, values)(1);
 }
 
 std::int64_t NumTetrahedra(int cells) {

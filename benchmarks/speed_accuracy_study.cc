@@ -90,12 +90,12 @@ std::vector<Specimen> Specimens(bool is_quick) {
       {"organ",
        UnderBodyForce(OrganScene({}), weight),
        {50e3, 0.3},
-       is_quick ? 2 : 10,
+       is_quick ? 1 : 10,
        is_quick ? 0 : 2},
       {"slender bar",
        Cuboid({2, 2, 20}, {0.1, 0.1, 1}, {1e4, 0, 0}),
        {10e6, 0.33},
-       is_quick ? 5 : 30,
+       is_quick ? 2 : 30,
        is_quick ? 0 : 6}};
   if (!is_quick) {
     specimens.push_back({"large block",

@@ -1,8 +1,6 @@
 #include "elastimate/core/rigid_motion.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
@@ -14,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "elastimate/core/dense_algebra.h"
 #include "elastimate/core/elements_of_nodes.h"
 
 namespace elastimate {
@@ -167,21 +166,18 @@ std::string DescribeDirection(const Eigen::Matrix3Xd& span) {
 std::string DescribeRigidMotion(const Eigen::Matrix<double, 6, -1>& columns) {
   // Of a part, columns may be dependent.
   constexpr double kSmall = 1e-5;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> span(columns, Eigen::ComputeFullU);
-  const Eigen::Matrix<double, 6, -1> motions = span.matrixU().leftCols(
-      (span.singularValues().array() > kSmall * span.singularValues()(0))
-          .count());
-  const Eigen::JacobiSVD<Eigen::MatrixXd> rotations(
-      motions.bottomRows<3>(), Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Index rank =
-      (rotations.singularValues().array() > kSmall).count();
+  const SingularValueDecomposition span = DecomposeSingularValues(columns);
+  const Eigen::Matrix<double, 6, -1> motions =
+      span.u.leftCols((span.values.array() > kSmall * span.values(0)).count());
+  const SingularValueDecomposition rotations =
+      DecomposeSingularValues(motions.bottomRows<3>());
+  const Eigen::Index rank = (rotations.values.array() > kSmall).count();
   if (rank < motions.cols()) {
-    return "move along " + DescribeDirection(motions.topRows<3>() *
-                                             rotations.matrixV().rightCols(
-                                                 motions.cols() - rank));
+    return "move along " +
+           DescribeDirection(motions.topRows<3>() *
+                             rotations.v.rightCols(motions.cols() - rank));
   }
-  return "rotate about " +
-         DescribeDirection(rotations.matrixU().leftCols(rank));
+  return "rotate about " + DescribeDirection(rotations.u.leftCols(rank));
 }
 
 // Coefficients of the six rigid motions of a body (translations, then rotations
@@ -254,11 +250,9 @@ constexpr double kHoldsNothing = 1e-12;
 
 // An orthonormal basis of the motions that nothing holds.
 Eigen::MatrixXd FreeMotions(const Eigen::SparseMatrix<double>& form) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-      (Eigen::MatrixXd(form)));
-  const Eigen::Index num_free =
-      (eigen.eigenvalues().array() < kHoldsNothing).count();
-  return eigen.eigenvectors().leftCols(num_free);
+  const SymmetricEigenDecomposition eigen =
+      DecomposeSymmetric(Eigen::MatrixXd(form));
+  return eigen.vectors.leftCols((eigen.values.array() < kHoldsNothing).count());
 }
 
 // One of them, by inverse iteration; no column where there is none.

@@ -1,9 +1,10 @@
 #include "elastimate/estimators/compliance_norm.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 #include <random>
+
+#include "elastimate/core/dense_algebra.h"
 
 namespace elastimate {
 namespace {
@@ -50,9 +51,7 @@ double ComplianceNorm(const Eigen::VectorXd& weights, StiffnessSolver& solver) {
     next -= vectors * column;
     next -= vectors * (vectors.transpose() * next);
   }
-  const double largest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(t)
-                             .eigenvalues()
-                             .maxCoeff();
+  const double largest = DecomposeSymmetric(t).values.maxCoeff();
   return std::sqrt(largest / (1 - MissingShare(dofs.NumFree())));
 }
 

@@ -1,10 +1,10 @@
 #include "elastimate/estimators/cramer_rao.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <limits>
 #include <stdexcept>
 
+#include "elastimate/core/dense_algebra.h"
 #include "elastimate/core/forward_model.h"
 #include "elastimate/core/loads.h"
 #include "elastimate/estimators/estimator.h"
@@ -53,8 +53,8 @@ Eigen::Matrix2d CramerRaoBound(const Scene& scene,
       }
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(information);
-  if (eigen.eigenvalues()(0) <= kSingular * eigen.eigenvalues()(1)) {
+  const Eigen::Vector2d eigenvalues = DecomposeSymmetric(information).values;
+  if (eigenvalues(0) <= kSingular * eigenvalues(1)) {
     return Eigen::Matrix2d::Constant(std::numeric_limits<double>::infinity());
   }
   const Eigen::Vector2d scale(elasticity.youngs_modulus, 1);

@@ -1,12 +1,11 @@
 #include "elastimate/estimators/displacement_fit.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
+#include "elastimate/core/dense_algebra.h"
 #include "elastimate/core/rigid_motion.h"
 #include "elastimate/core/strain_energy.h"
 #include "elastimate/estimators/statistics.h"
@@ -151,7 +150,7 @@ void JudgeYoungsModulus(const EstimatorOptions& options,
   // The fit without the bound in the linear model u + S delta: a bound that the
   // data contradict leaves much that is no noise.
   const Eigen::MatrixXd s = fit.sensitivities(Eigen::all, parameters);
-  const Eigen::VectorXd change = -s.colPivHouseholderQr().solve(fit.residual);
+  const Eigen::VectorXd change = -SolveLeastSquares(s, fit.residual);
   const double least = (fit.residual + s * change).squaredNorm();
   JudgeContradictedBound(
       square_sum - least, least / static_cast<double>(fit.residual.size()),
@@ -184,9 +183,7 @@ Eigen::Vector2d RobustChange(const ObservedDisplacements& observed,
       gram += weight * s.transpose() * s;
       gradient += weight * s.transpose() * r;
     }
-    change(free) -= Eigen::MatrixXd(gram(free, free))
-                        .ldlt()
-                        .solve(Eigen::VectorXd(gradient(free)));
+    change(free) -= SolveLeastSquares(gram(free, free), gradient(free));
   }
   return change;
 }
@@ -324,8 +321,7 @@ std::optional<double> DescribeDisplacementFit(
     estimate.discretization_error =
         DiscretizationError(scene.mesh, estimate.elasticity, fit.displacement);
     if (!free.empty() && free.back() == 1) {
-      const Eigen::MatrixXd inverse =
-          Eigen::MatrixXd(gram(free, free)).inverse();
+      const Eigen::MatrixXd inverse = Inverse(gram(free, free));
       estimate.poisson_ratio_discretization_error =
           *estimate.discretization_error * observed.Measured().norm() *
           std::sqrt(inverse(inverse.rows() - 1, inverse.cols() - 1));
@@ -362,15 +358,14 @@ std::optional<double> DescribeDisplacementFit(
   // Of the parameters that vary together.
   const auto covariance_of = [&](const std::vector<Eigen::Index>& parameters) {
     const Eigen::MatrixXd inverse_bread =
-        Eigen::MatrixXd(sums.bread(parameters, parameters)).inverse();
+        Inverse(sums.bread(parameters, parameters));
     const Eigen::MatrixXd of_noise =
         variance ? Eigen::MatrixXd(variance->variance * inverse_bread)
                  : Eigen::MatrixXd(inverse_bread *
                                    sums.meat(parameters, parameters) *
                                    inverse_bread);
     return Eigen::MatrixXd(
-        of_noise + smooth_square_sum *
-                       Eigen::MatrixXd(gram(parameters, parameters)).inverse());
+        of_noise + smooth_square_sum * Inverse(gram(parameters, parameters)));
   };
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(Estimate::kUnknown);
   covariance(free, free) = covariance_of(free);
@@ -416,8 +411,7 @@ std::optional<double> DescribeDisplacementFit(
                ? std::optional<double>(variance->variance)
                : std::nullopt;
   }
-  const Eigen::MatrixXd inverse_bread =
-      Eigen::MatrixXd(sums.bread(free, free)).inverse();
+  const Eigen::MatrixXd inverse_bread = Inverse(sums.bread(free, free));
   return covariance(1, 1) /
          inverse_bread(inverse_bread.rows() - 1, inverse_bread.cols() - 1);
 }

@@ -2,14 +2,13 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
 
 #include "elastimate/core/degrees_of_freedom.h"
+#include "elastimate/core/dense_algebra.h"
 #include "elastimate/core/large_pages.h"
 #include "elastimate/core/loads.h"
 #include "elastimate/core/stiffness_product.h"
@@ -39,15 +38,12 @@ Eigen::Matrix3d BlockwiseTriangle(const ComponentMask& held,
                                   const Eigen::Ref<const Eigen::MatrixXd>& f,
                                   const Eigen::Ref<const Eigen::MatrixXd>& b,
                                   const Eigen::Ref<const Eigen::MatrixXd>& a) {
-  using Block = Eigen::Matrix<double, Eigen::Dynamic, 3>;
   constexpr Eigen::Index kBlockRows = 512;
   // The triangle of the rows before, and below it further rows.
-  Block block = Block::Zero(3 + kBlockRows, 3);
+  Eigen::MatrixXd block = Eigen::MatrixXd::Zero(3 + kBlockRows, 3);
   Eigen::Index num_rows = 3;
   const auto factorize = [&] {
-    const Eigen::HouseholderQR<Block> qr(block.topRows(num_rows));
-    block.topRows<3>() =
-        qr.matrixQR().topRows<3>().triangularView<Eigen::Upper>();
+    block.topRows<3>() = TriangularFactor(block.topRows(num_rows));
     num_rows = 3;
   };
   for (Eigen::Index k = 0; k < f.cols(); ++k) {
@@ -242,8 +238,8 @@ double ForceResidual::ErrorsInVariablesPoissonRatio() const {
   const Eigen::Matrix2d a_then_b = b_then_a.rowwise().reverse();
   const Eigen::Matrix2d normalized =
       noise.matrixL().solve(a_then_b.transpose()).transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix2d> svd(normalized, Eigen::ComputeFullV);
-  const Eigen::Vector2d direction = noise.matrixU().solve(svd.matrixV().col(1));
+  const Eigen::Vector2d direction =
+      noise.matrixU().solve(DecomposeSingularValues(normalized).v.col(1));
   return direction(1) / direction(0);
 }
 

@@ -1,8 +1,9 @@
 #include "elastimate/estimators/krylov_bound.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "elastimate/core/dense_algebra.h"
 
 namespace elastimate {
 
@@ -28,9 +29,9 @@ void KrylovBound::Extend(const Eigen::VectorXd& column, double solve_error,
   solve_errors_.conservativeResize(m);
   solve_errors_(m - 1) = solve_error;
   remainder_norm_ = remainder_norm;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(t_);
-  theta_ = eigen.eigenvalues();
-  modes_ = eigen.eigenvectors();
+  SymmetricEigenDecomposition eigen = DecomposeSymmetric(t_);
+  theta_ = std::move(eigen.values);
+  modes_ = std::move(eigen.vectors);
 }
 
 double KrylovBound::At(double poisson_ratio) const {

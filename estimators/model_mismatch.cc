@@ -1,8 +1,9 @@
 #include "elastimate/estimators/model_mismatch.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
+
+#include "elastimate/core/dense_algebra.h"
 
 namespace elastimate {
 namespace {
@@ -33,9 +34,7 @@ std::optional<ModelMismatch> FindModelMismatch(const Estimate& robust,
   const Eigen::Matrix2d of_robust = in_logarithm(robust.covariance);
   // A part of the robust covariance that is too small to be told from zero.
   constexpr double kRounding = 1e-3;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> shares(
-      covariance, of_robust, Eigen::EigenvaluesOnly);
-  if (!(shares.eigenvalues()(0) > kRounding)) {
+  if (!(DecomposeSymmetric(covariance, of_robust).values(0) > kRounding)) {
     covariance = of_robust;
   }
   ModelMismatch mismatch;

@@ -1,7 +1,6 @@
 #include "elastimate/estimators/monomials.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+#include "elastimate/core/dense_algebra.h"
 
 namespace elastimate {
 namespace {
@@ -12,10 +11,10 @@ constexpr double kFlat = 1e-10;
 // Coordinates of zero mean and unit covariance.
 Eigen::Matrix3Xd Standardize(Eigen::Matrix3Xd x) {
   x.colwise() -= x.rowwise().mean().eval();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(
-      x * x.transpose() / static_cast<double>(x.cols()));
-  const Eigen::Vector3d extent = axes.eigenvalues().cwiseMax(0).cwiseSqrt();
-  Eigen::Matrix3Xd coordinates = axes.eigenvectors().transpose() * x;
+  const SymmetricEigenDecomposition axes =
+      DecomposeSymmetric(x * x.transpose() / static_cast<double>(x.cols()));
+  const Eigen::Vector3d extent = axes.values.cwiseMax(0).cwiseSqrt();
+  Eigen::Matrix3Xd coordinates = axes.vectors.transpose() * x;
   for (int i = 0; i < 3; ++i) {
     const bool is_flat = !(extent(i) > kFlat * extent(2));
     coordinates.row(i) *= is_flat ? 0 : 1 / extent(i);
@@ -46,9 +45,7 @@ Eigen::MatrixXd Monomials(const Eigen::Matrix3Xd& points, int degree) {
 Eigen::MatrixXd SmoothByPolynomials(const Eigen::Matrix3Xd& points,
                                     const Eigen::MatrixXd& values, int degree) {
   const Eigen::MatrixXd monomials = Monomials(points, degree);
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(monomials);
-  qr.setThreshold(kDependentMonomial);
-  return monomials * qr.solve(values);
+  return monomials * SolveLeastSquares(monomials, values, kDependentMonomial);
 }
 
 }  // namespace elastimate

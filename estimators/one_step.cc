@@ -1,10 +1,10 @@
 #include "elastimate/estimators/one_step.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
+#include "elastimate/core/dense_algebra.h"
 #include "elastimate/core/forward_model.h"
 #include "elastimate/core/loads.h"
 #include "elastimate/estimators/bounded_parameter.h"
@@ -55,7 +55,7 @@ Step TakeStep(const ObservedDisplacements& observed,
               model.SupportResponseDerivative().replicate(1, num_cases));
   Eigen::Vector2d change = Eigen::Vector2d::Zero();
   if (!options.known_poisson_ratio) {
-    change = step.responses.colPivHouseholderQr().solve(rest - t0 * w);
+    change = SolveLeastSquares(step.responses, rest - t0 * w);
   }
   const double nu = model.PoissonRatio();
   step.poisson_ratio = nu + change(1);

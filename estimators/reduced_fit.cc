@@ -1,10 +1,11 @@
 #include "elastimate/estimators/reduced_fit.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
+
+#include "elastimate/core/dense_algebra.h"
 
 namespace elastimate {
 namespace {
@@ -74,21 +75,17 @@ ReducedFit::ReducedFit(const ReducedModel& model,
                          ? model.Basis(k).col(i)
                          : model.Basis(num_cases).col(i - load_columns)));
     }
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(bases);
-    const Eigen::Index rank = std::min(rows, bases.cols());
-    const Eigen::MatrixXd triangle =
-        qr.matrixQR().topRows(rank).triangularView<Eigen::Upper>();
+    QrDecomposition qr = DecomposeQr(bases);
     LoadCaseFit fit;
-    fit.q = qr.householderQ() * Eigen::MatrixXd::Identity(rows, rank);
+    fit.q = std::move(qr.q);
     fit.load = model.Modes(k);
-    fit.load_modes = triangle.leftCols(load_columns) * fit.load.vectors;
+    fit.load_modes = qr.r.leftCols(load_columns) * fit.load.vectors;
     if (model.HasSupportResponse()) {
       fit.support = model.Modes(num_cases);
-      fit.support_modes =
-          triangle.rightCols(support_columns) * fit.support.vectors;
+      fit.support_modes = qr.r.rightCols(support_columns) * fit.support.vectors;
     }
     load_cases_.push_back(fit);
-    num_projected_ += rank;
+    num_projected_ += qr.r.rows();
   }
   scan_w_.resize(num_projected_, scan_.size());
   scan_v_.resize(num_projected_, scan_.size());

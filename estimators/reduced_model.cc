@@ -1,12 +1,12 @@
 #include "elastimate/estimators/reduced_model.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "elastimate/core/degrees_of_freedom.h"
+#include "elastimate/core/dense_algebra.h"
 #include "elastimate/core/loads.h"
 #include "elastimate/core/stiffness_product.h"
 
@@ -237,11 +237,10 @@ void ReducedModel::Append(const Eigen::VectorXd& x, const Eigen::VectorXd& h,
 // With J z = theta A_pole z, z^T A_pole z = 1, for the reduced matrices.
 void ReducedModel::FindModes(Response& response) const {
   const double pole = Pole();
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
+  const auto [values, vectors] = DecomposeSymmetric(
       response.reduced_j, response.reduced_h + pole * response.reduced_j);
-  const Eigen::MatrixXd& vectors = solver.eigenvectors();
   response.modes = {
-      pole, vectors, solver.eigenvalues(),
+      pole, vectors, values,
       vectors.transpose() * (response.basis.transpose() * response.g0),
       vectors.transpose() * (response.basis.transpose() * response.g1)};
 }

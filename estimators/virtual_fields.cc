@@ -1,10 +1,10 @@
 #include "elastimate/estimators/virtual_fields.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "elastimate/core/dense_algebra.h"
 #include "elastimate/core/loads.h"
 #include "elastimate/core/strain_energy.h"
 #include "elastimate/estimators/force_residual.h"
@@ -107,13 +107,16 @@ class Information {
   std::optional<Eigen::MatrixXd> Covariance(
       const std::vector<Eigen::Index>& parameters) const {
     const Eigen::MatrixXd bread = bread_(parameters, parameters);
-    // A smaller determinant is rounding.
+    // What is nearer to one is rounding.
     constexpr double kSingular = 1e-12;
+    const double correlation =
+        bread.size() == 1 ? 0
+                          : bread(0, 1) / std::sqrt(bread(0, 0) * bread(1, 1));
     if (!(bread.diagonal().minCoeff() > 0 &&
-          bread.determinant() > kSingular * bread.diagonal().prod())) {
+          1 - correlation * correlation > kSingular)) {
       return std::nullopt;
     }
-    const Eigen::MatrixXd inverse = bread.inverse();
+    const Eigen::MatrixXd inverse = Inverse(bread);
     return residual_.noise_variance * inverse * score_(parameters, parameters) *
                inverse +
            residual_.model_square_sum * inverse;
@@ -205,8 +208,7 @@ void DescribeProfileOf(const VirtualWorkBalance& balance,
   }
   // Of (nu, t), as the entry of nu is of (E, nu).
   const double variance =
-      (*covariance)(1, 1) /
-      raw.Bread(residual.noise_variance).inverse().eval()(0, 0);
+      (*covariance)(1, 1) / Inverse(raw.Bread(residual.noise_variance))(0, 0);
   const auto elasticity_of = [](const VirtualWorkFit& at) {
     return IsotropicElasticity::FromComplianceScale(at.compliance_scale,
                                                     at.poisson_ratio);

@@ -1,13 +1,11 @@
 #include "elastimate/estimators/virtual_work.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
 #include "elastimate/core/degrees_of_freedom.h"
+#include "elastimate/core/dense_algebra.h"
 #include "elastimate/core/stiffness_product.h"
 #include "elastimate/estimators/force_residual.h"
 #include "elastimate/estimators/monomials.h"
@@ -39,15 +37,12 @@ Eigen::MatrixXd OrthonormalPolynomials(const Mesh& mesh,
   if (free_nodes.empty()) {
     return Eigen::MatrixXd(mesh.NumNodes(), 0);
   }
-  Eigen::MatrixXd monomials =
-      Monomials(mesh.nodes(Eigen::all, free_nodes), degree);
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(monomials);
-  qr.setThreshold(kDependentMonomial);
-  const Eigen::Index rank = qr.rank();
-  Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(mesh.NumNodes(), rank);
-  basis(free_nodes, Eigen::all) =
-      qr.householderQ() *
-      Eigen::MatrixXd::Identity(Eigen::Index(free_nodes.size()), rank);
+  const Eigen::MatrixXd on_free_nodes =
+      OrthonormalBasis(Monomials(mesh.nodes(Eigen::all, free_nodes), degree),
+                       kDependentMonomial);
+  Eigen::MatrixXd basis =
+      Eigen::MatrixXd::Zero(mesh.NumNodes(), on_free_nodes.cols());
+  basis(free_nodes, Eigen::all) = on_free_nodes;
   return basis;
 }
 
@@ -60,8 +55,7 @@ void AppendToTriangle(const Eigen::MatrixXd& rows, Eigen::MatrixXd& triangle) {
     const Eigen::Index count = std::min(kBlockRows, rows.rows() - row);
     block.resize(columns + count, columns);
     block << triangle, rows.middleRows(row, count);
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(block);
-    triangle = qr.matrixQR().topRows(columns).triangularView<Eigen::Upper>();
+    triangle = TriangularFactor(block);
   }
 }
 
@@ -166,13 +160,12 @@ VirtualWork::VirtualWork(const Mesh& mesh, const Supports& supports,
   const Eigen::Index columns = triangle.cols() / 2;
   // H alone is the stiffness of nu = 0, so that what it does not resist is a
   // motion without strain.
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(
-      triangle.topLeftCorner(columns, columns), Eigen::ComputeFullV);
+  const SingularValueDecomposition svd =
+      DecomposeSingularValues(triangle.topLeftCorner(columns, columns));
   const Eigen::Index rank =
-      (svd.singularValues().array() > kRounding * svd.singularValues()(0))
-          .count();
-  fields_ = svd.matrixV().leftCols(rank);
-  free_motions_ = svd.matrixV().rightCols(columns - rank);
+      (svd.values.array() > kRounding * svd.values(0)).count();
+  fields_ = svd.v.leftCols(rank);
+  free_motions_ = svd.v.rightCols(columns - rank);
   h_ = triangle.leftCols(columns) * fields_;
   j_ = triangle.rightCols(columns) * fields_;
 
@@ -230,9 +223,7 @@ double VirtualWork::Imbalance(const Eigen::MatrixXd& nodal_forces) const {
 }
 
 VirtualWork::NoiseFactor VirtualWork::FactorNoise(double poisson_ratio) const {
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(Stiffened(poisson_ratio));
-  return {poisson_ratio,
-          qr.matrixQR().topRows(NumFields()).triangularView<Eigen::Upper>()};
+  return {poisson_ratio, TriangularFactor(Stiffened(poisson_ratio))};
 }
 
 Eigen::Matrix2d VirtualWorkInformation::Bread(double noise_variance) const {

@@ -27,7 +27,9 @@ class Writer {
   Writer& operator=(const Writer&) = delete;
 
   void Bytes(const void* bytes, std::size_t size) {
-    std::fwrite(bytes, 1, size, file_);
+    if (size > 0) {  // Of nothing, the address may be null.
+      std::fwrite(bytes, 1, size, file_);
+    }
   }
   void Mark(std::string_view mark) { Bytes(mark.data(), mark.size()); }
   void Number(std::int64_t number) { Bytes(&number, sizeof number); }

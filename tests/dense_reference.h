@@ -1,32 +1,19 @@
 #ifndef ELASTIMATE_TESTS_DENSE_REFERENCE_H_
 #define ELASTIMATE_TESTS_DENSE_REFERENCE_H_
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
+#include "elastimate/core/elasticity.h"
 #include "elastimate/core/mesh.h"
+#include "elastimate/core/scene.h"
 
 namespace elastimate::testing {
 
 /// The textbook element: strain-displacement matrix B (6 x 12, engineering
 /// shear strains) of a linear tetrahedron and its volume, from the inverse of
 /// the matrix of nodal coordinates.  Shares no code with the library.
-inline Eigen::Matrix<double, 6, 12> StrainDisplacement(
-    const Eigen::Matrix<double, 3, 4>& x, double* volume) {
-  Eigen::Matrix4d coordinates;
-  coordinates << Eigen::RowVector4d::Ones(), x;
-  *volume = std::abs(coordinates.determinant()) / 6;
-  // Row i of the inverse holds the coefficients of shape function i.
-  const Eigen::Matrix4d shape = coordinates.inverse();
-  Eigen::Matrix<double, 6, 12> b;
-  for (Eigen::Index i = 0; i < 4; ++i) {
-    const double dx = shape(i, 1);
-    const double dy = shape(i, 2);
-    const double dz = shape(i, 3);
-    b.middleCols<3>(3 * i) << dx, 0, 0, 0, dy, 0, 0, 0, dz,  //
-        dy, dx, 0, 0, dz, dy, dz, 0, dx;
-  }
-  return b;
-}
+Eigen::Matrix<double, 6, 12> StrainDisplacement(
+    const Eigen::Matrix<double, 3, 4>& x, double* volume);
 
 /// Sum over the elements of V B^T D B, (3 num_nodes)^2.  T is the scalar of D:
 /// double, or a number with derivatives.
@@ -55,6 +42,9 @@ Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic> DenseStiffness(
   }
   return stiffness;
 }
+
+extern template Eigen::MatrixXd DenseStiffness<double>(
+    const Mesh& mesh, const Eigen::Matrix<double, 6, 6>& d);
 
 /// Hooke's law in Voigt notation from the Lame parameters.
 template <typename T>
@@ -89,6 +79,18 @@ inline Eigen::Matrix<double, 6, 6> DenseDJ() {
       Eigen::Matrix3d::Ones() - 2 * Eigen::Matrix3d::Identity();
   return d;
 }
+
+/// A^-1 B for a symmetric matrix, by LDL^T.
+Eigen::MatrixXd SolveDensely(const Eigen::MatrixXd& a,
+                             const Eigen::MatrixXd& b);
+
+/// Of a symmetric matrix, in ascending order.
+Eigen::VectorXd SymmetricEigenvalues(const Eigen::MatrixXd& a);
+
+/// The free displacements of a load case, 3 num_nodes where all are free.
+Eigen::VectorXd DenseFreeDisplacement(const Scene& scene,
+                                      const IsotropicElasticity& elasticity,
+                                      Eigen::Index load_case);
 
 }  // namespace elastimate::testing
 

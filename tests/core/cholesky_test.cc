@@ -47,14 +47,11 @@ class SparseCholesky : public ::testing::Test {
   // the condition number makes of it the error of the solution.
   void ExpectSolves(double nu, double scale) {
     const Eigen::MatrixXd dense = Dense(nu);
-    const Eigen::VectorXd eigenvalues =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense,
-                                                       Eigen::EigenvaluesOnly)
-            .eigenvalues();
+    const Eigen::VectorXd eigenvalues = testing::SymmetricEigenvalues(dense);
     const double condition =
         eigenvalues(eigenvalues.size() - 1) / eigenvalues(0);
     const Eigen::MatrixXd b = RandomMatrix(dofs_.NumFree(), 4, 1);
-    const Eigen::MatrixXd expected = dense.ldlt().solve(b) / scale;
+    const Eigen::MatrixXd expected = testing::SolveDensely(dense, b) / scale;
     const Eigen::MatrixXd solution = *cholesky_.Solve(b, 0);
     EXPECT_LT((solution - expected).norm(),
               1e-15 * condition * 10 * expected.norm())

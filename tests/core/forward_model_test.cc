@@ -45,10 +45,7 @@ Supports FreeSupports(const Mesh& mesh) {
 
 // A condition number from the eigenvalues of the dense stiffness.
 double Condition(const Eigen::MatrixXd& stiffness) {
-  const Eigen::VectorXd eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(stiffness,
-                                                     Eigen::EigenvaluesOnly)
-          .eigenvalues();
+  const Eigen::VectorXd eigenvalues = testing::SymmetricEigenvalues(stiffness);
   return eigenvalues(eigenvalues.size() - 1) / eigenvalues(0);
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+
 #include "tests/core/instruction_sets.h"
 #include "tests/core/random_values.h"
 #include "tests/dense_reference.h"

@@ -35,10 +35,8 @@ TEST(StiffnessSolver, SolvesOnTheFreeDegreesOfFreedom) {
     const Eigen::MatrixXd dense =
         DenseStiffness<double>(scene.mesh, DenseDH() + nu * DenseDJ());
     Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(forces.rows(), 3);
-    const Eigen::MatrixXd free_forces = forces(free, Eigen::all);
-    const Eigen::MatrixXd solution =
-        dense(free, free).ldlt().solve(free_forces);
-    expected(free, Eigen::all) = solution;
+    expected(free, Eigen::all) =
+        testing::SolveDensely(dense(free, free), forces(free, Eigen::all));
     EXPECT_LE((solver.Solve(forces) - expected).norm(),
               1e-10 * expected.norm());
   }

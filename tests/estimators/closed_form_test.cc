@@ -22,15 +22,8 @@ using testing::SmallScene;
 // Measures with a dense solver that shares no code with the library.
 void MeasureDensely(const IsotropicElasticity& elasticity, Scene& scene) {
   const DegreesOfFreedom dofs(scene.supports);
-  const Eigen::MatrixXd stiffness = testing::DenseStiffness<double>(
-      scene.mesh, testing::HookeMatrix(elasticity.youngs_modulus,
-                                       elasticity.poisson_ratio));
-  const Eigen::VectorXd force = AssembleLoadCases(scene).col(0);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(dofs.NumAll());
-  const Eigen::MatrixXd free_stiffness = stiffness(dofs.free, dofs.free);
-  const Eigen::VectorXd free_force = force(dofs.free);
-  const Eigen::VectorXd solution = free_stiffness.ldlt().solve(free_force);
-  u(dofs.free) = solution;
+  u(dofs.free) = testing::DenseFreeDisplacement(scene, elasticity, 0);
   scene.load_cases[0].displacement = u.reshaped(3, scene.mesh.NumNodes());
 }
 
@@ -90,7 +83,7 @@ TEST(ClosedForm, IsTheLeastSquaresSolutionUnderNoise) {
   Eigen::MatrixXd x(free.rows(), 2);
   x << free.col(1), -free.col(2);
   const Eigen::Vector2d solution =
-      -(x.transpose() * x).ldlt().solve(x.transpose() * free.col(0));
+      -testing::SolveDensely(x.transpose() * x, x.transpose() * free.col(0));
   const double nu = solution(0);
   const Estimate estimate = ClosedForm().Run(scene, {});
   EXPECT_NEAR(estimate.elasticity.poisson_ratio, nu, 1e-9);

@@ -21,10 +21,9 @@ double DenseNorm(const Scene& scene, double nu,
   const Eigen::MatrixXd free = stiffness(dofs.free, dofs.free);
   const Eigen::VectorXd d = weights(dofs.free);
   const Eigen::MatrixXd compliance =
-      d.asDiagonal() * free.inverse() * d.asDiagonal();
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(compliance)
-                       .eigenvalues()
-                       .maxCoeff());
+      d.asDiagonal() *
+      testing::SolveDensely(free, Eigen::MatrixXd(d.asDiagonal()));
+  return std::sqrt(testing::SymmetricEigenvalues(compliance).maxCoeff());
 }
 
 // All components, and few, where the spectrum is another one.

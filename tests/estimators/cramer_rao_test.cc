@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 
 #include "elastimate/core/degrees_of_freedom.h"
@@ -13,19 +14,8 @@
 namespace elastimate {
 namespace {
 
+using testing::DenseFreeDisplacement;
 using testing::SmallScene;
-
-// Free displacements by a dense solver that shares no code with the library.
-Eigen::VectorXd DenseSolution(const Scene& scene, double youngs, double nu,
-                              Eigen::Index load_case) {
-  const DegreesOfFreedom dofs(scene.supports);
-  const Eigen::MatrixXd stiffness = testing::DenseStiffness<double>(
-      scene.mesh, testing::HookeMatrix(youngs, nu));
-  const Eigen::VectorXd force = AssembleLoadCases(scene).col(load_case);
-  return Eigen::MatrixXd(stiffness(dofs.free, dofs.free))
-      .ldlt()
-      .solve(Eigen::VectorXd(force(dofs.free)));
-}
 
 TEST(CramerRaoBound, IsTheInverseInformationOfFiniteDifferences) {
   Scene scene = testing::WithThreeForces(SmallScene("organ"));
@@ -39,11 +29,11 @@ TEST(CramerRaoBound, IsTheInverseInformationOfFiniteDifferences) {
   Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
   for (Eigen::Index k = 0; k < 3; ++k) {
     Eigen::MatrixXd s(Eigen::Index(free.size()), 2);
-    s << (DenseSolution(scene, 5e4 * (1 + step), 0.3, k) -
-          DenseSolution(scene, 5e4 * (1 - step), 0.3, k)) /
+    s << (DenseFreeDisplacement(scene, {5e4 * (1 + step), 0.3}, k) -
+          DenseFreeDisplacement(scene, {5e4 * (1 - step), 0.3}, k)) /
              (2 * step * 5e4),
-        (DenseSolution(scene, 5e4, 0.3 + step, k) -
-         DenseSolution(scene, 5e4, 0.3 - step, k)) /
+        (DenseFreeDisplacement(scene, {5e4, 0.3 + step}, k) -
+         DenseFreeDisplacement(scene, {5e4, 0.3 - step}, k)) /
             (2 * step);
     for (std::size_t i = 0; i < free.size(); ++i) {
       if (k != 1 || free[i] % 3 != 0) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 #include <random>
 
@@ -16,6 +17,7 @@ namespace elastimate {
 namespace {
 
 using testing::AddNoise;
+using testing::DenseFreeDisplacement;
 using testing::Measure;
 using testing::SmallScene;
 
@@ -69,17 +71,6 @@ TEST_P(DisplacementEstimators, ALockedPlateDoesNotDetermineNu) {
   }
 }
 
-// Displacements by a dense solver that shares no code with the library.
-Eigen::VectorXd DenseSolution(const Scene& scene, double youngs, double nu) {
-  const DegreesOfFreedom dofs(scene.supports);
-  const Eigen::MatrixXd stiffness = testing::DenseStiffness<double>(
-      scene.mesh, testing::HookeMatrix(youngs, nu));
-  const Eigen::VectorXd force = AssembleLoadCases(scene).col(0);
-  return Eigen::MatrixXd(stiffness(dofs.free, dofs.free))
-      .ldlt()
-      .solve(Eigen::VectorXd(force(dofs.free)));
-}
-
 // The Cramer-Rao bound from finite differences of the dense solution.
 TEST_P(DisplacementEstimators, StandardErrorsAreTheCramerRaoBound) {
   Scene scene = SmallScene("organ");
@@ -88,11 +79,11 @@ TEST_P(DisplacementEstimators, StandardErrorsAreTheCramerRaoBound) {
   scene.load_cases[0].noise_sd = sd;
   const double step = 1e-4;
   Eigen::MatrixXd sensitivities(DegreesOfFreedom(scene.supports).NumFree(), 2);
-  sensitivities << (DenseSolution(scene, 5e4 * (1 + step), 0.3) -
-                    DenseSolution(scene, 5e4 * (1 - step), 0.3)) /
+  sensitivities << (DenseFreeDisplacement(scene, {5e4 * (1 + step), 0.3}, 0) -
+                    DenseFreeDisplacement(scene, {5e4 * (1 - step), 0.3}, 0)) /
                        (2 * step * 5e4),
-      (DenseSolution(scene, 5e4, 0.3 + step) -
-       DenseSolution(scene, 5e4, 0.3 - step)) /
+      (DenseFreeDisplacement(scene, {5e4, 0.3 + step}, 0) -
+       DenseFreeDisplacement(scene, {5e4, 0.3 - step}, 0)) /
           (2 * step);
   const Eigen::Matrix2d bound =
       sd * sd * (sensitivities.transpose() * sensitivities).inverse();
