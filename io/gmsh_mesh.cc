@@ -8,6 +8,7 @@
 
 #include "elastimate/io/gmsh_text_check.h"
 #include "elastimate/io/input_error.h"
+#include "elastimate/io/private_link.h"
 
 namespace elastimate {
 namespace {
@@ -58,7 +59,9 @@ MeshFile ReadGmshMesh(const std::filesystem::path& path) {
   if (const std::string damage = WhyGmshTextIsDamaged(path); !damage.empty()) {
     ThrowDamagedFile(path, damage);
   }
-  return ReadByProgram(GmshProgram(), {"read"}, path);
+  // Gmsh runs what it finds in a file of that name and ".opt" beside it.
+  const PrivateLink link(path, "mesh" + FileExtension(path));
+  return ReadByProgram(GmshProgram(), {"read", link.Path().string()}, path);
 }
 
 }  // namespace elastimate

@@ -8,9 +8,9 @@
 
 namespace elastimate {
 
-/// The program that runs Gmsh, "read FILE" or "organ N".  Beside what it can do
-/// for the safety of this process, it keeps Gmsh's 90 libraries out of it,
-/// which take ten times as long to load as all others.
+/// The program that runs Gmsh, "read LINK FILE" or "organ N".  Beside what it
+/// can do for the safety of this process, it keeps Gmsh's 90 libraries out of
+/// it, which take ten times as long to load as all others.
 MeshProgram GmshProgram();
 
 /// Reads .msh (versions 1, 2 and 4; with the node and element data in it),

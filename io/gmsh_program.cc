@@ -14,11 +14,12 @@ namespace elastimate {
 namespace {
 
 MeshFile MakeMesh(const std::vector<std::string>& arguments) {
-  if (arguments.size() != 2) {
-    throw std::runtime_error("elastimate-gmsh takes 'read FILE' or 'organ N'");
+  if (arguments.size() == 3 && arguments[0] == "read") {
+    return ReadByGmsh(arguments[1], arguments[2]);
   }
-  if (arguments[0] == "read") {
-    return ReadByGmsh(arguments[1]);
+  if (arguments.size() != 2 || arguments[0] != "organ") {
+    throw std::runtime_error(
+        "elastimate-gmsh takes 'read LINK FILE' or 'organ N'");
   }
   Mesh organ = MeshOrgan(std::stoi(arguments[1]));
   MeshFile mesh;

@@ -87,14 +87,25 @@ Eigen::Index CountIn(const std::string& line, const std::string& unit,
              : otherwise;
 }
 
-FileCounts Merge(const std::filesystem::path& path) {
-  gmsh::merge(path.string());
+[[noreturn]] void ThrowSaidByGmsh(const std::filesystem::path& link,
+                                  const std::filesystem::path& path,
+                                  std::string message) {
+  const std::size_t place = message.find(link.string());
+  if (place != std::string::npos) {
+    message.replace(place, link.string().size(), path.filename().string());
+  }
+  ThrowDamagedFile(path, message);
+}
+
+FileCounts Merge(const std::filesystem::path& link,
+                 const std::filesystem::path& path) {
+  gmsh::merge(link.string());
   std::vector<std::string> log;
   gmsh::logger::get(log);
   FileCounts counts;
   for (const std::string& line : log) {
     if (line.rfind("Error: ", 0) == 0) {
-      ThrowDamagedFile(path, line.substr(7));
+      ThrowSaidByGmsh(link, path, line.substr(7));
     }
     counts.nodes = CountIn(line, "nodes", counts.nodes);
     counts.elements = CountIn(line, "elements", counts.elements);
@@ -330,13 +341,14 @@ void ReadViews(const Numbering& nodes, const Numbering& tetrahedra,
 
 }  // namespace
 
-MeshFile ReadByGmsh(const std::filesystem::path& path) {
+MeshFile ReadByGmsh(const std::filesystem::path& link,
+                    const std::filesystem::path& path) {
   MeshFile mesh;
   mesh.path = path;
   mesh.is_vtk = false;
   try {
     StartGmsh();
-    const FileCounts counts = Merge(path);
+    const FileCounts counts = Merge(link, path);
     CheckVolumeElements(path);
     CheckNoElementIsLost(path, counts.elements);
     const Numbering nodes = ReadNodes(mesh);
@@ -346,13 +358,13 @@ MeshFile ReadByGmsh(const std::filesystem::path& path) {
     ReadPhysicalGroups(nodes, mesh);
     ReadViews(nodes, tetrahedra, mesh);
   } catch (const std::string& message) {
-    ThrowDamagedFile(path, message);  // Gmsh throws strings.
+    ThrowSaidByGmsh(link, path, message);  // Gmsh throws strings.
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::invalid_argument&) {
     throw;
   } catch (const std::exception& error) {
-    ThrowDamagedFile(path, error.what());
+    ThrowSaidByGmsh(link, path, error.what());
   }
   return mesh;
 }

@@ -16,31 +16,52 @@ using nlohmann::json;
 /// Characters of the parser's own messages, which quote the text.
 constexpr std::size_t kLongestMessage = 160;
 
-/// Without this, the last of several equal keys would silently win.
-class RepeatedKeyCheck {
+/// Without this, the last of several equal keys would silently win.  (A filter
+/// of json::parse would do, but takes a time that grows with the square of the
+/// length of a list.)
+class RepeatedKeyCheck : public nlohmann::json_sax<json> {
  public:
-  RepeatedKeyCheck(const std::filesystem::path& path, std::string& last_key)
-      : path_(path), last_key_(last_key) {}
+  explicit RepeatedKeyCheck(const std::filesystem::path& path) : path_(path) {}
 
-  bool operator()(int /*depth*/, json::parse_event_t event, json& parsed) {
-    if (event == json::parse_event_t::object_start) {
-      keys_.emplace_back();
-    } else if (event == json::parse_event_t::object_end) {
-      keys_.pop_back();
-    } else if (event == json::parse_event_t::key) {
-      last_key_ = parsed.get<std::string>();
-      if (!keys_.back().insert(last_key_).second) {
-        ThrowInputError(path_, "the key \"" + Printable(last_key_) +
-                                   "\" is given twice in one object; remove "
-                                   "one");
-      }
+  const std::string& LastKey() const { return last_key_; }
+
+  bool start_object(std::size_t /*size*/) override {
+    keys_.emplace_back();
+    return true;
+  }
+  bool key(string_t& key) override {
+    last_key_ = key;
+    if (!keys_.back().insert(key).second) {
+      ThrowInputError(path_, "the key \"" + Printable(key) +
+                                 "\" is given twice in one object; remove one");
     }
     return true;
+  }
+  bool end_object() override {
+    keys_.pop_back();
+    return true;
+  }
+  bool start_array(std::size_t /*size*/) override { return true; }
+  bool end_array() override { return true; }
+  bool null() override { return true; }
+  bool boolean(bool /*value*/) override { return true; }
+  bool number_integer(number_integer_t /*value*/) override { return true; }
+  bool number_unsigned(number_unsigned_t /*value*/) override { return true; }
+  bool number_float(number_float_t /*value*/,
+                    const string_t& /*text*/) override {
+    return true;
+  }
+  bool string(string_t& /*text*/) override { return true; }
+  bool binary(binary_t& /*bytes*/) override { return true; }
+  // Whose sentence json::parse has.
+  bool parse_error(std::size_t /*position*/, const std::string& /*token*/,
+                   const json::exception& /*error*/) override {
+    return false;
   }
 
  private:
   const std::filesystem::path& path_;
-  std::string& last_key_;
+  std::string last_key_;
   std::vector<std::set<std::string>> keys_;
 };
 
@@ -57,16 +78,18 @@ std::string Join(const std::vector<std::string>& words) {
 json ParseJsonFile(const std::filesystem::path& path) {
   CheckReadable(path);
   std::ifstream file(path, std::ios::binary);
-  std::string last_key;
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  RepeatedKeyCheck check(path);
+  json::sax_parse(text, &check);
   try {
-    return json::parse(file, RepeatedKeyCheck(path, last_key));
+    return json::parse(text);
   } catch (const json::out_of_range& error) {
     // "[json.exception...] number overflow parsing '1e999'"; without a place.
     std::string number = error.what();
     number.erase(0, number.find('\'') + 1);
     number.erase(std::min(number.find('\''), number.size()));
     ThrowInputError(path, "the number " + Printable(number) + " of the key \"" +
-                              Printable(last_key) +
+                              Printable(check.LastKey()) +
                               "\" is beyond the range of a double; correct it");
   } catch (const json::exception& error) {
     // "[json.exception...] parse error at line 3, column 7: ..."

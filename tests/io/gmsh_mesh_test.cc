@@ -53,6 +53,32 @@ TEST_F(GmshMeshTest, ReadsVersions1And2And4) {
   }
 }
 
+// Gmsh merges the options of a file, which may hold any of its commands.
+TEST_F(GmshMeshTest, DoesNotRunWhatLiesBesideAFile) {
+  const std::string run = (folder_.Path() / "run").string();
+  const std::string options =
+      "Printf(\"\") > \"" + run + "\";\nSystemCall \"touch " + run + "\";\n";
+  for (const std::string name : {"mesh.msh", "mesh.mesh"}) {
+    std::string content = GmshVersion2Mesh();
+    if (name == "mesh.mesh") {
+      gmsh::initialize(0, nullptr, false);
+      gmsh::option::setNumber("General.Terminal", 0);
+      gmsh::merge(folder_.Write("source.msh", content).string());
+      gmsh::write((folder_.Path() / name).string());
+      gmsh::finalize();
+      content = ReadFile(folder_.Path() / name);
+    }
+    const MeshFile alone = Read(name, content);
+    for (const std::string end : {".opt", ".pos", ".geo"}) {
+      folder_.Write(name + end, options);
+    }
+    const MeshFile mesh = Read(name, content);
+    EXPECT_FALSE(std::filesystem::exists(run)) << name;
+    EXPECT_EQ(mesh.tetrahedra, alone.tetrahedra) << name;
+    EXPECT_EQ(mesh.nodes, alone.nodes) << name;
+  }
+}
+
 TEST_F(GmshMeshTest, ReadsWhatGmshWrites) {
   const auto source = folder_.Write("source.msh", GmshVersion2Mesh());
   gmsh::initialize(0, nullptr, false);
