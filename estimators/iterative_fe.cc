@@ -592,20 +592,26 @@ void JudgeSummary(const EstimatorOptions& options,
   }
 }
 
-// Enters the interval of nu, after two looks at where each end may be.
+// Enters the interval of nu, after three looks at where each end may be.
 void DescribeProfileOf(const EstimatorOptions& options,
                        const std::vector<ProfilePoint>& points, double variance,
                        DisplacementResidual& residual, Estimate& estimate) {
-  constexpr int kLooks = 2;
   EvaluatedProfile profile(
       points, {estimate.elasticity, residual.Fit().residual.squaredNorm()});
   const Bounds bounds = EffectivePoissonRatioBounds(options);
-  for (int i = 0; i < kLooks; ++i) {
-    for (const double limit : {*bounds.lower, *bounds.upper}) {
-      const double nu =
+  const double nu = estimate.elasticity.poisson_ratio;
+  // About twice as far as the end is expected.
+  const double far = 4 * estimate.PoissonRatioStandardError().value_or(0);
+  for (const double limit : {*bounds.lower, *bounds.upper}) {
+    const double first =
+        limit < nu ? std::max(limit, nu - far) : std::min(limit, nu + far);
+    // Nobody has looked at what lies beyond the last point.
+    for (const double beyond : {first, limit, limit}) {
+      const double end =
           profile.EndTowards(limit, kTwoSidedQuantile * variance).poisson_ratio;
-      if (nu != limit && residual.SetPoissonRatio(nu)) {
-        profile.Add(EvaluateProfile(options, residual, nu));
+      const double next = end != limit ? end : beyond;
+      if (next != nu && residual.SetPoissonRatio(next)) {
+        profile.Add(EvaluateProfile(options, residual, next));
       }
     }
   }

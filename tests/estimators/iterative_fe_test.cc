@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastimate/estimators/reduced_fe.h"
 #include "tests/scenes.h"
 
 namespace elastimate {
@@ -48,6 +49,32 @@ TEST(IterativeFe, FindsTheBestOfSeveralMinima) {
       EXPECT_NEAR((estimate.elasticity.poisson_ratio - nu) /
                       *estimate.PoissonRatioStandardError(),
                   0, 5);
+    }
+  }
+}
+
+// Two searches for the same ends; a tenth of the interval is what interpolating
+// between the looks of one of them may be off by.
+TEST(IterativeFe, HasTheIntervalOfReducedFeOutsideItsStarts) {
+  EstimatorOptions options;
+  options.poisson_ratio = {-0.98, 0.4999};
+  for (const std::string& shape : testing::SmallSceneNames()) {
+    for (const double nu : {-0.965, -0.93, 0.499}) {
+      for (const int seed : {1, 2, 3}) {
+        SCOPED_TRACE(shape + ", nu " + std::to_string(nu) + ", seed " +
+                     std::to_string(seed));
+        Scene scene = SmallScene(shape);
+        Measure({5e4, nu}, scene);
+        testing::AddNoise(0.03, seed, scene);
+        const Estimate iterative = IterativeFe().Run(scene, options);
+        const Estimate reduced = ReducedFe().Run(scene, options);
+        ASSERT_TRUE(iterative.poisson_ratio_interval &&
+                    reduced.poisson_ratio_interval);
+        const auto [lower, upper] = *reduced.poisson_ratio_interval;
+        const double tolerance = 0.1 * (upper - lower);
+        EXPECT_NEAR(iterative.poisson_ratio_interval->lower, lower, tolerance);
+        EXPECT_NEAR(iterative.poisson_ratio_interval->upper, upper, tolerance);
+      }
     }
   }
 }
