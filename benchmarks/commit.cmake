@@ -1,4 +1,5 @@
 # Writes the commit that is built to the header OUTPUT, where it has changed; "-dirty" when sources differ from it.
+cmake_minimum_required(VERSION 3.25)
 find_package(Git QUIET)
 set(commit "unknown")
 if(GIT_FOUND)

@@ -21,6 +21,11 @@ function(elastimate_compile_options target)
   endif()
 endfunction()
 
+# Of Eigen, and further ones: they take longer to read than most sources to compile.
+function(elastimate_precompile_headers target)
+  target_precompile_headers(${target} PRIVATE <Eigen/Core> <Eigen/Geometry> <Eigen/SparseCore> ${ARGN})
+endfunction()
+
 # elastimate_add_library(<component> SOURCES ... PUBLIC_HEADERS ... PUBLIC <libraries> PRIVATE <libraries>)
 function(elastimate_add_library component)
   cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC_HEADERS;PUBLIC;PRIVATE" ${ARGN})
