@@ -25,9 +25,7 @@ from matplotlib.patheffects import withStroke
 STYLES = {
     "closed-form": {"color": "#D55E00", "marker": "o", "linestyle": "-"},
     "bounded": {"color": "#CC79A7", "marker": "v", "linestyle": "-"},
-    "total-least-squares": {"color": "#E69F00", "marker": "D", "linestyle": "--"},
     "virtual-fields": {"color": "#009E73", "marker": "^", "linestyle": "-."},
-    "one-step": {"color": "#56B4E9", "marker": "P", "linestyle": "--"},
     "iterative-fe": {"color": "#F0E442", "marker": "X", "linestyle": ":"},
     "reduced-fe": {"color": "#0072B2", "marker": "s", "linestyle": "--"},
     "auto": {"color": "#000000", "marker": "*", "linestyle": "-"},

@@ -26,8 +26,8 @@ namespace {
 constexpr std::array<double, 4> kDeviations = {0.001, 0.01, 0.05, 0.2};
 constexpr double kWantedError = 0.01;  // Of E, relative.
 constexpr int kLargestDegree = 3;
-constexpr std::array<std::string_view, 3> kOrderMethods = {
-    "one-step", "reduced-fe", "iterative-fe"};
+constexpr std::array<std::string_view, 2> kOrderMethods = {"reduced-fe",
+                                                           "iterative-fe"};
 
 struct Specimen {
   const char* name;

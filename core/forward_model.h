@@ -62,11 +62,6 @@ class ForwardModel {
   /// The part v of u that the held displacements cause, one column [length].
   const Eigen::VectorXd& SupportResponse() const { return support_response_; }
 
-  /// dv/dnu.  Precondition: as above.
-  const Eigen::VectorXd& SupportResponseDerivative() const {
-    return support_response_derivative_;
-  }
-
   /// Derivatives at the present nu.  The first call at a nu costs an element
   /// pass and num_load_cases solves (one more with held displacements).
   DisplacementSensitivities Sensitivities(double youngs_modulus);

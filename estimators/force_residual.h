@@ -66,14 +66,6 @@ class ForceResidual {
   /// 1)^T||.
   const Eigen::Matrix3d& Triangle() const { return triangle_; }
 
-  /// The variance of the weighted noise for the standard errors: as given, or
-  /// from the residual where nothing is given or the residual contradicts it,
-  /// of which it warns.  Fills in the noise of `estimate`, or the reason why
-  /// there are no standard errors when it is empty.
-  std::optional<double> DescribeNoise(bool free_youngs_modulus,
-                                      bool free_poisson_ratio,
-                                      Estimate& estimate) const;
-
   /// Noise level, noise bias and covariance of an estimate of this residual.
   /// `free_youngs_modulus` and `free_poisson_ratio` say which parameters were
   /// estimated (not given, not held by a bound).  Fills in the noise, residual
@@ -102,13 +94,27 @@ class ForceResidual {
   /// T without the directions that t fits: rows and columns (a, b).
   Eigen::Matrix2d ProjectedTraces() const;
 
-  /// nu of total least squares, the unbiased one when the noise is not known.
+  /// nu of total least squares [Golub & Van Loan 1980], the unbiased one when
+  /// the noise is not known.  With a~ and b~ the parts of a and b that are
+  /// orthogonal to the loads, and T the ProjectedTraces,
+  ///
+  ///   M = [a~ b~]^T [a~ b~],   E M = M0 + sigma^2 T,
+  ///
+  /// it is the nu of (M - s T) (1, nu)^T = 0, where s, the smaller root of
+  /// det(M - s T) = 0, estimates sigma^2.
   double ErrorsInVariablesPoissonRatio() const;
 
   /// The free degrees of freedom times the load cases.
   Eigen::Index NumEquations() const { return num_equations_; }
 
  private:
+  /// The variance of the weighted noise for the standard errors: as given, or
+  /// from the residual where nothing is given or the residual contradicts it,
+  /// of which it warns.  Fills in the noise of `estimate`, or the reason why
+  /// there are no standard errors when it is empty.
+  std::optional<double> DescribeNoise(bool free_youngs_modulus,
+                                      bool free_poisson_ratio,
+                                      Estimate& estimate) const;
   /// Variance of the weighted noise from the residual: at the estimate with E
   /// on a bound, else from the smallest singular value of the noise-normalised
   /// residual.

@@ -7,9 +7,7 @@
 #include "elastimate/estimators/bounded.h"
 #include "elastimate/estimators/closed_form.h"
 #include "elastimate/estimators/iterative_fe.h"
-#include "elastimate/estimators/one_step.h"
 #include "elastimate/estimators/reduced_fe.h"
-#include "elastimate/estimators/total_least_squares.h"
 #include "elastimate/estimators/virtual_fields.h"
 
 namespace elastimate {
@@ -21,9 +19,8 @@ std::unique_ptr<Estimator> Make() {
 }
 
 constexpr std::unique_ptr<Estimator> (*kEstimators[])() = {
-    Make<ClosedForm>,    Make<Bounded>, Make<TotalLeastSquares>,
-    Make<VirtualFields>, Make<OneStep>, Make<ReducedFe>,
-    Make<IterativeFe>,   Make<Auto>,
+    Make<ClosedForm>, Make<Bounded>,     Make<VirtualFields>,
+    Make<ReducedFe>,  Make<IterativeFe>, Make<Auto>,
 };
 
 }  // namespace

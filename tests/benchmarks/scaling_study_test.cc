@@ -41,7 +41,7 @@ TEST_F(ScalingStudy, MeasuresEveryEstimator) {
     }
     // A factor has more entries for each node of a larger cube; what the others
     // need is hidden by what a process keeps from freed memory.
-    if (name == "one-step" || name == "reduced-fe" || name == "iterative-fe") {
+    if (name == "reduced-fe" || name == "iterative-fe") {
       EXPECT_EQ(rows[0].Text("status"), "ok");
       EXPECT_GT(rows[0].Number("factorizations [1]"), 0);
       EXPECT_GT(rows[1].Number("own_memory [MiB]"),

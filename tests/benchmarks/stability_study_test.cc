@@ -137,14 +137,12 @@ void ExpectUnsupportedWhereDataAreMissing(const std::vector<TableRow>& rows) {
     if (row.Text("factor") == "observed nodes" && row.Text("level") == "5") {
       EXPECT_EQ(row.Text("status") == "unsupported",
                 estimator == "closed-form" || estimator == "bounded" ||
-                    estimator == "total-least-squares" ||
                     estimator == "virtual-fields")
           << estimator;
     }
     if (row.Text("factor") == "support nodes left free [%]" &&
         row.Text("level") == "100" &&
-        (estimator == "reduced-fe" || estimator == "iterative-fe" ||
-         estimator == "one-step")) {
+        (estimator == "reduced-fe" || estimator == "iterative-fe")) {
       EXPECT_EQ(row.Text("status"), "unsupported") << estimator;
     }
   }
