@@ -67,7 +67,7 @@ struct EstimatorOptions {
 /// A method that turns a scene into an estimate of E and nu.
 ///
 /// A new one is one header/source pair, one line in the table of registry.cc,
-/// and one row in the README; the conformance suite runs on it by itself.
+/// and one row in docs/estimators.md; the conformance suite runs on it by itself.
 class Estimator {
  public:
   virtual ~Estimator() = default;

@@ -19,9 +19,9 @@ struct ReportTimes {
   double total;  ///< From the start of the program to the report.
 };
 
-/// The report of an estimate as a JSON text, described in the README.  `scene`
-/// is the one that was estimated, of either element order; its nodes are
-/// counted without those in the middle of edges.  `notices` are what the reader
+/// The report of an estimate as a JSON text, described in docs/report.md.
+/// `scene` is the one that was estimated, of either element order; its nodes
+/// are counted without those in the middle of edges.  `notices` are what the reader
 /// had to say about it.  Numbers round-trip; what the estimator cannot know is
 /// null.
 std::string JsonReport(const Estimate& estimate, const Scene& scene,

@@ -22,7 +22,7 @@ struct SceneReading {
 
 /// Reads a scene from files whose arrays make it up (.vtu, .vtk, or .msh with
 /// node data), or from a scene.json over a mesh file (.vtu, .vtk, .msh, .mesh,
-/// .unv, .bdf); the README describes both.  Several files are further load
+/// .unv, .bdf); docs/scenes.md describes both.  Several files are further load
 /// cases of one specimen: the same nodes (to a millionth of the largest
 /// coordinate), cells, regions and supports.  A load case given twice is an
 /// error: its noise would count as that of two measurements.

@@ -1,0 +1,199 @@
+// What README.md and docs/ say that the program prints, takes and has is what
+// it does.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/program.h"
+
+namespace elastimate {
+namespace {
+
+using nlohmann::json;
+
+// Of numbers in sample outputs: another BLAS rounds otherwise.
+constexpr double kRounding = 1e-2;
+
+std::filesystem::path Source(const std::string& name) {
+  return std::filesystem::path(ELASTIMATE_SOURCE) / name;
+}
+
+/// The blocks of code of that language, "" for none.
+std::vector<std::string> Blocks(const std::string& document,
+                                const std::string& language) {
+  std::vector<std::string> blocks;
+  std::istringstream text(testing::ReadText(Source(document)));
+  bool is_inside = false;
+  bool is_wanted = false;
+  for (std::string line; std::getline(text, line);) {
+    if (line.rfind("```", 0) == 0) {
+      is_inside = !is_inside;
+      is_wanted = is_inside && line.substr(3) == language;
+      if (is_wanted) {
+        blocks.emplace_back();
+      }
+    } else if (is_wanted) {
+      blocks.back() += line + "\n";
+    }
+  }
+  return blocks;
+}
+
+std::vector<std::string> Lines(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) {
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+/// Equal but for what rounding makes of the numbers.
+void ExpectAlike(const std::string& actual, const std::string& expected) {
+  std::istringstream actual_words(actual);
+  std::istringstream expected_words(expected);
+  std::string word;
+  for (std::string wanted; expected_words >> wanted;) {
+    ASSERT_TRUE(actual_words >> word) << "\n" << actual << "\n" << expected;
+    char* end = nullptr;
+    const double number = std::strtod(wanted.c_str(), &end);
+    if (end == wanted.c_str()) {
+      EXPECT_EQ(word, wanted) << "\n" << actual << "\n" << expected;
+    } else {
+      EXPECT_NEAR(std::atof(word.c_str()), number, kRounding * std::abs(number))
+          << "\n"
+          << actual << "\n"
+          << expected;
+    }
+  }
+  EXPECT_FALSE(actual_words >> word) << "\n" << actual << "\n" << expected;
+}
+
+/// Of the same keys, and alike; times and counts of work may differ.
+void ExpectAlike(const json& actual, const json& expected) {
+  ASSERT_STREQ(actual.type_name(), expected.type_name())
+      << actual << " " << expected;
+  if (expected.is_structured()) {
+    ASSERT_EQ(actual.size(), expected.size()) << actual << " " << expected;
+    for (const auto& [key, value] : expected.items()) {
+      if (key == "seconds" || key == "work") {
+        continue;
+      }
+      SCOPED_TRACE(key);
+      if (expected.is_object()) {
+        ASSERT_TRUE(actual.contains(key));
+        ExpectAlike(actual[key], value);
+      } else {
+        ExpectAlike(actual[std::stoul(key)], value);
+      }
+    }
+  } else if (expected.is_number()) {
+    EXPECT_NEAR(actual.get<double>(), expected.get<double>(),
+                kRounding * std::abs(expected.get<double>()));
+  } else if (expected.is_string()) {
+    ExpectAlike(actual.get<std::string>(), expected.get<std::string>());
+  } else {
+    EXPECT_EQ(actual, expected);
+  }
+}
+
+std::set<std::string> Matches(const std::string& text,
+                              const std::string& pattern) {
+  const std::regex regex(pattern);
+  std::set<std::string> matches;
+  for (std::sregex_iterator i(text.begin(), text.end(), regex), end; i != end;
+       ++i) {
+    matches.insert((*i)[1].str());
+  }
+  return matches;
+}
+
+class Documentation : public testing::ProgramTest {
+ protected:
+  void SetUp() override {
+    testing::ProgramTest::SetUp();
+    std::filesystem::create_symlink(Source("examples"), folder_ / "examples");
+  }
+};
+
+TEST_F(Documentation, HasTheOutputOfTheProgram) {
+  const std::string prompt = "$ elastimate ";
+  int num_samples = 0;
+  for (const std::string& block : Blocks("README.md", "")) {
+    if (block.rfind(prompt, 0) != 0) {
+      continue;
+    }
+    ++num_samples;
+    const std::vector<std::string> expected = Lines(block);
+    const std::vector<std::string> actual =
+        Lines(Succeed(expected[0].substr(prompt.size())).output);
+    ASSERT_EQ(actual.size() + 1, expected.size());
+    for (std::size_t i = 0; i < actual.size(); ++i) {
+      const std::string label = expected[i + 1].substr(0, 5);
+      if (label == "work " || label == "time ") {
+        EXPECT_EQ(actual[i].substr(0, 5), label);
+      } else {
+        ExpectAlike(actual[i], expected[i + 1]);
+      }
+    }
+  }
+  EXPECT_GT(num_samples, 0);
+}
+
+TEST_F(Documentation, HasTheReportOfTheProgram) {
+  const std::vector<std::string> reports = Blocks("docs/report.md", "json");
+  ASSERT_EQ(reports.size(), 1U);
+  ExpectAlike(Succeed("estimate examples/scenes/organ.vtu "
+                      "--estimator=reduced-fe --json=-")
+                  .Json(),
+              json::parse(reports[0]));
+}
+
+TEST_F(Documentation, HasASceneThatCanBeRead) {
+  const std::vector<std::string> scenes = Blocks("README.md", "json");
+  ASSERT_EQ(scenes.size(), 1U);
+  Succeed("generate cuboid --size=1,1,1 --out=block.vtu");
+  Succeed("simulate block.vtu --youngs=1 --nu=0 --out=measured.vtu");
+  std::string displacements = "ux,uy,uz\n";
+  const int num_nodes =
+      Succeed("estimate measured.vtu --json=-").Json()["mesh"]["nodes"];
+  for (int node = 0; node < num_nodes; ++node) {
+    displacements += "0,0," + std::to_string(-1e-3 * node) + "\n";
+  }
+  testing::WriteText(folder_ / "displacements.csv", displacements);
+  testing::WriteText(folder_ / "scene.json", scenes[0]);
+  const testing::ProgramRun run = Run("estimate scene.json --json=-");
+  EXPECT_NE(run.exit_code, 2) << run.errors;
+  EXPECT_EQ(run.Json()["loads"][0][0]["type"], "force");
+}
+
+TEST_F(Documentation, HasEveryFlag) {
+  const std::string pattern = "--([a-z_]+)";
+  std::set<std::string> flags =
+      Matches(Blocks("docs/command_line.md", "").at(0), pattern);
+  EXPECT_EQ(flags.erase("help") + flags.erase("version"), 2U);
+  EXPECT_EQ(flags, Matches(Succeed("--help").output, "\n +" + pattern));
+}
+
+TEST_F(Documentation, HasEveryEstimator) {
+  const std::set<std::string> names =
+      Matches("\n" + Succeed("estimators").output, "\n([a-z-]+)");
+  for (const std::string document : {"README.md", "docs/estimators.md"}) {
+    EXPECT_EQ(Matches(testing::ReadText(Source(document)), "\n\\| `([a-z-]+)`"),
+              names)
+        << document;
+  }
+}
+
+}  // namespace
+}  // namespace elastimate
