@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "apps/flags.h"
-#include "elastimate/core/quadratic_scene.h"
+#include "elastimate/core/scene/quadratic_scene.h"
 
 namespace elastimate {
 namespace {

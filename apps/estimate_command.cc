@@ -14,13 +14,13 @@
 #include "apps/progress.h"
 #include "apps/result_fields.h"
 #include "apps/summary.h"
-#include "elastimate/core/quadratic_scene.h"
+#include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/estimators/registry.h"
-#include "elastimate/io/file_output.h"
-#include "elastimate/io/printable.h"
-#include "elastimate/io/report.h"
-#include "elastimate/io/scene_reader.h"
-#include "elastimate/io/vtu_writer.h"
+#include "elastimate/io/report/report.h"
+#include "elastimate/io/scene/scene_reader.h"
+#include "elastimate/io/text/file_output.h"
+#include "elastimate/io/text/printable.h"
+#include "elastimate/io/vtk/vtu_writer.h"
 
 namespace elastimate {
 namespace {

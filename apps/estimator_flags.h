@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "elastimate/estimators/estimator.h"
+#include "elastimate/estimators/interface/estimator.h"
 
 namespace elastimate {
 

@@ -11,7 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "elastimate/io/printable.h"
+#include "elastimate/io/text/printable.h"
 
 namespace elastimate {
 namespace {

@@ -9,10 +9,10 @@
 #include "apps/flags.h"
 #include "apps/outputs.h"
 #include "apps/progress.h"
-#include "elastimate/core/mesh.h"
-#include "elastimate/io/example_scenes.h"
-#include "elastimate/io/file_output.h"
-#include "elastimate/io/vtu_writer.h"
+#include "elastimate/core/mesh/mesh.h"
+#include "elastimate/io/examples/example_scenes.h"
+#include "elastimate/io/text/file_output.h"
+#include "elastimate/io/vtk/vtu_writer.h"
 
 namespace elastimate {
 namespace {

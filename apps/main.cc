@@ -18,8 +18,8 @@
 #include "apps/linear_algebra.h"
 #include "apps/outputs.h"
 #include "apps/signals.h"
-#include "elastimate/io/printable.h"
-#include "elastimate/io/report.h"
+#include "elastimate/io/report/report.h"
+#include "elastimate/io/text/printable.h"
 
 namespace elastimate {
 namespace {

@@ -15,8 +15,8 @@
 #include <stdexcept>
 
 #include "apps/flags.h"
-#include "elastimate/io/file_output.h"
-#include "elastimate/io/printable.h"
+#include "elastimate/io/text/file_output.h"
+#include "elastimate/io/text/printable.h"
 
 namespace elastimate {
 namespace {

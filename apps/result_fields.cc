@@ -1,12 +1,12 @@
 #include "apps/result_fields.h"
 
-#include "elastimate/core/forward_model.h"
-#include "elastimate/core/loads.h"
-#include "elastimate/core/quadratic_scene.h"
-#include "elastimate/core/rigid_motion.h"
-#include "elastimate/core/stiffness_product.h"
-#include "elastimate/core/strain_energy.h"
-#include "elastimate/estimators/estimator.h"
+#include "elastimate/core/equilibrium/forward_model.h"
+#include "elastimate/core/mechanics/stiffness_product.h"
+#include "elastimate/core/mechanics/strain_energy.h"
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/core/scene/rigid_motion.h"
+#include "elastimate/estimators/interface/estimator.h"
 
 namespace elastimate {
 namespace {

@@ -1,10 +1,10 @@
 #ifndef ELASTIMATE_APPS_RESULT_FIELDS_H_
 #define ELASTIMATE_APPS_RESULT_FIELDS_H_
 
-#include "elastimate/core/scene.h"
-#include "elastimate/core/stiffness_solver.h"
-#include "elastimate/estimators/estimate.h"
-#include "elastimate/io/vtu_writer.h"
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/core/solvers/stiffness_solver.h"
+#include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/io/vtk/vtu_writer.h"
 
 namespace elastimate {
 

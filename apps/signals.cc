@@ -5,7 +5,7 @@
 #include <cerrno>
 #include <csignal>
 
-#include "elastimate/io/file_output.h"
+#include "elastimate/io/text/file_output.h"
 
 namespace elastimate {
 namespace {

@@ -9,15 +9,15 @@
 #include "apps/flags.h"
 #include "apps/outputs.h"
 #include "apps/progress.h"
-#include "elastimate/core/degrees_of_freedom.h"
-#include "elastimate/core/forward_model.h"
-#include "elastimate/core/loads.h"
-#include "elastimate/core/magnitude.h"
-#include "elastimate/core/rigid_motion.h"
-#include "elastimate/core/simulated_measurement.h"
-#include "elastimate/io/printable.h"
-#include "elastimate/io/scene_reader.h"
-#include "elastimate/io/vtu_writer.h"
+#include "elastimate/core/equilibrium/forward_model.h"
+#include "elastimate/core/equilibrium/simulated_measurement.h"
+#include "elastimate/core/mesh/representable.h"
+#include "elastimate/core/scene/degrees_of_freedom.h"
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/rigid_motion.h"
+#include "elastimate/io/scene/scene_reader.h"
+#include "elastimate/io/text/printable.h"
+#include "elastimate/io/vtk/vtu_writer.h"
 
 namespace elastimate {
 namespace {
@@ -98,10 +98,10 @@ int RunSimulate(const std::vector<std::string>& arguments) {
         displacement.col(k).reshaped(3, scene.mesh.NumNodes());
   }
   try {
-    RequireMagnitude(displacement.allFinite()
-                         ? displacement.cwiseAbs().maxCoeff()
-                         : std::numeric_limits<double>::infinity(),
-                     "the simulated displacement");
+    RequireRepresentable(displacement.allFinite()
+                             ? displacement.cwiseAbs().maxCoeff()
+                             : std::numeric_limits<double>::infinity(),
+                         "the simulated displacement");
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(PrintablePath(arguments[0]) + ": " +
                                 error.what());

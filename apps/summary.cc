@@ -6,7 +6,7 @@
 #include <sstream>
 #include <vector>
 
-#include "elastimate/core/loads.h"
+#include "elastimate/core/scene/loads.h"
 
 namespace elastimate {
 namespace {

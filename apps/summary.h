@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "elastimate/core/scene.h"
-#include "elastimate/estimators/estimate.h"
-#include "elastimate/io/report.h"
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/io/report/report.h"
 
 namespace elastimate {
 

@@ -23,18 +23,18 @@
 #include <vector>
 
 #include "benchmarks/random_matrix.h"
-#include "elastimate/core/cholesky.h"
-#include "elastimate/core/degrees_of_freedom.h"
-#include "elastimate/core/forward_model.h"
-#include "elastimate/core/loads.h"
-#include "elastimate/core/node_graph.h"
-#include "elastimate/core/quadratic_scene.h"
-#include "elastimate/core/stiffness_assembly.h"
-#include "elastimate/core/stiffness_product.h"
-#include "elastimate/core/stiffness_traces.h"
-#include "elastimate/estimators/reduced_fe.h"
+#include "elastimate/core/equilibrium/forward_model.h"
+#include "elastimate/core/mechanics/stiffness_assembly.h"
+#include "elastimate/core/mechanics/stiffness_product.h"
+#include "elastimate/core/mechanics/stiffness_traces.h"
+#include "elastimate/core/mesh/node_graph.h"
+#include "elastimate/core/scene/degrees_of_freedom.h"
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/core/solvers/cholesky.h"
+#include "elastimate/estimators/displacement_fit/reduced_fe.h"
 #include "elastimate/estimators/registry.h"
-#include "elastimate/io/example_scenes.h"
+#include "elastimate/io/examples/example_scenes.h"
 
 namespace elastimate {
 namespace {

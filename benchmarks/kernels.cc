@@ -21,10 +21,10 @@
 #include "benchmarks/measured_cube.h"
 #include "benchmarks/naive_stiffness_product.h"
 #include "benchmarks/random_matrix.h"
-#include "elastimate/core/stiffness_assembly.h"
-#include "elastimate/core/stiffness_product.h"
+#include "elastimate/core/mechanics/stiffness_assembly.h"
+#include "elastimate/core/mechanics/stiffness_product.h"
+#include "elastimate/estimators/interface/stopwatch.h"
 #include "elastimate/estimators/registry.h"
-#include "elastimate/estimators/stopwatch.h"
 
 namespace elastimate {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "elastimate/estimators/stopwatch.h"
+#include "elastimate/estimators/interface/stopwatch.h"
 
 // The rest of this file is compiled once for each kind of processor.
 #undef HWY_TARGET_INCLUDE

@@ -23,7 +23,7 @@
 #include "benchmarks/speed_accuracy_study.h"
 #include "benchmarks/stability_study.h"
 #include "benchmarks/study.h"
-#include "elastimate/io/file_output.h"
+#include "elastimate/io/text/file_output.h"
 
 DEFINE_string(name, "", "the study, as listed below");
 DEFINE_string(out, "", "existing folder for the CSV and JSON files");

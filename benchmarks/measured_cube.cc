@@ -1,7 +1,7 @@
 #include "benchmarks/measured_cube.h"
 
-#include "elastimate/core/stiffness_product.h"
-#include "elastimate/io/example_scenes.h"
+#include "elastimate/core/mechanics/stiffness_product.h"
+#include "elastimate/io/examples/example_scenes.h"
 
 namespace elastimate {
 

@@ -1,8 +1,8 @@
 #ifndef ELASTIMATE_BENCHMARKS_MEASURED_CUBE_H_
 #define ELASTIMATE_BENCHMARKS_MEASURED_CUBE_H_
 
-#include "elastimate/core/elasticity.h"
-#include "elastimate/core/scene.h"
+#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/scene/scene.h"
 
 namespace elastimate {
 

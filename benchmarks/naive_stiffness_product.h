@@ -3,8 +3,8 @@
 
 #include <Eigen/Core>
 
-#include "elastimate/core/mesh.h"
-#include "elastimate/core/stiffness_product.h"
+#include "elastimate/core/mechanics/stiffness_product.h"
+#include "elastimate/core/mesh/mesh.h"
 
 namespace elastimate {
 

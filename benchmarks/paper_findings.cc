@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "elastimate/estimators/statistics.h"
+#include "elastimate/estimators/interface/statistics.h"
 
 namespace elastimate {
 namespace {

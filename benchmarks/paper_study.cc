@@ -11,12 +11,12 @@
 
 #include "benchmarks/paper_findings.h"
 #include "benchmarks/trial.h"
-#include "elastimate/core/simulated_measurement.h"
-#include "elastimate/estimators/cramer_rao.h"
-#include "elastimate/estimators/force_residual.h"
-#include "elastimate/estimators/reduced_fe.h"
+#include "elastimate/core/equilibrium/simulated_measurement.h"
+#include "elastimate/estimators/displacement_fit/reduced_fe.h"
+#include "elastimate/estimators/force_balance/force_residual.h"
 #include "elastimate/estimators/registry.h"
-#include "elastimate/io/example_scenes.h"
+#include "elastimate/estimators/statistics/cramer_rao.h"
+#include "elastimate/io/examples/example_scenes.h"
 
 namespace elastimate {
 namespace {

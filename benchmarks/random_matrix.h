@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <random>
 
-#include "elastimate/core/large_pages.h"
+#include "elastimate/core/algebra/large_pages.h"
 
 namespace elastimate {
 

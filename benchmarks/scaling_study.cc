@@ -14,7 +14,7 @@
 #include "benchmarks/measured_cube.h"
 #include "benchmarks/processor_time.h"
 #include "benchmarks/trial.h"
-#include "elastimate/core/dense_algebra.h"
+#include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/estimators/registry.h"
 
 namespace elastimate {

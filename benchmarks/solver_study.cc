@@ -13,13 +13,13 @@
 
 #include "apps/linear_algebra.h"
 #include "benchmarks/child_process.h"
-#include "elastimate/core/cholesky.h"
-#include "elastimate/core/loads.h"
-#include "elastimate/core/multigrid.h"
-#include "elastimate/core/quadratic_scene.h"
-#include "elastimate/core/stiffness_solver.h"
-#include "elastimate/estimators/stopwatch.h"
-#include "elastimate/io/example_scenes.h"
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/core/solvers/cholesky.h"
+#include "elastimate/core/solvers/multigrid.h"
+#include "elastimate/core/solvers/stiffness_solver.h"
+#include "elastimate/estimators/interface/stopwatch.h"
+#include "elastimate/io/examples/example_scenes.h"
 
 namespace elastimate {
 namespace {

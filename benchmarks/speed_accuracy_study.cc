@@ -13,11 +13,11 @@
 #include "apps/linear_algebra.h"
 #include "benchmarks/processor_time.h"
 #include "benchmarks/trial.h"
-#include "elastimate/core/quadratic_scene.h"
-#include "elastimate/core/simulated_measurement.h"
-#include "elastimate/estimators/cramer_rao.h"
+#include "elastimate/core/equilibrium/simulated_measurement.h"
+#include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/estimators/registry.h"
-#include "elastimate/io/example_scenes.h"
+#include "elastimate/estimators/statistics/cramer_rao.h"
+#include "elastimate/io/examples/example_scenes.h"
 
 namespace elastimate {
 namespace {

@@ -10,12 +10,12 @@
 #include <utility>
 
 #include "benchmarks/trial.h"
-#include "elastimate/core/degrees_of_freedom.h"
-#include "elastimate/core/loads.h"
-#include "elastimate/core/simulated_measurement.h"
-#include "elastimate/core/stiffness_product.h"
-#include "elastimate/core/tetrahedron.h"
-#include "elastimate/io/example_scenes.h"
+#include "elastimate/core/equilibrium/simulated_measurement.h"
+#include "elastimate/core/mechanics/stiffness_product.h"
+#include "elastimate/core/mesh/tet4.h"
+#include "elastimate/core/scene/degrees_of_freedom.h"
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/io/examples/example_scenes.h"
 
 namespace elastimate {
 namespace {

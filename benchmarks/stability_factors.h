@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "elastimate/core/elasticity.h"
-#include "elastimate/core/scene.h"
+#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/scene/scene.h"
 
 namespace elastimate {
 

@@ -11,8 +11,8 @@
 
 #include "benchmarks/stability_factors.h"
 #include "benchmarks/trial.h"
-#include "elastimate/estimators/cramer_rao.h"
 #include "elastimate/estimators/registry.h"
+#include "elastimate/estimators/statistics/cramer_rao.h"
 
 namespace elastimate {
 namespace {

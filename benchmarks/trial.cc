@@ -5,8 +5,8 @@
 #include <optional>
 #include <random>
 
-#include "elastimate/core/degrees_of_freedom.h"
-#include "elastimate/core/simulated_measurement.h"
+#include "elastimate/core/equilibrium/simulated_measurement.h"
+#include "elastimate/core/scene/degrees_of_freedom.h"
 
 namespace elastimate {
 namespace {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "benchmarks/table.h"
-#include "elastimate/core/elasticity.h"
-#include "elastimate/core/scene.h"
-#include "elastimate/estimators/estimate.h"
+#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/estimators/interface/estimate.h"
 
 namespace elastimate {
 

@@ -42,7 +42,7 @@ function(elastimate_add_library component)
                                                LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/elastimate.map)
     target_link_options(${target} PRIVATE LINKER:--version-script=${PROJECT_SOURCE_DIR}/cmake/elastimate.map)
   else()
-    # Where the modules and helper programs are, wherever the package is installed (core/package_file.h).
+    # Where the modules and helper programs are, wherever the package is installed (core/package/package_file.h).
     target_link_options(${target} INTERFACE
                         $<INSTALL_INTERFACE:LINKER:-rpath,$<INSTALL_PREFIX>/${ELASTIMATE_PACKAGE_FILES}>)
   endif()
@@ -52,12 +52,15 @@ function(elastimate_add_library component)
     PRIVATE ${ARG_PRIVATE})
   elastimate_compile_options(${target})
   install(TARGETS ${target} EXPORT elastimateTargets)
-  install(FILES ${ARG_PUBLIC_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/elastimate/${component})
+  foreach(header ${ARG_PUBLIC_HEADERS})
+    cmake_path(GET header PARENT_PATH folder)
+    install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/elastimate/${component}/${folder})
+  endforeach()
 endfunction()
 
 # elastimate_add_module(<target> SOURCES ... LIBRARIES ...)
 #
-# A shared library that is loaded when it is used, because what it links takes long to load (core/module.h).
+# A shared library that is loaded when it is used, because what it links takes long to load (core/package/dynamic_module.h).
 function(elastimate_add_module target)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
   add_library(${target} MODULE ${ARG_SOURCES})
@@ -70,7 +73,7 @@ endfunction()
 
 # elastimate_add_helper(<target> SOURCES ... LIBRARIES ...)
 #
-# A program that a library starts in a process of its own (io/mesh_program.h).
+# A program that a library starts in a process of its own (io/helper/mesh_program.h).
 function(elastimate_add_helper target)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
   add_executable(${target} ${ARG_SOURCES})

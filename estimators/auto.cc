@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "elastimate/core/quadratic_scene.h"
-#include "elastimate/estimators/checks.h"
-#include "elastimate/estimators/closed_form.h"
-#include "elastimate/estimators/model_mismatch.h"
-#include "elastimate/estimators/observed_displacements.h"
-#include "elastimate/estimators/reduced_fe.h"
-#include "elastimate/estimators/statistics.h"
-#include "elastimate/estimators/virtual_fields.h"
+#include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/estimators/displacement_fit/observed_displacements.h"
+#include "elastimate/estimators/displacement_fit/reduced_fe.h"
+#include "elastimate/estimators/force_balance/closed_form.h"
+#include "elastimate/estimators/force_balance/virtual_fields.h"
+#include "elastimate/estimators/interface/checks.h"
+#include "elastimate/estimators/interface/statistics.h"
+#include "elastimate/estimators/statistics/model_mismatch.h"
 
 namespace elastimate {
 namespace {

@@ -1,7 +1,7 @@
 #ifndef ELASTIMATE_ESTIMATORS_AUTO_H_
 #define ELASTIMATE_ESTIMATORS_AUTO_H_
 
-#include "elastimate/estimators/estimator.h"
+#include "elastimate/estimators/interface/estimator.h"
 
 namespace elastimate {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "elastimate/estimators/estimator.h"
+#include "elastimate/estimators/interface/estimator.h"
 
 namespace elastimate {
 

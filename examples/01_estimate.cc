@@ -13,9 +13,9 @@
 // The "measurement" comes from the library's own forward model here; in an
 // experiment it comes from a camera or a scanner.
 
-#include <elastimate/core/forward_model.h>
-#include <elastimate/core/loads.h>
-#include <elastimate/core/scene.h>
+#include <elastimate/core/equilibrium/forward_model.h>
+#include <elastimate/core/scene/loads.h>
+#include <elastimate/core/scene/scene.h>
 #include <elastimate/estimators/registry.h>
 
 #include <iostream>

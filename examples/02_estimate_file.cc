@@ -3,8 +3,8 @@
 //   02_estimate_file scene.vtu [more load cases.vtu ...]
 
 #include <elastimate/estimators/registry.h>
-#include <elastimate/io/report.h>
-#include <elastimate/io/scene_reader.h>
+#include <elastimate/io/report/report.h>
+#include <elastimate/io/scene/scene_reader.h>
 
 #include <exception>
 #include <iostream>

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "elastimate/core/scene.h"
+#include "elastimate/core/scene/scene.h"
 #include "tests/dense_reference.h"
 
 namespace elastimate::testing {

@@ -5,8 +5,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "elastimate/core/degrees_of_freedom.h"
-#include "elastimate/core/loads.h"
+#include "elastimate/core/scene/degrees_of_freedom.h"
+#include "elastimate/core/scene/loads.h"
 
 namespace elastimate::testing {
 

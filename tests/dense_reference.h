@@ -3,9 +3,9 @@
 
 #include <Eigen/Core>
 
-#include "elastimate/core/elasticity.h"
-#include "elastimate/core/mesh.h"
-#include "elastimate/core/scene.h"
+#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/mesh/mesh.h"
+#include "elastimate/core/scene/scene.h"
 
 namespace elastimate::testing {
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "elastimate/core/mesh.h"
+#include "elastimate/core/mesh/mesh.h"
 
 namespace elastimate::testing {
 

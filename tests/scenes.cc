@@ -4,7 +4,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "elastimate/core/degrees_of_freedom.h"
+#include "elastimate/core/scene/degrees_of_freedom.h"
 #include "tests/dense_reference.h"
 
 namespace elastimate::testing {

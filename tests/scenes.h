@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "elastimate/core/scene.h"
-#include "elastimate/core/simulated_measurement.h"
+#include "elastimate/core/equilibrium/simulated_measurement.h"
+#include "elastimate/core/scene/scene.h"
 
 namespace elastimate::testing {
 

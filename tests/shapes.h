@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "elastimate/core/scene.h"
+#include "elastimate/core/scene/scene.h"
 
 namespace elastimate::testing {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string>
 
-#include "elastimate/estimators/estimate.h"
+#include "elastimate/estimators/interface/estimate.h"
 
 namespace elastimate::testing {
 

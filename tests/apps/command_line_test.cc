@@ -21,10 +21,10 @@
 #include <thread>
 #include <utility>
 
-#include "elastimate/core/rigid_motion.h"
+#include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/estimators/registry.h"
-#include "elastimate/io/example_scenes.h"
-#include "elastimate/io/scene_reader.h"
+#include "elastimate/io/examples/example_scenes.h"
+#include "elastimate/io/scene/scene_reader.h"
 #include "tests/program.h"
 
 namespace elastimate {

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <string>
 
-#include "elastimate/core/quadratic_scene.h"
+#include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/estimators/registry.h"
-#include "elastimate/io/scene_reader.h"
+#include "elastimate/io/scene/scene_reader.h"
 #include "tests/program.h"
 
 namespace elastimate {

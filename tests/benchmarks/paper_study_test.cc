@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "elastimate/core/degrees_of_freedom.h"
-#include "elastimate/core/loads.h"
-#include "elastimate/core/simulated_measurement.h"
-#include "elastimate/io/example_scenes.h"
+#include "elastimate/core/equilibrium/simulated_measurement.h"
+#include "elastimate/core/scene/degrees_of_freedom.h"
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/io/examples/example_scenes.h"
 #include "tests/benchmarks/tables.h"
 #include "tests/bias_law.h"
 #include "tests/program.h"

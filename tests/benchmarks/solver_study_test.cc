@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "elastimate/core/multigrid.h"
+#include "elastimate/core/solvers/multigrid.h"
 #include "tests/benchmarks/tables.h"
 #include "tests/program.h"
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "elastimate/core/elasticity.h"
+#include "elastimate/core/materials/elasticity.h"
 
 namespace elastimate::testing {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <random>
 
-#include "elastimate/core/scene.h"
+#include "elastimate/core/scene/scene.h"
 
 namespace elastimate::testing {
 

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "elastimate/core/quadratic_scene.h"
-#include "elastimate/estimators/reduced_fe.h"
+#include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/estimators/displacement_fit/reduced_fe.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
 #include "tests/warnings.h"

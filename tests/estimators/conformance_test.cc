@@ -12,8 +12,8 @@
 #include <thread>
 #include <vector>
 
-#include "elastimate/core/loads.h"
-#include "elastimate/core/quadratic_scene.h"
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/estimators/registry.h"
 #include "tests/estimators/every_estimator.h"
 #include "tests/scenes.h"

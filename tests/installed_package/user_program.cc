@@ -3,9 +3,9 @@
 //
 //   user_program FOLDER SCENE.vtu [multigrid]
 
-#include <elastimate/core/multigrid.h>
+#include <elastimate/core/solvers/multigrid.h>
 #include <elastimate/estimators/registry.h>
-#include <elastimate/io/scene_reader.h>
+#include <elastimate/io/scene/scene_reader.h>
 
 #include <filesystem>
 #include <fstream>

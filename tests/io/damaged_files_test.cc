@@ -15,7 +15,7 @@
 #include <map>
 #include <random>
 
-#include "elastimate/io/scene_reader.h"
+#include "elastimate/io/scene/scene_reader.h"
 #include "tests/io/gmsh_files.h"
 #include "tests/io/mutations.h"
 #include "tests/io/scene_files.h"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "elastimate/core/scene.h"
-#include "elastimate/io/vtu_writer.h"
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/io/vtk/vtu_writer.h"
 
 namespace elastimate {
 

@@ -1,0 +1,83 @@
+#include "elastimate/core/materials/elasticity.h"
+
+#include <cmath>
+
+namespace elastimate {
+
+IsotropicElasticity IsotropicElasticity::FromLame(double lame_lambda,
+                                                  double shear_modulus) {
+  const double sum = lame_lambda + shear_modulus;
+  return {shear_modulus * (3 * lame_lambda + 2 * shear_modulus) / sum,
+          lame_lambda / (2 * sum)};
+}
+
+IsotropicElasticity IsotropicElasticity::FromBulkAndShear(
+    double bulk_modulus, double shear_modulus) {
+  const double sum = 3 * bulk_modulus + shear_modulus;
+  return {9 * bulk_modulus * shear_modulus / sum,
+          (3 * bulk_modulus - 2 * shear_modulus) / (2 * sum)};
+}
+
+IsotropicElasticity IsotropicElasticity::FromComplianceScale(
+    double compliance_scale, double poisson_ratio) {
+  return {(1 + poisson_ratio) * (1 - 2 * poisson_ratio) / compliance_scale,
+          poisson_ratio};
+}
+
+double IsotropicElasticity::ShearModulus() const {
+  return youngs_modulus / (2 * (1 + poisson_ratio));
+}
+
+double IsotropicElasticity::LameLambda() const {
+  return StiffnessScale() * poisson_ratio;
+}
+
+double IsotropicElasticity::BulkModulus() const {
+  return youngs_modulus / (3 * (1 - 2 * poisson_ratio));
+}
+
+double IsotropicElasticity::BulkCompliance() const {
+  return 3 * (1 - 2 * poisson_ratio) / youngs_modulus;
+}
+
+double IsotropicElasticity::StiffnessScale() const {
+  return youngs_modulus / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio));
+}
+
+double IsotropicElasticity::ComplianceScale() const {
+  return (1 + poisson_ratio) * (1 - 2 * poisson_ratio) / youngs_modulus;
+}
+
+bool IsotropicElasticity::IsPhysical() const {
+  return youngs_modulus > 0 && poisson_ratio > -1 && poisson_ratio < 0.5;
+}
+
+double LogStiffnessRatio(double poisson_ratio) {
+  return std::log((1 + poisson_ratio) / (1 - 2 * poisson_ratio));
+}
+
+double PoissonRatioOfLogStiffnessRatio(double log_stiffness_ratio) {
+  const double ratio = std::exp(log_stiffness_ratio);
+  return (ratio - 1) / (1 + 2 * ratio);
+}
+
+Eigen::Matrix2d ShearAndBulkJacobian(const IsotropicElasticity& elasticity) {
+  const double youngs = elasticity.youngs_modulus;
+  const double nu = elasticity.poisson_ratio;
+  Eigen::Matrix2d jacobian;
+  jacobian << elasticity.ShearModulus() / youngs,
+      -elasticity.ShearModulus() / (1 + nu),  //
+      -elasticity.BulkCompliance() / youngs, -6 / youngs;
+  return jacobian;
+}
+
+Eigen::Matrix2d ComplianceScaleJacobian(const IsotropicElasticity& elasticity) {
+  const double youngs = elasticity.youngs_modulus;
+  const double nu = elasticity.poisson_ratio;
+  Eigen::Matrix2d jacobian;
+  jacobian << 0, 1,  //
+      -elasticity.ComplianceScale() / youngs, -(1 + 4 * nu) / youngs;
+  return jacobian;
+}
+
+}  // namespace elastimate

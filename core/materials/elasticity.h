@@ -1,0 +1,63 @@
+#ifndef ELASTIMATE_CORE_MATERIALS_ELASTICITY_H_
+#define ELASTIMATE_CORE_MATERIALS_ELASTICITY_H_
+
+#include <Eigen/Core>
+
+namespace elastimate {
+
+/// Isotropic linear elasticity in three dimensions.  The only place where its
+/// parameters are converted.
+///
+/// Physical values are E > 0 and -1 < nu < 1/2; the conversions are plain
+/// formulas and accept any numbers, so that an unphysical estimate can be
+/// reported in every form (a division by zero gives an infinity, as IEEE says).
+struct IsotropicElasticity {
+  double youngs_modulus;  ///< E [pressure].
+  double poisson_ratio;   ///< nu [-].
+
+  /// E = mu (3 lambda + 2 mu) / (lambda + mu), nu = lambda / (2 (lambda + mu)).
+  static IsotropicElasticity FromLame(double lame_lambda, double shear_modulus);
+  /// E = 9 kappa mu / (3 kappa + mu), nu = (3 kappa - 2 mu) / (6 kappa + 2 mu).
+  static IsotropicElasticity FromBulkAndShear(double bulk_modulus,
+                                              double shear_modulus);
+  /// E = (1 + nu)(1 - 2 nu) / t with the compliance scale t = 1 / s of K = s (H
+  /// + nu J).
+  static IsotropicElasticity FromComplianceScale(double compliance_scale,
+                                                 double poisson_ratio);
+
+  /// mu = E / (2 (1 + nu)).
+  double ShearModulus() const;
+  /// lambda = E nu / ((1 + nu)(1 - 2 nu)).
+  double LameLambda() const;
+  /// kappa = E / (3 (1 - 2 nu)).
+  double BulkModulus() const;
+  /// 1 / kappa = 3 (1 - 2 nu) / E, which is well determined near nu = 1/2 where
+  /// kappa is not.
+  double BulkCompliance() const;
+  /// s = E / ((1 + nu)(1 - 2 nu)), the factor of K = s (H + nu J) [Becker &
+  /// Teschner 2007, eq. 14-22].
+  double StiffnessScale() const;
+  /// t = 1 / s.
+  double ComplianceScale() const;
+
+  /// E > 0 and -1 < nu < 1/2 (NaN is not physical).
+  bool IsPhysical() const;
+};
+
+/// ln((1 + nu) / (1 - 2 nu)) = ln(3 kappa / (2 mu)): the scale on which the
+/// stiffness changes evenly over the whole range of nu.
+double LogStiffnessRatio(double poisson_ratio);
+
+/// nu of a LogStiffnessRatio.
+double PoissonRatioOfLogStiffnessRatio(double log_stiffness_ratio);
+
+/// d (mu, 1 / kappa) / d (E, nu): rows (mu, 1 / kappa), columns (E, nu).
+Eigen::Matrix2d ShearAndBulkJacobian(const IsotropicElasticity& elasticity);
+
+/// d (nu, t) / d (E, nu): rows (nu, t), columns (E, nu), with t = (1 + nu)(1 -
+/// 2 nu) / E.
+Eigen::Matrix2d ComplianceScaleJacobian(const IsotropicElasticity& elasticity);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_MATERIALS_ELASTICITY_H_

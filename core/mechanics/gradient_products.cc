@@ -1,0 +1,99 @@
+#include "elastimate/core/mechanics/gradient_products.h"
+
+#include "elastimate/core/mechanics/tet4_gradient_products.h"
+#include "elastimate/core/mesh/tet10.h"
+#include "elastimate/core/mesh/tet4.h"
+
+namespace elastimate {
+namespace {
+
+// The integrals of grad(N_i) grad(N_j)^T over one quadratic tetrahedron: fixed
+// combinations of P_ab = V g_a g_b^T, from the means of lambda_a lambda_b,
+// which are (1 + delta_ab) / 20.
+class QuadraticElementProducts {
+ public:
+  explicit QuadraticElementProducts(const TetrahedronGradients& element) {
+    for (int a = 0; a < 4; ++a) {
+      for (int b = 0; b < 4; ++b) {
+        p_[a][b].noalias() = (element.volume * element.gradient.col(a)) *
+                             element.gradient.col(b).transpose();
+      }
+    }
+  }
+
+  Eigen::Matrix3d VertexVertex(int a, int b) const {
+    return VertexWeight(a, b) * p_[a][b];
+  }
+  Eigen::Matrix3d EdgeVertex(const int (&edge)[2], int c) const {
+    const auto [a, b] = edge;
+    return VertexWeight(a, c) * p_[b][c] + VertexWeight(b, c) * p_[a][c];
+  }
+  Eigen::Matrix3d EdgeEdge(const int (&edge)[2], const int (&other)[2]) const {
+    const auto [a, b] = edge;
+    const auto [c, d] = other;
+    return EdgeWeight(a, c) * p_[b][d] + EdgeWeight(a, d) * p_[b][c] +
+           EdgeWeight(b, c) * p_[a][d] + EdgeWeight(b, d) * p_[a][c];
+  }
+
+ private:
+  // Mean of (4 lambda_a - 1)(4 lambda_b - 1), and of 4 lambda_a (4 lambda_b -
+  // 1).
+  static double VertexWeight(int a, int b) { return a == b ? 0.6 : -0.2; }
+  // Mean of 16 lambda_a lambda_b.
+  static double EdgeWeight(int a, int b) { return a == b ? 1.6 : 0.8; }
+
+  Eigen::Matrix3d p_[4][4];
+};
+
+void AddQuadraticProducts(const Mesh& mesh, const NodeGraph& graph,
+                          Eigen::Index first, Eigen::Index end,
+                          Eigen::Index pair_mask, Eigen::Matrix4Xd& products) {
+  for (Eigen::Index e = first; e < end; ++e) {
+    const QuadraticElementProducts element(
+        TetrahedronGradients(GatherTetrahedron(mesh, e)));
+    const auto add = [&](int i, int j, const Eigen::Matrix3d& block) {
+      const Eigen::Index pair =
+          graph.element_pairs(NodeGraph::LocalPair(i, j), e) & pair_mask;
+      auto product = products.block<3, 3>(0, 3 * pair);
+      if (mesh.elements(i, e) >= mesh.elements(j, e)) {
+        product += block;
+      } else {
+        product += block.transpose();
+      }
+    };
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j <= i; ++j) {
+        add(i, j, element.VertexVertex(i, j));
+      }
+    }
+    for (int i = 0; i < 6; ++i) {
+      for (int j = 0; j < 4; ++j) {
+        add(4 + i, j, element.EdgeVertex(kTetrahedronEdges[i], j));
+      }
+      for (int j = 0; j <= i; ++j) {
+        add(4 + i, 4 + j,
+            element.EdgeEdge(kTetrahedronEdges[i], kTetrahedronEdges[j]));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Eigen::Matrix4Xd GradientProducts(const Mesh& mesh, const NodeGraph& graph) {
+  Eigen::Matrix4Xd products = Eigen::Matrix4Xd::Zero(4, 3 * graph.NumPairs());
+  AddGradientProducts(mesh, graph, 0, mesh.NumElements(), kEveryPair, products);
+  return products;
+}
+
+void AddGradientProducts(const Mesh& mesh, const NodeGraph& graph,
+                         Eigen::Index first, Eigen::Index end,
+                         Eigen::Index pair_mask, Eigen::Matrix4Xd& products) {
+  if (mesh.Order() == 1) {
+    AddLinearGradientProducts(mesh, graph, first, end, pair_mask, products);
+  } else {
+    AddQuadraticProducts(mesh, graph, first, end, pair_mask, products);
+  }
+}
+
+}  // namespace elastimate

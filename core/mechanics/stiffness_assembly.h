@@ -1,0 +1,84 @@
+#ifndef ELASTIMATE_CORE_MECHANICS_STIFFNESS_ASSEMBLY_H_
+#define ELASTIMATE_CORE_MECHANICS_STIFFNESS_ASSEMBLY_H_
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "elastimate/core/mesh/mesh.h"
+#include "elastimate/core/mesh/node_graph.h"
+#include "elastimate/core/scene/degrees_of_freedom.h"
+
+namespace elastimate {
+
+/// The pattern of the lower triangle of a sparse symmetric matrix, compressed
+/// by columns, rows ascending.
+struct SymmetricPattern {
+  std::vector<std::int64_t> column_start;  ///< size + 1.
+  std::vector<std::int64_t> row;           ///< num_values.
+
+  std::int64_t Size() const {
+    return static_cast<std::int64_t>(column_start.size()) - 1;
+  }
+};
+
+/// The stiffness bases H and J of the free degrees of freedom, assembled into
+/// one fixed sparse pattern, so that A(nu) = H + nu J is one axpy.
+class StiffnessAssembly {
+ public:
+  /// Pattern and values.  Precondition: a valid mesh.
+  /// O(num_elements) time and memory; no triplets.
+  StiffnessAssembly(const Mesh& mesh,
+                    const DegreesOfFreedom& degrees_of_freedom);
+
+  /// Assembles the values of H and J again, for moved nodes of the same mesh.
+  /// Cost: one element pass, in memory for the pairs of a front of nodes: 96
+  /// byte for each (3 MB for a million tetrahedra of good numbering, 135 MB of
+  /// a random one), so that most of it stays in the cache.
+  void Assemble(const Mesh& mesh);
+
+  const NodeGraph& Graph() const { return graph_; }
+  const SymmetricPattern& Pattern() const { return pattern_; }
+  const Eigen::VectorXd& H() const { return h_; }
+  const Eigen::VectorXd& J() const { return j_; }
+
+  /// The values of H + nu J.
+  Eigen::VectorXd Combine(double poisson_ratio) const {
+    return h_ + poisson_ratio * j_;
+  }
+  /// The same into memory that is used again, which takes half the time.
+  void Combine(double poisson_ratio, Eigen::VectorXd& values) const {
+    values = h_ + poisson_ratio * j_;
+  }
+
+ private:
+  /// The elements up to `end_element`, after which no element has one of the
+  /// first `num_complete_nodes`.
+  struct Stage {
+    Eigen::Index end_element;
+    Eigen::Index num_complete_nodes;
+  };
+
+  void PlanStages(const Mesh& mesh);
+  /// Writes the values of the pairs of a node.
+  void WriteColumns(Eigen::Index node);
+  void BuildPattern(const DegreesOfFreedom& degrees_of_freedom);
+
+  NodeGraph graph_;
+  SymmetricPattern pattern_;
+  /// Free components of each node, as bits.
+  std::vector<unsigned char> free_components_;
+  /// For each pair of nodes and each of the three components of its column
+  /// node: where the rows of its row node begin in the values, -1 when held.
+  std::vector<std::int64_t> pair_values_;
+  std::vector<Stage> stages_;
+  /// For AddGradientProducts: the pairs at work, zero between assemblies.
+  Eigen::Index pair_mask_;
+  Eigen::Matrix4Xd products_;
+  Eigen::VectorXd h_;
+  Eigen::VectorXd j_;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_MECHANICS_STIFFNESS_ASSEMBLY_H_

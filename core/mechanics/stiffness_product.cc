@@ -1,0 +1,62 @@
+#include "elastimate/core/mechanics/stiffness_product.h"
+
+#include <cassert>
+#include <utility>
+
+#include "elastimate/core/mechanics/tet10_stiffness_product.h"
+#include "elastimate/core/mechanics/tet4_stiffness_product.h"
+#include "elastimate/core/mesh/node_order.h"
+
+namespace elastimate {
+namespace {
+
+void MultiplyQuadraticTetrahedra(const Mesh& mesh,
+                                 const Eigen::MatrixXd& displacement,
+                                 StiffnessProducts& products) {
+  products.h.setZero(displacement.rows(), displacement.cols());
+  products.j.setZero(displacement.rows(), displacement.cols());
+  AddQuadraticStrainProducts(mesh, displacement, products.h, products.j);
+  products.j -= 2 * products.h;
+}
+
+}  // namespace
+
+StiffnessProducts MultiplyStiffnessBasis(const Mesh& mesh,
+                                         const Eigen::MatrixXd& displacement) {
+  assert(displacement.rows() == 3 * mesh.NumNodes());
+  StiffnessProducts products;
+  if (mesh.Order() == 1) {
+    MultiplyLinearTetrahedra(mesh, ChooseElementBlocks(mesh), {}, displacement,
+                             1, products);
+  } else {
+    MultiplyQuadraticTetrahedra(mesh, displacement, products);
+  }
+  return products;
+}
+
+StiffnessOperator::StiffnessOperator(const Mesh& mesh, int num_threads)
+    : mesh_(mesh), num_threads_(num_threads) {
+  assert(num_threads >= 1);
+  if (mesh.Order() == 2) {
+    return;
+  }
+  if (!HasLocality(mesh)) {
+    OrderedMesh ordered = OrderForLocality(mesh);
+    reordered_ = std::move(ordered.mesh);
+    places_ = std::move(ordered.places);
+  }
+  blocks_ = ChooseElementBlocks(IsReordered() ? reordered_ : mesh);
+}
+
+void StiffnessOperator::Multiply(const Eigen::MatrixXd& displacement,
+                                 StiffnessProducts& products) const {
+  assert(displacement.rows() == 3 * mesh_.NumNodes());
+  if (mesh_.Order() == 1) {
+    MultiplyLinearTetrahedra(IsReordered() ? reordered_ : mesh_, blocks_,
+                             places_, displacement, num_threads_, products);
+  } else {
+    MultiplyQuadraticTetrahedra(mesh_, displacement, products);
+  }
+}
+
+}  // namespace elastimate

@@ -1,0 +1,75 @@
+#include "elastimate/core/mesh/coincident_nodes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace elastimate {
+namespace {
+
+// Of the shortest edge: above what a file in text or in single precision makes
+// of equal positions, and far below any gap that is meant.
+constexpr double kSamePlace = 1e-4;
+
+Eigen::VectorXd ShortestEdges(const Mesh& mesh) {
+  Eigen::VectorXd squares = Eigen::VectorXd::Constant(
+      mesh.NumNodes(), std::numeric_limits<double>::infinity());
+  for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
+    for (int i = 0; i < 4; ++i) {
+      for (int k = 0; k < i; ++k) {
+        const int a = mesh.elements(i, element);
+        const int b = mesh.elements(k, element);
+        const double square =
+            (mesh.nodes.col(a) - mesh.nodes.col(b)).squaredNorm();
+        squares(a) = std::min(squares(a), square);
+        squares(b) = std::min(squares(b), square);
+      }
+    }
+  }
+  return squares.cwiseSqrt();
+}
+
+}  // namespace
+
+std::vector<std::array<int, 2>> CoincidentNodes(const Mesh& mesh) {
+  const Eigen::VectorXd tolerance = kSamePlace * ShortestEdges(mesh);
+  // Along a direction in which the layers of a regular mesh do not lie.
+  const Eigen::RowVector3d direction =
+      Eigen::RowVector3d(std::sqrt(2.0), std::sqrt(3.0), std::sqrt(5.0))
+          .normalized();
+  const Eigen::VectorXd height = (direction * mesh.nodes).transpose();
+  std::vector<int> order(mesh.NumNodes());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&height](int a, int b) {
+    return std::make_pair(height(a), a) < std::make_pair(height(b), b);
+  });
+  const auto partner = [&](std::ptrdiff_t position, std::ptrdiff_t step) {
+    const int node = order[position];
+    const auto size = static_cast<std::ptrdiff_t>(order.size());
+    for (auto i = position + step; i >= 0 && i < size; i += step) {
+      const int other = order[i];
+      if (std::abs(height(other) - height(node)) > tolerance(node)) {
+        break;
+      }
+      if ((mesh.nodes.col(other) - mesh.nodes.col(node)).norm() <=
+          std::min(tolerance(node), tolerance(other))) {
+        return other;
+      }
+    }
+    return -1;
+  };
+  std::vector<std::array<int, 2>> coincident;
+  for (std::ptrdiff_t i = 0; i < std::ptrdiff_t(order.size()); ++i) {
+    const int after = partner(i, 1);
+    const int other = after >= 0 ? after : partner(i, -1);
+    if (other >= 0) {
+      coincident.push_back({order[i], other});
+    }
+  }
+  std::sort(coincident.begin(), coincident.end());
+  return coincident;
+}
+
+}  // namespace elastimate

@@ -1,0 +1,58 @@
+#ifndef ELASTIMATE_CORE_MESH_TET4_H_
+#define ELASTIMATE_CORE_MESH_TET4_H_
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "elastimate/core/mesh/mesh.h"
+
+namespace elastimate {
+
+/// Node positions of a tetrahedron, 3 x 4.
+using TetrahedronNodes = Eigen::Matrix<double, 3, 4>;
+
+inline TetrahedronNodes GatherTetrahedron(const Mesh& mesh,
+                                          Eigen::Index element) {
+  TetrahedronNodes x;
+  for (int i = 0; i < 4; ++i) {
+    x.col(i) = mesh.nodes.col(mesh.elements(i, element));
+  }
+  return x;
+}
+
+/// det J / 6, negative for a tetrahedron of negative orientation.
+inline double SignedTetrahedronVolume(const TetrahedronNodes& x) {
+  const Eigen::Vector3d e1 = x.col(1) - x.col(0);
+  const Eigen::Vector3d e2 = x.col(2) - x.col(0);
+  const Eigen::Vector3d e3 = x.col(3) - x.col(0);
+  return e1.dot(e2.cross(e3)) / 6;
+}
+
+/// V = |det J| / 6.
+inline double TetrahedronVolume(const TetrahedronNodes& x) {
+  return std::abs(SignedTetrahedronVolume(x));
+}
+
+/// The linear tetrahedron: constant shape function gradients and the volume.
+struct TetrahedronGradients {
+  Eigen::Matrix<double, 3, 4> gradient;  ///< grad N_i, 3 x 4 [1 / length].
+  double volume;                         ///< V = |det J| / 6 [length^3].
+
+  explicit TetrahedronGradients(const TetrahedronNodes& x) {
+    const Eigen::Vector3d e1 = x.col(1) - x.col(0);
+    const Eigen::Vector3d e2 = x.col(2) - x.col(0);
+    const Eigen::Vector3d e3 = x.col(3) - x.col(0);
+    const Eigen::Vector3d c1 = e2.cross(e3);
+    const double determinant = e1.dot(c1);
+    gradient.col(1) = c1 / determinant;
+    gradient.col(2) = e3.cross(e1) / determinant;
+    gradient.col(3) = e1.cross(e2) / determinant;
+    gradient.col(0) = -(gradient.col(1) + gradient.col(2) + gradient.col(3));
+    volume = std::abs(determinant) / 6;
+  }
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_MESH_TET4_H_

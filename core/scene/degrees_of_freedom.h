@@ -1,0 +1,37 @@
+#ifndef ELASTIMATE_CORE_SCENE_DEGREES_OF_FREEDOM_H_
+#define ELASTIMATE_CORE_SCENE_DEGREES_OF_FREEDOM_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "elastimate/core/scene/scene.h"
+
+namespace elastimate {
+
+/// The free degrees of freedom in ascending order: row i of a vector over the
+/// free ones is row `free[i]` of a vector over all, which is
+/// 3 * node + component.
+struct DegreesOfFreedom {
+  std::vector<Eigen::Index> free;
+  /// For each of the 3 * num_nodes degrees of freedom its place in `free`, or
+  /// -1 when it is held.
+  std::vector<Eigen::Index> place;
+
+  explicit DegreesOfFreedom(const Supports& supports);
+
+  Eigen::Index NumFree() const { return Eigen::Index(free.size()); }
+  Eigen::Index NumAll() const { return Eigen::Index(place.size()); }
+
+  /// The free rows of `all` (num_all x n): num_free x n.
+  Eigen::MatrixXd Restrict(const Eigen::MatrixXd& all) const;
+  /// `values` (num_free x n) in the free rows, zero in the held: num_all x n.
+  Eigen::MatrixXd Extend(const Eigen::MatrixXd& values) const;
+};
+
+/// The displacement of the held degrees of freedom, zero in the free rows:
+/// 3 * num_nodes values.
+Eigen::VectorXd HeldDisplacement(const Supports& supports);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_SCENE_DEGREES_OF_FREEDOM_H_

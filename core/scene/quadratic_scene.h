@@ -1,0 +1,49 @@
+#ifndef ELASTIMATE_CORE_SCENE_QUADRATIC_SCENE_H_
+#define ELASTIMATE_CORE_SCENE_QUADRATIC_SCENE_H_
+
+#include <Eigen/Core>
+
+#include "elastimate/core/mesh/mesh.h"
+#include "elastimate/core/scene/scene.h"
+
+namespace elastimate {
+
+/// The same scene modelled with quadratic tetrahedra: a node in the middle of
+/// each straight edge, which bends with the specimen (element order 2).
+///
+/// The mid-edge nodes come after those of `scene`, in ascending order of the
+/// lower, then the higher end of their edge, so that the first columns of every
+/// array are those of `scene`.  At mid-edge nodes:
+///
+/// - Supports: a component is held where both ends of the edge hold it, at the
+///   mean of their displacements.  Not held is an edge that crosses the
+///   interior from one node of the surface to another: the ends may belong to
+///   two supports, with the specimen between them.  (Inside a held volume the
+///   neighbours then hold it all the same.)
+/// - Loads: nodal forces are zero there, so that their virtual work is that of
+///   the given forces on the displacements of the vertices.  Body forces,
+///   tractions and pressures stay what they are; facets get their mid-edge
+///   nodes.
+/// - Measurements: not observed, displacement zero.
+///
+/// Precondition: a valid scene (ValidateScene).  Throws std::invalid_argument
+/// unless its elements are linear, and for a facet that is no face of the mesh.
+/// O(num_elements) time and memory.
+///
+///   const Scene quadratic = QuadraticScene(scene);
+///   const Estimate estimate = MakeEstimator("iterative-fe")->Run(quadratic,
+///                                                               {});
+Scene QuadraticScene(const Scene& scene);
+
+/// The forces on the vertices of a quadratic mesh that do the same work as
+/// `force` on every displacement which is linear in each element: f_a plus half
+/// of each f_ab.  They have the same resultant and moment.
+///
+/// `force` is (3 num_nodes) x n, row 3 * node + component [force]; the result
+/// (3 num_vertices) x n.  Precondition: a valid mesh; one of linear elements
+/// leaves the forces as they are.  O(num_elements + num_nodes * n).
+Eigen::MatrixXd VertexForces(const Mesh& mesh, const Eigen::MatrixXd& force);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_SCENE_QUADRATIC_SCENE_H_

@@ -1,0 +1,371 @@
+#include "elastimate/core/scene/rigid_motion.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <numeric>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/mesh/elements_of_nodes.h"
+
+namespace elastimate {
+namespace {
+
+// Sets that are joined one by one; the label of a set is its smallest member.
+class DisjointSets {
+ public:
+  explicit DisjointSets(Eigen::Index size) : parent_(size) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+
+  int Label(int member) {
+    while (parent_[member] != member) {
+      parent_[member] = parent_[parent_[member]];
+      member = parent_[member];
+    }
+    return member;
+  }
+
+  void Join(int a, int b) {
+    a = Label(a);
+    b = Label(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+// The other two corners of a face, ascending, whose smallest node is known.
+struct Face {
+  std::array<int, 2> others;
+  int element;
+
+  bool operator<(const Face& other) const { return others < other.others; }
+};
+
+// The tetrahedra that are connected through faces.
+DisjointSets ElementsJoinedByFaces(const Mesh& mesh) {
+  const ElementsOfNodes around(mesh);
+  DisjointSets sets(mesh.NumElements());
+  std::vector<Face> faces;  // Whose smallest node is the same.
+  for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
+    faces.clear();
+    for (Eigen::Index i = around.start[node]; i < around.start[node + 1]; ++i) {
+      const int e = static_cast<int>(around.element[i]);
+      const auto corners = mesh.elements.col(e);
+      for (int a = 0; a < 4; ++a) {
+        for (int b = a + 1; b < 4; ++b) {
+          const auto [smaller, larger] = std::minmax({corners(a), corners(b)});
+          if (smaller > node) {
+            faces.push_back({{smaller, larger}, e});
+          }
+        }
+      }
+    }
+    std::sort(faces.begin(), faces.end());
+    for (std::size_t i = 1; i < faces.size(); ++i) {
+      if (faces[i].others == faces[i - 1].others) {
+        sets.Join(faces[i].element, faces[i - 1].element);
+      }
+    }
+  }
+  return sets;
+}
+
+// A rigid body.
+struct Body {
+  std::vector<int> nodes;  // Ascending.
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+  double radius = 0;
+
+  Body(const Mesh& mesh, std::vector<int> its_nodes)
+      : nodes(std::move(its_nodes)) {
+    for (const int node : nodes) {
+      centroid += mesh.nodes.col(node);
+    }
+    centroid /= static_cast<double>(nodes.size());
+    for (const int node : nodes) {
+      radius = std::max(radius, (mesh.nodes.col(node) - centroid).norm());
+    }
+  }
+};
+
+// Bodies by their smallest nodes.
+std::vector<Body> BodiesOf(const Mesh& mesh) {
+  DisjointSets joined = ElementsJoinedByFaces(mesh);
+  std::vector<std::pair<int, int>> nodes;  // Of the label of a body.
+  nodes.reserve(mesh.NumNodes());
+  std::vector<int> first(mesh.NumNodes(), -1);
+  for (int e = 0; e < mesh.NumElements(); ++e) {
+    const int label = joined.Label(e);
+    for (const int node : mesh.elements.col(e)) {
+      if (first[node] < 0) {
+        first[node] = label;
+      }
+      // Elements around a node nearly always belong to one body.
+      if (first[node] != label) {
+        nodes.emplace_back(label, node);
+      }
+    }
+  }
+  for (int node = 0; node < mesh.NumNodes(); ++node) {
+    nodes.emplace_back(first[node], node);
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+
+  std::vector<Body> bodies;
+  for (auto begin = nodes.begin(); begin != nodes.end();) {
+    const auto end = std::find_if(begin, nodes.end(), [&](const auto& node) {
+      return node.first != begin->first;
+    });
+    std::vector<int> of_body;
+    for (; begin != end; ++begin) {
+      of_body.push_back(begin->second);
+    }
+    bodies.emplace_back(mesh, std::move(of_body));
+  }
+  std::sort(bodies.begin(), bodies.end(), [](const Body& a, const Body& b) {
+    return a.nodes.front() < b.nodes.front();
+  });
+  return bodies;
+}
+
+const char* const kAxis[3] = {"x", "y", "z"};
+
+// Of the directions that the orthonormal columns of `span` span, the one
+// closest to an axis: "x", or "(0.6, 0.8, 0)".
+std::string DescribeDirection(const Eigen::Matrix3Xd& span) {
+  const Eigen::Matrix3d projection = span * span.transpose();
+  Eigen::Index axis = 0;
+  projection.diagonal().maxCoeff(&axis);
+  const Eigen::Vector3d direction = projection.col(axis).normalized();
+  if (direction(axis) > 0.9999) {
+    return kAxis[axis];
+  }
+  std::ostringstream text;
+  text << std::setprecision(2);
+  for (int i = 0; i < 3; ++i) {
+    text << (i == 0 ? "(" : ", ")
+         << (std::abs(direction(i)) < 0.005 ? 0.0 : direction(i));
+  }
+  text << ")";
+  return text.str();
+}
+
+// One of the rigid motions that the columns span; a translation if there is
+// one, since any rotation about an axis off the centroid moves that too.
+std::string DescribeRigidMotion(const Eigen::Matrix<double, 6, -1>& columns) {
+  // Of a part, columns may be dependent.
+  constexpr double kSmall = 1e-5;
+  const SingularValueDecomposition span = DecomposeSingularValues(columns);
+  const Eigen::Matrix<double, 6, -1> motions =
+      span.u.leftCols((span.values.array() > kSmall * span.values(0)).count());
+  const SingularValueDecomposition rotations =
+      DecomposeSingularValues(motions.bottomRows<3>());
+  const Eigen::Index rank = (rotations.values.array() > kSmall).count();
+  if (rank < motions.cols()) {
+    return "move along " +
+           DescribeDirection(motions.topRows<3>() *
+                             rotations.v.rightCols(motions.cols() - rank));
+  }
+  return "rotate about " + DescribeDirection(rotations.u.leftCols(rank));
+}
+
+// Coefficients of the six rigid motions of a body (translations, then rotations
+// about axes through its centroid, by radii) in the displacement of a node.
+Eigen::Matrix<double, 1, 6> RigidMotionRow(const Mesh& mesh, const Body& body,
+                                           int node, int component) {
+  const Eigen::Vector3d arm =
+      (mesh.nodes.col(node) - body.centroid) / body.radius;
+  Eigen::Matrix<double, 1, 6> row = Eigen::Matrix<double, 1, 6>::Zero();
+  row(component) = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    row(3 + axis) = Eigen::Vector3d::Unit(axis).cross(arm)(component);
+  }
+  return row;
+}
+
+// What holds some bodies: the sum of the squares of what moves their held
+// components, and of how far those that share a node move apart there, is a
+// quadratic form of six coordinates for each body.
+Eigen::SparseMatrix<double> HoldingForm(
+    const Mesh& mesh, const Supports& supports,
+    const std::vector<const Body*>& bodies) {
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto add = [&](Eigen::Index a, Eigen::Index b,
+                       const Eigen::Matrix<double, 6, 6>& block) {
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      for (Eigen::Index j = 0; j < 6; ++j) {
+        entries.emplace_back(6 * a + i, 6 * b + j, block(i, j));
+      }
+    }
+  };
+  std::vector<std::pair<int, Eigen::Index>> nodes;
+  for (Eigen::Index b = 0; b < Eigen::Index(bodies.size()); ++b) {
+    Eigen::Matrix<double, 6, 6> held = Eigen::Matrix<double, 6, 6>::Zero();
+    for (const int node : bodies[b]->nodes) {
+      nodes.emplace_back(node, b);
+      for (int i = 0; i < 3; ++i) {
+        if (supports.held(i, node)) {
+          const auto row = RigidMotionRow(mesh, *bodies[b], node, i);
+          held += row.transpose() * row;
+        }
+      }
+    }
+    add(b, b, held);
+  }
+  std::sort(nodes.begin(), nodes.end());
+  for (std::size_t k = 1; k < nodes.size(); ++k) {
+    const auto [node, b] = nodes[k];
+    const auto [previous, a] = nodes[k - 1];
+    if (node != previous) {
+      continue;
+    }
+    for (int i = 0; i < 3; ++i) {
+      const auto row_a = RigidMotionRow(mesh, *bodies[a], node, i);
+      const auto row_b = RigidMotionRow(mesh, *bodies[b], node, i);
+      add(a, a, row_a.transpose() * row_a);
+      add(b, b, row_b.transpose() * row_b);
+      add(a, b, -row_a.transpose() * row_b);
+      add(b, a, -row_b.transpose() * row_a);
+    }
+  }
+  const Eigen::Index size = 6 * Eigen::Index(bodies.size());
+  Eigen::SparseMatrix<double> form(size, size);
+  form.setFromTriplets(entries.begin(), entries.end());
+  return form;
+}
+
+// Squares of lever arms below 1e-6 of a radius hold nothing.
+constexpr double kHoldsNothing = 1e-12;
+
+// An orthonormal basis of the motions that nothing holds.
+Eigen::MatrixXd FreeMotions(const Eigen::SparseMatrix<double>& form) {
+  const SymmetricEigenDecomposition eigen =
+      DecomposeSymmetric(Eigen::MatrixXd(form));
+  return eigen.vectors.leftCols((eigen.values.array() < kHoldsNothing).count());
+}
+
+// One of them, by inverse iteration; no column where there is none.
+Eigen::MatrixXd AFreeMotion(const Eigen::SparseMatrix<double>& form) {
+  constexpr int kIterations = 5;
+  Eigen::SparseMatrix<double> identity(form.rows(), form.cols());
+  identity.setIdentity();
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> inverse(
+      form + 0.1 * kHoldsNothing * identity);
+  // Any vector does that has a part along each motion.
+  Eigen::VectorXd motion = Eigen::VectorXd::NullaryExpr(
+      form.rows(),
+      [](Eigen::Index i) { return std::cos(static_cast<double>(i * i)); });
+  for (int i = 0; i < kIterations; ++i) {
+    motion = inverse.solve(motion).normalized();
+  }
+  if (motion.dot(form * motion) < kHoldsNothing) {
+    return motion;
+  }
+  return Eigen::MatrixXd(form.rows(), 0);
+}
+
+// The smallest node of body `b` that none of the others has, if there is one.
+int NodeOfItsOwn(Eigen::Index b, const std::vector<const Body*>& bodies) {
+  const std::vector<int>& nodes = bodies[b]->nodes;
+  const auto is_shared = [&](int node) {
+    return std::any_of(bodies.begin(), bodies.end(), [&](const Body* other) {
+      return other != bodies[b] &&
+             std::binary_search(other->nodes.begin(), other->nodes.end(), node);
+    });
+  };
+  const auto own = std::find_if_not(nodes.begin(), nodes.end(), is_shared);
+  return own == nodes.end() ? nodes.front() : *own;
+}
+
+Body Union(const Mesh& mesh, const std::vector<const Body*>& bodies) {
+  std::vector<int> nodes;
+  for (const Body* const body : bodies) {
+    nodes.insert(nodes.end(), body->nodes.begin(), body->nodes.end());
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return Body(mesh, std::move(nodes));
+}
+
+// A sentence about the first of the bodies that moves; empty when none does.
+std::string WhyNotHeld(const Mesh& mesh, const Supports& supports,
+                       const std::vector<const Body*>& bodies) {
+  // The time of all motions grows with the third power.
+  constexpr std::size_t kMostBodies = 64;
+  const Eigen::SparseMatrix<double> form = HoldingForm(mesh, supports, bodies);
+  const Eigen::MatrixXd motions =
+      bodies.size() <= kMostBodies ? FreeMotions(form) : AFreeMotion(form);
+  if (motions.cols() == 0) {
+    return "";
+  }
+  constexpr double kMoves = 1e-3;
+  Eigen::Index b = 0;
+  while (motions.middleRows<6>(6 * b).norm() <
+         kMoves / std::sqrt(static_cast<double>(bodies.size()))) {
+    ++b;
+  }
+  const bool is_hinged = bodies.size() > 1;
+  return "the supports let the part of the mesh around node " +
+         std::to_string(NodeOfItsOwn(b, bodies)) + " " +
+         DescribeRigidMotion(motions.middleRows<6>(6 * b)) +
+         " without strain; hold more components" +
+         (is_hinged ? ", or mend the mesh: it shares only edges or nodes with "
+                      "the rest"
+                    : "");
+}
+
+}  // namespace
+
+std::string WhyNotHeld(const Mesh& mesh, const Supports& supports) {
+  const std::vector<Body> bodies = BodiesOf(mesh);
+  std::vector<int> first(mesh.NumNodes(), -1);
+  DisjointSets hinged(Eigen::Index(bodies.size()));
+  for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
+    for (const int node : bodies[b].nodes) {
+      if (first[node] < 0) {
+        first[node] = b;
+      }
+      hinged.Join(first[node], b);
+    }
+  }
+  std::vector<std::vector<const Body*>> groups(bodies.size());
+  for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
+    groups[hinged.Label(b)].push_back(&bodies[b]);
+  }
+  groups.erase(std::remove_if(groups.begin(), groups.end(),
+                              [](const auto& group) { return group.empty(); }),
+               groups.end());
+  for (const std::vector<const Body*>& group : groups) {
+    // As a whole, and then part by part.
+    std::string why;
+    if (group.size() > 1) {
+      const Body whole = Union(mesh, group);
+      why = WhyNotHeld(mesh, supports, {&whole});
+    }
+    if (why.empty()) {
+      why = WhyNotHeld(mesh, supports, group);
+    }
+    if (!why.empty() && groups.size() > 1) {
+      why +=
+          " (it shares no node with the rest of the mesh, even if nodes of "
+          "both lie at the same place)";
+    }
+    if (!why.empty()) {
+      return why;
+    }
+  }
+  return "";
+}
+
+}  // namespace elastimate

@@ -1,0 +1,198 @@
+#include "elastimate/core/scene/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "elastimate/core/mesh/representable.h"
+#include "elastimate/core/mesh/tet10.h"
+#include "elastimate/core/scene/loads.h"
+
+namespace elastimate {
+namespace {
+
+const char* const kAxis[3] = {"x", "y", "z"};
+
+std::string CaseName(std::size_t index) {
+  return "load case " + std::to_string(index + 1);
+}
+
+[[noreturn]] void Fail(const std::string& what) {
+  throw std::invalid_argument(what);
+}
+
+void RequireColumns(Eigen::Index columns, const Mesh& mesh,
+                    const std::string& what) {
+  if (columns != mesh.NumNodes()) {
+    Fail(what + " has " + std::to_string(columns) + " columns for " +
+         std::to_string(mesh.NumNodes()) + " nodes; give one for each");
+  }
+}
+
+// `values` may be an expression; it is not kept.
+template <class Values>
+void RequireFinite(const Values& values, const std::string& what) {
+  double largest = 0;
+  for (Eigen::Index node = 0; node < values.cols(); ++node) {
+    const Eigen::Vector3d of_node = values.col(node);
+    if (!of_node.allFinite()) {
+      Fail(what + " of node " + std::to_string(node) +
+           " is not finite; correct it");
+    }
+    largest = std::max(largest, of_node.cwiseAbs().maxCoeff());
+  }
+  RequireRepresentable(largest, what);
+}
+
+void ValidateSupports(const Mesh& mesh, const Supports& supports) {
+  RequireColumns(supports.held.cols(), mesh, "the mask of held components");
+  RequireColumns(supports.displacement.cols(), mesh,
+                 "the displacement of the supports");
+  RequireFinite(supports.held.select(supports.displacement.array(), 0.0),
+                "the displacement of the supports");
+  if (supports.held.all()) {
+    Fail("every degree of freedom is held; free the nodes that could move");
+  }
+}
+
+void ValidateFacets(const Mesh& mesh, const Eigen::MatrixXi& facets,
+                    const std::string& what) {
+  if (facets.cols() == 0) {
+    Fail(what + " acts on no facet; name a part of the surface");
+  }
+  const Eigen::Index nodes_per_facet = mesh.Order() == 2 ? 6 : 3;
+  if (facets.rows() != nodes_per_facet) {
+    Fail(what + " has " + std::to_string(facets.rows()) +
+         " nodes per facet; the facets of " +
+         (mesh.Order() == 2 ? "quadratic " : "") + "tetrahedra have " +
+         std::to_string(nodes_per_facet));
+  }
+  for (Eigen::Index facet = 0; facet < facets.cols(); ++facet) {
+    if (facets.col(facet).minCoeff() < 0 ||
+        facets.col(facet).maxCoeff() >= mesh.NumNodes()) {
+      Fail("facet " + std::to_string(facet) + " of " + what +
+           " has a node index outside 0.." +
+           std::to_string(mesh.NumNodes() - 1));
+    }
+    for (Eigen::Index i = 3; i < facets.rows(); ++i) {
+      const auto& [a, b] = kTriangleEdges[i - 3];
+      if (!IsInTheMiddle(mesh, facets(i, facet), facets(a, facet),
+                         facets(b, facet))) {
+        Fail("node " + std::to_string(facets(i, facet)) + " of facet " +
+             std::to_string(facet) + " of " + what +
+             " is not in the middle of its edge; order the nodes as VTK does");
+      }
+    }
+  }
+}
+
+// One overload per kind of load.
+struct LoadValidator {
+  const Mesh& mesh;
+  std::string where;  // "load 1 of load case 2"
+
+  void operator()(const NodalForces& load) const {
+    RequireColumns(load.force.cols(), mesh, "the force in " + where);
+    RequireFinite(load.force, "the force in " + where);
+  }
+  void operator()(const BodyForce& load) const {
+    if (!load.force_density.allFinite()) {
+      Fail("the body force in " + where + " is not finite; correct it");
+    }
+    RequireRepresentable(load.force_density.cwiseAbs().maxCoeff(),
+                         "the body force in " + where);
+  }
+  void operator()(const Traction& load) const {
+    ValidateFacets(mesh, load.facets, "the traction in " + where);
+    if (!load.traction.allFinite()) {
+      Fail("the traction in " + where + " is not finite; correct it");
+    }
+    RequireRepresentable(load.traction.cwiseAbs().maxCoeff(),
+                         "the traction in " + where);
+  }
+  void operator()(const Pressure& load) const {
+    ValidateFacets(mesh, load.facets, "the pressure in " + where);
+    if (!std::isfinite(load.pressure)) {
+      Fail("the pressure in " + where + " is not finite; correct it");
+    }
+    RequireRepresentable(std::abs(load.pressure), "the pressure in " + where);
+  }
+  void operator()(const SurfaceForce& load) const {
+    ValidateFacets(mesh, load.facets, "the force on a surface in " + where);
+    if (!load.force.allFinite()) {
+      Fail("the force on a surface in " + where + " is not finite; correct it");
+    }
+    RequireRepresentable(load.force.cwiseAbs().maxCoeff(),
+                         "the force on a surface in " + where);
+    if (!(FacetArea(mesh, load.facets) > 0)) {
+      Fail("the force on a surface in " + where +
+           " acts on facets without area; name a part of the surface");
+    }
+  }
+};
+
+void ValidateMeasurement(const Mesh& mesh, const LoadCase& load_case,
+                         const std::string& name) {
+  if (load_case.observed.size() != 0) {
+    RequireColumns(load_case.observed.cols(), mesh,
+                   "the mask of observed components of " + name);
+  }
+  if (load_case.noise_sd &&
+      !(std::isfinite(*load_case.noise_sd) && *load_case.noise_sd > 0)) {
+    Fail("the noise standard deviation of " + name + " is " +
+         std::to_string(*load_case.noise_sd) + "; it must be positive");
+  }
+  RequireRepresentable(load_case.noise_sd.value_or(0),
+                       "the noise standard deviation of " + name);
+  if (load_case.displacement.size() == 0) {
+    return;
+  }
+  RequireColumns(load_case.displacement.cols(), mesh,
+                 "the measured displacement of " + name);
+  double largest = 0;
+  for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
+    for (int i = 0; i < 3; ++i) {
+      const bool observed =
+          load_case.observed.size() == 0 || load_case.observed(i, node);
+      if (!observed) {
+        continue;
+      }
+      const double value = load_case.displacement(i, node);
+      largest = std::max(largest, std::abs(value));
+      if (!std::isfinite(value)) {
+        Fail("the measured displacement of node " + std::to_string(node) +
+             " (" + kAxis[i] + ") in " + name +
+             " is not finite; correct it or mark it as not observed");
+      }
+    }
+  }
+  RequireRepresentable(largest, "the measured displacement of " + name);
+}
+
+}  // namespace
+
+void ValidateScene(const Scene& scene) {
+  ValidateMesh(scene.mesh);
+  ValidateSupports(scene.mesh, scene.supports);
+  if (scene.load_cases.empty()) {
+    Fail("the scene has no load case; give at least one");
+  }
+  for (std::size_t i = 0; i < scene.load_cases.size(); ++i) {
+    const LoadCase& load_case = scene.load_cases[i];
+    for (std::size_t k = 0; k < load_case.loads.size(); ++k) {
+      const std::string where =
+          "load " + std::to_string(k + 1) + " of " + CaseName(i);
+      std::visit(LoadValidator{scene.mesh, where}, load_case.loads[k]);
+    }
+  }
+  ValidateMeasurements(scene);
+}
+
+void ValidateMeasurements(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.load_cases.size(); ++i) {
+    ValidateMeasurement(scene.mesh, scene.load_cases[i], CaseName(i));
+  }
+}
+
+}  // namespace elastimate

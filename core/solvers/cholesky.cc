@@ -1,0 +1,208 @@
+#include "elastimate/core/solvers/cholesky.h"
+
+#include <cholmod.h>
+
+#include <Eigen/SparseCore>
+#include <cassert>
+#include <cmath>
+#include <mutex>
+#include <new>
+#include <random>
+#include <type_traits>
+#include <vector>
+
+namespace elastimate {
+namespace {
+
+static_assert(sizeof(SuiteSparse_long) == sizeof(std::int64_t));
+
+// Ratios of pivots (a cheap condition estimate): below the first a solution has
+// no correct digit, below the second rounding may have made the smallest pivot,
+// which one solution tells.
+constexpr double kSmallestPivotRatio = 1e-15;
+constexpr double kSuspiciousPivotRatio = 1e-9;
+
+// A view of our arrays as a symmetric matrix of which the lower triangle is
+// stored; CHOLMOD does not write to it.
+cholmod_sparse SymmetricView(const std::int64_t* column_start,
+                             const std::int64_t* row, const double* values,
+                             std::size_t size, std::size_t num_values) {
+  cholmod_sparse view{};
+  view.nrow = size;
+  view.ncol = size;
+  view.nzmax = num_values;
+  view.p = const_cast<std::int64_t*>(column_start);
+  view.i = const_cast<std::int64_t*>(row);
+  view.x = const_cast<double*>(values);
+  view.stype = -1;
+  view.itype = CHOLMOD_LONG;
+  view.xtype = values == nullptr ? CHOLMOD_PATTERN : CHOLMOD_REAL;
+  view.dtype = CHOLMOD_DOUBLE;
+  view.sorted = 1;
+  view.packed = 1;
+  return view;
+}
+
+void ThrowIfOutOfMemory(const cholmod_common& common) {
+  if (common.status == CHOLMOD_OUT_OF_MEMORY ||
+      common.status == CHOLMOD_TOO_LARGE) {
+    throw std::bad_alloc();
+  }
+}
+
+// Nested dissection of the graph of the nodes, as an ordering of the free
+// degrees of freedom.
+std::vector<std::int64_t> NestedDissection(
+    const NodeGraph& graph, const DegreesOfFreedom& degrees_of_freedom,
+    cholmod_common* common) {
+  const std::size_t num_nodes = graph.start.size() - 1;
+  const std::vector<std::int64_t> start(graph.start.begin(), graph.start.end());
+  const std::vector<std::int64_t> row(graph.row.begin(), graph.row.end());
+  cholmod_sparse pattern =
+      SymmetricView(start.data(), row.data(), nullptr, num_nodes, row.size());
+  std::vector<SuiteSparse_long> node_order(num_nodes);
+  {
+    // METIS seeds and draws from rand(), whose state threads share: at once,
+    // two would have other orders, and results that differ by rounding.
+    static std::mutex one_at_a_time;
+    const std::lock_guard<std::mutex> lock(one_at_a_time);
+    if (cholmod_l_metis(&pattern, nullptr, 0, 1, node_order.data(), common) ==
+        0) {
+      ThrowIfOutOfMemory(*common);
+      assert(false && "cholmod_l_metis refused the graph");
+    }
+  }
+  std::vector<std::int64_t> order;
+  order.reserve(degrees_of_freedom.NumFree());
+  for (const SuiteSparse_long node : node_order) {
+    for (int i = 0; i < 3; ++i) {
+      if (degrees_of_freedom.place[3 * node + i] >= 0) {
+        order.push_back(degrees_of_freedom.place[3 * node + i]);
+      }
+    }
+  }
+  return order;
+}
+
+}  // namespace
+
+struct Cholesky::Workspace {
+  const SymmetricPattern& pattern;
+  cholmod_common common;
+  cholmod_factor* factor = nullptr;
+  double factorization_flops = 0;
+  cholmod_dense* solution = nullptr;
+  cholmod_dense* forward = nullptr;
+  cholmod_dense* permuted = nullptr;
+
+  explicit Workspace(const SymmetricPattern& symmetric_pattern)
+      : pattern(symmetric_pattern) {
+    cholmod_l_start(&common);
+    common.print = 0;
+    common.supernodal = CHOLMOD_SUPERNODAL;
+    common.quick_return_if_not_posdef = 1;
+  }
+  ~Workspace() {
+    cholmod_l_free_dense(&solution, &common);
+    cholmod_l_free_dense(&forward, &common);
+    cholmod_l_free_dense(&permuted, &common);
+    cholmod_l_free_factor(&factor, &common);
+    cholmod_l_finish(&common);
+  }
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+
+  cholmod_sparse Matrix(const double* values) const {
+    return SymmetricView(pattern.column_start.data(), pattern.row.data(),
+                         values, pattern.Size(), pattern.row.size());
+  }
+};
+
+Cholesky::Cholesky(const StiffnessAssembly& assembly,
+                   const DegreesOfFreedom& degrees_of_freedom)
+    : workspace_(std::make_unique<Workspace>(assembly.Pattern())) {
+  cholmod_common* common = &workspace_->common;
+  std::vector<std::int64_t> order =
+      NestedDissection(assembly.Graph(), degrees_of_freedom, common);
+  common->nmethods = 1;
+  common->method[0].ordering = CHOLMOD_GIVEN;
+  common->postorder = 1;
+  cholmod_sparse matrix = workspace_->Matrix(nullptr);
+  workspace_->factor =
+      cholmod_l_analyze_p(&matrix, order.data(), nullptr, 0, common);
+  ThrowIfOutOfMemory(*common);
+  assert(workspace_->factor != nullptr);
+  workspace_->factorization_flops = common->fl;
+}
+
+Cholesky::~Cholesky() = default;
+
+bool Cholesky::Factorize(const Eigen::VectorXd& values) {
+  cholmod_common* common = &workspace_->common;
+  cholmod_sparse matrix = workspace_->Matrix(values.data());
+  if (!values.allFinite()) {
+    return false;
+  }
+  cholmod_l_factorize(&matrix, workspace_->factor, common);
+  ThrowIfOutOfMemory(*common);
+  if (common->status != CHOLMOD_OK) {
+    return false;
+  }
+  const double pivot_ratio = cholmod_l_rcond(workspace_->factor, common);
+  return pivot_ratio > kSuspiciousPivotRatio ||
+         (pivot_ratio > kSmallestPivotRatio && FactorHasTheEnergyOf(values));
+}
+
+// Where rounding has made the smallest pivot, the solution x for nearly any
+// right-hand side b is a motion that the matrix does not resist, and x^T A x is
+// not x^T b.
+bool Cholesky::FactorHasTheEnergyOf(const Eigen::VectorXd& values) {
+  constexpr double kLargestError = 0.1;
+  const SymmetricPattern& pattern = workspace_->pattern;
+  std::mt19937_64 generator(20071107);
+  const Eigen::VectorXd b = Eigen::VectorXd::NullaryExpr(
+      pattern.Size(), [&] { return (generator() & 1U) != 0 ? 1.0 : -1.0; });
+  const Eigen::VectorXd x = *Solve(b, 0);
+  const Eigen::Map<
+      const Eigen::SparseMatrix<double, Eigen::ColMajor, std::int64_t>>
+      matrix(pattern.Size(), pattern.Size(), values.size(),
+             pattern.column_start.data(), pattern.row.data(), values.data());
+  const double energy = x.dot(matrix.selfadjointView<Eigen::Lower>() * x);
+  const double work = x.dot(b);
+  return std::abs(energy - work) <= kLargestError * work;
+}
+
+std::optional<Eigen::MatrixXd> Cholesky::Solve(
+    const Eigen::MatrixXd& right_hand_sides, double /*tolerance*/) {
+  if (right_hand_sides.cols() == 0) {
+    return right_hand_sides;  // CHOLMOD refuses.
+  }
+  cholmod_common* common = &workspace_->common;
+  cholmod_dense view{};
+  view.nrow = right_hand_sides.rows();
+  view.ncol = right_hand_sides.cols();
+  view.nzmax = right_hand_sides.size();
+  view.d = view.nrow;
+  view.x = const_cast<double*>(right_hand_sides.data());
+  view.xtype = CHOLMOD_REAL;
+  view.dtype = CHOLMOD_DOUBLE;
+  if (cholmod_l_solve2(CHOLMOD_A, workspace_->factor, &view, nullptr,
+                       &workspace_->solution, nullptr, &workspace_->forward,
+                       &workspace_->permuted, common) == 0) {
+    ThrowIfOutOfMemory(*common);
+    assert(false && "cholmod_l_solve2 refused the right-hand sides");
+  }
+  return Eigen::Map<const Eigen::MatrixXd>(
+      static_cast<const double*>(workspace_->solution->x),
+      right_hand_sides.rows(), right_hand_sides.cols());
+}
+
+double Cholesky::FactorizationFlops() const {
+  return workspace_->factorization_flops;
+}
+
+double Cholesky::FactorValues() const {
+  return static_cast<double>(workspace_->factor->xsize);
+}
+
+}  // namespace elastimate

@@ -1,0 +1,465 @@
+#include "elastimate/core/solvers/petsc_multigrid.h"
+
+#include <fcntl.h>
+#include <petscksp.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <limits>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <string>
+#include <vector>
+
+#ifdef ELASTIMATE_HAS_ML
+// As in ml_utils.h, which would bring in all of Trilinos.
+extern "C" void ML_set_random_seed(int seed);
+#endif
+
+namespace elastimate {
+namespace {
+
+constexpr int kMostIterations = 500;
+// The norm in which the iterations are stopped, sqrt(r^T B r) for the
+// preconditioner B, is that of the energy of the error where B is A^-1, and
+// smaller in soft modes that B has not got.  Those show as small eigenvalues of
+// B A when the iterations go on; what they make of the norm is checked then.
+constexpr double kStricter = 1e-3;
+
+// An error of PETSc other than that memory is short.
+struct PetscFailure {};
+
+void Check(PetscErrorCode error) {
+  if (error == PETSC_ERR_MEM) {
+    throw std::bad_alloc();
+  }
+  if (error != 0) {
+    throw PetscFailure();
+  }
+}
+
+// PETSc keeps global state, which two threads must not enter at once.
+std::mutex& PetscMutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+// Trilinos' ML aggregates every mesh well, in a tenth of the time that GAMG of
+// PETSc 3.18 takes, which coarsens meshes with nodes of few neighbours by two
+// only.  Chebyshev smoothing is symmetric, and twice as fast as SOR.
+constexpr char kOptions[] =
+    "-elastimate_ksp_type cg -elastimate_ksp_norm_type natural "
+#ifdef ELASTIMATE_HAS_ML
+    "-elastimate_pc_type ml "
+#else
+    "-elastimate_pc_type gamg "
+#endif
+    "-elastimate_mg_levels_ksp_type chebyshev "
+    "-elastimate_mg_levels_ksp_max_it 2 "
+    "-elastimate_mg_levels_pc_type jacobi";
+
+// Whether MPI can be started here: where it cannot (no folder for temporary
+// files, no network interface, few files), it ends the process that tries.
+bool CanStartMpi() {
+  constexpr int kMostMilliseconds = 20000;
+  int ends[2];
+  if (pipe(ends) != 0) {
+    return false;
+  }
+  const pid_t child = fork();
+  if (child == 0) {
+    const int nowhere = open("/dev/null", O_WRONLY);
+    dup2(nowhere, STDOUT_FILENO);
+    dup2(nowhere, STDERR_FILENO);
+    const bool is_started = MPI_Init(nullptr, nullptr) == MPI_SUCCESS &&
+                            MPI_Finalize() == MPI_SUCCESS;
+    const char answer = 'y';
+    _exit(is_started && write(ends[1], &answer, 1) == 1 ? 0 : 1);
+  }
+  close(ends[1]);
+  char answer = 'n';
+  if (child > 0) {
+    pollfd answered = {ends[0], POLLIN, 0};
+    if (poll(&answered, 1, kMostMilliseconds) <= 0 ||
+        read(ends[0], &answer, 1) != 1) {
+      answer = 'n';
+    }
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+  }
+  close(ends[0]);
+  return answer == 'y';
+}
+
+void StartPetsc() {
+  PetscBool is_running = PETSC_FALSE;
+  PetscInitialized(&is_running);
+  if (is_running == PETSC_FALSE) {
+    int has_mpi = 0;
+    MPI_Initialized(&has_mpi);
+    // One process needs no daemon to start others.
+    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+    if (has_mpi == 0 && !CanStartMpi()) {
+      throw PetscFailure();
+    }
+    // Neither options, from files or the environment, nor handlers of signals
+    // are for a program that only wants its equations solved.
+    const char* const given = std::getenv("PETSC_OPTIONS");
+    const std::optional<std::string> options =
+        given == nullptr ? std::nullopt : std::optional<std::string>(given);
+    unsetenv("PETSC_OPTIONS");
+    PetscOptionsSetValue(nullptr, "-skip_petscrc", "true");
+    PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");
+    const PetscErrorCode error = PetscInitializeNoArguments();
+    if (options) {
+      setenv("PETSC_OPTIONS", options->c_str(), 1);
+    }
+    Check(error);
+    std::atexit([] { PetscFinalize(); });
+  }
+  Check(PetscOptionsInsertString(nullptr, kOptions));
+}
+
+// What PETSc writes for an error goes nowhere while one of these lives.
+class QuietErrors {
+ public:
+  QuietErrors() { PetscPushErrorHandler(PetscReturnErrorHandler, nullptr); }
+  ~QuietErrors() { PetscPopErrorHandler(); }
+  QuietErrors(const QuietErrors&) = delete;
+  QuietErrors& operator=(const QuietErrors&) = delete;
+};
+
+}  // namespace
+
+// Multigrid needs blocks of equal size, so that the matrix is that of all
+// components of the nodes that have a free one; where a component is held, its
+// row has only a diagonal entry, of the size of the others of its node.
+struct PetscMultigrid::Workspace {
+  const StiffnessAssembly& assembly;
+  const DegreesOfFreedom& degrees_of_freedom;
+  /// For each node its block, -1 when it has no free component.
+  std::vector<int> block;
+  int num_blocks = 0;
+  /// Row of the matrix of each free degree of freedom.
+  std::vector<PetscInt> row_of_free;
+  /// Compressed rows of blocks, columns ascending.
+  std::vector<PetscInt> block_start;
+  std::vector<PetscInt> row_start;
+  std::vector<PetscInt> column;
+  std::vector<double> entries;  ///< Of the matrix.
+  Mat matrix = nullptr;
+  Vec right_hand_side = nullptr;
+  Vec solution = nullptr;
+  KSP solver = nullptr;
+  /// False when PETSc failed before there was a matrix to set up.
+  bool is_ready = false;
+  int num_iterations = 0;
+
+  Workspace(const StiffnessAssembly& stiffness, const DegreesOfFreedom& dofs)
+      : assembly(stiffness), degrees_of_freedom(dofs) {}
+  ~Workspace() {
+    const std::lock_guard lock(PetscMutex());
+    PetscBool has_ended = PETSC_FALSE;
+    PetscFinalized(&has_ended);
+    if (has_ended == PETSC_TRUE) {
+      return;  // An object of static lifetime.
+    }
+    KSPDestroy(&solver);
+    VecDestroy(&right_hand_side);
+    VecDestroy(&solution);
+    MatDestroy(&matrix);
+  }
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+
+  void BuildPattern();
+  void Fill(const Eigen::VectorXd& values, double* entries) const;
+  Eigen::MatrixXd RigidMotions(const Mesh& mesh) const;
+  void CreateSolver(const Mesh& mesh);
+  /// Of the last solution, relative to it: ||e||_A^2 = r^T A^-1 r is at most
+  /// r^T B r / (smallest eigenvalue of B A).
+  double EnergyErrorBound(PetscInt iterations) const;
+};
+
+double PetscMultigrid::Workspace::EnergyErrorBound(PetscInt iterations) const {
+  if (iterations == 0) {
+    return 0;  // Of no force.
+  }
+  double norm = 0;
+  double largest = 0;
+  double smallest = 0;
+  double energy = 0;
+  Check(KSPGetResidualNorm(solver, &norm));
+  Check(KSPComputeExtremeSingularValues(solver, &largest, &smallest));
+  Check(VecDot(right_hand_side, solution, &energy));
+  return norm / std::sqrt(smallest * energy);
+}
+
+void PetscMultigrid::Workspace::BuildPattern() {
+  const NodeGraph& graph = assembly.Graph();
+  const auto num_nodes = Eigen::Index(graph.start.size()) - 1;
+  block.assign(num_nodes, -1);
+  row_of_free.reserve(degrees_of_freedom.NumFree());
+  for (const Eigen::Index dof : degrees_of_freedom.free) {
+    int& of_node = block[dof / 3];
+    if (of_node < 0) {
+      of_node = num_blocks++;
+    }
+    row_of_free.push_back(3 * of_node + static_cast<int>(dof % 3));
+  }
+  const auto for_pairs = [&](const auto& visit) {
+    for (Eigen::Index node = 0; node < num_nodes; ++node) {
+      for (Eigen::Index k = graph.start[node]; k < graph.start[node + 1]; ++k) {
+        if (block[node] >= 0 && block[graph.row[k]] >= 0) {
+          visit(block[node], block[graph.row[k]]);
+        }
+      }
+    }
+  };
+  std::vector<Eigen::Index> count(num_blocks, 0);
+  Eigen::Index num_entries = 0;
+  for_pairs([&](int a, int b) {
+    ++count[a];
+    count[b] += a != b;
+    num_entries += a != b ? 18 : 9;
+  });
+  if (num_entries > std::numeric_limits<PetscInt>::max()) {
+    throw std::bad_alloc();
+  }
+  block_start.assign(1, 0);
+  for (const Eigen::Index n : count) {
+    block_start.push_back(block_start.back() + static_cast<PetscInt>(n));
+  }
+  std::vector<int> neighbour(block_start.back());
+  std::vector<PetscInt> next(block_start.begin(), block_start.end() - 1);
+  // Column a is entered into the rows b > a before row b gets its diagonal.
+  for_pairs([&](int a, int b) {
+    neighbour[next[a]++] = b;
+    if (a != b) {
+      neighbour[next[b]++] = a;
+    }
+  });
+  row_start.assign(1, 0);
+  column.reserve(num_entries);
+  for (int a = 0; a < num_blocks; ++a) {
+    for (int i = 0; i < 3; ++i) {
+      for (PetscInt k = block_start[a]; k < block_start[a + 1]; ++k) {
+        for (int j = 0; j < 3; ++j) {
+          column.push_back(3 * neighbour[k] + j);
+        }
+      }
+      row_start.push_back(static_cast<PetscInt>(column.size()));
+    }
+  }
+  entries.resize(num_entries);
+}
+
+void PetscMultigrid::Workspace::Fill(const Eigen::VectorXd& values,
+                                     double* entries) const {
+  const NodeGraph& graph = assembly.Graph();
+  const auto num_nodes = Eigen::Index(graph.start.size()) - 1;
+  std::fill_n(entries, column.size(), 0);
+  const auto is_free = [&](Eigen::Index node, int component) {
+    return degrees_of_freedom.place[3 * node + component] >= 0;
+  };
+  // Entry (i, j) of the k-th block of a row of blocks.
+  const auto entry = [&](int a, PetscInt k, int i, int j) -> double& {
+    return entries[row_start[3 * a + i] + 3 * (k - block_start[a]) + j];
+  };
+  std::vector<PetscInt> next(block_start.begin(), block_start.end() - 1);
+  const double* value = values.data();
+  for (Eigen::Index node = 0; node < num_nodes; ++node) {
+    const int a = block[node];
+    if (a < 0) {
+      continue;
+    }
+    const PetscInt diagonal = next[a];
+    double scale = 0;
+    for (int j = 0; j < 3; ++j) {
+      if (!is_free(node, j)) {
+        continue;
+      }
+      PetscInt own = diagonal;
+      for (Eigen::Index k = graph.start[node]; k < graph.start[node + 1]; ++k) {
+        const int row = graph.row[k];
+        const int b = block[row];
+        if (b < 0) {
+          continue;
+        }
+        for (int i = b == a ? j : 0; i < 3; ++i) {
+          if (is_free(row, i)) {
+            entry(a, own, j, i) = *value;
+            entry(b, b == a ? own : next[b], i, j) = *value;
+            ++value;
+          }
+        }
+        ++own;
+      }
+      scale = std::max(scale, entry(a, diagonal, j, j));
+    }
+    for (int j = 0; j < 3; ++j) {
+      if (!is_free(node, j)) {
+        entry(a, diagonal, j, j) = scale;
+      }
+    }
+    for (Eigen::Index k = graph.start[node]; k < graph.start[node + 1]; ++k) {
+      const int b = block[graph.row[k]];
+      if (b >= 0 && b != a) {
+        ++next[b];
+      }
+    }
+  }
+}
+
+Eigen::MatrixXd PetscMultigrid::Workspace::RigidMotions(
+    const Mesh& mesh) const {
+  Eigen::MatrixXd motions = Eigen::MatrixXd::Zero(3 * num_blocks, 6);
+  const Eigen::Vector3d centre = mesh.nodes.rowwise().mean();
+  for (Eigen::Index i = 0; i < Eigen::Index(row_of_free.size()); ++i) {
+    const Eigen::Index dof = degrees_of_freedom.free[i];
+    const int component = static_cast<int>(dof % 3);
+    const Eigen::Vector3d x = mesh.nodes.col(dof / 3) - centre;
+    motions(row_of_free[i], component) = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      motions(row_of_free[i], 3 + axis) =
+          Eigen::Vector3d(Eigen::Vector3d::Unit(axis)).cross(x)(component);
+    }
+  }
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(motions);
+  return qr.householderQ() *
+         Eigen::MatrixXd::Identity(motions.rows(), motions.cols());
+}
+
+void PetscMultigrid::Workspace::CreateSolver(const Mesh& mesh) {
+  const PetscInt size = 3 * num_blocks;
+  Check(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, size, size, row_start.data(),
+                                  column.data(), entries.data(), &matrix));
+  Check(MatSetBlockSize(matrix, 3));
+  Check(MatSetOption(matrix, MAT_SPD, PETSC_TRUE));
+  Check(MatCreateVecs(matrix, &solution, &right_hand_side));
+  const Eigen::MatrixXd motions = RigidMotions(mesh);
+  std::array<Vec, 6> modes{};
+  for (int k = 0; k < 6; ++k) {
+    Check(VecDuplicate(solution, &modes[k]));
+    double* values = nullptr;
+    Check(VecGetArray(modes[k], &values));
+    Eigen::VectorXd::Map(values, size) = motions.col(k);
+    Check(VecRestoreArray(modes[k], &values));
+  }
+  MatNullSpace near_null_space = nullptr;
+  Check(MatNullSpaceCreate(PETSC_COMM_SELF, PETSC_FALSE, 6, modes.data(),
+                           &near_null_space));
+  Check(MatSetNearNullSpace(matrix, near_null_space));
+  Check(MatNullSpaceDestroy(&near_null_space));
+  for (Vec& mode : modes) {
+    Check(VecDestroy(&mode));
+  }
+  Check(KSPCreate(PETSC_COMM_SELF, &solver));
+  Check(KSPSetOptionsPrefix(solver, "elastimate_"));
+  Check(KSPSetComputeSingularValues(solver, PETSC_TRUE));
+  Check(KSPSetFromOptions(solver));
+}
+
+PetscMultigrid::PetscMultigrid(const Mesh& mesh,
+                               const StiffnessAssembly& assembly,
+                               const DegreesOfFreedom& degrees_of_freedom)
+    : workspace_(std::make_unique<Workspace>(assembly, degrees_of_freedom)) {
+  const std::lock_guard lock(PetscMutex());
+  try {
+    StartPetsc();
+    const QuietErrors quiet;
+    workspace_->BuildPattern();
+    workspace_->CreateSolver(mesh);
+    workspace_->is_ready = true;
+  } catch (const PetscFailure&) {
+    // Factorize tells.
+  }
+}
+
+PetscMultigrid::~PetscMultigrid() = default;
+
+bool PetscMultigrid::Factorize(const Eigen::VectorXd& values) {
+  if (!workspace_->is_ready || !values.allFinite()) {
+    return false;
+  }
+  const std::lock_guard lock(PetscMutex());
+  const QuietErrors quiet;
+  Workspace& work = *workspace_;
+  try {
+    double* entries = nullptr;
+    Check(MatSeqAIJGetArray(work.matrix, &entries));
+    work.Fill(values, entries);
+    Check(MatSeqAIJRestoreArray(work.matrix, &entries));
+#ifdef ELASTIMATE_HAS_ML
+    // Largest eigenvalues are estimated from random vectors.
+    ML_set_random_seed(1);
+#endif
+    Check(KSPSetOperators(work.solver, work.matrix, work.matrix));
+    Check(KSPSetUp(work.solver));
+  } catch (const PetscFailure&) {
+    return false;
+  }
+  return true;
+}
+
+std::optional<Eigen::MatrixXd> PetscMultigrid::Solve(
+    const Eigen::MatrixXd& right_hand_sides, double tolerance) {
+  const std::lock_guard lock(PetscMutex());
+  const QuietErrors quiet;
+  Workspace& work = *workspace_;
+  Eigen::MatrixXd solutions(right_hand_sides.rows(), right_hand_sides.cols());
+  try {
+    constexpr double kNoMatterTheUnits = 0;
+    Check(KSPSetTolerances(work.solver, kStricter * tolerance,
+                           kNoMatterTheUnits, PETSC_DEFAULT, kMostIterations));
+    for (Eigen::Index column = 0; column < right_hand_sides.cols(); ++column) {
+      double* values = nullptr;
+      Check(VecSet(work.right_hand_side, 0));
+      Check(VecGetArray(work.right_hand_side, &values));
+      for (Eigen::Index i = 0; i < right_hand_sides.rows(); ++i) {
+        values[work.row_of_free[i]] = right_hand_sides(i, column);
+      }
+      Check(VecRestoreArray(work.right_hand_side, &values));
+      Check(KSPSolve(work.solver, work.right_hand_side, work.solution));
+      PetscInt iterations = 0;
+      Check(KSPGetIterationNumber(work.solver, &iterations));
+      work.num_iterations += iterations;
+      KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+      Check(KSPGetConvergedReason(work.solver, &reason));
+      if (reason < 0) {
+        return std::nullopt;
+      }
+      const double* solution = nullptr;
+      Check(VecGetArrayRead(work.solution, &solution));
+      for (Eigen::Index i = 0; i < right_hand_sides.rows(); ++i) {
+        solutions(i, column) = solution[work.row_of_free[i]];
+      }
+      Check(VecRestoreArrayRead(work.solution, &solution));
+      if (!(work.EnergyErrorBound(iterations) <= tolerance)) {
+        return std::nullopt;
+      }
+    }
+  } catch (const PetscFailure&) {
+    return std::nullopt;
+  }
+  return solutions;
+}
+
+int PetscMultigrid::NumIterations() const { return workspace_->num_iterations; }
+
+}  // namespace elastimate
+
+elastimate::LinearSolver* elastimate_make_multigrid(
+    const elastimate::Mesh& mesh, const elastimate::StiffnessAssembly& assembly,
+    const elastimate::DegreesOfFreedom& degrees_of_freedom) {
+  return new elastimate::PetscMultigrid(mesh, assembly, degrees_of_freedom);
+}

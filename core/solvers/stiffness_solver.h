@@ -1,0 +1,101 @@
+#ifndef ELASTIMATE_CORE_SOLVERS_STIFFNESS_SOLVER_H_
+#define ELASTIMATE_CORE_SOLVERS_STIFFNESS_SOLVER_H_
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+
+#include "elastimate/core/mechanics/stiffness_assembly.h"
+#include "elastimate/core/scene/degrees_of_freedom.h"
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/core/solvers/linear_solver.h"
+#include "elastimate/core/solvers/multigrid.h"
+
+namespace elastimate {
+
+/// How much computing was done; counted where it happens.
+struct Work {
+  int element_passes = 0;  ///< Passes over all elements, for any columns.
+  int factorizations = 0;  ///< Numeric Cholesky factorisations.
+  int multigrid_set_ups = 0;
+  int solves = 0;      ///< Right-hand sides that were solved for.
+  int iterations = 0;  ///< Of conjugate gradients, for all of them.
+};
+
+inline Work operator+(const Work& a, const Work& b) {
+  return {a.element_passes + b.element_passes,
+          a.factorizations + b.factorizations,
+          a.multigrid_set_ups + b.multigrid_set_ups, a.solves + b.solves,
+          a.iterations + b.iterations};
+}
+
+inline Work operator-(const Work& a, const Work& b) {
+  return {a.element_passes - b.element_passes,
+          a.factorizations - b.factorizations,
+          a.multigrid_set_ups - b.multigrid_set_ups, a.solves - b.solves,
+          a.iterations - b.iterations};
+}
+
+/// How linear systems are solved.
+enum class SolverKind {
+  /// Multigrid where a factorisation takes longer, as its analysis tells: from
+  /// about 100 000 nodes on in a compact body of linear tetrahedra, 200 000
+  /// of quadratic ones, and from many more in plates and bars.
+  kAutomatic,
+  kCholesky,   ///< Direct.  In a compact body, time grows with nodes squared.
+  kMultigrid,  ///< Conjugate gradients; needs PETSc (HasMultigrid).
+};
+
+/// Solves with A(nu) = H + nu J on the free degrees of freedom of a mesh.
+class StiffnessSolver {
+ public:
+  /// The relative error, in the energy norm, that iterations leave.
+  static constexpr double kAccurate = 1e-8;
+
+  /// Assembles H and J and analyses their pattern: one element pass.
+  /// Preconditions: a valid scene; HasMultigrid() for kMultigrid.  Throws
+  /// std::invalid_argument with the sentence of WhyNotHeld when the supports do
+  /// not hold the specimen, and std::bad_alloc when the factor does not fit
+  /// into memory.
+  StiffnessSolver(const Mesh& mesh, const Supports& supports, SolverKind kind);
+
+  /// Factorises A(nu); does nothing when nu is the present one.  False when
+  /// A(nu) is singular to working precision (nu at or beyond -1 or 1/2, or an
+  /// extremely ill-conditioned mesh).
+  bool Factorize(double poisson_ratio);
+
+  /// A^-1 of the free rows of each column of `all` ((3 num_nodes) x n), zero in
+  /// the held rows.  Where multigrid does not converge, A is factorised from
+  /// there on; when that shows that it is singular, the solution is NaN.
+  /// Precondition: Factorize returned true.
+  Eigen::MatrixXd Solve(const Eigen::MatrixXd& all,
+                        double tolerance = kAccurate);
+
+  /// nu of the present factorisation; NaN when there is none.
+  double PoissonRatio() const { return poisson_ratio_; }
+  const DegreesOfFreedom& Dofs() const { return degrees_of_freedom_; }
+  const NodeGraph& Graph() const { return assembly_->Graph(); }
+  const Work& WorkDone() const { return work_; }
+  bool UsesMultigrid() const { return is_multigrid_; }
+  /// A sentence where systems are solved otherwise than was asked for or is
+  /// best; else empty.
+  const std::string& Notice() const { return notice_; }
+
+ private:
+  bool FactorizeValues();
+  void FallBackToCholesky(const std::string& why);
+
+  DegreesOfFreedom degrees_of_freedom_;
+  std::unique_ptr<StiffnessAssembly> assembly_;
+  Eigen::VectorXd values_;  ///< Of the last H + nu J, memory to be used again.
+  std::unique_ptr<LinearSolver> solver_;
+  bool is_multigrid_ = false;
+  /// NaN before the first factorisation and after a failed one.
+  double poisson_ratio_;
+  Work work_;
+  std::string notice_;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_SOLVERS_STIFFNESS_SOLVER_H_

@@ -1,0 +1,324 @@
+#include "elastimate/estimators/displacement_fit/adaptive_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/estimators/statistics/bounded_parameter.h"
+
+namespace elastimate {
+namespace {
+
+// The last of the first poles, unless nu is known or bounded away from it.
+constexpr double kMainPole = 0.3;
+// In LogStiffnessRatio, how far some twenty vectors of a pole reach: from 0.3
+// to 0.49 and to -0.9.
+constexpr double kReach = 3.5;
+// The error bound, relative to the responses, before the first fit.
+constexpr double kFirstTolerance = 1e-2;
+// A factorisation costs as much as 30 (45 000 tetrahedra) to 100 (300 000)
+// solves, and the vectors of all poles are kept.
+constexpr int kMostVectorsOfAPole = 30;
+constexpr int kMostPoles = 8;
+// The error of the observed displacements that may remain, relative to the
+// noise, to the residual, and to the displacements: of direct solves, and of
+// multigrid, which leaves errors of StiffnessSolver::kAccurate.
+constexpr double kErrorOverNoise = 0.1;
+constexpr double kErrorOverResidual = 5e-4;
+constexpr double kSmallestError = 1e-8;
+constexpr double kSmallestErrorOfMultigrid = 1e-6;
+
+Bounds LargestRange(const EstimatorOptions& options) {
+  if (options.known_poisson_ratio) {
+    return {options.known_poisson_ratio, options.known_poisson_ratio};
+  }
+  return EffectivePoissonRatioBounds(options);
+}
+
+double MiddleOf(double nu, double other) {
+  return PoissonRatioOfLogStiffnessRatio(
+      (LogStiffnessRatio(nu) + LogStiffnessRatio(other)) / 2);
+}
+
+double DistanceOf(double nu, double other) {
+  return std::abs(LogStiffnessRatio(nu) - LogStiffnessRatio(other));
+}
+
+double NuAtDistance(double nu, double distance) {
+  return PoissonRatioOfLogStiffnessRatio(LogStiffnessRatio(nu) + distance);
+}
+
+// Of iterative solves: an inexact vector counts by its share of the response,
+// which is about the present error.
+double SolveTolerance(double error, double limit) {
+  constexpr double kUsualLimit = 1e-6;
+  constexpr double kShare = 0.1;
+  return std::clamp(kShare * std::min(limit, kUsualLimit) / error, 1e-9, 1e-2);
+}
+
+}  // namespace
+
+AdaptiveFit::AdaptiveFit(const Scene& scene, const EstimatorOptions& options)
+    : options_(options),
+      given_noise_sd_(scene.load_cases.front().noise_sd),
+      model_(scene, options.solver),
+      largest_range_(LargestRange(options)),
+      searched_(largest_range_) {
+  if (!options.known_poisson_ratio) {
+    if (!options.poisson_ratio.lower && *searched_.upper > kUsualSmallest) {
+      searched_.lower = kUsualSmallest;
+    }
+    if (!options.poisson_ratio.upper && model_.UsesMultigrid() &&
+        *searched_.lower < kUsualLargestOfMultigrid) {
+      searched_.upper = kUsualLargestOfMultigrid;
+    }
+  }
+  const double lower = *searched_.lower;
+  const double upper = *searched_.upper;
+  const double main = std::clamp(kMainPole, lower, upper);
+  // The main pole is last: its factorisation is the one to have at hand.
+  if (DistanceOf(main, upper) > 2 * kReach) {
+    const double edge = NuAtDistance(main, kReach);
+    if (SetPole(MiddleOf(edge, upper))) {
+      EnlargeUntil(upper, kFirstTolerance);
+    }
+  }
+  if (DistanceOf(main, lower) > 2 * kReach) {
+    const double edge = NuAtDistance(main, -kReach);
+    if (SetPole(MiddleOf(edge, lower))) {
+      EnlargeUntil(lower, kFirstTolerance);
+    }
+  }
+  is_regular_ = SetPole(main);
+  if (is_regular_) {
+    for (const double distance : {-kReach, kReach}) {
+      EnlargeUntil(std::clamp(NuAtDistance(main, distance), lower, upper),
+                   kFirstTolerance);
+    }
+  }
+}
+
+bool AdaptiveFit::SetPole(double nu) {
+  if (options_.on_factorization) {
+    options_.on_factorization(num_poles_ + 1);
+  }
+  ++num_poles_;
+  num_vectors_of_pole_ = 0;
+  return model_.SetPole(nu);
+}
+
+bool AdaptiveFit::EnlargeUntil(double nu, double limit) {
+  constexpr int kStep = 2;
+  double error = model_.RelativeErrorBound(nu);
+  while (error > limit) {
+    for (int i = 0; i < kStep; ++i) {
+      ++num_vectors_of_pole_;
+      if (num_vectors_of_pole_ > kMostVectorsOfAPole ||
+          !model_.Enlarge(SolveTolerance(error, limit))) {
+        return false;
+      }
+    }
+    const double before = error;
+    error = model_.RelativeErrorBound(nu);
+    if (error > limit && !(error < before)) {
+      return false;  // Rounding is all that is left.
+    }
+    const double steps_to_come =
+        std::log(error / limit) / std::log(before / error);
+    if (steps_to_come * kStep >
+        2.0 * (kMostVectorsOfAPole - num_vectors_of_pole_)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool AdaptiveFit::Run(const ObservedDisplacements& observed) {
+  has_converged_ = false;
+  if (!is_regular_) {
+    return false;
+  }
+  if (compliance_norm_ == 0) {
+    compliance_norm_ = model_.ComplianceNormAtPole(observed.LargestWeights());
+    compliance_pole_ = model_.Pole();
+  }
+  for (;;) {
+    Fit(observed);
+    std::vector<ReducedFit::ModelError> errors;
+    for (const double nu : least_squares_->Scan()) {
+      errors.push_back(ErrorAt(nu));
+    }
+    const std::vector<ReducedFit::ResidualBracket> brackets =
+        least_squares_->BracketResiduals(observed.Measured(), errors);
+    if (SearchFurther(observed, brackets)) {
+      continue;
+    }
+    std::optional<Doubt> doubt = DoubtAtTheEstimate(observed);
+    if (!doubt) {
+      doubt = DoubtElsewhere(observed, brackets);
+    }
+    has_converged_ = !doubt;
+    if (has_converged_ || !Improve(*doubt)) {
+      return true;
+    }
+  }
+}
+
+void AdaptiveFit::Fit(const ObservedDisplacements& observed) {
+  if (!least_squares_ || fitted_version_ != model_.Version()) {
+    least_squares_ = std::make_unique<ReducedFit>(
+        model_, observed, Eigen::VectorXd::Ones(observed.Size()), searched_,
+        options_.youngs_modulus);
+    fitted_version_ = model_.Version();
+  }
+  least_squares_point_ = least_squares_->Fit(observed.Measured());
+  if (options_.loss != Loss::kNone) {
+    fit_ = FitRobustly(model_, observed, options_, searched_);
+    return;
+  }
+  fit_.point = least_squares_point_;
+  fit_.standard_deviation =
+      std::sqrt(fit_.point.square_sum / static_cast<double>(observed.Size()));
+}
+
+double AdaptiveFit::NoiseOf(const ObservedDisplacements& observed) const {
+  return given_noise_sd_
+             ? std::min(fit_.standard_deviation, 1 / observed.Norm())
+             : fit_.standard_deviation;
+}
+
+double AdaptiveFit::SmallestError() const {
+  return model_.UsesMultigrid() ? kSmallestErrorOfMultigrid : kSmallestError;
+}
+
+ReducedFit::ModelError AdaptiveFit::ErrorAt(double nu) const {
+  const double of_energy =
+      compliance_norm_ / std::sqrt(SmallestEnergyRatio(nu, compliance_pole_));
+  double square_sum = 0;
+  const Eigen::Index num_cases = model_.NumLoadCases();
+  for (Eigen::Index k = 0; k < num_cases; ++k) {
+    const double error = model_.ErrorBound(k, nu);
+    square_sum += error * error;
+  }
+  const double of_supports = model_.HasSupportResponse()
+                                 ? std::sqrt(static_cast<double>(num_cases)) *
+                                       model_.ErrorBound(num_cases, nu)
+                                 : 0;
+  return {of_energy * std::sqrt(square_sum), of_energy * of_supports};
+}
+
+std::optional<AdaptiveFit::Doubt> AdaptiveFit::DoubtAtTheEstimate(
+    const ObservedDisplacements& observed) const {
+  const double nu = fit_.point.poisson_ratio;
+  const ReducedFit::ModelError error = ErrorAt(nu);
+  const double size = std::abs(fit_.point.compliance_scale) * error.w + error.v;
+  const double allowed =
+      std::max(SmallestError(), kErrorOverNoise * NoiseOf(observed));
+  if (size <= allowed) {
+    return std::nullopt;
+  }
+  return Doubt{nu, allowed / size, nu};
+}
+
+std::optional<AdaptiveFit::Doubt> AdaptiveFit::DoubtElsewhere(
+    const ObservedDisplacements& observed,
+    const std::vector<ReducedFit::ResidualBracket>& brackets) const {
+  const double residual = std::sqrt(least_squares_point_.square_sum);
+  const double allowed =
+      std::max(SmallestError(), std::min(kErrorOverNoise * NoiseOf(observed),
+                                         kErrorOverResidual * residual));
+  const Eigen::VectorXd& scan = least_squares_->Scan();
+  const Eigen::Index size = scan.size();
+  const auto is_in_doubt = [&](Eigen::Index i) {
+    return brackets[i].least < residual - allowed;
+  };
+  // The nearest to the pole of those in doubt, and the range around it.
+  Eigen::Index nearest = -1;
+  for (Eigen::Index i = 0; i < size; ++i) {
+    if (is_in_doubt(i) &&
+        (nearest < 0 || DistanceOf(scan(i), model_.Pole()) <
+                            DistanceOf(scan(nearest), model_.Pole()))) {
+      nearest = i;
+    }
+  }
+  if (nearest < 0) {
+    return std::nullopt;
+  }
+  Eigen::Index first = nearest;
+  Eigen::Index last = nearest;
+  while (first > 0 && is_in_doubt(first - 1)) {
+    --first;
+  }
+  while (last + 1 < size && is_in_doubt(last + 1)) {
+    ++last;
+  }
+  const ReducedFit::ResidualBracket& bracket = brackets[nearest];
+  const double room = bracket.reduced - (residual - allowed);
+  return Doubt{scan(nearest), room / (bracket.reduced - bracket.least),
+               MiddleOf(scan(first), scan(last))};
+}
+
+bool AdaptiveFit::Improve(const Doubt& doubt) {
+  // Bounds are not met to the last digit, and others move with the fit.
+  constexpr double kSafety = 0.5;
+  const double limit =
+      kSafety * doubt.factor * model_.RelativeErrorBound(doubt.poisson_ratio);
+  const int version = model_.Version();
+  if (EnlargeUntil(doubt.poisson_ratio, limit)) {
+    return true;
+  }
+  if (num_poles_ < kMostPoles) {
+    return SetPole(doubt.middle);
+  }
+  return model_.Version() != version;
+}
+
+bool AdaptiveFit::SearchFurther(
+    const ObservedDisplacements& observed,
+    const std::vector<ReducedFit::ResidualBracket>& brackets) {
+  // Beyond this excess of the sum of squares over its least, in variances, no
+  // interval of nu ends.
+  constexpr double kFarExcess = 10;
+  const double variance =
+      least_squares_point_.square_sum / static_cast<double>(observed.Size());
+  const auto is_near_least = [&](const ReducedFit::ResidualBracket& end) {
+    return end.reduced * end.reduced - least_squares_point_.square_sum <=
+           kFarExcess * variance;
+  };
+  bool has_grown = false;
+  if (*searched_.lower > *largest_range_.lower &&
+      is_near_least(brackets.front())) {
+    searched_.lower = largest_range_.lower;
+    has_grown = true;
+  }
+  if (*searched_.upper < *largest_range_.upper &&
+      is_near_least(brackets.back())) {
+    searched_.upper = largest_range_.upper;
+    has_grown = true;
+  }
+  if (has_grown) {
+    least_squares_.reset();
+  }
+  return has_grown;
+}
+
+Profile AdaptiveFit::ProfileEnds(const ObservedDisplacements& observed,
+                                 double excess) const {
+  const auto elasticity_of = [](const ReducedFit::Point& point) {
+    return IsotropicElasticity::FromComplianceScale(point.compliance_scale,
+                                                    point.poisson_ratio);
+  };
+  const auto [lower, upper] = least_squares_->ProfileEnds(
+      observed.Measured(), least_squares_point_, excess);
+  Profile profile = {elasticity_of(lower), elasticity_of(upper)};
+  // Where it reaches the end of the search, it may go on beyond.
+  if (profile.lower.poisson_ratio <= *searched_.lower) {
+    profile.lower.poisson_ratio = *largest_range_.lower;
+  }
+  if (profile.upper.poisson_ratio >= *searched_.upper) {
+    profile.upper.poisson_ratio = *largest_range_.upper;
+  }
+  return profile;
+}
+
+}  // namespace elastimate

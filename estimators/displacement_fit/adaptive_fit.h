@@ -1,0 +1,118 @@
+#ifndef ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_ADAPTIVE_FIT_H_
+#define ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_ADAPTIVE_FIT_H_
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/estimators/displacement_fit/observed_displacements.h"
+#include "elastimate/estimators/displacement_fit/reduced_fit.h"
+#include "elastimate/estimators/displacement_fit/robust_reduced_fit.h"
+#include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/reduced_model/reduced_model.h"
+#include "elastimate/estimators/statistics/profile_likelihood.h"
+
+namespace elastimate {
+
+/// The fit of a ReducedModel that is refined until the fit is as good as that
+/// of the full model, over the whole range of nu that is searched:
+///
+/// 1. At the estimate, the displacements are off by less than a tenth of the
+///    standard deviation of the noise, all together.
+/// 2. At every nu, a lower bound of the norm of the residual of the full model
+///    (ReducedFit::BracketResiduals) lies above that of the fit, but for a
+///    tenth of a standard deviation, and one part in 2000.
+///
+/// The noise is the one given, or what the fit leaves, whichever is less.  A
+/// bad minimum with a large residual cannot loosen its own certificate: (2)
+/// says that the full model leaves as much at every nu.
+///
+/// Errors of the model come from ReducedModel::ErrorBound in the energy, and
+/// from the energy to the observed displacements by ComplianceNorm.  With a
+/// loss, (2) holds for the fit without it, on whose model the fit with the loss
+/// is made.
+///
+/// nu is searched within the bounds, and where there are none from
+/// kUsualSmallest to kLargestPoissonRatio, by multigrid, which does not
+/// converge next to 1/2, to kUsualLargestOfMultigrid.  Where the residual at an
+/// end that no bound has set is near the least, the search goes on beyond it,
+/// to kSmallestPoissonRatio or kLargestPoissonRatio.
+class AdaptiveFit {
+ public:
+  static constexpr double kUsualSmallest = -0.95;
+  static constexpr double kUsualLargestOfMultigrid = 0.495;
+
+  /// Factorises once, and once more where nu may be near 1/2 or near -1.
+  /// `scene` must outlive this object.  Preconditions and exceptions: those of
+  /// ReducedModel.
+  AdaptiveFit(const Scene& scene, const EstimatorOptions& options);
+
+  /// Fits, and refines the model.  False when the stiffness is singular at the
+  /// first pole.
+  bool Run(const ObservedDisplacements& observed);
+
+  /// The ends of the interval of nu in which the sum of squares of the last fit
+  /// without a loss exceeds its least by no more than `excess`.
+  Profile ProfileEnds(const ObservedDisplacements& observed,
+                      double excess) const;
+
+  const ModelFit& Best() const { return fit_; }
+  /// Whether the last fit is certified.
+  bool HasConverged() const { return has_converged_; }
+  /// What nu was searched for in.
+  const Bounds& PoissonRatioBounds() const { return searched_; }
+  const ReducedModel& Model() const { return model_; }
+
+ private:
+  // Where the model is not yet good enough.
+  struct Doubt {
+    /// Where to refine, and how much smaller the error has to be there.
+    double poisson_ratio;
+    double factor;
+    /// The middle of the range that is in doubt.
+    double middle;
+  };
+
+  bool SetPole(double nu);
+  /// Enlarges until the relative error bound at nu is below a limit; false when
+  /// that would take more vectors than a pole gets.
+  bool EnlargeUntil(double nu, double limit);
+  bool Improve(const Doubt& doubt);
+  /// Moves the ends of the search at which the residual is near the least to
+  /// those of the largest range; false where there are none.
+  bool SearchFurther(const ObservedDisplacements& observed,
+                     const std::vector<ReducedFit::ResidualBracket>& brackets);
+
+  void Fit(const ObservedDisplacements& observed);
+  double NoiseOf(const ObservedDisplacements& observed) const;
+  double SmallestError() const;
+  ReducedFit::ModelError ErrorAt(double nu) const;
+  std::optional<Doubt> DoubtAtTheEstimate(
+      const ObservedDisplacements& observed) const;
+  std::optional<Doubt> DoubtElsewhere(
+      const ObservedDisplacements& observed,
+      const std::vector<ReducedFit::ResidualBracket>& brackets) const;
+
+  EstimatorOptions options_;
+  std::optional<double> given_noise_sd_;
+  ReducedModel model_;
+  Bounds largest_range_;
+  Bounds searched_;
+  bool is_regular_ = true;
+  /// ComplianceNorm of the observed components at a pole; zero before.
+  double compliance_norm_ = 0;
+  double compliance_pole_ = 0;
+  /// Of the model at `fitted_version_`.
+  std::unique_ptr<ReducedFit> least_squares_;
+  int fitted_version_ = 0;
+  ReducedFit::Point least_squares_point_;
+  ModelFit fit_;
+  bool has_converged_ = false;
+  int num_poles_ = 0;
+  int num_vectors_of_pole_ = 0;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_ADAPTIVE_FIT_H_

@@ -1,0 +1,73 @@
+#ifndef ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_DISPLACEMENT_FIT_H_
+#define ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_DISPLACEMENT_FIT_H_
+
+#include <Eigen/Core>
+
+#include "elastimate/core/mesh/node_graph.h"
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/estimators/displacement_fit/node_losses.h"
+#include "elastimate/estimators/displacement_fit/observed_displacements.h"
+#include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/statistics/bounded_parameter.h"
+
+namespace elastimate {
+
+/// A finite element model at the parameters that fit the measured
+/// displacements best; residual and sensitivities in the rows of
+/// ObservedDisplacements.
+struct DisplacementFit {
+  /// u of all nodes, (3 num_nodes) x num_load_cases.
+  Eigen::MatrixXd displacement;
+  Eigen::VectorXd residual;  ///< u - q.
+  /// du / d (ln E, nu).
+  Eigen::Matrix<double, Eigen::Dynamic, 2> sensitivities;
+};
+
+/// Why no displacements can be computed to fit to those of this scene: its
+/// supports do not hold the specimen.  Empty when they can.  Precondition: a
+/// valid scene.
+std::string WhyNoDisplacementFit(const Scene& scene);
+
+/// How alike the residuals of neighbouring nodes are [Moran 1950].
+struct NeighbourCorrelation {
+  /// Mean product of the residuals of two nodes that share an element, over
+  /// the mean square: near 0 for independent noise, near 1 for a smooth field.
+  double correlation;
+  /// `correlation` over its standard deviation for independent noise.
+  double standard_score;
+};
+
+/// Empty when no two neighbours were observed, or all residuals are zero.
+/// `graph` is that of the mesh.  Cost: O(num_pairs) time for each load case.
+std::optional<NeighbourCorrelation> CorrelateNeighbours(
+    const NodeGraph& graph, const ObservedDisplacements& observed,
+    const Eigen::VectorXd& residual);
+
+/// Judges a least-squares (or, with `losses`, robust) fit of the displacements
+/// and fills in status, covariance, noise, residual statistics, discretisation
+/// error, identifiability and warnings of `estimate`, whose elasticity and
+/// active bounds are set.  `graph` is that of the mesh of the scene.
+///
+/// Without a loss the covariance is sigma^2 (S^T S)^-1, the Cramer-Rao bound,
+/// with sigma^2 as given, or from the residual; with one it is the sandwich of
+/// M-estimation.  A residual that is significantly alike at neighbouring nodes
+/// is not noise: its smooth part may hide an error of its own size along the
+/// sensitivities, and ||smooth part||^2 (S^T S)^-1 is added.  So is the square
+/// of what the outliers of a fit without a loss pull the parameters by.
+///
+/// A discretisation error e is taken as an error e ||q|| of the displacements
+/// in the worst direction for nu, which changes nu by e ||q|| sqrt([(S^T
+/// S)^-1]_nu,nu).
+///
+/// Returns the variance of a row of the residual that the standard error of nu
+/// amounts to, or would, were nu not at the end of its physical range; empty
+/// when there is none.
+std::optional<double> DescribeDisplacementFit(
+    const Scene& scene, const NodeGraph& graph, const EstimatorOptions& options,
+    const ObservedDisplacements& observed, const DisplacementFit& fit,
+    const NodeLosses& losses, const ActiveBounds& active, Estimate& estimate);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_DISPLACEMENT_FIT_H_

@@ -1,0 +1,350 @@
+#include "elastimate/estimators/displacement_fit/reduced_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "elastimate/core/algebra/dense_algebra.h"
+
+namespace elastimate {
+namespace {
+
+// Intervals of the scan over nu.
+constexpr int kScanIntervals = 220;
+
+// (1 + nu)(1 - 2 nu) = E t, and its derivative.
+double ComplianceFactor(double nu) { return (1 + nu) * (1 - 2 * nu); }
+double ComplianceFactorSlope(double nu) { return -(1 + 4 * nu); }
+
+bool IsBetter(const ReducedFit::Point& a, const ReducedFit::Point& b) {
+  const bool a_is_positive = a.compliance_scale > 0;
+  const bool b_is_positive = b.compliance_scale > 0;
+  return a_is_positive == b_is_positive ? a.square_sum < b.square_sum
+                                        : a_is_positive;
+}
+
+// From `lower` to `upper`, both exactly; even in ln((1 + nu) / (1 - 2 nu)).
+Eigen::VectorXd ScanPoints(double lower, double upper) {
+  if (lower == upper) {
+    return Eigen::VectorXd::Constant(1, lower);
+  }
+  Eigen::VectorXd points =
+      Eigen::VectorXd::LinSpaced(kScanIntervals + 1, LogStiffnessRatio(lower),
+                                 LogStiffnessRatio(upper))
+          .unaryExpr(&PoissonRatioOfLogStiffnessRatio);
+  points(0) = lower;
+  points(kScanIntervals) = upper;
+  return points;
+}
+
+// The last point inside between one inside and one outside.
+double RefineEnd(const std::function<bool(double)>& is_inside, double inside,
+                 double outside) {
+  constexpr int kHalvings = 40;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = (inside + outside) / 2;
+    (is_inside(middle) ? inside : outside) = middle;
+  }
+  return inside;
+}
+
+}  // namespace
+
+ReducedFit::ReducedFit(const ReducedModel& model,
+                       const ObservedDisplacements& observed,
+                       const Eigen::VectorXd& row_weights,
+                       const Bounds& poisson_ratio,
+                       const Bounds& youngs_modulus)
+    : youngs_modulus_(youngs_modulus),
+      row_weights_(row_weights),
+      scan_(ScanPoints(*poisson_ratio.lower, *poisson_ratio.upper)) {
+  const Eigen::Index num_cases = model.NumLoadCases();
+  for (Eigen::Index k = 0; k < num_cases; ++k) {
+    const Eigen::Index first = observed.CaseStart(k);
+    const Eigen::Index rows = observed.CaseStart(k + 1) - first;
+    const Eigen::Index load_columns = model.Basis(k).cols();
+    const Eigen::Index support_columns =
+        model.HasSupportResponse() ? model.Basis(num_cases).cols() : 0;
+    Eigen::MatrixXd bases(rows, load_columns + support_columns);
+    for (Eigen::Index i = 0; i < bases.cols(); ++i) {
+      bases.col(i) =
+          row_weights.segment(first, rows)
+              .cwiseProduct(observed.RestrictToCase(
+                  k, i < load_columns
+                         ? model.Basis(k).col(i)
+                         : model.Basis(num_cases).col(i - load_columns)));
+    }
+    QrDecomposition qr = DecomposeQr(bases);
+    LoadCaseFit fit;
+    fit.q = std::move(qr.q);
+    fit.load = model.Modes(k);
+    fit.load_modes = qr.r.leftCols(load_columns) * fit.load.vectors;
+    if (model.HasSupportResponse()) {
+      fit.support = model.Modes(num_cases);
+      fit.support_modes = qr.r.rightCols(support_columns) * fit.support.vectors;
+    }
+    load_cases_.push_back(fit);
+    num_projected_ += qr.r.rows();
+  }
+  scan_w_.resize(num_projected_, scan_.size());
+  scan_v_.resize(num_projected_, scan_.size());
+  for (Eigen::Index i = 0; i < scan_.size(); ++i) {
+    const Responses responses = Combine(&ReducedModes::At, scan_(i));
+    scan_w_.col(i) = responses.w;
+    scan_v_.col(i) = responses.v;
+  }
+}
+
+ReducedFit::Point ReducedFit::Fit(const Eigen::VectorXd& measured) const {
+  const Projection projection = Project(measured);
+  std::vector<Point> points;
+  for (Eigen::Index i = 0; i < scan_.size(); ++i) {
+    points.push_back(
+        PointOf(scan_(i), scan_w_.col(i), scan_v_.col(i), projection));
+  }
+  Point best = points[0];
+  const auto take_if_better = [&best](const Point& point) {
+    if (IsBetter(point, best)) {
+      best = point;
+    }
+  };
+  const std::size_t last = points.size() - 1;
+  for (std::size_t i = 0; i <= last; ++i) {
+    take_if_better(points[i]);
+    const bool is_minimum = !(i > 0 && IsBetter(points[i - 1], points[i])) &&
+                            !(i < last && IsBetter(points[i + 1], points[i]));
+    if (!is_minimum) {
+      continue;
+    }
+    const double slope = SlopeAt(points[i].poisson_ratio, projection);
+    if (slope > 0 ? i > 0 : i < last) {
+      const Point& other = points[slope > 0 ? i - 1 : i + 1];
+      take_if_better(At(FindMinimum(points[i].poisson_ratio, slope,
+                                    other.poisson_ratio, projection),
+                        projection));
+    }
+  }
+  return best;
+}
+
+std::vector<ReducedFit::ResidualBracket> ReducedFit::BracketResiduals(
+    const Eigen::VectorXd& measured,
+    const std::vector<ModelError>& errors) const {
+  const Projection projection = Project(measured);
+  std::vector<ResidualBracket> brackets;
+  for (Eigen::Index i = 0; i < scan_.size(); ++i) {
+    const auto w = scan_w_.col(i);
+    const Eigen::VectorXd rest = projection.measured - scan_v_.col(i);
+    const double w_norm = w.norm();
+    const double t_best = w.dot(rest) / w.squaredNorm();
+    const double rest_norm = std::sqrt(projection.rest_square_sum +
+                                       (rest - t_best * w).squaredNorm());
+    // The least of ||rest - t w|| - t error over t, which is convex.
+    const ModelError& error = errors[i];
+    const double sine = error.w / w_norm;
+    const double t_least =
+        sine < 1
+            ? t_best + rest_norm * sine / (w_norm * std::sqrt(1 - sine * sine))
+            : std::numeric_limits<double>::infinity();
+    const double t = WithinBounds(scan_(i), std::max(0.0, t_least));
+    const auto residual_at = [&](double scale) {
+      return std::hypot(rest_norm, (scale - t_best) * w_norm);
+    };
+    brackets.push_back(
+        {std::isfinite(t)
+             ? std::max(0.0, residual_at(t) - t * error.w - error.v)
+             : 0,
+         residual_at(WithinBounds(scan_(i), std::max(0.0, t_best)))});
+  }
+  return brackets;
+}
+
+std::pair<ReducedFit::Point, ReducedFit::Point> ReducedFit::ProfileEnds(
+    const Eigen::VectorXd& measured, const Point& best, double excess) const {
+  const Projection projection = Project(measured);
+  const double limit = best.square_sum + excess;
+  const auto is_inside = [&](double nu) {
+    const Point point = At(nu, projection);
+    return point.compliance_scale > 0 && point.square_sum <= limit;
+  };
+  // From the far end inwards, so that a second minimum nearly as good is
+  // inside.
+  const auto end_towards = [&](Eigen::Index far, Eigen::Index step) {
+    double outside = scan_(far);
+    for (Eigen::Index i = far;
+         i >= 0 && i < scan_.size() &&
+         (scan_(i) - best.poisson_ratio) * static_cast<double>(step) < 0;
+         i += step) {
+      if (is_inside(scan_(i))) {
+        return i == far ? scan_(far) : RefineEnd(is_inside, scan_(i), outside);
+      }
+      outside = scan_(i);
+    }
+    return RefineEnd(is_inside, best.poisson_ratio, outside);
+  };
+  return {At(end_towards(0, 1), projection),
+          At(end_towards(scan_.size() - 1, -1), projection)};
+}
+
+ReducedFit::Projection ReducedFit::Project(
+    const Eigen::VectorXd& measured) const {
+  Projection projection;
+  projection.measured.resize(scan_w_.rows());
+  projection.rest_square_sum = 0;
+  Eigen::Index first = 0;
+  Eigen::Index first_projected = 0;
+  for (const LoadCaseFit& load_case : load_cases_) {
+    const Eigen::Index rows = load_case.q.rows();
+    const Eigen::VectorXd weighted =
+        row_weights_.segment(first, rows)
+            .cwiseProduct(measured.segment(first, rows));
+    auto projected =
+        projection.measured.segment(first_projected, load_case.q.cols());
+    projected.noalias() = load_case.q.transpose() * weighted;
+    projection.rest_square_sum +=
+        std::max(0.0, weighted.squaredNorm() - projected.squaredNorm());
+    first += rows;
+    first_projected += projected.size();
+  }
+  return projection;
+}
+
+ReducedFit::Responses ReducedFit::Combine(
+    Eigen::VectorXd (ReducedModes::*values)(double) const,
+    double poisson_ratio) const {
+  Responses responses = {Eigen::VectorXd::Zero(num_projected_),
+                         Eigen::VectorXd::Zero(num_projected_)};
+  Eigen::Index first = 0;
+  for (const LoadCaseFit& load_case : load_cases_) {
+    const Eigen::Index rank = load_case.q.cols();
+    responses.w.segment(first, rank).noalias() =
+        load_case.load_modes * (load_case.load.*values)(poisson_ratio);
+    if (load_case.support_modes.cols() > 0) {
+      responses.v.segment(first, rank).noalias() =
+          load_case.support_modes * (load_case.support.*values)(poisson_ratio);
+    }
+    first += rank;
+  }
+  return responses;
+}
+
+double ReducedFit::WithinBounds(double poisson_ratio, double t) const {
+  // E > 0 asks for t > 0, which no bound on E says.
+  if (youngs_modulus_.upper) {
+    t = std::max(t, ComplianceFactor(poisson_ratio) / *youngs_modulus_.upper);
+  }
+  if (youngs_modulus_.lower) {
+    t = std::min(t, ComplianceFactor(poisson_ratio) / *youngs_modulus_.lower);
+  }
+  return t;
+}
+
+double ReducedFit::ComplianceScale(
+    double poisson_ratio, const Eigen::Ref<const Eigen::VectorXd>& w,
+    const Eigen::Ref<const Eigen::VectorXd>& rest) const {
+  return WithinBounds(poisson_ratio, w.dot(rest) / w.squaredNorm());
+}
+
+ReducedFit::Point ReducedFit::PointOf(
+    double poisson_ratio, const Eigen::Ref<const Eigen::VectorXd>& w,
+    const Eigen::Ref<const Eigen::VectorXd>& v,
+    const Projection& projection) const {
+  const Eigen::VectorXd rest = projection.measured - v;
+  const double t = ComplianceScale(poisson_ratio, w, rest);
+  return {poisson_ratio, t,
+          projection.rest_square_sum + (rest - t * w).squaredNorm()};
+}
+
+ReducedFit::Point ReducedFit::At(double poisson_ratio,
+                                 const Projection& projection) const {
+  const Responses responses = Combine(&ReducedModes::At, poisson_ratio);
+  return PointOf(poisson_ratio, responses.w, responses.v, projection);
+}
+
+double ReducedFit::SlopeAt(double poisson_ratio,
+                           const Projection& projection) const {
+  const Responses responses = Combine(&ReducedModes::At, poisson_ratio);
+  const Responses slopes = Combine(&ReducedModes::DerivativeAt, poisson_ratio);
+  const Eigen::VectorXd rest = projection.measured - responses.v;
+  const double t = ComplianceScale(poisson_ratio, responses.w, rest);
+  const Eigen::VectorXd residual = rest - t * responses.w;
+  // Where t is free, the residual is orthogonal to w and dt/dnu has no effect;
+  // on a bound t = (1 + nu)(1 - 2 nu) / E.
+  const double dt_dnu = t * ComplianceFactorSlope(poisson_ratio) /
+                        ComplianceFactor(poisson_ratio);
+  return -2 * residual.dot(t * slopes.w + dt_dnu * responses.w + slopes.v);
+}
+
+double ReducedFit::FindMinimum(double inner, double inner_slope, double outer,
+                               const Projection& projection) const {
+  constexpr int kMostSteps = 60;
+  constexpr double kTolerance = 1e-13;
+  double outer_slope = SlopeAt(outer, projection);
+  double point = inner;
+  // The false position with Illinois' rule; by halves as long as the slopes
+  // enclose no zero.
+  bool was_inner = false;
+  bool was_outer = false;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const bool encloses = inner_slope * outer_slope <= 0;
+    const double previous = point;
+    point = inner +
+            (outer - inner) *
+                (encloses ? inner_slope / (inner_slope - outer_slope) : 0.5);
+    if (std::abs(point - previous) <= kTolerance) {
+      break;
+    }
+    const double slope = SlopeAt(point, projection);
+    const bool is_inner = slope * inner_slope > 0;
+    (is_inner ? inner : outer) = point;
+    (is_inner ? inner_slope : outer_slope) = slope;
+    if (is_inner && was_inner) {
+      outer_slope /= 2;
+    } else if (!is_inner && was_outer) {
+      inner_slope /= 2;
+    }
+    was_inner = is_inner;
+    was_outer = !is_inner;
+  }
+  return point;
+}
+
+DisplacementFit ExpandFit(const ReducedModel& model,
+                          const ObservedDisplacements& observed,
+                          const IsotropicElasticity& elasticity) {
+  const Eigen::Index num_cases = model.NumLoadCases();
+  const double nu = elasticity.poisson_ratio;
+  const double t = elasticity.ComplianceScale();
+  const double dt_dnu = ComplianceFactorSlope(nu) / elasticity.youngs_modulus;
+  // Value and derivative.
+  const auto response = [&model, nu](Eigen::Index k) {
+    const ReducedModes& modes = model.Modes(k);
+    Eigen::MatrixXd coefficients(modes.theta.size(), 2);
+    coefficients << modes.At(nu), modes.DerivativeAt(nu);
+    return Eigen::MatrixXd(model.Basis(k) * (modes.vectors * coefficients));
+  };
+  const Eigen::Index num_rows = model.Basis(0).rows();
+  const Eigen::MatrixXd support = model.HasSupportResponse()
+                                      ? response(num_cases)
+                                      : Eigen::MatrixXd::Zero(num_rows, 2);
+  Eigen::MatrixXd displacement(num_rows, num_cases);
+  Eigen::MatrixXd by_log_youngs_modulus(num_rows, num_cases);
+  Eigen::MatrixXd by_poisson_ratio(num_rows, num_cases);
+  for (Eigen::Index k = 0; k < num_cases; ++k) {
+    const Eigen::MatrixXd load = response(k);
+    displacement.col(k) = t * load.col(0) + support.col(0);
+    by_log_youngs_modulus.col(k) = -t * load.col(0);
+    by_poisson_ratio.col(k) =
+        dt_dnu * load.col(0) + t * load.col(1) + support.col(1);
+  }
+  DisplacementFit fit;
+  fit.residual = observed.Restrict(displacement) - observed.Measured();
+  fit.sensitivities.resize(observed.Size(), 2);
+  fit.sensitivities << observed.Restrict(by_log_youngs_modulus),
+      observed.Restrict(by_poisson_ratio);
+  fit.displacement = std::move(displacement);
+  return fit;
+}
+
+}  // namespace elastimate

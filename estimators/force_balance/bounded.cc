@@ -1,0 +1,205 @@
+#include "elastimate/estimators/force_balance/bounded.h"
+
+#include <ceres/autodiff_cost_function.h>
+#include <ceres/solver.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "elastimate/estimators/force_balance/force_residual.h"
+#include "elastimate/estimators/force_balance/virtual_work_check.h"
+#include "elastimate/estimators/statistics/bounded_parameter.h"
+
+namespace elastimate {
+namespace {
+
+// R (-t, nu, 1)^T, relative to the norm of the load term at the start.
+struct CompressedForceResidual {
+  Eigen::Matrix3d triangle;
+  double reference_youngs_modulus;
+
+  template <typename T>
+  bool operator()(const T* log_youngs_modulus, const T* poisson_ratio,
+                  T* residual) const {
+    const T nu = *poisson_ratio;
+    const T t = (1.0 + nu) * (1.0 - 2.0 * nu) /
+                (reference_youngs_modulus * exp(*log_youngs_modulus));
+    for (int row = 0; row < 3; ++row) {
+      residual[row] =
+          -triangle(row, 0) * t + triangle(row, 1) * nu + triangle(row, 2);
+    }
+    return true;
+  }
+};
+
+// A point within the bounds where E > 0: the unbounded minimiser moved into
+// the bounds if it will do, else the end where E is positive, if there is one.
+std::optional<IsotropicElasticity> Start(const ForceResidual& residual,
+                                         const EstimatorOptions& options) {
+  std::vector<double> candidates;
+  if (options.known_poisson_ratio) {
+    candidates = {*options.known_poisson_ratio};
+  } else {
+    const Bounds bounds = EffectivePoissonRatioBounds(options);
+    const double nu =
+        residual.PoissonRatio().value_or((*bounds.lower + *bounds.upper) / 2);
+    candidates = {std::clamp(nu, *bounds.lower, *bounds.upper), *bounds.lower,
+                  *bounds.upper};
+  }
+  for (const double nu : candidates) {
+    const IsotropicElasticity elasticity = residual.At(nu);
+    if (elasticity.IsPhysical() && std::isfinite(elasticity.youngs_modulus)) {
+      return elasticity;
+    }
+  }
+  return std::nullopt;
+}
+
+// The range of ln(E / E0) where no bound is given: what leaves it runs to zero
+// or infinity.
+constexpr double kLargestLogarithm = 50;
+
+// ln(E / E0) and nu.
+struct Parameters {
+  BoundedParameter log_youngs_modulus;
+  BoundedParameter poisson_ratio;
+};
+
+Parameters MakeParameters(const EstimatorOptions& options,
+                          const IsotropicElasticity& start) {
+  Bounds log_bounds = {-kLargestLogarithm, kLargestLogarithm};
+  if (options.youngs_modulus.lower) {
+    log_bounds.lower =
+        std::log(*options.youngs_modulus.lower / start.youngs_modulus);
+  }
+  if (options.youngs_modulus.upper) {
+    log_bounds.upper =
+        std::log(*options.youngs_modulus.upper / start.youngs_modulus);
+  }
+  return {BoundedParameter(0, log_bounds),
+          options.known_poisson_ratio
+              ? BoundedParameter::Constant(*options.known_poisson_ratio)
+              : BoundedParameter(start.poisson_ratio,
+                                 EffectivePoissonRatioBounds(options))};
+}
+
+ceres::Solver::Summary Minimize(const ForceResidual& residual,
+                                const IsotropicElasticity& start,
+                                Parameters& parameters) {
+  const Eigen::Matrix3d& triangle = residual.Triangle();
+  const double scale = std::abs(start.ComplianceScale() * triangle(0, 0));
+  ceres::Problem problem;
+  problem.AddResidualBlock(
+      new ceres::AutoDiffCostFunction<CompressedForceResidual, 3, 1, 1>(
+          new CompressedForceResidual{triangle / scale, start.youngs_modulus}),
+      nullptr, parameters.log_youngs_modulus.Block(),
+      parameters.poisson_ratio.Block());
+
+  // Three residuals cost nothing: iterate to rounding.
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = 500;
+  options.function_tolerance = 0;
+  options.gradient_tolerance = 1e-16;
+  options.parameter_tolerance = 1e-15;
+  options.logging_type = ceres::SILENT;
+  return MinimizeWithinBounds(
+      options, {&parameters.log_youngs_modulus, &parameters.poisson_ratio},
+      problem);
+}
+
+}  // namespace
+
+std::string_view Bounded::Name() const { return "bounded"; }
+
+std::string_view Bounded::Description() const {
+  return "closed-form with bounds on nu and E, by Ceres [Becker & Teschner "
+         "2007, eq. 24]";
+}
+
+std::string Bounded::WhyUnsupported(const Scene& scene,
+                                    const EstimatorOptions& options) const {
+  if (options.loss != Loss::kNone) {
+    return "a loss function needs displacement residuals; use reduced-fe";
+  }
+  if (options.virtual_field_degree) {
+    return "it has no virtual fields to take a degree; use virtual-fields";
+  }
+  return ForceResidual::WhyUnsupported(scene);
+}
+
+Estimate Bounded::DoRun(const Scene& scene,
+                        const EstimatorOptions& options) const {
+  const ForceResidual residual(scene);
+  Estimate estimate;
+  estimate.work = residual.WorkDone();
+  const std::optional<IsotropicElasticity> start = Start(residual, options);
+  if (!start) {
+    estimate.Fail(
+        Status::kUnphysical,
+        "no Poisson's ratio within the bounds gives a positive Young's "
+        "modulus: the measured displacements oppose the loads; check their "
+        "signs, order and units");
+    return estimate;
+  }
+  Parameters parameters = MakeParameters(options, *start);
+  const ceres::Solver::Summary summary = Minimize(residual, *start, parameters);
+  if (!summary.IsSolutionUsable()) {
+    estimate.Fail(Status::kNumericalFailure, summary.message);
+    return estimate;
+  }
+  if (std::abs(parameters.log_youngs_modulus.Value()) == kLargestLogarithm) {
+    estimate.Fail(
+        Status::kUnphysical,
+        "the data pull Young's modulus to zero or infinity: they are mostly "
+        "noise, or the mesh, the supports or the loads do not describe the "
+        "experiment");
+    return estimate;
+  }
+  estimate.elasticity = {
+      start->youngs_modulus * std::exp(parameters.log_youngs_modulus.Value()),
+      parameters.poisson_ratio.Value()};
+  const ActiveBounds active =
+      NoteActiveBounds(options, parameters.log_youngs_modulus.OnBound(),
+                       parameters.poisson_ratio, estimate);
+  const bool free_youngs_modulus =
+      active.youngs_modulus == BoundedParameter::Side::kNone;
+  const bool free_poisson_ratio =
+      !options.known_poisson_ratio &&
+      active.poisson_ratio == BoundedParameter::Side::kNone;
+  if (!options.known_poisson_ratio && free_youngs_modulus &&
+      !residual.PoissonRatio()) {
+    estimate.elasticity = {Estimate::kUnknown, Estimate::kUnknown};
+    estimate.Fail(Status::kNotIdentifiable, residual.WhyNotIdentifiable());
+    return estimate;
+  }
+  estimate.status = Status::kOk;
+  estimate.message = "";
+  residual.Describe(free_youngs_modulus, free_poisson_ratio, estimate);
+  if (!estimate.active_bounds.empty()) {
+    estimate.why_no_standard_error = "a parameter on a bound has none";
+  }
+  if (active.is_physical_limit) {
+    // E runs to zero or infinity with 1 - 2 nu: its value says nothing.
+    estimate.elasticity.youngs_modulus = Estimate::kUnknown;
+    estimate.Fail(
+        Status::kUnphysical,
+        "the data pull Poisson's ratio to the end of its range, as "
+        "displacement noise does with this method; give bounds that the "
+        "material is known to keep, or use reduced-fe");
+  } else if (!free_youngs_modulus) {
+    residual.JudgeYoungsModulusOnBound(options, estimate);
+  } else if (options.known_poisson_ratio) {
+    JudgeKnownPoissonRatio(residual, estimate);
+  } else {
+    JudgeNoiseBias(residual, EffectivePoissonRatioBounds(options), estimate);
+  }
+  CheckByVirtualWork(scene, options, estimate);
+  if (estimate.IsUsable() && !free_youngs_modulus &&
+      !options.known_poisson_ratio) {
+    JudgeNoiseBias(residual, EffectivePoissonRatioBounds(options), estimate);
+  }
+  return estimate;
+}
+
+}  // namespace elastimate

@@ -1,0 +1,36 @@
+#ifndef ELASTIMATE_ESTIMATORS_FORCE_BALANCE_BOUNDED_H_
+#define ELASTIMATE_ESTIMATORS_FORCE_BALANCE_BOUNDED_H_
+
+#include "elastimate/estimators/interface/estimator.h"
+
+namespace elastimate {
+
+/// The bounded least squares of Becker & Teschner 2007, eq. 24:
+///
+///   min ||a + nu b - t f||,  t = (1 + nu)(1 - 2 nu) / E,
+///   nu_min <= nu <= nu_max,  E_min <= E <= E_max,
+///
+/// by Ceres on the three residuals that closed-form compresses the scene to.
+/// Without bounds, nu is kept within its physical range.
+///
+/// Needs what closed-form needs.  A parameter on a bound has no standard error,
+/// and that of the other one holds for this bound.  Noise still pulls nu up to
+/// its bound: E is right when the bound is, and the estimate says when the
+/// difference matters.
+///
+/// Cost: that of closed-form.  Single-threaded, deterministic.
+class Bounded : public Estimator {
+ public:
+  std::string_view Name() const override;
+  std::string_view Description() const override;
+  std::string WhyUnsupported(const Scene& scene,
+                             const EstimatorOptions& options) const override;
+
+ protected:
+  Estimate DoRun(const Scene& scene,
+                 const EstimatorOptions& options) const override;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_FORCE_BALANCE_BOUNDED_H_

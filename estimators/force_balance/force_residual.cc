@@ -1,0 +1,508 @@
+#include "elastimate/estimators/force_balance/force_residual.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/algebra/large_pages.h"
+#include "elastimate/core/mechanics/stiffness_product.h"
+#include "elastimate/core/mechanics/stiffness_traces.h"
+#include "elastimate/core/scene/degrees_of_freedom.h"
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/estimators/interface/statistics.h"
+#include "elastimate/estimators/statistics/bounded_parameter.h"
+
+namespace elastimate {
+namespace {
+
+// The sine of the angle between b and f below which rounding, not the data,
+// decides on nu.
+constexpr double kCollinear = 1e-11;
+
+// Up to here the exact traces take milliseconds; beyond, estimated ones are
+// good to better than 1 %, and standard errors to half of that.
+constexpr Eigen::Index kMostElementsForExactTraces = 10000;
+constexpr Eigen::Index kNumTraceProbes = 2;
+
+// Factor between the force residual and what the given noise explains from
+// which on the model is in doubt.
+constexpr double kUnexplainedResidual = 1.5;
+
+// The triangle of a QR factorisation of the free rows of all columns of f, b
+// and a, side by side, in blocks of rows that stay in the cache.
+Eigen::Matrix3d BlockwiseTriangle(const ComponentMask& held,
+                                  const Eigen::Ref<const Eigen::MatrixXd>& f,
+                                  const Eigen::Ref<const Eigen::MatrixXd>& b,
+                                  const Eigen::Ref<const Eigen::MatrixXd>& a) {
+  constexpr Eigen::Index kBlockRows = 512;
+  // The triangle of the rows before, and below it further rows.
+  Eigen::MatrixXd block = Eigen::MatrixXd::Zero(3 + kBlockRows, 3);
+  Eigen::Index num_rows = 3;
+  const auto factorize = [&] {
+    block.topRows<3>() = TriangularFactor(block.topRows(num_rows));
+    num_rows = 3;
+  };
+  for (Eigen::Index k = 0; k < f.cols(); ++k) {
+    for (Eigen::Index dof = 0; dof < held.size(); ++dof) {
+      if (held.data()[dof]) {
+        continue;
+      }
+      block.row(num_rows++) << f(dof, k), b(dof, k), a(dof, k);
+      if (num_rows == block.rows()) {
+        factorize();
+      }
+    }
+  }
+  factorize();
+  return block.topRows<3>();
+}
+
+// The products with each other of the free rows of H b, J b, H f and J f,
+// summed over the load cases.
+Eigen::Matrix4d ProductGram(const ComponentMask& held,
+                            const StiffnessProducts& of_b,
+                            const Eigen::Ref<const Eigen::MatrixXd>& hf,
+                            const Eigen::Ref<const Eigen::MatrixXd>& jf) {
+  Eigen::Matrix4d gram = Eigen::Matrix4d::Zero();
+  for (Eigen::Index k = 0; k < hf.cols(); ++k) {
+    for (Eigen::Index dof = 0; dof < held.size(); ++dof) {
+      if (!held.data()[dof]) {
+        const Eigen::Vector4d row(of_b.h(dof, k), of_b.j(dof, k), hf(dof, k),
+                                  jf(dof, k));
+        gram += row * row.transpose();
+      }
+    }
+  }
+  return gram;
+}
+
+void SetHeldRowsToZero(const ComponentMask& held,
+                       Eigen::Ref<Eigen::MatrixXd> columns) {
+  for (auto column : columns.colwise()) {
+    for (Eigen::Index dof = 0; dof < held.size(); ++dof) {
+      if (held.data()[dof]) {
+        column(dof) = 0;
+      }
+    }
+  }
+}
+
+std::string Percent(double ratio) { return TwoDigits(100 * ratio) + " %"; }
+
+}  // namespace
+
+WeightedLoadCases WeightLoadCases(const Scene& scene) {
+  const Eigen::Index num_rows = 3 * scene.mesh.NumNodes();
+  const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
+  WeightedLoadCases weighted = {Eigen::MatrixXd(num_rows, num_cases),
+                                Eigen::MatrixXd(num_rows, num_cases)};
+  WeightLoadCases(scene, weighted.q, weighted.f);
+  return weighted;
+}
+
+void WeightLoadCases(const Scene& scene, Eigen::Ref<Eigen::MatrixXd> q,
+                     Eigen::Ref<Eigen::MatrixXd> f) {
+  const Supports& supports = scene.supports;
+  AssembleLoadCases(scene, f);
+  for (Eigen::Index k = 0; k < q.cols(); ++k) {
+    const LoadCase& load_case = scene.load_cases[k];
+    const double weight = 1 / load_case.noise_sd.value_or(1);
+    q.col(k).reshaped(3, scene.mesh.NumNodes()) =
+        weight *
+        supports.held.select(supports.displacement, load_case.displacement);
+    f.col(k) *= weight;
+  }
+}
+
+std::string ForceResidual::WhyUnsupported(const Scene& scene) {
+  const Eigen::Index num_vertices = scene.mesh.NumVertices();
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
+      for (int i = 0; i < 3; ++i) {
+        if (!scene.supports.held(i, node) &&
+            !IsObserved(scene.load_cases[k], i, node)) {
+          if (node >= num_vertices) {
+            return "the force residual needs the displacement of every node, "
+                   "and those of the mid-edge nodes of quadratic elements "
+                   "(order 2) were not measured; use reduced-fe, which can "
+                   "do without, or linear elements (order 1)";
+          }
+          return "the force residual needs the displacement of every node, "
+                 "and node " +
+                 std::to_string(node) + " (" + "xyz"[i] + ") of load case " +
+                 std::to_string(k + 1) +
+                 " was not observed; reduced-fe can do without";
+        }
+      }
+    }
+  }
+  return "";
+}
+
+ForceResidual::ForceResidual(const Scene& scene) {
+  const ComponentMask& held = scene.supports.held;
+  const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
+  const bool is_small = scene.mesh.NumElements() <= kMostElementsForExactTraces;
+  const Eigen::Index num_probes = is_small ? 0 : kNumTraceProbes;
+  known_noise_sd_ = scene.load_cases.front().noise_sd;
+  num_equations_ = (held.size() - held.count()) * num_cases;
+
+  // q, f and, where the traces are estimated, their probes, in one matrix:
+  // memory is dear where a pass is as short as writing it.
+  Eigen::MatrixXd columns;
+  ResizeInLargePages(held.size(), 2 * num_cases + num_probes, columns);
+  auto f = columns.middleCols(num_cases, num_cases);
+  WeightLoadCases(scene, columns.leftCols(num_cases), f);
+  SetHeldRowsToZero(held, f);
+  SetTraceProbes(held, columns.rightCols(num_probes));
+  const StiffnessProducts products =
+      MultiplyStiffnessBasis(scene.mesh, columns);
+  ++work_.element_passes;
+  triangle_ = BlockwiseTriangle(held, f, products.j.leftCols(num_cases),
+                                products.h.leftCols(num_cases));
+  if (is_small) {
+    traces_ = StiffnessTraces(scene.mesh, DegreesOfFreedom(scene.supports));
+    ++work_.element_passes;
+  } else {
+    traces_ = EstimateStiffnessTraces(held, products.h.rightCols(num_probes),
+                                      products.j.rightCols(num_probes));
+  }
+
+  Eigen::MatrixXd b;
+  ResizeInLargePages(held.size(), num_cases, b);
+  b = products.j.leftCols(num_cases);
+  SetHeldRowsToZero(held, b);
+  const StiffnessProducts of_b = MultiplyStiffnessBasis(scene.mesh, b);
+  ++work_.element_passes;
+  product_gram_ =
+      ProductGram(held, of_b, products.h.middleCols(num_cases, num_cases),
+                  products.j.middleCols(num_cases, num_cases));
+  traces_ *= static_cast<double>(num_cases);
+}
+
+std::optional<double> ForceResidual::PoissonRatio() const {
+  const double b_norm = triangle_.col(1).norm();
+  if (std::abs(triangle_(1, 1)) <= kCollinear * b_norm) {
+    return std::nullopt;
+  }
+  return -triangle_(1, 2) / triangle_(1, 1);
+}
+
+std::string ForceResidual::WhyNotIdentifiable() const {
+  // Along dt / dnu = b.f / f.f the residual does not change.
+  constexpr double kAnyPoissonRatio = 0.25;
+  const double nu = kAnyPoissonRatio;
+  const double dt_dnu = triangle_(0, 1) / triangle_(0, 0);
+  return DescribeCollinear(
+      At(nu),
+      {1 / (1 + nu) - 2 / (1 - 2 * nu) - dt_dnu / ComplianceScale(nu), 1});
+}
+
+double ForceResidual::ComplianceScale(double poisson_ratio) const {
+  return (triangle_(0, 2) + poisson_ratio * triangle_(0, 1)) / triangle_(0, 0);
+}
+
+IsotropicElasticity ForceResidual::At(double poisson_ratio) const {
+  return IsotropicElasticity::FromComplianceScale(
+      ComplianceScale(poisson_ratio), poisson_ratio);
+}
+
+double ForceResidual::RelativeResidual(
+    const IsotropicElasticity& elasticity) const {
+  const double t = elasticity.ComplianceScale();
+  return (triangle_ * Eigen::Vector3d(-t, elasticity.poisson_ratio, 1)).norm() /
+         std::abs(t * triangle_(0, 0));
+}
+
+Eigen::Matrix2d ForceResidual::StiffenedGram(double poisson_ratio) const {
+  Eigen::Matrix<double, 4, 2> combine;
+  combine << 1, 0, poisson_ratio, 0, 0, 1, 0, poisson_ratio;
+  return combine.transpose() * product_gram_ * combine;
+}
+
+Eigen::Matrix2d ForceResidual::ProjectedTraces() const {
+  const double f_squared = triangle_(0, 0) * triangle_(0, 0);
+  return traces_ - product_gram_.bottomRightCorner<2, 2>() / f_squared;
+}
+
+double ForceResidual::ErrorsInVariablesPoissonRatio() const {
+  // Minimises (||a~ + nu b~||^2) / (noise of a + nu b), where ~ is the part
+  // orthogonal to f, in the basis where the noise is isotropic.
+  const Eigen::LLT<Eigen::Matrix2d> noise(ProjectedTraces());
+  Eigen::Matrix2d b_then_a;
+  b_then_a << triangle_(1, 1), triangle_(1, 2), 0, triangle_(2, 2);
+  const Eigen::Matrix2d a_then_b = b_then_a.rowwise().reverse();
+  const Eigen::Matrix2d normalized =
+      noise.matrixL().solve(a_then_b.transpose()).transpose();
+  const Eigen::Vector2d direction =
+      noise.matrixU().solve(DecomposeSingularValues(normalized).v.col(1));
+  return direction(1) / direction(0);
+}
+
+std::optional<double> ForceResidual::ResidualVariance(
+    double poisson_ratio, bool free_poisson_ratio) const {
+  const Eigen::Vector2d weights(1, poisson_ratio);
+  const double all_noise = weights.dot(traces_ * weights);
+  const Eigen::Matrix2d stiffened = StiffenedGram(poisson_ratio);
+  double fitted_noise = 0;
+  if (free_poisson_ratio) {
+    const Eigen::Matrix2d r = (Eigen::Matrix2d() << triangle_(0, 1),
+                               triangle_(0, 0), triangle_(1, 1), 0)
+                                  .finished();
+    fitted_noise = ((r.transpose() * r).inverse() * stiffened).trace();
+  } else {
+    fitted_noise = stiffened(1, 1) / (triangle_(0, 0) * triangle_(0, 0));
+  }
+  const Eigen::Index num_unknowns = free_poisson_ratio ? 2 : 1;
+  if (num_equations_ <= num_unknowns || !(fitted_noise < all_noise)) {
+    return std::nullopt;
+  }
+  const double orthogonal = triangle_(1, 2) + poisson_ratio * triangle_(1, 1);
+  return (orthogonal * orthogonal + triangle_(2, 2) * triangle_(2, 2)) /
+         (all_noise - fitted_noise);
+}
+
+std::optional<double> ForceResidual::NoiseVariance(
+    const Estimate& estimate, bool free_youngs_modulus,
+    bool free_poisson_ratio) const {
+  if (!free_youngs_modulus) {
+    const Eigen::Vector2d weights(1, estimate.elasticity.poisson_ratio);
+    const double norm = RelativeResidual(estimate.elasticity) *
+                        estimate.elasticity.ComplianceScale() * triangle_(0, 0);
+    return norm * norm / weights.dot(traces_ * weights);
+  }
+  return ResidualVariance(free_poisson_ratio
+                              ? ErrorsInVariablesPoissonRatio()
+                              : estimate.elasticity.poisson_ratio,
+                          free_poisson_ratio);
+}
+
+std::optional<double> ForceResidual::UnbiasedPoissonRatio() const {
+  if (!known_noise_sd_) {
+    const double nu = ErrorsInVariablesPoissonRatio();
+    return std::isfinite(nu) ? std::optional<double>(nu) : std::nullopt;
+  }
+  const Eigen::Matrix2d noise = ProjectedTraces();
+  const double r11 = triangle_(1, 1);
+  const double b_squared = r11 * r11 - noise(1, 1);
+  if (!(b_squared > 0)) {
+    return std::nullopt;
+  }
+  return -(r11 * triangle_(1, 2) - noise(0, 1)) / b_squared;
+}
+
+std::optional<double> ForceResidual::UnbiasedPoissonRatioError() const {
+  constexpr double kLargestAttenuation = 0.5;
+  const std::optional<double> nu = UnbiasedPoissonRatio();
+  const std::optional<double> variance =
+      nu ? ResidualVariance(*nu, true) : std::nullopt;
+  if (!variance) {
+    return std::nullopt;
+  }
+  const double attenuation =
+      *variance * ProjectedTraces()(1, 1) / (triangle_(1, 1) * triangle_(1, 1));
+  if (!(attenuation < kLargestAttenuation)) {
+    return std::nullopt;
+  }
+  return std::sqrt(Covariance(At(*nu), *variance, true, true)(1, 1)) /
+         (1 - attenuation);
+}
+
+Eigen::Matrix2d ForceResidual::Jacobian(
+    const IsotropicElasticity& elasticity) const {
+  // r depends on (nu, t) through the columns [b, -f].
+  Eigen::Matrix2d columns;
+  columns << triangle_(0, 1), -triangle_(0, 0), triangle_(1, 1), 0;
+  return columns * ComplianceScaleJacobian(elasticity);
+}
+
+Eigen::Matrix2d ForceResidual::Covariance(const IsotropicElasticity& elasticity,
+                                          double noise_variance,
+                                          bool free_youngs_modulus,
+                                          bool free_poisson_ratio) const {
+  // The noise of r is sigma^2 A A^T, so that least squares has a sandwich
+  // covariance.
+  Eigen::Matrix2d gram = StiffenedGram(elasticity.poisson_ratio);
+  gram(0, 1) *= -1;
+  gram(1, 0) *= -1;
+  std::vector<Eigen::Index> free;
+  if (free_youngs_modulus) {
+    free.push_back(0);
+  }
+  if (free_poisson_ratio) {
+    free.push_back(1);
+  }
+  const Eigen::MatrixXd directions =
+      ComplianceScaleJacobian(elasticity)(Eigen::all, free);
+  const Eigen::MatrixXd x = Jacobian(elasticity)(Eigen::all, free);
+  const Eigen::MatrixXd inverse =
+      (x.transpose() * x).inverse() * directions.transpose();
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(Estimate::kUnknown);
+  covariance(free, free) =
+      noise_variance * inverse * gram * inverse.transpose();
+  return covariance;
+}
+
+std::optional<double> ForceResidual::DescribeNoise(bool free_youngs_modulus,
+                                                   bool free_poisson_ratio,
+                                                   Estimate& estimate) const {
+  const std::optional<double> residual_variance =
+      NoiseVariance(estimate, free_youngs_modulus, free_poisson_ratio);
+  if (!known_noise_sd_ && !residual_variance) {
+    estimate.why_no_standard_error =
+        "there are no more equations than unknowns, so that the noise cannot "
+        "be estimated; give its standard deviation";
+    return std::nullopt;
+  }
+  const double noise_sd_ratio = std::sqrt(residual_variance.value_or(1));
+  double variance = residual_variance.value_or(1);
+  estimate.noise_sd = known_noise_sd_.value_or(noise_sd_ratio);
+  if (known_noise_sd_) {
+    variance = 1;
+    if (noise_sd_ratio > kUnexplainedResidual) {
+      std::ostringstream text;
+      text << "the force residual is " << TwoDigits(noise_sd_ratio)
+           << " times what the given noise explains, and the standard errors "
+              "are widened to match; the mesh, the supports or the loads do "
+              "not describe the experiment";
+      estimate.warnings.push_back(text.str());
+      variance = *residual_variance;
+    }
+  }
+  if (free_poisson_ratio) {
+    const double b_squared = triangle_(1, 1) * triangle_(1, 1);
+    estimate.noise_attenuation =
+        std::min(1.0, variance * ProjectedTraces()(1, 1) / b_squared);
+  }
+  return variance;
+}
+
+void ForceResidual::Describe(bool free_youngs_modulus, bool free_poisson_ratio,
+                             Estimate& estimate) const {
+  estimate.force_residual = RelativeResidual(estimate.elasticity);
+  const std::optional<double> variance =
+      DescribeNoise(free_youngs_modulus, free_poisson_ratio, estimate);
+  if (!variance) {
+    return;
+  }
+  if (free_youngs_modulus || free_poisson_ratio) {
+    estimate.covariance = Covariance(estimate.elasticity, *variance,
+                                     free_youngs_modulus, free_poisson_ratio);
+  }
+}
+
+void ForceResidual::JudgeYoungsModulusOnBound(const EstimatorOptions& options,
+                                              Estimate& estimate) const {
+  const bool free_poisson_ratio = !options.known_poisson_ratio;
+  const IsotropicElasticity& elasticity = estimate.elasticity;
+  // That of the bound may contradict it, which is not for noise to explain.
+  const std::optional<double> variance =
+      known_noise_sd_ ? 1
+                      : ResidualVariance(free_poisson_ratio
+                                             ? ErrorsInVariablesPoissonRatio()
+                                             : elasticity.poisson_ratio,
+                                         free_poisson_ratio);
+  const bool is_determined =
+      variance && (!free_poisson_ratio || PoissonRatio());
+  const double standard_error =
+      is_determined ? std::sqrt(Covariance(elasticity, *variance, true,
+                                           free_poisson_ratio)(0, 0)) /
+                          elasticity.youngs_modulus
+                    : std::numeric_limits<double>::infinity();
+  const Eigen::Matrix2d x = Jacobian(elasticity);
+  const double slope = -elasticity.youngs_modulus * x.col(0).dot(x.col(1)) /
+                       x.col(1).squaredNorm();
+  elastimate::JudgeYoungsModulusOnBound(options, slope, standard_error,
+                                        estimate);
+}
+
+void JudgeKnownPoissonRatio(const ForceResidual& residual, Estimate& estimate) {
+  constexpr double kSignificant = 5;
+  constexpr double kUnusableChange = 0.1;
+  const std::optional<double> nu = residual.UnbiasedPoissonRatio();
+  const std::optional<double> error = residual.UnbiasedPoissonRatioError();
+  const double given = estimate.elasticity.poisson_ratio;
+  // Rounding has no standard error.
+  constexpr double kRounding = 1e-6;
+  if (!residual.PoissonRatio() || !nu || !error ||
+      !(std::abs(*nu - given) > kSignificant * *error + kRounding)) {
+    return;
+  }
+  const double ratio =
+      residual.At(*nu).youngs_modulus / estimate.elasticity.youngs_modulus;
+  const std::string what =
+      "the data contradict the given Poisson's ratio: they ask for " +
+      TwoDigits(*nu) + " +- " + TwoDigits(*error) +
+      ", unless the mesh, the supports or the loads do not describe the "
+      "experiment";
+  if (std::abs(ratio - 1) <= kUnusableChange) {
+    estimate.warnings.push_back(what);
+    return;
+  }
+  estimate.Fail(Status::kNotIdentifiable, what,
+                "the model contradicts the data");
+}
+
+void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,
+                    Estimate& estimate) {
+  constexpr double kUnusableBias = 0.1;
+  constexpr double kUnusablePoissonRatioBias = 0.03;
+  constexpr double kNotableBias = 0.01;
+  const std::string cause =
+      "displacement noise (or a mesh, supports" +
+      std::string(estimate.active_bounds.empty() ? " or loads"
+                                                 : ", loads or bounds") +
+      " that do not describe the experiment) biases ";
+  const std::string advice =
+      "use reduced-fe, which noise does not bias, or give Poisson's ratio";
+  const IsotropicElasticity& elasticity = estimate.elasticity;
+  const std::optional<double> unbiased_nu = residual.UnbiasedPoissonRatio();
+  double bias = std::numeric_limits<double>::infinity();
+  double nu_bias = bias;
+  if (unbiased_nu) {
+    const double nu = std::clamp(*unbiased_nu, bounds.lower.value_or(-1),
+                                 bounds.upper.value_or(0.5));
+    const double unbiased = residual.At(nu).youngs_modulus;
+    if (unbiased > 0) {
+      bias = elasticity.youngs_modulus / unbiased - 1;
+      nu_bias = elasticity.poisson_ratio - nu;
+    }
+  }
+  std::string what;
+  if (!(std::abs(bias) <= kUnusableBias)) {
+    what = "Young's modulus by about " +
+           (std::isfinite(bias) ? Percent(bias) : "its whole size") +
+           ", more than the 10 % that are usable";
+  } else if (!(std::abs(nu_bias) <= kUnusablePoissonRatioBias)) {
+    what = "Poisson's ratio by about " + TwoDigits(nu_bias) +
+           ", more than the 0.03 that are usable";
+  }
+  if (!what.empty()) {
+    estimate.Fail(Status::kNotIdentifiable, cause + what + "; " + advice,
+                  "the bias is larger than any standard error");
+    return;
+  }
+  const double standard_error =
+      estimate.YoungsModulusStandardError().value_or(0) /
+      elasticity.youngs_modulus;
+  if (std::abs(bias) > std::max(kNotableBias, standard_error)) {
+    what = "Young's modulus by about " + Percent(bias);
+  } else if (std::abs(nu_bias) >
+             std::max(kNotableBias,
+                      estimate.PoissonRatioStandardError().value_or(0))) {
+    what = "Poisson's ratio by about " + TwoDigits(nu_bias);
+  }
+  if (!what.empty()) {
+    estimate.warnings.push_back(
+        cause + what + ", which the standard errors allow for; " + advice);
+  }
+  const Eigen::Vector2d both(elasticity.youngs_modulus * bias / (1 + bias),
+                             nu_bias);
+  estimate.covariance += both * both.transpose();
+}
+
+}  // namespace elastimate

@@ -1,0 +1,28 @@
+#ifndef ELASTIMATE_ESTIMATORS_FORCE_BALANCE_MONOMIALS_H_
+#define ELASTIMATE_ESTIMATORS_FORCE_BALANCE_MONOMIALS_H_
+
+#include <Eigen/Core>
+
+namespace elastimate {
+
+/// The monomials of degree <= `degree` at some points (3 x num_points), in
+/// coordinates of zero mean and unit covariance: they span the polynomials of
+/// that degree, and are well conditioned for slender specimens too.  Points in
+/// a plane or on a line leave some of them zero.
+/// num_points x (degree + 1)(degree + 2)(degree + 3) / 6.
+Eigen::MatrixXd Monomials(const Eigen::Matrix3Xd& points, int degree);
+
+/// A monomial of which no more than this share is independent of the others is
+/// so by rounding only: few points, or points in a plane, make some dependent.
+inline constexpr double kDependentMonomial = 1e-10;
+
+/// The polynomials of degree <= `degree` in the position that are nearest to
+/// the values at all points by least squares, at these points.
+/// `values` is num_points x n, and so is the result.
+/// O(num_points * num_monomials^2).
+Eigen::MatrixXd SmoothByPolynomials(const Eigen::Matrix3Xd& points,
+                                    const Eigen::MatrixXd& values, int degree);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_FORCE_BALANCE_MONOMIALS_H_

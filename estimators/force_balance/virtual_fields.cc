@@ -1,0 +1,442 @@
+#include "elastimate/estimators/force_balance/virtual_fields.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/mechanics/strain_energy.h"
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/estimators/force_balance/force_residual.h"
+#include "elastimate/estimators/force_balance/monomials.h"
+#include "elastimate/estimators/force_balance/virtual_work.h"
+#include "elastimate/estimators/interface/statistics.h"
+#include "elastimate/estimators/interface/stopwatch.h"
+#include "elastimate/estimators/statistics/profile_likelihood.h"
+
+namespace elastimate {
+namespace {
+
+using Side = BoundedParameter::Side;
+
+// Standard scores beyond this do not come from independent noise.
+constexpr double kSignificantScore = 5;
+
+// A relative standard error of E that a user wants to be told of.
+constexpr double kNotableError = 0.01;
+
+// The share of the loads out of balance that is notable, and that which may
+// put E off by more than is usable.
+constexpr double kNotableImbalance = 0.01;
+constexpr double kUnusableImbalance = 0.1;
+
+// What the residual says about its causes.
+struct ResidualJudgement {
+  /// Of the weighted noise.
+  double noise_variance;
+  /// The square sum that may hide an error of the model of its own size.
+  double model_square_sum;
+};
+
+// Whether something other than independent noise is in the balance of virtual
+// work: against the given noise, else against the noise that the force residual
+// shows.  Empty, with the reason, where there is nothing to learn from.
+std::optional<ResidualJudgement> JudgeResidual(
+    const VirtualWorkFit& fit, Eigen::Index redundancy,
+    const ForceResidual& force_residual,
+    const std::optional<double>& given_noise_sd, Estimate& estimate) {
+  if (redundancy <= 0 && !given_noise_sd) {
+    estimate.why_no_standard_error =
+        "there are no more virtual fields than unknowns, so that the noise "
+        "cannot be estimated; give its standard deviation";
+    return std::nullopt;
+  }
+  const double m = static_cast<double>(std::max<Eigen::Index>(redundancy, 1));
+  const double variance = fit.square_sum / m;
+  estimate.noise_sd = given_noise_sd.value_or(std::sqrt(variance));
+  if (given_noise_sd) {
+    // chi^2 has mean m and variance 2 m.
+    if (redundancy <= 0 ||
+        variance <= 1 + kSignificantScore * std::sqrt(2 / m)) {
+      return ResidualJudgement{1, 0};
+    }
+    estimate.warnings.push_back(
+        "the balance of virtual work is off by " +
+        TwoDigits(std::sqrt(variance)) +
+        " times what the given noise explains, and the standard errors are "
+        "widened to match; the mesh, the supports or the loads do not describe "
+        "the experiment");
+  }
+  // On a bound the force residual is that of the bound, too.
+  const std::optional<double> rough_variance =
+      estimate.active_bounds.empty()
+          ? force_residual.ResidualVariance(fit.poisson_ratio, false)
+          : force_residual.ResidualVariance(
+                force_residual.ErrorsInVariablesPoissonRatio(), true);
+  // The stiffness colours the force residual, which takes up to three quarters
+  // of its degrees of freedom.
+  const double rough_m = static_cast<double>(force_residual.NumEquations()) / 4;
+  const bool is_noise =
+      !rough_variance ||
+      variance <= *rough_variance *
+                      (1 + kSignificantScore * std::sqrt(2 / m + 2 / rough_m));
+  return ResidualJudgement{variance, is_noise ? 0 : fit.square_sum};
+}
+
+// Information about (ln E, nu), and covariances from it.
+class Information {
+ public:
+  Information(const VirtualWorkInformation& information,
+              const IsotropicElasticity& elasticity,
+              const ResidualJudgement& residual)
+      : residual_(residual) {
+    const Eigen::Matrix2d jacobian =
+        ComplianceScaleJacobian(elasticity) *
+        Eigen::Vector2d(elasticity.youngs_modulus, 1).asDiagonal();
+    score_ = jacobian.transpose() * information.score * jacobian;
+    bread_ = jacobian.transpose() * information.Bread(residual.noise_variance) *
+             jacobian;
+  }
+
+  // d ln E / d nu of the parameters that fit alike at a given nu.
+  double YoungsModulusSlope() const { return -bread_(0, 1) / bread_(0, 0); }
+  // d nu / d ln E of those that do at a given E.
+  double PoissonRatioSlope() const { return -bread_(0, 1) / bread_(1, 1); }
+
+  // Of the parameters that vary together; empty when they are not determined.
+  std::optional<Eigen::MatrixXd> Covariance(
+      const std::vector<Eigen::Index>& parameters) const {
+    const Eigen::MatrixXd bread = bread_(parameters, parameters);
+    // What is nearer to one is rounding.
+    constexpr double kSingular = 1e-12;
+    const double correlation =
+        bread.size() == 1 ? 0
+                          : bread(0, 1) / std::sqrt(bread(0, 0) * bread(1, 1));
+    if (!(bread.diagonal().minCoeff() > 0 &&
+          1 - correlation * correlation > kSingular)) {
+      return std::nullopt;
+    }
+    const Eigen::MatrixXd inverse = Inverse(bread);
+    return residual_.noise_variance * inverse * score_(parameters, parameters) *
+               inverse +
+           residual_.model_square_sum * inverse;
+  }
+
+ private:
+  ResidualJudgement residual_;
+  Eigen::Matrix2d score_;
+  Eigen::Matrix2d bread_;
+};
+
+void WarnOfModelError(double relative_error, Estimate& estimate) {
+  if (relative_error > kNotableError) {
+    estimate.warnings.emplace_back(
+        "the balance of virtual work is off by more than the noise in the "
+        "force residual explains: the mesh, the supports or the loads do not "
+        "describe the experiment, or the measurement was smoothed; the "
+        "standard errors are widened to allow for it");
+  }
+}
+
+// Fills in the covariance of a fit of which one parameter at least is free.
+void Describe(const std::vector<Eigen::Index>& free,
+              const Information& information, Estimate& estimate) {
+  const std::optional<Eigen::MatrixXd> covariance =
+      information.Covariance(free);
+  if (!covariance) {
+    estimate.Fail(
+        Status::kNotIdentifiable,
+        "displacement noise hides Poisson's ratio from these virtual fields; "
+        "give Poisson's ratio, raise the degree of the fields, or use "
+        "reduced-fe");
+    return;
+  }
+  const Eigen::Vector2d scale(estimate.elasticity.youngs_modulus, 1);
+  Eigen::Matrix2d both = Eigen::Matrix2d::Constant(Estimate::kUnknown);
+  both(free, free) = *covariance;
+  estimate.covariance = scale.asDiagonal() * both * scale.asDiagonal();
+  if (!estimate.active_bounds.empty()) {
+    estimate.why_no_standard_error = "a parameter on a bound has none";
+  }
+}
+
+double StandardErrorOrInfinity(const std::optional<Eigen::MatrixXd>& covariance,
+                               Eigen::Index parameter) {
+  return covariance ? std::sqrt((*covariance)(parameter, parameter))
+                    : std::numeric_limits<double>::infinity();
+}
+
+// `correction` is the smallest change of the displacements that brings the
+// virtual work of all fields into balance, relative to them.
+void JudgeCorrection(double correction, Estimate& estimate) {
+  constexpr double kUnusableCorrection = 0.2;
+  if (!estimate.IsUsable() || !(correction > kUnusableCorrection)) {
+    return;
+  }
+  estimate.Fail(Status::kNotIdentifiable,
+                "the loads are in balance only with displacements that differ "
+                "from the measured ones by " +
+                    TwoDigits(100 * correction) +
+                    " % of them: the mesh, the supports, the loads, a bound or "
+                    "a given Poisson's ratio do not describe the experiment, "
+                    "or the measurement is mostly noise",
+                "the model contradicts the data");
+}
+
+// The nu around a fit whose S exceeds that of the fit by no more than chance:
+// where the data know nothing of nu, S is sigma^2 chi^2 of k degrees of freedom
+// at each nu.  Two standard deviations of the difference of two of them.
+Interval IntervalByChance(const VirtualWorkBalance& balance,
+                          const VirtualWorkFit& fit,
+                          const ResidualJudgement& residual) {
+  const double excess =
+      4 * std::sqrt(static_cast<double>(balance.NumEquations()));
+  const auto [lower, upper] =
+      balance.ProfileEnds(fit, excess * residual.noise_variance);
+  return {lower.poisson_ratio, upper.poisson_ratio};
+}
+
+// The standard errors of the sandwich, carried over to the profile of S.
+void DescribeProfileOf(const VirtualWorkBalance& balance,
+                       const VirtualWorkFit& fit,
+                       const ResidualJudgement& residual, Estimate& estimate) {
+  const VirtualWorkInformation raw = balance.InformationAt(fit);
+  const std::optional<Eigen::MatrixXd> covariance =
+      Information(raw, estimate.elasticity, residual).Covariance({0, 1});
+  if (!covariance) {
+    return;
+  }
+  // Of (nu, t), as the entry of nu is of (E, nu).
+  const double variance =
+      (*covariance)(1, 1) / Inverse(raw.Bread(residual.noise_variance))(0, 0);
+  const auto elasticity_of = [](const VirtualWorkFit& at) {
+    return IsotropicElasticity::FromComplianceScale(at.compliance_scale,
+                                                    at.poisson_ratio);
+  };
+  DescribeProfile(
+      [&](double quantile) {
+        const auto [lower, upper] =
+            balance.ProfileEnds(fit, quantile * variance);
+        return Profile{elasticity_of(lower), elasticity_of(upper)};
+      },
+      estimate);
+  Interval interval = *estimate.poisson_ratio_interval;
+  if (interval.lower == -1 || interval.upper == 0.5) {
+    const Interval by_chance = IntervalByChance(balance, fit, residual);
+    interval = {std::min(interval.lower, by_chance.lower),
+                std::max(interval.upper, by_chance.upper)};
+  }
+  if (std::max(interval.upper - estimate.elasticity.poisson_ratio,
+               estimate.elasticity.poisson_ratio - interval.lower) >
+      kLargestPoissonRatioDistance) {
+    estimate.Fail(Status::kNotIdentifiable,
+                  "virtual work leaves Poisson's ratio between " +
+                      TwoDigits(interval.lower) + " and " +
+                      TwoDigits(interval.upper) +
+                      "; give Poisson's ratio, or use reduced-fe");
+  }
+}
+
+// What the data say of E and nu where E lies on a bound.
+void JudgeYoungsModulus(const EstimatorOptions& options,
+                        const VirtualWorkBalance& balance,
+                        const VirtualWorkFit& fit,
+                        const std::optional<ResidualJudgement>& residual,
+                        Estimate& estimate) {
+  const bool is_known = options.known_poisson_ratio.has_value();
+  const VirtualWorkFit unbounded =
+      is_known
+          ? balance.FitAt(fit.poisson_ratio, Bounds{})
+          : balance.Minimize(EffectivePoissonRatioBounds(options), Bounds{});
+  JudgeContradictedBound(
+      fit.square_sum - unbounded.square_sum,
+      unbounded.square_sum / static_cast<double>(balance.NumEquations()),
+      IsotropicElasticity::FromComplianceScale(unbounded.compliance_scale,
+                                               unbounded.poisson_ratio)
+          .youngs_modulus,
+      estimate);
+  if (!residual || !estimate.IsUsable()) {
+    return;
+  }
+  const Information information(balance.InformationAt(fit), estimate.elasticity,
+                                *residual);
+  std::optional<Eigen::MatrixXd> covariance;
+  if (is_known) {
+    covariance = information.Covariance({0});
+  } else {
+    const Interval by_chance = IntervalByChance(balance, unbounded, *residual);
+    if (by_chance.upper - by_chance.lower <= 2 * kLargestPoissonRatioDistance) {
+      covariance = information.Covariance({0, 1});
+    }
+  }
+  JudgeYoungsModulusOnBound(options, information.PoissonRatioSlope(),
+                            StandardErrorOrInfinity(covariance, 0), estimate);
+}
+
+// The displacements of all load cases without most of their noise, and without
+// what varies faster than a cubic: (3 num_nodes) x num_load_cases.
+Eigen::MatrixXd SmoothDisplacements(const Scene& scene) {
+  constexpr int kDegree = 3;
+  const Eigen::Index num_nodes = scene.mesh.NumNodes();
+  const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
+  // The components of all load cases side by side: num_nodes x 3 num_cases.
+  Eigen::MatrixXd measured(num_nodes, 3 * num_cases);
+  for (Eigen::Index k = 0; k < num_cases; ++k) {
+    const Eigen::Matrix3Xd displacement = scene.supports.held.select(
+        scene.supports.displacement, scene.load_cases[k].displacement);
+    measured.middleCols<3>(3 * k) = displacement.transpose();
+  }
+  const Eigen::MatrixXd smooth =
+      SmoothByPolynomials(scene.mesh.nodes, measured, kDegree);
+  Eigen::MatrixXd displacements(3 * num_nodes, num_cases);
+  for (Eigen::Index k = 0; k < num_cases; ++k) {
+    displacements.col(k).reshaped(3, num_nodes) =
+        smooth.middleCols<3>(3 * k).transpose();
+  }
+  return displacements;
+}
+
+// Warns of loads that the motions left free are not in balance with; whether
+// they can be used.
+bool JudgeImbalance(double imbalance, Estimate& estimate) {
+  if (imbalance <= kNotableImbalance) {
+    return true;
+  }
+  const std::string text =
+      "the supports leave the specimen free to move, and " +
+      TwoDigits(100 * imbalance) +
+      " % of the loads push it that way; complete the supports or the loads";
+  if (imbalance <= kUnusableImbalance) {
+    estimate.warnings.push_back(text);
+    return true;
+  }
+  estimate.Fail(Status::kNotIdentifiable, text);
+  return false;
+}
+
+}  // namespace
+
+std::string_view VirtualFields::Name() const { return "virtual-fields"; }
+
+std::string_view VirtualFields::Description() const {
+  return "virtual work of polynomial fields, weighted by its own covariance; "
+         "noise does not bias it, no factorisation [Avril & Pierron 2007]";
+}
+
+std::string VirtualFields::WhyUnsupported(
+    const Scene& scene, const EstimatorOptions& options) const {
+  if (options.loss != Loss::kNone) {
+    return "a loss function needs displacement residuals; use reduced-fe";
+  }
+  return ForceResidual::WhyUnsupported(scene);
+}
+
+Estimate VirtualFields::DoRun(const Scene& scene,
+                              const EstimatorOptions& options) const {
+  Estimate estimate;
+  Stopwatch stopwatch;
+  const VirtualWork work(scene.mesh, scene.supports,
+                         options.virtual_field_degree.value_or(kDefaultDegree));
+  estimate.stages.push_back({"prepare mesh", stopwatch.Lap()});
+  const VirtualWorkBalance balance(work, scene);
+  const ForceResidual force_residual(scene);
+  estimate.work = force_residual.WorkDone();
+  // The fields, and the measurement.
+  estimate.work.element_passes += 2;
+  estimate.status = Status::kOk;
+  estimate.message = "";
+  if (!JudgeImbalance(work.Imbalance(AssembleLoadCases(scene)), estimate)) {
+    return estimate;
+  }
+  if (!balance.LoadsDoWork()) {
+    estimate.Fail(
+        Status::kNotIdentifiable,
+        "the loads do no work on the virtual fields; raise their degree, or "
+        "use reduced-fe");
+    return estimate;
+  }
+  const std::optional<double> collinear_slope =
+      options.known_poisson_ratio ? std::nullopt : balance.CollinearSlope();
+  const VirtualWorkFit fit =
+      options.known_poisson_ratio
+          ? balance.FitAt(*options.known_poisson_ratio, options.youngs_modulus)
+          : balance.Minimize(EffectivePoissonRatioBounds(options),
+                             options.youngs_modulus);
+  estimate.elasticity = IsotropicElasticity::FromComplianceScale(
+      fit.compliance_scale, fit.poisson_ratio);
+  if (!(fit.free_compliance_scale > 0)) {
+    estimate.elasticity = IsotropicElasticity::FromComplianceScale(
+        fit.free_compliance_scale, fit.poisson_ratio);
+    estimate.Fail(Status::kUnphysical, kDisplacementsOpposeLoads);
+    return estimate;
+  }
+  if (collinear_slope) {
+    const double nu = fit.poisson_ratio;
+    estimate.Fail(
+        Status::kNotIdentifiable,
+        DescribeCollinear(estimate.elasticity,
+                          {1 / (1 + nu) - 2 / (1 - 2 * nu) -
+                               *collinear_slope / fit.compliance_scale,
+                           1}));
+    estimate.elasticity = {Estimate::kUnknown, Estimate::kUnknown};
+    return estimate;
+  }
+
+  const BoundedParameter poisson_ratio =
+      options.known_poisson_ratio
+          ? BoundedParameter::Constant(fit.poisson_ratio)
+          : BoundedParameter(fit.poisson_ratio,
+                             EffectivePoissonRatioBounds(options));
+  const ActiveBounds active = NoteActiveBounds(
+      options, fit.youngs_modulus_bound, poisson_ratio, estimate);
+  std::vector<Eigen::Index> free;
+  if (active.youngs_modulus == Side::kNone) {
+    free.push_back(0);
+  }
+  if (!options.known_poisson_ratio && active.poisson_ratio == Side::kNone) {
+    free.push_back(1);
+  }
+  estimate.force_residual =
+      force_residual.RelativeResidual(estimate.elasticity);
+  const std::optional<ResidualJudgement> residual = JudgeResidual(
+      fit, balance.NumEquations() - Eigen::Index(free.size()), force_residual,
+      scene.load_cases.front().noise_sd, estimate);
+  if (residual) {
+    estimate.is_model_in_doubt = residual->model_square_sum > 0;
+    const Information information(balance.InformationAt(fit),
+                                  estimate.elasticity, *residual);
+    if (!free.empty()) {
+      Describe(free, information, estimate);
+    }
+    if (estimate.IsUsable() && active.poisson_ratio != Side::kNone) {
+      JudgePoissonRatioOnBound(
+          options, active, information.YoungsModulusSlope(),
+          StandardErrorOrInfinity(information.Covariance({0, 1}), 1), estimate);
+    }
+    if (estimate.is_model_in_doubt) {
+      WarnOfModelError(estimate.YoungsModulusStandardError().value_or(0) /
+                           estimate.elasticity.youngs_modulus,
+                       estimate);
+    }
+  }
+  if (active.youngs_modulus != Side::kNone) {
+    JudgeYoungsModulus(options, balance, fit, residual, estimate);
+  }
+  if (residual && estimate.IsUsable() && !options.known_poisson_ratio &&
+      active.youngs_modulus == Side::kNone &&
+      (active.is_physical_limit ||
+       (active.poisson_ratio == Side::kNone &&
+        ShareOfDistanceToPole(estimate) > kLargestLinearShare))) {
+    DescribeProfileOf(balance, fit, *residual, estimate);
+  }
+  JudgeCorrection(std::sqrt(fit.square_sum) / balance.DisplacementNorm(),
+                  estimate);
+  if (estimate.IsUsable() && scene.mesh.NumElements() > 1) {
+    estimate.discretization_error = DiscretizationError(
+        scene.mesh, estimate.elasticity, SmoothDisplacements(scene));
+  }
+  estimate.stages.push_back({"fit", stopwatch.Lap()});
+  return estimate;
+}
+
+}  // namespace elastimate

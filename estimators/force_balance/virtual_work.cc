@@ -1,0 +1,441 @@
+#include "elastimate/estimators/force_balance/virtual_work.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/mechanics/stiffness_product.h"
+#include "elastimate/core/scene/degrees_of_freedom.h"
+#include "elastimate/estimators/force_balance/force_residual.h"
+#include "elastimate/estimators/force_balance/monomials.h"
+
+namespace elastimate {
+namespace {
+
+using Side = BoundedParameter::Side;
+
+// Relative to the largest, what is smaller is rounding: a motion without
+// strain, the work of loads that do none.  What is not rounding is far larger.
+constexpr double kRounding = 1e-10;
+
+// The sine of the angle between two vectors of virtual work below which
+// rounding, not the data, decides.
+constexpr double kCollinear = 1e-10;
+
+// An orthonormal basis of the polynomials on the nodes where `component` is
+// free, zero elsewhere: num_nodes x m.
+Eigen::MatrixXd OrthonormalPolynomials(const Mesh& mesh,
+                                       const Supports& supports, int component,
+                                       int degree) {
+  std::vector<Eigen::Index> free_nodes;
+  for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
+    if (!supports.held(component, node)) {
+      free_nodes.push_back(node);
+    }
+  }
+  if (free_nodes.empty()) {
+    return Eigen::MatrixXd(mesh.NumNodes(), 0);
+  }
+  const Eigen::MatrixXd on_free_nodes =
+      OrthonormalBasis(Monomials(mesh.nodes(Eigen::all, free_nodes), degree),
+                       kDependentMonomial);
+  Eigen::MatrixXd basis =
+      Eigen::MatrixXd::Zero(mesh.NumNodes(), on_free_nodes.cols());
+  basis(free_nodes, Eigen::all) = on_free_nodes;
+  return basis;
+}
+
+// The triangle of [triangle; rows], in blocks of rows that stay in the cache.
+void AppendToTriangle(const Eigen::MatrixXd& rows, Eigen::MatrixXd& triangle) {
+  constexpr Eigen::Index kBlockRows = 512;
+  const Eigen::Index columns = triangle.cols();
+  Eigen::MatrixXd block;
+  for (Eigen::Index row = 0; row < rows.rows(); row += kBlockRows) {
+    const Eigen::Index count = std::min(kBlockRows, rows.rows() - row);
+    block.resize(columns + count, columns);
+    block << triangle, rows.middleRows(row, count);
+    triangle = TriangularFactor(block);
+  }
+}
+
+// The elements around some nodes, as a mesh of its own.
+struct Patch {
+  Mesh mesh;
+  /// The node in the whole mesh of each node of the patch.
+  std::vector<Eigen::Index> nodes;
+};
+
+Patch ElementsAround(const Mesh& mesh, Eigen::Index first_node,
+                     Eigen::Index end_node) {
+  std::vector<Eigen::Index> elements;
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    const auto corners = mesh.elements.col(e).array();
+    if ((corners >= first_node && corners < end_node).any()) {
+      elements.push_back(e);
+    }
+  }
+  Patch patch;
+  patch.mesh.elements = mesh.elements(Eigen::all, elements);
+  std::vector<int> place(mesh.NumNodes(), -1);
+  for (int& corner : patch.mesh.elements.reshaped()) {
+    if (place[corner] < 0) {
+      place[corner] = static_cast<int>(patch.nodes.size());
+      patch.nodes.push_back(corner);
+    }
+    corner = place[corner];
+  }
+  patch.mesh.nodes = mesh.nodes(Eigen::all, patch.nodes);
+  return patch;
+}
+
+// The rows of fields that are given by component, at some nodes:
+// (3 num_nodes) x k0.
+Eigen::MatrixXd RowsOf(const std::array<Eigen::MatrixXd, 3>& polynomials,
+                       const std::vector<Eigen::Index>& nodes) {
+  const Eigen::Index columns =
+      polynomials[0].cols() + polynomials[1].cols() + polynomials[2].cols();
+  Eigen::MatrixXd rows =
+      Eigen::MatrixXd::Zero(3 * Eigen::Index(nodes.size()), columns);
+  Eigen::Index column = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Index count = polynomials[i].cols();
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      rows.row(3 * Eigen::Index(n) + i).segment(column, count) =
+          polynomials[i].row(nodes[n]);
+    }
+    column += count;
+  }
+  return rows;
+}
+
+// The triangle of a QR factorisation of the free rows of [H V, J V], by patches
+// of the mesh, so that memory does not grow with the mesh times the fields.
+Eigen::MatrixXd StiffenedTriangle(
+    const Mesh& mesh, const Supports& supports,
+    const std::array<Eigen::MatrixXd, 3>& polynomials) {
+  constexpr Eigen::Index kNodesPerPatch = 8192;
+  Eigen::MatrixXd triangle;
+  for (Eigen::Index first = 0; first < mesh.NumNodes();
+       first += kNodesPerPatch) {
+    const Eigen::Index end = std::min(first + kNodesPerPatch, mesh.NumNodes());
+    const Patch patch = ElementsAround(mesh, first, end);
+    const StiffnessProducts products =
+        MultiplyStiffnessBasis(patch.mesh, RowsOf(polynomials, patch.nodes));
+    std::vector<Eigen::Index> rows;
+    for (std::size_t n = 0; n < patch.nodes.size(); ++n) {
+      const Eigen::Index node = patch.nodes[n];
+      for (int i = 0; i < 3; ++i) {
+        if (node >= first && node < end && !supports.held(i, node)) {
+          rows.push_back(3 * Eigen::Index(n) + i);
+        }
+      }
+    }
+    const Eigen::Index columns = products.h.cols();
+    Eigen::MatrixXd both(Eigen::Index(rows.size()), 2 * columns);
+    both << products.h(rows, Eigen::all), products.j(rows, Eigen::all);
+    if (first == 0) {
+      triangle = Eigen::MatrixXd::Zero(2 * columns, 2 * columns);
+    }
+    AppendToTriangle(both, triangle);
+  }
+  return triangle;
+}
+
+// The rows of one component, num_nodes x n, of (3 num_nodes) x n.
+Eigen::MatrixXd ComponentRows(const Eigen::MatrixXd& all, int component) {
+  return all(Eigen::seq(component, Eigen::last, 3), Eigen::all);
+}
+
+}  // namespace
+
+VirtualWork::VirtualWork(const Mesh& mesh, const Supports& supports,
+                         int degree) {
+  assert(degree >= 1 && degree <= 3);
+  for (int i = 0; i < 3; ++i) {
+    polynomials_[i] = OrthonormalPolynomials(mesh, supports, i, degree);
+  }
+  const Eigen::MatrixXd triangle =
+      StiffenedTriangle(mesh, supports, polynomials_);
+  const Eigen::Index columns = triangle.cols() / 2;
+  // H alone is the stiffness of nu = 0, so that what it does not resist is a
+  // motion without strain.
+  const SingularValueDecomposition svd =
+      DecomposeSingularValues(triangle.topLeftCorner(columns, columns));
+  const Eigen::Index rank =
+      (svd.values.array() > kRounding * svd.values(0)).count();
+  fields_ = svd.v.leftCols(rank);
+  free_motions_ = svd.v.rightCols(columns - rank);
+  h_ = triangle.leftCols(columns) * fields_;
+  j_ = triangle.rightCols(columns) * fields_;
+
+  // Half a step changes the stiffness by 19 %.
+  constexpr int kScanPoints = 64;
+  const double first = LogStiffnessRatio(kSmallestPoissonRatio);
+  const double last = LogStiffnessRatio(kLargestPoissonRatio);
+  scan_.reserve(kScanPoints);
+  for (int i = 0; i < kScanPoints; ++i) {
+    scan_.push_back(FactorNoise(PoissonRatioOfLogStiffnessRatio(
+        first + (last - first) * i / (kScanPoints - 1))));
+  }
+}
+
+Eigen::MatrixXd VirtualWork::Fields() const {
+  std::vector<Eigen::Index> all(polynomials_[0].rows());
+  for (std::size_t node = 0; node < all.size(); ++node) {
+    all[node] = Eigen::Index(node);
+  }
+  return RowsOf(polynomials_, all) * fields_;
+}
+
+Eigen::MatrixXd VirtualWork::Of(const Eigen::MatrixXd& nodal_forces) const {
+  Eigen::MatrixXd work(fields_.rows(), nodal_forces.cols());
+  Eigen::Index row = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Index count = polynomials_[i].cols();
+    work.middleRows(row, count) =
+        polynomials_[i].transpose() * ComponentRows(nodal_forces, i);
+    row += count;
+  }
+  return fields_.transpose() * work;
+}
+
+double VirtualWork::Imbalance(const Eigen::MatrixXd& nodal_forces) const {
+  if (free_motions_.cols() == 0) {
+    return 0;
+  }
+  Eigen::MatrixXd work =
+      Eigen::MatrixXd::Zero(free_motions_.cols(), nodal_forces.cols());
+  Eigen::MatrixXd absolute_work = work;
+  Eigen::Index row = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Index count = polynomials_[i].cols();
+    const Eigen::MatrixXd motions =
+        polynomials_[i] * free_motions_.middleRows(row, count);
+    const Eigen::MatrixXd forces = ComponentRows(nodal_forces, i);
+    work += motions.transpose() * forces;
+    absolute_work += motions.cwiseAbs().transpose() * forces.cwiseAbs();
+    row += count;
+  }
+  return (absolute_work.array() > 0)
+      .select(work.array().abs() / absolute_work.array(), 0)
+      .maxCoeff();
+}
+
+VirtualWork::NoiseFactor VirtualWork::FactorNoise(double poisson_ratio) const {
+  return {poisson_ratio, TriangularFactor(Stiffened(poisson_ratio))};
+}
+
+Eigen::Matrix2d VirtualWorkInformation::Bread(double noise_variance) const {
+  Eigen::Matrix2d bread = score;
+  bread(0, 0) -= noise_variance * noise_share;
+  return bread;
+}
+
+VirtualWorkBalance::VirtualWorkBalance(const VirtualWork& work,
+                                       const Scene& scene)
+    : work_(work) {
+  const DegreesOfFreedom dofs(scene.supports);
+  const auto [q, f] = WeightLoadCases(scene);
+  const StiffnessProducts products = MultiplyStiffnessBasis(scene.mesh, q);
+  internal_h_ = work.Of(products.h);
+  internal_j_ = work.Of(products.j);
+  external_ = work.Of(f);
+  displacement_norm_ = dofs.Restrict(q).norm();
+  loads_do_work_ = external_.norm() > kRounding * dofs.Restrict(f).norm();
+}
+
+std::optional<double> VirtualWorkBalance::CollinearSlope() const {
+  // Collinear at one nu is collinear at all.
+  constexpr double kAnyPoissonRatio = 0.25;
+  const VirtualWork::NoiseFactor noise = work_.FactorNoise(kAnyPoissonRatio);
+  const auto lower = noise.upper.transpose().triangularView<Eigen::Lower>();
+  const Eigen::MatrixXd b = lower.solve(internal_j_);
+  const Eigen::MatrixXd f = lower.solve(external_);
+  const double slope = b.cwiseProduct(f).sum() / f.squaredNorm();
+  if ((b - slope * f).norm() > kCollinear * b.norm()) {
+    return std::nullopt;
+  }
+  return slope;
+}
+
+VirtualWorkFit VirtualWorkBalance::Evaluate(
+    const VirtualWork::NoiseFactor& noise, const Bounds& youngs_modulus) const {
+  const double nu = noise.poisson_ratio;
+  const auto upper = noise.upper.triangularView<Eigen::Upper>();
+  const auto lower = noise.upper.transpose().triangularView<Eigen::Lower>();
+  const Eigen::MatrixXd z_a = lower.solve(internal_h_ + nu * internal_j_);
+  const Eigen::MatrixXd z_f = lower.solve(external_);
+
+  VirtualWorkFit fit;
+  fit.poisson_ratio = nu;
+  fit.free_compliance_scale = z_a.cwiseProduct(z_f).sum() / z_f.squaredNorm();
+  fit.compliance_scale = std::max(0.0, fit.free_compliance_scale);
+  fit.youngs_modulus_bound = Side::kNone;
+  const auto hold = [&](double bound, Side side) {
+    fit.compliance_scale = IsotropicElasticity{bound, nu}.ComplianceScale();
+    fit.youngs_modulus_bound = side;
+    // Of (1 + nu)(1 - 2 nu) / E.
+    return -(1 + 4 * nu) / bound;
+  };
+  double scale_slope = 0;
+  if (youngs_modulus.upper &&
+      fit.compliance_scale <
+          IsotropicElasticity{*youngs_modulus.upper, nu}.ComplianceScale()) {
+    scale_slope = hold(*youngs_modulus.upper, Side::kUpper);
+  } else if (youngs_modulus.lower &&
+             fit.compliance_scale >
+                 IsotropicElasticity{*youngs_modulus.lower, nu}
+                     .ComplianceScale()) {
+    scale_slope = hold(*youngs_modulus.lower, Side::kLower);
+  }
+  const Eigen::MatrixXd z_r = z_a - fit.compliance_scale * z_f;
+  fit.square_sum = z_r.squaredNorm();
+  fit.multipliers = upper.solve(z_r);
+  // d(r^T G^-1 r) = 2 lambda.dr - lambda^T dG lambda, with
+  // lambda^T dG lambda = 2 (J V lambda).(M lambda) dnu.
+  const Eigen::MatrixXd correction = work_.Stiffened(nu) * fit.multipliers;
+  fit.slope =
+      2 * (fit.multipliers.cwiseProduct(internal_j_).sum() -
+           (work_.J() * fit.multipliers).cwiseProduct(correction).sum() -
+           scale_slope * fit.multipliers.cwiseProduct(external_).sum());
+  return fit;
+}
+
+VirtualWorkFit VirtualWorkBalance::FitAt(double poisson_ratio,
+                                         const Bounds& youngs_modulus) const {
+  return Evaluate(work_.FactorNoise(poisson_ratio), youngs_modulus);
+}
+
+VirtualWorkFit VirtualWorkBalance::Refine(VirtualWorkFit falling,
+                                          VirtualWorkFit rising,
+                                          const Bounds& youngs_modulus) const {
+  // The Illinois method: the secant through both ends, where an end that stays
+  // counts half from the second time on.
+  constexpr int kMostSteps = 100;
+  double left = LogStiffnessRatio(falling.poisson_ratio);
+  double right = LogStiffnessRatio(rising.poisson_ratio);
+  double left_slope = falling.slope;
+  double right_slope = rising.slope;
+  bool moved_left = false;
+  bool moved_right = false;
+  for (int step = 0; step < kMostSteps && right_slope > 0; ++step) {
+    const double x =
+        left + (right - left) * left_slope / (left_slope - right_slope);
+    if (!(x > left && x < right)) {
+      break;  // The ends are neighbours, to rounding.
+    }
+    VirtualWorkFit fit =
+        FitAt(PoissonRatioOfLogStiffnessRatio(x), youngs_modulus);
+    if (fit.slope < 0) {
+      left = x;
+      left_slope = fit.slope;
+      right_slope /= moved_left ? 2 : 1;
+      falling = std::move(fit);
+    } else {
+      right = x;
+      right_slope = fit.slope;
+      left_slope /= moved_right ? 2 : 1;
+      rising = std::move(fit);
+    }
+    moved_left = left == x;
+    moved_right = right == x;
+  }
+  return falling.square_sum < rising.square_sum ? falling : rising;
+}
+
+VirtualWorkFit VirtualWorkBalance::Minimize(
+    const Bounds& poisson_ratio, const Bounds& youngs_modulus) const {
+  std::vector<VirtualWorkFit> fits = {
+      FitAt(*poisson_ratio.lower, youngs_modulus)};
+  for (const VirtualWork::NoiseFactor& noise : work_.Scan()) {
+    if (noise.poisson_ratio > *poisson_ratio.lower &&
+        noise.poisson_ratio < *poisson_ratio.upper) {
+      fits.push_back(Evaluate(noise, youngs_modulus));
+    }
+  }
+  fits.push_back(FitAt(*poisson_ratio.upper, youngs_modulus));
+
+  VirtualWorkFit best = fits.front().square_sum < fits.back().square_sum
+                            ? fits.front()
+                            : fits.back();
+  for (std::size_t i = 0; i + 1 < fits.size(); ++i) {
+    if (fits[i].slope < 0 && fits[i + 1].slope >= 0) {
+      VirtualWorkFit minimum = Refine(fits[i], fits[i + 1], youngs_modulus);
+      if (minimum.square_sum < best.square_sum) {
+        best = std::move(minimum);
+      }
+    }
+  }
+  return best;
+}
+
+std::pair<VirtualWorkFit, VirtualWorkFit> VirtualWorkBalance::ProfileEnds(
+    const VirtualWorkFit& best, double excess) const {
+  const auto is_inside = [&](const VirtualWorkFit& fit) {
+    return fit.square_sum <= best.square_sum + excess;
+  };
+  // Along the scan from `noise` on, away from the best fit.
+  const auto end_along = [&](auto noise, auto scan_end) {
+    constexpr int kHalvings = 12;
+    VirtualWorkFit inside = best;
+    for (; noise != scan_end; ++noise) {
+      VirtualWorkFit fit = Evaluate(*noise, Bounds{});
+      if (!is_inside(fit)) {
+        break;
+      }
+      inside = std::move(fit);
+    }
+    if (noise == scan_end) {
+      return inside;
+    }
+    double outside = noise->poisson_ratio;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = (inside.poisson_ratio + outside) / 2;
+      VirtualWorkFit fit = FitAt(middle, Bounds{});
+      if (is_inside(fit)) {
+        inside = std::move(fit);
+      } else {
+        outside = middle;
+      }
+    }
+    return inside;
+  };
+  const std::vector<VirtualWork::NoiseFactor>& scan = work_.Scan();
+  const double nu = best.poisson_ratio;
+  return {end_along(std::find_if(scan.rbegin(), scan.rend(),
+                                 [&](const auto& noise) {
+                                   return noise.poisson_ratio < nu;
+                                 }),
+                    scan.rend()),
+          end_along(std::find_if(scan.begin(), scan.end(),
+                                 [&](const auto& noise) {
+                                   return noise.poisson_ratio > nu;
+                                 }),
+                    scan.end())};
+}
+
+VirtualWorkInformation VirtualWorkBalance::InformationAt(
+    const VirtualWorkFit& fit) const {
+  const VirtualWork::NoiseFactor noise = work_.FactorNoise(fit.poisson_ratio);
+  const auto lower = noise.upper.transpose().triangularView<Eigen::Lower>();
+  const Eigen::MatrixXd stiffened = work_.Stiffened(fit.poisson_ratio);
+  const Eigen::MatrixXd cross = work_.J().transpose() * stiffened;
+  const Eigen::MatrixXd z_b =
+      lower.solve(internal_j_ - cross * fit.multipliers);
+  const Eigen::MatrixXd z_f = lower.solve(external_);
+  VirtualWorkInformation information;
+  information.score(0, 0) = z_b.squaredNorm();
+  information.score(1, 1) = z_f.squaredNorm();
+  information.score(0, 1) = -z_b.cwiseProduct(z_f).sum();
+  information.score(1, 0) = information.score(0, 1);
+  // The noise of b that M does not span: ||(I - M (M^T M)^-1 M^T) J V L^-T||^2.
+  const Eigen::MatrixXd all = lower.solve(work_.J().transpose());
+  const Eigen::MatrixXd spanned =
+      lower.solve(Eigen::MatrixXd(lower.solve(cross).transpose()));
+  information.noise_share = static_cast<double>(internal_j_.cols()) *
+                            (all.squaredNorm() - spanned.squaredNorm());
+  return information;
+}
+
+}  // namespace elastimate

@@ -1,0 +1,56 @@
+#ifndef ELASTIMATE_ESTIMATORS_INTERFACE_CHECKS_H_
+#define ELASTIMATE_ESTIMATORS_INTERFACE_CHECKS_H_
+
+#include <string>
+#include <vector>
+
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/estimators/interface/estimator.h"
+
+namespace elastimate {
+
+/// Throws std::invalid_argument unless the options are valid.
+void CheckOptions(const EstimatorOptions& options);
+
+/// Throws std::invalid_argument unless `estimator` supports a valid scene and
+/// valid options.
+void CheckSupported(const Estimator& estimator, const Scene& scene,
+                    const EstimatorOptions& options);
+
+/// Throws std::invalid_argument unless every load case of a valid scene has
+/// what each estimator needs: see Estimator::Run.  Returns warnings.
+std::vector<std::string> CheckMeasurements(const Scene& scene);
+
+/// Makes the notice of a StiffnessSolver, if there is one, a warning.
+void NoteSolver(const std::string& notice, Estimate& estimate);
+
+/// Whether FinishEstimate gave this warning of linear elements near nu = 1/2.
+bool IsWarningOfLocking(const std::string& warning);
+
+/// Whether the discretisation error is larger than 1 % and than half a standard
+/// error of E, or that of nu than 0.01 and half its standard error.
+bool IsDiscretizationErrorNotable(const Estimate& estimate);
+
+/// "the elements miss about 15 % of the strain energy".
+/// Precondition: there is a discretisation error.
+std::string DescribeDiscretizationError(const Estimate& estimate);
+
+/// Takes back the discretisation error, and the warning of FinishEstimate of
+/// it: the displacements were found to come from these very elements.
+/// Precondition: there is a discretisation error.
+void AcceptElements(Estimate& estimate);
+
+/// Enters the estimator's name, the warnings, and an interval of nu where only
+/// its standard error is known; warns of what linear elements do near nu = 1/2
+/// and of a notable discretisation error; and turns an estimate that claims to
+/// be ok into what it is, when it is not finite, not physical, or not
+/// determined.
+void FinishEstimate(const Estimator& estimator, const Scene& scene,
+                    const EstimatorOptions& options,
+                    const std::vector<std::string>& warnings,
+                    Estimate& estimate);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_INTERFACE_CHECKS_H_

@@ -1,0 +1,150 @@
+#ifndef ELASTIMATE_ESTIMATORS_INTERFACE_ESTIMATE_H_
+#define ELASTIMATE_ESTIMATORS_INTERFACE_ESTIMATE_H_
+
+#include <Eigen/Core>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/solvers/stiffness_solver.h"
+
+namespace elastimate {
+
+/// How an estimator came out.
+enum class Status {
+  kOk,                ///< The estimate is usable.
+  kNotIdentifiable,   ///< The data, or this method, leave E or nu undetermined.
+  kUnphysical,        ///< E <= 0 or nu outside (-1, 1/2).
+  kIterationLimit,    ///< The iteration did not converge.
+  kNumericalFailure,  ///< A factorisation or an evaluation failed.
+};
+
+/// "ok", "not_identifiable", "unphysical", "iteration_limit" or
+/// "numerical_failure".
+std::string_view StatusName(Status status);
+
+/// Seconds that a stage of an estimator took.
+struct StageTime {
+  std::string stage;
+  double seconds;
+};
+
+/// Ends of an interval.
+struct Interval {
+  double lower;
+  double upper;
+};
+
+/// The disagreement of two estimators, one of which leans on the model less.
+struct ModelMismatch {
+  double statistic;  ///< chi^2 with 2 degrees of freedom when the model holds.
+  double p_value;    ///< Probability of a larger one when the model holds.
+  bool matters;      ///< Whether they differ by 1 % of E or 0.01 in nu.
+};
+
+/// An estimator that `auto` ran, or passed over.
+struct Rung {
+  std::string estimator;
+  int element_order = 1;
+  /// Empty when it was passed over.
+  std::optional<Status> status;
+  IsotropicElasticity elasticity = {std::numeric_limits<double>::quiet_NaN(),
+                                    std::numeric_limits<double>::quiet_NaN()};
+  Work work;
+  double seconds = 0;
+  /// Why the ladder went on, or stopped.
+  std::string decision;
+};
+
+/// The message of an estimate whose E is negative.
+inline constexpr char kDisplacementsOpposeLoads[] =
+    "the measured displacements oppose the loads; check their signs, order and "
+    "units, and whether noise outweighs them";
+
+/// What an estimator says about a scene.  Starts out as a failure, so that it
+/// cannot be mistaken for a result before an estimator has filled it in.
+struct Estimate {
+  std::string estimator;
+  Status status = Status::kNumericalFailure;
+  /// Why the status is not ok, and what to do; empty when it is.
+  std::string message = "the estimator was not run";
+
+  /// E [pressure] and nu [-]; NaN where there is no number at all.
+  IsotropicElasticity elasticity = {kUnknown, kUnknown};
+  /// Covariance of (E, nu).  NaN in the row and column of a parameter that was
+  /// given, or that is held by a bound, or of both when unknown.
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kUnknown);
+  /// Where nu lies with a probability of 95 %: one-sided when it reaches -1 or
+  /// 1/2, where a standard error says little.  Empty when unknown.
+  std::optional<Interval> poisson_ratio_interval;
+  /// Why a standard error is missing; empty when none is.
+  std::string why_no_standard_error;
+
+  /// Estimated (or given, when it is known) noise standard deviation of a
+  /// measured displacement component [length]; of the first load case when
+  /// they differ.
+  std::optional<double> noise_sd;
+  /// ||A(nu) q - t f|| / ||t f|| over the free degrees of freedom.
+  std::optional<double> force_residual;
+  /// ||u - q|| / ||q|| over the observed free components.
+  std::optional<double> displacement_residual;
+  /// Angle between the sensitivities of the observed displacements to ln E and
+  /// to nu [rad]: small when the data determine one combination of them only.
+  std::optional<double> identifiability_angle;
+  /// rho: the share by which displacement noise has pulled nu towards the
+  /// value that pure noise has (about 2/3); 0 without noise, 1 when the noise
+  /// hides nu altogether.
+  std::optional<double> noise_attenuation;
+  /// Correlation of the displacement residuals of neighbouring nodes: near 0
+  /// for independent noise, near 1 when the model misses something smooth.
+  std::optional<double> residual_correlation;
+  /// The share of the strain energy that the elements miss, as Zienkiewicz &
+  /// Zhu estimate it: about the relative error that it causes in E, on top of
+  /// the standard error, unless the displacements were computed with these very
+  /// elements; zero where `auto` found that they were.
+  std::optional<double> discretization_error;
+  /// What an error of this share of the displacements does to nu at most: much
+  /// where they hardly depend on nu.  Of fits of displacements with a free nu.
+  std::optional<double> poisson_ratio_discretization_error;
+  /// Whether the residual is none that independent noise leaves, so that the
+  /// mesh, the supports or the loads are not those of the experiment.
+  bool is_model_in_doubt = false;
+  /// What virtual-fields says of the model of reduced-fe, where both were run.
+  std::optional<ModelMismatch> model_mismatch;
+  /// Bounds that the estimate lies on, such as "nu_max".
+  std::vector<std::string> active_bounds;
+  /// Sentences for the user, about a result that is usable all the same.
+  std::vector<std::string> warnings;
+
+  /// The order of the elements: 1 for linear ones, 2 for quadratic ones; 0 as
+  /// long as no estimator was run.
+  int element_order = 0;
+  /// What `auto` ran, in order; empty for other estimators.
+  std::vector<Rung> rungs;
+  Work work;
+  std::vector<StageTime> stages;
+  double seconds = 0;  ///< Time of the whole estimator.
+
+  bool IsUsable() const { return status == Status::kOk; }
+  /// Makes it one that is not usable, without standard errors.
+  void Fail(Status why_not_ok, std::string what,
+            std::string why_no_error = "the estimate is not usable");
+  /// Square roots of the diagonal of `covariance`; empty when unknown.
+  std::optional<double> YoungsModulusStandardError() const;
+  std::optional<double> PoissonRatioStandardError() const;
+  /// Correlation of the errors of E and nu; empty when unknown.
+  std::optional<double> Correlation() const;
+  /// Of mu and of 1 / kappa, to first order; empty unless the covariance of
+  /// both E and nu is known.
+  std::optional<double> ShearModulusStandardError() const;
+  std::optional<double> BulkComplianceStandardError() const;
+
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_INTERFACE_ESTIMATE_H_

@@ -1,0 +1,88 @@
+#include "elastimate/estimators/interface/estimator.h"
+
+#include <limits>
+#include <sstream>
+
+#include "elastimate/estimators/interface/checks.h"
+#include "elastimate/estimators/interface/stopwatch.h"
+
+namespace elastimate {
+namespace {
+
+std::string Text(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+std::string WhyInvalidBounds(const Bounds& bounds, const std::string& name,
+                             double smallest, double largest,
+                             const std::string& range) {
+  for (const auto& bound : {bounds.lower, bounds.upper}) {
+    if (bound && !(*bound >= smallest && *bound <= largest)) {
+      return "a bound on " + name + " is " + Text(*bound) + "; it must be " +
+             range;
+    }
+  }
+  if (bounds.lower && bounds.upper && !(*bounds.lower < *bounds.upper)) {
+    return "the bounds on " + name + " are crossed: the lower is " +
+           Text(*bounds.lower) + ", the upper " + Text(*bounds.upper);
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string EstimatorOptions::WhyInvalid() const {
+  if (known_poisson_ratio &&
+      !(*known_poisson_ratio > -1 && *known_poisson_ratio < 0.5)) {
+    return "the known Poisson's ratio is " + Text(*known_poisson_ratio) +
+           "; it must be above -1 and below 0.5";
+  }
+  if (known_poisson_ratio && poisson_ratio.AreGiven()) {
+    return "Poisson's ratio is given as known and has bounds; give one or the "
+           "other";
+  }
+  std::string why = WhyInvalidBounds(poisson_ratio, "Poisson's ratio", -1, 0.5,
+                                     "between -1 and 0.5");
+  if (why.empty() &&
+      (poisson_ratio.lower.value_or(-1) >= kLargestPoissonRatio ||
+       poisson_ratio.upper.value_or(0.5) <= kSmallestPoissonRatio)) {
+    why = "the bounds on Poisson's ratio leave nothing between " +
+          Text(kSmallestPoissonRatio) + " and " + Text(kLargestPoissonRatio);
+  }
+  if (why.empty()) {
+    why = WhyInvalidBounds(
+        youngs_modulus, "Young's modulus", std::numeric_limits<double>::min(),
+        std::numeric_limits<double>::max(), "positive and finite");
+  }
+  if (why.empty() && max_iterations < 1) {
+    why = "the largest number of iterations is " +
+          std::to_string(max_iterations) + "; it must be at least 1";
+  }
+  if (why.empty() && virtual_field_degree &&
+      !(*virtual_field_degree >= 1 && *virtual_field_degree <= 3)) {
+    why = "the degree of the virtual fields is " +
+          std::to_string(*virtual_field_degree) + "; it must be 1, 2 or 3";
+  }
+  if (why.empty() && solver == SolverKind::kMultigrid && !HasMultigrid()) {
+    why = "the solver is multigrid, which is not there (" + WhyNoMultigrid() +
+          "); use cholesky";
+  }
+  return why;
+}
+
+Estimate Estimator::Run(const Scene& scene,
+                        const EstimatorOptions& options) const {
+  Stopwatch stopwatch;
+  ValidateScene(scene);
+  CheckOptions(options);
+  const std::vector<std::string> warnings = CheckMeasurements(scene);
+  CheckSupported(*this, scene, options);
+  Estimate estimate = DoRun(scene, options);
+  FinishEstimate(*this, scene, options, warnings, estimate);
+  estimate.seconds = stopwatch.Lap();
+  return estimate;
+}
+
+}  // namespace elastimate

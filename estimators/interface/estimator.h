@@ -1,0 +1,113 @@
+#ifndef ELASTIMATE_ESTIMATORS_INTERFACE_ESTIMATOR_H_
+#define ELASTIMATE_ESTIMATORS_INTERFACE_ESTIMATOR_H_
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/core/solvers/stiffness_solver.h"
+#include "elastimate/estimators/interface/estimate.h"
+
+namespace elastimate {
+
+/// The range of Poisson's ratio that a bounded fit searches: at -1 and 1/2 the
+/// stiffness is singular or infinite.
+constexpr double kSmallestPoissonRatio = -0.9999;
+constexpr double kLargestPoissonRatio = 0.49999;
+
+/// Closed interval that a parameter must lie in; an absent end is open.
+struct Bounds {
+  std::optional<double> lower;
+  std::optional<double> upper;
+
+  bool AreGiven() const { return lower || upper; }
+};
+
+/// How a displacement residual counts.
+enum class Loss {
+  kNone,    ///< Least squares.
+  kHuber,   ///< Linear beyond 1.345 robust standard deviations.
+  kCauchy,  ///< Logarithmic beyond 2.385 robust standard deviations.
+};
+
+/// The defaults suit a scene of which nothing more is known.
+struct EstimatorOptions {
+  // What is estimated.
+
+  /// Poisson's ratio when it is known [-], in (-1, 1/2): E alone is estimated.
+  std::optional<double> known_poisson_ratio;
+  /// Bounds on nu [-], within [-1, 1/2] and leaving a part of the range
+  /// above; not with a known nu.
+  Bounds poisson_ratio;
+  /// Bounds on E [pressure], positive.
+  Bounds youngs_modulus;
+
+  // How it is estimated.
+
+  /// Treatment of outliers among the measured displacements.
+  Loss loss = Loss::kNone;
+  /// Degree of the polynomial virtual fields, 1 to 3, for the estimators that
+  /// have some; the others refuse it.
+  std::optional<int> virtual_field_degree;
+  /// Iterations after which an iterative estimator gives up; at least 1.
+  int max_iterations = 50;
+  /// How estimators that solve for displacements do so.
+  SolverKind solver = SolverKind::kAutomatic;
+  /// Called by those before each factorisation, or set-up of multigrid, with
+  /// its number, from 1 on.  May be empty.
+  std::function<void(int)> on_factorization;
+
+  /// A sentence that names the option, its value and the broken rule; empty
+  /// when the options are valid.
+  std::string WhyInvalid() const;
+};
+
+/// A method that turns a scene into an estimate of E and nu.
+///
+/// A new one is one header/source pair, one line in the table of registry.cc,
+/// and one row in docs/estimators.md; the conformance suite runs on it by
+/// itself.
+class Estimator {
+ public:
+  virtual ~Estimator() = default;
+
+  /// Checks the input, runs the method, and checks the result.
+  ///
+  /// Throws std::invalid_argument, with one sentence, for an invalid scene
+  /// (ValidateScene), invalid options, options or a scene that this estimator
+  /// does not support (WhyUnsupported), a load case without measured
+  /// displacements or with zero displacement, and loads that are zero on all
+  /// free degrees of freedom.  Numerical outcomes never throw: they are
+  /// statuses of the estimate.
+  ///
+  /// May be called from several threads at once.  The same input gives the same
+  /// bits in each of them and on every call, on the same kind of processor with
+  /// the same number of BLAS threads, unless another thread calls rand()
+  /// meanwhile, which the ordering of a factorisation (METIS) seeds and draws
+  /// from.
+  Estimate Run(const Scene& scene, const EstimatorOptions& options) const;
+
+  /// The name by which the registry knows it, such as "closed-form".
+  virtual std::string_view Name() const = 0;
+  /// One line for people: method, needs, and source.
+  virtual std::string_view Description() const = 0;
+  /// Why it cannot serve this scene with these options, and what could; empty
+  /// when it can.  Preconditions: a valid scene and valid options.
+  virtual std::string WhyUnsupported(const Scene& scene,
+                                     const EstimatorOptions& options) const = 0;
+
+ protected:
+  virtual Estimate DoRun(const Scene& scene,
+                         const EstimatorOptions& options) const = 0;
+};
+
+/// Whether component `i` of `node` was measured in `load_case`.
+inline bool IsObserved(const LoadCase& load_case, int i, Eigen::Index node) {
+  return load_case.observed.size() == 0 || load_case.observed(i, node);
+}
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_INTERFACE_ESTIMATOR_H_

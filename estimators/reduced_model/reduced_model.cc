@@ -1,0 +1,274 @@
+#include "elastimate/estimators/reduced_model/reduced_model.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/mechanics/stiffness_product.h"
+#include "elastimate/core/scene/degrees_of_freedom.h"
+#include "elastimate/core/scene/loads.h"
+
+namespace elastimate {
+namespace {
+
+// A vector whose energy falls by this factor when it is made orthogonal to
+// others was rounding.
+constexpr double kDependent = 1e-24;
+
+// Vectors whose inner products are below this part of their norms count as
+// orthogonal.
+constexpr double kOrthogonal = 1e-10;
+
+// Makes a symmetric matrix one larger.
+void AppendSymmetric(const Eigen::VectorXd& column, Eigen::MatrixXd& matrix) {
+  const Eigen::Index m = column.size();
+  matrix.conservativeResize(m, m);
+  matrix.col(m - 1) = column;
+  matrix.row(m - 1) = column.transpose();
+}
+
+}  // namespace
+
+Eigen::VectorXd ReducedModes::At(double poisson_ratio) const {
+  return (g0 + poisson_ratio * g1).array() /
+         (1 + (poisson_ratio - pole) * theta.array());
+}
+
+Eigen::VectorXd ReducedModes::DerivativeAt(double poisson_ratio) const {
+  return (g1.array() - theta.array() * At(poisson_ratio).array()) /
+         (1 + (poisson_ratio - pole) * theta.array());
+}
+
+double ReducedModes::EnergyNorm(double poisson_ratio) const {
+  return std::sqrt(
+      std::max(0.0, At(poisson_ratio).dot(g0 + poisson_ratio * g1)));
+}
+
+ReducedModel::ReducedModel(const Scene& scene, SolverKind solver)
+    : stiffness_(scene.mesh),
+      solver_(scene.mesh, scene.supports, solver),
+      num_load_cases_(Eigen::Index(scene.load_cases.size())) {
+  const Eigen::MatrixXd force = FreeRows(AssembleLoadCases(scene));
+  for (Eigen::Index k = 0; k < num_load_cases_; ++k) {
+    Response response;
+    response.g0 = force.col(k);
+    response.g1 = Eigen::VectorXd::Zero(force.rows());
+    response.basis.resize(force.rows(), 0);
+    responses_.push_back(response);
+  }
+  const Eigen::VectorXd held = HeldDisplacement(scene.supports);
+  if (!held.isZero(0)) {
+    const StiffnessProducts products = Multiply(held);
+    Response response;
+    response.g0 = -products.h;
+    response.g1 = -products.j;
+    response.basis.resize(force.rows(), 0);
+    responses_.push_back(response);
+  }
+}
+
+Eigen::MatrixXd ReducedModel::FreeRows(const Eigen::MatrixXd& all) const {
+  return solver_.Dofs().Extend(solver_.Dofs().Restrict(all));
+}
+
+StiffnessProducts ReducedModel::Multiply(const Eigen::MatrixXd& x) {
+  StiffnessProducts products;
+  stiffness_.Multiply(x, products);
+  ++element_passes_;
+  return {FreeRows(products.h), FreeRows(products.j)};
+}
+
+bool ReducedModel::SetPole(double poisson_ratio) {
+  if (!solver_.Factorize(poisson_ratio)) {
+    return false;
+  }
+  const double tolerance =
+      solver_.UsesMultigrid() ? StiffnessSolver::kAccurate : 0;
+  Eigen::MatrixXd loads(responses_[0].g0.size(), NumResponses());
+  for (Eigen::Index k = 0; k < NumResponses(); ++k) {
+    loads.col(k) = responses_[k].g0 + poisson_ratio * responses_[k].g1;
+  }
+  const Eigen::MatrixXd x = solver_.Solve(loads);
+  if (!x.allFinite()) {
+    return false;
+  }
+  const StiffnessProducts of_x = Multiply(x);
+  for (Eigen::Index k = 0; k < NumResponses(); ++k) {
+    loads.col(k) = responses_[k].g1 - of_x.j.col(k);
+  }
+  const Eigen::MatrixXd direction = solver_.Solve(loads);
+  if (!direction.allFinite()) {
+    return false;
+  }
+  const StiffnessProducts of_direction = Multiply(direction);
+  const auto norm = [poisson_ratio](const auto& vector, const auto& h,
+                                    const auto& j) {
+    return std::sqrt(std::max(0.0, vector.dot(h + poisson_ratio * j)));
+  };
+  for (Eigen::Index k = 0; k < NumResponses(); ++k) {
+    Response& response = responses_[k];
+    const double x_norm = norm(x.col(k), of_x.h.col(k), of_x.j.col(k));
+    const double start_norm =
+        norm(direction.col(k), of_direction.h.col(k), of_direction.j.col(k));
+    response.bounds.emplace_back(poisson_ratio, start_norm, tolerance * x_norm,
+                                 tolerance * start_norm);
+    Append(x.col(k), of_x.h.col(k), of_x.j.col(k), response);
+    response.krylov.resize(x.rows(), 0);
+    if (start_norm > 0) {
+      response.krylov = direction.col(k) / start_norm;
+      response.next_product = of_direction.j.col(k) / start_norm;
+      Append(direction.col(k), of_direction.h.col(k), of_direction.j.col(k),
+             response);
+    }
+    FindModes(response);
+  }
+  ++version_;
+  return true;
+}
+
+bool ReducedModel::Enlarge(double tolerance) {
+  const double pole = Pole();
+  std::vector<Response*> growing;
+  for (Response& response : responses_) {
+    if (response.krylov.cols() > 0) {
+      growing.push_back(&response);
+    }
+  }
+  const Eigen::Index num_growing = Eigen::Index(growing.size());
+  if (num_growing == 0) {
+    return false;
+  }
+  Eigen::MatrixXd z(responses_[0].g0.size(), num_growing);
+  for (Eigen::Index k = 0; k < num_growing; ++k) {
+    z.col(k) = growing[k]->next_product;
+  }
+  z = solver_.Solve(z, tolerance);
+  if (!z.allFinite()) {
+    return false;
+  }
+  std::vector<Eigen::VectorXd> columns;
+  for (Eigen::Index k = 0; k < num_growing; ++k) {
+    const Response& response = *growing[k];
+    columns.emplace_back(response.krylov.transpose() * response.next_product);
+    z.col(k) -= response.krylov * columns.back();
+  }
+  StiffnessProducts products = Multiply(z);
+  // What an inexact solve has left along the vectors: of the size of its error.
+  std::vector<double> errors;
+  bool is_orthogonal = true;
+  for (Eigen::Index k = 0; k < num_growing; ++k) {
+    const Eigen::VectorXd rest = growing[k]->krylov.transpose() *
+                                 (products.h.col(k) + pole * products.j.col(k));
+    z.col(k) -= growing[k]->krylov * rest;
+    errors.push_back(rest.norm());
+    is_orthogonal =
+        is_orthogonal && rest.norm() <= kOrthogonal * columns[k].norm();
+  }
+  if (!is_orthogonal) {
+    products = Multiply(z);
+  }
+  const bool is_inexact = solver_.UsesMultigrid();
+  for (Eigen::Index k = 0; k < num_growing; ++k) {
+    Response& response = *growing[k];
+    const Eigen::VectorXd h = products.h.col(k);
+    const Eigen::VectorXd j = products.j.col(k);
+    const double energy = z.col(k).dot(h + pole * j);
+    const double energy_before = energy + columns[k].squaredNorm();
+    const bool is_new = energy > kDependent * energy_before;
+    const double error = std::max(
+        errors[k], is_inexact ? tolerance * std::sqrt(energy_before) : 0.0);
+    const double remainder = is_new ? std::sqrt(energy) : 0;
+    response.bounds.back().Extend(columns[k], error, remainder);
+    if (!is_new) {
+      response.krylov.resize(z.rows(), 0);
+      continue;
+    }
+    Append(z.col(k), h, j, response);
+    FindModes(response);
+    response.krylov.conservativeResize(Eigen::NoChange,
+                                       response.krylov.cols() + 1);
+    response.krylov.rightCols<1>() = z.col(k) / remainder;
+    response.next_product = j / remainder;
+  }
+  ++version_;
+  return true;
+}
+
+void ReducedModel::Append(const Eigen::VectorXd& x, const Eigen::VectorXd& h,
+                          const Eigen::VectorXd& j, Response& response) {
+  // Below this share of the energy, rounding decides on what is left.
+  constexpr double kMostlyDependent = 1e-4;
+  const double pole = Pole();
+  const double energy_before = x.dot(h + pole * j);
+  Eigen::VectorXd rest = x;
+  Eigen::VectorXd rest_h = h;
+  Eigen::VectorXd rest_j = j;
+  double energy = energy_before;
+  const Eigen::Index m = response.basis.cols();
+  if (m > 0) {
+    const Eigen::LLT<Eigen::MatrixXd> gram(response.reduced_h +
+                                           pole * response.reduced_j);
+    for (int i = 0; i < 2; ++i) {
+      rest -= response.basis *
+              gram.solve(response.basis.transpose() * (rest_h + pole * rest_j));
+      const StiffnessProducts products = Multiply(rest);
+      rest_h = products.h;
+      rest_j = products.j;
+      energy = rest.dot(rest_h + pole * rest_j);
+      if (energy > kMostlyDependent * energy_before) {
+        break;
+      }
+    }
+  }
+  if (!(energy > kDependent * energy_before) || !(energy > 0)) {
+    return;
+  }
+  const double scale = 1 / std::sqrt(energy);
+  response.basis.conservativeResize(Eigen::NoChange, m + 1);
+  response.basis.col(m) = scale * rest;
+  AppendSymmetric(scale * (response.basis.transpose() * rest_h),
+                  response.reduced_h);
+  AppendSymmetric(scale * (response.basis.transpose() * rest_j),
+                  response.reduced_j);
+}
+
+// With J z = theta A_pole z, z^T A_pole z = 1, for the reduced matrices.
+void ReducedModel::FindModes(Response& response) const {
+  const double pole = Pole();
+  const auto [values, vectors] = DecomposeSymmetric(
+      response.reduced_j, response.reduced_h + pole * response.reduced_j);
+  response.modes = {
+      pole, vectors, values,
+      vectors.transpose() * (response.basis.transpose() * response.g0),
+      vectors.transpose() * (response.basis.transpose() * response.g1)};
+}
+
+double ReducedModel::ErrorBound(Eigen::Index k, double poisson_ratio) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const KrylovBound& bound : responses_[k].bounds) {
+    least = std::min(least, bound.At(poisson_ratio));
+  }
+  return least;
+}
+
+double ReducedModel::RelativeErrorBound(double poisson_ratio) const {
+  double largest = 0;
+  for (Eigen::Index k = 0; k < NumResponses(); ++k) {
+    const double error = ErrorBound(k, poisson_ratio);
+    if (error > 0) {
+      largest = std::max(largest,
+                         error / responses_[k].modes.EnergyNorm(poisson_ratio));
+    }
+  }
+  return largest;
+}
+
+Work ReducedModel::WorkDone() const {
+  Work work = solver_.WorkDone();
+  work.element_passes += element_passes_;
+  return work;
+}
+
+}  // namespace elastimate

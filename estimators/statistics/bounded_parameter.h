@@ -1,0 +1,102 @@
+#ifndef ELASTIMATE_ESTIMATORS_STATISTICS_BOUNDED_PARAMETER_H_
+#define ELASTIMATE_ESTIMATORS_STATISTICS_BOUNDED_PARAMETER_H_
+
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include <string>
+#include <vector>
+
+#include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/estimators/interface/estimator.h"
+
+namespace elastimate {
+
+/// `options.poisson_ratio`, with the range that fits search where no narrower
+/// bound is given.
+Bounds EffectivePoissonRatioBounds(const EstimatorOptions& options);
+
+/// A parameter block of size one of a Ceres problem, with its bounds.
+class BoundedParameter {
+ public:
+  enum class Side { kNone, kLower, kUpper };
+
+  /// Starts at `value`, moved into the bounds.
+  BoundedParameter(double value, const Bounds& bounds);
+  /// A parameter that keeps its value.
+  static BoundedParameter Constant(double value);
+
+  double Value() const { return value_; }
+  double* Block() { return &value_; }
+  bool IsConstant() const { return is_constant_; }
+  /// Which bound it lies on.
+  Side OnBound() const;
+
+ private:
+  friend ceres::Solver::Summary MinimizeWithinBounds(
+      const ceres::Solver::Options& options,
+      const std::vector<BoundedParameter*>& parameters,
+      ceres::Problem& problem);
+
+  void Constrain(ceres::Problem& problem);
+  /// Holds it when it lies on a bound; whether it does.
+  bool Hold(ceres::Problem& problem);
+  /// Releases it when it is held and the cost falls towards the interior;
+  /// whether it does.
+  bool Release(ceres::Problem& problem);
+
+  double value_;
+  Bounds bounds_;
+  bool is_constant_ = false;
+};
+
+/// Minimises `problem`, which has all `parameters` as its blocks.
+///
+/// The projected steps of a trust region method stall on a bound, since they
+/// take the step of the other parameters from the unbounded problem.  So
+/// parameters that reach a bound are held there while the others converge, and
+/// released again when the gradient points into the interior.
+ceres::Solver::Summary MinimizeWithinBounds(
+    const ceres::Solver::Options& options,
+    const std::vector<BoundedParameter*>& parameters, ceres::Problem& problem);
+
+/// Which bounds hold an estimate.
+struct ActiveBounds {
+  BoundedParameter::Side youngs_modulus = BoundedParameter::Side::kNone;
+  BoundedParameter::Side poisson_ratio = BoundedParameter::Side::kNone;
+  /// nu has run into the end of its physical range, which no option set.
+  bool is_physical_limit = false;
+};
+
+/// Enters the active bounds and a warning for each into `estimate`, and sets
+/// E and nu to the given bounds they lie on.
+ActiveBounds NoteActiveBounds(const EstimatorOptions& options,
+                              BoundedParameter::Side youngs_modulus,
+                              const BoundedParameter& poisson_ratio,
+                              Estimate& estimate);
+
+/// For nu on a bound: sets `estimate` to not usable unless the data decide on
+/// nu, or at least on E; adds what nu may be off by to the variance of E.
+/// `slope` = d ln E / d nu of the parameters that fit
+/// alike; `standard_error` is that of nu without the bound.
+void JudgePoissonRatioOnBound(const EstimatorOptions& options,
+                              const ActiveBounds& active, double slope,
+                              double standard_error, Estimate& estimate);
+
+/// For E on a bound: sets `estimate` to not usable where E is more than 10 %
+/// off `without_bound`, the E that fits best, and the square sum exceeds its
+/// least significantly: by `excess`, where each residual has `variance`.
+void JudgeContradictedBound(double excess, double variance,
+                            double without_bound, Estimate& estimate);
+
+/// For E on a bound: sets `estimate` to not usable unless the data, or the room
+/// that the bounds leave, determine E and with it nu; adds what E may be off by
+/// to the variance of nu, unless nu is known.  `slope` = d nu / d ln E of the
+/// parameters that fit alike; `standard_error` is that of ln E without the
+/// bound.
+void JudgeYoungsModulusOnBound(const EstimatorOptions& options, double slope,
+                               double standard_error, Estimate& estimate);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_STATISTICS_BOUNDED_PARAMETER_H_

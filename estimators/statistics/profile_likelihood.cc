@@ -1,0 +1,97 @@
+#include "elastimate/estimators/statistics/profile_likelihood.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/interface/statistics.h"
+
+namespace elastimate {
+namespace {
+
+// Standard deviations of a normal distribution that hold 95 % of it.
+constexpr double kTwoSidedErrors = 1.960;
+
+// 90 %, for the end of a one-sided interval of 95 %.
+constexpr double kOneSidedQuantile = 2.706;
+
+// Widens the standard errors to a profile likelihood with a 95 % interval of
+// nu, each end with the E that fits best there.  An end at the limit of the
+// range is left out.
+void WidenToProfile(const Profile& profile, Estimate& estimate) {
+  Eigen::Vector2d square_sum = Eigen::Vector2d::Zero();
+  int num_ends = 0;
+  for (const IsotropicElasticity& end : {profile.lower, profile.upper}) {
+    if (end.poisson_ratio > kSmallestPoissonRatio &&
+        end.poisson_ratio < kLargestPoissonRatio) {
+      square_sum += Eigen::Vector2d(
+                        end.youngs_modulus - estimate.elasticity.youngs_modulus,
+                        end.poisson_ratio - estimate.elasticity.poisson_ratio)
+                        .cwiseAbs2();
+      ++num_ends;
+    }
+  }
+  if (num_ends == 0) {
+    return;
+  }
+  const Eigen::Vector2d error =
+      (square_sum / num_ends).cwiseSqrt() / kTwoSidedErrors;
+  // Of a parameter that varies; NaN compares false.
+  const auto factor = [&](int i) {
+    const double ratio = error(i) / std::sqrt(estimate.covariance(i, i));
+    return ratio > 1 ? ratio : 1;
+  };
+  const Eigen::Vector2d factors(factor(0), factor(1));
+  estimate.covariance =
+      factors.asDiagonal() * estimate.covariance * factors.asDiagonal();
+}
+
+}  // namespace
+
+double ShareOfDistanceToPole(const Estimate& estimate) {
+  const double nu = estimate.elasticity.poisson_ratio;
+  return estimate.PoissonRatioStandardError().value_or(0) /
+         std::min(0.5 - nu, 1 + nu);
+}
+
+bool HasRivalMinimum(const std::function<Profile(double quantile)>& profile_of,
+                     const Estimate& estimate) {
+  constexpr double kFar = 4;
+  const Profile profile = profile_of(kTwoSidedQuantile);
+  const double nu = estimate.elasticity.poisson_ratio;
+  const std::optional<double> error = estimate.PoissonRatioStandardError();
+  return error && (profile.upper.poisson_ratio - nu > kFar * *error ||
+                   nu - profile.lower.poisson_ratio > kFar * *error);
+}
+
+void DescribeProfile(const std::function<Profile(double quantile)>& profile_of,
+                     Estimate& estimate) {
+  Profile profile = profile_of(kTwoSidedQuantile);
+  WidenToProfile(profile, estimate);
+  const bool reaches_upper =
+      profile.upper.poisson_ratio >= kLargestPoissonRatio;
+  const bool reaches_lower =
+      profile.lower.poisson_ratio <= kSmallestPoissonRatio;
+  if (reaches_upper != reaches_lower) {
+    profile = profile_of(kOneSidedQuantile);
+  }
+  estimate.poisson_ratio_interval = {
+      reaches_lower ? -1 : profile.lower.poisson_ratio,
+      reaches_upper ? 0.5 : profile.upper.poisson_ratio};
+  const double nu = estimate.elasticity.poisson_ratio;
+  if ((reaches_lower && nu + 1 > kLargestPoissonRatioDistance) ||
+      (reaches_upper && 0.5 - nu > kLargestPoissonRatioDistance)) {
+    const Interval& interval = *estimate.poisson_ratio_interval;
+    estimate.Fail(Status::kNotIdentifiable,
+                  "the data leave Poisson's ratio between " +
+                      TwoDigits(interval.lower) + " and " +
+                      TwoDigits(interval.upper) +
+                      "; give it, or measure larger displacements or other "
+                      "load cases",
+                  "Poisson's ratio is not determined");
+  }
+}
+
+}  // namespace elastimate

@@ -1,0 +1,67 @@
+#include "elastimate/io/gmsh/gmsh_mesh.h"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <map>
+#include <string>
+
+#include "elastimate/io/gmsh/gmsh_text_check.h"
+#include "elastimate/io/helper/private_link.h"
+#include "elastimate/io/text/input_error.h"
+
+namespace elastimate {
+namespace {
+
+/// Gmsh runs a .msh file that does not begin like one as a script.
+void CheckMshBegin(const std::filesystem::path& path) {
+  std::string begin(16, '\0');
+  std::ifstream(path, std::ios::binary)
+      .read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  if (begin.rfind("$MeshFormat", 0) != 0 && begin.rfind("$NOD", 0) != 0 &&
+      begin.rfind("$Comments", 0) != 0) {
+    ThrowDamagedFile(path, "it does not begin with $MeshFormat or $NOD");
+  }
+}
+
+/// Gmsh takes many a file that was cut for a whole one.
+void CheckEnd(const std::filesystem::path& path) {
+  static const std::map<std::string, std::string> kLastLines = {
+      {".msh", "$END"}, {".mesh", "END"}, {".unv", "-1"}, {".bdf", "ENDDATA"}};
+  const std::string& expected = kLastLines.at(FileExtension(path));
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  const std::streamoff size = file.tellg();
+  std::string end(std::min<std::streamoff>(size, 256), '\0');
+  file.seekg(size - static_cast<std::streamoff>(end.size()))
+      .read(end.data(), static_cast<std::streamsize>(end.size()));
+  end.erase(end.find_last_not_of(" \t\r\n") + 1);
+  end.erase(0, end.find_last_of("\r\n") + 1);
+  end.erase(0, end.find_first_not_of(" \t"));
+  std::transform(end.begin(), end.end(), end.begin(),
+                 [](unsigned char c) { return std::toupper(c); });
+  if (end.rfind(expected, 0) != 0) {
+    ThrowDamagedFile(path, "its last line does not begin with " + expected);
+  }
+}
+
+}  // namespace
+
+MeshProgram GmshProgram() {
+  return {"elastimate-gmsh", "Gmsh", "reads Gmsh files and meshes organs",
+          "open it in Gmsh and save it again"};
+}
+
+MeshFile ReadGmshMesh(const std::filesystem::path& path) {
+  if (FileExtension(path) == ".msh") {
+    CheckMshBegin(path);
+  }
+  CheckEnd(path);
+  if (const std::string damage = WhyGmshTextIsDamaged(path); !damage.empty()) {
+    ThrowDamagedFile(path, damage);
+  }
+  // Gmsh runs what it finds in a file of that name and ".opt" beside it.
+  const PrivateLink link(path, "mesh" + FileExtension(path));
+  return ReadByProgram(GmshProgram(), {"read", link.Path().string()}, path);
+}
+
+}  // namespace elastimate

@@ -1,0 +1,24 @@
+#ifndef ELASTIMATE_IO_GMSH_GMSH_MESH_H_
+#define ELASTIMATE_IO_GMSH_GMSH_MESH_H_
+
+#include <filesystem>
+
+#include "elastimate/io/helper/mesh_program_call.h"
+#include "elastimate/io/mesh/mesh_file.h"
+
+namespace elastimate {
+
+/// The program that runs Gmsh, "read LINK FILE" or "organ N".  Beside what it
+/// can do for the safety of this process, it keeps Gmsh's 90 libraries out of
+/// it, which take ten times as long to load as all others.
+MeshProgram GmshProgram();
+
+/// Reads .msh (versions 1, 2 and 4; with the node and element data in it),
+/// .mesh, .unv and .bdf files through the Gmsh library.  Elements of lower
+/// dimension only make up the physical groups; any other volume element but the
+/// linear tetrahedron is an error.  Throws as ReadByProgram does.
+MeshFile ReadGmshMesh(const std::filesystem::path& path);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_IO_GMSH_GMSH_MESH_H_

@@ -1,0 +1,63 @@
+#include "elastimate/io/mesh/mesh_file.h"
+
+#include <cctype>
+#include <fstream>
+#include <system_error>
+
+#include "elastimate/io/text/input_error.h"
+
+namespace elastimate {
+
+std::string FileExtension(const std::filesystem::path& path) {
+  std::string small = path.extension().string();
+  std::string capital = small;
+  for (char& c : small) {
+    c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  for (char& c : capital) {
+    c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  }
+  return path.extension() == capital ? small : path.extension().string();
+}
+
+void CheckReadable(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status status =
+      std::filesystem::status(path, error);
+  if (status.type() == std::filesystem::file_type::not_found) {
+    ThrowInputError(path, "no such file; check the path");
+  }
+  if (std::filesystem::is_directory(status)) {
+    ThrowInputError(path, "this is a folder; give a file");
+  }
+  if (!std::filesystem::is_regular_file(status)) {
+    ThrowInputError(path, "this is not a regular file; give a file");
+  }
+  if (!std::ifstream(path, std::ios::binary)) {
+    ThrowInputError(path, "the file cannot be opened; check its permissions");
+  }
+  if (std::filesystem::file_size(path, error) == 0) {
+    ThrowInputError(path, "the file is empty; write it again");
+  }
+}
+
+std::string NodeName(const MeshFile& mesh, Eigen::Index node) {
+  if (mesh.node_numbers.empty()) {
+    return "node " + std::to_string(node);
+  }
+  return "node " + std::to_string(node) + " (number " +
+         std::to_string(mesh.node_numbers[node]) + " in Gmsh)";
+}
+
+void RequireNodePositions(const MeshFile& mesh) {
+  if (mesh.num_nodes_left_out > 0) {
+    ThrowInputError(
+        mesh.path,
+        "Gmsh leaves out " + std::to_string(mesh.num_nodes_left_out) +
+            " nodes that no element uses, so that nodes cannot be told by "
+            "their place in the file; save the mesh without these nodes "
+            "(gmsh -save does)");
+  }
+}
+
+}  // namespace elastimate

@@ -1,0 +1,78 @@
+#ifndef ELASTIMATE_IO_MESH_MESH_FILE_H_
+#define ELASTIMATE_IO_MESH_MESH_FILE_H_
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace elastimate {
+
+/// A named array of a mesh file: one column per node or per tetrahedron.
+struct FileArray {
+  std::string name;
+  Eigen::MatrixXd values;
+};
+
+/// A physical group of a Gmsh file.
+struct PhysicalGroup {
+  int dimension;
+  int number;
+  std::string name;           ///< Empty when the file gives it no name.
+  std::vector<int> nodes;     ///< Of its elements; ascending, without repeats.
+  Eigen::MatrixXi triangles;  ///< 3 x num_triangles; of a group of dimension 2.
+};
+
+/// What a VTK or Gmsh file holds, in one form.
+///
+/// A node is known by its zero-based position among all nodes of the file,
+/// those without a tetrahedron included: the order of the points in a VTK file,
+/// ascending node numbers in a file read by Gmsh.
+struct MeshFile {
+  std::filesystem::path path;
+  Eigen::Matrix3Xd nodes;
+  Eigen::MatrixXi tetrahedra;  ///< 4 x num_tetrahedra, in range, at least one.
+  std::vector<FileArray> node_arrays;
+  std::vector<FileArray> tetrahedron_arrays;
+  std::vector<PhysicalGroup> groups;
+
+  Eigen::Array<bool, 1, Eigen::Dynamic> used;  ///< By a tetrahedron.
+  bool has_other_cells = false;  ///< Cells other than tetrahedra were ignored.
+
+  bool is_vtk = true;
+  std::vector<std::size_t> node_numbers;  ///< Gmsh's; empty for a VTK file.
+  /// Nodes of the file that Gmsh left out because no element uses them: the
+  /// positions of all others are then not known.
+  Eigen::Index num_nodes_left_out = 0;
+};
+
+/// ".vtu" of "a.vtu" and of "A.VTU".  Of "a.Vtu" it is ".Vtu": Gmsh tells its
+/// formats by names in all small or all capital letters, and runs a file of any
+/// other name as a script.
+std::string FileExtension(const std::filesystem::path& path);
+
+/// Throws std::invalid_argument unless `path` is a regular file with content.
+void CheckReadable(const std::filesystem::path& path);
+
+/// The array called `name`, or null.
+inline const Eigen::MatrixXd* FindArray(const std::vector<FileArray>& arrays,
+                                        const std::string& name) {
+  for (const FileArray& array : arrays) {
+    if (array.name == name) {
+      return &array.values;
+    }
+  }
+  return nullptr;
+}
+
+/// "node 7" or "node 7 (number 12 in Gmsh)", for error messages.
+std::string NodeName(const MeshFile& mesh, Eigen::Index node);
+
+/// Throws std::invalid_argument when the positions of the nodes in the file are
+/// not known (num_nodes_left_out).
+void RequireNodePositions(const MeshFile& mesh);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_IO_MESH_MESH_FILE_H_

@@ -1,0 +1,170 @@
+#include "elastimate/io/report/report.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/io/text/printable.h"
+
+namespace elastimate {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegreesPerRadian = 57.295779513082323;
+
+Json OrNull(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
+
+Json OptionsJson(const EstimatorOptions& options) {
+  const char* const loss_names[] = {"none", "huber", "cauchy"};
+  const char* const solver_names[] = {"automatic", "cholesky", "multigrid"};
+  return {{"nu", OrNull(options.known_poisson_ratio)},
+          {"nu_min", OrNull(options.poisson_ratio.lower)},
+          {"nu_max", OrNull(options.poisson_ratio.upper)},
+          {"youngs_min", OrNull(options.youngs_modulus.lower)},
+          {"youngs_max", OrNull(options.youngs_modulus.upper)},
+          {"loss", loss_names[static_cast<int>(options.loss)]},
+          {"degree", options.virtual_field_degree
+                         ? Json(*options.virtual_field_degree)
+                         : Json(nullptr)},
+          {"max_iterations", options.max_iterations},
+          {"solver", solver_names[static_cast<int>(options.solver)]}};
+}
+
+Json LoadsJson(const Scene& scene) {
+  Json cases = Json::array();
+  for (const LoadCase& load_case : scene.load_cases) {
+    Json loads = Json::array();
+    for (const Load& load : load_case.loads) {
+      const LoadResultant resultant = ResultantOf(scene.mesh, load);
+      loads.push_back(
+          {{"type", resultant.type},
+           {"resultant",
+            {resultant.force[0], resultant.force[1], resultant.force[2]}},
+           {"area", OrNull(resultant.area)}});
+    }
+    cases.push_back(loads);
+  }
+  return cases;
+}
+
+Json NoticesJson(const std::vector<std::string>& notices) {
+  Json list = Json::array();
+  for (const std::string& notice : notices) {
+    list.push_back(Printable(notice, kLongestSentence));
+  }
+  return list;
+}
+
+Json MismatchJson(const Estimate& estimate) {
+  if (!estimate.model_mismatch) {
+    return nullptr;
+  }
+  return {{"chi_squared", estimate.model_mismatch->statistic},
+          {"p_value", estimate.model_mismatch->p_value}};
+}
+
+Json WorkJson(const Work& work) {
+  return {{"element_passes", work.element_passes},
+          {"factorizations", work.factorizations},
+          {"multigrid_set_ups", work.multigrid_set_ups},
+          {"solves", work.solves},
+          {"iterations", work.iterations}};
+}
+
+Json RungsJson(const Estimate& estimate) {
+  Json rungs = Json::array();
+  for (const Rung& rung : estimate.rungs) {
+    rungs.push_back({{"estimator", rung.estimator},
+                     {"order", rung.element_order},
+                     {"status", rung.status ? Json(StatusName(*rung.status))
+                                            : Json(nullptr)},
+                     {"youngs_modulus", OrNull(rung.elasticity.youngs_modulus)},
+                     {"poisson_ratio", OrNull(rung.elasticity.poisson_ratio)},
+                     {"work", WorkJson(rung.work)},
+                     {"seconds", rung.seconds},
+                     {"decision", rung.decision}});
+  }
+  return rungs;
+}
+
+Json DiagnosticsJson(const Estimate& estimate) {
+  std::optional<double> angle = estimate.identifiability_angle;
+  if (angle) {
+    *angle *= kDegreesPerRadian;
+  }
+  return {{"identifiability_angle_deg", OrNull(angle)},
+          {"noise_attenuation", OrNull(estimate.noise_attenuation)},
+          {"residual_correlation", OrNull(estimate.residual_correlation)},
+          {"discretization_error", OrNull(estimate.discretization_error)},
+          {"poisson_ratio_discretization_error",
+           OrNull(estimate.poisson_ratio_discretization_error)},
+          {"model_mismatch", MismatchJson(estimate)},
+          {"active_bounds", estimate.active_bounds},
+          {"why_no_standard_error", estimate.why_no_standard_error},
+          {"warnings", estimate.warnings}};
+}
+
+Json SecondsJson(const Estimate& estimate, const ReportTimes& times) {
+  Json stages = Json::object();
+  for (const StageTime& stage : estimate.stages) {
+    stages[stage.stage] = stage.seconds;
+  }
+  return {{"read", times.read},
+          {"estimate", estimate.seconds},
+          {"total", times.total},
+          {"stages", stages}};
+}
+
+}  // namespace
+
+std::string Version() { return ELASTIMATE_VERSION; }
+
+std::string JsonReport(const Estimate& estimate, const Scene& scene,
+                       const EstimatorOptions& options,
+                       const ReportTimes& times,
+                       const std::vector<std::string>& notices) {
+  const IsotropicElasticity& elasticity = estimate.elasticity;
+  const std::optional<Interval>& interval = estimate.poisson_ratio_interval;
+  const Json report = {
+      {"elastimate", Version()},
+      {"estimator", estimate.estimator},
+      {"status", StatusName(estimate.status)},
+      {"usable", estimate.IsUsable()},
+      {"message", estimate.message},
+      {"youngs_modulus", OrNull(elasticity.youngs_modulus)},
+      {"poisson_ratio", OrNull(elasticity.poisson_ratio)},
+      {"standard_error",
+       {{"youngs_modulus", OrNull(estimate.YoungsModulusStandardError())},
+        {"poisson_ratio", OrNull(estimate.PoissonRatioStandardError())},
+        {"shear_modulus", OrNull(estimate.ShearModulusStandardError())},
+        {"bulk_compliance", OrNull(estimate.BulkComplianceStandardError())}}},
+      {"correlation", OrNull(estimate.Correlation())},
+      {"poisson_ratio_interval",
+       interval ? Json({interval->lower, interval->upper}) : Json(nullptr)},
+      {"shear_modulus", OrNull(elasticity.ShearModulus())},
+      {"bulk_modulus", OrNull(elasticity.BulkModulus())},
+      {"bulk_compliance", OrNull(elasticity.BulkCompliance())},
+      {"noise_sd", OrNull(estimate.noise_sd)},
+      {"mesh",
+       {{"nodes", scene.mesh.NumVertices()},
+        {"tetrahedra", scene.mesh.NumElements()},
+        {"load_cases", scene.load_cases.size()},
+        {"order", scene.mesh.Order()}}},
+      {"loads", LoadsJson(scene)},
+      {"notices", NoticesJson(notices)},
+      {"residual",
+       {{"force_relative", OrNull(estimate.force_residual)},
+        {"displacement_relative", OrNull(estimate.displacement_residual)}}},
+      {"diagnostics", DiagnosticsJson(estimate)},
+      {"work", WorkJson(estimate.work)},
+      {"rungs", RungsJson(estimate)},
+      {"options", OptionsJson(options)},
+      {"seconds", SecondsJson(estimate, times)}};
+  return report.dump(2) + "\n";
+}
+
+}  // namespace elastimate

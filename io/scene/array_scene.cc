@@ -1,0 +1,196 @@
+#include "elastimate/io/scene/array_scene.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "elastimate/io/text/input_error.h"
+#include "elastimate/io/text/printable.h"
+
+namespace elastimate {
+namespace {
+
+std::string CaseSuffix(int number) {
+  return number == 1 ? "" : "_" + std::to_string(number);
+}
+
+std::string ArrayNames(const MeshFile& mesh) {
+  std::string names;
+  for (const FileArray& array : mesh.node_arrays) {
+    names += (names.empty() ? "" : ", ") + Printable(array.name);
+  }
+  return names.empty() ? "none" : names;
+}
+
+[[noreturn]] void ThrowMissing(const MeshFile& mesh, const std::string& name) {
+  if (!mesh.is_vtk && mesh.node_arrays.empty()) {
+    ThrowInputError(mesh.path,
+                    "a mesh alone is not a scene; write a scene.json with "
+                    "\"mesh\": \"" +
+                        PrintablePath(mesh.path.filename()) +
+                        "\" that also says what was held, pushed and measured");
+  }
+  ThrowInputError(mesh.path, "the point array '" + name +
+                                 "' is missing; add it (the point arrays of "
+                                 "this file are: " +
+                                 ArrayNames(mesh) + ")");
+}
+
+/// Null when there is no such array.
+const Eigen::MatrixXd* FindNodeArray(const MeshFile& mesh,
+                                     const std::string& name,
+                                     bool one_component_is_enough) {
+  const Eigen::MatrixXd* array = FindArray(mesh.node_arrays, name);
+  if (array != nullptr && array->rows() != 3 &&
+      !(one_component_is_enough && array->rows() == 1)) {
+    ThrowInputError(mesh.path, "the point array '" + name + "' has " +
+                                   std::to_string(array->rows()) +
+                                   " components; give it " +
+                                   (one_component_is_enough ? "1 or 3" : "3"));
+  }
+  return array;
+}
+
+const Eigen::MatrixXd& RequireNodeArray(const MeshFile& mesh,
+                                        const std::string& name,
+                                        bool one_component_is_enough) {
+  const Eigen::MatrixXd* array =
+      FindNodeArray(mesh, name, one_component_is_enough);
+  if (array == nullptr) {
+    ThrowMissing(mesh, name);
+  }
+  return *array;
+}
+
+Supports ReadSupports(const MeshFile& mesh) {
+  Supports supports;
+  supports.held = ToComponentMask(mesh.path, "the point array 'fixed'", mesh,
+                                  RequireNodeArray(mesh, "fixed", true));
+  supports.displacement.setZero(3, mesh.nodes.cols());
+  if (const auto* prescribed = FindNodeArray(mesh, "prescribed", false)) {
+    RequireFinite(mesh.path, "the point array 'prescribed'", mesh, *prescribed,
+                  supports.held);
+    supports.displacement =
+        supports.held.select(prescribed->array(), 0.0).matrix();
+  }
+  return supports;
+}
+
+LoadCase ReadLoadCase(const MeshFile& mesh, int number,
+                      Measurement measurement) {
+  const std::string suffix = CaseSuffix(number);
+  const ComponentMask all = ComponentMask::Constant(3, mesh.nodes.cols(), true);
+  LoadCase load_case;
+  NodalForces forces{RequireNodeArray(mesh, "force" + suffix, false)};
+  RequireFinite(mesh.path, "the point array 'force" + suffix + "'", mesh,
+                forces.force, all);
+  load_case.loads.emplace_back(std::move(forces));
+  const std::string name = "displacement" + suffix;
+  const Eigen::MatrixXd* displacement = FindNodeArray(mesh, name, false);
+  if (displacement == nullptr) {
+    if (measurement == Measurement::kRequired) {
+      ThrowMissing(mesh, name);
+    }
+    return load_case;
+  }
+  load_case.displacement = *displacement;
+  if (const auto* observed = FindNodeArray(mesh, "observed" + suffix, true)) {
+    load_case.observed = ToComponentMask(
+        mesh.path, "the point array 'observed" + suffix + "'", mesh, *observed);
+  }
+  RequireFinite(mesh.path, "the point array '" + name + "'", mesh,
+                load_case.displacement,
+                load_case.observed.size() > 0 ? load_case.observed : all,
+                "correct it or mark it as not measured in the array "
+                "'observed" +
+                    suffix + "'");
+  ClearUnobserved(load_case);
+  return load_case;
+}
+
+/// Of the first load case and of the numbered ones that follow without a gap.
+int CountLoadCases(const MeshFile& mesh) {
+  int count = 1;
+  const auto has_next = [&](const std::string& name) {
+    return FindArray(mesh.node_arrays, name + CaseSuffix(count + 1)) != nullptr;
+  };
+  while (has_next("displacement") || has_next("force")) {
+    ++count;
+  }
+  return count;
+}
+
+bool IsNumber(const std::string& text) {
+  return !text.empty() &&
+         text.find_first_not_of("0123456789") == std::string::npos;
+}
+
+/// An array with the number of no load case would otherwise be ignored
+/// silently.
+void CheckCaseNumbers(const MeshFile& mesh, int num_cases) {
+  for (const FileArray& array : mesh.node_arrays) {
+    const std::size_t underscore = array.name.find('_');
+    const std::string stem = array.name.substr(0, underscore);
+    if (underscore == std::string::npos) {
+      continue;
+    }
+    const std::string number = array.name.substr(underscore + 1);
+    if ((stem == "fixed" || stem == "prescribed") && IsNumber(number)) {
+      ThrowInputError(mesh.path,
+                      "the point array '" + Printable(array.name) +
+                          "' belongs to no load case, since all have the same "
+                          "supports; rename it or leave it out");
+    }
+    if (stem != "displacement" && stem != "force" && stem != "observed") {
+      continue;
+    }
+    bool is_load_case = !IsNumber(number);
+    for (int i = 2; i <= num_cases && !is_load_case; ++i) {
+      is_load_case = number == std::to_string(i);
+    }
+    if (!is_load_case) {
+      ThrowInputError(mesh.path,
+                      "the point array '" + Printable(array.name) +
+                          "' belongs to no load case; number the further load "
+                          "cases from 2 without a gap (displacement_2, "
+                          "force_2, displacement_3, ...)");
+    }
+  }
+}
+
+void NoteLostForces(FileScene& file_scene) {
+  for (std::size_t i = 0; i < file_scene.scene.load_cases.size(); ++i) {
+    const auto& force =
+        std::get<NodalForces>(file_scene.scene.load_cases[i].loads[0]).force;
+    const Eigen::Index lost =
+        ((force.array() != 0).colwise().any() && !file_scene.mesh.used).count();
+    if (lost > 0) {
+      file_scene.notices.push_back(
+          PrintablePath(file_scene.mesh.path) + ": the array 'force" +
+          CaseSuffix(static_cast<int>(i) + 1) + "' has forces on " +
+          std::to_string(lost) +
+          " points that no tetrahedron uses; they are dropped with the points");
+    }
+  }
+}
+
+}  // namespace
+
+FileScene SceneFromArrays(MeshFile mesh, Measurement measurement) {
+  FileScene file_scene;
+  file_scene.scene.mesh.regions = ReadRegions(mesh);
+  const int num_cases = CountLoadCases(mesh);
+  for (int number = 1; number <= num_cases; ++number) {
+    file_scene.scene.load_cases.push_back(
+        ReadLoadCase(mesh, number, measurement));
+  }
+  CheckCaseNumbers(mesh, num_cases);
+  file_scene.scene.supports = ReadSupports(mesh);
+  file_scene.scene.mesh.nodes = std::move(mesh.nodes);
+  file_scene.scene.mesh.elements = std::move(mesh.tetrahedra);
+  file_scene.mesh = std::move(mesh);
+  NoteLostForces(file_scene);
+  return file_scene;
+}
+
+}  // namespace elastimate

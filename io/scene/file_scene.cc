@@ -1,0 +1,74 @@
+#include "elastimate/io/scene/file_scene.h"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "elastimate/io/text/input_error.h"
+
+namespace elastimate {
+namespace {
+
+const char* const kAxis[3] = {"x", "y", "z"};
+
+}  // namespace
+
+Eigen::VectorXi ReadRegions(const MeshFile& mesh) {
+  const Eigen::MatrixXd* array = FindArray(mesh.tetrahedron_arrays, "region");
+  if (array == nullptr) {
+    return {};
+  }
+  if (array->rows() != 1) {
+    ThrowInputError(mesh.path, "the cell array 'region' has " +
+                                   std::to_string(array->rows()) +
+                                   " components; give it one");
+  }
+  for (Eigen::Index i = 0; i < array->cols(); ++i) {
+    const double value = (*array)(0, i);
+    if (value != std::floor(value) ||
+        std::abs(value) > std::numeric_limits<int>::max()) {
+      std::ostringstream number;  // Of few digits, whatever its magnitude.
+      number << value;
+      ThrowInputError(mesh.path, "the cell array 'region' is " + number.str() +
+                                     " at tetrahedron " + std::to_string(i) +
+                                     "; give it integers below 2^31");
+    }
+  }
+  return array->row(0).transpose().cast<int>();
+}
+
+void RequireFinite(const std::filesystem::path& file, const std::string& what,
+                   const MeshFile& mesh, const Eigen::Matrix3Xd& values,
+                   const ComponentMask& mask, const std::string& mend) {
+  for (Eigen::Index node = 0; node < values.cols(); ++node) {
+    for (Eigen::Index axis = 0; axis < 3 && mesh.used[node]; ++axis) {
+      const double value = values(axis, node);
+      if (mask(axis, node) && !std::isfinite(value)) {
+        ThrowInputError(file, what + " of " + NodeName(mesh, node) + " (" +
+                                  kAxis[axis] + ") is " +
+                                  std::to_string(value).append("; " + mend));
+      }
+    }
+  }
+}
+
+ComponentMask ToComponentMask(const std::filesystem::path& file,
+                              const std::string& what, const MeshFile& mesh,
+                              const Eigen::MatrixXd& values) {
+  const Eigen::Matrix3Xd numbers =
+      values.rows() == 1 ? Eigen::Matrix3Xd(values.replicate(3, 1))
+                         : Eigen::Matrix3Xd(values);
+  RequireFinite(file, what, mesh, numbers,
+                ComponentMask::Constant(3, numbers.cols(), true));
+  return numbers.array() != 0;
+}
+
+void ClearUnobserved(LoadCase& load_case) {
+  if (load_case.observed.size() > 0) {
+    load_case.displacement =
+        (load_case.observed || load_case.displacement.array().isFinite())
+            .select(load_case.displacement, 0.0);
+  }
+}
+
+}  // namespace elastimate

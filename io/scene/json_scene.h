@@ -1,0 +1,18 @@
+#ifndef ELASTIMATE_IO_SCENE_JSON_SCENE_H_
+#define ELASTIMATE_IO_SCENE_JSON_SCENE_H_
+
+#include <filesystem>
+
+#include "elastimate/io/scene/file_scene.h"
+#include "elastimate/io/scene/scene_reader.h"
+
+namespace elastimate {
+
+/// Reads a scene.json and the files it names, as ReadScene describes.  Throws
+/// std::invalid_argument, naming the file and the place in it.
+FileScene ReadJsonScene(const std::filesystem::path& path,
+                        Measurement measurement);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_IO_SCENE_JSON_SCENE_H_

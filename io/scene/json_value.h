@@ -1,0 +1,57 @@
+#ifndef ELASTIMATE_IO_SCENE_JSON_VALUE_H_
+#define ELASTIMATE_IO_SCENE_JSON_VALUE_H_
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace elastimate {
+
+/// Parses a JSON file.  Throws std::invalid_argument, naming the file, line and
+/// column, for anything but one JSON document without repeated keys.
+nlohmann::json ParseJsonFile(const std::filesystem::path& path);
+
+/// A value of a JSON file that knows where it is, so that what is wrong with it
+/// can be said as "FILE: cases[0].loads[1].surface must be ...".  Every method
+/// throws that as std::invalid_argument when the value is not as asked for.
+///
+/// Views `file` and `value`, which must outlive it.
+class JsonValue {
+ public:
+  JsonValue(const std::filesystem::path& file, const nlohmann::json& value,
+            std::string place = "")
+      : file_(&file), value_(&value), place_(std::move(place)) {}
+
+  /// Throws unless this is an object all of whose keys are among `keys`.
+  void CheckKeys(const std::vector<std::string>& keys) const;
+
+  bool Has(const std::string& key) const { return value_->contains(key); }
+  std::size_t NumKeys() const { return value_->size(); }
+  JsonValue At(const std::string& key) const;
+  std::vector<JsonValue> Items() const;
+
+  bool IsString() const { return value_->is_string(); }
+  bool IsInteger() const { return value_->is_number_integer(); }
+  std::string String() const;
+  long long Integer() const;
+  double Number() const;
+  Eigen::Vector3d Vector() const;
+
+  const std::filesystem::path& File() const { return *file_; }
+  const std::string& Place() const { return place_; }
+
+  /// Throws "FILE: PLACE sentence".
+  [[noreturn]] void Fail(const std::string& sentence) const;
+
+ private:
+  const std::filesystem::path* file_;
+  const nlohmann::json* value_;
+  std::string place_;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_IO_SCENE_JSON_VALUE_H_

@@ -1,0 +1,18 @@
+#ifndef ELASTIMATE_IO_SCENE_MESH_READER_H_
+#define ELASTIMATE_IO_SCENE_MESH_READER_H_
+
+#include <filesystem>
+
+#include "elastimate/io/mesh/mesh_file.h"
+
+namespace elastimate {
+
+/// Reads .vtu, .vtk, .msh, .mesh, .unv and .bdf files; the extension may be in
+/// capital letters.  Node positions are finite where a tetrahedron uses them;
+/// no tetrahedron comes twice; arrays are as the file has them.  Throws as
+/// ReadScene does.
+MeshFile ReadMeshFile(const std::filesystem::path& path);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_IO_SCENE_MESH_READER_H_

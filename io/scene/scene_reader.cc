@@ -1,0 +1,265 @@
+#include "elastimate/io/scene/scene_reader.h"
+
+#include <array>
+#include <cmath>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <system_error>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "elastimate/core/mesh/coincident_nodes.h"
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/io/mesh/mesh_file.h"
+#include "elastimate/io/scene/array_scene.h"
+#include "elastimate/io/scene/file_scene.h"
+#include "elastimate/io/scene/json_scene.h"
+#include "elastimate/io/scene/mesh_reader.h"
+#include "elastimate/io/text/input_error.h"
+#include "elastimate/io/text/printable.h"
+
+namespace elastimate {
+namespace {
+
+/// Files in text keep fewer digits than others of the same mesh.
+constexpr double kSameLength = 1e-6;  // Of the largest coordinate.
+
+bool AreClose(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
+  return (a - b).cwiseAbs().maxCoeff() <= kSameLength * a.cwiseAbs().maxCoeff();
+}
+
+/// What differs between the specimens of two scenes; empty when nothing does.
+std::string WhyDifferent(const Scene& first, const Scene& other) {
+  const Mesh& mesh = first.mesh;
+  if (mesh.NumNodes() != other.mesh.NumNodes()) {
+    return "it has " + std::to_string(other.mesh.NumNodes()) +
+           " nodes instead of " + std::to_string(mesh.NumNodes());
+  }
+  if (!AreClose(mesh.nodes, other.mesh.nodes)) {
+    return "its nodes are at other positions";
+  }
+  if (mesh.elements.cols() != other.mesh.elements.cols() ||
+      mesh.elements != other.mesh.elements) {
+    return "its cells differ";
+  }
+  if (mesh.regions.size() != other.mesh.regions.size() ||
+      mesh.regions != other.mesh.regions) {
+    return "its array 'region' differs";
+  }
+  if ((first.supports.held != other.supports.held).any()) {
+    return "it holds other components (the array 'fixed', or the supports)";
+  }
+  if (!AreClose(first.supports.displacement, other.supports.displacement)) {
+    return "it holds them at another displacement (the array 'prescribed', or "
+           "the supports)";
+  }
+  return "";
+}
+
+/// Keeps the nodes that tetrahedra use, in their order.
+class UnusedNodeFilter {
+ public:
+  explicit UnusedNodeFilter(const MeshFile& mesh)
+      : position_(mesh.used.size()) {
+    for (Eigen::Index node = 0; node < mesh.used.size(); ++node) {
+      position_[node] = static_cast<int>(kept_.size());
+      if (mesh.used[node]) {
+        kept_.push_back(node);
+      }
+    }
+  }
+
+  Eigen::Index NumDropped() const { return position_.size() - kept_.size(); }
+
+  Scene Filter(Scene scene) const {
+    if (NumDropped() == 0) {
+      return scene;
+    }
+    KeepColumns(scene.mesh.nodes);
+    Renumber(scene.mesh.elements);
+    KeepColumns(scene.supports.held);
+    KeepColumns(scene.supports.displacement);
+    for (LoadCase& load_case : scene.load_cases) {
+      KeepColumns(load_case.displacement);
+      KeepColumns(load_case.observed);
+      for (Load& load : load_case.loads) {
+        std::visit([this](auto& kind) { FilterLoad(kind); }, load);
+      }
+    }
+    return scene;
+  }
+
+ private:
+  void FilterLoad(NodalForces& load) const { KeepColumns(load.force); }
+  void FilterLoad(BodyForce& /*load*/) const {}
+  void FilterLoad(Traction& load) const { Renumber(load.facets); }
+  void FilterLoad(Pressure& load) const { Renumber(load.facets); }
+  void FilterLoad(SurfaceForce& load) const { Renumber(load.facets); }
+
+  template <typename Columns>
+  void KeepColumns(Columns& columns) const {
+    if (columns.size() > 0) {
+      columns = Columns(columns(Eigen::all, kept_));
+    }
+  }
+  void Renumber(Eigen::MatrixXi& nodes) const {
+    nodes = nodes.unaryExpr([this](int node) { return position_[node]; });
+  }
+
+  std::vector<int> position_;
+  std::vector<Eigen::Index> kept_;
+};
+
+void CheckObserved(const std::filesystem::path& path, const Scene& scene) {
+  for (std::size_t i = 0; i < scene.load_cases.size(); ++i) {
+    const LoadCase& load_case = scene.load_cases[i];
+    if (load_case.observed.size() > 0 && !load_case.observed.any()) {
+      ThrowInputError(path, "nothing is observed in load case " +
+                                std::to_string(i + 1) +
+                                "; mark what was measured");
+    }
+  }
+}
+
+/// What of a mesh may be meant otherwise than it is read.
+void NoteMesh(const std::filesystem::path& path, const Mesh& mesh,
+              std::vector<std::string>& notices) {
+  const std::set<int> regions(mesh.regions.begin(), mesh.regions.end());
+  if (regions.size() > 1) {
+    notices.push_back(PrintablePath(path) + ": the array 'region' has " +
+                      std::to_string(regions.size()) +
+                      " different ids, but all regions share one material: E "
+                      "and nu are those of the mesh as a whole");
+  }
+  const std::vector<std::array<int, 2>> coincident = CoincidentNodes(mesh);
+  if (!coincident.empty()) {
+    const auto place = mesh.nodes.col(coincident.front()[0]);
+    std::ostringstream first;
+    first << "(" << place.x() << ", " << place.y() << ", " << place.z() << ")";
+    notices.push_back(
+        PrintablePath(path) + ": " + std::to_string(coincident.size()) +
+        " nodes lie at the same place as another node, such as at " +
+        first.str() +
+        ", so that the parts around them are not connected; merge them in the "
+        "mesh tool if the parts should be one");
+  }
+}
+
+/// The scene without the nodes that no tetrahedron uses, valid.
+Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
+                  std::vector<std::string>& notices) {
+  const MeshFile& mesh = file_scene.mesh;
+  notices.insert(notices.end(), file_scene.notices.begin(),
+                 file_scene.notices.end());
+  const UnusedNodeFilter filter(mesh);
+  const Eigen::Index num_dropped =
+      filter.NumDropped() + mesh.num_nodes_left_out;
+  if (num_dropped > 0) {
+    notices.push_back(PrintablePath(mesh.path) + ": dropped " +
+                      std::to_string(num_dropped) +
+                      " points that no tetrahedron uses");
+  }
+  Scene scene = filter.Filter(std::move(file_scene.scene));
+  try {
+    ValidateScene(scene);
+  } catch (const std::invalid_argument& error) {
+    const bool numbers_differ = num_dropped > 0 || mesh.has_other_cells;
+    ThrowInputError(
+        path, error.what() + std::string(numbers_differ
+                                             ? " (counting only tetrahedra "
+                                               "and the nodes they use)"
+                                             : ""));
+  }
+  CheckObserved(path, scene);
+  return scene;
+}
+
+/// Data counted twice would make the standard errors too small.
+void CheckPathsDiffer(const std::vector<std::filesystem::path>& paths) {
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      std::error_code error;
+      if (std::filesystem::equivalent(paths[k], paths[i], error)) {
+        ThrowInputError(paths[i], "this file is given twice, also as '" +
+                                      PrintablePath(paths[k]) +
+                                      "'; give each load case only once");
+      }
+    }
+  }
+}
+
+bool AreSameMeasurement(const Mesh& mesh, const LoadCase& a,
+                        const LoadCase& b) {
+  return a.displacement.size() > 0 &&
+         a.displacement.size() == b.displacement.size() &&
+         a.displacement == b.displacement &&
+         a.observed.size() == b.observed.size() &&
+         (a.observed == b.observed).all() &&
+         AssembleLoads(mesh, a.loads) == AssembleLoads(mesh, b.loads);
+}
+
+/// Where each of the load cases that were read comes from: "load case 1 of
+/// 'first.vtu'".
+using CaseNames = std::vector<std::string>;
+
+/// Appends the load cases of `path` to the scene, each of which must be new.
+void AddLoadCases(const std::filesystem::path& path,
+                  std::vector<LoadCase> load_cases, Scene& scene,
+                  CaseNames& names) {
+  for (std::size_t i = 0; i < load_cases.size(); ++i) {
+    const std::string number = std::to_string(i + 1);
+    for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+      if (AreSameMeasurement(scene.mesh, scene.load_cases[k], load_cases[i])) {
+        ThrowInputError(path, "load case " + number +
+                                  " has the displacements and forces of " +
+                                  names[k] + "; give each load case only once");
+      }
+    }
+    names.push_back("load case " + number + " of '" + PrintablePath(path) +
+                    "'");
+    scene.load_cases.push_back(std::move(load_cases[i]));
+  }
+}
+
+FileScene ReadFileScene(const std::filesystem::path& path,
+                        Measurement measurement) {
+  return FileExtension(path) == ".json"
+             ? ReadJsonScene(path, measurement)
+             : SceneFromArrays(ReadMeshFile(path), measurement);
+}
+
+}  // namespace
+
+SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
+                       Measurement measurement) {
+  if (paths.empty()) {
+    throw std::invalid_argument("no scene file is given; name one");
+  }
+  CheckPathsDiffer(paths);
+  SceneReading reading;
+  CaseNames names;
+  for (const std::filesystem::path& path : paths) {
+    FileScene file_scene = ReadFileScene(path, measurement);
+    const std::filesystem::path mesh_path = file_scene.mesh.path;
+    Scene scene = FinishScene(path, std::move(file_scene), reading.notices);
+    std::vector<LoadCase> load_cases = std::move(scene.load_cases);
+    if (&path == &paths.front()) {
+      NoteMesh(mesh_path, scene.mesh, reading.notices);
+      scene.load_cases.clear();
+      reading.scene = std::move(scene);
+    } else if (const std::string difference =
+                   WhyDifferent(reading.scene, scene);
+               !difference.empty()) {
+      ThrowInputError(path, "this is no further load case of '" +
+                                PrintablePath(paths.front()) +
+                                "': " + difference +
+                                "; use the same mesh and supports");
+    }
+    AddLoadCases(path, std::move(load_cases), reading.scene, names);
+  }
+  return reading;
+}
+
+}  // namespace elastimate

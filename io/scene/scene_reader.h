@@ -1,0 +1,49 @@
+#ifndef ELASTIMATE_IO_SCENE_SCENE_READER_H_
+#define ELASTIMATE_IO_SCENE_SCENE_READER_H_
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "elastimate/core/scene/scene.h"
+
+namespace elastimate {
+
+/// Whether a scene without measured displacements is wrong input.
+enum class Measurement { kRequired, kOptional };
+
+/// A scene as read, and what the reader has to say about it.
+struct SceneReading {
+  Scene scene;
+  /// For people: what was left out, and what may be meant otherwise than it is
+  /// read (forces per node, regions, nodes at one place).
+  std::vector<std::string> notices;
+};
+
+/// Reads a scene from files whose arrays make it up (.vtu, .vtk, or .msh with
+/// node data), or from a scene.json over a mesh file (.vtu, .vtk, .msh, .mesh,
+/// .unv, .bdf); docs/scenes.md describes both.  Several files are further load
+/// cases of one specimen: the same nodes (to a millionth of the largest
+/// coordinate), cells, regions and supports.  A load case given twice is an
+/// error: its noise would count as that of two measurements.
+///
+/// The array `prescribed` (3 components, optional) is the displacement at which
+/// held components are held.  A node is known by its zero-based position among
+/// all nodes of its file, also those without a tetrahedron: in the order of the
+/// points of a VTK file, by ascending node number in a Gmsh file.  That is what
+/// ids and CSV rows in a scene.json refer to, and what messages name.
+///
+/// The scene returned is valid (ValidateScene).  Throws std::invalid_argument
+/// with one sentence that names the file and the array, key, node or element
+/// for anything wrong with the input, std::bad_alloc where memory is lacking,
+/// and std::runtime_error when a helper program of the package is not there.
+///
+/// For concurrent calls.  What Gmsh and VTK's reader of .vtk files parse, and
+/// may crash on, is read in a child process; .vtu files are read by one thread
+/// after the other.
+SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
+                       Measurement measurement);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_IO_SCENE_SCENE_READER_H_

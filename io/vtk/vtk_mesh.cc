@@ -1,0 +1,64 @@
+#include "elastimate/io/vtk/vtk_mesh.h"
+
+#include <vtkDataArraySelection.h>
+#include <vtkNew.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include "elastimate/io/helper/mesh_program_call.h"
+#include "elastimate/io/text/input_error.h"
+#include "elastimate/io/vtk/vtk_grid.h"
+#include "elastimate/io/vtk/vtk_messages.h"
+#include "elastimate/io/vtk/xml_vtk_check.h"
+
+namespace elastimate {
+namespace {
+
+/// Whether there is as much memory as a sound file takes.
+bool HasMemoryFor(const std::filesystem::path& path) {
+  const std::unique_ptr<char[]> some(new (
+      std::nothrow) char[16'000'000 + 20 * std::filesystem::file_size(path)]);
+  return some != nullptr;
+}
+
+}  // namespace
+
+MeshFile ReadVtuMesh(const std::filesystem::path& path) {
+  const VtkMessages messages(VtkMessages::Warnings::kIgnored);
+  try {
+    const XmlVtkFrame frame = CheckXmlVtk(path);
+    if (messages.HasError() || !frame.damage.empty()) {
+      ThrowDamagedVtk(
+          path, messages.HasError() ? messages.FirstError() : frame.damage);
+    }
+    vtkNew<vtkXMLUnstructuredGridReader> reader;
+    for (const std::string& name : frame.text_point_arrays) {
+      reader->GetPointDataArraySelection()->DisableArray(name.c_str());
+    }
+    for (const std::string& name : frame.text_cell_arrays) {
+      reader->GetCellDataArraySelection()->DisableArray(name.c_str());
+    }
+    ReadByVtk(path, messages, reader.Get());
+    return ToMeshFile(path, reader->GetOutput());
+  } catch (const std::bad_alloc&) {
+    if (!HasMemoryFor(path)) {
+      throw;
+    }
+    ThrowDamagedVtk(path, "its sizes exceed the memory");
+  } catch (const std::length_error&) {
+    ThrowDamagedVtk(path, "its sizes exceed the memory");
+  }
+}
+
+MeshFile ReadLegacyVtkMesh(const std::filesystem::path& path) {
+  return ReadByProgram(
+      {"elastimate-legacy-vtk", "VTK", "reads .vtk files", "write it again"},
+      {}, path);
+}
+
+}  // namespace elastimate

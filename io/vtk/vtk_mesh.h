@@ -1,0 +1,20 @@
+#ifndef ELASTIMATE_IO_VTK_VTK_MESH_H_
+#define ELASTIMATE_IO_VTK_VTK_MESH_H_
+
+#include <filesystem>
+
+#include "elastimate/io/mesh/mesh_file.h"
+
+namespace elastimate {
+
+/// Reads an unstructured grid from VTK's XML format, in any encoding. Vertices,
+/// lines and triangles are ignored; any other cell but a tetrahedron is an
+/// error.  Throws std::invalid_argument, naming the file.
+MeshFile ReadVtuMesh(const std::filesystem::path& path);
+
+/// The same from VTK's legacy format, text or binary.
+MeshFile ReadLegacyVtkMesh(const std::filesystem::path& path);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_IO_VTK_VTK_MESH_H_

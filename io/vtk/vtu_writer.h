@@ -1,0 +1,45 @@
+#ifndef ELASTIMATE_IO_VTK_VTU_WRITER_H_
+#define ELASTIMATE_IO_VTK_VTU_WRITER_H_
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "elastimate/core/scene/scene.h"
+
+namespace elastimate {
+
+/// A named array of a result file: one column per point or cell.
+struct Field {
+  std::string name;
+  Eigen::MatrixXd values;  ///< num_components x num_points (or num_cells).
+};
+
+/// The point and cell arrays of a VTU file beside its mesh.
+struct Fields {
+  std::vector<Field> point;
+  std::vector<Field> cell;
+};
+
+/// The arrays that ReadScene reads back as `scene`: `fixed`, `prescribed` when
+/// a support is held away from zero, `region`, and for each load case k > 1
+/// with suffix `_k`: `force` (the loads assembled to consistent nodal forces),
+/// `displacement` and `observed` where there are any.
+Fields SceneFields(const Scene& scene);
+
+/// The mesh with its fields as the content of a VTU file (binary, Float64) that
+/// ParaView opens.  Throws std::invalid_argument, naming the file, for fields
+/// that do not fit the mesh.
+std::string VtuContent(const std::filesystem::path& path, const Mesh& mesh,
+                       const Fields& fields);
+
+/// Writes the mesh with its fields as a VTU file.  The file appears whole or
+/// not at all.  Throws std::invalid_argument, naming the file, when it cannot
+/// be written.
+void WriteVtu(const std::filesystem::path& path, const Mesh& mesh,
+              const Fields& fields);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_IO_VTK_VTU_WRITER_H_

@@ -1,0 +1,188 @@
+#include "elastimate/core/mechanics/strain_energy.h"
+
+#include <gtest/gtest.h>
+
+#include "elastimate/core/equilibrium/forward_model.h"
+#include "elastimate/core/mesh/tet10.h"
+#include "elastimate/core/mesh/tet4.h"
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/quadratic_scene.h"
+#include "tests/core/random_values.h"
+#include "tests/dense_reference.h"
+#include "tests/scenes.h"
+
+namespace elastimate {
+namespace {
+
+using testing::BoxMesh;
+using testing::DenseStiffness;
+using testing::Distorted;
+using testing::HookeMatrix;
+using testing::RandomMatrix;
+using testing::SmallScene;
+using testing::WithBothOrientations;
+
+Eigen::VectorXd Volumes(const Mesh& mesh) {
+  Eigen::VectorXd volumes(mesh.NumElements());
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    volumes(e) = TetrahedronVolume(GatherTetrahedron(mesh, e));
+  }
+  return volumes;
+}
+
+class StrainEnergy : public ::testing::TestWithParam<double> {
+ protected:
+  StrainEnergy()
+      : mesh_(
+            WithBothOrientations(Distorted(BoxMesh({2, 3, 2}, {1, 0.8, 1.2})))),
+        elasticity_{2.5, GetParam()} {}
+
+  // The same density in each element, for u = gradient * x.  Strains lose one
+  // or two digits to the differences of node positions.
+  void ExpectDensity(const Eigen::Matrix3d& gradient, double expected) const {
+    const Eigen::VectorXd density =
+        StrainEnergyDensity(mesh_, elasticity_, gradient * mesh_.nodes);
+    ASSERT_EQ(density.size(), mesh_.NumElements());
+    const double scale = elasticity_.StiffnessScale() * gradient.squaredNorm();
+    EXPECT_LT((density.array() - expected).abs().maxCoeff(), 1e-13 * scale);
+  }
+
+  Mesh mesh_;
+  IsotropicElasticity elasticity_;
+};
+
+// E / 2 times the square of the strain, where nothing holds the sides.
+TEST_P(StrainEnergy, OfUniaxialStress) {
+  const Eigen::Vector3d strain(-GetParam(), -GetParam(), 1);
+  ExpectDensity((0.01 * strain).asDiagonal(),
+                elasticity_.youngs_modulus / 2 * 1e-4);
+}
+
+TEST_P(StrainEnergy, OfSimpleShear) {
+  Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
+  gradient(0, 2) = 0.01;
+  ExpectDensity(gradient, elasticity_.ShearModulus() / 2 * 1e-4);
+}
+
+TEST_P(StrainEnergy, OfSwelling) {
+  // The volume grows by 3 percent.
+  ExpectDensity(0.01 * Eigen::Matrix3d::Identity(),
+                elasticity_.BulkModulus() / 2 * 9e-4);
+}
+
+TEST_P(StrainEnergy, OfAnInfinitesimalRotationIsZero) {
+  Eigen::Matrix3d gradient;
+  gradient << 0, -3, 2, 3, 0, -1, -2, 1, 0;
+  ExpectDensity(gradient, 0);
+}
+
+TEST_P(StrainEnergy, SumsUpToHalfOfDisplacementTimesStiffness) {
+  const Eigen::Matrix3Xd u = RandomMatrix(3, mesh_.NumNodes(), 4);
+  const Eigen::Matrix<double, 6, 6> hooke =
+      HookeMatrix<double>(elasticity_.youngs_modulus, GetParam());
+  const double expected =
+      0.5 *
+      u.reshaped().dot(DenseStiffness<double>(mesh_, hooke) * u.reshaped());
+  const double energy =
+      Volumes(mesh_).dot(StrainEnergyDensity(mesh_, elasticity_, u));
+  EXPECT_NEAR(energy / expected, 1, 1e-12);
+}
+
+// Clapeyron: at equilibrium the energy is half the work of the loads.
+TEST_P(StrainEnergy, IsHalfTheWorkOfTheLoads) {
+  const Scene scene = SmallScene("organ");
+  const Eigen::MatrixXd force = AssembleLoadCases(scene);
+  ForwardModel model(scene.mesh, scene.supports, force);
+  ASSERT_TRUE(model.SetPoissonRatio(GetParam()));
+  const Eigen::VectorXd u = model.Displacement(elasticity_.youngs_modulus);
+  const double energy =
+      Volumes(scene.mesh)
+          .dot(StrainEnergyDensity(scene.mesh, elasticity_,
+                                   u.reshaped(3, scene.mesh.NumNodes())));
+  // A condition number of 1e3 / (1 - 2 nu) is on the safe side.
+  EXPECT_NEAR(energy / (0.5 * force.col(0).dot(u)), 1,
+              1e-12 / (1 - 2 * GetParam()));
+}
+
+// A displacement that is quadratic in the position.
+Eigen::Matrix3Xd Bent(const Eigen::Matrix3Xd& x) {
+  Eigen::Matrix3Xd u(3, x.cols());
+  u.row(0) =
+      x.row(2).array().square() - 0.5 * x.row(0).array() * x.row(1).array();
+  u.row(1) =
+      0.3 * x.row(1).array().square() + x.row(0).array() * x.row(2).array();
+  u.row(2) =
+      x.row(0).array().square() - 2 * x.row(0).array() * x.row(2).array();
+  return u;
+}
+
+Scene Unloaded(const Mesh& mesh) {
+  return testing::HeldAtBottom(mesh, mesh, Eigen::Vector3d::Zero());
+}
+
+TEST_P(StrainEnergy, NoneIsMissedOfWhatTheElementsCanDo) {
+  const Eigen::Matrix3d gradient = RandomMatrix(3, 3, 1);
+  const Eigen::MatrixXd linear = (gradient * mesh_.nodes).reshaped();
+  EXPECT_LT(DiscretizationError(mesh_, elasticity_, linear), 1e-20);
+  const Mesh quadratic = QuadraticScene(Unloaded(mesh_)).mesh;
+  const Eigen::MatrixXd bent = Bent(quadratic.nodes).reshaped();
+  EXPECT_LT(DiscretizationError(quadratic, elasticity_, bent), 1e-20);
+  EXPECT_EQ(DiscretizationError(mesh_, elasticity_, 0 * linear), 0);
+}
+
+// Of the linear elements that interpolate a quadratic displacement, which
+// quadratic elements have exactly.
+TEST_P(StrainEnergy, WhatLinearElementsMissIsFound) {
+  for (const int cells : {3, 6, 12}) {
+    SCOPED_TRACE(cells);
+    const Mesh mesh = BoxMesh({cells, cells, cells}, {1, 1, 1});
+    const Mesh quadratic = QuadraticScene(Unloaded(mesh)).mesh;
+    const Eigen::Matrix3Xd bent = Bent(quadratic.nodes);
+    Eigen::Matrix3Xd difference = bent;
+    const Eigen::Index num_vertices = mesh.NumNodes();
+    difference.leftCols(num_vertices).setZero();
+    for (Eigen::Index e = 0; e < quadratic.NumElements(); ++e) {
+      for (int i = 0; i < 6; ++i) {
+        const auto& corners = kTetrahedronEdges[i];
+        const int middle = quadratic.elements(4 + i, e);
+        difference.col(middle) =
+            bent.col(middle) -
+            0.5 * (bent.col(quadratic.elements(corners[0], e)) +
+                   bent.col(quadratic.elements(corners[1], e)));
+      }
+    }
+    const Eigen::VectorXd volumes = Volumes(mesh);
+    const Eigen::Matrix3Xd at_vertices = bent.leftCols(num_vertices);
+    const double missed =
+        volumes.dot(StrainEnergyDensity(quadratic, elasticity_, difference));
+    const double energy =
+        volumes.dot(StrainEnergyDensity(mesh, elasticity_, at_vertices));
+    const double found =
+        DiscretizationError(mesh, elasticity_, at_vertices.reshaped());
+    // At the surface the recovered strain is that of one side.
+    EXPECT_NEAR(found / (missed / energy), 1, 1.5 / cells);
+  }
+}
+
+// Both load cases count by their energy.
+TEST_P(StrainEnergy, LoadCasesAreSummed) {
+  Eigen::MatrixXd both(3 * mesh_.NumNodes(), 2);
+  both << RandomMatrix(3, mesh_.NumNodes(), 1).reshaped(),
+      2 * RandomMatrix(3, mesh_.NumNodes(), 2).reshaped();
+  Eigen::Vector2d energy;
+  Eigen::Vector2d missed;
+  for (int k = 0; k < 2; ++k) {
+    energy(k) = Volumes(mesh_).dot(StrainEnergyDensity(
+        mesh_, elasticity_, both.col(k).reshaped(3, mesh_.NumNodes())));
+    missed(k) =
+        energy(k) * DiscretizationError(mesh_, elasticity_, both.col(k));
+  }
+  EXPECT_NEAR(DiscretizationError(mesh_, elasticity_, both),
+              missed.sum() / energy.sum(), 1e-12);
+}
+
+INSTANTIATE_TEST_SUITE_P(PoissonRatios, StrainEnergy,
+                         ::testing::Values(-0.5, 0.0, 0.3, 0.49));
+
+}  // namespace
+}  // namespace elastimate

@@ -1,0 +1,315 @@
+#include "elastimate/core/scene/quadratic_scene.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <limits>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/rigid_motion.h"
+#include "tests/core/random_values.h"
+#include "tests/quadratic_reference.h"
+#include "tests/scenes.h"
+#include "tests/throws.h"
+
+namespace elastimate {
+namespace {
+
+using testing::BoxMesh;
+using testing::RandomMatrix;
+using testing::SmallScene;
+using testing::WithBothOrientations;
+using testing::WithMidEdgeNodes;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// The mid-edge node between two vertices, by its place; -1 when there is none.
+int NodeBetween(const Mesh& mesh, int a, int b) {
+  const Eigen::Vector3d middle = (mesh.nodes.col(a) + mesh.nodes.col(b)) / 2;
+  for (Eigen::Index node = mesh.NumVertices(); node < mesh.NumNodes(); ++node) {
+    if (mesh.nodes.col(node) == middle) {
+      return static_cast<int>(node);
+    }
+  }
+  return -1;
+}
+
+// The scene "organ" with every kind of load and measurement.
+class ConvertedOrgan : public ::testing::Test {
+ protected:
+  ConvertedOrgan() : scene_(SmallScene("organ")) {
+    scene_.mesh = WithBothOrientations(scene_.mesh);
+    const Eigen::Index num_nodes = scene_.mesh.NumNodes();
+    scene_.mesh.regions.setLinSpaced(scene_.mesh.NumElements(), 1, 5);
+    scene_.supports.displacement = RandomMatrix(3, num_nodes, 1);
+    const Eigen::MatrixXi facets = BoundaryFacets(scene_.mesh);
+    LoadCase second;
+    second.loads = {BodyForce{{0, 0, -9.81}}, Traction{facets, {1, 2, 3}},
+                    Pressure{facets.leftCols(7), 2},
+                    SurfaceForce{facets.leftCols(5), {3, 2, 1}}};
+    second.displacement = RandomMatrix(3, num_nodes, 2);
+    second.observed = RandomMatrix(3, num_nodes, 3).array() > 0;
+    second.noise_sd = 1e-3;
+    scene_.load_cases.push_back(second);
+    quadratic_ = QuadraticScene(scene_);
+  }
+
+  Eigen::Index NumVertices() const { return scene_.mesh.NumNodes(); }
+  Eigen::Index NumMidEdges() const {
+    return quadratic_.mesh.NumNodes() - NumVertices();
+  }
+
+  Scene scene_;
+  Scene quadratic_;
+};
+
+TEST_F(ConvertedOrgan, IsAValidScene) {
+  EXPECT_NO_THROW(ValidateScene(quadratic_));
+  EXPECT_EQ(WhyNotHeld(quadratic_.mesh, quadratic_.supports), "");
+}
+
+TEST_F(ConvertedOrgan, HasOneNodeForEachEdge) {
+  const Mesh& mesh = quadratic_.mesh;
+  EXPECT_EQ(mesh.Order(), 2);
+  EXPECT_EQ(mesh.NumVertices(), NumVertices());
+  EXPECT_EQ(mesh.nodes.leftCols(NumVertices()), scene_.mesh.nodes);
+  EXPECT_EQ(mesh.elements.topRows<4>(), scene_.mesh.elements);
+  EXPECT_EQ(mesh.regions, scene_.mesh.regions);
+  const Mesh expected = WithMidEdgeNodes(scene_.mesh);
+  ASSERT_EQ(mesh.NumNodes(), expected.NumNodes());
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    for (int i = 4; i < 10; ++i) {
+      EXPECT_EQ(mesh.nodes.col(mesh.elements(i, e)),
+                expected.nodes.col(expected.elements(i, e)));
+    }
+  }
+}
+
+TEST_F(ConvertedOrgan, NumbersTheMidEdgeNodesByTheirEnds) {
+  const Mesh& mesh = quadratic_.mesh;
+  const auto edges = [&] {
+    std::set<std::pair<int, int>> sorted;
+    for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+      for (int i = 0; i < 4; ++i) {
+        for (int j = 0; j < 4; ++j) {
+          if (mesh.elements(i, e) < mesh.elements(j, e)) {
+            sorted.emplace(mesh.elements(i, e), mesh.elements(j, e));
+          }
+        }
+      }
+    }
+    return sorted;
+  }();
+  Eigen::Index node = NumVertices();
+  for (const auto& [a, b] : edges) {
+    EXPECT_EQ(mesh.nodes.col(node),
+              (mesh.nodes.col(a) + mesh.nodes.col(b)) / 2);
+    ++node;
+  }
+  EXPECT_EQ(node, mesh.NumNodes());
+}
+
+TEST_F(ConvertedOrgan, KeepsTheSupportsOfTheVertices) {
+  const Supports& supports = quadratic_.supports;
+  EXPECT_TRUE(
+      (supports.held.leftCols(NumVertices()) == scene_.supports.held).all());
+  EXPECT_EQ(supports.displacement.leftCols(NumVertices()),
+            scene_.supports.displacement);
+  // Held is one face of 4 x 4 nodes: its 24 + 9 edges.
+  EXPECT_EQ(supports.held.rightCols(NumMidEdges()).colwise().all().count(), 33);
+  EXPECT_EQ(supports.held.rightCols(NumMidEdges()).count(), 3 * 33);
+}
+
+TEST_F(ConvertedOrgan, HoldsMidEdgesAtTheMeanOfTheirEnds) {
+  for (int a = 0; a < NumVertices(); ++a) {
+    for (int b = 0; b < a; ++b) {
+      const int node = NodeBetween(quadratic_.mesh, a, b);
+      if (node >= 0 && quadratic_.supports.held(0, node)) {
+        EXPECT_EQ(quadratic_.supports.displacement.col(node),
+                  (scene_.supports.displacement.col(a) +
+                   scene_.supports.displacement.col(b)) /
+                      2);
+      }
+    }
+  }
+}
+
+TEST_F(ConvertedOrgan, LetsNodalForcesActAtTheVertices) {
+  const auto& force =
+      std::get<NodalForces>(quadratic_.load_cases[0].loads[0]).force;
+  EXPECT_EQ(force.leftCols(NumVertices()),
+            std::get<NodalForces>(scene_.load_cases[0].loads[0]).force);
+  EXPECT_TRUE(force.rightCols(NumMidEdges()).isZero(0));
+}
+
+TEST_F(ConvertedOrgan, KeepsWhatTheOtherLoadsAre) {
+  const std::vector<Load>& loads = quadratic_.load_cases[1].loads;
+  EXPECT_EQ(std::get<BodyForce>(loads[0]).force_density,
+            Eigen::Vector3d(0, 0, -9.81));
+  const auto& traction = std::get<Traction>(loads[1]);
+  EXPECT_EQ(traction.traction, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(traction.facets, BoundaryFacets(quadratic_.mesh));
+  const auto& pressure = std::get<Pressure>(loads[2]);
+  EXPECT_EQ(pressure.pressure, 2);
+  EXPECT_EQ(pressure.facets, BoundaryFacets(quadratic_.mesh).leftCols(7));
+  const auto& force = std::get<SurfaceForce>(loads[3]);
+  EXPECT_EQ(force.force, Eigen::Vector3d(3, 2, 1));
+  EXPECT_EQ(force.facets, BoundaryFacets(quadratic_.mesh).leftCols(5));
+}
+
+// On the displacements of linear elements, the loads do the same work.
+TEST_F(ConvertedOrgan, HasTheVertexForcesOfLinearElements) {
+  const Eigen::MatrixXd expected = AssembleLoadCases(scene_);
+  EXPECT_TRUE(VertexForces(quadratic_.mesh, AssembleLoadCases(quadratic_))
+                  .isApprox(expected, 1e-13));
+}
+
+TEST_F(ConvertedOrgan, ObservesNoMidEdge) {
+  const LoadCase& unmeasured = quadratic_.load_cases[0];
+  EXPECT_EQ(unmeasured.displacement.size(), 0);
+  EXPECT_FALSE(unmeasured.noise_sd.has_value());
+  EXPECT_TRUE(unmeasured.observed.leftCols(NumVertices()).all());
+  EXPECT_FALSE(unmeasured.observed.rightCols(NumMidEdges()).any());
+  const LoadCase& measured = quadratic_.load_cases[1];
+  EXPECT_EQ(measured.displacement.leftCols(NumVertices()),
+            scene_.load_cases[1].displacement);
+  EXPECT_TRUE(measured.displacement.rightCols(NumMidEdges()).isZero(0));
+  EXPECT_EQ(measured.noise_sd, 1e-3);
+  EXPECT_TRUE((measured.observed.leftCols(NumVertices()) ==
+               scene_.load_cases[1].observed)
+                  .all());
+  EXPECT_FALSE(measured.observed.rightCols(NumMidEdges()).any());
+}
+
+TEST_F(ConvertedOrgan, CannotBeConvertedAgain) {
+  EXPECT_THROWS_WITH(QuadraticScene(quadratic_), "quadratic elements already");
+}
+
+TEST_F(ConvertedOrgan, NeedsFacetsOfTheMesh) {
+  std::get<Traction>(scene_.load_cases[1].loads[1]).facets.col(3) << 0, 1, 79;
+  EXPECT_THROWS_WITH(QuadraticScene(scene_), "facet 3 .* no face");
+}
+
+// Displacements of supports are ignored where nothing is held, NaN or not.
+TEST_F(ConvertedOrgan, IgnoresSupportDisplacementsOfFreeComponents) {
+  scene_.supports.displacement =
+      scene_.supports.held.select(scene_.supports.displacement.array(), kNan);
+  EXPECT_NO_THROW(ValidateScene(QuadraticScene(scene_)));
+}
+
+// ---------------------------------------------------------------------------
+// Which mid-edge components are held, by where the vertices are held.
+
+class BoxToConvert : public ::testing::Test {
+ protected:
+  // Cubes of size 1.
+  explicit BoxToConvert(const Eigen::Vector3i& cells = {3, 3, 3}) {
+    scene_.mesh = BoxMesh(cells, cells.cast<double>());
+    scene_.supports.held =
+        ComponentMask::Constant(3, scene_.mesh.NumNodes(), false);
+    scene_.supports.displacement =
+        Eigen::Matrix3Xd::Zero(3, scene_.mesh.NumNodes());
+    scene_.load_cases.resize(1);
+  }
+
+  void Hold(int component, const Eigen::Array<bool, 1, Eigen::Dynamic>& nodes) {
+    scene_.supports.held.row(component) =
+        scene_.supports.held.row(component) || nodes;
+  }
+
+  // The middles of the held edges, one column each.
+  Eigen::Matrix3Xd HeldMiddles(int component) const {
+    const Scene quadratic = QuadraticScene(scene_);
+    std::vector<Eigen::Index> held;
+    for (Eigen::Index node = scene_.mesh.NumNodes();
+         node < quadratic.mesh.NumNodes(); ++node) {
+      if (quadratic.supports.held(component, node)) {
+        held.push_back(node);
+      }
+    }
+    return quadratic.mesh.nodes(Eigen::all, held);
+  }
+
+  auto Coordinate(int axis) const {
+    return scene_.mesh.nodes.row(axis).array();
+  }
+
+  Scene scene_;
+};
+
+TEST_F(BoxToConvert, NothingIsHeldWithoutSupports) {
+  EXPECT_EQ(HeldMiddles(0).cols(), 0);
+}
+
+TEST_F(BoxToConvert, AHeldFaceHoldsItsEdgesInTheSameComponents) {
+  Hold(1, Coordinate(2) == 0);
+  const Eigen::Matrix3Xd middles = HeldMiddles(1);
+  // 2 * 3 * 4 along the axes, and 3 * 3 diagonals.
+  EXPECT_EQ(middles.cols(), 33);
+  EXPECT_TRUE(middles.row(2).isZero(0));
+  EXPECT_EQ(HeldMiddles(0).cols(), 0);
+  EXPECT_EQ(HeldMiddles(2).cols(), 0);
+}
+
+TEST_F(BoxToConvert, OneHeldEndHoldsNothing) {
+  Hold(0, Coordinate(0) == 0 && Coordinate(1) == 0 && Coordinate(2) == 0);
+  EXPECT_EQ(HeldMiddles(0).cols(), 0);
+}
+
+TEST_F(BoxToConvert, ALineOfHeldNodesOnTheSurfaceIsAKnifeEdge) {
+  Hold(2, Coordinate(1) == 2 && Coordinate(2) == 0);
+  const Eigen::Matrix3Xd middles = HeldMiddles(2);
+  EXPECT_EQ(middles.cols(), 3);
+  EXPECT_TRUE((middles.row(1).array() == 2).all());
+}
+
+TEST_F(BoxToConvert, AHeldVolumeHoldsTheEdgesOfItsInside) {
+  Hold(0, Coordinate(2) <= 2);
+  const Eigen::Matrix3Xd middles = HeldMiddles(0);
+  const Mesh& mesh = scene_.mesh;
+  // Of each inner node, the edges to all its lower neighbours.
+  for (Eigen::Index a = 0; a < mesh.NumNodes(); ++a) {
+    const auto inner = mesh.nodes.col(a).array();
+    if ((inner == 0).any() || (inner == 3).any() || inner(2) > 2) {
+      continue;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3d middle =
+          inner.matrix() - Eigen::Vector3d::Unit(axis) / 2;
+      EXPECT_EQ((middles.colwise() - middle).colwise().norm().minCoeff(), 0);
+    }
+  }
+}
+
+// A slab of one layer of elements, held on both sides: what is between can
+// bulge.
+class SlabToConvert : public BoxToConvert {
+ protected:
+  SlabToConvert() : BoxToConvert({3, 3, 1}) {}
+};
+
+TEST_F(SlabToConvert, BetweenTwoSupportsIsFree) {
+  Hold(0, Coordinate(2) == 0);
+  Hold(0, Coordinate(2) == 1);
+  const Eigen::Matrix3Xd middles = HeldMiddles(0);
+  const Scene quadratic = QuadraticScene(scene_);
+  for (Eigen::Index i = 0; i < middles.cols(); ++i) {
+    const Eigen::Vector3d middle = middles.col(i);
+    const bool in_a_face = middle(2) == 0 || middle(2) == 1;
+    const bool on_the_rim = (middle.head<2>().array() == 0).any() ||
+                            (middle.head<2>().array() == 3).any();
+    EXPECT_TRUE(in_a_face || on_the_rim) << middle.transpose();
+  }
+  const int bottom = 1 + 4 * 1;
+  const int between =
+      NodeBetween(quadratic.mesh, bottom, bottom + 16);  // Straight above.
+  ASSERT_GE(between, 0);
+  EXPECT_FALSE(quadratic.supports.held(0, between));
+}
+
+}  // namespace
+}  // namespace elastimate

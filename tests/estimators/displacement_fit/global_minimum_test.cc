@@ -1,0 +1,171 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "elastimate/estimators/displacement_fit/iterative_fe.h"
+#include "elastimate/estimators/displacement_fit/reduced_fe.h"
+#include "tests/scenes.h"
+#include "tests/shapes.h"
+
+// Both maximum likelihood fits find the global minimum, on shapes that neither
+// was built on.  An error of both at the same scene would show against the
+// truth: its residual is the noise, which no minimum may exceed.
+
+namespace elastimate {
+namespace {
+
+using testing::AddNoise;
+using testing::Measure;
+using testing::ShapeNames;
+using testing::ShapeScene;
+
+constexpr double kTrueYoungsModulus = 5e3;
+
+// The residual of an estimate at which the truth leaves `of_truth`.
+void ExpectGlobal(const Estimate& estimate, double of_truth) {
+  EXPECT_NE(estimate.status, Status::kIterationLimit) << estimate.message;
+  EXPECT_NE(estimate.status, Status::kNumericalFailure) << estimate.message;
+  ASSERT_TRUE(estimate.displacement_residual.has_value());
+  EXPECT_LE(*estimate.displacement_residual, of_truth * (1 + 1e-6) + 1e-6);
+}
+
+struct MeasuredScene {
+  Scene scene;
+  /// ||noise|| / ||measurement||.
+  double residual_of_truth;
+};
+
+MeasuredScene MeasureShape(const std::string& shape, const std::string& load,
+                           double nu, double noise, std::uint64_t seed) {
+  MeasuredScene measured = {ShapeScene(shape, load), 0};
+  Scene& scene = measured.scene;
+  Measure({kTrueYoungsModulus, nu}, scene);
+  if (noise > 0) {
+    const Eigen::Matrix3Xd exact = scene.load_cases[0].displacement;
+    AddNoise(noise, seed, scene);
+    const Eigen::Matrix3Xd& noisy = scene.load_cases[0].displacement;
+    measured.residual_of_truth = (noisy - exact).norm() / noisy.norm();
+  }
+  return measured;
+}
+
+void ExpectSameMinimum(const MeasuredScene& measured,
+                       const EstimatorOptions& options) {
+  const Estimate reduced = ReducedFe().Run(measured.scene, options);
+  const Estimate iterative = IterativeFe().Run(measured.scene, options);
+  ExpectGlobal(reduced, measured.residual_of_truth);
+  ExpectGlobal(iterative, measured.residual_of_truth);
+  EXPECT_NEAR(*reduced.displacement_residual, *iterative.displacement_residual,
+              1e-3 * *iterative.displacement_residual + 1e-6);
+}
+
+// Each shape meets each nu, with loads and noises in turn.
+TEST(GlobalMinimumStatistics, OfManyShapes) {
+  const std::vector<std::string> loads = testing::ShapeLoads();
+  const double noises[] = {0, 1e-3, 1e-2, 5e-2};
+  std::size_t count = 0;
+  for (const std::string& shape : ShapeNames()) {
+    for (const double nu : {-0.6, 0.0, 0.3, 0.45, 0.49, 0.4985, 0.4995}) {
+      for (int repetition = 0; repetition < 2; ++repetition) {
+        const std::string& load = loads[count % loads.size()];
+        const double noise = noises[count % std::size(noises)];
+        ++count;
+        SCOPED_TRACE(shape + ", " + load + ", nu " + std::to_string(nu) +
+                     ", noise " + std::to_string(noise));
+        ExpectSameMinimum(MeasureShape(shape, load, nu, noise, count), {});
+      }
+    }
+  }
+}
+
+// The narrow minimum next to 1/2 is easily passed over.
+TEST(GlobalMinimumStatistics, OfATwistedDumbbellNextToOneHalf) {
+  for (const double nu : {0.499, 0.4992, 0.4994, 0.4996, 0.4997}) {
+    for (int seed = 1; seed <= 6; ++seed) {
+      SCOPED_TRACE(std::to_string(nu) + ", seed " + std::to_string(seed));
+      const MeasuredScene measured =
+          MeasureShape("dumbbell", "torsion", nu, 1e-2, seed);
+      const Estimate estimate = ReducedFe().Run(measured.scene, {});
+      ExpectGlobal(estimate, measured.residual_of_truth);
+      EXPECT_NEAR(estimate.elasticity.youngs_modulus / kTrueYoungsModulus, 1,
+                  0.1);
+    }
+  }
+}
+
+// A crest lies between the start at 0.45 and the minimum.
+TEST(GlobalMinimum, BehindACrest) {
+  for (const std::string shape : {"ring", "dumbbell", "spring"}) {
+    for (const double nu : {0.48, 0.485, 0.49, 0.4925, 0.495}) {
+      SCOPED_TRACE(shape + ", nu " + std::to_string(nu));
+      ExpectSameMinimum(MeasureShape(shape, "tension", nu, 2e-2, 1), {});
+    }
+  }
+}
+
+// Bounds that hold the truth may not become the answer.
+TEST(GlobalMinimum, IsNotTrappedByABound) {
+  struct Case {
+    double nu;
+    Bounds bounds;
+  };
+  const Case cases[] = {
+      {0.47, {0.45, {}}},  {0.49, {0.45, {}}},  {0.49, {0.47, {}}},
+      {0.499, {0.45, {}}}, {0.499, {0.48, {}}}, {0.46, {0.45, 0.4995}},
+      {-0.97, {{}, -0.8}}, {-0.9, {{}, -0.8}},  {-0.9, {-0.99, -0.7}},
+      {0.1, {{}, 0.2}},    {-0.3, {{}, 0.2}},   {-0.98, {-0.999, {}}}};
+  for (const std::string shape : {"bracket", "dome", "tree"}) {
+    for (const Case& test : cases) {
+      SCOPED_TRACE(shape + ", nu " + std::to_string(test.nu));
+      EstimatorOptions options;
+      options.poisson_ratio = test.bounds;
+      const MeasuredScene measured =
+          MeasureShape(shape, "bending", test.nu, 1e-2, 1);
+      ExpectSameMinimum(measured, options);
+      const Estimate estimate = ReducedFe().Run(measured.scene, options);
+      if (estimate.IsUsable()) {
+        EXPECT_NEAR(estimate.elasticity.youngs_modulus / kTrueYoungsModulus, 1,
+                    0.2);
+      }
+    }
+  }
+}
+
+TEST(GlobalMinimum, IsFoundBeyondTheUsualRange) {
+  for (const double nu : {-0.96, -0.99}) {
+    const MeasuredScene measured =
+        MeasureShape("bracket", "swelling", nu, 1e-4, 1);
+    const Estimate estimate = ReducedFe().Run(measured.scene, {});
+    ExpectGlobal(estimate, measured.residual_of_truth);
+    EXPECT_NEAR(estimate.elasticity.poisson_ratio, nu, 0.02);
+  }
+}
+
+// With 3 % of the components observed.
+TEST(GlobalMinimum, OfFewObservations) {
+  for (const std::string& shape : ShapeNames()) {
+    for (const double nu : {0.2, 0.497}) {
+      SCOPED_TRACE(shape + ", nu " + std::to_string(nu));
+      Scene scene = MeasureShape(shape, "bending", nu, 0, 0).scene;
+      AddNoise(1e-2, 3, scene);
+      ComponentMask& observed = scene.load_cases[0].observed;
+      observed = ComponentMask::Constant(3, scene.mesh.NumNodes(), false);
+      for (Eigen::Index i = 0; i < observed.size(); i += 31) {
+        observed.reshaped()(i) = true;
+      }
+      const Estimate reduced = ReducedFe().Run(scene, {});
+      const Estimate iterative = IterativeFe().Run(scene, {});
+      ASSERT_TRUE(reduced.displacement_residual.has_value());
+      EXPECT_NEAR(*reduced.displacement_residual,
+                  *iterative.displacement_residual,
+                  1e-3 * *iterative.displacement_residual);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace elastimate

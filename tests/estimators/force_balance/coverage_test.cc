@@ -1,0 +1,170 @@
+// Monte Carlo: errors against the Cramer-Rao bound, and how often the intervals
+// hold the truth, under more noise than that of the conformance tests.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <string>
+#include <tuple>
+
+#include "elastimate/estimators/displacement_fit/reduced_fe.h"
+#include "elastimate/estimators/force_balance/virtual_fields.h"
+#include "elastimate/estimators/statistics/cramer_rao.h"
+#include "tests/scenes.h"
+
+namespace elastimate {
+namespace {
+
+using testing::AddNoise;
+using testing::Measure;
+using testing::SmallScene;
+
+// Seeds 1, 2, ...; the frequency of an event of 95 % has a standard deviation
+// of 0.5 % over these many, and a root mean square of errors one of 1.6 %.
+constexpr int kSeeds = 2000;
+
+class CoverageStatistics
+    : public ::testing::TestWithParam<std::tuple<std::string, double, double>> {
+};
+
+TEST_P(CoverageStatistics, OfReducedFeIsThatOfItsIntervals) {
+  const auto& [shape, nu, noise] = GetParam();
+  const IsotropicElasticity truth = {5e4, nu};
+  Scene exact = SmallScene(shape);
+  Measure(truth, exact);
+  Scene noisy = exact;
+  const double sd = AddNoise(noise, 1, noisy);
+  const Eigen::Matrix2d bound =
+      CramerRaoBound(exact, truth, Eigen::VectorXd::Constant(1, sd));
+  PreparedReducedFe prepared(exact, {});
+  int num_usable = 0;
+  int num_youngs = 0;
+  int num_poisson = 0;
+  double youngs_square_sum = 0;
+  double poisson_square_sum = 0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    noisy.load_cases[0].displacement = exact.load_cases[0].displacement;
+    AddNoise(noise, std::uint64_t(seed), noisy);
+    const Estimate estimate = prepared.Run({noisy.load_cases[0].displacement});
+    if (!estimate.IsUsable()) {
+      continue;
+    }
+    ++num_usable;
+    const double youngs_error =
+        estimate.elasticity.youngs_modulus - truth.youngs_modulus;
+    youngs_square_sum += youngs_error * youngs_error;
+    poisson_square_sum += std::pow(estimate.elasticity.poisson_ratio - nu, 2);
+    num_youngs +=
+        std::abs(youngs_error) < 1.96 * *estimate.YoungsModulusStandardError();
+    const Interval interval = estimate.poisson_ratio_interval.value();
+    num_poisson += interval.lower <= nu && nu <= interval.upper;
+  }
+  const double n = num_usable;
+  const double youngs = std::sqrt(youngs_square_sum / n / bound(0, 0));
+  const double poisson = std::sqrt(poisson_square_sum / n / bound(1, 1));
+  std::printf(
+      "%s, nu %g, noise %g: %d of %d usable, error over Cramer-Rao %.3f (E), "
+      "%.3f (nu), coverage %.4f (E), %.4f (nu), Cramer-Rao sd of nu %.3g\n",
+      shape.c_str(), nu, noise, num_usable, kSeeds, youngs, poisson,
+      num_youngs / n, num_poisson / n, std::sqrt(bound(1, 1)));
+  EXPECT_EQ(num_usable, kSeeds);
+  EXPECT_LT(youngs, 1.1);
+  EXPECT_LT(poisson, 1.1);
+  EXPECT_GT(youngs, 0.9);
+  EXPECT_GT(poisson, 0.9);
+  EXPECT_NEAR(num_youngs / n, 0.95, 0.02);
+  EXPECT_NEAR(num_poisson / n, 0.95, 0.02);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, CoverageStatistics,
+    ::testing::Combine(::testing::Values("cuboid", "organ"),
+                       ::testing::Values(0.0, 0.3, 0.45, 0.49),
+                       ::testing::Values(1e-3, 1e-2, 1e-1)));
+
+struct CoverageCase {
+  int degree;
+  std::string shape;
+  double noise;
+  // Of 1.96 standard errors by Student's t, since the noise is estimated from
+  // few equations, 12, 30 and 60 less the two unknowns.
+  double coverage;
+};
+
+std::ostream& operator<<(std::ostream& out, const CoverageCase& parameters) {
+  return out << "degree " << parameters.degree << ", " << parameters.shape
+             << ", noise " << parameters.noise;
+}
+
+class VirtualFieldsCoverageStatistics
+    : public ::testing::TestWithParam<CoverageCase> {};
+
+TEST_P(VirtualFieldsCoverageStatistics, IsThatOfItsStandardErrors) {
+  constexpr int kFewerSeeds = 400;
+  const IsotropicElasticity truth = {5e4, 0.3};
+  Scene exact = SmallScene(GetParam().shape);
+  Measure(truth, exact);
+  Scene noisy = exact;
+  const double sd = AddNoise(GetParam().noise, 1, noisy);
+  const Eigen::Matrix2d bound =
+      CramerRaoBound(exact, truth, Eigen::VectorXd::Constant(1, sd));
+  EstimatorOptions options;
+  options.virtual_field_degree = GetParam().degree;
+  Eigen::Array2d sum = Eigen::Array2d::Zero();
+  Eigen::Array2d square_sum = Eigen::Array2d::Zero();
+  Eigen::Array2d num_covering = Eigen::Array2d::Zero();
+  Eigen::Array2d standard_error_sum = Eigen::Array2d::Zero();
+  int num_usable = 0;
+  for (int seed = 1; seed <= kFewerSeeds; ++seed) {
+    noisy.load_cases[0].displacement = exact.load_cases[0].displacement;
+    AddNoise(GetParam().noise, std::uint64_t(seed), noisy);
+    const Estimate estimate = VirtualFields().Run(noisy, options);
+    if (!estimate.IsUsable()) {
+      continue;
+    }
+    ++num_usable;
+    const Eigen::Array2d error(
+        estimate.elasticity.youngs_modulus - truth.youngs_modulus,
+        estimate.elasticity.poisson_ratio - truth.poisson_ratio);
+    const Eigen::Array2d standard_error(*estimate.YoungsModulusStandardError(),
+                                        *estimate.PoissonRatioStandardError());
+    sum += error;
+    square_sum += error.square();
+    standard_error_sum += standard_error;
+    num_covering += (error.abs() < 1.96 * standard_error).cast<double>();
+  }
+  const double n = num_usable;
+  const Eigen::Array2d rms = (square_sum / n).sqrt();
+  const Eigen::Array2d bias = (sum / n).abs() / rms * std::sqrt(n);
+  const Eigen::Array2d over_bound = rms / bound.diagonal().array().sqrt();
+  const Eigen::Array2d coverage = num_covering / n;
+  std::cout << GetParam() << ": " << num_usable << " of " << kFewerSeeds
+            << " usable, error over Cramer-Rao " << over_bound.transpose()
+            << ", over the standard error "
+            << (rms * n / standard_error_sum).transpose()
+            << ", bias in standard deviations of the mean " << bias.transpose()
+            << ", coverage " << coverage.transpose() << " (E, nu)\n";
+  EXPECT_EQ(num_usable, kFewerSeeds);
+  EXPECT_LT(bias.maxCoeff(), 4);
+  // Three standard deviations of a root mean square, and of a frequency.
+  EXPECT_GT(over_bound.minCoeff(), 1 - 3 / std::sqrt(2.0 * kFewerSeeds));
+  const double expected = GetParam().coverage;
+  EXPECT_GT(coverage.minCoeff(),
+            expected - 3 * std::sqrt(expected * (1 - expected) / kFewerSeeds));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, VirtualFieldsCoverageStatistics,
+    ::testing::Values(CoverageCase{1, "cuboid", 1e-2, 0.9216},
+                      CoverageCase{2, "cuboid", 1e-2, 0.9401},
+                      CoverageCase{2, "cuboid", 1e-1, 0.9401},
+                      CoverageCase{3, "cuboid", 1e-1, 0.9451},
+                      CoverageCase{1, "organ", 1e-2, 0.9216},
+                      CoverageCase{2, "organ", 1e-2, 0.9401},
+                      CoverageCase{2, "organ", 1e-1, 0.9401},
+                      CoverageCase{3, "organ", 1e-1, 0.9451}));
+
+}  // namespace
+}  // namespace elastimate

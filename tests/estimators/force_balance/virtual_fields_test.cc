@@ -1,0 +1,84 @@
+#include "elastimate/estimators/force_balance/virtual_fields.h"
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "elastimate/estimators/force_balance/bounded.h"
+#include "elastimate/estimators/force_balance/closed_form.h"
+#include "tests/scenes.h"
+
+namespace elastimate {
+namespace {
+
+using testing::Measure;
+using testing::SmallScene;
+
+TEST(VirtualFields, SayThatABoundContradictsTheData) {
+  Scene scene = SmallScene("cuboid");
+  Measure({1e3, 0.3}, scene);
+  for (const Bounds& bounds :
+       {Bounds{std::nullopt, 5.0}, Bounds{2e3, std::nullopt}}) {
+    EstimatorOptions options;
+    options.youngs_modulus = bounds;
+    const Estimate estimate = VirtualFields().Run(scene, options);
+    EXPECT_EQ(estimate.status, Status::kNotIdentifiable);
+    EXPECT_NE(estimate.message.find("bound on Young's modulus"),
+              std::string::npos)
+        << estimate.message;
+    EXPECT_FALSE(Bounded().Run(scene, options).IsUsable());
+  }
+}
+
+TEST(VirtualFields, KeepABoundThatTheDataAllow) {
+  Scene scene = SmallScene("cuboid");
+  Measure({1e3, 0.3}, scene);
+  testing::AddNoise(0.02, 1, scene);
+  EstimatorOptions options;
+  options.youngs_modulus.upper = 999;
+  const Estimate estimate = VirtualFields().Run(scene, options);
+  EXPECT_TRUE(estimate.IsUsable()) << estimate.message;
+}
+
+// Loads along the wrong axes, of the right size.
+TEST(VirtualFields, DenyLoadsOfAnotherDirection) {
+  Scene scene = SmallScene("organ");
+  Measure({1e3, 0.3}, scene);
+  testing::AddNoise(0.01, 1, scene);
+  Eigen::Matrix3Xd& force =
+      std::get<NodalForces>(scene.load_cases[0].loads[0]).force;
+  const Eigen::Matrix3Xd permuted = force({1, 2, 0}, Eigen::all);
+  force = permuted;
+  EXPECT_FALSE(VirtualFields().Run(scene, {}).IsUsable());
+  EXPECT_FALSE(ClosedForm().Run(scene, {}).IsUsable());
+  EstimatorOptions known;
+  known.known_poisson_ratio = 0.3;
+  EXPECT_FALSE(ClosedForm().Run(scene, known).IsUsable());
+}
+
+// Any nu fits pure shear: which one the noise prefers says nothing.
+TEST(VirtualFieldsStatistics, DoNotTakeNoiseForInformation) {
+  const double mu = 5e4 / 2.6;
+  for (const Bounds& bounds : {Bounds{}, Bounds{1.2 * mu, 2.8 * mu},
+                               Bounds{{}, mu}, Bounds{2.9 * mu, {}}}) {
+    EstimatorOptions options;
+    options.youngs_modulus = bounds;
+    for (const double noise : {1e-6, 1e-4, 1e-2}) {
+      constexpr int kSeeds = 40;
+      int num_usable = 0;
+      for (int seed = 1; seed <= kSeeds; ++seed) {
+        Scene scene = testing::ShearedBlock();
+        testing::AddNoise(noise, seed, scene);
+        num_usable += VirtualFields().Run(scene, options).IsUsable() ? 1 : 0;
+      }
+      std::cout << "noise " << noise << ", seeds 1 to " << kSeeds << ": "
+                << num_usable << " usable\n";
+      // One in twenty is what an interval of 95 % allows, which chance
+      // makes more than 6 of 40 in one of 300 experiments.
+      EXPECT_LE(num_usable, 6);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace elastimate

@@ -1,0 +1,387 @@
+#include "elastimate/io/examples/example_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "elastimate/core/mesh/mesh.h"
+#include "elastimate/core/scene/rigid_motion.h"
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/io/gmsh/organ_shape.h"
+
+namespace elastimate {
+namespace {
+
+constexpr double kDegree = 0.017453292519943295;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Six times the volume of each tetrahedron, with the sign of its orientation.
+Eigen::VectorXd Determinants(const Mesh& mesh) {
+  Eigen::VectorXd determinants(mesh.NumElements());
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    Eigen::Matrix3d edges;
+    for (int i = 0; i < 3; ++i) {
+      edges.col(i) = mesh.nodes.col(mesh.elements(i + 1, e)) -
+                     mesh.nodes.col(mesh.elements(0, e));
+    }
+    determinants[e] = edges.determinant();
+  }
+  return determinants;
+}
+
+double Volume(const Mesh& mesh) {
+  return Determinants(mesh).cwiseAbs().sum() / 6.0;
+}
+
+/// The outward normals times the areas of boundary facets.
+Eigen::Matrix3Xd AreaVectors(const Mesh& mesh, const Eigen::MatrixXi& facets) {
+  Eigen::Matrix3Xd areas(3, facets.cols());
+  for (Eigen::Index f = 0; f < facets.cols(); ++f) {
+    const Eigen::Vector3d first = mesh.nodes.col(facets(0, f));
+    const Eigen::Vector3d edge1 = mesh.nodes.col(facets(1, f)) - first;
+    const Eigen::Vector3d edge2 = mesh.nodes.col(facets(2, f)) - first;
+    areas.col(f) = 0.5 * edge1.cross(edge2);
+  }
+  return areas;
+}
+
+using Edge = std::pair<int, int>;
+
+/// The facets on either side of each edge of a surface.
+std::map<Edge, std::vector<Eigen::Index>> FacetsOfEdges(
+    const Eigen::MatrixXi& facets) {
+  std::map<Edge, std::vector<Eigen::Index>> facets_of_edges;
+  for (Eigen::Index f = 0; f < facets.cols(); ++f) {
+    for (int i = 0; i < 3; ++i) {
+      facets_of_edges[std::minmax<int>({facets(i, f), facets((i + 1) % 3, f)})]
+          .push_back(f);
+    }
+  }
+  return facets_of_edges;
+}
+
+std::set<int> NodesOf(const Eigen::MatrixXi& facets) {
+  return {facets.data(), facets.data() + facets.size()};
+}
+
+/// The largest angle between the normals of two facets that share an edge.
+double LargestCrease(const Mesh& mesh) {
+  const Eigen::MatrixXi facets = BoundaryFacets(mesh);
+  const Eigen::Matrix3Xd normals =
+      AreaVectors(mesh, facets).colwise().normalized();
+  double smallest_cosine = 1.0;
+  for (const auto& [edge, sides] : FacetsOfEdges(facets)) {
+    smallest_cosine =
+        std::min(smallest_cosine,
+                 normals.col(sides.at(0)).dot(normals.col(sides.at(1))));
+  }
+  return std::acos(smallest_cosine);
+}
+
+void ExpectLoadedWhereFree(const Scene& scene, const Eigen::Vector3d& force) {
+  ASSERT_EQ(scene.load_cases.size(), 1U);
+  const LoadCase& load_case = scene.load_cases[0];
+  EXPECT_EQ(load_case.displacement.size(), 0);
+  EXPECT_EQ(load_case.observed.size(), 0);
+  EXPECT_FALSE(load_case.noise_sd.has_value());
+  ASSERT_EQ(load_case.loads.size(), 1U);
+  const Eigen::Matrix3Xd& forces =
+      std::get<NodalForces>(load_case.loads[0]).force;
+  ASSERT_EQ(forces.cols(), scene.mesh.NumNodes());
+  for (Eigen::Index node = 0; node < forces.cols(); ++node) {
+    const bool held = scene.supports.held(0, node);
+    EXPECT_TRUE((scene.supports.held.col(node) == held).all());
+    EXPECT_EQ(forces.col(node), held ? Eigen::Vector3d::Zero() : force);
+  }
+  EXPECT_TRUE(scene.supports.displacement.isZero(0.0));
+}
+
+/// The sentence of the std::invalid_argument that `make_scene` throws.
+template <typename MakeScene>
+std::string WhyInvalid(MakeScene make_scene) {
+  try {
+    make_scene();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "nothing was thrown";
+}
+
+Scene OrganOf(int tetrahedra) {
+  OrganOptions options;
+  options.tetrahedra = tetrahedra;
+  return OrganScene(options);
+}
+
+TEST(CuboidSceneTest, DefaultHasTheTetrahedraOfThePaper) {
+  const Scene scene = CuboidScene(CuboidOptions());
+  EXPECT_EQ(scene.mesh.NumElements(), 250);
+  EXPECT_EQ(scene.mesh.NumNodes(), 6 * 6 * 3);
+}
+
+class CuboidSceneShapes : public testing::TestWithParam<std::array<int, 3>> {
+ protected:
+  CuboidSceneShapes() {
+    options_.cells = Eigen::Vector3i::Map(GetParam().data());
+    options_.size = {0.3, 0.7, 1.1};
+    options_.force = {1.0, -2.0, 3.0};
+    scene_ = CuboidScene(options_);
+  }
+  CuboidOptions options_;
+  Scene scene_;
+};
+
+TEST_P(CuboidSceneShapes, HasFiveTetrahedraPerCell) {
+  EXPECT_EQ(scene_.mesh.NumElements(), 5 * options_.cells.prod());
+  EXPECT_EQ(scene_.mesh.NumNodes(), (options_.cells.array() + 1).prod());
+}
+
+TEST_P(CuboidSceneShapes, IsAValidAndHeldScene) {
+  EXPECT_NO_THROW(ValidateScene(scene_));
+  EXPECT_EQ(WhyNotHeld(scene_.mesh, scene_.supports), "");
+}
+
+TEST_P(CuboidSceneShapes, FillsTheCuboid) {
+  EXPECT_EQ(scene_.mesh.nodes.rowwise().minCoeff(), Eigen::Vector3d::Zero());
+  EXPECT_EQ(scene_.mesh.nodes.rowwise().maxCoeff(), options_.size);
+  EXPECT_NEAR(Volume(scene_.mesh), options_.size.prod(), 1e-14);
+  EXPECT_GT(Determinants(scene_.mesh).minCoeff(), 0.0);
+}
+
+TEST_P(CuboidSceneShapes, HasNoSurfaceInside) {
+  // Faces of neighbouring cells that are cut along different diagonals would
+  // count as surface.
+  const Eigen::Vector3d size = options_.size;
+  const double area = AreaVectors(scene_.mesh, BoundaryFacets(scene_.mesh))
+                          .colwise()
+                          .norm()
+                          .sum();
+  EXPECT_NEAR(area,
+              2.0 * (size[0] * size[1] + size[1] * size[2] + size[2] * size[0]),
+              1e-13);
+}
+
+TEST_P(CuboidSceneShapes, IsHeldAtTheBottomAndLoadedElsewhere) {
+  for (Eigen::Index node = 0; node < scene_.mesh.NumNodes(); ++node) {
+    EXPECT_EQ(scene_.supports.held(0, node), scene_.mesh.nodes(2, node) == 0.0);
+  }
+  ExpectLoadedWhereFree(scene_, options_.force);
+}
+
+TEST_P(CuboidSceneShapes, IsNumberedAlongXThenYThenZ) {
+  const Eigen::Matrix3Xd& nodes = scene_.mesh.nodes;
+  for (Eigen::Index node = 1; node < nodes.cols(); ++node) {
+    const Eigen::Vector3d before = nodes.col(node - 1).reverse();
+    const Eigen::Vector3d after = nodes.col(node).reverse();
+    EXPECT_TRUE(std::lexicographical_compare(before.begin(), before.end(),
+                                             after.begin(), after.end()));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cells, CuboidSceneShapes,
+                         testing::Values(std::array<int, 3>{1, 1, 1},
+                                         std::array<int, 3>{1, 2, 3},
+                                         std::array<int, 3>{4, 1, 5},
+                                         std::array<int, 3>{7, 6, 5}));
+
+TEST(CuboidSceneTest, NamesTheOptionOutOfRange) {
+  const auto why = [](auto change) {
+    CuboidOptions options;
+    change(options);
+    return WhyInvalid([&] { CuboidScene(options); });
+  };
+  EXPECT_EQ(why([](CuboidOptions& o) { o.cells.y() = 0; }),
+            "cells=5,0,2; each must be at least 1");
+  EXPECT_EQ(why([](CuboidOptions& o) {
+              o.cells = {755, 755, 755};
+            }),
+            "cells=755,755,755; the product must be at most 2000000");
+  EXPECT_EQ(why([](CuboidOptions& o) { o.cells.setConstant(2147483647); }),
+            "cells=2147483647,2147483647,2147483647; the product must be at "
+            "most 2000000");
+  EXPECT_EQ(why([](CuboidOptions& o) { o.size.z() = 0.0; }),
+            "size=1,1,0; each must be from 1e-50 to 1e+50");
+  EXPECT_EQ(why([](CuboidOptions& o) { o.size.x() = kInfinity; }),
+            "size=inf,1,0.4; each must be from 1e-50 to 1e+50");
+  EXPECT_EQ(why([](CuboidOptions& o) { o.size.x() = 1e-9; }),
+            "size=1e-09,1,0.4; a cell of 2e-10,0.2,0.2 is too flat; its "
+            "longest edge must be at most 100000 times its shortest");
+  EXPECT_EQ(why([](CuboidOptions& o) { o.force.x() = kInfinity; }),
+            "force=inf,0,-30; the largest must be from 1e-50 to 1e+50, or all "
+            "zero");
+}
+
+TEST(CuboidSceneTest, IsValidAtTheEndsOfTheRanges) {
+  for (const double length : {1e-50, 1.0, 1e45}) {
+    CuboidOptions options;
+    options.size = length * Eigen::Vector3d(1e5, 1, 1);
+    options.cells = {1, 1, 1};
+    EXPECT_NO_THROW(ValidateScene(CuboidScene(options))) << length;
+  }
+}
+
+class OrganSceneSizes : public testing::TestWithParam<int> {
+ protected:
+  /// Made once for all tests of a size.
+  static const Scene& OrganOfThisSize() {
+    static std::map<int, Scene> scenes;
+    const auto found = scenes.find(GetParam());
+    return found != scenes.end()
+               ? found->second
+               : scenes.emplace(GetParam(), OrganOf(GetParam())).first->second;
+  }
+};
+
+TEST_P(OrganSceneSizes, HasTheWantedNumberOfTetrahedra) {
+  EXPECT_NEAR(OrganOfThisSize().mesh.NumElements(), GetParam(),
+              0.05 * GetParam());
+}
+
+TEST_P(OrganSceneSizes, IsAValidAndHeldScene) {
+  const Scene& scene = OrganOfThisSize();
+  EXPECT_NO_THROW(ValidateScene(scene));
+  EXPECT_EQ(WhyNotHeld(scene.mesh, scene.supports), "");
+  ExpectLoadedWhereFree(scene, OrganOptions().force);
+}
+
+TEST_P(OrganSceneSizes, HasOneClosedSurfaceOfGenusZero) {
+  const Scene& scene = OrganOfThisSize();
+  const Eigen::MatrixXi facets = BoundaryFacets(scene.mesh);
+  const auto edges = FacetsOfEdges(facets);
+  for (const auto& [edge, sides] : edges) {
+    EXPECT_EQ(sides.size(), 2U);
+  }
+  // Each closed surface of genus g adds 2 - 2 g.
+  const auto count = [](const auto& set) {
+    return static_cast<Eigen::Index>(set.size());
+  };
+  EXPECT_EQ(count(NodesOf(facets)) - count(edges) + facets.cols(), 2);
+}
+
+TEST_P(OrganSceneSizes, HasItsSurfaceNodesOnTheOrgansSurface) {
+  const Scene& scene = OrganOfThisSize();
+  const std::set<int> surface = NodesOf(BoundaryFacets(scene.mesh));
+  for (int node = 0; node < scene.mesh.NumNodes(); ++node) {
+    const double radius =
+        BallPoint(scene.mesh.nodes.col(node) / OrganOptions().length).norm();
+    if (surface.count(node) == 1) {
+      EXPECT_NEAR(radius, 1.0, 1e-12);
+    } else {
+      EXPECT_LT(radius, 1.0);
+    }
+  }
+  EXPECT_LT(static_cast<int>(surface.size()), scene.mesh.NumNodes());
+}
+
+TEST_P(OrganSceneSizes, HasNoSlivers) {
+  EXPECT_GE(SmallestDihedralAngles(OrganOfThisSize().mesh).minCoeff(),
+            15.0 * kDegree);
+}
+
+TEST_P(OrganSceneSizes, IsHeldOverATenthOfItsSurface) {
+  const Scene& scene = OrganOfThisSize();
+  const Eigen::MatrixXi facets = BoundaryFacets(scene.mesh);
+  const Eigen::VectorXd areas =
+      AreaVectors(scene.mesh, facets).colwise().norm();
+  double held_area = 0.0;
+  for (Eigen::Index f = 0; f < facets.cols(); ++f) {
+    for (const int node : facets.col(f)) {
+      held_area += scene.supports.held(0, node) ? areas[f] / 3.0 : 0.0;
+    }
+  }
+  EXPECT_NEAR(held_area / areas.sum(), 0.12, 0.025);
+}
+
+INSTANTIATE_TEST_SUITE_P(Tetrahedra, OrganSceneSizes,
+                         testing::Values(200, 500, OrganOptions().tetrahedra,
+                                         5000, 50000));
+
+TEST(OrganSceneTest, HasTheLengthAlongX) {
+  OrganOptions options;
+  options.length = 3.0;
+  const Eigen::RowVectorXd x = OrganScene(options).mesh.nodes.row(0);
+  EXPECT_NEAR(x.minCoeff(), -1.5, 1e-12);
+  EXPECT_NEAR(x.maxCoeff(), 1.5, 1e-12);
+}
+
+TEST(OrganSceneTest, HasManyNodesInside) {
+  const Mesh mesh = OrganScene(OrganOptions()).mesh;
+  const std::set<int> surface = NodesOf(BoundaryFacets(mesh));
+  EXPECT_GT(mesh.NumNodes() - static_cast<Eigen::Index>(surface.size()),
+            mesh.NumNodes() / 5);
+}
+
+TEST(OrganSceneTest, IsTheSameOnEveryCall) {
+  const Scene first = OrganScene(OrganOptions());
+  OrganOf(500);  // What was made before must not matter.
+  const Scene second = OrganScene(OrganOptions());
+  EXPECT_EQ(first.mesh.nodes, second.mesh.nodes);
+  EXPECT_EQ(first.mesh.elements, second.mesh.elements);
+  EXPECT_TRUE((first.supports.held == second.supports.held).all());
+}
+
+TEST(OrganSceneTest, GetsSmootherAsItIsRefined) {
+  double crease_before = 1e9;
+  for (const int tetrahedra : {500, 5000, 50000}) {
+    const double crease = LargestCrease(OrganOf(tetrahedra).mesh);
+    EXPECT_LT(crease, 0.75 * crease_before) << tetrahedra;
+    crease_before = crease;
+  }
+  EXPECT_LT(crease_before, 50.0 * kDegree);
+}
+
+TEST(OrganSceneTest, ApproachesTheVolumeOfTheOrgan) {
+  // The map's Jacobian determinant is 1/2 Height(a) Depth(a, c), whose integral
+  // over the unit ball this is.
+  constexpr double kVolume = 0.11403666;
+  const double cubed_length = std::pow(OrganOptions().length, 3);
+  EXPECT_NEAR(Volume(OrganOf(5000).mesh) / cubed_length, kVolume,
+              0.02 * kVolume);
+  EXPECT_NEAR(Volume(OrganOf(50000).mesh) / cubed_length, kVolume,
+              0.005 * kVolume);
+}
+
+TEST(OrganSceneTest, NamesTheOptionOutOfRange) {
+  const auto why = [](auto change) {
+    OrganOptions options;
+    change(options);
+    return WhyInvalid([&] { OrganScene(options); });
+  };
+  EXPECT_EQ(why([](OrganOptions& o) { o.tetrahedra = 199; }),
+            "tetrahedra=199; it must be from 200 to 2000000");
+  EXPECT_EQ(why([](OrganOptions& o) { o.tetrahedra = 2000001; }),
+            "tetrahedra=2000001; it must be from 200 to 2000000");
+  EXPECT_EQ(why([](OrganOptions& o) { o.length = -0.2; }),
+            "length=-0.2; it must be from 1e-50 to 1e+50");
+  EXPECT_EQ(why([](OrganOptions& o) { o.length = 1e200; }),
+            "length=1e+200; it must be from 1e-50 to 1e+50");
+  EXPECT_EQ(why([](OrganOptions& o) { o.length = std::nan(""); }),
+            "length=nan; it must be from 1e-50 to 1e+50");
+  EXPECT_EQ(
+      why([](OrganOptions& o) { o.force.y() = kInfinity; }),
+      "force=0,inf,-0.02; the largest must be from 1e-50 to 1e+50, or all "
+      "zero");
+}
+
+TEST(OrganShapeTest, BallPointInvertsOrganPoint) {
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d point(std::sin(1.0 + i), std::sin(2.0 * i),
+                                std::sin(3.0 * i));
+    EXPECT_TRUE(BallPoint(OrganPoint(point)).isApprox(point, 1e-13)) << i;
+  }
+}
+
+}  // namespace
+}  // namespace elastimate

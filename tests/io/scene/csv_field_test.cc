@@ -1,0 +1,72 @@
+#include "elastimate/io/scene/csv_field.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/io/scene_files.h"
+#include "tests/throws.h"
+
+namespace elastimate {
+namespace {
+
+class CsvFieldTest : public ::testing::Test {
+ protected:
+  Eigen::Matrix3Xd Read(const std::string& content) const {
+    return ReadCsvField(folder_.Write("u.csv", content), 2);
+  }
+  const TemporaryFolder folder_;
+};
+
+TEST_F(CsvFieldTest, ReadsBothHeadersAndTheirSpaces) {
+  Eigen::Matrix3Xd expected(3, 2);
+  expected.transpose() << 1, -2.5, 3e-7, 0.1, 5, 6;
+  EXPECT_EQ(Read("x,y,z\n1,-2.5,3e-7\n0.1,5,6\n"), expected);
+  EXPECT_EQ(Read(" ux , uy,uz\r\n 1,\t-2.5,3e-7 \r\n+0.1,5,6\r\n\r\n\n"),
+            expected);
+  EXPECT_EQ(Read("\xEF\xBB\xBFx,y,z\n1,-2.5,3e-7\n0.1,5,6"), expected);
+  EXPECT_TRUE(std::isnan(Read("x,y,z\nnan,0,0\n0,0,0")(0, 0)));
+}
+
+TEST_F(CsvFieldTest, NamesLineAndColumn) {
+  EXPECT_THROWS_WITH(Read("a,b,c\n1,2,3\n4,5,6\n"),
+                     "u.csv: line 1: the header");
+  EXPECT_THROWS_WITH(Read("x;y;z\n1;2;3\n4;5;6\n"), "line 1: the header");
+  EXPECT_THROWS_WITH(Read("1,2,3\n4,5,6\n"), "line 1: the header");
+  EXPECT_THROWS_WITH(Read("x,y,z\n1,2,3\n4,five,6\n"),
+                     "u.csv: line 3, column 2: 'five' is not a number");
+  EXPECT_THROWS_WITH(Read("x,y,z\n1,2,3\n4,5,6 7\n"),
+                     "line 3, column 3: '6 7' is not a number");
+  EXPECT_THROWS_WITH(Read("x,y,z\n1,2,3\n4,,6\n"),
+                     "line 3, column 2: the cell is empty");
+  EXPECT_THROWS_WITH(Read("x,y,z\n1,2\n4,5,6\n"), "line 2 has 2 columns");
+  EXPECT_THROWS_WITH(Read("x,y,z\n1,2,3,4\n4,5,6\n"), "line 2 has 4 columns");
+  EXPECT_THROWS_WITH(Read("x,y,z\n1,2,1e999\n4,5,6\n"),
+                     "line 2, column 3: '1e999' is beyond");
+  EXPECT_THROWS_WITH(Read("x,y,z\n1,2,3\n\n4,5,6\n"), "line 3");
+}
+
+TEST_F(CsvFieldTest, QuotesOnlyWhatIsFitToPrint) {
+  using namespace std::string_literals;
+  EXPECT_THROWS_WITH(Read("x,y,z\n1,\033[31m\0\xFF,3\n4,5,6\n"s),
+                     "line 2, column 2: '\\\\x1b\\[31m\\\\x00\\\\xff' is not");
+  EXPECT_THROWS_WITH(Read("x,y,z\n1," + std::string(2000, 'x') + ",3\n"),
+                     "column 2: 'x{37}\\.\\.\\.x{20}' is not a number");
+  EXPECT_THROWS_WITH(Read("x,y,z\n1," + std::string(2000, '7') + ",3\n"),
+                     "column 2: '7{37}\\.\\.\\.7{20}' is beyond the range");
+  EXPECT_THROWS_WITH(Read("\033[2Jx,y,z\n1,2,3\n"),
+                     "line 1: the header must be");
+}
+
+TEST_F(CsvFieldTest, CountsRows) {
+  EXPECT_THROWS_WITH(Read("x,y,z\n1,2,3\n"),
+                     "u.csv: the file has 1 rows below its header, but the "
+                     "mesh has 2 nodes");
+  EXPECT_THROWS_WITH(Read("x,y,z\n1,2,3\n1,2,3\n1,2,3\n"), "more than 2 rows");
+  EXPECT_THROWS_WITH(Read(""), "u.csv: the file is empty");
+  EXPECT_THROWS_WITH(ReadCsvField(folder_.Path() / "none.csv", 2),
+                     "none.csv: no such file");
+}
+
+}  // namespace
+}  // namespace elastimate
