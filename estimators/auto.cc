@@ -8,7 +8,7 @@
 #include "elastimate/estimators/displacement_fit/reduced_fe.h"
 #include "elastimate/estimators/force_balance/closed_form.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
-#include "elastimate/estimators/interface/checks.h"
+#include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/statistics.h"
 #include "elastimate/estimators/statistics/model_mismatch.h"
 

@@ -20,7 +20,7 @@
 #include "elastimate/estimators/displacement_fit/node_losses.h"
 #include "elastimate/estimators/displacement_fit/observed_displacements.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
-#include "elastimate/estimators/interface/checks.h"
+#include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/statistics.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 #include "elastimate/estimators/statistics/bounded_parameter.h"

@@ -3,7 +3,8 @@
 #include <limits>
 #include <sstream>
 
-#include "elastimate/estimators/interface/checks.h"
+#include "elastimate/estimators/interface/input_checks.h"
+#include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 
 namespace elastimate {

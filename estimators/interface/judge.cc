@@ -1,11 +1,9 @@
-#include "elastimate/estimators/interface/checks.h"
+#include "elastimate/estimators/interface/judge.h"
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
-#include <stdexcept>
 
-#include "elastimate/core/scene/loads.h"
 #include "elastimate/estimators/interface/statistics.h"
 
 namespace elastimate {
@@ -15,50 +13,6 @@ std::string Text(double value) {
   std::ostringstream text;
   text << value;
   return text.str();
-}
-
-// Whether the loads act on a free degree of freedom.
-bool IsLoaded(const Scene& scene, const LoadCase& load_case) {
-  const auto acts = [&](const Eigen::Matrix3Xd& force) {
-    return (!scene.supports.held && force.array() != 0).any();
-  };
-  const NodalForces* const nodal_forces =
-      load_case.loads.size() == 1
-          ? std::get_if<NodalForces>(&load_case.loads.front())
-          : nullptr;
-  return nodal_forces != nullptr
-             ? acts(nodal_forces->force)
-             : acts(AssembleLoads(scene.mesh, load_case.loads));
-}
-
-// What one load case measured at the free degrees of freedom.
-struct MeasurementSummary {
-  bool any_observed = false;
-  bool any_displacement = false;
-  double free_square_sum = 0;
-  double held_deviation_square_sum = 0;
-};
-
-MeasurementSummary Summarize(const Scene& scene, const LoadCase& load_case) {
-  MeasurementSummary summary;
-  for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
-    for (int i = 0; i < 3; ++i) {
-      const bool held = scene.supports.held(i, node);
-      if (!IsObserved(load_case, i, node)) {
-        continue;
-      }
-      const double q = load_case.displacement(i, node);
-      if (held) {
-        const double deviation = q - scene.supports.displacement(i, node);
-        summary.held_deviation_square_sum += deviation * deviation;
-      } else {
-        summary.any_observed = true;
-        summary.any_displacement |= q != 0;
-        summary.free_square_sum += q * q;
-      }
-    }
-  }
-  return summary;
 }
 
 // 95 % of a normal distribution, two-sided and one-sided.
@@ -193,68 +147,6 @@ void AcceptElements(Estimate& estimate) {
 
 bool IsWarningOfLocking(const std::string& warning) {
   return warning == kLockingWarning;
-}
-
-void CheckOptions(const EstimatorOptions& options) {
-  const std::string why_invalid = options.WhyInvalid();
-  if (!why_invalid.empty()) {
-    throw std::invalid_argument(why_invalid);
-  }
-}
-
-void CheckSupported(const Estimator& estimator, const Scene& scene,
-                    const EstimatorOptions& options) {
-  const std::string why_unsupported = estimator.WhyUnsupported(scene, options);
-  if (!why_unsupported.empty()) {
-    throw std::invalid_argument(std::string(estimator.Name()) + ": " +
-                                why_unsupported);
-  }
-}
-
-std::vector<std::string> CheckMeasurements(const Scene& scene) {
-  std::vector<std::string> warnings;
-  bool any_force = false;
-  std::size_t num_with_noise_sd = 0;
-  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-    const LoadCase& load_case = scene.load_cases[k];
-    const std::string name = "load case " + std::to_string(k + 1);
-    if (load_case.displacement.size() == 0) {
-      throw std::invalid_argument(
-          name + " has no measured displacements; an estimate needs them");
-    }
-    const MeasurementSummary summary = Summarize(scene, load_case);
-    if (!summary.any_observed) {
-      throw std::invalid_argument(
-          "no free component of the displacement was measured in " + name +
-          "; measure some, or free what was measured");
-    }
-    if (!summary.any_displacement) {
-      throw std::invalid_argument(
-          "the measured displacement of " + name +
-          " is zero at every free node; nothing moved, so nothing can be "
-          "estimated");
-    }
-    any_force = any_force || IsLoaded(scene, load_case);
-    num_with_noise_sd += load_case.noise_sd ? 1 : 0;
-    // Measurement noise on held nodes is no contradiction; a motion is.
-    if (summary.held_deviation_square_sum > 0.01 * summary.free_square_sum) {
-      warnings.push_back(
-          "the measured displacement of held nodes in " + name +
-          " differs from the displacement they are held at, which is used; "
-          "check the supports");
-    }
-  }
-  if (!any_force) {
-    throw std::invalid_argument(
-        "the loads are zero on every free degree of freedom; without a known "
-        "force Young's modulus cannot be estimated");
-  }
-  if (num_with_noise_sd != 0 && num_with_noise_sd != scene.load_cases.size()) {
-    throw std::invalid_argument(
-        "the noise standard deviation is given for some load cases only; give "
-        "it for all or for none");
-  }
-  return warnings;
 }
 
 void NoteSolver(const std::string& notice, Estimate& estimate) {

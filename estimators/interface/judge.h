@@ -1,5 +1,5 @@
-#ifndef ELASTIMATE_ESTIMATORS_INTERFACE_CHECKS_H_
-#define ELASTIMATE_ESTIMATORS_INTERFACE_CHECKS_H_
+#ifndef ELASTIMATE_ESTIMATORS_INTERFACE_JUDGE_H_
+#define ELASTIMATE_ESTIMATORS_INTERFACE_JUDGE_H_
 
 #include <string>
 #include <vector>
@@ -9,18 +9,6 @@
 #include "elastimate/estimators/interface/estimator.h"
 
 namespace elastimate {
-
-/// Throws std::invalid_argument unless the options are valid.
-void CheckOptions(const EstimatorOptions& options);
-
-/// Throws std::invalid_argument unless `estimator` supports a valid scene and
-/// valid options.
-void CheckSupported(const Estimator& estimator, const Scene& scene,
-                    const EstimatorOptions& options);
-
-/// Throws std::invalid_argument unless every load case of a valid scene has
-/// what each estimator needs: see Estimator::Run.  Returns warnings.
-std::vector<std::string> CheckMeasurements(const Scene& scene);
 
 /// Makes the notice of a StiffnessSolver, if there is one, a warning.
 void NoteSolver(const std::string& notice, Estimate& estimate);
@@ -53,4 +41,4 @@ void FinishEstimate(const Estimator& estimator, const Scene& scene,
 
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_ESTIMATORS_INTERFACE_CHECKS_H_
+#endif  // ELASTIMATE_ESTIMATORS_INTERFACE_JUDGE_H_
