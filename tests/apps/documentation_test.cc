@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -114,7 +115,8 @@ std::set<std::string> NamesAfter(const std::string& prefix,
        i = text.find(prefix, i + 1)) {
     const std::size_t first = i + prefix.size();
     const std::size_t end =
-        text.find_first_not_of("abcdefghijklmnopqrstuvwxyz-_", first);
+        std::min(text.find_first_not_of("abcdefghijklmnopqrstuvwxyz-_", first),
+                 text.size());
     if (end > first) {
       names.insert(text.substr(first, end - first));
     }
