@@ -22,7 +22,7 @@ Eigen::MatrixXd Imbalance(const Scene& scene,
                           const Eigen::MatrixXd& force) {
   const StiffnessProducts products =
       MultiplyStiffnessBasis(scene.mesh, displacement);
-  return elasticity.StiffnessScale() *
+  return elasticity.StiffnessScale(SectionModel::kSolid) *
              (products.h + elasticity.poisson_ratio * products.j) -
          force;
 }

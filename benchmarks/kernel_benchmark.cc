@@ -231,7 +231,7 @@ void RunEstimator(benchmark::State& state, const char* name, double noise) {
 void MeasureAgain(benchmark::State& state) {
   const Scene scene = MeasuredCube(state.range(0), kNoise);
   PreparedReducedFe prepared(scene, {});
-  const std::vector<Eigen::Matrix3Xd> displacements = {
+  const std::vector<Eigen::MatrixXd> displacements = {
       scene.load_cases[0].displacement};
   prepared.Run(displacements);
   Estimate estimate;

@@ -63,7 +63,7 @@ class Comparison {
   }
 
   std::array<Trial, 2> Run(const Scene& measured, double deviation, int seed) {
-    std::vector<Eigen::Matrix3Xd> displacements;
+    std::vector<Eigen::MatrixXd> displacements;
     for (const LoadCase& load_case : measured.load_cases) {
       displacements.push_back(load_case.displacement);
     }

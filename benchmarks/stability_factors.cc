@@ -208,7 +208,7 @@ Scene Tetrahedron() {
   scene.supports.held.setConstant(3, 4, true);
   scene.supports.held.col(3) = false;
   scene.supports.displacement.setZero(3, 4);
-  NodalForces force{Eigen::Matrix3Xd::Zero(3, 4)};
+  NodalForces force{Eigen::MatrixXd::Zero(3, 4)};
   force.force.col(3) = kCellEdge * kCellEdge * kTraction;
   scene.load_cases.emplace_back().loads = {force};
   return scene;
@@ -238,15 +238,15 @@ void AddLoads(Levels& levels) {
   };
   const Eigen::MatrixXi end = FacetsAtEnd(mesh, 0);
   add("oblique", Traction{end, kTraction});
-  add("tension", Traction{end, {200, 0, 0}});
-  add("bending", Traction{end, {0, 0, -100}});
+  add("tension", Traction{end, Eigen::Vector3d(200, 0, 0)});
+  add("bending", Traction{end, Eigen::Vector3d(0, 0, -100)});
   add("pressure", Pressure{FacetsAtEnd(mesh, 2), 200});
   const Nodes end_nodes = NodesAt(mesh, Length(mesh));
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   for (const Eigen::Index node : end_nodes) {
     center += mesh.nodes.col(node) / static_cast<double>(end_nodes.size());
   }
-  NodalForces indentation{Eigen::Matrix3Xd::Zero(3, mesh.NumNodes())};
+  NodalForces indentation{Eigen::MatrixXd::Zero(3, mesh.NumNodes())};
   NodalForces torsion = indentation;
   for (const Eigen::Index node : end_nodes) {
     const Eigen::Vector3d arm = mesh.nodes.col(node) - center;

@@ -56,7 +56,7 @@ int main() {
   scene.supports.displacement.setZero(3, 9);
 
   // 3. The load: 25 N down on each of the nodes 4 to 7.
-  NodalForces forces{Eigen::Matrix3Xd::Zero(3, 9)};
+  NodalForces forces{Eigen::MatrixXd::Zero(3, 9)};
   forces.force.row(2).segment(4, 4).setConstant(-25);
   LoadCase load_case;
   load_case.loads = {forces};

@@ -12,6 +12,7 @@ Mesh WithMidEdgeNodes(const Mesh& mesh) {
   std::map<std::pair<int, int>, int> node_of_edge;
   Mesh quadratic;
   quadratic.regions = mesh.regions;
+  quadratic.kind = ElementKind::kTet10;
   quadratic.elements.resize(10, mesh.NumElements());
   quadratic.elements.topRows<4>() = mesh.elements;
   for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {

@@ -102,8 +102,8 @@ struct QuadraticField {
     }
     return u;
   }
-  Eigen::Matrix3Xd Displacements(const Eigen::Matrix3Xd& nodes) const {
-    Eigen::Matrix3Xd u(3, nodes.cols());
+  Eigen::MatrixXd Displacements(const Eigen::MatrixXd& nodes) const {
+    Eigen::MatrixXd u(3, nodes.cols());
     for (Eigen::Index node = 0; node < nodes.cols(); ++node) {
       u.col(node) = Displacement(nodes.col(node));
     }

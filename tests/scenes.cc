@@ -69,8 +69,8 @@ Scene HeldAtBottom(const Mesh& mesh, const Mesh& reference,
   Scene scene;
   scene.mesh = mesh;
   scene.supports.held = ComponentMask::Constant(3, mesh.NumNodes(), false);
-  scene.supports.displacement = Eigen::Matrix3Xd::Zero(3, mesh.NumNodes());
-  NodalForces forces{Eigen::Matrix3Xd::Zero(3, mesh.NumNodes())};
+  scene.supports.displacement = Eigen::MatrixXd::Zero(3, mesh.NumNodes());
+  NodalForces forces{Eigen::MatrixXd::Zero(3, mesh.NumNodes())};
   for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
     if (reference.nodes(2, node) == 0) {
       scene.supports.held.col(node) = true;
@@ -132,7 +132,7 @@ Scene WithThreeForces(const Scene& scene) {
                           .maxCoeff();
   three.load_cases.clear();
   for (int axis = 0; axis < 3; ++axis) {
-    NodalForces forces{Eigen::Matrix3Xd::Zero(3, scene.mesh.NumNodes())};
+    NodalForces forces{Eigen::MatrixXd::Zero(3, scene.mesh.NumNodes())};
     forces.force.row(axis).setConstant(size);
     LoadCase load_case;
     load_case.loads.emplace_back(forces);
@@ -143,14 +143,14 @@ Scene WithThreeForces(const Scene& scene) {
 
 Scene UnderBodyForce(Scene scene) {
   scene.load_cases.resize(1);
-  scene.load_cases[0].loads = {BodyForce{{100, 20, -300}}};
+  scene.load_cases[0].loads = {BodyForce{Eigen::Vector3d(100, 20, -300)}};
   return scene;
 }
 
 Scene ShearedBlock() {
   Scene scene = SmallScene("cuboid");
   const Mesh& mesh = scene.mesh;
-  Eigen::Matrix3Xd displacement = Eigen::Matrix3Xd::Zero(3, mesh.NumNodes());
+  Eigen::MatrixXd displacement = Eigen::MatrixXd::Zero(3, mesh.NumNodes());
   displacement.row(0) = 0.01 * mesh.nodes.row(1);
   const Eigen::MatrixXd stiffness =
       DenseStiffness<double>(mesh, HookeMatrix(5e4, 0.3));

@@ -202,7 +202,7 @@ Scene ShapeScene(const std::string& shape, const std::string& load) {
   const double low = mesh.nodes.row(2).minCoeff();
   const double height = mesh.nodes.row(2).maxCoeff() - low;
   const Vector3d centre = mesh.nodes.rowwise().mean();
-  Eigen::Matrix3Xd& force =
+  Eigen::MatrixXd& force =
       std::get<NodalForces>(scene.load_cases[0].loads[0]).force;
   for (Eigen::Index i = 0; i < mesh.NumNodes(); ++i) {
     const double z = (mesh.nodes(2, i) - low) / height;

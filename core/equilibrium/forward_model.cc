@@ -43,7 +43,8 @@ bool ForwardModel::SetPoissonRatio(double poisson_ratio) {
 
 Eigen::MatrixXd ForwardModel::Displacement(double youngs_modulus) const {
   const double compliance_scale =
-      IsotropicElasticity{youngs_modulus, PoissonRatio()}.ComplianceScale();
+      IsotropicElasticity{youngs_modulus, PoissonRatio()}.ComplianceScale(
+          mesh_.section.model);
   return (compliance_scale * load_response_).colwise() + support_response_;
 }
 
@@ -64,8 +65,10 @@ DisplacementSensitivities ForwardModel::Sensitivities(double youngs_modulus) {
     has_derivatives_ = true;
   }
   const double t =
-      IsotropicElasticity{youngs_modulus, PoissonRatio()}.ComplianceScale();
-  const double dt_dnu = -(1 + 4 * PoissonRatio()) / youngs_modulus;
+      IsotropicElasticity{youngs_modulus, PoissonRatio()}.ComplianceScale(
+          mesh_.section.model);
+  const double dt_dnu =
+      t * LogYoungsModulusSlope(PoissonRatio(), mesh_.section.model);
   DisplacementSensitivities sensitivities;
   sensitivities.log_youngs_modulus = -t * load_response_;
   sensitivities.poisson_ratio =

@@ -10,7 +10,7 @@
 
 namespace elastimate {
 
-/// Derivatives of the displacement, (3 num_nodes) x num_load_cases each.
+/// Derivatives of the displacement, num_dofs x num_load_cases each.
 struct DisplacementSensitivities {
   Eigen::MatrixXd log_youngs_modulus;  ///< du / d ln E at fixed nu [length].
   Eigen::MatrixXd poisson_ratio;       ///< du / d nu at fixed E [length].
@@ -33,7 +33,7 @@ struct DisplacementSensitivities {
 ///   }
 class ForwardModel {
  public:
-  /// Assembles and analyses.  `force` is (3 num_nodes) x num_load_cases
+  /// Assembles and analyses.  `force` is num_dofs x num_load_cases
   /// [force]; its rows at held degrees of freedom have no effect.
   /// `mesh` must outlive this object.
   /// Preconditions: a valid scene; HasMultigrid() for kMultigrid.
@@ -49,7 +49,7 @@ class ForwardModel {
   /// beyond -1 or 1/2, or an extremely ill-conditioned mesh).
   bool SetPoissonRatio(double poisson_ratio);
 
-  /// u for all load cases, (3 num_nodes) x num_load_cases.  Costs no solve.
+  /// u for all load cases, num_dofs x num_load_cases.  Costs no solve.
   /// Precondition: SetPoissonRatio returned true.
   Eigen::MatrixXd Displacement(double youngs_modulus) const;
 

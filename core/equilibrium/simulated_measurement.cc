@@ -18,7 +18,8 @@ void Measure(const IsotropicElasticity& elasticity, Scene& scene) {
       model.Displacement(elasticity.youngs_modulus);
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     scene.load_cases[k].displacement =
-        displacement.col(Eigen::Index(k)).reshaped(3, scene.mesh.NumNodes());
+        displacement.col(Eigen::Index(k))
+            .reshaped(scene.mesh.Dimension(), scene.mesh.NumNodes());
   }
 }
 

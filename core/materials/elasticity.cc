@@ -19,8 +19,8 @@ IsotropicElasticity IsotropicElasticity::FromBulkAndShear(
 }
 
 IsotropicElasticity IsotropicElasticity::FromComplianceScale(
-    double compliance_scale, double poisson_ratio) {
-  return {(1 + poisson_ratio) * (1 - 2 * poisson_ratio) / compliance_scale,
+    double compliance_scale, double poisson_ratio, SectionModel model) {
+  return {ComplianceFactor(poisson_ratio, model) / compliance_scale,
           poisson_ratio};
 }
 
@@ -29,7 +29,7 @@ double IsotropicElasticity::ShearModulus() const {
 }
 
 double IsotropicElasticity::LameLambda() const {
-  return StiffnessScale() * poisson_ratio;
+  return StiffnessScale(SectionModel::kSolid) * poisson_ratio;
 }
 
 double IsotropicElasticity::BulkModulus() const {
@@ -40,16 +40,26 @@ double IsotropicElasticity::BulkCompliance() const {
   return 3 * (1 - 2 * poisson_ratio) / youngs_modulus;
 }
 
-double IsotropicElasticity::StiffnessScale() const {
-  return youngs_modulus / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio));
+double IsotropicElasticity::StiffnessScale(SectionModel model) const {
+  return youngs_modulus / ComplianceFactor(poisson_ratio, model);
 }
 
-double IsotropicElasticity::ComplianceScale() const {
-  return (1 + poisson_ratio) * (1 - 2 * poisson_ratio) / youngs_modulus;
+double IsotropicElasticity::ComplianceScale(SectionModel model) const {
+  return ComplianceFactor(poisson_ratio, model) / youngs_modulus;
 }
 
 bool IsotropicElasticity::IsPhysical() const {
   return youngs_modulus > 0 && poisson_ratio > -1 && poisson_ratio < 0.5;
+}
+
+double ComplianceFactorSlope(double poisson_ratio, SectionModel model) {
+  const double c = ShearShareOfJ(model);
+  return 1 - c - 2 * c * poisson_ratio;
+}
+
+double LogYoungsModulusSlope(double poisson_ratio, SectionModel model) {
+  return ComplianceFactorSlope(poisson_ratio, model) /
+         ComplianceFactor(poisson_ratio, model);
 }
 
 double LogStiffnessRatio(double poisson_ratio) {
@@ -71,12 +81,13 @@ Eigen::Matrix2d ShearAndBulkJacobian(const IsotropicElasticity& elasticity) {
   return jacobian;
 }
 
-Eigen::Matrix2d ComplianceScaleJacobian(const IsotropicElasticity& elasticity) {
+Eigen::Matrix2d ComplianceScaleJacobian(const IsotropicElasticity& elasticity,
+                                        SectionModel model) {
   const double youngs = elasticity.youngs_modulus;
-  const double nu = elasticity.poisson_ratio;
   Eigen::Matrix2d jacobian;
   jacobian << 0, 1,  //
-      -elasticity.ComplianceScale() / youngs, -(1 + 4 * nu) / youngs;
+      -elasticity.ComplianceScale(model) / youngs,
+      ComplianceFactorSlope(elasticity.poisson_ratio, model) / youngs;
   return jacobian;
 }
 

@@ -3,10 +3,19 @@
 
 #include <Eigen/Core>
 
+#include "elastimate/core/mesh/mesh.h"
+
 namespace elastimate {
 
-/// Isotropic linear elasticity in three dimensions.  The only place where its
-/// parameters are converted.
+/// Isotropic linear elasticity.  The only place where its parameters are
+/// converted.
+///
+/// The stiffness of a solid, plane strain or plane stress section is
+/// K = s (H + nu J) with matrices H and J of the mesh alone, which are made of
+/// e = sym(grad u) as
+///
+///   H u: integral of e grad(N_i),
+///   J u: integral of (tr(e) I - c e) grad(N_i),   c = 2, in plane stress 1.
 ///
 /// Physical values are E > 0 and -1 < nu < 1/2; the conversions are plain
 /// formulas and accept any numbers, so that an unphysical estimate can be
@@ -20,10 +29,10 @@ struct IsotropicElasticity {
   /// E = 9 kappa mu / (3 kappa + mu), nu = (3 kappa - 2 mu) / (6 kappa + 2 mu).
   static IsotropicElasticity FromBulkAndShear(double bulk_modulus,
                                               double shear_modulus);
-  /// E = (1 + nu)(1 - 2 nu) / t with the compliance scale t = 1 / s of K = s (H
-  /// + nu J).
+  /// E of the compliance scale t = 1 / s of K = s (H + nu J).
   static IsotropicElasticity FromComplianceScale(double compliance_scale,
-                                                 double poisson_ratio);
+                                                 double poisson_ratio,
+                                                 SectionModel model);
 
   /// mu = E / (2 (1 + nu)).
   double ShearModulus() const;
@@ -35,14 +44,32 @@ struct IsotropicElasticity {
   /// kappa is not.
   double BulkCompliance() const;
   /// s = E / ((1 + nu)(1 - 2 nu)), the factor of K = s (H + nu J) [Becker &
-  /// Teschner 2007, eq. 14-22].
-  double StiffnessScale() const;
+  /// Teschner 2007, eq. 14-22]; in plane stress E / (1 - nu^2).
+  double StiffnessScale(SectionModel model) const;
   /// t = 1 / s.
-  double ComplianceScale() const;
+  double ComplianceScale(SectionModel model) const;
 
   /// E > 0 and -1 < nu < 1/2 (NaN is not physical).
   bool IsPhysical() const;
 };
+
+/// c of J.
+constexpr double ShearShareOfJ(SectionModel model) {
+  return model == SectionModel::kPlaneStress ? 1 : 2;
+}
+
+/// E t = (1 + nu)(1 - 2 nu), in plane stress (1 + nu)(1 - nu).
+template <typename T>
+T ComplianceFactor(const T& poisson_ratio, SectionModel model) {
+  const double c = ShearShareOfJ(model);
+  return (1.0 + poisson_ratio) * (1.0 - c * poisson_ratio);
+}
+
+/// d (E t) / d nu.
+double ComplianceFactorSlope(double poisson_ratio, SectionModel model);
+
+/// d ln E / d nu of what has the same compliance scale t.
+double LogYoungsModulusSlope(double poisson_ratio, SectionModel model);
 
 /// ln((1 + nu) / (1 - 2 nu)) = ln(3 kappa / (2 mu)): the scale on which the
 /// stiffness changes evenly over the whole range of nu.
@@ -54,9 +81,9 @@ double PoissonRatioOfLogStiffnessRatio(double log_stiffness_ratio);
 /// d (mu, 1 / kappa) / d (E, nu): rows (mu, 1 / kappa), columns (E, nu).
 Eigen::Matrix2d ShearAndBulkJacobian(const IsotropicElasticity& elasticity);
 
-/// d (nu, t) / d (E, nu): rows (nu, t), columns (E, nu), with t = (1 + nu)(1 -
-/// 2 nu) / E.
-Eigen::Matrix2d ComplianceScaleJacobian(const IsotropicElasticity& elasticity);
+/// d (nu, t) / d (E, nu): rows (nu, t), columns (E, nu).
+Eigen::Matrix2d ComplianceScaleJacobian(const IsotropicElasticity& elasticity,
+                                        SectionModel model);
 
 }  // namespace elastimate
 

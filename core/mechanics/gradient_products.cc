@@ -1,6 +1,9 @@
 #include "elastimate/core/mechanics/gradient_products.h"
 
+#include <vector>
+
 #include "elastimate/core/mechanics/tet4_gradient_products.h"
+#include "elastimate/core/mesh/shape_functions.h"
 #include "elastimate/core/mesh/tet10.h"
 #include "elastimate/core/mesh/tet4.h"
 
@@ -47,7 +50,7 @@ class QuadraticElementProducts {
 
 void AddQuadraticProducts(const Mesh& mesh, const NodeGraph& graph,
                           Eigen::Index first, Eigen::Index end,
-                          Eigen::Index pair_mask, Eigen::Matrix4Xd& products) {
+                          Eigen::Index pair_mask, Eigen::MatrixXd& products) {
   for (Eigen::Index e = first; e < end; ++e) {
     const QuadraticElementProducts element(
         TetrahedronGradients(GatherTetrahedron(mesh, e)));
@@ -78,22 +81,59 @@ void AddQuadraticProducts(const Mesh& mesh, const NodeGraph& graph,
   }
 }
 
+// Elements of any kind, by its stiffness rule.
+template <ElementKind kKind>
+void AddProductsOfKind(const Mesh& mesh, const NodeGraph& graph,
+                       Eigen::Index first, Eigen::Index end,
+                       Eigen::Index pair_mask, Eigen::MatrixXd& products) {
+  constexpr int kDimension = ElementSizes<kKind>::kDimension;
+  constexpr int kNodes = ElementSizes<kKind>::kNodes;
+  std::vector<ElementPoint<kKind>> points;
+  for (Eigen::Index e = first; e < end; ++e) {
+    const auto vertices = GatherVertices<kKind>(mesh, e);
+    points.clear();
+    for (const auto& at : StiffnessRule<kKind>()) {
+      points.emplace_back(vertices, at, mesh.section.thickness);
+    }
+    const int* const nodes = mesh.elements.col(e).data();
+    for (int i = 0; i < kNodes; ++i) {
+      for (int j = 0; j <= i; ++j) {
+        const int row = nodes[i] >= nodes[j] ? i : j;
+        const int column = i + j - row;
+        const Eigen::Index pair =
+            graph.element_pairs(NodeGraph::LocalPair(i, j), e) & pair_mask;
+        auto product =
+            products.block<kDimension, kDimension>(0, kDimension * pair);
+        for (const ElementPoint<kKind>& point : points) {
+          product.noalias() += (point.volume * point.gradient.col(row)) *
+                               point.gradient.col(column).transpose();
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 
-Eigen::Matrix4Xd GradientProducts(const Mesh& mesh, const NodeGraph& graph) {
-  Eigen::Matrix4Xd products = Eigen::Matrix4Xd::Zero(4, 3 * graph.NumPairs());
+Eigen::MatrixXd GradientProducts(const Mesh& mesh, const NodeGraph& graph) {
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(
+      ProductRows(mesh.Dimension()), mesh.Dimension() * graph.NumPairs());
   AddGradientProducts(mesh, graph, 0, mesh.NumElements(), kEveryPair, products);
   return products;
 }
 
 void AddGradientProducts(const Mesh& mesh, const NodeGraph& graph,
                          Eigen::Index first, Eigen::Index end,
-                         Eigen::Index pair_mask, Eigen::Matrix4Xd& products) {
-  if (mesh.Order() == 1) {
-    AddLinearGradientProducts(mesh, graph, first, end, pair_mask, products);
-  } else {
-    AddQuadraticProducts(mesh, graph, first, end, pair_mask, products);
-  }
+                         Eigen::Index pair_mask, Eigen::MatrixXd& products) {
+  VisitElementKind(mesh.kind, [&](auto kind) {
+    if constexpr (kind == ElementKind::kTet4) {
+      AddLinearGradientProducts(mesh, graph, first, end, pair_mask, products);
+    } else if constexpr (kind == ElementKind::kTet10) {
+      AddQuadraticProducts(mesh, graph, first, end, pair_mask, products);
+    } else {
+      AddProductsOfKind<kind>(mesh, graph, first, end, pair_mask, products);
+    }
+  });
 }
 
 }  // namespace elastimate

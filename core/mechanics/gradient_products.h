@@ -3,21 +3,27 @@
 
 #include <Eigen/Core>
 
+#include "elastimate/core/materials/elasticity.h"
 #include "elastimate/core/mesh/mesh.h"
 #include "elastimate/core/mesh/node_graph.h"
 
 namespace elastimate {
 
-/// M_ij = integral of grad(N_i) grad(N_j)^T for each pair of the graph
-/// [length]: 3 x 3 blocks side by side, above a row of zeros for columns that
-/// are loaded whole, 4 x (3 num_pairs).  Every isotropic stiffness block
-/// follows from it:
+/// M_ij = integral of grad(N_i) grad(N_j)^T for each pair of the graph [length;
+/// of a planar mesh with its thickness]: dimension x dimension blocks side by
+/// side, in three dimensions above a row of zeros for columns that are loaded
+/// whole: ProductRows(dimension) x (dimension num_pairs).  Every isotropic
+/// stiffness block follows from it:
 ///
-///   H_ij = (M_ij^T + tr(M_ij) I) / 2,   J_ij = M_ij - M_ij^T - tr(M_ij) I.
+///   H_ij = (M_ij^T + tr(M_ij) I) / 2,   J_ij = M_ij - c H_ij
 ///
-/// Exact for linear and for quadratic tetrahedra.
+/// with c of ShearShareOfJ.  Exact for straight-sided simplices.
 /// Cost: one element pass.
-Eigen::Matrix4Xd GradientProducts(const Mesh& mesh, const NodeGraph& graph);
+Eigen::MatrixXd GradientProducts(const Mesh& mesh, const NodeGraph& graph);
+
+constexpr Eigen::Index ProductRows(int dimension) {
+  return dimension == 3 ? 4 : 2;
+}
 
 /// A pair_mask that keeps every pair.
 constexpr Eigen::Index kEveryPair = -1;
@@ -27,16 +33,25 @@ constexpr Eigen::Index kEveryPair = -1;
 /// front of nodes is enough where the rest is done with.
 void AddGradientProducts(const Mesh& mesh, const NodeGraph& graph,
                          Eigen::Index first, Eigen::Index end,
-                         Eigen::Index pair_mask, Eigen::Matrix4Xd& products);
+                         Eigen::Index pair_mask, Eigen::MatrixXd& products);
+
+/// A block of M, H or J.
+template <int kDimension>
+using NodeBlock = Eigen::Matrix<double, kDimension, kDimension>;
 
 /// H_ij from M_ij.
-inline Eigen::Matrix3d StiffnessBlockH(const Eigen::Matrix3d& m) {
-  return 0.5 * (m.transpose() + m.trace() * Eigen::Matrix3d::Identity());
+template <int kDimension>
+NodeBlock<kDimension> StiffnessBlockH(const NodeBlock<kDimension>& m) {
+  return 0.5 * (m.transpose() + m.trace() * NodeBlock<kDimension>::Identity());
 }
 
-/// J_ij from M_ij.
-inline Eigen::Matrix3d StiffnessBlockJ(const Eigen::Matrix3d& m) {
-  return m - m.transpose() - m.trace() * Eigen::Matrix3d::Identity();
+/// J_ij from M_ij, `c` = ShearShareOfJ.
+template <int kDimension>
+NodeBlock<kDimension> StiffnessBlockJ(const NodeBlock<kDimension>& m,
+                                      double c) {
+  return m -
+         c / 2 *
+             (m.transpose() + m.trace() * NodeBlock<kDimension>::Identity());
 }
 
 }  // namespace elastimate

@@ -10,7 +10,8 @@ StiffnessAssembly::StiffnessAssembly(const Mesh& mesh,
                                      const DegreesOfFreedom& degrees_of_freedom)
     : graph_(mesh), free_components_(mesh.NumNodes(), 0) {
   for (const Eigen::Index dof : degrees_of_freedom.free) {
-    free_components_[dof / 3] |= 1U << (dof % 3);
+    free_components_[dof / degrees_of_freedom.dimension] |=
+        1U << (dof % degrees_of_freedom.dimension);
   }
   BuildPattern(degrees_of_freedom);
   PlanStages(mesh);
@@ -52,28 +53,30 @@ void StiffnessAssembly::PlanStages(const Mesh& mesh) {
     size *= 2;
   }
   pair_mask_ = size < graph_.NumPairs() ? size - 1 : kEveryPair;
-  products_.setZero(4, 3 * std::min(size, graph_.NumPairs()));
+  products_.setZero(ProductRows(mesh.Dimension()),
+                    mesh.Dimension() * std::min(size, graph_.NumPairs()));
 }
 
 void StiffnessAssembly::BuildPattern(
     const DegreesOfFreedom& degrees_of_freedom) {
+  const int dimension = degrees_of_freedom.dimension;
   const Eigen::Index num_nodes = Eigen::Index(free_components_.size());
   pattern_.column_start.assign(1, 0);
   pattern_.column_start.reserve(degrees_of_freedom.NumFree() + 1);
-  pair_values_.assign(3 * graph_.NumPairs(), -1);
+  pair_values_.assign(dimension * graph_.NumPairs(), -1);
   for (Eigen::Index node = 0; node < num_nodes; ++node) {
-    for (int component = 0; component < 3; ++component) {
-      if (degrees_of_freedom.place[3 * node + component] < 0) {
+    for (int component = 0; component < dimension; ++component) {
+      if (degrees_of_freedom.place[dimension * node + component] < 0) {
         continue;
       }
       for (Eigen::Index k = graph_.start[node]; k < graph_.start[node + 1];
            ++k) {
-        pair_values_[3 * k + component] =
+        pair_values_[dimension * k + component] =
             static_cast<std::int64_t>(pattern_.row.size());
-        const Eigen::Index first = 3 * Eigen::Index(graph_.row[k]);
+        const Eigen::Index first = dimension * Eigen::Index(graph_.row[k]);
         // Above the diagonal there is nothing to store.
         const int first_component = graph_.row[k] == node ? component : 0;
-        for (int i = first_component; i < 3; ++i) {
+        for (int i = first_component; i < dimension; ++i) {
           if (degrees_of_freedom.place[first + i] >= 0) {
             pattern_.row.push_back(degrees_of_freedom.place[first + i]);
           }
@@ -86,8 +89,18 @@ void StiffnessAssembly::BuildPattern(
 }
 
 void StiffnessAssembly::Assemble(const Mesh& mesh) {
+  if (mesh.Dimension() == 3) {
+    AssembleOfDimension<3>(mesh);
+  } else {
+    AssembleOfDimension<2>(mesh);
+  }
+}
+
+template <int kDimension>
+void StiffnessAssembly::AssembleOfDimension(const Mesh& mesh) {
   h_.resize(static_cast<Eigen::Index>(pattern_.row.size()));
   j_.resize(h_.size());
+  const double shear_share = ShearShareOfJ(mesh.section.model);
   Eigen::Index first = 0;
   Eigen::Index node = 0;
   for (const Stage& stage : stages_) {
@@ -95,35 +108,38 @@ void StiffnessAssembly::Assemble(const Mesh& mesh) {
                         products_);
     first = stage.end_element;
     for (; node < stage.num_complete_nodes; ++node) {
-      WriteColumns(node);
+      WriteColumns<kDimension>(node, shear_share);
     }
   }
 }
 
-void StiffnessAssembly::WriteColumns(Eigen::Index node) {
-  constexpr unsigned kAllFree = 7;
+template <int kDimension>
+void StiffnessAssembly::WriteColumns(Eigen::Index node, double shear_share) {
+  constexpr unsigned kAllFree = (1U << unsigned(kDimension)) - 1;
   for (Eigen::Index k = graph_.start[node]; k < graph_.start[node + 1]; ++k) {
-    auto product = products_.block<3, 3>(0, 3 * (k & pair_mask_));
-    const Eigen::Matrix3d m = product;
+    auto product = products_.block<kDimension, kDimension>(
+        0, kDimension * (k & pair_mask_));
+    const NodeBlock<kDimension> m = product;
     product.setZero();
-    const Eigen::Matrix3d block_h = StiffnessBlockH(m);
-    const Eigen::Matrix3d block_j = StiffnessBlockJ(m);
+    const NodeBlock<kDimension> block_h = StiffnessBlockH<kDimension>(m);
+    const NodeBlock<kDimension> block_j =
+        StiffnessBlockJ<kDimension>(m, shear_share);
     const int row = graph_.row[k];
     const bool is_whole = row != node && free_components_[row] == kAllFree;
-    for (int component = 0; component < 3; ++component) {
-      const Eigen::Index value = pair_values_[3 * k + component];
+    for (int component = 0; component < kDimension; ++component) {
+      const Eigen::Index value = pair_values_[kDimension * k + component];
       if (value < 0) {
         continue;
       }
       // Nearly all blocks: no component of the row is held or above the
       // diagonal.
       if (is_whole) {
-        h_.segment<3>(value) = block_h.col(component);
-        j_.segment<3>(value) = block_j.col(component);
+        h_.segment<kDimension>(value) = block_h.col(component);
+        j_.segment<kDimension>(value) = block_j.col(component);
         continue;
       }
       Eigen::Index next = value;
-      for (int i = row == node ? component : 0; i < 3; ++i) {
+      for (int i = row == node ? component : 0; i < kDimension; ++i) {
         if ((free_components_[row] >> i & 1U) != 0) {
           h_(next) = block_h(i, component);
           j_(next) = block_j(i, component);

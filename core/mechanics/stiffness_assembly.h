@@ -60,21 +60,24 @@ class StiffnessAssembly {
   };
 
   void PlanStages(const Mesh& mesh);
+  template <int kDimension>
+  void AssembleOfDimension(const Mesh& mesh);
   /// Writes the values of the pairs of a node.
-  void WriteColumns(Eigen::Index node);
+  template <int kDimension>
+  void WriteColumns(Eigen::Index node, double shear_share);
   void BuildPattern(const DegreesOfFreedom& degrees_of_freedom);
 
   NodeGraph graph_;
   SymmetricPattern pattern_;
   /// Free components of each node, as bits.
   std::vector<unsigned char> free_components_;
-  /// For each pair of nodes and each of the three components of its column
-  /// node: where the rows of its row node begin in the values, -1 when held.
+  /// For each pair of nodes and each component of its column node: where the
+  /// rows of its row node begin in the values, -1 when held.
   std::vector<std::int64_t> pair_values_;
   std::vector<Stage> stages_;
   /// For AddGradientProducts: the pairs at work, zero between assemblies.
   Eigen::Index pair_mask_;
-  Eigen::Matrix4Xd products_;
+  Eigen::MatrixXd products_;
   Eigen::VectorXd h_;
   Eigen::VectorXd j_;
 };

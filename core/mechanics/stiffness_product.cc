@@ -3,6 +3,8 @@
 #include <cassert>
 #include <utility>
 
+#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/mechanics/element_stiffness_product.h"
 #include "elastimate/core/mechanics/tet10_stiffness_product.h"
 #include "elastimate/core/mechanics/tet4_stiffness_product.h"
 #include "elastimate/core/mesh/node_order.h"
@@ -10,26 +12,30 @@
 namespace elastimate {
 namespace {
 
-void MultiplyQuadraticTetrahedra(const Mesh& mesh,
-                                 const Eigen::MatrixXd& displacement,
-                                 StiffnessProducts& products) {
+// All kinds but linear tetrahedra.
+void MultiplyElements(const Mesh& mesh, const Eigen::MatrixXd& displacement,
+                      StiffnessProducts& products) {
   products.h.setZero(displacement.rows(), displacement.cols());
   products.j.setZero(displacement.rows(), displacement.cols());
-  AddQuadraticStrainProducts(mesh, displacement, products.h, products.j);
-  products.j -= 2 * products.h;
+  if (mesh.kind == ElementKind::kTet10) {
+    AddQuadraticStrainProducts(mesh, displacement, products.h, products.j);
+  } else {
+    AddStrainProducts(mesh, displacement, products.h, products.j);
+  }
+  products.j -= ShearShareOfJ(mesh.section.model) * products.h;
 }
 
 }  // namespace
 
 StiffnessProducts MultiplyStiffnessBasis(const Mesh& mesh,
                                          const Eigen::MatrixXd& displacement) {
-  assert(displacement.rows() == 3 * mesh.NumNodes());
+  assert(displacement.rows() == mesh.NumDofs());
   StiffnessProducts products;
-  if (mesh.Order() == 1) {
+  if (mesh.kind == ElementKind::kTet4) {
     MultiplyLinearTetrahedra(mesh, ChooseElementBlocks(mesh), {}, displacement,
                              1, products);
   } else {
-    MultiplyQuadraticTetrahedra(mesh, displacement, products);
+    MultiplyElements(mesh, displacement, products);
   }
   return products;
 }
@@ -37,7 +43,7 @@ StiffnessProducts MultiplyStiffnessBasis(const Mesh& mesh,
 StiffnessOperator::StiffnessOperator(const Mesh& mesh, int num_threads)
     : mesh_(mesh), num_threads_(num_threads) {
   assert(num_threads >= 1);
-  if (mesh.Order() == 2) {
+  if (mesh.kind != ElementKind::kTet4) {
     return;
   }
   if (!HasLocality(mesh)) {
@@ -50,12 +56,12 @@ StiffnessOperator::StiffnessOperator(const Mesh& mesh, int num_threads)
 
 void StiffnessOperator::Multiply(const Eigen::MatrixXd& displacement,
                                  StiffnessProducts& products) const {
-  assert(displacement.rows() == 3 * mesh_.NumNodes());
-  if (mesh_.Order() == 1) {
+  assert(displacement.rows() == mesh_.NumDofs());
+  if (mesh_.kind == ElementKind::kTet4) {
     MultiplyLinearTetrahedra(IsReordered() ? reordered_ : mesh_, blocks_,
                              places_, displacement, num_threads_, products);
   } else {
-    MultiplyQuadraticTetrahedra(mesh_, displacement, products);
+    MultiplyElements(mesh_, displacement, products);
   }
 }
 

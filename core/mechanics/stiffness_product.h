@@ -18,17 +18,18 @@ struct StiffnessProducts {
 /// a = H q and b = J q in one pass over the elements, for the stiffness bases
 /// of K = s (H + nu J) [Becker & Teschner 2007, eq. 14-22].
 ///
-/// `displacement` is (3 num_nodes) x num_columns, row 3 * node + component
+/// `displacement` is num_dofs x num_columns, row dimension * node + component
 /// [length]; the products have its shape.  With the strain tensor
 /// e = sym(sum_i q_i grad(N_i)^T),
 ///
 ///   a_i = integral of e grad(N_i),
-///   b_i = integral of tr(e) grad(N_i) - 2 a_i,
+///   b_i = integral of tr(e) grad(N_i) - c a_i,
 ///
-/// so that no element matrix is formed.  In a linear tetrahedron both factors
-/// are constant, in a quadratic one both are linear, and the integrals exact.
+/// c of ShearShareOfJ, so that no element matrix is formed.  In a linear
+/// simplex both factors are constant, in a quadratic one both are linear, and
+/// the integrals exact.
 ///
-/// Precondition: a valid mesh (ValidateMesh) and 3 num_nodes rows.
+/// Precondition: a valid mesh (ValidateMesh) and num_dofs rows.
 /// Cost: one element pass, O(num_elements * num_columns) time (for quadratic
 /// tetrahedra about 20 times that for linear ones).  Single-threaded; the
 /// same input gives the same bits on the same kind of processor.

@@ -7,26 +7,32 @@
 
 namespace elastimate {
 
-Eigen::Matrix2d StiffnessTraces(const Mesh& mesh,
-                                const DegreesOfFreedom& degrees_of_freedom) {
+namespace {
+
+template <int kDimension>
+Eigen::Matrix2d TracesOfDimension(const Mesh& mesh,
+                                  const DegreesOfFreedom& degrees_of_freedom) {
+  using Block = NodeBlock<kDimension>;
   const NodeGraph graph(mesh);
-  const Eigen::Matrix4Xd products = GradientProducts(mesh, graph);
+  const Eigen::MatrixXd products = GradientProducts(mesh, graph);
+  const double shear_share = ShearShareOfJ(mesh.section.model);
   const auto free = [&](Eigen::Index node) {
-    Eigen::Vector3d mask;
-    for (int i = 0; i < 3; ++i) {
-      mask(i) = degrees_of_freedom.place[3 * node + i] >= 0 ? 1 : 0;
+    Eigen::Matrix<double, kDimension, 1> mask;
+    for (int i = 0; i < kDimension; ++i) {
+      mask(i) = degrees_of_freedom.place[kDimension * node + i] >= 0 ? 1 : 0;
     }
     return mask;
   };
   Eigen::Matrix2d traces = Eigen::Matrix2d::Zero();
   for (Eigen::Index j = 0; j < mesh.NumNodes(); ++j) {
-    const Eigen::Vector3d free_j = free(j);
+    const auto free_j = free(j);
     for (Eigen::Index k = graph.start[j]; k < graph.start[j + 1]; ++k) {
       const int i = graph.row[k];
-      const Eigen::Matrix3d mask = free(i) * free_j.transpose();
-      const Eigen::Matrix3d m = products.block<3, 3>(0, 3 * k);
-      const Eigen::Matrix3d block_h = StiffnessBlockH(m).cwiseProduct(mask);
-      const Eigen::Matrix3d block_j = StiffnessBlockJ(m).cwiseProduct(mask);
+      const Block mask = free(i) * free_j.transpose();
+      const Block m = products.block<kDimension, kDimension>(0, kDimension * k);
+      const Block block_h = StiffnessBlockH<kDimension>(m).cwiseProduct(mask);
+      const Block block_j =
+          StiffnessBlockJ<kDimension>(m, shear_share).cwiseProduct(mask);
       // A pair of different nodes stands for two blocks of the matrix.
       const double weight = i == j ? 1 : 2;
       traces(0, 0) += weight * block_h.squaredNorm();
@@ -36,6 +42,14 @@ Eigen::Matrix2d StiffnessTraces(const Mesh& mesh,
   }
   traces(1, 0) = traces(0, 1);
   return traces;
+}
+
+}  // namespace
+
+Eigen::Matrix2d StiffnessTraces(const Mesh& mesh,
+                                const DegreesOfFreedom& degrees_of_freedom) {
+  return mesh.Dimension() == 3 ? TracesOfDimension<3>(mesh, degrees_of_freedom)
+                               : TracesOfDimension<2>(mesh, degrees_of_freedom);
 }
 
 void SetTraceProbes(const ComponentMask& held,

@@ -23,7 +23,7 @@ namespace elastimate {
 Eigen::Matrix2d StiffnessTraces(const Mesh& mesh,
                                 const DegreesOfFreedom& degrees_of_freedom);
 
-/// Makes `probes`, of 3 num_nodes rows, columns of random signs z in the free
+/// Makes `probes`, of num_dofs rows, columns of random signs z in the free
 /// rows, zero in the held ones.  Deterministic.
 void SetTraceProbes(const ComponentMask& held,
                     Eigen::Ref<Eigen::MatrixXd> probes);

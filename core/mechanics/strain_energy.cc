@@ -1,71 +1,73 @@
 #include "elastimate/core/mechanics/strain_energy.h"
 
+#include <array>
 #include <vector>
 
-#include "elastimate/core/mesh/tet10.h"
-#include "elastimate/core/mesh/tet4.h"
+#include "elastimate/core/mesh/shape_functions.h"
 
 namespace elastimate {
 namespace {
 
-// A displacement gradient, or a difference of two, that is linear in an
-// element.
-struct LinearGradient {
-  std::array<Eigen::Matrix3d, 4> at_vertex;
-  Eigen::Matrix3d mean;
+// mu e:e + (lambda / 2) tr(e)^2.
+class EnergyDensity {
+ public:
+  EnergyDensity(const IsotropicElasticity& elasticity, SectionModel model)
+      : mu_(elasticity.ShearModulus()),
+        // That of s (nu tr(e) + (1 - c nu) e), 2 mu = s (1 - c nu).
+        lambda_(elasticity.StiffnessScale(model) * elasticity.poisson_ratio) {}
+
+  template <class Gradient>
+  double operator()(const Gradient& gradient) const {
+    const double trace = gradient.trace();
+    return mu_ / 4 * (gradient + gradient.transpose()).squaredNorm() +
+           lambda_ / 2 * trace * trace;
+  }
+
+ private:
+  double mu_;
+  double lambda_;
 };
 
-// `displacement` holds 3 * node + component.
-LinearGradient GradientIn(const Mesh& mesh, Eigen::Index e,
-                          const TetrahedronGradients& element,
-                          const double* displacement) {
-  if (mesh.Order() == 2) {
-    const QuadraticDisplacementGradient gradient(
-        GatherQuadratic(mesh, e, displacement), element.gradient);
-    return {gradient.at_vertex, gradient.mean};
-  }
-  Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
-  for (int i = 0; i < 4; ++i) {
-    gradient += Eigen::Map<const Eigen::Vector3d>(
-                    displacement + 3 * Eigen::Index(mesh.elements(i, e))) *
-                element.gradient.col(i).transpose();
-  }
-  return {{gradient, gradient, gradient, gradient}, gradient};
-}
+// The displacement gradients and volumes at the points of a rule.
+template <ElementKind kKind>
+class ElementGradients {
+ public:
+  static constexpr int kDimension = ElementSizes<kKind>::kDimension;
+  using Gradient = Eigen::Matrix<double, kDimension, kDimension>;
 
-// The mean of the energy density: that of the product of two linear functions
-// is a fifth of the mean of that at the vertices plus four fifths of the
-// product of the means.
-double MeanEnergyDensity(const IsotropicElasticity& elasticity,
-                         const LinearGradient& gradient) {
-  const double mu = elasticity.ShearModulus();
-  const double lambda = elasticity.LameLambda();
-  const auto density_of = [mu, lambda](const Eigen::Matrix3d& at) {
-    const Eigen::Matrix3d strain = 0.5 * (at + at.transpose());
-    const double trace = strain.trace();
-    return mu * strain.squaredNorm() + lambda / 2 * trace * trace;
-  };
-  double density = 0.8 * density_of(gradient.mean);
-  for (const Eigen::Matrix3d& at_vertex : gradient.at_vertex) {
-    density += 0.05 * density_of(at_vertex);
+  ElementGradients(const std::vector<ShapeFunctions<kKind>>& rule,
+                   const Mesh& mesh, Eigen::Index element,
+                   const double* displacement) {
+    const auto vertices = GatherVertices<kKind>(mesh, element);
+    const auto u = GatherNodes<kKind>(mesh, element, displacement);
+    for (std::size_t i = 0; i < rule.size(); ++i) {
+      const ElementPoint<kKind> point(vertices, rule[i],
+                                      mesh.section.thickness);
+      at[i] = u * point.gradient.transpose();
+      volume[i] = point.volume;
+    }
   }
-  return density;
-}
+
+  static constexpr int kMostPoints = 8;
+  std::array<Gradient, kMostPoints> at;
+  std::array<double, kMostPoints> volume;
+};
 
 // At each node that is a vertex, the mean over the elements around it, weighted
-// by their volumes.
-std::vector<Eigen::Matrix3d> RecoveredGradient(const Mesh& mesh,
-                                               const double* displacement) {
-  std::vector<Eigen::Matrix3d> recovered(mesh.NumNodes(),
-                                         Eigen::Matrix3d::Zero());
+// by the volumes that the vertices stand for.
+template <ElementKind kKind>
+std::vector<typename ElementGradients<kKind>::Gradient> RecoveredGradient(
+    const Mesh& mesh, const double* displacement) {
+  using Gradient = typename ElementGradients<kKind>::Gradient;
+  std::vector<Gradient> recovered(mesh.NumNodes(), Gradient::Zero());
   std::vector<double> volume(mesh.NumNodes(), 0.0);
+  const auto& vertices = VertexRule<kKind>();
   for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
-    const TetrahedronGradients element(GatherTetrahedron(mesh, e));
-    const LinearGradient gradient = GradientIn(mesh, e, element, displacement);
-    for (int i = 0; i < 4; ++i) {
-      const int node = mesh.elements(i, e);
-      recovered[node] += element.volume * gradient.at_vertex[i];
-      volume[node] += element.volume;
+    const ElementGradients<kKind> gradients(vertices, mesh, e, displacement);
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      const int node = mesh.elements(Eigen::Index(i), e);
+      recovered[node] += gradients.volume[i] * gradients.at[i];
+      volume[node] += gradients.volume[i];
     }
   }
   for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
@@ -76,44 +78,65 @@ std::vector<Eigen::Matrix3d> RecoveredGradient(const Mesh& mesh,
   return recovered;
 }
 
+// Of the elements, and of what they miss.
+struct Energies {
+  double of_elements = 0;
+  double missed = 0;
+};
+
+template <ElementKind kKind>
+void AddEnergies(const Mesh& mesh, const EnergyDensity& density_of,
+                 const double* displacement, Energies& energies) {
+  const auto recovered = RecoveredGradient<kKind>(mesh, displacement);
+  const auto& rule = IntegrationRule<kKind>();
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    const ElementGradients<kKind> gradients(rule, mesh, e, displacement);
+    for (std::size_t i = 0; i < rule.size(); ++i) {
+      typename ElementGradients<kKind>::Gradient difference = gradients.at[i];
+      for (int k = 0; k < ElementSizes<kKind>::kVertices; ++k) {
+        difference -= rule[i].vertex_value(k) * recovered[mesh.elements(k, e)];
+      }
+      energies.of_elements += gradients.volume[i] * density_of(gradients.at[i]);
+      energies.missed += gradients.volume[i] * density_of(difference);
+    }
+  }
+}
+
 }  // namespace
 
 Eigen::VectorXd StrainEnergyDensity(const Mesh& mesh,
                                     const IsotropicElasticity& elasticity,
-                                    const Eigen::Matrix3Xd& displacement) {
+                                    const Eigen::MatrixXd& displacement) {
+  const EnergyDensity density_of(elasticity, mesh.section.model);
   Eigen::VectorXd density(mesh.NumElements());
-  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
-    const TetrahedronGradients element(GatherTetrahedron(mesh, e));
-    density(e) = MeanEnergyDensity(
-        elasticity, GradientIn(mesh, e, element, displacement.data()));
-  }
+  VisitElementKind(mesh.kind, [&](auto kind) {
+    const auto& rule = IntegrationRule<kind>();
+    for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+      const ElementGradients<kind> gradients(rule, mesh, e,
+                                             displacement.data());
+      double energy = 0;
+      double volume = 0;
+      for (std::size_t i = 0; i < rule.size(); ++i) {
+        energy += gradients.volume[i] * density_of(gradients.at[i]);
+        volume += gradients.volume[i];
+      }
+      density(e) = energy / volume;
+    }
+  });
   return density;
 }
 
 double DiscretizationError(const Mesh& mesh,
                            const IsotropicElasticity& elasticity,
                            const Eigen::MatrixXd& displacement) {
-  double energy = 0;
-  double missed = 0;
+  const EnergyDensity density_of(elasticity, mesh.section.model);
+  Energies energies;
   for (Eigen::Index k = 0; k < displacement.cols(); ++k) {
-    const double* values = displacement.col(k).data();
-    const std::vector<Eigen::Matrix3d> recovered =
-        RecoveredGradient(mesh, values);
-    for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
-      const TetrahedronGradients element(GatherTetrahedron(mesh, e));
-      LinearGradient gradient = GradientIn(mesh, e, element, values);
-      energy += element.volume * MeanEnergyDensity(elasticity, gradient);
-      Eigen::Matrix3d mean = Eigen::Matrix3d::Zero();
-      for (int i = 0; i < 4; ++i) {
-        const Eigen::Matrix3d& at_vertex = recovered[mesh.elements(i, e)];
-        gradient.at_vertex[i] -= at_vertex;
-        mean += at_vertex / 4;
-      }
-      gradient.mean -= mean;
-      missed += element.volume * MeanEnergyDensity(elasticity, gradient);
-    }
+    VisitElementKind(mesh.kind, [&](auto kind) {
+      AddEnergies<kind>(mesh, density_of, displacement.col(k).data(), energies);
+    });
   }
-  return energy > 0 ? missed / energy : 0;
+  return energies.of_elements > 0 ? energies.missed / energies.of_elements : 0;
 }
 
 }  // namespace elastimate

@@ -9,13 +9,13 @@
 namespace elastimate {
 
 /// Strain energy per volume of each element,
-/// mu e:e + (lambda / 2) tr(e)^2 [energy / length^3], num_elements values; in
-/// quadratic tetrahedra, where the strain e varies, its mean.
-/// `displacement` is 3 x num_nodes.  Precondition: a valid mesh.
-/// Cost: one element pass.
+/// mu e:e + (lambda / 2) tr(e)^2 [energy / length^3], num_elements values; its
+/// mean where the strain e varies.  lambda is 2 lambda mu / (lambda + 2 mu) in
+/// plane stress.  `displacement` is dimension x num_nodes.  Precondition: a
+/// valid mesh. Cost: one element pass.
 Eigen::VectorXd StrainEnergyDensity(const Mesh& mesh,
                                     const IsotropicElasticity& elasticity,
-                                    const Eigen::Matrix3Xd& displacement);
+                                    const Eigen::MatrixXd& displacement);
 
 /// The discretisation error of finite element displacements: the strain energy
 /// that the elements miss, relative to theirs, as Zienkiewicz & Zhu estimate it
@@ -30,7 +30,7 @@ Eigen::VectorXd StrainEnergyDensity(const Mesh& mesh,
 /// displacements is too low by about it; in coarse meshes of slender specimens
 /// the estimate has been half, in others three times the true error.
 ///
-/// `displacement` is (3 num_nodes) x num_load_cases, whose energies are summed.
+/// `displacement` is num_dofs x num_load_cases, whose energies are summed.
 /// Zero without any strain.  Precondition: a valid mesh.
 /// Cost: two element passes.
 double DiscretizationError(const Mesh& mesh,

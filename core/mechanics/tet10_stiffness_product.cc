@@ -1,5 +1,6 @@
 #include "elastimate/core/mechanics/tet10_stiffness_product.h"
 
+#include "elastimate/core/mesh/shape_functions.h"
 #include "elastimate/core/mesh/tet10.h"
 
 namespace elastimate {
@@ -10,7 +11,8 @@ void AddColumn(const Mesh& mesh, Eigen::Index e,
                const TetrahedronGradients& element, const double* q, double* a,
                double* p) {
   const Eigen::Matrix<double, 3, 4>& g = element.gradient;
-  const QuadraticDisplacementGradient gradient(GatherQuadratic(mesh, e, q), g);
+  const QuadraticDisplacementGradient gradient(
+      GatherNodes<ElementKind::kTet10>(mesh, e, q), g);
   const auto node = [&](double* values, int i) {
     return Eigen::Map<Eigen::Vector3d>(values +
                                        3 * Eigen::Index(mesh.elements(i, e)));

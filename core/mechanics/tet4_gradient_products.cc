@@ -102,7 +102,7 @@ LinearFactors FactorsOf(const TetrahedronNodes& x) {
 void AddLinearGradientProducts(const Mesh& mesh, const NodeGraph& graph,
                                Eigen::Index first, Eigen::Index end,
                                Eigen::Index pair_mask,
-                               Eigen::Matrix4Xd& products) {
+                               Eigen::MatrixXd& products) {
   // As many as make the processor wait for no value that it has just written.
   constexpr Eigen::Index kElementsAtATime = 64;
   std::array<LinearFactors, kElementsAtATime> factors;

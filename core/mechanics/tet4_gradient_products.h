@@ -18,7 +18,7 @@ namespace elastimate {
 void AddLinearGradientProducts(const Mesh& mesh, const NodeGraph& graph,
                                Eigen::Index first, Eigen::Index end,
                                Eigen::Index pair_mask,
-                               Eigen::Matrix4Xd& products);
+                               Eigen::MatrixXd& products);
 
 }  // namespace elastimate
 

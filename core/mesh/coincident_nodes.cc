@@ -17,15 +17,13 @@ Eigen::VectorXd ShortestEdges(const Mesh& mesh) {
   Eigen::VectorXd squares = Eigen::VectorXd::Constant(
       mesh.NumNodes(), std::numeric_limits<double>::infinity());
   for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
-    for (int i = 0; i < 4; ++i) {
-      for (int k = 0; k < i; ++k) {
-        const int a = mesh.elements(i, element);
-        const int b = mesh.elements(k, element);
-        const double square =
-            (mesh.nodes.col(a) - mesh.nodes.col(b)).squaredNorm();
-        squares(a) = std::min(squares(a), square);
-        squares(b) = std::min(squares(b), square);
-      }
+    for (const auto& [i, k] : mesh.Topology().edges) {
+      const int a = mesh.elements(i, element);
+      const int b = mesh.elements(k, element);
+      const double square =
+          (mesh.nodes.col(a) - mesh.nodes.col(b)).squaredNorm();
+      squares(a) = std::min(squares(a), square);
+      squares(b) = std::min(squares(b), square);
     }
   }
   return squares.cwiseSqrt();
@@ -36,9 +34,9 @@ Eigen::VectorXd ShortestEdges(const Mesh& mesh) {
 std::vector<std::array<int, 2>> CoincidentNodes(const Mesh& mesh) {
   const Eigen::VectorXd tolerance = kSamePlace * ShortestEdges(mesh);
   // Along a direction in which the layers of a regular mesh do not lie.
-  const Eigen::RowVector3d direction =
-      Eigen::RowVector3d(std::sqrt(2.0), std::sqrt(3.0), std::sqrt(5.0))
-          .normalized();
+  const double along[3] = {std::sqrt(0.2), std::sqrt(0.3), std::sqrt(0.5)};
+  const auto direction =
+      Eigen::Map<const Eigen::RowVectorXd>(along, mesh.Dimension());
   const Eigen::VectorXd height = (direction * mesh.nodes).transpose();
   std::vector<int> order(mesh.NumNodes());
   std::iota(order.begin(), order.end(), 0);

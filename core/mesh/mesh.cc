@@ -1,43 +1,42 @@
 #include "elastimate/core/mesh/mesh.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "elastimate/core/mesh/representable.h"
-#include "elastimate/core/mesh/tet10.h"
+#include "elastimate/core/mesh/shape_functions.h"
 #include "elastimate/core/mesh/tet4.h"
 
 namespace elastimate {
 namespace {
 
-// Below this ratio of smallest height to longest edge a tetrahedron is flat:
-// far below any sliver worth computing with (a dihedral angle of 0.1 degrees
-// has 1e-3), and above what single precision coordinates leave of a zero.
+// Below this ratio of smallest height to longest edge an element is flat: far
+// below any sliver worth computing with (a dihedral angle of 0.1 degrees has
+// 1e-3), and above what single precision coordinates leave of a zero.
 constexpr double kFlatHeight = 1e-6;
-
-// The faces of a tetrahedron of positive orientation, each counter-clockwise
-// seen from outside; face i is opposite to node i.
-constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
 std::string ElementName(const Mesh& mesh, Eigen::Index element) {
   std::ostringstream name;
-  name << "tetrahedron " << element << " (nodes "
-       << mesh.elements.col(element).head<4>().transpose() << ")";
+  name << mesh.Topology().shape << " " << element << " (nodes "
+       << mesh.elements.col(element)
+              .head(mesh.Topology().num_vertices)
+              .transpose()
+       << ")";
   return name.str();
 }
 
-// Whether the smallest height, 6 V over twice the largest face area, is below
-// kFlatHeight of the longest edge.
-bool IsFlat(const TetrahedronNodes& x) {
-  const Eigen::Vector3d e1 = x.col(1) - x.col(0);
-  const Eigen::Vector3d e2 = x.col(2) - x.col(0);
-  const Eigen::Vector3d e3 = x.col(3) - x.col(0);
+// Whether the smallest height of the tetrahedron of these edges, 6 V over twice
+// the largest face area, is below kFlatHeight of the longest edge.
+bool IsFlat(const Eigen::Matrix3d& edges) {
+  const auto e1 = edges.col(0);
+  const auto e2 = edges.col(1);
+  const auto e3 = edges.col(2);
   const Eigen::Vector3d c1 = e2.cross(e3);
   const double six_volumes = std::abs(e1.dot(c1));
   const double edge_square_at_node_0 =
@@ -65,14 +64,102 @@ bool IsFlat(const TetrahedronNodes& x) {
                              std::sqrt(largest_area_square));
 }
 
+// The same of the triangle of these edges.
+bool IsFlat(const Eigen::Matrix2d& edges) {
+  const double longest_square =
+      std::max({edges.col(0).squaredNorm(), edges.col(1).squaredNorm(),
+                (edges.col(1) - edges.col(0)).squaredNorm()});
+  return !(std::abs(edges.determinant()) > kFlatHeight * longest_square);
+}
+
+// The edges from a vertex of an element.
+template <int kDimension>
+Eigen::Matrix<double, kDimension, kDimension> EdgesOfCorner(
+    const Mesh& mesh, const int* nodes, const std::vector<int>& corner) {
+  using Position = Eigen::Map<const Eigen::Matrix<double, kDimension, 1>>;
+  const auto position = [&](int i) {
+    return Position(mesh.nodes.data() +
+                    kDimension * Eigen::Index(nodes[corner[i]]));
+  };
+  Eigen::Matrix<double, kDimension, kDimension> edges;
+  for (int i = 0; i < kDimension; ++i) {
+    edges.col(i) = position(i + 1) - position(0);
+  }
+  return edges;
+}
+
+// "flat" or "folded", where an element is; else empty.
+template <int kDimension>
+std::string_view WhyNoElement(const Mesh& mesh, const ElementTopology& topology,
+                              Eigen::Index element) {
+  const int* const nodes = mesh.elements.col(element).data();
+  double orientation = 0;
+  for (const std::vector<int>& corner : topology.corners) {
+    const auto edges = EdgesOfCorner<kDimension>(mesh, nodes, corner);
+    if (IsFlat(edges)) {
+      return "flat";
+    }
+    if (topology.corners.size() > 1) {
+      const double determinant = edges.determinant();
+      if (determinant * orientation < 0) {
+        return "folded";
+      }
+      orientation = determinant;
+    }
+  }
+  if (mesh.kind == ElementKind::kHex8) {
+    const auto vertices = GatherVertices<ElementKind::kHex8>(mesh, element);
+    for (const auto& at : IntegrationRule<ElementKind::kHex8>()) {
+      if (!((vertices * at.vertex_gradient.transpose()).determinant() *
+                orientation >
+            0)) {
+        return "folded";
+      }
+    }
+  }
+  return "";
+}
+
+void ValidateSection(const Mesh& mesh) {
+  const std::string kind(mesh.Topology().name);
+  if (mesh.nodes.rows() != mesh.Dimension()) {
+    throw std::invalid_argument("the nodes have " +
+                                std::to_string(mesh.nodes.rows()) +
+                                " coordinates, and elements of kind " + kind +
+                                " need " + std::to_string(mesh.Dimension()));
+  }
+  if ((mesh.section.model == SectionModel::kSolid) != (mesh.Dimension() == 3)) {
+    throw std::invalid_argument(
+        mesh.Dimension() == 3
+            ? "elements of kind " + kind +
+                  " are solid; plane stress and plane strain are for planar "
+                  "ones"
+            : "elements of kind " + kind +
+                  " are planar; say whether they are in plane stress or plane "
+                  "strain");
+  }
+  if (!(mesh.section.thickness > 0) || !std::isfinite(mesh.section.thickness)) {
+    throw std::invalid_argument(
+        "the thickness of the section is not positive and finite; correct it");
+  }
+  RequireRepresentable(mesh.section.thickness, "the thickness of the section");
+  if (mesh.Dimension() == 3 && mesh.section.thickness != 1) {
+    throw std::invalid_argument(
+        "a thickness is given for a mesh of three dimensions; leave it out");
+  }
+}
+
+template <int kDimension>
 void ValidateNodes(const Mesh& mesh) {
   if (mesh.NumNodes() == 0) {
     return;
   }
-  Eigen::Array3d smallest = mesh.nodes.col(0);
-  Eigen::Array3d largest = smallest;
+  using Position = Eigen::Array<double, kDimension, 1>;
+  Position smallest = mesh.nodes.col(0);
+  Position largest = smallest;
   for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
-    const Eigen::Array3d position = mesh.nodes.col(node);
+    const Position position =
+        Eigen::Map<const Position>(mesh.nodes.data() + kDimension * node);
     if (!position.allFinite()) {
       throw std::invalid_argument(
           "node " + std::to_string(node) +
@@ -86,15 +173,20 @@ void ValidateNodes(const Mesh& mesh) {
 }
 
 // Returns, for each node, whether an element uses it.
+template <int kDimension>
 std::vector<char> ValidateElements(const Mesh& mesh) {
+  const ElementTopology& topology = mesh.Topology();
   if (mesh.elements.cols() == 0) {
     throw std::invalid_argument(
-        "the mesh has no tetrahedra; mesh the volume, not only its surface");
+        "the mesh has no " + std::string(topology.shapes) +
+        (kDimension == 3 ? "; mesh the volume, not only its surface"
+                         : "; mesh the area, not only its rim"));
   }
-  if (mesh.elements.rows() != 4 && mesh.elements.rows() != 10) {
+  if (mesh.elements.rows() != topology.num_nodes) {
     throw std::invalid_argument(
         "the mesh has " + std::to_string(mesh.elements.rows()) +
-        " nodes per element; linear tetrahedra have 4, quadratic ones 10");
+        " nodes per element; those of kind " + std::string(topology.name) +
+        " have " + std::to_string(topology.num_nodes));
   }
   // Of characters, which are faster to write than bits.
   std::vector<char> used(mesh.NumNodes(), 0);
@@ -107,11 +199,19 @@ std::vector<char> ValidateElements(const Mesh& mesh) {
           ElementName(mesh, element) + " has a node index outside 0.." +
           std::to_string(mesh.NumNodes() - 1) + "; correct the mesh");
     }
-    if (IsFlat(GatherTetrahedron(mesh, element))) {
+    const std::string_view why_not =
+        WhyNoElement<kDimension>(mesh, topology, element);
+    if (why_not == "flat") {
       throw std::invalid_argument(
           ElementName(mesh, element) +
           " is flat (its smallest height is less than a millionth of its "
           "longest edge); remove it or mesh again");
+    }
+    if (!why_not.empty()) {
+      throw std::invalid_argument(
+          ElementName(mesh, element) +
+          " is folded (its orientation changes between its vertices); order "
+          "its nodes as VTK does, or mesh again");
     }
     for (Eigen::Index i = 0; i < mesh.elements.rows(); ++i) {
       used[nodes[i]] = 1;
@@ -122,11 +222,12 @@ std::vector<char> ValidateElements(const Mesh& mesh) {
 
 void ValidateMidEdgeNodes(const Mesh& mesh) {
   const Eigen::Index num_vertices = mesh.NumVertices();
+  const ElementTopology& topology = mesh.Topology();
   for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
-    for (int i = 0; i < 6; ++i) {
-      const int node = mesh.elements(4 + i, element);
-      const int a = mesh.elements(kTetrahedronEdges[i][0], element);
-      const int b = mesh.elements(kTetrahedronEdges[i][1], element);
+    for (int i = 0; i < static_cast<int>(topology.edges.size()); ++i) {
+      const int node = mesh.elements(topology.num_vertices + i, element);
+      const int a = mesh.elements(topology.edges[i][0], element);
+      const int b = mesh.elements(topology.edges[i][1], element);
       if (node < num_vertices) {
         throw std::invalid_argument(
             "mid-edge node " + std::to_string(node) + " of " +
@@ -144,83 +245,80 @@ void ValidateMidEdgeNodes(const Mesh& mesh) {
   }
 }
 
+// The nodes, and the elements: whether an element uses each node.
+template <int kDimension>
+std::vector<char> ValidateOfDimension(const Mesh& mesh) {
+  ValidateNodes<kDimension>(mesh);
+  return ValidateElements<kDimension>(mesh);
+}
+
 }  // namespace
 
+std::string_view SectionModelName(SectionModel model) {
+  switch (model) {
+    case SectionModel::kPlaneStrain:
+      return "plane_strain";
+    case SectionModel::kPlaneStress:
+      return "plane_stress";
+    case SectionModel::kSolid:
+      break;
+  }
+  return "3d";
+}
+
+Eigen::Index Mesh::NumVertices() const {
+  return Order() == 1
+             ? NumNodes()
+             : elements.topRows(Topology().num_vertices).maxCoeff() + 1;
+}
+
 void ValidateMesh(const Mesh& mesh) {
-  ValidateNodes(mesh);
-  const std::vector<char> used = ValidateElements(mesh);
+  ValidateSection(mesh);
+  const std::vector<char> used = mesh.Dimension() == 3
+                                     ? ValidateOfDimension<3>(mesh)
+                                     : ValidateOfDimension<2>(mesh);
   if (mesh.Order() == 2) {
     ValidateMidEdgeNodes(mesh);
   }
   const auto unused = std::find(used.begin(), used.end(), 0);
   if (unused != used.end()) {
-    throw std::invalid_argument("node " +
-                                std::to_string(unused - used.begin()) +
-                                " belongs to no tetrahedron; remove it");
+    throw std::invalid_argument(
+        "node " + std::to_string(unused - used.begin()) + " belongs to no " +
+        std::string(mesh.Topology().shape) + "; remove it");
   }
   if (mesh.regions.size() != 0 && mesh.regions.size() != mesh.NumElements()) {
     throw std::invalid_argument(
         "there are " + std::to_string(mesh.regions.size()) +
-        " region ids for " + std::to_string(mesh.NumElements()) +
-        " tetrahedra; give one for each, or none");
+        " region ids for " + std::to_string(mesh.NumElements()) + " " +
+        std::string(mesh.Topology().shapes) + "; give one for each, or none");
   }
 }
 
-Eigen::MatrixXi BoundaryFacets(const Mesh& mesh) {
-  struct Face {
-    std::array<int, 3> sorted;
-    Eigen::Index element;
-    int index;
-  };
-  std::vector<Face> faces;
-  faces.reserve(4 * mesh.NumElements());
-  for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
-    for (int i = 0; i < 4; ++i) {
-      std::array<int, 3> nodes;
-      for (int k = 0; k < 3; ++k) {
-        nodes[k] = mesh.elements(kFaces[i][k], element);
+bool IsInTheMiddle(const Mesh& mesh, int node, int a, int b) {
+  const Eigen::VectorXd xa = mesh.nodes.col(a);
+  const Eigen::VectorXd xb = mesh.nodes.col(b);
+  return (mesh.nodes.col(node) - 0.5 * (xa + xb)).norm() <=
+         1e-6 * (xb - xa).norm();
+}
+
+Eigen::VectorXd ElementVolumes(const Mesh& mesh) {
+  Eigen::VectorXd volumes = Eigen::VectorXd::Zero(mesh.NumElements());
+  VisitElementKind(mesh.kind, [&](auto kind) {
+    for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+      const auto vertices = GatherVertices<kind>(mesh, e);
+      for (const auto& at : StiffnessRule<kind>()) {
+        volumes(e) +=
+            ElementPoint<kind>(vertices, at, mesh.section.thickness).volume;
       }
-      std::sort(nodes.begin(), nodes.end());
-      faces.push_back({nodes, element, i});
     }
-  }
-  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
-    return std::tie(a.sorted, a.element) < std::tie(b.sorted, b.element);
   });
+  return volumes;
+}
 
-  std::vector<Face> boundary;
-  for (std::size_t i = 0; i < faces.size();) {
-    std::size_t end = i + 1;
-    while (end < faces.size() && faces[end].sorted == faces[i].sorted) {
-      ++end;
-    }
-    if (end == i + 1) {
-      boundary.push_back(faces[i]);
-    }
-    i = end;
-  }
-  std::sort(boundary.begin(), boundary.end(), [](const Face& a, const Face& b) {
-    return std::tie(a.element, a.index) < std::tie(b.element, b.index);
-  });
-
-  Eigen::MatrixXi facets(mesh.Order() == 2 ? 6 : 3, boundary.size());
-  for (std::size_t i = 0; i < boundary.size(); ++i) {
-    const Face& face = boundary[i];
-    std::array<int, 3> vertices = {kFaces[face.index][0], kFaces[face.index][1],
-                                   kFaces[face.index][2]};
-    if (SignedTetrahedronVolume(GatherTetrahedron(mesh, face.element)) < 0) {
-      std::swap(vertices[1], vertices[2]);
-    }
-    for (int k = 0; k < 3; ++k) {
-      facets(k, i) = mesh.elements(vertices[k], face.element);
-    }
-    for (int k = 3; k < facets.rows(); ++k) {
-      const auto& [a, b] = kTriangleEdges[k - 3];
-      facets(k, i) =
-          mesh.elements(kMidEdgeNodes[vertices[a]][vertices[b]], face.element);
-    }
-  }
-  return facets;
+Eigen::VectorXd ElementCentre(const Mesh& mesh, Eigen::Index element) {
+  const auto vertices =
+      mesh.elements.col(element).head(mesh.Topology().num_vertices);
+  return mesh.nodes(Eigen::all, vertices).rowwise().mean();
 }
 
 Eigen::VectorXd SmallestDihedralAngles(const Mesh& mesh) {

@@ -3,56 +3,84 @@
 
 #include <Eigen/Core>
 
+#include "elastimate/core/mesh/element_kind.h"
+
 namespace elastimate {
 
-/// A volume mesh of the specimen.
+/// What a mesh stands for in space.
+enum class SectionModel {
+  kSolid,        ///< Of three dimensions: itself.
+  kPlaneStrain,  ///< Of two: a slice of a body that cannot strain across it.
+  kPlaneStress,  ///< Of two: a thin plate without stress across it.
+};
+
+/// "3d", "plane_strain" or "plane_stress".
+std::string_view SectionModelName(SectionModel model);
+
+/// The body that a mesh is a section of.
+struct Section {
+  SectionModel model = SectionModel::kSolid;
+  /// Of a planar section [length], which all volumes and areas contain; 1 in
+  /// three dimensions.
+  double thickness = 1;
+};
+
+/// A mesh of the specimen, of elements of one kind.
 ///
 /// Lengths are in the scene's consistent unit system (m, N, Pa or mm, N, MPa,
-/// ...).  The order of the nodes of an element is free: a tetrahedron of
-/// negative orientation is the same tetrahedron, its volume is |det J| / 6.
+/// ...).  The orientation of an element is free: one whose Jacobian determinant
+/// is negative everywhere is the same element.
 struct Mesh {
-  Eigen::Matrix3Xd nodes;  ///< 3 x num_nodes, positions [length].
-  /// nodes_per_element x num_elements, zero-based node indices: the 4 vertices
-  /// of linear tetrahedra; for quadratic ones, whose edges are straight, then
-  /// the nodes in the middle of the edges 01, 12, 20, 03, 13, 23 (the order of
-  /// VTK).  In a quadratic mesh all vertices are numbered before all mid-edge
-  /// nodes, and elements that share an edge share its node.
+  ElementKind kind = ElementKind::kTet4;
+  Section section;
+  Eigen::MatrixXd nodes;  ///< dimension x num_nodes, positions [length].
+  /// num_nodes of the kind x num_elements, zero-based node indices in the order
+  /// of VTK: the vertices, then, in quadratic elements, whose edges are
+  /// straight, the nodes in the middle of the edges (ElementTopology).  In a
+  /// quadratic mesh all vertices are numbered before all mid-edge nodes, and
+  /// elements that share an edge share its node.
   Eigen::MatrixXi elements;
   Eigen::VectorXi regions;  ///< num_elements material region ids, or empty.
 
+  const ElementTopology& Topology() const { return TopologyOf(kind); }
+  /// 2 or 3.
+  int Dimension() const { return Topology().dimension; }
   Eigen::Index NumNodes() const { return nodes.cols(); }
   Eigen::Index NumElements() const { return elements.cols(); }
-  /// The degree of the shape functions: 1 for linear, 2 for quadratic
-  /// tetrahedra.
-  int Order() const { return elements.rows() == 10 ? 2 : 1; }
+  /// The degrees of freedom: row dimension * node + component of a vector.
+  Eigen::Index NumDofs() const { return Dimension() * NumNodes(); }
+  /// Of the shape functions: 1 for linear, 2 for quadratic elements.
+  int Order() const { return Topology().order; }
   /// The nodes that are vertices come first.  O(num_elements) for quadratic
-  /// tetrahedra.
-  Eigen::Index NumVertices() const {
-    return Order() == 1 ? NumNodes() : elements.topRows<4>().maxCoeff() + 1;
-  }
+  /// elements.
+  Eigen::Index NumVertices() const;
 };
 
 /// Throws std::invalid_argument, naming the node or the element, unless `mesh`
-/// is one that the element kernels accept: at least one element, 4 or 10 nodes
-/// per element, finite positions, an extent between 1e-50 and 1e50, node
-/// indices in range, every node used by an element, no flat element (smallest
-/// height below 1e-6 of the longest edge), mid-edge nodes numbered after the
-/// vertices and in the middle of their edges (within 1e-6 of their length), and
-/// region ids for all elements or for none.
+/// is one that the element kernels accept: at least one element, as many nodes
+/// per element and coordinates per node as its kind has, a section of the same
+/// dimension with a positive thickness, finite positions, an extent between
+/// 1e-50 and 1e50, node indices in range, every node used by an element, no
+/// flat or folded element (a height at a vertex below 1e-6 of the longest edge
+/// there, or vertices of different orientation), mid-edge nodes numbered after
+/// the vertices and in the middle of their edges (within 1e-6 of their length),
+/// and region ids for all elements or for none.
 /// O(num_elements).
 void ValidateMesh(const Mesh& mesh);
 
-/// The outer surface: `3 x num_facets` node indices of the element faces that
-/// belong to one element only, each ordered counter-clockwise seen from
-/// outside, so that (x1 - x0) x (x2 - x0) is the outward normal times twice the
-/// area.  For quadratic tetrahedra `6 x num_facets`: the nodes in the middle of
-/// the edges 01, 12, 20 follow.  Facets come in the order of the elements that
-/// own them.
-/// O(num_elements).
-Eigen::MatrixXi BoundaryFacets(const Mesh& mesh);
+/// Whether `node` is in the middle between `a` and `b`, to within a millionth
+/// of their distance: what single precision coordinates leave.
+bool IsInTheMiddle(const Mesh& mesh, int node, int a, int b);
+
+/// The volume of each element [length^3], that of a planar one by its
+/// thickness.  num_elements values.  O(num_elements).
+Eigen::VectorXd ElementVolumes(const Mesh& mesh);
+
+/// The centre of an element: the mean of its vertices, dimension values.
+Eigen::VectorXd ElementCentre(const Mesh& mesh, Eigen::Index element);
 
 /// The smallest dihedral angle of each tetrahedron [rad], the usual measure of
-/// a sliver.  num_elements values.
+/// a sliver.  num_elements values.  Precondition: a mesh of tetrahedra.
 Eigen::VectorXd SmallestDihedralAngles(const Mesh& mesh);
 
 }  // namespace elastimate

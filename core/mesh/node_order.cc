@@ -14,7 +14,7 @@ namespace {
 // The nodes by their coordinate along the longest extent: where the search, and
 // that of each further connected part, begins.
 std::vector<int> NodesAlongLongestExtent(const Mesh& mesh) {
-  const Eigen::Vector3d extent =
+  const Eigen::VectorXd extent =
       mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff();
   Eigen::Index axis = 0;
   extent.maxCoeff(&axis);
@@ -51,6 +51,8 @@ OrderedMesh OrderForLocality(const Mesh& mesh) {
   std::vector<int> new_index(mesh.NumNodes(), -1);
   std::vector<bool> is_ordered(mesh.NumElements(), false);
   OrderedMesh ordered;
+  ordered.mesh.kind = mesh.kind;
+  ordered.mesh.section = mesh.section;
   ordered.places.reserve(mesh.NumNodes());
   ordered.mesh.elements.resize(mesh.elements.rows(), mesh.NumElements());
   Eigen::Index num_elements = 0;

@@ -24,7 +24,7 @@ struct OrderedMesh {
 /// along the elements finds them, from one end of its longest extent [Cuthill &
 /// McKee 1969], and its elements in that of their first node: the nodes of an
 /// element are then at most two fronts of the search apart.
-/// Precondition: a valid mesh of linear tetrahedra.
+/// Precondition: a valid mesh.
 /// O(num_elements) time and memory, at the speed of random access.
 OrderedMesh OrderForLocality(const Mesh& mesh);
 

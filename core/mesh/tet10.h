@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "elastimate/core/mesh/mesh.h"
 #include "elastimate/core/mesh/tet4.h"
 
 namespace elastimate {
@@ -24,19 +23,6 @@ constexpr int kTetrahedronEdges[6][2] = {{0, 1}, {1, 2}, {2, 0},
 /// The local node in the middle of the edge between two local vertices.
 constexpr int kMidEdgeNodes[4][4] = {
     {0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3}};
-
-/// The local vertices on either side of local node 3 + i of a quadratic
-/// triangle.
-constexpr int kTriangleEdges[3][2] = {{0, 1}, {1, 2}, {2, 0}};
-
-/// Whether `node` is in the middle between `a` and `b`, to within a millionth
-/// of their distance: what single precision coordinates leave.
-inline bool IsInTheMiddle(const Mesh& mesh, int node, int a, int b) {
-  const Eigen::Vector3d xa = mesh.nodes.col(a);
-  const Eigen::Vector3d xb = mesh.nodes.col(b);
-  return (mesh.nodes.col(node) - 0.5 * (xa + xb)).norm() <=
-         1e-6 * (xb - xa).norm();
-}
 
 /// The displacement gradient at the vertices; it is linear in between.
 struct QuadraticDisplacementGradient {
@@ -71,18 +57,6 @@ struct QuadraticDisplacementGradient {
     }
   }
 };
-
-/// The displacements of the nodes of an element, from 3 * node + component.
-inline Eigen::Matrix<double, 3, 10> GatherQuadratic(const Mesh& mesh,
-                                                    Eigen::Index element,
-                                                    const double* values) {
-  Eigen::Matrix<double, 3, 10> u;
-  for (int i = 0; i < 10; ++i) {
-    u.col(i) = Eigen::Map<const Eigen::Vector3d>(
-        values + 3 * Eigen::Index(mesh.elements(i, element)));
-  }
-  return u;
-}
 
 }  // namespace elastimate
 

@@ -16,22 +16,10 @@ inline TetrahedronNodes GatherTetrahedron(const Mesh& mesh,
                                           Eigen::Index element) {
   TetrahedronNodes x;
   for (int i = 0; i < 4; ++i) {
-    x.col(i) = mesh.nodes.col(mesh.elements(i, element));
+    x.col(i) = Eigen::Map<const Eigen::Vector3d>(
+        mesh.nodes.data() + 3 * Eigen::Index(mesh.elements(i, element)));
   }
   return x;
-}
-
-/// det J / 6, negative for a tetrahedron of negative orientation.
-inline double SignedTetrahedronVolume(const TetrahedronNodes& x) {
-  const Eigen::Vector3d e1 = x.col(1) - x.col(0);
-  const Eigen::Vector3d e2 = x.col(2) - x.col(0);
-  const Eigen::Vector3d e3 = x.col(3) - x.col(0);
-  return e1.dot(e2.cross(e3)) / 6;
-}
-
-/// V = |det J| / 6.
-inline double TetrahedronVolume(const TetrahedronNodes& x) {
-  return std::abs(SignedTetrahedronVolume(x));
 }
 
 /// The linear tetrahedron: constant shape function gradients and the volume.

@@ -3,7 +3,8 @@
 namespace elastimate {
 
 DegreesOfFreedom::DegreesOfFreedom(const Supports& supports)
-    : place(supports.held.size(), -1) {
+    : dimension(static_cast<int>(supports.held.rows())),
+      place(supports.held.size(), -1) {
   free.reserve(supports.held.size() - supports.held.count());
   for (Eigen::Index dof = 0; dof < supports.held.size(); ++dof) {
     if (!supports.held.data()[dof]) {

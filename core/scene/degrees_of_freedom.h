@@ -10,11 +10,12 @@ namespace elastimate {
 
 /// The free degrees of freedom in ascending order: row i of a vector over the
 /// free ones is row `free[i]` of a vector over all, which is
-/// 3 * node + component.
+/// dimension * node + component.
 struct DegreesOfFreedom {
+  int dimension;  ///< The components of a node: 2 or 3.
   std::vector<Eigen::Index> free;
-  /// For each of the 3 * num_nodes degrees of freedom its place in `free`, or
-  /// -1 when it is held.
+  /// For each of the dimension * num_nodes degrees of freedom its place in
+  /// `free`, or -1 when it is held.
   std::vector<Eigen::Index> place;
 
   explicit DegreesOfFreedom(const Supports& supports);
@@ -29,7 +30,7 @@ struct DegreesOfFreedom {
 };
 
 /// The displacement of the held degrees of freedom, zero in the free rows:
-/// 3 * num_nodes values.
+/// dimension * num_nodes values.
 Eigen::VectorXd HeldDisplacement(const Supports& supports);
 
 }  // namespace elastimate

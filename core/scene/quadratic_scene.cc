@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "elastimate/core/mesh/node_graph.h"
-#include "elastimate/core/mesh/tet10.h"
 
 namespace elastimate {
 namespace {
@@ -59,27 +58,39 @@ Array WithMidEdges(const Array& values, const Array& mid_edges) {
   return all;
 }
 
-Eigen::Matrix3Xd MeanOfEnds(const Eigen::Matrix3Xd& values,
-                            const Edges& edges) {
+Eigen::MatrixXd MeanOfEnds(const Eigen::MatrixXd& values, const Edges& edges) {
   return 0.5 * (values(Eigen::all, edges.Ends().row(0)) +
                 values(Eigen::all, edges.Ends().row(1)));
 }
 
 Mesh WithMidEdgeNodes(const Mesh& mesh, const Edges& edges) {
+  const ElementTopology& topology = mesh.Topology();
   Mesh quadratic;
+  quadratic.kind = QuadraticKind(mesh.kind);
+  quadratic.section = mesh.section;
   quadratic.regions = mesh.regions;
   quadratic.nodes = WithMidEdges(mesh.nodes, MeanOfEnds(mesh.nodes, edges));
-  quadratic.elements.resize(10, mesh.NumElements());
-  quadratic.elements.topRows<4>() = mesh.elements;
+  quadratic.elements.resize(quadratic.Topology().num_nodes, mesh.NumElements());
+  quadratic.elements.topRows(topology.num_vertices) = mesh.elements;
   for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
-    for (int i = 0; i < 6; ++i) {
-      quadratic.elements(4 + i, e) = static_cast<int>(
-          mesh.NumNodes() +
-          edges.Find(mesh.elements(kTetrahedronEdges[i][0], e),
-                     mesh.elements(kTetrahedronEdges[i][1], e)));
+    for (std::size_t i = 0; i < topology.edges.size(); ++i) {
+      quadratic.elements(topology.num_vertices + Eigen::Index(i), e) =
+          static_cast<int>(mesh.NumNodes() +
+                           edges.Find(mesh.elements(topology.edges[i][0], e),
+                                      mesh.elements(topology.edges[i][1], e)));
     }
   }
   return quadratic;
+}
+
+// The vertices at the ends of mid-edge node i of a facet of a simplex.
+std::pair<int, int> EndsOfFacetEdge(Eigen::Index i, Eigen::Index num_vertices) {
+  return {static_cast<int>(i), static_cast<int>((i + 1) % num_vertices)};
+}
+
+// How many edges a facet of a simplex has: three of a triangle, one of an edge.
+Eigen::Index NumFacetEdges(const Mesh& mesh) {
+  return mesh.Dimension() == 3 ? 3 : 1;
 }
 
 // Which edges cross the interior from one node of the surface to another.
@@ -88,8 +99,10 @@ std::vector<bool> CrossingEdges(const Mesh& mesh, const Edges& edges) {
   std::vector<bool> edge_on_surface(edges.Size(), false);
   const Eigen::MatrixXi facets = BoundaryFacets(mesh);
   for (Eigen::Index facet = 0; facet < facets.cols(); ++facet) {
-    for (const auto& [a, b] : kTriangleEdges) {
+    for (Eigen::Index i = 0; i < NumFacetEdges(mesh); ++i) {
+      const auto [a, b] = EndsOfFacetEdge(i, facets.rows());
       node_on_surface[facets(a, facet)] = true;
+      node_on_surface[facets(b, facet)] = true;
       edge_on_surface[edges.Find(facets(a, facet), facets(b, facet))] = true;
     }
   }
@@ -119,19 +132,21 @@ Supports WithMidEdgeSupports(const Supports& supports, const Mesh& mesh,
 
 Eigen::MatrixXi WithMidEdgeNodes(const Eigen::MatrixXi& facets,
                                  const Mesh& mesh, const Edges& edges) {
-  Eigen::MatrixXi quadratic(6, facets.cols());
-  quadratic.topRows<3>() = facets;
+  const Eigen::Index num_vertices = facets.rows();
+  Eigen::MatrixXi quadratic(num_vertices + NumFacetEdges(mesh), facets.cols());
+  quadratic.topRows(num_vertices) = facets;
   for (Eigen::Index facet = 0; facet < facets.cols(); ++facet) {
-    for (int i = 0; i < 3; ++i) {
-      const Eigen::Index edge = edges.Find(facets(kTriangleEdges[i][0], facet),
-                                           facets(kTriangleEdges[i][1], facet));
+    for (Eigen::Index i = 0; i < NumFacetEdges(mesh); ++i) {
+      const auto [a, b] = EndsOfFacetEdge(i, num_vertices);
+      const Eigen::Index edge = edges.Find(facets(a, facet), facets(b, facet));
       if (edge < 0) {
-        throw std::invalid_argument(
-            "facet " + std::to_string(facet) +
-            " of a load is no face of a tetrahedron; take the "
-            "facets from the mesh");
+        throw std::invalid_argument("facet " + std::to_string(facet) +
+                                    " of a load is no face of a " +
+                                    std::string(mesh.Topology().shape) +
+                                    "; take the facets from the mesh");
       }
-      quadratic(3 + i, facet) = static_cast<int>(mesh.NumNodes() + edge);
+      quadratic(num_vertices + i, facet) =
+          static_cast<int>(mesh.NumNodes() + edge);
     }
   }
   return quadratic;
@@ -143,7 +158,8 @@ struct LoadConverter {
   const Edges& edges;
 
   Load operator()(const NodalForces& load) const {
-    const Eigen::Matrix3Xd none = Eigen::Matrix3Xd::Zero(3, edges.Size());
+    const Eigen::MatrixXd none =
+        Eigen::MatrixXd::Zero(mesh.Dimension(), edges.Size());
     return NodalForces{WithMidEdges(load.force, none)};
   }
   Load operator()(const BodyForce& load) const { return load; }
@@ -167,12 +183,15 @@ LoadCase ToQuadratic(const LoadCase& load_case, const Mesh& mesh,
   }
   const ComponentMask measured =
       load_case.observed.size() == 0
-          ? ComponentMask(ComponentMask::Constant(3, mesh.NumNodes(), true))
+          ? ComponentMask(ComponentMask::Constant(mesh.Dimension(),
+                                                  mesh.NumNodes(), true))
           : load_case.observed;
-  quadratic.observed = WithMidEdges(
-      measured, ComponentMask(ComponentMask::Constant(3, edges.Size(), false)));
+  quadratic.observed =
+      WithMidEdges(measured, ComponentMask(ComponentMask::Constant(
+                                 mesh.Dimension(), edges.Size(), false)));
   if (load_case.displacement.size() != 0) {
-    const Eigen::Matrix3Xd unknown = Eigen::Matrix3Xd::Zero(3, edges.Size());
+    const Eigen::MatrixXd unknown =
+        Eigen::MatrixXd::Zero(mesh.Dimension(), edges.Size());
     quadratic.displacement = WithMidEdges(load_case.displacement, unknown);
   }
   return quadratic;
@@ -184,6 +203,11 @@ Scene QuadraticScene(const Scene& scene) {
   if (scene.mesh.Order() != 1) {
     throw std::invalid_argument(
         "the scene has quadratic elements already; give it with linear ones");
+  }
+  if (!HasQuadraticKind(scene.mesh.kind)) {
+    throw std::invalid_argument("there are no quadratic " +
+                                std::string(scene.mesh.Topology().shapes) +
+                                " here; use order 1");
   }
   const Edges edges(scene.mesh);
   Scene quadratic;
@@ -197,19 +221,23 @@ Scene QuadraticScene(const Scene& scene) {
 
 Eigen::MatrixXd VertexForces(const Mesh& mesh, const Eigen::MatrixXd& force) {
   const Eigen::Index num_vertices = mesh.NumVertices();
-  Eigen::MatrixXd vertex_force = force.topRows(3 * num_vertices);
+  const ElementTopology& topology = mesh.Topology();
+  const int dimension = mesh.Dimension();
+  Eigen::MatrixXd vertex_force = force.topRows(dimension * num_vertices);
   // An edge of several elements has one node.
   std::vector<bool> is_done(mesh.NumNodes(), false);
   for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
-    for (Eigen::Index i = 4; i < mesh.elements.rows(); ++i) {
+    for (Eigen::Index i = topology.num_vertices; i < mesh.elements.rows();
+         ++i) {
       const int node = mesh.elements(i, e);
       if (is_done[node]) {
         continue;
       }
       is_done[node] = true;
-      for (const int end : kTetrahedronEdges[i - 4]) {
-        vertex_force.middleRows<3>(3 * Eigen::Index(mesh.elements(end, e))) +=
-            0.5 * force.middleRows<3>(3 * Eigen::Index(node));
+      for (const int end : topology.edges[i - topology.num_vertices]) {
+        vertex_force.middleRows(dimension * Eigen::Index(mesh.elements(end, e)),
+                                dimension) +=
+            0.5 * force.middleRows(dimension * Eigen::Index(node), dimension);
       }
     }
   }

@@ -8,7 +8,7 @@
 
 namespace elastimate {
 
-/// The same scene modelled with quadratic tetrahedra: a node in the middle of
+/// The same scene modelled with quadratic simplices: a node in the middle of
 /// each straight edge, which bends with the specimen (element order 2).
 ///
 /// The mid-edge nodes come after those of `scene`, in ascending order of the
@@ -27,8 +27,8 @@ namespace elastimate {
 /// - Measurements: not observed, displacement zero.
 ///
 /// Precondition: a valid scene (ValidateScene).  Throws std::invalid_argument
-/// unless its elements are linear, and for a facet that is no face of the mesh.
-/// O(num_elements) time and memory.
+/// unless its elements are linear tetrahedra or triangles, and for a facet that
+/// is no face of the mesh. O(num_elements) time and memory.
 ///
 ///   const Scene quadratic = QuadraticScene(scene);
 ///   const Estimate estimate = MakeEstimator("iterative-fe")->Run(quadratic,
@@ -39,9 +39,10 @@ Scene QuadraticScene(const Scene& scene);
 /// `force` on every displacement which is linear in each element: f_a plus half
 /// of each f_ab.  They have the same resultant and moment.
 ///
-/// `force` is (3 num_nodes) x n, row 3 * node + component [force]; the result
-/// (3 num_vertices) x n.  Precondition: a valid mesh; one of linear elements
-/// leaves the forces as they are.  O(num_elements + num_nodes * n).
+/// `force` is num_dofs x n, row dimension * node + component [force]; the
+/// result (dimension num_vertices) x n.  Precondition: a valid mesh; one of
+/// linear elements leaves the forces as they are.  O(num_elements + num_nodes *
+/// n).
 Eigen::MatrixXd VertexForces(const Mesh& mesh, const Eigen::MatrixXd& force);
 
 }  // namespace elastimate

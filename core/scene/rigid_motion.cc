@@ -43,30 +43,43 @@ class DisjointSets {
   std::vector<int> parent_;
 };
 
-// The other two corners of a face, ascending, whose smallest node is known.
+// The other vertices of a face, ascending, whose smallest node is known; -1
+// where there are fewer.
 struct Face {
-  std::array<int, 2> others;
+  std::array<int, 3> others;
   int element;
 
   bool operator<(const Face& other) const { return others < other.others; }
 };
 
-// The tetrahedra that are connected through faces.
+// The elements that are connected through faces.
 DisjointSets ElementsJoinedByFaces(const Mesh& mesh) {
   const ElementsOfNodes around(mesh);
+  const auto& faces_of_element = mesh.Topology().faces;
   DisjointSets sets(mesh.NumElements());
   std::vector<Face> faces;  // Whose smallest node is the same.
   for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
     faces.clear();
     for (Eigen::Index i = around.start[node]; i < around.start[node + 1]; ++i) {
       const int e = static_cast<int>(around.element[i]);
-      const auto corners = mesh.elements.col(e);
-      for (int a = 0; a < 4; ++a) {
-        for (int b = a + 1; b < 4; ++b) {
-          const auto [smaller, larger] = std::minmax({corners(a), corners(b)});
-          if (smaller > node) {
-            faces.push_back({{smaller, larger}, e});
+      const auto nodes = mesh.elements.col(e);
+      for (const std::vector<int>& vertices : faces_of_element) {
+        Face face = {{-1, -1, -1}, e};
+        std::size_t num_others = 0;
+        bool has_node = false;
+        bool is_smallest = true;
+        for (const int vertex : vertices) {
+          if (nodes(vertex) == node) {
+            has_node = true;
+          } else {
+            is_smallest = is_smallest && nodes(vertex) > node;
+            face.others[num_others % 3] = nodes(vertex);
+            ++num_others;
           }
+        }
+        if (has_node && is_smallest) {
+          std::sort(face.others.begin(), face.others.end());
+          faces.push_back(face);
         }
       }
     }
@@ -83,11 +96,12 @@ DisjointSets ElementsJoinedByFaces(const Mesh& mesh) {
 // A rigid body.
 struct Body {
   std::vector<int> nodes;  // Ascending.
-  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+  Eigen::VectorXd centroid;
   double radius = 0;
 
   Body(const Mesh& mesh, std::vector<int> its_nodes)
-      : nodes(std::move(its_nodes)) {
+      : nodes(std::move(its_nodes)),
+        centroid(Eigen::VectorXd::Zero(mesh.Dimension())) {
     for (const int node : nodes) {
       centroid += mesh.nodes.col(node);
     }
@@ -143,17 +157,17 @@ const char* const kAxis[3] = {"x", "y", "z"};
 
 // Of the directions that the orthonormal columns of `span` span, the one
 // closest to an axis: "x", or "(0.6, 0.8, 0)".
-std::string DescribeDirection(const Eigen::Matrix3Xd& span) {
-  const Eigen::Matrix3d projection = span * span.transpose();
+std::string DescribeDirection(const Eigen::MatrixXd& span) {
+  const Eigen::MatrixXd projection = span * span.transpose();
   Eigen::Index axis = 0;
   projection.diagonal().maxCoeff(&axis);
-  const Eigen::Vector3d direction = projection.col(axis).normalized();
+  const Eigen::VectorXd direction = projection.col(axis).normalized();
   if (direction(axis) > 0.9999) {
     return kAxis[axis];
   }
   std::ostringstream text;
   text << std::setprecision(2);
-  for (int i = 0; i < 3; ++i) {
+  for (Eigen::Index i = 0; i < direction.size(); ++i) {
     text << (i == 0 ? "(" : ", ")
          << (std::abs(direction(i)) < 0.005 ? 0.0 : direction(i));
   }
@@ -163,61 +177,62 @@ std::string DescribeDirection(const Eigen::Matrix3Xd& span) {
 
 // One of the rigid motions that the columns span; a translation if there is
 // one, since any rotation about an axis off the centroid moves that too.
-std::string DescribeRigidMotion(const Eigen::Matrix<double, 6, -1>& columns) {
+std::string DescribeRigidMotion(const Eigen::MatrixXd& columns) {
   // Of a part, columns may be dependent.
   constexpr double kSmall = 1e-5;
   const SingularValueDecomposition span = DecomposeSingularValues(columns);
-  const Eigen::Matrix<double, 6, -1> motions =
+  const Eigen::MatrixXd motions =
       span.u.leftCols((span.values.array() > kSmall * span.values(0)).count());
+  const int dimension = columns.rows() == NumRigidMotions(3) ? 3 : 2;
   const SingularValueDecomposition rotations =
-      DecomposeSingularValues(motions.bottomRows<3>());
+      DecomposeSingularValues(motions.bottomRows(motions.rows() - dimension));
   const Eigen::Index rank = (rotations.values.array() > kSmall).count();
   if (rank < motions.cols()) {
     return "move along " +
-           DescribeDirection(motions.topRows<3>() *
+           DescribeDirection(motions.topRows(dimension) *
                              rotations.v.rightCols(motions.cols() - rank));
   }
-  return "rotate about " + DescribeDirection(rotations.u.leftCols(rank));
+  return dimension == 2
+             ? "rotate"
+             : "rotate about " + DescribeDirection(rotations.u.leftCols(rank));
 }
 
-// Coefficients of the six rigid motions of a body (translations, then rotations
-// about axes through its centroid, by radii) in the displacement of a node.
-Eigen::Matrix<double, 1, 6> RigidMotionRow(const Mesh& mesh, const Body& body,
-                                           int node, int component) {
-  const Eigen::Vector3d arm =
-      (mesh.nodes.col(node) - body.centroid) / body.radius;
-  Eigen::Matrix<double, 1, 6> row = Eigen::Matrix<double, 1, 6>::Zero();
-  row(component) = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    row(3 + axis) = Eigen::Vector3d::Unit(axis).cross(arm)(component);
-  }
-  return row;
+// Coefficients of the rigid motions of a body (translations, then rotations
+// about axes through its centroid, by radii) in the displacement of a node:
+// dimension rows.
+Eigen::MatrixXd RigidMotionRows(const Mesh& mesh, const Body& body, int node) {
+  return RigidMotionsAt((mesh.nodes.col(node) - body.centroid) / body.radius);
 }
 
 // What holds some bodies: the sum of the squares of what moves their held
 // components, and of how far those that share a node move apart there, is a
-// quadratic form of six coordinates for each body.
+// quadratic form of the rigid motions of all bodies.
 Eigen::SparseMatrix<double> HoldingForm(
     const Mesh& mesh, const Supports& supports,
     const std::vector<const Body*>& bodies) {
+  const int num_motions = NumRigidMotions(mesh.Dimension());
   std::vector<Eigen::Triplet<double>> entries;
   const auto add = [&](Eigen::Index a, Eigen::Index b,
-                       const Eigen::Matrix<double, 6, 6>& block) {
-    for (Eigen::Index i = 0; i < 6; ++i) {
-      for (Eigen::Index j = 0; j < 6; ++j) {
-        entries.emplace_back(6 * a + i, 6 * b + j, block(i, j));
+                       const Eigen::MatrixXd& block) {
+    for (Eigen::Index i = 0; i < num_motions; ++i) {
+      for (Eigen::Index j = 0; j < num_motions; ++j) {
+        entries.emplace_back(num_motions * a + i, num_motions * b + j,
+                             block(i, j));
       }
     }
   };
   std::vector<std::pair<int, Eigen::Index>> nodes;
   for (Eigen::Index b = 0; b < Eigen::Index(bodies.size()); ++b) {
-    Eigen::Matrix<double, 6, 6> held = Eigen::Matrix<double, 6, 6>::Zero();
+    Eigen::MatrixXd held = Eigen::MatrixXd::Zero(num_motions, num_motions);
     for (const int node : bodies[b]->nodes) {
       nodes.emplace_back(node, b);
-      for (int i = 0; i < 3; ++i) {
+      if (!supports.held.col(node).any()) {
+        continue;
+      }
+      const Eigen::MatrixXd rows = RigidMotionRows(mesh, *bodies[b], node);
+      for (int i = 0; i < mesh.Dimension(); ++i) {
         if (supports.held(i, node)) {
-          const auto row = RigidMotionRow(mesh, *bodies[b], node, i);
-          held += row.transpose() * row;
+          held += rows.row(i).transpose() * rows.row(i);
         }
       }
     }
@@ -230,16 +245,14 @@ Eigen::SparseMatrix<double> HoldingForm(
     if (node != previous) {
       continue;
     }
-    for (int i = 0; i < 3; ++i) {
-      const auto row_a = RigidMotionRow(mesh, *bodies[a], node, i);
-      const auto row_b = RigidMotionRow(mesh, *bodies[b], node, i);
-      add(a, a, row_a.transpose() * row_a);
-      add(b, b, row_b.transpose() * row_b);
-      add(a, b, -row_a.transpose() * row_b);
-      add(b, a, -row_b.transpose() * row_a);
-    }
+    const Eigen::MatrixXd rows_a = RigidMotionRows(mesh, *bodies[a], node);
+    const Eigen::MatrixXd rows_b = RigidMotionRows(mesh, *bodies[b], node);
+    add(a, a, rows_a.transpose() * rows_a);
+    add(b, b, rows_b.transpose() * rows_b);
+    add(a, b, -rows_a.transpose() * rows_b);
+    add(b, a, -rows_b.transpose() * rows_a);
   }
-  const Eigen::Index size = 6 * Eigen::Index(bodies.size());
+  const Eigen::Index size = num_motions * Eigen::Index(bodies.size());
   Eigen::SparseMatrix<double> form(size, size);
   form.setFromTriplets(entries.begin(), entries.end());
   return form;
@@ -310,15 +323,16 @@ std::string WhyNotHeld(const Mesh& mesh, const Supports& supports,
     return "";
   }
   constexpr double kMoves = 1e-3;
+  const int num_motions = NumRigidMotions(mesh.Dimension());
   Eigen::Index b = 0;
-  while (motions.middleRows<6>(6 * b).norm() <
+  while (motions.middleRows(num_motions * b, num_motions).norm() <
          kMoves / std::sqrt(static_cast<double>(bodies.size()))) {
     ++b;
   }
   const bool is_hinged = bodies.size() > 1;
   return "the supports let the part of the mesh around node " +
          std::to_string(NodeOfItsOwn(b, bodies)) + " " +
-         DescribeRigidMotion(motions.middleRows<6>(6 * b)) +
+         DescribeRigidMotion(motions.middleRows(num_motions * b, num_motions)) +
          " without strain; hold more components" +
          (is_hinged ? ", or mend the mesh: it shares only edges or nodes with "
                       "the rest"

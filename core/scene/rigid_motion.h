@@ -1,6 +1,8 @@
 #ifndef ELASTIMATE_CORE_SCENE_RIGID_MOTION_H_
 #define ELASTIMATE_CORE_SCENE_RIGID_MOTION_H_
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <string>
 
 #include "elastimate/core/mesh/mesh.h"
@@ -8,17 +10,38 @@
 
 namespace elastimate {
 
+/// Of a body: three in the plane, six in space.
+constexpr int NumRigidMotions(int dimension) { return dimension == 3 ? 6 : 3; }
+
+/// What rigid motions move a point: the translations along the axes, then the
+/// rotations about axes at which `arm` starts.  dimension x NumRigidMotions.
+inline Eigen::MatrixXd RigidMotionsAt(const Eigen::VectorXd& arm) {
+  const Eigen::Index dimension = arm.size();
+  Eigen::MatrixXd motions(dimension, NumRigidMotions(int(dimension)));
+  motions.leftCols(dimension).setIdentity();
+  if (dimension == 2) {
+    motions.col(2) << -arm(1), arm(0);
+    return motions;
+  }
+  const Eigen::Vector3d of_arm = arm;
+  for (int axis = 0; axis < 3; ++axis) {
+    motions.col(3 + axis) =
+        Eigen::Vector3d(Eigen::Vector3d::Unit(axis)).cross(of_arm);
+  }
+  return motions;
+}
+
 /// Why the supports do not hold the specimen: a sentence that names a motion
 /// without strain which they allow (a translation or a rotation of a part of
 /// the mesh), or an empty string when there is none. A finite element solution
 /// exists only when it is empty.
 ///
-/// Tetrahedra that are connected through their faces move as a rigid body where
+/// Elements that are connected through their faces move as a rigid body where
 /// they have no strain; bodies that share only an edge or a node are hinged
 /// there.
 ///
 /// Precondition: a valid mesh.  O(num_elements log(num_elements)), and a sparse
-/// factorisation with six unknowns for each hinged body.
+/// factorisation with as many unknowns as rigid motions for each hinged body.
 std::string WhyNotHeld(const Mesh& mesh, const Supports& supports);
 
 }  // namespace elastimate

@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "elastimate/core/mesh/representable.h"
-#include "elastimate/core/mesh/tet10.h"
 #include "elastimate/core/scene/loads.h"
 
 namespace elastimate {
@@ -22,12 +21,31 @@ std::string CaseName(std::size_t index) {
   throw std::invalid_argument(what);
 }
 
-void RequireColumns(Eigen::Index columns, const Mesh& mesh,
-                    const std::string& what) {
-  if (columns != mesh.NumNodes()) {
-    Fail(what + " has " + std::to_string(columns) + " columns for " +
+// One row for each dimension and one column for each node.
+template <class Values>
+void RequireShape(const Values& values, const Mesh& mesh,
+                  const std::string& what) {
+  if (values.rows() != mesh.Dimension()) {
+    Fail(what + " has " + std::to_string(values.rows()) + " rows for " +
+         std::to_string(mesh.Dimension()) + " dimensions; give one for each");
+  }
+  if (values.cols() != mesh.NumNodes()) {
+    Fail(what + " has " + std::to_string(values.cols()) + " columns for " +
          std::to_string(mesh.NumNodes()) + " nodes; give one for each");
   }
+}
+
+// A vector in space.
+void RequireVector(const Eigen::VectorXd& vector, const Mesh& mesh,
+                   const std::string& what) {
+  if (vector.size() != mesh.Dimension()) {
+    Fail(what + " has " + std::to_string(vector.size()) + " components for " +
+         std::to_string(mesh.Dimension()) + " dimensions; give one for each");
+  }
+  if (!vector.allFinite()) {
+    Fail(what + " is not finite; correct it");
+  }
+  RequireRepresentable(vector.cwiseAbs().maxCoeff(), what);
 }
 
 // `values` may be an expression; it is not kept.
@@ -35,20 +53,21 @@ template <class Values>
 void RequireFinite(const Values& values, const std::string& what) {
   double largest = 0;
   for (Eigen::Index node = 0; node < values.cols(); ++node) {
-    const Eigen::Vector3d of_node = values.col(node);
-    if (!of_node.allFinite()) {
-      Fail(what + " of node " + std::to_string(node) +
-           " is not finite; correct it");
+    for (Eigen::Index i = 0; i < values.rows(); ++i) {
+      const double value = values(i, node);
+      if (!std::isfinite(value)) {
+        Fail(what + " of node " + std::to_string(node) +
+             " is not finite; correct it");
+      }
+      largest = std::max(largest, std::abs(value));
     }
-    largest = std::max(largest, of_node.cwiseAbs().maxCoeff());
   }
   RequireRepresentable(largest, what);
 }
 
 void ValidateSupports(const Mesh& mesh, const Supports& supports) {
-  RequireColumns(supports.held.cols(), mesh, "the mask of held components");
-  RequireColumns(supports.displacement.cols(), mesh,
-                 "the displacement of the supports");
+  RequireShape(supports.held, mesh, "the mask of held components");
+  RequireShape(supports.displacement, mesh, "the displacement of the supports");
   RequireFinite(supports.held.select(supports.displacement.array(), 0.0),
                 "the displacement of the supports");
   if (supports.held.all()) {
@@ -61,12 +80,14 @@ void ValidateFacets(const Mesh& mesh, const Eigen::MatrixXi& facets,
   if (facets.cols() == 0) {
     Fail(what + " acts on no facet; name a part of the surface");
   }
-  const Eigen::Index nodes_per_facet = mesh.Order() == 2 ? 6 : 3;
-  if (facets.rows() != nodes_per_facet) {
+  const ElementTopology& topology = mesh.Topology();
+  const int num_vertices = topology.NumVerticesOfFace();
+  if (facets.rows() != topology.NumNodesOfFace()) {
     Fail(what + " has " + std::to_string(facets.rows()) +
          " nodes per facet; the facets of " +
-         (mesh.Order() == 2 ? "quadratic " : "") + "tetrahedra have " +
-         std::to_string(nodes_per_facet));
+         (mesh.Order() == 2 ? "quadratic " : "") +
+         std::string(topology.shapes) + " have " +
+         std::to_string(topology.NumNodesOfFace()));
   }
   for (Eigen::Index facet = 0; facet < facets.cols(); ++facet) {
     if (facets.col(facet).minCoeff() < 0 ||
@@ -75,8 +96,9 @@ void ValidateFacets(const Mesh& mesh, const Eigen::MatrixXi& facets,
            " has a node index outside 0.." +
            std::to_string(mesh.NumNodes() - 1));
     }
-    for (Eigen::Index i = 3; i < facets.rows(); ++i) {
-      const auto& [a, b] = kTriangleEdges[i - 3];
+    for (int i = num_vertices; i < topology.NumNodesOfFace(); ++i) {
+      const int a = i - num_vertices;
+      const int b = (a + 1) % num_vertices;
       if (!IsInTheMiddle(mesh, facets(i, facet), facets(a, facet),
                          facets(b, facet))) {
         Fail("node " + std::to_string(facets(i, facet)) + " of facet " +
@@ -93,23 +115,15 @@ struct LoadValidator {
   std::string where;  // "load 1 of load case 2"
 
   void operator()(const NodalForces& load) const {
-    RequireColumns(load.force.cols(), mesh, "the force in " + where);
+    RequireShape(load.force, mesh, "the force in " + where);
     RequireFinite(load.force, "the force in " + where);
   }
   void operator()(const BodyForce& load) const {
-    if (!load.force_density.allFinite()) {
-      Fail("the body force in " + where + " is not finite; correct it");
-    }
-    RequireRepresentable(load.force_density.cwiseAbs().maxCoeff(),
-                         "the body force in " + where);
+    RequireVector(load.force_density, mesh, "the body force in " + where);
   }
   void operator()(const Traction& load) const {
     ValidateFacets(mesh, load.facets, "the traction in " + where);
-    if (!load.traction.allFinite()) {
-      Fail("the traction in " + where + " is not finite; correct it");
-    }
-    RequireRepresentable(load.traction.cwiseAbs().maxCoeff(),
-                         "the traction in " + where);
+    RequireVector(load.traction, mesh, "the traction in " + where);
   }
   void operator()(const Pressure& load) const {
     ValidateFacets(mesh, load.facets, "the pressure in " + where);
@@ -120,11 +134,7 @@ struct LoadValidator {
   }
   void operator()(const SurfaceForce& load) const {
     ValidateFacets(mesh, load.facets, "the force on a surface in " + where);
-    if (!load.force.allFinite()) {
-      Fail("the force on a surface in " + where + " is not finite; correct it");
-    }
-    RequireRepresentable(load.force.cwiseAbs().maxCoeff(),
-                         "the force on a surface in " + where);
+    RequireVector(load.force, mesh, "the force on a surface in " + where);
     if (!(FacetArea(mesh, load.facets) > 0)) {
       Fail("the force on a surface in " + where +
            " acts on facets without area; name a part of the surface");
@@ -135,8 +145,8 @@ struct LoadValidator {
 void ValidateMeasurement(const Mesh& mesh, const LoadCase& load_case,
                          const std::string& name) {
   if (load_case.observed.size() != 0) {
-    RequireColumns(load_case.observed.cols(), mesh,
-                   "the mask of observed components of " + name);
+    RequireShape(load_case.observed, mesh,
+                 "the mask of observed components of " + name);
   }
   if (load_case.noise_sd &&
       !(std::isfinite(*load_case.noise_sd) && *load_case.noise_sd > 0)) {
@@ -148,11 +158,11 @@ void ValidateMeasurement(const Mesh& mesh, const LoadCase& load_case,
   if (load_case.displacement.size() == 0) {
     return;
   }
-  RequireColumns(load_case.displacement.cols(), mesh,
-                 "the measured displacement of " + name);
+  RequireShape(load_case.displacement, mesh,
+               "the measured displacement of " + name);
   double largest = 0;
   for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < mesh.Dimension(); ++i) {
       const bool observed =
           load_case.observed.size() == 0 || load_case.observed(i, node);
       if (!observed) {

@@ -7,43 +7,41 @@
 #include <variant>
 #include <vector>
 
+#include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/mesh/mesh.h"
 
 namespace elastimate {
 
-/// One flag per displacement component: 3 x num_nodes.
-using ComponentMask = Eigen::Array<bool, 3, Eigen::Dynamic>;
+/// One flag per displacement component: dimension x num_nodes.
+using ComponentMask = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// The held degrees of freedom, and the displacement they are held at.
 struct Supports {
-  ComponentMask held;             ///< 3 x num_nodes.
-  Eigen::Matrix3Xd displacement;  ///< 3 x num_nodes [length]; used where
-                                  ///< `held`, ignored elsewhere.
+  ComponentMask held;            ///< dimension x num_nodes.
+  Eigen::MatrixXd displacement;  ///< dimension x num_nodes [length]; used where
+                                 ///< `held`, ignored elsewhere.
 };
 
 /// Forces that act on nodes.
 struct NodalForces {
-  Eigen::Matrix3Xd force;  ///< 3 x num_nodes [force].
+  Eigen::MatrixXd force;  ///< dimension x num_nodes [force].
 };
 
 /// A uniform force per volume, such as gravity.
 struct BodyForce {
-  Eigen::Vector3d force_density;  ///< [force / length^3].
+  Eigen::VectorXd force_density;  ///< [force / length^3], of `dimension`.
 };
 
 /// A uniform force per (undeformed) area on some facets.
 struct Traction {
-  Eigen::MatrixXi
-      facets;  ///< nodes_per_facet x num_facets, zero-based node indices: 3,
-               ///< for quadratic tetrahedra 6 as in BoundaryFacets.
-  Eigen::Vector3d traction;  ///< [force / length^2].
+  Eigen::MatrixXi facets;    ///< As those of BoundaryFacets.
+  Eigen::VectorXd traction;  ///< [force / length^2], of `dimension`.
 };
 
 /// A uniform pressure on some facets; positive pushes against the outward
 /// normal.
 struct Pressure {
-  Eigen::MatrixXi facets;  ///< As those of a traction, counter-clockwise seen
-                           ///< from outside.
+  Eigen::MatrixXi facets;  ///< As those of BoundaryFacets, in their order.
   double pressure;         ///< [force / length^2].
 };
 
@@ -51,7 +49,7 @@ struct Pressure {
 /// force / area, where area is that of all of them.
 struct SurfaceForce {
   Eigen::MatrixXi facets;  ///< As those of a traction; not all without area.
-  Eigen::Vector3d force;   ///< [force].
+  Eigen::VectorXd force;   ///< [force], of `dimension`.
 };
 
 /// Loads are kept as what they physically are, so that each discretisation can
@@ -62,10 +60,10 @@ using Load =
 /// One experiment on the specimen: what pushed, and what was measured.
 struct LoadCase {
   std::vector<Load> loads;
-  Eigen::Matrix3Xd displacement;  ///< Measured, 3 x num_nodes [length]; empty
-                                  ///< when nothing was measured.
-  ComponentMask
-      observed;  ///< 3 x num_nodes, or empty when every component was measured.
+  Eigen::MatrixXd displacement;  ///< Measured, dimension x num_nodes [length];
+                                 ///< empty when nothing was measured.
+  ComponentMask observed;        ///< dimension x num_nodes, or empty when every
+                                 ///< component was measured.
   std::optional<double> noise_sd;  ///< Standard deviation of the measured
                                    ///< displacement per component [length].
 };

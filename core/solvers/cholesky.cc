@@ -75,9 +75,11 @@ std::vector<std::int64_t> NestedDissection(
   std::vector<std::int64_t> order;
   order.reserve(degrees_of_freedom.NumFree());
   for (const SuiteSparse_long node : node_order) {
-    for (int i = 0; i < 3; ++i) {
-      if (degrees_of_freedom.place[3 * node + i] >= 0) {
-        order.push_back(degrees_of_freedom.place[3 * node + i]);
+    for (int i = 0; i < degrees_of_freedom.dimension; ++i) {
+      const Eigen::Index place =
+          degrees_of_freedom.place[degrees_of_freedom.dimension * node + i];
+      if (place >= 0) {
+        order.push_back(place);
       }
     }
   }

@@ -25,6 +25,8 @@
 extern "C" void ML_set_random_seed(int seed);
 #endif
 
+#include "elastimate/core/scene/rigid_motion.h"
+
 namespace elastimate {
 namespace {
 
@@ -146,6 +148,7 @@ class QuietErrors {
 struct PetscMultigrid::Workspace {
   const StiffnessAssembly& assembly;
   const DegreesOfFreedom& degrees_of_freedom;
+  int dimension;
   /// For each node its block, -1 when it has no free component.
   std::vector<int> block;
   int num_blocks = 0;
@@ -165,7 +168,9 @@ struct PetscMultigrid::Workspace {
   int num_iterations = 0;
 
   Workspace(const StiffnessAssembly& stiffness, const DegreesOfFreedom& dofs)
-      : assembly(stiffness), degrees_of_freedom(dofs) {}
+      : assembly(stiffness),
+        degrees_of_freedom(dofs),
+        dimension(dofs.dimension) {}
   ~Workspace() {
     const std::lock_guard lock(PetscMutex());
     PetscBool has_ended = PETSC_FALSE;
@@ -210,11 +215,12 @@ void PetscMultigrid::Workspace::BuildPattern() {
   block.assign(num_nodes, -1);
   row_of_free.reserve(degrees_of_freedom.NumFree());
   for (const Eigen::Index dof : degrees_of_freedom.free) {
-    int& of_node = block[dof / 3];
+    int& of_node = block[dof / dimension];
     if (of_node < 0) {
       of_node = num_blocks++;
     }
-    row_of_free.push_back(3 * of_node + static_cast<int>(dof % 3));
+    row_of_free.push_back(dimension * of_node +
+                          static_cast<int>(dof % dimension));
   }
   const auto for_pairs = [&](const auto& visit) {
     for (Eigen::Index node = 0; node < num_nodes; ++node) {
@@ -230,7 +236,7 @@ void PetscMultigrid::Workspace::BuildPattern() {
   for_pairs([&](int a, int b) {
     ++count[a];
     count[b] += a != b;
-    num_entries += a != b ? 18 : 9;
+    num_entries += (a != b ? 2 : 1) * dimension * dimension;
   });
   if (num_entries > std::numeric_limits<PetscInt>::max()) {
     throw std::bad_alloc();
@@ -251,10 +257,10 @@ void PetscMultigrid::Workspace::BuildPattern() {
   row_start.assign(1, 0);
   column.reserve(num_entries);
   for (int a = 0; a < num_blocks; ++a) {
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < dimension; ++i) {
       for (PetscInt k = block_start[a]; k < block_start[a + 1]; ++k) {
-        for (int j = 0; j < 3; ++j) {
-          column.push_back(3 * neighbour[k] + j);
+        for (int j = 0; j < dimension; ++j) {
+          column.push_back(dimension * neighbour[k] + j);
         }
       }
       row_start.push_back(static_cast<PetscInt>(column.size()));
@@ -269,11 +275,12 @@ void PetscMultigrid::Workspace::Fill(const Eigen::VectorXd& values,
   const auto num_nodes = Eigen::Index(graph.start.size()) - 1;
   std::fill_n(entries, column.size(), 0);
   const auto is_free = [&](Eigen::Index node, int component) {
-    return degrees_of_freedom.place[3 * node + component] >= 0;
+    return degrees_of_freedom.place[dimension * node + component] >= 0;
   };
   // Entry (i, j) of the k-th block of a row of blocks.
   const auto entry = [&](int a, PetscInt k, int i, int j) -> double& {
-    return entries[row_start[3 * a + i] + 3 * (k - block_start[a]) + j];
+    return entries[row_start[dimension * a + i] +
+                   dimension * (k - block_start[a]) + j];
   };
   std::vector<PetscInt> next(block_start.begin(), block_start.end() - 1);
   const double* value = values.data();
@@ -284,7 +291,7 @@ void PetscMultigrid::Workspace::Fill(const Eigen::VectorXd& values,
     }
     const PetscInt diagonal = next[a];
     double scale = 0;
-    for (int j = 0; j < 3; ++j) {
+    for (int j = 0; j < dimension; ++j) {
       if (!is_free(node, j)) {
         continue;
       }
@@ -295,7 +302,7 @@ void PetscMultigrid::Workspace::Fill(const Eigen::VectorXd& values,
         if (b < 0) {
           continue;
         }
-        for (int i = b == a ? j : 0; i < 3; ++i) {
+        for (int i = b == a ? j : 0; i < dimension; ++i) {
           if (is_free(row, i)) {
             entry(a, own, j, i) = *value;
             entry(b, b == a ? own : next[b], i, j) = *value;
@@ -306,7 +313,7 @@ void PetscMultigrid::Workspace::Fill(const Eigen::VectorXd& values,
       }
       scale = std::max(scale, entry(a, diagonal, j, j));
     }
-    for (int j = 0; j < 3; ++j) {
+    for (int j = 0; j < dimension; ++j) {
       if (!is_free(node, j)) {
         entry(a, diagonal, j, j) = scale;
       }
@@ -322,17 +329,14 @@ void PetscMultigrid::Workspace::Fill(const Eigen::VectorXd& values,
 
 Eigen::MatrixXd PetscMultigrid::Workspace::RigidMotions(
     const Mesh& mesh) const {
-  Eigen::MatrixXd motions = Eigen::MatrixXd::Zero(3 * num_blocks, 6);
-  const Eigen::Vector3d centre = mesh.nodes.rowwise().mean();
+  Eigen::MatrixXd motions =
+      Eigen::MatrixXd::Zero(dimension * num_blocks, NumRigidMotions(dimension));
+  const Eigen::VectorXd centre = mesh.nodes.rowwise().mean();
   for (Eigen::Index i = 0; i < Eigen::Index(row_of_free.size()); ++i) {
     const Eigen::Index dof = degrees_of_freedom.free[i];
-    const int component = static_cast<int>(dof % 3);
-    const Eigen::Vector3d x = mesh.nodes.col(dof / 3) - centre;
-    motions(row_of_free[i], component) = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-      motions(row_of_free[i], 3 + axis) =
-          Eigen::Vector3d(Eigen::Vector3d::Unit(axis)).cross(x)(component);
-    }
+    motions.row(row_of_free[i]) =
+        RigidMotionsAt(mesh.nodes.col(dof / dimension) - centre)
+            .row(dof % dimension);
   }
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(motions);
   return qr.householderQ() *
@@ -340,23 +344,24 @@ Eigen::MatrixXd PetscMultigrid::Workspace::RigidMotions(
 }
 
 void PetscMultigrid::Workspace::CreateSolver(const Mesh& mesh) {
-  const PetscInt size = 3 * num_blocks;
+  const PetscInt size = dimension * num_blocks;
   Check(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, size, size, row_start.data(),
                                   column.data(), entries.data(), &matrix));
-  Check(MatSetBlockSize(matrix, 3));
+  Check(MatSetBlockSize(matrix, dimension));
   Check(MatSetOption(matrix, MAT_SPD, PETSC_TRUE));
   Check(MatCreateVecs(matrix, &solution, &right_hand_side));
   const Eigen::MatrixXd motions = RigidMotions(mesh);
-  std::array<Vec, 6> modes{};
-  for (int k = 0; k < 6; ++k) {
+  std::vector<Vec> modes(motions.cols());
+  for (std::size_t k = 0; k < modes.size(); ++k) {
     Check(VecDuplicate(solution, &modes[k]));
     double* values = nullptr;
     Check(VecGetArray(modes[k], &values));
-    Eigen::VectorXd::Map(values, size) = motions.col(k);
+    Eigen::VectorXd::Map(values, size) = motions.col(Eigen::Index(k));
     Check(VecRestoreArray(modes[k], &values));
   }
   MatNullSpace near_null_space = nullptr;
-  Check(MatNullSpaceCreate(PETSC_COMM_SELF, PETSC_FALSE, 6, modes.data(),
+  Check(MatNullSpaceCreate(PETSC_COMM_SELF, PETSC_FALSE,
+                           static_cast<PetscInt>(modes.size()), modes.data(),
                            &near_null_space));
   Check(MatSetNearNullSpace(matrix, near_null_space));
   Check(MatNullSpaceDestroy(&near_null_space));

@@ -64,7 +64,7 @@ class StiffnessSolver {
   /// extremely ill-conditioned mesh).
   bool Factorize(double poisson_ratio);
 
-  /// A^-1 of the free rows of each column of `all` ((3 num_nodes) x n), zero in
+  /// A^-1 of the free rows of each column of `all` (num_dofs x n), zero in
   /// the held rows.  Where multigrid does not converge, A is factorised from
   /// there on; when that shows that it is singular, the solution is NaN.
   /// Precondition: Factorize returned true.

@@ -304,9 +304,9 @@ bool AdaptiveFit::SearchFurther(
 
 Profile AdaptiveFit::ProfileEnds(const ObservedDisplacements& observed,
                                  double excess) const {
-  const auto elasticity_of = [](const ReducedFit::Point& point) {
-    return IsotropicElasticity::FromComplianceScale(point.compliance_scale,
-                                                    point.poisson_ratio);
+  const auto elasticity_of = [this](const ReducedFit::Point& point) {
+    return IsotropicElasticity::FromComplianceScale(
+        point.compliance_scale, point.poisson_ratio, model_.Section());
   };
   const auto [lower, upper] = least_squares_->ProfileEnds(
       observed.Measured(), least_squares_point_, excess);

@@ -245,7 +245,8 @@ std::optional<NeighbourCorrelation> CorrelateNeighbours(
   double product_sum = 0;
   Eigen::Index num_products = 0;
   // Row of each component of each node in the present load case, or -1.
-  Eigen::Matrix<Eigen::Index, 3, Eigen::Dynamic> rows(3, num_nodes);
+  Eigen::Matrix<Eigen::Index, Eigen::Dynamic, Eigen::Dynamic> rows(
+      observed.Dimension(), num_nodes);
   const auto& nodes = observed.Nodes();
   for (auto begin = nodes.begin(); begin != nodes.end();) {
     const auto end = std::find_if(begin, nodes.end(), [&](const auto& node) {
@@ -261,7 +262,7 @@ std::optional<NeighbourCorrelation> CorrelateNeighbours(
     for (Eigen::Index node = 0; node < num_nodes; ++node) {
       for (Eigen::Index k = graph.start[node] + 1; k < graph.start[node + 1];
            ++k) {
-        for (int i = 0; i < 3; ++i) {
+        for (int i = 0; i < observed.Dimension(); ++i) {
           const Eigen::Index row = rows(i, node);
           const Eigen::Index other = rows(i, graph.row[k]);
           if (row >= 0 && other >= 0) {

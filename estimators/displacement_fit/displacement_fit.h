@@ -17,7 +17,7 @@ namespace elastimate {
 /// displacements best; residual and sensitivities in the rows of
 /// ObservedDisplacements.
 struct DisplacementFit {
-  /// u of all nodes, (3 num_nodes) x num_load_cases.
+  /// u of all nodes, num_dofs x num_load_cases.
   Eigen::MatrixXd displacement;
   Eigen::VectorXd residual;  ///< u - q.
   /// du / d (ln E, nu).

@@ -52,7 +52,8 @@ enum class Scale {
 class DisplacementResidual : public ceres::EvaluationCallback {
  public:
   DisplacementResidual(const Scene& scene, const EstimatorOptions& options)
-      : model_(scene.mesh, scene.supports, AssembleLoadCases(scene),
+      : section_model_(scene.mesh.section.model),
+        model_(scene.mesh, scene.supports, AssembleLoadCases(scene),
                options.solver),
         num_load_cases_(Eigen::Index(scene.load_cases.size())),
         observed_(scene),
@@ -87,7 +88,7 @@ class DisplacementResidual : public ceres::EvaluationCallback {
       jacobian_.resize(observed_.Size(), 2);
       jacobian_ << sign * fit_.sensitivities.col(0),
           fit_.sensitivities.col(1) +
-              LogYoungsModulusSlope() * fit_.sensitivities.col(0);
+              SlopeAtFixedScale() * fit_.sensitivities.col(0);
     }
   }
 
@@ -112,7 +113,8 @@ class DisplacementResidual : public ceres::EvaluationCallback {
       return {std::exp(scale_parameter_->Value()), nu};
     }
     return IsotropicElasticity::FromComplianceScale(
-        std::exp(scale_parameter_->Value()) / unit_load_response_.norm(), nu);
+        std::exp(scale_parameter_->Value()) / unit_load_response_.norm(), nu,
+        section_model_);
   }
 
   // The rows of w and of v at the nu of the model.
@@ -131,13 +133,14 @@ class DisplacementResidual : public ceres::EvaluationCallback {
     const DisplacementSensitivities sensitivities =
         model_.Sensitivities(elasticity.youngs_modulus);
     const double log_youngs_modulus_slope =
-        at_fixed_youngs_modulus ? 0 : 1 / (1 + nu) - 2 / (1 - 2 * nu);
+        at_fixed_youngs_modulus ? 0 : LogYoungsModulusSlope(nu, section_model_);
     return observed_.Restrict(sensitivities.poisson_ratio) +
            log_youngs_modulus_slope *
                observed_.Restrict(sensitivities.log_youngs_modulus);
   }
 
   bool IsValid() const { return is_valid_; }
+  SectionModel Section() const { return section_model_; }
   const ObservedDisplacements& Observed() const { return observed_; }
   /// At the last evaluation, with derivatives by (ln E, nu).
   const DisplacementFit& Fit() const { return fit_; }
@@ -151,17 +154,18 @@ class DisplacementResidual : public ceres::EvaluationCallback {
 
  private:
   // d ln E / d nu at fixed scale.
-  double LogYoungsModulusSlope() const {
+  double SlopeAtFixedScale() const {
     if (scale_ == Scale::kLogYoungsModulus) {
       return 0;
     }
     const double nu = poisson_ratio_->Value();
-    return 1 / (1 + nu) - 2 / (1 - 2 * nu) +
+    return LogYoungsModulusSlope(nu, section_model_) +
            unit_load_response_.dot(
                observed_.Restrict(model_.UnitLoadResponseDerivative())) /
                unit_load_response_.squaredNorm();
   }
 
+  SectionModel section_model_;
   ForwardModel model_;
   Eigen::Index num_load_cases_;
   ObservedDisplacements observed_;
@@ -304,7 +308,7 @@ ProfilePoint EvaluateProfile(const EstimatorOptions& options,
                        ? w.dot(rest) / w.squaredNorm()
                        : LeastAbsoluteDeviations(w, rest);
   IsotropicElasticity elasticity =
-      IsotropicElasticity::FromComplianceScale(t, nu);
+      IsotropicElasticity::FromComplianceScale(t, nu, residual.Section());
   if (!elasticity.IsPhysical()) {
     return {elasticity, CostOf(options.loss, rest - t * w)};
   }
@@ -314,7 +318,8 @@ ProfilePoint EvaluateProfile(const EstimatorOptions& options,
       youngs_modulus, options.youngs_modulus.lower.value_or(youngs_modulus));
   youngs_modulus = std::min(
       youngs_modulus, options.youngs_modulus.upper.value_or(youngs_modulus));
-  const Eigen::VectorXd misfit = elasticity.ComplianceScale() * w - rest;
+  const Eigen::VectorXd misfit =
+      elasticity.ComplianceScale(residual.Section()) * w - rest;
   const Eigen::VectorXd change = residual.PoissonRatioSlope(
       elasticity, youngs_modulus != unbounded.youngs_modulus);
   const double slope = options.loss == Loss::kNone
@@ -497,10 +502,11 @@ Minimum DescendWith(BoundedParameter::Side side,
                     DisplacementResidual& residual) {
   residual.SetPoissonRatio(start.poisson_ratio);
   const bool is_free = side == BoundedParameter::Side::kNone;
-  const double scale =
-      is_free ? start.ComplianceScale() * residual.UnitLoadResponse().norm()
-      : side == BoundedParameter::Side::kLower ? *options.youngs_modulus.lower
-                                               : *options.youngs_modulus.upper;
+  const double scale = is_free ? start.ComplianceScale(residual.Section()) *
+                                     residual.UnitLoadResponse().norm()
+                       : side == BoundedParameter::Side::kLower
+                           ? *options.youngs_modulus.lower
+                           : *options.youngs_modulus.upper;
   Minimum minimum = {
       is_free ? BoundedParameter(std::log(scale), Bounds{})
               : BoundedParameter::Constant(std::log(scale)),

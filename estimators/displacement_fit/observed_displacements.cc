@@ -7,7 +7,7 @@
 namespace elastimate {
 
 ObservedDisplacements::ObservedDisplacements(const Scene& scene)
-    : num_dofs_(3 * scene.mesh.NumNodes()) {
+    : dimension_(scene.mesh.Dimension()), num_dofs_(scene.mesh.NumDofs()) {
   const Eigen::Index num_nodes = scene.mesh.NumNodes();
   std::vector<double> weights;
   std::vector<double> measured;
@@ -17,9 +17,10 @@ ObservedDisplacements::ObservedDisplacements(const Scene& scene)
     const double weight = 1 / load_case.noise_sd.value_or(1);
     for (Eigen::Index node = 0; node < num_nodes; ++node) {
       const Eigen::Index first = Eigen::Index(places_.size());
-      for (int i = 0; i < 3; ++i) {
+      for (int i = 0; i < dimension_; ++i) {
         if (!scene.supports.held(i, node) && IsObserved(load_case, i, node)) {
-          places_.push_back(3 * (num_nodes * Eigen::Index(k) + node) + i);
+          places_.push_back(num_dofs_ * Eigen::Index(k) + dimension_ * node +
+                            i);
           weights.push_back(weight);
           measured.push_back(weight * load_case.displacement(i, node));
         }

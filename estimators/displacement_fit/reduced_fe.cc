@@ -45,7 +45,8 @@ Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
   }
   const ModelFit& best = adaptive.Best();
   estimate.elasticity = IsotropicElasticity::FromComplianceScale(
-      best.point.compliance_scale, best.point.poisson_ratio);
+      best.point.compliance_scale, best.point.poisson_ratio,
+      adaptive.Model().Section());
   if (!estimate.elasticity.IsPhysical() ||
       !std::isfinite(estimate.elasticity.youngs_modulus)) {
     estimate.Fail(Status::kUnphysical, kDisplacementsOpposeLoads,
@@ -139,7 +140,7 @@ PreparedReducedFe::PreparedReducedFe(const Scene& scene,
                                      const EstimatorOptions& options) {
   Scene unmeasured = scene;
   for (LoadCase& load_case : unmeasured.load_cases) {
-    load_case.displacement.resize(3, 0);
+    load_case.displacement.resize(scene.mesh.Dimension(), 0);
   }
   ValidateScene(unmeasured);
   CheckOptions(options);
@@ -153,7 +154,7 @@ PreparedReducedFe& PreparedReducedFe::operator=(PreparedReducedFe&&) noexcept =
     default;
 
 Estimate PreparedReducedFe::Run(
-    const std::vector<Eigen::Matrix3Xd>& displacements) {
+    const std::vector<Eigen::MatrixXd>& displacements) {
   Stopwatch stopwatch;
   Scene& scene = state_->scene;
   if (displacements.size() != scene.load_cases.size()) {

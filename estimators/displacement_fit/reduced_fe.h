@@ -74,13 +74,13 @@ class PreparedReducedFe {
   PreparedReducedFe& operator=(PreparedReducedFe&&) noexcept;
 
   /// The estimate from one measured displacement for each load case,
-  /// 3 x num_nodes each [length]; `work`, stages and seconds are those of this
-  /// call.  Agrees with ReducedFe::Run within the tolerance of the reduced
-  /// model, a tenth of the standard error.  Throws std::invalid_argument, and
-  /// leaves this object as it was, when a shape is wrong, or for displacements
-  /// that Estimator::Run would refuse.  Not to be called from two threads at
-  /// once.
-  Estimate Run(const std::vector<Eigen::Matrix3Xd>& displacements);
+  /// dimension x num_nodes each [length]; `work`, stages and seconds are those
+  /// of this call.  Agrees with ReducedFe::Run within the tolerance of the
+  /// reduced model, a tenth of the standard error.  Throws
+  /// std::invalid_argument, and leaves this object as it was, when a shape is
+  /// wrong, or for displacements that Estimator::Run would refuse.  Not to be
+  /// called from two threads at once.
+  Estimate Run(const std::vector<Eigen::MatrixXd>& displacements);
 
  private:
   struct State;

@@ -13,10 +13,6 @@ namespace {
 // Intervals of the scan over nu.
 constexpr int kScanIntervals = 220;
 
-// (1 + nu)(1 - 2 nu) = E t, and its derivative.
-double ComplianceFactor(double nu) { return (1 + nu) * (1 - 2 * nu); }
-double ComplianceFactorSlope(double nu) { return -(1 + 4 * nu); }
-
 bool IsBetter(const ReducedFit::Point& a, const ReducedFit::Point& b) {
   const bool a_is_positive = a.compliance_scale > 0;
   const bool b_is_positive = b.compliance_scale > 0;
@@ -56,7 +52,8 @@ ReducedFit::ReducedFit(const ReducedModel& model,
                        const Eigen::VectorXd& row_weights,
                        const Bounds& poisson_ratio,
                        const Bounds& youngs_modulus)
-    : youngs_modulus_(youngs_modulus),
+    : section_model_(model.Section()),
+      youngs_modulus_(youngs_modulus),
       row_weights_(row_weights),
       scan_(ScanPoints(*poisson_ratio.lower, *poisson_ratio.upper)) {
   const Eigen::Index num_cases = model.NumLoadCases();
@@ -232,10 +229,12 @@ ReducedFit::Responses ReducedFit::Combine(
 double ReducedFit::WithinBounds(double poisson_ratio, double t) const {
   // E > 0 asks for t > 0, which no bound on E says.
   if (youngs_modulus_.upper) {
-    t = std::max(t, ComplianceFactor(poisson_ratio) / *youngs_modulus_.upper);
+    t = std::max(t, ComplianceFactor(poisson_ratio, section_model_) /
+                        *youngs_modulus_.upper);
   }
   if (youngs_modulus_.lower) {
-    t = std::min(t, ComplianceFactor(poisson_ratio) / *youngs_modulus_.lower);
+    t = std::min(t, ComplianceFactor(poisson_ratio, section_model_) /
+                        *youngs_modulus_.lower);
   }
   return t;
 }
@@ -270,9 +269,9 @@ double ReducedFit::SlopeAt(double poisson_ratio,
   const double t = ComplianceScale(poisson_ratio, responses.w, rest);
   const Eigen::VectorXd residual = rest - t * responses.w;
   // Where t is free, the residual is orthogonal to w and dt/dnu has no effect;
-  // on a bound t = (1 + nu)(1 - 2 nu) / E.
-  const double dt_dnu = t * ComplianceFactorSlope(poisson_ratio) /
-                        ComplianceFactor(poisson_ratio);
+  // on a bound t = ComplianceFactor / E.
+  const double dt_dnu =
+      t * LogYoungsModulusSlope(poisson_ratio, section_model_);
   return -2 * residual.dot(t * slopes.w + dt_dnu * responses.w + slopes.v);
 }
 
@@ -315,8 +314,8 @@ DisplacementFit ExpandFit(const ReducedModel& model,
                           const IsotropicElasticity& elasticity) {
   const Eigen::Index num_cases = model.NumLoadCases();
   const double nu = elasticity.poisson_ratio;
-  const double t = elasticity.ComplianceScale();
-  const double dt_dnu = ComplianceFactorSlope(nu) / elasticity.youngs_modulus;
+  const double t = elasticity.ComplianceScale(model.Section());
+  const double dt_dnu = t * LogYoungsModulusSlope(nu, model.Section());
   // Value and derivative.
   const auto response = [&model, nu](Eigen::Index k) {
     const ReducedModes& modes = model.Modes(k);

@@ -113,6 +113,7 @@ class ReducedFit {
   double FindMinimum(double inner, double inner_slope, double outer,
                      const Projection& projection) const;
 
+  SectionModel section_model_;
   Bounds youngs_modulus_;
   Eigen::VectorXd row_weights_;
   std::vector<LoadCaseFit> load_cases_;

@@ -13,9 +13,10 @@ namespace {
 Eigen::VectorXd Residual(const ReducedModel& model,
                          const ObservedDisplacements& observed,
                          const ReducedFit::Point& point) {
-  return ExpandFit(model, observed,
-                   IsotropicElasticity::FromComplianceScale(
-                       point.compliance_scale, point.poisson_ratio))
+  return ExpandFit(
+             model, observed,
+             IsotropicElasticity::FromComplianceScale(
+                 point.compliance_scale, point.poisson_ratio, model.Section()))
       .residual;
 }
 
@@ -31,12 +32,12 @@ ReducedFit::Point LeastAbsoluteDeviationsFit(
     // At E = 1: u = t w + v and du / d ln E = -t w.
     const IsotropicElasticity unit = {1, nu};
     const DisplacementFit fit = ExpandFit(model, observed, unit);
-    const Eigen::VectorXd w =
-        -fit.sensitivities.col(0) / unit.ComplianceScale();
+    const double unit_scale = unit.ComplianceScale(model.Section());
+    const Eigen::VectorXd w = -fit.sensitivities.col(0) / unit_scale;
     if (w.isZero(0)) {
       continue;
     }
-    const Eigen::VectorXd rest = -(fit.residual - unit.ComplianceScale() * w);
+    const Eigen::VectorXd rest = -(fit.residual - unit_scale * w);
     const double t = LeastAbsoluteDeviations(w, rest);
     const double deviation = (rest - t * w).lpNorm<1>();
     const bool is_better = (t > 0) == (best.compliance_scale > 0)

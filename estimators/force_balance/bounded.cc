@@ -17,12 +17,13 @@ namespace {
 struct CompressedForceResidual {
   Eigen::Matrix3d triangle;
   double reference_youngs_modulus;
+  SectionModel model;
 
   template <typename T>
   bool operator()(const T* log_youngs_modulus, const T* poisson_ratio,
                   T* residual) const {
     const T nu = *poisson_ratio;
-    const T t = (1.0 + nu) * (1.0 - 2.0 * nu) /
+    const T t = ComplianceFactor(nu, model) /
                 (reference_youngs_modulus * exp(*log_youngs_modulus));
     for (int row = 0; row < 3; ++row) {
       residual[row] =
@@ -87,11 +88,13 @@ ceres::Solver::Summary Minimize(const ForceResidual& residual,
                                 const IsotropicElasticity& start,
                                 Parameters& parameters) {
   const Eigen::Matrix3d& triangle = residual.Triangle();
-  const double scale = std::abs(start.ComplianceScale() * triangle(0, 0));
+  const double scale =
+      std::abs(start.ComplianceScale(residual.Model()) * triangle(0, 0));
   ceres::Problem problem;
   problem.AddResidualBlock(
       new ceres::AutoDiffCostFunction<CompressedForceResidual, 3, 1, 1>(
-          new CompressedForceResidual{triangle / scale, start.youngs_modulus}),
+          new CompressedForceResidual{triangle / scale, start.youngs_modulus,
+                                      residual.Model()}),
       nullptr, parameters.log_youngs_modulus.Block(),
       parameters.poisson_ratio.Block());
 

@@ -96,7 +96,7 @@ std::string Percent(double ratio) { return TwoDigits(100 * ratio) + " %"; }
 }  // namespace
 
 WeightedLoadCases WeightLoadCases(const Scene& scene) {
-  const Eigen::Index num_rows = 3 * scene.mesh.NumNodes();
+  const Eigen::Index num_rows = scene.mesh.NumDofs();
   const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
   WeightedLoadCases weighted = {Eigen::MatrixXd(num_rows, num_cases),
                                 Eigen::MatrixXd(num_rows, num_cases)};
@@ -111,7 +111,7 @@ void WeightLoadCases(const Scene& scene, Eigen::Ref<Eigen::MatrixXd> q,
   for (Eigen::Index k = 0; k < q.cols(); ++k) {
     const LoadCase& load_case = scene.load_cases[k];
     const double weight = 1 / load_case.noise_sd.value_or(1);
-    q.col(k).reshaped(3, scene.mesh.NumNodes()) =
+    q.col(k).reshaped(supports.held.rows(), scene.mesh.NumNodes()) =
         weight *
         supports.held.select(supports.displacement, load_case.displacement);
     f.col(k) *= weight;
@@ -122,7 +122,7 @@ std::string ForceResidual::WhyUnsupported(const Scene& scene) {
   const Eigen::Index num_vertices = scene.mesh.NumVertices();
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
-      for (int i = 0; i < 3; ++i) {
+      for (int i = 0; i < scene.mesh.Dimension(); ++i) {
         if (!scene.supports.held(i, node) &&
             !IsObserved(scene.load_cases[k], i, node)) {
           if (node >= num_vertices) {
@@ -143,7 +143,8 @@ std::string ForceResidual::WhyUnsupported(const Scene& scene) {
   return "";
 }
 
-ForceResidual::ForceResidual(const Scene& scene) {
+ForceResidual::ForceResidual(const Scene& scene)
+    : section_model_(scene.mesh.section.model) {
   const ComponentMask& held = scene.supports.held;
   const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
   const bool is_small = scene.mesh.NumElements() <= kMostElementsForExactTraces;
@@ -197,9 +198,9 @@ std::string ForceResidual::WhyNotIdentifiable() const {
   constexpr double kAnyPoissonRatio = 0.25;
   const double nu = kAnyPoissonRatio;
   const double dt_dnu = triangle_(0, 1) / triangle_(0, 0);
-  return DescribeCollinear(
-      At(nu),
-      {1 / (1 + nu) - 2 / (1 - 2 * nu) - dt_dnu / ComplianceScale(nu), 1});
+  return DescribeCollinear(At(nu), {LogYoungsModulusSlope(nu, section_model_) -
+                                        dt_dnu / ComplianceScale(nu),
+                                    1});
 }
 
 double ForceResidual::ComplianceScale(double poisson_ratio) const {
@@ -208,12 +209,12 @@ double ForceResidual::ComplianceScale(double poisson_ratio) const {
 
 IsotropicElasticity ForceResidual::At(double poisson_ratio) const {
   return IsotropicElasticity::FromComplianceScale(
-      ComplianceScale(poisson_ratio), poisson_ratio);
+      ComplianceScale(poisson_ratio), poisson_ratio, section_model_);
 }
 
 double ForceResidual::RelativeResidual(
     const IsotropicElasticity& elasticity) const {
-  const double t = elasticity.ComplianceScale();
+  const double t = elasticity.ComplianceScale(section_model_);
   return (triangle_ * Eigen::Vector3d(-t, elasticity.poisson_ratio, 1)).norm() /
          std::abs(t * triangle_(0, 0));
 }
@@ -272,7 +273,8 @@ std::optional<double> ForceResidual::NoiseVariance(
   if (!free_youngs_modulus) {
     const Eigen::Vector2d weights(1, estimate.elasticity.poisson_ratio);
     const double norm = RelativeResidual(estimate.elasticity) *
-                        estimate.elasticity.ComplianceScale() * triangle_(0, 0);
+                        estimate.elasticity.ComplianceScale(section_model_) *
+                        triangle_(0, 0);
     return norm * norm / weights.dot(traces_ * weights);
   }
   return ResidualVariance(free_poisson_ratio
@@ -317,7 +319,7 @@ Eigen::Matrix2d ForceResidual::Jacobian(
   // r depends on (nu, t) through the columns [b, -f].
   Eigen::Matrix2d columns;
   columns << triangle_(0, 1), -triangle_(0, 0), triangle_(1, 1), 0;
-  return columns * ComplianceScaleJacobian(elasticity);
+  return columns * ComplianceScaleJacobian(elasticity, section_model_);
 }
 
 Eigen::Matrix2d ForceResidual::Covariance(const IsotropicElasticity& elasticity,
@@ -337,7 +339,7 @@ Eigen::Matrix2d ForceResidual::Covariance(const IsotropicElasticity& elasticity,
     free.push_back(1);
   }
   const Eigen::MatrixXd directions =
-      ComplianceScaleJacobian(elasticity)(Eigen::all, free);
+      ComplianceScaleJacobian(elasticity, section_model_)(Eigen::all, free);
   const Eigen::MatrixXd x = Jacobian(elasticity)(Eigen::all, free);
   const Eigen::MatrixXd inverse =
       (x.transpose() * x).inverse() * directions.transpose();

@@ -16,8 +16,8 @@ namespace elastimate {
 /// The measurement as the methods without a finite element solution take it,
 /// one column per load case, weighted by 1 / noise_sd where it is known.
 struct WeightedLoadCases {
-  Eigen::MatrixXd q;  ///< Measured where free, given where held: (3 num_nodes)
-                      ///< x num_load_cases.
+  Eigen::MatrixXd q;  ///< Measured where free, given where held: num_dofs x
+                      ///< num_load_cases.
   Eigen::MatrixXd f;  ///< Loads, of the same shape.
 };
 
@@ -61,6 +61,9 @@ class ForceResidual {
   double RelativeResidual(const IsotropicElasticity& elasticity) const;
 
   const Work& WorkDone() const { return work_; }
+
+  /// What relates t to E.
+  SectionModel Model() const { return section_model_; }
 
   /// The triangle R of the QR factorisation of [f b a]: ||r|| = ||R (-t, nu,
   /// 1)^T||.
@@ -129,6 +132,7 @@ class ForceResidual {
                              double noise_variance, bool free_youngs_modulus,
                              bool free_poisson_ratio) const;
 
+  SectionModel section_model_;
   Eigen::Matrix3d triangle_;
   /// Sum of StiffnessTraces over the load cases.
   Eigen::Matrix2d traces_;

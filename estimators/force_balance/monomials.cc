@@ -9,14 +9,14 @@ namespace {
 constexpr double kFlat = 1e-10;
 
 // Coordinates of zero mean and unit covariance.
-Eigen::Matrix3Xd Standardize(Eigen::Matrix3Xd x) {
+Eigen::MatrixXd Standardize(Eigen::MatrixXd x) {
   x.colwise() -= x.rowwise().mean().eval();
   const SymmetricEigenDecomposition axes =
       DecomposeSymmetric(x * x.transpose() / static_cast<double>(x.cols()));
-  const Eigen::Vector3d extent = axes.values.cwiseMax(0).cwiseSqrt();
-  Eigen::Matrix3Xd coordinates = axes.vectors.transpose() * x;
-  for (int i = 0; i < 3; ++i) {
-    const bool is_flat = !(extent(i) > kFlat * extent(2));
+  const Eigen::VectorXd extent = axes.values.cwiseMax(0).cwiseSqrt();
+  Eigen::MatrixXd coordinates = axes.vectors.transpose() * x;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const bool is_flat = !(extent(i) > kFlat * extent(x.rows() - 1));
     coordinates.row(i) *= is_flat ? 0 : 1 / extent(i);
   }
   return coordinates;
@@ -24,25 +24,31 @@ Eigen::Matrix3Xd Standardize(Eigen::Matrix3Xd x) {
 
 }  // namespace
 
-Eigen::MatrixXd Monomials(const Eigen::Matrix3Xd& points, int degree) {
-  const Eigen::Matrix3Xd x = Standardize(points);
+Eigen::MatrixXd Monomials(const Eigen::MatrixXd& points, int degree) {
+  const Eigen::MatrixXd x = Standardize(points);
+  const bool is_planar = x.rows() == 2;
+  const int in_plane = (degree + 1) * (degree + 2) / 2;
   Eigen::MatrixXd monomials(x.cols(),
-                            (degree + 1) * (degree + 2) * (degree + 3) / 6);
+                            is_planar ? in_plane : in_plane * (degree + 3) / 3);
   monomials.col(0).setOnes();
   Eigen::Index column = 0;
   for (int i = 0; i <= degree; ++i) {
     for (int j = 0; i + j <= degree; ++j) {
-      for (int k = 0; i + j + k <= degree; ++k) {
-        monomials.col(column++) = x.row(0).array().pow(i) *
-                                  x.row(1).array().pow(j) *
-                                  x.row(2).array().pow(k);
+      const Eigen::ArrayXd product =
+          x.row(0).array().pow(i) * x.row(1).array().pow(j);
+      for (int k = 0; k <= (is_planar ? 0 : degree - i - j); ++k) {
+        monomials.col(column) = product;
+        if (k > 0) {
+          monomials.col(column).array() *= x.row(2).transpose().array().pow(k);
+        }
+        ++column;
       }
     }
   }
   return monomials;
 }
 
-Eigen::MatrixXd SmoothByPolynomials(const Eigen::Matrix3Xd& points,
+Eigen::MatrixXd SmoothByPolynomials(const Eigen::MatrixXd& points,
                                     const Eigen::MatrixXd& values, int degree) {
   const Eigen::MatrixXd monomials = Monomials(points, degree);
   return monomials * SolveLeastSquares(monomials, values, kDependentMonomial);

@@ -5,12 +5,13 @@
 
 namespace elastimate {
 
-/// The monomials of degree <= `degree` at some points (3 x num_points), in
-/// coordinates of zero mean and unit covariance: they span the polynomials of
-/// that degree, and are well conditioned for slender specimens too.  Points in
-/// a plane or on a line leave some of them zero.
-/// num_points x (degree + 1)(degree + 2)(degree + 3) / 6.
-Eigen::MatrixXd Monomials(const Eigen::Matrix3Xd& points, int degree);
+/// The monomials of degree <= `degree` at some points (dimension x num_points),
+/// in coordinates of zero mean and unit covariance: they span the polynomials
+/// of that degree, and are well conditioned for slender specimens too.  Points
+/// in a plane or on a line leave some of them zero. num_points x (degree +
+/// 1)(degree + 2)(degree + 3) / 6, in two dimensions num_points x (degree +
+/// 1)(degree + 2) / 2.
+Eigen::MatrixXd Monomials(const Eigen::MatrixXd& points, int degree);
 
 /// A monomial of which no more than this share is independent of the others is
 /// so by rounding only: few points, or points in a plane, make some dependent.
@@ -20,7 +21,7 @@ inline constexpr double kDependentMonomial = 1e-10;
 /// the values at all points by least squares, at these points.
 /// `values` is num_points x n, and so is the result.
 /// O(num_points * num_monomials^2).
-Eigen::MatrixXd SmoothByPolynomials(const Eigen::Matrix3Xd& points,
+Eigen::MatrixXd SmoothByPolynomials(const Eigen::MatrixXd& points,
                                     const Eigen::MatrixXd& values, int degree);
 
 }  // namespace elastimate

@@ -87,11 +87,11 @@ std::optional<ResidualJudgement> JudgeResidual(
 class Information {
  public:
   Information(const VirtualWorkInformation& information,
-              const IsotropicElasticity& elasticity,
+              const IsotropicElasticity& elasticity, SectionModel model,
               const ResidualJudgement& residual)
       : residual_(residual) {
     const Eigen::Matrix2d jacobian =
-        ComplianceScaleJacobian(elasticity) *
+        ComplianceScaleJacobian(elasticity, model) *
         Eigen::Vector2d(elasticity.youngs_modulus, 1).asDiagonal();
     score_ = jacobian.transpose() * information.score * jacobian;
     bread_ = jacobian.transpose() * information.Bread(residual.noise_variance) *
@@ -202,16 +202,17 @@ void DescribeProfileOf(const VirtualWorkBalance& balance,
                        const ResidualJudgement& residual, Estimate& estimate) {
   const VirtualWorkInformation raw = balance.InformationAt(fit);
   const std::optional<Eigen::MatrixXd> covariance =
-      Information(raw, estimate.elasticity, residual).Covariance({0, 1});
+      Information(raw, estimate.elasticity, balance.Model(), residual)
+          .Covariance({0, 1});
   if (!covariance) {
     return;
   }
   // Of (nu, t), as the entry of nu is of (E, nu).
   const double variance =
       (*covariance)(1, 1) / Inverse(raw.Bread(residual.noise_variance))(0, 0);
-  const auto elasticity_of = [](const VirtualWorkFit& at) {
-    return IsotropicElasticity::FromComplianceScale(at.compliance_scale,
-                                                    at.poisson_ratio);
+  const auto elasticity_of = [&balance](const VirtualWorkFit& at) {
+    return IsotropicElasticity::FromComplianceScale(
+        at.compliance_scale, at.poisson_ratio, balance.Model());
   };
   DescribeProfile(
       [&](double quantile) {
@@ -251,15 +252,15 @@ void JudgeYoungsModulus(const EstimatorOptions& options,
   JudgeContradictedBound(
       fit.square_sum - unbounded.square_sum,
       unbounded.square_sum / static_cast<double>(balance.NumEquations()),
-      IsotropicElasticity::FromComplianceScale(unbounded.compliance_scale,
-                                               unbounded.poisson_ratio)
+      IsotropicElasticity::FromComplianceScale(
+          unbounded.compliance_scale, unbounded.poisson_ratio, balance.Model())
           .youngs_modulus,
       estimate);
   if (!residual || !estimate.IsUsable()) {
     return;
   }
   const Information information(balance.InformationAt(fit), estimate.elasticity,
-                                *residual);
+                                balance.Model(), *residual);
   std::optional<Eigen::MatrixXd> covariance;
   if (is_known) {
     covariance = information.Covariance({0});
@@ -274,24 +275,26 @@ void JudgeYoungsModulus(const EstimatorOptions& options,
 }
 
 // The displacements of all load cases without most of their noise, and without
-// what varies faster than a cubic: (3 num_nodes) x num_load_cases.
+// what varies faster than a cubic: num_dofs x num_load_cases.
 Eigen::MatrixXd SmoothDisplacements(const Scene& scene) {
   constexpr int kDegree = 3;
   const Eigen::Index num_nodes = scene.mesh.NumNodes();
+  const Eigen::Index dimension = scene.mesh.Dimension();
   const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
-  // The components of all load cases side by side: num_nodes x 3 num_cases.
-  Eigen::MatrixXd measured(num_nodes, 3 * num_cases);
+  // The components of all load cases side by side: num_nodes x (dimension
+  // num_cases).
+  Eigen::MatrixXd measured(num_nodes, dimension * num_cases);
   for (Eigen::Index k = 0; k < num_cases; ++k) {
-    const Eigen::Matrix3Xd displacement = scene.supports.held.select(
+    const Eigen::MatrixXd displacement = scene.supports.held.select(
         scene.supports.displacement, scene.load_cases[k].displacement);
-    measured.middleCols<3>(3 * k) = displacement.transpose();
+    measured.middleCols(dimension * k, dimension) = displacement.transpose();
   }
   const Eigen::MatrixXd smooth =
       SmoothByPolynomials(scene.mesh.nodes, measured, kDegree);
-  Eigen::MatrixXd displacements(3 * num_nodes, num_cases);
+  Eigen::MatrixXd displacements(scene.mesh.NumDofs(), num_cases);
   for (Eigen::Index k = 0; k < num_cases; ++k) {
-    displacements.col(k).reshaped(3, num_nodes) =
-        smooth.middleCols<3>(3 * k).transpose();
+    displacements.col(k).reshaped(dimension, num_nodes) =
+        smooth.middleCols(dimension * k, dimension).transpose();
   }
   return displacements;
 }
@@ -363,10 +366,10 @@ Estimate VirtualFields::DoRun(const Scene& scene,
           : balance.Minimize(EffectivePoissonRatioBounds(options),
                              options.youngs_modulus);
   estimate.elasticity = IsotropicElasticity::FromComplianceScale(
-      fit.compliance_scale, fit.poisson_ratio);
+      fit.compliance_scale, fit.poisson_ratio, work.Model());
   if (!(fit.free_compliance_scale > 0)) {
     estimate.elasticity = IsotropicElasticity::FromComplianceScale(
-        fit.free_compliance_scale, fit.poisson_ratio);
+        fit.free_compliance_scale, fit.poisson_ratio, work.Model());
     estimate.Fail(Status::kUnphysical, kDisplacementsOpposeLoads);
     return estimate;
   }
@@ -375,7 +378,7 @@ Estimate VirtualFields::DoRun(const Scene& scene,
     estimate.Fail(
         Status::kNotIdentifiable,
         DescribeCollinear(estimate.elasticity,
-                          {1 / (1 + nu) - 2 / (1 - 2 * nu) -
+                          {LogYoungsModulusSlope(nu, work.Model()) -
                                *collinear_slope / fit.compliance_scale,
                            1}));
     estimate.elasticity = {Estimate::kUnknown, Estimate::kUnknown};
@@ -404,7 +407,8 @@ Estimate VirtualFields::DoRun(const Scene& scene,
   if (residual) {
     estimate.is_model_in_doubt = residual->model_square_sum > 0;
     const Information information(balance.InformationAt(fit),
-                                  estimate.elasticity, *residual);
+                                  estimate.elasticity, balance.Model(),
+                                  *residual);
     if (!free.empty()) {
       Describe(free, information, estimate);
     }

@@ -76,6 +76,8 @@ Patch ElementsAround(const Mesh& mesh, Eigen::Index first_node,
     }
   }
   Patch patch;
+  patch.mesh.kind = mesh.kind;
+  patch.mesh.section = mesh.section;
   patch.mesh.elements = mesh.elements(Eigen::all, elements);
   std::vector<int> place(mesh.NumNodes(), -1);
   for (int& corner : patch.mesh.elements.reshaped()) {
@@ -90,18 +92,21 @@ Patch ElementsAround(const Mesh& mesh, Eigen::Index first_node,
 }
 
 // The rows of fields that are given by component, at some nodes:
-// (3 num_nodes) x k0.
-Eigen::MatrixXd RowsOf(const std::array<Eigen::MatrixXd, 3>& polynomials,
+// num_dofs x k0.
+Eigen::MatrixXd RowsOf(const std::vector<Eigen::MatrixXd>& polynomials,
                        const std::vector<Eigen::Index>& nodes) {
-  const Eigen::Index columns =
-      polynomials[0].cols() + polynomials[1].cols() + polynomials[2].cols();
+  const Eigen::Index dimension = Eigen::Index(polynomials.size());
+  Eigen::Index columns = 0;
+  for (const Eigen::MatrixXd& of_component : polynomials) {
+    columns += of_component.cols();
+  }
   Eigen::MatrixXd rows =
-      Eigen::MatrixXd::Zero(3 * Eigen::Index(nodes.size()), columns);
+      Eigen::MatrixXd::Zero(dimension * Eigen::Index(nodes.size()), columns);
   Eigen::Index column = 0;
-  for (int i = 0; i < 3; ++i) {
+  for (Eigen::Index i = 0; i < dimension; ++i) {
     const Eigen::Index count = polynomials[i].cols();
     for (std::size_t n = 0; n < nodes.size(); ++n) {
-      rows.row(3 * Eigen::Index(n) + i).segment(column, count) =
+      rows.row(dimension * Eigen::Index(n) + i).segment(column, count) =
           polynomials[i].row(nodes[n]);
     }
     column += count;
@@ -113,7 +118,7 @@ Eigen::MatrixXd RowsOf(const std::array<Eigen::MatrixXd, 3>& polynomials,
 // of the mesh, so that memory does not grow with the mesh times the fields.
 Eigen::MatrixXd StiffenedTriangle(
     const Mesh& mesh, const Supports& supports,
-    const std::array<Eigen::MatrixXd, 3>& polynomials) {
+    const std::vector<Eigen::MatrixXd>& polynomials) {
   constexpr Eigen::Index kNodesPerPatch = 8192;
   Eigen::MatrixXd triangle;
   for (Eigen::Index first = 0; first < mesh.NumNodes();
@@ -125,9 +130,9 @@ Eigen::MatrixXd StiffenedTriangle(
     std::vector<Eigen::Index> rows;
     for (std::size_t n = 0; n < patch.nodes.size(); ++n) {
       const Eigen::Index node = patch.nodes[n];
-      for (int i = 0; i < 3; ++i) {
+      for (int i = 0; i < mesh.Dimension(); ++i) {
         if (node >= first && node < end && !supports.held(i, node)) {
-          rows.push_back(3 * Eigen::Index(n) + i);
+          rows.push_back(mesh.Dimension() * Eigen::Index(n) + i);
         }
       }
     }
@@ -142,18 +147,19 @@ Eigen::MatrixXd StiffenedTriangle(
   return triangle;
 }
 
-// The rows of one component, num_nodes x n, of (3 num_nodes) x n.
-Eigen::MatrixXd ComponentRows(const Eigen::MatrixXd& all, int component) {
-  return all(Eigen::seq(component, Eigen::last, 3), Eigen::all);
+// The rows of one of `dimension` components, num_nodes x n, of num_dofs x n.
+Eigen::MatrixXd ComponentRows(const Eigen::MatrixXd& all, std::size_t component,
+                              std::size_t dimension) {
+  return all(Eigen::seq(component, Eigen::last, dimension), Eigen::all);
 }
 
 }  // namespace
 
-VirtualWork::VirtualWork(const Mesh& mesh, const Supports& supports,
-                         int degree) {
+VirtualWork::VirtualWork(const Mesh& mesh, const Supports& supports, int degree)
+    : section_model_(mesh.section.model) {
   assert(degree >= 1 && degree <= 3);
-  for (int i = 0; i < 3; ++i) {
-    polynomials_[i] = OrthonormalPolynomials(mesh, supports, i, degree);
+  for (int i = 0; i < mesh.Dimension(); ++i) {
+    polynomials_.push_back(OrthonormalPolynomials(mesh, supports, i, degree));
   }
   const Eigen::MatrixXd triangle =
       StiffenedTriangle(mesh, supports, polynomials_);
@@ -191,10 +197,11 @@ Eigen::MatrixXd VirtualWork::Fields() const {
 Eigen::MatrixXd VirtualWork::Of(const Eigen::MatrixXd& nodal_forces) const {
   Eigen::MatrixXd work(fields_.rows(), nodal_forces.cols());
   Eigen::Index row = 0;
-  for (int i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < polynomials_.size(); ++i) {
     const Eigen::Index count = polynomials_[i].cols();
     work.middleRows(row, count) =
-        polynomials_[i].transpose() * ComponentRows(nodal_forces, i);
+        polynomials_[i].transpose() *
+        ComponentRows(nodal_forces, i, polynomials_.size());
     row += count;
   }
   return fields_.transpose() * work;
@@ -208,11 +215,12 @@ double VirtualWork::Imbalance(const Eigen::MatrixXd& nodal_forces) const {
       Eigen::MatrixXd::Zero(free_motions_.cols(), nodal_forces.cols());
   Eigen::MatrixXd absolute_work = work;
   Eigen::Index row = 0;
-  for (int i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < polynomials_.size(); ++i) {
     const Eigen::Index count = polynomials_[i].cols();
     const Eigen::MatrixXd motions =
         polynomials_[i] * free_motions_.middleRows(row, count);
-    const Eigen::MatrixXd forces = ComponentRows(nodal_forces, i);
+    const Eigen::MatrixXd forces =
+        ComponentRows(nodal_forces, i, polynomials_.size());
     work += motions.transpose() * forces;
     absolute_work += motions.cwiseAbs().transpose() * forces.cwiseAbs();
     row += count;
@@ -272,21 +280,18 @@ VirtualWorkFit VirtualWorkBalance::Evaluate(
   fit.free_compliance_scale = z_a.cwiseProduct(z_f).sum() / z_f.squaredNorm();
   fit.compliance_scale = std::max(0.0, fit.free_compliance_scale);
   fit.youngs_modulus_bound = Side::kNone;
+  const double factor = ComplianceFactor(nu, work_.Model());  // E t.
   const auto hold = [&](double bound, Side side) {
-    fit.compliance_scale = IsotropicElasticity{bound, nu}.ComplianceScale();
+    fit.compliance_scale = factor / bound;
     fit.youngs_modulus_bound = side;
-    // Of (1 + nu)(1 - 2 nu) / E.
-    return -(1 + 4 * nu) / bound;
+    return ComplianceFactorSlope(nu, work_.Model()) / bound;
   };
   double scale_slope = 0;
   if (youngs_modulus.upper &&
-      fit.compliance_scale <
-          IsotropicElasticity{*youngs_modulus.upper, nu}.ComplianceScale()) {
+      fit.compliance_scale < factor / *youngs_modulus.upper) {
     scale_slope = hold(*youngs_modulus.upper, Side::kUpper);
   } else if (youngs_modulus.lower &&
-             fit.compliance_scale >
-                 IsotropicElasticity{*youngs_modulus.lower, nu}
-                     .ComplianceScale()) {
+             fit.compliance_scale > factor / *youngs_modulus.lower) {
     scale_slope = hold(*youngs_modulus.lower, Side::kLower);
   }
   const Eigen::MatrixXd z_r = z_a - fit.compliance_scale * z_f;

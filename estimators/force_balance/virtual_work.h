@@ -2,7 +2,6 @@
 #define ELASTIMATE_ESTIMATORS_FORCE_BALANCE_VIRTUAL_WORK_H_
 
 #include <Eigen/Core>
-#include <array>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -19,7 +18,7 @@ namespace elastimate {
 /// prepared once for any number of measurements.
 ///
 /// The fields are the columns of V (num_free x k): an orthonormal basis of the
-/// polynomials of degree <= d along x, y and z on the free degrees of freedom,
+/// polynomials of degree <= d along each axis on the free degrees of freedom,
 /// without those that supports or a small mesh make dependent, and without the
 /// motions without strain that the supports leave free, whose internal work is
 /// zero for every material.
@@ -34,23 +33,27 @@ namespace elastimate {
 /// tends to -1 or 1/2.
 class VirtualWork {
  public:
-  /// Cost: one element pass of 3 (d + 1)(d + 2)(d + 3) / 6 columns (12, 30, 60)
+  /// Cost: one element pass of 3 (d + 1)(d + 2)(d + 3) / 6 columns (12, 30, 60;
+  /// in two dimensions (d + 1)(d + 2))
   /// and the QR factorisation of twice as many; memory for about as many
   /// vectors over the nodes as one third of that number, and a block of fixed
   /// size.  Single-threaded, deterministic.
   /// Preconditions: a valid scene's mesh and supports; 1 <= degree <= 3.
   VirtualWork(const Mesh& mesh, const Supports& supports, int degree);
 
+  /// What relates t to E.
+  SectionModel Model() const { return section_model_; }
+
   /// k.
   Eigen::Index NumFields() const { return h_.cols(); }
 
-  /// V in all rows, zero in the held ones: (3 num_nodes) x k [-].
+  /// V in all rows, zero in the held ones: num_dofs x k [-].
   Eigen::MatrixXd Fields() const;
 
-  /// V^T of the free rows of nodal forces, (3 num_nodes) x n: k x n.
+  /// V^T of the free rows of nodal forces, num_dofs x n: k x n.
   Eigen::MatrixXd Of(const Eigen::MatrixXd& nodal_forces) const;
 
-  /// The largest share of the nodal forces ((3 num_nodes) x n) that is not in
+  /// The largest share of the nodal forces (num_dofs x n) that is not in
   /// balance: |v.f| / (|v|.|f|) over the motions v without strain that the
   /// supports leave free.  Zero when there are none.
   double Imbalance(const Eigen::MatrixXd& nodal_forces) const;
@@ -78,9 +81,10 @@ class VirtualWork {
   const std::vector<NoiseFactor>& Scan() const { return scan_; }
 
  private:
-  /// V of the rows of one component before the rotation, num_nodes x m each,
+  SectionModel section_model_;
+  /// For each component V of its rows before the rotation, num_nodes x m each,
   /// zero in the held rows.
-  std::array<Eigen::MatrixXd, 3> polynomials_;
+  std::vector<Eigen::MatrixXd> polynomials_;
   /// From the polynomials (k0) to the fields (k0 x k), and to the free motions.
   Eigen::MatrixXd fields_;
   Eigen::MatrixXd free_motions_;
@@ -140,6 +144,9 @@ class VirtualWorkBalance {
   /// object.  Preconditions: what Estimator::Run checks, and every free
   /// component is observed; `scene` has the mesh and supports of `work`.
   VirtualWorkBalance(const VirtualWork& work, const Scene& scene);
+
+  /// What relates t to E.
+  SectionModel Model() const { return work_.Model(); }
 
   /// k times the number of load cases.
   Eigen::Index NumEquations() const { return internal_h_.size(); }

@@ -9,7 +9,7 @@ namespace {
 
 // Whether the loads act on a free degree of freedom.
 bool IsLoaded(const Scene& scene, const LoadCase& load_case) {
-  const auto acts = [&](const Eigen::Matrix3Xd& force) {
+  const auto acts = [&](const Eigen::MatrixXd& force) {
     return (!scene.supports.held && force.array() != 0).any();
   };
   const NodalForces* const nodal_forces =
@@ -32,7 +32,7 @@ struct MeasurementSummary {
 MeasurementSummary Summarize(const Scene& scene, const LoadCase& load_case) {
   MeasurementSummary summary;
   for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < scene.mesh.Dimension(); ++i) {
       const bool held = scene.supports.held(i, node);
       if (!IsObserved(load_case, i, node)) {
         continue;

@@ -47,7 +47,8 @@ double ReducedModes::EnergyNorm(double poisson_ratio) const {
 }
 
 ReducedModel::ReducedModel(const Scene& scene, SolverKind solver)
-    : stiffness_(scene.mesh),
+    : section_model_(scene.mesh.section.model),
+      stiffness_(scene.mesh),
       solver_(scene.mesh, scene.supports, solver),
       num_load_cases_(Eigen::Index(scene.load_cases.size())) {
   const Eigen::MatrixXd force = FreeRows(AssembleLoadCases(scene));

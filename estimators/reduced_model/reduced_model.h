@@ -81,6 +81,9 @@ class ReducedModel {
   /// Whether solves are inexact.
   bool UsesMultigrid() const { return solver_.UsesMultigrid(); }
 
+  /// What relates t to E.
+  SectionModel Section() const { return section_model_; }
+
   /// nu of the present pole.
   double Pole() const { return solver_.PoissonRatio(); }
 
@@ -89,7 +92,7 @@ class ReducedModel {
   const ReducedModes& Modes(Eigen::Index k) const {
     return responses_[k].modes;
   }
-  /// The basis of response `k`, (3 num_nodes) x m, zero in the held rows.
+  /// The basis of response `k`, num_dofs x m, zero in the held rows.
   const Eigen::MatrixXd& Basis(Eigen::Index k) const {
     return responses_[k].basis;
   }
@@ -128,6 +131,7 @@ class ReducedModel {
               const Eigen::VectorXd& j, Response& response);
   void FindModes(Response& response) const;
 
+  SectionModel section_model_;
   StiffnessOperator stiffness_;
   StiffnessSolver solver_;
   Eigen::Index num_load_cases_;

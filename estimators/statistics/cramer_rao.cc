@@ -42,12 +42,13 @@ Eigen::Matrix2d CramerRaoBound(const Scene& scene,
   Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
   for (Eigen::Index k = 0; k < num_cases; ++k) {
     for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
-      for (int i = 0; i < 3; ++i) {
+      for (int i = 0; i < scene.mesh.Dimension(); ++i) {
         if (!scene.supports.held(i, node) &&
             IsObserved(scene.load_cases[k], i, node)) {
+          const Eigen::Index dof = scene.mesh.Dimension() * node + i;
           const Eigen::Vector2d s(
-              sensitivities.log_youngs_modulus(3 * node + i, k) / noise_sd(k),
-              sensitivities.poisson_ratio(3 * node + i, k) / noise_sd(k));
+              sensitivities.log_youngs_modulus(dof, k) / noise_sd(k),
+              sensitivities.poisson_ratio(dof, k) / noise_sd(k));
           information += s * s.transpose();
         }
       }

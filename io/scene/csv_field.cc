@@ -98,14 +98,14 @@ Eigen::Vector3d ParseRow(const std::filesystem::path& path,
 
 }  // namespace
 
-Eigen::Matrix3Xd ReadCsvField(const std::filesystem::path& path,
+Eigen::MatrixXd ReadCsvField(const std::filesystem::path& path,
                               Eigen::Index num_nodes) {
   CheckReadable(path);
   std::ifstream file(path);
   std::string line;
   std::getline(file, line);
   CheckHeader(path, line);
-  Eigen::Matrix3Xd field(3, num_nodes);
+  Eigen::MatrixXd field(3, num_nodes);
   Eigen::Index row = 0;
   Eigen::Index line_number = 2;
   for (; std::getline(file, line); ++line_number) {

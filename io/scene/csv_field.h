@@ -10,7 +10,7 @@ namespace elastimate {
 /// `x,y,z` or `ux,uy,uz`, then one row per node, so that node k is on line
 /// k + 2.  `nan` and `inf` are numbers here.  Throws std::invalid_argument,
 /// naming the file, the line and the column.
-Eigen::Matrix3Xd ReadCsvField(const std::filesystem::path& path,
+Eigen::MatrixXd ReadCsvField(const std::filesystem::path& path,
                               Eigen::Index num_nodes);
 
 }  // namespace elastimate

@@ -38,7 +38,7 @@ Eigen::VectorXi ReadRegions(const MeshFile& mesh) {
 }
 
 void RequireFinite(const std::filesystem::path& file, const std::string& what,
-                   const MeshFile& mesh, const Eigen::Matrix3Xd& values,
+                   const MeshFile& mesh, const Eigen::MatrixXd& values,
                    const ComponentMask& mask, const std::string& mend) {
   for (Eigen::Index node = 0; node < values.cols(); ++node) {
     for (Eigen::Index axis = 0; axis < 3 && mesh.used[node]; ++axis) {
@@ -55,9 +55,9 @@ void RequireFinite(const std::filesystem::path& file, const std::string& what,
 ComponentMask ToComponentMask(const std::filesystem::path& file,
                               const std::string& what, const MeshFile& mesh,
                               const Eigen::MatrixXd& values) {
-  const Eigen::Matrix3Xd numbers =
-      values.rows() == 1 ? Eigen::Matrix3Xd(values.replicate(3, 1))
-                         : Eigen::Matrix3Xd(values);
+  const Eigen::MatrixXd numbers =
+      values.rows() == 1 ? Eigen::MatrixXd(values.replicate(3, 1))
+                         : Eigen::MatrixXd(values);
   RequireFinite(file, what, mesh, numbers,
                 ComponentMask::Constant(3, numbers.cols(), true));
   return numbers.array() != 0;

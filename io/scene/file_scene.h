@@ -25,7 +25,7 @@ Eigen::VectorXi ReadRegions(const MeshFile& mesh);
 /// where `mask` says and a tetrahedron uses the node: "FILE: WHAT of node 7
 /// (x) is nan; MEND".
 void RequireFinite(const std::filesystem::path& file, const std::string& what,
-                   const MeshFile& mesh, const Eigen::Matrix3Xd& values,
+                   const MeshFile& mesh, const Eigen::MatrixXd& values,
                    const ComponentMask& mask,
                    const std::string& mend = "correct it");
 

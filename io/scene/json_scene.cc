@@ -99,12 +99,12 @@ Supports ReadSupports(const JsonValue& document, const MeshFile& mesh) {
 
 /// Three numbers per node, from the one of the keys `file` and `array` that
 /// `value` has; finite where `mask` says.
-Eigen::Matrix3Xd ReadField(const JsonValue& value, const MeshFile& mesh,
+Eigen::MatrixXd ReadField(const JsonValue& value, const MeshFile& mesh,
                            const ComponentMask& mask, const std::string& mend) {
   if (value.Has("file") == value.Has("array")) {
     value.Fail("must have exactly one of the keys file, array");
   }
-  Eigen::Matrix3Xd field;
+  Eigen::MatrixXd field;
   std::filesystem::path file = mesh.path;
   std::string what;
   if (value.Has("file")) {
@@ -245,7 +245,9 @@ FileScene ReadJsonScene(const std::filesystem::path& path,
   FileScene file_scene;
   file_scene.mesh = ReadNamedMesh(document.At("mesh"));
   const MeshFile& mesh = file_scene.mesh;
-  file_scene.scene.mesh = {mesh.nodes, mesh.tetrahedra, ReadRegions(mesh)};
+  file_scene.scene.mesh.nodes = mesh.nodes;
+  file_scene.scene.mesh.elements = mesh.tetrahedra;
+  file_scene.scene.mesh.regions = ReadRegions(mesh);
   file_scene.scene.supports = ReadSupports(document, mesh);
   const Context context = {
       mesh, !file_scene.scene.supports.held.colwise().all() && mesh.used,

@@ -26,7 +26,7 @@ namespace {
 /// Files in text keep fewer digits than others of the same mesh.
 constexpr double kSameLength = 1e-6;  // Of the largest coordinate.
 
-bool AreClose(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
+bool AreClose(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return (a - b).cwiseAbs().maxCoeff() <= kSameLength * a.cwiseAbs().maxCoeff();
 }
 

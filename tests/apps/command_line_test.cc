@@ -294,7 +294,7 @@ TEST_F(CommandLine, NoiseHasTheNormThatWasAskedFor) {
         "--out=noisy.vtu --noise_law=" +
         law);
     const Scene noisy = Read("noisy.vtu");
-    const Eigen::Matrix3Xd noise =
+    const Eigen::MatrixXd noise =
         noisy.load_cases[0].displacement - exact.load_cases[0].displacement;
     EXPECT_NEAR(noise.norm() / exact.load_cases[0].displacement.norm(), 0.1,
                 1e-12);
@@ -1080,7 +1080,7 @@ class QuadraticElements : public CommandLine {
   }
 
   /// The array of a result as the displacement of a scene that names it.
-  Eigen::Matrix3Xd Array(const std::string& file,
+  Eigen::MatrixXd Array(const std::string& file,
                          const std::string& array) const {
     WriteText(folder_ / "array.json", R"({
       "mesh": ")" + file + R"(", "supports": [],
@@ -1127,7 +1127,7 @@ TEST_F(QuadraticElements, WriteTheLinearMesh) {
       "estimate scene.json --estimator=iterative-fe --order=2 "
       "--out=result.vtu");
   EXPECT_EQ(Read("result.vtu").mesh.elements, scene.mesh.elements);
-  const Eigen::Matrix3Xd& displacement = measured.load_cases[0].displacement;
+  const Eigen::MatrixXd& displacement = measured.load_cases[0].displacement;
   EXPECT_LT((Array("result.vtu", "fitted_displacement") - displacement).norm(),
             1e-7 * displacement.norm());
   EXPECT_LT(Array("result.vtu", "displacement_residual").norm(),
@@ -1141,7 +1141,7 @@ TEST_F(QuadraticElements, ReactionsBalanceTheLoads) {
       "estimate scene.json --estimator=iterative-fe --order=2 "
       "--out=result.vtu");
   const Scene scene = Read("cuboid.vtu");
-  const Eigen::Matrix3Xd reaction = Array("result.vtu", "reaction_force");
+  const Eigen::MatrixXd reaction = Array("result.vtu", "reaction_force");
   const Eigen::Vector3d traction(100, 0, -500);
   const Eigen::Vector3d weight(0, 0, -0.4 * 9810);
   EXPECT_LT((reaction.rowwise().sum() + traction + weight).norm(), 1e-6);
@@ -1158,10 +1158,10 @@ TEST_F(QuadraticElements, ReactionsBalanceTheLoads) {
 
 TEST_F(QuadraticElements, NoiseIsRelativeToTheVertices) {
   MakeMeasuredScene();
-  const Eigen::Matrix3Xd exact =
+  const Eigen::MatrixXd exact =
       Read("measured.vtu").load_cases[0].displacement;
   MakeMeasuredScene("--noise=0.1 --seed=7");
-  const Eigen::Matrix3Xd noise =
+  const Eigen::MatrixXd noise =
       Read("measured.vtu").load_cases[0].displacement - exact;
   EXPECT_NEAR(noise.norm() / exact.norm(), 0.1, 1e-12);
 }

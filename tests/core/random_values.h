@@ -24,7 +24,7 @@ inline Eigen::MatrixXd RandomMatrix(Eigen::Index rows, Eigen::Index columns,
 /// Holds each component of each node with probability 1/4, at zero.
 inline Supports RandomSupports(Eigen::Index num_nodes, std::uint64_t seed) {
   const Eigen::Array3Xd values = RandomMatrix(3, num_nodes, seed).array();
-  return {values < -0.5, Eigen::Matrix3Xd::Zero(3, num_nodes)};
+  return {values < -0.5, Eigen::MatrixXd::Zero(3, num_nodes)};
 }
 
 /// Turns the orientation of every third element around.

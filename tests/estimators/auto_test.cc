@@ -30,7 +30,7 @@ Scene FinerWorld(const std::string& shape, const IsotropicElasticity& truth) {
 Scene SlenderBar() {
   const Mesh mesh = testing::BoxMesh({2, 2, 20}, {0.1, 0.1, 1});
   Scene scene = testing::HeldAtBottom(mesh, mesh, Eigen::Vector3d::Zero());
-  scene.load_cases[0].loads = {BodyForce{{1e4, 0, 0}}};
+  scene.load_cases[0].loads = {BodyForce{Eigen::Vector3d(1e4, 0, 0)}};
   return scene;
 }
 

@@ -133,7 +133,7 @@ TEST_P(Conformance, DoesNotDependOnThePositionOfTheSpecimen) {
       (rotation * scene.mesh.nodes).colwise() + Eigen::Vector3d(10, -20, 5);
   LoadCase& load_case = moved.load_cases[0];
   load_case.displacement = rotation * load_case.displacement;
-  Eigen::Matrix3Xd& force = std::get<NodalForces>(load_case.loads[0]).force;
+  Eigen::MatrixXd& force = std::get<NodalForces>(load_case.loads[0]).force;
   force = rotation * force;
   ExpectSame(Run(moved), Run(scene).elasticity.youngs_modulus, Run(scene));
 }

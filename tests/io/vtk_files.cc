@@ -133,7 +133,7 @@ Scene TwoTetrahedra() {
   for (int i = 0; i < 2; ++i) {
     LoadCase load_case;
     load_case.displacement =
-        Eigen::Matrix3Xd::NullaryExpr(3, 5, [i](auto row, auto column) {
+        Eigen::MatrixXd::NullaryExpr(3, 5, [i](auto row, auto column) {
           return 1e-3 / (1.0 + i + row + 3 * column);
         });
     load_case.loads = {NodalForces{load_case.displacement * 1e6 / 7.0}};

@@ -40,7 +40,7 @@ constexpr double kYoungs = 2.5e4;
 
 Supports FreeSupports(const Mesh& mesh) {
   return {ComponentMask::Constant(3, mesh.NumNodes(), false),
-          Eigen::Matrix3Xd::Zero(3, mesh.NumNodes())};
+          Eigen::MatrixXd::Zero(3, mesh.NumNodes())};
 }
 
 // A condition number from the eigenvalues of the dense stiffness.
@@ -80,9 +80,11 @@ struct Bar {
                                     mesh.nodes(2, facets(1, i)),
                                     mesh.nodes(2, facets(2, i)));
       if ((heights.array() == 1).all()) {
-        loads.emplace_back(Traction{facets.col(i), {0, 0, kTension}});
+        loads.emplace_back(
+            Traction{facets.col(i), Eigen::Vector3d(0, 0, kTension)});
       } else if ((heights.array() == 0).all() && both_ends) {
-        loads.emplace_back(Traction{facets.col(i), {0, 0, -kTension}});
+        loads.emplace_back(
+            Traction{facets.col(i), Eigen::Vector3d(0, 0, -kTension)});
       }
     }
     force = AssembleLoads(mesh, loads).reshaped();
@@ -125,7 +127,7 @@ TEST_P(ForNu, PrescribedLinearFieldContinuesInside) {
   const Mesh mesh = WithBothOrientations(Distorted(box));
   Eigen::Matrix3d gradient;
   gradient << 0.01, 0.02, -0.03, 0.04, -0.05, 0.06, 0.07, 0.08, 0.09;
-  const Eigen::Matrix3Xd exact =
+  const Eigen::MatrixXd exact =
       (gradient * mesh.nodes).colwise() + Eigen::Vector3d(0.1, -0.2, 0.3);
   Supports supports = FreeSupports(mesh);
   supports.displacement.setConstant(kNan);
@@ -197,7 +199,7 @@ double ManufacturedError(const IsotropicElasticity& elasticity, int n) {
     return std::abs((x.rightCols<3>().colwise() - x.col(0)).determinant()) / 6;
   };
 
-  Eigen::Matrix3Xd force = Eigen::Matrix3Xd::Zero(3, mesh.NumNodes());
+  Eigen::MatrixXd force = Eigen::MatrixXd::Zero(3, mesh.NumNodes());
   for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
     const Eigen::Matrix<double, 3, 4> x = corners(e);
     ForEachGaussPoint([&](const Eigen::Vector4d& shape, double weight) {

@@ -33,7 +33,7 @@ double RelativeError(const Eigen::MatrixXd& values,
 }
 
 // Holds every node of the surface at this displacement.
-Supports HeldAllAround(const Mesh& mesh, const Eigen::Matrix3Xd& displacement) {
+Supports HeldAllAround(const Mesh& mesh, const Eigen::MatrixXd& displacement) {
   Supports supports{ComponentMask::Constant(3, mesh.NumNodes(), false),
                     displacement};
   const Eigen::MatrixXi facets = BoundaryFacets(mesh);
@@ -55,7 +55,7 @@ TEST_P(QuadraticForNu, AQuadraticFieldIsReproduced) {
       WithBothOrientations(Distorted(BoxMesh({2, 3, 3}, {1, 0.8, 1.2}))));
   const IsotropicElasticity elasticity{2.5, GetParam()};
   const QuadraticField field;
-  const Eigen::Matrix3Xd exact = field.Displacements(mesh.nodes);
+  const Eigen::MatrixXd exact = field.Displacements(mesh.nodes);
   const BodyForce load{
       field.BodyForce(elasticity.LameLambda(), elasticity.ShearModulus())};
   const Supports supports = HeldAllAround(mesh, exact);
@@ -70,7 +70,7 @@ TEST_P(QuadraticForNu, AQuadraticFieldIsReproduced) {
 TEST_P(QuadraticForNu, ALinearFieldIsReproduced) {
   const Mesh mesh = WithMidEdgeNodes(
       WithBothOrientations(Distorted(BoxMesh({2, 3, 3}, {1, 0.8, 1.2}))));
-  const Eigen::Matrix3Xd exact = QuadraticField().gradient * mesh.nodes;
+  const Eigen::MatrixXd exact = QuadraticField().gradient * mesh.nodes;
   ForwardModel model(mesh, HeldAllAround(mesh, exact),
                      Eigen::MatrixXd::Zero(3 * mesh.NumNodes(), 1));
   ASSERT_TRUE(model.SetPoissonRatio(GetParam()));
@@ -85,7 +85,7 @@ TEST_P(QuadraticForNu, TensionOfABarOnRollers) {
   scene.mesh = BoxMesh({2, 2, 3}, {0.4, 0.6, 1});
   scene.supports.held =
       scene.mesh.nodes.array() == 0;  // x = 0 holds x, and so on.
-  scene.supports.displacement = Eigen::Matrix3Xd::Zero(3, 36);
+  scene.supports.displacement = Eigen::MatrixXd::Zero(3, 36);
   const Eigen::MatrixXi facets = BoundaryFacets(scene.mesh);
   std::vector<Eigen::Index> top;
   for (Eigen::Index i = 0; i < facets.cols(); ++i) {
@@ -95,7 +95,8 @@ TEST_P(QuadraticForNu, TensionOfABarOnRollers) {
     }
   }
   scene.load_cases.resize(1);
-  scene.load_cases[0].loads = {Traction{facets(Eigen::all, top), {0, 0, 5}}};
+  scene.load_cases[0].loads = {
+      Traction{facets(Eigen::all, top), Eigen::Vector3d(0, 0, 5)}};
 
   const Scene quadratic = QuadraticScene(scene);
   ForwardModel model(quadratic.mesh, quadratic.supports,
@@ -135,11 +136,11 @@ TEST(QuadraticForwardModel, SensitivitiesAreDerivatives) {
 double ManufacturedError(const IsotropicElasticity& elasticity, int n) {
   const PlaneWaves waves;
   const Mesh mesh = WithMidEdgeNodes(Distorted(BoxMesh({n, n, n}, {1, 1, 1})));
-  Eigen::Matrix3Xd exact(3, mesh.NumNodes());
+  Eigen::MatrixXd exact(3, mesh.NumNodes());
   for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
     exact.col(node) = waves.Displacement(mesh.nodes.col(node));
   }
-  Eigen::Matrix3Xd force = Eigen::Matrix3Xd::Zero(3, mesh.NumNodes());
+  Eigen::MatrixXd force = Eigen::MatrixXd::Zero(3, mesh.NumNodes());
   for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
     const QuadraticShapeFunctions shape(mesh, e);
     ForEachGaussPoint([&](const Eigen::Vector4d& point, double weight) {

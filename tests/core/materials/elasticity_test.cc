@@ -30,15 +30,18 @@ TEST_P(Conversions, RoundTrip) {
   same(IsotropicElasticity::FromLame(e.LameLambda(), e.ShearModulus()));
   same(
       IsotropicElasticity::FromBulkAndShear(e.BulkModulus(), e.ShearModulus()));
-  same(IsotropicElasticity::FromComplianceScale(e.ComplianceScale(),
-                                                e.poisson_ratio));
-  EXPECT_NEAR(e.StiffnessScale() * e.ComplianceScale(), 1, 1e-14);
+  same(IsotropicElasticity::FromComplianceScale(
+      e.ComplianceScale(SectionModel::kSolid), e.poisson_ratio,
+      SectionModel::kSolid));
+  EXPECT_NEAR(e.StiffnessScale(SectionModel::kSolid) *
+                  e.ComplianceScale(SectionModel::kSolid),
+              1, 1e-14);
 }
 
 TEST_P(Conversions, StiffnessScaleGivesLameParameters) {
   // lambda = s nu, 2 mu = s (1 - 2 nu), 3 kappa = s (1 + nu).
   const IsotropicElasticity e{5e4, GetParam()};
-  const double s = e.StiffnessScale();
+  const double s = e.StiffnessScale(SectionModel::kSolid);
   EXPECT_NEAR(e.LameLambda(), s * GetParam(), 1e-12 * s);
   EXPECT_NEAR(2 * e.ShearModulus(), s * (1 - 2 * GetParam()), 1e-12 * s);
   EXPECT_NEAR(3 * e.BulkModulus(), s * (1 + GetParam()), 1e-12 * s);
@@ -46,10 +49,12 @@ TEST_P(Conversions, StiffnessScaleGivesLameParameters) {
 
 TEST_P(Conversions, JacobianMatchesFiniteDifferences) {
   const IsotropicElasticity e{2.5, GetParam()};
-  const Eigen::Matrix2d jacobian = ComplianceScaleJacobian(e);
+  const Eigen::Matrix2d jacobian =
+      ComplianceScaleJacobian(e, SectionModel::kSolid);
   const double step = 1e-6;
   const auto t = [](double youngs, double nu) {
-    return IsotropicElasticity{youngs, nu}.ComplianceScale();
+    return IsotropicElasticity{youngs, nu}.ComplianceScale(
+        SectionModel::kSolid);
   };
   EXPECT_NEAR(
       jacobian(1, 0),

@@ -71,9 +71,9 @@ TEST(StiffnessBlocks, FollowFromTheGradientProduct) {
     return rows;
   };
   const Eigen::Matrix3d m = g * h.transpose();
-  EXPECT_TRUE(StiffnessBlockH(m).isApprox(
+  EXPECT_TRUE(StiffnessBlockH<3>(m).isApprox(
       b(g).transpose() * testing::DenseDH() * b(h), 1e-14));
-  EXPECT_TRUE(StiffnessBlockJ(m).isApprox(
+  EXPECT_TRUE(StiffnessBlockJ<3>(m, 2).isApprox(
       b(g).transpose() * testing::DenseDJ() * b(h), 1e-14));
 }
 

@@ -124,7 +124,7 @@ TEST_F(QuadraticTetrahedra, ProductEqualsTheTextbookStiffness) {
 // Two kernels of the library that share no formula.
 TEST_F(QuadraticTetrahedra, ProductEqualsTheAssembledStiffness) {
   const Supports free = {ComponentMask::Constant(3, mesh_.NumNodes(), false),
-                         Eigen::Matrix3Xd::Zero(3, mesh_.NumNodes())};
+                         Eigen::MatrixXd::Zero(3, mesh_.NumNodes())};
   const StiffnessAssembly assembly(mesh_, DegreesOfFreedom(free));
   const SymmetricPattern& pattern = assembly.Pattern();
   Eigen::MatrixXd h = Eigen::MatrixXd::Zero(q_.rows(), q_.cols());
@@ -170,7 +170,7 @@ TEST_F(QuadraticTetrahedra, ProductOfARigidMotionIsZero) {
     EXPECT_TRUE(of_translation.h.isZero(0));
     EXPECT_TRUE(of_translation.j.isZero(0));
 
-    Eigen::Matrix3Xd rotation = mesh_.nodes;
+    Eigen::MatrixXd rotation = mesh_.nodes;
     for (auto column : rotation.colwise()) {
       column =
           Eigen::Vector3d::Unit(axis).cross(Eigen::Vector3d(column)).eval();
@@ -288,7 +288,7 @@ TEST_F(QuadraticTetrahedra, TracesEqualTheSumsOverTheFreeRowsAndColumns) {
 
 TEST_F(QuadraticTetrahedra, StrainEnergyIsTheMeanOverTheElement) {
   const IsotropicElasticity elasticity{2.5, 0.3};
-  const Eigen::Matrix3Xd u = q_.col(0).reshaped(3, mesh_.NumNodes());
+  const Eigen::MatrixXd u = q_.col(0).reshaped(3, mesh_.NumNodes());
   const Eigen::VectorXd density = StrainEnergyDensity(mesh_, elasticity, u);
   ASSERT_EQ(density.size(), mesh_.NumElements());
   const Eigen::Matrix<double, 6, 6> hooke = HookeMatrix<double>(2.5, 0.3);

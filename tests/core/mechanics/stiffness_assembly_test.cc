@@ -167,7 +167,7 @@ TEST(StiffnessAssembly, OfOneTetrahedronWithOneFreeDegreeOfFreedom) {
   mesh.elements.resize(4, 1);
   mesh.elements << 3, 1, 0, 2;
   Supports supports{ComponentMask::Constant(3, 4, true),
-                    Eigen::Matrix3Xd::Zero(3, 4)};
+                    Eigen::MatrixXd::Zero(3, 4)};
   supports.held(2, 3) = false;
   const StiffnessAssembly assembly(mesh, DegreesOfFreedom(supports));
   // N_3 = z: the strain is e_zz = 1 in a volume of 1/6.

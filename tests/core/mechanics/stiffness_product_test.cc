@@ -105,7 +105,7 @@ TEST_F(StiffnessProduct, OfATranslationIsZero) {
 
 TEST_F(StiffnessProduct, OfAnInfinitesimalRotationIsZero) {
   for (int axis = 0; axis < 3; ++axis) {
-    Eigen::Matrix3Xd q = mesh_.nodes;
+    Eigen::MatrixXd q = mesh_.nodes;
     for (auto column : q.colwise()) {
       column =
           Eigen::Vector3d::Unit(axis).cross(Eigen::Vector3d(column)).eval();

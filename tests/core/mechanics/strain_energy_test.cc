@@ -22,14 +22,6 @@ using testing::RandomMatrix;
 using testing::SmallScene;
 using testing::WithBothOrientations;
 
-Eigen::VectorXd Volumes(const Mesh& mesh) {
-  Eigen::VectorXd volumes(mesh.NumElements());
-  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
-    volumes(e) = TetrahedronVolume(GatherTetrahedron(mesh, e));
-  }
-  return volumes;
-}
-
 class StrainEnergy : public ::testing::TestWithParam<double> {
  protected:
   StrainEnergy()
@@ -43,7 +35,8 @@ class StrainEnergy : public ::testing::TestWithParam<double> {
     const Eigen::VectorXd density =
         StrainEnergyDensity(mesh_, elasticity_, gradient * mesh_.nodes);
     ASSERT_EQ(density.size(), mesh_.NumElements());
-    const double scale = elasticity_.StiffnessScale() * gradient.squaredNorm();
+    const double scale = elasticity_.StiffnessScale(SectionModel::kSolid) *
+                         gradient.squaredNorm();
     EXPECT_LT((density.array() - expected).abs().maxCoeff(), 1e-13 * scale);
   }
 
@@ -77,14 +70,14 @@ TEST_P(StrainEnergy, OfAnInfinitesimalRotationIsZero) {
 }
 
 TEST_P(StrainEnergy, SumsUpToHalfOfDisplacementTimesStiffness) {
-  const Eigen::Matrix3Xd u = RandomMatrix(3, mesh_.NumNodes(), 4);
+  const Eigen::MatrixXd u = RandomMatrix(3, mesh_.NumNodes(), 4);
   const Eigen::Matrix<double, 6, 6> hooke =
       HookeMatrix<double>(elasticity_.youngs_modulus, GetParam());
   const double expected =
       0.5 *
       u.reshaped().dot(DenseStiffness<double>(mesh_, hooke) * u.reshaped());
   const double energy =
-      Volumes(mesh_).dot(StrainEnergyDensity(mesh_, elasticity_, u));
+      ElementVolumes(mesh_).dot(StrainEnergyDensity(mesh_, elasticity_, u));
   EXPECT_NEAR(energy / expected, 1, 1e-12);
 }
 
@@ -96,7 +89,7 @@ TEST_P(StrainEnergy, IsHalfTheWorkOfTheLoads) {
   ASSERT_TRUE(model.SetPoissonRatio(GetParam()));
   const Eigen::VectorXd u = model.Displacement(elasticity_.youngs_modulus);
   const double energy =
-      Volumes(scene.mesh)
+      ElementVolumes(scene.mesh)
           .dot(StrainEnergyDensity(scene.mesh, elasticity_,
                                    u.reshaped(3, scene.mesh.NumNodes())));
   // A condition number of 1e3 / (1 - 2 nu) is on the safe side.
@@ -105,8 +98,8 @@ TEST_P(StrainEnergy, IsHalfTheWorkOfTheLoads) {
 }
 
 // A displacement that is quadratic in the position.
-Eigen::Matrix3Xd Bent(const Eigen::Matrix3Xd& x) {
-  Eigen::Matrix3Xd u(3, x.cols());
+Eigen::MatrixXd Bent(const Eigen::MatrixXd& x) {
+  Eigen::MatrixXd u(3, x.cols());
   u.row(0) =
       x.row(2).array().square() - 0.5 * x.row(0).array() * x.row(1).array();
   u.row(1) =
@@ -137,8 +130,8 @@ TEST_P(StrainEnergy, WhatLinearElementsMissIsFound) {
     SCOPED_TRACE(cells);
     const Mesh mesh = BoxMesh({cells, cells, cells}, {1, 1, 1});
     const Mesh quadratic = QuadraticScene(Unloaded(mesh)).mesh;
-    const Eigen::Matrix3Xd bent = Bent(quadratic.nodes);
-    Eigen::Matrix3Xd difference = bent;
+    const Eigen::MatrixXd bent = Bent(quadratic.nodes);
+    Eigen::MatrixXd difference = bent;
     const Eigen::Index num_vertices = mesh.NumNodes();
     difference.leftCols(num_vertices).setZero();
     for (Eigen::Index e = 0; e < quadratic.NumElements(); ++e) {
@@ -151,8 +144,8 @@ TEST_P(StrainEnergy, WhatLinearElementsMissIsFound) {
                    bent.col(quadratic.elements(corners[1], e)));
       }
     }
-    const Eigen::VectorXd volumes = Volumes(mesh);
-    const Eigen::Matrix3Xd at_vertices = bent.leftCols(num_vertices);
+    const Eigen::VectorXd volumes = ElementVolumes(mesh);
+    const Eigen::MatrixXd at_vertices = bent.leftCols(num_vertices);
     const double missed =
         volumes.dot(StrainEnergyDensity(quadratic, elasticity_, difference));
     const double energy =
@@ -172,7 +165,7 @@ TEST_P(StrainEnergy, LoadCasesAreSummed) {
   Eigen::Vector2d energy;
   Eigen::Vector2d missed;
   for (int k = 0; k < 2; ++k) {
-    energy(k) = Volumes(mesh_).dot(StrainEnergyDensity(
+    energy(k) = ElementVolumes(mesh_).dot(StrainEnergyDensity(
         mesh_, elasticity_, both.col(k).reshaped(3, mesh_.NumNodes())));
     missed(k) =
         energy(k) * DiscretizationError(mesh_, elasticity_, both.col(k));

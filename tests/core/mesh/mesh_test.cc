@@ -176,10 +176,9 @@ TEST(BoundaryFacets, EncloseTheVolumeWithOutwardNormals) {
   double volume = 0;
   for (Eigen::Index i = 0; i < facets.cols(); ++i) {
     const Eigen::Vector3d p = mesh.nodes.col(facets(0, i));
-    const Eigen::Vector3d normal =
-        (mesh.nodes.col(facets(1, i)) - p)
-            .cross(mesh.nodes.col(facets(2, i)) - p) /
-        2;
+    const Eigen::Vector3d e1 = mesh.nodes.col(facets(1, i)) - p;
+    const Eigen::Vector3d e2 = mesh.nodes.col(facets(2, i)) - p;
+    const Eigen::Vector3d normal = e1.cross(e2) / 2;
     area += normal;
     volume += p.dot(normal) / 3;
   }

@@ -24,7 +24,7 @@ using testing::WithMidEdgeNodes;
 // Sums of some hundred numbers of size 1 to 10: rounding is far below.
 constexpr double kTolerance = 1e-12;
 
-Eigen::Vector3d Moment(const Mesh& mesh, const Eigen::Matrix3Xd& force) {
+Eigen::Vector3d Moment(const Mesh& mesh, const Eigen::MatrixXd& force) {
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
     moment += Eigen::Vector3d(mesh.nodes.col(node))
@@ -61,7 +61,7 @@ class LoadedBox : public ::testing::Test {
 
 TEST_F(LoadedBox, BodyForceIsVolumeTimesDensityAtTheCentroid) {
   const Eigen::Vector3d density(0.5, -1, 2);
-  const Eigen::Matrix3Xd force = AssembleLoads(mesh_, {BodyForce{density}});
+  const Eigen::MatrixXd force = AssembleLoads(mesh_, {BodyForce{density}});
   const Eigen::Vector3d total = 24 * density;
   EXPECT_NEAR((force.rowwise().sum() - total).norm(), 0, kTolerance * 60);
   const Eigen::Vector3d moment = Eigen::Vector3d(1, 1.5, 2).cross(total);
@@ -75,7 +75,8 @@ TEST_F(LoadedBox, BodyForceOfOneTetrahedronIsAQuarterPerNode) {
   for (const Eigen::Vector4i& nodes :
        {Eigen::Vector4i(0, 1, 2, 3), Eigen::Vector4i(1, 0, 2, 3)}) {
     mesh.elements = nodes;
-    const Eigen::Matrix3Xd force = AssembleLoads(mesh, {BodyForce{{0, 0, 24}}});
+    const Eigen::MatrixXd force =
+        AssembleLoads(mesh, {BodyForce{Eigen::Vector3d(0, 0, 24)}});
     EXPECT_TRUE(force.row(2).isConstant(1, kTolerance)) << force;
     EXPECT_TRUE(force.topRows(2).isZero(0)) << force;
   }
@@ -83,7 +84,7 @@ TEST_F(LoadedBox, BodyForceOfOneTetrahedronIsAQuarterPerNode) {
 
 TEST_F(LoadedBox, TractionIsAreaTimesTractionAtTheMiddleOfTheFace) {
   const Eigen::Vector3d traction(0.5, -1, 2);
-  const Eigen::Matrix3Xd force =
+  const Eigen::MatrixXd force =
       AssembleLoads(mesh_, {Traction{FacetsAt(mesh_, 0, 2), traction}});
   const Eigen::Vector3d total = 12 * traction;
   EXPECT_NEAR((force.rowwise().sum() - total).norm(), 0, kTolerance * 30);
@@ -93,11 +94,11 @@ TEST_F(LoadedBox, TractionIsAreaTimesTractionAtTheMiddleOfTheFace) {
 
 TEST_F(LoadedBox, TractionDoesNotDependOnTheOrderOfFacetNodes) {
   Eigen::MatrixXi facets = FacetsAt(mesh_, 2, 4);
-  const Eigen::Matrix3Xd force =
-      AssembleLoads(mesh_, {Traction{facets, {1, 2, 3}}});
+  const Eigen::MatrixXd force =
+      AssembleLoads(mesh_, {Traction{facets, Eigen::Vector3d(1, 2, 3)}});
   facets.row(0).swap(facets.row(1));
-  const Eigen::Matrix3Xd swapped =
-      AssembleLoads(mesh_, {Traction{facets, {1, 2, 3}}});
+  const Eigen::MatrixXd swapped =
+      AssembleLoads(mesh_, {Traction{facets, Eigen::Vector3d(1, 2, 3)}});
   EXPECT_NEAR((force - swapped).norm(), 0, kTolerance * force.norm());
 }
 
@@ -107,7 +108,7 @@ TEST_F(LoadedBox, PressureOnAFacePushesAgainstItsNormal) {
     for (const bool far : {false, true}) {
       const Eigen::MatrixXi facets =
           FacetsAt(mesh_, axis, far ? edges(axis) : 0);
-      const Eigen::Matrix3Xd force =
+      const Eigen::MatrixXd force =
           AssembleLoads(mesh_, {Pressure{facets, 2.5}});
       const double area = 24 / edges(axis);
       const Eigen::Vector3d total =
@@ -121,7 +122,7 @@ TEST_F(LoadedBox, PressureOnAFacePushesAgainstItsNormal) {
 // a position does.
 TEST_F(LoadedBox, PressureAllAroundHasNoResultant) {
   const Mesh mesh = Distorted(mesh_);
-  const Eigen::Matrix3Xd force =
+  const Eigen::MatrixXd force =
       AssembleLoads(mesh, {Pressure{BoundaryFacets(mesh), 3}});
   EXPECT_GT(force.norm(), 1);
   EXPECT_NEAR(force.rowwise().sum().norm(), 0, kTolerance * force.norm() * 10);
@@ -134,9 +135,9 @@ TEST_F(LoadedBox, VirtualWorkOfATractionIsExactForLinearFields) {
   Eigen::Matrix3d gradient;
   gradient << 1, 2, 3, -4, 5, 6, 7, 8, -9;
   const Eigen::Vector3d shift(1, -2, 3);
-  const Eigen::Matrix3Xd u = (gradient * mesh_.nodes).colwise() + shift;
+  const Eigen::MatrixXd u = (gradient * mesh_.nodes).colwise() + shift;
   const Eigen::Vector3d traction(0.5, -1, 2);
-  const Eigen::Matrix3Xd force =
+  const Eigen::MatrixXd force =
       AssembleLoads(mesh_, {Traction{FacetsAt(mesh_, 2, 4), traction}});
   const double exact =
       6 * traction.dot(gradient * Eigen::Vector3d(1, 1.5, 4) + shift);
@@ -147,8 +148,8 @@ TEST_F(LoadedBox, VirtualWorkOfATractionIsExactForLinearFields) {
 TEST_F(LoadedBox, VirtualWorkOfAPressureIsMinusPressureTimesVolumeChange) {
   Eigen::Matrix3d gradient;
   gradient << 1, 2, 3, -4, 5, 6, 7, 8, -9;
-  const Eigen::Matrix3Xd u = gradient * mesh_.nodes;
-  const Eigen::Matrix3Xd force =
+  const Eigen::MatrixXd u = gradient * mesh_.nodes;
+  const Eigen::MatrixXd force =
       AssembleLoads(mesh_, {Pressure{BoundaryFacets(mesh_), 0.25}});
   EXPECT_NEAR(force.cwiseProduct(u).sum(), -0.25 * gradient.trace() * 24,
               kTolerance * 1000);
@@ -167,13 +168,13 @@ TEST_F(LoadedBox, SurfaceForceIsSpreadByArea) {
     const Eigen::Vector3d e2 = mesh.nodes.col(facets(2, i)) - origin;
     area(i) = e1.cross(e2).norm() / 2;
   }
-  Eigen::Matrix3Xd expected = Eigen::Matrix3Xd::Zero(3, mesh.NumNodes());
+  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(3, mesh.NumNodes());
   for (Eigen::Index i = 0; i < facets.cols(); ++i) {
     for (const int node : facets.col(i)) {
       expected.col(node) += area(i) / area.sum() / 3 * total;
     }
   }
-  const Eigen::Matrix3Xd force =
+  const Eigen::MatrixXd force =
       AssembleLoads(mesh, {SurfaceForce{facets, total}});
   EXPECT_NEAR((force - expected).norm(), 0, kTolerance * total.norm());
   EXPECT_NEAR((force.rowwise().sum() - total).norm(), 0, kTolerance * 30);
@@ -185,7 +186,7 @@ TEST_F(LoadedBox, SurfaceForceActsAtTheMiddleOfTheFaceHoweverFineTheMesh) {
   for (const int cells : {1, 2, 5}) {
     const Mesh linear = BoxMesh({cells, cells + 1, 2}, {2, 3, 4});
     for (const Mesh& mesh : {linear, WithMidEdgeNodes(linear)}) {
-      const Eigen::Matrix3Xd force =
+      const Eigen::MatrixXd force =
           AssembleLoads(mesh, {SurfaceForce{FacetsAt(mesh, 2, 4), total}});
       EXPECT_NEAR((force.rowwise().sum() - total).norm(), 0, kTolerance * 30);
       EXPECT_NEAR((Moment(mesh, force) - moment).norm(), 0, kTolerance * 100);
@@ -195,7 +196,7 @@ TEST_F(LoadedBox, SurfaceForceActsAtTheMiddleOfTheFaceHoweverFineTheMesh) {
 
 // [0, 2] x [0, 3] x [0, 4]: a face of 12 at x = 2, one of 8 at y = 3.
 TEST_F(LoadedBox, ResultantsFollowFromTheGeometry) {
-  Eigen::Matrix3Xd nodal = Eigen::Matrix3Xd::Zero(3, mesh_.NumNodes());
+  Eigen::MatrixXd nodal = Eigen::MatrixXd::Zero(3, mesh_.NumNodes());
   nodal.col(1) << 1, 2, 3;
   nodal.col(7) << 1, -2, 4;
   struct Expected {
@@ -205,16 +206,25 @@ TEST_F(LoadedBox, ResultantsFollowFromTheGeometry) {
     std::optional<double> area;
   };
   for (const Mesh& mesh : {mesh_, WithMidEdgeNodes(mesh_)}) {
-    Eigen::Matrix3Xd all = Eigen::Matrix3Xd::Zero(3, mesh.NumNodes());
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(3, mesh.NumNodes());
     all.leftCols(nodal.cols()) = nodal;
     const Eigen::MatrixXi side = FacetsAt(mesh, 0, 2);
     const std::vector<Expected> cases = {
         {NodalForces{all}, "nodal_force", {2, 0, 7}, std::nullopt},
-        {BodyForce{{0, 1, -10}}, "body_force", {0, 24, -240}, std::nullopt},
-        {Traction{side, {1, 0, -3}}, "traction", {12, 0, -36}, 12},
+        {BodyForce{Eigen::Vector3d(0, 1, -10)},
+         "body_force",
+         {0, 24, -240},
+         std::nullopt},
+        {Traction{side, Eigen::Vector3d(1, 0, -3)},
+         "traction",
+         {12, 0, -36},
+         12},
         {Pressure{FacetsAt(mesh, 1, 3), 5}, "pressure", {0, -40, 0}, 8},
         {Pressure{BoundaryFacets(mesh), 5}, "pressure", {0, 0, 0}, 52},
-        {SurfaceForce{side, {0, 0, -3}}, "force", {0, 0, -3}, 12}};
+        {SurfaceForce{side, Eigen::Vector3d(0, 0, -3)},
+         "force",
+         {0, 0, -3},
+         12}};
     for (const Expected& expected : cases) {
       SCOPED_TRACE(expected.type);
       const LoadResultant resultant = ResultantOf(mesh, expected.load);
@@ -235,14 +245,15 @@ TEST_F(LoadedBox, ResultantsFollowFromTheGeometry) {
 TEST_F(LoadedBox, LoadsAddUp) {
   const Eigen::MatrixXi facets = BoundaryFacets(mesh_);
   const std::vector<Load> loads = {
-      NodalForces{Eigen::Matrix3Xd::Constant(3, mesh_.NumNodes(), 0.5)},
-      BodyForce{{1, 2, 3}}, Traction{facets, {-1, 0, 1}}, Pressure{facets, 2},
-      SurfaceForce{facets, {3, 2, 1}}};
-  Eigen::Matrix3Xd sum = Eigen::Matrix3Xd::Zero(3, mesh_.NumNodes());
+      NodalForces{Eigen::MatrixXd::Constant(3, mesh_.NumNodes(), 0.5)},
+      BodyForce{Eigen::Vector3d(1, 2, 3)},
+      Traction{facets, Eigen::Vector3d(-1, 0, 1)}, Pressure{facets, 2},
+      SurfaceForce{facets, Eigen::Vector3d(3, 2, 1)}};
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(3, mesh_.NumNodes());
   for (const Load& load : loads) {
     sum += AssembleLoads(mesh_, {load});
   }
-  const Eigen::Matrix3Xd force = AssembleLoads(mesh_, loads);
+  const Eigen::MatrixXd force = AssembleLoads(mesh_, loads);
   EXPECT_NEAR((force - sum).norm(), 0, kTolerance * sum.norm());
 }
 
@@ -252,7 +263,7 @@ TEST_F(LoadedBox, NodalForcesAreTakenAsTheyAre) {
 }
 
 TEST_F(LoadedBox, WithoutLoadsThereIsNoForce) {
-  const Eigen::Matrix3Xd force = AssembleLoads(mesh_, {});
+  const Eigen::MatrixXd force = AssembleLoads(mesh_, {});
   EXPECT_EQ(force.cols(), mesh_.NumNodes());
   EXPECT_TRUE(force.isZero(0));
 }
@@ -275,8 +286,8 @@ TEST_F(QuadraticLoadedBox, BodyForceOfOneTetrahedron) {
   for (const Eigen::Vector4i& nodes :
        {Eigen::Vector4i(0, 1, 2, 3), Eigen::Vector4i(1, 0, 2, 3)}) {
     mesh.elements = nodes;
-    const Eigen::Matrix3Xd force =
-        AssembleLoads(WithMidEdgeNodes(mesh), {BodyForce{{0, 0, 120}}});
+    const Eigen::MatrixXd force = AssembleLoads(
+        WithMidEdgeNodes(mesh), {BodyForce{Eigen::Vector3d(0, 0, 120)}});
     EXPECT_TRUE(force.row(2).head<4>().isConstant(-1, kTolerance)) << force;
     EXPECT_TRUE(force.row(2).tail<6>().isConstant(4, kTolerance)) << force;
     EXPECT_TRUE(force.topRows(2).isZero(0)) << force;
@@ -289,14 +300,16 @@ TEST_F(QuadraticLoadedBox, LoadsHaveTheResultantAndMomentOfLinearElements) {
   const Eigen::MatrixXi facets = BoundaryFacets(mesh).leftCols(20);
   const Eigen::MatrixXi linear_facets = BoundaryFacets(linear).leftCols(20);
   const std::vector<std::pair<Load, Load>> loads = {
-      {BodyForce{{1, 2, 3}}, BodyForce{{1, 2, 3}}},
-      {Traction{facets, {1, 2, 3}}, Traction{linear_facets, {1, 2, 3}}},
+      {BodyForce{Eigen::Vector3d(1, 2, 3)},
+       BodyForce{Eigen::Vector3d(1, 2, 3)}},
+      {Traction{facets, Eigen::Vector3d(1, 2, 3)},
+       Traction{linear_facets, Eigen::Vector3d(1, 2, 3)}},
       {Pressure{facets, 2}, Pressure{linear_facets, 2}},
-      {SurfaceForce{facets, {1, 2, 3}},
-       SurfaceForce{linear_facets, {1, 2, 3}}}};
+      {SurfaceForce{facets, Eigen::Vector3d(1, 2, 3)},
+       SurfaceForce{linear_facets, Eigen::Vector3d(1, 2, 3)}}};
   for (const auto& [load, linear_load] : loads) {
-    const Eigen::Matrix3Xd force = AssembleLoads(mesh, {load});
-    const Eigen::Matrix3Xd expected = AssembleLoads(linear, {linear_load});
+    const Eigen::MatrixXd force = AssembleLoads(mesh, {load});
+    const Eigen::MatrixXd expected = AssembleLoads(linear, {linear_load});
     const double scale = expected.cwiseAbs().sum();
     EXPECT_NEAR((force.rowwise().sum() - expected.rowwise().sum()).norm(), 0,
                 kTolerance * scale);
@@ -309,7 +322,7 @@ TEST_F(QuadraticLoadedBox, LoadsHaveTheResultantAndMomentOfLinearElements) {
 // c]), so that the virtual work is exact for quadratic fields.
 TEST_F(QuadraticLoadedBox, VirtualWorkIsExactForQuadraticFields) {
   const QuadraticField field;
-  const Eigen::Matrix3Xd u = field.Displacements(mesh_.nodes);
+  const Eigen::MatrixXd u = field.Displacements(mesh_.nodes);
   const Eigen::Vector3d load(0.5, -1, 2);
   // Mean of x x^T over a box: middles m and edges e, m m^T + diag(e^2) / 12.
   const auto mean = [&](const Eigen::Vector3d& middle,
@@ -320,22 +333,22 @@ TEST_F(QuadraticLoadedBox, VirtualWorkIsExactForQuadraticFields) {
     }
     return value;
   };
-  const Eigen::Matrix3Xd body = AssembleLoads(mesh_, {BodyForce{load}});
+  const Eigen::MatrixXd body = AssembleLoads(mesh_, {BodyForce{load}});
   EXPECT_NEAR(body.cwiseProduct(u).sum(),
               24 * load.dot(mean({1, 1.5, 2}, {2, 3, 4})), kTolerance * 1000);
-  const Eigen::Matrix3Xd traction =
+  const Eigen::MatrixXd traction =
       AssembleLoads(mesh_, {Traction{FacetsAt(mesh_, 2, 4), load}});
   EXPECT_NEAR(traction.cwiseProduct(u).sum(),
               6 * load.dot(mean({1, 1.5, 4}, {2, 3, 0})), kTolerance * 1000);
-  const Eigen::Matrix3Xd pressure =
+  const Eigen::MatrixXd pressure =
       AssembleLoads(mesh_, {Pressure{FacetsAt(mesh_, 0, 2), 2.5}});
   EXPECT_NEAR(pressure.cwiseProduct(u).sum(),
               -2.5 * 12 * mean({2, 1.5, 2}, {0, 3, 4})(0), kTolerance * 1000);
 }
 
 TEST_F(QuadraticLoadedBox, TractionActsAtTheMiddlesOfTheEdges) {
-  const Eigen::Matrix3Xd force =
-      AssembleLoads(mesh_, {Traction{FacetsAt(mesh_, 2, 4), {1, 2, 3}}});
+  const Eigen::MatrixXd force = AssembleLoads(
+      mesh_, {Traction{FacetsAt(mesh_, 2, 4), Eigen::Vector3d(1, 2, 3)}});
   EXPECT_TRUE(force.leftCols(linear_.NumNodes()).isZero(0));
   // Inside of the face an edge has two facets of area 1/2.
   EXPECT_NEAR(force.row(0).maxCoeff(), 2 * 0.5 / 3, kTolerance);
@@ -344,12 +357,13 @@ TEST_F(QuadraticLoadedBox, TractionActsAtTheMiddlesOfTheEdges) {
 TEST(AssembleLoadCases, HasOneColumnForEachLoadCase) {
   Scene scene = SmallScene("organ");
   scene.load_cases.resize(3);
-  scene.load_cases[1].loads = {BodyForce{{0, 0, -1}}, BodyForce{{2, 0, 0}}};
+  scene.load_cases[1].loads = {BodyForce{Eigen::Vector3d(0, 0, -1)},
+                               BodyForce{Eigen::Vector3d(2, 0, 0)}};
   const Eigen::MatrixXd force = AssembleLoadCases(scene);
   ASSERT_EQ(force.rows(), 3 * scene.mesh.NumNodes());
   ASSERT_EQ(force.cols(), 3);
   for (Eigen::Index i = 0; i < 3; ++i) {
-    const Eigen::Matrix3Xd expected =
+    const Eigen::MatrixXd expected =
         AssembleLoads(scene.mesh, scene.load_cases[i].loads);
     for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
       for (int component = 0; component < 3; ++component) {

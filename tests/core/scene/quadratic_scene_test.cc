@@ -48,9 +48,10 @@ class ConvertedOrgan : public ::testing::Test {
     scene_.supports.displacement = RandomMatrix(3, num_nodes, 1);
     const Eigen::MatrixXi facets = BoundaryFacets(scene_.mesh);
     LoadCase second;
-    second.loads = {BodyForce{{0, 0, -9.81}}, Traction{facets, {1, 2, 3}},
+    second.loads = {BodyForce{Eigen::Vector3d(0, 0, -9.81)},
+                    Traction{facets, Eigen::Vector3d(1, 2, 3)},
                     Pressure{facets.leftCols(7), 2},
-                    SurfaceForce{facets.leftCols(5), {3, 2, 1}}};
+                    SurfaceForce{facets.leftCols(5), Eigen::Vector3d(3, 2, 1)}};
     second.displacement = RandomMatrix(3, num_nodes, 2);
     second.observed = RandomMatrix(3, num_nodes, 3).array() > 0;
     second.noise_sd = 1e-3;
@@ -212,7 +213,7 @@ class BoxToConvert : public ::testing::Test {
     scene_.supports.held =
         ComponentMask::Constant(3, scene_.mesh.NumNodes(), false);
     scene_.supports.displacement =
-        Eigen::Matrix3Xd::Zero(3, scene_.mesh.NumNodes());
+        Eigen::MatrixXd::Zero(3, scene_.mesh.NumNodes());
     scene_.load_cases.resize(1);
   }
 
@@ -222,7 +223,7 @@ class BoxToConvert : public ::testing::Test {
   }
 
   // The middles of the held edges, one column each.
-  Eigen::Matrix3Xd HeldMiddles(int component) const {
+  Eigen::MatrixXd HeldMiddles(int component) const {
     const Scene quadratic = QuadraticScene(scene_);
     std::vector<Eigen::Index> held;
     for (Eigen::Index node = scene_.mesh.NumNodes();
@@ -247,7 +248,7 @@ TEST_F(BoxToConvert, NothingIsHeldWithoutSupports) {
 
 TEST_F(BoxToConvert, AHeldFaceHoldsItsEdgesInTheSameComponents) {
   Hold(1, Coordinate(2) == 0);
-  const Eigen::Matrix3Xd middles = HeldMiddles(1);
+  const Eigen::MatrixXd middles = HeldMiddles(1);
   // 2 * 3 * 4 along the axes, and 3 * 3 diagonals.
   EXPECT_EQ(middles.cols(), 33);
   EXPECT_TRUE(middles.row(2).isZero(0));
@@ -262,14 +263,14 @@ TEST_F(BoxToConvert, OneHeldEndHoldsNothing) {
 
 TEST_F(BoxToConvert, ALineOfHeldNodesOnTheSurfaceIsAKnifeEdge) {
   Hold(2, Coordinate(1) == 2 && Coordinate(2) == 0);
-  const Eigen::Matrix3Xd middles = HeldMiddles(2);
+  const Eigen::MatrixXd middles = HeldMiddles(2);
   EXPECT_EQ(middles.cols(), 3);
   EXPECT_TRUE((middles.row(1).array() == 2).all());
 }
 
 TEST_F(BoxToConvert, AHeldVolumeHoldsTheEdgesOfItsInside) {
   Hold(0, Coordinate(2) <= 2);
-  const Eigen::Matrix3Xd middles = HeldMiddles(0);
+  const Eigen::MatrixXd middles = HeldMiddles(0);
   const Mesh& mesh = scene_.mesh;
   // Of each inner node, the edges to all its lower neighbours.
   for (Eigen::Index a = 0; a < mesh.NumNodes(); ++a) {
@@ -295,7 +296,7 @@ class SlabToConvert : public BoxToConvert {
 TEST_F(SlabToConvert, BetweenTwoSupportsIsFree) {
   Hold(0, Coordinate(2) == 0);
   Hold(0, Coordinate(2) == 1);
-  const Eigen::Matrix3Xd middles = HeldMiddles(0);
+  const Eigen::MatrixXd middles = HeldMiddles(0);
   const Scene quadratic = QuadraticScene(scene_);
   for (Eigen::Index i = 0; i < middles.cols(); ++i) {
     const Eigen::Vector3d middle = middles.col(i);

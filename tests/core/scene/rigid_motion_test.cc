@@ -25,7 +25,7 @@ class HeldBox : public ::testing::Test {
 
   void Release() {
     supports_.held = ComponentMask::Constant(3, mesh_.NumNodes(), false);
-    supports_.displacement = Eigen::Matrix3Xd::Zero(3, mesh_.NumNodes());
+    supports_.displacement = Eigen::MatrixXd::Zero(3, mesh_.NumNodes());
   }
   void Hold(int node, const std::string& components) {
     for (const char component : components) {
@@ -142,7 +142,7 @@ TEST_F(HeldBox, IsNotHeldByAnySixComponents) {
 }
 
 TEST_F(HeldBox, DoesNotDependOnUnitsOrPlace) {
-  const Eigen::Matrix3Xd nodes = Distorted(mesh_).nodes;
+  const Eigen::MatrixXd nodes = Distorted(mesh_).nodes;
   for (const double unit : {1e-9, 1e-3, 1.0, 1e3, 1e9}) {
     for (const double place : {0.0, 100.0}) {
       mesh_.nodes = unit * (nodes.array() + place).matrix();
@@ -164,7 +164,7 @@ TEST(WhyNotHeld, NamesThePartThatIsFree) {
   mesh.elements.resize(4, 12);
   mesh.elements << box.elements, (box.elements.array() + 8).matrix();
   Supports supports{ComponentMask::Constant(3, 16, false),
-                    Eigen::Matrix3Xd::Zero(3, 16)};
+                    Eigen::MatrixXd::Zero(3, 16)};
   supports.held.leftCols(8).setConstant(true);
   EXPECT_THAT(WhyNotHeld(mesh, supports),
               HasSubstr("the part of the mesh around node 8 "));
@@ -190,7 +190,7 @@ class Chain : public ::testing::TestWithParam<int> {
       mesh_.elements.col(e) << 3 * e, 3 * e + 1, 3 * e + 2, 3 * e + 3;
     }
     supports_.held = ComponentMask::Constant(3, mesh_.NumNodes(), false);
-    supports_.displacement = Eigen::Matrix3Xd::Zero(3, mesh_.NumNodes());
+    supports_.displacement = Eigen::MatrixXd::Zero(3, mesh_.NumNodes());
   }
 
   Mesh mesh_;
@@ -221,7 +221,7 @@ TEST(SeparateBoxes, AreSaidToShareNoNode) {
   Supports supports;
   supports.held = ComponentMask::Constant(3, mesh.NumNodes(), false);
   supports.held.leftCols(4).setConstant(true);
-  supports.displacement = Eigen::Matrix3Xd::Zero(3, mesh.NumNodes());
+  supports.displacement = Eigen::MatrixXd::Zero(3, mesh.NumNodes());
   EXPECT_THAT(
       WhyNotHeld(mesh, supports),
       ContainsRegex("around node 8 .* hold more components \\(it shares "
@@ -260,7 +260,7 @@ class HingedBoxes : public ::testing::Test {
     // The nodes of the upper box along y at x = 1, z = 1 are those of the
     // lower.
     std::vector<int> number(num_nodes, -1);
-    Eigen::Matrix3Xd nodes(3, 2 * num_nodes);
+    Eigen::MatrixXd nodes(3, 2 * num_nodes);
     nodes.leftCols(num_nodes) = box.nodes;
     Eigen::Index next = num_nodes;
     const auto id = [](int i, int j, int k) { return i + 4 * (j + 4 * k); };
@@ -278,7 +278,7 @@ class HingedBoxes : public ::testing::Test {
     mesh_.elements << box.elements,
         box.elements.unaryExpr([&](int node) { return number[node]; });
     supports_.held = ComponentMask::Constant(3, next, false);
-    supports_.displacement = Eigen::Matrix3Xd::Zero(3, next);
+    supports_.displacement = Eigen::MatrixXd::Zero(3, next);
     supports_.held.leftCols(16).setConstant(true);
   }
 

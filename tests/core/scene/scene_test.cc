@@ -25,11 +25,11 @@ class ValidatedScene : public ::testing::Test {
   ValidatedScene() : scene_(SmallScene("cuboid")) {
     const Eigen::MatrixXi facets = BoundaryFacets(scene_.mesh);
     LoadCase second;
-    second.loads.emplace_back(BodyForce{{0, 0, -9.81}});
-    second.loads.emplace_back(Traction{facets, {1, 0, 0}});
+    second.loads.emplace_back(BodyForce{Eigen::Vector3d(0, 0, -9.81)});
+    second.loads.emplace_back(Traction{facets, Eigen::Vector3d(1, 0, 0)});
     second.loads.emplace_back(Pressure{facets, 2.0});
-    second.loads.emplace_back(SurfaceForce{facets, {0, 0, -5}});
-    second.displacement = Eigen::Matrix3Xd::Zero(3, NumNodes());
+    second.loads.emplace_back(SurfaceForce{facets, Eigen::Vector3d(0, 0, -5)});
+    second.displacement = Eigen::MatrixXd::Zero(3, NumNodes());
     second.observed = ComponentMask::Constant(3, NumNodes(), true);
     second.noise_sd = 1e-3;
     scene_.load_cases.push_back(second);
@@ -105,7 +105,7 @@ TEST_F(ValidatedScene, NeedsALoadCase) {
 }
 
 TEST_F(ValidatedScene, NeedsANodalForceForEachNode) {
-  Second().loads[1] = NodalForces{Eigen::Matrix3Xd::Zero(3, 49)};
+  Second().loads[1] = NodalForces{Eigen::MatrixXd::Zero(3, 49)};
   EXPECT_THROWS_WITH(
       ValidateScene(scene_),
       "the force in load 2 of load case 2 has 49 columns for 48 nodes");
@@ -159,7 +159,7 @@ TEST_F(ValidatedScene, NeedsAFinitePressure) {
 }
 
 TEST_F(ValidatedScene, NeedsFacets) {
-  Second().loads[1] = Traction{Eigen::MatrixXi(3, 0), {1, 0, 0}};
+  Second().loads[1] = Traction{Eigen::MatrixXi(3, 0), Eigen::Vector3d(1, 0, 0)};
   EXPECT_THROWS_WITH(ValidateScene(scene_),
                      "the traction in load 2 of load case 2 acts on no facet");
   Second().loads[1] = Pressure{Eigen::MatrixXi(), 1};
@@ -180,9 +180,9 @@ TEST_F(ValidatedScene, NeedsQuadraticFacetsOnQuadraticTetrahedra) {
   Scene scene;
   scene.mesh = mesh;
   scene.supports.held = ComponentMask::Constant(3, mesh.NumNodes(), false);
-  scene.supports.displacement = Eigen::Matrix3Xd::Zero(3, mesh.NumNodes());
+  scene.supports.displacement = Eigen::MatrixXd::Zero(3, mesh.NumNodes());
   scene.load_cases.resize(1);
-  Traction traction{BoundaryFacets(mesh), {1, 0, 0}};
+  Traction traction{BoundaryFacets(mesh), Eigen::Vector3d(1, 0, 0)};
   scene.load_cases[0].loads = {traction};
   EXPECT_NO_THROW(ValidateScene(scene));
   std::swap(traction.facets(3, 2), traction.facets(4, 2));
@@ -275,7 +275,7 @@ TEST_F(ValidatedScene, NeedsUnitsWhoseSquaresAreNumbers) {
                        "the displacement of the supports has the magnitude");
     scene_ = valid;
     Second().loads[1] =
-        NodalForces{Eigen::Matrix3Xd::Constant(3, NumNodes(), unit)};
+        NodalForces{Eigen::MatrixXd::Constant(3, NumNodes(), unit)};
     EXPECT_THROWS_WITH(ValidateScene(scene_),
                        "the force in load 2 of load case 2 has the magnitude");
     scene_ = valid;

@@ -129,11 +129,11 @@ TEST_P(SolvedTwice, SaysWhenItDoesNotConverge) {
 // Fewer nodes than a coarse space has rigid motions.
 TEST(Multigrid, SolvesForOneTetrahedron) {
   Mesh mesh;
-  mesh.nodes = Eigen::Matrix3Xd::Zero(3, 4);
+  mesh.nodes = Eigen::MatrixXd::Zero(3, 4);
   mesh.nodes.rightCols<3>().setIdentity();
   mesh.elements = Eigen::Vector4i(0, 1, 2, 3);
   Supports supports = {ComponentMask::Constant(3, 4, false),
-                       Eigen::Matrix3Xd::Zero(3, 4)};
+                       Eigen::MatrixXd::Zero(3, 4)};
   supports.held.leftCols<3>().setConstant(true);
   const DegreesOfFreedom dofs(supports);
   const StiffnessAssembly assembly(mesh, dofs);

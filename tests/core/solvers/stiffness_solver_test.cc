@@ -136,7 +136,7 @@ TEST(StiffnessSolver, ThrowsForAMechanismOfAnyShape) {
   pinned.elements(1, 1) = 6;
   for (const Mesh& shape : {hinged, pinned}) {
     Supports supports{ComponentMask::Constant(3, shape.NumNodes(), false),
-                      Eigen::Matrix3Xd::Zero(3, shape.NumNodes())};
+                      Eigen::MatrixXd::Zero(3, shape.NumNodes())};
     supports.held.leftCols(4).setConstant(true);
     for (int seed = 0; seed < kSeeds; ++seed) {
       SCOPED_TRACE(seed);

@@ -50,8 +50,8 @@ TEST_P(DisplacementEstimators, ALockedPlateDoesNotDetermineNu) {
   scene.mesh = testing::BoxMesh({8, 8, 1}, {1, 1, kThickness});
   const Eigen::Index num_nodes = scene.mesh.NumNodes();
   scene.supports.held = ComponentMask::Constant(3, num_nodes, false);
-  scene.supports.displacement = Eigen::Matrix3Xd::Zero(3, num_nodes);
-  NodalForces force{Eigen::Matrix3Xd::Zero(3, num_nodes)};
+  scene.supports.displacement = Eigen::MatrixXd::Zero(3, num_nodes);
+  NodalForces force{Eigen::MatrixXd::Zero(3, num_nodes)};
   for (Eigen::Index node = 0; node < num_nodes; ++node) {
     scene.supports.held.col(node) = scene.mesh.nodes(0, node) == 0;
     force.force(2, node) = scene.mesh.nodes(0, node) == 1 ? 1 : 0;

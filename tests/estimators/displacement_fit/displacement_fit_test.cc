@@ -121,7 +121,7 @@ TEST(DisplacementFit, WrongSupportsWidenTheStandardErrors) {
 TEST(DisplacementFit, GivenNoiseThatExplainsTheResidualIsBelieved) {
   Scene scene = MeasuredOrgan();
   // A smooth measurement error of the given size.
-  Eigen::Matrix3Xd& q = scene.load_cases[0].displacement;
+  Eigen::MatrixXd& q = scene.load_cases[0].displacement;
   const double size = 0.01 * q.norm() / std::sqrt(double(q.size()));
   q.array() += size;
   const Estimate estimate = IterativeFe().Run(scene, {});
@@ -140,7 +140,7 @@ Scene UnderHydrostaticPressure() {
   scene.mesh = testing::BoxMesh({3, 3, 3}, {1, 1, 1});
   const Eigen::Index num_nodes = scene.mesh.NumNodes();
   scene.supports.held = ComponentMask::Constant(3, num_nodes, false);
-  scene.supports.displacement = Eigen::Matrix3Xd::Zero(3, num_nodes);
+  scene.supports.displacement = Eigen::MatrixXd::Zero(3, num_nodes);
   for (Eigen::Index node = 0; node < num_nodes; ++node) {
     const Eigen::Vector3d x = scene.mesh.nodes.col(node);
     scene.supports.held(0, node) = x.isZero();
@@ -270,8 +270,8 @@ TEST(DisplacementFit, ASingleElementHasNoDiscretizationError) {
   scene.mesh.elements = Eigen::Vector4i(0, 1, 2, 3);
   scene.supports.held = ComponentMask::Constant(3, 4, true);
   scene.supports.held.col(3).setConstant(false);
-  scene.supports.displacement = Eigen::Matrix3Xd::Zero(3, 4);
-  Eigen::Matrix3Xd force = Eigen::Matrix3Xd::Zero(3, 4);
+  scene.supports.displacement = Eigen::MatrixXd::Zero(3, 4);
+  Eigen::MatrixXd force = Eigen::MatrixXd::Zero(3, 4);
   force.col(3) << 1, 2, -3;
   scene.load_cases.resize(1);
   scene.load_cases[0].loads = {NodalForces{force}};

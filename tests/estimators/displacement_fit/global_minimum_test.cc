@@ -45,9 +45,9 @@ MeasuredScene MeasureShape(const std::string& shape, const std::string& load,
   Scene& scene = measured.scene;
   Measure({kTrueYoungsModulus, nu}, scene);
   if (noise > 0) {
-    const Eigen::Matrix3Xd exact = scene.load_cases[0].displacement;
+    const Eigen::MatrixXd exact = scene.load_cases[0].displacement;
     AddNoise(noise, seed, scene);
-    const Eigen::Matrix3Xd& noisy = scene.load_cases[0].displacement;
+    const Eigen::MatrixXd& noisy = scene.load_cases[0].displacement;
     measured.residual_of_truth = (noisy - exact).norm() / noisy.norm();
   }
   return measured;

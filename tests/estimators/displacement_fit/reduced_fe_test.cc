@@ -220,7 +220,7 @@ TEST(PreparedReducedFe, GivesWhatTheEstimatorGives) {
       SCOPED_TRACE(seed);
       Scene scene = exact;
       AddNoise(0.05, seed, scene);
-      std::vector<Eigen::Matrix3Xd> displacements;
+      std::vector<Eigen::MatrixXd> displacements;
       for (const LoadCase& load_case : scene.load_cases) {
         displacements.push_back(load_case.displacement);
       }
@@ -255,7 +255,7 @@ TEST(PreparedReducedFe, HuberHardlyFeelsAFewGrossOutliers) {
   for (int seed = 1; seed <= kSeeds; ++seed) {
     Scene scene = exact;
     const double sd = AddNoise(kNoise, seed, scene);
-    Eigen::Matrix3Xd& displacement = scene.load_cases[0].displacement;
+    Eigen::MatrixXd& displacement = scene.load_cases[0].displacement;
     clean += squared_error(plain.Run({displacement}));
     std::mt19937_64 generator(seed);
     std::normal_distribution<double> normal;
@@ -303,11 +303,11 @@ TEST(PreparedReducedFe, FurtherMeasurementsCostNoSolve) {
 TEST(PreparedReducedFe, RefusesWhatDoesNotFit) {
   Scene scene = SmallScene("organ");
   Measure({5e4, 0.3}, scene);
-  const Eigen::Matrix3Xd displacement = scene.load_cases[0].displacement;
+  const Eigen::MatrixXd displacement = scene.load_cases[0].displacement;
   PreparedReducedFe prepared(scene, {});
   EXPECT_THROWS_WITH(prepared.Run({}), "0 measured displacements for 1");
   EXPECT_THROWS_WITH(prepared.Run({displacement.leftCols(3)}), "3 columns");
-  Eigen::Matrix3Xd broken = displacement;
+  Eigen::MatrixXd broken = displacement;
   broken(1, 40) = std::nan("");
   EXPECT_THROWS_WITH(prepared.Run({broken}), "node 40 .y. .*not finite");
   EXPECT_THROWS_WITH(prepared.Run({0 * displacement}), "zero");

@@ -132,10 +132,10 @@ TEST(ReducedFit, HasNoSlopeAtItsMinimum) {
   const ReducedFit::Point point =
       ReducedFit(fixture.model, fixture.observed, ones, kWholeRange, {})
           .Fit(fixture.observed.Measured());
-  const DisplacementFit fit =
-      ExpandFit(fixture.model, fixture.observed,
-                IsotropicElasticity::FromComplianceScale(point.compliance_scale,
-                                                         point.poisson_ratio));
+  const DisplacementFit fit = ExpandFit(
+      fixture.model, fixture.observed,
+      IsotropicElasticity::FromComplianceScale(
+          point.compliance_scale, point.poisson_ratio, SectionModel::kSolid));
   EXPECT_NEAR(fit.residual.squaredNorm() / point.square_sum, 1, 1e-9);
   const Eigen::Vector2d slope = fit.sensitivities.transpose() * fit.residual;
   EXPECT_LT(std::abs(slope(0)),

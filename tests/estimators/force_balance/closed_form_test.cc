@@ -187,17 +187,17 @@ TEST(ClosedForm, SaysThatTheDataContradictAKnownPoissonRatio) {
 TEST(ClosedForm, DoesNotBelieveLoadsThatContradictTheData) {
   Scene exact = SmallScene("cuboid");
   MeasureDensely({5e4, 0.3}, exact);
-  const Eigen::Matrix3Xd force =
+  const Eigen::MatrixXd force =
       std::get<NodalForces>(exact.load_cases[0].loads[0]).force;
-  Eigen::Matrix3Xd at_one_node = Eigen::Matrix3Xd::Zero(3, force.cols());
+  Eigen::MatrixXd at_one_node = Eigen::MatrixXd::Zero(3, force.cols());
   at_one_node.rightCols<1>() = force.rowwise().sum();
-  Eigen::Matrix3Xd turned = force;
+  Eigen::MatrixXd turned = force;
   turned.row(0) = 0.7 * force.row(2);
-  Eigen::Matrix3Xd uneven = force;
+  Eigen::MatrixXd uneven = force;
   for (Eigen::Index node = 0; node < force.cols(); ++node) {
     uneven.col(node) *= exact.mesh.nodes(0, node);
   }
-  for (const Eigen::Matrix3Xd& wrong : {at_one_node, turned, uneven}) {
+  for (const Eigen::MatrixXd& wrong : {at_one_node, turned, uneven}) {
     for (const double noise : {0.0, 1e-2}) {
       Scene scene = exact;
       scene.load_cases[0].loads = {NodalForces{wrong}};
@@ -275,7 +275,7 @@ TEST(ClosedForm, SaysWhyThereIsNoStandardError) {
   Scene scene = testing::HeldAtBottom(mesh, mesh, {0, 0, -1});
   scene.supports.held.setConstant(true);
   scene.supports.held.col(7) << false, true, false;
-  NodalForces forces{Eigen::Matrix3Xd::Zero(3, 8)};
+  NodalForces forces{Eigen::MatrixXd::Zero(3, 8)};
   forces.force.col(7) << 1, 0, 2;
   scene.load_cases[0].loads = {forces};
   MeasureDensely({5e4, 0.3}, scene);

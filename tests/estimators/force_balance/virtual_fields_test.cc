@@ -45,9 +45,9 @@ TEST(VirtualFields, DenyLoadsOfAnotherDirection) {
   Scene scene = SmallScene("organ");
   Measure({1e3, 0.3}, scene);
   testing::AddNoise(0.01, 1, scene);
-  Eigen::Matrix3Xd& force =
+  Eigen::MatrixXd& force =
       std::get<NodalForces>(scene.load_cases[0].loads[0]).force;
-  const Eigen::Matrix3Xd permuted = force({1, 2, 0}, Eigen::all);
+  const Eigen::MatrixXd permuted = force({1, 2, 0}, Eigen::all);
   force = permuted;
   EXPECT_FALSE(VirtualFields().Run(scene, {}).IsUsable());
   EXPECT_FALSE(ClosedForm().Run(scene, {}).IsUsable());

@@ -94,7 +94,7 @@ TEST(VirtualWork, ItsFieldsSpanThePolynomials) {
     const Eigen::MatrixXd fields =
         VirtualWork(scene.mesh, scene.supports, degree).Fields();
     for (int component = 0; component < 3; ++component) {
-      Eigen::Matrix3Xd field = Eigen::Matrix3Xd::Zero(3, scene.mesh.NumNodes());
+      Eigen::MatrixXd field = Eigen::MatrixXd::Zero(3, scene.mesh.NumNodes());
       const auto x = scene.mesh.nodes.row(0).array();
       const auto y = scene.mesh.nodes.row(1).array();
       field.row(component) = x.pow(degree - 1) * y - 2 * y + 1;
@@ -134,7 +134,7 @@ TEST(VirtualWork, TellsLoadsThatMoveTheSpecimen) {
   const Eigen::Index last = scene.mesh.NumNodes() - 1;
   const Eigen::Vector3d axis =
       (scene.mesh.nodes.col(last) - scene.mesh.nodes.col(0)).normalized();
-  Eigen::Matrix3Xd forces = Eigen::Matrix3Xd::Zero(3, scene.mesh.NumNodes());
+  Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(3, scene.mesh.NumNodes());
   forces.col(last) = axis;
   EXPECT_NEAR(work.Imbalance(forces.reshaped()), 1, 1e-9);
   forces.col(0) = -axis;

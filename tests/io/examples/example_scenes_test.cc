@@ -46,8 +46,8 @@ double Volume(const Mesh& mesh) {
 }
 
 /// The outward normals times the areas of boundary facets.
-Eigen::Matrix3Xd AreaVectors(const Mesh& mesh, const Eigen::MatrixXi& facets) {
-  Eigen::Matrix3Xd areas(3, facets.cols());
+Eigen::MatrixXd AreaVectors(const Mesh& mesh, const Eigen::MatrixXi& facets) {
+  Eigen::MatrixXd areas(3, facets.cols());
   for (Eigen::Index f = 0; f < facets.cols(); ++f) {
     const Eigen::Vector3d first = mesh.nodes.col(facets(0, f));
     const Eigen::Vector3d edge1 = mesh.nodes.col(facets(1, f)) - first;
@@ -79,7 +79,7 @@ std::set<int> NodesOf(const Eigen::MatrixXi& facets) {
 /// The largest angle between the normals of two facets that share an edge.
 double LargestCrease(const Mesh& mesh) {
   const Eigen::MatrixXi facets = BoundaryFacets(mesh);
-  const Eigen::Matrix3Xd normals =
+  const Eigen::MatrixXd normals =
       AreaVectors(mesh, facets).colwise().normalized();
   double smallest_cosine = 1.0;
   for (const auto& [edge, sides] : FacetsOfEdges(facets)) {
@@ -97,7 +97,7 @@ void ExpectLoadedWhereFree(const Scene& scene, const Eigen::Vector3d& force) {
   EXPECT_EQ(load_case.observed.size(), 0);
   EXPECT_FALSE(load_case.noise_sd.has_value());
   ASSERT_EQ(load_case.loads.size(), 1U);
-  const Eigen::Matrix3Xd& forces =
+  const Eigen::MatrixXd& forces =
       std::get<NodalForces>(load_case.loads[0]).force;
   ASSERT_EQ(forces.cols(), scene.mesh.NumNodes());
   for (Eigen::Index node = 0; node < forces.cols(); ++node) {
@@ -181,7 +181,7 @@ TEST_P(CuboidSceneShapes, IsHeldAtTheBottomAndLoadedElsewhere) {
 }
 
 TEST_P(CuboidSceneShapes, IsNumberedAlongXThenYThenZ) {
-  const Eigen::Matrix3Xd& nodes = scene_.mesh.nodes;
+  const Eigen::MatrixXd& nodes = scene_.mesh.nodes;
   for (Eigen::Index node = 1; node < nodes.cols(); ++node) {
     const Eigen::Vector3d before = nodes.col(node - 1).reverse();
     const Eigen::Vector3d after = nodes.col(node).reverse();

@@ -12,7 +12,7 @@ using Kind = MeshMessage::Kind;
 
 MeshFile SomeMesh() {
   MeshFile mesh;
-  mesh.nodes = Eigen::Matrix3Xd::Random(3, 5);
+  mesh.nodes = Eigen::MatrixXd::Random(3, 5);
   mesh.tetrahedra.resize(4, 2);
   mesh.tetrahedra.transpose() << 0, 1, 2, 3, 0, 1, 2, 4;
   mesh.node_arrays = {{"u", Eigen::MatrixXd::Random(3, 5)}};

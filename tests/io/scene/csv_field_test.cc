@@ -12,14 +12,14 @@ namespace {
 
 class CsvFieldTest : public ::testing::Test {
  protected:
-  Eigen::Matrix3Xd Read(const std::string& content) const {
+  Eigen::MatrixXd Read(const std::string& content) const {
     return ReadCsvField(folder_.Write("u.csv", content), 2);
   }
   const TemporaryFolder folder_;
 };
 
 TEST_F(CsvFieldTest, ReadsBothHeadersAndTheirSpaces) {
-  Eigen::Matrix3Xd expected(3, 2);
+  Eigen::MatrixXd expected(3, 2);
   expected.transpose() << 1, -2.5, 3e-7, 0.1, 5, 6;
   EXPECT_EQ(Read("x,y,z\n1,-2.5,3e-7\n0.1,5,6\n"), expected);
   EXPECT_EQ(Read(" ux , uy,uz\r\n 1,\t-2.5,3e-7 \r\n+0.1,5,6\r\n\r\n\n"),

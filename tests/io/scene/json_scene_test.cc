@@ -169,7 +169,7 @@ TEST_F(JsonSceneTest, ReadsNodalForces) {
   const auto force = [&](const std::string& load) {
     return std::get<NodalForces>(ReadLoad(load)).force;
   };
-  Eigen::Matrix3Xd expected = Eigen::Matrix3Xd::Zero(3, 5);
+  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(3, 5);
   expected.col(2) = expected.col(3) = Eigen::Vector3d(0, 0, -30);
   EXPECT_EQ(
       force(

@@ -20,7 +20,7 @@ using ::testing::IsEmpty;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-const Eigen::Matrix3Xd& ForceOf(const LoadCase& load_case) {
+const Eigen::MatrixXd& ForceOf(const LoadCase& load_case) {
   return std::get<NodalForces>(load_case.loads.at(0)).force;
 }
 

@@ -43,7 +43,7 @@ TEST(VtuWriterTest, SceneComesBackAsItWas) {
   const TemporaryFolder folder;
   const auto path = folder.Path() / "scene.vtu";
   Scene scene = TwoTetrahedra();
-  scene.load_cases[0].loads.push_back(BodyForce{{0, 0, -9810}});
+  scene.load_cases[0].loads.push_back(BodyForce{Eigen::Vector3d(0, 0, -9810)});
   scene.load_cases[0].loads.push_back(Pressure{BoundaryFacets(scene.mesh), 3});
   WriteVtu(path, scene.mesh, SceneFields(scene));
   const Scene read = ReadScene({path}, Measurement::kRequired).scene;

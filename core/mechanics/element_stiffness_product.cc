@@ -1,0 +1,67 @@
+#include "elastimate/core/mechanics/element_stiffness_product.h"
+
+#include <vector>
+
+#include "elastimate/core/mesh/shape_functions.h"
+
+namespace elastimate {
+namespace {
+
+template <ElementKind kKind>
+using NodeVectors = Eigen::Matrix<double, ElementSizes<kKind>::kDimension,
+                                  ElementSizes<kKind>::kNodes>;
+
+// Adds to the values of the nodes of an element.
+template <ElementKind kKind>
+void Scatter(const NodeVectors<kKind>& of_element, const int* nodes,
+             double* values) {
+  constexpr int kDimension = ElementSizes<kKind>::kDimension;
+  for (int i = 0; i < ElementSizes<kKind>::kNodes; ++i) {
+    Eigen::Map<Eigen::Matrix<double, kDimension, 1>>(
+        values + kDimension * Eigen::Index(nodes[i])) += of_element.col(i);
+  }
+}
+
+template <ElementKind kKind>
+void AddOfKind(const Mesh& mesh, const Eigen::MatrixXd& displacement,
+               Eigen::MatrixXd& a, Eigen::MatrixXd& p) {
+  constexpr int kDimension = ElementSizes<kKind>::kDimension;
+  const auto& rule = StiffnessRule<kKind>();
+  std::vector<ElementPoint<kKind>> points;
+  points.reserve(rule.size());
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    const auto vertices = GatherVertices<kKind>(mesh, e);
+    points.clear();
+    for (const ShapeFunctions<kKind>& at : rule) {
+      points.emplace_back(vertices, at, mesh.section.thickness);
+    }
+    const int* const nodes = mesh.elements.col(e).data();
+    for (Eigen::Index column = 0; column < displacement.cols(); ++column) {
+      const NodeVectors<kKind> u =
+          GatherNodes<kKind>(mesh, e, displacement.col(column).data());
+      NodeVectors<kKind> of_strain = NodeVectors<kKind>::Zero();
+      NodeVectors<kKind> of_trace = NodeVectors<kKind>::Zero();
+      for (const ElementPoint<kKind>& point : points) {
+        Eigen::Matrix<double, kDimension, kDimension> gradient;
+        gradient.noalias() = u * point.gradient.transpose();
+        const double trace = point.volume * gradient.trace();
+        const Eigen::Matrix<double, kDimension, kDimension> strain =
+            (point.volume / 2) * (gradient + gradient.transpose());
+        of_strain.noalias() += strain * point.gradient;
+        of_trace.noalias() += trace * point.gradient;
+      }
+      Scatter<kKind>(of_strain, nodes, a.col(column).data());
+      Scatter<kKind>(of_trace, nodes, p.col(column).data());
+    }
+  }
+}
+
+}  // namespace
+
+void AddStrainProducts(const Mesh& mesh, const Eigen::MatrixXd& displacement,
+                       Eigen::MatrixXd& a, Eigen::MatrixXd& p) {
+  VisitElementKind(
+      mesh.kind, [&](auto kind) { AddOfKind<kind>(mesh, displacement, a, p); });
+}
+
+}  // namespace elastimate

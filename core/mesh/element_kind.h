@@ -1,0 +1,68 @@
+#ifndef ELASTIMATE_CORE_MESH_ELEMENT_KIND_H_
+#define ELASTIMATE_CORE_MESH_ELEMENT_KIND_H_
+
+#include <array>
+#include <string_view>
+#include <vector>
+
+namespace elastimate {
+
+/// The finite elements that a mesh may be made of.  Their nodes are in the
+/// order of VTK.
+enum class ElementKind {
+  kTet4,   ///< The linear tetrahedron.
+  kTet10,  ///< The quadratic tetrahedron with straight edges.
+  kHex8,   ///< The trilinear hexahedron.
+  kTri3,   ///< The linear triangle.
+  kTri6,   ///< The quadratic triangle with straight edges.
+  kQuad4,  ///< The bilinear quadrilateral.
+};
+
+inline constexpr std::array<ElementKind, 6> kElementKinds = {
+    ElementKind::kTet4, ElementKind::kTet10, ElementKind::kHex8,
+    ElementKind::kTri3, ElementKind::kTri6,  ElementKind::kQuad4};
+
+/// How the nodes of an element lie to each other.
+struct ElementTopology {
+  std::string_view name;    ///< "tet4" and so on.
+  std::string_view shape;   ///< "tetrahedron" and so on.
+  std::string_view shapes;  ///< "tetrahedra" and so on.
+  int dimension;            ///< 2 or 3.
+  int order;  ///< 1 for (bi-, tri-)linear shape functions, else 2.
+  int num_nodes;
+  /// The vertices are the first nodes of an element.
+  int num_vertices;
+  /// The vertices at either end of each edge; where the order is 2, the node
+  /// in the middle of edge i is node num_vertices + i.
+  std::vector<std::array<int, 2>> edges;
+  /// The vertices of each face (in two dimensions of each edge) of an element
+  /// of positive orientation, counter-clockwise seen from outside.
+  std::vector<std::vector<int>> faces;
+  /// For each vertex the ends of `dimension` edges from it, right-handed in an
+  /// element of positive orientation: an element is flat or folded where these
+  /// are.  One vertex will do for simplices.
+  std::vector<std::vector<int>> corners;
+
+  int NumVerticesOfFace() const { return static_cast<int>(faces[0].size()); }
+  /// Vertices, and where the order is 2 the middle of each edge.
+  int NumNodesOfFace() const {
+    return order == 1 ? NumVerticesOfFace()
+                      : NumVerticesOfFace() + (dimension == 3 ? 3 : 1);
+  }
+  /// The node in the middle of the edge between two vertices; -1 where there
+  /// is none.
+  int MidEdgeNode(int a, int b) const;
+};
+
+const ElementTopology& TopologyOf(ElementKind kind);
+
+/// The kind of order 2 with the same vertices.  Precondition: a simplex of
+/// order 1.
+ElementKind QuadraticKind(ElementKind kind);
+
+/// Whether there is a QuadraticKind.
+bool HasQuadraticKind(ElementKind kind);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_MESH_ELEMENT_KIND_H_

@@ -1,0 +1,160 @@
+#include "elastimate/core/mesh/facets.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <tuple>
+#include <vector>
+
+#include "elastimate/core/mesh/shape_functions.h"
+
+namespace elastimate {
+namespace {
+
+struct Face {
+  std::array<int, 4> sorted;  // Vertices; -1 where there are fewer.
+  Eigen::Index element;
+  int index;
+};
+
+std::vector<Face> FacesOf(const Mesh& mesh) {
+  const auto& of_element = mesh.Topology().faces;
+  std::vector<Face> faces;
+  faces.reserve(of_element.size() * mesh.NumElements());
+  for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
+    for (std::size_t i = 0; i < of_element.size(); ++i) {
+      Face face = {{-1, -1, -1, -1}, element, static_cast<int>(i)};
+      for (std::size_t k = 0; k < of_element[i].size(); ++k) {
+        face.sorted[k] = mesh.elements(of_element[i][k], element);
+      }
+      std::sort(face.sorted.begin(), face.sorted.end());
+      faces.push_back(face);
+    }
+  }
+  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
+    return std::tie(a.sorted, a.element) < std::tie(b.sorted, b.element);
+  });
+  return faces;
+}
+
+// Those that no other element has.
+std::vector<Face> OuterFaces(const Mesh& mesh) {
+  const std::vector<Face> faces = FacesOf(mesh);
+  std::vector<Face> outer;
+  for (std::size_t i = 0; i < faces.size();) {
+    std::size_t end = i + 1;
+    while (end < faces.size() && faces[end].sorted == faces[i].sorted) {
+      ++end;
+    }
+    if (end == i + 1) {
+      outer.push_back(faces[i]);
+    }
+    i = end;
+  }
+  std::sort(outer.begin(), outer.end(), [](const Face& a, const Face& b) {
+    return std::tie(a.element, a.index) < std::tie(b.element, b.index);
+  });
+  return outer;
+}
+
+// The determinant of the edges from the first corner.
+double Orientation(const Mesh& mesh, Eigen::Index element) {
+  const std::vector<int>& corner = mesh.Topology().corners[0];
+  Eigen::MatrixXd edges(mesh.Dimension(), mesh.Dimension());
+  for (int k = 0; k < mesh.Dimension(); ++k) {
+    edges.col(k) = mesh.nodes.col(mesh.elements(corner[k + 1], element)) -
+                   mesh.nodes.col(mesh.elements(corner[0], element));
+  }
+  return mesh.Dimension() == 3 ? Eigen::Matrix3d(edges).determinant()
+                               : Eigen::Matrix2d(edges).determinant();
+}
+
+FacetWeights WeightsOfTriangle(const Mesh& mesh,
+                               const Eigen::Ref<const Eigen::VectorXi>& facet) {
+  const Eigen::Vector3d origin = mesh.nodes.col(facet(0));
+  const Eigen::Vector3d e1 = mesh.nodes.col(facet(1)) - origin;
+  const Eigen::Vector3d e2 = mesh.nodes.col(facet(2)) - origin;
+  const Eigen::Vector3d area_vector = e1.cross(e2) / 2;
+  // The vertices of a quadratic triangle get nothing.
+  Eigen::VectorXd share = Eigen::VectorXd::Zero(facet.size());
+  share.tail<3>().setConstant(1.0 / 3);
+  return {area_vector.norm() * share, area_vector * share.transpose()};
+}
+
+FacetWeights WeightsOfQuadrilateral(
+    const Mesh& mesh, const Eigen::Ref<const Eigen::VectorXi>& facet) {
+  FacetWeights weights = {Eigen::VectorXd::Zero(4),
+                          Eigen::MatrixXd::Zero(3, 4)};
+  const Eigen::Matrix<double, 3, 4> x = mesh.nodes(Eigen::all, facet);
+  for (const auto& at : IntegrationRule<ElementKind::kQuad4>()) {
+    const Eigen::Matrix<double, 3, 2> tangents = x * at.gradient.transpose();
+    const Eigen::Vector3d area_vector =
+        at.weight * tangents.col(0).cross(tangents.col(1));
+    weights.area += area_vector.norm() * at.value;
+    weights.area_vector += area_vector * at.value.transpose();
+  }
+  return weights;
+}
+
+FacetWeights WeightsOfEdge(const Mesh& mesh,
+                           const Eigen::Ref<const Eigen::VectorXi>& facet) {
+  const Eigen::Vector2d edge =
+      mesh.nodes.col(facet(1)) - mesh.nodes.col(facet(0));
+  const Eigen::Vector2d area_vector =
+      mesh.section.thickness * Eigen::Vector2d(edge.y(), -edge.x());
+  Eigen::VectorXd share(facet.size());
+  if (facet.size() == 2) {
+    share << 0.5, 0.5;
+  } else {
+    share << 1.0 / 6, 1.0 / 6, 4.0 / 6;
+  }
+  return {area_vector.norm() * share, area_vector * share.transpose()};
+}
+
+}  // namespace
+
+Eigen::MatrixXi BoundaryFacets(const Mesh& mesh) {
+  const ElementTopology& topology = mesh.Topology();
+  const std::vector<Face> outer = OuterFaces(mesh);
+  const int num_vertices = topology.NumVerticesOfFace();
+  Eigen::MatrixXi facets(topology.NumNodesOfFace(), outer.size());
+  for (std::size_t i = 0; i < outer.size(); ++i) {
+    const Face& face = outer[i];
+    std::vector<int> vertices = topology.faces[face.index];
+    if (Orientation(mesh, face.element) < 0) {
+      std::reverse(vertices.begin() + (num_vertices == 2 ? 0 : 1),
+                   vertices.end());
+    }
+    for (int k = 0; k < num_vertices; ++k) {
+      facets(k, i) = mesh.elements(vertices[k], face.element);
+    }
+    for (int k = num_vertices; k < facets.rows(); ++k) {
+      const int a = vertices[k - num_vertices];
+      const int b = vertices[(k - num_vertices + 1) % num_vertices];
+      facets(k, i) = mesh.elements(topology.MidEdgeNode(a, b), face.element);
+    }
+  }
+  return facets;
+}
+
+FacetWeights WeightsOfFacet(const Mesh& mesh,
+                            const Eigen::Ref<const Eigen::VectorXi>& facet) {
+  switch (mesh.Topology().NumVerticesOfFace()) {
+    case 2:
+      return WeightsOfEdge(mesh, facet);
+    case 3:
+      return WeightsOfTriangle(mesh, facet);
+    default:
+      return WeightsOfQuadrilateral(mesh, facet);
+  }
+}
+
+double FacetArea(const Mesh& mesh, const Eigen::MatrixXi& facets) {
+  double area = 0;
+  for (Eigen::Index facet = 0; facet < facets.cols(); ++facet) {
+    area += WeightsOfFacet(mesh, facets.col(facet)).area.sum();
+  }
+  return area;
+}
+
+}  // namespace elastimate

@@ -1,0 +1,40 @@
+#ifndef ELASTIMATE_CORE_MESH_FACETS_H_
+#define ELASTIMATE_CORE_MESH_FACETS_H_
+
+#include <Eigen/Core>
+
+#include "elastimate/core/mesh/mesh.h"
+
+namespace elastimate {
+
+// Facets are faces of elements, in two dimensions edges:
+// num_nodes_of_face x num_facets node indices, vertices first, then the middle
+// of the edges 01, 12, 20 of a triangle or of the edge 01.
+
+/// The outer surface: the faces that belong to one element only, each
+/// counter-clockwise seen from outside, so that in three dimensions
+/// (x1 - x0) x (x2 - x0) points outwards, and in two the outside is on the
+/// right of the way from x0 to x1.  In the order of the elements that own them.
+/// O(num_elements).
+Eigen::MatrixXi BoundaryFacets(const Mesh& mesh);
+
+/// What a facet gives to its nodes of a uniform load.
+struct FacetWeights {
+  /// The integral of N_i over the facet, for each of its nodes [length^2].
+  Eigen::VectorXd area;
+  /// The integral of N_i n, n the outward normal: dimension x num_nodes_of_face
+  /// [length^2].
+  Eigen::MatrixXd area_vector;
+};
+
+/// Areas contain the thickness of a planar section.  Exact for straight edges
+/// and flat faces; 4 points in a quadrilateral.
+FacetWeights WeightsOfFacet(const Mesh& mesh,
+                            const Eigen::Ref<const Eigen::VectorXi>& facet);
+
+/// The area of facets with nodes in range [length^2].  O(num_facets).
+double FacetArea(const Mesh& mesh, const Eigen::MatrixXi& facets);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_MESH_FACETS_H_

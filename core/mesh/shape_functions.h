@@ -1,0 +1,163 @@
+#ifndef ELASTIMATE_CORE_MESH_SHAPE_FUNCTIONS_H_
+#define ELASTIMATE_CORE_MESH_SHAPE_FUNCTIONS_H_
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+#include <type_traits>
+#include <vector>
+
+#include "elastimate/core/mesh/element_kind.h"
+#include "elastimate/core/mesh/mesh.h"
+
+namespace elastimate {
+
+/// Sizes of an element kind that are known to the compiler.
+template <ElementKind kKind>
+struct ElementSizes;
+template <>
+struct ElementSizes<ElementKind::kTet4> {
+  static constexpr int kDimension = 3, kNodes = 4, kVertices = 4;
+};
+template <>
+struct ElementSizes<ElementKind::kTet10> {
+  static constexpr int kDimension = 3, kNodes = 10, kVertices = 4;
+};
+template <>
+struct ElementSizes<ElementKind::kHex8> {
+  static constexpr int kDimension = 3, kNodes = 8, kVertices = 8;
+};
+template <>
+struct ElementSizes<ElementKind::kTri3> {
+  static constexpr int kDimension = 2, kNodes = 3, kVertices = 3;
+};
+template <>
+struct ElementSizes<ElementKind::kTri6> {
+  static constexpr int kDimension = 2, kNodes = 6, kVertices = 3;
+};
+template <>
+struct ElementSizes<ElementKind::kQuad4> {
+  static constexpr int kDimension = 2, kNodes = 4, kVertices = 4;
+};
+
+/// The shape functions of an element kind at a point of its reference element.
+template <ElementKind kKind>
+struct ShapeFunctions {
+  using Sizes = ElementSizes<kKind>;
+  Eigen::Matrix<double, Sizes::kNodes, 1> value;  ///< N_i.
+  /// dN_i / dxi, dimension x num_nodes.
+  Eigen::Matrix<double, Sizes::kDimension, Sizes::kNodes> gradient;
+  /// Those of the vertices alone, of order 1: the position in the element is
+  /// sum_i M_i x_i, since edges are straight.
+  Eigen::Matrix<double, Sizes::kVertices, 1> vertex_value;
+  Eigen::Matrix<double, Sizes::kDimension, Sizes::kVertices> vertex_gradient;
+  double weight;  ///< Of this point in the rule that it is part of.
+};
+
+/// At the reference coordinates xi: those of the vertices of a tetrahedron are
+/// (0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), of a hexahedron +-1, and alike
+/// in two dimensions.
+template <ElementKind kKind>
+ShapeFunctions<kKind> ShapeFunctionsAt(
+    const Eigen::Matrix<double, ElementSizes<kKind>::kDimension, 1>& xi,
+    double weight);
+
+/// Points and weights that integrate over the reference element: products of
+/// two linear functions exactly over a simplex (4 points in a tetrahedron, 3 in
+/// a triangle), and cubics along each axis of a hexahedron (8 points) or a
+/// quadrilateral (4) [Zienkiewicz & Taylor, The Finite Element Method].
+template <ElementKind kKind>
+const std::vector<ShapeFunctions<kKind>>& IntegrationRule();
+
+/// The points that are enough for the stiffness: one in a linear simplex, whose
+/// strain is constant, else those of IntegrationRule.
+template <ElementKind kKind>
+const std::vector<ShapeFunctions<kKind>>& StiffnessRule();
+
+/// The vertices; their weights are those of IntegrationRule in sum, shared
+/// equally.
+template <ElementKind kKind>
+const std::vector<ShapeFunctions<kKind>>& VertexRule();
+
+/// The positions of the vertices of an element, dimension x num_vertices.
+template <ElementKind kKind>
+Eigen::Matrix<double, ElementSizes<kKind>::kDimension,
+              ElementSizes<kKind>::kVertices>
+GatherVertices(const Mesh& mesh, Eigen::Index element) {
+  using Sizes = ElementSizes<kKind>;
+  Eigen::Matrix<double, Sizes::kDimension, Sizes::kVertices> x;
+  const int* const nodes = mesh.elements.col(element).data();
+  for (int i = 0; i < Sizes::kVertices; ++i) {
+    x.col(i) = Eigen::Map<const Eigen::Matrix<double, Sizes::kDimension, 1>>(
+        mesh.nodes.data() + Sizes::kDimension * Eigen::Index(nodes[i]));
+  }
+  return x;
+}
+
+/// What the nodes of an element have of a vector of dimension * node +
+/// component, dimension x num_nodes.
+template <ElementKind kKind>
+Eigen::Matrix<double, ElementSizes<kKind>::kDimension,
+              ElementSizes<kKind>::kNodes>
+GatherNodes(const Mesh& mesh, Eigen::Index element, const double* values) {
+  using Sizes = ElementSizes<kKind>;
+  Eigen::Matrix<double, Sizes::kDimension, Sizes::kNodes> u;
+  const int* const nodes = mesh.elements.col(element).data();
+  for (int i = 0; i < Sizes::kNodes; ++i) {
+    u.col(i) = Eigen::Map<const Eigen::Matrix<double, Sizes::kDimension, 1>>(
+        values + Sizes::kDimension * Eigen::Index(nodes[i]));
+  }
+  return u;
+}
+
+/// An element of a mesh at one of the points of a rule.
+template <ElementKind kKind>
+struct ElementPoint {
+  using Sizes = ElementSizes<kKind>;
+  /// grad N_i, dimension x num_nodes [1 / length].
+  Eigen::Matrix<double, Sizes::kDimension, Sizes::kNodes> gradient;
+  /// |det dx/dxi| times the weight, and the thickness of a planar section: the
+  /// volume that the point stands for [length^3].
+  double volume;
+
+  /// `vertices` are those of GatherVertices, `thickness` is 1 in three
+  /// dimensions.
+  ElementPoint(const Eigen::Matrix<double, Sizes::kDimension, Sizes::kVertices>&
+                   vertices,
+               const ShapeFunctions<kKind>& at, double thickness) {
+    const Eigen::Matrix<double, Sizes::kDimension, Sizes::kDimension> jacobian =
+        vertices * at.vertex_gradient.transpose();
+    gradient.noalias() = jacobian.inverse().transpose() * at.gradient;
+    volume = std::abs(jacobian.determinant()) * at.weight * thickness;
+  }
+};
+
+/// Calls `function` with the std::integral_constant of a kind.
+template <class Function>
+decltype(auto) VisitElementKind(ElementKind kind, Function&& function) {
+  switch (kind) {
+    case ElementKind::kTet4:
+      return function(
+          std::integral_constant<ElementKind, ElementKind::kTet4>());
+    case ElementKind::kTet10:
+      return function(
+          std::integral_constant<ElementKind, ElementKind::kTet10>());
+    case ElementKind::kHex8:
+      return function(
+          std::integral_constant<ElementKind, ElementKind::kHex8>());
+    case ElementKind::kTri3:
+      return function(
+          std::integral_constant<ElementKind, ElementKind::kTri3>());
+    case ElementKind::kTri6:
+      return function(
+          std::integral_constant<ElementKind, ElementKind::kTri6>());
+    case ElementKind::kQuad4:
+      break;
+  }
+  return function(std::integral_constant<ElementKind, ElementKind::kQuad4>());
+}
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_MESH_SHAPE_FUNCTIONS_H_
