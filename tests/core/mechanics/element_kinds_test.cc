@@ -1,0 +1,254 @@
+// Of every element kind and section: the stiffness against the textbook, the
+// patch test, energies and loads.
+
+#include "tests/element_kinds.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "elastimate/core/equilibrium/forward_model.h"
+#include "elastimate/core/mechanics/stiffness_assembly.h"
+#include "elastimate/core/mechanics/stiffness_product.h"
+#include "elastimate/core/mechanics/stiffness_traces.h"
+#include "elastimate/core/mechanics/strain_energy.h"
+#include "elastimate/core/mesh/facets.h"
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/rigid_motion.h"
+#include "elastimate/core/solvers/multigrid.h"
+#include "tests/core/random_values.h"
+
+namespace elastimate {
+namespace {
+
+using testing::AllKindsOfSections;
+using testing::HookeMatrixOf;
+using testing::KindOfSection;
+using testing::MeshOfKind;
+using testing::RandomMatrix;
+using testing::SceneOfKind;
+using testing::TextbookStiffness;
+using testing::TextbookVolumes;
+
+class ElementKinds : public ::testing::TestWithParam<KindOfSection> {
+ protected:
+  ElementKinds()
+      : scene_(SceneOfKind(GetParam())),
+        mesh_(scene_.mesh),
+        hooke_(HookeMatrixOf(elasticity_, mesh_.section.model)) {}
+
+  double Scale() const {
+    return elasticity_.StiffnessScale(mesh_.section.model);
+  }
+
+  // A displacement that is linear in the position, (dimension x n).
+  Eigen::MatrixXd LinearField(const Eigen::MatrixXd& gradient) const {
+    return gradient * mesh_.nodes;
+  }
+
+  // Whether each node is on the surface.
+  std::vector<bool> OnSurface() const {
+    std::vector<bool> on_surface(mesh_.NumNodes(), false);
+    const Eigen::MatrixXi facets = BoundaryFacets(mesh_);
+    for (const int node : facets.reshaped()) {
+      on_surface[node] = true;
+    }
+    return on_surface;
+  }
+
+  IsotropicElasticity elasticity_ = {2.5, 0.3};
+  Scene scene_;
+  const Mesh& mesh_;
+  Eigen::MatrixXd hooke_;
+};
+
+TEST_P(ElementKinds, AreAValidScene) {
+  EXPECT_NO_THROW(ValidateScene(scene_));
+  EXPECT_NEAR(ElementVolumes(mesh_).sum(), TextbookVolumes(mesh_).sum(), 1e-12);
+}
+
+TEST_P(ElementKinds, MultiplyAsTheTextbook) {
+  const Eigen::MatrixXd u = RandomMatrix(mesh_.NumDofs(), 3, 1);
+  const StiffnessProducts products = MultiplyStiffnessBasis(mesh_, u);
+  const Eigen::MatrixXd expected = TextbookStiffness(mesh_, hooke_) * u;
+  EXPECT_TRUE((Scale() * (products.h + elasticity_.poisson_ratio * products.j))
+                  .isApprox(expected, 1e-12));
+}
+
+// H alone is the stiffness at nu = 0 and s = 1.
+TEST_P(ElementKinds, SplitTheStiffnessIntoHAndJ) {
+  const Eigen::MatrixXd u = RandomMatrix(mesh_.NumDofs(), 1, 2);
+  const StiffnessProducts products = MultiplyStiffnessBasis(mesh_, u);
+  const Eigen::MatrixXd h =
+      TextbookStiffness(mesh_, HookeMatrixOf({1, 0}, mesh_.section.model));
+  EXPECT_TRUE(products.h.isApprox(h * u, 1e-12));
+}
+
+TEST_P(ElementKinds, AssembleAsTheTextbook) {
+  const DegreesOfFreedom dofs(scene_.supports);
+  const StiffnessAssembly assembly(mesh_, dofs);
+  const Eigen::VectorXd values =
+      Scale() * assembly.Combine(elasticity_.poisson_ratio);
+  const Eigen::MatrixXd all = TextbookStiffness(mesh_, hooke_);
+  const Eigen::MatrixXd free = all(dofs.free, dofs.free);
+  const SymmetricPattern& pattern = assembly.Pattern();
+  Eigen::MatrixXd rest = free.triangularView<Eigen::Lower>();
+  for (std::int64_t j = 0; j < pattern.Size(); ++j) {
+    for (std::int64_t k = pattern.column_start[j];
+         k < pattern.column_start[j + 1]; ++k) {
+      rest(pattern.row[k], j) -= values(k);
+    }
+  }
+  EXPECT_LT(rest.cwiseAbs().maxCoeff(), 1e-12 * free.cwiseAbs().maxCoeff());
+}
+
+TEST_P(ElementKinds, HaveTheTracesOfTheirMatrices) {
+  const DegreesOfFreedom dofs(scene_.supports);
+  const StiffnessProducts all = MultiplyStiffnessBasis(
+      mesh_, Eigen::MatrixXd::Identity(mesh_.NumDofs(), mesh_.NumDofs()));
+  const Eigen::MatrixXd h = all.h(dofs.free, dofs.free);
+  const Eigen::MatrixXd j = all.j(dofs.free, dofs.free);
+  const Eigen::Matrix2d traces = StiffnessTraces(mesh_, dofs);
+  EXPECT_NEAR(traces(0, 0) / h.squaredNorm(), 1, 1e-12);
+  EXPECT_NEAR(traces(0, 1) / h.cwiseProduct(j).sum(), 1, 1e-12);
+  EXPECT_NEAR(traces(1, 1) / j.squaredNorm(), 1, 1e-12);
+}
+
+TEST_P(ElementKinds, DoNotResistRigidMotions) {
+  const Eigen::Index dimension = mesh_.Dimension();
+  Eigen::MatrixXd motions(mesh_.NumDofs(), NumRigidMotions(int(dimension)));
+  for (Eigen::Index node = 0; node < mesh_.NumNodes(); ++node) {
+    motions.middleRows(dimension * node, dimension) =
+        RigidMotionsAt(mesh_.nodes.col(node));
+  }
+  const StiffnessProducts products = MultiplyStiffnessBasis(mesh_, motions);
+  EXPECT_LT(products.h.cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_LT(products.j.cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_EQ(motions.cols(), dimension == 3 ? 6 : 3);
+}
+
+// The patch test: where the surface moves linearly, so does the inside.
+TEST_P(ElementKinds, PassThePatchTest) {
+  const Eigen::Index dimension = mesh_.Dimension();
+  const Eigen::MatrixXd u = LinearField(RandomMatrix(dimension, dimension, 3));
+  Supports supports;
+  supports.held = ComponentMask::Constant(dimension, mesh_.NumNodes(), false);
+  const std::vector<bool> on_surface = OnSurface();
+  for (Eigen::Index node = 0; node < mesh_.NumNodes(); ++node) {
+    supports.held.col(node).setConstant(on_surface[node]);
+  }
+  ASSERT_FALSE(supports.held.all());
+  supports.displacement = u;
+  ForwardModel model(mesh_, supports,
+                     Eigen::MatrixXd::Zero(mesh_.NumDofs(), 1));
+  ASSERT_TRUE(model.SetPoissonRatio(elasticity_.poisson_ratio));
+  EXPECT_TRUE(model.Displacement(elasticity_.youngs_modulus)
+                  .isApprox(u.reshaped(), 1e-12));
+}
+
+TEST_P(ElementKinds, StoreTheWorkOfTheirForces) {
+  const Eigen::MatrixXd u =
+      RandomMatrix(mesh_.Dimension(), mesh_.NumNodes(), 4);
+  const Eigen::VectorXd density = StrainEnergyDensity(mesh_, elasticity_, u);
+  const Eigen::VectorXd all = u.reshaped();
+  EXPECT_NEAR(density.dot(ElementVolumes(mesh_)) /
+                  (all.dot(TextbookStiffness(mesh_, hooke_) * all) / 2),
+              1, 1e-12);
+}
+
+TEST_P(ElementKinds, MissNothingOfALinearField) {
+  const Eigen::Index dimension = mesh_.Dimension();
+  const Eigen::MatrixXd linear =
+      LinearField(RandomMatrix(dimension, dimension, 5));
+  EXPECT_LT(DiscretizationError(mesh_, elasticity_, linear.reshaped()), 1e-25);
+  // A cubic is more than any of them has, beyond all rounding.
+  const Eigen::MatrixXd cubic = mesh_.nodes.array().cube();
+  EXPECT_GT(DiscretizationError(mesh_, elasticity_, cubic.reshaped()), 1e-6);
+}
+
+TEST_P(ElementKinds, SpreadABodyForceAsTheTextbook) {
+  const Eigen::VectorXd density = RandomMatrix(mesh_.Dimension(), 1, 6);
+  const Eigen::MatrixXd force = AssembleLoads(mesh_, {BodyForce{density}});
+  EXPECT_TRUE(
+      force.isApprox(density * TextbookVolumes(mesh_).transpose(), 1e-12));
+  const LoadResultant resultant = ResultantOf(mesh_, BodyForce{density});
+  EXPECT_TRUE(resultant.force.isApprox(force.rowwise().sum(), 1e-12));
+}
+
+// By Gauss's theorem: a pressure p does the work -p dV on any motion, here
+// u = A x, and is in balance.
+TEST_P(ElementKinds, BalanceAPressureAllAround) {
+  const Eigen::Index dimension = mesh_.Dimension();
+  const Eigen::MatrixXd force =
+      AssembleLoads(mesh_, {Pressure{BoundaryFacets(mesh_), 2}});
+  EXPECT_LT(force.rowwise().sum().cwiseAbs().maxCoeff(), 1e-13);
+  const Eigen::MatrixXd gradient = RandomMatrix(dimension, dimension, 7);
+  // Faces of hexahedra are curved, which quadratic terms in them feel.
+  const double volume = TextbookVolumes(mesh_).sum();
+  EXPECT_NEAR(force.cwiseProduct(LinearField(gradient)).sum(),
+              -2 * gradient.trace() * volume, 1e-12);
+}
+
+TEST_P(ElementKinds, SpreadATractionOverItsArea) {
+  const Eigen::MatrixXi facets = BoundaryFacets(mesh_);
+  const Eigen::VectorXd traction = RandomMatrix(mesh_.Dimension(), 1, 8);
+  const Eigen::MatrixXd force =
+      AssembleLoads(mesh_, {Traction{facets, traction}});
+  const double area = FacetArea(mesh_, facets);
+  EXPECT_TRUE(force.rowwise().sum().isApprox(area * traction, 1e-12));
+  const Eigen::MatrixXd of_total =
+      AssembleLoads(mesh_, {SurfaceForce{facets, area * traction}});
+  EXPECT_TRUE(of_total.isApprox(force, 1e-12));
+}
+
+TEST_P(ElementKinds, AreHeldOnlyAsAWhole) {
+  EXPECT_EQ(WhyNotHeld(mesh_, scene_.supports), "");
+  Supports loose = scene_.supports;
+  loose.held.setConstant(false);
+  loose.held.col(0).setConstant(true);
+  EXPECT_NE(WhyNotHeld(mesh_, loose).find("rotate"), std::string::npos);
+}
+
+// Derivatives by E and nu against finite differences.
+TEST_P(ElementKinds, HaveTheSensitivitiesOfTheirDisplacements) {
+  ForwardModel model(mesh_, scene_.supports, AssembleLoadCases(scene_));
+  const auto displacement = [&](double log_youngs, double nu) {
+    EXPECT_TRUE(model.SetPoissonRatio(nu));
+    return Eigen::MatrixXd(model.Displacement(std::exp(log_youngs)));
+  };
+  const double h = 1e-5;
+  const double log_youngs = std::log(2.5);
+  const Eigen::MatrixXd by_youngs =
+      (displacement(log_youngs + h, 0.3) - displacement(log_youngs - h, 0.3)) /
+      (2 * h);
+  const Eigen::MatrixXd by_poisson =
+      (displacement(log_youngs, 0.3 + h) - displacement(log_youngs, 0.3 - h)) /
+      (2 * h);
+  ASSERT_TRUE(model.SetPoissonRatio(0.3));
+  const DisplacementSensitivities sensitivities = model.Sensitivities(2.5);
+  EXPECT_TRUE(sensitivities.log_youngs_modulus.isApprox(by_youngs, 1e-8));
+  EXPECT_TRUE(sensitivities.poisson_ratio.isApprox(by_poisson, 1e-7));
+}
+
+TEST_P(ElementKinds, AreSolvedByMultigridToo) {
+  if (!HasMultigrid()) {
+    GTEST_SKIP() << WhyNoMultigrid();
+  }
+  const Eigen::MatrixXd force = AssembleLoadCases(scene_);
+  ForwardModel direct(mesh_, scene_.supports, force, SolverKind::kCholesky);
+  ForwardModel iterative(mesh_, scene_.supports, force, SolverKind::kMultigrid);
+  ASSERT_TRUE(direct.SetPoissonRatio(0.3));
+  ASSERT_TRUE(iterative.SetPoissonRatio(0.3));
+  EXPECT_EQ(iterative.Notice(), "");
+  EXPECT_TRUE(
+      iterative.Displacement(2.5).isApprox(direct.Displacement(2.5), 1e-6));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ElementKinds,
+                         ::testing::ValuesIn(AllKindsOfSections()),
+                         [](const auto& info) {
+                           return testing::NameOf(info.param);
+                         });
+
+}  // namespace
+}  // namespace elastimate

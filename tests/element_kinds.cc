@@ -1,0 +1,401 @@
+#include "tests/element_kinds.h"
+
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/quadratic_scene.h"
+#include "tests/dense_reference.h"
+#include "tests/scenes.h"
+
+namespace elastimate::testing {
+namespace {
+
+bool IsSimplex(ElementKind kind) {
+  return kind != ElementKind::kHex8 && kind != ElementKind::kQuad4;
+}
+
+// A grid of hexahedra of unit size.
+Mesh HexahedronGrid(int cells) {
+  Mesh mesh;
+  mesh.kind = ElementKind::kHex8;
+  const int n = cells + 1;
+  mesh.nodes.resize(3, n * n * n);
+  for (int i = 0; i < mesh.nodes.cols(); ++i) {
+    mesh.nodes.col(i) =
+        Eigen::Vector3d(i % n, i / n % n, i / (n * n)) / double(cells);
+  }
+  mesh.elements.resize(8, cells * cells * cells);
+  for (int e = 0; e < mesh.elements.cols(); ++e) {
+    const int first =
+        e % cells + n * (e / cells % cells) + n * n * (e / (cells * cells));
+    const int up = n * n;
+    mesh.elements.col(e) << first, first + 1, first + n + 1, first + n,
+        first + up, first + up + 1, first + up + n + 1, first + up + n;
+    if (e % 2 == 1) {
+      const Eigen::VectorXi nodes = mesh.elements.col(e);
+      mesh.elements.col(e) << nodes.tail(4), nodes.head(4);
+    }
+  }
+  return mesh;
+}
+
+Mesh QuadrilateralGrid(int cells) {
+  Mesh mesh;
+  mesh.kind = ElementKind::kQuad4;
+  const int n = cells + 1;
+  mesh.nodes.resize(2, n * n);
+  for (int i = 0; i < mesh.nodes.cols(); ++i) {
+    mesh.nodes.col(i) = Eigen::Vector2d(i % n, i / n) / double(cells);
+  }
+  mesh.elements.resize(4, cells * cells);
+  for (int e = 0; e < mesh.elements.cols(); ++e) {
+    const int first = e % cells + n * (e / cells);
+    mesh.elements.col(e) << first, first + 1, first + n + 1, first + n;
+    if (e % 2 == 1) {
+      std::swap(mesh.elements(1, e), mesh.elements(3, e));
+    }
+  }
+  return mesh;
+}
+
+Mesh TriangleGrid(int cells) {
+  const Mesh grid = QuadrilateralGrid(cells);
+  Mesh mesh;
+  mesh.kind = ElementKind::kTri3;
+  mesh.nodes = grid.nodes;
+  mesh.elements.resize(3, 2 * grid.NumElements());
+  for (Eigen::Index e = 0; e < grid.NumElements(); ++e) {
+    const Eigen::Vector4i q = grid.elements.col(e);
+    mesh.elements.col(2 * e) << q(0), q(1), q(2);
+    mesh.elements.col(2 * e + 1) << q(0), q(3), q(2);
+  }
+  return mesh;
+}
+
+// A smooth map of the unit square or cube.
+void Distort(Mesh& mesh) {
+  for (auto x : mesh.nodes.colwise()) {
+    const Eigen::VectorXd y = x;
+    x(0) = y(0) * (1 + 0.2 * y(1)) + 0.1 * std::sin(2 * y(1));
+    x(1) = y(1) * (0.9 - 0.15 * y(0));
+    if (x.size() == 3) {
+      x(2) = y(2) * (1.2 + 0.1 * y(0)) + 0.08 * y(0) * y(1);
+      x(0) += 0.1 * y(2) * y(2);
+    }
+  }
+}
+
+Mesh UndistortedMesh(const KindOfSection& parameter, int cells) {
+  Mesh mesh;
+  switch (parameter.kind) {
+    case ElementKind::kTet4:
+    case ElementKind::kTet10:
+      mesh = BoxMesh({cells, cells, cells}, {1, 1, 1});
+      break;
+    case ElementKind::kHex8:
+      mesh = HexahedronGrid(cells);
+      break;
+    case ElementKind::kTri3:
+    case ElementKind::kTri6:
+      mesh = TriangleGrid(cells);
+      break;
+    case ElementKind::kQuad4:
+      mesh = QuadrilateralGrid(cells);
+      break;
+  }
+  mesh.section.model = parameter.model;
+  mesh.section.thickness = mesh.Dimension() == 2 ? 0.7 : 1;
+  return mesh;
+}
+
+// Of order 2 where the parameter says so, with every node measured.
+Scene RaisedScene(const KindOfSection& parameter, const Scene& scene) {
+  if (TopologyOf(parameter.kind).order == 1) {
+    return scene;
+  }
+  Scene raised = QuadraticScene(scene);
+  raised.load_cases[0].observed.resize(0, 0);
+  return raised;
+}
+
+// The scene without measurements, before its order is raised.
+Scene VertexScene(const KindOfSection& parameter, int cells) {
+  Scene scene;
+  const Mesh reference = UndistortedMesh(parameter, cells);
+  scene.mesh = reference;
+  Distort(scene.mesh);
+  const int dimension = scene.mesh.Dimension();
+  scene.supports.held =
+      ComponentMask::Constant(dimension, scene.mesh.NumNodes(), false);
+  scene.supports.displacement =
+      Eigen::MatrixXd::Zero(dimension, scene.mesh.NumNodes());
+  NodalForces forces{Eigen::MatrixXd::Zero(dimension, scene.mesh.NumNodes())};
+  for (Eigen::Index i = 0; i < scene.mesh.NumNodes(); ++i) {
+    const Eigen::VectorXd x = reference.nodes.col(i);
+    scene.supports.held.col(i).setConstant(x(dimension - 1) == 0);
+    forces.force(dimension - 1, i) = 3 * x(0) - 1;
+    forces.force(0, i) = x(dimension - 1) == 1 ? 2 : 0;
+  }
+  scene.load_cases.resize(1);
+  scene.load_cases[0].loads = {forces};
+  return scene;
+}
+
+// The reference element: nodes, and the exponents of its monomials.
+struct Reference {
+  Eigen::MatrixXd nodes;
+  std::vector<std::array<int, 3>> exponents;
+};
+
+Reference ReferenceOf(ElementKind kind) {
+  const ElementTopology& topology = TopologyOf(kind);
+  const int d = topology.dimension;
+  Reference reference;
+  reference.nodes = Eigen::MatrixXd::Zero(d, topology.num_nodes);
+  if (IsSimplex(kind)) {
+    reference.nodes.block(0, 1, d, d).setIdentity();
+    // VTK's order.
+    const int ends[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+    for (int i = topology.num_vertices; i < topology.num_nodes; ++i) {
+      const auto& [a, b] = ends[i - topology.num_vertices];
+      reference.nodes.col(i) =
+          (reference.nodes.col(a) + reference.nodes.col(b)) / 2;
+    }
+  } else {
+    for (int i = 0; i < topology.num_nodes; ++i) {
+      reference.nodes(0, i) = i % 4 == 1 || i % 4 == 2 ? 1 : -1;
+      reference.nodes(1, i) = i % 4 >= 2 ? 1 : -1;
+      if (d == 3) {
+        reference.nodes(2, i) = i >= 4 ? 1 : -1;
+      }
+    }
+  }
+  for (int a = 0; a <= 2; ++a) {
+    for (int b = 0; b <= 2; ++b) {
+      for (int c = 0; c <= (d == 3 ? 2 : 0); ++c) {
+        const bool is_used = IsSimplex(kind) ? a + b + c <= topology.order
+                                             : a <= 1 && b <= 1 && c <= 1;
+        if (is_used) {
+          reference.exponents.push_back({a, b, c});
+        }
+      }
+    }
+  }
+  return reference;
+}
+
+double Power(double x, int exponent) {
+  return exponent == 0 ? 1 : exponent == 1 ? x : x * x;
+}
+
+// The monomials at a point, or their derivatives along an axis.
+Eigen::RowVectorXd Monomials(const Reference& reference,
+                             const Eigen::VectorXd& xi, int derivative) {
+  Eigen::RowVectorXd row(reference.exponents.size());
+  for (std::size_t m = 0; m < reference.exponents.size(); ++m) {
+    double value = 1;
+    for (int k = 0; k < xi.size(); ++k) {
+      const int exponent = reference.exponents[m][k];
+      value *= k != derivative ? Power(xi(k), exponent)
+               : exponent == 0 ? 0
+                               : exponent * Power(xi(k), exponent - 1);
+    }
+    row(Eigen::Index(m)) = value;
+  }
+  return row;
+}
+
+// Calls visit(xi, weight) at Gauss points: two along each axis of a square or a
+// cube, four of the cube collapsed onto a simplex.
+void ForEachPoint(
+    ElementKind kind,
+    const std::function<void(const Eigen::VectorXd&, double)>& visit) {
+  const int d = TopologyOf(kind).dimension;
+  std::vector<double> points = {-1 / std::sqrt(3.0), 1 / std::sqrt(3.0)};
+  std::vector<double> weights = {1, 1};
+  if (IsSimplex(kind)) {
+    const double inner = std::sqrt(3.0 / 7 - 2.0 / 7 * std::sqrt(6.0 / 5));
+    const double outer = std::sqrt(3.0 / 7 + 2.0 / 7 * std::sqrt(6.0 / 5));
+    points = {(1 - outer) / 2, (1 - inner) / 2, (1 + inner) / 2,
+              (1 + outer) / 2};
+    const double small = (18 - std::sqrt(30.0)) / 72;
+    const double large = (18 + std::sqrt(30.0)) / 72;
+    weights = {small, large, large, small};
+  }
+  const int n = static_cast<int>(points.size());
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      for (int k = 0; k < (d == 3 ? n : 1); ++k) {
+        Eigen::VectorXd xi(d);
+        double weight = weights[i] * weights[j] * (d == 3 ? weights[k] : 1);
+        xi(0) = points[i];
+        xi(1) = points[j];
+        if (d == 3) {
+          xi(2) = points[k];
+        }
+        if (IsSimplex(kind)) {
+          weight *=
+              d == 3 ? (1 - xi(0)) * (1 - xi(0)) * (1 - xi(1)) : 1 - xi(0);
+          if (d == 3) {
+            xi(2) *= (1 - xi(0)) * (1 - xi(1));
+          }
+          xi(1) *= 1 - xi(0);
+        }
+        visit(xi, weight);
+      }
+    }
+  }
+}
+
+// Calls visit(values (n), gradients (d x n), volume) at the points of an
+// element.
+void ForEachPointOf(
+    const Mesh& mesh, Eigen::Index element,
+    const std::function<void(const Eigen::VectorXd&, const Eigen::MatrixXd&,
+                             double)>& visit) {
+  const Reference reference = ReferenceOf(mesh.kind);
+  const Eigen::Index n = reference.nodes.cols();
+  const Eigen::Index d = reference.nodes.rows();
+  Eigen::MatrixXd vandermonde(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    vandermonde.row(i) = Monomials(reference, reference.nodes.col(i), -1);
+  }
+  const Eigen::MatrixXd coefficients = vandermonde.inverse();
+  const Eigen::MatrixXd x = mesh.nodes(Eigen::all, mesh.elements.col(element));
+  ForEachPoint(mesh.kind, [&](const Eigen::VectorXd& xi, double weight) {
+    Eigen::MatrixXd local(d, n);
+    for (int k = 0; k < d; ++k) {
+      local.row(k) = Monomials(reference, xi, k) * coefficients;
+    }
+    const Eigen::MatrixXd jacobian = x * local.transpose();
+    visit((Monomials(reference, xi, -1) * coefficients).transpose(),
+          jacobian.inverse().transpose() * local,
+          weight * std::abs(jacobian.determinant()) * mesh.section.thickness);
+  });
+}
+
+// Of engineering shear strains.
+Eigen::MatrixXd StrainDisplacementOf(const Eigen::MatrixXd& gradients) {
+  const Eigen::Index d = gradients.rows();
+  Eigen::MatrixXd b =
+      Eigen::MatrixXd::Zero(d == 3 ? 6 : 3, d * gradients.cols());
+  for (Eigen::Index i = 0; i < gradients.cols(); ++i) {
+    const auto g = gradients.col(i);
+    for (Eigen::Index k = 0; k < d; ++k) {
+      b(k, d * i + k) = g(k);
+    }
+    for (Eigen::Index k = 0; k < (d == 3 ? 3 : 1); ++k) {
+      const Eigen::Index l = (k + 1) % d;
+      b(d + k, d * i + k) = g(l);
+      b(d + k, d * i + l) = g(k);
+    }
+  }
+  return b;
+}
+
+}  // namespace
+
+std::vector<KindOfSection> AllKindsOfSections() {
+  std::vector<KindOfSection> all;
+  for (const ElementKind kind : kElementKinds) {
+    if (TopologyOf(kind).dimension == 3) {
+      all.push_back({kind, SectionModel::kSolid});
+    } else {
+      all.push_back({kind, SectionModel::kPlaneStrain});
+      all.push_back({kind, SectionModel::kPlaneStress});
+    }
+  }
+  return all;
+}
+
+std::string NameOf(const KindOfSection& parameter) {
+  return std::string(TopologyOf(parameter.kind).name) +
+         (parameter.model == SectionModel::kSolid
+              ? ""
+              : "_" + std::string(SectionModelName(parameter.model)));
+}
+
+Scene SceneOfKind(const KindOfSection& parameter, int cells) {
+  return RaisedScene(parameter, VertexScene(parameter, cells));
+}
+
+Mesh MeshOfKind(const KindOfSection& parameter, int cells) {
+  return SceneOfKind(parameter, cells).mesh;
+}
+
+Eigen::MatrixXd HookeMatrixOf(const IsotropicElasticity& elasticity,
+                              SectionModel model) {
+  const Eigen::Matrix<double, 6, 6> solid =
+      HookeMatrix(elasticity.youngs_modulus, elasticity.poisson_ratio);
+  const std::vector<int> in_plane = {0, 1, 3};
+  switch (model) {
+    case SectionModel::kPlaneStrain:
+      return solid(in_plane, in_plane);
+    case SectionModel::kPlaneStress: {
+      const Eigen::MatrixXd compliance = solid.inverse();
+      return Eigen::MatrixXd(compliance(in_plane, in_plane)).inverse();
+    }
+    case SectionModel::kSolid:
+      break;
+  }
+  return solid;
+}
+
+Eigen::MatrixXd TextbookStiffness(const Mesh& mesh, const Eigen::MatrixXd& d) {
+  Eigen::MatrixXd stiffness =
+      Eigen::MatrixXd::Zero(mesh.NumDofs(), mesh.NumDofs());
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    std::vector<Eigen::Index> dofs;
+    for (const int node : mesh.elements.col(e)) {
+      for (int k = 0; k < mesh.nodes.rows(); ++k) {
+        dofs.push_back(mesh.nodes.rows() * node + k);
+      }
+    }
+    ForEachPointOf(mesh, e,
+                   [&](const Eigen::VectorXd&, const Eigen::MatrixXd& gradients,
+                       double volume) {
+                     const Eigen::MatrixXd b = StrainDisplacementOf(gradients);
+                     stiffness(dofs, dofs) += volume * b.transpose() * d * b;
+                   });
+  }
+  return stiffness;
+}
+
+Eigen::VectorXd TextbookVolumes(const Mesh& mesh) {
+  Eigen::VectorXd volumes = Eigen::VectorXd::Zero(mesh.NumNodes());
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    ForEachPointOf(mesh, e,
+                   [&](const Eigen::VectorXd& values, const Eigen::MatrixXd&,
+                       double volume) {
+                     for (Eigen::Index i = 0; i < values.size(); ++i) {
+                       volumes(mesh.elements(i, e)) += volume * values(i);
+                     }
+                   });
+  }
+  return volumes;
+}
+
+void MeasureByTextbook(const IsotropicElasticity& elasticity, Scene& scene) {
+  const Mesh& mesh = scene.mesh;
+  const Eigen::MatrixXd stiffness =
+      TextbookStiffness(mesh, HookeMatrixOf(elasticity, mesh.section.model));
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index dof = 0; dof < mesh.NumDofs(); ++dof) {
+    if (!scene.supports.held.data()[dof]) {
+      free.push_back(dof);
+    }
+  }
+  const Eigen::MatrixXd force = AssembleLoadCases(scene);
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    Eigen::VectorXd u = Eigen::VectorXd::Zero(mesh.NumDofs());
+    u(free) =
+        SolveDensely(stiffness(free, free), force.col(Eigen::Index(k))(free));
+    scene.load_cases[k].displacement =
+        u.reshaped(mesh.nodes.rows(), mesh.NumNodes());
+  }
+}
+
+}  // namespace elastimate::testing

@@ -1,0 +1,157 @@
+// Every estimator on every element kind and section.
+
+#include "tests/element_kinds.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "elastimate/estimators/displacement_fit/reduced_fe.h"
+#include "elastimate/estimators/registry.h"
+#include "elastimate/estimators/statistics/cramer_rao.h"
+#include "tests/scenes.h"
+
+namespace elastimate {
+namespace {
+
+using testing::AddNoise;
+using testing::AllKindsOfSections;
+using testing::KindOfSection;
+using testing::MeasureByTextbook;
+using testing::NameOf;
+using testing::SceneOfKind;
+
+constexpr double kYoungsModulus = 5000;
+constexpr double kPoissonRatio = 0.3;
+
+Scene MeasuredScene(const KindOfSection& parameter) {
+  Scene scene = SceneOfKind(parameter);
+  MeasureByTextbook({kYoungsModulus, kPoissonRatio}, scene);
+  return scene;
+}
+
+class OnEachKind
+    : public ::testing::TestWithParam<std::tuple<KindOfSection, std::string>> {
+ protected:
+  OnEachKind()
+      : scene_(MeasuredScene(std::get<0>(GetParam()))),
+        estimator_(MakeEstimator(std::get<1>(GetParam()))) {}
+
+  Scene scene_;
+  std::unique_ptr<Estimator> estimator_;
+};
+
+// The displacements are those of the textbook's elements: no code is shared.
+TEST_P(OnEachKind, IsExactWithoutNoise) {
+  const Estimate estimate = estimator_->Run(scene_, {});
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  EXPECT_NEAR(estimate.elasticity.youngs_modulus / kYoungsModulus, 1, 1e-7);
+  EXPECT_NEAR(estimate.elasticity.poisson_ratio, kPoissonRatio, 1e-7);
+}
+
+TEST_P(OnEachKind, TakesAKnownPoissonRatio) {
+  EstimatorOptions options;
+  options.known_poisson_ratio = kPoissonRatio;
+  const Estimate estimate = estimator_->Run(scene_, options);
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  EXPECT_NEAR(estimate.elasticity.youngs_modulus / kYoungsModulus, 1, 1e-7);
+}
+
+// At the same displacements: twice the force by twice the modulus, and by the
+// same one at twice the thickness.
+TEST_P(OnEachKind, ScalesWithForceAndThickness) {
+  std::get<NodalForces>(scene_.load_cases[0].loads[0]).force *= 2;
+  const Estimate estimate = estimator_->Run(scene_, {});
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  EXPECT_NEAR(estimate.elasticity.youngs_modulus / (2 * kYoungsModulus), 1,
+              1e-7);
+  if (scene_.mesh.Dimension() == 2) {
+    scene_.mesh.section.thickness *= 2;
+    const Estimate of_thick = estimator_->Run(scene_, {});
+    EXPECT_NEAR(of_thick.elasticity.youngs_modulus / kYoungsModulus, 1, 1e-7);
+    EXPECT_NEAR(of_thick.elasticity.poisson_ratio, kPoissonRatio, 1e-7);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, OnEachKind,
+    ::testing::Combine(::testing::ValuesIn(AllKindsOfSections()),
+                       ::testing::Values("closed-form", "bounded",
+                                         "virtual-fields", "reduced-fe",
+                                         "iterative-fe", "auto")),
+    [](const auto& info) {
+      std::string name =
+          NameOf(std::get<0>(info.param)) + "_" + std::get<1>(info.param);
+      std::replace(name.begin(), name.end(), '-', '_');
+      return name;
+    });
+
+class FitsOfEachKind : public ::testing::TestWithParam<KindOfSection> {};
+
+// The fits have nothing in common but the elements.
+TEST_P(FitsOfEachKind, AgreeUnderNoise) {
+  Scene scene = MeasuredScene(GetParam());
+  AddNoise(0.02, 7, scene);
+  const Estimate reduced = MakeEstimator("reduced-fe")->Run(scene, {});
+  const Estimate iterative = MakeEstimator("iterative-fe")->Run(scene, {});
+  ASSERT_EQ(reduced.status, Status::kOk) << reduced.message;
+  ASSERT_EQ(iterative.status, Status::kOk) << iterative.message;
+  const double tolerance = 0.02 * *reduced.PoissonRatioStandardError();
+  EXPECT_NEAR(reduced.elasticity.poisson_ratio,
+              iterative.elasticity.poisson_ratio, tolerance);
+  EXPECT_NEAR(reduced.elasticity.youngs_modulus,
+              iterative.elasticity.youngs_modulus,
+              0.02 * *reduced.YoungsModulusStandardError());
+  EXPECT_NEAR(*reduced.displacement_residual / *iterative.displacement_residual,
+              1, 1e-3);
+}
+
+// Near the bound of Cramer and Rao: the error bars of every kind are right.
+class KindStatistics : public ::testing::TestWithParam<KindOfSection> {};
+
+TEST_P(KindStatistics, ReachTheCramerRaoBound) {
+  constexpr int kSeeds = 200;
+  const Scene exact = MeasuredScene(GetParam());
+  Scene noisy = exact;
+  const double noise_sd = AddNoise(0.01, 1, noisy);
+  const Eigen::Matrix2d bound =
+      CramerRaoBound(exact, {kYoungsModulus, kPoissonRatio},
+                     Eigen::VectorXd::Constant(1, noise_sd));
+  PreparedReducedFe prepared(exact, {});
+  double chi_squared = 0;
+  int num_covered = 0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    noisy = exact;
+    AddNoise(0.01, std::uint64_t(seed), noisy);
+    const Estimate estimate = prepared.Run({noisy.load_cases[0].displacement});
+    ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+    const Eigen::Vector2d error(
+        estimate.elasticity.youngs_modulus - kYoungsModulus,
+        estimate.elasticity.poisson_ratio - kPoissonRatio);
+    chi_squared += error.dot(bound.inverse() * error);
+    num_covered +=
+        std::abs(error(1)) <= 1.96 * *estimate.PoissonRatioStandardError();
+  }
+  // chi^2 of 2 degrees of freedom has mean 2 and variance 4: four standard
+  // errors of the mean.  Of 200 intervals of 95 % about 190 +- 3.1 cover.
+  EXPECT_NEAR(chi_squared / kSeeds, 2, 4 * 2 / std::sqrt(double(kSeeds)));
+  EXPECT_NEAR(num_covered, 0.95 * kSeeds, 4 * 3.1);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FitsOfEachKind,
+                         ::testing::ValuesIn(AllKindsOfSections()),
+                         [](const auto& info) { return NameOf(info.param); });
+
+INSTANTIATE_TEST_SUITE_P(
+    Planar, KindStatistics,
+    ::testing::Values(
+        KindOfSection{ElementKind::kHex8, SectionModel::kSolid},
+        KindOfSection{ElementKind::kQuad4, SectionModel::kPlaneStress},
+        KindOfSection{ElementKind::kTri6, SectionModel::kPlaneStrain}),
+    [](const auto& info) { return NameOf(info.param); });
+
+}  // namespace
+}  // namespace elastimate
