@@ -249,6 +249,14 @@ std::string_view Auto::Description() const {
          "quadratic elements, as far as the scene needs";
 }
 
+Capabilities Auto::WhatItTakes() const {
+  Capabilities capabilities;
+  capabilities.takes_bounds = true;
+  capabilities.takes_losses = true;
+  capabilities.takes_degree = true;
+  return capabilities;
+}
+
 std::string Auto::WhyUnsupported(const Scene& scene,
                                  const EstimatorOptions& options) const {
   std::string why_not =

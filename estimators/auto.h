@@ -31,6 +31,8 @@ class Auto : public Estimator {
  public:
   std::string_view Name() const override;
   std::string_view Description() const override;
+  /// It needs what reduced-fe or what virtual-fields needs.
+  Capabilities WhatItTakes() const override;
   std::string WhyUnsupported(const Scene& scene,
                              const EstimatorOptions& options) const override;
 

@@ -13,10 +13,6 @@
 namespace elastimate::testing {
 namespace {
 
-bool IsSimplex(ElementKind kind) {
-  return kind != ElementKind::kHex8 && kind != ElementKind::kQuad4;
-}
-
 // A grid of hexahedra of unit size.
 Mesh HexahedronGrid(int cells) {
   Mesh mesh;

@@ -30,11 +30,10 @@ void AddOfKind(const Mesh& mesh, const Eigen::MatrixXd& displacement,
   std::vector<ElementPoint<kKind>> points;
   points.reserve(rule.size());
   for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
-    const auto vertices = GatherVertices<kKind>(mesh, e);
     points.clear();
-    for (const ShapeFunctions<kKind>& at : rule) {
-      points.emplace_back(vertices, at, mesh.section.thickness);
-    }
+    VisitPoints<kKind>(mesh, e, rule, [&](const auto& point, const auto&) {
+      points.push_back(point);
+    });
     const int* const nodes = mesh.elements.col(e).data();
     for (Eigen::Index column = 0; column < displacement.cols(); ++column) {
       const NodeVectors<kKind> u =

@@ -90,11 +90,10 @@ void AddProductsOfKind(const Mesh& mesh, const NodeGraph& graph,
   constexpr int kNodes = ElementSizes<kKind>::kNodes;
   std::vector<ElementPoint<kKind>> points;
   for (Eigen::Index e = first; e < end; ++e) {
-    const auto vertices = GatherVertices<kKind>(mesh, e);
     points.clear();
-    for (const auto& at : StiffnessRule<kKind>()) {
-      points.emplace_back(vertices, at, mesh.section.thickness);
-    }
+    VisitPoints<kKind>(
+        mesh, e, StiffnessRule<kKind>(),
+        [&](const auto& point, const auto&) { points.push_back(point); });
     const int* const nodes = mesh.elements.col(e).data();
     for (int i = 0; i < kNodes; ++i) {
       for (int j = 0; j <= i; ++j) {

@@ -1,6 +1,5 @@
 #include "elastimate/core/mechanics/strain_energy.h"
 
-#include <array>
 #include <vector>
 
 #include "elastimate/core/mesh/shape_functions.h"
@@ -28,51 +27,54 @@ class EnergyDensity {
   double lambda_;
 };
 
-// The displacement gradients and volumes at the points of a rule.
 template <ElementKind kKind>
-class ElementGradients {
- public:
-  static constexpr int kDimension = ElementSizes<kKind>::kDimension;
-  using Gradient = Eigen::Matrix<double, kDimension, kDimension>;
+using Gradient = Eigen::Matrix<double, ElementSizes<kKind>::kDimension,
+                               ElementSizes<kKind>::kDimension>;
 
-  ElementGradients(const std::vector<ShapeFunctions<kKind>>& rule,
-                   const Mesh& mesh, Eigen::Index element,
-                   const double* displacement) {
-    const auto vertices = GatherVertices<kKind>(mesh, element);
-    const auto u = GatherNodes<kKind>(mesh, element, displacement);
-    for (std::size_t i = 0; i < rule.size(); ++i) {
-      const ElementPoint<kKind> point(vertices, rule[i],
-                                      mesh.section.thickness);
-      at[i] = u * point.gradient.transpose();
-      volume[i] = point.volume;
-    }
-  }
-
-  static constexpr int kMostPoints = 8;
-  std::array<Gradient, kMostPoints> at;
-  std::array<double, kMostPoints> volume;
-};
+// Calls visit(displacement gradient, volume, shape functions) at the points of
+// a rule in an element.
+template <ElementKind kKind, class Visitor>
+void VisitGradients(const Mesh& mesh, Eigen::Index element,
+                    const std::vector<ShapeFunctions<kKind>>& rule,
+                    const double* displacement, const Visitor& visit) {
+  const auto u = GatherNodes<kKind>(mesh, element, displacement);
+  Gradient<kKind> gradient;
+  bool is_known = false;
+  VisitPoints<kKind>(
+      mesh, element, rule,
+      [&](const ElementPoint<kKind>& point, const auto& at) {
+        // That of a linear simplex is the same everywhere.
+        if (!(kKind == ElementKind::kTet4 || kKind == ElementKind::kTri3) ||
+            !is_known) {
+          gradient.noalias() = u * point.gradient.transpose();
+          is_known = true;
+        }
+        visit(gradient, point.volume, at);
+      });
+}
 
 // At each node that is a vertex, the mean over the elements around it, weighted
 // by the volumes that the vertices stand for.
 template <ElementKind kKind>
-std::vector<typename ElementGradients<kKind>::Gradient> RecoveredGradient(
-    const Mesh& mesh, const double* displacement) {
-  using Gradient = typename ElementGradients<kKind>::Gradient;
-  std::vector<Gradient> recovered(mesh.NumNodes(), Gradient::Zero());
-  std::vector<double> volume(mesh.NumNodes(), 0.0);
+std::vector<Gradient<kKind>> RecoveredGradient(const Mesh& mesh,
+                                               const double* displacement) {
+  std::vector<Gradient<kKind>> recovered(mesh.NumNodes(),
+                                         Gradient<kKind>::Zero());
+  std::vector<double> volumes(mesh.NumNodes(), 0.0);
   const auto& vertices = VertexRule<kKind>();
   for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
-    const ElementGradients<kKind> gradients(vertices, mesh, e, displacement);
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      const int node = mesh.elements(Eigen::Index(i), e);
-      recovered[node] += gradients.volume[i] * gradients.at[i];
-      volume[node] += gradients.volume[i];
-    }
+    const int* node = mesh.elements.col(e).data();
+    VisitGradients<kKind>(mesh, e, vertices, displacement,
+                          [&](const Gradient<kKind>& gradient, double volume,
+                              const ShapeFunctions<kKind>&) {
+                            recovered[*node] += volume * gradient;
+                            volumes[*node] += volume;
+                            ++node;
+                          });
   }
   for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
-    if (volume[node] > 0) {
-      recovered[node] /= volume[node];
+    if (volumes[node] > 0) {
+      recovered[node] /= volumes[node];
     }
   }
   return recovered;
@@ -87,18 +89,22 @@ struct Energies {
 template <ElementKind kKind>
 void AddEnergies(const Mesh& mesh, const EnergyDensity& density_of,
                  const double* displacement, Energies& energies) {
+  constexpr int kVertices = ElementSizes<kKind>::kVertices;
   const auto recovered = RecoveredGradient<kKind>(mesh, displacement);
   const auto& rule = IntegrationRule<kKind>();
   for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
-    const ElementGradients<kKind> gradients(rule, mesh, e, displacement);
-    for (std::size_t i = 0; i < rule.size(); ++i) {
-      typename ElementGradients<kKind>::Gradient difference = gradients.at[i];
-      for (int k = 0; k < ElementSizes<kKind>::kVertices; ++k) {
-        difference -= rule[i].vertex_value(k) * recovered[mesh.elements(k, e)];
-      }
-      energies.of_elements += gradients.volume[i] * density_of(gradients.at[i]);
-      energies.missed += gradients.volume[i] * density_of(difference);
-    }
+    const int* const nodes = mesh.elements.col(e).data();
+    VisitGradients<kKind>(
+        mesh, e, rule, displacement,
+        [&](const Gradient<kKind>& gradient, double volume,
+            const ShapeFunctions<kKind>& at) {
+          Gradient<kKind> difference = gradient;
+          for (int k = 0; k < kVertices; ++k) {
+            difference -= at.vertex_value(k) * recovered[nodes[k]];
+          }
+          energies.of_elements += volume * density_of(gradient);
+          energies.missed += volume * density_of(difference);
+        });
   }
 }
 
@@ -112,14 +118,14 @@ Eigen::VectorXd StrainEnergyDensity(const Mesh& mesh,
   VisitElementKind(mesh.kind, [&](auto kind) {
     const auto& rule = IntegrationRule<kind>();
     for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
-      const ElementGradients<kind> gradients(rule, mesh, e,
-                                             displacement.data());
       double energy = 0;
       double volume = 0;
-      for (std::size_t i = 0; i < rule.size(); ++i) {
-        energy += gradients.volume[i] * density_of(gradients.at[i]);
-        volume += gradients.volume[i];
-      }
+      VisitGradients<kind>(
+          mesh, e, rule, displacement.data(),
+          [&](const auto& gradient, double volume_of_point, const auto&) {
+            energy += volume_of_point * density_of(gradient);
+            volume += volume_of_point;
+          });
       density(e) = energy / volume;
     }
   });

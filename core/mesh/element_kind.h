@@ -22,6 +22,20 @@ inline constexpr std::array<ElementKind, 6> kElementKinds = {
     ElementKind::kTet4, ElementKind::kTet10, ElementKind::kHex8,
     ElementKind::kTri3, ElementKind::kTri6,  ElementKind::kQuad4};
 
+/// 2 or 3.
+constexpr int DimensionOf(ElementKind kind) {
+  return kind == ElementKind::kTri3 || kind == ElementKind::kTri6 ||
+                 kind == ElementKind::kQuad4
+             ? 2
+             : 3;
+}
+
+/// Whether the map from the reference element to one with straight edges is
+/// affine.
+constexpr bool IsSimplex(ElementKind kind) {
+  return kind != ElementKind::kHex8 && kind != ElementKind::kQuad4;
+}
+
 /// How the nodes of an element lie to each other.
 struct ElementTopology {
   std::string_view name;    ///< "tet4" and so on.
@@ -40,7 +54,7 @@ struct ElementTopology {
   std::vector<std::vector<int>> faces;
   /// For each vertex the ends of `dimension` edges from it, right-handed in an
   /// element of positive orientation: an element is flat or folded where these
-  /// are.  One vertex will do for simplices.
+  /// are.  One vertex will do for a simplex.
   std::vector<std::vector<int>> corners;
 
   int NumVerticesOfFace() const { return static_cast<int>(faces[0].size()); }

@@ -74,8 +74,9 @@ bool IsFlat(const Eigen::Matrix2d& edges) {
 
 // The edges from a vertex of an element.
 template <int kDimension>
-Eigen::Matrix<double, kDimension, kDimension> EdgesOfCorner(
-    const Mesh& mesh, const int* nodes, const std::vector<int>& corner) {
+Eigen::Matrix<double, kDimension, kDimension> EdgesOfCorner(const Mesh& mesh,
+                                                            const int* nodes,
+                                                            const int* corner) {
   using Position = Eigen::Map<const Eigen::Matrix<double, kDimension, 1>>;
   const auto position = [&](int i) {
     return Position(mesh.nodes.data() +
@@ -93,19 +94,22 @@ template <int kDimension>
 std::string_view WhyNoElement(const Mesh& mesh, const ElementTopology& topology,
                               Eigen::Index element) {
   const int* const nodes = mesh.elements.col(element).data();
+  if (IsSimplex(mesh.kind)) {
+    constexpr int kVertices[] = {0, 1, 2, 3};
+    return IsFlat(EdgesOfCorner<kDimension>(mesh, nodes, kVertices)) ? "flat"
+                                                                     : "";
+  }
   double orientation = 0;
   for (const std::vector<int>& corner : topology.corners) {
-    const auto edges = EdgesOfCorner<kDimension>(mesh, nodes, corner);
+    const auto edges = EdgesOfCorner<kDimension>(mesh, nodes, corner.data());
     if (IsFlat(edges)) {
       return "flat";
     }
-    if (topology.corners.size() > 1) {
-      const double determinant = edges.determinant();
-      if (determinant * orientation < 0) {
-        return "folded";
-      }
-      orientation = determinant;
+    const double determinant = edges.determinant();
+    if (determinant * orientation < 0) {
+      return "folded";
     }
+    orientation = determinant;
   }
   if (mesh.kind == ElementKind::kHex8) {
     const auto vertices = GatherVertices<ElementKind::kHex8>(mesh, element);
@@ -305,11 +309,9 @@ Eigen::VectorXd ElementVolumes(const Mesh& mesh) {
   Eigen::VectorXd volumes = Eigen::VectorXd::Zero(mesh.NumElements());
   VisitElementKind(mesh.kind, [&](auto kind) {
     for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
-      const auto vertices = GatherVertices<kind>(mesh, e);
-      for (const auto& at : StiffnessRule<kind>()) {
-        volumes(e) +=
-            ElementPoint<kind>(vertices, at, mesh.section.thickness).volume;
-      }
+      VisitPoints<kind>(
+          mesh, e, StiffnessRule<kind>(),
+          [&](const auto& point, const auto&) { volumes(e) += point.volume; });
     }
   });
   return volumes;

@@ -44,7 +44,7 @@ struct Mesh {
 
   const ElementTopology& Topology() const { return TopologyOf(kind); }
   /// 2 or 3.
-  int Dimension() const { return Topology().dimension; }
+  int Dimension() const { return DimensionOf(kind); }
   Eigen::Index NumNodes() const { return nodes.cols(); }
   Eigen::Index NumElements() const { return elements.cols(); }
   /// The degrees of freedom: row dimension * node + component of a vector.

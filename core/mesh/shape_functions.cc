@@ -11,10 +11,6 @@ constexpr double kCubeVertices[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1},
                                         {-1, 1, -1},  {-1, -1, 1}, {1, -1, 1},
                                         {1, 1, 1},    {-1, 1, 1}};
 
-constexpr bool IsSimplex(ElementKind kind) {
-  return kind != ElementKind::kHex8 && kind != ElementKind::kQuad4;
-}
-
 template <ElementKind kKind>
 using Point = Eigen::Matrix<double, ElementSizes<kKind>::kDimension, 1>;
 

@@ -111,27 +111,57 @@ GatherNodes(const Mesh& mesh, Eigen::Index element, const double* values) {
   return u;
 }
 
+/// The map from the reference element to an element at one of its points; at
+/// all of them where IsSimplex.
+template <ElementKind kKind>
+struct ElementMap {
+  using Sizes = ElementSizes<kKind>;
+  using Jacobian = Eigen::Matrix<double, Sizes::kDimension, Sizes::kDimension>;
+
+  Jacobian inverse_transpose;  ///< Of dx/dxi [1 / length].
+  /// |det dx/dxi|, times the thickness of a planar section.
+  double volume_ratio;
+
+  /// `vertices` are those of GatherVertices; the thickness is 1 in three
+  /// dimensions.
+  ElementMap(const Eigen::Matrix<double, Sizes::kDimension, Sizes::kVertices>&
+                 vertices,
+             const ShapeFunctions<kKind>& at, double thickness) {
+    const Jacobian jacobian = vertices * at.vertex_gradient.transpose();
+    inverse_transpose = jacobian.inverse().transpose();
+    volume_ratio = std::abs(jacobian.determinant()) * thickness;
+  }
+};
+
 /// An element of a mesh at one of the points of a rule.
 template <ElementKind kKind>
 struct ElementPoint {
   using Sizes = ElementSizes<kKind>;
   /// grad N_i, dimension x num_nodes [1 / length].
   Eigen::Matrix<double, Sizes::kDimension, Sizes::kNodes> gradient;
-  /// |det dx/dxi| times the weight, and the thickness of a planar section: the
-  /// volume that the point stands for [length^3].
-  double volume;
+  double volume;  ///< That the point stands for [length^3].
 
-  /// `vertices` are those of GatherVertices, `thickness` is 1 in three
-  /// dimensions.
-  ElementPoint(const Eigen::Matrix<double, Sizes::kDimension, Sizes::kVertices>&
-                   vertices,
-               const ShapeFunctions<kKind>& at, double thickness) {
-    const Eigen::Matrix<double, Sizes::kDimension, Sizes::kDimension> jacobian =
-        vertices * at.vertex_gradient.transpose();
-    gradient.noalias() = jacobian.inverse().transpose() * at.gradient;
-    volume = std::abs(jacobian.determinant()) * at.weight * thickness;
+  ElementPoint(const ElementMap<kKind>& map, const ShapeFunctions<kKind>& at)
+      : volume(map.volume_ratio * at.weight) {
+    gradient.noalias() = map.inverse_transpose * at.gradient;
   }
 };
+
+/// Calls visit(ElementPoint, ShapeFunctions) at the points of a rule in an
+/// element.
+template <ElementKind kKind, class Visitor>
+void VisitPoints(const Mesh& mesh, Eigen::Index element,
+                 const std::vector<ShapeFunctions<kKind>>& rule,
+                 const Visitor& visit) {
+  const auto vertices = GatherVertices<kKind>(mesh, element);
+  ElementMap<kKind> map(vertices, rule[0], mesh.section.thickness);
+  for (std::size_t i = 0; i < rule.size(); ++i) {
+    if (!IsSimplex(kKind) && i > 0) {
+      map = ElementMap<kKind>(vertices, rule[i], mesh.section.thickness);
+    }
+    visit(ElementPoint<kKind>(map, rule[i]), rule[i]);
+  }
+}
 
 /// Calls `function` with the std::integral_constant of a kind.
 template <class Function>

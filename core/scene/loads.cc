@@ -18,15 +18,14 @@ class LoadAssembler {
   void operator()(const BodyForce& load) {
     VisitElementKind(mesh_.kind, [&](auto kind) {
       for (Eigen::Index element = 0; element < mesh_.NumElements(); ++element) {
-        const auto vertices = GatherVertices<kind>(mesh_, element);
-        for (const auto& at : StiffnessRule<kind>()) {
-          const double volume =
-              ElementPoint<kind>(vertices, at, mesh_.section.thickness).volume;
-          for (Eigen::Index i = 0; i < at.value.size(); ++i) {
-            force_.col(mesh_.elements(i, element)) +=
-                volume * at.value(i) * load.force_density;
-          }
-        }
+        VisitPoints<kind>(mesh_, element, StiffnessRule<kind>(),
+                          [&](const auto& point, const auto& at) {
+                            for (Eigen::Index i = 0; i < at.value.size(); ++i) {
+                              force_.col(mesh_.elements(i, element)) +=
+                                  point.volume * at.value(i) *
+                                  load.force_density;
+                            }
+                          });
       }
     });
   }

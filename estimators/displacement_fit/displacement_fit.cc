@@ -7,7 +7,6 @@
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/mechanics/strain_energy.h"
-#include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/estimators/interface/statistics.h"
 
 namespace elastimate {
@@ -228,14 +227,6 @@ void JudgeLargeResidual(double smooth, bool is_explained, Estimate& estimate) {
 }
 
 }  // namespace
-
-std::string WhyNoDisplacementFit(const Scene& scene) {
-  std::string why = WhyNotHeld(scene.mesh, scene.supports);
-  if (!why.empty() && scene.mesh.Order() == 1) {
-    why += ", or use closed-form or virtual-fields, which need no supports";
-  }
-  return why;
-}
 
 std::optional<NeighbourCorrelation> CorrelateNeighbours(
     const NodeGraph& graph, const ObservedDisplacements& observed,

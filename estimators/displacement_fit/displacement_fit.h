@@ -24,11 +24,6 @@ struct DisplacementFit {
   Eigen::Matrix<double, Eigen::Dynamic, 2> sensitivities;
 };
 
-/// Why no displacements can be computed to fit to those of this scene: its
-/// supports do not hold the specimen.  Empty when they can.  Precondition: a
-/// valid scene.
-std::string WhyNoDisplacementFit(const Scene& scene);
-
 /// How alike the residuals of neighbouring nodes are [Moran 1950].
 struct NeighbourCorrelation {
   /// Mean product of the residuals of two nodes that share an element, over

@@ -673,12 +673,12 @@ std::string_view IterativeFe::Description() const {
          "solution at each step; unbiased, costs factorisations (reference)";
 }
 
-std::string IterativeFe::WhyUnsupported(const Scene& scene,
-                                        const EstimatorOptions& options) const {
-  if (options.virtual_field_degree) {
-    return "it has no virtual fields to take a degree; use virtual-fields";
-  }
-  return WhyNoDisplacementFit(scene);
+Capabilities IterativeFe::WhatItTakes() const {
+  Capabilities capabilities;
+  capabilities.needs_supports = true;
+  capabilities.takes_bounds = true;
+  capabilities.takes_losses = true;
+  return capabilities;
 }
 
 Estimate IterativeFe::DoRun(const Scene& scene,

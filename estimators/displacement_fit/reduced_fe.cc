@@ -103,12 +103,12 @@ std::string_view ReducedFe::Description() const {
          "factorisations";
 }
 
-std::string ReducedFe::WhyUnsupported(const Scene& scene,
-                                      const EstimatorOptions& options) const {
-  if (options.virtual_field_degree) {
-    return "it has no virtual fields to take a degree; use virtual-fields";
-  }
-  return WhyNoDisplacementFit(scene);
+Capabilities ReducedFe::WhatItTakes() const {
+  Capabilities capabilities;
+  capabilities.needs_supports = true;
+  capabilities.takes_bounds = true;
+  capabilities.takes_losses = true;
+  return capabilities;
 }
 
 Estimate ReducedFe::DoRun(const Scene& scene,

@@ -44,8 +44,7 @@ class ReducedFe : public Estimator {
  public:
   std::string_view Name() const override;
   std::string_view Description() const override;
-  std::string WhyUnsupported(const Scene& scene,
-                             const EstimatorOptions& options) const override;
+  Capabilities WhatItTakes() const override;
 
  protected:
   Estimate DoRun(const Scene& scene,

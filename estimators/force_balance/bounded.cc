@@ -120,15 +120,11 @@ std::string_view Bounded::Description() const {
          "2007, eq. 24]";
 }
 
-std::string Bounded::WhyUnsupported(const Scene& scene,
-                                    const EstimatorOptions& options) const {
-  if (options.loss != Loss::kNone) {
-    return "a loss function needs displacement residuals; use reduced-fe";
-  }
-  if (options.virtual_field_degree) {
-    return "it has no virtual fields to take a degree; use virtual-fields";
-  }
-  return ForceResidual::WhyUnsupported(scene);
+Capabilities Bounded::WhatItTakes() const {
+  Capabilities capabilities;
+  capabilities.needs_all_displacements = true;
+  capabilities.takes_bounds = true;
+  return capabilities;
 }
 
 Estimate Bounded::DoRun(const Scene& scene,

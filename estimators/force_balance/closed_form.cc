@@ -15,18 +15,10 @@ std::string_view ClosedForm::Description() const {
          "2007, eq. 20-23]";
 }
 
-std::string ClosedForm::WhyUnsupported(const Scene& scene,
-                                       const EstimatorOptions& options) const {
-  if (options.poisson_ratio.AreGiven() || options.youngs_modulus.AreGiven()) {
-    return "it cannot keep bounds; use bounded or reduced-fe";
-  }
-  if (options.loss != Loss::kNone) {
-    return "a loss function needs displacement residuals; use reduced-fe";
-  }
-  if (options.virtual_field_degree) {
-    return "it has no virtual fields to take a degree; use virtual-fields";
-  }
-  return ForceResidual::WhyUnsupported(scene);
+Capabilities ClosedForm::WhatItTakes() const {
+  Capabilities capabilities;
+  capabilities.needs_all_displacements = true;
+  return capabilities;
 }
 
 Estimate ClosedForm::DoRun(const Scene& scene,

@@ -118,31 +118,6 @@ void WeightLoadCases(const Scene& scene, Eigen::Ref<Eigen::MatrixXd> q,
   }
 }
 
-std::string ForceResidual::WhyUnsupported(const Scene& scene) {
-  const Eigen::Index num_vertices = scene.mesh.NumVertices();
-  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-    for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
-      for (int i = 0; i < scene.mesh.Dimension(); ++i) {
-        if (!scene.supports.held(i, node) &&
-            !IsObserved(scene.load_cases[k], i, node)) {
-          if (node >= num_vertices) {
-            return "the force residual needs the displacement of every node, "
-                   "and those of the mid-edge nodes of quadratic elements "
-                   "(order 2) were not measured; use reduced-fe, which can "
-                   "do without, or linear elements (order 1)";
-          }
-          return "the force residual needs the displacement of every node, "
-                 "and node " +
-                 std::to_string(node) + " (" + "xyz"[i] + ") of load case " +
-                 std::to_string(k + 1) +
-                 " was not observed; reduced-fe can do without";
-        }
-      }
-    }
-  }
-  return "";
-}
-
 ForceResidual::ForceResidual(const Scene& scene)
     : section_model_(scene.mesh.section.model) {
   const ComponentMask& held = scene.supports.held;

@@ -37,12 +37,9 @@ class ForceResidual {
  public:
   /// One element pass for a and b and what of the statistics does not depend on
   /// them, and one or two for the rest.
-  /// Preconditions: what Estimator::Run checks, and WhyUnsupported is empty.
+  /// Preconditions: what Estimator::Run checks, and every free component is
+  /// observed.
   explicit ForceResidual(const Scene& scene);
-
-  /// Why the force residual of this scene cannot be formed: it needs the
-  /// displacement of every free component.  Empty when it can.
-  static std::string WhyUnsupported(const Scene& scene);
 
   /// Minimiser of ||r|| over nu and t, unbounded; empty when b and f are
   /// collinear, so that the data determine one combination of nu and t only.

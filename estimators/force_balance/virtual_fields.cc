@@ -326,12 +326,12 @@ std::string_view VirtualFields::Description() const {
          "noise does not bias it, no factorisation [Avril & Pierron 2007]";
 }
 
-std::string VirtualFields::WhyUnsupported(
-    const Scene& scene, const EstimatorOptions& options) const {
-  if (options.loss != Loss::kNone) {
-    return "a loss function needs displacement residuals; use reduced-fe";
-  }
-  return ForceResidual::WhyUnsupported(scene);
+Capabilities VirtualFields::WhatItTakes() const {
+  Capabilities capabilities;
+  capabilities.needs_all_displacements = true;
+  capabilities.takes_bounds = true;
+  capabilities.takes_degree = true;
+  return capabilities;
 }
 
 Estimate VirtualFields::DoRun(const Scene& scene,

@@ -51,8 +51,7 @@ class VirtualFields : public Estimator {
 
   std::string_view Name() const override;
   std::string_view Description() const override;
-  std::string WhyUnsupported(const Scene& scene,
-                             const EstimatorOptions& options) const override;
+  Capabilities WhatItTakes() const override;
 
  protected:
   Estimate DoRun(const Scene& scene,

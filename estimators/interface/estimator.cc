@@ -73,6 +73,11 @@ std::string EstimatorOptions::WhyInvalid() const {
   return why;
 }
 
+std::string Estimator::WhyUnsupported(const Scene& scene,
+                                      const EstimatorOptions& options) const {
+  return elastimate::WhyUnsupported(WhatItTakes(), scene, options);
+}
+
 Estimate Estimator::Run(const Scene& scene,
                         const EstimatorOptions& options) const {
   Stopwatch stopwatch;

@@ -8,6 +8,7 @@
 
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/core/solvers/stiffness_solver.h"
+#include "elastimate/estimators/interface/capabilities.h"
 #include "elastimate/estimators/interface/estimate.h"
 
 namespace elastimate {
@@ -93,10 +94,13 @@ class Estimator {
   virtual std::string_view Name() const = 0;
   /// One line for people: method, needs, and source.
   virtual std::string_view Description() const = 0;
+  /// What it takes.
+  virtual Capabilities WhatItTakes() const = 0;
   /// Why it cannot serve this scene with these options, and what could; empty
-  /// when it can.  Preconditions: a valid scene and valid options.
+  /// when it can: what follows from its capabilities.
+  /// Preconditions: a valid scene and valid options.
   virtual std::string WhyUnsupported(const Scene& scene,
-                                     const EstimatorOptions& options) const = 0;
+                                     const EstimatorOptions& options) const;
 
  protected:
   virtual Estimate DoRun(const Scene& scene,

@@ -1,0 +1,72 @@
+#include "elastimate/estimators/interface/capabilities.h"
+
+#include "elastimate/core/scene/rigid_motion.h"
+#include "elastimate/estimators/interface/estimator.h"
+
+namespace elastimate {
+namespace {
+
+// Empty when the displacement of every free component was observed.
+std::string WhyNotAllDisplacements(const Scene& scene) {
+  const Eigen::Index num_vertices = scene.mesh.NumVertices();
+  const int dimension = scene.mesh.Dimension();
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    if (scene.load_cases[k].observed.size() == 0) {
+      continue;
+    }
+    for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
+      for (int i = 0; i < dimension; ++i) {
+        if (scene.supports.held(i, node) ||
+            IsObserved(scene.load_cases[k], i, node)) {
+          continue;
+        }
+        if (node >= num_vertices) {
+          return "the force residual needs the displacement of every node, "
+                 "and those of the mid-edge nodes of quadratic elements "
+                 "(order 2) were not measured; use reduced-fe, which can "
+                 "do without, or linear elements (order 1)";
+        }
+        return "the force residual needs the displacement of every node, "
+               "and node " +
+               std::to_string(node) + " (" + "xyz"[i] + ") of load case " +
+               std::to_string(k + 1) +
+               " was not observed; reduced-fe can do without";
+      }
+    }
+  }
+  return "";
+}
+
+std::string WhyNotSupported(const Scene& scene) {
+  std::string why = WhyNotHeld(scene.mesh, scene.supports);
+  if (!why.empty() && scene.mesh.Order() == 1) {
+    why += ", or use closed-form or virtual-fields, which need no supports";
+  }
+  return why;
+}
+
+}  // namespace
+
+std::string WhyUnsupported(const Capabilities& capabilities, const Scene& scene,
+                           const EstimatorOptions& options) {
+  if (!capabilities.takes_bounds &&
+      (options.poisson_ratio.AreGiven() || options.youngs_modulus.AreGiven())) {
+    return "it cannot keep bounds; use bounded or reduced-fe";
+  }
+  if (!capabilities.takes_losses && options.loss != Loss::kNone) {
+    return "a loss function needs displacement residuals; use reduced-fe";
+  }
+  if (!capabilities.takes_degree && options.virtual_field_degree) {
+    return "it has no virtual fields to take a degree; use virtual-fields";
+  }
+  std::string why;
+  if (capabilities.needs_all_displacements) {
+    why = WhyNotAllDisplacements(scene);
+  }
+  if (why.empty() && capabilities.needs_supports) {
+    why = WhyNotSupported(scene);
+  }
+  return why;
+}
+
+}  // namespace elastimate

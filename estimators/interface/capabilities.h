@@ -1,0 +1,35 @@
+#ifndef ELASTIMATE_ESTIMATORS_INTERFACE_CAPABILITIES_H_
+#define ELASTIMATE_ESTIMATORS_INTERFACE_CAPABILITIES_H_
+
+#include <string>
+
+#include "elastimate/core/scene/scene.h"
+
+namespace elastimate {
+
+struct EstimatorOptions;
+
+/// What an estimator takes.  Every estimator takes each element kind and
+/// section.
+struct Capabilities {
+  /// It needs the displacement of every free component.
+  bool needs_all_displacements = false;
+  /// It needs supports that hold the specimen.
+  bool needs_supports = false;
+  bool takes_bounds = false;  ///< On E and nu.
+  bool takes_losses = false;
+  /// It has virtual fields, of a degree that may be chosen.
+  bool takes_degree = false;
+};
+
+/// Why an estimator of these capabilities cannot serve the scene with the
+/// options, and what could; empty when it can.  The only place where refusals
+/// are written.
+/// Preconditions: a valid scene and valid options.  O(num_dofs num_load_cases),
+/// and the cost of WhyNotHeld where it needs supports.
+std::string WhyUnsupported(const Capabilities& capabilities, const Scene& scene,
+                           const EstimatorOptions& options);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_INTERFACE_CAPABILITIES_H_
