@@ -3,11 +3,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/mechanics/strain_energy.h"
 #include "elastimate/core/scene/rigid_motion.h"
+#include "elastimate/estimators/interface/finding_sentences.h"
+#include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/statistics.h"
 
 namespace elastimate {
@@ -16,21 +17,6 @@ namespace {
 // The sine of the identifiability angle below which rounding decides: it comes
 // from the square root of a difference, which has half the digits.
 constexpr double kCollinear = 1e-6;
-
-// Standard scores beyond this do not come from independent noise.
-constexpr double kSignificantScore = 5;
-
-// A relative standard error of E that a user wants to be told of.
-constexpr double kNotableError = 0.01;
-
-// A residual of this part of the measurement is told of, and, when it is
-// smooth, says that the model is another one than that of the experiment.
-constexpr double kLargeResidual = 0.2;
-
-// From this root mean square of the residuals on, relative to their robust
-// standard deviation, outliers are looked for: 1 for Gaussian noise, 1.4 for
-// Laplacian.
-constexpr double kHeavyTails = 1.2;
 
 // Sums over the observed nodes that the statistics are made of.  Derivatives
 // are with respect to (ln E, nu); without a loss the bread is S^T S.
@@ -90,13 +76,10 @@ ResidualVariance EstimateVariance(const ObservedDisplacements& observed,
   }
   // chi^2 has mean m and variance 2 m.
   const double ratio = variance * norm_squared;
-  if (redundancy > 0 && ratio > 1 + kSignificantScore * std::sqrt(2 / m)) {
-    std::ostringstream text;
-    text << "the displacement residual is " << TwoDigits(std::sqrt(ratio))
-         << " times the given noise, and the standard errors are widened to "
-            "match; the mesh, the supports or the loads do not describe the "
-            "experiment";
-    estimate.warnings.push_back(text.str());
+  if (redundancy > 0 &&
+      ratio > 1 + kLimits.significant_score * std::sqrt(2 / m)) {
+    estimate.Add(
+        ResidualAboveNoise(ResidualKind::kDisplacement, std::sqrt(ratio)));
     return ResidualVariance{variance, false};
   }
   return ResidualVariance{1 / norm_squared, true};
@@ -114,7 +97,8 @@ double SmoothSquareSum(const NodeGraph& graph,
   }
   estimate.residual_correlation =
       std::clamp(neighbours->correlation, -1.0, 1.0);
-  estimate.is_model_in_doubt = neighbours->standard_score > kSignificantScore;
+  estimate.is_model_in_doubt =
+      neighbours->standard_score > kLimits.significant_score;
   return estimate.is_model_in_doubt
              ? *estimate.residual_correlation * residual.squaredNorm()
              : 0;
@@ -122,17 +106,9 @@ double SmoothSquareSum(const NodeGraph& graph,
 
 void WarnOfSmoothResidual(double relative_error, Estimate& estimate) {
   // Not a number for an E on a bound.
-  if (relative_error <= kNotableError) {
-    return;
+  if (!(relative_error <= kLimits.notable_youngs_modulus_error)) {
+    estimate.Add(SmoothResidual(*estimate.residual_correlation));
   }
-  std::ostringstream text;
-  text << "the displacement residual is alike at neighbouring nodes "
-          "(correlation "
-       << TwoDigits(*estimate.residual_correlation)
-       << "), as noise is not: the mesh, the supports or the loads do not "
-          "describe the experiment, or the measurement was smoothed; the "
-          "standard errors are widened to allow for it";
-  estimate.warnings.push_back(text.str());
 }
 
 // For E on a bound.  `parameters` are those that are free without it,
@@ -193,37 +169,18 @@ bool HasHeavyTails(const Eigen::VectorXd& residual) {
   const double n = static_cast<double>(residual.size());
   // The standard deviation of 1.4826 MAD is 1.17 / sqrt(n) of itself.
   const double threshold =
-      kHeavyTails + kSignificantScore * 1.17 / std::sqrt(n);
+      kLimits.heavy_tails + kLimits.significant_score * 1.17 / std::sqrt(n);
   return residual.norm() / std::sqrt(n) >
          threshold * RobustStandardDeviation(residual);
 }
 
-void WarnOfOutliers(const Eigen::Vector2d& change, Estimate& estimate) {
-  std::ostringstream text;
-  text << "some nodes lie far off, and without their pull E would change by "
-       << TwoDigits(100 * change(0)) << " % and nu by " << TwoDigits(change(1))
-       << ", which the standard errors allow for: use a loss (huber or cauchy)";
-  estimate.warnings.push_back(text.str());
-}
-
 // `smooth` is the smooth part of the residual, relative to the measurement.
 void JudgeLargeResidual(double smooth, bool is_explained, Estimate& estimate) {
-  std::ostringstream text;
-  if (smooth > kLargeResidual && estimate.status == Status::kOk) {
-    text << "the model misses a smooth part of the measured displacement, "
-         << TwoDigits(100 * smooth)
-         << " % of it: the mesh, the supports, the loads or a known Poisson's "
-            "ratio do not describe the experiment";
-    estimate.status = Status::kNotIdentifiable;
-    estimate.message = text.str();
-  } else if (*estimate.displacement_residual > kLargeResidual && smooth == 0 &&
-             !is_explained) {
-    text << "the displacement residual is "
-         << TwoDigits(100 * *estimate.displacement_residual)
-         << " % of the measured displacement: either the noise is as large, or "
-            "the mesh, the supports or the loads do not describe the "
-            "experiment";
-    estimate.warnings.push_back(text.str());
+  if (smooth > kLimits.large_residual && estimate.IsUsable()) {
+    estimate.Fail(LargeSmoothResidual(smooth));
+  } else if (*estimate.displacement_residual > kLimits.large_residual &&
+             smooth == 0 && !is_explained) {
+    estimate.Add(LargeResidual(*estimate.displacement_residual));
   }
 }
 
@@ -309,9 +266,7 @@ std::optional<double> DescribeDisplacementFit(
       !active.is_physical_limit;
   if (active.youngs_modulus == BoundedParameter::Side::kNone &&
       !options.known_poisson_ratio && !is_bound_given && is_collinear) {
-    estimate.Fail(Status::kNotIdentifiable,
-                  DescribeCollinear(estimate.elasticity, {slope, 1}),
-                  "the parameters are not determined");
+    estimate.Fail(OneCombination(estimate.elasticity, {slope, 1}));
     estimate.elasticity = {Estimate::kUnknown, Estimate::kUnknown};
     return std::nullopt;
   }
@@ -328,18 +283,10 @@ std::optional<double> DescribeDisplacementFit(
     }
   }
 
-  // Below three the variance of Student's t is infinite.
-  constexpr Eigen::Index kLeastRedundancy = 3;
-  if (observed.Size() - Eigen::Index(free.size()) < kLeastRedundancy &&
+  if (observed.Size() - Eigen::Index(free.size()) < kLimits.least_redundancy &&
       !scene.load_cases.front().noise_sd) {
-    estimate.why_no_standard_error =
-        "there are too few measured components to estimate their noise from";
-    if (estimate.status == Status::kOk) {
-      estimate.status = Status::kNotIdentifiable;
-      estimate.message =
-          std::to_string(observed.Size()) +
-          " measured components are too few to tell how good the estimate is; "
-          "measure more, or give the standard deviation of the noise";
+    if (estimate.IsUsable()) {
+      estimate.Fail(TooFewMeasurements(observed.Size()));
     }
     return std::nullopt;
   }
@@ -372,12 +319,14 @@ std::optional<double> DescribeDisplacementFit(
   if (losses.IsLeastSquares() && !free.empty() && HasHeavyTails(fit.residual)) {
     const Eigen::Vector2d change = RobustChange(observed, fit, free);
     covariance += change * change.transpose();
-    if (std::abs(change(0)) > kNotableError) {
-      WarnOfOutliers(change, estimate);
+    if (std::abs(change(0)) > kLimits.notable_youngs_modulus_error) {
+      estimate.Add(Outliers(change));
     }
   }
   const Eigen::Vector2d scale(estimate.elasticity.youngs_modulus, 1);
-  estimate.covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
+  if (estimate.IsUsable()) {
+    estimate.covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
+  }
   if (smooth_square_sum > 0) {
     WarnOfSmoothResidual(std::sqrt(covariance(0, 0)), estimate);
   }

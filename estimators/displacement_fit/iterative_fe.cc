@@ -20,6 +20,7 @@
 #include "elastimate/estimators/displacement_fit/node_losses.h"
 #include "elastimate/estimators/displacement_fit/observed_displacements.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
+#include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/statistics.h"
 #include "elastimate/estimators/interface/stopwatch.h"
@@ -577,18 +578,11 @@ Minimum BestMinimum(const EstimatorOptions& options,
 void JudgeSummary(const EstimatorOptions& options,
                   const ceres::Solver::Summary& summary, Estimate& estimate) {
   if (summary.termination_type == ceres::CONVERGENCE) {
-    estimate.status = Status::kOk;
-    estimate.message = "";
+    estimate.Accept();
   } else if (summary.termination_type == ceres::NO_CONVERGENCE) {
-    estimate.status = Status::kIterationLimit;
-    estimate.message = "the fit did not converge in " +
-                       std::to_string(options.max_iterations) + " iterations";
+    estimate.Fail(NoConvergence(options.max_iterations));
   } else {
-    estimate.message =
-        "the search for the best fit ended without one (Ceres: " +
-        summary.message +
-        "): the stiffness may be singular to working precision; check the mesh "
-        "for slivers, or use reduced-fe";
+    estimate.Fail(SearchFailed("Ceres: " + summary.message));
   }
 }
 
@@ -684,18 +678,14 @@ Estimate IterativeFe::DoRun(const Scene& scene,
 
   std::vector<ProfilePoint> points = EvaluateStarts(scene, options, residual);
   if (points.empty()) {
-    estimate.message =
-        "the stiffness matrix is singular to working precision; check the "
-        "mesh for slivers and loose parts, and the supports";
-    estimate.why_no_standard_error = "there is no estimate";
+    estimate.Fail(SingularStiffness());
     estimate.work = residual.WorkDone();
     return estimate;
   }
   const std::vector<IsotropicElasticity> basins = BasinsOf(points);
   if (basins.empty()) {
     estimate.elasticity = points.front().elasticity;
-    estimate.Fail(Status::kUnphysical, kDisplacementsOpposeLoads,
-                  "the estimate is not physical");
+    estimate.Fail(DisplacementsOpposeLoads());
     estimate.work = residual.WorkDone();
     return estimate;
   }

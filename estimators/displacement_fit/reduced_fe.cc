@@ -8,6 +8,7 @@
 #include "elastimate/estimators/displacement_fit/adaptive_fit.h"
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
 #include "elastimate/estimators/displacement_fit/observed_displacements.h"
+#include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/input_checks.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/stopwatch.h"
@@ -37,10 +38,7 @@ Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
   const bool is_regular = adaptive.Run(observed);
   estimate.stages.push_back({"fit", stopwatch.Lap()});
   if (!is_regular) {
-    estimate.message =
-        "the stiffness matrix is singular to working precision; check the "
-        "mesh for slivers and loose parts, and the supports";
-    estimate.why_no_standard_error = "there is no estimate";
+    estimate.Fail(SingularStiffness());
     return estimate;
   }
   const ModelFit& best = adaptive.Best();
@@ -48,12 +46,10 @@ Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
       best.point.compliance_scale, best.point.poisson_ratio);
   if (!estimate.elasticity.IsPhysical() ||
       !std::isfinite(estimate.elasticity.youngs_modulus)) {
-    estimate.Fail(Status::kUnphysical, kDisplacementsOpposeLoads,
-                  "the estimate is not physical");
+    estimate.Fail(DisplacementsOpposeLoads());
     return estimate;
   }
-  estimate.status = Status::kOk;
-  estimate.message = "";
+  estimate.Accept();
   const BoundedParameter poisson_ratio =
       options.known_poisson_ratio
           ? BoundedParameter::Constant(*options.known_poisson_ratio)
@@ -81,11 +77,7 @@ Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
     }
   }
   if (!adaptive.HasConverged() && estimate.IsUsable()) {
-    estimate.Fail(Status::kIterationLimit,
-                  "the reduced model did not become accurate enough to exclude "
-                  "a better fit elsewhere; use iterative-fe, or bounds on "
-                  "Poisson's ratio",
-                  "the fit is not certified");
+    estimate.Fail(FitNotCertified());
   }
   NoteSolver(adaptive.Model().Notice(), estimate);
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
@@ -166,7 +158,7 @@ Estimate PreparedReducedFe::Run(
     scene.load_cases[k].displacement = displacements[k];
   }
   ValidateMeasurements(scene);
-  const std::vector<std::string> warnings = CheckMeasurements(scene);
+  const std::vector<Finding> findings = CheckMeasurements(scene);
   if (!state_->observed) {
     state_->observed = std::make_unique<ObservedDisplacements>(scene);
   } else {
@@ -176,7 +168,7 @@ Estimate PreparedReducedFe::Run(
   Estimate estimate = RunAdaptiveFit(scene, state_->options, *state_->observed,
                                      state_->adaptive);
   estimate.work = state_->adaptive.Model().WorkDone() - before;
-  FinishEstimate(ReducedFe(), scene, state_->options, warnings, estimate);
+  FinishEstimate(ReducedFe(), scene, state_->options, findings, estimate);
   estimate.seconds = stopwatch.Lap();
   return estimate;
 }

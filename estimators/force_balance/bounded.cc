@@ -8,6 +8,7 @@
 
 #include "elastimate/estimators/force_balance/force_residual.h"
 #include "elastimate/estimators/force_balance/virtual_work_check.h"
+#include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/statistics/bounded_parameter.h"
 
 namespace elastimate {
@@ -135,25 +136,17 @@ Estimate Bounded::DoRun(const Scene& scene,
   estimate.work = residual.WorkDone();
   const std::optional<IsotropicElasticity> start = Start(residual, options);
   if (!start) {
-    estimate.Fail(
-        Status::kUnphysical,
-        "no Poisson's ratio within the bounds gives a positive Young's "
-        "modulus: the measured displacements oppose the loads; check their "
-        "signs, order and units");
+    estimate.Fail(DisplacementsOpposeLoads());
     return estimate;
   }
   Parameters parameters = MakeParameters(options, *start);
   const ceres::Solver::Summary summary = Minimize(residual, *start, parameters);
   if (!summary.IsSolutionUsable()) {
-    estimate.Fail(Status::kNumericalFailure, summary.message);
+    estimate.Fail(SearchFailed(summary.message));
     return estimate;
   }
   if (std::abs(parameters.log_youngs_modulus.Value()) == kLargestLogarithm) {
-    estimate.Fail(
-        Status::kUnphysical,
-        "the data pull Young's modulus to zero or infinity: they are mostly "
-        "noise, or the mesh, the supports or the loads do not describe the "
-        "experiment");
+    estimate.Fail(YoungsModulusDiverges());
     return estimate;
   }
   estimate.elasticity = {
@@ -170,11 +163,10 @@ Estimate Bounded::DoRun(const Scene& scene,
   if (!options.known_poisson_ratio && free_youngs_modulus &&
       !residual.PoissonRatio()) {
     estimate.elasticity = {Estimate::kUnknown, Estimate::kUnknown};
-    estimate.Fail(Status::kNotIdentifiable, residual.WhyNotIdentifiable());
+    estimate.Fail(residual.WhyNotIdentifiable());
     return estimate;
   }
-  estimate.status = Status::kOk;
-  estimate.message = "";
+  estimate.Accept();
   residual.Describe(free_youngs_modulus, free_poisson_ratio, estimate);
   if (!estimate.active_bounds.empty()) {
     estimate.why_no_standard_error = "a parameter on a bound has none";
@@ -182,11 +174,7 @@ Estimate Bounded::DoRun(const Scene& scene,
   if (active.is_physical_limit) {
     // E runs to zero or infinity with 1 - 2 nu: its value says nothing.
     estimate.elasticity.youngs_modulus = Estimate::kUnknown;
-    estimate.Fail(
-        Status::kUnphysical,
-        "the data pull Poisson's ratio to the end of its range, as "
-        "displacement noise does with this method; give bounds that the "
-        "material is known to keep, or use reduced-fe");
+    estimate.Fail(PoissonRatioDivergesByNoise());
   } else if (!free_youngs_modulus) {
     residual.JudgeYoungsModulusOnBound(options, estimate);
   } else if (options.known_poisson_ratio) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/large_pages.h"
@@ -13,6 +12,8 @@
 #include "elastimate/core/mechanics/stiffness_traces.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/loads.h"
+#include "elastimate/estimators/interface/finding_sentences.h"
+#include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/statistics.h"
 #include "elastimate/estimators/statistics/bounded_parameter.h"
 
@@ -27,10 +28,6 @@ constexpr double kCollinear = 1e-11;
 // good to better than 1 %, and standard errors to half of that.
 constexpr Eigen::Index kMostElementsForExactTraces = 10000;
 constexpr Eigen::Index kNumTraceProbes = 2;
-
-// Factor between the force residual and what the given noise explains from
-// which on the model is in doubt.
-constexpr double kUnexplainedResidual = 1.5;
 
 // The triangle of a QR factorisation of the free rows of all columns of f, b
 // and a, side by side, in blocks of rows that stay in the cache.
@@ -90,8 +87,6 @@ void SetHeldRowsToZero(const ComponentMask& held,
     }
   }
 }
-
-std::string Percent(double ratio) { return TwoDigits(100 * ratio) + " %"; }
 
 }  // namespace
 
@@ -192,12 +187,12 @@ std::optional<double> ForceResidual::PoissonRatio() const {
   return -triangle_(1, 2) / triangle_(1, 1);
 }
 
-std::string ForceResidual::WhyNotIdentifiable() const {
+Finding ForceResidual::WhyNotIdentifiable() const {
   // Along dt / dnu = b.f / f.f the residual does not change.
   constexpr double kAnyPoissonRatio = 0.25;
   const double nu = kAnyPoissonRatio;
   const double dt_dnu = triangle_(0, 1) / triangle_(0, 0);
-  return DescribeCollinear(
+  return OneCombination(
       At(nu),
       {1 / (1 + nu) - 2 / (1 - 2 * nu) - dt_dnu / ComplianceScale(nu), 1});
 }
@@ -363,13 +358,8 @@ std::optional<double> ForceResidual::DescribeNoise(bool free_youngs_modulus,
   estimate.noise_sd = known_noise_sd_.value_or(noise_sd_ratio);
   if (known_noise_sd_) {
     variance = 1;
-    if (noise_sd_ratio > kUnexplainedResidual) {
-      std::ostringstream text;
-      text << "the force residual is " << TwoDigits(noise_sd_ratio)
-           << " times what the given noise explains, and the standard errors "
-              "are widened to match; the mesh, the supports or the loads do "
-              "not describe the experiment";
-      estimate.warnings.push_back(text.str());
+    if (noise_sd_ratio > kLimits.excess_force_residual) {
+      estimate.Add(ResidualAboveNoise(ResidualKind::kForce, noise_sd_ratio));
       variance = *residual_variance;
     }
   }
@@ -421,44 +411,29 @@ void ForceResidual::JudgeYoungsModulusOnBound(const EstimatorOptions& options,
 }
 
 void JudgeKnownPoissonRatio(const ForceResidual& residual, Estimate& estimate) {
-  constexpr double kSignificant = 5;
-  constexpr double kUnusableChange = 0.1;
   const std::optional<double> nu = residual.UnbiasedPoissonRatio();
   const std::optional<double> error = residual.UnbiasedPoissonRatioError();
   const double given = estimate.elasticity.poisson_ratio;
   // Rounding has no standard error.
   constexpr double kRounding = 1e-6;
   if (!residual.PoissonRatio() || !nu || !error ||
-      !(std::abs(*nu - given) > kSignificant * *error + kRounding)) {
+      !(std::abs(*nu - given) >
+        kLimits.significant_score * *error + kRounding)) {
     return;
   }
   const double ratio =
       residual.At(*nu).youngs_modulus / estimate.elasticity.youngs_modulus;
-  const std::string what =
-      "the data contradict the given Poisson's ratio: they ask for " +
-      TwoDigits(*nu) + " +- " + TwoDigits(*error) +
-      ", unless the mesh, the supports or the loads do not describe the "
-      "experiment";
-  if (std::abs(ratio - 1) <= kUnusableChange) {
-    estimate.warnings.push_back(what);
-    return;
+  if (std::abs(ratio - 1) <= kLimits.unusable_error) {
+    estimate.Add(
+        KnownPoissonRatioContradicted(*nu, *error, Severity::kWarning));
+  } else {
+    estimate.Fail(KnownPoissonRatioContradicted(*nu, *error, Severity::kError));
   }
-  estimate.Fail(Status::kNotIdentifiable, what,
-                "the model contradicts the data");
 }
 
 void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,
                     Estimate& estimate) {
-  constexpr double kUnusableBias = 0.1;
-  constexpr double kUnusablePoissonRatioBias = 0.03;
-  constexpr double kNotableBias = 0.01;
-  const std::string cause =
-      "displacement noise (or a mesh, supports" +
-      std::string(estimate.active_bounds.empty() ? " or loads"
-                                                 : ", loads or bounds") +
-      " that do not describe the experiment) biases ";
-  const std::string advice =
-      "use reduced-fe, which noise does not bias, or give Poisson's ratio";
+  const bool is_bounded = !estimate.active_bounds.empty();
   const IsotropicElasticity& elasticity = estimate.elasticity;
   const std::optional<double> unbiased_nu = residual.UnbiasedPoissonRatio();
   double bias = std::numeric_limits<double>::infinity();
@@ -472,33 +447,26 @@ void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,
       nu_bias = elasticity.poisson_ratio - nu;
     }
   }
-  std::string what;
-  if (!(std::abs(bias) <= kUnusableBias)) {
-    what = "Young's modulus by about " +
-           (std::isfinite(bias) ? Percent(bias) : "its whole size") +
-           ", more than the 10 % that are usable";
-  } else if (!(std::abs(nu_bias) <= kUnusablePoissonRatioBias)) {
-    what = "Poisson's ratio by about " + TwoDigits(nu_bias) +
-           ", more than the 0.03 that are usable";
+  if (!(std::abs(bias) <= kLimits.unusable_error)) {
+    estimate.Fail(YoungsModulusBias(
+        std::isfinite(bias) ? std::optional<double>(bias) : std::nullopt,
+        is_bounded, Severity::kError));
+    return;
   }
-  if (!what.empty()) {
-    estimate.Fail(Status::kNotIdentifiable, cause + what + "; " + advice,
-                  "the bias is larger than any standard error");
+  if (!(std::abs(nu_bias) <= kLimits.unusable_poisson_ratio_bias)) {
+    estimate.Fail(PoissonRatioBias(nu_bias, is_bounded, Severity::kError));
     return;
   }
   const double standard_error =
       estimate.YoungsModulusStandardError().value_or(0) /
       elasticity.youngs_modulus;
-  if (std::abs(bias) > std::max(kNotableBias, standard_error)) {
-    what = "Young's modulus by about " + Percent(bias);
+  if (std::abs(bias) >
+      std::max(kLimits.notable_youngs_modulus_error, standard_error)) {
+    estimate.Add(YoungsModulusBias(bias, is_bounded, Severity::kWarning));
   } else if (std::abs(nu_bias) >
-             std::max(kNotableBias,
+             std::max(kLimits.notable_poisson_ratio_error,
                       estimate.PoissonRatioStandardError().value_or(0))) {
-    what = "Poisson's ratio by about " + TwoDigits(nu_bias);
-  }
-  if (!what.empty()) {
-    estimate.warnings.push_back(
-        cause + what + ", which the standard errors allow for; " + advice);
+    estimate.Add(PoissonRatioBias(nu_bias, is_bounded, Severity::kWarning));
   }
   const Eigen::Vector2d both(elasticity.youngs_modulus * bias / (1 + bias),
                              nu_bias);

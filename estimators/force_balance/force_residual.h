@@ -48,8 +48,8 @@ class ForceResidual {
   /// collinear, so that the data determine one combination of nu and t only.
   std::optional<double> PoissonRatio() const;
 
-  /// A sentence about what is determined when PoissonRatio is empty.
-  std::string WhyNotIdentifiable() const;
+  /// What is determined when PoissonRatio is empty.
+  Finding WhyNotIdentifiable() const;
 
   /// t that minimises ||r|| at this nu, t = f.(a + nu b) / f.f [eq. 20].
   double ComplianceScale(double poisson_ratio) const;
@@ -69,7 +69,7 @@ class ForceResidual {
   /// Noise level, noise bias and covariance of an estimate of this residual.
   /// `free_youngs_modulus` and `free_poisson_ratio` say which parameters were
   /// estimated (not given, not held by a bound).  Fills in the noise, residual
-  /// and covariance entries of `estimate`, and its warnings.
+  /// and covariance entries of `estimate`, and its findings.
   void Describe(bool free_youngs_modulus, bool free_poisson_ratio,
                 Estimate& estimate) const;
 

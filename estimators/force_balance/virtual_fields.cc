@@ -10,7 +10,8 @@
 #include "elastimate/estimators/force_balance/force_residual.h"
 #include "elastimate/estimators/force_balance/monomials.h"
 #include "elastimate/estimators/force_balance/virtual_work.h"
-#include "elastimate/estimators/interface/statistics.h"
+#include "elastimate/estimators/interface/finding_sentences.h"
+#include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 #include "elastimate/estimators/statistics/profile_likelihood.h"
 
@@ -18,17 +19,6 @@ namespace elastimate {
 namespace {
 
 using Side = BoundedParameter::Side;
-
-// Standard scores beyond this do not come from independent noise.
-constexpr double kSignificantScore = 5;
-
-// A relative standard error of E that a user wants to be told of.
-constexpr double kNotableError = 0.01;
-
-// The share of the loads out of balance that is notable, and that which may
-// put E off by more than is usable.
-constexpr double kNotableImbalance = 0.01;
-constexpr double kUnusableImbalance = 0.1;
 
 // What the residual says about its causes.
 struct ResidualJudgement {
@@ -57,15 +47,11 @@ std::optional<ResidualJudgement> JudgeResidual(
   if (given_noise_sd) {
     // chi^2 has mean m and variance 2 m.
     if (redundancy <= 0 ||
-        variance <= 1 + kSignificantScore * std::sqrt(2 / m)) {
+        variance <= 1 + kLimits.significant_score * std::sqrt(2 / m)) {
       return ResidualJudgement{1, 0};
     }
-    estimate.warnings.push_back(
-        "the balance of virtual work is off by " +
-        TwoDigits(std::sqrt(variance)) +
-        " times what the given noise explains, and the standard errors are "
-        "widened to match; the mesh, the supports or the loads do not describe "
-        "the experiment");
+    estimate.Add(
+        ResidualAboveNoise(ResidualKind::kVirtualWork, std::sqrt(variance)));
   }
   // On a bound the force residual is that of the bound, too.
   const std::optional<double> rough_variance =
@@ -78,8 +64,8 @@ std::optional<ResidualJudgement> JudgeResidual(
   const double rough_m = static_cast<double>(force_residual.NumEquations()) / 4;
   const bool is_noise =
       !rough_variance ||
-      variance <= *rough_variance *
-                      (1 + kSignificantScore * std::sqrt(2 / m + 2 / rough_m));
+      variance <= *rough_variance * (1 + kLimits.significant_score *
+                                             std::sqrt(2 / m + 2 / rough_m));
   return ResidualJudgement{variance, is_noise ? 0 : fit.square_sum};
 }
 
@@ -129,12 +115,8 @@ class Information {
 };
 
 void WarnOfModelError(double relative_error, Estimate& estimate) {
-  if (relative_error > kNotableError) {
-    estimate.warnings.emplace_back(
-        "the balance of virtual work is off by more than the noise in the "
-        "force residual explains: the mesh, the supports or the loads do not "
-        "describe the experiment, or the measurement was smoothed; the "
-        "standard errors are widened to allow for it");
+  if (relative_error > kLimits.notable_youngs_modulus_error) {
+    estimate.Add(VirtualWorkImbalance());
   }
 }
 
@@ -144,11 +126,7 @@ void Describe(const std::vector<Eigen::Index>& free,
   const std::optional<Eigen::MatrixXd> covariance =
       information.Covariance(free);
   if (!covariance) {
-    estimate.Fail(
-        Status::kNotIdentifiable,
-        "displacement noise hides Poisson's ratio from these virtual fields; "
-        "give Poisson's ratio, raise the degree of the fields, or use "
-        "reduced-fe");
+    estimate.Fail(PoissonRatioHiddenByNoise());
     return;
   }
   const Eigen::Vector2d scale(estimate.elasticity.youngs_modulus, 1);
@@ -169,18 +147,9 @@ double StandardErrorOrInfinity(const std::optional<Eigen::MatrixXd>& covariance,
 // `correction` is the smallest change of the displacements that brings the
 // virtual work of all fields into balance, relative to them.
 void JudgeCorrection(double correction, Estimate& estimate) {
-  constexpr double kUnusableCorrection = 0.2;
-  if (!estimate.IsUsable() || !(correction > kUnusableCorrection)) {
-    return;
+  if (estimate.IsUsable() && correction > kLimits.large_residual) {
+    estimate.Fail(LargeCorrection(correction));
   }
-  estimate.Fail(Status::kNotIdentifiable,
-                "the loads are in balance only with displacements that differ "
-                "from the measured ones by " +
-                    TwoDigits(100 * correction) +
-                    " % of them: the mesh, the supports, the loads, a bound or "
-                    "a given Poisson's ratio do not describe the experiment, "
-                    "or the measurement is mostly noise",
-                "the model contradicts the data");
 }
 
 // The nu around a fit whose S exceeds that of the fit by no more than chance:
@@ -228,12 +197,8 @@ void DescribeProfileOf(const VirtualWorkBalance& balance,
   }
   if (std::max(interval.upper - estimate.elasticity.poisson_ratio,
                estimate.elasticity.poisson_ratio - interval.lower) >
-      kLargestPoissonRatioDistance) {
-    estimate.Fail(Status::kNotIdentifiable,
-                  "virtual work leaves Poisson's ratio between " +
-                      TwoDigits(interval.lower) + " and " +
-                      TwoDigits(interval.upper) +
-                      "; give Poisson's ratio, or use reduced-fe");
+      kLimits.LargestPoissonRatioDistance()) {
+    estimate.Fail(PoissonRatioBetween(interval, true));
   }
 }
 
@@ -265,7 +230,8 @@ void JudgeYoungsModulus(const EstimatorOptions& options,
     covariance = information.Covariance({0});
   } else {
     const Interval by_chance = IntervalByChance(balance, unbounded, *residual);
-    if (by_chance.upper - by_chance.lower <= 2 * kLargestPoissonRatioDistance) {
+    if (by_chance.upper - by_chance.lower <=
+        2 * kLimits.LargestPoissonRatioDistance()) {
       covariance = information.Covariance({0, 1});
     }
   }
@@ -299,18 +265,14 @@ Eigen::MatrixXd SmoothDisplacements(const Scene& scene) {
 // Warns of loads that the motions left free are not in balance with; whether
 // they can be used.
 bool JudgeImbalance(double imbalance, Estimate& estimate) {
-  if (imbalance <= kNotableImbalance) {
+  if (imbalance <= kLimits.notable_youngs_modulus_error) {
     return true;
   }
-  const std::string text =
-      "the supports leave the specimen free to move, and " +
-      TwoDigits(100 * imbalance) +
-      " % of the loads push it that way; complete the supports or the loads";
-  if (imbalance <= kUnusableImbalance) {
-    estimate.warnings.push_back(text);
+  if (imbalance <= kLimits.unusable_error) {
+    estimate.Add(LoadsOutOfBalance(imbalance, Severity::kWarning));
     return true;
   }
-  estimate.Fail(Status::kNotIdentifiable, text);
+  estimate.Fail(LoadsOutOfBalance(imbalance, Severity::kError));
   return false;
 }
 
@@ -343,16 +305,12 @@ Estimate VirtualFields::DoRun(const Scene& scene,
   estimate.work = force_residual.WorkDone();
   // The fields, and the measurement.
   estimate.work.element_passes += 2;
-  estimate.status = Status::kOk;
-  estimate.message = "";
+  estimate.Accept();
   if (!JudgeImbalance(work.Imbalance(AssembleLoadCases(scene)), estimate)) {
     return estimate;
   }
   if (!balance.LoadsDoWork()) {
-    estimate.Fail(
-        Status::kNotIdentifiable,
-        "the loads do no work on the virtual fields; raise their degree, or "
-        "use reduced-fe");
+    estimate.Fail(LoadsDoNoWork());
     return estimate;
   }
   const std::optional<double> collinear_slope =
@@ -367,17 +325,15 @@ Estimate VirtualFields::DoRun(const Scene& scene,
   if (!(fit.free_compliance_scale > 0)) {
     estimate.elasticity = IsotropicElasticity::FromComplianceScale(
         fit.free_compliance_scale, fit.poisson_ratio);
-    estimate.Fail(Status::kUnphysical, kDisplacementsOpposeLoads);
+    estimate.Fail(DisplacementsOpposeLoads());
     return estimate;
   }
   if (collinear_slope) {
     const double nu = fit.poisson_ratio;
-    estimate.Fail(
-        Status::kNotIdentifiable,
-        DescribeCollinear(estimate.elasticity,
-                          {1 / (1 + nu) - 2 / (1 - 2 * nu) -
-                               *collinear_slope / fit.compliance_scale,
-                           1}));
+    estimate.Fail(OneCombination(estimate.elasticity,
+                                 {1 / (1 + nu) - 2 / (1 - 2 * nu) -
+                                      *collinear_slope / fit.compliance_scale,
+                                  1}));
     estimate.elasticity = {Estimate::kUnknown, Estimate::kUnknown};
     return estimate;
   }

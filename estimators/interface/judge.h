@@ -10,34 +10,26 @@
 
 namespace elastimate {
 
-/// Makes the notice of a StiffnessSolver, if there is one, a warning.
+/// Makes the notice of a StiffnessSolver, if there is one, a finding.
 void NoteSolver(const std::string& notice, Estimate& estimate);
-
-/// Whether FinishEstimate gave this warning of linear elements near nu = 1/2.
-bool IsWarningOfLocking(const std::string& warning);
 
 /// Whether the discretisation error is larger than 1 % and than half a standard
 /// error of E, or that of nu than 0.01 and half its standard error.
 bool IsDiscretizationErrorNotable(const Estimate& estimate);
 
-/// "the elements miss about 15 % of the strain energy".
-/// Precondition: there is a discretisation error.
-std::string DescribeDiscretizationError(const Estimate& estimate);
-
-/// Takes back the discretisation error, and the warning of FinishEstimate of
-/// it: the displacements were found to come from these very elements.
-/// Precondition: there is a discretisation error.
+/// Takes back the discretisation error, and what FinishEstimate found of it:
+/// the displacements were found to come from these very elements. Precondition:
+/// there is a discretisation error.
 void AcceptElements(Estimate& estimate);
 
-/// Enters the estimator's name, the warnings, and an interval of nu where only
-/// its standard error is known; warns of what linear elements do near nu = 1/2
-/// and of a notable discretisation error; and turns an estimate that claims to
-/// be ok into what it is, when it is not finite, not physical, or not
-/// determined.
+/// Enters the estimator's name, the findings of its input, and an interval of
+/// nu where only its standard error is known; warns of what linear elements do
+/// near nu = 1/2 and of a notable discretisation error; and turns an estimate
+/// that claims to be ok into what it is, when it is not finite, not physical,
+/// or not determined.
 void FinishEstimate(const Estimator& estimator, const Scene& scene,
                     const EstimatorOptions& options,
-                    const std::vector<std::string>& warnings,
-                    Estimate& estimate);
+                    const std::vector<Finding>& findings, Estimate& estimate);
 
 }  // namespace elastimate
 

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "elastimate/estimators/interface/statistics.h"
+#include "elastimate/estimators/interface/finding_sentences.h"
+#include "elastimate/estimators/interface/limits.h"
 
 namespace elastimate {
 namespace {
@@ -139,9 +140,7 @@ ActiveBounds NoteActiveBounds(const EstimatorOptions& options,
     estimate.active_bounds.emplace_back(lower ? "youngs_min" : "youngs_max");
     estimate.elasticity.youngs_modulus =
         lower ? *options.youngs_modulus.lower : *options.youngs_modulus.upper;
-    estimate.warnings.emplace_back(
-        "Young's modulus lies on its bound; Poisson's ratio and its standard "
-        "error hold only if the bound is the true value");
+    estimate.Add(YoungsModulusOnBound());
   }
   active.poisson_ratio = poisson_ratio.OnBound();
   if (active.poisson_ratio != Side::kNone) {
@@ -151,13 +150,8 @@ ActiveBounds NoteActiveBounds(const EstimatorOptions& options,
         lower ? options.poisson_ratio.lower : options.poisson_ratio.upper;
     active.is_physical_limit =
         !given || std::abs(*given - poisson_ratio.Value()) > kOnBound;
-    estimate.warnings.emplace_back(
-        active.is_physical_limit
-            ? "Poisson's ratio has run to the end of its physical range"
-            : "Poisson's ratio lies on its bound; Young's modulus holds only "
-              "if "
-              "the bound is the true value, and its standard error allows for "
-              "the room that the data and the bounds leave");
+    estimate.Add(active.is_physical_limit ? PoissonRatioAtLimit()
+                                          : PoissonRatioOnBound());
   }
   return active;
 }
@@ -167,33 +161,22 @@ void JudgePoissonRatioOnBound(const EstimatorOptions& options,
                               double standard_error, Estimate& estimate) {
   if (active.is_physical_limit &&
       active.poisson_ratio == BoundedParameter::Side::kLower) {
-    estimate.Fail(Status::kUnphysical,
-                  "the data pull Poisson's ratio to -1, where no material is: "
-                  "they may not determine it, or the loads, the supports or "
-                  "the mesh do not describe the experiment");
+    estimate.Fail(PoissonRatioAtMinusOne());
     return;
   }
   if (active.is_physical_limit && estimate.is_model_in_doubt) {
-    estimate.Fail(Status::kNotIdentifiable,
-                  "the data pull Poisson's ratio to 1/2 and leave a residual "
-                  "that is not noise: the mesh, the supports or the loads do "
-                  "not describe the experiment",
-                  "the model contradicts the data");
+    estimate.Fail(ModelDoesNotFitAtLimit());
     return;
   }
   const Bounds bounds = EffectivePoissonRatioBounds(options);
   const double youngs_modulus_error =
       std::abs(slope) *
       std::min(standard_error, DistanceFromBound(*bounds.lower, *bounds.upper));
-  if (standard_error > kLargestPoissonRatioError &&
+  if (standard_error > kLimits.largest_poisson_ratio_error &&
       (active.is_physical_limit ||
-       youngs_modulus_error > kLargestYoungsModulusError)) {
+       youngs_modulus_error > kLimits.largest_youngs_modulus_error)) {
     estimate.Fail(
-        Status::kNotIdentifiable,
-        "Poisson's ratio lies on its bound, but the data do not determine "
-        "it: " +
-            DescribeCollinear(estimate.elasticity, {slope, 1}),
-        "the parameters are not determined");
+        PoissonRatioOnBoundUndetermined(estimate.elasticity, {slope, 1}));
     return;
   }
   if (!active.is_physical_limit) {
@@ -204,17 +187,12 @@ void JudgePoissonRatioOnBound(const EstimatorOptions& options,
 
 void JudgeContradictedBound(double excess, double variance,
                             double without_bound, Estimate& estimate) {
-  constexpr double kSignificant = 5;
-  constexpr double kUnusableChange = 0.1;
   const double change =
       std::abs(without_bound / estimate.elasticity.youngs_modulus - 1);
-  if (estimate.IsUsable() && change > kUnusableChange &&
-      excess > kSignificant * kSignificant * variance) {
-    estimate.Fail(Status::kNotIdentifiable,
-                  "the data contradict the bound on Young's modulus: without "
-                  "it, E is " +
-                      TwoDigits(without_bound),
-                  "the model contradicts the data");
+  if (estimate.IsUsable() && change > kLimits.unusable_error &&
+      excess >
+          kLimits.significant_score * kLimits.significant_score * variance) {
+    estimate.Fail(BoundContradicted(without_bound));
   }
 }
 
@@ -229,18 +207,15 @@ void JudgeYoungsModulusOnBound(const EstimatorOptions& options, double slope,
   const double poisson_ratio_error =
       options.known_poisson_ratio ? 0 : std::abs(slope) * error;
   // Not a number for a slope that the data do not determine.
-  if (error <= kLargestYoungsModulusError &&
-      poisson_ratio_error <= kLargestPoissonRatioError) {
+  if (error <= kLimits.largest_youngs_modulus_error &&
+      poisson_ratio_error <= kLimits.largest_poisson_ratio_error) {
     estimate.covariance(1, 1) += poisson_ratio_error * poisson_ratio_error;
     return;
   }
   estimate.Fail(
-      Status::kNotIdentifiable,
-      "Young's modulus lies on its bound, but the data do not determine it" +
-          (options.known_poisson_ratio
-               ? " (standard error " + TwoDigits(100 * standard_error) + " %)"
-               : ": " + DescribeCollinear(estimate.elasticity, {1, slope})),
-      "the parameters are not determined");
+      options.known_poisson_ratio
+          ? YoungsModulusOnBoundUndetermined(standard_error)
+          : YoungsModulusOnBoundUndetermined(estimate.elasticity, {1, slope}));
 }
 
 }  // namespace elastimate

@@ -5,6 +5,7 @@
 
 #include "elastimate/core/materials/elasticity.h"
 #include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/estimators/interface/limits.h"
 
 namespace elastimate {
 
@@ -15,9 +16,6 @@ double ShareOfDistanceToPole(const Estimate& estimate);
 
 /// Of ShareOfDistanceToPole; beyond it the profile likelihood tells.
 constexpr double kLargestLinearShare = 0.03;
-
-/// The quantile of chi^2 of one degree of freedom that holds 95 %.
-constexpr double kTwoSidedQuantile = 3.841;
 
 /// The best fits at the two ends of an interval of nu.
 struct Profile {

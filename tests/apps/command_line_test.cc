@@ -143,6 +143,7 @@ TEST_F(CommandLine, TheReportHasTheDocumentedKeys) {
                                 "/notices",
                                 "/residual/force_relative",
                                 "/residual/displacement_relative",
+                                "/findings",
                                 "/diagnostics/identifiability_angle_deg",
                                 "/diagnostics/noise_attenuation",
                                 "/diagnostics/warnings",
