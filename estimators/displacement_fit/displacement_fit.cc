@@ -303,28 +303,48 @@ std::optional<double> DescribeDisplacementFit(
           : SmoothSquareSum(graph, observed, sums.weighted_residual, estimate);
 
   // Of the parameters that vary together.
+  const auto noise_covariance_of =
+      [&](const std::vector<Eigen::Index>& parameters) {
+        const Eigen::MatrixXd inverse_bread =
+            Inverse(sums.bread(parameters, parameters));
+        return variance ? Eigen::MatrixXd(variance->variance * inverse_bread)
+                        : Eigen::MatrixXd(inverse_bread *
+                                          sums.meat(parameters, parameters) *
+                                          inverse_bread);
+      };
+  const auto model_covariance_of =
+      [&](const std::vector<Eigen::Index>& parameters) {
+        return Eigen::MatrixXd(smooth_square_sum *
+                               Inverse(gram(parameters, parameters)));
+      };
   const auto covariance_of = [&](const std::vector<Eigen::Index>& parameters) {
-    const Eigen::MatrixXd inverse_bread =
-        Inverse(sums.bread(parameters, parameters));
-    const Eigen::MatrixXd of_noise =
-        variance ? Eigen::MatrixXd(variance->variance * inverse_bread)
-                 : Eigen::MatrixXd(inverse_bread *
-                                   sums.meat(parameters, parameters) *
-                                   inverse_bread);
-    return Eigen::MatrixXd(
-        of_noise + smooth_square_sum * Inverse(gram(parameters, parameters)));
+    return Eigen::MatrixXd(noise_covariance_of(parameters) +
+                           model_covariance_of(parameters));
   };
+  // In (ln E, nu).
+  const auto errors_of = [&](const Eigen::MatrixXd& of_free) {
+    Eigen::Matrix2d both = Eigen::Matrix2d::Constant(Estimate::kUnknown);
+    both(free, free) = of_free;
+    return StandardErrors(both, {1, 0});
+  };
+  ErrorBudget& budget = estimate.error_budget;
+  budget.model = errors_of(model_covariance_of(free));
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(Estimate::kUnknown);
   covariance(free, free) = covariance_of(free);
-  if (losses.IsLeastSquares() && !free.empty() && HasHeavyTails(fit.residual)) {
-    const Eigen::Vector2d change = RobustChange(observed, fit, free);
-    covariance += change * change.transpose();
-    if (std::abs(change(0)) > kLimits.notable_youngs_modulus_error) {
-      estimate.Add(Outliers(change));
+  if (losses.IsLeastSquares() && !free.empty()) {
+    Eigen::Vector2d change = Eigen::Vector2d::Zero();
+    if (HasHeavyTails(fit.residual)) {
+      change = RobustChange(observed, fit, free);
+      covariance += change * change.transpose();
+      if (std::abs(change(0)) > kLimits.notable_youngs_modulus_error) {
+        estimate.Add(Outliers(change));
+      }
     }
+    budget.outliers = errors_of((change * change.transpose())(free, free));
   }
   const Eigen::Vector2d scale(estimate.elasticity.youngs_modulus, 1);
   if (estimate.IsUsable()) {
+    budget.noise = errors_of(noise_covariance_of(free));
     estimate.covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
   }
   if (smooth_square_sum > 0) {

@@ -382,6 +382,8 @@ void ForceResidual::Describe(bool free_youngs_modulus, bool free_poisson_ratio,
   if (free_youngs_modulus || free_poisson_ratio) {
     estimate.covariance = Covariance(estimate.elasticity, *variance,
                                      free_youngs_modulus, free_poisson_ratio);
+    estimate.error_budget.noise =
+        StandardErrors(estimate.covariance, estimate.elasticity);
   }
 }
 
@@ -445,6 +447,9 @@ void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,
     if (unbiased > 0) {
       bias = elasticity.youngs_modulus / unbiased - 1;
       nu_bias = elasticity.poisson_ratio - nu;
+      // Relative to the estimate.
+      estimate.error_budget.bias = {std::abs(bias / (1 + bias)),
+                                    std::abs(nu_bias)};
     }
   }
   if (!(std::abs(bias) <= kLimits.unusable_error)) {

@@ -102,10 +102,19 @@ class Information {
           1 - correlation * correlation > kSingular)) {
       return std::nullopt;
     }
-    const Eigen::MatrixXd inverse = Inverse(bread);
+    return NoiseCovariance(parameters) + ModelCovariance(parameters);
+  }
+
+  // Its parts.  Precondition: it is not empty.
+  Eigen::MatrixXd NoiseCovariance(
+      const std::vector<Eigen::Index>& parameters) const {
+    const Eigen::MatrixXd inverse = Inverse(bread_(parameters, parameters));
     return residual_.noise_variance * inverse * score_(parameters, parameters) *
-               inverse +
-           residual_.model_square_sum * inverse;
+           inverse;
+  }
+  Eigen::MatrixXd ModelCovariance(
+      const std::vector<Eigen::Index>& parameters) const {
+    return residual_.model_square_sum * Inverse(bread_(parameters, parameters));
   }
 
  private:
@@ -131,6 +140,10 @@ void Describe(const std::vector<Eigen::Index>& free,
   }
   const Eigen::Vector2d scale(estimate.elasticity.youngs_modulus, 1);
   Eigen::Matrix2d both = Eigen::Matrix2d::Constant(Estimate::kUnknown);
+  both(free, free) = information.NoiseCovariance(free);
+  estimate.error_budget.noise = StandardErrors(both, {1, 0});
+  both(free, free) = information.ModelCovariance(free);
+  estimate.error_budget.model = StandardErrors(both, {1, 0});
   both(free, free) = *covariance;
   estimate.covariance = scale.asDiagonal() * both * scale.asDiagonal();
   if (!estimate.active_bounds.empty()) {

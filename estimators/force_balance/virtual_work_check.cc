@@ -17,11 +17,17 @@ void CheckByVirtualWork(const Scene& scene, const EstimatorOptions& options,
   const Estimate check = VirtualFields().Run(scene, of_degree_one);
   estimate.work = estimate.work + check.work;
   if (check.IsUsable() && !check.is_model_in_doubt) {
+    estimate.error_budget.model.youngs_modulus = 0;
+    if (!options.known_poisson_ratio) {
+      estimate.error_budget.model.poisson_ratio = 0;
+    }
     return;
   }
   estimate.is_model_in_doubt = true;
   if (check.IsUsable()) {
     estimate.covariance += check.covariance;
+    estimate.error_budget.model =
+        StandardErrors(check.covariance, estimate.elasticity);
     estimate.Add(
         VirtualWorkImbalance(*estimate.force_residual, Severity::kWarning));
     return;

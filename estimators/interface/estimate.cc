@@ -63,6 +63,7 @@ void Estimate::Fail(const Finding& finding) {
   status = StatusOf(finding.code);
   message = Sentence(finding);
   covariance.setConstant(kUnknown);
+  error_budget.noise = {};
   why_no_standard_error = "the estimate is not usable";
 }
 

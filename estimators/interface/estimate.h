@@ -9,6 +9,7 @@
 
 #include "elastimate/core/materials/elasticity.h"
 #include "elastimate/core/solvers/stiffness_solver.h"
+#include "elastimate/estimators/interface/error_budget.h"
 #include "elastimate/estimators/interface/finding.h"
 
 namespace elastimate {
@@ -65,6 +66,8 @@ struct Estimate {
   /// Covariance of (E, nu).  NaN in the row and column of a parameter that was
   /// given, or that is held by a bound, or of both when unknown.
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kUnknown);
+  /// What the errors come from.
+  ErrorBudget error_budget;
   /// Where nu lies with a probability of 95 %: one-sided when it reaches -1 or
   /// 1/2, where a standard error says little.  Empty when unknown.
   std::optional<Interval> poisson_ratio_interval;
@@ -124,7 +127,8 @@ struct Estimate {
   /// Makes it usable: without an error.
   void Accept();
   /// Makes it one that is not usable, with the status of the code and without
-  /// covariance and standard errors.  Precondition: the finding is an error.
+  /// covariance, standard errors and those of noise.  Precondition: the finding
+  /// is an error.
   void Fail(const Finding& finding);
   /// Square roots of the diagonal of `covariance`; empty when unknown.
   std::optional<double> YoungsModulusStandardError() const;

@@ -114,6 +114,9 @@ void FinishEstimate(const Estimator& estimator, const Scene& scene,
       estimate.findings.insert(estimate.findings.begin(), *finding);
     }
   }
+  estimate.error_budget.discretization = {
+      estimate.discretization_error,
+      estimate.poisson_ratio_discretization_error};
   JudgeResult(options, estimate);
   if (estimate.IsUsable()) {
     AddPoissonRatioInterval(estimate);

@@ -70,6 +70,19 @@ Json FindingsJson(const std::vector<Finding>& findings) {
   return list;
 }
 
+Json BudgetJson(const ErrorBudget& budget) {
+  const auto of = [](const ParameterErrors& errors) {
+    return Json({{"youngs_modulus", OrNull(errors.youngs_modulus)},
+                 {"poisson_ratio", OrNull(errors.poisson_ratio)}});
+  };
+  return {{"noise", of(budget.noise)},
+          {"bias", of(budget.bias)},
+          {"model", of(budget.model)},
+          {"outliers", of(budget.outliers)},
+          {"discretization", of(budget.discretization)},
+          {"law", of(budget.law)}};
+}
+
 Json MismatchJson(const Estimate& estimate) {
   if (!estimate.model_mismatch) {
     return nullptr;
@@ -170,6 +183,7 @@ std::string JsonReport(const Estimate& estimate, const Scene& scene,
       {"residual",
        {{"force_relative", OrNull(estimate.force_residual)},
         {"displacement_relative", OrNull(estimate.displacement_residual)}}},
+      {"error_budget", BudgetJson(estimate.error_budget)},
       {"findings", FindingsJson(estimate.findings)},
       {"diagnostics", DiagnosticsJson(estimate)},
       {"work", WorkJson(estimate.work)},

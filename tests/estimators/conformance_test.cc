@@ -249,6 +249,33 @@ TEST_P(Conformance, KnownNoiseThatDoesNotExplainTheResidualIsSaid) {
   }
 }
 
+TEST_P(Conformance, TheErrorBudgetMakesUpTheStandardErrors) {
+  Scene scene = SmallScene("organ");
+  Measure({5e4, 0.3}, scene);
+  AddNoise(kSmallNoise, 5, scene);
+  const Estimate estimate = Run(scene);
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  const ErrorBudget& budget = estimate.error_budget;
+  ASSERT_TRUE(budget.noise.youngs_modulus && budget.noise.poisson_ratio);
+  const auto sum_of = [&](std::optional<double> ParameterErrors::*member) {
+    double sum = 0;
+    for (const ParameterErrors& part :
+         {budget.noise, budget.bias, budget.model, budget.outliers}) {
+      sum += std::pow((part.*member).value_or(0), 2);
+    }
+    return std::sqrt(sum);
+  };
+  EXPECT_NEAR(sum_of(&ParameterErrors::youngs_modulus) *
+                  estimate.elasticity.youngs_modulus /
+                  *estimate.YoungsModulusStandardError(),
+              1, 1e-6);
+  EXPECT_NEAR(sum_of(&ParameterErrors::poisson_ratio) /
+                  *estimate.PoissonRatioStandardError(),
+              1, 1e-6);
+  EXPECT_EQ(budget.discretization.youngs_modulus,
+            estimate.discretization_error);
+}
+
 TEST_P(Conformance, SaysWhatPureShearDetermines) {
   const Estimate estimate = Run(ShearedBlock());
   EXPECT_EQ(estimate.status, Status::kNotIdentifiable);
@@ -358,6 +385,7 @@ TEST_P(Conformance, AnEstimateThatIsNotUsableHasAReasonAndNoStandardError) {
       EXPECT_TRUE(estimate.covariance.array().isNaN().all());
       EXPECT_FALSE(estimate.YoungsModulusStandardError().has_value());
       EXPECT_FALSE(estimate.ShearModulusStandardError().has_value());
+      EXPECT_FALSE(estimate.error_budget.noise.youngs_modulus.has_value());
       EXPECT_FALSE(estimate.why_no_standard_error.empty());
     }
   }
