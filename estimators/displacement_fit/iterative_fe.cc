@@ -20,7 +20,6 @@
 #include "elastimate/estimators/displacement_fit/node_losses.h"
 #include "elastimate/estimators/displacement_fit/observed_displacements.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
-#include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/statistics.h"
 #include "elastimate/estimators/interface/stopwatch.h"
@@ -469,15 +468,15 @@ class EvaluatedProfile {
   ProfilePoint best_;
 };
 
-BoundedParameter::Side ViolatedBound(const Bounds& bounds,
-                                     const IsotropicElasticity& elasticity) {
+Side ViolatedBound(const Bounds& bounds,
+                   const IsotropicElasticity& elasticity) {
   if (elasticity.youngs_modulus < bounds.lower.value_or(0)) {
-    return BoundedParameter::Side::kLower;
+    return Side::kLower;
   }
   if (bounds.upper && elasticity.youngs_modulus > *bounds.upper) {
-    return BoundedParameter::Side::kUpper;
+    return Side::kUpper;
   }
-  return BoundedParameter::Side::kNone;
+  return Side::kNone;
 }
 
 // A minimum of the cost.
@@ -485,23 +484,22 @@ struct Minimum {
   BoundedParameter scale;
   BoundedParameter poisson_ratio;
   Scale meaning;
-  BoundedParameter::Side violated;
+  Side violated;
   NodeLosses losses;
   ceres::Solver::Summary summary;
   double cost;
 };
 
 // The minimum that is reached from a start, with E free or on a bound.
-Minimum DescendWith(BoundedParameter::Side side,
-                    const EstimatorOptions& options,
+Minimum DescendWith(Side side, const EstimatorOptions& options,
                     const IsotropicElasticity& start,
                     DisplacementResidual& residual) {
   residual.SetPoissonRatio(start.poisson_ratio);
-  const bool is_free = side == BoundedParameter::Side::kNone;
+  const bool is_free = side == Side::kNone;
   const double scale =
       is_free ? start.ComplianceScale() * residual.UnitLoadResponse().norm()
-      : side == BoundedParameter::Side::kLower ? *options.youngs_modulus.lower
-                                               : *options.youngs_modulus.upper;
+      : side == Side::kLower ? *options.youngs_modulus.lower
+                             : *options.youngs_modulus.upper;
   Minimum minimum = {
       is_free ? BoundedParameter(std::log(scale), Bounds{})
               : BoundedParameter::Constant(std::log(scale)),
@@ -530,14 +528,13 @@ Minimum DescendWith(BoundedParameter::Side side,
 Minimum Descend(const EstimatorOptions& options,
                 const IsotropicElasticity& start,
                 DisplacementResidual& residual) {
-  Minimum minimum =
-      DescendWith(BoundedParameter::Side::kNone, options, start, residual);
+  Minimum minimum = DescendWith(Side::kNone, options, start, residual);
   if (!residual.IsValid()) {
     return minimum;
   }
-  const BoundedParameter::Side side =
+  const Side side =
       ViolatedBound(options.youngs_modulus, residual.Elasticity());
-  if (side == BoundedParameter::Side::kNone) {
+  if (side == Side::kNone) {
     return minimum;
   }
   // The bounded minimum may lie on either side of the two.
@@ -575,21 +572,22 @@ Minimum BestMinimum(const EstimatorOptions& options,
   return best;
 }
 
-void JudgeSummary(const EstimatorOptions& options,
-                  const ceres::Solver::Summary& summary, Estimate& estimate) {
-  if (summary.termination_type == ceres::CONVERGENCE) {
-    estimate.Accept();
-  } else if (summary.termination_type == ceres::NO_CONVERGENCE) {
-    estimate.Fail(NoConvergence(options.max_iterations));
-  } else {
-    estimate.Fail(SearchFailed("Ceres: " + summary.message));
+End EndOf(const ceres::Solver::Summary& summary) {
+  switch (summary.termination_type) {
+    case ceres::CONVERGENCE:
+      return End::kDone;
+    case ceres::NO_CONVERGENCE:
+      return End::kIterationLimit;
+    default:
+      return End::kSearchFailed;
   }
 }
 
 // Enters the interval of nu, after up to three looks at where each end may be.
 void DescribeProfileOf(const EstimatorOptions& options,
                        const std::vector<ProfilePoint>& points, double variance,
-                       DisplacementResidual& residual, Estimate& estimate) {
+                       DisplacementResidual& residual, Evidence& evidence,
+                       Estimate& estimate) {
   EvaluatedProfile profile(
       points, {estimate.elasticity, residual.Fit().residual.squaredNorm()});
   const Bounds bounds = EffectivePoissonRatioBounds(options);
@@ -616,7 +614,7 @@ void DescribeProfileOf(const EstimatorOptions& options,
       }
     }
   }
-  DescribeProfile(
+  evidence.profile_interval = DescribeProfile(
       [&](double quantile) {
         const double excess = quantile * variance;
         return Profile{profile.EndTowards(*bounds.lower, excess),
@@ -629,13 +627,14 @@ void DescribeProfileOf(const EstimatorOptions& options,
 // interval of nu.
 void DescribeFit(const Scene& scene, const EstimatorOptions& options,
                  const std::vector<ProfilePoint>& points,
-                 const ActiveBounds& active, const NodeLosses& losses,
-                 DisplacementResidual& residual, Estimate& estimate) {
+                 const NodeLosses& losses, DisplacementResidual& residual,
+                 Evidence& evidence, Estimate& estimate) {
   const std::optional<double> variance = DescribeDisplacementFit(
       scene, residual.Graph(), options, residual.Observed(), residual.Fit(),
-      losses, active, estimate);
+      losses, evidence, estimate);
+  Judge(evidence, options, estimate);
   if (!variance || options.loss != Loss::kNone || !estimate.IsUsable() ||
-      active.youngs_modulus != BoundedParameter::Side::kNone) {
+      evidence.active.youngs_modulus != Side::kNone) {
     return;
   }
   const double least = residual.Fit().residual.squaredNorm();
@@ -646,9 +645,9 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
         return point.unbounded_cost <= least + kTwoSidedQuantile * *variance &&
                std::abs(point.unbounded.poisson_ratio - nu) > far;
       });
-  if (active.is_physical_limit || has_rival ||
+  if (evidence.active.is_physical_limit || has_rival ||
       ShareOfDistanceToPole(estimate) > kLargestLinearShare) {
-    DescribeProfileOf(options, points, *variance, residual, estimate);
+    DescribeProfileOf(options, points, *variance, residual, evidence, estimate);
   }
 }
 
@@ -672,20 +671,21 @@ std::string IterativeFe::WhyUnsupported(const Scene& scene,
 Estimate IterativeFe::DoRun(const Scene& scene,
                             const EstimatorOptions& options) const {
   Estimate estimate;
+  Evidence evidence;
   Stopwatch stopwatch;
   DisplacementResidual residual(scene, options);
   estimate.stages.push_back({"assemble and analyse", stopwatch.Lap()});
 
   std::vector<ProfilePoint> points = EvaluateStarts(scene, options, residual);
-  if (points.empty()) {
-    estimate.Fail(SingularStiffness());
-    estimate.work = residual.WorkDone();
-    return estimate;
-  }
   const std::vector<IsotropicElasticity> basins = BasinsOf(points);
   if (basins.empty()) {
-    estimate.elasticity = points.front().elasticity;
-    estimate.Fail(DisplacementsOpposeLoads());
+    if (points.empty()) {
+      evidence.end = End::kSingularStiffness;
+    } else {
+      evidence.do_displacements_oppose_loads = true;
+      estimate.elasticity = points.front().elasticity;
+    }
+    Judge(evidence, options, estimate);
     estimate.work = residual.WorkDone();
     return estimate;
   }
@@ -693,15 +693,17 @@ Estimate IterativeFe::DoRun(const Scene& scene,
   residual.SetParameters(best.meaning, &best.scale, &best.poisson_ratio);
   residual.PrepareForEvaluation(true, true);
   estimate.stages.push_back({"fit", stopwatch.Lap()});
-  JudgeSummary(options, best.summary, estimate);
+  evidence.end = EndOf(best.summary);
+  evidence.search_message = "Ceres: " + best.summary.message;
   if (residual.IsValid()) {
     estimate.elasticity = residual.Elasticity();
-    const ActiveBounds active =
+    evidence.active =
         NoteActiveBounds(options, best.violated, best.poisson_ratio, estimate);
-    DescribeFit(scene, options, points, active, best.losses, residual,
+    DescribeFit(scene, options, points, best.losses, residual, evidence,
                 estimate);
   }
-  NoteSolver(residual.SolverNotice(), estimate);
+  evidence.solver_notice = residual.SolverNotice();
+  Judge(evidence, options, estimate);
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
   estimate.work = residual.WorkDone();
   return estimate;

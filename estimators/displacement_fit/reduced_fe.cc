@@ -8,7 +8,6 @@
 #include "elastimate/estimators/displacement_fit/adaptive_fit.h"
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
 #include "elastimate/estimators/displacement_fit/observed_displacements.h"
-#include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/input_checks.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/stopwatch.h"
@@ -18,15 +17,51 @@
 namespace elastimate {
 namespace {
 
-BoundedParameter::Side BoundOf(const Bounds& bounds, double value) {
+Side BoundOf(const Bounds& bounds, double value) {
   constexpr double kOnBound = 1e-9;
   if (bounds.lower && value <= *bounds.lower * (1 + kOnBound)) {
-    return BoundedParameter::Side::kLower;
+    return Side::kLower;
   }
   if (bounds.upper && value >= *bounds.upper * (1 - kOnBound)) {
-    return BoundedParameter::Side::kUpper;
+    return Side::kUpper;
   }
-  return BoundedParameter::Side::kNone;
+  return Side::kNone;
+}
+
+// Fills in what follows from a fit of physical parameters.
+void DescribeFit(const Scene& scene, const EstimatorOptions& options,
+                 const ObservedDisplacements& observed,
+                 const AdaptiveFit& adaptive, Evidence& evidence,
+                 Estimate& estimate) {
+  const ModelFit& best = adaptive.Best();
+  const BoundedParameter poisson_ratio =
+      options.known_poisson_ratio
+          ? BoundedParameter::Constant(*options.known_poisson_ratio)
+          : BoundedParameter(best.point.poisson_ratio,
+                             adaptive.PoissonRatioBounds());
+  evidence.active = NoteActiveBounds(
+      options,
+      BoundOf(options.youngs_modulus, estimate.elasticity.youngs_modulus),
+      poisson_ratio, estimate);
+  const std::optional<double> variance = DescribeDisplacementFit(
+      scene, adaptive.Model().Graph(), options, observed,
+      ExpandFit(adaptive.Model(), observed, estimate.elasticity), best.losses,
+      evidence, estimate);
+  Judge(evidence, options, estimate);
+  // What looks like a pull to -1 may be data that say nothing of nu.
+  const bool is_at_minus_one = estimate.status == Status::kUnphysical;
+  if (!variance || options.loss != Loss::kNone ||
+      !(estimate.IsUsable() || is_at_minus_one)) {
+    return;
+  }
+  const auto profile_of = [&](double quantile) {
+    return adaptive.ProfileEnds(observed, quantile * *variance);
+  };
+  if (evidence.active.is_physical_limit ||
+      ShareOfDistanceToPole(estimate) > kLargestLinearShare ||
+      HasRivalMinimum(profile_of, estimate)) {
+    evidence.profile_interval = DescribeProfile(profile_of, estimate);
+  }
 }
 
 // Fits, and describes the fit.
@@ -34,52 +69,31 @@ Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
                         const ObservedDisplacements& observed,
                         AdaptiveFit& adaptive) {
   Estimate estimate;
+  Evidence evidence;
   Stopwatch stopwatch;
   const bool is_regular = adaptive.Run(observed);
   estimate.stages.push_back({"fit", stopwatch.Lap()});
   if (!is_regular) {
-    estimate.Fail(SingularStiffness());
+    evidence.end = End::kSingularStiffness;
+    Judge(evidence, options, estimate);
     return estimate;
   }
-  const ModelFit& best = adaptive.Best();
+  const ReducedFit::Point& best = adaptive.Best().point;
   estimate.elasticity = IsotropicElasticity::FromComplianceScale(
-      best.point.compliance_scale, best.point.poisson_ratio);
-  if (!estimate.elasticity.IsPhysical() ||
-      !std::isfinite(estimate.elasticity.youngs_modulus)) {
-    estimate.Fail(DisplacementsOpposeLoads());
+      best.compliance_scale, best.poisson_ratio);
+  evidence.do_displacements_oppose_loads =
+      !estimate.elasticity.IsPhysical() ||
+      !std::isfinite(estimate.elasticity.youngs_modulus);
+  if (evidence.do_displacements_oppose_loads) {
+    Judge(evidence, options, estimate);
     return estimate;
   }
-  estimate.Accept();
-  const BoundedParameter poisson_ratio =
-      options.known_poisson_ratio
-          ? BoundedParameter::Constant(*options.known_poisson_ratio)
-          : BoundedParameter(best.point.poisson_ratio,
-                             adaptive.PoissonRatioBounds());
-  const ActiveBounds active = NoteActiveBounds(
-      options,
-      BoundOf(options.youngs_modulus, estimate.elasticity.youngs_modulus),
-      poisson_ratio, estimate);
-  const std::optional<double> variance = DescribeDisplacementFit(
-      scene, adaptive.Model().Graph(), options, observed,
-      ExpandFit(adaptive.Model(), observed, estimate.elasticity), best.losses,
-      active, estimate);
-  // What looks like a pull to -1 may be data that say nothing of nu.
-  const bool is_at_minus_one = estimate.status == Status::kUnphysical;
-  if (variance && options.loss == Loss::kNone &&
-      (estimate.IsUsable() || is_at_minus_one)) {
-    const auto profile_of = [&](double quantile) {
-      return adaptive.ProfileEnds(observed, quantile * *variance);
-    };
-    if (active.is_physical_limit ||
-        ShareOfDistanceToPole(estimate) > kLargestLinearShare ||
-        HasRivalMinimum(profile_of, estimate)) {
-      DescribeProfile(profile_of, estimate);
-    }
+  DescribeFit(scene, options, observed, adaptive, evidence, estimate);
+  if (!adaptive.HasConverged()) {
+    evidence.end = End::kNotCertified;
   }
-  if (!adaptive.HasConverged() && estimate.IsUsable()) {
-    estimate.Fail(FitNotCertified());
-  }
-  NoteSolver(adaptive.Model().Notice(), estimate);
+  evidence.solver_notice = adaptive.Model().Notice();
+  Judge(evidence, options, estimate);
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
   return estimate;
 }

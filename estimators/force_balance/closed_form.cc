@@ -2,7 +2,7 @@
 
 #include "elastimate/estimators/force_balance/force_residual.h"
 #include "elastimate/estimators/force_balance/virtual_work_check.h"
-#include "elastimate/estimators/interface/finding_sentences.h"
+#include "elastimate/estimators/interface/judge.h"
 
 namespace elastimate {
 
@@ -32,28 +32,28 @@ Estimate ClosedForm::DoRun(const Scene& scene,
                            const EstimatorOptions& options) const {
   const ForceResidual residual(scene);
   Estimate estimate;
-  estimate.Accept();
+  Evidence evidence;
+  evidence.is_biased_by_noise = true;
   estimate.work = residual.WorkDone();
   const bool free_poisson_ratio = !options.known_poisson_ratio;
   const std::optional<double> nu = free_poisson_ratio
                                        ? residual.PoissonRatio()
                                        : options.known_poisson_ratio;
   if (!nu) {
-    estimate.Fail(residual.WhyNotIdentifiable());
+    evidence.free_direction = residual.CollinearDirection();
+    Judge(evidence, options, estimate);
     return estimate;
   }
   estimate.elasticity = residual.At(*nu);
-  residual.Describe(true, free_poisson_ratio, estimate);
-  if (!estimate.elasticity.IsPhysical()) {
-    estimate.Fail(!(*nu > -1 && *nu < 0.5)
-                      ? UnphysicalByNoise(estimate.elasticity)
-                      : DisplacementsOpposeLoads());
-  } else if (free_poisson_ratio) {
-    JudgeNoiseBias(residual, Bounds{}, estimate);
+  residual.Describe(true, free_poisson_ratio, evidence, estimate);
+  if (free_poisson_ratio) {
+    evidence.noise_bias = MeasureNoiseBias(residual, Bounds{}, estimate);
   } else {
-    JudgeKnownPoissonRatio(residual, estimate);
+    evidence.unbiased = MeasureUnbiasedPoissonRatio(residual, estimate);
   }
-  CheckByVirtualWork(scene, options, estimate);
+  Judge(evidence, options, estimate);
+  evidence.work_check = CheckByVirtualWork(scene, options, estimate);
+  Judge(evidence, options, estimate);
   return estimate;
 }
 

@@ -12,10 +12,8 @@
 #include "elastimate/core/mechanics/stiffness_traces.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/loads.h"
-#include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
-#include "elastimate/estimators/interface/statistics.h"
-#include "elastimate/estimators/statistics/bounded_parameter.h"
+#include "elastimate/estimators/statistics/errors_on_bound.h"
 
 namespace elastimate {
 namespace {
@@ -187,14 +185,13 @@ std::optional<double> ForceResidual::PoissonRatio() const {
   return -triangle_(1, 2) / triangle_(1, 1);
 }
 
-Finding ForceResidual::WhyNotIdentifiable() const {
+FreeDirection ForceResidual::CollinearDirection() const {
   // Along dt / dnu = b.f / f.f the residual does not change.
   constexpr double kAnyPoissonRatio = 0.25;
   const double nu = kAnyPoissonRatio;
   const double dt_dnu = triangle_(0, 1) / triangle_(0, 0);
-  return OneCombination(
-      At(nu),
-      {1 / (1 + nu) - 2 / (1 - 2 * nu) - dt_dnu / ComplianceScale(nu), 1});
+  return {At(nu),
+          {1 / (1 + nu) - 2 / (1 - 2 * nu) - dt_dnu / ComplianceScale(nu), 1}};
 }
 
 double ForceResidual::ComplianceScale(double poisson_ratio) const {
@@ -344,6 +341,7 @@ Eigen::Matrix2d ForceResidual::Covariance(const IsotropicElasticity& elasticity,
 
 std::optional<double> ForceResidual::DescribeNoise(bool free_youngs_modulus,
                                                    bool free_poisson_ratio,
+                                                   Evidence& evidence,
                                                    Estimate& estimate) const {
   const std::optional<double> residual_variance =
       NoiseVariance(estimate, free_youngs_modulus, free_poisson_ratio);
@@ -359,7 +357,7 @@ std::optional<double> ForceResidual::DescribeNoise(bool free_youngs_modulus,
   if (known_noise_sd_) {
     variance = 1;
     if (noise_sd_ratio > kLimits.excess_force_residual) {
-      estimate.Add(ResidualAboveNoise(ResidualKind::kForce, noise_sd_ratio));
+      evidence.above_noise = {ResidualKind::kForce, noise_sd_ratio};
       variance = *residual_variance;
     }
   }
@@ -372,10 +370,10 @@ std::optional<double> ForceResidual::DescribeNoise(bool free_youngs_modulus,
 }
 
 void ForceResidual::Describe(bool free_youngs_modulus, bool free_poisson_ratio,
-                             Estimate& estimate) const {
+                             Evidence& evidence, Estimate& estimate) const {
   estimate.force_residual = RelativeResidual(estimate.elasticity);
-  const std::optional<double> variance =
-      DescribeNoise(free_youngs_modulus, free_poisson_ratio, estimate);
+  const std::optional<double> variance = DescribeNoise(
+      free_youngs_modulus, free_poisson_ratio, evidence, estimate);
   if (!variance) {
     return;
   }
@@ -387,8 +385,8 @@ void ForceResidual::Describe(bool free_youngs_modulus, bool free_poisson_ratio,
   }
 }
 
-void ForceResidual::JudgeYoungsModulusOnBound(const EstimatorOptions& options,
-                                              Estimate& estimate) const {
+ErrorsOnBound ForceResidual::AllowForYoungsModulusOnBound(
+    const EstimatorOptions& options, Estimate& estimate) const {
   const bool free_poisson_ratio = !options.known_poisson_ratio;
   const IsotropicElasticity& elasticity = estimate.elasticity;
   // That of the bound may contradict it, which is not for noise to explain.
@@ -408,74 +406,49 @@ void ForceResidual::JudgeYoungsModulusOnBound(const EstimatorOptions& options,
   const Eigen::Matrix2d x = Jacobian(elasticity);
   const double slope = -elasticity.youngs_modulus * x.col(0).dot(x.col(1)) /
                        x.col(1).squaredNorm();
-  elastimate::JudgeYoungsModulusOnBound(options, slope, standard_error,
-                                        estimate);
+  return elastimate::AllowForYoungsModulusOnBound(options, slope,
+                                                  standard_error, estimate);
 }
 
-void JudgeKnownPoissonRatio(const ForceResidual& residual, Estimate& estimate) {
+std::optional<UnbiasedPoissonRatio> MeasureUnbiasedPoissonRatio(
+    const ForceResidual& residual, const Estimate& estimate) {
   const std::optional<double> nu = residual.UnbiasedPoissonRatio();
   const std::optional<double> error = residual.UnbiasedPoissonRatioError();
-  const double given = estimate.elasticity.poisson_ratio;
-  // Rounding has no standard error.
-  constexpr double kRounding = 1e-6;
-  if (!residual.PoissonRatio() || !nu || !error ||
-      !(std::abs(*nu - given) >
-        kLimits.significant_score * *error + kRounding)) {
-    return;
+  if (!residual.PoissonRatio() || !nu || !error) {
+    return std::nullopt;
   }
-  const double ratio =
-      residual.At(*nu).youngs_modulus / estimate.elasticity.youngs_modulus;
-  if (std::abs(ratio - 1) <= kLimits.unusable_error) {
-    estimate.Add(
-        KnownPoissonRatioContradicted(*nu, *error, Severity::kWarning));
-  } else {
-    estimate.Fail(KnownPoissonRatioContradicted(*nu, *error, Severity::kError));
-  }
+  return UnbiasedPoissonRatio{
+      *nu, *error,
+      residual.At(*nu).youngs_modulus / estimate.elasticity.youngs_modulus};
 }
 
-void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,
-                    Estimate& estimate) {
-  const bool is_bounded = !estimate.active_bounds.empty();
+NoiseBias MeasureNoiseBias(const ForceResidual& residual, const Bounds& bounds,
+                           Estimate& estimate) {
+  constexpr double kHidden = std::numeric_limits<double>::infinity();
   const IsotropicElasticity& elasticity = estimate.elasticity;
+  NoiseBias bias = {kHidden, kHidden,
+                    estimate.YoungsModulusStandardError().value_or(0) /
+                        elasticity.youngs_modulus,
+                    estimate.PoissonRatioStandardError().value_or(0)};
   const std::optional<double> unbiased_nu = residual.UnbiasedPoissonRatio();
-  double bias = std::numeric_limits<double>::infinity();
-  double nu_bias = bias;
-  if (unbiased_nu) {
-    const double nu = std::clamp(*unbiased_nu, bounds.lower.value_or(-1),
-                                 bounds.upper.value_or(0.5));
-    const double unbiased = residual.At(nu).youngs_modulus;
-    if (unbiased > 0) {
-      bias = elasticity.youngs_modulus / unbiased - 1;
-      nu_bias = elasticity.poisson_ratio - nu;
-      // Relative to the estimate.
-      estimate.error_budget.bias = {std::abs(bias / (1 + bias)),
-                                    std::abs(nu_bias)};
-    }
+  if (!unbiased_nu) {
+    return bias;
   }
-  if (!(std::abs(bias) <= kLimits.unusable_error)) {
-    estimate.Fail(YoungsModulusBias(
-        std::isfinite(bias) ? std::optional<double>(bias) : std::nullopt,
-        is_bounded, Severity::kError));
-    return;
+  const double nu = std::clamp(*unbiased_nu, bounds.lower.value_or(-1),
+                               bounds.upper.value_or(0.5));
+  const double unbiased = residual.At(nu).youngs_modulus;
+  if (!(unbiased > 0)) {
+    return bias;
   }
-  if (!(std::abs(nu_bias) <= kLimits.unusable_poisson_ratio_bias)) {
-    estimate.Fail(PoissonRatioBias(nu_bias, is_bounded, Severity::kError));
-    return;
-  }
-  const double standard_error =
-      estimate.YoungsModulusStandardError().value_or(0) /
-      elasticity.youngs_modulus;
-  if (std::abs(bias) >
-      std::max(kLimits.notable_youngs_modulus_error, standard_error)) {
-    estimate.Add(YoungsModulusBias(bias, is_bounded, Severity::kWarning));
-  } else if (std::abs(nu_bias) >
-             std::max(kLimits.notable_poisson_ratio_error,
-                      estimate.PoissonRatioStandardError().value_or(0))) {
-    estimate.Add(PoissonRatioBias(nu_bias, is_bounded, Severity::kWarning));
-  }
-  const Eigen::Vector2d both(elasticity.youngs_modulus * bias / (1 + bias),
-                             nu_bias);
-  estimate.covariance += both * both.transpose();
+  bias.youngs_modulus = elasticity.youngs_modulus / unbiased - 1;
+  bias.poisson_ratio = elasticity.poisson_ratio - nu;
+  // Relative to the estimate.
+  const Eigen::Vector2d both(bias.youngs_modulus / (1 + bias.youngs_modulus),
+                             bias.poisson_ratio);
+  const Eigen::Vector2d scaled(elasticity.youngs_modulus * both(0), both(1));
+  estimate.covariance += scaled * scaled.transpose();
+  estimate.error_budget.bias = {std::abs(both(0)), std::abs(both(1))};
+  return bias;
 }
 
 }  // namespace elastimate

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/estimators/interface/evidence.h"
 #include "elastimate/estimators/interface/finding.h"
 
 namespace elastimate {
@@ -16,9 +17,6 @@ namespace elastimate {
 
 /// A number for a sentence, to two significant digits.
 std::string TwoDigits(double value);
-
-/// Which residual a finding is about.
-enum class ResidualKind { kDisplacement, kForce, kVirtualWork };
 
 // Why there is no estimate.
 Finding NotFinite();

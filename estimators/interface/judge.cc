@@ -5,6 +5,7 @@
 
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
+#include "elastimate/estimators/interface/rules.h"
 
 namespace elastimate {
 namespace {
@@ -94,9 +95,27 @@ void AcceptElements(Estimate& estimate) {
   estimate.poisson_ratio_discretization_error = 0;
 }
 
-void NoteSolver(const std::string& notice, Estimate& estimate) {
-  if (!notice.empty()) {
-    estimate.Add(SolverFallback(notice));
+void Judge(const Evidence& evidence, const EstimatorOptions& options,
+           Estimate& estimate) {
+  std::optional<Finding> error;
+  for (const Rule rule : Rules()) {
+    const std::optional<Finding> finding = rule(evidence, options, estimate);
+    if (!finding) {
+      continue;
+    }
+    if (finding->severity != Severity::kError) {
+      estimate.Add(*finding);
+    } else if (!error) {
+      error = finding;
+    }
+  }
+  if (error) {
+    estimate.Fail(*error);
+    return;
+  }
+  estimate.Accept();
+  if (evidence.active.Any()) {
+    estimate.why_no_standard_error = "a parameter on a bound has none";
   }
 }
 

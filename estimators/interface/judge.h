@@ -7,11 +7,16 @@
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/interface/evidence.h"
 
 namespace elastimate {
 
-/// Makes the notice of a StiffnessSolver, if there is one, a finding.
-void NoteSolver(const std::string& notice, Estimate& estimate);
+/// Applies all rules (rules.h) to what a method measured: enters what they find
+/// into `estimate`, and makes it usable or, for the first error, not usable.
+/// May be called again when the method has measured more.  Why a parameter has
+/// no standard error is said where it lies on a bound.
+void Judge(const Evidence& evidence, const EstimatorOptions& options,
+           Estimate& estimate);
 
 /// Whether the discretisation error is larger than 1 % and than half a standard
 /// error of E, or that of nu than 0.01 and half its standard error.

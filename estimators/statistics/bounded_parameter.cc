@@ -3,25 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "elastimate/estimators/interface/finding_sentences.h"
-#include "elastimate/estimators/interface/limits.h"
-
 namespace elastimate {
 namespace {
-
-using Side = BoundedParameter::Side;
 
 // A parameter this close to a bound lies on it.
 constexpr double kOnBound = 1e-9;
 
 // Relative to the cost, the gradient that is more than rounding.
 constexpr double kInwardGradient = 1e-6;
-
-// Root mean square of what a parameter that may be anywhere between its bounds
-// is off one of them.
-double DistanceFromBound(double lower, double upper) {
-  return (upper - lower) / std::sqrt(3.0);
-}
 
 }  // namespace
 
@@ -140,7 +129,6 @@ ActiveBounds NoteActiveBounds(const EstimatorOptions& options,
     estimate.active_bounds.emplace_back(lower ? "youngs_min" : "youngs_max");
     estimate.elasticity.youngs_modulus =
         lower ? *options.youngs_modulus.lower : *options.youngs_modulus.upper;
-    estimate.Add(YoungsModulusOnBound());
   }
   active.poisson_ratio = poisson_ratio.OnBound();
   if (active.poisson_ratio != Side::kNone) {
@@ -150,72 +138,8 @@ ActiveBounds NoteActiveBounds(const EstimatorOptions& options,
         lower ? options.poisson_ratio.lower : options.poisson_ratio.upper;
     active.is_physical_limit =
         !given || std::abs(*given - poisson_ratio.Value()) > kOnBound;
-    estimate.Add(active.is_physical_limit ? PoissonRatioAtLimit()
-                                          : PoissonRatioOnBound());
   }
   return active;
-}
-
-void JudgePoissonRatioOnBound(const EstimatorOptions& options,
-                              const ActiveBounds& active, double slope,
-                              double standard_error, Estimate& estimate) {
-  if (active.is_physical_limit &&
-      active.poisson_ratio == BoundedParameter::Side::kLower) {
-    estimate.Fail(PoissonRatioAtMinusOne());
-    return;
-  }
-  if (active.is_physical_limit && estimate.is_model_in_doubt) {
-    estimate.Fail(ModelDoesNotFitAtLimit());
-    return;
-  }
-  const Bounds bounds = EffectivePoissonRatioBounds(options);
-  const double youngs_modulus_error =
-      std::abs(slope) *
-      std::min(standard_error, DistanceFromBound(*bounds.lower, *bounds.upper));
-  if (standard_error > kLimits.largest_poisson_ratio_error &&
-      (active.is_physical_limit ||
-       youngs_modulus_error > kLimits.largest_youngs_modulus_error)) {
-    estimate.Fail(
-        PoissonRatioOnBoundUndetermined(estimate.elasticity, {slope, 1}));
-    return;
-  }
-  if (!active.is_physical_limit) {
-    estimate.covariance(0, 0) +=
-        std::pow(youngs_modulus_error * estimate.elasticity.youngs_modulus, 2);
-  }
-}
-
-void JudgeContradictedBound(double excess, double variance,
-                            double without_bound, Estimate& estimate) {
-  const double change =
-      std::abs(without_bound / estimate.elasticity.youngs_modulus - 1);
-  if (estimate.IsUsable() && change > kLimits.unusable_error &&
-      excess >
-          kLimits.significant_score * kLimits.significant_score * variance) {
-    estimate.Fail(BoundContradicted(without_bound));
-  }
-}
-
-void JudgeYoungsModulusOnBound(const EstimatorOptions& options, double slope,
-                               double standard_error, Estimate& estimate) {
-  const Bounds& bounds = options.youngs_modulus;
-  const double distance =
-      bounds.lower && bounds.upper
-          ? DistanceFromBound(std::log(*bounds.lower), std::log(*bounds.upper))
-          : std::numeric_limits<double>::infinity();
-  const double error = std::min(standard_error, distance);
-  const double poisson_ratio_error =
-      options.known_poisson_ratio ? 0 : std::abs(slope) * error;
-  // Not a number for a slope that the data do not determine.
-  if (error <= kLimits.largest_youngs_modulus_error &&
-      poisson_ratio_error <= kLimits.largest_poisson_ratio_error) {
-    estimate.covariance(1, 1) += poisson_ratio_error * poisson_ratio_error;
-    return;
-  }
-  estimate.Fail(
-      options.known_poisson_ratio
-          ? YoungsModulusOnBoundUndetermined(standard_error)
-          : YoungsModulusOnBoundUndetermined(estimate.elasticity, {1, slope}));
 }
 
 }  // namespace elastimate

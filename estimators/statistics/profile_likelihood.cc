@@ -6,7 +6,6 @@
 #include <string>
 
 #include "elastimate/estimators/interface/estimator.h"
-#include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
 
 namespace elastimate {
@@ -61,8 +60,9 @@ bool HasRivalMinimum(const std::function<Profile(double quantile)>& profile_of,
                    nu - profile.lower.poisson_ratio > kFar * *error);
 }
 
-void DescribeProfile(const std::function<Profile(double quantile)>& profile_of,
-                     Estimate& estimate) {
+Interval DescribeProfile(
+    const std::function<Profile(double quantile)>& profile_of,
+    Estimate& estimate) {
   Profile profile = profile_of(kTwoSidedQuantile);
   WidenToProfile(profile, estimate);
   const bool reaches_upper =
@@ -75,11 +75,7 @@ void DescribeProfile(const std::function<Profile(double quantile)>& profile_of,
   estimate.poisson_ratio_interval = {
       reaches_lower ? -1 : profile.lower.poisson_ratio,
       reaches_upper ? 0.5 : profile.upper.poisson_ratio};
-  const double nu = estimate.elasticity.poisson_ratio;
-  if ((reaches_lower && nu + 1 > kLimits.LargestPoissonRatioDistance()) ||
-      (reaches_upper && 0.5 - nu > kLimits.LargestPoissonRatioDistance())) {
-    estimate.Fail(PoissonRatioBetween(*estimate.poisson_ratio_interval, false));
-  }
+  return *estimate.poisson_ratio_interval;
 }
 
 }  // namespace elastimate

@@ -32,13 +32,12 @@ bool HasRivalMinimum(const std::function<Profile(double quantile)>& profile_of,
 /// widens the standard errors to it.  `profile_of` gives the ends within which
 /// the sum of squares over its variance exceeds its least by no more than a
 /// quantile of chi^2; ends at kSmallestPoissonRatio and kLargestPoissonRatio
-/// where it never does.
-///
-/// Where the sum of squares does not exceed the least up to a far end of the
-/// range, the data do not determine nu, whatever the curvature at nu is, and
-/// the estimate fails.
-void DescribeProfile(const std::function<Profile(double quantile)>& profile_of,
-                     Estimate& estimate);
+/// where it never does.  Returns the interval: where the sum of squares does
+/// not exceed the least up to a far end of the range, the data do not determine
+/// nu, whatever the curvature at nu is.
+Interval DescribeProfile(
+    const std::function<Profile(double quantile)>& profile_of,
+    Estimate& estimate);
 
 }  // namespace elastimate
 
