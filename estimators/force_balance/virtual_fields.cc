@@ -260,7 +260,7 @@ VirtualWorkFit Fit(const EstimatorOptions& options,
                    Estimate& estimate) {
   const std::optional<double> collinear_slope =
       options.known_poisson_ratio ? std::nullopt : balance.CollinearSlope();
-  const VirtualWorkFit fit =
+  VirtualWorkFit fit =
       options.known_poisson_ratio
           ? balance.FitAt(*options.known_poisson_ratio, options.youngs_modulus)
           : balance.Minimize(EffectivePoissonRatioBounds(options),

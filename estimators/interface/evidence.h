@@ -76,20 +76,9 @@ enum class WorkCheck { kNotMade, kIsNoise, kIsMore, kContradicts };
 /// What a method measured of its estimate, for the judge.  What is empty was
 /// not measured, or does not arise.
 struct Evidence {
-  End end = End::kDone;
-  std::string search_message;  ///< Why the search failed.
-  std::string solver_notice;
-
-  /// Whether displacement noise biases the method.
-  bool is_biased_by_noise = false;
-
   /// Share of the loads that push motions which the supports leave free.
   std::optional<double> load_imbalance;
-  bool do_loads_work = true;
-  bool do_displacements_oppose_loads = false;
-  bool does_youngs_modulus_diverge = false;
   std::optional<FreeDirection> free_direction;
-  bool is_poisson_ratio_hidden = false;
   /// Measured components, where they are too few for statistics.
   std::optional<Eigen::Index> too_few_components;
 
@@ -101,23 +90,33 @@ struct Evidence {
   std::optional<double> smooth_residual_error;
   /// The smooth part of the displacement residual over the measurement.
   std::optional<double> smooth_part;
-  bool is_explained_by_given_noise = false;
   /// Relative standard error of E where virtual work finds more than noise.
   std::optional<double> virtual_work_error;
+  /// Of the displacements that balances the loads, relative to them.
+  std::optional<double> correction;
 
-  ActiveBounds active;
   std::optional<BoundExcess> bound_excess;
   std::optional<ErrorsOnBound> youngs_modulus_on_bound;
   std::optional<ErrorsOnBound> poisson_ratio_on_bound;
   /// Of 95 %, by the profile likelihood; one that chance alone allows.
   std::optional<Interval> profile_interval;
   std::optional<Interval> chance_interval;
-
   std::optional<UnbiasedPoissonRatio> unbiased;
   std::optional<NoiseBias> noise_bias;
+
+  std::string search_message;  ///< Why the search failed.
+  std::string solver_notice;
+  End end = End::kDone;
   WorkCheck work_check = WorkCheck::kNotMade;
-  /// Of the displacements that balances the loads, relative to them.
-  std::optional<double> correction;
+  ActiveBounds active;
+  /// Whether displacement noise biases the method.
+  bool is_biased_by_noise = false;
+  bool do_loads_work = true;
+  bool do_displacements_oppose_loads = false;
+  bool does_youngs_modulus_diverge = false;
+  /// Whether noise leaves the fit without a covariance.
+  bool is_poisson_ratio_hidden = false;
+  bool is_explained_by_given_noise = false;
 };
 
 }  // namespace elastimate
