@@ -211,8 +211,10 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
              rung.decision,
          text);
   }
-  for (const std::string& warning : estimate.warnings) {
-    Line("warning", warning, text);
+  for (const Severity severity : {Severity::kWarning, Severity::kNotice}) {
+    for (const std::string& sentence : estimate.Sentences(severity)) {
+      Line(std::string(SeverityName(severity)), sentence, text);
+    }
   }
   return text.str();
 }

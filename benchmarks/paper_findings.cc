@@ -98,7 +98,7 @@ LineFit FitErrors(const PaperTrials& trials, bool of_reduced_fe) {
 // What is found, as a function of whether it is asked of reduced-fe.
 using Found = std::function<double(bool)>;
 
-struct Finding {
+struct Statement {
   const char* section;
   const char* claim;
   const char* quantity;
@@ -137,7 +137,7 @@ Table PaperFindings(const PaperTrials& noise, const PaperTrials& measurements,
   const auto remains = [](double value) { return value > 0.5; };
   constexpr Error kE = YoungsModulusError;
   constexpr Error kNu = RelativePoissonRatioError;
-  const std::vector<Finding> findings = {
+  const std::vector<Statement> statements = {
       {"5.1", "E is under-estimated",
        "median relative error of E at deviation 0.09",
        [&](bool reduced) {
@@ -215,11 +215,11 @@ Table PaperFindings(const PaperTrials& noise, const PaperTrials& measurements,
   Table table("paper_findings",
               {"section", "claim", "quantity", "paper_method [1]",
                "reduced_fe [1]", "criterion", "paper_method_agrees"});
-  for (const Finding& finding : findings) {
-    const double found = finding.found(false);
-    table.AddRow({finding.section, finding.claim, finding.quantity, found,
-                  finding.found(true), finding.criterion,
-                  finding.agrees(found) ? "yes" : "no"});
+  for (const Statement& statement : statements) {
+    const double found = statement.found(false);
+    table.AddRow({statement.section, statement.claim, statement.quantity, found,
+                  statement.found(true), statement.criterion,
+                  statement.agrees(found) ? "yes" : "no"});
   }
   return table;
 }

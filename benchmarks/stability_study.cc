@@ -124,11 +124,11 @@ void AddTrial(const StabilityLevel& level, const Judged& judged, Table& table) {
     cells[std::find(columns.begin(), columns.end(), "status") -
           columns.begin()] = OutcomeName(judged.outcome);
   }
-  table.AddRow(
-      {level.factor, level.level, OutcomeName(judged.outcome), interval.lower,
-       interval.upper, std::int64_t(estimate.warnings.size()),
-       std::int64_t{estimate.element_order}},
-      cells);
+  table.AddRow({level.factor, level.level, OutcomeName(judged.outcome),
+                interval.lower, interval.upper,
+                std::int64_t(estimate.Sentences(Severity::kWarning).size()),
+                std::int64_t{estimate.element_order}},
+               cells);
 }
 
 // Of the absolute values that are numbers; NaN when none is.
@@ -162,7 +162,7 @@ class Cell {
     num_not_knowable_ += judged.outcome == Outcome::kNotKnowable;
     if (judged.outcome == Outcome::kDishonest) {
       ++num_dishonest_;
-      num_silent_ += estimate.warnings.empty();
+      num_silent_ += estimate.Sentences(Severity::kWarning).empty();
       first_dishonest_seed_ = first_dishonest_seed_.value_or(judged.trial.seed);
     }
   }

@@ -8,18 +8,13 @@
 #include "elastimate/estimators/displacement_fit/reduced_fe.h"
 #include "elastimate/estimators/force_balance/closed_form.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
+#include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/judge.h"
-#include "elastimate/estimators/interface/statistics.h"
+#include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/statistics/model_mismatch.h"
 
 namespace elastimate {
 namespace {
-
-constexpr double kYoungsModulusTolerance = 0.01;  // Relative.
-constexpr double kPoissonRatioTolerance = 0.01;
-
-// A disagreement that noise explains less often than this is one.
-constexpr double kSignificance = 1e-3;
 
 // Quadratic elements take some 45 KiB each in the factor.
 constexpr Eigen::Index kMostQuadraticElements = 100000;
@@ -42,10 +37,10 @@ std::string WhyNotWithinTolerance(const EstimatorOptions& options,
     return "no standard error is known";
   }
   const double relative = *youngs / estimate.elasticity.youngs_modulus;
-  if (relative > kYoungsModulusTolerance) {
+  if (relative > kLimits.notable_youngs_modulus_error) {
     return "the standard error of E is " + TwoDigits(100 * relative) + " %";
   }
-  if (poisson.value_or(0) > kPoissonRatioTolerance) {
+  if (poisson.value_or(0) > kLimits.notable_poisson_ratio_error) {
     return "the standard error of nu is " + TwoDigits(*poisson);
   }
   return "";
@@ -57,12 +52,19 @@ std::string WhyNotEnough(const EstimatorOptions& options,
   if (!estimate.IsUsable()) {
     return "not usable: " + estimate.message;
   }
-  for (const std::string& warning : estimate.warnings) {
-    if (!IsWarningOfLocking(warning)) {
-      return "it warns: " + warning;
+  for (const Finding& finding : estimate.findings) {
+    if (finding.severity == Severity::kWarning &&
+        finding.code != FindingCode::kLocking) {
+      return "it warns: " + Sentence(finding);
     }
   }
   return WhyNotWithinTolerance(options, estimate);
+}
+
+// Whether virtual-fields contradicts the model of the fit.
+bool IsMismatch(const Estimate& estimate) {
+  return estimate.model_mismatch && estimate.model_mismatch->matters &&
+         estimate.model_mismatch->p_value < kLimits.mismatch_significance;
 }
 
 // For a fit at the statistical limit; empty when its elements will do.
@@ -71,18 +73,11 @@ std::string WhyTheModelIsNotEnough(const EstimatorOptions& options,
   if (!estimate.IsUsable()) {
     return "not usable: " + estimate.message;
   }
-  if (estimate.model_mismatch && estimate.model_mismatch->matters &&
-      estimate.model_mismatch->p_value < kSignificance) {
-    return "virtual-fields disagrees by more than noise explains (p = " +
-           TwoDigits(estimate.model_mismatch->p_value) + ")";
+  if (IsMismatch(estimate)) {
+    return ModelMismatchFinding(*estimate.model_mismatch).text;
   }
   if (IsDiscretizationErrorNotable(estimate)) {
-    return DescribeDiscretizationError(estimate) +
-           (estimate.poisson_ratio_discretization_error
-                ? ", up to " +
-                      TwoDigits(*estimate.poisson_ratio_discretization_error) +
-                      " in nu"
-                : "");
+    return DescribeDiscretizationError(estimate);
   }
   if (estimate.is_model_in_doubt) {
     const std::string why = WhyNotWithinTolerance(options, estimate);
@@ -114,15 +109,13 @@ struct Observations {
 // residual is no noise.
 bool ExplainsFarBetter(const Estimate& one, const Estimate& other,
                        const Observations& observations) {
-  constexpr double kSignificantScore = 5;
-  constexpr double kLargestShare = 0.5;
   if (!one.displacement_residual || !other.displacement_residual) {
     return one.displacement_residual.has_value();
   }
   const double share =
       *one.displacement_residual / *other.displacement_residual;
   if (one.is_model_in_doubt) {
-    return share <= kLargestShare;
+    return share <= kLimits.far_better_residual;
   }
   // Twice the difference of the logarithms of the likelihoods.
   const double gain =
@@ -131,7 +124,7 @@ bool ExplainsFarBetter(const Estimate& one, const Estimate& other,
                 (std::pow(*other.displacement_residual, 2) -
                  std::pow(*one.displacement_residual, 2))
           : -2 * static_cast<double>(observations.redundancy) * std::log(share);
-  return gain > kSignificantScore * kSignificantScore;
+  return gain > kLimits.significant_score * kLimits.significant_score;
 }
 
 // Climbs, and keeps the books.
@@ -206,8 +199,8 @@ void ChooseOrder(const Estimate& linear, const Observations& observations,
   }
   const bool is_coarse =
       IsDiscretizationErrorNotable(linear) ||
-      (!linear.IsUsable() &&
-       linear.discretization_error.value_or(0) > kYoungsModulusTolerance);
+      (!linear.IsUsable() && linear.discretization_error.value_or(0) >
+                                 kLimits.notable_youngs_modulus_error);
   const bool is_better = ExplainsFarBetter(quadratic, linear, observations);
   if (!linear.IsUsable() && quadratic.IsUsable() && !is_better) {
     ladder.Decide(
@@ -232,11 +225,7 @@ void ChooseOrder(const Estimate& linear, const Observations& observations,
   }
   ladder.Decide("stopped: there is no rung above");
   if (!is_better && quadratic.IsUsable() && linear.IsUsable()) {
-    quadratic.warnings.push_back(
-        "linear elements explain the displacements as well, with E = " +
-        TwoDigits(linear.elasticity.youngs_modulus) +
-        " and nu = " + TwoDigits(linear.elasticity.poisson_ratio) +
-        ", but only a simulation with these very elements is that stiff");
+    quadratic.Add(LinearElementsFitAsWell(linear.elasticity));
   }
 }
 
@@ -291,15 +280,16 @@ Estimate Auto::DoRun(const Scene& scene,
     linear.model_mismatch = FindModelMismatch(*virtual_fields, linear);
   }
   std::string why_not_enough = WhyTheModelIsNotEnough(options, linear);
-  if (!why_not_enough.empty() && scene.mesh.Order() == 1 &&
+  if (!why_not_enough.empty() && HasQuadraticKind(scene.mesh.kind) &&
       scene.mesh.NumElements() > kMostQuadraticElements) {
-    linear.warnings.push_back(why_not_enough +
-                              ": quadratic elements (order 2) may mend it, but "
-                              "are many for this mesh");
+    if (IsMismatch(linear)) {
+      linear.Add(ModelMismatchFinding(*linear.model_mismatch));
+    }
+    linear.Add(TooManyElements());
     ladder.Decide("stopped: too many elements for order 2");
     return ladder.Finish();
   }
-  if (why_not_enough.empty() || scene.mesh.Order() == 2) {
+  if (why_not_enough.empty() || !HasQuadraticKind(scene.mesh.kind)) {
     ladder.Decide(why_not_enough.empty()
                       ? "stopped: at the statistical limit of the data"
                       : "stopped: there is no rung above");

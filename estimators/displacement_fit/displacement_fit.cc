@@ -3,11 +3,13 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+#include <limits>
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/mechanics/strain_energy.h"
+#include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/statistics.h"
+#include "elastimate/estimators/statistics/errors_on_bound.h"
 
 namespace elastimate {
 namespace {
@@ -15,21 +17,6 @@ namespace {
 // The sine of the identifiability angle below which rounding decides: it comes
 // from the square root of a difference, which has half the digits.
 constexpr double kCollinear = 1e-6;
-
-// Standard scores beyond this do not come from independent noise.
-constexpr double kSignificantScore = 5;
-
-// A relative standard error of E that a user wants to be told of.
-constexpr double kNotableError = 0.01;
-
-// A residual of this part of the measurement is told of, and, when it is
-// smooth, says that the model is another one than that of the experiment.
-constexpr double kLargeResidual = 0.2;
-
-// From this root mean square of the residuals on, relative to their robust
-// standard deviation, outliers are looked for: 1 for Gaussian noise, 1.4 for
-// Laplacian.
-constexpr double kHeavyTails = 1.2;
 
 // Sums over the observed nodes that the statistics are made of.  Derivatives
 // are with respect to (ln E, nu); without a loss the bread is S^T S.
@@ -76,7 +63,8 @@ struct ResidualVariance {
 // From the residuals themselves, or as given when they do not contradict it.
 ResidualVariance EstimateVariance(const ObservedDisplacements& observed,
                                   const Scene& scene, double square_sum,
-                                  Eigen::Index num_free, Estimate& estimate) {
+                                  Eigen::Index num_free, Evidence& evidence,
+                                  Estimate& estimate) {
   const Eigen::Index redundancy = observed.Size() - num_free;
   const double norm_squared = observed.Norm() * observed.Norm();
   const std::optional<double>& given = scene.load_cases.front().noise_sd;
@@ -89,13 +77,9 @@ ResidualVariance EstimateVariance(const ObservedDisplacements& observed,
   }
   // chi^2 has mean m and variance 2 m.
   const double ratio = variance * norm_squared;
-  if (redundancy > 0 && ratio > 1 + kSignificantScore * std::sqrt(2 / m)) {
-    std::ostringstream text;
-    text << "the displacement residual is " << TwoDigits(std::sqrt(ratio))
-         << " times the given noise, and the standard errors are widened to "
-            "match; the mesh, the supports or the loads do not describe the "
-            "experiment";
-    estimate.warnings.push_back(text.str());
+  if (redundancy > 0 &&
+      ratio > 1 + kLimits.significant_score * std::sqrt(2 / m)) {
+    evidence.above_noise = {ResidualKind::kDisplacement, std::sqrt(ratio)};
     return ResidualVariance{variance, false};
   }
   return ResidualVariance{1 / norm_squared, true};
@@ -113,52 +97,11 @@ double SmoothSquareSum(const NodeGraph& graph,
   }
   estimate.residual_correlation =
       std::clamp(neighbours->correlation, -1.0, 1.0);
-  estimate.is_model_in_doubt = neighbours->standard_score > kSignificantScore;
+  estimate.is_model_in_doubt =
+      neighbours->standard_score > kLimits.significant_score;
   return estimate.is_model_in_doubt
              ? *estimate.residual_correlation * residual.squaredNorm()
              : 0;
-}
-
-void WarnOfSmoothResidual(double relative_error, Estimate& estimate) {
-  // Not a number for an E on a bound.
-  if (relative_error <= kNotableError) {
-    return;
-  }
-  std::ostringstream text;
-  text << "the displacement residual is alike at neighbouring nodes "
-          "(correlation "
-       << TwoDigits(*estimate.residual_correlation)
-       << "), as noise is not: the mesh, the supports or the loads do not "
-          "describe the experiment, or the measurement was smoothed; the "
-          "standard errors are widened to allow for it";
-  estimate.warnings.push_back(text.str());
-}
-
-// For E on a bound.  `parameters` are those that are free without it,
-// `standard_error` is that of ln E for the residual of the fit, `slope` =
-// d nu / d ln E.
-void JudgeYoungsModulus(const EstimatorOptions& options,
-                        const DisplacementFit& fit,
-                        const std::vector<Eigen::Index>& parameters,
-                        double slope, double standard_error,
-                        Estimate& estimate) {
-  const double square_sum = fit.residual.squaredNorm();
-  if (square_sum == 0) {
-    return;
-  }
-  // The fit without the bound in the linear model u + S delta: a bound that the
-  // data contradict leaves much that is no noise.
-  const Eigen::MatrixXd s = fit.sensitivities(Eigen::all, parameters);
-  const Eigen::VectorXd change = -SolveLeastSquares(s, fit.residual);
-  const double least = (fit.residual + s * change).squaredNorm();
-  JudgeContradictedBound(
-      square_sum - least, least / static_cast<double>(fit.residual.size()),
-      estimate.elasticity.youngs_modulus * std::exp(change(0)), estimate);
-  if (estimate.IsUsable()) {
-    JudgeYoungsModulusOnBound(options, slope,
-                              std::sqrt(least / square_sum) * standard_error,
-                              estimate);
-  }
 }
 
 // The change of (ln E, nu) from the least-squares fit to a robust one, in the
@@ -192,39 +135,215 @@ bool HasHeavyTails(const Eigen::VectorXd& residual) {
   const double n = static_cast<double>(residual.size());
   // The standard deviation of 1.4826 MAD is 1.17 / sqrt(n) of itself.
   const double threshold =
-      kHeavyTails + kSignificantScore * 1.17 / std::sqrt(n);
+      kLimits.heavy_tails + kLimits.significant_score * 1.17 / std::sqrt(n);
   return residual.norm() / std::sqrt(n) >
          threshold * RobustStandardDeviation(residual);
 }
 
-void WarnOfOutliers(const Eigen::Vector2d& change, Estimate& estimate) {
-  std::ostringstream text;
-  text << "some nodes lie far off, and without their pull E would change by "
-       << TwoDigits(100 * change(0)) << " % and nu by " << TwoDigits(change(1))
-       << ", which the standard errors allow for: use a loss (huber or cauchy)";
-  estimate.warnings.push_back(text.str());
-}
-
-// `smooth` is the smooth part of the residual, relative to the measurement.
-void JudgeLargeResidual(double smooth, bool is_explained, Estimate& estimate) {
-  std::ostringstream text;
-  if (smooth > kLargeResidual && estimate.status == Status::kOk) {
-    text << "the model misses a smooth part of the measured displacement, "
-         << TwoDigits(100 * smooth)
-         << " % of it: the mesh, the supports, the loads or a known Poisson's "
-            "ratio do not describe the experiment";
-    estimate.status = Status::kNotIdentifiable;
-    estimate.message = text.str();
-  } else if (*estimate.displacement_residual > kLargeResidual && smooth == 0 &&
-             !is_explained) {
-    text << "the displacement residual is "
-         << TwoDigits(100 * *estimate.displacement_residual)
-         << " % of the measured displacement: either the noise is as large, or "
-            "the mesh, the supports or the loads do not describe the "
-            "experiment";
-    estimate.warnings.push_back(text.str());
+// A fit and what follows from it.  Covariances are of (ln E, nu).
+class FitDescription {
+ public:
+  FitDescription(const EstimatorOptions& options,
+                 const ObservedDisplacements& observed,
+                 const DisplacementFit& fit, const NodeLosses& losses,
+                 Evidence& evidence, Estimate& estimate)
+      : options_(options),
+        observed_(observed),
+        fit_(fit),
+        losses_(losses),
+        sums_(SumResiduals(observed, fit, losses)),
+        square_sum_(fit.residual.squaredNorm()),
+        evidence_(evidence),
+        estimate_(estimate) {
+    if (evidence.active.youngs_modulus == Side::kNone) {
+      free_.push_back(0);
+    }
+    if (!options.known_poisson_ratio &&
+        evidence.active.poisson_ratio == Side::kNone) {
+      free_.push_back(1);
+    }
+    estimate.displacement_residual =
+        std::sqrt(square_sum_) / observed.Measured().norm();
+    estimate.identifiability_angle = IdentifiabilityAngle(Gram());
+    is_collinear_ = std::sin(*estimate.identifiability_angle) < kCollinear;
   }
-}
+
+  // Whether the data determine one combination of the parameters only.
+  bool FindFreeDirection() {
+    const ActiveBounds& active = evidence_.active;
+    const bool is_bound_given =
+        active.poisson_ratio != Side::kNone && !active.is_physical_limit;
+    if (active.youngs_modulus != Side::kNone || options_.known_poisson_ratio ||
+        is_bound_given || !is_collinear_) {
+      return false;
+    }
+    evidence_.free_direction = {estimate_.elasticity,
+                                {YoungsModulusSlope(), 1}};
+    estimate_.elasticity = {Estimate::kUnknown, Estimate::kUnknown};
+    return true;
+  }
+
+  void MeasureDiscretization(const Mesh& mesh) {
+    // There is nothing to compare the strain of a single element with.
+    if (mesh.NumElements() == 1) {
+      return;
+    }
+    estimate_.discretization_error =
+        DiscretizationError(mesh, estimate_.elasticity, fit_.displacement);
+    if (IsPoissonRatioFree()) {
+      estimate_.poisson_ratio_discretization_error =
+          *estimate_.discretization_error * observed_.Measured().norm() *
+          std::sqrt(LastOfInverse(Gram()));
+    }
+  }
+
+  // Whether there are no more components than the statistics need.
+  bool AreTooFew(const Scene& scene) {
+    if (scene.load_cases.front().noise_sd ||
+        observed_.Size() - Eigen::Index(free_.size()) >=
+            kLimits.least_redundancy) {
+      return false;
+    }
+    evidence_.too_few_components = observed_.Size();
+    return true;
+  }
+
+  void MeasureNoise(const Scene& scene, const NodeGraph& graph) {
+    if (losses_.IsLeastSquares()) {
+      variance_ =
+          EstimateVariance(observed_, scene, square_sum_,
+                           Eigen::Index(free_.size()), evidence_, estimate_);
+    } else {
+      estimate_.noise_sd =
+          RobustStandardDeviation(fit_.residual) * observed_.Norm();
+    }
+    evidence_.is_explained_by_given_noise =
+        variance_ && variance_->is_explained_by_given_noise;
+    smooth_square_sum_ =
+        evidence_.is_explained_by_given_noise
+            ? 0
+            : SmoothSquareSum(graph, observed_, sums_.weighted_residual,
+                              estimate_);
+    evidence_.smooth_part =
+        std::sqrt(smooth_square_sum_) / observed_.Measured().norm();
+  }
+
+  void FillCovariance() {
+    ErrorBudget& budget = estimate_.error_budget;
+    budget.noise = ErrorsOf(NoiseCovariance(free_));
+    budget.model = ErrorsOf(ModelCovariance(free_));
+    Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(Estimate::kUnknown);
+    covariance(free_, free_) = Covariance(free_);
+    if (losses_.IsLeastSquares() && !free_.empty()) {
+      Eigen::Vector2d change = Eigen::Vector2d::Zero();
+      if (HasHeavyTails(fit_.residual)) {
+        change = RobustChange(observed_, fit_, free_);
+        evidence_.outlier_change = change;
+      }
+      const Eigen::Matrix2d of_outliers = change * change.transpose();
+      covariance += of_outliers;
+      budget.outliers = ErrorsOf(of_outliers(free_, free_));
+    }
+    const Eigen::Vector2d scale(estimate_.elasticity.youngs_modulus, 1);
+    estimate_.covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
+    if (smooth_square_sum_ > 0) {
+      evidence_.smooth_residual_error = std::sqrt(covariance(0, 0));
+    }
+  }
+
+  // Of a row of the residual, by the standard error of nu; empty when there is
+  // none.
+  std::optional<double> RowVariance() const {
+    if (!IsPoissonRatioFree()) {
+      return evidence_.active.is_physical_limit && variance_
+                 ? std::optional<double>(variance_->variance)
+                 : std::nullopt;
+    }
+    return estimate_.covariance(1, 1) / LastOfInverse(sums_.bread);
+  }
+
+  void MeasureYoungsModulusOnBound() {
+    if (square_sum_ == 0) {
+      return;
+    }
+    const std::vector<Eigen::Index> parameters =
+        options_.known_poisson_ratio ? std::vector<Eigen::Index>{0}
+                                     : std::vector<Eigen::Index>{0, 1};
+    // The fit without the bound in the linear model u + S delta.
+    const Eigen::MatrixXd s = fit_.sensitivities(Eigen::all, parameters);
+    const Eigen::VectorXd change = -SolveLeastSquares(s, fit_.residual);
+    const double least = (fit_.residual + s * change).squaredNorm();
+    evidence_.bound_excess = {
+        square_sum_ - least, least / static_cast<double>(fit_.residual.size()),
+        estimate_.elasticity.youngs_modulus * std::exp(change(0))};
+    const double standard_error = !options_.known_poisson_ratio && is_collinear_
+                                      ? std::numeric_limits<double>::infinity()
+                                      : std::sqrt(Covariance(parameters)(0, 0));
+    evidence_.youngs_modulus_on_bound = AllowForYoungsModulusOnBound(
+        options_, -Gram()(0, 1) / Gram()(1, 1),
+        std::sqrt(least / square_sum_) * standard_error, estimate_);
+  }
+
+  void MeasurePoissonRatioOnBound() {
+    const double standard_error = is_collinear_
+                                      ? std::numeric_limits<double>::infinity()
+                                      : std::sqrt(Covariance({0, 1})(1, 1));
+    evidence_.poisson_ratio_on_bound = AllowForPoissonRatioOnBound(
+        options_, evidence_.active, YoungsModulusSlope(), standard_error,
+        estimate_);
+  }
+
+ private:
+  const Eigen::Matrix2d& Gram() const { return sums_.sensitivity_gram; }
+  // d ln E / d nu of the parameters that fit alike.
+  double YoungsModulusSlope() const { return -Gram()(0, 1) / Gram()(0, 0); }
+  bool IsPoissonRatioFree() const {
+    return !free_.empty() && free_.back() == 1;
+  }
+  // The entry of nu, of the inverse over the free parameters.
+  double LastOfInverse(const Eigen::Matrix2d& matrix) const {
+    const Eigen::MatrixXd inverse = Inverse(matrix(free_, free_));
+    return inverse(inverse.rows() - 1, inverse.cols() - 1);
+  }
+
+  // Of the parameters that vary together.
+  Eigen::MatrixXd NoiseCovariance(
+      const std::vector<Eigen::Index>& parameters) const {
+    const Eigen::MatrixXd inverse_bread =
+        Inverse(sums_.bread(parameters, parameters));
+    if (variance_) {
+      return variance_->variance * inverse_bread;
+    }
+    return inverse_bread * sums_.meat(parameters, parameters) * inverse_bread;
+  }
+  Eigen::MatrixXd ModelCovariance(
+      const std::vector<Eigen::Index>& parameters) const {
+    return smooth_square_sum_ * Inverse(Gram()(parameters, parameters));
+  }
+  Eigen::MatrixXd Covariance(
+      const std::vector<Eigen::Index>& parameters) const {
+    return NoiseCovariance(parameters) + ModelCovariance(parameters);
+  }
+  ParameterErrors ErrorsOf(const Eigen::MatrixXd& of_free) const {
+    Eigen::Matrix2d both = Eigen::Matrix2d::Constant(Estimate::kUnknown);
+    both(free_, free_) = of_free;
+    return StandardErrors(both, {1, 0});
+  }
+
+  const EstimatorOptions& options_;
+  const ObservedDisplacements& observed_;
+  const DisplacementFit& fit_;
+  const NodeLosses& losses_;
+  ResidualSums sums_;
+  double square_sum_;
+  Evidence& evidence_;
+  Estimate& estimate_;
+  std::vector<Eigen::Index> free_;
+  bool is_collinear_ = false;
+  /// Empty with a loss.
+  std::optional<ResidualVariance> variance_;
+  double smooth_square_sum_ = 0;
+};
 
 }  // namespace
 
@@ -277,135 +396,26 @@ std::optional<NeighbourCorrelation> CorrelateNeighbours(
 std::optional<double> DescribeDisplacementFit(
     const Scene& scene, const NodeGraph& graph, const EstimatorOptions& options,
     const ObservedDisplacements& observed, const DisplacementFit& fit,
-    const NodeLosses& losses, const ActiveBounds& active, Estimate& estimate) {
-  const ResidualSums sums = SumResiduals(observed, fit, losses);
-  const Eigen::Matrix2d& gram = sums.sensitivity_gram;
-  const double slope = -gram(0, 1) / gram(0, 0);
-  const double square_sum = fit.residual.squaredNorm();
-  estimate.displacement_residual =
-      std::sqrt(square_sum) / observed.Measured().norm();
-  estimate.identifiability_angle = IdentifiabilityAngle(gram);
-  const bool is_collinear =
-      std::sin(*estimate.identifiability_angle) < kCollinear;
-
-  std::vector<Eigen::Index> free;
-  if (active.youngs_modulus == BoundedParameter::Side::kNone) {
-    free.push_back(0);
-  }
-  if (!options.known_poisson_ratio &&
-      active.poisson_ratio == BoundedParameter::Side::kNone) {
-    free.push_back(1);
-  }
-  const bool is_bound_given =
-      active.poisson_ratio != BoundedParameter::Side::kNone &&
-      !active.is_physical_limit;
-  if (active.youngs_modulus == BoundedParameter::Side::kNone &&
-      !options.known_poisson_ratio && !is_bound_given && is_collinear) {
-    estimate.Fail(Status::kNotIdentifiable,
-                  DescribeCollinear(estimate.elasticity, {slope, 1}),
-                  "the parameters are not determined");
-    estimate.elasticity = {Estimate::kUnknown, Estimate::kUnknown};
+    const NodeLosses& losses, Evidence& evidence, Estimate& estimate) {
+  FitDescription description(options, observed, fit, losses, evidence,
+                             estimate);
+  if (description.FindFreeDirection()) {
     return std::nullopt;
   }
-
-  // There is nothing to compare the strain of a single element with.
-  if (scene.mesh.NumElements() > 1) {
-    estimate.discretization_error =
-        DiscretizationError(scene.mesh, estimate.elasticity, fit.displacement);
-    if (!free.empty() && free.back() == 1) {
-      const Eigen::MatrixXd inverse = Inverse(gram(free, free));
-      estimate.poisson_ratio_discretization_error =
-          *estimate.discretization_error * observed.Measured().norm() *
-          std::sqrt(inverse(inverse.rows() - 1, inverse.cols() - 1));
-    }
-  }
-
-  // Below three the variance of Student's t is infinite.
-  constexpr Eigen::Index kLeastRedundancy = 3;
-  if (observed.Size() - Eigen::Index(free.size()) < kLeastRedundancy &&
-      !scene.load_cases.front().noise_sd) {
-    estimate.why_no_standard_error =
-        "there are too few measured components to estimate their noise from";
-    if (estimate.status == Status::kOk) {
-      estimate.status = Status::kNotIdentifiable;
-      estimate.message =
-          std::to_string(observed.Size()) +
-          " measured components are too few to tell how good the estimate is; "
-          "measure more, or give the standard deviation of the noise";
-    }
+  description.MeasureDiscretization(scene.mesh);
+  if (description.AreTooFew(scene)) {
     return std::nullopt;
   }
-  std::optional<ResidualVariance> variance;
-  if (losses.IsLeastSquares()) {
-    variance = EstimateVariance(observed, scene, square_sum,
-                                Eigen::Index(free.size()), estimate);
-  } else {
-    estimate.noise_sd = RobustStandardDeviation(fit.residual) * observed.Norm();
+  description.MeasureNoise(scene, graph);
+  description.FillCovariance();
+  const std::optional<double> variance = description.RowVariance();
+  if (evidence.active.youngs_modulus != Side::kNone) {
+    description.MeasureYoungsModulusOnBound();
   }
-  const double smooth_square_sum =
-      variance && variance->is_explained_by_given_noise
-          ? 0
-          : SmoothSquareSum(graph, observed, sums.weighted_residual, estimate);
-
-  // Of the parameters that vary together.
-  const auto covariance_of = [&](const std::vector<Eigen::Index>& parameters) {
-    const Eigen::MatrixXd inverse_bread =
-        Inverse(sums.bread(parameters, parameters));
-    const Eigen::MatrixXd of_noise =
-        variance ? Eigen::MatrixXd(variance->variance * inverse_bread)
-                 : Eigen::MatrixXd(inverse_bread *
-                                   sums.meat(parameters, parameters) *
-                                   inverse_bread);
-    return Eigen::MatrixXd(
-        of_noise + smooth_square_sum * Inverse(gram(parameters, parameters)));
-  };
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(Estimate::kUnknown);
-  covariance(free, free) = covariance_of(free);
-  if (losses.IsLeastSquares() && !free.empty() && HasHeavyTails(fit.residual)) {
-    const Eigen::Vector2d change = RobustChange(observed, fit, free);
-    covariance += change * change.transpose();
-    if (std::abs(change(0)) > kNotableError) {
-      WarnOfOutliers(change, estimate);
-    }
+  if (evidence.active.poisson_ratio != Side::kNone) {
+    description.MeasurePoissonRatioOnBound();
   }
-  const Eigen::Vector2d scale(estimate.elasticity.youngs_modulus, 1);
-  estimate.covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
-  if (smooth_square_sum > 0) {
-    WarnOfSmoothResidual(std::sqrt(covariance(0, 0)), estimate);
-  }
-  if (!estimate.active_bounds.empty()) {
-    estimate.why_no_standard_error = "a parameter on a bound has none";
-  }
-  if (estimate.status == Status::kOk &&
-      active.youngs_modulus != BoundedParameter::Side::kNone) {
-    const bool is_known = options.known_poisson_ratio.has_value();
-    const std::vector<Eigen::Index> parameters =
-        is_known ? std::vector<Eigen::Index>{0}
-                 : std::vector<Eigen::Index>{0, 1};
-    const double standard_error =
-        !is_known && is_collinear ? std::numeric_limits<double>::infinity()
-                                  : std::sqrt(covariance_of(parameters)(0, 0));
-    JudgeYoungsModulus(options, fit, parameters, -gram(0, 1) / gram(1, 1),
-                       standard_error, estimate);
-  }
-  JudgeLargeResidual(std::sqrt(smooth_square_sum) / observed.Measured().norm(),
-                     variance && variance->is_explained_by_given_noise,
-                     estimate);
-  if (estimate.status == Status::kOk &&
-      active.poisson_ratio != BoundedParameter::Side::kNone) {
-    const double standard_error = is_collinear
-                                      ? std::numeric_limits<double>::infinity()
-                                      : std::sqrt(covariance_of({0, 1})(1, 1));
-    JudgePoissonRatioOnBound(options, active, slope, standard_error, estimate);
-  }
-  if (std::find(free.begin(), free.end(), 1) == free.end()) {
-    return active.is_physical_limit && variance
-               ? std::optional<double>(variance->variance)
-               : std::nullopt;
-  }
-  const Eigen::MatrixXd inverse_bread = Inverse(sums.bread(free, free));
-  return covariance(1, 1) /
-         inverse_bread(inverse_bread.rows() - 1, inverse_bread.cols() - 1);
+  return variance;
 }
 
 }  // namespace elastimate

@@ -9,7 +9,7 @@
 #include "elastimate/estimators/displacement_fit/observed_displacements.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
-#include "elastimate/estimators/statistics/bounded_parameter.h"
+#include "elastimate/estimators/interface/evidence.h"
 
 namespace elastimate {
 
@@ -39,10 +39,11 @@ std::optional<NeighbourCorrelation> CorrelateNeighbours(
     const NodeGraph& graph, const ObservedDisplacements& observed,
     const Eigen::VectorXd& residual);
 
-/// Judges a least-squares (or, with `losses`, robust) fit of the displacements
-/// and fills in status, covariance, noise, residual statistics, discretisation
-/// error, identifiability and warnings of `estimate`, whose elasticity and
-/// active bounds are set.  `graph` is that of the mesh of the scene.
+/// Describes a least-squares (or, with `losses`, robust) fit of the
+/// displacements: fills in covariance, noise, residual statistics,
+/// discretisation error and identifiability of `estimate`, whose elasticity is
+/// set, and what there is to judge into `evidence`, whose active bounds are.
+/// `graph` is that of the mesh of the scene.
 ///
 /// Without a loss the covariance is sigma^2 (S^T S)^-1, the Cramer-Rao bound,
 /// with sigma^2 as given, or from the residual; with one it is the sandwich of
@@ -61,7 +62,7 @@ std::optional<NeighbourCorrelation> CorrelateNeighbours(
 std::optional<double> DescribeDisplacementFit(
     const Scene& scene, const NodeGraph& graph, const EstimatorOptions& options,
     const ObservedDisplacements& observed, const DisplacementFit& fit,
-    const NodeLosses& losses, const ActiveBounds& active, Estimate& estimate);
+    const NodeLosses& losses, Evidence& evidence, Estimate& estimate);
 
 }  // namespace elastimate
 

@@ -473,15 +473,15 @@ class EvaluatedProfile {
   ProfilePoint best_;
 };
 
-BoundedParameter::Side ViolatedBound(const Bounds& bounds,
-                                     const IsotropicElasticity& elasticity) {
+Side ViolatedBound(const Bounds& bounds,
+                   const IsotropicElasticity& elasticity) {
   if (elasticity.youngs_modulus < bounds.lower.value_or(0)) {
-    return BoundedParameter::Side::kLower;
+    return Side::kLower;
   }
   if (bounds.upper && elasticity.youngs_modulus > *bounds.upper) {
-    return BoundedParameter::Side::kUpper;
+    return Side::kUpper;
   }
-  return BoundedParameter::Side::kNone;
+  return Side::kNone;
 }
 
 // A minimum of the cost.
@@ -489,24 +489,22 @@ struct Minimum {
   BoundedParameter scale;
   BoundedParameter poisson_ratio;
   Scale meaning;
-  BoundedParameter::Side violated;
+  Side violated;
   NodeLosses losses;
   ceres::Solver::Summary summary;
   double cost;
 };
 
 // The minimum that is reached from a start, with E free or on a bound.
-Minimum DescendWith(BoundedParameter::Side side,
-                    const EstimatorOptions& options,
+Minimum DescendWith(Side side, const EstimatorOptions& options,
                     const IsotropicElasticity& start,
                     DisplacementResidual& residual) {
   residual.SetPoissonRatio(start.poisson_ratio);
-  const bool is_free = side == BoundedParameter::Side::kNone;
+  const bool is_free = side == Side::kNone;
   const double scale = is_free ? start.ComplianceScale(residual.Section()) *
                                      residual.UnitLoadResponse().norm()
-                       : side == BoundedParameter::Side::kLower
-                           ? *options.youngs_modulus.lower
-                           : *options.youngs_modulus.upper;
+                       : side == Side::kLower ? *options.youngs_modulus.lower
+                                              : *options.youngs_modulus.upper;
   Minimum minimum = {
       is_free ? BoundedParameter(std::log(scale), Bounds{})
               : BoundedParameter::Constant(std::log(scale)),
@@ -535,14 +533,13 @@ Minimum DescendWith(BoundedParameter::Side side,
 Minimum Descend(const EstimatorOptions& options,
                 const IsotropicElasticity& start,
                 DisplacementResidual& residual) {
-  Minimum minimum =
-      DescendWith(BoundedParameter::Side::kNone, options, start, residual);
+  Minimum minimum = DescendWith(Side::kNone, options, start, residual);
   if (!residual.IsValid()) {
     return minimum;
   }
-  const BoundedParameter::Side side =
+  const Side side =
       ViolatedBound(options.youngs_modulus, residual.Elasticity());
-  if (side == BoundedParameter::Side::kNone) {
+  if (side == Side::kNone) {
     return minimum;
   }
   // The bounded minimum may lie on either side of the two.
@@ -580,28 +577,22 @@ Minimum BestMinimum(const EstimatorOptions& options,
   return best;
 }
 
-void JudgeSummary(const EstimatorOptions& options,
-                  const ceres::Solver::Summary& summary, Estimate& estimate) {
-  if (summary.termination_type == ceres::CONVERGENCE) {
-    estimate.status = Status::kOk;
-    estimate.message = "";
-  } else if (summary.termination_type == ceres::NO_CONVERGENCE) {
-    estimate.status = Status::kIterationLimit;
-    estimate.message = "the fit did not converge in " +
-                       std::to_string(options.max_iterations) + " iterations";
-  } else {
-    estimate.message =
-        "the search for the best fit ended without one (Ceres: " +
-        summary.message +
-        "): the stiffness may be singular to working precision; check the mesh "
-        "for slivers, or use reduced-fe";
+End EndOf(const ceres::Solver::Summary& summary) {
+  switch (summary.termination_type) {
+    case ceres::CONVERGENCE:
+      return End::kDone;
+    case ceres::NO_CONVERGENCE:
+      return End::kIterationLimit;
+    default:
+      return End::kSearchFailed;
   }
 }
 
 // Enters the interval of nu, after up to three looks at where each end may be.
 void DescribeProfileOf(const EstimatorOptions& options,
                        const std::vector<ProfilePoint>& points, double variance,
-                       DisplacementResidual& residual, Estimate& estimate) {
+                       DisplacementResidual& residual, Evidence& evidence,
+                       Estimate& estimate) {
   EvaluatedProfile profile(
       points, {estimate.elasticity, residual.Fit().residual.squaredNorm()});
   const Bounds bounds = EffectivePoissonRatioBounds(options);
@@ -628,7 +619,7 @@ void DescribeProfileOf(const EstimatorOptions& options,
       }
     }
   }
-  DescribeProfile(
+  evidence.profile_interval = DescribeProfile(
       [&](double quantile) {
         const double excess = quantile * variance;
         return Profile{profile.EndTowards(*bounds.lower, excess),
@@ -641,13 +632,14 @@ void DescribeProfileOf(const EstimatorOptions& options,
 // interval of nu.
 void DescribeFit(const Scene& scene, const EstimatorOptions& options,
                  const std::vector<ProfilePoint>& points,
-                 const ActiveBounds& active, const NodeLosses& losses,
-                 DisplacementResidual& residual, Estimate& estimate) {
+                 const NodeLosses& losses, DisplacementResidual& residual,
+                 Evidence& evidence, Estimate& estimate) {
   const std::optional<double> variance = DescribeDisplacementFit(
       scene, residual.Graph(), options, residual.Observed(), residual.Fit(),
-      losses, active, estimate);
+      losses, evidence, estimate);
+  Judge(evidence, options, estimate);
   if (!variance || options.loss != Loss::kNone || !estimate.IsUsable() ||
-      active.youngs_modulus != BoundedParameter::Side::kNone) {
+      evidence.active.youngs_modulus != Side::kNone) {
     return;
   }
   const double least = residual.Fit().residual.squaredNorm();
@@ -658,9 +650,9 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
         return point.unbounded_cost <= least + kTwoSidedQuantile * *variance &&
                std::abs(point.unbounded.poisson_ratio - nu) > far;
       });
-  if (active.is_physical_limit || has_rival ||
+  if (evidence.active.is_physical_limit || has_rival ||
       ShareOfDistanceToPole(estimate) > kLargestLinearShare) {
-    DescribeProfileOf(options, points, *variance, residual, estimate);
+    DescribeProfileOf(options, points, *variance, residual, evidence, estimate);
   }
 }
 
@@ -684,24 +676,21 @@ Capabilities IterativeFe::WhatItTakes() const {
 Estimate IterativeFe::DoRun(const Scene& scene,
                             const EstimatorOptions& options) const {
   Estimate estimate;
+  Evidence evidence;
   Stopwatch stopwatch;
   DisplacementResidual residual(scene, options);
   estimate.stages.push_back({"assemble and analyse", stopwatch.Lap()});
 
   std::vector<ProfilePoint> points = EvaluateStarts(scene, options, residual);
-  if (points.empty()) {
-    estimate.message =
-        "the stiffness matrix is singular to working precision; check the "
-        "mesh for slivers and loose parts, and the supports";
-    estimate.why_no_standard_error = "there is no estimate";
-    estimate.work = residual.WorkDone();
-    return estimate;
-  }
   const std::vector<IsotropicElasticity> basins = BasinsOf(points);
   if (basins.empty()) {
-    estimate.elasticity = points.front().elasticity;
-    estimate.Fail(Status::kUnphysical, kDisplacementsOpposeLoads,
-                  "the estimate is not physical");
+    if (points.empty()) {
+      evidence.end = End::kSingularStiffness;
+    } else {
+      evidence.do_displacements_oppose_loads = true;
+      estimate.elasticity = points.front().elasticity;
+    }
+    Judge(evidence, options, estimate);
     estimate.work = residual.WorkDone();
     return estimate;
   }
@@ -709,15 +698,17 @@ Estimate IterativeFe::DoRun(const Scene& scene,
   residual.SetParameters(best.meaning, &best.scale, &best.poisson_ratio);
   residual.PrepareForEvaluation(true, true);
   estimate.stages.push_back({"fit", stopwatch.Lap()});
-  JudgeSummary(options, best.summary, estimate);
+  evidence.end = EndOf(best.summary);
+  evidence.search_message = "Ceres: " + best.summary.message;
   if (residual.IsValid()) {
     estimate.elasticity = residual.Elasticity();
-    const ActiveBounds active =
+    evidence.active =
         NoteActiveBounds(options, best.violated, best.poisson_ratio, estimate);
-    DescribeFit(scene, options, points, active, best.losses, residual,
+    DescribeFit(scene, options, points, best.losses, residual, evidence,
                 estimate);
   }
-  NoteSolver(residual.SolverNotice(), estimate);
+  evidence.solver_notice = residual.SolverNotice();
+  Judge(evidence, options, estimate);
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
   estimate.work = residual.WorkDone();
   return estimate;

@@ -17,15 +17,51 @@
 namespace elastimate {
 namespace {
 
-BoundedParameter::Side BoundOf(const Bounds& bounds, double value) {
+Side BoundOf(const Bounds& bounds, double value) {
   constexpr double kOnBound = 1e-9;
   if (bounds.lower && value <= *bounds.lower * (1 + kOnBound)) {
-    return BoundedParameter::Side::kLower;
+    return Side::kLower;
   }
   if (bounds.upper && value >= *bounds.upper * (1 - kOnBound)) {
-    return BoundedParameter::Side::kUpper;
+    return Side::kUpper;
   }
-  return BoundedParameter::Side::kNone;
+  return Side::kNone;
+}
+
+// Fills in what follows from a fit of physical parameters.
+void DescribeFit(const Scene& scene, const EstimatorOptions& options,
+                 const ObservedDisplacements& observed,
+                 const AdaptiveFit& adaptive, Evidence& evidence,
+                 Estimate& estimate) {
+  const ModelFit& best = adaptive.Best();
+  const BoundedParameter poisson_ratio =
+      options.known_poisson_ratio
+          ? BoundedParameter::Constant(*options.known_poisson_ratio)
+          : BoundedParameter(best.point.poisson_ratio,
+                             adaptive.PoissonRatioBounds());
+  evidence.active = NoteActiveBounds(
+      options,
+      BoundOf(options.youngs_modulus, estimate.elasticity.youngs_modulus),
+      poisson_ratio, estimate);
+  const std::optional<double> variance = DescribeDisplacementFit(
+      scene, adaptive.Model().Graph(), options, observed,
+      ExpandFit(adaptive.Model(), observed, estimate.elasticity), best.losses,
+      evidence, estimate);
+  Judge(evidence, options, estimate);
+  // What looks like a pull to -1 may be data that say nothing of nu.
+  const bool is_at_minus_one = estimate.status == Status::kUnphysical;
+  if (!variance || options.loss != Loss::kNone ||
+      !(estimate.IsUsable() || is_at_minus_one)) {
+    return;
+  }
+  const auto profile_of = [&](double quantile) {
+    return adaptive.ProfileEnds(observed, quantile * *variance);
+  };
+  if (evidence.active.is_physical_limit ||
+      ShareOfDistanceToPole(estimate) > kLargestLinearShare ||
+      HasRivalMinimum(profile_of, estimate)) {
+    evidence.profile_interval = DescribeProfile(profile_of, estimate);
+  }
 }
 
 // Fits, and describes the fit.
@@ -33,62 +69,31 @@ Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
                         const ObservedDisplacements& observed,
                         AdaptiveFit& adaptive) {
   Estimate estimate;
+  Evidence evidence;
   Stopwatch stopwatch;
   const bool is_regular = adaptive.Run(observed);
   estimate.stages.push_back({"fit", stopwatch.Lap()});
   if (!is_regular) {
-    estimate.message =
-        "the stiffness matrix is singular to working precision; check the "
-        "mesh for slivers and loose parts, and the supports";
-    estimate.why_no_standard_error = "there is no estimate";
+    evidence.end = End::kSingularStiffness;
+    Judge(evidence, options, estimate);
     return estimate;
   }
-  const ModelFit& best = adaptive.Best();
+  const ReducedFit::Point& best = adaptive.Best().point;
   estimate.elasticity = IsotropicElasticity::FromComplianceScale(
-      best.point.compliance_scale, best.point.poisson_ratio,
-      adaptive.Model().Section());
-  if (!estimate.elasticity.IsPhysical() ||
-      !std::isfinite(estimate.elasticity.youngs_modulus)) {
-    estimate.Fail(Status::kUnphysical, kDisplacementsOpposeLoads,
-                  "the estimate is not physical");
+      best.compliance_scale, best.poisson_ratio, adaptive.Model().Section());
+  evidence.do_displacements_oppose_loads =
+      !estimate.elasticity.IsPhysical() ||
+      !std::isfinite(estimate.elasticity.youngs_modulus);
+  if (evidence.do_displacements_oppose_loads) {
+    Judge(evidence, options, estimate);
     return estimate;
   }
-  estimate.status = Status::kOk;
-  estimate.message = "";
-  const BoundedParameter poisson_ratio =
-      options.known_poisson_ratio
-          ? BoundedParameter::Constant(*options.known_poisson_ratio)
-          : BoundedParameter(best.point.poisson_ratio,
-                             adaptive.PoissonRatioBounds());
-  const ActiveBounds active = NoteActiveBounds(
-      options,
-      BoundOf(options.youngs_modulus, estimate.elasticity.youngs_modulus),
-      poisson_ratio, estimate);
-  const std::optional<double> variance = DescribeDisplacementFit(
-      scene, adaptive.Model().Graph(), options, observed,
-      ExpandFit(adaptive.Model(), observed, estimate.elasticity), best.losses,
-      active, estimate);
-  // What looks like a pull to -1 may be data that say nothing of nu.
-  const bool is_at_minus_one = estimate.status == Status::kUnphysical;
-  if (variance && options.loss == Loss::kNone &&
-      (estimate.IsUsable() || is_at_minus_one)) {
-    const auto profile_of = [&](double quantile) {
-      return adaptive.ProfileEnds(observed, quantile * *variance);
-    };
-    if (active.is_physical_limit ||
-        ShareOfDistanceToPole(estimate) > kLargestLinearShare ||
-        HasRivalMinimum(profile_of, estimate)) {
-      DescribeProfile(profile_of, estimate);
-    }
+  DescribeFit(scene, options, observed, adaptive, evidence, estimate);
+  if (!adaptive.HasConverged()) {
+    evidence.end = End::kNotCertified;
   }
-  if (!adaptive.HasConverged() && estimate.IsUsable()) {
-    estimate.Fail(Status::kIterationLimit,
-                  "the reduced model did not become accurate enough to exclude "
-                  "a better fit elsewhere; use iterative-fe, or bounds on "
-                  "Poisson's ratio",
-                  "the fit is not certified");
-  }
-  NoteSolver(adaptive.Model().Notice(), estimate);
+  evidence.solver_notice = adaptive.Model().Notice();
+  Judge(evidence, options, estimate);
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
   return estimate;
 }
@@ -167,7 +172,7 @@ Estimate PreparedReducedFe::Run(
     scene.load_cases[k].displacement = displacements[k];
   }
   ValidateMeasurements(scene);
-  const std::vector<std::string> warnings = CheckMeasurements(scene);
+  const std::vector<Finding> findings = CheckMeasurements(scene);
   if (!state_->observed) {
     state_->observed = std::make_unique<ObservedDisplacements>(scene);
   } else {
@@ -177,7 +182,7 @@ Estimate PreparedReducedFe::Run(
   Estimate estimate = RunAdaptiveFit(scene, state_->options, *state_->observed,
                                      state_->adaptive);
   estimate.work = state_->adaptive.Model().WorkDone() - before;
-  FinishEstimate(ReducedFe(), scene, state_->options, warnings, estimate);
+  FinishEstimate(ReducedFe(), scene, state_->options, findings, estimate);
   estimate.seconds = stopwatch.Lap();
   return estimate;
 }

@@ -8,6 +8,7 @@
 
 #include "elastimate/estimators/force_balance/force_residual.h"
 #include "elastimate/estimators/force_balance/virtual_work_check.h"
+#include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/statistics/bounded_parameter.h"
 
 namespace elastimate {
@@ -111,6 +112,33 @@ ceres::Solver::Summary Minimize(const ForceResidual& residual,
       problem);
 }
 
+// Which of the parameters that were sought lie on no bound.
+struct FreeParameters {
+  bool youngs_modulus;
+  bool poisson_ratio;
+};
+
+// What there is to judge of the minimum.  The bias of an E on a bound is that
+// of what virtual work has left of it, and follows.
+void Describe(const ForceResidual& residual, const EstimatorOptions& options,
+              const FreeParameters& free, Evidence& evidence,
+              Estimate& estimate) {
+  residual.Describe(free.youngs_modulus, free.poisson_ratio, evidence,
+                    estimate);
+  if (evidence.active.is_physical_limit) {
+    // E runs to zero or infinity with 1 - 2 nu: its value says nothing.
+    estimate.elasticity.youngs_modulus = Estimate::kUnknown;
+  } else if (!free.youngs_modulus) {
+    evidence.youngs_modulus_on_bound =
+        residual.AllowForYoungsModulusOnBound(options, estimate);
+  } else if (options.known_poisson_ratio) {
+    evidence.unbiased = MeasureUnbiasedPoissonRatio(residual, estimate);
+  } else {
+    evidence.noise_bias = MeasureNoiseBias(
+        residual, EffectivePoissonRatioBounds(options), estimate);
+  }
+}
+
 }  // namespace
 
 std::string_view Bounded::Name() const { return "bounded"; }
@@ -131,73 +159,54 @@ Estimate Bounded::DoRun(const Scene& scene,
                         const EstimatorOptions& options) const {
   const ForceResidual residual(scene);
   Estimate estimate;
+  Evidence evidence;
+  evidence.is_biased_by_noise = true;
   estimate.work = residual.WorkDone();
   const std::optional<IsotropicElasticity> start = Start(residual, options);
   if (!start) {
-    estimate.Fail(
-        Status::kUnphysical,
-        "no Poisson's ratio within the bounds gives a positive Young's "
-        "modulus: the measured displacements oppose the loads; check their "
-        "signs, order and units");
+    evidence.do_displacements_oppose_loads = true;
+    Judge(evidence, options, estimate);
     return estimate;
   }
   Parameters parameters = MakeParameters(options, *start);
   const ceres::Solver::Summary summary = Minimize(residual, *start, parameters);
+  evidence.does_youngs_modulus_diverge =
+      summary.IsSolutionUsable() &&
+      std::abs(parameters.log_youngs_modulus.Value()) == kLargestLogarithm;
   if (!summary.IsSolutionUsable()) {
-    estimate.Fail(Status::kNumericalFailure, summary.message);
-    return estimate;
+    evidence.end = End::kSearchFailed;
+    evidence.search_message = summary.message;
   }
-  if (std::abs(parameters.log_youngs_modulus.Value()) == kLargestLogarithm) {
-    estimate.Fail(
-        Status::kUnphysical,
-        "the data pull Young's modulus to zero or infinity: they are mostly "
-        "noise, or the mesh, the supports or the loads do not describe the "
-        "experiment");
+  if (!summary.IsSolutionUsable() || evidence.does_youngs_modulus_diverge) {
+    Judge(evidence, options, estimate);
     return estimate;
   }
   estimate.elasticity = {
       start->youngs_modulus * std::exp(parameters.log_youngs_modulus.Value()),
       parameters.poisson_ratio.Value()};
-  const ActiveBounds active =
+  evidence.active =
       NoteActiveBounds(options, parameters.log_youngs_modulus.OnBound(),
                        parameters.poisson_ratio, estimate);
-  const bool free_youngs_modulus =
-      active.youngs_modulus == BoundedParameter::Side::kNone;
-  const bool free_poisson_ratio =
+  const FreeParameters free = {
+      evidence.active.youngs_modulus == Side::kNone,
       !options.known_poisson_ratio &&
-      active.poisson_ratio == BoundedParameter::Side::kNone;
-  if (!options.known_poisson_ratio && free_youngs_modulus &&
+          evidence.active.poisson_ratio == Side::kNone};
+  if (!options.known_poisson_ratio && free.youngs_modulus &&
       !residual.PoissonRatio()) {
     estimate.elasticity = {Estimate::kUnknown, Estimate::kUnknown};
-    estimate.Fail(Status::kNotIdentifiable, residual.WhyNotIdentifiable());
+    evidence.free_direction = residual.CollinearDirection();
+    Judge(evidence, options, estimate);
     return estimate;
   }
-  estimate.status = Status::kOk;
-  estimate.message = "";
-  residual.Describe(free_youngs_modulus, free_poisson_ratio, estimate);
-  if (!estimate.active_bounds.empty()) {
-    estimate.why_no_standard_error = "a parameter on a bound has none";
-  }
-  if (active.is_physical_limit) {
-    // E runs to zero or infinity with 1 - 2 nu: its value says nothing.
-    estimate.elasticity.youngs_modulus = Estimate::kUnknown;
-    estimate.Fail(
-        Status::kUnphysical,
-        "the data pull Poisson's ratio to the end of its range, as "
-        "displacement noise does with this method; give bounds that the "
-        "material is known to keep, or use reduced-fe");
-  } else if (!free_youngs_modulus) {
-    residual.JudgeYoungsModulusOnBound(options, estimate);
-  } else if (options.known_poisson_ratio) {
-    JudgeKnownPoissonRatio(residual, estimate);
-  } else {
-    JudgeNoiseBias(residual, EffectivePoissonRatioBounds(options), estimate);
-  }
-  CheckByVirtualWork(scene, options, estimate);
-  if (estimate.IsUsable() && !free_youngs_modulus &&
+  Describe(residual, options, free, evidence, estimate);
+  Judge(evidence, options, estimate);
+  evidence.work_check = CheckByVirtualWork(scene, options, estimate);
+  if (estimate.IsUsable() && !free.youngs_modulus &&
       !options.known_poisson_ratio) {
-    JudgeNoiseBias(residual, EffectivePoissonRatioBounds(options), estimate);
+    evidence.noise_bias = MeasureNoiseBias(
+        residual, EffectivePoissonRatioBounds(options), estimate);
   }
+  Judge(evidence, options, estimate);
   return estimate;
 }
 

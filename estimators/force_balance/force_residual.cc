@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/large_pages.h"
@@ -13,8 +12,8 @@
 #include "elastimate/core/mechanics/stiffness_traces.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/loads.h"
-#include "elastimate/estimators/interface/statistics.h"
-#include "elastimate/estimators/statistics/bounded_parameter.h"
+#include "elastimate/estimators/interface/limits.h"
+#include "elastimate/estimators/statistics/errors_on_bound.h"
 
 namespace elastimate {
 namespace {
@@ -27,10 +26,6 @@ constexpr double kCollinear = 1e-11;
 // good to better than 1 %, and standard errors to half of that.
 constexpr Eigen::Index kMostElementsForExactTraces = 10000;
 constexpr Eigen::Index kNumTraceProbes = 2;
-
-// Factor between the force residual and what the given noise explains from
-// which on the model is in doubt.
-constexpr double kUnexplainedResidual = 1.5;
 
 // The triangle of a QR factorisation of the free rows of all columns of f, b
 // and a, side by side, in blocks of rows that stay in the cache.
@@ -90,8 +85,6 @@ void SetHeldRowsToZero(const ComponentMask& held,
     }
   }
 }
-
-std::string Percent(double ratio) { return TwoDigits(100 * ratio) + " %"; }
 
 }  // namespace
 
@@ -168,14 +161,15 @@ std::optional<double> ForceResidual::PoissonRatio() const {
   return -triangle_(1, 2) / triangle_(1, 1);
 }
 
-std::string ForceResidual::WhyNotIdentifiable() const {
+FreeDirection ForceResidual::CollinearDirection() const {
   // Along dt / dnu = b.f / f.f the residual does not change.
   constexpr double kAnyPoissonRatio = 0.25;
   const double nu = kAnyPoissonRatio;
   const double dt_dnu = triangle_(0, 1) / triangle_(0, 0);
-  return DescribeCollinear(At(nu), {LogYoungsModulusSlope(nu, section_model_) -
-                                        dt_dnu / ComplianceScale(nu),
-                                    1});
+  return {
+      At(nu),
+      {LogYoungsModulusSlope(nu, section_model_) - dt_dnu / ComplianceScale(nu),
+       1}};
 }
 
 double ForceResidual::ComplianceScale(double poisson_ratio) const {
@@ -326,6 +320,7 @@ Eigen::Matrix2d ForceResidual::Covariance(const IsotropicElasticity& elasticity,
 
 std::optional<double> ForceResidual::DescribeNoise(bool free_youngs_modulus,
                                                    bool free_poisson_ratio,
+                                                   Evidence& evidence,
                                                    Estimate& estimate) const {
   const std::optional<double> residual_variance =
       NoiseVariance(estimate, free_youngs_modulus, free_poisson_ratio);
@@ -340,13 +335,8 @@ std::optional<double> ForceResidual::DescribeNoise(bool free_youngs_modulus,
   estimate.noise_sd = known_noise_sd_.value_or(noise_sd_ratio);
   if (known_noise_sd_) {
     variance = 1;
-    if (noise_sd_ratio > kUnexplainedResidual) {
-      std::ostringstream text;
-      text << "the force residual is " << TwoDigits(noise_sd_ratio)
-           << " times what the given noise explains, and the standard errors "
-              "are widened to match; the mesh, the supports or the loads do "
-              "not describe the experiment";
-      estimate.warnings.push_back(text.str());
+    if (noise_sd_ratio > kLimits.excess_force_residual) {
+      evidence.above_noise = {ResidualKind::kForce, noise_sd_ratio};
       variance = *residual_variance;
     }
   }
@@ -359,21 +349,23 @@ std::optional<double> ForceResidual::DescribeNoise(bool free_youngs_modulus,
 }
 
 void ForceResidual::Describe(bool free_youngs_modulus, bool free_poisson_ratio,
-                             Estimate& estimate) const {
+                             Evidence& evidence, Estimate& estimate) const {
   estimate.force_residual = RelativeResidual(estimate.elasticity);
-  const std::optional<double> variance =
-      DescribeNoise(free_youngs_modulus, free_poisson_ratio, estimate);
+  const std::optional<double> variance = DescribeNoise(
+      free_youngs_modulus, free_poisson_ratio, evidence, estimate);
   if (!variance) {
     return;
   }
   if (free_youngs_modulus || free_poisson_ratio) {
     estimate.covariance = Covariance(estimate.elasticity, *variance,
                                      free_youngs_modulus, free_poisson_ratio);
+    estimate.error_budget.noise =
+        StandardErrors(estimate.covariance, estimate.elasticity);
   }
 }
 
-void ForceResidual::JudgeYoungsModulusOnBound(const EstimatorOptions& options,
-                                              Estimate& estimate) const {
+ErrorsOnBound ForceResidual::AllowForYoungsModulusOnBound(
+    const EstimatorOptions& options, Estimate& estimate) const {
   const bool free_poisson_ratio = !options.known_poisson_ratio;
   const IsotropicElasticity& elasticity = estimate.elasticity;
   // That of the bound may contradict it, which is not for noise to explain.
@@ -393,93 +385,49 @@ void ForceResidual::JudgeYoungsModulusOnBound(const EstimatorOptions& options,
   const Eigen::Matrix2d x = Jacobian(elasticity);
   const double slope = -elasticity.youngs_modulus * x.col(0).dot(x.col(1)) /
                        x.col(1).squaredNorm();
-  elastimate::JudgeYoungsModulusOnBound(options, slope, standard_error,
-                                        estimate);
+  return elastimate::AllowForYoungsModulusOnBound(options, slope,
+                                                  standard_error, estimate);
 }
 
-void JudgeKnownPoissonRatio(const ForceResidual& residual, Estimate& estimate) {
-  constexpr double kSignificant = 5;
-  constexpr double kUnusableChange = 0.1;
+std::optional<UnbiasedPoissonRatio> MeasureUnbiasedPoissonRatio(
+    const ForceResidual& residual, const Estimate& estimate) {
   const std::optional<double> nu = residual.UnbiasedPoissonRatio();
   const std::optional<double> error = residual.UnbiasedPoissonRatioError();
-  const double given = estimate.elasticity.poisson_ratio;
-  // Rounding has no standard error.
-  constexpr double kRounding = 1e-6;
-  if (!residual.PoissonRatio() || !nu || !error ||
-      !(std::abs(*nu - given) > kSignificant * *error + kRounding)) {
-    return;
+  if (!residual.PoissonRatio() || !nu || !error) {
+    return std::nullopt;
   }
-  const double ratio =
-      residual.At(*nu).youngs_modulus / estimate.elasticity.youngs_modulus;
-  const std::string what =
-      "the data contradict the given Poisson's ratio: they ask for " +
-      TwoDigits(*nu) + " +- " + TwoDigits(*error) +
-      ", unless the mesh, the supports or the loads do not describe the "
-      "experiment";
-  if (std::abs(ratio - 1) <= kUnusableChange) {
-    estimate.warnings.push_back(what);
-    return;
-  }
-  estimate.Fail(Status::kNotIdentifiable, what,
-                "the model contradicts the data");
+  return UnbiasedPoissonRatio{
+      *nu, *error,
+      residual.At(*nu).youngs_modulus / estimate.elasticity.youngs_modulus};
 }
 
-void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,
-                    Estimate& estimate) {
-  constexpr double kUnusableBias = 0.1;
-  constexpr double kUnusablePoissonRatioBias = 0.03;
-  constexpr double kNotableBias = 0.01;
-  const std::string cause =
-      "displacement noise (or a mesh, supports" +
-      std::string(estimate.active_bounds.empty() ? " or loads"
-                                                 : ", loads or bounds") +
-      " that do not describe the experiment) biases ";
-  const std::string advice =
-      "use reduced-fe, which noise does not bias, or give Poisson's ratio";
+NoiseBias MeasureNoiseBias(const ForceResidual& residual, const Bounds& bounds,
+                           Estimate& estimate) {
+  constexpr double kHidden = std::numeric_limits<double>::infinity();
   const IsotropicElasticity& elasticity = estimate.elasticity;
+  NoiseBias bias = {kHidden, kHidden,
+                    estimate.YoungsModulusStandardError().value_or(0) /
+                        elasticity.youngs_modulus,
+                    estimate.PoissonRatioStandardError().value_or(0)};
   const std::optional<double> unbiased_nu = residual.UnbiasedPoissonRatio();
-  double bias = std::numeric_limits<double>::infinity();
-  double nu_bias = bias;
-  if (unbiased_nu) {
-    const double nu = std::clamp(*unbiased_nu, bounds.lower.value_or(-1),
-                                 bounds.upper.value_or(0.5));
-    const double unbiased = residual.At(nu).youngs_modulus;
-    if (unbiased > 0) {
-      bias = elasticity.youngs_modulus / unbiased - 1;
-      nu_bias = elasticity.poisson_ratio - nu;
-    }
+  if (!unbiased_nu) {
+    return bias;
   }
-  std::string what;
-  if (!(std::abs(bias) <= kUnusableBias)) {
-    what = "Young's modulus by about " +
-           (std::isfinite(bias) ? Percent(bias) : "its whole size") +
-           ", more than the 10 % that are usable";
-  } else if (!(std::abs(nu_bias) <= kUnusablePoissonRatioBias)) {
-    what = "Poisson's ratio by about " + TwoDigits(nu_bias) +
-           ", more than the 0.03 that are usable";
+  const double nu = std::clamp(*unbiased_nu, bounds.lower.value_or(-1),
+                               bounds.upper.value_or(0.5));
+  const double unbiased = residual.At(nu).youngs_modulus;
+  if (!(unbiased > 0)) {
+    return bias;
   }
-  if (!what.empty()) {
-    estimate.Fail(Status::kNotIdentifiable, cause + what + "; " + advice,
-                  "the bias is larger than any standard error");
-    return;
-  }
-  const double standard_error =
-      estimate.YoungsModulusStandardError().value_or(0) /
-      elasticity.youngs_modulus;
-  if (std::abs(bias) > std::max(kNotableBias, standard_error)) {
-    what = "Young's modulus by about " + Percent(bias);
-  } else if (std::abs(nu_bias) >
-             std::max(kNotableBias,
-                      estimate.PoissonRatioStandardError().value_or(0))) {
-    what = "Poisson's ratio by about " + TwoDigits(nu_bias);
-  }
-  if (!what.empty()) {
-    estimate.warnings.push_back(
-        cause + what + ", which the standard errors allow for; " + advice);
-  }
-  const Eigen::Vector2d both(elasticity.youngs_modulus * bias / (1 + bias),
-                             nu_bias);
-  estimate.covariance += both * both.transpose();
+  bias.youngs_modulus = elasticity.youngs_modulus / unbiased - 1;
+  bias.poisson_ratio = elasticity.poisson_ratio - nu;
+  // Relative to the estimate.
+  const Eigen::Vector2d both(bias.youngs_modulus / (1 + bias.youngs_modulus),
+                             bias.poisson_ratio);
+  const Eigen::Vector2d scaled(elasticity.youngs_modulus * both(0), both(1));
+  estimate.covariance += scaled * scaled.transpose();
+  estimate.error_budget.bias = {std::abs(both(0)), std::abs(both(1))};
+  return bias;
 }
 
 }  // namespace elastimate

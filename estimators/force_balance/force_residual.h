@@ -10,6 +10,7 @@
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/interface/evidence.h"
 
 namespace elastimate {
 
@@ -45,8 +46,8 @@ class ForceResidual {
   /// collinear, so that the data determine one combination of nu and t only.
   std::optional<double> PoissonRatio() const;
 
-  /// A sentence about what is determined when PoissonRatio is empty.
-  std::string WhyNotIdentifiable() const;
+  /// What is not determined when PoissonRatio is empty.
+  FreeDirection CollinearDirection() const;
 
   /// t that minimises ||r|| at this nu, t = f.(a + nu b) / f.f [eq. 20].
   double ComplianceScale(double poisson_ratio) const;
@@ -69,13 +70,13 @@ class ForceResidual {
   /// Noise level, noise bias and covariance of an estimate of this residual.
   /// `free_youngs_modulus` and `free_poisson_ratio` say which parameters were
   /// estimated (not given, not held by a bound).  Fills in the noise, residual
-  /// and covariance entries of `estimate`, and its warnings.
+  /// and covariance entries of `estimate`, and what there is to judge of them.
   void Describe(bool free_youngs_modulus, bool free_poisson_ratio,
-                Estimate& estimate) const;
+                Evidence& evidence, Estimate& estimate) const;
 
-  /// JudgeYoungsModulusOnBound with what the residual says about a free E.
-  void JudgeYoungsModulusOnBound(const EstimatorOptions& options,
-                                 Estimate& estimate) const;
+  /// AllowForYoungsModulusOnBound with what the residual says about a free E.
+  ErrorsOnBound AllowForYoungsModulusOnBound(const EstimatorOptions& options,
+                                             Estimate& estimate) const;
 
   /// The minimiser without the bias of displacement noise (errors in
   /// variables): its nu, or empty when the noise hides it.
@@ -110,10 +111,11 @@ class ForceResidual {
  private:
   /// The variance of the weighted noise for the standard errors: as given, or
   /// from the residual where nothing is given or the residual contradicts it,
-  /// of which it warns.  Fills in the noise of `estimate`, or the reason why
+  /// which is evidence.  Fills in the noise of `estimate`, or the reason why
   /// there are no standard errors when it is empty.
   std::optional<double> DescribeNoise(bool free_youngs_modulus,
                                       bool free_poisson_ratio,
+                                      Evidence& evidence,
                                       Estimate& estimate) const;
   /// Variance of the weighted noise from the residual: at the estimate with E
   /// on a bound, else from the smallest singular value of the noise-normalised
@@ -141,18 +143,15 @@ class ForceResidual {
   Work work_;
 };
 
-/// For a given nu: sets `estimate` to not usable when the errors-in-variables
-/// nu of the data lies further from it than noise explains (5 standard errors),
-/// and E would be another by more than 10 %; warns when by less.
-void JudgeKnownPoissonRatio(const ForceResidual& residual, Estimate& estimate);
+/// For a given nu: what the data ask for instead; empty when they do not say.
+std::optional<UnbiasedPoissonRatio> MeasureUnbiasedPoissonRatio(
+    const ForceResidual& residual, const Estimate& estimate);
 
-/// Sets `estimate` to not usable when the bias that displacement noise puts on
-/// it is above 10 % of E or 0.03 in nu, and warns when it is above 1 % or 0.01
-/// and one standard error.  The square of the bias is added to the covariance.
-/// The bias is the distance to UnbiasedPoissonRatio.
+/// The bias that displacement noise puts on `estimate`: its distance to
+/// UnbiasedPoissonRatio.  The square of the bias is added to the covariance.
 /// `bounds` are those that the estimate of nu had to keep.
-void JudgeNoiseBias(const ForceResidual& residual, const Bounds& bounds,
-                    Estimate& estimate);
+NoiseBias MeasureNoiseBias(const ForceResidual& residual, const Bounds& bounds,
+                           Estimate& estimate);
 
 }  // namespace elastimate
 

@@ -10,25 +10,14 @@
 #include "elastimate/estimators/force_balance/force_residual.h"
 #include "elastimate/estimators/force_balance/monomials.h"
 #include "elastimate/estimators/force_balance/virtual_work.h"
-#include "elastimate/estimators/interface/statistics.h"
+#include "elastimate/estimators/interface/judge.h"
+#include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/stopwatch.h"
+#include "elastimate/estimators/statistics/errors_on_bound.h"
 #include "elastimate/estimators/statistics/profile_likelihood.h"
 
 namespace elastimate {
 namespace {
-
-using Side = BoundedParameter::Side;
-
-// Standard scores beyond this do not come from independent noise.
-constexpr double kSignificantScore = 5;
-
-// A relative standard error of E that a user wants to be told of.
-constexpr double kNotableError = 0.01;
-
-// The share of the loads out of balance that is notable, and that which may
-// put E off by more than is usable.
-constexpr double kNotableImbalance = 0.01;
-constexpr double kUnusableImbalance = 0.1;
 
 // What the residual says about its causes.
 struct ResidualJudgement {
@@ -44,7 +33,8 @@ struct ResidualJudgement {
 std::optional<ResidualJudgement> JudgeResidual(
     const VirtualWorkFit& fit, Eigen::Index redundancy,
     const ForceResidual& force_residual,
-    const std::optional<double>& given_noise_sd, Estimate& estimate) {
+    const std::optional<double>& given_noise_sd, Evidence& evidence,
+    Estimate& estimate) {
   if (redundancy <= 0 && !given_noise_sd) {
     estimate.why_no_standard_error =
         "there are no more virtual fields than unknowns, so that the noise "
@@ -57,15 +47,10 @@ std::optional<ResidualJudgement> JudgeResidual(
   if (given_noise_sd) {
     // chi^2 has mean m and variance 2 m.
     if (redundancy <= 0 ||
-        variance <= 1 + kSignificantScore * std::sqrt(2 / m)) {
+        variance <= 1 + kLimits.significant_score * std::sqrt(2 / m)) {
       return ResidualJudgement{1, 0};
     }
-    estimate.warnings.push_back(
-        "the balance of virtual work is off by " +
-        TwoDigits(std::sqrt(variance)) +
-        " times what the given noise explains, and the standard errors are "
-        "widened to match; the mesh, the supports or the loads do not describe "
-        "the experiment");
+    evidence.above_noise = {ResidualKind::kVirtualWork, std::sqrt(variance)};
   }
   // On a bound the force residual is that of the bound, too.
   const std::optional<double> rough_variance =
@@ -78,8 +63,8 @@ std::optional<ResidualJudgement> JudgeResidual(
   const double rough_m = static_cast<double>(force_residual.NumEquations()) / 4;
   const bool is_noise =
       !rough_variance ||
-      variance <= *rough_variance *
-                      (1 + kSignificantScore * std::sqrt(2 / m + 2 / rough_m));
+      variance <= *rough_variance * (1 + kLimits.significant_score *
+                                             std::sqrt(2 / m + 2 / rough_m));
   return ResidualJudgement{variance, is_noise ? 0 : fit.square_sum};
 }
 
@@ -116,10 +101,19 @@ class Information {
           1 - correlation * correlation > kSingular)) {
       return std::nullopt;
     }
-    const Eigen::MatrixXd inverse = Inverse(bread);
+    return NoiseCovariance(parameters) + ModelCovariance(parameters);
+  }
+
+  // Its parts.  Precondition: it is not empty.
+  Eigen::MatrixXd NoiseCovariance(
+      const std::vector<Eigen::Index>& parameters) const {
+    const Eigen::MatrixXd inverse = Inverse(bread_(parameters, parameters));
     return residual_.noise_variance * inverse * score_(parameters, parameters) *
-               inverse +
-           residual_.model_square_sum * inverse;
+           inverse;
+  }
+  Eigen::MatrixXd ModelCovariance(
+      const std::vector<Eigen::Index>& parameters) const {
+    return residual_.model_square_sum * Inverse(bread_(parameters, parameters));
   }
 
  private:
@@ -128,59 +122,30 @@ class Information {
   Eigen::Matrix2d bread_;
 };
 
-void WarnOfModelError(double relative_error, Estimate& estimate) {
-  if (relative_error > kNotableError) {
-    estimate.warnings.emplace_back(
-        "the balance of virtual work is off by more than the noise in the "
-        "force residual explains: the mesh, the supports or the loads do not "
-        "describe the experiment, or the measurement was smoothed; the "
-        "standard errors are widened to allow for it");
-  }
-}
-
-// Fills in the covariance of a fit of which one parameter at least is free.
-void Describe(const std::vector<Eigen::Index>& free,
-              const Information& information, Estimate& estimate) {
+// Fills in the covariance of a fit of which one parameter at least is free;
+// false where the noise hides nu.
+bool FillCovariance(const std::vector<Eigen::Index>& free,
+                    const Information& information, Estimate& estimate) {
   const std::optional<Eigen::MatrixXd> covariance =
       information.Covariance(free);
   if (!covariance) {
-    estimate.Fail(
-        Status::kNotIdentifiable,
-        "displacement noise hides Poisson's ratio from these virtual fields; "
-        "give Poisson's ratio, raise the degree of the fields, or use "
-        "reduced-fe");
-    return;
+    return false;
   }
   const Eigen::Vector2d scale(estimate.elasticity.youngs_modulus, 1);
   Eigen::Matrix2d both = Eigen::Matrix2d::Constant(Estimate::kUnknown);
+  both(free, free) = information.NoiseCovariance(free);
+  estimate.error_budget.noise = StandardErrors(both, {1, 0});
+  both(free, free) = information.ModelCovariance(free);
+  estimate.error_budget.model = StandardErrors(both, {1, 0});
   both(free, free) = *covariance;
   estimate.covariance = scale.asDiagonal() * both * scale.asDiagonal();
-  if (!estimate.active_bounds.empty()) {
-    estimate.why_no_standard_error = "a parameter on a bound has none";
-  }
+  return true;
 }
 
 double StandardErrorOrInfinity(const std::optional<Eigen::MatrixXd>& covariance,
                                Eigen::Index parameter) {
   return covariance ? std::sqrt((*covariance)(parameter, parameter))
                     : std::numeric_limits<double>::infinity();
-}
-
-// `correction` is the smallest change of the displacements that brings the
-// virtual work of all fields into balance, relative to them.
-void JudgeCorrection(double correction, Estimate& estimate) {
-  constexpr double kUnusableCorrection = 0.2;
-  if (!estimate.IsUsable() || !(correction > kUnusableCorrection)) {
-    return;
-  }
-  estimate.Fail(Status::kNotIdentifiable,
-                "the loads are in balance only with displacements that differ "
-                "from the measured ones by " +
-                    TwoDigits(100 * correction) +
-                    " % of them: the mesh, the supports, the loads, a bound or "
-                    "a given Poisson's ratio do not describe the experiment, "
-                    "or the measurement is mostly noise",
-                "the model contradicts the data");
 }
 
 // The nu around a fit whose S exceeds that of the fit by no more than chance:
@@ -199,7 +164,8 @@ Interval IntervalByChance(const VirtualWorkBalance& balance,
 // The standard errors of the sandwich, carried over to the profile of S.
 void DescribeProfileOf(const VirtualWorkBalance& balance,
                        const VirtualWorkFit& fit,
-                       const ResidualJudgement& residual, Estimate& estimate) {
+                       const ResidualJudgement& residual, Evidence& evidence,
+                       Estimate& estimate) {
   const VirtualWorkInformation raw = balance.InformationAt(fit);
   const std::optional<Eigen::MatrixXd> covariance =
       Information(raw, estimate.elasticity, balance.Model(), residual)
@@ -214,49 +180,39 @@ void DescribeProfileOf(const VirtualWorkBalance& balance,
     return IsotropicElasticity::FromComplianceScale(
         at.compliance_scale, at.poisson_ratio, balance.Model());
   };
-  DescribeProfile(
+  evidence.profile_interval = DescribeProfile(
       [&](double quantile) {
         const auto [lower, upper] =
             balance.ProfileEnds(fit, quantile * variance);
         return Profile{elasticity_of(lower), elasticity_of(upper)};
       },
       estimate);
-  Interval interval = *estimate.poisson_ratio_interval;
+  Interval interval = *evidence.profile_interval;
   if (interval.lower == -1 || interval.upper == 0.5) {
     const Interval by_chance = IntervalByChance(balance, fit, residual);
     interval = {std::min(interval.lower, by_chance.lower),
                 std::max(interval.upper, by_chance.upper)};
   }
-  if (std::max(interval.upper - estimate.elasticity.poisson_ratio,
-               estimate.elasticity.poisson_ratio - interval.lower) >
-      kLargestPoissonRatioDistance) {
-    estimate.Fail(Status::kNotIdentifiable,
-                  "virtual work leaves Poisson's ratio between " +
-                      TwoDigits(interval.lower) + " and " +
-                      TwoDigits(interval.upper) +
-                      "; give Poisson's ratio, or use reduced-fe");
-  }
+  evidence.chance_interval = interval;
 }
 
 // What the data say of E and nu where E lies on a bound.
-void JudgeYoungsModulus(const EstimatorOptions& options,
-                        const VirtualWorkBalance& balance,
-                        const VirtualWorkFit& fit,
-                        const std::optional<ResidualJudgement>& residual,
-                        Estimate& estimate) {
+void MeasureYoungsModulusOnBound(
+    const EstimatorOptions& options, const VirtualWorkBalance& balance,
+    const VirtualWorkFit& fit, const std::optional<ResidualJudgement>& residual,
+    Evidence& evidence, Estimate& estimate) {
   const bool is_known = options.known_poisson_ratio.has_value();
   const VirtualWorkFit unbounded =
       is_known
           ? balance.FitAt(fit.poisson_ratio, Bounds{})
           : balance.Minimize(EffectivePoissonRatioBounds(options), Bounds{});
-  JudgeContradictedBound(
+  evidence.bound_excess = {
       fit.square_sum - unbounded.square_sum,
       unbounded.square_sum / static_cast<double>(balance.NumEquations()),
       IsotropicElasticity::FromComplianceScale(
           unbounded.compliance_scale, unbounded.poisson_ratio, balance.Model())
-          .youngs_modulus,
-      estimate);
-  if (!residual || !estimate.IsUsable()) {
+          .youngs_modulus};
+  if (!residual) {
     return;
   }
   const Information information(balance.InformationAt(fit), estimate.elasticity,
@@ -266,12 +222,14 @@ void JudgeYoungsModulus(const EstimatorOptions& options,
     covariance = information.Covariance({0});
   } else {
     const Interval by_chance = IntervalByChance(balance, unbounded, *residual);
-    if (by_chance.upper - by_chance.lower <= 2 * kLargestPoissonRatioDistance) {
+    if (by_chance.upper - by_chance.lower <=
+        2 * kLimits.LargestPoissonRatioDistance()) {
       covariance = information.Covariance({0, 1});
     }
   }
-  JudgeYoungsModulusOnBound(options, information.PoissonRatioSlope(),
-                            StandardErrorOrInfinity(covariance, 0), estimate);
+  evidence.youngs_modulus_on_bound = AllowForYoungsModulusOnBound(
+      options, information.PoissonRatioSlope(),
+      StandardErrorOrInfinity(covariance, 0), estimate);
 }
 
 // The displacements of all load cases without most of their noise, and without
@@ -299,22 +257,105 @@ Eigen::MatrixXd SmoothDisplacements(const Scene& scene) {
   return displacements;
 }
 
-// Warns of loads that the motions left free are not in balance with; whether
-// they can be used.
-bool JudgeImbalance(double imbalance, Estimate& estimate) {
-  if (imbalance <= kNotableImbalance) {
-    return true;
+// The fit, and what it alone says.
+VirtualWorkFit Fit(const EstimatorOptions& options,
+                   const VirtualWorkBalance& balance, Evidence& evidence,
+                   Estimate& estimate) {
+  const std::optional<double> collinear_slope =
+      options.known_poisson_ratio ? std::nullopt : balance.CollinearSlope();
+  VirtualWorkFit fit =
+      options.known_poisson_ratio
+          ? balance.FitAt(*options.known_poisson_ratio, options.youngs_modulus)
+          : balance.Minimize(EffectivePoissonRatioBounds(options),
+                             options.youngs_modulus);
+  evidence.do_displacements_oppose_loads = !(fit.free_compliance_scale > 0);
+  estimate.elasticity = IsotropicElasticity::FromComplianceScale(
+      evidence.do_displacements_oppose_loads ? fit.free_compliance_scale
+                                             : fit.compliance_scale,
+      fit.poisson_ratio, balance.Model());
+  if (collinear_slope && !evidence.do_displacements_oppose_loads) {
+    const double nu = fit.poisson_ratio;
+    evidence.free_direction = {estimate.elasticity,
+                               {LogYoungsModulusSlope(nu, balance.Model()) -
+                                    *collinear_slope / fit.compliance_scale,
+                                1}};
+    estimate.elasticity = {Estimate::kUnknown, Estimate::kUnknown};
   }
-  const std::string text =
-      "the supports leave the specimen free to move, and " +
-      TwoDigits(100 * imbalance) +
-      " % of the loads push it that way; complete the supports or the loads";
-  if (imbalance <= kUnusableImbalance) {
-    estimate.warnings.push_back(text);
-    return true;
+  return fit;
+}
+
+// Fills in what the residual says of the covariance of the free parameters.
+void DescribeCovariance(const EstimatorOptions& options,
+                        const std::vector<Eigen::Index>& free,
+                        const VirtualWorkBalance& balance,
+                        const VirtualWorkFit& fit,
+                        const ResidualJudgement& residual, Evidence& evidence,
+                        Estimate& estimate) {
+  estimate.is_model_in_doubt = residual.model_square_sum > 0;
+  const Information information(balance.InformationAt(fit), estimate.elasticity,
+                                balance.Model(), residual);
+  evidence.is_poisson_ratio_hidden =
+      !free.empty() && !FillCovariance(free, information, estimate);
+  if (evidence.active.poisson_ratio != Side::kNone) {
+    evidence.poisson_ratio_on_bound = AllowForPoissonRatioOnBound(
+        options, evidence.active, information.YoungsModulusSlope(),
+        StandardErrorOrInfinity(information.Covariance({0, 1}), 1), estimate);
   }
-  estimate.Fail(Status::kNotIdentifiable, text);
-  return false;
+  if (estimate.is_model_in_doubt) {
+    evidence.virtual_work_error =
+        estimate.YoungsModulusStandardError().value_or(0) /
+        estimate.elasticity.youngs_modulus;
+  }
+}
+
+// Whether the curvature at the fit says too little of nu.
+bool NeedsProfile(const EstimatorOptions& options, const ActiveBounds& active,
+                  const Estimate& estimate) {
+  return estimate.IsUsable() && !options.known_poisson_ratio &&
+         active.youngs_modulus == Side::kNone &&
+         (active.is_physical_limit ||
+          (active.poisson_ratio == Side::kNone &&
+           ShareOfDistanceToPole(estimate) > kLargestLinearShare));
+}
+
+// Fills in what follows from a fit of physical parameters.
+void DescribeFit(const Scene& scene, const EstimatorOptions& options,
+                 const VirtualWorkBalance& balance,
+                 const ForceResidual& force_residual, const VirtualWorkFit& fit,
+                 Evidence& evidence, Estimate& estimate) {
+  const BoundedParameter poisson_ratio =
+      options.known_poisson_ratio
+          ? BoundedParameter::Constant(fit.poisson_ratio)
+          : BoundedParameter(fit.poisson_ratio,
+                             EffectivePoissonRatioBounds(options));
+  evidence.active = NoteActiveBounds(options, fit.youngs_modulus_bound,
+                                     poisson_ratio, estimate);
+  const ActiveBounds& active = evidence.active;
+  std::vector<Eigen::Index> free;
+  if (active.youngs_modulus == Side::kNone) {
+    free.push_back(0);
+  }
+  if (!options.known_poisson_ratio && active.poisson_ratio == Side::kNone) {
+    free.push_back(1);
+  }
+  estimate.force_residual =
+      force_residual.RelativeResidual(estimate.elasticity);
+  const std::optional<ResidualJudgement> residual = JudgeResidual(
+      fit, balance.NumEquations() - Eigen::Index(free.size()), force_residual,
+      scene.load_cases.front().noise_sd, evidence, estimate);
+  if (residual) {
+    DescribeCovariance(options, free, balance, fit, *residual, evidence,
+                       estimate);
+  }
+  if (active.youngs_modulus != Side::kNone) {
+    MeasureYoungsModulusOnBound(options, balance, fit, residual, evidence,
+                                estimate);
+  }
+  Judge(evidence, options, estimate);
+  if (residual && NeedsProfile(options, active, estimate)) {
+    DescribeProfileOf(balance, fit, *residual, evidence, estimate);
+  }
+  evidence.correction = std::sqrt(fit.square_sum) / balance.DisplacementNorm();
 }
 
 }  // namespace
@@ -337,6 +378,7 @@ Capabilities VirtualFields::WhatItTakes() const {
 Estimate VirtualFields::DoRun(const Scene& scene,
                               const EstimatorOptions& options) const {
   Estimate estimate;
+  Evidence evidence;
   Stopwatch stopwatch;
   const VirtualWork work(scene.mesh, scene.supports,
                          options.virtual_field_degree.value_or(kDefaultDegree));
@@ -346,95 +388,19 @@ Estimate VirtualFields::DoRun(const Scene& scene,
   estimate.work = force_residual.WorkDone();
   // The fields, and the measurement.
   estimate.work.element_passes += 2;
-  estimate.status = Status::kOk;
-  estimate.message = "";
-  if (!JudgeImbalance(work.Imbalance(AssembleLoadCases(scene)), estimate)) {
+  evidence.load_imbalance = work.Imbalance(AssembleLoadCases(scene));
+  evidence.do_loads_work = balance.LoadsDoWork();
+  Judge(evidence, options, estimate);
+  if (!estimate.IsUsable()) {
     return estimate;
   }
-  if (!balance.LoadsDoWork()) {
-    estimate.Fail(
-        Status::kNotIdentifiable,
-        "the loads do no work on the virtual fields; raise their degree, or "
-        "use reduced-fe");
+  const VirtualWorkFit fit = Fit(options, balance, evidence, estimate);
+  Judge(evidence, options, estimate);
+  if (!estimate.IsUsable()) {
     return estimate;
   }
-  const std::optional<double> collinear_slope =
-      options.known_poisson_ratio ? std::nullopt : balance.CollinearSlope();
-  const VirtualWorkFit fit =
-      options.known_poisson_ratio
-          ? balance.FitAt(*options.known_poisson_ratio, options.youngs_modulus)
-          : balance.Minimize(EffectivePoissonRatioBounds(options),
-                             options.youngs_modulus);
-  estimate.elasticity = IsotropicElasticity::FromComplianceScale(
-      fit.compliance_scale, fit.poisson_ratio, work.Model());
-  if (!(fit.free_compliance_scale > 0)) {
-    estimate.elasticity = IsotropicElasticity::FromComplianceScale(
-        fit.free_compliance_scale, fit.poisson_ratio, work.Model());
-    estimate.Fail(Status::kUnphysical, kDisplacementsOpposeLoads);
-    return estimate;
-  }
-  if (collinear_slope) {
-    const double nu = fit.poisson_ratio;
-    estimate.Fail(
-        Status::kNotIdentifiable,
-        DescribeCollinear(estimate.elasticity,
-                          {LogYoungsModulusSlope(nu, work.Model()) -
-                               *collinear_slope / fit.compliance_scale,
-                           1}));
-    estimate.elasticity = {Estimate::kUnknown, Estimate::kUnknown};
-    return estimate;
-  }
-
-  const BoundedParameter poisson_ratio =
-      options.known_poisson_ratio
-          ? BoundedParameter::Constant(fit.poisson_ratio)
-          : BoundedParameter(fit.poisson_ratio,
-                             EffectivePoissonRatioBounds(options));
-  const ActiveBounds active = NoteActiveBounds(
-      options, fit.youngs_modulus_bound, poisson_ratio, estimate);
-  std::vector<Eigen::Index> free;
-  if (active.youngs_modulus == Side::kNone) {
-    free.push_back(0);
-  }
-  if (!options.known_poisson_ratio && active.poisson_ratio == Side::kNone) {
-    free.push_back(1);
-  }
-  estimate.force_residual =
-      force_residual.RelativeResidual(estimate.elasticity);
-  const std::optional<ResidualJudgement> residual = JudgeResidual(
-      fit, balance.NumEquations() - Eigen::Index(free.size()), force_residual,
-      scene.load_cases.front().noise_sd, estimate);
-  if (residual) {
-    estimate.is_model_in_doubt = residual->model_square_sum > 0;
-    const Information information(balance.InformationAt(fit),
-                                  estimate.elasticity, balance.Model(),
-                                  *residual);
-    if (!free.empty()) {
-      Describe(free, information, estimate);
-    }
-    if (estimate.IsUsable() && active.poisson_ratio != Side::kNone) {
-      JudgePoissonRatioOnBound(
-          options, active, information.YoungsModulusSlope(),
-          StandardErrorOrInfinity(information.Covariance({0, 1}), 1), estimate);
-    }
-    if (estimate.is_model_in_doubt) {
-      WarnOfModelError(estimate.YoungsModulusStandardError().value_or(0) /
-                           estimate.elasticity.youngs_modulus,
-                       estimate);
-    }
-  }
-  if (active.youngs_modulus != Side::kNone) {
-    JudgeYoungsModulus(options, balance, fit, residual, estimate);
-  }
-  if (residual && estimate.IsUsable() && !options.known_poisson_ratio &&
-      active.youngs_modulus == Side::kNone &&
-      (active.is_physical_limit ||
-       (active.poisson_ratio == Side::kNone &&
-        ShareOfDistanceToPole(estimate) > kLargestLinearShare))) {
-    DescribeProfileOf(balance, fit, *residual, estimate);
-  }
-  JudgeCorrection(std::sqrt(fit.square_sum) / balance.DisplacementNorm(),
-                  estimate);
+  DescribeFit(scene, options, balance, force_residual, fit, evidence, estimate);
+  Judge(evidence, options, estimate);
   if (estimate.IsUsable() && scene.mesh.NumElements() > 1) {
     estimate.discretization_error = DiscretizationError(
         scene.mesh, estimate.elasticity, SmoothDisplacements(scene));

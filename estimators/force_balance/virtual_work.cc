@@ -13,8 +13,6 @@
 namespace elastimate {
 namespace {
 
-using Side = BoundedParameter::Side;
-
 // Relative to the largest, what is smaller is rounding: a motion without
 // strain, the work of loads that do none.  What is not rounding is far larger.
 constexpr double kRounding = 1e-10;

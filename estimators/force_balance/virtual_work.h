@@ -101,7 +101,7 @@ struct VirtualWorkFit {
   /// t without any bounds.
   double free_compliance_scale;
   /// The bound that E lies on.
-  BoundedParameter::Side youngs_modulus_bound;
+  Side youngs_modulus_bound;
   /// ||e||^2 of the smallest correction e of the displacements that brings the
   /// virtual work of all fields into balance.
   double square_sum;

@@ -1,40 +1,37 @@
 #include "elastimate/estimators/force_balance/virtual_work_check.h"
 
-#include <sstream>
-
 #include "elastimate/estimators/force_balance/virtual_fields.h"
-#include "elastimate/estimators/interface/statistics.h"
+#include "elastimate/estimators/interface/limits.h"
 
 namespace elastimate {
 
-void CheckByVirtualWork(const Scene& scene, const EstimatorOptions& options,
-                        Estimate& estimate) {
-  constexpr double kSmallResidual = 0.1;
-  if (!estimate.IsUsable() || !(*estimate.force_residual > kSmallResidual)) {
-    return;
+WorkCheck CheckByVirtualWork(const Scene& scene,
+                             const EstimatorOptions& options,
+                             Estimate& estimate) {
+  if (!estimate.IsUsable() ||
+      !(*estimate.force_residual > kLimits.small_force_residual)) {
+    return WorkCheck::kNotMade;
   }
   EstimatorOptions of_degree_one = options;
   of_degree_one.virtual_field_degree = 1;
   const Estimate check = VirtualFields().Run(scene, of_degree_one);
   estimate.work = estimate.work + check.work;
-  if (check.IsUsable() && !check.is_model_in_doubt) {
-    return;
+  if (!check.IsUsable()) {
+    estimate.is_model_in_doubt = true;
+    return WorkCheck::kContradicts;
+  }
+  ParameterErrors& model = estimate.error_budget.model;
+  if (!check.is_model_in_doubt) {
+    model.youngs_modulus = 0;
+    if (!options.known_poisson_ratio) {
+      model.poisson_ratio = 0;
+    }
+    return WorkCheck::kIsNoise;
   }
   estimate.is_model_in_doubt = true;
-  std::ostringstream text;
-  text << "the force residual is " << TwoDigits(*estimate.force_residual)
-       << " of the load, and virtual work (virtual-fields) shows more than "
-          "noise in it: the mesh, the supports, the loads, a bound or a given "
-          "Poisson's ratio do not describe the experiment";
-  if (check.IsUsable()) {
-    estimate.covariance += check.covariance;
-    estimate.warnings.push_back(text.str() +
-                                "; the standard errors are widened by those of "
-                                "virtual-fields");
-    return;
-  }
-  estimate.Fail(Status::kNotIdentifiable, text.str(),
-                "the model contradicts the data");
+  estimate.covariance += check.covariance;
+  model = StandardErrors(check.covariance, estimate.elasticity);
+  return WorkCheck::kIsMore;
 }
 
 }  // namespace elastimate

@@ -4,6 +4,7 @@
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/interface/evidence.h"
 
 namespace elastimate {
 
@@ -11,13 +12,14 @@ namespace elastimate {
 /// size does not tell: the stiffness matrix makes much of little noise.  The
 /// virtual work of fields of degree 1 (VirtualFields), which sums the noise up,
 /// tells.  Where it finds more than noise, its covariance is added to that of
-/// the estimate, or the estimate is set to not usable when virtual-fields is.
+/// the estimate; WorkCheck::kContradicts when virtual-fields is not usable.
 ///
 /// Does nothing for a residual below a tenth of the load.  Cost: that of
 /// virtual-fields of degree 1, which is added to the work of the estimate.
 /// Preconditions: those of VirtualFields::Run.
-void CheckByVirtualWork(const Scene& scene, const EstimatorOptions& options,
-                        Estimate& estimate);
+WorkCheck CheckByVirtualWork(const Scene& scene,
+                             const EstimatorOptions& options,
+                             Estimate& estimate);
 
 }  // namespace elastimate
 

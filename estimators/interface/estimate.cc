@@ -1,7 +1,8 @@
 #include "elastimate/estimators/interface/estimate.h"
 
+#include <algorithm>
+#include <cassert>
 #include <cmath>
-#include <utility>
 
 namespace elastimate {
 namespace {
@@ -10,30 +11,60 @@ std::optional<double> FiniteOrNothing(double value) {
   return std::isfinite(value) ? std::optional<double>(value) : std::nullopt;
 }
 
-}  // namespace
-
-std::string_view StatusName(Status status) {
-  switch (status) {
-    case Status::kOk:
-      return "ok";
-    case Status::kNotIdentifiable:
-      return "not_identifiable";
-    case Status::kUnphysical:
-      return "unphysical";
-    case Status::kIterationLimit:
-      return "iteration_limit";
-    case Status::kNumericalFailure:
-      break;
-  }
-  return "numerical_failure";
+template <typename Predicate>
+void RemoveFindings(const Predicate& predicate,
+                    std::vector<Finding>& findings) {
+  findings.erase(std::remove_if(findings.begin(), findings.end(), predicate),
+                 findings.end());
 }
 
-void Estimate::Fail(Status why_not_ok, std::string what,
-                    std::string why_no_error) {
-  status = why_not_ok;
-  message = std::move(what);
+}  // namespace
+
+bool Estimate::Has(FindingCode code) const {
+  return std::any_of(
+      findings.begin(), findings.end(),
+      [code](const Finding& finding) { return finding.code == code; });
+}
+
+std::vector<std::string> Estimate::Sentences(Severity severity) const {
+  std::vector<std::string> sentences;
+  for (const Finding& finding : findings) {
+    if (finding.severity == severity) {
+      sentences.push_back(Sentence(finding));
+    }
+  }
+  return sentences;
+}
+
+void Estimate::Add(const Finding& finding) {
+  assert(finding.severity != Severity::kError);
+  if (!Has(finding.code)) {
+    findings.push_back(finding);
+  }
+}
+
+void Estimate::Accept() {
+  status = Status::kOk;
+  message = "";
+  RemoveFindings(
+      [](const Finding& finding) {
+        return finding.severity == Severity::kError;
+      },
+      findings);
+}
+
+void Estimate::Fail(const Finding& finding) {
+  assert(finding.severity == Severity::kError);
+  Accept();
+  RemoveFindings(
+      [&finding](const Finding& other) { return other.code == finding.code; },
+      findings);
+  findings.insert(findings.begin(), finding);
+  status = StatusOf(finding.code);
+  message = Sentence(finding);
   covariance.setConstant(kUnknown);
-  why_no_standard_error = std::move(why_no_error);
+  error_budget.noise = {};
+  why_no_standard_error = "the estimate is not usable";
 }
 
 std::optional<double> Estimate::YoungsModulusStandardError() const {

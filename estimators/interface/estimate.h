@@ -5,26 +5,14 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "elastimate/core/materials/elasticity.h"
 #include "elastimate/core/solvers/stiffness_solver.h"
+#include "elastimate/estimators/interface/error_budget.h"
+#include "elastimate/estimators/interface/finding.h"
 
 namespace elastimate {
-
-/// How an estimator came out.
-enum class Status {
-  kOk,                ///< The estimate is usable.
-  kNotIdentifiable,   ///< The data, or this method, leave E or nu undetermined.
-  kUnphysical,        ///< E <= 0 or nu outside (-1, 1/2).
-  kIterationLimit,    ///< The iteration did not converge.
-  kNumericalFailure,  ///< A factorisation or an evaluation failed.
-};
-
-/// "ok", "not_identifiable", "unphysical", "iteration_limit" or
-/// "numerical_failure".
-std::string_view StatusName(Status status);
 
 /// Seconds that a stage of an estimator took.
 struct StageTime {
@@ -42,7 +30,7 @@ struct Interval {
 struct ModelMismatch {
   double statistic;  ///< chi^2 with 2 degrees of freedom when the model holds.
   double p_value;    ///< Probability of a larger one when the model holds.
-  bool matters;      ///< Whether they differ by 1 % of E or 0.01 in nu.
+  bool matters;      ///< Whether they differ notably in E or nu (Limits).
 };
 
 /// An estimator that `auto` ran, or passed over.
@@ -59,24 +47,27 @@ struct Rung {
   std::string decision;
 };
 
-/// The message of an estimate whose E is negative.
-inline constexpr char kDisplacementsOpposeLoads[] =
-    "the measured displacements oppose the loads; check their signs, order and "
-    "units, and whether noise outweighs them";
-
 /// What an estimator says about a scene.  Starts out as a failure, so that it
 /// cannot be mistaken for a result before an estimator has filled it in.
 struct Estimate {
   std::string estimator;
   Status status = Status::kNumericalFailure;
-  /// Why the status is not ok, and what to do; empty when it is.
-  std::string message = "the estimator was not run";
+  /// Why the status is not ok, and what to do: the sentence of the finding that
+  /// is an error; empty when there is none.
+  std::string message = "the estimator was not run; run it on a scene";
+  /// What there is to say, each code once; one error at most, which is the
+  /// reason of the status.
+  std::vector<Finding> findings = {{FindingCode::kNotRun, Severity::kError,
+                                    "the estimator was not run",
+                                    "run it on a scene"}};
 
   /// E [pressure] and nu [-]; NaN where there is no number at all.
   IsotropicElasticity elasticity = {kUnknown, kUnknown};
   /// Covariance of (E, nu).  NaN in the row and column of a parameter that was
   /// given, or that is held by a bound, or of both when unknown.
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kUnknown);
+  /// What the errors come from.
+  ErrorBudget error_budget;
   /// Where nu lies with a probability of 95 %: one-sided when it reaches -1 or
   /// 1/2, where a standard error says little.  Empty when unknown.
   std::optional<Interval> poisson_ratio_interval;
@@ -116,8 +107,6 @@ struct Estimate {
   std::optional<ModelMismatch> model_mismatch;
   /// Bounds that the estimate lies on, such as "nu_max".
   std::vector<std::string> active_bounds;
-  /// Sentences for the user, about a result that is usable all the same.
-  std::vector<std::string> warnings;
 
   /// The order of the elements: 1 for linear ones, 2 for quadratic ones; 0 as
   /// long as no estimator was run.
@@ -129,9 +118,18 @@ struct Estimate {
   double seconds = 0;  ///< Time of the whole estimator.
 
   bool IsUsable() const { return status == Status::kOk; }
-  /// Makes it one that is not usable, without standard errors.
-  void Fail(Status why_not_ok, std::string what,
-            std::string why_no_error = "the estimate is not usable");
+  /// Whether something of this code was found.
+  bool Has(FindingCode code) const;
+  /// The sentences of the findings of this severity.
+  std::vector<std::string> Sentences(Severity severity) const;
+  /// Enters a finding that is no error, unless there is one of its code.
+  void Add(const Finding& finding);
+  /// Makes it usable: without an error.
+  void Accept();
+  /// Makes it one that is not usable, with the status of the code and without
+  /// covariance, standard errors and those of noise.  Precondition: the finding
+  /// is an error.
+  void Fail(const Finding& finding);
   /// Square roots of the diagonal of `covariance`; empty when unknown.
   std::optional<double> YoungsModulusStandardError() const;
   std::optional<double> PoissonRatioStandardError() const;

@@ -83,10 +83,10 @@ Estimate Estimator::Run(const Scene& scene,
   Stopwatch stopwatch;
   ValidateScene(scene);
   CheckOptions(options);
-  const std::vector<std::string> warnings = CheckMeasurements(scene);
+  const std::vector<Finding> findings = CheckMeasurements(scene);
   CheckSupported(*this, scene, options);
   Estimate estimate = DoRun(scene, options);
-  FinishEstimate(*this, scene, options, warnings, estimate);
+  FinishEstimate(*this, scene, options, findings, estimate);
   estimate.seconds = stopwatch.Lap();
   return estimate;
 }

@@ -3,6 +3,8 @@
 #include <stdexcept>
 
 #include "elastimate/core/scene/loads.h"
+#include "elastimate/estimators/interface/finding_sentences.h"
+#include "elastimate/estimators/interface/limits.h"
 
 namespace elastimate {
 namespace {
@@ -69,8 +71,8 @@ void CheckSupported(const Estimator& estimator, const Scene& scene,
   }
 }
 
-std::vector<std::string> CheckMeasurements(const Scene& scene) {
-  std::vector<std::string> warnings;
+std::vector<Finding> CheckMeasurements(const Scene& scene) {
+  std::vector<std::size_t> moved;
   bool any_force = false;
   std::size_t num_with_noise_sd = 0;
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
@@ -95,11 +97,9 @@ std::vector<std::string> CheckMeasurements(const Scene& scene) {
     any_force = any_force || IsLoaded(scene, load_case);
     num_with_noise_sd += load_case.noise_sd ? 1 : 0;
     // Measurement noise on held nodes is no contradiction; a motion is.
-    if (summary.held_deviation_square_sum > 0.01 * summary.free_square_sum) {
-      warnings.push_back(
-          "the measured displacement of held nodes in " + name +
-          " differs from the displacement they are held at, which is used; "
-          "check the supports");
+    if (summary.held_deviation_square_sum >
+        kLimits.held_motion * kLimits.held_motion * summary.free_square_sum) {
+      moved.push_back(k + 1);
     }
   }
   if (!any_force) {
@@ -112,7 +112,8 @@ std::vector<std::string> CheckMeasurements(const Scene& scene) {
         "the noise standard deviation is given for some load cases only; give "
         "it for all or for none");
   }
-  return warnings;
+  return moved.empty() ? std::vector<Finding>{}
+                       : std::vector<Finding>{HeldNodesMoved(moved)};
 }
 
 }  // namespace elastimate

@@ -1,11 +1,11 @@
 #ifndef ELASTIMATE_ESTIMATORS_INTERFACE_INPUT_CHECKS_H_
 #define ELASTIMATE_ESTIMATORS_INTERFACE_INPUT_CHECKS_H_
 
-#include <string>
 #include <vector>
 
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/interface/finding.h"
 
 namespace elastimate {
 
@@ -18,8 +18,9 @@ void CheckSupported(const Estimator& estimator, const Scene& scene,
                     const EstimatorOptions& options);
 
 /// Throws std::invalid_argument unless every load case of a valid scene has
-/// what each estimator needs: see Estimator::Run.  Returns warnings.
-std::vector<std::string> CheckMeasurements(const Scene& scene);
+/// what each estimator needs: see Estimator::Run.  Returns warnings, at
+/// most one of each code.
+std::vector<Finding> CheckMeasurements(const Scene& scene);
 
 }  // namespace elastimate
 

@@ -7,37 +7,34 @@
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/interface/evidence.h"
 
 namespace elastimate {
 
-/// Makes the notice of a StiffnessSolver, if there is one, a warning.
-void NoteSolver(const std::string& notice, Estimate& estimate);
-
-/// Whether FinishEstimate gave this warning of linear elements near nu = 1/2.
-bool IsWarningOfLocking(const std::string& warning);
+/// Applies all rules (rules.h) to what a method measured: enters what they find
+/// into `estimate`, and makes it usable or, for the first error, not usable.
+/// May be called again when the method has measured more.  Why a parameter has
+/// no standard error is said where it lies on a bound.
+void Judge(const Evidence& evidence, const EstimatorOptions& options,
+           Estimate& estimate);
 
 /// Whether the discretisation error is larger than 1 % and than half a standard
 /// error of E, or that of nu than 0.01 and half its standard error.
 bool IsDiscretizationErrorNotable(const Estimate& estimate);
 
-/// "the elements miss about 15 % of the strain energy".
-/// Precondition: there is a discretisation error.
-std::string DescribeDiscretizationError(const Estimate& estimate);
-
-/// Takes back the discretisation error, and the warning of FinishEstimate of
-/// it: the displacements were found to come from these very elements.
-/// Precondition: there is a discretisation error.
+/// Takes back the discretisation error, and what FinishEstimate found of it:
+/// the displacements were found to come from these very elements. Precondition:
+/// there is a discretisation error.
 void AcceptElements(Estimate& estimate);
 
-/// Enters the estimator's name, the warnings, and an interval of nu where only
-/// its standard error is known; warns of what linear elements do near nu = 1/2
-/// and of a notable discretisation error; and turns an estimate that claims to
-/// be ok into what it is, when it is not finite, not physical, or not
-/// determined.
+/// Enters the estimator's name, the findings of its input, and an interval of
+/// nu where only its standard error is known; warns of what linear elements do
+/// near nu = 1/2 and of a notable discretisation error; and turns an estimate
+/// that claims to be ok into what it is, when it is not finite, not physical,
+/// or not determined.
 void FinishEstimate(const Estimator& estimator, const Scene& scene,
                     const EstimatorOptions& options,
-                    const std::vector<std::string>& warnings,
-                    Estimate& estimate);
+                    const std::vector<Finding>& findings, Estimate& estimate);
 
 }  // namespace elastimate
 

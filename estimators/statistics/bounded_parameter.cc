@@ -3,24 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "elastimate/estimators/interface/statistics.h"
-
 namespace elastimate {
 namespace {
-
-using Side = BoundedParameter::Side;
 
 // A parameter this close to a bound lies on it.
 constexpr double kOnBound = 1e-9;
 
 // Relative to the cost, the gradient that is more than rounding.
 constexpr double kInwardGradient = 1e-6;
-
-// Root mean square of what a parameter that may be anywhere between its bounds
-// is off one of them.
-double DistanceFromBound(double lower, double upper) {
-  return (upper - lower) / std::sqrt(3.0);
-}
 
 }  // namespace
 
@@ -139,9 +129,6 @@ ActiveBounds NoteActiveBounds(const EstimatorOptions& options,
     estimate.active_bounds.emplace_back(lower ? "youngs_min" : "youngs_max");
     estimate.elasticity.youngs_modulus =
         lower ? *options.youngs_modulus.lower : *options.youngs_modulus.upper;
-    estimate.warnings.emplace_back(
-        "Young's modulus lies on its bound; Poisson's ratio and its standard "
-        "error hold only if the bound is the true value");
   }
   active.poisson_ratio = poisson_ratio.OnBound();
   if (active.poisson_ratio != Side::kNone) {
@@ -151,96 +138,8 @@ ActiveBounds NoteActiveBounds(const EstimatorOptions& options,
         lower ? options.poisson_ratio.lower : options.poisson_ratio.upper;
     active.is_physical_limit =
         !given || std::abs(*given - poisson_ratio.Value()) > kOnBound;
-    estimate.warnings.emplace_back(
-        active.is_physical_limit
-            ? "Poisson's ratio has run to the end of its physical range"
-            : "Poisson's ratio lies on its bound; Young's modulus holds only "
-              "if "
-              "the bound is the true value, and its standard error allows for "
-              "the room that the data and the bounds leave");
   }
   return active;
-}
-
-void JudgePoissonRatioOnBound(const EstimatorOptions& options,
-                              const ActiveBounds& active, double slope,
-                              double standard_error, Estimate& estimate) {
-  if (active.is_physical_limit &&
-      active.poisson_ratio == BoundedParameter::Side::kLower) {
-    estimate.Fail(Status::kUnphysical,
-                  "the data pull Poisson's ratio to -1, where no material is: "
-                  "they may not determine it, or the loads, the supports or "
-                  "the mesh do not describe the experiment");
-    return;
-  }
-  if (active.is_physical_limit && estimate.is_model_in_doubt) {
-    estimate.Fail(Status::kNotIdentifiable,
-                  "the data pull Poisson's ratio to 1/2 and leave a residual "
-                  "that is not noise: the mesh, the supports or the loads do "
-                  "not describe the experiment",
-                  "the model contradicts the data");
-    return;
-  }
-  const Bounds bounds = EffectivePoissonRatioBounds(options);
-  const double youngs_modulus_error =
-      std::abs(slope) *
-      std::min(standard_error, DistanceFromBound(*bounds.lower, *bounds.upper));
-  if (standard_error > kLargestPoissonRatioError &&
-      (active.is_physical_limit ||
-       youngs_modulus_error > kLargestYoungsModulusError)) {
-    estimate.Fail(
-        Status::kNotIdentifiable,
-        "Poisson's ratio lies on its bound, but the data do not determine "
-        "it: " +
-            DescribeCollinear(estimate.elasticity, {slope, 1}),
-        "the parameters are not determined");
-    return;
-  }
-  if (!active.is_physical_limit) {
-    estimate.covariance(0, 0) +=
-        std::pow(youngs_modulus_error * estimate.elasticity.youngs_modulus, 2);
-  }
-}
-
-void JudgeContradictedBound(double excess, double variance,
-                            double without_bound, Estimate& estimate) {
-  constexpr double kSignificant = 5;
-  constexpr double kUnusableChange = 0.1;
-  const double change =
-      std::abs(without_bound / estimate.elasticity.youngs_modulus - 1);
-  if (estimate.IsUsable() && change > kUnusableChange &&
-      excess > kSignificant * kSignificant * variance) {
-    estimate.Fail(Status::kNotIdentifiable,
-                  "the data contradict the bound on Young's modulus: without "
-                  "it, E is " +
-                      TwoDigits(without_bound),
-                  "the model contradicts the data");
-  }
-}
-
-void JudgeYoungsModulusOnBound(const EstimatorOptions& options, double slope,
-                               double standard_error, Estimate& estimate) {
-  const Bounds& bounds = options.youngs_modulus;
-  const double distance =
-      bounds.lower && bounds.upper
-          ? DistanceFromBound(std::log(*bounds.lower), std::log(*bounds.upper))
-          : std::numeric_limits<double>::infinity();
-  const double error = std::min(standard_error, distance);
-  const double poisson_ratio_error =
-      options.known_poisson_ratio ? 0 : std::abs(slope) * error;
-  // Not a number for a slope that the data do not determine.
-  if (error <= kLargestYoungsModulusError &&
-      poisson_ratio_error <= kLargestPoissonRatioError) {
-    estimate.covariance(1, 1) += poisson_ratio_error * poisson_ratio_error;
-    return;
-  }
-  estimate.Fail(
-      Status::kNotIdentifiable,
-      "Young's modulus lies on its bound, but the data do not determine it" +
-          (options.known_poisson_ratio
-               ? " (standard error " + TwoDigits(100 * standard_error) + " %)"
-               : ": " + DescribeCollinear(estimate.elasticity, {1, slope})),
-      "the parameters are not determined");
 }
 
 }  // namespace elastimate

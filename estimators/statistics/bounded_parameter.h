@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "elastimate/estimators/interface/active_bounds.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
 
@@ -19,8 +20,6 @@ Bounds EffectivePoissonRatioBounds(const EstimatorOptions& options);
 /// A parameter block of size one of a Ceres problem, with its bounds.
 class BoundedParameter {
  public:
-  enum class Side { kNone, kLower, kUpper };
-
   /// Starts at `value`, moved into the bounds.
   BoundedParameter(double value, const Bounds& bounds);
   /// A parameter that keeps its value.
@@ -60,42 +59,12 @@ ceres::Solver::Summary MinimizeWithinBounds(
     const ceres::Solver::Options& options,
     const std::vector<BoundedParameter*>& parameters, ceres::Problem& problem);
 
-/// Which bounds hold an estimate.
-struct ActiveBounds {
-  BoundedParameter::Side youngs_modulus = BoundedParameter::Side::kNone;
-  BoundedParameter::Side poisson_ratio = BoundedParameter::Side::kNone;
-  /// nu has run into the end of its physical range, which no option set.
-  bool is_physical_limit = false;
-};
-
-/// Enters the active bounds and a warning for each into `estimate`, and sets
-/// E and nu to the given bounds they lie on.
+/// Which bounds hold the estimate.  Enters them into `estimate`, and sets E and
+/// nu to the given bounds they lie on.
 ActiveBounds NoteActiveBounds(const EstimatorOptions& options,
-                              BoundedParameter::Side youngs_modulus,
+                              Side youngs_modulus,
                               const BoundedParameter& poisson_ratio,
                               Estimate& estimate);
-
-/// For nu on a bound: sets `estimate` to not usable unless the data decide on
-/// nu, or at least on E; adds what nu may be off by to the variance of E.
-/// `slope` = d ln E / d nu of the parameters that fit
-/// alike; `standard_error` is that of nu without the bound.
-void JudgePoissonRatioOnBound(const EstimatorOptions& options,
-                              const ActiveBounds& active, double slope,
-                              double standard_error, Estimate& estimate);
-
-/// For E on a bound: sets `estimate` to not usable where E is more than 10 %
-/// off `without_bound`, the E that fits best, and the square sum exceeds its
-/// least significantly: by `excess`, where each residual has `variance`.
-void JudgeContradictedBound(double excess, double variance,
-                            double without_bound, Estimate& estimate);
-
-/// For E on a bound: sets `estimate` to not usable unless the data, or the room
-/// that the bounds leave, determine E and with it nu; adds what E may be off by
-/// to the variance of nu, unless nu is known.  `slope` = d nu / d ln E of the
-/// parameters that fit alike; `standard_error` is that of ln E without the
-/// bound.
-void JudgeYoungsModulusOnBound(const EstimatorOptions& options, double slope,
-                               double standard_error, Estimate& estimate);
 
 }  // namespace elastimate
 

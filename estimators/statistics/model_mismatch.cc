@@ -4,16 +4,9 @@
 #include <cmath>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/estimators/interface/limits.h"
 
 namespace elastimate {
-namespace {
-
-// Differences below these do not matter, however significant.
-constexpr double kNotableYoungsModulus = 0.01;  // Relative.
-constexpr double kNotablePoissonRatio = 0.01;
-
-}  // namespace
-
 std::optional<ModelMismatch> FindModelMismatch(const Estimate& robust,
                                                const Estimate& efficient) {
   if (!robust.elasticity.IsPhysical() || !efficient.elasticity.IsPhysical() ||
@@ -40,8 +33,9 @@ std::optional<ModelMismatch> FindModelMismatch(const Estimate& robust,
   ModelMismatch mismatch;
   mismatch.statistic = difference.dot(covariance.inverse() * difference);
   mismatch.p_value = std::exp(-mismatch.statistic / 2);
-  mismatch.matters = std::abs(difference(0)) > kNotableYoungsModulus ||
-                     std::abs(difference(1)) > kNotablePoissonRatio;
+  mismatch.matters =
+      std::abs(difference(0)) > kLimits.notable_youngs_modulus_error ||
+      std::abs(difference(1)) > kLimits.notable_poisson_ratio_error;
   return mismatch;
 }
 

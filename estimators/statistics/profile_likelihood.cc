@@ -6,16 +6,10 @@
 #include <string>
 
 #include "elastimate/estimators/interface/estimator.h"
-#include "elastimate/estimators/interface/statistics.h"
+#include "elastimate/estimators/interface/limits.h"
 
 namespace elastimate {
 namespace {
-
-// Standard deviations of a normal distribution that hold 95 % of it.
-constexpr double kTwoSidedErrors = 1.960;
-
-// 90 %, for the end of a one-sided interval of 95 %.
-constexpr double kOneSidedQuantile = 2.706;
 
 // Widens the standard errors to a profile likelihood with a 95 % interval of
 // nu, each end with the E that fits best there.  An end at the limit of the
@@ -66,8 +60,9 @@ bool HasRivalMinimum(const std::function<Profile(double quantile)>& profile_of,
                    nu - profile.lower.poisson_ratio > kFar * *error);
 }
 
-void DescribeProfile(const std::function<Profile(double quantile)>& profile_of,
-                     Estimate& estimate) {
+Interval DescribeProfile(
+    const std::function<Profile(double quantile)>& profile_of,
+    Estimate& estimate) {
   Profile profile = profile_of(kTwoSidedQuantile);
   WidenToProfile(profile, estimate);
   const bool reaches_upper =
@@ -80,18 +75,7 @@ void DescribeProfile(const std::function<Profile(double quantile)>& profile_of,
   estimate.poisson_ratio_interval = {
       reaches_lower ? -1 : profile.lower.poisson_ratio,
       reaches_upper ? 0.5 : profile.upper.poisson_ratio};
-  const double nu = estimate.elasticity.poisson_ratio;
-  if ((reaches_lower && nu + 1 > kLargestPoissonRatioDistance) ||
-      (reaches_upper && 0.5 - nu > kLargestPoissonRatioDistance)) {
-    const Interval& interval = *estimate.poisson_ratio_interval;
-    estimate.Fail(Status::kNotIdentifiable,
-                  "the data leave Poisson's ratio between " +
-                      TwoDigits(interval.lower) + " and " +
-                      TwoDigits(interval.upper) +
-                      "; give it, or measure larger displacements or other "
-                      "load cases",
-                  "Poisson's ratio is not determined");
-  }
+  return *estimate.poisson_ratio_interval;
 }
 
 }  // namespace elastimate

@@ -5,6 +5,7 @@
 
 #include "elastimate/core/materials/elasticity.h"
 #include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/estimators/interface/limits.h"
 
 namespace elastimate {
 
@@ -15,9 +16,6 @@ double ShareOfDistanceToPole(const Estimate& estimate);
 
 /// Of ShareOfDistanceToPole; beyond it the profile likelihood tells.
 constexpr double kLargestLinearShare = 0.03;
-
-/// The quantile of chi^2 of one degree of freedom that holds 95 %.
-constexpr double kTwoSidedQuantile = 3.841;
 
 /// The best fits at the two ends of an interval of nu.
 struct Profile {
@@ -34,13 +32,12 @@ bool HasRivalMinimum(const std::function<Profile(double quantile)>& profile_of,
 /// widens the standard errors to it.  `profile_of` gives the ends within which
 /// the sum of squares over its variance exceeds its least by no more than a
 /// quantile of chi^2; ends at kSmallestPoissonRatio and kLargestPoissonRatio
-/// where it never does.
-///
-/// Where the sum of squares does not exceed the least up to a far end of the
-/// range, the data do not determine nu, whatever the curvature at nu is, and
-/// the estimate fails.
-void DescribeProfile(const std::function<Profile(double quantile)>& profile_of,
-                     Estimate& estimate);
+/// where it never does.  Returns the interval: where the sum of squares does
+/// not exceed the least up to a far end of the range, the data do not determine
+/// nu, whatever the curvature at nu is.
+Interval DescribeProfile(
+    const std::function<Profile(double quantile)>& profile_of,
+    Estimate& estimate);
 
 }  // namespace elastimate
 

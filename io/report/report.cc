@@ -59,6 +59,30 @@ Json NoticesJson(const std::vector<std::string>& notices) {
   return list;
 }
 
+Json FindingsJson(const std::vector<Finding>& findings) {
+  Json list = Json::array();
+  for (const Finding& finding : findings) {
+    list.push_back({{"code", FindingCodeName(finding.code)},
+                    {"severity", SeverityName(finding.severity)},
+                    {"text", finding.text},
+                    {"advice", finding.advice}});
+  }
+  return list;
+}
+
+Json BudgetJson(const ErrorBudget& budget) {
+  const auto of = [](const ParameterErrors& errors) {
+    return Json({{"youngs_modulus", OrNull(errors.youngs_modulus)},
+                 {"poisson_ratio", OrNull(errors.poisson_ratio)}});
+  };
+  return {{"noise", of(budget.noise)},
+          {"bias", of(budget.bias)},
+          {"model", of(budget.model)},
+          {"outliers", of(budget.outliers)},
+          {"discretization", of(budget.discretization)},
+          {"law", of(budget.law)}};
+}
+
 Json MismatchJson(const Estimate& estimate) {
   if (!estimate.model_mismatch) {
     return nullptr;
@@ -105,7 +129,7 @@ Json DiagnosticsJson(const Estimate& estimate) {
           {"model_mismatch", MismatchJson(estimate)},
           {"active_bounds", estimate.active_bounds},
           {"why_no_standard_error", estimate.why_no_standard_error},
-          {"warnings", estimate.warnings}};
+          {"warnings", estimate.Sentences(Severity::kWarning)}};
 }
 
 Json SecondsJson(const Estimate& estimate, const ReportTimes& times) {
@@ -159,6 +183,8 @@ std::string JsonReport(const Estimate& estimate, const Scene& scene,
       {"residual",
        {{"force_relative", OrNull(estimate.force_residual)},
         {"displacement_relative", OrNull(estimate.displacement_residual)}}},
+      {"error_budget", BudgetJson(estimate.error_budget)},
+      {"findings", FindingsJson(estimate.findings)},
       {"diagnostics", DiagnosticsJson(estimate)},
       {"work", WorkJson(estimate.work)},
       {"rungs", RungsJson(estimate)},

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "elastimate/estimators/interface/finding.h"
 #include "tests/program.h"
 
 namespace elastimate {
@@ -188,6 +189,15 @@ TEST_F(Documentation, HasEveryFlag) {
       NamesAfter("--", Blocks("docs/command_line.md", "").at(0));
   EXPECT_EQ(flags.erase("help") + flags.erase("version"), 2U);
   EXPECT_EQ(flags, NamesAfter("\n      --", Succeed("--help").output));
+}
+
+TEST_F(Documentation, HasEveryFinding) {
+  std::vector<std::string> codes;
+  for (const FindingCode code : AllFindingCodes()) {
+    codes.emplace_back(FindingCodeName(code));
+  }
+  EXPECT_EQ(NamesAfter("\n| `", testing::ReadText(Source("docs/findings.md"))),
+            std::set<std::string>(codes.begin(), codes.end()));
 }
 
 TEST_F(Documentation, HasEveryEstimator) {

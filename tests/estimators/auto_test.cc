@@ -6,7 +6,6 @@
 #include "elastimate/estimators/displacement_fit/reduced_fe.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
-#include "tests/warnings.h"
 
 namespace elastimate {
 namespace {
@@ -16,7 +15,6 @@ using testing::Measure;
 using testing::MeasureInFinerWorld;
 using testing::SmallScene;
 using testing::UnderBodyForce;
-using testing::WarnsOf;
 
 // Measured on quadratic elements, which linear ones cannot follow, under a
 // load that is the same for both.
@@ -72,7 +70,7 @@ TEST(Auto, ClimbsWhereNoiseAsksForIt) {
             std::string::npos);
   EXPECT_EQ(estimate.element_order, 1);
   EXPECT_EQ(estimate.discretization_error, 0);
-  EXPECT_TRUE(estimate.warnings.empty());
+  EXPECT_TRUE(estimate.findings.empty());
   ASSERT_TRUE(estimate.model_mismatch.has_value());
   EXPECT_GT(estimate.model_mismatch->p_value, 1e-3);
   const Estimate fit = ReducedFe().Run(scene, {});
@@ -141,8 +139,7 @@ TEST(Auto, TakesQuadraticElementsWhereBothExplainTheDisplacements) {
   ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
   EXPECT_EQ(estimate.element_order, 2);
   EXPECT_NEAR(estimate.elasticity.youngs_modulus / 1e7, 1, 1e-6);
-  EXPECT_TRUE(
-      WarnsOf(estimate, "linear elements explain the displacements as well"));
+  EXPECT_TRUE(estimate.Has(FindingCode::kLinearElementsFitAsWell));
 }
 
 TEST(Auto, PassesOverWhatCannotServe) {

@@ -60,7 +60,7 @@ TEST(Bounded, IsTheClosedFormOfTheBoundWhenOneIsActive) {
       1, 1e-9);
   EXPECT_NEAR(estimate.elasticity.poisson_ratio, 0.3, 1e-12);
   EXPECT_EQ(estimate.active_bounds, std::vector<std::string>{"nu_max"});
-  EXPECT_FALSE(estimate.warnings.empty());
+  EXPECT_TRUE(estimate.Has(FindingCode::kPoissonRatioOnBound));
   EXPECT_FALSE(estimate.PoissonRatioStandardError().has_value());
 }
 

@@ -15,7 +15,8 @@ TEST(Estimate, StartsAsAFailure) {
   const Estimate estimate;
   EXPECT_FALSE(estimate.IsUsable());
   EXPECT_EQ(StatusName(estimate.status), "numerical_failure");
-  EXPECT_EQ(estimate.message, "the estimator was not run");
+  EXPECT_TRUE(estimate.Has(FindingCode::kNotRun));
+  EXPECT_EQ(estimate.message, Sentence(estimate.findings.front()));
   EXPECT_FALSE(estimate.elasticity.IsPhysical());
   EXPECT_FALSE(estimate.YoungsModulusStandardError());
   EXPECT_FALSE(estimate.PoissonRatioStandardError());

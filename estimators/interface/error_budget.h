@@ -1,0 +1,39 @@
+#ifndef ELASTIMATE_ESTIMATORS_INTERFACE_ERROR_BUDGET_H_
+#define ELASTIMATE_ESTIMATORS_INTERFACE_ERROR_BUDGET_H_
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "elastimate/core/materials/elasticity.h"
+
+namespace elastimate {
+
+/// What one cause does to each parameter, as one standard deviation or, for
+/// causes that do not vary, as a size.  Empty where unknown.
+struct ParameterErrors {
+  std::optional<double> youngs_modulus;  ///< Relative.
+  std::optional<double> poisson_ratio;   ///< Absolute.
+};
+
+/// The errors of an estimate by their cause; what a method does not look at is
+/// unknown, and what it looked at and did not find is zero.
+struct ErrorBudget {
+  ParameterErrors noise;  ///< Of noise alone.
+  ParameterErrors bias;   ///< That noise puts on the method.
+  ParameterErrors model;  ///< Seen in residuals that are no noise.
+  /// By how much outliers pull a fit without a loss.
+  ParameterErrors outliers;
+  /// What the elements miss (Estimate::discretization_error).
+  ParameterErrors discretization;
+  /// The spread of the laws that fit alike.
+  ParameterErrors law;
+};
+
+/// The roots of the diagonal of a covariance of (E, nu) at this estimate; empty
+/// where it is not a number.
+ParameterErrors StandardErrors(const Eigen::Matrix2d& covariance,
+                               const IsotropicElasticity& elasticity);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_INTERFACE_ERROR_BUDGET_H_

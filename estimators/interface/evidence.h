@@ -1,0 +1,124 @@
+#ifndef ELASTIMATE_ESTIMATORS_INTERFACE_EVIDENCE_H_
+#define ELASTIMATE_ESTIMATORS_INTERFACE_EVIDENCE_H_
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+
+#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/estimators/interface/active_bounds.h"
+#include "elastimate/estimators/interface/estimate.h"
+
+namespace elastimate {
+
+/// How the numerics of a method ended.
+enum class End {
+  kDone,
+  kSingularStiffness,
+  kSearchFailed,
+  kIterationLimit,
+  kNotCertified,
+};
+
+/// Which residual a finding is about.
+enum class ResidualKind { kDisplacement, kForce, kVirtualWork };
+
+/// A residual that is significantly larger than the given noise.
+struct ResidualRatio {
+  ResidualKind kind;
+  double ratio;  ///< To what the noise explains, in standard deviations.
+};
+
+/// A direction in (ln E, nu) that the data leave free.
+struct FreeDirection {
+  IsotropicElasticity at;
+  Eigen::Vector2d direction;
+};
+
+/// What the bound on E costs: the square sum exceeds its least by `excess`.
+struct BoundExcess {
+  double excess;
+  double variance;                ///< Of each residual.
+  double youngs_modulus_without;  ///< E that fits best.
+};
+
+/// What E or nu may be off by where one of them lies on a bound.
+struct ErrorsOnBound {
+  /// Of the parameter on the bound, without it; of ln E.
+  double standard_error;
+  /// d ln E / d nu for nu on a bound, else d nu / d ln E, of the parameters
+  /// that fit alike.
+  double slope;
+  /// With the room that the bounds leave; relative for E.
+  double youngs_modulus;
+  double poisson_ratio;
+};
+
+/// nu that the data ask for where another is given.
+struct UnbiasedPoissonRatio {
+  double poisson_ratio;
+  double standard_error;
+  double youngs_modulus_ratio;  ///< E with that nu over E with the given one.
+};
+
+/// What noise does to a method that it biases.
+struct NoiseBias {
+  double youngs_modulus;  ///< Relative; infinite where it hides E.
+  double poisson_ratio;
+  /// Standard errors without it, relative for E; zero when unknown.
+  double youngs_modulus_error;
+  double poisson_ratio_error;
+};
+
+/// What virtual work said of a force residual.
+enum class WorkCheck { kNotMade, kIsNoise, kIsMore, kContradicts };
+
+/// What a method measured of its estimate, for the judge.  What is empty was
+/// not measured, or does not arise.
+struct Evidence {
+  /// Share of the loads that push motions which the supports leave free.
+  std::optional<double> load_imbalance;
+  std::optional<FreeDirection> free_direction;
+  /// Measured components, where they are too few for statistics.
+  std::optional<Eigen::Index> too_few_components;
+
+  std::optional<ResidualRatio> above_noise;
+  /// Of (ln E, nu), without the pull of outliers.
+  std::optional<Eigen::Vector2d> outlier_change;
+  /// Relative standard error of E with what is smooth in the residual; not a
+  /// number for E on a bound.
+  std::optional<double> smooth_residual_error;
+  /// The smooth part of the displacement residual over the measurement.
+  std::optional<double> smooth_part;
+  /// Relative standard error of E where virtual work finds more than noise.
+  std::optional<double> virtual_work_error;
+  /// Of the displacements that balances the loads, relative to them.
+  std::optional<double> correction;
+
+  std::optional<BoundExcess> bound_excess;
+  std::optional<ErrorsOnBound> youngs_modulus_on_bound;
+  std::optional<ErrorsOnBound> poisson_ratio_on_bound;
+  /// Of 95 %, by the profile likelihood; one that chance alone allows.
+  std::optional<Interval> profile_interval;
+  std::optional<Interval> chance_interval;
+  std::optional<UnbiasedPoissonRatio> unbiased;
+  std::optional<NoiseBias> noise_bias;
+
+  std::string search_message;  ///< Why the search failed.
+  std::string solver_notice;
+  End end = End::kDone;
+  WorkCheck work_check = WorkCheck::kNotMade;
+  ActiveBounds active;
+  /// Whether displacement noise biases the method.
+  bool is_biased_by_noise = false;
+  bool do_loads_work = true;
+  bool do_displacements_oppose_loads = false;
+  bool does_youngs_modulus_diverge = false;
+  /// Whether noise leaves the fit without a covariance.
+  bool is_poisson_ratio_hidden = false;
+  bool is_explained_by_given_noise = false;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_INTERFACE_EVIDENCE_H_

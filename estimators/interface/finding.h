@@ -1,0 +1,97 @@
+#ifndef ELASTIMATE_ESTIMATORS_INTERFACE_FINDING_H_
+#define ELASTIMATE_ESTIMATORS_INTERFACE_FINDING_H_
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace elastimate {
+
+/// How an estimator came out.
+enum class Status {
+  kOk,                ///< The estimate is usable.
+  kNotIdentifiable,   ///< The data, or this method, leave E or nu undetermined.
+  kUnphysical,        ///< E <= 0 or nu outside (-1, 1/2).
+  kIterationLimit,    ///< The iteration did not converge.
+  kNumericalFailure,  ///< A factorisation or an evaluation failed.
+};
+
+/// "ok", "not_identifiable", "unphysical", "iteration_limit" or
+/// "numerical_failure".
+std::string_view StatusName(Status status);
+
+/// What there is to say about an estimate; docs/findings.md explains each.
+enum class FindingCode {
+  // Why there is no estimate.
+  kNotRun,
+  kNotFinite,
+  kSingularStiffness,
+  kSearchFailed,
+  kNoConvergence,
+  kFitNotCertified,
+  // Why it is unphysical.
+  kUnphysical,
+  kDisplacementsOpposeLoads,
+  kYoungsModulusDiverges,
+  kPoissonRatioDiverges,
+  // What the data do not determine.
+  kLoadsDoNoWork,
+  kOneCombination,
+  kYoungsModulusUndetermined,
+  kPoissonRatioUndetermined,
+  kTooFewMeasurements,
+  // What the model does not explain.
+  kBoundContradicted,
+  kKnownPoissonRatioContradicted,
+  kLargeCorrection,
+  kLoadsOutOfBalance,
+  kResidualAboveNoise,
+  kSmoothResidual,
+  kLargeResidual,
+  kVirtualWorkImbalance,
+  kModelMismatch,
+  kOutliers,
+  kHeldNodesMoved,
+  // What the method does to the estimate.
+  kNoiseBias,
+  kYoungsModulusOnBound,
+  kPoissonRatioOnBound,
+  kPoissonRatioAtLimit,
+  kLocking,
+  kDiscretizationError,
+  kLinearElementsFitAsWell,
+  kTooManyElements,
+  kSolverFallback,
+};
+
+/// What a finding means for the estimate.
+enum class Severity {
+  kNotice,   ///< Does not change the result.
+  kWarning,  ///< The result is usable all the same.
+  kError,    ///< Why the result is not usable.
+};
+
+/// One thing to say about an estimate.  Both sentences are plain English, start
+/// with a small letter, have no full stop, and are not empty.
+struct Finding {
+  FindingCode code;
+  Severity severity;
+  std::string text;    ///< What was found: one sentence of 25 words at most.
+  std::string advice;  ///< What to do about it.
+};
+
+/// The name of a code in reports, such as "smooth_residual".
+std::string_view FindingCodeName(FindingCode code);
+/// "notice", "warning" or "error".
+std::string_view SeverityName(Severity severity);
+/// The status of an estimate that is not usable for this reason.
+Status StatusOf(FindingCode code);
+/// All codes, in the order above.
+std::vector<FindingCode> AllFindingCodes();
+
+/// "text; advice".
+std::string Sentence(const Finding& finding);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_INTERFACE_FINDING_H_

@@ -1,0 +1,514 @@
+#include "elastimate/estimators/interface/finding_sentences.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+
+#include "elastimate/estimators/interface/limits.h"
+
+namespace elastimate {
+namespace {
+
+constexpr char kCheckTheModel[] =
+    "check that the mesh, the supports and the loads describe the experiment";
+constexpr char kGiveMore[] =
+    "give Poisson's ratio, or add a load case that strains the specimen "
+    "otherwise";
+
+// The sine of the angle between a modulus' gradient and the direction that the
+// data leave free, below which the modulus is called determined by them.
+constexpr double kUnchanged = 1e-3;
+
+struct Modulus {
+  std::string name;
+  double value;
+  Eigen::RowVector2d gradient;  // d ln value / d (ln E, nu).
+};
+
+std::array<Modulus, 3> Moduli(const IsotropicElasticity& elasticity) {
+  const double nu = elasticity.poisson_ratio;
+  return {
+      Modulus{"Young's modulus", elasticity.youngs_modulus, {1, 0}},
+      Modulus{
+          "the shear modulus", elasticity.ShearModulus(), {1, -1 / (1 + nu)}},
+      Modulus{
+          "the bulk modulus", elasticity.BulkModulus(), {1, 2 / (1 - 2 * nu)}}};
+}
+
+std::string Text(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+std::string Percent(double ratio) { return TwoDigits(100 * ratio) + " %"; }
+
+std::string Describe(const IsotropicElasticity& elasticity) {
+  return "E = " + Text(elasticity.youngs_modulus) +
+         ", nu = " + Text(elasticity.poisson_ratio);
+}
+
+// ", the shear modulus = 3", of the moduli that do not change along
+// `direction`.
+std::string Unchanged(const IsotropicElasticity& elasticity,
+                      const Eigen::Vector2d& direction) {
+  std::string text;
+  for (const Modulus& modulus : Moduli(elasticity)) {
+    if (std::abs(modulus.gradient.normalized().dot(direction.normalized())) <
+        kUnchanged) {
+      text += ", " + modulus.name + " = " + Text(modulus.value);
+    }
+  }
+  return text;
+}
+
+// The modulus of the smallest standard error, if that is small enough.
+std::string DescribeDetermined(const Estimate& estimate) {
+  const Eigen::Vector2d to_logarithm(1 / estimate.elasticity.youngs_modulus, 1);
+  const Eigen::Matrix2d covariance = to_logarithm.asDiagonal() *
+                                     estimate.covariance *
+                                     to_logarithm.asDiagonal();
+  std::optional<Modulus> best;
+  double best_error = kLimits.determined_modulus;
+  for (const Modulus& modulus : Moduli(estimate.elasticity)) {
+    const double error =
+        std::sqrt(modulus.gradient * covariance * modulus.gradient.transpose());
+    if (error < best_error) {
+      best = modulus;
+      best_error = error;
+    }
+  }
+  return best ? ", but they determine " + best->name + " = " +
+                    Text(best->value) + " +- " + Text(best->value * best_error)
+              : ", nor E, the shear or the bulk modulus to " +
+                    Percent(kLimits.determined_modulus);
+}
+
+Finding Error(FindingCode code, std::string text, std::string advice) {
+  return {code, Severity::kError, std::move(text), std::move(advice)};
+}
+
+Finding Warning(FindingCode code, std::string text, std::string advice) {
+  return {code, Severity::kWarning, std::move(text), std::move(advice)};
+}
+
+std::string BiasAdvice(bool is_bounded) {
+  return std::string(
+             "use reduced-fe, which noise does not bias, or give "
+             "Poisson's ratio, and check the mesh, the supports") +
+         (is_bounded ? ", the loads and the bounds" : " and the loads");
+}
+
+}  // namespace
+
+std::string TwoDigits(double value) {
+  std::ostringstream text;
+  if (value == 0 || !std::isfinite(value)) {
+    text << value;
+    return text.str();
+  }
+  // By precision(2), 100 is 1e+02.
+  const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) - 1);
+  text << std::round(value / unit) * unit;
+  return text.str();
+}
+
+Finding NotFinite() {
+  return Error(FindingCode::kNotFinite, "the result is not finite",
+               kCheckTheModel);
+}
+
+Finding SingularStiffness() {
+  return Error(FindingCode::kSingularStiffness,
+               "the stiffness matrix is singular to working precision",
+               "check the mesh for slivers and loose parts, and the supports");
+}
+
+Finding SearchFailed(const std::string& reason) {
+  return Error(
+      FindingCode::kSearchFailed,
+      "the search for the best fit ended without one",
+      "check the mesh for slivers, or use reduced-fe (" + reason + ")");
+}
+
+Finding NoConvergence(int max_iterations) {
+  return Error(FindingCode::kNoConvergence,
+               "the fit did not converge in " + std::to_string(max_iterations) +
+                   " iterations",
+               "allow more, or use reduced-fe");
+}
+
+Finding FitNotCertified() {
+  return Error(FindingCode::kFitNotCertified,
+               "the reduced model did not become accurate enough to exclude a "
+               "better fit elsewhere",
+               "use iterative-fe, or give bounds on Poisson's ratio");
+}
+
+Finding Unphysical(const IsotropicElasticity& elasticity) {
+  return Error(FindingCode::kUnphysical,
+               Describe(elasticity) + " is not physical (E > 0, -1 < nu < 0.5)",
+               kCheckTheModel);
+}
+
+Finding UnphysicalByNoise(const IsotropicElasticity& elasticity) {
+  return Error(FindingCode::kUnphysical,
+               Describe(elasticity) +
+                   " is not physical: displacement noise pulls nu of this "
+                   "method towards 2/3 and E below zero",
+               "use reduced-fe, which noise does not bias, or give Poisson's "
+               "ratio, and check the mesh, the supports and the loads");
+}
+
+Finding DisplacementsOpposeLoads() {
+  return Error(FindingCode::kDisplacementsOpposeLoads,
+               "the measured displacements oppose the loads",
+               "check their signs, order and units, and whether noise "
+               "outweighs them");
+}
+
+Finding YoungsModulusDiverges() {
+  return Error(
+      FindingCode::kYoungsModulusDiverges,
+      "the data pull Young's modulus to zero or infinity",
+      std::string(kCheckTheModel) + ", and whether noise outweighs them");
+}
+
+Finding PoissonRatioAtMinusOne() {
+  return Error(FindingCode::kPoissonRatioDiverges,
+               "the data pull Poisson's ratio to -1, where no material is",
+               std::string("give Poisson's ratio, if the data may not "
+                           "determine it, or ") +
+                   kCheckTheModel);
+}
+
+Finding PoissonRatioDivergesByNoise() {
+  return Error(FindingCode::kPoissonRatioDiverges,
+               "the data pull Poisson's ratio to the end of its range, as "
+               "displacement noise does with this method",
+               "give bounds that the material is known to keep, or use "
+               "reduced-fe");
+}
+
+Finding LoadsDoNoWork() {
+  return Error(FindingCode::kLoadsDoNoWork,
+               "the loads do no work on the virtual fields",
+               "raise their degree, or use reduced-fe");
+}
+
+Finding OneCombination(const IsotropicElasticity& elasticity,
+                       const Eigen::Vector2d& direction) {
+  return Error(FindingCode::kOneCombination,
+               "the data determine one combination of Young's modulus and "
+               "Poisson's ratio only" +
+                   Unchanged(elasticity, direction),
+               kGiveMore);
+}
+
+Finding YoungsModulusOnBoundUndetermined(const IsotropicElasticity& elasticity,
+                                         const Eigen::Vector2d& direction) {
+  return Error(FindingCode::kYoungsModulusUndetermined,
+               "Young's modulus lies on its bound, but the data determine one "
+               "combination of E and nu only" +
+                   Unchanged(elasticity, direction),
+               kGiveMore);
+}
+
+Finding PoissonRatioOnBoundUndetermined(const IsotropicElasticity& elasticity,
+                                        const Eigen::Vector2d& direction) {
+  return Error(FindingCode::kPoissonRatioUndetermined,
+               "Poisson's ratio lies on its bound, but the data determine one "
+               "combination of E and nu only" +
+                   Unchanged(elasticity, direction),
+               kGiveMore);
+}
+
+Finding YoungsModulusOnBoundUndetermined(double standard_error) {
+  return Error(FindingCode::kYoungsModulusUndetermined,
+               "Young's modulus lies on its bound, but the data do not "
+               "determine it (standard error " +
+                   Percent(standard_error) + ")",
+               "measure larger displacements, or more load cases");
+}
+
+Finding PoissonRatioUndetermined(const Estimate& estimate) {
+  return Error(FindingCode::kPoissonRatioUndetermined,
+               "the data do not determine Poisson's ratio (standard error " +
+                   Text(*estimate.PoissonRatioStandardError()) + ")" +
+                   DescribeDetermined(estimate),
+               kGiveMore);
+}
+
+Finding PoissonRatioBetween(const Interval& interval, bool by_virtual_work) {
+  return Error(
+      FindingCode::kPoissonRatioUndetermined,
+      (by_virtual_work ? "virtual work leaves" : "the data leave") +
+          std::string(" Poisson's ratio between ") + TwoDigits(interval.lower) +
+          " and " + TwoDigits(interval.upper),
+      by_virtual_work ? "give Poisson's ratio, or use reduced-fe"
+                      : "give it, or measure larger displacements or other "
+                        "load cases");
+}
+
+Finding PoissonRatioHiddenByNoise() {
+  return Error(FindingCode::kPoissonRatioUndetermined,
+               "displacement noise hides Poisson's ratio from these virtual "
+               "fields",
+               "give Poisson's ratio, raise the degree of the fields, or use "
+               "reduced-fe");
+}
+
+Finding YoungsModulusUndetermined(double youngs_modulus,
+                                  double standard_error) {
+  return Error(
+      FindingCode::kYoungsModulusUndetermined,
+      "the data do not determine Young's modulus: E = " + Text(youngs_modulus) +
+          " has a standard error of " + Text(standard_error),
+      "heed the warnings, if there are any, or measure larger "
+      "displacements, or more load cases");
+}
+
+Finding TooFewMeasurements(Eigen::Index num_components) {
+  return Error(FindingCode::kTooFewMeasurements,
+               std::to_string(num_components) +
+                   " measured components are too few to tell how good the "
+                   "estimate is",
+               "measure more, or give the standard deviation of the noise");
+}
+
+Finding BoundContradicted(double youngs_modulus_without) {
+  return Error(FindingCode::kBoundContradicted,
+               "the data contradict the bound on Young's modulus: without it, "
+               "E is " +
+                   TwoDigits(youngs_modulus_without),
+               std::string("check the bound, and ") + kCheckTheModel);
+}
+
+Finding KnownPoissonRatioContradicted(double poisson_ratio,
+                                      double standard_error,
+                                      Severity severity) {
+  return {FindingCode::kKnownPoissonRatioContradicted, severity,
+          "the data contradict the given Poisson's ratio: they ask for " +
+              TwoDigits(poisson_ratio) + " +- " + TwoDigits(standard_error),
+          std::string("check the given value, and ") + kCheckTheModel};
+}
+
+Finding LargeCorrection(double correction) {
+  return Error(FindingCode::kLargeCorrection,
+               "the loads are in balance only with displacements that differ "
+               "from the measured ones by " +
+                   Percent(correction) + " of them",
+               std::string(kCheckTheModel) +
+                   ", bounds and a given Poisson's ratio too, and whether "
+                   "noise outweighs the measurement");
+}
+
+Finding LoadsOutOfBalance(double imbalance, Severity severity) {
+  return {FindingCode::kLoadsOutOfBalance, severity,
+          "the supports leave the specimen free to move, and " +
+              Percent(imbalance) + " of the loads push it that way",
+          "complete the supports or the loads"};
+}
+
+Finding ResidualAboveNoise(ResidualKind kind, double ratio) {
+  const std::string times = TwoDigits(ratio) + " times ";
+  const std::string what =
+      kind == ResidualKind::kDisplacement
+          ? "the displacement residual is " + times + "the given noise"
+      : kind == ResidualKind::kForce
+          ? "the force residual is " + times + "what the given noise explains"
+          : "the balance of virtual work is off by " + times +
+                "what the given noise explains";
+  return Warning(FindingCode::kResidualAboveNoise,
+                 what + ", so the standard errors are widened to match",
+                 std::string("check the given noise, and ") + kCheckTheModel);
+}
+
+Finding SmoothResidual(double correlation) {
+  return Warning(
+      FindingCode::kSmoothResidual,
+      "the displacement residual is alike at neighbouring nodes (correlation " +
+          TwoDigits(correlation) +
+          "), as noise is not, so the standard errors are widened",
+      std::string(kCheckTheModel) +
+          ", and whether the measurement was smoothed");
+}
+
+Finding LargeSmoothResidual(double smooth) {
+  return Error(FindingCode::kSmoothResidual,
+               "the model misses a smooth part of the measured displacement, " +
+                   Percent(smooth) + " of it",
+               std::string(kCheckTheModel) +
+                   ", and a given Poisson's ratio the material");
+}
+
+Finding LargeResidual(double displacement_residual) {
+  return Warning(
+      FindingCode::kLargeResidual,
+      "the displacement residual is " + Percent(displacement_residual) +
+          " of the measured displacement",
+      std::string(kCheckTheModel) + ", unless the noise is as large");
+}
+
+Finding VirtualWorkImbalance() {
+  return Warning(
+      FindingCode::kVirtualWorkImbalance,
+      "the balance of virtual work is off by more than noise explains, so the "
+      "standard errors are widened to allow for it",
+      std::string(kCheckTheModel) +
+          ", and whether the measurement was smoothed");
+}
+
+Finding VirtualWorkImbalance(double force_residual, Severity severity) {
+  return {FindingCode::kVirtualWorkImbalance, severity,
+          "the force residual is " + TwoDigits(force_residual) +
+              " of the load, and virtual work (virtual-fields) shows more "
+              "than noise in it" +
+              (severity == Severity::kWarning
+                   ? ", so the standard errors are widened"
+                   : ""),
+          std::string(kCheckTheModel) +
+              ", bounds and a given Poisson's ratio the material"};
+}
+
+Finding ModelDoesNotFitAtLimit() {
+  return Error(FindingCode::kPoissonRatioAtLimit,
+               "the data pull Poisson's ratio to 1/2 and leave a residual that "
+               "is not noise",
+               kCheckTheModel);
+}
+
+Finding ModelMismatchFinding(const ModelMismatch& mismatch) {
+  return Warning(FindingCode::kModelMismatch,
+                 "virtual-fields disagrees by more than noise explains (p = " +
+                     TwoDigits(mismatch.p_value) + ")",
+                 kCheckTheModel);
+}
+
+Finding Outliers(const Eigen::Vector2d& change) {
+  return Warning(FindingCode::kOutliers,
+                 "some nodes lie far off, and without their pull E would "
+                 "change by " +
+                     Percent(change(0)) + " and nu by " + TwoDigits(change(1)),
+                 "use a loss (huber or cauchy); the standard errors allow for "
+                 "the pull");
+}
+
+Finding HeldNodesMoved(const std::vector<std::size_t>& load_cases) {
+  const std::size_t num_others = load_cases.size() - 1;
+  return Warning(
+      FindingCode::kHeldNodesMoved,
+      "the measured displacement of held nodes in load case " +
+          std::to_string(load_cases.front()) +
+          (num_others == 0 ? ""
+                           : " (and " + std::to_string(num_others) + " more)") +
+          " differs from the one they are held at, which is used",
+      "check the supports");
+}
+
+Finding YoungsModulusBias(const std::optional<double>& bias, bool is_bounded,
+                          Severity severity) {
+  const std::string size = bias ? Percent(*bias) : "its whole size";
+  return {FindingCode::kNoiseBias, severity,
+          "displacement noise biases Young's modulus by about " + size +
+              (severity == Severity::kError
+                   ? ", more than the " + Percent(kLimits.unusable_error) +
+                         " that are usable"
+                   : ", which the standard errors allow for"),
+          BiasAdvice(is_bounded)};
+}
+
+Finding PoissonRatioBias(double bias, bool is_bounded, Severity severity) {
+  return {FindingCode::kNoiseBias, severity,
+          "displacement noise biases Poisson's ratio by about " +
+              TwoDigits(bias) +
+              (severity == Severity::kError
+                   ? ", more than the " +
+                         Text(kLimits.unusable_poisson_ratio_bias) +
+                         " that are usable"
+                   : ", which the standard errors allow for"),
+          BiasAdvice(is_bounded)};
+}
+
+Finding YoungsModulusOnBound() {
+  return Warning(FindingCode::kYoungsModulusOnBound,
+                 "Young's modulus lies on its bound, and Poisson's ratio holds "
+                 "only if the bound is the true value",
+                 "check the bound");
+}
+
+Finding PoissonRatioOnBound() {
+  return Warning(FindingCode::kPoissonRatioOnBound,
+                 "Poisson's ratio lies on its bound, and the standard error of "
+                 "E allows for the room that data and bounds leave",
+                 "check the bound");
+}
+
+Finding PoissonRatioAtLimit() {
+  return Warning(FindingCode::kPoissonRatioAtLimit,
+                 "Poisson's ratio has run to the end of its physical range",
+                 "give bounds that the material is known to keep, or take mu "
+                 "and 1 / kappa");
+}
+
+Finding Locking(ElementKind kind) {
+  return Warning(
+      FindingCode::kLocking,
+      "linear " + std::string(TopologyOf(kind).shapes) +
+          " are too stiff from nu = " + Text(kLimits.locking_poisson_ratio) +
+          " on (they lock), which biases E and nu and makes their "
+          "standard errors too small",
+      std::string(HasQuadraticKind(kind) ? "use quadratic elements (order 2)"
+                                         : "mesh with quadratic simplices") +
+          ", unless the displacements come from the same mesh");
+}
+
+std::string DescribeDiscretizationError(const Estimate& estimate) {
+  const double error = *estimate.discretization_error;
+  std::string effect = "E may be many times larger";
+  if (error < kLimits.hopeless_discretization_error) {
+    effect = "E is wrong by about as much";
+    if (estimate.poisson_ratio_discretization_error) {
+      effect += " and nu by up to " +
+                TwoDigits(*estimate.poisson_ratio_discretization_error);
+    }
+  }
+  return "the elements miss about " + Percent(error) +
+         " of the strain energy, so " + effect;
+}
+
+Finding DiscretizationErrorFinding(ElementKind kind, const Estimate& estimate) {
+  return Warning(FindingCode::kDiscretizationError,
+                 DescribeDiscretizationError(estimate),
+                 "refine the mesh" +
+                     std::string(HasQuadraticKind(kind)
+                                     ? ", or use quadratic elements (order 2)"
+                                     : "") +
+                     ", unless the displacements were computed with these "
+                     "very elements");
+}
+
+Finding LinearElementsFitAsWell(const IsotropicElasticity& linear) {
+  return Warning(
+      FindingCode::kLinearElementsFitAsWell,
+      "linear elements explain the displacements as well, with E = " +
+          TwoDigits(linear.youngs_modulus) +
+          " and nu = " + TwoDigits(linear.poisson_ratio),
+      "take that if the displacements were simulated with these "
+      "very elements, which alone are that stiff");
+}
+
+Finding TooManyElements() {
+  return Warning(FindingCode::kTooManyElements,
+                 "quadratic elements may mend what linear ones leave, but are "
+                 "many for this mesh",
+                 "use reduced-fe with order 2, if there is the memory");
+}
+
+Finding SolverFallback(const std::string& notice) {
+  return {FindingCode::kSolverFallback, Severity::kNotice, notice,
+          "expect more time and memory than multigrid takes"};
+}
+
+}  // namespace elastimate

@@ -1,0 +1,108 @@
+#ifndef ELASTIMATE_ESTIMATORS_INTERFACE_FINDING_SENTENCES_H_
+#define ELASTIMATE_ESTIMATORS_INTERFACE_FINDING_SENTENCES_H_
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "elastimate/core/mesh/element_kind.h"
+#include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/estimators/interface/evidence.h"
+#include "elastimate/estimators/interface/finding.h"
+
+namespace elastimate {
+
+// The sentences of each finding, made from its numbers.  Who decides whether
+// there is something to say is the judge (judge.h).
+
+/// A number for a sentence, to two significant digits.
+std::string TwoDigits(double value);
+
+// Why there is no estimate.
+Finding NotFinite();
+Finding SingularStiffness();
+/// `reason` is that of the solver.
+Finding SearchFailed(const std::string& reason);
+Finding NoConvergence(int max_iterations);
+Finding FitNotCertified();
+
+// Why it is unphysical.
+Finding Unphysical(const IsotropicElasticity& elasticity);
+/// Of a method whose estimate noise drives out of the physical range.
+Finding UnphysicalByNoise(const IsotropicElasticity& elasticity);
+Finding DisplacementsOpposeLoads();
+Finding YoungsModulusDiverges();
+Finding PoissonRatioAtMinusOne();
+/// Of a method that noise drives to the end of the range of nu.
+Finding PoissonRatioDivergesByNoise();
+
+// What the data do not determine.
+Finding LoadsDoNoWork();
+/// For data that leave `direction` in (ln E, nu) free: names the modulus that
+/// does not change along it, if one of E, mu and kappa does not, with its value
+/// at `elasticity`.
+Finding OneCombination(const IsotropicElasticity& elasticity,
+                       const Eigen::Vector2d& direction);
+/// The same for E or nu on a bound.
+Finding YoungsModulusOnBoundUndetermined(const IsotropicElasticity& elasticity,
+                                         const Eigen::Vector2d& direction);
+Finding PoissonRatioOnBoundUndetermined(const IsotropicElasticity& elasticity,
+                                        const Eigen::Vector2d& direction);
+/// For E on a bound and a known nu; relative.
+Finding YoungsModulusOnBoundUndetermined(double standard_error);
+/// Names the modulus that the covariance says is determined all the same: E,
+/// mu, kappa or none.  Precondition: a finite elasticity.
+Finding PoissonRatioUndetermined(const Estimate& estimate);
+Finding PoissonRatioBetween(const Interval& interval, bool by_virtual_work);
+Finding PoissonRatioHiddenByNoise();
+Finding YoungsModulusUndetermined(double youngs_modulus, double standard_error);
+Finding TooFewMeasurements(Eigen::Index num_components);
+
+// What the model does not explain.
+Finding BoundContradicted(double youngs_modulus_without);
+/// nu that the data ask for, and its standard error.
+Finding KnownPoissonRatioContradicted(double poisson_ratio,
+                                      double standard_error, Severity severity);
+/// Relative to the measured displacements.
+Finding LargeCorrection(double correction);
+/// `imbalance` is a share of the loads.
+Finding LoadsOutOfBalance(double imbalance, Severity severity);
+/// `ratio` is that of the residual to what the given noise explains, in
+/// standard deviations.
+Finding ResidualAboveNoise(ResidualKind kind, double ratio);
+/// Of a smooth residual that matters to the standard errors.
+Finding SmoothResidual(double correlation);
+/// Of one that is too large for a usable estimate; relative to the measurement.
+Finding LargeSmoothResidual(double smooth);
+Finding LargeResidual(double displacement_residual);
+/// By virtual-fields itself.
+Finding VirtualWorkImbalance();
+/// By the check of another method: `force_residual` is relative to the load.
+Finding VirtualWorkImbalance(double force_residual, Severity severity);
+Finding ModelDoesNotFitAtLimit();
+Finding ModelMismatchFinding(const ModelMismatch& mismatch);
+/// `change` is that of (ln E, nu) without the pull of the outliers.
+Finding Outliers(const Eigen::Vector2d& change);
+/// `load_cases` holds their numbers, from 1 on.  Precondition: not empty.
+Finding HeldNodesMoved(const std::vector<std::size_t>& load_cases);
+
+// What the method does to the estimate.
+/// `bias` of E is relative, and empty when it is as large as E.
+Finding YoungsModulusBias(const std::optional<double>& bias, bool is_bounded,
+                          Severity severity);
+Finding PoissonRatioBias(double bias, bool is_bounded, Severity severity);
+Finding YoungsModulusOnBound();
+Finding PoissonRatioOnBound();
+Finding PoissonRatioAtLimit();
+Finding Locking(ElementKind kind);
+/// Precondition: there is a discretisation error.
+std::string DescribeDiscretizationError(const Estimate& estimate);
+Finding DiscretizationErrorFinding(ElementKind kind, const Estimate& estimate);
+Finding LinearElementsFitAsWell(const IsotropicElasticity& linear);
+Finding TooManyElements();
+Finding SolverFallback(const std::string& notice);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_INTERFACE_FINDING_SENTENCES_H_

@@ -1,0 +1,94 @@
+#ifndef ELASTIMATE_ESTIMATORS_INTERFACE_LIMITS_H_
+#define ELASTIMATE_ESTIMATORS_INTERFACE_LIMITS_H_
+
+#include <Eigen/Core>
+
+namespace elastimate {
+
+/// Standard deviations of a normal distribution that hold 95 % of it, on both
+/// sides and on one, and their squares, the quantiles of chi^2.
+inline constexpr double kTwoSidedErrors = 1.960;
+inline constexpr double kOneSidedErrors = 1.645;
+inline constexpr double kTwoSidedQuantile = 3.841;
+inline constexpr double kOneSidedQuantile = 2.706;
+
+/// Where a number of an estimate becomes a finding or a status.  All of them
+/// stand here, and nowhere else; tolerances of algorithms (rounding,
+/// collinearity, convergence) stand with these.
+struct Limits {
+  // What chance explains.
+
+  /// In standard deviations: beyond, independent noise is no explanation.  Few
+  /// enough estimates are made for one in three million to be none.
+  double significant_score = 5;
+  /// Probability below which a disagreement of two estimates (ModelMismatch)
+  /// is one.  Larger than that of 5 standard scores: it only sends `auto` on.
+  double mismatch_significance = 1e-3;
+  /// Root mean square of the residuals over their robust standard deviation,
+  /// from which on outliers are looked for: 1 for Gaussian noise, 1.4 for
+  /// Laplacian.
+  double heavy_tails = 1.2;
+  /// Force residual over what the given noise explains: it is of so many rows
+  /// that any excess is significant, and noise that is not white gives some.
+  double excess_force_residual = 1.5;
+  /// Rows without those that fix the parameters, below which the noise is not
+  /// estimated: the variance of Student's t is infinite.
+  Eigen::Index least_redundancy = 3;
+
+  // What a user wants to be told of.
+
+  /// Relative error of E, and of the loads that it scales with.
+  double notable_youngs_modulus_error = 0.01;
+  /// Error of nu [1].
+  double notable_poisson_ratio_error = 0.01;
+  /// Discretisation error in standard errors: below, it does not show.
+  double notable_discretization_share = 0.5;
+  /// Share of the strain energy that the elements miss, from which on the
+  /// estimate says no more than that E is far too low.
+  double hopeless_discretization_error = 0.5;
+  /// nu from which on linear tetrahedra lock [1].
+  double locking_poisson_ratio = 0.45;
+  /// Motion of held nodes over that of the free ones (root of the square
+  /// sums): noise of measured supports is less.
+  double held_motion = 0.1;
+  /// Force residual over the load, below which noise need not be told from a
+  /// wrong model: neither can put E off by more.
+  double small_force_residual = 0.1;
+
+  // What is not usable.
+
+  /// Relative error of E that no standard error can stand for: bias of the
+  /// method, loads out of balance, what a bound or a given nu changes.
+  double unusable_error = 0.1;
+  /// Bias of nu [1]; it changes a bulk modulus at nu = 0.3 by 15 %.
+  double unusable_poisson_ratio_bias = 0.03;
+  /// Displacement residual, smooth part of it, or correction of the
+  /// displacements that balances the loads, over the measured displacements:
+  /// larger ones say that the model is another one than that of the experiment.
+  double large_residual = 0.2;
+  /// A standard error of nu above this says that the data do not determine nu:
+  /// its whole range for common materials is 0 to 0.5 [1].
+  double largest_poisson_ratio_error = 0.15;
+  /// A relative standard error of E above this says that the data do not
+  /// determine E: zero and infinity are within three standard errors.
+  double largest_youngs_modulus_error = 1.0 / 3;
+  /// An end of the 95 % interval of nu further than this from the estimate
+  /// says the same as its largest standard error [1].
+  double LargestPoissonRatioDistance() const {
+    return kTwoSidedErrors * largest_poisson_ratio_error;
+  }
+
+  // What is called determined.
+
+  /// Relative standard error of a modulus that is, where nu is not.
+  double determined_modulus = 0.1;
+  /// Ratio of two displacement residuals that are no noise, below which the
+  /// smaller is far better.
+  double far_better_residual = 0.5;
+};
+
+inline constexpr Limits kLimits{};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_INTERFACE_LIMITS_H_

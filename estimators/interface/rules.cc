@@ -1,0 +1,338 @@
+#include "elastimate/estimators/interface/rules.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "elastimate/estimators/interface/finding_sentences.h"
+#include "elastimate/estimators/interface/limits.h"
+
+namespace elastimate {
+namespace {
+
+using Result = std::optional<Finding>;
+
+Result JudgeLoadBalance(const Evidence& evidence, const EstimatorOptions&,
+                        const Estimate&) {
+  const double imbalance = evidence.load_imbalance.value_or(0);
+  if (!(imbalance > kLimits.notable_youngs_modulus_error)) {
+    return std::nullopt;
+  }
+  return LoadsOutOfBalance(imbalance, imbalance > kLimits.unusable_error
+                                          ? Severity::kError
+                                          : Severity::kWarning);
+}
+
+Result JudgeLoadWork(const Evidence& evidence, const EstimatorOptions&,
+                     const Estimate&) {
+  return evidence.do_loads_work ? Result() : LoadsDoNoWork();
+}
+
+Result JudgeSigns(const Evidence& evidence, const EstimatorOptions&,
+                  const Estimate&) {
+  return evidence.do_displacements_oppose_loads ? DisplacementsOpposeLoads()
+                                                : Result();
+}
+
+Result JudgeDivergence(const Evidence& evidence, const EstimatorOptions&,
+                       const Estimate&) {
+  return evidence.does_youngs_modulus_diverge ? YoungsModulusDiverges()
+                                              : Result();
+}
+
+Result JudgeFreeDirection(const Evidence& evidence, const EstimatorOptions&,
+                          const Estimate&) {
+  return evidence.free_direction
+             ? OneCombination(evidence.free_direction->at,
+                              evidence.free_direction->direction)
+             : Result();
+}
+
+Result JudgeEnd(const Evidence& evidence, const EstimatorOptions& options,
+                const Estimate&) {
+  switch (evidence.end) {
+    case End::kSingularStiffness:
+      return SingularStiffness();
+    case End::kSearchFailed:
+      return SearchFailed(evidence.search_message);
+    case End::kIterationLimit:
+      return NoConvergence(options.max_iterations);
+    case End::kNotCertified:  // Matters to what is usable otherwise.
+    case End::kDone:
+      break;
+  }
+  return std::nullopt;
+}
+
+Result JudgeLimitOfBiasedMethod(const Evidence& evidence,
+                                const EstimatorOptions&, const Estimate&) {
+  return evidence.is_biased_by_noise && evidence.active.is_physical_limit
+             ? PoissonRatioDivergesByNoise()
+             : Result();
+}
+
+Result JudgePhysics(const Evidence& evidence, const EstimatorOptions&,
+                    const Estimate& estimate) {
+  const IsotropicElasticity& elasticity = estimate.elasticity;
+  if (!evidence.is_biased_by_noise || elasticity.IsPhysical()) {
+    return std::nullopt;
+  }
+  const double nu = elasticity.poisson_ratio;
+  return nu > -1 && nu < 0.5 ? DisplacementsOpposeLoads()
+                             : UnphysicalByNoise(elasticity);
+}
+
+Result JudgeHiddenPoissonRatio(const Evidence& evidence,
+                               const EstimatorOptions&, const Estimate&) {
+  return evidence.is_poisson_ratio_hidden ? PoissonRatioHiddenByNoise()
+                                          : Result();
+}
+
+Result JudgeCount(const Evidence& evidence, const EstimatorOptions&,
+                  const Estimate&) {
+  return evidence.too_few_components
+             ? TooFewMeasurements(*evidence.too_few_components)
+             : Result();
+}
+
+Result NoteYoungsModulusOnBound(const Evidence& evidence,
+                                const EstimatorOptions&, const Estimate&) {
+  return evidence.active.youngs_modulus != Side::kNone ? YoungsModulusOnBound()
+                                                       : Result();
+}
+
+Result NotePoissonRatioOnBound(const Evidence& evidence,
+                               const EstimatorOptions&, const Estimate&) {
+  if (evidence.active.poisson_ratio == Side::kNone) {
+    return std::nullopt;
+  }
+  return evidence.active.is_physical_limit ? PoissonRatioAtLimit()
+                                           : PoissonRatioOnBound();
+}
+
+Result NoteResidualAboveNoise(const Evidence& evidence, const EstimatorOptions&,
+                              const Estimate&) {
+  return evidence.above_noise ? ResidualAboveNoise(evidence.above_noise->kind,
+                                                   evidence.above_noise->ratio)
+                              : Result();
+}
+
+Result NoteOutliers(const Evidence& evidence, const EstimatorOptions&,
+                    const Estimate&) {
+  return evidence.outlier_change && std::abs((*evidence.outlier_change)(0)) >
+                                        kLimits.notable_youngs_modulus_error
+             ? Outliers(*evidence.outlier_change)
+             : Result();
+}
+
+Result NoteSmoothResidual(const Evidence& evidence, const EstimatorOptions&,
+                          const Estimate& estimate) {
+  // An error that is not a number is that of E on a bound.
+  return evidence.smooth_residual_error &&
+                 !(*evidence.smooth_residual_error <=
+                   kLimits.notable_youngs_modulus_error)
+             ? SmoothResidual(*estimate.residual_correlation)
+             : Result();
+}
+
+Result NoteVirtualWork(const Evidence& evidence, const EstimatorOptions&,
+                       const Estimate&) {
+  return evidence.virtual_work_error.value_or(0) >
+                 kLimits.notable_youngs_modulus_error
+             ? VirtualWorkImbalance()
+             : Result();
+}
+
+// A bound that the data contradict leaves much that is no noise.
+Result JudgeBoundExcess(const Evidence& evidence, const EstimatorOptions&,
+                        const Estimate& estimate) {
+  if (!evidence.bound_excess) {
+    return std::nullopt;
+  }
+  const auto& [excess, variance, without] = *evidence.bound_excess;
+  const double change =
+      std::abs(without / estimate.elasticity.youngs_modulus - 1);
+  return change > kLimits.unusable_error &&
+                 excess > kLimits.significant_score *
+                              kLimits.significant_score * variance
+             ? BoundContradicted(without)
+             : Result();
+}
+
+Result JudgeYoungsModulusOnBound(const Evidence& evidence,
+                                 const EstimatorOptions& options,
+                                 const Estimate& estimate) {
+  const std::optional<ErrorsOnBound>& errors = evidence.youngs_modulus_on_bound;
+  // Not a number for a slope that the data do not determine.
+  if (!errors ||
+      (errors->youngs_modulus <= kLimits.largest_youngs_modulus_error &&
+       errors->poisson_ratio <= kLimits.largest_poisson_ratio_error)) {
+    return std::nullopt;
+  }
+  return options.known_poisson_ratio
+             ? YoungsModulusOnBoundUndetermined(errors->standard_error)
+             : YoungsModulusOnBoundUndetermined(estimate.elasticity,
+                                                {1, errors->slope});
+}
+
+Result JudgeLargeResidual(const Evidence& evidence, const EstimatorOptions&,
+                          const Estimate& estimate) {
+  if (!evidence.smooth_part) {
+    return std::nullopt;
+  }
+  if (*evidence.smooth_part > kLimits.large_residual) {
+    return LargeSmoothResidual(*evidence.smooth_part);
+  }
+  return *estimate.displacement_residual > kLimits.large_residual &&
+                 *evidence.smooth_part == 0 &&
+                 !evidence.is_explained_by_given_noise
+             ? LargeResidual(*estimate.displacement_residual)
+             : Result();
+}
+
+Result JudgeProfile(const Evidence& evidence, const EstimatorOptions&,
+                    const Estimate& estimate) {
+  if (!evidence.profile_interval) {
+    return std::nullopt;
+  }
+  const double nu = estimate.elasticity.poisson_ratio;
+  const double largest = kLimits.LargestPoissonRatioDistance();
+  const Interval& profile = *evidence.profile_interval;
+  if ((profile.lower == -1 && nu + 1 > largest) ||
+      (profile.upper == 0.5 && 0.5 - nu > largest)) {
+    return PoissonRatioBetween(profile, evidence.chance_interval.has_value());
+  }
+  if (!evidence.chance_interval) {
+    return std::nullopt;
+  }
+  const Interval& chance = *evidence.chance_interval;
+  return std::max(chance.upper - nu, nu - chance.lower) > largest
+             ? PoissonRatioBetween(chance, true)
+             : Result();
+}
+
+Result JudgePoissonRatioAtLimit(const Evidence& evidence,
+                                const EstimatorOptions&,
+                                const Estimate& estimate) {
+  if (!evidence.poisson_ratio_on_bound || !evidence.active.is_physical_limit) {
+    return std::nullopt;
+  }
+  if (evidence.active.poisson_ratio == Side::kLower) {
+    return PoissonRatioAtMinusOne();
+  }
+  return estimate.is_model_in_doubt ? ModelDoesNotFitAtLimit() : Result();
+}
+
+Result JudgePoissonRatioOnBound(const Evidence& evidence,
+                                const EstimatorOptions&,
+                                const Estimate& estimate) {
+  const std::optional<ErrorsOnBound>& errors = evidence.poisson_ratio_on_bound;
+  return errors &&
+                 errors->standard_error > kLimits.largest_poisson_ratio_error &&
+                 (evidence.active.is_physical_limit ||
+                  errors->youngs_modulus > kLimits.largest_youngs_modulus_error)
+             ? PoissonRatioOnBoundUndetermined(estimate.elasticity,
+                                               {errors->slope, 1})
+             : Result();
+}
+
+Result JudgeKnownPoissonRatio(const Evidence& evidence, const EstimatorOptions&,
+                              const Estimate& estimate) {
+  // Rounding has no standard error.
+  constexpr double kRounding = 1e-6;
+  if (!evidence.unbiased) {
+    return std::nullopt;
+  }
+  const auto& [nu, error, ratio] = *evidence.unbiased;
+  if (!(std::abs(nu - estimate.elasticity.poisson_ratio) >
+        kLimits.significant_score * error + kRounding)) {
+    return std::nullopt;
+  }
+  return KnownPoissonRatioContradicted(
+      nu, error,
+      std::abs(ratio - 1) <= kLimits.unusable_error ? Severity::kWarning
+                                                    : Severity::kError);
+}
+
+Result JudgeNoiseBias(const Evidence& evidence, const EstimatorOptions&,
+                      const Estimate&) {
+  if (!evidence.noise_bias) {
+    return std::nullopt;
+  }
+  const NoiseBias& bias = *evidence.noise_bias;
+  const bool is_bounded = evidence.active.Any();
+  const double of_youngs = std::abs(bias.youngs_modulus);
+  const double of_poisson = std::abs(bias.poisson_ratio);
+  if (!(of_youngs <= kLimits.unusable_error)) {
+    return YoungsModulusBias(std::isfinite(bias.youngs_modulus)
+                                 ? std::optional<double>(bias.youngs_modulus)
+                                 : std::nullopt,
+                             is_bounded, Severity::kError);
+  }
+  if (!(of_poisson <= kLimits.unusable_poisson_ratio_bias)) {
+    return PoissonRatioBias(bias.poisson_ratio, is_bounded, Severity::kError);
+  }
+  if (of_youngs > std::max(kLimits.notable_youngs_modulus_error,
+                           bias.youngs_modulus_error)) {
+    return YoungsModulusBias(bias.youngs_modulus, is_bounded,
+                             Severity::kWarning);
+  }
+  return of_poisson > std::max(kLimits.notable_poisson_ratio_error,
+                               bias.poisson_ratio_error)
+             ? PoissonRatioBias(bias.poisson_ratio, is_bounded,
+                                Severity::kWarning)
+             : Result();
+}
+
+Result JudgeWorkCheck(const Evidence& evidence, const EstimatorOptions&,
+                      const Estimate& estimate) {
+  switch (evidence.work_check) {
+    case WorkCheck::kIsMore:
+      return VirtualWorkImbalance(*estimate.force_residual, Severity::kWarning);
+    case WorkCheck::kContradicts:
+      return VirtualWorkImbalance(*estimate.force_residual, Severity::kError);
+    case WorkCheck::kIsNoise:
+    case WorkCheck::kNotMade:
+      break;
+  }
+  return std::nullopt;
+}
+
+Result JudgeCorrection(const Evidence& evidence, const EstimatorOptions&,
+                       const Estimate&) {
+  return evidence.correction.value_or(0) > kLimits.large_residual
+             ? LargeCorrection(*evidence.correction)
+             : Result();
+}
+
+Result JudgeCertificate(const Evidence& evidence, const EstimatorOptions&,
+                        const Estimate&) {
+  return evidence.end == End::kNotCertified ? FitNotCertified() : Result();
+}
+
+Result NoteSolver(const Evidence& evidence, const EstimatorOptions&,
+                  const Estimate&) {
+  return evidence.solver_notice.empty()
+             ? Result()
+             : SolverFallback(evidence.solver_notice);
+}
+
+}  // namespace
+
+const std::vector<Rule>& Rules() {
+  static const std::vector<Rule> rules = {
+      // Whether there is anything to estimate.
+      JudgeLoadBalance, JudgeLoadWork, JudgeSigns, JudgeDivergence,
+      JudgeFreeDirection, JudgeEnd, JudgeLimitOfBiasedMethod, JudgePhysics,
+      JudgeHiddenPoissonRatio, JudgeCount,
+      // What to say of a usable estimate.
+      NoteYoungsModulusOnBound, NotePoissonRatioOnBound, NoteResidualAboveNoise,
+      NoteOutliers, NoteSmoothResidual, NoteVirtualWork,
+      // Whether the data determine it, and the model explains them.
+      JudgeBoundExcess, JudgeYoungsModulusOnBound, JudgeLargeResidual,
+      JudgeProfile, JudgePoissonRatioAtLimit, JudgePoissonRatioOnBound,
+      JudgeKnownPoissonRatio, JudgeNoiseBias, JudgeWorkCheck, JudgeCorrection,
+      JudgeCertificate, NoteSolver};
+  return rules;
+}
+
+}  // namespace elastimate

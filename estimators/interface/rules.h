@@ -1,0 +1,25 @@
+#ifndef ELASTIMATE_ESTIMATORS_INTERFACE_RULES_H_
+#define ELASTIMATE_ESTIMATORS_INTERFACE_RULES_H_
+
+#include <optional>
+#include <vector>
+
+#include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/interface/evidence.h"
+#include "elastimate/estimators/interface/finding.h"
+
+namespace elastimate {
+
+/// What one rule says of an estimate; empty when nothing.
+using Rule = std::optional<Finding> (*)(const Evidence& evidence,
+                                        const EstimatorOptions& options,
+                                        const Estimate& estimate);
+
+/// All rules about evidence, in the order in which they are applied: of several
+/// errors the first is the reason of the status.
+const std::vector<Rule>& Rules();
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_INTERFACE_RULES_H_

@@ -1,0 +1,174 @@
+#include "elastimate/estimators/interface/finding_sentences.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace elastimate {
+namespace {
+
+TEST(TwoDigits, AreForSentences) {
+  EXPECT_EQ(TwoDigits(0), "0");
+  EXPECT_EQ(TwoDigits(0.01234), "0.012");
+  EXPECT_EQ(TwoDigits(-0.07), "-0.07");
+  EXPECT_EQ(TwoDigits(0.9951), "1");
+  EXPECT_EQ(TwoDigits(3), "3");
+  EXPECT_EQ(TwoDigits(99.9), "100");
+  EXPECT_EQ(TwoDigits(1234), "1200");
+  EXPECT_EQ(TwoDigits(1.26e7), "1.3e+07");
+  EXPECT_EQ(TwoDigits(std::numeric_limits<double>::infinity()), "inf");
+}
+
+Estimate WithCovariance(double youngs_sd, double nu_sd, double correlation) {
+  Estimate estimate;
+  estimate.elasticity = {100, 0.25};
+  const double covariance = correlation * youngs_sd * nu_sd;
+  estimate.covariance << youngs_sd * youngs_sd, covariance, covariance,
+      nu_sd * nu_sd;
+  return estimate;
+}
+
+TEST(PoissonRatioUndetermined, YoungsModulus) {
+  const std::string text =
+      PoissonRatioUndetermined(WithCovariance(1, 0.2, 0)).text;
+  EXPECT_NE(text.find("Young's modulus = 100 +- 1"), std::string::npos) << text;
+}
+
+TEST(PoissonRatioUndetermined, TheShearModulus) {
+  // mu = E / (2 (1 + nu)) keeps its value when dE / E = dnu / (1 + nu).
+  const std::string text =
+      PoissonRatioUndetermined(WithCovariance(0.2 / 1.25 * 100, 0.2, 0.999999))
+          .text;
+  EXPECT_NE(text.find("the shear modulus = 40 +- "), std::string::npos) << text;
+}
+
+TEST(PoissonRatioUndetermined, Nothing) {
+  const std::string text =
+      PoissonRatioUndetermined(WithCovariance(50, 0.5, 0)).text;
+  EXPECT_NE(text.find(", nor E, the shear or the bulk modulus to 10 %"),
+            std::string::npos)
+      << text;
+}
+
+TEST(OneCombination, NamesTheModulusThatStays) {
+  const IsotropicElasticity elasticity{100, 0.25};
+  EXPECT_NE(
+      OneCombination(elasticity, {0, 1}).text.find("Young's modulus = 100"),
+      std::string::npos);
+  EXPECT_NE(OneCombination(elasticity, {1 / 1.25, 1})
+                .text.find("the shear modulus = 40"),
+            std::string::npos);
+  EXPECT_NE(OneCombination(elasticity, {-2 / 0.5, 1})
+                .text.find("the bulk modulus = 66.6667"),
+            std::string::npos);
+  EXPECT_EQ(OneCombination(elasticity, {1, 0}).text.find(" = "),
+            std::string::npos);
+}
+
+// With the longest numbers that they print.
+std::vector<Finding> EveryFinding() {
+  constexpr double kLong = -1.23456e-100;
+  const IsotropicElasticity elasticity{kLong, kLong};
+  const Eigen::Vector2d direction(1, 1);
+  Estimate estimate = WithCovariance(0.2 / 1.25 * 100, 0.2, 0.999999);
+  estimate.discretization_error = 0.1234;
+  estimate.poisson_ratio_discretization_error = 0.1234;
+  Estimate hopeless = estimate;
+  hopeless.discretization_error = 0.9;
+  hopeless.element_order = 1;
+  std::vector<Finding> findings = Estimate().findings;
+  for (const Finding& finding :
+       {NotFinite(),
+        SingularStiffness(),
+        SearchFailed("reason"),
+        NoConvergence(1000),
+        FitNotCertified(),
+        Unphysical(elasticity),
+        UnphysicalByNoise(elasticity),
+        DisplacementsOpposeLoads(),
+        YoungsModulusDiverges(),
+        PoissonRatioAtMinusOne(),
+        PoissonRatioDivergesByNoise(),
+        LoadsDoNoWork(),
+        OneCombination({100, 0.25}, {1 / 1.25, 1}),
+        YoungsModulusOnBoundUndetermined({100, 0.25}, {1 / 1.25, 1}),
+        PoissonRatioOnBoundUndetermined({100, 0.25}, {1 / 1.25, 1}),
+        YoungsModulusOnBoundUndetermined(kLong),
+        PoissonRatioUndetermined(estimate),
+        PoissonRatioUndetermined(WithCovariance(50, 0.5, 0)),
+        PoissonRatioBetween({kLong, kLong}, true),
+        PoissonRatioBetween({kLong, kLong}, false),
+        PoissonRatioHiddenByNoise(),
+        YoungsModulusUndetermined(kLong, kLong),
+        TooFewMeasurements(100000),
+        BoundContradicted(kLong),
+        KnownPoissonRatioContradicted(kLong, kLong, Severity::kWarning),
+        LargeCorrection(kLong),
+        LoadsOutOfBalance(kLong, Severity::kError),
+        ResidualAboveNoise(ResidualKind::kDisplacement, kLong),
+        ResidualAboveNoise(ResidualKind::kForce, kLong),
+        ResidualAboveNoise(ResidualKind::kVirtualWork, kLong),
+        SmoothResidual(kLong),
+        LargeSmoothResidual(kLong),
+        LargeResidual(kLong),
+        VirtualWorkImbalance(),
+        VirtualWorkImbalance(kLong, Severity::kError),
+        VirtualWorkImbalance(kLong, Severity::kWarning),
+        ModelDoesNotFitAtLimit(),
+        ModelMismatchFinding({kLong, kLong, true}),
+        Outliers({kLong, kLong}),
+        HeldNodesMoved({1000}),
+        HeldNodesMoved({1000, 1001, 1002}),
+        YoungsModulusBias(kLong, true, Severity::kError),
+        YoungsModulusBias({}, false, Severity::kError),
+        YoungsModulusBias(kLong, false, Severity::kWarning),
+        PoissonRatioBias(kLong, true, Severity::kError),
+        PoissonRatioBias(kLong, false, Severity::kWarning),
+        YoungsModulusOnBound(),
+        PoissonRatioOnBound(),
+        PoissonRatioAtLimit(),
+        Locking(ElementKind::kTet4),
+        DiscretizationErrorFinding(ElementKind::kTet4, estimate),
+        DiscretizationErrorFinding(ElementKind::kHex8, hopeless),
+        LinearElementsFitAsWell(elasticity),
+        TooManyElements(),
+        SolverFallback("multigrid did not converge, so that the stiffness was "
+                       "factorised")}) {
+    findings.push_back(finding);
+  }
+  return findings;
+}
+
+TEST(FindingSentences, AreShort) {
+  for (const Finding& finding : EveryFinding()) {
+    SCOPED_TRACE(finding.text);
+    std::istringstream words(finding.text);
+    int num_words = 0;
+    for (std::string word; words >> word;) {
+      ++num_words;
+    }
+    EXPECT_GT(num_words, 3);
+    EXPECT_LE(num_words, 25);
+    EXPECT_FALSE(finding.advice.empty());
+    for (const std::string& sentence : {finding.text, finding.advice}) {
+      EXPECT_NE(sentence.back(), '.');
+      EXPECT_EQ(sentence.find(". "), std::string::npos);
+    }
+  }
+}
+
+TEST(FindingSentences, AreThereForEveryCode) {
+  for (const FindingCode code : AllFindingCodes()) {
+    bool is_there = false;
+    for (const Finding& finding : EveryFinding()) {
+      is_there = is_there || finding.code == code;
+    }
+    EXPECT_TRUE(is_there) << FindingCodeName(code);
+  }
+}
+
+}  // namespace
+}  // namespace elastimate

@@ -1,0 +1,160 @@
+#include "elastimate/estimators/interface/judge.h"
+
+#include <gtest/gtest.h>
+
+namespace elastimate {
+namespace {
+
+Estimate Measured() {
+  Estimate estimate;
+  estimate.elasticity = {100, 0.3};
+  estimate.covariance.setIdentity();
+  estimate.displacement_residual = 0.01;
+  estimate.force_residual = 0.01;
+  return estimate;
+}
+
+Estimate Judged(const Evidence& evidence,
+                const EstimatorOptions& options = EstimatorOptions()) {
+  Estimate estimate = Measured();
+  Judge(evidence, options, estimate);
+  return estimate;
+}
+
+TEST(Judge, AcceptsWhatNothingSpeaksAgainst) {
+  const Estimate estimate = Judged({});
+  EXPECT_TRUE(estimate.IsUsable());
+  EXPECT_TRUE(estimate.findings.empty());
+  EXPECT_EQ(estimate.message, "");
+  EXPECT_TRUE(estimate.covariance.isIdentity());
+}
+
+TEST(Judge, TakesTheFirstErrorForTheReason) {
+  Evidence evidence;
+  evidence.end = End::kSearchFailed;
+  evidence.correction = 1;
+  evidence.outlier_change = {0.5, 0};
+  Estimate estimate = Judged(evidence);
+  EXPECT_EQ(estimate.status, Status::kNumericalFailure);
+  EXPECT_TRUE(estimate.Has(FindingCode::kSearchFailed));
+  EXPECT_FALSE(estimate.Has(FindingCode::kLargeCorrection));
+  EXPECT_TRUE(estimate.Has(FindingCode::kOutliers));
+  evidence.do_displacements_oppose_loads = true;
+  estimate = Judged(evidence);
+  EXPECT_EQ(estimate.status, Status::kUnphysical);
+  EXPECT_FALSE(estimate.Has(FindingCode::kSearchFailed));
+}
+
+TEST(Judge, SaysTheSameWhenAskedAgain) {
+  Evidence evidence;
+  evidence.outlier_change = {0.5, 0};
+  evidence.active.youngs_modulus = Side::kUpper;
+  Estimate estimate = Judged(evidence);
+  EXPECT_TRUE(estimate.IsUsable());
+  EXPECT_FALSE(estimate.why_no_standard_error.empty());
+  ASSERT_EQ(estimate.findings.size(), 2U);
+  evidence.correction = 1;
+  for (int i = 0; i < 2; ++i) {
+    Judge(evidence, {}, estimate);
+    EXPECT_EQ(estimate.status, Status::kNotIdentifiable);
+    EXPECT_EQ(estimate.findings.size(), 3U);
+    EXPECT_TRUE(estimate.covariance.array().isNaN().all());
+  }
+}
+
+TEST(Judge, WarnsBeforeItRefuses) {
+  const auto severity_of = [](const Evidence& evidence) {
+    const Estimate estimate = Judged(evidence);
+    EXPECT_LE(estimate.findings.size(), 1U);
+    return estimate.findings.empty() ? Severity::kNotice
+                                     : estimate.findings.front().severity;
+  };
+  Evidence imbalance;
+  Evidence bias;
+  Evidence contradicted;
+  for (const auto& [size, severity] : {std::pair(0.005, Severity::kNotice),
+                                       std::pair(0.05, Severity::kWarning),
+                                       std::pair(0.15, Severity::kError)}) {
+    imbalance.load_imbalance = size;
+    EXPECT_EQ(severity_of(imbalance), severity) << size;
+    bias.noise_bias = {size, 0, 0, 0};
+    EXPECT_EQ(severity_of(bias), severity) << size;
+    bias.noise_bias = {-size, 0, 0, 0};
+    EXPECT_EQ(severity_of(bias), severity) << size;
+    // The score decides whether, the change of E how bad it is.
+    contradicted.unbiased = {0.4, size < 0.01 ? 0.1 : 0.001, 1 + size};
+    EXPECT_EQ(severity_of(contradicted), severity) << size;
+  }
+  bias.noise_bias = {0.02, 0.02, 0.03, 0.03};
+  EXPECT_EQ(severity_of(bias), Severity::kNotice);
+  bias.noise_bias = {0.02, 0.04, 0.03, 0.03};
+  EXPECT_EQ(severity_of(bias), Severity::kError);
+}
+
+TEST(Judge, ABoundIsContradictedWhereItMattersAndIsSignificant) {
+  Evidence evidence;
+  evidence.bound_excess = {26, 1, 120};
+  EXPECT_TRUE(Judged(evidence).Has(FindingCode::kBoundContradicted));
+  evidence.bound_excess = {24, 1, 120};
+  EXPECT_TRUE(Judged(evidence).IsUsable());
+  evidence.bound_excess = {26, 1, 105};
+  EXPECT_TRUE(Judged(evidence).IsUsable());
+}
+
+TEST(Judge, ABoundThatLeavesTooMuchRoomIsNoEstimate) {
+  EstimatorOptions known;
+  known.known_poisson_ratio = 0.3;
+  Evidence evidence;
+  evidence.youngs_modulus_on_bound = {0.3, 0, 0.3, 0.1};
+  EXPECT_TRUE(Judged(evidence).IsUsable());
+  evidence.youngs_modulus_on_bound = {0.4, 0, 0.4, 0.1};
+  EXPECT_TRUE(Judged(evidence).Has(FindingCode::kYoungsModulusUndetermined));
+  EXPECT_TRUE(
+      Judged(evidence, known).Has(FindingCode::kYoungsModulusUndetermined));
+  // The slope of data that do not determine it.
+  evidence.youngs_modulus_on_bound = {0.3, Estimate::kUnknown, 0.3,
+                                      Estimate::kUnknown};
+  EXPECT_FALSE(Judged(evidence).IsUsable());
+}
+
+TEST(Judge, AnIntervalThatReachesAFarEndSaysNothing) {
+  Evidence evidence;
+  evidence.profile_interval = {0.1, 0.5};
+  EXPECT_TRUE(Judged(evidence).IsUsable());
+  evidence.profile_interval = {-1, 0.4};
+  EXPECT_TRUE(Judged(evidence).Has(FindingCode::kPoissonRatioUndetermined));
+  evidence.profile_interval = {-0.3, 0.4};
+  EXPECT_TRUE(Judged(evidence).IsUsable());
+  evidence.chance_interval = evidence.profile_interval;
+  EXPECT_TRUE(Judged(evidence).Has(FindingCode::kPoissonRatioUndetermined));
+}
+
+TEST(Judge, ALargeResidualThatIsSmoothIsNoNoise) {
+  Evidence evidence;
+  evidence.smooth_part = 0.25;
+  EXPECT_EQ(Judged(evidence).status, Status::kNotIdentifiable);
+  evidence.smooth_part = 0.15;
+  EXPECT_TRUE(Judged(evidence).findings.empty());
+  evidence.smooth_part = 0;
+  Estimate estimate = Measured();
+  estimate.displacement_residual = 0.25;
+  Judge(evidence, {}, estimate);
+  EXPECT_TRUE(estimate.IsUsable());
+  EXPECT_TRUE(estimate.Has(FindingCode::kLargeResidual));
+}
+
+TEST(AcceptElements, TakesBackTheDiscretizationErrorAlone) {
+  Estimate estimate = Judged({});
+  estimate.discretization_error = 0.3;
+  estimate.Add({FindingCode::kLocking, Severity::kWarning, "a", "b"});
+  estimate.Add(
+      {FindingCode::kDiscretizationError, Severity::kWarning, "a", "b"});
+  ASSERT_TRUE(IsDiscretizationErrorNotable(estimate));
+  AcceptElements(estimate);
+  EXPECT_FALSE(IsDiscretizationErrorNotable(estimate));
+  EXPECT_TRUE(estimate.Has(FindingCode::kLocking));
+  EXPECT_FALSE(estimate.Has(FindingCode::kDiscretizationError));
+}
+
+}  // namespace
+}  // namespace elastimate
