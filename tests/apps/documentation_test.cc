@@ -12,9 +12,12 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "elastimate/estimators/interface/finding.h"
+#include "elastimate/estimators/registry.h"
 #include "tests/program.h"
 
 namespace elastimate {
@@ -206,6 +209,23 @@ TEST_F(Documentation, HasEveryEstimator) {
   for (const std::string document : {"README.md", "docs/estimators.md"}) {
     EXPECT_EQ(NamesAfter("\n| `", testing::ReadText(Source(document))), names)
         << document;
+  }
+}
+
+TEST_F(Documentation, SaysWhatEachEstimatorTakes) {
+  const std::string text = testing::ReadText(Source("docs/estimators.md"));
+  for (const std::string_view name : EstimatorNames()) {
+    const Capabilities takes = MakeEstimator(name)->WhatItTakes();
+    std::string row = "\n| " + std::string(name) + " |";
+    for (const auto& [is_set, word] :
+         {std::pair(takes.needs_all_displacements, " needed |"),
+          std::pair(takes.needs_supports, " needed |"),
+          std::pair(takes.takes_bounds, " taken |"),
+          std::pair(takes.takes_losses, " taken |"),
+          std::pair(takes.takes_degree, " taken |")}) {
+      row += is_set ? word : " |";
+    }
+    EXPECT_NE(text.find(row + "\n"), std::string::npos) << row;
   }
 }
 
