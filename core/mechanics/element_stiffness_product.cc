@@ -22,10 +22,44 @@ void Scatter(const NodeVectors<kKind>& of_element, const int* nodes,
   }
 }
 
+// What one column gives to the nodes of an element.
 template <ElementKind kKind>
-void AddOfKind(const Mesh& mesh, const Eigen::MatrixXd& displacement,
-               Eigen::MatrixXd& a, Eigen::MatrixXd& p) {
-  constexpr int kDimension = ElementSizes<kKind>::kDimension;
+struct ElementProducts {
+  NodeVectors<kKind> of_strain = NodeVectors<kKind>::Zero();
+  NodeVectors<kKind> of_trace = NodeVectors<kKind>::Zero();
+
+  void Add(const ElementPoint<kKind>& point, const NodeVectors<kKind>& u) {
+    constexpr int kDimension = ElementSizes<kKind>::kDimension;
+    Eigen::Matrix<double, kDimension, kDimension> gradient;
+    gradient.noalias() = u * point.gradient.transpose();
+    const double trace = point.volume * gradient.trace();
+    const Eigen::Matrix<double, kDimension, kDimension> strain =
+        (point.volume / 2) * (gradient + gradient.transpose());
+    of_strain.noalias() += strain * point.gradient;
+    of_trace.noalias() += trace * point.gradient;
+  }
+};
+
+// One column, whose points need not be kept.
+template <ElementKind kKind>
+void AddColumn(const Mesh& mesh, const double* displacement, double* a,
+               double* p) {
+  const auto& rule = StiffnessRule<kKind>();
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    const NodeVectors<kKind> u = GatherNodes<kKind>(mesh, e, displacement);
+    ElementProducts<kKind> products;
+    VisitPoints<kKind>(mesh, e, rule, [&](const auto& point, const auto&) {
+      products.Add(point, u);
+    });
+    const int* const nodes = mesh.elements.col(e).data();
+    Scatter<kKind>(products.of_strain, nodes, a);
+    Scatter<kKind>(products.of_trace, nodes, p);
+  }
+}
+
+template <ElementKind kKind>
+void AddColumns(const Mesh& mesh, const Eigen::MatrixXd& displacement,
+                Eigen::MatrixXd& a, Eigen::MatrixXd& p) {
   const auto& rule = StiffnessRule<kKind>();
   std::vector<ElementPoint<kKind>> points;
   points.reserve(rule.size());
@@ -38,19 +72,12 @@ void AddOfKind(const Mesh& mesh, const Eigen::MatrixXd& displacement,
     for (Eigen::Index column = 0; column < displacement.cols(); ++column) {
       const NodeVectors<kKind> u =
           GatherNodes<kKind>(mesh, e, displacement.col(column).data());
-      NodeVectors<kKind> of_strain = NodeVectors<kKind>::Zero();
-      NodeVectors<kKind> of_trace = NodeVectors<kKind>::Zero();
+      ElementProducts<kKind> products;
       for (const ElementPoint<kKind>& point : points) {
-        Eigen::Matrix<double, kDimension, kDimension> gradient;
-        gradient.noalias() = u * point.gradient.transpose();
-        const double trace = point.volume * gradient.trace();
-        const Eigen::Matrix<double, kDimension, kDimension> strain =
-            (point.volume / 2) * (gradient + gradient.transpose());
-        of_strain.noalias() += strain * point.gradient;
-        of_trace.noalias() += trace * point.gradient;
+        products.Add(point, u);
       }
-      Scatter<kKind>(of_strain, nodes, a.col(column).data());
-      Scatter<kKind>(of_trace, nodes, p.col(column).data());
+      Scatter<kKind>(products.of_strain, nodes, a.col(column).data());
+      Scatter<kKind>(products.of_trace, nodes, p.col(column).data());
     }
   }
 }
@@ -59,8 +86,13 @@ void AddOfKind(const Mesh& mesh, const Eigen::MatrixXd& displacement,
 
 void AddStrainProducts(const Mesh& mesh, const Eigen::MatrixXd& displacement,
                        Eigen::MatrixXd& a, Eigen::MatrixXd& p) {
-  VisitElementKind(
-      mesh.kind, [&](auto kind) { AddOfKind<kind>(mesh, displacement, a, p); });
+  VisitElementKind(mesh.kind, [&](auto kind) {
+    if (displacement.cols() == 1) {
+      AddColumn<kind>(mesh, displacement.data(), a.data(), p.data());
+    } else {
+      AddColumns<kind>(mesh, displacement, a, p);
+    }
+  });
 }
 
 }  // namespace elastimate
