@@ -52,7 +52,7 @@ TEST_F(CommandLine, HelpNamesEveryCommandAndFlag) {
   const std::string help = Succeed("--help").output;
   for (const std::string words :
        {"elastimate estimate SCENE...", "elastimate simulate SCENE",
-        "elastimate generate cuboid|organ", "elastimate estimators",
+        "elastimate generate cuboid|organ|rectangle", "elastimate estimators",
         "--estimator", "--nu_min", "--youngs_max", "--noise_sd", "--loss",
         "--noise_law", "--json", "--out", "--cells", "Exit code"}) {
     EXPECT_NE(help.find(words), std::string::npos) << words;
@@ -497,8 +497,10 @@ TEST_F(CommandLine, RefusesWrongSimulations) {
 }
 
 TEST_F(CommandLine, RefusesWrongGeometriesByTheirFlags) {
-  Refuse("generate sphere --out=a.vtu", "cuboid or organ; it got sphere");
-  Refuse("generate --out=a.vtu", "one geometry, cuboid or organ; it got none");
+  Refuse("generate sphere --out=a.vtu",
+         "cuboid, organ or rectangle; it got sphere");
+  Refuse("generate --out=a.vtu",
+         "one geometry, cuboid, organ or rectangle; it got none");
   Refuse("generate cuboid", "needs --out");
   const std::string cuboid = "generate cuboid --out=a.vtu ";
   Refuse(cuboid + "--tetrahedra=9", "takes no flag --tetrahedra");
@@ -1081,7 +1083,7 @@ class QuadraticElements : public CommandLine {
 
   /// The array of a result as the displacement of a scene that names it.
   Eigen::MatrixXd Array(const std::string& file,
-                         const std::string& array) const {
+                        const std::string& array) const {
     WriteText(folder_ / "array.json", R"({
       "mesh": ")" + file + R"(", "supports": [],
       "cases": [{"displacement": {"array": ")" +
@@ -1158,8 +1160,7 @@ TEST_F(QuadraticElements, ReactionsBalanceTheLoads) {
 
 TEST_F(QuadraticElements, NoiseIsRelativeToTheVertices) {
   MakeMeasuredScene();
-  const Eigen::MatrixXd exact =
-      Read("measured.vtu").load_cases[0].displacement;
+  const Eigen::MatrixXd exact = Read("measured.vtu").load_cases[0].displacement;
   MakeMeasuredScene("--noise=0.1 --seed=7");
   const Eigen::MatrixXd noise =
       Read("measured.vtu").load_cases[0].displacement - exact;
