@@ -31,10 +31,23 @@ void CheckOrderFlag() {
   }
 }
 
-std::optional<Scene> QuadraticSceneIfAsked(const Scene& scene,
+std::optional<Scene> QuadraticSceneIfAsked(const std::string& source,
+                                           const Scene& scene,
                                            std::vector<std::string>& notices) {
-  if (FLAGS_order == 1) {
+  const std::string shapes(scene.mesh.Topology().shapes);
+  if (scene.mesh.Order() == 2 && IsGiven("order") && FLAGS_order == 1) {
+    throw std::invalid_argument(AsGiven("order") + ": " + source +
+                                " has quadratic " + shapes +
+                                "; leave the flag out, or give a linear mesh");
+  }
+  if (FLAGS_order == 1 || scene.mesh.Order() == 2) {
     return std::nullopt;
+  }
+  if (!HasQuadraticKind(scene.mesh.kind)) {
+    throw std::invalid_argument(AsGiven("order") + ": " + source + " has " +
+                                shapes +
+                                ", of which there are linear ones only; leave "
+                                "the flag out");
   }
   if (HasNodalForces(scene)) {
     notices.emplace_back(

@@ -12,9 +12,12 @@ namespace elastimate {
 /// Throws std::invalid_argument unless --order is an element order.
 void CheckOrderFlag();
 
-/// QuadraticScene with --order=2, nothing with --order=1.  Adds a notice of
-/// what becomes of nodal forces.
-std::optional<Scene> QuadraticSceneIfAsked(const Scene& scene,
+/// QuadraticScene with --order=2 of a scene of linear elements, else nothing.
+/// Adds a notice of what becomes of nodal forces.  Throws
+/// std::invalid_argument, naming the flag and `source`, where there are no
+/// quadratic elements for the scene, and for --order=1 of one that has them.
+std::optional<Scene> QuadraticSceneIfAsked(const std::string& source,
+                                           const Scene& scene,
                                            std::vector<std::string>& notices);
 
 /// Whether every load of the scene is one of nodal forces.

@@ -13,6 +13,7 @@
 #include "apps/outputs.h"
 #include "apps/progress.h"
 #include "apps/result_fields.h"
+#include "apps/section_flags.h"
 #include "apps/summary.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/estimators/registry.h"
@@ -32,8 +33,8 @@ double SecondsSince(Clock::time_point start) {
 }
 
 SceneReading Read(const std::vector<std::string>& arguments) {
-  SceneReading reading =
-      ReadScene({arguments.begin(), arguments.end()}, Measurement::kRequired);
+  SceneReading reading = ReadScene({arguments.begin(), arguments.end()},
+                                   Measurement::kRequired, SectionFromFlags());
   if (IsGiven("noise_sd")) {
     for (LoadCase& load_case : reading.scene.load_cases) {
       load_case.noise_sd = FLAGS_noise_sd;
@@ -101,7 +102,7 @@ int RunEstimate(const std::vector<std::string>& arguments) {
   const double read_seconds = SecondsSince(start);
   const Scene& scene = reading.scene;
   const std::optional<Scene> quadratic =
-      QuadraticSceneIfAsked(scene, reading.notices);
+      QuadraticSceneIfAsked(Sources(arguments), scene, reading.notices);
   const Scene& modelled = quadratic ? *quadratic : scene;
 
   progress->Show(FLAGS_estimator);
@@ -122,7 +123,8 @@ int RunEstimate(const std::vector<std::string>& arguments) {
     progress->Show("writing " + PrintablePath(FLAGS_out));
     files.Add(FLAGS_out, VtuContent(FLAGS_out, scene.mesh,
                                     ResultFields(scene, reported, estimate,
-                                                 options.solver)));
+                                                 options.solver),
+                                    reading.file_order));
   }
   progress.reset();
 

@@ -25,8 +25,17 @@ DEFINE_string(noise_law, "uniform", "uniform or gaussian");
 DEFINE_string(loss, "none", "treatment of outliers: none, huber or cauchy");
 DEFINE_int32(degree, 2, "degree of the polynomial virtual fields, 1 to 3");
 DEFINE_int32(order, 1,
-             "element order: 1 for linear tetrahedra, 2 for quadratic ones on "
-             "the same mesh (not with estimators of the force residual)");
+             "element order of tetrahedra and triangles: 1 for linear ones, 2 "
+             "for quadratic ones on the same mesh (not with estimators of the "
+             "force residual); a quadratic mesh stays one");
+DEFINE_string(model, "",
+              "what a mesh is a section of: plane_stress or plane_strain for a "
+              "planar one, 3d for a solid; overrides that of the scene "
+              "(generate: of the rectangle, plane_stress without this flag)");
+DEFINE_double(thickness, 0,
+              "thickness of a planar specimen, positive [length]; overrides "
+              "that of the scene (generate: of the rectangle, 0.001 without "
+              "this flag)");
 DEFINE_string(solver, "automatic",
               "how displacements are solved for: cholesky, multigrid, or "
               "automatic, which is multigrid for large scenes");
@@ -38,16 +47,22 @@ DEFINE_uint64(seed, 1,
               "estimators are deterministic)");
 DEFINE_string(json, "", "report as JSON to this file, - for standard output");
 DEFINE_string(out, "", "VTU file to write; its name ends in .vtu");
+DEFINE_string(elements, "",
+              "tet4 (the default) or hex8 for the cuboid, quad4 (the default) "
+              "or tri3 for the rectangle");
 DEFINE_string(cells, "5,5,2",
               "of the cuboid: cells along x,y,z, integers from 1 on whose "
-              "product is at most 2000000; five tetrahedra each");
+              "product is at most 2000000; five tetrahedra or one hexahedron "
+              "each.  Of the rectangle: along x,y; 20,4 without this flag");
 DEFINE_string(size, "1,1,0.4",
               "of the cuboid: edge lengths along x,y,z, from 1e-50 to 1e50 "
-              "[length]");
+              "[length].  Of the rectangle: along x,y; 0.1,0.02 without this "
+              "flag");
 DEFINE_string(force, "",
               "force along x,y,z on every free node, of magnitude 1e-50 to "
               "1e50 or zero [force] (default 0,0,-30 for the cuboid, 0,0,-0.02 "
-              "for the organ)");
+              "for the organ); of the rectangle: total force along x,y on its "
+              "end, 1000,0 without this flag");
 DEFINE_int32(tetrahedra, 1970,
              "of the organ: number of tetrahedra within 5 %, from 200 to "
              "2000000");
@@ -64,17 +79,18 @@ const Program& Elastimate() {
         "Young's modulus and Poisson's ratio of a scene (VTK, Gmsh or "
         "scene.json); several files are further load cases",
         {"estimator", "nu", "nu_min", "nu_max", "youngs_min", "youngs_max",
-         "order", "noise_sd", "loss", "degree", "solver", "threads", "seed",
-         "json", "out"}},
+         "model", "thickness", "order", "noise_sd", "loss", "degree", "solver",
+         "threads", "seed", "json", "out"}},
        {"simulate",
         "SCENE",
         "displacements of a scene for given parameters, with noise if wanted",
-        {"youngs", "nu", "order", "noise", "noise_law", "seed", "solver",
-         "threads", "out"}},
+        {"youngs", "nu", "model", "thickness", "order", "noise", "noise_law",
+         "seed", "solver", "threads", "out"}},
        {"generate",
-        "cuboid|organ",
+        "cuboid|organ|rectangle",
         "an example geometry with supports and forces",
-        {"cells", "size", "tetrahedra", "length", "force", "out"}},
+        {"elements", "cells", "size", "tetrahedra", "length", "model",
+         "thickness", "force", "out"}},
        {"estimators", "", "lists the estimators", {}}}};
   return program;
 }

@@ -15,42 +15,45 @@ std::string CaseSuffix(Eigen::Index load_case) {
   return load_case == 0 ? "" : "_" + std::to_string(load_case + 1);
 }
 
-// K u - f, where u is 3 num_nodes x num_load_cases.
+// K u - f, where u is num_dofs x num_load_cases.
 Eigen::MatrixXd Imbalance(const Scene& scene,
                           const IsotropicElasticity& elasticity,
                           const Eigen::MatrixXd& displacement,
                           const Eigen::MatrixXd& force) {
   const StiffnessProducts products =
       MultiplyStiffnessBasis(scene.mesh, displacement);
-  return elasticity.StiffnessScale(SectionModel::kSolid) *
+  return elasticity.StiffnessScale(scene.mesh.section.model) *
              (products.h + elasticity.poisson_ratio * products.j) -
          force;
 }
 
 class FieldCollector {
  public:
-  // Shows the first `num_points` nodes, which are the vertices.
-  FieldCollector(Eigen::Index num_points, Fields& fields)
-      : num_points_(num_points), fields_(fields) {}
+  // Shows the first nodes, which are those of `shown`.
+  FieldCollector(const Mesh& shown, Fields& fields)
+      : shown_(shown), fields_(fields) {}
 
   void AddPoint(const std::string& name, Eigen::Index load_case,
                 const Eigen::MatrixXd& all) {
     fields_.point.push_back(
         {name + CaseSuffix(load_case),
-         all.col(load_case).head(3 * num_points_).reshaped(3, num_points_)});
+         all.col(load_case)
+             .head(shown_.NumDofs())
+             .reshaped(shown_.Dimension(), shown_.NumNodes())});
   }
 
   void AddStrainEnergy(const Mesh& mesh, const IsotropicElasticity& elasticity,
                        Eigen::Index load_case, const Eigen::MatrixXd& all) {
     fields_.cell.push_back(
         {"strain_energy_density" + CaseSuffix(load_case),
-         StrainEnergyDensity(mesh, elasticity,
-                             all.col(load_case).reshaped(3, mesh.NumNodes()))
+         StrainEnergyDensity(
+             mesh, elasticity,
+             all.col(load_case).reshaped(mesh.Dimension(), mesh.NumNodes()))
              .transpose()});
   }
 
  private:
-  Eigen::Index num_points_;
+  const Mesh& shown_;
   Fields& fields_;
 };
 
@@ -58,12 +61,14 @@ Eigen::MatrixXd MeasuredMinus(const Scene& scene,
                               const Eigen::MatrixXd& displacement) {
   Eigen::MatrixXd difference =
       Eigen::MatrixXd::Zero(displacement.rows(), displacement.cols());
+  const int dimension = scene.mesh.Dimension();
   for (Eigen::Index k = 0; k < displacement.cols(); ++k) {
     const LoadCase& load_case = scene.load_cases[k];
     for (Eigen::Index dof = 0; dof < displacement.rows(); ++dof) {
-      if (IsObserved(load_case, dof % 3, dof / 3)) {
-        difference(dof, k) =
-            load_case.displacement(dof % 3, dof / 3) - displacement(dof, k);
+      const Eigen::Index node = dof / dimension;
+      if (IsObserved(load_case, dof % dimension, node)) {
+        difference(dof, k) = load_case.displacement(dof % dimension, node) -
+                             displacement(dof, k);
       }
     }
   }
@@ -78,7 +83,7 @@ Fields ResultFields(const Scene& scene, const Scene& modelled,
   if (!estimate.elasticity.IsPhysical()) {
     return fields;
   }
-  FieldCollector collector(scene.mesh.NumNodes(), fields);
+  FieldCollector collector(scene.mesh, fields);
   const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
   if (!WhyNotHeld(scene.mesh, scene.supports).empty()) {
     const Eigen::MatrixXd force = AssembleLoadCases(scene);
@@ -102,10 +107,12 @@ Fields ResultFields(const Scene& scene, const Scene& modelled,
   const Eigen::MatrixXd difference = MeasuredMinus(modelled, fitted);
   const Eigen::MatrixXd imbalance =
       Imbalance(modelled, estimate.elasticity, fitted, force);
+  const Eigen::MatrixXd held_imbalance = modelled.supports.held.reshaped()
+                                             .replicate(1, num_cases)
+                                             .select(imbalance.array(), 0.0);
   const Eigen::MatrixXd reaction =
-      VertexForces(modelled.mesh, modelled.supports.held.reshaped()
-                                      .replicate(1, num_cases)
-                                      .select(imbalance.array(), 0.0));
+      scene.mesh.Order() == 2 ? held_imbalance
+                              : VertexForces(modelled.mesh, held_imbalance);
   for (Eigen::Index k = 0; k < num_cases; ++k) {
     collector.AddPoint("fitted_displacement", k, fitted);
     collector.AddPoint("displacement_residual", k, difference);

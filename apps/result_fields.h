@@ -10,11 +10,12 @@ namespace elastimate {
 
 /// The scene with what the estimate makes of it, for each load case (k > 1
 /// with suffix `_k`).  `modelled` is the scene that was estimated: `scene`, or
-/// its QuadraticScene, of which the values at the vertices are shown.
+/// its QuadraticScene, of which the values at the vertices are shown, which are
+/// the nodes of `scene`.
 ///
 /// With a physical E and nu and a specimen that is held: `fitted_displacement`,
 /// `displacement_residual` (measured minus fitted where observed, else zero),
-/// `reaction_force` at the held degrees of freedom (of quadratic elements, with
+/// `reaction_force` at the held degrees of freedom (of a QuadraticScene, with
 /// half of the reaction at each mid-edge node at either end of its edge, which
 /// keeps resultant and moment: VertexForces), and per cell the
 /// `strain_energy_density` of the fitted displacement.  When nothing holds the

@@ -9,6 +9,7 @@
 #include "apps/flags.h"
 #include "apps/outputs.h"
 #include "apps/progress.h"
+#include "apps/section_flags.h"
 #include "elastimate/core/equilibrium/forward_model.h"
 #include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/core/mesh/representable.h"
@@ -59,7 +60,8 @@ int RunSimulate(const std::vector<std::string>& arguments) {
   ApplyComputingFlags();
   CheckOutputFlags(arguments);
   std::optional<Progress> progress("reading " + PrintablePath(arguments[0]));
-  SceneReading reading = ReadScene({arguments[0]}, Measurement::kOptional);
+  SceneReading reading =
+      ReadScene({arguments[0]}, Measurement::kOptional, SectionFromFlags());
   Scene& scene = reading.scene;
 
   progress->Show("factorising");
@@ -68,8 +70,8 @@ int RunSimulate(const std::vector<std::string>& arguments) {
     throw std::invalid_argument(PrintablePath(arguments[0]) + ": " +
                                 why_not_held);
   }
-  const std::optional<Scene> quadratic =
-      QuadraticSceneIfAsked(scene, reading.notices);
+  const std::optional<Scene> quadratic = QuadraticSceneIfAsked(
+      PrintablePath(arguments[0]), scene, reading.notices);
   const Scene& modelled = quadratic ? *quadratic : scene;
   ForwardModel model(modelled.mesh, modelled.supports,
                      AssembleLoadCases(modelled), solver);
@@ -79,9 +81,9 @@ int RunSimulate(const std::vector<std::string>& arguments) {
         ": the stiffness matrix is singular to working precision; check the "
         "mesh for slivers and --nu");
   }
-  // At the vertices, which come first: what is measured and written.
+  // At the nodes of the scene, which come first: what is measured and written.
   Eigen::MatrixXd displacement = model.Displacement(elasticity.youngs_modulus)
-                                     .topRows(3 * scene.mesh.NumNodes());
+                                     .topRows(scene.mesh.NumDofs());
   const DegreesOfFreedom dofs(scene.supports);
   const NoiseLaw law =
       FLAGS_noise_law == "uniform" ? NoiseLaw::kUniform : NoiseLaw::kGaussian;
@@ -94,8 +96,8 @@ int RunSimulate(const std::vector<std::string>& arguments) {
       displacement.col(k) +=
           dofs.Extend(DrawNoise(law, dofs.NumFree(), norm, generator));
     }
-    load_case.displacement =
-        displacement.col(k).reshaped(3, scene.mesh.NumNodes());
+    load_case.displacement = displacement.col(k).reshaped(
+        scene.mesh.Dimension(), scene.mesh.NumNodes());
   }
   try {
     RequireRepresentable(displacement.allFinite()
@@ -115,7 +117,7 @@ int RunSimulate(const std::vector<std::string>& arguments) {
         PrintablePath(FLAGS_out));
   }
   progress->Show("writing " + PrintablePath(FLAGS_out));
-  WriteVtu(FLAGS_out, scene.mesh, SceneFields(scene));
+  WriteVtu(FLAGS_out, scene.mesh, SceneFields(scene), reading.file_order);
   progress.reset();
   if (!model.Notice().empty()) {
     reading.notices.push_back(model.Notice());

@@ -95,7 +95,7 @@ std::string Solving(const Work& work) {
          solves + " in " + std::to_string(work.iterations) + " iterations, ";
 }
 
-std::string Triple(const Eigen::Vector3d& values) {
+std::string Vector(const Eigen::VectorXd& values) {
   // What is left of zero by rounding is zero.
   const double rounding = 1e-12 * values.cwiseAbs().maxCoeff();
   std::string text;
@@ -110,14 +110,14 @@ std::string Triple(const Eigen::Vector3d& values) {
 void AddLoads(const std::string& name, const Mesh& mesh,
               const std::vector<Load>& loads, std::ostringstream& text) {
   constexpr std::size_t kMany = 4;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(mesh.Dimension());
   for (const Load& load : loads) {
     const LoadResultant resultant = ResultantOf(mesh, load);
     sum += resultant.force;
     if (loads.size() <= kMany) {
       Line(name,
            std::string(resultant.type) + ", resultant " +
-               Triple(resultant.force) +
+               Vector(resultant.force) +
                (resultant.area ? " on an area of " + Number(*resultant.area, 4)
                                : ""),
            text);
@@ -125,7 +125,7 @@ void AddLoads(const std::string& name, const Mesh& mesh,
   }
   if (loads.size() > kMany) {
     Line(name,
-         std::to_string(loads.size()) + " loads, resultant " + Triple(sum),
+         std::to_string(loads.size()) + " loads, resultant " + Vector(sum),
          text);
   }
 }
@@ -155,10 +155,19 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
   Line("scene",
        std::to_string(scene.mesh.NumVertices()) + " nodes, " +
            std::to_string(scene.mesh.NumElements()) +
-           (scene.mesh.Order() == 2 ? " quadratic" : "") + " tetrahedra, " +
+           (scene.mesh.Order() == 2 ? " quadratic " : " ") +
+           std::string(scene.mesh.Topology().shapes) + ", " +
            std::to_string(scene.load_cases.size()) + " load case" +
            (scene.load_cases.size() == 1 ? "" : "s"),
        text);
+  if (scene.mesh.Dimension() == 2) {
+    Line("section",
+         std::string(scene.mesh.section.model == SectionModel::kPlaneStress
+                         ? "plane stress"
+                         : "plane strain") +
+             ", thickness " + Number(scene.mesh.section.thickness, 4),
+         text);
+  }
   AddLoads(scene, text);
   Line("estimator", estimate.estimator, text);
   Line("status",

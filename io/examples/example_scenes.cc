@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "elastimate/io/examples/organ_mesh.h"
 #include "elastimate/io/gmsh/organ_shape.h"
@@ -33,9 +34,13 @@ std::string Text(const Value& value) {
   return text.str();
 }
 
-template <typename Triple>
-std::string TripleText(const Triple& triple) {
-  return Text(triple[0]) + "," + Text(triple[1]) + "," + Text(triple[2]);
+template <typename Values>
+std::string ListText(const Values& values) {
+  std::string text;
+  for (const auto& value : values) {
+    text += (text.empty() ? "" : ",") + Text(value);
+  }
+  return text;
 }
 
 void Require(bool condition, const std::string& option,
@@ -51,29 +56,52 @@ std::string Range() {
 
 bool IsInRange(double value) { return value >= kSmallest && value <= kLargest; }
 
-void CheckForce(const Eigen::Vector3d& force) {
+void CheckForce(const Eigen::VectorXd& force) {
   Require(force.allFinite() &&
               (force.isZero(0) || IsInRange(force.cwiseAbs().maxCoeff())),
-          "force", TripleText(force),
+          "force", ListText(force),
           "the largest must be " + Range() + ", or all zero");
 }
 
-void CheckOptions(const CuboidOptions& options) {
-  Require(options.cells.minCoeff() >= 1, "cells", TripleText(options.cells),
+/// Of a grid of cells, each cut into no more than five elements.
+void CheckGrid(const Eigen::VectorXi& cells, const Eigen::VectorXd& size) {
+  Require(cells.minCoeff() >= 1, "cells", ListText(cells),
           "each must be at least 1");
-  const Eigen::Vector3d cells = options.cells.cast<double>();
-  Require(kTetrahedraPerCell * cells.prod() <= kMaxCuboidTetrahedra, "cells",
-          TripleText(options.cells),
-          "the product must be at most " +
-              std::to_string(kMaxCuboidTetrahedra / kTetrahedraPerCell));
-  Require(std::all_of(options.size.begin(), options.size.end(), IsInRange),
-          "size", TripleText(options.size), "each must be " + Range());
-  const Eigen::Array3d edges = options.size.array() / cells.array();
+  Require(
+      kTetrahedraPerCell * cells.cast<double>().prod() <= kMaxCuboidTetrahedra,
+      "cells", ListText(cells),
+      "the product must be at most " +
+          std::to_string(kMaxCuboidTetrahedra / kTetrahedraPerCell));
+  Require(std::all_of(size.begin(), size.end(), IsInRange), "size",
+          ListText(size), "each must be " + Range());
+  const Eigen::ArrayXd edges = size.array() / cells.cast<double>().array();
   Require(edges.maxCoeff() <= kMaxCellAspect * edges.minCoeff(), "size",
-          TripleText(options.size),
-          "a cell of " + TripleText(edges) +
+          ListText(size),
+          "a cell of " + ListText(edges) +
               " is too flat; its longest edge must be at most " +
               Text(kMaxCellAspect) + " times its shortest");
+}
+
+void CheckOptions(const CuboidOptions& options) {
+  Require(
+      options.kind == ElementKind::kTet4 || options.kind == ElementKind::kHex8,
+      "elements", std::string(TopologyOf(options.kind).name),
+      "a cuboid is of tet4 or hex8");
+  CheckGrid(options.cells, options.size);
+  CheckForce(options.force);
+}
+
+void CheckOptions(const RectangleOptions& options) {
+  Require(
+      options.kind == ElementKind::kTri3 || options.kind == ElementKind::kQuad4,
+      "elements", std::string(TopologyOf(options.kind).name),
+      "a rectangle is of tri3 or quad4");
+  Require(options.section.model != SectionModel::kSolid, "model",
+          std::string(SectionModelName(options.section.model)),
+          "a rectangle is in plane_stress or plane_strain");
+  Require(IsInRange(options.section.thickness), "thickness",
+          Text(options.section.thickness), "it must be " + Range());
+  CheckGrid(options.cells, options.size);
   CheckForce(options.force);
 }
 
@@ -116,7 +144,7 @@ constexpr CellCut kEvenCut = {
 constexpr CellCut kOddCut = {
     {{1, 3, 0, 5}, {2, 0, 3, 6}, {4, 5, 0, 6}, {7, 3, 5, 6}, {0, 5, 3, 6}}};
 
-Eigen::MatrixXi CuboidElements(const Eigen::Vector3i& cells) {
+Eigen::MatrixXi CuboidTetrahedra(const Eigen::Vector3i& cells) {
   const int row = cells.x() + 1;
   const int layer = row * (cells.y() + 1);
   Eigen::MatrixXi elements(4, Eigen::Index{kTetrahedraPerCell} * cells.prod());
@@ -139,6 +167,73 @@ Eigen::MatrixXi CuboidElements(const Eigen::Vector3i& cells) {
     }
   }
   return elements;
+}
+
+Eigen::MatrixXi CuboidHexahedra(const Eigen::Vector3i& cells) {
+  const int row = cells.x() + 1;
+  const int layer = row * (cells.y() + 1);
+  Eigen::MatrixXi elements(8, cells.prod());
+  Eigen::Index element = 0;
+  for (int k = 0; k < cells.z(); ++k) {
+    for (int j = 0; j < cells.y(); ++j) {
+      for (int i = 0; i < cells.x(); ++i) {
+        const int n = i + row * j + layer * k;
+        elements.col(element++) << n, n + 1, n + row + 1, n + row, n + layer,
+            n + layer + 1, n + layer + row + 1, n + layer + row;
+      }
+    }
+  }
+  return elements;
+}
+
+Eigen::Matrix2Xd RectangleNodes(const RectangleOptions& options) {
+  Eigen::Matrix2Xd nodes(2, (options.cells.array() + 1).prod());
+  Eigen::Index node = 0;
+  for (int j = 0; j <= options.cells.y(); ++j) {
+    for (int i = 0; i <= options.cells.x(); ++i) {
+      // Divided first, so that the last node is at the size exactly.
+      nodes.col(node++) = Eigen::Array2d(i, j) /
+                          options.cells.cast<double>().array() *
+                          options.size.array();
+    }
+  }
+  return nodes;
+}
+
+Eigen::MatrixXi RectangleElements(ElementKind kind,
+                                  const Eigen::Vector2i& cells) {
+  const int row = cells.x() + 1;
+  const bool is_cut = kind == ElementKind::kTri3;
+  Eigen::MatrixXi elements(is_cut ? 3 : 4, (is_cut ? 2 : 1) * cells.prod());
+  Eigen::Index element = 0;
+  for (int j = 0; j < cells.y(); ++j) {
+    for (int i = 0; i < cells.x(); ++i) {
+      const int n = i + row * j;
+      if (!is_cut) {
+        elements.col(element++) << n, n + 1, n + row + 1, n + row;
+      } else if ((i + j) % 2 == 0) {
+        elements.col(element++) << n, n + 1, n + row + 1;
+        elements.col(element++) << n, n + row + 1, n + row;
+      } else {
+        elements.col(element++) << n, n + 1, n + row;
+        elements.col(element++) << n + 1, n + row + 1, n + row;
+      }
+    }
+  }
+  return elements;
+}
+
+/// The facets all of whose nodes are at the largest x.
+Eigen::MatrixXi EndFacets(const Mesh& mesh) {
+  const double end = mesh.nodes.row(0).maxCoeff();
+  const Eigen::MatrixXi boundary = BoundaryFacets(mesh);
+  std::vector<Eigen::Index> chosen;
+  for (Eigen::Index i = 0; i < boundary.cols(); ++i) {
+    if ((mesh.nodes(0, boundary.col(i)).array() == end).all()) {
+      chosen.push_back(i);
+    }
+  }
+  return boundary(Eigen::all, chosen);
 }
 
 /// Holds the given nodes at zero, and puts `force` on all others.
@@ -180,10 +275,29 @@ Scene CuboidScene(const CuboidOptions& options) {
   CheckOptions(options);
   Mesh mesh;
   mesh.nodes = CuboidNodes(options);
-  mesh.elements = CuboidElements(options.cells);
+  mesh.kind = options.kind;
+  mesh.elements = mesh.kind == ElementKind::kHex8
+                      ? CuboidHexahedra(options.cells)
+                      : CuboidTetrahedra(options.cells);
   const Eigen::Array<bool, 1, Eigen::Dynamic> held =
       mesh.nodes.row(2).array() == 0.0;
   return HeldAndLoaded(std::move(mesh), held, options.force);
+}
+
+Scene RectangleScene(const RectangleOptions& options) {
+  CheckOptions(options);
+  Scene scene;
+  scene.mesh = {options.kind,
+                options.section,
+                RectangleNodes(options),
+                RectangleElements(options.kind, options.cells),
+                {}};
+  scene.supports.held =
+      (scene.mesh.nodes.row(0).array() == 0.0).replicate(2, 1);
+  scene.supports.displacement.setZero(2, scene.mesh.NumNodes());
+  scene.load_cases.emplace_back().loads.emplace_back(
+      SurfaceForce{EndFacets(scene.mesh), options.force});
+  return scene;
 }
 
 Scene OrganScene(const OrganOptions& options) {

@@ -7,7 +7,8 @@
 
 namespace elastimate {
 
-/// A cuboid of `cells` cells, each cut into five tetrahedra.  The default has
+/// A cuboid of `cells` cells, each cut into five tetrahedra, or each one
+/// hexahedron.  The default has
 /// 250 tetrahedra, like the cuboid of Becker & Teschner 2007, section 5 (the
 /// paper states neither its size nor its supports).
 struct CuboidOptions {
@@ -19,6 +20,7 @@ struct CuboidOptions {
   Eigen::Vector3d size = {1.0, 1.0, 0.4};
   /// Force on every free node [N]; of magnitude 1e-50 to 1e50, or zero.
   Eigen::Vector3d force = {0.0, 0.0, -30.0};
+  ElementKind kind = ElementKind::kTet4;  ///< Or kHex8.
 };
 
 /// A cuboid with one corner at the origin, held at z = 0, with one load case
@@ -26,6 +28,29 @@ struct CuboidOptions {
 /// Throws std::invalid_argument, beginning with the option's name, for an
 /// option out of its range.  O(num_elements): 0.03 s for a million tetrahedra.
 Scene CuboidScene(const CuboidOptions& options);
+
+/// A strip of sheet metal of `cells` quadrilaterals, or of twice as many
+/// triangles, that is pulled.
+struct RectangleOptions {
+  /// Number of cells along x and y; at least 1 each, and no more than 2 000 000
+  /// in all.
+  Eigen::Vector2i cells = {20, 4};
+  /// Edge lengths [m], 1e-50 to 1e50; the longest edge of a cell is no more
+  /// than 100 000 times the shortest.
+  Eigen::Vector2d size = {0.1, 0.02};
+  /// Total force on the end [N]; of magnitude 1e-50 to 1e50, or zero.
+  Eigen::Vector2d force = {1000.0, 0.0};
+  ElementKind kind = ElementKind::kQuad4;  ///< Or kTri3.
+  /// Plane stress or plane strain, and a thickness of 1e-50 to 1e50 [m].
+  Section section = {SectionModel::kPlaneStress, 0.001};
+};
+
+/// A rectangle with one corner at the origin, held at x = 0, with one load case
+/// of a force that is spread uniformly over its other end, and no measurement.
+/// The nodes are numbered along x first, then y.  Throws std::invalid_argument,
+/// beginning with the option's name, for an option out of its range.
+/// O(num_elements).
+Scene RectangleScene(const RectangleOptions& options);
 
 /// A smooth, closed, liver-like solid: a big right lobe (small x) that tapers
 /// to a thin left lobe, domed above, hollow behind and below, with a thin lower

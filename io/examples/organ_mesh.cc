@@ -13,7 +13,7 @@ Mesh OrganMesh(int tetrahedra) {
       MakeByProgram(GmshProgram(), {"organ", std::to_string(tetrahedra)});
   Mesh mesh;
   mesh.nodes = std::move(organ.nodes);
-  mesh.elements = std::move(organ.tetrahedra);
+  mesh.elements = std::move(organ.elements);
   return mesh;
 }
 

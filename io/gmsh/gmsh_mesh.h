@@ -15,8 +15,8 @@ MeshProgram GmshProgram();
 
 /// Reads .msh (versions 1, 2 and 4; with the node and element data in it),
 /// .mesh, .unv and .bdf files through the Gmsh library.  Elements of lower
-/// dimension only make up the physical groups; any other volume element but the
-/// linear tetrahedron is an error.  Throws as ReadByProgram does.
+/// dimension than others only make up the physical groups; those left must be
+/// of one ElementKind.  Throws as ReadByProgram does.
 MeshFile ReadGmshMesh(const std::filesystem::path& path);
 
 }  // namespace elastimate

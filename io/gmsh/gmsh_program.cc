@@ -24,7 +24,7 @@ MeshFile MakeMesh(const std::vector<std::string>& arguments) {
   Mesh organ = MeshOrgan(std::stoi(arguments[1]));
   MeshFile mesh;
   mesh.nodes = std::move(organ.nodes);
-  mesh.tetrahedra = std::move(organ.elements);
+  mesh.elements = std::move(organ.elements);
   return mesh;
 }
 

@@ -3,6 +3,7 @@
 #include <gmsh.h>
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <limits>
 #include <map>
@@ -18,8 +19,29 @@
 namespace elastimate {
 namespace {
 
-constexpr int kTriangle = 2;  // Gmsh's element types.
-constexpr int kTetrahedron = 4;
+/// Gmsh's types of elements and of their facets.
+struct GmshKind {
+  ElementKind kind;
+  int type;
+  int facet_type;
+};
+
+constexpr std::array<GmshKind, 6> kGmshKinds = {{
+    {ElementKind::kTet4, 4, 2},
+    {ElementKind::kTet10, 11, 9},
+    {ElementKind::kHex8, 5, 3},
+    {ElementKind::kTri3, 2, 1},
+    {ElementKind::kTri6, 9, 8},
+    {ElementKind::kQuad4, 3, 1},
+}};
+
+/// Null where elements of this type are not for scenes.
+const GmshKind* FindGmshKind(int type) {
+  const auto* const found =
+      std::find_if(kGmshKinds.begin(), kGmshKinds.end(),
+                   [&](const GmshKind& one) { return one.type == type; });
+  return found == kGmshKinds.end() ? nullptr : found;
+}
 
 void StartGmsh() {
   gmsh::initialize(0, nullptr, false);
@@ -113,18 +135,30 @@ FileCounts Merge(const std::filesystem::path& link,
   return counts;
 }
 
+/// Elements of some dimension (-1: of all), by their types.
+struct GmshElements {
+  explicit GmshElements(int dimension, int entity = -1) {
+    gmsh::model::mesh::getElements(types, numbers, nodes, dimension, entity);
+  }
+
+  std::vector<int> types;
+  std::vector<std::vector<std::size_t>> numbers;
+  std::vector<std::vector<std::size_t>> nodes;
+};
+
+Eigen::Index NumElementsOfAnyDimension() {
+  Eigen::Index count = 0;
+  for (const std::vector<std::size_t>& of_type : GmshElements(-1).numbers) {
+    count += static_cast<Eigen::Index>(of_type.size());
+  }
+  return count;
+}
+
 /// Gmsh 4.8 drops elements of a number it has already, and hides those of
 /// another order than the first of their volume.
 void CheckNoElementIsLost(const std::filesystem::path& path,
                           Eigen::Index num_elements) {
-  std::vector<int> types;
-  std::vector<std::vector<std::size_t>> numbers;
-  std::vector<std::vector<std::size_t>> corners;
-  gmsh::model::mesh::getElements(types, numbers, corners);
-  Eigen::Index num_read = 0;
-  for (const std::vector<std::size_t>& of_type : numbers) {
-    num_read += static_cast<Eigen::Index>(of_type.size());
-  }
+  const Eigen::Index num_read = NumElementsOfAnyDimension();
   if (num_read < num_elements) {
     ThrowInputError(path, "Gmsh can use only " + std::to_string(num_read) +
                               " of its " + std::to_string(num_elements) +
@@ -180,73 +214,84 @@ std::string ElementTypeName(int type) {
   return name;
 }
 
-/// The tetrahedra in ascending order of their element numbers.
-Numbering ReadTetrahedra(const Numbering& nodes, MeshFile& mesh) {
-  std::vector<int> types;
-  std::vector<std::vector<std::size_t>> numbers;
-  std::vector<std::vector<std::size_t>> corners;
-  gmsh::model::mesh::getElements(types, numbers, corners);
-  Numbering tetrahedra({});
-  for (std::size_t i = 0; i < types.size(); ++i) {
-    if (types[i] != kTetrahedron) {
-      mesh.has_other_cells = true;
+/// Of dimension 3 where there is one, else of dimension 2, and of one kind.
+/// Null where there are none.
+const GmshKind* FindKind(const std::filesystem::path& path,
+                         const GmshElements& elements) {
+  const GmshKind* kind = nullptr;
+  for (std::size_t i = 0; i < elements.types.size(); ++i) {
+    if (elements.numbers[i].empty()) {
       continue;
     }
-    const std::vector<std::size_t> order = SortingOrder(numbers[i]);
-    mesh.tetrahedra.resize(4, order.size());
+    const std::string name = "element number " +
+                             std::to_string(elements.numbers[i][0]) + " is a " +
+                             ElementTypeName(elements.types[i]);
+    const GmshKind* const other = FindGmshKind(elements.types[i]);
+    if (other == nullptr) {
+      ThrowInputError(path, name + ", but the elements of a scene are " +
+                                kSupportedElements +
+                                "; mesh the specimen with one kind of these");
+    }
+    if (kind != nullptr) {
+      ThrowInputError(path, name + ", but others are of type " +
+                                ElementTypeName(kind->type) +
+                                "; mesh the specimen with one kind of element");
+    }
+    kind = other;
+  }
+  return kind;
+}
+
+/// The elements in ascending order of their numbers.
+Numbering ReadElements(const GmshElements& elements, const Numbering& nodes,
+                       MeshFile& mesh) {
+  const Eigen::Index num_nodes = mesh.Topology().num_nodes;
+  for (std::size_t i = 0; i < elements.types.size(); ++i) {
+    if (elements.numbers[i].empty()) {
+      continue;
+    }
+    const std::vector<std::size_t> order = SortingOrder(elements.numbers[i]);
+    mesh.elements.resize(num_nodes, order.size());
     std::vector<std::size_t> sorted;
     for (std::size_t k = 0; k < order.size(); ++k) {
-      sorted.push_back(numbers[i][order[k]]);
-      for (std::size_t corner = 0; corner < 4; ++corner) {
-        mesh.tetrahedra(corner, k) =
-            NodePosition(mesh, nodes, corners[i][4 * order[k] + corner]);
+      sorted.push_back(elements.numbers[i][order[k]]);
+      for (Eigen::Index n = 0; n < num_nodes; ++n) {
+        mesh.elements(n, k) = NodePosition(
+            mesh, nodes, elements.nodes[i][num_nodes * order[k] + n]);
       }
     }
-    tetrahedra = Numbering(std::move(sorted));
-  }
-  return tetrahedra;
-}
-
-void CheckVolumeElements(const std::filesystem::path& path) {
-  std::vector<int> types;
-  std::vector<std::vector<std::size_t>> numbers;
-  std::vector<std::vector<std::size_t>> corners;
-  gmsh::model::mesh::getElements(types, numbers, corners, 3);
-  for (std::size_t i = 0; i < types.size(); ++i) {
-    if (types[i] != kTetrahedron && !numbers[i].empty()) {
-      ThrowInputError(path, "element number " + std::to_string(numbers[i][0]) +
-                                " is a " + ElementTypeName(types[i]) +
-                                ", but only linear tetrahedra are supported; "
-                                "mesh the specimen with those");
+    if (mesh.kind == ElementKind::kTet10) {
+      // Gmsh has the middle of edge 23 before that of 13.
+      mesh.elements.row(8).swap(mesh.elements.row(9));
     }
+    return Numbering(std::move(sorted));
   }
+  return Numbering({});
 }
 
-void AddEntity(const Numbering& nodes, int entity, const MeshFile& mesh,
-               PhysicalGroup& group) {
-  std::vector<int> types;
-  std::vector<std::vector<std::size_t>> numbers;
-  std::vector<std::vector<std::size_t>> corners;
-  gmsh::model::mesh::getElements(types, numbers, corners, group.dimension,
-                                 entity);
-  for (std::size_t i = 0; i < types.size(); ++i) {
+void AddEntity(const Numbering& nodes, int entity, int facet_type,
+               const MeshFile& mesh, PhysicalGroup& group) {
+  const GmshElements elements(group.dimension, entity);
+  const Eigen::Index num_nodes = mesh.Topology().NumNodesOfFace();
+  for (std::size_t i = 0; i < elements.types.size(); ++i) {
     std::vector<int> positions;
-    positions.reserve(corners[i].size());
-    for (const std::size_t number : corners[i]) {
+    positions.reserve(elements.nodes[i].size());
+    for (const std::size_t number : elements.nodes[i]) {
       positions.push_back(NodePosition(mesh, nodes, number));
     }
     group.nodes.insert(group.nodes.end(), positions.begin(), positions.end());
-    if (types[i] == kTriangle) {
-      const Eigen::Index before = group.triangles.cols();
-      const Eigen::Index count = numbers[i].size();
-      group.triangles.conservativeResize(3, before + count);
-      group.triangles.rightCols(count) =
-          Eigen::Map<const Eigen::MatrixXi>(positions.data(), 3, count);
+    if (elements.types[i] == facet_type) {
+      const Eigen::Index before = group.facets.cols();
+      const Eigen::Index count = elements.numbers[i].size();
+      group.facets.conservativeResize(num_nodes, before + count);
+      group.facets.rightCols(count) =
+          Eigen::Map<const Eigen::MatrixXi>(positions.data(), num_nodes, count);
     }
   }
 }
 
-void ReadPhysicalGroups(const Numbering& nodes, MeshFile& mesh) {
+void ReadPhysicalGroups(const Numbering& nodes, int facet_type,
+                        MeshFile& mesh) {
   gmsh::vectorpair groups;
   gmsh::model::getPhysicalGroups(groups);
   for (const auto& [dimension, number] : groups) {
@@ -257,7 +302,7 @@ void ReadPhysicalGroups(const Numbering& nodes, MeshFile& mesh) {
     std::vector<int> entities;
     gmsh::model::getEntitiesForPhysicalGroup(dimension, number, entities);
     for (const int entity : entities) {
-      AddEntity(nodes, entity, mesh, group);
+      AddEntity(nodes, entity, facet_type, mesh, group);
     }
     std::sort(group.nodes.begin(), group.nodes.end());
     group.nodes.erase(std::unique(group.nodes.begin(), group.nodes.end()),
@@ -298,7 +343,7 @@ void CheckNodesOfData(const MeshFile& mesh, const Numbering& nodes,
   }
 }
 
-void ReadViews(const Numbering& nodes, const Numbering& tetrahedra,
+void ReadViews(const Numbering& nodes, const Numbering& elements,
                MeshFile& mesh) {
   std::vector<int> views;
   gmsh::view::getTags(views);
@@ -308,7 +353,7 @@ void ReadViews(const Numbering& nodes, const Numbering& tetrahedra,
     std::string name;
     gmsh::option::getString(option + "Name", name);
     if (FindArray(mesh.node_arrays, name) != nullptr ||
-        FindArray(mesh.tetrahedron_arrays, name) != nullptr) {
+        FindArray(mesh.element_arrays, name) != nullptr) {
       ThrowInputError(mesh.path,
                       "it has the data '" + name + "' twice; keep one");
     }
@@ -333,8 +378,8 @@ void ReadViews(const Numbering& nodes, const Numbering& tetrahedra,
       mesh.node_arrays.push_back(
           {name, Scatter(numbers, data, num_components, nodes)});
     } else if (kind == "ElementData") {
-      mesh.tetrahedron_arrays.push_back(
-          {name, Scatter(numbers, data, num_components, tetrahedra)});
+      mesh.element_arrays.push_back(
+          {name, Scatter(numbers, data, num_components, elements)});
     }
   }
 }
@@ -349,14 +394,21 @@ MeshFile ReadByGmsh(const std::filesystem::path& link,
   try {
     StartGmsh();
     const FileCounts counts = Merge(link, path);
-    CheckVolumeElements(path);
+    const int dimension = GmshElements(3).types.empty() ? 2 : 3;
+    const GmshElements gmsh_elements(dimension);
+    const GmshKind* const kind = FindKind(path, gmsh_elements);
     CheckNoElementIsLost(path, counts.elements);
     const Numbering nodes = ReadNodes(mesh);
     mesh.num_nodes_left_out =
         std::max<Eigen::Index>(counts.nodes - mesh.nodes.cols(), 0);
-    const Numbering tetrahedra = ReadTetrahedra(nodes, mesh);
-    ReadPhysicalGroups(nodes, mesh);
-    ReadViews(nodes, tetrahedra, mesh);
+    if (kind == nullptr) {
+      return mesh;
+    }
+    mesh.kind = kind->kind;
+    const Numbering elements = ReadElements(gmsh_elements, nodes, mesh);
+    ReadPhysicalGroups(nodes, kind->facet_type, mesh);
+    ReadViews(nodes, elements, mesh);
+    mesh.has_other_cells = NumElementsOfAnyDimension() > mesh.elements.cols();
   } catch (const std::string& message) {
     ThrowSaidByGmsh(link, path, message);  // Gmsh throws strings.
   } catch (const std::bad_alloc&) {

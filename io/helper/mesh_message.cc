@@ -143,23 +143,39 @@ void ReadGroups(Reader& reader, MeshFile& mesh) {
     group.number = static_cast<int>(reader.Number());
     group.name = reader.Text();
     reader.Values(group.nodes);
-    reader.Entries(group.triangles);
-    reader.Require(
-        AreInRange(Eigen::Map<const Eigen::VectorXi>(group.nodes.data(),
-                                                     group.nodes.size()),
-                   mesh.nodes.cols()) &&
-        (group.triangles.rows() == 3 || group.triangles.size() == 0) &&
-        AreInRange(group.triangles, mesh.nodes.cols()));
+    reader.Entries(group.facets);
+    reader.Require(AreInRange(Eigen::Map<const Eigen::VectorXi>(
+                                  group.nodes.data(), group.nodes.size()),
+                              mesh.nodes.cols()) &&
+                   (group.facets.rows() == mesh.Topology().NumNodesOfFace() ||
+                    group.facets.size() == 0) &&
+                   AreInRange(group.facets, mesh.nodes.cols()));
   }
+}
+
+ElementKind ReadKind(Reader& reader) {
+  const std::int64_t kind = reader.Number();
+  const bool is_known =
+      kind >= 0 && kind < static_cast<std::int64_t>(kElementKinds.size());
+  reader.Require(is_known);
+  return is_known ? kElementKinds[kind] : ElementKind::kTet4;
 }
 
 void ReadMesh(Reader& reader, MeshFile& mesh) {
   reader.Entries(mesh.nodes);
-  reader.Entries(mesh.tetrahedra);
-  reader.Require((mesh.tetrahedra.rows() == 4 || mesh.tetrahedra.size() == 0) &&
-                 AreInRange(mesh.tetrahedra, mesh.nodes.cols()));
+  mesh.kind = ReadKind(reader);
+  reader.Entries(mesh.elements);
+  reader.Require((mesh.elements.rows() == mesh.Topology().num_nodes ||
+                  mesh.elements.size() == 0) &&
+                 AreInRange(mesh.elements, mesh.nodes.cols()));
   reader.Arrays(mesh.nodes.cols(), mesh.node_arrays);
-  reader.Arrays(mesh.tetrahedra.cols(), mesh.tetrahedron_arrays);
+  reader.Arrays(mesh.elements.cols(), mesh.element_arrays);
+  if (reader.Number() != 0) {
+    mesh.model = reader.Text();
+  }
+  if (reader.Number() != 0) {
+    reader.Bytes(&mesh.thickness.emplace(), sizeof(double));
+  }
   ReadGroups(reader, mesh);
   mesh.has_other_cells = reader.Number() != 0;
   mesh.is_vtk = reader.Number() != 0;
@@ -183,16 +199,25 @@ void WriteMesh(std::FILE* file, const MeshFile& mesh) {
   Writer writer(file);
   writer.Number(static_cast<int>(Kind::kMesh));
   writer.Entries(mesh.nodes);
-  writer.Entries(mesh.tetrahedra);
+  writer.Number(static_cast<int>(mesh.kind));
+  writer.Entries(mesh.elements);
   writer.Arrays(mesh.node_arrays);
-  writer.Arrays(mesh.tetrahedron_arrays);
+  writer.Arrays(mesh.element_arrays);
+  writer.Number(mesh.model ? 1 : 0);
+  if (mesh.model) {
+    writer.Text(*mesh.model);
+  }
+  writer.Number(mesh.thickness ? 1 : 0);
+  if (mesh.thickness) {
+    writer.Bytes(&*mesh.thickness, sizeof(double));
+  }
   writer.Number(static_cast<std::int64_t>(mesh.groups.size()));
   for (const PhysicalGroup& group : mesh.groups) {
     writer.Number(group.dimension);
     writer.Number(group.number);
     writer.Text(group.name);
     writer.Values(group.nodes);
-    writer.Entries(group.triangles);
+    writer.Entries(group.facets);
   }
   writer.Number(mesh.has_other_cells ? 1 : 0);
   writer.Number(mesh.is_vtk ? 1 : 0);

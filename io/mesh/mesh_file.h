@@ -4,12 +4,15 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "elastimate/core/mesh/element_kind.h"
+
 namespace elastimate {
 
-/// A named array of a mesh file: one column per node or per tetrahedron.
+/// A named array of a mesh file: one column per node or per element.
 struct FileArray {
   std::string name;
   Eigen::MatrixXd values;
@@ -19,33 +22,53 @@ struct FileArray {
 struct PhysicalGroup {
   int dimension;
   int number;
-  std::string name;           ///< Empty when the file gives it no name.
-  std::vector<int> nodes;     ///< Of its elements; ascending, without repeats.
-  Eigen::MatrixXi triangles;  ///< 3 x num_triangles; of a group of dimension 2.
+  std::string name;        ///< Empty when the file gives it no name.
+  std::vector<int> nodes;  ///< Of its elements; ascending, without repeats.
+  /// Those of its elements that have the nodes of a face of the mesh's elements
+  /// (in a planar mesh, of an edge): num_nodes_of_face x num_facets.
+  Eigen::MatrixXi facets;
 };
 
 /// What a VTK or Gmsh file holds, in one form.
 ///
 /// A node is known by its zero-based position among all nodes of the file,
-/// those without a tetrahedron included: the order of the points in a VTK file,
+/// those without an element included: the order of the points in a VTK file,
 /// ascending node numbers in a file read by Gmsh.
 struct MeshFile {
   std::filesystem::path path;
   Eigen::Matrix3Xd nodes;
-  Eigen::MatrixXi tetrahedra;  ///< 4 x num_tetrahedra, in range, at least one.
+  ElementKind kind = ElementKind::kTet4;
+  /// num_nodes of the kind x num_elements, in range, at least one.  Vertices
+  /// and mid-edge nodes are numbered in any order.
+  Eigen::MatrixXi elements;
   std::vector<FileArray> node_arrays;
-  std::vector<FileArray> tetrahedron_arrays;
+  std::vector<FileArray> element_arrays;
   std::vector<PhysicalGroup> groups;
 
-  Eigen::Array<bool, 1, Eigen::Dynamic> used;  ///< By a tetrahedron.
-  bool has_other_cells = false;  ///< Cells other than tetrahedra were ignored.
+  /// The field data of these names in a VTK file.
+  std::optional<std::string> model;
+  std::optional<double> thickness;
+
+  Eigen::Array<bool, 1, Eigen::Dynamic> used;  ///< By an element.
+  bool has_other_cells = false;  ///< Cells of lower dimension were ignored.
 
   bool is_vtk = true;
   std::vector<std::size_t> node_numbers;  ///< Gmsh's; empty for a VTK file.
   /// Nodes of the file that Gmsh left out because no element uses them: the
   /// positions of all others are then not known.
   Eigen::Index num_nodes_left_out = 0;
+
+  const ElementTopology& Topology() const { return TopologyOf(kind); }
+  int Dimension() const { return Topology().dimension; }
+  /// "tetrahedron" and "tetrahedra", and so on.
+  std::string Shape() const { return std::string(Topology().shape); }
+  std::string Shapes() const { return std::string(Topology().shapes); }
 };
+
+/// What the elements of a scene may be, for error messages.
+inline constexpr char kSupportedElements[] =
+    "tetrahedra and triangles, linear or quadratic, hexahedra of 8 nodes and "
+    "quadrilaterals of 4";
 
 /// ".vtu" of "a.vtu" and of "A.VTU".  Of "a.Vtu" it is ".Vtu": Gmsh tells its
 /// formats by names in all small or all capital letters, and runs a file of any

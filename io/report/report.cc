@@ -34,6 +34,24 @@ Json OptionsJson(const EstimatorOptions& options) {
           {"solver", solver_names[static_cast<int>(options.solver)]}};
 }
 
+Json MeshJson(const Scene& scene) {
+  const Mesh& mesh = scene.mesh;
+  Json json = {
+      {"kind", mesh.Topology().name},
+      {"dimension", mesh.Dimension()},
+      {"model", SectionModelName(mesh.section.model)},
+      {"thickness",
+       mesh.Dimension() == 2 ? Json(mesh.section.thickness) : Json(nullptr)},
+      {"nodes", mesh.NumVertices()},
+      {"elements", mesh.NumElements()}};
+  if (mesh.Topology().shape == "tetrahedron") {
+    json["tetrahedra"] = mesh.NumElements();
+  }
+  json["load_cases"] = scene.load_cases.size();
+  json["order"] = mesh.Order();
+  return json;
+}
+
 Json LoadsJson(const Scene& scene) {
   Json cases = Json::array();
   for (const LoadCase& load_case : scene.load_cases) {
@@ -42,8 +60,8 @@ Json LoadsJson(const Scene& scene) {
       const LoadResultant resultant = ResultantOf(scene.mesh, load);
       loads.push_back(
           {{"type", resultant.type},
-           {"resultant",
-            {resultant.force[0], resultant.force[1], resultant.force[2]}},
+           {"resultant", std::vector<double>(resultant.force.begin(),
+                                             resultant.force.end())},
            {"area", OrNull(resultant.area)}});
     }
     cases.push_back(loads);
@@ -173,11 +191,7 @@ std::string JsonReport(const Estimate& estimate, const Scene& scene,
       {"bulk_modulus", OrNull(elasticity.BulkModulus())},
       {"bulk_compliance", OrNull(elasticity.BulkCompliance())},
       {"noise_sd", OrNull(estimate.noise_sd)},
-      {"mesh",
-       {{"nodes", scene.mesh.NumVertices()},
-        {"tetrahedra", scene.mesh.NumElements()},
-        {"load_cases", scene.load_cases.size()},
-        {"order", scene.mesh.Order()}}},
+      {"mesh", MeshJson(scene)},
       {"loads", LoadsJson(scene)},
       {"notices", NoticesJson(notices)},
       {"residual",

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "elastimate/io/scene/section.h"
 #include "elastimate/io/text/input_error.h"
 #include "elastimate/io/text/printable.h"
 
@@ -42,11 +43,15 @@ const Eigen::MatrixXd* FindNodeArray(const MeshFile& mesh,
                                      bool one_component_is_enough) {
   const Eigen::MatrixXd* array = FindArray(mesh.node_arrays, name);
   if (array != nullptr && array->rows() != 3 &&
+      array->rows() != mesh.Dimension() &&
       !(one_component_is_enough && array->rows() == 1)) {
-    ThrowInputError(mesh.path, "the point array '" + name + "' has " +
-                                   std::to_string(array->rows()) +
-                                   " components; give it " +
-                                   (one_component_is_enough ? "1 or 3" : "3"));
+    ThrowInputError(
+        mesh.path, "the point array '" + name + "' has " +
+                       std::to_string(array->rows()) + " components; give it " +
+                       (one_component_is_enough ? "1 or " : "") +
+                       (mesh.Dimension() == 2 ? "2 (or 3 for files that need "
+                                                "them)"
+                                              : "3"));
   }
   return array;
 }
@@ -66,12 +71,13 @@ Supports ReadSupports(const MeshFile& mesh) {
   Supports supports;
   supports.held = ToComponentMask(mesh.path, "the point array 'fixed'", mesh,
                                   RequireNodeArray(mesh, "fixed", true));
-  supports.displacement.setZero(3, mesh.nodes.cols());
+  supports.displacement.setZero(mesh.Dimension(), mesh.nodes.cols());
   if (const auto* prescribed = FindNodeArray(mesh, "prescribed", false)) {
-    RequireFinite(mesh.path, "the point array 'prescribed'", mesh, *prescribed,
-                  supports.held);
+    const Eigen::MatrixXd displacement =
+        VectorField(mesh.path, "the point array 'prescribed'", mesh,
+                    *prescribed, supports.held);
     supports.displacement =
-        supports.held.select(prescribed->array(), 0.0).matrix();
+        supports.held.select(displacement.array(), 0.0).matrix();
   }
   return supports;
 }
@@ -79,12 +85,11 @@ Supports ReadSupports(const MeshFile& mesh) {
 LoadCase ReadLoadCase(const MeshFile& mesh, int number,
                       Measurement measurement) {
   const std::string suffix = CaseSuffix(number);
-  const ComponentMask all = ComponentMask::Constant(3, mesh.nodes.cols(), true);
+  const ComponentMask all = AllComponents(mesh);
   LoadCase load_case;
-  NodalForces forces{RequireNodeArray(mesh, "force" + suffix, false)};
-  RequireFinite(mesh.path, "the point array 'force" + suffix + "'", mesh,
-                forces.force, all);
-  load_case.loads.emplace_back(std::move(forces));
+  load_case.loads.emplace_back(NodalForces{
+      VectorField(mesh.path, "the point array 'force" + suffix + "'", mesh,
+                  RequireNodeArray(mesh, "force" + suffix, false), all)});
   const std::string name = "displacement" + suffix;
   const Eigen::MatrixXd* displacement = FindNodeArray(mesh, name, false);
   if (displacement == nullptr) {
@@ -93,17 +98,16 @@ LoadCase ReadLoadCase(const MeshFile& mesh, int number,
     }
     return load_case;
   }
-  load_case.displacement = *displacement;
   if (const auto* observed = FindNodeArray(mesh, "observed" + suffix, true)) {
     load_case.observed = ToComponentMask(
         mesh.path, "the point array 'observed" + suffix + "'", mesh, *observed);
   }
-  RequireFinite(mesh.path, "the point array '" + name + "'", mesh,
-                load_case.displacement,
-                load_case.observed.size() > 0 ? load_case.observed : all,
-                "correct it or mark it as not measured in the array "
-                "'observed" +
-                    suffix + "'");
+  load_case.displacement = VectorField(
+      mesh.path, "the point array '" + name + "'", mesh, *displacement,
+      load_case.observed.size() > 0 ? load_case.observed : all,
+      "correct it or mark it as not measured in the array "
+      "'observed" +
+          suffix + "'");
   ClearUnobserved(load_case);
   return load_case;
 }
@@ -168,17 +172,19 @@ void NoteLostForces(FileScene& file_scene) {
       file_scene.notices.push_back(
           PrintablePath(file_scene.mesh.path) + ": the array 'force" +
           CaseSuffix(static_cast<int>(i) + 1) + "' has forces on " +
-          std::to_string(lost) +
-          " points that no tetrahedron uses; they are dropped with the points");
+          std::to_string(lost) + " points that no " + file_scene.mesh.Shape() +
+          " uses; they are dropped with the points");
     }
   }
 }
 
 }  // namespace
 
-FileScene SceneFromArrays(MeshFile mesh, Measurement measurement) {
+FileScene SceneFromArrays(MeshFile mesh, Measurement measurement,
+                          const SectionChoice& section) {
   FileScene file_scene;
-  file_scene.scene.mesh.regions = ReadRegions(mesh);
+  file_scene.scene.mesh =
+      SceneMesh(mesh, SectionOf(mesh, section), std::move(mesh.elements));
   const int num_cases = CountLoadCases(mesh);
   for (int number = 1; number <= num_cases; ++number) {
     file_scene.scene.load_cases.push_back(
@@ -186,8 +192,6 @@ FileScene SceneFromArrays(MeshFile mesh, Measurement measurement) {
   }
   CheckCaseNumbers(mesh, num_cases);
   file_scene.scene.supports = ReadSupports(mesh);
-  file_scene.scene.mesh.nodes = std::move(mesh.nodes);
-  file_scene.scene.mesh.elements = std::move(mesh.tetrahedra);
   file_scene.mesh = std::move(mesh);
   NoteLostForces(file_scene);
   return file_scene;

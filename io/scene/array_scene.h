@@ -9,7 +9,8 @@ namespace elastimate {
 /// The scene that the named arrays of a mesh file make up: `displacement`,
 /// `force`, `fixed` and so on, as ReadScene describes.  Throws
 /// std::invalid_argument, naming the file and the array.
-FileScene SceneFromArrays(MeshFile mesh, Measurement measurement);
+FileScene SceneFromArrays(MeshFile mesh, Measurement measurement,
+                          const SectionChoice& section);
 
 }  // namespace elastimate
 

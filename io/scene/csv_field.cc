@@ -33,18 +33,27 @@ std::vector<std::string_view> SplitCells(std::string_view line) {
   return cells;
 }
 
-void CheckHeader(const std::filesystem::path& path, std::string_view line) {
+/// The number of columns.
+Eigen::Index ReadHeader(const std::filesystem::path& path,
+                        std::string_view line, int dimension) {
   const std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (line.substr(0, byte_order_mark.size()) == byte_order_mark) {
     line.remove_prefix(byte_order_mark.size());
   }
   using Header = std::vector<std::string_view>;
   const Header header = SplitCells(line);
-  if (header != Header{"x", "y", "z"} && header != Header{"ux", "uy", "uz"}) {
-    ThrowInputError(path,
-                    "line 1: the header must be x,y,z or ux,uy,uz; correct it "
-                    "(columns are separated by commas)");
+  if (header == Header{"x", "y", "z"} || header == Header{"ux", "uy", "uz"}) {
+    return 3;
   }
+  if (dimension == 2 &&
+      (header == Header{"x", "y"} || header == Header{"ux", "uy"})) {
+    return 2;
+  }
+  ThrowInputError(path,
+                  std::string("line 1: the header must be ") +
+                      (dimension == 3 ? "x,y,z or ux,uy,uz"
+                                      : "x,y or ux,uy (or x,y,z or ux,uy,uz)") +
+                      "; correct it (columns are separated by commas)");
 }
 
 std::string Place(Eigen::Index line, std::size_t column) {
@@ -73,19 +82,19 @@ double ParseNumber(const std::filesystem::path& path, std::string_view cell,
   return value;
 }
 
-Eigen::Vector3d ParseRow(const std::filesystem::path& path,
-                         std::string_view line, Eigen::Index line_number) {
+void ParseRow(const std::filesystem::path& path, std::string_view line,
+              Eigen::Index line_number, Eigen::Ref<Eigen::VectorXd> row) {
   const std::vector<std::string_view> cells = SplitCells(line);
-  if (cells.size() != 3) {
+  if (static_cast<Eigen::Index>(cells.size()) != row.size()) {
     ThrowInputError(path, "line " + std::to_string(line_number) + " has " +
-                              std::to_string(cells.size()) +
-                              " columns where 3 are due; correct it");
+                              std::to_string(cells.size()) + " columns where " +
+                              std::to_string(row.size()) +
+                              " are due; correct it");
   }
-  Eigen::Vector3d row;
-  for (std::size_t column = 0; column < 3; ++column) {
-    row[column] = ParseNumber(path, cells[column], line_number, column);
+  for (std::size_t column = 0; column < cells.size(); ++column) {
+    row[static_cast<Eigen::Index>(column)] =
+        ParseNumber(path, cells[column], line_number, column);
   }
-  return row;
 }
 
 [[noreturn]] void ThrowRowCount(const std::filesystem::path& path,
@@ -99,13 +108,12 @@ Eigen::Vector3d ParseRow(const std::filesystem::path& path,
 }  // namespace
 
 Eigen::MatrixXd ReadCsvField(const std::filesystem::path& path,
-                              Eigen::Index num_nodes) {
+                             Eigen::Index num_nodes, int dimension) {
   CheckReadable(path);
   std::ifstream file(path);
   std::string line;
   std::getline(file, line);
-  CheckHeader(path, line);
-  Eigen::MatrixXd field(3, num_nodes);
+  Eigen::MatrixXd field(ReadHeader(path, line, dimension), num_nodes);
   Eigen::Index row = 0;
   Eigen::Index line_number = 2;
   for (; std::getline(file, line); ++line_number) {
@@ -116,7 +124,7 @@ Eigen::MatrixXd ReadCsvField(const std::filesystem::path& path,
       ThrowRowCount(path, "more than " + std::to_string(row) + " rows",
                     num_nodes);
     }
-    field.col(row++) = ParseRow(path, line, line_number);
+    ParseRow(path, line, line_number, field.col(row++));
   }
   if (file.bad()) {
     ThrowInputError(path, "the file cannot be read to its end");

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "elastimate/io/text/input_error.h"
 
@@ -11,10 +12,26 @@ namespace {
 
 const char* const kAxis[3] = {"x", "y", "z"};
 
+/// Where `mask` says and an element uses the node.
+void RequireFinite(const std::filesystem::path& file, const std::string& what,
+                   const MeshFile& mesh, const Eigen::MatrixXd& values,
+                   const ComponentMask& mask, const std::string& mend) {
+  for (Eigen::Index node = 0; node < values.cols(); ++node) {
+    for (Eigen::Index axis = 0; axis < mask.rows() && mesh.used[node]; ++axis) {
+      const double value = values(axis, node);
+      if (mask(axis, node) && !std::isfinite(value)) {
+        ThrowInputError(file, what + " of " + NodeName(mesh, node) + " (" +
+                                  kAxis[axis] + ") is " +
+                                  std::to_string(value).append("; " + mend));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 Eigen::VectorXi ReadRegions(const MeshFile& mesh) {
-  const Eigen::MatrixXd* array = FindArray(mesh.tetrahedron_arrays, "region");
+  const Eigen::MatrixXd* array = FindArray(mesh.element_arrays, "region");
   if (array == nullptr) {
     return {};
   }
@@ -30,36 +47,52 @@ Eigen::VectorXi ReadRegions(const MeshFile& mesh) {
       std::ostringstream number;  // Of few digits, whatever its magnitude.
       number << value;
       ThrowInputError(mesh.path, "the cell array 'region' is " + number.str() +
-                                     " at tetrahedron " + std::to_string(i) +
+                                     " at " + mesh.Shape() + " " +
+                                     std::to_string(i) +
                                      "; give it integers below 2^31");
     }
   }
   return array->row(0).transpose().cast<int>();
 }
 
-void RequireFinite(const std::filesystem::path& file, const std::string& what,
-                   const MeshFile& mesh, const Eigen::MatrixXd& values,
-                   const ComponentMask& mask, const std::string& mend) {
-  for (Eigen::Index node = 0; node < values.cols(); ++node) {
-    for (Eigen::Index axis = 0; axis < 3 && mesh.used[node]; ++axis) {
-      const double value = values(axis, node);
-      if (mask(axis, node) && !std::isfinite(value)) {
-        ThrowInputError(file, what + " of " + NodeName(mesh, node) + " (" +
-                                  kAxis[axis] + ") is " +
-                                  std::to_string(value).append("; " + mend));
+Mesh SceneMesh(const MeshFile& mesh, const Section& section,
+               Eigen::MatrixXi elements) {
+  return {mesh.kind, section, mesh.nodes.topRows(mesh.Dimension()),
+          std::move(elements), ReadRegions(mesh)};
+}
+
+Eigen::MatrixXd VectorField(const std::filesystem::path& file,
+                            const std::string& what, const MeshFile& mesh,
+                            const Eigen::MatrixXd& values,
+                            const ComponentMask& mask,
+                            const std::string& mend) {
+  RequireFinite(file, what, mesh, values, mask, mend);
+  if (mesh.Dimension() == 2 && values.rows() == 3) {
+    for (Eigen::Index node = 0; node < values.cols(); ++node) {
+      if (mesh.used[node] && mask.col(node).any() && values(2, node) != 0) {
+        std::ostringstream number;
+        number << values(2, node);
+        ThrowInputError(file, what + " of " + NodeName(mesh, node) +
+                                  " (z) is " + number.str() +
+                                  ", but the mesh is planar; make it 0");
       }
     }
   }
+  return values.topRows(mesh.Dimension());
+}
+
+ComponentMask AllComponents(const MeshFile& mesh) {
+  return ComponentMask::Constant(mesh.Dimension(), mesh.nodes.cols(), true);
 }
 
 ComponentMask ToComponentMask(const std::filesystem::path& file,
                               const std::string& what, const MeshFile& mesh,
                               const Eigen::MatrixXd& values) {
   const Eigen::MatrixXd numbers =
-      values.rows() == 1 ? Eigen::MatrixXd(values.replicate(3, 1))
-                         : Eigen::MatrixXd(values);
-  RequireFinite(file, what, mesh, numbers,
-                ComponentMask::Constant(3, numbers.cols(), true));
+      values.rows() == 1
+          ? Eigen::MatrixXd(values.replicate(mesh.Dimension(), 1))
+          : Eigen::MatrixXd(values.topRows(mesh.Dimension()));
+  RequireFinite(file, what, mesh, numbers, AllComponents(mesh), "correct it");
   return numbers.array() != 0;
 }
 

@@ -9,10 +9,10 @@
 
 namespace elastimate {
 
-/// A scene over all nodes of its mesh file, those without a tetrahedron
-/// included, so that messages can name nodes as the file does.
+/// A scene over all nodes of its mesh file, those without an element included,
+/// in the order of the file, so that messages can name nodes as the file does.
 struct FileScene {
-  MeshFile mesh;  ///< Nodes and tetrahedra may have moved to the scene.
+  MeshFile mesh;  ///< Its elements may have moved to the scene.
   Scene scene;
   std::vector<std::string> notices;
 };
@@ -21,16 +21,28 @@ struct FileScene {
 /// std::invalid_argument, naming the file, when it is not one of integers.
 Eigen::VectorXi ReadRegions(const MeshFile& mesh);
 
-/// Throws std::invalid_argument unless `values`, 3 x num_nodes, are finite
-/// where `mask` says and a tetrahedron uses the node: "FILE: WHAT of node 7
-/// (x) is nan; MEND".
-void RequireFinite(const std::filesystem::path& file, const std::string& what,
-                   const MeshFile& mesh, const Eigen::MatrixXd& values,
-                   const ComponentMask& mask,
-                   const std::string& mend = "correct it");
+/// The mesh of a scene over all nodes of the file.  `elements` are those of
+/// the file, which may be moved from it.
+Mesh SceneMesh(const MeshFile& mesh, const Section& section,
+               Eigen::MatrixXi elements);
 
-/// One flag per component from one or three numbers per node, set where they
-/// are not zero.  Throws std::invalid_argument, naming the file, for nan.
+/// The vectors of a field of the file, dimension x num_nodes.  `values` have 3
+/// rows, or 2 for planar elements.  Throws std::invalid_argument unless they
+/// are finite where `mask`, dimension x num_nodes, says and an element uses the
+/// node: "FILE: WHAT of node 7 (x) is nan; MEND"; and unless the third row of
+/// planar ones is zero where any component of the node counts.
+Eigen::MatrixXd VectorField(const std::filesystem::path& file,
+                            const std::string& what, const MeshFile& mesh,
+                            const Eigen::MatrixXd& values,
+                            const ComponentMask& mask,
+                            const std::string& mend = "correct it");
+
+/// A flag that is set for each component of each node.
+ComponentMask AllComponents(const MeshFile& mesh);
+
+/// One flag per component from one number per node or one per component, set
+/// where they are not zero; a third one of planar elements does not count.
+/// Throws std::invalid_argument, naming the file, for nan.
 ComponentMask ToComponentMask(const std::filesystem::path& file,
                               const std::string& what, const MeshFile& mesh,
                               const Eigen::MatrixXd& values);

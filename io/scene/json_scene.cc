@@ -9,6 +9,7 @@
 #include "elastimate/io/scene/json_value.h"
 #include "elastimate/io/scene/mesh_reader.h"
 #include "elastimate/io/scene/node_selection.h"
+#include "elastimate/io/scene/section.h"
 #include "elastimate/io/text/input_error.h"
 #include "elastimate/io/text/printable.h"
 
@@ -32,21 +33,27 @@ std::filesystem::path ResolvePath(const JsonValue& value) {
 }
 
 /// The components that e.g. "xz" names.
-Eigen::Array3<bool> ReadComponents(const JsonValue& support) {
+Eigen::Array<bool, Eigen::Dynamic, 1> ReadComponents(const JsonValue& support,
+                                                     int dimension) {
+  using Components = Eigen::Array<bool, Eigen::Dynamic, 1>;
   if (!support.Has("components")) {
-    return Eigen::Array3<bool>::Constant(true);
+    return Components::Constant(dimension, true);
   }
   const JsonValue value = support.At("components");
-  Eigen::Array3<bool> components = Eigen::Array3<bool>::Constant(false);
+  const std::string axes = dimension == 3 ? "xyz" : "xy";
+  const std::string names = dimension == 3 ? "x, y and z" : "x and y";
+  Components components = Components::Constant(dimension, false);
   for (const char letter : value.String()) {
-    const std::size_t axis = std::string("xyz").find(letter);
-    if (axis == std::string::npos || components[axis]) {
-      value.Fail("must name each of x, y and z at most once, like \"xz\"");
+    const std::size_t axis = axes.find(letter);
+    if (axis == std::string::npos ||
+        components[static_cast<Eigen::Index>(axis)]) {
+      value.Fail("must name each of " + names + " at most once, like \"" +
+                 (dimension == 3 ? "xz" : "xy") + "\"");
     }
-    components[axis] = true;
+    components[static_cast<Eigen::Index>(axis)] = true;
   }
   if (!components.any()) {
-    value.Fail("is empty; name some of x, y and z");
+    value.Fail("is empty; name some of " + names);
   }
   return components;
 }
@@ -55,12 +62,13 @@ void AddSupport(const JsonValue& support, const MeshFile& mesh,
                 Supports& supports) {
   support.CheckKeys({"nodes", "components", "displacement"});
   const NodeMask nodes = SelectNodes(support.At("nodes"), mesh, nullptr);
-  const Eigen::Array3<bool> components = ReadComponents(support);
-  const Eigen::Vector3d displacement = support.Has("displacement")
-                                           ? support.At("displacement").Vector()
-                                           : Eigen::Vector3d::Zero();
+  const int dimension = mesh.Dimension();
+  const auto components = ReadComponents(support, dimension);
+  const Eigen::VectorXd displacement =
+      support.Has("displacement") ? support.At("displacement").Vector(dimension)
+                                  : Eigen::VectorXd::Zero(dimension);
   for (Eigen::Index node = 0; node < nodes.size(); ++node) {
-    for (Eigen::Index axis = 0; axis < 3 && nodes[node]; ++axis) {
+    for (Eigen::Index axis = 0; axis < dimension && nodes[node]; ++axis) {
       if (!components[axis]) {
         continue;
       }
@@ -87,20 +95,46 @@ MeshFile ReadNamedMesh(const JsonValue& name) {
   return ReadMeshFile(path);
 }
 
+/// The keys `model` and `thickness`.
+SectionChoice ReadSection(const JsonValue& document) {
+  SectionChoice choice;
+  if (document.Has("model")) {
+    const JsonValue model = document.At("model");
+    const std::string name = model.String();
+    choice.model = SectionModelOfName(name);
+    if (!choice.model) {
+      model.Fail("is \"" + Printable(name) + "\"; make it " + kSectionModels);
+    }
+  }
+  if (document.Has("thickness")) {
+    choice.thickness = document.At("thickness").Number();
+    if (!(*choice.thickness > 0)) {
+      document.At("thickness").Fail("must be positive");
+    }
+  }
+  return choice;
+}
+
 Supports ReadSupports(const JsonValue& document, const MeshFile& mesh) {
   Supports supports;
-  supports.held.setConstant(3, mesh.nodes.cols(), false);
-  supports.displacement.setZero(3, mesh.nodes.cols());
+  supports.held.setConstant(mesh.Dimension(), mesh.nodes.cols(), false);
+  supports.displacement.setZero(mesh.Dimension(), mesh.nodes.cols());
   for (const JsonValue& support : document.At("supports").Items()) {
     AddSupport(support, mesh, supports);
   }
   return supports;
 }
 
-/// Three numbers per node, from the one of the keys `file` and `array` that
+/// The numbers of components that vectors of a mesh file may have.
+std::vector<Eigen::Index> VectorSizes(const MeshFile& mesh) {
+  return mesh.Dimension() == 3 ? std::vector<Eigen::Index>{3}
+                               : std::vector<Eigen::Index>{2, 3};
+}
+
+/// A vector per node, from the one of the keys `file` and `array` that
 /// `value` has; finite where `mask` says.
 Eigen::MatrixXd ReadField(const JsonValue& value, const MeshFile& mesh,
-                           const ComponentMask& mask, const std::string& mend) {
+                          const ComponentMask& mask, const std::string& mend) {
   if (value.Has("file") == value.Has("array")) {
     value.Fail("must have exactly one of the keys file, array");
   }
@@ -110,25 +144,27 @@ Eigen::MatrixXd ReadField(const JsonValue& value, const MeshFile& mesh,
   if (value.Has("file")) {
     RequireNodePositions(mesh);
     file = ResolvePath(value.At("file"));
-    field = ReadCsvField(file, mesh.nodes.cols());
+    field = ReadCsvField(file, mesh.nodes.cols(), mesh.Dimension());
     what = "the row";
   } else {
-    field = NamedNodeArray(value.At("array"), mesh, 3);
+    field = NamedNodeArray(value.At("array"), mesh, VectorSizes(mesh));
     what = "the point array '" + Printable(value.At("array").String()) + "'";
   }
-  RequireFinite(file, what, mesh, field, mask, mend);
-  return field;
+  return VectorField(file, what, mesh, field, mask, mend);
 }
 
-std::string ListText(const Eigen::Vector3d& values) {
+std::string ListText(const Eigen::VectorXd& values) {
   std::ostringstream text;
-  text << "[" << values[0] << ", " << values[1] << ", " << values[2] << "]";
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    text << (i == 0 ? "[" : ", ") << values[i];
+  }
+  text << "]";
   return text.str();
 }
 
 /// A total that is given as a nodal force would be as many times too large as
 /// there are nodes, and Young's modulus with it.
-void NoteForcePerNode(const JsonValue& load, const Eigen::Vector3d& value,
+void NoteForcePerNode(const JsonValue& load, const Eigen::VectorXd& value,
                       Eigen::Index num_nodes, const Context& context) {
   const JsonValue nodes = load.At("nodes");
   const bool names_a_part = !nodes.IsString() && !nodes.Has("ids");
@@ -150,12 +186,11 @@ NodalForces ReadNodalForces(const JsonValue& load, const Context& context) {
     if (load.Has("value") || load.Has("nodes")) {
       load.Fail("must have either value and nodes, or one of file and array");
     }
-    return {
-        ReadField(load, context.mesh,
-                  ComponentMask::Constant(3, context.mesh.nodes.cols(), true),
-                  "correct it")};
+    return {ReadField(load, context.mesh, AllComponents(context.mesh),
+                      "correct it")};
   }
-  const Eigen::Vector3d value = load.At("value").Vector();
+  const Eigen::VectorXd value =
+      load.At("value").Vector(context.mesh.Dimension());
   const NodeMask nodes =
       SelectNodes(load.At("nodes"), context.mesh, &context.free);
   NoteForcePerNode(load, value, nodes.count(), context);
@@ -167,6 +202,9 @@ Load ReadLoad(const JsonValue& load, const Context& context) {
     return SelectFacets(load.At("surface"), context.mesh, context.free,
                         context.boundary);
   };
+  const auto vector = [&] {
+    return load.At("value").Vector(context.mesh.Dimension());
+  };
   const JsonValue type = load.At("type");
   const std::string name = type.String();
   if (name == "nodal_force") {
@@ -174,11 +212,11 @@ Load ReadLoad(const JsonValue& load, const Context& context) {
   }
   if (name == "body_force") {
     load.CheckKeys({"type", "value"});
-    return BodyForce{load.At("value").Vector()};
+    return BodyForce{vector()};
   }
   if (name == "traction") {
     load.CheckKeys({"type", "value", "surface"});
-    return Traction{facets(), load.At("value").Vector()};
+    return Traction{facets(), vector()};
   }
   if (name == "pressure") {
     load.CheckKeys({"type", "value", "surface"});
@@ -186,7 +224,7 @@ Load ReadLoad(const JsonValue& load, const Context& context) {
   }
   if (name == "force") {
     load.CheckKeys({"type", "value", "surface"});
-    return SurfaceForce{facets(), load.At("value").Vector()};
+    return SurfaceForce{facets(), vector()};
   }
   type.Fail("is \"" + Printable(name) +
             "\"; the types known here are force, nodal_force, body_force, "
@@ -198,11 +236,14 @@ ComponentMask ReadObserved(const JsonValue& observed, const Context& context) {
   if (!observed.IsString() && observed.Has("array")) {
     observed.CheckKeys({"array"});
     const JsonValue name = observed.At("array");
+    std::vector<Eigen::Index> sizes = VectorSizes(mesh);
+    sizes.push_back(1);
     return ToComponentMask(mesh.path,
                            "the point array '" + Printable(name.String()) + "'",
-                           mesh, NamedNodeArray(name, mesh, 3, 1));
+                           mesh, NamedNodeArray(name, mesh, sizes));
   }
-  return SelectNodes(observed, mesh, &context.free).replicate(3, 1);
+  return SelectNodes(observed, mesh, &context.free)
+      .replicate(mesh.Dimension(), 1);
 }
 
 LoadCase ReadLoadCase(const JsonValue& value, const Context& context,
@@ -224,12 +265,11 @@ LoadCase ReadLoadCase(const JsonValue& value, const Context& context,
   if (value.Has("displacement") || measurement == Measurement::kRequired) {
     const JsonValue displacement = value.At("displacement");
     displacement.CheckKeys({"file", "array"});
-    load_case.displacement = ReadField(
-        displacement, context.mesh,
-        load_case.observed.size() > 0
-            ? load_case.observed
-            : ComponentMask::Constant(3, context.mesh.nodes.cols(), true),
-        "correct it or leave it out of the observed nodes");
+    load_case.displacement =
+        ReadField(displacement, context.mesh,
+                  load_case.observed.size() > 0 ? load_case.observed
+                                                : AllComponents(context.mesh),
+                  "correct it or leave it out of the observed nodes");
     ClearUnobserved(load_case);
   }
   return load_case;
@@ -238,16 +278,16 @@ LoadCase ReadLoadCase(const JsonValue& value, const Context& context,
 }  // namespace
 
 FileScene ReadJsonScene(const std::filesystem::path& path,
-                        Measurement measurement) {
+                        Measurement measurement, const SectionChoice& section) {
   const nlohmann::json parsed = ParseJsonFile(path);
   const JsonValue document(path, parsed);
-  document.CheckKeys({"mesh", "supports", "cases"});
+  document.CheckKeys({"model", "thickness", "mesh", "supports", "cases"});
+  const SectionChoice choice = Choose(section, ReadSection(document));
   FileScene file_scene;
   file_scene.mesh = ReadNamedMesh(document.At("mesh"));
   const MeshFile& mesh = file_scene.mesh;
-  file_scene.scene.mesh.nodes = mesh.nodes;
-  file_scene.scene.mesh.elements = mesh.tetrahedra;
-  file_scene.scene.mesh.regions = ReadRegions(mesh);
+  file_scene.scene.mesh =
+      SceneMesh(mesh, SectionOf(mesh, choice), mesh.elements);
   file_scene.scene.supports = ReadSupports(document, mesh);
   const Context context = {
       mesh, !file_scene.scene.supports.held.colwise().all() && mesh.used,

@@ -11,7 +11,7 @@ namespace elastimate {
 /// Reads a scene.json and the files it names, as ReadScene describes.  Throws
 /// std::invalid_argument, naming the file and the place in it.
 FileScene ReadJsonScene(const std::filesystem::path& path,
-                        Measurement measurement);
+                        Measurement measurement, const SectionChoice& section);
 
 }  // namespace elastimate
 

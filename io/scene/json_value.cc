@@ -164,12 +164,20 @@ double JsonValue::Number() const {
   return value_->get<double>();
 }
 
-Eigen::Vector3d JsonValue::Vector() const {
-  if (!value_->is_array() || value_->size() != 3) {
-    Fail("must be a list of 3 numbers");
+Eigen::VectorXd JsonValue::Vector(Eigen::Index size) const {
+  if (ListSize() != size) {
+    Fail("must be a list of " + std::to_string(size) + " numbers");
   }
-  const std::vector<JsonValue> items = Items();
-  return {items[0].Number(), items[1].Number(), items[2].Number()};
+  Eigen::VectorXd vector(size);
+  Eigen::Index i = 0;
+  for (const JsonValue& item : Items()) {
+    vector[i++] = item.Number();
+  }
+  return vector;
+}
+
+Eigen::Index JsonValue::ListSize() const {
+  return value_->is_array() ? static_cast<Eigen::Index>(value_->size()) : 0;
 }
 
 }  // namespace elastimate

@@ -38,7 +38,10 @@ class JsonValue {
   std::string String() const;
   long long Integer() const;
   double Number() const;
-  Eigen::Vector3d Vector() const;
+  /// A list of so many numbers.
+  Eigen::VectorXd Vector(Eigen::Index size) const;
+  /// Of how many items it is a list; 0 of anything else.
+  Eigen::Index ListSize() const;
 
   const std::filesystem::path& File() const { return *file_; }
   const std::string& Place() const { return place_; }

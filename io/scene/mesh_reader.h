@@ -8,9 +8,8 @@
 namespace elastimate {
 
 /// Reads .vtu, .vtk, .msh, .mesh, .unv and .bdf files; the extension may be in
-/// capital letters.  Node positions are finite where a tetrahedron uses them;
-/// no tetrahedron comes twice; arrays are as the file has them.  Throws as
-/// ReadScene does.
+/// capital letters.  The mesh is as CheckMeshFile demands; arrays are as the
+/// file has them.  Throws as ReadScene does.
 MeshFile ReadMeshFile(const std::filesystem::path& path);
 
 }  // namespace elastimate

@@ -27,15 +27,19 @@ void SelectIds(const JsonValue& ids, const MeshFile& mesh, NodeMask& mask) {
 void SelectBox(const JsonValue& box, const MeshFile& mesh, NodeMask& mask) {
   const std::vector<JsonValue> corners = box.Items();
   if (corners.size() != 2) {
-    box.Fail("must be two corners, [[x,y,z],[x,y,z]]");
+    box.Fail(mesh.Dimension() == 3 ? "must be two corners, [[x,y,z],[x,y,z]]"
+                                   : "must be two corners, [[x,y],[x,y]]");
   }
-  const Eigen::Vector3d low = corners[0].Vector();
-  const Eigen::Vector3d high = corners[1].Vector();
+  // In a plane z = const, z may be left out.
+  const Eigen::Index size =
+      corners[0].ListSize() == 3 ? 3 : Eigen::Index{mesh.Dimension()};
+  const Eigen::VectorXd low = corners[0].Vector(size);
+  const Eigen::VectorXd high = corners[1].Vector(size);
   if ((low.array() > high.array()).any()) {
     box.Fail("has a first corner above its second one; swap them");
   }
   for (Eigen::Index node = 0; node < mesh.nodes.cols(); ++node) {
-    const auto position = mesh.nodes.col(node).array();
+    const auto position = mesh.nodes.col(node).head(size).array();
     mask[node] =
         (position >= low.array()).all() && (position <= high.array()).all();
   }
@@ -43,7 +47,7 @@ void SelectBox(const JsonValue& box, const MeshFile& mesh, NodeMask& mask) {
 
 void SelectByArray(const JsonValue& name, const MeshFile& mesh,
                    NodeMask& mask) {
-  const Eigen::MatrixXd& values = NamedNodeArray(name, mesh, 1);
+  const Eigen::MatrixXd& values = NamedNodeArray(name, mesh, {1});
   for (Eigen::Index node = 0; node < values.cols(); ++node) {
     if (mesh.used[node] && std::isnan(values(0, node))) {
       name.Fail("names the array '" + Printable(name.String()) +
@@ -86,34 +90,43 @@ std::vector<const PhysicalGroup*> FindGroups(const JsonValue& name,
   return groups;
 }
 
-std::array<int, 3> SortedNodes(const Eigen::MatrixXi& facets,
-                               Eigen::Index facet) {
-  std::array<int, 3> nodes = {facets(0, facet), facets(1, facet),
-                              facets(2, facet)};
-  std::sort(nodes.begin(), nodes.end());
-  return nodes;
+/// Of its vertices, which are the first of its nodes; -1 where there are fewer.
+std::array<int, 4> SortedVertices(const MeshFile& mesh,
+                                  const Eigen::MatrixXi& facets,
+                                  Eigen::Index facet) {
+  std::array<int, 4> vertices = {-1, -1, -1, -1};
+  std::copy_n(facets.col(facet).data(), mesh.Topology().NumVerticesOfFace(),
+              vertices.begin());
+  std::sort(vertices.begin(), vertices.end());
+  return vertices;
 }
 
-/// Each triangle of the group as the boundary facet of the same nodes.
-void MatchTriangles(const JsonValue& selection, const PhysicalGroup& group,
-                    const Eigen::MatrixXi& boundary,
-                    std::vector<Eigen::Index>& chosen) {
-  std::map<std::array<int, 3>, Eigen::Index> facets;
+/// Each facet of the group as the boundary facet of the same vertices.
+void MatchFacets(const JsonValue& selection, const MeshFile& mesh,
+                 const PhysicalGroup& group, const Eigen::MatrixXi& boundary,
+                 std::vector<Eigen::Index>& chosen) {
+  std::map<std::array<int, 4>, Eigen::Index> facets;
   for (Eigen::Index facet = 0; facet < boundary.cols(); ++facet) {
-    facets.emplace(SortedNodes(boundary, facet), facet);
+    facets.emplace(SortedVertices(mesh, boundary, facet), facet);
   }
-  for (Eigen::Index i = 0; i < group.triangles.cols(); ++i) {
-    const auto found = facets.find(SortedNodes(group.triangles, i));
+  for (Eigen::Index i = 0; i < group.facets.cols(); ++i) {
+    const auto found = facets.find(SortedVertices(mesh, group.facets, i));
     if (found == facets.end()) {
-      selection.Fail("names a physical group whose triangle " +
-                     std::to_string(i) +
-                     " is not a face on the boundary of the tetrahedra");
+      const bool is_solid = mesh.Dimension() == 3;
+      const std::string facet = !is_solid ? "edge "
+                                : mesh.Topology().NumVerticesOfFace() == 3
+                                    ? "triangle "
+                                    : "quadrilateral ";
+      selection.Fail("names a physical group whose " + facet +
+                     std::to_string(i) + " is not " +
+                     (is_solid ? "a face" : "an edge") +
+                     " on the boundary of the " + mesh.Shapes());
     }
     chosen.push_back(found->second);
   }
 }
 
-/// The groups of triangles that `selection` names, if it names any.
+/// The groups of facets that `selection` names, if it names any.
 std::vector<const PhysicalGroup*> FindSurfaceGroups(const JsonValue& selection,
                                                     const MeshFile& mesh) {
   std::vector<const PhysicalGroup*> groups;
@@ -121,7 +134,7 @@ std::vector<const PhysicalGroup*> FindSurfaceGroups(const JsonValue& selection,
     groups = FindGroups(selection.At("physical"), mesh);
     groups.erase(std::remove_if(groups.begin(), groups.end(),
                                 [](const PhysicalGroup* group) {
-                                  return group->triangles.cols() == 0;
+                                  return group->facets.cols() == 0;
                                 }),
                  groups.end());
   }
@@ -170,7 +183,7 @@ NodeMask SelectNodes(const JsonValue& selection, const MeshFile& mesh,
   }
   mask = mask && mesh.used;
   if (!mask.any()) {
-    selection.Fail("selects no node that a tetrahedron uses");
+    selection.Fail("selects no node that a " + mesh.Shape() + " uses");
   }
   return mask;
 }
@@ -183,7 +196,7 @@ Eigen::MatrixXi SelectFacets(const JsonValue& selection, const MeshFile& mesh,
   const std::vector<const PhysicalGroup*> groups =
       FindSurfaceGroups(selection, mesh);
   for (const PhysicalGroup* group : groups) {
-    MatchTriangles(selection, *group, boundary, chosen);
+    MatchFacets(selection, mesh, *group, boundary, chosen);
   }
   if (groups.empty()) {
     for (Eigen::Index facet = 0; facet < boundary.cols(); ++facet) {
@@ -200,21 +213,22 @@ Eigen::MatrixXi SelectFacets(const JsonValue& selection, const MeshFile& mesh,
   return boundary(Eigen::all, chosen);
 }
 
-const Eigen::MatrixXd& NamedNodeArray(const JsonValue& name,
-                                      const MeshFile& mesh, int components,
-                                      int other_components) {
+const Eigen::MatrixXd& NamedNodeArray(
+    const JsonValue& name, const MeshFile& mesh,
+    const std::vector<Eigen::Index>& components) {
   const Eigen::MatrixXd* array = FindArray(mesh.node_arrays, name.String());
   if (array == nullptr) {
     name.Fail("names the array '" + Printable(name.String()) + "', which '" +
               PrintablePath(mesh.path) + "' does not have");
   }
-  if (array->rows() != components && array->rows() != other_components) {
+  if (std::find(components.begin(), components.end(), array->rows()) ==
+      components.end()) {
+    std::string due;
+    for (const Eigen::Index count : components) {
+      due += (due.empty() ? "" : " or ") + std::to_string(count);
+    }
     name.Fail("names the array '" + Printable(name.String()) + "', which has " +
-              std::to_string(array->rows()) + " components where " +
-              std::to_string(components) +
-              (other_components == 0
-                   ? ""
-                   : " or " + std::to_string(other_components)) +
+              std::to_string(array->rows()) + " components where " + due +
               " are due");
   }
   return *array;

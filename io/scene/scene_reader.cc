@@ -1,7 +1,9 @@
 #include "elastimate/io/scene/scene_reader.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -33,6 +35,18 @@ bool AreClose(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
 /// What differs between the specimens of two scenes; empty when nothing does.
 std::string WhyDifferent(const Scene& first, const Scene& other) {
   const Mesh& mesh = first.mesh;
+  if (mesh.kind != other.mesh.kind) {
+    return "it is of kind " + std::string(other.mesh.Topology().name) +
+           " instead of " + std::string(mesh.Topology().name);
+  }
+  if (mesh.section.model != other.mesh.section.model) {
+    return "it is in " +
+           std::string(SectionModelName(other.mesh.section.model)) +
+           " instead of " + std::string(SectionModelName(mesh.section.model));
+  }
+  if (mesh.section.thickness != other.mesh.section.thickness) {
+    return "its thickness differs";
+  }
   if (mesh.NumNodes() != other.mesh.NumNodes()) {
     return "it has " + std::to_string(other.mesh.NumNodes()) +
            " nodes instead of " + std::to_string(mesh.NumNodes());
@@ -58,23 +72,45 @@ std::string WhyDifferent(const Scene& first, const Scene& other) {
   return "";
 }
 
-/// Keeps the nodes that tetrahedra use, in their order.
-class UnusedNodeFilter {
+/// Keeps the nodes that elements use, in their order but for the mid-edge nodes
+/// of quadratic elements, which come after all vertices.
+class SceneNodes {
  public:
-  explicit UnusedNodeFilter(const MeshFile& mesh)
-      : position_(mesh.used.size()) {
-    for (Eigen::Index node = 0; node < mesh.used.size(); ++node) {
-      position_[node] = static_cast<int>(kept_.size());
-      if (mesh.used[node]) {
-        kept_.push_back(node);
+  SceneNodes(const MeshFile& file, const Mesh& mesh)
+      : position_(file.used.size(), -1) {
+    std::vector<char> is_mid_edge(file.used.size(), 0);
+    const ElementTopology& topology = mesh.Topology();
+    for (const int node :
+         mesh.elements.bottomRows(topology.num_nodes - topology.num_vertices)
+             .reshaped()) {
+      is_mid_edge[node] = 1;
+    }
+    for (const char wanted : {0, 1}) {
+      for (Eigen::Index node = 0; node < file.used.size(); ++node) {
+        if (file.used[node] && is_mid_edge[node] == wanted) {
+          position_[node] = static_cast<int>(kept_.size());
+          kept_.push_back(node);
+        }
       }
     }
   }
 
   Eigen::Index NumDropped() const { return position_.size() - kept_.size(); }
 
+  /// The kept nodes as they are numbered now, in their order before; empty
+  /// where that is the same.
+  std::vector<int> FileOrder() const {
+    if (std::is_sorted(kept_.begin(), kept_.end())) {
+      return {};
+    }
+    std::vector<int> order;
+    std::copy_if(position_.begin(), position_.end(), std::back_inserter(order),
+                 [](int position) { return position >= 0; });
+    return order;
+  }
+
   Scene Filter(Scene scene) const {
-    if (NumDropped() == 0) {
+    if (NumDropped() == 0 && FileOrder().empty()) {
       return scene;
     }
     KeepColumns(scene.mesh.nodes);
@@ -135,9 +171,11 @@ void NoteMesh(const std::filesystem::path& path, const Mesh& mesh,
   }
   const std::vector<std::array<int, 2>> coincident = CoincidentNodes(mesh);
   if (!coincident.empty()) {
-    const auto place = mesh.nodes.col(coincident.front()[0]);
     std::ostringstream first;
-    first << "(" << place.x() << ", " << place.y() << ", " << place.z() << ")";
+    for (const double x : mesh.nodes.col(coincident.front()[0])) {
+      first << (first.tellp() == 0 ? "(" : ", ") << x;
+    }
+    first << ")";
     notices.push_back(
         PrintablePath(path) + ": " + std::to_string(coincident.size()) +
         " nodes lie at the same place as another node, such as at " +
@@ -147,30 +185,32 @@ void NoteMesh(const std::filesystem::path& path, const Mesh& mesh,
   }
 }
 
-/// The scene without the nodes that no tetrahedron uses, valid.
+/// The scene without the nodes that no element uses, valid, and their order in
+/// the file.
 Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
-                  std::vector<std::string>& notices) {
+                  std::vector<std::string>& notices,
+                  std::vector<int>& file_order) {
   const MeshFile& mesh = file_scene.mesh;
   notices.insert(notices.end(), file_scene.notices.begin(),
                  file_scene.notices.end());
-  const UnusedNodeFilter filter(mesh);
-  const Eigen::Index num_dropped =
-      filter.NumDropped() + mesh.num_nodes_left_out;
+  const SceneNodes nodes(mesh, file_scene.scene.mesh);
+  file_order = nodes.FileOrder();
+  const Eigen::Index num_dropped = nodes.NumDropped() + mesh.num_nodes_left_out;
   if (num_dropped > 0) {
     notices.push_back(PrintablePath(mesh.path) + ": dropped " +
-                      std::to_string(num_dropped) +
-                      " points that no tetrahedron uses");
+                      std::to_string(num_dropped) + " points that no " +
+                      mesh.Shape() + " uses");
   }
-  Scene scene = filter.Filter(std::move(file_scene.scene));
+  Scene scene = nodes.Filter(std::move(file_scene.scene));
   try {
     ValidateScene(scene);
   } catch (const std::invalid_argument& error) {
     const bool numbers_differ = num_dropped > 0 || mesh.has_other_cells;
     ThrowInputError(
-        path, error.what() + std::string(numbers_differ
-                                             ? " (counting only tetrahedra "
-                                               "and the nodes they use)"
-                                             : ""));
+        path,
+        error.what() + (numbers_differ ? " (counting only " + mesh.Shapes() +
+                                             " and the nodes they use)"
+                                       : ""));
   }
   CheckObserved(path, scene);
   return scene;
@@ -224,16 +264,16 @@ void AddLoadCases(const std::filesystem::path& path,
 }
 
 FileScene ReadFileScene(const std::filesystem::path& path,
-                        Measurement measurement) {
+                        Measurement measurement, const SectionChoice& section) {
   return FileExtension(path) == ".json"
-             ? ReadJsonScene(path, measurement)
-             : SceneFromArrays(ReadMeshFile(path), measurement);
+             ? ReadJsonScene(path, measurement, section)
+             : SceneFromArrays(ReadMeshFile(path), measurement, section);
 }
 
 }  // namespace
 
 SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
-                       Measurement measurement) {
+                       Measurement measurement, const SectionChoice& section) {
   if (paths.empty()) {
     throw std::invalid_argument("no scene file is given; name one");
   }
@@ -241,14 +281,17 @@ SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
   SceneReading reading;
   CaseNames names;
   for (const std::filesystem::path& path : paths) {
-    FileScene file_scene = ReadFileScene(path, measurement);
+    FileScene file_scene = ReadFileScene(path, measurement, section);
     const std::filesystem::path mesh_path = file_scene.mesh.path;
-    Scene scene = FinishScene(path, std::move(file_scene), reading.notices);
+    std::vector<int> file_order;
+    Scene scene =
+        FinishScene(path, std::move(file_scene), reading.notices, file_order);
     std::vector<LoadCase> load_cases = std::move(scene.load_cases);
     if (&path == &paths.front()) {
       NoteMesh(mesh_path, scene.mesh, reading.notices);
       scene.load_cases.clear();
       reading.scene = std::move(scene);
+      reading.file_order = std::move(file_order);
     } else if (const std::string difference =
                    WhyDifferent(reading.scene, scene);
                !difference.empty()) {

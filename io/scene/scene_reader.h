@@ -2,6 +2,7 @@
 #define ELASTIMATE_IO_SCENE_SCENE_READER_H_
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,12 +13,22 @@ namespace elastimate {
 /// Whether a scene without measured displacements is wrong input.
 enum class Measurement { kRequired, kOptional };
 
+/// What is known about the section of a planar mesh beside its files.
+struct SectionChoice {
+  std::optional<SectionModel> model;
+  std::optional<double> thickness;  ///< [length], positive.
+};
+
 /// A scene as read, and what the reader has to say about it.
 struct SceneReading {
   Scene scene;
   /// For people: what was left out, and what may be meant otherwise than it is
   /// read (forces per node, regions, nodes at one place).
   std::vector<std::string> notices;
+  /// The nodes of the scene in the order of the file, in which results belong
+  /// (VtuContent); empty where it is the same: everywhere but in a quadratic
+  /// mesh with mid-edge nodes numbered before vertices.
+  std::vector<int> file_order;
 };
 
 /// Reads a scene from files whose arrays make it up (.vtu, .vtk, or .msh with
@@ -27,9 +38,16 @@ struct SceneReading {
 /// coordinate), cells, regions and supports.  A load case given twice is an
 /// error: its noise would count as that of two measurements.
 ///
-/// The array `prescribed` (3 components, optional) is the displacement at which
+/// The elements are the cells of the highest dimension, which are of one
+/// ElementKind.  Planar ones lie in a plane z = const and need a model and a
+/// thickness: of `section`, else of the scene.json, else of the field data of
+/// the mesh file.  Their arrays have 2 components, or 3 of which the third is
+/// zero.  The mid-edge nodes of quadratic elements are numbered after the
+/// vertices in the scene, whatever the file does.
+///
+/// The array `prescribed` (optional) is the displacement at which
 /// held components are held.  A node is known by its zero-based position among
-/// all nodes of its file, also those without a tetrahedron: in the order of the
+/// all nodes of its file, also those without an element: in the order of the
 /// points of a VTK file, by ascending node number in a Gmsh file.  That is what
 /// ids and CSV rows in a scene.json refer to, and what messages name.
 ///
@@ -42,7 +60,8 @@ struct SceneReading {
 /// may crash on, is read in a child process; .vtu files are read by one thread
 /// after the other.
 SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
-                       Measurement measurement);
+                       Measurement measurement,
+                       const SectionChoice& section = {});
 
 }  // namespace elastimate
 

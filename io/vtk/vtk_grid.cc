@@ -1,22 +1,28 @@
 #include "elastimate/io/vtk/vtk_grid.h"
 
+#include <vtkCell.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkCellTypes.h>
 #include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkGenericCell.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkSmartPointer.h>
+#include <vtkStringArray.h>
 #include <vtkTypeInt64Array.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -114,9 +120,33 @@ std::string CellTypeName(int type) {
   return name;
 }
 
-bool IsIgnoredCell(int type) {
-  return type == VTK_VERTEX || type == VTK_POLY_VERTEX || type == VTK_LINE ||
-         type == VTK_POLY_LINE || type == VTK_TRIANGLE;
+/// The cells that may be elements.
+constexpr std::array<std::pair<int, ElementKind>, 6> kCellKinds = {
+    {{VTK_TETRA, ElementKind::kTet4},
+     {VTK_QUADRATIC_TETRA, ElementKind::kTet10},
+     {VTK_HEXAHEDRON, ElementKind::kHex8},
+     {VTK_TRIANGLE, ElementKind::kTri3},
+     {VTK_QUADRATIC_TRIANGLE, ElementKind::kTri6},
+     {VTK_QUAD, ElementKind::kQuad4}}};
+
+std::optional<ElementKind> KindOfCell(int type) {
+  for (const auto& [cell_type, kind] : kCellKinds) {
+    if (cell_type == type) {
+      return kind;
+    }
+  }
+  return std::nullopt;
+}
+
+/// 3 of a cell of unknown type, which must not be ignored.
+int DimensionOfCell(int type) {
+  if (const std::optional<ElementKind> kind = KindOfCell(type)) {
+    return TopologyOf(*kind).dimension;
+  }
+  const vtkSmartPointer<vtkCell> cell =
+      vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
+  return cell == nullptr || type == VTK_EMPTY_CELL ? 3
+                                                   : cell->GetCellDimension();
 }
 
 void CheckOffsets(const std::filesystem::path& path, const VtkGrid& grid) {
@@ -134,43 +164,81 @@ void CheckOffsets(const std::filesystem::path& path, const VtkGrid& grid) {
   }
 }
 
-bool IsTetrahedron(const VtkGrid& grid, std::size_t cell) {
-  return grid.cell_types[cell] == VTK_TETRA;
-}
+/// Which cells are the elements: those of the highest dimension.
+struct ElementCells {
+  ElementKind kind = ElementKind::kTet4;
+  std::vector<std::size_t> cells;
+};
 
-/// Checks the kind of each cell.
-void CheckCellTypes(const std::filesystem::path& path, const VtkGrid& grid) {
-  const vtkTypeInt64Array& offsets = *grid.cells->GetOffsetsArray64();
-  for (std::size_t cell = 0; cell < grid.cell_types.size(); ++cell) {
-    const auto index = static_cast<vtkIdType>(cell);
-    if (!IsTetrahedron(grid, cell)) {
-      if (!IsIgnoredCell(grid.cell_types[cell])) {
-        ThrowInputError(path, "cell " + std::to_string(cell) + " is a " +
-                                  CellTypeName(grid.cell_types[cell]) +
-                                  ", but only linear tetrahedra are supported; "
-                                  "mesh the specimen with those");
-      }
-    } else if (offsets.GetValue(index + 1) - offsets.GetValue(index) != 4) {
-      ThrowInconsistent(path, "cell " + std::to_string(cell) +
-                                  " is a tetrahedron without four points");
+/// Of dimension 3 where there is one, else of dimension 2.
+std::vector<std::size_t> CellsOfHighestDimension(const VtkGrid& grid) {
+  std::array<int, 256> dimension_of_type{};
+  for (int type = 0; type < 256; ++type) {
+    dimension_of_type[type] = -1;
+  }
+  int highest = 2;
+  for (const unsigned char type : grid.cell_types) {
+    if (dimension_of_type[type] < 0) {
+      dimension_of_type[type] = DimensionOfCell(type);
+      highest = std::max(highest, dimension_of_type[type]);
     }
   }
+  std::vector<std::size_t> cells;
+  for (std::size_t cell = 0; cell < grid.cell_types.size(); ++cell) {
+    if (dimension_of_type[grid.cell_types[cell]] == highest) {
+      cells.push_back(cell);
+    }
+  }
+  return cells;
 }
 
-void CopyTetrahedra(const VtkGrid& grid, MeshFile& mesh) {
+/// The cells that are elements, which must be of one kind.
+ElementCells FindElements(const std::filesystem::path& path,
+                          const VtkGrid& grid) {
+  const vtkTypeInt64Array& offsets = *grid.cells->GetOffsetsArray64();
+  ElementCells elements;
+  elements.cells = CellsOfHighestDimension(grid);
+  for (const std::size_t cell : elements.cells) {
+    const int type = grid.cell_types[cell];
+    const int first_type = grid.cell_types[elements.cells.front()];
+    const std::optional<ElementKind> kind = KindOfCell(type);
+    const std::string name =
+        "cell " + std::to_string(cell) + " is a " + CellTypeName(type);
+    if (!kind) {
+      ThrowInputError(path, name + ", but the cells of a scene are " +
+                                kSupportedElements +
+                                "; mesh the specimen with one kind of these");
+    }
+    if (type != first_type) {
+      ThrowInputError(path, name + ", but cell " +
+                                std::to_string(elements.cells.front()) +
+                                " is a " + CellTypeName(first_type) +
+                                "; mesh the specimen with cells of one kind");
+    }
+    elements.kind = *kind;
+    const auto index = static_cast<vtkIdType>(cell);
+    const vtkIdType count =
+        offsets.GetValue(index + 1) - offsets.GetValue(index);
+    if (const int due = TopologyOf(*kind).num_nodes; count != due) {
+      ThrowInconsistent(path, name + " of " + std::to_string(count) +
+                                  " points where " + std::to_string(due) +
+                                  " are due");
+    }
+  }
+  return elements;
+}
+
+void CopyElements(const VtkGrid& grid, const std::vector<std::size_t>& cells,
+                  MeshFile& mesh) {
   const vtkTypeInt64Array& offsets = *grid.cells->GetOffsetsArray64();
   const vtkTypeInt64Array& connectivity = *grid.cells->GetConnectivityArray64();
   const std::int64_t num_points = grid.points.cols();
-  mesh.tetrahedra.resize(
-      4, std::count(grid.cell_types.begin(), grid.cell_types.end(), VTK_TETRA));
+  mesh.elements.resize(mesh.Topology().num_nodes, cells.size());
   Eigen::Index column = 0;
-  for (std::size_t cell = 0; cell < grid.cell_types.size(); ++cell) {
-    if (!IsTetrahedron(grid, cell)) {
-      continue;
-    }
+  for (const std::size_t cell : cells) {
     const std::int64_t first = offsets.GetValue(static_cast<vtkIdType>(cell));
-    for (int corner = 0; corner < 4; ++corner) {
-      const std::int64_t node = connectivity.GetValue(first + corner);
+    for (Eigen::Index i = 0; i < mesh.elements.rows(); ++i) {
+      const std::int64_t node = connectivity.GetValue(first + i);
       if (node < 0 || node >= num_points) {
         ThrowInputError(
             mesh.path, "cell " + std::to_string(cell) + " names point " +
@@ -178,22 +246,32 @@ void CopyTetrahedra(const VtkGrid& grid, MeshFile& mesh) {
                            std::to_string(num_points) +
                            " points, counted from 0; correct its connectivity");
       }
-      mesh.tetrahedra(corner, column) = static_cast<int>(node);
+      mesh.elements(i, column) = static_cast<int>(node);
     }
     ++column;
   }
 }
 
-/// Of the columns of cells, those of tetrahedra.
-void KeepTetrahedra(const VtkGrid& grid, std::vector<FileArray>& arrays) {
-  std::vector<std::size_t> tetrahedra;
-  for (std::size_t cell = 0; cell < grid.cell_types.size(); ++cell) {
-    if (IsTetrahedron(grid, cell)) {
-      tetrahedra.push_back(cell);
+/// The field data `model` and `thickness`.
+void ReadSection(vtkFieldData* from, MeshFile& mesh) {
+  if (from->GetAbstractArray("model") != nullptr) {
+    auto* const model =
+        vtkStringArray::SafeDownCast(from->GetAbstractArray("model"));
+    if (model == nullptr || model->GetNumberOfValues() != 1) {
+      ThrowInputError(mesh.path,
+                      "the field data 'model' is not one string; make it 3d, "
+                      "plane_stress or plane_strain");
     }
+    mesh.model = model->GetValue(0);
   }
-  for (FileArray& array : arrays) {
-    array.values = Eigen::MatrixXd(array.values(Eigen::all, tetrahedra));
+  if (from->GetAbstractArray("thickness") != nullptr) {
+    vtkDataArray* const thickness = from->GetArray("thickness");
+    if (thickness == nullptr || thickness->GetNumberOfValues() != 1) {
+      ThrowInputError(mesh.path,
+                      "the field data 'thickness' is not one number; make it "
+                      "the thickness of the planar specimen");
+    }
+    mesh.thickness = thickness->GetComponent(0, 0);
   }
 }
 
@@ -220,18 +298,20 @@ MeshFile ToMeshFile(const std::filesystem::path& path, VtkGrid grid) {
     return mesh;
   }
   CheckOffsets(path, grid);
-  CheckCellTypes(path, grid);
-  CopyTetrahedra(grid, mesh);
+  const ElementCells elements = FindElements(path, grid);
+  mesh.kind = elements.kind;
+  CopyElements(grid, elements.cells, mesh);
   CheckArrayLengths(path, grid.point_arrays, grid.points.cols());
   CheckArrayLengths(path, grid.cell_arrays,
                     static_cast<Eigen::Index>(grid.cell_types.size()));
   mesh.nodes = std::move(grid.points);
   mesh.node_arrays = std::move(grid.point_arrays);
-  mesh.tetrahedron_arrays = std::move(grid.cell_arrays);
-  mesh.has_other_cells = mesh.tetrahedra.cols() !=
-                         static_cast<Eigen::Index>(grid.cell_types.size());
+  mesh.element_arrays = std::move(grid.cell_arrays);
+  mesh.has_other_cells = elements.cells.size() != grid.cell_types.size();
   if (mesh.has_other_cells) {
-    KeepTetrahedra(grid, mesh.tetrahedron_arrays);
+    for (FileArray& array : mesh.element_arrays) {
+      array.values = Eigen::MatrixXd(array.values(Eigen::all, elements.cells));
+    }
   }
   return mesh;
 }
@@ -240,7 +320,9 @@ MeshFile ToMeshFile(const std::filesystem::path& path, VtkGrid grid) {
 
 MeshFile ToMeshFile(const std::filesystem::path& path,
                     vtkUnstructuredGrid* grid) {
-  return ToMeshFile(path, ToVtkGrid(grid));
+  MeshFile mesh = ToMeshFile(path, ToVtkGrid(grid));
+  ReadSection(grid->GetFieldData(), mesh);
+  return mesh;
 }
 
 void ThrowDamagedVtk(const std::filesystem::path& path,

@@ -7,9 +7,9 @@
 
 namespace elastimate {
 
-/// Reads an unstructured grid from VTK's XML format, in any encoding. Vertices,
-/// lines and triangles are ignored; any other cell but a tetrahedron is an
-/// error.  Throws std::invalid_argument, naming the file.
+/// Reads an unstructured grid from VTK's XML format, in any encoding.  Cells of
+/// lower dimension than others are ignored; those left must be of one
+/// ElementKind.  Throws std::invalid_argument, naming the file.
 MeshFile ReadVtuMesh(const std::filesystem::path& path);
 
 /// The same from VTK's legacy format, text or binary.

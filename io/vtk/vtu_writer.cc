@@ -4,11 +4,13 @@
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
 #include <vtkIdTypeArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkSmartPointer.h>
+#include <vtkStringArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
@@ -30,7 +32,12 @@ vtkSmartPointer<vtkDoubleArray> ToVtkArray(
   return array;
 }
 
-vtkSmartPointer<vtkCellArray> ToVtkCells(const Eigen::MatrixXi& elements) {
+vtkSmartPointer<vtkCellArray> ToVtkCells(const Eigen::MatrixXi& elements,
+                                         const std::vector<int>& order) {
+  std::vector<vtkIdType> point_of_node(order.size());
+  for (std::size_t point = 0; point < order.size(); ++point) {
+    point_of_node[order[point]] = static_cast<vtkIdType>(point);
+  }
   vtkNew<vtkIdTypeArray> offsets;
   offsets->SetNumberOfValues(elements.cols() + 1);
   for (Eigen::Index i = 0; i <= elements.cols(); ++i) {
@@ -39,16 +46,46 @@ vtkSmartPointer<vtkCellArray> ToVtkCells(const Eigen::MatrixXi& elements) {
   vtkNew<vtkIdTypeArray> nodes;
   nodes->SetNumberOfValues(elements.size());
   for (Eigen::Index i = 0; i < elements.size(); ++i) {
-    nodes->SetValue(i, elements.data()[i]);
+    const int node = elements.data()[i];
+    nodes->SetValue(i, order.empty() ? node : point_of_node[node]);
   }
   auto cells = vtkSmartPointer<vtkCellArray>::New();
   cells->SetData(offsets, nodes);
   return cells;
 }
 
-void AddFields(const std::filesystem::path& path,
-               const std::vector<Field>& fields, Eigen::Index num_columns,
-               vtkDataSetAttributes* attributes) {
+int CellType(ElementKind kind) {
+  switch (kind) {
+    case ElementKind::kTet10:
+      return VTK_QUADRATIC_TETRA;
+    case ElementKind::kHex8:
+      return VTK_HEXAHEDRON;
+    case ElementKind::kTri3:
+      return VTK_TRIANGLE;
+    case ElementKind::kTri6:
+      return VTK_QUADRATIC_TRIANGLE;
+    case ElementKind::kQuad4:
+      return VTK_QUAD;
+    case ElementKind::kTet4:
+      break;
+  }
+  return VTK_TETRA;
+}
+
+/// In the order of the points, with z = 0 for vectors of a plane.
+Eigen::MatrixXd AtPoints(const Eigen::MatrixXd& values, const Mesh& mesh,
+                         const std::vector<int>& order) {
+  Eigen::MatrixXd at_points =
+      order.empty() ? values : Eigen::MatrixXd(values(Eigen::all, order));
+  if (mesh.Dimension() == 2 && values.rows() == 2) {
+    at_points.conservativeResize(3, Eigen::NoChange);
+    at_points.row(2).setZero();
+  }
+  return at_points;
+}
+
+void CheckFields(const std::filesystem::path& path,
+                 const std::vector<Field>& fields, Eigen::Index num_columns) {
   for (const Field& field : fields) {
     if (field.values.cols() != num_columns || field.values.rows() == 0) {
       ThrowInputError(path, "the field '" + field.name + "' is " +
@@ -57,24 +94,47 @@ void AddFields(const std::filesystem::path& path,
                                 "; give it " + std::to_string(num_columns) +
                                 " columns");
     }
-    const auto array = ToVtkArray(field.values);
-    array->SetName(field.name.c_str());
-    attributes->AddArray(array);
   }
 }
 
+void AddField(const std::string& name, const Eigen::MatrixXd& values,
+              vtkDataSetAttributes* attributes) {
+  const auto array = ToVtkArray(values);
+  array->SetName(name.c_str());
+  attributes->AddArray(array);
+}
+
+void AddSection(const Section& section, vtkFieldData* data) {
+  vtkNew<vtkStringArray> model;
+  model->SetName("model");
+  model->InsertNextValue(std::string(SectionModelName(section.model)));
+  data->AddArray(model);
+  vtkNew<vtkDoubleArray> thickness;
+  thickness->SetName("thickness");
+  thickness->InsertNextValue(section.thickness);
+  data->AddArray(thickness);
+}
+
 vtkSmartPointer<vtkUnstructuredGrid> ToVtkGrid(
-    const std::filesystem::path& path, const Mesh& mesh, const Fields& fields) {
-  if (mesh.elements.rows() != 4) {
-    ThrowInputError(path, "only meshes of linear tetrahedra can be written");
-  }
+    const std::filesystem::path& path, const Mesh& mesh, const Fields& fields,
+    const std::vector<int>& order) {
   auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   vtkNew<vtkPoints> points;
-  points->SetData(ToVtkArray(mesh.nodes));
+  points->SetData(ToVtkArray(AtPoints(mesh.nodes, mesh, order)));
   grid->SetPoints(points);
-  grid->SetCells(VTK_TETRA, ToVtkCells(mesh.elements));
-  AddFields(path, fields.point, mesh.NumNodes(), grid->GetPointData());
-  AddFields(path, fields.cell, mesh.NumElements(), grid->GetCellData());
+  grid->SetCells(CellType(mesh.kind), ToVtkCells(mesh.elements, order));
+  CheckFields(path, fields.point, mesh.NumNodes());
+  CheckFields(path, fields.cell, mesh.NumElements());
+  for (const Field& field : fields.point) {
+    AddField(field.name, AtPoints(field.values, mesh, order),
+             grid->GetPointData());
+  }
+  for (const Field& field : fields.cell) {
+    AddField(field.name, field.values, grid->GetCellData());
+  }
+  if (mesh.Dimension() == 2) {
+    AddSection(mesh.section, grid->GetFieldData());
+  }
   return grid;
 }
 
@@ -114,10 +174,11 @@ Fields SceneFields(const Scene& scene) {
 }
 
 std::string VtuContent(const std::filesystem::path& path, const Mesh& mesh,
-                       const Fields& fields) {
+                       const Fields& fields,
+                       const std::vector<int>& file_order) {
   const VtkMessages messages(VtkMessages::Warnings::kIgnored);
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
-  writer->SetInputData(ToVtkGrid(path, mesh, fields));
+  writer->SetInputData(ToVtkGrid(path, mesh, fields, file_order));
   writer->SetDataModeToBinary();
   writer->SetCompressionLevel(1);  // Doubles hardly shrink further.
   writer->WriteToOutputStringOn();
@@ -129,9 +190,9 @@ std::string VtuContent(const std::filesystem::path& path, const Mesh& mesh,
 }
 
 void WriteVtu(const std::filesystem::path& path, const Mesh& mesh,
-              const Fields& fields) {
+              const Fields& fields, const std::vector<int>& file_order) {
   CheckWritable(path);
-  WriteWholeFile(path, VtuContent(path, mesh, fields));
+  WriteWholeFile(path, VtuContent(path, mesh, fields, file_order));
 }
 
 }  // namespace elastimate

@@ -29,16 +29,19 @@ struct Fields {
 Fields SceneFields(const Scene& scene);
 
 /// The mesh with its fields as the content of a VTU file (binary, Float64) that
-/// ParaView opens.  Throws std::invalid_argument, naming the file, for fields
-/// that do not fit the mesh.
+/// ParaView opens.  What is planar lies at z = 0, its vectors too, with its
+/// `model` and `thickness` as field data.  Point i is node `file_order[i]`
+/// (SceneReading::file_order), or node i where that is empty.  Throws
+/// std::invalid_argument, naming the file, for fields that do not fit the mesh.
 std::string VtuContent(const std::filesystem::path& path, const Mesh& mesh,
-                       const Fields& fields);
+                       const Fields& fields,
+                       const std::vector<int>& file_order = {});
 
 /// Writes the mesh with its fields as a VTU file.  The file appears whole or
 /// not at all.  Throws std::invalid_argument, naming the file, when it cannot
 /// be written.
 void WriteVtu(const std::filesystem::path& path, const Mesh& mesh,
-              const Fields& fields);
+              const Fields& fields, const std::vector<int>& file_order = {});
 
 }  // namespace elastimate
 

@@ -52,7 +52,7 @@ TEST_F(CommandLine, HelpNamesEveryCommandAndFlag) {
   const std::string help = Succeed("--help").output;
   for (const std::string words :
        {"elastimate estimate SCENE...", "elastimate simulate SCENE",
-        "elastimate generate cuboid|organ", "elastimate estimators",
+        "elastimate generate cuboid|organ|rectangle", "elastimate estimators",
         "--estimator", "--nu_min", "--youngs_max", "--noise_sd", "--loss",
         "--noise_law", "--json", "--out", "--cells", "Exit code"}) {
     EXPECT_NE(help.find(words), std::string::npos) << words;
@@ -135,7 +135,12 @@ TEST_F(CommandLine, TheReportHasTheDocumentedKeys) {
                                 "/bulk_modulus",
                                 "/bulk_compliance",
                                 "/noise_sd",
+                                "/mesh/kind",
+                                "/mesh/dimension",
+                                "/mesh/model",
+                                "/mesh/thickness",
                                 "/mesh/nodes",
+                                "/mesh/elements",
                                 "/mesh/tetrahedra",
                                 "/mesh/load_cases",
                                 "/mesh/order",
@@ -504,8 +509,10 @@ TEST_F(CommandLine, RefusesWrongSimulations) {
 }
 
 TEST_F(CommandLine, RefusesWrongGeometriesByTheirFlags) {
-  Refuse("generate sphere --out=a.vtu", "cuboid or organ; it got sphere");
-  Refuse("generate --out=a.vtu", "one geometry, cuboid or organ; it got none");
+  Refuse("generate sphere --out=a.vtu",
+         "cuboid, organ or rectangle; it got sphere");
+  Refuse("generate --out=a.vtu",
+         "one geometry, cuboid, organ or rectangle; it got none");
   Refuse("generate cuboid", "needs --out");
   const std::string cuboid = "generate cuboid --out=a.vtu ";
   Refuse(cuboid + "--tetrahedra=9", "takes no flag --tetrahedra");
@@ -1052,6 +1059,153 @@ TEST_F(Loads, OfNodalForcesFromAFileAreOneEntryForEachCase) {
 // ---------------------------------------------------------------------------
 // Quadratic elements.
 
+/// Scenes of elements that are no linear tetrahedra.
+class ElementKinds : public CommandLine {
+ protected:
+  void ExpectFound(const std::string& scene, const std::string& flags,
+                   const nlohmann::json& mesh) const {
+    const nlohmann::json report =
+        Succeed("estimate " + scene + " --json=- " + flags).Json();
+    EXPECT_NEAR(report["youngs_modulus"].get<double>() / 7e10, 1, 1e-6);
+    EXPECT_NEAR(report["poisson_ratio"].get<double>(), 0.33, 1e-6);
+    for (const auto& [key, value] : mesh.items()) {
+      EXPECT_EQ(report["mesh"][key], value) << key;
+    }
+  }
+};
+
+TEST_F(ElementKinds, AreGeneratedSimulatedAndEstimatedWithoutFurtherFlags) {
+  EXPECT_EQ(Succeed("generate rectangle --out=g.vtu").output,
+            "105 nodes, 80 quadrilaterals\n");
+  Succeed("simulate g.vtu --youngs=7e10 --nu=0.33 --out=m.vtu");
+  for (const std::string name : {"closed-form", "reduced-fe", "auto"}) {
+    ExpectFound("m.vtu", "--estimator=" + name,
+                {{"kind", "quad4"},
+                 {"dimension", 2},
+                 {"model", "plane_stress"},
+                 {"thickness", 0.001},
+                 {"nodes", 105},
+                 {"elements", 80}});
+  }
+  EXPECT_FALSE(
+      Succeed("estimate m.vtu --json=-").Json()["mesh"].contains("tetrahedra"));
+  Succeed(
+      "generate rectangle --elements=tri3 --cells=6,3 --size=2,1 --force=0,5 "
+      "--model=plane_strain --thickness=0.5 --out=g.vtu");
+  Succeed("simulate g.vtu --youngs=7e10 --nu=0.33 --out=m.vtu");
+  ExpectFound(
+      "m.vtu", "",
+      {{"kind", "tri3"}, {"model", "plane_strain"}, {"thickness", 0.5}});
+  EXPECT_EQ(Succeed("generate cuboid --elements=hex8 --out=g.vtu").output,
+            "108 nodes, 50 hexahedra\n");
+  Succeed("simulate g.vtu --youngs=7e10 --nu=0.33 --out=m.vtu");
+  ExpectFound("m.vtu", "--model=3d",
+              {{"kind", "hex8"}, {"model", "3d"}, {"thickness", nullptr}});
+}
+
+TEST_F(ElementKinds, TakeTheSectionOfTheFlags) {
+  Succeed("generate rectangle --out=g.vtu");
+  Succeed(
+      "simulate g.vtu --youngs=7e10 --nu=0.33 --thickness=0.002 "
+      "--model=plane_strain --out=m.vtu");
+  ExpectFound("m.vtu", "", {{"model", "plane_strain"}, {"thickness", 0.002}});
+  // Of twice the thickness, the same forces need half of the stiffness.
+  const nlohmann::json report =
+      Succeed("estimate m.vtu --thickness=0.004 --json=-").Json();
+  EXPECT_NEAR(report["youngs_modulus"].get<double>() / 3.5e10, 1, 1e-6);
+}
+
+TEST_F(ElementKinds, AreInTheTable) {
+  Succeed("generate rectangle --out=g.vtu");
+  Succeed("simulate g.vtu --youngs=7e10 --nu=0.33 --out=m.vtu");
+  EXPECT_THAT(Succeed("estimate m.vtu").output,
+              ::testing::AllOf(
+                  ::testing::HasSubstr("105 nodes, 80 quadrilaterals"),
+                  ::testing::HasSubstr("plane stress, thickness 0.001\n"),
+                  ::testing::HasSubstr("nodal_force, resultant (1000, 0)\n")));
+}
+
+TEST_F(ElementKinds, AreModelledWithQuadraticOnesWhereThereAreSuch) {
+  Succeed("generate rectangle --elements=tri3 --out=g.vtu");
+  Succeed("simulate g.vtu --order=2 --youngs=7e10 --nu=0.33 --out=m.vtu");
+  ExpectFound("m.vtu", "--order=2 --estimator=iterative-fe",
+              {{"kind", "tri6"}, {"order", 2}});
+  Succeed("generate rectangle --out=g.vtu");
+  Refuse("simulate g.vtu --order=2 --youngs=7e10 --nu=0.33 --out=m2.vtu",
+         "--order=2: g.vtu has quadrilaterals, of which there are linear ones "
+         "only; leave the flag out");
+}
+
+// A file of quadratic triangles: two of a square of edges 2, mid-edge nodes
+// before vertices.
+TEST_F(ElementKinds, OfQuadraticFilesStayQuadratic) {
+  WriteText(folder_ / "mesh.vtk",
+            "# vtk DataFile Version 3.0\nsquare\nASCII\n"
+            "DATASET UNSTRUCTURED_GRID\nPOINTS 9 double\n"
+            "1 0 0  2 1 0  1 1 0  1 2 0  0 1 0  0 0 0  2 0 0  2 2 0  0 2 0\n"
+            "CELLS 2 14\n6 5 6 7 0 1 2\n6 5 7 8 2 3 4\nCELL_TYPES 2\n22 22\n");
+  WriteText(folder_ / "scene.json", R"({"mesh": "mesh.vtk",
+    "model": "plane_stress", "thickness": 0.1,
+    "supports": [{"nodes": {"box": [[0, 0], [0, 2]]}}],
+    "cases": [{"loads": [{"type": "traction", "value": [3e8, 1e8],
+               "surface": {"box": [[2, 0], [2, 2]]}}]}]})");
+  Succeed("simulate scene.json --youngs=7e10 --nu=0.33 --out=m.vtu");
+  for (const std::string name :
+       {"closed-form", "virtual-fields", "reduced-fe"}) {
+    ExpectFound("m.vtu", "--out=r.vtu --estimator=" + name,
+                {{"kind", "tri6"}, {"order", 2}, {"nodes", 4}});
+  }
+  ExpectFound("m.vtu", "--order=2", {{"kind", "tri6"}});
+  Refuse("estimate m.vtu --order=1",
+         "--order=1: m.vtu has quadratic triangles; leave the flag out, or "
+         "give a linear mesh");
+  // Results are in the order of the points of the file: 4, 5 and 8 are held.
+  WriteText(folder_ / "array.json", R"({"mesh": "r.vtu", "supports": [],
+    "cases": [{"displacement": {"array": "reaction_force"},
+               "observed": {"ids": [4, 5, 8]}, "loads": []}]})");
+  const LoadCase reactions = Read("array.json").load_cases[0];
+  EXPECT_NEAR(reactions.displacement.row(0).sum(), -3e8 * 2 * 0.1, 1);
+  EXPECT_NEAR(reactions.displacement.row(1).sum(), -1e8 * 2 * 0.1, 1);
+  for (Eigen::Index node = 0; node < 9; ++node) {
+    EXPECT_EQ(reactions.displacement.col(node).isZero(0),
+              !reactions.observed(0, node));
+  }
+}
+
+TEST_F(ElementKinds, RefuseWrongFlags) {
+  Succeed("generate rectangle --out=g.vtu");
+  Succeed("generate cuboid --out=c.vtu");
+  const std::string simulate = " --youngs=1 --nu=0.3 --out=m.vtu ";
+  Refuse("simulate g.vtu --model=2d" + simulate,
+         "--model=2d; it is 3d, plane_stress or plane_strain");
+  Refuse("simulate g.vtu --thickness=0" + simulate,
+         "--thickness=0; it must be positive");
+  Refuse("simulate g.vtu --model=3d" + simulate,
+         "g.vtu: the mesh is of quadrilaterals, which are planar, but the "
+         "model is 3d");
+  Refuse("simulate c.vtu --model=plane_stress" + simulate,
+         "c.vtu: the mesh is of tetrahedra, which are solid, but the model is "
+         "plane_stress; leave it out");
+  Refuse("estimate c.vtu --thickness=1",
+         "c.vtu: the mesh is of tetrahedra, which are solid, but a thickness "
+         "is given; leave it out");
+  const std::string rectangle = "generate rectangle --out=a.vtu ";
+  Refuse(rectangle + "--elements=tet4", "--elements=tet4; a rectangle is of");
+  Refuse(rectangle + "--elements=tri", "--elements=tri; it is tet4, hex8,");
+  Refuse(rectangle + "--cells=1,2,3", "it needs two integers below 2^31, as");
+  Refuse(rectangle + "--cells=0,3", "--cells=0,3; each must be at least 1");
+  Refuse(rectangle + "--force=1e60,0", "--force=1e+60,0; the largest must be");
+  Refuse(rectangle + "--model=3d", "--model=3d; a rectangle is in plane_");
+  Refuse(rectangle + "--thickness=1e60", "--thickness=1e+60; it must be from");
+  Refuse(rectangle + "--length=1", "generate rectangle takes no flag --length");
+  Refuse("generate cuboid --elements=quad4 --out=a.vtu",
+         "--elements=quad4; a cuboid is of tet4 or hex8");
+  Refuse("generate cuboid --thickness=1 --out=a.vtu",
+         "generate cuboid takes no flag --thickness");
+  Refuse("generate organ --elements=tet4 --out=a.vtu",
+         "generate organ takes no flag --elements");
+}
+
 class QuadraticElements : public CommandLine {
  protected:
   /// scene.json: cuboid.vtu with a traction and a body force, and the
@@ -1088,7 +1242,7 @@ class QuadraticElements : public CommandLine {
 
   /// The array of a result as the displacement of a scene that names it.
   Eigen::MatrixXd Array(const std::string& file,
-                         const std::string& array) const {
+                        const std::string& array) const {
     WriteText(folder_ / "array.json", R"({
       "mesh": ")" + file + R"(", "supports": [],
       "cases": [{"displacement": {"array": ")" +
@@ -1165,8 +1319,7 @@ TEST_F(QuadraticElements, ReactionsBalanceTheLoads) {
 
 TEST_F(QuadraticElements, NoiseIsRelativeToTheVertices) {
   MakeMeasuredScene();
-  const Eigen::MatrixXd exact =
-      Read("measured.vtu").load_cases[0].displacement;
+  const Eigen::MatrixXd exact = Read("measured.vtu").load_cases[0].displacement;
   MakeMeasuredScene("--noise=0.1 --seed=7");
   const Eigen::MatrixXd noise =
       Read("measured.vtu").load_cases[0].displacement - exact;

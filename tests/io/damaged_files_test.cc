@@ -17,6 +17,7 @@
 
 #include "elastimate/io/scene/scene_reader.h"
 #include "tests/io/gmsh_files.h"
+#include "tests/io/kind_scenes.h"
 #include "tests/io/mutations.h"
 #include "tests/io/scene_files.h"
 #include "tests/io/vtk_files.h"
@@ -35,16 +36,20 @@ Sample OneFile(const std::string& name, const std::string& content) {
   return {{{name, content}}, name, name};
 }
 
-Sample VtkSample(const std::string& name) {
+/// A scene in an encoding.
+Sample VtkSample(const std::string& name, const Scene& scene) {
   const std::vector<VtkEncoding> encodings = AllVtkEncodings();
   const auto encoding =
       std::find_if(encodings.begin(), encodings.end(),
                    [&](const VtkEncoding& one) { return one.name == name; });
   const TemporaryFolder folder;
   const auto path = folder.Path() / ("scene" + encoding->Extension());
-  const Scene scene = TwoTetrahedra();
   WriteEncoded(path, scene.mesh, SceneFields(scene), *encoding);
   return OneFile(path.filename().string(), ReadFile(path));
+}
+
+Sample VtkSample(const std::string& name) {
+  return VtkSample(name, TwoTetrahedra());
 }
 
 /// A mesh as Gmsh writes it, under a scene.json.
@@ -91,6 +96,24 @@ Sample JsonSample(const std::string& damaged) {
       "scene.json"};
 }
 
+/// A scene.json over a planar mesh without field data.
+Sample PlanarJsonSample() {
+  return {{{"mesh.vtk", PlanarVtkText()}, {"scene.json", R"({"mesh": "mesh.vtk",
+ "model": "plane_stress", "thickness": 0.5,
+ "supports": [{"nodes": {"box": [[-1, -1], [0, 9]]}, "components": "x"},
+              {"nodes": {"ids": [0]}, "displacement": [0, 0]}],
+ "cases": [
+  {"loads": [{"type": "traction", "value": [3, 0],
+              "surface": {"box": [[2, -1], [2, 9]]}},
+             {"type": "body_force", "value": [0, -1]},
+             {"type": "pressure", "value": 500, "surface": "all"}],
+   "noise_sd": 1e-5}]
+}
+)"}},
+          "scene.json",
+          "scene.json"};
+}
+
 Sample MakeSample(const std::string& name) {
   static const std::map<std::string, Sample (*)()> kOthers = {
       {"Msh1", [] { return OneFile("scene.msh", GmshVersion1Scene()); }},
@@ -102,6 +125,14 @@ Sample MakeSample(const std::string& name) {
       {"Medit", [] { return GmshSample("mesh.mesh", 4.1, false); }},
       {"Unv", [] { return GmshSample("mesh.unv", 4.1, false); }},
       {"Bdf", [] { return GmshSample("mesh.bdf", 4.1, false); }},
+      {"XmlHex8", [] { return VtkSample("XmlAscii", SceneOf("hex8")); }},
+      {"XmlTet10", [] { return VtkSample("XmlRaw", SceneOf("tet10")); }},
+      {"XmlQuad4", [] { return VtkSample("XmlAscii", SceneOf("quad4")); }},
+      {"LegacyTri6",
+       [] { return VtkSample("LegacyAscii42", SceneOf("tri6")); }},
+      {"LegacyQuad4",
+       [] { return VtkSample("LegacyBinary51", SceneOf("quad4")); }},
+      {"PlanarJson", PlanarJsonSample},
       {"Json", [] { return JsonSample("scene.json"); }},
       {"Csv", [] { return JsonSample("u.csv"); }}};
   const auto found = kOthers.find(name);
@@ -124,7 +155,11 @@ std::vector<Trials> AllTrials() {
                                  "Msh41Binary", "Medit", "Unv", "Bdf"}) {
     trials.push_back({name, 25});
   }
-  for (const std::string name : {"Json", "Csv"}) {
+  for (const std::string name : {"LegacyTri6", "LegacyQuad4"}) {
+    trials.push_back({name, 60});
+  }
+  for (const std::string name :
+       {"XmlHex8", "XmlTet10", "XmlQuad4", "PlanarJson", "Json", "Csv"}) {
     trials.push_back({name, 300});
   }
   return trials;

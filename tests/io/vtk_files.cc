@@ -3,15 +3,28 @@
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
+#include <vtkStringArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkUnstructuredGridWriter.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
+#include <map>
+#include <string>
+
 namespace elastimate {
 namespace {
+
+const std::map<ElementKind, int> kCellTypes = {
+    {ElementKind::kTet4, VTK_TETRA},
+    {ElementKind::kTet10, VTK_QUADRATIC_TETRA},
+    {ElementKind::kHex8, VTK_HEXAHEDRON},
+    {ElementKind::kTri3, VTK_TRIANGLE},
+    {ElementKind::kTri6, VTK_QUADRATIC_TRIANGLE},
+    {ElementKind::kQuad4, VTK_QUAD}};
 
 void AddFields(const std::vector<Field>& fields, vtkDataSetAttributes* to) {
   for (const Field& field : fields) {
@@ -30,15 +43,25 @@ void FillGrid(const Mesh& mesh, const Fields& fields,
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
-    points->InsertNextPoint(mesh.nodes.col(node).data());
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    position.head(mesh.Dimension()) = mesh.nodes.col(node);
+    points->InsertNextPoint(position.data());
   }
   grid->SetPoints(points);
   for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
-    vtkIdType corners[4];
-    for (int corner = 0; corner < 4; ++corner) {
-      corners[corner] = mesh.elements(corner, element);
-    }
-    grid->InsertNextCell(VTK_TETRA, 4, corners);
+    const Eigen::Matrix<vtkIdType, Eigen::Dynamic, 1> nodes =
+        mesh.elements.col(element).cast<vtkIdType>();
+    grid->InsertNextCell(kCellTypes.at(mesh.kind), nodes.size(), nodes.data());
+  }
+  if (mesh.Dimension() == 2) {
+    vtkNew<vtkStringArray> model;
+    model->SetName("model");
+    model->InsertNextValue(std::string(SectionModelName(mesh.section.model)));
+    grid->GetFieldData()->AddArray(model);
+    vtkNew<vtkDoubleArray> thickness;
+    thickness->SetName("thickness");
+    thickness->InsertNextValue(mesh.section.thickness);
+    grid->GetFieldData()->AddArray(thickness);
   }
   AddFields(fields.point, grid->GetPointData());
   AddFields(fields.cell, grid->GetCellData());

@@ -33,7 +33,7 @@ void ExpectTwoTetrahedra(const MeshFile& mesh) {
   EXPECT_EQ(mesh.nodes.col(3), Eigen::Vector3d(0, 0, -1));
   Eigen::MatrixXi tetrahedra(4, 2);
   tetrahedra.transpose() << 4, 0, 1, 2, 4, 0, 1, 3;
-  EXPECT_EQ(mesh.tetrahedra, tetrahedra);
+  EXPECT_EQ(mesh.elements, tetrahedra);
   EXPECT_TRUE(mesh.used.all());
 }
 
@@ -50,7 +50,7 @@ TEST_F(GmshMeshTest, ReadsVersions1And2And4) {
     EXPECT_EQ(mesh.groups[0].dimension, 2);
     EXPECT_EQ(mesh.groups[0].number, 70);
     EXPECT_THAT(mesh.groups[0].nodes, ElementsAre(0, 1, 2, 4));
-    EXPECT_EQ(mesh.groups[0].triangles.cols(), 2);
+    EXPECT_EQ(mesh.groups[0].facets.cols(), 2);
   }
 }
 
@@ -75,7 +75,7 @@ TEST_F(GmshMeshTest, DoesNotRunWhatLiesBesideAFile) {
     }
     const MeshFile mesh = Read(name, content);
     EXPECT_FALSE(std::filesystem::exists(run)) << name;
-    EXPECT_EQ(mesh.tetrahedra, alone.tetrahedra) << name;
+    EXPECT_EQ(mesh.elements, alone.elements) << name;
     EXPECT_EQ(mesh.nodes, alone.nodes) << name;
   }
 }
@@ -107,7 +107,7 @@ TEST_F(GmshMeshTest, ReadsWhatGmshWrites) {
     SCOPED_TRACE(path);
     const MeshFile mesh = ReadMeshFile(path);
     EXPECT_EQ(mesh.nodes.cols(), 5);
-    EXPECT_EQ(mesh.tetrahedra.cols(), 2);
+    EXPECT_EQ(mesh.elements.cols(), 2);
     EXPECT_EQ(mesh.nodes.rowwise().sum(), Eigen::Vector3d(1, 1, 0));
     if (path.stem() == "v41" || path.stem() == "v41_binary") {
       ExpectTwoTetrahedra(mesh);  // The others give nodes new numbers.
@@ -163,8 +163,8 @@ TEST_F(GmshMeshTest, KnowsOfNodesThatGmshLeavesOut) {
 TEST_F(GmshMeshTest, ErrsOnOtherVolumeElements) {
   EXPECT_THROWS_WITH(Read(Replaced(GmshVersion2Mesh(), "5 4 2 1 1 10 2 3 7",
                                    "5 7 2 1 1 10 2 3 7 5")),
-                     "mesh.msh: element number 5 is a Pyramid 5, but only "
-                     "linear tetrahedra");
+                     "mesh.msh: element number 5 is a Pyramid 5, but the "
+                     "elements of a scene are tetrahedra and triangles");
 }
 
 TEST_F(GmshMeshTest, ErrsOnDamage) {
@@ -255,7 +255,7 @@ TEST_F(GmshMeshTest, ErrsOnCountsOfMeditFiles) {
       "MeshVersionFormatted 2\nDimension\n3\n"
       "Vertices\n5\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 1\n0 0 -1 1\n"
       "Tetrahedra\n2\n1 2 3 4 1\n1 2 3 5 1\nEnd\n";
-  EXPECT_EQ(Read("a.mesh", whole).tetrahedra.cols(), 2);
+  EXPECT_EQ(Read("a.mesh", whole).elements.cols(), 2);
   EXPECT_THROWS_WITH(
       Read("a.mesh", Replaced(whole, "Tetrahedra\n2", "Tetrahedra\n1")),
       "a.mesh: .*its section Tetrahedra has 3 lines where 2 are due");
@@ -271,11 +271,11 @@ TEST_F(GmshMeshTest, ReadsOnAfterAnError) {
   ExpectTwoTetrahedra(Read(GmshVersion2Mesh()));
 }
 
-TEST_F(GmshMeshTest, ErrsOnAMeshWithoutTetrahedra) {
+TEST_F(GmshMeshTest, ErrsOnAMeshOfLinesOnly) {
   EXPECT_THROWS_WITH(
       Read("$NOD\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$ENDNOD\n$ELM\n1\n"
-           "1 2 1 1 3 1 2 3\n$ENDELM\n"),
-      "mesh.msh: the mesh has no tetrahedra");
+           "1 1 1 1 2 1 2\n$ENDELM\n"),
+      "mesh.msh: the mesh has no elements; give one of tetrahedra");
 }
 
 }  // namespace

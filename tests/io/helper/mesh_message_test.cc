@@ -13,10 +13,10 @@ using Kind = MeshMessage::Kind;
 MeshFile SomeMesh() {
   MeshFile mesh;
   mesh.nodes = Eigen::MatrixXd::Random(3, 5);
-  mesh.tetrahedra.resize(4, 2);
-  mesh.tetrahedra.transpose() << 0, 1, 2, 3, 0, 1, 2, 4;
+  mesh.elements.resize(4, 2);
+  mesh.elements.transpose() << 0, 1, 2, 3, 0, 1, 2, 4;
   mesh.node_arrays = {{"u", Eigen::MatrixXd::Random(3, 5)}};
-  mesh.tetrahedron_arrays = {{"region", Eigen::MatrixXd::Random(1, 2)}};
+  mesh.element_arrays = {{"region", Eigen::MatrixXd::Random(1, 2)}};
   mesh.groups = {{2, 70, "top", {0, 1, 4}, Eigen::MatrixXi::Ones(3, 2)}};
   mesh.has_other_cells = true;
   mesh.is_vtk = false;
@@ -49,14 +49,14 @@ TEST(MeshMessage, BringsAMesh) {
   EXPECT_TRUE(message.has_started);
   EXPECT_TRUE(message.is_short_of_memory);
   EXPECT_EQ(message.mesh.nodes, mesh.nodes);
-  EXPECT_EQ(message.mesh.tetrahedra, mesh.tetrahedra);
+  EXPECT_EQ(message.mesh.elements, mesh.elements);
   EXPECT_EQ(message.mesh.node_arrays.at(0).name, "u");
   EXPECT_EQ(message.mesh.node_arrays[0].values, mesh.node_arrays[0].values);
-  EXPECT_EQ(message.mesh.tetrahedron_arrays.at(0).values,
-            mesh.tetrahedron_arrays[0].values);
+  EXPECT_EQ(message.mesh.element_arrays.at(0).values,
+            mesh.element_arrays[0].values);
   EXPECT_EQ(message.mesh.groups.at(0).name, "top");
   EXPECT_EQ(message.mesh.groups[0].nodes, mesh.groups[0].nodes);
-  EXPECT_EQ(message.mesh.groups[0].triangles, mesh.groups[0].triangles);
+  EXPECT_EQ(message.mesh.groups[0].facets, mesh.groups[0].facets);
   EXPECT_TRUE(message.mesh.has_other_cells);
   EXPECT_FALSE(message.mesh.is_vtk);
   EXPECT_EQ(message.mesh.node_numbers, mesh.node_numbers);
@@ -81,13 +81,13 @@ TEST(MeshMessage, IsNoneUnlessItIsWhole) {
 TEST(MeshMessage, IsNoneWhereNodesAreNotThere) {
   for (const int node : {-1, 5, 1 << 30}) {
     MeshFile mesh = SomeMesh();
-    mesh.tetrahedra(2, 1) = node;
+    mesh.elements(2, 1) = node;
     EXPECT_EQ(ParseMeshMessage(BytesOf(mesh)).kind, Kind::kNone);
     mesh = SomeMesh();
     mesh.groups[0].nodes[2] = node;
     EXPECT_EQ(ParseMeshMessage(BytesOf(mesh)).kind, Kind::kNone);
     mesh = SomeMesh();
-    mesh.groups[0].triangles(0, 1) = node;
+    mesh.groups[0].facets(0, 1) = node;
     EXPECT_EQ(ParseMeshMessage(BytesOf(mesh)).kind, Kind::kNone);
   }
 }
@@ -97,7 +97,7 @@ TEST(MeshMessage, IsNoneWhereSizesDisagree) {
   mesh.node_arrays[0].values.resize(3, 4);
   EXPECT_EQ(ParseMeshMessage(BytesOf(mesh)).kind, Kind::kNone);
   mesh = SomeMesh();
-  mesh.tetrahedron_arrays[0].values.resize(1, 3);
+  mesh.element_arrays[0].values.resize(1, 3);
   EXPECT_EQ(ParseMeshMessage(BytesOf(mesh)).kind, Kind::kNone);
   mesh = SomeMesh();
   mesh.node_numbers.pop_back();
@@ -113,8 +113,8 @@ TEST(MeshMessage, MayBeAnyBytes) {
     spoilt[random() % spoilt.size()] = static_cast<char>(random());
     const MeshMessage message = ParseMeshMessage(spoilt);
     if (message.kind == Kind::kMesh) {
-      EXPECT_LT(message.mesh.tetrahedra.maxCoeff(), message.mesh.nodes.cols());
-      EXPECT_GE(message.mesh.tetrahedra.minCoeff(), 0);
+      EXPECT_LT(message.mesh.elements.maxCoeff(), message.mesh.nodes.cols());
+      EXPECT_GE(message.mesh.elements.minCoeff(), 0);
     }
   }
 }

@@ -13,7 +13,7 @@ namespace {
 class CsvFieldTest : public ::testing::Test {
  protected:
   Eigen::MatrixXd Read(const std::string& content) const {
-    return ReadCsvField(folder_.Write("u.csv", content), 2);
+    return ReadCsvField(folder_.Write("u.csv", content), 2, 3);
   }
   const TemporaryFolder folder_;
 };
@@ -64,7 +64,7 @@ TEST_F(CsvFieldTest, CountsRows) {
                      "mesh has 2 nodes");
   EXPECT_THROWS_WITH(Read("x,y,z\n1,2,3\n1,2,3\n1,2,3\n"), "more than 2 rows");
   EXPECT_THROWS_WITH(Read(""), "u.csv: the file is empty");
-  EXPECT_THROWS_WITH(ReadCsvField(folder_.Path() / "none.csv", 2),
+  EXPECT_THROWS_WITH(ReadCsvField(folder_.Path() / "none.csv", 2, 3),
                      "none.csv: no such file");
 }
 

@@ -398,15 +398,21 @@ TEST_F(SceneReaderTest, ErrsOnPointsOutOfRange) {
 TEST_F(SceneReaderTest, ErrsOnOtherCells) {
   EXPECT_THROWS_WITH(
       Read(Replaced(LegacySceneText(), "3 10 5 10", "3 10 5 12")),
-      "scene.vtk: cell 3 is a hexahedron, but only linear tetrahedra");
+      "scene.vtk: cell 3 is a hexahedron, but cell 1 is a tetra; mesh the "
+      "specimen with cells of one kind");
   EXPECT_THROWS_WITH(
-      Read(Replaced(LegacySceneText(), "3 10 5 10", "3 10 5 24")),
-      "cell 3 is a quadratic tetra");
+      Read(Replaced(LegacySceneText(), "3 10 5 10", "3 10 5 13")),
+      "cell 3 is a wedge, but the cells of a scene are tetrahedra and");
+  EXPECT_THROWS_WITH(
+      Read(Replaced(LegacySceneText(), "3 10 5 10", "3 24 5 24")),
+      "cell 1 is a quadratic tetra of 4 points where 10 are due");
   EXPECT_THROWS_WITH(
       Read(Replaced(LegacySceneText(), "3 10 5 10", "3 10 5 250")),
       "unknown type 250");
   EXPECT_THROWS_WITH(Read(Replaced(LegacySceneText(), "3 10 5 10", "3 5 5 5")),
-                     "scene.vtk: the mesh has no tetrahedra");
+                     "cell 1 is a triangle of 4 points where 3 are due");
+  EXPECT_THROWS_WITH(Read(Replaced(LegacySceneText(), "3 10 5 10", "3 4 3 4")),
+                     "scene.vtk: the mesh has no elements");
 }
 
 TEST_F(SceneReaderTest, ErrsOnFilesThatAreNone) {

@@ -44,7 +44,7 @@ TEST_F(LegacyVtkTest, HasEveryKindOfAttribute) {
 }
 
 TEST_F(LegacyVtkTest, IsDamagedWhereItDoesNotAddUp) {
-  EXPECT_EQ(Read(kGrid).tetrahedra.cols(), 1);
+  EXPECT_EQ(Read(kGrid).elements.cols(), 1);
   const auto expect = [this](const std::string& from, const std::string& to) {
     SCOPED_TRACE(to);
     EXPECT_THROWS_WITH(Read(Replaced(kGrid, from, to)),
@@ -75,7 +75,7 @@ TEST_F(LegacyVtkTest, HasNoArrayTwice) {
       "FIELD f 2\na 1 4 int\n1 2 3 4\nb 1 4 int\n5 6 7 8\n";
   EXPECT_EQ(Read(kGrid + field).node_arrays.size(), 2);
   EXPECT_EQ(Read(kGrid + field + "CELL_DATA 1\nFIELD f 1\na 1 1 int\n1\n")
-                .tetrahedron_arrays.size(),
+                .element_arrays.size(),
             1);
   EXPECT_THROWS_WITH(Read(kGrid + Replaced(field, "b 1", "a 1")),
                      "grid.vtk: .*it has two arrays 'a'");

@@ -30,13 +30,13 @@ TEST(VtuWriterTest, KeepsEveryBit) {
   WriteVtu(path, mesh, fields);
   const MeshFile read = ReadMeshFile(path);
   EXPECT_EQ(read.nodes, mesh.nodes);
-  EXPECT_EQ(read.tetrahedra, mesh.elements);
+  EXPECT_EQ(read.elements, mesh.elements);
   ASSERT_EQ(read.node_arrays.size(), 1);
   EXPECT_EQ(read.node_arrays[0].name, fields.point[0].name);
   EXPECT_EQ(read.node_arrays[0].values, values);
   EXPECT_TRUE(std::signbit(read.node_arrays[0].values(0, 1)));
-  ASSERT_EQ(read.tetrahedron_arrays.size(), 1);
-  EXPECT_EQ(read.tetrahedron_arrays[0].values, fields.cell[0].values);
+  ASSERT_EQ(read.element_arrays.size(), 1);
+  EXPECT_EQ(read.element_arrays[0].values, fields.cell[0].values);
 }
 
 TEST(VtuWriterTest, SceneComesBackAsItWas) {

@@ -1,0 +1,30 @@
+#include "apps/section_flags.h"
+
+#include <stdexcept>
+#include <string>
+
+#include "apps/flags.h"
+#include "elastimate/io/scene/section.h"
+
+namespace elastimate {
+
+SectionChoice SectionFromFlags() {
+  SectionChoice section;
+  if (IsGiven("model")) {
+    section.model = SectionModelOfName(FLAGS_model);
+    if (!section.model) {
+      throw std::invalid_argument(AsGiven("model") + "; it is " +
+                                  kSectionModels);
+    }
+  }
+  if (IsGiven("thickness")) {
+    section.thickness = FLAGS_thickness;
+    if (!(FLAGS_thickness > 0)) {
+      throw std::invalid_argument(AsGiven("thickness") +
+                                  "; it must be positive");
+    }
+  }
+  return section;
+}
+
+}  // namespace elastimate

@@ -1,0 +1,19 @@
+#ifndef ELASTIMATE_IO_SCENE_MESH_FILE_CHECK_H_
+#define ELASTIMATE_IO_SCENE_MESH_FILE_CHECK_H_
+
+#include "elastimate/io/mesh/mesh_file.h"
+
+namespace elastimate {
+
+/// Marks the nodes in use, and throws std::invalid_argument, naming the file,
+/// the node or the element as the file does, unless there is an element; nodes
+/// have finite positions where an element uses them; planar elements lie in a
+/// plane z = const, to within a millionth of their extent; no element comes
+/// twice, which would make it twice as stiff; and the mid-edge nodes of
+/// quadratic elements are no vertices and in the middle of their edges.
+/// O(num_nodes + num_elements).
+void CheckMeshFile(MeshFile& mesh);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_IO_SCENE_MESH_FILE_CHECK_H_

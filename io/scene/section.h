@@ -1,0 +1,32 @@
+#ifndef ELASTIMATE_IO_SCENE_SECTION_H_
+#define ELASTIMATE_IO_SCENE_SECTION_H_
+
+#include <optional>
+#include <string_view>
+
+#include "elastimate/core/mesh/mesh.h"
+#include "elastimate/io/mesh/mesh_file.h"
+#include "elastimate/io/scene/scene_reader.h"
+
+namespace elastimate {
+
+/// The model of that SectionModelName; nothing for any other word.
+std::optional<SectionModel> SectionModelOfName(std::string_view name);
+
+/// Of what words a sentence may say that they are wrong: "; it is 3d,
+/// plane_stress or plane_strain".
+inline constexpr char kSectionModels[] = "3d, plane_stress or plane_strain";
+
+/// What is given, and where nothing is, what `otherwise` has.
+SectionChoice Choose(const SectionChoice& given,
+                     const SectionChoice& otherwise);
+
+/// The section of the mesh: what is given, and where nothing is, its field
+/// data.  Throws std::invalid_argument, naming the file and the mend, for
+/// planar elements without a plane model or a thickness, and for solid ones
+/// with either.
+Section SectionOf(const MeshFile& mesh, const SectionChoice& given);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_IO_SCENE_SECTION_H_

@@ -1,0 +1,149 @@
+// Files of every kind of element as Gmsh writes them.
+
+#include <gmsh.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "elastimate/core/mesh/facets.h"
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/io/scene/mesh_reader.h"
+#include "elastimate/io/scene/scene_reader.h"
+#include "tests/io/scene_files.h"
+#include "tests/throws.h"
+
+namespace elastimate {
+namespace {
+
+/// The rectangle from (0, 0, 5) to (2, 1, 5), or the cuboid on it of height 3,
+/// meshed with elements of one kind; the group "end" is where x = 2.
+void WriteByGmsh(ElementKind kind,
+                 const std::vector<std::filesystem::path>& paths,
+                 const std::vector<std::pair<double, int>>& versions) {
+  const ElementTopology& topology = TopologyOf(kind);
+  const bool is_cut = topology.num_vertices == topology.dimension + 1;
+  gmsh::initialize(0, nullptr, false);
+  gmsh::option::setNumber("General.Terminal", 0);
+  const int points[4] = {
+      gmsh::model::geo::addPoint(0, 0, 5), gmsh::model::geo::addPoint(2, 0, 5),
+      gmsh::model::geo::addPoint(2, 1, 5), gmsh::model::geo::addPoint(0, 1, 5)};
+  std::vector<int> lines;
+  for (int i = 0; i < 4; ++i) {
+    lines.push_back(gmsh::model::geo::addLine(points[i], points[(i + 1) % 4]));
+    gmsh::model::geo::mesh::setTransfiniteCurve(lines.back(), 3);
+  }
+  const int surface = gmsh::model::geo::addPlaneSurface(
+      {gmsh::model::geo::addCurveLoop(lines)});
+  gmsh::model::geo::mesh::setTransfiniteSurface(surface);
+  if (!is_cut) {
+    gmsh::model::geo::mesh::setRecombine(2, surface);
+  }
+  int body = surface;
+  int end = lines[1];
+  if (topology.dimension == 3) {
+    gmsh::vectorpair made;
+    gmsh::model::geo::extrude({{2, surface}}, 0, 0, 3, made, {2}, {}, !is_cut);
+    body = made[1].second;
+    end = made[3].second;  // Swept by the second line.
+  }
+  gmsh::model::geo::synchronize();
+  const int group = gmsh::model::addPhysicalGroup(topology.dimension, {body});
+  gmsh::model::setPhysicalName(topology.dimension, group, "body");
+  const int ends = gmsh::model::addPhysicalGroup(topology.dimension - 1, {end});
+  gmsh::model::setPhysicalName(topology.dimension - 1, ends, "end");
+  gmsh::model::mesh::generate(topology.dimension);
+  gmsh::model::mesh::setOrder(topology.order);
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    gmsh::option::setNumber("Mesh.MshFileVersion", versions[i].first);
+    gmsh::option::setNumber("Mesh.Binary", versions[i].second);
+    gmsh::write(paths[i].string());
+  }
+  gmsh::finalize();
+}
+
+class GmshKinds : public ::testing::TestWithParam<ElementKind> {
+ protected:
+  const TemporaryFolder folder_;
+};
+
+TEST_P(GmshKinds, AreRead) {
+  const std::vector<std::filesystem::path> paths = {
+      folder_.Path() / "v2.msh", folder_.Path() / "v41.msh",
+      folder_.Path() / "v41_binary.msh", folder_.Path() / "m.unv"};
+  WriteByGmsh(GetParam(), paths, {{2.2, 0}, {4.1, 0}, {4.1, 1}, {4.1, 0}});
+  const ElementTopology& topology = TopologyOf(GetParam());
+  for (const std::filesystem::path& path : paths) {
+    SCOPED_TRACE(path.filename());
+    const MeshFile file = ReadMeshFile(path);
+    EXPECT_EQ(file.kind, GetParam());
+    EXPECT_TRUE(file.used.all());
+    const auto end = std::find_if(
+        file.groups.begin(), file.groups.end(),
+        [](const PhysicalGroup& group) { return group.name == "end"; });
+    if (path.extension() == ".unv") {
+      continue;  // Which has the groups of nodes only.
+    }
+    ASSERT_NE(end, file.groups.end());
+    EXPECT_EQ(end->facets.rows(), topology.NumNodesOfFace());
+    EXPECT_GT(end->facets.cols(), 1);
+    for (const int node : end->facets.reshaped()) {
+      EXPECT_DOUBLE_EQ(file.nodes(0, node), 2);
+    }
+  }
+}
+
+// Their volumes, areas and mid-edge nodes are those of the specimen.
+TEST_P(GmshKinds, AreScenes) {
+  WriteByGmsh(GetParam(), {folder_.Path() / "mesh.msh"}, {{4.1, 0}});
+  const bool is_solid = TopologyOf(GetParam()).dimension == 3;
+  const std::string vector = is_solid ? "[6, 0, 0]" : "[6, 0]";
+  const Scene scene = ReadScene(
+                          {folder_.Write("scene.json", std::string("{") +
+                                                           (is_solid ? "" : R"(
+    "model": "plane_strain", "thickness": 0.5,)") +
+                                                           R"(
+    "mesh": "mesh.msh",
+    "supports": [{"nodes": {"box": [[0, 0, 5], [0, 1, 8]]}}],
+    "cases": [{"loads": [
+      {"type": "traction", "value": )" + vector +
+                                                           R"(,
+       "surface": {"physical": "end"}},
+      {"type": "pressure", "value": 6, "surface": {"physical": "end"}},
+      {"type": "body_force", "value": )" + vector + "}]}]}")},
+                          Measurement::kOptional)
+                          .scene;
+  EXPECT_EQ(scene.mesh.kind, GetParam());
+  const double area = is_solid ? 3 : 0.5;
+  const double volume = is_solid ? 6 : 1;
+  const double expected[3] = {6 * area, -6 * area, 6 * volume};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Eigen::MatrixXd force =
+        AssembleLoads(scene.mesh, {scene.load_cases[0].loads[i]});
+    EXPECT_NEAR(force.row(0).sum(), expected[i], 1e-9);
+    EXPECT_NEAR(force.bottomRows(force.rows() - 1).cwiseAbs().sum(), 0, 1e-9);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, GmshKinds, ::testing::ValuesIn(kElementKinds),
+                         [](const auto& kind) {
+                           return std::string(TopologyOf(kind.param).name);
+                         });
+
+TEST(GmshMixture, IsRefused) {
+  const TemporaryFolder folder;
+  EXPECT_THROWS_WITH(
+      ReadMeshFile(folder.Write(
+          "mesh.msh",
+          "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
+          "$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 2 0 0\n$EndNodes\n"
+          "$Elements\n2\n1 3 2 1 1 1 2 3 4\n2 2 2 1 1 2 5 3\n$EndElements\n")),
+      "mesh.msh: element number . is a .*, but others are of type .*; mesh the "
+      "specimen with one kind of element");
+}
+
+}  // namespace
+}  // namespace elastimate
