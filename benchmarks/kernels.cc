@@ -23,8 +23,10 @@
 #include "benchmarks/random_matrix.h"
 #include "elastimate/core/mechanics/stiffness_assembly.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
+#include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 #include "elastimate/estimators/registry.h"
+#include "elastimate/io/examples/example_scenes.h"
 
 namespace elastimate {
 namespace {
@@ -308,6 +310,62 @@ std::vector<std::string> Ratios(std::int64_t tetrahedra, const Times& times) {
   return lines;
 }
 
+// A mesh of each element kind that has no vector kernel.
+std::vector<Mesh> MeshesOfOtherKinds(bool is_quick) {
+  const int n = is_quick ? 10 : 30;
+  CuboidOptions cuboid;
+  cuboid.cells = {n, n, n};
+  const Scene tetrahedra = CuboidScene(cuboid);
+  cuboid.kind = ElementKind::kHex8;
+  RectangleOptions rectangle;
+  rectangle.cells = {10 * n, 10 * n};
+  const Scene quadrilaterals = RectangleScene(rectangle);
+  rectangle.kind = ElementKind::kTri3;
+  const Scene triangles = RectangleScene(rectangle);
+  return {QuadraticScene(tetrahedra).mesh, CuboidScene(cuboid).mesh,
+          triangles.mesh, QuadraticScene(triangles).mesh, quadrilaterals.mesh};
+}
+
+// How many times as fast as the textbook pass that of other kinds is at least:
+// half of what was measured for the least of them.
+constexpr double kLeastSpeedupOfOtherKinds = 2;
+
+// Adds the time of the pass of other kinds, beside that of the textbook.
+void CompareOtherKinds(bool is_quick, Progress& progress, KernelTimes& times) {
+  for (const Mesh& mesh : MeshesOfOtherKinds(is_quick)) {
+    const std::string kind(mesh.Topology().name);
+    progress.Show("kernels: " + kind);
+    const Eigen::MatrixXd q = RandomMatrix(mesh.NumDofs(), 1, kSeed);
+    const StiffnessOperator stiffness(mesh);
+    StiffnessProducts fast;
+    StiffnessProducts naive;
+    double seconds = std::numeric_limits<double>::infinity();
+    double naive_seconds = seconds;
+    for (int round = 0; round < kRounds; ++round) {
+      seconds =
+          std::min(seconds, SecondsOf([&] { stiffness.Multiply(q, fast); }));
+      naive_seconds = std::min(
+          naive_seconds, SecondsOf([&] { naive = MultiplyNaively(mesh, q); }));
+    }
+    if (!naive.h.isApprox(fast.h, 1e-12) || !naive.j.isApprox(fast.j, 1e-12)) {
+      throw std::logic_error("the naive and the fast pass of " + kind +
+                             " differ");
+    }
+    const double speedup = naive_seconds / seconds;
+    std::ostringstream line;
+    line << mesh.NumElements() << " " << kind << std::fixed
+         << std::setprecision(1) << ", pass: "
+         << 1e9 * seconds / static_cast<double>(mesh.NumElements())
+         << " ns an element, naive / pass: " << speedup;
+    times.ratios.push_back(line.str());
+    if (speedup < kLeastSpeedupOfOtherKinds) {
+      times.regressions.push_back("the pass of " + kind +
+                                  " is less than twice as fast as the "
+                                  "textbook's");
+    }
+  }
+}
+
 std::string WhyRegressed(const Times& times) {
   const double least =
       HasVectorsOfFour() ? kLeastSpeedupOfFours : kLeastSpeedupOfOnes;
@@ -365,6 +423,7 @@ KernelTimes TimeKernels(bool is_quick, Progress& progress) {
       }
     }
   }
+  CompareOtherKinds(is_quick, progress, times);
   nlohmann::ordered_json machine;
   for (const auto& [threads, limit] : limits) {
     machine[std::to_string(threads) + " threads"] = {

@@ -1,69 +1,115 @@
 #include "benchmarks/naive_stiffness_product.h"
 
-#include <Eigen/LU>
 #include <cmath>
+
+#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/mesh/shape_functions.h"
 
 namespace elastimate {
 namespace {
 
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
-using StrainDisplacement = Eigen::Matrix<double, 6, 12>;
-using ElementMatrix = Eigen::Matrix<double, 12, 12>;
-using ElementVector = Eigen::Matrix<double, 12, 1>;
+template <ElementKind kKind>
+class Textbook {
+ public:
+  static constexpr int kDimension = ElementSizes<kKind>::kDimension;
+  static constexpr int kNodes = ElementSizes<kKind>::kNodes;
+  static constexpr int kStrains = kDimension == 3 ? 6 : 3;
+  static constexpr int kDofs = kDimension * kNodes;
+  using ElasticityMatrix = Eigen::Matrix<double, kStrains, kStrains>;
+  using StrainDisplacement = Eigen::Matrix<double, kStrains, kDofs>;
+  using ElementMatrix = Eigen::Matrix<double, kDofs, kDofs>;
+  using ElementVector = Eigen::Matrix<double, kDofs, 1>;
 
-StrainDisplacement MakeStrainDisplacement(const Eigen::Matrix4d& coordinates) {
-  const Eigen::Matrix4d shape = coordinates.inverse();
-  StrainDisplacement b;
-  for (Eigen::Index i = 0; i < 4; ++i) {
-    const double dx = shape(i, 1);
-    const double dy = shape(i, 2);
-    const double dz = shape(i, 3);
-    b.middleCols<3>(3 * i) << dx, 0, 0, 0, dy, 0, 0, 0, dz,  //
-        dy, dx, 0, 0, dz, dy, dz, 0, dx;
+  explicit Textbook(const Mesh& mesh) : mesh_(mesh) {
+    constexpr int kShears = kStrains - kDimension;
+    const double c = ShearShareOfJ(mesh.section.model);
+    d_h_.setIdentity();
+    d_h_.template bottomRightCorner<kShears, kShears>() *= 0.5;
+    d_j_ = -c * d_h_;
+    d_j_.template topLeftCorner<kDimension, kDimension>().array() += 1;
   }
-  return b;
-}
 
-// V B^T D B.  The lazy products are those that Eigen unrolls; for these sizes
-// it would otherwise pack blocks as for large matrices, which takes longer.
-ElementMatrix MakeElementMatrix(const StrainDisplacement& b, const Matrix6d& d,
-                                double volume) {
-  const StrainDisplacement stress = volume * d.lazyProduct(b);
-  return b.transpose().lazyProduct(stress);
-}
+  StiffnessProducts Multiply(const Eigen::VectorXd& displacement) const {
+    StiffnessProducts products;
+    products.h = Eigen::VectorXd::Zero(displacement.size());
+    products.j = Eigen::VectorXd::Zero(displacement.size());
+    for (Eigen::Index e = 0; e < mesh_.NumElements(); ++e) {
+      ElementMatrix h;
+      ElementMatrix j;
+      bool is_first = true;
+      VisitPoints<kKind>(mesh_, e, StiffnessRule<kKind>(),
+                         [&](const ElementPoint<kKind>& point, const auto&) {
+                           const StrainDisplacement b =
+                               StrainDisplacementOf(point);
+                           AddElementMatrix(b, d_h_, point.volume, is_first, h);
+                           AddElementMatrix(b, d_j_, point.volume, is_first, j);
+                           is_first = false;
+                         });
+      ElementVector q;
+      for (int i = 0; i < kNodes; ++i) {
+        q.template segment<kDimension>(kDimension * i) =
+            displacement.segment<kDimension>(RowOf(e, i));
+      }
+      const ElementVector a = h * q;
+      const ElementVector p = j * q;
+      for (int i = 0; i < kNodes; ++i) {
+        products.h.middleRows<kDimension>(RowOf(e, i)) +=
+            a.template segment<kDimension>(kDimension * i);
+        products.j.middleRows<kDimension>(RowOf(e, i)) +=
+            p.template segment<kDimension>(kDimension * i);
+      }
+    }
+    return products;
+  }
+
+ private:
+  Eigen::Index RowOf(Eigen::Index element, int i) const {
+    return kDimension * Eigen::Index(mesh_.elements(i, element));
+  }
+
+  static StrainDisplacement StrainDisplacementOf(
+      const ElementPoint<kKind>& point) {
+    StrainDisplacement b = StrainDisplacement::Zero();
+    for (int i = 0; i < kNodes; ++i) {
+      for (int k = 0; k < kDimension; ++k) {
+        b(k, kDimension * i + k) = point.gradient(k, i);
+      }
+      for (int k = 0; k < kStrains - kDimension; ++k) {
+        const int l = (k + 1) % kDimension;
+        b(kDimension + k, kDimension * i + k) = point.gradient(l, i);
+        b(kDimension + k, kDimension * i + l) = point.gradient(k, i);
+      }
+    }
+    return b;
+  }
+
+  // V B^T D B.  The lazy products are those that Eigen unrolls; for small sizes
+  // it would otherwise pack blocks as for large matrices, which takes longer.
+  static void AddElementMatrix(const StrainDisplacement& b,
+                               const ElasticityMatrix& d, double volume,
+                               bool is_first, ElementMatrix& matrix) {
+    const StrainDisplacement stress = volume * d.lazyProduct(b);
+    if (is_first) {
+      matrix = b.transpose().lazyProduct(stress);
+    } else if constexpr (kDofs <= 12) {
+      matrix += b.transpose().lazyProduct(stress);
+    } else {
+      matrix.noalias() += b.transpose() * stress;
+    }
+  }
+
+  const Mesh& mesh_;
+  ElasticityMatrix d_h_;
+  ElasticityMatrix d_j_;
+};
 
 }  // namespace
 
 StiffnessProducts MultiplyNaively(const Mesh& mesh,
                                   const Eigen::VectorXd& displacement) {
-  Matrix6d d_h = Matrix6d::Identity();
-  d_h.bottomRightCorner<3, 3>() *= 0.5;
-  Matrix6d d_j = -Matrix6d::Identity();
-  d_j.topLeftCorner<3, 3>() =
-      Eigen::Matrix3d::Ones() - 2 * Eigen::Matrix3d::Identity();
-
-  StiffnessProducts products;
-  products.h = Eigen::VectorXd::Zero(displacement.size());
-  products.j = Eigen::VectorXd::Zero(displacement.size());
-  for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
-    Eigen::Matrix4d coordinates;
-    ElementVector q;
-    for (Eigen::Index i = 0; i < 4; ++i) {
-      const Eigen::Index node = mesh.elements(i, element);
-      coordinates.col(i) << 1, mesh.nodes.col(node);
-      q.segment<3>(3 * i) = displacement.segment<3>(3 * node);
-    }
-    const double volume = std::abs(coordinates.determinant()) / 6;
-    const StrainDisplacement b = MakeStrainDisplacement(coordinates);
-    const ElementVector a = MakeElementMatrix(b, d_h, volume) * q;
-    const ElementVector p = MakeElementMatrix(b, d_j, volume) * q;
-    for (Eigen::Index i = 0; i < 4; ++i) {
-      const Eigen::Index node = mesh.elements(i, element);
-      products.h.middleRows<3>(3 * node) += a.segment<3>(3 * i);
-      products.j.middleRows<3>(3 * node) += p.segment<3>(3 * i);
-    }
-  }
-  return products;
+  return VisitElementKind(mesh.kind, [&](auto kind) {
+    return Textbook<kind>(mesh).Multiply(displacement);
+  });
 }
 
 }  // namespace elastimate
