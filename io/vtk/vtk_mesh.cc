@@ -2,7 +2,9 @@
 
 #include <vtkDataArraySelection.h>
 #include <vtkNew.h>
+#include <vtkObjectFactory.h>
 #include <vtkUnstructuredGrid.h>
+#include <vtkXMLDataElement.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include <memory>
@@ -18,6 +20,37 @@
 
 namespace elastimate {
 namespace {
+
+/// Leaves strings in the field data alone: where there are more of them than
+/// the file says, VTK 9.1 writes beyond the end of their array.
+class VtuReader : public vtkXMLUnstructuredGridReader {
+ public:
+  static VtuReader* New();
+
+ protected:
+  VtuReader() = default;
+  ~VtuReader() override = default;
+  VtuReader(const VtuReader&) = delete;
+  VtuReader& operator=(const VtuReader&) = delete;
+
+  int ReadPrimaryElement(vtkXMLDataElement* primary) override {
+    const int is_read =
+        vtkXMLUnstructuredGridReader::ReadPrimaryElement(primary);
+    const int count = FieldDataElement == nullptr
+                          ? 0
+                          : FieldDataElement->GetNumberOfNestedElements();
+    for (int i = count - 1; i >= 0; --i) {
+      vtkXMLDataElement* const array = FieldDataElement->GetNestedElement(i);
+      const char* const type = array->GetAttribute("type");
+      if (type != nullptr && std::string(type) == "String") {
+        FieldDataElement->RemoveNestedElement(array);
+      }
+    }
+    return is_read;
+  }
+};
+
+vtkStandardNewMacro(VtuReader);
 
 /// Whether there is as much memory as a sound file takes.
 bool HasMemoryFor(const std::filesystem::path& path) {
@@ -36,7 +69,7 @@ MeshFile ReadVtuMesh(const std::filesystem::path& path) {
       ThrowDamagedVtk(
           path, messages.HasError() ? messages.FirstError() : frame.damage);
     }
-    vtkNew<vtkXMLUnstructuredGridReader> reader;
+    vtkNew<VtuReader> reader;
     for (const std::string& name : frame.text_point_arrays) {
       reader->GetPointDataArraySelection()->DisableArray(name.c_str());
     }
