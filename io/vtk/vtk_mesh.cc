@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <new>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -21,8 +22,9 @@
 namespace elastimate {
 namespace {
 
-/// Leaves strings in the field data alone: where there are more of them than
-/// the file says, VTK 9.1 writes beyond the end of their array.
+/// Leaves all but numbers in the field data alone: VTK 9.1 writes beyond the
+/// end of an array of strings where there are more of them than the file says,
+/// and crashes where a type is unknown.
 class VtuReader : public vtkXMLUnstructuredGridReader {
  public:
   static VtuReader* New();
@@ -34,6 +36,9 @@ class VtuReader : public vtkXMLUnstructuredGridReader {
   VtuReader& operator=(const VtuReader&) = delete;
 
   int ReadPrimaryElement(vtkXMLDataElement* primary) override {
+    static const std::set<std::string> kNumbers = {
+        "Int8",   "UInt8", "Int16",  "UInt16",  "Int32",
+        "UInt32", "Int64", "UInt64", "Float32", "Float64"};
     const int is_read =
         vtkXMLUnstructuredGridReader::ReadPrimaryElement(primary);
     const int count = FieldDataElement == nullptr
@@ -42,7 +47,7 @@ class VtuReader : public vtkXMLUnstructuredGridReader {
     for (int i = count - 1; i >= 0; --i) {
       vtkXMLDataElement* const array = FieldDataElement->GetNestedElement(i);
       const char* const type = array->GetAttribute("type");
-      if (type != nullptr && std::string(type) == "String") {
+      if (type == nullptr || kNumbers.count(type) == 0) {
         FieldDataElement->RemoveNestedElement(array);
       }
     }

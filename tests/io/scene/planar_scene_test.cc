@@ -334,12 +334,16 @@ TEST_F(PlanarFieldData, AreNumbers) {
   EXPECT_THROWS_WITH(Read(Number("model", "1")), "no thickness is given");
 }
 
-TEST_F(PlanarFieldData, LeaveStringsAlone) {
+TEST_F(PlanarFieldData, LeaveWhatIsNoNumberAlone) {
   EXPECT_EQ(Read(Strings("note") + Number("model", "1") + Strings("other") +
                  Number("thickness", "3"))
                 .thickness,
             3);
   EXPECT_THROWS_WITH(Read(Strings("model")), "no model is given");
+  EXPECT_THROWS_WITH(Read(Replaced(Number("model", "1"), "Float64", "Float-7")),
+                     "no model is given");
+  EXPECT_THROWS_WITH(Read(Replaced(Number("model", "1"), "type=", "tipe=")),
+                     "no model is given");
 }
 
 }  // namespace
