@@ -171,7 +171,7 @@ void ReadMesh(Reader& reader, MeshFile& mesh) {
   reader.Arrays(mesh.nodes.cols(), mesh.node_arrays);
   reader.Arrays(mesh.elements.cols(), mesh.element_arrays);
   if (reader.Number() != 0) {
-    mesh.model = reader.Text();
+    reader.Bytes(&mesh.model.emplace(), sizeof(double));
   }
   if (reader.Number() != 0) {
     reader.Bytes(&mesh.thickness.emplace(), sizeof(double));
@@ -205,7 +205,7 @@ void WriteMesh(std::FILE* file, const MeshFile& mesh) {
   writer.Arrays(mesh.element_arrays);
   writer.Number(mesh.model ? 1 : 0);
   if (mesh.model) {
-    writer.Text(*mesh.model);
+    writer.Bytes(&*mesh.model, sizeof(double));
   }
   writer.Number(mesh.thickness ? 1 : 0);
   if (mesh.thickness) {

@@ -46,7 +46,7 @@ struct MeshFile {
   std::vector<PhysicalGroup> groups;
 
   /// The field data of these names in a VTK file.
-  std::optional<std::string> model;
+  std::optional<double> model;  ///< A place in kNumberedModels, if valid.
   std::optional<double> thickness;
 
   Eigen::Array<bool, 1, Eigen::Dynamic> used;  ///< By an element.

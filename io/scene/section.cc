@@ -1,10 +1,11 @@
 #include "elastimate/io/scene/section.h"
 
 #include <cmath>
+#include <sstream>
 #include <string>
 
+#include "elastimate/io/mesh/section_number.h"
 #include "elastimate/io/text/input_error.h"
-#include "elastimate/io/text/printable.h"
 
 namespace elastimate {
 namespace {
@@ -12,11 +13,17 @@ namespace {
 SectionChoice FieldData(const MeshFile& mesh) {
   SectionChoice choice;
   if (mesh.model) {
-    choice.model = SectionModelOfName(*mesh.model);
+    for (std::size_t i = 0; i < kNumberedModels.size(); ++i) {
+      if (*mesh.model == static_cast<double>(i)) {
+        choice.model = kNumberedModels[i];
+      }
+    }
     if (!choice.model) {
-      ThrowInputError(mesh.path, "the field data 'model' is '" +
-                                     Printable(*mesh.model) + "'; make it " +
-                                     kSectionModels);
+      std::ostringstream number;
+      number << *mesh.model;
+      ThrowInputError(mesh.path, "the field data 'model' is " + number.str() +
+                                     "; make it 0 for 3d, 1 for plane_stress "
+                                     "or 2 for plane_strain");
     }
   }
   choice.thickness = mesh.thickness;

@@ -10,11 +10,10 @@
 
 namespace elastimate {
 
-/// The model of that SectionModelName; nothing for any other word.
+/// The model of that SectionModelName, if it is one.
 std::optional<SectionModel> SectionModelOfName(std::string_view name);
 
-/// Of what words a sentence may say that they are wrong: "; it is 3d,
-/// plane_stress or plane_strain".
+/// The words that it knows, for error messages.
 inline constexpr char kSectionModels[] = "3d, plane_stress or plane_strain";
 
 /// What is given, and where nothing is, what `otherwise` has.

@@ -12,7 +12,6 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkSmartPointer.h>
-#include <vtkStringArray.h>
 #include <vtkTypeInt64Array.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
@@ -172,10 +171,8 @@ struct ElementCells {
 
 /// Of dimension 3 where there is one, else of dimension 2.
 std::vector<std::size_t> CellsOfHighestDimension(const VtkGrid& grid) {
-  std::array<int, 256> dimension_of_type{};
-  for (int type = 0; type < 256; ++type) {
-    dimension_of_type[type] = -1;
-  }
+  std::array<int, 256> dimension_of_type;
+  dimension_of_type.fill(-1);
   int highest = 2;
   for (const unsigned char type : grid.cell_types) {
     if (dimension_of_type[type] < 0) {
@@ -202,15 +199,16 @@ ElementCells FindElements(const std::filesystem::path& path,
     const int type = grid.cell_types[cell];
     const int first_type = grid.cell_types[elements.cells.front()];
     const std::optional<ElementKind> kind = KindOfCell(type);
-    const std::string name =
-        "cell " + std::to_string(cell) + " is a " + CellTypeName(type);
+    const auto name = [&] {
+      return "cell " + std::to_string(cell) + " is a " + CellTypeName(type);
+    };
     if (!kind) {
-      ThrowInputError(path, name + ", but the cells of a scene are " +
+      ThrowInputError(path, name() + ", but the cells of a scene are " +
                                 kSupportedElements +
                                 "; mesh the specimen with one kind of these");
     }
     if (type != first_type) {
-      ThrowInputError(path, name + ", but cell " +
+      ThrowInputError(path, name() + ", but cell " +
                                 std::to_string(elements.cells.front()) +
                                 " is a " + CellTypeName(first_type) +
                                 "; mesh the specimen with cells of one kind");
@@ -220,7 +218,7 @@ ElementCells FindElements(const std::filesystem::path& path,
     const vtkIdType count =
         offsets.GetValue(index + 1) - offsets.GetValue(index);
     if (const int due = TopologyOf(*kind).num_nodes; count != due) {
-      ThrowInconsistent(path, name + " of " + std::to_string(count) +
+      ThrowInconsistent(path, name() + " of " + std::to_string(count) +
                                   " points where " + std::to_string(due) +
                                   " are due");
     }
@@ -252,27 +250,18 @@ void CopyElements(const VtkGrid& grid, const std::vector<std::size_t>& cells,
   }
 }
 
-/// The field data `model` and `thickness`.
-void ReadSection(vtkFieldData* from, MeshFile& mesh) {
-  if (from->GetAbstractArray("model") != nullptr) {
-    auto* const model =
-        vtkStringArray::SafeDownCast(from->GetAbstractArray("model"));
-    if (model == nullptr || model->GetNumberOfValues() != 1) {
-      ThrowInputError(mesh.path,
-                      "the field data 'model' is not one string; make it 3d, "
-                      "plane_stress or plane_strain");
-    }
-    mesh.model = model->GetValue(0);
+/// A number of the field data, if there is an array of that name.
+std::optional<double> FieldNumber(const std::filesystem::path& path,
+                                  const char* name, vtkFieldData* data) {
+  if (data->GetAbstractArray(name) == nullptr) {
+    return std::nullopt;
   }
-  if (from->GetAbstractArray("thickness") != nullptr) {
-    vtkDataArray* const thickness = from->GetArray("thickness");
-    if (thickness == nullptr || thickness->GetNumberOfValues() != 1) {
-      ThrowInputError(mesh.path,
-                      "the field data 'thickness' is not one number; make it "
-                      "the thickness of the planar specimen");
-    }
-    mesh.thickness = thickness->GetComponent(0, 0);
+  vtkDataArray* const array = data->GetArray(name);
+  if (array == nullptr || array->GetNumberOfValues() != 1) {
+    ThrowInputError(path, std::string("the field data '") + name +
+                              "' are not one number; correct them");
   }
+  return array->GetComponent(0, 0);
 }
 
 void CheckArrayLengths(const std::filesystem::path& path,
@@ -321,7 +310,8 @@ MeshFile ToMeshFile(const std::filesystem::path& path, VtkGrid grid) {
 MeshFile ToMeshFile(const std::filesystem::path& path,
                     vtkUnstructuredGrid* grid) {
   MeshFile mesh = ToMeshFile(path, ToVtkGrid(grid));
-  ReadSection(grid->GetFieldData(), mesh);
+  mesh.model = FieldNumber(path, "model", grid->GetFieldData());
+  mesh.thickness = FieldNumber(path, "thickness", grid->GetFieldData());
   return mesh;
 }
 

@@ -2,11 +2,14 @@
 
 #include <vtkDataArraySelection.h>
 #include <vtkNew.h>
+#include <vtkObjectFactory.h>
 #include <vtkUnstructuredGrid.h>
+#include <vtkXMLDataElement.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include <memory>
 #include <new>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -18,6 +21,41 @@
 
 namespace elastimate {
 namespace {
+
+/// Leaves all but numbers in the field data alone: VTK 9.1 writes beyond the
+/// end of an array of strings where there are more of them than the file says,
+/// and crashes where a type is unknown.
+class VtuReader : public vtkXMLUnstructuredGridReader {
+ public:
+  static VtuReader* New();
+
+ protected:
+  VtuReader() = default;
+  ~VtuReader() override = default;
+  VtuReader(const VtuReader&) = delete;
+  VtuReader& operator=(const VtuReader&) = delete;
+
+  int ReadPrimaryElement(vtkXMLDataElement* primary) override {
+    static const std::set<std::string> kNumbers = {
+        "Int8",   "UInt8", "Int16",  "UInt16",  "Int32",
+        "UInt32", "Int64", "UInt64", "Float32", "Float64"};
+    const int is_read =
+        vtkXMLUnstructuredGridReader::ReadPrimaryElement(primary);
+    const int count = FieldDataElement == nullptr
+                          ? 0
+                          : FieldDataElement->GetNumberOfNestedElements();
+    for (int i = count - 1; i >= 0; --i) {
+      vtkXMLDataElement* const array = FieldDataElement->GetNestedElement(i);
+      const char* const type = array->GetAttribute("type");
+      if (type == nullptr || kNumbers.count(type) == 0) {
+        FieldDataElement->RemoveNestedElement(array);
+      }
+    }
+    return is_read;
+  }
+};
+
+vtkStandardNewMacro(VtuReader);
 
 /// Whether there is as much memory as a sound file takes.
 bool HasMemoryFor(const std::filesystem::path& path) {
@@ -36,7 +74,7 @@ MeshFile ReadVtuMesh(const std::filesystem::path& path) {
       ThrowDamagedVtk(
           path, messages.HasError() ? messages.FirstError() : frame.damage);
     }
-    vtkNew<vtkXMLUnstructuredGridReader> reader;
+    vtkNew<VtuReader> reader;
     for (const std::string& name : frame.text_point_arrays) {
       reader->GetPointDataArraySelection()->DisableArray(name.c_str());
     }

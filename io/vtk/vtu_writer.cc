@@ -6,15 +6,18 @@
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
 #include <vtkIdTypeArray.h>
+#include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkSmartPointer.h>
-#include <vtkStringArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
+#include <algorithm>
+
 #include "elastimate/core/scene/loads.h"
+#include "elastimate/io/mesh/section_number.h"
 #include "elastimate/io/text/file_output.h"
 #include "elastimate/io/text/input_error.h"
 #include "elastimate/io/vtk/vtk_messages.h"
@@ -105,9 +108,11 @@ void AddField(const std::string& name, const Eigen::MatrixXd& values,
 }
 
 void AddSection(const Section& section, vtkFieldData* data) {
-  vtkNew<vtkStringArray> model;
+  vtkNew<vtkIntArray> model;
   model->SetName("model");
-  model->InsertNextValue(std::string(SectionModelName(section.model)));
+  model->InsertNextValue(static_cast<int>(
+      std::find(kNumberedModels.begin(), kNumberedModels.end(), section.model) -
+      kNumberedModels.begin()));
   data->AddArray(model);
   vtkNew<vtkDoubleArray> thickness;
   thickness->SetName("thickness");

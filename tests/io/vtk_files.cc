@@ -7,13 +7,11 @@
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
-#include <vtkStringArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkUnstructuredGridWriter.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include <map>
-#include <string>
 
 namespace elastimate {
 namespace {
@@ -54,9 +52,10 @@ void FillGrid(const Mesh& mesh, const Fields& fields,
     grid->InsertNextCell(kCellTypes.at(mesh.kind), nodes.size(), nodes.data());
   }
   if (mesh.Dimension() == 2) {
-    vtkNew<vtkStringArray> model;
+    vtkNew<vtkDoubleArray> model;
     model->SetName("model");
-    model->InsertNextValue(std::string(SectionModelName(mesh.section.model)));
+    model->InsertNextValue(
+        mesh.section.model == SectionModel::kPlaneStress ? 1 : 2);
     grid->GetFieldData()->AddArray(model);
     vtkNew<vtkDoubleArray> thickness;
     thickness->SetName("thickness");

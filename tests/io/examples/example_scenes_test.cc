@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "elastimate/core/mesh/mesh.h"
+#include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/io/gmsh/organ_shape.h"
@@ -117,6 +118,73 @@ std::string WhyInvalid(MakeScene make_scene) {
     return error.what();
   }
   return "nothing was thrown";
+}
+
+TEST(CuboidSceneTest, IsOfHexahedraWhereAskedTo) {
+  CuboidOptions options;
+  options.kind = ElementKind::kHex8;
+  const Scene scene = CuboidScene(options);
+  ValidateScene(scene);
+  EXPECT_EQ(scene.mesh.nodes, CuboidScene({}).mesh.nodes);
+  EXPECT_EQ(scene.mesh.NumElements(), options.cells.prod());
+  EXPECT_NEAR(ElementVolumes(scene.mesh).sum(), options.size.prod(), 1e-12);
+  ExpectLoadedWhereFree(scene, options.force);
+  EXPECT_EQ(BoundaryFacets(scene.mesh).cols(), 2 * (25 + 10 + 10));
+}
+
+TEST(RectangleSceneTest, IsHeldAtOneEndAndPulledAtTheOther) {
+  for (const ElementKind kind : {ElementKind::kTri3, ElementKind::kQuad4}) {
+    RectangleOptions options;
+    options.kind = kind;
+    options.cells = {3, 2};
+    options.section = {SectionModel::kPlaneStrain, 0.5};
+    options.force = {4, 2};
+    const Scene scene = RectangleScene(options);
+    ValidateScene(scene);
+    EXPECT_EQ(scene.mesh.NumNodes(), 12);
+    EXPECT_EQ(scene.mesh.NumElements(), kind == ElementKind::kTri3 ? 12 : 6);
+    EXPECT_NEAR(ElementVolumes(scene.mesh).sum(), 0.5 * options.size.prod(),
+                1e-12);
+    EXPECT_EQ(BoundaryFacets(scene.mesh).cols(), 10);
+    const Eigen::MatrixXd force =
+        AssembleLoads(scene.mesh, scene.load_cases.at(0).loads);
+    for (Eigen::Index node = 0; node < 12; ++node) {
+      const double x = scene.mesh.nodes(0, node);
+      EXPECT_EQ(scene.supports.held.col(node).all(), x == 0);
+      EXPECT_EQ(scene.supports.held.col(node).any(), x == 0);
+      const bool is_inner = node / 4 == 1;
+      EXPECT_LT((force.col(node) - (x == options.size.x() ? 1.0 : 0.0) *
+                                       (is_inner ? 0.5 : 0.25) *
+                                       Eigen::Vector2d(4, 2))
+                    .norm(),
+                1e-12);
+    }
+  }
+}
+
+TEST(RectangleSceneTest, NamesTheOptionThatIsWrong) {
+  const auto why = [](auto change) {
+    return WhyInvalid([&] {
+      RectangleOptions options;
+      change(options);
+      RectangleScene(options);
+    });
+  };
+  EXPECT_EQ(why([](RectangleOptions& o) {
+              o.cells = {0, 1};
+            }),
+            "cells=0,1; each must be at least 1");
+  EXPECT_EQ(why([](RectangleOptions& o) {
+              o.cells = {2000001, 1};
+            }),
+            "cells=2000001,1; the product must be at most 2000000");
+  EXPECT_EQ(why([](RectangleOptions& o) { o.kind = ElementKind::kTri6; }),
+            "elements=tri6; a rectangle is of tri3 or quad4");
+  EXPECT_EQ(
+      why([](RectangleOptions& o) { o.section.model = SectionModel::kSolid; }),
+      "model=3d; a rectangle is in plane_stress or plane_strain");
+  EXPECT_EQ(why([](RectangleOptions& o) { o.section.thickness = 0; }),
+            "thickness=0; it must be from 1e-50 to 1e+50");
 }
 
 Scene OrganOf(int tetrahedra) {

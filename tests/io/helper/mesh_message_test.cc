@@ -20,6 +20,8 @@ MeshFile SomeMesh() {
   mesh.groups = {{2, 70, "top", {0, 1, 4}, Eigen::MatrixXi::Ones(3, 2)}};
   mesh.has_other_cells = true;
   mesh.is_vtk = false;
+  mesh.model = 2;
+  mesh.thickness = 0.1;
   mesh.node_numbers = {2, 3, 5, 7, 10};
   mesh.num_nodes_left_out = 1;
   return mesh;
@@ -57,10 +59,27 @@ TEST(MeshMessage, BringsAMesh) {
   EXPECT_EQ(message.mesh.groups.at(0).name, "top");
   EXPECT_EQ(message.mesh.groups[0].nodes, mesh.groups[0].nodes);
   EXPECT_EQ(message.mesh.groups[0].facets, mesh.groups[0].facets);
+  EXPECT_EQ(message.mesh.kind, mesh.kind);
+  EXPECT_EQ(message.mesh.model, 2);
+  EXPECT_EQ(message.mesh.thickness, 0.1);
   EXPECT_TRUE(message.mesh.has_other_cells);
   EXPECT_FALSE(message.mesh.is_vtk);
   EXPECT_EQ(message.mesh.node_numbers, mesh.node_numbers);
   EXPECT_EQ(message.mesh.num_nodes_left_out, 1);
+}
+
+TEST(MeshMessage, BringsAPlanarMesh) {
+  MeshFile mesh = SomeMesh();
+  mesh.kind = ElementKind::kQuad4;
+  mesh.groups[0].facets = Eigen::MatrixXi::Ones(2, 3);
+  mesh.model.reset();
+  mesh.thickness.reset();
+  const MeshMessage message = ParseMeshMessage(BytesOf(mesh));
+  ASSERT_EQ(message.kind, Kind::kMesh);
+  EXPECT_EQ(message.mesh.kind, ElementKind::kQuad4);
+  EXPECT_EQ(message.mesh.groups[0].facets, mesh.groups[0].facets);
+  EXPECT_FALSE(message.mesh.model.has_value());
+  EXPECT_FALSE(message.mesh.thickness.has_value());
 }
 
 TEST(MeshMessage, BringsASentence) {
@@ -98,6 +117,16 @@ TEST(MeshMessage, IsNoneWhereSizesDisagree) {
   EXPECT_EQ(ParseMeshMessage(BytesOf(mesh)).kind, Kind::kNone);
   mesh = SomeMesh();
   mesh.element_arrays[0].values.resize(1, 3);
+  EXPECT_EQ(ParseMeshMessage(BytesOf(mesh)).kind, Kind::kNone);
+  mesh = SomeMesh();
+  mesh.kind = ElementKind::kTri3;
+  EXPECT_EQ(ParseMeshMessage(BytesOf(mesh)).kind, Kind::kNone);
+  mesh = SomeMesh();
+  mesh.groups[0].facets.resize(4, 2);
+  mesh.groups[0].facets.setZero();
+  EXPECT_EQ(ParseMeshMessage(BytesOf(mesh)).kind, Kind::kNone);
+  mesh = SomeMesh();
+  mesh.kind = static_cast<ElementKind>(6);
   EXPECT_EQ(ParseMeshMessage(BytesOf(mesh)).kind, Kind::kNone);
   mesh = SomeMesh();
   mesh.node_numbers.pop_back();

@@ -28,6 +28,22 @@ TEST_F(CsvFieldTest, ReadsBothHeadersAndTheirSpaces) {
   EXPECT_TRUE(std::isnan(Read("x,y,z\nnan,0,0\n0,0,0")(0, 0)));
 }
 
+TEST_F(CsvFieldTest, ReadsTwoColumnsOfAPlane) {
+  Eigen::MatrixXd expected(2, 2);
+  expected.transpose() << 1, -2.5, 0.1, 5;
+  for (const std::string header : {"x,y", "ux,uy"}) {
+    const auto path = folder_.Write("u.csv", header + "\n1,-2.5\n0.1,5\n");
+    EXPECT_EQ(ReadCsvField(path, 2, 2), expected);
+    EXPECT_THROWS_WITH(ReadCsvField(path, 2, 3),
+                       "the header must be x,y,z or ux,uy,uz; correct it");
+  }
+  const auto three = folder_.Write("u.csv", "x,y,z\n1,-2.5,0\n0.1,5,0\n");
+  EXPECT_EQ(ReadCsvField(three, 2, 2).rows(), 3);
+  const auto mixed = folder_.Write("u.csv", "x,y\n1,-2.5,0\n0.1,5\n");
+  EXPECT_THROWS_WITH(ReadCsvField(mixed, 2, 2),
+                     "line 2 has 3 columns where 2 are due");
+}
+
 TEST_F(CsvFieldTest, NamesLineAndColumn) {
   EXPECT_THROWS_WITH(Read("a,b,c\n1,2,3\n4,5,6\n"),
                      "u.csv: line 1: the header");

@@ -283,5 +283,68 @@ TEST_F(PlanarArrays, AreOfThePlane) {
   }
 }
 
+class PlanarFieldData : public ::testing::Test {
+ protected:
+  PlanarFieldData() {
+    const Scene scene = SceneOf("quad4");
+    WriteEncoded(path_, scene.mesh, SceneFields(scene), AllVtkEncodings()[0]);
+    content_ = ReadFile(path_);
+  }
+
+  Section Read(const std::string& field_data) const {
+    const std::size_t begin = content_.find("<FieldData>");
+    const std::size_t end = content_.find("</FieldData>");
+    folder_.Write("scene.vtu", content_.substr(0, begin) + "<FieldData>" +
+                                   field_data + content_.substr(end));
+    return ReadScene({path_}, Measurement::kRequired).scene.mesh.section;
+  }
+
+  static std::string Number(const std::string& name, const std::string& value) {
+    return "<DataArray type=\"Float64\" Name=\"" + name +
+           "\" NumberOfTuples=\"1\" format=\"ascii\">" + value + "</DataArray>";
+  }
+  /// Of more strings than it says, which VTK writes beyond its end.
+  static std::string Strings(const std::string& name) {
+    std::string strings = "<Array type=\"String\" Name=\"" + name +
+                          "\" NumberOfTuples=\"1\" format=\"ascii\">";
+    for (int i = 0; i < 1000; ++i) {
+      strings += "112 108 97 110 101 0 ";
+    }
+    return strings + "</Array>";
+  }
+
+  const TemporaryFolder folder_;
+  const std::filesystem::path path_ = folder_.Path() / "scene.vtu";
+  std::string content_;
+};
+
+TEST_F(PlanarFieldData, AreNumbers) {
+  EXPECT_EQ(Read(Number("model", "1") + Number("thickness", "3")).model,
+            SectionModel::kPlaneStress);
+  const Section section = Read(Number("model", "2") + Number("thickness", "3"));
+  EXPECT_EQ(section.model, SectionModel::kPlaneStrain);
+  EXPECT_EQ(section.thickness, 3);
+  EXPECT_THROWS_WITH(Read(Number("model", "0") + Number("thickness", "3")),
+                     "which are planar, but the model is 3d");
+  EXPECT_THROWS_WITH(Read(Number("model", "3") + Number("thickness", "3")),
+                     "scene.vtu: the field data 'model' is 3; make it 0 for 3d,"
+                     " 1 for plane_stress or 2 for plane_strain");
+  EXPECT_THROWS_WITH(Read(Number("model", "1") + Number("thickness", "-3")),
+                     "scene.vtu: the thickness is not positive and finite");
+  EXPECT_THROWS_WITH(Read(Number("model", "1")), "no thickness is given");
+}
+
+TEST_F(PlanarFieldData, LeaveWhatIsNoNumberAlone) {
+  EXPECT_EQ(Read(Strings("note") + Number("model", "1") + Strings("other") +
+                 Number("thickness", "3"))
+                .thickness,
+            3);
+  EXPECT_THROWS_WITH(Read(Strings("model")), "no model is given");
+  EXPECT_THROWS_WITH(Read(Replaced(Number("model", "1"), "Float64", "Float-7")),
+                     "no model is given");
+  EXPECT_THROWS_WITH(Read(Replaced(Number("model", "1"), "type=", "tipe=")),
+                     "no model is given");
+}
+
 }  // namespace
 }  // namespace elastimate
