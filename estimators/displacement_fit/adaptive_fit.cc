@@ -193,7 +193,8 @@ double AdaptiveFit::SmallestError() const {
 
 ReducedFit::ModelError AdaptiveFit::ErrorAt(double nu) const {
   const double of_energy =
-      compliance_norm_ / std::sqrt(SmallestEnergyRatio(nu, compliance_pole_));
+      compliance_norm_ /
+      std::sqrt(SmallestEnergyRatio(nu, compliance_pole_, model_.Section()));
   double square_sum = 0;
   const Eigen::Index num_cases = model_.NumLoadCases();
   for (Eigen::Index k = 0; k < num_cases; ++k) {

@@ -4,17 +4,22 @@
 #include <cmath>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/materials/elasticity.h"
 
 namespace elastimate {
 
-double SmallestEnergyRatio(double poisson_ratio, double pole) {
-  return std::min((1 - 2 * poisson_ratio) / (1 - 2 * pole),
-                  (1 + poisson_ratio) / (1 + pole));
+double SmallestEnergyRatio(double poisson_ratio, double pole,
+                           SectionModel model) {
+  const double least = -ShearShareOfJ(model);
+  const double largest = model == SectionModel::kPlaneStrain ? 0 : 1;
+  return std::min((1 + least * poisson_ratio) / (1 + least * pole),
+                  (1 + largest * poisson_ratio) / (1 + largest * pole));
 }
 
-KrylovBound::KrylovBound(double pole, double start_norm, double start_error,
-                         double direction_error)
-    : pole_(pole),
+KrylovBound::KrylovBound(SectionModel model, double pole, double start_norm,
+                         double start_error, double direction_error)
+    : section_model_(model),
+      pole_(pole),
       start_norm_(start_norm),
       start_error_(start_error),
       direction_error_(direction_error),
@@ -38,7 +43,8 @@ double KrylovBound::At(double poisson_ratio) const {
   // The node lies below the spectrum by more than rounding moves either.
   constexpr double kBelow = 1 - 1e-6;
   const double distance = std::abs(poisson_ratio - pole_);
-  const double node = kBelow * SmallestEnergyRatio(poisson_ratio, pole_);
+  const double node =
+      kBelow * SmallestEnergyRatio(poisson_ratio, pole_, section_model_);
   const Eigen::Index m = t_.cols();
   if (m == 0) {
     return (distance * (start_norm_ + direction_error_) + start_error_) /

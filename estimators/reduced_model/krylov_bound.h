@@ -3,11 +3,16 @@
 
 #include <Eigen/Core>
 
+#include "elastimate/core/mesh/mesh.h"
+
 namespace elastimate {
 
-/// (A(nu) x, x) >= SmallestEnergyRatio(nu, pole) (A(pole) x, x) for every x,
-/// since A(nu) = H + nu J is positive semidefinite at nu = -1 and nu = 1/2.
-double SmallestEnergyRatio(double poisson_ratio, double pole);
+/// (A(nu) x, x) >= SmallestEnergyRatio(nu, pole) (A(pole) x, x) for every x: of
+/// A(nu) = H + nu J, the ratio of (J x, x) to (H x, x) lies between those of
+/// strains without and with nothing but a change of volume, -2 and 1, in plane
+/// strain -2 and 0, in plane stress -1 and 1.
+double SmallestEnergyRatio(double poisson_ratio, double pole,
+                           SectionModel model);
 
 /// An upper bound, for every nu, of the error of the solution that the Krylov
 /// space of one right-hand side holds.
@@ -33,8 +38,8 @@ class KrylovBound {
   /// Before the first vector of V.  `start_norm` is beta_0; `start_error`
   /// bounds the errors of x(p) and `direction_error` that of A_p^-1 (g1 - J
   /// x(p)), in the energy norm of the pole, as all norms here.
-  KrylovBound(double pole, double start_norm, double start_error,
-              double direction_error);
+  KrylovBound(SectionModel model, double pole, double start_norm,
+              double start_error, double direction_error);
 
   /// Another vector of V: the last column of T (without beta), an upper bound
   /// of the error of A_p^-1 J v_m, and beta, zero where the space is invariant.
@@ -45,9 +50,8 @@ class KrylovBound {
   /// for m vectors.
   double At(double poisson_ratio) const;
 
-  Eigen::Index NumVectors() const { return t_.cols(); }
-
  private:
+  SectionModel section_model_;
   double pole_;
   double start_norm_;
   double start_error_;

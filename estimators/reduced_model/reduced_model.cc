@@ -113,8 +113,8 @@ bool ReducedModel::SetPole(double poisson_ratio) {
     const double x_norm = norm(x.col(k), of_x.h.col(k), of_x.j.col(k));
     const double start_norm =
         norm(direction.col(k), of_direction.h.col(k), of_direction.j.col(k));
-    response.bounds.emplace_back(poisson_ratio, start_norm, tolerance * x_norm,
-                                 tolerance * start_norm);
+    response.bounds.emplace_back(section_model_, poisson_ratio, start_norm,
+                                 tolerance * x_norm, tolerance * start_norm);
     Append(x.col(k), of_x.h.col(k), of_x.j.col(k), response);
     response.krylov.resize(x.rows(), 0);
     if (start_norm > 0) {

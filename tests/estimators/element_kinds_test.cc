@@ -7,9 +7,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
+#include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/estimators/displacement_fit/reduced_fe.h"
+#include "elastimate/estimators/reduced_model/krylov_bound.h"
 #include "elastimate/estimators/registry.h"
 #include "elastimate/estimators/statistics/cramer_rao.h"
 #include "tests/scenes.h"
@@ -88,6 +91,37 @@ INSTANTIATE_TEST_SUITE_P(
       std::replace(name.begin(), name.end(), '-', '_');
       return name;
     });
+
+// What certificates rest on, for strains of all sorts and those that change the
+// volume alone or not at all.
+TEST(SmallestEnergyRatio, HoldsForEverySection) {
+  for (const KindOfSection& parameter : AllKindsOfSections()) {
+    SCOPED_TRACE(NameOf(parameter));
+    const Mesh mesh = testing::MeshOfKind(parameter);
+    const Eigen::Index dimension = mesh.Dimension();
+    Eigen::MatrixXd x(mesh.NumDofs(), 3);
+    x.col(0) = Eigen::VectorXd::LinSpaced(mesh.NumDofs(), 0, 500).array().sin();
+    x.col(1) = mesh.nodes.reshaped();
+    Eigen::MatrixXd shear = Eigen::MatrixXd::Zero(dimension, dimension);
+    shear(0, 1) = 1;
+    x.col(2) = (shear * mesh.nodes).reshaped();
+    const StiffnessProducts products = MultiplyStiffnessBasis(mesh, x);
+    const auto energy = [&](Eigen::Index k, double nu) {
+      return x.col(k).dot(products.h.col(k) + nu * products.j.col(k));
+    };
+    for (const double pole : {-0.9, 0.3, 0.499}) {
+      for (const double nu : {-0.99, -0.5, 0.0, 0.3, 0.49, 0.4999}) {
+        const double ratio = SmallestEnergyRatio(nu, pole, mesh.section.model);
+        double least = std::numeric_limits<double>::infinity();
+        for (Eigen::Index k = 0; k < 3; ++k) {
+          least = std::min(least, energy(k, nu) / energy(k, pole));
+        }
+        // And is the largest number that does.
+        EXPECT_NEAR(least / ratio, 1, 1e-9) << pole << " " << nu;
+      }
+    }
+  }
+}
 
 class FitsOfEachKind : public ::testing::TestWithParam<KindOfSection> {};
 

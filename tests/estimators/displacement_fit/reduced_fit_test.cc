@@ -190,8 +190,10 @@ TEST(ReducedFit, LowerBoundsHoldWhereTheModelIsPoor) {
           SCOPED_TRACE(shape + ", nu " + std::to_string(nu) + ", vectors " +
                        std::to_string(vectors));
           const ReducedFit fit(model, observed, ones, {nu, nu}, youngs_modulus);
-          const double error = norm / std::sqrt(SmallestEnergyRatio(nu, 0.3)) *
-                               model.ErrorBound(0, nu);
+          const double error =
+              norm /
+              std::sqrt(SmallestEnergyRatio(nu, 0.3, SectionModel::kSolid)) *
+              model.ErrorBound(0, nu);
           const auto brackets =
               fit.BracketResiduals(observed.Measured(), {{error, 0}});
           ASSERT_EQ(brackets.size(), 1U);
