@@ -1,0 +1,135 @@
+#include "elastimate/core/mesh/shape_functions.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+
+namespace elastimate {
+namespace {
+
+template <ElementKind kKind>
+using Point = Eigen::Matrix<double, ElementSizes<kKind>::kDimension, 1>;
+
+// The nodes of a reference element: the vertices, and the middle of the edges.
+template <ElementKind kKind>
+std::vector<Point<kKind>> ReferenceNodes() {
+  const ElementTopology& topology = TopologyOf(kKind);
+  const bool is_simplex = IsSimplex(kKind);
+  std::vector<Point<kKind>> nodes;
+  for (int i = 0; i < topology.num_vertices; ++i) {
+    Point<kKind> xi = Point<kKind>::Zero();
+    for (int k = 0; k < topology.dimension; ++k) {
+      const bool is_far[] = {i % 4 == 1 || i % 4 == 2, i % 4 >= 2, i >= 4};
+      xi(k) = is_simplex ? double(k == i - 1) : (is_far[k] ? 1 : -1);
+    }
+    nodes.push_back(xi);
+  }
+  for (int i = topology.num_vertices; i < topology.num_nodes; ++i) {
+    const auto [a, b] = topology.edges[i - topology.num_vertices];
+    nodes.push_back((nodes[a] + nodes[b]) / 2);
+  }
+  return nodes;
+}
+
+template <ElementKind kKind>
+Point<kKind> SomePoint() {
+  const double xi[] = {0.21, 0.37, 0.11};
+  return Eigen::Map<const Point<kKind>>(xi);
+}
+
+// Calls check with the constant of each kind.
+template <class Check>
+void ForEachKind(const Check& check) {
+  for (const ElementKind kind : kElementKinds) {
+    SCOPED_TRACE(TopologyOf(kind).name);
+    VisitElementKind(kind, [&](auto constant) {
+      ASSERT_EQ(decltype(constant)::value, kind);
+      check(constant);
+    });
+  }
+}
+
+TEST(ShapeFunctions, AreOneAtTheirNodeAndZeroAtTheOthers) {
+  ForEachKind([](auto kind) {
+    const auto nodes = ReferenceNodes<kind>();
+    ASSERT_EQ(int(nodes.size()), ElementSizes<kind>::kNodes);
+    for (int i = 0; i < ElementSizes<kind>::kNodes; ++i) {
+      const auto at = ShapeFunctionsAt<kind>(nodes[i], 1);
+      for (int j = 0; j < ElementSizes<kind>::kNodes; ++j) {
+        EXPECT_NEAR(at.value(j), i == j ? 1 : 0, 1e-15);
+      }
+    }
+  });
+}
+
+TEST(ShapeFunctions, AddUpToOne) {
+  ForEachKind([](auto kind) {
+    const auto at = ShapeFunctionsAt<kind>(SomePoint<kind>(), 1);
+    EXPECT_NEAR(at.value.sum(), 1, 1e-15);
+    EXPECT_NEAR(at.vertex_value.sum(), 1, 1e-15);
+    EXPECT_LT(at.gradient.rowwise().sum().cwiseAbs().maxCoeff(), 1e-15);
+    EXPECT_LT(at.vertex_gradient.rowwise().sum().cwiseAbs().maxCoeff(), 1e-15);
+  });
+}
+
+TEST(ShapeFunctions, HaveTheGradientsOfFiniteDifferences) {
+  constexpr double kStep = 1e-5;
+  ForEachKind([](auto kind) {
+    const auto at = ShapeFunctionsAt<kind>(SomePoint<kind>(), 1);
+    for (int k = 0; k < ElementSizes<kind>::kDimension; ++k) {
+      Point<kind> low = SomePoint<kind>();
+      Point<kind> high = low;
+      low(k) -= kStep;
+      high(k) += kStep;
+      const auto before = ShapeFunctionsAt<kind>(low, 1);
+      const auto after = ShapeFunctionsAt<kind>(high, 1);
+      EXPECT_TRUE(at.gradient.row(k).transpose().isApprox(
+          (after.value - before.value) / (2 * kStep), 1e-9));
+      EXPECT_TRUE(at.vertex_gradient.row(k).transpose().isApprox(
+          (after.vertex_value - before.vertex_value) / (2 * kStep), 1e-9));
+    }
+  });
+}
+
+// Weights add up to the volume, and products of two linear functions are
+// integrated exactly: that of xi_k^2 over a simplex is 2 / (dimension + 2)!,
+// over a cube 2^dimension / 3.
+TEST(IntegrationRule, IsExactForProductsOfLinearFunctions) {
+  ForEachKind([](auto kind) {
+    constexpr int kDimension = ElementSizes<kind>::kDimension;
+    const double volume = !IsSimplex(kind)  ? std::pow(2, kDimension)
+                          : kDimension == 3 ? 1.0 / 6
+                                            : 0.5;
+    const double moment = !IsSimplex(kind)  ? volume / 3
+                          : kDimension == 3 ? 2.0 / 120
+                                            : 2.0 / 24;
+    double sum = 0;
+    double square_sum = 0;
+    for (const auto& at : IntegrationRule<kind>()) {
+      // The first coordinate, from those of the vertices.
+      double xi = 0;
+      const auto nodes = ReferenceNodes<kind>();
+      for (int i = 0; i < ElementSizes<kind>::kVertices; ++i) {
+        xi += at.vertex_value(i) * nodes[i](0);
+      }
+      sum += at.weight;
+      square_sum += at.weight * xi * xi;
+    }
+    EXPECT_NEAR(sum, volume, 1e-15);
+    EXPECT_NEAR(square_sum, moment, 1e-15);
+    double stiffness_sum = 0;
+    for (const auto& at : StiffnessRule<kind>()) {
+      stiffness_sum += at.weight;
+    }
+    double vertex_sum = 0;
+    for (const auto& at : VertexRule<kind>()) {
+      vertex_sum += at.weight;
+    }
+    EXPECT_NEAR(stiffness_sum, volume, 1e-15);
+    EXPECT_NEAR(vertex_sum, volume, 1e-15);
+  });
+}
+
+}  // namespace
+}  // namespace elastimate
