@@ -8,6 +8,7 @@
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/large_pages.h"
+#include "elastimate/core/algebra/row_block_qr.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/mechanics/stiffness_traces.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
@@ -28,32 +29,20 @@ constexpr Eigen::Index kMostElementsForExactTraces = 10000;
 constexpr Eigen::Index kNumTraceProbes = 2;
 
 // The triangle of a QR factorisation of the free rows of all columns of f, b
-// and a, side by side, in blocks of rows that stay in the cache.
-Eigen::Matrix3d BlockwiseTriangle(const ComponentMask& held,
-                                  const Eigen::Ref<const Eigen::MatrixXd>& f,
-                                  const Eigen::Ref<const Eigen::MatrixXd>& b,
-                                  const Eigen::Ref<const Eigen::MatrixXd>& a) {
-  constexpr Eigen::Index kBlockRows = 512;
-  // The triangle of the rows before, and below it further rows.
-  Eigen::MatrixXd block = Eigen::MatrixXd::Zero(3 + kBlockRows, 3);
-  Eigen::Index num_rows = 3;
-  const auto factorize = [&] {
-    block.topRows<3>() = TriangularFactor(block.topRows(num_rows));
-    num_rows = 3;
-  };
+// and a, side by side.
+Eigen::Matrix3d TriangleOfFreeRows(const ComponentMask& held,
+                                   const Eigen::Ref<const Eigen::MatrixXd>& f,
+                                   const Eigen::Ref<const Eigen::MatrixXd>& b,
+                                   const Eigen::Ref<const Eigen::MatrixXd>& a) {
+  RowBlockQr qr(3);
   for (Eigen::Index k = 0; k < f.cols(); ++k) {
     for (Eigen::Index dof = 0; dof < held.size(); ++dof) {
-      if (held.data()[dof]) {
-        continue;
-      }
-      block.row(num_rows++) << f(dof, k), b(dof, k), a(dof, k);
-      if (num_rows == block.rows()) {
-        factorize();
+      if (!held.data()[dof]) {
+        qr.NextRow() << f(dof, k), b(dof, k), a(dof, k);
       }
     }
   }
-  factorize();
-  return block.topRows<3>();
+  return qr.Triangle();
 }
 
 // The products with each other of the free rows of H b, J b, H f and J f,
@@ -131,8 +120,8 @@ ForceResidual::ForceResidual(const Scene& scene)
   const StiffnessProducts products =
       MultiplyStiffnessBasis(scene.mesh, columns);
   ++work_.element_passes;
-  triangle_ = BlockwiseTriangle(held, f, products.j.leftCols(num_cases),
-                                products.h.leftCols(num_cases));
+  triangle_ = TriangleOfFreeRows(held, f, products.j.leftCols(num_cases),
+                                 products.h.leftCols(num_cases));
   if (is_small) {
     traces_ = StiffnessTraces(scene.mesh, DegreesOfFreedom(scene.supports));
     ++work_.element_passes;

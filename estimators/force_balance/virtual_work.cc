@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/algebra/row_block_qr.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/estimators/force_balance/force_residual.h"
@@ -44,19 +45,6 @@ Eigen::MatrixXd OrthonormalPolynomials(const Mesh& mesh,
   return basis;
 }
 
-// The triangle of [triangle; rows], in blocks of rows that stay in the cache.
-void AppendToTriangle(const Eigen::MatrixXd& rows, Eigen::MatrixXd& triangle) {
-  constexpr Eigen::Index kBlockRows = 512;
-  const Eigen::Index columns = triangle.cols();
-  Eigen::MatrixXd block;
-  for (Eigen::Index row = 0; row < rows.rows(); row += kBlockRows) {
-    const Eigen::Index count = std::min(kBlockRows, rows.rows() - row);
-    block.resize(columns + count, columns);
-    block << triangle, rows.middleRows(row, count);
-    triangle = TriangularFactor(block);
-  }
-}
-
 // The elements around some nodes, as a mesh of its own.
 struct Patch {
   Mesh mesh;
@@ -89,17 +77,22 @@ Patch ElementsAround(const Mesh& mesh, Eigen::Index first_node,
   return patch;
 }
 
+// k0.
+Eigen::Index NumColumns(const std::vector<Eigen::MatrixXd>& polynomials) {
+  Eigen::Index columns = 0;
+  for (const Eigen::MatrixXd& of_component : polynomials) {
+    columns += of_component.cols();
+  }
+  return columns;
+}
+
 // The rows of fields that are given by component, at some nodes:
 // num_dofs x k0.
 Eigen::MatrixXd RowsOf(const std::vector<Eigen::MatrixXd>& polynomials,
                        const std::vector<Eigen::Index>& nodes) {
   const Eigen::Index dimension = Eigen::Index(polynomials.size());
-  Eigen::Index columns = 0;
-  for (const Eigen::MatrixXd& of_component : polynomials) {
-    columns += of_component.cols();
-  }
-  Eigen::MatrixXd rows =
-      Eigen::MatrixXd::Zero(dimension * Eigen::Index(nodes.size()), columns);
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(
+      dimension * Eigen::Index(nodes.size()), NumColumns(polynomials));
   Eigen::Index column = 0;
   for (Eigen::Index i = 0; i < dimension; ++i) {
     const Eigen::Index count = polynomials[i].cols();
@@ -118,31 +111,25 @@ Eigen::MatrixXd StiffenedTriangle(
     const Mesh& mesh, const Supports& supports,
     const std::vector<Eigen::MatrixXd>& polynomials) {
   constexpr Eigen::Index kNodesPerPatch = 8192;
-  Eigen::MatrixXd triangle;
+  const Eigen::Index columns = NumColumns(polynomials);
+  RowBlockQr qr(2 * columns);
   for (Eigen::Index first = 0; first < mesh.NumNodes();
        first += kNodesPerPatch) {
     const Eigen::Index end = std::min(first + kNodesPerPatch, mesh.NumNodes());
     const Patch patch = ElementsAround(mesh, first, end);
     const StiffnessProducts products =
         MultiplyStiffnessBasis(patch.mesh, RowsOf(polynomials, patch.nodes));
-    std::vector<Eigen::Index> rows;
     for (std::size_t n = 0; n < patch.nodes.size(); ++n) {
       const Eigen::Index node = patch.nodes[n];
       for (int i = 0; i < mesh.Dimension(); ++i) {
         if (node >= first && node < end && !supports.held(i, node)) {
-          rows.push_back(mesh.Dimension() * Eigen::Index(n) + i);
+          const Eigen::Index row = mesh.Dimension() * Eigen::Index(n) + i;
+          qr.NextRow() << products.h.row(row), products.j.row(row);
         }
       }
     }
-    const Eigen::Index columns = products.h.cols();
-    Eigen::MatrixXd both(Eigen::Index(rows.size()), 2 * columns);
-    both << products.h(rows, Eigen::all), products.j(rows, Eigen::all);
-    if (first == 0) {
-      triangle = Eigen::MatrixXd::Zero(2 * columns, 2 * columns);
-    }
-    AppendToTriangle(both, triangle);
   }
-  return triangle;
+  return qr.Triangle();
 }
 
 // The rows of one of `dimension` components, num_nodes x n, of num_dofs x n.
