@@ -16,14 +16,18 @@ constexpr double kSamePlace = 1e-4;
 Eigen::VectorXd ShortestEdges(const Mesh& mesh) {
   Eigen::VectorXd squares = Eigen::VectorXd::Constant(
       mesh.NumNodes(), std::numeric_limits<double>::infinity());
+  const ElementTopology& topology = mesh.Topology();
   for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
-    for (const auto& [i, k] : mesh.Topology().edges) {
-      const int a = mesh.elements(i, element);
-      const int b = mesh.elements(k, element);
-      const double square =
-          (mesh.nodes.col(a) - mesh.nodes.col(b)).squaredNorm();
-      squares(a) = std::min(squares(a), square);
-      squares(b) = std::min(squares(b), square);
+    for (const auto& [i, k] : topology.edges) {
+      const double square = (mesh.nodes.col(mesh.elements(i, element)) -
+                             mesh.nodes.col(mesh.elements(k, element)))
+                                .squaredNorm();
+      for (const int local : {i, k, topology.MidEdgeNode(i, k)}) {
+        if (local >= 0) {
+          double& least = squares(mesh.elements(local, element));
+          least = std::min(least, square);
+        }
+      }
     }
   }
   return squares.cwiseSqrt();

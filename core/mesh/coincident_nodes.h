@@ -12,7 +12,7 @@ namespace elastimate {
 /// ten-thousandth of the shortest edge at either of the two, the node and such
 /// another one; ascending.  Elements on such nodes are not connected there,
 /// since no element may have both (ValidateMesh).
-/// Precondition: a valid mesh of order 1.
+/// Precondition: a valid mesh.
 /// O(num_elements + num_nodes log num_nodes) for the nodes of a mesh, of which
 /// few lie in one of the thin layers that are searched.
 std::vector<std::array<int, 2>> CoincidentNodes(const Mesh& mesh);

@@ -7,8 +7,10 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/mesh/representable.h"
 #include "elastimate/core/mesh/shape_functions.h"
 #include "elastimate/core/mesh/tet4.h"
@@ -249,6 +251,36 @@ void ValidateMidEdgeNodes(const Mesh& mesh) {
   }
 }
 
+// Hexahedra of which one is turned against the other share edges of a side, but
+// not the side, which is then on the surface twice.
+void ValidateSidesOfHexahedra(const Mesh& mesh) {
+  const Eigen::MatrixXi facets = BoundaryFacets(mesh);
+  // Three of the four nodes of each facet, ascending, and the facet.
+  std::vector<std::pair<std::array<int, 3>, Eigen::Index>> corners;
+  corners.reserve(4 * facets.cols());
+  for (Eigen::Index facet = 0; facet < facets.cols(); ++facet) {
+    for (int left_out = 0; left_out < 4; ++left_out) {
+      std::array<int, 3> three = {facets((left_out + 1) % 4, facet),
+                                  facets((left_out + 2) % 4, facet),
+                                  facets((left_out + 3) % 4, facet)};
+      std::sort(three.begin(), three.end());
+      corners.emplace_back(three, facet);
+    }
+  }
+  std::sort(corners.begin(), corners.end());
+  const auto twin = std::adjacent_find(
+      corners.begin(), corners.end(),
+      [](const auto& a, const auto& b) { return a.first == b.first; });
+  if (twin != corners.end()) {
+    std::ostringstream text;
+    text << "the sides (" << facets.col(twin->second).transpose() << ") and ("
+         << facets.col((twin + 1)->second).transpose()
+         << ") of two hexahedra share three nodes, but not the fourth; order "
+            "the nodes of each as VTK does";
+    throw std::invalid_argument(text.str());
+  }
+}
+
 // The nodes, and the elements: whether an element uses each node.
 template <int kDimension>
 std::vector<char> ValidateOfDimension(const Mesh& mesh) {
@@ -283,6 +315,9 @@ void ValidateMesh(const Mesh& mesh) {
                                      : ValidateOfDimension<2>(mesh);
   if (mesh.Order() == 2) {
     ValidateMidEdgeNodes(mesh);
+  }
+  if (mesh.kind == ElementKind::kHex8) {
+    ValidateSidesOfHexahedra(mesh);
   }
   const auto unused = std::find(used.begin(), used.end(), 0);
   if (unused != used.end()) {

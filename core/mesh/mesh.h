@@ -62,10 +62,10 @@ struct Mesh {
 /// dimension with a positive thickness, finite positions, an extent between
 /// 1e-50 and 1e50, node indices in range, every node used by an element, no
 /// flat or folded element (a height at a vertex below 1e-6 of the longest edge
-/// there, or vertices of different orientation), mid-edge nodes numbered after
-/// the vertices and in the middle of their edges (within 1e-6 of their length),
-/// and region ids for all elements or for none.
-/// O(num_elements).
+/// there, or vertices of different orientation), no hexahedra with 3 nodes of a
+/// side in common but not the fourth, mid-edge nodes after all vertices and in
+/// the middle of their edges (within 1e-6 of their length), and region ids for
+/// all elements or for none.  O(num_elements), of hexahedra times a logarithm.
 void ValidateMesh(const Mesh& mesh);
 
 /// Whether `node` is in the middle between `a` and `b`, to within a millionth

@@ -50,10 +50,17 @@ std::string Describe(const IsotropicElasticity& elasticity) {
 }
 
 // ", the shear modulus = 3", of the moduli that do not change along
-// `direction`.
+// `direction`; none next to nu = 1/2 and -1, where other combinations change as
+// the bulk and the shear modulus do.
 std::string Unchanged(const IsotropicElasticity& elasticity,
                       const Eigen::Vector2d& direction) {
+  constexpr double kLeastTelling = -0.5;
+  constexpr double kLargestTelling = 0.45;
   std::string text;
+  if (!(elasticity.poisson_ratio >= kLeastTelling &&
+        elasticity.poisson_ratio <= kLargestTelling)) {
+    return text;
+  }
   for (const Modulus& modulus : Moduli(elasticity)) {
     if (std::abs(modulus.gradient.normalized().dot(direction.normalized())) <
         kUnchanged) {

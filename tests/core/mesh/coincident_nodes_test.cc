@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/element_kinds.h"
 #include "tests/scenes.h"
 
 namespace elastimate {
@@ -34,6 +35,23 @@ TEST(CoincidentNodes, AreNoneInAMesh) {
   EXPECT_THAT(CoincidentNodes(BoxMesh({6, 5, 4}, {2, 3, 4})), IsEmpty());
   EXPECT_THAT(CoincidentNodes(Distorted(BoxMesh({6, 5, 4}, {2, 3, 4}))),
               IsEmpty());
+}
+
+TEST(CoincidentNodes, AreNoneInAMeshOfAnyKind) {
+  for (const testing::KindOfSection& parameter :
+       testing::AllKindsOfSections()) {
+    SCOPED_TRACE(testing::NameOf(parameter));
+    EXPECT_THAT(CoincidentNodes(testing::MeshOfKind(parameter)), IsEmpty());
+  }
+}
+
+TEST(CoincidentNodes, AreMidEdgeNodesToo) {
+  Mesh mesh =
+      testing::MeshOfKind({ElementKind::kTri6, SectionModel::kPlaneStress}, 1);
+  const int vertex = mesh.elements(0, 0);
+  const int middle = mesh.elements(3, 0);
+  mesh.nodes.col(middle) = mesh.nodes.col(vertex);
+  EXPECT_THAT(CoincidentNodes(mesh), SizeIs(2));
 }
 
 TEST(CoincidentNodes, AreThoseOfAnInterfaceThatIsNotMerged) {

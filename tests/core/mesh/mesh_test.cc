@@ -10,6 +10,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "tests/element_kinds.h"
 #include "tests/quadratic_reference.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
@@ -193,6 +194,15 @@ TEST(SmallestDihedralAngles, OfTheRegularTetrahedronAndOfACorner) {
   // Between a coordinate plane and the plane x + y + z = 1.
   EXPECT_NEAR(SmallestDihedralAngles(OneTetrahedron())(0),
               std::acos(1 / std::sqrt(3.0)), 1e-12);
+}
+
+// Each vertex of the turned one has the right orientation.
+TEST(ValidateMesh, RefusesAHexahedronThatIsTurnedAgainstItsNeighbour) {
+  Mesh mesh = testing::MeshOfKind({ElementKind::kHex8, SectionModel::kSolid});
+  EXPECT_NO_THROW(ValidateMesh(mesh));
+  const Eigen::VectorXi nodes = mesh.elements.col(0);
+  mesh.elements.col(0) << nodes.head(4), nodes(5), nodes(6), nodes(7), nodes(4);
+  EXPECT_THROWS_WITH(ValidateMesh(mesh), "share three nodes");
 }
 
 }  // namespace
