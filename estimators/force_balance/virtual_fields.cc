@@ -274,11 +274,16 @@ VirtualWorkFit Fit(const EstimatorOptions& options,
                                              : fit.compliance_scale,
       fit.poisson_ratio, balance.Model());
   if (collinear_slope && !evidence.do_displacements_oppose_loads) {
-    const double nu = fit.poisson_ratio;
-    evidence.free_direction = {estimate.elasticity,
-                               {LogYoungsModulusSlope(nu, balance.Model()) -
-                                    *collinear_slope / fit.compliance_scale,
-                                1}};
+    // What fits alike at one nu does at all; next to the ends of the range,
+    // moduli look alike.
+    constexpr double kAnyPoissonRatio = 0.25;
+    const double t =
+        balance.FitAt(kAnyPoissonRatio, Bounds{}).free_compliance_scale;
+    const SectionModel model = balance.Model();
+    evidence.free_direction = {
+        IsotropicElasticity::FromComplianceScale(t, kAnyPoissonRatio, model),
+        {LogYoungsModulusSlope(kAnyPoissonRatio, model) - *collinear_slope / t,
+         1}};
     estimate.elasticity = {Estimate::kUnknown, Estimate::kUnknown};
   }
   return fit;
