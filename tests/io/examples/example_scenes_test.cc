@@ -300,32 +300,17 @@ TEST(CuboidSceneTest, IsValidAtTheEndsOfTheRanges) {
   }
 }
 
-class OrganSceneSizes : public testing::TestWithParam<int> {
- protected:
-  /// Made once for all tests of a size.
-  static const Scene& OrganOfThisSize() {
-    static std::map<int, Scene> scenes;
-    const auto found = scenes.find(GetParam());
-    return found != scenes.end()
-               ? found->second
-               : scenes.emplace(GetParam(), OrganOf(GetParam())).first->second;
-  }
-};
-
-TEST_P(OrganSceneSizes, HasTheWantedNumberOfTetrahedra) {
-  EXPECT_NEAR(OrganOfThisSize().mesh.NumElements(), GetParam(),
-              0.05 * GetParam());
+void HasTheWantedNumberOfTetrahedra(const Scene& scene, int wanted) {
+  EXPECT_NEAR(scene.mesh.NumElements(), wanted, 0.05 * wanted);
 }
 
-TEST_P(OrganSceneSizes, IsAValidAndHeldScene) {
-  const Scene& scene = OrganOfThisSize();
+void IsAValidAndHeldScene(const Scene& scene) {
   EXPECT_NO_THROW(ValidateScene(scene));
   EXPECT_EQ(WhyNotHeld(scene.mesh, scene.supports), "");
   ExpectLoadedWhereFree(scene, OrganOptions().force);
 }
 
-TEST_P(OrganSceneSizes, HasOneClosedSurfaceOfGenusZero) {
-  const Scene& scene = OrganOfThisSize();
+void HasOneClosedSurfaceOfGenusZero(const Scene& scene) {
   const Eigen::MatrixXi facets = BoundaryFacets(scene.mesh);
   const auto edges = FacetsOfEdges(facets);
   for (const auto& [edge, sides] : edges) {
@@ -338,8 +323,7 @@ TEST_P(OrganSceneSizes, HasOneClosedSurfaceOfGenusZero) {
   EXPECT_EQ(count(NodesOf(facets)) - count(edges) + facets.cols(), 2);
 }
 
-TEST_P(OrganSceneSizes, HasItsSurfaceNodesOnTheOrgansSurface) {
-  const Scene& scene = OrganOfThisSize();
+void HasItsSurfaceNodesOnTheOrgansSurface(const Scene& scene) {
   const std::set<int> surface = NodesOf(BoundaryFacets(scene.mesh));
   for (int node = 0; node < scene.mesh.NumNodes(); ++node) {
     const double radius =
@@ -353,13 +337,11 @@ TEST_P(OrganSceneSizes, HasItsSurfaceNodesOnTheOrgansSurface) {
   EXPECT_LT(static_cast<int>(surface.size()), scene.mesh.NumNodes());
 }
 
-TEST_P(OrganSceneSizes, HasNoSlivers) {
-  EXPECT_GE(SmallestDihedralAngles(OrganOfThisSize().mesh).minCoeff(),
-            15.0 * kDegree);
+void HasNoSlivers(const Scene& scene) {
+  EXPECT_GE(SmallestDihedralAngles(scene.mesh).minCoeff(), 15.0 * kDegree);
 }
 
-TEST_P(OrganSceneSizes, IsHeldOverATenthOfItsSurface) {
-  const Scene& scene = OrganOfThisSize();
+void IsHeldOverATenthOfItsSurface(const Scene& scene) {
   const Eigen::MatrixXi facets = BoundaryFacets(scene.mesh);
   const Eigen::VectorXd areas =
       AreaVectors(scene.mesh, facets).colwise().norm();
@@ -370,6 +352,37 @@ TEST_P(OrganSceneSizes, IsHeldOverATenthOfItsSurface) {
     }
   }
   EXPECT_NEAR(held_area / areas.sum(), 0.12, 0.025);
+}
+
+class OrganSceneSizes : public testing::TestWithParam<int> {};
+
+// In one test, since a program that meshes runs for each.
+TEST_P(OrganSceneSizes, IsThatOfAnOrgan) {
+  const Scene scene = OrganOf(GetParam());
+  {
+    SCOPED_TRACE("HasTheWantedNumberOfTetrahedra");
+    HasTheWantedNumberOfTetrahedra(scene, GetParam());
+  }
+  {
+    SCOPED_TRACE("IsAValidAndHeldScene");
+    IsAValidAndHeldScene(scene);
+  }
+  {
+    SCOPED_TRACE("HasOneClosedSurfaceOfGenusZero");
+    HasOneClosedSurfaceOfGenusZero(scene);
+  }
+  {
+    SCOPED_TRACE("HasItsSurfaceNodesOnTheOrgansSurface");
+    HasItsSurfaceNodesOnTheOrgansSurface(scene);
+  }
+  {
+    SCOPED_TRACE("HasNoSlivers");
+    HasNoSlivers(scene);
+  }
+  {
+    SCOPED_TRACE("IsHeldOverATenthOfItsSurface");
+    IsHeldOverATenthOfItsSurface(scene);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Tetrahedra, OrganSceneSizes,
