@@ -486,14 +486,14 @@ std::string DescribeDiscretizationError(const Estimate& estimate) {
 }
 
 Finding DiscretizationErrorFinding(ElementKind kind, const Estimate& estimate) {
-  return Warning(FindingCode::kDiscretizationError,
-                 DescribeDiscretizationError(estimate),
-                 "refine the mesh" +
-                     std::string(HasQuadraticKind(kind)
-                                     ? ", or use quadratic elements (order 2)"
-                                     : "") +
-                     ", unless the displacements were computed with these "
-                     "very elements");
+  return Warning(
+      FindingCode::kDiscretizationError, DescribeDiscretizationError(estimate),
+      "refine the mesh" +
+          std::string(HasQuadraticKind(kind) && estimate.element_order == 1
+                          ? ", or use quadratic elements (order 2)"
+                          : "") +
+          ", unless the displacements were computed with these "
+          "very elements");
 }
 
 Finding LinearElementsFitAsWell(const IsotropicElasticity& linear) {

@@ -28,8 +28,10 @@ void AddPoissonRatioInterval(Estimate& estimate) {
 }
 
 void JudgeElements(const Mesh& mesh, Estimate& estimate) {
-  // In plane stress a volume may change across the plane.
-  if (mesh.Order() == 1 && mesh.section.model != SectionModel::kPlaneStress &&
+  // Those of the estimate may be of a higher order than those of the scene.  In
+  // plane stress a volume may change across the plane.
+  if (estimate.element_order == 1 &&
+      mesh.section.model != SectionModel::kPlaneStress &&
       estimate.elasticity.poisson_ratio >= kLimits.locking_poisson_ratio) {
     estimate.Add(Locking(mesh.kind));
   }

@@ -96,6 +96,16 @@ TEST(Auto, RaisesTheOrderWhereLinearElementsAreNotEnough) {
   }
 }
 
+// The scene is of linear elements, the estimate is not.
+TEST(Auto, DoesNotWarnOfElementsThatItHasLeft) {
+  const Scene scene = FinerWorld("organ", {5e4, 0.47});
+  const Estimate estimate = Auto().Run(scene, {});
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  ASSERT_EQ(estimate.element_order, 2);
+  EXPECT_NEAR(estimate.elasticity.poisson_ratio, 0.47, 1e-6);
+  EXPECT_FALSE(estimate.Has(FindingCode::kLocking));
+}
+
 TEST(AutoStatistics, DoesNotRaiseTheOrderForNoise) {
   for (int seed = 1; seed <= 20; ++seed) {
     Scene scene = SmallScene("organ");
