@@ -16,9 +16,10 @@ constexpr char kGiveMore[] =
     "give Poisson's ratio, or add a load case that strains the specimen "
     "otherwise";
 
-// The sine of the angle between a modulus' gradient and the direction that the
-// data leave free, below which the modulus is called determined by them.
-constexpr double kUnchanged = 1e-3;
+// The rate d ln M / d nu along the direction that the data leave free, below
+// which the modulus M is called determined by them [1]. Next to nu = 1/2 it
+// tells the bulk modulus from lambda + 2 mu, whose rate differs by 2 or more.
+constexpr double kUnchanged = 0.02;
 
 struct Modulus {
   std::string name;
@@ -50,20 +51,13 @@ std::string Describe(const IsotropicElasticity& elasticity) {
 }
 
 // ", the shear modulus = 3", of the moduli that do not change along
-// `direction`; none next to nu = 1/2 and -1, where other combinations change as
-// the bulk and the shear modulus do.
+// `direction`; none if that leaves nu as it is.
 std::string Unchanged(const IsotropicElasticity& elasticity,
                       const Eigen::Vector2d& direction) {
-  constexpr double kLeastTelling = -0.5;
-  constexpr double kLargestTelling = 0.45;
   std::string text;
-  if (!(elasticity.poisson_ratio >= kLeastTelling &&
-        elasticity.poisson_ratio <= kLargestTelling)) {
-    return text;
-  }
   for (const Modulus& modulus : Moduli(elasticity)) {
-    if (std::abs(modulus.gradient.normalized().dot(direction.normalized())) <
-        kUnchanged) {
+    if (std::abs(modulus.gradient.dot(direction)) <
+        kUnchanged * std::abs(direction(1))) {
       text += ", " + modulus.name + " = " + Text(modulus.value);
     }
   }

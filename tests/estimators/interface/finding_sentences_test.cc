@@ -172,12 +172,17 @@ TEST(FindingSentences, AreThereForEveryCode) {
 
 // Confined compression determines lambda + 2 mu, which is none of the moduli
 // that are named; next to nu = 1/2 it changes as the bulk modulus does.
-TEST(OneCombination, NamesNoModulusThatOnlyLooksConstant) {
+TEST(OneCombination, NamesTheModulusThatIsConstantAndNoOther) {
   for (const double nu : {0.3, 0.45, 0.499, 0.4999}) {
     const double gradient = 2 / (1 - 2 * nu) - 1 / (1 + nu) - 1 / (1 - nu);
     const Finding finding = OneCombination({500, nu}, {-gradient, 1});
     EXPECT_EQ(finding.text.find("bulk"), std::string::npos) << finding.text;
     EXPECT_EQ(finding.text.find("shear"), std::string::npos) << finding.text;
+  }
+  for (const double nu : {0.3, 0.45, 0.499, 0.4999}) {
+    const Finding bulk = OneCombination({500, nu}, {-2 / (1 - 2 * nu), 1});
+    EXPECT_NE(bulk.text.find("the bulk modulus = "), std::string::npos)
+        << bulk.text;
   }
   const Finding shear = OneCombination({500, 0.25}, {1 / 1.25, 1});
   EXPECT_NE(shear.text.find("the shear modulus = 200"), std::string::npos)
