@@ -53,6 +53,11 @@ struct IsotropicElasticity {
   bool IsPhysical() const;
 };
 
+/// The range of Poisson's ratio that a bounded fit searches: at -1 and 1/2 the
+/// stiffness is singular or infinite.
+constexpr double kSmallestPoissonRatio = -0.9999;
+constexpr double kLargestPoissonRatio = 0.49999;
+
 /// c of J.
 constexpr double ShearShareOfJ(SectionModel model) {
   return model == SectionModel::kPlaneStress ? 1 : 2;

@@ -113,6 +113,30 @@ void StiffnessAssembly::AssembleOfDimension(const Mesh& mesh) {
   }
 }
 
+Eigen::VectorXd StiffnessAssembly::ValuesOf(
+    const Eigen::MatrixXd& blocks) const {
+  const Eigen::Index dimension = blocks.rows();
+  Eigen::VectorXd values(Eigen::Index(pattern_.row.size()));
+  for (Eigen::Index node = 0; node + 1 < Eigen::Index(graph_.start.size());
+       ++node) {
+    for (Eigen::Index k = graph_.start[node]; k < graph_.start[node + 1]; ++k) {
+      const int row = graph_.row[k];
+      for (Eigen::Index component = 0; component < dimension; ++component) {
+        Eigen::Index next = pair_values_[dimension * k + component];
+        if (next < 0) {
+          continue;
+        }
+        for (Eigen::Index i = row == node ? component : 0; i < dimension; ++i) {
+          if ((free_components_[row] >> unsigned(i) & 1U) != 0) {
+            values(next++) = blocks(i, dimension * k + component);
+          }
+        }
+      }
+    }
+  }
+  return values;
+}
+
 template <int kDimension>
 void StiffnessAssembly::WriteColumns(Eigen::Index node, double shear_share) {
   constexpr unsigned kAllFree = (1U << unsigned(kDimension)) - 1;

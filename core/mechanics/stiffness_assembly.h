@@ -37,6 +37,10 @@ class StiffnessAssembly {
   /// a random one), so that most of it stays in the cache.
   void Assemble(const Mesh& mesh);
 
+  /// The values, in the pattern, of a matrix whose blocks are given for each
+  /// pair of the graph: dimension x (dimension num_pairs), side by side.
+  Eigen::VectorXd ValuesOf(const Eigen::MatrixXd& blocks) const;
+
   const NodeGraph& Graph() const { return graph_; }
   const SymmetricPattern& Pattern() const { return pattern_; }
   const Eigen::VectorXd& H() const { return h_; }

@@ -212,6 +212,7 @@ Scene QuadraticScene(const Scene& scene) {
   const Edges edges(scene.mesh);
   Scene quadratic;
   quadratic.mesh = WithMidEdgeNodes(scene.mesh, edges);
+  quadratic.materials = scene.materials;
   quadratic.supports = WithMidEdgeSupports(scene.supports, scene.mesh, edges);
   for (const LoadCase& load_case : scene.load_cases) {
     quadratic.load_cases.push_back(ToQuadratic(load_case, scene.mesh, edges));

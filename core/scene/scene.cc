@@ -184,6 +184,7 @@ void ValidateMeasurement(const Mesh& mesh, const LoadCase& load_case,
 
 void ValidateScene(const Scene& scene) {
   ValidateMesh(scene.mesh);
+  ValidateMaterials(scene.materials, scene.mesh);
   ValidateSupports(scene.mesh, scene.supports);
   if (scene.load_cases.empty()) {
     Fail("the scene has no load case; give at least one");

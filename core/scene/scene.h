@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "elastimate/core/materials/material.h"
 #include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/mesh/mesh.h"
 
@@ -68,16 +69,18 @@ struct LoadCase {
                                    ///< displacement per component [length].
 };
 
-/// Geometry, supports, and one or more load cases.
+/// Geometry, materials, supports, and one or more load cases.
 struct Scene {
   Mesh mesh;
+  /// Empty: one isotropic material.
+  std::vector<Material> materials;
   Supports supports;
   std::vector<LoadCase> load_cases;
 };
 
 /// Throws std::invalid_argument with one sentence that names the load case, the
-/// array, and the node or element, unless: the mesh is valid (ValidateMesh);
-/// every array has its shape; every number is finite, and no array's largest
+/// array, and the node or element, unless: the mesh and its materials are
+/// valid (ValidateMesh, ValidateMaterials); every array has its shape; every number is finite, and no array's largest
 /// one beyond 1e-50 to 1e50 unless zero (displacements only where they are
 /// observed or held); every facet has nodes in range (and mid-edge nodes in the
 /// middle); the facets of a surface force have an area; noise standard

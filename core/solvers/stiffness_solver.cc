@@ -71,6 +71,12 @@ bool StiffnessSolver::Factorize(double poisson_ratio) {
   return true;
 }
 
+bool StiffnessSolver::FactorizeBlocks(const Eigen::MatrixXd& blocks) {
+  poisson_ratio_ = kNaN;
+  values_ = assembly_->ValuesOf(blocks);
+  return FactorizeValues();
+}
+
 bool StiffnessSolver::FactorizeValues() {
   if (is_multigrid_) {
     ++work_.multigrid_set_ups;
@@ -101,7 +107,10 @@ Eigen::MatrixXd StiffnessSolver::Solve(const Eigen::MatrixXd& all,
   if (!solution && is_multigrid_) {
     std::ostringstream why;
     why.precision(10);
-    why << "did not converge at nu = " << poisson_ratio_;
+    why << "did not converge";
+    if (poisson_ratio_ == poisson_ratio_) {
+      why << " at nu = " << poisson_ratio_;
+    }
     FallBackToCholesky(why.str());
     if (FactorizeValues()) {
       solution = solver_->Solve(right_hand_sides, tolerance);

@@ -46,7 +46,8 @@ enum class SolverKind {
   kMultigrid,  ///< Conjugate gradients; needs PETSc (HasMultigrid).
 };
 
-/// Solves with A(nu) = H + nu J on the free degrees of freedom of a mesh.
+/// Solves with A(nu) = H + nu J, or another stiffness of the same pattern, on
+/// the free degrees of freedom of a mesh.
 class StiffnessSolver {
  public:
   /// The relative error, in the energy norm, that iterations leave.
@@ -64,14 +65,19 @@ class StiffnessSolver {
   /// extremely ill-conditioned mesh).
   bool Factorize(double poisson_ratio);
 
+  /// Factorises the stiffness of these blocks instead: for each pair of the
+  /// graph, dimension x (dimension num_pairs), side by side.  False when it is
+  /// singular to working precision.
+  bool FactorizeBlocks(const Eigen::MatrixXd& blocks);
+
   /// A^-1 of the free rows of each column of `all` (num_dofs x n), zero in
   /// the held rows.  Where multigrid does not converge, A is factorised from
   /// there on; when that shows that it is singular, the solution is NaN.
-  /// Precondition: Factorize returned true.
+  /// Precondition: the last factorisation succeeded.
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& all,
                         double tolerance = kAccurate);
 
-  /// nu of the present factorisation; NaN when there is none.
+  /// nu of the present factorisation; NaN when there is none, or one of blocks.
   double PoissonRatio() const { return poisson_ratio_; }
   const DegreesOfFreedom& Dofs() const { return degrees_of_freedom_; }
   const NodeGraph& Graph() const { return assembly_->Graph(); }
@@ -87,7 +93,7 @@ class StiffnessSolver {
 
   DegreesOfFreedom degrees_of_freedom_;
   std::unique_ptr<StiffnessAssembly> assembly_;
-  Eigen::VectorXd values_;  ///< Of the last H + nu J, memory to be used again.
+  Eigen::VectorXd values_;  ///< Of the last matrix, memory to be used again.
   std::unique_ptr<LinearSolver> solver_;
   bool is_multigrid_ = false;
   /// NaN before the first factorisation and after a failed one.

@@ -13,11 +13,6 @@
 
 namespace elastimate {
 
-/// The range of Poisson's ratio that a bounded fit searches: at -1 and 1/2 the
-/// stiffness is singular or infinite.
-constexpr double kSmallestPoissonRatio = -0.9999;
-constexpr double kLargestPoissonRatio = 0.49999;
-
 /// Closed interval that a parameter must lie in; an absent end is open.
 struct Bounds {
   std::optional<double> lower;

@@ -1,0 +1,49 @@
+#include "elastimate/core/equilibrium/equilibrium.h"
+
+#include "elastimate/core/scene/loads.h"
+
+namespace elastimate {
+
+Equilibrium::Equilibrium(const Scene& scene, SolverKind solver)
+    : forces_(scene.mesh, scene.materials),
+      solver_(scene.mesh, scene.supports, solver),
+      load_(AssembleLoadCases(scene)),
+      held_displacement_(HeldDisplacement(scene.supports)) {
+  if (!held_displacement_.isZero(0)) {
+    held_forces_ = forces_.Columns(held_displacement_);
+    ++element_passes_;
+  }
+}
+
+bool Equilibrium::Solve(const Eigen::VectorXd& moduli) {
+  ++element_passes_;
+  if (!solver_.FactorizeBlocks(forces_.Blocks(moduli, solver_.Graph()))) {
+    return false;
+  }
+  Eigen::MatrixXd load = load_;
+  if (held_forces_.size() > 0) {
+    load.colwise() -= Eigen::VectorXd(held_forces_ * moduli);
+  }
+  displacement_ = solver_.Solve(load);
+  displacement_.colwise() += held_displacement_;
+  return displacement_.allFinite();
+}
+
+Eigen::MatrixXd Equilibrium::Sensitivities(const Eigen::MatrixXd& directions) {
+  const Eigen::Index n = directions.cols();
+  Eigen::MatrixXd sensitivities(displacement_.rows(), n * displacement_.cols());
+  for (Eigen::Index k = 0; k < displacement_.cols(); ++k) {
+    ++element_passes_;
+    sensitivities.middleCols(n * k, n) =
+        -solver_.Solve(forces_.Columns(displacement_.col(k)) * directions);
+  }
+  return sensitivities;
+}
+
+Work Equilibrium::WorkDone() const {
+  Work work = solver_.WorkDone();
+  work.element_passes += element_passes_;
+  return work;
+}
+
+}  // namespace elastimate

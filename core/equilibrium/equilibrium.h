@@ -1,0 +1,57 @@
+#ifndef ELASTIMATE_CORE_EQUILIBRIUM_EQUILIBRIUM_H_
+#define ELASTIMATE_CORE_EQUILIBRIUM_EQUILIBRIUM_H_
+
+#include <Eigen/Core>
+#include <string>
+
+#include "elastimate/core/mechanics/internal_forces.h"
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/core/solvers/stiffness_solver.h"
+
+namespace elastimate {
+
+/// Equilibrium of small strains of the materials of a scene,
+///
+///   K(theta) u = f on the free degrees of freedom, u given on the held ones,
+///
+/// and its sensitivities du / d theta_k = -K^-1 K_k u.  ForwardModel is faster
+/// for one isotropic material.
+class Equilibrium {
+ public:
+  /// Assembles the pattern and analyses it.  Preconditions and exceptions are
+  /// those of StiffnessSolver.
+  Equilibrium(const Scene& scene, SolverKind solver);
+
+  /// Solves for u at these moduli: an element pass, a factorisation and a solve
+  /// for each load case.  False when the stiffness is not positive definite to
+  /// working precision; there is no u then.
+  bool Solve(const Eigen::VectorXd& moduli);
+
+  /// u of all load cases, num_dofs x num_load_cases [length].
+  const Eigen::MatrixXd& Displacement() const { return displacement_; }
+
+  /// du / dp for directions d theta / d p (num_moduli x n): one num_dofs x
+  /// n matrix for each load case, side by side.  A pass and n solves for each
+  /// load case.  Precondition: Solve returned true.
+  Eigen::MatrixXd Sensitivities(const Eigen::MatrixXd& directions);
+
+  const InternalForces& Forces() const { return forces_; }
+  const NodeGraph& Graph() const { return solver_.Graph(); }
+  Work WorkDone() const;
+  /// That of StiffnessSolver.
+  const std::string& Notice() const { return solver_.Notice(); }
+
+ private:
+  InternalForces forces_;
+  StiffnessSolver solver_;
+  Eigen::MatrixXd load_;
+  Eigen::VectorXd held_displacement_;
+  /// f_k of the held displacements alone; empty where they are zero.
+  Eigen::MatrixXd held_forces_;
+  Eigen::MatrixXd displacement_;
+  int element_passes_ = 0;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_EQUILIBRIUM_EQUILIBRIUM_H_

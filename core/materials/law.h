@@ -1,0 +1,80 @@
+#ifndef ELASTIMATE_CORE_MATERIALS_LAW_H_
+#define ELASTIMATE_CORE_MATERIALS_LAW_H_
+
+#include <Eigen/Core>
+#include <string_view>
+#include <vector>
+
+#include "elastimate/core/mesh/mesh.h"
+
+namespace elastimate {
+
+/// A parameter of a law, as people know it.
+struct LawParameter {
+  std::string_view name;    ///< Such as "youngs_modulus".
+  std::string_view symbol;  ///< Such as "E".
+  /// Whether it is a stiffness [pressure], positive without an upper limit,
+  /// which is fitted as a logarithm; else it is a ratio [1].
+  bool is_modulus;
+  /// The closed range that fits search.
+  double lower;
+  double upper;
+  /// A common value, in any unit for a modulus: where fits start.
+  double typical;
+};
+
+/// A law of elasticity: the stress at a point, linear in its moduli theta,
+///
+///   P(H; theta) = sum_k theta_k P_k(H),   H = grad u (dimension x dimension,
+///   H_ij = du_i / dx_j),
+///
+/// with P_k = dW_k / dH of energy densities W_k; and its chart, which makes
+/// theta of parameters p that people know.
+///
+/// A new one is a file pair, a row in laws.cc, and a row in docs/materials.md;
+/// the tests of all laws run on it by themselves.  Its moduli are free to
+/// choose: small strains make the estimation linear in them.
+///
+/// Matrices over H have dimension^2 rows or columns, H in the order of its
+/// columns.  All functions are pure.
+class Law {
+ public:
+  virtual ~Law() = default;
+
+  /// Such as "isotropic".
+  virtual std::string_view Name() const = 0;
+  /// One line for people.
+  virtual std::string_view Description() const = 0;
+  /// The parameters p of its chart.
+  virtual const std::vector<LawParameter>& Parameters() const = 0;
+  /// The length of theta.
+  virtual int NumModuli() const = 0;
+  /// Whether it knows such a section.
+  virtual bool Takes(SectionModel model) const = 0;
+
+  /// W_k(H), one for each modulus [1].
+  virtual Eigen::VectorXd Energies(const Eigen::MatrixXd& gradient,
+                                   SectionModel model) const = 0;
+  /// P_k(H) as columns, dimension^2 x num_moduli [1].
+  virtual Eigen::MatrixXd Stresses(const Eigen::MatrixXd& gradient,
+                                   SectionModel model) const = 0;
+  /// dP / dH of these moduli, dimension^2 x dimension^2 [pressure]; constant
+  /// for small strains.
+  virtual Eigen::MatrixXd Tangent(const Eigen::VectorXd& moduli,
+                                  const Eigen::MatrixXd& gradient,
+                                  SectionModel model) const = 0;
+
+  /// theta(p).  Plain formulas, which accept any numbers.
+  virtual Eigen::VectorXd Moduli(const Eigen::VectorXd& parameters,
+                                 SectionModel model) const = 0;
+  /// d theta / d p, num_moduli x num_parameters.
+  virtual Eigen::MatrixXd ModuliJacobian(const Eigen::VectorXd& parameters,
+                                         SectionModel model) const = 0;
+  /// p of theta(p).
+  virtual Eigen::VectorXd ParametersOf(const Eigen::VectorXd& moduli,
+                                       SectionModel model) const = 0;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_MATERIALS_LAW_H_

@@ -1,0 +1,162 @@
+#include "elastimate/core/materials/material.h"
+
+#include <map>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include "elastimate/core/materials/isotropic_law.h"
+#include "elastimate/core/materials/laws.h"
+
+namespace elastimate {
+namespace {
+
+std::string NameOf(std::size_t material) {
+  return "material " + std::to_string(material + 1);
+}
+
+void ValidateKnown(const Law& law, const std::vector<KnownParameter>& known,
+                   const std::string& name) {
+  std::set<std::string> names;
+  for (const KnownParameter& parameter : known) {
+    const LawParameter* found = nullptr;
+    std::string all;
+    for (const LawParameter& candidate : law.Parameters()) {
+      all += (all.empty() ? "" : ", ") + std::string(candidate.name);
+      if (candidate.name == parameter.name) {
+        found = &candidate;
+      }
+    }
+    if (found == nullptr) {
+      throw std::invalid_argument(name + " gives \"" + parameter.name +
+                                  "\", but the law " + std::string(law.Name()) +
+                                  " has " + all + " only; correct the name");
+    }
+    if (!names.insert(parameter.name).second) {
+      throw std::invalid_argument(name + " gives " + parameter.name +
+                                  " twice; give it once");
+    }
+    if (!(parameter.value >= found->lower && parameter.value <= found->upper)) {
+      std::ostringstream text;
+      text << name << " gives " << parameter.name << " = " << parameter.value
+           << "; it must be ";
+      if (found->is_modulus) {
+        text << "positive and finite";
+      } else {
+        text << "between " << found->lower << " and " << found->upper;
+      }
+      throw std::invalid_argument(text.str());
+    }
+  }
+}
+
+// The material of each region id.
+std::map<int, int> MaterialOfRegions(const std::vector<Material>& materials) {
+  std::map<int, int> material_of;
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    for (const int region : materials[i].regions) {
+      if (!material_of.emplace(region, static_cast<int>(i)).second) {
+        throw std::invalid_argument("region " + std::to_string(region) +
+                                    " is given to " +
+                                    NameOf(material_of[region]) + " and to " +
+                                    NameOf(i) + "; give it to one");
+      }
+    }
+  }
+  return material_of;
+}
+
+void ValidateRegions(const std::vector<Material>& materials, const Mesh& mesh) {
+  if (materials.size() == 1 && materials[0].regions.empty()) {
+    return;
+  }
+  const std::map<int, int> material_of = MaterialOfRegions(materials);
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    if (materials[i].regions.empty()) {
+      throw std::invalid_argument(NameOf(i) +
+                                  " names no region, but there are several "
+                                  "materials; give the regions of each");
+    }
+  }
+  if (mesh.regions.size() == 0) {
+    throw std::invalid_argument(
+        "materials name regions, but the mesh has none; give the cell array "
+        "\"region\"");
+  }
+  const std::set<int> ids(mesh.regions.begin(), mesh.regions.end());
+  for (const auto& [region, material] : material_of) {
+    if (ids.count(region) == 0) {
+      throw std::invalid_argument(NameOf(material) + " names region " +
+                                  std::to_string(region) +
+                                  ", of which the mesh has no element; correct "
+                                  "the region");
+    }
+  }
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    if (material_of.count(mesh.regions(e)) == 0) {
+      throw std::invalid_argument(
+          "element " + std::to_string(e) + " is in region " +
+          std::to_string(mesh.regions(e)) +
+          ", which no material names; give that region a material");
+    }
+  }
+}
+
+}  // namespace
+
+void ValidateMaterials(const std::vector<Material>& materials,
+                       const Mesh& mesh) {
+  if (materials.empty()) {
+    return;
+  }
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const Law* const law = FindLaw(materials[i].law);
+    if (law == nullptr) {
+      std::string all;
+      for (const Law* const each : Laws()) {
+        all += (all.empty() ? "" : ", ") + std::string(each->Name());
+      }
+      throw std::invalid_argument(NameOf(i) + " has the law \"" +
+                                  materials[i].law +
+                                  "\", which is none; the laws are " + all);
+    }
+    if (!law->Takes(mesh.section.model)) {
+      throw std::invalid_argument(
+          NameOf(i) + " has the law " + materials[i].law +
+          ", which is not there for the model " +
+          std::string(SectionModelName(mesh.section.model)) +
+          "; give another law");
+    }
+    ValidateKnown(*law, materials[i].known, NameOf(i));
+  }
+  ValidateRegions(materials, mesh);
+}
+
+bool IsOneIsotropicMaterial(const std::vector<Material>& materials) {
+  return materials.empty() ||
+         (materials.size() == 1 && materials[0].law == IsotropicLaw::kName &&
+          materials[0].known.empty());
+}
+
+std::vector<Material> IsotropicMaterialOfEachRegion(const Mesh& mesh) {
+  std::vector<Material> materials;
+  for (const int region :
+       std::set<int>(mesh.regions.begin(), mesh.regions.end())) {
+    materials.push_back({std::string(IsotropicLaw::kName), {region}, {}});
+  }
+  return materials;
+}
+
+std::vector<int> MaterialOfElements(const std::vector<Material>& materials,
+                                    const Mesh& mesh) {
+  std::vector<int> of_elements(mesh.NumElements(), 0);
+  if (materials.size() > 1) {
+    const std::map<int, int> material_of = MaterialOfRegions(materials);
+    for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+      of_elements[e] = material_of.at(mesh.regions(e));
+    }
+  }
+  return of_elements;
+}
+
+}  // namespace elastimate

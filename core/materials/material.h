@@ -1,0 +1,44 @@
+#ifndef ELASTIMATE_CORE_MATERIALS_MATERIAL_H_
+#define ELASTIMATE_CORE_MATERIALS_MATERIAL_H_
+
+#include <string>
+#include <vector>
+
+#include "elastimate/core/mesh/mesh.h"
+
+namespace elastimate {
+
+/// A parameter of a law whose value is known.
+struct KnownParameter {
+  std::string name;
+  double value;
+};
+
+/// What a part of a specimen is made of.
+struct Material {
+  std::string law = "isotropic";
+  /// The region ids of the mesh that it fills; empty: all elements.
+  std::vector<int> regions;
+  std::vector<KnownParameter> known;
+};
+
+/// Throws std::invalid_argument, with one sentence, unless each material has a
+/// law that exists and takes the section, and known parameters of that law,
+/// once each, with values in their range; and each element is of one material.
+/// No materials at all are one isotropic one.  O(num_elements).
+void ValidateMaterials(const std::vector<Material>& materials,
+                       const Mesh& mesh);
+
+/// Whether this is one isotropic material without known parameters.
+bool IsOneIsotropicMaterial(const std::vector<Material>& materials);
+
+/// An isotropic material for each region id of the mesh, ascending.
+std::vector<Material> IsotropicMaterialOfEachRegion(const Mesh& mesh);
+
+/// The place in `materials` of that of each element.  Precondition: valid ones.
+std::vector<int> MaterialOfElements(const std::vector<Material>& materials,
+                                    const Mesh& mesh);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_MATERIALS_MATERIAL_H_

@@ -1,0 +1,77 @@
+#include "elastimate/core/materials/material_parameters.h"
+
+#include "elastimate/core/materials/laws.h"
+
+namespace elastimate {
+
+MaterialParameters::MaterialParameters(const std::vector<Material>& materials,
+                                       SectionModel model)
+    : model_(model), first_modulus_({0}), first_parameter_({0}) {
+  const std::vector<Material> one = {Material{}};
+  for (const Material& material : materials.empty() ? one : materials) {
+    const Law* const law = FindLaw(material.law);
+    for (const LawParameter& law_parameter : law->Parameters()) {
+      Parameter parameter = {&law_parameter, laws_.size(), std::nullopt};
+      for (const KnownParameter& known : material.known) {
+        if (known.name == law_parameter.name) {
+          parameter.known = known.value;
+        }
+      }
+      if (!parameter.known) {
+        free_.push_back(NumParameters());
+      }
+      parameters_.push_back(parameter);
+    }
+    laws_.push_back(law);
+    first_modulus_.push_back(NumModuli() + law->NumModuli());
+    first_parameter_.push_back(NumParameters());
+  }
+}
+
+Eigen::VectorXd MaterialParameters::Typical(double scale) const {
+  Eigen::VectorXd typical(NumParameters());
+  for (Eigen::Index i = 0; i < NumParameters(); ++i) {
+    const LawParameter& parameter = *parameters_[i].law_parameter;
+    typical(i) = parameters_[i].known.value_or(
+        parameter.typical * (parameter.is_modulus ? scale : 1));
+  }
+  return typical;
+}
+
+Eigen::VectorXd MaterialParameters::Moduli(
+    const Eigen::VectorXd& parameters) const {
+  Eigen::VectorXd moduli(NumModuli());
+  for (std::size_t i = 0; i < laws_.size(); ++i) {
+    const Eigen::Index count = first_parameter_[i + 1] - first_parameter_[i];
+    moduli.segment(first_modulus_[i], laws_[i]->NumModuli()) = laws_[i]->Moduli(
+        parameters.segment(first_parameter_[i], count), model_);
+  }
+  return moduli;
+}
+
+Eigen::MatrixXd MaterialParameters::ModuliJacobian(
+    const Eigen::VectorXd& parameters) const {
+  Eigen::MatrixXd jacobian =
+      Eigen::MatrixXd::Zero(NumModuli(), NumParameters());
+  for (std::size_t i = 0; i < laws_.size(); ++i) {
+    const Eigen::Index count = first_parameter_[i + 1] - first_parameter_[i];
+    jacobian.block(first_modulus_[i], first_parameter_[i],
+                   laws_[i]->NumModuli(), count) =
+        laws_[i]->ModuliJacobian(parameters.segment(first_parameter_[i], count),
+                                 model_);
+  }
+  return jacobian;
+}
+
+Eigen::VectorXd MaterialParameters::ParametersOf(
+    const Eigen::VectorXd& moduli) const {
+  Eigen::VectorXd parameters(NumParameters());
+  for (std::size_t i = 0; i < laws_.size(); ++i) {
+    const Eigen::Index count = first_parameter_[i + 1] - first_parameter_[i];
+    parameters.segment(first_parameter_[i], count) = laws_[i]->ParametersOf(
+        moduli.segment(first_modulus_[i], laws_[i]->NumModuli()), model_);
+  }
+  return parameters;
+}
+
+}  // namespace elastimate

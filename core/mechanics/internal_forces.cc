@@ -1,0 +1,134 @@
+#include "elastimate/core/mechanics/internal_forces.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "elastimate/core/materials/isotropic_law.h"
+#include "elastimate/core/mechanics/law_products.h"
+
+namespace elastimate {
+
+InternalForces::InternalForces(const Mesh& mesh,
+                               const std::vector<Material>& materials)
+    : mesh_(mesh),
+      parameters_(materials, mesh.section.model),
+      material_of_element_(MaterialOfElements(materials, mesh)),
+      is_isotropic_(std::all_of(materials.begin(), materials.end(),
+                                [](const Material& material) {
+                                  return material.law == IsotropicLaw::kName;
+                                })) {
+  if (parameters_.NumMaterials() > 1) {
+    parts_ = SplitMesh(mesh, material_of_element_);
+  }
+  if (is_isotropic_) {
+    stiffness_.emplace(parameters_.NumMaterials() > 1 ? parts_.mesh : mesh);
+  }
+}
+
+std::vector<std::vector<Eigen::MatrixXd>> InternalForces::UnitTangents() const {
+  const int dimension = mesh_.Dimension();
+  const Eigen::MatrixXd rest = Eigen::MatrixXd::Zero(dimension, dimension);
+  std::vector<std::vector<Eigen::MatrixXd>> tangents(
+      parameters_.NumMaterials());
+  for (std::size_t i = 0; i < tangents.size(); ++i) {
+    const Law& law = parameters_.LawOf(i);
+    for (int k = 0; k < law.NumModuli(); ++k) {
+      tangents[i].push_back(
+          law.Tangent(Eigen::VectorXd::Unit(law.NumModuli(), k), rest,
+                      mesh_.section.model));
+    }
+  }
+  return tangents;
+}
+
+std::vector<Eigen::MatrixXd> InternalForces::OfParts(
+    const Eigen::MatrixXd& displacements) const {
+  const bool is_split = parameters_.NumMaterials() > 1;
+  const Eigen::MatrixXd gathered =
+      is_split ? parts_.Gather(displacements) : Eigen::MatrixXd();
+  const Eigen::MatrixXd& of_nodes = is_split ? gathered : displacements;
+  std::vector<Eigen::MatrixXd> products;
+  if (is_isotropic_) {
+    StiffnessProducts isotropic;
+    stiffness_->Multiply(of_nodes, isotropic);
+    products.push_back(std::move(isotropic.h));
+    products.push_back(std::move(isotropic.j));
+    return products;
+  }
+  const std::vector<std::vector<Eigen::MatrixXd>> tangents = UnitTangents();
+  std::size_t most_moduli = 0;
+  for (const std::vector<Eigen::MatrixXd>& of_material : tangents) {
+    most_moduli = std::max(most_moduli, of_material.size());
+  }
+  products.assign(most_moduli,
+                  Eigen::MatrixXd::Zero(of_nodes.rows(), of_nodes.cols()));
+  AddLawProducts(is_split ? parts_.mesh : mesh_, material_of_element_, tangents,
+                 of_nodes, products);
+  return products;
+}
+
+Eigen::MatrixXd InternalForces::Columns(
+    const Eigen::VectorXd& displacement) const {
+  assert(displacement.size() == mesh_.NumDofs());
+  const std::vector<Eigen::MatrixXd> products = OfParts(displacement);
+  const Eigen::Index dimension = mesh_.Dimension();
+  Eigen::MatrixXd columns =
+      Eigen::MatrixXd::Zero(mesh_.NumDofs(), parameters_.NumModuli());
+  for (Eigen::Index k = 0; k < Eigen::Index(products.size()); ++k) {
+    if (parameters_.NumMaterials() == 1) {
+      columns.col(k) = products[k];
+      continue;
+    }
+    for (std::size_t copy = 0; copy < parts_.node.size(); ++copy) {
+      const std::size_t material = parts_.part[copy];
+      if (k < parameters_.LawOf(material).NumModuli()) {
+        columns.col(parameters_.FirstModulus(material) + k)
+            .segment(dimension * Eigen::Index(parts_.node[copy]), dimension) =
+            products[k].col(0).segment(dimension * Eigen::Index(copy),
+                                       dimension);
+      }
+    }
+  }
+  return columns;
+}
+
+Eigen::MatrixXd InternalForces::Multiply(
+    const Eigen::VectorXd& moduli, const Eigen::MatrixXd& displacements) const {
+  const std::vector<Eigen::MatrixXd> products = OfParts(displacements);
+  const Eigen::Index dimension = mesh_.Dimension();
+  Eigen::MatrixXd forces =
+      Eigen::MatrixXd::Zero(displacements.rows(), displacements.cols());
+  for (Eigen::Index k = 0; k < Eigen::Index(products.size()); ++k) {
+    if (parameters_.NumMaterials() == 1) {
+      forces += moduli(k) * products[k];
+      continue;
+    }
+    for (std::size_t copy = 0; copy < parts_.node.size(); ++copy) {
+      const std::size_t material = parts_.part[copy];
+      if (k < parameters_.LawOf(material).NumModuli()) {
+        forces.middleRows(dimension * Eigen::Index(parts_.node[copy]),
+                          dimension) +=
+            moduli(parameters_.FirstModulus(material) + k) *
+            products[k].middleRows(dimension * Eigen::Index(copy), dimension);
+      }
+    }
+  }
+  return forces;
+}
+
+Eigen::MatrixXd InternalForces::Blocks(const Eigen::VectorXd& moduli,
+                                       const NodeGraph& graph) const {
+  const Eigen::MatrixXd rest =
+      Eigen::MatrixXd::Zero(mesh_.Dimension(), mesh_.Dimension());
+  std::vector<Eigen::MatrixXd> tangents;
+  for (std::size_t i = 0; i < parameters_.NumMaterials(); ++i) {
+    const Law& law = parameters_.LawOf(i);
+    tangents.push_back(law.Tangent(
+        moduli.segment(parameters_.FirstModulus(i), law.NumModuli()), rest,
+        mesh_.section.model));
+  }
+  return StiffnessBlocks(mesh_, graph, material_of_element_, tangents);
+}
+
+}  // namespace elastimate

@@ -1,0 +1,128 @@
+#include "elastimate/core/mechanics/law_products.h"
+
+#include "elastimate/core/mesh/shape_functions.h"
+
+namespace elastimate {
+namespace {
+
+template <ElementKind kKind>
+constexpr int kGradientSize =
+    ElementSizes<kKind>::kDimension* ElementSizes<kKind>::kDimension;
+
+template <ElementKind kKind>
+using TangentMatrix =
+    Eigen::Matrix<double, kGradientSize<kKind>, kGradientSize<kKind>>;
+
+// What the point of an element adds to one column of the products.
+template <ElementKind kKind>
+void AddAtPoint(const ElementPoint<kKind>& point,
+                const std::vector<Eigen::MatrixXd>& tangents, const int* nodes,
+                const Eigen::Matrix<double, ElementSizes<kKind>::kDimension,
+                                    ElementSizes<kKind>::kNodes>& u,
+                Eigen::Index column, std::vector<Eigen::MatrixXd>& products) {
+  constexpr int kDimension = ElementSizes<kKind>::kDimension;
+  using Gradient = Eigen::Matrix<double, kDimension, kDimension>;
+  const Gradient gradient = u * point.gradient.transpose();
+  const Eigen::Map<const Eigen::Matrix<double, kGradientSize<kKind>, 1>> h(
+      gradient.data());
+  for (std::size_t k = 0; k < tangents.size(); ++k) {
+    Gradient stress;
+    Eigen::Map<Eigen::Matrix<double, kGradientSize<kKind>, 1>>(stress.data()) =
+        point.volume *
+        (Eigen::Map<const TangentMatrix<kKind>>(tangents[k].data()) * h);
+    double* const values = products[k].col(column).data();
+    for (int i = 0; i < ElementSizes<kKind>::kNodes; ++i) {
+      Eigen::Map<Eigen::Matrix<double, kDimension, 1>>(
+          values + kDimension * Eigen::Index(nodes[i])) +=
+          stress * point.gradient.col(i);
+    }
+  }
+}
+
+template <ElementKind kKind>
+void AddOfKind(const Mesh& mesh, const std::vector<int>& material_of_element,
+               const std::vector<std::vector<Eigen::MatrixXd>>& tangents,
+               const Eigen::MatrixXd& displacement,
+               std::vector<Eigen::MatrixXd>& products) {
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    const int* const nodes = mesh.elements.col(e).data();
+    VisitPoints<kKind>(
+        mesh, e, StiffnessRule<kKind>(), [&](const auto& point, const auto&) {
+          for (Eigen::Index c = 0; c < displacement.cols(); ++c) {
+            AddAtPoint<kKind>(
+                point, tangents[material_of_element[e]], nodes,
+                GatherNodes<kKind>(mesh, e, displacement.col(c).data()), c,
+                products);
+          }
+        });
+  }
+}
+
+template <ElementKind kKind>
+void AddBlocksOfKind(const Mesh& mesh, const NodeGraph& graph,
+                     const std::vector<int>& material_of_element,
+                     const std::vector<Eigen::MatrixXd>& tangents,
+                     Eigen::MatrixXd& blocks) {
+  constexpr int kDimension = ElementSizes<kKind>::kDimension;
+  constexpr int kNodes = ElementSizes<kKind>::kNodes;
+  using Block = Eigen::Matrix<double, kDimension, kDimension>;
+  // K(i, j)_ab = sum_cd g_i,c C_(ac)(bd) g_j,d: by columns (c, d) of C, each a
+  // dimension x dimension block over (a, b).
+  const auto add = [&](const ElementPoint<kKind>& point,
+                       const Eigen::MatrixXd& tangent, Eigen::Index e) {
+    const int* const nodes = mesh.elements.col(e).data();
+    for (int j = 0; j < kNodes; ++j) {
+      Eigen::Matrix<double, kGradientSize<kKind>, kDimension> of_column =
+          Eigen::Matrix<double, kGradientSize<kKind>, kDimension>::Zero();
+      for (int d = 0; d < kDimension; ++d) {
+        of_column += point.volume * point.gradient(d, j) *
+                     tangent.middleCols<kDimension>(kDimension * d);
+      }
+      for (int i = 0; i < kNodes; ++i) {
+        if (nodes[i] < nodes[j]) {
+          continue;
+        }
+        Block block = Block::Zero();
+        for (int c = 0; c < kDimension; ++c) {
+          block += point.gradient(c, i) *
+                   of_column.template middleRows<kDimension>(kDimension * c);
+        }
+        blocks.middleCols<kDimension>(
+            kDimension * Eigen::Index(graph.element_pairs(
+                             NodeGraph::LocalPair(i, j), e))) += block;
+      }
+    }
+  };
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    VisitPoints<kKind>(mesh, e, StiffnessRule<kKind>(),
+                       [&](const auto& point, const auto&) {
+                         add(point, tangents[material_of_element[e]], e);
+                       });
+  }
+}
+
+}  // namespace
+
+void AddLawProducts(const Mesh& mesh,
+                    const std::vector<int>& material_of_element,
+                    const std::vector<std::vector<Eigen::MatrixXd>>& tangents,
+                    const Eigen::MatrixXd& displacement,
+                    std::vector<Eigen::MatrixXd>& products) {
+  VisitElementKind(mesh.kind, [&](auto kind) {
+    AddOfKind<kind>(mesh, material_of_element, tangents, displacement,
+                    products);
+  });
+}
+
+Eigen::MatrixXd StiffnessBlocks(const Mesh& mesh, const NodeGraph& graph,
+                                const std::vector<int>& material_of_element,
+                                const std::vector<Eigen::MatrixXd>& tangents) {
+  Eigen::MatrixXd blocks = Eigen::MatrixXd::Zero(
+      mesh.Dimension(), mesh.Dimension() * graph.NumPairs());
+  VisitElementKind(mesh.kind, [&](auto kind) {
+    AddBlocksOfKind<kind>(mesh, graph, material_of_element, tangents, blocks);
+  });
+  return blocks;
+}
+
+}  // namespace elastimate

@@ -1,0 +1,34 @@
+#ifndef ELASTIMATE_CORE_MECHANICS_LAW_PRODUCTS_H_
+#define ELASTIMATE_CORE_MECHANICS_LAW_PRODUCTS_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "elastimate/core/mesh/mesh.h"
+#include "elastimate/core/mesh/node_graph.h"
+
+namespace elastimate {
+
+/// Adds, for tangents C_k = dP_k / dH of small strains, of the material of each
+/// element, and each column u of `displacement`,
+///
+///   f_k,i = integral of (C_k : grad u) grad(N_i)
+///
+/// to products[k], num_dofs x n each.  `tangents[material][k]` is dimension^2 x
+/// dimension^2 over gradients in the order of their columns.  One element pass.
+void AddLawProducts(const Mesh& mesh,
+                    const std::vector<int>& material_of_element,
+                    const std::vector<std::vector<Eigen::MatrixXd>>& tangents,
+                    const Eigen::MatrixXd& displacement,
+                    std::vector<Eigen::MatrixXd>& products);
+
+/// The stiffness blocks K_ij of each pair of the graph, for one tangent C of
+/// each material: K_ij = integral of grad(N_i) . C . grad(N_j), side by side,
+/// dimension x (dimension num_pairs).  One element pass.
+Eigen::MatrixXd StiffnessBlocks(const Mesh& mesh, const NodeGraph& graph,
+                                const std::vector<int>& material_of_element,
+                                const std::vector<Eigen::MatrixXd>& tangents);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_MECHANICS_LAW_PRODUCTS_H_

@@ -1,0 +1,172 @@
+// What every law has to satisfy, in every section that it takes.
+
+#include "elastimate/core/materials/law.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "elastimate/core/materials/laws.h"
+#include "tests/core/random_values.h"
+
+namespace elastimate {
+namespace {
+
+using testing::RandomMatrix;
+
+struct LawInSection {
+  const Law* law;
+  SectionModel model;
+};
+
+std::vector<LawInSection> AllLawsInSections() {
+  std::vector<LawInSection> all;
+  for (const Law* const law : Laws()) {
+    for (const SectionModel model :
+         {SectionModel::kSolid, SectionModel::kPlaneStrain,
+          SectionModel::kPlaneStress}) {
+      if (law->Takes(model)) {
+        all.push_back({law, model});
+      }
+    }
+  }
+  return all;
+}
+
+class LawConformance : public ::testing::TestWithParam<LawInSection> {
+ protected:
+  const Law& law_ = *GetParam().law;
+  SectionModel model_ = GetParam().model;
+  Eigen::Index dimension_ = model_ == SectionModel::kSolid ? 3 : 2;
+  Eigen::MatrixXd gradient_ = 0.1 * RandomMatrix(dimension_, dimension_, 1);
+
+  // Parameters near the typical ones.
+  Eigen::VectorXd Parameters() const {
+    Eigen::VectorXd parameters(law_.Parameters().size());
+    double factor = 0.8;
+    for (Eigen::Index i = 0; i < parameters.size(); ++i) {
+      parameters(i) = law_.Parameters()[i].typical * factor;
+      factor += 0.05;
+    }
+    return parameters;
+  }
+  Eigen::VectorXd Moduli() const { return law_.Moduli(Parameters(), model_); }
+};
+
+TEST_P(LawConformance, StressIsTheDerivativeOfTheEnergy) {
+  constexpr double kStep = 1e-5;
+  const Eigen::MatrixXd stresses = law_.Stresses(gradient_, model_);
+  ASSERT_EQ(stresses.rows(), gradient_.size());
+  ASSERT_EQ(stresses.cols(), law_.NumModuli());
+  for (Eigen::Index i = 0; i < gradient_.size(); ++i) {
+    Eigen::MatrixXd more = gradient_;
+    Eigen::MatrixXd less = gradient_;
+    more(i) += kStep;
+    less(i) -= kStep;
+    const Eigen::VectorXd slope =
+        (law_.Energies(more, model_) - law_.Energies(less, model_)) /
+        (2 * kStep);
+    EXPECT_LT((slope.transpose() - stresses.row(i)).norm(),
+              1e-8 * stresses.norm());
+  }
+}
+
+TEST_P(LawConformance, TangentIsTheDerivativeOfTheStressAndSymmetric) {
+  constexpr double kStep = 1e-5;
+  const Eigen::VectorXd theta = Moduli();
+  const Eigen::MatrixXd tangent = law_.Tangent(theta, gradient_, model_);
+  for (Eigen::Index i = 0; i < gradient_.size(); ++i) {
+    Eigen::MatrixXd more = gradient_;
+    Eigen::MatrixXd less = gradient_;
+    more(i) += kStep;
+    less(i) -= kStep;
+    const Eigen::VectorXd slope =
+        (law_.Stresses(more, model_) - law_.Stresses(less, model_)) * theta /
+        (2 * kStep);
+    EXPECT_LT((slope - tangent.col(i)).norm(), 1e-8 * tangent.norm());
+  }
+  EXPECT_LT((tangent - tangent.transpose()).norm(), 1e-14 * tangent.norm());
+}
+
+TEST_P(LawConformance, RestsWithoutStressAndResistsEveryStrain) {
+  const Eigen::MatrixXd rest = Eigen::MatrixXd::Zero(dimension_, dimension_);
+  EXPECT_TRUE(law_.Stresses(rest, model_).isZero(0));
+  EXPECT_TRUE(law_.Energies(rest, model_).isZero(0));
+  const Eigen::MatrixXd tangent = law_.Tangent(Moduli(), rest, model_);
+  for (int seed = 1; seed <= 20; ++seed) {
+    const Eigen::MatrixXd h = RandomMatrix(dimension_, dimension_, seed);
+    const Eigen::MatrixXd e = (h + h.transpose()) / 2;
+    EXPECT_GT((e.reshaped().transpose() * tangent * e.reshaped()).value(), 0);
+  }
+}
+
+// To first order: an infinitesimal rotation, of the rest and on top of a
+// strain, does no work.
+TEST_P(LawConformance, DoesNotResistRotations) {
+  const Eigen::MatrixXd rest = Eigen::MatrixXd::Zero(dimension_, dimension_);
+  const Eigen::MatrixXd tangent = law_.Tangent(Moduli(), rest, model_);
+  const Eigen::MatrixXd h = RandomMatrix(dimension_, dimension_, 3);
+  const Eigen::MatrixXd rotation = h - h.transpose();
+  EXPECT_LT((tangent * rotation.reshaped()).norm(),
+            1e-14 * tangent.norm() * rotation.norm());
+}
+
+TEST_P(LawConformance, ChartGoesThereAndBack) {
+  const Eigen::VectorXd parameters = Parameters();
+  EXPECT_LT((law_.ParametersOf(Moduli(), model_) - parameters).norm(),
+            1e-12 * parameters.norm());
+}
+
+TEST_P(LawConformance, ChartHasItsJacobian) {
+  const Eigen::VectorXd parameters = Parameters();
+  const Eigen::MatrixXd jacobian = law_.ModuliJacobian(parameters, model_);
+  ASSERT_EQ(jacobian.rows(), law_.NumModuli());
+  for (Eigen::Index i = 0; i < parameters.size(); ++i) {
+    const double step = 1e-6;
+    Eigen::VectorXd more = parameters;
+    Eigen::VectorXd less = parameters;
+    more(i) += step;
+    less(i) -= step;
+    const Eigen::VectorXd slope =
+        (law_.Moduli(more, model_) - law_.Moduli(less, model_)) / (2 * step);
+    EXPECT_LT((slope - jacobian.col(i)).norm(), 1e-8 * jacobian.norm());
+  }
+}
+
+// Moduli that are k times as large make stresses k times as large, and leave
+// ratios as they are.
+TEST_P(LawConformance, ScalesWithTheUnitOfPressure) {
+  Eigen::VectorXd scaled = Parameters();
+  for (Eigen::Index i = 0; i < scaled.size(); ++i) {
+    scaled(i) *= law_.Parameters()[i].is_modulus ? 1e3 : 1;
+  }
+  const Eigen::VectorXd expected = 1e3 * Moduli();
+  EXPECT_LT((law_.Moduli(scaled, model_) - expected).norm(),
+            1e-12 * expected.norm());
+}
+
+TEST_P(LawConformance, TypicalValuesAreInTheRange) {
+  for (const LawParameter& parameter : law_.Parameters()) {
+    EXPECT_LT(parameter.lower, parameter.typical) << parameter.name;
+    EXPECT_GT(parameter.upper, parameter.typical) << parameter.name;
+    EXPECT_TRUE(!parameter.is_modulus || parameter.lower > 0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Laws, LawConformance, ::testing::ValuesIn(AllLawsInSections()),
+    [](const auto& info) {
+      const std::string section(SectionModelName(info.param.model));
+      return std::string(info.param.law->Name()) + "_" + section;
+    });
+
+TEST(Laws, AreFoundByTheirNames) {
+  for (const Law* const law : Laws()) {
+    EXPECT_EQ(FindLaw(law->Name()), law);
+  }
+  EXPECT_EQ(FindLaw("rubber"), nullptr);
+}
+
+}  // namespace
+}  // namespace elastimate

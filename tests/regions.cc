@@ -1,0 +1,70 @@
+#include "tests/regions.h"
+
+#include "elastimate/core/scene/loads.h"
+#include "tests/dense_reference.h"
+
+namespace elastimate::testing {
+
+Scene TwoRegionScene(const KindOfSection& parameter, int cells) {
+  Scene scene = SceneOfKind(parameter, cells);
+  Mesh& mesh = scene.mesh;
+  const double middle =
+      (mesh.nodes.row(0).minCoeff() + mesh.nodes.row(0).maxCoeff()) / 2;
+  mesh.regions.resize(mesh.NumElements());
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    const double x = mesh.nodes(0, mesh.elements.col(e)).mean();
+    mesh.regions(e) = x < middle ? 7 : 3;
+  }
+  scene.materials = IsotropicMaterialOfEachRegion(mesh);
+  return scene;
+}
+
+Eigen::MatrixXd TextbookStiffness(
+    const Scene& scene, const std::vector<IsotropicElasticity>& elasticities) {
+  Eigen::MatrixXd stiffness =
+      Eigen::MatrixXd::Zero(scene.mesh.NumDofs(), scene.mesh.NumDofs());
+  for (std::size_t i = 0; i < elasticities.size(); ++i) {
+    std::vector<Eigen::Index> elements;
+    for (Eigen::Index e = 0; e < scene.mesh.NumElements(); ++e) {
+      if (scene.mesh.regions(e) == scene.materials[i].regions[0]) {
+        elements.push_back(e);
+      }
+    }
+    Mesh part = scene.mesh;
+    part.elements = scene.mesh.elements(Eigen::all, elements);
+    stiffness += TextbookStiffness(
+        part, HookeMatrixOf(elasticities[i], part.section.model));
+  }
+  return stiffness;
+}
+
+Eigen::MatrixXd SolveByTextbook(
+    const Scene& scene, const std::vector<IsotropicElasticity>& elasticities) {
+  const Eigen::MatrixXd stiffness = TextbookStiffness(scene, elasticities);
+  std::vector<Eigen::Index> free;
+  Eigen::VectorXd given = Eigen::VectorXd::Zero(scene.mesh.NumDofs());
+  for (Eigen::Index dof = 0; dof < scene.mesh.NumDofs(); ++dof) {
+    if (scene.supports.held.data()[dof]) {
+      given(dof) = scene.supports.displacement.data()[dof];
+    } else {
+      free.push_back(dof);
+    }
+  }
+  Eigen::MatrixXd u = given.replicate(1, Eigen::Index(scene.load_cases.size()));
+  const Eigen::MatrixXd force = AssembleLoadCases(scene) - stiffness * u;
+  for (Eigen::Index k = 0; k < u.cols(); ++k) {
+    u.col(k)(free) = SolveDensely(stiffness(free, free), force.col(k)(free));
+  }
+  return u;
+}
+
+void MeasureByTextbook(const std::vector<IsotropicElasticity>& elasticities,
+                       Scene& scene) {
+  const Eigen::MatrixXd u = SolveByTextbook(scene, elasticities);
+  for (Eigen::Index k = 0; k < u.cols(); ++k) {
+    scene.load_cases[k].displacement =
+        u.col(k).reshaped(scene.mesh.Dimension(), scene.mesh.NumNodes());
+  }
+}
+
+}  // namespace elastimate::testing

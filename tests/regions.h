@@ -1,0 +1,34 @@
+#ifndef ELASTIMATE_TESTS_REGIONS_H_
+#define ELASTIMATE_TESTS_REGIONS_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/scene/scene.h"
+#include "tests/element_kinds.h"
+
+namespace elastimate::testing {
+
+/// SceneOfKind with region 7 where the first coordinate of an element's centre
+/// is below the middle, 3 elsewhere, and an isotropic material in each: that of
+/// region 3 first.
+Scene TwoRegionScene(const KindOfSection& parameter, int cells = 3);
+
+/// TextbookStiffness of the isotropic materials of a scene, one of
+/// `elasticities` for each.
+Eigen::MatrixXd TextbookStiffness(
+    const Scene& scene, const std::vector<IsotropicElasticity>& elasticities);
+
+/// A dense solution with that, with held nodes where they are held: num_dofs x
+/// num_load_cases.
+Eigen::MatrixXd SolveByTextbook(
+    const Scene& scene, const std::vector<IsotropicElasticity>& elasticities);
+
+/// Measures the scene by it.
+void MeasureByTextbook(const std::vector<IsotropicElasticity>& elasticities,
+                       Scene& scene);
+
+}  // namespace elastimate::testing
+
+#endif  // ELASTIMATE_TESTS_REGIONS_H_
