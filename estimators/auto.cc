@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/estimators/displacement_fit/iterative_fe.h"
 #include "elastimate/estimators/displacement_fit/observed_displacements.h"
 #include "elastimate/estimators/displacement_fit/reduced_fe.h"
 #include "elastimate/estimators/force_balance/closed_form.h"
@@ -11,6 +12,7 @@
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/limits.h"
+#include "elastimate/estimators/interface/parameter_judge.h"
 #include "elastimate/estimators/statistics/model_mismatch.h"
 
 namespace elastimate {
@@ -46,8 +48,25 @@ std::string WhyNotWithinTolerance(const EstimatorOptions& options,
   return "";
 }
 
+// The same of several materials.
+std::string WhyParametersNotWithinTolerance(const Estimate& estimate) {
+  for (const ParameterEstimate& parameter : estimate.parameters) {
+    const double error = parameter.standard_error.value_or(0) /
+                         (parameter.is_modulus ? parameter.value : 1);
+    const double tolerance = parameter.is_modulus
+                                 ? kLimits.notable_youngs_modulus_error
+                                 : kLimits.notable_poisson_ratio_error;
+    if (error > tolerance) {
+      return "the standard error of " + NameOfParameter(parameter) + " is " +
+             (parameter.is_modulus ? TwoDigits(100 * error) + " %"
+                                   : TwoDigits(error));
+    }
+  }
+  return "";
+}
+
 // For a rung whose errors may come from its method; empty when it will do.
-std::string WhyNotEnough(const EstimatorOptions& options,
+std::string WhyNotEnough(const Scene& scene, const EstimatorOptions& options,
                          const Estimate& estimate) {
   if (!estimate.IsUsable()) {
     return "not usable: " + estimate.message;
@@ -58,7 +77,9 @@ std::string WhyNotEnough(const EstimatorOptions& options,
       return "it warns: " + Sentence(finding);
     }
   }
-  return WhyNotWithinTolerance(options, estimate);
+  return IsOneIsotropicMaterial(scene.materials)
+             ? WhyNotWithinTolerance(options, estimate)
+             : WhyParametersNotWithinTolerance(estimate);
 }
 
 // Whether virtual-fields contradicts the model of the fit.
@@ -235,7 +256,8 @@ std::string_view Auto::Name() const { return "auto"; }
 
 std::string_view Auto::Description() const {
   return "climbs from closed-form over virtual-fields to reduced-fe and "
-         "quadratic elements, as far as the scene needs";
+         "quadratic elements, as far as the scene needs (of several materials: "
+         "to iterative-fe)";
 }
 
 Capabilities Auto::WhatItTakes() const {
@@ -243,13 +265,17 @@ Capabilities Auto::WhatItTakes() const {
   capabilities.takes_bounds = true;
   capabilities.takes_losses = true;
   capabilities.takes_degree = true;
+  capabilities.takes_materials = true;
   return capabilities;
 }
 
 std::string Auto::WhyUnsupported(const Scene& scene,
                                  const EstimatorOptions& options) const {
-  std::string why_not =
-      ReducedFe().WhyUnsupported(scene, WithoutDegree(options));
+  const EstimatorOptions without_degree = WithoutDegree(options);
+  const std::string why_not =
+      IsOneIsotropicMaterial(scene.materials)
+          ? ReducedFe().WhyUnsupported(scene, without_degree)
+          : IterativeFe().WhyUnsupported(scene, without_degree);
   if (why_not.empty() ||
       VirtualFields().WhyUnsupported(scene, options).empty()) {
     return "";
@@ -262,15 +288,21 @@ Estimate Auto::DoRun(const Scene& scene,
   const EstimatorOptions without_degree = WithoutDegree(options);
   Ladder ladder;
   if (ladder.Climb(ClosedForm(), scene, without_degree) &&
-      StopsHere(WhyNotEnough(options, ladder.Last()), ladder)) {
+      StopsHere(WhyNotEnough(scene, options, ladder.Last()), ladder)) {
     return ladder.Finish();
   }
   std::optional<Estimate> virtual_fields;
   if (ladder.Climb(VirtualFields(), scene, options)) {
     virtual_fields = ladder.Last();
-    if (StopsHere(WhyNotEnough(options, *virtual_fields), ladder)) {
+    if (StopsHere(WhyNotEnough(scene, options, *virtual_fields), ladder)) {
       return ladder.Finish();
     }
+  }
+  if (!IsOneIsotropicMaterial(scene.materials)) {
+    if (ladder.Climb(IterativeFe(), scene, without_degree)) {
+      ladder.Decide("stopped: there is no rung above");
+    }
+    return ladder.Finish();
   }
   if (!ladder.Climb(ReducedFe(), scene, without_degree)) {
     return ladder.Finish();

@@ -20,12 +20,12 @@ bool Equilibrium::Solve(const Eigen::VectorXd& moduli) {
   if (!solver_.FactorizeBlocks(forces_.Blocks(moduli, solver_.Graph()))) {
     return false;
   }
-  Eigen::MatrixXd load = load_;
+  support_response_ = held_displacement_;
   if (held_forces_.size() > 0) {
-    load.colwise() -= Eigen::VectorXd(held_forces_ * moduli);
+    support_response_ -= solver_.Solve(held_forces_ * moduli);
   }
-  displacement_ = solver_.Solve(load);
-  displacement_.colwise() += held_displacement_;
+  displacement_ = solver_.Solve(load_);
+  displacement_.colwise() += support_response_;
   return displacement_.allFinite();
 }
 

@@ -23,12 +23,17 @@ class Equilibrium {
   Equilibrium(const Scene& scene, SolverKind solver);
 
   /// Solves for u at these moduli: an element pass, a factorisation and a solve
-  /// for each load case.  False when the stiffness is not positive definite to
-  /// working precision; there is no u then.
+  /// for each load case (one more with held displacements).  False when the
+  /// stiffness is not positive definite to working precision; there is no u
+  /// then.
   bool Solve(const Eigen::VectorXd& moduli);
 
   /// u of all load cases, num_dofs x num_load_cases [length].
   const Eigen::MatrixXd& Displacement() const { return displacement_; }
+
+  /// The part of u that the held displacements cause, which does not change
+  /// when all moduli are multiplied by a factor: num_dofs values.
+  const Eigen::VectorXd& SupportResponse() const { return support_response_; }
 
   /// du / dp for directions d theta / d p (num_moduli x n): one num_dofs x
   /// n matrix for each load case, side by side.  A pass and n solves for each
@@ -49,6 +54,7 @@ class Equilibrium {
   /// f_k of the held displacements alone; empty where they are zero.
   Eigen::MatrixXd held_forces_;
   Eigen::MatrixXd displacement_;
+  Eigen::VectorXd support_response_;
   int element_passes_ = 0;
 };
 

@@ -15,37 +15,63 @@ std::string NameOf(std::size_t material) {
   return "material " + std::to_string(material + 1);
 }
 
-void ValidateKnown(const Law& law, const std::vector<KnownParameter>& known,
-                   const std::string& name) {
+const LawParameter& FindParameter(const Law& law, const std::string& name,
+                                  const std::string& material) {
+  std::string all;
+  for (const LawParameter& candidate : law.Parameters()) {
+    if (candidate.name == name) {
+      return candidate;
+    }
+    all += (all.empty() ? "" : ", ") + std::string(candidate.name);
+  }
+  throw std::invalid_argument(material + " gives \"" + name +
+                              "\", but the law " + std::string(law.Name()) +
+                              " has " + all + " only; correct the name");
+}
+
+void RequireInRange(const LawParameter& parameter, double value,
+                    const std::string& what) {
+  if (value >= parameter.lower && value <= parameter.upper) {
+    return;
+  }
+  std::ostringstream text;
+  text << what << parameter.name << " = " << value << "; it must be ";
+  if (parameter.is_modulus) {
+    text << "positive and finite";
+  } else {
+    text << "between " << parameter.lower << " and " << parameter.upper;
+  }
+  throw std::invalid_argument(text.str());
+}
+
+void ValidateWhatIsGiven(const Law& law, const Material& material,
+                         const std::string& name) {
   std::set<std::string> names;
-  for (const KnownParameter& parameter : known) {
-    const LawParameter* found = nullptr;
-    std::string all;
-    for (const LawParameter& candidate : law.Parameters()) {
-      all += (all.empty() ? "" : ", ") + std::string(candidate.name);
-      if (candidate.name == parameter.name) {
-        found = &candidate;
+  const auto require_once = [&](const std::string& parameter) {
+    if (!names.insert(parameter).second) {
+      throw std::invalid_argument(
+          name + " gives " + parameter +
+          " twice; give it once, as known or by bounds");
+    }
+  };
+  for (const KnownParameter& known : material.known) {
+    const LawParameter& parameter = FindParameter(law, known.name, name);
+    require_once(known.name);
+    RequireInRange(parameter, known.value, name + " gives ");
+  }
+  for (const BoundsOfParameter& bounded : material.bounds) {
+    const LawParameter& parameter = FindParameter(law, bounded.name, name);
+    require_once(bounded.name);
+    const auto& [lower, upper] = bounded.bounds;
+    for (const std::optional<double>& bound : {lower, upper}) {
+      if (bound) {
+        RequireInRange(parameter, *bound, name + " gives the bound ");
       }
     }
-    if (found == nullptr) {
-      throw std::invalid_argument(name + " gives \"" + parameter.name +
-                                  "\", but the law " + std::string(law.Name()) +
-                                  " has " + all + " only; correct the name");
-    }
-    if (!names.insert(parameter.name).second) {
-      throw std::invalid_argument(name + " gives " + parameter.name +
-                                  " twice; give it once");
-    }
-    if (!(parameter.value >= found->lower && parameter.value <= found->upper)) {
-      std::ostringstream text;
-      text << name << " gives " << parameter.name << " = " << parameter.value
-           << "; it must be ";
-      if (found->is_modulus) {
-        text << "positive and finite";
-      } else {
-        text << "between " << found->lower << " and " << found->upper;
-      }
-      throw std::invalid_argument(text.str());
+    if (lower && upper && !(*lower < *upper)) {
+      throw std::invalid_argument(name + " gives crossed bounds on " +
+                                  bounded.name +
+                                  "; the first must be the smaller one");
     }
   }
 }
@@ -127,7 +153,7 @@ void ValidateMaterials(const std::vector<Material>& materials,
           std::string(SectionModelName(mesh.section.model)) +
           "; give another law");
     }
-    ValidateKnown(*law, materials[i].known, NameOf(i));
+    ValidateWhatIsGiven(*law, materials[i], NameOf(i));
   }
   ValidateRegions(materials, mesh);
 }
@@ -135,14 +161,14 @@ void ValidateMaterials(const std::vector<Material>& materials,
 bool IsOneIsotropicMaterial(const std::vector<Material>& materials) {
   return materials.empty() ||
          (materials.size() == 1 && materials[0].law == IsotropicLaw::kName &&
-          materials[0].known.empty());
+          materials[0].known.empty() && materials[0].bounds.empty());
 }
 
 std::vector<Material> IsotropicMaterialOfEachRegion(const Mesh& mesh) {
   std::vector<Material> materials;
   for (const int region :
        std::set<int>(mesh.regions.begin(), mesh.regions.end())) {
-    materials.push_back({std::string(IsotropicLaw::kName), {region}, {}});
+    materials.push_back({std::string(IsotropicLaw::kName), {region}, {}, {}});
   }
   return materials;
 }

@@ -7,8 +7,8 @@
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/mechanics/strain_energy.h"
+#include "elastimate/estimators/displacement_fit/residual_statistics.h"
 #include "elastimate/estimators/interface/limits.h"
-#include "elastimate/estimators/interface/statistics.h"
 #include "elastimate/estimators/statistics/errors_on_bound.h"
 
 namespace elastimate {
@@ -52,92 +52,6 @@ double IdentifiabilityAngle(const Eigen::Matrix2d& gram) {
   const double cosine_product = std::abs(gram(0, 1));
   const double sine_product = std::sqrt(std::max(0.0, gram.determinant()));
   return std::atan2(sine_product, cosine_product);
-}
-
-// Variance of the normalised residuals, and whether it is that of the noise.
-struct ResidualVariance {
-  double variance;
-  bool is_explained_by_given_noise;
-};
-
-// From the residuals themselves, or as given when they do not contradict it.
-ResidualVariance EstimateVariance(const ObservedDisplacements& observed,
-                                  const Scene& scene, double square_sum,
-                                  Eigen::Index num_free, Evidence& evidence,
-                                  Estimate& estimate) {
-  const Eigen::Index redundancy = observed.Size() - num_free;
-  const double norm_squared = observed.Norm() * observed.Norm();
-  const std::optional<double>& given = scene.load_cases.front().noise_sd;
-  const double m = static_cast<double>(std::max<Eigen::Index>(redundancy, 1));
-  const double variance = square_sum / m;
-  estimate.noise_sd = given ? *given : std::sqrt(variance) * observed.Norm();
-  if (!given) {
-    // Student's t of m degrees of freedom has the variance m / (m - 2).
-    return ResidualVariance{variance * m / (m - 2), false};
-  }
-  // chi^2 has mean m and variance 2 m.
-  const double ratio = variance * norm_squared;
-  if (redundancy > 0 &&
-      ratio > 1 + kLimits.significant_score * std::sqrt(2 / m)) {
-    evidence.above_noise = {ResidualKind::kDisplacement, std::sqrt(ratio)};
-    return ResidualVariance{variance, false};
-  }
-  return ResidualVariance{1 / norm_squared, true};
-}
-
-// The square sum of the part of the residual that neighbours share; zero when
-// independent noise explains what they share.
-double SmoothSquareSum(const NodeGraph& graph,
-                       const ObservedDisplacements& observed,
-                       const Eigen::VectorXd& residual, Estimate& estimate) {
-  const std::optional<NeighbourCorrelation> neighbours =
-      CorrelateNeighbours(graph, observed, residual);
-  if (!neighbours) {
-    return 0;
-  }
-  estimate.residual_correlation =
-      std::clamp(neighbours->correlation, -1.0, 1.0);
-  estimate.is_model_in_doubt =
-      neighbours->standard_score > kLimits.significant_score;
-  return estimate.is_model_in_doubt
-             ? *estimate.residual_correlation * residual.squaredNorm()
-             : 0;
-}
-
-// The change of (ln E, nu) from the least-squares fit to a robust one, in the
-// linear model u + S delta: the weighted least squares of Huber's loss.
-Eigen::Vector2d RobustChange(const ObservedDisplacements& observed,
-                             const DisplacementFit& fit,
-                             const std::vector<Eigen::Index>& free) {
-  constexpr int kReweightings = 50;
-  Eigen::Vector2d change = Eigen::Vector2d::Zero();
-  for (int i = 0; i < kReweightings; ++i) {
-    DisplacementFit moved = fit;
-    moved.residual += fit.sensitivities * change;
-    const NodeLosses losses(Loss::kHuber,
-                            RobustStandardDeviation(moved.residual));
-    Eigen::Matrix2d gram = Eigen::Matrix2d::Zero();
-    Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
-    for (const ObservedDisplacements::Node& node : observed.Nodes()) {
-      const auto r = moved.residual.segment(node.first, node.count);
-      const auto s = fit.sensitivities.middleRows(node.first, node.count);
-      const double weight = losses.Evaluate(node.count, r.squaredNorm())[1];
-      gram += weight * s.transpose() * s;
-      gradient += weight * s.transpose() * r;
-    }
-    change(free) -= SolveLeastSquares(gram(free, free), gradient(free));
-  }
-  return change;
-}
-
-// Whether some residuals are much larger than the bulk of them.
-bool HasHeavyTails(const Eigen::VectorXd& residual) {
-  const double n = static_cast<double>(residual.size());
-  // The standard deviation of 1.4826 MAD is 1.17 / sqrt(n) of itself.
-  const double threshold =
-      kLimits.heavy_tails + kLimits.significant_score * 1.17 / std::sqrt(n);
-  return residual.norm() / std::sqrt(n) >
-         threshold * RobustStandardDeviation(residual);
 }
 
 // A fit and what follows from it.  Covariances are of (ln E, nu).
@@ -237,7 +151,8 @@ class FitDescription {
     if (losses_.IsLeastSquares() && !free_.empty()) {
       Eigen::Vector2d change = Eigen::Vector2d::Zero();
       if (HasHeavyTails(fit_.residual)) {
-        change = RobustChange(observed_, fit_, free_);
+        change(free_) = RobustChange(observed_, fit_.residual,
+                                     fit_.sensitivities(Eigen::all, free_));
         evidence_.outlier_change = change;
       }
       const Eigen::Matrix2d of_outliers = change * change.transpose();
@@ -346,52 +261,6 @@ class FitDescription {
 };
 
 }  // namespace
-
-std::optional<NeighbourCorrelation> CorrelateNeighbours(
-    const NodeGraph& graph, const ObservedDisplacements& observed,
-    const Eigen::VectorXd& residual) {
-  const double square_sum = residual.squaredNorm();
-  const Eigen::Index num_nodes = Eigen::Index(graph.start.size()) - 1;
-  double product_sum = 0;
-  Eigen::Index num_products = 0;
-  // Row of each component of each node in the present load case, or -1.
-  Eigen::Matrix<Eigen::Index, Eigen::Dynamic, Eigen::Dynamic> rows(
-      observed.Dimension(), num_nodes);
-  const auto& nodes = observed.Nodes();
-  for (auto begin = nodes.begin(); begin != nodes.end();) {
-    const auto end = std::find_if(begin, nodes.end(), [&](const auto& node) {
-      return node.load_case != begin->load_case;
-    });
-    rows.setConstant(-1);
-    for (auto node = begin; node != end; ++node) {
-      for (int k = 0; k < node->count; ++k) {
-        const Eigen::Index row = node->first + k;
-        rows(observed.Component(row), node->node) = row;
-      }
-    }
-    for (Eigen::Index node = 0; node < num_nodes; ++node) {
-      for (Eigen::Index k = graph.start[node] + 1; k < graph.start[node + 1];
-           ++k) {
-        for (int i = 0; i < observed.Dimension(); ++i) {
-          const Eigen::Index row = rows(i, node);
-          const Eigen::Index other = rows(i, graph.row[k]);
-          if (row >= 0 && other >= 0) {
-            product_sum += residual(row) * residual(other);
-            ++num_products;
-          }
-        }
-      }
-    }
-    begin = end;
-  }
-  if (num_products == 0 || square_sum == 0) {
-    return std::nullopt;
-  }
-  const double n = static_cast<double>(num_products);
-  const double variance = square_sum / static_cast<double>(residual.size());
-  const double correlation = product_sum / (n * variance);
-  return NeighbourCorrelation{correlation, correlation * std::sqrt(n)};
-}
 
 std::optional<double> DescribeDisplacementFit(
     const Scene& scene, const NodeGraph& graph, const EstimatorOptions& options,

@@ -24,21 +24,6 @@ struct DisplacementFit {
   Eigen::Matrix<double, Eigen::Dynamic, 2> sensitivities;
 };
 
-/// How alike the residuals of neighbouring nodes are [Moran 1950].
-struct NeighbourCorrelation {
-  /// Mean product of the residuals of two nodes that share an element, over
-  /// the mean square: near 0 for independent noise, near 1 for a smooth field.
-  double correlation;
-  /// `correlation` over its standard deviation for independent noise.
-  double standard_score;
-};
-
-/// Empty when no two neighbours were observed, or all residuals are zero.
-/// `graph` is that of the mesh.  Cost: O(num_pairs) time for each load case.
-std::optional<NeighbourCorrelation> CorrelateNeighbours(
-    const NodeGraph& graph, const ObservedDisplacements& observed,
-    const Eigen::VectorXd& residual);
-
 /// Describes a least-squares (or, with `losses`, robust) fit of the
 /// displacements: fills in covariance, noise, residual statistics,
 /// discretisation error and identifiability of `estimate`, whose elasticity is

@@ -17,6 +17,7 @@
 #include "elastimate/core/equilibrium/forward_model.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
+#include "elastimate/estimators/displacement_fit/material_fit.h"
 #include "elastimate/estimators/displacement_fit/node_losses.h"
 #include "elastimate/estimators/displacement_fit/observed_displacements.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
@@ -670,11 +671,15 @@ Capabilities IterativeFe::WhatItTakes() const {
   capabilities.needs_supports = true;
   capabilities.takes_bounds = true;
   capabilities.takes_losses = true;
+  capabilities.takes_materials = true;
   return capabilities;
 }
 
 Estimate IterativeFe::DoRun(const Scene& scene,
                             const EstimatorOptions& options) const {
+  if (!IsOneIsotropicMaterial(scene.materials)) {
+    return FitMaterials(scene, options);
+  }
   Estimate estimate;
   Evidence evidence;
   Stopwatch stopwatch;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "elastimate/estimators/force_balance/force_regression.h"
 #include "elastimate/estimators/force_balance/force_residual.h"
 #include "elastimate/estimators/force_balance/virtual_work_check.h"
 #include "elastimate/estimators/interface/judge.h"
@@ -152,11 +153,15 @@ Capabilities Bounded::WhatItTakes() const {
   Capabilities capabilities;
   capabilities.needs_all_displacements = true;
   capabilities.takes_bounds = true;
+  capabilities.takes_materials = true;
   return capabilities;
 }
 
 Estimate Bounded::DoRun(const Scene& scene,
                         const EstimatorOptions& options) const {
+  if (!IsOneIsotropicMaterial(scene.materials)) {
+    return RegressForces(scene, options, true);
+  }
   const ForceResidual residual(scene);
   Estimate estimate;
   Evidence evidence;

@@ -1,5 +1,6 @@
 #include "elastimate/estimators/force_balance/closed_form.h"
 
+#include "elastimate/estimators/force_balance/force_regression.h"
 #include "elastimate/estimators/force_balance/force_residual.h"
 #include "elastimate/estimators/force_balance/virtual_work_check.h"
 #include "elastimate/estimators/interface/judge.h"
@@ -17,11 +18,15 @@ std::string_view ClosedForm::Description() const {
 Capabilities ClosedForm::WhatItTakes() const {
   Capabilities capabilities;
   capabilities.needs_all_displacements = true;
+  capabilities.takes_materials = true;
   return capabilities;
 }
 
 Estimate ClosedForm::DoRun(const Scene& scene,
                            const EstimatorOptions& options) const {
+  if (!IsOneIsotropicMaterial(scene.materials)) {
+    return RegressForces(scene, options, false);
+  }
   const ForceResidual residual(scene);
   Estimate estimate;
   Evidence evidence;

@@ -415,7 +415,7 @@ NoiseBias MeasureNoiseBias(const ForceResidual& residual, const Bounds& bounds,
                              bias.poisson_ratio);
   const Eigen::Vector2d scaled(elasticity.youngs_modulus * both(0), both(1));
   estimate.covariance += scaled * scaled.transpose();
-  estimate.error_budget.bias = {std::abs(both(0)), std::abs(both(1))};
+  estimate.error_budget.bias = both.cwiseAbs();
   return bias;
 }
 

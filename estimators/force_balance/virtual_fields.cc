@@ -10,6 +10,7 @@
 #include "elastimate/estimators/force_balance/force_residual.h"
 #include "elastimate/estimators/force_balance/monomials.h"
 #include "elastimate/estimators/force_balance/virtual_work.h"
+#include "elastimate/estimators/force_balance/virtual_work_regression.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/stopwatch.h"
@@ -377,11 +378,15 @@ Capabilities VirtualFields::WhatItTakes() const {
   capabilities.needs_all_displacements = true;
   capabilities.takes_bounds = true;
   capabilities.takes_degree = true;
+  capabilities.takes_materials = true;
   return capabilities;
 }
 
 Estimate VirtualFields::DoRun(const Scene& scene,
                               const EstimatorOptions& options) const {
+  if (!IsOneIsotropicMaterial(scene.materials)) {
+    return BalanceVirtualWork(scene, options);
+  }
   Estimate estimate;
   Evidence evidence;
   Stopwatch stopwatch;

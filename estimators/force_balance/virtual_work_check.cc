@@ -22,10 +22,8 @@ WorkCheck CheckByVirtualWork(const Scene& scene,
   }
   ParameterErrors& model = estimate.error_budget.model;
   if (!check.is_model_in_doubt) {
-    model.youngs_modulus = 0;
-    if (!options.known_poisson_ratio) {
-      model.poisson_ratio = 0;
-    }
+    model = Eigen::Vector2d(
+        0, options.known_poisson_ratio ? Estimate::kUnknown : 0);
     return WorkCheck::kIsNoise;
   }
   estimate.is_model_in_doubt = true;

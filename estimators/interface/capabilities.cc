@@ -45,6 +45,33 @@ std::string WhyNotSupported(const Scene& scene) {
   return why;
 }
 
+std::string WhyNotTheseMaterials(const Capabilities& capabilities,
+                                 const Scene& scene,
+                                 const EstimatorOptions& options) {
+  if (IsOneIsotropicMaterial(scene.materials)) {
+    return "";
+  }
+  if (!capabilities.takes_materials) {
+    return "it takes one isotropic material of which nothing is known; use "
+           "iterative-fe or virtual-fields";
+  }
+  if (options.loss != Loss::kNone) {
+    return "a loss function is for one isotropic material; leave it out";
+  }
+  if (options.known_poisson_ratio) {
+    return "Poisson's ratio is given for one material, but the scene says what "
+           "its materials are; give it there";
+  }
+  bool has_bounds = false;
+  for (const Material& material : scene.materials) {
+    has_bounds = has_bounds || !material.bounds.empty();
+  }
+  return has_bounds && !capabilities.takes_bounds
+             ? "it cannot keep the bounds of a material; use bounded or "
+               "iterative-fe"
+             : "";
+}
+
 }  // namespace
 
 std::string WhyUnsupported(const Capabilities& capabilities, const Scene& scene,
@@ -59,8 +86,8 @@ std::string WhyUnsupported(const Capabilities& capabilities, const Scene& scene,
   if (!capabilities.takes_degree && options.virtual_field_degree) {
     return "it has no virtual fields to take a degree; use virtual-fields";
   }
-  std::string why;
-  if (capabilities.needs_all_displacements) {
+  std::string why = WhyNotTheseMaterials(capabilities, scene, options);
+  if (why.empty() && capabilities.needs_all_displacements) {
     why = WhyNotAllDisplacements(scene);
   }
   if (why.empty() && capabilities.needs_supports) {

@@ -20,6 +20,8 @@ struct Capabilities {
   bool takes_losses = false;
   /// It has virtual fields, of a degree that may be chosen.
   bool takes_degree = false;
+  /// Materials other than one isotropic one of which nothing is known.
+  bool takes_materials = false;
 };
 
 /// Why an estimator of these capabilities cannot serve the scene with the

@@ -6,12 +6,9 @@ namespace elastimate {
 
 ParameterErrors StandardErrors(const Eigen::Matrix2d& covariance,
                                const IsotropicElasticity& elasticity) {
-  const auto root = [](double variance, double scale) {
-    const double error = std::sqrt(variance) / scale;
-    return std::isfinite(error) ? std::optional<double>(error) : std::nullopt;
-  };
-  return {root(covariance(0, 0), elasticity.youngs_modulus),
-          root(covariance(1, 1), 1)};
+  return Eigen::Vector2d(
+      std::sqrt(covariance(0, 0)) / elasticity.youngs_modulus,
+      std::sqrt(covariance(1, 1)));
 }
 
 }  // namespace elastimate

@@ -2,18 +2,16 @@
 #define ELASTIMATE_ESTIMATORS_INTERFACE_ERROR_BUDGET_H_
 
 #include <Eigen/Core>
-#include <optional>
 
 #include "elastimate/core/materials/elasticity.h"
 
 namespace elastimate {
 
-/// What one cause does to each parameter, as one standard deviation or, for
-/// causes that do not vary, as a size.  Empty where unknown.
-struct ParameterErrors {
-  std::optional<double> youngs_modulus;  ///< Relative.
-  std::optional<double> poisson_ratio;   ///< Absolute.
-};
+/// What one cause does to each parameter, in the order of Estimate::parameters,
+/// as one standard deviation or, for causes that do not vary, as a size:
+/// relative for moduli, absolute for ratios.  Not a number where unknown; empty
+/// where nothing is known.
+using ParameterErrors = Eigen::VectorXd;
 
 /// The errors of an estimate by their cause; what a method does not look at is
 /// unknown, and what it looked at and did not find is zero.
@@ -29,8 +27,7 @@ struct ErrorBudget {
   ParameterErrors law;
 };
 
-/// The roots of the diagonal of a covariance of (E, nu) at this estimate; empty
-/// where it is not a number.
+/// The roots of the diagonal of a covariance of (E, nu) at this estimate.
 ParameterErrors StandardErrors(const Eigen::Matrix2d& covariance,
                                const IsotropicElasticity& elasticity);
 

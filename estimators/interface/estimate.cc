@@ -63,7 +63,12 @@ void Estimate::Fail(const Finding& finding) {
   status = StatusOf(finding.code);
   message = Sentence(finding);
   covariance.setConstant(kUnknown);
-  error_budget.noise = {};
+  parameter_covariance.setConstant(kUnknown);
+  for (ParameterEstimate& parameter : parameters) {
+    parameter.standard_error.reset();
+    parameter.interval.reset();
+  }
+  error_budget.noise.resize(0);
   why_no_standard_error = "the estimate is not usable";
 }
 

@@ -26,6 +26,20 @@ struct Interval {
   double upper;
 };
 
+/// What is said of one parameter of a material.
+struct ParameterEstimate {
+  std::string name;          ///< As its law calls it, "youngs_modulus".
+  std::string symbol;        ///< As people write it, "E".
+  std::vector<int> regions;  ///< Of its material; empty: the whole mesh.
+  bool is_modulus = false;   ///< [pressure], else a ratio [1].
+  bool is_known = false;     ///< Given, not estimated.
+  double value = std::numeric_limits<double>::quiet_NaN();
+  /// Empty when unknown, as for a parameter that is given.
+  std::optional<double> standard_error;
+  /// Where it lies with a probability of 95 %.
+  std::optional<Interval> interval;
+};
+
 /// The disagreement of two estimators, one of which leans on the model less.
 struct ModelMismatch {
   double statistic;  ///< chi^2 with 2 degrees of freedom when the model holds.
@@ -61,10 +75,18 @@ struct Estimate {
                                     "the estimator was not run",
                                     "run it on a scene"}};
 
-  /// E [pressure] and nu [-]; NaN where there is no number at all.
+  /// The parameters of the materials of the scene, in their order.
+  std::vector<ParameterEstimate> parameters;
+  /// Of `parameters`, square.  NaN in the rows and columns of what is not
+  /// estimated, or unknown.
+  Eigen::MatrixXd parameter_covariance;
+
+  /// Of one isotropic material, else NaN: E [pressure] and nu [-]; NaN where
+  /// there is no number at all.
   IsotropicElasticity elasticity = {kUnknown, kUnknown};
-  /// Covariance of (E, nu).  NaN in the row and column of a parameter that was
-  /// given, or that is held by a bound, or of both when unknown.
+  /// Covariance of (E, nu) of one isotropic material.  NaN in the row and
+  /// column of a parameter that was given, or that is held by a bound, or of
+  /// both when unknown.
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kUnknown);
   /// What the errors come from.
   ErrorBudget error_budget;

@@ -13,14 +13,6 @@
 
 namespace elastimate {
 
-/// Closed interval that a parameter must lie in; an absent end is open.
-struct Bounds {
-  std::optional<double> lower;
-  std::optional<double> upper;
-
-  bool AreGiven() const { return lower || upper; }
-};
-
 /// How a displacement residual counts.
 enum class Loss {
   kNone,    ///< Least squares.
@@ -30,14 +22,16 @@ enum class Loss {
 
 /// The defaults suit a scene of which nothing more is known.
 struct EstimatorOptions {
-  // What is estimated.
+  // What is estimated.  What is known of one of several materials stands in
+  // the scene (Material).
 
-  /// Poisson's ratio when it is known [-], in (-1, 1/2): E alone is estimated.
+  /// Poisson's ratio of one isotropic material when it is known [-], in
+  /// (-1, 1/2): E alone is estimated.
   std::optional<double> known_poisson_ratio;
   /// Bounds on nu [-], within [-1, 1/2] and leaving a part of the range
-  /// above; not with a known nu.
+  /// above; not with a known nu.  Of all materials that have none of their own.
   Bounds poisson_ratio;
-  /// Bounds on E [pressure], positive.
+  /// Bounds on E [pressure], positive; likewise.
   Bounds youngs_modulus;
 
   // How it is estimated.

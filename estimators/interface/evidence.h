@@ -112,6 +112,8 @@ struct Evidence {
   /// Whether displacement noise biases the method.
   bool is_biased_by_noise = false;
   bool do_loads_work = true;
+  /// Whether the forces of some moduli are combinations of those of others.
+  bool are_forces_dependent = false;
   bool do_displacements_oppose_loads = false;
   bool does_youngs_modulus_diverge = false;
   /// Whether noise leaves the fit without a covariance.

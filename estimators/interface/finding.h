@@ -39,6 +39,7 @@ enum class FindingCode {
   kOneCombination,
   kYoungsModulusUndetermined,
   kPoissonRatioUndetermined,
+  kParametersUndetermined,
   kTooFewMeasurements,
   // What the model does not explain.
   kBoundContradicted,
@@ -57,6 +58,7 @@ enum class FindingCode {
   kYoungsModulusOnBound,
   kPoissonRatioOnBound,
   kPoissonRatioAtLimit,
+  kParametersOnBounds,
   kLocking,
   kDiscretizationError,
   kLinearElementsFitAsWell,

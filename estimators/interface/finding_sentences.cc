@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <sstream>
+#include <vector>
 
 #include "elastimate/estimators/interface/limits.h"
 
@@ -86,6 +87,19 @@ std::string DescribeDetermined(const Estimate& estimate) {
                     Percent(kLimits.determined_modulus);
 }
 
+// "a, b, c and 4 more".
+std::string FirstOf(const std::vector<std::string>& names) {
+  constexpr std::size_t kMostNamed = 3;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kMostNamed); ++i) {
+    text += (i == 0 ? "" : ", ") + names[i];
+  }
+  return names.size() <= kMostNamed
+             ? text
+             : text + " and " + std::to_string(names.size() - kMostNamed) +
+                   " more";
+}
+
 Finding Error(FindingCode code, std::string text, std::string advice) {
   return {code, Severity::kError, std::move(text), std::move(advice)};
 }
@@ -160,6 +174,14 @@ Finding UnphysicalByNoise(const IsotropicElasticity& elasticity) {
                    "method towards 2/3 and E below zero",
                "use reduced-fe, which noise does not bias, or give Poisson's "
                "ratio, and check the mesh, the supports and the loads");
+}
+
+Finding UnphysicalParameters(const std::vector<std::string>& parameters) {
+  return Error(
+      FindingCode::kUnphysical,
+      FirstOf(parameters) + (parameters.size() == 1 ? " is" : " are") +
+          " not physical",
+      std::string("use bounded or iterative-fe, and ") + kCheckTheModel);
 }
 
 Finding DisplacementsOpposeLoads() {
@@ -268,6 +290,18 @@ Finding YoungsModulusUndetermined(double youngs_modulus,
           " has a standard error of " + Text(standard_error),
       "heed the warnings, if there are any, or measure larger "
       "displacements, or more load cases");
+}
+
+Finding ParametersUndetermined(const std::vector<std::string>& parameters) {
+  return Error(FindingCode::kParametersUndetermined,
+               "the data do not determine " + FirstOf(parameters),
+               "give what is known of them, join regions, or add load cases");
+}
+
+Finding DependentForces() {
+  return Error(FindingCode::kParametersUndetermined,
+               "the data determine combinations of the parameters only",
+               "give what is known of them, join regions, or add load cases");
 }
 
 Finding TooFewMeasurements(Eigen::Index num_components) {
@@ -451,6 +485,24 @@ Finding PoissonRatioAtLimit() {
                  "Poisson's ratio has run to the end of its physical range",
                  "give bounds that the material is known to keep, or take mu "
                  "and 1 / kappa");
+}
+
+Finding ParametersOnBounds(const std::vector<std::string>& parameters) {
+  return Warning(
+      FindingCode::kParametersOnBounds,
+      FirstOf(parameters) +
+          (parameters.size() == 1 ? " lies on a bound" : " lie on bounds"),
+      "check the bounds; the standard errors are those without them");
+}
+
+Finding ParameterBias(const std::string& parameter, double bias,
+                      bool is_relative, Severity severity) {
+  return {FindingCode::kNoiseBias, severity,
+          std::isfinite(bias)
+              ? "displacement noise biases " + parameter + " by about " +
+                    (is_relative ? Percent(bias) : TwoDigits(bias))
+              : "displacement noise hides " + parameter,
+          "use iterative-fe or virtual-fields, which noise does not bias"};
 }
 
 Finding Locking(ElementKind kind) {

@@ -31,6 +31,9 @@ Finding FitNotCertified();
 Finding Unphysical(const IsotropicElasticity& elasticity);
 /// Of a method whose estimate noise drives out of the physical range.
 Finding UnphysicalByNoise(const IsotropicElasticity& elasticity);
+/// Of several materials: `parameters` describes each, such as "E of region 3 =
+/// -2".
+Finding UnphysicalParameters(const std::vector<std::string>& parameters);
 Finding DisplacementsOpposeLoads();
 Finding YoungsModulusDiverges();
 Finding PoissonRatioAtMinusOne();
@@ -57,6 +60,9 @@ Finding PoissonRatioUndetermined(const Estimate& estimate);
 Finding PoissonRatioBetween(const Interval& interval, bool by_virtual_work);
 Finding PoissonRatioHiddenByNoise();
 Finding YoungsModulusUndetermined(double youngs_modulus, double standard_error);
+/// `parameters` describes each, such as "E of region 3 (45 %)".
+Finding ParametersUndetermined(const std::vector<std::string>& parameters);
+Finding DependentForces();
 Finding TooFewMeasurements(Eigen::Index num_components);
 
 // What the model does not explain.
@@ -95,6 +101,11 @@ Finding PoissonRatioBias(double bias, bool is_bounded, Severity severity);
 Finding YoungsModulusOnBound();
 Finding PoissonRatioOnBound();
 Finding PoissonRatioAtLimit();
+/// `parameters` names each, such as "nu of region 3".
+Finding ParametersOnBounds(const std::vector<std::string>& parameters);
+/// Of several materials; the one that is biased most.
+Finding ParameterBias(const std::string& parameter, double bias,
+                      bool is_relative, Severity severity);
 Finding Locking(ElementKind kind);
 /// Precondition: there is a discretisation error.
 std::string DescribeDiscretizationError(const Estimate& estimate);

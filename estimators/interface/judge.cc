@@ -5,6 +5,7 @@
 
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
+#include "elastimate/estimators/interface/parameter_judge.h"
 #include "elastimate/estimators/interface/rules.h"
 
 namespace elastimate {
@@ -136,14 +137,19 @@ void FinishEstimate(const Estimator& estimator, const Scene& scene,
       estimate.findings.insert(estimate.findings.begin(), *finding);
     }
   }
-  estimate.error_budget.discretization = {
-      estimate.discretization_error,
-      estimate.poisson_ratio_discretization_error};
+  estimate.error_budget.discretization = Eigen::Vector2d(
+      estimate.discretization_error.value_or(Estimate::kUnknown),
+      estimate.poisson_ratio_discretization_error.value_or(Estimate::kUnknown));
+  if (!IsOneIsotropicMaterial(scene.materials)) {
+    JudgeParameters(estimate);
+    return;
+  }
   JudgeResult(options, estimate);
   if (estimate.IsUsable()) {
     AddPoissonRatioInterval(estimate);
     JudgeElements(scene.mesh, estimate);
   }
+  DescribeOneIsotropicMaterial(scene, options, estimate);
 }
 
 }  // namespace elastimate

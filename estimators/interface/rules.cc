@@ -47,6 +47,11 @@ Result JudgeFreeDirection(const Evidence& evidence, const EstimatorOptions&,
              : Result();
 }
 
+Result JudgeDependence(const Evidence& evidence, const EstimatorOptions&,
+                       const Estimate&) {
+  return evidence.are_forces_dependent ? DependentForces() : Result();
+}
+
 Result JudgeEnd(const Evidence& evidence, const EstimatorOptions& options,
                 const Estimate&) {
   switch (evidence.end) {
@@ -322,8 +327,8 @@ const std::vector<Rule>& Rules() {
   static const std::vector<Rule> rules = {
       // Whether there is anything to estimate.
       JudgeLoadBalance, JudgeLoadWork, JudgeSigns, JudgeDivergence,
-      JudgeFreeDirection, JudgeEnd, JudgeLimitOfBiasedMethod, JudgePhysics,
-      JudgeHiddenPoissonRatio, JudgeCount,
+      JudgeFreeDirection, JudgeDependence, JudgeEnd, JudgeLimitOfBiasedMethod,
+      JudgePhysics, JudgeHiddenPoissonRatio, JudgeCount,
       // What to say of a usable estimate.
       NoteYoungsModulusOnBound, NotePoissonRatioOnBound, NoteResidualAboveNoise,
       NoteOutliers, NoteSmoothResidual, NoteVirtualWork,

@@ -90,8 +90,9 @@ Json FindingsJson(const std::vector<Finding>& findings) {
 
 Json BudgetJson(const ErrorBudget& budget) {
   const auto of = [](const ParameterErrors& errors) {
-    return Json({{"youngs_modulus", OrNull(errors.youngs_modulus)},
-                 {"poisson_ratio", OrNull(errors.poisson_ratio)}});
+    const bool is_known = errors.size() == 2;
+    return Json({{"youngs_modulus", is_known ? OrNull(errors(0)) : nullptr},
+                 {"poisson_ratio", is_known ? OrNull(errors(1)) : nullptr}});
   };
   return {{"noise", of(budget.noise)},
           {"bias", of(budget.bias)},

@@ -32,32 +32,45 @@ TEST(Materials, OfEachRegionAreInOrder) {
 TEST(Materials, ThatAreWrongAreNamed) {
   const Mesh mesh = TwoRegionMesh();
   const std::vector<std::pair<std::vector<Material>, std::string>> wrong = {
-      {{{"rubber", {}, {}}}, "the laws are isotropic"},
-      {{{"isotropic", {3}, {}}}, "is in region 7"},
-      {{{"isotropic", {3, 7}, {}}, {"isotropic", {7}, {}}},
+      {{{"rubber", {}, {}, {}}}, "the laws are isotropic"},
+      {{{"isotropic", {3}, {}, {}}}, "is in region 7"},
+      {{{"isotropic", {3, 7}, {}, {}}, {"isotropic", {7}, {}, {}}},
        "region 7 is given to material 1 and to material 2"},
-      {{{"isotropic", {3}, {}}, {"isotropic", {}, {}}},
+      {{{"isotropic", {3}, {}, {}}, {"isotropic", {}, {}, {}}},
        "material 2 names no region"},
-      {{{"isotropic", {3, 7, 8}, {}}}, "the mesh has no element"},
-      {{{"isotropic", {}, {{"shear_modulus", 1}}}},
+      {{{"isotropic", {3, 7, 8}, {}, {}}}, "the mesh has no element"},
+      {{{"isotropic", {}, {{"shear_modulus", 1}}, {}}},
        "youngs_modulus, poisson_ratio only"},
-      {{{"isotropic", {}, {{"poisson_ratio", 0.6}}}},
+      {{{"isotropic", {}, {{"poisson_ratio", 0.6}}, {}}},
        "must be between -0.9999 and"},
-      {{{"isotropic", {}, {{"youngs_modulus", -1}}}}, "positive and finite"},
-      {{{"isotropic", {}, {{"poisson_ratio", 0.1}, {"poisson_ratio", 0.1}}}},
+      {{{"isotropic", {}, {{"youngs_modulus", -1}}, {}}},
+       "positive and finite"},
+      {{{"isotropic",
+         {},
+         {{"poisson_ratio", 0.1}, {"poisson_ratio", 0.1}},
+         {}}},
+       "twice"},
+      {{{"isotropic", {}, {}, {{"poisson_ratio", {0.4, 0.2}}}}}, "crossed"},
+      {{{"isotropic", {}, {}, {{"youngs_modulus", {-1, 2}}}}},
+       "gives the bound youngs_modulus = -1"},
+      {{{"isotropic",
+         {},
+         {{"poisson_ratio", 0.1}},
+         {{"poisson_ratio", {0, 0.2}}}}},
        "twice"}};
   for (const auto& [materials, why] : wrong) {
     EXPECT_THROWS_WITH(ValidateMaterials(materials, mesh), why);
   }
   Mesh without = mesh;
   without.regions.resize(0);
-  EXPECT_THROWS_WITH(ValidateMaterials({{"isotropic", {3}, {}}}, without),
+  EXPECT_THROWS_WITH(ValidateMaterials({{"isotropic", {3}, {}, {}}}, without),
                      "the mesh has none");
 }
 
 TEST(MaterialParameters, AreThoseOfAllMaterials) {
   const std::vector<Material> materials = {
-      {"isotropic", {3}, {{"poisson_ratio", 0.25}}}, {"isotropic", {7}, {}}};
+      {"isotropic", {3}, {{"poisson_ratio", 0.25}}, {}},
+      {"isotropic", {7}, {}, {}}};
   const MaterialParameters parameters(materials, SectionModel::kSolid);
   EXPECT_EQ(parameters.NumParameters(), 4);
   EXPECT_EQ(parameters.NumModuli(), 4);
@@ -73,8 +86,8 @@ TEST(MaterialParameters, OfNoMaterialAreThoseOfOneIsotropic) {
   const MaterialParameters parameters({}, SectionModel::kPlaneStress);
   EXPECT_EQ(parameters.NumParameters(), 2);
   EXPECT_TRUE(IsOneIsotropicMaterial({}));
-  EXPECT_FALSE(
-      IsOneIsotropicMaterial({{"isotropic", {}, {{"poisson_ratio", 0.3}}}}));
+  EXPECT_FALSE(IsOneIsotropicMaterial(
+      {{"isotropic", {}, {{"poisson_ratio", 0.3}}, {}}}));
 }
 
 }  // namespace

@@ -22,55 +22,6 @@ Scene MeasuredOrgan() {
   return scene;
 }
 
-TEST(CorrelateNeighbours, IsNearZeroForIndependentNoise) {
-  constexpr int kSeeds = 100;
-  const Scene scene = testing::WithThreeForces(MeasuredOrgan());
-  Scene measured = scene;
-  Measure({5e4, 0.3}, measured);
-  const ObservedDisplacements observed(measured);
-  std::mt19937_64 generator(1);
-  std::normal_distribution<double> normal;
-  double square_sum = 0;
-  for (int seed = 0; seed < kSeeds; ++seed) {
-    Eigen::VectorXd residual(observed.Size());
-    for (double& value : residual) {
-      value = normal(generator);
-    }
-    square_sum += std::pow(
-        CorrelateNeighbours(NodeGraph(measured.mesh), observed, residual)
-            ->standard_score,
-        2);
-  }
-  // chi^2 of 100 degrees of freedom.
-  EXPECT_NEAR(square_sum, kSeeds, 4 * std::sqrt(2.0 * kSeeds));
-}
-
-TEST(CorrelateNeighbours, IsNearOneForASmoothField) {
-  const Scene scene = MeasuredOrgan();
-  const ObservedDisplacements observed(scene);
-  const auto constant = CorrelateNeighbours(
-      NodeGraph(scene.mesh), observed, Eigen::VectorXd::Ones(observed.Size()));
-  EXPECT_NEAR(constant->correlation, 1, 1e-12);
-  EXPECT_GT(constant->standard_score, 20);
-  const Eigen::MatrixXd linear = scene.mesh.nodes.reshaped();
-  EXPECT_GT(CorrelateNeighbours(NodeGraph(scene.mesh), observed,
-                                observed.Restrict(linear))
-                ->correlation,
-            0.5);
-}
-
-TEST(CorrelateNeighbours, KnowsOnlyObservedNeighbours) {
-  Scene scene = MeasuredOrgan();
-  ComponentMask& mask = scene.load_cases[0].observed;
-  mask = ComponentMask::Constant(3, scene.mesh.NumNodes(), false);
-  mask(2, scene.mesh.NumNodes() - 1) = true;
-  const ObservedDisplacements observed(scene);
-  ASSERT_EQ(observed.Size(), 1);
-  EXPECT_FALSE(CorrelateNeighbours(NodeGraph(scene.mesh), observed,
-                                   Eigen::VectorXd::Ones(1))
-                   .has_value());
-}
-
 TEST(DisplacementFit, IndependentNoiseDoesNotWidenTheStandardErrors) {
   for (int seed = 1; seed <= 20; ++seed) {
     Scene scene = MeasuredOrgan();

@@ -1,0 +1,28 @@
+#ifndef ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_MATERIAL_FIT_H_
+#define ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_MATERIAL_FIT_H_
+
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/estimators/interface/estimator.h"
+
+namespace elastimate {
+
+/// The parameters p of any materials by a maximum likelihood fit of the
+/// observed displacements, by Ceres within bounds,
+///
+///   min ||u(theta(p)) - q||^2,   du / d theta_k = -K^-1 f_k(u),
+///
+/// from typical values at the scale of the data, and from virtual-fields where
+/// it takes the scene; the better minimum is kept.  Covariance sigma^2
+/// (S^T S)^-1, the Cramer-Rao bound, widened for what is smooth in the residual
+/// and for outliers as DescribeDisplacementFit does.  Of parameters on bounds,
+/// the covariance is that without bounds.
+///
+/// Preconditions are those of Estimator::Run; the supports hold the specimen.
+/// Cost: a factorisation at each step, 5 to 8 from each start, and a solve for
+/// each load case and parameter.
+Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_MATERIAL_FIT_H_

@@ -1,0 +1,132 @@
+#include "elastimate/estimators/displacement_fit/residual_statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/estimators/displacement_fit/node_losses.h"
+#include "elastimate/estimators/interface/limits.h"
+
+namespace elastimate {
+
+std::optional<NeighbourCorrelation> CorrelateNeighbours(
+    const NodeGraph& graph, const ObservedDisplacements& observed,
+    const Eigen::VectorXd& residual) {
+  const double square_sum = residual.squaredNorm();
+  const Eigen::Index num_nodes = Eigen::Index(graph.start.size()) - 1;
+  double product_sum = 0;
+  Eigen::Index num_products = 0;
+  // Row of each component of each node in the present load case, or -1.
+  Eigen::Matrix<Eigen::Index, Eigen::Dynamic, Eigen::Dynamic> rows(
+      observed.Dimension(), num_nodes);
+  const auto& nodes = observed.Nodes();
+  for (auto begin = nodes.begin(); begin != nodes.end();) {
+    const auto end = std::find_if(begin, nodes.end(), [&](const auto& node) {
+      return node.load_case != begin->load_case;
+    });
+    rows.setConstant(-1);
+    for (auto node = begin; node != end; ++node) {
+      for (int k = 0; k < node->count; ++k) {
+        const Eigen::Index row = node->first + k;
+        rows(observed.Component(row), node->node) = row;
+      }
+    }
+    for (Eigen::Index node = 0; node < num_nodes; ++node) {
+      for (Eigen::Index k = graph.start[node] + 1; k < graph.start[node + 1];
+           ++k) {
+        for (int i = 0; i < observed.Dimension(); ++i) {
+          const Eigen::Index row = rows(i, node);
+          const Eigen::Index other = rows(i, graph.row[k]);
+          if (row >= 0 && other >= 0) {
+            product_sum += residual(row) * residual(other);
+            ++num_products;
+          }
+        }
+      }
+    }
+    begin = end;
+  }
+  if (num_products == 0 || square_sum == 0) {
+    return std::nullopt;
+  }
+  const double n = static_cast<double>(num_products);
+  const double variance = square_sum / static_cast<double>(residual.size());
+  const double correlation = product_sum / (n * variance);
+  return NeighbourCorrelation{correlation, correlation * std::sqrt(n)};
+}
+
+ResidualVariance EstimateVariance(const ObservedDisplacements& observed,
+                                  const Scene& scene, double square_sum,
+                                  Eigen::Index num_free, Evidence& evidence,
+                                  Estimate& estimate) {
+  const Eigen::Index redundancy = observed.Size() - num_free;
+  const double norm_squared = observed.Norm() * observed.Norm();
+  const std::optional<double>& given = scene.load_cases.front().noise_sd;
+  const double m = static_cast<double>(std::max<Eigen::Index>(redundancy, 1));
+  const double variance = square_sum / m;
+  estimate.noise_sd = given ? *given : std::sqrt(variance) * observed.Norm();
+  if (!given) {
+    // Student's t of m degrees of freedom has the variance m / (m - 2).
+    return ResidualVariance{variance * m / (m - 2), false};
+  }
+  // chi^2 has mean m and variance 2 m.
+  const double ratio = variance * norm_squared;
+  if (redundancy > 0 &&
+      ratio > 1 + kLimits.significant_score * std::sqrt(2 / m)) {
+    evidence.above_noise = {ResidualKind::kDisplacement, std::sqrt(ratio)};
+    return ResidualVariance{variance, false};
+  }
+  return ResidualVariance{1 / norm_squared, true};
+}
+
+double SmoothSquareSum(const NodeGraph& graph,
+                       const ObservedDisplacements& observed,
+                       const Eigen::VectorXd& residual, Estimate& estimate) {
+  const std::optional<NeighbourCorrelation> neighbours =
+      CorrelateNeighbours(graph, observed, residual);
+  if (!neighbours) {
+    return 0;
+  }
+  estimate.residual_correlation =
+      std::clamp(neighbours->correlation, -1.0, 1.0);
+  estimate.is_model_in_doubt =
+      neighbours->standard_score > kLimits.significant_score;
+  return estimate.is_model_in_doubt
+             ? *estimate.residual_correlation * residual.squaredNorm()
+             : 0;
+}
+
+Eigen::VectorXd RobustChange(const ObservedDisplacements& observed,
+                             const Eigen::VectorXd& residual,
+                             const Eigen::MatrixXd& sensitivities) {
+  constexpr int kReweightings = 50;
+  const Eigen::Index n = sensitivities.cols();
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(n);
+  for (int i = 0; i < kReweightings; ++i) {
+    const Eigen::VectorXd moved = residual + sensitivities * change;
+    const NodeLosses losses(Loss::kHuber, RobustStandardDeviation(moved));
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
+    for (const ObservedDisplacements::Node& node : observed.Nodes()) {
+      const auto r = moved.segment(node.first, node.count);
+      const auto s = sensitivities.middleRows(node.first, node.count);
+      const double weight = losses.Evaluate(node.count, r.squaredNorm())[1];
+      gram += weight * s.transpose() * s;
+      gradient += weight * s.transpose() * r;
+    }
+    change -= SolveLeastSquares(gram, gradient);
+  }
+  return change;
+}
+
+bool HasHeavyTails(const Eigen::VectorXd& residual) {
+  const double n = static_cast<double>(residual.size());
+  // The standard deviation of 1.4826 MAD is 1.17 / sqrt(n) of itself.
+  const double threshold =
+      kLimits.heavy_tails + kLimits.significant_score * 1.17 / std::sqrt(n);
+  return residual.norm() / std::sqrt(n) >
+         threshold * RobustStandardDeviation(residual);
+}
+
+}  // namespace elastimate

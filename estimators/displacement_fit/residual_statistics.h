@@ -1,0 +1,63 @@
+#ifndef ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_RESIDUAL_STATISTICS_H_
+#define ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_RESIDUAL_STATISTICS_H_
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "elastimate/core/mesh/node_graph.h"
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/estimators/displacement_fit/observed_displacements.h"
+#include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/estimators/interface/evidence.h"
+
+namespace elastimate {
+
+/// How alike the residuals of neighbouring nodes are [Moran 1950].
+struct NeighbourCorrelation {
+  /// Mean product of the residuals of two nodes that share an element, over
+  /// the mean square: near 0 for independent noise, near 1 for a smooth field.
+  double correlation;
+  /// `correlation` over its standard deviation for independent noise.
+  double standard_score;
+};
+
+/// Empty when no two neighbours were observed, or all residuals are zero.
+/// `graph` is that of the mesh.  Cost: O(num_pairs) time for each load case.
+std::optional<NeighbourCorrelation> CorrelateNeighbours(
+    const NodeGraph& graph, const ObservedDisplacements& observed,
+    const Eigen::VectorXd& residual);
+
+/// Variance of the normalised residuals, and whether it is that of the noise.
+struct ResidualVariance {
+  double variance;
+  bool is_explained_by_given_noise;
+};
+
+/// From the residuals themselves, or as given when they do not contradict it,
+/// which is evidence.  Fills in the noise of `estimate`.  `num_free` parameters
+/// were fitted.
+ResidualVariance EstimateVariance(const ObservedDisplacements& observed,
+                                  const Scene& scene, double square_sum,
+                                  Eigen::Index num_free, Evidence& evidence,
+                                  Estimate& estimate);
+
+/// The square sum of the part of the residual that neighbours share; zero when
+/// independent noise explains what they share.  Fills in the correlation of
+/// `estimate`, and whether it puts the model in doubt.
+double SmoothSquareSum(const NodeGraph& graph,
+                       const ObservedDisplacements& observed,
+                       const Eigen::VectorXd& residual, Estimate& estimate);
+
+/// The change of the parameters from the least-squares fit to a robust one, in
+/// the linear model u + S delta of sensitivities S: the weighted least squares
+/// of Huber's loss.
+Eigen::VectorXd RobustChange(const ObservedDisplacements& observed,
+                             const Eigen::VectorXd& residual,
+                             const Eigen::MatrixXd& sensitivities);
+
+/// Whether some residuals are much larger than the bulk of them.
+bool HasHeavyTails(const Eigen::VectorXd& residual);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_RESIDUAL_STATISTICS_H_

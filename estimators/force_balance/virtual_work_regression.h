@@ -1,0 +1,32 @@
+#ifndef ELASTIMATE_ESTIMATORS_FORCE_BALANCE_VIRTUAL_WORK_REGRESSION_H_
+#define ELASTIMATE_ESTIMATORS_FORCE_BALANCE_VIRTUAL_WORK_REGRESSION_H_
+
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/estimators/interface/estimator.h"
+
+namespace elastimate {
+
+/// The parameters of any materials from the balance of virtual work of
+/// polynomial fields V (VirtualWork, of degree 3 unless another is asked for),
+/// weighted by its own covariance:
+///
+///   min S = r^T G^-1 r,   r = V^T (F(q) theta - f),   G = M^T M,
+///   M = K(theta) V on the free rows.
+///
+/// With lambda = G^-1 r and the corrected displacements q - M lambda, the
+/// derivative of L^-1 r (G = L L^T) is taken as
+/// L^-1 V^T f_k(q - M lambda), which makes that of S exact.  The covariance of
+/// theta is sigma^2 (D^T G^-1 D)^-1 with D = V^T f_k(q - M lambda), and where
+/// the force residual says that the balance is off by more than noise, S (D^T
+/// G^-1 D)^-1 more.
+///
+/// Preconditions are those of Estimator::Run; every free component is observed.
+/// Cost: in each step an element pass of as many columns as there are fields
+/// (60 of degree 3 in three dimensions, 20 in two), and their QR factorisation.
+Estimate BalanceVirtualWork(const Scene& scene,
+                            const EstimatorOptions& options);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_FORCE_BALANCE_VIRTUAL_WORK_REGRESSION_H_

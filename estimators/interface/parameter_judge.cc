@@ -1,0 +1,208 @@
+#include "elastimate/estimators/interface/parameter_judge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <sstream>
+#include <vector>
+
+#include "elastimate/estimators/interface/finding_sentences.h"
+#include "elastimate/estimators/interface/limits.h"
+
+namespace elastimate {
+namespace {
+
+std::vector<ParameterEstimate> WithoutValues(
+    const Scene& scene, const MaterialParameters& parameters) {
+  std::vector<ParameterEstimate> all;
+  for (const MaterialParameters::Parameter& parameter : parameters.All()) {
+    ParameterEstimate estimate;
+    estimate.name = parameter.law_parameter->name;
+    estimate.symbol = parameter.law_parameter->symbol;
+    estimate.is_modulus = parameter.law_parameter->is_modulus;
+    estimate.is_known = parameter.known.has_value();
+    if (!scene.materials.empty()) {
+      estimate.regions = scene.materials[parameter.material].regions;
+    }
+    all.push_back(estimate);
+  }
+  return all;
+}
+
+// What has no finite variance is not determined, unless it is known why there
+// is none.
+void EnterErrors(Estimate& estimate) {
+  std::vector<std::string> undetermined;
+  for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
+    const double variance =
+        estimate.parameter_covariance(Eigen::Index(i), Eigen::Index(i));
+    if (!estimate.parameters[i].is_known &&
+        !(std::isfinite(variance) && variance >= 0)) {
+      undetermined.push_back(NameOfParameter(estimate.parameters[i]));
+    } else if (!estimate.parameters[i].is_known) {
+      ParameterEstimate& parameter = estimate.parameters[i];
+      const double error = std::sqrt(variance);
+      parameter.standard_error = error;
+      parameter.interval = {parameter.value - kTwoSidedErrors * error,
+                            parameter.value + kTwoSidedErrors * error};
+      if (parameter.is_modulus) {
+        // Symmetric in the logarithm, which is what is fitted.
+        const double factor =
+            std::exp(kTwoSidedErrors * error / parameter.value);
+        parameter.interval = {parameter.value / factor,
+                              parameter.value * factor};
+      }
+    }
+  }
+  if (!undetermined.empty() && estimate.why_no_standard_error.empty()) {
+    estimate.Fail(ParametersUndetermined(undetermined));
+  }
+}
+
+bool IsPhysical(const ParameterEstimate& parameter) {
+  return parameter.is_modulus ? parameter.value > 0
+                              : parameter.value > -1 && parameter.value < 0.5;
+}
+
+void JudgePhysics(Estimate& estimate) {
+  std::vector<std::string> unphysical;
+  for (const ParameterEstimate& parameter : estimate.parameters) {
+    if (!std::isfinite(parameter.value)) {
+      estimate.Fail(NotFinite());
+      return;
+    }
+    if (!IsPhysical(parameter)) {
+      std::ostringstream text;
+      text << NameOfParameter(parameter) << " = " << parameter.value;
+      unphysical.push_back(text.str());
+    }
+  }
+  if (!unphysical.empty()) {
+    estimate.Fail(UnphysicalParameters(unphysical));
+  }
+}
+
+void JudgeDetermination(Estimate& estimate) {
+  std::vector<std::string> undetermined;
+  for (const ParameterEstimate& parameter : estimate.parameters) {
+    const double error = parameter.standard_error.value_or(0);
+    const double relative = error / parameter.value;
+    if (parameter.is_modulus &&
+        relative > kLimits.largest_youngs_modulus_error) {
+      undetermined.push_back(NameOfParameter(parameter) + " (" +
+                             TwoDigits(100 * relative) + " %)");
+    } else if (!parameter.is_modulus &&
+               error > kLimits.largest_poisson_ratio_error) {
+      undetermined.push_back(NameOfParameter(parameter) + " (" +
+                             TwoDigits(error) + ")");
+    }
+  }
+  if (!undetermined.empty()) {
+    estimate.Fail(ParametersUndetermined(undetermined));
+  }
+}
+
+// Of the parameter whose bias exceeds its limit by most.
+void JudgeBias(Estimate& estimate) {
+  const ParameterErrors bias = estimate.error_budget.bias;
+  const ParameterErrors& noise = estimate.error_budget.noise;
+  double largest = 0;
+  std::optional<Finding> finding;
+  for (Eigen::Index i = 0; i < bias.size(); ++i) {
+    const ParameterEstimate& parameter = estimate.parameters[i];
+    const double unusable = parameter.is_modulus
+                                ? kLimits.unusable_error
+                                : kLimits.unusable_poisson_ratio_bias;
+    const double notable = parameter.is_modulus
+                               ? kLimits.notable_youngs_modulus_error
+                               : kLimits.notable_poisson_ratio_error;
+    if (bias(i) > std::max(notable, noise(i)) && bias(i) / unusable > largest) {
+      largest = bias(i) / unusable;
+      finding = ParameterBias(
+          NameOfParameter(parameter), bias(i), parameter.is_modulus,
+          bias(i) > unusable ? Severity::kError : Severity::kWarning);
+    }
+  }
+  if (!finding) {
+    return;
+  }
+  if (finding->severity == Severity::kError) {
+    estimate.Fail(*finding);
+  } else {
+    estimate.Add(*finding);
+  }
+}
+
+}  // namespace
+
+void EnterParameters(const Scene& scene, const FreeParameters& free,
+                     const Eigen::VectorXd& variables, Estimate& estimate) {
+  estimate.parameters = WithoutValues(scene, free.All());
+  const Eigen::VectorXd values = free.ParametersAt(variables);
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    estimate.parameters[i].value = values(i);
+  }
+  estimate.parameter_covariance.setConstant(values.size(), values.size(),
+                                            Estimate::kUnknown);
+}
+
+void EnterCovariance(const FreeParameters& free,
+                     const Eigen::VectorXd& variables,
+                     const Eigen::MatrixXd& covariance, Estimate& estimate) {
+  const Eigen::VectorXd slopes = free.Slopes(variables);
+  estimate.parameter_covariance(free.All().Free(), free.All().Free()) =
+      slopes.asDiagonal() * covariance * slopes.asDiagonal();
+}
+
+ParameterErrors ErrorsOfVariables(const FreeParameters& free,
+                                  const Eigen::MatrixXd& covariance) {
+  ParameterErrors errors =
+      ParameterErrors::Constant(free.All().NumParameters(), Estimate::kUnknown);
+  errors(free.All().Free()) = covariance.diagonal().cwiseSqrt();
+  return errors;
+}
+
+std::string NameOfParameter(const ParameterEstimate& parameter) {
+  if (parameter.regions.empty()) {
+    return parameter.symbol;
+  }
+  std::string regions;
+  for (const int region : parameter.regions) {
+    regions += (regions.empty() ? "" : ", ") + std::to_string(region);
+  }
+  return parameter.symbol +
+         (parameter.regions.size() == 1 ? " of region " : " of regions ") +
+         regions;
+}
+
+void JudgeParameters(Estimate& estimate) {
+  for (const auto& judge :
+       {JudgePhysics, EnterErrors, JudgeBias, JudgeDetermination}) {
+    if (estimate.IsUsable()) {
+      judge(estimate);
+    }
+  }
+}
+
+void DescribeOneIsotropicMaterial(const Scene& scene,
+                                  const EstimatorOptions& options,
+                                  Estimate& estimate) {
+  estimate.parameters = WithoutValues(
+      scene, MaterialParameters(scene.materials, scene.mesh.section.model));
+  estimate.parameter_covariance = estimate.covariance;
+  ParameterEstimate& youngs_modulus = estimate.parameters[0];
+  ParameterEstimate& poisson_ratio = estimate.parameters[1];
+  youngs_modulus.value = estimate.elasticity.youngs_modulus;
+  youngs_modulus.standard_error = estimate.YoungsModulusStandardError();
+  if (youngs_modulus.standard_error) {
+    const double width = kTwoSidedErrors * *youngs_modulus.standard_error;
+    youngs_modulus.interval = {youngs_modulus.value - width,
+                               youngs_modulus.value + width};
+  }
+  poisson_ratio.value = estimate.elasticity.poisson_ratio;
+  poisson_ratio.is_known = options.known_poisson_ratio.has_value();
+  poisson_ratio.standard_error = estimate.PoissonRatioStandardError();
+  poisson_ratio.interval = estimate.poisson_ratio_interval;
+}
+
+}  // namespace elastimate

@@ -1,0 +1,44 @@
+#ifndef ELASTIMATE_ESTIMATORS_INTERFACE_PARAMETER_JUDGE_H_
+#define ELASTIMATE_ESTIMATORS_INTERFACE_PARAMETER_JUDGE_H_
+
+#include <Eigen/Core>
+#include <string>
+
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/interface/free_parameters.h"
+
+namespace elastimate {
+
+/// Enters the parameters at these variables, without errors.
+void EnterParameters(const Scene& scene, const FreeParameters& free,
+                     const Eigen::VectorXd& variables, Estimate& estimate);
+
+/// Enters the covariance of the variables as that of the parameters.
+void EnterCovariance(const FreeParameters& free,
+                     const Eigen::VectorXd& variables,
+                     const Eigen::MatrixXd& covariance, Estimate& estimate);
+
+/// The roots of the diagonal of a covariance of the variables, for the error
+/// budget.
+ParameterErrors ErrorsOfVariables(const FreeParameters& free,
+                                  const Eigen::MatrixXd& covariance);
+
+/// "nu of region 3", "E" of a material without regions.
+std::string NameOfParameter(const ParameterEstimate& parameter);
+
+/// For materials other than one isotropic one: enters standard errors and
+/// intervals from the covariance of the parameters, and turns an estimate that
+/// claims to be ok into what it is, where a parameter is not physical, not
+/// determined, or biased by noise.
+void JudgeParameters(Estimate& estimate);
+
+/// Enters E and nu, their covariance and interval as the parameters.
+void DescribeOneIsotropicMaterial(const Scene& scene,
+                                  const EstimatorOptions& options,
+                                  Estimate& estimate);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_INTERFACE_PARAMETER_JUDGE_H_

@@ -1,0 +1,112 @@
+#include "elastimate/estimators/statistics/bounded_variables.h"
+
+#include <ceres/cost_function.h>
+#include <ceres/problem.h>
+
+#include "elastimate/estimators/interface/finding_sentences.h"
+#include "elastimate/estimators/statistics/bounded_parameter.h"
+
+namespace elastimate {
+namespace {
+
+using RowMajorColumn = Eigen::Map<Eigen::VectorXd>;
+
+// All residuals, of one block for each variable, so that each may be held.
+class VariablesCost : public ceres::CostFunction {
+ public:
+  VariablesCost(const ResidualFunction& residual, Eigen::Index num_residuals,
+                Eigen::Index num_variables)
+      : residual_(residual), num_variables_(num_variables) {
+    set_num_residuals(static_cast<int>(num_residuals));
+    mutable_parameter_block_sizes()->assign(num_variables, 1);
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    Eigen::VectorXd x(num_variables_);
+    for (Eigen::Index i = 0; i < num_variables_; ++i) {
+      x(i) = *parameters[i];
+    }
+    Eigen::VectorXd r;
+    Eigen::MatrixXd jacobian;
+    if (!residual_(x, &r, jacobians == nullptr ? nullptr : &jacobian)) {
+      return false;
+    }
+    RowMajorColumn(residuals, r.size()) = r;
+    for (Eigen::Index i = 0; jacobians != nullptr && i < num_variables_; ++i) {
+      if (jacobians[i] != nullptr) {
+        RowMajorColumn(jacobians[i], r.size()) = jacobian.col(i);
+      }
+    }
+    return true;
+  }
+
+ private:
+  const ResidualFunction& residual_;
+  Eigen::Index num_variables_;
+};
+
+End EndOf(const ceres::Solver::Summary& summary) {
+  switch (summary.termination_type) {
+    case ceres::CONVERGENCE:
+      return End::kDone;
+    case ceres::NO_CONVERGENCE:
+      return End::kIterationLimit;
+    default:
+      return End::kSearchFailed;
+  }
+}
+
+}  // namespace
+
+BoundedMinimum MinimizeOverVariables(const ResidualFunction& residual,
+                                     Eigen::Index num_residuals,
+                                     const std::vector<Bounds>& bounds,
+                                     const Eigen::VectorXd& start,
+                                     const ceres::Solver::Options& options) {
+  std::vector<BoundedParameter> variables;
+  std::vector<double*> blocks;
+  std::vector<BoundedParameter*> pointers;
+  variables.reserve(bounds.size());
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    variables.emplace_back(start(Eigen::Index(i)), bounds[i]);
+    blocks.push_back(variables.back().Block());
+    pointers.push_back(&variables.back());
+  }
+  ceres::Problem problem;
+  problem.AddResidualBlock(
+      new VariablesCost(residual, num_residuals, start.size()), nullptr,
+      blocks);
+  const ceres::Solver::Summary summary =
+      MinimizeWithinBounds(options, pointers, problem);
+  BoundedMinimum minimum;
+  minimum.variables.resize(start.size());
+  for (std::size_t i = 0; i < variables.size(); ++i) {
+    minimum.variables(Eigen::Index(i)) = variables[i].Value();
+    minimum.on_bound.push_back(variables[i].OnBound());
+  }
+  minimum.cost = summary.final_cost;
+  minimum.end = EndOf(summary);
+  minimum.message = "Ceres: " + summary.message;
+  return minimum;
+}
+
+void NoteVariablesOnBounds(const FreeParameters& free,
+                           const BoundedMinimum& minimum, Estimate& estimate) {
+  std::vector<std::string> names;
+  for (Eigen::Index i = 0; i < free.Size(); ++i) {
+    if (minimum.on_bound[i] != Side::kNone) {
+      const ParameterEstimate& parameter =
+          estimate.parameters[free.All().Free()[i]];
+      names.push_back(NameOfParameter(parameter));
+      estimate.active_bounds.push_back(
+          names.back() +
+          (minimum.on_bound[i] == Side::kLower ? " (lower)" : " (upper)"));
+    }
+  }
+  if (!names.empty()) {
+    estimate.Add(ParametersOnBounds(names));
+  }
+}
+
+}  // namespace elastimate

@@ -1,0 +1,47 @@
+#ifndef ELASTIMATE_ESTIMATORS_STATISTICS_BOUNDED_VARIABLES_H_
+#define ELASTIMATE_ESTIMATORS_STATISTICS_BOUNDED_VARIABLES_H_
+
+#include <ceres/solver.h>
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "elastimate/estimators/interface/evidence.h"
+#include "elastimate/estimators/interface/free_parameters.h"
+#include "elastimate/estimators/interface/parameter_judge.h"
+
+namespace elastimate {
+
+/// A minimum of ||r(x)||^2 / 2 over the variables within their bounds.
+struct BoundedMinimum {
+  Eigen::VectorXd variables;
+  double cost;
+  std::vector<Side> on_bound;  ///< Of each variable.
+  End end;
+  std::string message;  ///< Of Ceres.
+};
+
+/// r and, where it is asked for, dr/dx (of the size of r x that of x); false
+/// when there is none at x.
+using ResidualFunction =
+    std::function<bool(const Eigen::VectorXd& variables,
+                       Eigen::VectorXd* residual, Eigen::MatrixXd* jacobian)>;
+
+/// By Ceres' trust region method from `start` on, as MinimizeWithinBounds does.
+/// `residual` is asked for a value before its Jacobian at the same x.
+BoundedMinimum MinimizeOverVariables(const ResidualFunction& residual,
+                                     Eigen::Index num_residuals,
+                                     const std::vector<Bounds>& bounds,
+                                     const Eigen::VectorXd& start,
+                                     const ceres::Solver::Options& options);
+
+/// Enters the bounds that hold the minimum into the estimate, whose parameters
+/// are entered, with a warning.
+void NoteVariablesOnBounds(const FreeParameters& free,
+                           const BoundedMinimum& minimum, Estimate& estimate);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_STATISTICS_BOUNDED_VARIABLES_H_
