@@ -14,6 +14,7 @@ int RunEstimate(const std::vector<std::string>& arguments);
 int RunSimulate(const std::vector<std::string>& arguments);
 int RunGenerate(const std::vector<std::string>& arguments);
 int RunEstimators(const std::vector<std::string>& arguments);
+int RunMaterials(const std::vector<std::string>& arguments);
 
 /// Checks the flags that estimate and simulate share, and sets the threads.
 void ApplyComputingFlags();

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "apps/result_fields.h"
 #include "apps/section_flags.h"
 #include "apps/summary.h"
+#include "elastimate/core/materials/laws.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/estimators/registry.h"
 #include "elastimate/io/report/report.h"
@@ -33,14 +35,35 @@ double SecondsSince(Clock::time_point start) {
 }
 
 SceneReading Read(const std::vector<std::string>& arguments) {
-  SceneReading reading = ReadScene({arguments.begin(), arguments.end()},
-                                   Measurement::kRequired, SectionFromFlags());
+  SceneReading reading =
+      ReadScene({arguments.begin(), arguments.end()}, Measurement::kRequired,
+                SectionFromFlags(), RegionsFromFlag());
   if (IsGiven("noise_sd")) {
     for (LoadCase& load_case : reading.scene.load_cases) {
       load_case.noise_sd = FLAGS_noise_sd;
     }
   }
   return reading;
+}
+
+// That of --nu is that of each material of which none is known.
+void GiveKnownPoissonRatio(Scene& scene, EstimatorOptions& options) {
+  if (!options.known_poisson_ratio || IsOneIsotropicMaterial(scene.materials)) {
+    return;
+  }
+  const KnownParameter known = {"poisson_ratio", *options.known_poisson_ratio};
+  for (Material& material : scene.materials) {
+    const auto is_of_nu = [&](const auto& given) {
+      return given.name == known.name;
+    };
+    if (std::none_of(material.known.begin(), material.known.end(), is_of_nu)) {
+      material.known.push_back(known);
+      material.bounds.erase(std::remove_if(material.bounds.begin(),
+                                           material.bounds.end(), is_of_nu),
+                            material.bounds.end());
+    }
+  }
+  options.known_poisson_ratio.reset();
 }
 
 // The library does not know where the scene came from; the user wants to.
@@ -99,6 +122,7 @@ int RunEstimate(const std::vector<std::string>& arguments) {
 
   std::optional<Progress> progress("reading " + Sources(arguments));
   SceneReading reading = Read(arguments);
+  GiveKnownPoissonRatio(reading.scene, options);
   const double read_seconds = SecondsSince(start);
   const Scene& scene = reading.scene;
   const std::optional<Scene> quadratic =
@@ -139,6 +163,27 @@ int RunEstimate(const std::vector<std::string>& arguments) {
   files.Commit();
   PrintNotices(reading.notices);
   return estimate.IsUsable() ? 0 : 1;
+}
+
+int RunMaterials(const std::vector<std::string>& arguments) {
+  if (!arguments.empty()) {
+    throw std::invalid_argument("materials takes no arguments" +
+                                ButGot(arguments));
+  }
+  std::string list;
+  for (const Law* const law : Laws()) {
+    list += std::string(law->Name()) +
+            std::string(21 - law->Name().size(), ' ') +
+            std::string(law->Description()) + ": ";
+    for (const LawParameter& parameter : law->Parameters()) {
+      list += (&parameter == &law->Parameters().front() ? "" : ", ") +
+              std::string(parameter.name) + " (" +
+              std::string(parameter.symbol) + ")";
+    }
+    list += "\n";
+  }
+  WriteStandardOutput(list);
+  return 0;
 }
 
 int RunEstimators(const std::vector<std::string>& arguments) {

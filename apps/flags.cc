@@ -36,6 +36,14 @@ DEFINE_double(thickness, 0,
               "thickness of a planar specimen, positive [length]; overrides "
               "that of the scene (generate: of the rectangle, 0.001 without "
               "this flag)");
+DEFINE_string(regions, "one",
+              "materials of the regions of a mesh: one for all of them, or one "
+              "each; overrides those of the scene (without this flag those, "
+              "else one)");
+DEFINE_string(parameters, "",
+              "JSON file with the parameters of all materials, as reports have "
+              "them: a list \"parameters\" of \"name\", \"region\" and "
+              "\"value\"");
 DEFINE_string(solver, "automatic",
               "how displacements are solved for: cholesky, multigrid, or "
               "automatic, which is multigrid for large scenes");
@@ -79,19 +87,23 @@ const Program& Elastimate() {
         "Young's modulus and Poisson's ratio of a scene (VTK, Gmsh or "
         "scene.json); several files are further load cases",
         {"estimator", "nu", "nu_min", "nu_max", "youngs_min", "youngs_max",
-         "model", "thickness", "order", "noise_sd", "loss", "degree", "solver",
-         "threads", "seed", "json", "out"}},
+         "regions", "model", "thickness", "order", "noise_sd", "loss", "degree",
+         "solver", "threads", "seed", "json", "out"}},
        {"simulate",
         "SCENE",
         "displacements of a scene for given parameters, with noise if wanted",
-        {"youngs", "nu", "model", "thickness", "order", "noise", "noise_law",
-         "seed", "solver", "threads", "out"}},
+        {"youngs", "nu", "parameters", "regions", "model", "thickness", "order",
+         "noise", "noise_law", "seed", "solver", "threads", "out"}},
        {"generate",
         "cuboid|organ|rectangle",
         "an example geometry with supports and forces",
         {"elements", "cells", "size", "tetrahedra", "length", "model",
          "thickness", "force", "out"}},
-       {"estimators", "", "lists the estimators", {}}}};
+       {"estimators", "", "lists the estimators", {}},
+       {"materials",
+        "",
+        "lists the laws of materials and their parameters",
+        {}}}};
   return program;
 }
 

@@ -22,6 +22,8 @@ DECLARE_int32(degree);
 DECLARE_int32(order);
 DECLARE_string(model);
 DECLARE_double(thickness);
+DECLARE_string(regions);
+DECLARE_string(parameters);
 DECLARE_string(solver);
 DECLARE_int32(threads);
 DECLARE_uint64(seed);

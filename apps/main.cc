@@ -73,6 +73,9 @@ int RunCommand(const std::string& name,
   if (name == "generate") {
     return RunGenerate(others);
   }
+  if (name == "materials") {
+    return RunMaterials(others);
+  }
   return RunEstimators(others);
 }
 

@@ -1,7 +1,12 @@
 #include "apps/result_fields.h"
 
-#include "elastimate/core/equilibrium/forward_model.h"
-#include "elastimate/core/mechanics/stiffness_product.h"
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <vector>
+
+#include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/mechanics/strain_energy.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
@@ -15,16 +20,21 @@ std::string CaseSuffix(Eigen::Index load_case) {
   return load_case == 0 ? "" : "_" + std::to_string(load_case + 1);
 }
 
-// K u - f, where u is num_dofs x num_load_cases.
-Eigen::MatrixXd Imbalance(const Scene& scene,
-                          const IsotropicElasticity& elasticity,
-                          const Eigen::MatrixXd& displacement,
-                          const Eigen::MatrixXd& force) {
-  const StiffnessProducts products =
-      MultiplyStiffnessBasis(scene.mesh, displacement);
-  return elasticity.StiffnessScale(scene.mesh.section.model) *
-             (products.h + elasticity.poisson_ratio * products.j) -
-         force;
+// p of the estimate; empty where some are not physical.
+std::optional<Eigen::VectorXd> PhysicalParameters(const Estimate& estimate) {
+  Eigen::VectorXd values(Eigen::Index(estimate.parameters.size()));
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    const ParameterEstimate& parameter = estimate.parameters[i];
+    values(i) = parameter.value;
+    const bool is_physical =
+        parameter.is_modulus ? parameter.value > 0
+                             : parameter.value > -1 && parameter.value < 0.5;
+    if (!is_physical || !std::isfinite(parameter.value)) {
+      return std::nullopt;
+    }
+  }
+  return values.size() == 0 ? std::nullopt
+                            : std::optional<Eigen::VectorXd>(values);
 }
 
 class FieldCollector {
@@ -42,14 +52,51 @@ class FieldCollector {
              .reshaped(shown_.Dimension(), shown_.NumNodes())});
   }
 
-  void AddStrainEnergy(const Mesh& mesh, const IsotropicElasticity& elasticity,
+  // `values` are E and nu of each material.
+  void AddStrainEnergy(const Scene& scene, const Eigen::VectorXd& values,
                        Eigen::Index load_case, const Eigen::MatrixXd& all) {
+    const Mesh& mesh = scene.mesh;
+    const Eigen::MatrixXd u =
+        all.col(load_case).reshaped(mesh.Dimension(), mesh.NumNodes());
+    const std::vector<int> material_of =
+        MaterialOfElements(scene.materials, mesh);
+    Eigen::RowVectorXd density(mesh.NumElements());
+    for (Eigen::Index i = 0; 2 * i < values.size(); ++i) {
+      const Eigen::VectorXd of_material =
+          StrainEnergyDensity(mesh, {values(2 * i), values(2 * i + 1)}, u);
+      for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+        if (material_of[e] == i) {
+          density(e) = of_material(e);
+        }
+      }
+    }
     fields_.cell.push_back(
-        {"strain_energy_density" + CaseSuffix(load_case),
-         StrainEnergyDensity(
-             mesh, elasticity,
-             all.col(load_case).reshaped(mesh.Dimension(), mesh.NumNodes()))
-             .transpose()});
+        {"strain_energy_density" + CaseSuffix(load_case), density});
+  }
+
+  // A cell array of each parameter, of the material of each element.
+  void AddParameters(const Scene& scene, const Estimate& estimate) {
+    const std::vector<int> material_of =
+        MaterialOfElements(scene.materials, scene.mesh);
+    const MaterialParameters parameters(scene.materials,
+                                        scene.mesh.section.model);
+    for (Eigen::Index i = 0; i < parameters.NumParameters(); ++i) {
+      const ParameterEstimate& parameter = estimate.parameters[i];
+      auto field = std::find_if(
+          fields_.cell.begin(), fields_.cell.end(),
+          [&](const Field& other) { return other.name == parameter.name; });
+      if (field == fields_.cell.end()) {
+        fields_.cell.push_back({parameter.name, Eigen::RowVectorXd::Constant(
+                                                    scene.mesh.NumElements(),
+                                                    Estimate::kUnknown)});
+        field = std::prev(fields_.cell.end());
+      }
+      for (Eigen::Index e = 0; e < scene.mesh.NumElements(); ++e) {
+        if (material_of[e] == int(parameters.All()[i].material)) {
+          field->values(0, e) = parameter.value;
+        }
+      }
+    }
   }
 
  private:
@@ -80,33 +127,37 @@ Eigen::MatrixXd MeasuredMinus(const Scene& scene,
 Fields ResultFields(const Scene& scene, const Scene& modelled,
                     const Estimate& estimate, SolverKind solver) {
   Fields fields = SceneFields(scene);
-  if (!estimate.elasticity.IsPhysical()) {
+  const std::optional<Eigen::VectorXd> values = PhysicalParameters(estimate);
+  if (!values) {
     return fields;
   }
   FieldCollector collector(scene.mesh, fields);
+  if (!IsOneIsotropicMaterial(scene.materials)) {
+    collector.AddParameters(scene, estimate);
+  }
   const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
   if (!WhyNotHeld(scene.mesh, scene.supports).empty()) {
     const Eigen::MatrixXd force = AssembleLoadCases(scene);
     const Eigen::MatrixXd measured =
         MeasuredMinus(scene, Eigen::MatrixXd::Zero(force.rows(), num_cases));
+    const InternalForces forces(scene.mesh, scene.materials);
     const Eigen::MatrixXd residual =
-        Imbalance(scene, estimate.elasticity, measured, force);
+        forces.Multiply(forces.Parameters().Moduli(*values), measured) - force;
     for (Eigen::Index k = 0; k < num_cases; ++k) {
       collector.AddPoint("force_residual", k, residual);
-      collector.AddStrainEnergy(scene.mesh, estimate.elasticity, k, measured);
+      collector.AddStrainEnergy(scene, *values, k, measured);
     }
     return fields;
   }
-  const Eigen::MatrixXd force = AssembleLoadCases(modelled);
-  ForwardModel model(modelled.mesh, modelled.supports, force, solver);
-  if (!model.SetPoissonRatio(estimate.elasticity.poisson_ratio)) {
+  Equilibrium model(modelled, solver);
+  const Eigen::VectorXd moduli = model.Forces().Parameters().Moduli(*values);
+  if (!model.Solve(moduli)) {
     return fields;
   }
-  const Eigen::MatrixXd fitted =
-      model.Displacement(estimate.elasticity.youngs_modulus);
+  const Eigen::MatrixXd& fitted = model.Displacement();
   const Eigen::MatrixXd difference = MeasuredMinus(modelled, fitted);
   const Eigen::MatrixXd imbalance =
-      Imbalance(modelled, estimate.elasticity, fitted, force);
+      model.Forces().Multiply(moduli, fitted) - AssembleLoadCases(modelled);
   const Eigen::MatrixXd held_imbalance = modelled.supports.held.reshaped()
                                              .replicate(1, num_cases)
                                              .select(imbalance.array(), 0.0);
@@ -117,7 +168,7 @@ Fields ResultFields(const Scene& scene, const Scene& modelled,
     collector.AddPoint("fitted_displacement", k, fitted);
     collector.AddPoint("displacement_residual", k, difference);
     collector.AddPoint("reaction_force", k, reaction);
-    collector.AddStrainEnergy(modelled.mesh, estimate.elasticity, k, fitted);
+    collector.AddStrainEnergy(modelled, *values, k, fitted);
   }
   return fields;
 }

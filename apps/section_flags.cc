@@ -27,4 +27,17 @@ SectionChoice SectionFromFlags() {
   return section;
 }
 
+RegionChoice RegionsFromFlag() {
+  if (!IsGiven("regions")) {
+    return RegionChoice::kAsGiven;
+  }
+  if (FLAGS_regions == "each") {
+    return RegionChoice::kEach;
+  }
+  if (FLAGS_regions != "one") {
+    throw std::invalid_argument(AsGiven("regions") + "; it is one or each");
+  }
+  return RegionChoice::kOne;
+}
+
 }  // namespace elastimate

@@ -9,6 +9,9 @@ namespace elastimate {
 /// flag, for a value that is none.
 SectionChoice SectionFromFlags();
 
+/// What --regions gives; likewise.
+RegionChoice RegionsFromFlag();
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_APPS_SECTION_FLAGS_H_

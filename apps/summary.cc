@@ -44,6 +44,44 @@ bool ReachesLimit(const Estimate& estimate) {
          estimate.poisson_ratio_interval->lower == -1;
 }
 
+// Of one isotropic material.
+void AddElasticity(const Estimate& estimate, std::ostringstream& text) {
+  const IsotropicElasticity& elasticity = estimate.elasticity;
+  Line("Young's modulus E",
+       WithError(elasticity.youngs_modulus,
+                 estimate.YoungsModulusStandardError()),
+       text);
+  Line(
+      "Poisson's ratio nu",
+      WithError(elasticity.poisson_ratio, estimate.PoissonRatioStandardError()),
+      text);
+  if (estimate.poisson_ratio_interval && ReachesLimit(estimate)) {
+    Line("",
+         "between " + Number(estimate.poisson_ratio_interval->lower, 4) +
+             " and " + Number(estimate.poisson_ratio_interval->upper, 4) +
+             " (95 %)",
+         text);
+    Line("shear modulus mu",
+         WithError(elasticity.ShearModulus(),
+                   estimate.ShearModulusStandardError()),
+         text);
+    Line("1 / bulk modulus",
+         WithError(elasticity.BulkCompliance(),
+                   estimate.BulkComplianceStandardError()),
+         text);
+  }
+}
+
+void AddParameters(const Estimate& estimate, std::ostringstream& text) {
+  for (const ParameterEstimate& parameter : estimate.parameters) {
+    Line(parameter.Label(),
+         parameter.is_known
+             ? Number(parameter.value, 6) + " (known)"
+             : WithError(parameter.value, parameter.standard_error),
+         text);
+  }
+}
+
 void AddDiagnostics(const Estimate& estimate, std::ostringstream& text) {
   if (estimate.noise_sd) {
     Line("noise sd", Number(*estimate.noise_sd, 3), text);
@@ -151,7 +189,6 @@ void AddLoads(const Scene& scene, std::ostringstream& text) {
 std::string Summary(const Estimate& estimate, const Scene& scene,
                     const ReportTimes& times) {
   std::ostringstream text;
-  const IsotropicElasticity& elasticity = estimate.elasticity;
   Line("scene",
        std::to_string(scene.mesh.NumVertices()) + " nodes, " +
            std::to_string(scene.mesh.NumElements()) +
@@ -177,28 +214,10 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
   if (!estimate.message.empty()) {
     Line("", estimate.message, text);
   }
-  Line("Young's modulus E",
-       WithError(elasticity.youngs_modulus,
-                 estimate.YoungsModulusStandardError()),
-       text);
-  Line(
-      "Poisson's ratio nu",
-      WithError(elasticity.poisson_ratio, estimate.PoissonRatioStandardError()),
-      text);
-  if (estimate.poisson_ratio_interval && ReachesLimit(estimate)) {
-    Line("",
-         "between " + Number(estimate.poisson_ratio_interval->lower, 4) +
-             " and " + Number(estimate.poisson_ratio_interval->upper, 4) +
-             " (95 %)",
-         text);
-    Line("shear modulus mu",
-         WithError(elasticity.ShearModulus(),
-                   estimate.ShearModulusStandardError()),
-         text);
-    Line("1 / bulk modulus",
-         WithError(elasticity.BulkCompliance(),
-                   estimate.BulkComplianceStandardError()),
-         text);
+  if (IsOneIsotropicMaterial(scene.materials)) {
+    AddElasticity(estimate, text);
+  } else {
+    AddParameters(estimate, text);
   }
   if (!estimate.why_no_standard_error.empty()) {
     Line("", "no standard error: " + estimate.why_no_standard_error, text);

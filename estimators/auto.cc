@@ -12,7 +12,6 @@
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/limits.h"
-#include "elastimate/estimators/interface/parameter_judge.h"
 #include "elastimate/estimators/statistics/model_mismatch.h"
 
 namespace elastimate {
@@ -57,7 +56,7 @@ std::string WhyParametersNotWithinTolerance(const Estimate& estimate) {
                                  ? kLimits.notable_youngs_modulus_error
                                  : kLimits.notable_poisson_ratio_error;
     if (error > tolerance) {
-      return "the standard error of " + NameOfParameter(parameter) + " is " +
+      return "the standard error of " + parameter.Label() + " is " +
              (parameter.is_modulus ? TwoDigits(100 * error) + " %"
                                    : TwoDigits(error));
     }

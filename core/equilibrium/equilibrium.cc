@@ -17,16 +17,19 @@ Equilibrium::Equilibrium(const Scene& scene, SolverKind solver)
 
 bool Equilibrium::Solve(const Eigen::VectorXd& moduli) {
   ++element_passes_;
-  if (!solver_.FactorizeBlocks(forces_.Blocks(moduli, solver_.Graph()))) {
+  // Of moduli of any unit, a stiffness without one.
+  scale_ = moduli.cwiseAbs().maxCoeff();
+  const Eigen::VectorXd scaled = moduli / scale_;
+  if (!solver_.FactorizeBlocks(forces_.Blocks(scaled, solver_.Graph()))) {
     return false;
   }
   support_response_ = held_displacement_;
   if (held_forces_.size() > 0) {
-    support_response_ -= solver_.Solve(held_forces_ * moduli);
+    support_response_ -= solver_.Solve(held_forces_ * scaled);
   }
-  displacement_ = solver_.Solve(load_);
+  displacement_ = solver_.Solve(load_) / scale_;
   displacement_.colwise() += support_response_;
-  return displacement_.allFinite();
+  return !displacement_.hasNaN();
 }
 
 Eigen::MatrixXd Equilibrium::Sensitivities(const Eigen::MatrixXd& directions) {
@@ -34,8 +37,8 @@ Eigen::MatrixXd Equilibrium::Sensitivities(const Eigen::MatrixXd& directions) {
   Eigen::MatrixXd sensitivities(displacement_.rows(), n * displacement_.cols());
   for (Eigen::Index k = 0; k < displacement_.cols(); ++k) {
     ++element_passes_;
-    sensitivities.middleCols(n * k, n) =
-        -solver_.Solve(forces_.Columns(displacement_.col(k)) * directions);
+    sensitivities.middleCols(n * k, n) = -solver_.Solve(
+        forces_.Columns(displacement_.col(k)) * (directions / scale_));
   }
   return sensitivities;
 }

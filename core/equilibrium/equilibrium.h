@@ -55,6 +55,7 @@ class Equilibrium {
   Eigen::MatrixXd held_forces_;
   Eigen::MatrixXd displacement_;
   Eigen::VectorXd support_response_;
+  double scale_ = 1;  ///< Of the moduli over those of the factor.
   int element_passes_ = 0;
 };
 

@@ -21,12 +21,21 @@ struct Bounds {
 struct BoundsOfParameter {
   std::string name;
   Bounds bounds;
+
+  bool operator==(const BoundsOfParameter& other) const {
+    return name == other.name && bounds.lower == other.bounds.lower &&
+           bounds.upper == other.bounds.upper;
+  }
 };
 
 /// A parameter of a law whose value is known.
 struct KnownParameter {
   std::string name;
   double value;
+
+  bool operator==(const KnownParameter& other) const {
+    return name == other.name && value == other.value;
+  }
 };
 
 /// What a part of a specimen is made of.
@@ -37,6 +46,11 @@ struct Material {
   std::vector<KnownParameter> known;
   /// Of parameters that are not known.
   std::vector<BoundsOfParameter> bounds;
+
+  bool operator==(const Material& other) const {
+    return law == other.law && regions == other.regions &&
+           known == other.known && bounds == other.bounds;
+  }
 };
 
 /// Throws std::invalid_argument, with one sentence, unless each material has a

@@ -60,7 +60,8 @@ class DisplacementMisfit {
       on_factorization_(++num_factorizations_);
     }
     const Eigen::VectorXd moduli = free_.ModuliAt(x);
-    if (!moduli.allFinite() || !equilibrium_.Solve(moduli)) {
+    if (!moduli.allFinite() || !equilibrium_.Solve(moduli) ||
+        !equilibrium_.Displacement().allFinite()) {
       return false;
     }
     x_ = x;

@@ -20,6 +20,23 @@ void RemoveFindings(const Predicate& predicate,
 
 }  // namespace
 
+std::string ParameterEstimate::Label() const {
+  if (regions.empty()) {
+    return symbol;
+  }
+  constexpr std::size_t kMostNamed = 3;
+  const std::size_t num_named =
+      regions.size() > kMostNamed ? 2 : regions.size();
+  std::string ids;
+  for (std::size_t i = 0; i < num_named; ++i) {
+    ids += (i == 0 ? "" : ", ") + std::to_string(regions[i]);
+  }
+  if (num_named < regions.size()) {
+    ids += " and " + std::to_string(regions.size() - num_named) + " more";
+  }
+  return symbol + (regions.size() == 1 ? " of region " : " of regions ") + ids;
+}
+
 bool Estimate::Has(FindingCode code) const {
   return std::any_of(
       findings.begin(), findings.end(),

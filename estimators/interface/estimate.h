@@ -38,6 +38,9 @@ struct ParameterEstimate {
   std::optional<double> standard_error;
   /// Where it lies with a probability of 95 %.
   std::optional<Interval> interval;
+
+  /// "nu of region 3", "E" of a material of the whole mesh.
+  std::string Label() const;
 };
 
 /// The disagreement of two estimators, one of which leans on the model less.

@@ -38,7 +38,7 @@ void EnterErrors(Estimate& estimate) {
         estimate.parameter_covariance(Eigen::Index(i), Eigen::Index(i));
     if (!estimate.parameters[i].is_known &&
         !(std::isfinite(variance) && variance >= 0)) {
-      undetermined.push_back(NameOfParameter(estimate.parameters[i]));
+      undetermined.push_back(estimate.parameters[i].Label());
     } else if (!estimate.parameters[i].is_known) {
       ParameterEstimate& parameter = estimate.parameters[i];
       const double error = std::sqrt(variance);
@@ -73,7 +73,7 @@ void JudgePhysics(Estimate& estimate) {
     }
     if (!IsPhysical(parameter)) {
       std::ostringstream text;
-      text << NameOfParameter(parameter) << " = " << parameter.value;
+      text << parameter.Label() << " = " << parameter.value;
       unphysical.push_back(text.str());
     }
   }
@@ -89,12 +89,11 @@ void JudgeDetermination(Estimate& estimate) {
     const double relative = error / parameter.value;
     if (parameter.is_modulus &&
         relative > kLimits.largest_youngs_modulus_error) {
-      undetermined.push_back(NameOfParameter(parameter) + " (" +
+      undetermined.push_back(parameter.Label() + " (" +
                              TwoDigits(100 * relative) + " %)");
     } else if (!parameter.is_modulus &&
                error > kLimits.largest_poisson_ratio_error) {
-      undetermined.push_back(NameOfParameter(parameter) + " (" +
-                             TwoDigits(error) + ")");
+      undetermined.push_back(parameter.Label() + " (" + TwoDigits(error) + ")");
     }
   }
   if (!undetermined.empty()) {
@@ -119,7 +118,7 @@ void JudgeBias(Estimate& estimate) {
     if (bias(i) > std::max(notable, noise(i)) && bias(i) / unusable > largest) {
       largest = bias(i) / unusable;
       finding = ParameterBias(
-          NameOfParameter(parameter), bias(i), parameter.is_modulus,
+          parameter.Label(), bias(i), parameter.is_modulus,
           bias(i) > unusable ? Severity::kError : Severity::kWarning);
     }
   }
@@ -160,19 +159,6 @@ ParameterErrors ErrorsOfVariables(const FreeParameters& free,
       ParameterErrors::Constant(free.All().NumParameters(), Estimate::kUnknown);
   errors(free.All().Free()) = covariance.diagonal().cwiseSqrt();
   return errors;
-}
-
-std::string NameOfParameter(const ParameterEstimate& parameter) {
-  if (parameter.regions.empty()) {
-    return parameter.symbol;
-  }
-  std::string regions;
-  for (const int region : parameter.regions) {
-    regions += (regions.empty() ? "" : ", ") + std::to_string(region);
-  }
-  return parameter.symbol +
-         (parameter.regions.size() == 1 ? " of region " : " of regions ") +
-         regions;
 }
 
 void JudgeParameters(Estimate& estimate) {

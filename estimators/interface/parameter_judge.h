@@ -2,7 +2,6 @@
 #define ELASTIMATE_ESTIMATORS_INTERFACE_PARAMETER_JUDGE_H_
 
 #include <Eigen/Core>
-#include <string>
 
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
@@ -24,9 +23,6 @@ void EnterCovariance(const FreeParameters& free,
 /// budget.
 ParameterErrors ErrorsOfVariables(const FreeParameters& free,
                                   const Eigen::MatrixXd& covariance);
-
-/// "nu of region 3", "E" of a material without regions.
-std::string NameOfParameter(const ParameterEstimate& parameter);
 
 /// For materials other than one isotropic one: enters standard errors and
 /// intervals from the covariance of the parameters, and turns an estimate that

@@ -98,7 +98,7 @@ void NoteVariablesOnBounds(const FreeParameters& free,
     if (minimum.on_bound[i] != Side::kNone) {
       const ParameterEstimate& parameter =
           estimate.parameters[free.All().Free()[i]];
-      names.push_back(NameOfParameter(parameter));
+      names.push_back(parameter.Label());
       estimate.active_bounds.push_back(
           names.back() +
           (minimum.on_bound[i] == Side::kLower ? " (lower)" : " (upper)"));

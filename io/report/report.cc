@@ -88,7 +88,70 @@ Json FindingsJson(const std::vector<Finding>& findings) {
   return list;
 }
 
-Json BudgetJson(const ErrorBudget& budget) {
+// null for one material of the whole mesh, an id, or a list of joined ones.
+Json RegionsJson(const std::vector<int>& regions) {
+  return regions.empty()       ? Json(nullptr)
+         : regions.size() == 1 ? Json(regions[0])
+                               : Json(regions);
+}
+
+Json MaterialJson(const Scene& scene) {
+  Json regions = Json::array();
+  for (const Material& material : scene.materials) {
+    regions.push_back(RegionsJson(material.regions));
+  }
+  // All of one law.
+  return {
+      {"law",
+       scene.materials.empty() ? Material().law : scene.materials[0].law},
+      {"regions", scene.materials.empty() ? Json::array({nullptr}) : regions}};
+}
+
+Json ParametersJson(const Estimate& estimate) {
+  Json parameters = Json::array();
+  for (const ParameterEstimate& parameter : estimate.parameters) {
+    const std::optional<Interval>& interval = parameter.interval;
+    parameters.push_back(
+        {{"name", parameter.name},
+         {"region", RegionsJson(parameter.regions)},
+         {"value", OrNull(parameter.value)},
+         {"known", parameter.is_known},
+         {"standard_error", OrNull(parameter.standard_error)},
+         {"interval", interval ? Json({interval->lower, interval->upper})
+                               : Json(nullptr)}});
+  }
+  return parameters;
+}
+
+Json CovarianceJson(const Estimate& estimate) {
+  Json rows = Json::array();
+  for (const auto& row : estimate.parameter_covariance.rowwise()) {
+    Json values = Json::array();
+    for (const double value : row) {
+      values.push_back(OrNull(value));
+    }
+    rows.push_back(values);
+  }
+  return rows;
+}
+
+// By name for one isotropic material, else in the order of the parameters.
+Json BudgetJson(const Scene& scene, const ErrorBudget& budget) {
+  if (!IsOneIsotropicMaterial(scene.materials)) {
+    const auto list = [](const ParameterErrors& errors) {
+      Json values = Json::array();
+      for (const double error : errors) {
+        values.push_back(OrNull(error));
+      }
+      return errors.size() == 0 ? Json(nullptr) : values;
+    };
+    return {{"noise", list(budget.noise)},
+            {"bias", list(budget.bias)},
+            {"model", list(budget.model)},
+            {"outliers", list(budget.outliers)},
+            {"discretization", list(budget.discretization)},
+            {"law", list(budget.law)}};
+  }
   const auto of = [](const ParameterErrors& errors) {
     const bool is_known = errors.size() == 2;
     return Json({{"youngs_modulus", is_known ? OrNull(errors(0)) : nullptr},
@@ -198,7 +261,10 @@ std::string JsonReport(const Estimate& estimate, const Scene& scene,
       {"residual",
        {{"force_relative", OrNull(estimate.force_residual)},
         {"displacement_relative", OrNull(estimate.displacement_residual)}}},
-      {"error_budget", BudgetJson(estimate.error_budget)},
+      {"material", MaterialJson(scene)},
+      {"parameters", ParametersJson(estimate)},
+      {"covariance", CovarianceJson(estimate)},
+      {"error_budget", BudgetJson(scene, estimate.error_budget)},
       {"findings", FindingsJson(estimate.findings)},
       {"diagnostics", DiagnosticsJson(estimate)},
       {"work", WorkJson(estimate.work)},

@@ -1,10 +1,12 @@
 #include "elastimate/io/scene/json_scene.h"
 
+#include <limits>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "elastimate/core/materials/laws.h"
 #include "elastimate/io/scene/csv_field.h"
 #include "elastimate/io/scene/json_value.h"
 #include "elastimate/io/scene/mesh_reader.h"
@@ -275,19 +277,99 @@ LoadCase ReadLoadCase(const JsonValue& value, const Context& context,
   return load_case;
 }
 
+int ReadRegion(const JsonValue& value) {
+  const long long region = value.Integer();
+  if (region < std::numeric_limits<int>::min() ||
+      region > std::numeric_limits<int>::max()) {
+    value.Fail("is out of range; give the id of a region");
+  }
+  return static_cast<int>(region);
+}
+
+// Numbers and bounds of parameters of a law, by their names.
+void ReadWhatIsKnown(const JsonValue& value, const Law& law,
+                     Material& material) {
+  std::vector<std::string> names;
+  for (const LawParameter& parameter : law.Parameters()) {
+    names.emplace_back(parameter.name);
+  }
+  if (value.Has("known")) {
+    value.At("known").CheckKeys(names);
+  }
+  if (value.Has("bounds")) {
+    value.At("bounds").CheckKeys(names);
+  }
+  for (const std::string& name : names) {
+    if (value.Has("known") && value.At("known").Has(name)) {
+      material.known.push_back({name, value.At("known").At(name).Number()});
+    }
+    if (value.Has("bounds") && value.At("bounds").Has(name)) {
+      const Eigen::VectorXd ends = value.At("bounds").At(name).Vector(2);
+      material.bounds.push_back({name, {ends(0), ends(1)}});
+    }
+  }
+}
+
+Material ReadMaterial(const JsonValue& value) {
+  value.CheckKeys({"law", "region", "known", "bounds"});
+  Material material;
+  if (value.Has("law")) {
+    material.law = value.At("law").String();
+  }
+  const Law* const law = FindLaw(material.law);
+  if (law == nullptr) {
+    std::string all;
+    for (const Law* const each : Laws()) {
+      all += (all.empty() ? "" : ", ") + std::string(each->Name());
+    }
+    value.At("law").Fail("is \"" + Printable(material.law) +
+                         "\"; the laws known here are " + all);
+  }
+  if (value.Has("region")) {
+    const JsonValue region = value.At("region");
+    if (region.IsInteger()) {
+      material.regions.push_back(ReadRegion(region));
+    } else {
+      for (const JsonValue& each : region.Items()) {
+        material.regions.push_back(ReadRegion(each));
+      }
+      if (material.regions.empty()) {
+        region.Fail("is empty; name a region, or leave it out");
+      }
+    }
+  }
+  ReadWhatIsKnown(value, *law, material);
+  return material;
+}
+
+std::vector<Material> ReadMaterials(const JsonValue& document) {
+  std::vector<Material> materials;
+  if (document.Has("materials")) {
+    for (const JsonValue& value : document.At("materials").Items()) {
+      materials.push_back(ReadMaterial(value));
+    }
+    if (materials.empty()) {
+      document.At("materials").Fail("is empty; name one, or leave it out");
+    }
+  }
+  return materials;
+}
+
 }  // namespace
 
 FileScene ReadJsonScene(const std::filesystem::path& path,
                         Measurement measurement, const SectionChoice& section) {
   const nlohmann::json parsed = ParseJsonFile(path);
   const JsonValue document(path, parsed);
-  document.CheckKeys({"model", "thickness", "mesh", "supports", "cases"});
+  document.CheckKeys(
+      {"model", "thickness", "mesh", "materials", "supports", "cases"});
   const SectionChoice choice = Choose(section, ReadSection(document));
   FileScene file_scene;
   file_scene.mesh = ReadNamedMesh(document.At("mesh"));
   const MeshFile& mesh = file_scene.mesh;
   file_scene.scene.mesh =
       SceneMesh(mesh, SectionOf(mesh, choice), mesh.elements);
+  file_scene.scene.materials = ReadMaterials(document);
   file_scene.scene.supports = ReadSupports(document, mesh);
   const Context context = {
       mesh, !file_scene.scene.supports.held.colwise().all() && mesh.used,

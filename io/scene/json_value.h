@@ -35,6 +35,7 @@ class JsonValue {
 
   bool IsString() const { return value_->is_string(); }
   bool IsInteger() const { return value_->is_number_integer(); }
+  bool IsNull() const { return value_->is_null(); }
   std::string String() const;
   long long Integer() const;
   double Number() const;

@@ -33,7 +33,8 @@ bool AreClose(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
 }
 
 /// What differs between the specimens of two scenes; empty when nothing does.
-std::string WhyDifferent(const Scene& first, const Scene& other) {
+std::string WhyDifferent(const Scene& first, const Scene& other,
+                         RegionChoice regions) {
   const Mesh& mesh = first.mesh;
   if (mesh.kind != other.mesh.kind) {
     return "it is of kind " + std::string(other.mesh.Topology().name) +
@@ -61,6 +62,10 @@ std::string WhyDifferent(const Scene& first, const Scene& other) {
   if (mesh.regions.size() != other.mesh.regions.size() ||
       mesh.regions != other.mesh.regions) {
     return "its array 'region' differs";
+  }
+  if (regions == RegionChoice::kAsGiven && !other.materials.empty() &&
+      !(first.materials == other.materials)) {
+    return "its materials differ";
   }
   if ((first.supports.held != other.supports.held).any()) {
     return "it holds other components (the array 'fixed', or the supports)";
@@ -160,10 +165,11 @@ void CheckObserved(const std::filesystem::path& path, const Scene& scene) {
 }
 
 /// What of a mesh may be meant otherwise than it is read.
-void NoteMesh(const std::filesystem::path& path, const Mesh& mesh,
+void NoteMesh(const std::filesystem::path& path, const Scene& scene,
               std::vector<std::string>& notices) {
+  const Mesh& mesh = scene.mesh;
   const std::set<int> regions(mesh.regions.begin(), mesh.regions.end());
-  if (regions.size() > 1) {
+  if (regions.size() > 1 && scene.materials.empty()) {
     notices.push_back(PrintablePath(path) + ": the array 'region' has " +
                       std::to_string(regions.size()) +
                       " different ids, but all regions share one material: E "
@@ -182,6 +188,21 @@ void NoteMesh(const std::filesystem::path& path, const Mesh& mesh,
         first.str() +
         ", so that the parts around them are not connected; merge them in the "
         "mesh tool if the parts should be one");
+  }
+}
+
+/// Gives the scene the materials that were chosen for its regions.
+void ChooseMaterials(const std::filesystem::path& path, RegionChoice choice,
+                     Scene& scene) {
+  if (choice == RegionChoice::kOne) {
+    scene.materials.clear();
+  } else if (choice == RegionChoice::kEach) {
+    if (scene.mesh.regions.size() == 0) {
+      ThrowInputError(path,
+                      "there are no regions to have a material each; add the "
+                      "cell array 'region'");
+    }
+    scene.materials = IsotropicMaterialOfEachRegion(scene.mesh);
   }
 }
 
@@ -273,7 +294,8 @@ FileScene ReadFileScene(const std::filesystem::path& path,
 }  // namespace
 
 SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
-                       Measurement measurement, const SectionChoice& section) {
+                       Measurement measurement, const SectionChoice& section,
+                       RegionChoice regions) {
   if (paths.empty()) {
     throw std::invalid_argument("no scene file is given; name one");
   }
@@ -288,12 +310,13 @@ SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
         FinishScene(path, std::move(file_scene), reading.notices, file_order);
     std::vector<LoadCase> load_cases = std::move(scene.load_cases);
     if (&path == &paths.front()) {
-      NoteMesh(mesh_path, scene.mesh, reading.notices);
+      ChooseMaterials(mesh_path, regions, scene);
+      NoteMesh(mesh_path, scene, reading.notices);
       scene.load_cases.clear();
       reading.scene = std::move(scene);
       reading.file_order = std::move(file_order);
     } else if (const std::string difference =
-                   WhyDifferent(reading.scene, scene);
+                   WhyDifferent(reading.scene, scene, regions);
                !difference.empty()) {
       ThrowInputError(path, "this is no further load case of '" +
                                 PrintablePath(paths.front()) +

@@ -19,6 +19,13 @@ struct SectionChoice {
   std::optional<double> thickness;  ///< [length], positive.
 };
 
+/// Which materials the regions of a mesh have.
+enum class RegionChoice {
+  kAsGiven,  ///< Those of the scene.json, else one isotropic one.
+  kOne,      ///< One isotropic one, whatever the scene says.
+  kEach,     ///< An isotropic one for each region id.
+};
+
 /// A scene as read, and what the reader has to say about it.
 struct SceneReading {
   Scene scene;
@@ -61,7 +68,8 @@ struct SceneReading {
 /// after the other.
 SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
                        Measurement measurement,
-                       const SectionChoice& section = {});
+                       const SectionChoice& section = {},
+                       RegionChoice regions = RegionChoice::kAsGiven);
 
 }  // namespace elastimate
 

@@ -18,6 +18,7 @@
 
 #include "elastimate/estimators/interface/finding.h"
 #include "elastimate/estimators/registry.h"
+#include "tests/apps/region_scene.h"
 #include "tests/program.h"
 
 namespace elastimate {
@@ -203,6 +204,20 @@ TEST_F(Documentation, HasEveryFinding) {
             std::set<std::string>(codes.begin(), codes.end()));
 }
 
+TEST_F(Documentation, HasEveryLaw) {
+  EXPECT_EQ(NamesAfter("\n| `", testing::ReadText(Source("docs/materials.md"))),
+            NamesAfter("\n", "\n" + Succeed("materials").output));
+}
+
+TEST_F(Documentation, HasMaterialsThatCanBeRead) {
+  const std::vector<std::string> scenes = Blocks("docs/materials.md", "json");
+  ASSERT_EQ(scenes.size(), 2U);
+  testing::WriteRegions(folder_ / "block.vtu");
+  testing::WriteText(folder_ / "scene.json", scenes[0]);
+  testing::WriteText(folder_ / "parameters.json", scenes[1]);
+  Succeed("simulate scene.json --parameters=parameters.json --out=a.vtu");
+}
+
 TEST_F(Documentation, HasEveryEstimator) {
   const std::set<std::string> names =
       NamesAfter("\n", "\n" + Succeed("estimators").output);
@@ -222,7 +237,8 @@ TEST_F(Documentation, SaysWhatEachEstimatorTakes) {
           std::pair(takes.needs_supports, " needed |"),
           std::pair(takes.takes_bounds, " taken |"),
           std::pair(takes.takes_losses, " taken |"),
-          std::pair(takes.takes_degree, " taken |")}) {
+          std::pair(takes.takes_degree, " taken |"),
+          std::pair(takes.takes_materials, " taken |")}) {
       row += is_set ? word : " |";
     }
     EXPECT_NE(text.find(row + "\n"), std::string::npos) << row;

@@ -70,6 +70,7 @@ TEST(OneCombination, NamesTheModulusThatStays) {
 
 // With the longest numbers that they print.
 std::vector<Finding> EveryFinding() {
+  const std::vector<std::string> many(20, "nu of region 1000 (0.45)");
   constexpr double kLong = -1.23456e-100;
   const IsotropicElasticity elasticity{kLong, kLong};
   const Eigen::Vector2d direction(1, 1);
@@ -130,6 +131,16 @@ std::vector<Finding> EveryFinding() {
         YoungsModulusOnBound(),
         PoissonRatioOnBound(),
         PoissonRatioAtLimit(),
+        UnphysicalParameters(many),
+        ParametersUndetermined({"E of region 3 (45 %)"}),
+        ParametersUndetermined(many),
+        DependentForces(),
+        ParametersOnBounds({"nu of region 1000"}),
+        ParametersOnBounds(many),
+        ParameterBias("nu of regions 1, 2 and 17 more", kLong, false,
+                      Severity::kError),
+        ParameterBias("E", std::numeric_limits<double>::infinity(), true,
+                      Severity::kError),
         Locking(ElementKind::kTet4),
         DiscretizationErrorFinding(ElementKind::kTet4, estimate),
         DiscretizationErrorFinding(ElementKind::kHex8, hopeless),

@@ -1,0 +1,108 @@
+#include "elastimate/io/report/parameters_file.h"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "elastimate/core/materials/material_parameters.h"
+#include "elastimate/io/scene/json_value.h"
+#include "elastimate/io/text/input_error.h"
+#include "elastimate/io/text/printable.h"
+
+namespace elastimate {
+namespace {
+
+std::vector<long long> ReadRegions(const JsonValue& entry) {
+  std::vector<long long> regions;
+  if (!entry.Has("region") || entry.At("region").IsNull()) {
+    return regions;
+  }
+  const JsonValue region = entry.At("region");
+  if (region.IsInteger()) {
+    return {region.Integer()};
+  }
+  for (const JsonValue& each : region.Items()) {
+    regions.push_back(each.Integer());
+  }
+  return regions;
+}
+
+std::vector<long long> RegionsOf(const Scene& scene, std::size_t material) {
+  return scene.materials.empty()
+             ? std::vector<long long>{}
+             : std::vector<long long>(scene.materials[material].regions.begin(),
+                                      scene.materials[material].regions.end());
+}
+
+std::string Describe(const MaterialParameters::Parameter& parameter,
+                     const std::vector<long long>& regions) {
+  std::string text(parameter.law_parameter->name);
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    text += (i == 0 ? " of region " : ", ") + std::to_string(regions[i]);
+  }
+  return text;
+}
+
+void CheckRange(const LawParameter& parameter, const JsonValue& value) {
+  const double number = value.Number();
+  if (number >= parameter.lower && number <= parameter.upper) {
+    return;
+  }
+  std::ostringstream rule;
+  if (parameter.is_modulus) {
+    rule << "must be positive and finite";
+  } else {
+    rule << "must be between " << parameter.lower << " and " << parameter.upper;
+  }
+  value.Fail(rule.str());
+}
+
+}  // namespace
+
+Eigen::VectorXd ReadParameters(const std::filesystem::path& path,
+                               const Scene& scene) {
+  const nlohmann::json parsed = ParseJsonFile(path);
+  const JsonValue document(path, parsed);
+  const MaterialParameters parameters(scene.materials,
+                                      scene.mesh.section.model);
+  Eigen::VectorXd values = Eigen::VectorXd::Constant(
+      parameters.NumParameters(), std::numeric_limits<double>::quiet_NaN());
+  for (const JsonValue& entry : document.At("parameters").Items()) {
+    const std::string name = entry.At("name").String();
+    const std::vector<long long> regions = ReadRegions(entry);
+    bool is_found = false;
+    for (Eigen::Index i = 0; i < values.size(); ++i) {
+      const MaterialParameters::Parameter& parameter = parameters.All()[i];
+      if (parameter.law_parameter->name != name ||
+          RegionsOf(scene, parameter.material) != regions) {
+        continue;
+      }
+      if (!std::isnan(values(i))) {
+        entry.Fail("is the second value of " + Describe(parameter, regions) +
+                   "; give one");
+      }
+      CheckRange(*parameter.law_parameter, entry.At("value"));
+      values(i) = entry.At("value").Number();
+      is_found = true;
+    }
+    if (!is_found) {
+      entry.Fail("(" + Printable(name) +
+                 ") is no parameter of a material of the scene; correct its "
+                 "name or its region");
+    }
+  }
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    if (std::isnan(values(i))) {
+      const MaterialParameters::Parameter& parameter = parameters.All()[i];
+      ThrowInputError(
+          path, "there is no value of " +
+                    Describe(parameter, RegionsOf(scene, parameter.material)) +
+                    "; add it to \"parameters\"");
+    }
+  }
+  return values;
+}
+
+}  // namespace elastimate

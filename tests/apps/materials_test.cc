@@ -1,0 +1,174 @@
+// Several materials by the command line.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/apps/region_scene.h"
+#include "tests/program.h"
+
+namespace elastimate {
+namespace {
+
+using Json = nlohmann::json;
+
+class MaterialsCommand : public testing::ProgramTest {
+ protected:
+  void SetUp() override {
+    testing::ProgramTest::SetUp();
+    testing::WriteRegions(folder_ / "block.vtu");
+    testing::WriteText(folder_ / "truth.json", Parameters().dump());
+  }
+
+  // Of regions 1, 2 and 3.
+  static Json Parameters() {
+    Json list = Json::array();
+    for (int region = 1; region <= 3; ++region) {
+      list.push_back({{"name", "youngs_modulus"},
+                      {"region", region},
+                      {"value", 1e4 * region}});
+      list.push_back({{"name", "poisson_ratio"},
+                      {"region", region},
+                      {"value", 0.1 + 0.1 * region}});
+    }
+    return {{"parameters", list}};
+  }
+
+  static void ExpectTruth(const Json& report, double tolerance) {
+    const Json truth = Parameters()["parameters"];
+    ASSERT_EQ(report["parameters"].size(), truth.size());
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      const Json& parameter = report["parameters"][i];
+      EXPECT_EQ(parameter["name"], truth[i]["name"]);
+      EXPECT_EQ(parameter["region"], truth[i]["region"]);
+      const double value = truth[i]["value"];
+      EXPECT_NEAR(parameter["value"].get<double>() / value, 1, tolerance);
+    }
+  }
+};
+
+TEST_F(MaterialsCommand, SimulatesAndEstimatesEachRegion) {
+  Succeed(
+      "simulate block.vtu --regions=each --parameters=truth.json --out=m.vtu");
+  for (const std::string estimator :
+       {"closed-form", "bounded", "virtual-fields", "iterative-fe", "auto"}) {
+    const Json report = Succeed(
+                            "estimate m.vtu --regions=each --json=- "
+                            "--estimator=" +
+                            estimator)
+                            .Json();
+    EXPECT_EQ(report["status"], "ok") << report["message"];
+    ExpectTruth(report, 1e-5);
+    EXPECT_TRUE(report["youngs_modulus"].is_null());
+    EXPECT_EQ(report["material"]["regions"], Json({1, 2, 3}));
+    EXPECT_EQ(report["covariance"].size(), 6U);
+    EXPECT_EQ(report["error_budget"]["noise"].size(), 6U);
+  }
+  // The wrong model does not fit.
+  const std::string one =
+      Run("estimate m.vtu --estimator=iterative-fe --json=-").output;
+  EXPECT_EQ(Json::parse(one)["parameters"].size(), 2U);
+  EXPECT_NE(one.find("share one material"), std::string::npos);
+}
+
+TEST_F(MaterialsCommand, WritesWhatReportsAndScenesAreReadFrom) {
+  Succeed(
+      "simulate block.vtu --regions=each --parameters=truth.json --noise=1e-3 "
+      "--out=m.vtu");
+  const testing::ProgramRun run = Succeed(
+      "estimate m.vtu --regions=each --estimator=iterative-fe "
+      "--json=report.json --out=r.vtu");
+  EXPECT_NE(run.output.find("E of region 2"), std::string::npos) << run.output;
+  // A report is a file of parameters, and its result a scene with cell arrays.
+  Succeed(
+      "simulate r.vtu --regions=each --parameters=report.json --out=again.vtu");
+  const std::string result = testing::ReadText(folder_ / "r.vtu");
+  for (const std::string name :
+       {"youngs_modulus", "poisson_ratio", "strain_energy_density", "region"}) {
+    EXPECT_NE(result.find("Name=\"" + name + "\""), std::string::npos) << name;
+  }
+}
+
+TEST_F(MaterialsCommand, TakesWhatTheSceneKnows) {
+  Succeed(
+      "simulate block.vtu --regions=each --parameters=truth.json --out=m.vtu");
+  testing::WriteText(folder_ / "scene.json",
+                     R"({"mesh": "m.vtu",
+          "materials": [{"region": 1, "known": {"youngs_modulus": 1e4}},
+                        {"region": 2},
+                        {"region": 3, "bounds": {"poisson_ratio": [0, 0.45]}}],
+          "supports": [{"nodes": {"box": [[-1,-1,-1],[2,2,1e-9]]}}],
+          "cases": [{"displacement": {"array": "displacement"},
+                     "loads": [{"type": "nodal_force", "array": "force"}]}]})");
+  const Json report =
+      Succeed("estimate scene.json --estimator=iterative-fe --json=-").Json();
+  ExpectTruth(report, 1e-5);
+  EXPECT_TRUE(report["parameters"][0]["known"]);
+  EXPECT_TRUE(report["parameters"][0]["standard_error"].is_null());
+  EXPECT_TRUE(report["covariance"][0][1].is_null());
+  EXPECT_FALSE(report["covariance"][1][1].is_null());
+  // --nu is that of all materials of which none is known.
+  const Json known =
+      Run("estimate scene.json --estimator=iterative-fe --nu=0.2 --json=-")
+          .Json();
+  EXPECT_TRUE(known["parameters"][5]["known"]);
+  EXPECT_EQ(known["parameters"][5]["value"], 0.2);
+  Refuse("estimate scene.json", "bounds of a material");
+  Refuse("estimate scene.json --estimator=reduced-fe",
+         "use iterative-fe or virtual-fields");
+}
+
+TEST_F(MaterialsCommand, NamesWhatIsWrong) {
+  Succeed("generate cuboid --out=plain.vtu");
+  Refuse("simulate plain.vtu --regions=each --youngs=1 --nu=0 --out=a.vtu",
+         "plain.vtu: there are no regions");
+  Refuse("simulate block.vtu --regions=two --youngs=1 --nu=0 --out=a.vtu",
+         "--regions=two; it is one or each");
+  Refuse("simulate block.vtu --parameters=truth.json --nu=0 --out=a.vtu",
+         "give one or the other");
+  Refuse("simulate block.vtu --parameters=truth.json --out=a.vtu",
+         "truth.json: parameters[0] (youngs_modulus) is no parameter");
+  Json few = Parameters();
+  few["parameters"].erase(5);
+  testing::WriteText(folder_ / "few.json", few.dump());
+  Refuse("simulate block.vtu --regions=each --parameters=few.json --out=a.vtu",
+         "few.json: there is no value of poisson_ratio of region 3");
+  Json wrong = Parameters();
+  wrong["parameters"][1]["value"] = 0.5;
+  testing::WriteText(folder_ / "wrong.json", wrong.dump());
+  Refuse(
+      "simulate block.vtu --regions=each --parameters=wrong.json --out=a.vtu",
+      "wrong.json: parameters[1].value must be between -0.9999 and 0.49999");
+  Json twice = Parameters();
+  twice["parameters"].push_back(twice["parameters"][0]);
+  testing::WriteText(folder_ / "twice.json", twice.dump());
+  Refuse(
+      "simulate block.vtu --regions=each --parameters=twice.json --out=a.vtu",
+      "parameters[6] is the second value of youngs_modulus of region 1");
+  for (
+      const auto& [materials, says] :
+      std::vector<std::pair<std::string, std::string>>{
+          {R"([{"law": "rubber"}])",
+           "materials[0].law is \"rubber\"; the laws known here are "
+           "isotropic"},
+          {R"([{"region": 1}])", "element"},
+          {R"([{"region": [1, 2, 3], "known": {"E": 1}}])",
+           "materials[0].known"},
+          {R"([{"region": [1, 2, 3], "known": {"poisson_ratio": 0.5}}])",
+           "poisson_ratio = 0.5"},
+          {R"([{"region": [1, 2, 3], "bounds": {"poisson_ratio": [0.3, 0.1]}}])",
+           "crossed"},
+          {R"([{"region": 1e10}])", "materials[0].region"},
+          {"[]", "materials is empty"}}) {
+    testing::WriteText(
+        folder_ / "scene.json",
+        R"({"mesh": "block.vtu", "supports": [{"nodes": {"ids": [0, 1, 2, 3]}}],
+            "cases": [{"loads": []}], "materials": )" +
+            materials + "}");
+    Refuse("simulate scene.json --youngs=1 --nu=0 --out=a.vtu", says);
+  }
+}
+
+}  // namespace
+}  // namespace elastimate
