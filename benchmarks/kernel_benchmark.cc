@@ -230,7 +230,8 @@ void RunEstimator(benchmark::State& state, const char* name, double noise) {
 // A further measurement of a scene that reduced-fe knows.
 void MeasureAgain(benchmark::State& state) {
   const Scene scene = MeasuredCube(state.range(0), kNoise);
-  PreparedReducedFe prepared(scene, {});
+  const ReducedFe reduced_fe;
+  PreparedEstimator prepared = reduced_fe.Prepare(scene, {});
   const std::vector<Eigen::MatrixXd> displacements = {
       scene.load_cases[0].displacement};
   prepared.Run(displacements);

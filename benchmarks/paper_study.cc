@@ -53,7 +53,7 @@ class Comparison {
       : truth_(truth),
         options_(options),
         paper_method_(MakeEstimator(paper_method)),
-        reduced_fe_(exact, options),
+        prepared_(reduced_fe_.Prepare(exact, options)),
         bound_(CramerRaoBound(exact, truth, NoiseSd(exact, 1))) {
     if (options.poisson_ratio.upper == truth.poisson_ratio) {
       // No better is nu known that is held by the bound.
@@ -69,14 +69,15 @@ class Comparison {
     }
     const Eigen::Matrix2d bound = deviation * deviation * bound_;
     return {Trial{seed, truth_, bound, paper_method_->Run(measured, options_)},
-            Trial{seed, truth_, bound, reduced_fe_.Run(displacements)}};
+            Trial{seed, truth_, bound, prepared_.Run(displacements)}};
   }
 
  private:
   IsotropicElasticity truth_;
   EstimatorOptions options_;
   std::unique_ptr<Estimator> paper_method_;
-  PreparedReducedFe reduced_fe_;
+  ReducedFe reduced_fe_;
+  PreparedEstimator prepared_;
   Eigen::Matrix2d bound_;  // For a deviation of 1.
 };
 

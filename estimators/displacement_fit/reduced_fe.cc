@@ -2,13 +2,10 @@
 
 #include <cmath>
 #include <optional>
-#include <stdexcept>
-#include <string>
 
 #include "elastimate/estimators/displacement_fit/adaptive_fit.h"
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
 #include "elastimate/estimators/displacement_fit/observed_displacements.h"
-#include "elastimate/estimators/interface/input_checks.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 #include "elastimate/estimators/statistics/bounded_parameter.h"
@@ -98,6 +95,30 @@ Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
   return estimate;
 }
 
+class ReducedPreparation : public Preparation {
+ public:
+  ReducedPreparation(const Scene& scene, const EstimatorOptions& options)
+      : options_(options), adaptive_(scene, options) {}
+
+  Estimate Run(const Scene& scene) override {
+    if (!observed_) {
+      observed_.emplace(scene);
+    } else {
+      observed_->Remeasure(scene);
+    }
+    const Work before = adaptive_.Model().WorkDone();
+    Estimate estimate = RunAdaptiveFit(scene, options_, *observed_, adaptive_);
+    estimate.work = adaptive_.Model().WorkDone() - before;
+    return estimate;
+  }
+
+ private:
+  const EstimatorOptions& options_;
+  AdaptiveFit adaptive_;
+  /// Empty before the first measurement.
+  std::optional<ObservedDisplacements> observed_;
+};
+
 }  // namespace
 
 std::string_view ReducedFe::Name() const { return "reduced-fe"; }
@@ -128,63 +149,9 @@ Estimate ReducedFe::DoRun(const Scene& scene,
   return estimate;
 }
 
-struct PreparedReducedFe::State {
-  State(const Scene& unmeasured_scene, const EstimatorOptions& given_options)
-      : scene(unmeasured_scene),
-        options(given_options),
-        adaptive(scene, options) {}
-
-  Scene scene;
-  EstimatorOptions options;
-  AdaptiveFit adaptive;
-  /// Empty before the first measurement.
-  std::unique_ptr<ObservedDisplacements> observed;
-};
-
-PreparedReducedFe::PreparedReducedFe(const Scene& scene,
-                                     const EstimatorOptions& options) {
-  Scene unmeasured = scene;
-  for (LoadCase& load_case : unmeasured.load_cases) {
-    load_case.displacement.resize(scene.mesh.Dimension(), 0);
-  }
-  ValidateScene(unmeasured);
-  CheckOptions(options);
-  CheckSupported(ReducedFe(), unmeasured, options);
-  state_ = std::make_unique<State>(unmeasured, options);
-}
-
-PreparedReducedFe::~PreparedReducedFe() = default;
-PreparedReducedFe::PreparedReducedFe(PreparedReducedFe&&) noexcept = default;
-PreparedReducedFe& PreparedReducedFe::operator=(PreparedReducedFe&&) noexcept =
-    default;
-
-Estimate PreparedReducedFe::Run(
-    const std::vector<Eigen::MatrixXd>& displacements) {
-  Stopwatch stopwatch;
-  Scene& scene = state_->scene;
-  if (displacements.size() != scene.load_cases.size()) {
-    throw std::invalid_argument(std::to_string(displacements.size()) +
-                                " measured displacements for " +
-                                std::to_string(scene.load_cases.size()) +
-                                " load cases; give one for each");
-  }
-  for (std::size_t k = 0; k < displacements.size(); ++k) {
-    scene.load_cases[k].displacement = displacements[k];
-  }
-  ValidateMeasurements(scene);
-  const std::vector<Finding> findings = CheckMeasurements(scene);
-  if (!state_->observed) {
-    state_->observed = std::make_unique<ObservedDisplacements>(scene);
-  } else {
-    state_->observed->Remeasure(scene);
-  }
-  const Work before = state_->adaptive.Model().WorkDone();
-  Estimate estimate = RunAdaptiveFit(scene, state_->options, *state_->observed,
-                                     state_->adaptive);
-  estimate.work = state_->adaptive.Model().WorkDone() - before;
-  FinishEstimate(ReducedFe(), scene, state_->options, findings, estimate);
-  estimate.seconds = stopwatch.Lap();
-  return estimate;
+std::unique_ptr<Preparation> ReducedFe::DoPrepare(
+    const Scene& scene, const EstimatorOptions& options) const {
+  return std::make_unique<ReducedPreparation>(scene, options);
 }
 
 }  // namespace elastimate

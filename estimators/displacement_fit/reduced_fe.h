@@ -2,7 +2,6 @@
 #define ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_REDUCED_FE_H_
 
 #include <memory>
-#include <vector>
 
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimator.h"
@@ -35,6 +34,13 @@ namespace elastimate {
 /// Needs supports that hold the specimen; any observed components will do.
 /// Reaches the Cramer-Rao bound as long as the mesh describes the specimen.
 ///
+/// Prepared (Estimator::Prepare), the factorisation and the reduced model are
+/// kept: a further measurement, once the model has been refined where the
+/// estimates lie, costs no solve and no element pass, O(num_nodes m) operations
+/// for m = 10 to 30 basis vectors; with a loss O(num_nodes m^2) for each of
+/// some 10 reweightings.  It agrees with Run within the tolerance of the
+/// reduced model, a tenth of the standard error.
+///
 /// Cost: 2 factorisations (1 where bounds keep nu below 0.49; 3 or 4 near nu =
 /// 1/2 or without noise), about 45 solves for each load case, of which ten
 /// serve all; memory is that of the factor and about 80 vectors for each load
@@ -49,41 +55,8 @@ class ReducedFe : public Estimator {
  protected:
   Estimate DoRun(const Scene& scene,
                  const EstimatorOptions& options) const override;
-};
-
-/// reduced-fe for a specimen that is measured again and again under the same
-/// loads and supports: the factorisation and the reduced model are kept.
-///
-///   PreparedReducedFe prepared(scene, {});
-///   for (const Eigen::Matrix3Xd& displacement : measurements) {
-///     const Estimate estimate = prepared.Run({displacement});
-///   }
-///
-/// Cost of a measurement, once the model has been refined where the estimates
-/// lie: no solve and no element pass, O(num_nodes m) operations for m = 10 to
-/// 30 basis vectors, which is the time of about one element pass.  With a loss
-/// a measurement costs O(num_nodes m^2) for each of some 10 reweightings.
-class PreparedReducedFe {
- public:
-  /// Factorises and reduces.  Measured displacements of `scene` are not looked
-  /// at.  Throws std::invalid_argument as Estimator::Run does.
-  PreparedReducedFe(const Scene& scene, const EstimatorOptions& options);
-  ~PreparedReducedFe();
-  PreparedReducedFe(PreparedReducedFe&&) noexcept;
-  PreparedReducedFe& operator=(PreparedReducedFe&&) noexcept;
-
-  /// The estimate from one measured displacement for each load case,
-  /// dimension x num_nodes each [length]; `work`, stages and seconds are those
-  /// of this call.  Agrees with ReducedFe::Run within the tolerance of the
-  /// reduced model, a tenth of the standard error.  Throws
-  /// std::invalid_argument, and leaves this object as it was, when a shape is
-  /// wrong, or for displacements that Estimator::Run would refuse.  Not to be
-  /// called from two threads at once.
-  Estimate Run(const std::vector<Eigen::MatrixXd>& displacements);
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
+  std::unique_ptr<Preparation> DoPrepare(
+      const Scene& scene, const EstimatorOptions& options) const override;
 };
 
 }  // namespace elastimate

@@ -140,29 +140,8 @@ void Describe(const ForceResidual& residual, const EstimatorOptions& options,
   }
 }
 
-}  // namespace
-
-std::string_view Bounded::Name() const { return "bounded"; }
-
-std::string_view Bounded::Description() const {
-  return "closed-form with bounds on nu and E, by Ceres [Becker & Teschner "
-         "2007, eq. 24]";
-}
-
-Capabilities Bounded::WhatItTakes() const {
-  Capabilities capabilities;
-  capabilities.needs_all_displacements = true;
-  capabilities.takes_bounds = true;
-  capabilities.takes_materials = true;
-  return capabilities;
-}
-
-Estimate Bounded::DoRun(const Scene& scene,
-                        const EstimatorOptions& options) const {
-  if (!IsOneIsotropicMaterial(scene.materials)) {
-    return RegressForces(scene, options, true);
-  }
-  const ForceResidual residual(scene);
+Estimate RunBounded(const ForceResidual& residual, const Scene& scene,
+                    const EstimatorOptions& options) {
   Estimate estimate;
   Evidence evidence;
   evidence.is_biased_by_noise = true;
@@ -213,6 +192,38 @@ Estimate Bounded::DoRun(const Scene& scene,
   }
   Judge(evidence, options, estimate);
   return estimate;
+}
+
+}  // namespace
+
+std::string_view Bounded::Name() const { return "bounded"; }
+
+std::string_view Bounded::Description() const {
+  return "closed-form with bounds on nu and E, by Ceres [Becker & Teschner "
+         "2007, eq. 24]";
+}
+
+Capabilities Bounded::WhatItTakes() const {
+  Capabilities capabilities;
+  capabilities.needs_all_displacements = true;
+  capabilities.takes_bounds = true;
+  capabilities.takes_materials = true;
+  return capabilities;
+}
+
+Estimate Bounded::DoRun(const Scene& scene,
+                        const EstimatorOptions& options) const {
+  return IsOneIsotropicMaterial(scene.materials)
+             ? RunBounded(ForceResidual(scene), scene, options)
+             : RegressForces(scene, options, true);
+}
+
+std::unique_ptr<Preparation> Bounded::DoPrepare(
+    const Scene& scene, const EstimatorOptions& options) const {
+  if (!IsOneIsotropicMaterial(scene.materials)) {
+    return Estimator::DoPrepare(scene, options);
+  }
+  return PrepareForceResidual(scene, options, RunBounded);
 }
 
 }  // namespace elastimate

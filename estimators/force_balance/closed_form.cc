@@ -7,27 +7,10 @@
 
 namespace elastimate {
 
-std::string_view ClosedForm::Name() const { return "closed-form"; }
+namespace {
 
-std::string_view ClosedForm::Description() const {
-  return "linear least squares of the force residual, one pass over the "
-         "elements; exact without noise, biased with it [Becker & Teschner "
-         "2007, eq. 20-23]";
-}
-
-Capabilities ClosedForm::WhatItTakes() const {
-  Capabilities capabilities;
-  capabilities.needs_all_displacements = true;
-  capabilities.takes_materials = true;
-  return capabilities;
-}
-
-Estimate ClosedForm::DoRun(const Scene& scene,
-                           const EstimatorOptions& options) const {
-  if (!IsOneIsotropicMaterial(scene.materials)) {
-    return RegressForces(scene, options, false);
-  }
-  const ForceResidual residual(scene);
+Estimate RunClosedForm(const ForceResidual& residual, const Scene& scene,
+                       const EstimatorOptions& options) {
   Estimate estimate;
   Evidence evidence;
   evidence.is_biased_by_noise = true;
@@ -52,6 +35,38 @@ Estimate ClosedForm::DoRun(const Scene& scene,
   evidence.work_check = CheckByVirtualWork(scene, options, estimate);
   Judge(evidence, options, estimate);
   return estimate;
+}
+
+}  // namespace
+
+std::string_view ClosedForm::Name() const { return "closed-form"; }
+
+std::string_view ClosedForm::Description() const {
+  return "linear least squares of the force residual, one pass over the "
+         "elements; exact without noise, biased with it [Becker & Teschner "
+         "2007, eq. 20-23]";
+}
+
+Capabilities ClosedForm::WhatItTakes() const {
+  Capabilities capabilities;
+  capabilities.needs_all_displacements = true;
+  capabilities.takes_materials = true;
+  return capabilities;
+}
+
+Estimate ClosedForm::DoRun(const Scene& scene,
+                           const EstimatorOptions& options) const {
+  return IsOneIsotropicMaterial(scene.materials)
+             ? RunClosedForm(ForceResidual(scene), scene, options)
+             : RegressForces(scene, options, false);
+}
+
+std::unique_ptr<Preparation> ClosedForm::DoPrepare(
+    const Scene& scene, const EstimatorOptions& options) const {
+  if (!IsOneIsotropicMaterial(scene.materials)) {
+    return Estimator::DoPrepare(scene, options);
+  }
+  return PrepareForceResidual(scene, options, RunClosedForm);
 }
 
 }  // namespace elastimate

@@ -32,6 +32,8 @@ class ClosedForm : public Estimator {
  protected:
   Estimate DoRun(const Scene& scene,
                  const EstimatorOptions& options) const override;
+  std::unique_ptr<Preparation> DoPrepare(
+      const Scene& scene, const EstimatorOptions& options) const override;
 };
 
 }  // namespace elastimate

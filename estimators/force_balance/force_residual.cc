@@ -75,6 +75,23 @@ void SetHeldRowsToZero(const ComponentMask& held,
   }
 }
 
+void WeightMeasurements(const Scene& scene, Eigen::Ref<Eigen::MatrixXd> q) {
+  const Supports& supports = scene.supports;
+  for (Eigen::Index k = 0; k < q.cols(); ++k) {
+    const LoadCase& load_case = scene.load_cases[k];
+    q.col(k).reshaped(supports.held.rows(), scene.mesh.NumNodes()) =
+        1 / load_case.noise_sd.value_or(1) *
+        supports.held.select(supports.displacement, load_case.displacement);
+  }
+}
+
+void WeightLoads(const Scene& scene, Eigen::Ref<Eigen::MatrixXd> f) {
+  AssembleLoadCases(scene, f);
+  for (Eigen::Index k = 0; k < f.cols(); ++k) {
+    f.col(k) *= 1 / scene.load_cases[k].noise_sd.value_or(1);
+  }
+}
+
 }  // namespace
 
 WeightedLoadCases WeightLoadCases(const Scene& scene) {
@@ -82,22 +99,30 @@ WeightedLoadCases WeightLoadCases(const Scene& scene) {
   const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
   WeightedLoadCases weighted = {Eigen::MatrixXd(num_rows, num_cases),
                                 Eigen::MatrixXd(num_rows, num_cases)};
-  WeightLoadCases(scene, weighted.q, weighted.f);
+  WeightMeasurements(scene, weighted.q);
+  WeightLoads(scene, weighted.f);
   return weighted;
 }
 
-void WeightLoadCases(const Scene& scene, Eigen::Ref<Eigen::MatrixXd> q,
-                     Eigen::Ref<Eigen::MatrixXd> f) {
-  const Supports& supports = scene.supports;
-  AssembleLoadCases(scene, f);
-  for (Eigen::Index k = 0; k < q.cols(); ++k) {
-    const LoadCase& load_case = scene.load_cases[k];
-    const double weight = 1 / load_case.noise_sd.value_or(1);
-    q.col(k).reshaped(supports.held.rows(), scene.mesh.NumNodes()) =
-        weight *
-        supports.held.select(supports.displacement, load_case.displacement);
-    f.col(k) *= weight;
-  }
+ForceScene::ForceScene(const Scene& scene) : stiffness_(scene.mesh) {
+  const ComponentMask& held = scene.supports.held;
+  const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
+  const bool is_small = scene.mesh.NumElements() <= kMostElementsForExactTraces;
+  Eigen::MatrixXd columns(held.size(),
+                          num_cases + (is_small ? 0 : kNumTraceProbes));
+  auto f = columns.leftCols(num_cases);
+  WeightLoads(scene, f);
+  SetHeldRowsToZero(held, f);
+  SetTraceProbes(held, columns.rightCols(columns.cols() - num_cases));
+  StiffnessProducts products;
+  stiffness_.Multiply(columns, products);
+  loads_ = f;
+  of_loads_ = {products.h.leftCols(num_cases), products.j.leftCols(num_cases)};
+  traces_ =
+      is_small
+          ? StiffnessTraces(scene.mesh, DegreesOfFreedom(scene.supports))
+          : EstimateStiffnessTraces(held, products.h.rightCols(kNumTraceProbes),
+                                    products.j.rightCols(kNumTraceProbes));
 }
 
 ForceResidual::ForceResidual(const Scene& scene)
@@ -106,22 +131,19 @@ ForceResidual::ForceResidual(const Scene& scene)
   const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
   const bool is_small = scene.mesh.NumElements() <= kMostElementsForExactTraces;
   const Eigen::Index num_probes = is_small ? 0 : kNumTraceProbes;
-  known_noise_sd_ = scene.load_cases.front().noise_sd;
-  num_equations_ = (held.size() - held.count()) * num_cases;
 
   // q, f and, where the traces are estimated, their probes, in one matrix:
   // memory is dear where a pass is as short as writing it.
   Eigen::MatrixXd columns;
   ResizeInLargePages(held.size(), 2 * num_cases + num_probes, columns);
   auto f = columns.middleCols(num_cases, num_cases);
-  WeightLoadCases(scene, columns.leftCols(num_cases), f);
+  WeightMeasurements(scene, columns.leftCols(num_cases));
+  WeightLoads(scene, f);
   SetHeldRowsToZero(held, f);
   SetTraceProbes(held, columns.rightCols(num_probes));
   const StiffnessProducts products =
       MultiplyStiffnessBasis(scene.mesh, columns);
   ++work_.element_passes;
-  triangle_ = TriangleOfFreeRows(held, f, products.j.leftCols(num_cases),
-                                 products.h.leftCols(num_cases));
   if (is_small) {
     traces_ = StiffnessTraces(scene.mesh, DegreesOfFreedom(scene.supports));
     ++work_.element_passes;
@@ -129,17 +151,47 @@ ForceResidual::ForceResidual(const Scene& scene)
     traces_ = EstimateStiffnessTraces(held, products.h.rightCols(num_probes),
                                       products.j.rightCols(num_probes));
   }
-
   Eigen::MatrixXd b;
   ResizeInLargePages(held.size(), num_cases, b);
   b = products.j.leftCols(num_cases);
   SetHeldRowsToZero(held, b);
   const StiffnessProducts of_b = MultiplyStiffnessBasis(scene.mesh, b);
   ++work_.element_passes;
-  product_gram_ =
-      ProductGram(held, of_b, products.h.middleCols(num_cases, num_cases),
-                  products.j.middleCols(num_cases, num_cases));
-  traces_ *= static_cast<double>(num_cases);
+  Compress(scene, products.h.leftCols(num_cases),
+           products.j.leftCols(num_cases), f, of_b,
+           products.h.middleCols(num_cases, num_cases),
+           products.j.middleCols(num_cases, num_cases));
+}
+
+ForceResidual::ForceResidual(const ForceScene& prepared, const Scene& scene)
+    : section_model_(scene.mesh.section.model), traces_(prepared.traces_) {
+  const ComponentMask& held = scene.supports.held;
+  Eigen::MatrixXd q(prepared.loads_.rows(), prepared.loads_.cols());
+  WeightMeasurements(scene, q);
+  StiffnessProducts products;
+  prepared.Multiply(q, products);
+  Eigen::MatrixXd b = products.j;
+  SetHeldRowsToZero(held, b);
+  StiffnessProducts of_b;
+  prepared.Multiply(b, of_b);
+  work_.element_passes += 2;
+  Compress(scene, products.h, products.j, prepared.loads_, of_b,
+           prepared.of_loads_.h, prepared.of_loads_.j);
+}
+
+void ForceResidual::Compress(const Scene& scene,
+                             const Eigen::Ref<const Eigen::MatrixXd>& a,
+                             const Eigen::Ref<const Eigen::MatrixXd>& b,
+                             const Eigen::Ref<const Eigen::MatrixXd>& f,
+                             const StiffnessProducts& of_b,
+                             const Eigen::Ref<const Eigen::MatrixXd>& hf,
+                             const Eigen::Ref<const Eigen::MatrixXd>& jf) {
+  const ComponentMask& held = scene.supports.held;
+  known_noise_sd_ = scene.load_cases.front().noise_sd;
+  num_equations_ = (held.size() - held.count()) * a.cols();
+  triangle_ = TriangleOfFreeRows(held, f, b, a);
+  product_gram_ = ProductGram(held, of_b, hf, jf);
+  traces_ *= static_cast<double>(a.cols());
 }
 
 std::optional<double> ForceResidual::PoissonRatio() const {
@@ -376,6 +428,28 @@ ErrorsOnBound ForceResidual::AllowForYoungsModulusOnBound(
                        x.col(1).squaredNorm();
   return elastimate::AllowForYoungsModulusOnBound(options, slope,
                                                   standard_error, estimate);
+}
+
+std::unique_ptr<Preparation> PrepareForceResidual(
+    const Scene& scene, const EstimatorOptions& options,
+    Estimate (*estimate)(const ForceResidual& residual, const Scene& scene,
+                         const EstimatorOptions& options)) {
+  class ForcePreparation : public Preparation {
+   public:
+    ForcePreparation(const Scene& scene, const EstimatorOptions& options,
+                     decltype(estimate) estimate)
+        : forces_(scene), options_(options), estimate_(estimate) {}
+
+    Estimate Run(const Scene& scene) override {
+      return estimate_(ForceResidual(forces_, scene), scene, options_);
+    }
+
+   private:
+    ForceScene forces_;
+    const EstimatorOptions& options_;
+    decltype(estimate) estimate_;
+  };
+  return std::make_unique<ForcePreparation>(scene, options, estimate);
 }
 
 std::optional<UnbiasedPoissonRatio> MeasureUnbiasedPoissonRatio(

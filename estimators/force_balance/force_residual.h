@@ -2,10 +2,12 @@
 #define ELASTIMATE_ESTIMATORS_FORCE_BALANCE_FORCE_RESIDUAL_H_
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
@@ -24,9 +26,27 @@ struct WeightedLoadCases {
 
 /// Precondition: every free component is observed.
 WeightedLoadCases WeightLoadCases(const Scene& scene);
-/// The same into columns that are there.
-void WeightLoadCases(const Scene& scene, Eigen::Ref<Eigen::MatrixXd> q,
-                     Eigen::Ref<Eigen::MatrixXd> f);
+
+/// What a ForceResidual needs that does not depend on the measurement, for a
+/// scene that is measured again and again.
+class ForceScene {
+ public:
+  /// Two element passes.  Refers to the mesh of the scene.
+  explicit ForceScene(const Scene& scene);
+
+  /// H q and J q of some columns: one element pass.
+  void Multiply(const Eigen::MatrixXd& q, StiffnessProducts& products) const {
+    stiffness_.Multiply(q, products);
+  }
+
+ private:
+  friend class ForceResidual;
+
+  StiffnessOperator stiffness_;
+  Eigen::MatrixXd loads_;  ///< Weighted f, zero in the held rows.
+  StiffnessProducts of_loads_;
+  Eigen::Matrix2d traces_;  ///< Of one load case.
+};
 
 /// The force residual r(nu, t) = a + nu b - t f of a scene, a = H q, b = J q,
 /// over the free degrees of freedom of all load cases, compressed to what its
@@ -41,6 +61,10 @@ class ForceResidual {
   /// Preconditions: what Estimator::Run checks, and every free component is
   /// observed.
   explicit ForceResidual(const Scene& scene);
+
+  /// Of a measurement of the scene that `prepared` is of: two element passes of
+  /// one column for each load case.
+  ForceResidual(const ForceScene& prepared, const Scene& scene);
 
   /// Minimiser of ||r|| over nu and t, unbounded; empty when b and f are
   /// collinear, so that the data determine one combination of nu and t only.
@@ -109,6 +133,13 @@ class ForceResidual {
   Eigen::Index NumEquations() const { return num_equations_; }
 
  private:
+  /// Of a = H q and b = J q, the loads f, and the products with b and f.
+  void Compress(const Scene& scene, const Eigen::Ref<const Eigen::MatrixXd>& a,
+                const Eigen::Ref<const Eigen::MatrixXd>& b,
+                const Eigen::Ref<const Eigen::MatrixXd>& f,
+                const StiffnessProducts& of_b,
+                const Eigen::Ref<const Eigen::MatrixXd>& hf,
+                const Eigen::Ref<const Eigen::MatrixXd>& jf);
   /// The variance of the weighted noise for the standard errors: as given, or
   /// from the residual where nothing is given or the residual contradicts it,
   /// which is evidence.  Fills in the noise of `estimate`, or the reason why
@@ -142,6 +173,13 @@ class ForceResidual {
   std::optional<double> known_noise_sd_;
   Work work_;
 };
+
+/// A preparation that makes the force residual of each measurement, and of it
+/// an estimate.
+std::unique_ptr<Preparation> PrepareForceResidual(
+    const Scene& scene, const EstimatorOptions& options,
+    Estimate (*estimate)(const ForceResidual& residual, const Scene& scene,
+                         const EstimatorOptions& options));
 
 /// For a given nu: what the data ask for instead; empty when they do not say.
 std::optional<UnbiasedPoissonRatio> MeasureUnbiasedPoissonRatio(

@@ -364,6 +364,62 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
   evidence.correction = std::sqrt(fit.square_sum) / balance.DisplacementNorm();
 }
 
+int DegreeOf(const EstimatorOptions& options) {
+  return options.virtual_field_degree.value_or(VirtualFields::kDefaultDegree);
+}
+
+// `imbalance` is that of the loads.
+Estimate BalanceWork(const VirtualWorkBalance& balance,
+                     const ForceResidual& force_residual, double imbalance,
+                     const Scene& scene, const EstimatorOptions& options) {
+  Estimate estimate;
+  Evidence evidence;
+  Stopwatch stopwatch;
+  estimate.work = force_residual.WorkDone();
+  // The measurement, in the balance.
+  ++estimate.work.element_passes;
+  evidence.load_imbalance = imbalance;
+  evidence.do_loads_work = balance.LoadsDoWork();
+  Judge(evidence, options, estimate);
+  if (!estimate.IsUsable()) {
+    return estimate;
+  }
+  const VirtualWorkFit fit = Fit(options, balance, evidence, estimate);
+  Judge(evidence, options, estimate);
+  if (!estimate.IsUsable()) {
+    return estimate;
+  }
+  DescribeFit(scene, options, balance, force_residual, fit, evidence, estimate);
+  Judge(evidence, options, estimate);
+  if (estimate.IsUsable() && scene.mesh.NumElements() > 1) {
+    estimate.discretization_error = DiscretizationError(
+        scene.mesh, estimate.elasticity, SmoothDisplacements(scene));
+  }
+  estimate.stages.push_back({"fit", stopwatch.Lap()});
+  return estimate;
+}
+
+class WorkPreparation : public Preparation {
+ public:
+  WorkPreparation(const Scene& scene, const EstimatorOptions& options)
+      : options_(options),
+        work_(scene.mesh, scene.supports, DegreeOf(options)),
+        forces_(scene),
+        imbalance_(work_.Imbalance(AssembleLoadCases(scene))) {}
+
+  Estimate Run(const Scene& scene) override {
+    return BalanceWork(VirtualWorkBalance(work_, scene),
+                       ForceResidual(forces_, scene), imbalance_, scene,
+                       options_);
+  }
+
+ private:
+  const EstimatorOptions& options_;
+  VirtualWork work_;
+  ForceScene forces_;
+  double imbalance_;
+};
+
 }  // namespace
 
 std::string_view VirtualFields::Name() const { return "virtual-fields"; }
@@ -387,36 +443,24 @@ Estimate VirtualFields::DoRun(const Scene& scene,
   if (!IsOneIsotropicMaterial(scene.materials)) {
     return BalanceVirtualWork(scene, options);
   }
-  Estimate estimate;
-  Evidence evidence;
   Stopwatch stopwatch;
-  const VirtualWork work(scene.mesh, scene.supports,
-                         options.virtual_field_degree.value_or(kDefaultDegree));
-  estimate.stages.push_back({"prepare mesh", stopwatch.Lap()});
-  const VirtualWorkBalance balance(work, scene);
-  const ForceResidual force_residual(scene);
-  estimate.work = force_residual.WorkDone();
-  // The fields, and the measurement.
-  estimate.work.element_passes += 2;
-  evidence.load_imbalance = work.Imbalance(AssembleLoadCases(scene));
-  evidence.do_loads_work = balance.LoadsDoWork();
-  Judge(evidence, options, estimate);
-  if (!estimate.IsUsable()) {
-    return estimate;
-  }
-  const VirtualWorkFit fit = Fit(options, balance, evidence, estimate);
-  Judge(evidence, options, estimate);
-  if (!estimate.IsUsable()) {
-    return estimate;
-  }
-  DescribeFit(scene, options, balance, force_residual, fit, evidence, estimate);
-  Judge(evidence, options, estimate);
-  if (estimate.IsUsable() && scene.mesh.NumElements() > 1) {
-    estimate.discretization_error = DiscretizationError(
-        scene.mesh, estimate.elasticity, SmoothDisplacements(scene));
-  }
-  estimate.stages.push_back({"fit", stopwatch.Lap()});
+  const VirtualWork work(scene.mesh, scene.supports, DegreeOf(options));
+  const double seconds = stopwatch.Lap();
+  Estimate estimate =
+      BalanceWork(VirtualWorkBalance(work, scene), ForceResidual(scene),
+                  work.Imbalance(AssembleLoadCases(scene)), scene, options);
+  // The fields.
+  ++estimate.work.element_passes;
+  estimate.stages.insert(estimate.stages.begin(), {"prepare mesh", seconds});
   return estimate;
+}
+
+std::unique_ptr<Preparation> VirtualFields::DoPrepare(
+    const Scene& scene, const EstimatorOptions& options) const {
+  if (!IsOneIsotropicMaterial(scene.materials)) {
+    return Estimator::DoPrepare(scene, options);
+  }
+  return std::make_unique<WorkPreparation>(scene, options);
 }
 
 }  // namespace elastimate

@@ -56,6 +56,8 @@ class VirtualFields : public Estimator {
  protected:
   Estimate DoRun(const Scene& scene,
                  const EstimatorOptions& options) const override;
+  std::unique_ptr<Preparation> DoPrepare(
+      const Scene& scene, const EstimatorOptions& options) const override;
 };
 
 }  // namespace elastimate

@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "elastimate/estimators/interface/input_checks.h"
 #include "elastimate/estimators/interface/judge.h"
@@ -31,6 +32,18 @@ std::string WhyInvalidBounds(const Bounds& bounds, const std::string& name,
   }
   return "";
 }
+
+// Of an estimator that keeps nothing.
+class NoPreparation : public Preparation {
+ public:
+  explicit NoPreparation(std::function<Estimate(const Scene&)> run)
+      : run_(std::move(run)) {}
+
+  Estimate Run(const Scene& scene) override { return run_(scene); }
+
+ private:
+  std::function<Estimate(const Scene&)> run_;
+};
 
 }  // namespace
 
@@ -84,11 +97,23 @@ Estimate Estimator::Run(const Scene& scene,
   ValidateScene(scene);
   CheckOptions(options);
   const std::vector<Finding> findings = CheckMeasurements(scene);
+  CheckLoads(scene);
   CheckSupported(*this, scene, options);
   Estimate estimate = DoRun(scene, options);
-  FinishEstimate(*this, scene, options, findings, estimate);
+  FinishEstimate(Name(), scene, options, findings, estimate);
   estimate.seconds = stopwatch.Lap();
   return estimate;
+}
+
+PreparedEstimator Estimator::Prepare(const Scene& scene,
+                                     const EstimatorOptions& options) const {
+  return PreparedEstimator(*this, scene, options);
+}
+
+std::unique_ptr<Preparation> Estimator::DoPrepare(
+    const Scene& /*scene*/, const EstimatorOptions& options) const {
+  return std::make_unique<NoPreparation>(
+      [this, &options](const Scene& scene) { return DoRun(scene, options); });
 }
 
 }  // namespace elastimate

@@ -2,6 +2,7 @@
 #define ELASTIMATE_ESTIMATORS_INTERFACE_ESTIMATOR_H_
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include "elastimate/core/solvers/stiffness_solver.h"
 #include "elastimate/estimators/interface/capabilities.h"
 #include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/estimators/interface/prepared_estimator.h"
 
 namespace elastimate {
 
@@ -79,6 +81,13 @@ class Estimator {
   /// from.
   Estimate Run(const Scene& scene, const EstimatorOptions& options) const;
 
+  /// Does all that does not depend on what was measured, for a scene that is
+  /// measured again and again; displacements of `scene` are not looked at.
+  /// Throws std::invalid_argument as Run does.  This estimator has to outlive
+  /// what it prepares.
+  PreparedEstimator Prepare(const Scene& scene,
+                            const EstimatorOptions& options) const;
+
   /// The name by which the registry knows it, such as "closed-form".
   virtual std::string_view Name() const = 0;
   /// One line for people: method, needs, and source.
@@ -92,8 +101,14 @@ class Estimator {
                                      const EstimatorOptions& options) const;
 
  protected:
+  friend class PreparedEstimator;
+
   virtual Estimate DoRun(const Scene& scene,
                          const EstimatorOptions& options) const = 0;
+  /// Of an estimator that keeps nothing, DoRun for each measurement.  `scene`,
+  /// without displacements, and `options` outlive the preparation.
+  virtual std::unique_ptr<Preparation> DoPrepare(
+      const Scene& scene, const EstimatorOptions& options) const;
 };
 
 /// Whether component `i` of `node` was measured in `load_case`.

@@ -73,8 +73,6 @@ void CheckSupported(const Estimator& estimator, const Scene& scene,
 
 std::vector<Finding> CheckMeasurements(const Scene& scene) {
   std::vector<std::size_t> moved;
-  bool any_force = false;
-  std::size_t num_with_noise_sd = 0;
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     const LoadCase& load_case = scene.load_cases[k];
     const std::string name = "load case " + std::to_string(k + 1);
@@ -94,13 +92,22 @@ std::vector<Finding> CheckMeasurements(const Scene& scene) {
           " is zero at every free node; nothing moved, so nothing can be "
           "estimated");
     }
-    any_force = any_force || IsLoaded(scene, load_case);
-    num_with_noise_sd += load_case.noise_sd ? 1 : 0;
     // Measurement noise on held nodes is no contradiction; a motion is.
     if (summary.held_deviation_square_sum >
         kLimits.held_motion * kLimits.held_motion * summary.free_square_sum) {
       moved.push_back(k + 1);
     }
+  }
+  return moved.empty() ? std::vector<Finding>{}
+                       : std::vector<Finding>{HeldNodesMoved(moved)};
+}
+
+void CheckLoads(const Scene& scene) {
+  bool any_force = false;
+  std::size_t num_with_noise_sd = 0;
+  for (const LoadCase& load_case : scene.load_cases) {
+    any_force = any_force || IsLoaded(scene, load_case);
+    num_with_noise_sd += load_case.noise_sd ? 1 : 0;
   }
   if (!any_force) {
     throw std::invalid_argument(
@@ -112,8 +119,6 @@ std::vector<Finding> CheckMeasurements(const Scene& scene) {
         "the noise standard deviation is given for some load cases only; give "
         "it for all or for none");
   }
-  return moved.empty() ? std::vector<Finding>{}
-                       : std::vector<Finding>{HeldNodesMoved(moved)};
 }
 
 }  // namespace elastimate

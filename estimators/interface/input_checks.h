@@ -22,6 +22,9 @@ void CheckSupported(const Estimator& estimator, const Scene& scene,
 /// most one of each code.
 std::vector<Finding> CheckMeasurements(const Scene& scene);
 
+/// The same of the loads, and of what is said about noise.
+void CheckLoads(const Scene& scene);
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_ESTIMATORS_INTERFACE_INPUT_CHECKS_H_

@@ -123,10 +123,10 @@ void Judge(const Evidence& evidence, const EstimatorOptions& options,
   }
 }
 
-void FinishEstimate(const Estimator& estimator, const Scene& scene,
+void FinishEstimate(std::string_view estimator, const Scene& scene,
                     const EstimatorOptions& options,
                     const std::vector<Finding>& findings, Estimate& estimate) {
-  estimate.estimator = estimator.Name();
+  estimate.estimator = estimator;
   if (estimate.element_order == 0) {
     estimate.element_order = scene.mesh.Order();
   }

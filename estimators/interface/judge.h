@@ -1,7 +1,7 @@
 #ifndef ELASTIMATE_ESTIMATORS_INTERFACE_JUDGE_H_
 #define ELASTIMATE_ESTIMATORS_INTERFACE_JUDGE_H_
 
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "elastimate/core/scene/scene.h"
@@ -32,7 +32,7 @@ void AcceptElements(Estimate& estimate);
 /// near nu = 1/2 and of a notable discretisation error; and turns an estimate
 /// that claims to be ok into what it is, when it is not finite, not physical,
 /// or not determined.
-void FinishEstimate(const Estimator& estimator, const Scene& scene,
+void FinishEstimate(std::string_view estimator, const Scene& scene,
                     const EstimatorOptions& options,
                     const std::vector<Finding>& findings, Estimate& estimate);
 

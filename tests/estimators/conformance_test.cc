@@ -93,6 +93,57 @@ TEST_P(Conformance, RecoversTheTruthWithQuadraticElements) {
   }
 }
 
+// Within a tenth of a standard error, which is what reduced-fe promises; two
+// load cases, one of them with a load that has to be assembled.
+TEST_P(Conformance, PreparedGivesWhatItGives) {
+  Scene scene = testing::WithThreeForces(SmallScene("organ"));
+  scene.load_cases.resize(2);
+  BodyForce weight;
+  weight.force_density = Eigen::Vector3d(0, 100, -200);
+  scene.load_cases[1].loads = {weight};
+  Measure({5e4, 0.3}, scene);
+  for (const bool is_noise_given : {false, true}) {
+    SCOPED_TRACE(is_noise_given);
+    Scene unmeasured = scene;
+    for (LoadCase& load_case : unmeasured.load_cases) {
+      load_case.displacement.resize(0, 0);
+      if (is_noise_given) {
+        load_case.noise_sd =
+            kSmallNoise * scene.load_cases[0].displacement.norm() /
+            std::sqrt(double(scene.load_cases[0].displacement.size()));
+      }
+    }
+    const auto estimator = MakeEstimator(GetParam());
+    PreparedEstimator prepared = estimator->Prepare(unmeasured, {});
+    for (int seed = 1; seed <= 3; ++seed) {
+      Scene measured = scene;
+      AddNoise(kSmallNoise, seed, measured);
+      for (std::size_t k = 0; k < 2; ++k) {
+        measured.load_cases[k].noise_sd = unmeasured.load_cases[k].noise_sd;
+      }
+      const Estimate expected = Run(measured);
+      const Estimate actual =
+          prepared.Run({measured.load_cases[0].displacement,
+                        measured.load_cases[1].displacement});
+      ASSERT_EQ(actual.status, Status::kOk) << actual.message;
+      ASSERT_EQ(expected.status, Status::kOk) << expected.message;
+      EXPECT_EQ(actual.estimator, GetParam());
+      const double youngs_error = *expected.YoungsModulusStandardError();
+      const double poisson_error = *expected.PoissonRatioStandardError();
+      EXPECT_NEAR(actual.elasticity.youngs_modulus,
+                  expected.elasticity.youngs_modulus, 0.1 * youngs_error);
+      EXPECT_NEAR(actual.elasticity.poisson_ratio,
+                  expected.elasticity.poisson_ratio, 0.1 * poisson_error);
+      EXPECT_NEAR(*actual.YoungsModulusStandardError() / youngs_error, 1, 0.05);
+      EXPECT_NEAR(*actual.PoissonRatioStandardError() / poisson_error, 1, 0.05);
+    }
+    EXPECT_THROWS_WITH(prepared.Run({}), "0 measured displacements for 2");
+    EXPECT_THROWS_WITH(prepared.Run({Eigen::MatrixXd::Zero(3, 4),
+                                     scene.load_cases[1].displacement}),
+                       "the measured displacement of load case 1");
+  }
+}
+
 TEST_P(Conformance, RecoversYoungsModulusWithAKnownPoissonRatio) {
   Scene scene = SmallScene("organ");
   Measure({5e4, 0.35}, scene);

@@ -142,7 +142,8 @@ TEST_P(KindStatistics, ReachTheCramerRaoBound) {
   const Eigen::Matrix2d bound =
       CramerRaoBound(exact, {kYoungsModulus, kPoissonRatio},
                      Eigen::VectorXd::Constant(1, noise_sd));
-  PreparedReducedFe prepared(exact, {});
+  const ReducedFe reduced_fe;
+  PreparedEstimator prepared = reduced_fe.Prepare(exact, {});
   double chi_squared = 0;
   int num_covered = 0;
   for (int seed = 1; seed <= kSeeds; ++seed) {

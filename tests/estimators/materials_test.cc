@@ -129,6 +129,17 @@ TEST_P(Materials, MayBeOneWithAKnownModulus) {
   EXPECT_TRUE(estimate.parameters[0].regions.empty());
 }
 
+TEST_P(Materials, PreparedGiveWhatTheyGive) {
+  const Estimate expected = Run();
+  const auto estimator = MakeEstimator(GetParam());
+  PreparedEstimator prepared = estimator->Prepare(scene_, {});
+  const Estimate actual = prepared.Run({scene_.load_cases[0].displacement});
+  ASSERT_EQ(actual.parameters.size(), expected.parameters.size());
+  for (std::size_t i = 0; i < expected.parameters.size(); ++i) {
+    EXPECT_EQ(actual.parameters[i].value, expected.parameters[i].value);
+  }
+}
+
 TEST_P(Materials, ScaleWithTheUnits) {
   // From N and mm to kN and m.
   Scene scaled = scene_;

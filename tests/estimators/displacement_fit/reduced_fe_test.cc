@@ -139,12 +139,15 @@ TEST(ReducedFe, KeepsItsDigitsNearOneHalf) {
 
 // At 20 % noise nu = 0.4999 cannot be told from 1/2.  The number of intervals
 // that cover it is binomial: three standard deviations below 95 %.
+// Which has to outlive what it prepares.
+const ReducedFe kReducedFe;
+
 TEST(PreparedReducedFe, BoundsNuOnOneSideNearOneHalf) {
   constexpr int kSeeds = 200;
   constexpr double kTrueNu = 0.4999;
   Scene exact = SmallScene("cuboid");
   Measure({5e4, kTrueNu}, exact);
-  PreparedReducedFe prepared(exact, {});
+  PreparedEstimator prepared = kReducedFe.Prepare(exact, {});
   int num_one_sided = 0;
   int num_covering = 0;
   for (int seed = 1; seed <= kSeeds; ++seed) {
@@ -183,7 +186,7 @@ TEST(PreparedReducedFe, KnowsTheUncertaintyOfABentPlate) {
   const Mesh mesh = testing::BoxMesh({1, 6, 6}, {0.1, 1, 1});
   Scene exact = testing::HeldAtBottom(mesh, mesh, {1, 0, 0});
   Measure(truth, exact);
-  PreparedReducedFe prepared(exact, {});
+  PreparedEstimator prepared = kReducedFe.Prepare(exact, {});
   int num_usable = 0;
   int num_covering = 0;
   double largest_score = 0;
@@ -215,7 +218,7 @@ TEST(PreparedReducedFe, GivesWhatTheEstimatorGives) {
   for (const Loss loss : {Loss::kNone, Loss::kHuber}) {
     EstimatorOptions options;
     options.loss = loss;
-    PreparedReducedFe prepared(exact, options);
+    PreparedEstimator prepared = kReducedFe.Prepare(exact, options);
     for (int seed = 1; seed <= 10; ++seed) {
       SCOPED_TRACE(seed);
       Scene scene = exact;
@@ -244,8 +247,8 @@ TEST(PreparedReducedFe, HuberHardlyFeelsAFewGrossOutliers) {
   const Eigen::Index num_nodes = exact.mesh.NumNodes();
   EstimatorOptions huber;
   huber.loss = Loss::kHuber;
-  PreparedReducedFe plain(exact, {});
-  PreparedReducedFe robust(exact, huber);
+  PreparedEstimator plain = kReducedFe.Prepare(exact, {});
+  PreparedEstimator robust = kReducedFe.Prepare(exact, huber);
   double clean = 0;
   double contaminated = 0;
   double rejected = 0;
@@ -283,7 +286,7 @@ TEST(PreparedReducedFe, HuberHardlyFeelsAFewGrossOutliers) {
 TEST(PreparedReducedFe, FurtherMeasurementsCostNoSolve) {
   Scene exact = SmallScene("organ");
   Measure({5e4, 0.3}, exact);
-  PreparedReducedFe prepared(exact, {});
+  PreparedEstimator prepared = kReducedFe.Prepare(exact, {});
   int solves = 0;
   int factorizations = 0;
   for (int seed = 1; seed <= 100; ++seed) {
@@ -304,7 +307,7 @@ TEST(PreparedReducedFe, RefusesWhatDoesNotFit) {
   Scene scene = SmallScene("organ");
   Measure({5e4, 0.3}, scene);
   const Eigen::MatrixXd displacement = scene.load_cases[0].displacement;
-  PreparedReducedFe prepared(scene, {});
+  PreparedEstimator prepared = kReducedFe.Prepare(scene, {});
   EXPECT_THROWS_WITH(prepared.Run({}), "0 measured displacements for 1");
   EXPECT_THROWS_WITH(prepared.Run({displacement.leftCols(3)}), "3 columns");
   Eigen::MatrixXd broken = displacement;
@@ -314,7 +317,7 @@ TEST(PreparedReducedFe, RefusesWhatDoesNotFit) {
   EXPECT_NEAR(prepared.Run({displacement}).elasticity.youngs_modulus / 5e4, 1,
               1e-6);
   scene.supports.held.setConstant(false);
-  EXPECT_THROWS_WITH(PreparedReducedFe(scene, {}), "without strain");
+  EXPECT_THROWS_WITH(kReducedFe.Prepare(scene, {}), "without strain");
 }
 
 }  // namespace

@@ -38,7 +38,8 @@ TEST_P(CoverageStatistics, OfReducedFeIsThatOfItsIntervals) {
   const double sd = AddNoise(noise, 1, noisy);
   const Eigen::Matrix2d bound =
       CramerRaoBound(exact, truth, Eigen::VectorXd::Constant(1, sd));
-  PreparedReducedFe prepared(exact, {});
+  const ReducedFe reduced_fe;
+  PreparedEstimator prepared = reduced_fe.Prepare(exact, {});
   int num_usable = 0;
   int num_youngs = 0;
   int num_poisson = 0;

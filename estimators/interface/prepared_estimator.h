@@ -1,0 +1,60 @@
+#ifndef ELASTIMATE_ESTIMATORS_INTERFACE_PREPARED_ESTIMATOR_H_
+#define ELASTIMATE_ESTIMATORS_INTERFACE_PREPARED_ESTIMATOR_H_
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/estimators/interface/estimate.h"
+
+namespace elastimate {
+
+class Estimator;
+struct EstimatorOptions;
+
+/// What an estimator keeps of a scene from one measurement to the next.
+class Preparation {
+ public:
+  Preparation() = default;
+  virtual ~Preparation() = default;
+  Preparation(const Preparation&) = delete;
+  Preparation& operator=(const Preparation&) = delete;
+
+  /// The estimate from a valid measurement of the scene that it was prepared
+  /// for: `scene` is that very object, with other displacements.
+  virtual Estimate Run(const Scene& scene) = 0;
+};
+
+/// An estimator for a specimen that is measured again and again under the same
+/// loads and supports: what does not depend on the measurement is done once.
+///
+///   const auto estimator = MakeEstimator("reduced-fe");
+///   PreparedEstimator prepared = estimator->Prepare(scene, {});
+///   for (const Eigen::MatrixXd& displacement : frames) {
+///     const Estimate estimate = prepared.Run({displacement});
+///   }
+class PreparedEstimator {
+ public:
+  /// As Estimator::Prepare, which says more.
+  PreparedEstimator(const Estimator& estimator, const Scene& scene,
+                    const EstimatorOptions& options);
+  ~PreparedEstimator();
+  PreparedEstimator(PreparedEstimator&&) noexcept;
+  PreparedEstimator& operator=(PreparedEstimator&&) noexcept;
+
+  /// The estimate from one measured displacement for each load case,
+  /// dimension x num_nodes each [length]; `work`, stages and seconds are those
+  /// of this call.  Throws std::invalid_argument, and leaves this object as it
+  /// was, when a shape is wrong, or for displacements that Estimator::Run would
+  /// refuse.  Not to be called from two threads at once.
+  Estimate Run(const std::vector<Eigen::MatrixXd>& displacements);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_INTERFACE_PREPARED_ESTIMATOR_H_
