@@ -201,7 +201,7 @@ class Cube {
       estimators_.push_back(MakeEstimator(name));
       const auto prepared = std::make_shared<PreparedEstimator>(
           estimators_.back()->Prepare(scene_, {}));
-      kernels.push_back({name + ", further measurement",
+      kernels.push_back({"further " + name,
                          "natural",
                          1,
                          1,
@@ -320,9 +320,9 @@ std::vector<std::string> Ratios(std::int64_t tetrahedra, const Times& times) {
   };
   for (const std::string name :
        {"closed-form", "virtual-fields", "reduced-fe"}) {
-    if (times.Have(name + ", further measurement")) {
+    if (times.Have("further " + name)) {
       ratios.emplace_back(name + ", further measurement / pass",
-                          times.Of(name + ", further measurement") / pass);
+                          times.Of("further " + name) / pass);
     }
   }
   if (times.Have("AVX2")) {

@@ -16,6 +16,7 @@ find_dependency(hwy 1.0)
 find_dependency(OpenMP COMPONENTS CXX)
 
 if("estimators" IN_LIST ELASTIMATE_COMPONENTS OR "io" IN_LIST ELASTIMATE_COMPONENTS)
+  find_dependency(Boost 1.74)
   find_dependency(Ceres 2.1)
   # Debian's Ceres names ATLAS in its link interface, although the shared library needs nothing more from its users;
   # left there, ATLAS's dgemm_ can come before OpenBLAS's.

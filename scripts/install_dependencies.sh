@@ -4,7 +4,7 @@ set -euo pipefail
 
 packages=(
   g++ cmake ninja-build
-  libceres-dev libeigen3-dev libsuitesparse-dev libopenblas-pthread-dev
+  libboost-dev libceres-dev libeigen3-dev libsuitesparse-dev libopenblas-pthread-dev
   libhwy-dev libgoogle-glog-dev libgflags-dev libgtest-dev libgmock-dev libbenchmark-dev
   nlohmann-json3-dev libvtk9-dev libgmsh-dev
   petsc-dev pkg-config

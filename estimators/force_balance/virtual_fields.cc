@@ -45,6 +45,9 @@ std::optional<ResidualJudgement> JudgeResidual(
   const double m = static_cast<double>(std::max<Eigen::Index>(redundancy, 1));
   const double variance = fit.square_sum / m;
   estimate.noise_sd = given_noise_sd.value_or(std::sqrt(variance));
+  if (!given_noise_sd) {
+    estimate.noise_degrees_of_freedom = m;
+  }
   if (given_noise_sd) {
     // chi^2 has mean m and variance 2 m.
     if (redundancy <= 0 ||

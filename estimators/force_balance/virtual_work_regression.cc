@@ -200,6 +200,9 @@ void DescribeFit(const Scene& scene, const FreeParameters& free,
   const std::optional<double>& given = scene.load_cases.front().noise_sd;
   double variance = square_sum / m;
   estimate.noise_sd = given.value_or(std::sqrt(variance));
+  if (!given) {
+    estimate.noise_degrees_of_freedom = m;
+  }
   estimate.force_residual =
       balance.ForceResidualNorm(moduli) / balance.LoadNorm();
   bool is_noise = false;

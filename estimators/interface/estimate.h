@@ -103,6 +103,9 @@ struct Estimate {
   /// measured displacement component [length]; of the first load case when
   /// they differ.
   std::optional<double> noise_sd;
+  /// Degrees of freedom that the noise was estimated from, where they are few:
+  /// intervals are then those of Student's t.
+  std::optional<double> noise_degrees_of_freedom;
   /// ||A(nu) q - t f|| / ||t f|| over the free degrees of freedom.
   std::optional<double> force_residual;
   /// ||u - q|| / ||q|| over the observed free components.

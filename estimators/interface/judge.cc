@@ -7,6 +7,7 @@
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
 #include "elastimate/estimators/interface/rules.h"
+#include "elastimate/estimators/interface/statistics.h"
 
 namespace elastimate {
 namespace {
@@ -17,14 +18,17 @@ void AddPoissonRatioInterval(Estimate& estimate) {
     return;
   }
   const double nu = estimate.elasticity.poisson_ratio;
-  if (nu + kOneSidedErrors * *error > 0.5) {
-    estimate.poisson_ratio_interval = {nu - kOneSidedErrors * *error, 0.5};
-  } else if (nu - kOneSidedErrors * *error < -1) {
-    estimate.poisson_ratio_interval = {-1, nu + kOneSidedErrors * *error};
+  const double one_sided =
+      OneSidedErrors(estimate.noise_degrees_of_freedom) * *error;
+  const double two_sided =
+      TwoSidedErrors(estimate.noise_degrees_of_freedom) * *error;
+  if (nu + one_sided > 0.5) {
+    estimate.poisson_ratio_interval = {nu - one_sided, 0.5};
+  } else if (nu - one_sided < -1) {
+    estimate.poisson_ratio_interval = {-1, nu + one_sided};
   } else {
-    estimate.poisson_ratio_interval = {
-        std::max(-1.0, nu - kTwoSidedErrors * *error),
-        std::min(0.5, nu + kTwoSidedErrors * *error)};
+    estimate.poisson_ratio_interval = {std::max(-1.0, nu - two_sided),
+                                       std::min(0.5, nu + two_sided)};
   }
 }
 

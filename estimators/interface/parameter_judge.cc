@@ -8,6 +8,7 @@
 
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
+#include "elastimate/estimators/interface/statistics.h"
 
 namespace elastimate {
 namespace {
@@ -43,12 +44,12 @@ void EnterErrors(Estimate& estimate) {
       ParameterEstimate& parameter = estimate.parameters[i];
       const double error = std::sqrt(variance);
       parameter.standard_error = error;
-      parameter.interval = {parameter.value - kTwoSidedErrors * error,
-                            parameter.value + kTwoSidedErrors * error};
+      const double width =
+          TwoSidedErrors(estimate.noise_degrees_of_freedom) * error;
+      parameter.interval = {parameter.value - width, parameter.value + width};
       if (parameter.is_modulus) {
         // Symmetric in the logarithm, which is what is fitted.
-        const double factor =
-            std::exp(kTwoSidedErrors * error / parameter.value);
+        const double factor = std::exp(width / parameter.value);
         parameter.interval = {parameter.value / factor,
                               parameter.value * factor};
       }
@@ -181,7 +182,8 @@ void DescribeOneIsotropicMaterial(const Scene& scene,
   youngs_modulus.value = estimate.elasticity.youngs_modulus;
   youngs_modulus.standard_error = estimate.YoungsModulusStandardError();
   if (youngs_modulus.standard_error) {
-    const double width = kTwoSidedErrors * *youngs_modulus.standard_error;
+    const double width = TwoSidedErrors(estimate.noise_degrees_of_freedom) *
+                         *youngs_modulus.standard_error;
     youngs_modulus.interval = {youngs_modulus.value - width,
                                youngs_modulus.value + width};
   }

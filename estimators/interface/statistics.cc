@@ -1,10 +1,28 @@
 #include "elastimate/estimators/interface/statistics.h"
 
 #include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <utility>
 
+#include "elastimate/estimators/interface/limits.h"
+
 namespace elastimate {
+
+double TwoSidedErrors(const std::optional<double>& degrees_of_freedom) {
+  return degrees_of_freedom
+             ? boost::math::quantile(
+                   boost::math::students_t(*degrees_of_freedom), 0.975)
+             : kTwoSidedErrors;
+}
+
+double OneSidedErrors(const std::optional<double>& degrees_of_freedom) {
+  return degrees_of_freedom
+             ? boost::math::quantile(
+                   boost::math::students_t(*degrees_of_freedom), 0.95)
+             : kOneSidedErrors;
+}
+
 double Median(std::vector<double> values) {
   const auto middle =
       values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

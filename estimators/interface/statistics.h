@@ -2,9 +2,17 @@
 #define ELASTIMATE_ESTIMATORS_INTERFACE_STATISTICS_H_
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 namespace elastimate {
+
+/// The distance from the middle, in standard errors, within which Student's t
+/// of so many degrees of freedom lies with a probability of 95 %, on both sides
+/// and on one; of the normal distribution where they are many: no number is
+/// given.  Precondition: positive.
+double TwoSidedErrors(const std::optional<double>& degrees_of_freedom);
+double OneSidedErrors(const std::optional<double>& degrees_of_freedom);
 
 /// The median; the mean of the middle two of an even number of values.
 /// Precondition: not empty.  O(n).

@@ -34,5 +34,14 @@ TEST(LeastAbsoluteDeviations, MinimisesTheSumOfAbsoluteDeviations) {
   }
 }
 
+// Of tables [Abramowitz & Stegun 1964, table 26.10].
+TEST(StudentsT, HasItsQuantiles) {
+  EXPECT_NEAR(TwoSidedErrors(1), 12.706, 5e-4);
+  EXPECT_NEAR(TwoSidedErrors(10), 2.228, 5e-4);
+  EXPECT_NEAR(OneSidedErrors(10), 1.812, 5e-4);
+  EXPECT_NEAR(TwoSidedErrors(1e9), TwoSidedErrors({}), 5e-4);
+  EXPECT_NEAR(OneSidedErrors(1e9), OneSidedErrors({}), 5e-4);
+}
+
 }  // namespace
 }  // namespace elastimate
