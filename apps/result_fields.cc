@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "elastimate/core/equilibrium/equilibrium.h"
-#include "elastimate/core/mechanics/strain_energy.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/rigid_motion.h"
@@ -52,26 +51,12 @@ class FieldCollector {
              .reshaped(shown_.Dimension(), shown_.NumNodes())});
   }
 
-  // `values` are E and nu of each material.
-  void AddStrainEnergy(const Scene& scene, const Eigen::VectorXd& values,
-                       Eigen::Index load_case, const Eigen::MatrixXd& all) {
-    const Mesh& mesh = scene.mesh;
-    const Eigen::MatrixXd u =
-        all.col(load_case).reshaped(mesh.Dimension(), mesh.NumNodes());
-    const std::vector<int> material_of =
-        MaterialOfElements(scene.materials, mesh);
-    Eigen::RowVectorXd density(mesh.NumElements());
-    for (Eigen::Index i = 0; 2 * i < values.size(); ++i) {
-      const Eigen::VectorXd of_material =
-          StrainEnergyDensity(mesh, {values(2 * i), values(2 * i + 1)}, u);
-      for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
-        if (material_of[e] == i) {
-          density(e) = of_material(e);
-        }
-      }
-    }
+  void AddStrainEnergy(const InternalForces& forces,
+                       const Eigen::VectorXd& moduli, Eigen::Index load_case,
+                       const Eigen::MatrixXd& all) {
     fields_.cell.push_back(
-        {"strain_energy_density" + CaseSuffix(load_case), density});
+        {"strain_energy_density" + CaseSuffix(load_case),
+         forces.EnergyDensity(moduli, all.col(load_case)).transpose()});
   }
 
   // A cell array of each parameter, of the material of each element.
@@ -141,11 +126,11 @@ Fields ResultFields(const Scene& scene, const Scene& modelled,
     const Eigen::MatrixXd measured =
         MeasuredMinus(scene, Eigen::MatrixXd::Zero(force.rows(), num_cases));
     const InternalForces forces(scene.mesh, scene.materials);
-    const Eigen::MatrixXd residual =
-        forces.Multiply(forces.Parameters().Moduli(*values), measured) - force;
+    const Eigen::VectorXd moduli = forces.Parameters().Moduli(*values);
+    const Eigen::MatrixXd residual = forces.Multiply(moduli, measured) - force;
     for (Eigen::Index k = 0; k < num_cases; ++k) {
       collector.AddPoint("force_residual", k, residual);
-      collector.AddStrainEnergy(scene, *values, k, measured);
+      collector.AddStrainEnergy(forces, moduli, k, measured);
     }
     return fields;
   }
@@ -168,7 +153,7 @@ Fields ResultFields(const Scene& scene, const Scene& modelled,
     collector.AddPoint("fitted_displacement", k, fitted);
     collector.AddPoint("displacement_residual", k, difference);
     collector.AddPoint("reaction_force", k, reaction);
-    collector.AddStrainEnergy(modelled, *values, k, fitted);
+    collector.AddStrainEnergy(model.Forces(), moduli, k, fitted);
   }
   return fields;
 }

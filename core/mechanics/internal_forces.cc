@@ -117,8 +117,8 @@ Eigen::MatrixXd InternalForces::Multiply(
   return forces;
 }
 
-Eigen::MatrixXd InternalForces::Blocks(const Eigen::VectorXd& moduli,
-                                       const NodeGraph& graph) const {
+std::vector<Eigen::MatrixXd> InternalForces::Tangents(
+    const Eigen::VectorXd& moduli) const {
   const Eigen::MatrixXd rest =
       Eigen::MatrixXd::Zero(mesh_.Dimension(), mesh_.Dimension());
   std::vector<Eigen::MatrixXd> tangents;
@@ -128,7 +128,18 @@ Eigen::MatrixXd InternalForces::Blocks(const Eigen::VectorXd& moduli,
         moduli.segment(parameters_.FirstModulus(i), law.NumModuli()), rest,
         mesh_.section.model));
   }
-  return StiffnessBlocks(mesh_, graph, material_of_element_, tangents);
+  return tangents;
+}
+
+Eigen::MatrixXd InternalForces::Blocks(const Eigen::VectorXd& moduli,
+                                       const NodeGraph& graph) const {
+  return StiffnessBlocks(mesh_, graph, material_of_element_, Tangents(moduli));
+}
+
+Eigen::VectorXd InternalForces::EnergyDensity(
+    const Eigen::VectorXd& moduli, const Eigen::VectorXd& displacement) const {
+  return LawEnergyDensity(mesh_, material_of_element_, Tangents(moduli),
+                          displacement);
 }
 
 }  // namespace elastimate

@@ -50,10 +50,17 @@ class InternalForces {
   Eigen::MatrixXd Blocks(const Eigen::VectorXd& moduli,
                          const NodeGraph& graph) const;
 
+  /// The strain energy of each element over its volume [pressure], of one
+  /// displacement (num_dofs): num_elements values.
+  Eigen::VectorXd EnergyDensity(const Eigen::VectorXd& moduli,
+                                const Eigen::VectorXd& displacement) const;
+
  private:
   /// What each modulus, by its place in its law, gives to each copy of a node.
   std::vector<Eigen::MatrixXd> OfParts(
       const Eigen::MatrixXd& displacements) const;
+  /// The tangent of each material.
+  std::vector<Eigen::MatrixXd> Tangents(const Eigen::VectorXd& moduli) const;
   /// Of the law of each material, the tangent of each unit modulus.
   std::vector<std::vector<Eigen::MatrixXd>> UnitTangents() const;
 

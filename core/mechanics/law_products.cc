@@ -101,6 +101,33 @@ void AddBlocksOfKind(const Mesh& mesh, const NodeGraph& graph,
   }
 }
 
+template <ElementKind kKind>
+Eigen::VectorXd EnergyDensityOfKind(
+    const Mesh& mesh, const std::vector<int>& material_of_element,
+    const std::vector<Eigen::MatrixXd>& tangents,
+    const Eigen::VectorXd& displacement) {
+  constexpr int kDimension = ElementSizes<kKind>::kDimension;
+  Eigen::VectorXd density(mesh.NumElements());
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    const auto u = GatherNodes<kKind>(mesh, e, displacement.data());
+    const Eigen::Map<const TangentMatrix<kKind>> tangent(
+        tangents[material_of_element[e]].data());
+    double energy = 0;
+    double volume = 0;
+    VisitPoints<kKind>(
+        mesh, e, StiffnessRule<kKind>(), [&](const auto& point, const auto&) {
+          const Eigen::Matrix<double, kDimension, kDimension> gradient =
+              u * point.gradient.transpose();
+          const Eigen::Map<const Eigen::Matrix<double, kGradientSize<kKind>, 1>>
+              h(gradient.data());
+          energy += point.volume / 2 * h.dot(tangent * h);
+          volume += point.volume;
+        });
+    density(e) = energy / volume;
+  }
+  return density;
+}
+
 }  // namespace
 
 void AddLawProducts(const Mesh& mesh,
@@ -111,6 +138,16 @@ void AddLawProducts(const Mesh& mesh,
   VisitElementKind(mesh.kind, [&](auto kind) {
     AddOfKind<kind>(mesh, material_of_element, tangents, displacement,
                     products);
+  });
+}
+
+Eigen::VectorXd LawEnergyDensity(const Mesh& mesh,
+                                 const std::vector<int>& material_of_element,
+                                 const std::vector<Eigen::MatrixXd>& tangents,
+                                 const Eigen::VectorXd& displacement) {
+  return VisitElementKind(mesh.kind, [&](auto kind) {
+    return EnergyDensityOfKind<kind>(mesh, material_of_element, tangents,
+                                     displacement);
   });
 }
 

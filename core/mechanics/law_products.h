@@ -29,6 +29,14 @@ Eigen::MatrixXd StiffnessBlocks(const Mesh& mesh, const NodeGraph& graph,
                                 const std::vector<int>& material_of_element,
                                 const std::vector<Eigen::MatrixXd>& tangents);
 
+/// The strain energy of each element over its volume, of a displacement of
+/// num_dofs values and one tangent C of each material: the mean of
+/// grad u : C : grad u / 2.  num_elements values [pressure].
+Eigen::VectorXd LawEnergyDensity(const Mesh& mesh,
+                                 const std::vector<int>& material_of_element,
+                                 const std::vector<Eigen::MatrixXd>& tangents,
+                                 const Eigen::VectorXd& displacement);
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_CORE_MECHANICS_LAW_PRODUCTS_H_

@@ -265,8 +265,6 @@ Eigen::MatrixXd SmoothDisplacements(const Scene& scene) {
 VirtualWorkFit Fit(const EstimatorOptions& options,
                    const VirtualWorkBalance& balance, Evidence& evidence,
                    Estimate& estimate) {
-  const std::optional<double> collinear_slope =
-      options.known_poisson_ratio ? std::nullopt : balance.CollinearSlope();
   VirtualWorkFit fit =
       options.known_poisson_ratio
           ? balance.FitAt(*options.known_poisson_ratio, options.youngs_modulus)
@@ -277,17 +275,10 @@ VirtualWorkFit Fit(const EstimatorOptions& options,
       evidence.do_displacements_oppose_loads ? fit.free_compliance_scale
                                              : fit.compliance_scale,
       fit.poisson_ratio, balance.Model());
-  if (collinear_slope && !evidence.do_displacements_oppose_loads) {
-    // What fits alike at one nu does at all; next to the ends of the range,
-    // moduli look alike.
-    constexpr double kAnyPoissonRatio = 0.25;
-    const double t =
-        balance.FitAt(kAnyPoissonRatio, Bounds{}).free_compliance_scale;
-    const SectionModel model = balance.Model();
-    evidence.free_direction = {
-        IsotropicElasticity::FromComplianceScale(t, kAnyPoissonRatio, model),
-        {LogYoungsModulusSlope(kAnyPoissonRatio, model) - *collinear_slope / t,
-         1}};
+  if (!options.known_poisson_ratio && !evidence.do_displacements_oppose_loads) {
+    evidence.free_direction = balance.CollinearDirection();
+  }
+  if (evidence.free_direction) {
     estimate.elasticity = {Estimate::kUnknown, Estimate::kUnknown};
   }
   return fit;

@@ -238,7 +238,7 @@ VirtualWorkBalance::VirtualWorkBalance(const VirtualWork& work,
   loads_do_work_ = external_.norm() > kRounding * dofs.Restrict(f).norm();
 }
 
-std::optional<double> VirtualWorkBalance::CollinearSlope() const {
+std::optional<FreeDirection> VirtualWorkBalance::CollinearDirection() const {
   // Collinear at one nu is collinear at all.
   constexpr double kAnyPoissonRatio = 0.25;
   const VirtualWork::NoiseFactor noise = work_.FactorNoise(kAnyPoissonRatio);
@@ -249,7 +249,11 @@ std::optional<double> VirtualWorkBalance::CollinearSlope() const {
   if ((b - slope * f).norm() > kCollinear * b.norm()) {
     return std::nullopt;
   }
-  return slope;
+  const double t = Evaluate(noise, Bounds{}).free_compliance_scale;
+  const SectionModel model = work_.Model();
+  return FreeDirection{
+      IsotropicElasticity::FromComplianceScale(t, kAnyPoissonRatio, model),
+      {LogYoungsModulusSlope(kAnyPoissonRatio, model) - slope / t, 1}};
 }
 
 VirtualWorkFit VirtualWorkBalance::Evaluate(

@@ -9,6 +9,7 @@
 #include "elastimate/core/materials/elasticity.h"
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/interface/evidence.h"
 #include "elastimate/estimators/statistics/bounded_parameter.h"
 
 namespace elastimate {
@@ -158,10 +159,10 @@ class VirtualWorkBalance {
   /// Whether the loads do work on the fields at all, beyond rounding.
   bool LoadsDoWork() const { return loads_do_work_; }
 
-  /// Where rounding decides on nu because a change of nu acts on the balance as
-  /// a change of t does: d t / d nu of what fits alike.  Empty where the data
-  /// decide.  Precondition: LoadsDoWork.
-  std::optional<double> CollinearSlope() const;
+  /// What is not determined where rounding decides on nu because a change of nu
+  /// acts on the balance as a change of t does; empty where the data decide.
+  /// Precondition: LoadsDoWork.
+  std::optional<FreeDirection> CollinearDirection() const;
 
   /// The fit at a known nu.  Precondition: LoadsDoWork.  O(k^3).
   VirtualWorkFit FitAt(double poisson_ratio,

@@ -60,6 +60,12 @@ void Estimate::Add(const Finding& finding) {
   }
 }
 
+void Estimate::Remove(FindingCode code) {
+  RemoveFindings(
+      [code](const Finding& finding) { return finding.code == code; },
+      findings);
+}
+
 void Estimate::Accept() {
   status = Status::kOk;
   message = "";
@@ -73,9 +79,7 @@ void Estimate::Accept() {
 void Estimate::Fail(const Finding& finding) {
   assert(finding.severity == Severity::kError);
   Accept();
-  RemoveFindings(
-      [&finding](const Finding& other) { return other.code == finding.code; },
-      findings);
+  Remove(finding.code);
   findings.insert(findings.begin(), finding);
   status = StatusOf(finding.code);
   message = Sentence(finding);

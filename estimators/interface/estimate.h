@@ -152,6 +152,8 @@ struct Estimate {
   std::vector<std::string> Sentences(Severity severity) const;
   /// Enters a finding that is no error, unless there is one of its code.
   void Add(const Finding& finding);
+  /// Takes the finding of this code back, if there is one.
+  void Remove(FindingCode code);
   /// Makes it usable: without an error.
   void Accept();
   /// Makes it one that is not usable, with the status of the code and without

@@ -93,12 +93,7 @@ bool IsDiscretizationErrorNotable(const Estimate& estimate) {
 }
 
 void AcceptElements(Estimate& estimate) {
-  estimate.findings.erase(
-      std::remove_if(estimate.findings.begin(), estimate.findings.end(),
-                     [](const Finding& finding) {
-                       return finding.code == FindingCode::kDiscretizationError;
-                     }),
-      estimate.findings.end());
+  estimate.Remove(FindingCode::kDiscretizationError);
   estimate.discretization_error = 0;
   estimate.poisson_ratio_discretization_error = 0;
 }

@@ -80,6 +80,12 @@ TEST_P(InternalForcesOfKinds, OfAnyLawAreThoseOfTheIsotropicPass) {
   EXPECT_LT((products[1] - expected.j).norm(), 1e-12 * expected.j.norm());
 }
 
+TEST_P(InternalForcesOfKinds, StoreTheWorkOfTheForces) {
+  const Eigen::VectorXd density = forces_.EnergyDensity(moduli_, u_.col(0));
+  const double work = u_.col(0).dot(stiffness_ * u_.col(0)) / 2;
+  EXPECT_NEAR(density.dot(ElementVolumes(scene_.mesh)) / work, 1, 1e-12);
+}
+
 TEST_P(InternalForcesOfKinds, OfOneMaterialAreThoseOfTheBasis) {
   const InternalForces one(scene_.mesh, {});
   const StiffnessProducts expected =
