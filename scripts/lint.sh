@@ -10,7 +10,7 @@ if [ $# -eq 0 ]; then
 else
   sources=("$@")
 fi
-# clang cannot read the headers that gcc has precompiled.
-cmake --preset release -B build/lint -D CMAKE_DISABLE_PRECOMPILE_HEADERS=ON -Wno-dev --log-level=WARNING >/dev/null
+# clang cannot read the headers that gcc has precompiled, and each source is analysed by itself.
+cmake --preset release -B build/lint -D CMAKE_DISABLE_PRECOMPILE_HEADERS=ON -D CMAKE_UNITY_BUILD=OFF -Wno-dev --log-level=WARNING >/dev/null
 cmake --build build/lint --target elastimate_commit >/dev/null
 printf '%s\n' "${sources[@]}" | xargs -P "$(nproc)" -n 1 clang-tidy -p build/lint --quiet 2> >(grep -v 'warnings generated' >&2)

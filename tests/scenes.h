@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,8 @@
 #include "elastimate/core/scene/scene.h"
 
 namespace elastimate::testing {
+
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// A box of nx x ny x nz cubes, each cut into six tetrahedra, one corner at
 /// the origin.

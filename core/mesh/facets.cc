@@ -11,19 +11,19 @@
 namespace elastimate {
 namespace {
 
-struct Face {
+struct ElementFace {
   std::array<int, 4> sorted;  // Vertices; -1 where there are fewer.
   Eigen::Index element;
   int index;
 };
 
-std::vector<Face> FacesOf(const Mesh& mesh) {
+std::vector<ElementFace> FacesOf(const Mesh& mesh) {
   const auto& of_element = mesh.Topology().faces;
-  std::vector<Face> faces;
+  std::vector<ElementFace> faces;
   faces.reserve(of_element.size() * mesh.NumElements());
   for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
     for (std::size_t i = 0; i < of_element.size(); ++i) {
-      Face face = {{-1, -1, -1, -1}, element, static_cast<int>(i)};
+      ElementFace face = {{-1, -1, -1, -1}, element, static_cast<int>(i)};
       for (std::size_t k = 0; k < of_element[i].size(); ++k) {
         face.sorted[k] = mesh.elements(of_element[i][k], element);
       }
@@ -31,16 +31,18 @@ std::vector<Face> FacesOf(const Mesh& mesh) {
       faces.push_back(face);
     }
   }
-  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
-    return std::tie(a.sorted, a.element) < std::tie(b.sorted, b.element);
-  });
+  std::sort(faces.begin(), faces.end(),
+            [](const ElementFace& a, const ElementFace& b) {
+              return std::tie(a.sorted, a.element) <
+                     std::tie(b.sorted, b.element);
+            });
   return faces;
 }
 
 // Those that no other element has.
-std::vector<Face> OuterFaces(const Mesh& mesh) {
-  const std::vector<Face> faces = FacesOf(mesh);
-  std::vector<Face> outer;
+std::vector<ElementFace> OuterFaces(const Mesh& mesh) {
+  const std::vector<ElementFace> faces = FacesOf(mesh);
+  std::vector<ElementFace> outer;
   for (std::size_t i = 0; i < faces.size();) {
     std::size_t end = i + 1;
     while (end < faces.size() && faces[end].sorted == faces[i].sorted) {
@@ -51,9 +53,11 @@ std::vector<Face> OuterFaces(const Mesh& mesh) {
     }
     i = end;
   }
-  std::sort(outer.begin(), outer.end(), [](const Face& a, const Face& b) {
-    return std::tie(a.element, a.index) < std::tie(b.element, b.index);
-  });
+  std::sort(outer.begin(), outer.end(),
+            [](const ElementFace& a, const ElementFace& b) {
+              return std::tie(a.element, a.index) <
+                     std::tie(b.element, b.index);
+            });
   return outer;
 }
 
@@ -115,11 +119,11 @@ FacetWeights WeightsOfEdge(const Mesh& mesh,
 
 Eigen::MatrixXi BoundaryFacets(const Mesh& mesh) {
   const ElementTopology& topology = mesh.Topology();
-  const std::vector<Face> outer = OuterFaces(mesh);
+  const std::vector<ElementFace> outer = OuterFaces(mesh);
   const int num_vertices = topology.NumVerticesOfFace();
   Eigen::MatrixXi facets(topology.NumNodesOfFace(), outer.size());
   for (std::size_t i = 0; i < outer.size(); ++i) {
-    const Face& face = outer[i];
+    const ElementFace& face = outer[i];
     std::vector<int> vertices = topology.faces[face.index];
     if (Orientation(mesh, face.element) < 0) {
       std::reverse(vertices.begin() + (num_vertices == 2 ? 0 : 1),

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/mesh/axis_names.h"
 #include "elastimate/core/mesh/elements_of_nodes.h"
 
 namespace elastimate {
@@ -45,11 +46,11 @@ class DisjointSets {
 
 // The other vertices of a face, ascending, whose smallest node is known; -1
 // where there are fewer.
-struct Face {
+struct NodeFace {
   std::array<int, 3> others;
   int element;
 
-  bool operator<(const Face& other) const { return others < other.others; }
+  bool operator<(const NodeFace& other) const { return others < other.others; }
 };
 
 // The elements that are connected through faces.
@@ -57,14 +58,14 @@ DisjointSets ElementsJoinedByFaces(const Mesh& mesh) {
   const ElementsOfNodes around(mesh);
   const auto& faces_of_element = mesh.Topology().faces;
   DisjointSets sets(mesh.NumElements());
-  std::vector<Face> faces;  // Whose smallest node is the same.
+  std::vector<NodeFace> faces;  // Whose smallest node is the same.
   for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
     faces.clear();
     for (Eigen::Index i = around.start[node]; i < around.start[node + 1]; ++i) {
       const int e = static_cast<int>(around.element[i]);
       const auto nodes = mesh.elements.col(e);
       for (const std::vector<int>& vertices : faces_of_element) {
-        Face face = {{-1, -1, -1}, e};
+        NodeFace face = {{-1, -1, -1}, e};
         std::size_t num_others = 0;
         bool has_node = false;
         bool is_smallest = true;
@@ -153,8 +154,6 @@ std::vector<Body> BodiesOf(const Mesh& mesh) {
   return bodies;
 }
 
-const char* const kAxis[3] = {"x", "y", "z"};
-
 // Of the directions that the orthonormal columns of `span` span, the one
 // closest to an axis: "x", or "(0.6, 0.8, 0)".
 std::string DescribeDirection(const Eigen::MatrixXd& span) {
@@ -163,7 +162,7 @@ std::string DescribeDirection(const Eigen::MatrixXd& span) {
   projection.diagonal().maxCoeff(&axis);
   const Eigen::VectorXd direction = projection.col(axis).normalized();
   if (direction(axis) > 0.9999) {
-    return kAxis[axis];
+    return kAxisNames[axis];
   }
   std::ostringstream text;
   text << std::setprecision(2);

@@ -5,13 +5,12 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "elastimate/core/mesh/axis_names.h"
 #include "elastimate/core/mesh/representable.h"
 #include "elastimate/core/scene/loads.h"
 
 namespace elastimate {
 namespace {
-
-const char* const kAxis[3] = {"x", "y", "z"};
 
 std::string CaseName(std::size_t index) {
   return "load case " + std::to_string(index + 1);
@@ -172,7 +171,7 @@ void ValidateMeasurement(const Mesh& mesh, const LoadCase& load_case,
       largest = std::max(largest, std::abs(value));
       if (!std::isfinite(value)) {
         Fail("the measured displacement of node " + std::to_string(node) +
-             " (" + kAxis[i] + ") in " + name +
+             " (" + kAxisNames[i] + ") in " + name +
              " is not finite; correct it or mark it as not observed");
       }
     }

@@ -16,7 +16,7 @@ namespace {
 
 // The sine of the identifiability angle below which rounding decides: it comes
 // from the square root of a difference, which has half the digits.
-constexpr double kCollinear = 1e-6;
+constexpr double kCollinearSensitivities = 1e-6;
 
 // Sums over the observed nodes that the statistics are made of.  Derivatives
 // are with respect to (ln E, nu); without a loss the bread is S^T S.
@@ -79,7 +79,8 @@ class FitDescription {
     estimate.displacement_residual =
         std::sqrt(square_sum_) / observed.Measured().norm();
     estimate.identifiability_angle = IdentifiabilityAngle(Gram());
-    is_collinear_ = std::sin(*estimate.identifiability_angle) < kCollinear;
+    is_collinear_ =
+        std::sin(*estimate.identifiability_angle) < kCollinearSensitivities;
   }
 
   // Whether the data determine one combination of the parameters only.

@@ -20,7 +20,7 @@ constexpr double kRounding = 1e-10;
 
 // The sine of the angle between two vectors of virtual work below which
 // rounding, not the data, decides.
-constexpr double kCollinear = 1e-10;
+constexpr double kCollinearWork = 1e-10;
 
 // An orthonormal basis of the polynomials on the nodes where `component` is
 // free, zero elsewhere: num_nodes x m.
@@ -246,7 +246,7 @@ std::optional<FreeDirection> VirtualWorkBalance::CollinearDirection() const {
   const Eigen::MatrixXd b = lower.solve(internal_j_);
   const Eigen::MatrixXd f = lower.solve(external_);
   const double slope = b.cwiseProduct(f).sum() / f.squaredNorm();
-  if ((b - slope * f).norm() > kCollinear * b.norm()) {
+  if ((b - slope * f).norm() > kCollinearWork * b.norm()) {
     return std::nullopt;
   }
   const double t = Evaluate(noise, Bounds{}).free_compliance_scale;

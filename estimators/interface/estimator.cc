@@ -11,7 +11,7 @@
 namespace elastimate {
 namespace {
 
-std::string Text(double value) {
+std::string AsText(double value) {
   std::ostringstream text;
   text << value;
   return text.str();
@@ -22,13 +22,13 @@ std::string WhyInvalidBounds(const Bounds& bounds, const std::string& name,
                              const std::string& range) {
   for (const auto& bound : {bounds.lower, bounds.upper}) {
     if (bound && !(*bound >= smallest && *bound <= largest)) {
-      return "a bound on " + name + " is " + Text(*bound) + "; it must be " +
+      return "a bound on " + name + " is " + AsText(*bound) + "; it must be " +
              range;
     }
   }
   if (bounds.lower && bounds.upper && !(*bounds.lower < *bounds.upper)) {
     return "the bounds on " + name + " are crossed: the lower is " +
-           Text(*bounds.lower) + ", the upper " + Text(*bounds.upper);
+           AsText(*bounds.lower) + ", the upper " + AsText(*bounds.upper);
   }
   return "";
 }
@@ -50,7 +50,7 @@ class NoPreparation : public Preparation {
 std::string EstimatorOptions::WhyInvalid() const {
   if (known_poisson_ratio &&
       !(*known_poisson_ratio > -1 && *known_poisson_ratio < 0.5)) {
-    return "the known Poisson's ratio is " + Text(*known_poisson_ratio) +
+    return "the known Poisson's ratio is " + AsText(*known_poisson_ratio) +
            "; it must be above -1 and below 0.5";
   }
   if (known_poisson_ratio && poisson_ratio.AreGiven()) {
@@ -63,7 +63,8 @@ std::string EstimatorOptions::WhyInvalid() const {
       (poisson_ratio.lower.value_or(-1) >= kLargestPoissonRatio ||
        poisson_ratio.upper.value_or(0.5) <= kSmallestPoissonRatio)) {
     why = "the bounds on Poisson's ratio leave nothing between " +
-          Text(kSmallestPoissonRatio) + " and " + Text(kLargestPoissonRatio);
+          AsText(kSmallestPoissonRatio) + " and " +
+          AsText(kLargestPoissonRatio);
   }
   if (why.empty()) {
     why = WhyInvalidBounds(

@@ -15,20 +15,20 @@ namespace elastimate {
 namespace {
 
 /// The lines between two keywords of a file.
-struct Section {
+struct TextSection {
   std::string keyword;
   std::string first_line;
   std::int64_t num_lines = 0;
   std::vector<std::uint64_t> numbers;  ///< At the begin of each but the first.
 };
 
-bool HasNodes(const Section& section) {
+bool HasNodes(const TextSection& section) {
   static const std::set<std::string> kKeywords = {"$NOD", "$NOE", "$Nodes",
                                                   "$ParametricNodes"};
   return kKeywords.count(section.keyword) > 0;
 }
 
-bool IsCounted(const Section& section) {
+bool IsCounted(const TextSection& section) {
   static const std::set<std::string> kKeywords = {
       "$ELM",      "$Elements",    "Vertices",    "Edges",     "EdgesP2",
       "Triangles", "Tetrahedra",   "TrianglesP2", "Hexahedra", "Quadrilaterals",
@@ -37,7 +37,7 @@ bool IsCounted(const Section& section) {
 }
 
 /// The number of lines that the first of them tells.
-double DueLines(const Section& section, double version) {
+double DueLines(const TextSection& section, double version) {
   std::istringstream counts(section.first_line);
   double first = 0;
   double second = 0;
@@ -51,7 +51,7 @@ double DueLines(const Section& section, double version) {
   return 1 + first + (HasNodes(section) && version >= 4.1 ? 2 : 1) * second;
 }
 
-std::string WhyDamaged(Section& section, double version) {
+std::string WhyDamaged(TextSection& section, double version) {
   if (!IsCounted(section)) {
     return "";
   }
@@ -75,7 +75,7 @@ std::string WhyDamaged(Section& section, double version) {
 }
 
 /// Appends a line that is no keyword.
-void Append(const std::string& line, Section& section) {
+void Append(const std::string& line, TextSection& section) {
   if (++section.num_lines == 1) {
     section.first_line = line;
   } else if (HasNodes(section)) {
@@ -100,7 +100,7 @@ bool TakeLine(std::istream& file, std::string& line) {
 std::string WhyGmshTextIsDamaged(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   double version = 1;
-  Section section;
+  TextSection section;
   std::string line;
   while (TakeLine(file, line)) {
     // Of .msh or of .mesh.
@@ -109,7 +109,7 @@ std::string WhyGmshTextIsDamaged(const std::filesystem::path& path) {
       if (!damage.empty()) {
         return damage;
       }
-      section = Section();
+      section = TextSection();
       section.keyword = line;
       continue;
     }

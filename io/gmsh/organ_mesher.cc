@@ -71,8 +71,6 @@ constexpr int kTriangle = 2;
 constexpr int kTetrahedron = 4;
 constexpr int kPoint = 15;
 
-constexpr double kDegree = 0.017453292519943295;
-
 /// |k| of a lattice point.
 int Rest(int i, int j) { return kSteps - std::abs(i) - std::abs(j); }
 

@@ -6,8 +6,6 @@
 namespace elastimate {
 namespace {
 
-constexpr double kDegree = 0.017453292519943295;
-
 // The map from the ball (a, b, c) to the organ changes one coordinate after the
 // other, each by the ones already known, so that it can be inverted exactly.
 double Height(double a) { return 0.28 * std::exp(-0.65 * a); }

@@ -5,6 +5,8 @@
 
 namespace elastimate {
 
+inline constexpr double kDegree = 0.017453292519943295;  ///< In radians.
+
 /// The organ is the image of the unit ball under this smooth, invertible map:
 /// an ellipsoid whose height and depth taper from the right lobe (x = -1/2) to
 /// the left lobe (x = 1/2), whose lower edge is thin, and which is bent around

@@ -5,12 +5,11 @@
 #include <sstream>
 #include <utility>
 
+#include "elastimate/core/mesh/axis_names.h"
 #include "elastimate/io/text/input_error.h"
 
 namespace elastimate {
 namespace {
-
-const char* const kAxis[3] = {"x", "y", "z"};
 
 /// Where `mask` says and an element uses the node.
 void RequireFinite(const std::filesystem::path& file, const std::string& what,
@@ -21,7 +20,7 @@ void RequireFinite(const std::filesystem::path& file, const std::string& what,
       const double value = values(axis, node);
       if (mask(axis, node) && !std::isfinite(value)) {
         ThrowInputError(file, what + " of " + NodeName(mesh, node) + " (" +
-                                  kAxis[axis] + ") is " +
+                                  kAxisNames[axis] + ") is " +
                                   std::to_string(value).append("; " + mend));
       }
     }

@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 
 /// Characters of the parser's own messages, which quote the text.
-constexpr std::size_t kLongestMessage = 160;
+constexpr std::size_t kLongestParserMessage = 160;
 
 /// Without this, the last of several equal keys would silently win.  (A filter
 /// of json::parse would do, but takes a time that grows with the square of the
@@ -98,8 +98,8 @@ json ParseJsonFile(const std::filesystem::path& path) {
     if (const auto found = message.find(place); found != std::string::npos) {
       message.erase(0, found + place.size());
     }
-    ThrowInputError(path,
-                    Printable(message, kLongestMessage) + "; correct the JSON");
+    ThrowInputError(
+        path, Printable(message, kLongestParserMessage) + "; correct the JSON");
   }
 }
 

@@ -14,7 +14,7 @@
 namespace elastimate {
 namespace {
 
-constexpr std::size_t kLongestMessage = 240;  // Which may quote the file.
+constexpr std::size_t kLongestVtkMessage = 240;  // Which may quote the file.
 
 std::mutex& TheMutex() {
   static std::mutex mutex;
@@ -129,7 +129,7 @@ std::string VtkMessages::FirstError() const {
   for (char& c : message) {
     c = c == '\n' ? ' ' : c;
   }
-  return Printable(message, kLongestMessage);
+  return Printable(message, kLongestVtkMessage);
 }
 
 }  // namespace elastimate

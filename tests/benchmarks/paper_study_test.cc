@@ -21,12 +21,12 @@
 namespace elastimate {
 namespace {
 
+using testing::kPoissonRatioError;
+using testing::kYoungsModulusError;
 using testing::ReadTable;
 using testing::TableRow;
 
 constexpr const char* kDeviation = "displacement_deviation [1]";
-constexpr const char* kYoungsModulusError = "youngs_modulus_error [1]";
-constexpr const char* kPoissonRatioError = "poisson_ratio_error [1]";
 
 using RowsByDeviation = std::map<double, std::vector<TableRow>>;
 

@@ -16,11 +16,10 @@
 namespace elastimate {
 namespace {
 
+using testing::kPoissonRatioError;
+using testing::kYoungsModulusError;
 using testing::ReadTable;
 using testing::TableRow;
-
-constexpr const char* kYoungsModulusError = "youngs_modulus_error [1]";
-constexpr const char* kPoissonRatioError = "poisson_ratio_error [1]";
 
 // Of numbers with seven digits, of which one was subtracted.
 constexpr double kTableRounding = 1e-6;

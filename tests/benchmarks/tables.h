@@ -13,6 +13,10 @@
 
 namespace elastimate::testing {
 
+// Columns of several studies.
+inline constexpr const char* kYoungsModulusError = "youngs_modulus_error [1]";
+inline constexpr const char* kPoissonRatioError = "poisson_ratio_error [1]";
+
 /// The cells of a row by their columns.
 class TableRow {
  public:

@@ -29,13 +29,13 @@ using testing::DenseStiffness;
 using testing::Distorted;
 using testing::ForEachGaussPoint;
 using testing::HookeMatrix;
+using testing::kNan;
 using testing::PlaneWaves;
 using testing::RandomMatrix;
 using testing::SmallScene;
 using testing::WithBothOrientations;
 using testing::WithThreeForces;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kYoungs = 2.5e4;
 
 Supports FreeSupports(const Mesh& mesh) {

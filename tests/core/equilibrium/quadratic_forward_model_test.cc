@@ -27,8 +27,8 @@ using testing::QuadraticShapeFunctions;
 using testing::WithBothOrientations;
 using testing::WithMidEdgeNodes;
 
-double RelativeError(const Eigen::MatrixXd& values,
-                     const Eigen::MatrixXd& exact) {
+double RelativeNormOfError(const Eigen::MatrixXd& values,
+                           const Eigen::MatrixXd& exact) {
   return (values - exact).norm() / exact.norm();
 }
 
@@ -62,8 +62,8 @@ TEST_P(QuadraticForNu, AQuadraticFieldIsReproduced) {
   ASSERT_EQ(DegreesOfFreedom(supports).NumFree(), 3 * 3 * 5 * 5);
   ForwardModel model(mesh, supports, AssembleLoads(mesh, {load}).reshaped());
   ASSERT_TRUE(model.SetPoissonRatio(elasticity.poisson_ratio));
-  EXPECT_LT(RelativeError(model.Displacement(elasticity.youngs_modulus),
-                          exact.reshaped()),
+  EXPECT_LT(RelativeNormOfError(model.Displacement(elasticity.youngs_modulus),
+                                exact.reshaped()),
             1e-13 / (1 - 2 * GetParam()));
 }
 
@@ -74,7 +74,7 @@ TEST_P(QuadraticForNu, ALinearFieldIsReproduced) {
   ForwardModel model(mesh, HeldAllAround(mesh, exact),
                      Eigen::MatrixXd::Zero(3 * mesh.NumNodes(), 1));
   ASSERT_TRUE(model.SetPoissonRatio(GetParam()));
-  EXPECT_LT(RelativeError(model.Displacement(1), exact.reshaped()),
+  EXPECT_LT(RelativeNormOfError(model.Displacement(1), exact.reshaped()),
             1e-13 / (1 - 2 * GetParam()));
 }
 
@@ -107,7 +107,7 @@ TEST_P(QuadraticForNu, TensionOfABarOnRollers) {
       5 / youngs * Eigen::Vector3d(-GetParam(), -GetParam(), 1);
   const Eigen::MatrixXd exact =
       (strain.asDiagonal() * quadratic.mesh.nodes).reshaped();
-  EXPECT_LT(RelativeError(model.Displacement(youngs), exact),
+  EXPECT_LT(RelativeNormOfError(model.Displacement(youngs), exact),
             1e-12 / (1 - 2 * GetParam()));
 }
 
@@ -126,14 +126,15 @@ TEST(QuadraticForwardModel, SensitivitiesAreDerivatives) {
   ASSERT_TRUE(model.SetPoissonRatio(0.3));
   const DisplacementSensitivities sensitivities = model.Sensitivities(1e3);
   // The square of the step, and rounding over the step.
-  EXPECT_LT(RelativeError(sensitivities.poisson_ratio, by_nu), 1e-8);
-  EXPECT_LT(
-      RelativeError(sensitivities.log_youngs_modulus, -model.Displacement(1e3)),
-      1e-14);
+  EXPECT_LT(RelativeNormOfError(sensitivities.poisson_ratio, by_nu), 1e-8);
+  EXPECT_LT(RelativeNormOfError(sensitivities.log_youngs_modulus,
+                                -model.Displacement(1e3)),
+            1e-14);
 }
 
 // The L2 norm of the error on a distorted box of n^3 cubes.
-double ManufacturedError(const IsotropicElasticity& elasticity, int n) {
+double QuadraticManufacturedError(const IsotropicElasticity& elasticity,
+                                  int n) {
   const PlaneWaves waves;
   const Mesh mesh = WithMidEdgeNodes(Distorted(BoxMesh({n, n, n}, {1, 1, 1})));
   Eigen::MatrixXd exact(3, mesh.NumNodes());
@@ -180,9 +181,9 @@ class QuadraticConvergence : public ::testing::TestWithParam<double> {};
 // The error falls with the cube of the mesh width.
 TEST_P(QuadraticConvergence, IsOfThirdOrder) {
   const IsotropicElasticity elasticity{2.5, GetParam()};
-  const double coarse = ManufacturedError(elasticity, 2);
-  const double medium = ManufacturedError(elasticity, 4);
-  const double fine = ManufacturedError(elasticity, 6);
+  const double coarse = QuadraticManufacturedError(elasticity, 2);
+  const double medium = QuadraticManufacturedError(elasticity, 4);
+  const double fine = QuadraticManufacturedError(elasticity, 6);
   EXPECT_GT(std::log(coarse / medium) / std::log(2), 2.7);
   EXPECT_LT(std::log(coarse / medium) / std::log(2), 3.3);
   EXPECT_GT(std::log(medium / fine) / std::log(1.5), 2.8);

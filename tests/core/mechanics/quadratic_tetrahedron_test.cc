@@ -39,7 +39,7 @@ using testing::WithMidEdgeNodes;
 // A row sums some thousand products that have each lost one or two digits to
 // the differences of node positions; the reference loses two more to the
 // inverse of its matrix of monomials.
-constexpr double kRounding = 1e-13;
+constexpr double kQuadraticRounding = 1e-13;
 constexpr double kReferenceRounding = 1e-12;
 
 class QuadraticTetrahedra : public ::testing::Test {
@@ -142,7 +142,7 @@ TEST_F(QuadraticTetrahedra, ProductEqualsTheAssembledStiffness) {
     }
   }
   const StiffnessProducts products = MultiplyStiffnessBasis(mesh_, q_);
-  const double tolerance = kRounding * Scale(q_);
+  const double tolerance = kQuadraticRounding * Scale(q_);
   EXPECT_LT((products.h - h).cwiseAbs().maxCoeff(), tolerance);
   EXPECT_LT((products.j - j).cwiseAbs().maxCoeff(), tolerance);
 }
@@ -177,7 +177,7 @@ TEST_F(QuadraticTetrahedra, ProductOfARigidMotionIsZero) {
     }
     const StiffnessProducts of_rotation =
         MultiplyStiffnessBasis(mesh_, rotation.reshaped());
-    const double tolerance = kRounding * Scale(rotation.reshaped());
+    const double tolerance = kQuadraticRounding * Scale(rotation.reshaped());
     EXPECT_LT(of_rotation.h.cwiseAbs().maxCoeff(), tolerance);
     EXPECT_LT(of_rotation.j.cwiseAbs().maxCoeff(), tolerance);
   }
@@ -186,7 +186,7 @@ TEST_F(QuadraticTetrahedra, ProductOfARigidMotionIsZero) {
 TEST_F(QuadraticTetrahedra, ProductIsSymmetric) {
   const StiffnessProducts products = MultiplyStiffnessBasis(mesh_, q_);
   const double tolerance =
-      kRounding * Scale(q_) * static_cast<double>(q_.rows());
+      kQuadraticRounding * Scale(q_) * static_cast<double>(q_.rows());
   for (const Eigen::MatrixXd& gram :
        {Eigen::MatrixXd(q_.transpose() * products.h),
         Eigen::MatrixXd(q_.transpose() * products.j)}) {
@@ -203,7 +203,7 @@ TEST_F(QuadraticTetrahedra, ProductOfALinearFieldIsZeroInside) {
       (QuadraticField().gradient * mesh_.nodes).reshaped();
   const StiffnessProducts products = MultiplyStiffnessBasis(mesh_, q);
   const std::vector<bool> on_surface = OnSurface();
-  const double tolerance = kRounding * Scale(q);
+  const double tolerance = kQuadraticRounding * Scale(q);
   int num_interior = 0;
   for (Eigen::Index node = 0; node < mesh_.NumNodes(); ++node) {
     if (!on_surface[node]) {
@@ -236,7 +236,7 @@ TEST_F(QuadraticTetrahedra, ContainTheLinearOnes) {
   const StiffnessProducts expected = MultiplyStiffnessBasis(linear_, linear);
   const StiffnessProducts products =
       MultiplyStiffnessBasis(mesh_, interpolated);
-  const double tolerance = kRounding * Scale(interpolated);
+  const double tolerance = kQuadraticRounding * Scale(interpolated);
   EXPECT_LT(
       (VertexForces(mesh_, products.h) - expected.h).cwiseAbs().maxCoeff(),
       tolerance);

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <limits>
 #include <set>
 #include <utility>
 #include <vector>
@@ -20,12 +19,11 @@ namespace elastimate {
 namespace {
 
 using testing::BoxMesh;
+using testing::kNan;
 using testing::RandomMatrix;
 using testing::SmallScene;
 using testing::WithBothOrientations;
 using testing::WithMidEdgeNodes;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // The mid-edge node between two vertices, by its place; -1 when there is none.
 int NodeBetween(const Mesh& mesh, int a, int b) {

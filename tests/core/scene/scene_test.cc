@@ -14,9 +14,9 @@ namespace elastimate {
 namespace {
 
 using testing::BoxMesh;
+using testing::kNan;
 using testing::SmallScene;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A valid scene: everything of which may then be broken once.

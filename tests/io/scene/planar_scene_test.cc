@@ -25,7 +25,7 @@ constexpr double kPoissonRatio = 0.25;
 constexpr double kTraction = 3;
 
 /// The rectangle of PlanarVtkText, pulled along x.
-const std::string kDocument = R"({
+const std::string kPlanarDocument = R"({
   "model": "plane_stress", "thickness": 0.5,
   "mesh": "mesh.vtk",
   "supports": [ {"nodes": {"box": [[0, 0], [0, 1]]}, "components": "x"},
@@ -75,7 +75,8 @@ class PlanarSceneTest : public ::testing::Test {
   }
 
   Load ReadLoad(const std::string& load) const {
-    return Read(Replaced(kDocument, R"({"type": "traction", "value": [3, 0],
+    return Read(Replaced(kPlanarDocument,
+                         R"({"type": "traction", "value": [3, 0],
                   "surface": {"box": [[2, 0], [2, 1]]}})",
                          load))
         .load_cases.at(0)
@@ -97,14 +98,14 @@ void ExpectFound(const Scene& scene) {
 
 // sigma_xx = p, all others zero: eps_xx = p / E, eps_yy = -nu p / E.
 TEST_F(PlanarSceneTest, FindsWhatTensionInPlaneStressIsByHand) {
-  ExpectFound(Read(kDocument));
+  ExpectFound(Read(kPlanarDocument));
 }
 
 // sigma_zz = nu p: eps_xx = (1 - nu^2) p / E, eps_yy = -nu (1 + nu) p / E.
 TEST_F(PlanarSceneTest, FindsWhatTensionInPlaneStrainIsByHand) {
   WriteField(1 - kPoissonRatio * kPoissonRatio,
              -kPoissonRatio * (1 + kPoissonRatio));
-  ExpectFound(Read(Replaced(kDocument, "plane_stress", "plane_strain")));
+  ExpectFound(Read(Replaced(kPlanarDocument, "plane_stress", "plane_strain")));
 }
 
 // eps = p / E (1, -nu, -nu) in two hexahedra with an oblique face between.
@@ -136,7 +137,7 @@ TEST_F(PlanarSceneTest, FindsWhatTensionOfHexahedraIsByHand) {
 }
 
 TEST_F(PlanarSceneTest, HasLoadsOnEdgesTimesTheThickness) {
-  const Mesh mesh = Read(kDocument).mesh;
+  const Mesh mesh = Read(kPlanarDocument).mesh;
   const auto expect = [&](const std::string& load, const Eigen::Vector2d& sum) {
     EXPECT_LT((ResultantOf(mesh, ReadLoad(load)).force - sum).norm(), 1e-12)
         << load;
@@ -155,7 +156,7 @@ TEST_F(PlanarSceneTest, HasLoadsOnEdgesTimesTheThickness) {
 
 TEST_F(PlanarSceneTest, TakesFieldsOfThreeColumnsInThePlane) {
   const std::string field = ReadFile(folder_.Path() / "u.csv");
-  const Scene scene = Read(kDocument);
+  const Scene scene = Read(kPlanarDocument);
   std::string three = "x,y,z\n";
   std::istringstream rows(field);
   std::string row;
@@ -164,32 +165,32 @@ TEST_F(PlanarSceneTest, TakesFieldsOfThreeColumnsInThePlane) {
     three += row + ",0\n";
   }
   folder_.Write("u.csv", three);
-  EXPECT_EQ(Read(kDocument).load_cases[0].displacement,
+  EXPECT_EQ(Read(kPlanarDocument).load_cases[0].displacement,
             scene.load_cases[0].displacement);
   folder_.Write("u.csv", Replaced(three, "0,0\n", "0,0.5\n"));
-  EXPECT_THROWS_WITH(Read(kDocument),
+  EXPECT_THROWS_WITH(Read(kPlanarDocument),
                      "u.csv: the row of node 0 \\(z\\) is 0.5, but the mesh is "
                      "planar; make it 0");
   // Not where it was not observed.
-  EXPECT_NO_THROW(Read(Replaced(kDocument, R"("loads")",
+  EXPECT_NO_THROW(Read(Replaced(kPlanarDocument, R"("loads")",
                                 R"("observed": {"ids": [4, 5, 8]}, "loads")")));
 }
 
 TEST_F(PlanarSceneTest, TakesTheSectionOfFlagsBeforeThatOfTheDocument) {
   SectionChoice section;
   section.thickness = 2;
-  EXPECT_EQ(Read(kDocument, section).mesh.section.thickness, 2);
-  EXPECT_EQ(Read(kDocument, section).mesh.section.model,
+  EXPECT_EQ(Read(kPlanarDocument, section).mesh.section.thickness, 2);
+  EXPECT_EQ(Read(kPlanarDocument, section).mesh.section.model,
             SectionModel::kPlaneStress);
   section.model = SectionModel::kPlaneStrain;
-  EXPECT_EQ(Read(kDocument, section).mesh.section.model,
+  EXPECT_EQ(Read(kPlanarDocument, section).mesh.section.model,
             SectionModel::kPlaneStrain);
 }
 
 TEST_F(PlanarSceneTest, ErrsOnWhatIsNotOfAPlane) {
   const auto expect = [this](const std::string& from, const std::string& to,
                              const std::string& pattern) {
-    EXPECT_THROWS_WITH(Read(Replaced(kDocument, from, to)), pattern);
+    EXPECT_THROWS_WITH(Read(Replaced(kPlanarDocument, from, to)), pattern);
   };
   expect(R"("model": "plane_stress",)", "",
          "mesh.vtk: the mesh is of quadrilaterals, which are planar, but no "
@@ -213,13 +214,13 @@ TEST_F(PlanarSceneTest, ErrsOnWhatIsNotOfAPlane) {
   expect("[[0, 0], [0, 1]]", "[[0, 0], [0, 1, 2]]",
          "box\\[1\\] must be a list of 2 numbers");
   folder_.Write("u.csv", "ux,uz\n");
-  EXPECT_THROWS_WITH(Read(kDocument),
+  EXPECT_THROWS_WITH(Read(kPlanarDocument),
                      "u.csv: line 1: the header must be x,y or ux,uy");
 }
 
 TEST_F(PlanarSceneTest, ErrsOnNodesThatAreNotInOnePlane) {
   folder_.Write("mesh.vtk", Replaced(PlanarVtkText(), "2 0.5 7", "2 0.5 8"));
-  EXPECT_THROWS_WITH(Read(kDocument),
+  EXPECT_THROWS_WITH(Read(kPlanarDocument),
                      "mesh.vtk: node 5 is at z = 8 and node 0 at z = 7, but "
                      "quadrilaterals must lie in one plane z = const");
 }
