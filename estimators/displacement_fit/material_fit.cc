@@ -22,7 +22,7 @@ namespace elastimate {
 namespace {
 
 // Steps below this part of a standard error end the fit.
-constexpr double kSmallestStep = 1e-2;
+constexpr double kSmallestStepOfErrors = 1e-2;
 
 // The displacements of a scene at variables x, against the measured ones.
 class DisplacementMisfit {
@@ -148,7 +148,7 @@ BoundedMinimum Descend(const EstimatorOptions& estimator_options,
   // The residual is normalised: start with Gauss-Newton steps.
   options.initial_trust_region_radius = 1e8;
   // A step of k standard errors lowers the cost by about k^2 / n of itself.
-  options.function_tolerance = kSmallestStep * kSmallestStep /
+  options.function_tolerance = kSmallestStepOfErrors * kSmallestStepOfErrors /
                                static_cast<double>(misfit.Observed().Size());
   options.gradient_tolerance = 1e-14;
   options.parameter_tolerance = 1e-11;

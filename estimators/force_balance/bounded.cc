@@ -114,7 +114,7 @@ ceres::Solver::Summary Minimize(const ForceResidual& residual,
 }
 
 // Which of the parameters that were sought lie on no bound.
-struct FreeParameters {
+struct ParametersOffBounds {
   bool youngs_modulus;
   bool poisson_ratio;
 };
@@ -122,7 +122,7 @@ struct FreeParameters {
 // What there is to judge of the minimum.  The bias of an E on a bound is that
 // of what virtual work has left of it, and follows.
 void Describe(const ForceResidual& residual, const EstimatorOptions& options,
-              const FreeParameters& free, Evidence& evidence,
+              const ParametersOffBounds& free, Evidence& evidence,
               Estimate& estimate) {
   residual.Describe(free.youngs_modulus, free.poisson_ratio, evidence,
                     estimate);
@@ -171,7 +171,7 @@ Estimate RunBounded(const ForceResidual& residual, const Scene& scene,
   evidence.active =
       NoteActiveBounds(options, parameters.log_youngs_modulus.OnBound(),
                        parameters.poisson_ratio, estimate);
-  const FreeParameters free = {
+  const ParametersOffBounds free = {
       evidence.active.youngs_modulus == Side::kNone,
       !options.known_poisson_ratio &&
           evidence.active.poisson_ratio == Side::kNone};

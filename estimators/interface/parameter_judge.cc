@@ -60,19 +60,19 @@ void EnterErrors(Estimate& estimate) {
   }
 }
 
-bool IsPhysical(const ParameterEstimate& parameter) {
+bool IsPhysicalParameter(const ParameterEstimate& parameter) {
   return parameter.is_modulus ? parameter.value > 0
                               : parameter.value > -1 && parameter.value < 0.5;
 }
 
-void JudgePhysics(Estimate& estimate) {
+void JudgePhysicsOfParameters(Estimate& estimate) {
   std::vector<std::string> unphysical;
   for (const ParameterEstimate& parameter : estimate.parameters) {
     if (!std::isfinite(parameter.value)) {
       estimate.Fail(NotFinite());
       return;
     }
-    if (!IsPhysical(parameter)) {
+    if (!IsPhysicalParameter(parameter)) {
       std::ostringstream text;
       text << parameter.Label() << " = " << parameter.value;
       unphysical.push_back(text.str());
@@ -83,7 +83,7 @@ void JudgePhysics(Estimate& estimate) {
   }
 }
 
-void JudgeDetermination(Estimate& estimate) {
+void JudgeDeterminationOfParameters(Estimate& estimate) {
   std::vector<std::string> undetermined;
   for (const ParameterEstimate& parameter : estimate.parameters) {
     const double error = parameter.standard_error.value_or(0);
@@ -103,7 +103,7 @@ void JudgeDetermination(Estimate& estimate) {
 }
 
 // Of the parameter whose bias exceeds its limit by most.
-void JudgeBias(Estimate& estimate) {
+void JudgeBiasOfParameters(Estimate& estimate) {
   const ParameterErrors bias = estimate.error_budget.bias;
   const ParameterErrors& noise = estimate.error_budget.noise;
   double largest = 0;
@@ -164,7 +164,8 @@ ParameterErrors ErrorsOfVariables(const FreeParameters& free,
 
 void JudgeParameters(Estimate& estimate) {
   for (const auto& judge :
-       {JudgePhysics, EnterErrors, JudgeBias, JudgeDetermination}) {
+       {JudgePhysicsOfParameters, EnterErrors, JudgeBiasOfParameters,
+        JudgeDeterminationOfParameters}) {
     if (estimate.IsUsable()) {
       judge(estimate);
     }

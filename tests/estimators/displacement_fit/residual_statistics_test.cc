@@ -16,7 +16,7 @@ namespace {
 using testing::Measure;
 using testing::SmallScene;
 
-Scene MeasuredOrgan() {
+Scene ExactOrgan() {
   Scene scene = SmallScene("organ");
   Measure({5e4, 0.3}, scene);
   return scene;
@@ -24,7 +24,7 @@ Scene MeasuredOrgan() {
 
 TEST(CorrelateNeighbours, IsNearZeroForIndependentNoise) {
   constexpr int kSeeds = 100;
-  const Scene scene = testing::WithThreeForces(MeasuredOrgan());
+  const Scene scene = testing::WithThreeForces(ExactOrgan());
   Scene measured = scene;
   Measure({5e4, 0.3}, measured);
   const ObservedDisplacements observed(measured);
@@ -46,7 +46,7 @@ TEST(CorrelateNeighbours, IsNearZeroForIndependentNoise) {
 }
 
 TEST(CorrelateNeighbours, IsNearOneForASmoothField) {
-  const Scene scene = MeasuredOrgan();
+  const Scene scene = ExactOrgan();
   const ObservedDisplacements observed(scene);
   const auto constant = CorrelateNeighbours(
       NodeGraph(scene.mesh), observed, Eigen::VectorXd::Ones(observed.Size()));
@@ -60,7 +60,7 @@ TEST(CorrelateNeighbours, IsNearOneForASmoothField) {
 }
 
 TEST(CorrelateNeighbours, KnowsOnlyObservedNeighbours) {
-  Scene scene = MeasuredOrgan();
+  Scene scene = ExactOrgan();
   ComponentMask& mask = scene.load_cases[0].observed;
   mask = ComponentMask::Constant(3, scene.mesh.NumNodes(), false);
   mask(2, scene.mesh.NumNodes() - 1) = true;
@@ -74,7 +74,7 @@ TEST(CorrelateNeighbours, KnowsOnlyObservedNeighbours) {
 // A tenth of the components are far off: least squares follow them, the change
 // leads back.
 TEST(RobustChange, TakesBackWhatOutliersPull) {
-  const ObservedDisplacements observed(MeasuredOrgan());
+  const ObservedDisplacements observed(ExactOrgan());
   const Eigen::MatrixXd s = testing::RandomMatrix(observed.Size(), 3, 1);
   const Eigen::Vector3d truth(0.1, -0.2, 0.3);
   Eigen::VectorXd residual = -s * truth;
