@@ -153,7 +153,7 @@ int RunGenerate(const std::vector<std::string>& arguments) {
   constexpr double kDegreesPerRadian = 57.295779513082323;
   std::ostringstream text;
   text << scene.mesh.NumNodes() << " nodes, " << scene.mesh.NumElements() << " "
-       << scene.mesh.Topology().shapes;
+       << scene.mesh.Topology().ShapeName(scene.mesh.NumElements());
   if (scene.mesh.kind == ElementKind::kTet4) {
     text << ", smallest dihedral angle "
          << kDegreesPerRadian * SmallestDihedralAngles(scene.mesh).minCoeff()

@@ -193,8 +193,9 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
        std::to_string(scene.mesh.NumVertices()) + " nodes, " +
            std::to_string(scene.mesh.NumElements()) +
            (scene.mesh.Order() == 2 ? " quadratic " : " ") +
-           std::string(scene.mesh.Topology().shapes) + ", " +
-           std::to_string(scene.load_cases.size()) + " load case" +
+           std::string(
+               scene.mesh.Topology().ShapeName(scene.mesh.NumElements())) +
+           ", " + std::to_string(scene.load_cases.size()) + " load case" +
            (scene.load_cases.size() == 1 ? "" : "s"),
        text);
   if (scene.mesh.Dimension() == 2) {

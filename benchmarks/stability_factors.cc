@@ -12,7 +12,7 @@
 #include "benchmarks/trial.h"
 #include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
-#include "elastimate/core/mesh/tet4.h"
+#include "elastimate/core/mesh/mesh.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/io/examples/example_scenes.h"
@@ -169,9 +169,7 @@ Mesh WithSliver(const Mesh& mesh, double angle) {
     ++element;
   }
   const Eigen::Vector3d facet =
-      (GatherTetrahedron(mesh, element).rowwise().sum() -
-       mesh.nodes.col(node)) /
-      3;
+      (4 * ElementCentre(mesh, element) - mesh.nodes.col(node)) / 3;
   const auto moved = [&](double share) {
     Mesh result = mesh;
     result.nodes.col(node) += share * (facet - mesh.nodes.col(node));
@@ -383,8 +381,7 @@ Mesh Inclusion(const Mesh& mesh) {
   Mesh inclusion = mesh;
   Eigen::Index count = 0;
   for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
-    const Eigen::Vector3d center =
-        GatherTetrahedron(mesh, element).rowwise().mean();
+    const Eigen::Vector3d center = ElementCentre(mesh, element);
     if (center.minCoeff() > kCellEdge &&
         (size - center).minCoeff() > kCellEdge) {
       inclusion.elements.col(count++) = mesh.elements.col(element);

@@ -8,6 +8,7 @@
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "tests/dense_reference.h"
+#include "tests/quadratic_reference.h"
 #include "tests/scenes.h"
 
 namespace elastimate::testing {
@@ -213,13 +214,9 @@ void ForEachPoint(
   std::vector<double> points = {-1 / std::sqrt(3.0), 1 / std::sqrt(3.0)};
   std::vector<double> weights = {1, 1};
   if (IsSimplex(kind)) {
-    const double inner = std::sqrt(3.0 / 7 - 2.0 / 7 * std::sqrt(6.0 / 5));
-    const double outer = std::sqrt(3.0 / 7 + 2.0 / 7 * std::sqrt(6.0 / 5));
-    points = {(1 - outer) / 2, (1 - inner) / 2, (1 + inner) / 2,
-              (1 + outer) / 2};
-    const double small = (18 - std::sqrt(30.0)) / 72;
-    const double large = (18 + std::sqrt(30.0)) / 72;
-    weights = {small, large, large, small};
+    const GaussPoints gauss;
+    points.assign(gauss.point.begin(), gauss.point.end());
+    weights.assign(gauss.weight.begin(), gauss.weight.end());
   }
   const int n = static_cast<int>(points.size());
   for (int i = 0; i < n; ++i) {

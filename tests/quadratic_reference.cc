@@ -75,29 +75,4 @@ Eigen::Matrix<double, 6, 30> QuadraticShapeFunctions::StrainDisplacement(
   return b;
 }
 
-Eigen::MatrixXd QuadraticDenseStiffness(const Mesh& mesh,
-                                        const Eigen::Matrix<double, 6, 6>& d) {
-  Eigen::MatrixXd stiffness =
-      Eigen::MatrixXd::Zero(3 * mesh.NumNodes(), 3 * mesh.NumNodes());
-  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
-    const QuadraticShapeFunctions shape(mesh, e);
-    Eigen::Matrix<double, 30, 30> element;
-    element.setZero();
-    ForEachGaussPoint([&](const Eigen::Vector4d& point, double weight) {
-      const Eigen::Matrix<double, 6, 30> b =
-          shape.StrainDisplacement(shape.Position(point));
-      element += shape.Volume() * weight * b.transpose() * d * b;
-    });
-    for (Eigen::Index i = 0; i < 10; ++i) {
-      for (Eigen::Index j = 0; j < 10; ++j) {
-        const Eigen::Index row = mesh.elements(i, e);
-        const Eigen::Index column = mesh.elements(j, e);
-        stiffness.block<3, 3>(3 * row, 3 * column) +=
-            element.block<3, 3>(3 * i, 3 * j);
-      }
-    }
-  }
-  return stiffness;
-}
-
 }  // namespace elastimate::testing

@@ -2,6 +2,7 @@
 #define ELASTIMATE_TESTS_QUADRATIC_REFERENCE_H_
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 
 #include "elastimate/core/mesh/mesh.h"
@@ -51,18 +52,29 @@ class QuadraticShapeFunctions {
   double volume_;
 };
 
+/// Four points of the interval from 0 to 1 and their weights; exact for
+/// polynomials of degree 7.
+struct GaussPoints {
+  std::array<double, 4> point;
+  std::array<double, 4> weight;
+
+  GaussPoints() {
+    const double inner = std::sqrt(3.0 / 7 - 2.0 / 7 * std::sqrt(6.0 / 5));
+    const double outer = std::sqrt(3.0 / 7 + 2.0 / 7 * std::sqrt(6.0 / 5));
+    point = {(1 - outer) / 2, (1 - inner) / 2, (1 + inner) / 2,
+             (1 + outer) / 2};
+    const double small = (18 - std::sqrt(30.0)) / 72;
+    const double large = (18 + std::sqrt(30.0)) / 72;
+    weight = {small, large, large, small};
+  }
+};
+
 /// Calls visit(barycentric coordinates, weight) at 4 x 4 x 4 Gauss points of
 /// the cube collapsed onto the tetrahedron; exact for polynomials of degree 5.
 /// The weights add up to 1.
 template <typename Visitor>
 void ForEachGaussPoint(const Visitor& visit) {
-  const double inner = std::sqrt(3.0 / 7 - 2.0 / 7 * std::sqrt(6.0 / 5));
-  const double outer = std::sqrt(3.0 / 7 + 2.0 / 7 * std::sqrt(6.0 / 5));
-  const double point[4] = {(1 - outer) / 2, (1 - inner) / 2, (1 + inner) / 2,
-                           (1 + outer) / 2};
-  const double small = (18 - std::sqrt(30.0)) / 72;
-  const double large = (18 + std::sqrt(30.0)) / 72;
-  const double weight[4] = {small, large, large, small};
+  const auto [point, weight] = GaussPoints();
   for (int i = 0; i < 4; ++i) {
     for (int j = 0; j < 4; ++j) {
       for (int k = 0; k < 4; ++k) {
@@ -76,10 +88,6 @@ void ForEachGaussPoint(const Visitor& visit) {
     }
   }
 }
-
-/// Sum over the elements of the integral of B^T D B, (3 num_nodes)^2.
-Eigen::MatrixXd QuadraticDenseStiffness(const Mesh& mesh,
-                                        const Eigen::Matrix<double, 6, 6>& d);
 
 /// u_i = x . A_i x / 2 + g_i . x + c_i: what quadratic elements represent
 /// exactly, under a uniform body force.

@@ -22,13 +22,14 @@ inline void ResizeInLargePages(Eigen::Index num_rows, Eigen::Index num_columns,
   matrix.resize(num_rows, num_columns);
 #ifdef MADV_HUGEPAGE
   constexpr std::uintptr_t kPageSize = std::uintptr_t{1} << 21;
-  const auto begin = reinterpret_cast<std::uintptr_t>(matrix.data());
+  auto* const data = reinterpret_cast<char*>(matrix.data());
+  const auto begin = reinterpret_cast<std::uintptr_t>(data);
   const auto end = begin + sizeof(double) * std::uintptr_t(matrix.size());
   const std::uintptr_t first_page = (begin + kPageSize - 1) / kPageSize;
   const std::uintptr_t end_page = end / kPageSize;
   if (first_page < end_page) {
     // Advice: where the system does not take it, nothing is lost.
-    madvise(reinterpret_cast<void*>(first_page * kPageSize),
+    madvise(data + (first_page * kPageSize - begin),
             (end_page - first_page) * kPageSize, MADV_HUGEPAGE);
   }
 #endif

@@ -2,6 +2,7 @@
 #define ELASTIMATE_CORE_MESH_ELEMENT_KIND_H_
 
 #include <array>
+#include <cstdint>
 #include <string_view>
 #include <vector>
 
@@ -57,6 +58,10 @@ struct ElementTopology {
   /// are.  One vertex will do for a simplex.
   std::vector<std::vector<int>> corners;
 
+  /// "tetrahedron" for one, "tetrahedra" for another number.
+  std::string_view ShapeName(std::int64_t count) const {
+    return count == 1 ? shape : shapes;
+  }
   int NumVerticesOfFace() const { return static_cast<int>(faces[0].size()); }
   /// Vertices, and where the order is 2 the middle of each edge.
   int NumNodesOfFace() const {

@@ -334,8 +334,8 @@ void ValidateMesh(const Mesh& mesh) {
 }
 
 bool IsInTheMiddle(const Mesh& mesh, int node, int a, int b) {
-  const Eigen::VectorXd xa = mesh.nodes.col(a);
-  const Eigen::VectorXd xb = mesh.nodes.col(b);
+  const auto xa = mesh.nodes.col(a);
+  const auto xb = mesh.nodes.col(b);
   return (mesh.nodes.col(node) - 0.5 * (xa + xb)).norm() <=
          1e-6 * (xb - xa).norm();
 }

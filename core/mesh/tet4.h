@@ -6,20 +6,16 @@
 #include <cmath>
 
 #include "elastimate/core/mesh/mesh.h"
+#include "elastimate/core/mesh/shape_functions.h"
 
 namespace elastimate {
 
-/// Node positions of a tetrahedron, 3 x 4.
+/// Vertex positions of a tetrahedron, 3 x 4.
 using TetrahedronNodes = Eigen::Matrix<double, 3, 4>;
 
 inline TetrahedronNodes GatherTetrahedron(const Mesh& mesh,
                                           Eigen::Index element) {
-  TetrahedronNodes x;
-  for (int i = 0; i < 4; ++i) {
-    x.col(i) = Eigen::Map<const Eigen::Vector3d>(
-        mesh.nodes.data() + 3 * Eigen::Index(mesh.elements(i, element)));
-  }
-  return x;
+  return GatherVertices<ElementKind::kTet4>(mesh, element);
 }
 
 /// The linear tetrahedron: constant shape function gradients and the volume.

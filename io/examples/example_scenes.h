@@ -8,9 +8,9 @@
 namespace elastimate {
 
 /// A cuboid of `cells` cells, each cut into five tetrahedra, or each one
-/// hexahedron.  The default has
-/// 250 tetrahedra, like the cuboid of Becker & Teschner 2007, section 5 (the
-/// paper states neither its size nor its supports).
+/// hexahedron.  The default has 250 tetrahedra, like the cuboid of Becker &
+/// Teschner 2007, section 5 (the paper states neither its size nor its
+/// supports).
 struct CuboidOptions {
   /// Number of cells along x, y, z; at least 1 each, and no more than
   /// 2 000 000 in all.

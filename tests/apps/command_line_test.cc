@@ -1098,6 +1098,10 @@ TEST_F(ElementKinds, AreGeneratedSimulatedAndEstimatedWithoutFurtherFlags) {
       {{"kind", "tri3"}, {"model", "plane_strain"}, {"thickness", 0.5}});
   EXPECT_EQ(Succeed("generate cuboid --elements=hex8 --out=g.vtu").output,
             "108 nodes, 50 hexahedra\n");
+  EXPECT_EQ(
+      Succeed("generate cuboid --elements=hex8 --cells=1,1,1 --out=one.vtu")
+          .output,
+      "8 nodes, 1 hexahedron\n");
   Succeed("simulate g.vtu --youngs=7e10 --nu=0.33 --out=m.vtu");
   ExpectFound("m.vtu", "--model=3d",
               {{"kind", "hex8"}, {"model", "3d"}, {"thickness", nullptr}});

@@ -16,6 +16,7 @@
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "tests/core/random_values.h"
 #include "tests/dense_reference.h"
+#include "tests/element_kinds.h"
 #include "tests/quadratic_reference.h"
 #include "tests/scenes.h"
 
@@ -28,11 +29,11 @@ using testing::DenseDJ;
 using testing::Distorted;
 using testing::ForEachGaussPoint;
 using testing::HookeMatrix;
-using testing::QuadraticDenseStiffness;
 using testing::QuadraticField;
 using testing::QuadraticShapeFunctions;
 using testing::RandomMatrix;
 using testing::RandomSupports;
+using testing::TextbookStiffness;
 using testing::WithBothOrientations;
 using testing::WithMidEdgeNodes;
 
@@ -48,8 +49,8 @@ class QuadraticTetrahedra : public ::testing::Test {
       : linear_(
             WithBothOrientations(Distorted(BoxMesh({2, 2, 2}, {1, 0.8, 1.2})))),
         mesh_(WithMidEdgeNodes(linear_)),
-        dense_h_(QuadraticDenseStiffness(mesh_, DenseDH())),
-        dense_j_(QuadraticDenseStiffness(mesh_, DenseDJ())),
+        dense_h_(TextbookStiffness(mesh_, DenseDH())),
+        dense_j_(TextbookStiffness(mesh_, DenseDJ())),
         q_(RandomMatrix(3 * mesh_.NumNodes(), 3, 1)) {}
 
   // Largest entry of |K| |q|: what rounding is relative to.
