@@ -249,6 +249,17 @@ void ChooseOrder(const Estimate& linear, const Observations& observations,
   }
 }
 
+// Of several materials: only a fit sees that regions are wrong, and it starts
+// from virtual-fields itself.
+void ClimbOverMaterials(const Scene& scene, const EstimatorOptions& options,
+                        Ladder& ladder) {
+  if (!ladder.Climb(IterativeFe(), scene, WithoutDegree(options)) &&
+      !ladder.Climb(VirtualFields(), scene, options)) {
+    return;
+  }
+  ladder.Decide("stopped: there is no rung above");
+}
+
 }  // namespace
 
 std::string_view Auto::Name() const { return "auto"; }
@@ -290,18 +301,16 @@ Estimate Auto::DoRun(const Scene& scene,
       StopsHere(WhyNotEnough(scene, options, ladder.Last()), ladder)) {
     return ladder.Finish();
   }
+  if (!IsOneIsotropicMaterial(scene.materials)) {
+    ClimbOverMaterials(scene, options, ladder);
+    return ladder.Finish();
+  }
   std::optional<Estimate> virtual_fields;
   if (ladder.Climb(VirtualFields(), scene, options)) {
     virtual_fields = ladder.Last();
     if (StopsHere(WhyNotEnough(scene, options, *virtual_fields), ladder)) {
       return ladder.Finish();
     }
-  }
-  if (!IsOneIsotropicMaterial(scene.materials)) {
-    if (ladder.Climb(IterativeFe(), scene, without_degree)) {
-      ladder.Decide("stopped: there is no rung above");
-    }
-    return ladder.Finish();
   }
   if (!ladder.Climb(ReducedFe(), scene, without_degree)) {
     return ladder.Finish();

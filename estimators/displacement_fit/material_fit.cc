@@ -145,8 +145,6 @@ BoundedMinimum Descend(const EstimatorOptions& estimator_options,
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = estimator_options.max_iterations;
-  // The residual is normalised: start with Gauss-Newton steps.
-  options.initial_trust_region_radius = 1e8;
   // A step of k standard errors lowers the cost by about k^2 / n of itself.
   options.function_tolerance = kSmallestStepOfErrors * kSmallestStepOfErrors /
                                static_cast<double>(misfit.Observed().Size());

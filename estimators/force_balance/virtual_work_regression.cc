@@ -132,29 +132,40 @@ class WorkBalance {
   Work work_done_;
 };
 
-// Where the search starts: typical values, at the scale of the loads; empty
+// Typical values but for this Poisson's ratio, at the scale of the loads; empty
 // when the displacements oppose the loads.
 std::optional<Eigen::VectorXd> Start(const FreeParameters& free,
+                                     double poisson_ratio,
                                      const WorkBalance& balance) {
-  double scale = 0;
+  double known_scale = 0;
+  const auto values_at = [&](double scale) {
+    Eigen::VectorXd values = free.All().Typical(scale);
+    for (const Eigen::Index i : free.All().Free()) {
+      const LawParameter& parameter = *free.All().All()[i].law_parameter;
+      if (parameter.name == "poisson_ratio") {
+        values(i) = poisson_ratio;
+      }
+    }
+    return values;
+  };
   for (const MaterialParameters::Parameter& parameter : free.All().All()) {
     if (parameter.law_parameter->is_modulus && parameter.known) {
-      scale = *parameter.known;
+      known_scale = *parameter.known;
     }
   }
-  if (scale == 0) {
-    scale = balance.BestScale(free.All().Moduli(free.All().Typical(1)));
-  }
+  const double scale = known_scale > 0
+                           ? known_scale
+                           : balance.BestScale(free.All().Moduli(values_at(1)));
   if (!(scale > 0)) {
     return std::nullopt;
   }
-  return free.VariablesOf(free.All().Typical(scale));
+  return free.VariablesOf(values_at(scale));
 }
 
 BoundedMinimum Minimize(const FreeParameters& free,
                         const Eigen::VectorXd& start, WorkBalance& balance) {
-  // Relative to the start, for Ceres' tolerances.
-  double unit = 0;
+  // Of displacements, for Ceres' tolerances.
+  const double unit = balance.DisplacementNorm();
   const ResidualFunction residual = [&](const Eigen::VectorXd& x,
                                         Eigen::VectorXd* r,
                                         Eigen::MatrixXd* jacobian) {
@@ -162,8 +173,6 @@ BoundedMinimum Minimize(const FreeParameters& free,
                           jacobian)) {
       return false;
     }
-    unit = unit == 0 ? std::max(r->norm(), balance.DisplacementNorm() * 1e-16)
-                     : unit;
     *r /= unit;
     if (jacobian != nullptr) {
       *jacobian /= unit;
@@ -180,6 +189,24 @@ BoundedMinimum Minimize(const FreeParameters& free,
   options.logging_type = ceres::SILENT;
   return MinimizeOverVariables(residual, balance.NumEquations(),
                                free.VariableBounds(), start, options);
+}
+
+// The best minimum that the starts lead to: near nu = 1/2 the balance has
+// others.  Empty without a start.
+std::optional<BoundedMinimum> BestOfStarts(const FreeParameters& free,
+                                           WorkBalance& balance) {
+  std::optional<BoundedMinimum> best;
+  for (const double poisson_ratio : {0.3, 0.0, 0.45}) {
+    const std::optional<Eigen::VectorXd> start =
+        Start(free, poisson_ratio, balance);
+    if (start) {
+      BoundedMinimum minimum = Minimize(free, *start, balance);
+      if (!best || minimum.cost < best->cost) {
+        best = std::move(minimum);
+      }
+    }
+  }
+  return best;
 }
 
 // Enters noise and covariance of a fit.
@@ -249,13 +276,13 @@ Estimate BalanceVirtualWork(const Scene& scene,
     Judge(evidence, options, estimate);
     return estimate;
   }
-  const std::optional<Eigen::VectorXd> start = Start(free, balance);
-  if (!start) {
+  const std::optional<BoundedMinimum> best = BestOfStarts(free, balance);
+  if (!best) {
     evidence.do_displacements_oppose_loads = true;
     Judge(evidence, options, estimate);
     return estimate;
   }
-  const BoundedMinimum minimum = Minimize(free, *start, balance);
+  const BoundedMinimum& minimum = *best;
   evidence.end = minimum.end;
   evidence.search_message = minimum.message;
   EnterParameters(scene, free, minimum.variables, estimate);

@@ -1,10 +1,17 @@
 #include "elastimate/estimators/interface/capabilities.h"
 
+#include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/estimators/interface/estimator.h"
 
 namespace elastimate {
 namespace {
+
+// The fit of displacements that takes the materials.
+std::string FitOf(const Scene& scene) {
+  return IsOneIsotropicMaterial(scene.materials) ? "reduced-fe"
+                                                 : "iterative-fe";
+}
 
 // Empty when the displacement of every free component was observed.
 std::string WhyNotAllDisplacements(const Scene& scene) {
@@ -23,14 +30,15 @@ std::string WhyNotAllDisplacements(const Scene& scene) {
         if (node >= num_vertices) {
           return "the force residual needs the displacement of every node, "
                  "and those of the mid-edge nodes of quadratic elements "
-                 "(order 2) were not measured; use reduced-fe, which can "
-                 "do without, or linear elements (order 1)";
+                 "(order 2) were not measured; use " +
+                 FitOf(scene) +
+                 ", which can do without, or linear elements (order 1)";
         }
         return "the force residual needs the displacement of every node, "
                "and node " +
                std::to_string(node) + " (" + "xyz"[i] + ") of load case " +
-               std::to_string(k + 1) +
-               " was not observed; reduced-fe can do without";
+               std::to_string(k + 1) + " was not observed; " + FitOf(scene) +
+               " can do without";
       }
     }
   }
@@ -62,6 +70,11 @@ std::string WhyNotTheseMaterials(const Capabilities& capabilities,
     return "Poisson's ratio is given for one material, but the scene says what "
            "its materials are; give it there";
   }
+  if (MaterialParameters(scene.materials, scene.mesh.section.model)
+          .Free()
+          .empty()) {
+    return "every parameter of the materials is known; leave one to estimate";
+  }
   bool has_bounds = false;
   for (const Material& material : scene.materials) {
     has_bounds = has_bounds || !material.bounds.empty();
@@ -78,7 +91,7 @@ std::string WhyUnsupported(const Capabilities& capabilities, const Scene& scene,
                            const EstimatorOptions& options) {
   if (!capabilities.takes_bounds &&
       (options.poisson_ratio.AreGiven() || options.youngs_modulus.AreGiven())) {
-    return "it cannot keep bounds; use bounded or reduced-fe";
+    return "it cannot keep bounds; use bounded or " + FitOf(scene);
   }
   if (!capabilities.takes_losses && options.loss != Loss::kNone) {
     return "a loss function needs displacement residuals; use reduced-fe";

@@ -53,6 +53,7 @@ constexpr Row kRows[] = {
     {"poisson_ratio_on_bound", FindingCode::kPoissonRatioOnBound},
     {"poisson_ratio_at_limit", FindingCode::kPoissonRatioAtLimit},
     {"parameters_on_bounds", FindingCode::kParametersOnBounds},
+    {"parameters_near_limits", FindingCode::kParametersNearLimits},
     {"locking", FindingCode::kLocking},
     {"discretization_error", FindingCode::kDiscretizationError},
     {"linear_elements_fit_as_well", FindingCode::kLinearElementsFitAsWell},

@@ -59,6 +59,7 @@ enum class FindingCode {
   kPoissonRatioOnBound,
   kPoissonRatioAtLimit,
   kParametersOnBounds,
+  kParametersNearLimits,
   kLocking,
   kDiscretizationError,
   kLinearElementsFitAsWell,

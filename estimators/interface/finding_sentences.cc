@@ -495,6 +495,15 @@ Finding ParametersOnBounds(const std::vector<std::string>& parameters) {
       "check the bounds; the standard errors are those without them");
 }
 
+Finding ParametersNearLimits(const std::vector<std::string>& parameters,
+                             Severity severity) {
+  return {FindingCode::kParametersNearLimits, severity,
+          FirstOf(parameters) + " may lie at a limit, within errors",
+          severity == Severity::kError
+              ? "give what is known of it, or use iterative-fe"
+              : "give what is known of it; error bars there may be too small"};
+}
+
 Finding ParameterBias(const std::string& parameter, double bias,
                       bool is_relative, Severity severity) {
   return {FindingCode::kNoiseBias, severity,

@@ -103,6 +103,9 @@ Finding PoissonRatioOnBound();
 Finding PoissonRatioAtLimit();
 /// `parameters` names each, such as "nu of region 3".
 Finding ParametersOnBounds(const std::vector<std::string>& parameters);
+/// `parameters` names each.
+Finding ParametersNearLimits(const std::vector<std::string>& parameters,
+                             Severity severity);
 /// Of several materials; the one that is biased most.
 Finding ParameterBias(const std::string& parameter, double bias,
                       bool is_relative, Severity severity);

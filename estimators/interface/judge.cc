@@ -32,14 +32,29 @@ void AddPoissonRatioInterval(Estimate& estimate) {
   }
 }
 
-void JudgeElements(const Mesh& mesh, Estimate& estimate) {
+void JudgeLocking(const Mesh& mesh, double poisson_ratio, Estimate& estimate) {
   // Those of the estimate may be of a higher order than those of the scene.  In
   // plane stress a volume may change across the plane.
-  if (estimate.element_order == 1 &&
+  if (estimate.IsUsable() && estimate.element_order == 1 &&
       mesh.section.model != SectionModel::kPlaneStress &&
-      estimate.elasticity.poisson_ratio >= kLimits.locking_poisson_ratio) {
+      poisson_ratio >= kLimits.locking_poisson_ratio) {
     estimate.Add(Locking(mesh.kind));
   }
+}
+
+// Of several materials.
+double LargestPoissonRatio(const Estimate& estimate) {
+  double largest = -1;
+  for (const ParameterEstimate& parameter : estimate.parameters) {
+    if (parameter.name == "poisson_ratio") {
+      largest = std::max(largest, parameter.value);
+    }
+  }
+  return largest;
+}
+
+void JudgeElements(const Mesh& mesh, Estimate& estimate) {
+  JudgeLocking(mesh, estimate.elasticity.poisson_ratio, estimate);
   if (IsDiscretizationErrorNotable(estimate)) {
     estimate.Add(DiscretizationErrorFinding(mesh.kind, estimate));
   }
@@ -136,13 +151,14 @@ void FinishEstimate(std::string_view estimator, const Scene& scene,
       estimate.findings.insert(estimate.findings.begin(), *finding);
     }
   }
+  if (!IsOneIsotropicMaterial(scene.materials)) {
+    JudgeParameters(estimate);
+    JudgeLocking(scene.mesh, LargestPoissonRatio(estimate), estimate);
+    return;
+  }
   estimate.error_budget.discretization = Eigen::Vector2d(
       estimate.discretization_error.value_or(Estimate::kUnknown),
       estimate.poisson_ratio_discretization_error.value_or(Estimate::kUnknown));
-  if (!IsOneIsotropicMaterial(scene.materials)) {
-    JudgeParameters(estimate);
-    return;
-  }
   JudgeResult(options, estimate);
   if (estimate.IsUsable()) {
     AddPoissonRatioInterval(estimate);

@@ -102,6 +102,26 @@ void JudgeDeterminationOfParameters(Estimate& estimate) {
   }
 }
 
+// Next to the ends of the range of nu, a linear model says little of its error.
+void JudgeNearnessOfLimits(Estimate& estimate) {
+  std::vector<std::string> near;
+  for (const ParameterEstimate& parameter : estimate.parameters) {
+    if (!parameter.is_modulus && parameter.interval &&
+        !(parameter.interval->lower > -1 && parameter.interval->upper < 0.5)) {
+      near.push_back(parameter.Label());
+    }
+  }
+  if (near.empty()) {
+    return;
+  }
+  // The balance of virtual work has spurious minima there.
+  if (estimate.displacement_residual) {
+    estimate.Add(ParametersNearLimits(near, Severity::kWarning));
+  } else {
+    estimate.Fail(ParametersNearLimits(near, Severity::kError));
+  }
+}
+
 // Of the parameter whose bias exceeds its limit by most.
 void JudgeBiasOfParameters(Estimate& estimate) {
   const ParameterErrors bias = estimate.error_budget.bias;
@@ -165,7 +185,7 @@ ParameterErrors ErrorsOfVariables(const FreeParameters& free,
 void JudgeParameters(Estimate& estimate) {
   for (const auto& judge :
        {JudgePhysicsOfParameters, EnterErrors, JudgeBiasOfParameters,
-        JudgeDeterminationOfParameters}) {
+        JudgeDeterminationOfParameters, JudgeNearnessOfLimits}) {
     if (estimate.IsUsable()) {
       judge(estimate);
     }

@@ -11,6 +11,9 @@ namespace {
 
 using RowMajorColumn = Eigen::Map<Eigen::VectorXd>;
 
+// Of a variable without a bound: ln of a million.
+constexpr double kLargestChange = 14;
+
 // All residuals, of one block for each variable, so that each may be held.
 class VariablesCost : public ceres::CostFunction {
  public:
@@ -69,7 +72,10 @@ BoundedMinimum MinimizeOverVariables(const ResidualFunction& residual,
   std::vector<BoundedParameter*> pointers;
   variables.reserve(bounds.size());
   for (std::size_t i = 0; i < bounds.size(); ++i) {
-    variables.emplace_back(start(Eigen::Index(i)), bounds[i]);
+    const double first = start(Eigen::Index(i));
+    variables.emplace_back(
+        first, Bounds{bounds[i].lower.value_or(first - kLargestChange),
+                      bounds[i].upper.value_or(first + kLargestChange)});
     blocks.push_back(variables.back().Block());
     pointers.push_back(&variables.back());
   }

@@ -30,7 +30,8 @@ using ResidualFunction =
                        Eigen::VectorXd* residual, Eigen::MatrixXd* jacobian)>;
 
 /// By Ceres' trust region method from `start` on, as MinimizeWithinBounds does.
-/// `residual` is asked for a value before its Jacobian at the same x.
+/// `residual` is asked for a value before its Jacobian at the same x.  What has
+/// no bound keeps within a factor of e^14, a million, of the start.
 BoundedMinimum MinimizeOverVariables(const ResidualFunction& residual,
                                      Eigen::Index num_residuals,
                                      const std::vector<Bounds>& bounds,

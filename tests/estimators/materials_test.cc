@@ -187,6 +187,20 @@ TEST_P(Materials, ThatDoNotStrainAreNotDetermined) {
       << estimate.message;
 }
 
+TEST_P(Materials, ThatAreAllKnownAreRefused) {
+  scene_.materials[0].known = {{"youngs_modulus", 2e3}, {"poisson_ratio", 0.2}};
+  scene_.materials[1].known = {{"youngs_modulus", 5e3}, {"poisson_ratio", 0.4}};
+  EXPECT_THROWS_WITH(Run(), "leave one to estimate");
+}
+
+TEST_P(Materials, NextToIncompressibleOnesAreFoundAndSaid) {
+  const Eigen::Vector4d parameters(2e3, 0.2, 5e3, 0.499);
+  MeasureByEquilibrium(parameters, scene_);
+  const Estimate estimate = Run();
+  ExpectParameters(estimate, parameters, 1e-4);
+  EXPECT_TRUE(estimate.Has(FindingCode::kLocking));
+}
+
 TEST_P(Materials, RefuseWhatIsForOneMaterial) {
   EstimatorOptions options;
   options.known_poisson_ratio = 0.3;

@@ -137,6 +137,8 @@ std::vector<Finding> EveryFinding() {
         DependentForces(),
         ParametersOnBounds({"nu of region 1000"}),
         ParametersOnBounds(many),
+        ParametersNearLimits(many, Severity::kError),
+        ParametersNearLimits({"nu of region 3"}, Severity::kWarning),
         ParameterBias("nu of regions 1, 2 and 17 more", kLong, false,
                       Severity::kError),
         ParameterBias("E", std::numeric_limits<double>::infinity(), true,
