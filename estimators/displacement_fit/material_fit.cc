@@ -145,6 +145,9 @@ BoundedMinimum Descend(const EstimatorOptions& estimator_options,
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = estimator_options.max_iterations;
+  // Far from the minimum, Gauss-Newton steps lead weakly determined parameters
+  // astray; the radius grows with each step that holds what it promised.
+  options.initial_trust_region_radius = 1;
   // A step of k standard errors lowers the cost by about k^2 / n of itself.
   options.function_tolerance = kSmallestStepOfErrors * kSmallestStepOfErrors /
                                static_cast<double>(misfit.Observed().Size());

@@ -3,6 +3,8 @@
 #include <ceres/cost_function.h>
 #include <ceres/problem.h>
 
+#include <limits>
+
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/statistics/bounded_parameter.h"
 
@@ -91,7 +93,10 @@ BoundedMinimum MinimizeOverVariables(const ResidualFunction& residual,
     minimum.variables(Eigen::Index(i)) = variables[i].Value();
     minimum.on_bound.push_back(variables[i].OnBound());
   }
-  minimum.cost = summary.final_cost;
+  // Where there is no value at the start, Ceres knows no cost.
+  minimum.cost = summary.IsSolutionUsable()
+                     ? summary.final_cost
+                     : std::numeric_limits<double>::infinity();
   minimum.end = EndOf(summary);
   minimum.message = "Ceres: " + summary.message;
   return minimum;
