@@ -190,8 +190,8 @@ class Cube {
  private:
   // Of a scene that an estimator is prepared for.
   void AddFurtherMeasurements(std::vector<Kernel>& kernels) {
-    // The preparation of more takes a minute.
-    constexpr Eigen::Index kMostElementsOfReducedFe = 100000;
+    // The preparation of more takes long.
+    constexpr Eigen::Index kMostElementsOfReducedFe = 50000;
     for (const std::string name :
          {"closed-form", "virtual-fields", "reduced-fe"}) {
       if (name == "reduced-fe" &&

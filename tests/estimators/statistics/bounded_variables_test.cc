@@ -10,6 +10,8 @@ namespace {
 ceres::Solver::Options Options() {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
+  options.function_tolerance = 0;
+  options.gradient_tolerance = 1e-14;
   options.logging_type = ceres::SILENT;
   return options;
 }
