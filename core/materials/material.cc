@@ -31,17 +31,12 @@ const LawParameter& FindParameter(const Law& law, const std::string& name,
 
 void RequireInRange(const LawParameter& parameter, double value,
                     const std::string& what) {
-  if (value >= parameter.lower && value <= parameter.upper) {
-    return;
+  const std::string why = WhyOutOfRange(parameter, value);
+  if (!why.empty()) {
+    std::ostringstream text;
+    text << what << parameter.name << " = " << value << "; it " << why;
+    throw std::invalid_argument(text.str());
   }
-  std::ostringstream text;
-  text << what << parameter.name << " = " << value << "; it must be ";
-  if (parameter.is_modulus) {
-    text << "positive and finite";
-  } else {
-    text << "between " << parameter.lower << " and " << parameter.upper;
-  }
-  throw std::invalid_argument(text.str());
 }
 
 void ValidateWhatIsGiven(const Law& law, const Material& material,
@@ -138,13 +133,9 @@ void ValidateMaterials(const std::vector<Material>& materials,
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Law* const law = FindLaw(materials[i].law);
     if (law == nullptr) {
-      std::string all;
-      for (const Law* const each : Laws()) {
-        all += (all.empty() ? "" : ", ") + std::string(each->Name());
-      }
-      throw std::invalid_argument(NameOf(i) + " has the law \"" +
-                                  materials[i].law +
-                                  "\", which is none; the laws are " + all);
+      throw std::invalid_argument(
+          NameOf(i) + " has the law \"" + materials[i].law +
+          "\", which is none; the laws are " + LawNames());
     }
     if (!law->Takes(mesh.section.model)) {
       throw std::invalid_argument(

@@ -28,6 +28,15 @@ MaterialParameters::MaterialParameters(const std::vector<Material>& materials,
   }
 }
 
+std::optional<double> MaterialParameters::KnownModulus() const {
+  for (const Parameter& parameter : parameters_) {
+    if (parameter.law_parameter->is_modulus && parameter.known) {
+      return parameter.known;
+    }
+  }
+  return std::nullopt;
+}
+
 Eigen::VectorXd MaterialParameters::Typical(double scale) const {
   Eigen::VectorXd typical(NumParameters());
   for (Eigen::Index i = 0; i < NumParameters(); ++i) {

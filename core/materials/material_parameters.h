@@ -39,6 +39,10 @@ class MaterialParameters {
   /// Which are not known.
   const std::vector<Eigen::Index>& Free() const { return free_; }
 
+  /// The first modulus among the known parameters, which sets the scale of the
+  /// others; empty when none is known.
+  std::optional<double> KnownModulus() const;
+
   /// The known values, and typical ones for the others, moduli of which are
   /// `scale` times as large.
   Eigen::VectorXd Typical(double scale) const;

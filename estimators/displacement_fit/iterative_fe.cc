@@ -578,17 +578,6 @@ Minimum BestMinimum(const EstimatorOptions& options,
   return best;
 }
 
-End EndOf(const ceres::Solver::Summary& summary) {
-  switch (summary.termination_type) {
-    case ceres::CONVERGENCE:
-      return End::kDone;
-    case ceres::NO_CONVERGENCE:
-      return End::kIterationLimit;
-    default:
-      return End::kSearchFailed;
-  }
-}
-
 // Enters the interval of nu, after up to three looks at where each end may be.
 void DescribeProfileOf(const EstimatorOptions& options,
                        const std::vector<ProfilePoint>& points, double variance,

@@ -96,10 +96,8 @@ class DisplacementMisfit {
 // when these oppose the loads.
 std::optional<Eigen::VectorXd> TypicalStart(DisplacementMisfit& misfit) {
   const FreeParameters& free = misfit.Free();
-  for (const MaterialParameters::Parameter& parameter : free.All().All()) {
-    if (parameter.law_parameter->is_modulus && parameter.known) {
-      return free.VariablesOf(free.All().Typical(*parameter.known));
-    }
+  if (const std::optional<double> known = free.All().KnownModulus()) {
+    return free.VariablesOf(free.All().Typical(*known));
   }
   Equilibrium& model = misfit.Model();
   if (!model.Solve(free.All().Moduli(free.All().Typical(1)))) {
@@ -133,10 +131,12 @@ std::optional<Eigen::VectorXd> VirtualFieldsStart(
   for (Eigen::Index i = 0; i < parameters.size(); ++i) {
     parameters(i) = start.parameters[i].value;
   }
-  if (parameters.size() == 0 || !free.VariablesOf(parameters).allFinite()) {
+  if (parameters.size() == 0) {
     return std::nullopt;
   }
-  return free.VariablesOf(parameters);
+  const Eigen::VectorXd variables = free.VariablesOf(parameters);
+  return variables.allFinite() ? std::optional<Eigen::VectorXd>(variables)
+                               : std::nullopt;
 }
 
 BoundedMinimum Descend(const EstimatorOptions& estimator_options,

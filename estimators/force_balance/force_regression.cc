@@ -120,31 +120,26 @@ struct RegressionFit {
   Eigen::VectorXd moduli;
 };
 
-// ln of the factor on all moduli that fits best at these variables; zero where
-// there is none, or where a known modulus sets the scale.
-double LogScale(const Regression& regression, const FreeParameters& free,
-                const Eigen::VectorXd& variables) {
-  for (const MaterialParameters::Parameter& parameter : free.All().All()) {
-    if (parameter.law_parameter->is_modulus && parameter.known) {
-      return std::log(*parameter.known);
-    }
+// The modulus that is known, else the factor on all of typical ones that fits
+// best; 1 where there is none.
+double ScaleOfModuli(const Regression& regression, const FreeParameters& free) {
+  if (const std::optional<double> known = free.All().KnownModulus()) {
+    return *known;
   }
+  const Eigen::VectorXd typical = free.VariablesOf(free.All().Typical(1));
   const Eigen::VectorXd predicted =
-      regression.Columns() * free.ModuliAt(variables);
+      regression.Columns() * free.ModuliAt(typical);
   const double scale =
       predicted.dot(regression.Loads()) / predicted.squaredNorm();
-  return scale > 0 ? std::log(scale) : 0;
+  return scale > 0 ? scale : 1;
 }
 
 // Within bounds, by Ceres.
 RegressionFit SearchMinimum(const Regression& regression,
-                            const FreeParameters& free,
-                            const std::vector<Bounds>& bounds,
-                            Evidence& evidence, Estimate& estimate,
-                            const Scene& scene) {
-  Eigen::VectorXd start = free.VariablesOf(free.All().Typical(1));
-  start = free.VariablesOf(
-      free.All().Typical(std::exp(LogScale(regression, free, start))));
+                            const FreeParameters& free, Evidence& evidence,
+                            Estimate& estimate, const Scene& scene) {
+  const Eigen::VectorXd start =
+      free.VariablesOf(free.All().Typical(ScaleOfModuli(regression, free)));
   const double norm = regression.Loads().norm();
   const ResidualFunction residual = [&](const Eigen::VectorXd& x,
                                         Eigen::VectorXd* r,
@@ -163,8 +158,9 @@ RegressionFit SearchMinimum(const Regression& regression,
   options.gradient_tolerance = 1e-16;
   options.parameter_tolerance = 1e-14;
   options.logging_type = ceres::SILENT;
-  const BoundedMinimum minimum = MinimizeOverVariables(
-      residual, regression.Columns().rows(), bounds, start, options);
+  const BoundedMinimum minimum =
+      MinimizeOverVariables(residual, regression.Columns().rows(),
+                            free.VariableBounds(), start, options);
   evidence.end = minimum.end;
   evidence.search_message = minimum.message;
   EnterParameters(scene, free, minimum.variables, estimate);
@@ -246,12 +242,7 @@ Estimate RegressForces(const Scene& scene, const EstimatorOptions& options,
       estimate.parameters[i].value = parameters(i);
     }
   } else {
-    // Without bounds, but in the range of the laws.
-    fit = SearchMinimum(
-        regression, free,
-        is_bounded ? free.VariableBounds()
-                   : FreeParameters(scene, EstimatorOptions()).VariableBounds(),
-        evidence, estimate, scene);
+    fit = SearchMinimum(regression, free, evidence, estimate, scene);
   }
   estimate.force_residual =
       (regression.Columns() * fit.moduli - regression.Loads()).norm() /

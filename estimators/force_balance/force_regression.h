@@ -24,8 +24,8 @@ namespace elastimate {
 /// from the residual: ||r||^2 = sigma^2 theta^T T theta in the mean.
 ///
 /// Preconditions are those of Estimator::Run; every free component is observed.
-/// Cost: one element pass for each load case and two for T, each with m
-/// columns, and one of m columns.
+/// Cost: two element passes and one of m columns for each load case, and two
+/// passes for T.
 Estimate RegressForces(const Scene& scene, const EstimatorOptions& options,
                        bool is_bounded);
 

@@ -137,7 +137,6 @@ class WorkBalance {
 std::optional<Eigen::VectorXd> Start(const FreeParameters& free,
                                      double poisson_ratio,
                                      const WorkBalance& balance) {
-  double known_scale = 0;
   const auto values_at = [&](double scale) {
     Eigen::VectorXd values = free.All().Typical(scale);
     for (const Eigen::Index i : free.All().Free()) {
@@ -148,14 +147,9 @@ std::optional<Eigen::VectorXd> Start(const FreeParameters& free,
     }
     return values;
   };
-  for (const MaterialParameters::Parameter& parameter : free.All().All()) {
-    if (parameter.law_parameter->is_modulus && parameter.known) {
-      known_scale = *parameter.known;
-    }
-  }
-  const double scale = known_scale > 0
-                           ? known_scale
-                           : balance.BestScale(free.All().Moduli(values_at(1)));
+  const std::optional<double> known = free.All().KnownModulus();
+  const double scale =
+      known ? *known : balance.BestScale(free.All().Moduli(values_at(1)));
   if (!(scale > 0)) {
     return std::nullopt;
   }

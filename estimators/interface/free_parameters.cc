@@ -49,13 +49,6 @@ FreeParameters::FreeParameters(const Scene& scene,
   }
 }
 
-bool FreeParameters::IsLimitOfLaw(Eigen::Index variable, bool is_upper) const {
-  const LawParameter& parameter = LawParameterOf(variable);
-  const Bounds& bounds = bounds_[variable];
-  return !parameter.is_modulus && (is_upper ? bounds.upper == parameter.upper
-                                            : bounds.lower == parameter.lower);
-}
-
 Eigen::VectorXd FreeParameters::ParametersAt(
     const Eigen::VectorXd& variables) const {
   Eigen::VectorXd parameters = known_;

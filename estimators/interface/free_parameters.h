@@ -23,8 +23,6 @@ class FreeParameters {
   /// The bounds of each variable: as given for its material, else by the
   /// options, and the range of its law.
   const std::vector<Bounds>& VariableBounds() const { return bounds_; }
-  /// Whether the bounds of a variable are the range of its law, on that side.
-  bool IsLimitOfLaw(Eigen::Index variable, bool is_upper) const;
 
   /// All parameters p(x), and x of them, moved into the bounds.
   Eigen::VectorXd ParametersAt(const Eigen::VectorXd& variables) const;

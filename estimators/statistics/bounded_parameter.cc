@@ -118,6 +118,17 @@ ceres::Solver::Summary MinimizeWithinBounds(
   return summary;
 }
 
+End EndOf(const ceres::Solver::Summary& summary) {
+  switch (summary.termination_type) {
+    case ceres::CONVERGENCE:
+      return End::kDone;
+    case ceres::NO_CONVERGENCE:
+      return End::kIterationLimit;
+    default:
+      return End::kSearchFailed;
+  }
+}
+
 ActiveBounds NoteActiveBounds(const EstimatorOptions& options,
                               Side youngs_modulus,
                               const BoundedParameter& poisson_ratio,

@@ -10,6 +10,7 @@
 #include "elastimate/estimators/interface/active_bounds.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/interface/evidence.h"
 
 namespace elastimate {
 
@@ -58,6 +59,9 @@ class BoundedParameter {
 ceres::Solver::Summary MinimizeWithinBounds(
     const ceres::Solver::Options& options,
     const std::vector<BoundedParameter*>& parameters, ceres::Problem& problem);
+
+/// How Ceres ended.
+End EndOf(const ceres::Solver::Summary& summary);
 
 /// Which bounds hold the estimate.  Enters them into `estimate`, and sets E and
 /// nu to the given bounds they lie on.

@@ -11,8 +11,6 @@
 namespace elastimate {
 namespace {
 
-using RowMajorColumn = Eigen::Map<Eigen::VectorXd>;
-
 // Of a variable without a bound: ln of a million.
 constexpr double kLargestChange = 14;
 
@@ -37,10 +35,10 @@ class VariablesCost : public ceres::CostFunction {
     if (!residual_(x, &r, jacobians == nullptr ? nullptr : &jacobian)) {
       return false;
     }
-    RowMajorColumn(residuals, r.size()) = r;
+    Eigen::Map<Eigen::VectorXd>(residuals, r.size()) = r;
     for (Eigen::Index i = 0; jacobians != nullptr && i < num_variables_; ++i) {
       if (jacobians[i] != nullptr) {
-        RowMajorColumn(jacobians[i], r.size()) = jacobian.col(i);
+        Eigen::Map<Eigen::VectorXd>(jacobians[i], r.size()) = jacobian.col(i);
       }
     }
     return true;
@@ -50,17 +48,6 @@ class VariablesCost : public ceres::CostFunction {
   const ResidualFunction& residual_;
   Eigen::Index num_variables_;
 };
-
-End EndOf(const ceres::Solver::Summary& summary) {
-  switch (summary.termination_type) {
-    case ceres::CONVERGENCE:
-      return End::kDone;
-    case ceres::NO_CONVERGENCE:
-      return End::kIterationLimit;
-    default:
-      return End::kSearchFailed;
-  }
-}
 
 }  // namespace
 

@@ -2,10 +2,10 @@
 
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include "elastimate/core/materials/laws.h"
 #include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/io/scene/json_value.h"
 #include "elastimate/io/text/input_error.h"
@@ -45,20 +45,6 @@ std::string Describe(const MaterialParameters::Parameter& parameter,
   return text;
 }
 
-void CheckRange(const LawParameter& parameter, const JsonValue& value) {
-  const double number = value.Number();
-  if (number >= parameter.lower && number <= parameter.upper) {
-    return;
-  }
-  std::ostringstream rule;
-  if (parameter.is_modulus) {
-    rule << "must be positive and finite";
-  } else {
-    rule << "must be between " << parameter.lower << " and " << parameter.upper;
-  }
-  value.Fail(rule.str());
-}
-
 }  // namespace
 
 Eigen::VectorXd ReadParameters(const std::filesystem::path& path,
@@ -83,8 +69,13 @@ Eigen::VectorXd ReadParameters(const std::filesystem::path& path,
         entry.Fail("is the second value of " + Describe(parameter, regions) +
                    "; give one");
       }
-      CheckRange(*parameter.law_parameter, entry.At("value"));
-      values(i) = entry.At("value").Number();
+      const JsonValue value = entry.At("value");
+      values(i) = value.Number();
+      const std::string why =
+          WhyOutOfRange(*parameter.law_parameter, values(i));
+      if (!why.empty()) {
+        value.Fail(why);
+      }
       is_found = true;
     }
     if (!is_found) {

@@ -137,25 +137,18 @@ Json CovarianceJson(const Estimate& estimate) {
 
 // By name for one isotropic material, else in the order of the parameters.
 Json BudgetJson(const Scene& scene, const ErrorBudget& budget) {
-  if (!IsOneIsotropicMaterial(scene.materials)) {
-    const auto list = [](const ParameterErrors& errors) {
-      Json values = Json::array();
-      for (const double error : errors) {
-        values.push_back(OrNull(error));
-      }
-      return errors.size() == 0 ? Json(nullptr) : values;
-    };
-    return {{"noise", list(budget.noise)},
-            {"bias", list(budget.bias)},
-            {"model", list(budget.model)},
-            {"outliers", list(budget.outliers)},
-            {"discretization", list(budget.discretization)},
-            {"law", list(budget.law)}};
-  }
-  const auto of = [](const ParameterErrors& errors) {
-    const bool is_known = errors.size() == 2;
-    return Json({{"youngs_modulus", is_known ? OrNull(errors(0)) : nullptr},
-                 {"poisson_ratio", is_known ? OrNull(errors(1)) : nullptr}});
+  const bool is_by_name = IsOneIsotropicMaterial(scene.materials);
+  const auto of = [is_by_name](const ParameterErrors& errors) {
+    if (is_by_name) {
+      const bool is_known = errors.size() == 2;
+      return Json({{"youngs_modulus", is_known ? OrNull(errors(0)) : nullptr},
+                   {"poisson_ratio", is_known ? OrNull(errors(1)) : nullptr}});
+    }
+    Json values = Json::array();
+    for (const double error : errors) {
+      values.push_back(OrNull(error));
+    }
+    return errors.size() == 0 ? Json(nullptr) : values;
   };
   return {{"noise", of(budget.noise)},
           {"bias", of(budget.bias)},

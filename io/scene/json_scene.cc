@@ -318,12 +318,8 @@ Material ReadMaterial(const JsonValue& value) {
   }
   const Law* const law = FindLaw(material.law);
   if (law == nullptr) {
-    std::string all;
-    for (const Law* const each : Laws()) {
-      all += (all.empty() ? "" : ", ") + std::string(each->Name());
-    }
     value.At("law").Fail("is \"" + Printable(material.law) +
-                         "\"; the laws known here are " + all);
+                         "\"; the laws known here are " + LawNames());
   }
   if (value.Has("region")) {
     const JsonValue region = value.At("region");

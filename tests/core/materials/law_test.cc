@@ -34,6 +34,17 @@ std::vector<LawInSection> AllLawsInSections() {
   return all;
 }
 
+// The central difference of a function of vectors or matrices along an entry.
+template <class Function, class Argument>
+auto Slope(const Function& function, const Argument& at, Eigen::Index entry,
+           double step) {
+  Argument more = at;
+  Argument less = at;
+  more(entry) += step;
+  less(entry) -= step;
+  return Eigen::VectorXd((function(more) - function(less)) / (2 * step));
+}
+
 class LawConformance : public ::testing::TestWithParam<LawInSection> {
  protected:
   const Law& law_ = *GetParam().law;
@@ -60,13 +71,9 @@ TEST_P(LawConformance, StressIsTheDerivativeOfTheEnergy) {
   ASSERT_EQ(stresses.rows(), gradient_.size());
   ASSERT_EQ(stresses.cols(), law_.NumModuli());
   for (Eigen::Index i = 0; i < gradient_.size(); ++i) {
-    Eigen::MatrixXd more = gradient_;
-    Eigen::MatrixXd less = gradient_;
-    more(i) += kStep;
-    less(i) -= kStep;
-    const Eigen::VectorXd slope =
-        (law_.Energies(more, model_) - law_.Energies(less, model_)) /
-        (2 * kStep);
+    const Eigen::VectorXd slope = Slope(
+        [this](const Eigen::MatrixXd& h) { return law_.Energies(h, model_); },
+        gradient_, i, kStep);
     EXPECT_LT((slope.transpose() - stresses.row(i)).norm(),
               1e-8 * stresses.norm());
   }
@@ -77,13 +84,11 @@ TEST_P(LawConformance, TangentIsTheDerivativeOfTheStressAndSymmetric) {
   const Eigen::VectorXd theta = Moduli();
   const Eigen::MatrixXd tangent = law_.Tangent(theta, gradient_, model_);
   for (Eigen::Index i = 0; i < gradient_.size(); ++i) {
-    Eigen::MatrixXd more = gradient_;
-    Eigen::MatrixXd less = gradient_;
-    more(i) += kStep;
-    less(i) -= kStep;
-    const Eigen::VectorXd slope =
-        (law_.Stresses(more, model_) - law_.Stresses(less, model_)) * theta /
-        (2 * kStep);
+    const Eigen::VectorXd slope = Slope(
+        [&](const Eigen::MatrixXd& h) {
+          return Eigen::VectorXd(law_.Stresses(h, model_) * theta);
+        },
+        gradient_, i, kStep);
     EXPECT_LT((slope - tangent.col(i)).norm(), 1e-8 * tangent.norm());
   }
   EXPECT_LT((tangent - tangent.transpose()).norm(), 1e-14 * tangent.norm());
@@ -123,13 +128,9 @@ TEST_P(LawConformance, ChartHasItsJacobian) {
   const Eigen::MatrixXd jacobian = law_.ModuliJacobian(parameters, model_);
   ASSERT_EQ(jacobian.rows(), law_.NumModuli());
   for (Eigen::Index i = 0; i < parameters.size(); ++i) {
-    const double step = 1e-6;
-    Eigen::VectorXd more = parameters;
-    Eigen::VectorXd less = parameters;
-    more(i) += step;
-    less(i) -= step;
-    const Eigen::VectorXd slope =
-        (law_.Moduli(more, model_) - law_.Moduli(less, model_)) / (2 * step);
+    const Eigen::VectorXd slope = Slope(
+        [this](const Eigen::VectorXd& p) { return law_.Moduli(p, model_); },
+        parameters, i, 1e-6);
     EXPECT_LT((slope - jacobian.col(i)).norm(), 1e-8 * jacobian.norm());
   }
 }
