@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "elastimate/core/equilibrium/equilibrium.h"
+#include "elastimate/core/mesh/mid_edges.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/rigid_motion.h"
@@ -147,8 +148,9 @@ Fields ResultFields(const Scene& scene, const Scene& modelled,
                                              .replicate(1, num_cases)
                                              .select(imbalance.array(), 0.0);
   const Eigen::MatrixXd reaction =
-      scene.mesh.Order() == 2 ? held_imbalance
-                              : VertexForces(modelled.mesh, held_imbalance);
+      scene.mesh.Order() == 2
+          ? held_imbalance
+          : MidEdges(modelled.mesh).Restrict(held_imbalance);
   for (Eigen::Index k = 0; k < num_cases; ++k) {
     collector.AddPoint("fitted_displacement", k, fitted);
     collector.AddPoint("displacement_residual", k, difference);

@@ -17,7 +17,7 @@ namespace elastimate {
 /// `displacement_residual` (measured minus fitted where observed, else zero),
 /// `reaction_force` at the held degrees of freedom (of a QuadraticScene, with
 /// half of the reaction at each mid-edge node at either end of its edge, which
-/// keeps resultant and moment: VertexForces), and per cell the
+/// keeps resultant and moment: MidEdges), and per cell the
 /// `strain_energy_density` of the fitted displacement.  When nothing holds the
 /// specimen: `force_residual` and `strain_energy_density` of the measured
 /// displacement, with linear elements.  Otherwise the scene alone.

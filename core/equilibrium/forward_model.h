@@ -62,6 +62,9 @@ class ForwardModel {
   /// The part v of u that the held displacements cause, one column [length].
   const Eigen::VectorXd& SupportResponse() const { return support_response_; }
 
+  /// Whether v is not zero.
+  bool HasHeldDisplacement() const { return has_held_displacement_; }
+
   /// Derivatives at the present nu.  The first call at a nu costs an element
   /// pass and num_load_cases solves (one more with held displacements).
   DisplacementSensitivities Sensitivities(double youngs_modulus);
@@ -69,6 +72,8 @@ class ForwardModel {
   /// nu of the present factorisation; NaN when there is none.
   double PoissonRatio() const { return solver_.PoissonRatio(); }
   const DegreesOfFreedom& Dofs() const { return solver_.Dofs(); }
+  /// At the present nu.
+  StiffnessSolver& Solver() { return solver_; }
   const NodeGraph& Graph() const { return solver_.Graph(); }
   Work WorkDone() const;
   /// That of StiffnessSolver.

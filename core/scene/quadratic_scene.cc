@@ -220,29 +220,4 @@ Scene QuadraticScene(const Scene& scene) {
   return quadratic;
 }
 
-Eigen::MatrixXd VertexForces(const Mesh& mesh, const Eigen::MatrixXd& force) {
-  const Eigen::Index num_vertices = mesh.NumVertices();
-  const ElementTopology& topology = mesh.Topology();
-  const int dimension = mesh.Dimension();
-  Eigen::MatrixXd vertex_force = force.topRows(dimension * num_vertices);
-  // An edge of several elements has one node.
-  std::vector<bool> is_done(mesh.NumNodes(), false);
-  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
-    for (Eigen::Index i = topology.num_vertices; i < mesh.elements.rows();
-         ++i) {
-      const int node = mesh.elements(i, e);
-      if (is_done[node]) {
-        continue;
-      }
-      is_done[node] = true;
-      for (const int end : topology.edges[i - topology.num_vertices]) {
-        vertex_force.middleRows(dimension * Eigen::Index(mesh.elements(end, e)),
-                                dimension) +=
-            0.5 * force.middleRows(dimension * Eigen::Index(node), dimension);
-      }
-    }
-  }
-  return vertex_force;
-}
-
 }  // namespace elastimate

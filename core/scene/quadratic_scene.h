@@ -35,16 +35,6 @@ namespace elastimate {
 ///                                                               {});
 Scene QuadraticScene(const Scene& scene);
 
-/// The forces on the vertices of a quadratic mesh that do the same work as
-/// `force` on every displacement which is linear in each element: f_a plus half
-/// of each f_ab.  They have the same resultant and moment.
-///
-/// `force` is num_dofs x n, row dimension * node + component [force]; the
-/// result (dimension num_vertices) x n.  Precondition: a valid mesh; one of
-/// linear elements leaves the forces as they are.  O(num_elements + num_nodes *
-/// n).
-Eigen::MatrixXd VertexForces(const Mesh& mesh, const Eigen::MatrixXd& force);
-
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_CORE_SCENE_QUADRATIC_SCENE_H_

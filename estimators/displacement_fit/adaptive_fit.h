@@ -63,6 +63,7 @@ class AdaptiveFit {
   /// What nu was searched for in.
   const Bounds& PoissonRatioBounds() const { return searched_; }
   const ReducedModel& Model() const { return model_; }
+  ReducedModel& Model() { return model_; }
 
  private:
   // Where the model is not yet good enough.

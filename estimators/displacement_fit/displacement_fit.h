@@ -22,7 +22,13 @@ struct DisplacementFit {
   Eigen::VectorXd residual;  ///< u - q.
   /// du / d (ln E, nu).
   Eigen::Matrix<double, Eigen::Dynamic, 2> sensitivities;
+  /// That of ElementChange in u; empty where it is not known.
+  std::optional<Eigen::VectorXd> element_change;
 };
+
+/// Corrects (ln E, nu) of a usable estimate for what the elements miss, as
+/// DescribeDisplacementFit found it, with the interval of nu.
+void CorrectForElements(const Evidence& evidence, Estimate& estimate);
 
 /// Describes a least-squares (or, with `losses`, robust) fit of the
 /// displacements: fills in covariance, noise, residual statistics,

@@ -17,6 +17,7 @@
 #include "elastimate/core/equilibrium/forward_model.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
+#include "elastimate/estimators/displacement_fit/element_change.h"
 #include "elastimate/estimators/displacement_fit/material_fit.h"
 #include "elastimate/estimators/displacement_fit/node_losses.h"
 #include "elastimate/estimators/displacement_fit/observed_displacements.h"
@@ -58,6 +59,7 @@ class DisplacementResidual : public ceres::EvaluationCallback {
                options.solver),
         num_load_cases_(Eigen::Index(scene.load_cases.size())),
         observed_(scene),
+        change_(scene),
         on_factorization_(options.on_factorization) {}
 
   // The parameters that evaluations are asked for at.
@@ -118,6 +120,21 @@ class DisplacementResidual : public ceres::EvaluationCallback {
         section_model_);
   }
 
+  // Adds what the elements miss to the fit.
+  void FindElementChange() {
+    const Eigen::Index num_responses =
+        num_load_cases_ + (model_.HasHeldDisplacement() ? 1 : 0);
+    Eigen::MatrixXd responses(model_.UnitLoadResponse().rows(), num_responses);
+    responses.leftCols(num_load_cases_) = model_.UnitLoadResponse();
+    if (num_responses > num_load_cases_) {
+      responses.rightCols<1>() = model_.SupportResponse();
+    }
+    const double nu = model_.PoissonRatio();
+    fit_.element_change = RowsOfChange(
+        observed_, change_.Find(nu, responses, model_.Solver()),
+        Elasticity().ComplianceScale(section_model_), num_load_cases_);
+  }
+
   // The rows of w and of v at the nu of the model.
   const Eigen::VectorXd& UnitLoadResponse() const {
     return unit_load_response_;
@@ -150,7 +167,7 @@ class DisplacementResidual : public ceres::EvaluationCallback {
     return jacobian_;
   }
   const NodeGraph& Graph() const { return model_.Graph(); }
-  Work WorkDone() const { return model_.WorkDone(); }
+  Work WorkDone() const { return model_.WorkDone() + change_.WorkDone(); }
   const std::string& SolverNotice() const { return model_.Notice(); }
 
  private:
@@ -170,6 +187,7 @@ class DisplacementResidual : public ceres::EvaluationCallback {
   ForwardModel model_;
   Eigen::Index num_load_cases_;
   ObservedDisplacements observed_;
+  ElementChange change_;
   std::function<void(int)> on_factorization_;
   int num_factorizations_ = 0;
   Scale scale_ = Scale::kLogResponseNorm;
@@ -698,11 +716,13 @@ Estimate IterativeFe::DoRun(const Scene& scene,
     estimate.elasticity = residual.Elasticity();
     evidence.active =
         NoteActiveBounds(options, best.violated, best.poisson_ratio, estimate);
+    residual.FindElementChange();
     DescribeFit(scene, options, points, best.losses, residual, evidence,
                 estimate);
   }
   evidence.solver_notice = residual.SolverNotice();
   Judge(evidence, options, estimate);
+  CorrectForElements(evidence, estimate);
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
   estimate.work = residual.WorkDone();
   return estimate;

@@ -220,8 +220,9 @@ void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
   evidence.is_explained_by_given_noise = variance.is_explained_by_given_noise;
   const double smooth = variance.is_explained_by_given_noise
                             ? 0
-                            : SmoothSquareSum(misfit.Model().Graph(), observed,
-                                              residual, estimate);
+                            : MeasureSmoothPart(misfit.Model().Graph(),
+                                                observed, residual, estimate)
+                                  .least;
   evidence.smooth_part = std::sqrt(smooth) / observed.Measured().norm();
   const Eigen::MatrixXd inverse =
       Inverse(sensitivities.transpose() * sensitivities);

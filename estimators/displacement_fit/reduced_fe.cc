@@ -3,8 +3,10 @@
 #include <cmath>
 #include <optional>
 
+#include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/estimators/displacement_fit/adaptive_fit.h"
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
+#include "elastimate/estimators/displacement_fit/element_change.h"
 #include "elastimate/estimators/displacement_fit/observed_displacements.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/stopwatch.h"
@@ -25,10 +27,32 @@ Side BoundOf(const Bounds& bounds, double value) {
   return Side::kNone;
 }
 
+// The fit with what its elements miss.
+DisplacementFit FitWithChange(const Scene& scene,
+                              const ObservedDisplacements& observed,
+                              const IsotropicElasticity& elasticity,
+                              ReducedModel& model, ElementChange& change) {
+  DisplacementFit fit = ExpandFit(model, observed, elasticity);
+  // The model is zero where the supports hold.
+  const Eigen::VectorXd held = HeldDisplacement(scene.supports);
+  fit.displacement.colwise() += held;
+  const double nu = elasticity.poisson_ratio;
+  Eigen::MatrixXd responses = model.Responses(nu);
+  if (model.HasSupportResponse()) {
+    responses.rightCols<1>() += held;
+  }
+  if (StiffnessSolver* const solver = model.SolverNear(nu)) {
+    fit.element_change = RowsOfChange(
+        observed, change.Find(nu, responses, *solver),
+        elasticity.ComplianceScale(model.Section()), model.NumLoadCases());
+  }
+  return fit;
+}
+
 // Fills in what follows from a fit of physical parameters.
 void DescribeFit(const Scene& scene, const EstimatorOptions& options,
-                 const ObservedDisplacements& observed,
-                 const AdaptiveFit& adaptive, Evidence& evidence,
+                 const ObservedDisplacements& observed, AdaptiveFit& adaptive,
+                 ElementChange& change, Evidence& evidence,
                  Estimate& estimate) {
   const ModelFit& best = adaptive.Best();
   const BoundedParameter poisson_ratio =
@@ -42,8 +66,9 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
       poisson_ratio, estimate);
   const std::optional<double> variance = DescribeDisplacementFit(
       scene, adaptive.Model().Graph(), options, observed,
-      ExpandFit(adaptive.Model(), observed, estimate.elasticity), best.losses,
-      evidence, estimate);
+      FitWithChange(scene, observed, estimate.elasticity, adaptive.Model(),
+                    change),
+      best.losses, evidence, estimate);
   Judge(evidence, options, estimate);
   // What looks like a pull to -1 may be data that say nothing of nu.
   const bool is_at_minus_one = estimate.status == Status::kUnphysical;
@@ -64,7 +89,7 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
 // Fits, and describes the fit.
 Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
                         const ObservedDisplacements& observed,
-                        AdaptiveFit& adaptive) {
+                        AdaptiveFit& adaptive, ElementChange& change) {
   Estimate estimate;
   Evidence evidence;
   Stopwatch stopwatch;
@@ -85,12 +110,13 @@ Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
     Judge(evidence, options, estimate);
     return estimate;
   }
-  DescribeFit(scene, options, observed, adaptive, evidence, estimate);
+  DescribeFit(scene, options, observed, adaptive, change, evidence, estimate);
   if (!adaptive.HasConverged()) {
     evidence.end = End::kNotCertified;
   }
   evidence.solver_notice = adaptive.Model().Notice();
   Judge(evidence, options, estimate);
+  CorrectForElements(evidence, estimate);
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
   return estimate;
 }
@@ -98,7 +124,7 @@ Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
 class ReducedPreparation : public Preparation {
  public:
   ReducedPreparation(const Scene& scene, const EstimatorOptions& options)
-      : options_(options), adaptive_(scene, options) {}
+      : options_(options), adaptive_(scene, options), change_(scene) {}
 
   Estimate Run(const Scene& scene) override {
     if (!observed_) {
@@ -106,15 +132,17 @@ class ReducedPreparation : public Preparation {
     } else {
       observed_->Remeasure(scene);
     }
-    const Work before = adaptive_.Model().WorkDone();
-    Estimate estimate = RunAdaptiveFit(scene, options_, *observed_, adaptive_);
-    estimate.work = adaptive_.Model().WorkDone() - before;
+    const Work before = adaptive_.Model().WorkDone() + change_.WorkDone();
+    Estimate estimate =
+        RunAdaptiveFit(scene, options_, *observed_, adaptive_, change_);
+    estimate.work = adaptive_.Model().WorkDone() + change_.WorkDone() - before;
     return estimate;
   }
 
  private:
   const EstimatorOptions& options_;
   AdaptiveFit adaptive_;
+  ElementChange change_;
   /// Empty before the first measurement.
   std::optional<ObservedDisplacements> observed_;
 };
@@ -143,9 +171,11 @@ Estimate ReducedFe::DoRun(const Scene& scene,
   AdaptiveFit adaptive(scene, options);
   const ObservedDisplacements observed(scene);
   const double seconds = stopwatch.Lap();
-  Estimate estimate = RunAdaptiveFit(scene, options, observed, adaptive);
+  ElementChange change(scene);
+  Estimate estimate =
+      RunAdaptiveFit(scene, options, observed, adaptive, change);
   estimate.stages.insert(estimate.stages.begin(), {"reduce", seconds});
-  estimate.work = adaptive.Model().WorkDone();
+  estimate.work = adaptive.Model().WorkDone() + change.WorkDone();
   return estimate;
 }
 

@@ -53,7 +53,7 @@ std::optional<NeighbourCorrelation> CorrelateNeighbours(
   const double n = static_cast<double>(num_products);
   const double variance = square_sum / static_cast<double>(residual.size());
   const double correlation = product_sum / (n * variance);
-  return NeighbourCorrelation{correlation, correlation * std::sqrt(n)};
+  return NeighbourCorrelation{correlation, 1 / std::sqrt(n)};
 }
 
 ResidualVariance EstimateVariance(const ObservedDisplacements& observed,
@@ -80,21 +80,25 @@ ResidualVariance EstimateVariance(const ObservedDisplacements& observed,
   return ResidualVariance{1 / norm_squared, true};
 }
 
-double SmoothSquareSum(const NodeGraph& graph,
-                       const ObservedDisplacements& observed,
-                       const Eigen::VectorXd& residual, Estimate& estimate) {
+SmoothSquareSum MeasureSmoothPart(const NodeGraph& graph,
+                                  const ObservedDisplacements& observed,
+                                  const Eigen::VectorXd& residual,
+                                  Estimate& estimate) {
+  const double square_sum = residual.squaredNorm();
   const std::optional<NeighbourCorrelation> neighbours =
       CorrelateNeighbours(graph, observed, residual);
   if (!neighbours) {
-    return 0;
+    return {0, square_sum};
   }
-  estimate.residual_correlation =
-      std::clamp(neighbours->correlation, -1.0, 1.0);
+  const auto& [correlation, deviation] = *neighbours;
+  estimate.residual_correlation = std::clamp(correlation, -1.0, 1.0);
   estimate.is_model_in_doubt =
-      neighbours->standard_score > kLimits.significant_score;
-  return estimate.is_model_in_doubt
-             ? *estimate.residual_correlation * residual.squaredNorm()
-             : 0;
+      correlation > kLimits.significant_score * deviation;
+  const auto within = [&](double share) {
+    return std::clamp(share, 0.0, 1.0) * square_sum;
+  };
+  return {within(correlation - kLimits.explained_score * deviation),
+          within(std::max(correlation, 0.0) + kTwoSidedErrors * deviation)};
 }
 
 Eigen::VectorXd RobustChange(const ObservedDisplacements& observed,

@@ -17,8 +17,7 @@ struct NeighbourCorrelation {
   /// Mean product of the residuals of two nodes that share an element, over
   /// the mean square: near 0 for independent noise, near 1 for a smooth field.
   double correlation;
-  /// `correlation` over its standard deviation for independent noise.
-  double standard_score;
+  double standard_deviation;  ///< Of `correlation` for independent noise.
 };
 
 /// Empty when no two neighbours were observed, or all residuals are zero.
@@ -41,12 +40,20 @@ ResidualVariance EstimateVariance(const ObservedDisplacements& observed,
                                   Eigen::Index num_free, Evidence& evidence,
                                   Estimate& estimate);
 
-/// The square sum of the part of the residual that neighbours share; zero when
-/// independent noise explains what they share.  Fills in the correlation of
-/// `estimate`, and whether it puts the model in doubt.
-double SmoothSquareSum(const NodeGraph& graph,
-                       const ObservedDisplacements& observed,
-                       const Eigen::VectorXd& residual, Estimate& estimate);
+/// What the square sum of the part of the residual may be that neighbours
+/// share: at least, beyond what independent noise explains, growing from zero,
+/// and at most.
+struct SmoothSquareSum {
+  double least;
+  double most;
+};
+
+/// Fills in the correlation of `estimate`, and whether it puts the model in
+/// doubt.
+SmoothSquareSum MeasureSmoothPart(const NodeGraph& graph,
+                                  const ObservedDisplacements& observed,
+                                  const Eigen::VectorXd& residual,
+                                  Estimate& estimate);
 
 /// The change of the parameters from the least-squares fit to a robust one, in
 /// the linear model u + S delta of sensitivities S: the weighted least squares

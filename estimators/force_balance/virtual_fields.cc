@@ -26,6 +26,10 @@ struct ResidualJudgement {
   double noise_variance;
   /// The square sum that may hide an error of the model of its own size.
   double model_square_sum;
+  /// Square sum over what independent noise explains, and the standard
+  /// deviation of its logarithm for such noise.
+  double excess;
+  double deviation_of_excess;
 };
 
 // Whether something other than independent noise is in the balance of virtual
@@ -52,7 +56,7 @@ std::optional<ResidualJudgement> JudgeResidual(
     // chi^2 has mean m and variance 2 m.
     if (redundancy <= 0 ||
         variance <= 1 + kLimits.significant_score * std::sqrt(2 / m)) {
-      return ResidualJudgement{1, 0};
+      return ResidualJudgement{1, 0, variance, std::sqrt(2 / m)};
     }
     evidence.above_noise = {ResidualKind::kVirtualWork, std::sqrt(variance)};
   }
@@ -65,11 +69,11 @@ std::optional<ResidualJudgement> JudgeResidual(
   // The stiffness colours the force residual, which takes up to three quarters
   // of its degrees of freedom.
   const double rough_m = static_cast<double>(force_residual.NumEquations()) / 4;
-  const bool is_noise =
-      !rough_variance ||
-      variance <= *rough_variance * (1 + kLimits.significant_score *
-                                             std::sqrt(2 / m + 2 / rough_m));
-  return ResidualJudgement{variance, is_noise ? 0 : fit.square_sum};
+  const double deviation = std::sqrt(2 / m + 2 / rough_m);
+  const double excess = rough_variance ? variance / *rough_variance : 1;
+  const bool is_noise = excess <= 1 + kLimits.significant_score * deviation;
+  return ResidualJudgement{variance, is_noise ? 0 : fit.square_sum, excess,
+                           deviation};
 }
 
 // Information about (ln E, nu), and covariances from it.
@@ -308,6 +312,52 @@ void DescribeCovariance(const EstimatorOptions& options,
   }
 }
 
+// The probability that the specimen is finer than its elements, which are as
+// likely to be what the displacements were computed with before the residual is
+// looked at.  They miss a share of the displacements, of which the balance
+// shows a part.
+double ProbabilityOfFinerSpecimen(double missed, Eigen::Index num_equations,
+                                  double displacement_norm,
+                                  const ResidualJudgement& residual) {
+  constexpr double kVisibleShare = 0.05;
+  const double visible = kVisibleShare * missed * displacement_norm;
+  const double expected =
+      std::log1p(visible * visible /
+                 (static_cast<double>(num_equations) * residual.noise_variance /
+                  std::max(residual.excess, 1.0)));
+  const double found = std::log(residual.excess);
+  const double missing = std::max(expected - found, 0.0);
+  return 1 / (1 + std::exp((missing * missing - found * found) /
+                           (2 * residual.deviation_of_excess *
+                            residual.deviation_of_excess)));
+}
+
+// Adds what the elements miss to the covariance of the free parameters.
+void AllowForElements(const Scene& scene, const VirtualWorkBalance& balance,
+                      const ResidualJudgement& residual, Estimate& estimate) {
+  // Of E as of the energy that is missed, of nu about so much less [benchmarks:
+  // unseen].
+  constexpr double kPoissonRatioShare = 0.6;
+  if (!estimate.IsUsable() || scene.mesh.NumElements() == 1) {
+    return;
+  }
+  const double missed = DiscretizationError(scene.mesh, estimate.elasticity,
+                                            SmoothDisplacements(scene));
+  const double error = missed * std::sqrt(ProbabilityOfFinerSpecimen(
+                                    missed, balance.NumEquations(),
+                                    balance.DisplacementNorm(), residual));
+  estimate.discretization_error = error;
+  estimate.covariance(0, 0) +=
+      std::pow(error * estimate.elasticity.youngs_modulus, 2);
+  // Of a nu that is free.
+  if (std::isfinite(estimate.covariance(1, 1))) {
+    estimate.poisson_ratio_discretization_error = kPoissonRatioShare * error;
+    const double variance = std::pow(kPoissonRatioShare * error, 2);
+    estimate.covariance(1, 1) += variance;
+    WidenInterval(variance, estimate);
+  }
+}
+
 // Whether the curvature at the fit says too little of nu.
 bool NeedsProfile(const EstimatorOptions& options, const ActiveBounds& active,
                   const Estimate& estimate) {
@@ -355,6 +405,9 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
   if (residual && NeedsProfile(options, active, estimate)) {
     DescribeProfileOf(balance, fit, *residual, evidence, estimate);
   }
+  if (residual) {
+    AllowForElements(scene, balance, *residual, estimate);
+  }
   evidence.correction = std::sqrt(fit.square_sum) / balance.DisplacementNorm();
 }
 
@@ -385,10 +438,6 @@ Estimate BalanceWork(const VirtualWorkBalance& balance,
   }
   DescribeFit(scene, options, balance, force_residual, fit, evidence, estimate);
   Judge(evidence, options, estimate);
-  if (estimate.IsUsable() && scene.mesh.NumElements() > 1) {
-    estimate.discretization_error = DiscretizationError(
-        scene.mesh, estimate.elasticity, SmoothDisplacements(scene));
-  }
   estimate.stages.push_back({"fit", stopwatch.Lap()});
   return estimate;
 }

@@ -120,14 +120,13 @@ struct Estimate {
   /// Correlation of the displacement residuals of neighbouring nodes: near 0
   /// for independent noise, near 1 when the model misses something smooth.
   std::optional<double> residual_correlation;
-  /// The share of the strain energy that the elements miss, as Zienkiewicz &
-  /// Zhu estimate it: about the relative error that it causes in E, on top of
-  /// the standard error, unless the displacements were computed with these very
-  /// elements; zero where `auto` found that they were.
+  /// What the elements leave uncertain, as one standard deviation, which is
+  /// part of the standard errors: relative of E, and of a free nu.
   std::optional<double> discretization_error;
-  /// What an error of this share of the displacements does to nu at most: much
-  /// where they hardly depend on nu.  Of fits of displacements with a free nu.
   std::optional<double> poisson_ratio_discretization_error;
+  /// By how much E (relative) and nu were corrected for what the elements miss.
+  /// Of fits of displacements of linear simplices.
+  std::optional<Eigen::Vector2d> discretization_correction;
   /// Whether the residual is none that independent noise leaves, so that the
   /// mesh, the supports or the loads are not those of the experiment.
   bool is_model_in_doubt = false;

@@ -85,7 +85,9 @@ struct Evidence {
   std::optional<ResidualRatio> above_noise;
   /// Of (ln E, nu), without the pull of outliers.
   std::optional<Eigen::Vector2d> outlier_change;
-  /// Relative standard error of E with what is smooth in the residual; not a
+  /// Of (ln E, nu), for what the elements miss.
+  std::optional<Eigen::Vector2d> element_correction;
+  /// Relative standard error of E by what is smooth in the residual; not a
   /// number for E on a bound.
   std::optional<double> smooth_residual_error;
   /// The smooth part of the displacement residual over the measurement.

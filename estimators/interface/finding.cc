@@ -56,6 +56,7 @@ constexpr Row kRows[] = {
     {"parameters_near_limits", FindingCode::kParametersNearLimits},
     {"locking", FindingCode::kLocking},
     {"discretization_error", FindingCode::kDiscretizationError},
+    {"elements_too_coarse", FindingCode::kElementsTooCoarse},
     {"linear_elements_fit_as_well", FindingCode::kLinearElementsFitAsWell},
     {"too_many_elements", FindingCode::kTooManyElements},
     {"solver_fallback", FindingCode::kSolverFallback},

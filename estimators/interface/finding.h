@@ -62,6 +62,7 @@ enum class FindingCode {
   kParametersNearLimits,
   kLocking,
   kDiscretizationError,
+  kElementsTooCoarse,
   kLinearElementsFitAsWell,
   kTooManyElements,
   kSolverFallback,

@@ -527,28 +527,31 @@ Finding Locking(ElementKind kind) {
 }
 
 std::string DescribeDiscretizationError(const Estimate& estimate) {
-  const double error = *estimate.discretization_error;
-  std::string effect = "E may be many times larger";
-  if (error < kLimits.hopeless_discretization_error) {
-    effect = "E is wrong by about as much";
-    if (estimate.poisson_ratio_discretization_error) {
-      effect += " and nu by up to " +
-                TwoDigits(*estimate.poisson_ratio_discretization_error);
-    }
+  std::string text = "the error of E is mostly that of the elements (" +
+                     Percent(*estimate.discretization_error);
+  if (estimate.poisson_ratio_discretization_error) {
+    text +=
+        "; of nu " + TwoDigits(*estimate.poisson_ratio_discretization_error);
   }
-  return "the elements miss about " + Percent(error) +
-         " of the strain energy, so " + effect;
+  return text + ")";
 }
 
 Finding DiscretizationErrorFinding(ElementKind kind, const Estimate& estimate) {
-  return Warning(
-      FindingCode::kDiscretizationError, DescribeDiscretizationError(estimate),
-      "refine the mesh" +
-          std::string(HasQuadraticKind(kind) && estimate.element_order == 1
+  return Warning(FindingCode::kDiscretizationError,
+                 DescribeDiscretizationError(estimate),
+                 std::string("refine the mesh") +
+                     (HasQuadraticKind(kind) && estimate.element_order == 1
                           ? ", or use quadratic elements (order 2)"
-                          : "") +
-          ", unless the displacements were computed with these "
-          "very elements");
+                          : ""));
+}
+
+Finding ElementsTooCoarse(const Eigen::Vector2d& correction) {
+  return Error(FindingCode::kElementsTooCoarse,
+               "linear elements are too coarse here: quadratic ones change E "
+               "by about " +
+                   Percent(std::expm1(correction(0))) + " and nu by " +
+                   TwoDigits(correction(1)),
+               "use quadratic elements (order 2), or refine the mesh");
 }
 
 Finding LinearElementsFitAsWell(const IsotropicElasticity& linear) {

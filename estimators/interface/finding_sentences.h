@@ -112,6 +112,8 @@ Finding ParameterBias(const std::string& parameter, double bias,
 Finding Locking(ElementKind kind);
 /// Precondition: there is a discretisation error.
 std::string DescribeDiscretizationError(const Estimate& estimate);
+/// `correction` is of (ln E, nu).
+Finding ElementsTooCoarse(const Eigen::Vector2d& correction);
 Finding DiscretizationErrorFinding(ElementKind kind, const Estimate& estimate);
 Finding LinearElementsFitAsWell(const IsotropicElasticity& linear);
 Finding TooManyElements();

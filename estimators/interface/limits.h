@@ -21,6 +21,10 @@ struct Limits {
   /// In standard deviations: beyond, independent noise is no explanation.  Few
   /// enough estimates are made for one in three million to be none.
   double significant_score = 5;
+  /// In standard deviations: a correlation of neighbours counts as far as it is
+  /// beyond.  Independent noise is, in one measurement of 700, and then a
+  /// little.
+  double explained_score = 3;
   /// Probability below which a disagreement of two estimates (ModelMismatch)
   /// is one.  Larger than that of 5 standard scores: it only sends `auto` on.
   double mismatch_significance = 1e-3;
@@ -43,9 +47,6 @@ struct Limits {
   double notable_poisson_ratio_error = 0.01;
   /// Discretisation error in standard errors: below, it does not show.
   double notable_discretization_share = 0.5;
-  /// Share of the strain energy that the elements miss, from which on the
-  /// estimate says no more than that E is far too low.
-  double hopeless_discretization_error = 0.5;
   /// nu from which on linear tetrahedra lock [1].
   double locking_poisson_ratio = 0.45;
   /// Motion of held nodes over that of the free ones (root of the square
@@ -77,6 +78,11 @@ struct Limits {
   double LargestPoissonRatioDistance() const {
     return kTwoSidedErrors * largest_poisson_ratio_error;
   }
+
+  /// Corrections of ln E and nu for what the elements miss, above which the
+  /// estimate of the correction is none.
+  double largest_correction_of_log_youngs_modulus = 0.25;
+  double largest_correction_of_poisson_ratio = 0.15;
 
   // What is called determined.
 

@@ -309,6 +309,22 @@ Result JudgeCorrection(const Evidence& evidence, const EstimatorOptions&,
              : Result();
 }
 
+Result JudgeElements(const Evidence& evidence, const EstimatorOptions&,
+                     const Estimate& estimate) {
+  if (!evidence.element_correction) {
+    return std::nullopt;
+  }
+  const Eigen::Vector2d& correction = *evidence.element_correction;
+  const double nu = estimate.elasticity.poisson_ratio + correction(1);
+  return std::abs(correction(0)) <=
+                     kLimits.largest_correction_of_log_youngs_modulus &&
+                 std::abs(correction(1)) <=
+                     kLimits.largest_correction_of_poisson_ratio &&
+                 nu > -1 && nu < 0.5
+             ? Result()
+             : ElementsTooCoarse(correction);
+}
+
 Result JudgeCertificate(const Evidence& evidence, const EstimatorOptions&,
                         const Estimate&) {
   return evidence.end == End::kNotCertified ? FitNotCertified() : Result();
@@ -335,8 +351,8 @@ const std::vector<Rule>& Rules() {
       // Whether the data determine it, and the model explains them.
       JudgeBoundExcess, JudgeYoungsModulusOnBound, JudgeLargeResidual,
       JudgeProfile, JudgePoissonRatioAtLimit, JudgePoissonRatioOnBound,
-      JudgeKnownPoissonRatio, JudgeNoiseBias, JudgeWorkCheck, JudgeCorrection,
-      JudgeCertificate, NoteSolver};
+      JudgeKnownPoissonRatio, JudgeElements, JudgeNoiseBias, JudgeWorkCheck,
+      JudgeCorrection, JudgeCertificate, NoteSolver};
   return rules;
 }
 

@@ -12,6 +12,7 @@
 #include "elastimate/core/mechanics/stiffness_traces.h"
 #include "elastimate/core/mechanics/strain_energy.h"
 #include "elastimate/core/mesh/mesh.h"
+#include "elastimate/core/mesh/mid_edges.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "tests/core/random_values.h"
@@ -239,12 +240,12 @@ TEST_F(QuadraticTetrahedra, ContainTheLinearOnes) {
       MultiplyStiffnessBasis(mesh_, interpolated);
   const double tolerance = kQuadraticRounding * Scale(interpolated);
   EXPECT_LT(
-      (VertexForces(mesh_, products.h) - expected.h).cwiseAbs().maxCoeff(),
+      (MidEdges(mesh_).Restrict(products.h) - expected.h).cwiseAbs().maxCoeff(),
       tolerance);
   EXPECT_LT(
-      (VertexForces(mesh_, products.j) - expected.j).cwiseAbs().maxCoeff(),
+      (MidEdges(mesh_).Restrict(products.j) - expected.j).cwiseAbs().maxCoeff(),
       tolerance);
-  EXPECT_EQ(VertexForces(linear_, expected.h), expected.h);
+  EXPECT_EQ(MidEdges(linear_).Restrict(expected.h), expected.h);
 }
 
 TEST_F(QuadraticTetrahedra, AssembleIntoTheTextbookStiffness) {

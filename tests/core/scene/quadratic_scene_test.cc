@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "elastimate/core/mesh/mid_edges.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/rigid_motion.h"
 #include "tests/core/random_values.h"
@@ -163,7 +164,8 @@ TEST_F(ConvertedOrgan, KeepsWhatTheOtherLoadsAre) {
 // On the displacements of linear elements, the loads do the same work.
 TEST_F(ConvertedOrgan, HasTheVertexForcesOfLinearElements) {
   const Eigen::MatrixXd expected = AssembleLoadCases(scene_);
-  EXPECT_TRUE(VertexForces(quadratic_.mesh, AssembleLoadCases(quadratic_))
+  EXPECT_TRUE(MidEdges(quadratic_.mesh)
+                  .Restrict(AssembleLoadCases(quadratic_))
                   .isApprox(expected, 1e-13));
 }
 

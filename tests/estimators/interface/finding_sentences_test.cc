@@ -146,6 +146,7 @@ std::vector<Finding> EveryFinding() {
         Locking(ElementKind::kTet4),
         DiscretizationErrorFinding(ElementKind::kTet4, estimate),
         DiscretizationErrorFinding(ElementKind::kHex8, hopeless),
+        ElementsTooCoarse({0.512345, -0.212345}),
         LinearElementsFitAsWell(elasticity),
         TooManyElements(),
         SolverFallback("multigrid did not converge, so that the stiffness was "

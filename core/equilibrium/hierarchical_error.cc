@@ -1,0 +1,138 @@
+#include "elastimate/core/equilibrium/hierarchical_error.h"
+
+#include <Eigen/LU>
+
+#include "elastimate/core/mesh/shape_functions.h"
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/quadratic_scene.h"
+
+namespace elastimate {
+namespace {
+
+constexpr int kMostIterations = 150;
+// The energy that so many steps added tells what the next ones will add.
+constexpr int kDelay = 4;
+// Of the energy of a response: what linear elements miss by rounding alone.
+constexpr double kRoundingEnergy = 1e-20;
+
+// Sums of the products of columns.
+Eigen::RowVectorXd ColumnProducts(const Eigen::MatrixXd& a,
+                                  const Eigen::MatrixXd& b) {
+  return a.cwiseProduct(b).colwise().sum();
+}
+
+// Zero where a column is exact and has no direction left.
+Eigen::RowVectorXd Quotients(const Eigen::RowVectorXd& of,
+                             const Eigen::RowVectorXd& by) {
+  return (by.array() > 0).select(of.array() / by.array(), 0.0);
+}
+
+}  // namespace
+
+HierarchicalError::HierarchicalError(const Scene& scene)
+    : quadratic_(QuadraticScene(scene)),
+      mid_edges_(quadratic_.mesh),
+      stiffness_(quadratic_.mesh),
+      is_free_((!quadratic_.supports.held).cast<double>().matrix().reshaped()),
+      force_(AssembleLoadCases(quadratic_)) {}
+
+std::optional<Eigen::MatrixXd> HierarchicalError::Find(
+    double poisson_ratio, const Eigen::MatrixXd& responses,
+    StiffnessSolver& linear) {
+  const Eigen::MatrixXd start = mid_edges_.Interpolate(responses);
+  Eigen::MatrixXd product = Multiply(poisson_ratio, start);
+  // Of all rows: the forces on the free ones are in balance.
+  const Eigen::RowVectorXd rounding =
+      kRoundingEnergy *
+      ColumnProducts(start, products_.h + poisson_ratio * products_.j);
+  Eigen::MatrixXd residual = -product;
+  residual.leftCols(force_.cols()) += is_free_.asDiagonal() * force_;
+  const std::vector<Eigen::MatrixXd> inverses = InverseBlocks(poisson_ratio);
+
+  Eigen::MatrixXd error = Eigen::MatrixXd::Zero(start.rows(), start.cols());
+  Eigen::MatrixXd direction;
+  Eigen::RowVectorXd previous;
+  std::vector<Eigen::RowVectorXd> energies = {
+      Eigen::RowVectorXd::Zero(start.cols())};
+  for (int step = 0; step < kMostIterations; ++step) {
+    const Eigen::MatrixXd z = Precondition(inverses, residual, linear);
+    const Eigen::RowVectorXd rz = ColumnProducts(residual, z);
+    if ((rz.array() <= rounding.array()).all()) {
+      return Eigen::MatrixXd(error.topRows(responses.rows()));
+    }
+    if (step == 0) {
+      direction = z;
+    } else {
+      direction = z + direction * Quotients(rz, previous).asDiagonal();
+    }
+    previous = rz;
+    product = Multiply(poisson_ratio, direction);
+    const Eigen::RowVectorXd length =
+        Quotients(rz, ColumnProducts(direction, product));
+    error += direction * length.asDiagonal();
+    residual -= product * length.asDiagonal();
+    energies.push_back(energies.back() + length.cwiseProduct(rz));
+    if (step >= kDelay &&
+        ((energies.back() - energies[step + 1 - kDelay]).array() <=
+         kTolerance * kTolerance * energies.back().array())
+            .all()) {
+      return Eigen::MatrixXd(error.topRows(responses.rows()));
+    }
+  }
+  return std::nullopt;
+}
+
+Eigen::MatrixXd HierarchicalError::Multiply(double poisson_ratio,
+                                            const Eigen::MatrixXd& x) {
+  ++num_passes_;
+  stiffness_.Multiply(x, products_);
+  return is_free_.asDiagonal() * (products_.h + poisson_ratio * products_.j);
+}
+
+Eigen::MatrixXd HierarchicalError::Precondition(
+    const std::vector<Eigen::MatrixXd>& inverses,
+    const Eigen::MatrixXd& residual, StiffnessSolver& linear) const {
+  const int dimension = quadratic_.mesh.Dimension();
+  Eigen::MatrixXd z =
+      mid_edges_.Interpolate(linear.Solve(mid_edges_.Restrict(residual)));
+  for (Eigen::Index i = 0; i < mid_edges_.Ends().cols(); ++i) {
+    const Eigen::Index row = dimension * (mid_edges_.NumVertices() + i);
+    z.middleRows(row, dimension) +=
+        inverses[i] * residual.middleRows(row, dimension);
+  }
+  return is_free_.asDiagonal() * z;
+}
+
+std::vector<Eigen::MatrixXd> HierarchicalError::InverseBlocks(
+    double poisson_ratio) const {
+  const Mesh& mesh = quadratic_.mesh;
+  const int dimension = mesh.Dimension();
+  const double shear_share = ShearShareOfJ(mesh.section.model);
+  std::vector<Eigen::MatrixXd> blocks(
+      mid_edges_.Ends().cols(), Eigen::MatrixXd::Zero(dimension, dimension));
+  VisitElementKind(mesh.kind, [&](auto kind) {
+    for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+      VisitPoints<kind>(
+          mesh, e, StiffnessRule<kind>(),
+          [&](const ElementPoint<kind>& point, const auto&) {
+            for (int i = ElementSizes<kind>::kVertices;
+                 i < ElementSizes<kind>::kNodes; ++i) {
+              const auto gradient = point.gradient.col(i);
+              const auto outer = (gradient * gradient.transpose()).eval();
+              // e grad(N) of a unit displacement, e = sym(c grad(N)^T).
+              auto h = (0.5 * outer).eval();
+              h.diagonal().array() += 0.5 * gradient.squaredNorm();
+              blocks[mesh.elements(i, e) - mid_edges_.NumVertices()] +=
+                  point.volume *
+                  (h + poisson_ratio * (outer - shear_share * h));
+            }
+          });
+    }
+  });
+  for (Eigen::MatrixXd& block : blocks) {
+    block = block.inverse().eval();
+  }
+  return blocks;
+}
+
+}  // namespace elastimate

@@ -1,0 +1,41 @@
+#include "elastimate/estimators/displacement_fit/finer_specimen.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace elastimate {
+namespace {
+
+// What is expected of alpha of a finer specimen: quadratic elements show nearly
+// all of the error of linear ones, and more than that where these are so coarse
+// that the estimate itself is far off.
+constexpr double kExpectedShare = 1;
+constexpr double kDeviationOfShare = 0.6;
+// The standard error of alpha that rounding leaves.
+constexpr double kRounding = 1e-6;
+
+}  // namespace
+
+FinerSpecimen CompareWithFinerSpecimen(double share, double standard_error,
+                                       double degrees_of_freedom) {
+  const double variance =
+      std::max(standard_error * standard_error, kRounding * kRounding);
+  const double prior = kDeviationOfShare * kDeviationOfShare;
+  const double n = std::max(degrees_of_freedom, 1.0);
+  // Logarithms of the densities at `share`, but for a common factor.
+  const auto log_density = [n](double distance, double of_variance) {
+    return -0.5 * std::log(of_variance) -
+           (n + 1) / 2 * std::log1p(distance * distance / of_variance / n);
+  };
+  const double log_odds =
+      log_density(share - kExpectedShare, variance + prior) -
+      log_density(share, variance);
+  FinerSpecimen finer;
+  finer.probability = 1 / (1 + std::exp(-log_odds));
+  finer.share_variance = 1 / (1 / variance + 1 / prior);
+  finer.share =
+      finer.share_variance * (share / variance + kExpectedShare / prior);
+  return finer;
+}
+
+}  // namespace elastimate

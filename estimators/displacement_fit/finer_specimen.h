@@ -1,0 +1,35 @@
+#ifndef ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_FINER_SPECIMEN_H_
+#define ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_FINER_SPECIMEN_H_
+
+#include <Eigen/Core>
+
+namespace elastimate {
+
+/// Whether displacements come from a specimen that is finer than the elements
+/// of a fit, or were computed with these very elements.
+///
+/// The finer specimen moves by a share alpha of e more, what finer elements
+/// change: q = u + S d + alpha e + noise.  A fit without alpha leaves the
+/// residual alpha g + noise, g = e - S c the part of e that the parameters do
+/// not take up.  alpha is 0 in the one world, about 1 in the other, and both
+/// are as likely before the residual is looked at.
+struct FinerSpecimen {
+  double probability = 0;     ///< Of the finer specimen.
+  double share = 0;           ///< Expected alpha if it is finer.
+  double share_variance = 0;  ///< Of alpha if it is finer.
+
+  /// Of alpha over both worlds.
+  double Mean() const { return probability * share; }
+  double Variance() const {
+    return probability * (share_variance + share * share) - Mean() * Mean();
+  }
+};
+
+/// By Bayes' rule from the least-squares estimate of alpha, its standard error
+/// and the degrees of freedom of that (Student's t).
+FinerSpecimen CompareWithFinerSpecimen(double share, double standard_error,
+                                       double degrees_of_freedom);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_FINER_SPECIMEN_H_
