@@ -102,16 +102,16 @@ UnseenShape Dumbbell() {
   UnseenShape shape;
   shape.name = "dumbbell";
   shape.half = Half::kCalibration;
-  shape.body = {{12, 4, 4}, KeepsAll, [](const Vector3d& grid) {
-                  const double x = grid(0) / 12;
+  shape.body = {{10, 4, 4}, KeepsAll, [](const Vector3d& grid) {
+                  const double x = grid(0) / 10;
                   const double width = 0.03 * (1 + 0.4 * std::cos(2 * kPi * x));
                   const Eigen::Vector2d section =
                       width * Rounded(grid(1) / 2 - 1, grid(2) / 2 - 1);
                   return Vector3d(0.3 * x, section(0), section(1));
                 }};
   shape.clamped = At(kX, 0);
-  shape.experiments = {Pulled("tension", At(kX, 12), {40, 0, 0}),
-                       Twisted(At(kX, 12), kX, 20)};
+  shape.experiments = {Pulled("tension", At(kX, 10), {40, 0, 0}),
+                       Twisted(At(kX, 10), kX, 20)};
   return shape;
 }
 

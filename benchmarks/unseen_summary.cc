@@ -84,7 +84,7 @@ struct Regret {
   std::vector<double> time;
   std::vector<double> error;
 
-  // The outcomes of one measurement.
+  // The outcomes of one measurement; nothing where `auto` was not run.
   void Add(const Outcomes& outcomes) {
     const UnseenOutcome* of_auto = nullptr;
     const UnseenOutcome* cheapest = nullptr;
@@ -96,6 +96,9 @@ struct Regret {
                   outcome->processor_seconds < cheapest->processor_seconds)) {
         cheapest = outcome;
       }
+    }
+    if (of_auto == nullptr) {
+      return;
     }
     ++num_measurements;
     num_done_by_auto += of_auto->HasDone();

@@ -89,8 +89,8 @@ std::string NameOf(const testing::TestParamInfo<UnseenShape>& info) {
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, RefinedShape,
-                         testing::ValuesIn(UnseenShapes()), NameOf);
+INSTANTIATE_TEST_SUITE_P(All, RefinedShape, testing::ValuesIn(UnseenShapes()),
+                         NameOf);
 
 TEST(RefinedScene, TakesLinearTetrahedraOnly) {
   const UnseenShape shape = UnseenShapes()[0];

@@ -83,9 +83,9 @@ TEST(UnseenShapes, AreTheSameBodiesOfHexahedra) {
       };
       EXPECT_LT((resultant(fine_force) - resultant(force)).norm(),
                 kRounding * force.col(k).norm());
-      EXPECT_GT(fine_force.col(k).dot(
-                    world.load_cases[k].displacement.reshaped()),
-                force.col(k).dot(coarse.load_cases[k].displacement.reshaped()));
+      EXPECT_GT(
+          fine_force.col(k).dot(world.load_cases[k].displacement.reshaped()),
+          force.col(k).dot(coarse.load_cases[k].displacement.reshaped()));
     }
   }
   EXPECT_GT(count, 0);
