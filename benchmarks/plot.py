@@ -497,8 +497,8 @@ def unseen_cells(path):
             axes.set_ylim(bottom=0)
     for axes in panels[-1]:
         set_noise_axis(axes, deviations)
-    finish(figure, "Shapes that nothing was built on; of the estimates with status ok,"
-           " dishonest ones of all", 5)
+    finish(figure, "Shapes that nothing was built on: coverage of the estimates with status ok,"
+           " and dishonest ones among all", 5)
     return figure
 
 

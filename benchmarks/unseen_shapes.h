@@ -28,7 +28,7 @@ struct LoadedShape {
   std::function<std::vector<Load>(const VoxelMesh&)> loads;
 };
 
-/// A specimen that is neither block, bar nor organ, of 700 to 1200 tetrahedra
+/// A specimen that is neither block, bar nor organ, of 800 to 1100 tetrahedra
 /// and below 1 m, for E = 5 kPa.
 struct UnseenShape {
   std::string name;

@@ -26,7 +26,7 @@ double WorkOfLoads(const Scene& scene, std::size_t k) {
       .sum();
 }
 
-class RefinedShape : public testing::TestWithParam<UnseenShape> {
+class RefinedShape : public ::testing::TestWithParam<UnseenShape> {
  protected:
   Scene scene_ = UnmeasuredScene(GetParam(), TetrahedralMesh(GetParam().body));
   Scene refined_ = RefinedScene(scene_);
@@ -71,7 +71,7 @@ TEST_P(RefinedShape, HasTheSameLoads) {
 }
 
 // The displacements of the mesh are among those of the refined one, which
-// therefore takes up more energy; so do quadratic elements there.
+// therefore takes up more energy.
 TEST_P(RefinedShape, IsSofter) {
   Measure(kTruth, scene_);
   Scene finer = refined_;
@@ -81,7 +81,7 @@ TEST_P(RefinedShape, IsSofter) {
   }
 }
 
-std::string NameOf(const testing::TestParamInfo<UnseenShape>& info) {
+std::string NameOf(const ::testing::TestParamInfo<UnseenShape>& info) {
   std::string name;
   for (const char character : info.param.name) {
     name += character == ' ' ? '_' : character;
@@ -89,7 +89,7 @@ std::string NameOf(const testing::TestParamInfo<UnseenShape>& info) {
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, RefinedShape, testing::ValuesIn(UnseenShapes()),
+INSTANTIATE_TEST_SUITE_P(All, RefinedShape, ::testing::ValuesIn(UnseenShapes()),
                          NameOf);
 
 TEST(RefinedScene, TakesLinearTetrahedraOnly) {

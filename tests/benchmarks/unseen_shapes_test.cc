@@ -14,7 +14,7 @@
 namespace elastimate {
 namespace {
 
-constexpr double kRounding = 1e-10;  // Relative, of sums.
+constexpr double kSumRounding = 1e-10;  // Relative, of sums.
 
 TEST(UnseenShapes, AreManyInTwoHalves) {
   std::set<std::string> names;
@@ -25,8 +25,8 @@ TEST(UnseenShapes, AreManyInTwoHalves) {
     ++halves[shape.half];
     EXPECT_GE(shape.experiments.size(), 2);
     const VoxelMesh voxels = TetrahedralMesh(shape.body);
-    EXPECT_GE(voxels.mesh.NumElements(), 700);
-    EXPECT_LE(voxels.mesh.NumElements(), 1200);
+    EXPECT_GE(voxels.mesh.NumElements(), 800);
+    EXPECT_LE(voxels.mesh.NumElements(), 1100);
     const Scene scene = UnmeasuredScene(shape, voxels);
     ValidateScene(scene);
     EXPECT_GT(scene.supports.held.count(), 0);
@@ -44,7 +44,7 @@ TEST(UnseenShapes, AreTwistedByAMomentAlone) {
       if (experiment.name == "torsion") {
         const Eigen::MatrixXd force =
             AssembleLoads(voxels.mesh, experiment.loads(voxels));
-        EXPECT_LT(force.rowwise().sum().norm(), kRounding * force.norm())
+        EXPECT_LT(force.rowwise().sum().norm(), kSumRounding * force.norm())
             << shape.name;
         ++count;
       }
@@ -69,7 +69,8 @@ TEST(UnseenShapes, AreTheSameBodiesOfHexahedra) {
     Scene world = UnmeasuredScene(shape, fine);
     ValidateScene(world);
     const double volume = ElementVolumes(coarse.mesh).sum();
-    EXPECT_NEAR(ElementVolumes(world.mesh).sum(), volume, kRounding * volume);
+    EXPECT_NEAR(ElementVolumes(world.mesh).sum(), volume,
+                kSumRounding * volume);
     EXPECT_EQ(world.mesh.nodes.leftCols(coarse.mesh.NumNodes()),
               coarse.mesh.nodes);
     const Eigen::MatrixXd force = AssembleLoadCases(coarse);
@@ -82,7 +83,7 @@ TEST(UnseenShapes, AreTheSameBodiesOfHexahedra) {
             forces.col(k).reshaped(3, forces.rows() / 3).rowwise().sum());
       };
       EXPECT_LT((resultant(fine_force) - resultant(force)).norm(),
-                kRounding * force.col(k).norm());
+                kSumRounding * force.col(k).norm());
       EXPECT_GT(
           fine_force.col(k).dot(world.load_cases[k].displacement.reshaped()),
           force.col(k).dot(coarse.load_cases[k].displacement.reshaped()));

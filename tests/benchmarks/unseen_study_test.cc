@@ -30,8 +30,8 @@ using Rows = std::vector<TableRow>;
 using Condition = std::function<bool(const TableRow&)>;
 
 // Of numbers with seven digits, of which one was subtracted.
-constexpr double kTableRounding = 1e-6;
-constexpr const char* kDeviation = "displacement_deviation [1]";
+constexpr double kSevenDigits = 1e-6;
+constexpr const char* kNoise = "displacement_deviation [1]";
 
 Rows Where(const Rows& rows, const Condition& condition) {
   Rows some;
@@ -43,7 +43,7 @@ Rows Of(const Rows& rows, const std::string& world,
         const std::string& estimator, const std::string& deviation) {
   return Where(rows, [&](const TableRow& row) {
     return row.Text("world") == world && row.Text("estimator") == estimator &&
-           row.Text(kDeviation) == deviation;
+           row.Text(kNoise) == deviation;
   });
 }
 
@@ -54,7 +54,7 @@ int Count(const Rows& rows, const Condition& condition) {
 bool IsOk(const TableRow& row) { return row.Text("status") == "ok"; }
 
 // The elements that made the data fit them with the truth.
-void ExpectExactDataGiveTheTruth(const Rows& rows) {
+void ExpectTheTruthWithoutNoise(const Rows& rows) {
   for (const char* estimator : {"reduced-fe", "iterative-fe"}) {
     const Rows exact = Of(rows, "same mesh", estimator, "0");
     EXPECT_FALSE(exact.empty());
@@ -62,8 +62,8 @@ void ExpectExactDataGiveTheTruth(const Rows& rows) {
       SCOPED_TRACE(row.Text("shape") + ", " + row.Text("load") + ", " +
                    estimator);
       EXPECT_TRUE(IsOk(row));
-      EXPECT_LT(std::abs(row.Number(kYoungsModulusError)), kTableRounding);
-      EXPECT_LT(std::abs(row.Number(kPoissonRatioError)), kTableRounding);
+      EXPECT_LT(std::abs(row.Number(kYoungsModulusError)), kSevenDigits);
+      EXPECT_LT(std::abs(row.Number(kPoissonRatioError)), kSevenDigits);
     }
   }
 }
@@ -120,8 +120,8 @@ void ExpectIntervalsAndWhatTheyCover(const Rows& rows) {
       if (!std::isnan(lower)) {
         EXPECT_LE(lower, upper);
         // Rounding may decide at an end.
-        EXPECT_LE(covered, lower - 2 * kTableRounding <= truth &&
-                               truth <= upper + 2 * kTableRounding);
+        EXPECT_LE(covered, lower - 2 * kSevenDigits <= truth &&
+                               truth <= upper + 2 * kSevenDigits);
         EXPECT_GE(covered, lower <= truth && truth <= upper);
       }
     };
@@ -138,7 +138,7 @@ void ExpectOneSeedForEachMeasurement(const Rows& rows) {
     const std::string& seed = row.Text("seed");
     settings_of_seeds[seed].insert(
         row.Text("shape") + "/" + row.Text("load") + "/" + row.Text("world") +
-        "/" + row.Text(kDeviation) + "/" + row.Text("true_poisson_ratio [1]"));
+        "/" + row.Text(kNoise) + "/" + row.Text("true_poisson_ratio [1]"));
     EXPECT_TRUE(estimators_of_seeds[seed].insert(row.Text("estimator")).second);
   }
   for (const auto& [seed, settings] : settings_of_seeds) {
@@ -146,13 +146,13 @@ void ExpectOneSeedForEachMeasurement(const Rows& rows) {
   }
 }
 
-void ExpectCellsAddUpTrials(const Rows& rows, const Rows& cells) {
+void ExpectCellsAddUpMeasurements(const Rows& rows, const Rows& cells) {
   for (const TableRow& cell : cells) {
     const Rows own = Where(rows, [&](const TableRow& row) {
       return row.Text("world") == cell.Text("world") &&
              row.Text("estimator") == cell.Text("estimator") &&
-             (cell.Text(kDeviation) == "all" ||
-              row.Text(kDeviation) == cell.Text(kDeviation)) &&
+             (cell.Text(kNoise) == "all" ||
+              row.Text(kNoise) == cell.Text(kNoise)) &&
              (cell.Text("half") == "all" ||
               row.Text("half") == cell.Text("half"));
     });
@@ -160,7 +160,7 @@ void ExpectCellsAddUpTrials(const Rows& rows, const Rows& cells) {
     const auto size = static_cast<double>(own.size());
     EXPECT_EQ(cell.Number("trials [1]"), size);
     EXPECT_NEAR(cell.Number("ok_share [1]") * size,
-                static_cast<double>(ok.size()), kTableRounding * size);
+                static_cast<double>(ok.size()), kSevenDigits * size);
     for (const std::string parameter : {"youngs_modulus", "poisson_ratio"}) {
       if (!ok.empty()) {
         EXPECT_NEAR(cell.Number(parameter + "_coverage [1]") *
@@ -170,11 +170,11 @@ void ExpectCellsAddUpTrials(const Rows& rows, const Rows& cells) {
                             return row.Number(parameter + "_is_covered [1]") ==
                                    1;
                           }),
-                    kTableRounding * size);
+                    kSevenDigits * size);
       }
     }
     EXPECT_LE(cell.Number("dishonest_share [1]"),
-              cell.Number("ok_share [1]") + kTableRounding);
+              cell.Number("ok_share [1]") + kSevenDigits);
   }
 }
 
@@ -193,7 +193,7 @@ bool HasDone(const TableRow& row) {
 void ExpectRegretOfTheTrials(const Rows& rows, const Rows& regrets) {
   int count = 0;
   for (const TableRow& regret : regrets) {
-    if (regret.Text(kDeviation) != "all" || regret.Text("half") != "all") {
+    if (regret.Text(kNoise) != "all" || regret.Text("half") != "all") {
       continue;
     }
     std::map<std::string, Rows> measurements;
@@ -224,8 +224,8 @@ void ExpectRegretOfTheTrials(const Rows& rows, const Rows& regrets) {
         static_cast<double>(ratios.size()), 0.01);
     std::sort(ratios.begin(), ratios.end());
     const double median = regret.Number("median_time_ratio [1]");
-    EXPECT_GE(median, ratios[(ratios.size() - 1) / 2] * (1 - kTableRounding));
-    EXPECT_LE(median, ratios[ratios.size() / 2] * (1 + kTableRounding));
+    EXPECT_GE(median, ratios[(ratios.size() - 1) / 2] * (1 - kSevenDigits));
+    EXPECT_LE(median, ratios[ratios.size() / 2] * (1 + kSevenDigits));
     ++count;
   }
   EXPECT_EQ(count, 3);
@@ -236,12 +236,12 @@ class UnseenStudy : public testing::ProgramTest {};
 TEST_F(UnseenStudy, FindsWhatTheoryPredicts) {
   Succeed("study --name=unseen --out=. --quick");
   const Rows rows = ReadTable(folder_ / "unseen.csv");
-  ExpectExactDataGiveTheTruth(rows);
+  ExpectTheTruthWithoutNoise(rows);
   ExpectTheFinerWorldToBeMissed(rows);
   ExpectCoverageOnTheSameMesh(rows);
   ExpectIntervalsAndWhatTheyCover(rows);
   ExpectOneSeedForEachMeasurement(rows);
-  ExpectCellsAddUpTrials(rows, ReadTable(folder_ / "unseen_cells.csv"));
+  ExpectCellsAddUpMeasurements(rows, ReadTable(folder_ / "unseen_cells.csv"));
   ExpectRegretOfTheTrials(rows, ReadTable(folder_ / "unseen_regret.csv"));
 
   const std::string plot =
