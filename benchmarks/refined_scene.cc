@@ -1,5 +1,6 @@
 #include "benchmarks/refined_scene.h"
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 #include <string>
@@ -32,19 +33,15 @@ constexpr std::array<std::array<int, 3>, 4> kFacetCuts = {
     {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
 
 const Diagonal& ShortestDiagonal(const Mesh& quadratic, Eigen::Index element) {
-  const Diagonal* shortest = nullptr;
-  double least = 0;
-  for (const Diagonal& diagonal : kDiagonals) {
-    const double length =
-        (quadratic.nodes.col(quadratic.elements(diagonal.a, element)) -
-         quadratic.nodes.col(quadratic.elements(diagonal.b, element)))
-            .norm();
-    if (shortest == nullptr || length < least) {
-      shortest = &diagonal;
-      least = length;
-    }
-  }
-  return *shortest;
+  const auto length = [&](const Diagonal& diagonal) {
+    return (quadratic.nodes.col(quadratic.elements(diagonal.a, element)) -
+            quadratic.nodes.col(quadratic.elements(diagonal.b, element)))
+        .norm();
+  };
+  return *std::min_element(kDiagonals.begin(), kDiagonals.end(),
+                           [&](const Diagonal& one, const Diagonal& other) {
+                             return length(one) < length(other);
+                           });
 }
 
 Mesh CutTetrahedra(const Mesh& quadratic) {
