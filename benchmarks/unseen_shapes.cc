@@ -250,7 +250,8 @@ UnseenShape BranchingBody() {
   shape.clamped = At(kZ, 0);
   shape.experiments = {
       Pulled("pull on an arm", At(kX, 9), {30, 0, -15}),
-      {"arms apart, weight", [](const VoxelMesh& voxels) -> std::vector<Load> {
+      {"arms apart and weight",
+       [](const VoxelMesh& voxels) -> std::vector<Load> {
          return {Traction{FacetsIn(voxels, At(kX, 9)), Vector3d(20, 10, 0)},
                  Traction{FacetsIn(voxels, At(kX, 0)), Vector3d(-20, 10, 0)},
                  BodyForce{Vector3d(0, 0, -500)}};

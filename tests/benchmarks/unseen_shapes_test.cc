@@ -24,6 +24,10 @@ TEST(UnseenShapes, AreManyInTwoHalves) {
     EXPECT_TRUE(names.insert(shape.name).second);
     ++halves[shape.half];
     EXPECT_GE(shape.experiments.size(), 2);
+    for (const LoadedShape& experiment : shape.experiments) {
+      // A comma would end a cell of the table.
+      EXPECT_EQ((shape.name + experiment.name).find(','), std::string::npos);
+    }
     const VoxelMesh voxels = TetrahedralMesh(shape.body);
     EXPECT_GE(voxels.mesh.NumElements(), 800);
     EXPECT_LE(voxels.mesh.NumElements(), 1100);
