@@ -23,6 +23,7 @@
 #include "benchmarks/speed_accuracy_study.h"
 #include "benchmarks/stability_study.h"
 #include "benchmarks/study.h"
+#include "benchmarks/unseen_study.h"
 #include "elastimate/io/text/file_output.h"
 
 DEFINE_string(name, "", "the study, as listed below");
@@ -48,6 +49,8 @@ constexpr NamedStudy kStudies[] = {
     {"solvers", "time and memory of the linear solvers", RunSolverStudy},
     {"stability", "where each estimator fails, and whether it says so",
      RunStabilityStudy},
+    {"unseen", "whether error bars hold on shapes that nothing was built on",
+     RunUnseenStudy},
 };
 
 const Program& Benchmark() {

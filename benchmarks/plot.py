@@ -28,6 +28,7 @@ STYLES = {
     "virtual-fields": {"color": "#009E73", "marker": "^", "linestyle": "-."},
     "iterative-fe": {"color": "#F0E442", "marker": "X", "linestyle": ":"},
     "reduced-fe": {"color": "#0072B2", "marker": "s", "linestyle": "--"},
+    "reduced-fe order 2": {"color": "#56B4E9", "marker": "D", "linestyle": "-"},
     "auto": {"color": "#000000", "marker": "*", "linestyle": "-"},
     "Cramér-Rao bound": {"color": "#000000", "marker": "", "linestyle": ":"},
     "prediction": {"color": "#000000", "marker": "", "linestyle": "-."},
@@ -453,11 +454,79 @@ def stability_cells(path):
     return figure
 
 
+# Of the charts of unseen shapes: column of the table, and title.
+UNSEEN_SHARES = (
+    (YOUNGS + "_coverage [1]", "95 % intervals of $E$ that hold it [%]"),
+    (NU + "_coverage [1]", r"95 % intervals of $\nu$ that hold it [%]"),
+    ("dishonest_share [1]", "dishonest [%]"),
+)
+UNSEEN_WORLDS = {
+    "same mesh": {"color": "#0072B2", "marker": "s"},
+    "finer world": {"color": "#D55E00", "marker": "o"},
+    "hexahedra": {"color": "#009E73", "marker": "^"},
+}
+
+
+def unseen_rows(path):
+    """Of the half that is reported, one row for each magnitude of noise, and the
+    magnitudes."""
+    rows = [row for row in read(path) if row["half"] == "report" and row[DEVIATION] != "all"]
+    return rows, sorted({float(row[DEVIATION]) for row in rows})
+
+
+def set_noise_axis(axes, deviations):
+    """Places, since zero has none on a logarithmic axis."""
+    axes.set_xticks(range(len(deviations)), [f"{100 * d:g}" for d in deviations])
+    axes.set_xlabel(DEVIATION_LABEL)
+
+
+def unseen_cells(path):
+    rows, deviations = unseen_rows(path)
+    worlds = ("same mesh", "finer world")
+    figure, panels = plt.subplots(len(worlds), len(UNSEEN_SHARES), figsize=(10, 5.6),
+                                  sharex=True, sharey="col")
+    for line, world in zip(panels, worlds):
+        for axes, (column, title) in zip(line, UNSEEN_SHARES):
+            own = [row for row in rows if row["world"] == world]
+            for (name,), cells in group(own, "estimator").items():
+                places = [deviations.index(float(cell[DEVIATION])) for cell in cells]
+                axes.plot(places, 100 * numbers(cells, column), label=name, **STYLES[name])
+            if column.endswith("coverage [1]"):
+                axes.axhline(95, color="k", linewidth=0.8)
+            axes.set_title(f"{title}\n{world}", fontsize=9)
+            axes.set_ylim(bottom=0)
+    for axes in panels[-1]:
+        set_noise_axis(axes, deviations)
+    finish(figure, "Shapes that nothing was built on: coverage of the estimates with status ok,"
+           " and dishonest ones among all", 5)
+    return figure
+
+
+def unseen_regret(path):
+    rows, deviations = unseen_rows(path)
+    figure, panels = two_panels()
+    for axes, what, title in zip(panels, ("time", "error"), (
+            "processor time [that of the cheapest]",
+            "error, at least 0.01 [that of the cheapest]")):
+        for (world,), own in group(rows, "world").items():
+            places = [deviations.index(float(row[DEVIATION])) for row in own]
+            for share, line in (("median", "-"), ("90_percent", ":")):
+                axes.plot(places, numbers(own, f"{share}_{what}_ratio [1]"), linestyle=line,
+                          label=f"{world}, {share.replace('_percent', ' % quantile')}",
+                          **UNSEEN_WORLDS[world])
+        axes.axhline(1, color="k", linewidth=0.8)
+        axes.set_yscale("log")
+        axes.set_ylabel(title)
+        set_noise_axis(axes, deviations)
+    finish(figure, "auto against the cheapest estimator that would have done", 3)
+    return figure
+
+
 FIGURES = {
     function.__name__: function
     for function in (paper_noise, paper_spatial_noise, paper_measurements, paper_forces,
                      paper_organ, paper_cuboid_choice, speed_accuracy_points, scaling,
-                     stability_cells)
+                     stability_cells, unseen_cells, unseen_regret)
 }
 
 

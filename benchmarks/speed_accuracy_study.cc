@@ -12,6 +12,7 @@
 
 #include "apps/linear_algebra.h"
 #include "benchmarks/processor_time.h"
+#include "benchmarks/quantile.h"
 #include "benchmarks/trial.h"
 #include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/core/scene/quadratic_scene.h"
@@ -180,17 +181,6 @@ Point RunTrials(const Specimen& specimen, const World& world, double deviation,
   return point;
 }
 
-// The rung of `auto` that the estimate comes from; empty for other estimators.
-std::string ChosenRung(const Estimate& estimate) {
-  std::string chosen;
-  for (const Rung& rung : estimate.rungs) {
-    if (rung.status && rung.element_order == estimate.element_order) {
-      chosen = rung.estimator + " order " + std::to_string(rung.element_order);
-    }
-  }
-  return chosen;
-}
-
 std::string MostFrequentRung(const Point& point) {
   std::map<std::string, int> counts;
   for (const MethodTrial& trial : point.trials) {
@@ -202,19 +192,12 @@ std::string MostFrequentRung(const Point& point) {
       ->first;
 }
 
-double Median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle]
-                                : (values[middle - 1] + values[middle]) / 2;
-}
-
 double ProcessorSeconds(const Point& point) {
   std::vector<double> seconds;
   for (const MethodTrial& trial : point.trials) {
     seconds.push_back(trial.processor_seconds);
   }
-  return Median(seconds);
+  return Quantile(seconds, 0.5);
 }
 
 double FailureRate(const Point& point) {
@@ -301,16 +284,16 @@ class Tables {
       seconds.push_back(trial.trial.estimate.seconds);
       factorizations.push_back(trial.trial.estimate.work.factorizations);
     }
-    points_.AddRow({specimen.name,
-                    std::int64_t{specimen.scene.mesh.NumElements()}, world.name,
-                    deviation, point.method.name, point.method.estimator,
-                    std::int64_t{point.method.order},
-                    std::int64_t(point.trials.size()), FailureRate(point),
-                    DishonestShare(world, point), ProcessorSeconds(point),
-                    Median(seconds), Median(factorizations), youngs_modulus,
-                    youngs_modulus * specimen.truth.youngs_modulus /
-                        std::sqrt(bound(0, 0)),
-                    poisson_ratio, poisson_ratio / std::sqrt(bound(1, 1))});
+    points_.AddRow(
+        {specimen.name, std::int64_t{specimen.scene.mesh.NumElements()},
+         world.name, deviation, point.method.name, point.method.estimator,
+         std::int64_t{point.method.order}, std::int64_t(point.trials.size()),
+         FailureRate(point), DishonestShare(world, point),
+         ProcessorSeconds(point), Quantile(seconds, 0.5),
+         Quantile(factorizations, 0.5), youngs_modulus,
+         youngs_modulus * specimen.truth.youngs_modulus /
+             std::sqrt(bound(0, 0)),
+         poisson_ratio, poisson_ratio / std::sqrt(bound(1, 1))});
   }
 
   void Summarize(const Specimen& specimen, const World& world, double deviation,

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <utility>
 
+#include "benchmarks/facets_where.h"
 #include "benchmarks/trial.h"
 #include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
@@ -56,21 +57,10 @@ Nodes NodesAt(const Mesh& mesh, double x) {
   return NodesWhere((mesh.nodes.row(0).array() - x).abs() < 1e-9);
 }
 
-// Facets whose nodes all are at the upper end of an axis.
 Eigen::MatrixXi FacetsAtEnd(const Mesh& mesh, int axis) {
   const double end = mesh.nodes.row(axis).maxCoeff();
-  const Eigen::MatrixXi all = BoundaryFacets(mesh);
-  Eigen::MatrixXi facets(3, all.cols());
-  Eigen::Index count = 0;
-  for (const auto& facet : all.colwise()) {
-    const auto is_at_end = [&](int node) {
-      return mesh.nodes(axis, node) == end;
-    };
-    if (std::all_of(facet.begin(), facet.end(), is_at_end)) {
-      facets.col(count++) = facet;
-    }
-  }
-  return facets.leftCols(count);
+  return FacetsWhere(mesh,
+                     [&](int node) { return mesh.nodes(axis, node) == end; });
 }
 
 // Held at x = 0, without loads.

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "benchmarks/quantile.h"
 #include "benchmarks/stability_factors.h"
 #include "benchmarks/trial.h"
 #include "elastimate/estimators/registry.h"
@@ -129,25 +130,6 @@ void AddTrial(const StabilityLevel& level, const Judged& judged, Table& table) {
                 std::int64_t(estimate.Sentences(Severity::kWarning).size()),
                 std::int64_t{estimate.element_order}},
                cells);
-}
-
-// Of the absolute values that are numbers; NaN when none is.
-double MedianMagnitude(const std::vector<double>& values) {
-  std::vector<double> magnitudes;
-  for (const double value : values) {
-    if (!std::isnan(value)) {
-      magnitudes.push_back(std::abs(value));
-    }
-  }
-  if (magnitudes.empty()) {
-    return Estimate::kUnknown;
-  }
-  const auto middle = magnitudes.begin() + Eigen::Index(magnitudes.size() / 2);
-  std::nth_element(magnitudes.begin(), middle, magnitudes.end());
-  const double upper = *middle;
-  return magnitudes.size() % 2 == 1
-             ? upper
-             : (upper + *std::max_element(magnitudes.begin(), middle)) / 2;
 }
 
 // The trials of one method at one level.

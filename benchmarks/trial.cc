@@ -92,6 +92,16 @@ std::vector<Value> TrialCells(const Trial& trial) {
       std::int64_t{estimate.work.factorizations}};
 }
 
+std::string ChosenRung(const Estimate& estimate) {
+  std::string chosen;
+  for (const Rung& rung : estimate.rungs) {
+    if (rung.status && rung.element_order == estimate.element_order) {
+      chosen = rung.estimator + " order " + std::to_string(rung.element_order);
+    }
+  }
+  return chosen;
+}
+
 Eigen::VectorXd NoiseSd(const Scene& scene, double deviation) {
   const DegreesOfFreedom dofs(scene.supports);
   Eigen::VectorXd noise_sd(Eigen::Index(scene.load_cases.size()));

@@ -45,6 +45,10 @@ inline constexpr double kWrongPoissonRatio = 0.03;
 std::vector<std::string> TrialColumns();
 std::vector<Value> TrialCells(const Trial& trial);
 
+/// The rung of `auto` that the estimate comes from, as in "reduced-fe order 2";
+/// empty for other estimators.
+std::string ChosenRung(const Estimate& estimate);
+
 /// For each load case, the standard deviation of noise whose norm over the free
 /// components is `deviation` times that of the displacement [length].
 Eigen::VectorXd NoiseSd(const Scene& scene, double deviation);

@@ -1,0 +1,384 @@
+#include "benchmarks/unseen_study.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/linear_algebra.h"
+#include "benchmarks/processor_time.h"
+#include "benchmarks/refined_scene.h"
+#include "benchmarks/trial.h"
+#include "benchmarks/unseen_shapes.h"
+#include "benchmarks/unseen_summary.h"
+#include "elastimate/core/equilibrium/simulated_measurement.h"
+#include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/estimators/registry.h"
+#include "elastimate/estimators/statistics/cramer_rao.h"
+
+namespace elastimate {
+namespace {
+
+constexpr double kYoungsModulus = 5e3;
+constexpr std::array<double, 4> kPoissonRatios = {0, 0.3, 0.45, 0.49};
+constexpr std::array<double, 5> kDeviations = {0, 0.001, 0.01, 0.03, 0.1};
+constexpr int kReplicates = 2;
+constexpr int kMaxExperiments = 2;  // On one shape.
+
+// Hexahedra of the size of the world lock beyond.
+constexpr double kMaxPoissonRatioOfHexahedra = 0.45;
+
+enum World { kSameMesh, kFinerWorld, kHexahedra, kNumWorlds };
+constexpr const char* kWorldNames[kNumWorlds] = {"same mesh", "finer world",
+                                                 "hexahedra"};
+
+struct Method {
+  std::string name;
+  std::unique_ptr<Estimator> estimator;
+  int order = 1;
+  bool is_costly = false;
+};
+
+std::vector<Method> Methods() {
+  std::vector<Method> methods;
+  for (const char* name : {"virtual-fields", "reduced-fe", "iterative-fe"}) {
+    methods.push_back({name, MakeEstimator(name)});
+  }
+  methods.push_back({"auto", MakeEstimator("auto"), 1, true});
+  methods.push_back(
+      {"reduced-fe order 2", MakeEstimator("reduced-fe"), 2, true});
+  return methods;
+}
+
+// Which of the full study: the places in UnseenShapes, kPoissonRatios and
+// kDeviations.
+struct Extent {
+  std::vector<int> shapes;
+  std::vector<int> poisson_ratios;
+  std::vector<int> deviations;
+  /// Else the costly methods see one noisy measurement of each only.
+  bool has_all_costly = true;
+};
+
+Extent QuickExtent() { return {{3, 6}, {1, 2}, {0, 2}, false}; }
+
+Extent FullExtent() {
+  Extent extent = {{}, {0, 1, 2, 3}, {0, 1, 2, 3, 4}};
+  for (std::size_t i = 0; i < UnseenShapes().size(); ++i) {
+    extent.shapes.push_back(static_cast<int>(i));
+  }
+  return extent;
+}
+
+// A measurement of one experiment in one world.
+struct Setting {
+  int shape;
+  int experiment;
+  int world;
+  int poisson_ratio;
+  int deviation;
+  int replicate;
+
+  /// Another for each, the same in the quick study as in the full one.
+  std::int64_t Seed() const {
+    std::int64_t seed = shape;
+    seed = seed * kMaxExperiments + experiment;
+    seed = seed * kNumWorlds + world;
+    seed = seed * std::int64_t(kPoissonRatios.size()) + poisson_ratio;
+    seed = seed * std::int64_t(kDeviations.size()) + deviation;
+    return seed * kReplicates + replicate + 1;
+  }
+};
+
+// A shape with the meshes that the worlds need.
+struct Specimen {
+  UnseenShape shape;
+  Scene scene;
+  std::optional<Scene> finer;
+  std::optional<Scene> hexahedra;
+};
+
+Specimen MakeSpecimen(const UnseenShape& shape) {
+  Specimen specimen = {
+      shape, UnmeasuredScene(shape, TetrahedralMesh(shape.body)), {}, {}};
+  specimen.finer = RefinedScene(specimen.scene);
+  if (shape.hexahedra_per_edge > 0) {
+    specimen.hexahedra = UnmeasuredScene(
+        shape, HexahedralMesh(shape.body, shape.hexahedra_per_edge));
+  }
+  return specimen;
+}
+
+bool Has(const Specimen& specimen, int world, double poisson_ratio) {
+  return world != kHexahedra ||
+         (specimen.hexahedra && poisson_ratio <= kMaxPoissonRatioOfHexahedra);
+}
+
+// Each experiment is done at every other Poisson's ratio: the others are those
+// of the other experiment, and of the next shape of the half.
+bool IsDone(const Setting& setting) {
+  return (setting.shape / 2 + setting.experiment + setting.poisson_ratio) % 2 ==
+         0;
+}
+
+// All experiments, measured without noise at the nodes of the mesh, which are
+// the first of the world.
+Scene Measured(const Specimen& specimen, int world,
+               const IsotropicElasticity& truth) {
+  Scene of_world = world == kSameMesh     ? specimen.scene
+                   : world == kFinerWorld ? *specimen.finer
+                                          : *specimen.hexahedra;
+  if (world == kFinerWorld) {
+    MeasureInFinerWorld(truth, of_world);
+  } else {
+    Measure(truth, of_world);
+  }
+  Scene scene = specimen.scene;
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    scene.load_cases[k].displacement =
+        of_world.load_cases[k].displacement.leftCols(scene.mesh.NumNodes());
+  }
+  return scene;
+}
+
+Scene WithOneCase(Scene scene, int load_case) {
+  scene.load_cases = {scene.load_cases[load_case]};
+  return scene;
+}
+
+// For a deviation of 1; in a finer world that of quadratic elements.
+Eigen::Matrix2d Bound(const Scene& exact, int world,
+                      const IsotropicElasticity& truth) {
+  const Eigen::VectorXd noise_sd = NoiseSd(exact, 1);
+  return CramerRaoBound(world == kSameMesh ? exact : QuadraticScene(exact),
+                        truth, noise_sd);
+}
+
+// The members of the error budget, each for E and nu.
+struct BudgetPart {
+  const char* name;
+  ParameterErrors ErrorBudget::*errors;
+};
+constexpr BudgetPart kBudgetParts[] = {
+    {"noise", &ErrorBudget::noise},
+    {"bias", &ErrorBudget::bias},
+    {"model", &ErrorBudget::model},
+    {"outliers", &ErrorBudget::outliers},
+    {"discretization", &ErrorBudget::discretization},
+    {"law", &ErrorBudget::law},
+};
+
+class TrialsTable {
+ public:
+  TrialsTable() : table_("unseen", Columns()) {}
+
+  void Add(const Specimen& specimen, const Setting& setting, const Trial& trial,
+           double processor_seconds) {
+    const Estimate& estimate = trial.estimate;
+    std::vector<Value> cells = {
+        specimen.shape.name,
+        specimen.shape.experiments[setting.experiment].name,
+        std::string(HalfName(specimen.shape.half)),
+        kWorldNames[setting.world],
+        kDeviations[setting.deviation],
+        processor_seconds,
+        std::int64_t{estimate.work.solves},
+        std::int64_t{estimate.element_order},
+        ChosenRung(estimate),
+        std::int64_t(estimate.Sentences(Severity::kWarning).size()),
+        estimate.residual_correlation.value_or(Estimate::kUnknown),
+        estimate.displacement_residual.value_or(Estimate::kUnknown)};
+    const Coverage coverage = CoverageOf(trial);
+    AddInterval(IntervalOf(estimate, "youngs_modulus"),
+                trial.truth.youngs_modulus, coverage.youngs_modulus, cells);
+    AddInterval(IntervalOf(estimate, "poisson_ratio"), 1,
+                coverage.poisson_ratio, cells);
+    for (const BudgetPart& part : kBudgetParts) {
+      const ParameterErrors& errors = estimate.error_budget.*part.errors;
+      for (Eigen::Index i = 0; i < 2; ++i) {
+        cells.emplace_back(i < errors.size() ? errors(i) : Estimate::kUnknown);
+      }
+    }
+    table_.AddRow(cells, TrialCells(trial));
+  }
+
+  const Table& Get() const { return table_; }
+
+ private:
+  static std::vector<std::string> Columns() {
+    std::vector<std::string> columns = {"shape",
+                                        "load",
+                                        "half",
+                                        "world",
+                                        "displacement_deviation [1]",
+                                        "processor_time [s]",
+                                        "solves [1]",
+                                        "element_order [1]",
+                                        "auto_choice",
+                                        "warnings [1]",
+                                        "residual_correlation [1]",
+                                        "displacement_residual [1]"};
+    for (const std::string parameter : {"youngs_modulus", "poisson_ratio"}) {
+      for (const char* column :
+           {"_lower [1]", "_upper [1]", "_is_covered [1]"}) {
+        columns.push_back(parameter + column);
+      }
+    }
+    for (const BudgetPart& part : kBudgetParts) {
+      for (const std::string parameter : {"youngs_modulus", "poisson_ratio"}) {
+        columns.push_back(parameter + "_budget_" + part.name + " [1]");
+      }
+    }
+    const std::vector<std::string> more = TrialColumns();
+    columns.insert(columns.end(), more.begin(), more.end());
+    return columns;
+  }
+
+  static void AddInterval(const std::optional<Interval>& interval, double unit,
+                          const std::optional<bool>& covered,
+                          std::vector<Value>& cells) {
+    cells.emplace_back(interval ? interval->lower / unit : Estimate::kUnknown);
+    cells.emplace_back(interval ? interval->upper / unit : Estimate::kUnknown);
+    cells.emplace_back(covered ? static_cast<double>(*covered)
+                               : Estimate::kUnknown);
+  }
+
+  Table table_;
+};
+
+UnseenOutcome OutcomeOf(const Specimen& specimen, const Setting& setting,
+                        const Trial& trial, double processor_seconds) {
+  const Estimate& estimate = trial.estimate;
+  return {kWorldNames[setting.world],
+          std::string(HalfName(specimen.shape.half)),
+          kDeviations[setting.deviation],
+          estimate.estimator,
+          trial.seed,
+          estimate.IsUsable(),
+          estimate.IsUsable() && IsWrong(trial, false),
+          CoverageOf(trial),
+          trial.YoungsModulusError(),
+          trial.PoissonRatioError(),
+          estimate.YoungsModulusStandardError().value_or(Estimate::kUnknown) /
+              trial.truth.youngs_modulus,
+          estimate.PoissonRatioStandardError().value_or(Estimate::kUnknown),
+          processor_seconds};
+}
+
+class UnseenStudy {
+ public:
+  explicit UnseenStudy(Extent extent) : extent_(std::move(extent)) {}
+
+  void Run(Progress& progress) {
+    const std::vector<UnseenShape> shapes = UnseenShapes();
+    for (const int shape : extent_.shapes) {
+      const Specimen specimen = MakeSpecimen(shapes[shape]);
+      for (int world = 0; world < kNumWorlds; ++world) {
+        progress.Show("unseen: " + specimen.shape.name + ", " +
+                      kWorldNames[world]);
+        for (const int poisson_ratio : extent_.poisson_ratios) {
+          if (Has(specimen, world, kPoissonRatios[poisson_ratio])) {
+            RunExperiments(specimen, {shape, 0, world, poisson_ratio, 0, 0});
+          }
+        }
+      }
+    }
+  }
+
+  std::vector<Table> Tables() const {
+    return {trials_.Get(), UnseenCells(outcomes_), UnseenRegret(outcomes_)};
+  }
+
+ private:
+  void RunExperiments(const Specimen& specimen, Setting setting) {
+    const IsotropicElasticity truth = {kYoungsModulus,
+                                       kPoissonRatios[setting.poisson_ratio]};
+    const Scene all = Measured(specimen, setting.world, truth);
+    for (std::size_t k = 0; k < all.load_cases.size(); ++k) {
+      setting.experiment = static_cast<int>(k);
+      if (IsDone(setting)) {
+        RunDeviations(specimen, setting, WithOneCase(all, setting.experiment),
+                      truth);
+      }
+    }
+  }
+
+  void RunDeviations(const Specimen& specimen, Setting setting,
+                     const Scene& exact, const IsotropicElasticity& truth) {
+    const Eigen::Matrix2d bound = Bound(exact, setting.world, truth);
+    for (const int deviation : extent_.deviations) {
+      setting.deviation = deviation;
+      const double size = kDeviations[deviation];
+      for (int i = 0; i < (size == 0 ? 1 : kReplicates); ++i) {
+        setting.replicate = i;
+        const std::int64_t seed = setting.Seed();
+        RunMethods(specimen, setting, WithNoise(exact, size, seed),
+                   {seed, truth, size * size * bound, {}});
+      }
+    }
+  }
+
+  bool IsRun(const Method& method, const Setting& setting) const {
+    // Quadratic elements are of no use where linear ones made the data.
+    return (method.order == 1 || setting.world != kSameMesh) &&
+           (!method.is_costly || extent_.has_all_costly ||
+            (setting.replicate == 0 && kDeviations[setting.deviation] > 0));
+  }
+
+  void RunMethods(const Specimen& specimen, const Setting& setting,
+                  const Scene& measured, Trial trial) {
+    for (const Method& method : methods_) {
+      if (!IsRun(method, setting)) {
+        continue;
+      }
+      const Scene scene =
+          method.order == 2 ? QuadraticScene(measured) : measured;
+      const double start = ProcessorSeconds();
+      trial.estimate = method.estimator->Run(scene, {});
+      const double seconds = ProcessorSeconds() - start;
+      trial.estimate.estimator = method.name;
+      trials_.Add(specimen, setting, trial, seconds);
+      outcomes_.push_back(OutcomeOf(specimen, setting, trial, seconds));
+    }
+  }
+
+  Extent extent_;
+  std::vector<Method> methods_ = Methods();
+  TrialsTable trials_;
+  std::vector<UnseenOutcome> outcomes_;
+};
+
+}  // namespace
+
+StudyResult RunUnseenStudy(bool is_quick, Progress& progress) {
+  SetBlasThreads(1);
+  UnseenStudy study(is_quick ? QuickExtent() : FullExtent());
+  study.Run(progress);
+  return {
+      study.Tables(),
+      {{"youngs_modulus [Pa]", kYoungsModulus},
+       {"noise_law", "uniform"},
+       {"noise_seeds", "another for each measurement; column seed"},
+       {"blas_threads", 1},
+       {"intervals", "95 %; those of E over the true E"},
+       {"finer_world",
+        "each tetrahedron cut into eight, with quadratic elements, measured "
+        "at the nodes of the mesh"},
+       {"hexahedra",
+        "each voxel cut into 27 trilinear hexahedra, likewise; nu up to "
+        "0.45"},
+       {"processor_time", "of all threads, without making the quadratic mesh"},
+       {"dishonest_standard_errors", kWrongStandardErrors},
+       {"dishonest_youngs_modulus_error", kWrongYoungsModulus},
+       {"dishonest_poisson_ratio_error", kWrongPoissonRatio},
+       {"would_have_done",
+        "status ok, and off by no more than 1 % of E and 0.01 in nu, or "
+        "two standard errors"}}};
+}
+
+}  // namespace elastimate

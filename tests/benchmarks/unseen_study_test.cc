@@ -1,0 +1,257 @@
+// Runs the quick study of error bars on unseen shapes, and holds its trials
+// against theory.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/benchmarks/tables.h"
+#include "tests/program.h"
+
+namespace elastimate {
+namespace {
+
+using testing::kPoissonRatioError;
+using testing::kYoungsModulusError;
+using testing::ReadTable;
+using testing::TableRow;
+
+using Rows = std::vector<TableRow>;
+using Condition = std::function<bool(const TableRow&)>;
+
+// Of numbers with seven digits, of which one was subtracted.
+constexpr double kSevenDigits = 1e-6;
+constexpr const char* kNoise = "displacement_deviation [1]";
+
+Rows Where(const Rows& rows, const Condition& condition) {
+  Rows some;
+  std::copy_if(rows.begin(), rows.end(), std::back_inserter(some), condition);
+  return some;
+}
+
+Rows Of(const Rows& rows, const std::string& world,
+        const std::string& estimator, const std::string& deviation) {
+  return Where(rows, [&](const TableRow& row) {
+    return row.Text("world") == world && row.Text("estimator") == estimator &&
+           row.Text(kNoise) == deviation;
+  });
+}
+
+int Count(const Rows& rows, const Condition& condition) {
+  return static_cast<int>(Where(rows, condition).size());
+}
+
+bool IsOk(const TableRow& row) { return row.Text("status") == "ok"; }
+
+// The elements that made the data fit them with the truth.
+void ExpectTheTruthWithoutNoise(const Rows& rows) {
+  for (const char* estimator : {"reduced-fe", "iterative-fe"}) {
+    const Rows exact = Of(rows, "same mesh", estimator, "0");
+    EXPECT_FALSE(exact.empty());
+    for (const TableRow& row : exact) {
+      SCOPED_TRACE(row.Text("shape") + ", " + row.Text("load") + ", " +
+                   estimator);
+      EXPECT_TRUE(IsOk(row));
+      EXPECT_LT(std::abs(row.Number(kYoungsModulusError)), kSevenDigits);
+      EXPECT_LT(std::abs(row.Number(kPoissonRatioError)), kSevenDigits);
+    }
+  }
+}
+
+// No noise, but an error: that of the elements.
+void ExpectTheFinerWorldToBeMissed(const Rows& rows) {
+  for (const char* world : {"finer world", "hexahedra"}) {
+    const Rows exact = Of(rows, world, "reduced-fe", "0");
+    EXPECT_FALSE(exact.empty());
+    for (const TableRow& row : exact) {
+      EXPECT_GT(std::abs(row.Number(kYoungsModulusError)), 1e-3)
+          << row.Text("shape") << ", " << row.Text("load") << ", " << world;
+    }
+  }
+}
+
+// The probability of at most `count` of `trials`, each with this one.
+double BinomialProbability(int count, int trials, double probability) {
+  double sum = 0;
+  for (int k = 0; k <= count; ++k) {
+    sum += std::exp(std::lgamma(trials + 1) - std::lgamma(k + 1) -
+                    std::lgamma(trials - k + 1) + k * std::log(probability) +
+                    (trials - k) * std::log1p(-probability));
+  }
+  return sum;
+}
+
+// On the same mesh intervals of 95 % hold the truth as often as 95 % of
+// independent trials do, up to what happens in one of 1000 studies.
+void ExpectCoverageOnTheSameMesh(const Rows& rows) {
+  for (const char* estimator : {"reduced-fe", "iterative-fe"}) {
+    const Rows ok = Where(Of(rows, "same mesh", estimator, "0.01"), IsOk);
+    for (const char* column :
+         {"youngs_modulus_is_covered [1]", "poisson_ratio_is_covered [1]"}) {
+      const int covered = Count(
+          ok, [&](const TableRow& row) { return row.Number(column) == 1; });
+      EXPECT_GT(BinomialProbability(covered, static_cast<int>(ok.size()), 0.95),
+                0.001)
+          << estimator << ", " << column << ": " << covered << " of "
+          << ok.size();
+    }
+  }
+}
+
+void ExpectIntervalsAndWhatTheyCover(const Rows& rows) {
+  for (const TableRow& row : rows) {
+    const double nu = row.Number("true_poisson_ratio [1]");
+    const auto expect_covered = [&](const std::string& parameter,
+                                    double truth) {
+      const double lower = row.Number(parameter + "_lower [1]");
+      const double upper = row.Number(parameter + "_upper [1]");
+      const double covered = row.Number(parameter + "_is_covered [1]");
+      EXPECT_EQ(std::isnan(lower), std::isnan(covered));
+      if (!std::isnan(lower)) {
+        EXPECT_LE(lower, upper);
+        // Rounding may decide at an end.
+        EXPECT_LE(covered, lower - 2 * kSevenDigits <= truth &&
+                               truth <= upper + 2 * kSevenDigits);
+        EXPECT_GE(covered, lower <= truth && truth <= upper);
+      }
+    };
+    expect_covered("youngs_modulus", 1);
+    expect_covered("poisson_ratio", nu);
+  }
+}
+
+// One seed for each measurement, which all estimators see.
+void ExpectOneSeedForEachMeasurement(const Rows& rows) {
+  std::map<std::string, std::set<std::string>> settings_of_seeds;
+  std::map<std::string, std::set<std::string>> estimators_of_seeds;
+  for (const TableRow& row : rows) {
+    const std::string& seed = row.Text("seed");
+    settings_of_seeds[seed].insert(
+        row.Text("shape") + "/" + row.Text("load") + "/" + row.Text("world") +
+        "/" + row.Text(kNoise) + "/" + row.Text("true_poisson_ratio [1]"));
+    EXPECT_TRUE(estimators_of_seeds[seed].insert(row.Text("estimator")).second);
+  }
+  for (const auto& [seed, settings] : settings_of_seeds) {
+    EXPECT_EQ(settings.size(), 1) << seed;
+  }
+}
+
+void ExpectCellsAddUpMeasurements(const Rows& rows, const Rows& cells) {
+  for (const TableRow& cell : cells) {
+    const Rows own = Where(rows, [&](const TableRow& row) {
+      return row.Text("world") == cell.Text("world") &&
+             row.Text("estimator") == cell.Text("estimator") &&
+             (cell.Text(kNoise) == "all" ||
+              row.Text(kNoise) == cell.Text(kNoise)) &&
+             (cell.Text("half") == "all" ||
+              row.Text("half") == cell.Text("half"));
+    });
+    const Rows ok = Where(own, IsOk);
+    const auto size = static_cast<double>(own.size());
+    EXPECT_EQ(cell.Number("trials [1]"), size);
+    EXPECT_NEAR(cell.Number("ok_share [1]") * size,
+                static_cast<double>(ok.size()), kSevenDigits * size);
+    for (const std::string parameter : {"youngs_modulus", "poisson_ratio"}) {
+      if (!ok.empty()) {
+        EXPECT_NEAR(cell.Number(parameter + "_coverage [1]") *
+                        static_cast<double>(ok.size()),
+                    Count(ok,
+                          [&](const TableRow& row) {
+                            return row.Number(parameter + "_is_covered [1]") ==
+                                   1;
+                          }),
+                    kSevenDigits * size);
+      }
+    }
+    EXPECT_LE(cell.Number("dishonest_share [1]"),
+              cell.Number("ok_share [1]") + kSevenDigits);
+  }
+}
+
+// The definition of the README, from the columns of the table.
+bool HasDone(const TableRow& row) {
+  const auto is_within = [&](const char* error, const char* standard_error) {
+    const double two_errors = 2 * row.Number(standard_error);
+    return std::abs(row.Number(error)) <=
+           (two_errors > 0.01 ? two_errors : 0.01);
+  };
+  return IsOk(row) &&
+         is_within(kYoungsModulusError, "youngs_modulus_standard_error [1]") &&
+         is_within(kPoissonRatioError, "poisson_ratio_standard_error [1]");
+}
+
+void ExpectRegretOfTheTrials(const Rows& rows, const Rows& regrets) {
+  int count = 0;
+  for (const TableRow& regret : regrets) {
+    if (regret.Text(kNoise) != "all" || regret.Text("half") != "all") {
+      continue;
+    }
+    std::map<std::string, Rows> measurements;
+    for (const TableRow& row : rows) {
+      if (row.Text("world") == regret.Text("world")) {
+        measurements[row.Text("seed")].push_back(row);
+      }
+    }
+    std::vector<double> ratios;
+    for (const auto& [seed, own] : measurements) {
+      double auto_time = 0;
+      double least = std::numeric_limits<double>::infinity();
+      for (const TableRow& row : own) {
+        const double time = row.Number("processor_time [s]");
+        if (row.Text("estimator") == "auto") {
+          auto_time = time;
+        } else if (HasDone(row)) {
+          least = std::min(least, time);
+        }
+      }
+      if (auto_time > 0 && std::isfinite(least)) {
+        ratios.push_back(auto_time / least);
+      }
+    }
+    ASSERT_FALSE(ratios.empty());
+    EXPECT_NEAR(
+        regret.Number("done_share [1]") * regret.Number("measurements [1]"),
+        static_cast<double>(ratios.size()), 0.01);
+    std::sort(ratios.begin(), ratios.end());
+    const double median = regret.Number("median_time_ratio [1]");
+    EXPECT_GE(median, ratios[(ratios.size() - 1) / 2] * (1 - kSevenDigits));
+    EXPECT_LE(median, ratios[ratios.size() / 2] * (1 + kSevenDigits));
+    ++count;
+  }
+  EXPECT_EQ(count, 3);
+}
+
+class UnseenStudy : public testing::ProgramTest {};
+
+TEST_F(UnseenStudy, FindsWhatTheoryPredicts) {
+  Succeed("study --name=unseen --out=. --quick");
+  const Rows rows = ReadTable(folder_ / "unseen.csv");
+  ExpectTheTruthWithoutNoise(rows);
+  ExpectTheFinerWorldToBeMissed(rows);
+  ExpectCoverageOnTheSameMesh(rows);
+  ExpectIntervalsAndWhatTheyCover(rows);
+  ExpectOneSeedForEachMeasurement(rows);
+  ExpectCellsAddUpMeasurements(rows, ReadTable(folder_ / "unseen_cells.csv"));
+  ExpectRegretOfTheTrials(rows, ReadTable(folder_ / "unseen_regret.csv"));
+
+  const std::string plot =
+      std::string(ELASTIMATE_PLOT) + " '" + folder_.string() + "'";
+  ASSERT_EQ(std::system(plot.c_str()), 0);
+  for (const char* chart : {"unseen_cells.svg", "unseen_cells.png",
+                            "unseen_regret.svg", "unseen_regret.png"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder_ / chart)) << chart;
+  }
+}
+
+}  // namespace
+}  // namespace elastimate
