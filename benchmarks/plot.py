@@ -490,13 +490,16 @@ def unseen_cells(path):
             own = [row for row in rows if row["world"] == world]
             for (name,), cells in group(own, "estimator").items():
                 places = [deviations.index(float(cell[DEVIATION])) for cell in cells]
-                axes.plot(places, 100 * numbers(cells, column), label=name, **STYLES[name])
+                # `auto` is often one of the others, which shall show below it.
+                axes.plot(places, 100 * numbers(cells, column), label=name,
+                          **{**STYLES[name], "linewidth": 1 if name == "auto" else 2.2,
+                             "zorder": 4 if name == "auto" else 3})
             if column.endswith("coverage [1]"):
                 axes.axhline(95, color="k", linewidth=0.8)
             axes.set_title(f"{title}\n{world}", fontsize=9)
-            axes.set_ylim(bottom=0)
     for axes in panels[-1]:
         set_noise_axis(axes, deviations)
+        axes.set_ylim(bottom=0)
     finish(figure, "Shapes that nothing was built on: coverage of the estimates with status ok,"
            " and dishonest ones among all", 5)
     return figure

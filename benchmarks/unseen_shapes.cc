@@ -228,7 +228,7 @@ UnseenShape LBracket() {
   shape.experiments = {
       Pressed("pressure on the arm", In({3, 0, 8}, {8, 4, 8}), 15),
       Pulled("sideways", At(kX, 8), {0, 20, 0})};
-  shape.hexahedra_per_edge = 3;
+  shape.hexahedra_per_edge = 5;
   return shape;
 }
 
@@ -249,12 +249,12 @@ UnseenShape BranchingBody() {
                 }};
   shape.clamped = At(kZ, 0);
   shape.experiments = {
-      Pulled("pull on an arm", At(kX, 9), {30, 0, -15}),
+      Pulled("pull on an arm", At(kX, 9), {6, 0, -3}),
       {"arms apart and weight",
        [](const VoxelMesh& voxels) -> std::vector<Load> {
-         return {Traction{FacetsIn(voxels, At(kX, 9)), Vector3d(20, 10, 0)},
-                 Traction{FacetsIn(voxels, At(kX, 0)), Vector3d(-20, 10, 0)},
-                 BodyForce{Vector3d(0, 0, -500)}};
+         return {Traction{FacetsIn(voxels, At(kX, 9)), Vector3d(4, 2, 0)},
+                 Traction{FacetsIn(voxels, At(kX, 0)), Vector3d(-4, 2, 0)},
+                 BodyForce{Vector3d(0, 0, -100)}};
        }}};
   return shape;
 }
@@ -289,8 +289,8 @@ UnseenShape RingSector() {
                                   radius * std::sin(angle), 0.011 * grid(2));
                 }};
   shape.clamped = At(kX, 0);
-  shape.experiments = {Pulled("in the plane", At(kX, 15), {-8, 4, 0}),
-                       Pulled("out of the plane", At(kX, 15), {0, 0, 6})};
+  shape.experiments = {Pulled("in the plane", At(kX, 15), {-4, 2, 0}),
+                       Pulled("out of the plane", At(kX, 15), {0, 0, 2})};
   return shape;
 }
 
@@ -360,9 +360,9 @@ UnseenShape SlabWithCavity() {
                 }};
   shape.clamped = At(kZ, 0);
   shape.experiments = {
-      Pressed("pressure in the cavity", cavity, 100),
+      Pressed("pressure above", At(kZ, 4), 60),
       Pulled("oblique load above", In({2, 0, 4}, {6, 6, 4}), {40, 0, -80})};
-  shape.hexahedra_per_edge = 3;
+  shape.hexahedra_per_edge = 5;
   return shape;
 }
 

@@ -68,7 +68,7 @@ TEST(UnseenShapes, AreTheSameBodiesOfHexahedra) {
     }
     SCOPED_TRACE(shape.name);
     ++count;
-    const VoxelMesh fine = HexahedralMesh(shape.body, shape.hexahedra_per_edge);
+    const VoxelMesh fine = HexahedralMesh(shape.body, 2);
     Scene coarse = UnmeasuredScene(shape, TetrahedralMesh(shape.body));
     Scene world = UnmeasuredScene(shape, fine);
     ValidateScene(world);

@@ -146,6 +146,23 @@ void ExpectOneSeedForEachMeasurement(const Rows& rows) {
   }
 }
 
+// The definition of the README, from the columns of the table.
+bool IsDishonestByStandardErrors(const TableRow& row) {
+  // A missing standard error counts as zero, a missing interval as empty.
+  const auto is_off = [&](const char* error, const char* standard_error,
+                          double least) {
+    const double size = std::abs(row.Number(error));
+    return size > least && !(size <= 3 * row.Number(standard_error));
+  };
+  const double nu = row.Number("true_poisson_ratio [1]");
+  return IsOk(row) && (is_off(kYoungsModulusError,
+                              "youngs_modulus_standard_error [1]", 0.1) ||
+                       (is_off(kPoissonRatioError,
+                               "poisson_ratio_standard_error [1]", 0.03) &&
+                        !(row.Number("poisson_ratio_lower [1]") <= nu &&
+                          nu <= row.Number("poisson_ratio_upper [1]"))));
+}
+
 void ExpectCellsAddUpMeasurements(const Rows& rows, const Rows& cells) {
   for (const TableRow& cell : cells) {
     const Rows own = Where(rows, [&](const TableRow& row) {
@@ -173,8 +190,8 @@ void ExpectCellsAddUpMeasurements(const Rows& rows, const Rows& cells) {
                     kSevenDigits * size);
       }
     }
-    EXPECT_LE(cell.Number("dishonest_share [1]"),
-              cell.Number("ok_share [1]") + kSevenDigits);
+    EXPECT_NEAR(cell.Number("dishonest_share [1]") * size,
+                Count(own, IsDishonestByStandardErrors), kSevenDigits * size);
   }
 }
 
@@ -218,17 +235,19 @@ void ExpectRegretOfTheTrials(const Rows& rows, const Rows& regrets) {
         ratios.push_back(auto_time / least);
       }
     }
-    ASSERT_FALSE(ratios.empty());
     EXPECT_NEAR(
         regret.Number("done_share [1]") * regret.Number("measurements [1]"),
         static_cast<double>(ratios.size()), 0.01);
+    if (ratios.empty()) {
+      continue;
+    }
+    ++count;
     std::sort(ratios.begin(), ratios.end());
     const double median = regret.Number("median_time_ratio [1]");
     EXPECT_GE(median, ratios[(ratios.size() - 1) / 2] * (1 - kSevenDigits));
     EXPECT_LE(median, ratios[ratios.size() / 2] * (1 + kSevenDigits));
-    ++count;
   }
-  EXPECT_EQ(count, 3);
+  EXPECT_GT(count, 0);
 }
 
 class UnseenStudy : public testing::ProgramTest {};
