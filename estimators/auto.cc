@@ -218,11 +218,11 @@ void ChooseOrder(const Estimate& linear, const Observations& observations,
     return;
   }
   const bool is_coarse =
-      IsDiscretizationErrorNotable(linear) ||
-      (!linear.IsUsable() && linear.discretization_error.value_or(0) >
-                                 kLimits.notable_youngs_modulus_error);
+      IsDiscretizationErrorNotable(linear) || !linear.IsUsable();
   const bool is_better = ExplainsFarBetter(quadratic, linear, observations);
-  if (!linear.IsUsable() && quadratic.IsUsable() && !is_better) {
+  const bool is_too_coarse = linear.Has(FindingCode::kElementsTooCoarse);
+  if (!linear.IsUsable() && !is_too_coarse && quadratic.IsUsable() &&
+      !is_better) {
     ladder.Decide(
         "stopped: it does not explain the displacements far better, so that "
         "what linear elements were refused for stands");
@@ -234,7 +234,6 @@ void ChooseOrder(const Estimate& linear, const Observations& observations,
         "stopped: linear elements, which are kept, explain the displacements "
         "far better");
     ladder.Return(linear);
-    AcceptElements(ladder.Last());
     return;
   }
   if (!is_coarse && !is_better) {
@@ -244,7 +243,8 @@ void ChooseOrder(const Estimate& linear, const Observations& observations,
     return;
   }
   ladder.Decide("stopped: there is no rung above");
-  if (!is_better && quadratic.IsUsable() && linear.IsUsable()) {
+  if (!is_better && quadratic.IsUsable() &&
+      (linear.IsUsable() || is_too_coarse)) {
     quadratic.Add(LinearElementsFitAsWell(linear.elasticity));
   }
 }

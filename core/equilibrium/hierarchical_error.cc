@@ -93,8 +93,8 @@ Eigen::MatrixXd HierarchicalError::Precondition(
     const std::vector<Eigen::MatrixXd>& inverses,
     const Eigen::MatrixXd& residual, StiffnessSolver& linear) const {
   const int dimension = quadratic_.mesh.Dimension();
-  Eigen::MatrixXd z =
-      mid_edges_.Interpolate(linear.Solve(mid_edges_.Restrict(residual)));
+  Eigen::MatrixXd z = mid_edges_.Interpolate(
+      linear.Solve(mid_edges_.Restrict(residual), kTolerance));
   for (Eigen::Index i = 0; i < mid_edges_.Ends().cols(); ++i) {
     const Eigen::Index row = dimension * (mid_edges_.NumVertices() + i);
     z.middleRows(row, dimension) +=

@@ -303,12 +303,17 @@ class FitDescription {
                    : 0;
     // As many rows of a first-order process say as much as independent ones.
     const double dependence = (1 + correlation) / (1 - correlation);
-    double variance = rest.squaredNorm() / redundancy;
-    if (scene.load_cases.front().noise_sd) {
-      variance = std::max(variance, 1 / (observed_.Norm() * observed_.Norm()));
+    // Of the sum of the products; a loss makes the rows unequal.
+    double variance = size * rest.squaredNorm() / redundancy;
+    if (!losses_.IsLeastSquares()) {
+      variance =
+          weighted.cwiseProduct(fit_.residual + share * visible).squaredNorm();
+    } else if (scene.load_cases.front().noise_sd) {
+      variance =
+          std::max(variance, size / (observed_.Norm() * observed_.Norm()));
     }
     return CompareWithFinerSpecimen(share,
-                                    std::sqrt(variance * dependence / size),
+                                    std::sqrt(variance * dependence) / size,
                                     redundancy / dependence);
   }
 
@@ -393,7 +398,10 @@ void CorrectForElements(const Evidence& evidence, Estimate& estimate) {
     return;
   }
   const double ratio = std::exp((*evidence.element_correction)(0));
-  const double of_poisson_ratio = (*evidence.element_correction)(1);
+  // Half of the way to a limit at most.
+  const double nu = estimate.elasticity.poisson_ratio;
+  const double of_poisson_ratio = std::clamp((*evidence.element_correction)(1),
+                                             -(1 + nu) / 2, (0.5 - nu) / 2);
   estimate.elasticity.youngs_modulus *= ratio;
   estimate.elasticity.poisson_ratio += of_poisson_ratio;
   const Eigen::Vector2d scale(ratio, 1);

@@ -33,7 +33,7 @@ const std::optional<Eigen::MatrixXd>& ElementChange::Find(
 std::optional<Eigen::MatrixXd> ElementChange::OfLinearElements(
     double poisson_ratio, const Eigen::MatrixXd& responses,
     StiffnessSolver& solver) {
-  if (!HasQuadraticKind(scene_.mesh.kind) || solver.UsesMultigrid()) {
+  if (!HasQuadraticKind(scene_.mesh.kind)) {
     return std::nullopt;
   }
   if (!hierarchical_) {

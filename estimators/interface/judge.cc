@@ -107,12 +107,6 @@ bool IsDiscretizationErrorNotable(const Estimate& estimate) {
                       kLimits.notable_discretization_share * poisson_ratio);
 }
 
-void AcceptElements(Estimate& estimate) {
-  estimate.Remove(FindingCode::kDiscretizationError);
-  estimate.discretization_error = 0;
-  estimate.poisson_ratio_discretization_error = 0;
-}
-
 void Judge(const Evidence& evidence, const EstimatorOptions& options,
            Estimate& estimate) {
   std::optional<Finding> error;

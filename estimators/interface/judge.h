@@ -22,11 +22,6 @@ void Judge(const Evidence& evidence, const EstimatorOptions& options,
 /// error of E, or that of nu than 0.01 and half its standard error.
 bool IsDiscretizationErrorNotable(const Estimate& estimate);
 
-/// Takes back the discretisation error, and what FinishEstimate found of it:
-/// the displacements were found to come from these very elements. Precondition:
-/// there is a discretisation error.
-void AcceptElements(Estimate& estimate);
-
 /// Enters the estimator's name, the findings of its input, and an interval of
 /// nu where only its standard error is known; warns of what linear elements do
 /// near nu = 1/2 and of a notable discretisation error; and turns an estimate

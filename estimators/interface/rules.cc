@@ -310,17 +310,15 @@ Result JudgeCorrection(const Evidence& evidence, const EstimatorOptions&,
 }
 
 Result JudgeElements(const Evidence& evidence, const EstimatorOptions&,
-                     const Estimate& estimate) {
+                     const Estimate&) {
   if (!evidence.element_correction) {
     return std::nullopt;
   }
   const Eigen::Vector2d& correction = *evidence.element_correction;
-  const double nu = estimate.elasticity.poisson_ratio + correction(1);
   return std::abs(correction(0)) <=
                      kLimits.largest_correction_of_log_youngs_modulus &&
                  std::abs(correction(1)) <=
-                     kLimits.largest_correction_of_poisson_ratio &&
-                 nu > -1 && nu < 0.5
+                     kLimits.largest_correction_of_poisson_ratio
              ? Result()
              : ElementsTooCoarse(correction);
 }

@@ -64,7 +64,8 @@ TEST(ReducedFe, AgreesWithTheIterativeFitForFewFactorizations) {
         } else {
           EXPECT_EQ(reduced.status, iterative.status);
         }
-        EXPECT_LE(reduced.work.factorizations, nu < 0.45 ? 2 : 3);
+        // One of them for what the elements miss.
+        EXPECT_LE(reduced.work.factorizations, nu < 0.45 ? 3 : 4);
       }
     }
   }

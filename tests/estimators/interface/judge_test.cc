@@ -143,18 +143,5 @@ TEST(Judge, ALargeResidualThatIsSmoothIsNoNoise) {
   EXPECT_TRUE(estimate.Has(FindingCode::kLargeResidual));
 }
 
-TEST(AcceptElements, TakesBackTheDiscretizationErrorAlone) {
-  Estimate estimate = Judged({});
-  estimate.discretization_error = 0.3;
-  estimate.Add({FindingCode::kLocking, Severity::kWarning, "a", "b"});
-  estimate.Add(
-      {FindingCode::kDiscretizationError, Severity::kWarning, "a", "b"});
-  ASSERT_TRUE(IsDiscretizationErrorNotable(estimate));
-  AcceptElements(estimate);
-  EXPECT_FALSE(IsDiscretizationErrorNotable(estimate));
-  EXPECT_TRUE(estimate.Has(FindingCode::kLocking));
-  EXPECT_FALSE(estimate.Has(FindingCode::kDiscretizationError));
-}
-
 }  // namespace
 }  // namespace elastimate
