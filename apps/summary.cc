@@ -1,9 +1,11 @@
 #include "apps/summary.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <optional>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 #include "elastimate/core/scene/loads.h"
@@ -42,6 +44,61 @@ std::string WithError(double value, const std::optional<double>& error) {
 bool ReachesLimit(const Estimate& estimate) {
   return estimate.poisson_ratio_interval->upper == 0.5 ||
          estimate.poisson_ratio_interval->lower == -1;
+}
+
+// What the error of E (place 0, in percent) or of nu (1) is made of, the
+// largest part first.
+void AddErrors(const std::string& name, Eigen::Index place,
+               const ErrorBudget& budget, std::ostringstream& text) {
+  const double unit = place == 0 ? 100 : 1;
+  std::vector<std::pair<double, const char*>> parts;
+  for (const auto& [errors, cause] :
+       {std::pair{&budget.noise, "noise"}, std::pair{&budget.bias, "its bias"},
+        std::pair{&budget.model, "the model"},
+        std::pair{&budget.outliers, "outliers"},
+        std::pair{&budget.discretization, "the mesh"}}) {
+    if (errors->size() > place && (*errors)(place) > 0) {
+      parts.emplace_back(unit * (*errors)(place), cause);
+    }
+  }
+  if (parts.empty()) {
+    return;
+  }
+  std::sort(parts.rbegin(), parts.rend());
+  // What is smaller does not show in the sum.
+  constexpr double kSmallest = 0.05;
+  std::string list = "mostly ";
+  for (const auto& [error, cause] : parts) {
+    if (error < kSmallest * parts.front().first) {
+      break;
+    }
+    list += std::string(&error == &parts.front().first ? "" : ", ") + cause +
+            " (" + Number(error, 2) + (place == 0 ? " %)" : ")");
+  }
+  Line("error of " + name, list, text);
+}
+
+// What was done for the elements, and what the errors come from.
+void AddErrors(const Estimate& estimate, std::ostringstream& text) {
+  if (!estimate.YoungsModulusStandardError()) {
+    return;
+  }
+  AddErrors("E", 0, estimate.error_budget, text);
+  if (estimate.PoissonRatioStandardError()) {
+    AddErrors("nu", 1, estimate.error_budget, text);
+  }
+  constexpr double kNotable = 0.1;  // Of a standard error.
+  const Eigen::Vector2d correction =
+      estimate.discretization_correction.value_or(Eigen::Vector2d::Zero());
+  if (std::abs(correction(0)) * estimate.elasticity.youngs_modulus >
+          kNotable * *estimate.YoungsModulusStandardError() ||
+      std::abs(correction(1)) >
+          kNotable * estimate.PoissonRatioStandardError().value_or(0)) {
+    Line("corrected by",
+         Number(100 * correction(0), 2) + " % of E and " +
+             Number(correction(1), 2) + " in nu for what the elements miss",
+         text);
+  }
 }
 
 // Of one isotropic material.
@@ -98,17 +155,6 @@ void AddDiagnostics(const Estimate& estimate, std::ostringstream& text) {
     Line("residual correlation",
          Number(*estimate.residual_correlation, 2) + " between neighbours",
          text);
-  }
-  if (estimate.discretization_error) {
-    Line(
-        "discretisation error",
-        Number(*estimate.discretization_error, 2) + " of the strain energy" +
-            (estimate.poisson_ratio_discretization_error
-                 ? ", up to " +
-                       Number(*estimate.poisson_ratio_discretization_error, 2) +
-                       " in nu"
-                 : ""),
-        text);
   }
   if (estimate.noise_attenuation) {
     Line("noise attenuation", Number(*estimate.noise_attenuation, 3), text);
@@ -217,6 +263,7 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
   }
   if (IsOneIsotropicMaterial(scene.materials)) {
     AddElasticity(estimate, text);
+    AddErrors(estimate, text);
   } else {
     AddParameters(estimate, text);
   }

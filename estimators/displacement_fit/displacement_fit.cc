@@ -187,7 +187,7 @@ class FitDescription {
     if (missed_norm_ >= 0) {
       missed_square_sum_ =
           std::min(missed_norm_ * missed_norm_,
-                   (fit_.element_change ? kInSpan : kMostInSpan) * smooth.most);
+                   (visible_norm_ > 0 ? kInSpan : kMostInSpan) * smooth.most);
     }
     if (visible_norm_ > 0) {
       const double share =

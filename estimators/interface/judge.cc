@@ -62,7 +62,11 @@ void JudgeElements(const Mesh& mesh, Estimate& estimate) {
 
 // What a method without a finite element solution does not know, the data may.
 void FailUndetermined(Finding finding, Estimate& estimate) {
-  if (!estimate.displacement_residual) {
+  if (IsDiscretizationErrorNotable(estimate)) {
+    finding.advice =
+        "refine the mesh, or use quadratic elements (order 2): most of the "
+        "error is that of the elements";
+  } else if (!estimate.displacement_residual) {
     finding.advice += ", or use reduced-fe, which takes more from the data";
   }
   estimate.Fail(finding);

@@ -166,6 +166,14 @@ Json MismatchJson(const Estimate& estimate) {
           {"p_value", estimate.model_mismatch->p_value}};
 }
 
+Json CorrectionJson(const Estimate& estimate) {
+  if (!estimate.discretization_correction) {
+    return nullptr;
+  }
+  return {{"youngs_modulus", (*estimate.discretization_correction)(0)},
+          {"poisson_ratio", (*estimate.discretization_correction)(1)}};
+}
+
 Json WorkJson(const Work& work) {
   return {{"element_passes", work.element_passes},
           {"factorizations", work.factorizations},
@@ -201,6 +209,7 @@ Json DiagnosticsJson(const Estimate& estimate) {
           {"discretization_error", OrNull(estimate.discretization_error)},
           {"poisson_ratio_discretization_error",
            OrNull(estimate.poisson_ratio_discretization_error)},
+          {"discretization_correction", CorrectionJson(estimate)},
           {"model_mismatch", MismatchJson(estimate)},
           {"active_bounds", estimate.active_bounds},
           {"why_no_standard_error", estimate.why_no_standard_error},

@@ -1,0 +1,58 @@
+#include "elastimate/core/mesh/mid_edges.h"
+
+#include <gtest/gtest.h>
+
+#include "elastimate/core/scene/quadratic_scene.h"
+#include "tests/element_kinds.h"
+
+namespace elastimate {
+namespace {
+
+class MidEdgesOfKinds
+    : public ::testing::TestWithParam<testing::KindOfSection> {
+ protected:
+  MidEdgesOfKinds()
+      : linear_(testing::SceneOfKind(GetParam()).mesh),
+        quadratic_(QuadraticScene(testing::SceneOfKind(GetParam())).mesh),
+        mid_edges_(quadratic_) {}
+
+  Mesh linear_;
+  Mesh quadratic_;
+  MidEdges mid_edges_;
+};
+
+TEST_P(MidEdgesOfKinds, InterpolateLinearFields) {
+  EXPECT_EQ(mid_edges_.NumVertices(), linear_.NumNodes());
+  const Eigen::VectorXd at_vertices = linear_.nodes.reshaped();
+  EXPECT_TRUE(mid_edges_.Interpolate(at_vertices)
+                  .isApprox(quadratic_.nodes.reshaped(), 1e-14));
+}
+
+TEST_P(MidEdgesOfKinds, RestrictByTheTranspose) {
+  const Eigen::MatrixXd forces =
+      Eigen::MatrixXd::Random(quadratic_.NumDofs(), 2);
+  const Eigen::MatrixXd displacements =
+      Eigen::MatrixXd::Random(linear_.NumDofs(), 2);
+  const double work =
+      (displacements.transpose() * mid_edges_.Restrict(forces) -
+       mid_edges_.Interpolate(displacements).transpose() * forces)
+          .norm();
+  EXPECT_LT(work, 1e-12 * forces.norm() * displacements.norm());
+}
+
+TEST_P(MidEdgesOfKinds, AreNoneOfLinearElements) {
+  const MidEdges none(linear_);
+  EXPECT_EQ(none.Ends().cols(), 0);
+  const Eigen::VectorXd forces = linear_.nodes.reshaped();
+  EXPECT_EQ(none.Restrict(forces), forces);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Simplices, MidEdgesOfKinds,
+    ::testing::Values(
+        testing::KindOfSection{ElementKind::kTet4, SectionModel::kSolid},
+        testing::KindOfSection{ElementKind::kTri3, SectionModel::kPlaneStress}),
+    [](const auto& info) { return testing::NameOf(info.param); });
+
+}  // namespace
+}  // namespace elastimate

@@ -1,0 +1,77 @@
+#include "elastimate/estimators/displacement_fit/finer_specimen.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace elastimate {
+namespace {
+
+constexpr double kManyRows = 1000;
+
+TEST(FinerSpecimen, IsSeenWhereTheChangeIsInTheResidual) {
+  const FinerSpecimen finer = CompareWithFinerSpecimen(1.1, 0.01, kManyRows);
+  EXPECT_NEAR(finer.probability, 1, 1e-9);
+  EXPECT_NEAR(finer.Mean(), 1.1, 1e-3);
+  EXPECT_NEAR(finer.Variance(), 1e-4, 1e-6);
+}
+
+TEST(FinerSpecimen, IsNoneWhereTheResidualLacksTheChange) {
+  const FinerSpecimen own = CompareWithFinerSpecimen(0.01, 0.01, kManyRows);
+  EXPECT_LT(own.probability, 0.02);
+  EXPECT_LT(std::abs(own.Mean()), 1e-3);
+  // Exact displacements, but for rounding.
+  const FinerSpecimen exact = CompareWithFinerSpecimen(1e-13, 0, kManyRows);
+  EXPECT_LT(exact.probability, 1e-5);
+  EXPECT_LT(exact.Variance(), 1e-10);
+}
+
+TEST(FinerSpecimen, IsAsLikelyAsNotWhereNoiseHidesIt) {
+  const FinerSpecimen hidden = CompareWithFinerSpecimen(3, 1e3, kManyRows);
+  EXPECT_NEAR(hidden.probability, 0.5, 1e-3);
+  // Between a share of 0 and one of 1 +- 0.6.
+  EXPECT_NEAR(hidden.Mean(), 0.5, 1e-3);
+  EXPECT_NEAR(hidden.Variance(), 0.25 + 0.36 / 2, 1e-3);
+}
+
+// More noise never makes the uncertainty of the share smaller than sampling
+// does: on the mean over measurements of either world.
+TEST(FinerSpecimen, GrowsLessCertainWithNoise) {
+  for (const double truth : {0.0, 1.0}) {
+    double last = 0;
+    for (const double noise : {0.01, 0.03, 0.1, 0.3, 1.0}) {
+      std::mt19937_64 generator(1);
+      std::normal_distribution<double> normal;
+      double sum = 0;
+      for (int seed = 0; seed < 200; ++seed) {
+        sum += CompareWithFinerSpecimen(truth + noise * normal(generator),
+                                        noise, kManyRows)
+                   .Variance();
+      }
+      EXPECT_GT(sum, last) << truth << ", " << noise;
+      last = sum;
+    }
+  }
+}
+
+// What it says of the share is right in the worlds that it expects.
+TEST(FinerSpecimenStatistics, CoversTheShare) {
+  constexpr int kSeeds = 4000;
+  for (const double noise : {0.02, 0.2, 1.0}) {
+    std::mt19937_64 generator(2);
+    std::normal_distribution<double> normal;
+    double square_sum = 0;
+    for (int seed = 0; seed < kSeeds; ++seed) {
+      const double truth = seed % 2 == 0 ? 0 : 1 + 0.6 * normal(generator);
+      const FinerSpecimen finer = CompareWithFinerSpecimen(
+          truth + noise * normal(generator), noise, kManyRows);
+      square_sum += std::pow(truth - finer.Mean(), 2) / finer.Variance();
+    }
+    // The mean square of standardised errors of a Bayesian mean is 1; a
+    // mixture of kurtosis up to 30 has it within these bounds.
+    EXPECT_NEAR(square_sum / kSeeds, 1, 4 * std::sqrt(30.0 / kSeeds)) << noise;
+  }
+}
+
+}  // namespace
+}  // namespace elastimate
