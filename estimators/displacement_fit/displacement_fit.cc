@@ -25,7 +25,7 @@ constexpr double kCollinearSensitivities = 1e-6;
 // off; of quadratic ones, of the change from linear ones; and where neither is
 // known, of the share of the energy that is missed [benchmarks: unseen].
 constexpr double kLinearErrorShare = 0.1;
-constexpr double kUnequalShare = 0.25;
+constexpr double kUnequalShare = 0.33;
 constexpr double kQuadraticErrorShare = 0.025;
 constexpr double kQuadraticUnequalShare = 0.08;
 constexpr double kUnknownErrorShare = 0.3;
@@ -394,25 +394,39 @@ class FitDescription {
 }  // namespace
 
 void CorrectForElements(const Evidence& evidence, Estimate& estimate) {
-  if (!evidence.element_correction || !estimate.IsUsable()) {
+  if (!estimate.IsUsable()) {
+    return;
+  }
+  double& nu = estimate.elasticity.poisson_ratio;
+  if (estimate.poisson_ratio_interval) {
+    // An error of the elements is none of the measurement, of which the profile
+    // knows how it acts next to a limit.
+    auto& [lower, upper] = *estimate.poisson_ratio_interval;
+    const double distance =
+        kTwoSidedErrors *
+        estimate.poisson_ratio_discretization_error.value_or(0);
+    lower = std::max(std::min(lower, nu - distance), -1.0);
+    upper = std::min(std::max(upper, nu + distance), 0.5);
+  }
+  if (!evidence.element_correction) {
     return;
   }
   const double ratio = std::exp((*evidence.element_correction)(0));
   // Half of the way to a limit at most.
-  const double nu = estimate.elasticity.poisson_ratio;
-  const double of_poisson_ratio = std::clamp((*evidence.element_correction)(1),
-                                             -(1 + nu) / 2, (0.5 - nu) / 2);
+  const double change = std::clamp((*evidence.element_correction)(1),
+                                   -(1 + nu) / 2, (0.5 - nu) / 2);
   estimate.elasticity.youngs_modulus *= ratio;
-  estimate.elasticity.poisson_ratio += of_poisson_ratio;
+  nu += change;
   const Eigen::Vector2d scale(ratio, 1);
   estimate.covariance =
       scale.asDiagonal() * estimate.covariance * scale.asDiagonal();
   if (estimate.poisson_ratio_interval) {
     auto& [lower, upper] = *estimate.poisson_ratio_interval;
-    lower = std::max(lower + of_poisson_ratio, -1.0);
-    upper = std::min(upper + of_poisson_ratio, 0.5);
+    // A limit stays one.
+    lower = lower == -1 ? -1 : std::max(lower + change, -1.0);
+    upper = upper == 0.5 ? 0.5 : std::min(upper + change, 0.5);
   }
-  estimate.discretization_correction = {ratio - 1, of_poisson_ratio};
+  estimate.discretization_correction = {ratio - 1, change};
 }
 
 std::optional<double> DescribeDisplacementFit(

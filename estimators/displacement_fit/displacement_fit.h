@@ -27,7 +27,8 @@ struct DisplacementFit {
 };
 
 /// Corrects (ln E, nu) of a usable estimate for what the elements miss, as
-/// DescribeDisplacementFit found it, with the interval of nu.
+/// DescribeDisplacementFit found it, with the interval of nu, which then holds
+/// what they leave uncertain as well.
 void CorrectForElements(const Evidence& evidence, Estimate& estimate);
 
 /// Describes a least-squares (or, with `losses`, robust) fit of the

@@ -68,13 +68,13 @@ void ExpectTheTruthWithoutNoise(const Rows& rows) {
   }
 }
 
-// No noise, but an error: that of the elements.
+// No noise, but a residual: that of the elements.
 void ExpectTheFinerWorldToBeMissed(const Rows& rows) {
   for (const char* world : {"finer world", "hexahedra"}) {
     const Rows exact = Of(rows, world, "reduced-fe", "0");
     EXPECT_FALSE(exact.empty());
     for (const TableRow& row : exact) {
-      EXPECT_GT(std::abs(row.Number(kYoungsModulusError)), 1e-3)
+      EXPECT_GT(row.Number("displacement_residual [1]"), 1e-4)
           << row.Text("shape") << ", " << row.Text("load") << ", " << world;
     }
   }
@@ -102,6 +102,49 @@ void ExpectCoverageOnTheSameMesh(const Rows& rows) {
           ok, [&](const TableRow& row) { return row.Number(column) == 1; });
       EXPECT_GT(BinomialProbability(covered, static_cast<int>(ok.size()), 0.95),
                 0.001)
+          << estimator << ", " << column << ": " << covered << " of "
+          << ok.size();
+    }
+  }
+}
+
+// The definition of the README, from the columns of the table.
+bool IsDishonestByStandardErrors(const TableRow& row) {
+  // A missing standard error counts as zero, a missing interval as empty.
+  const auto is_off = [&](const char* error, const char* standard_error,
+                          double least) {
+    const double size = std::abs(row.Number(error));
+    return size > least && !(size <= 3 * row.Number(standard_error));
+  };
+  const double nu = row.Number("true_poisson_ratio [1]");
+  return IsOk(row) && (is_off(kYoungsModulusError,
+                              "youngs_modulus_standard_error [1]", 0.1) ||
+                       (is_off(kPoissonRatioError,
+                               "poisson_ratio_standard_error [1]", 0.03) &&
+                        !(row.Number("poisson_ratio_lower [1]") <= nu &&
+                          nu <= row.Number("poisson_ratio_upper [1]"))));
+}
+
+// In a finer world nine of ten intervals do at least, and one trial of 200 is
+// dishonest at most, in the same sense.
+void ExpectHonestyInTheFinerWorld(const Rows& rows) {
+  for (const char* estimator : {"reduced-fe", "iterative-fe", "auto"}) {
+    const Rows all = Where(rows, [&](const TableRow& row) {
+      return row.Text("world") == "finer world" &&
+             row.Text("estimator") == estimator;
+    });
+    const int num_honest = Count(all, [](const TableRow& row) {
+      return !IsDishonestByStandardErrors(row);
+    });
+    EXPECT_GT(BinomialProbability(num_honest, int(all.size()), 0.995), 0.001)
+        << estimator << ": " << num_honest << " of " << all.size();
+    const Rows ok = Where(all, IsOk);
+    EXPECT_FALSE(ok.empty()) << estimator;
+    for (const char* column :
+         {"youngs_modulus_is_covered [1]", "poisson_ratio_is_covered [1]"}) {
+      const int covered = Count(
+          ok, [&](const TableRow& row) { return row.Number(column) == 1; });
+      EXPECT_GT(BinomialProbability(covered, int(ok.size()), 0.9), 0.001)
           << estimator << ", " << column << ": " << covered << " of "
           << ok.size();
     }
@@ -144,23 +187,6 @@ void ExpectOneSeedForEachMeasurement(const Rows& rows) {
   for (const auto& [seed, settings] : settings_of_seeds) {
     EXPECT_EQ(settings.size(), 1) << seed;
   }
-}
-
-// The definition of the README, from the columns of the table.
-bool IsDishonestByStandardErrors(const TableRow& row) {
-  // A missing standard error counts as zero, a missing interval as empty.
-  const auto is_off = [&](const char* error, const char* standard_error,
-                          double least) {
-    const double size = std::abs(row.Number(error));
-    return size > least && !(size <= 3 * row.Number(standard_error));
-  };
-  const double nu = row.Number("true_poisson_ratio [1]");
-  return IsOk(row) && (is_off(kYoungsModulusError,
-                              "youngs_modulus_standard_error [1]", 0.1) ||
-                       (is_off(kPoissonRatioError,
-                               "poisson_ratio_standard_error [1]", 0.03) &&
-                        !(row.Number("poisson_ratio_lower [1]") <= nu &&
-                          nu <= row.Number("poisson_ratio_upper [1]"))));
 }
 
 void ExpectCellsAddUpMeasurements(const Rows& rows, const Rows& cells) {
@@ -258,6 +284,7 @@ TEST_F(UnseenStudy, FindsWhatTheoryPredicts) {
   ExpectTheTruthWithoutNoise(rows);
   ExpectTheFinerWorldToBeMissed(rows);
   ExpectCoverageOnTheSameMesh(rows);
+  ExpectHonestyInTheFinerWorld(rows);
   ExpectIntervalsAndWhatTheyCover(rows);
   ExpectOneSeedForEachMeasurement(rows);
   ExpectCellsAddUpMeasurements(rows, ReadTable(folder_ / "unseen_cells.csv"));
