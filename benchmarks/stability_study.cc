@@ -89,7 +89,7 @@ Judged Judge(const Method& method, const Scene& scene,
     if (!trial.estimate.IsUsable()) {
       return {trial, Outcome::kNotUsable};
     }
-    if (!IsWrong(trial, false)) {
+    if (!IsWrong(trial)) {
       return {trial, Outcome::kHonest};
     }
     // All measurements come from linear elements; quadratic ones are taken

@@ -25,26 +25,15 @@ double Trial::PoissonRatioError() const {
   return estimate.elasticity.poisson_ratio - truth.poisson_ratio;
 }
 
-bool IsWrong(const Trial& trial, bool has_discretization_error) {
+bool IsWrong(const Trial& trial) {
   const Estimate& estimate = trial.estimate;
-  const auto tolerance = [has_discretization_error](
-                             double least, double standard_error,
-                             double discretization_error) {
-    return std::max(
-        least,
-        kWrongStandardErrors *
-            std::hypot(standard_error,
-                       has_discretization_error ? discretization_error : 0));
-  };
-  const double youngs_modulus =
-      tolerance(kWrongYoungsModulus,
-                estimate.YoungsModulusStandardError().value_or(0) /
-                    trial.truth.youngs_modulus,
-                estimate.discretization_error.value_or(0));
-  const double poisson_ratio = tolerance(
-      kWrongPoissonRatio, estimate.PoissonRatioStandardError().value_or(0),
-      estimate.poisson_ratio_discretization_error.value_or(
-          estimate.discretization_error.value_or(0)));
+  const double youngs_modulus = std::max(
+      kWrongYoungsModulus,
+      kWrongStandardErrors * estimate.YoungsModulusStandardError().value_or(0) /
+          trial.truth.youngs_modulus);
+  const double poisson_ratio = std::max(
+      kWrongPoissonRatio,
+      kWrongStandardErrors * estimate.PoissonRatioStandardError().value_or(0));
   const double nu = trial.truth.poisson_ratio;
   const std::optional<Interval>& interval = estimate.poisson_ratio_interval;
   const bool is_in_interval =

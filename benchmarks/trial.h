@@ -28,11 +28,9 @@ struct Trial {
 };
 
 /// Whether an estimate is wrong by more than it states: by more than 10 % of E
-/// or 0.03 in nu, and by more than three times the standard error and the
-/// discretisation error together; nu must also be outside its interval.  A
-/// missing standard error counts as zero, and so does the discretisation error
-/// where the truth is that of the estimate's elements.
-bool IsWrong(const Trial& trial, bool has_discretization_error);
+/// or 0.03 in nu, and by more than three times the standard error; nu must also
+/// be outside its interval.  A missing standard error counts as zero.
+bool IsWrong(const Trial& trial);
 
 /// What counts as wrong.
 inline constexpr double kWrongStandardErrors = 3;

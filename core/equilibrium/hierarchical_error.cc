@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 
+#include "elastimate/core/materials/elasticity.h"
 #include "elastimate/core/mesh/shape_functions.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"

@@ -2,6 +2,7 @@
 #define ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_DISPLACEMENT_FIT_H_
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/scene.h"

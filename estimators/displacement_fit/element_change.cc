@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "elastimate/core/equilibrium/forward_model.h"
+#include "elastimate/core/materials/elasticity.h"
 #include "elastimate/core/mesh/mid_edges.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/rigid_motion.h"
