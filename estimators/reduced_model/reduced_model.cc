@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/materials/elasticity.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/loads.h"
