@@ -10,7 +10,7 @@ namespace {
 // all of the error of linear ones, and more than that where these are so coarse
 // that the estimate itself is far off.
 constexpr double kExpectedShare = 1;
-constexpr double kDeviationOfShare = 0.6;
+constexpr double kDeviationOfShare = 0.45;
 // The standard error of alpha that rounding leaves.
 constexpr double kRounding = 1e-6;
 

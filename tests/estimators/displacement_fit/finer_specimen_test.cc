@@ -30,9 +30,9 @@ TEST(FinerSpecimen, IsNoneWhereTheResidualLacksTheChange) {
 TEST(FinerSpecimen, IsAsLikelyAsNotWhereNoiseHidesIt) {
   const FinerSpecimen hidden = CompareWithFinerSpecimen(3, 1e3, kManyRows);
   EXPECT_NEAR(hidden.probability, 0.5, 1e-3);
-  // Between a share of 0 and one of 1 +- 0.6.
+  // Between a share of 0 and one of 1 +- 0.45.
   EXPECT_NEAR(hidden.Mean(), 0.5, 1e-3);
-  EXPECT_NEAR(hidden.Variance(), 0.25 + 0.36 / 2, 1e-3);
+  EXPECT_NEAR(hidden.Variance(), 0.25 + 0.2025 / 2, 1e-3);
 }
 
 // More noise never makes the uncertainty of the share smaller than sampling
@@ -63,7 +63,7 @@ TEST(FinerSpecimenStatistics, CoversTheShare) {
     std::normal_distribution<double> normal;
     double square_sum = 0;
     for (int seed = 0; seed < kSeeds; ++seed) {
-      const double truth = seed % 2 == 0 ? 0 : 1 + 0.6 * normal(generator);
+      const double truth = seed % 2 == 0 ? 0 : 1 + 0.45 * normal(generator);
       const FinerSpecimen finer = CompareWithFinerSpecimen(
           truth + noise * normal(generator), noise, kManyRows);
       square_sum += std::pow(truth - finer.Mean(), 2) / finer.Variance();
