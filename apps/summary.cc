@@ -67,13 +67,12 @@ void AddErrors(const std::string& name, Eigen::Index place,
   std::sort(parts.rbegin(), parts.rend());
   // What is smaller does not show in the sum.
   constexpr double kSmallest = 0.05;
-  std::string list = "mostly ";
+  std::string list;
   for (const auto& [error, cause] : parts) {
-    if (error < kSmallest * parts.front().first) {
-      break;
+    if (error >= kSmallest * parts.front().first) {
+      list += std::string(list.empty() ? "mostly " : ", ") + cause + " (" +
+              Number(error, 2) + (place == 0 ? " %)" : ")");
     }
-    list += std::string(&error == &parts.front().first ? "" : ", ") + cause +
-            " (" + Number(error, 2) + (place == 0 ? " %)" : ")");
   }
   Line("error of " + name, list, text);
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "benchmarks/facets_where.h"
@@ -132,19 +133,26 @@ UnseenShape TwistedPrism() {
   return shape;
 }
 
+// Around the z axis: of two layers of cells, `num_cells` of them around it and
+// six of this height along it.
+VoxelBody TubeBody(int num_cells, double height,
+                   std::function<double(const Vector3d&)> radius) {
+  return {{num_cells, 2, 6},
+          KeepsAll,
+          [=](const Vector3d& grid) {
+            const double angle = 2 * kPi * grid(0) / num_cells;
+            return Vector3d(radius(grid) * std::cos(angle),
+                            radius(grid) * std::sin(angle), height * grid(2));
+          },
+          true};
+}
+
 UnseenShape ThickTube() {
   UnseenShape shape;
   shape.name = "thick tube";
   shape.half = Half::kCalibration;
-  shape.body = {{12, 2, 6},
-                KeepsAll,
-                [](const Vector3d& grid) {
-                  const double angle = 2 * kPi * grid(0) / 12;
-                  const double radius = 0.03 + 0.01 * grid(1);
-                  return Vector3d(radius * std::cos(angle),
-                                  radius * std::sin(angle), 0.02 * grid(2));
-                },
-                true};
+  shape.body = TubeBody(
+      12, 0.02, [](const Vector3d& grid) { return 0.03 + 0.01 * grid(1); });
   shape.clamped = At(kZ, 0);
   shape.experiments = {Pressed("inner pressure", At(kY, 0), 60),
                        Twisted(At(kZ, 6), kZ, 40)};
@@ -155,16 +163,9 @@ UnseenShape HollowCone() {
   UnseenShape shape;
   shape.name = "hollow cone";
   shape.half = Half::kReport;
-  shape.body = {{14, 2, 6},
-                KeepsAll,
-                [](const Vector3d& grid) {
-                  const double angle = 2 * kPi * grid(0) / 14;
-                  const double radius =
-                      0.05 - 0.004 * grid(2) + 0.006 * grid(1);
-                  return Vector3d(radius * std::cos(angle),
-                                  radius * std::sin(angle), 0.018 * grid(2));
-                },
-                true};
+  shape.body = TubeBody(14, 0.018, [](const Vector3d& grid) {
+    return 0.05 - 0.004 * grid(2) + 0.006 * grid(1);
+  });
   shape.clamped = At(kZ, 0);
   shape.experiments = {Pressed("inner pressure", At(kY, 0), 40),
                        Twisted(At(kZ, 6), kZ, 30)};

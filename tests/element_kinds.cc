@@ -319,6 +319,14 @@ Mesh MeshOfKind(const KindOfSection& parameter, int cells) {
   return SceneOfKind(parameter, cells).mesh;
 }
 
+void DisplaceSupports(Scene& scene) {
+  for (Eigen::Index i = 0; i < scene.supports.held.size(); ++i) {
+    if (scene.supports.held(i)) {
+      scene.supports.displacement(i) = 0.001 * double(i % 5);
+    }
+  }
+}
+
 Eigen::MatrixXd HookeMatrixOf(const IsotropicElasticity& elasticity,
                               SectionModel model) {
   const Eigen::Matrix<double, 6, 6> solid =

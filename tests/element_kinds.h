@@ -32,6 +32,9 @@ Mesh MeshOfKind(const KindOfSection& parameter, int cells = 3);
 /// with forces on all other nodes.
 Scene SceneOfKind(const KindOfSection& parameter, int cells = 3);
 
+/// Displaces the held components, each otherwise than its neighbours.
+void DisplaceSupports(Scene& scene);
+
 /// Hooke's law in Voigt notation (xx, yy, zz, xy, yz, zx or xx, yy, xy); in
 /// plane stress from the compliance.
 Eigen::MatrixXd HookeMatrixOf(const IsotropicElasticity& elasticity,

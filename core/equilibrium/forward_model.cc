@@ -48,16 +48,21 @@ Eigen::MatrixXd ForwardModel::Displacement(double youngs_modulus) const {
   return (compliance_scale * load_response_).colwise() + support_response_;
 }
 
+Eigen::MatrixXd ForwardModel::Responses() const {
+  Eigen::MatrixXd responses = load_response_;
+  if (has_held_displacement_) {
+    responses.conservativeResize(Eigen::NoChange, responses.cols() + 1);
+    responses.rightCols<1>() = support_response_;
+  }
+  return responses;
+}
+
 DisplacementSensitivities ForwardModel::Sensitivities(double youngs_modulus) {
   assert(PoissonRatio() == PoissonRatio());
   if (!has_derivatives_) {
-    Eigen::MatrixXd responses = load_response_;
-    if (has_held_displacement_) {
-      responses.conservativeResize(Eigen::NoChange, responses.cols() + 1);
-      responses.rightCols<1>() = support_response_;
-    }
     ++element_passes_;
-    responses = -solver_.Solve(MultiplyStiffnessBasis(mesh_, responses).j);
+    const Eigen::MatrixXd responses =
+        -solver_.Solve(MultiplyStiffnessBasis(mesh_, Responses()).j);
     load_response_derivative_ = responses.leftCols(load_response_.cols());
     if (has_held_displacement_) {
       support_response_derivative_ = responses.rightCols<1>();

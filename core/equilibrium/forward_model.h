@@ -62,8 +62,9 @@ class ForwardModel {
   /// The part v of u that the held displacements cause, one column [length].
   const Eigen::VectorXd& SupportResponse() const { return support_response_; }
 
-  /// Whether v is not zero.
-  bool HasHeldDisplacement() const { return has_held_displacement_; }
+  /// w of all load cases and, where supports are displaced, v behind them:
+  /// num_dofs x num_responses.
+  Eigen::MatrixXd Responses() const;
 
   /// Derivatives at the present nu.  The first call at a nu costs an element
   /// pass and num_load_cases solves (one more with held displacements).

@@ -1,7 +1,8 @@
 #include "elastimate/core/equilibrium/hierarchical_error.h"
 
-#include <Eigen/LU>
+#include <vector>
 
+#include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/materials/elasticity.h"
 #include "elastimate/core/mesh/shape_functions.h"
 #include "elastimate/core/scene/loads.h"
@@ -48,7 +49,7 @@ std::optional<Eigen::MatrixXd> HierarchicalError::Find(
       ColumnProducts(start, products_.h + poisson_ratio * products_.j);
   Eigen::MatrixXd residual = -product;
   residual.leftCols(force_.cols()) += is_free_.asDiagonal() * force_;
-  const std::vector<Eigen::MatrixXd> inverses = InverseBlocks(poisson_ratio);
+  const Eigen::MatrixXd inverses = InverseBlocks(poisson_ratio);
 
   Eigen::MatrixXd error = Eigen::MatrixXd::Zero(start.rows(), start.cols());
   Eigen::MatrixXd direction;
@@ -90,27 +91,27 @@ Eigen::MatrixXd HierarchicalError::Multiply(double poisson_ratio,
   return is_free_.asDiagonal() * (products_.h + poisson_ratio * products_.j);
 }
 
-Eigen::MatrixXd HierarchicalError::Precondition(
-    const std::vector<Eigen::MatrixXd>& inverses,
-    const Eigen::MatrixXd& residual, StiffnessSolver& linear) const {
+Eigen::MatrixXd HierarchicalError::Precondition(const Eigen::MatrixXd& inverses,
+                                                const Eigen::MatrixXd& residual,
+                                                StiffnessSolver& linear) const {
   const int dimension = quadratic_.mesh.Dimension();
   Eigen::MatrixXd z = mid_edges_.Interpolate(
       linear.Solve(mid_edges_.Restrict(residual), kTolerance));
   for (Eigen::Index i = 0; i < mid_edges_.Ends().cols(); ++i) {
     const Eigen::Index row = dimension * (mid_edges_.NumVertices() + i);
     z.middleRows(row, dimension) +=
-        inverses[i] * residual.middleRows(row, dimension);
+        inverses.middleCols(dimension * i, dimension) *
+        residual.middleRows(row, dimension);
   }
   return is_free_.asDiagonal() * z;
 }
 
-std::vector<Eigen::MatrixXd> HierarchicalError::InverseBlocks(
-    double poisson_ratio) const {
+Eigen::MatrixXd HierarchicalError::InverseBlocks(double poisson_ratio) const {
   const Mesh& mesh = quadratic_.mesh;
   const int dimension = mesh.Dimension();
   const double shear_share = ShearShareOfJ(mesh.section.model);
-  std::vector<Eigen::MatrixXd> blocks(
-      mid_edges_.Ends().cols(), Eigen::MatrixXd::Zero(dimension, dimension));
+  Eigen::MatrixXd blocks =
+      Eigen::MatrixXd::Zero(dimension, dimension * mid_edges_.Ends().cols());
   VisitElementKind(mesh.kind, [&](auto kind) {
     for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
       VisitPoints<kind>(
@@ -123,15 +124,17 @@ std::vector<Eigen::MatrixXd> HierarchicalError::InverseBlocks(
               // e grad(N) of a unit displacement, e = sym(c grad(N)^T).
               auto h = (0.5 * outer).eval();
               h.diagonal().array() += 0.5 * gradient.squaredNorm();
-              blocks[mesh.elements(i, e) - mid_edges_.NumVertices()] +=
-                  point.volume *
-                  (h + poisson_ratio * (outer - shear_share * h));
+              blocks.middleCols(
+                  dimension * (mesh.elements(i, e) - mid_edges_.NumVertices()),
+                  dimension) += point.volume *
+                                (h + poisson_ratio * (outer - shear_share * h));
             }
           });
     }
   });
-  for (Eigen::MatrixXd& block : blocks) {
-    block = block.inverse().eval();
+  for (Eigen::Index i = 0; i < mid_edges_.Ends().cols(); ++i) {
+    auto block = blocks.middleCols(dimension * i, dimension);
+    block = Inverse(block);
   }
   return blocks;
 }

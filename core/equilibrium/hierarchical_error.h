@@ -3,11 +3,9 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <vector>
 
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/mesh/mid_edges.h"
-#include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/core/solvers/stiffness_solver.h"
 
@@ -52,11 +50,11 @@ class HierarchicalError {
  private:
   /// A_quadratic x, zero in the held rows.
   Eigen::MatrixXd Multiply(double poisson_ratio, const Eigen::MatrixXd& x);
-  Eigen::MatrixXd Precondition(const std::vector<Eigen::MatrixXd>& inverses,
+  Eigen::MatrixXd Precondition(const Eigen::MatrixXd& inverses,
                                const Eigen::MatrixXd& residual,
                                StiffnessSolver& linear) const;
-  /// Of the blocks of A_quadratic of the mid-edge nodes.
-  std::vector<Eigen::MatrixXd> InverseBlocks(double poisson_ratio) const;
+  /// Of the blocks of A_quadratic of the mid-edge nodes, side by side.
+  Eigen::MatrixXd InverseBlocks(double poisson_ratio) const;
 
   Scene quadratic_;
   MidEdges mid_edges_;

@@ -6,8 +6,7 @@
 #include <limits>
 
 #include "elastimate/core/algebra/dense_algebra.h"
-#include "elastimate/core/mechanics/strain_energy.h"
-#include "elastimate/estimators/displacement_fit/finer_specimen.h"
+#include "elastimate/estimators/displacement_fit/element_errors.h"
 #include "elastimate/estimators/displacement_fit/residual_statistics.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/statistics/errors_on_bound.h"
@@ -18,26 +17,6 @@ namespace {
 // The sine of the identifiability angle below which rounding decides: it comes
 // from the square root of a difference, which has half the digits.
 constexpr double kCollinearSensitivities = 1e-6;
-
-// What the elements miss, as a share of a change of the displacements that is
-// known, in the direction of a parameter: of linear elements beside the change
-// to quadratic ones, and by how much of itself that change of the parameters is
-// off; of quadratic ones, of the change from linear ones; and where neither is
-// known, of the share of the energy that is missed [benchmarks: unseen].
-constexpr double kLinearErrorShare = 0.1;
-constexpr double kUnequalShare = 0.33;
-constexpr double kQuadraticErrorShare = 0.025;
-constexpr double kQuadraticUnequalShare = 0.08;
-constexpr double kUnknownErrorShare = 0.3;
-// How much more of an error than of the residual that it leaves the parameters
-// may take up, squared: beside a change that is known, and where it is not
-// known what it looks like.
-constexpr double kInSpan = 4;
-constexpr double kMostInSpan = 100;
-constexpr double kMostVisible = 9;
-// Of neighbours, above which residuals say nothing.
-constexpr double kMostCorrelation = 0.99;
-constexpr double kUnknownShareError = 1e3;
 
 // Sums over the observed nodes that the statistics are made of.  Derivatives
 // are with respect to (ln E, nu); without a loss the bread is S^T S.
@@ -119,42 +98,21 @@ class FitDescription {
     return true;
   }
 
-  // What finer elements would change in the parameters, and how much of that is
-  // to be seen in the residual.
   void MeasureElements(const Scene& scene, const NodeGraph& graph) {
-    rest_ = fit_.residual;
-    const Eigen::Index num_free = Eigen::Index(free_.size());
-    covariance_of_correction_ = Eigen::MatrixXd::Zero(num_free, num_free);
     if (free_.empty()) {
       return;
     }
-    if (!fit_.element_change) {
-      // There is nothing to compare the strain of a single element with.
-      if (scene.mesh.NumElements() > 1) {
-        missed_norm_ = kUnknownErrorShare * observed_.Measured().norm() *
-                       DiscretizationError(scene.mesh, estimate_.elasticity,
-                                           fit_.displacement);
-      }
-      return;
+    elements_.emplace(
+        scene, graph, observed_,
+        FreeFit{fit_.residual, fit_.sensitivities(Eigen::all, free_),
+                sums_.bread(free_, free_), sums_.weights,
+                losses_.IsLeastSquares()},
+        fit_.element_change, fit_.displacement, estimate_.elasticity);
+    if (elements_->Correction()) {
+      Eigen::Vector2d correction = Eigen::Vector2d::Zero();
+      correction(free_) = *elements_->Correction();
+      evidence_.element_correction = correction;
     }
-    const Eigen::VectorXd& change = *fit_.element_change;
-    const Eigen::MatrixXd s = fit_.sensitivities(Eigen::all, free_);
-    of_parameters_ = Inverse(sums_.bread(free_, free_)) *
-                     (s.transpose() * sums_.weights.cwiseProduct(change));
-    const Eigen::VectorXd visible = change - s * of_parameters_;
-    if (scene.mesh.Order() == 2) {
-      visible_norm_ = visible.norm();
-      missed_norm_ = kQuadraticErrorShare * change.norm();
-      return;
-    }
-    const FinerSpecimen finer = Compare(scene, graph, visible);
-    rest_ += finer.Mean() * visible;
-    correction_ = -finer.Mean() * of_parameters_;
-    const double size = std::sqrt(finer.probability) * std::abs(finer.share);
-    covariance_of_correction_ =
-        (finer.Variance() + std::pow(kUnequalShare * size, 2)) *
-        (of_parameters_ * of_parameters_.transpose());
-    missed_norm_ = kLinearErrorShare * size * change.norm();
   }
 
   // Whether there are no more components than the statistics need.
@@ -171,48 +129,39 @@ class FitDescription {
   void MeasureNoise(const Scene& scene, const NodeGraph& graph) {
     if (losses_.IsLeastSquares()) {
       variance_ =
-          EstimateVariance(observed_, scene, rest_.squaredNorm(),
+          EstimateVariance(observed_, scene, Rest().squaredNorm(),
                            Eigen::Index(free_.size()), evidence_, estimate_);
     } else {
-      estimate_.noise_sd = RobustStandardDeviation(rest_) * observed_.Norm();
+      estimate_.noise_sd = RobustStandardDeviation(Rest()) * observed_.Norm();
     }
     evidence_.is_explained_by_given_noise =
         variance_ && variance_->is_explained_by_given_noise;
     const SmoothSquareSum smooth = MeasureSmoothPart(
-        graph, observed_, sums_.weights.cwiseSqrt().cwiseProduct(rest_),
+        graph, observed_, sums_.weights.cwiseSqrt().cwiseProduct(Rest()),
         estimate_);
     const double least =
         evidence_.is_explained_by_given_noise ? 0 : smooth.least;
     evidence_.smooth_part = std::sqrt(least) / observed_.Measured().norm();
-    if (missed_norm_ >= 0) {
-      missed_square_sum_ =
-          std::min(missed_norm_ * missed_norm_,
-                   (visible_norm_ > 0 ? kInSpan : kMostInSpan) * smooth.most);
+    const double missed =
+        elements_ ? elements_->MissedSquareSum(smooth.most) : 0;
+    smooth_square_sum_ = std::max(0.0, least - missed);
+    if (elements_) {
+      of_elements_ = elements_->CovarianceOfChange(smooth.most) +
+                     missed * Inverse(Gram()(free_, free_));
     }
-    if (visible_norm_ > 0) {
-      const double share =
-          std::min(kQuadraticUnequalShare,
-                   std::sqrt(kMostVisible * smooth.most) / visible_norm_);
-      covariance_of_correction_ +=
-          share * share * of_parameters_ * of_parameters_.transpose();
-    }
-    smooth_square_sum_ = std::max(0.0, least - missed_square_sum_);
   }
 
   void FillCovariance() {
     ErrorBudget& budget = estimate_.error_budget;
     budget.noise = ErrorsOf(NoiseCovariance(free_));
     budget.model = ErrorsOf(ModelCovariance(free_));
-    const Eigen::MatrixXd of_elements =
-        covariance_of_correction_ +
-        missed_square_sum_ * Inverse(Gram()(free_, free_));
-    EnterDiscretization(ErrorsOf(of_elements));
+    EnterDiscretization();
     Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(Estimate::kUnknown);
-    covariance(free_, free_) = Covariance(free_) + of_elements;
+    covariance(free_, free_) = Covariance(free_) + of_elements_;
     if (losses_.IsLeastSquares() && !free_.empty()) {
       Eigen::Vector2d change = Eigen::Vector2d::Zero();
-      if (HasHeavyTails(rest_)) {
-        change(free_) = RobustChange(observed_, rest_,
+      if (HasHeavyTails(Rest())) {
+        change(free_) = RobustChange(observed_, Rest(),
                                      fit_.sensitivities(Eigen::all, free_));
         evidence_.outlier_change = change;
       }
@@ -225,16 +174,6 @@ class FitDescription {
     if (smooth_square_sum_ > 0) {
       evidence_.smooth_residual_error = budget.model(0);
     }
-  }
-
-  // The correction of (ln E, nu) for what the elements miss, where it is known.
-  std::optional<Eigen::Vector2d> Correction() const {
-    if (correction_.size() == 0) {
-      return std::nullopt;
-    }
-    Eigen::Vector2d of_all = Eigen::Vector2d::Zero();
-    of_all(free_) = correction_;
-    return of_all;
   }
 
   // Of a row of the residual, by the standard error of nu; empty when there is
@@ -280,47 +219,15 @@ class FitDescription {
   }
 
  private:
-  // What the residual says of the part of the change that it would show.
-  FinerSpecimen Compare(const Scene& scene, const NodeGraph& graph,
-                        const Eigen::VectorXd& visible) {
-    const Eigen::VectorXd weighted = sums_.weights.cwiseProduct(visible);
-    const double size = weighted.dot(visible);
-    const double redundancy =
-        static_cast<double>(observed_.Size() - Eigen::Index(free_.size())) - 1;
-    if (!(size > 0) || redundancy < 1) {
-      return CompareWithFinerSpecimen(0, kUnknownShareError, 1);
-    }
-    const double share = -weighted.dot(fit_.residual) / size;
-    const Eigen::VectorXd rest =
-        sums_.weights.cwiseSqrt().cwiseProduct(fit_.residual + share * visible);
-    const std::optional<NeighbourCorrelation> neighbours =
-        CorrelateNeighbours(graph, observed_, rest);
-    const double correlation =
-        neighbours ? std::clamp(neighbours->correlation -
-                                    kLimits.explained_score *
-                                        neighbours->standard_deviation,
-                                0.0, kMostCorrelation)
-                   : 0;
-    // As many rows of a first-order process say as much as independent ones.
-    const double dependence = (1 + correlation) / (1 - correlation);
-    // Of the sum of the products; a loss makes the rows unequal.
-    double variance = size * rest.squaredNorm() / redundancy;
-    if (!losses_.IsLeastSquares()) {
-      variance =
-          weighted.cwiseProduct(fit_.residual + share * visible).squaredNorm();
-    } else if (scene.load_cases.front().noise_sd) {
-      variance =
-          std::max(variance, size / (observed_.Norm() * observed_.Norm()));
-    }
-    return CompareWithFinerSpecimen(share,
-                                    std::sqrt(variance * dependence) / size,
-                                    redundancy / dependence);
+  // The residual without what a finer specimen explains of it.
+  const Eigen::VectorXd& Rest() const {
+    return elements_ ? elements_->Rest() : fit_.residual;
   }
-
-  void EnterDiscretization(const ParameterErrors& errors) {
-    if (!(missed_norm_ >= 0)) {
+  void EnterDiscretization() {
+    if (!elements_ || !elements_->AreKnown()) {
       return;
     }
+    const ParameterErrors errors = ErrorsOf(of_elements_);
     estimate_.discretization_error = errors(0);
     if (IsPoissonRatioFree()) {
       estimate_.poisson_ratio_discretization_error = errors(1);
@@ -376,19 +283,10 @@ class FitDescription {
   /// Empty with a loss.
   std::optional<ResidualVariance> variance_;
   double smooth_square_sum_ = 0;
-  /// The residual without what a finer specimen explains of it.
-  Eigen::VectorXd rest_;
-  /// Of the free parameters.
-  Eigen::VectorXd correction_;
-  Eigen::MatrixXd covariance_of_correction_;
-  /// What the change of the elements does to the free parameters, and how much
-  /// of that of quadratic elements the residual would show.
-  Eigen::VectorXd of_parameters_;
-  double visible_norm_ = 0;
-  /// Of the error that the elements leave in the displacements; NaN where it is
-  /// not known.
-  double missed_norm_ = Estimate::kUnknown;
-  double missed_square_sum_ = 0;
+  /// Empty where no parameter is free.
+  std::optional<ElementErrors> elements_;
+  /// Their covariance of the free parameters.
+  Eigen::MatrixXd of_elements_;
 };
 
 }  // namespace
@@ -444,7 +342,6 @@ std::optional<double> DescribeDisplacementFit(
   description.MeasureElements(scene, graph);
   description.MeasureNoise(scene, graph);
   description.FillCovariance();
-  evidence.element_correction = description.Correction();
   const std::optional<double> variance = description.RowVariance();
   if (evidence.active.youngs_modulus != Side::kNone) {
     description.MeasureYoungsModulusOnBound();

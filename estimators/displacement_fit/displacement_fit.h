@@ -40,14 +40,11 @@ void CorrectForElements(const Evidence& evidence, Estimate& estimate);
 ///
 /// Without a loss the covariance is sigma^2 (S^T S)^-1, the Cramer-Rao bound,
 /// with sigma^2 as given, or from the residual; with one it is the sandwich of
-/// M-estimation.  A residual that is significantly alike at neighbouring nodes
+/// M-estimation.  A residual that neighbouring nodes share by more than chance
 /// is not noise: its smooth part may hide an error of its own size along the
 /// sensitivities, and ||smooth part||^2 (S^T S)^-1 is added.  So is the square
-/// of what the outliers of a fit without a loss pull the parameters by.
-///
-/// A discretisation error e is taken as an error e ||q|| of the displacements
-/// in the worst direction for nu, which changes nu by e ||q|| sqrt([(S^T
-/// S)^-1]_nu,nu).
+/// of what the outliers of a fit without a loss pull the parameters by, and
+/// what the elements leave uncertain (ElementErrors).
 ///
 /// Returns the variance of a row of the residual that the standard error of nu
 /// amounts to, or would, were nu not at the end of its physical range; empty

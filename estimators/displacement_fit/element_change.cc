@@ -17,24 +17,39 @@ constexpr double kSameStiffness = 0.2;
 
 }  // namespace
 
-const std::optional<Eigen::MatrixXd>& ElementChange::Find(
-    double poisson_ratio, const Eigen::MatrixXd& responses,
-    StiffnessSolver& solver) {
-  if (std::abs(LogStiffnessRatio(poisson_ratio) -
-               LogStiffnessRatio(poisson_ratio_)) <= kSameStiffness) {
-    return change_;
+std::optional<Eigen::VectorXd> ElementChange::Rows(
+    const ObservedDisplacements& observed,
+    const IsotropicElasticity& elasticity, const Eigen::MatrixXd& responses,
+    const std::function<StiffnessSolver*(double poisson_ratio)>& solver_near) {
+  const double nu = elasticity.poisson_ratio;
+  const bool is_found =
+      std::abs(LogStiffnessRatio(nu) - LogStiffnessRatio(poisson_ratio_)) <=
+      kSameStiffness;
+  if (!is_found) {
+    poisson_ratio_ = nu;
+    if (scene_.mesh.Order() == 2) {
+      change_ = OfQuadraticElements(nu, responses);
+    } else if (HasQuadraticKind(scene_.mesh.kind)) {
+      change_ = OfLinearElements(nu, responses, solver_near(nu));
+    }
   }
-  poisson_ratio_ = poisson_ratio;
-  change_ = IsOfFinerElements()
-                ? OfLinearElements(poisson_ratio, responses, solver)
-                : OfQuadraticElements(poisson_ratio, responses);
-  return change_;
+  if (!change_) {
+    return std::nullopt;
+  }
+  const auto num_cases = Eigen::Index(scene_.load_cases.size());
+  Eigen::MatrixXd change =
+      elasticity.ComplianceScale(scene_.mesh.section.model) *
+      change_->leftCols(num_cases);
+  if (change_->cols() > num_cases) {
+    change.colwise() += change_->rightCols<1>();
+  }
+  return observed.Restrict(change);
 }
 
 std::optional<Eigen::MatrixXd> ElementChange::OfLinearElements(
     double poisson_ratio, const Eigen::MatrixXd& responses,
-    StiffnessSolver& solver) {
-  if (!HasQuadraticKind(scene_.mesh.kind)) {
+    StiffnessSolver* solver) {
+  if (solver == nullptr) {
     return std::nullopt;
   }
   if (!hierarchical_) {
@@ -42,7 +57,7 @@ std::optional<Eigen::MatrixXd> ElementChange::OfLinearElements(
   }
   const int passes = hierarchical_->NumPasses();
   std::optional<Eigen::MatrixXd> change =
-      hierarchical_->Find(poisson_ratio, responses, solver);
+      hierarchical_->Find(poisson_ratio, responses, *solver);
   work_.element_passes += hierarchical_->NumPasses() - passes;
   return change;
 }
@@ -71,28 +86,11 @@ std::optional<Eigen::MatrixXd> ElementChange::OfQuadraticElements(
   if (!is_regular) {
     return std::nullopt;
   }
-  Eigen::MatrixXd of_linear(linear.NumDofs(), responses.cols());
-  of_linear.leftCols(model.UnitLoadResponse().cols()) =
-      model.UnitLoadResponse();
-  if (of_linear.cols() > model.UnitLoadResponse().cols()) {
-    of_linear.rightCols<1>() = model.SupportResponse();
-  }
+  Eigen::MatrixXd of_linear = model.Responses();
+  // Mid-edge nodes alone may be displaced.
+  of_linear.conservativeResizeLike(
+      Eigen::MatrixXd::Zero(of_linear.rows(), responses.cols()));
   return Eigen::MatrixXd(responses - MidEdges(mesh).Interpolate(of_linear));
-}
-
-std::optional<Eigen::VectorXd> RowsOfChange(
-    const ObservedDisplacements& observed,
-    const std::optional<Eigen::MatrixXd>& of_responses, double compliance_scale,
-    Eigen::Index num_load_cases) {
-  if (!of_responses) {
-    return std::nullopt;
-  }
-  Eigen::MatrixXd change =
-      compliance_scale * of_responses->leftCols(num_load_cases);
-  if (of_responses->cols() > num_load_cases) {
-    change.colwise() += of_responses->rightCols<1>();
-  }
-  return observed.Restrict(change);
 }
 
 }  // namespace elastimate

@@ -2,11 +2,13 @@
 #define ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_ELEMENT_CHANGE_H_
 
 #include <Eigen/Core>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
 
 #include "elastimate/core/equilibrium/hierarchical_error.h"
+#include "elastimate/core/materials/elasticity.h"
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/core/solvers/stiffness_solver.h"
 #include "elastimate/estimators/displacement_fit/observed_displacements.h"
@@ -22,44 +24,37 @@ class ElementChange {
   /// `scene` must outlive this object.
   explicit ElementChange(const Scene& scene) : scene_(scene) {}
 
-  /// Of the responses to the load cases and, behind them, to held displacements
-  /// where there are any (ForwardModel), at nu: num_dofs x num_responses, for
-  /// quadratic elements minus for linear ones.  Empty where it is not known.
+  /// Of the observed rows of u = t w + v, for quadratic elements minus for
+  /// linear ones; empty where it is not known.  `responses` are w and v at nu,
+  /// as those of ForwardModel.  `solver_near` gives a solver of the mesh of the
+  /// scene that is factorised at or near a nu, or null; it is asked only where
+  /// there is something to solve.
   ///
-  /// `solver` is of the mesh of the scene, factorised at or near nu.  Found
-  /// once for all nu whose stiffness is about the same.
-  /// Cost: that of HierarchicalError; for quadratic elements that of a
-  /// ForwardModel of linear ones.
-  const std::optional<Eigen::MatrixXd>& Find(double poisson_ratio,
-                                             const Eigen::MatrixXd& responses,
-                                             StiffnessSolver& solver);
-
-  /// Whether it is what finer elements change, not what these changed.
-  bool IsOfFinerElements() const { return scene_.mesh.Order() == 1; }
+  /// Found once for all nu whose stiffness is about the same.  Cost: that of
+  /// HierarchicalError; for quadratic elements that of a ForwardModel of linear
+  /// ones.
+  std::optional<Eigen::VectorXd> Rows(
+      const ObservedDisplacements& observed,
+      const IsotropicElasticity& elasticity, const Eigen::MatrixXd& responses,
+      const std::function<StiffnessSolver*(double poisson_ratio)>& solver_near);
 
   Work WorkDone() const { return work_; }
 
  private:
   std::optional<Eigen::MatrixXd> OfLinearElements(
       double poisson_ratio, const Eigen::MatrixXd& responses,
-      StiffnessSolver& solver);
+      StiffnessSolver* solver);
   std::optional<Eigen::MatrixXd> OfQuadraticElements(
       double poisson_ratio, const Eigen::MatrixXd& responses);
 
   const Scene& scene_;
   std::unique_ptr<HierarchicalError> hierarchical_;
-  /// NaN before the first call of Find.
+  /// NaN before it was found.
   double poisson_ratio_ = std::numeric_limits<double>::quiet_NaN();
+  /// Of w and v.
   std::optional<Eigen::MatrixXd> change_;
   Work work_;
 };
-
-/// The rows of the change of u = t w + v, of the changes of w and v; empty
-/// where those are.
-std::optional<Eigen::VectorXd> RowsOfChange(
-    const ObservedDisplacements& observed,
-    const std::optional<Eigen::MatrixXd>& of_responses, double compliance_scale,
-    Eigen::Index num_load_cases);
 
 }  // namespace elastimate
 

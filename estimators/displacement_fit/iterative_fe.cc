@@ -122,17 +122,9 @@ class DisplacementResidual : public ceres::EvaluationCallback {
 
   // Adds what the elements miss to the fit.
   void FindElementChange() {
-    const Eigen::Index num_responses =
-        num_load_cases_ + (model_.HasHeldDisplacement() ? 1 : 0);
-    Eigen::MatrixXd responses(model_.UnitLoadResponse().rows(), num_responses);
-    responses.leftCols(num_load_cases_) = model_.UnitLoadResponse();
-    if (num_responses > num_load_cases_) {
-      responses.rightCols<1>() = model_.SupportResponse();
-    }
-    const double nu = model_.PoissonRatio();
-    fit_.element_change = RowsOfChange(
-        observed_, change_.Find(nu, responses, model_.Solver()),
-        Elasticity().ComplianceScale(section_model_), num_load_cases_);
+    fit_.element_change =
+        change_.Rows(observed_, Elasticity(), model_.Responses(),
+                     [this](double /*nu*/) { return &model_.Solver(); });
   }
 
   // The rows of w and of v at the nu of the model.

@@ -36,16 +36,13 @@ DisplacementFit FitWithChange(const Scene& scene,
   // The model is zero where the supports hold.
   const Eigen::VectorXd held = HeldDisplacement(scene.supports);
   fit.displacement.colwise() += held;
-  const double nu = elasticity.poisson_ratio;
-  Eigen::MatrixXd responses = model.Responses(nu);
+  Eigen::MatrixXd responses = model.Responses(elasticity.poisson_ratio);
   if (model.HasSupportResponse()) {
     responses.rightCols<1>() += held;
   }
-  if (StiffnessSolver* const solver = model.SolverNear(nu)) {
-    fit.element_change = RowsOfChange(
-        observed, change.Find(nu, responses, *solver),
-        elasticity.ComplianceScale(model.Section()), model.NumLoadCases());
-  }
+  fit.element_change =
+      change.Rows(observed, elasticity, responses,
+                  [&model](double nu) { return model.SolverNear(nu); });
   return fit;
 }
 

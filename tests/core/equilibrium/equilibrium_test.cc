@@ -18,11 +18,7 @@ class EquilibriumOfKinds : public ::testing::TestWithParam<KindOfSection> {
     weight.force_density =
         Eigen::VectorXd::LinSpaced(scene_.mesh.Dimension(), -0.3, 0.5);
     scene_.load_cases[1].loads = {weight};
-    for (Eigen::Index i = 0; i < scene_.supports.held.size(); ++i) {
-      if (scene_.supports.held(i)) {
-        scene_.supports.displacement(i) = 0.001 * double(i % 5);
-      }
-    }
+    testing::DisplaceSupports(scene_);
   }
 
   Scene scene_ = testing::TwoRegionScene(GetParam());

@@ -30,21 +30,14 @@ Scene MovedScene(const KindOfSection& kind, int cells) {
   weight.force_density =
       Eigen::VectorXd::LinSpaced(scene.mesh.Dimension(), -0.3, 0.5);
   scene.load_cases[1].loads = {weight};
-  for (Eigen::Index i = 0; i < scene.supports.held.size(); ++i) {
-    if (scene.supports.held(i)) {
-      scene.supports.displacement(i) = 0.001 * double(i % 5);
-    }
-  }
+  testing::DisplaceSupports(scene);
   return scene;
 }
 
-// The responses to all load cases, then to the held displacements.
 Eigen::MatrixXd Responses(const Scene& scene, double poisson_ratio) {
   ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene));
   EXPECT_TRUE(model.SetPoissonRatio(poisson_ratio));
-  Eigen::MatrixXd responses(scene.mesh.NumDofs(), scene.load_cases.size() + 1);
-  responses << model.UnitLoadResponse(), model.SupportResponse();
-  return responses;
+  return model.Responses();
 }
 
 struct Found {

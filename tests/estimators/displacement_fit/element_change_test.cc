@@ -13,94 +13,101 @@ namespace {
 
 constexpr testing::KindOfSection kTetrahedra = {ElementKind::kTet4,
                                                 SectionModel::kSolid};
+constexpr double kYoungsModulus = 5e4;
 
 // With supports that move.
 Scene MovedScene(const testing::KindOfSection& kind) {
   Scene scene = testing::SceneOfKind(kind);
-  for (Eigen::Index i = 0; i < scene.supports.held.size(); ++i) {
-    if (scene.supports.held(i)) {
-      scene.supports.displacement(i) = 0.001 * double(i % 5);
-    }
-  }
+  testing::DisplaceSupports(scene);
+  scene.load_cases[0].displacement.setOnes(scene.mesh.Dimension(),
+                                           scene.mesh.NumNodes());
   return scene;
 }
 
-Eigen::MatrixXd ResponsesOf(const ForwardModel& model) {
-  Eigen::MatrixXd responses(model.UnitLoadResponse().rows(), 2);
-  responses << model.UnitLoadResponse(), model.SupportResponse();
-  return responses;
-}
+// A scene with its model and what its elements change.
+struct Changing {
+  explicit Changing(const Scene& scene)
+      : observed(scene),
+        model(scene.mesh, scene.supports, AssembleLoadCases(scene)),
+        change(scene) {}
 
-struct Model {
-  explicit Model(const Scene& scene)
-      : model(scene.mesh, scene.supports, AssembleLoadCases(scene)) {}
-
-  Eigen::MatrixXd At(double poisson_ratio) {
+  std::optional<Eigen::VectorXd> At(double poisson_ratio) {
     EXPECT_TRUE(model.SetPoissonRatio(poisson_ratio));
-    return ResponsesOf(model);
+    return change.Rows(observed, {kYoungsModulus, poisson_ratio},
+                       model.Responses(), [this](double nu) {
+                         EXPECT_EQ(nu, model.PoissonRatio());
+                         ++num_solvers;
+                         return &model.Solver();
+                       });
   }
 
+  ObservedDisplacements observed;
   ForwardModel model;
+  ElementChange change;
+  int num_solvers = 0;
 };
 
 TEST(ElementChange, IsThatOfQuadraticElementsBothWays) {
-  const Scene linear = MovedScene(kTetrahedra);
-  const Scene quadratic = QuadraticScene(linear);
-  Model of_linear(linear);
-  Model of_quadratic(quadratic);
-  const Eigen::MatrixXd at_linear = of_linear.At(0.3);
-  const Eigen::MatrixXd at_quadratic = of_quadratic.At(0.3);
-
-  ElementChange upwards(linear);
-  EXPECT_TRUE(upwards.IsOfFinerElements());
-  const auto up = upwards.Find(0.3, at_linear, of_linear.model.Solver());
-  ASSERT_TRUE(up);
-  const Eigen::MatrixXd expected =
-      at_quadratic.topRows(at_linear.rows()) - at_linear;
+  const Scene scene = MovedScene(kTetrahedra);
+  const Scene quadratic_scene = QuadraticScene(scene);
+  Changing linear(scene);
+  Changing quadratic(quadratic_scene);
+  const auto up = linear.At(0.3);
+  const auto down = quadratic.At(0.3);
+  ASSERT_TRUE(up && down);
+  // Observed are the vertices, in the same unit.
+  const Eigen::VectorXd expected =
+      linear.observed.Restrict(quadratic.model.Displacement(kYoungsModulus)
+                                   .topRows(scene.mesh.NumDofs())) -
+      linear.observed.Restrict(linear.model.Displacement(kYoungsModulus));
   EXPECT_LT((*up - expected).norm(), 0.05 * expected.norm());
+  EXPECT_LT((*down - expected).norm(), 1e-9 * expected.norm());
+  EXPECT_EQ(linear.num_solvers, 1);
+  // Quadratic elements need no solver of their own.
+  EXPECT_EQ(quadratic.num_solvers, 0);
+}
 
-  ElementChange downwards(quadratic);
-  EXPECT_FALSE(downwards.IsOfFinerElements());
-  const auto down =
-      downwards.Find(0.3, at_quadratic, of_quadratic.model.Solver());
-  ASSERT_TRUE(down);
-  EXPECT_LT((down->topRows(at_linear.rows()) - expected).norm(),
-            1e-9 * expected.norm());
-  EXPECT_LT(
-      (*down - (at_quadratic - MidEdges(quadratic.mesh).Interpolate(at_linear)))
-          .norm(),
-      1e-9 * expected.norm());
+TEST(ElementChange, KnowsMidEdgeNodesToo) {
+  const Scene scene = MovedScene(kTetrahedra);
+  Scene quadratic_scene = QuadraticScene(scene);
+  LoadCase& load_case = quadratic_scene.load_cases[0];
+  load_case.observed.setConstant(true);
+  Changing linear(scene);
+  Changing quadratic(quadratic_scene);
+  const auto down = quadratic.At(0.3);
+  ASSERT_TRUE(down && linear.At(0.3));
+  const Eigen::VectorXd expected = quadratic.observed.Restrict(
+      quadratic.model.Displacement(kYoungsModulus) -
+      MidEdges(quadratic_scene.mesh)
+          .Interpolate(linear.model.Displacement(kYoungsModulus)));
+  EXPECT_LT((*down - expected).norm(), 1e-9 * expected.norm());
 }
 
 TEST(ElementChange, IsFoundOnceForAboutTheSameStiffness) {
   const Scene scene = MovedScene(kTetrahedra);
-  Model model(scene);
-  ElementChange change(scene);
-  const Eigen::MatrixXd responses = model.At(0.3);
-  ASSERT_TRUE(change.Find(0.3, responses, model.model.Solver()));
-  const int passes = change.WorkDone().element_passes;
+  Changing linear(scene);
+  ASSERT_TRUE(linear.At(0.3));
+  const int passes = linear.change.WorkDone().element_passes;
   EXPECT_GT(passes, 0);
-  change.Find(0.301, responses, model.model.Solver());
-  EXPECT_EQ(change.WorkDone().element_passes, passes);
-  change.Find(0.45, model.At(0.45), model.model.Solver());
-  EXPECT_GT(change.WorkDone().element_passes, passes);
+  linear.At(0.301);
+  EXPECT_EQ(linear.change.WorkDone().element_passes, passes);
+  EXPECT_EQ(linear.num_solvers, 1);
+  linear.At(0.45);
+  EXPECT_GT(linear.change.WorkDone().element_passes, passes);
 }
 
 TEST(ElementChange, IsNotKnownOfHexahedra) {
   const Scene scene = MovedScene({ElementKind::kHex8, SectionModel::kSolid});
-  Model model(scene);
-  ElementChange change(scene);
-  EXPECT_FALSE(change.Find(0.3, model.At(0.3), model.model.Solver()));
+  Changing hexahedra(scene);
+  EXPECT_FALSE(hexahedra.At(0.3));
+  EXPECT_EQ(hexahedra.num_solvers, 0);
 }
 
 TEST(ElementChange, IsNotKnownWhereMidEdgeNodesAloneHold) {
-  Scene scene = QuadraticScene(testing::SceneOfKind(kTetrahedra));
-  const Eigen::Index num_vertices = scene.mesh.NumVertices();
-  scene.supports.held.leftCols(num_vertices).setConstant(false);
-  ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene));
-  ASSERT_TRUE(model.SetPoissonRatio(0.3));
-  ElementChange change(scene);
-  EXPECT_FALSE(change.Find(0.3, model.UnitLoadResponse(), model.Solver()));
+  Scene scene = QuadraticScene(MovedScene(kTetrahedra));
+  scene.supports.held.leftCols(scene.mesh.NumVertices()).setConstant(false);
+  Changing quadratic(scene);
+  EXPECT_FALSE(quadratic.At(0.3));
 }
 
 }  // namespace

@@ -77,9 +77,8 @@ std::vector<Finding> EveryFinding() {
   Estimate estimate = WithCovariance(0.2 / 1.25 * 100, 0.2, 0.999999);
   estimate.discretization_error = 0.1234;
   estimate.poisson_ratio_discretization_error = 0.1234;
-  Estimate hopeless = estimate;
-  hopeless.discretization_error = 0.9;
-  hopeless.element_order = 1;
+  Estimate of_linear = estimate;
+  of_linear.element_order = 1;
   std::vector<Finding> findings = Estimate().findings;
   for (const Finding& finding :
        {NotFinite(),
@@ -144,8 +143,8 @@ std::vector<Finding> EveryFinding() {
         ParameterBias("E", std::numeric_limits<double>::infinity(), true,
                       Severity::kError),
         Locking(ElementKind::kTet4),
-        DiscretizationErrorFinding(ElementKind::kTet4, estimate),
-        DiscretizationErrorFinding(ElementKind::kHex8, hopeless),
+        DiscretizationErrorFinding(ElementKind::kTet4, of_linear),
+        DiscretizationErrorFinding(ElementKind::kHex8, estimate),
         ElementsTooCoarse({0.512345, -0.212345}),
         LinearElementsFitAsWell(elasticity),
         TooManyElements(),

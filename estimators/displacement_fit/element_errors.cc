@@ -1,0 +1,123 @@
+#include "elastimate/estimators/displacement_fit/element_errors.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/mechanics/strain_energy.h"
+#include "elastimate/estimators/displacement_fit/residual_statistics.h"
+#include "elastimate/estimators/interface/limits.h"
+
+namespace elastimate {
+namespace {
+
+// What the elements miss, as a share of a change of the displacements that is
+// known, in the direction of a parameter: of linear elements beside the change
+// to quadratic ones, and by how much of itself that change of the parameters is
+// off; of quadratic ones, of the change from linear ones; and where neither is
+// known, of the share of the energy that is missed [benchmarks: unseen].
+constexpr double kLinearErrorShare = 0.1;
+constexpr double kUnequalShare = 0.33;
+constexpr double kQuadraticErrorShare = 0.025;
+constexpr double kQuadraticUnequalShare = 0.08;
+constexpr double kUnknownErrorShare = 0.3;
+// How much more of an error than of the residual that it leaves the parameters
+// may take up, squared: of quadratic elements, of their change of the
+// parameters, and of other elements.
+constexpr double kInSpan = 4;
+constexpr double kMostVisible = 9;
+constexpr double kMostInSpan = 100;
+// Of neighbours, above which residuals say nothing.
+constexpr double kMostCorrelation = 0.99;
+constexpr double kUnknownShareError = 1e3;
+
+}  // namespace
+
+ElementErrors::ElementErrors(const Scene& scene, const NodeGraph& graph,
+                             const ObservedDisplacements& observed,
+                             const FreeFit& fit,
+                             const std::optional<Eigen::VectorXd>& change,
+                             const Eigen::MatrixXd& displacement,
+                             const IsotropicElasticity& elasticity)
+    : rest_(fit.residual),
+      of_parameters_(Eigen::VectorXd::Zero(fit.sensitivities.cols())) {
+  if (!change) {
+    // There is nothing to compare the strain of a single element with.
+    if (scene.mesh.NumElements() > 1) {
+      missed_norm_ = kUnknownErrorShare * observed.Measured().norm() *
+                     DiscretizationError(scene.mesh, elasticity, displacement);
+    }
+    return;
+  }
+  of_parameters_ = Inverse(fit.bread) * (fit.sensitivities.transpose() *
+                                         fit.weights.cwiseProduct(*change));
+  const Eigen::VectorXd visible = *change - fit.sensitivities * of_parameters_;
+  if (scene.mesh.Order() == 2) {
+    visible_norm_ = visible.norm();
+    missed_norm_ = kQuadraticErrorShare * change->norm();
+    return;
+  }
+  const FinerSpecimen finer = Compare(scene, graph, observed, fit, visible);
+  rest_ += finer.Mean() * visible;
+  correction_ = -finer.Mean() * of_parameters_;
+  const double size = std::sqrt(finer.probability) * std::abs(finer.share);
+  share_variance_ = finer.Variance() + std::pow(kUnequalShare * size, 2);
+  missed_norm_ = kLinearErrorShare * size * change->norm();
+}
+
+double ElementErrors::MissedSquareSum(double smooth) const {
+  if (!missed_norm_) {
+    return 0;
+  }
+  return std::min(*missed_norm_ * *missed_norm_,
+                  (visible_norm_ ? kInSpan : kMostInSpan) * smooth);
+}
+
+Eigen::MatrixXd ElementErrors::CovarianceOfChange(double smooth) const {
+  double variance = share_variance_;
+  if (visible_norm_ && *visible_norm_ > 0) {
+    const double share =
+        std::min(kQuadraticUnequalShare,
+                 std::sqrt(kMostVisible * smooth) / *visible_norm_);
+    variance = share * share;
+  }
+  return variance * (of_parameters_ * of_parameters_.transpose());
+}
+
+FinerSpecimen ElementErrors::Compare(const Scene& scene, const NodeGraph& graph,
+                                     const ObservedDisplacements& observed,
+                                     const FreeFit& fit,
+                                     const Eigen::VectorXd& visible) const {
+  const Eigen::VectorXd weighted = fit.weights.cwiseProduct(visible);
+  const double size = weighted.dot(visible);
+  const double redundancy =
+      static_cast<double>(observed.Size() - fit.sensitivities.cols()) - 1;
+  if (!(size > 0) || redundancy < 1) {
+    return CompareWithFinerSpecimen(0, kUnknownShareError, 1);
+  }
+  const double share = -weighted.dot(fit.residual) / size;
+  const Eigen::VectorXd rest = fit.residual + share * visible;
+  const Eigen::VectorXd weighted_rest =
+      fit.weights.cwiseSqrt().cwiseProduct(rest);
+  const std::optional<NeighbourCorrelation> neighbours =
+      CorrelateNeighbours(graph, observed, weighted_rest);
+  const double correlation =
+      neighbours ? std::clamp(neighbours->correlation -
+                                  kLimits.explained_score *
+                                      neighbours->standard_deviation,
+                              0.0, kMostCorrelation)
+                 : 0;
+  // As many rows of a first-order process say as much as independent ones.
+  const double dependence = (1 + correlation) / (1 - correlation);
+  // Of the sum of the products; a loss makes the rows unequal.
+  double variance = size * weighted_rest.squaredNorm() / redundancy;
+  if (!fit.is_least_squares) {
+    variance = weighted.cwiseProduct(rest).squaredNorm();
+  } else if (scene.load_cases.front().noise_sd) {
+    variance = std::max(variance, size / (observed.Norm() * observed.Norm()));
+  }
+  return CompareWithFinerSpecimen(
+      share, std::sqrt(variance * dependence) / size, redundancy / dependence);
+}
+
+}  // namespace elastimate

@@ -1,0 +1,82 @@
+#ifndef ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_ELEMENT_ERRORS_H_
+#define ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_ELEMENT_ERRORS_H_
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/mesh/node_graph.h"
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/estimators/displacement_fit/finer_specimen.h"
+#include "elastimate/estimators/displacement_fit/observed_displacements.h"
+
+namespace elastimate {
+
+/// A fit in its free parameters.
+struct FreeFit {
+  const Eigen::VectorXd& residual;  ///< u - q.
+  Eigen::MatrixXd sensitivities;    ///< S, rows x num_free.
+  Eigen::MatrixXd bread;            ///< S^T S, or that of a loss.
+  /// How much each row counts; 1 without a loss.
+  const Eigen::VectorXd& weights;
+  bool is_least_squares;
+};
+
+/// What the elements of a fit miss, and what that does to the free parameters:
+///
+/// - Linear simplices: a change e to quadratic ones is known (ElementChange).
+///   c = (S^T S)^-1 S^T e are the parameters that take it up, g = e - S c shows
+///   in the residual.  FinerSpecimen says how much of it is there; by the mean
+///   of that the parameters are corrected, and its variance is theirs.
+/// - Quadratic ones: a small share of e, what they changed.
+/// - Others: by the strain energy that they miss (DiscretizationError).
+class ElementErrors {
+ public:
+  /// `change` is that of DisplacementFit.  Precondition: at least one free
+  /// parameter.
+  ElementErrors(const Scene& scene, const NodeGraph& graph,
+                const ObservedDisplacements& observed, const FreeFit& fit,
+                const std::optional<Eigen::VectorXd>& change,
+                const Eigen::MatrixXd& displacement,
+                const IsotropicElasticity& elasticity);
+
+  /// Whether there is anything to say: there is not for a single element of
+  /// which no change is known.
+  bool AreKnown() const { return missed_norm_.has_value(); }
+  /// The residual without what a finer specimen explains of it.
+  const Eigen::VectorXd& Rest() const { return rest_; }
+  /// Of the free parameters; empty but for linear simplices.
+  const std::optional<Eigen::VectorXd>& Correction() const {
+    return correction_;
+  }
+
+  // The smooth part of the rest has a square sum of at most `smooth`.
+
+  /// The square sum of what is missed beside the change, in the direction of
+  /// any parameter.
+  double MissedSquareSum(double smooth) const;
+  /// The covariance of the free parameters that comes with the change.
+  Eigen::MatrixXd CovarianceOfChange(double smooth) const;
+
+ private:
+  /// What the residual says of the part of the change that it would show.
+  FinerSpecimen Compare(const Scene& scene, const NodeGraph& graph,
+                        const ObservedDisplacements& observed,
+                        const FreeFit& fit,
+                        const Eigen::VectorXd& visible) const;
+
+  Eigen::VectorXd rest_;
+  std::optional<Eigen::VectorXd> correction_;
+  /// c; zero where no change is known.
+  Eigen::VectorXd of_parameters_;
+  /// Of the share of c, for linear simplices.
+  double share_variance_ = 0;
+  /// ||g|| of quadratic elements.
+  std::optional<double> visible_norm_;
+  /// Of what is missed beside the change.
+  std::optional<double> missed_norm_;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_ELEMENT_ERRORS_H_
