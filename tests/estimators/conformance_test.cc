@@ -9,6 +9,7 @@
 #include <numeric>
 #include <random>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -344,7 +345,7 @@ TEST(ConformanceOfBounds, OnYoungsModulusDoNotDetermineIt) {
   const Scene scene = ShearedBlock();
   const double mu = 5e4 / 2.6;
   int num_estimates = 0;
-  for (const std::string& name : EstimatorNames()) {
+  for (const std::string_view name : EstimatorNames()) {
     SCOPED_TRACE(name);
     for (const Bounds& bounds :
          {Bounds{1.2 * mu, 2.8 * mu}, Bounds{{}, mu}, Bounds{2.9 * mu, {}}}) {
