@@ -36,6 +36,8 @@ Eigen::MatrixXd SolveDensely(const Eigen::MatrixXd& a,
   return a.ldlt().solve(b);
 }
 
+Eigen::MatrixXd InvertDensely(const Eigen::MatrixXd& a) { return a.inverse(); }
+
 Eigen::VectorXd SymmetricEigenvalues(const Eigen::MatrixXd& a) {
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a,
                                                         Eigen::EigenvaluesOnly)

@@ -84,6 +84,9 @@ inline Eigen::Matrix<double, 6, 6> DenseDJ() {
 Eigen::MatrixXd SolveDensely(const Eigen::MatrixXd& a,
                              const Eigen::MatrixXd& b);
 
+/// A^-1 of any matrix that has one, by LU: compiled once.
+Eigen::MatrixXd InvertDensely(const Eigen::MatrixXd& a);
+
 /// Of a symmetric matrix, in ascending order.
 Eigen::VectorXd SymmetricEigenvalues(const Eigen::MatrixXd& a);
 

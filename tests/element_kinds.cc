@@ -256,7 +256,7 @@ void ForEachPointOf(
   for (Eigen::Index i = 0; i < n; ++i) {
     vandermonde.row(i) = Monomials(reference, reference.nodes.col(i), -1);
   }
-  const Eigen::MatrixXd coefficients = vandermonde.inverse();
+  const Eigen::MatrixXd coefficients = InvertDensely(vandermonde);
   const Eigen::MatrixXd x = mesh.nodes(Eigen::all, mesh.elements.col(element));
   ForEachPoint(mesh.kind, [&](const Eigen::VectorXd& xi, double weight) {
     Eigen::MatrixXd local(d, n);
@@ -265,7 +265,7 @@ void ForEachPointOf(
     }
     const Eigen::MatrixXd jacobian = x * local.transpose();
     visit((Monomials(reference, xi, -1) * coefficients).transpose(),
-          jacobian.inverse().transpose() * local,
+          InvertDensely(jacobian).transpose() * local,
           weight * std::abs(jacobian.determinant()) * mesh.section.thickness);
   });
 }
@@ -336,8 +336,8 @@ Eigen::MatrixXd HookeMatrixOf(const IsotropicElasticity& elasticity,
     case SectionModel::kPlaneStrain:
       return solid(in_plane, in_plane);
     case SectionModel::kPlaneStress: {
-      const Eigen::MatrixXd compliance = solid.inverse();
-      return Eigen::MatrixXd(compliance(in_plane, in_plane)).inverse();
+      const Eigen::MatrixXd compliance = InvertDensely(solid);
+      return InvertDensely(compliance(in_plane, in_plane));
     }
     case SectionModel::kSolid:
       break;

@@ -5,6 +5,8 @@
 #include <map>
 #include <utility>
 
+#include "tests/dense_reference.h"
+
 namespace elastimate::testing {
 
 Mesh WithMidEdgeNodes(const Mesh& mesh) {
@@ -47,7 +49,7 @@ QuadraticShapeFunctions::QuadraticShapeFunctions(const Mesh& mesh,
   for (int i = 0; i < 10; ++i) {
     at_nodes.row(i) = Monomials(Local(nodes_.col(i)));
   }
-  coefficients_ = at_nodes.inverse();
+  coefficients_ = InvertDensely(at_nodes);
   Eigen::Matrix4d coordinates;
   coordinates << Eigen::RowVector4d::Ones(), nodes_.leftCols<4>();
   volume_ = std::abs(coordinates.determinant()) / 6;

@@ -352,10 +352,10 @@ Eigen::Matrix2d ForceResidual::Covariance(const IsotropicElasticity& elasticity,
       ComplianceScaleJacobian(elasticity, section_model_)(Eigen::all, free);
   const Eigen::MatrixXd x = Jacobian(elasticity)(Eigen::all, free);
   const Eigen::MatrixXd inverse =
-      (x.transpose() * x).inverse() * directions.transpose();
+      Inverse(x.transpose() * x) * directions.transpose();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(Estimate::kUnknown);
-  covariance(free, free) =
-      noise_variance * inverse * gram * inverse.transpose();
+  const Eigen::MatrixXd propagated = inverse * gram * inverse.transpose();
+  covariance(free, free) = noise_variance * propagated;
   return covariance;
 }
 

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <random>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -340,21 +341,28 @@ TEST_P(Conformance, SaysWhatPureShearDetermines) {
 }
 
 // Every E up to 3 mu has its nu.
-TEST_P(Conformance, BoundsOnYoungsModulusDoNotDetermineIt) {
+TEST(ConformanceOfBounds, OnYoungsModulusDoNotDetermineIt) {
   const Scene scene = ShearedBlock();
   const double mu = 5e4 / 2.6;
-  for (const Bounds& bounds :
-       {Bounds{1.2 * mu, 2.8 * mu}, Bounds{{}, mu}, Bounds{2.9 * mu, {}}}) {
-    EstimatorOptions options;
-    options.youngs_modulus = bounds;
-    if (!MakeEstimator(GetParam())->WhyUnsupported(scene, options).empty()) {
-      GTEST_SKIP() << "keeps no bounds";
+  int num_estimates = 0;
+  for (const std::string_view name : EstimatorNames()) {
+    SCOPED_TRACE(name);
+    for (const Bounds& bounds :
+         {Bounds{1.2 * mu, 2.8 * mu}, Bounds{{}, mu}, Bounds{2.9 * mu, {}}}) {
+      EstimatorOptions options;
+      options.youngs_modulus = bounds;
+      const auto estimator = MakeEstimator(name);
+      if (!estimator->WhyUnsupported(scene, options).empty()) {
+        continue;
+      }
+      const Estimate estimate = estimator->Run(scene, options);
+      EXPECT_FALSE(estimate.IsUsable())
+          << "E = " << estimate.elasticity.youngs_modulus
+          << ", nu = " << estimate.elasticity.poisson_ratio;
+      ++num_estimates;
     }
-    const Estimate estimate = Run(scene, options);
-    EXPECT_FALSE(estimate.IsUsable())
-        << "E = " << estimate.elasticity.youngs_modulus
-        << ", nu = " << estimate.elasticity.poisson_ratio;
   }
+  EXPECT_GT(num_estimates, 0);
 }
 
 TEST_P(Conformance, PureShearWithAKnownPoissonRatioIsEnough) {

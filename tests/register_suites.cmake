@@ -1,0 +1,31 @@
+# cmake -D PROGRAM=<test program> -D FOLDER=<folder> -D COST=<number> -D FILE=<file to write> -P register_suites.cmake
+#
+# Writes what registers each suite of a test program as one test.  A test of its own for each test would start the
+# program, and load its libraries, many times more often, which takes longer than most tests.  A suite that skips a test
+# counts as skipped, unless it fails: then it does not end with the list of skipped tests.
+execute_process(
+  COMMAND ${PROGRAM} --gtest_list_tests
+  OUTPUT_VARIABLE lines
+  TIMEOUT 60 COMMAND_ERROR_IS_FATAL ANY)
+# What follows a name may be any text.
+string(REGEX REPLACE " *#[^\n]*" "" lines "${lines}")
+string(REGEX MATCHALL "[^ \n]+\\.\n" suites "\n${lines}")
+if(NOT suites)
+  message(FATAL_ERROR "${PROGRAM} lists no suite of tests.")
+endif()
+
+set(script "")
+foreach(suite ${suites})
+  string(REGEX REPLACE "\\.\n" "" suite "${suite}")
+  set(label ${FOLDER})
+  if(suite MATCHES "Statistics")
+    string(APPEND label -statistical)
+  endif()
+  string(
+    APPEND
+    script
+    "add_test([[${FOLDER}.${suite}]] [[${PROGRAM}]] [[--gtest_filter=${suite}.*]])\n"
+    "set_tests_properties([[${FOLDER}.${suite}]] PROPERTIES TIMEOUT 1200 LABELS ${label} COST ${COST}\n"
+    "  SKIP_REGULAR_EXPRESSION [[\\[  SKIPPED \\] [^ \n]+\n$]])\n")
+endforeach()
+file(WRITE ${FILE} "${script}")
