@@ -67,15 +67,17 @@ def set_style():
         "lines.linewidth": 1.4,
         "legend.frameon": False,
         "figure.constrained_layout.use": True,
-        "savefig.bbox": "tight",
     })
 
 
 def save(figure, path):
     """Beside the table, without a date, so that the same table gives the same
-    file."""
-    figure.savefig(path.with_suffix(".svg"), metadata={"Date": None})
-    figure.savefig(path.with_suffix(".png"), dpi=150, metadata={"Software": None})
+    file.  Laid out once: savefig would do it twice for each file."""
+    figure.draw_without_rendering()
+    box = figure.get_tightbbox(figure.canvas.get_renderer()).padded(0.1)
+    figure.set_layout_engine("none")
+    figure.savefig(path.with_suffix(".svg"), bbox_inches=box, metadata={"Date": None})
+    figure.savefig(path.with_suffix(".png"), bbox_inches=box, dpi=150, metadata={"Software": None})
     plt.close(figure)
 
 

@@ -111,6 +111,7 @@ function(elastimate_install_package)
           ${PROJECT_BINARY_DIR}/elastimate-config-version.cmake
           ${PROJECT_SOURCE_DIR}/cmake/ElastimateDependencies.cmake
           ${PROJECT_SOURCE_DIR}/cmake/FindCHOLMOD.cmake
+          ${PROJECT_SOURCE_DIR}/cmake/FindLibCSV.cmake
     DESTINATION ${destination})
   install(EXPORT elastimateTargets NAMESPACE elastimate:: DESTINATION ${destination})
 endfunction()

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/estimators/displacement_fit/iterative_fe.h"
-#include "elastimate/estimators/displacement_fit/observed_displacements.h"
 #include "elastimate/estimators/displacement_fit/reduced_fe.h"
 #include "elastimate/estimators/force_balance/closed_form.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
@@ -118,7 +118,7 @@ struct Observations {
     const ObservedDisplacements observed(scene);
     redundancy = std::max<Eigen::Index>(
         observed.Size() - (options.known_poisson_ratio ? 1 : 2), 0);
-    if (scene.load_cases.front().noise_sd) {
+    if (observed.GivenNoise()) {
       norm_over_noise = observed.Norm() * observed.Measured().norm();
     }
   }

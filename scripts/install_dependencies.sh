@@ -5,8 +5,8 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build
   libboost-dev libceres-dev libeigen3-dev libsuitesparse-dev libopenblas-pthread-dev
-  libhwy-dev libgoogle-glog-dev libgflags-dev libgtest-dev libgmock-dev libbenchmark-dev
-  nlohmann-json3-dev libvtk9-dev libgmsh-dev
+  libhwy-dev libnanoflann-dev libgoogle-glog-dev libgflags-dev libgtest-dev libgmock-dev libbenchmark-dev
+  nlohmann-json3-dev libcsv-dev libvtk9-dev libgmsh-dev
   petsc-dev pkg-config
   python3-matplotlib
 )

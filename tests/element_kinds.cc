@@ -383,15 +383,19 @@ void MeasureByTextbook(const IsotropicElasticity& elasticity, Scene& scene) {
   const Mesh& mesh = scene.mesh;
   const Eigen::MatrixXd stiffness =
       TextbookStiffness(mesh, HookeMatrixOf(elasticity, mesh.section.model));
+  const auto held = scene.supports.held.reshaped();
   std::vector<Eigen::Index> free;
   for (Eigen::Index dof = 0; dof < mesh.NumDofs(); ++dof) {
-    if (!scene.supports.held.data()[dof]) {
+    if (!held(dof)) {
       free.push_back(dof);
     }
   }
-  const Eigen::MatrixXd force = AssembleLoadCases(scene);
+  const Eigen::VectorXd prescribed =
+      held.select(scene.supports.displacement.reshaped(), 0.0);
+  const Eigen::MatrixXd force =
+      AssembleLoadCases(scene).colwise() - stiffness * prescribed;
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-    Eigen::VectorXd u = Eigen::VectorXd::Zero(mesh.NumDofs());
+    Eigen::VectorXd u = prescribed;
     u(free) =
         SolveDensely(stiffness(free, free), force.col(Eigen::Index(k))(free));
     scene.load_cases[k].displacement =

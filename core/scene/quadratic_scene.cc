@@ -125,9 +125,24 @@ Supports WithMidEdgeSupports(const Supports& supports, const Mesh& mesh,
       held.col(edge).setConstant(false);
     }
   }
+  Eigen::MatrixXd displacement = MeanOfEnds(supports.displacement, edges);
+  const Eigen::MatrixXd middles = MeanOfEnds(mesh.nodes, edges);
+  for (const HeldBox& box : supports.boxes) {
+    for (Eigen::Index edge = 0; edge < edges.Size(); ++edge) {
+      if ((middles.col(edge).array() < box.lower.array()).any() ||
+          (middles.col(edge).array() > box.upper.array()).any()) {
+        continue;
+      }
+      for (Eigen::Index i = 0; i < held.rows(); ++i) {
+        if (box.components(i)) {
+          held(i, edge) = true;
+          displacement(i, edge) = box.displacement(i);
+        }
+      }
+    }
+  }
   return {WithMidEdges(supports.held, held),
-          WithMidEdges(supports.displacement,
-                       MeanOfEnds(supports.displacement, edges))};
+          WithMidEdges(supports.displacement, displacement), supports.boxes};
 }
 
 Eigen::MatrixXi WithMidEdgeNodes(const Eigen::MatrixXi& facets,
@@ -178,6 +193,7 @@ LoadCase ToQuadratic(const LoadCase& load_case, const Mesh& mesh,
                      const Edges& edges) {
   LoadCase quadratic;
   quadratic.noise_sd = load_case.noise_sd;
+  quadratic.points = load_case.points;
   for (const Load& load : load_case.loads) {
     quadratic.loads.push_back(std::visit(LoadConverter{mesh, edges}, load));
   }

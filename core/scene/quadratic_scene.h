@@ -19,7 +19,8 @@ namespace elastimate {
 ///   mean of their displacements.  Not held is an edge that crosses the
 ///   interior from one node of the surface to another: the ends may belong to
 ///   two supports, with the specimen between them.  (Inside a held volume the
-///   neighbours then hold it all the same.)
+///   neighbours then hold it all the same.)  Where supports are boxes, these
+///   decide instead about each node within.
 /// - Loads: nodal forces are zero there, so that their virtual work is that of
 ///   the given forces on the displacements of the vertices.  Body forces,
 ///   tractions and pressures stay what they are; facets get their mid-edge

@@ -69,6 +69,15 @@ void ValidateSupports(const Mesh& mesh, const Supports& supports) {
   RequireShape(supports.displacement, mesh, "the displacement of the supports");
   RequireFinite(supports.held.select(supports.displacement.array(), 0.0),
                 "the displacement of the supports");
+  for (const HeldBox& box : supports.boxes) {
+    const Eigen::Index d = mesh.Dimension();
+    if (box.lower.size() != d || box.upper.size() != d ||
+        box.components.size() != d || box.displacement.size() != d ||
+        !box.displacement.allFinite()) {
+      Fail("a box of the supports does not have " + std::to_string(d) +
+           " finite numbers of each kind; correct it");
+    }
+  }
   if (supports.held.all()) {
     Fail("every degree of freedom is held; free the nodes that could move");
   }
@@ -141,6 +150,51 @@ struct LoadValidator {
   }
 };
 
+void ValidatePointDisplacements(const Mesh& mesh,
+                                const PointDisplacements& measured,
+                                const std::string& name) {
+  ValidatePoints(mesh, measured.points);
+  const auto require_shape = [&](const Eigen::MatrixXd& array,
+                                 const std::string& what) {
+    if (array.rows() != mesh.Dimension() ||
+        array.cols() != measured.points.Size()) {
+      Fail(what + " at the points of " + name + " is " +
+           std::to_string(array.rows()) + " x " + std::to_string(array.cols()) +
+           "; make it " + std::to_string(mesh.Dimension()) + " x " +
+           std::to_string(measured.points.Size()));
+    }
+  };
+  require_shape(measured.displacement, "the displacement");
+  if (measured.noise_sd.size() != 0) {
+    require_shape(measured.noise_sd, "the noise standard deviation");
+  }
+  double largest = 0;
+  for (Eigen::Index point = 0; point < measured.points.Size(); ++point) {
+    for (int i = 0; i < mesh.Dimension(); ++i) {
+      const double value = measured.displacement(i, point);
+      if (std::isnan(value)) {
+        continue;
+      }
+      const std::string where = "point " + std::to_string(point) + " (" +
+                                kAxisNames[i] + ") in " + name;
+      if (std::isinf(value)) {
+        Fail("the measured displacement of " + where +
+             " is infinite; correct it, or make it not a number");
+      }
+      largest = std::max(largest, std::abs(value));
+      if (measured.noise_sd.size() != 0) {
+        const double sd = measured.noise_sd(i, point);
+        if (!(std::isfinite(sd) && sd > 0)) {
+          Fail("the noise standard deviation of " + where + " is " +
+               std::to_string(sd) + "; it must be positive");
+        }
+        RequireRepresentable(sd, "the noise standard deviation of " + where);
+      }
+    }
+  }
+  RequireRepresentable(largest, "the displacement at the points of " + name);
+}
+
 void ValidateMeasurement(const Mesh& mesh, const LoadCase& load_case,
                          const std::string& name) {
   if (load_case.observed.size() != 0) {
@@ -154,6 +208,9 @@ void ValidateMeasurement(const Mesh& mesh, const LoadCase& load_case,
   }
   RequireRepresentable(load_case.noise_sd.value_or(0),
                        "the noise standard deviation of " + name);
+  if (load_case.points.points.Size() != 0) {
+    ValidatePointDisplacements(mesh, load_case.points, name);
+  }
   if (load_case.displacement.size() == 0) {
     return;
   }

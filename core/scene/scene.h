@@ -10,17 +10,30 @@
 #include "elastimate/core/materials/material.h"
 #include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/mesh/mesh.h"
+#include "elastimate/core/mesh/mesh_points.h"
 
 namespace elastimate {
 
 /// One flag per displacement component: dimension x num_nodes.
 using ComponentMask = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
 
+/// A part of space in which a specimen is held, bounds included.
+struct HeldBox {
+  Eigen::VectorXd lower;  ///< Of `dimension` coordinates [length].
+  Eigen::VectorXd upper;
+  Eigen::Array<bool, Eigen::Dynamic, 1>
+      components;                ///< Which of them it holds.
+  Eigen::VectorXd displacement;  ///< Of `dimension` [length].
+};
+
 /// The held degrees of freedom, and the displacement they are held at.
 struct Supports {
   ComponentMask held;            ///< dimension x num_nodes.
   Eigen::MatrixXd displacement;  ///< dimension x num_nodes [length]; used where
                                  ///< `held`, ignored elsewhere.
+  /// Where `held` comes from, as far as it was told by place: it decides about
+  /// the nodes that QuadraticScene adds.
+  std::vector<HeldBox> boxes = {};
 };
 
 /// Forces that act on nodes.
@@ -58,16 +71,43 @@ struct SurfaceForce {
 using Load =
     std::variant<NodalForces, BodyForce, Traction, Pressure, SurfaceForce>;
 
+/// Displacements that were measured at points of the specimen, which need not
+/// be nodes.
+struct PointDisplacements {
+  MeshPoints points;
+  /// dimension x n [length]; not a number where a component was not measured.
+  Eigen::MatrixXd displacement;
+  /// Standard deviation of each component, dimension x n [length], where it was
+  /// measured; empty where the one of the load case holds for all.
+  Eigen::MatrixXd noise_sd;
+};
+
 /// One experiment on the specimen: what pushed, and what was measured.
 struct LoadCase {
   std::vector<Load> loads;
-  Eigen::MatrixXd displacement;  ///< Measured, dimension x num_nodes [length];
-                                 ///< empty when nothing was measured.
+  Eigen::MatrixXd displacement;  ///< Measured at nodes, dimension x num_nodes
+                                 ///< [length]; empty when nothing was.
   ComponentMask observed;        ///< dimension x num_nodes, or empty when every
                                  ///< component was measured.
+  PointDisplacements points;     ///< Measured at points; mostly none.
   std::optional<double> noise_sd;  ///< Standard deviation of the measured
                                    ///< displacement per component [length].
 };
+
+/// Whether component `i` of the displacement of `node` is measured: in a load
+/// case without points also where no displacement has been entered yet.
+inline bool IsObserved(const LoadCase& load_case, int i, Eigen::Index node) {
+  const bool has_nodes =
+      load_case.displacement.size() != 0 || load_case.points.points.Size() == 0;
+  return has_nodes &&
+         (load_case.observed.size() == 0 || load_case.observed(i, node));
+}
+
+/// Whether the displacement of any node or point was measured.
+inline bool IsMeasured(const LoadCase& load_case) {
+  return load_case.displacement.size() != 0 ||
+         load_case.points.points.Size() != 0;
+}
 
 /// Geometry, materials, supports, and one or more load cases.
 struct Scene {
@@ -80,17 +120,18 @@ struct Scene {
 
 /// Throws std::invalid_argument with one sentence that names the load case, the
 /// array, and the node or element, unless: the mesh and its materials are
-/// valid (ValidateMesh, ValidateMaterials); every array has its shape; every number is finite, and no array's largest
-/// one beyond 1e-50 to 1e50 unless zero (displacements only where they are
-/// observed or held); every facet has nodes in range (and mid-edge nodes in the
-/// middle); the facets of a surface force have an area; noise standard
-/// deviations are positive; there is a load case; and at least one degree of
-/// freedom is free.  O(num_elements + num_nodes * num_load_cases).
+/// valid (ValidateMesh, ValidateMaterials); every array has its shape; every
+/// number is finite, and no array's largest one beyond 1e-50 to 1e50 unless
+/// zero (displacements only where they are observed or held); every facet has
+/// nodes in range (and mid-edge nodes in the middle); points lie in their
+/// elements (ValidatePoints); the facets of a surface force have an area; noise
+/// standard deviations are positive; there is a load case; and at least one
+/// degree of freedom is free.  O(num_elements + num_nodes * num_load_cases).
 void ValidateScene(const Scene& scene);
 
 /// The part of ValidateScene that is about observed components, displacements
 /// and noise: for another measurement of a valid scene.
-/// O(num_nodes * num_load_cases).
+/// O((num_nodes + num_points) num_load_cases).
 void ValidateMeasurements(const Scene& scene);
 
 }  // namespace elastimate

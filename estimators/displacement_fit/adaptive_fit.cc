@@ -60,7 +60,6 @@ double SolveTolerance(double error, double limit) {
 
 AdaptiveFit::AdaptiveFit(const Scene& scene, const EstimatorOptions& options)
     : options_(options),
-      given_noise_sd_(scene.load_cases.front().noise_sd),
       model_(scene, options.solver),
       largest_range_(LargestRange(options)),
       searched_(largest_range_) {
@@ -139,7 +138,7 @@ bool AdaptiveFit::Run(const ObservedDisplacements& observed) {
     return false;
   }
   if (compliance_norm_ == 0) {
-    compliance_norm_ = model_.ComplianceNormAtPole(observed.LargestWeights());
+    compliance_norm_ = model_.ComplianceNormAtPole(observed.BoundingWeights());
     compliance_pole_ = model_.Pole();
   }
   for (;;) {
@@ -182,7 +181,7 @@ void AdaptiveFit::Fit(const ObservedDisplacements& observed) {
 }
 
 double AdaptiveFit::NoiseOf(const ObservedDisplacements& observed) const {
-  return given_noise_sd_
+  return observed.GivenNoise()
              ? std::min(fit_.standard_deviation, 1 / observed.Norm())
              : fit_.standard_deviation;
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "elastimate/core/scene/scene.h"
-#include "elastimate/estimators/displacement_fit/observed_displacements.h"
+#include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/estimators/displacement_fit/reduced_fit.h"
 #include "elastimate/estimators/displacement_fit/robust_reduced_fit.h"
 #include "elastimate/estimators/interface/estimator.h"
@@ -96,7 +96,6 @@ class AdaptiveFit {
       const std::vector<ReducedFit::ResidualBracket>& brackets) const;
 
   EstimatorOptions options_;
-  std::optional<double> given_noise_sd_;
   ReducedModel model_;
   Bounds largest_range_;
   Bounds searched_;

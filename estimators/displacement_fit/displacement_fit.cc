@@ -33,7 +33,7 @@ ResidualSums SumResiduals(const ObservedDisplacements& observed,
                           const NodeLosses& losses) {
   ResidualSums sums;
   sums.weights.resize(fit.residual.size());
-  for (const ObservedDisplacements::Node& node : observed.Nodes()) {
+  for (const ObservedDisplacements::Point& node : observed.Points()) {
     const auto r = fit.residual.segment(node.first, node.count);
     const auto s = fit.sensitivities.middleRows(node.first, node.count);
     const std::array<double, 3> rho =
@@ -116,8 +116,8 @@ class FitDescription {
   }
 
   // Whether there are no more components than the statistics need.
-  bool AreTooFew(const Scene& scene) {
-    if (scene.load_cases.front().noise_sd ||
+  bool AreTooFew() {
+    if (observed_.GivenNoise() ||
         observed_.Size() - Eigen::Index(free_.size()) >=
             kLimits.least_redundancy) {
       return false;
@@ -126,10 +126,10 @@ class FitDescription {
     return true;
   }
 
-  void MeasureNoise(const Scene& scene, const NodeGraph& graph) {
+  void MeasureNoise(const NodeGraph& graph) {
     if (losses_.IsLeastSquares()) {
       variance_ =
-          EstimateVariance(observed_, scene, Rest().squaredNorm(),
+          EstimateVariance(observed_, Rest().squaredNorm(),
                            Eigen::Index(free_.size()), evidence_, estimate_);
     } else {
       estimate_.noise_sd = RobustStandardDeviation(Rest()) * observed_.Norm();
@@ -146,6 +146,10 @@ class FitDescription {
         elements_ ? elements_->MissedSquareSum(smooth.most) : 0;
     smooth_square_sum_ = std::max(0.0, least - missed);
     if (elements_) {
+      // What a bound leaves in the residual is no doubt about the model.
+      if (!evidence_.active.Any()) {
+        smooth_square_sum_ = elements_->ModelSquareSum(smooth_square_sum_);
+      }
       of_elements_ = elements_->CovarianceOfChange(smooth.most) +
                      missed * Inverse(Gram()(free_, free_));
     }
@@ -336,11 +340,11 @@ std::optional<double> DescribeDisplacementFit(
   if (description.FindFreeDirection()) {
     return std::nullopt;
   }
-  if (description.AreTooFew(scene)) {
+  if (description.AreTooFew()) {
     return std::nullopt;
   }
   description.MeasureElements(scene, graph);
-  description.MeasureNoise(scene, graph);
+  description.MeasureNoise(graph);
   description.FillCovariance();
   const std::optional<double> variance = description.RowVariance();
   if (evidence.active.youngs_modulus != Side::kNone) {

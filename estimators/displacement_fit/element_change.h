@@ -11,7 +11,7 @@
 #include "elastimate/core/materials/elasticity.h"
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/core/solvers/stiffness_solver.h"
-#include "elastimate/estimators/displacement_fit/observed_displacements.h"
+#include "elastimate/core/scene/observed_displacements.h"
 
 namespace elastimate {
 

@@ -27,9 +27,29 @@ constexpr double kUnknownErrorShare = 0.3;
 constexpr double kInSpan = 4;
 constexpr double kMostVisible = 9;
 constexpr double kMostInSpan = 100;
+// The same of another model error, which moves all displacements rather than
+// bends them [benchmarks: stability, inclusions].
+constexpr double kModelErrorInSpan = 16;
+// Of what finer elements explain, that they leave [benchmarks: unseen].
+constexpr double kMostLeft = 1.0 / 3;
 // Of neighbours, above which residuals say nothing.
 constexpr double kMostCorrelation = 0.99;
 constexpr double kUnknownShareError = 1e3;
+
+// What neighbours share of a rest of this square sum: as far as it is above a
+// third of what finer elements explain, all of it from once that on.
+double UnexplainedShare(const std::optional<NeighbourCorrelation>& neighbours,
+                        double rest, double explained) {
+  const double significant =
+      neighbours ? neighbours->correlation - kLimits.significant_score *
+                                                 neighbours->standard_deviation
+                 : 0;
+  const double left = significant * rest;
+  if (left <= kMostLeft * explained) {
+    return 0;
+  }
+  return std::min(1.0, (left / explained - kMostLeft) / (1 - kMostLeft));
+}
 
 }  // namespace
 
@@ -57,12 +77,16 @@ ElementErrors::ElementErrors(const Scene& scene, const NodeGraph& graph,
     missed_norm_ = kQuadraticErrorShare * change->norm();
     return;
   }
-  const FinerSpecimen finer = Compare(scene, graph, observed, fit, visible);
+  const FinerSpecimen finer = Compare(graph, observed, fit, visible);
   rest_ += finer.Mean() * visible;
   correction_ = -finer.Mean() * of_parameters_;
   const double size = std::sqrt(finer.probability) * std::abs(finer.share);
   share_variance_ = finer.Variance() + std::pow(kUnequalShare * size, 2);
   missed_norm_ = kLinearErrorShare * size * change->norm();
+}
+
+double ElementErrors::ModelSquareSum(double smooth) const {
+  return (1 + (kModelErrorInSpan - 1) * unexplained_) * smooth;
 }
 
 double ElementErrors::MissedSquareSum(double smooth) const {
@@ -84,10 +108,10 @@ Eigen::MatrixXd ElementErrors::CovarianceOfChange(double smooth) const {
   return variance * (of_parameters_ * of_parameters_.transpose());
 }
 
-FinerSpecimen ElementErrors::Compare(const Scene& scene, const NodeGraph& graph,
+FinerSpecimen ElementErrors::Compare(const NodeGraph& graph,
                                      const ObservedDisplacements& observed,
                                      const FreeFit& fit,
-                                     const Eigen::VectorXd& visible) const {
+                                     const Eigen::VectorXd& visible) {
   const Eigen::VectorXd weighted = fit.weights.cwiseProduct(visible);
   const double size = weighted.dot(visible);
   const double redundancy =
@@ -113,11 +137,15 @@ FinerSpecimen ElementErrors::Compare(const Scene& scene, const NodeGraph& graph,
   double variance = size * weighted_rest.squaredNorm() / redundancy;
   if (!fit.is_least_squares) {
     variance = weighted.cwiseProduct(rest).squaredNorm();
-  } else if (scene.load_cases.front().noise_sd) {
+  } else if (observed.GivenNoise()) {
     variance = std::max(variance, size / (observed.Norm() * observed.Norm()));
   }
-  return CompareWithFinerSpecimen(
+  FinerSpecimen finer = CompareWithFinerSpecimen(
       share, std::sqrt(variance * dependence) / size, redundancy / dependence);
+  unexplained_ = UnexplainedShare(neighbours, weighted_rest.squaredNorm(),
+                                  share * share * size);
+  finer.probability *= 1 - unexplained_;
+  return finer;
 }
 
 }  // namespace elastimate

@@ -6,9 +6,9 @@
 
 #include "elastimate/core/materials/elasticity.h"
 #include "elastimate/core/mesh/node_graph.h"
+#include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/displacement_fit/finer_specimen.h"
-#include "elastimate/estimators/displacement_fit/observed_displacements.h"
 
 namespace elastimate {
 
@@ -50,6 +50,11 @@ class ElementErrors {
     return correction_;
   }
 
+  /// The square sum of a model error in the direction of any parameter, where
+  /// its part in the residual has `smooth`: a multiple of that as far as finer
+  /// elements do not explain what neighbouring residuals share.
+  double ModelSquareSum(double smooth) const;
+
   // The smooth part of the rest has a square sum of at most `smooth`.
 
   /// The square sum of what is missed beside the change, in the direction of
@@ -60,15 +65,17 @@ class ElementErrors {
 
  private:
   /// What the residual says of the part of the change that it would show.
-  FinerSpecimen Compare(const Scene& scene, const NodeGraph& graph,
+  FinerSpecimen Compare(const NodeGraph& graph,
                         const ObservedDisplacements& observed,
-                        const FreeFit& fit,
-                        const Eigen::VectorXd& visible) const;
+                        const FreeFit& fit, const Eigen::VectorXd& visible);
 
   Eigen::VectorXd rest_;
   std::optional<Eigen::VectorXd> correction_;
   /// c; zero where no change is known.
   Eigen::VectorXd of_parameters_;
+  /// What neighbouring residuals share beside the share of g, over that, up to
+  /// 1; 0 where g is not known.
+  double unexplained_ = 0;
   /// Of the share of c, for linear simplices.
   double share_variance_ = 0;
   /// ||g|| of quadratic elements.

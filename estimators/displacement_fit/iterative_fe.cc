@@ -16,11 +16,11 @@
 
 #include "elastimate/core/equilibrium/forward_model.h"
 #include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
 #include "elastimate/estimators/displacement_fit/element_change.h"
 #include "elastimate/estimators/displacement_fit/material_fit.h"
 #include "elastimate/estimators/displacement_fit/node_losses.h"
-#include "elastimate/estimators/displacement_fit/observed_displacements.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/statistics.h"
@@ -195,7 +195,7 @@ class DisplacementResidual : public ceres::EvaluationCallback {
 class NodeCost : public ceres::CostFunction {
  public:
   NodeCost(const DisplacementResidual& residual,
-           const ObservedDisplacements::Node& node)
+           const ObservedDisplacements::Point& node)
       : residual_(residual), node_(node) {
     set_num_residuals(node.count);
     *mutable_parameter_block_sizes() = {1, 1};
@@ -220,7 +220,7 @@ class NodeCost : public ceres::CostFunction {
 
  private:
   const DisplacementResidual& residual_;
-  const ObservedDisplacements::Node& node_;
+  const ObservedDisplacements::Point& node_;
 };
 
 ceres::Solver::Summary Minimize(DisplacementResidual& residual,
@@ -231,7 +231,8 @@ ceres::Solver::Summary Minimize(DisplacementResidual& residual,
   problem_options.evaluation_callback = &residual;
   problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(problem_options);
-  for (const ObservedDisplacements::Node& node : residual.Observed().Nodes()) {
+  for (const ObservedDisplacements::Point& node :
+       residual.Observed().Points()) {
     problem.AddResidualBlock(new NodeCost(residual, node),
                              losses.ForCount(node.count), scale.Block(),
                              poisson_ratio.Block());

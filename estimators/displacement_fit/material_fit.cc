@@ -8,7 +8,7 @@
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/equilibrium/equilibrium.h"
-#include "elastimate/estimators/displacement_fit/observed_displacements.h"
+#include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/estimators/displacement_fit/residual_statistics.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
 #include "elastimate/estimators/interface/free_parameters.h"
@@ -198,7 +198,7 @@ Eigen::Vector2d LargestOf(const Eigen::VectorXd& change,
 }
 
 // Enters noise, model error, outliers and covariance of a minimum.
-void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
+void DescribeMinimum(const Eigen::VectorXd& variables,
                      DisplacementMisfit& misfit, Evidence& evidence,
                      Estimate& estimate) {
   const FreeParameters& free = misfit.Free();
@@ -210,13 +210,13 @@ void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
     return;
   }
   estimate.displacement_residual = residual.norm() / observed.Measured().norm();
-  if (!scene.load_cases.front().noise_sd &&
+  if (!observed.GivenNoise() &&
       observed.Size() - free.Size() < kLimits.least_redundancy) {
     evidence.too_few_components = observed.Size();
     return;
   }
   const ResidualVariance variance = EstimateVariance(
-      observed, scene, residual.squaredNorm(), free.Size(), evidence, estimate);
+      observed, residual.squaredNorm(), free.Size(), evidence, estimate);
   evidence.is_explained_by_given_noise = variance.is_explained_by_given_noise;
   const double smooth = variance.is_explained_by_given_noise
                             ? 0
@@ -261,7 +261,7 @@ Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options) {
     evidence.search_message = minimum->message;
     EnterParameters(scene, misfit.Free(), minimum->variables, estimate);
     NoteVariablesOnBounds(misfit.Free(), *minimum, estimate);
-    DescribeMinimum(scene, minimum->variables, misfit, evidence, estimate);
+    DescribeMinimum(minimum->variables, misfit, evidence, estimate);
   } else {
     evidence.do_displacements_oppose_loads = true;
   }

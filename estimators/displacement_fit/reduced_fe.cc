@@ -4,10 +4,10 @@
 #include <optional>
 
 #include "elastimate/core/scene/degrees_of_freedom.h"
+#include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/estimators/displacement_fit/adaptive_fit.h"
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
 #include "elastimate/estimators/displacement_fit/element_change.h"
-#include "elastimate/estimators/displacement_fit/observed_displacements.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 #include "elastimate/estimators/statistics/bounded_parameter.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
-#include "elastimate/estimators/displacement_fit/observed_displacements.h"
+#include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/estimators/interface/estimator.h"
 #include "elastimate/estimators/reduced_model/reduced_model.h"
 

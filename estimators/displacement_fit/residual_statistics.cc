@@ -10,59 +10,100 @@
 
 namespace elastimate {
 
+namespace {
+
+// Products of the same components of neighbours.
+struct NeighbourProducts {
+  double sum = 0;
+  Eigen::Index count = 0;
+
+  void Add(double product) {
+    sum += product;
+    ++count;
+  }
+};
+
+using Points = std::vector<ObservedDisplacements::Point>;
+
+// Those of nodes that share an element; `begin` to `end` are of one load case.
+void AddProductsOfNodes(const NodeGraph& graph,
+                        const ObservedDisplacements& observed,
+                        Points::const_iterator begin,
+                        Points::const_iterator end,
+                        const Eigen::VectorXd& residual,
+                        NeighbourProducts& products) {
+  const Eigen::Index num_nodes = Eigen::Index(graph.start.size()) - 1;
+  // Row of each component of each node, or -1.
+  Eigen::Matrix<Eigen::Index, Eigen::Dynamic, Eigen::Dynamic> rows;
+  rows.setConstant(observed.Dimension(), num_nodes, -1);
+  for (auto point = begin; point != end && point->index < num_nodes; ++point) {
+    for (int k = 0; k < point->count; ++k) {
+      const Eigen::Index row = point->first + k;
+      rows(observed.Component(row), point->index) = row;
+    }
+  }
+  for (Eigen::Index node = 0; node < num_nodes; ++node) {
+    for (Eigen::Index k = graph.start[node] + 1; k < graph.start[node + 1];
+         ++k) {
+      for (int i = 0; i < observed.Dimension(); ++i) {
+        const Eigen::Index row = rows(i, node);
+        const Eigen::Index other = rows(i, graph.row[k]);
+        if (row >= 0 && other >= 0) {
+          products.Add(residual(row) * residual(other));
+        }
+      }
+    }
+  }
+}
+
+void AddProductsOfPoints(const ObservedDisplacements& observed,
+                         const Eigen::VectorXd& residual,
+                         NeighbourProducts& products) {
+  for (const auto& [a, b] : observed.NeighbouringPoints()) {
+    const ObservedDisplacements::Point& one = observed.Points()[a];
+    const ObservedDisplacements::Point& other = observed.Points()[b];
+    for (int i = 0; i < one.count; ++i) {
+      for (int k = 0; k < other.count; ++k) {
+        if (observed.Component(one.first + i) ==
+            observed.Component(other.first + k)) {
+          products.Add(residual(one.first + i) * residual(other.first + k));
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
 std::optional<NeighbourCorrelation> CorrelateNeighbours(
     const NodeGraph& graph, const ObservedDisplacements& observed,
     const Eigen::VectorXd& residual) {
   const double square_sum = residual.squaredNorm();
-  const Eigen::Index num_nodes = Eigen::Index(graph.start.size()) - 1;
-  double product_sum = 0;
-  Eigen::Index num_products = 0;
-  // Row of each component of each node in the present load case, or -1.
-  Eigen::Matrix<Eigen::Index, Eigen::Dynamic, Eigen::Dynamic> rows(
-      observed.Dimension(), num_nodes);
-  const auto& nodes = observed.Nodes();
-  for (auto begin = nodes.begin(); begin != nodes.end();) {
-    const auto end = std::find_if(begin, nodes.end(), [&](const auto& node) {
-      return node.load_case != begin->load_case;
+  NeighbourProducts products;
+  const Points& points = observed.Points();
+  for (auto begin = points.begin(); begin != points.end();) {
+    const auto end = std::find_if(begin, points.end(), [&](const auto& point) {
+      return point.load_case != begin->load_case;
     });
-    rows.setConstant(-1);
-    for (auto node = begin; node != end; ++node) {
-      for (int k = 0; k < node->count; ++k) {
-        const Eigen::Index row = node->first + k;
-        rows(observed.Component(row), node->node) = row;
-      }
-    }
-    for (Eigen::Index node = 0; node < num_nodes; ++node) {
-      for (Eigen::Index k = graph.start[node] + 1; k < graph.start[node + 1];
-           ++k) {
-        for (int i = 0; i < observed.Dimension(); ++i) {
-          const Eigen::Index row = rows(i, node);
-          const Eigen::Index other = rows(i, graph.row[k]);
-          if (row >= 0 && other >= 0) {
-            product_sum += residual(row) * residual(other);
-            ++num_products;
-          }
-        }
-      }
-    }
+    AddProductsOfNodes(graph, observed, begin, end, residual, products);
     begin = end;
   }
-  if (num_products == 0 || square_sum == 0) {
+  AddProductsOfPoints(observed, residual, products);
+  if (products.count == 0 || square_sum == 0) {
     return std::nullopt;
   }
-  const double n = static_cast<double>(num_products);
+  const double n = static_cast<double>(products.count);
   const double variance = square_sum / static_cast<double>(residual.size());
-  const double correlation = product_sum / (n * variance);
+  const double correlation = products.sum / (n * variance);
   return NeighbourCorrelation{correlation, 1 / std::sqrt(n)};
 }
 
 ResidualVariance EstimateVariance(const ObservedDisplacements& observed,
-                                  const Scene& scene, double square_sum,
-                                  Eigen::Index num_free, Evidence& evidence,
-                                  Estimate& estimate) {
+                                  double square_sum, Eigen::Index num_free,
+                                  Evidence& evidence, Estimate& estimate) {
   const Eigen::Index redundancy = observed.Size() - num_free;
   const double norm_squared = observed.Norm() * observed.Norm();
-  const std::optional<double>& given = scene.load_cases.front().noise_sd;
+  const std::optional<double>& given = observed.GivenNoise();
   const double m = static_cast<double>(std::max<Eigen::Index>(redundancy, 1));
   const double variance = square_sum / m;
   estimate.noise_sd = given ? *given : std::sqrt(variance) * observed.Norm();
@@ -112,7 +153,7 @@ Eigen::VectorXd RobustChange(const ObservedDisplacements& observed,
     const NodeLosses losses(Loss::kHuber, RobustStandardDeviation(moved));
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
-    for (const ObservedDisplacements::Node& node : observed.Nodes()) {
+    for (const ObservedDisplacements::Point& node : observed.Points()) {
       const auto r = moved.segment(node.first, node.count);
       const auto s = sensitivities.middleRows(node.first, node.count);
       const double weight = losses.Evaluate(node.count, r.squaredNorm())[1];

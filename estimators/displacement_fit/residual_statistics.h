@@ -5,17 +5,18 @@
 #include <optional>
 
 #include "elastimate/core/mesh/node_graph.h"
+#include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/scene.h"
-#include "elastimate/estimators/displacement_fit/observed_displacements.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/evidence.h"
 
 namespace elastimate {
 
-/// How alike the residuals of neighbouring nodes are [Moran 1950].
+/// How alike the residuals of neighbours are [Moran 1950]: of nodes that share
+/// an element, and of other points that are near each other.
 struct NeighbourCorrelation {
-  /// Mean product of the residuals of two nodes that share an element, over
-  /// the mean square: near 0 for independent noise, near 1 for a smooth field.
+  /// Mean product of the residuals of two neighbours, over the mean square:
+  /// near 0 for independent noise, near 1 for a smooth field.
   double correlation;
   double standard_deviation;  ///< Of `correlation` for independent noise.
 };
@@ -36,9 +37,8 @@ struct ResidualVariance {
 /// which is evidence.  Fills in the noise of `estimate`.  `num_free` parameters
 /// were fitted.
 ResidualVariance EstimateVariance(const ObservedDisplacements& observed,
-                                  const Scene& scene, double square_sum,
-                                  Eigen::Index num_free, Evidence& evidence,
-                                  Estimate& estimate);
+                                  double square_sum, Eigen::Index num_free,
+                                  Evidence& evidence, Estimate& estimate);
 
 /// What the square sum of the part of the residual may be that neighbours
 /// share: at least, beyond what independent noise explains, growing from zero,

@@ -54,7 +54,7 @@ Eigen::VectorXd RowWeights(const ObservedDisplacements& observed,
                            const Eigen::VectorXd& residual,
                            const NodeLosses& losses) {
   Eigen::VectorXd weights(observed.Size());
-  for (const ObservedDisplacements::Node& node : observed.Nodes()) {
+  for (const ObservedDisplacements::Point& node : observed.Points()) {
     const double square_sum =
         residual.segment(node.first, node.count).squaredNorm();
     weights.segment(node.first, node.count)

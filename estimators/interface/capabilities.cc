@@ -18,13 +18,18 @@ std::string WhyNotAllDisplacements(const Scene& scene) {
   const Eigen::Index num_vertices = scene.mesh.NumVertices();
   const int dimension = scene.mesh.Dimension();
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-    if (scene.load_cases[k].observed.size() == 0) {
+    const LoadCase& load_case = scene.load_cases[k];
+    if (load_case.points.points.Size() != 0) {
+      return "the force residual needs displacements of nodes, but load case " +
+             std::to_string(k + 1) + " was measured at points; use " +
+             FitOf(scene);
+    }
+    if (load_case.observed.size() == 0) {
       continue;
     }
     for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
       for (int i = 0; i < dimension; ++i) {
-        if (scene.supports.held(i, node) ||
-            IsObserved(scene.load_cases[k], i, node)) {
+        if (scene.supports.held(i, node) || IsObserved(load_case, i, node)) {
           continue;
         }
         if (node >= num_vertices) {

@@ -111,11 +111,6 @@ class Estimator {
       const Scene& scene, const EstimatorOptions& options) const;
 };
 
-/// Whether component `i` of `node` was measured in `load_case`.
-inline bool IsObserved(const LoadCase& load_case, int i, Eigen::Index node) {
-  return load_case.observed.size() == 0 || load_case.observed(i, node);
-}
-
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_ESTIMATORS_INTERFACE_ESTIMATOR_H_

@@ -1,5 +1,6 @@
 #include "elastimate/estimators/interface/input_checks.h"
 
+#include <cmath>
 #include <stdexcept>
 
 #include "elastimate/core/scene/loads.h"
@@ -50,7 +51,19 @@ MeasurementSummary Summarize(const Scene& scene, const LoadCase& load_case) {
       }
     }
   }
+  for (const double q : load_case.points.displacement.reshaped()) {
+    if (!std::isnan(q)) {
+      summary.any_observed = true;
+      summary.any_displacement |= q != 0;
+      summary.free_square_sum += q * q;
+    }
+  }
   return summary;
+}
+
+bool HasKnownNoise(const LoadCase& load_case) {
+  return load_case.noise_sd || (load_case.displacement.size() == 0 &&
+                                load_case.points.noise_sd.size() != 0);
 }
 
 }  // namespace
@@ -76,7 +89,7 @@ std::vector<Finding> CheckMeasurements(const Scene& scene) {
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     const LoadCase& load_case = scene.load_cases[k];
     const std::string name = "load case " + std::to_string(k + 1);
-    if (load_case.displacement.size() == 0) {
+    if (!IsMeasured(load_case)) {
       throw std::invalid_argument(
           name + " has no measured displacements; an estimate needs them");
     }
@@ -107,7 +120,7 @@ void CheckLoads(const Scene& scene) {
   std::size_t num_with_noise_sd = 0;
   for (const LoadCase& load_case : scene.load_cases) {
     any_force = any_force || IsLoaded(scene, load_case);
-    num_with_noise_sd += load_case.noise_sd ? 1 : 0;
+    num_with_noise_sd += HasKnownNoise(load_case) ? 1 : 0;
   }
   if (!any_force) {
     throw std::invalid_argument(

@@ -13,10 +13,32 @@ namespace elastimate {
 namespace {
 
 Scene WithoutMeasurement(Scene scene) {
-  for (LoadCase& load_case : scene.load_cases) {
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    LoadCase& load_case = scene.load_cases[k];
+    if (load_case.displacement.size() != 0 &&
+        load_case.points.points.Size() != 0) {
+      throw std::invalid_argument("load case " + std::to_string(k + 1) +
+                                  " was measured at nodes and at points; "
+                                  "prepare a scene of either");
+    }
     load_case.displacement.resize(0, 0);
   }
   return scene;
+}
+
+// Of the points of load case `k`, whose rows stay.
+void SetAtPoints(const Eigen::MatrixXd& displacement, std::size_t k,
+                 PointDisplacements& points) {
+  if (displacement.rows() != points.displacement.rows() ||
+      displacement.cols() != points.displacement.cols() ||
+      (displacement.array().isNaN() != points.displacement.array().isNaN())
+          .any()) {
+    throw std::invalid_argument(
+        "the displacements of load case " + std::to_string(k + 1) +
+        " are not those of the points that were measured when the scene was "
+        "prepared; prepare a scene of these points");
+  }
+  points.displacement = displacement;
 }
 
 }  // namespace
@@ -57,7 +79,12 @@ Estimate PreparedEstimator::Run(
                                 " load cases; give one for each");
   }
   for (std::size_t k = 0; k < displacements.size(); ++k) {
-    scene.load_cases[k].displacement = displacements[k];
+    LoadCase& load_case = scene.load_cases[k];
+    if (load_case.points.points.Size() != 0) {
+      SetAtPoints(displacements[k], k, load_case.points);
+    } else {
+      load_case.displacement = displacements[k];
+    }
   }
   ValidateMeasurements(scene);
   const std::vector<Finding> findings = CheckMeasurements(scene);

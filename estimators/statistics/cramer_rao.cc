@@ -15,6 +15,41 @@ namespace {
 // A ratio of informations that comes from rounding.
 constexpr double kSingular = 1e-13;
 
+// sum of s s^T over what load case `k` observes, s with respect to (ln E, nu),
+// which are of one magnitude.
+Eigen::Matrix2d InformationOf(const Scene& scene, Eigen::Index k,
+                              const DisplacementSensitivities& sensitivities) {
+  const LoadCase& load_case = scene.load_cases[k];
+  const PointDisplacements& points = load_case.points;
+  const int dimension = scene.mesh.Dimension();
+  const auto by_node = [&](const Eigen::MatrixXd& sensitivity) {
+    return Eigen::MatrixXd(
+        sensitivity.col(k).reshaped(dimension, scene.mesh.NumNodes()));
+  };
+  const Eigen::MatrixXd of_e = by_node(sensitivities.log_youngs_modulus);
+  const Eigen::MatrixXd of_nu = by_node(sensitivities.poisson_ratio);
+  ComponentMask observed(dimension, scene.mesh.NumNodes());
+  for (Eigen::Index node = 0; node < observed.cols(); ++node) {
+    for (int i = 0; i < dimension; ++i) {
+      observed(i, node) =
+          !scene.supports.held(i, node) && IsObserved(load_case, i, node);
+    }
+  }
+  const auto information = [](const ComponentMask& mask,
+                              const Eigen::MatrixXd& e,
+                              const Eigen::MatrixXd& nu) {
+    Eigen::Matrix2d sum;
+    sum(0, 0) = mask.select(e.array().square(), 0).sum();
+    sum(1, 1) = mask.select(nu.array().square(), 0).sum();
+    sum(0, 1) = sum(1, 0) = mask.select(e.array() * nu.array(), 0).sum();
+    return sum;
+  };
+  return information(observed, of_e, of_nu) +
+         information(!points.displacement.array().isNaN(),
+                     Interpolate(scene.mesh, points.points, of_e),
+                     Interpolate(scene.mesh, points.points, of_nu));
+}
+
 }  // namespace
 
 Eigen::Matrix2d CramerRaoBound(const Scene& scene,
@@ -38,21 +73,10 @@ Eigen::Matrix2d CramerRaoBound(const Scene& scene,
   }
   const DisplacementSensitivities sensitivities =
       model.Sensitivities(elasticity.youngs_modulus);
-  // With respect to (ln E, nu), which are of one magnitude.
   Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
   for (Eigen::Index k = 0; k < num_cases; ++k) {
-    for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
-      for (int i = 0; i < scene.mesh.Dimension(); ++i) {
-        if (!scene.supports.held(i, node) &&
-            IsObserved(scene.load_cases[k], i, node)) {
-          const Eigen::Index dof = scene.mesh.Dimension() * node + i;
-          const Eigen::Vector2d s(
-              sensitivities.log_youngs_modulus(dof, k) / noise_sd(k),
-              sensitivities.poisson_ratio(dof, k) / noise_sd(k));
-          information += s * s.transpose();
-        }
-      }
-    }
+    information +=
+        InformationOf(scene, k, sensitivities) / (noise_sd(k) * noise_sd(k));
   }
   const Eigen::Vector2d eigenvalues = DecomposeSymmetric(information).values;
   if (eigenvalues(0) <= kSingular * eigenvalues(1)) {

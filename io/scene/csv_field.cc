@@ -1,15 +1,14 @@
 #include "elastimate/io/scene/csv_field.h"
 
-#include <charconv>
+#include <cstddef>
 #include <fstream>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 #include "elastimate/io/mesh/mesh_file.h"
+#include "elastimate/io/text/csv_table.h"
 #include "elastimate/io/text/input_error.h"
-#include "elastimate/io/text/printable.h"
 
 namespace elastimate {
 namespace {
@@ -56,34 +55,8 @@ Eigen::Index ReadHeader(const std::filesystem::path& path,
                       "; correct it (columns are separated by commas)");
 }
 
-std::string Place(Eigen::Index line, std::size_t column) {
-  return "line " + std::to_string(line) + ", column " +
-         std::to_string(column + 1) + ": ";
-}
-
-double ParseNumber(const std::filesystem::path& path, std::string_view cell,
-                   Eigen::Index line, std::size_t column) {
-  if (cell.empty()) {
-    ThrowInputError(path,
-                    Place(line, column) + "the cell is empty; give a number");
-  }
-  const std::string_view digits = cell[0] == '+' ? cell.substr(1) : cell;
-  double value = 0;
-  const auto [end, error] =
-      std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error == std::errc::result_out_of_range) {
-    ThrowInputError(path, Place(line, column) + "'" + Printable(cell) +
-                              "' is beyond the range of a double; correct it");
-  }
-  if (error != std::errc() || end != digits.data() + digits.size()) {
-    ThrowInputError(path, Place(line, column) + "'" + Printable(cell) +
-                              "' is not a number; correct it");
-  }
-  return value;
-}
-
 void ParseRow(const std::filesystem::path& path, std::string_view line,
-              Eigen::Index line_number, Eigen::Ref<Eigen::VectorXd> row) {
+              std::size_t line_number, Eigen::Ref<Eigen::VectorXd> row) {
   const std::vector<std::string_view> cells = SplitCells(line);
   if (static_cast<Eigen::Index>(cells.size()) != row.size()) {
     ThrowInputError(path, "line " + std::to_string(line_number) + " has " +
@@ -93,7 +66,7 @@ void ParseRow(const std::filesystem::path& path, std::string_view line,
   }
   for (std::size_t column = 0; column < cells.size(); ++column) {
     row[static_cast<Eigen::Index>(column)] =
-        ParseNumber(path, cells[column], line_number, column);
+        NumberOfCell(path, cells[column], line_number, column);
   }
 }
 
@@ -115,7 +88,7 @@ Eigen::MatrixXd ReadCsvField(const std::filesystem::path& path,
   std::getline(file, line);
   Eigen::MatrixXd field(ReadHeader(path, line, dimension), num_nodes);
   Eigen::Index row = 0;
-  Eigen::Index line_number = 2;
+  std::size_t line_number = 2;
   for (; std::getline(file, line); ++line_number) {
     if (Trim(line).empty() && (file >> std::ws).eof()) {
       break;  // Blank lines at the end.

@@ -1,14 +1,17 @@
 #include "elastimate/io/scene/json_scene.h"
 
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "elastimate/core/materials/laws.h"
+#include "elastimate/io/points/point_locator.h"
 #include "elastimate/io/scene/csv_field.h"
 #include "elastimate/io/scene/json_value.h"
+#include "elastimate/io/scene/measured_points.h"
 #include "elastimate/io/scene/mesh_reader.h"
 #include "elastimate/io/scene/node_selection.h"
 #include "elastimate/io/scene/section.h"
@@ -23,6 +26,9 @@ struct Context {
   const MeshFile& mesh;
   NodeMask free;             ///< Nodes with a component that is not held.
   Eigen::MatrixXi boundary;  ///< BoundaryFacets.
+  const Mesh& scene_mesh;
+  /// Of the scene's mesh; made when there are points.
+  std::optional<PointLocator> locator;
   std::vector<std::string>& notices;
 };
 
@@ -84,6 +90,12 @@ void AddSupport(const JsonValue& support, const MeshFile& mesh,
       supports.held(axis, node) = true;
       supports.displacement(axis, node) = displacement[axis];
     }
+  }
+  const JsonValue selection = support.At("nodes");
+  if (!selection.IsString() && selection.Has("box")) {
+    const BoxCorners box = CornersOfBox(selection.At("box"), mesh);
+    supports.boxes.push_back({box.low.head(dimension), box.high.head(dimension),
+                              components, displacement});
   }
 }
 
@@ -248,7 +260,32 @@ ComponentMask ReadObserved(const JsonValue& observed, const Context& context) {
       .replicate(mesh.Dimension(), 1);
 }
 
-LoadCase ReadLoadCase(const JsonValue& value, const Context& context,
+// Points, or a vector per node.
+void ReadDisplacement(const JsonValue& displacement, Context& context,
+                      LoadCase& load_case) {
+  if (displacement.Has("points")) {
+    if (load_case.observed.size() > 0) {
+      displacement.Fail(
+          "names points, which \"observed\" does not choose from; leave it "
+          "out");
+    }
+    if (!context.locator) {
+      context.locator.emplace(context.scene_mesh);
+    }
+    load_case.points = ReadMeasuredPoints(displacement, context.scene_mesh,
+                                          *context.locator, context.notices);
+    return;
+  }
+  displacement.CheckKeys({"file", "array"});
+  load_case.displacement =
+      ReadField(displacement, context.mesh,
+                load_case.observed.size() > 0 ? load_case.observed
+                                              : AllComponents(context.mesh),
+                "correct it or leave it out of the observed nodes");
+  ClearUnobserved(load_case);
+}
+
+LoadCase ReadLoadCase(const JsonValue& value, Context& context,
                       Measurement measurement) {
   value.CheckKeys({"displacement", "loads", "noise_sd", "observed"});
   LoadCase load_case;
@@ -265,14 +302,7 @@ LoadCase ReadLoadCase(const JsonValue& value, const Context& context,
     load_case.observed = ReadObserved(value.At("observed"), context);
   }
   if (value.Has("displacement") || measurement == Measurement::kRequired) {
-    const JsonValue displacement = value.At("displacement");
-    displacement.CheckKeys({"file", "array"});
-    load_case.displacement =
-        ReadField(displacement, context.mesh,
-                  load_case.observed.size() > 0 ? load_case.observed
-                                                : AllComponents(context.mesh),
-                  "correct it or leave it out of the observed nodes");
-    ClearUnobserved(load_case);
+    ReadDisplacement(value.At("displacement"), context, load_case);
   }
   return load_case;
 }
@@ -367,9 +397,13 @@ FileScene ReadJsonScene(const std::filesystem::path& path,
       SceneMesh(mesh, SectionOf(mesh, choice), mesh.elements);
   file_scene.scene.materials = ReadMaterials(document);
   file_scene.scene.supports = ReadSupports(document, mesh);
-  const Context context = {
-      mesh, !file_scene.scene.supports.held.colwise().all() && mesh.used,
-      BoundaryFacets(file_scene.scene.mesh), file_scene.notices};
+  Context context = {
+      mesh,
+      !file_scene.scene.supports.held.colwise().all() && mesh.used,
+      BoundaryFacets(file_scene.scene.mesh),
+      file_scene.scene.mesh,
+      {},
+      file_scene.notices};
   const std::vector<JsonValue> cases = document.At("cases").Items();
   if (cases.empty()) {
     document.At("cases").Fail("is empty; give at least one load case");

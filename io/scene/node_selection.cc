@@ -25,21 +25,9 @@ void SelectIds(const JsonValue& ids, const MeshFile& mesh, NodeMask& mask) {
 }
 
 void SelectBox(const JsonValue& box, const MeshFile& mesh, NodeMask& mask) {
-  const std::vector<JsonValue> corners = box.Items();
-  if (corners.size() != 2) {
-    box.Fail(mesh.Dimension() == 3 ? "must be two corners, [[x,y,z],[x,y,z]]"
-                                   : "must be two corners, [[x,y],[x,y]]");
-  }
-  // In a plane z = const, z may be left out.
-  const Eigen::Index size =
-      corners[0].ListSize() == 3 ? 3 : Eigen::Index{mesh.Dimension()};
-  const Eigen::VectorXd low = corners[0].Vector(size);
-  const Eigen::VectorXd high = corners[1].Vector(size);
-  if ((low.array() > high.array()).any()) {
-    box.Fail("has a first corner above its second one; swap them");
-  }
+  const auto [low, high] = CornersOfBox(box, mesh);
   for (Eigen::Index node = 0; node < mesh.nodes.cols(); ++node) {
-    const auto position = mesh.nodes.col(node).head(size).array();
+    const auto position = mesh.nodes.col(node).head(low.size()).array();
     mask[node] =
         (position >= low.array()).all() && (position <= high.array()).all();
   }
@@ -142,6 +130,22 @@ std::vector<const PhysicalGroup*> FindSurfaceGroups(const JsonValue& selection,
 }
 
 }  // namespace
+
+BoxCorners CornersOfBox(const JsonValue& box, const MeshFile& mesh) {
+  const std::vector<JsonValue> corners = box.Items();
+  if (corners.size() != 2) {
+    box.Fail(mesh.Dimension() == 3 ? "must be two corners, [[x,y,z],[x,y,z]]"
+                                   : "must be two corners, [[x,y],[x,y]]");
+  }
+  const Eigen::Index size =
+      corners[0].ListSize() == 3 ? 3 : Eigen::Index{mesh.Dimension()};
+  const BoxCorners box_corners = {corners[0].Vector(size),
+                                  corners[1].Vector(size)};
+  if ((box_corners.low.array() > box_corners.high.array()).any()) {
+    box.Fail("has a first corner above its second one; swap them");
+  }
+  return box_corners;
+}
 
 NodeMask SelectNodes(const JsonValue& selection, const MeshFile& mesh,
                      const NodeMask* free) {

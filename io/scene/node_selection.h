@@ -12,6 +12,16 @@ namespace elastimate {
 /// One flag per node of the file; never set for a node without an element.
 using NodeMask = Eigen::Array<bool, 1, Eigen::Dynamic>;
 
+/// Opposite corners, of 3 coordinates or, in a plane z = const, also of 2.
+struct BoxCorners {
+  Eigen::VectorXd low;
+  Eigen::VectorXd high;
+};
+
+/// The value of the key "box" of a selection.  Throws std::invalid_argument,
+/// naming the file and the place in it, unless it is [low, high].
+BoxCorners CornersOfBox(const JsonValue& box, const MeshFile& mesh);
+
 /// The nodes that `selection` selects: "all"; "free", which is `free` (null
 /// where it cannot be used); {"ids": [...]}, zero-based positions among all
 /// nodes of the file; {"box": [low, high]}, bounds included, of 3 coordinates

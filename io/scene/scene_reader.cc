@@ -251,10 +251,20 @@ void CheckPathsDiffer(const std::vector<std::filesystem::path>& paths) {
   }
 }
 
+// Entries that are not numbers are the same.
+bool AreSamePoints(const PointDisplacements& a, const PointDisplacements& b) {
+  return a.points.Size() == b.points.Size() &&
+         a.points.elements == b.points.elements &&
+         a.points.local == b.points.local &&
+         ((a.displacement.array() == b.displacement.array()) ||
+          (a.displacement.array().isNaN() && b.displacement.array().isNaN()))
+             .all();
+}
+
 bool AreSameMeasurement(const Mesh& mesh, const LoadCase& a,
                         const LoadCase& b) {
-  return a.displacement.size() > 0 &&
-         a.displacement.size() == b.displacement.size() &&
+  return IsMeasured(a) && a.displacement.size() == b.displacement.size() &&
+         AreSamePoints(a.points, b.points) &&
          a.displacement == b.displacement &&
          a.observed.size() == b.observed.size() &&
          (a.observed == b.observed).all() &&

@@ -68,6 +68,20 @@ void ExpectHonestyWhereNothingIsWrong(const std::vector<TableRow>& rows) {
   }
 }
 
+// What an inclusion leaves in the residual is not taken for that of the
+// elements.
+void ExpectNoElementsToExplainAnInclusion(const Trials& trials) {
+  int count = 0;
+  for (const auto& [key, row] : trials) {
+    const auto& [factor, level, estimator, seed] = key;
+    if (factor == "inclusion stiffness [1]" && estimator != "auto") {
+      EXPECT_NE(row.Text("outcome"), "dishonest") << level << ", " << estimator;
+      ++count;
+    }
+  }
+  EXPECT_GT(count, 0);
+}
+
 // E is proportional to the force, and nu does not depend on it.
 void ExpectTheForceScalesE(const Trials& trials) {
   int count = 0;
@@ -201,6 +215,7 @@ TEST_F(StabilityStudy, FindsWhatTheoryPredicts) {
   ExpectHonestyWhereNothingIsWrong(rows);
   ExpectTheForceScalesE(trials);
   ExpectInclusionOfTheSameMaterialIsNone(trials);
+  ExpectNoElementsToExplainAnInclusion(trials);
   ExpectHuberWithstandsOutliers(trials);
   ExpectUnsupportedWhereDataAreMissing(rows);
   ExpectCellsAddUpTrials(rows, ReadTable(folder_ / "stability_cells.csv"));

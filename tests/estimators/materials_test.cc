@@ -242,11 +242,11 @@ struct StatisticsCase {
 
 class MaterialsStatistics : public ::testing::TestWithParam<StatisticsCase> {};
 
-// Standard scores of 100 seeds have the variance 1, with a standard deviation
-// of .14, root mean squares one of 7 %, and they cover 95 % with one of 2.2 %;
-// so 4 of them each.
+// Standard scores of 50 seeds have the variance 1, with a standard deviation of
+// .2, root mean squares one of 10 %, and they cover 95 % with one of 3.1 %; so 4
+// of them each.
 TEST_P(MaterialsStatistics, StandardErrorsAreThoseOfTheErrors) {
-  constexpr int kSeeds = 100;
+  constexpr int kSeeds = 50;
   Scene scene = TwoRegionScene({ElementKind::kTet4, SectionModel::kSolid}, 4);
   MeasureByEquilibrium(kParameters, scene);
   const Scene exact = scene;
@@ -280,12 +280,12 @@ TEST_P(MaterialsStatistics, StandardErrorsAreThoseOfTheErrors) {
                    kParameters(i) <= parameter.interval->upper;
     }
   }
-  EXPECT_GE(usable, 95);
+  EXPECT_GE(usable, 47);
   for (Eigen::Index i = 0; i < 4; ++i) {
-    EXPECT_NEAR(squares(i) / usable, 1, 0.56) << i;
-    EXPECT_LE(std::sqrt(ratios(i) / usable), GetParam().largest_ratio * 1.28)
+    EXPECT_NEAR(squares(i) / usable, 1, 0.8) << i;
+    EXPECT_LE(std::sqrt(ratios(i) / usable), GetParam().largest_ratio * 1.4)
         << i;
-    EXPECT_GE(inside(i) / usable, 0.95 - 4 * 0.022) << i;
+    EXPECT_GE(inside(i) / usable, 0.95 - 4 * 0.031) << i;
   }
 }
 

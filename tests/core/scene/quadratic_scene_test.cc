@@ -312,5 +312,43 @@ TEST_F(SlabToConvert, BetweenTwoSupportsIsFree) {
   EXPECT_FALSE(quadratic.supports.held(0, between));
 }
 
+// A clamp from x = 0 to between two layers of nodes, nearer to the free one.
+TEST(QuadraticSupports, AreDecidedByBoxes) {
+  Scene scene = SmallScene("cuboid");
+  scene.mesh = BoxMesh({4, 2, 2}, {4, 2, 2});
+  const Eigen::Index num_nodes = scene.mesh.NumNodes();
+  const HeldBox box = {Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(1.7, 3, 3),
+                       Eigen::Array3<bool>(true, false, true),
+                       Eigen::Vector3d(0.1, 7, 0.2)};
+  const auto inside = [&box](const Eigen::Vector3d& x) {
+    return (x.array() >= box.lower.array()).all() &&
+           (x.array() <= box.upper.array()).all();
+  };
+  scene.supports = {ComponentMask::Constant(3, num_nodes, false),
+                    Eigen::MatrixXd::Zero(3, num_nodes),
+                    {box}};
+  for (Eigen::Index node = 0; node < num_nodes; ++node) {
+    if (inside(scene.mesh.nodes.col(node))) {
+      scene.supports.held.col(node) = box.components;
+      scene.supports.displacement.col(node) = box.displacement;
+    }
+  }
+  scene.load_cases.assign(1, {{BodyForce{Eigen::Vector3d(0, 0, -1)}}, {}, {}});
+  const Scene quadratic = QuadraticScene(scene);
+  int num_between = 0;
+  for (Eigen::Index node = 0; node < quadratic.mesh.NumNodes(); ++node) {
+    const Eigen::Vector3d x = quadratic.mesh.nodes.col(node);
+    EXPECT_EQ(quadratic.supports.held(0, node), inside(x));
+    EXPECT_FALSE(quadratic.supports.held(1, node));
+    EXPECT_EQ(quadratic.supports.held(2, node), inside(x));
+    if (inside(x)) {
+      EXPECT_EQ(quadratic.supports.displacement(0, node), 0.1);
+      EXPECT_EQ(quadratic.supports.displacement(2, node), 0.2);
+    }
+    num_between += inside(x) && x(0) > 1 ? 1 : 0;
+  }
+  EXPECT_GT(num_between, 9);
+}
+
 }  // namespace
 }  // namespace elastimate

@@ -184,7 +184,7 @@ TEST(ReducedFit, LowerBoundsHoldWhereTheModelIsPoor) {
         ReducedModel model(scene);
         ASSERT_TRUE(model.SetPole(0.3));
         const double norm =
-            model.ComplianceNormAtPole(observed.LargestWeights());
+            model.ComplianceNormAtPole(observed.BoundingWeights());
         const Eigen::VectorXd ones = Eigen::VectorXd::Ones(observed.Size());
         for (int vectors = 0; vectors < 16; vectors += 5) {
           SCOPED_TRACE(shape + ", nu " + std::to_string(nu) + ", vectors " +

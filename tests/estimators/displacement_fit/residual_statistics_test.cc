@@ -78,8 +78,8 @@ TEST(RobustChange, TakesBackWhatOutliersPull) {
   const Eigen::Vector3d truth(0.1, -0.2, 0.3);
   Eigen::VectorXd residual = -s * truth;
   residual += 1e-3 * testing::RandomMatrix(observed.Size(), 1, 2);
-  for (std::size_t i = 0; i < observed.Nodes().size(); i += 10) {
-    residual.segment(observed.Nodes()[i].first, observed.Nodes()[i].count)
+  for (std::size_t i = 0; i < observed.Points().size(); i += 10) {
+    residual.segment(observed.Points()[i].first, observed.Points()[i].count)
         .array() += 5;
   }
   EXPECT_TRUE(HasHeavyTails(residual));

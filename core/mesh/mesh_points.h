@@ -1,0 +1,37 @@
+#ifndef ELASTIMATE_CORE_MESH_MESH_POINTS_H_
+#define ELASTIMATE_CORE_MESH_MESH_POINTS_H_
+
+#include <Eigen/Core>
+
+#include "elastimate/core/mesh/mesh.h"
+
+namespace elastimate {
+
+/// Points of a body, n in all, by the elements that they lie in.  Those of a
+/// mesh of linear simplices are the same points of its mesh of quadratic ones.
+struct MeshPoints {
+  Eigen::VectorXi elements;  ///< n.
+  /// Reference coordinates xi as those of ShapeFunctionsAt, dimension x n.
+  Eigen::MatrixXd local;
+
+  Eigen::Index Size() const { return elements.size(); }
+};
+
+/// Throws std::invalid_argument with one sentence that names the point unless
+/// every element exists and every coordinate lies in its reference element, but
+/// for 1e-6.  O(n).
+void ValidatePoints(const Mesh& mesh, const MeshPoints& points);
+
+/// N_i at each point, num_nodes_of_element x n: what the nodes of its element
+/// have in a value there.  Precondition: ValidatePoints.  O(n).
+Eigen::MatrixXd ShapeFunctionsOf(const Mesh& mesh, const MeshPoints& points);
+
+/// The values at the points of a field of the nodes, rows x num_nodes: rows x
+/// n.  The positions are those of the field mesh.nodes.
+/// Precondition: ValidatePoints.  O(rows n).
+Eigen::MatrixXd Interpolate(const Mesh& mesh, const MeshPoints& points,
+                            const Eigen::MatrixXd& field);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_MESH_MESH_POINTS_H_

@@ -1,0 +1,99 @@
+#ifndef ELASTIMATE_CORE_SCENE_OBSERVED_DISPLACEMENTS_H_
+#define ELASTIMATE_CORE_SCENE_OBSERVED_DISPLACEMENTS_H_
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "elastimate/core/scene/scene.h"
+
+namespace elastimate {
+
+/// The measured displacements of a scene as one vector of rows, those of all
+/// load cases below each other:
+///
+///   q_i = sum_j N_j(x_i) u_j + noise of the standard deviation s_i,
+///
+/// where x_i is a node, or a point within an element of shape functions N_j.
+/// Held degrees of freedom u_j are known: their part is taken from q_i, and a
+/// row without others is left out.  Rows are weighted by 1 / s_i where it is
+/// known, and normalised so that the first vector of measurements has norm 1.
+class ObservedDisplacements {
+ public:
+  /// The observed components of one node, or of another point, in one load
+  /// case: rows [first, first + count) of the vector.
+  struct Point {
+    Eigen::Index load_case;
+    /// The node, or behind all nodes the number of the point.
+    Eigen::Index index;
+    Eigen::Index first;
+    int count;
+  };
+
+  /// Precondition: a valid scene, with a measurement in each load case.
+  /// O(num_rows), and where there are points O(num_points log num_points).
+  explicit ObservedDisplacements(const Scene& scene);
+
+  /// Takes the measured displacements of a scene that differs in nothing else,
+  /// with the normalisation as it was.
+  void Remeasure(const Scene& scene);
+
+  int Dimension() const { return dimension_; }
+  Eigen::Index NumLoadCases() const {
+    return static_cast<Eigen::Index>(rows_.size());
+  }
+  /// In the order of their rows.
+  const std::vector<Point>& Points() const { return points_; }
+  /// Points that are no nodes and near each other: indices of Points, each pair
+  /// of one load case.
+  const std::vector<std::array<Eigen::Index, 2>>& NeighbouringPoints() const {
+    return neighbouring_points_;
+  }
+  Eigen::Index Size() const { return measured_.size(); }
+  const Eigen::VectorXd& Measured() const { return measured_; }
+  /// The norm of the first weighted measurement, which is the unit here.
+  double Norm() const { return norm_; }
+  /// The component (0, 1 and, in three dimensions, 2) of a row.
+  int Component(Eigen::Index row) const { return component_[row]; }
+  /// The root mean square of the standard deviations of the noise [length];
+  /// empty where they are not known.
+  const std::optional<double>& GivenNoise() const { return given_noise_; }
+
+  /// The rows of load case `k` are [CaseStart(k), CaseStart(k + 1)).
+  Eigen::Index CaseStart(Eigen::Index k) const { return case_start_[k]; }
+
+  /// The same rows of other displacements, num_dofs x num_load_cases, with the
+  /// same weights and normalisation, without the part of held degrees of
+  /// freedom.
+  Eigen::VectorXd Restrict(const Eigen::MatrixXd& displacements) const;
+  /// The rows of load case `k` of one displacement, num_dofs values.
+  Eigen::VectorXd RestrictToCase(Eigen::Index k,
+                                 const Eigen::VectorXd& displacement) const;
+  /// For each degree of freedom a weight d, so that in no load case the norm of
+  /// the rows of a displacement u is above that of d u, by components.  It is
+  /// equal where only nodes are observed, in one load case.
+  Eigen::VectorXd BoundingWeights() const;
+
+ private:
+  /// One for each load case, rows x num_dofs, without the held ones.
+  using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor, Eigen::Index>;
+
+  int dimension_;
+  std::vector<Point> points_;
+  std::vector<std::array<Eigen::Index, 2>> neighbouring_points_;
+  std::vector<Eigen::Index> case_start_ = {0};
+  std::vector<int> component_;
+  std::vector<Rows> rows_;
+  Eigen::VectorXd weights_;
+  /// Of the held degrees of freedom, weighted.
+  Eigen::VectorXd held_part_;
+  Eigen::VectorXd measured_;
+  double norm_;
+  std::optional<double> given_noise_;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_SCENE_OBSERVED_DISPLACEMENTS_H_

@@ -1,0 +1,106 @@
+#include "elastimate/io/points/points_file.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "elastimate/io/text/csv_table.h"
+#include "elastimate/io/text/input_error.h"
+
+namespace elastimate {
+namespace {
+
+using Columns = std::vector<std::size_t>;
+
+constexpr std::array<const char*, 3> kPositions = {"x", "y", "z"};
+constexpr std::array<const char*, 3> kDisplacements = {"ux", "uy", "uz"};
+constexpr std::array<const char*, 3> kDeviations = {"sd_ux", "sd_uy", "sd_uz"};
+
+Columns Find(const CsvTable& table, const std::array<const char*, 3>& names,
+             int dimension) {
+  Columns columns;
+  for (int i = 0; i < dimension; ++i) {
+    columns.push_back(table.At(names[i]));
+  }
+  return columns;
+}
+
+// The columns of standard deviations; none where the file has none of them.
+Columns FindDeviations(const CsvTable& table, int dimension) {
+  bool has_any = false;
+  for (int i = 0; i < dimension; ++i) {
+    has_any = has_any || table.Find(kDeviations[i]);
+  }
+  return has_any ? Find(table, kDeviations, dimension) : Columns{};
+}
+
+std::string Place(const CsvTable& table, const CsvTable::Row& row,
+                  std::size_t column) {
+  return "line " + std::to_string(row.line) + ": " + table.columns[column];
+}
+
+double Position(const CsvTable& table, const CsvTable::Row& row,
+                std::size_t column) {
+  const std::optional<double> value = table.Number(row, column);
+  if (!value || !std::isfinite(*value)) {
+    ThrowInputError(table.path,
+                    Place(table, row, column) +
+                        " is not a finite number; give the position of each "
+                        "point, or leave out the row");
+  }
+  return *value;
+}
+
+double Displacement(const CsvTable& table, const CsvTable::Row& row,
+                    std::size_t column) {
+  const double value = table.Number(row, column)
+                           .value_or(std::numeric_limits<double>::quiet_NaN());
+  if (std::isinf(value)) {
+    ThrowInputError(table.path,
+                    Place(table, row, column) +
+                        " is infinite; correct it, or leave the cell empty");
+  }
+  return value;
+}
+
+double Deviation(const CsvTable& table, const CsvTable::Row& row,
+                 std::size_t column) {
+  const double value = table.Number(row, column).value_or(0);
+  if (!(value > 0 && std::isfinite(value))) {
+    ThrowInputError(table.path, Place(table, row, column) +
+                                    " must be positive where a displacement "
+                                    "was measured; correct it");
+  }
+  return value;
+}
+
+}  // namespace
+
+PointsFile ReadPointsFile(const std::filesystem::path& path, int dimension) {
+  const CsvTable table = ReadCsvTable(path);
+  const Columns x = Find(table, kPositions, dimension);
+  const Columns u = Find(table, kDisplacements, dimension);
+  const Columns sd = FindDeviations(table, dimension);
+  const Eigen::Index n = static_cast<Eigen::Index>(table.rows.size());
+  PointsFile file;
+  file.positions.resize(dimension, n);
+  file.displacement.resize(dimension, n);
+  if (!sd.empty()) {
+    file.noise_sd.setOnes(dimension, n);
+  }
+  for (Eigen::Index point = 0; point < n; ++point) {
+    const CsvTable::Row& row = table.rows[point];
+    file.lines.push_back(row.line);
+    for (int i = 0; i < dimension; ++i) {
+      file.positions(i, point) = Position(table, row, x[i]);
+      file.displacement(i, point) = Displacement(table, row, u[i]);
+      if (!sd.empty() && !std::isnan(file.displacement(i, point))) {
+        file.noise_sd(i, point) = Deviation(table, row, sd[i]);
+      }
+    }
+  }
+  return file;
+}
+
+}  // namespace elastimate

@@ -1,0 +1,133 @@
+#include "elastimate/io/scene/measured_points.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+#include <utility>
+
+#include "elastimate/io/points/points_file.h"
+#include "elastimate/io/text/input_error.h"
+#include "elastimate/io/text/printable.h"
+
+namespace elastimate {
+namespace {
+
+// Of the diagonal of the bounding box.
+constexpr double kUsualTolerance = 1e-3;
+
+std::vector<std::filesystem::path> FilesOf(const JsonValue& points) {
+  const std::filesystem::path folder = points.File().parent_path();
+  if (points.IsString()) {
+    return {folder / points.String()};
+  }
+  std::vector<std::filesystem::path> files;
+  for (const JsonValue& name : points.Items()) {
+    files.push_back(folder / name.String());
+  }
+  if (files.empty()) {
+    points.Fail("is empty; name a file of points");
+  }
+  return files;
+}
+
+double ToleranceOf(const JsonValue& displacement, const Mesh& mesh) {
+  if (!displacement.Has("tolerance")) {
+    return kUsualTolerance *
+           (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff())
+               .norm();
+  }
+  const double tolerance = displacement.At("tolerance").Number();
+  if (!(tolerance >= 0)) {
+    displacement.At("tolerance").Fail("must not be negative");
+  }
+  return tolerance;
+}
+
+std::string Text(const Eigen::VectorXd& position) {
+  std::ostringstream text;
+  for (Eigen::Index i = 0; i < position.size(); ++i) {
+    text << (i == 0 ? "(" : ", ") << position[i];
+  }
+  text << ")";
+  return text.str();
+}
+
+std::string Text(double length) {
+  std::ostringstream text;
+  text.precision(3);
+  text << length;
+  return text.str();
+}
+
+void CheckDistances(const std::filesystem::path& path, const PointsFile& file,
+                    const Eigen::VectorXd& distance, double tolerance,
+                    std::vector<std::string>& notices) {
+  for (Eigen::Index point = 0; point < distance.size(); ++point) {
+    if (distance(point) > tolerance) {
+      ThrowInputError(
+          path, "line " + std::to_string(file.lines[point]) + ": the point " +
+                    Text(file.positions.col(point)) + " lies " +
+                    Text(distance(point)) +
+                    " outside the mesh; use the mesh's units and axes, leave "
+                    "it out, or give a \"tolerance\" above " +
+                    Text(tolerance));
+    }
+  }
+  const Eigen::Index num_outside = (distance.array() > 0).count();
+  if (num_outside > 0) {
+    notices.push_back(PrintablePath(path) + ": " + std::to_string(num_outside) +
+                      " of " + std::to_string(distance.size()) +
+                      " points lie outside the mesh, up to " +
+                      Text(distance.maxCoeff()) +
+                      "; they count as the nearest points of its surface");
+  }
+}
+
+// The columns of `b` behind those of `a`.
+Eigen::MatrixXd Append(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  Eigen::MatrixXd both(b.rows(), a.cols() + b.cols());
+  both << a, b;
+  return both;
+}
+
+void AppendPoints(const PointsFile& file, const MeshPoints& points,
+                  PointDisplacements& all) {
+  all.points.elements.conservativeResize(all.points.Size() + points.Size());
+  all.points.elements.tail(points.Size()) = points.elements;
+  all.points.local = Append(all.points.local, points.local);
+  all.displacement = Append(all.displacement, file.displacement);
+  if (file.noise_sd.size() != 0) {
+    all.noise_sd = Append(all.noise_sd, file.noise_sd);
+  }
+}
+
+}  // namespace
+
+PointDisplacements ReadMeasuredPoints(const JsonValue& displacement,
+                                      const Mesh& mesh,
+                                      const PointLocator& locator,
+                                      std::vector<std::string>& notices) {
+  displacement.CheckKeys({"points", "tolerance"});
+  const double tolerance = ToleranceOf(displacement, mesh);
+  PointDisplacements all;
+  all.points.local.resize(mesh.Dimension(), 0);
+  all.displacement.resize(mesh.Dimension(), 0);
+  all.noise_sd.resize(mesh.Dimension(), 0);
+  for (const std::filesystem::path& path : FilesOf(displacement.At("points"))) {
+    const PointsFile file = ReadPointsFile(path, mesh.Dimension());
+    const LocatedPoints located = locator.Locate(file.positions);
+    CheckDistances(path, file, located.distance, tolerance, notices);
+    AppendPoints(file, located.points, all);
+    if (all.noise_sd.cols() != 0 && all.noise_sd.cols() != all.points.Size()) {
+      ThrowInputError(path,
+                      "some files of the load case have columns of standard "
+                      "deviations and some have none; give them in all");
+    }
+  }
+  if (all.noise_sd.cols() == 0) {
+    all.noise_sd.resize(0, 0);
+  }
+  return all;
+}
+
+}  // namespace elastimate

@@ -1,0 +1,26 @@
+#ifndef ELASTIMATE_IO_SCENE_MEASURED_POINTS_H_
+#define ELASTIMATE_IO_SCENE_MEASURED_POINTS_H_
+
+#include <string>
+#include <vector>
+
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/io/points/point_locator.h"
+#include "elastimate/io/scene/json_value.h"
+
+namespace elastimate {
+
+/// The measured points of a load case: `displacement` has the key `points`, a
+/// file (ReadPointsFile) or a list of some, paths relative to its own, and may
+/// have `tolerance`, how far a point may lie outside the mesh [length]; without
+/// it a thousandth of the diagonal of the mesh's bounding box.  Throws
+/// std::invalid_argument, naming the file, the line and the distance, for a
+/// point farther outside; adds a notice of those nearer.
+PointDisplacements ReadMeasuredPoints(const JsonValue& displacement,
+                                      const Mesh& mesh,
+                                      const PointLocator& locator,
+                                      std::vector<std::string>& notices);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_IO_SCENE_MEASURED_POINTS_H_

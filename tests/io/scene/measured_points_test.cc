@@ -1,0 +1,141 @@
+#include "elastimate/io/scene/measured_points.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "elastimate/estimators/registry.h"
+#include "elastimate/io/scene/scene_reader.h"
+#include "elastimate/io/vtk/vtu_writer.h"
+#include "tests/io/scene_files.h"
+#include "tests/random_points.h"
+#include "tests/scenes.h"
+#include "tests/throws.h"
+
+namespace elastimate {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr double kModulusOfPoints = 2e4;
+constexpr double kRatioOfPoints = 0.35;
+
+const std::string kPointsDocument = R"({
+  "mesh": "cube.vtu",
+  "supports": [ {"nodes": {"box": [[-1, -1, -1], [2, 2, 0]]}} ],
+  "cases": [
+    { "displacement": {"points": "points.csv"},
+      "loads": [ {"type": "force", "value": [3, 1, -20],
+                  "surface": {"box": [[-1, -1, 1], [2, 2, 2]]}} ] } ]
+})";
+
+// A cube, and 100 of its points that an E and a nu moved.
+class MeasuredPointsTest : public ::testing::Test {
+ protected:
+  MeasuredPointsTest() {
+    scene_.mesh = testing::BoxMesh({4, 4, 4}, {1, 1, 1});
+    WriteVtu(folder_.Path() / "cube.vtu", scene_.mesh, {});
+    folder_.Write("points.csv", "x,y,z,ux,uy,uz\n0.5,0.5,0.5,0,0,0\n");
+    scene_ = Read(kPointsDocument).scene;
+    scene_.load_cases[0].points = {};
+    testing::Measure({kModulusOfPoints, kRatioOfPoints}, scene_);
+    testing::MeasureAtPoints(100, 1, scene_);
+    folder_.Write("points.csv", Table(0, 100));
+  }
+
+  // Of the points in [begin, end).
+  std::string Table(Eigen::Index begin, Eigen::Index end) const {
+    const PointDisplacements& points = scene_.load_cases[0].points;
+    const Eigen::MatrixXd x =
+        Interpolate(scene_.mesh, points.points, scene_.mesh.nodes);
+    std::ostringstream text;
+    text << std::setprecision(17) << "x,y,z,ux,uy,uz\n";
+    for (Eigen::Index i = begin; i < end; ++i) {
+      for (const double value : x.col(i)) {
+        text << value << ",";
+      }
+      const auto u = points.displacement.col(i);
+      text << u(0) << "," << u(1) << "," << u(2) << "\n";
+    }
+    return text.str();
+  }
+
+  SceneReading Read(const std::string& document) const {
+    return ReadScene({folder_.Write("scene.json", document)},
+                     Measurement::kRequired);
+  }
+
+  const TemporaryFolder folder_;
+  Scene scene_;
+};
+
+TEST_F(MeasuredPointsTest, GiveTheTruth) {
+  const SceneReading reading = Read(kPointsDocument);
+  EXPECT_THAT(reading.notices, ElementsAre());
+  EXPECT_EQ(reading.scene.load_cases[0].displacement.size(), 0);
+  const Estimate estimate = MakeEstimator("auto")->Run(reading.scene, {});
+  EXPECT_EQ(estimate.status, Status::kOk) << estimate.message;
+  EXPECT_NEAR(estimate.elasticity.youngs_modulus / kModulusOfPoints, 1, 1e-6);
+  EXPECT_NEAR(estimate.elasticity.poisson_ratio, kRatioOfPoints, 1e-6);
+}
+
+TEST_F(MeasuredPointsTest, MayComeFromSeveralFiles) {
+  folder_.Write("a.csv", Table(0, 30));
+  folder_.Write("b.csv", Table(30, 100));
+  const Scene scene = Read(Replaced(kPointsDocument, R"("points.csv")",
+                                    R"(["a.csv", "b.csv"])"))
+                          .scene;
+  const PointDisplacements& points = scene.load_cases[0].points;
+  EXPECT_EQ(points.displacement,
+            Read(kPointsDocument).scene.load_cases[0].points.displacement);
+  EXPECT_EQ(points.points.Size(), 100);
+}
+
+TEST_F(MeasuredPointsTest, AreRefusedOutside) {
+  folder_.Write("points.csv",
+                "x,y,z,ux,uy,uz\n.5,.5,.5,0,0,1\n.5,.5,1.25,0,0,1\n");
+  EXPECT_THROWS_WITH(
+      Read(kPointsDocument),
+      "points.csv: line 3: the point \\(0.5, 0.5, 1.25\\) lies 0.25 outside "
+      "the mesh; .* or give a .tolerance. above 0.00173");
+  const SceneReading reading = Read(Replaced(
+      kPointsDocument, R"("points.csv")", R"("points.csv", "tolerance": 0.3)"));
+  ASSERT_EQ(reading.notices.size(), 1U);
+  EXPECT_THAT(reading.notices[0],
+              HasSubstr("1 of 2 points lie outside the mesh, up to 0.25"));
+}
+
+TEST_F(MeasuredPointsTest, NameWhatIsWrong) {
+  const auto with = [](const std::string& displacement) {
+    return Replaced(kPointsDocument, R"({"points": "points.csv"})",
+                    displacement);
+  };
+  EXPECT_THROWS_WITH(Read(with(R"({"points": "no.csv"})")), "no.csv");
+  EXPECT_THROWS_WITH(Read(with(R"({"points": []})")),
+                     "cases\\[0\\].displacement.points is empty");
+  EXPECT_THROWS_WITH(Read(with(R"({"points": "points.csv", "tol": 1})")),
+                     "tol");
+  EXPECT_THROWS_WITH(Read(with(R"({"points": "points.csv", "tolerance": -1})")),
+                     "tolerance must not be negative");
+  EXPECT_THROWS_WITH(Read(Replaced(kPointsDocument, R"("loads")",
+                                   R"("observed": "all", "loads")")),
+                     "\"observed\" does not choose from; leave it out");
+  folder_.Write("sd.csv",
+                "x,y,z,ux,uy,uz,sd_ux,sd_uy,sd_uz\n.5,.5,.5,0,0,1,1,1,1\n");
+  EXPECT_THROWS_WITH(Read(with(R"({"points": ["points.csv", "sd.csv"]})")),
+                     "sd.csv: some files of the load case have columns");
+}
+
+TEST_F(MeasuredPointsTest, AreNoFurtherLoadCaseTwice) {
+  const auto path = folder_.Write("scene.json", kPointsDocument);
+  const auto again = folder_.Write("again.json", kPointsDocument);
+  EXPECT_THROWS_WITH(ReadScene({path, again}, Measurement::kRequired),
+                     "give each load case only once");
+}
+
+}  // namespace
+}  // namespace elastimate
