@@ -1,18 +1,12 @@
 #include "elastimate/core/solvers/petsc_multigrid.h"
 
-#include <fcntl.h>
 #include <petscksp.h>
-#include <poll.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <csignal>
-#include <cstdlib>
 #include <limits>
 #include <mutex>
 #include <new>
@@ -69,75 +63,36 @@ constexpr char kOptions[] =
     "-elastimate_mg_levels_ksp_max_it 2 "
     "-elastimate_mg_levels_pc_type jacobi";
 
-// Whether MPI can be started here: where it cannot (no folder for temporary
-// files, no network interface, few files), it ends the process that tries.
-bool CanStartMpi() {
-  constexpr int kMostMilliseconds = 20000;
-  int ends[2];
-  if (pipe(ends) != 0) {
-    return false;
-  }
-  const pid_t child = fork();
-  if (child == 0) {
-    const int nowhere = open("/dev/null", O_WRONLY);
-    dup2(nowhere, STDOUT_FILENO);
-    dup2(nowhere, STDERR_FILENO);
-    const bool is_started = MPI_Init(nullptr, nullptr) == MPI_SUCCESS &&
-                            MPI_Finalize() == MPI_SUCCESS;
-    const char answer = 'y';
-    _exit(is_started && write(ends[1], &answer, 1) == 1 ? 0 : 1);
-  }
-  close(ends[1]);
-  char answer = 'n';
-  if (child > 0) {
-    pollfd answered = {ends[0], POLLIN, 0};
-    if (poll(&answered, 1, kMostMilliseconds) <= 0 ||
-        read(ends[0], &answer, 1) != 1) {
-      answer = 'n';
-    }
-    kill(child, SIGKILL);
-    waitpid(child, nullptr, 0);
-  }
-  close(ends[0]);
-  return answer == 'y';
-}
-
-void StartPetsc() {
+bool IsPetscRunning() {
   PetscBool is_running = PETSC_FALSE;
   PetscInitialized(&is_running);
-  if (is_running == PETSC_FALSE) {
-    int has_mpi = 0;
-    MPI_Initialized(&has_mpi);
-    // One process needs no daemon to start others.
-    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
-    if (has_mpi == 0 && !CanStartMpi()) {
-      throw PetscFailure();
-    }
-    // Neither options, from files or the environment, nor handlers of signals
-    // are for a program that only wants its equations solved.
-    const char* const given = std::getenv("PETSC_OPTIONS");
-    const std::optional<std::string> options =
-        given == nullptr ? std::nullopt : std::optional<std::string>(given);
-    unsetenv("PETSC_OPTIONS");
-    PetscOptionsSetValue(nullptr, "-skip_petscrc", "true");
-    PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");
-    const PetscErrorCode error = PetscInitializeNoArguments();
-    if (options) {
-      setenv("PETSC_OPTIONS", options->c_str(), 1);
-    }
-    Check(error);
-    std::atexit([] { PetscFinalize(); });
-  }
-  Check(PetscOptionsInsertString(nullptr, kOptions));
+  return is_running == PETSC_TRUE;
 }
 
-// What PETSc writes for an error goes nowhere while one of these lives.
-class QuietErrors {
+// While one of these lives, no other thread is in PETSc, what it writes for an
+// error goes nowhere, and the options above hold instead of the program's.
+class UseOfPetsc {
  public:
-  QuietErrors() { PetscPushErrorHandler(PetscReturnErrorHandler, nullptr); }
-  ~QuietErrors() { PetscPopErrorHandler(); }
-  QuietErrors(const QuietErrors&) = delete;
-  QuietErrors& operator=(const QuietErrors&) = delete;
+  UseOfPetsc() : lock_(PetscMutex()) {
+    if (!IsPetscRunning()) {
+      throw PetscFailure();
+    }
+    PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
+    PetscOptionsCreate(&options_);
+    PetscOptionsInsertString(options_, kOptions);
+    PetscOptionsPush(options_);
+  }
+  ~UseOfPetsc() {
+    PetscOptionsPop();
+    PetscOptionsDestroy(&options_);
+    PetscPopErrorHandler();
+  }
+  UseOfPetsc(const UseOfPetsc&) = delete;
+  UseOfPetsc& operator=(const UseOfPetsc&) = delete;
+
+ private:
+  std::lock_guard<std::mutex> lock_;
+  PetscOptions options_ = nullptr;
 };
 
 }  // namespace
@@ -173,10 +128,8 @@ struct PetscMultigrid::Workspace {
         dimension(dofs.dimension) {}
   ~Workspace() {
     const std::lock_guard lock(PetscMutex());
-    PetscBool has_ended = PETSC_FALSE;
-    PetscFinalized(&has_ended);
-    if (has_ended == PETSC_TRUE) {
-      return;  // An object of static lifetime.
+    if (!IsPetscRunning()) {
+      return;  // It never was, or this is an object of static lifetime.
     }
     KSPDestroy(&solver);
     VecDestroy(&right_hand_side);
@@ -378,10 +331,8 @@ PetscMultigrid::PetscMultigrid(const Mesh& mesh,
                                const StiffnessAssembly& assembly,
                                const DegreesOfFreedom& degrees_of_freedom)
     : workspace_(std::make_unique<Workspace>(assembly, degrees_of_freedom)) {
-  const std::lock_guard lock(PetscMutex());
   try {
-    StartPetsc();
-    const QuietErrors quiet;
+    const UseOfPetsc use;
     workspace_->BuildPattern();
     workspace_->CreateSolver(mesh);
     workspace_->is_ready = true;
@@ -396,10 +347,9 @@ bool PetscMultigrid::Factorize(const Eigen::VectorXd& values) {
   if (!workspace_->is_ready || !values.allFinite()) {
     return false;
   }
-  const std::lock_guard lock(PetscMutex());
-  const QuietErrors quiet;
   Workspace& work = *workspace_;
   try {
+    const UseOfPetsc use;
     double* entries = nullptr;
     Check(MatSeqAIJGetArray(work.matrix, &entries));
     work.Fill(values, entries);
@@ -418,11 +368,10 @@ bool PetscMultigrid::Factorize(const Eigen::VectorXd& values) {
 
 std::optional<Eigen::MatrixXd> PetscMultigrid::Solve(
     const Eigen::MatrixXd& right_hand_sides, double tolerance) {
-  const std::lock_guard lock(PetscMutex());
-  const QuietErrors quiet;
   Workspace& work = *workspace_;
   Eigen::MatrixXd solutions(right_hand_sides.rows(), right_hand_sides.cols());
   try {
+    const UseOfPetsc use;
     constexpr double kNoMatterTheUnits = 0;
     Check(KSPSetTolerances(work.solver, kStricter * tolerance,
                            kNoMatterTheUnits, PETSC_DEFAULT, kMostIterations));
@@ -468,3 +417,5 @@ elastimate::LinearSolver* elastimate_make_multigrid(
     const elastimate::DegreesOfFreedom& degrees_of_freedom) {
   return new elastimate::PetscMultigrid(mesh, assembly, degrees_of_freedom);
 }
+
+bool elastimate_is_petsc_running() { return elastimate::IsPetscRunning(); }
