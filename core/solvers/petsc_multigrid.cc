@@ -2,8 +2,6 @@
 
 #include <petscksp.h>
 
-#include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,8 +16,6 @@
 // As in ml_utils.h, which would bring in all of Trilinos.
 extern "C" void ML_set_random_seed(int seed);
 #endif
-
-#include "elastimate/core/scene/rigid_motion.h"
 
 namespace elastimate {
 namespace {
@@ -141,7 +137,7 @@ struct PetscMultigrid::Workspace {
 
   void BuildPattern();
   void Fill(const Eigen::VectorXd& values, double* entries) const;
-  Eigen::MatrixXd RigidMotions(const Mesh& mesh) const;
+  void SetNearNullSpace(const Mesh& mesh);
   void CreateSolver(const Mesh& mesh);
   /// Of the last solution, relative to it: ||e||_A^2 = r^T A^-1 r is at most
   /// r^T B r / (smallest eigenvalue of B A).
@@ -280,20 +276,24 @@ void PetscMultigrid::Workspace::Fill(const Eigen::VectorXd& values,
   }
 }
 
-Eigen::MatrixXd PetscMultigrid::Workspace::RigidMotions(
-    const Mesh& mesh) const {
-  Eigen::MatrixXd motions =
-      Eigen::MatrixXd::Zero(dimension * num_blocks, NumRigidMotions(dimension));
-  const Eigen::VectorXd centre = mesh.nodes.rowwise().mean();
-  for (Eigen::Index i = 0; i < Eigen::Index(row_of_free.size()); ++i) {
-    const Eigen::Index dof = degrees_of_freedom.free[i];
-    motions.row(row_of_free[i]) =
-        RigidMotionsAt(mesh.nodes.col(dof / dimension) - centre)
-            .row(dof % dimension);
+// Makes the modes that a coarse mesh must represent as well as a fine one.
+void PetscMultigrid::Workspace::SetNearNullSpace(const Mesh& mesh) {
+  Vec positions = nullptr;
+  Check(VecDuplicate(solution, &positions));
+  double* values = nullptr;
+  Check(VecGetArray(positions, &values));
+  for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
+    if (block[node] >= 0) {
+      Eigen::VectorXd::Map(values + dimension * block[node], dimension) =
+          mesh.nodes.col(node);
+    }
   }
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(motions);
-  return qr.householderQ() *
-         Eigen::MatrixXd::Identity(motions.rows(), motions.cols());
+  Check(VecRestoreArray(positions, &values));
+  MatNullSpace rigid_motions = nullptr;
+  Check(MatNullSpaceCreateRigidBody(positions, &rigid_motions));
+  Check(MatSetNearNullSpace(matrix, rigid_motions));
+  Check(MatNullSpaceDestroy(&rigid_motions));
+  Check(VecDestroy(&positions));
 }
 
 void PetscMultigrid::Workspace::CreateSolver(const Mesh& mesh) {
@@ -303,24 +303,7 @@ void PetscMultigrid::Workspace::CreateSolver(const Mesh& mesh) {
   Check(MatSetBlockSize(matrix, dimension));
   Check(MatSetOption(matrix, MAT_SPD, PETSC_TRUE));
   Check(MatCreateVecs(matrix, &solution, &right_hand_side));
-  const Eigen::MatrixXd motions = RigidMotions(mesh);
-  std::vector<Vec> modes(motions.cols());
-  for (std::size_t k = 0; k < modes.size(); ++k) {
-    Check(VecDuplicate(solution, &modes[k]));
-    double* values = nullptr;
-    Check(VecGetArray(modes[k], &values));
-    Eigen::VectorXd::Map(values, size) = motions.col(Eigen::Index(k));
-    Check(VecRestoreArray(modes[k], &values));
-  }
-  MatNullSpace near_null_space = nullptr;
-  Check(MatNullSpaceCreate(PETSC_COMM_SELF, PETSC_FALSE,
-                           static_cast<PetscInt>(modes.size()), modes.data(),
-                           &near_null_space));
-  Check(MatSetNearNullSpace(matrix, near_null_space));
-  Check(MatNullSpaceDestroy(&near_null_space));
-  for (Vec& mode : modes) {
-    Check(VecDestroy(&mode));
-  }
+  SetNearNullSpace(mesh);
   Check(KSPCreate(PETSC_COMM_SELF, &solver));
   Check(KSPSetOptionsPrefix(solver, "elastimate_"));
   Check(KSPSetComputeSingularValues(solver, PETSC_TRUE));
