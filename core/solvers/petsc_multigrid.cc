@@ -135,7 +135,10 @@ struct PetscMultigrid::Workspace {
   Workspace(const Workspace&) = delete;
   Workspace& operator=(const Workspace&) = delete;
 
+  void NumberBlocks();
   void BuildPattern();
+  /// The rows of numbers that rows of blocks with these columns stand for.
+  void ExpandBlocks(const std::vector<int>& block_column);
   void Fill(const Eigen::VectorXd& values, double* entries) const;
   void SetNearNullSpace(const Mesh& mesh);
   void CreateSolver(const Mesh& mesh);
@@ -158,10 +161,8 @@ double PetscMultigrid::Workspace::EnergyErrorBound(PetscInt iterations) const {
   return norm / std::sqrt(smallest * energy);
 }
 
-void PetscMultigrid::Workspace::BuildPattern() {
-  const NodeGraph& graph = assembly.Graph();
-  const auto num_nodes = Eigen::Index(graph.start.size()) - 1;
-  block.assign(num_nodes, -1);
+void PetscMultigrid::Workspace::NumberBlocks() {
+  block.assign(assembly.Graph().start.size() - 1, -1);
   row_of_free.reserve(degrees_of_freedom.NumFree());
   for (const Eigen::Index dof : degrees_of_freedom.free) {
     int& of_node = block[dof / dimension];
@@ -171,6 +172,12 @@ void PetscMultigrid::Workspace::BuildPattern() {
     row_of_free.push_back(dimension * of_node +
                           static_cast<int>(dof % dimension));
   }
+}
+
+void PetscMultigrid::Workspace::BuildPattern() {
+  NumberBlocks();
+  const NodeGraph& graph = assembly.Graph();
+  const auto num_nodes = Eigen::Index(graph.start.size()) - 1;
   const auto for_pairs = [&](const auto& visit) {
     for (Eigen::Index node = 0; node < num_nodes; ++node) {
       for (Eigen::Index k = graph.start[node]; k < graph.start[node + 1]; ++k) {
@@ -203,19 +210,24 @@ void PetscMultigrid::Workspace::BuildPattern() {
       neighbour[next[b]++] = a;
     }
   });
-  row_start.assign(1, 0);
   column.reserve(num_entries);
+  ExpandBlocks(neighbour);
+  entries.resize(num_entries);
+}
+
+void PetscMultigrid::Workspace::ExpandBlocks(
+    const std::vector<int>& block_column) {
+  row_start.assign(1, 0);
   for (int a = 0; a < num_blocks; ++a) {
     for (int i = 0; i < dimension; ++i) {
       for (PetscInt k = block_start[a]; k < block_start[a + 1]; ++k) {
         for (int j = 0; j < dimension; ++j) {
-          column.push_back(dimension * neighbour[k] + j);
+          column.push_back(dimension * block_column[k] + j);
         }
       }
       row_start.push_back(static_cast<PetscInt>(column.size()));
     }
   }
-  entries.resize(num_entries);
 }
 
 void PetscMultigrid::Workspace::Fill(const Eigen::VectorXd& values,
