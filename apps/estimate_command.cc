@@ -103,6 +103,17 @@ Estimate RunEstimator(const Estimator& estimator, const Scene& scene,
   }
 }
 
+// Of the flags, all of which are checked before anything is read.
+EstimatorOptions CheckFlags(const std::vector<std::string>& arguments) {
+  EstimatorOptions options = OptionsFromFlags();
+  if (IsGiven("noise_sd") && !(FLAGS_noise_sd > 0)) {
+    throw std::invalid_argument(AsGiven("noise_sd") + "; it must be positive");
+  }
+  ApplyComputingFlags();
+  CheckOutputFlags(arguments);
+  return options;
+}
+
 }  // namespace
 
 int RunEstimate(const std::vector<std::string>& arguments) {
@@ -113,12 +124,7 @@ int RunEstimate(const std::vector<std::string>& arguments) {
   }
   const std::unique_ptr<Estimator> estimator =
       MakeEstimator(Printable(FLAGS_estimator));
-  EstimatorOptions options = OptionsFromFlags();
-  if (IsGiven("noise_sd") && !(FLAGS_noise_sd > 0)) {
-    throw std::invalid_argument(AsGiven("noise_sd") + "; it must be positive");
-  }
-  ApplyComputingFlags();
-  CheckOutputFlags(arguments);
+  EstimatorOptions options = CheckFlags(arguments);
 
   std::optional<Progress> progress("reading " + Sources(arguments));
   SceneReading reading = Read(arguments);

@@ -20,6 +20,7 @@
 #include "apps/signals.h"
 #include "elastimate/io/report/report.h"
 #include "elastimate/io/text/printable.h"
+#include "elastimate/petsc/start_petsc.h"
 
 namespace elastimate {
 namespace {
@@ -123,6 +124,7 @@ int main(int argc, char** argv) {
   FLAGS_logtostderr = true;
   google::InitGoogleLogging(argv[0]);
   elastimate::WatchForLackOfMemory();
+  elastimate::StartPetscWhenNeeded();
   int exit_code = elastimate::kNoEstimate;
   try {
     exit_code = elastimate::Run({argv + 1, argv + argc});

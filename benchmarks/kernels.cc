@@ -412,6 +412,27 @@ std::string WhyRegressed(const Times& times) {
   return text.str();
 }
 
+void AddRow(const Kernel& kernel, std::int64_t tetrahedra,
+            const MachineLimits& machine, Table& table) {
+  const double count = static_cast<double>(tetrahedra);
+  const double time = kernel.seconds / count / kernel.columns;
+  table.AddRow({kernel.name, tetrahedra, kernel.numbering,
+                std::int64_t{kernel.threads}, std::int64_t{kernel.columns},
+                1e9 * time, 1e9 * kernel.set_up_seconds / count,
+                kernel.work.bytes / time / machine.memory_bandwidth,
+                kernel.work.flops / time / machine.peak_flops});
+}
+
+nlohmann::ordered_json Describe(const std::map<int, MachineLimits>& limits) {
+  nlohmann::ordered_json machine;
+  for (const auto& [threads, limit] : limits) {
+    machine[std::to_string(threads) + " threads"] = {
+        {"memory_bandwidth [GB/s]", 1e-9 * limit.memory_bandwidth},
+        {"peak [Gflop/s]", 1e-9 * limit.peak_flops}};
+  }
+  return machine;
+}
+
 }  // namespace
 
 KernelTimes TimeKernels(bool is_quick, Progress& progress) {
@@ -436,14 +457,7 @@ KernelTimes TimeKernels(bool is_quick, Progress& progress) {
     std::vector<Kernel> kernels = cube.Kernels();
     TimeInTurns(kernels, progress, std::to_string(tetrahedra));
     for (const Kernel& kernel : kernels) {
-      const double count = static_cast<double>(tetrahedra);
-      const double time = kernel.seconds / count / kernel.columns;
-      const MachineLimits& machine = limits.at(kernel.threads);
-      table.AddRow({kernel.name, tetrahedra, kernel.numbering,
-                    std::int64_t{kernel.threads}, std::int64_t{kernel.columns},
-                    1e9 * time, 1e9 * kernel.set_up_seconds / count,
-                    kernel.work.bytes / time / machine.memory_bandwidth,
-                    kernel.work.flops / time / machine.peak_flops});
+      AddRow(kernel, tetrahedra, limits.at(kernel.threads), table);
     }
     const Times of_size(kernels);
     for (const std::string& line : Ratios(tetrahedra, of_size)) {
@@ -457,18 +471,12 @@ KernelTimes TimeKernels(bool is_quick, Progress& progress) {
     }
   }
   CompareOtherKinds(is_quick, progress, times);
-  nlohmann::ordered_json machine;
-  for (const auto& [threads, limit] : limits) {
-    machine[std::to_string(threads) + " threads"] = {
-        {"memory_bandwidth [GB/s]", 1e-9 * limit.memory_bandwidth},
-        {"peak [Gflop/s]", 1e-9 * limit.peak_flops}};
-  }
   times.result = {
       {table},
       {{"cube", "of five tetrahedra in each of n x n x n cells"},
        {"instructions",
         hwy::TargetName(hwy::SupportedTargets() & -hwy::SupportedTargets())},
-       {"machine", machine},
+       {"machine", Describe(limits)},
        {"times", "shortest of " + std::to_string(kRounds) + " rounds, clock"},
        {"bytes",
         "read or written at least once: 16 for the nodes of an element, 24 for "

@@ -25,6 +25,7 @@
 #include "benchmarks/study.h"
 #include "benchmarks/unseen_study.h"
 #include "elastimate/io/text/file_output.h"
+#include "elastimate/petsc/start_petsc.h"
 
 DEFINE_string(name, "", "the study, as listed below");
 DEFINE_string(out, "", "existing folder for the CSV and JSON files");
@@ -216,6 +217,7 @@ int main(int argc, char** argv) {
   FLAGS_minloglevel = google::GLOG_FATAL;
   FLAGS_logtostderr = true;
   google::InitGoogleLogging(argv[0]);
+  elastimate::StartPetscWhenNeeded();
   try {
     return elastimate::Run({argv, argv + argc});
   } catch (const std::exception& error) {

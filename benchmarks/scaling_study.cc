@@ -124,21 +124,62 @@ std::int64_t NumTetrahedra(int cells) {
   return std::int64_t{5} * cells * cells * cells;
 }
 
-}  // namespace
-
-StudyResult RunScalingStudy(bool is_quick, Progress& progress) {
-  SetBlasThreads(1);
-  const std::vector<int> sizes = Sizes(is_quick);
-  std::map<int, double> scene_memory;
+/// The peak memory of a process that only makes the scene, of each size.
+std::map<int, double> SceneMemory(const std::vector<int>& sizes,
+                                  Progress& progress) {
+  std::map<int, double> memory;
   for (const int cells : sizes) {
     progress.Show("scaling: scene of " + std::to_string(NumTetrahedra(cells)) +
                   " tetrahedra");
     const auto make_scene = [cells] {
       return std::to_string(NoisyCube(cells).mesh.NumNodes());
     };
-    scene_memory[cells] =
+    memory[cells] =
         static_cast<double>(RunInChildProcess(kLimits, make_scene).peak_memory);
   }
+  return memory;
+}
+
+/// Adds a row of the estimator for each size, and returns the runs up to the
+/// size that a limit ends.
+std::vector<Run> MeasureSizes(const std::string& name,
+                              const std::map<int, double>& scene_memory,
+                              Progress& progress, Table& table) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Run> measured;
+  std::string limit;
+  for (const auto& [cells, scene] : scene_memory) {
+    if (!limit.empty()) {
+      table.AddRow({name, NumTetrahedra(cells),
+                    "not run: " + limit + " at a smaller size", "", kNone,
+                    std::int64_t{0}, kNone, kNone, scene / kMebibyte, kNone});
+      continue;
+    }
+    progress.Show("scaling: " + name + " with " +
+                  std::to_string(NumTetrahedra(cells)) + " tetrahedra");
+    const Run run = Measure(name, cells, scene);
+    const bool is_measured = run.IsMeasured();
+    table.AddRow({name, NumTetrahedra(cells), OutcomeName(run.report.outcome),
+                  run.status, run.processor_seconds,
+                  std::int64_t{run.repetitions},
+                  is_measured ? double(run.factorizations) : kNone,
+                  static_cast<double>(run.report.peak_memory) / kMebibyte,
+                  scene / kMebibyte, run.own_memory / kMebibyte});
+    if (is_measured) {
+      measured.push_back(run);
+    } else {
+      limit = OutcomeName(run.report.outcome);
+    }
+  }
+  return measured;
+}
+
+}  // namespace
+
+StudyResult RunScalingStudy(bool is_quick, Progress& progress) {
+  SetBlasThreads(1);
+  const std::map<int, double> scene_memory =
+      SceneMemory(Sizes(is_quick), progress);
   Table table("scaling",
               {"estimator", "tetrahedra [1]", "outcome", "status",
                "processor_time [s]", "repetitions [1]", "factorizations [1]",
@@ -147,34 +188,8 @@ StudyResult RunScalingStudy(bool is_quick, Progress& progress) {
                {"estimator", "sizes [1]", "processor_time_slope [1]",
                 "own_memory_slope [1]"});
   for (const std::string_view name : EstimatorNames()) {
-    std::vector<Run> measured;
-    std::string limit;
-    for (const int cells : sizes) {
-      const double scene = scene_memory[cells];
-      if (!limit.empty()) {
-        const double none = std::numeric_limits<double>::quiet_NaN();
-        table.AddRow({std::string(name), NumTetrahedra(cells),
-                      "not run: " + limit + " at a smaller size", "", none,
-                      std::int64_t{0}, none, none, scene / kMebibyte, none});
-        continue;
-      }
-      progress.Show("scaling: " + std::string(name) + " with " +
-                    std::to_string(NumTetrahedra(cells)) + " tetrahedra");
-      const Run run = Measure(name, cells, scene);
-      const bool is_measured = run.IsMeasured();
-      table.AddRow({std::string(name), NumTetrahedra(cells),
-                    OutcomeName(run.report.outcome), run.status,
-                    run.processor_seconds, std::int64_t{run.repetitions},
-                    is_measured ? double(run.factorizations)
-                                : std::numeric_limits<double>::quiet_NaN(),
-                    static_cast<double>(run.report.peak_memory) / kMebibyte,
-                    scene / kMebibyte, run.own_memory / kMebibyte});
-      if (is_measured) {
-        measured.push_back(run);
-      } else {
-        limit = OutcomeName(run.report.outcome);
-      }
-    }
+    const std::vector<Run> measured =
+        MeasureSizes(std::string(name), scene_memory, progress, table);
     slopes.AddRow({std::string(name),
                    std::int64_t(std::min(measured.size(), kSizesOfSlope)),
                    Slope(measured, &Run::processor_seconds),

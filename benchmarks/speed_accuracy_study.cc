@@ -338,12 +338,8 @@ class Tables {
   Table summary_;
 };
 
-}  // namespace
-
-StudyResult RunSpeedAccuracyStudy(bool is_quick, Progress& progress) {
-  SetBlasThreads(1);
-  Tables tables;
-  nlohmann::ordered_json num_trials;
+/// What is not run, and why.
+nlohmann::ordered_json LeftOut(bool is_quick) {
   nlohmann::ordered_json left_out = nlohmann::ordered_json::array();
   if (is_quick) {
     left_out.push_back(
@@ -351,28 +347,44 @@ StudyResult RunSpeedAccuracyStudy(bool is_quick, Progress& progress) {
         "for a quick run");
   }
   for (const Specimen& specimen : Specimens(is_quick)) {
-    num_trials[specimen.name] = {
-        {"linear_elements", specimen.num_trials},
-        {"quadratic_elements", specimen.num_quadratic_trials}};
     for (const Method& method : Methods()) {
       if (NumTrials(specimen, method) == 0) {
         left_out.push_back(std::string(specimen.name) + ", " + method.name +
                            ": takes too long");
       }
     }
+  }
+  return left_out;
+}
+
+void RunMethods(const Specimen& specimen, const World& world, double deviation,
+                Progress& progress, Tables& tables) {
+  std::vector<Point> points;
+  for (const Method& method : Methods()) {
+    progress.Show(std::string("speed_accuracy: ") + specimen.name + ", " +
+                  world.name + ", " + method.name);
+    Point point = RunTrials(specimen, world, deviation, method);
+    if (!point.trials.empty()) {
+      tables.Add(specimen, world, deviation, point);
+      points.push_back(std::move(point));
+    }
+  }
+  tables.Summarize(specimen, world, deviation, points);
+}
+
+}  // namespace
+
+StudyResult RunSpeedAccuracyStudy(bool is_quick, Progress& progress) {
+  SetBlasThreads(1);
+  Tables tables;
+  nlohmann::ordered_json num_trials;
+  for (const Specimen& specimen : Specimens(is_quick)) {
+    num_trials[specimen.name] = {
+        {"linear_elements", specimen.num_trials},
+        {"quadratic_elements", specimen.num_quadratic_trials}};
     for (const World& world : Worlds(specimen)) {
       for (const double deviation : Deviations(is_quick)) {
-        std::vector<Point> points;
-        for (const Method& method : Methods()) {
-          progress.Show(std::string("speed_accuracy: ") + specimen.name + ", " +
-                        world.name + ", " + method.name);
-          Point point = RunTrials(specimen, world, deviation, method);
-          if (!point.trials.empty()) {
-            tables.Add(specimen, world, deviation, point);
-            points.push_back(std::move(point));
-          }
-        }
-        tables.Summarize(specimen, world, deviation, points);
+        RunMethods(specimen, world, deviation, progress, tables);
       }
     }
   }
@@ -381,7 +393,7 @@ StudyResult RunSpeedAccuracyStudy(bool is_quick, Progress& progress) {
       {{"noise_law", "uniform"},
        {"noise_seeds", "1 to the number of trials; column seed"},
        {"trials", num_trials},
-       {"left_out", left_out},
+       {"left_out", LeftOut(is_quick)},
        {"blas_threads", 1},
        {"processor_time", "of all threads, without making the quadratic mesh"},
        {"rms_error",

@@ -49,59 +49,22 @@ class Grid {
             index / points_(0) / points_(1)};
   }
 
-  void FindCells() {
-    Eigen::Vector3i cell;
-    for (cell(2) = 0; cell(2) < cells_(2); ++cell(2)) {
-      for (cell(1) = 0; cell(1) < cells_(1); ++cell(1)) {
-        for (cell(0) = 0; cell(0) < cells_(0); ++cell(0)) {
-          const Eigen::Vector3d centre =
-              (cell / parts_).cast<double>().array() + 0.5;
-          if (body_.keeps(centre)) {
-            corners_.emplace_back();
-            for (int corner = 0; corner < 8; ++corner) {
-              corners_.back()[corner] =
-                  Index(cell + Eigen::Vector3i(corner & 1, corner >> 1 & 1,
-                                               corner >> 2 & 1));
-            }
-          }
-        }
-      }
+  Corners CornersOf(const Eigen::Vector3i& cell) const {
+    Corners corners;
+    for (int corner = 0; corner < 8; ++corner) {
+      corners[corner] = Index(
+          cell + Eigen::Vector3i(corner & 1, corner >> 1 & 1, corner >> 2 & 1));
     }
+    return corners;
   }
 
-  // Of the points at corners, those of the undivided grid first.
-  void NumberNodes() {
-    constexpr int kUnused = -2;
-    constexpr int kUsed = -1;
-    std::vector<int> node(points_.prod(), kUnused);
-    for (const Corners& corners : corners_) {
-      for (const int point : corners) {
-        node[point] = kUsed;
-      }
-    }
-    std::vector<int> points;
-    for (const bool of_undivided : {true, false}) {
-      for (int point = 0; point < points_.prod(); ++point) {
-        const bool is_of_undivided =
-            (Point(point).array() - parts_ * (Point(point) / parts_).array() ==
-             0)
-                .all();
-        if (node[point] == kUsed && is_of_undivided == of_undivided) {
-          node[point] = static_cast<int>(points.size());
-          points.push_back(point);
-        }
-      }
-    }
-    nodes_.resize(3, Eigen::Index(points.size()));
-    for (Eigen::Index i = 0; i < nodes_.cols(); ++i) {
-      nodes_.col(i) = Point(points[i]).cast<double>() / parts_;
-    }
-    for (Corners& corners : corners_) {
-      for (int& corner : corners) {
-        corner = node[corner];
-      }
-    }
+  bool IsOfUndivided(int index) const {
+    const Eigen::Vector3i point = Point(index);
+    return (point.array() - parts_ * (point / parts_).array() == 0).all();
   }
+
+  void FindCells();
+  void NumberNodes();
 
   const VoxelBody& body_;
   int parts_;
@@ -110,6 +73,49 @@ class Grid {
   std::vector<Corners> corners_;
   Eigen::Matrix3Xd nodes_;
 };
+
+void Grid::FindCells() {
+  Eigen::Vector3i cell;
+  for (cell(2) = 0; cell(2) < cells_(2); ++cell(2)) {
+    for (cell(1) = 0; cell(1) < cells_(1); ++cell(1)) {
+      for (cell(0) = 0; cell(0) < cells_(0); ++cell(0)) {
+        if (body_.keeps((cell / parts_).cast<double>().array() + 0.5)) {
+          corners_.push_back(CornersOf(cell));
+        }
+      }
+    }
+  }
+}
+
+// Of the points at corners, those of the undivided grid first.
+void Grid::NumberNodes() {
+  constexpr int kUnused = -2;
+  constexpr int kUsed = -1;
+  std::vector<int> node(points_.prod(), kUnused);
+  for (const Corners& corners : corners_) {
+    for (const int point : corners) {
+      node[point] = kUsed;
+    }
+  }
+  std::vector<int> points;
+  for (const bool of_undivided : {true, false}) {
+    for (int point = 0; point < points_.prod(); ++point) {
+      if (node[point] == kUsed && IsOfUndivided(point) == of_undivided) {
+        node[point] = static_cast<int>(points.size());
+        points.push_back(point);
+      }
+    }
+  }
+  nodes_.resize(3, Eigen::Index(points.size()));
+  for (Eigen::Index i = 0; i < nodes_.cols(); ++i) {
+    nodes_.col(i) = Point(points[i]).cast<double>() / parts_;
+  }
+  for (Corners& corners : corners_) {
+    for (int& corner : corners) {
+      corner = node[corner];
+    }
+  }
+}
 
 VoxelMesh WithoutElements(const VoxelBody& body, const Grid& grid,
                           ElementKind kind) {

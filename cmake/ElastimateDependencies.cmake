@@ -1,11 +1,11 @@
 # The packages behind each component; read by the build and by the installed package, so that both find the same.
 #
-# ELASTIMATE_COMPONENTS chooses among core, estimators and io (default: all).
+# ELASTIMATE_COMPONENTS chooses among core, estimators, io and petsc (default: all).
 
 include(CMakeFindDependencyMacro)
 
 if(NOT ELASTIMATE_COMPONENTS)
-  set(ELASTIMATE_COMPONENTS core estimators io)
+  set(ELASTIMATE_COMPONENTS core estimators io petsc)
 endif()
 
 # OpenBLAS comes before everything that links a BLAS of its own choice: the first dgemm_ found is the one CHOLMOD runs.

@@ -1,5 +1,5 @@
 # Checks that no folder uses one further down in the table of CONTRIBUTING.md.
-file(STRINGS ${SOURCE}/CONTRIBUTING.md rows REGEX "^\\| `(core|estimators|io|apps|benchmarks)/")
+file(STRINGS ${SOURCE}/CONTRIBUTING.md rows REGEX "^\\| `(core|estimators|io|organ|petsc|apps|benchmarks)/")
 set(folders)
 foreach(row ${rows})
   string(REGEX REPLACE "^\\| ([^|]*) \\|.*" "\\1" names "${row}")
@@ -8,7 +8,8 @@ foreach(row ${rows})
 endforeach()
 
 file(GLOB_RECURSE sources RELATIVE ${SOURCE} ${SOURCE}/core/*.h ${SOURCE}/core/*.cc ${SOURCE}/estimators/*.h
-     ${SOURCE}/estimators/*.cc ${SOURCE}/io/*.h ${SOURCE}/io/*.cc)
+     ${SOURCE}/estimators/*.cc ${SOURCE}/io/*.h ${SOURCE}/io/*.cc ${SOURCE}/organ/*.h ${SOURCE}/organ/*.cc
+     ${SOURCE}/petsc/*.h ${SOURCE}/petsc/*.cc)
 set(errors "")
 foreach(source ${sources})
   cmake_path(GET source PARENT_PATH user)

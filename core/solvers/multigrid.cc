@@ -1,5 +1,6 @@
 #include "elastimate/core/solvers/multigrid.h"
 
+#include <atomic>
 #include <cassert>
 #include <string>
 
@@ -9,14 +10,21 @@
 namespace elastimate {
 namespace {
 
+std::atomic<void (*)()> start_of_petsc = nullptr;
+
 struct Module {
   decltype(elastimate_make_multigrid)* make = nullptr;
+  decltype(elastimate_is_petsc_running)* is_running = nullptr;
   std::string why_not;
 
   Module() {
 #ifdef ELASTIMATE_MULTIGRID_MODULE
     make = FindInModule<decltype(elastimate_make_multigrid)>(
         ELASTIMATE_MULTIGRID_MODULE, "elastimate_make_multigrid", why_not);
+    if (make != nullptr) {
+      is_running = FindInModule<decltype(elastimate_is_petsc_running)>(
+          ELASTIMATE_MULTIGRID_MODULE, "elastimate_is_petsc_running", why_not);
+    }
 #else
     why_not = "it needs a build with PETSc";
 #endif
@@ -30,12 +38,25 @@ const Module& TheModule() {
 
 }  // namespace
 
-const std::string& WhyNoMultigrid() { return TheModule().why_not; }
+void SetStartOfPetsc(void (*start)()) { start_of_petsc = start; }
+
+std::string WhyNoMultigrid() {
+  const Module& module = TheModule();
+  if (!module.why_not.empty()) {
+    return module.why_not;
+  }
+  return start_of_petsc != nullptr || module.is_running()
+             ? ""
+             : "the program has not started PETSc";
+}
 
 std::unique_ptr<LinearSolver> MakeMultigrid(
     const Mesh& mesh, const StiffnessAssembly& assembly,
     const DegreesOfFreedom& degrees_of_freedom) {
   assert(HasMultigrid());
+  if (void (*const start)() = start_of_petsc) {
+    start();
+  }
   return std::unique_ptr<LinearSolver>(
       TheModule().make(mesh, assembly, degrees_of_freedom));
 }

@@ -1,18 +1,10 @@
 #include "elastimate/core/solvers/petsc_multigrid.h"
 
-#include <fcntl.h>
 #include <petscksp.h>
-#include <poll.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <csignal>
-#include <cstdlib>
 #include <limits>
 #include <mutex>
 #include <new>
@@ -24,8 +16,6 @@
 // As in ml_utils.h, which would bring in all of Trilinos.
 extern "C" void ML_set_random_seed(int seed);
 #endif
-
-#include "elastimate/core/scene/rigid_motion.h"
 
 namespace elastimate {
 namespace {
@@ -69,75 +59,36 @@ constexpr char kOptions[] =
     "-elastimate_mg_levels_ksp_max_it 2 "
     "-elastimate_mg_levels_pc_type jacobi";
 
-// Whether MPI can be started here: where it cannot (no folder for temporary
-// files, no network interface, few files), it ends the process that tries.
-bool CanStartMpi() {
-  constexpr int kMostMilliseconds = 20000;
-  int ends[2];
-  if (pipe(ends) != 0) {
-    return false;
-  }
-  const pid_t child = fork();
-  if (child == 0) {
-    const int nowhere = open("/dev/null", O_WRONLY);
-    dup2(nowhere, STDOUT_FILENO);
-    dup2(nowhere, STDERR_FILENO);
-    const bool is_started = MPI_Init(nullptr, nullptr) == MPI_SUCCESS &&
-                            MPI_Finalize() == MPI_SUCCESS;
-    const char answer = 'y';
-    _exit(is_started && write(ends[1], &answer, 1) == 1 ? 0 : 1);
-  }
-  close(ends[1]);
-  char answer = 'n';
-  if (child > 0) {
-    pollfd answered = {ends[0], POLLIN, 0};
-    if (poll(&answered, 1, kMostMilliseconds) <= 0 ||
-        read(ends[0], &answer, 1) != 1) {
-      answer = 'n';
-    }
-    kill(child, SIGKILL);
-    waitpid(child, nullptr, 0);
-  }
-  close(ends[0]);
-  return answer == 'y';
-}
-
-void StartPetsc() {
+bool IsPetscRunning() {
   PetscBool is_running = PETSC_FALSE;
   PetscInitialized(&is_running);
-  if (is_running == PETSC_FALSE) {
-    int has_mpi = 0;
-    MPI_Initialized(&has_mpi);
-    // One process needs no daemon to start others.
-    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
-    if (has_mpi == 0 && !CanStartMpi()) {
-      throw PetscFailure();
-    }
-    // Neither options, from files or the environment, nor handlers of signals
-    // are for a program that only wants its equations solved.
-    const char* const given = std::getenv("PETSC_OPTIONS");
-    const std::optional<std::string> options =
-        given == nullptr ? std::nullopt : std::optional<std::string>(given);
-    unsetenv("PETSC_OPTIONS");
-    PetscOptionsSetValue(nullptr, "-skip_petscrc", "true");
-    PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");
-    const PetscErrorCode error = PetscInitializeNoArguments();
-    if (options) {
-      setenv("PETSC_OPTIONS", options->c_str(), 1);
-    }
-    Check(error);
-    std::atexit([] { PetscFinalize(); });
-  }
-  Check(PetscOptionsInsertString(nullptr, kOptions));
+  return is_running == PETSC_TRUE;
 }
 
-// What PETSc writes for an error goes nowhere while one of these lives.
-class QuietErrors {
+// While one of these lives, no other thread is in PETSc, what it writes for an
+// error goes nowhere, and the options above hold instead of the program's.
+class UseOfPetsc {
  public:
-  QuietErrors() { PetscPushErrorHandler(PetscReturnErrorHandler, nullptr); }
-  ~QuietErrors() { PetscPopErrorHandler(); }
-  QuietErrors(const QuietErrors&) = delete;
-  QuietErrors& operator=(const QuietErrors&) = delete;
+  UseOfPetsc() : lock_(PetscMutex()) {
+    if (!IsPetscRunning()) {
+      throw PetscFailure();
+    }
+    PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
+    PetscOptionsCreate(&options_);
+    PetscOptionsInsertString(options_, kOptions);
+    PetscOptionsPush(options_);
+  }
+  ~UseOfPetsc() {
+    PetscOptionsPop();
+    PetscOptionsDestroy(&options_);
+    PetscPopErrorHandler();
+  }
+  UseOfPetsc(const UseOfPetsc&) = delete;
+  UseOfPetsc& operator=(const UseOfPetsc&) = delete;
+
+ private:
+  std::lock_guard<std::mutex> lock_;
+  PetscOptions options_ = nullptr;
 };
 
 }  // namespace
@@ -173,10 +124,8 @@ struct PetscMultigrid::Workspace {
         dimension(dofs.dimension) {}
   ~Workspace() {
     const std::lock_guard lock(PetscMutex());
-    PetscBool has_ended = PETSC_FALSE;
-    PetscFinalized(&has_ended);
-    if (has_ended == PETSC_TRUE) {
-      return;  // An object of static lifetime.
+    if (!IsPetscRunning()) {
+      return;  // It never was, or this is an object of static lifetime.
     }
     KSPDestroy(&solver);
     VecDestroy(&right_hand_side);
@@ -186,9 +135,12 @@ struct PetscMultigrid::Workspace {
   Workspace(const Workspace&) = delete;
   Workspace& operator=(const Workspace&) = delete;
 
+  void NumberBlocks();
   void BuildPattern();
+  /// The rows of numbers that rows of blocks with these columns stand for.
+  void ExpandBlocks(const std::vector<int>& block_column);
   void Fill(const Eigen::VectorXd& values, double* entries) const;
-  Eigen::MatrixXd RigidMotions(const Mesh& mesh) const;
+  void SetNearNullSpace(const Mesh& mesh);
   void CreateSolver(const Mesh& mesh);
   /// Of the last solution, relative to it: ||e||_A^2 = r^T A^-1 r is at most
   /// r^T B r / (smallest eigenvalue of B A).
@@ -209,10 +161,8 @@ double PetscMultigrid::Workspace::EnergyErrorBound(PetscInt iterations) const {
   return norm / std::sqrt(smallest * energy);
 }
 
-void PetscMultigrid::Workspace::BuildPattern() {
-  const NodeGraph& graph = assembly.Graph();
-  const auto num_nodes = Eigen::Index(graph.start.size()) - 1;
-  block.assign(num_nodes, -1);
+void PetscMultigrid::Workspace::NumberBlocks() {
+  block.assign(assembly.Graph().start.size() - 1, -1);
   row_of_free.reserve(degrees_of_freedom.NumFree());
   for (const Eigen::Index dof : degrees_of_freedom.free) {
     int& of_node = block[dof / dimension];
@@ -222,6 +172,12 @@ void PetscMultigrid::Workspace::BuildPattern() {
     row_of_free.push_back(dimension * of_node +
                           static_cast<int>(dof % dimension));
   }
+}
+
+void PetscMultigrid::Workspace::BuildPattern() {
+  NumberBlocks();
+  const NodeGraph& graph = assembly.Graph();
+  const auto num_nodes = Eigen::Index(graph.start.size()) - 1;
   const auto for_pairs = [&](const auto& visit) {
     for (Eigen::Index node = 0; node < num_nodes; ++node) {
       for (Eigen::Index k = graph.start[node]; k < graph.start[node + 1]; ++k) {
@@ -254,19 +210,24 @@ void PetscMultigrid::Workspace::BuildPattern() {
       neighbour[next[b]++] = a;
     }
   });
-  row_start.assign(1, 0);
   column.reserve(num_entries);
+  ExpandBlocks(neighbour);
+  entries.resize(num_entries);
+}
+
+void PetscMultigrid::Workspace::ExpandBlocks(
+    const std::vector<int>& block_column) {
+  row_start.assign(1, 0);
   for (int a = 0; a < num_blocks; ++a) {
     for (int i = 0; i < dimension; ++i) {
       for (PetscInt k = block_start[a]; k < block_start[a + 1]; ++k) {
         for (int j = 0; j < dimension; ++j) {
-          column.push_back(dimension * neighbour[k] + j);
+          column.push_back(dimension * block_column[k] + j);
         }
       }
       row_start.push_back(static_cast<PetscInt>(column.size()));
     }
   }
-  entries.resize(num_entries);
 }
 
 void PetscMultigrid::Workspace::Fill(const Eigen::VectorXd& values,
@@ -327,20 +288,24 @@ void PetscMultigrid::Workspace::Fill(const Eigen::VectorXd& values,
   }
 }
 
-Eigen::MatrixXd PetscMultigrid::Workspace::RigidMotions(
-    const Mesh& mesh) const {
-  Eigen::MatrixXd motions =
-      Eigen::MatrixXd::Zero(dimension * num_blocks, NumRigidMotions(dimension));
-  const Eigen::VectorXd centre = mesh.nodes.rowwise().mean();
-  for (Eigen::Index i = 0; i < Eigen::Index(row_of_free.size()); ++i) {
-    const Eigen::Index dof = degrees_of_freedom.free[i];
-    motions.row(row_of_free[i]) =
-        RigidMotionsAt(mesh.nodes.col(dof / dimension) - centre)
-            .row(dof % dimension);
+// Makes the modes that a coarse mesh must represent as well as a fine one.
+void PetscMultigrid::Workspace::SetNearNullSpace(const Mesh& mesh) {
+  Vec positions = nullptr;
+  Check(VecDuplicate(solution, &positions));
+  double* values = nullptr;
+  Check(VecGetArray(positions, &values));
+  for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
+    if (block[node] >= 0) {
+      Eigen::VectorXd::Map(values + dimension * block[node], dimension) =
+          mesh.nodes.col(node);
+    }
   }
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(motions);
-  return qr.householderQ() *
-         Eigen::MatrixXd::Identity(motions.rows(), motions.cols());
+  Check(VecRestoreArray(positions, &values));
+  MatNullSpace rigid_motions = nullptr;
+  Check(MatNullSpaceCreateRigidBody(positions, &rigid_motions));
+  Check(MatSetNearNullSpace(matrix, rigid_motions));
+  Check(MatNullSpaceDestroy(&rigid_motions));
+  Check(VecDestroy(&positions));
 }
 
 void PetscMultigrid::Workspace::CreateSolver(const Mesh& mesh) {
@@ -350,24 +315,7 @@ void PetscMultigrid::Workspace::CreateSolver(const Mesh& mesh) {
   Check(MatSetBlockSize(matrix, dimension));
   Check(MatSetOption(matrix, MAT_SPD, PETSC_TRUE));
   Check(MatCreateVecs(matrix, &solution, &right_hand_side));
-  const Eigen::MatrixXd motions = RigidMotions(mesh);
-  std::vector<Vec> modes(motions.cols());
-  for (std::size_t k = 0; k < modes.size(); ++k) {
-    Check(VecDuplicate(solution, &modes[k]));
-    double* values = nullptr;
-    Check(VecGetArray(modes[k], &values));
-    Eigen::VectorXd::Map(values, size) = motions.col(Eigen::Index(k));
-    Check(VecRestoreArray(modes[k], &values));
-  }
-  MatNullSpace near_null_space = nullptr;
-  Check(MatNullSpaceCreate(PETSC_COMM_SELF, PETSC_FALSE,
-                           static_cast<PetscInt>(modes.size()), modes.data(),
-                           &near_null_space));
-  Check(MatSetNearNullSpace(matrix, near_null_space));
-  Check(MatNullSpaceDestroy(&near_null_space));
-  for (Vec& mode : modes) {
-    Check(VecDestroy(&mode));
-  }
+  SetNearNullSpace(mesh);
   Check(KSPCreate(PETSC_COMM_SELF, &solver));
   Check(KSPSetOptionsPrefix(solver, "elastimate_"));
   Check(KSPSetComputeSingularValues(solver, PETSC_TRUE));
@@ -378,10 +326,8 @@ PetscMultigrid::PetscMultigrid(const Mesh& mesh,
                                const StiffnessAssembly& assembly,
                                const DegreesOfFreedom& degrees_of_freedom)
     : workspace_(std::make_unique<Workspace>(assembly, degrees_of_freedom)) {
-  const std::lock_guard lock(PetscMutex());
   try {
-    StartPetsc();
-    const QuietErrors quiet;
+    const UseOfPetsc use;
     workspace_->BuildPattern();
     workspace_->CreateSolver(mesh);
     workspace_->is_ready = true;
@@ -396,10 +342,9 @@ bool PetscMultigrid::Factorize(const Eigen::VectorXd& values) {
   if (!workspace_->is_ready || !values.allFinite()) {
     return false;
   }
-  const std::lock_guard lock(PetscMutex());
-  const QuietErrors quiet;
   Workspace& work = *workspace_;
   try {
+    const UseOfPetsc use;
     double* entries = nullptr;
     Check(MatSeqAIJGetArray(work.matrix, &entries));
     work.Fill(values, entries);
@@ -418,11 +363,10 @@ bool PetscMultigrid::Factorize(const Eigen::VectorXd& values) {
 
 std::optional<Eigen::MatrixXd> PetscMultigrid::Solve(
     const Eigen::MatrixXd& right_hand_sides, double tolerance) {
-  const std::lock_guard lock(PetscMutex());
-  const QuietErrors quiet;
   Workspace& work = *workspace_;
   Eigen::MatrixXd solutions(right_hand_sides.rows(), right_hand_sides.cols());
   try {
+    const UseOfPetsc use;
     constexpr double kNoMatterTheUnits = 0;
     Check(KSPSetTolerances(work.solver, kStricter * tolerance,
                            kNoMatterTheUnits, PETSC_DEFAULT, kMostIterations));
@@ -468,3 +412,5 @@ elastimate::LinearSolver* elastimate_make_multigrid(
     const elastimate::DegreesOfFreedom& degrees_of_freedom) {
   return new elastimate::PetscMultigrid(mesh, assembly, degrees_of_freedom);
 }
+
+bool elastimate_is_petsc_running() { return elastimate::IsPetscRunning(); }

@@ -19,8 +19,8 @@ namespace elastimate {
 /// elements.
 class PetscMultigrid : public LinearSolver {
  public:
-  /// `assembly` must outlive this object.
-  /// Starts PETSc, and MPI with it, unless the program has done so.
+  /// `assembly` must outlive this object.  Where PETSc is not running,
+  /// Factorize returns false.
   PetscMultigrid(const Mesh& mesh, const StiffnessAssembly& assembly,
                  const DegreesOfFreedom& degrees_of_freedom);
   ~PetscMultigrid() override;
@@ -40,10 +40,12 @@ class PetscMultigrid : public LinearSolver {
 
 }  // namespace elastimate
 
-/// What MakeMultigrid looks up in the module.
+// What core/solvers/multigrid.cc looks up in the module.
 extern "C" __attribute__((visibility("default"))) elastimate::LinearSolver*
 elastimate_make_multigrid(
     const elastimate::Mesh& mesh, const elastimate::StiffnessAssembly& assembly,
     const elastimate::DegreesOfFreedom& degrees_of_freedom);
+extern "C" __attribute__((visibility("default"))) bool
+elastimate_is_petsc_running();
 
 #endif  // ELASTIMATE_CORE_SOLVERS_PETSC_MULTIGRID_H_

@@ -130,72 +130,92 @@ bool ReducedModel::SetPole(double poisson_ratio) {
   return true;
 }
 
+// The next vectors of the Krylov spaces that still grow, one for each.
+struct ReducedModel::KrylovStep {
+  std::vector<Response*> responses;
+  /// What A^-1 J v has beside the vectors that there are.
+  Eigen::MatrixXd z;
+  StiffnessProducts of_z;
+  /// What it has along them.
+  std::vector<Eigen::VectorXd> columns;
+  /// What an inexact solve has left along them: of the size of its error.
+  std::vector<double> errors;
+
+  Eigen::Index Count() const { return Eigen::Index(responses.size()); }
+};
+
 bool ReducedModel::Enlarge(double tolerance) {
-  const double pole = Pole();
-  std::vector<Response*> growing;
+  KrylovStep step;
   for (Response& response : responses_) {
     if (response.krylov.cols() > 0) {
-      growing.push_back(&response);
+      step.responses.push_back(&response);
     }
   }
-  const Eigen::Index num_growing = Eigen::Index(growing.size());
-  if (num_growing == 0) {
+  if (step.responses.empty()) {
     return false;
   }
-  Eigen::MatrixXd z(responses_[0].g0.size(), num_growing);
-  for (Eigen::Index k = 0; k < num_growing; ++k) {
-    z.col(k) = growing[k]->next_product;
+  Eigen::MatrixXd loads(responses_[0].g0.size(), step.Count());
+  for (Eigen::Index k = 0; k < step.Count(); ++k) {
+    loads.col(k) = step.responses[k]->next_product;
   }
-  z = solver_.Solve(z, tolerance);
-  if (!z.allFinite()) {
+  step.z = solver_.Solve(loads, tolerance);
+  if (!step.z.allFinite()) {
     return false;
   }
-  std::vector<Eigen::VectorXd> columns;
-  for (Eigen::Index k = 0; k < num_growing; ++k) {
-    const Response& response = *growing[k];
-    columns.emplace_back(response.krylov.transpose() * response.next_product);
-    z.col(k) -= response.krylov * columns.back();
-  }
-  StiffnessProducts products = Multiply(z);
-  // What an inexact solve has left along the vectors: of the size of its error.
-  std::vector<double> errors;
-  bool is_orthogonal = true;
-  for (Eigen::Index k = 0; k < num_growing; ++k) {
-    const Eigen::VectorXd rest = growing[k]->krylov.transpose() *
-                                 (products.h.col(k) + pole * products.j.col(k));
-    z.col(k) -= growing[k]->krylov * rest;
-    errors.push_back(rest.norm());
-    is_orthogonal =
-        is_orthogonal && rest.norm() <= kOrthogonal * columns[k].norm();
-  }
-  if (!is_orthogonal) {
-    products = Multiply(z);
-  }
-  const bool is_inexact = solver_.UsesMultigrid();
-  for (Eigen::Index k = 0; k < num_growing; ++k) {
-    Response& response = *growing[k];
-    const Eigen::VectorXd h = products.h.col(k);
-    const Eigen::VectorXd j = products.j.col(k);
-    const double energy = z.col(k).dot(h + pole * j);
-    const double energy_before = energy + columns[k].squaredNorm();
-    const bool is_new = energy > kDependent * energy_before;
-    const double error = std::max(
-        errors[k], is_inexact ? tolerance * std::sqrt(energy_before) : 0.0);
-    const double remainder = is_new ? std::sqrt(energy) : 0;
-    response.bounds.back().Extend(columns[k], error, remainder);
-    if (!is_new) {
-      response.krylov.resize(z.rows(), 0);
-      continue;
-    }
-    Append(z.col(k), h, j, response);
-    FindModes(response);
-    response.krylov.conservativeResize(Eigen::NoChange,
-                                       response.krylov.cols() + 1);
-    response.krylov.rightCols<1>() = z.col(k) / remainder;
-    response.next_product = j / remainder;
+  Orthogonalize(step);
+  const double inexactness = solver_.UsesMultigrid() ? tolerance : 0;
+  for (Eigen::Index k = 0; k < step.Count(); ++k) {
+    ExtendKrylov(k, inexactness, step);
   }
   ++version_;
   return true;
+}
+
+void ReducedModel::Orthogonalize(KrylovStep& step) {
+  for (Eigen::Index k = 0; k < step.Count(); ++k) {
+    const Response& response = *step.responses[k];
+    step.columns.emplace_back(response.krylov.transpose() *
+                              response.next_product);
+    step.z.col(k) -= response.krylov * step.columns.back();
+  }
+  step.of_z = Multiply(step.z);
+  bool is_orthogonal = true;
+  for (Eigen::Index k = 0; k < step.Count(); ++k) {
+    const Eigen::MatrixXd& krylov = step.responses[k]->krylov;
+    const Eigen::VectorXd rest =
+        krylov.transpose() * (step.of_z.h.col(k) + Pole() * step.of_z.j.col(k));
+    step.z.col(k) -= krylov * rest;
+    step.errors.push_back(rest.norm());
+    is_orthogonal =
+        is_orthogonal && rest.norm() <= kOrthogonal * step.columns[k].norm();
+  }
+  if (!is_orthogonal) {
+    step.of_z = Multiply(step.z);
+  }
+}
+
+void ReducedModel::ExtendKrylov(Eigen::Index k, double inexactness,
+                                const KrylovStep& step) {
+  Response& response = *step.responses[k];
+  const Eigen::VectorXd h = step.of_z.h.col(k);
+  const Eigen::VectorXd j = step.of_z.j.col(k);
+  const double energy = step.z.col(k).dot(h + Pole() * j);
+  const double energy_before = energy + step.columns[k].squaredNorm();
+  const bool is_new = energy > kDependent * energy_before;
+  const double error =
+      std::max(step.errors[k], inexactness * std::sqrt(energy_before));
+  const double remainder = is_new ? std::sqrt(energy) : 0;
+  response.bounds.back().Extend(step.columns[k], error, remainder);
+  if (!is_new) {
+    response.krylov.resize(step.z.rows(), 0);
+    return;
+  }
+  Append(step.z.col(k), h, j, response);
+  FindModes(response);
+  response.krylov.conservativeResize(Eigen::NoChange,
+                                     response.krylov.cols() + 1);
+  response.krylov.rightCols<1>() = step.z.col(k) / remainder;
+  response.next_product = j / remainder;
 }
 
 void ReducedModel::Append(const Eigen::VectorXd& x, const Eigen::VectorXd& h,

@@ -134,6 +134,13 @@ class ReducedModel {
   Eigen::MatrixXd FreeRows(const Eigen::MatrixXd& all) const;
   /// H x and J x in the free rows.
   StiffnessProducts Multiply(const Eigen::MatrixXd& x);
+  struct KrylovStep;
+  /// Takes off `z` what it has along the Krylov vectors, in the energy of the
+  /// pole, and multiplies what is left.
+  void Orthogonalize(KrylovStep& step);
+  /// Adds the `k`-th vector of the step to its response, unless it is zero up
+  /// to rounding; `inexactness` is the relative error of the solves.
+  void ExtendKrylov(Eigen::Index k, double inexactness, const KrylovStep& step);
   /// Adds the part of x that the basis of a response lacks; `h` = H x, `j` =
   /// J x.
   void Append(const Eigen::VectorXd& x, const Eigen::VectorXd& h,

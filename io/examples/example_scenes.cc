@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "elastimate/io/examples/organ_mesh.h"
-#include "elastimate/io/gmsh/organ_shape.h"
 
 namespace elastimate {
 namespace {
@@ -258,8 +257,8 @@ Scene HeldAndLoaded(Mesh mesh,
 /// area, at the back and the top of the right lobe.
 Eigen::Array<bool, 1, Eigen::Dynamic> BareArea(const Mesh& organ) {
   constexpr double kRadius = 0.225;  // Of an organ of length 1.
-  const Eigen::Vector3d center =
-      OrganPoint(Eigen::Vector3d(-0.35, 0.7, 0.75).normalized());
+  const Eigen::Vector3d center(-0.16144296140505487, 0.11372351560737334,
+                               0.2433738249689186);
   Eigen::Array<bool, 1, Eigen::Dynamic> held =
       Eigen::Array<bool, 1, Eigen::Dynamic>::Constant(organ.NumNodes(), false);
   const Eigen::MatrixXi facets = BoundaryFacets(organ);

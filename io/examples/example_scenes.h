@@ -82,9 +82,8 @@ struct OrganOptions {
 ///
 /// Throws std::invalid_argument, beginning with the option's name, for an
 /// option out of its range, and std::runtime_error, naming the step, when the
-/// meshing fails.  Starts and
-/// ends Gmsh, whose state belongs to the process: not for a program that is
-/// using Gmsh, nor for two threads at once.
+/// meshing fails, which the program elastimate-organ does in a process of its
+/// own.
 Scene OrganScene(const OrganOptions& options);
 
 }  // namespace elastimate

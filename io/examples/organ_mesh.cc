@@ -3,14 +3,14 @@
 #include <string>
 #include <utility>
 
-#include "elastimate/io/gmsh/gmsh_mesh.h"
 #include "elastimate/io/helper/mesh_program_call.h"
 
 namespace elastimate {
 
 Mesh OrganMesh(int tetrahedra) {
   MeshFile organ =
-      MakeByProgram(GmshProgram(), {"organ", std::to_string(tetrahedra)});
+      MakeByProgram({"elastimate-organ", "Gmsh", "meshes organs", ""},
+                    {std::to_string(tetrahedra)});
   Mesh mesh;
   mesh.nodes = std::move(organ.nodes);
   mesh.elements = std::move(organ.elements);

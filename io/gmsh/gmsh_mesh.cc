@@ -7,6 +7,7 @@
 #include <string>
 
 #include "elastimate/io/gmsh/gmsh_text_check.h"
+#include "elastimate/io/helper/mesh_program_call.h"
 #include "elastimate/io/helper/private_link.h"
 #include "elastimate/io/text/input_error.h"
 
@@ -46,11 +47,6 @@ void CheckEnd(const std::filesystem::path& path) {
 
 }  // namespace
 
-MeshProgram GmshProgram() {
-  return {"elastimate-gmsh", "Gmsh", "reads Gmsh files and meshes organs",
-          "open it in Gmsh and save it again"};
-}
-
 MeshFile ReadGmshMesh(const std::filesystem::path& path) {
   if (FileExtension(path) == ".msh") {
     CheckMshBegin(path);
@@ -61,7 +57,9 @@ MeshFile ReadGmshMesh(const std::filesystem::path& path) {
   }
   // Gmsh runs what it finds in a file of that name and ".opt" beside it.
   const PrivateLink link(path, "mesh" + FileExtension(path));
-  return ReadByProgram(GmshProgram(), {"read", link.Path().string()}, path);
+  return ReadByProgram({"elastimate-gmsh", "Gmsh", "reads Gmsh files",
+                        "open it in Gmsh and save it again"},
+                       {link.Path().string()}, path);
 }
 
 }  // namespace elastimate

@@ -3,20 +3,18 @@
 
 #include <filesystem>
 
-#include "elastimate/io/helper/mesh_program_call.h"
 #include "elastimate/io/mesh/mesh_file.h"
 
 namespace elastimate {
-
-/// The program that runs Gmsh, "read LINK FILE" or "organ N".  Beside what it
-/// can do for the safety of this process, it keeps Gmsh's 90 libraries out of
-/// it, which take ten times as long to load as all others.
-MeshProgram GmshProgram();
 
 /// Reads .msh (versions 1, 2 and 4; with the node and element data in it),
 /// .mesh, .unv and .bdf files through the Gmsh library.  Elements of lower
 /// dimension than others only make up the physical groups; those left must be
 /// of one ElementKind.  Throws as ReadByProgram does.
+///
+/// Gmsh runs in the program elastimate-gmsh.  Beside what that does for the
+/// safety of this process, it keeps Gmsh's 90 libraries out of it, which take
+/// ten times as long to load as all others.
 MeshFile ReadGmshMesh(const std::filesystem::path& path);
 
 }  // namespace elastimate

@@ -6,6 +6,7 @@
 #include <elastimate/core/solvers/multigrid.h>
 #include <elastimate/estimators/registry.h>
 #include <elastimate/io/scene/scene_reader.h>
+#include <elastimate/petsc/start_petsc.h>
 
 #include <filesystem>
 #include <fstream>
@@ -55,14 +56,23 @@ void CatchErrors(const std::filesystem::path& folder) {
   }
 }
 
-void EstimateByMultigrid(const std::filesystem::path& path) {
+elastimate::Estimate EstimateByMultigrid(const std::filesystem::path& path) {
   const elastimate::Scene scene =
       elastimate::ReadScene({path}, Measurement::kRequired).scene;
   elastimate::EstimatorOptions options;
   options.solver = elastimate::SolverKind::kMultigrid;
-  const elastimate::Estimate estimate =
-      elastimate::MakeEstimator("reduced-fe")->Run(scene, options);
-  Require(estimate.IsUsable(), "the estimate by multigrid is usable");
+  return elastimate::MakeEstimator("reduced-fe")->Run(scene, options);
+}
+
+void RefuseMultigridWhereNothingStartsPetsc(const std::filesystem::path& path) {
+  try {
+    EstimateByMultigrid(path);
+    Require(false, "multigrid is refused");
+  } catch (const std::invalid_argument& error) {
+    Require(std::string(error.what()).find("has not started PETSc") !=
+                std::string::npos,
+            "the error says that PETSc has not been started");
+  }
 }
 
 }  // namespace
@@ -73,8 +83,11 @@ int main(int argc, char** argv) {
     ReadGmshMesh(argv[1]);
     CatchErrors(argv[1]);
     if (argc > 3) {
+      RefuseMultigridWhereNothingStartsPetsc(argv[2]);
+      elastimate::StartPetscWhenNeeded();
       Require(elastimate::HasMultigrid(), elastimate::WhyNoMultigrid());
-      EstimateByMultigrid(argv[2]);
+      Require(EstimateByMultigrid(argv[2]).IsUsable(),
+              "the estimate by multigrid is usable");
     }
   } catch (const std::exception& error) {
     std::cerr << error.what() << "\n";

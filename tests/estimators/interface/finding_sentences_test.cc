@@ -68,89 +68,113 @@ TEST(OneCombination, NamesTheModulusThatStays) {
             std::string::npos);
 }
 
-// With the longest numbers that they print.
-std::vector<Finding> EveryFinding() {
-  const std::vector<std::string> many(20, "nu of region 1000 (0.45)");
-  constexpr double kLong = -1.23456e-100;
-  const IsotropicElasticity elasticity{kLong, kLong};
-  const Eigen::Vector2d direction(1, 1);
+// Below, findings with the longest numbers that they print.
+constexpr double kLong = -1.23456e-100;
+constexpr IsotropicElasticity kLongElasticity{kLong, kLong};
+std::vector<std::string> ManyParameters() {
+  return std::vector<std::string>(20, "nu of region 1000 (0.45)");
+}
+
+Estimate EstimateOfShearModulus() {
   Estimate estimate = WithCovariance(0.2 / 1.25 * 100, 0.2, 0.999999);
   estimate.discretization_error = 0.1234;
   estimate.poisson_ratio_discretization_error = 0.1234;
+  return estimate;
+}
+
+std::vector<Finding> OfSolutions() {
+  return {NotFinite(),
+          SingularStiffness(),
+          SearchFailed("reason"),
+          NoConvergence(1000),
+          FitNotCertified(),
+          Unphysical(kLongElasticity),
+          UnphysicalByNoise(kLongElasticity),
+          DisplacementsOpposeLoads(),
+          YoungsModulusDiverges(),
+          PoissonRatioAtMinusOne(),
+          PoissonRatioDivergesByNoise(),
+          LoadsDoNoWork()};
+}
+
+std::vector<Finding> OfUndeterminedParameters() {
+  return {OneCombination({100, 0.25}, {1 / 1.25, 1}),
+          YoungsModulusOnBoundUndetermined({100, 0.25}, {1 / 1.25, 1}),
+          PoissonRatioOnBoundUndetermined({100, 0.25}, {1 / 1.25, 1}),
+          YoungsModulusOnBoundUndetermined(kLong),
+          PoissonRatioUndetermined(EstimateOfShearModulus()),
+          PoissonRatioUndetermined(WithCovariance(50, 0.5, 0)),
+          PoissonRatioBetween({kLong, kLong}, true),
+          PoissonRatioBetween({kLong, kLong}, false),
+          PoissonRatioHiddenByNoise(),
+          YoungsModulusUndetermined(kLong, kLong)};
+}
+
+std::vector<Finding> OfResiduals() {
+  return {TooFewMeasurements(100000),
+          BoundContradicted(kLong),
+          KnownPoissonRatioContradicted(kLong, kLong, Severity::kWarning),
+          LargeCorrection(kLong),
+          LoadsOutOfBalance(kLong, Severity::kError),
+          ResidualAboveNoise(ResidualKind::kDisplacement, kLong),
+          ResidualAboveNoise(ResidualKind::kForce, kLong),
+          ResidualAboveNoise(ResidualKind::kVirtualWork, kLong),
+          SmoothResidual(kLong),
+          LargeSmoothResidual(kLong),
+          LargeResidual(kLong),
+          VirtualWorkImbalance(),
+          VirtualWorkImbalance(kLong, Severity::kError),
+          VirtualWorkImbalance(kLong, Severity::kWarning),
+          ModelDoesNotFitAtLimit(),
+          ModelMismatchFinding({kLong, kLong, true}),
+          Outliers({kLong, kLong}),
+          HeldNodesMoved({1000}),
+          HeldNodesMoved({1000, 1001, 1002})};
+}
+
+std::vector<Finding> OfParameters() {
+  return {YoungsModulusBias(kLong, true, Severity::kError),
+          YoungsModulusBias({}, false, Severity::kError),
+          YoungsModulusBias(kLong, false, Severity::kWarning),
+          PoissonRatioBias(kLong, true, Severity::kError),
+          PoissonRatioBias(kLong, false, Severity::kWarning),
+          YoungsModulusOnBound(),
+          PoissonRatioOnBound(),
+          PoissonRatioAtLimit(),
+          UnphysicalParameters(ManyParameters()),
+          ParametersUndetermined({"E of region 3 (45 %)"}),
+          ParametersUndetermined(ManyParameters()),
+          DependentForces(),
+          ParametersOnBounds({"nu of region 1000"}),
+          ParametersOnBounds(ManyParameters()),
+          ParametersNearLimits(ManyParameters(), Severity::kError),
+          ParametersNearLimits({"nu of region 3"}, Severity::kWarning),
+          ParameterBias("nu of regions 1, 2 and 17 more", kLong, false,
+                        Severity::kError),
+          ParameterBias("E", std::numeric_limits<double>::infinity(), true,
+                        Severity::kError)};
+}
+
+std::vector<Finding> OfElements() {
+  const Estimate estimate = EstimateOfShearModulus();
   Estimate of_linear = estimate;
   of_linear.element_order = 1;
+  return {
+      Locking(ElementKind::kTet4),
+      DiscretizationErrorFinding(ElementKind::kTet4, of_linear),
+      DiscretizationErrorFinding(ElementKind::kHex8, estimate),
+      ElementsTooCoarse({0.512345, -0.212345}),
+      LinearElementsFitAsWell(kLongElasticity),
+      TooManyElements(),
+      SolverFallback("multigrid did not converge, so that the stiffness was "
+                     "factorised")};
+}
+
+std::vector<Finding> EveryFinding() {
   std::vector<Finding> findings = Estimate().findings;
-  for (const Finding& finding :
-       {NotFinite(),
-        SingularStiffness(),
-        SearchFailed("reason"),
-        NoConvergence(1000),
-        FitNotCertified(),
-        Unphysical(elasticity),
-        UnphysicalByNoise(elasticity),
-        DisplacementsOpposeLoads(),
-        YoungsModulusDiverges(),
-        PoissonRatioAtMinusOne(),
-        PoissonRatioDivergesByNoise(),
-        LoadsDoNoWork(),
-        OneCombination({100, 0.25}, {1 / 1.25, 1}),
-        YoungsModulusOnBoundUndetermined({100, 0.25}, {1 / 1.25, 1}),
-        PoissonRatioOnBoundUndetermined({100, 0.25}, {1 / 1.25, 1}),
-        YoungsModulusOnBoundUndetermined(kLong),
-        PoissonRatioUndetermined(estimate),
-        PoissonRatioUndetermined(WithCovariance(50, 0.5, 0)),
-        PoissonRatioBetween({kLong, kLong}, true),
-        PoissonRatioBetween({kLong, kLong}, false),
-        PoissonRatioHiddenByNoise(),
-        YoungsModulusUndetermined(kLong, kLong),
-        TooFewMeasurements(100000),
-        BoundContradicted(kLong),
-        KnownPoissonRatioContradicted(kLong, kLong, Severity::kWarning),
-        LargeCorrection(kLong),
-        LoadsOutOfBalance(kLong, Severity::kError),
-        ResidualAboveNoise(ResidualKind::kDisplacement, kLong),
-        ResidualAboveNoise(ResidualKind::kForce, kLong),
-        ResidualAboveNoise(ResidualKind::kVirtualWork, kLong),
-        SmoothResidual(kLong),
-        LargeSmoothResidual(kLong),
-        LargeResidual(kLong),
-        VirtualWorkImbalance(),
-        VirtualWorkImbalance(kLong, Severity::kError),
-        VirtualWorkImbalance(kLong, Severity::kWarning),
-        ModelDoesNotFitAtLimit(),
-        ModelMismatchFinding({kLong, kLong, true}),
-        Outliers({kLong, kLong}),
-        HeldNodesMoved({1000}),
-        HeldNodesMoved({1000, 1001, 1002}),
-        YoungsModulusBias(kLong, true, Severity::kError),
-        YoungsModulusBias({}, false, Severity::kError),
-        YoungsModulusBias(kLong, false, Severity::kWarning),
-        PoissonRatioBias(kLong, true, Severity::kError),
-        PoissonRatioBias(kLong, false, Severity::kWarning),
-        YoungsModulusOnBound(),
-        PoissonRatioOnBound(),
-        PoissonRatioAtLimit(),
-        UnphysicalParameters(many),
-        ParametersUndetermined({"E of region 3 (45 %)"}),
-        ParametersUndetermined(many),
-        DependentForces(),
-        ParametersOnBounds({"nu of region 1000"}),
-        ParametersOnBounds(many),
-        ParametersNearLimits(many, Severity::kError),
-        ParametersNearLimits({"nu of region 3"}, Severity::kWarning),
-        ParameterBias("nu of regions 1, 2 and 17 more", kLong, false,
-                      Severity::kError),
-        ParameterBias("E", std::numeric_limits<double>::infinity(), true,
-                      Severity::kError),
-        Locking(ElementKind::kTet4),
-        DiscretizationErrorFinding(ElementKind::kTet4, of_linear),
-        DiscretizationErrorFinding(ElementKind::kHex8, estimate),
-        ElementsTooCoarse({0.512345, -0.212345}),
-        LinearElementsFitAsWell(elasticity),
-        TooManyElements(),
-        SolverFallback("multigrid did not converge, so that the stiffness was "
-                       "factorised")}) {
-    findings.push_back(finding);
+  for (const auto& group : {OfSolutions(), OfUndeterminedParameters(),
+                            OfResiduals(), OfParameters(), OfElements()}) {
+    findings.insert(findings.end(), group.begin(), group.end());
   }
   return findings;
 }

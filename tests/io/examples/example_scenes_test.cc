@@ -20,7 +20,7 @@
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/core/scene/scene.h"
-#include "elastimate/io/gmsh/organ_shape.h"
+#include "elastimate/organ/organ_shape.h"
 
 namespace elastimate {
 namespace {
@@ -454,14 +454,6 @@ TEST(OrganSceneTest, NamesTheOptionOutOfRange) {
       why([](OrganOptions& o) { o.force.y() = kInfinity; }),
       "force=0,inf,-0.02; the largest must be from 1e-50 to 1e+50, or all "
       "zero");
-}
-
-TEST(OrganShapeTest, BallPointInvertsOrganPoint) {
-  for (int i = 0; i < 100; ++i) {
-    const Eigen::Vector3d point(std::sin(1.0 + i), std::sin(2.0 * i),
-                                std::sin(3.0 * i));
-    EXPECT_TRUE(BallPoint(OrganPoint(point)).isApprox(point, 1e-13)) << i;
-  }
 }
 
 }  // namespace

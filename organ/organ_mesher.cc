@@ -1,4 +1,4 @@
-#include "elastimate/io/gmsh/organ_mesher.h"
+#include "elastimate/organ/organ_mesher.h"
 
 #include <gmsh.h>
 
@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "elastimate/io/gmsh/organ_shape.h"
+#include "elastimate/organ/organ_shape.h"
 
 namespace elastimate {
 namespace {

@@ -1,5 +1,5 @@
-#ifndef ELASTIMATE_IO_GMSH_ORGAN_SHAPE_H_
-#define ELASTIMATE_IO_GMSH_ORGAN_SHAPE_H_
+#ifndef ELASTIMATE_ORGAN_ORGAN_SHAPE_H_
+#define ELASTIMATE_ORGAN_ORGAN_SHAPE_H_
 
 #include <Eigen/Core>
 
@@ -19,4 +19,4 @@ Eigen::Vector3d BallPoint(const Eigen::Vector3d& organ_point);
 
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_IO_GMSH_ORGAN_SHAPE_H_
+#endif  // ELASTIMATE_ORGAN_ORGAN_SHAPE_H_

@@ -1,4 +1,4 @@
-#include "elastimate/io/gmsh/organ_shape.h"
+#include "elastimate/organ/organ_shape.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
