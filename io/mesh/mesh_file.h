@@ -75,9 +75,6 @@ inline constexpr char kSupportedElements[] =
 /// other name as a script.
 std::string FileExtension(const std::filesystem::path& path);
 
-/// Throws std::invalid_argument unless `path` is a regular file with content.
-void CheckReadable(const std::filesystem::path& path);
-
 /// The array called `name`, or null.
 inline const Eigen::MatrixXd* FindArray(const std::vector<FileArray>& arrays,
                                         const std::string& name) {

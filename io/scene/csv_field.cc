@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "elastimate/io/mesh/mesh_file.h"
 #include "elastimate/io/text/csv_table.h"
 #include "elastimate/io/text/input_error.h"
+#include "elastimate/io/text/input_file.h"
 
 namespace elastimate {
 namespace {

@@ -4,8 +4,8 @@
 #include <fstream>
 #include <set>
 
-#include "elastimate/io/mesh/mesh_file.h"
 #include "elastimate/io/text/input_error.h"
+#include "elastimate/io/text/input_file.h"
 #include "elastimate/io/text/printable.h"
 
 namespace elastimate {

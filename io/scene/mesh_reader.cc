@@ -6,6 +6,7 @@
 #include "elastimate/io/gmsh/gmsh_mesh.h"
 #include "elastimate/io/scene/mesh_file_check.h"
 #include "elastimate/io/text/input_error.h"
+#include "elastimate/io/text/input_file.h"
 #include "elastimate/io/vtk/vtk_mesh.h"
 
 namespace elastimate {

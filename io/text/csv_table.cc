@@ -9,8 +9,8 @@
 #include <new>
 #include <system_error>
 
-#include "elastimate/io/mesh/mesh_file.h"
 #include "elastimate/io/text/input_error.h"
+#include "elastimate/io/text/input_file.h"
 #include "elastimate/io/text/printable.h"
 
 namespace elastimate {

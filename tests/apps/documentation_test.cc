@@ -180,7 +180,8 @@ TEST_F(Documentation, HasASceneThatCanBeRead) {
   }
   testing::WriteText(folder_ / "markers.csv", points);
   testing::WriteText(folder_ / "scene.json", scenes[0]);
-  const testing::ProgramRun run = Run("estimate scene.json --json=-");
+  const testing::ProgramRun run =
+      Run("estimate scene.json --estimator=auto --json=-");
   EXPECT_NE(run.exit_code, 2) << run.errors;
   EXPECT_EQ(run.Json()["loads"][0][0]["type"], "force");
 }

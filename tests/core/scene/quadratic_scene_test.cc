@@ -333,7 +333,9 @@ TEST(QuadraticSupports, AreDecidedByBoxes) {
       scene.supports.displacement.col(node) = box.displacement;
     }
   }
-  scene.load_cases.assign(1, {{BodyForce{Eigen::Vector3d(0, 0, -1)}}, {}, {}});
+  scene.load_cases.resize(1);
+  scene.load_cases[0].loads = {BodyForce{Eigen::Vector3d(0, 0, -1)}};
+  scene.load_cases[0].displacement.resize(0, 0);
   const Scene quadratic = QuadraticScene(scene);
   int num_between = 0;
   for (Eigen::Index node = 0; node < quadratic.mesh.NumNodes(); ++node) {
