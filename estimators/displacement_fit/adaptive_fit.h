@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "elastimate/core/scene/scene.h"
 #include "elastimate/core/scene/observed_displacements.h"
+#include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/displacement_fit/reduced_fit.h"
 #include "elastimate/estimators/displacement_fit/robust_reduced_fit.h"
 #include "elastimate/estimators/interface/estimator.h"

@@ -9,9 +9,9 @@
 
 #include "elastimate/core/equilibrium/hierarchical_error.h"
 #include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/core/solvers/stiffness_solver.h"
-#include "elastimate/core/scene/observed_displacements.h"
 
 namespace elastimate {
 

@@ -8,9 +8,9 @@
 
 #include "elastimate/core/equilibrium/forward_model.h"
 #include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/displacement_fit/element_change.h"
-#include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/estimators/interface/estimator.h"
 
 namespace elastimate {

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "elastimate/estimators/displacement_fit/displacement_fit.h"
 #include "elastimate/core/scene/observed_displacements.h"
+#include "elastimate/estimators/displacement_fit/displacement_fit.h"
 #include "elastimate/estimators/interface/estimator.h"
 #include "elastimate/estimators/reduced_model/reduced_model.h"
 

@@ -45,10 +45,11 @@ class PreparedEstimator {
 
   /// The estimate from one measured displacement for each load case,
   /// dimension x num_nodes each [length], or of the points of a load case that
-  /// was prepared with some, not a number where it was not then; `work`, stages and seconds are those
-  /// of this call.  Throws std::invalid_argument, and leaves this object as it
-  /// was, when a shape is wrong, or for displacements that Estimator::Run would
-  /// refuse.  Not to be called from two threads at once.
+  /// was prepared with some, not a number where it was not then; `work`, stages
+  /// and seconds are those of this call.  Throws std::invalid_argument, and
+  /// leaves this object as it was, when a shape is wrong, or for displacements
+  /// that Estimator::Run would refuse.  Not to be called from two threads at
+  /// once.
   Estimate Run(const std::vector<Eigen::MatrixXd>& displacements);
 
  private:

@@ -243,8 +243,8 @@ struct StatisticsCase {
 class MaterialsStatistics : public ::testing::TestWithParam<StatisticsCase> {};
 
 // Standard scores of 50 seeds have the variance 1, with a standard deviation of
-// .2, root mean squares one of 10 %, and they cover 95 % with one of 3.1 %; so 4
-// of them each.
+// .2, root mean squares one of 10 %, and they cover 95 % with one of 3.1 %; so
+// 4 of them each.
 TEST_P(MaterialsStatistics, StandardErrorsAreThoseOfTheErrors) {
   constexpr int kSeeds = 50;
   Scene scene = TwoRegionScene({ElementKind::kTet4, SectionModel::kSolid}, 4);
