@@ -20,12 +20,13 @@ std::vector<std::filesystem::path> FilesOf(const JsonValue& points) {
   if (points.IsString()) {
     return {folder / points.String()};
   }
+  if (points.ListSize() == 0) {
+    points.Fail(
+        "must be the name of a file of points, or a list of such names");
+  }
   std::vector<std::filesystem::path> files;
   for (const JsonValue& name : points.Items()) {
     files.push_back(folder / name.String());
-  }
-  if (files.empty()) {
-    points.Fail("is empty; name a file of points");
   }
   return files;
 }

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <new>
 #include <system_error>
+#include <utility>
 
 #include "elastimate/io/text/input_error.h"
 #include "elastimate/io/text/input_file.h"
@@ -18,10 +19,10 @@ namespace {
 
 using Cells = std::vector<std::string>;
 
-// The cells of one line, by libcsv.
-Cells SplitLine(const std::string& line, char delimiter) {
+// The cells of one line, by libcsv; empty when quotes are wrong.
+std::optional<Cells> SplitLine(const std::string& line, char delimiter) {
   csv_parser parser;
-  if (csv_init(&parser, 0) != 0) {
+  if (csv_init(&parser, CSV_STRICT | CSV_STRICT_FINI) != 0) {
     throw std::bad_alloc();
   }
   csv_set_delim(&parser, static_cast<unsigned char>(delimiter));
@@ -33,11 +34,12 @@ Cells SplitLine(const std::string& line, char delimiter) {
   const bool is_read = csv_parse(&parser, line.data(), line.size(), add,
                                  nullptr, &cells) == line.size() &&
                        csv_fini(&parser, add, nullptr, &cells) == 0;
+  const int error = csv_error(&parser);
   csv_free(&parser);
-  if (!is_read) {
+  if (!is_read && error != CSV_EPARSE) {
     throw std::bad_alloc();
   }
-  return cells;
+  return is_read ? std::optional<Cells>(std::move(cells)) : std::nullopt;
 }
 
 char DelimiterOf(const std::string& header) {
@@ -135,10 +137,17 @@ CsvTable ReadCsvTable(const std::filesystem::path& path) {
     }
     if (table.columns.empty()) {
       delimiter = DelimiterOf(line);
-      table.columns = SplitLine(line, delimiter);
+    }
+    std::optional<Cells> cells = SplitLine(line, delimiter);
+    if (!cells) {
+      ThrowInputError(path, "line " + std::to_string(number) +
+                                ": the quotes do not match; correct them");
+    }
+    if (table.columns.empty()) {
+      table.columns = std::move(*cells);
       continue;
     }
-    CsvTable::Row row = {number, SplitLine(line, delimiter)};
+    CsvTable::Row row = {number, std::move(*cells)};
     if (table.rows.empty() && !HasNumber(row.cells)) {
       continue;
     }

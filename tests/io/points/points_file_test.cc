@@ -63,6 +63,8 @@ TEST_F(PointsFileTest, NamesLineAndColumn) {
                      "line 2: sd_ux must be positive");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy\n1,2,3,4\n1,2,3\n", 2),
                      "line 3 has 3 columns where 4 are due");
+  EXPECT_THROWS_WITH(Read("x,y,ux,uy\n1,2,3,\"4\n", 2),
+                     "line 2: the quotes do not match");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy\n", 2), "no row of numbers");
   EXPECT_THROWS_WITH(Read("\n", 2), "no row of numbers");
   EXPECT_THROWS_WITH(Read("", 2), "the file is empty");

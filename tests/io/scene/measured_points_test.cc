@@ -115,8 +115,12 @@ TEST_F(MeasuredPointsTest, NameWhatIsWrong) {
                     displacement);
   };
   EXPECT_THROWS_WITH(Read(with(R"({"points": "no.csv"})")), "no.csv");
-  EXPECT_THROWS_WITH(Read(with(R"({"points": []})")),
-                     "cases\\[0\\].displacement.points is empty");
+  EXPECT_THROWS_WITH(
+      Read(with(R"({"points": []})")),
+      "displacement.points must be the name of a file of points");
+  EXPECT_THROWS_WITH(
+      Read(with(R"({"points": 5})")),
+      "displacement.points must be the name of a file of points");
   EXPECT_THROWS_WITH(Read(with(R"({"points": "points.csv", "tol": 1})")),
                      "tol");
   EXPECT_THROWS_WITH(Read(with(R"({"points": "points.csv", "tolerance": -1})")),
