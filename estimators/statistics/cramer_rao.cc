@@ -44,10 +44,13 @@ Eigen::Matrix2d InformationOf(const Scene& scene, Eigen::Index k,
     sum(0, 1) = sum(1, 0) = mask.select(e.array() * nu.array(), 0).sum();
     return sum;
   };
-  return information(observed, of_e, of_nu) +
-         information(!points.displacement.array().isNaN(),
-                     Interpolate(scene.mesh, points.points, of_e),
-                     Interpolate(scene.mesh, points.points, of_nu));
+  Eigen::Matrix2d sum = information(observed, of_e, of_nu);
+  if (points.displacement.cols() > 0) {
+    sum += information(!points.displacement.array().isNaN(),
+                       Interpolate(scene.mesh, points.points, of_e),
+                       Interpolate(scene.mesh, points.points, of_nu));
+  }
+  return sum;
 }
 
 }  // namespace
