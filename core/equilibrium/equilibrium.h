@@ -2,6 +2,7 @@
 #define ELASTIMATE_CORE_EQUILIBRIUM_EQUILIBRIUM_H_
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <string>
 
 #include "elastimate/core/mechanics/internal_forces.h"
@@ -40,6 +41,28 @@ class Equilibrium {
   /// load case.  Precondition: Solve returned true.
   Eigen::MatrixXd Sensitivities(const Eigen::MatrixXd& directions);
 
+  /// u in equilibrium without loads, of displacements of the held degrees of
+  /// freedom alone (num_dofs x n, zero in the free rows): n solves.  This, its
+  /// transpose and forces of supports are there for a scene of unknown motion
+  /// (HasUnknownMotion).  Precondition: Solve returned true.
+  Eigen::MatrixXd Extend(const Eigen::MatrixXd& held);
+  /// The transpose of Extend, zero in the free rows: n solves.
+  Eigen::MatrixXd ExtendTransposed(const Eigen::MatrixXd& values);
+  /// Adds displacements of each load case that Extend returned.
+  void Superpose(const Eigen::MatrixXd& displacement);
+
+  /// K of the held rows times some columns, zero in the free rows.
+  Eigen::MatrixXd HeldForces(const Eigen::MatrixXd& displacements) const;
+  /// Its transpose, of values in the held rows.
+  Eigen::MatrixXd HeldForcesTransposed(const Eigen::MatrixXd& held) const;
+  /// The forces that the supports exert in each load case, K u - f in the held
+  /// rows, zero in the free ones: num_dofs x num_load_cases [force].
+  Eigen::MatrixXd SupportForces() const;
+  /// Their derivatives along the directions whose Sensitivities are given, in
+  /// the same order.  A pass for each load case.
+  Eigen::MatrixXd SupportForceSensitivities(
+      const Eigen::MatrixXd& directions, const Eigen::MatrixXd& sensitivities);
+
   const InternalForces& Forces() const { return forces_; }
   const NodeGraph& Graph() const { return solver_.Graph(); }
   Work WorkDone() const;
@@ -47,6 +70,12 @@ class Equilibrium {
   const std::string& Notice() const { return solver_.Notice(); }
 
  private:
+  bool IsHeld(Eigen::Index dof) const { return solver_.Dofs().place[dof] < 0; }
+  /// The held rows of the stiffness of these blocks.
+  void AssembleHeldRows(const Eigen::MatrixXd& blocks);
+  /// `values` in the held rows, zero in the free.
+  Eigen::MatrixXd OfHeld(Eigen::MatrixXd values) const;
+
   InternalForces forces_;
   StiffnessSolver solver_;
   Eigen::MatrixXd load_;
@@ -56,6 +85,9 @@ class Equilibrium {
   Eigen::MatrixXd displacement_;
   Eigen::VectorXd support_response_;
   double scale_ = 1;  ///< Of the moduli over those of the factor.
+  /// The held rows of the factor's stiffness, where motions are unknown.
+  bool has_unknown_motion_;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> held_rows_;
   int element_passes_ = 0;
 };
 

@@ -69,7 +69,7 @@ struct RowList {
       const std::size_t num_entries = entries.size();
       double held = 0;
       for (Eigen::Index j = 0; j < nodes.size(); ++j) {
-        if (supports.held(i, nodes(j))) {
+        if (!scene.is_rigid_motion_free && supports.IsGiven(i, nodes(j))) {
           held += shape_functions(j) * supports.displacement(i, nodes(j));
         } else if (std::abs(shape_functions(j)) > kNoPart) {
           entries.emplace_back(
@@ -194,6 +194,17 @@ Eigen::VectorXd ObservedDisplacements::Restrict(
 Eigen::VectorXd ObservedDisplacements::RestrictToCase(
     Eigen::Index k, const Eigen::VectorXd& displacement) const {
   return rows_[k] * displacement;
+}
+
+Eigen::MatrixXd ObservedDisplacements::RestrictTransposed(
+    const Eigen::VectorXd& rows) const {
+  Eigen::MatrixXd displacements(rows_.front().cols(), NumLoadCases());
+  for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
+    displacements.col(k).noalias() =
+        rows_[k].transpose() *
+        rows.segment(CaseStart(k), CaseStart(k + 1) - CaseStart(k));
+  }
+  return displacements;
 }
 
 Eigen::VectorXd ObservedDisplacements::BoundingWeights() const {

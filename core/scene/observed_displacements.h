@@ -17,8 +17,9 @@ namespace elastimate {
 ///   q_i = sum_j N_j(x_i) u_j + noise of the standard deviation s_i,
 ///
 /// where x_i is a node, or a point within an element of shape functions N_j.
-/// Held degrees of freedom u_j are known: their part is taken from q_i, and a
-/// row without others is left out.  Rows are weighted by 1 / s_i where it is
+/// Held degrees of freedom u_j whose displacement is given are known: their part
+/// is taken from q_i, and a row without others is left out, unless a rigid
+/// motion of all is free, in which they take part.  Rows are weighted by 1 / s_i where it is
 /// known, and normalised so that the first vector of measurements has norm 1.
 class ObservedDisplacements {
  public:
@@ -71,6 +72,8 @@ class ObservedDisplacements {
   /// The rows of load case `k` of one displacement, num_dofs values.
   Eigen::VectorXd RestrictToCase(Eigen::Index k,
                                  const Eigen::VectorXd& displacement) const;
+  /// The transpose of Restrict: num_dofs x num_load_cases.
+  Eigen::MatrixXd RestrictTransposed(const Eigen::VectorXd& rows) const;
   /// For each degree of freedom a weight d, so that in no load case the norm of
   /// the rows of a displacement u is above that of d u, by components.  It is
   /// equal where only nodes are observed, in one load case.

@@ -7,6 +7,7 @@
 
 #include "elastimate/core/mesh/axis_names.h"
 #include "elastimate/core/mesh/representable.h"
+#include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/core/scene/loads.h"
 
 namespace elastimate {
@@ -254,6 +255,7 @@ void ValidateScene(const Scene& scene) {
     }
   }
   ValidateMeasurements(scene);
+  ValidateUnknownMotion(scene);
 }
 
 void ValidateMeasurements(const Scene& scene) {

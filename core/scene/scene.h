@@ -26,6 +26,13 @@ struct HeldBox {
   Eigen::VectorXd displacement;  ///< Of `dimension` [length].
 };
 
+/// A part of the specimen that a grip or a platen moves as a rigid body, by a
+/// motion that is not known: some components of u = a + w x (x - x0).
+struct RigidFace {
+  std::vector<int> nodes;
+  Eigen::Array<bool, Eigen::Dynamic, 1> components;  ///< Of `dimension`.
+};
+
 /// The held degrees of freedom, and the displacement they are held at.
 struct Supports {
   ComponentMask held;            ///< dimension x num_nodes.
@@ -34,6 +41,16 @@ struct Supports {
   /// Where `held` comes from, as far as it was told by place: it decides about
   /// the nodes that QuadraticScene adds.
   std::vector<HeldBox> boxes = {};
+  /// Held components whose displacement, in each load case another, is not
+  /// known: those of rigid faces, and others as they were measured, with the
+  /// error of a measurement.  dimension x num_nodes; empty when there are none.
+  ComponentMask unknown = {};
+  std::vector<RigidFace> rigid_faces = {};
+
+  /// Whether component `i` of `node` is held at a displacement that is known.
+  bool IsGiven(int i, Eigen::Index node) const {
+    return held(i, node) && (unknown.size() == 0 || !unknown(i, node));
+  }
 };
 
 /// Forces that act on nodes.
@@ -82,6 +99,17 @@ struct PointDisplacements {
   Eigen::MatrixXd noise_sd;
 };
 
+/// The force that the supports of some nodes exert on the specimen, in sum, as
+/// a load cell measured it: where f are the internal forces and F the loads,
+///
+///   R_i = sum of f_i - F_i over the nodes + noise.
+struct Resultant {
+  std::vector<int> nodes;
+  /// [force], of `dimension`; not a number where it was not measured.
+  Eigen::VectorXd force;
+  Eigen::VectorXd noise_sd;  ///< Standard deviations [force], of `dimension`.
+};
+
 /// One experiment on the specimen: what pushed, and what was measured.
 struct LoadCase {
   std::vector<Load> loads;
@@ -92,6 +120,7 @@ struct LoadCase {
   PointDisplacements points;     ///< Measured at points; mostly none.
   std::optional<double> noise_sd;  ///< Standard deviation of the measured
                                    ///< displacement per component [length].
+  std::vector<Resultant> resultants = {};
 };
 
 /// Whether component `i` of the displacement of `node` is measured: in a load
@@ -116,14 +145,19 @@ struct Scene {
   std::vector<Material> materials;
   Supports supports;
   std::vector<LoadCase> load_cases;
+  /// Whether the displacements were measured but for a rigid motion, of the
+  /// camera or of the whole specimen, in each load case another.
+  bool is_rigid_motion_free = false;
 };
 
 /// Throws std::invalid_argument with one sentence that names the load case, the
 /// array, and the node or element, unless: the mesh and its materials are
 /// valid (ValidateMesh, ValidateMaterials); every array has its shape; every
 /// number is finite, and no array's largest one beyond 1e-50 to 1e50 unless
-/// zero (displacements only where they are observed or held); every facet has
-/// nodes in range (and mid-edge nodes in the middle); points lie in their
+/// zero (displacements only where they are observed or held); unknown
+/// displacements are of held components, in rigid faces or measured at nodes;
+/// resultants are of held components; every facet has nodes in range (and
+/// mid-edge nodes in the middle); points lie in their
 /// elements (ValidatePoints); the facets of a surface force have an area; noise
 /// standard deviations are positive; there is a load case; and at least one
 /// degree of freedom is free.  O(num_elements + num_nodes * num_load_cases).

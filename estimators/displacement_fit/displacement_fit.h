@@ -7,7 +7,7 @@
 #include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/scene.h"
-#include "elastimate/estimators/displacement_fit/node_losses.h"
+#include "elastimate/estimators/statistics/node_losses.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
 #include "elastimate/estimators/interface/evidence.h"

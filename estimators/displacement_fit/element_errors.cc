@@ -5,7 +5,7 @@
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/mechanics/strain_energy.h"
-#include "elastimate/estimators/displacement_fit/residual_statistics.h"
+#include "elastimate/estimators/statistics/residual_statistics.h"
 #include "elastimate/estimators/interface/limits.h"
 
 namespace elastimate {

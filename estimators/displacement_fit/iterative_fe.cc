@@ -8,11 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
 #include "elastimate/estimators/displacement_fit/displacement_minimum.h"
 #include "elastimate/estimators/displacement_fit/displacement_profile.h"
-#include "elastimate/estimators/displacement_fit/material_fit.h"
-#include "elastimate/estimators/displacement_fit/node_losses.h"
+#include "elastimate/estimators/material_fit/material_fit.h"
+#include "elastimate/estimators/statistics/node_losses.h"
 #include "elastimate/estimators/displacement_fit/observed_model.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
 #include "elastimate/estimators/interface/judge.h"
@@ -227,12 +228,13 @@ Capabilities IterativeFe::WhatItTakes() const {
   capabilities.takes_bounds = true;
   capabilities.takes_losses = true;
   capabilities.takes_materials = true;
+  capabilities.takes_unknown_motion = true;
   return capabilities;
 }
 
 Estimate IterativeFe::DoRun(const Scene& scene,
                             const EstimatorOptions& options) const {
-  if (!IsOneIsotropicMaterial(scene.materials)) {
+  if (!IsOneIsotropicMaterial(scene.materials) || HasUnknownMotion(scene)) {
     return FitMaterials(scene, options);
   }
   Estimate estimate;

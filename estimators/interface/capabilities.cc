@@ -2,6 +2,7 @@
 
 #include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/scene/rigid_motion.h"
+#include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/interface/estimator.h"
 
 namespace elastimate {
@@ -90,6 +91,18 @@ std::string WhyNotTheseMaterials(const Capabilities& capabilities,
              : "";
 }
 
+std::string WhyNotTheseMotions(const Capabilities& capabilities,
+                               const EstimatorOptions& options) {
+  if (!capabilities.takes_unknown_motion) {
+    return "it takes supports whose displacement is given, and no resultants; "
+           "use iterative-fe";
+  }
+  return options.loss != Loss::kNone
+             ? "a loss function is for supports whose displacement is given; "
+               "leave it out"
+             : "";
+}
+
 }  // namespace
 
 std::string WhyUnsupported(const Capabilities& capabilities, const Scene& scene,
@@ -105,6 +118,9 @@ std::string WhyUnsupported(const Capabilities& capabilities, const Scene& scene,
     return "it has no virtual fields to take a degree; use virtual-fields";
   }
   std::string why = WhyNotTheseMaterials(capabilities, scene, options);
+  if (why.empty() && HasUnknownMotion(scene)) {
+    why = WhyNotTheseMotions(capabilities, options);
+  }
   if (why.empty() && capabilities.needs_all_displacements) {
     why = WhyNotAllDisplacements(scene);
   }

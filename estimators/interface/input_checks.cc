@@ -36,12 +36,12 @@ MeasurementSummary Summarize(const Scene& scene, const LoadCase& load_case) {
   MeasurementSummary summary;
   for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
     for (int i = 0; i < scene.mesh.Dimension(); ++i) {
-      const bool held = scene.supports.held(i, node);
+      const bool held = scene.supports.IsGiven(i, node);
       if (!IsObserved(load_case, i, node)) {
         continue;
       }
       const double q = load_case.displacement(i, node);
-      if (held) {
+      if (held && !scene.is_rigid_motion_free) {
         const double deviation = q - scene.supports.displacement(i, node);
         summary.held_deviation_square_sum += deviation * deviation;
       } else {
@@ -119,13 +119,14 @@ void CheckLoads(const Scene& scene) {
   bool any_force = false;
   std::size_t num_with_noise_sd = 0;
   for (const LoadCase& load_case : scene.load_cases) {
-    any_force = any_force || IsLoaded(scene, load_case);
+    any_force = any_force || !load_case.resultants.empty() ||
+                IsLoaded(scene, load_case);
     num_with_noise_sd += HasKnownNoise(load_case) ? 1 : 0;
   }
   if (!any_force) {
     throw std::invalid_argument(
         "the loads are zero on every free degree of freedom; without a known "
-        "force Young's modulus cannot be estimated");
+        "force, or a measured resultant, Young's modulus cannot be estimated");
   }
   if (num_with_noise_sd != 0 && num_with_noise_sd != scene.load_cases.size()) {
     throw std::invalid_argument(

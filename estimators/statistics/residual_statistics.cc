@@ -1,11 +1,11 @@
-#include "elastimate/estimators/displacement_fit/residual_statistics.h"
+#include "elastimate/estimators/statistics/residual_statistics.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "elastimate/core/algebra/dense_algebra.h"
-#include "elastimate/estimators/displacement_fit/node_losses.h"
+#include "elastimate/estimators/statistics/node_losses.h"
 #include "elastimate/estimators/interface/limits.h"
 
 namespace elastimate {

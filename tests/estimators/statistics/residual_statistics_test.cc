@@ -1,4 +1,4 @@
-#include "elastimate/estimators/displacement_fit/residual_statistics.h"
+#include "elastimate/estimators/statistics/residual_statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "elastimate/estimators/displacement_fit/node_losses.h"
+#include "elastimate/estimators/statistics/node_losses.h"
 #include "tests/core/random_values.h"
 #include "tests/scenes.h"
 

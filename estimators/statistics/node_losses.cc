@@ -1,4 +1,4 @@
-#include "elastimate/estimators/displacement_fit/node_losses.h"
+#include "elastimate/estimators/statistics/node_losses.h"
 
 #include <cmath>
 #include <vector>

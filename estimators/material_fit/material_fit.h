@@ -1,5 +1,5 @@
-#ifndef ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_MATERIAL_FIT_H_
-#define ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_MATERIAL_FIT_H_
+#ifndef ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MATERIAL_FIT_H_
+#define ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MATERIAL_FIT_H_
 
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
@@ -18,6 +18,10 @@ namespace elastimate {
 /// and for outliers as DescribeDisplacementFit does.  Of parameters on bounds,
 /// the covariance is that without bounds.
 ///
+/// Where supports or the whole specimen moved by unknown amounts, these are
+/// fitted with the parameters (MotionElimination), and resultants count by
+/// their errors beside the noise.
+///
 /// Preconditions are those of Estimator::Run; the supports hold the specimen.
 /// Cost: a factorisation at each step, 5 to 8 from each start, and a solve for
 /// each load case and parameter.
@@ -25,4 +29,4 @@ Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options);
 
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_MATERIAL_FIT_H_
+#endif  // ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MATERIAL_FIT_H_

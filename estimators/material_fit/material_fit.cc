@@ -1,21 +1,20 @@
-#include "elastimate/estimators/displacement_fit/material_fit.h"
+#include "elastimate/estimators/material_fit/material_fit.h"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <vector>
 
 #include "elastimate/core/algebra/dense_algebra.h"
-#include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/scene/observed_displacements.h"
-#include "elastimate/estimators/displacement_fit/residual_statistics.h"
+#include "elastimate/estimators/statistics/residual_statistics.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
 #include "elastimate/estimators/interface/free_parameters.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
 #include "elastimate/estimators/interface/stopwatch.h"
+#include "elastimate/estimators/material_fit/displacement_misfit.h"
 #include "elastimate/estimators/statistics/bounded_variables.h"
 
 namespace elastimate {
@@ -23,74 +22,8 @@ namespace {
 
 // Steps below this part of a standard error end the fit.
 constexpr double kSmallestStepOfErrors = 1e-2;
-
-// The displacements of a scene at variables x, against the measured ones.
-class DisplacementMisfit {
- public:
-  DisplacementMisfit(const Scene& scene, const EstimatorOptions& options)
-      : free_(scene, options),
-        equilibrium_(scene, options.solver),
-        observed_(scene),
-        on_factorization_(options.on_factorization) {}
-
-  const FreeParameters& Free() const { return free_; }
-  const ObservedDisplacements& Observed() const { return observed_; }
-  Equilibrium& Model() { return equilibrium_; }
-
-  bool Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd* residual,
-                Eigen::MatrixXd* jacobian) {
-    if (!MoveTo(x)) {
-      return false;
-    }
-    *residual =
-        observed_.Restrict(equilibrium_.Displacement()) - observed_.Measured();
-    if (jacobian != nullptr) {
-      *jacobian = Sensitivities(x);
-    }
-    return true;
-  }
-
- private:
-  bool MoveTo(const Eigen::VectorXd& x) {
-    if (x_.size() == x.size() && x_ == x) {
-      return true;
-    }
-    x_.resize(0);
-    if (on_factorization_) {
-      on_factorization_(++num_factorizations_);
-    }
-    const Eigen::VectorXd moduli = free_.ModuliAt(x);
-    if (!moduli.allFinite() || !equilibrium_.Solve(moduli) ||
-        !equilibrium_.Displacement().allFinite()) {
-      return false;
-    }
-    x_ = x;
-    return true;
-  }
-
-  Eigen::MatrixXd Sensitivities(const Eigen::VectorXd& x) {
-    const Eigen::Index n = free_.Size();
-    const Eigen::MatrixXd of_cases =
-        equilibrium_.Sensitivities(free_.ModuliJacobian(x));
-    const Eigen::Index num_cases = of_cases.cols() / n;
-    Eigen::MatrixXd of_all(of_cases.rows(), num_cases);
-    Eigen::MatrixXd sensitivities(observed_.Size(), n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index k = 0; k < num_cases; ++k) {
-        of_all.col(k) = of_cases.col(n * k + i);
-      }
-      sensitivities.col(i) = observed_.Restrict(of_all);
-    }
-    return sensitivities;
-  }
-
-  FreeParameters free_;
-  Equilibrium equilibrium_;
-  ObservedDisplacements observed_;
-  std::function<void(int)> on_factorization_;
-  int num_factorizations_ = 0;
-  Eigen::VectorXd x_;  ///< Where the model is; empty where it is nowhere.
-};
+// Of a row of displacements without noise, the norm of all of which is 1.
+constexpr double kLeastNoise = 1e-12;
 
 // Typical values, their moduli scaled so that the displacements fit best; empty
 // when these oppose the loads.
@@ -99,20 +32,11 @@ std::optional<Eigen::VectorXd> TypicalStart(DisplacementMisfit& misfit) {
   if (const std::optional<double> known = free.All().KnownModulus()) {
     return free.VariablesOf(free.All().Typical(*known));
   }
-  Equilibrium& model = misfit.Model();
-  if (!model.Solve(free.All().Moduli(free.All().Typical(1)))) {
-    return std::nullopt;
-  }
-  const ObservedDisplacements& observed = misfit.Observed();
-  const Eigen::VectorXd held = observed.Restrict(
-      model.SupportResponse().replicate(1, model.Displacement().cols()));
-  const Eigen::VectorXd loaded = observed.Restrict(model.Displacement()) - held;
-  const double compliance =
-      loaded.dot(observed.Measured() - held) / loaded.squaredNorm();
-  if (!(compliance > 0 && std::isfinite(compliance))) {
-    return std::nullopt;
-  }
-  return free.VariablesOf(free.All().Typical(1 / compliance));
+  const std::optional<double> compliance =
+      misfit.Compliance(free.All().Moduli(free.All().Typical(1)));
+  return compliance ? std::optional<Eigen::VectorXd>(free.VariablesOf(
+                          free.All().Typical(1 / *compliance)))
+                    : std::nullopt;
 }
 
 // From virtual-fields, where it has physical parameters.
@@ -150,7 +74,7 @@ BoundedMinimum Descend(const EstimatorOptions& estimator_options,
   options.initial_trust_region_radius = 1;
   // A step of k standard errors lowers the cost by about k^2 / n of itself.
   options.function_tolerance = kSmallestStepOfErrors * kSmallestStepOfErrors /
-                               static_cast<double>(misfit.Observed().Size());
+                               static_cast<double>(misfit.NumRows());
   options.gradient_tolerance = 1e-14;
   options.parameter_tolerance = 1e-11;
   options.logging_type = ceres::SILENT;
@@ -159,7 +83,46 @@ BoundedMinimum Descend(const EstimatorOptions& estimator_options,
           Eigen::MatrixXd* jacobian) {
         return misfit.Evaluate(x, residual, jacobian);
       },
-      misfit.Observed().Size(), misfit.Free().VariableBounds(), start, options);
+      misfit.NumRows(), misfit.Free().VariableBounds(), start, options);
+}
+
+// The standard deviation of a displacement row at x, as given or from what is
+// left there; zero where there is none.
+double NoiseAt(const Eigen::VectorXd& x, DisplacementMisfit& misfit) {
+  const ObservedDisplacements& observed = misfit.Observed();
+  if (observed.GivenNoise()) {
+    return 1 / observed.Norm();
+  }
+  Eigen::VectorXd residual;
+  if (!misfit.Evaluate(x, &residual, nullptr)) {
+    return 0;
+  }
+  const Eigen::Index redundancy =
+      observed.Size() - misfit.NumAmounts() - misfit.Free().Size();
+  return residual.head(observed.Size()).norm() /
+         std::sqrt(static_cast<double>(std::max<Eigen::Index>(redundancy, 1)));
+}
+
+// From the start on, with resultants that weigh as much as their errors say
+// beside those of the displacements, which the fit shows.
+BoundedMinimum DescendWithResultants(const EstimatorOptions& options,
+                                     const Eigen::VectorXd& start,
+                                     DisplacementMisfit& misfit) {
+  constexpr int kWeightings = 5;
+  constexpr double kSettled = 0.05;
+  double noise = std::max(NoiseAt(start, misfit), kLeastNoise);
+  misfit.SetNoise(noise);
+  BoundedMinimum minimum = Descend(options, start, misfit);
+  for (int i = 0; i < kWeightings && misfit.NumResultants() > 0; ++i) {
+    const double last = noise;
+    noise = std::max(NoiseAt(minimum.variables, misfit), kLeastNoise);
+    if (std::abs(noise - last) < kSettled * last) {
+      break;
+    }
+    misfit.SetNoise(noise);
+    minimum = Descend(options, minimum.variables, misfit);
+  }
+  return minimum;
 }
 
 // The best minimum that the starts lead to; empty without a start.
@@ -172,7 +135,10 @@ std::optional<BoundedMinimum> BestMinimum(const Scene& scene,
        {TypicalStart(misfit),
         VirtualFieldsStart(scene, options, misfit.Free(), estimate)}) {
     if (start) {
-      BoundedMinimum minimum = Descend(options, *start, misfit);
+      BoundedMinimum minimum =
+          misfit.NumResultants() > 0
+              ? DescendWithResultants(options, *start, misfit)
+              : Descend(options, *start, misfit);
       if (!best || minimum.cost < best->cost) {
         best = minimum;
       }
@@ -203,20 +169,23 @@ void DescribeMinimum(const Eigen::VectorXd& variables,
                      Estimate& estimate) {
   const FreeParameters& free = misfit.Free();
   const ObservedDisplacements& observed = misfit.Observed();
-  Eigen::VectorXd residual;
+  Eigen::VectorXd rows;
   Eigen::MatrixXd sensitivities;
-  if (!misfit.Evaluate(variables, &residual, &sensitivities)) {
+  if (!misfit.Evaluate(variables, &rows, &sensitivities)) {
     evidence.end = End::kSingularStiffness;
     return;
   }
+  const Eigen::VectorXd residual = rows.head(observed.Size());
   estimate.displacement_residual = residual.norm() / observed.Measured().norm();
+  const Eigen::Index num_fitted =
+      free.Size() + misfit.NumAmounts() - misfit.NumResultants();
   if (!observed.GivenNoise() &&
-      observed.Size() - free.Size() < kLimits.least_redundancy) {
+      observed.Size() - num_fitted < kLimits.least_redundancy) {
     evidence.too_few_components = observed.Size();
     return;
   }
   const ResidualVariance variance = EstimateVariance(
-      observed, residual.squaredNorm(), free.Size(), evidence, estimate);
+      observed, rows.squaredNorm(), num_fitted, evidence, estimate);
   evidence.is_explained_by_given_noise = variance.is_explained_by_given_noise;
   const double smooth = variance.is_explained_by_given_noise
                             ? 0
@@ -232,7 +201,8 @@ void DescribeMinimum(const Eigen::VectorXd& variables,
   estimate.error_budget.model = ErrorsOfVariables(free, smooth * inverse);
   Eigen::VectorXd change = Eigen::VectorXd::Zero(free.Size());
   if (HasHeavyTails(residual)) {
-    change = RobustChange(observed, residual, sensitivities);
+    change = RobustChange(observed, residual,
+                          sensitivities.topRows(observed.Size()));
     evidence.outlier_change = LargestOf(change, estimate, free);
   }
   covariance += change * change.transpose();
@@ -245,9 +215,36 @@ void DescribeMinimum(const Eigen::VectorXd& variables,
   EnterCovariance(free, variables, covariance, estimate);
 }
 
+// Where Poisson's ratio of one isotropic material is known, that material.
+std::vector<Material> WithKnownPoissonRatio(const EstimatorOptions& options) {
+  Material material;
+  material.known.push_back({"poisson_ratio", *options.known_poisson_ratio});
+  return {material};
+}
+
+// E and nu of one isotropic material, and their covariance.
+void EnterElasticity(Estimate& estimate) {
+  if (!estimate.parameters.empty()) {
+    estimate.elasticity = {estimate.parameters[0].value,
+                           estimate.parameters[1].value};
+  }
+  if (estimate.parameter_covariance.size() != 0) {
+    estimate.covariance = estimate.parameter_covariance;
+  }
+}
+
 }  // namespace
 
 Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options) {
+  if (IsOneIsotropicMaterial(scene.materials) && options.known_poisson_ratio) {
+    Scene known = scene;
+    known.materials = WithKnownPoissonRatio(options);
+    EstimatorOptions other_options = options;
+    other_options.known_poisson_ratio.reset();
+    Estimate estimate = FitMaterials(known, other_options);
+    EnterElasticity(estimate);
+    return estimate;
+  }
   Estimate estimate;
   Evidence evidence;
   Stopwatch stopwatch;
@@ -264,6 +261,9 @@ Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options) {
     DescribeMinimum(minimum->variables, misfit, evidence, estimate);
   } else {
     evidence.do_displacements_oppose_loads = true;
+  }
+  if (IsOneIsotropicMaterial(scene.materials)) {
+    EnterElasticity(estimate);
   }
   evidence.solver_notice = misfit.Model().Notice();
   Judge(evidence, options, estimate);

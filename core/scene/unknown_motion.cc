@@ -1,0 +1,227 @@
+#include "elastimate/core/scene/unknown_motion.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/mesh/axis_names.h"
+#include "elastimate/core/scene/rigid_motion.h"
+
+namespace elastimate {
+namespace {
+
+// Of motions of a face, beside the largest: those along a line that all its
+// nodes are on, or of components that it leaves free.
+constexpr double kNoMotion = 1e-6;
+
+[[noreturn]] void Refuse(const std::string& message) {
+  throw std::invalid_argument(message);
+}
+
+std::string NodeText(Eigen::Index node, int component) {
+  return "node " + std::to_string(node) + " (" + kAxisNames[component] + ")";
+}
+
+// Rigid motions of some nodes, rotations about their middle by their size:
+// (dimension num_nodes) x 3 or 6.
+template <class Nodes>
+Eigen::MatrixXd RigidMotionsOf(const Mesh& mesh, const Nodes& nodes) {
+  const int dimension = mesh.Dimension();
+  const Eigen::MatrixXd positions = mesh.nodes(Eigen::all, nodes);
+  const Eigen::MatrixXd arms = positions.colwise() - positions.rowwise().mean();
+  const double size = arms.cwiseAbs().maxCoeff();
+  Eigen::MatrixXd motions(arms.size(), NumRigidMotions(dimension));
+  for (Eigen::Index i = 0; i < arms.cols(); ++i) {
+    motions.middleRows(dimension * i, dimension) =
+        RigidMotionsAt(arms.col(i) / (size > 0 ? size : 1));
+  }
+  return motions;
+}
+
+// Which components are held as they were measured.
+ComponentMask AsMeasured(const Supports& supports) {
+  ComponentMask mask = supports.unknown;
+  for (const RigidFace& face : supports.rigid_faces) {
+    for (const int node : face.nodes) {
+      mask.col(node) = mask.col(node) && !face.components;
+    }
+  }
+  return mask;
+}
+
+void ValidateRigidFace(const Mesh& mesh, const Supports& supports,
+                       const RigidFace& face) {
+  if (face.components.size() != mesh.Dimension() || !face.components.any()) {
+    Refuse("a rigid face does not name its components; name some");
+  }
+  for (const int node : face.nodes) {
+    if (node < 0 || node >= mesh.NumNodes()) {
+      Refuse("node " + std::to_string(node) +
+           " of a rigid face is outside 0.." +
+           std::to_string(mesh.NumNodes() - 1));
+    }
+    for (int i = 0; i < mesh.Dimension(); ++i) {
+      if (face.components(i) && supports.IsGiven(i, node)) {
+        Refuse(NodeText(node, i) +
+             " of a rigid face is held at a given displacement; take it out "
+             "of one of the two");
+      }
+    }
+  }
+  if (face.nodes.empty()) {
+    Refuse("a rigid face has no node; name some");
+  }
+}
+
+void ValidateResultant(const Scene& scene, const Resultant& resultant,
+                       const std::string& where) {
+  const Mesh& mesh = scene.mesh;
+  if (resultant.force.size() != mesh.Dimension() ||
+      resultant.noise_sd.size() != mesh.Dimension()) {
+    Refuse("the force and the standard deviation of " + where + " do not have " +
+         std::to_string(mesh.Dimension()) + " components; give one for each");
+  }
+  for (const int node : resultant.nodes) {
+    if (node < 0 || node >= mesh.NumNodes()) {
+      Refuse("node " + std::to_string(node) + " of " + where +
+           " is outside 0.." + std::to_string(mesh.NumNodes() - 1));
+    }
+  }
+  for (int i = 0; i < mesh.Dimension(); ++i) {
+    if (std::isnan(resultant.force(i))) {
+      continue;
+    }
+    if (!(std::isfinite(resultant.force(i)) && resultant.noise_sd(i) > 0 &&
+          std::isfinite(resultant.noise_sd(i)))) {
+      Refuse(std::string("component ") + kAxisNames[i] + " of " + where +
+           " is not a finite force with a positive standard deviation; "
+           "correct it");
+    }
+    bool is_held = false;
+    for (const int node : resultant.nodes) {
+      is_held = is_held || scene.supports.held(i, node);
+    }
+    if (!is_held) {
+      Refuse("no support holds component " + std::string(kAxisNames[i]) +
+           " of a node of " + where +
+           ", so that nothing exerts it; give it as a load of type force, or "
+           "hold the nodes");
+    }
+  }
+}
+
+void ValidateMeasuredSupports(const Scene& scene) {
+  const ComponentMask measured = AsMeasured(scene.supports);
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    const LoadCase& load_case = scene.load_cases[k];
+    for (Eigen::Index node = 0; node < measured.cols(); ++node) {
+      for (int i = 0; i < measured.rows(); ++i) {
+        if (measured(i, node) &&
+            (load_case.displacement.size() == 0
+                 ? load_case.points.points.Size() != 0
+                 : !IsObserved(load_case, i, node))) {
+          Refuse(NodeText(node, i) +
+               " is a support that moved as measured, but load case " +
+               std::to_string(k + 1) +
+               " has no measurement of it; leave it out of the support, or "
+               "make the support rigid");
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+bool HasUnknownMotion(const Scene& scene) {
+  bool has_resultants = false;
+  for (const LoadCase& load_case : scene.load_cases) {
+    has_resultants = has_resultants || !load_case.resultants.empty();
+  }
+  return has_resultants || scene.is_rigid_motion_free ||
+         scene.supports.unknown.size() != 0;
+}
+
+void ValidateUnknownMotion(const Scene& scene) {
+  const Supports& supports = scene.supports;
+  const ComponentMask& unknown = supports.unknown;
+  if (unknown.size() != 0 && (unknown.rows() != supports.held.rows() ||
+                              unknown.cols() != supports.held.cols())) {
+    Refuse("the mask of unknown displacements of supports does not have the "
+         "shape of that of held components; correct it");
+  }
+  if (unknown.size() == 0 && !supports.rigid_faces.empty()) {
+    Refuse("the displacements of rigid faces are not marked as unknown; mark "
+         "them");
+  }
+  if (unknown.size() != 0 && (unknown && !supports.held).any()) {
+    Refuse("a displacement that no support holds is marked as unknown; hold it");
+  }
+  for (const RigidFace& face : supports.rigid_faces) {
+    ValidateRigidFace(scene.mesh, supports, face);
+  }
+  ValidateMeasuredSupports(scene);
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    const std::vector<Resultant>& resultants = scene.load_cases[k].resultants;
+    for (std::size_t i = 0; i < resultants.size(); ++i) {
+      ValidateResultant(scene, resultants[i],
+                        "resultant " + std::to_string(i + 1) +
+                            " of load case " + std::to_string(k + 1));
+    }
+  }
+}
+
+UnknownMotion::UnknownMotion(const Scene& scene)
+    : of_all(scene.mesh.NumDofs(), 0) {
+  const Mesh& mesh = scene.mesh;
+  const Supports& supports = scene.supports;
+  const int dimension = mesh.Dimension();
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::Index num_columns = 0;
+  const ComponentMask measured = AsMeasured(supports);
+  for (Eigen::Index dof = 0; dof < measured.size(); ++dof) {
+    if (measured.reshaped()(dof)) {
+      entries.emplace_back(dof, num_columns++, 1);
+    }
+  }
+  for (const RigidFace& face : supports.rigid_faces) {
+    Eigen::MatrixXd motions = RigidMotionsOf(mesh, face.nodes);
+    for (Eigen::Index row = 0; row < motions.rows(); ++row) {
+      motions.row(row) *= face.components(row % dimension) ? 1 : 0;
+    }
+    const Eigen::MatrixXd span = OrthonormalBasis(motions, kNoMotion);
+    for (Eigen::Index column = 0; column < span.cols(); ++column) {
+      for (Eigen::Index row = 0; row < span.rows(); ++row) {
+        if (span(row, column) != 0) {
+          entries.emplace_back(
+              dimension * face.nodes[row / dimension] + row % dimension,
+              num_columns, span(row, column));
+        }
+      }
+      ++num_columns;
+    }
+  }
+  of_supports.resize(mesh.NumDofs(), num_columns);
+  of_supports.setFromTriplets(entries.begin(), entries.end());
+  if (scene.is_rigid_motion_free) {
+    of_all = OrthonormalBasis(RigidMotionsOf(mesh, Eigen::all), kNoMotion);
+  }
+}
+
+Eigen::MatrixXd MeasuredSupports(const Scene& scene) {
+  const ComponentMask measured = AsMeasured(scene.supports);
+  Eigen::MatrixXd displacement = Eigen::MatrixXd::Zero(
+      scene.mesh.NumDofs(), Eigen::Index(scene.load_cases.size()));
+  for (Eigen::Index k = 0; k < displacement.cols() && measured.size() != 0;
+       ++k) {
+    const Eigen::MatrixXd& of_case = scene.load_cases[k].displacement;
+    if (of_case.size() != 0) {
+      displacement.col(k) = measured.select(of_case.array(), 0.0).reshaped();
+    }
+  }
+  return displacement;
+}
+
+}  // namespace elastimate

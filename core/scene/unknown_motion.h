@@ -1,0 +1,46 @@
+#ifndef ELASTIMATE_CORE_SCENE_UNKNOWN_MOTION_H_
+#define ELASTIMATE_CORE_SCENE_UNKNOWN_MOTION_H_
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+
+#include "elastimate/core/scene/scene.h"
+
+namespace elastimate {
+
+/// Whether displacements of supports, or of the whole specimen, are not known,
+/// or forces of supports were measured.  O(1).
+bool HasUnknownMotion(const Scene& scene);
+
+/// The part of ValidateScene about unknown displacements of supports and about
+/// resultants.  O(num_dofs num_load_cases).
+void ValidateUnknownMotion(const Scene& scene);
+
+/// What moved by unknown amounts b and a in a load case,
+///
+///   u of the supports = given + G b,   what was measured = u + R a + noise.
+///
+/// Columns are orthonormal, so that amounts are lengths.
+struct UnknownMotion {
+  /// G: num_dofs x n.  One column for each displacement that is as measured,
+  /// and the rigid motions of each face, three to six at most.
+  Eigen::SparseMatrix<double> of_supports;
+  /// R: num_dofs x 3 or 6, where a rigid motion of all is free, else x 0.
+  Eigen::MatrixXd of_all;
+
+  /// Precondition: a valid scene.  O(num_dofs).
+  explicit UnknownMotion(const Scene& scene);
+
+  /// How many amounts there are in a load case.
+  Eigen::Index NumAmounts() const {
+    return of_supports.cols() + of_all.cols();
+  }
+};
+
+/// As measured, of the held components that are not in rigid faces and whose
+/// displacement is not known, zero elsewhere: num_dofs x num_load_cases.
+Eigen::MatrixXd MeasuredSupports(const Scene& scene);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_SCENE_UNKNOWN_MOTION_H_

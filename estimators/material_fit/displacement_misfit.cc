@@ -1,0 +1,139 @@
+#include "elastimate/estimators/material_fit/displacement_misfit.h"
+
+#include <cmath>
+
+namespace elastimate {
+namespace {
+
+// Column i of those of each load case.
+Eigen::MatrixXd OfVariable(const Eigen::MatrixXd& of_cases, Eigen::Index i,
+                           Eigen::Index num_variables) {
+  return of_cases(Eigen::all, Eigen::seq(i, Eigen::last, num_variables));
+}
+
+std::optional<double> PositiveRatio(double numerator, double denominator) {
+  const double ratio = numerator / denominator;
+  return ratio > 0 && std::isfinite(ratio) ? std::optional<double>(ratio)
+                                           : std::nullopt;
+}
+
+}  // namespace
+
+DisplacementMisfit::DisplacementMisfit(const Scene& scene,
+                                       const EstimatorOptions& options)
+    : free_(scene, options),
+      equilibrium_(scene, options.solver),
+      observed_(scene),
+      on_factorization_(options.on_factorization) {
+  if (HasUnknownMotion(scene)) {
+    motion_.emplace(scene, observed_, equilibrium_);
+  }
+}
+
+Eigen::Index DisplacementMisfit::NumRows() const {
+  return motion_ ? motion_->NumRows() : observed_.Size();
+}
+
+Eigen::Index DisplacementMisfit::NumAmounts() const {
+  return motion_ ? motion_->NumAmounts() : 0;
+}
+
+Eigen::Index DisplacementMisfit::NumResultants() const {
+  return motion_ ? motion_->NumResultants() : 0;
+}
+
+void DisplacementMisfit::SetNoise(double standard_deviation) {
+  if (motion_) {
+    motion_->SetNoise(standard_deviation);
+    x_.resize(0);
+  }
+}
+
+bool DisplacementMisfit::Evaluate(const Eigen::VectorXd& x,
+                                  Eigen::VectorXd* residual,
+                                  Eigen::MatrixXd* jacobian) {
+  if (!MoveTo(x)) {
+    return false;
+  }
+  *residual = residual_;
+  if (jacobian != nullptr) {
+    *jacobian = Sensitivities(x);
+  }
+  return residual->allFinite();
+}
+
+std::optional<double> DisplacementMisfit::Compliance(
+    const Eigen::VectorXd& unit_moduli) {
+  x_.resize(0);
+  if (!equilibrium_.Solve(unit_moduli)) {
+    return std::nullopt;
+  }
+  const Eigen::MatrixXd held = equilibrium_.SupportResponse().replicate(
+      1, equilibrium_.Displacement().cols());
+  const Eigen::MatrixXd loaded = equilibrium_.Displacement() - held;
+  if (motion_) {
+    motion_->SetNoise(0);
+  }
+  const Eigen::VectorXd by_loads = WithoutMotion(loaded);
+  if (by_loads.squaredNorm() > 0) {
+    Eigen::VectorXd moved = WithoutMotion(held);
+    moved.head(observed_.Size()) -= observed_.Measured();
+    return PositiveRatio(-by_loads.dot(moved), by_loads.squaredNorm());
+  }
+  if (!motion_) {
+    return std::nullopt;
+  }
+  motion_->Fit();
+  const Eigen::VectorXd of_unit =
+      motion_->Resultants(equilibrium_.SupportForces());
+  const Eigen::VectorXd measured = motion_->MeasuredResultants();
+  return PositiveRatio(of_unit.squaredNorm(), of_unit.dot(measured));
+}
+
+bool DisplacementMisfit::MoveTo(const Eigen::VectorXd& x) {
+  if (x_.size() == x.size() && x_ == x) {
+    return true;
+  }
+  x_.resize(0);
+  if (on_factorization_) {
+    on_factorization_(++num_factorizations_);
+  }
+  const Eigen::VectorXd moduli = free_.ModuliAt(x);
+  if (!moduli.allFinite() || !equilibrium_.Solve(moduli) ||
+      !equilibrium_.Displacement().allFinite()) {
+    return false;
+  }
+  residual_ = motion_ ? motion_->Fit()
+                      : observed_.Restrict(equilibrium_.Displacement()) -
+                            observed_.Measured();
+  x_ = x;
+  return true;
+}
+
+Eigen::MatrixXd DisplacementMisfit::Sensitivities(const Eigen::VectorXd& x) {
+  const Eigen::Index n = free_.Size();
+  const Eigen::MatrixXd directions = free_.ModuliJacobian(x);
+  const Eigen::MatrixXd of_cases = equilibrium_.Sensitivities(directions);
+  const Eigen::MatrixXd forces =
+      motion_ ? equilibrium_.SupportForceSensitivities(directions, of_cases)
+              : Eigen::MatrixXd();
+  Eigen::MatrixXd sensitivities(NumRows(), n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::MatrixXd of_variable = OfVariable(of_cases, i, n);
+    sensitivities.col(i) =
+        motion_ ? motion_->Eliminate(of_variable, OfVariable(forces, i, n))
+                : observed_.Restrict(of_variable);
+  }
+  return sensitivities;
+}
+
+Eigen::VectorXd DisplacementMisfit::WithoutMotion(
+    const Eigen::MatrixXd& displacements) {
+  return motion_ ? motion_->Eliminate(displacements,
+                                      Eigen::MatrixXd::Zero(
+                                          displacements.rows(),
+                                          displacements.cols()))
+                 : observed_.Restrict(displacements);
+}
+
+}  // namespace elastimate

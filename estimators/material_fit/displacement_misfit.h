@@ -1,0 +1,65 @@
+#ifndef ELASTIMATE_ESTIMATORS_MATERIAL_FIT_DISPLACEMENT_MISFIT_H_
+#define ELASTIMATE_ESTIMATORS_MATERIAL_FIT_DISPLACEMENT_MISFIT_H_
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+
+#include "elastimate/core/equilibrium/equilibrium.h"
+#include "elastimate/core/scene/observed_displacements.h"
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/interface/free_parameters.h"
+#include "elastimate/estimators/material_fit/motion_elimination.h"
+
+namespace elastimate {
+
+/// The displacements of a scene at variables x of its materials, against the
+/// measured ones: model - measurement in the rows of ObservedDisplacements;
+/// where motions are unknown, in those of MotionElimination without what
+/// these could explain.
+class DisplacementMisfit {
+ public:
+  /// Preconditions are those of Estimator::Run.  `scene` must outlive this.
+  DisplacementMisfit(const Scene& scene, const EstimatorOptions& options);
+
+  const FreeParameters& Free() const { return free_; }
+  const ObservedDisplacements& Observed() const { return observed_; }
+  Equilibrium& Model() { return equilibrium_; }
+
+  Eigen::Index NumRows() const;
+  /// Of unknown motions, which are fitted as the variables are.
+  Eigen::Index NumAmounts() const;
+  Eigen::Index NumResultants() const;
+
+  /// Sets the standard deviation of a row, which weighs resultants.
+  void SetNoise(double standard_deviation);
+
+  /// A factorisation, and a solve for each load case and variable; times the
+  /// iterations of MotionElimination where motions are unknown.  False when the
+  /// stiffness is singular at x.
+  bool Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd* residual,
+                Eigen::MatrixXd* jacobian);
+
+  /// 1 / E, or another unit of the moduli, that explains displacements or
+  /// resultants best where the moduli are 1; empty when they oppose the loads.
+  std::optional<double> Compliance(const Eigen::VectorXd& unit_moduli);
+
+ private:
+  bool MoveTo(const Eigen::VectorXd& x);
+  Eigen::MatrixXd Sensitivities(const Eigen::VectorXd& x);
+  Eigen::VectorXd WithoutMotion(const Eigen::MatrixXd& displacements);
+
+  FreeParameters free_;
+  Equilibrium equilibrium_;
+  ObservedDisplacements observed_;
+  std::optional<MotionElimination> motion_;
+  std::function<void(int)> on_factorization_;
+  int num_factorizations_ = 0;
+  Eigen::VectorXd x_;  ///< Where the model is; empty where it is nowhere.
+  Eigen::VectorXd residual_;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_MATERIAL_FIT_DISPLACEMENT_MISFIT_H_

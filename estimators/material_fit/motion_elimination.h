@@ -1,0 +1,94 @@
+#ifndef ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MOTION_ELIMINATION_H_
+#define ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MOTION_ELIMINATION_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "elastimate/core/equilibrium/equilibrium.h"
+#include "elastimate/core/scene/observed_displacements.h"
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/core/scene/unknown_motion.h"
+
+namespace elastimate {
+
+/// The rows of a fit of displacements whose supports moved by unknown amounts,
+/// and of which resultants were measured: those of ObservedDisplacements, and
+/// below them the resultants of all load cases, each weighted by the standard
+/// deviation of a displacement row over its own.  In equilibrium at some
+/// moduli, the rows of amounts x = (b, a) of UnknownMotion are
+///
+///   A x = rows of (Extend(G b) + R a).
+///
+/// To eliminate x from a row vector y is to take the least squares residual
+/// y - A x, by conjugate gradients on the normal equations [Paige & Saunders
+/// 1982], whose number of iterations does not grow with the mesh: displacements
+/// that were measured are as many equations of condition 1.  An iteration is
+/// two solves for each load case.
+class MotionElimination {
+ public:
+  /// Preconditions: a valid scene, with a measurement in each load case.  The
+  /// objects must outlive this one.
+  MotionElimination(const Scene& scene, const ObservedDisplacements& observed,
+                    Equilibrium& model);
+
+  /// Of all rows, and of amounts in all load cases.
+  Eigen::Index NumRows() const {
+    return observed_.Size() + Eigen::Index(resultants_.size());
+  }
+  Eigen::Index NumResultants() const {
+    return Eigen::Index(resultants_.size());
+  }
+  Eigen::Index NumAmounts() const { return amounts_.size(); }
+
+  /// Sets the standard deviation of a displacement row, which weighs the
+  /// resultants; zero leaves them out.
+  void SetNoise(double standard_deviation) { noise_ = standard_deviation; }
+
+  /// Moves the displacements that the model solved for by the amounts that fit
+  /// the measurement best, and returns the rows of what is left, model -
+  /// measurement.
+  Eigen::VectorXd Fit();
+
+  /// The rows of displacements and of forces of supports, num_dofs x
+  /// num_load_cases, without what amounts could explain.
+  Eigen::VectorXd Eliminate(const Eigen::MatrixXd& displacements,
+                            const Eigen::MatrixXd& support_forces);
+
+  /// Of the forces of supports, the measured ones, each over its standard
+  /// deviation.
+  Eigen::VectorXd Resultants(const Eigen::MatrixXd& support_forces) const;
+  /// What was measured of them, likewise.
+  Eigen::VectorXd MeasuredResultants() const;
+
+ private:
+  /// One measured component of a force.
+  struct ResultantRow {
+    Eigen::Index load_case;
+    std::vector<Eigen::Index> held;  ///< Degrees of freedom.
+    double force;
+    double noise_sd;
+  };
+
+  Eigen::VectorXd RowsOf(const Eigen::MatrixXd& displacements,
+                         const Eigen::MatrixXd& support_forces) const;
+  /// num_dofs x num_load_cases: those of the supports in equilibrium, and with
+  /// the motion of all.
+  Eigen::MatrixXd SupportMotion(const Eigen::VectorXd& amounts);
+  Eigen::MatrixXd WithMotionOfAll(const Eigen::VectorXd& amounts,
+                                  Eigen::MatrixXd displacements) const;
+  Eigen::VectorXd Multiply(const Eigen::VectorXd& amounts);
+  Eigen::VectorXd MultiplyTransposed(const Eigen::VectorXd& rows);
+  /// The x of least ||rows - A x||; leaves rows - A x behind.
+  Eigen::VectorXd Minimize(double tolerance, Eigen::VectorXd& rows);
+
+  const ObservedDisplacements& observed_;
+  Equilibrium& model_;
+  UnknownMotion motion_;
+  std::vector<ResultantRow> resultants_;
+  double noise_ = 0;
+  Eigen::VectorXd amounts_;  ///< Of all load cases, of the last fit.
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MOTION_ELIMINATION_H_
