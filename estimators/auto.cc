@@ -5,6 +5,7 @@
 
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/displacement_fit/iterative_fe.h"
 #include "elastimate/estimators/displacement_fit/reduced_fe.h"
 #include "elastimate/estimators/force_balance/closed_form.h"
@@ -249,6 +250,11 @@ void ChooseOrder(const Estimate& linear, const Observations& observations,
   }
 }
 
+// What reduced-fe does not take.
+bool IsForIterativeFe(const Scene& scene) {
+  return !IsOneIsotropicMaterial(scene.materials) || HasUnknownMotion(scene);
+}
+
 // Of several materials: only a fit sees that regions are wrong, and it starts
 // from virtual-fields itself.
 void ClimbOverMaterials(const Scene& scene, const EstimatorOptions& options,
@@ -266,8 +272,8 @@ std::string_view Auto::Name() const { return "auto"; }
 
 std::string_view Auto::Description() const {
   return "climbs from closed-form over virtual-fields to reduced-fe and "
-         "quadratic elements, as far as the scene needs (of several materials: "
-         "to iterative-fe)";
+         "quadratic elements, as far as the scene needs (of several materials, "
+         "or unknown motions: to iterative-fe)";
 }
 
 Capabilities Auto::WhatItTakes() const {
@@ -276,6 +282,7 @@ Capabilities Auto::WhatItTakes() const {
   capabilities.takes_losses = true;
   capabilities.takes_degree = true;
   capabilities.takes_materials = true;
+  capabilities.takes_unknown_motion = true;
   return capabilities;
 }
 
@@ -283,9 +290,9 @@ std::string Auto::WhyUnsupported(const Scene& scene,
                                  const EstimatorOptions& options) const {
   const EstimatorOptions without_degree = WithoutDegree(options);
   const std::string why_not =
-      IsOneIsotropicMaterial(scene.materials)
-          ? ReducedFe().WhyUnsupported(scene, without_degree)
-          : IterativeFe().WhyUnsupported(scene, without_degree);
+      IsForIterativeFe(scene)
+          ? IterativeFe().WhyUnsupported(scene, without_degree)
+          : ReducedFe().WhyUnsupported(scene, without_degree);
   if (why_not.empty() ||
       VirtualFields().WhyUnsupported(scene, options).empty()) {
     return "";
@@ -301,7 +308,7 @@ Estimate Auto::DoRun(const Scene& scene,
       StopsHere(WhyNotEnough(scene, options, ladder.Last()), ladder)) {
     return ladder.Finish();
   }
-  if (!IsOneIsotropicMaterial(scene.materials)) {
+  if (IsForIterativeFe(scene)) {
     ClimbOverMaterials(scene, options, ladder);
     return ladder.Finish();
   }

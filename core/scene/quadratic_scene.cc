@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "elastimate/core/mesh/node_graph.h"
+#include "elastimate/core/scene/unknown_motion.h"
 
 namespace elastimate {
 namespace {
@@ -115,6 +116,34 @@ std::vector<bool> CrossingEdges(const Mesh& mesh, const Edges& edges) {
   return crossing;
 }
 
+// The mid-edge nodes of a support that moved as measured were not measured.
+void RequireRigid(const Supports& supports) {
+  if (AsMeasured(supports).any()) {
+    throw std::invalid_argument(
+        "a support that moved as measured is measured at the vertices only; "
+        "use order 1, or make the support rigid");
+  }
+}
+
+// And the mid-edge nodes between two of the nodes.
+template <class Predicate>
+std::vector<int> WithMidEdgeNodes(const std::vector<int>& nodes,
+                                  const Mesh& mesh, const Edges& edges,
+                                  const Predicate& is_taken) {
+  std::vector<bool> is_chosen(mesh.NumNodes(), false);
+  for (const int node : nodes) {
+    is_chosen[node] = true;
+  }
+  std::vector<int> all = nodes;
+  for (Eigen::Index edge = 0; edge < edges.Size(); ++edge) {
+    if (is_chosen[edges.Ends()(0, edge)] && is_chosen[edges.Ends()(1, edge)] &&
+        is_taken(edge)) {
+      all.push_back(static_cast<int>(mesh.NumNodes() + edge));
+    }
+  }
+  return all;
+}
+
 Supports WithMidEdgeSupports(const Supports& supports, const Mesh& mesh,
                              const Edges& edges) {
   const std::vector<bool> crossing = CrossingEdges(mesh, edges);
@@ -141,8 +170,25 @@ Supports WithMidEdgeSupports(const Supports& supports, const Mesh& mesh,
       }
     }
   }
+  ComponentMask unknown;
+  if (supports.unknown.size() != 0) {
+    RequireRigid(supports);
+    unknown = WithMidEdges(
+        supports.unknown,
+        ComponentMask(held &&
+                      supports.unknown(Eigen::all, edges.Ends().row(0)) &&
+                      supports.unknown(Eigen::all, edges.Ends().row(1))));
+  }
+  std::vector<RigidFace> rigid_faces;
+  for (const RigidFace& face : supports.rigid_faces) {
+    rigid_faces.push_back(
+        {WithMidEdgeNodes(face.nodes, mesh, edges,
+                          [&](Eigen::Index edge) { return !crossing[edge]; }),
+         face.components});
+  }
   return {WithMidEdges(supports.held, held),
-          WithMidEdges(supports.displacement, displacement), supports.boxes};
+          WithMidEdges(supports.displacement, displacement), supports.boxes,
+          unknown, rigid_faces};
 }
 
 Eigen::MatrixXi WithMidEdgeNodes(const Eigen::MatrixXi& facets,
@@ -210,6 +256,11 @@ LoadCase ToQuadratic(const LoadCase& load_case, const Mesh& mesh,
         Eigen::MatrixXd::Zero(mesh.Dimension(), edges.Size());
     quadratic.displacement = WithMidEdges(load_case.displacement, unknown);
   }
+  for (Resultant resultant : load_case.resultants) {
+    resultant.nodes = WithMidEdgeNodes(resultant.nodes, mesh, edges,
+                                       [](Eigen::Index) { return true; });
+    quadratic.resultants.push_back(resultant);
+  }
   return quadratic;
 }
 
@@ -230,6 +281,7 @@ Scene QuadraticScene(const Scene& scene) {
   quadratic.mesh = WithMidEdgeNodes(scene.mesh, edges);
   quadratic.materials = scene.materials;
   quadratic.supports = WithMidEdgeSupports(scene.supports, scene.mesh, edges);
+  quadratic.is_rigid_motion_free = scene.is_rigid_motion_free;
   for (const LoadCase& load_case : scene.load_cases) {
     quadratic.load_cases.push_back(ToQuadratic(load_case, scene.mesh, edges));
   }

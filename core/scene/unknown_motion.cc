@@ -40,17 +40,6 @@ Eigen::MatrixXd RigidMotionsOf(const Mesh& mesh, const Nodes& nodes) {
   return motions;
 }
 
-// Which components are held as they were measured.
-ComponentMask AsMeasured(const Supports& supports) {
-  ComponentMask mask = supports.unknown;
-  for (const RigidFace& face : supports.rigid_faces) {
-    for (const int node : face.nodes) {
-      mask.col(node) = mask.col(node) && !face.components;
-    }
-  }
-  return mask;
-}
-
 void ValidateRigidFace(const Mesh& mesh, const Supports& supports,
                        const RigidFace& face) {
   if (face.components.size() != mesh.Dimension() || !face.components.any()) {
@@ -59,14 +48,14 @@ void ValidateRigidFace(const Mesh& mesh, const Supports& supports,
   for (const int node : face.nodes) {
     if (node < 0 || node >= mesh.NumNodes()) {
       Refuse("node " + std::to_string(node) +
-           " of a rigid face is outside 0.." +
-           std::to_string(mesh.NumNodes() - 1));
+             " of a rigid face is outside 0.." +
+             std::to_string(mesh.NumNodes() - 1));
     }
     for (int i = 0; i < mesh.Dimension(); ++i) {
       if (face.components(i) && supports.IsGiven(i, node)) {
         Refuse(NodeText(node, i) +
-             " of a rigid face is held at a given displacement; take it out "
-             "of one of the two");
+               " of a rigid face is held at a given displacement; take it out "
+               "of one of the two");
       }
     }
   }
@@ -80,13 +69,14 @@ void ValidateResultant(const Scene& scene, const Resultant& resultant,
   const Mesh& mesh = scene.mesh;
   if (resultant.force.size() != mesh.Dimension() ||
       resultant.noise_sd.size() != mesh.Dimension()) {
-    Refuse("the force and the standard deviation of " + where + " do not have " +
-         std::to_string(mesh.Dimension()) + " components; give one for each");
+    Refuse("the force and the standard deviation of " + where +
+           " do not have " + std::to_string(mesh.Dimension()) +
+           " components; give one for each");
   }
   for (const int node : resultant.nodes) {
     if (node < 0 || node >= mesh.NumNodes()) {
       Refuse("node " + std::to_string(node) + " of " + where +
-           " is outside 0.." + std::to_string(mesh.NumNodes() - 1));
+             " is outside 0.." + std::to_string(mesh.NumNodes() - 1));
     }
   }
   for (int i = 0; i < mesh.Dimension(); ++i) {
@@ -96,8 +86,8 @@ void ValidateResultant(const Scene& scene, const Resultant& resultant,
     if (!(std::isfinite(resultant.force(i)) && resultant.noise_sd(i) > 0 &&
           std::isfinite(resultant.noise_sd(i)))) {
       Refuse(std::string("component ") + kAxisNames[i] + " of " + where +
-           " is not a finite force with a positive standard deviation; "
-           "correct it");
+             " is not a finite force with a positive standard deviation; "
+             "correct it");
     }
     bool is_held = false;
     for (const int node : resultant.nodes) {
@@ -105,9 +95,9 @@ void ValidateResultant(const Scene& scene, const Resultant& resultant,
     }
     if (!is_held) {
       Refuse("no support holds component " + std::string(kAxisNames[i]) +
-           " of a node of " + where +
-           ", so that nothing exerts it; give it as a load of type force, or "
-           "hold the nodes");
+             " of a node of " + where +
+             ", so that nothing exerts it; give it as a load of type force, or "
+             "hold the nodes");
     }
   }
 }
@@ -118,15 +108,14 @@ void ValidateMeasuredSupports(const Scene& scene) {
     const LoadCase& load_case = scene.load_cases[k];
     for (Eigen::Index node = 0; node < measured.cols(); ++node) {
       for (int i = 0; i < measured.rows(); ++i) {
-        if (measured(i, node) &&
-            (load_case.displacement.size() == 0
-                 ? load_case.points.points.Size() != 0
-                 : !IsObserved(load_case, i, node))) {
+        if (measured(i, node) && (load_case.displacement.size() == 0
+                                      ? load_case.points.points.Size() != 0
+                                      : !IsObserved(load_case, i, node))) {
           Refuse(NodeText(node, i) +
-               " is a support that moved as measured, but load case " +
-               std::to_string(k + 1) +
-               " has no measurement of it; leave it out of the support, or "
-               "make the support rigid");
+                 " is a support that moved as measured, but load case " +
+                 std::to_string(k + 1) +
+                 " has no measurement of it; leave it out of the support, or "
+                 "make the support rigid");
         }
       }
     }
@@ -149,15 +138,18 @@ void ValidateUnknownMotion(const Scene& scene) {
   const ComponentMask& unknown = supports.unknown;
   if (unknown.size() != 0 && (unknown.rows() != supports.held.rows() ||
                               unknown.cols() != supports.held.cols())) {
-    Refuse("the mask of unknown displacements of supports does not have the "
-         "shape of that of held components; correct it");
+    Refuse(
+        "the mask of unknown displacements of supports does not have the "
+        "shape of that of held components; correct it");
   }
   if (unknown.size() == 0 && !supports.rigid_faces.empty()) {
-    Refuse("the displacements of rigid faces are not marked as unknown; mark "
-         "them");
+    Refuse(
+        "the displacements of rigid faces are not marked as unknown; mark "
+        "them");
   }
   if (unknown.size() != 0 && (unknown && !supports.held).any()) {
-    Refuse("a displacement that no support holds is marked as unknown; hold it");
+    Refuse(
+        "a displacement that no support holds is marked as unknown; hold it");
   }
   for (const RigidFace& face : supports.rigid_faces) {
     ValidateRigidFace(scene.mesh, supports, face);
@@ -171,6 +163,16 @@ void ValidateUnknownMotion(const Scene& scene) {
                             " of load case " + std::to_string(k + 1));
     }
   }
+}
+
+ComponentMask AsMeasured(const Supports& supports) {
+  ComponentMask mask = supports.unknown;
+  for (const RigidFace& face : supports.rigid_faces) {
+    for (const int node : face.nodes) {
+      mask.col(node) = mask.col(node) && !face.components;
+    }
+  }
+  return mask;
 }
 
 UnknownMotion::UnknownMotion(const Scene& scene)

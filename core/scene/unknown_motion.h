@@ -16,6 +16,11 @@ bool HasUnknownMotion(const Scene& scene);
 /// resultants.  O(num_dofs num_load_cases).
 void ValidateUnknownMotion(const Scene& scene);
 
+/// The held components that moved as measured: those of unknown displacement
+/// that are not in rigid faces.  dimension x num_nodes; empty when there are
+/// none of unknown displacement.
+ComponentMask AsMeasured(const Supports& supports);
+
 /// What moved by unknown amounts b and a in a load case,
 ///
 ///   u of the supports = given + G b,   what was measured = u + R a + noise.
@@ -32,13 +37,11 @@ struct UnknownMotion {
   explicit UnknownMotion(const Scene& scene);
 
   /// How many amounts there are in a load case.
-  Eigen::Index NumAmounts() const {
-    return of_supports.cols() + of_all.cols();
-  }
+  Eigen::Index NumAmounts() const { return of_supports.cols() + of_all.cols(); }
 };
 
-/// As measured, of the held components that are not in rigid faces and whose
-/// displacement is not known, zero elsewhere: num_dofs x num_load_cases.
+/// The measured displacement of AsMeasured, zero elsewhere: num_dofs x
+/// num_load_cases.
 Eigen::MatrixXd MeasuredSupports(const Scene& scene);
 
 }  // namespace elastimate

@@ -47,6 +47,7 @@ constexpr Row kRows[] = {
     {"virtual_work_imbalance", FindingCode::kVirtualWorkImbalance},
     {"model_mismatch", FindingCode::kModelMismatch},
     {"outliers", FindingCode::kOutliers},
+    {"outliers_left_out", FindingCode::kOutliersLeftOut},
     {"held_nodes_moved", FindingCode::kHeldNodesMoved},
     {"noise_bias", FindingCode::kNoiseBias},
     {"youngs_modulus_on_bound", FindingCode::kYoungsModulusOnBound},

@@ -52,6 +52,7 @@ enum class FindingCode {
   kVirtualWorkImbalance,
   kModelMismatch,
   kOutliers,
+  kOutliersLeftOut,
   kHeldNodesMoved,
   // What the method does to the estimate.
   kNoiseBias,

@@ -430,6 +430,23 @@ Finding Outliers(const Eigen::Vector2d& change) {
                  "the pull");
 }
 
+Finding OutliersLeftOut(const std::vector<std::string>& names,
+                        const Eigen::Vector2d& change) {
+  constexpr std::size_t kMostNames = 5;
+  std::string some;
+  for (std::size_t i = 0; i < std::min(names.size(), kMostNames); ++i) {
+    some += (i == 0 ? "" : ", ") + names[i];
+  }
+  if (names.size() > kMostNames) {
+    some += ", ...";
+  }
+  return Warning(FindingCode::kOutliersLeftOut,
+                 std::to_string(names.size()) + " outliers (" + some +
+                     ") are left out, which changes E by " +
+                     Percent(change(0)) + " and nu by " + TwoDigits(change(1)),
+                 "look at them in the map of residuals");
+}
+
 Finding HeldNodesMoved(const std::vector<std::size_t>& load_cases) {
   const std::size_t num_others = load_cases.size() - 1;
   return Warning(

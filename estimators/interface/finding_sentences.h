@@ -91,6 +91,9 @@ Finding ModelMismatchFinding(const ModelMismatch& mismatch);
 /// `change` is that of (ln E, nu) without the pull of the outliers.
 Finding Outliers(const Eigen::Vector2d& change);
 /// `load_cases` holds their numbers, from 1 on.  Precondition: not empty.
+/// By their names, which became many where they are a few; of ln E and nu.
+Finding OutliersLeftOut(const std::vector<std::string>& names,
+                        const Eigen::Vector2d& change);
 Finding HeldNodesMoved(const std::vector<std::size_t>& load_cases);
 
 // What the method does to the estimate.

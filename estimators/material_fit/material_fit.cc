@@ -3,19 +3,23 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/scene/observed_displacements.h"
-#include "elastimate/estimators/statistics/residual_statistics.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
+#include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/free_parameters.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 #include "elastimate/estimators/material_fit/displacement_misfit.h"
+#include "elastimate/estimators/material_fit/outliers.h"
 #include "elastimate/estimators/statistics/bounded_variables.h"
+#include "elastimate/estimators/statistics/correlated_noise.h"
+#include "elastimate/estimators/statistics/residual_statistics.h"
 
 namespace elastimate {
 namespace {
@@ -34,8 +38,8 @@ std::optional<Eigen::VectorXd> TypicalStart(DisplacementMisfit& misfit) {
   }
   const std::optional<double> compliance =
       misfit.Compliance(free.All().Moduli(free.All().Typical(1)));
-  return compliance ? std::optional<Eigen::VectorXd>(free.VariablesOf(
-                          free.All().Typical(1 / *compliance)))
+  return compliance ? std::optional<Eigen::VectorXd>(
+                          free.VariablesOf(free.All().Typical(1 / *compliance)))
                     : std::nullopt;
 }
 
@@ -125,6 +129,14 @@ BoundedMinimum DescendWithResultants(const EstimatorOptions& options,
   return minimum;
 }
 
+BoundedMinimum DescendFrom(const EstimatorOptions& options,
+                           const Eigen::VectorXd& start,
+                           DisplacementMisfit& misfit) {
+  return misfit.NumResultants() > 0
+             ? DescendWithResultants(options, start, misfit)
+             : Descend(options, start, misfit);
+}
+
 // The best minimum that the starts lead to; empty without a start.
 std::optional<BoundedMinimum> BestMinimum(const Scene& scene,
                                           const EstimatorOptions& options,
@@ -135,10 +147,7 @@ std::optional<BoundedMinimum> BestMinimum(const Scene& scene,
        {TypicalStart(misfit),
         VirtualFieldsStart(scene, options, misfit.Free(), estimate)}) {
     if (start) {
-      BoundedMinimum minimum =
-          misfit.NumResultants() > 0
-              ? DescendWithResultants(options, *start, misfit)
-              : Descend(options, *start, misfit);
+      BoundedMinimum minimum = DescendFrom(options, *start, misfit);
       if (!best || minimum.cost < best->cost) {
         best = minimum;
       }
@@ -163,8 +172,49 @@ Eigen::Vector2d LargestOf(const Eigen::VectorXd& change,
   return largest;
 }
 
+// Without its directions of negative eigenvalues: noise whose neighbours differ
+// by more than chance is taken for independent.
+Eigen::MatrixXd PositivePart(const Eigen::MatrixXd& symmetric) {
+  const SymmetricEigenDecomposition parts = DecomposeSymmetric(symmetric);
+  return parts.vectors * parts.values.cwiseMax(0).asDiagonal() *
+         parts.vectors.transpose();
+}
+
+// How far a residual that is alike over this length is one of the model rather
+// than noise: wholly from an eighth of the specimen on, as a wave of its size
+// is alike, and quickly less below.
+double ShareOfModel(const Mesh& mesh, double length) {
+  const double size =
+      (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff())
+          .norm();
+  return std::min(1.0, std::pow(8 * length / size, 4));
+}
+
+// The covariance that the correlation of the residual adds to that of
+// independent noise, over the variance of a row: that of correlated noise, and
+// where the model misses something smooth, an error of its size along the
+// sensitivities.
+Eigen::MatrixXd AddedByCorrelation(const Scene& scene,
+                                   const Eigen::VectorXd& residual,
+                                   const Eigen::MatrixXd& sensitivities,
+                                   const Eigen::MatrixXd& inverse,
+                                   double variance, DisplacementMisfit& misfit,
+                                   Evidence& evidence, Estimate& estimate) {
+  const ObservedDisplacements& observed = misfit.Observed();
+  const Autocorrelation correlation =
+      CorrelateResiduals(scene, observed, residual);
+  const double smooth =
+      ShareOfModel(scene.mesh, correlation.Length()) *
+      MeasureSmoothPart(misfit.Model().Graph(), observed, residual, estimate)
+          .least;
+  evidence.smooth_part = std::sqrt(smooth) / observed.Measured().norm();
+  return PositivePart(CovarianceOfCorrelation(scene, observed, sensitivities,
+                                              inverse, correlation)) +
+         smooth / variance * inverse;
+}
+
 // Enters noise, model error, outliers and covariance of a minimum.
-void DescribeMinimum(const Eigen::VectorXd& variables,
+void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
                      DisplacementMisfit& misfit, Evidence& evidence,
                      Estimate& estimate) {
   const FreeParameters& free = misfit.Free();
@@ -187,28 +237,26 @@ void DescribeMinimum(const Eigen::VectorXd& variables,
   const ResidualVariance variance = EstimateVariance(
       observed, rows.squaredNorm(), num_fitted, evidence, estimate);
   evidence.is_explained_by_given_noise = variance.is_explained_by_given_noise;
-  const double smooth = variance.is_explained_by_given_noise
-                            ? 0
-                            : MeasureSmoothPart(misfit.Model().Graph(),
-                                                observed, residual, estimate)
-                                  .least;
-  evidence.smooth_part = std::sqrt(smooth) / observed.Measured().norm();
+  const Eigen::MatrixXd of_rows = sensitivities.topRows(observed.Size());
   const Eigen::MatrixXd inverse =
       Inverse(sensitivities.transpose() * sensitivities);
-  Eigen::MatrixXd covariance = (variance.variance + smooth) * inverse;
+  const Eigen::MatrixXd by_correlation =
+      AddedByCorrelation(scene, residual, of_rows, inverse, variance.variance,
+                         misfit, evidence, estimate);
+  Eigen::MatrixXd covariance = variance.variance * (inverse + by_correlation);
   estimate.error_budget.noise =
       ErrorsOfVariables(free, variance.variance * inverse);
-  estimate.error_budget.model = ErrorsOfVariables(free, smooth * inverse);
+  estimate.error_budget.model =
+      ErrorsOfVariables(free, variance.variance * by_correlation);
   Eigen::VectorXd change = Eigen::VectorXd::Zero(free.Size());
   if (HasHeavyTails(residual)) {
-    change = RobustChange(observed, residual,
-                          sensitivities.topRows(observed.Size()));
+    change = RobustChange(observed, residual, of_rows);
     evidence.outlier_change = LargestOf(change, estimate, free);
   }
   covariance += change * change.transpose();
   estimate.error_budget.outliers =
       ErrorsOfVariables(free, change.cwiseAbs2().asDiagonal());
-  if (smooth > 0) {
+  if (!by_correlation.isZero(0)) {
     evidence.smooth_residual_error =
         std::sqrt(covariance.diagonal().maxCoeff());
   }
@@ -233,32 +281,38 @@ void EnterElasticity(Estimate& estimate) {
   }
 }
 
-}  // namespace
-
-Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options) {
-  if (IsOneIsotropicMaterial(scene.materials) && options.known_poisson_ratio) {
-    Scene known = scene;
-    known.materials = WithKnownPoissonRatio(options);
-    EstimatorOptions other_options = options;
-    other_options.known_poisson_ratio.reset();
-    Estimate estimate = FitMaterials(known, other_options);
-    EnterElasticity(estimate);
-    return estimate;
-  }
+// A fit, and the points that it cannot be meant for.
+struct MaterialFit {
   Estimate estimate;
+  std::optional<Eigen::VectorXd> variables;
+  std::vector<ObservedDisplacements::Point> outliers;
+};
+
+// From `start` on, or from where FitMaterials says.
+MaterialFit FitAll(const Scene& scene, const EstimatorOptions& options,
+                   const std::optional<Eigen::VectorXd>& start) {
+  MaterialFit fit;
+  Estimate& estimate = fit.estimate;
   Evidence evidence;
   Stopwatch stopwatch;
   DisplacementMisfit misfit(scene, options);
   estimate.stages.push_back({"assemble and analyse", stopwatch.Lap()});
   const std::optional<BoundedMinimum> minimum =
-      BestMinimum(scene, options, misfit, estimate);
+      start ? DescendFrom(options, *start, misfit)
+            : BestMinimum(scene, options, misfit, estimate);
   estimate.stages.push_back({"fit", stopwatch.Lap()});
   if (minimum) {
     evidence.end = minimum->end;
     evidence.search_message = minimum->message;
     EnterParameters(scene, misfit.Free(), minimum->variables, estimate);
     NoteVariablesOnBounds(misfit.Free(), *minimum, estimate);
-    DescribeMinimum(minimum->variables, misfit, evidence, estimate);
+    DescribeMinimum(scene, minimum->variables, misfit, evidence, estimate);
+    fit.variables = minimum->variables;
+    Eigen::VectorXd rows;
+    if (misfit.Evaluate(*fit.variables, &rows, nullptr)) {
+      fit.outliers =
+          FindOutliers(misfit.Observed(), rows.head(misfit.Observed().Size()));
+    }
   } else {
     evidence.do_displacements_oppose_loads = true;
   }
@@ -269,6 +323,76 @@ Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options) {
   Judge(evidence, options, estimate);
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
   estimate.work = estimate.work + misfit.Model().WorkDone();
+  return fit;
+}
+
+// The largest change of ln E, or of another modulus, and of nu, from one
+// estimate to another.
+Eigen::Vector2d LargestChange(const Estimate& from, const Estimate& to) {
+  Eigen::Vector2d largest = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < to.parameters.size(); ++i) {
+    const bool is_modulus = to.parameters[i].is_modulus;
+    const double before = from.parameters[i].value;
+    const double after = to.parameters[i].value;
+    const double change =
+        is_modulus ? std::log(after / before) : after - before;
+    double& value = largest(is_modulus ? 0 : 1);
+    value = std::abs(change) > std::abs(value) ? change : value;
+  }
+  return largest;
+}
+
+// Of nodes, and behind them of points, by their numbers from 0 on.
+std::vector<std::string> NamesOf(
+    const Scene& scene,
+    const std::vector<ObservedDisplacements::Point>& points) {
+  std::vector<std::string> names;
+  for (const ObservedDisplacements::Point& point : points) {
+    const Eigen::Index number = point.index - scene.mesh.NumNodes();
+    names.push_back(number < 0 ? "node " + std::to_string(point.index)
+                               : "point " + std::to_string(number));
+  }
+  return names;
+}
+
+// Fits again without the outliers, as long as there are more of them.
+Estimate FitWithoutOutliers(const Scene& scene,
+                            const EstimatorOptions& options) {
+  constexpr int kRounds = 5;
+  MaterialFit fit = FitAll(scene, options, std::nullopt);
+  const Estimate of_all = fit.estimate;
+  std::vector<ObservedDisplacements::Point> left_out;
+  Scene others;
+  for (int i = 0; i < kRounds && !fit.outliers.empty(); ++i) {
+    if (left_out.empty()) {
+      others = scene;
+    }
+    LeaveOut(fit.outliers, others);
+    left_out.insert(left_out.end(), fit.outliers.begin(), fit.outliers.end());
+    const Work work = fit.estimate.work;
+    fit = FitAll(others, options, fit.variables);
+    fit.estimate.work = fit.estimate.work + work;
+  }
+  if (!left_out.empty()) {
+    fit.estimate.Add(OutliersLeftOut(NamesOf(scene, left_out),
+                                     LargestChange(of_all, fit.estimate)));
+  }
+  return fit.estimate;
+}
+
+}  // namespace
+
+Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options) {
+  if (!IsOneIsotropicMaterial(scene.materials) ||
+      !options.known_poisson_ratio) {
+    return FitWithoutOutliers(scene, options);
+  }
+  Scene known = scene;
+  known.materials = WithKnownPoissonRatio(options);
+  EstimatorOptions other_options = options;
+  other_options.known_poisson_ratio.reset();
+  Estimate estimate = FitWithoutOutliers(known, other_options);
+  EnterElasticity(estimate);
   return estimate;
 }
 

@@ -3,16 +3,25 @@
 #include <algorithm>
 #include <cmath>
 
+#include "elastimate/core/algebra/dense_algebra.h"
+
 namespace elastimate {
 namespace {
 
-// The gradient of the least squares that is left, relative to that at the
-// start: of a fit, so small that measurements without noise are met to
-// rounding; of sensitivities, so small that it does not slow a Gauss-Newton
-// step down.
+// What an iteration takes from the square sum, relative to it, where no more is
+// worth while: of a fit, a millionth of the noise; of sensitivities, what does
+// not slow a Gauss-Newton step down.
 constexpr double kExact = 1e-12;
-constexpr double kOfSensitivities = 1e-7;
-constexpr int kLargestNumberOfIterations = 2000;
+constexpr double kOfSensitivities = 1e-10;
+// Up to so many amounts of a load case, the rows of each are solved for, rather
+// than those that iterations ask for.
+constexpr Eigen::Index kMostColumns = 400;
+constexpr Eigen::Index kMostEntries = 20'000'000;
+constexpr Eigen::Index kColumnsAtATime = 32;
+constexpr int kMostIterations = 2000;
+// Of a square sum, and of eigenvalues of A^T A, relative to the largest.
+constexpr double kRounding = 1e-14;
+constexpr double kDependent = 1e-13;
 
 }  // namespace
 
@@ -27,6 +36,7 @@ MotionElimination::MotionElimination(const Scene& scene,
   for (Eigen::Index k = 0; k < num_cases; ++k) {
     amounts_.segment(motion_.NumAmounts() * k, motion_.of_supports.cols()) =
         motion_.of_supports.transpose() * measured.col(k);
+    first_resultant_.push_back(NumResultants());
     for (const Resultant& resultant : scene.load_cases[k].resultants) {
       for (int i = 0; i < dimension; ++i) {
         if (std::isnan(resultant.force(i))) {
@@ -42,9 +52,11 @@ MotionElimination::MotionElimination(const Scene& scene,
       }
     }
   }
+  first_resultant_.push_back(NumResultants());
 }
 
 Eigen::VectorXd MotionElimination::Fit() {
+  SolveForColumns();
   model_.Superpose(SupportMotion(amounts_));
   Eigen::VectorXd rows = RowsOf(
       WithMotionOfAll(amounts_, model_.Displacement()), model_.SupportForces());
@@ -67,9 +79,19 @@ Eigen::VectorXd MotionElimination::Eliminate(
 Eigen::VectorXd MotionElimination::Resultants(
     const Eigen::MatrixXd& support_forces) const {
   Eigen::VectorXd forces(NumResultants());
+  for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
+    forces.segment(first_resultant_[k], NumResultantsOf(k)) =
+        ResultantsOfCase(k, support_forces.col(k));
+  }
+  return forces;
+}
+
+Eigen::VectorXd MotionElimination::ResultantsOfCase(
+    Eigen::Index k, const Eigen::VectorXd& support_forces) const {
+  Eigen::VectorXd forces(NumResultantsOf(k));
   for (Eigen::Index i = 0; i < forces.size(); ++i) {
-    const ResultantRow& row = resultants_[i];
-    forces(i) = support_forces.col(row.load_case)(row.held).sum() / row.noise_sd;
+    const ResultantRow& row = resultants_[first_resultant_[k] + i];
+    forces(i) = support_forces(row.held).sum() / row.noise_sd;
   }
   return forces;
 }
@@ -91,6 +113,42 @@ Eigen::VectorXd MotionElimination::RowsOf(
   return rows;
 }
 
+Eigen::VectorXd MotionElimination::RowsOfCase(
+    Eigen::Index k, const Eigen::VectorXd& rows) const {
+  Eigen::VectorXd of_case(NumRowsOf(k));
+  of_case << rows.segment(observed_.CaseStart(k),
+                          observed_.CaseStart(k + 1) - observed_.CaseStart(k)),
+      rows.segment(observed_.Size() + first_resultant_[k], NumResultantsOf(k));
+  return of_case;
+}
+
+Eigen::VectorXd MotionElimination::MultiplyColumns(
+    const Eigen::VectorXd& amounts) const {
+  Eigen::VectorXd rows(NumRows());
+  for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
+    const Eigen::VectorXd of_case =
+        columns_[k].of_amounts *
+        amounts.segment(motion_.NumAmounts() * k, motion_.NumAmounts());
+    const Eigen::Index num_observed =
+        observed_.CaseStart(k + 1) - observed_.CaseStart(k);
+    rows.segment(observed_.CaseStart(k), num_observed) =
+        of_case.head(num_observed);
+    rows.segment(observed_.Size() + first_resultant_[k], NumResultantsOf(k)) =
+        of_case.tail(NumResultantsOf(k));
+  }
+  return rows;
+}
+
+Eigen::VectorXd MotionElimination::MultiplyColumnsTransposed(
+    const Eigen::VectorXd& rows) const {
+  Eigen::VectorXd amounts(amounts_.size());
+  for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
+    amounts.segment(motion_.NumAmounts() * k, motion_.NumAmounts()) =
+        columns_[k].of_amounts.transpose() * RowsOfCase(k, rows);
+  }
+  return amounts;
+}
+
 Eigen::MatrixXd MotionElimination::SupportMotion(
     const Eigen::VectorXd& amounts) {
   const auto of_cases =
@@ -108,12 +166,18 @@ Eigen::MatrixXd MotionElimination::WithMotionOfAll(
 }
 
 Eigen::VectorXd MotionElimination::Multiply(const Eigen::VectorXd& amounts) {
+  if (!columns_.empty()) {
+    return MultiplyColumns(amounts);
+  }
   const Eigen::MatrixXd motion = SupportMotion(amounts);
   return RowsOf(WithMotionOfAll(amounts, motion), model_.HeldForces(motion));
 }
 
 Eigen::VectorXd MotionElimination::MultiplyTransposed(
     const Eigen::VectorXd& rows) {
+  if (!columns_.empty()) {
+    return MultiplyColumnsTransposed(rows);
+  }
   const Eigen::MatrixXd of_nodes =
       observed_.RestrictTransposed(rows.head(observed_.Size()));
   Eigen::MatrixXd forces =
@@ -133,21 +197,91 @@ Eigen::VectorXd MotionElimination::MultiplyTransposed(
   return amounts.reshaped();
 }
 
+void MotionElimination::SolveForColumns() {
+  const Eigen::Index n = motion_.NumAmounts();
+  columns_.clear();
+  if (n > kMostColumns || n * NumRows() > kMostEntries) {
+    return;
+  }
+  for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
+    columns_.push_back({Eigen::MatrixXd(NumRowsOf(k), n), {}});
+  }
+  const Eigen::Index num_of_supports = motion_.of_supports.cols();
+  for (Eigen::Index first = 0; first < n; first += kColumnsAtATime) {
+    const Eigen::Index end = std::min(n, first + kColumnsAtATime);
+    Eigen::MatrixXd motions(motion_.of_all.rows(), end - first);
+    for (Eigen::Index j = first; j < end; ++j) {
+      motions.col(j - first) =
+          j < num_of_supports
+              ? Eigen::VectorXd(motion_.of_supports.col(j))
+              : Eigen::VectorXd(motion_.of_all.col(j - num_of_supports));
+    }
+    const Eigen::Index num_extended =
+        std::clamp<Eigen::Index>(num_of_supports - first, 0, end - first);
+    motions.leftCols(num_extended) =
+        model_.Extend(motions.leftCols(num_extended));
+    Eigen::MatrixXd forces =
+        Eigen::MatrixXd::Zero(motions.rows(), motions.cols());
+    forces.leftCols(num_extended) =
+        model_.HeldForces(motions.leftCols(num_extended));
+    for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
+      for (Eigen::Index j = first; j < end; ++j) {
+        columns_[k].of_amounts.col(j)
+            << observed_.RestrictToCase(k, motions.col(j - first)),
+            noise_ * ResultantsOfCase(k, forces.col(j - first));
+      }
+    }
+  }
+  for (Columns& columns : columns_) {
+    const SymmetricEigenDecomposition gram =
+        DecomposeSymmetric(columns.of_amounts.transpose() * columns.of_amounts);
+    // What rigid motions of supports and of all have in common is zero here.
+    const double least = kDependent * gram.values.maxCoeff();
+    columns.inverse_gram = gram.vectors *
+                           (gram.values.array() > least)
+                               .select(gram.values.cwiseInverse().array(), 0.0)
+                               .matrix()
+                               .asDiagonal() *
+                           gram.vectors.transpose();
+  }
+}
+
+Eigen::VectorXd MotionElimination::Precondition(
+    const Eigen::VectorXd& gradient) const {
+  if (columns_.empty()) {
+    return gradient;
+  }
+  Eigen::VectorXd direction(gradient.size());
+  for (std::size_t k = 0; k < columns_.size(); ++k) {
+    const Eigen::Index first = motion_.NumAmounts() * Eigen::Index(k);
+    direction.segment(first, motion_.NumAmounts()) =
+        columns_[k].inverse_gram *
+        gradient.segment(first, motion_.NumAmounts());
+  }
+  return direction;
+}
+
 Eigen::VectorXd MotionElimination::Minimize(double tolerance,
                                             Eigen::VectorXd& rows) {
   Eigen::VectorXd amounts = Eigen::VectorXd::Zero(amounts_.size());
+  const double nothing = kRounding * kRounding * rows.squaredNorm();
   Eigen::VectorXd gradient = MultiplyTransposed(rows);
-  Eigen::VectorXd direction = gradient;
-  double square = gradient.squaredNorm();
-  const double enough = tolerance * tolerance * square;
-  for (int i = 0; i < kLargestNumberOfIterations && square > enough; ++i) {
+  Eigen::VectorXd preconditioned = Precondition(gradient);
+  Eigen::VectorXd direction = preconditioned;
+  double square = gradient.dot(preconditioned);
+  for (int i = 0; i < kMostIterations && square > 0; ++i) {
     const Eigen::VectorXd step = Multiply(direction);
     const double length = square / step.squaredNorm();
     amounts += length * direction;
     rows -= length * step;
+    const double left = rows.squaredNorm();
+    if (left <= nothing || length * square <= tolerance * left) {
+      break;
+    }
     gradient = MultiplyTransposed(rows);
-    const double next = gradient.squaredNorm();
-    direction = gradient + next / square * direction;
+    preconditioned = Precondition(gradient);
+    const double next = gradient.dot(preconditioned);
+    direction = preconditioned + next / square * direction;
     square = next;
   }
   return amounts;

@@ -23,7 +23,8 @@ namespace elastimate {
 /// y - A x, by conjugate gradients on the normal equations [Paige & Saunders
 /// 1982], whose number of iterations does not grow with the mesh: displacements
 /// that were measured are as many equations of condition 1.  An iteration is
-/// two solves for each load case.
+/// two solves for each load case.  Where amounts are few, up to 400, they are
+/// solved for instead, once in all load cases, and A is dense.
 class MotionElimination {
  public:
   /// Preconditions: a valid scene, with a measurement in each load case.  The
@@ -69,6 +70,28 @@ class MotionElimination {
     double noise_sd;
   };
 
+  /// A of one load case, where its columns are few, and the (pseudo-)inverse of
+  /// A^T A, by which iterations become one or two.
+  struct Columns {
+    Eigen::MatrixXd of_amounts;
+    Eigen::MatrixXd inverse_gram;
+  };
+
+  Eigen::Index NumResultantsOf(Eigen::Index k) const {
+    return first_resultant_[k + 1] - first_resultant_[k];
+  }
+  Eigen::Index NumRowsOf(Eigen::Index k) const {
+    return observed_.CaseStart(k + 1) - observed_.CaseStart(k) +
+           NumResultantsOf(k);
+  }
+  Eigen::VectorXd ResultantsOfCase(Eigen::Index k,
+                                   const Eigen::VectorXd& support_forces) const;
+  Eigen::VectorXd RowsOfCase(Eigen::Index k, const Eigen::VectorXd& rows) const;
+  /// Where they are few: a solve for each amount.
+  void SolveForColumns();
+  Eigen::VectorXd MultiplyColumns(const Eigen::VectorXd& amounts) const;
+  Eigen::VectorXd MultiplyColumnsTransposed(const Eigen::VectorXd& rows) const;
+  Eigen::VectorXd Precondition(const Eigen::VectorXd& gradient) const;
   Eigen::VectorXd RowsOf(const Eigen::MatrixXd& displacements,
                          const Eigen::MatrixXd& support_forces) const;
   /// num_dofs x num_load_cases: those of the supports in equilibrium, and with
@@ -84,7 +107,9 @@ class MotionElimination {
   const ObservedDisplacements& observed_;
   Equilibrium& model_;
   UnknownMotion motion_;
-  std::vector<ResultantRow> resultants_;
+  std::vector<ResultantRow> resultants_;  ///< By load cases.
+  std::vector<Eigen::Index> first_resultant_;
+  std::vector<Columns> columns_;  ///< Empty where they are many.
   double noise_ = 0;
   Eigen::VectorXd amounts_;  ///< Of all load cases, of the last fit.
 };

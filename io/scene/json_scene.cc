@@ -1,5 +1,7 @@
 #include "elastimate/io/scene/json_scene.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -8,9 +10,12 @@
 #include <vector>
 
 #include "elastimate/core/materials/laws.h"
+#include "elastimate/core/mesh/axis_names.h"
 #include "elastimate/io/points/point_locator.h"
 #include "elastimate/io/scene/csv_field.h"
+#include "elastimate/io/scene/json_supports.h"
 #include "elastimate/io/scene/json_value.h"
+#include "elastimate/io/scene/measured_mesh.h"
 #include "elastimate/io/scene/measured_points.h"
 #include "elastimate/io/scene/mesh_reader.h"
 #include "elastimate/io/scene/node_selection.h"
@@ -21,11 +26,15 @@
 namespace elastimate {
 namespace {
 
+constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+
 /// What the load cases of one document are read against.
 struct Context {
   const MeshFile& mesh;
   NodeMask free;             ///< Nodes with a component that is not held.
   Eigen::MatrixXi boundary;  ///< BoundaryFacets.
+  const Supports& supports;
+  bool is_mesh_measured;  ///< Its nodes are measured points.
   const Mesh& scene_mesh;
   /// Of the scene's mesh; made when there are points.
   std::optional<PointLocator> locator;
@@ -40,66 +49,11 @@ std::filesystem::path ResolvePath(const JsonValue& value) {
   return value.File().parent_path() / name;
 }
 
-/// The components that e.g. "xz" names.
-Eigen::Array<bool, Eigen::Dynamic, 1> ReadComponents(const JsonValue& support,
-                                                     int dimension) {
-  using Components = Eigen::Array<bool, Eigen::Dynamic, 1>;
-  if (!support.Has("components")) {
-    return Components::Constant(dimension, true);
+MeshFile ReadNamedMesh(const JsonValue& name,
+                       std::vector<std::string>& notices) {
+  if (!name.IsString()) {
+    return ReadMeasuredMesh(name, notices);
   }
-  const JsonValue value = support.At("components");
-  const std::string axes = dimension == 3 ? "xyz" : "xy";
-  const std::string names = dimension == 3 ? "x, y and z" : "x and y";
-  Components components = Components::Constant(dimension, false);
-  for (const char letter : value.String()) {
-    const std::size_t axis = axes.find(letter);
-    if (axis == std::string::npos ||
-        components[static_cast<Eigen::Index>(axis)]) {
-      value.Fail("must name each of " + names + " at most once, like \"" +
-                 (dimension == 3 ? "xz" : "xy") + "\"");
-    }
-    components[static_cast<Eigen::Index>(axis)] = true;
-  }
-  if (!components.any()) {
-    value.Fail("is empty; name some of " + names);
-  }
-  return components;
-}
-
-void AddSupport(const JsonValue& support, const MeshFile& mesh,
-                Supports& supports) {
-  support.CheckKeys({"nodes", "components", "displacement"});
-  const NodeMask nodes = SelectNodes(support.At("nodes"), mesh, nullptr);
-  const int dimension = mesh.Dimension();
-  const auto components = ReadComponents(support, dimension);
-  const Eigen::VectorXd displacement =
-      support.Has("displacement") ? support.At("displacement").Vector(dimension)
-                                  : Eigen::VectorXd::Zero(dimension);
-  for (Eigen::Index node = 0; node < nodes.size(); ++node) {
-    for (Eigen::Index axis = 0; axis < dimension && nodes[node]; ++axis) {
-      if (!components[axis]) {
-        continue;
-      }
-      if (supports.held(axis, node) &&
-          supports.displacement(axis, node) != displacement[axis]) {
-        support.Fail("holds the " + std::string(1, "xyz"[axis]) +
-                     " component of " + NodeName(mesh, node) +
-                     " at another displacement than a support before it; "
-                     "select each only once");
-      }
-      supports.held(axis, node) = true;
-      supports.displacement(axis, node) = displacement[axis];
-    }
-  }
-  const JsonValue selection = support.At("nodes");
-  if (!selection.IsString() && selection.Has("box")) {
-    const BoxCorners box = CornersOfBox(selection.At("box"), mesh);
-    supports.boxes.push_back({box.low.head(dimension), box.high.head(dimension),
-                              components, displacement});
-  }
-}
-
-MeshFile ReadNamedMesh(const JsonValue& name) {
   const std::filesystem::path path = ResolvePath(name);
   if (FileExtension(path) == ".json") {
     name.Fail("is '" + Printable(name.String()) +
@@ -127,16 +81,6 @@ SectionChoice ReadSection(const JsonValue& document) {
     }
   }
   return choice;
-}
-
-Supports ReadSupports(const JsonValue& document, const MeshFile& mesh) {
-  Supports supports;
-  supports.held.setConstant(mesh.Dimension(), mesh.nodes.cols(), false);
-  supports.displacement.setZero(mesh.Dimension(), mesh.nodes.cols());
-  for (const JsonValue& support : document.At("supports").Items()) {
-    AddSupport(support, mesh, supports);
-  }
-  return supports;
 }
 
 /// The numbers of components that vectors of a mesh file may have.
@@ -242,7 +186,94 @@ Load ReadLoad(const JsonValue& load, const Context& context) {
   }
   type.Fail("is \"" + Printable(name) +
             "\"; the types known here are force, nodal_force, body_force, "
-            "traction, pressure");
+            "traction, pressure, resultant");
+}
+
+/// A force that no support exerts is a load.
+void RequireHeld(const JsonValue& value, const Context& context,
+                 const Resultant& resultant) {
+  for (Eigen::Index i = 0; i < resultant.force.size(); ++i) {
+    const bool is_held =
+        std::any_of(resultant.nodes.begin(), resultant.nodes.end(),
+                    [&](int node) { return context.supports.held(i, node); });
+    if (!std::isnan(resultant.force(i)) && !is_held) {
+      value.Fail("measures the force along " + std::string(kAxisNames[i]) +
+                 " of a surface that no support holds there, so that nothing "
+                 "exerts it; give it as a load of type \"force\", or hold the "
+                 "surface (\"displacement\": \"measured\" or \"rigid\")");
+    }
+  }
+}
+
+/// A force with null where it was not measured, and its standard deviation.
+Resultant ReadResultant(const JsonValue& value, const Context& context) {
+  value.CheckKeys({"type", "value", "surface", "sd", "relative_sd"});
+  const int dimension = context.mesh.Dimension();
+  const JsonValue components = value.At("value");
+  if (components.ListSize() != dimension) {
+    components.Fail("must be a list of " + std::to_string(dimension) +
+                    " numbers, with null where it was not measured");
+  }
+  Resultant resultant;
+  resultant.force.setConstant(dimension, kNotMeasured);
+  double square_sum = 0;
+  for (int i = 0; i < dimension; ++i) {
+    const JsonValue component = components.Items()[i];
+    if (!component.IsNull()) {
+      resultant.force(i) = component.Number();
+      square_sum += resultant.force(i) * resultant.force(i);
+    }
+  }
+  if (resultant.force.array().isNaN().all()) {
+    components.Fail("has no number; give a component that was measured");
+  }
+  if (value.Has("sd") == value.Has("relative_sd")) {
+    value.Fail(
+        "must have exactly one of the keys sd, relative_sd: how well the load "
+        "cell knows the force");
+  }
+  const JsonValue sd = value.At(value.Has("sd") ? "sd" : "relative_sd");
+  const double scale = value.Has("sd") ? 1 : std::sqrt(square_sum);
+  if (!(sd.Number() > 0)) {
+    sd.Fail("must be positive");
+  }
+  if (!(scale > 0)) {
+    sd.Fail("is relative to a force of zero; give sd, in units of force");
+  }
+  resultant.noise_sd.setConstant(dimension, scale * sd.Number());
+  const NodeMask nodes =
+      SelectNodes(value.At("surface"), context.mesh, nullptr);
+  for (int node = 0; node < nodes.size(); ++node) {
+    if (nodes[node]) {
+      resultant.nodes.push_back(node);
+    }
+  }
+  RequireHeld(value, context, resultant);
+  return resultant;
+}
+
+void ReadLoads(const JsonValue& loads, const Context& context,
+               LoadCase& load_case) {
+  for (const JsonValue& load : loads.Items()) {
+    const JsonValue type = load.At("type");
+    if (type.IsString() && type.String() == "resultant") {
+      load_case.resultants.push_back(ReadResultant(load, context));
+    } else {
+      load_case.loads.push_back(ReadLoad(load, context));
+    }
+  }
+}
+
+bool ReadIsRigidMotionFree(const JsonValue& document) {
+  if (!document.Has("rigid_motion")) {
+    return false;
+  }
+  const JsonValue value = document.At("rigid_motion");
+  if (value.String() != "free") {
+    value.Fail("is \"" + Printable(value.String()) +
+               "\"; make it \"free\", or leave it out");
+  }
+  return true;
 }
 
 ComponentMask ReadObserved(const JsonValue& observed, const Context& context) {
@@ -289,9 +320,7 @@ LoadCase ReadLoadCase(const JsonValue& value, Context& context,
                       Measurement measurement) {
   value.CheckKeys({"displacement", "loads", "noise_sd", "observed"});
   LoadCase load_case;
-  for (const JsonValue& load : value.At("loads").Items()) {
-    load_case.loads.push_back(ReadLoad(load, context));
-  }
+  ReadLoads(value.At("loads"), context, load_case);
   if (value.Has("noise_sd")) {
     load_case.noise_sd = value.At("noise_sd").Number();
     if (!(*load_case.noise_sd > 0)) {
@@ -301,7 +330,11 @@ LoadCase ReadLoadCase(const JsonValue& value, Context& context,
   if (value.Has("observed")) {
     load_case.observed = ReadObserved(value.At("observed"), context);
   }
-  if (value.Has("displacement") || measurement == Measurement::kRequired) {
+  if (!value.Has("displacement") && context.is_mesh_measured) {
+    load_case.displacement =
+        *FindArray(context.mesh.node_arrays, "displacement");
+  } else if (value.Has("displacement") ||
+             measurement == Measurement::kRequired) {
     ReadDisplacement(value.At("displacement"), context, load_case);
   }
   return load_case;
@@ -387,20 +420,23 @@ FileScene ReadJsonScene(const std::filesystem::path& path,
                         Measurement measurement, const SectionChoice& section) {
   const nlohmann::json parsed = ParseJsonFile(path);
   const JsonValue document(path, parsed);
-  document.CheckKeys(
-      {"model", "thickness", "mesh", "materials", "supports", "cases"});
+  document.CheckKeys({"model", "thickness", "mesh", "materials", "supports",
+                      "rigid_motion", "cases"});
   const SectionChoice choice = Choose(section, ReadSection(document));
   FileScene file_scene;
-  file_scene.mesh = ReadNamedMesh(document.At("mesh"));
+  file_scene.mesh = ReadNamedMesh(document.At("mesh"), file_scene.notices);
   const MeshFile& mesh = file_scene.mesh;
   file_scene.scene.mesh =
       SceneMesh(mesh, SectionOf(mesh, choice), mesh.elements);
   file_scene.scene.materials = ReadMaterials(document);
   file_scene.scene.supports = ReadSupports(document, mesh);
+  file_scene.scene.is_rigid_motion_free = ReadIsRigidMotionFree(document);
   Context context = {
       mesh,
       !file_scene.scene.supports.held.colwise().all() && mesh.used,
       BoundaryFacets(file_scene.scene.mesh),
+      file_scene.scene.supports,
+      !document.At("mesh").IsString(),
       file_scene.scene.mesh,
       {},
       file_scene.notices};

@@ -164,6 +164,13 @@ double JsonValue::Number() const {
   return value_->get<double>();
 }
 
+bool JsonValue::Boolean() const {
+  if (!value_->is_boolean()) {
+    Fail("must be true or false");
+  }
+  return value_->get<bool>();
+}
+
 Eigen::VectorXd JsonValue::Vector(Eigen::Index size) const {
   if (ListSize() != size) {
     Fail("must be a list of " + std::to_string(size) + " numbers");

@@ -39,6 +39,7 @@ class JsonValue {
   std::string String() const;
   long long Integer() const;
   double Number() const;
+  bool Boolean() const;
   /// A list of so many numbers.
   Eigen::VectorXd Vector(Eigen::Index size) const;
   /// Of how many items it is a list; 0 of anything else.

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <fstream>
 #include <new>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -42,18 +43,42 @@ std::optional<Cells> SplitLine(const std::string& line, char delimiter) {
   return is_read ? std::optional<Cells>(std::move(cells)) : std::nullopt;
 }
 
+constexpr char kSpaces[] = " \t\r";
+
+// A space where the header has neither commas, semicolons nor tabulators.
 char DelimiterOf(const std::string& header) {
   constexpr std::array<char, 3> kDelimiters = {',', ';', '\t'};
-  return *std::max_element(
+  const char delimiter = *std::max_element(
       kDelimiters.begin(), kDelimiters.end(), [&header](char a, char b) {
         return std::count(header.begin(), header.end(), a) <
                std::count(header.begin(), header.end(), b);
       });
+  return header.find(delimiter) == std::string::npos ? ' ' : delimiter;
 }
 
-bool IsSkipped(const std::string& line) {
-  const std::size_t begin = line.find_first_not_of(" \t\r");
-  return begin == std::string::npos || line[begin] == '#';
+bool IsBlank(const std::string& line) {
+  return line.find_first_not_of(kSpaces) == std::string::npos;
+}
+
+// "# a comment", "*** a comment".
+bool IsComment(const std::string& line) {
+  const std::size_t begin = line.find_first_not_of(kSpaces);
+  return line[begin] == '#' || line.compare(begin, 3, "***") == 0;
+}
+
+// Each run of spaces between words as one delimiter.
+std::string WithCommas(const std::string& line) {
+  std::istringstream words(line);
+  std::string joined;
+  for (std::string word; words >> word;) {
+    joined += (joined.empty() ? "" : ",") + word;
+  }
+  return joined;
+}
+
+std::optional<Cells> CellsOf(const std::string& line, char delimiter) {
+  return delimiter == ' ' ? SplitLine(WithCommas(line), ',')
+                          : SplitLine(line, delimiter);
 }
 
 void RemoveByteOrderMark(std::string& line) {
@@ -63,12 +88,27 @@ void RemoveByteOrderMark(std::string& line) {
   }
 }
 
+bool BeginsWithNumber(const std::string& cell) {
+  double value = 0;
+  return std::from_chars(cell.data(), cell.data() + cell.size(), value).ec ==
+         std::errc();
+}
+
 bool HasNumber(const Cells& cells) {
-  return std::any_of(cells.begin(), cells.end(), [](const std::string& cell) {
-    double value = 0;
-    return std::from_chars(cell.data(), cell.data() + cell.size(), value).ec ==
-           std::errc();
-  });
+  return std::any_of(cells.begin(), cells.end(), BeginsWithNumber);
+}
+
+// The columns that a comment right above the numbers names, as ARAMIS writes
+// them; none where it does not name as many.
+Cells ColumnsOfComment(const std::string& comment, char delimiter,
+                       const Cells& numbers) {
+  const std::size_t begin = comment.find_first_not_of("# \t");
+  if (begin == std::string::npos ||
+      !std::all_of(numbers.begin(), numbers.end(), BeginsWithNumber)) {
+    return {};
+  }
+  const std::optional<Cells> cells = CellsOf(comment.substr(begin), delimiter);
+  return cells && cells->size() == numbers.size() ? *cells : Cells{};
 }
 
 void CheckCount(const CsvTable& table, CsvTable::Row& row) {
@@ -127,25 +167,33 @@ CsvTable ReadCsvTable(const std::filesystem::path& path) {
   CsvTable table;
   table.path = path;
   std::string line;
+  std::string comment;
   char delimiter = ',';
   std::size_t number = 0;
   while (std::getline(file, line)) {
     ++number;
     RemoveByteOrderMark(line);
-    if (IsSkipped(line)) {
+    if (IsBlank(line)) {
+      continue;
+    }
+    if (IsComment(line)) {
+      comment = line;
       continue;
     }
     if (table.columns.empty()) {
       delimiter = DelimiterOf(line);
     }
-    std::optional<Cells> cells = SplitLine(line, delimiter);
+    std::optional<Cells> cells = CellsOf(line, delimiter);
     if (!cells) {
       ThrowInputError(path, "line " + std::to_string(number) +
                                 ": the quotes do not match; correct them");
     }
     if (table.columns.empty()) {
-      table.columns = std::move(*cells);
-      continue;
+      table.columns = ColumnsOfComment(comment, delimiter, *cells);
+      if (table.columns.empty()) {
+        table.columns = std::move(*cells);
+        continue;
+      }
     }
     CsvTable::Row row = {number, std::move(*cells)};
     if (table.rows.empty() && !HasNumber(row.cells)) {

@@ -11,7 +11,7 @@
 namespace elastimate {
 
 /// A file of values separated by commas, semicolons or tabulators, whichever
-/// its header has most of.
+/// its header has most of, or by spaces where it has none of these.
 struct CsvTable {
   struct Row {
     std::size_t line;  ///< In the file, from 1 on.
@@ -33,10 +33,12 @@ struct CsvTable {
   std::optional<double> Number(const Row& row, std::size_t column) const;
 };
 
-/// Cells may be quoted; lines that are blank or begin with # are skipped, and
-/// so is a row of units below the header, which has no number.  Throws
-/// std::invalid_argument, naming the file and the line, when a row has another
-/// number of cells than the header, or a file has none.
+/// Cells may be quoted; lines that are blank or begin with # or *** are
+/// skipped, and so is a row of units below the header, which has no number.  A
+/// comment right above the first row is the header where there is no other and
+/// it names as many columns.  Throws std::invalid_argument, naming the file and
+/// the line, when a row has another number of cells than the header, or a file
+/// has none.
 CsvTable ReadCsvTable(const std::filesystem::path& path);
 
 /// The number in a cell; `nan` and `inf` are numbers.  Throws

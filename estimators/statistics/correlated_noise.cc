@@ -1,0 +1,167 @@
+#include "elastimate/estimators/statistics/correlated_noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "elastimate/core/mesh/mesh_points.h"
+#include "elastimate/core/mesh/nearest_points.h"
+#include "elastimate/estimators/interface/limits.h"
+
+namespace elastimate {
+namespace {
+
+constexpr Eigen::Index kMostPoints = 20000;
+
+// Rows of one component of one load case, by position.
+struct RowsOfComponent {
+  std::vector<Eigen::Index> rows;
+  Eigen::MatrixXd positions;  // dimension x rows.size()
+  /// Points for each that is looked at.
+  double points_per_row = 1;
+};
+
+Eigen::VectorXd PositionOf(const Scene& scene,
+                           const ObservedDisplacements::Point& point,
+                           const Eigen::MatrixXd& of_points) {
+  const Eigen::Index num_nodes = scene.mesh.NumNodes();
+  return point.index < num_nodes ? scene.mesh.nodes.col(point.index)
+                                 : of_points.col(point.index - num_nodes);
+}
+
+std::vector<RowsOfComponent> SplitRows(const Scene& scene,
+                                       const ObservedDisplacements& observed) {
+  const int dimension = scene.mesh.Dimension();
+  std::vector<RowsOfComponent> all(observed.NumLoadCases() * dimension);
+  for (Eigen::Index k = 0; k < observed.NumLoadCases(); ++k) {
+    const MeshPoints& points = scene.load_cases[k].points.points;
+    const Eigen::MatrixXd of_points =
+        points.Size() == 0 ? Eigen::MatrixXd(dimension, 0)
+                           : Interpolate(scene.mesh, points, scene.mesh.nodes);
+    Eigen::Index num_points = 0;
+    for (const auto& point : observed.Points()) {
+      num_points += point.load_case == k ? 1 : 0;
+    }
+    const Eigen::Index stride = 1 + (num_points - 1) / kMostPoints;
+    std::vector<std::vector<Eigen::VectorXd>> positions(dimension);
+    Eigen::Index number = 0;
+    for (const auto& point : observed.Points()) {
+      if (point.load_case != k || number++ % stride != 0) {
+        continue;
+      }
+      for (int i = 0; i < point.count; ++i) {
+        const int component = observed.Component(point.first + i);
+        all[dimension * k + component].rows.push_back(point.first + i);
+        positions[component].push_back(PositionOf(scene, point, of_points));
+      }
+    }
+    for (int i = 0; i < dimension; ++i) {
+      RowsOfComponent& rows = all[dimension * k + i];
+      rows.points_per_row = static_cast<double>(stride);
+      rows.positions.resize(dimension, Eigen::Index(positions[i].size()));
+      for (std::size_t j = 0; j < positions[i].size(); ++j) {
+        rows.positions.col(Eigen::Index(j)) = positions[i][j];
+      }
+    }
+  }
+  return all;
+}
+
+// The median distance of a point to its nearest neighbour.
+double SpacingOf(const std::vector<RowsOfComponent>& all) {
+  std::vector<double> nearest;
+  for (const RowsOfComponent& rows : all) {
+    std::vector<double> distance(rows.rows.size(),
+                                 std::numeric_limits<double>::infinity());
+    for (const auto& [a, b] : NearestPairs(rows.positions, 1)) {
+      const double d = (rows.positions.col(a) - rows.positions.col(b)).norm();
+      distance[a] = std::min(distance[a], d);
+      distance[b] = std::min(distance[b], d);
+    }
+    nearest.insert(nearest.end(), distance.begin(), distance.end());
+  }
+  const auto median = nearest.begin() + std::ptrdiff_t(nearest.size() / 2);
+  std::nth_element(nearest.begin(), median, nearest.end());
+  return *median;
+}
+
+template <class Visit>
+void VisitPairs(const RowsOfComponent& rows, const Visit& visit) {
+  const Eigen::Index n = rows.positions.cols();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = i + 1; j < n; ++j) {
+      visit(rows.rows[i], rows.rows[j],
+            (rows.positions.col(i) - rows.positions.col(j)).norm());
+    }
+  }
+}
+
+}  // namespace
+
+Autocorrelation CorrelateResiduals(const Scene& scene,
+                                   const ObservedDisplacements& observed,
+                                   const Eigen::VectorXd& residual) {
+  const std::vector<RowsOfComponent> all = SplitRows(scene, observed);
+  Autocorrelation correlation;
+  correlation.step = SpacingOf(all);
+  if (!(correlation.step > 0) || !std::isfinite(correlation.step)) {
+    return {};
+  }
+  // Neighbours are a little nearer or farther than a step.
+  correlation.step *= 1.5;
+  const double size = (scene.mesh.nodes.rowwise().maxCoeff() -
+                       scene.mesh.nodes.rowwise().minCoeff())
+                          .norm();
+  const Eigen::Index num_steps =
+      1 + static_cast<Eigen::Index>(size / correlation.step);
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(num_steps);
+  Eigen::VectorXd counts = Eigen::VectorXd::Zero(num_steps);
+  for (const RowsOfComponent& rows : all) {
+    VisitPairs(rows, [&](Eigen::Index a, Eigen::Index b, double distance) {
+      const auto k = static_cast<Eigen::Index>(distance / correlation.step);
+      if (k < num_steps) {
+        sums(k) += residual(a) * residual(b);
+        counts(k) += 1;
+      }
+    });
+  }
+  const double variance =
+      residual.squaredNorm() / static_cast<double>(residual.size());
+  Eigen::Index last = 0;
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(num_steps);
+  while (last < num_steps && counts(last) > 0) {
+    values(last) = sums(last) / (counts(last) * variance);
+    if (values(last) < kLimits.explained_score / std::sqrt(counts(last))) {
+      break;
+    }
+    ++last;
+  }
+  correlation.values = values.head(last).cwiseMin(1.0);
+  return correlation;
+}
+
+Eigen::MatrixXd CovarianceOfCorrelation(const Scene& scene,
+                                        const ObservedDisplacements& observed,
+                                        const Eigen::MatrixXd& sensitivities,
+                                        const Eigen::MatrixXd& inverse,
+                                        const Autocorrelation& correlation) {
+  const Eigen::Index m = sensitivities.cols();
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(m, m);
+  // By columns, each a row of influences.
+  const Eigen::MatrixXd influence = inverse * sensitivities.transpose();
+  for (const RowsOfComponent& rows : SplitRows(scene, observed)) {
+    Eigen::MatrixXd of_component = Eigen::MatrixXd::Zero(m, m);
+    VisitPairs(rows, [&](Eigen::Index a, Eigen::Index b, double distance) {
+      const double rho = correlation.At(distance);
+      if (rho != 0) {
+        of_component += rho * influence.col(a) * influence.col(b).transpose();
+      }
+    });
+    sum += rows.points_per_row * rows.points_per_row *
+           (of_component + of_component.transpose());
+  }
+  return sum;
+}
+
+}  // namespace elastimate

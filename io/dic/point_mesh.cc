@@ -1,0 +1,283 @@
+#include "elastimate/io/dic/point_mesh.h"
+
+#include <vtkCellArray.h>
+#include <vtkDelaunay2D.h>
+#include <vtkIdList.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "elastimate/core/mesh/nearest_points.h"
+
+namespace elastimate {
+namespace {
+
+using Elements = std::vector<std::vector<int>>;
+
+// Of a grid, beside its spacing.
+constexpr double kOffGrid = 0.02;
+// The least height of a triangle of the rim over its longest edge.
+constexpr double kLeastHeight = 0.2;
+constexpr double kGap = 1.8;
+
+/// Coordinates along one axis as multiples of a spacing.
+struct GridAxis {
+  double first;
+  double spacing;
+
+  double Place(double x) const { return (x - first) / spacing; }
+  bool Has(double x) const {
+    return std::abs(Place(x) - std::round(Place(x))) < kOffGrid;
+  }
+};
+
+// The spacing is the least difference of coordinates that are not the same.
+GridAxis AxisOf(const Eigen::RowVectorXd& coordinates) {
+  std::vector<double> sorted(coordinates.begin(), coordinates.end());
+  std::sort(sorted.begin(), sorted.end());
+  const double range = sorted.back() - sorted.front();
+  const double same = kOffGrid * range / static_cast<double>(sorted.size());
+  double spacing = range;
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    const double difference = sorted[i] - sorted[i - 1];
+    if (difference > same) {
+      spacing = std::min(spacing, difference);
+    }
+  }
+  return {sorted.front(), spacing};
+}
+
+// A quadrilateral wherever four points are the corners of a cell; none when a
+// point is off the grid.
+Elements QuadrilateralsOf(const Eigen::Matrix2Xd& positions) {
+  const std::array<GridAxis, 2> axes = {AxisOf(positions.row(0)),
+                                        AxisOf(positions.row(1))};
+  std::map<std::array<long long, 2>, int> point_at;
+  for (Eigen::Index point = 0; point < positions.cols(); ++point) {
+    std::array<long long, 2> place = {};
+    for (int i = 0; i < 2; ++i) {
+      if (!(axes[i].spacing > 0) || !axes[i].Has(positions(i, point))) {
+        return {};
+      }
+      place[i] = std::llround(axes[i].Place(positions(i, point)));
+    }
+    if (!point_at.emplace(place, static_cast<int>(point)).second) {
+      return {};
+    }
+  }
+  Elements elements;
+  for (const auto& [place, point] : point_at) {
+    const auto [i, j] = place;
+    std::vector<int> corners;
+    for (const std::array<long long, 2>& corner :
+         {place, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}) {
+      const auto found = point_at.find(corner);
+      if (found != point_at.end()) {
+        corners.push_back(found->second);
+      }
+    }
+    if (corners.size() == 4) {
+      elements.push_back(corners);
+    }
+  }
+  return elements;
+}
+
+double EdgeLength(const Eigen::Matrix2Xd& positions, int a, int b) {
+  return (positions.col(a) - positions.col(b)).norm();
+}
+
+double LongestEdge(const Eigen::Matrix2Xd& positions,
+                   const std::vector<int>& triangle) {
+  double longest = 0;
+  for (int i = 0; i < 3; ++i) {
+    longest = std::max(
+        longest, EdgeLength(positions, triangle[i], triangle[(i + 1) % 3]));
+  }
+  return longest;
+}
+
+double TwiceArea(const Eigen::Matrix2Xd& positions,
+                 const std::vector<int>& triangle) {
+  const Eigen::Vector2d a =
+      positions.col(triangle[1]) - positions.col(triangle[0]);
+  const Eigen::Vector2d b =
+      positions.col(triangle[2]) - positions.col(triangle[0]);
+  return a(0) * b(1) - a(1) * b(0);
+}
+
+Elements DelaunayTriangles(const Eigen::Matrix2Xd& positions) {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (const auto& position : positions.colwise()) {
+    points->InsertNextPoint(position(0), position(1), 0);
+  }
+  vtkNew<vtkPolyData> cloud;
+  cloud->SetPoints(points);
+  vtkNew<vtkDelaunay2D> delaunay;
+  delaunay->SetInputData(cloud);
+  delaunay->Update();
+  Elements triangles;
+  vtkCellArray* const cells = delaunay->GetOutput()->GetPolys();
+  vtkNew<vtkIdList> nodes;
+  for (vtkIdType cell = 0; cell < cells->GetNumberOfCells(); ++cell) {
+    cells->GetCellAtId(cell, nodes);
+    std::vector<int> triangle = {static_cast<int>(nodes->GetId(0)),
+                                 static_cast<int>(nodes->GetId(1)),
+                                 static_cast<int>(nodes->GetId(2))};
+    if (TwiceArea(positions, triangle) < 0) {
+      std::swap(triangle[1], triangle[2]);
+    }
+    triangles.push_back(triangle);
+  }
+  return triangles;
+}
+
+// By edge, the elements that have it.
+std::map<std::pair<int, int>, std::vector<std::size_t>> ElementsOfEdges(
+    const Elements& elements) {
+  std::map<std::pair<int, int>, std::vector<std::size_t>> of_edges;
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    const std::vector<int>& nodes = elements[e];
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      of_edges[std::minmax({nodes[i], nodes[(i + 1) % nodes.size()]})]
+          .push_back(e);
+    }
+  }
+  return of_edges;
+}
+
+// What Delaunay's hull adds where the rim of the points is not convex.
+Elements WithoutSlivers(const Eigen::Matrix2Xd& positions, Elements triangles) {
+  for (bool has_slivers = true; has_slivers;) {
+    std::vector<bool> is_sliver(triangles.size(), false);
+    for (const auto& [edge, of_edge] : ElementsOfEdges(triangles)) {
+      const std::vector<int>& triangle = triangles[of_edge.front()];
+      const double longest = LongestEdge(positions, triangle);
+      is_sliver[of_edge.front()] =
+          is_sliver[of_edge.front()] ||
+          (of_edge.size() == 1 &&
+           TwiceArea(positions, triangle) < kLeastHeight * longest * longest);
+    }
+    Elements others;
+    for (std::size_t e = 0; e < triangles.size(); ++e) {
+      if (!is_sliver[e]) {
+        others.push_back(triangles[e]);
+      }
+    }
+    has_slivers = others.size() < triangles.size();
+    triangles = std::move(others);
+  }
+  return triangles;
+}
+
+// The most elements that hang together by edges.
+Elements LargestPart(const Elements& elements) {
+  std::vector<std::size_t> parent(elements.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](std::size_t e) {
+    while (parent[e] != e) {
+      e = parent[e] = parent[parent[e]];
+    }
+    return e;
+  };
+  for (const auto& [edge, of_edge] : ElementsOfEdges(elements)) {
+    for (const std::size_t e : of_edge) {
+      parent[root(e)] = root(of_edge.front());
+    }
+  }
+  std::vector<std::size_t> size(elements.size(), 0);
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    ++size[root(e)];
+  }
+  const std::size_t largest = static_cast<std::size_t>(
+      std::max_element(size.begin(), size.end()) - size.begin());
+  Elements part;
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    if (root(e) == largest) {
+      part.push_back(elements[e]);
+    }
+  }
+  return part;
+}
+
+double DefaultMaxEdge(const Eigen::Matrix2Xd& positions) {
+  std::vector<double> nearest(positions.cols(),
+                              std::numeric_limits<double>::infinity());
+  for (const auto& [a, b] : NearestPairs(positions, 1)) {
+    const double distance = EdgeLength(positions, int(a), int(b));
+    nearest[a] = std::min(nearest[a], distance);
+    nearest[b] = std::min(nearest[b], distance);
+  }
+  const auto most =
+      nearest.begin() + std::ptrdiff_t(0.9 * double(nearest.size()));
+  std::nth_element(nearest.begin(), most, nearest.end());
+  return kGap * *most;
+}
+
+// Numbers the nodes that are used.
+PointMesh Number(ElementKind kind, const Elements& elements) {
+  PointMesh mesh;
+  mesh.kind = kind;
+  for (const std::vector<int>& element : elements) {
+    mesh.points.insert(mesh.points.end(), element.begin(), element.end());
+  }
+  std::sort(mesh.points.begin(), mesh.points.end());
+  mesh.points.erase(std::unique(mesh.points.begin(), mesh.points.end()),
+                    mesh.points.end());
+  mesh.elements.resize(TopologyOf(kind).num_nodes,
+                       Eigen::Index(elements.size()));
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    for (std::size_t i = 0; i < elements[e].size(); ++i) {
+      mesh.elements(Eigen::Index(i), Eigen::Index(e)) =
+          static_cast<int>(std::lower_bound(mesh.points.begin(),
+                                            mesh.points.end(), elements[e][i]) -
+                           mesh.points.begin());
+    }
+  }
+  return mesh;
+}
+
+}  // namespace
+
+PointMesh MeshOfPoints(const Eigen::Matrix2Xd& positions,
+                       std::optional<double> max_edge) {
+  if (positions.cols() < 3) {
+    throw std::invalid_argument(
+        "there are fewer than three points, of which no mesh can be made; "
+        "give more");
+  }
+  const Elements quadrilaterals = QuadrilateralsOf(positions);
+  if (!quadrilaterals.empty()) {
+    return Number(ElementKind::kQuad4, LargestPart(quadrilaterals));
+  }
+  const double longest = max_edge.value_or(DefaultMaxEdge(positions));
+  Elements triangles = DelaunayTriangles(positions);
+  triangles.erase(std::remove_if(triangles.begin(), triangles.end(),
+                                 [&](const std::vector<int>& triangle) {
+                                   return LongestEdge(positions, triangle) >
+                                          longest;
+                                 }),
+                  triangles.end());
+  triangles = WithoutSlivers(positions, std::move(triangles));
+  if (triangles.empty()) {
+    throw std::invalid_argument("no triangle of points has edges up to " +
+                                std::to_string(longest) +
+                                "; give a larger \"max_edge\"");
+  }
+  PointMesh mesh = Number(ElementKind::kTri3, LargestPart(triangles));
+  mesh.max_edge = longest;
+  return mesh;
+}
+
+}  // namespace elastimate

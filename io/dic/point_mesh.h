@@ -1,0 +1,32 @@
+#ifndef ELASTIMATE_IO_DIC_POINT_MESH_H_
+#define ELASTIMATE_IO_DIC_POINT_MESH_H_
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "elastimate/core/mesh/element_kind.h"
+
+namespace elastimate {
+
+/// A planar mesh whose nodes are measured points.
+struct PointMesh {
+  ElementKind kind = ElementKind::kTri3;
+  std::vector<Eigen::Index> points;  ///< The point of each node, ascending.
+  Eigen::MatrixXi elements;          ///< Of nodes, counterclockwise.
+  double max_edge = 0;               ///< As given, or as found.
+};
+
+/// Quadrilaterals where the points form a grid along the axes, else Delaunay
+/// triangles (by VTK), without those that have an edge above `max_edge`, or are
+/// slivers of the rim.  Holes and gaps stay what they are; of parts that do not
+/// hang together the largest is taken.  Without `max_edge`, 1.8 times the
+/// longest edge that nine of ten points have to their nearest neighbour.
+/// Throws std::invalid_argument where that leaves no element.
+/// O(n log n).
+PointMesh MeshOfPoints(const Eigen::Matrix2Xd& positions,
+                       std::optional<double> max_edge);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_IO_DIC_POINT_MESH_H_

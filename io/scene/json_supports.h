@@ -1,0 +1,18 @@
+#ifndef ELASTIMATE_IO_SCENE_JSON_SUPPORTS_H_
+#define ELASTIMATE_IO_SCENE_JSON_SUPPORTS_H_
+
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/io/mesh/mesh_file.h"
+#include "elastimate/io/scene/json_value.h"
+
+namespace elastimate {
+
+/// The key "supports" of a scene: a list of {"nodes", "components",
+/// "displacement"}, of which the last is a vector, zero where it is left out,
+/// "measured" or "rigid".  Throws std::invalid_argument, naming the file and
+/// the place in it.
+Supports ReadSupports(const JsonValue& document, const MeshFile& mesh);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_IO_SCENE_JSON_SUPPORTS_H_
