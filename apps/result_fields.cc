@@ -60,6 +60,21 @@ class FieldCollector {
          forces.EnergyDensity(moduli, all.col(load_case)).transpose()});
   }
 
+  // 1 at the nodes whose measurement was left out.
+  void AddOutliers(const std::vector<Outlier>& outliers) {
+    for (const Outlier& outlier : outliers) {
+      const std::string name = "outlier" + CaseSuffix(outlier.load_case);
+      if (outlier.is_point) {
+        continue;
+      }
+      if (fields_.point.back().name != name) {
+        fields_.point.push_back(
+            {name, Eigen::RowVectorXd::Zero(shown_.NumNodes())});
+      }
+      fields_.point.back().values(0, outlier.index) = 1;
+    }
+  }
+
   // A cell array of each parameter, of the material of each element.
   void AddParameters(const Scene& scene, const Estimate& estimate) {
     const std::vector<int> material_of =
@@ -140,7 +155,9 @@ Fields ResultFields(const Scene& scene, const Scene& modelled,
   if (!model.Solve(moduli)) {
     return fields;
   }
-  const Eigen::MatrixXd& fitted = model.Displacement();
+  const Eigen::MatrixXd& fitted = estimate.fitted_displacement.size() == 0
+                                      ? model.Displacement()
+                                      : estimate.fitted_displacement;
   const Eigen::MatrixXd difference = MeasuredMinus(modelled, fitted);
   const Eigen::MatrixXd imbalance =
       model.Forces().Multiply(moduli, fitted) - AssembleLoadCases(modelled);
@@ -151,6 +168,7 @@ Fields ResultFields(const Scene& scene, const Scene& modelled,
       scene.mesh.Order() == 2
           ? held_imbalance
           : MidEdges(modelled.mesh).Restrict(held_imbalance);
+  collector.AddOutliers(estimate.outliers);
   for (Eigen::Index k = 0; k < num_cases; ++k) {
     collector.AddPoint("fitted_displacement", k, fitted);
     collector.AddPoint("displacement_residual", k, difference);

@@ -15,6 +15,7 @@ namespace elastimate {
 ///
 /// With a physical E and nu and a specimen that is held: `fitted_displacement`,
 /// `displacement_residual` (measured minus fitted where observed, else zero),
+/// `outlier` (1 at nodes whose measurement was left out, where there are some),
 /// `reaction_force` at the held degrees of freedom (of a QuadraticScene, with
 /// half of the reaction at each mid-edge node at either end of its edge, which
 /// keeps resultant and moment: MidEdges), and per cell the

@@ -18,6 +18,7 @@
 #include "elastimate/core/mesh/representable.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/rigid_motion.h"
+#include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/io/report/parameters_file.h"
 #include "elastimate/io/scene/scene_reader.h"
 #include "elastimate/io/text/printable.h"
@@ -141,6 +142,13 @@ int RunSimulate(const std::vector<std::string>& arguments) {
   const std::string why_not_held = WhyNotHeld(scene.mesh, scene.supports);
   if (!why_not_held.empty()) {
     throw std::invalid_argument(source + ": " + why_not_held);
+  }
+  if (HasUnknownMotion(scene)) {
+    throw std::invalid_argument(
+        source +
+        ": simulate has to know how supports moved; give their "
+        "\"displacement\" "
+        "as a vector, and leave out resultants and \"rigid_motion\"");
   }
   const std::optional<Scene> quadratic =
       QuadraticSceneIfAsked(source, scene, reading.notices);

@@ -64,6 +64,18 @@ struct Rung {
   std::string decision;
 };
 
+/// A measurement that was left out of a fit.
+struct Outlier {
+  Eigen::Index load_case;
+  Eigen::Index index;  ///< Of its node or, as `is_point`, of its point.
+  bool is_point;
+
+  bool operator==(const Outlier& other) const {
+    return load_case == other.load_case && index == other.index &&
+           is_point == other.is_point;
+  }
+};
+
 /// What an estimator says about a scene.  Starts out as a failure, so that it
 /// cannot be mistaken for a result before an estimator has filled it in.
 struct Estimate {
@@ -132,6 +144,11 @@ struct Estimate {
   bool is_model_in_doubt = false;
   /// What virtual-fields says of the model of reduced-fe, where both were run.
   std::optional<ModelMismatch> model_mismatch;
+  /// Points that lie too far off for noise, and were left out.
+  std::vector<Outlier> outliers;
+  /// Of a scene of unknown motion, with the motion: num_dofs x num_load_cases
+  /// [length]; empty for others.
+  Eigen::MatrixXd fitted_displacement;
   /// Bounds that the estimate lies on, such as "nu_max".
   std::vector<std::string> active_bounds;
 

@@ -430,21 +430,23 @@ Finding Outliers(const Eigen::Vector2d& change) {
                  "the pull");
 }
 
-Finding OutliersLeftOut(const std::vector<std::string>& names,
+Finding OutliersLeftOut(const std::vector<Outlier>& outliers,
                         const Eigen::Vector2d& change) {
-  constexpr std::size_t kMostNames = 5;
-  std::string some;
-  for (std::size_t i = 0; i < std::min(names.size(), kMostNames); ++i) {
-    some += (i == 0 ? "" : ", ") + names[i];
+  constexpr std::size_t kMostNames = 3;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(outliers.size(), kMostNames); ++i) {
+    names += (i == 0 ? "" : ", ") +
+             std::string(outliers[i].is_point ? "point " : "node ") +
+             std::to_string(outliers[i].index);
   }
-  if (names.size() > kMostNames) {
-    some += ", ...";
+  if (outliers.size() > kMostNames) {
+    names += ", ...";
   }
   return Warning(FindingCode::kOutliersLeftOut,
-                 std::to_string(names.size()) + " outliers (" + some +
+                 std::to_string(outliers.size()) + " outliers (" + names +
                      ") are left out, which changes E by " +
                      Percent(change(0)) + " and nu by " + TwoDigits(change(1)),
-                 "look at them in the map of residuals");
+                 "look at them in the output of --out, where they are marked");
 }
 
 Finding HeldNodesMoved(const std::vector<std::size_t>& load_cases) {

@@ -91,8 +91,8 @@ Finding ModelMismatchFinding(const ModelMismatch& mismatch);
 /// `change` is that of (ln E, nu) without the pull of the outliers.
 Finding Outliers(const Eigen::Vector2d& change);
 /// `load_cases` holds their numbers, from 1 on.  Precondition: not empty.
-/// By their names, which became many where they are a few; of ln E and nu.
-Finding OutliersLeftOut(const std::vector<std::string>& names,
+/// `change` is of ln E and nu.
+Finding OutliersLeftOut(const std::vector<Outlier>& outliers,
                         const Eigen::Vector2d& change);
 Finding HeldNodesMoved(const std::vector<std::size_t>& load_cases);
 

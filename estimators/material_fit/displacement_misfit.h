@@ -34,12 +34,21 @@ class DisplacementMisfit {
 
   /// Sets the standard deviation of a row, which weighs resultants.
   void SetNoise(double standard_deviation);
+  /// Zero without resultants.
+  double Noise() const { return NumResultants() > 0 ? motion_->Noise() : 0; }
 
   /// A factorisation, and a solve for each load case and variable; times the
   /// iterations of MotionElimination where motions are unknown.  False when the
   /// stiffness is singular at x.
   bool Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd* residual,
                 Eigen::MatrixXd* jacobian);
+
+  /// u with all motions where the last Evaluate was, num_dofs x
+  /// num_load_cases.
+  Eigen::MatrixXd FittedDisplacement() const {
+    return motion_ ? motion_->FittedDisplacement()
+                   : equilibrium_.Displacement();
+  }
 
   /// 1 / E, or another unit of the moduli, that explains displacements or
   /// resultants best where the moduli are 1; empty when they oppose the loads.

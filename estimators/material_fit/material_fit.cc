@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/scene/observed_displacements.h"
+#include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/free_parameters.h"
@@ -234,8 +234,11 @@ void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
     evidence.too_few_components = observed.Size();
     return;
   }
-  const ResidualVariance variance = EstimateVariance(
-      observed, rows.squaredNorm(), num_fitted, evidence, estimate);
+  ResidualVariance variance = EstimateVariance(observed, rows.squaredNorm(),
+                                               num_fitted, evidence, estimate);
+  // The least that resultants were weighed beside, where data are exact.
+  variance.variance =
+      std::max(variance.variance, misfit.Noise() * misfit.Noise());
   evidence.is_explained_by_given_noise = variance.is_explained_by_given_noise;
   const Eigen::MatrixXd of_rows = sensitivities.topRows(observed.Size());
   const Eigen::MatrixXd inverse =
@@ -281,11 +284,12 @@ void EnterElasticity(Estimate& estimate) {
   }
 }
 
-// A fit, and the points that it cannot be meant for.
+// A fit, and where it is.
 struct MaterialFit {
   Estimate estimate;
   std::optional<Eigen::VectorXd> variables;
-  std::vector<ObservedDisplacements::Point> outliers;
+  /// As measured where all is known; empty where there is no fit.
+  Eigen::MatrixXd displacement;
 };
 
 // From `start` on, or from where FitMaterials says.
@@ -310,8 +314,7 @@ MaterialFit FitAll(const Scene& scene, const EstimatorOptions& options,
     fit.variables = minimum->variables;
     Eigen::VectorXd rows;
     if (misfit.Evaluate(*fit.variables, &rows, nullptr)) {
-      fit.outliers =
-          FindOutliers(misfit.Observed(), rows.head(misfit.Observed().Size()));
+      fit.displacement = misfit.FittedDisplacement();
     }
   } else {
     evidence.do_displacements_oppose_loads = true;
@@ -342,40 +345,38 @@ Eigen::Vector2d LargestChange(const Estimate& from, const Estimate& to) {
   return largest;
 }
 
-// Of nodes, and behind them of points, by their numbers from 0 on.
-std::vector<std::string> NamesOf(
-    const Scene& scene,
-    const std::vector<ObservedDisplacements::Point>& points) {
-  std::vector<std::string> names;
-  for (const ObservedDisplacements::Point& point : points) {
-    const Eigen::Index number = point.index - scene.mesh.NumNodes();
-    names.push_back(number < 0 ? "node " + std::to_string(point.index)
-                               : "point " + std::to_string(number));
-  }
-  return names;
-}
-
-// Fits again without the outliers, as long as there are more of them.
+// Fits again without the outliers, which are those of the fit without them.
 Estimate FitWithoutOutliers(const Scene& scene,
                             const EstimatorOptions& options) {
-  constexpr int kRounds = 5;
+  constexpr int kRounds = 8;
+  // What more points contradict is wrong in another way.
+  constexpr double kMost = 1.0 / 3;
+  const ObservedDisplacements observed(scene);
+  const auto num_points = static_cast<double>(observed.Points().size());
   MaterialFit fit = FitAll(scene, options, std::nullopt);
   const Estimate of_all = fit.estimate;
-  std::vector<ObservedDisplacements::Point> left_out;
-  Scene others;
-  for (int i = 0; i < kRounds && !fit.outliers.empty(); ++i) {
-    if (left_out.empty()) {
-      others = scene;
+  std::vector<Outlier> left_out;
+  for (int i = 0; i < kRounds && fit.displacement.size() != 0; ++i) {
+    const std::vector<Outlier> outliers =
+        FindOutliers(scene, observed, fit.displacement);
+    if (outliers == left_out) {
+      break;
     }
-    LeaveOut(fit.outliers, others);
-    left_out.insert(left_out.end(), fit.outliers.begin(), fit.outliers.end());
+    if (static_cast<double>(outliers.size()) > kMost * num_points) {
+      return of_all;
+    }
+    left_out = outliers;
     const Work work = fit.estimate.work;
-    fit = FitAll(others, options, fit.variables);
+    fit = FitAll(WithoutOutliers(scene, outliers), options, fit.variables);
     fit.estimate.work = fit.estimate.work + work;
   }
   if (!left_out.empty()) {
-    fit.estimate.Add(OutliersLeftOut(NamesOf(scene, left_out),
-                                     LargestChange(of_all, fit.estimate)));
+    fit.estimate.outliers = left_out;
+    fit.estimate.Add(
+        OutliersLeftOut(left_out, LargestChange(of_all, fit.estimate)));
+  }
+  if (HasUnknownMotion(scene)) {
+    fit.estimate.fitted_displacement = fit.displacement;
   }
   return fit.estimate;
 }

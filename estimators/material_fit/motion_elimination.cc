@@ -200,7 +200,7 @@ Eigen::VectorXd MotionElimination::MultiplyTransposed(
 void MotionElimination::SolveForColumns() {
   const Eigen::Index n = motion_.NumAmounts();
   columns_.clear();
-  if (n > kMostColumns || n * NumRows() > kMostEntries) {
+  if (n == 0 || n > kMostColumns || n * NumRows() > kMostEntries) {
     return;
   }
   for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
@@ -264,6 +264,9 @@ Eigen::VectorXd MotionElimination::Precondition(
 Eigen::VectorXd MotionElimination::Minimize(double tolerance,
                                             Eigen::VectorXd& rows) {
   Eigen::VectorXd amounts = Eigen::VectorXd::Zero(amounts_.size());
+  if (amounts.size() == 0) {
+    return amounts;
+  }
   const double nothing = kRounding * kRounding * rows.squaredNorm();
   Eigen::VectorXd gradient = MultiplyTransposed(rows);
   Eigen::VectorXd preconditioned = Precondition(gradient);

@@ -44,11 +44,18 @@ class MotionElimination {
   /// Sets the standard deviation of a displacement row, which weighs the
   /// resultants; zero leaves them out.
   void SetNoise(double standard_deviation) { noise_ = standard_deviation; }
+  double Noise() const { return noise_; }
 
   /// Moves the displacements that the model solved for by the amounts that fit
   /// the measurement best, and returns the rows of what is left, model -
   /// measurement.
   Eigen::VectorXd Fit();
+
+  /// The displacements of the model with the motion of all of the last Fit:
+  /// num_dofs x num_load_cases.
+  Eigen::MatrixXd FittedDisplacement() const {
+    return WithMotionOfAll(amounts_, model_.Displacement());
+  }
 
   /// The rows of displacements and of forces of supports, num_dofs x
   /// num_load_cases, without what amounts could explain.

@@ -52,6 +52,16 @@ Json MeshJson(const Scene& scene) {
   return json;
 }
 
+// Null where it was not measured.
+Json MeasuredJson(const Eigen::VectorXd& force) {
+  Json components = Json::array();
+  for (const double component : force) {
+    components.push_back(std::isnan(component) ? Json(nullptr)
+                                               : Json(component));
+  }
+  return components;
+}
+
 Json LoadsJson(const Scene& scene) {
   Json cases = Json::array();
   for (const LoadCase& load_case : scene.load_cases) {
@@ -63,6 +73,11 @@ Json LoadsJson(const Scene& scene) {
            {"resultant", std::vector<double>(resultant.force.begin(),
                                              resultant.force.end())},
            {"area", OrNull(resultant.area)}});
+    }
+    for (const Resultant& resultant : load_case.resultants) {
+      loads.push_back({{"type", "resultant"},
+                       {"resultant", MeasuredJson(resultant.force)},
+                       {"area", nullptr}});
     }
     cases.push_back(loads);
   }
@@ -198,6 +213,16 @@ Json RungsJson(const Estimate& estimate) {
   return rungs;
 }
 
+// Load cases count from 1 on, as in the names of arrays.
+Json OutliersJson(const std::vector<Outlier>& outliers) {
+  Json list = Json::array();
+  for (const Outlier& outlier : outliers) {
+    list.push_back({{"load_case", outlier.load_case + 1},
+                    {outlier.is_point ? "point" : "node", outlier.index}});
+  }
+  return list;
+}
+
 Json DiagnosticsJson(const Estimate& estimate) {
   std::optional<double> angle = estimate.identifiability_angle;
   if (angle) {
@@ -211,6 +236,7 @@ Json DiagnosticsJson(const Estimate& estimate) {
            OrNull(estimate.poisson_ratio_discretization_error)},
           {"discretization_correction", CorrectionJson(estimate)},
           {"model_mismatch", MismatchJson(estimate)},
+          {"outliers", OutliersJson(estimate.outliers)},
           {"active_bounds", estimate.active_bounds},
           {"why_no_standard_error", estimate.why_no_standard_error},
           {"warnings", estimate.Sentences(Severity::kWarning)}};

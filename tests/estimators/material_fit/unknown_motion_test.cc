@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <cmath>
 #include <random>
 #include <string>
@@ -42,8 +44,7 @@ Resultant ResultantOfSupports(const Scene& scene, const LoadCase& load_case,
                               const std::vector<int>& nodes, double noise_sd) {
   const int dimension = scene.mesh.Dimension();
   const Eigen::MatrixXd stiffness = testing::TextbookStiffness(
-      scene.mesh,
-      testing::HookeMatrixOf(kTruth, scene.mesh.section.model));
+      scene.mesh, testing::HookeMatrixOf(kTruth, scene.mesh.section.model));
   const Eigen::MatrixXd force =
       (stiffness * load_case.displacement.reshaped())
           .reshaped(dimension, scene.mesh.NumNodes()) -
@@ -150,10 +151,182 @@ TEST_P(UnknownMotionOfKinds, OfTheCameraLeavesExactDataExact) {
   ExpectTruth(RunIterativeFe(scene), 1e-8);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, UnknownMotionOfKinds,
-    ::testing::ValuesIn(testing::AllKindsOfSections()),
-    [](const auto& info) { return testing::NameOf(info.param); });
+INSTANTIATE_TEST_SUITE_P(All, UnknownMotionOfKinds,
+                         ::testing::ValuesIn(testing::AllKindsOfSections()),
+                         [](const auto& info) {
+                           return testing::NameOf(info.param);
+                         });
+
+// A plate under a known pull at its free end, whose other end moved as
+// measured.
+Scene Plate(int cells = 5) {
+  return SceneOfMeasuredSupports(
+      {ElementKind::kQuad4, SectionModel::kPlaneStress}, cells);
+}
+
+double RootMeanSquare(const Scene& scene) {
+  const Eigen::MatrixXd& u = scene.load_cases[0].displacement;
+  return u.norm() / std::sqrt(double(u.size()));
+}
+
+// Of this standard deviation at every node, supports included.
+void Disturb(double noise_sd, unsigned seed, Scene& scene) {
+  std::mt19937_64 generator(seed);
+  std::normal_distribution<double> noise(0, noise_sd);
+  for (LoadCase& load_case : scene.load_cases) {
+    for (double& value : load_case.displacement.reshaped()) {
+      value += noise(generator);
+    }
+  }
+}
+
+// Gauss-Newton steps on (ln E, nu, u of the supports), with differences for
+// derivatives and the textbook for u: a dense least squares of all unknowns.
+struct DenseFit {
+  Eigen::Vector2d parameters;  // ln E, nu
+  Eigen::Matrix2d covariance;
+};
+
+DenseFit FitDensely(const Scene& measured, double noise_sd) {
+  Scene scene = measured;
+  std::vector<Eigen::Index> held;
+  for (Eigen::Index dof = 0; dof < scene.supports.held.size(); ++dof) {
+    if (scene.supports.held.reshaped()(dof)) {
+      held.push_back(dof);
+    }
+  }
+  const Eigen::VectorXd q = measured.load_cases[0].displacement.reshaped();
+  const auto displacement = [&](const Eigen::VectorXd& x) {
+    scene.supports.displacement.reshaped()(held) = x.tail(x.size() - 2);
+    testing::MeasureByTextbook({std::exp(x(0)), x(1)}, scene);
+    return Eigen::VectorXd(scene.load_cases[0].displacement.reshaped());
+  };
+  Eigen::VectorXd x(2 + Eigen::Index(held.size()));
+  x << std::log(kTruth.youngs_modulus), kTruth.poisson_ratio, q(held);
+  Eigen::MatrixXd jacobian(q.size(), x.size());
+  for (int iteration = 0; iteration < 6; ++iteration) {
+    const double scale = q.cwiseAbs().maxCoeff();
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      const double step = i < 2 ? 1e-4 : 1e-3 * scale;
+      Eigen::VectorXd above = x;
+      Eigen::VectorXd below = x;
+      above(i) += step;
+      below(i) -= step;
+      jacobian.col(i) =
+          (displacement(above) - displacement(below)) / (2 * step);
+    }
+    x += (jacobian.transpose() * jacobian)
+             .ldlt()
+             .solve(jacobian.transpose() * (q - displacement(x)));
+  }
+  const Eigen::MatrixXd covariance =
+      noise_sd * noise_sd * (jacobian.transpose() * jacobian).inverse();
+  return {x.head(2), covariance.topLeftCorner(2, 2)};
+}
+
+TEST(UnknownMotion, IsFittedAsByDenseLeastSquaresOfAllUnknowns) {
+  Scene scene = Plate();
+  const double noise_sd = 0.01 * RootMeanSquare(scene);
+  Disturb(noise_sd, 1, scene);
+  scene.load_cases[0].noise_sd = noise_sd;
+  const DenseFit dense = FitDensely(scene, noise_sd);
+  const Estimate estimate = RunIterativeFe(scene);
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  const double youngs_modulus = std::exp(dense.parameters(0));
+  // The fit ends where steps are below a hundredth of the errors.
+  EXPECT_NEAR(estimate.elasticity.youngs_modulus, youngs_modulus,
+              0.01 * *estimate.YoungsModulusStandardError());
+  EXPECT_NEAR(estimate.elasticity.poisson_ratio, dense.parameters(1),
+              0.01 * *estimate.PoissonRatioStandardError());
+  EXPECT_NEAR(*estimate.YoungsModulusStandardError() /
+                  (youngs_modulus * std::sqrt(dense.covariance(0, 0))),
+              1, 1e-3);
+  EXPECT_NEAR(
+      *estimate.PoissonRatioStandardError() / std::sqrt(dense.covariance(1, 1)),
+      1, 1e-3);
+}
+
+// A load cell that knows nothing adds nothing.
+TEST(UnknownMotion, WithResultantsOfNoWeightIsTheDisplacementFit) {
+  Scene scene = testing::SceneOfKind(
+      {ElementKind::kQuad4, SectionModel::kPlaneStress}, 5);
+  testing::MeasureByTextbook(kTruth, scene);
+  Disturb(0.01 * RootMeanSquare(scene), 1, scene);
+  const Estimate without = RunIterativeFe(scene);
+  const std::vector<int> held = HeldNodes(scene);
+  scene.load_cases[0].resultants = {
+      {held, Eigen::Vector2d(1, 1), Eigen::Vector2d(1e12, 1e12)}};
+  const Estimate with = RunIterativeFe(scene);
+  ASSERT_EQ(with.status, Status::kOk) << with.message;
+  // The fit ends where steps are below a hundredth of the errors.
+  EXPECT_NEAR(with.elasticity.youngs_modulus, without.elasticity.youngs_modulus,
+              0.01 * *without.YoungsModulusStandardError());
+  EXPECT_NEAR(with.elasticity.poisson_ratio, without.elasticity.poisson_ratio,
+              0.01 * *without.PoissonRatioStandardError());
+}
+
+// So many that each is not solved for.
+TEST(UnknownMotion, OfManyNodesLeavesExactDataExact) {
+  Scene scene = testing::HeldAtBottom(testing::BoxMesh({12, 12, 2}, {6, 6, 1}),
+                                      testing::BoxMesh({12, 12, 2}, {6, 6, 1}),
+                                      {0, 0, -1});
+  scene.supports.unknown = scene.supports.held;
+  ASSERT_GT(scene.supports.unknown.count(), 400);
+  testing::Measure(kTruth, scene);
+  ExpectTruth(RunIterativeFe(scene), 1e-7);
+}
+
+TEST(UnknownMotion, LeavesOutliersOutByName) {
+  Scene scene = Plate(12);
+  const double noise_sd = 0.005 * RootMeanSquare(scene);
+  Disturb(noise_sd, 3, scene);
+  const Estimate clean = RunIterativeFe(scene);
+  EXPECT_TRUE(clean.outliers.empty());
+  for (const int node : {77, 125}) {
+    scene.load_cases[0].displacement(0, node) += 100 * noise_sd;
+  }
+  const Estimate estimate = RunIterativeFe(scene);
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  EXPECT_EQ(estimate.outliers,
+            (std::vector<Outlier>{{0, 77, false}, {0, 125, false}}));
+  EXPECT_TRUE(estimate.Has(FindingCode::kOutliersLeftOut));
+  EXPECT_NEAR(estimate.elasticity.youngs_modulus,
+              clean.elasticity.youngs_modulus,
+              2 * *clean.YoungsModulusStandardError());
+}
+
+TEST(UnknownMotion, WithoutAnyForceIsRefused) {
+  Scene scene = Plate();
+  scene.load_cases[0].loads.clear();
+  EXPECT_THROWS_WITH(RunIterativeFe(scene), "or a measured resultant");
+}
+
+TEST(UnknownMotion, ThatIsInconsistentIsRefused) {
+  const Scene good = Plate();
+  const std::vector<int> held = HeldNodes(good);
+  const Eigen::Vector2d force(1, 1);
+  const auto all = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(2, true);
+  Scene scene = good;
+  scene.supports.unknown.setConstant(true);
+  EXPECT_THROWS_WITH(RunIterativeFe(scene), "that no support holds");
+  scene = good;
+  scene.load_cases[0].observed = !good.supports.held;
+  EXPECT_THROWS_WITH(RunIterativeFe(scene), "make the support rigid");
+  scene = good;
+  scene.supports.rigid_faces = {{{}, all}};
+  EXPECT_THROWS_WITH(RunIterativeFe(scene), "has no node");
+  scene.supports.unknown.setConstant(false);
+  scene.supports.rigid_faces = {{held, all}};
+  EXPECT_THROWS_WITH(RunIterativeFe(scene), "held at a given displacement");
+  scene = good;
+  scene.load_cases[0].resultants = {{{0, 1000}, force, force}};
+  EXPECT_THROWS_WITH(RunIterativeFe(scene), "node 1000 of resultant 1");
+  scene.load_cases[0].resultants = {{held, force, Eigen::Vector2d(1, 0)}};
+  EXPECT_THROWS_WITH(RunIterativeFe(scene), "positive standard deviation");
+  EstimatorOptions robust;
+  robust.loss = Loss::kHuber;
+  EXPECT_THROWS_WITH(RunIterativeFe(good, robust), "leave it out");
+}
 
 }  // namespace
 }  // namespace elastimate

@@ -1,0 +1,109 @@
+#include "elastimate/io/dic/point_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "tests/throws.h"
+
+namespace elastimate {
+namespace {
+
+// Points of a grid of spacing (0.5, 0.25) but for those that a hole of radius 1
+// around (2, 2) takes.
+Eigen::Matrix2Xd GridWithHole() {
+  std::vector<Eigen::Vector2d> points;
+  for (int i = 0; i <= 8; ++i) {
+    for (int j = 0; j <= 16; ++j) {
+      const Eigen::Vector2d x(0.5 * i, 0.25 * j);
+      if ((x - Eigen::Vector2d(2, 2)).norm() > 1) {
+        points.push_back(x);
+      }
+    }
+  }
+  Eigen::Matrix2Xd all(2, Eigen::Index(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    all.col(Eigen::Index(i)) = points[i];
+  }
+  return all;
+}
+
+double AreaOf(const Eigen::Matrix2Xd& positions, const PointMesh& mesh) {
+  double area = 0;
+  for (const auto& element : mesh.elements.colwise()) {
+    const Eigen::Index n = element.size();
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Eigen::Vector2d a = positions.col(mesh.points[element(i)]);
+      const Eigen::Vector2d b =
+          positions.col(mesh.points[element((i + 1) % n)]);
+      area += (a(0) * b(1) - a(1) * b(0)) / 2;
+    }
+  }
+  return area;
+}
+
+TEST(PointMesh, OfAGridIsOfQuadrilateralsAndKeepsTheHole) {
+  const Eigen::Matrix2Xd positions = GridWithHole();
+  const PointMesh mesh = MeshOfPoints(positions, {});
+  EXPECT_EQ(mesh.kind, ElementKind::kQuad4);
+  // All cells, without those that have a corner in the hole.
+  int cells = 0;
+  for (int i = 0; i < 8; ++i) {
+    for (int j = 0; j < 16; ++j) {
+      bool is_whole = true;
+      for (int k = 0; k < 4; ++k) {
+        const Eigen::Vector2d x(0.5 * (i + k % 2), 0.25 * (j + k / 2));
+        is_whole = is_whole && (x - Eigen::Vector2d(2, 2)).norm() > 1;
+      }
+      cells += is_whole ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(mesh.elements.cols(), cells);
+  EXPECT_NEAR(AreaOf(positions, mesh), cells * 0.125, 1e-12);
+}
+
+TEST(PointMesh, OfScatteredPointsIsOfTrianglesWithoutGaps) {
+  Eigen::Matrix2Xd positions = GridWithHole();
+  std::mt19937_64 generator(1);
+  std::uniform_real_distribution<double> noise(-0.05, 0.05);
+  for (double& x : positions.reshaped()) {
+    x += noise(generator);
+  }
+  const PointMesh mesh = MeshOfPoints(positions, 0.9);
+  EXPECT_EQ(mesh.kind, ElementKind::kTri3);
+  EXPECT_EQ(Eigen::Index(mesh.points.size()), positions.cols());
+  // A square of 4 without a hole of pi, but for triangles along the rims.
+  EXPECT_NEAR(AreaOf(positions, mesh), 16 - M_PI, 1.2);
+  for (const auto& element : mesh.elements.colwise()) {
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_LE((positions.col(mesh.points[element(i)]) -
+                 positions.col(mesh.points[element((i + 1) % 3)]))
+                    .norm(),
+                0.9);
+    }
+  }
+}
+
+TEST(PointMesh, LeavesOutWhatDoesNotHangTogether) {
+  Eigen::Matrix2Xd positions(2, 9);
+  positions << 0, 1, 0, 1.1, 0, 1, 50, 51, 50,  //
+      0, 0, 1.1, 1, 2, 2.1, 50, 50.1, 51;
+  const PointMesh mesh = MeshOfPoints(positions, 2.0);
+  EXPECT_EQ(std::set<Eigen::Index>(mesh.points.begin(), mesh.points.end()),
+            (std::set<Eigen::Index>{0, 1, 2, 3, 4, 5}));
+}
+
+TEST(PointMesh, TellsPointsThatMakeNone) {
+  EXPECT_THROWS_WITH(MeshOfPoints(Eigen::Matrix2Xd::Zero(2, 2), {}),
+                     "fewer than three points");
+  EXPECT_THROWS_WITH(MeshOfPoints(Eigen::Matrix2Xd::Random(2, 30), 1e-6),
+                     "give a larger \"max_edge\"");
+  Eigen::Matrix2Xd line(2, 5);
+  line << 0, 1, 2, 3, 4, 0, 0, 0, 0, 0;
+  EXPECT_THROWS_WITH(MeshOfPoints(line, {}), "no triangle of points");
+}
+
+}  // namespace
+}  // namespace elastimate

@@ -1,0 +1,146 @@
+// Meshes of the points that a camera followed, in a scene.json.
+
+#include "elastimate/io/scene/measured_mesh.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <iomanip>
+#include <sstream>
+#include <string>
+
+#include "elastimate/estimators/registry.h"
+#include "elastimate/io/scene/scene_reader.h"
+#include "tests/io/scene_files.h"
+#include "tests/throws.h"
+
+namespace elastimate {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr double kStress = 3;
+constexpr double kModulus = 200;
+constexpr double kRatio = 0.25;
+
+// A strip of 6 x 2, of thickness 0.5, that grips pull and a camera sees.
+const std::string kStrip = R"({
+  "model": "plane_stress", "thickness": 0.5,
+  "mesh": {"points": "frame.csv"},
+  "supports": [ {"nodes": {"box": [[0, 0], [0, 2]]}, "displacement": "measured"},
+                {"nodes": {"box": [[6, 0], [6, 2]]}, "displacement": "measured"} ],
+  "cases": [ {"loads": [ {"type": "resultant", "value": [3, null],
+                          "surface": {"box": [[6, 0], [6, 2]]},
+                          "relative_sd": 0.01} ]} ]
+})";
+
+class MeasuredMeshTest : public ::testing::Test {
+ protected:
+  MeasuredMeshTest() { folder_.Write("frame.csv", Frame()); }
+
+  // Uniaxial stress, with a rigid motion of the strip.
+  static std::string Frame() {
+    std::ostringstream text;
+    text << std::setprecision(17) << "x [mm],y [mm],ux [mm],uy [mm]\n";
+    for (int i = 0; i <= 12; ++i) {
+      for (int j = 0; j <= 4; ++j) {
+        const double x = 0.5 * i;
+        const double y = 0.5 * j;
+        text << x << "," << y << "," << kStress / kModulus * x - 0.01 * y + 0.2
+             << "," << -kRatio * kStress / kModulus * y + 0.01 * x << "\n";
+      }
+    }
+    return text.str();
+  }
+
+  SceneReading Read(const std::string& document) const {
+    return ReadScene({folder_.Write("scene.json", document)},
+                     Measurement::kRequired);
+  }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(MeasuredMeshTest, WithGripsAndALoadCellGivesTheTruth) {
+  const SceneReading reading = Read(kStrip);
+  EXPECT_EQ(reading.scene.mesh.kind, ElementKind::kQuad4);
+  EXPECT_EQ(reading.scene.mesh.NumElements(), 48);
+  EXPECT_THAT(reading.notices,
+              ElementsAre(HasSubstr("48 quadrilaterals of 65 points (csv), "
+                                    "6 x 2; where a specimen is wider")));
+  for (const std::string estimator : {"iterative-fe", "auto"}) {
+    const Estimate estimate = MakeEstimator(estimator)->Run(reading.scene, {});
+    ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+    EXPECT_NEAR(estimate.elasticity.youngs_modulus, kModulus, 1e-8 * kModulus);
+    EXPECT_NEAR(estimate.elasticity.poisson_ratio, kRatio, 1e-8);
+    // The load cell scales E.
+    EXPECT_NEAR(*estimate.YoungsModulusStandardError(), 0.01 * kModulus,
+                1e-4 * kModulus);
+  }
+}
+
+TEST_F(MeasuredMeshTest, WithTractionAndAFreeCameraGivesTheTruth) {
+  const std::string document = R"({
+    "model": "plane_stress", "thickness": 0.5,
+    "mesh": {"points": "frame.csv"},
+    "rigid_motion": "free",
+    "supports": [ {"nodes": {"box": [[0, 0], [0, 2]]}, "components": "x"},
+                  {"nodes": {"box": [[0, 0], [0, 0]]}, "components": "y"} ],
+    "cases": [ {"loads": [ {"type": "force", "value": [3, 0],
+                            "surface": {"box": [[6, 0], [6, 2]]}} ]} ]
+  })";
+  const Estimate estimate =
+      MakeEstimator("iterative-fe")->Run(Read(document).scene, {});
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  EXPECT_NEAR(estimate.elasticity.youngs_modulus, kModulus, 1e-8 * kModulus);
+  EXPECT_NEAR(estimate.elasticity.poisson_ratio, kRatio, 1e-8);
+}
+
+TEST_F(MeasuredMeshTest, OtherEstimatorsSayWhichOneToUse) {
+  const Scene scene = Read(kStrip).scene;
+  for (const std::string estimator :
+       {"closed-form", "bounded", "virtual-fields", "reduced-fe"}) {
+    EXPECT_THROWS_WITH(MakeEstimator(estimator)->Run(scene, {}),
+                       "use iterative-fe");
+  }
+}
+
+TEST_F(MeasuredMeshTest, TellsWhatIsWrong) {
+  const auto expect = [&](const std::string& from, const std::string& to,
+                          const std::string& message) {
+    EXPECT_THROWS_WITH(Read(Replaced(kStrip, from, to)), message);
+  };
+  expect("frame.csv", "none.csv", "none.csv");
+  expect(R"("points": "frame.csv")", R"("points": "")", "is empty");
+  expect(R"("points": "frame.csv")", R"("points": "frame.csv", "format": "x")",
+         "the formats known here are auto, matchid");
+  expect(R"("points": "frame.csv")",
+         R"("points": "frame.csv", "length_per_pixel": 0)", "must be positive");
+  expect(R"("points": "frame.csv")", R"("points": "frame.csv", "flip_y": 1)",
+         "must be true or false");
+  expect(R"("points": "frame.csv")", R"("points": "frame.csv", "size": 1)",
+         "size");
+  expect(R"("displacement": "measured"})", R"("displacement": "free"})",
+         R"(make it "measured", "rigid" or a vector)");
+  expect(R"([[6, 0], [6, 2]]}, "displacement")",
+         R"([[0, 0], [6, 2]]}, "displacement")", "select each only once");
+  expect(R"("relative_sd": 0.01)", R"("nothing": 0.01)", "nothing");
+  expect(R"(,
+                          "relative_sd": 0.01)",
+         "", "exactly one of the keys sd, relative_sd");
+  expect(R"("relative_sd": 0.01)", R"("relative_sd": 0)", "must be positive");
+  expect("[3, null]", "[null, null]", "has no number");
+  expect("[3, null]", "[0, null]", "relative to a force of zero");
+  expect("[3, null]", "[3]", "must be a list of 2 numbers");
+  expect(R"([[6, 0], [6, 2]]},
+                          "rel)",
+         R"([[3, 0], [3, 2]]},
+                          "rel)",
+         "of a surface that no support holds there");
+  expect(R"("cases")", R"("rigid_motion": "fixed", "cases")",
+         R"(make it "free")");
+}
+
+}  // namespace
+}  // namespace elastimate
