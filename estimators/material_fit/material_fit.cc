@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/mechanics/strain_energy.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
@@ -20,6 +21,7 @@
 #include "elastimate/estimators/statistics/bounded_variables.h"
 #include "elastimate/estimators/statistics/correlated_noise.h"
 #include "elastimate/estimators/statistics/residual_statistics.h"
+#include "elastimate/estimators/statistics/unknown_elements.h"
 
 namespace elastimate {
 namespace {
@@ -198,19 +200,41 @@ Eigen::MatrixXd AddedByCorrelation(const Scene& scene,
                                    const Eigen::VectorXd& residual,
                                    const Eigen::MatrixXd& sensitivities,
                                    const Eigen::MatrixXd& inverse,
-                                   double variance, DisplacementMisfit& misfit,
-                                   Evidence& evidence, Estimate& estimate) {
-  const ObservedDisplacements& observed = misfit.Observed();
+                                   double variance, double smooth_part,
+                                   const ObservedDisplacements& observed,
+                                   Evidence& evidence) {
   const Autocorrelation correlation =
       CorrelateResiduals(scene, observed, residual);
   const double smooth =
-      ShareOfModel(scene.mesh, correlation.Length()) *
-      MeasureSmoothPart(misfit.Model().Graph(), observed, residual, estimate)
-          .least;
+      ShareOfModel(scene.mesh, correlation.Length()) * smooth_part;
   evidence.smooth_part = std::sqrt(smooth) / observed.Measured().norm();
   return PositivePart(CovarianceOfCorrelation(scene, observed, sensitivities,
                                               inverse, correlation)) +
          smooth / variance * inverse;
+}
+
+// The covariance that comes from what the elements miss of a specimen: of
+// displacements, not of resultants.
+Eigen::MatrixXd AddedByElements(const Scene& scene,
+                                const Eigen::MatrixXd& sensitivities,
+                                const Eigen::MatrixXd& inverse,
+                                double smooth_part, DisplacementMisfit& misfit,
+                                Estimate& estimate) {
+  const IsotropicElasticity elasticity = {estimate.parameters[0].value,
+                                          estimate.parameters[1].value};
+  const double missed = kUnknownErrorShare *
+                        misfit.Observed().Measured().norm() *
+                        DiscretizationError(scene.mesh, elasticity,
+                                            misfit.Model().Displacement());
+  const Eigen::MatrixXd covariance =
+      std::min(missed * missed, kMostInSpan * smooth_part) * inverse *
+      (sensitivities.transpose() * sensitivities) * inverse;
+  const ParameterErrors errors = ErrorsOfVariables(misfit.Free(), covariance);
+  estimate.discretization_error = errors(0);
+  if (!std::isnan(errors(1))) {
+    estimate.poisson_ratio_discretization_error = errors(1);
+  }
+  return covariance;
 }
 
 // Enters noise, model error, outliers and covariance of a minimum.
@@ -243,9 +267,11 @@ void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
   const Eigen::MatrixXd of_rows = sensitivities.topRows(observed.Size());
   const Eigen::MatrixXd inverse =
       Inverse(sensitivities.transpose() * sensitivities);
+  const SmoothSquareSum smooth =
+      MeasureSmoothPart(misfit.Model().Graph(), observed, residual, estimate);
   const Eigen::MatrixXd by_correlation =
       AddedByCorrelation(scene, residual, of_rows, inverse, variance.variance,
-                         misfit, evidence, estimate);
+                         smooth.least, observed, evidence);
   Eigen::MatrixXd covariance = variance.variance * (inverse + by_correlation);
   estimate.error_budget.noise =
       ErrorsOfVariables(free, variance.variance * inverse);
@@ -259,6 +285,10 @@ void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
   covariance += change * change.transpose();
   estimate.error_budget.outliers =
       ErrorsOfVariables(free, change.cwiseAbs2().asDiagonal());
+  if (IsOneIsotropicMaterial(scene.materials)) {
+    covariance +=
+        AddedByElements(scene, of_rows, inverse, smooth.most, misfit, estimate);
+  }
   if (!by_correlation.isZero(0)) {
     evidence.smooth_residual_error =
         std::sqrt(covariance.diagonal().maxCoeff());

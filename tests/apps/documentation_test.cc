@@ -139,12 +139,16 @@ class Documentation : public testing::ProgramTest {
 
 TEST_F(Documentation, HasTheOutputOfTheProgram) {
   const std::string prompt = "$ elastimate ";
-  int num_samples = 0;
-  for (const std::string& block : Blocks("README.md", "")) {
-    if (block.rfind(prompt, 0) != 0) {
-      continue;
+  std::vector<std::string> samples;
+  for (const std::string document : {"README.md", "docs/measurements.md"}) {
+    for (const std::string& block : Blocks(document, "")) {
+      if (block.rfind(prompt, 0) == 0) {
+        samples.push_back(block);
+      }
     }
-    ++num_samples;
+  }
+  EXPECT_GE(samples.size(), 2U);
+  for (const std::string& block : samples) {
     const std::vector<std::string> expected = Lines(block);
     const std::vector<std::string> actual =
         Lines(Succeed(expected[0].substr(prompt.size())).output);
@@ -158,7 +162,14 @@ TEST_F(Documentation, HasTheOutputOfTheProgram) {
       }
     }
   }
-  EXPECT_GT(num_samples, 0);
+}
+
+TEST_F(Documentation, HasTheSceneOfTheSteelPlate) {
+  const std::vector<std::string> scenes =
+      Blocks("docs/measurements.md", "json");
+  ASSERT_EQ(scenes.size(), 1U);
+  EXPECT_EQ(scenes[0],
+            testing::ReadText(Source("examples/steel_plate/plate.json")));
 }
 
 TEST_F(Documentation, HasTheReportOfTheProgram) {
@@ -236,7 +247,8 @@ TEST_F(Documentation, SaysWhatEachEstimatorTakes) {
           std::pair(takes.takes_bounds, " taken |"),
           std::pair(takes.takes_losses, " taken |"),
           std::pair(takes.takes_degree, " taken |"),
-          std::pair(takes.takes_materials, " taken |")}) {
+          std::pair(takes.takes_materials, " taken |"),
+          std::pair(takes.takes_unknown_motion, " taken |")}) {
       row += is_set ? word : " |";
     }
     EXPECT_NE(text.find(row + "\n"), std::string::npos) << row;

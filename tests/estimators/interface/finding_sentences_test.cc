@@ -128,6 +128,11 @@ std::vector<Finding> OfResiduals() {
           ModelDoesNotFitAtLimit(),
           ModelMismatchFinding({kLong, kLong, true}),
           Outliers({kLong, kLong}),
+          OutliersLeftOut({{0, 1000000, false},
+                           {0, 1000001, false},
+                           {0, 1000002, true},
+                           {1, 1000003, true}},
+                          {kLong, kLong}),
           HeldNodesMoved({1000}),
           HeldNodesMoved({1000, 1001, 1002})};
 }
