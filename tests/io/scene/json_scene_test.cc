@@ -278,6 +278,7 @@ TEST_F(JsonSceneTest, PutsATotalForceOnNodesThatAreKept) {
 }
 
 TEST_F(JsonSceneTest, ErrsOnAForceThatIsNone) {
+  UseGmshMesh(GmshVersion2Mesh());
   const auto expect = [&](const std::string& load, const std::string& pattern) {
     EXPECT_THROWS_WITH(ReadLoad(load),
                        "scene.json: cases\\[0\\].loads\\[0\\]" + pattern);
@@ -365,6 +366,7 @@ TEST_F(JsonSceneTest, ReadsWhatWasObserved) {
   EXPECT_TRUE((observed(R"({"ids": [2, 3]})") == expected).all());
   folder_.Write("u.csv", Replaced(kField, "0,0,0", "nan,0,inf"));
   EXPECT_TRUE((observed(R"("free")") == expected).all());
+  UseGmshMesh(GmshVersion2Mesh());
   EXPECT_THROWS_WITH(observed(R"("all")"),
                      "u.csv: the row of node 0 .* \\(x\\) is nan; correct it "
                      "or leave it out of the observed nodes");
