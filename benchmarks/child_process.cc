@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kOutOfMemory = 3;
 constexpr int kFailed = 4;
-constexpr std::chrono::milliseconds kInterval{5};
+constexpr std::chrono::milliseconds kPollInterval{5};
 
 [[noreturn]] void RunChild(int pipe, int processor_seconds,
                            const std::function<std::string()>& work) {
@@ -83,7 +83,7 @@ ProcessReport RunInChildProcess(const ProcessLimits& limits,
       is_too_large = true;
       kill(child, SIGKILL);
     }
-    std::this_thread::sleep_for(kInterval);
+    std::this_thread::sleep_for(kPollInterval);
   }
   ProcessReport report = {ProcessOutcome::kFinished, ReadAll(pipe_ends[0]),
                           std::int64_t{usage.ru_maxrss} * 1024};

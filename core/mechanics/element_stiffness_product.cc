@@ -42,8 +42,8 @@ struct ElementProducts {
 
 // One column, whose points need not be kept.
 template <ElementKind kKind>
-void AddColumn(const Mesh& mesh, const double* displacement, double* a,
-               double* p) {
+void AddColumnOfKind(const Mesh& mesh, const double* displacement, double* a,
+                     double* p) {
   const auto& rule = StiffnessRule<kKind>();
   for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
     const NodeVectors<kKind> u = GatherNodes<kKind>(mesh, e, displacement);
@@ -58,8 +58,8 @@ void AddColumn(const Mesh& mesh, const double* displacement, double* a,
 }
 
 template <ElementKind kKind>
-void AddColumns(const Mesh& mesh, const Eigen::MatrixXd& displacement,
-                Eigen::MatrixXd& a, Eigen::MatrixXd& p) {
+void AddColumnsOfKind(const Mesh& mesh, const Eigen::MatrixXd& displacement,
+                      Eigen::MatrixXd& a, Eigen::MatrixXd& p) {
   const auto& rule = StiffnessRule<kKind>();
   std::vector<ElementPoint<kKind>> points;
   points.reserve(rule.size());
@@ -88,9 +88,9 @@ void AddStrainProducts(const Mesh& mesh, const Eigen::MatrixXd& displacement,
                        Eigen::MatrixXd& a, Eigen::MatrixXd& p) {
   VisitElementKind(mesh.kind, [&](auto kind) {
     if (displacement.cols() == 1) {
-      AddColumn<kind>(mesh, displacement.data(), a.data(), p.data());
+      AddColumnOfKind<kind>(mesh, displacement.data(), a.data(), p.data());
     } else {
-      AddColumns<kind>(mesh, displacement, a, p);
+      AddColumnsOfKind<kind>(mesh, displacement, a, p);
     }
   });
 }

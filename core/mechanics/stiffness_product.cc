@@ -13,8 +13,8 @@ namespace elastimate {
 namespace {
 
 // All kinds but linear tetrahedra.
-void MultiplyElements(const Mesh& mesh, const Eigen::MatrixXd& displacement,
-                      StiffnessProducts& products) {
+void MultiplyOtherKinds(const Mesh& mesh, const Eigen::MatrixXd& displacement,
+                        StiffnessProducts& products) {
   products.h.setZero(displacement.rows(), displacement.cols());
   products.j.setZero(displacement.rows(), displacement.cols());
   if (mesh.kind == ElementKind::kTet10) {
@@ -35,7 +35,7 @@ StiffnessProducts MultiplyStiffnessBasis(const Mesh& mesh,
     MultiplyLinearTetrahedra(mesh, ChooseElementBlocks(mesh), {}, displacement,
                              1, products);
   } else {
-    MultiplyElements(mesh, displacement, products);
+    MultiplyOtherKinds(mesh, displacement, products);
   }
   return products;
 }
@@ -61,7 +61,7 @@ void StiffnessOperator::Multiply(const Eigen::MatrixXd& displacement,
     MultiplyLinearTetrahedra(IsReordered() ? reordered_ : mesh_, blocks_,
                              places_, displacement, num_threads_, products);
   } else {
-    MultiplyElements(mesh_, displacement, products);
+    MultiplyOtherKinds(mesh_, displacement, products);
   }
 }
 

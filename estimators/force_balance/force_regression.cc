@@ -21,7 +21,7 @@ namespace elastimate {
 namespace {
 
 // Of columns scaled to norm 1: what is smaller is rounding.
-constexpr double kDependent = 1e-11;
+constexpr double kDependentColumns = 1e-11;
 
 // [F f] of all load cases, compressed, and how noise enters it.
 class Regression {
@@ -65,7 +65,7 @@ class Regression {
     const Eigen::MatrixXd scaled =
         columns_ * scales.cwiseInverse().asDiagonal();
     const SingularValueDecomposition svd = DecomposeSingularValues(scaled);
-    if (!(svd.values(svd.values.size() - 1) > kDependent)) {
+    if (!(svd.values(svd.values.size() - 1) > kDependentColumns)) {
       return std::nullopt;
     }
     return Eigen::VectorXd(

@@ -16,7 +16,7 @@ namespace {
 
 // Relative to the largest, what is smaller is rounding: a motion without
 // strain, the work of loads that do none.  What is not rounding is far larger.
-constexpr double kRounding = 1e-10;
+constexpr double kRoundingOfWork = 1e-10;
 
 // The sine of the angle between two vectors of virtual work below which
 // rounding, not the data, decides.
@@ -154,7 +154,7 @@ VirtualWork::VirtualWork(const Mesh& mesh, const Supports& supports, int degree)
   const SingularValueDecomposition svd =
       DecomposeSingularValues(triangle.topLeftCorner(columns, columns));
   const Eigen::Index rank =
-      (svd.values.array() > kRounding * svd.values(0)).count();
+      (svd.values.array() > kRoundingOfWork * svd.values(0)).count();
   fields_ = svd.v.leftCols(rank);
   free_motions_ = svd.v.rightCols(columns - rank);
   h_ = triangle.leftCols(columns) * fields_;
@@ -235,7 +235,7 @@ VirtualWorkBalance::VirtualWorkBalance(const VirtualWork& work,
   internal_j_ = work.Of(products.j);
   external_ = work.Of(f);
   displacement_norm_ = dofs.Restrict(q).norm();
-  loads_do_work_ = external_.norm() > kRounding * dofs.Restrict(f).norm();
+  loads_do_work_ = external_.norm() > kRoundingOfWork * dofs.Restrict(f).norm();
 }
 
 std::optional<FreeDirection> VirtualWorkBalance::CollinearDirection() const {

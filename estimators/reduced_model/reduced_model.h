@@ -19,7 +19,7 @@ namespace elastimate {
 ///   x = basis * vectors * y,   y_i = (g0_i + nu g1_i) / (1 + (nu - pole)
 ///   theta_i).
 struct ReducedModes {
-  double pole;
+  double pole = 0;
   Eigen::MatrixXd vectors;  ///< m x m.
   Eigen::VectorXd theta;    ///< m values, and so on.
   Eigen::VectorXd g0;

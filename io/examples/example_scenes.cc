@@ -27,17 +27,17 @@ constexpr double kLargest = 1e50;
 constexpr double kMaxCellAspect = 1e5;
 
 template <typename Value>
-std::string Text(const Value& value) {
+std::string TextOf(const Value& value) {
   std::ostringstream text;
   text << value;
   return text.str();
 }
 
 template <typename Values>
-std::string ListText(const Values& values) {
+std::string CommaSeparated(const Values& values) {
   std::string text;
   for (const auto& value : values) {
-    text += (text.empty() ? "" : ",") + Text(value);
+    text += (text.empty() ? "" : ",") + TextOf(value);
   }
   return text;
 }
@@ -50,7 +50,7 @@ void Require(bool condition, const std::string& option,
 }
 
 std::string Range() {
-  return "from " + Text(kSmallest) + " to " + Text(kLargest);
+  return "from " + TextOf(kSmallest) + " to " + TextOf(kLargest);
 }
 
 bool IsInRange(double value) { return value >= kSmallest && value <= kLargest; }
@@ -58,27 +58,27 @@ bool IsInRange(double value) { return value >= kSmallest && value <= kLargest; }
 void CheckForce(const Eigen::VectorXd& force) {
   Require(force.allFinite() &&
               (force.isZero(0) || IsInRange(force.cwiseAbs().maxCoeff())),
-          "force", ListText(force),
+          "force", CommaSeparated(force),
           "the largest must be " + Range() + ", or all zero");
 }
 
 /// Of a grid of cells, each cut into no more than five elements.
 void CheckGrid(const Eigen::VectorXi& cells, const Eigen::VectorXd& size) {
-  Require(cells.minCoeff() >= 1, "cells", ListText(cells),
+  Require(cells.minCoeff() >= 1, "cells", CommaSeparated(cells),
           "each must be at least 1");
   Require(
       kTetrahedraPerCell * cells.cast<double>().prod() <= kMaxCuboidTetrahedra,
-      "cells", ListText(cells),
+      "cells", CommaSeparated(cells),
       "the product must be at most " +
           std::to_string(kMaxCuboidTetrahedra / kTetrahedraPerCell));
   Require(std::all_of(size.begin(), size.end(), IsInRange), "size",
-          ListText(size), "each must be " + Range());
+          CommaSeparated(size), "each must be " + Range());
   const Eigen::ArrayXd edges = size.array() / cells.cast<double>().array();
   Require(edges.maxCoeff() <= kMaxCellAspect * edges.minCoeff(), "size",
-          ListText(size),
-          "a cell of " + ListText(edges) +
+          CommaSeparated(size),
+          "a cell of " + CommaSeparated(edges) +
               " is too flat; its longest edge must be at most " +
-              Text(kMaxCellAspect) + " times its shortest");
+              TextOf(kMaxCellAspect) + " times its shortest");
 }
 
 void CheckOptions(const CuboidOptions& options) {
@@ -99,7 +99,7 @@ void CheckOptions(const RectangleOptions& options) {
           std::string(SectionModelName(options.section.model)),
           "a rectangle is in plane_stress or plane_strain");
   Require(IsInRange(options.section.thickness), "thickness",
-          Text(options.section.thickness), "it must be " + Range());
+          TextOf(options.section.thickness), "it must be " + Range());
   CheckGrid(options.cells, options.size);
   CheckForce(options.force);
 }
@@ -107,10 +107,10 @@ void CheckOptions(const RectangleOptions& options) {
 void CheckOptions(const OrganOptions& options) {
   Require(options.tetrahedra >= kMinOrganTetrahedra &&
               options.tetrahedra <= kMaxOrganTetrahedra,
-          "tetrahedra", Text(options.tetrahedra),
+          "tetrahedra", TextOf(options.tetrahedra),
           "it must be from " + std::to_string(kMinOrganTetrahedra) + " to " +
               std::to_string(kMaxOrganTetrahedra));
-  Require(IsInRange(options.length), "length", Text(options.length),
+  Require(IsInRange(options.length), "length", TextOf(options.length),
           "it must be " + Range());
   CheckForce(options.force);
 }

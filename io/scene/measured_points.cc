@@ -44,7 +44,7 @@ double ToleranceOf(const JsonValue& displacement, const Mesh& mesh) {
   return tolerance;
 }
 
-std::string Text(const Eigen::VectorXd& position) {
+std::string PositionText(const Eigen::VectorXd& position) {
   std::ostringstream text;
   for (Eigen::Index i = 0; i < position.size(); ++i) {
     text << (i == 0 ? "(" : ", ") << position[i];
@@ -53,7 +53,7 @@ std::string Text(const Eigen::VectorXd& position) {
   return text.str();
 }
 
-std::string Text(double length) {
+std::string LengthText(double length) {
   std::ostringstream text;
   text.precision(3);
   text << length;
@@ -67,11 +67,11 @@ void CheckDistances(const std::filesystem::path& path, const PointsFile& file,
     if (distance(point) > tolerance) {
       ThrowInputError(
           path, "line " + std::to_string(file.lines[point]) + ": the point " +
-                    Text(file.positions.col(point)) + " lies " +
-                    Text(distance(point)) +
+                    PositionText(file.positions.col(point)) + " lies " +
+                    LengthText(distance(point)) +
                     " outside the mesh; use the mesh's units and axes, leave "
                     "it out, or give a \"tolerance\" above " +
-                    Text(tolerance));
+                    LengthText(tolerance));
     }
   }
   const Eigen::Index num_outside = (distance.array() > 0).count();
@@ -79,7 +79,7 @@ void CheckDistances(const std::filesystem::path& path, const PointsFile& file,
     notices.push_back(PrintablePath(path) + ": " + std::to_string(num_outside) +
                       " of " + std::to_string(distance.size()) +
                       " points lie outside the mesh, up to " +
-                      Text(distance.maxCoeff()) +
+                      LengthText(distance.maxCoeff()) +
                       "; they count as the nearest points of its surface");
   }
 }

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "elastimate/core/materials/laws.h"
 #include "tests/core/random_values.h"
@@ -155,12 +157,16 @@ TEST_P(LawConformance, TypicalValuesAreInTheRange) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Laws, LawConformance, ::testing::ValuesIn(AllLawsInSections()),
-    [](const auto& info) {
-      const std::string section(SectionModelName(info.param.model));
-      return std::string(info.param.law->Name()) + "_" + section;
-    });
+INSTANTIATE_TEST_SUITE_P(Laws, LawConformance,
+                         ::testing::ValuesIn(AllLawsInSections()),
+                         [](const auto& info) {
+                           std::string name(info.param.law->Name());
+                           name +=
+                               "_" +
+                               std::string(SectionModelName(info.param.model));
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
 
 TEST(Laws, AreFoundByTheirNames) {
   for (const Law* const law : Laws()) {

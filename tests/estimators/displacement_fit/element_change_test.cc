@@ -13,7 +13,7 @@ namespace {
 
 constexpr testing::KindOfSection kTetrahedra = {ElementKind::kTet4,
                                                 SectionModel::kSolid};
-constexpr double kYoungsModulus = 5e4;
+constexpr double kModulusOfTetrahedra = 5e4;
 
 // With supports that move.
 Scene MovedScene(const testing::KindOfSection& kind) {
@@ -33,7 +33,7 @@ struct Changing {
 
   std::optional<Eigen::VectorXd> At(double poisson_ratio) {
     EXPECT_TRUE(model.SetPoissonRatio(poisson_ratio));
-    return change.Rows(observed, {kYoungsModulus, poisson_ratio},
+    return change.Rows(observed, {kModulusOfTetrahedra, poisson_ratio},
                        model.Responses(), [this](double nu) {
                          EXPECT_EQ(nu, model.PoissonRatio());
                          ++num_solvers;
@@ -57,9 +57,10 @@ TEST(ElementChange, IsThatOfQuadraticElementsBothWays) {
   ASSERT_TRUE(up && down);
   // Observed are the vertices, in the same unit.
   const Eigen::VectorXd expected =
-      linear.observed.Restrict(quadratic.model.Displacement(kYoungsModulus)
-                                   .topRows(scene.mesh.NumDofs())) -
-      linear.observed.Restrict(linear.model.Displacement(kYoungsModulus));
+      linear.observed.Restrict(
+          quadratic.model.Displacement(kModulusOfTetrahedra)
+              .topRows(scene.mesh.NumDofs())) -
+      linear.observed.Restrict(linear.model.Displacement(kModulusOfTetrahedra));
   EXPECT_LT((*up - expected).norm(), 0.05 * expected.norm());
   EXPECT_LT((*down - expected).norm(), 1e-9 * expected.norm());
   EXPECT_EQ(linear.num_solvers, 1);
@@ -77,9 +78,9 @@ TEST(ElementChange, KnowsMidEdgeNodesToo) {
   const auto down = quadratic.At(0.3);
   ASSERT_TRUE(down && linear.At(0.3));
   const Eigen::VectorXd expected = quadratic.observed.Restrict(
-      quadratic.model.Displacement(kYoungsModulus) -
+      quadratic.model.Displacement(kModulusOfTetrahedra) -
       MidEdges(quadratic_scene.mesh)
-          .Interpolate(linear.model.Displacement(kYoungsModulus)));
+          .Interpolate(linear.model.Displacement(kModulusOfTetrahedra)));
   EXPECT_LT((*down - expected).norm(), 1e-9 * expected.norm());
 }
 

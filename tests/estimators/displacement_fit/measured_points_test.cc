@@ -23,7 +23,7 @@ constexpr double kModulusOfPoints = 5000;
 constexpr double kRatioOfPoints = 0.3;
 constexpr Eigen::Index kCount = 60;
 
-Scene MeasuredScene(const KindOfSection& parameter) {
+Scene SceneMeasuredAtPoints(const KindOfSection& parameter) {
   Scene scene = testing::SceneOfKind(parameter);
   testing::MeasureByTextbook({kModulusOfPoints, kRatioOfPoints}, scene);
   MeasureAtPoints(kCount, 1, scene);
@@ -32,7 +32,7 @@ Scene MeasuredScene(const KindOfSection& parameter) {
 
 class PointsOfEachKind : public ::testing::TestWithParam<KindOfSection> {
  protected:
-  const Scene scene_ = MeasuredScene(GetParam());
+  const Scene scene_ = SceneMeasuredAtPoints(GetParam());
 };
 
 // Of displaced supports, too, which points near them are part of.
