@@ -15,18 +15,28 @@ function(elastimate_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_17)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Werror)
+  elastimate_unite_folders(${target})
   get_target_property(type ${target} TYPE)
   if(NOT type STREQUAL SHARED_LIBRARY)
     set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   endif()
 endfunction()
 
-# Of Eigen, and further ones: they take longer to read than most sources to compile.  To precompile them takes as long as
-# to read them four times, more often than the few units of a unity build do.
+# Of Eigen, and further ones: they take longer to read than most sources to compile.
 function(elastimate_precompile_headers target)
-  if(NOT CMAKE_UNITY_BUILD)
-    target_precompile_headers(${target} PRIVATE <Eigen/Core> <Eigen/Geometry> <Eigen/SparseCore> ${ARGN})
-  endif()
+  target_precompile_headers(${target} PRIVATE <Eigen/Core> <Eigen/Geometry> <Eigen/SparseCore> ${ARGN})
+endfunction()
+
+# With CMAKE_UNITY_BUILD, the sources of a folder are compiled as one: the instances of Eigen's templates that each of
+# them would have are made once.
+function(elastimate_unite_folders target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source ${sources})
+    cmake_path(GET source PARENT_PATH folder)
+    string(MAKE_C_IDENTIFIER "sources_${folder}" group)
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
+  endforeach()
 endfunction()
 
 # elastimate_add_library(<component> SOURCES ... PUBLIC_HEADERS ... PUBLIC <libraries> PRIVATE <libraries>)

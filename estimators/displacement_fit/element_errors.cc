@@ -7,7 +7,6 @@
 #include "elastimate/core/mechanics/strain_energy.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/statistics/residual_statistics.h"
-#include "elastimate/estimators/statistics/unknown_elements.h"
 
 namespace elastimate {
 namespace {
@@ -15,17 +14,19 @@ namespace {
 // What the elements miss, as a share of a change of the displacements that is
 // known, in the direction of a parameter: of linear elements beside the change
 // to quadratic ones, and by how much of itself that change of the parameters is
-// off; and of quadratic ones, of the change from linear ones [benchmarks:
-// unseen].
+// off; of quadratic ones, of the change from linear ones; and where neither is
+// known, of the share of the energy that is missed [benchmarks: unseen].
 constexpr double kLinearErrorShare = 0.1;
 constexpr double kUnequalShare = 0.33;
 constexpr double kQuadraticErrorShare = 0.025;
 constexpr double kQuadraticUnequalShare = 0.08;
+constexpr double kUnknownErrorShare = 0.3;
 // How much more of an error than of the residual that it leaves the parameters
-// may take up, squared: of quadratic elements, and of their change of the
-// parameters.
+// may take up, squared: of quadratic elements, of their change of the
+// parameters, and of other elements.
 constexpr double kInSpan = 4;
 constexpr double kMostVisible = 9;
+constexpr double kMostInSpan = 100;
 // The same of another model error, which moves all displacements rather than
 // bends them [benchmarks: stability, inclusions].
 constexpr double kModelErrorInSpan = 16;

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "elastimate/core/algebra/dense_algebra.h"
-#include "elastimate/core/mechanics/strain_energy.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
@@ -21,7 +20,6 @@
 #include "elastimate/estimators/statistics/bounded_variables.h"
 #include "elastimate/estimators/statistics/correlated_noise.h"
 #include "elastimate/estimators/statistics/residual_statistics.h"
-#include "elastimate/estimators/statistics/unknown_elements.h"
 
 namespace elastimate {
 namespace {
@@ -213,30 +211,6 @@ Eigen::MatrixXd AddedByCorrelation(const Scene& scene,
          smooth / variance * inverse;
 }
 
-// The covariance that comes from what the elements miss of a specimen: of
-// displacements, not of resultants.
-Eigen::MatrixXd AddedByElements(const Scene& scene,
-                                const Eigen::MatrixXd& sensitivities,
-                                const Eigen::MatrixXd& inverse,
-                                double smooth_part, DisplacementMisfit& misfit,
-                                Estimate& estimate) {
-  const IsotropicElasticity elasticity = {estimate.parameters[0].value,
-                                          estimate.parameters[1].value};
-  const double missed = kUnknownErrorShare *
-                        misfit.Observed().Measured().norm() *
-                        DiscretizationError(scene.mesh, elasticity,
-                                            misfit.Model().Displacement());
-  const Eigen::MatrixXd covariance =
-      std::min(missed * missed, kMostInSpan * smooth_part) * inverse *
-      (sensitivities.transpose() * sensitivities) * inverse;
-  const ParameterErrors errors = ErrorsOfVariables(misfit.Free(), covariance);
-  estimate.discretization_error = errors(0);
-  if (!std::isnan(errors(1))) {
-    estimate.poisson_ratio_discretization_error = errors(1);
-  }
-  return covariance;
-}
-
 // Enters noise, model error, outliers and covariance of a minimum.
 void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
                      DisplacementMisfit& misfit, Evidence& evidence,
@@ -285,10 +259,6 @@ void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
   covariance += change * change.transpose();
   estimate.error_budget.outliers =
       ErrorsOfVariables(free, change.cwiseAbs2().asDiagonal());
-  if (IsOneIsotropicMaterial(scene.materials)) {
-    covariance +=
-        AddedByElements(scene, of_rows, inverse, smooth.most, misfit, estimate);
-  }
   if (!by_correlation.isZero(0)) {
     evidence.smooth_residual_error =
         std::sqrt(covariance.diagonal().maxCoeff());

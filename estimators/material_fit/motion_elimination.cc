@@ -20,8 +20,8 @@ constexpr Eigen::Index kMostEntries = 20'000'000;
 constexpr Eigen::Index kColumnsAtATime = 32;
 constexpr int kMostIterations = 2000;
 // Of a square sum, and of eigenvalues of A^T A, relative to the largest.
-constexpr double kRounding = 1e-14;
-constexpr double kDependent = 1e-13;
+constexpr double kRoundingOfRows = 1e-14;
+constexpr double kDependentAmounts = 1e-13;
 
 }  // namespace
 
@@ -236,7 +236,7 @@ void MotionElimination::SolveForColumns() {
     const SymmetricEigenDecomposition gram =
         DecomposeSymmetric(columns.of_amounts.transpose() * columns.of_amounts);
     // What rigid motions of supports and of all have in common is zero here.
-    const double least = kDependent * gram.values.maxCoeff();
+    const double least = kDependentAmounts * gram.values.maxCoeff();
     columns.inverse_gram = gram.vectors *
                            (gram.values.array() > least)
                                .select(gram.values.cwiseInverse().array(), 0.0)
@@ -267,7 +267,7 @@ Eigen::VectorXd MotionElimination::Minimize(double tolerance,
   if (amounts.size() == 0) {
     return amounts;
   }
-  const double nothing = kRounding * kRounding * rows.squaredNorm();
+  const double nothing = kRoundingOfRows * kRoundingOfRows * rows.squaredNorm();
   Eigen::VectorXd gradient = MultiplyTransposed(rows);
   Eigen::VectorXd preconditioned = Precondition(gradient);
   Eigen::VectorXd direction = preconditioned;

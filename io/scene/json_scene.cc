@@ -51,7 +51,7 @@ std::filesystem::path ResolvePath(const JsonValue& value) {
 
 MeshFile ReadNamedMesh(const JsonValue& name,
                        std::vector<std::string>& notices) {
-  if (!name.IsString()) {
+  if (name.IsObject()) {
     return ReadMeasuredMesh(name, notices);
   }
   const std::filesystem::path path = ResolvePath(name);
@@ -436,7 +436,7 @@ FileScene ReadJsonScene(const std::filesystem::path& path,
       !file_scene.scene.supports.held.colwise().all() && mesh.used,
       BoundaryFacets(file_scene.scene.mesh),
       file_scene.scene.supports,
-      !document.At("mesh").IsString(),
+      document.At("mesh").IsObject(),
       file_scene.scene.mesh,
       {},
       file_scene.notices};

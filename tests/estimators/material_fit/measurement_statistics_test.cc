@@ -13,7 +13,7 @@
 namespace elastimate {
 namespace {
 
-constexpr int kSeeds = 200;
+constexpr int kMeasurements = 200;
 const IsotropicElasticity kSteel = {2.1e5, 0.3};
 
 // A strip of 20 x 10 quadrilaterals that is pulled to one side.
@@ -91,7 +91,7 @@ Trials RunTrials(double relative_noise, int reach) {
   const Scene exact = Strip();
   const double noise_sd = relative_noise * ScaleOf(exact);
   Trials trials;
-  for (int seed = 0; seed < kSeeds; ++seed) {
+  for (int seed = 0; seed < kMeasurements; ++seed) {
     Scene scene = exact;
     scene.load_cases[0].displacement +=
         Noise(scene, noise_sd, reach, unsigned(seed));
@@ -104,10 +104,10 @@ Trials RunTrials(double relative_noise, int reach) {
         estimate.YoungsModulusStandardError().value_or(0),
         estimate.PoissonRatioStandardError().value_or(0));
     const Eigen::Array2d score = error.array() / standard_error.array();
-    trials.mean_square_score += score.square().matrix() / kSeeds;
+    trials.mean_square_score += score.square().matrix() / kMeasurements;
     trials.coverage +=
-        (score.abs() < 1.96).cast<double>().matrix() / double(kSeeds);
-    trials.mean_standard_error += standard_error / kSeeds;
+        (score.abs() < 1.96).cast<double>().matrix() / double(kMeasurements);
+    trials.mean_standard_error += standard_error / kMeasurements;
   }
   return trials;
 }
@@ -138,13 +138,14 @@ TEST(MeasuredSupportStatistics, IndependentNoiseKeepsItsErrors) {
   const Scene exact = Strip();
   const double noise_sd = 0.02 * ScaleOf(exact);
   double ratio = 0;
-  for (int seed = 0; seed < kSeeds; ++seed) {
+  for (int seed = 0; seed < kMeasurements; ++seed) {
     Scene scene = exact;
     scene.load_cases[0].displacement +=
         Noise(scene, noise_sd, 0, unsigned(seed));
     const Estimate estimate = MakeEstimator("iterative-fe")->Run(scene, {});
     ratio += *estimate.YoungsModulusStandardError() /
-             (kSteel.youngs_modulus * estimate.error_budget.noise(0)) / kSeeds;
+             (kSteel.youngs_modulus * estimate.error_budget.noise(0)) /
+             kMeasurements;
   }
   EXPECT_LE(ratio, 1.05);
 }

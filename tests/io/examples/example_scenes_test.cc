@@ -199,7 +199,7 @@ TEST(CuboidSceneTest, DefaultHasTheTetrahedraOfThePaper) {
   EXPECT_EQ(scene.mesh.NumNodes(), 6 * 6 * 3);
 }
 
-class CuboidSceneShapes : public testing::TestWithParam<std::array<int, 3>> {
+class CuboidSceneShapes : public ::testing::TestWithParam<std::array<int, 3>> {
  protected:
   CuboidSceneShapes() {
     options_.cells = Eigen::Vector3i::Map(GetParam().data());
@@ -259,10 +259,10 @@ TEST_P(CuboidSceneShapes, IsNumberedAlongXThenYThenZ) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cells, CuboidSceneShapes,
-                         testing::Values(std::array<int, 3>{1, 1, 1},
-                                         std::array<int, 3>{1, 2, 3},
-                                         std::array<int, 3>{4, 1, 5},
-                                         std::array<int, 3>{7, 6, 5}));
+                         ::testing::Values(std::array<int, 3>{1, 1, 1},
+                                           std::array<int, 3>{1, 2, 3},
+                                           std::array<int, 3>{4, 1, 5},
+                                           std::array<int, 3>{7, 6, 5}));
 
 TEST(CuboidSceneTest, NamesTheOptionOutOfRange) {
   const auto why = [](auto change) {
@@ -354,7 +354,7 @@ void IsHeldOverATenthOfItsSurface(const Scene& scene) {
   EXPECT_NEAR(held_area / areas.sum(), 0.12, 0.025);
 }
 
-class OrganSceneSizes : public testing::TestWithParam<int> {};
+class OrganSceneSizes : public ::testing::TestWithParam<int> {};
 
 // In one test, since a program that meshes runs for each.
 TEST_P(OrganSceneSizes, IsThatOfAnOrgan) {
@@ -386,8 +386,8 @@ TEST_P(OrganSceneSizes, IsThatOfAnOrgan) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Tetrahedra, OrganSceneSizes,
-                         testing::Values(200, 500, OrganOptions().tetrahedra,
-                                         5000, 50000));
+                         ::testing::Values(200, 500, OrganOptions().tetrahedra,
+                                           5000, 50000));
 
 TEST(OrganSceneTest, HasTheLengthAlongX) {
   OrganOptions options;
