@@ -44,7 +44,8 @@ Components ReadComponents(const JsonValue& support, int dimension) {
   return components;
 }
 
-SupportDisplacement ReadDisplacement(const JsonValue& support, int dimension) {
+SupportDisplacement ReadSupportDisplacement(const JsonValue& support,
+                                            int dimension) {
   SupportDisplacement displacement = {Eigen::VectorXd::Zero(dimension)};
   if (!support.Has("displacement")) {
     return displacement;
@@ -80,7 +81,8 @@ void AddSupport(const JsonValue& support, const MeshFile& mesh,
   const NodeMask nodes = SelectNodes(support.At("nodes"), mesh, nullptr);
   const int dimension = mesh.Dimension();
   const Components components = ReadComponents(support, dimension);
-  const SupportDisplacement displacement = ReadDisplacement(support, dimension);
+  const SupportDisplacement displacement =
+      ReadSupportDisplacement(support, dimension);
   RigidFace face = {{}, components};
   for (int node = 0; node < nodes.size(); ++node) {
     if (!nodes[node]) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastimate/core/scene/loads.h"
 #include "tests/regions.h"
 
 namespace elastimate {
@@ -54,6 +55,86 @@ TEST_P(EquilibriumOfKinds, HasItsSensitivities) {
       EXPECT_LT((slope.col(k) - sensitivities.col(4 * k + i)).norm(),
                 1e-6 * slope.norm());
     }
+  }
+}
+
+// Random values in the held rows, zero in the free.
+Eigen::MatrixXd RandomOfHeld(const Scene& scene, Eigen::Index columns) {
+  Eigen::MatrixXd values =
+      Eigen::MatrixXd::Random(scene.mesh.NumDofs(), columns);
+  for (Eigen::Index dof = 0; dof < values.rows(); ++dof) {
+    if (!scene.supports.held.reshaped()(dof)) {
+      values.row(dof).setZero();
+    }
+  }
+  return values;
+}
+
+TEST_P(EquilibriumOfKinds, ExtendsMotionsOfItsSupports) {
+  scene_.supports.unknown = scene_.supports.held;
+  Equilibrium equilibrium(scene_, SolverKind::kCholesky);
+  ASSERT_TRUE(
+      equilibrium.Solve(equilibrium.Forces().Parameters().Moduli(parameters_)));
+  const Eigen::MatrixXd held = RandomOfHeld(scene_, 2);
+  Scene moved = scene_;
+  for (LoadCase& load_case : moved.load_cases) {
+    load_case.loads.clear();
+  }
+  moved.supports.displacement =
+      held.col(0).reshaped(moved.mesh.Dimension(), moved.mesh.NumNodes());
+  const Eigen::VectorXd expected =
+      testing::SolveByTextbook(moved, {{2, 0.1}, {5, 0.4}}).col(0);
+  const Eigen::MatrixXd extended = equilibrium.Extend(held);
+  EXPECT_LT((extended.col(0) - expected).norm(), 1e-10 * expected.norm());
+  const Eigen::MatrixXd values =
+      Eigen::MatrixXd::Random(held.rows(), held.cols());
+  const Eigen::MatrixXd transposed = equilibrium.ExtendTransposed(values);
+  EXPECT_NEAR((extended.transpose() * values)(0, 1),
+              (held.transpose() * transposed)(0, 1), 1e-10 * held.norm());
+  EXPECT_NEAR(
+      (equilibrium.HeldForces(values).transpose() * held)(0, 1),
+      (values.transpose() * equilibrium.HeldForcesTransposed(held))(0, 1),
+      1e-10 * held.norm());
+}
+
+TEST_P(EquilibriumOfKinds, HasForcesOfSupportsThatBalanceTheLoads) {
+  scene_.supports.unknown = scene_.supports.held;
+  Equilibrium equilibrium(scene_, SolverKind::kCholesky);
+  const MaterialParameters& chart = equilibrium.Forces().Parameters();
+  ASSERT_TRUE(equilibrium.Solve(chart.Moduli(parameters_)));
+  equilibrium.Superpose(equilibrium.Extend(1e-3 * RandomOfHeld(scene_, 2)));
+  const Eigen::MatrixXd forces = equilibrium.SupportForces();
+  const Eigen::MatrixXd loads = AssembleLoadCases(scene_);
+  const int dimension = scene_.mesh.Dimension();
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    const Eigen::VectorXd sum = (forces + loads)
+                                    .col(k)
+                                    .reshaped(dimension, scene_.mesh.NumNodes())
+                                    .rowwise()
+                                    .sum();
+    EXPECT_LT(sum.norm(), 1e-9 * (loads.col(k).norm() + forces.norm()));
+  }
+  const Eigen::MatrixXd directions = chart.ModuliJacobian(parameters_);
+  const Eigen::MatrixXd slopes = equilibrium.SupportForceSensitivities(
+      directions, equilibrium.Sensitivities(directions));
+  // Along all parameters at once: moduli that grow alike scale the forces
+  // of motions, and leave those of loads.
+  const Eigen::VectorXd growth = Eigen::Vector4d(2, 0, 5, 0);
+  Scene without_loads = scene_;
+  for (LoadCase& load_case : without_loads.load_cases) {
+    load_case.loads.clear();
+  }
+  Equilibrium of_motion(without_loads, SolverKind::kCholesky);
+  ASSERT_TRUE(of_motion.Solve(chart.Moduli(parameters_)));
+  of_motion.Superpose(equilibrium.Displacement() - [&] {
+    Equilibrium still(scene_, SolverKind::kCholesky);
+    EXPECT_TRUE(still.Solve(chart.Moduli(parameters_)));
+    return still.Displacement();
+  }());
+  const Eigen::MatrixXd expected = of_motion.SupportForces();
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    const Eigen::VectorXd slope = slopes.middleCols(4 * k, 4) * growth;
+    EXPECT_LT((slope - expected.col(k)).norm(), 1e-7 * forces.norm());
   }
 }
 

@@ -1,0 +1,105 @@
+#include "elastimate/core/scene/unknown_motion.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/element_kinds.h"
+#include "tests/scenes.h"
+
+namespace elastimate {
+namespace {
+
+using Components = Eigen::Array<bool, Eigen::Dynamic, 1>;
+
+// A cube that is held at its bottom by unknown motions.
+Scene Cube() {
+  const Mesh mesh = testing::BoxMesh({2, 2, 2}, {1, 1, 1});
+  Scene scene = testing::HeldAtBottom(mesh, mesh, {0, 0, 1});
+  scene.supports.unknown = scene.supports.held;
+  return scene;
+}
+
+std::vector<int> HeldNodesOf(const Scene& scene) {
+  std::vector<int> nodes;
+  for (int node = 0; node < scene.mesh.NumNodes(); ++node) {
+    if (scene.supports.held.col(node).any()) {
+      nodes.push_back(node);
+    }
+  }
+  return nodes;
+}
+
+TEST(UnknownMotionOfScene, HasAnAmountForEachMeasuredComponent) {
+  Scene scene = Cube();
+  EXPECT_TRUE(HasUnknownMotion(scene));
+  const UnknownMotion motion(scene);
+  EXPECT_EQ(motion.of_supports.cols(), scene.supports.held.count());
+  EXPECT_EQ(motion.of_all.cols(), 0);
+  scene.load_cases[0].displacement.setConstant(3, scene.mesh.NumNodes(), 2);
+  const Eigen::MatrixXd measured = MeasuredSupports(scene);
+  EXPECT_EQ(measured.sum(), 2.0 * double(scene.supports.held.count()));
+  EXPECT_EQ((motion.of_supports * (motion.of_supports.transpose() * measured) -
+             measured)
+                .norm(),
+            0);
+}
+
+TEST(UnknownMotionOfScene, HasTheRigidMotionsOfAFace) {
+  Scene scene = Cube();
+  const std::vector<int> nodes = HeldNodesOf(scene);
+  scene.supports.rigid_faces = {{nodes, Components::Constant(3, true)}};
+  const Eigen::MatrixXd motions = UnknownMotion(scene).of_supports;
+  EXPECT_EQ(motions.cols(), 6);
+  EXPECT_LT(
+      (motions.transpose() * motions - Eigen::MatrixXd::Identity(6, 6)).norm(),
+      1e-12);
+  // Distances within the face stay what they are, to first order.
+  for (const int a : nodes) {
+    for (const int b : nodes) {
+      const Eigen::RowVector3d arm =
+          (scene.mesh.nodes.col(a) - scene.mesh.nodes.col(b)).transpose();
+      EXPECT_LT(
+          (arm * (motions.middleRows(3 * a, 3) - motions.middleRows(3 * b, 3)))
+              .norm(),
+          1e-12);
+    }
+  }
+}
+
+TEST(UnknownMotionOfScene, HasTheMotionsThatAFaceCanSay) {
+  Scene scene = Cube();
+  const std::vector<int> nodes = HeldNodesOf(scene);
+  Components along_z = Components::Constant(3, false);
+  along_z(2) = true;
+  // A plane that stays one: a translation and two rotations.
+  scene.supports.rigid_faces = {{nodes, along_z}};
+  scene.supports.unknown.topRows(2).setConstant(false);
+  EXPECT_EQ(UnknownMotion(scene).of_supports.cols(), 3);
+  // Nodes of one edge do not turn about it.
+  scene.supports.unknown = scene.supports.held;
+  std::vector<int> edge;
+  for (const int node : nodes) {
+    if (scene.mesh.nodes(1, node) == 0) {
+      edge.push_back(node);
+    }
+  }
+  scene.supports.rigid_faces = {{edge, Components::Constant(3, true)}};
+  const Eigen::Index of_others =
+      scene.supports.held.count() - 3 * Eigen::Index(edge.size());
+  EXPECT_EQ(UnknownMotion(scene).of_supports.cols(), of_others + 5);
+}
+
+TEST(UnknownMotionOfScene, OfAllIsRigid) {
+  for (const testing::KindOfSection& kind : testing::AllKindsOfSections()) {
+    Scene scene = testing::SceneOfKind(kind);
+    EXPECT_FALSE(HasUnknownMotion(scene));
+    scene.is_rigid_motion_free = true;
+    EXPECT_TRUE(HasUnknownMotion(scene));
+    const UnknownMotion motion(scene);
+    EXPECT_EQ(motion.of_all.cols(), scene.mesh.Dimension() == 3 ? 6 : 3);
+    EXPECT_EQ(motion.of_supports.cols(), 0);
+    EXPECT_EQ(motion.NumAmounts(), motion.of_all.cols());
+  }
+}
+
+}  // namespace
+}  // namespace elastimate
