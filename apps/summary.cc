@@ -152,7 +152,11 @@ void AddDiagnostics(const Estimate& estimate, std::ostringstream& text) {
   }
   if (estimate.residual_correlation) {
     Line("residual correlation",
-         Number(*estimate.residual_correlation, 2) + " between neighbours",
+         Number(*estimate.residual_correlation, 2) + " between neighbours" +
+             (estimate.correlation_length.value_or(0) > 0
+                  ? ", alike over a length of " +
+                        Number(*estimate.correlation_length, 2)
+                  : ""),
          text);
   }
   if (estimate.noise_attenuation) {

@@ -129,10 +129,9 @@ Eigen::MatrixXd DisplacementMisfit::Sensitivities(const Eigen::VectorXd& x) {
 
 Eigen::VectorXd DisplacementMisfit::WithoutMotion(
     const Eigen::MatrixXd& displacements) {
-  return motion_ ? motion_->Eliminate(displacements,
-                                      Eigen::MatrixXd::Zero(
-                                          displacements.rows(),
-                                          displacements.cols()))
+  return motion_ ? motion_->Eliminate(displacements, Eigen::MatrixXd::Zero(
+                                                         displacements.rows(),
+                                                         displacements.cols()))
                  : observed_.Restrict(displacements);
 }
 

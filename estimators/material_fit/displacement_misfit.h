@@ -14,6 +14,10 @@
 
 namespace elastimate {
 
+/// The standard deviation of a row of displacements without noise, the norm of
+/// all of which is 1, beside which resultants are weighed.
+inline constexpr double kLeastNoise = 1e-12;
+
 /// The displacements of a scene at variables x of its materials, against the
 /// measured ones: model - measurement in the rows of ObservedDisplacements;
 /// where motions are unknown, in those of MotionElimination without what

@@ -13,9 +13,9 @@ namespace elastimate {
 ///   min ||u(theta(p)) - q||^2,   du / d theta_k = -K^-1 f_k(u),
 ///
 /// from typical values at the scale of the data, and from virtual-fields where
-/// it takes the scene; the better minimum is kept.  Covariance sigma^2
-/// (S^T S)^-1, the Cramer-Rao bound, widened for what is smooth in the residual
-/// and for outliers as DescribeDisplacementFit does.  Of parameters on bounds,
+/// it takes the scene; the better minimum is kept.  Outliers are left out and
+/// the others fitted again, until they are those of the fit without them
+/// (FindOutliers); covariance as by DescribeMinimum.  Of parameters on bounds,
 /// the covariance is that without bounds.
 ///
 /// Where supports or the whole specimen moved by unknown amounts, these are

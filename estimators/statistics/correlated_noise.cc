@@ -105,7 +105,8 @@ Autocorrelation CorrelateResiduals(const Scene& scene,
   const std::vector<RowsOfComponent> all = SplitRows(scene, observed);
   Autocorrelation correlation;
   correlation.step = SpacingOf(all);
-  if (!(correlation.step > 0) || !std::isfinite(correlation.step)) {
+  if (!(correlation.step > 0) || !std::isfinite(correlation.step) ||
+      residual.isZero(0)) {
     return {};
   }
   // Neighbours are a little nearer or farther than a step.

@@ -10,14 +10,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <cstddef>
 #include <map>
 #include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
-
-#include "elastimate/core/mesh/nearest_points.h"
 
 namespace elastimate {
 namespace {
@@ -28,7 +26,12 @@ using Elements = std::vector<std::vector<int>>;
 constexpr double kOffGrid = 0.02;
 // The least height of a triangle of the rim over its longest edge.
 constexpr double kLeastHeight = 0.2;
-constexpr double kGap = 1.8;
+// The same of points on a line.
+constexpr double kFlat = 1e-6;
+// An edge over the one that nine of ten are shorter than, from which on it
+// bridges a gap.
+constexpr double kMost = 0.9;
+constexpr double kGap = 1.5;
 
 /// Coordinates along one axis as multiples of a spacing.
 struct GridAxis {
@@ -138,7 +141,10 @@ Elements DelaunayTriangles(const Eigen::Matrix2Xd& positions) {
     if (TwiceArea(positions, triangle) < 0) {
       std::swap(triangle[1], triangle[2]);
     }
-    triangles.push_back(triangle);
+    const double longest = LongestEdge(positions, triangle);
+    if (TwiceArea(positions, triangle) > kFlat * longest * longest) {
+      triangles.push_back(triangle);
+    }
   }
   return triangles;
 }
@@ -211,17 +217,19 @@ Elements LargestPart(const Elements& elements) {
   return part;
 }
 
-double DefaultMaxEdge(const Eigen::Matrix2Xd& positions) {
-  std::vector<double> nearest(positions.cols(),
-                              std::numeric_limits<double>::infinity());
-  for (const auto& [a, b] : NearestPairs(positions, 1)) {
-    const double distance = EdgeLength(positions, int(a), int(b));
-    nearest[a] = std::min(nearest[a], distance);
-    nearest[b] = std::min(nearest[b], distance);
+double DefaultMaxEdge(const Eigen::Matrix2Xd& positions,
+                      const Elements& triangles) {
+  std::vector<double> lengths;
+  for (const auto& [edge, of_edge] : ElementsOfEdges(triangles)) {
+    lengths.push_back(EdgeLength(positions, edge.first, edge.second));
+  }
+  if (lengths.empty()) {
+    return 0;
   }
   const auto most =
-      nearest.begin() + std::ptrdiff_t(0.9 * double(nearest.size()));
-  std::nth_element(nearest.begin(), most, nearest.end());
+      lengths.begin() +
+      static_cast<std::ptrdiff_t>(kMost * static_cast<double>(lengths.size()));
+  std::nth_element(lengths.begin(), most, lengths.end());
   return kGap * *most;
 }
 
@@ -261,8 +269,9 @@ PointMesh MeshOfPoints(const Eigen::Matrix2Xd& positions,
   if (!quadrilaterals.empty()) {
     return Number(ElementKind::kQuad4, LargestPart(quadrilaterals));
   }
-  const double longest = max_edge.value_or(DefaultMaxEdge(positions));
   Elements triangles = DelaunayTriangles(positions);
+  const double longest =
+      max_edge.value_or(DefaultMaxEdge(positions, triangles));
   triangles.erase(std::remove_if(triangles.begin(), triangles.end(),
                                  [&](const std::vector<int>& triangle) {
                                    return LongestEdge(positions, triangle) >

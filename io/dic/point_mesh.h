@@ -20,8 +20,8 @@ struct PointMesh {
 /// Quadrilaterals where the points form a grid along the axes, else Delaunay
 /// triangles (by VTK), without those that have an edge above `max_edge`, or are
 /// slivers of the rim.  Holes and gaps stay what they are; of parts that do not
-/// hang together the largest is taken.  Without `max_edge`, 1.8 times the
-/// longest edge that nine of ten points have to their nearest neighbour.
+/// hang together the largest is taken.  Without `max_edge`, 1.5 times what nine
+/// of ten edges are shorter than.
 /// Throws std::invalid_argument where that leaves no element.
 /// O(n log n).
 PointMesh MeshOfPoints(const Eigen::Matrix2Xd& positions,

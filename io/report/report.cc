@@ -231,6 +231,7 @@ Json DiagnosticsJson(const Estimate& estimate) {
   return {{"identifiability_angle_deg", OrNull(angle)},
           {"noise_attenuation", OrNull(estimate.noise_attenuation)},
           {"residual_correlation", OrNull(estimate.residual_correlation)},
+          {"correlation_length", OrNull(estimate.correlation_length)},
           {"discretization_error", OrNull(estimate.discretization_error)},
           {"poisson_ratio_discretization_error",
            OrNull(estimate.poisson_ratio_discretization_error)},

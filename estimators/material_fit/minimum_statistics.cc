@@ -1,0 +1,137 @@
+#include "elastimate/estimators/material_fit/minimum_statistics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/estimators/interface/limits.h"
+#include "elastimate/estimators/interface/parameter_judge.h"
+#include "elastimate/estimators/statistics/correlated_noise.h"
+#include "elastimate/estimators/statistics/residual_statistics.h"
+
+namespace elastimate {
+namespace {
+
+// The largest of moduli and of ratios.
+Eigen::Vector2d LargestOf(const Eigen::VectorXd& change,
+                          const Estimate& estimate,
+                          const FreeParameters& free) {
+  Eigen::Vector2d largest = Eigen::Vector2d::Zero();
+  for (Eigen::Index i = 0; i < free.Size(); ++i) {
+    const bool is_modulus =
+        estimate.parameters[free.All().Free()[i]].is_modulus;
+    double& value = largest(is_modulus ? 0 : 1);
+    if (std::abs(change(i)) > std::abs(value)) {
+      value = change(i);
+    }
+  }
+  return largest;
+}
+
+// Without its directions of negative eigenvalues: noise whose neighbours differ
+// by more than chance is taken for independent.
+Eigen::MatrixXd PositivePart(const Eigen::MatrixXd& symmetric) {
+  const SymmetricEigenDecomposition parts = DecomposeSymmetric(symmetric);
+  return parts.vectors * parts.values.cwiseMax(0).asDiagonal() *
+         parts.vectors.transpose();
+}
+
+// How far a residual that is alike over this length is one of the model rather
+// than noise: wholly from an eighth of the specimen on, as a wave of its size
+// is alike, and quickly less below.
+double ShareOfModel(const Mesh& mesh, double length) {
+  const double size =
+      (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff())
+          .norm();
+  return std::min(1.0, std::pow(8 * length / size, 4));
+}
+
+// The covariance that the correlation of the residual adds to that of
+// independent noise, over the variance of a row: that of correlated noise, and
+// where the model misses something smooth, an error of its size along the
+// sensitivities.
+Eigen::MatrixXd AddedByCorrelation(const Scene& scene,
+                                   const Eigen::VectorXd& residual,
+                                   const Eigen::MatrixXd& sensitivities,
+                                   const Eigen::MatrixXd& inverse,
+                                   double variance, double smooth_part,
+                                   const ObservedDisplacements& observed,
+                                   Evidence& evidence, Estimate& estimate) {
+  const Autocorrelation correlation =
+      CorrelateResiduals(scene, observed, residual);
+  estimate.correlation_length = correlation.Length();
+  const double smooth =
+      ShareOfModel(scene.mesh, correlation.Length()) * smooth_part;
+  evidence.smooth_part = std::sqrt(smooth) / observed.Measured().norm();
+  return PositivePart(CovarianceOfCorrelation(scene, observed, sensitivities,
+                                              inverse, correlation)) +
+         (variance > 0 ? smooth / variance : 0) * inverse;
+}
+
+// Weighs the resultants beside noise of this variance, rather than of what they
+// were weighed beside in the fit, which is the least where data are exact.
+void WeighResultants(const DisplacementMisfit& misfit, double& variance,
+                     Eigen::MatrixXd& sensitivities) {
+  if (misfit.NumResultants() == 0) {
+    return;
+  }
+  variance = std::max(variance, kLeastNoise * kLeastNoise);
+  sensitivities.bottomRows(misfit.NumResultants()) *=
+      std::sqrt(variance) / misfit.Noise();
+}
+
+}  // namespace
+
+void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
+                     DisplacementMisfit& misfit, Evidence& evidence,
+                     Estimate& estimate) {
+  const FreeParameters& free = misfit.Free();
+  const ObservedDisplacements& observed = misfit.Observed();
+  Eigen::VectorXd rows;
+  Eigen::MatrixXd sensitivities;
+  if (!misfit.Evaluate(variables, &rows, &sensitivities)) {
+    evidence.end = End::kSingularStiffness;
+    return;
+  }
+  const Eigen::VectorXd residual = rows.head(observed.Size());
+  estimate.displacement_residual = residual.norm() / observed.Measured().norm();
+  const Eigen::Index num_fitted =
+      free.Size() + misfit.NumAmounts() - misfit.NumResultants();
+  if (!observed.GivenNoise() &&
+      observed.Size() - num_fitted < kLimits.least_redundancy) {
+    evidence.too_few_components = observed.Size();
+    return;
+  }
+  ResidualVariance variance = EstimateVariance(observed, rows.squaredNorm(),
+                                               num_fitted, evidence, estimate);
+  WeighResultants(misfit, variance.variance, sensitivities);
+  evidence.is_explained_by_given_noise = variance.is_explained_by_given_noise;
+  const Eigen::MatrixXd of_rows = sensitivities.topRows(observed.Size());
+  const Eigen::MatrixXd inverse =
+      Inverse(sensitivities.transpose() * sensitivities);
+  const SmoothSquareSum smooth =
+      MeasureSmoothPart(misfit.Model().Graph(), observed, residual, estimate);
+  const Eigen::MatrixXd by_correlation =
+      AddedByCorrelation(scene, residual, of_rows, inverse, variance.variance,
+                         smooth.least, observed, evidence, estimate);
+  Eigen::MatrixXd covariance = variance.variance * (inverse + by_correlation);
+  estimate.error_budget.noise =
+      ErrorsOfVariables(free, variance.variance * inverse);
+  estimate.error_budget.model =
+      ErrorsOfVariables(free, variance.variance * by_correlation);
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(free.Size());
+  if (HasHeavyTails(residual)) {
+    change = RobustChange(observed, residual, of_rows);
+    evidence.outlier_change = LargestOf(change, estimate, free);
+  }
+  covariance += change * change.transpose();
+  estimate.error_budget.outliers =
+      ErrorsOfVariables(free, change.cwiseAbs2().asDiagonal());
+  if (!by_correlation.isZero(0)) {
+    evidence.smooth_residual_error =
+        std::sqrt(covariance.diagonal().maxCoeff());
+  }
+  EnterCovariance(free, variables, covariance, estimate);
+}
+
+}  // namespace elastimate

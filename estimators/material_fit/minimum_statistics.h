@@ -1,0 +1,30 @@
+#ifndef ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MINIMUM_STATISTICS_H_
+#define ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MINIMUM_STATISTICS_H_
+
+#include <Eigen/Core>
+
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/estimators/interface/evidence.h"
+#include "elastimate/estimators/material_fit/displacement_misfit.h"
+
+namespace elastimate {
+
+/// Enters the noise and the covariance of a minimum into the estimate, whose
+/// parameters are entered, and what there is to judge into the evidence:
+///
+///   sigma^2 (S^T S)^-1, the Cramer-Rao bound, with sigma^2 as given or from
+///     the residual,
+///   + what correlated residuals add to it (CovarianceOfCorrelation),
+///   + (S^T S)^-1 times the square sum of a residual that is alike over the
+///     specimen, which no noise is,
+///   + the square of what outliers that are left pull the parameters by.
+///
+/// An evaluation, and O(n^2) for n points in a load case (CorrelateResiduals).
+void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
+                     DisplacementMisfit& misfit, Evidence& evidence,
+                     Estimate& estimate);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MINIMUM_STATISTICS_H_
