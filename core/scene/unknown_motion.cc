@@ -198,7 +198,8 @@ UnknownMotion::UnknownMotion(const Scene& scene)
       for (Eigen::Index row = 0; row < span.rows(); ++row) {
         if (span(row, column) != 0) {
           entries.emplace_back(
-              dimension * face.nodes[row / dimension] + row % dimension,
+              dimension * Eigen::Index(face.nodes[row / dimension]) +
+                  row % dimension,
               num_columns, span(row, column));
         }
       }

@@ -239,7 +239,7 @@ Estimate FitWithoutOutliers(const Scene& scene,
   const ObservedDisplacements observed(scene);
   const auto num_points = static_cast<double>(observed.Points().size());
   MaterialFit fit = FitAll(scene, options, std::nullopt);
-  const Estimate of_all = fit.estimate;
+  Estimate of_all = fit.estimate;
   std::vector<Outlier> left_out;
   for (int i = 0; i < kRounds && fit.displacement.size() != 0; ++i) {
     const std::vector<Outlier> outliers =
