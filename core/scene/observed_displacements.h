@@ -17,10 +17,11 @@ namespace elastimate {
 ///   q_i = sum_j N_j(x_i) u_j + noise of the standard deviation s_i,
 ///
 /// where x_i is a node, or a point within an element of shape functions N_j.
-/// Held degrees of freedom u_j whose displacement is given are known: their part
-/// is taken from q_i, and a row without others is left out, unless a rigid
-/// motion of all is free, in which they take part.  Rows are weighted by 1 / s_i where it is
-/// known, and normalised so that the first vector of measurements has norm 1.
+/// Held degrees of freedom u_j whose displacement is given are known: their
+/// part is taken from q_i, and a row without others is left out, unless a rigid
+/// motion of all is free, in which they take part.  Rows are weighted by 1 /
+/// s_i where it is known, and normalised so that the first vector of
+/// measurements has norm 1.
 class ObservedDisplacements {
  public:
   /// The observed components of one node, or of another point, in one load

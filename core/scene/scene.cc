@@ -7,8 +7,8 @@
 
 #include "elastimate/core/mesh/axis_names.h"
 #include "elastimate/core/mesh/representable.h"
-#include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/unknown_motion.h"
 
 namespace elastimate {
 namespace {

@@ -7,10 +7,10 @@
 #include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/scene.h"
-#include "elastimate/estimators/statistics/node_losses.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
 #include "elastimate/estimators/interface/evidence.h"
+#include "elastimate/estimators/statistics/node_losses.h"
 
 namespace elastimate {
 

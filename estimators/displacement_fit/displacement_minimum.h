@@ -8,10 +8,10 @@
 
 #include "elastimate/core/materials/elasticity.h"
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
-#include "elastimate/estimators/statistics/node_losses.h"
 #include "elastimate/estimators/displacement_fit/observed_model.h"
 #include "elastimate/estimators/interface/estimator.h"
 #include "elastimate/estimators/statistics/bounded_parameter.h"
+#include "elastimate/estimators/statistics/node_losses.h"
 
 namespace elastimate {
 

@@ -12,14 +12,14 @@
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
 #include "elastimate/estimators/displacement_fit/displacement_minimum.h"
 #include "elastimate/estimators/displacement_fit/displacement_profile.h"
-#include "elastimate/estimators/material_fit/material_fit.h"
-#include "elastimate/estimators/statistics/node_losses.h"
 #include "elastimate/estimators/displacement_fit/observed_model.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/statistics.h"
 #include "elastimate/estimators/interface/stopwatch.h"
+#include "elastimate/estimators/material_fit/material_fit.h"
 #include "elastimate/estimators/statistics/bounded_parameter.h"
+#include "elastimate/estimators/statistics/node_losses.h"
 #include "elastimate/estimators/statistics/profile_likelihood.h"
 
 namespace elastimate {

@@ -2,10 +2,10 @@
 #define ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_ROBUST_REDUCED_FIT_H_
 
 #include "elastimate/core/scene/observed_displacements.h"
-#include "elastimate/estimators/statistics/node_losses.h"
 #include "elastimate/estimators/displacement_fit/reduced_fit.h"
 #include "elastimate/estimators/interface/estimator.h"
 #include "elastimate/estimators/reduced_model/reduced_model.h"
+#include "elastimate/estimators/statistics/node_losses.h"
 
 namespace elastimate {
 

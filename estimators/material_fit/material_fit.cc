@@ -112,7 +112,7 @@ BoundedMinimum DescendWithResultants(const EstimatorOptions& options,
   double noise = std::max(NoiseAt(start, misfit), kLeastNoise);
   misfit.SetNoise(noise);
   BoundedMinimum minimum = Descend(options, start, misfit);
-  for (int i = 0; i < kWeightings && misfit.NumResultants() > 0; ++i) {
+  for (int i = 0; i < kWeightings; ++i) {
     const double last = noise;
     noise = std::max(NoiseAt(minimum.variables, misfit), kLeastNoise);
     if (std::abs(noise - last) < kSettled * last) {

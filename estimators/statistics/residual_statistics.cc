@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "elastimate/core/algebra/dense_algebra.h"
-#include "elastimate/estimators/statistics/node_losses.h"
 #include "elastimate/estimators/interface/limits.h"
+#include "elastimate/estimators/statistics/node_losses.h"
 
 namespace elastimate {
 
