@@ -102,21 +102,28 @@ void ValidateResultant(const Scene& scene, const Resultant& resultant,
   }
 }
 
+// A few nodes may have been lost: their motion follows from their neighbours'.
+// Where there is no measurement of most, the motion is ill-posed.
 void ValidateMeasuredSupports(const Scene& scene) {
   const ComponentMask measured = AsMeasured(scene.supports);
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     const LoadCase& load_case = scene.load_cases[k];
-    for (Eigen::Index node = 0; node < measured.cols(); ++node) {
-      for (int i = 0; i < measured.rows(); ++i) {
-        if (measured(i, node) && (load_case.displacement.size() == 0
-                                      ? load_case.points.points.Size() != 0
-                                      : !IsObserved(load_case, i, node))) {
-          Refuse(NodeText(node, i) +
-                 " is a support that moved as measured, but load case " +
-                 std::to_string(k + 1) +
-                 " has no measurement of it; leave it out of the support, or "
-                 "make the support rigid");
+    for (int i = 0; i < measured.rows(); ++i) {
+      Eigen::Index num_lost = 0;
+      Eigen::Index first_lost = 0;
+      for (Eigen::Index node = measured.cols() - 1; node >= 0; --node) {
+        if (measured(i, node) && !IsObserved(load_case, i, node)) {
+          first_lost = node;
+          ++num_lost;
         }
+      }
+      const Eigen::Index num_nodes = measured.row(i).count();
+      if (2 * num_lost > num_nodes) {
+        Refuse(std::to_string(num_lost) + " of " + std::to_string(num_nodes) +
+               " nodes of supports that moved as measured, " +
+               NodeText(first_lost, i) + " the first, have no measurement in " +
+               "load case " + std::to_string(k + 1) +
+               "; leave them out of the support, or make it rigid");
       }
     }
   }
@@ -219,10 +226,15 @@ Eigen::MatrixXd MeasuredSupports(const Scene& scene) {
       scene.mesh.NumDofs(), Eigen::Index(scene.load_cases.size()));
   for (Eigen::Index k = 0; k < displacement.cols() && measured.size() != 0;
        ++k) {
-    const Eigen::MatrixXd& of_case = scene.load_cases[k].displacement;
-    if (of_case.size() != 0) {
-      displacement.col(k) = measured.select(of_case.array(), 0.0).reshaped();
+    const LoadCase& load_case = scene.load_cases[k];
+    if (load_case.displacement.size() == 0) {
+      continue;
     }
+    const ComponentMask known = load_case.observed.size() == 0
+                                    ? measured
+                                    : measured && load_case.observed;
+    displacement.col(k) =
+        known.select(load_case.displacement.array(), 0.0).reshaped();
   }
   return displacement;
 }

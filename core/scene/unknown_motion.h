@@ -40,8 +40,8 @@ struct UnknownMotion {
   Eigen::Index NumAmounts() const { return of_supports.cols() + of_all.cols(); }
 };
 
-/// The measured displacement of AsMeasured, zero elsewhere: num_dofs x
-/// num_load_cases.
+/// The measured displacement of AsMeasured, zero elsewhere and where a node was
+/// not measured: num_dofs x num_load_cases.
 Eigen::MatrixXd MeasuredSupports(const Scene& scene);
 
 }  // namespace elastimate

@@ -43,9 +43,12 @@ Eigen::Index DisplacementMisfit::NumResultants() const {
 }
 
 void DisplacementMisfit::SetNoise(double standard_deviation) {
-  if (motion_) {
-    motion_->SetNoise(standard_deviation);
-    x_.resize(0);
+  if (!motion_) {
+    return;
+  }
+  motion_->SetNoise(standard_deviation);
+  if (x_.size() != 0) {
+    residual_ = motion_->Refit();
   }
 }
 

@@ -55,9 +55,18 @@ MotionElimination::MotionElimination(const Scene& scene,
   first_resultant_.push_back(NumResultants());
 }
 
+void MotionElimination::SetNoise(double standard_deviation) {
+  noise_ = standard_deviation;
+  InvertGrams();
+}
+
 Eigen::VectorXd MotionElimination::Fit() {
   SolveForColumns();
   model_.Superpose(SupportMotion(amounts_));
+  return Refit();
+}
+
+Eigen::VectorXd MotionElimination::Refit() {
   Eigen::VectorXd rows = RowsOf(
       WithMotionOfAll(amounts_, model_.Displacement()), model_.SupportForces());
   rows.head(observed_.Size()) -= observed_.Measured();
@@ -113,28 +122,16 @@ Eigen::VectorXd MotionElimination::RowsOf(
   return rows;
 }
 
-Eigen::VectorXd MotionElimination::RowsOfCase(
-    Eigen::Index k, const Eigen::VectorXd& rows) const {
-  Eigen::VectorXd of_case(NumRowsOf(k));
-  of_case << rows.segment(observed_.CaseStart(k),
-                          observed_.CaseStart(k + 1) - observed_.CaseStart(k)),
-      rows.segment(observed_.Size() + first_resultant_[k], NumResultantsOf(k));
-  return of_case;
-}
-
 Eigen::VectorXd MotionElimination::MultiplyColumns(
     const Eigen::VectorXd& amounts) const {
   Eigen::VectorXd rows(NumRows());
   for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
-    const Eigen::VectorXd of_case =
-        columns_[k].of_amounts *
+    const auto of_case =
         amounts.segment(motion_.NumAmounts() * k, motion_.NumAmounts());
-    const Eigen::Index num_observed =
-        observed_.CaseStart(k + 1) - observed_.CaseStart(k);
-    rows.segment(observed_.CaseStart(k), num_observed) =
-        of_case.head(num_observed);
+    rows.segment(observed_.CaseStart(k), NumObservedOf(k)) =
+        columns_[k].of_displacements * of_case;
     rows.segment(observed_.Size() + first_resultant_[k], NumResultantsOf(k)) =
-        of_case.tail(NumResultantsOf(k));
+        noise_ * (columns_[k].of_resultants * of_case);
   }
   return rows;
 }
@@ -144,7 +141,11 @@ Eigen::VectorXd MotionElimination::MultiplyColumnsTransposed(
   Eigen::VectorXd amounts(amounts_.size());
   for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
     amounts.segment(motion_.NumAmounts() * k, motion_.NumAmounts()) =
-        columns_[k].of_amounts.transpose() * RowsOfCase(k, rows);
+        columns_[k].of_displacements.transpose() *
+            rows.segment(observed_.CaseStart(k), NumObservedOf(k)) +
+        noise_ * (columns_[k].of_resultants.transpose() *
+                  rows.segment(observed_.Size() + first_resultant_[k],
+                               NumResultantsOf(k)));
   }
   return amounts;
 }
@@ -204,7 +205,9 @@ void MotionElimination::SolveForColumns() {
     return;
   }
   for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
-    columns_.push_back({Eigen::MatrixXd(NumRowsOf(k), n), {}});
+    columns_.push_back({Eigen::MatrixXd(NumObservedOf(k), n),
+                        Eigen::MatrixXd(NumResultantsOf(k), n),
+                        {}});
   }
   const Eigen::Index num_of_supports = motion_.of_supports.cols();
   for (Eigen::Index first = 0; first < n; first += kColumnsAtATime) {
@@ -226,15 +229,22 @@ void MotionElimination::SolveForColumns() {
         model_.HeldForces(motions.leftCols(num_extended));
     for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
       for (Eigen::Index j = first; j < end; ++j) {
-        columns_[k].of_amounts.col(j)
-            << observed_.RestrictToCase(k, motions.col(j - first)),
-            noise_ * ResultantsOfCase(k, forces.col(j - first));
+        columns_[k].of_displacements.col(j) =
+            observed_.RestrictToCase(k, motions.col(j - first));
+        columns_[k].of_resultants.col(j) =
+            ResultantsOfCase(k, forces.col(j - first));
       }
     }
   }
+  InvertGrams();
+}
+
+void MotionElimination::InvertGrams() {
   for (Columns& columns : columns_) {
-    const SymmetricEigenDecomposition gram =
-        DecomposeSymmetric(columns.of_amounts.transpose() * columns.of_amounts);
+    const SymmetricEigenDecomposition gram = DecomposeSymmetric(
+        columns.of_displacements.transpose() * columns.of_displacements +
+        noise_ * noise_ *
+            (columns.of_resultants.transpose() * columns.of_resultants));
     // What rigid motions of supports and of all have in common is zero here.
     const double least = kDependentAmounts * gram.values.maxCoeff();
     columns.inverse_gram = gram.vectors *

@@ -43,13 +43,15 @@ class MotionElimination {
 
   /// Sets the standard deviation of a displacement row, which weighs the
   /// resultants; zero leaves them out.
-  void SetNoise(double standard_deviation) { noise_ = standard_deviation; }
+  void SetNoise(double standard_deviation);
   double Noise() const { return noise_; }
 
   /// Moves the displacements that the model solved for by the amounts that fit
   /// the measurement best, and returns the rows of what is left, model -
   /// measurement.
   Eigen::VectorXd Fit();
+  /// The same at the moduli of the last Fit, under another noise.
+  Eigen::VectorXd Refit();
 
   /// The displacements of the model with the motion of all of the last Fit:
   /// num_dofs x num_load_cases.
@@ -77,25 +79,26 @@ class MotionElimination {
     double noise_sd;
   };
 
-  /// A of one load case, where its columns are few, and the (pseudo-)inverse of
+  /// A of one load case, where its columns are few: of displacement rows, and
+  /// of resultants over their standard deviations; and the (pseudo-)inverse of
   /// A^T A, by which iterations become one or two.
   struct Columns {
-    Eigen::MatrixXd of_amounts;
+    Eigen::MatrixXd of_displacements;
+    Eigen::MatrixXd of_resultants;
     Eigen::MatrixXd inverse_gram;
   };
 
   Eigen::Index NumResultantsOf(Eigen::Index k) const {
     return first_resultant_[k + 1] - first_resultant_[k];
   }
-  Eigen::Index NumRowsOf(Eigen::Index k) const {
-    return observed_.CaseStart(k + 1) - observed_.CaseStart(k) +
-           NumResultantsOf(k);
+  Eigen::Index NumObservedOf(Eigen::Index k) const {
+    return observed_.CaseStart(k + 1) - observed_.CaseStart(k);
   }
   Eigen::VectorXd ResultantsOfCase(Eigen::Index k,
                                    const Eigen::VectorXd& support_forces) const;
-  Eigen::VectorXd RowsOfCase(Eigen::Index k, const Eigen::VectorXd& rows) const;
   /// Where they are few: a solve for each amount.
   void SolveForColumns();
+  void InvertGrams();
   Eigen::VectorXd MultiplyColumns(const Eigen::VectorXd& amounts) const;
   Eigen::VectorXd MultiplyColumnsTransposed(const Eigen::VectorXd& rows) const;
   Eigen::VectorXd Precondition(const Eigen::VectorXd& gradient) const;

@@ -120,11 +120,13 @@ class SceneNodes {
     }
     KeepColumns(scene.mesh.nodes);
     Renumber(scene.mesh.elements);
-    KeepColumns(scene.supports.held);
-    KeepColumns(scene.supports.displacement);
+    FilterSupports(scene.supports);
     for (LoadCase& load_case : scene.load_cases) {
       KeepColumns(load_case.displacement);
       KeepColumns(load_case.observed);
+      for (Resultant& resultant : load_case.resultants) {
+        Renumber(resultant.nodes);
+      }
       for (Load& load : load_case.loads) {
         std::visit([this](auto& kind) { FilterLoad(kind); }, load);
       }
@@ -133,6 +135,14 @@ class SceneNodes {
   }
 
  private:
+  void FilterSupports(Supports& supports) const {
+    KeepColumns(supports.held);
+    KeepColumns(supports.displacement);
+    KeepColumns(supports.unknown);
+    for (RigidFace& face : supports.rigid_faces) {
+      Renumber(face.nodes);
+    }
+  }
   void FilterLoad(NodalForces& load) const { KeepColumns(load.force); }
   void FilterLoad(BodyForce& /*load*/) const {}
   void FilterLoad(Traction& load) const { Renumber(load.facets); }
@@ -147,6 +157,16 @@ class SceneNodes {
   }
   void Renumber(Eigen::MatrixXi& nodes) const {
     nodes = nodes.unaryExpr([this](int node) { return position_[node]; });
+  }
+  // Of nodes some of which may have been selected without being used.
+  void Renumber(std::vector<int>& nodes) const {
+    std::vector<int> kept;
+    for (const int node : nodes) {
+      if (position_[node] >= 0) {
+        kept.push_back(position_[node]);
+      }
+    }
+    nodes = kept;
   }
 
   std::vector<int> position_;

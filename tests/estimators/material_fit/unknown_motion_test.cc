@@ -109,6 +109,19 @@ TEST_P(UnknownMotionOfKinds, OfMeasuredSupportsLeavesExactDataExact) {
   ExpectTruth(RunIterativeFe(SceneOfMeasuredSupports(GetParam())), 1e-8);
 }
 
+// Of a node that a camera lost, as its neighbours tell.
+TEST_P(UnknownMotionOfKinds, OfANodeThatWasLostLeavesExactDataExact) {
+  Scene scene = SceneOfMeasuredSupports(GetParam());
+  const int lost = HeldNodes(scene)[1];
+  for (LoadCase& load_case : scene.load_cases) {
+    load_case.observed.setConstant(scene.mesh.Dimension(),
+                                   scene.mesh.NumNodes(), true);
+    load_case.observed.col(lost).setConstant(false);
+    load_case.displacement.col(lost).setConstant(std::nan(""));
+  }
+  ExpectTruth(RunIterativeFe(scene), 1e-8);
+}
+
 TEST_P(UnknownMotionOfKinds, ResultantsTakeThePlaceOfLoads) {
   ExpectTruth(RunIterativeFe(SceneOfResultants(GetParam())), 1e-8);
 }

@@ -160,6 +160,25 @@ TEST_F(JsonSceneTest, CountsRowsAndIdsOverUnusedPointsToo) {
                      "nodes selects no node that a tetrahedron uses");
 }
 
+TEST_F(JsonSceneTest, KeepsWhatMovedAndWasWeighedWithItsNodes) {
+  folder_.Write("mesh.vtk", LegacySceneText());
+  folder_.Write("u.csv",
+                "x,y,z\n0,0,0\n0,0,0\n9,9,9\n0,0,0\n.1,.2,.3\n.4,.5,.6\n");
+  const std::string resultant =
+      R"({"type": "resultant", "value": [null, null, 1], "sd": 0.1,
+          "surface": {"ids": [2, 5]}})";
+  const Scene scene =
+      Read(Replaced(Replaced(WithLoad(resultant), "mesh.vtu", "mesh.vtk"),
+                    R"({"nodes": {"ids": [0, 1, 4]}, "components": "xyz"})",
+                    R"({"nodes": {"ids": [0, 1, 2]}, "displacement": "rigid"},
+                       {"nodes": {"ids": [2, 5]}, "displacement": "measured"})"))
+          .scene;
+  ASSERT_EQ(scene.supports.rigid_faces.size(), 1);
+  EXPECT_THAT(scene.supports.rigid_faces[0].nodes, ElementsAre(0, 1));
+  EXPECT_EQ(scene.supports.unknown.cols(), 5);
+  EXPECT_THAT(scene.load_cases[0].resultants[0].nodes, ElementsAre(4));
+}
+
 TEST_F(JsonSceneTest, RefusesIdsAndRowsWhereGmshLeavesNodesOut) {
   UseGmshMesh(
       Replaced(GmshVersion2Mesh(), "$Nodes\n5\n", "$Nodes\n6\n1 7 7 7\n"));
