@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/commands.h"
@@ -15,11 +17,14 @@
 #include "apps/progress.h"
 #include "apps/result_fields.h"
 #include "apps/section_flags.h"
+#include "apps/series.h"
 #include "apps/summary.h"
 #include "elastimate/core/materials/laws.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/estimators/registry.h"
+#include "elastimate/estimators/series/joint_estimate.h"
 #include "elastimate/io/report/report.h"
+#include "elastimate/io/report/series_table.h"
 #include "elastimate/io/scene/scene_reader.h"
 #include "elastimate/io/text/file_output.h"
 #include "elastimate/io/text/printable.h"
@@ -114,6 +119,100 @@ EstimatorOptions CheckFlags(const std::vector<std::string>& arguments) {
   return options;
 }
 
+// The report goes where the flags say, beside the other files.
+void WriteReport(const Estimate& estimate, const Scene& scene,
+                 const EstimatorOptions& options, const ReportTimes& times,
+                 const std::vector<std::string>& notices, StagedFiles& files) {
+  const std::string report =
+      JsonReport(estimate, scene, options, times, notices);
+  if (!FLAGS_json.empty() && FLAGS_json != "-") {
+    files.Add(FLAGS_json, report);
+  }
+  WriteStandardOutput(FLAGS_json == "-" ? report
+                                        : Summary(estimate, scene, times));
+  files.Commit();
+  PrintNotices(notices);
+}
+
+// What a series does not go with, and where its table may not go.
+void CheckSeries(const FrameSeries& series) {
+  for (const std::string flag : {"out", "order"}) {
+    if (IsGiven(flag) && (flag != "order" || FLAGS_order != 1)) {
+      throw std::invalid_argument(
+          AsGiven(flag) +
+          " is of one measurement, and the scene has frames; leave it out, or "
+          "make a scene of one frame");
+    }
+  }
+  for (const std::string* output : {&FLAGS_series, &FLAGS_json}) {
+    for (const std::filesystem::path& file : series.files) {
+      if (!output->empty() && AreSameFile(*output, file)) {
+        throw std::invalid_argument(PrintablePath(*output) +
+                                    " would overwrite a frame; choose another "
+                                    "file");
+      }
+    }
+  }
+}
+
+// The frames of a scene, and what they say together.
+int RunSeries(const Estimator& estimator, SceneReading reading,
+              const EstimatorOptions& options, double read_seconds,
+              Clock::time_point start, std::optional<Progress>& progress) {
+  const FrameSeries& series = *reading.frames;
+  CheckSeries(series);
+  const std::vector<FrameEstimate> frames = EstimateFrames(
+      estimator, reading.scene, series, options,
+      [&progress](const std::string& what) { progress->Show(what); });
+  const Estimate joint = JointEstimate(reading.scene, options, estimator,
+                                       frames, series.load_error);
+  progress.reset();
+  StagedFiles files;
+  if (!FLAGS_series.empty()) {
+    files.Add(FLAGS_series, SeriesTable(series, frames, joint));
+  }
+  WriteReport(joint, reading.scene, options,
+              {read_seconds, SecondsSince(start)}, reading.notices, files);
+  return joint.IsUsable() ? 0 : 1;
+}
+
+// One measurement.
+int RunOne(const std::vector<std::string>& arguments,
+           const Estimator& estimator, SceneReading reading,
+           EstimatorOptions options, double read_seconds,
+           Clock::time_point start, std::optional<Progress>& progress) {
+  const Scene& scene = reading.scene;
+  const std::optional<Scene> quadratic =
+      QuadraticSceneIfAsked(Sources(arguments), scene, reading.notices);
+  const Scene& modelled = quadratic ? *quadratic : scene;
+
+  progress->Show(FLAGS_estimator);
+  options.on_factorization = [&progress](int count) {
+    progress->Show(FLAGS_estimator + ": factorisation " +
+                   std::to_string(count));
+  };
+  const Estimate estimate =
+      RunEstimator(estimator, scene, modelled, options, Sources(arguments));
+  // An estimator may have raised the order itself.
+  const std::optional<Scene> raised =
+      estimate.element_order > modelled.mesh.Order()
+          ? std::optional<Scene>(QuadraticScene(scene))
+          : std::nullopt;
+  const Scene& reported = raised ? *raised : modelled;
+  StagedFiles files;
+  if (!FLAGS_out.empty()) {
+    progress->Show("writing " + PrintablePath(FLAGS_out));
+    files.Add(FLAGS_out, VtuContent(FLAGS_out, scene.mesh,
+                                    ResultFields(scene, reported, estimate,
+                                                 options.solver),
+                                    reading.file_order));
+  }
+  progress.reset();
+  WriteReport(estimate, reported, options, {read_seconds, SecondsSince(start)},
+              reading.notices, files);
+  return estimate.IsUsable() ? 0 : 1;
+}
+
 }  // namespace
 
 int RunEstimate(const std::vector<std::string>& arguments) {
@@ -130,45 +229,17 @@ int RunEstimate(const std::vector<std::string>& arguments) {
   SceneReading reading = Read(arguments);
   GiveKnownPoissonRatio(reading.scene, options);
   const double read_seconds = SecondsSince(start);
-  const Scene& scene = reading.scene;
-  const std::optional<Scene> quadratic =
-      QuadraticSceneIfAsked(Sources(arguments), scene, reading.notices);
-  const Scene& modelled = quadratic ? *quadratic : scene;
-
-  progress->Show(FLAGS_estimator);
-  options.on_factorization = [&progress](int count) {
-    progress->Show(FLAGS_estimator + ": factorisation " +
-                   std::to_string(count));
-  };
-  const Estimate estimate =
-      RunEstimator(*estimator, scene, modelled, options, Sources(arguments));
-  // An estimator may have raised the order itself.
-  const std::optional<Scene> raised =
-      estimate.element_order > modelled.mesh.Order()
-          ? std::optional<Scene>(QuadraticScene(scene))
-          : std::nullopt;
-  const Scene& reported = raised ? *raised : modelled;
-  StagedFiles files;
-  if (!FLAGS_out.empty()) {
-    progress->Show("writing " + PrintablePath(FLAGS_out));
-    files.Add(FLAGS_out, VtuContent(FLAGS_out, scene.mesh,
-                                    ResultFields(scene, reported, estimate,
-                                                 options.solver),
-                                    reading.file_order));
+  if (reading.frames) {
+    return RunSeries(*estimator, std::move(reading), options, read_seconds,
+                     start, progress);
   }
-  progress.reset();
-
-  const ReportTimes times = {read_seconds, SecondsSince(start)};
-  const std::string report =
-      JsonReport(estimate, reported, options, times, reading.notices);
-  if (!FLAGS_json.empty() && FLAGS_json != "-") {
-    files.Add(FLAGS_json, report);
+  if (!FLAGS_series.empty()) {
+    throw std::invalid_argument(
+        AsGiven("series") + " is of a scene of frames; give " +
+        Sources(arguments) + " the key \"frames\", or leave the flag out");
   }
-  WriteStandardOutput(FLAGS_json == "-" ? report
-                                        : Summary(estimate, reported, times));
-  files.Commit();
-  PrintNotices(reading.notices);
-  return estimate.IsUsable() ? 0 : 1;
+  return RunOne(arguments, *estimator, std::move(reading), options,
+                read_seconds, start, progress);
 }
 
 int RunMaterials(const std::vector<std::string>& arguments) {

@@ -54,6 +54,9 @@ DEFINE_uint64(seed, 1,
               "seed of random numbers, from 0 on (the noise of simulate; the "
               "estimators are deterministic)");
 DEFINE_string(json, "", "report as JSON to this file, - for standard output");
+DEFINE_string(series, "",
+              "CSV file to write, with a row for each frame of a scene that "
+              "has some, and one for all of them");
 DEFINE_string(out, "", "VTU file to write; its name ends in .vtu");
 DEFINE_string(elements, "",
               "tet4 (the default) or hex8 for the cuboid, quad4 (the default) "
@@ -88,7 +91,7 @@ const Program& Elastimate() {
         "scene.json); several files are further load cases",
         {"estimator", "nu", "nu_min", "nu_max", "youngs_min", "youngs_max",
          "regions", "model", "thickness", "order", "noise_sd", "loss", "degree",
-         "solver", "threads", "seed", "json", "out"}},
+         "solver", "threads", "seed", "json", "series", "out"}},
        {"simulate",
         "SCENE",
         "displacements of a scene for given parameters, with noise if wanted",

@@ -28,6 +28,7 @@ DECLARE_string(solver);
 DECLARE_int32(threads);
 DECLARE_uint64(seed);
 DECLARE_string(json);
+DECLARE_string(series);
 DECLARE_string(out);
 DECLARE_string(elements);
 DECLARE_string(cells);

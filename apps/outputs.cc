@@ -13,6 +13,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/flags.h"
 #include "elastimate/io/text/file_output.h"
@@ -98,21 +101,28 @@ void OpenClosedStandardStreams() {
 }
 
 void CheckOutputFlags(const std::vector<std::string>& inputs) {
-  if (!FLAGS_out.empty()) {
-    if (LowercaseExtension(FLAGS_out) != ".vtu") {
-      throw std::invalid_argument("--out=" + PrintablePath(FLAGS_out) +
-                                  "; what is written is a VTU file, so the "
-                                  "name must end in .vtu");
-    }
-    CheckOutputFlag("out", FLAGS_out, inputs);
+  if (!FLAGS_out.empty() && LowercaseExtension(FLAGS_out) != ".vtu") {
+    throw std::invalid_argument("--out=" + PrintablePath(FLAGS_out) +
+                                "; what is written is a VTU file, so the "
+                                "name must end in .vtu");
   }
-  if (!FLAGS_json.empty() && FLAGS_json != "-") {
-    CheckOutputFlag("json", FLAGS_json, inputs);
-    if (!FLAGS_out.empty() && AreSameFile(FLAGS_json, FLAGS_out)) {
-      throw std::invalid_argument("--json=" + PrintablePath(FLAGS_json) +
-                                  " and --out=" + PrintablePath(FLAGS_out) +
-                                  " name the same file; choose two");
+  std::vector<std::pair<std::string, std::string>> others;
+  for (const auto& [flag, file] :
+       {std::pair{"out", FLAGS_out}, std::pair{"json", FLAGS_json},
+        std::pair{"series", FLAGS_series}}) {
+    if (file.empty() || (file == "-" && std::string(flag) == "json")) {
+      continue;
     }
+    CheckOutputFlag(flag, file, inputs);
+    for (const auto& [other_flag, other_file] : others) {
+      if (AreSameFile(file, other_file)) {
+        throw std::invalid_argument(
+            "--" + std::string(flag) + "=" + PrintablePath(file) + " and --" +
+            other_flag + "=" + PrintablePath(other_file) +
+            " name the same file; choose two");
+      }
+    }
+    others.emplace_back(flag, file);
   }
 }
 

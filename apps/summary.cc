@@ -233,6 +233,39 @@ void AddLoads(const Scene& scene, std::ostringstream& text) {
   }
 }
 
+void AddSeries(const SeriesSummary& series, std::ostringstream& text) {
+  const Interval& loads = series.loads;
+  std::string under;
+  if (loads.lower != 1 || loads.upper != 1) {
+    under = ", at " + Number(loads.lower, 4) +
+            (loads.lower < loads.upper ? " to " + Number(loads.upper, 4) : "") +
+            " times the loads";
+  }
+  Line("frames",
+       std::to_string(series.num_used) + " of " +
+           std::to_string(series.num_frames) + " used" + under,
+       text);
+}
+
+// From the least load to the largest, or in time.
+void AddTrend(const std::vector<ParameterEstimate>& parameters,
+              const Trend& trend, std::ostringstream& text) {
+  std::string changes;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const auto place = Eigen::Index(i);
+    if (std::isnan(trend.change(place))) {
+      continue;
+    }
+    const double unit = parameters[i].is_modulus ? 100 : 1;
+    changes += (changes.empty() ? "" : ", ") + parameters[i].Label() + " " +
+               Number(unit * trend.change(place), 2) + " +- " +
+               Number(unit * trend.standard_error(place), 2) +
+               (parameters[i].is_modulus ? " %" : "");
+  }
+  Line(trend.is_over_load ? "change over the load" : "change in time", changes,
+       text);
+}
+
 }  // namespace
 
 std::string Summary(const Estimate& estimate, const Scene& scene,
@@ -256,6 +289,9 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
          text);
   }
   AddLoads(scene, text);
+  if (estimate.series) {
+    AddSeries(*estimate.series, text);
+  }
   Line("estimator", estimate.estimator, text);
   Line("status",
        std::string(StatusName(estimate.status)) +
@@ -274,6 +310,9 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
     Line("", "no standard error: " + estimate.why_no_standard_error, text);
   }
   AddDiagnostics(estimate, text);
+  if (estimate.series && estimate.series->trend) {
+    AddTrend(estimate.parameters, *estimate.series->trend, text);
+  }
   Line("work",
        std::to_string(estimate.work.element_passes) + " element passes, " +
            Solving(estimate.work) + Number(estimate.seconds, 3) + " s",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/quadratic_scene.h"
@@ -13,6 +14,8 @@
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/limits.h"
+#include "elastimate/estimators/interface/stopwatch.h"
+#include "elastimate/estimators/material_fit/material_fit.h"
 #include "elastimate/estimators/statistics/model_mismatch.h"
 
 namespace elastimate {
@@ -151,10 +154,11 @@ bool ExplainsFarBetter(const Estimate& one, const Estimate& other,
 // Climbs, and keeps the books.
 class Ladder {
  public:
-  // Runs an estimator as the next rung; false when it does not support the
-  // scene.
+  // Runs an estimator as the next rung, or what it prepared; false when it does
+  // not support the scene.
   bool Climb(const Estimator& estimator, const Scene& scene,
-             const EstimatorOptions& options) {
+             const EstimatorOptions& options,
+             Preparation* preparation = nullptr) {
     const std::string why_not = estimator.WhyUnsupported(scene, options);
     Rung rung;
     rung.estimator = estimator.Name();
@@ -164,7 +168,14 @@ class Ladder {
       rungs_.push_back(rung);
       return false;
     }
-    estimate_ = estimator.Run(scene, options);
+    if (preparation == nullptr) {
+      estimate_ = estimator.Run(scene, options);
+    } else {
+      Stopwatch stopwatch;
+      estimate_ = preparation->Run(scene);
+      FinishEstimate(estimator.Name(), scene, options, {}, estimate_);
+      estimate_.seconds = stopwatch.Lap();
+    }
     work_ = work_ + estimate_.work;
     for (const StageTime& stage : estimate_.stages) {
       stages_.push_back({std::string(estimator.Name()) +
@@ -258,13 +269,32 @@ bool IsForIterativeFe(const Scene& scene) {
 // Of several materials: only a fit sees that regions are wrong, and it starts
 // from virtual-fields itself.
 void ClimbOverMaterials(const Scene& scene, const EstimatorOptions& options,
-                        Ladder& ladder) {
-  if (!ladder.Climb(IterativeFe(), scene, WithoutDegree(options)) &&
+                        Preparation* fit, Ladder& ladder) {
+  if (!ladder.Climb(IterativeFe(), scene, WithoutDegree(options), fit) &&
       !ladder.Climb(VirtualFields(), scene, options)) {
     return;
   }
   ladder.Decide("stopped: there is no rung above");
 }
+
+// Of unknown motions, whose only rung is iterative-fe.
+class PreparedUnknownMotion : public Preparation {
+ public:
+  explicit PreparedUnknownMotion(const EstimatorOptions& options)
+      : options_(WithoutDegree(options)), fit_(PrepareMaterialFit(options_)) {}
+
+  Estimate Run(const Scene& scene) override {
+    Ladder ladder;
+    ladder.Climb(ClosedForm(), scene, options_);
+    ClimbOverMaterials(scene, options_, fit_.get(), ladder);
+    return ladder.Finish();
+  }
+  bool TakesOtherLoadCases() const override { return true; }
+
+ private:
+  EstimatorOptions options_;
+  std::unique_ptr<Preparation> fit_;
+};
 
 }  // namespace
 
@@ -309,7 +339,7 @@ Estimate Auto::DoRun(const Scene& scene,
     return ladder.Finish();
   }
   if (IsForIterativeFe(scene)) {
-    ClimbOverMaterials(scene, options, ladder);
+    ClimbOverMaterials(scene, options, nullptr, ladder);
     return ladder.Finish();
   }
   std::optional<Estimate> virtual_fields;
@@ -347,6 +377,14 @@ Estimate Auto::DoRun(const Scene& scene,
   ladder.Climb(ReducedFe(), QuadraticScene(scene), without_degree);
   ChooseOrder(of_linear, Observations(scene, options), ladder);
   return ladder.Finish();
+}
+
+std::unique_ptr<Preparation> Auto::DoPrepare(
+    const Scene& scene, const EstimatorOptions& options) const {
+  if (HasUnknownMotion(scene)) {
+    return std::make_unique<PreparedUnknownMotion>(options);
+  }
+  return Estimator::DoPrepare(scene, options);
 }
 
 }  // namespace elastimate

@@ -1,6 +1,8 @@
 #ifndef ELASTIMATE_ESTIMATORS_AUTO_H_
 #define ELASTIMATE_ESTIMATORS_AUTO_H_
 
+#include <memory>
+
 #include "elastimate/estimators/interface/estimator.h"
 
 namespace elastimate {
@@ -39,6 +41,8 @@ class Auto : public Estimator {
  protected:
   Estimate DoRun(const Scene& scene,
                  const EstimatorOptions& options) const override;
+  std::unique_ptr<Preparation> DoPrepare(
+      const Scene& scene, const EstimatorOptions& options) const override;
 };
 
 }  // namespace elastimate

@@ -13,6 +13,17 @@ namespace elastimate {
 std::vector<std::array<Eigen::Index, 2>> NearestPairs(
     const Eigen::MatrixXd& positions, int count);
 
+/// A point that is nearest to another.
+struct NearestPoint {
+  Eigen::Index index;
+  double distance;  ///< [length]
+};
+
+/// Of n points, dimension x n with n > 0, the nearest to each of `others`,
+/// dimension x m, all finite.  O((n + m) log n), by the same tree.
+std::vector<NearestPoint> NearestPoints(const Eigen::MatrixXd& positions,
+                                        const Eigen::MatrixXd& others);
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_CORE_MESH_NEAREST_POINTS_H_

@@ -85,6 +85,31 @@ struct Summation {
   }
 };
 
+struct Scaling {
+  double factor;
+
+  Load operator()(NodalForces load) const {
+    load.force *= factor;
+    return load;
+  }
+  Load operator()(BodyForce load) const {
+    load.force_density *= factor;
+    return load;
+  }
+  Load operator()(Traction load) const {
+    load.traction *= factor;
+    return load;
+  }
+  Load operator()(Pressure load) const {
+    load.pressure *= factor;
+    return load;
+  }
+  Load operator()(SurfaceForce load) const {
+    load.force *= factor;
+    return load;
+  }
+};
+
 void AddLoads(const Mesh& mesh, const std::vector<Load>& loads,
               Eigen::Ref<Eigen::MatrixXd> force) {
   LoadAssembler assembler(mesh, force);
@@ -117,6 +142,10 @@ void AssembleLoadCases(const Scene& scene, Eigen::Ref<Eigen::MatrixXd> force) {
         Eigen::Map<Eigen::MatrixXd>(force.col(i).data(), scene.mesh.Dimension(),
                                     scene.mesh.NumNodes()));
   }
+}
+
+Load Scaled(const Load& load, double factor) {
+  return std::visit(Scaling{factor}, load);
 }
 
 LoadResultant ResultantOf(const Mesh& mesh, const Load& load) {

@@ -27,6 +27,9 @@ Eigen::MatrixXd AssembleLoadCases(const Scene& scene);
 /// The same into columns that are there.
 void AssembleLoadCases(const Scene& scene, Eigen::Ref<Eigen::MatrixXd> force);
 
+/// A load that is so many times another.
+Load Scaled(const Load& load, double factor);
+
 /// A load in sum.
 struct LoadResultant {
   std::string_view type;  ///< As a scene.json calls it, such as "traction".

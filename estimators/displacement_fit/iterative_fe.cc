@@ -25,6 +25,10 @@
 namespace elastimate {
 namespace {
 
+bool IsForMaterialFit(const Scene& scene) {
+  return !IsOneIsotropicMaterial(scene.materials) || HasUnknownMotion(scene);
+}
+
 // Where the fit looks for a start, besides virtual-fields: in each decade of
 // (1 + nu) / (1 - 2 nu), the scale on which the stiffness changes evenly, since
 // the sum of squares can have several minima (that of a slender bar or a plate
@@ -234,7 +238,7 @@ Capabilities IterativeFe::WhatItTakes() const {
 
 Estimate IterativeFe::DoRun(const Scene& scene,
                             const EstimatorOptions& options) const {
-  if (!IsOneIsotropicMaterial(scene.materials) || HasUnknownMotion(scene)) {
+  if (IsForMaterialFit(scene)) {
     return FitMaterials(scene, options);
   }
   Estimate estimate;
@@ -277,6 +281,12 @@ Estimate IterativeFe::DoRun(const Scene& scene,
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
   estimate.work = model.WorkDone();
   return estimate;
+}
+
+std::unique_ptr<Preparation> IterativeFe::DoPrepare(
+    const Scene& scene, const EstimatorOptions& options) const {
+  return IsForMaterialFit(scene) ? PrepareMaterialFit(options)
+                                 : Estimator::DoPrepare(scene, options);
 }
 
 }  // namespace elastimate

@@ -2,6 +2,7 @@
 #define ELASTIMATE_ESTIMATORS_INTERFACE_ESTIMATE_H_
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <string>
@@ -74,6 +75,26 @@ struct Outlier {
     return load_case == other.load_case && index == other.index &&
            is_point == other.is_point;
   }
+};
+
+/// How parameters change over the frames of a series: from the least load to
+/// the largest or, as loads are the same, from the first frame to the last.  In
+/// the order of the parameters, relative for moduli; not a number for those
+/// that are given.
+struct Trend {
+  bool is_over_load = false;
+  Eigen::VectorXd change;
+  Eigen::VectorXd standard_error;
+  Eigen::VectorXd p_value;  ///< Of as large a change, where there is none.
+};
+
+/// What a joint estimate of many frames was made of.
+struct SeriesSummary {
+  std::size_t num_frames = 0;
+  std::size_t num_used = 0;
+  /// By which the loads of the scene were multiplied.
+  Interval loads = {1, 1};
+  std::optional<Trend> trend;  ///< Empty for few frames.
 };
 
 /// What an estimator says about a scene.  Starts out as a failure, so that it
@@ -155,6 +176,9 @@ struct Estimate {
   Eigen::MatrixXd fitted_displacement;
   /// Bounds that the estimate lies on, such as "nu_max".
   std::vector<std::string> active_bounds;
+
+  /// Of a joint estimate of frames; empty for others.
+  std::optional<SeriesSummary> series;
 
   /// The order of the elements: 1 for linear ones, 2 for quadratic ones; 0 as
   /// long as no estimator was run.

@@ -40,6 +40,7 @@ class NoPreparation : public Preparation {
       : run_(std::move(run)) {}
 
   Estimate Run(const Scene& scene) override { return run_(scene); }
+  bool TakesOtherLoadCases() const override { return true; }
 
  private:
   std::function<Estimate(const Scene&)> run_;

@@ -41,6 +41,7 @@ enum class FindingCode {
   kPoissonRatioUndetermined,
   kParametersUndetermined,
   kTooFewMeasurements,
+  kNoFrameUsable,
   // What the model does not explain.
   kBoundContradicted,
   kKnownPoissonRatioContradicted,
@@ -54,6 +55,8 @@ enum class FindingCode {
   kOutliers,
   kOutliersLeftOut,
   kHeldNodesMoved,
+  kFramesLeftOut,
+  kTrendOverFrames,
   // What the method does to the estimate.
   kNoiseBias,
   kYoungsModulusOnBound,

@@ -461,6 +461,37 @@ Finding HeldNodesMoved(const std::vector<std::size_t>& load_cases) {
       "check the supports");
 }
 
+Finding NoFrameUsable(std::size_t num_frames) {
+  return {FindingCode::kNoFrameUsable, Severity::kError,
+          "none of " + std::to_string(num_frames) +
+              " frames gives an estimate with error bars",
+          "see why in the table of --series"};
+}
+
+Finding FramesLeftOut(std::size_t num_left_out, std::size_t num_frames) {
+  return {FindingCode::kFramesLeftOut, Severity::kNotice,
+          std::to_string(num_left_out) + " of " + std::to_string(num_frames) +
+              " frames are not used",
+          "see why in the table of --series"};
+}
+
+Finding TrendOverFrames(const std::string& parameter, bool is_relative,
+                        const Trend& trend, Eigen::Index place) {
+  const auto text = [is_relative](double value) {
+    return is_relative ? Percent(value) : TwoDigits(value);
+  };
+  return Warning(
+      FindingCode::kTrendOverFrames,
+      parameter + " changes by " + text(trend.change(place)) + " +- " +
+          text(trend.standard_error(place)) +
+          (trend.is_over_load ? " from the least load to the largest"
+                              : " from the first frame to the last"),
+      trend.is_over_load
+          ? "take frames of small load: material or motion are not linear"
+          : "look whether the material creeps, or the camera or the load "
+            "drifts");
+}
+
 Finding YoungsModulusBias(const std::optional<double>& bias, bool is_bounded,
                           Severity severity) {
   const std::string size = bias ? Percent(*bias) : "its whole size";

@@ -24,6 +24,9 @@ class Preparation {
   /// The estimate from a valid measurement of the scene that it was prepared
   /// for: `scene` is that very object, with other displacements.
   virtual Estimate Run(const Scene& scene) = 0;
+  /// Whether Run takes other load cases altogether: what it keeps is of the
+  /// specimen alone, if it keeps anything.
+  virtual bool TakesOtherLoadCases() const { return false; }
 };
 
 /// An estimator for a specimen that is measured again and again under the same
@@ -52,8 +55,19 @@ class PreparedEstimator {
   /// once.
   Estimate Run(const std::vector<Eigen::MatrixXd>& displacements);
 
+  /// The estimate from load cases that may differ in all that there is of
+  /// them: loads, and which points were measured.  Where only displacements
+  /// differ from those before, this is Run; what of a preparation does not hold
+  /// any more is done anew.  `iterative-fe` (and `auto`, of unknown motions)
+  /// starts where the last usable estimate ended.  Throws std::invalid_argument
+  /// as Estimator::Run does, and takes other load cases all the same.
+  Estimate RunLoadCases(const std::vector<LoadCase>& load_cases);
+
  private:
   struct State;
+  // The estimate of the scene as it is now.
+  Estimate RunHere();
+
   std::unique_ptr<State> state_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -62,15 +63,20 @@ std::optional<Eigen::VectorXd> VirtualFieldsStart(
                                : std::nullopt;
 }
 
+// How far a start is from the minimum.
+enum class Distance { kFar, kNear };
+
 BoundedMinimum Descend(const EstimatorOptions& estimator_options,
-                       const Eigen::VectorXd& start,
+                       const Eigen::VectorXd& start, Distance distance,
                        DisplacementMisfit& misfit) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = estimator_options.max_iterations;
   // Far from the minimum, Gauss-Newton steps lead weakly determined parameters
   // astray; the radius grows with each step that holds what it promised.
-  options.initial_trust_region_radius = 1;
+  constexpr double kLargeRadius = 1e8;
+  options.initial_trust_region_radius =
+      distance == Distance::kFar ? 1 : kLargeRadius;
   // A step of k standard errors lowers the cost by about k^2 / n of itself.
   options.function_tolerance = kSmallestStepOfErrors * kSmallestStepOfErrors /
                                static_cast<double>(misfit.NumRows());
@@ -106,12 +112,13 @@ double NoiseAt(const Eigen::VectorXd& x, DisplacementMisfit& misfit) {
 // beside those of the displacements, which the fit shows.
 BoundedMinimum DescendWithResultants(const EstimatorOptions& options,
                                      const Eigen::VectorXd& start,
+                                     Distance distance,
                                      DisplacementMisfit& misfit) {
   constexpr int kWeightings = 5;
   constexpr double kSettled = 0.05;
   double noise = std::max(NoiseAt(start, misfit), kLeastNoise);
   misfit.SetNoise(noise);
-  BoundedMinimum minimum = Descend(options, start, misfit);
+  BoundedMinimum minimum = Descend(options, start, distance, misfit);
   for (int i = 0; i < kWeightings; ++i) {
     const double last = noise;
     noise = std::max(NoiseAt(minimum.variables, misfit), kLeastNoise);
@@ -119,17 +126,17 @@ BoundedMinimum DescendWithResultants(const EstimatorOptions& options,
       break;
     }
     misfit.SetNoise(noise);
-    minimum = Descend(options, minimum.variables, misfit);
+    minimum = Descend(options, minimum.variables, Distance::kNear, misfit);
   }
   return minimum;
 }
 
 BoundedMinimum DescendFrom(const EstimatorOptions& options,
-                           const Eigen::VectorXd& start,
+                           const Eigen::VectorXd& start, Distance distance,
                            DisplacementMisfit& misfit) {
   return misfit.NumResultants() > 0
-             ? DescendWithResultants(options, start, misfit)
-             : Descend(options, start, misfit);
+             ? DescendWithResultants(options, start, distance, misfit)
+             : Descend(options, start, distance, misfit);
 }
 
 // The best minimum that the starts lead to; empty without a start.
@@ -142,7 +149,8 @@ std::optional<BoundedMinimum> BestMinimum(const Scene& scene,
        {TypicalStart(misfit),
         VirtualFieldsStart(scene, options, misfit.Free(), estimate)}) {
     if (start) {
-      BoundedMinimum minimum = DescendFrom(options, *start, misfit);
+      BoundedMinimum minimum =
+          DescendFrom(options, *start, Distance::kFar, misfit);
       if (!best || minimum.cost < best->cost) {
         best = minimum;
       }
@@ -187,7 +195,7 @@ MaterialFit FitAll(const Scene& scene, const EstimatorOptions& options,
   DisplacementMisfit misfit(scene, options);
   estimate.stages.push_back({"assemble and analyse", stopwatch.Lap()});
   const std::optional<BoundedMinimum> minimum =
-      start ? DescendFrom(options, *start, misfit)
+      start ? DescendFrom(options, *start, Distance::kNear, misfit)
             : BestMinimum(scene, options, misfit, estimate);
   estimate.stages.push_back({"fit", stopwatch.Lap()});
   if (minimum) {
@@ -231,15 +239,16 @@ Eigen::Vector2d LargestChange(const Estimate& from, const Estimate& to) {
 }
 
 // Fits again without the outliers, which are those of the fit without them.
-Estimate FitWithoutOutliers(const Scene& scene,
-                            const EstimatorOptions& options) {
+MaterialFit FitWithoutOutliers(const Scene& scene,
+                               const EstimatorOptions& options,
+                               const std::optional<Eigen::VectorXd>& start) {
   constexpr int kRounds = 8;
   // What more points contradict is wrong in another way.
   constexpr double kMost = 1.0 / 3;
   const ObservedDisplacements observed(scene);
   const auto num_points = static_cast<double>(observed.Points().size());
-  MaterialFit fit = FitAll(scene, options, std::nullopt);
-  Estimate of_all = fit.estimate;
+  MaterialFit fit = FitAll(scene, options, start);
+  const MaterialFit of_all = fit;
   std::vector<Outlier> left_out;
   for (int i = 0; i < kRounds && fit.displacement.size() != 0; ++i) {
     const std::vector<Outlier> outliers =
@@ -247,39 +256,76 @@ Estimate FitWithoutOutliers(const Scene& scene,
     if (outliers == left_out) {
       break;
     }
+    const Work work = fit.estimate.work;
     if (static_cast<double>(outliers.size()) > kMost * num_points) {
-      return of_all;
+      fit = of_all;
+      fit.estimate.work = work;
+      left_out.clear();
+      break;
     }
     left_out = outliers;
-    const Work work = fit.estimate.work;
     fit = FitAll(WithoutOutliers(scene, outliers), options, fit.variables);
     fit.estimate.work = fit.estimate.work + work;
   }
   if (!left_out.empty()) {
     fit.estimate.outliers = left_out;
-    fit.estimate.Add(
-        OutliersLeftOut(left_out, LargestChange(of_all, fit.estimate)));
+    fit.estimate.Add(OutliersLeftOut(
+        left_out, LargestChange(of_all.estimate, fit.estimate)));
   }
   if (HasUnknownMotion(scene)) {
     fit.estimate.fitted_displacement = fit.displacement;
   }
-  return fit.estimate;
+  return fit;
 }
 
-}  // namespace
-
-Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options) {
+// A material of which Poisson's ratio is known is one that has it.
+MaterialFit Fit(const Scene& scene, const EstimatorOptions& options,
+                const std::optional<Eigen::VectorXd>& start) {
   if (!IsOneIsotropicMaterial(scene.materials) ||
       !options.known_poisson_ratio) {
-    return FitWithoutOutliers(scene, options);
+    return FitWithoutOutliers(scene, options, start);
   }
   Scene known = scene;
   known.materials = WithKnownPoissonRatio(options);
   EstimatorOptions other_options = options;
   other_options.known_poisson_ratio.reset();
-  Estimate estimate = FitWithoutOutliers(known, other_options);
-  EnterElasticity(estimate);
-  return estimate;
+  MaterialFit fit = FitWithoutOutliers(known, other_options, start);
+  EnterElasticity(fit.estimate);
+  return fit;
+}
+
+// Starts where the last usable fit ended.
+class MaterialFitPreparation : public Preparation {
+ public:
+  explicit MaterialFitPreparation(const EstimatorOptions& options)
+      : options_(options) {}
+
+  Estimate Run(const Scene& scene) override {
+    MaterialFit fit = Fit(scene, options_, start_);
+    if (start_ && !fit.estimate.IsUsable()) {
+      const Work work = fit.estimate.work;
+      fit = Fit(scene, options_, std::nullopt);
+      fit.estimate.work = fit.estimate.work + work;
+    }
+    start_ = fit.estimate.IsUsable() ? fit.variables : std::nullopt;
+    return fit.estimate;
+  }
+  bool TakesOtherLoadCases() const override { return true; }
+
+ private:
+  const EstimatorOptions& options_;
+  std::optional<Eigen::VectorXd> start_;
+};
+
+}  // namespace
+
+Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options) {
+  return Fit(scene, options, std::nullopt).estimate;
+}
+
+std::unique_ptr<Preparation> PrepareMaterialFit(
+    const EstimatorOptions& options) {
+  return std::make_unique<MaterialFitPreparation>(options);
 }
 
 }  // namespace elastimate

@@ -1,6 +1,8 @@
 #ifndef ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MATERIAL_FIT_H_
 #define ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MATERIAL_FIT_H_
 
+#include <memory>
+
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
@@ -26,6 +28,12 @@ namespace elastimate {
 /// Cost: a factorisation at each step, 5 to 8 from each start, and a solve for
 /// each load case and parameter.
 Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options);
+
+/// The same for one scene after another, each from where the last usable fit
+/// ended; where that leads to none, as FitMaterials does.  `options` outlive
+/// it.
+std::unique_ptr<Preparation> PrepareMaterialFit(
+    const EstimatorOptions& options);
 
 }  // namespace elastimate
 

@@ -7,8 +7,8 @@
 
 #include "elastimate/core/materials/laws.h"
 #include "elastimate/core/materials/material_parameters.h"
-#include "elastimate/io/scene/json_value.h"
 #include "elastimate/io/text/input_error.h"
+#include "elastimate/io/text/json_value.h"
 #include "elastimate/io/text/printable.h"
 
 namespace elastimate {

@@ -1,6 +1,7 @@
 #include "elastimate/io/report/report.h"
 
 #include <cmath>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -243,6 +244,33 @@ Json DiagnosticsJson(const Estimate& estimate) {
           {"warnings", estimate.Sentences(Severity::kWarning)}};
 }
 
+Json SeriesJson(const Estimate& estimate) {
+  if (!estimate.series) {
+    return nullptr;
+  }
+  const SeriesSummary& series = *estimate.series;
+  Json changes = nullptr;
+  if (series.trend) {
+    changes = Json::array();
+    for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
+      const auto place = Eigen::Index(i);
+      changes.push_back(
+          {{"name", estimate.parameters[i].name},
+           {"region", RegionsJson(estimate.parameters[i].regions)},
+           {"change", OrNull(series.trend->change(place))},
+           {"standard_error", OrNull(series.trend->standard_error(place))},
+           {"p_value", OrNull(series.trend->p_value(place))}});
+    }
+  }
+  return {{"frames", series.num_frames},
+          {"used", series.num_used},
+          {"loads", {series.loads.lower, series.loads.upper}},
+          {"changes_over",
+           series.trend ? Json(series.trend->is_over_load ? "load" : "time")
+                        : Json(nullptr)},
+          {"changes", changes}};
+}
+
 Json SecondsJson(const Estimate& estimate, const ReportTimes& times) {
   Json stages = Json::object();
   for (const StageTime& stage : estimate.stages) {
@@ -296,6 +324,7 @@ std::string JsonReport(const Estimate& estimate, const Scene& scene,
       {"error_budget", BudgetJson(scene, estimate.error_budget)},
       {"findings", FindingsJson(estimate.findings)},
       {"diagnostics", DiagnosticsJson(estimate)},
+      {"series", SeriesJson(estimate)},
       {"work", WorkJson(estimate.work)},
       {"rungs", RungsJson(estimate)},
       {"options", OptionsJson(options)},

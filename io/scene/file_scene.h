@@ -1,11 +1,13 @@
 #ifndef ELASTIMATE_IO_SCENE_FILE_SCENE_H_
 #define ELASTIMATE_IO_SCENE_FILE_SCENE_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/io/mesh/mesh_file.h"
+#include "elastimate/io/scene/frame_series.h"
 
 namespace elastimate {
 
@@ -15,6 +17,7 @@ struct FileScene {
   MeshFile mesh;  ///< Its elements may have moved to the scene.
   Scene scene;
   std::vector<std::string> notices;
+  std::optional<FrameSeries> frames;
 };
 
 /// The regions from the cell array `region`; empty when there is none.  Throws

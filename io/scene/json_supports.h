@@ -3,7 +3,7 @@
 
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/io/mesh/mesh_file.h"
-#include "elastimate/io/scene/json_value.h"
+#include "elastimate/io/text/json_value.h"
 
 namespace elastimate {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "elastimate/io/gmsh/gmsh_mesh.h"
-#include "elastimate/io/scene/mesh_file_check.h"
+#include "elastimate/io/mesh/mesh_file_check.h"
 #include "elastimate/io/text/input_error.h"
 #include "elastimate/io/text/input_file.h"
 #include "elastimate/io/vtk/vtk_mesh.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "elastimate/io/mesh/mesh_file.h"
-#include "elastimate/io/scene/json_value.h"
+#include "elastimate/io/text/json_value.h"
 
 namespace elastimate {
 

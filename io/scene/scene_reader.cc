@@ -122,19 +122,34 @@ class SceneNodes {
     Renumber(scene.mesh.elements);
     FilterSupports(scene.supports);
     for (LoadCase& load_case : scene.load_cases) {
-      KeepColumns(load_case.displacement);
-      KeepColumns(load_case.observed);
-      for (Resultant& resultant : load_case.resultants) {
-        Renumber(resultant.nodes);
-      }
-      for (Load& load : load_case.loads) {
-        std::visit([this](auto& kind) { FilterLoad(kind); }, load);
-      }
+      FilterLoadCase(load_case);
     }
     return scene;
   }
 
+  /// Those of the frames as they are read.
+  FrameSeries Filter(FrameSeries frames) const {
+    if (NumDropped() > 0 || !FileOrder().empty()) {
+      frames.read = [nodes = *this, read = frames.read](std::size_t i) {
+        LoadCase load_case = read(i);
+        nodes.FilterLoadCase(load_case);
+        return load_case;
+      };
+    }
+    return frames;
+  }
+
  private:
+  void FilterLoadCase(LoadCase& load_case) const {
+    KeepColumns(load_case.displacement);
+    KeepColumns(load_case.observed);
+    for (Resultant& resultant : load_case.resultants) {
+      Renumber(resultant.nodes);
+    }
+    for (Load& load : load_case.loads) {
+      std::visit([this](auto& kind) { FilterLoad(kind); }, load);
+    }
+  }
   void FilterSupports(Supports& supports) const {
     KeepColumns(supports.held);
     KeepColumns(supports.displacement);
@@ -229,8 +244,8 @@ void ChooseMaterials(const std::filesystem::path& path, RegionChoice choice,
 /// The scene without the nodes that no element uses, valid, and their order in
 /// the file.
 Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
-                  std::vector<std::string>& notices,
-                  std::vector<int>& file_order) {
+                  SceneReading& reading, std::vector<int>& file_order) {
+  std::vector<std::string>& notices = reading.notices;
   const MeshFile& mesh = file_scene.mesh;
   notices.insert(notices.end(), file_scene.notices.begin(),
                  file_scene.notices.end());
@@ -243,6 +258,9 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
                       mesh.Shape() + " uses");
   }
   Scene scene = nodes.Filter(std::move(file_scene.scene));
+  if (file_scene.frames) {
+    reading.frames = nodes.Filter(*file_scene.frames);
+  }
   try {
     ValidateScene(scene);
   } catch (const std::invalid_argument& error) {
@@ -336,8 +354,12 @@ SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
     FileScene file_scene = ReadFileScene(path, measurement, section);
     const std::filesystem::path mesh_path = file_scene.mesh.path;
     std::vector<int> file_order;
-    Scene scene =
-        FinishScene(path, std::move(file_scene), reading.notices, file_order);
+    Scene scene = FinishScene(path, std::move(file_scene), reading, file_order);
+    if (reading.frames && paths.size() > 1) {
+      ThrowInputError(path,
+                      "a scene of frames stands alone; leave the other files "
+                      "out, or the key \"frames\"");
+    }
     std::vector<LoadCase> load_cases = std::move(scene.load_cases);
     if (&path == &paths.front()) {
       ChooseMaterials(mesh_path, regions, scene);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "elastimate/core/scene/scene.h"
+#include "elastimate/io/scene/frame_series.h"
 
 namespace elastimate {
 
@@ -36,6 +37,8 @@ struct SceneReading {
   /// (VtuContent); empty where it is the same: everywhere but in a quadratic
   /// mesh with mid-edge nodes numbered before vertices.
   std::vector<int> file_order;
+  /// Empty but where a scene.json has the key "frames".
+  std::optional<FrameSeries> frames;
 };
 
 /// Reads a scene from files whose arrays make it up (.vtu, .vtk, or .msh with

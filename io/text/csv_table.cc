@@ -168,6 +168,7 @@ CsvTable ReadCsvTable(const std::filesystem::path& path) {
   table.path = path;
   std::string line;
   std::string comment;
+  std::string header;
   char delimiter = ',';
   std::size_t number = 0;
   while (std::getline(file, line)) {
@@ -188,7 +189,13 @@ CsvTable ReadCsvTable(const std::filesystem::path& path) {
       ThrowInputError(path, "line " + std::to_string(number) +
                                 ": the quotes do not match; correct them");
     }
+    // One column may have a name of several words.
+    if (delimiter == ' ' && table.rows.empty() && cells->size() == 1 &&
+        !header.empty()) {
+      table.columns = SplitLine(header, ',').value_or(Cells{header});
+    }
     if (table.columns.empty()) {
+      header = line.substr(0, line.find_last_not_of(kSpaces) + 1);
       table.columns = ColumnsOfComment(comment, delimiter, *cells);
       if (table.columns.empty()) {
         table.columns = std::move(*cells);

@@ -33,7 +33,8 @@ struct CsvTable {
   std::optional<double> Number(const Row& row, std::size_t column) const;
 };
 
-/// Cells may be quoted; lines that are blank or begin with # or *** are
+/// A header of several words above rows of one is that of one column.  Cells
+/// may be quoted; lines that are blank or begin with # or *** are
 /// skipped, and so is a row of units below the header, which has no number.  A
 /// comment right above the first row is the header where there is no other and
 /// it names as many columns.  Throws std::invalid_argument, naming the file and

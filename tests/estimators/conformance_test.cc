@@ -145,6 +145,37 @@ TEST_P(Conformance, PreparedGivesWhatItGives) {
   }
 }
 
+// Other loads, and other nodes that were measured, as far as it takes them.
+TEST_P(Conformance, PreparedTakesOtherLoadCases) {
+  Scene scene = SmallScene("organ");
+  Measure({5e4, 0.3}, scene);
+  AddNoise(kSmallNoise, 1, scene);
+  const auto estimator = MakeEstimator(GetParam());
+  PreparedEstimator prepared = estimator->Prepare(scene, {});
+  Scene other = scene;
+  BodyForce weight;
+  weight.force_density = Eigen::Vector3d(0, 100, -200);
+  other.load_cases[0].loads = {weight};
+  Measure({5e4, 0.3}, other);
+  AddNoise(kSmallNoise, 2, other);
+  for (const Scene* measured : {&scene, &other, &other, &scene}) {
+    const Estimate expected = Run(*measured);
+    const Estimate actual = prepared.RunLoadCases(measured->load_cases);
+    ASSERT_EQ(actual.status, Status::kOk) << actual.message;
+    EXPECT_NEAR(actual.elasticity.youngs_modulus,
+                expected.elasticity.youngs_modulus,
+                0.1 * *expected.YoungsModulusStandardError());
+    EXPECT_NEAR(actual.elasticity.poisson_ratio,
+                expected.elasticity.poisson_ratio,
+                0.1 * *expected.PoissonRatioStandardError());
+  }
+  Scene unloaded = scene;
+  unloaded.load_cases[0].loads.clear();
+  EXPECT_THROWS_WITH(prepared.RunLoadCases(unloaded.load_cases),
+                     "the loads are zero");
+  EXPECT_EQ(prepared.RunLoadCases(scene.load_cases).status, Status::kOk);
+}
+
 TEST_P(Conformance, RecoversYoungsModulusWithAKnownPoissonRatio) {
   Scene scene = SmallScene("organ");
   Measure({5e4, 0.35}, scene);

@@ -111,7 +111,14 @@ std::vector<Finding> OfUndeterminedParameters() {
 }
 
 std::vector<Finding> OfResiduals() {
+  const Eigen::VectorXd numbers = Eigen::VectorXd::Constant(1, kLong);
   return {TooFewMeasurements(100000),
+          NoFrameUsable(100000),
+          FramesLeftOut(99999, 100000),
+          TrendOverFrames("nu of region 1000", false,
+                          {true, numbers, numbers, numbers}, 0),
+          TrendOverFrames("E of region 1000", true,
+                          {false, numbers, numbers, numbers}, 0),
           BoundContradicted(kLong),
           KnownPoissonRatioContradicted(kLong, kLong, Severity::kWarning),
           LargeCorrection(kLong),

@@ -28,6 +28,12 @@ TEST_F(CsvTableTest, TakesSpacesWhereTheHeaderHasNothingElse) {
               ElementsAre("1", "2", "3"));
 }
 
+TEST_F(CsvTableTest, TakesWordsAboveOneColumnForItsName) {
+  EXPECT_THAT(Read("Force [N]\n1\n2\n").columns, ElementsAre("Force [N]"));
+  EXPECT_THAT(Read("\"Force [N]\"\n1\n2\n").columns, ElementsAre("Force [N]"));
+  EXPECT_EQ(Read("Force [N]\n1\n2\n").rows.size(), 2U);
+}
+
 TEST_F(CsvTableTest, SkipsCommentsOfBothKinds) {
   const CsvTable table = Read("*** made by\n# me\na,b\n***\n1,2\n");
   EXPECT_THAT(table.columns, ElementsAre("a", "b"));

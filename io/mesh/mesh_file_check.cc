@@ -1,4 +1,4 @@
-#include "elastimate/io/scene/mesh_file_check.h"
+#include "elastimate/io/mesh/mesh_file_check.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "elastimate/io/scene/json_value.h"
+#include "elastimate/io/text/json_value.h"
 
 #include <algorithm>
 #include <fstream>

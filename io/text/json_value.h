@@ -1,5 +1,5 @@
-#ifndef ELASTIMATE_IO_SCENE_JSON_VALUE_H_
-#define ELASTIMATE_IO_SCENE_JSON_VALUE_H_
+#ifndef ELASTIMATE_IO_TEXT_JSON_VALUE_H_
+#define ELASTIMATE_IO_TEXT_JSON_VALUE_H_
 
 #include <Eigen/Core>
 #include <filesystem>
@@ -60,4 +60,4 @@ class JsonValue {
 
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_IO_SCENE_JSON_VALUE_H_
+#endif  // ELASTIMATE_IO_TEXT_JSON_VALUE_H_

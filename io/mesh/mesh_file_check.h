@@ -1,5 +1,5 @@
-#ifndef ELASTIMATE_IO_SCENE_MESH_FILE_CHECK_H_
-#define ELASTIMATE_IO_SCENE_MESH_FILE_CHECK_H_
+#ifndef ELASTIMATE_IO_MESH_MESH_FILE_CHECK_H_
+#define ELASTIMATE_IO_MESH_MESH_FILE_CHECK_H_
 
 #include "elastimate/io/mesh/mesh_file.h"
 
@@ -16,4 +16,4 @@ void CheckMeshFile(MeshFile& mesh);
 
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_IO_SCENE_MESH_FILE_CHECK_H_
+#endif  // ELASTIMATE_IO_MESH_MESH_FILE_CHECK_H_

@@ -1,18 +1,32 @@
-#include "elastimate/io/scene/measured_mesh.h"
+#include "elastimate/io/dic/measured_mesh.h"
 
+#include <algorithm>
+#include <limits>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include "elastimate/core/mesh/nearest_points.h"
 #include "elastimate/io/dic/dic_file.h"
 #include "elastimate/io/dic/point_mesh.h"
-#include "elastimate/io/scene/mesh_file_check.h"
+#include "elastimate/io/mesh/mesh_file_check.h"
 #include "elastimate/io/text/input_error.h"
 #include "elastimate/io/text/printable.h"
 
 namespace elastimate {
 namespace {
+
+// Of points, beside the least distance between two of them.
+constexpr double kSamePosition = 1e-3;
+
+double LeastDistance(const Eigen::Matrix2Xd& points) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [a, b] : NearestPairs(points, 1)) {
+    least = std::min(least, (points.col(a) - points.col(b)).norm());
+  }
+  return least;
+}
 
 std::optional<double> ReadLength(const JsonValue& mesh,
                                  const std::string& key) {
@@ -24,28 +38,6 @@ std::optional<double> ReadLength(const JsonValue& mesh,
     mesh.At(key).Fail("must be positive");
   }
   return length;
-}
-
-DicOptions ReadDicOptions(const JsonValue& mesh) {
-  DicOptions options;
-  if (mesh.Has("format")) {
-    const JsonValue format = mesh.At("format");
-    options.format = format.String();
-    if (("auto, " + DicFormatNames() + ", ").find(options.format + ", ") ==
-        std::string::npos) {
-      format.Fail("is \"" + Printable(options.format) +
-                  "\"; the formats known here are auto, " + DicFormatNames());
-    }
-  }
-  if (mesh.Has("columns")) {
-    const JsonValue columns = mesh.At("columns");
-    columns.CheckKeys({"x", "y", "u", "v"});
-    options.columns = {columns.At("x").String(), columns.At("y").String(),
-                       columns.At("u").String(), columns.At("v").String()};
-  }
-  options.length_per_pixel = ReadLength(mesh, "length_per_pixel");
-  options.flip_y = mesh.Has("flip_y") && mesh.At("flip_y").Boolean();
-  return options;
 }
 
 PointMesh MeshOf(const std::filesystem::path& path, const DicFrame& frame,
@@ -82,6 +74,28 @@ std::string Description(const std::filesystem::path& path,
 
 }  // namespace
 
+DicOptions ReadDicOptions(const JsonValue& mesh) {
+  DicOptions options;
+  if (mesh.Has("format")) {
+    const JsonValue format = mesh.At("format");
+    options.format = format.String();
+    if (("auto, " + DicFormatNames() + ", ").find(options.format + ", ") ==
+        std::string::npos) {
+      format.Fail("is \"" + Printable(options.format) +
+                  "\"; the formats known here are auto, " + DicFormatNames());
+    }
+  }
+  if (mesh.Has("columns")) {
+    const JsonValue columns = mesh.At("columns");
+    columns.CheckKeys({"x", "y", "u", "v"});
+    options.columns = {columns.At("x").String(), columns.At("y").String(),
+                       columns.At("u").String(), columns.At("v").String()};
+  }
+  options.length_per_pixel = ReadLength(mesh, "length_per_pixel");
+  options.flip_y = mesh.Has("flip_y") && mesh.At("flip_y").Boolean();
+  return options;
+}
+
 MeshFile ReadMeasuredMesh(const JsonValue& mesh,
                           std::vector<std::string>& notices) {
   mesh.CheckKeys({"points", "format", "columns", "length_per_pixel", "flip_y",
@@ -104,6 +118,36 @@ MeshFile ReadMeasuredMesh(const JsonValue& mesh,
   CheckMeshFile(file);
   notices.push_back(Description(path, frame, points, file));
   return file;
+}
+
+void ReadMeasuredFrame(const std::filesystem::path& path,
+                       const DicOptions& options, const Eigen::Matrix2Xd& nodes,
+                       LoadCase& load_case) {
+  const DicFrame frame = ReadDicFile(path, options);
+  load_case.displacement.setZero(2, nodes.cols());
+  load_case.observed.setConstant(2, nodes.cols(), false);
+  const double tolerance = kSamePosition * LeastDistance(nodes);
+  Eigen::Index num_found = 0;
+  if (frame.positions.cols() > 0) {
+    const std::vector<NearestPoint> nearest =
+        NearestPoints(frame.positions, nodes);
+    for (Eigen::Index node = 0; node < nodes.cols(); ++node) {
+      if (nearest[node].distance <= tolerance) {
+        load_case.displacement.col(node) =
+            frame.displacement.col(nearest[node].index);
+        load_case.observed.col(node).setConstant(true);
+        ++num_found;
+      }
+    }
+  }
+  if (2 * num_found < nodes.cols()) {
+    ThrowInputError(path,
+                    "it has " + std::to_string(num_found) + " of the " +
+                        std::to_string(nodes.cols()) +
+                        " points of the mesh, which are known by their "
+                        "positions before the load; give the frames of one "
+                        "reference image");
+  }
 }
 
 }  // namespace elastimate

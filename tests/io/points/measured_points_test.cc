@@ -1,4 +1,4 @@
-#include "elastimate/io/scene/measured_points.h"
+#include "elastimate/io/points/measured_points.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

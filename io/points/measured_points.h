@@ -1,12 +1,12 @@
-#ifndef ELASTIMATE_IO_SCENE_MEASURED_POINTS_H_
-#define ELASTIMATE_IO_SCENE_MEASURED_POINTS_H_
+#ifndef ELASTIMATE_IO_POINTS_MEASURED_POINTS_H_
+#define ELASTIMATE_IO_POINTS_MEASURED_POINTS_H_
 
 #include <string>
 #include <vector>
 
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/io/points/point_locator.h"
-#include "elastimate/io/scene/json_value.h"
+#include "elastimate/io/text/json_value.h"
 
 namespace elastimate {
 
@@ -23,4 +23,4 @@ PointDisplacements ReadMeasuredPoints(const JsonValue& displacement,
 
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_IO_SCENE_MEASURED_POINTS_H_
+#endif  // ELASTIMATE_IO_POINTS_MEASURED_POINTS_H_

@@ -1,6 +1,6 @@
 // Meshes of the points that a camera followed, in a scene.json.
 
-#include "elastimate/io/scene/measured_mesh.h"
+#include "elastimate/io/dic/measured_mesh.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

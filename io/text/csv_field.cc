@@ -1,4 +1,4 @@
-#include "elastimate/io/scene/csv_field.h"
+#include "elastimate/io/text/csv_field.h"
 
 #include <cstddef>
 #include <fstream>

@@ -1,5 +1,5 @@
-#ifndef ELASTIMATE_IO_SCENE_CSV_FIELD_H_
-#define ELASTIMATE_IO_SCENE_CSV_FIELD_H_
+#ifndef ELASTIMATE_IO_TEXT_CSV_FIELD_H_
+#define ELASTIMATE_IO_TEXT_CSV_FIELD_H_
 
 #include <Eigen/Core>
 #include <filesystem>
@@ -16,4 +16,4 @@ Eigen::MatrixXd ReadCsvField(const std::filesystem::path& path,
 
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_IO_SCENE_CSV_FIELD_H_
+#endif  // ELASTIMATE_IO_TEXT_CSV_FIELD_H_

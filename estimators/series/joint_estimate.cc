@@ -1,0 +1,345 @@
+#include "elastimate/estimators/series/joint_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/estimators/interface/finding_sentences.h"
+#include "elastimate/estimators/interface/judge.h"
+#include "elastimate/estimators/series/trend.h"
+
+namespace elastimate {
+namespace {
+
+// Of exact data: what rounding leaves of a logarithm, or of a ratio.
+constexpr double kLeastError = 1e-12;
+constexpr double kLeastShare = 1e-6;
+// Of any parameter that has none.
+constexpr double kProbabilityOfTrend = 0.01;
+
+// A frame that is used, in the logarithms of moduli and the ratios that are
+// free.
+struct UsedFrame {
+  const FrameEstimate* frame;
+  Eigen::VectorXd values;
+  Eigen::MatrixXd covariance;
+  double noise_share;  // Of the covariance, what varies between frames.
+};
+
+// Their places among the parameters.
+Eigen::VectorXi FreeParametersOf(const Estimate& estimate) {
+  Eigen::VectorXi free(Eigen::Index(estimate.parameters.size()));
+  Eigen::Index num_free = 0;
+  for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
+    if (!estimate.parameters[i].is_known) {
+      free(num_free++) = static_cast<int>(i);
+    }
+  }
+  return free.head(num_free);
+}
+
+double NoiseShare(const Estimate& estimate, const Eigen::VectorXi& free,
+                  const Eigen::MatrixXd& covariance) {
+  const ParameterErrors& noise = estimate.error_budget.noise;
+  if (noise.size() != Eigen::Index(estimate.parameters.size())) {
+    return 0;
+  }
+  const double share =
+      (noise(free).array().square() / covariance.diagonal().array()).minCoeff();
+  return std::isfinite(share) ? std::clamp(share, kLeastShare, 1.0) : 0;
+}
+
+std::optional<UsedFrame> Use(const FrameEstimate& frame) {
+  const Estimate& estimate = frame.estimate;
+  const Eigen::VectorXi free = FreeParametersOf(estimate);
+  if (!estimate.IsUsable() || free.size() == 0 ||
+      estimate.parameter_covariance.rows() !=
+          Eigen::Index(estimate.parameters.size())) {
+    return std::nullopt;
+  }
+  UsedFrame used = {&frame, Eigen::VectorXd(free.size()), {}, 0};
+  Eigen::VectorXd slopes(free.size());
+  for (Eigen::Index j = 0; j < used.values.size(); ++j) {
+    const ParameterEstimate& parameter = estimate.parameters[free(j)];
+    used.values(j) =
+        parameter.is_modulus ? std::log(parameter.value) : parameter.value;
+    slopes(j) = parameter.is_modulus ? 1 / parameter.value : 1;
+  }
+  used.covariance = slopes.asDiagonal() *
+                    estimate.parameter_covariance(free, free) *
+                    slopes.asDiagonal();
+  used.covariance.diagonal().array() += kLeastError * kLeastError;
+  if (!used.covariance.allFinite() || !used.values.allFinite()) {
+    return std::nullopt;
+  }
+  used.noise_share = NoiseShare(estimate, free, used.covariance);
+  return used;
+}
+
+Eigen::MatrixXd SquareRoot(const Eigen::MatrixXd& covariance) {
+  const SymmetricEigenDecomposition parts = DecomposeSymmetric(covariance);
+  return parts.vectors * parts.values.cwiseMax(0).cwiseSqrt().asDiagonal() *
+         parts.vectors.transpose();
+}
+
+// The mean of least variance, and what its errors are made of.
+struct Mean {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd of_noise;  // Covariance of what differs between frames.
+  Eigen::MatrixXd common;    // Of what they have in common.
+};
+
+// chi^2 per degree of freedom of the scatter over the noise, if above 1.
+double ExcessOfScatter(const std::vector<UsedFrame>& frames,
+                       const Eigen::VectorXd& mean) {
+  double chi_squared = 0;
+  for (const UsedFrame& frame : frames) {
+    if (frame.noise_share == 0) {
+      return 1;
+    }
+    const Eigen::VectorXd off = frame.values - mean;
+    chi_squared += off.dot(Inverse(frame.covariance) * off) / frame.noise_share;
+  }
+  const double freedom =
+      double(mean.size()) * (static_cast<double>(frames.size()) - 1);
+  return freedom > 0 ? std::max(1.0, chi_squared / freedom) : 1;
+}
+
+Mean MeanOf(const std::vector<UsedFrame>& frames) {
+  const Eigen::Index size = frames.front().values.size();
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size);
+  for (const UsedFrame& frame : frames) {
+    information += Inverse(frame.covariance);
+  }
+  const Eigen::MatrixXd least = Inverse(information);
+  Mean mean = {
+      Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size), {}};
+  Eigen::MatrixXd root = Eigen::MatrixXd::Zero(size, size);
+  for (const UsedFrame& frame : frames) {
+    const Eigen::MatrixXd weight = least * Inverse(frame.covariance);
+    mean.values += weight * frame.values;
+    mean.of_noise +=
+        frame.noise_share * weight * frame.covariance * weight.transpose();
+    root += weight * SquareRoot((1 - frame.noise_share) * frame.covariance);
+  }
+  mean.of_noise *= ExcessOfScatter(frames, mean.values);
+  mean.common = root * root.transpose();
+  return mean;
+}
+
+std::optional<Trend> TrendOver(const std::vector<UsedFrame>& frames,
+                               const Eigen::VectorXi& free,
+                               Eigen::Index num_parameters) {
+  const Eigen::Index num_frames = Eigen::Index(frames.size());
+  Eigen::VectorXd loads(num_frames);
+  Eigen::MatrixXd values(num_frames, free.size());
+  Eigen::MatrixXd variances = values;
+  for (Eigen::Index i = 0; i < num_frames; ++i) {
+    const UsedFrame& frame = frames[i];
+    loads(i) = frame.frame->load;
+    values.row(i) = frame.values.transpose();
+    variances.row(i) = (frame.noise_share == 0 ? 1 : frame.noise_share) *
+                       frame.covariance.diagonal().transpose();
+  }
+  std::optional<Trend> of_free = FindTrend(loads, values, variances);
+  const bool is_over_load = of_free.has_value();
+  if (!is_over_load) {
+    of_free = FindTrend(Eigen::VectorXd::LinSpaced(num_frames, 0, 1), values,
+                        variances);
+  }
+  if (!of_free) {
+    return std::nullopt;
+  }
+  const Eigen::VectorXd unknown =
+      Eigen::VectorXd::Constant(num_parameters, Estimate::kUnknown);
+  Trend trend = {is_over_load, unknown, unknown, unknown};
+  trend.change(free) = of_free->change;
+  trend.standard_error(free) = of_free->standard_error;
+  trend.p_value(free) = of_free->p_value;
+  return trend;
+}
+
+// Weighted by the variance of each parameter.
+ParameterErrors MeanDiscretization(const std::vector<UsedFrame>& frames,
+                                   const Eigen::VectorXi& free,
+                                   Eigen::Index num_parameters) {
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(free.size());
+  Eigen::ArrayXd weights = sum;
+  for (const UsedFrame& frame : frames) {
+    const ParameterErrors& errors =
+        frame.frame->estimate.error_budget.discretization;
+    if (errors.size() == num_parameters && errors(free).allFinite()) {
+      const Eigen::ArrayXd weight =
+          frame.covariance.diagonal().array().inverse();
+      sum += weight * errors(free).array();
+      weights += weight;
+    }
+  }
+  ParameterErrors mean =
+      ParameterErrors::Constant(num_parameters, Estimate::kUnknown);
+  if ((weights > 0).all()) {
+    mean(free) = sum / weights;
+  }
+  return mean;
+}
+
+void EnterMean(const Mean& mean, const Eigen::VectorXi& free, double load_error,
+               Estimate& estimate) {
+  Eigen::VectorXd slopes(free.size());
+  Eigen::VectorXd of_loads(free.size());
+  for (Eigen::Index j = 0; j < slopes.size(); ++j) {
+    ParameterEstimate& parameter = estimate.parameters[free(j)];
+    parameter.value =
+        parameter.is_modulus ? std::exp(mean.values(j)) : mean.values(j);
+    slopes(j) = parameter.is_modulus ? parameter.value : 1;
+    of_loads(j) = parameter.is_modulus ? load_error : 0;
+  }
+  const Eigen::MatrixXd noise = mean.of_noise + of_loads * of_loads.transpose();
+  const auto num_parameters = Eigen::Index(estimate.parameters.size());
+  const Eigen::VectorXd unknown =
+      Eigen::VectorXd::Constant(num_parameters, Estimate::kUnknown);
+  estimate.parameter_covariance = unknown.replicate(1, num_parameters);
+  estimate.parameter_covariance(free, free) =
+      slopes.asDiagonal() * (noise + mean.common) * slopes.asDiagonal();
+  estimate.error_budget.noise = unknown;
+  estimate.error_budget.noise(free) = noise.diagonal().cwiseSqrt();
+  const Eigen::ArrayXd by_elements =
+      estimate.error_budget.discretization(free).array().isNaN().select(
+          0, estimate.error_budget.discretization(free).array());
+  estimate.error_budget.model = unknown;
+  estimate.error_budget.model(free) =
+      (mean.common.diagonal().array() - by_elements.square())
+          .max(0)
+          .sqrt()
+          .matrix();
+}
+
+std::optional<double> IfFinite(double value) {
+  return std::isfinite(value) ? std::optional<double>(value) : std::nullopt;
+}
+
+// What stands outside of the parameters for one isotropic material.
+void EnterOneIsotropicMaterial(Estimate& estimate) {
+  estimate.elasticity = {estimate.parameters[0].value,
+                         estimate.parameters[1].value};
+  estimate.covariance = estimate.parameter_covariance;
+  estimate.discretization_error =
+      IfFinite(estimate.error_budget.discretization(0));
+  estimate.poisson_ratio_discretization_error =
+      IfFinite(estimate.error_budget.discretization(1));
+}
+
+// Those that more than half of the used frames have, as the first has them.
+void AddSharedFindings(const std::vector<UsedFrame>& frames,
+                       Estimate& estimate) {
+  std::map<FindingCode, std::size_t> counts;
+  for (const UsedFrame& frame : frames) {
+    for (const Finding& finding : frame.frame->estimate.findings) {
+      ++counts[finding.code];
+    }
+  }
+  for (const UsedFrame& frame : frames) {
+    for (Finding finding : frame.frame->estimate.findings) {
+      const std::size_t count = counts[finding.code];
+      if (2 * count > frames.size()) {
+        finding.text = "in the first of " + std::to_string(count) +
+                       " such frames, " + finding.text;
+        estimate.Add(finding);
+      }
+    }
+  }
+}
+
+void AddTrend(const Eigen::VectorXi& free, Estimate& estimate) {
+  const std::optional<Trend>& trend = estimate.series->trend;
+  if (!trend) {
+    return;
+  }
+  Eigen::Index place = 0;
+  const double least = trend->p_value(free).minCoeff(&place);
+  if (least * double(free.size()) < kProbabilityOfTrend) {
+    const Eigen::Index i = free(place);
+    estimate.Add(TrendOverFrames(estimate.parameters[i].Label(),
+                                 estimate.parameters[i].is_modulus, *trend, i));
+  }
+}
+
+std::optional<double> MeanNoise(const std::vector<UsedFrame>& frames) {
+  double square_sum = 0;
+  for (const UsedFrame& frame : frames) {
+    const std::optional<double>& noise = frame.frame->estimate.noise_sd;
+    if (!noise) {
+      return std::nullopt;
+    }
+    square_sum += *noise * *noise;
+  }
+  return std::sqrt(square_sum / static_cast<double>(frames.size()));
+}
+
+Interval LoadsOf(const std::vector<UsedFrame>& frames) {
+  Interval loads = {1, 1};
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const double load = frames[i].frame->load;
+    loads.lower = i == 0 ? load : std::min(loads.lower, load);
+    loads.upper = i == 0 ? load : std::max(loads.upper, load);
+  }
+  return loads;
+}
+
+void EnterWork(const std::vector<FrameEstimate>& frames, Estimate& estimate) {
+  for (const FrameEstimate& frame : frames) {
+    estimate.work = estimate.work + frame.estimate.work;
+    estimate.seconds += frame.estimate.seconds;
+  }
+}
+
+}  // namespace
+
+Estimate JointEstimate(const Scene& scene, const EstimatorOptions& options,
+                       const Estimator& estimator,
+                       const std::vector<FrameEstimate>& frames,
+                       double load_error) {
+  std::vector<UsedFrame> used;
+  for (const FrameEstimate& frame : frames) {
+    if (const std::optional<UsedFrame> use = Use(frame)) {
+      used.push_back(*use);
+    }
+  }
+  Estimate joint;
+  EnterWork(frames, joint);
+  joint.series =
+      SeriesSummary{frames.size(), used.size(), LoadsOf(used), std::nullopt};
+  joint.estimator = estimator.Name();
+  if (used.empty()) {
+    joint.Fail(NoFrameUsable(frames.size()));
+    return joint;
+  }
+  const Estimate& first = used.front().frame->estimate;
+  joint.Accept();
+  joint.element_order = first.element_order;
+  joint.parameters = first.parameters;
+  const Eigen::VectorXi free = FreeParametersOf(first);
+  const auto num_parameters = Eigen::Index(first.parameters.size());
+  joint.error_budget.discretization =
+      MeanDiscretization(used, free, num_parameters);
+  EnterMean(MeanOf(used), free, load_error, joint);
+  if (IsOneIsotropicMaterial(scene.materials)) {
+    EnterOneIsotropicMaterial(joint);
+  }
+  joint.noise_sd = MeanNoise(used);
+  joint.series->trend = TrendOver(used, free, num_parameters);
+  AddSharedFindings(used, joint);
+  AddTrend(free, joint);
+  if (used.size() < frames.size()) {
+    joint.Add(FramesLeftOut(frames.size() - used.size(), frames.size()));
+  }
+  FinishEstimate(estimator.Name(), scene, options, {}, joint);
+  return joint;
+}
+
+}  // namespace elastimate

@@ -1,0 +1,24 @@
+#ifndef ELASTIMATE_IO_REPORT_SERIES_TABLE_H_
+#define ELASTIMATE_IO_REPORT_SERIES_TABLE_H_
+
+#include <string>
+#include <vector>
+
+#include "elastimate/estimators/series/joint_estimate.h"
+#include "elastimate/io/scene/frame_series.h"
+
+namespace elastimate {
+
+/// A CSV of a row for each frame and one, "joint", for all of them: its number
+/// from 1 on, its file, its load, status, each parameter and its standard error
+/// (of several materials with their regions: "youngs_modulus_3"), the noise,
+/// the number of outliers, the codes of findings, separated by spaces, and, of
+/// a frame that is not usable, the reason.  What is unknown is empty; numbers
+/// round-trip.  `frames` has an estimate for each file of `series`.
+std::string SeriesTable(const FrameSeries& series,
+                        const std::vector<FrameEstimate>& frames,
+                        const Estimate& joint);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_IO_REPORT_SERIES_TABLE_H_

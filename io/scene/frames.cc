@@ -1,0 +1,224 @@
+#include "elastimate/io/scene/frames.h"
+
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/io/dic/measured_mesh.h"
+#include "elastimate/io/scene/json_loads.h"
+#include "elastimate/io/scene/json_measurement.h"
+#include "elastimate/io/text/csv_table.h"
+#include "elastimate/io/text/input_error.h"
+#include "elastimate/io/text/printable.h"
+
+namespace elastimate {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+bool IsPattern(const std::string& name) {
+  return name.find_first_of("*?") != std::string::npos;
+}
+
+// Names of files of a pattern, relative to the scene as the pattern is.
+std::vector<std::string> FindFiles(const JsonValue& value) {
+  const fs::path pattern = value.String();
+  const fs::path folder = value.File().parent_path() / pattern.parent_path();
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(folder.empty() ? "." : folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (fnmatch(pattern.filename().c_str(), name.c_str(), FNM_PERIOD) == 0) {
+      names.push_back((pattern.parent_path() / name).string());
+    }
+  }
+  // By the size of numbers in them: frame_9 comes before frame_10.
+  std::sort(names.begin(), names.end(),
+            [](const std::string& a, const std::string& b) {
+              return strverscmp(a.c_str(), b.c_str()) < 0;
+            });
+  if (names.empty()) {
+    value.Fail("is \"" + Printable(value.String()) +
+               "\", which no file is called; correct the pattern");
+  }
+  return names;
+}
+
+std::vector<std::string> FrameNames(const JsonValue& files) {
+  if (files.IsString()) {
+    return IsPattern(files.String()) ? FindFiles(files)
+                                     : std::vector{files.String()};
+  }
+  std::vector<std::string> names;
+  for (const JsonValue& file : files.Items()) {
+    names.push_back(file.String());
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i].empty() ||
+        std::find(names.begin(), names.begin() + std::ptrdiff_t(i), names[i]) !=
+            names.begin() + std::ptrdiff_t(i)) {
+      files.Items()[i].Fail("is empty or named before; name each frame once");
+    }
+  }
+  if (names.empty()) {
+    files.Fail("is empty; name the files of the frames");
+  }
+  return names;
+}
+
+double RelativeError(const JsonValue& value) {
+  const double error = value.Number();
+  if (!(error >= 0)) {
+    value.Fail("must not be negative");
+  }
+  return error;
+}
+
+// One number for each frame; not a number where the record has none.
+std::vector<double> ReadLoadRecord(const JsonValue& record,
+                                   std::size_t num_frames) {
+  record.CheckKeys({"file", "column", "relative_sd"});
+  const CsvTable table =
+      ReadCsvTable(record.File().parent_path() / record.At("file").String());
+  const std::size_t column = table.At(record.At("column").String());
+  if (table.rows.size() != num_frames) {
+    ThrowInputError(table.path,
+                    "the load record has " + std::to_string(table.rows.size()) +
+                        " rows for " + std::to_string(num_frames) +
+                        " frames; give one for each, in their order");
+  }
+  std::vector<double> loads;
+  for (const CsvTable::Row& row : table.rows) {
+    loads.push_back(table.Number(row, column).value_or(kNone));
+  }
+  return loads;
+}
+
+// Of each resultant, the standard deviation over the size of its force, where
+// it is given so.
+std::vector<std::optional<double>> RelativeErrors(const JsonValue& load_case) {
+  std::vector<std::optional<double>> errors;
+  for (const JsonValue& load : load_case.At("loads").Items()) {
+    if (IsResultant(load)) {
+      errors.push_back(load.Has("relative_sd")
+                           ? std::optional(load.At("relative_sd").Number())
+                           : std::nullopt);
+    }
+  }
+  return errors;
+}
+
+// What frames are read by: of the document, which need not outlive it.
+struct FrameReader {
+  fs::path scene_file;
+  MeshFile mesh;
+  Mesh scene_mesh;
+  LoadCase loads;  // Of the scene, without a measurement.
+  std::vector<std::optional<double>> relative_errors;
+  std::optional<DicOptions> camera;
+  nlohmann::json displacement;  // As of a load case, without the file.
+  std::string file_key;         // "points" or "file".
+  std::vector<std::string> names;
+  std::vector<double> factors;
+  std::optional<MeasurementReader> reader;
+
+  LoadCase Read(std::size_t i) {
+    LoadCase frame = loads;
+    Multiply(factors.empty() ? 1 : factors[i], frame);
+    if (camera) {
+      ReadMeasuredFrame(scene_file.parent_path() / names[i], *camera,
+                        mesh.nodes.topRows(2), frame);
+      return frame;
+    }
+    if (!reader) {
+      reader.emplace(mesh, scene_mesh);
+    }
+    nlohmann::json of_frame = displacement;
+    of_frame[file_key] = names[i];
+    std::vector<std::string> notices;
+    reader->Read(JsonValue(scene_file, of_frame, "frames"), frame, notices);
+    return frame;
+  }
+
+  void Multiply(double factor, LoadCase& frame) const {
+    if (!(std::isfinite(factor) && factor != 0)) {
+      throw std::invalid_argument(
+          std::isnan(factor)
+              ? "the load record has no number for this frame"
+              : "the load of this frame is " +
+                    std::string(factor == 0 ? "zero" : "not finite") +
+                    ", so that nothing follows from it");
+    }
+    for (Load& load : frame.loads) {
+      load = Scaled(load, factor);
+    }
+    for (std::size_t i = 0; i < frame.resultants.size(); ++i) {
+      frame.resultants[i].force *= factor;
+      frame.resultants[i].noise_sd *= relative_errors[i] ? std::abs(factor) : 1;
+    }
+  }
+};
+
+}  // namespace
+
+FrameSeries ReadFrames(const JsonValue& document, const FileScene& file_scene) {
+  const JsonValue frames = document.At("frames");
+  frames.CheckKeys({"files", "load_record"});
+  const std::vector<JsonValue> cases = document.At("cases").Items();
+  if (cases.size() != 1) {
+    frames.Fail("are those of one load case, of which there are " +
+                std::to_string(cases.size()) +
+                "; make a scene of each load case");
+  }
+  const auto reader = std::make_shared<FrameReader>();
+  reader->scene_file = document.File();
+  reader->mesh = file_scene.mesh;
+  reader->scene_mesh = file_scene.scene.mesh;
+  reader->loads = file_scene.scene.load_cases[0];
+  reader->loads.displacement.resize(0, 0);
+  reader->loads.points = {};
+  reader->relative_errors = RelativeErrors(cases[0]);
+  reader->names = FrameNames(frames.At("files"));
+  if (document.At("mesh").IsObject()) {
+    reader->camera = ReadDicOptions(document.At("mesh"));
+  }
+  reader->displacement = nlohmann::json::object();
+  reader->file_key = "points";
+  if (cases[0].Has("displacement")) {
+    const JsonValue displacement = cases[0].At("displacement");
+    reader->file_key = displacement.Has("points") ? "points" : "file";
+    if (displacement.Has("tolerance")) {
+      reader->displacement["tolerance"] = displacement.At("tolerance").Number();
+    }
+  }
+  FrameSeries series;
+  for (const std::string& name : reader->names) {
+    series.files.push_back(document.File().parent_path() / name);
+  }
+  for (const std::optional<double>& error : reader->relative_errors) {
+    series.load_error = std::max(series.load_error, error.value_or(0));
+  }
+  if (frames.Has("load_record")) {
+    const JsonValue record = frames.At("load_record");
+    series.loads = ReadLoadRecord(record, series.files.size());
+    if (record.Has("relative_sd")) {
+      series.load_error = RelativeError(record.At("relative_sd"));
+    }
+  }
+  reader->factors = series.loads;
+  series.read = [reader](std::size_t i) { return reader->Read(i); };
+  return series;
+}
+
+}  // namespace elastimate

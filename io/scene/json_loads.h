@@ -1,0 +1,35 @@
+#ifndef ELASTIMATE_IO_SCENE_JSON_LOADS_H_
+#define ELASTIMATE_IO_SCENE_JSON_LOADS_H_
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/io/mesh/mesh_file.h"
+#include "elastimate/io/scene/node_selection.h"
+#include "elastimate/io/text/json_value.h"
+
+namespace elastimate {
+
+/// What the loads of a scene.json are read against.
+struct LoadContext {
+  const MeshFile& mesh;
+  NodeMask free;             ///< Nodes with a component that is not held.
+  Eigen::MatrixXi boundary;  ///< BoundaryFacets.
+  const Supports& supports;
+  std::vector<std::string>& notices;
+};
+
+/// The key "loads" of a load case: loads of all types, and resultants.  What
+/// may be meant otherwise becomes a notice.  Throws std::invalid_argument,
+/// naming the file and the place in it.
+void ReadLoads(const JsonValue& loads, const LoadContext& context,
+               LoadCase& load_case);
+
+/// Whether this item of "loads" is a resultant rather than a load.
+bool IsResultant(const JsonValue& load);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_IO_SCENE_JSON_LOADS_H_

@@ -1,0 +1,88 @@
+#include "elastimate/io/scene/json_materials.h"
+
+#include <limits>
+#include <string>
+
+#include "elastimate/core/materials/laws.h"
+#include "elastimate/io/text/printable.h"
+
+namespace elastimate {
+namespace {
+
+int ReadRegion(const JsonValue& value) {
+  const long long region = value.Integer();
+  if (region < std::numeric_limits<int>::min() ||
+      region > std::numeric_limits<int>::max()) {
+    value.Fail("is out of range; give the id of a region");
+  }
+  return static_cast<int>(region);
+}
+
+// Numbers and bounds of parameters of a law, by their names.
+void ReadWhatIsKnown(const JsonValue& value, const Law& law,
+                     Material& material) {
+  std::vector<std::string> names;
+  for (const LawParameter& parameter : law.Parameters()) {
+    names.emplace_back(parameter.name);
+  }
+  if (value.Has("known")) {
+    value.At("known").CheckKeys(names);
+  }
+  if (value.Has("bounds")) {
+    value.At("bounds").CheckKeys(names);
+  }
+  for (const std::string& name : names) {
+    if (value.Has("known") && value.At("known").Has(name)) {
+      material.known.push_back({name, value.At("known").At(name).Number()});
+    }
+    if (value.Has("bounds") && value.At("bounds").Has(name)) {
+      const Eigen::VectorXd ends = value.At("bounds").At(name).Vector(2);
+      material.bounds.push_back({name, {ends(0), ends(1)}});
+    }
+  }
+}
+
+Material ReadMaterial(const JsonValue& value) {
+  value.CheckKeys({"law", "region", "known", "bounds"});
+  Material material;
+  if (value.Has("law")) {
+    material.law = value.At("law").String();
+  }
+  const Law* const law = FindLaw(material.law);
+  if (law == nullptr) {
+    value.At("law").Fail("is \"" + Printable(material.law) +
+                         "\"; the laws known here are " + LawNames());
+  }
+  if (value.Has("region")) {
+    const JsonValue region = value.At("region");
+    if (region.IsInteger()) {
+      material.regions.push_back(ReadRegion(region));
+    } else {
+      for (const JsonValue& each : region.Items()) {
+        material.regions.push_back(ReadRegion(each));
+      }
+      if (material.regions.empty()) {
+        region.Fail("is empty; name a region, or leave it out");
+      }
+    }
+  }
+  ReadWhatIsKnown(value, *law, material);
+  return material;
+}
+
+}  // namespace
+
+std::vector<Material> ReadMaterials(const JsonValue& document) {
+  std::vector<Material> materials;
+  if (document.Has("materials")) {
+    for (const JsonValue& value : document.At("materials").Items()) {
+      materials.push_back(ReadMaterial(value));
+    }
+    if (materials.empty()) {
+      document.At("materials").Fail("is empty; name one, or leave it out");
+    }
+  }
+  return materials;
+}
+
+}  // namespace elastimate

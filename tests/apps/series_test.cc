@@ -1,0 +1,158 @@
+// Scenes of frames on the command line.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iomanip>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/program.h"
+
+namespace elastimate {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kYoungs = 2000;
+constexpr double kPoisson = 0.3;
+constexpr double kNoise = 1e-4;
+
+// A strip of 6 x 2 that grips pull, in frames of a camera with a load record,
+// the first of which is under no load.
+class Series : public testing::ProgramTest {
+ protected:
+  void SetUp() override {
+    testing::ProgramTest::SetUp();
+    WriteFrames(0);
+    WriteScene(R"("load_record": {"file": "load.csv", "column": "Force [N]"})");
+  }
+
+  // E falls by a share of `softening` up to the largest load.
+  void WriteFrames(double softening) const {
+    std::ostringstream record;
+    record << "Force [N]\n";
+    std::mt19937_64 generator(3);
+    std::normal_distribution<double> noise(0, kNoise);
+    for (int number = 0; number <= 6; ++number) {
+      const double stress = number;
+      const double strain = stress / (kYoungs * (1 - softening * number / 6));
+      std::ostringstream text;
+      text << std::setprecision(17) << "x,y,ux,uy\n";
+      for (int i = 0; i <= 12; ++i) {
+        for (int j = 0; j <= 4; ++j) {
+          const double x = 0.5 * i;
+          const double y = 0.5 * j;
+          text << x << "," << y << "," << strain * x + noise(generator) << ","
+               << -kPoisson * strain * y + noise(generator) << "\n";
+        }
+      }
+      testing::WriteText(
+          folder_ / ("frame_" + std::to_string(number + 5) + ".csv"),
+          text.str());
+      record << stress * 2 * 0.5 << "\n";
+    }
+    testing::WriteText(folder_ / "load.csv", record.str());
+  }
+
+  void WriteScene(const std::string& frames) const {
+    testing::WriteText(folder_ / "scene.json", R"({
+      "model": "plane_stress", "thickness": 0.5,
+      "mesh": {"points": "frame_5.csv"},
+      "supports": [
+        {"nodes": {"box": [[0, 0], [0, 2]]}, "displacement": "measured"},
+        {"nodes": {"box": [[6, 0], [6, 2]]}, "displacement": "measured"} ],
+      "cases": [ {"loads": [ {"type": "resultant", "value": [1, null],
+                              "surface": {"box": [[6, 0], [6, 2]]},
+                              "sd": 1e-4} ]} ],
+      "frames": {"files": "frame_*.csv", )" + frames +
+                                                   "}\n}\n");
+  }
+
+  std::vector<std::string> Rows() const {
+    std::istringstream text(testing::ReadText(folder_ / "series.csv"));
+    std::vector<std::string> rows;
+    for (std::string row; std::getline(text, row);) {
+      rows.push_back(row);
+    }
+    return rows;
+  }
+};
+
+TEST_F(Series, IsATableOfFramesAndTheirJointEstimate) {
+  const nlohmann::json report =
+      Succeed(
+          "estimate scene.json --estimator=auto --series=series.csv "
+          "--json=-")
+          .Json();
+  EXPECT_EQ(report["status"], "ok");
+  EXPECT_EQ(report["series"]["frames"], 7);
+  EXPECT_EQ(report["series"]["used"], 6);
+  EXPECT_EQ(report["series"]["loads"], nlohmann::json({1.0, 6.0}));
+  EXPECT_EQ(report["series"]["changes_over"], "load");
+  EXPECT_GT(report["series"]["changes"][0]["p_value"], 0.01);
+  const double error = report["standard_error"]["youngs_modulus"];
+  EXPECT_NEAR(report["youngs_modulus"], kYoungs, 3 * error);
+  // sd over the strain of the frames, of 130 components each.
+  EXPECT_LT(error / kYoungs, 0.02);
+  const std::vector<std::string> rows = Rows();
+  ASSERT_EQ(rows.size(), 9);
+  EXPECT_EQ(rows[0],
+            "frame,file,load,status,youngs_modulus,"
+            "youngs_modulus_standard_error,poisson_ratio,"
+            "poisson_ratio_standard_error,noise_sd,outliers,findings,reason");
+  EXPECT_EQ(rows[1],
+            "1,frame_5.csv,0.0,not_run,,,,,,0,not_run,\"the load of this frame "
+            "is zero, so that nothing follows from it\"");
+  EXPECT_THAT(rows[7], HasSubstr("7,frame_11.csv,6.0,ok,"));
+  EXPECT_THAT(rows[8], HasSubstr("joint,,,ok,"));
+}
+
+TEST_F(Series, TellsThatTheModulusDependsOnTheLoad) {
+  WriteFrames(0.2);
+  const std::string output =
+      Succeed("estimate scene.json --estimator=iterative-fe").output;
+  EXPECT_THAT(output, HasSubstr("6 of 7 used, at 1 to 6 times the loads"));
+  EXPECT_THAT(output, HasSubstr("from the least load to the largest"));
+}
+
+TEST_F(Series, HasARowForAFrameThatCannotBeRead) {
+  testing::WriteText(folder_ / "frame_7.csv", "x,y,ux,uy\n1,2,abc,4\n");
+  Succeed("estimate scene.json --estimator=auto --series=series.csv");
+  EXPECT_THAT(Rows()[3], HasSubstr("not_run"));
+  EXPECT_THAT(Rows()[3], HasSubstr("frame_7.csv: line 2"));
+  EXPECT_THAT(Rows()[4], HasSubstr(",ok,"));
+}
+
+TEST_F(Series, IsNotUsableWithoutAUsableFrame) {
+  testing::WriteText(folder_ / "load.csv", "Force [N]\n0\n0\n0\n0\n0\n0\n0\n");
+  const testing::ProgramRun run =
+      Run("estimate scene.json --estimator=auto --series=series.csv");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.output, HasSubstr("none of 7 frames"));
+  EXPECT_EQ(Rows().size(), 9);
+}
+
+TEST_F(Series, IsRefusedWhereItDoesNotBelong) {
+  Refuse("estimate scene.json --estimator=auto --out=a.vtu",
+         "--out=a.vtu is of one measurement");
+  Refuse("estimate scene.json --estimator=auto --order=2", "--order=2");
+  Refuse("estimate scene.json --estimator=reduced-fe",
+         "frame_5.csv: reduced-fe: ");
+  Refuse("estimate scene.json --estimator=auto --series=frame_7.csv",
+         "would overwrite a frame");
+  Refuse("estimate scene.json --estimator=auto --series=a --json=a",
+         "name the same file");
+  Refuse("estimate scene.json scene.json --estimator=auto", "given twice");
+  Succeed("generate cuboid --out=cuboid.vtu");
+  Succeed("simulate cuboid.vtu --youngs=1 --nu=0.3 --out=exact.vtu");
+  Refuse("estimate exact.vtu --series=a.csv",
+         "--series=a.csv is of a scene of frames");
+}
+
+}  // namespace
+}  // namespace elastimate

@@ -1,0 +1,175 @@
+#include "elastimate/io/scene/frames.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "elastimate/io/examples/example_scenes.h"
+#include "elastimate/io/scene/scene_reader.h"
+#include "elastimate/io/vtk/vtu_writer.h"
+#include "tests/io/scene_files.h"
+#include "tests/throws.h"
+
+namespace elastimate {
+namespace {
+
+using ::testing::ElementsAre;
+
+// A strip of 4 x 2 that a camera sees, the load of which is recorded.
+const std::string kFilmedStrip = R"({
+  "model": "plane_stress", "thickness": 0.5,
+  "mesh": {"points": "frame_1.csv"},
+  "supports": [ {"nodes": {"box": [[0, 0], [0, 2]]}, "displacement": "measured"},
+                {"nodes": {"box": [[4, 0], [4, 2]]}, "displacement": "measured"} ],
+  "cases": [ {"loads": [ {"type": "resultant", "value": [2, null],
+                          "surface": {"box": [[4, 0], [4, 2]]},
+                          "relative_sd": 0.01},
+                         {"type": "traction", "value": [0, 3],
+                          "surface": {"box": [[4, 0], [4, 2]]}} ]} ],
+  "frames": {"files": "frame_*.csv",
+             "load_record": {"file": "load.csv", "column": "Force [N]"}}
+})";
+
+class FramesTest : public ::testing::Test {
+ protected:
+  FramesTest() {
+    for (const int number : {1, 2, 10}) {
+      folder_.Write("frame_" + std::to_string(number) + ".csv", Frame(number));
+    }
+    folder_.Write("load.csv", "time;Force [N]\n1;5\n2;-6\n3;\n");
+    folder_.Write("other.csv", "not a frame\n");
+  }
+
+  // Displacements of `number`, but for points left of `from`.
+  static std::string Frame(int number, double from = 0) {
+    std::ostringstream text;
+    text << std::setprecision(17) << "x,y,ux,uy\n";
+    for (int i = 0; i <= 8; ++i) {
+      for (int j = 0; j <= 4; ++j) {
+        if (0.5 * i >= from) {
+          text << 0.5 * i << "," << 0.5 * j << "," << number * 0.5 * i << ",-"
+               << number << "\n";
+        }
+      }
+    }
+    return text.str();
+  }
+
+  FrameSeries Read(const std::string& document) const {
+    return *ReadScene({folder_.Write("scene.json", document)},
+                      Measurement::kRequired)
+                .frames;
+  }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(FramesTest, AreInTheOrderOfTheirNumbers) {
+  const FrameSeries series = Read(kFilmedStrip);
+  std::vector<std::string> names;
+  for (const std::filesystem::path& file : series.files) {
+    names.push_back(file.filename().string());
+  }
+  EXPECT_THAT(names, ElementsAre("frame_1.csv", "frame_2.csv", "frame_10.csv"));
+  EXPECT_THAT(series.read(1).displacement(1, 7), -2);
+}
+
+TEST_F(FramesTest, MultiplyTheLoads) {
+  const FrameSeries series = Read(kFilmedStrip);
+  EXPECT_EQ(series.load_error, 0.01);
+  const LoadCase frame = series.read(1);
+  EXPECT_EQ(frame.resultants[0].force(0), -12);
+  EXPECT_TRUE(std::isnan(frame.resultants[0].force(1)));
+  EXPECT_NEAR(frame.resultants[0].noise_sd(0), 0.12, 1e-15);
+  EXPECT_EQ(std::get<Traction>(frame.loads[0]).traction(1), -18);
+  EXPECT_THROWS_WITH(series.read(2), "no number for this frame");
+  EXPECT_EQ(Read(Replaced(kFilmedStrip, "\"Force [N]\"",
+                          "\"Force [N]\", \"relative_sd\": 0.002"))
+                .load_error,
+            0.002);
+  // An error in units of force stays what it is.
+  EXPECT_EQ(Read(Replaced(kFilmedStrip, "\"relative_sd\": 0.01", "\"sd\": 0.3"))
+                .read(1)
+                .resultants[0]
+                .noise_sd(0),
+            0.3);
+}
+
+TEST_F(FramesTest, MayHaveLostPoints) {
+  folder_.Write("frame_2.csv", Frame(2, 1));
+  const LoadCase frame = Read(kFilmedStrip).read(1);
+  EXPECT_EQ(frame.observed.count(), 2 * 35);
+  EXPECT_FALSE(frame.observed(0, 0));
+  folder_.Write("frame_2.csv", Frame(2, 2.5));
+  EXPECT_THROWS_WITH(Read(kFilmedStrip).read(1),
+                     "frame_2.csv: it has 20 of the 45 points of the mesh");
+}
+
+TEST_F(FramesTest, MayBeOfPointsOrOfNodes) {
+  WriteVtu(folder_.Path() / "mesh.vtu", RectangleScene({}).mesh, {});
+  const std::string document = R"({
+    "mesh": "mesh.vtu", "model": "plane_stress", "thickness": 1,
+    "supports": [ {"nodes": {"box": [[0, -1], [0, 1]]}} ],
+    "cases": [ {"loads": [ {"type": "body_force", "value": [2, 0]} ]} ],
+    "frames": {"files": ["a.csv", "b.csv"]} })";
+  folder_.Write("a.csv", "x,y,ux,uy\n.01,.01,1,2\n.03,.01,,4\n");
+  folder_.Write("b.csv", "x,y,ux,uy\n.01,.01,5,6\n9,9,1,1\n");
+  const FrameSeries points = Read(document);
+  EXPECT_EQ(points.Load(0), 1);
+  EXPECT_EQ(points.read(0).points.displacement(1, 0), 2);
+  EXPECT_THROWS_WITH(points.read(1), "b.csv: line 3");
+
+  std::string field = "ux,uy\n";
+  for (int i = 0; i < 105; ++i) {
+    field += std::to_string(i) + ",0\n";
+  }
+  folder_.Write("a.csv", field);
+  const FrameSeries nodes = Read(Replaced(
+      document, "\"loads\"", R"("displacement": {"file": "a.csv"}, "loads")"));
+  EXPECT_EQ(nodes.read(0).displacement(0, 104), 104);
+  EXPECT_THROWS_WITH(nodes.read(1), "b.csv");
+}
+
+TEST_F(FramesTest, AreOfTheNodesThatElementsUse) {
+  folder_.Write("mesh.vtk", LegacySceneText());
+  folder_.Write("u.csv",
+                "x,y,z\n0,0,0\n0,0,0\n9,9,9\n0,0,0\n.1,.2,.3\n.4,.5,.6\n");
+  const FrameSeries series = Read(R"({
+    "mesh": "mesh.vtk", "supports": [ {"nodes": {"ids": [0, 1, 3]}} ],
+    "cases": [ {"displacement": {"file": "u.csv"},
+                "loads": [ {"type": "body_force", "value": [0, 0, 1]} ]} ],
+    "frames": {"files": "u.csv"} })");
+  EXPECT_EQ(series.read(0).displacement.col(3), Eigen::Vector3d(.1, .2, .3));
+}
+
+TEST_F(FramesTest, TellWhatIsWrong) {
+  EXPECT_THROWS_WITH(Read(Replaced(kFilmedStrip, "frame_*.csv", "image_*.csv")),
+                     "csv\", which no file is called");
+  EXPECT_THROWS_WITH(
+      Read(Replaced(kFilmedStrip, "\"frame_*.csv\"", R"(["a.csv", "a.csv"])")),
+      "is empty or named before");
+  EXPECT_THROWS_WITH(Read(Replaced(kFilmedStrip, "\"frame_*.csv\"", "[]")),
+                     "frames.files is empty");
+  EXPECT_THROWS_WITH(Read(Replaced(kFilmedStrip, "Force [N]", "Kraft")),
+                     "load.csv: ");
+  EXPECT_THROWS_WITH(Read(Replaced(kFilmedStrip, "Force [N]\"",
+                                   "Force [N]\", \"relative_sd\": -1")),
+                     "frames.load_record.relative_sd must not be negative");
+  EXPECT_THROWS_WITH(Read(Replaced(kFilmedStrip, "\"cases\": [", R"("cases": [
+      {"loads": [{"type": "body_force", "value": [1, 0]}]}, )")),
+                     "frames are those of one load case, of which there are 2");
+  folder_.Write("load.csv", "Force [N]\n1\n2\n");
+  EXPECT_THROWS_WITH(Read(kFilmedStrip), "has 2 rows for 3 frames");
+  folder_.Write("load.csv", "Force [N]\n1\n0\ninf\n");
+  EXPECT_THROWS_WITH(Read(kFilmedStrip).read(1),
+                     "the load of this frame is zero");
+  EXPECT_THROWS_WITH(Read(kFilmedStrip).read(2), "is not finite");
+}
+
+}  // namespace
+}  // namespace elastimate
