@@ -13,11 +13,12 @@ namespace {
 // not slow a Gauss-Newton step down.
 constexpr double kExact = 1e-12;
 constexpr double kOfSensitivities = 1e-10;
-// Up to so many amounts of a load case, the rows of each are solved for, rather
-// than those that iterations ask for.
+// Up to so many amounts of a load case, the rows of each are solved for, at all
+// moduli or at the first.
+constexpr Eigen::Index kColumnsAtATime = 32;
+constexpr Eigen::Index kMostColumnsAnew = kColumnsAtATime;
 constexpr Eigen::Index kMostColumns = 400;
 constexpr Eigen::Index kMostEntries = 20'000'000;
-constexpr Eigen::Index kColumnsAtATime = 32;
 constexpr int kMostIterations = 2000;
 // Of a square sum, and of eigenvalues of A^T A, relative to the largest.
 constexpr double kRoundingOfRows = 1e-14;
@@ -167,7 +168,7 @@ Eigen::MatrixXd MotionElimination::WithMotionOfAll(
 }
 
 Eigen::VectorXd MotionElimination::Multiply(const Eigen::VectorXd& amounts) {
-  if (!columns_.empty()) {
+  if (are_columns_of_here_) {
     return MultiplyColumns(amounts);
   }
   const Eigen::MatrixXd motion = SupportMotion(amounts);
@@ -176,7 +177,7 @@ Eigen::VectorXd MotionElimination::Multiply(const Eigen::VectorXd& amounts) {
 
 Eigen::VectorXd MotionElimination::MultiplyTransposed(
     const Eigen::VectorXd& rows) {
-  if (!columns_.empty()) {
+  if (are_columns_of_here_) {
     return MultiplyColumnsTransposed(rows);
   }
   const Eigen::MatrixXd of_nodes =
@@ -200,10 +201,13 @@ Eigen::VectorXd MotionElimination::MultiplyTransposed(
 
 void MotionElimination::SolveForColumns() {
   const Eigen::Index n = motion_.NumAmounts();
-  columns_.clear();
-  if (n == 0 || n > kMostColumns || n * NumRows() > kMostEntries) {
+  are_columns_of_here_ = false;
+  if (n == 0 || n > kMostColumns || n * NumRows() > kMostEntries ||
+      (n > kMostColumnsAnew && !columns_.empty())) {
     return;
   }
+  are_columns_of_here_ = true;
+  columns_.clear();
   for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
     columns_.push_back({Eigen::MatrixXd(NumObservedOf(k), n),
                         Eigen::MatrixXd(NumResultantsOf(k), n),

@@ -11,6 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "elastimate/core/mesh/mesh_points.h"
+#include "elastimate/io/points/point_locator.h"
+#include "elastimate/io/scene/scene_reader.h"
 #include "tests/program.h"
 
 namespace elastimate {
@@ -152,6 +155,88 @@ TEST_F(Series, IsRefusedWhereItDoesNotBelong) {
   Succeed("simulate cuboid.vtu --youngs=1 --nu=0.3 --out=exact.vtu");
   Refuse("estimate exact.vtu --series=a.csv",
          "--series=a.csv is of a scene of frames");
+}
+
+// A block of gel on a table, into the middle of which an indenter presses in 20
+// steps, while cameras follow 500 points of its sides and top.
+class Gel : public testing::ProgramTest {
+ protected:
+  static constexpr int kSteps = 20;
+  static constexpr double kGelNoise = 0.005;
+
+  void MakeFrames() const {
+    Succeed("generate cuboid --cells=12,12,6 --size=60,60,30 --out=gel.vtu");
+    WriteScene("");
+    Succeed("simulate scene.json --youngs=0.012 --nu=0.45 --out=exact.vtu");
+    const Scene scene =
+        ReadScene({folder_ / "exact.vtu"}, Measurement::kRequired).scene;
+    const Eigen::MatrixXd points = SurfacePoints();
+    const LocatedPoints located = PointLocator(scene.mesh).Locate(points);
+    const Eigen::MatrixXd u = Interpolate(scene.mesh, located.points,
+                                          scene.load_cases[0].displacement);
+    std::mt19937_64 generator(5);
+    std::normal_distribution<double> noise(0, kGelNoise);
+    std::ostringstream record;
+    record << "step,force\n";
+    for (int step = 1; step <= kSteps; ++step) {
+      std::ostringstream text;
+      text << std::setprecision(17) << "x,y,z,ux,uy,uz\n";
+      for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        text << points(0, i) << "," << points(1, i) << "," << points(2, i);
+        for (int axis = 0; axis < 3; ++axis) {
+          text << "," << 0.05 * step * u(axis, i) + noise(generator);
+        }
+        text << "\n";
+      }
+      testing::WriteText(folder_ / ("step_" + std::to_string(step) + ".csv"),
+                         text.str());
+      record << step << "," << 0.05 * step << "\n";
+    }
+    testing::WriteText(folder_ / "record.csv", record.str());
+  }
+
+  static Eigen::MatrixXd SurfacePoints() {
+    std::mt19937_64 generator(4);
+    std::uniform_real_distribution<double> place(0, 60);
+    Eigen::MatrixXd points(3, 500);
+    for (int i = 0; i < 500; ++i) {
+      points.col(i) << place(generator), place(generator), 30;
+      if (i % 2 == 0) {
+        points(i % 4 / 2, i) = 60;
+        points(2, i) = place(generator) / 2;
+      }
+    }
+    return points;
+  }
+
+  void WriteScene(const std::string& frames) const {
+    testing::WriteText(folder_ / "scene.json", R"({
+  "mesh": "gel.vtu",
+  "supports": [ {"nodes": {"box": [[-1, -1, -1], [61, 61, 0.001]]}} ],
+  "cases": [
+    { "loads": [ {"type": "force", "value": [0, 0, -1],
+                  "surface": {"box": [[19, 19, 29.9], [41, 41, 31]]}} ] } ])" +
+                                                   frames + "\n}\n");
+  }
+};
+
+TEST_F(Gel, UnderAnIndenterNeedsNoProgramming) {
+  MakeFrames();
+  WriteScene(R"(,
+  "frames": {"files": "step_*.csv",
+             "load_record": {"file": "record.csv", "column": "force"}})");
+  const nlohmann::json report =
+      Succeed(
+          "estimate scene.json --estimator=reduced-fe --series=series.csv "
+          "--json=-")
+          .Json();
+  EXPECT_EQ(report["status"], "ok");
+  EXPECT_EQ(report["series"]["used"], kSteps);
+  const double error = report["standard_error"]["youngs_modulus"];
+  EXPECT_NEAR(report["youngs_modulus"], 0.012, 3 * error);
+  EXPECT_LT(error / 0.012, 0.05);
+  EXPECT_NEAR(report["poisson_ratio"], 0.45,
+              3 * double(report["standard_error"]["poisson_ratio"]));
 }
 
 }  // namespace
