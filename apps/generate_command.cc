@@ -7,6 +7,7 @@
 
 #include "apps/commands.h"
 #include "apps/flags.h"
+#include "apps/number_list.h"
 #include "apps/outputs.h"
 #include "apps/progress.h"
 #include "apps/section_flags.h"
@@ -17,27 +18,6 @@
 
 namespace elastimate {
 namespace {
-
-// As many numbers as `Vector` has, separated by commas; `kind` names them.
-template <typename Vector>
-Vector Numbers(const std::string& flag, const std::string& value,
-               const std::string& kind) {
-  std::istringstream text(value);
-  Vector numbers;
-  bool is_read = true;
-  for (Eigen::Index i = 0; i < numbers.size(); ++i) {
-    char comma = ',';
-    is_read = is_read && (i == 0 || bool(text >> comma)) && comma == ',' &&
-              bool(text >> numbers(i));
-  }
-  if (!is_read || text.peek() != std::istringstream::traits_type::eof()) {
-    const bool is_triple = numbers.size() == 3;
-    throw std::invalid_argument(
-        AsGiven(flag) + "; it needs " + (is_triple ? "three " : "two ") + kind +
-        ", as in --" + flag + (is_triple ? "=1,2,3" : "=1,2"));
-  }
-  return numbers;
-}
 
 void RejectFlags(const std::string& geometry,
                  const std::vector<std::string>& flags) {
@@ -75,36 +55,81 @@ ElementKind KindFromFlag(ElementKind otherwise) {
 Scene CuboidFromFlags() {
   CuboidOptions options;
   options.cells =
-      Numbers<Eigen::Vector3i>("cells", FLAGS_cells, "integers below 2^31");
-  options.size = Numbers<Eigen::Vector3d>("size", FLAGS_size, "finite numbers");
+      NumberList<Eigen::Vector3i>("cells", FLAGS_cells, "integers below 2^31");
+  options.size =
+      NumberList<Eigen::Vector3d>("size", FLAGS_size, "finite numbers");
   if (IsGiven("force")) {
     options.force =
-        Numbers<Eigen::Vector3d>("force", FLAGS_force, "finite numbers");
+        NumberList<Eigen::Vector3d>("force", FLAGS_force, "finite numbers");
   }
   options.kind = KindFromFlag(options.kind);
   return FlagsNamed([&] { return CuboidScene(options); });
 }
 
+void SetSectionFromFlags(Section& section) {
+  const SectionChoice choice = SectionFromFlags();
+  section.model = choice.model.value_or(section.model);
+  section.thickness = choice.thickness.value_or(section.thickness);
+}
+
 Scene RectangleFromFlags() {
   RectangleOptions options;
   if (IsGiven("cells")) {
-    options.cells =
-        Numbers<Eigen::Vector2i>("cells", FLAGS_cells, "integers below 2^31");
+    options.cells = NumberList<Eigen::Vector2i>("cells", FLAGS_cells,
+                                                "integers below 2^31");
   }
   if (IsGiven("size")) {
     options.size =
-        Numbers<Eigen::Vector2d>("size", FLAGS_size, "finite numbers");
+        NumberList<Eigen::Vector2d>("size", FLAGS_size, "finite numbers");
   }
   if (IsGiven("force")) {
     options.force =
-        Numbers<Eigen::Vector2d>("force", FLAGS_force, "finite numbers");
+        NumberList<Eigen::Vector2d>("force", FLAGS_force, "finite numbers");
   }
   options.kind = KindFromFlag(options.kind);
-  const SectionChoice section = SectionFromFlags();
-  options.section.model = section.model.value_or(options.section.model);
-  options.section.thickness =
-      section.thickness.value_or(options.section.thickness);
+  SetSectionFromFlags(options.section);
   return FlagsNamed([&] { return RectangleScene(options); });
+}
+
+PlateEnds EndsFromFlags() {
+  if (FLAGS_ends != "traction" && FLAGS_ends != "grips") {
+    throw std::invalid_argument(AsGiven("ends") + "; it is traction or grips");
+  }
+  const bool has_grips = FLAGS_ends == "grips";
+  const std::string other = has_grips ? "force" : "elongation";
+  if (IsGiven(other)) {
+    throw std::invalid_argument(
+        AsGiven(other) + " is not for --ends=" + FLAGS_ends +
+        (has_grips ? ", which move by --elongation; leave it out"
+                   : "; leave it out, or give --ends=grips"));
+  }
+  return has_grips ? PlateEnds::kGrips : PlateEnds::kTraction;
+}
+
+Scene PlateFromFlags() {
+  PlateOptions options;
+  options.ends = EndsFromFlags();
+  if (IsGiven("size")) {
+    options.size =
+        NumberList<Eigen::Vector2d>("size", FLAGS_size, "finite numbers");
+  }
+  if (IsGiven("hole")) {
+    options.hole = FLAGS_hole;
+  }
+  if (IsGiven("cells")) {
+    options.cells = NumberList<Eigen::Matrix<int, 1, 1>>(
+        "cells", FLAGS_cells, "integer below 2^31")(0);
+  }
+  if (IsGiven("force")) {
+    options.force = NumberList<Eigen::Matrix<double, 1, 1>>(
+        "force", FLAGS_force, "finite number")(0);
+  }
+  if (IsGiven("elongation")) {
+    options.elongation = FLAGS_elongation;
+  }
+  options.kind = KindFromFlag(options.kind);
+  SetSectionFromFlags(options.section);
+  return FlagsNamed([&] { return PlateScene(options); });
 }
 
 Scene OrganFromFlags() {
@@ -113,40 +138,60 @@ Scene OrganFromFlags() {
   options.length = FLAGS_length;
   if (IsGiven("force")) {
     options.force =
-        Numbers<Eigen::Vector3d>("force", FLAGS_force, "finite numbers");
+        NumberList<Eigen::Vector3d>("force", FLAGS_force, "finite numbers");
   }
   return FlagsNamed([&] { return OrganScene(options); });
 }
 
-Scene SceneFromFlags(const std::string& geometry) {
-  if (geometry == "cuboid") {
-    RejectFlags("cuboid", {"tetrahedra", "length", "model", "thickness"});
-    return CuboidFromFlags();
+/// What is generated, and the flags that are not for it.
+struct Geometry {
+  const char* name;
+  Scene (*make)();
+  std::vector<std::string> others;
+};
+
+const std::vector<Geometry>& Geometries() {
+  static const std::vector<Geometry> geometries = {
+      {"cuboid",
+       CuboidFromFlags,
+       {"tetrahedra", "length", "hole", "ends", "elongation", "model",
+        "thickness"}},
+      {"organ",
+       OrganFromFlags,
+       {"cells", "size", "elements", "hole", "ends", "elongation", "model",
+        "thickness"}},
+      {"plate", PlateFromFlags, {"tetrahedra", "length"}},
+      {"rectangle",
+       RectangleFromFlags,
+       {"tetrahedra", "length", "hole", "ends", "elongation"}}};
+  return geometries;
+}
+
+const Geometry& GeometryFromArguments(
+    const std::vector<std::string>& arguments) {
+  const auto found = std::find_if(
+      Geometries().begin(), Geometries().end(), [&](const Geometry& geometry) {
+        return arguments == std::vector<std::string>{geometry.name};
+      });
+  if (found == Geometries().end()) {
+    throw std::invalid_argument(
+        "generate needs one geometry, cuboid, organ, plate or rectangle" +
+        ButGot(arguments));
   }
-  if (geometry == "rectangle") {
-    RejectFlags("rectangle", {"tetrahedra", "length"});
-    return RectangleFromFlags();
-  }
-  RejectFlags("organ", {"cells", "size", "elements", "model", "thickness"});
-  return OrganFromFlags();
+  return *found;
 }
 
 }  // namespace
 
 int RunGenerate(const std::vector<std::string>& arguments) {
-  if (arguments.size() != 1 ||
-      (arguments[0] != "cuboid" && arguments[0] != "organ" &&
-       arguments[0] != "rectangle")) {
-    throw std::invalid_argument(
-        "generate needs one geometry, cuboid, organ or rectangle" +
-        ButGot(arguments));
-  }
+  const Geometry& geometry = GeometryFromArguments(arguments);
   if (FLAGS_out.empty()) {
     throw std::invalid_argument("generate needs --out=FILE.vtu");
   }
   CheckOutputFlags({});
   std::optional<Progress> progress("meshing");
-  const Scene scene = SceneFromFlags(arguments[0]);
+  RejectFlags(geometry.name, geometry.others);
+  const Scene scene = geometry.make();
   StagedFiles files;
   files.Add(FLAGS_out, VtuContent(FLAGS_out, scene.mesh, SceneFields(scene)));
   progress.reset();

@@ -100,11 +100,23 @@ void OpenClosedStandardStreams() {
   }
 }
 
-void CheckOutputFlags(const std::vector<std::string>& inputs) {
-  if (!FLAGS_out.empty() && LowercaseExtension(FLAGS_out) != ".vtu") {
-    throw std::invalid_argument("--out=" + PrintablePath(FLAGS_out) +
-                                "; what is written is a VTU file, so the "
-                                "name must end in .vtu");
+bool HasExtension(const std::string& file, const std::string& extension) {
+  return LowercaseExtension(file) == extension;
+}
+
+void CheckOutputFlags(const std::vector<std::string>& inputs,
+                      OutFormats formats) {
+  const bool may_be_table = formats == OutFormats::kVtuOrTable;
+  if (!FLAGS_out.empty()) {
+    if (!HasExtension(FLAGS_out, ".vtu") &&
+        !(may_be_table && HasExtension(FLAGS_out, ".csv"))) {
+      throw std::invalid_argument(
+          "--out=" + PrintablePath(FLAGS_out) +
+          "; what is written is a VTU file" +
+          (may_be_table ? " or a table of points, so the name must end in .vtu "
+                          "or .csv"
+                        : ", so the name must end in .vtu"));
+    }
   }
   std::vector<std::pair<std::string, std::string>> others;
   for (const auto& [flag, file] :

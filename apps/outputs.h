@@ -11,10 +11,17 @@ namespace elastimate {
 /// would be taken for them.
 void OpenClosedStandardStreams();
 
+/// What --out may be.
+enum class OutFormats { kVtu, kVtuOrTable };
+
+/// Whether the name of a file ends with `extension`, in letters of any case.
+bool HasExtension(const std::string& file, const std::string& extension);
+
 /// Checks --out and --json before any work is done: that they could be written,
 /// and that none of them is an input, the other one, or where standard output
 /// goes.  Throws std::invalid_argument.
-void CheckOutputFlags(const std::vector<std::string>& inputs);
+void CheckOutputFlags(const std::vector<std::string>& inputs,
+                      OutFormats formats = OutFormats::kVtu);
 
 /// Throws std::invalid_argument when not all of the text arrives.
 void WriteStandardOutput(const std::string& text);

@@ -1,13 +1,15 @@
+#include <iomanip>
 #include <limits>
 #include <optional>
 #include <random>
+#include <sstream>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "apps/commands.h"
 #include "apps/element_order.h"
+#include "apps/error_flags.h"
 #include "apps/estimator_flags.h"
 #include "apps/flags.h"
 #include "apps/outputs.h"
@@ -15,12 +17,16 @@
 #include "apps/section_flags.h"
 #include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/equilibrium/simulated_measurement.h"
+#include "elastimate/core/mesh/mesh_points.h"
 #include "elastimate/core/mesh/representable.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
+#include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/core/scene/unknown_motion.h"
+#include "elastimate/io/points/points_file.h"
 #include "elastimate/io/report/parameters_file.h"
 #include "elastimate/io/scene/scene_reader.h"
+#include "elastimate/io/text/file_output.h"
 #include "elastimate/io/text/printable.h"
 #include "elastimate/io/vtk/vtu_writer.h"
 
@@ -61,24 +67,38 @@ Eigen::VectorXd ParametersFromFlags(const Scene& scene) {
   return values;
 }
 
-void CheckNoiseFlags() {
-  if (FLAGS_noise < 0) {
-    throw std::invalid_argument(AsGiven("noise") + "; it must not be negative");
+// Whether the measurement is a table of points, in the place of a scene.
+bool WritesTable() { return HasExtension(FLAGS_out, ".csv"); }
+
+void CheckPointsFlag() {
+  constexpr int kMostPoints = 10000000;
+  if (!IsGiven("points")) {
+    return;
   }
-  if (FLAGS_noise_law != "uniform" && FLAGS_noise_law != "gaussian") {
-    throw std::invalid_argument(AsGiven("noise_law") +
-                                "; it is uniform or gaussian");
+  if (FLAGS_points < 1 || FLAGS_points > kMostPoints) {
+    throw std::invalid_argument(AsGiven("points") + "; it must be from 1 to " +
+                                std::to_string(kMostPoints));
+  }
+  if (!WritesTable()) {
+    throw std::invalid_argument(AsGiven("points") +
+                                "; points are written to a table, so give "
+                                "--out=FILE.csv");
   }
 }
 
-// At the nodes of the scene, which come first of those that are modelled:
-// num_dofs x num_load_cases.
-Eigen::MatrixXd Simulate(const std::string& source, const Scene& scene,
-                         const Scene& modelled, SolverKind solver,
-                         std::vector<std::string>& notices) {
+/// The equilibrium of each load case: num_dofs of the modelled scene x
+/// num_load_cases.
+struct Solution {
+  Eigen::MatrixXd displacement;
+  Eigen::MatrixXd support_forces;  ///< Zero where nothing is held.
+};
+
+Solution Solve(const std::string& source, const Scene& modelled,
+               SolverKind solver, std::vector<std::string>& notices) {
   const Eigen::VectorXd values = ParametersFromFlags(modelled);
   Equilibrium model(modelled, solver);
-  if (!model.Solve(model.Forces().Parameters().Moduli(values))) {
+  const Eigen::VectorXd moduli = model.Forces().Parameters().Moduli(values);
+  if (!model.Solve(moduli)) {
     throw std::invalid_argument(
         source +
         ": the stiffness matrix is singular to working precision; check the "
@@ -87,25 +107,50 @@ Eigen::MatrixXd Simulate(const std::string& source, const Scene& scene,
   if (!model.Notice().empty()) {
     notices.push_back(model.Notice());
   }
-  return model.Displacement().topRows(scene.mesh.NumDofs());
+  const Eigen::MatrixXd residual =
+      model.Forces().Multiply(moduli, model.Displacement()) -
+      AssembleLoadCases(modelled);
+  const DegreesOfFreedom dofs(modelled.supports);
+  return {model.Displacement(),
+          residual - dofs.Extend(dofs.Restrict(residual))};
 }
 
-// Enters displacements with noise as the measurement.
-void EnterMeasurement(const std::string& source, Eigen::MatrixXd displacement,
-                      Scene& scene) {
-  const DegreesOfFreedom dofs(scene.supports);
-  const NoiseLaw law =
-      FLAGS_noise_law == "uniform" ? NoiseLaw::kUniform : NoiseLaw::kGaussian;
-  std::mt19937_64 generator(FLAGS_seed);
-  for (Eigen::Index k = 0; k < displacement.cols(); ++k) {
-    if (FLAGS_noise > 0) {
-      const double norm =
-          FLAGS_noise * dofs.Restrict(displacement.col(k)).norm();
-      displacement.col(k) +=
-          dofs.Extend(DrawNoise(law, dofs.NumFree(), norm, generator));
+/// What a load cell would show: a line for each load case where supports are
+/// held away from zero.
+std::string ForcesOfDisplacedSupports(const Scene& modelled,
+                                      const Solution& solution) {
+  const Supports& supports = modelled.supports;
+  const ComponentMask displaced =
+      supports.held && supports.displacement.array() != 0.0;
+  std::ostringstream text;
+  text << std::setprecision(10);
+  for (Eigen::Index k = 0;
+       k < solution.support_forces.cols() && displaced.any(); ++k) {
+    const Eigen::MatrixXd forces = solution.support_forces.col(k).reshaped(
+        displaced.rows(), displaced.cols());
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(forces.rows());
+    for (Eigen::Index node = 0; node < forces.cols(); ++node) {
+      if (displaced.col(node).any()) {
+        sum += forces.col(node);
+      }
     }
-    scene.load_cases[k].displacement = displacement.col(k).reshaped(
-        scene.mesh.Dimension(), scene.mesh.NumNodes());
+    text << "load case " << k + 1 << ": force of the displaced supports ";
+    for (Eigen::Index i = 0; i < sum.size(); ++i) {
+      text << (i == 0 ? "(" : ", ") << sum(i);
+    }
+    text << ")\n";
+  }
+  return text.str();
+}
+
+/// Adds errors to what is measured at some positions.
+void Disturb(const std::string& source, const MeasurementErrors& errors,
+             const Eigen::MatrixXd& positions, const ComponentMask& held,
+             std::mt19937_64& generator, Eigen::MatrixXd& displacement) {
+  try {
+    AddErrors(errors, positions, held, generator, displacement);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string("--") + error.what());
   }
   try {
     RequireRepresentable(displacement.allFinite()
@@ -117,28 +162,63 @@ void EnterMeasurement(const std::string& source, Eigen::MatrixXd displacement,
   }
 }
 
-}  // namespace
-
-int RunSimulate(const std::vector<std::string>& arguments) {
-  if (arguments.size() != 1) {
-    throw std::invalid_argument("simulate needs one scene file" +
-                                ButGot(arguments));
+/// The scene with the displacement of its nodes, which come first of those that
+/// are modelled, as the measurement.
+std::string MeasuredScene(const std::string& source,
+                          const MeasurementErrors& errors,
+                          const Solution& solution,
+                          const std::vector<int>& file_order, Scene& scene) {
+  const Mesh& mesh = scene.mesh;
+  std::mt19937_64 generator(FLAGS_seed);
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    Eigen::MatrixXd displacement =
+        solution.displacement.col(Eigen::Index(k))
+            .head(mesh.NumDofs())
+            .reshaped(mesh.Dimension(), mesh.NumNodes());
+    Disturb(source, errors, mesh.nodes, scene.supports.held, generator,
+            displacement);
+    scene.load_cases[k].displacement = displacement;
   }
-  if (FLAGS_out.empty()) {
-    throw std::invalid_argument("simulate needs --out=FILE.vtu");
-  }
-  CheckParameterFlags();
-  CheckNoiseFlags();
-  const SolverKind solver = SolverFromFlag();
-  ApplyComputingFlags();
-  CheckOutputFlags(arguments);
-  const std::string source = PrintablePath(arguments[0]);
-  std::optional<Progress> progress("reading " + source);
-  SceneReading reading = ReadScene({arguments[0]}, Measurement::kOptional,
-                                   SectionFromFlags(), RegionsFromFlag());
-  Scene& scene = reading.scene;
+  return VtuContent(FLAGS_out, mesh, SceneFields(scene), file_order);
+}
 
-  progress->Show("factorising");
+/// The table of --points random points, or of all nodes of the scene in the
+/// order of the file.  To a camera supports are points like others.
+std::string MeasuredPoints(const std::string& source,
+                           const MeasurementErrors& errors,
+                           const Solution& solution,
+                           const std::vector<int>& file_order,
+                           const Scene& scene, const Scene& modelled) {
+  if (scene.load_cases.size() != 1) {
+    throw std::invalid_argument(
+        "--out=" + PrintablePath(FLAGS_out) + ": " + source + " has " +
+        std::to_string(scene.load_cases.size()) +
+        " load cases, of which a table holds one; give --out=FILE.vtu, or a "
+        "scene for each load case");
+  }
+  const Mesh& mesh = modelled.mesh;
+  std::mt19937_64 generator(FLAGS_seed);
+  Eigen::MatrixXd positions = scene.mesh.nodes;
+  Eigen::MatrixXd displacement =
+      solution.displacement.reshaped(mesh.Dimension(), mesh.NumNodes())
+          .leftCols(scene.mesh.NumNodes());
+  if (IsGiven("points")) {
+    const MeshPoints points = DrawPoints(mesh, FLAGS_points, generator);
+    positions = Interpolate(mesh, points, mesh.nodes);
+    displacement = Interpolate(
+        mesh, points,
+        solution.displacement.reshaped(mesh.Dimension(), mesh.NumNodes()));
+  } else if (!file_order.empty()) {
+    positions = positions(Eigen::all, file_order).eval();
+    displacement = displacement(Eigen::all, file_order).eval();
+  }
+  const ComponentMask held =
+      ComponentMask::Constant(positions.rows(), positions.cols(), false);
+  Disturb(source, errors, positions, held, generator, displacement);
+  return PointsContent(positions, displacement);
+}
+
+void RequireKnownSupports(const std::string& source, const Scene& scene) {
   const std::string why_not_held = WhyNotHeld(scene.mesh, scene.supports);
   if (!why_not_held.empty()) {
     throw std::invalid_argument(source + ": " + why_not_held);
@@ -150,13 +230,47 @@ int RunSimulate(const std::vector<std::string>& arguments) {
         "\"displacement\" "
         "as a vector, and leave out resultants and \"rigid_motion\"");
   }
+}
+
+// Checks what can be checked before any work is done.
+MeasurementErrors ErrorsFromCheckedFlags(
+    const std::vector<std::string>& arguments) {
+  if (arguments.size() != 1) {
+    throw std::invalid_argument("simulate needs one scene file" +
+                                ButGot(arguments));
+  }
+  if (FLAGS_out.empty()) {
+    throw std::invalid_argument(
+        "simulate needs --out=FILE.vtu, or FILE.csv for a table of points");
+  }
+  CheckParameterFlags();
+  const MeasurementErrors errors = ErrorsFromFlags();
+  CheckPointsFlag();
+  return errors;
+}
+
+}  // namespace
+
+int RunSimulate(const std::vector<std::string>& arguments) {
+  MeasurementErrors errors = ErrorsFromCheckedFlags(arguments);
+  const SolverKind solver = SolverFromFlag();
+  ApplyComputingFlags();
+  CheckOutputFlags(arguments, OutFormats::kVtuOrTable);
+  const std::string source = PrintablePath(arguments[0]);
+  std::optional<Progress> progress("reading " + source);
+  SceneReading reading = ReadScene({arguments[0]}, Measurement::kOptional,
+                                   SectionFromFlags(), RegionsFromFlag());
+  Scene& scene = reading.scene;
+  errors.rigid_motion = RigidMotionFromFlag(scene.mesh.Dimension());
+
+  progress->Show("factorising");
+  RequireKnownSupports(source, scene);
   const std::optional<Scene> quadratic =
       QuadraticSceneIfAsked(source, scene, reading.notices);
-  EnterMeasurement(source,
-                   Simulate(source, scene, quadratic ? *quadratic : scene,
-                            solver, reading.notices),
-                   scene);
-  if (quadratic && !HasNodalForcesOnly(scene)) {
+  const Scene& modelled = quadratic ? *quadratic : scene;
+  const Solution solution = Solve(source, modelled, solver, reading.notices);
+  const std::string forces = ForcesOfDisplacedSupports(modelled, solution);
+  if (quadratic && !HasNodalForcesOnly(scene) && !WritesTable()) {
     reading.notices.push_back(
         PrintablePath(FLAGS_out) +
         " has the loads as nodal forces of linear elements; to estimate with "
@@ -164,8 +278,15 @@ int RunSimulate(const std::vector<std::string>& arguments) {
         source + " and the displacement of " + PrintablePath(FLAGS_out));
   }
   progress->Show("writing " + PrintablePath(FLAGS_out));
-  WriteVtu(FLAGS_out, scene.mesh, SceneFields(scene), reading.file_order);
+  StagedFiles files;
+  files.Add(FLAGS_out, WritesTable()
+                           ? MeasuredPoints(source, errors, solution,
+                                            reading.file_order, scene, modelled)
+                           : MeasuredScene(source, errors, solution,
+                                           reading.file_order, scene));
   progress.reset();
+  WriteStandardOutput(forces);
+  files.Commit();
   PrintNotices(reading.notices);
   return 0;
 }

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <random>
+#include <vector>
 
 #include "elastimate/core/materials/elasticity.h"
 #include "elastimate/core/scene/scene.h"
@@ -27,6 +28,59 @@ void MeasureInFinerWorld(const IsotropicElasticity& elasticity, Scene& scene);
 /// Independent noise of mean zero, scaled to exactly this norm.
 Eigen::VectorXd DrawNoise(NoiseLaw law, Eigen::Index size, double norm,
                           std::mt19937_64& generator);
+
+/// Gaussian noise of mean zero and this standard deviation in each component at
+/// each of n positions (dimension x n), independent of the other components:
+/// dimension x n.
+///
+/// With a correlation length X > 0 it is smooth: white noise on a lattice of
+/// spacing X / 2, convolved with the kernel exp(-r^2 / X^2) and divided by the
+/// root of the sum of the squared weights at each position.  That has the
+/// correlation rho(d) = exp(-d^2 / (2 X^2)) at a distance d, to within 1e-5,
+/// wherever the positions are.  With X = 0 it is independent at each position.
+///
+/// Throws std::invalid_argument, beginning with "correlation_length", where the
+/// positions extend over so many lengths X (in the plane about 2000) that the
+/// lattice would have more than 2e7 points.  O(n), with 17^dimension lattice
+/// points for each position, and O(number of lattice points).
+Eigen::MatrixXd DrawNoiseAt(const Eigen::MatrixXd& positions,
+                            double standard_deviation,
+                            double correlation_length,
+                            std::mt19937_64& generator);
+
+/// Gross errors of `share` of `candidates` (to the nearest number), which are
+/// columns of dimension x n; zero in all other columns.  Each has a direction
+/// of its own, and a length of 20 to 100 standard deviations, drawn uniformly.
+Eigen::MatrixXd DrawOutliers(std::vector<Eigen::Index> candidates, double share,
+                             double standard_deviation, int dimension,
+                             Eigen::Index n, std::mt19937_64& generator);
+
+/// What a measurement has beside the displacement; nothing by default.
+struct MeasurementErrors {
+  /// The norm of noise of this law beside that of the displacement.
+  double relative_noise = 0;
+  NoiseLaw law = NoiseLaw::kUniform;
+  /// The standard deviation of Gaussian noise [length], in the place of
+  /// relative noise, and the length over which it is alike (DrawNoiseAt).
+  double noise_sd = 0;
+  double correlation_length = 0;
+  /// Share of the points with gross errors (DrawOutliers), in standard
+  /// deviations of the noise; those of relative noise are its norm over the
+  /// root of the number of components.
+  double outliers = 0;
+  /// Small translations along the axes, then small rotations [rad] about axes
+  /// through the origin (RigidMotionsAt), of the camera or of all that was
+  /// measured; empty for none.
+  Eigen::VectorXd rigid_motion;
+};
+
+/// Adds the errors to displacements at some positions, both dimension x n. Held
+/// components (dimension x n) have no noise, and points with such no gross
+/// error; the rigid motion is that of all.  First the noise is drawn, then the
+/// outliers.  Throws as DrawNoiseAt does.
+void AddErrors(const MeasurementErrors& errors,
+               const Eigen::MatrixXd& positions, const ComponentMask& held,
+               std::mt19937_64& generator, Eigen::MatrixXd& displacement);
 
 }  // namespace elastimate
 

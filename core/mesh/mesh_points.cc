@@ -1,5 +1,6 @@
 #include "elastimate/core/mesh/mesh_points.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -18,6 +19,47 @@ bool IsInReferenceElement(ElementKind kind,
   return IsSimplex(kind)
              ? xi.minCoeff() >= -kOutside && xi.sum() <= 1 + kOutside
              : xi.cwiseAbs().maxCoeff() <= 1 + kOutside;
+}
+
+using UnitDistribution = std::uniform_real_distribution<double>;
+
+// Evenly in the reference element.
+template <ElementKind kKind>
+auto DrawReferencePoint(std::mt19937_64& generator) {
+  UnitDistribution unit(0, 1);
+  Eigen::Matrix<double, ElementSizes<kKind>::kDimension, 1> xi;
+  do {
+    std::generate(xi.begin(), xi.end(), [&] { return unit(generator); });
+  } while (IsSimplex(kKind) && xi.sum() > 1);
+  return IsSimplex(kKind) ? xi : decltype(xi)(2 * xi.array() - 1);
+}
+
+// Evenly in the element: reference points are taken as often as they stand for
+// volume.  The columns of the Jacobian matrix are means of those at the
+// vertices, so that the product of their largest lengths bounds its
+// determinant (Hadamard).
+template <ElementKind kKind>
+auto DrawLocalPoint(const Mesh& mesh, Eigen::Index element,
+                    std::mt19937_64& generator) {
+  if (IsSimplex(kKind)) {
+    return DrawReferencePoint<kKind>(generator);
+  }
+  const auto vertices = GatherVertices<kKind>(mesh, element);
+  Eigen::Matrix<double, 1, ElementSizes<kKind>::kDimension> longest;
+  longest.setZero();
+  for (const ShapeFunctions<kKind>& at : VertexRule<kKind>()) {
+    longest = longest.cwiseMax(
+        (vertices * at.vertex_gradient.transpose()).colwise().norm());
+  }
+  UnitDistribution share(0, 1);
+  while (true) {
+    const auto xi = DrawReferencePoint<kKind>(generator);
+    const auto at = ShapeFunctionsAt<kKind>(xi, 1);
+    if (ElementMap<kKind>(vertices, at, 1).volume_ratio >=
+        share(generator) * longest.prod()) {
+      return xi;
+    }
+  }
 }
 
 }  // namespace
@@ -69,6 +111,22 @@ Eigen::MatrixXd Interpolate(const Mesh& mesh, const MeshPoints& points,
     }
   }
   return interpolated;
+}
+
+MeshPoints DrawPoints(const Mesh& mesh, Eigen::Index count,
+                      std::mt19937_64& generator) {
+  const Eigen::VectorXd volumes = ElementVolumes(mesh);
+  std::discrete_distribution<int> element(volumes.begin(), volumes.end());
+  MeshPoints points = {Eigen::VectorXi(count),
+                       Eigen::MatrixXd(mesh.Dimension(), count)};
+  VisitElementKind(mesh.kind, [&](auto kind) {
+    for (Eigen::Index point = 0; point < count; ++point) {
+      points.elements(point) = element(generator);
+      points.local.col(point) =
+          DrawLocalPoint<kind>(mesh, points.elements(point), generator);
+    }
+  });
+  return points;
 }
 
 }  // namespace elastimate

@@ -2,6 +2,7 @@
 #define ELASTIMATE_CORE_MESH_MESH_POINTS_H_
 
 #include <Eigen/Core>
+#include <random>
 
 #include "elastimate/core/mesh/mesh.h"
 
@@ -31,6 +32,12 @@ Eigen::MatrixXd ShapeFunctionsOf(const Mesh& mesh, const MeshPoints& points);
 /// Precondition: ValidatePoints.  O(rows n).
 Eigen::MatrixXd Interpolate(const Mesh& mesh, const MeshPoints& points,
                             const Eigen::MatrixXd& field);
+
+/// `count` points anywhere in the mesh: as many in one part of it as in another
+/// of the same volume, but for chance.  Precondition: a valid mesh.
+/// O(num_elements + count), more where elements are sheared.
+MeshPoints DrawPoints(const Mesh& mesh, Eigen::Index count,
+                      std::mt19937_64& generator);
 
 }  // namespace elastimate
 

@@ -26,6 +26,15 @@ constexpr double kLargest = 1e50;
 // Beyond, the reader takes the tetrahedra of a cell for flat.
 constexpr double kMaxCellAspect = 1e5;
 
+// Square numbers of cells are as many as those of other geometries.
+constexpr int kMaxPlateCells = 1414;
+// Beyond, the cells beside a corner are slivers.
+constexpr double kMaxPlateAspect = 100;
+// Of the shorter edge: a ligament of nothing would be left beyond.
+constexpr double kLargestHole = 0.99;
+// Of W.
+constexpr double kUsualElongation = 1e-3;
+
 template <typename Value>
 std::string TextOf(const Value& value) {
   std::ostringstream text;
@@ -90,18 +99,47 @@ void CheckOptions(const CuboidOptions& options) {
   CheckForce(options.force);
 }
 
+/// Of a planar `geometry`.
+void CheckSheet(const std::string& geometry, ElementKind kind,
+                const Section& section) {
+  Require(kind == ElementKind::kTri3 || kind == ElementKind::kQuad4, "elements",
+          std::string(TopologyOf(kind).name),
+          "a " + geometry + " is of tri3 or quad4");
+  Require(section.model != SectionModel::kSolid, "model",
+          std::string(SectionModelName(section.model)),
+          "a " + geometry + " is in plane_stress or plane_strain");
+  Require(IsInRange(section.thickness), "thickness", TextOf(section.thickness),
+          "it must be " + Range());
+}
+
 void CheckOptions(const RectangleOptions& options) {
-  Require(
-      options.kind == ElementKind::kTri3 || options.kind == ElementKind::kQuad4,
-      "elements", std::string(TopologyOf(options.kind).name),
-      "a rectangle is of tri3 or quad4");
-  Require(options.section.model != SectionModel::kSolid, "model",
-          std::string(SectionModelName(options.section.model)),
-          "a rectangle is in plane_stress or plane_strain");
-  Require(IsInRange(options.section.thickness), "thickness",
-          TextOf(options.section.thickness), "it must be " + Range());
+  CheckSheet("rectangle", options.kind, options.section);
   CheckGrid(options.cells, options.size);
   CheckForce(options.force);
+}
+
+void CheckOptions(const PlateOptions& options) {
+  CheckSheet("plate", options.kind, options.section);
+  Require(std::all_of(options.size.begin(), options.size.end(), IsInRange),
+          "size", CommaSeparated(options.size), "each must be " + Range());
+  Require(options.size.maxCoeff() <= kMaxPlateAspect * options.size.minCoeff(),
+          "size", CommaSeparated(options.size),
+          "the plate is too slender; its longer edge must be at most " +
+              TextOf(kMaxPlateAspect) + " times the shorter");
+  const double smallest = options.size.maxCoeff() / kMaxCellAspect;
+  const double largest = kLargestHole * options.size.minCoeff();
+  Require(options.hole >= smallest && options.hole <= largest, "hole",
+          TextOf(options.hole),
+          "a plate of size " + CommaSeparated(options.size) +
+              " has a hole of radius " + TextOf(smallest) + " to " +
+              TextOf(largest));
+  Require(options.cells >= 2 && options.cells <= kMaxPlateCells, "cells",
+          TextOf(options.cells),
+          "it must be from 2 to " + std::to_string(kMaxPlateCells));
+  CheckForce(Eigen::VectorXd::Constant(1, options.force));
+  Require(!options.elongation || IsInRange(std::abs(*options.elongation)),
+          "elongation", TextOf(options.elongation.value_or(0)),
+          "its magnitude must be " + Range());
 }
 
 void CheckOptions(const OrganOptions& options) {
@@ -222,6 +260,43 @@ Eigen::MatrixXi RectangleElements(ElementKind kind,
   return elements;
 }
 
+/// Where rays from the origin at about equal angles, one of them through the
+/// corner, leave a rectangle of this size: from (W, 0) to (0, H), 2 x (n + 1).
+Eigen::Matrix2Xd EndsOfRays(const Eigen::Vector2d& size, int n) {
+  constexpr double kRightAngle = 1.5707963267948966;
+  const double corner = std::atan2(size.y(), size.x());
+  const int n_right = std::clamp<int>(
+      static_cast<int>(std::lround(n * corner / kRightAngle)), 1, n - 1);
+  Eigen::Matrix2Xd ends(2, n + 1);
+  for (int j = 0; j <= n; ++j) {
+    if (j < n_right) {
+      const double angle = corner * j / n_right;
+      ends.col(j) << size.x(), size.x() * std::tan(angle);
+    } else if (j == n_right) {
+      ends.col(j) = size;
+    } else {  // Measured from the y axis, so that the last one is on it
+              // exactly.
+      const double angle = (kRightAngle - corner) * (n - j) / (n - n_right);
+      ends.col(j) << size.y() * std::tan(angle), size.y();
+    }
+  }
+  return ends;
+}
+
+Eigen::Matrix2Xd PlateNodes(const PlateOptions& options) {
+  const int n = options.cells;
+  const Eigen::Matrix2Xd ends = EndsOfRays(options.size, n);
+  Eigen::Matrix2Xd nodes(2, ends.cols() * ends.cols());
+  Eigen::Index node = 0;
+  for (int j = 0; j <= n; ++j) {
+    const double ratio = options.hole / ends.col(j).norm();
+    for (int i = 0; i <= n; ++i) {
+      nodes.col(node++) = ends.col(j) * std::pow(ratio, 1 - double(i) / n);
+    }
+  }
+  return nodes;
+}
+
 /// The facets all of whose nodes are at the largest x.
 Eigen::MatrixXi EndFacets(const Mesh& mesh) {
   const double end = mesh.nodes.row(0).maxCoeff();
@@ -296,6 +371,37 @@ Scene RectangleScene(const RectangleOptions& options) {
   scene.supports.displacement.setZero(2, scene.mesh.NumNodes());
   scene.load_cases.emplace_back().loads.emplace_back(
       SurfaceForce{EndFacets(scene.mesh), options.force});
+  return scene;
+}
+
+Scene PlateScene(const PlateOptions& options) {
+  CheckOptions(options);
+  Scene scene;
+  scene.mesh = {
+      options.kind,
+      options.section,
+      PlateNodes(options),
+      RectangleElements(options.kind, Eigen::Vector2i::Constant(options.cells)),
+      {}};
+  const Eigen::MatrixXd& nodes = scene.mesh.nodes;
+  Supports& supports = scene.supports;
+  // Each component on the line of symmetry across it.
+  supports.held = nodes.array() == 0.0;
+  supports.displacement.setZero(2, nodes.cols());
+  LoadCase& load_case = scene.load_cases.emplace_back();
+  if (options.ends == PlateEnds::kTraction) {
+    load_case.loads.emplace_back(SurfaceForce{
+        EndFacets(scene.mesh), Eigen::Vector2d(options.force, 0.0)});
+    return scene;
+  }
+  const double elongation =
+      options.elongation.value_or(kUsualElongation * options.size.x());
+  for (Eigen::Index node = 0; node < nodes.cols(); ++node) {
+    if (nodes(0, node) == options.size.x()) {
+      supports.held.col(node).setConstant(true);
+      supports.displacement(0, node) = elongation;
+    }
+  }
   return scene;
 }
 

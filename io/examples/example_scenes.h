@@ -2,6 +2,7 @@
 #define ELASTIMATE_IO_EXAMPLES_EXAMPLE_SCENES_H_
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "elastimate/core/scene/scene.h"
 
@@ -51,6 +52,47 @@ struct RectangleOptions {
 /// beginning with the option's name, for an option out of its range.
 /// O(num_elements).
 Scene RectangleScene(const RectangleOptions& options);
+
+/// What pulls the end of a plate.
+enum class PlateEnds {
+  kTraction,  ///< A force that is spread uniformly over the end.
+  kGrips,     ///< A rigid grip, which the end follows without narrowing.
+};
+
+/// A quarter of a plate with a hole that is pulled along x: by symmetry the
+/// whole plate is 2 W x 2 H, and its hole is whole.
+struct PlateOptions {
+  /// W, H: edge lengths of the quarter [mm], 1e-50 to 1e50.
+  Eigen::Vector2d size = {10.0, 10.0};
+  /// Radius of the hole [mm], below both edge lengths, and at least 1e-5 of the
+  /// longer one.
+  double hole = 2.5;
+  /// Number of cells along the arc, and as many from there to the edges: 2 to
+  /// 1414.
+  int cells = 54;
+  PlateEnds ends = PlateEnds::kTraction;
+  /// Total force along x on the end of the quarter [N], of magnitude 1e-50 to
+  /// 1e50, or zero; for kTraction.
+  double force = 1500.0;
+  /// How far a grip moves along x [mm], of magnitude 1e-50 to 1e50; for kGrips.
+  /// A thousandth of W where it is not given.
+  std::optional<double> elongation;
+  ElementKind kind = ElementKind::kQuad4;  ///< Or kTri3.
+  /// Plane stress or plane strain, and a thickness of 1e-50 to 1e50 [mm].
+  Section section = {SectionModel::kPlaneStress, 1.0};
+};
+
+/// The quarter 0 <= x <= W, 0 <= y <= H without the hole around the origin,
+/// held by symmetry (u_x = 0 at x = 0, u_y = 0 at y = 0), with one load case
+/// and no measurement.  A grip holds u_y = 0 at x = W, too.
+///
+/// Nodes lie on rays from the origin, one through the corner (W, H), with
+/// distances in geometric progression from the arc to the edges, so that cells
+/// are about square beside the hole.  They are numbered from the arc outwards
+/// first, then from the x axis to the y axis.  Throws std::invalid_argument,
+/// beginning with the option's name, for an option out of its range.
+/// O(num_elements).
+Scene PlateScene(const PlateOptions& options);
 
 /// A smooth, closed, liver-like solid: a big right lobe (small x) that tapers
 /// to a thin left lobe, domed above, hollow behind and below, with a thin lower

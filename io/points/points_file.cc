@@ -1,6 +1,7 @@
 #include "elastimate/io/points/points_file.h"
 
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -75,6 +76,14 @@ double Deviation(const CsvTable& table, const CsvTable::Row& row,
   return value;
 }
 
+// The fewest digits that are read as the same number.
+void AppendNumber(double value, std::string& text) {
+  std::array<char, 32> digits;
+  const auto end =
+      std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  text.append(digits.data(), end);
+}
+
 }  // namespace
 
 PointsFile ReadPointsFile(const std::filesystem::path& path, int dimension) {
@@ -101,6 +110,21 @@ PointsFile ReadPointsFile(const std::filesystem::path& path, int dimension) {
     }
   }
   return file;
+}
+
+std::string PointsContent(const Eigen::MatrixXd& positions,
+                          const Eigen::MatrixXd& displacement) {
+  const Eigen::Index dimension = positions.rows();
+  std::string text = dimension == 2 ? "x,y,ux,uy\n" : "x,y,z,ux,uy,uz\n";
+  for (Eigen::Index point = 0; point < positions.cols(); ++point) {
+    for (Eigen::Index i = 0; i < 2 * dimension; ++i) {
+      AppendNumber(i < dimension ? positions(i, point)
+                                 : displacement(i - dimension, point),
+                   text);
+      text += i + 1 < 2 * dimension ? ',' : '\n';
+    }
+  }
+  return text;
 }
 
 }  // namespace elastimate

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace elastimate {
@@ -23,6 +24,11 @@ struct PointsFile {
 /// were not measured.  Throws std::invalid_argument, naming the file, the line
 /// and the column, for anything else.
 PointsFile ReadPointsFile(const std::filesystem::path& path, int dimension);
+
+/// The content of a file that ReadPointsFile reads as these positions and
+/// displacements, both dimension x n, to the last bit: a row for each point.
+std::string PointsContent(const Eigen::MatrixXd& positions,
+                          const Eigen::MatrixXd& displacement);
 
 }  // namespace elastimate
 

@@ -52,9 +52,10 @@ TEST_F(CommandLine, HelpNamesEveryCommandAndFlag) {
   const std::string help = Succeed("--help").output;
   for (const std::string words :
        {"elastimate estimate SCENE...", "elastimate simulate SCENE",
-        "elastimate generate cuboid|organ|rectangle", "elastimate estimators",
-        "--estimator", "--nu_min", "--youngs_max", "--noise_sd", "--loss",
-        "--noise_law", "--json", "--out", "--cells", "Exit code"}) {
+        "elastimate generate cuboid|organ|plate|rectangle",
+        "elastimate estimators", "--estimator", "--nu_min", "--youngs_max",
+        "--noise_sd", "--loss", "--noise_law", "--json", "--out", "--cells",
+        "Exit code"}) {
     EXPECT_NE(help.find(words), std::string::npos) << words;
   }
   EXPECT_EQ(Succeed("estimate --help").output, help);
@@ -513,9 +514,9 @@ TEST_F(CommandLine, RefusesWrongSimulations) {
 
 TEST_F(CommandLine, RefusesWrongGeometriesByTheirFlags) {
   Refuse("generate sphere --out=a.vtu",
-         "cuboid, organ or rectangle; it got sphere");
+         "cuboid, organ, plate or rectangle; it got sphere");
   Refuse("generate --out=a.vtu",
-         "one geometry, cuboid, organ or rectangle; it got none");
+         "one geometry, cuboid, organ, plate or rectangle; it got none");
   Refuse("generate cuboid", "needs --out");
   const std::string cuboid = "generate cuboid --out=a.vtu ";
   Refuse(cuboid + "--tetrahedra=9", "takes no flag --tetrahedra");
@@ -751,13 +752,21 @@ TEST_F(CommandLine, HelpStatesTheDefaultsOfTheExampleScenes) {
   };
   const CuboidOptions cuboid;
   const OrganOptions organ;
+  const PlateOptions plate;
+  const std::string size = std::to_string(int(plate.size.x())) + "," +
+                           std::to_string(int(plate.size.y()));
+  EXPECT_EQ(plate.hole, 2.5);
   for (const std::string& words :
        {"(default " + text(cuboid.cells) + ")",
         "(default " + text(cuboid.size) + ")",
         "(default " + text(cuboid.force) + " for the cuboid, " +
             text(organ.force) + " for the organ)",
         "(default " + std::to_string(organ.tetrahedra) + ")",
-        std::string("(default 0.2)")}) {
+        std::string("(default 0.2)"), std::string("(default 2.5)"),
+        "edges, from 2 to 1414; " + std::to_string(plate.cells) + " without",
+        "along x,y; " + size + " without",
+        "total force along x, " + std::to_string(int(plate.force)) +
+            " without"}) {
     EXPECT_NE(help.find(words), std::string::npos) << words;
   }
   Succeed("generate cuboid --out=cuboid.vtu");

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 #include "elastimate/core/mesh/shape_functions.h"
 #include "tests/core/random_values.h"
 #include "tests/element_kinds.h"
@@ -68,6 +71,35 @@ TEST_P(MeshPointsOfKinds, AreRefusedOutsideTheirElements) {
                      "make them dimension x points");
 }
 
+// As many in each element as its share of the volume is, with the mean of the
+// body, which the integrals of shape functions give.
+TEST_P(MeshPointsOfKinds, AreDrawnEvenly) {
+  constexpr Eigen::Index kPoints = 20000;
+  std::mt19937_64 generator(1);
+  const MeshPoints points = DrawPoints(mesh_, kPoints, generator);
+  ASSERT_EQ(points.Size(), kPoints);
+  EXPECT_NO_THROW(ValidatePoints(mesh_, points));
+  Eigen::ArrayXd counts = Eigen::ArrayXd::Zero(mesh_.NumElements());
+  for (const int element : points.elements) {
+    ++counts(element);
+  }
+  const Eigen::ArrayXd volumes = ElementVolumes(mesh_).array();
+  const Eigen::ArrayXd expected = kPoints * volumes / volumes.sum();
+  // Chi squared of about as many degrees of freedom n, with variance 2 n.
+  const double n = double(mesh_.NumElements() - 1);
+  EXPECT_NEAR(((counts - expected).square() / expected).sum(), n,
+              4 * std::sqrt(2 * n));
+  const Eigen::VectorXd shares = testing::TextbookVolumes(mesh_);
+  const Eigen::VectorXd centre = mesh_.nodes * shares / shares.sum();
+  const Eigen::MatrixXd positions = Interpolate(mesh_, points, mesh_.nodes);
+  const Eigen::MatrixXd arms = positions.colwise() - centre;
+  const Eigen::ArrayXd sd =
+      arms.rowwise().norm().array() / double(kPoints);  // Of the mean.
+  EXPECT_TRUE((arms.rowwise().mean().array().abs() < 4 * sd).all());
+  std::mt19937_64 again(1);
+  EXPECT_EQ(DrawPoints(mesh_, kPoints, again).local, points.local);
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, MeshPointsOfKinds,
                          ::testing::ValuesIn(testing::AllKindsOfSections()),
                          [](const auto& info) {
@@ -80,6 +112,37 @@ TEST(MeshPoints, AreTheSameInQuadraticElements) {
   const MeshPoints points = RandomPoints(mesh, 50, 2);
   EXPECT_TRUE(Interpolate(quadratic, points, quadratic.nodes)
                   .isApprox(Interpolate(mesh, points, mesh.nodes), 1e-13));
+}
+
+// A trapezoid of edges 4 and 1 in one element: reference points beside the one
+// stand for four times the area of those beside the other.
+TEST(MeshPoints, AreDrawnEvenlyInDistortedElements) {
+  Mesh mesh;
+  mesh.kind = ElementKind::kQuad4;
+  mesh.section = {SectionModel::kPlaneStress, 1};
+  mesh.nodes.resize(2, 4);
+  mesh.nodes << 0, 4, 1, 0,  //
+      0, 0, 1, 1;
+  mesh.elements = Eigen::Vector4i(0, 1, 2, 3);
+  constexpr Eigen::Index kPoints = 40000;
+  std::mt19937_64 generator(4);
+  const Eigen::MatrixXd positions =
+      Interpolate(mesh, DrawPoints(mesh, kPoints, generator), mesh.nodes);
+  // The part below y has the area 4 y - 3 y^2 / 2 of 5/2.
+  for (const double y : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+    const double share = (4 * y - 1.5 * y * y) / 2.5;
+    const double found =
+        double((positions.row(1).array() < y).count()) / kPoints;
+    EXPECT_NEAR(found, share, 4 * std::sqrt(share * (1 - share) / kPoints));
+  }
+  // In a row the points spread evenly from 0 to 4 - 3 y.
+  const Eigen::ArrayXd along =
+      (positions.row(0).array() / (4 - 3 * positions.row(1).array()))
+          .transpose();
+  for (const double part : {0.1, 0.5, 0.8}) {
+    const double found = double((along < part).count()) / kPoints;
+    EXPECT_NEAR(found, part, 4 * std::sqrt(part * (1 - part) / kPoints));
+  }
 }
 
 }  // namespace

@@ -46,6 +46,23 @@ TEST_F(PointsFileTest, ReadsPlanarPointsWithStandardDeviations) {
   EXPECT_EQ(file.noise_sd, noise_sd);
 }
 
+TEST_F(PointsFileTest, ReadsWhatIsWrittenToTheLastBit) {
+  for (const int dimension : {2, 3}) {
+    Eigen::MatrixXd positions(dimension, 4);
+    for (Eigen::Index i = 0; i < positions.size(); ++i) {
+      positions.reshaped()(i) = std::sin(double(i)) * std::pow(10.0, 7.0 * i);
+    }
+    const Eigen::MatrixXd displacement = -1e-45 * positions.rowwise().reverse();
+    const std::string content = PointsContent(positions, displacement);
+    EXPECT_EQ(content.substr(0, content.find('\n')),
+              dimension == 2 ? "x,y,ux,uy" : "x,y,z,ux,uy,uz");
+    const PointsFile file = Read(content, dimension);
+    EXPECT_EQ(file.positions, positions);
+    EXPECT_EQ(file.displacement, displacement);
+    EXPECT_EQ(file.noise_sd.size(), 0);
+  }
+}
+
 TEST_F(PointsFileTest, NamesLineAndColumn) {
   EXPECT_THROWS_WITH(Read("x,y,ux,uy,uz\n1,2,3,4,5\n"),
                      "no column 'z' among x, y, ux, uy, uz; add it");

@@ -1,0 +1,19 @@
+#ifndef ELASTIMATE_APPS_ERROR_FLAGS_H_
+#define ELASTIMATE_APPS_ERROR_FLAGS_H_
+
+#include "elastimate/core/equilibrium/simulated_measurement.h"
+
+namespace elastimate {
+
+/// The errors of the simulated measurement that the flags ask for.  Throws
+/// std::invalid_argument for values out of range and flags that contradict each
+/// other.  What of --rigid_motion depends on the dimension is left out.
+MeasurementErrors ErrorsFromFlags();
+
+/// --rigid_motion in this dimension; empty without it.  Throws
+/// std::invalid_argument where it does not have 3 or 6 finite numbers.
+Eigen::VectorXd RigidMotionFromFlag(int dimension);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_APPS_ERROR_FLAGS_H_

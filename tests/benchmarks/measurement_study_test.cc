@@ -1,0 +1,64 @@
+// Runs the quick measurement study, and holds it against what has to be.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "tests/benchmarks/tables.h"
+#include "tests/program.h"
+
+namespace elastimate {
+namespace {
+
+using testing::ReadTable;
+using testing::TableRow;
+
+const TableRow& RowOfLevel(const std::vector<TableRow>& rows,
+                           const std::string& factor, const std::string& level,
+                           const std::string& assumption) {
+  for (const TableRow& row : rows) {
+    if (row.Text("factor") == factor && row.Text("level") == level &&
+        row.Text("assumption") == assumption) {
+      return row;
+    }
+  }
+  ADD_FAILURE() << factor << " " << level << " " << assumption;
+  return rows.front();
+}
+
+class MeasurementStudy : public testing::ProgramTest {};
+
+TEST_F(MeasurementStudy, TellsRightFromWrong) {
+  Succeed("study --name=measurement --out=. --quick");
+  const std::vector<TableRow> rows =
+      ReadTable(folder_ / "measurement_cells.csv");
+  const std::string error = "youngs_modulus_root_mean_square_error [1]";
+  for (const TableRow& row : rows) {
+    SCOPED_TRACE(row.Text("factor") + " " + row.Text("level") + " " +
+                 row.Text("assumption"));
+    EXPECT_EQ(row.Number("usable_share [1]"), 1);
+    if (row.Text("assumption") == "right") {
+      EXPECT_EQ(row.Number("dishonest_share [1]"), 0);
+      // Four trials: chi^2 of 4 degrees of freedom is below 25 but for 5e-5.
+      EXPECT_LT(row.Number(error),
+                2.5 * row.Number("youngs_modulus_standard_error [1]"));
+    }
+  }
+  // Five hundredths of ten nodes a side: 6 of 121.
+  EXPECT_NEAR(
+      RowOfLevel(rows, "outliers [%]", "5", "right").Number("outliers [1]"), 6,
+      1);
+  // A rigid grip does not pull evenly.
+  EXPECT_GT(
+      RowOfLevel(rows, "ends", "rigid grip", "uniform traction").Number(error),
+      4 * RowOfLevel(rows, "ends", "rigid grip", "right").Number(error));
+  // A camera that moved by a tenth of a millimetre.
+  EXPECT_GT(
+      RowOfLevel(rows, "camera motion [mm]", "1", "fixed camera").Number(error),
+      10 * RowOfLevel(rows, "camera motion [mm]", "1", "right").Number(error));
+}
+
+}  // namespace
+}  // namespace elastimate
