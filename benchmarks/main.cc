@@ -16,6 +16,7 @@
 #include "apps/flag_parser.h"
 #include "apps/progress.h"
 #include "benchmarks/kernels.h"
+#include "benchmarks/measurement_study.h"
 #include "benchmarks/metadata.h"
 #include "benchmarks/paper_study.h"
 #include "benchmarks/scaling_study.h"
@@ -52,6 +53,8 @@ constexpr NamedStudy kStudies[] = {
      RunStabilityStudy},
     {"unseen", "whether error bars hold on shapes that nothing was built on",
      RunUnseenStudy},
+    {"measurement", "what cameras, grips and load cells do to the estimate",
+     RunMeasurementStudy},
 };
 
 const Program& Benchmark() {

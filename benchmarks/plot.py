@@ -527,11 +527,47 @@ def unseen_regret(path):
     return figure
 
 
+MEASUREMENT_PARAMETERS = (("youngs_modulus", 100, "error of E [%]"),
+                          ("poisson_ratio", 1, "error of nu"))
+
+
+def measurement_cells(path):
+    """What is wrong, and what is stated, for each factor."""
+    rows = read(path)
+    factors = list(dict.fromkeys(row["factor"] for row in rows))
+    figure, panels = plt.subplots(2, len(factors), figsize=(2.1 * len(factors), 5.4),
+                                  sharey="row")
+    for (parameter, scale, label), line in zip(MEASUREMENT_PARAMETERS, panels):
+        for axes, factor in zip(line, factors):
+            own = [row for row in rows if row["factor"] == factor]
+            names = [row["level"] if row["assumption"] == "right"
+                     else f"{row['level']}:\n{row['assumption']}" for row in own]
+            places = range(len(own))
+            wrong = scale * numbers(own, parameter + "_root_mean_square_error [1]")
+            axes.plot(places, wrong, "o", color="C0", label="root mean square error")
+            axes.plot(places, scale * numbers(own, parameter + "_standard_error [1]"), "_",
+                      color="C1", markersize=12, markeredgewidth=2,
+                      label="median standard error that is stated")
+            for place, error, row in zip(places, wrong, own):
+                covered = 100 * float(row[parameter + "_coverage [1]"] or "nan")
+                axes.annotate(f"{covered:.0f}", (place, error), fontsize=6, xytext=(0, 5),
+                              textcoords="offset points", ha="center")
+            axes.set_yscale("log")
+            axes.margins(x=0.15)
+            axes.set_xticks(places, names if line is panels[-1] else [], rotation=90, fontsize=7)
+            if line is panels[0]:
+                axes.set_title(factor, fontsize=8)
+        line[0].set_ylabel(label)
+    finish(figure, "What cameras, grips and load cells do to iterative-fe; numbers: how many of"
+           " the 95 % intervals hold the truth [%]")
+    return figure
+
+
 FIGURES = {
     function.__name__: function
     for function in (paper_noise, paper_spatial_noise, paper_measurements, paper_forces,
                      paper_organ, paper_cuboid_choice, speed_accuracy_points, scaling,
-                     stability_cells, unseen_cells, unseen_regret)
+                     stability_cells, unseen_cells, unseen_regret, measurement_cells)
 }
 
 
