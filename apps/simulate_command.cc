@@ -90,8 +90,13 @@ void CheckPointsFlag() {
 /// num_load_cases.
 struct Solution {
   Eigen::MatrixXd displacement;
-  Eigen::MatrixXd support_forces;  ///< Zero where nothing is held.
+  /// Zero where nothing is held; empty where nothing is held away from zero.
+  Eigen::MatrixXd support_forces;
 };
+
+ComponentMask Displaced(const Supports& supports) {
+  return supports.held && supports.displacement.array() != 0.0;
+}
 
 Solution Solve(const std::string& source, const Scene& modelled,
                SolverKind solver, std::vector<std::string>& notices) {
@@ -107,6 +112,9 @@ Solution Solve(const std::string& source, const Scene& modelled,
   if (!model.Notice().empty()) {
     notices.push_back(model.Notice());
   }
+  if (!Displaced(modelled.supports).any()) {
+    return {model.Displacement(), {}};
+  }
   const Eigen::MatrixXd residual =
       model.Forces().Multiply(moduli, model.Displacement()) -
       AssembleLoadCases(modelled);
@@ -119,13 +127,10 @@ Solution Solve(const std::string& source, const Scene& modelled,
 /// held away from zero.
 std::string ForcesOfDisplacedSupports(const Scene& modelled,
                                       const Solution& solution) {
-  const Supports& supports = modelled.supports;
-  const ComponentMask displaced =
-      supports.held && supports.displacement.array() != 0.0;
+  const ComponentMask displaced = Displaced(modelled.supports);
   std::ostringstream text;
   text << std::setprecision(10);
-  for (Eigen::Index k = 0;
-       k < solution.support_forces.cols() && displaced.any(); ++k) {
+  for (Eigen::Index k = 0; k < solution.support_forces.cols(); ++k) {
     const Eigen::MatrixXd forces = solution.support_forces.col(k).reshaped(
         displaced.rows(), displaced.cols());
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(forces.rows());
@@ -244,7 +249,7 @@ MeasurementErrors ErrorsFromCheckedFlags(
         "simulate needs --out=FILE.vtu, or FILE.csv for a table of points");
   }
   CheckParameterFlags();
-  const MeasurementErrors errors = ErrorsFromFlags();
+  MeasurementErrors errors = ErrorsFromFlags();
   CheckPointsFlag();
   return errors;
 }

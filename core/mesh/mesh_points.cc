@@ -53,7 +53,7 @@ auto DrawLocalPoint(const Mesh& mesh, Eigen::Index element,
   }
   UnitDistribution share(0, 1);
   while (true) {
-    const auto xi = DrawReferencePoint<kKind>(generator);
+    auto xi = DrawReferencePoint<kKind>(generator);
     const auto at = ShapeFunctionsAt<kKind>(xi, 1);
     if (ElementMap<kKind>(vertices, at, 1).volume_ratio >=
         share(generator) * longest.prod()) {
