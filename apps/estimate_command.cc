@@ -13,6 +13,7 @@
 #include "apps/estimator_flags.h"
 #include "apps/flags.h"
 #include "apps/linear_algebra.h"
+#include "apps/outlier_lines.h"
 #include "apps/outputs.h"
 #include "apps/progress.h"
 #include "apps/result_fields.h"
@@ -208,6 +209,10 @@ int RunOne(const std::vector<std::string>& arguments,
                                     reading.file_order));
   }
   progress.reset();
+  for (const std::string& sentence :
+       OutlierLines(estimate.outliers, reading.measured_lines)) {
+    reading.notices.push_back(sentence);
+  }
   WriteReport(estimate, reported, options, {read_seconds, SecondsSince(start)},
               reading.notices, files);
   return estimate.IsUsable() ? 0 : 1;

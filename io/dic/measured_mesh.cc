@@ -115,6 +115,9 @@ MeshFile ReadMeasuredMesh(const JsonValue& mesh,
   file.nodes.topRows(2) = frame.positions(Eigen::all, points.points);
   file.node_arrays.push_back(
       {"displacement", frame.displacement(Eigen::all, points.points)});
+  for (const Eigen::Index point : points.points) {
+    file.node_lines.push_back(frame.lines[point]);
+  }
   CheckMeshFile(file);
   notices.push_back(Description(path, frame, points, file));
   return file;

@@ -52,6 +52,9 @@ struct MeshFile {
   Eigen::Array<bool, 1, Eigen::Dynamic> used;  ///< By an element.
   bool has_other_cells = false;  ///< Cells of lower dimension were ignored.
 
+  /// Of nodes that are rows of a table, their lines; else empty.
+  std::vector<std::size_t> node_lines;
+
   bool is_vtk = true;
   std::vector<std::size_t> node_numbers;  ///< Gmsh's; empty for a VTK file.
   /// Nodes of the file that Gmsh left out because no element uses them: the

@@ -107,7 +107,8 @@ void AppendPoints(const PointsFile& file, const MeshPoints& points,
 PointDisplacements ReadMeasuredPoints(const JsonValue& displacement,
                                       const Mesh& mesh,
                                       const PointLocator& locator,
-                                      std::vector<std::string>& notices) {
+                                      std::vector<std::string>& notices,
+                                      std::vector<FileLines>& lines) {
   displacement.CheckKeys({"points", "tolerance"});
   const double tolerance = ToleranceOf(displacement, mesh);
   PointDisplacements all;
@@ -119,6 +120,7 @@ PointDisplacements ReadMeasuredPoints(const JsonValue& displacement,
     const LocatedPoints located = locator.Locate(file.positions);
     CheckDistances(path, file, located.distance, tolerance, notices);
     AppendPoints(file, located.points, all);
+    lines.push_back({path, file.lines});
     if (all.noise_sd.cols() != 0 && all.noise_sd.cols() != all.points.Size()) {
       ThrowInputError(path,
                       "some files of the load case have columns of standard "

@@ -6,6 +6,7 @@
 
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/io/points/point_locator.h"
+#include "elastimate/io/text/file_lines.h"
 #include "elastimate/io/text/json_value.h"
 
 namespace elastimate {
@@ -13,13 +14,15 @@ namespace elastimate {
 /// The measured points of a load case: `displacement` has the key `points`, a
 /// file (ReadPointsFile) or a list of some, paths relative to its own, and may
 /// have `tolerance`, how far a point may lie outside the mesh [length]; without
-/// it a thousandth of the diagonal of the mesh's bounding box.  Throws
+/// it a thousandth of the diagonal of the mesh's bounding box.  `lines` gets
+/// where the points stand, file by file.  Throws
 /// std::invalid_argument, naming the file, the line and the distance, for a
 /// point farther outside; adds a notice of those nearer.
 PointDisplacements ReadMeasuredPoints(const JsonValue& displacement,
                                       const Mesh& mesh,
                                       const PointLocator& locator,
-                                      std::vector<std::string>& notices);
+                                      std::vector<std::string>& notices,
+                                      std::vector<FileLines>& lines);
 
 }  // namespace elastimate
 

@@ -8,6 +8,7 @@
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/io/mesh/mesh_file.h"
 #include "elastimate/io/scene/frame_series.h"
+#include "elastimate/io/text/file_lines.h"
 
 namespace elastimate {
 
@@ -18,6 +19,9 @@ struct FileScene {
   Scene scene;
   std::vector<std::string> notices;
   std::optional<FrameSeries> frames;
+  /// Of each load case, where its measurement stands, in the order of nodes or
+  /// of points; empty where that is no text.
+  std::vector<std::vector<FileLines>> measured_lines;
 };
 
 /// The regions from the cell array `region`; empty when there is none.  Throws

@@ -1,5 +1,7 @@
 #include "elastimate/io/scene/json_measurement.h"
 
+#include <numeric>
+
 #include "elastimate/io/points/measured_points.h"
 #include "elastimate/io/scene/file_scene.h"
 #include "elastimate/io/scene/node_field.h"
@@ -21,8 +23,10 @@ ComponentMask ReadObserved(const JsonValue& observed, const MeshFile& mesh,
   return SelectNodes(observed, mesh, &free).replicate(mesh.Dimension(), 1);
 }
 
-void MeasurementReader::Read(const JsonValue& displacement, LoadCase& load_case,
-                             std::vector<std::string>& notices) {
+std::vector<FileLines> MeasurementReader::Read(
+    const JsonValue& displacement, LoadCase& load_case,
+    std::vector<std::string>& notices) {
+  std::vector<FileLines> lines;
   if (displacement.Has("points")) {
     if (load_case.observed.size() > 0) {
       displacement.Fail(
@@ -32,9 +36,9 @@ void MeasurementReader::Read(const JsonValue& displacement, LoadCase& load_case,
     if (!locator_) {
       locator_.emplace(scene_mesh_);
     }
-    load_case.points =
-        ReadMeasuredPoints(displacement, scene_mesh_, *locator_, notices);
-    return;
+    load_case.points = ReadMeasuredPoints(displacement, scene_mesh_, *locator_,
+                                          notices, lines);
+    return lines;
   }
   displacement.CheckKeys({"file", "array"});
   load_case.displacement = ReadNodeField(
@@ -42,6 +46,13 @@ void MeasurementReader::Read(const JsonValue& displacement, LoadCase& load_case,
       load_case.observed.size() > 0 ? load_case.observed : AllComponents(mesh_),
       "correct it or leave it out of the observed nodes");
   ClearUnobserved(load_case);
+  if (displacement.Has("file")) {
+    // Below the header.
+    std::vector<std::size_t> of_nodes(mesh_.nodes.cols());
+    std::iota(of_nodes.begin(), of_nodes.end(), 2);
+    lines.push_back({ResolvePath(displacement.At("file")), of_nodes});
+  }
+  return lines;
 }
 
 }  // namespace elastimate

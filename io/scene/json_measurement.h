@@ -9,6 +9,7 @@
 #include "elastimate/io/mesh/mesh_file.h"
 #include "elastimate/io/points/point_locator.h"
 #include "elastimate/io/scene/node_selection.h"
+#include "elastimate/io/text/file_lines.h"
 #include "elastimate/io/text/json_value.h"
 
 namespace elastimate {
@@ -26,9 +27,12 @@ class MeasurementReader {
       : mesh_(mesh), scene_mesh_(scene_mesh) {}
 
   /// Enters the measurement; what was observed of nodes is there already.
-  /// Throws std::invalid_argument, naming the file and the place in it.
-  void Read(const JsonValue& displacement, LoadCase& load_case,
-            std::vector<std::string>& notices);
+  /// Returns where it stands: the points file by file, or all nodes of the
+  /// mesh file; nothing of an array.  Throws std::invalid_argument, naming the
+  /// file and the place in it.
+  std::vector<FileLines> Read(const JsonValue& displacement,
+                              LoadCase& load_case,
+                              std::vector<std::string>& notices);
 
  private:
   const MeshFile& mesh_;

@@ -67,7 +67,7 @@ bool ReadIsRigidMotionFree(const JsonValue& document) {
 
 LoadCase ReadLoadCase(const JsonValue& value, const LoadContext& context,
                       MeasurementReader& reader, bool is_mesh_measured,
-                      Measurement measurement) {
+                      Measurement measurement, std::vector<FileLines>& lines) {
   value.CheckKeys({"displacement", "loads", "noise_sd", "observed"});
   LoadCase load_case;
   ReadLoads(value.At("loads"), context, load_case);
@@ -84,9 +84,10 @@ LoadCase ReadLoadCase(const JsonValue& value, const LoadContext& context,
   if (!value.Has("displacement") && is_mesh_measured) {
     load_case.displacement =
         *FindArray(context.mesh.node_arrays, "displacement");
+    lines.push_back({context.mesh.path, context.mesh.node_lines});
   } else if (value.Has("displacement") ||
              measurement == Measurement::kRequired) {
-    reader.Read(value.At("displacement"), load_case, context.notices);
+    lines = reader.Read(value.At("displacement"), load_case, context.notices);
   }
   return load_case;
 }
@@ -121,7 +122,8 @@ FileScene ReadJsonScene(const std::filesystem::path& path,
   for (const JsonValue& load_case : cases) {
     file_scene.scene.load_cases.push_back(
         ReadLoadCase(load_case, context, reader, document.At("mesh").IsObject(),
-                     has_frames ? Measurement::kOptional : measurement));
+                     has_frames ? Measurement::kOptional : measurement,
+                     file_scene.measured_lines.emplace_back()));
   }
   if (has_frames) {
     file_scene.frames = ReadFrames(document, file_scene);

@@ -127,6 +127,15 @@ class SceneNodes {
     return scene;
   }
 
+  /// Of a measurement of all nodes.
+  FileLines Filter(const FileLines& all) const {
+    FileLines lines = {all.file, {}};
+    for (const Eigen::Index node : kept_) {
+      lines.lines.push_back(all.lines[node]);
+    }
+    return lines;
+  }
+
   /// Those of the frames as they are read.
   FrameSeries Filter(FrameSeries frames) const {
     if (NumDropped() > 0 || !FileOrder().empty()) {
@@ -258,6 +267,14 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
                       mesh.Shape() + " uses");
   }
   Scene scene = nodes.Filter(std::move(file_scene.scene));
+  file_scene.measured_lines.resize(scene.load_cases.size());
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    std::vector<FileLines>& lines = file_scene.measured_lines[k];
+    if (!lines.empty() && scene.load_cases[k].displacement.size() != 0) {
+      lines = {nodes.Filter(lines[0])};
+    }
+    reading.measured_lines.push_back(lines);
+  }
   if (file_scene.frames) {
     reading.frames = nodes.Filter(*file_scene.frames);
   }

@@ -8,6 +8,7 @@
 
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/io/scene/frame_series.h"
+#include "elastimate/io/text/file_lines.h"
 
 namespace elastimate {
 
@@ -39,6 +40,9 @@ struct SceneReading {
   std::vector<int> file_order;
   /// Empty but where a scene.json has the key "frames".
   std::optional<FrameSeries> frames;
+  /// Of each load case, where its measurement stands, in the order of nodes or
+  /// of points; empty where that is no text.
+  std::vector<std::vector<FileLines>> measured_lines;
 };
 
 /// Reads a scene from files whose arrays make it up (.vtu, .vtk, or .msh with

@@ -1,0 +1,20 @@
+#ifndef ELASTIMATE_APPS_OUTLIER_LINES_H_
+#define ELASTIMATE_APPS_OUTLIER_LINES_H_
+
+#include <string>
+#include <vector>
+
+#include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/io/text/file_lines.h"
+
+namespace elastimate {
+
+/// "points.csv: outliers are on the lines 6, 10, 11": a sentence for each file
+/// with some, as far as measurements are lines of text (SceneReading).
+std::vector<std::string> OutlierLines(
+    const std::vector<Outlier>& outliers,
+    const std::vector<std::vector<FileLines>>& measured_lines);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_APPS_OUTLIER_LINES_H_
