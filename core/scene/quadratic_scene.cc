@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "elastimate/core/mesh/node_graph.h"
-#include "elastimate/core/scene/unknown_motion.h"
 
 namespace elastimate {
 namespace {
@@ -116,15 +115,6 @@ std::vector<bool> CrossingEdges(const Mesh& mesh, const Edges& edges) {
   return crossing;
 }
 
-// The mid-edge nodes of a support that moved as measured were not measured.
-void RequireRigid(const Supports& supports) {
-  if (AsMeasured(supports).any()) {
-    throw std::invalid_argument(
-        "a support that moved as measured is measured at the vertices only; "
-        "use order 1, or make the support rigid");
-  }
-}
-
 // And the mid-edge nodes between two of the nodes.
 template <class Predicate>
 std::vector<int> WithMidEdgeNodes(const std::vector<int>& nodes,
@@ -172,7 +162,6 @@ Supports WithMidEdgeSupports(const Supports& supports, const Mesh& mesh,
   }
   ComponentMask unknown;
   if (supports.unknown.size() != 0) {
-    RequireRigid(supports);
     unknown = WithMidEdges(
         supports.unknown,
         ComponentMask(held &&

@@ -7,6 +7,7 @@
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/mesh/axis_names.h"
+#include "elastimate/core/mesh/mid_edges.h"
 #include "elastimate/core/scene/rigid_motion.h"
 
 namespace elastimate {
@@ -102,10 +103,45 @@ void ValidateResultant(const Scene& scene, const Resultant& resultant,
   }
 }
 
+// Of a mesh of order 2: the ends of the edge of each node in its middle that
+// was measured in no load case, and moves with them; -1 for other components
+// and nodes.
+struct TiedNodes {
+  explicit TiedNodes(const Scene& scene)
+      : is_tied(ComponentMask::Constant(scene.supports.held.rows(),
+                                        scene.supports.held.cols(), false)) {
+    const ComponentMask measured = AsMeasured(scene.supports);
+    if (scene.mesh.Order() == 1 || measured.size() == 0) {
+      return;
+    }
+    const MidEdges edges(scene.mesh);
+    ends = edges.Ends();
+    first = edges.NumVertices();
+    for (Eigen::Index edge = 0; edge < ends.cols(); ++edge) {
+      for (int i = 0; i < measured.rows(); ++i) {
+        is_tied(i, first + edge) = measured(i, first + edge) &&
+                                   measured(i, ends(0, edge)) &&
+                                   measured(i, ends(1, edge));
+        for (const LoadCase& load_case : scene.load_cases) {
+          is_tied(i, first + edge) = is_tied(i, first + edge) &&
+                                     !IsObserved(load_case, i, first + edge);
+        }
+      }
+    }
+  }
+
+  ComponentMask is_tied;  // dimension x num_nodes.
+  Eigen::Matrix2Xi ends;  // Of node first + i in column i.
+  Eigen::Index first = 0;
+};
+
 // A few nodes may have been lost: their motion follows from their neighbours'.
 // Where there is no measurement of most, the motion is ill-posed.
 void ValidateMeasuredSupports(const Scene& scene) {
-  const ComponentMask measured = AsMeasured(scene.supports);
+  ComponentMask measured = AsMeasured(scene.supports);
+  if (measured.size() != 0) {
+    measured = measured && !TiedNodes(scene).is_tied;
+  }
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     const LoadCase& load_case = scene.load_cases[k];
     for (int i = 0; i < measured.rows(); ++i) {
@@ -190,9 +226,23 @@ UnknownMotion::UnknownMotion(const Scene& scene)
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::Index num_columns = 0;
   const ComponentMask measured = AsMeasured(supports);
+  const TiedNodes tied(scene);
+  std::vector<Eigen::Index> column_of_dof(mesh.NumDofs(), -1);
   for (Eigen::Index dof = 0; dof < measured.size(); ++dof) {
-    if (measured.reshaped()(dof)) {
+    if (measured.reshaped()(dof) && !tied.is_tied.reshaped()(dof)) {
+      column_of_dof[dof] = num_columns;
       entries.emplace_back(dof, num_columns++, 1);
+    }
+  }
+  for (Eigen::Index edge = 0; edge < tied.ends.cols(); ++edge) {
+    for (int i = 0; i < dimension; ++i) {
+      if (tied.is_tied(i, tied.first + edge)) {
+        for (const int end : tied.ends.col(edge)) {
+          entries.emplace_back(dimension * (tied.first + edge) + i,
+                               column_of_dof[dimension * Eigen::Index(end) + i],
+                               0.5);
+        }
+      }
     }
   }
   for (const RigidFace& face : supports.rigid_faces) {

@@ -25,7 +25,9 @@ ComponentMask AsMeasured(const Supports& supports);
 ///
 ///   u of the supports = given + G b,   what was measured = u + R a + noise.
 ///
-/// Columns are orthonormal, so that amounts are lengths.
+/// Amounts are lengths.  On a mesh of order 2, mid-edge nodes of supports that
+/// moved as measured, but were measured in no load case, move as the mean of
+/// the ends of their edge.
 struct UnknownMotion {
   /// G: num_dofs x n.  One column for each displacement that is as measured,
   /// and the rigid motions of each face, three to six at most.

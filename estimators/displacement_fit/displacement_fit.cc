@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "elastimate/core/algebra/dense_algebra.h"
-#include "elastimate/estimators/displacement_fit/element_errors.h"
+#include "elastimate/estimators/statistics/element_errors.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/statistics/errors_on_bound.h"
 #include "elastimate/estimators/statistics/residual_statistics.h"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "elastimate/core/scene/observed_displacements.h"
+#include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
@@ -185,9 +186,38 @@ struct MaterialFit {
   Eigen::MatrixXd displacement;
 };
 
+// How many quadratic elements are worth a look at what they change.
+constexpr Eigen::Index kMostQuadraticElements = 30000;
+
+// What quadratic elements change in the rows of the fit at these variables,
+// where supports moved as they do there; empty where it is not known.
+std::optional<Eigen::VectorXd> ChangeToQuadraticElements(
+    const Scene& scene, const EstimatorOptions& options,
+    const Eigen::VectorXd& variables, DisplacementMisfit& misfit,
+    Estimate& estimate) {
+  if (scene.mesh.Order() != 1 || !HasQuadraticKind(scene.mesh.kind) ||
+      scene.mesh.NumElements() > kMostQuadraticElements) {
+    return std::nullopt;
+  }
+  const Scene quadratic = QuadraticScene(scene);
+  DisplacementMisfit finer(quadratic, options);
+  finer.SetNoise(misfit.Noise());
+  Eigen::VectorXd rows;
+  Eigen::VectorXd finer_rows;
+  const bool is_found = misfit.Evaluate(variables, &rows, nullptr) &&
+                        finer.Evaluate(variables, &finer_rows, nullptr);
+  estimate.work = estimate.work + finer.Model().WorkDone();
+  return is_found ? std::optional<Eigen::VectorXd>(finer_rows - rows)
+                  : std::nullopt;
+}
+
+// Whether the fit is the last one, in which the elements are looked at.
+enum class Elements { kTakenAsExact, kLookedAt };
+
 // From `start` on, or from where FitMaterials says.
 MaterialFit FitAll(const Scene& scene, const EstimatorOptions& options,
-                   const std::optional<Eigen::VectorXd>& start) {
+                   const std::optional<Eigen::VectorXd>& start,
+                   Elements elements) {
   MaterialFit fit;
   Estimate& estimate = fit.estimate;
   Evidence evidence;
@@ -203,7 +233,13 @@ MaterialFit FitAll(const Scene& scene, const EstimatorOptions& options,
     evidence.search_message = minimum->message;
     EnterParameters(scene, misfit.Free(), minimum->variables, estimate);
     NoteVariablesOnBounds(misfit.Free(), *minimum, estimate);
-    DescribeMinimum(scene, minimum->variables, misfit, evidence, estimate);
+    const std::optional<Eigen::VectorXd> change =
+        elements == Elements::kLookedAt
+            ? ChangeToQuadraticElements(scene, options, minimum->variables,
+                                        misfit, estimate)
+            : std::nullopt;
+    DescribeMinimum(scene, minimum->variables, change, misfit, evidence,
+                    estimate);
     fit.variables = minimum->variables;
     Eigen::VectorXd rows;
     if (misfit.Evaluate(*fit.variables, &rows, nullptr)) {
@@ -247,7 +283,7 @@ MaterialFit FitWithoutOutliers(const Scene& scene,
   constexpr double kMost = 1.0 / 3;
   const ObservedDisplacements observed(scene);
   const auto num_points = static_cast<double>(observed.Points().size());
-  MaterialFit fit = FitAll(scene, options, start);
+  MaterialFit fit = FitAll(scene, options, start, Elements::kTakenAsExact);
   const MaterialFit of_all = fit;
   std::vector<Outlier> left_out;
   for (int i = 0; i < kRounds && fit.displacement.size() != 0; ++i) {
@@ -264,13 +300,21 @@ MaterialFit FitWithoutOutliers(const Scene& scene,
       break;
     }
     left_out = outliers;
-    fit = FitAll(WithoutOutliers(scene, outliers), options, fit.variables);
+    fit = FitAll(WithoutOutliers(scene, outliers), options, fit.variables,
+                 Elements::kTakenAsExact);
+    fit.estimate.work = fit.estimate.work + work;
+  }
+  const Eigen::Vector2d by_outliers =
+      LargestChange(of_all.estimate, fit.estimate);
+  if (fit.estimate.IsUsable() && HasQuadraticKind(scene.mesh.kind)) {
+    const Work work = fit.estimate.work;
+    fit = FitAll(WithoutOutliers(scene, left_out), options, fit.variables,
+                 Elements::kLookedAt);
     fit.estimate.work = fit.estimate.work + work;
   }
   if (!left_out.empty()) {
     fit.estimate.outliers = left_out;
-    fit.estimate.Add(OutliersLeftOut(
-        left_out, LargestChange(of_all.estimate, fit.estimate)));
+    fit.estimate.Add(OutliersLeftOut(left_out, by_outliers));
   }
   if (HasUnknownMotion(scene)) {
     fit.estimate.fitted_displacement = fit.displacement;

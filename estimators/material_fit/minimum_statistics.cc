@@ -7,6 +7,7 @@
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
 #include "elastimate/estimators/statistics/correlated_noise.h"
+#include "elastimate/estimators/statistics/element_errors.h"
 #include "elastimate/estimators/statistics/residual_statistics.h"
 
 namespace elastimate {
@@ -80,9 +81,80 @@ void WeighResultants(const DisplacementMisfit& misfit, double& variance,
       std::sqrt(variance) / misfit.Noise();
 }
 
+// What elements miss of these rows, those of resultants weighed as in the
+// sensitivities; empty where it is not known.
+std::optional<ElementErrors> FindElementErrors(
+    const Scene& scene, const Eigen::VectorXd& rows,
+    const Eigen::MatrixXd& sensitivities,
+    const std::optional<Eigen::VectorXd>& change, double variance,
+    DisplacementMisfit& misfit) {
+  if (!change) {
+    return std::nullopt;
+  }
+  const Eigen::Index num_resultants = misfit.NumResultants();
+  Eigen::VectorXd residual = rows;
+  Eigen::VectorXd weighed_change = *change;
+  if (num_resultants > 0) {
+    const double weight = std::sqrt(variance) / misfit.Noise();
+    residual.tail(num_resultants) *= weight;
+    weighed_change.tail(num_resultants) *= weight;
+  }
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(rows.size());
+  const FreeFit fit = {residual, sensitivities,
+                       sensitivities.transpose() * sensitivities, ones, true};
+  // What depends on the strain is of elements whose change is not known.
+  const ElementErrors errors(scene, misfit.Model().Graph(), misfit.Observed(),
+                             fit, weighed_change, {}, {});
+  // What is not determined cannot be corrected.
+  return errors.Correction()->allFinite() ? std::optional<ElementErrors>(errors)
+                                          : std::nullopt;
+}
+
+// Of one isotropic material, in which either parameter may be known.
+void EnterCorrection(const FreeParameters& free,
+                     const Eigen::VectorXd& correction, Estimate& estimate) {
+  Eigen::Vector2d of_both = Eigen::Vector2d::Zero();
+  for (Eigen::Index i = 0; i < correction.size(); ++i) {
+    of_both(free.All().Free()[i]) = correction(i);
+  }
+  estimate.discretization_correction = of_both;
+  const ParameterErrors& errors = estimate.error_budget.discretization;
+  if (std::isfinite(errors(0))) {
+    estimate.discretization_error = errors(0);
+  }
+  if (std::isfinite(errors(1))) {
+    estimate.poisson_ratio_discretization_error = errors(1);
+  }
+}
+
+// The corrected variables, half of the way to a bound at most.
+Eigen::VectorXd EnterElements(const Scene& scene, const FreeParameters& free,
+                              const Eigen::VectorXd& variables,
+                              const Eigen::MatrixXd& covariance,
+                              const Eigen::VectorXd& correction,
+                              Estimate& estimate) {
+  Eigen::VectorXd corrected = variables + correction;
+  for (Eigen::Index i = 0; i < corrected.size(); ++i) {
+    const Bounds& bounds = free.VariableBounds()[i];
+    if (bounds.lower) {
+      corrected(i) = std::max(corrected(i), (variables(i) + *bounds.lower) / 2);
+    }
+    if (bounds.upper) {
+      corrected(i) = std::min(corrected(i), (variables(i) + *bounds.upper) / 2);
+    }
+  }
+  EnterParameters(scene, free, corrected, estimate);
+  estimate.error_budget.discretization = ErrorsOfVariables(free, covariance);
+  if (IsOneIsotropicMaterial(scene.materials)) {
+    EnterCorrection(free, corrected - variables, estimate);
+  }
+  return corrected;
+}
+
 }  // namespace
 
 void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
+                     const std::optional<Eigen::VectorXd>& change_of_rows,
                      DisplacementMisfit& misfit, Evidence& evidence,
                      Estimate& estimate) {
   const FreeParameters& free = misfit.Free();
@@ -93,7 +165,7 @@ void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
     evidence.end = End::kSingularStiffness;
     return;
   }
-  const Eigen::VectorXd residual = rows.head(observed.Size());
+  Eigen::VectorXd residual = rows.head(observed.Size());
   estimate.displacement_residual = residual.norm() / observed.Measured().norm();
   const Eigen::Index num_fitted =
       free.Size() + misfit.NumAmounts() - misfit.NumResultants();
@@ -109,12 +181,26 @@ void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
   const Eigen::MatrixXd of_rows = sensitivities.topRows(observed.Size());
   const Eigen::MatrixXd inverse =
       Inverse(sensitivities.transpose() * sensitivities);
+  const std::optional<ElementErrors> elements = FindElementErrors(
+      scene, rows, sensitivities, change_of_rows, variance.variance, misfit);
+  if (elements) {
+    residual = elements->Rest().head(observed.Size());
+  }
   const SmoothSquareSum smooth =
       MeasureSmoothPart(misfit.Model().Graph(), observed, residual, estimate);
   const Eigen::MatrixXd by_correlation =
       AddedByCorrelation(scene, residual, of_rows, inverse, variance.variance,
                          smooth.least, observed, evidence, estimate);
   Eigen::MatrixXd covariance = variance.variance * (inverse + by_correlation);
+  Eigen::VectorXd corrected = variables;
+  if (elements) {
+    const Eigen::MatrixXd by_elements =
+        elements->CovarianceOfChange(smooth.most) +
+        elements->MissedSquareSum(smooth.most) * inverse;
+    covariance += by_elements;
+    corrected = EnterElements(scene, free, variables, by_elements,
+                              *elements->Correction(), estimate);
+  }
   estimate.error_budget.noise =
       ErrorsOfVariables(free, variance.variance * inverse);
   estimate.error_budget.model =
@@ -131,7 +217,7 @@ void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
     evidence.smooth_residual_error =
         std::sqrt(covariance.diagonal().maxCoeff());
   }
-  EnterCovariance(free, variables, covariance, estimate);
+  EnterCovariance(free, corrected, covariance, estimate);
 }
 
 }  // namespace elastimate

@@ -2,6 +2,7 @@
 #define ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MINIMUM_STATISTICS_H_
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
@@ -21,7 +22,12 @@ namespace elastimate {
 ///   + the square of what outliers that are left pull the parameters by.
 ///
 /// An evaluation, and O(n^2) for n points in a load case (CorrelateResiduals).
+///
+/// `change` is that of the rows to quadratic elements, where it is
+/// known: what of it the residual shows corrects the parameters that are
+/// entered, and its error is part of theirs (ElementErrors).
 void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
+                     const std::optional<Eigen::VectorXd>& change,
                      DisplacementMisfit& misfit, Evidence& evidence,
                      Estimate& estimate);
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/estimators/registry.h"
@@ -323,6 +324,58 @@ TEST(UnknownMotion, OfOneFrameAfterAnotherIsThatOfEach) {
     EXPECT_GT(saved_factorizations, 0);
   }
 }
+
+// Of a specimen that is finer than the mesh, and one that is not.
+class ElementsOfUnknownMotion : public ::testing::TestWithParam<KindOfSection> {
+ protected:
+  static Scene Measured(bool is_finer) {
+    Scene scene = testing::SceneOfKind(GetParam(), 5);
+    testing::DisplaceSupports(scene);
+    if (is_finer) {
+      MeasureInFinerWorld(kTruth, scene);
+    } else {
+      Measure(kTruth, scene);
+    }
+    scene.supports.displacement.setZero();
+    scene.supports.unknown = scene.supports.held;
+    Disturb(1e-3 * RootMeanSquare(scene), 1, scene);
+    return scene;
+  }
+};
+
+TEST_P(ElementsOfUnknownMotion, AreCorrectedForWhereTheyMissSomething) {
+  const Estimate estimate = RunIterativeFe(Measured(true));
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  ASSERT_TRUE(estimate.discretization_correction.has_value());
+  const double correction = (*estimate.discretization_correction)(0);
+  const double error =
+      std::log(estimate.elasticity.youngs_modulus / kTruth.youngs_modulus);
+  // Most of what the elements miss.
+  EXPECT_LT(std::abs(error), 0.5 * std::abs(error - correction));
+  EXPECT_LT(std::abs(error) * kTruth.youngs_modulus,
+            3 * *estimate.YoungsModulusStandardError());
+  EXPECT_LT(std::abs(estimate.elasticity.poisson_ratio - kTruth.poisson_ratio),
+            3 * *estimate.PoissonRatioStandardError());
+  EXPECT_GT(*estimate.discretization_error, 0);
+}
+
+TEST_P(ElementsOfUnknownMotion, AreLeftAloneWhereTheyMissNothing) {
+  const Estimate estimate = RunIterativeFe(Measured(false));
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  const Eigen::Vector2d correction = *estimate.discretization_correction;
+  EXPECT_LT(std::abs(correction(0)) * kTruth.youngs_modulus,
+            0.3 * *estimate.YoungsModulusStandardError());
+  EXPECT_LT(std::abs(correction(1)),
+            0.3 * *estimate.PoissonRatioStandardError());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Simplices, ElementsOfUnknownMotion,
+    ::testing::Values(
+        KindOfSection{ElementKind::kTri3, SectionModel::kPlaneStress},
+        KindOfSection{ElementKind::kTri3, SectionModel::kPlaneStrain},
+        KindOfSection{ElementKind::kTet4, SectionModel::kSolid}),
+    [](const auto& info) { return testing::NameOf(info.param); });
 
 TEST(UnknownMotion, LeavesOutliersOutByName) {
   Scene scene = Plate(12);

@@ -1,4 +1,4 @@
-#include "elastimate/estimators/displacement_fit/finer_specimen.h"
+#include "elastimate/estimators/statistics/finer_specimen.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-#ifndef ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_ELEMENT_ERRORS_H_
-#define ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_ELEMENT_ERRORS_H_
+#ifndef ELASTIMATE_ESTIMATORS_STATISTICS_ELEMENT_ERRORS_H_
+#define ELASTIMATE_ESTIMATORS_STATISTICS_ELEMENT_ERRORS_H_
 
 #include <Eigen/Core>
 #include <optional>
@@ -8,7 +8,7 @@
 #include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/scene.h"
-#include "elastimate/estimators/displacement_fit/finer_specimen.h"
+#include "elastimate/estimators/statistics/finer_specimen.h"
 
 namespace elastimate {
 
@@ -86,4 +86,4 @@ class ElementErrors {
 
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_ELEMENT_ERRORS_H_
+#endif  // ELASTIMATE_ESTIMATORS_STATISTICS_ELEMENT_ERRORS_H_

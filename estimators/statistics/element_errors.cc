@@ -1,4 +1,4 @@
-#include "elastimate/estimators/displacement_fit/element_errors.h"
+#include "elastimate/estimators/statistics/element_errors.h"
 
 #include <algorithm>
 #include <cmath>
