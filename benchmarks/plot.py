@@ -537,7 +537,9 @@ def measurement_cells(path):
     factors = list(dict.fromkeys(row["factor"] for row in rows))
     figure, panels = plt.subplots(2, len(factors), figsize=(2.1 * len(factors), 5.4),
                                   sharey="row")
-    for (parameter, scale, label), line in zip(MEASUREMENT_PARAMETERS, panels):
+    for number, (parameter, scale, label) in enumerate(MEASUREMENT_PARAMETERS):
+        line = panels[number]
+        is_last = number + 1 == len(panels)
         for axes, factor in zip(line, factors):
             own = [row for row in rows if row["factor"] == factor]
             names = [row["level"] if row["assumption"] == "right"
@@ -554,8 +556,9 @@ def measurement_cells(path):
                               textcoords="offset points", ha="center")
             axes.set_yscale("log")
             axes.margins(x=0.15)
-            axes.set_xticks(places, names if line is panels[-1] else [], rotation=90, fontsize=7)
-            if line is panels[0]:
+            axes.set_xticks(places, names if is_last else [""] * len(names), rotation=90,
+                            fontsize=7)
+            if number == 0:
                 axes.set_title(factor, fontsize=8)
         line[0].set_ylabel(label)
     finish(figure, "What cameras, grips and load cells do to iterative-fe; numbers: how many of"
