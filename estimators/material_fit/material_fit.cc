@@ -274,6 +274,51 @@ Eigen::Vector2d LargestChange(const Estimate& from, const Estimate& to) {
   return largest;
 }
 
+// The outliers of a fit that some were left out of.  Little is known of the
+// motion of a support that was not followed, which has to be farther off.
+std::vector<Outlier> OutliersOf(const Scene& scene,
+                                const ObservedDisplacements& observed,
+                                const MaterialFit& fit,
+                                const std::vector<Outlier>& left_out) {
+  constexpr double kFarFromUnknown = 3;
+  const ComponentMask supports = AsMeasured(scene.supports);
+  const OutlierSearch search(scene, observed, fit.displacement);
+  const std::vector<Outlier> far = search.Beyond(kFarFromUnknown);
+  std::vector<Outlier> outliers = search.Beyond(1);
+  const auto is_among = [](const std::vector<Outlier>& all,
+                           const Outlier& outlier) {
+    return std::find(all.begin(), all.end(), outlier) != all.end();
+  };
+  outliers.erase(std::remove_if(outliers.begin(), outliers.end(),
+                                [&](const Outlier& outlier) {
+                                  return supports.size() != 0 &&
+                                         !outlier.is_point &&
+                                         supports.col(outlier.index).any() &&
+                                         is_among(left_out, outlier) &&
+                                         !is_among(far, outlier);
+                                }),
+                 outliers.end());
+  return outliers;
+}
+
+// The same as a fit tells that follows no supports beside them either.
+std::vector<Outlier> OutliersWithoutSuspects(
+    const Scene& scene, const EstimatorOptions& options,
+    const ObservedDisplacements& observed, const MaterialFit& fit,
+    const std::vector<Outlier>& outliers, Work& work) {
+  std::vector<Outlier> left_out = SuspectedSupports(scene, outliers);
+  if (left_out.empty()) {
+    return outliers;
+  }
+  left_out.insert(left_out.end(), outliers.begin(), outliers.end());
+  const MaterialFit other = FitAll(WithoutOutliers(scene, left_out), options,
+                                   fit.variables, Elements::kTakenAsExact);
+  work = work + other.estimate.work;
+  return other.displacement.size() == 0
+             ? outliers
+             : OutliersOf(scene, observed, other, left_out);
+}
+
 // Fits again without the outliers, which are those of the fit without them.
 MaterialFit FitWithoutOutliers(const Scene& scene,
                                const EstimatorOptions& options,
@@ -286,12 +331,19 @@ MaterialFit FitWithoutOutliers(const Scene& scene,
   MaterialFit fit = FitAll(scene, options, start, Elements::kTakenAsExact);
   const MaterialFit of_all = fit;
   std::vector<Outlier> left_out;
+  Work of_suspects;
+  std::vector<std::vector<Outlier>> tried = {{}};
   for (int i = 0; i < kRounds && fit.displacement.size() != 0; ++i) {
-    const std::vector<Outlier> outliers =
-        FindOutliers(scene, observed, fit.displacement);
+    std::vector<Outlier> outliers = OutliersOf(scene, observed, fit, left_out);
     if (outliers == left_out) {
+      outliers = OutliersWithoutSuspects(scene, options, observed, fit,
+                                         outliers, of_suspects);
+    }
+    // Others were left out before, and led here.
+    if (std::find(tried.begin(), tried.end(), outliers) != tried.end()) {
       break;
     }
+    tried.push_back(outliers);
     const Work work = fit.estimate.work;
     if (static_cast<double>(outliers.size()) > kMost * num_points) {
       fit = of_all;
@@ -304,6 +356,7 @@ MaterialFit FitWithoutOutliers(const Scene& scene,
                  Elements::kTakenAsExact);
     fit.estimate.work = fit.estimate.work + work;
   }
+  fit.estimate.work = fit.estimate.work + of_suspects;
   const Eigen::Vector2d by_outliers =
       LargestChange(of_all.estimate, fit.estimate);
   if (fit.estimate.IsUsable() && HasQuadraticKind(scene.mesh.kind)) {

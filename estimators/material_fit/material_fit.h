@@ -17,7 +17,7 @@ namespace elastimate {
 /// from typical values at the scale of the data, and from virtual-fields where
 /// it takes the scene; the better minimum is kept.  Outliers are left out and
 /// the others fitted again, until they are those of the fit without them
-/// (FindOutliers); covariance as by DescribeMinimum.  Of parameters on bounds,
+/// (OutlierSearch); covariance as by DescribeMinimum.  Of parameters on bounds,
 /// the covariance is that without bounds.
 ///
 /// Where supports or the whole specimen moved by unknown amounts, these are

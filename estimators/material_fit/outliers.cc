@@ -1,10 +1,13 @@
 #include "elastimate/estimators/material_fit/outliers.h"
 
+#include <algorithm>
 #include <array>
 #include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 
+#include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/statistics/node_losses.h"
 #include "elastimate/estimators/statistics/residual_statistics.h"
 
@@ -18,32 +21,73 @@ constexpr double kExactData = 1e-9;
 
 }  // namespace
 
-std::vector<Outlier> FindOutliers(const Scene& scene,
-                                  const ObservedDisplacements& observed,
-                                  const Eigen::MatrixXd& displacement) {
+OutlierSearch::OutlierSearch(const Scene& scene,
+                             const ObservedDisplacements& observed,
+                             const Eigen::MatrixXd& displacement) {
   const Eigen::VectorXd residual =
       observed.Restrict(displacement) - observed.Measured();
-  std::vector<Outlier> outliers;
   if (residual.norm() < kExactData || !HasHeavyTails(residual)) {
-    return outliers;
+    return;
   }
   const double deviation = RobustStandardDeviation(residual);
   const double probability =
       kProbability / static_cast<double>(observed.Points().size());
   std::array<double, 3> limits = {};
   for (std::size_t i = 0; i < limits.size(); ++i) {
-    limits[i] = boost::math::quantile(boost::math::complement(
-        boost::math::chi_squared(double(i + 1)), probability));
+    limits[i] =
+        deviation * std::sqrt(boost::math::quantile(boost::math::complement(
+                        boost::math::chi_squared(double(i + 1)), probability)));
   }
   for (const ObservedDisplacements::Point& point : observed.Points()) {
-    if (residual.segment(point.first, point.count).squaredNorm() >
-        limits[point.count - 1] * deviation * deviation) {
+    const double distance = residual.segment(point.first, point.count).norm();
+    if (distance > limits[point.count - 1]) {
       const Eigen::Index number = point.index - scene.mesh.NumNodes();
-      outliers.push_back(
+      outliers_.push_back(
           {point.load_case, number < 0 ? point.index : number, number >= 0});
+      distances_.push_back(distance / limits[point.count - 1]);
     }
   }
-  return outliers;
+}
+
+std::vector<Outlier> OutlierSearch::Beyond(double distance) const {
+  std::vector<Outlier> beyond;
+  for (std::size_t i = 0; i < outliers_.size(); ++i) {
+    if (distances_[i] > distance) {
+      beyond.push_back(outliers_[i]);
+    }
+  }
+  return beyond;
+}
+
+std::vector<Outlier> SuspectedSupports(const Scene& scene,
+                                       const std::vector<Outlier>& outliers) {
+  std::vector<Outlier> suspects;
+  const ComponentMask measured = AsMeasured(scene.supports);
+  for (std::size_t k = 0; measured.size() != 0 && k < scene.load_cases.size();
+       ++k) {
+    std::vector<char> is_outlier(scene.mesh.NumNodes(), 0);
+    for (const Outlier& outlier : outliers) {
+      if (!outlier.is_point && outlier.load_case == Eigen::Index(k)) {
+        is_outlier[outlier.index] = 1;
+      }
+    }
+    std::vector<char> is_near(scene.mesh.NumNodes(), 0);
+    for (const auto& element : scene.mesh.elements.colwise()) {
+      if (std::any_of(element.begin(), element.end(),
+                      [&](int node) { return is_outlier[node] != 0; })) {
+        for (const int node : element) {
+          is_near[node] = 1;
+        }
+      }
+    }
+    for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
+      if (is_near[node] != 0 && measured.col(node).any() &&
+          IsObserved(scene.load_cases[k], 0, node)) {
+        suspects.push_back({Eigen::Index(k), node, false});
+      }
+    }
+  }
+  return suspects;
 }
 
 Scene WithoutOutliers(const Scene& scene,

@@ -17,9 +17,25 @@ namespace elastimate {
 /// more spread than the bulk of them (HasHeavyTails), or come from rounding.
 /// `observed` is that of the scene.  By load cases, nodes before points.
 /// O(num_rows).
-std::vector<Outlier> FindOutliers(const Scene& scene,
-                                  const ObservedDisplacements& observed,
-                                  const Eigen::MatrixXd& displacement);
+class OutlierSearch {
+ public:
+  OutlierSearch(const Scene& scene, const ObservedDisplacements& observed,
+                const Eigen::MatrixXd& displacement);
+
+  /// Those beyond so many times the quantile.
+  std::vector<Outlier> Beyond(double distance) const;
+
+ private:
+  std::vector<Outlier> outliers_;
+  std::vector<double> distances_;  ///< Over the quantile, above 1.
+};
+
+/// The nodes of supports that moved as measured, and were measured, which share
+/// an element with one of these outliers.  A support follows a measurement that
+/// is far off, so that its neighbours look like outliers instead.
+/// O(num_elements).
+std::vector<Outlier> SuspectedSupports(const Scene& scene,
+                                       const std::vector<Outlier>& outliers);
 
 /// The scene without what was measured at these points.
 Scene WithoutOutliers(const Scene& scene, const std::vector<Outlier>& outliers);

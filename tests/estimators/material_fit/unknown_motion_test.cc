@@ -396,6 +396,19 @@ TEST(UnknownMotion, LeavesOutliersOutByName) {
               2 * *clean.YoungsModulusStandardError());
 }
 
+// Which the support follows, so that its neighbours seem to be.
+TEST(UnknownMotion, FindsOutliersOfSupports) {
+  Scene scene = Plate(12);
+  const double noise_sd = 0.005 * RootMeanSquare(scene);
+  Disturb(noise_sd, 3, scene);
+  const int lost = HeldNodes(scene)[5];
+  scene.load_cases[0].displacement.col(lost) +=
+      60 * noise_sd * Eigen::Vector2d(0.6, 0.8);
+  const Estimate estimate = RunIterativeFe(scene);
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  EXPECT_EQ(estimate.outliers, (std::vector<Outlier>{{0, lost, false}}));
+}
+
 TEST(UnknownMotion, WithoutAnyForceIsRefused) {
   Scene scene = Plate();
   scene.load_cases[0].loads.clear();
