@@ -118,6 +118,10 @@ void CheckOutputFlags(const std::vector<std::string>& inputs,
                         : ", so the name must end in .vtu"));
     }
   }
+  if (FLAGS_series == "-") {
+    throw std::invalid_argument(
+        "--series=- names no file; give one, as in --series=frames.csv");
+  }
   std::vector<std::pair<std::string, std::string>> others;
   for (const auto& [flag, file] :
        {std::pair{"out", FLAGS_out}, std::pair{"json", FLAGS_json},

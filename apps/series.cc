@@ -1,11 +1,14 @@
 #include "apps/series.h"
 
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "apps/flags.h"
+#include "elastimate/core/mesh/mesh_points.h"
 #include "elastimate/io/text/input_error.h"
 
 namespace elastimate {
@@ -55,6 +58,49 @@ void CheckFirst(const Estimator& estimator, const Scene& scene,
   }
 }
 
+// What is left of a measurement; not a number where there is none, or it was
+// left out.
+Eigen::VectorXd ResidualOf(const Mesh& mesh, const LoadCase& frame,
+                           const Estimate& estimate) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (estimate.fitted_displacement.size() == 0) {
+    return {};
+  }
+  const Eigen::MatrixXd fitted = estimate.fitted_displacement.col(0).reshaped(
+      mesh.Dimension(), mesh.NumNodes());
+  Eigen::MatrixXd residual;
+  if (frame.displacement.size() != 0) {
+    residual = frame.displacement - fitted;
+    if (frame.observed.size() != 0) {
+      residual = frame.observed.select(residual.array(), kNone).matrix();
+    }
+  } else {
+    residual = frame.points.displacement -
+               Interpolate(mesh, frame.points.points, fitted);
+  }
+  for (const Outlier& outlier : estimate.outliers) {
+    residual.col(outlier.index).setConstant(kNone);
+  }
+  return residual.reshaped();
+}
+
+// Of the components that both frames have.
+void CompareWith(const Eigen::VectorXd& before, const Eigen::VectorXd& residual,
+                 FrameEstimate& frame) {
+  if (before.size() == 0 || before.size() != residual.size()) {
+    return;
+  }
+  const Eigen::Array<bool, Eigen::Dynamic, 1> is_in_both =
+      before.array().isFinite() && residual.array().isFinite();
+  const Eigen::ArrayXd a = is_in_both.select(before.array(), 0.0);
+  const Eigen::ArrayXd b = is_in_both.select(residual.array(), 0.0);
+  const double size = std::sqrt(a.square().sum() * b.square().sum());
+  if (size > 0) {
+    frame.likeness = (a * b).sum() / size;
+    frame.num_alike = is_in_both.count();
+  }
+}
+
 }  // namespace
 
 std::vector<FrameEstimate> EstimateFrames(
@@ -63,6 +109,7 @@ std::vector<FrameEstimate> EstimateFrames(
     const std::function<void(const std::string&)>& progress) {
   std::vector<FrameEstimate> estimates;
   std::optional<PreparedEstimator> prepared;
+  Eigen::VectorXd residual_before;
   for (std::size_t i = 0; i < series.files.size(); ++i) {
     progress("frame " + std::to_string(i + 1) + " of " +
              std::to_string(series.files.size()));
@@ -80,6 +127,10 @@ std::vector<FrameEstimate> EstimateFrames(
       try {
         Prepare(estimator, scene, *frame, options, prepared);
         estimate.estimate = prepared->RunLoadCases({*frame});
+        const Eigen::VectorXd residual =
+            ResidualOf(scene.mesh, *frame, estimate.estimate);
+        CompareWith(residual_before, residual, estimate);
+        residual_before = residual;
       } catch (const std::invalid_argument& error) {
         estimate.estimate = NotRun(error.what());
       }

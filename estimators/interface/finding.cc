@@ -52,6 +52,8 @@ constexpr Row kRows[] = {
     {"held_nodes_moved", FindingCode::kHeldNodesMoved},
     {"frames_left_out", FindingCode::kFramesLeftOut},
     {"trend_over_frames", FindingCode::kTrendOverFrames},
+    {"frames_scatter", FindingCode::kFramesScatter},
+    {"frames_alike", FindingCode::kFramesAlike},
     {"noise_bias", FindingCode::kNoiseBias},
     {"youngs_modulus_on_bound", FindingCode::kYoungsModulusOnBound},
     {"poisson_ratio_on_bound", FindingCode::kPoissonRatioOnBound},

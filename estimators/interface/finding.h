@@ -57,6 +57,8 @@ enum class FindingCode {
   kHeldNodesMoved,
   kFramesLeftOut,
   kTrendOverFrames,
+  kFramesScatter,
+  kFramesAlike,
   // What the method does to the estimate.
   kNoiseBias,
   kYoungsModulusOnBound,

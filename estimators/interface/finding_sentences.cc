@@ -461,11 +461,28 @@ Finding HeldNodesMoved(const std::vector<std::size_t>& load_cases) {
       "check the supports");
 }
 
-Finding NoFrameUsable(std::size_t num_frames) {
+Finding NoFrameUsable(std::size_t num_frames, const std::string& reason) {
   return {FindingCode::kNoFrameUsable, Severity::kError,
           "none of " + std::to_string(num_frames) +
               " frames gives an estimate with error bars",
-          "see why in the table of --series"};
+          "the first says: " + reason};
+}
+
+Finding FramesScatter(double excess, std::size_t farthest) {
+  return Warning(FindingCode::kFramesScatter,
+                 "frames scatter by " + TwoDigits(excess) +
+                     " times their noise, frame " + std::to_string(farthest) +
+                     " most",
+                 "check the loads of the frames, and that one above all");
+}
+
+Finding FramesAlike(double correlation) {
+  return Warning(
+      FindingCode::kFramesAlike,
+      "the residuals of frames are alike (correlation " +
+          TwoDigits(correlation) +
+          "), and what they share does not average out",
+      "look for what they share: a reference image, supports, loads");
 }
 
 Finding FramesLeftOut(std::size_t num_left_out, std::size_t num_frames) {

@@ -96,11 +96,15 @@ Finding OutliersLeftOut(const std::vector<Outlier>& outliers,
                         const Eigen::Vector2d& change);
 Finding HeldNodesMoved(const std::vector<std::size_t>& load_cases);
 // Of a series of frames.
-Finding NoFrameUsable(std::size_t num_frames);
+/// `reason` is that of the first.
+Finding NoFrameUsable(std::size_t num_frames, const std::string& reason);
 Finding FramesLeftOut(std::size_t num_left_out, std::size_t num_frames);
 /// Of the parameter in `place`, which it names.
 Finding TrendOverFrames(const std::string& parameter, bool is_relative,
                         const Trend& trend, Eigen::Index place);
+/// By so many times their noise; `farthest` is the number of a frame.
+Finding FramesScatter(double excess, std::size_t farthest);
+Finding FramesAlike(double correlation);
 
 // What the method does to the estimate.
 /// `bias` of E is relative, and empty when it is as large as E.

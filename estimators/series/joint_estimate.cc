@@ -1,6 +1,7 @@
 #include "elastimate/estimators/series/joint_estimate.h"
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -11,6 +12,7 @@
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/judge.h"
+#include "elastimate/estimators/interface/statistics.h"
 #include "elastimate/estimators/series/trend.h"
 
 namespace elastimate {
@@ -21,6 +23,8 @@ constexpr double kLeastError = 1e-12;
 constexpr double kLeastShare = 1e-6;
 // Of any parameter that has none.
 constexpr double kProbabilityOfTrend = 0.01;
+constexpr double kProbabilityOfScatter = 1e-3;
+constexpr double kNotableLikeness = 0.1;
 
 // A frame that is used, in the logarithms of moduli and the ratios that are
 // free.
@@ -29,6 +33,7 @@ struct UsedFrame {
   Eigen::VectorXd values;
   Eigen::MatrixXd covariance;
   double noise_share;  // Of the covariance, what varies between frames.
+  std::size_t number;  // Of the frame, from 1 on.
 };
 
 // Their places among the parameters.
@@ -44,17 +49,34 @@ Eigen::VectorXi FreeParametersOf(const Estimate& estimate) {
 }
 
 double NoiseShare(const Estimate& estimate, const Eigen::VectorXi& free,
+                  const Eigen::VectorXd& by_loads,
                   const Eigen::MatrixXd& covariance) {
   const ParameterErrors& noise = estimate.error_budget.noise;
   if (noise.size() != Eigen::Index(estimate.parameters.size())) {
     return 0;
   }
   const double share =
-      (noise(free).array().square() / covariance.diagonal().array()).minCoeff();
+      ((noise(free).array().square() - by_loads.array().square()).max(0) /
+       covariance.diagonal().array())
+          .minCoeff();
   return std::isfinite(share) ? std::clamp(share, kLeastShare, 1.0) : 0;
 }
 
-std::optional<UsedFrame> Use(const FrameEstimate& frame) {
+// Without the part of an error that is alike in all frames, and without
+// directions of no error.
+Eigen::MatrixXd Without(const Eigen::VectorXd& common,
+                        const Eigen::MatrixXd& covariance) {
+  constexpr double kLeastPart = 1e-4;
+  const SymmetricEigenDecomposition parts =
+      DecomposeSymmetric(covariance - common * common.transpose());
+  const double least =
+      kLeastPart * covariance.diagonal().minCoeff() + kLeastError * kLeastError;
+  return parts.vectors * parts.values.cwiseMax(least).asDiagonal() *
+         parts.vectors.transpose();
+}
+
+std::optional<UsedFrame> Use(const FrameEstimate& frame, std::size_t number,
+                             const LoadError& load_error) {
   const Estimate& estimate = frame.estimate;
   const Eigen::VectorXi free = FreeParametersOf(estimate);
   if (!estimate.IsUsable() || free.size() == 0 ||
@@ -62,23 +84,73 @@ std::optional<UsedFrame> Use(const FrameEstimate& frame) {
           Eigen::Index(estimate.parameters.size())) {
     return std::nullopt;
   }
-  UsedFrame used = {&frame, Eigen::VectorXd(free.size()), {}, 0};
+  UsedFrame used = {&frame, Eigen::VectorXd(free.size()), {}, 0, number};
   Eigen::VectorXd slopes(free.size());
+  Eigen::VectorXd by_loads = Eigen::VectorXd::Zero(free.size());
   for (Eigen::Index j = 0; j < used.values.size(); ++j) {
     const ParameterEstimate& parameter = estimate.parameters[free(j)];
     used.values(j) =
         parameter.is_modulus ? std::log(parameter.value) : parameter.value;
     slopes(j) = parameter.is_modulus ? 1 / parameter.value : 1;
+    by_loads(j) = parameter.is_modulus && load_error.is_in_frames
+                      ? load_error.relative
+                      : 0;
   }
   used.covariance = slopes.asDiagonal() *
                     estimate.parameter_covariance(free, free) *
                     slopes.asDiagonal();
-  used.covariance.diagonal().array() += kLeastError * kLeastError;
   if (!used.covariance.allFinite() || !used.values.allFinite()) {
     return std::nullopt;
   }
-  used.noise_share = NoiseShare(estimate, free, used.covariance);
+  used.covariance = Without(by_loads, used.covariance);
+  used.noise_share = NoiseShare(estimate, free, by_loads, used.covariance);
   return used;
+}
+
+// The variance of noise over the load, to which those of parameters are
+// proportional; not a number where it is not known.
+double NoiseOverLoad(const UsedFrame& frame) {
+  const double ratio =
+      frame.frame->estimate.noise_sd.value_or(Estimate::kUnknown) /
+      frame.frame->load;
+  return ratio * ratio;
+}
+
+// Raises standard deviations that are far smaller than those of other frames.
+void RaiseSmallErrors(std::vector<UsedFrame>& frames) {
+  constexpr double kFarSmaller = 0.5;
+  for (Eigen::Index p = 0; p < frames.front().values.size(); ++p) {
+    std::vector<double> ratios;
+    for (const UsedFrame& frame : frames) {
+      const double ratio =
+          std::sqrt(frame.covariance(p, p) / NoiseOverLoad(frame));
+      if (!(std::isfinite(ratio) && ratio > 0)) {
+        return;
+      }
+      ratios.push_back(ratio);
+    }
+    const double usual = Median(ratios);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      if (ratios[i] < kFarSmaller * usual) {
+        frames[i].covariance.row(p) *= usual / ratios[i];
+        frames[i].covariance.col(p) *= usual / ratios[i];
+      }
+    }
+  }
+}
+
+// The correlation of residuals that frames have in common, if it is one.
+double LikenessOf(const std::vector<UsedFrame>& frames) {
+  constexpr double kSignificant = 3;
+  double sum = 0;
+  double count = 0;
+  for (const UsedFrame& frame : frames) {
+    if (frame.frame->likeness) {
+      sum += *frame.frame->likeness * double(frame.frame->num_alike);
+      count += double(frame.frame->num_alike);
+    }
+  }
+  return sum > kSignificant * std::sqrt(count) ? sum / count : 0;
 }
 
 Eigen::MatrixXd SquareRoot(const Eigen::MatrixXd& covariance) {
@@ -87,28 +159,48 @@ Eigen::MatrixXd SquareRoot(const Eigen::MatrixXd& covariance) {
          parts.vectors.transpose();
 }
 
+// Of the frames over their noise.
+struct Scatter {
+  double excess = 1;  // chi^2 per degree of freedom, if above 1.
+  double p_value = 1;
+  std::size_t farthest = 0;  // The number of the frame that is.
+};
+
+Scatter ScatterOf(const std::vector<UsedFrame>& frames,
+                  const Eigen::VectorXd& mean) {
+  double chi_squared = 0;
+  double largest = 0;
+  Scatter scatter;
+  for (const UsedFrame& frame : frames) {
+    if (frame.noise_share == 0) {
+      return {};
+    }
+    const Eigen::VectorXd off = frame.values - mean;
+    const double part =
+        off.dot(Inverse(frame.covariance) * off) / frame.noise_share;
+    chi_squared += part;
+    if (part > largest) {
+      largest = part;
+      scatter.farthest = frame.number;
+    }
+  }
+  const double freedom =
+      double(mean.size()) * (static_cast<double>(frames.size()) - 1);
+  if (freedom > 0 && std::isfinite(chi_squared)) {
+    scatter.excess = std::max(1.0, chi_squared / freedom);
+    scatter.p_value = boost::math::cdf(boost::math::complement(
+        boost::math::chi_squared(freedom), chi_squared));
+  }
+  return scatter;
+}
+
 // The mean of least variance, and what its errors are made of.
 struct Mean {
   Eigen::VectorXd values;
   Eigen::MatrixXd of_noise;  // Covariance of what differs between frames.
   Eigen::MatrixXd common;    // Of what they have in common.
+  Scatter scatter;
 };
-
-// chi^2 per degree of freedom of the scatter over the noise, if above 1.
-double ExcessOfScatter(const std::vector<UsedFrame>& frames,
-                       const Eigen::VectorXd& mean) {
-  double chi_squared = 0;
-  for (const UsedFrame& frame : frames) {
-    if (frame.noise_share == 0) {
-      return 1;
-    }
-    const Eigen::VectorXd off = frame.values - mean;
-    chi_squared += off.dot(Inverse(frame.covariance) * off) / frame.noise_share;
-  }
-  const double freedom =
-      double(mean.size()) * (static_cast<double>(frames.size()) - 1);
-  return freedom > 0 ? std::max(1.0, chi_squared / freedom) : 1;
-}
 
 Mean MeanOf(const std::vector<UsedFrame>& frames) {
   const Eigen::Index size = frames.front().values.size();
@@ -117,8 +209,9 @@ Mean MeanOf(const std::vector<UsedFrame>& frames) {
     information += Inverse(frame.covariance);
   }
   const Eigen::MatrixXd least = Inverse(information);
-  Mean mean = {
-      Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size), {}};
+  Mean mean;
+  mean.values.setZero(size);
+  mean.of_noise.setZero(size, size);
   Eigen::MatrixXd root = Eigen::MatrixXd::Zero(size, size);
   for (const UsedFrame& frame : frames) {
     const Eigen::MatrixXd weight = least * Inverse(frame.covariance);
@@ -127,7 +220,8 @@ Mean MeanOf(const std::vector<UsedFrame>& frames) {
         frame.noise_share * weight * frame.covariance * weight.transpose();
     root += weight * SquareRoot((1 - frame.noise_share) * frame.covariance);
   }
-  mean.of_noise *= ExcessOfScatter(frames, mean.values);
+  mean.scatter = ScatterOf(frames, mean.values);
+  mean.of_noise *= mean.scatter.excess;
   mean.common = root * root.transpose();
   return mean;
 }
@@ -255,18 +349,21 @@ void AddSharedFindings(const std::vector<UsedFrame>& frames,
   }
 }
 
-void AddTrend(const Eigen::VectorXi& free, Estimate& estimate) {
+// Whether there is one.
+bool AddTrend(const Eigen::VectorXi& free, Estimate& estimate) {
   const std::optional<Trend>& trend = estimate.series->trend;
   if (!trend) {
-    return;
+    return false;
   }
   Eigen::Index place = 0;
   const double least = trend->p_value(free).minCoeff(&place);
-  if (least * double(free.size()) < kProbabilityOfTrend) {
-    const Eigen::Index i = free(place);
-    estimate.Add(TrendOverFrames(estimate.parameters[i].Label(),
-                                 estimate.parameters[i].is_modulus, *trend, i));
+  if (least * double(free.size()) >= kProbabilityOfTrend) {
+    return false;
   }
+  const Eigen::Index i = free(place);
+  estimate.Add(TrendOverFrames(estimate.parameters[i].Label(),
+                               estimate.parameters[i].is_modulus, *trend, i));
+  return true;
 }
 
 std::optional<double> MeanNoise(const std::vector<UsedFrame>& frames) {
@@ -303,10 +400,11 @@ void EnterWork(const std::vector<FrameEstimate>& frames, Estimate& estimate) {
 Estimate JointEstimate(const Scene& scene, const EstimatorOptions& options,
                        const Estimator& estimator,
                        const std::vector<FrameEstimate>& frames,
-                       double load_error) {
+                       const LoadError& load_error) {
   std::vector<UsedFrame> used;
-  for (const FrameEstimate& frame : frames) {
-    if (const std::optional<UsedFrame> use = Use(frame)) {
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (const std::optional<UsedFrame> use =
+            Use(frames[i], i + 1, load_error)) {
       used.push_back(*use);
     }
   }
@@ -316,8 +414,16 @@ Estimate JointEstimate(const Scene& scene, const EstimatorOptions& options,
       SeriesSummary{frames.size(), used.size(), LoadsOf(used), std::nullopt};
   joint.estimator = estimator.Name();
   if (used.empty()) {
-    joint.Fail(NoFrameUsable(frames.size()));
+    const Estimate& first = frames.front().estimate;
+    joint.Fail(NoFrameUsable(frames.size(), first.message.empty()
+                                                ? first.why_no_standard_error
+                                                : first.message));
     return joint;
+  }
+  RaiseSmallErrors(used);
+  const double likeness = LikenessOf(used);
+  for (UsedFrame& frame : used) {
+    frame.noise_share *= 1 - likeness;
   }
   const Estimate& first = used.front().frame->estimate;
   joint.Accept();
@@ -327,14 +433,21 @@ Estimate JointEstimate(const Scene& scene, const EstimatorOptions& options,
   const auto num_parameters = Eigen::Index(first.parameters.size());
   joint.error_budget.discretization =
       MeanDiscretization(used, free, num_parameters);
-  EnterMean(MeanOf(used), free, load_error, joint);
+  const Mean mean = MeanOf(used);
+  EnterMean(mean, free, load_error.relative, joint);
   if (IsOneIsotropicMaterial(scene.materials)) {
     EnterOneIsotropicMaterial(joint);
   }
   joint.noise_sd = MeanNoise(used);
   joint.series->trend = TrendOver(used, free, num_parameters);
   AddSharedFindings(used, joint);
-  AddTrend(free, joint);
+  if (!AddTrend(free, joint) && mean.scatter.p_value < kProbabilityOfScatter) {
+    joint.Add(
+        FramesScatter(std::sqrt(mean.scatter.excess), mean.scatter.farthest));
+  }
+  if (likeness > kNotableLikeness) {
+    joint.Add(FramesAlike(likeness));
+  }
   if (used.size() < frames.size()) {
     joint.Add(FramesLeftOut(frames.size() - used.size(), frames.size()));
   }

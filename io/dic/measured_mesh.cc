@@ -40,6 +40,20 @@ std::optional<double> ReadLength(const JsonValue& mesh,
   return length;
 }
 
+// And nodes for what the camera lost of a grid, without a displacement.
+DicFrame WithLostPoints(DicFrame frame) {
+  const Eigen::Matrix2Xd lost = LostPoints(frame.positions);
+  Eigen::Matrix2Xd positions(2, frame.positions.cols() + lost.cols());
+  positions << frame.positions, lost;
+  Eigen::Matrix2Xd displacement = Eigen::Matrix2Xd::Constant(
+      2, positions.cols(), std::numeric_limits<double>::quiet_NaN());
+  displacement.leftCols(frame.displacement.cols()) = frame.displacement;
+  frame.positions = positions;
+  frame.displacement = displacement;
+  frame.lines.resize(positions.cols(), 0);
+  return frame;
+}
+
 PointMesh MeshOf(const std::filesystem::path& path, const DicFrame& frame,
                  std::optional<double> max_edge) {
   try {
@@ -56,6 +70,8 @@ std::string Description(const std::filesystem::path& path,
       (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff())
           .head<2>();
   const Eigen::Index num_beside = frame.positions.cols() - mesh.nodes.cols();
+  const Eigen::Index num_lost =
+      FindArray(mesh.node_arrays, "displacement")->array().isNaN().count() / 2;
   std::ostringstream text;
   text << PrintablePath(path) << ": " << mesh.elements.cols() << " "
        << mesh.Shapes() << " of " << mesh.nodes.cols() << " points ("
@@ -66,6 +82,10 @@ std::string Description(const std::filesystem::path& path,
   if (frame.num_invalid + num_beside > 0) {
     text << "; " << frame.num_invalid << " points without a measurement and "
          << num_beside << " beside the mesh are left out";
+  }
+  if (num_lost > 0) {
+    text << "; " << num_lost
+         << " nodes are points that the grid has no measurement of";
   }
   text << "; where a specimen is wider than its measured points, give the "
           "share of the force that their width carries";
@@ -105,7 +125,8 @@ MeshFile ReadMeasuredMesh(const JsonValue& mesh,
     name.Fail("is empty; give the path of a file");
   }
   const std::filesystem::path path = name.File().parent_path() / name.String();
-  const DicFrame frame = ReadDicFile(path, ReadDicOptions(mesh));
+  const DicFrame frame =
+      WithLostPoints(ReadDicFile(path, ReadDicOptions(mesh)));
   const PointMesh points = MeshOf(path, frame, ReadLength(mesh, "max_edge"));
   MeshFile file;
   file.path = path;

@@ -13,9 +13,12 @@
 #include <cstddef>
 #include <map>
 #include <numeric>
+#include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace elastimate {
 namespace {
@@ -60,32 +63,60 @@ GridAxis AxisOf(const Eigen::RowVectorXd& coordinates) {
   return {sorted.front(), spacing};
 }
 
+using GridPlace = std::array<long long, 2>;
+
+/// Points at places of a grid along the axes.
+struct PointGrid {
+  std::array<GridAxis, 2> axes;
+  std::map<GridPlace, int> point_at;
+
+  Eigen::Vector2d Position(const GridPlace& place) const {
+    Eigen::Vector2d position;
+    for (int i = 0; i < 2; ++i) {
+      position(i) =
+          axes[i].first + axes[i].spacing * static_cast<double>(place[i]);
+    }
+    return position;
+  }
+};
+
+// Empty when a point is off the grid.
+std::optional<PointGrid> GridOf(const Eigen::Matrix2Xd& positions) {
+  if (positions.cols() == 0) {
+    return std::nullopt;
+  }
+  PointGrid grid = {{AxisOf(positions.row(0)), AxisOf(positions.row(1))}, {}};
+  for (Eigen::Index point = 0; point < positions.cols(); ++point) {
+    GridPlace place = {};
+    for (int i = 0; i < 2; ++i) {
+      if (!(grid.axes[i].spacing > 0) ||
+          !grid.axes[i].Has(positions(i, point))) {
+        return std::nullopt;
+      }
+      place[i] = std::llround(grid.axes[i].Place(positions(i, point)));
+    }
+    if (!grid.point_at.emplace(place, static_cast<int>(point)).second) {
+      return std::nullopt;
+    }
+  }
+  return grid;
+}
+
 // A quadrilateral wherever four points are the corners of a cell; none when a
 // point is off the grid.
 Elements QuadrilateralsOf(const Eigen::Matrix2Xd& positions) {
-  const std::array<GridAxis, 2> axes = {AxisOf(positions.row(0)),
-                                        AxisOf(positions.row(1))};
-  std::map<std::array<long long, 2>, int> point_at;
-  for (Eigen::Index point = 0; point < positions.cols(); ++point) {
-    std::array<long long, 2> place = {};
-    for (int i = 0; i < 2; ++i) {
-      if (!(axes[i].spacing > 0) || !axes[i].Has(positions(i, point))) {
-        return {};
-      }
-      place[i] = std::llround(axes[i].Place(positions(i, point)));
-    }
-    if (!point_at.emplace(place, static_cast<int>(point)).second) {
-      return {};
-    }
+  const std::optional<PointGrid> grid = GridOf(positions);
+  if (!grid) {
+    return {};
   }
   Elements elements;
-  for (const auto& [place, point] : point_at) {
+  for (const auto& [place, point] : grid->point_at) {
     const auto [i, j] = place;
     std::vector<int> corners;
-    for (const std::array<long long, 2>& corner :
+    for (const GridPlace& corner :
          {place, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}) {
-      const auto found = point_at.find(corner);
-      if (found != point_at.end()) {
+      const auto found = grid->point_at.find(corner);
+      if (found != grid->point_at.end()) {
         corners.push_back(found->second);
       }
     }
@@ -94,6 +125,24 @@ Elements QuadrilateralsOf(const Eigen::Matrix2Xd& positions) {
     }
   }
   return elements;
+}
+
+// The places without a point that hang together with `first` and lie within
+// the box of the grid; they are taken from `empty`.
+std::vector<GridPlace> TakeGap(const GridPlace& first,
+                               std::set<GridPlace>& empty) {
+  std::vector<GridPlace> gap = {first};
+  empty.erase(first);
+  for (std::size_t k = 0; k < gap.size(); ++k) {
+    const auto [i, j] = gap[k];
+    for (const GridPlace& next : std::array<GridPlace, 4>{
+             {{i + 1, j}, {i - 1, j}, {i, j + 1}, {i, j - 1}}}) {
+      if (empty.erase(next) > 0) {
+        gap.push_back(next);
+      }
+    }
+  }
+  return gap;
 }
 
 double EdgeLength(const Eigen::Matrix2Xd& positions, int a, int b) {
@@ -257,6 +306,44 @@ PointMesh Number(ElementKind kind, const Elements& elements) {
 }
 
 }  // namespace
+
+Eigen::Matrix2Xd LostPoints(const Eigen::Matrix2Xd& positions) {
+  // More in a row are a hole.
+  constexpr std::size_t kMostLost = 4;
+  // Of the box of a grid, that points fill.
+  constexpr long long kSparsest = 8;
+  const std::optional<PointGrid> grid = GridOf(positions);
+  if (!grid) {
+    return Eigen::Matrix2Xd(2, 0);
+  }
+  GridPlace end = {0, 0};
+  for (const auto& [place, point] : grid->point_at) {
+    end = {std::max(end[0], place[0]), std::max(end[1], place[1])};
+  }
+  if (end[0] + 1 > kSparsest * positions.cols() / (end[1] + 1)) {
+    return Eigen::Matrix2Xd(2, 0);
+  }
+  std::set<GridPlace> empty;
+  for (long long i = 0; i <= end[0]; ++i) {
+    for (long long j = 0; j <= end[1]; ++j) {
+      if (grid->point_at.count({i, j}) == 0) {
+        empty.insert({i, j});
+      }
+    }
+  }
+  std::vector<GridPlace> lost;
+  while (!empty.empty()) {
+    const std::vector<GridPlace> gap = TakeGap(*empty.begin(), empty);
+    if (gap.size() <= kMostLost) {
+      lost.insert(lost.end(), gap.begin(), gap.end());
+    }
+  }
+  Eigen::Matrix2Xd found(2, Eigen::Index(lost.size()));
+  for (std::size_t k = 0; k < lost.size(); ++k) {
+    found.col(Eigen::Index(k)) = grid->Position(lost[k]);
+  }
+  return found;
+}
 
 PointMesh MeshOfPoints(const Eigen::Matrix2Xd& positions,
                        std::optional<double> max_edge) {

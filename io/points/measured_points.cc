@@ -27,6 +27,11 @@ std::vector<std::filesystem::path> FilesOf(const JsonValue& points) {
   std::vector<std::filesystem::path> files;
   for (const JsonValue& name : points.Items()) {
     files.push_back(folder / name.String());
+    // Its noise would count as that of two measurements.
+    if (std::find(files.begin(), files.end() - 1, files.back()) !=
+        files.end() - 1) {
+      name.Fail("is named before; give each file of points once");
+    }
   }
   return files;
 }

@@ -65,7 +65,11 @@ std::string Cells(const Estimate& estimate, std::size_t num_parameters) {
   }
   return row + "," + Number(estimate.noise_sd) + "," +
          std::to_string(estimate.outliers.size()) + "," + Cell(codes) + "," +
-         Cell(Printable(estimate.message, kLongestSentence)) + "\n";
+         Cell(Printable(estimate.message.empty()
+                            ? estimate.why_no_standard_error
+                            : estimate.message,
+                        kLongestSentence)) +
+         "\n";
 }
 
 }  // namespace

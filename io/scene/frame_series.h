@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "elastimate/core/scene/scene.h"
+#include "elastimate/estimators/series/joint_estimate.h"
 
 namespace elastimate {
 
@@ -21,7 +22,7 @@ struct FrameSeries {
   std::vector<double> loads;
   /// The relative error that the loads of all frames have in common, as one
   /// standard deviation: of the record, else the largest of resultants.
-  double load_error = 0;
+  LoadError load_error;
   /// The load case of the scene as frame i measured it, under its loads.
   /// Throws std::invalid_argument, naming the file and the mend.
   std::function<LoadCase(std::size_t i)> read;

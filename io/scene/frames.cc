@@ -207,13 +207,14 @@ FrameSeries ReadFrames(const JsonValue& document, const FileScene& file_scene) {
     series.files.push_back(document.File().parent_path() / name);
   }
   for (const std::optional<double>& error : reader->relative_errors) {
-    series.load_error = std::max(series.load_error, error.value_or(0));
+    series.load_error = {
+        std::max(series.load_error.relative, error.value_or(0)), true};
   }
   if (frames.Has("load_record")) {
     const JsonValue record = frames.At("load_record");
     series.loads = ReadLoadRecord(record, series.files.size());
     if (record.Has("relative_sd")) {
-      series.load_error = RelativeError(record.At("relative_sd"));
+      series.load_error = {RelativeError(record.At("relative_sd")), false};
     }
   }
   reader->factors = series.loads;

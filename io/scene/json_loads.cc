@@ -97,10 +97,17 @@ Load ReadLoad(const JsonValue& load, const LoadContext& context) {
 void RequireHeld(const JsonValue& value, const LoadContext& context,
                  const Resultant& resultant) {
   for (Eigen::Index i = 0; i < resultant.force.size(); ++i) {
-    const bool is_held =
-        std::any_of(resultant.nodes.begin(), resultant.nodes.end(),
-                    [&](int node) { return context.supports.held(i, node); });
-    if (!std::isnan(resultant.force(i)) && !is_held) {
+    const auto num_held =
+        std::count_if(resultant.nodes.begin(), resultant.nodes.end(),
+                      [&](int node) { return context.supports.held(i, node); });
+    if (!std::isnan(resultant.force(i)) && num_held > 0 &&
+        num_held < std::ptrdiff_t(resultant.nodes.size())) {
+      value.Fail("measures the force along " + std::string(kAxisNames[i]) +
+                 " of a surface of " + std::to_string(resultant.nodes.size()) +
+                 " nodes, of which supports hold " + std::to_string(num_held) +
+                 " there; hold all of them, or make the surface smaller");
+    }
+    if (!std::isnan(resultant.force(i)) && num_held == 0) {
       value.Fail("measures the force along " + std::string(kAxisNames[i]) +
                  " of a surface that no support holds there, so that nothing "
                  "exerts it; give it as a load of type \"force\", or hold the "

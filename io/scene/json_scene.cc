@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "elastimate/io/dic/measured_mesh.h"
+#include "elastimate/io/scene/file_scene.h"
 #include "elastimate/io/scene/frames.h"
 #include "elastimate/io/scene/json_loads.h"
 #include "elastimate/io/scene/json_materials.h"
@@ -84,6 +85,11 @@ LoadCase ReadLoadCase(const JsonValue& value, const LoadContext& context,
   if (!value.Has("displacement") && is_mesh_measured) {
     load_case.displacement =
         *FindArray(context.mesh.node_arrays, "displacement");
+    const ComponentMask measured = !load_case.displacement.array().isNaN();
+    load_case.observed = load_case.observed.size() == 0
+                             ? measured
+                             : load_case.observed && measured;
+    ClearUnobserved(load_case);
     lines.push_back({context.mesh.path, context.mesh.node_lines});
   } else if (value.Has("displacement") ||
              measurement == Measurement::kRequired) {

@@ -113,7 +113,9 @@ std::vector<Finding> OfUndeterminedParameters() {
 std::vector<Finding> OfResiduals() {
   const Eigen::VectorXd numbers = Eigen::VectorXd::Constant(1, kLong);
   return {TooFewMeasurements(100000),
-          NoFrameUsable(100000),
+          NoFrameUsable(100000, "why"),
+          FramesScatter(kLong, 100000),
+          FramesAlike(kLong),
           FramesLeftOut(99999, 100000),
           TrendOverFrames("nu of region 1000", false,
                           {true, numbers, numbers, numbers}, 0),

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "elastimate/estimators/registry.h"
@@ -48,7 +49,8 @@ FrameEstimate FrameOf(double youngs_modulus, double poisson_ratio,
   return frame;
 }
 
-Estimate Join(const std::vector<FrameEstimate>& frames, double load_error = 0) {
+Estimate Join(const std::vector<FrameEstimate>& frames,
+              const LoadError& load_error = {}) {
   return JointEstimate(OneMaterial(), {}, *MakeEstimator("iterative-fe"),
                        frames, load_error);
 }
@@ -72,7 +74,7 @@ TEST(JointEstimate, AveragesNoiseAlone) {
   const Eigen::Vector2d errors(0.01, 0.02);
   const std::vector<FrameEstimate> frames(
       100, FrameOf(100, 0.3, errors, errors * std::sqrt(0.5)));
-  const Estimate joint = Join(frames, 0.005);
+  const Estimate joint = Join(frames, {0.005, false});
   // Half of the variance is common to all frames, and the error of the loads.
   EXPECT_NEAR(*joint.PoissonRatioStandardError(), 0.02 * std::sqrt(0.5 + 0.005),
               1e-9);
@@ -81,6 +83,67 @@ TEST(JointEstimate, AveragesNoiseAlone) {
   EXPECT_NEAR(joint.error_budget.model(1), 0.02 * std::sqrt(0.5), 1e-9);
   EXPECT_NEAR(joint.error_budget.noise(0), std::sqrt(1e-4 * 0.005 + 2.5e-5),
               1e-9);
+}
+
+// Each of a hundred frames has it in its error, which is that of noise else.
+TEST(JointEstimate, CountsTheErrorOfLoadsOnce) {
+  const Eigen::Vector2d errors(0.01, 0.02);
+  const std::vector<FrameEstimate> frames(100,
+                                          FrameOf(100, 0.3, errors, errors));
+  const Estimate joint = Join(frames, {0.006, true});
+  EXPECT_NEAR(*joint.YoungsModulusStandardError() / 100,
+              std::sqrt((1e-4 - 3.6e-5) / 100 + 3.6e-5), 1e-6);
+  EXPECT_NEAR(*Join({frames[0]}, {0.006, true}).YoungsModulusStandardError(), 1,
+              1e-6);
+}
+
+TEST(JointEstimate, DoesNotAverageWhatResidualsShare) {
+  const Eigen::Vector2d errors(0.01, 0.02);
+  std::vector<FrameEstimate> frames(100, FrameOf(100, 0.3, errors, errors));
+  for (FrameEstimate& frame : frames) {
+    frame.likeness = 0.5;
+    frame.num_alike = 1000;
+  }
+  const Estimate joint = Join(frames);
+  EXPECT_NEAR(*joint.PoissonRatioStandardError(), 0.02 * std::sqrt(0.5 + 0.005),
+              1e-6);
+  EXPECT_TRUE(joint.Has(FindingCode::kFramesAlike));
+  // As large a correlation as chance makes of so few.
+  for (FrameEstimate& frame : frames) {
+    frame.likeness = 0.05;
+    frame.num_alike = 10;
+  }
+  EXPECT_FALSE(Join(frames).Has(FindingCode::kFramesAlike));
+  EXPECT_NEAR(*Join(frames).PoissonRatioStandardError(), 0.002, 1e-6);
+}
+
+// Next to nu = 1/2, say, from as much noise under a smaller load.
+TEST(JointEstimate, DoesNotTrustAFrameThatKnowsFarMoreThanOthers) {
+  const Eigen::Vector2d errors(0.01, 0.01);
+  const Eigen::Vector2d small(0.01, 0.0005);
+  std::vector<FrameEstimate> frames(6, FrameOf(100, 0.3, errors, errors));
+  frames[0] = FrameOf(100, 0.4, small, small);
+  for (FrameEstimate& frame : frames) {
+    frame.estimate.noise_sd = 0.1;
+    frame.load = 3;
+  }
+  frames[0].load = 1;
+  const Estimate joint = Join(frames);
+  EXPECT_NEAR(joint.elasticity.poisson_ratio, 0.3, 0.01);
+}
+
+TEST(JointEstimate, NamesTheFrameThatDisagrees) {
+  const Eigen::Vector2d errors(0.01, 0.02);
+  std::vector<FrameEstimate> frames(6, FrameOf(100, 0.3, errors, errors));
+  EXPECT_FALSE(Join(frames).Has(FindingCode::kFramesScatter));
+  frames[4] = FrameOf(120, 0.3, errors, errors);
+  const Estimate joint = Join(frames);
+  ASSERT_TRUE(joint.Has(FindingCode::kFramesScatter));
+  for (const Finding& finding : joint.findings) {
+    if (finding.code == FindingCode::kFramesScatter) {
+      EXPECT_NE(finding.text.find("frame 5 most"), std::string::npos);
+    }
+  }
 }
 
 TEST(JointEstimate, LeavesOutWhatIsNotUsable) {

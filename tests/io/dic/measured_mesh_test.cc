@@ -80,6 +80,26 @@ TEST_F(MeasuredMeshTest, WithGripsAndALoadCellGivesTheTruth) {
   }
 }
 
+// Points that a camera lost are no holes.
+TEST_F(MeasuredMeshTest, WithLostPointsGivesTheTruth) {
+  std::string frame = Frame();
+  for (const std::string point : {"\n2,1,", "\n0,0.5,", "\n4,1.5,"}) {
+    const std::size_t begin = frame.find(point);
+    ASSERT_NE(begin, std::string::npos) << point;
+    frame.erase(begin, frame.find('\n', begin + 1) - begin);
+  }
+  folder_.Write("frame.csv", frame);
+  const SceneReading reading = Read(kStrip);
+  EXPECT_EQ(reading.scene.mesh.NumElements(), 48);
+  EXPECT_EQ(reading.scene.load_cases[0].observed.count(), 2 * (65 - 3));
+  EXPECT_THAT(reading.notices[0], HasSubstr("; 3 nodes are points that"));
+  const Estimate estimate =
+      MakeEstimator("iterative-fe")->Run(reading.scene, {});
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  EXPECT_NEAR(estimate.elasticity.youngs_modulus, kModulus, 1e-8 * kModulus);
+  EXPECT_NEAR(estimate.elasticity.poisson_ratio, kRatio, 1e-8);
+}
+
 TEST_F(MeasuredMeshTest, WithTractionAndAFreeCameraGivesTheTruth) {
   const std::string document = R"({
     "model": "plane_stress", "thickness": 0.5,

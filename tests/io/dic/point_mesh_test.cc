@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <set>
+#include <vector>
 
 #include "tests/throws.h"
 
@@ -62,6 +64,33 @@ TEST(PointMesh, OfAGridIsOfQuadrilateralsAndKeepsTheHole) {
   }
   EXPECT_EQ(mesh.elements.cols(), cells);
   EXPECT_NEAR(AreaOf(positions, mesh), cells * 0.125, 1e-12);
+}
+
+// One inside, two beside each other, one of the rim; not the hole, nor the
+// outside of a notch.
+TEST(LostPoints, AreThoseOfSmallGapsOfAGrid) {
+  const Eigen::Matrix2Xd whole = GridWithHole();
+  EXPECT_EQ(LostPoints(whole).cols(), 0);
+  const std::vector<Eigen::Vector2d> lost = {
+      {0.5, 0.5}, {3.5, 3.5}, {3.5, 3.25}, {0, 2}};
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < whole.cols(); ++i) {
+    const bool is_lost =
+        std::any_of(lost.begin(), lost.end(), [&](const Eigen::Vector2d& x) {
+          return (x - whole.col(i)).norm() < 1e-9;
+        });
+    if (!is_lost) {
+      kept.push_back(i);
+    }
+  }
+  ASSERT_EQ(Eigen::Index(kept.size()), whole.cols() - 4);
+  const Eigen::Matrix2Xd found =
+      LostPoints(Eigen::Matrix2Xd(whole(Eigen::all, kept)));
+  ASSERT_EQ(found.cols(), 4);
+  for (const Eigen::Vector2d& x : lost) {
+    EXPECT_LT((found.colwise() - x).colwise().norm().minCoeff(), 1e-9);
+  }
+  EXPECT_EQ(LostPoints(Eigen::Matrix2Xd::Random(2, 30)).cols(), 0);
 }
 
 TEST(PointMesh, OfScatteredPointsIsOfTrianglesWithoutGaps) {

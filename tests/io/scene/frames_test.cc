@@ -81,7 +81,8 @@ TEST_F(FramesTest, AreInTheOrderOfTheirNumbers) {
 
 TEST_F(FramesTest, MultiplyTheLoads) {
   const FrameSeries series = Read(kFilmedStrip);
-  EXPECT_EQ(series.load_error, 0.01);
+  EXPECT_EQ(series.load_error.relative, 0.01);
+  EXPECT_TRUE(series.load_error.is_in_frames);
   const LoadCase frame = series.read(1);
   EXPECT_EQ(frame.resultants[0].force(0), -12);
   EXPECT_TRUE(std::isnan(frame.resultants[0].force(1)));
@@ -90,7 +91,7 @@ TEST_F(FramesTest, MultiplyTheLoads) {
   EXPECT_THROWS_WITH(series.read(2), "no number for this frame");
   EXPECT_EQ(Read(Replaced(kFilmedStrip, "\"Force [N]\"",
                           "\"Force [N]\", \"relative_sd\": 0.002"))
-                .load_error,
+                .load_error.relative,
             0.002);
   // An error in units of force stays what it is.
   EXPECT_EQ(Read(Replaced(kFilmedStrip, "\"relative_sd\": 0.01", "\"sd\": 0.3"))
