@@ -35,8 +35,9 @@ class Series : public testing::ProgramTest {
     WriteScene(R"("load_record": {"file": "load.csv", "column": "Force [N]"})");
   }
 
-  // E falls by a share of `softening` up to the largest load.
-  void WriteFrames(double softening) const {
+  // E falls by a share of `softening` up to the largest load; the reference
+  // image has noise of the standard deviation `shared`.
+  void WriteFrames(double softening, double shared = 0) const {
     std::ostringstream record;
     record << "Force [N]\n";
     std::mt19937_64 generator(3);
@@ -46,12 +47,16 @@ class Series : public testing::ProgramTest {
       const double strain = stress / (kYoungs * (1 - softening * number / 6));
       std::ostringstream text;
       text << std::setprecision(17) << "x,y,ux,uy\n";
+      std::mt19937_64 reference(9);
+      std::normal_distribution<double> common(0, 1);
       for (int i = 0; i <= 12; ++i) {
         for (int j = 0; j <= 4; ++j) {
           const double x = 0.5 * i;
           const double y = 0.5 * j;
-          text << x << "," << y << "," << strain * x + noise(generator) << ","
-               << -kPoisson * strain * y + noise(generator) << "\n";
+          const double of_x = noise(generator) + shared * common(reference);
+          const double of_y = noise(generator) + shared * common(reference);
+          text << x << "," << y << "," << strain * x + of_x << ","
+               << -kPoisson * strain * y + of_y << "\n";
         }
       }
       testing::WriteText(
@@ -121,6 +126,28 @@ TEST_F(Series, TellsThatTheModulusDependsOnTheLoad) {
       Succeed("estimate scene.json --estimator=iterative-fe").output;
   EXPECT_THAT(output, HasSubstr("6 of 7 used, at 1 to 6 times the loads"));
   EXPECT_THAT(output, HasSubstr("from the least load to the largest"));
+}
+
+TEST_F(Series, TellsWhatFramesShare) {
+  const std::string estimate = "estimate scene.json --estimator=auto --json=-";
+  const nlohmann::json alone = Succeed(estimate).Json();
+  WriteFrames(0, 2 * kNoise);
+  const nlohmann::json shared = Succeed(estimate).Json();
+  const auto has_finding = [](const nlohmann::json& report) {
+    for (const nlohmann::json& finding : report["findings"]) {
+      if (finding["code"] == "frames_alike") {
+        return true;
+      }
+    }
+    return false;
+  };
+  EXPECT_FALSE(has_finding(alone));
+  EXPECT_TRUE(has_finding(shared));
+  // As a fit of one frame: 5^(1/2) of the noise, of which 4/5 is shared by 6.
+  const auto error = [](const nlohmann::json& report) {
+    return double(report["standard_error"]["poisson_ratio"]);
+  };
+  EXPECT_GT(error(shared) / error(alone), 3);
 }
 
 TEST_F(Series, HasARowForAFrameThatCannotBeRead) {
