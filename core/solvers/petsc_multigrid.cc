@@ -47,7 +47,10 @@ std::mutex& PetscMutex() {
 
 // Trilinos' ML aggregates every mesh well, in a tenth of the time that GAMG of
 // PETSc 3.18 takes, which coarsens meshes with nodes of few neighbours by two
-// only.  Chebyshev smoothing is symmetric, and twice as fast as SOR.
+// only.  Chebyshev smoothing is symmetric, and twice as fast as SOR.  Its
+// largest eigenvalue is estimated by GMRES, since conjugate gradients, which
+// PETSc would take, end early where a matrix is not positive definite, and PETSc
+// reads numbers then that nothing has set, some of which it never ends with.
 constexpr char kOptions[] =
     "-elastimate_ksp_type cg -elastimate_ksp_norm_type natural "
 #ifdef ELASTIMATE_HAS_ML
@@ -57,6 +60,7 @@ constexpr char kOptions[] =
 #endif
     "-elastimate_mg_levels_ksp_type chebyshev "
     "-elastimate_mg_levels_ksp_max_it 2 "
+    "-elastimate_mg_levels_esteig_ksp_type gmres "
     "-elastimate_mg_levels_pc_type jacobi";
 
 bool IsPetscRunning() {

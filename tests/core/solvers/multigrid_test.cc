@@ -1,6 +1,7 @@
 #include "elastimate/core/solvers/multigrid.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <cmath>
 #include <limits>
@@ -124,6 +125,19 @@ TEST_P(SolvedTwice, SaysWhenItDoesNotConverge) {
   }
   ASSERT_TRUE(multigrid_->Factorize(assembly_.Combine(0.3)));
   EXPECT_TRUE(multigrid_->Solve(b, 1e-6));
+}
+
+// Whatever was in the memory that it gets: bytes of all ones, as here, are not
+// a number.
+TEST_P(SolvedTwice, EndsForAMatrixThatIsNotPositive) {
+  mallopt(M_PERTURB, 0x100);
+  for (const double nu : {0.7, 1.5, 4.0}) {
+    if (multigrid_->Factorize(assembly_.Combine(nu))) {
+      EXPECT_FALSE(
+          multigrid_->Solve(RandomMatrix(dofs_.NumFree(), 1, 3), 1e-6));
+    }
+  }
+  mallopt(M_PERTURB, 0);
 }
 
 // Fewer nodes than a coarse space has rigid motions.
