@@ -8,6 +8,7 @@
 
 #include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/mesh/mid_edges.h"
+#include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/rigid_motion.h"
@@ -137,7 +138,7 @@ Fields ResultFields(const Scene& scene, const Scene& modelled,
     collector.AddParameters(scene, estimate);
   }
   const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
-  if (!WhyNotHeld(scene.mesh, scene.supports).empty()) {
+  if (!WhyNotHeld(scene).empty()) {
     const Eigen::MatrixXd force = AssembleLoadCases(scene);
     const Eigen::MatrixXd measured =
         MeasuredMinus(scene, Eigen::MatrixXd::Zero(force.rows(), num_cases));
@@ -161,9 +162,7 @@ Fields ResultFields(const Scene& scene, const Scene& modelled,
   const Eigen::MatrixXd difference = MeasuredMinus(modelled, fitted);
   const Eigen::MatrixXd imbalance =
       model.Forces().Multiply(moduli, fitted) - AssembleLoadCases(modelled);
-  const Eigen::MatrixXd held_imbalance = modelled.supports.held.reshaped()
-                                             .replicate(1, num_cases)
-                                             .select(imbalance.array(), 0.0);
+  const Eigen::MatrixXd held_imbalance = OfHeld(modelled, imbalance);
   const Eigen::MatrixXd reaction =
       scene.mesh.Order() == 2
           ? held_imbalance

@@ -112,25 +112,31 @@ Solution Solve(const std::string& source, const Scene& modelled,
   if (!model.Notice().empty()) {
     notices.push_back(model.Notice());
   }
-  if (!Displaced(modelled.supports).any()) {
+  bool is_any_displaced = false;
+  for (Eigen::Index k = 0; k < Eigen::Index(modelled.load_cases.size()); ++k) {
+    is_any_displaced =
+        is_any_displaced || Displaced(SupportsOf(modelled, k)).any();
+  }
+  if (!is_any_displaced) {
     return {model.Displacement(), {}};
   }
   const Eigen::MatrixXd residual =
       model.Forces().Multiply(moduli, model.Displacement()) -
       AssembleLoadCases(modelled);
-  const DegreesOfFreedom dofs(modelled.supports);
-  return {model.Displacement(),
-          residual - dofs.Extend(dofs.Restrict(residual))};
+  return {model.Displacement(), OfHeld(modelled, residual)};
 }
 
 /// What a load cell would show: a line for each load case where supports are
 /// held away from zero.
 std::string ForcesOfDisplacedSupports(const Scene& modelled,
                                       const Solution& solution) {
-  const ComponentMask displaced = Displaced(modelled.supports);
   std::ostringstream text;
   text << std::setprecision(10);
   for (Eigen::Index k = 0; k < solution.support_forces.cols(); ++k) {
+    const ComponentMask displaced = Displaced(SupportsOf(modelled, k));
+    if (!displaced.any()) {
+      continue;
+    }
     const Eigen::MatrixXd forces = solution.support_forces.col(k).reshaped(
         displaced.rows(), displaced.cols());
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(forces.rows());
@@ -180,8 +186,8 @@ std::string MeasuredScene(const std::string& source,
         solution.displacement.col(Eigen::Index(k))
             .head(mesh.NumDofs())
             .reshaped(mesh.Dimension(), mesh.NumNodes());
-    Disturb(source, errors, mesh.nodes, scene.supports.held, generator,
-            displacement);
+    Disturb(source, errors, mesh.nodes, SupportsOf(scene, Eigen::Index(k)).held,
+            generator, displacement);
     scene.load_cases[k].displacement = displacement;
   }
   return VtuContent(FLAGS_out, mesh, SceneFields(scene), file_order);
@@ -224,7 +230,7 @@ std::string MeasuredPoints(const std::string& source,
 }
 
 void RequireKnownSupports(const std::string& source, const Scene& scene) {
-  const std::string why_not_held = WhyNotHeld(scene.mesh, scene.supports);
+  const std::string why_not_held = WhyNotHeld(scene);
   if (!why_not_held.empty()) {
     throw std::invalid_argument(source + ": " + why_not_held);
   }

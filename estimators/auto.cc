@@ -261,11 +261,6 @@ void ChooseOrder(const Estimate& linear, const Observations& observations,
   }
 }
 
-// What reduced-fe does not take.
-bool IsForIterativeFe(const Scene& scene) {
-  return !IsOneIsotropicMaterial(scene.materials) || HasUnknownMotion(scene);
-}
-
 // Of several materials: only a fit sees that regions are wrong, and it starts
 // from virtual-fields itself.
 void ClimbOverMaterials(const Scene& scene, const EstimatorOptions& options,
@@ -313,6 +308,7 @@ Capabilities Auto::WhatItTakes() const {
   capabilities.takes_degree = true;
   capabilities.takes_materials = true;
   capabilities.takes_unknown_motion = true;
+  capabilities.takes_supports_of_cases = true;
   return capabilities;
 }
 
@@ -320,7 +316,7 @@ std::string Auto::WhyUnsupported(const Scene& scene,
                                  const EstimatorOptions& options) const {
   const EstimatorOptions without_degree = WithoutDegree(options);
   const std::string why_not =
-      IsForIterativeFe(scene)
+      IsForMaterialFit(scene)
           ? IterativeFe().WhyUnsupported(scene, without_degree)
           : ReducedFe().WhyUnsupported(scene, without_degree);
   if (why_not.empty() ||
@@ -338,7 +334,7 @@ Estimate Auto::DoRun(const Scene& scene,
       StopsHere(WhyNotEnough(scene, options, ladder.Last()), ladder)) {
     return ladder.Finish();
   }
-  if (IsForIterativeFe(scene)) {
+  if (IsForMaterialFit(scene)) {
     ClimbOverMaterials(scene, options, nullptr, ladder);
     return ladder.Finish();
   }

@@ -1,6 +1,6 @@
 #include "elastimate/core/equilibrium/equilibrium.h"
 
-#include <vector>
+#include <algorithm>
 
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/unknown_motion.h"
@@ -9,14 +9,57 @@ namespace elastimate {
 
 Equilibrium::Equilibrium(const Scene& scene, SolverKind solver)
     : forces_(scene.mesh, scene.materials),
-      solver_(scene.mesh, scene.supports, solver),
       load_(AssembleLoadCases(scene)),
-      held_displacement_(HeldDisplacement(scene.supports)),
+      held_displacement_(load_.rows(), load_.cols()),
+      held_forces_(load_.cols()),
       has_unknown_motion_(HasUnknownMotion(scene)) {
-  if (!held_displacement_.isZero(0)) {
-    held_forces_ = forces_.Columns(held_displacement_);
-    ++element_passes_;
+  std::vector<const Supports*> supports_of_stiffness;
+  for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
+    const Supports& supports = SupportsOf(scene, k);
+    const auto same = std::find_if(
+        supports_of_stiffness.begin(), supports_of_stiffness.end(),
+        [&](const Supports* other) {
+          return other == &supports || (other->held == supports.held).all();
+        });
+    stiffness_of_case_.push_back(same - supports_of_stiffness.begin());
+    if (same == supports_of_stiffness.end()) {
+      supports_of_stiffness.push_back(&supports);
+      stiffness_.emplace_back(scene.mesh, supports, solver);
+    }
+    held_displacement_.col(k) = HeldDisplacement(supports);
+    Eigen::Index first = 0;
+    while (stiffness_of_case_[first] != stiffness_of_case_[k] ||
+           held_displacement_.col(first) != held_displacement_.col(k)) {
+      ++first;
+    }
+    first_held_alike_.push_back(first);
+    if (first == k && !held_displacement_.col(k).isZero(0)) {
+      held_forces_[k] = forces_.Columns(held_displacement_.col(k));
+      ++element_passes_;
+    }
   }
+}
+
+template <class Stiffnesses, class Function>
+Eigen::MatrixXd Equilibrium::ByStiffness(Stiffnesses& stiffnesses,
+                                         const Eigen::MatrixXd& columns,
+                                         const Function& of_stiffness) const {
+  if (stiffnesses.size() == 1) {
+    return of_stiffness(stiffnesses[0], columns);
+  }
+  const Eigen::Index n = columns.cols() / NumLoadCases();
+  Eigen::MatrixXd results(columns.rows(), columns.cols());
+  for (std::size_t i = 0; i < stiffnesses.size(); ++i) {
+    std::vector<Eigen::Index> own;
+    for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+      if (stiffness_of_case_[j / n] == Eigen::Index(i)) {
+        own.push_back(j);
+      }
+    }
+    results(Eigen::all, own) =
+        of_stiffness(stiffnesses[i], columns(Eigen::all, own));
+  }
+  return results;
 }
 
 bool Equilibrium::Solve(const Eigen::VectorXd& moduli) {
@@ -24,20 +67,32 @@ bool Equilibrium::Solve(const Eigen::VectorXd& moduli) {
   // Of moduli of any unit, a stiffness without one.
   scale_ = moduli.cwiseAbs().maxCoeff();
   const Eigen::VectorXd scaled = moduli / scale_;
-  const Eigen::MatrixXd blocks = forces_.Blocks(scaled, solver_.Graph());
-  if (!solver_.FactorizeBlocks(blocks)) {
-    return false;
+  const Eigen::MatrixXd blocks = forces_.Blocks(scaled, Graph());
+  for (SupportedStiffness& stiffness : stiffness_) {
+    if (!stiffness.Factorize(blocks, has_unknown_motion_)) {
+      return false;
+    }
   }
-  if (has_unknown_motion_) {
-    AssembleHeldRows(blocks);
-  }
-  support_response_ = held_displacement_;
-  if (held_forces_.size() > 0) {
-    support_response_ -= solver_.Solve(held_forces_ * scaled);
-  }
-  displacement_ = solver_.Solve(load_) / scale_;
-  displacement_.colwise() += support_response_;
+  SolveForSupports(scaled);
+  displacement_ = ByStiffness(
+      stiffness_, load_,
+      [&](SupportedStiffness& stiffness, const Eigen::MatrixXd& loads) {
+        return Eigen::MatrixXd(stiffness.Solve(loads) / scale_);
+      });
+  displacement_ += support_response_;
   return !displacement_.hasNaN();
+}
+
+void Equilibrium::SolveForSupports(const Eigen::VectorXd& scaled_moduli) {
+  support_response_ = held_displacement_;
+  for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
+    if (first_held_alike_[k] != k) {
+      support_response_.col(k) = support_response_.col(first_held_alike_[k]);
+    } else if (held_forces_[k].size() > 0) {
+      support_response_.col(k) -= stiffness_[stiffness_of_case_[k]].Solve(
+          held_forces_[k] * scaled_moduli);
+    }
+  }
 }
 
 Eigen::MatrixXd Equilibrium::Sensitivities(const Eigen::MatrixXd& directions) {
@@ -45,53 +100,32 @@ Eigen::MatrixXd Equilibrium::Sensitivities(const Eigen::MatrixXd& directions) {
   Eigen::MatrixXd sensitivities(displacement_.rows(), n * displacement_.cols());
   for (Eigen::Index k = 0; k < displacement_.cols(); ++k) {
     ++element_passes_;
-    sensitivities.middleCols(n * k, n) = -solver_.Solve(
-        forces_.Columns(displacement_.col(k)) * (directions / scale_));
+    sensitivities.middleCols(n * k, n) =
+        -stiffness_[stiffness_of_case_[k]].Solve(
+            forces_.Columns(displacement_.col(k)) * (directions / scale_));
   }
   return sensitivities;
 }
 
-void Equilibrium::AssembleHeldRows(const Eigen::MatrixXd& blocks) {
-  const NodeGraph& graph = solver_.Graph();
-  const Eigen::Index d = blocks.rows();
-  std::vector<Eigen::Triplet<double>> entries;
-  const auto add = [&](Eigen::Index row, Eigen::Index column, double value) {
-    if (IsHeld(row)) {
-      entries.emplace_back(row, column, value);
-    }
-  };
-  for (Eigen::Index j = 0; j + 1 < Eigen::Index(graph.start.size()); ++j) {
-    for (Eigen::Index pair = graph.start[j]; pair < graph.start[j + 1];
-         ++pair) {
-      const Eigen::Index i = graph.row[pair];
-      for (Eigen::Index a = 0; a < d; ++a) {
-        for (Eigen::Index b = 0; b < d; ++b) {
-          const double value = blocks(a, d * pair + b);
-          add(d * i + a, d * j + b, value);
-          if (i != j) {
-            add(d * j + b, d * i + a, value);
-          }
-        }
-      }
-    }
-  }
-  held_rows_.resize(load_.rows(), load_.rows());
-  held_rows_.setFromTriplets(entries.begin(), entries.end());
-}
-
-Eigen::MatrixXd Equilibrium::OfHeld(Eigen::MatrixXd values) const {
-  for (const Eigen::Index dof : solver_.Dofs().free) {
-    values.row(dof).setZero();
-  }
-  return values;
-}
-
 Eigen::MatrixXd Equilibrium::Extend(const Eigen::MatrixXd& held) {
-  return held - solver_.Solve(held_rows_.transpose() * held);
+  return ByStiffness(
+      stiffness_, held,
+      [](SupportedStiffness& stiffness, const Eigen::MatrixXd& columns) {
+        return stiffness.Extend(columns);
+      });
 }
 
 Eigen::MatrixXd Equilibrium::ExtendTransposed(const Eigen::MatrixXd& values) {
-  return OfHeld(values) - held_rows_ * solver_.Solve(values);
+  return ByStiffness(
+      stiffness_, values,
+      [](SupportedStiffness& stiffness, const Eigen::MatrixXd& columns) {
+        return stiffness.ExtendTransposed(columns);
+      });
+}
+
+Eigen::MatrixXd Equilibrium::ExtendInCase(Eigen::Index k,
+                                          const Eigen::MatrixXd& held) {
+  return stiffness_[stiffness_of_case_[k]].Extend(held);
 }
 
 void Equilibrium::Superpose(const Eigen::MatrixXd& displacement) {
@@ -100,16 +134,35 @@ void Equilibrium::Superpose(const Eigen::MatrixXd& displacement) {
 
 Eigen::MatrixXd Equilibrium::HeldForces(
     const Eigen::MatrixXd& displacements) const {
-  return scale_ * (held_rows_ * displacements);
+  return ByStiffness(
+      stiffness_, displacements,
+      [&](const SupportedStiffness& stiffness, const Eigen::MatrixXd& columns) {
+        return Eigen::MatrixXd(scale_ * stiffness.HeldForces(columns));
+      });
 }
 
 Eigen::MatrixXd Equilibrium::HeldForcesTransposed(
     const Eigen::MatrixXd& held) const {
-  return scale_ * (held_rows_.transpose() * held);
+  return ByStiffness(
+      stiffness_, held,
+      [&](const SupportedStiffness& stiffness, const Eigen::MatrixXd& columns) {
+        return Eigen::MatrixXd(scale_ *
+                               stiffness.HeldForcesTransposed(columns));
+      });
+}
+
+Eigen::MatrixXd Equilibrium::HeldForcesInCase(
+    Eigen::Index k, const Eigen::MatrixXd& displacements) const {
+  return scale_ * stiffness_[stiffness_of_case_[k]].HeldForces(displacements);
 }
 
 Eigen::MatrixXd Equilibrium::SupportForces() const {
-  return HeldForces(displacement_) - OfHeld(load_);
+  return HeldForces(displacement_) -
+         ByStiffness(stiffness_, load_,
+                     [](const SupportedStiffness& stiffness,
+                        const Eigen::MatrixXd& loads) {
+                       return stiffness.OfHeld(loads);
+                     });
 }
 
 Eigen::MatrixXd Equilibrium::SupportForceSensitivities(
@@ -118,16 +171,28 @@ Eigen::MatrixXd Equilibrium::SupportForceSensitivities(
   Eigen::MatrixXd forces = HeldForces(sensitivities);
   for (Eigen::Index k = 0; k < displacement_.cols(); ++k) {
     ++element_passes_;
-    forces.middleCols(n * k, n) +=
-        OfHeld(forces_.Columns(displacement_.col(k)) * directions);
+    forces.middleCols(n * k, n) += stiffness_[stiffness_of_case_[k]].OfHeld(
+        forces_.Columns(displacement_.col(k)) * directions);
   }
   return forces;
 }
 
 Work Equilibrium::WorkDone() const {
-  Work work = solver_.WorkDone();
+  Work work;
+  for (const SupportedStiffness& stiffness : stiffness_) {
+    work = work + stiffness.Solver().WorkDone();
+  }
   work.element_passes += element_passes_;
   return work;
+}
+
+const std::string& Equilibrium::Notice() const {
+  for (const SupportedStiffness& stiffness : stiffness_) {
+    if (!stiffness.Solver().Notice().empty()) {
+      return stiffness.Solver().Notice();
+    }
+  }
+  return stiffness_[0].Solver().Notice();
 }
 
 }  // namespace elastimate

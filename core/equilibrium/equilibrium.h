@@ -2,12 +2,13 @@
 #define ELASTIMATE_CORE_EQUILIBRIUM_EQUILIBRIUM_H_
 
 #include <Eigen/Core>
-#include <Eigen/SparseCore>
+#include <deque>
 #include <string>
+#include <vector>
 
+#include "elastimate/core/equilibrium/supported_stiffness.h"
 #include "elastimate/core/mechanics/internal_forces.h"
 #include "elastimate/core/scene/scene.h"
-#include "elastimate/core/solvers/stiffness_solver.h"
 
 namespace elastimate {
 
@@ -15,26 +16,27 @@ namespace elastimate {
 ///
 ///   K(theta) u = f on the free degrees of freedom, u given on the held ones,
 ///
-/// and its sensitivities du / d theta_k = -K^-1 K_k u.  ForwardModel is faster
-/// for one isotropic material.
+/// in each load case, and its sensitivities du / d theta_k = -K^-1 K_k u.  Load
+/// cases that hold the same degrees of freedom share a factor.  ForwardModel is
+/// faster for one isotropic material on supports that all load cases share.
 class Equilibrium {
  public:
   /// Assembles the pattern and analyses it.  Preconditions and exceptions are
   /// those of StiffnessSolver.
   Equilibrium(const Scene& scene, SolverKind solver);
 
-  /// Solves for u at these moduli: an element pass, a factorisation and a solve
-  /// for each load case (one more with held displacements).  False when the
-  /// stiffness is not positive definite to working precision; there is no u
-  /// then.
+  /// Solves for u at these moduli: an element pass, for each set of held
+  /// degrees of freedom a factorisation, and a solve for each load case (one
+  /// more for each set of held displacements).  False when the stiffness is not
+  /// positive definite to working precision; there is no u then.
   bool Solve(const Eigen::VectorXd& moduli);
 
   /// u of all load cases, num_dofs x num_load_cases [length].
   const Eigen::MatrixXd& Displacement() const { return displacement_; }
 
   /// The part of u that the held displacements cause, which does not change
-  /// when all moduli are multiplied by a factor: num_dofs values.
-  const Eigen::VectorXd& SupportResponse() const { return support_response_; }
+  /// when all moduli are multiplied by a factor: num_dofs x num_load_cases.
+  const Eigen::MatrixXd& SupportResponse() const { return support_response_; }
 
   /// du / dp for directions d theta / d p (num_moduli x n): one num_dofs x
   /// n matrix for each load case, side by side.  A pass and n solves for each
@@ -42,19 +44,26 @@ class Equilibrium {
   Eigen::MatrixXd Sensitivities(const Eigen::MatrixXd& directions);
 
   /// u in equilibrium without loads, of displacements of the held degrees of
-  /// freedom alone (num_dofs x n, zero in the free rows): n solves.  This, its
-  /// transpose and forces of supports are there for a scene of unknown motion
-  /// (HasUnknownMotion).  Precondition: Solve returned true.
+  /// freedom alone (zero in the free rows), n of each load case side by side:
+  /// a solve for each.  This, its transpose and forces of supports are there
+  /// for a scene of unknown motion (HasUnknownMotion).  Precondition: Solve
+  /// returned true.
   Eigen::MatrixXd Extend(const Eigen::MatrixXd& held);
-  /// The transpose of Extend, zero in the free rows: n solves.
+  /// The transpose of Extend, zero in the free rows.
   Eigen::MatrixXd ExtendTransposed(const Eigen::MatrixXd& values);
+  /// The same as Extend, of any displacements in load case `k`: num_dofs x n.
+  Eigen::MatrixXd ExtendInCase(Eigen::Index k, const Eigen::MatrixXd& held);
   /// Adds displacements of each load case that Extend returned.
   void Superpose(const Eigen::MatrixXd& displacement);
 
-  /// K of the held rows times some columns, zero in the free rows.
+  /// K of the held rows times some columns, n of each load case side by side,
+  /// zero in the free rows.
   Eigen::MatrixXd HeldForces(const Eigen::MatrixXd& displacements) const;
   /// Its transpose, of values in the held rows.
   Eigen::MatrixXd HeldForcesTransposed(const Eigen::MatrixXd& held) const;
+  /// The same as HeldForces, of any columns in load case `k`: num_dofs x n.
+  Eigen::MatrixXd HeldForcesInCase(Eigen::Index k,
+                                   const Eigen::MatrixXd& displacements) const;
   /// The forces that the supports exert in each load case, K u - f in the held
   /// rows, zero in the free ones: num_dofs x num_load_cases [force].
   Eigen::MatrixXd SupportForces() const;
@@ -64,30 +73,35 @@ class Equilibrium {
       const Eigen::MatrixXd& directions, const Eigen::MatrixXd& sensitivities);
 
   const InternalForces& Forces() const { return forces_; }
-  const NodeGraph& Graph() const { return solver_.Graph(); }
+  const NodeGraph& Graph() const { return stiffness_[0].Solver().Graph(); }
   Work WorkDone() const;
-  /// That of StiffnessSolver.
-  const std::string& Notice() const { return solver_.Notice(); }
+  /// That of the StiffnessSolver that has one.
+  const std::string& Notice() const;
 
  private:
-  bool IsHeld(Eigen::Index dof) const { return solver_.Dofs().place[dof] < 0; }
-  /// The held rows of the stiffness of these blocks.
-  void AssembleHeldRows(const Eigen::MatrixXd& blocks);
-  /// `values` in the held rows, zero in the free.
-  Eigen::MatrixXd OfHeld(Eigen::MatrixXd values) const;
+  Eigen::Index NumLoadCases() const { return load_.cols(); }
+  /// What `of_stiffness` makes of columns, n of each load case side by side, by
+  /// the stiffness of theirs.
+  template <class Stiffnesses, class Function>
+  Eigen::MatrixXd ByStiffness(Stiffnesses& stiffnesses,
+                              const Eigen::MatrixXd& columns,
+                              const Function& of_stiffness) const;
+  void SolveForSupports(const Eigen::VectorXd& scaled_moduli);
 
   InternalForces forces_;
-  StiffnessSolver solver_;
+  std::deque<SupportedStiffness> stiffness_;  ///< Which do not move.
+  std::vector<Eigen::Index> stiffness_of_case_;
   Eigen::MatrixXd load_;
-  Eigen::VectorXd held_displacement_;
-  /// f_k of the held displacements alone; empty where they are zero.
-  Eigen::MatrixXd held_forces_;
+  Eigen::MatrixXd held_displacement_;  ///< num_dofs x num_load_cases.
+  /// The first load case that is held as this one, at the same displacements.
+  std::vector<Eigen::Index> first_held_alike_;
+  /// f_k of the held displacements alone, in the first such load case; empty in
+  /// others, and where they are zero.
+  std::vector<Eigen::MatrixXd> held_forces_;
   Eigen::MatrixXd displacement_;
-  Eigen::VectorXd support_response_;
+  Eigen::MatrixXd support_response_;
   double scale_ = 1;  ///< Of the moduli over those of the factor.
-  /// The held rows of the factor's stiffness, where motions are unknown.
   bool has_unknown_motion_;
-  Eigen::SparseMatrix<double, Eigen::RowMajor> held_rows_;
   int element_passes_ = 0;
 };
 

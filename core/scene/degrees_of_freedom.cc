@@ -30,4 +30,13 @@ Eigen::VectorXd HeldDisplacement(const Supports& supports) {
       .matrix();
 }
 
+Eigen::MatrixXd OfHeld(const Scene& scene, const Eigen::MatrixXd& values) {
+  Eigen::MatrixXd held = values;
+  for (Eigen::Index k = 0; k < values.cols(); ++k) {
+    held.col(k) =
+        SupportsOf(scene, k).held.reshaped().select(values.col(k).array(), 0.0);
+  }
+  return held;
+}
+
 }  // namespace elastimate

@@ -33,6 +33,10 @@ struct DegreesOfFreedom {
 /// dimension * num_nodes values.
 Eigen::VectorXd HeldDisplacement(const Supports& supports);
 
+/// Of values in each load case (num_dofs x num_load_cases), those in the rows
+/// that it holds, zero elsewhere.
+Eigen::MatrixXd OfHeld(const Scene& scene, const Eigen::MatrixXd& values);
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_CORE_SCENE_DEGREES_OF_FREEDOM_H_

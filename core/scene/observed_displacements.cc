@@ -59,7 +59,7 @@ struct RowList {
   void AddPoint(Eigen::Index k, Eigen::Index index, const Nodes& nodes,
                 const Values& shape_functions) {
     const Measurement measurement(scene, k);
-    const Supports& supports = scene.supports;
+    const Supports& supports = SupportsOf(scene, k);
     ObservedDisplacements::Point point = {k, index, Size(), 0};
     for (int i = 0; i < scene.mesh.Dimension(); ++i) {
       if (!measurement.Has(i, index)) {

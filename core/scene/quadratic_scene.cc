@@ -245,6 +245,9 @@ LoadCase ToQuadratic(const LoadCase& load_case, const Mesh& mesh,
         Eigen::MatrixXd::Zero(mesh.Dimension(), edges.Size());
     quadratic.displacement = WithMidEdges(load_case.displacement, unknown);
   }
+  if (load_case.supports) {
+    quadratic.supports = WithMidEdgeSupports(*load_case.supports, mesh, edges);
+  }
   for (Resultant resultant : load_case.resultants) {
     resultant.nodes = WithMidEdgeNodes(resultant.nodes, mesh, edges,
                                        [](Eigen::Index) { return true; });

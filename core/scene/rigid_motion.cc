@@ -381,4 +381,16 @@ std::string WhyNotHeld(const Mesh& mesh, const Supports& supports) {
   return "";
 }
 
+std::string WhyNotHeld(const Scene& scene) {
+  std::string why = WhyNotHeld(scene.mesh, scene.supports);
+  for (std::size_t k = 0; k < scene.load_cases.size() && why.empty(); ++k) {
+    if (scene.load_cases[k].supports) {
+      why = WhyNotHeld(scene.mesh, *scene.load_cases[k].supports);
+      why.insert(
+          0, why.empty() ? "" : "in load case " + std::to_string(k + 1) + ", ");
+    }
+  }
+  return why;
+}
+
 }  // namespace elastimate

@@ -44,6 +44,10 @@ inline Eigen::MatrixXd RigidMotionsAt(const Eigen::VectorXd& arm) {
 /// factorisation with as many unknowns as rigid motions for each hinged body.
 std::string WhyNotHeld(const Mesh& mesh, const Supports& supports);
 
+/// The same of the supports of each load case of a scene; names the load case
+/// where they are its own.
+std::string WhyNotHeld(const Scene& scene);
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_CORE_SCENE_RIGID_MOTION_H_

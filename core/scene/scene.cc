@@ -65,22 +65,27 @@ void RequireFinite(const Values& values, const std::string& what) {
   RequireRepresentable(largest, what);
 }
 
-void ValidateSupports(const Mesh& mesh, const Supports& supports) {
-  RequireShape(supports.held, mesh, "the mask of held components");
-  RequireShape(supports.displacement, mesh, "the displacement of the supports");
+// `of_case` is empty where they are those of the scene.
+void ValidateSupports(const Mesh& mesh, const Supports& supports,
+                      const std::string& of_case) {
+  const std::string displacement = "the displacement of the supports" + of_case;
+  RequireShape(supports.held, mesh, "the mask of held components" + of_case);
+  RequireShape(supports.displacement, mesh, displacement);
   RequireFinite(supports.held.select(supports.displacement.array(), 0.0),
-                "the displacement of the supports");
+                displacement);
   for (const HeldBox& box : supports.boxes) {
     const Eigen::Index d = mesh.Dimension();
     if (box.lower.size() != d || box.upper.size() != d ||
         box.components.size() != d || box.displacement.size() != d ||
         !box.displacement.allFinite()) {
-      Fail("a box of the supports does not have " + std::to_string(d) +
-           " finite numbers of each kind; correct it");
+      Fail("a box of the supports" + of_case + " does not have " +
+           std::to_string(d) + " finite numbers of each kind; correct it");
     }
   }
   if (supports.held.all()) {
-    Fail("every degree of freedom is held; free the nodes that could move");
+    Fail("every degree of freedom is held" +
+         (of_case.empty() ? "" : " in the supports" + of_case) +
+         "; free the nodes that could move");
   }
 }
 
@@ -239,15 +244,24 @@ void ValidateMeasurement(const Mesh& mesh, const LoadCase& load_case,
 
 }  // namespace
 
+bool HasSupportsOfCases(const Scene& scene) {
+  return std::any_of(
+      scene.load_cases.begin(), scene.load_cases.end(),
+      [](const LoadCase& load_case) { return load_case.supports.has_value(); });
+}
+
 void ValidateScene(const Scene& scene) {
   ValidateMesh(scene.mesh);
   ValidateMaterials(scene.materials, scene.mesh);
-  ValidateSupports(scene.mesh, scene.supports);
+  ValidateSupports(scene.mesh, scene.supports, "");
   if (scene.load_cases.empty()) {
     Fail("the scene has no load case; give at least one");
   }
   for (std::size_t i = 0; i < scene.load_cases.size(); ++i) {
     const LoadCase& load_case = scene.load_cases[i];
+    if (load_case.supports) {
+      ValidateSupports(scene.mesh, *load_case.supports, " of " + CaseName(i));
+    }
     for (std::size_t k = 0; k < load_case.loads.size(); ++k) {
       const std::string where =
           "load " + std::to_string(k + 1) + " of " + CaseName(i);

@@ -11,47 +11,9 @@
 #include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/mesh/mesh.h"
 #include "elastimate/core/mesh/mesh_points.h"
+#include "elastimate/core/scene/supports.h"
 
 namespace elastimate {
-
-/// One flag per displacement component: dimension x num_nodes.
-using ComponentMask = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
-
-/// A part of space in which a specimen is held, bounds included.
-struct HeldBox {
-  Eigen::VectorXd lower;  ///< Of `dimension` coordinates [length].
-  Eigen::VectorXd upper;
-  Eigen::Array<bool, Eigen::Dynamic, 1>
-      components;                ///< Which of them it holds.
-  Eigen::VectorXd displacement;  ///< Of `dimension` [length].
-};
-
-/// A part of the specimen that a grip or a platen moves as a rigid body, by a
-/// motion that is not known: some components of u = a + w x (x - x0).
-struct RigidFace {
-  std::vector<int> nodes;
-  Eigen::Array<bool, Eigen::Dynamic, 1> components;  ///< Of `dimension`.
-};
-
-/// The held degrees of freedom, and the displacement they are held at.
-struct Supports {
-  ComponentMask held;            ///< dimension x num_nodes.
-  Eigen::MatrixXd displacement;  ///< dimension x num_nodes [length]; used where
-                                 ///< `held`, ignored elsewhere.
-  /// Where `held` comes from, as far as it was told by place: it decides about
-  /// the nodes that QuadraticScene adds.
-  std::vector<HeldBox> boxes = {};
-  /// Held components whose displacement, in each load case another, is not
-  /// known: those of rigid faces, and others as they were measured, with the
-  /// error of a measurement.  dimension x num_nodes; empty when there are none.
-  ComponentMask unknown = {};
-  std::vector<RigidFace> rigid_faces = {};
-
-  /// Whether component `i` of `node` is held at a displacement that is known.
-  bool IsGiven(int i, Eigen::Index node) const {
-    return held(i, node) && (unknown.size() == 0 || !unknown(i, node));
-  }
-};
 
 /// Forces that act on nodes.
 struct NodalForces {
@@ -121,6 +83,8 @@ struct LoadCase {
   std::optional<double> noise_sd;  ///< Standard deviation of the measured
                                    ///< displacement per component [length].
   std::vector<Resultant> resultants = {};
+  /// Those of this load case, where they are not those of the scene.
+  std::optional<Supports> supports = {};
 };
 
 /// Whether component `i` of the displacement of `node` is measured: in a load
@@ -143,12 +107,21 @@ struct Scene {
   Mesh mesh;
   /// Empty: one isotropic material.
   std::vector<Material> materials;
-  Supports supports;
+  Supports supports;  ///< Of all load cases that have none of their own.
   std::vector<LoadCase> load_cases;
   /// Whether the displacements were measured but for a rigid motion, of the
   /// camera or of the whole specimen, in each load case another.
   bool is_rigid_motion_free = false;
 };
+
+/// The supports in load case `k`.
+inline const Supports& SupportsOf(const Scene& scene, Eigen::Index k) {
+  const std::optional<Supports>& own = scene.load_cases[k].supports;
+  return own ? *own : scene.supports;
+}
+
+/// Whether supports differ between load cases.  O(num_load_cases).
+bool HasSupportsOfCases(const Scene& scene);
 
 /// Throws std::invalid_argument with one sentence that names the load case, the
 /// array, and the node or element, unless: the mesh and its materials are
@@ -160,7 +133,8 @@ struct Scene {
 /// mid-edge nodes in the middle); points lie in their
 /// elements (ValidatePoints); the facets of a surface force have an area; noise
 /// standard deviations are positive; there is a load case; and at least one
-/// degree of freedom is free.  O(num_elements + num_nodes * num_load_cases).
+/// degree of freedom is free in each.  O(num_elements + num_nodes *
+/// num_load_cases).
 void ValidateScene(const Scene& scene);
 
 /// The part of ValidateScene that is about observed components, displacements

@@ -65,9 +65,8 @@ void ValidateRigidFace(const Mesh& mesh, const Supports& supports,
   }
 }
 
-void ValidateResultant(const Scene& scene, const Resultant& resultant,
-                       const std::string& where) {
-  const Mesh& mesh = scene.mesh;
+void ValidateResultant(const Mesh& mesh, const Supports& supports,
+                       const Resultant& resultant, const std::string& where) {
   if (resultant.force.size() != mesh.Dimension() ||
       resultant.noise_sd.size() != mesh.Dimension()) {
     Refuse("the force and the standard deviation of " + where +
@@ -92,7 +91,7 @@ void ValidateResultant(const Scene& scene, const Resultant& resultant,
     }
     bool is_held = false;
     for (const int node : resultant.nodes) {
-      is_held = is_held || scene.supports.held(i, node);
+      is_held = is_held || supports.held(i, node);
     }
     if (!is_held) {
       Refuse("no support holds component " + std::string(kAxisNames[i]) +
@@ -103,14 +102,13 @@ void ValidateResultant(const Scene& scene, const Resultant& resultant,
   }
 }
 
-// Of a mesh of order 2: the ends of the edge of each node in its middle that
-// was measured in no load case, and moves with them; -1 for other components
-// and nodes.
+// Of a mesh of order 2, in the load cases of some supports: the nodes in the
+// middle of edges that were measured in none of them, and move with the ends.
 struct TiedNodes {
-  explicit TiedNodes(const Scene& scene)
-      : is_tied(ComponentMask::Constant(scene.supports.held.rows(),
-                                        scene.supports.held.cols(), false)) {
-    const ComponentMask measured = AsMeasured(scene.supports);
+  TiedNodes(const Scene& scene, const Supports& supports)
+      : is_tied(ComponentMask::Constant(supports.held.rows(),
+                                        supports.held.cols(), false)) {
+    const ComponentMask measured = AsMeasured(supports);
     if (scene.mesh.Order() == 1 || measured.size() == 0) {
       return;
     }
@@ -122,9 +120,11 @@ struct TiedNodes {
         is_tied(i, first + edge) = measured(i, first + edge) &&
                                    measured(i, ends(0, edge)) &&
                                    measured(i, ends(1, edge));
-        for (const LoadCase& load_case : scene.load_cases) {
-          is_tied(i, first + edge) = is_tied(i, first + edge) &&
-                                     !IsObserved(load_case, i, first + edge);
+        for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+          is_tied(i, first + edge) =
+              is_tied(i, first + edge) &&
+              (&SupportsOf(scene, Eigen::Index(k)) != &supports ||
+               !IsObserved(scene.load_cases[k], i, first + edge));
         }
       }
     }
@@ -137,13 +137,16 @@ struct TiedNodes {
 
 // A few nodes may have been lost: their motion follows from their neighbours'.
 // Where there is no measurement of most, the motion is ill-posed.
-void ValidateMeasuredSupports(const Scene& scene) {
-  ComponentMask measured = AsMeasured(scene.supports);
+void ValidateMeasuredSupports(const Scene& scene, const Supports& supports) {
+  ComponentMask measured = AsMeasured(supports);
   if (measured.size() != 0) {
-    measured = measured && !TiedNodes(scene).is_tied;
+    measured = measured && !TiedNodes(scene, supports).is_tied;
   }
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     const LoadCase& load_case = scene.load_cases[k];
+    if (&SupportsOf(scene, Eigen::Index(k)) != &supports) {
+      continue;
+    }
     for (int i = 0; i < measured.rows(); ++i) {
       Eigen::Index num_lost = 0;
       Eigen::Index first_lost = 0;
@@ -165,19 +168,8 @@ void ValidateMeasuredSupports(const Scene& scene) {
   }
 }
 
-}  // namespace
-
-bool HasUnknownMotion(const Scene& scene) {
-  bool has_resultants = false;
-  for (const LoadCase& load_case : scene.load_cases) {
-    has_resultants = has_resultants || !load_case.resultants.empty();
-  }
-  return has_resultants || scene.is_rigid_motion_free ||
-         scene.supports.unknown.size() != 0;
-}
-
-void ValidateUnknownMotion(const Scene& scene) {
-  const Supports& supports = scene.supports;
+void ValidateUnknownDisplacements(const Scene& scene,
+                                  const Supports& supports) {
   const ComponentMask& unknown = supports.unknown;
   if (unknown.size() != 0 && (unknown.rows() != supports.held.rows() ||
                               unknown.cols() != supports.held.cols())) {
@@ -197,11 +189,31 @@ void ValidateUnknownMotion(const Scene& scene) {
   for (const RigidFace& face : supports.rigid_faces) {
     ValidateRigidFace(scene.mesh, supports, face);
   }
-  ValidateMeasuredSupports(scene);
+  ValidateMeasuredSupports(scene, supports);
+}
+
+}  // namespace
+
+bool HasUnknownMotion(const Scene& scene) {
+  bool has_some =
+      scene.is_rigid_motion_free || scene.supports.unknown.size() != 0;
+  for (const LoadCase& load_case : scene.load_cases) {
+    has_some = has_some || !load_case.resultants.empty() ||
+               (load_case.supports && load_case.supports->unknown.size() != 0);
+  }
+  return has_some;
+}
+
+void ValidateUnknownMotion(const Scene& scene) {
+  ValidateUnknownDisplacements(scene, scene.supports);
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-    const std::vector<Resultant>& resultants = scene.load_cases[k].resultants;
-    for (std::size_t i = 0; i < resultants.size(); ++i) {
-      ValidateResultant(scene, resultants[i],
+    const LoadCase& load_case = scene.load_cases[k];
+    if (load_case.supports) {
+      ValidateUnknownDisplacements(scene, *load_case.supports);
+    }
+    for (std::size_t i = 0; i < load_case.resultants.size(); ++i) {
+      ValidateResultant(scene.mesh, SupportsOf(scene, Eigen::Index(k)),
+                        load_case.resultants[i],
                         "resultant " + std::to_string(i + 1) +
                             " of load case " + std::to_string(k + 1));
     }
@@ -218,15 +230,14 @@ ComponentMask AsMeasured(const Supports& supports) {
   return mask;
 }
 
-UnknownMotion::UnknownMotion(const Scene& scene)
+UnknownMotion::UnknownMotion(const Scene& scene, const Supports& supports)
     : of_all(scene.mesh.NumDofs(), 0) {
   const Mesh& mesh = scene.mesh;
-  const Supports& supports = scene.supports;
   const int dimension = mesh.Dimension();
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::Index num_columns = 0;
   const ComponentMask measured = AsMeasured(supports);
-  const TiedNodes tied(scene);
+  const TiedNodes tied(scene, supports);
   std::vector<Eigen::Index> column_of_dof(mesh.NumDofs(), -1);
   for (Eigen::Index dof = 0; dof < measured.size(); ++dof) {
     if (measured.reshaped()(dof) && !tied.is_tied.reshaped()(dof)) {
@@ -270,23 +281,16 @@ UnknownMotion::UnknownMotion(const Scene& scene)
   }
 }
 
-Eigen::MatrixXd MeasuredSupports(const Scene& scene) {
-  const ComponentMask measured = AsMeasured(scene.supports);
-  Eigen::MatrixXd displacement = Eigen::MatrixXd::Zero(
-      scene.mesh.NumDofs(), Eigen::Index(scene.load_cases.size()));
-  for (Eigen::Index k = 0; k < displacement.cols() && measured.size() != 0;
-       ++k) {
-    const LoadCase& load_case = scene.load_cases[k];
-    if (load_case.displacement.size() == 0) {
-      continue;
-    }
-    const ComponentMask known = load_case.observed.size() == 0
-                                    ? measured
-                                    : measured && load_case.observed;
-    displacement.col(k) =
-        known.select(load_case.displacement.array(), 0.0).reshaped();
+Eigen::VectorXd MeasuredSupports(const Scene& scene, Eigen::Index k) {
+  const ComponentMask measured = AsMeasured(SupportsOf(scene, k));
+  const LoadCase& load_case = scene.load_cases[k];
+  if (measured.size() == 0 || load_case.displacement.size() == 0) {
+    return Eigen::VectorXd::Zero(scene.mesh.NumDofs());
   }
-  return displacement;
+  const ComponentMask known = load_case.observed.size() == 0
+                                  ? measured
+                                  : measured && load_case.observed;
+  return known.select(load_case.displacement.array(), 0.0).reshaped();
 }
 
 }  // namespace elastimate

@@ -26,8 +26,8 @@ ComponentMask AsMeasured(const Supports& supports);
 ///   u of the supports = given + G b,   what was measured = u + R a + noise.
 ///
 /// Amounts are lengths.  On a mesh of order 2, mid-edge nodes of supports that
-/// moved as measured, but were measured in no load case, move as the mean of
-/// the ends of their edge.
+/// moved as measured, but were measured in no load case of these supports, move
+/// as the mean of the ends of their edge.
 struct UnknownMotion {
   /// G: num_dofs x n.  One column for each displacement that is as measured,
   /// and the rigid motions of each face, three to six at most.
@@ -35,16 +35,17 @@ struct UnknownMotion {
   /// R: num_dofs x 3 or 6, where a rigid motion of all is free, else x 0.
   Eigen::MatrixXd of_all;
 
-  /// Precondition: a valid scene.  O(num_dofs).
-  explicit UnknownMotion(const Scene& scene);
+  /// In the load cases of these supports of the scene.  Precondition: a valid
+  /// scene.  O(num_dofs num_load_cases).
+  UnknownMotion(const Scene& scene, const Supports& supports);
 
   /// How many amounts there are in a load case.
   Eigen::Index NumAmounts() const { return of_supports.cols() + of_all.cols(); }
 };
 
-/// The measured displacement of AsMeasured, zero elsewhere and where a node was
-/// not measured: num_dofs x num_load_cases.
-Eigen::MatrixXd MeasuredSupports(const Scene& scene);
+/// The displacement of AsMeasured as measured in load case `k`, zero elsewhere
+/// and where a node was not measured: num_dofs values.
+Eigen::VectorXd MeasuredSupports(const Scene& scene, Eigen::Index k);
 
 }  // namespace elastimate
 

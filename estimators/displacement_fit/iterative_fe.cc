@@ -25,10 +25,6 @@
 namespace elastimate {
 namespace {
 
-bool IsForMaterialFit(const Scene& scene) {
-  return !IsOneIsotropicMaterial(scene.materials) || HasUnknownMotion(scene);
-}
-
 // Where the fit looks for a start, besides virtual-fields: in each decade of
 // (1 + nu) / (1 - 2 nu), the scale on which the stiffness changes evenly, since
 // the sum of squares can have several minima (that of a slender bar or a plate
@@ -233,6 +229,7 @@ Capabilities IterativeFe::WhatItTakes() const {
   capabilities.takes_losses = true;
   capabilities.takes_materials = true;
   capabilities.takes_unknown_motion = true;
+  capabilities.takes_supports_of_cases = true;
   return capabilities;
 }
 

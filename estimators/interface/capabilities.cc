@@ -30,7 +30,8 @@ std::string WhyNotAllDisplacements(const Scene& scene) {
     }
     for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
       for (int i = 0; i < dimension; ++i) {
-        if (scene.supports.held(i, node) || IsObserved(load_case, i, node)) {
+        if (SupportsOf(scene, Eigen::Index(k)).held(i, node) ||
+            IsObserved(load_case, i, node)) {
           continue;
         }
         if (node >= num_vertices) {
@@ -52,8 +53,9 @@ std::string WhyNotAllDisplacements(const Scene& scene) {
 }
 
 std::string WhyNotSupported(const Scene& scene) {
-  std::string why = WhyNotHeld(scene.mesh, scene.supports);
-  if (!why.empty() && scene.mesh.Order() == 1) {
+  std::string why = WhyNotHeld(scene);
+  if (!why.empty() && scene.mesh.Order() == 1 && !HasUnknownMotion(scene) &&
+      !HasSupportsOfCases(scene)) {
     why += ", or use closed-form or virtual-fields, which need no supports";
   }
   return why;
@@ -120,6 +122,12 @@ std::string WhyUnsupported(const Capabilities& capabilities, const Scene& scene,
   std::string why = WhyNotTheseMaterials(capabilities, scene, options);
   if (why.empty() && HasUnknownMotion(scene)) {
     why = WhyNotTheseMotions(capabilities, options);
+  }
+  if (why.empty() && HasSupportsOfCases(scene) &&
+      !capabilities.takes_supports_of_cases) {
+    why =
+        "it takes supports that are the same in all load cases; use "
+        "iterative-fe";
   }
   if (why.empty() && capabilities.needs_all_displacements) {
     why = WhyNotAllDisplacements(scene);

@@ -25,6 +25,8 @@ struct Capabilities {
   /// Supports that moved by unknown amounts, resultants of supports, and a
   /// rigid motion of all that is free.
   bool takes_unknown_motion = false;
+  /// Supports that differ between load cases.
+  bool takes_supports_of_cases = false;
 };
 
 /// Why an estimator of these capabilities cannot serve the scene with the

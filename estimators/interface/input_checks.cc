@@ -11,9 +11,10 @@ namespace elastimate {
 namespace {
 
 // Whether the loads act on a free degree of freedom.
-bool IsLoaded(const Scene& scene, const LoadCase& load_case) {
+bool IsLoaded(const Scene& scene, Eigen::Index k) {
+  const LoadCase& load_case = scene.load_cases[k];
   const auto acts = [&](const Eigen::MatrixXd& force) {
-    return (!scene.supports.held && force.array() != 0).any();
+    return (!SupportsOf(scene, k).held && force.array() != 0).any();
   };
   const NodalForces* const nodal_forces =
       load_case.loads.size() == 1
@@ -32,17 +33,19 @@ struct MeasurementSummary {
   double held_deviation_square_sum = 0;
 };
 
-MeasurementSummary Summarize(const Scene& scene, const LoadCase& load_case) {
+MeasurementSummary Summarize(const Scene& scene, Eigen::Index k) {
+  const LoadCase& load_case = scene.load_cases[k];
+  const Supports& supports = SupportsOf(scene, k);
   MeasurementSummary summary;
   for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
     for (int i = 0; i < scene.mesh.Dimension(); ++i) {
-      const bool held = scene.supports.IsGiven(i, node);
+      const bool held = supports.IsGiven(i, node);
       if (!IsObserved(load_case, i, node)) {
         continue;
       }
       const double q = load_case.displacement(i, node);
       if (held && !scene.is_rigid_motion_free) {
-        const double deviation = q - scene.supports.displacement(i, node);
+        const double deviation = q - supports.displacement(i, node);
         summary.held_deviation_square_sum += deviation * deviation;
       } else {
         summary.any_observed = true;
@@ -93,7 +96,7 @@ std::vector<Finding> CheckMeasurements(const Scene& scene) {
       throw std::invalid_argument(
           name + " has no measured displacements; an estimate needs them");
     }
-    const MeasurementSummary summary = Summarize(scene, load_case);
+    const MeasurementSummary summary = Summarize(scene, Eigen::Index(k));
     if (!summary.any_observed) {
       throw std::invalid_argument(
           "no free component of the displacement was measured in " + name +
@@ -118,9 +121,10 @@ std::vector<Finding> CheckMeasurements(const Scene& scene) {
 void CheckLoads(const Scene& scene) {
   bool any_force = false;
   std::size_t num_with_noise_sd = 0;
-  for (const LoadCase& load_case : scene.load_cases) {
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    const LoadCase& load_case = scene.load_cases[k];
     any_force = any_force || !load_case.resultants.empty() ||
-                IsLoaded(scene, load_case);
+                IsLoaded(scene, Eigen::Index(k));
     num_with_noise_sd += HasKnownNoise(load_case) ? 1 : 0;
   }
   if (!any_force) {

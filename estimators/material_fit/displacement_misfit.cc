@@ -71,8 +71,7 @@ std::optional<double> DisplacementMisfit::Compliance(
   if (!equilibrium_.Solve(unit_moduli)) {
     return std::nullopt;
   }
-  const Eigen::MatrixXd held = equilibrium_.SupportResponse().replicate(
-      1, equilibrium_.Displacement().cols());
+  const Eigen::MatrixXd& held = equilibrium_.SupportResponse();
   const Eigen::MatrixXd loaded = equilibrium_.Displacement() - held;
   if (motion_) {
     motion_->SetNoise(0);

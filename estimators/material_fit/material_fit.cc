@@ -274,6 +274,14 @@ Eigen::Vector2d LargestChange(const Estimate& from, const Estimate& to) {
   return largest;
 }
 
+// Whether it is a node of a support that moved as measured.
+bool IsAsMeasured(const Scene& scene, const Outlier& outlier) {
+  const ComponentMask supports =
+      AsMeasured(SupportsOf(scene, outlier.load_case));
+  return !outlier.is_point && supports.size() != 0 &&
+         supports.col(outlier.index).any();
+}
+
 // The outliers of a fit that some were left out of.  Little is known of the
 // motion of a support that was not followed, which has to be farther off.
 std::vector<Outlier> OutliersOf(const Scene& scene,
@@ -281,7 +289,6 @@ std::vector<Outlier> OutliersOf(const Scene& scene,
                                 const MaterialFit& fit,
                                 const std::vector<Outlier>& left_out) {
   constexpr double kFarFromUnknown = 3;
-  const ComponentMask supports = AsMeasured(scene.supports);
   const OutlierSearch search(scene, observed, fit.displacement);
   const std::vector<Outlier> far = search.Beyond(kFarFromUnknown);
   std::vector<Outlier> outliers = search.Beyond(1);
@@ -291,11 +298,9 @@ std::vector<Outlier> OutliersOf(const Scene& scene,
   };
   outliers.erase(std::remove_if(outliers.begin(), outliers.end(),
                                 [&](const Outlier& outlier) {
-                                  return supports.size() != 0 &&
-                                         !outlier.is_point &&
-                                         supports.col(outlier.index).any() &&
-                                         is_among(left_out, outlier) &&
-                                         !is_among(far, outlier);
+                                  return is_among(left_out, outlier) &&
+                                         !is_among(far, outlier) &&
+                                         IsAsMeasured(scene, outlier);
                                 }),
                  outliers.end());
   return outliers;
@@ -415,6 +420,11 @@ class MaterialFitPreparation : public Preparation {
 };
 
 }  // namespace
+
+bool IsForMaterialFit(const Scene& scene) {
+  return !IsOneIsotropicMaterial(scene.materials) || HasUnknownMotion(scene) ||
+         HasSupportsOfCases(scene);
+}
 
 Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options) {
   return Fit(scene, options, std::nullopt).estimate;

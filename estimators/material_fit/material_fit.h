@@ -9,6 +9,10 @@
 
 namespace elastimate {
 
+/// Whether a scene has more than fits of one isotropic material on supports
+/// that are given, and the same in all load cases, can take.
+bool IsForMaterialFit(const Scene& scene);
+
 /// The parameters p of any materials by a maximum likelihood fit of the
 /// observed displacements, by Ceres within bounds,
 ///

@@ -47,15 +47,27 @@ double ShareOfModel(const Mesh& mesh, double length) {
   return std::min(1.0, std::pow(8 * length / size, 4));
 }
 
+// The part of the variance of a row that the residual has: less than all only
+// where more noise is given than there is, as on data that were computed.
+double ShareOfResidual(const Eigen::VectorXd& residual, Eigen::Index num_fitted,
+                       double variance) {
+  const auto redundancy = static_cast<double>(
+      std::max<Eigen::Index>(residual.size() - num_fitted, 1));
+  return variance > 0
+             ? std::min(1.0, residual.squaredNorm() / redundancy / variance)
+             : 1;
+}
+
 // The covariance that the correlation of the residual adds to that of
-// independent noise, over the variance of a row: that of correlated noise, and
-// where the model misses something smooth, an error of its size along the
-// sensitivities.
+// independent noise, over the variance of a row: that of correlated noise, of
+// which the residual has this share, and where the model misses something
+// smooth, an error of its size along the sensitivities.
 Eigen::MatrixXd AddedByCorrelation(const Scene& scene,
                                    const Eigen::VectorXd& residual,
                                    const Eigen::MatrixXd& sensitivities,
                                    const Eigen::MatrixXd& inverse,
-                                   double variance, double smooth_part,
+                                   double variance, double share,
+                                   double smooth_part,
                                    const ObservedDisplacements& observed,
                                    Evidence& evidence, Estimate& estimate) {
   const Autocorrelation correlation =
@@ -64,8 +76,8 @@ Eigen::MatrixXd AddedByCorrelation(const Scene& scene,
   const double smooth =
       ShareOfModel(scene.mesh, correlation.Length()) * smooth_part;
   evidence.smooth_part = std::sqrt(smooth) / observed.Measured().norm();
-  return PositivePart(CovarianceOfCorrelation(scene, observed, sensitivities,
-                                              inverse, correlation)) +
+  return share * PositivePart(CovarianceOfCorrelation(
+                     scene, observed, sensitivities, inverse, correlation)) +
          (variance > 0 ? smooth / variance : 0) * inverse;
 }
 
@@ -188,9 +200,10 @@ void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
   }
   const SmoothSquareSum smooth =
       MeasureSmoothPart(misfit.Model().Graph(), observed, residual, estimate);
-  const Eigen::MatrixXd by_correlation =
-      AddedByCorrelation(scene, residual, of_rows, inverse, variance.variance,
-                         smooth.least, observed, evidence, estimate);
+  const Eigen::MatrixXd by_correlation = AddedByCorrelation(
+      scene, residual, of_rows, inverse, variance.variance,
+      ShareOfResidual(residual, num_fitted, variance.variance), smooth.least,
+      observed, evidence, estimate);
   Eigen::MatrixXd covariance = variance.variance * (inverse + by_correlation);
   Eigen::VectorXd corrected = variables;
   if (elements) {

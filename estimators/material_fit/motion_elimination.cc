@@ -29,31 +29,50 @@ constexpr double kDependentAmounts = 1e-13;
 MotionElimination::MotionElimination(const Scene& scene,
                                      const ObservedDisplacements& observed,
                                      Equilibrium& model)
-    : observed_(observed), model_(model), motion_(scene) {
-  const int dimension = scene.mesh.Dimension();
-  const Eigen::MatrixXd measured = MeasuredSupports(scene);
+    : observed_(observed), model_(model) {
   const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
-  amounts_.setZero(motion_.NumAmounts() * num_cases);
+  std::vector<const Supports*> supports_of_motion;
+  Eigen::Index num_amounts = 0;
   for (Eigen::Index k = 0; k < num_cases; ++k) {
-    amounts_.segment(motion_.NumAmounts() * k, motion_.of_supports.cols()) =
-        motion_.of_supports.transpose() * measured.col(k);
-    first_resultant_.push_back(NumResultants());
-    for (const Resultant& resultant : scene.load_cases[k].resultants) {
-      for (int i = 0; i < dimension; ++i) {
-        if (std::isnan(resultant.force(i))) {
-          continue;
-        }
-        ResultantRow row = {k, {}, resultant.force(i), resultant.noise_sd(i)};
-        for (const int node : resultant.nodes) {
-          if (scene.supports.held(i, node)) {
-            row.held.push_back(dimension * Eigen::Index(node) + i);
-          }
-        }
-        resultants_.push_back(row);
-      }
+    const Supports& supports = SupportsOf(scene, k);
+    const auto same = std::find(supports_of_motion.begin(),
+                                supports_of_motion.end(), &supports);
+    motion_of_case_.push_back(same - supports_of_motion.begin());
+    if (same == supports_of_motion.end()) {
+      supports_of_motion.push_back(&supports);
+      motions_.emplace_back(scene, supports);
     }
+    first_amount_.push_back(num_amounts);
+    num_amounts += MotionOf(k).NumAmounts();
+    first_resultant_.push_back(NumResultants());
+    AddResultants(scene, k);
   }
   first_resultant_.push_back(NumResultants());
+  amounts_.setZero(num_amounts);
+  for (Eigen::Index k = 0; k < num_cases; ++k) {
+    const Eigen::SparseMatrix<double>& of_supports = MotionOf(k).of_supports;
+    AmountsOf(k, amounts_).head(of_supports.cols()) =
+        of_supports.transpose() * MeasuredSupports(scene, k);
+  }
+}
+
+void MotionElimination::AddResultants(const Scene& scene, Eigen::Index k) {
+  const int dimension = scene.mesh.Dimension();
+  const Supports& supports = SupportsOf(scene, k);
+  for (const Resultant& resultant : scene.load_cases[k].resultants) {
+    for (int i = 0; i < dimension; ++i) {
+      if (std::isnan(resultant.force(i))) {
+        continue;
+      }
+      ResultantRow row = {k, {}, resultant.force(i), resultant.noise_sd(i)};
+      for (const int node : resultant.nodes) {
+        if (supports.held(i, node)) {
+          row.held.push_back(dimension * Eigen::Index(node) + i);
+        }
+      }
+      resultants_.push_back(row);
+    }
+  }
 }
 
 void MotionElimination::SetNoise(double standard_deviation) {
@@ -127,8 +146,7 @@ Eigen::VectorXd MotionElimination::MultiplyColumns(
     const Eigen::VectorXd& amounts) const {
   Eigen::VectorXd rows(NumRows());
   for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
-    const auto of_case =
-        amounts.segment(motion_.NumAmounts() * k, motion_.NumAmounts());
+    const auto of_case = AmountsOf(k, amounts);
     rows.segment(observed_.CaseStart(k), NumObservedOf(k)) =
         columns_[k].of_displacements * of_case;
     rows.segment(observed_.Size() + first_resultant_[k], NumResultantsOf(k)) =
@@ -141,7 +159,7 @@ Eigen::VectorXd MotionElimination::MultiplyColumnsTransposed(
     const Eigen::VectorXd& rows) const {
   Eigen::VectorXd amounts(amounts_.size());
   for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
-    amounts.segment(motion_.NumAmounts() * k, motion_.NumAmounts()) =
+    AmountsOf(k, amounts) =
         columns_[k].of_displacements.transpose() *
             rows.segment(observed_.CaseStart(k), NumObservedOf(k)) +
         noise_ * (columns_[k].of_resultants.transpose() *
@@ -153,17 +171,20 @@ Eigen::VectorXd MotionElimination::MultiplyColumnsTransposed(
 
 Eigen::MatrixXd MotionElimination::SupportMotion(
     const Eigen::VectorXd& amounts) {
-  const auto of_cases =
-      amounts.reshaped(motion_.NumAmounts(), observed_.NumLoadCases());
-  return model_.Extend(motion_.of_supports *
-                       of_cases.topRows(motion_.of_supports.cols()));
+  Eigen::MatrixXd held(model_.Displacement().rows(), observed_.NumLoadCases());
+  for (Eigen::Index k = 0; k < held.cols(); ++k) {
+    const Eigen::SparseMatrix<double>& of_supports = MotionOf(k).of_supports;
+    held.col(k) = of_supports * AmountsOf(k, amounts).head(of_supports.cols());
+  }
+  return model_.Extend(held);
 }
 
 Eigen::MatrixXd MotionElimination::WithMotionOfAll(
     const Eigen::VectorXd& amounts, Eigen::MatrixXd displacements) const {
-  const auto of_cases =
-      amounts.reshaped(motion_.NumAmounts(), observed_.NumLoadCases());
-  displacements += motion_.of_all * of_cases.bottomRows(motion_.of_all.cols());
+  for (Eigen::Index k = 0; k < displacements.cols(); ++k) {
+    const Eigen::MatrixXd& of_all = MotionOf(k).of_all;
+    displacements.col(k) += of_all * AmountsOf(k, amounts).tail(of_all.cols());
+  }
   return displacements;
 }
 
@@ -191,48 +212,77 @@ Eigen::VectorXd MotionElimination::MultiplyTransposed(
           noise_ / row.noise_sd * rows(observed_.Size() + i);
     }
   }
-  Eigen::MatrixXd amounts(motion_.NumAmounts(), observed_.NumLoadCases());
-  amounts << motion_.of_supports.transpose() *
-                 model_.ExtendTransposed(of_nodes +
-                                         model_.HeldForcesTransposed(forces)),
-      motion_.of_all.transpose() * of_nodes;
-  return amounts.reshaped();
+  const Eigen::MatrixXd of_held =
+      model_.ExtendTransposed(of_nodes + model_.HeldForcesTransposed(forces));
+  Eigen::VectorXd amounts(amounts_.size());
+  for (Eigen::Index k = 0; k < of_nodes.cols(); ++k) {
+    const UnknownMotion& motion = MotionOf(k);
+    AmountsOf(k, amounts) << motion.of_supports.transpose() * of_held.col(k),
+        motion.of_all.transpose() * of_nodes.col(k);
+  }
+  return amounts;
+}
+
+bool MotionElimination::AreAmountsFew() const {
+  return amounts_.size() > 0 &&
+         std::all_of(motions_.begin(), motions_.end(),
+                     [&](const UnknownMotion& motion) {
+                       const Eigen::Index n = motion.NumAmounts();
+                       return n <= kMostColumns &&
+                              n * NumRows() <= kMostEntries;
+                     });
 }
 
 void MotionElimination::SolveForColumns() {
-  const Eigen::Index n = motion_.NumAmounts();
   are_columns_of_here_ = false;
-  if (n == 0 || n > kMostColumns || n * NumRows() > kMostEntries ||
-      (n > kMostColumnsAnew && !columns_.empty())) {
+  const bool are_worth_solving_anew = std::all_of(
+      motions_.begin(), motions_.end(), [](const UnknownMotion& motion) {
+        return motion.NumAmounts() <= kMostColumnsAnew;
+      });
+  if (!AreAmountsFew() || (!are_worth_solving_anew && !columns_.empty())) {
     return;
   }
   are_columns_of_here_ = true;
   columns_.clear();
   for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
+    const Eigen::Index n = MotionOf(k).NumAmounts();
     columns_.push_back({Eigen::MatrixXd(NumObservedOf(k), n),
                         Eigen::MatrixXd(NumResultantsOf(k), n),
                         {}});
   }
-  const Eigen::Index num_of_supports = motion_.of_supports.cols();
+  for (std::size_t motion = 0; motion < motions_.size(); ++motion) {
+    SolveForColumnsOf(motion);
+  }
+  InvertGrams();
+}
+
+void MotionElimination::SolveForColumnsOf(std::size_t index) {
+  const UnknownMotion& motion = motions_[index];
+  const Eigen::Index n = motion.NumAmounts();
+  const Eigen::Index num_of_supports = motion.of_supports.cols();
+  const Eigen::Index case_of_motion =
+      std::find(motion_of_case_.begin(), motion_of_case_.end(), index) -
+      motion_of_case_.begin();
   for (Eigen::Index first = 0; first < n; first += kColumnsAtATime) {
     const Eigen::Index end = std::min(n, first + kColumnsAtATime);
-    Eigen::MatrixXd motions(motion_.of_all.rows(), end - first);
+    Eigen::MatrixXd motions(motion.of_all.rows(), end - first);
     for (Eigen::Index j = first; j < end; ++j) {
       motions.col(j - first) =
           j < num_of_supports
-              ? Eigen::VectorXd(motion_.of_supports.col(j))
-              : Eigen::VectorXd(motion_.of_all.col(j - num_of_supports));
+              ? Eigen::VectorXd(motion.of_supports.col(j))
+              : Eigen::VectorXd(motion.of_all.col(j - num_of_supports));
     }
     const Eigen::Index num_extended =
         std::clamp<Eigen::Index>(num_of_supports - first, 0, end - first);
     motions.leftCols(num_extended) =
-        model_.Extend(motions.leftCols(num_extended));
+        model_.ExtendInCase(case_of_motion, motions.leftCols(num_extended));
     Eigen::MatrixXd forces =
         Eigen::MatrixXd::Zero(motions.rows(), motions.cols());
     forces.leftCols(num_extended) =
-        model_.HeldForces(motions.leftCols(num_extended));
+        model_.HeldForcesInCase(case_of_motion, motions.leftCols(num_extended));
     for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
-      for (Eigen::Index j = first; j < end; ++j) {
+      for (Eigen::Index j = first; j < end && motion_of_case_[k] == index;
+           ++j) {
         columns_[k].of_displacements.col(j) =
             observed_.RestrictToCase(k, motions.col(j - first));
         columns_[k].of_resultants.col(j) =
@@ -240,11 +290,13 @@ void MotionElimination::SolveForColumns() {
       }
     }
   }
-  InvertGrams();
 }
 
 void MotionElimination::InvertGrams() {
   for (Columns& columns : columns_) {
+    if (columns.of_displacements.cols() == 0) {
+      continue;
+    }
     const SymmetricEigenDecomposition gram = DecomposeSymmetric(
         columns.of_displacements.transpose() * columns.of_displacements +
         noise_ * noise_ *
@@ -266,11 +318,8 @@ Eigen::VectorXd MotionElimination::Precondition(
     return gradient;
   }
   Eigen::VectorXd direction(gradient.size());
-  for (std::size_t k = 0; k < columns_.size(); ++k) {
-    const Eigen::Index first = motion_.NumAmounts() * Eigen::Index(k);
-    direction.segment(first, motion_.NumAmounts()) =
-        columns_[k].inverse_gram *
-        gradient.segment(first, motion_.NumAmounts());
+  for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
+    AmountsOf(k, direction) = columns_[k].inverse_gram * AmountsOf(k, gradient);
   }
   return direction;
 }

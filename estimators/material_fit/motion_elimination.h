@@ -96,10 +96,23 @@ class MotionElimination {
   Eigen::Index NumObservedOf(Eigen::Index k) const {
     return observed_.CaseStart(k + 1) - observed_.CaseStart(k);
   }
+  const UnknownMotion& MotionOf(Eigen::Index k) const {
+    return motions_[motion_of_case_[k]];
+  }
+  /// Those of load case `k` among the amounts of all: of supports, and then of
+  /// the motion of all.
+  template <class Amounts>
+  auto AmountsOf(Eigen::Index k, Amounts& amounts) const {
+    return amounts.segment(first_amount_[k], MotionOf(k).NumAmounts());
+  }
   Eigen::VectorXd ResultantsOfCase(Eigen::Index k,
                                    const Eigen::VectorXd& support_forces) const;
   /// Where amounts are few, a solve for each, unless others' will do.
   void SolveForColumns();
+  bool AreAmountsFew() const;
+  /// Those of the load cases that have this one of the motions.
+  void SolveForColumnsOf(std::size_t index);
+  void AddResultants(const Scene& scene, Eigen::Index k);
   void InvertGrams();
   Eigen::VectorXd MultiplyColumns(const Eigen::VectorXd& amounts) const;
   Eigen::VectorXd MultiplyColumnsTransposed(const Eigen::VectorXd& rows) const;
@@ -118,10 +131,12 @@ class MotionElimination {
 
   const ObservedDisplacements& observed_;
   Equilibrium& model_;
-  UnknownMotion motion_;
-  std::vector<ResultantRow> resultants_;  ///< By load cases.
+  std::vector<UnknownMotion> motions_;  ///< One for each set of supports.
+  std::vector<std::size_t> motion_of_case_;
+  std::vector<Eigen::Index> first_amount_;  ///< By load cases.
+  std::vector<ResultantRow> resultants_;    ///< By load cases.
   std::vector<Eigen::Index> first_resultant_;
-  std::vector<Columns> columns_;      ///< Empty where they are many.
+  std::vector<Columns> columns_;  ///< By load cases; empty where they are many.
   bool are_columns_of_here_ = false;  ///< Rather than of other moduli.
   double noise_ = 0;
   Eigen::VectorXd amounts_;  ///< Of all load cases, of the last fit.

@@ -62,9 +62,12 @@ std::vector<Outlier> OutlierSearch::Beyond(double distance) const {
 std::vector<Outlier> SuspectedSupports(const Scene& scene,
                                        const std::vector<Outlier>& outliers) {
   std::vector<Outlier> suspects;
-  const ComponentMask measured = AsMeasured(scene.supports);
-  for (std::size_t k = 0; measured.size() != 0 && k < scene.load_cases.size();
-       ++k) {
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    const ComponentMask measured =
+        AsMeasured(SupportsOf(scene, Eigen::Index(k)));
+    if (measured.size() == 0) {
+      continue;
+    }
     std::vector<char> is_outlier(scene.mesh.NumNodes(), 0);
     for (const Outlier& outlier : outliers) {
       if (!outlier.is_point && outlier.load_case == Eigen::Index(k)) {

@@ -67,19 +67,35 @@ const Eigen::MatrixXd& RequireNodeArray(const MeshFile& mesh,
   return *array;
 }
 
-Supports ReadSupports(const MeshFile& mesh) {
+/// The array of a load case, or where it has none that of all.
+std::string NameInCase(const MeshFile& mesh, const std::string& name,
+                       int number) {
+  const std::string own = name + CaseSuffix(number);
+  return FindArray(mesh.node_arrays, own) != nullptr ? own : name;
+}
+
+Supports ReadSupports(const MeshFile& mesh, int number) {
   Supports supports;
-  supports.held = ToComponentMask(mesh.path, "the point array 'fixed'", mesh,
-                                  RequireNodeArray(mesh, "fixed", true));
+  const std::string fixed = NameInCase(mesh, "fixed", number);
+  supports.held = ToComponentMask(mesh.path, "the point array '" + fixed + "'",
+                                  mesh, RequireNodeArray(mesh, fixed, true));
   supports.displacement.setZero(mesh.Dimension(), mesh.nodes.cols());
-  if (const auto* prescribed = FindNodeArray(mesh, "prescribed", false)) {
+  const std::string name = NameInCase(mesh, "prescribed", number);
+  if (const auto* prescribed = FindNodeArray(mesh, name, false)) {
     const Eigen::MatrixXd displacement =
-        VectorField(mesh.path, "the point array 'prescribed'", mesh,
+        VectorField(mesh.path, "the point array '" + name + "'", mesh,
                     *prescribed, supports.held);
     supports.displacement =
         supports.held.select(displacement.array(), 0.0).matrix();
   }
   return supports;
+}
+
+bool HasOwnSupports(const MeshFile& mesh, int number) {
+  const std::string suffix = CaseSuffix(number);
+  return number > 1 &&
+         (FindArray(mesh.node_arrays, "fixed" + suffix) != nullptr ||
+          FindArray(mesh.node_arrays, "prescribed" + suffix) != nullptr);
 }
 
 LoadCase ReadLoadCase(const MeshFile& mesh, int number,
@@ -90,6 +106,9 @@ LoadCase ReadLoadCase(const MeshFile& mesh, int number,
   load_case.loads.emplace_back(NodalForces{
       VectorField(mesh.path, "the point array 'force" + suffix + "'", mesh,
                   RequireNodeArray(mesh, "force" + suffix, false), all)});
+  if (HasOwnSupports(mesh, number)) {
+    load_case.supports = ReadSupports(mesh, number);
+  }
   const std::string name = "displacement" + suffix;
   const Eigen::MatrixXd* displacement = FindNodeArray(mesh, name, false);
   if (displacement == nullptr) {
@@ -139,13 +158,9 @@ void CheckCaseNumbers(const MeshFile& mesh, int num_cases) {
       continue;
     }
     const std::string number = array.name.substr(underscore + 1);
-    if ((stem == "fixed" || stem == "prescribed") && IsNumber(number)) {
-      ThrowInputError(mesh.path,
-                      "the point array '" + Printable(array.name) +
-                          "' belongs to no load case, since all have the same "
-                          "supports; rename it or leave it out");
-    }
-    if (stem != "displacement" && stem != "force" && stem != "observed") {
+    const bool is_of_supports = stem == "fixed" || stem == "prescribed";
+    if (!(is_of_supports && IsNumber(number)) && stem != "displacement" &&
+        stem != "force" && stem != "observed") {
       continue;
     }
     bool is_load_case = !IsNumber(number);
@@ -191,7 +206,7 @@ FileScene SceneFromArrays(MeshFile mesh, Measurement measurement,
         ReadLoadCase(mesh, number, measurement));
   }
   CheckCaseNumbers(mesh, num_cases);
-  file_scene.scene.supports = ReadSupports(mesh);
+  file_scene.scene.supports = ReadSupports(mesh, 1);
   file_scene.mesh = std::move(mesh);
   NoteLostForces(file_scene);
   return file_scene;

@@ -97,9 +97,9 @@ Load ReadLoad(const JsonValue& load, const LoadContext& context) {
 void RequireHeld(const JsonValue& value, const LoadContext& context,
                  const Resultant& resultant) {
   for (Eigen::Index i = 0; i < resultant.force.size(); ++i) {
-    const auto num_held =
-        std::count_if(resultant.nodes.begin(), resultant.nodes.end(),
-                      [&](int node) { return context.supports.held(i, node); });
+    const auto num_held = std::count_if(
+        resultant.nodes.begin(), resultant.nodes.end(),
+        [&](int node) { return context.supports->held(i, node); });
     if (!std::isnan(resultant.force(i)) && num_held > 0 &&
         num_held < std::ptrdiff_t(resultant.nodes.size())) {
       value.Fail("measures the force along " + std::string(kAxisNames[i]) +
@@ -164,6 +164,20 @@ Resultant ReadResultant(const JsonValue& value, const LoadContext& context) {
 }
 
 }  // namespace
+
+LoadContext::LoadContext(const MeshFile& mesh_file, const Mesh& scene_mesh,
+                         const Supports& supports_of_scene,
+                         std::vector<std::string>& notices_of_scene)
+    : mesh(mesh_file),
+      boundary(BoundaryFacets(scene_mesh)),
+      notices(notices_of_scene) {
+  SetSupports(&supports_of_scene);
+}
+
+void LoadContext::SetSupports(const Supports* of_case) {
+  supports = of_case;
+  free = !of_case->held.colwise().all() && mesh.used;
+}
 
 void ReadLoads(const JsonValue& loads, const LoadContext& context,
                LoadCase& load_case) {

@@ -12,12 +12,18 @@
 
 namespace elastimate {
 
-/// What the loads of a scene.json are read against.
+/// What the loads of a load case of a scene.json are read against.
 struct LoadContext {
+  LoadContext(const MeshFile& mesh_file, const Mesh& scene_mesh,
+              const Supports& supports_of_scene,
+              std::vector<std::string>& notices_of_scene);
+  /// Takes the supports of a load case instead of those of the scene.
+  void SetSupports(const Supports* of_case);
+
   const MeshFile& mesh;
   NodeMask free;             ///< Nodes with a component that is not held.
   Eigen::MatrixXi boundary;  ///< BoundaryFacets.
-  const Supports& supports;
+  const Supports* supports;
   std::vector<std::string>& notices;
 };
 

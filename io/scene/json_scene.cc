@@ -1,5 +1,6 @@
 #include "elastimate/io/scene/json_scene.h"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -66,11 +67,17 @@ bool ReadIsRigidMotionFree(const JsonValue& document) {
   return true;
 }
 
-LoadCase ReadLoadCase(const JsonValue& value, const LoadContext& context,
+LoadCase ReadLoadCase(const JsonValue& value, const LoadContext& of_scene,
                       MeasurementReader& reader, bool is_mesh_measured,
                       Measurement measurement, std::vector<FileLines>& lines) {
-  value.CheckKeys({"displacement", "loads", "noise_sd", "observed"});
+  value.CheckKeys(
+      {"displacement", "loads", "noise_sd", "observed", "supports"});
   LoadCase load_case;
+  LoadContext context = of_scene;
+  if (value.Has("supports")) {
+    load_case.supports = ReadSupports(value, context.mesh);
+    context.SetSupports(&*load_case.supports);
+  }
   ReadLoads(value.At("loads"), context, load_case);
   if (value.Has("noise_sd")) {
     load_case.noise_sd = value.At("noise_sd").Number();
@@ -98,6 +105,15 @@ LoadCase ReadLoadCase(const JsonValue& value, const LoadContext& context,
   return load_case;
 }
 
+/// Whether the scene has no supports but those of each load case.
+bool HasOwnSupportsOnly(const JsonValue& document,
+                        const std::vector<JsonValue>& cases) {
+  return !document.Has("supports") &&
+         std::all_of(cases.begin(), cases.end(), [](const JsonValue& value) {
+           return value.Has("supports");
+         });
+}
+
 }  // namespace
 
 FileScene ReadJsonScene(const std::filesystem::path& path,
@@ -113,17 +129,16 @@ FileScene ReadJsonScene(const std::filesystem::path& path,
   file_scene.scene.mesh =
       SceneMesh(mesh, SectionOf(mesh, choice), mesh.elements);
   file_scene.scene.materials = ReadMaterials(document);
-  file_scene.scene.supports = ReadSupports(document, mesh);
-  file_scene.scene.is_rigid_motion_free = ReadIsRigidMotionFree(document);
-  const LoadContext context = {
-      mesh, !file_scene.scene.supports.held.colwise().all() && mesh.used,
-      BoundaryFacets(file_scene.scene.mesh), file_scene.scene.supports,
-      file_scene.notices};
-  MeasurementReader reader(mesh, file_scene.scene.mesh);
   const std::vector<JsonValue> cases = document.At("cases").Items();
   if (cases.empty()) {
     document.At("cases").Fail("is empty; give at least one load case");
   }
+  file_scene.scene.supports = ReadSupports(
+      HasOwnSupportsOnly(document, cases) ? cases[0] : document, mesh);
+  file_scene.scene.is_rigid_motion_free = ReadIsRigidMotionFree(document);
+  const LoadContext context(mesh, file_scene.scene.mesh,
+                            file_scene.scene.supports, file_scene.notices);
+  MeasurementReader reader(mesh, file_scene.scene.mesh);
   const bool has_frames = document.Has("frames");
   for (const JsonValue& load_case : cases) {
     file_scene.scene.load_cases.push_back(

@@ -67,14 +67,25 @@ std::string WhyDifferent(const Scene& first, const Scene& other,
       !(first.materials == other.materials)) {
     return "its materials differ";
   }
-  if ((first.supports.held != other.supports.held).any()) {
-    return "it holds other components (the array 'fixed', or the supports)";
-  }
-  if (!AreClose(first.supports.displacement, other.supports.displacement)) {
-    return "it holds them at another displacement (the array 'prescribed', or "
-           "the supports)";
+  if (first.is_rigid_motion_free != other.is_rigid_motion_free) {
+    return "\"rigid_motion\" is free in one of them only";
   }
   return "";
+}
+
+bool AreSame(const ComponentMask& a, const ComponentMask& b) {
+  return a.size() == b.size() && (a == b).all();
+}
+
+bool AreSame(const Supports& a, const Supports& b) {
+  return AreSame(a.held, b.held) && AreSame(a.unknown, b.unknown) &&
+         AreClose(a.displacement, b.displacement) &&
+         std::equal(a.rigid_faces.begin(), a.rigid_faces.end(),
+                    b.rigid_faces.begin(), b.rigid_faces.end(),
+                    [](const RigidFace& one, const RigidFace& other) {
+                      return one.nodes == other.nodes &&
+                             (one.components == other.components).all();
+                    });
 }
 
 /// Keeps the nodes that elements use, in their order but for the mid-edge nodes
@@ -152,6 +163,9 @@ class SceneNodes {
   void FilterLoadCase(LoadCase& load_case) const {
     KeepColumns(load_case.displacement);
     KeepColumns(load_case.observed);
+    if (load_case.supports) {
+      FilterSupports(*load_case.supports);
+    }
     for (Resultant& resultant : load_case.resultants) {
       Renumber(resultant.nodes);
     }
@@ -267,6 +281,11 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
                       mesh.Shape() + " uses");
   }
   Scene scene = nodes.Filter(std::move(file_scene.scene));
+  for (LoadCase& load_case : scene.load_cases) {
+    if (load_case.supports && AreSame(*load_case.supports, scene.supports)) {
+      load_case.supports.reset();
+    }
+  }
   file_scene.measured_lines.resize(scene.load_cases.size());
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     std::vector<FileLines>& lines = file_scene.measured_lines[k];
@@ -349,6 +368,15 @@ void AddLoadCases(const std::filesystem::path& path,
   }
 }
 
+/// Gives these load cases the supports that they had as those of a scene.
+void KeepSupports(const Supports& supports, std::vector<LoadCase>& load_cases) {
+  for (LoadCase& load_case : load_cases) {
+    if (!load_case.supports) {
+      load_case.supports = supports;
+    }
+  }
+}
+
 FileScene ReadFileScene(const std::filesystem::path& path,
                         Measurement measurement, const SectionChoice& section) {
   return FileExtension(path) == ".json"
@@ -389,8 +417,13 @@ SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
                !difference.empty()) {
       ThrowInputError(path, "this is no further load case of '" +
                                 PrintablePath(paths.front()) +
-                                "': " + difference +
-                                "; use the same mesh and supports");
+                                "': " + difference + "; use the same mesh");
+    } else if (!AreSame(reading.scene.supports, scene.supports)) {
+      KeepSupports(scene.supports, load_cases);
+      reading.notices.push_back(PrintablePath(path) +
+                                " has other supports than " +
+                                PrintablePath(paths.front()) +
+                                "; each load case is taken with its own");
     }
     AddLoadCases(path, std::move(load_cases), reading.scene, names);
   }

@@ -147,22 +147,30 @@ Eigen::MatrixXd ToNumbers(const ComponentMask& mask) {
   return mask.cast<double>().matrix();
 }
 
+// Without a displacement where all are zero, unless those of the scene are not.
+void AddSupports(const Supports& supports, const std::string& suffix,
+                 Fields& fields) {
+  fields.point.push_back({"fixed" + suffix, ToNumbers(supports.held)});
+  const Eigen::MatrixXd prescribed =
+      supports.held.select(supports.displacement.array(), 0.0).matrix();
+  if (!prescribed.isZero(0.0) || !suffix.empty()) {
+    fields.point.push_back({"prescribed" + suffix, prescribed});
+  }
+}
+
 }  // namespace
 
 Fields SceneFields(const Scene& scene) {
   Fields fields;
-  const Supports& supports = scene.supports;
-  fields.point.push_back({"fixed", ToNumbers(supports.held)});
-  const Eigen::MatrixXd prescribed =
-      supports.held.select(supports.displacement.array(), 0.0).matrix();
-  if (!prescribed.isZero(0.0)) {
-    fields.point.push_back({"prescribed", prescribed});
-  }
+  AddSupports(scene.supports, "", fields);
   for (std::size_t i = 0; i < scene.load_cases.size(); ++i) {
     const LoadCase& load_case = scene.load_cases[i];
     const std::string suffix = i == 0 ? "" : "_" + std::to_string(i + 1);
     fields.point.push_back(
         {"force" + suffix, AssembleLoads(scene.mesh, load_case.loads)});
+    if (load_case.supports) {
+      AddSupports(*load_case.supports, suffix, fields);
+    }
     if (load_case.displacement.size() > 0) {
       fields.point.push_back({"displacement" + suffix, load_case.displacement});
     }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/loads.h"
 #include "tests/regions.h"
 
@@ -55,6 +56,55 @@ TEST_P(EquilibriumOfKinds, HasItsSensitivities) {
       EXPECT_LT((slope.col(k) - sensitivities.col(4 * k + i)).norm(),
                 1e-6 * slope.norm());
     }
+  }
+}
+
+// The second load case is held elsewhere too, the third as the first, but
+// moved.
+TEST_P(EquilibriumOfKinds, HasTheSupportsOfEachLoadCase) {
+  scene_.load_cases.push_back(scene_.load_cases[0]);
+  Supports other = scene_.supports;
+  const Eigen::Index last = scene_.mesh.NumNodes() - 1;
+  other.held.col(last).setConstant(true);
+  other.displacement.col(last).setConstant(0.01);
+  scene_.load_cases[1].supports = other;
+  other = scene_.supports;
+  other.displacement *= -2;
+  scene_.load_cases[2].supports = other;
+  scene_.is_rigid_motion_free = true;
+  Equilibrium equilibrium(scene_, SolverKind::kCholesky);
+  const MaterialParameters& chart = equilibrium.Forces().Parameters();
+  const Eigen::VectorXd moduli = chart.Moduli(parameters_);
+  ASSERT_TRUE(equilibrium.Solve(moduli));
+  EXPECT_EQ(equilibrium.WorkDone().factorizations, 2);
+  const Eigen::MatrixXd directions = chart.ModuliJacobian(parameters_);
+  const Eigen::MatrixXd slopes = equilibrium.Sensitivities(directions);
+  const Eigen::MatrixXd values =
+      Eigen::MatrixXd::Random(scene_.mesh.NumDofs(), 3);
+  const Eigen::MatrixXd extended = equilibrium.Extend(OfHeld(scene_, values));
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    Scene alone = scene_;
+    alone.supports = SupportsOf(scene_, k);
+    alone.load_cases = {scene_.load_cases[k]};
+    alone.load_cases[0].supports.reset();
+    Equilibrium of_case(alone, SolverKind::kCholesky);
+    ASSERT_TRUE(of_case.Solve(moduli));
+    const double scale = of_case.Displacement().norm();
+    EXPECT_LT((equilibrium.Displacement().col(k) -
+               testing::SolveByTextbook(alone, {{2, 0.1}, {5, 0.4}}))
+                  .norm(),
+              1e-10 * scale);
+    EXPECT_LT(
+        (equilibrium.SupportForces().col(k) - of_case.SupportForces()).norm(),
+        1e-10 * of_case.SupportForces().norm());
+    const Eigen::MatrixXd expected = of_case.Sensitivities(directions);
+    EXPECT_LT((slopes.middleCols(4 * k, 4) - expected).norm(),
+              1e-10 * expected.norm());
+    const Eigen::MatrixXd held = OfHeld(alone, values.col(k));
+    EXPECT_LT((extended.col(k) - of_case.Extend(held)).norm(),
+              1e-10 * held.norm());
+    EXPECT_LT((equilibrium.ExtendInCase(k, held) - of_case.Extend(held)).norm(),
+              1e-10 * held.norm());
   }
 }
 

@@ -31,11 +31,11 @@ std::vector<int> HeldNodesOf(const Scene& scene) {
 TEST(UnknownMotionOfScene, HasAnAmountForEachMeasuredComponent) {
   Scene scene = Cube();
   EXPECT_TRUE(HasUnknownMotion(scene));
-  const UnknownMotion motion(scene);
+  const UnknownMotion motion(scene, scene.supports);
   EXPECT_EQ(motion.of_supports.cols(), scene.supports.held.count());
   EXPECT_EQ(motion.of_all.cols(), 0);
   scene.load_cases[0].displacement.setConstant(3, scene.mesh.NumNodes(), 2);
-  const Eigen::MatrixXd measured = MeasuredSupports(scene);
+  const Eigen::VectorXd measured = MeasuredSupports(scene, 0);
   EXPECT_EQ(measured.sum(), 2.0 * double(scene.supports.held.count()));
   EXPECT_EQ((motion.of_supports * (motion.of_supports.transpose() * measured) -
              measured)
@@ -47,7 +47,8 @@ TEST(UnknownMotionOfScene, HasTheRigidMotionsOfAFace) {
   Scene scene = Cube();
   const std::vector<int> nodes = HeldNodesOf(scene);
   scene.supports.rigid_faces = {{nodes, Components::Constant(3, true)}};
-  const Eigen::MatrixXd motions = UnknownMotion(scene).of_supports;
+  const Eigen::MatrixXd motions =
+      UnknownMotion(scene, scene.supports).of_supports;
   EXPECT_EQ(motions.cols(), 6);
   EXPECT_LT(
       (motions.transpose() * motions - Eigen::MatrixXd::Identity(6, 6)).norm(),
@@ -73,7 +74,7 @@ TEST(UnknownMotionOfScene, HasTheMotionsThatAFaceCanSay) {
   // A plane that stays one: a translation and two rotations.
   scene.supports.rigid_faces = {{nodes, along_z}};
   scene.supports.unknown.topRows(2).setConstant(false);
-  EXPECT_EQ(UnknownMotion(scene).of_supports.cols(), 3);
+  EXPECT_EQ(UnknownMotion(scene, scene.supports).of_supports.cols(), 3);
   // Nodes of one edge do not turn about it.
   scene.supports.unknown = scene.supports.held;
   std::vector<int> edge;
@@ -85,7 +86,8 @@ TEST(UnknownMotionOfScene, HasTheMotionsThatAFaceCanSay) {
   scene.supports.rigid_faces = {{edge, Components::Constant(3, true)}};
   const Eigen::Index of_others =
       scene.supports.held.count() - 3 * Eigen::Index(edge.size());
-  EXPECT_EQ(UnknownMotion(scene).of_supports.cols(), of_others + 5);
+  EXPECT_EQ(UnknownMotion(scene, scene.supports).of_supports.cols(),
+            of_others + 5);
 }
 
 TEST(UnknownMotionOfScene, OfAllIsRigid) {
@@ -94,7 +96,7 @@ TEST(UnknownMotionOfScene, OfAllIsRigid) {
     EXPECT_FALSE(HasUnknownMotion(scene));
     scene.is_rigid_motion_free = true;
     EXPECT_TRUE(HasUnknownMotion(scene));
-    const UnknownMotion motion(scene);
+    const UnknownMotion motion(scene, scene.supports);
     EXPECT_EQ(motion.of_all.cols(), scene.mesh.Dimension() == 3 ? 6 : 3);
     EXPECT_EQ(motion.of_supports.cols(), 0);
     EXPECT_EQ(motion.NumAmounts(), motion.of_all.cols());

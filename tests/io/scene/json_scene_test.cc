@@ -113,6 +113,31 @@ TEST_F(JsonSceneTest, ReadsTheDocument) {
             Eigen::Vector3d(0, 0, -9810));
 }
 
+TEST_F(JsonSceneTest, ReadsSupportsOfALoadCase) {
+  const std::string of_case = R"("supports": [
+      {"nodes": {"ids": [0, 1, 2]}, "displacement": [0, 0, 0.5]} ],
+      "noise_sd": 1e-5 }, )";
+  const std::string two = Replaced(kDocument, R"({ "displacement")",
+                                   R"({ "displacement": {"file": "u.csv"},
+           "loads": [ {"type": "body_force", "value": [9810, 0, 0]} ], )" +
+                                       of_case + R"({ "displacement")");
+  const Scene scene = Read(two).scene;
+  ASSERT_EQ(scene.load_cases.size(), 2);
+  ASSERT_TRUE(scene.load_cases[0].supports);
+  EXPECT_TRUE(scene.load_cases[0].supports->held.col(2).all());
+  EXPECT_EQ(scene.load_cases[0].supports->displacement(2, 2), 0.5);
+  EXPECT_FALSE(scene.load_cases[1].supports);
+  EXPECT_FALSE(scene.supports.held.col(2).any());
+  // Where each has its own, the scene needs none.
+  const std::string alone = Replaced(
+      Replaced(kDocument, R"("noise_sd": 1e-5)",
+               R"("supports": [ {"nodes": {"ids": [0, 1, 4]}} ])"),
+      R"("supports": [ {"nodes": {"ids": [0, 1, 4]}, "components": "xyz"} ],)",
+      "");
+  EXPECT_THAT(Held(alone), ElementsAre(0, 1, 4));
+  EXPECT_FALSE(HasSupportsOfCases(Read(alone).scene));
+}
+
 TEST_F(JsonSceneTest, SelectsNodes) {
   EXPECT_THAT(Held(kDocument), ElementsAre(0, 1, 4));
   EXPECT_THAT(Held(WithNodes(R"({"box": [[-1, -1, 0], [1, 1, 0]]})")),

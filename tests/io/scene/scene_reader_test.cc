@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "elastimate/core/scene/degrees_of_freedom.h"
 #include "tests/io/gmsh_files.h"
 #include "tests/io/scene_files.h"
 #include "tests/io/vtk_files.h"
@@ -249,16 +250,34 @@ TEST_F(SceneReaderTest, NamesLoadCasesOutOfSequence) {
   EXPECT_THROWS_WITH(Read(scene_.mesh, fields), "'force_2' is missing");
 }
 
-TEST_F(SceneReaderTest, RefusesSupportsOfOneLoadCase) {
-  for (const std::string name : {"fixed", "prescribed"}) {
-    Fields fields = fields_;
-    fields.point.push_back(FieldOf(fields, name));
-    fields.point.back().name += "_2";
-    EXPECT_THROWS_WITH(Read(scene_.mesh, fields),
-                       "array '" + name +
-                           "_2' belongs to no load case, since "
-                           "all have the same supports");
-  }
+TEST_F(SceneReaderTest, ReadsSupportsOfOneLoadCase) {
+  Fields fields = fields_;
+  fields.point.push_back(FieldOf(fields, "fixed"));
+  fields.point.back().name = "fixed_2";
+  // The same again are no others.
+  EXPECT_FALSE(HasSupportsOfCases(Read(scene_.mesh, fields).scene));
+  fields.point.back().values(0, 0) = 1 - fields.point.back().values(0, 0);
+  const Scene scene = Read(scene_.mesh, fields).scene;
+  EXPECT_FALSE(scene.load_cases[0].supports);
+  ASSERT_TRUE(scene.load_cases[1].supports);
+  EXPECT_NE(scene.load_cases[1].supports->held(0, 0),
+            scene.supports.held(0, 0));
+  fields.point.back().name = "fixed_3";
+  EXPECT_THROWS_WITH(Read(scene_.mesh, fields),
+                     "array 'fixed_3' belongs to no load case");
+}
+
+TEST_F(SceneReaderTest, ReadsWhatWasWrittenOfSupportsOfOneLoadCase) {
+  Scene scene = scene_;
+  scene.load_cases[1].supports = scene.supports;
+  scene.load_cases[1].supports->displacement *= -2;
+  const Scene read = Read(scene.mesh, SceneFields(scene)).scene;
+  ASSERT_TRUE(read.load_cases[1].supports);
+  EXPECT_TRUE((read.supports.held == scene.supports.held).all());
+  EXPECT_TRUE((read.load_cases[1].supports->held == scene.supports.held).all());
+  EXPECT_TRUE(
+      HeldDisplacement(*read.load_cases[1].supports)
+          .isApprox(HeldDisplacement(*scene.load_cases[1].supports), 1e-12));
 }
 
 TEST_F(SceneReaderTest, ErrsOnTwoArraysOfOneName) {
@@ -555,6 +574,27 @@ TEST_F(SceneReaderTest, JoinsFilesOfOneMesh) {
   EXPECT_EQ(scene.mesh.nodes, scene_.mesh.nodes);
 }
 
+TEST_F(SceneReaderTest, KeepsTheSupportsOfEachFile) {
+  const auto first = folder_.Path() / "first.vtu";
+  const auto second = folder_.Path() / "second.vtu";
+  WriteEncoded(first, scene_.mesh, fields_, AllVtkEncodings()[2]);
+  Fields fields = fields_;
+  FieldOf(fields, "displacement").values *= 2;
+  FieldOf(fields, "displacement_2").values *= 2;
+  FieldOf(fields, "prescribed").values(0, 1) = 0.2;
+  WriteEncoded(second, scene_.mesh, fields, AllVtkEncodings()[2]);
+  const SceneReading reading =
+      ReadScene({first, second}, Measurement::kRequired);
+  ASSERT_EQ(reading.scene.load_cases.size(), 4);
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_EQ(reading.scene.load_cases[k].supports.has_value(), k > 1);
+  }
+  EXPECT_EQ(reading.scene.load_cases[2].supports->displacement(0, 1), 0.2);
+  ASSERT_FALSE(reading.notices.empty());
+  EXPECT_THAT(reading.notices.back(),
+              ::testing::HasSubstr("has other supports than"));
+}
+
 TEST_F(SceneReaderTest, SaysHowFilesDiffer) {
   const auto first = folder_.Path() / "first.vtu";
   WriteEncoded(first, scene_.mesh, fields_, AllVtkEncodings()[2]);
@@ -576,12 +616,6 @@ TEST_F(SceneReaderTest, SaysHowFilesDiffer) {
   Fields fields = fields_;
   fields.cell.clear();
   expect(scene_.mesh, fields, "its array 'region' differs");
-  fields = fields_;
-  FieldOf(fields, "fixed").values(1, 2) = 1;
-  expect(scene_.mesh, fields, "it holds other components");
-  fields = fields_;
-  FieldOf(fields, "prescribed").values(0, 1) = 0.2;
-  expect(scene_.mesh, fields, "it holds them at another displacement");
   const auto larger = folder_.Write("larger.vtk", LegacySceneText());
   EXPECT_THROWS_WITH(
       ReadScene({larger, folder_.Write("smaller.vtk",

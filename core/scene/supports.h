@@ -1,0 +1,50 @@
+#ifndef ELASTIMATE_CORE_SCENE_SUPPORTS_H_
+#define ELASTIMATE_CORE_SCENE_SUPPORTS_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace elastimate {
+
+/// One flag per displacement component: dimension x num_nodes.
+using ComponentMask = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
+
+/// A part of space in which a specimen is held, bounds included.
+struct HeldBox {
+  Eigen::VectorXd lower;  ///< Of `dimension` coordinates [length].
+  Eigen::VectorXd upper;
+  Eigen::Array<bool, Eigen::Dynamic, 1>
+      components;                ///< Which of them it holds.
+  Eigen::VectorXd displacement;  ///< Of `dimension` [length].
+};
+
+/// A part of the specimen that a grip or a platen moves as a rigid body, by a
+/// motion that is not known: some components of u = a + w x (x - x0).
+struct RigidFace {
+  std::vector<int> nodes;
+  Eigen::Array<bool, Eigen::Dynamic, 1> components;  ///< Of `dimension`.
+};
+
+/// The held degrees of freedom, and the displacement they are held at.
+struct Supports {
+  ComponentMask held;            ///< dimension x num_nodes.
+  Eigen::MatrixXd displacement;  ///< dimension x num_nodes [length]; used where
+                                 ///< `held`, ignored elsewhere.
+  /// Where `held` comes from, as far as it was told by place: it decides about
+  /// the nodes that QuadraticScene adds.
+  std::vector<HeldBox> boxes = {};
+  /// Held components whose displacement, in each load case another, is not
+  /// known: those of rigid faces, and others as they were measured, with the
+  /// error of a measurement.  dimension x num_nodes; empty when there are none.
+  ComponentMask unknown = {};
+  std::vector<RigidFace> rigid_faces = {};
+
+  /// Whether component `i` of `node` is held at a displacement that is known.
+  bool IsGiven(int i, Eigen::Index node) const {
+    return held(i, node) && (unknown.size() == 0 || !unknown(i, node));
+  }
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_SCENE_SUPPORTS_H_
