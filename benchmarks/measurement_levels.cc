@@ -317,7 +317,7 @@ std::vector<MeasurementLevel> MeasurementLevels(int cells) {
       traction, "outliers [%]", {0, 1, 5, 20},
       [](double value, Plan& plan) { plan.outliers = value / 100; }, levels);
   AddLevels(
-      traction, "correlation length [spacings]", {0, 0.5, 1, 2, 4},
+      traction, kCorrelationFactor, {0, 0.5, 1, 2, 4},
       [spacing](double value, Plan& plan) {
         plan.correlation_length = value * spacing;
       },

@@ -14,6 +14,9 @@ namespace elastimate {
 /// What all measurements of the study are of: steel [N, mm].
 inline constexpr IsotropicElasticity kMeasuredSteel = {210000, 0.3};
 
+/// The factor of levels whose noise is alike at neighbours.
+inline constexpr char kCorrelationFactor[] = "correlation length [spacings]";
+
 /// One way to measure a plate, and to say how it was measured.
 struct MeasurementLevel {
   std::string factor;  ///< What is varied, with its unit.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "benchmarks/block_jackknife.h"
 #include "benchmarks/measurement_levels.h"
 #include "benchmarks/quantile.h"
 #include "benchmarks/trial.h"
@@ -19,7 +20,9 @@ constexpr int kFineCells = 54;
 constexpr int kCells = 24;
 constexpr int kQuickCells = 10;
 constexpr int kTrials = 200;
+constexpr int kJackknifeTrials = 40;
 constexpr int kQuickTrials = 4;
+constexpr int kQuickJackknifeTrials = 2;
 
 // One parameter over the trials of a level; errors of E are relative.
 class ParameterErrorsOfLevel {
@@ -118,6 +121,64 @@ class Cell {
   ParameterErrorsOfLevel poisson_ratio_;
 };
 
+// The standard errors of noise that is alike at neighbours, beside those of a
+// jackknife over blocks, which knows nothing of the correlation.
+Table CompareWithJackknife(const std::vector<MeasurementLevel>& levels,
+                           const Estimator& estimator, int num_trials,
+                           Progress& progress) {
+  constexpr int kBlocksAlongASide = 5;
+  Table table(
+      "measurement_jackknife",
+      {"level", "trials [1]", "youngs_modulus_root_mean_square_error [1]",
+       "youngs_modulus_standard_error [1]", "youngs_modulus_noise_error [1]",
+       "youngs_modulus_jackknife_error [1]",
+       "poisson_ratio_root_mean_square_error [1]",
+       "poisson_ratio_standard_error [1]", "poisson_ratio_noise_error [1]",
+       "poisson_ratio_jackknife_error [1]"});
+  for (const MeasurementLevel& level : levels) {
+    if (level.factor != kCorrelationFactor) {
+      continue;
+    }
+    progress.Show("measurement: jackknife, " + level.factor + ", " +
+                  level.level);
+    // Root mean squares of errors, and of what is stated: in all, of
+    // independent noise, and by the jackknife.
+    Eigen::Matrix<double, 2, 4> square_sums =
+        Eigen::Matrix<double, 2, 4>::Zero();
+    int num_compared = 0;
+    for (int seed = 1; seed <= num_trials; ++seed) {
+      const Scene scene = level.measure(seed);
+      const Estimate estimate = estimator.Run(scene, {});
+      const std::optional<Eigen::Vector2d> jackknife =
+          BlockJackknife(estimator, scene, kBlocksAlongASide);
+      if (!estimate.IsUsable() || !jackknife) {
+        continue;
+      }
+      ++num_compared;
+      Eigen::Matrix<double, 2, 4> errors;
+      errors << std::log(estimate.elasticity.youngs_modulus /
+                         kMeasuredSteel.youngs_modulus),
+          *estimate.YoungsModulusStandardError() /
+              estimate.elasticity.youngs_modulus,
+          estimate.error_budget.noise(0), (*jackknife)(0),
+          estimate.elasticity.poisson_ratio - kMeasuredSteel.poisson_ratio,
+          *estimate.PoissonRatioStandardError(), estimate.error_budget.noise(1),
+          (*jackknife)(1);
+      square_sums += errors.cwiseAbs2();
+    }
+    const Eigen::Matrix<double, 2, 4> roots =
+        (square_sums / num_compared).cwiseSqrt();
+    std::vector<Value> cells = {level.level, std::int64_t{num_compared}};
+    for (int parameter = 0; parameter < 2; ++parameter) {
+      for (const double root : roots.row(parameter)) {
+        cells.emplace_back(root);
+      }
+    }
+    table.AddRow(cells);
+  }
+  return table;
+}
+
 }  // namespace
 
 StudyResult RunMeasurementStudy(bool is_quick, Progress& progress) {
@@ -145,7 +206,10 @@ StudyResult RunMeasurementStudy(bool is_quick, Progress& progress) {
     }
     cell.AddTo(table, level, Quantile(seconds, 0.5));
   }
-  return {{table},
+  const Table jackknife = CompareWithJackknife(
+      levels, *estimator, is_quick ? kQuickJackknifeTrials : kJackknifeTrials,
+      progress);
+  return {{table, jackknife},
           {{"specimen",
             "a quarter of a plate of 10 x 10 x 1 mm with a hole of radius 2.5 "
             "mm, quadrilaterals, E = 210 000 N/mm^2, nu = 0.3, pulled by 1500 "

@@ -64,6 +64,20 @@ TEST_F(MeasurementStudy, TellsRightFromWrong) {
   EXPECT_EQ(RowOfLevel(rows, "camera motion [mm]", "0.01", "fixed camera")
                 .Number("usable_share [1]"),
             0);
+  // Where noise is alike at neighbours, a jackknife that knows nothing of that
+  // sees more than independent noise too; it says up to twice too much, since
+  // the blocks at the ends know most.
+  for (const TableRow& row : ReadTable(folder_ / "measurement_jackknife.csv")) {
+    if (row.Text("level") == "0.5" || row.Text("level") == "1") {
+      EXPECT_GT(row.Number("trials [1]"), 0);
+      const double jackknife = row.Number("youngs_modulus_jackknife_error [1]");
+      EXPECT_GT(jackknife, row.Number("youngs_modulus_noise_error [1]"));
+      const double ratio =
+          row.Number("youngs_modulus_standard_error [1]") / jackknife;
+      EXPECT_GT(ratio, 0.25);
+      EXPECT_LT(ratio, 1.5);
+    }
+  }
 }
 
 }  // namespace
