@@ -70,6 +70,15 @@ struct NoiseBias {
   double poisson_ratio_error;
 };
 
+/// Resultants against the forces of a fit, in their standard deviations.
+struct ResultantMisfit {
+  Eigen::VectorXd distances;
+
+  /// Above 1 where they are further off than chance explains, in one scene of
+  /// a thousand: by how much their variance is more than stated.
+  double Excess() const;
+};
+
 /// What virtual work said of a force residual.
 enum class WorkCheck { kNotMade, kIsNoise, kIsMore, kContradicts };
 
@@ -97,6 +106,7 @@ struct Evidence {
   /// Of the displacements that balances the loads, relative to them.
   std::optional<double> correction;
 
+  std::optional<ResultantMisfit> resultant_misfit;
   std::optional<BoundExcess> bound_excess;
   std::optional<ErrorsOnBound> youngs_modulus_on_bound;
   std::optional<ErrorsOnBound> poisson_ratio_on_bound;

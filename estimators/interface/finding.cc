@@ -50,6 +50,7 @@ constexpr Row kRows[] = {
     {"outliers", FindingCode::kOutliers},
     {"outliers_left_out", FindingCode::kOutliersLeftOut},
     {"held_nodes_moved", FindingCode::kHeldNodesMoved},
+    {"resultants_contradicted", FindingCode::kResultantsContradicted},
     {"frames_left_out", FindingCode::kFramesLeftOut},
     {"trend_over_frames", FindingCode::kTrendOverFrames},
     {"frames_scatter", FindingCode::kFramesScatter},

@@ -55,6 +55,7 @@ enum class FindingCode {
   kOutliers,
   kOutliersLeftOut,
   kHeldNodesMoved,
+  kResultantsContradicted,
   kFramesLeftOut,
   kTrendOverFrames,
   kFramesScatter,

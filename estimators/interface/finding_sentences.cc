@@ -461,6 +461,14 @@ Finding HeldNodesMoved(const std::vector<std::size_t>& load_cases) {
       "check the supports");
 }
 
+Finding ResultantsContradicted(double distance) {
+  return Warning(FindingCode::kResultantsContradicted,
+                 "a measured resultant is " + TwoDigits(distance) +
+                     " of its standard deviations from the force of the fit, "
+                     "and the standard errors are widened",
+                 "check loads, resultants and their errors");
+}
+
 Finding NoFrameUsable(std::size_t num_frames, const std::string& reason) {
   return {FindingCode::kNoFrameUsable, Severity::kError,
           "none of " + std::to_string(num_frames) +

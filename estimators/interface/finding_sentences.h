@@ -95,6 +95,8 @@ Finding Outliers(const Eigen::Vector2d& change);
 Finding OutliersLeftOut(const std::vector<Outlier>& outliers,
                         const Eigen::Vector2d& change);
 Finding HeldNodesMoved(const std::vector<std::size_t>& load_cases);
+/// In standard deviations, as stated.
+Finding ResultantsContradicted(double distance);
 // Of a series of frames.
 /// `reason` is that of the first.
 Finding NoFrameUsable(std::size_t num_frames, const std::string& reason);

@@ -28,6 +28,8 @@ struct Limits {
   /// Probability below which a disagreement of two estimates (ModelMismatch)
   /// is one.  Larger than that of 5 standard scores: it only sends `auto` on.
   double mismatch_significance = 1e-3;
+  /// Probability below which resultants contradict a fit.
+  double resultant_significance = 1e-3;
   /// Root mean square of the residuals over their robust standard deviation,
   /// from which on outliers are looked for: 1 for Gaussian noise, 1.4 for
   /// Laplacian.

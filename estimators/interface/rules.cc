@@ -302,6 +302,14 @@ Result JudgeWorkCheck(const Evidence& evidence, const EstimatorOptions&,
   return std::nullopt;
 }
 
+Result NoteResultants(const Evidence& evidence, const EstimatorOptions&,
+                      const Estimate&) {
+  return evidence.resultant_misfit && evidence.resultant_misfit->Excess() > 1
+             ? ResultantsContradicted(
+                   evidence.resultant_misfit->distances.cwiseAbs().maxCoeff())
+             : Result();
+}
+
 Result JudgeCorrection(const Evidence& evidence, const EstimatorOptions&,
                        const Estimate&) {
   return evidence.correction.value_or(0) > kLimits.large_residual
@@ -345,7 +353,7 @@ const std::vector<Rule>& Rules() {
       JudgePhysics, JudgeHiddenPoissonRatio, JudgeCount,
       // What to say of a usable estimate.
       NoteYoungsModulusOnBound, NotePoissonRatioOnBound, NoteResidualAboveNoise,
-      NoteOutliers, NoteSmoothResidual, NoteVirtualWork,
+      NoteOutliers, NoteSmoothResidual, NoteVirtualWork, NoteResultants,
       // Whether the data determine it, and the model explains them.
       JudgeBoundExcess, JudgeYoungsModulusOnBound, JudgeLargeResidual,
       JudgeProfile, JudgePoissonRatioAtLimit, JudgePoissonRatioOnBound,

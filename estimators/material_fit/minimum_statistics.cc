@@ -188,6 +188,12 @@ MinimumErrors DescribeMinimum(
   }
   ResidualVariance variance = EstimateVariance(observed, rows.squaredNorm(),
                                                num_fitted, evidence, estimate);
+  double excess = 1;
+  if (misfit.NumResultants() > 0) {
+    evidence.resultant_misfit = {rows.tail(misfit.NumResultants()) /
+                                 misfit.Noise()};
+    excess = std::max(excess, evidence.resultant_misfit->Excess());
+  }
   WeighResultants(misfit, variance.variance, sensitivities);
   evidence.is_explained_by_given_noise = variance.is_explained_by_given_noise;
   const Eigen::MatrixXd of_rows = sensitivities.topRows(observed.Size());
@@ -204,7 +210,9 @@ MinimumErrors DescribeMinimum(
       scene, residual, of_rows, inverse, variance.variance,
       ShareOfResidual(residual, num_fitted, variance.variance), smooth.least,
       observed, evidence, estimate);
-  Eigen::MatrixXd covariance = variance.variance * (inverse + by_correlation);
+  const Eigen::MatrixXd by_model =
+      excess * by_correlation + (excess - 1) * inverse;
+  Eigen::MatrixXd covariance = variance.variance * (inverse + by_model);
   Eigen::VectorXd corrected = variables;
   if (elements) {
     const Eigen::MatrixXd by_elements =
@@ -217,7 +225,7 @@ MinimumErrors DescribeMinimum(
   estimate.error_budget.noise =
       ErrorsOfVariables(free, variance.variance * inverse);
   estimate.error_budget.model =
-      ErrorsOfVariables(free, variance.variance * by_correlation);
+      ErrorsOfVariables(free, variance.variance * by_model);
   Eigen::VectorXd change = Eigen::VectorXd::Zero(free.Size());
   if (HasHeavyTails(residual)) {
     change = RobustChange(observed, residual, of_rows);

@@ -116,6 +116,7 @@ std::vector<Finding> OfResiduals() {
           NoFrameUsable(100000, "why"),
           FramesScatter(kLong, 100000),
           FramesAlike(kLong),
+          ResultantsContradicted(kLong),
           FramesLeftOut(99999, 100000),
           TrendOverFrames("nu of region 1000", false,
                           {true, numbers, numbers, numbers}, 0),

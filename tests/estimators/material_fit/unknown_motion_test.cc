@@ -279,6 +279,27 @@ TEST(UnknownMotion, WithResultantsOfNoWeightIsTheDisplacementFit) {
               0.01 * *without.PoissonRatioStandardError());
 }
 
+// The force of the supports is that of the loads, whatever the material is.
+TEST(UnknownMotion, SaysWhereResultantsContradictTheLoads) {
+  Scene scene = testing::SceneOfKind(
+      {ElementKind::kQuad4, SectionModel::kPlaneStress}, 5);
+  testing::MeasureByTextbook(kTruth, scene);
+  Resultant resultant =
+      ResultantOfSupports(scene, scene.load_cases[0], HeldNodes(scene), 0);
+  Disturb(0.01 * RootMeanSquare(scene), 1, scene);
+  resultant.noise_sd.setConstant(0.01 * resultant.force.norm());
+  scene.load_cases[0].resultants = {resultant};
+  const Estimate right = RunIterativeFe(scene);
+  EXPECT_FALSE(right.Has(FindingCode::kResultantsContradicted));
+  scene.load_cases[0].resultants[0].force *= 1.1;
+  const Estimate wrong = RunIterativeFe(scene);
+  EXPECT_TRUE(wrong.Has(FindingCode::kResultantsContradicted));
+  // Ten standard deviations, spread over both components.
+  EXPECT_NEAR(
+      *wrong.YoungsModulusStandardError() / *right.YoungsModulusStandardError(),
+      10 / std::sqrt(2.0), 0.5);
+}
+
 // So many that each is not solved for.
 TEST(UnknownMotion, OfManyNodesLeavesExactDataExact) {
   Scene scene = testing::HeldAtBottom(testing::BoxMesh({12, 12, 2}, {6, 6, 1}),
