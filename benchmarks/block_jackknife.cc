@@ -23,6 +23,7 @@ std::vector<std::vector<Eigen::Index>> BlocksOf(const Mesh& mesh, int n) {
     by_place[n * place(0) + place(1)].push_back(node);
   }
   std::vector<std::vector<Eigen::Index>> blocks;
+  blocks.reserve(by_place.size());
   for (const auto& [place, nodes] : by_place) {
     blocks.push_back(nodes);
   }

@@ -113,9 +113,22 @@ struct SeriesSummary {
 struct Estimate {
   std::string estimator;
   Status status = Status::kNumericalFailure;
+  /// The order of the elements: 1 for linear ones, 2 for quadratic ones; 0 as
+  /// long as no estimator was run.
+  int element_order = 0;
+  /// Whether the residual is none that independent noise leaves, so that the
+  /// mesh, the supports or the loads are not those of the experiment.
+  bool is_model_in_doubt = false;
   /// Why the status is not ok, and what to do: the sentence of the finding that
   /// is an error; empty when there is none.
   std::string message = "the estimator was not run; run it on a scene";
+  /// Of one isotropic material, else NaN: E [pressure] and nu [-]; NaN where
+  /// there is no number at all.
+  IsotropicElasticity elasticity = {kUnknown, kUnknown};
+  /// Covariance of (E, nu) of one isotropic material.  NaN in the row and
+  /// column of a parameter that was given, or that is held by a bound, or of
+  /// both when unknown.
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kUnknown);
   /// What there is to say, each code once; one error at most, which is the
   /// reason of the status.
   std::vector<Finding> findings = {{FindingCode::kNotRun, Severity::kError,
@@ -128,13 +141,6 @@ struct Estimate {
   /// estimated, or unknown.
   Eigen::MatrixXd parameter_covariance;
 
-  /// Of one isotropic material, else NaN: E [pressure] and nu [-]; NaN where
-  /// there is no number at all.
-  IsotropicElasticity elasticity = {kUnknown, kUnknown};
-  /// Covariance of (E, nu) of one isotropic material.  NaN in the row and
-  /// column of a parameter that was given, or that is held by a bound, or of
-  /// both when unknown.
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kUnknown);
   /// What the errors come from.
   ErrorBudget error_budget;
   /// Where nu lies with a probability of 95 %: one-sided when it reaches -1 or
@@ -175,9 +181,6 @@ struct Estimate {
   /// By how much E (relative) and nu were corrected for what the elements miss.
   /// Of fits of displacements of linear simplices.
   std::optional<Eigen::Vector2d> discretization_correction;
-  /// Whether the residual is none that independent noise leaves, so that the
-  /// mesh, the supports or the loads are not those of the experiment.
-  bool is_model_in_doubt = false;
   /// What virtual-fields says of the model of reduced-fe, where both were run.
   std::optional<ModelMismatch> model_mismatch;
   /// Points that lie too far off for noise, and were left out.
@@ -193,9 +196,6 @@ struct Estimate {
   /// Of a joint estimate of frames; empty for others.
   std::optional<SeriesSummary> series;
 
-  /// The order of the elements: 1 for linear ones, 2 for quadratic ones; 0 as
-  /// long as no estimator was run.
-  int element_order = 0;
   /// What `auto` ran, in order; empty for other estimators.
   std::vector<Rung> rungs;
   Work work;
