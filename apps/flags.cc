@@ -56,8 +56,7 @@ DEFINE_double(thickness, 0,
 DEFINE_string(regions, "one",
               "materials of the regions of a mesh: one for all of them, or one "
               "each; overrides those of the scene (without this flag those, "
-              "else one).  merge: as many as the measurement tells apart, with "
-              "iterative-fe and auto");
+              "else one)");
 DEFINE_string(parameters, "",
               "JSON file with the parameters of all materials, as reports have "
               "them: a list \"parameters\" of \"name\", \"region\" and "

@@ -34,12 +34,8 @@ RegionChoice RegionsFromFlag() {
   if (FLAGS_regions == "each") {
     return RegionChoice::kEach;
   }
-  if (FLAGS_regions == "merge") {
-    return RegionChoice::kGivenOrEach;
-  }
   if (FLAGS_regions != "one") {
-    throw std::invalid_argument(AsGiven("regions") +
-                                "; it is one, each or merge");
+    throw std::invalid_argument(AsGiven("regions") + "; it is one or each");
   }
   return RegionChoice::kOne;
 }

@@ -255,10 +255,6 @@ MeasurementErrors ErrorsFromCheckedFlags(
         "simulate needs --out=FILE.vtu, or FILE.csv for a table of points");
   }
   CheckParameterFlags();
-  if (FLAGS_regions == "merge") {
-    throw std::invalid_argument(AsGiven("regions") +
-                                " is for estimate; it is one or each here");
-  }
   MeasurementErrors errors = ErrorsFromFlags();
   CheckPointsFlag();
   return errors;

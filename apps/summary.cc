@@ -23,9 +23,7 @@ std::string Number(double value, int digits) {
 
 void Line(const std::string& name, const std::string& value,
           std::ostringstream& text) {
-  constexpr std::size_t kWidth = 22;
-  text << std::left << std::setw(int(kWidth)) << name
-       << (name.size() < kWidth ? "" : " ") << value << "\n";
+  text << std::left << std::setw(22) << name << value << "\n";
 }
 
 std::string WithError(double value, const std::optional<double>& error) {
@@ -235,29 +233,6 @@ void AddLoads(const Scene& scene, std::ostringstream& text) {
   }
 }
 
-std::string ListOf(const std::vector<int>& regions) {
-  std::string list;
-  for (const int region : regions) {
-    list += (list.empty() ? "" : ", ") + std::to_string(region);
-  }
-  return list;
-}
-
-// Those that were taken, and the nearest that was not.
-void AddMerges(const std::vector<RegionMerge>& merges,
-               std::ostringstream& text) {
-  for (const RegionMerge& merge : merges) {
-    Line(merge.is_taken ? "merged" : "told apart",
-         "regions " + ListOf(merge.first) + " and " + ListOf(merge.second) +
-             " (chi^2 " + Number(merge.chi_square, 3) + ", limit " +
-             Number(merge.limit, 3) + ")",
-         text);
-    if (!merge.is_taken) {
-      break;
-    }
-  }
-}
-
 void AddSeries(const SeriesSummary& series, std::ostringstream& text) {
   const Interval& loads = series.loads;
   std::string under;
@@ -314,7 +289,6 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
          text);
   }
   AddLoads(scene, text);
-  AddMerges(estimate.merges, text);
   if (estimate.series) {
     AddSeries(*estimate.series, text);
   }

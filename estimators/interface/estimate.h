@@ -65,17 +65,6 @@ struct Rung {
   std::string decision;
 };
 
-/// Regions that became one material, or would have next: two that the
-/// measurement hardly tells apart.
-struct RegionMerge {
-  std::vector<int> first;
-  std::vector<int> second;
-  /// Their distance, of chi^2 where they are the same, and how much is allowed.
-  double chi_square;
-  double limit;
-  bool is_taken;
-};
-
 /// A measurement that was left out of a fit.
 struct Outlier {
   Eigen::Index load_case;
@@ -191,8 +180,6 @@ struct Estimate {
   /// Bounds that the estimate lies on, such as "nu_max".
   std::vector<std::string> active_bounds;
 
-  /// In order, where regions were to be merged; empty for others.
-  std::vector<RegionMerge> merges;
   /// Of a joint estimate of frames; empty for others.
   std::optional<SeriesSummary> series;
 

@@ -178,6 +178,14 @@ void EnterElasticity(Estimate& estimate) {
   }
 }
 
+// A fit, and where it is.
+struct MaterialFit {
+  Estimate estimate;
+  std::optional<Eigen::VectorXd> variables;
+  /// As measured where all is known; empty where there is no fit.
+  Eigen::MatrixXd displacement;
+};
+
 // How many quadratic elements are worth a look at what they change.
 constexpr Eigen::Index kMostQuadraticElements = 30000;
 
@@ -230,8 +238,8 @@ MaterialFit FitAll(const Scene& scene, const EstimatorOptions& options,
             ? ChangeToQuadraticElements(scene, options, minimum->variables,
                                         misfit, estimate)
             : std::nullopt;
-    fit.errors = DescribeMinimum(scene, minimum->variables, change, misfit,
-                                 evidence, estimate);
+    DescribeMinimum(scene, minimum->variables, change, misfit, evidence,
+                    estimate);
     fit.variables = minimum->variables;
     Eigen::VectorXd rows;
     if (misfit.Evaluate(*fit.variables, &rows, nullptr)) {
@@ -372,6 +380,22 @@ MaterialFit FitWithoutOutliers(const Scene& scene,
   return fit;
 }
 
+// A material of which Poisson's ratio is known is one that has it.
+MaterialFit Fit(const Scene& scene, const EstimatorOptions& options,
+                const std::optional<Eigen::VectorXd>& start) {
+  if (!IsOneIsotropicMaterial(scene.materials) ||
+      !options.known_poisson_ratio) {
+    return FitWithoutOutliers(scene, options, start);
+  }
+  Scene known = scene;
+  known.materials = WithKnownPoissonRatio(options);
+  EstimatorOptions other_options = options;
+  other_options.known_poisson_ratio.reset();
+  MaterialFit fit = FitWithoutOutliers(known, other_options, start);
+  EnterElasticity(fit.estimate);
+  return fit;
+}
+
 // Starts where the last usable fit ended.
 class MaterialFitPreparation : public Preparation {
  public:
@@ -379,10 +403,10 @@ class MaterialFitPreparation : public Preparation {
       : options_(options) {}
 
   Estimate Run(const Scene& scene) override {
-    MaterialFit fit = FitMaterialsFrom(start_, scene, options_);
+    MaterialFit fit = Fit(scene, options_, start_);
     if (start_ && !fit.estimate.IsUsable()) {
       const Work work = fit.estimate.work;
-      fit = FitMaterialsFrom(std::nullopt, scene, options_);
+      fit = Fit(scene, options_, std::nullopt);
       fit.estimate.work = fit.estimate.work + work;
     }
     start_ = fit.estimate.IsUsable() ? fit.variables : std::nullopt;
@@ -402,24 +426,8 @@ bool IsForMaterialFit(const Scene& scene) {
          HasSupportsOfCases(scene);
 }
 
-MaterialFit FitMaterialsFrom(const std::optional<Eigen::VectorXd>& start,
-                             const Scene& scene,
-                             const EstimatorOptions& options) {
-  if (!IsOneIsotropicMaterial(scene.materials) ||
-      !options.known_poisson_ratio) {
-    return FitWithoutOutliers(scene, options, start);
-  }
-  Scene known = scene;
-  known.materials = WithKnownPoissonRatio(options);
-  EstimatorOptions other_options = options;
-  other_options.known_poisson_ratio.reset();
-  MaterialFit fit = FitWithoutOutliers(known, other_options, start);
-  EnterElasticity(fit.estimate);
-  return fit;
-}
-
 Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options) {
-  return FitMaterialsFrom(std::nullopt, scene, options).estimate;
+  return Fit(scene, options, std::nullopt).estimate;
 }
 
 std::unique_ptr<Preparation> PrepareMaterialFit(

@@ -1,14 +1,11 @@
 #ifndef ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MATERIAL_FIT_H_
 #define ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MATERIAL_FIT_H_
 
-#include <Eigen/Core>
 #include <memory>
-#include <optional>
 
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
-#include "elastimate/estimators/material_fit/minimum_statistics.h"
 
 namespace elastimate {
 
@@ -35,21 +32,6 @@ bool IsForMaterialFit(const Scene& scene);
 /// Cost: a factorisation at each step, 5 to 8 from each start, and a solve for
 /// each load case and parameter.
 Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options);
-
-/// A fit, and where it is.
-struct MaterialFit {
-  Estimate estimate;
-  /// Before any correction for the elements; empty where there is no fit.
-  std::optional<Eigen::VectorXd> variables;
-  /// As measured where all is known; empty where there is no fit.
-  Eigen::MatrixXd displacement;
-  MinimumErrors errors;
-};
-
-/// The same as FitMaterials, from these variables on where there are some.
-MaterialFit FitMaterialsFrom(const std::optional<Eigen::VectorXd>& start,
-                             const Scene& scene,
-                             const EstimatorOptions& options);
 
 /// The same for one scene after another, each from where the last usable fit
 /// ended; where that leads to none, as FitMaterials does.  `options` outlive

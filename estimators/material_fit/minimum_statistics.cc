@@ -165,17 +165,17 @@ Eigen::VectorXd EnterElements(const Scene& scene, const FreeParameters& free,
 
 }  // namespace
 
-MinimumErrors DescribeMinimum(
-    const Scene& scene, const Eigen::VectorXd& variables,
-    const std::optional<Eigen::VectorXd>& change_of_rows,
-    DisplacementMisfit& misfit, Evidence& evidence, Estimate& estimate) {
+void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
+                     const std::optional<Eigen::VectorXd>& change_of_rows,
+                     DisplacementMisfit& misfit, Evidence& evidence,
+                     Estimate& estimate) {
   const FreeParameters& free = misfit.Free();
   const ObservedDisplacements& observed = misfit.Observed();
   Eigen::VectorXd rows;
   Eigen::MatrixXd sensitivities;
   if (!misfit.Evaluate(variables, &rows, &sensitivities)) {
     evidence.end = End::kSingularStiffness;
-    return {};
+    return;
   }
   Eigen::VectorXd residual = rows.head(observed.Size());
   estimate.displacement_residual = residual.norm() / observed.Measured().norm();
@@ -184,7 +184,7 @@ MinimumErrors DescribeMinimum(
   if (!observed.GivenNoise() &&
       observed.Size() - num_fitted < kLimits.least_redundancy) {
     evidence.too_few_components = observed.Size();
-    return {};
+    return;
   }
   ResidualVariance variance = EstimateVariance(observed, rows.squaredNorm(),
                                                num_fitted, evidence, estimate);
@@ -239,8 +239,6 @@ MinimumErrors DescribeMinimum(
         std::sqrt(covariance.diagonal().maxCoeff());
   }
   EnterCovariance(free, corrected, covariance, estimate);
-  return {corrected, variance.variance * inverse, covariance,
-          rows.squaredNorm(), variance.variance};
 }
 
 }  // namespace elastimate

@@ -11,15 +11,6 @@
 
 namespace elastimate {
 
-/// What is known of the variables of a minimum; empty matrices where nothing.
-struct MinimumErrors {
-  Eigen::VectorXd corrected;  ///< The variables, for what the elements miss.
-  Eigen::MatrixXd of_noise;   ///< Covariance by independent noise.
-  Eigen::MatrixXd total;
-  double square_sum = 0;  ///< Of all rows.
-  double variance = 0;    ///< Of noise in a row.
-};
-
 /// Enters the noise and the covariance of a minimum into the estimate, whose
 /// parameters are entered, and what there is to judge into the evidence:
 ///
@@ -35,11 +26,10 @@ struct MinimumErrors {
 /// `change` is that of the rows to quadratic elements, where it is
 /// known: what of it the residual shows corrects the parameters that are
 /// entered, and its error is part of theirs (ElementErrors).
-MinimumErrors DescribeMinimum(const Scene& scene,
-                              const Eigen::VectorXd& variables,
-                              const std::optional<Eigen::VectorXd>& change,
-                              DisplacementMisfit& misfit, Evidence& evidence,
-                              Estimate& estimate);
+void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
+                     const std::optional<Eigen::VectorXd>& change,
+                     DisplacementMisfit& misfit, Evidence& evidence,
+                     Estimate& estimate);
 
 }  // namespace elastimate
 

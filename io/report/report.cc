@@ -244,17 +244,6 @@ Json DiagnosticsJson(const Estimate& estimate) {
           {"warnings", estimate.Sentences(Severity::kWarning)}};
 }
 
-Json MergesJson(const Estimate& estimate) {
-  Json merges = Json::array();
-  for (const RegionMerge& merge : estimate.merges) {
-    merges.push_back({{"regions", {merge.first, merge.second}},
-                      {"chi_square", OrNull(merge.chi_square)},
-                      {"limit", merge.limit},
-                      {"merged", merge.is_taken}});
-  }
-  return merges;
-}
-
 Json SeriesJson(const Estimate& estimate) {
   if (!estimate.series) {
     return nullptr;
@@ -335,7 +324,6 @@ std::string JsonReport(const Estimate& estimate, const Scene& scene,
       {"error_budget", BudgetJson(scene, estimate.error_budget)},
       {"findings", FindingsJson(estimate.findings)},
       {"diagnostics", DiagnosticsJson(estimate)},
-      {"merges", MergesJson(estimate)},
       {"series", SeriesJson(estimate)},
       {"work", WorkJson(estimate.work)},
       {"rungs", RungsJson(estimate)},
