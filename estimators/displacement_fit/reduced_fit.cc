@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/estimators/statistics/scalar_search.h"
 
 namespace elastimate {
 namespace {
@@ -20,29 +20,12 @@ bool IsBetter(const ReducedFit::Point& a, const ReducedFit::Point& b) {
                                         : a_is_positive;
 }
 
-// From `lower` to `upper`, both exactly; even in ln((1 + nu) / (1 - 2 nu)).
-Eigen::VectorXd ScanPoints(double lower, double upper) {
-  if (lower == upper) {
-    return Eigen::VectorXd::Constant(1, lower);
-  }
-  Eigen::VectorXd points =
-      Eigen::VectorXd::LinSpaced(kScanIntervals + 1, LogStiffnessRatio(lower),
-                                 LogStiffnessRatio(upper))
-          .unaryExpr(&PoissonRatioOfLogStiffnessRatio);
-  points(0) = lower;
-  points(kScanIntervals) = upper;
-  return points;
-}
-
-// The last point inside between one inside and one outside.
-double RefineEnd(const std::function<bool(double)>& is_inside, double inside,
-                 double outside) {
-  constexpr int kHalvings = 40;
-  for (int i = 0; i < kHalvings; ++i) {
-    const double middle = (inside + outside) / 2;
-    (is_inside(middle) ? inside : outside) = middle;
-  }
-  return inside;
+// Just one where nu is known.
+Eigen::VectorXd ScanOf(const Bounds& poisson_ratio) {
+  const double lower = *poisson_ratio.lower;
+  const double upper = *poisson_ratio.upper;
+  return lower == upper ? Eigen::VectorXd::Constant(1, lower)
+                        : EvenPoissonRatios(lower, upper, kScanIntervals + 1);
 }
 
 }  // namespace
@@ -55,7 +38,7 @@ ReducedFit::ReducedFit(const ReducedModel& model,
     : section_model_(model.Section()),
       youngs_modulus_(youngs_modulus),
       row_weights_(row_weights),
-      scan_(ScanPoints(*poisson_ratio.lower, *poisson_ratio.upper)) {
+      scan_(ScanOf(poisson_ratio)) {
   const Eigen::Index num_cases = model.NumLoadCases();
   for (Eigen::Index k = 0; k < num_cases; ++k) {
     const Eigen::Index first = observed.CaseStart(k);
@@ -159,6 +142,7 @@ std::vector<ReducedFit::ResidualBracket> ReducedFit::BracketResiduals(
 
 std::pair<ReducedFit::Point, ReducedFit::Point> ReducedFit::ProfileEnds(
     const Eigen::VectorXd& measured, const Point& best, double excess) const {
+  constexpr int kHalvings = 40;
   const Projection projection = Project(measured);
   const double limit = best.square_sum + excess;
   const auto is_inside = [&](double nu) {
@@ -174,11 +158,12 @@ std::pair<ReducedFit::Point, ReducedFit::Point> ReducedFit::ProfileEnds(
          (scan_(i) - best.poisson_ratio) * static_cast<double>(step) < 0;
          i += step) {
       if (is_inside(scan_(i))) {
-        return i == far ? scan_(far) : RefineEnd(is_inside, scan_(i), outside);
+        return i == far ? scan_(far)
+                        : LastInside(is_inside, scan_(i), outside, kHalvings);
       }
       outside = scan_(i);
     }
-    return RefineEnd(is_inside, best.poisson_ratio, outside);
+    return LastInside(is_inside, best.poisson_ratio, outside, kHalvings);
   };
   return {At(end_towards(0, 1), projection),
           At(end_towards(scan_.size() - 1, -1), projection)};
@@ -277,36 +262,10 @@ double ReducedFit::SlopeAt(double poisson_ratio,
 
 double ReducedFit::FindMinimum(double inner, double inner_slope, double outer,
                                const Projection& projection) const {
-  constexpr int kMostSteps = 60;
   constexpr double kTolerance = 1e-13;
-  double outer_slope = SlopeAt(outer, projection);
-  double point = inner;
-  // The false position with Illinois' rule; by halves as long as the slopes
-  // enclose no zero.
-  bool was_inner = false;
-  bool was_outer = false;
-  for (int step = 0; step < kMostSteps; ++step) {
-    const bool encloses = inner_slope * outer_slope <= 0;
-    const double previous = point;
-    point = inner +
-            (outer - inner) *
-                (encloses ? inner_slope / (inner_slope - outer_slope) : 0.5);
-    if (std::abs(point - previous) <= kTolerance) {
-      break;
-    }
-    const double slope = SlopeAt(point, projection);
-    const bool is_inner = slope * inner_slope > 0;
-    (is_inner ? inner : outer) = point;
-    (is_inner ? inner_slope : outer_slope) = slope;
-    if (is_inner && was_inner) {
-      outer_slope /= 2;
-    } else if (!is_inner && was_outer) {
-      inner_slope /= 2;
-    }
-    was_inner = is_inner;
-    was_outer = !is_inner;
-  }
-  return point;
+  return ZeroBetween([&](double nu) { return SlopeAt(nu, projection); }, inner,
+                     inner_slope, outer, SlopeAt(outer, projection),
+                     kTolerance);
 }
 
 DisplacementFit ExpandFit(const ReducedModel& model,

@@ -10,6 +10,7 @@
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/estimators/force_balance/force_residual.h"
 #include "elastimate/estimators/force_balance/monomials.h"
+#include "elastimate/estimators/statistics/scalar_search.h"
 
 namespace elastimate {
 namespace {
@@ -161,13 +162,11 @@ VirtualWork::VirtualWork(const Mesh& mesh, const Supports& supports, int degree)
   j_ = triangle.rightCols(columns) * fields_;
 
   // Half a step changes the stiffness by 19 %.
-  constexpr int kScanPoints = 64;
-  const double first = LogStiffnessRatio(kSmallestPoissonRatio);
-  const double last = LogStiffnessRatio(kLargestPoissonRatio);
+  constexpr Eigen::Index kScanPoints = 64;
   scan_.reserve(kScanPoints);
-  for (int i = 0; i < kScanPoints; ++i) {
-    scan_.push_back(FactorNoise(PoissonRatioOfLogStiffnessRatio(
-        first + (last - first) * i / (kScanPoints - 1))));
+  for (const double nu : EvenPoissonRatios(kSmallestPoissonRatio,
+                                           kLargestPoissonRatio, kScanPoints)) {
+    scan_.push_back(FactorNoise(nu));
   }
 }
 
@@ -301,41 +300,17 @@ VirtualWorkFit VirtualWorkBalance::FitAt(double poisson_ratio,
   return Evaluate(work_.FactorNoise(poisson_ratio), youngs_modulus);
 }
 
-VirtualWorkFit VirtualWorkBalance::Refine(VirtualWorkFit falling,
-                                          VirtualWorkFit rising,
+VirtualWorkFit VirtualWorkBalance::Refine(const VirtualWorkFit& falling,
+                                          const VirtualWorkFit& rising,
                                           const Bounds& youngs_modulus) const {
-  // The Illinois method: the secant through both ends, where an end that stays
-  // counts half from the second time on.
-  constexpr int kMostSteps = 100;
-  double left = LogStiffnessRatio(falling.poisson_ratio);
-  double right = LogStiffnessRatio(rising.poisson_ratio);
-  double left_slope = falling.slope;
-  double right_slope = rising.slope;
-  bool moved_left = false;
-  bool moved_right = false;
-  for (int step = 0; step < kMostSteps && right_slope > 0; ++step) {
-    const double x =
-        left + (right - left) * left_slope / (left_slope - right_slope);
-    if (!(x > left && x < right)) {
-      break;  // The ends are neighbours, to rounding.
-    }
-    VirtualWorkFit fit =
-        FitAt(PoissonRatioOfLogStiffnessRatio(x), youngs_modulus);
-    if (fit.slope < 0) {
-      left = x;
-      left_slope = fit.slope;
-      right_slope /= moved_left ? 2 : 1;
-      falling = std::move(fit);
-    } else {
-      right = x;
-      right_slope = fit.slope;
-      left_slope /= moved_right ? 2 : 1;
-      rising = std::move(fit);
-    }
-    moved_left = left == x;
-    moved_right = right == x;
-  }
-  return falling.square_sum < rising.square_sum ? falling : rising;
+  constexpr double kTolerance = 1e-13;
+  const auto fit_at = [&](double log_ratio) {
+    return FitAt(PoissonRatioOfLogStiffnessRatio(log_ratio), youngs_modulus);
+  };
+  return fit_at(ZeroBetween(
+      [&](double log_ratio) { return fit_at(log_ratio).slope; },
+      LogStiffnessRatio(falling.poisson_ratio), falling.slope,
+      LogStiffnessRatio(rising.poisson_ratio), rising.slope, kTolerance));
 }
 
 VirtualWorkFit VirtualWorkBalance::Minimize(
@@ -383,16 +358,17 @@ std::pair<VirtualWorkFit, VirtualWorkFit> VirtualWorkBalance::ProfileEnds(
     if (noise == scan_end) {
       return inside;
     }
-    double outside = noise->poisson_ratio;
-    for (int i = 0; i < kHalvings; ++i) {
-      const double middle = (inside.poisson_ratio + outside) / 2;
-      VirtualWorkFit fit = FitAt(middle, Bounds{});
-      if (is_inside(fit)) {
-        inside = std::move(fit);
-      } else {
-        outside = middle;
-      }
-    }
+    // The fit there is kept, for another would cost a factorisation.
+    LastInside(
+        [&](double nu) {
+          VirtualWorkFit fit = FitAt(nu, Bounds{});
+          if (!is_inside(fit)) {
+            return false;
+          }
+          inside = std::move(fit);
+          return true;
+        },
+        inside.poisson_ratio, noise->poisson_ratio, kHalvings);
     return inside;
   };
   const std::vector<VirtualWork::NoiseFactor>& scan = work_.Scan();

@@ -187,7 +187,8 @@ class VirtualWorkBalance {
                           const Bounds& youngs_modulus) const;
   /// The minimum between two fits, of which S falls at the first and rises at
   /// the second.
-  VirtualWorkFit Refine(VirtualWorkFit falling, VirtualWorkFit rising,
+  VirtualWorkFit Refine(const VirtualWorkFit& falling,
+                        const VirtualWorkFit& rising,
                         const Bounds& youngs_modulus) const;
 
   const VirtualWork& work_;

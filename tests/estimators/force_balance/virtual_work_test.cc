@@ -193,5 +193,17 @@ TEST(VirtualWorkBalance, ItsSlopeIsThatOfTheSquareSum) {
   }
 }
 
+// To the last digit, by which an interval that reaches them is told.
+TEST(VirtualWorkBalance, ItsProfileEndsAtTheLimitsOfTheRange) {
+  Scene scene = SmallScene("organ");
+  Measure({5e4, 0.3}, scene);
+  const VirtualWork work(scene.mesh, scene.supports, 2);
+  const VirtualWorkBalance balance(work, scene);
+  const auto [lower, upper] = balance.ProfileEnds(
+      balance.FitAt(0.3, {}), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(lower.poisson_ratio, kSmallestPoissonRatio);
+  EXPECT_EQ(upper.poisson_ratio, kLargestPoissonRatio);
+}
+
 }  // namespace
 }  // namespace elastimate
