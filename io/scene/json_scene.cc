@@ -105,13 +105,25 @@ LoadCase ReadLoadCase(const JsonValue& value, const LoadContext& of_scene,
   return load_case;
 }
 
-/// Whether the scene has no supports but those of each load case.
-bool HasOwnSupportsOnly(const JsonValue& document,
-                        const std::vector<JsonValue>& cases) {
-  return !document.Has("supports") &&
-         std::all_of(cases.begin(), cases.end(), [](const JsonValue& value) {
-           return value.Has("supports");
-         });
+/// Where the supports of the scene stand: at the top or, where each load case
+/// has its own, in the first.
+const JsonValue& OwnerOfSupports(const JsonValue& document,
+                                 const std::vector<JsonValue>& cases) {
+  const auto has_own = [](const JsonValue& value) {
+    return value.Has("supports");
+  };
+  if (document.Has("supports") ||
+      std::none_of(cases.begin(), cases.end(), has_own)) {
+    return document;
+  }
+  for (const JsonValue& value : cases) {
+    if (!has_own(value)) {
+      value.Fail(
+          "has no supports of its own, and the scene has none for all; give it "
+          "some");
+    }
+  }
+  return cases[0];
 }
 
 }  // namespace
@@ -133,8 +145,8 @@ FileScene ReadJsonScene(const std::filesystem::path& path,
   if (cases.empty()) {
     document.At("cases").Fail("is empty; give at least one load case");
   }
-  file_scene.scene.supports = ReadSupports(
-      HasOwnSupportsOnly(document, cases) ? cases[0] : document, mesh);
+  file_scene.scene.supports =
+      ReadSupports(OwnerOfSupports(document, cases), mesh);
   file_scene.scene.is_rigid_motion_free = ReadIsRigidMotionFree(document);
   const LoadContext context(mesh, file_scene.scene.mesh,
                             file_scene.scene.supports, file_scene.notices);

@@ -2,6 +2,7 @@
 
 #include "elastimate/core/materials/law.h"
 
+#include <ceres/jet.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <string>
 
+#include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/materials/laws.h"
 #include "tests/core/random_values.h"
 
@@ -45,6 +47,54 @@ auto Slope(const Function& function, const Argument& at, Eigen::Index entry,
   more(entry) += step;
   less(entry) -= step;
   return Eigen::VectorXd((function(more) - function(less)) / (2 * step));
+}
+
+// Numbers with derivatives by the entries of H, of which there are up to nine.
+using GradientJet = ceres::Jet<double, 9>;
+
+// W_k = 1/2 H : C_k H, where the columns of C_k are stresses of unit gradients.
+std::vector<GradientJet> QuadraticEnergies(const Law& law, SectionModel model,
+                                           const Eigen::MatrixXd& gradient) {
+  std::vector<GradientJet> energies(law.NumModuli());
+  for (int i = 0; i < gradient.size(); ++i) {
+    Eigen::MatrixXd unit =
+        Eigen::MatrixXd::Zero(gradient.rows(), gradient.cols());
+    unit(i) = 1;
+    const Eigen::MatrixXd columns = law.Stresses(unit, model);
+    for (int j = 0; j < gradient.size(); ++j) {
+      for (std::size_t k = 0; k < energies.size(); ++k) {
+        energies[k] += 0.5 * columns(j, Eigen::Index(k)) *
+                       GradientJet(gradient(j), j) *
+                       GradientJet(gradient(i), i);
+      }
+    }
+  }
+  return energies;
+}
+
+// How far energies and stresses of a law of small strains are from
+// QuadraticEnergies and their automatic derivatives, and what its tangent makes
+// of H from the derivative for these moduli; relative to the largest of each.
+double DeviationFromQuadraticEnergies(const Law& law, SectionModel model,
+                                      const Eigen::MatrixXd& gradient,
+                                      const Eigen::VectorXd& moduli) {
+  const std::vector<GradientJet> automatic =
+      QuadraticEnergies(law, model, gradient);
+  Eigen::VectorXd energies(law.NumModuli());
+  Eigen::MatrixXd stresses(gradient.size(), law.NumModuli());
+  for (Eigen::Index k = 0; k < energies.size(); ++k) {
+    energies(k) = automatic[k].a;
+    stresses.col(k) = automatic[k].v.head(gradient.size());
+  }
+  const auto deviation = [](const Eigen::MatrixXd& actual,
+                            const Eigen::MatrixXd& expected) {
+    return (actual - expected).norm() / expected.norm();
+  };
+  return std::max(
+      {deviation(law.Energies(gradient, model), energies),
+       deviation(law.Stresses(gradient, model), stresses),
+       deviation(law.Tangent(moduli, gradient, model) * gradient.reshaped(),
+                 stresses * moduli)});
 }
 
 class LawConformance : public ::testing::TestWithParam<LawInSection> {
@@ -94,6 +144,16 @@ TEST_P(LawConformance, TangentIsTheDerivativeOfTheStressAndSymmetric) {
     EXPECT_LT((slope - tangent.col(i)).norm(), 1e-8 * tangent.norm());
   }
   EXPECT_LT((tangent - tangent.transpose()).norm(), 1e-14 * tangent.norm());
+}
+
+TEST_P(LawConformance, StressAndTangentAreAutomaticDerivativesOfTheEnergy) {
+  const Eigen::MatrixXd rest = Eigen::MatrixXd::Zero(dimension_, dimension_);
+  if (law_.Tangent(Moduli(), gradient_, model_) !=
+      law_.Tangent(Moduli(), rest, model_)) {
+    GTEST_SKIP() << "is of finite strains";
+  }
+  EXPECT_LT(DeviationFromQuadraticEnergies(law_, model_, gradient_, Moduli()),
+            1e-12);
 }
 
 TEST_P(LawConformance, RestsWithoutStressAndResistsEveryStrain) {
@@ -167,6 +227,42 @@ INSTANTIATE_TEST_SUITE_P(Laws, LawConformance,
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });
+
+// Of shear stresses that are so many times as large as they should be.
+class WrongShear : public IsotropicLaw {
+ public:
+  WrongShear(double factor, double factor_of_transpose)
+      : factor_(factor), factor_of_transpose_(factor_of_transpose) {}
+
+  Eigen::MatrixXd Stresses(const Eigen::MatrixXd& gradient,
+                           SectionModel model) const override {
+    Eigen::MatrixXd stresses = IsotropicLaw::Stresses(gradient, model);
+    stresses.row(1) *= factor_;
+    stresses.row(gradient.rows()) *= factor_of_transpose_;
+    return stresses;
+  }
+
+ private:
+  double factor_;
+  double factor_of_transpose_;
+};
+
+TEST(WrongShear, IsFarFromItsQuadraticEnergies) {
+  for (const SectionModel model :
+       {SectionModel::kSolid, SectionModel::kPlaneStrain,
+        SectionModel::kPlaneStress}) {
+    const int dimension = model == SectionModel::kSolid ? 3 : 2;
+    const auto deviation = [&](double factor, double factor_of_transpose) {
+      return DeviationFromQuadraticEnergies(
+          WrongShear(factor, factor_of_transpose), model,
+          RandomMatrix(dimension, dimension, 1), Eigen::Vector2d(1, 0.3));
+    };
+    EXPECT_LT(deviation(1, 1), 1e-12);
+    EXPECT_GT(deviation(2, 2), 0.01);
+    // A tangent that is not symmetric, though its energy may be right.
+    EXPECT_GT(deviation(1.1, 0.9), 0.01);
+  }
+}
 
 TEST(Laws, AreFoundByTheirNames) {
   for (const Law* const law : Laws()) {

@@ -136,6 +136,13 @@ TEST_F(JsonSceneTest, ReadsSupportsOfALoadCase) {
       "");
   EXPECT_THAT(Held(alone), ElementsAre(0, 1, 4));
   EXPECT_FALSE(HasSupportsOfCases(Read(alone).scene));
+  EXPECT_THROWS_WITH(
+      Read(Replaced(
+          two,
+          R"("supports": [ {"nodes": {"ids": [0, 1, 4]}, "components": "xyz"} ],
+)",
+          "")),
+      "cases\\[1\\] has no supports of its own");
 }
 
 TEST_F(JsonSceneTest, SelectsNodes) {
