@@ -12,12 +12,12 @@
 
 #include "apps/linear_algebra.h"
 #include "benchmarks/processor_time.h"
-#include "benchmarks/refined_scene.h"
 #include "benchmarks/trial.h"
 #include "benchmarks/unseen_shapes.h"
 #include "benchmarks/unseen_summary.h"
 #include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/core/scene/simplicial_scene.h"
 #include "elastimate/estimators/registry.h"
 #include "elastimate/estimators/statistics/cramer_rao.h"
 
@@ -107,7 +107,7 @@ struct Specimen {
 Specimen MakeSpecimen(const UnseenShape& shape) {
   Specimen specimen = {
       shape, UnmeasuredScene(shape, TetrahedralMesh(shape.body)), {}, {}};
-  specimen.finer = RefinedScene(specimen.scene);
+  specimen.finer = SimplicialScene(QuadraticScene(specimen.scene));
   if (shape.hexahedra_per_edge > 0) {
     specimen.hexahedra = UnmeasuredScene(
         shape, HexahedralMesh(shape.body, shape.hexahedra_per_edge));

@@ -7,6 +7,7 @@
 
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/core/scene/simplicial_scene.h"
 #include "tests/dense_reference.h"
 #include "tests/quadratic_reference.h"
 #include "tests/scenes.h"
@@ -400,6 +401,16 @@ void MeasureByTextbook(const IsotropicElasticity& elasticity, Scene& scene) {
         SolveDensely(stiffness(free, free), force.col(Eigen::Index(k))(free));
     scene.load_cases[k].displacement =
         u.reshaped(mesh.nodes.rows(), mesh.NumNodes());
+  }
+}
+
+void MeasureInCutWorld(const IsotropicElasticity& elasticity, Scene& scene) {
+  Scene finer = QuadraticScene(SimplicialScene(scene));
+  finer = QuadraticScene(SimplicialScene(finer));
+  Measure(elasticity, finer);
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    scene.load_cases[k].displacement =
+        finer.load_cases[k].displacement.leftCols(scene.mesh.NumNodes());
   }
 }
 

@@ -53,6 +53,10 @@ Eigen::VectorXd TextbookVolumes(const Mesh& mesh);
 /// Measures the scene by a dense solution with TextbookStiffness.
 void MeasureByTextbook(const IsotropicElasticity& elasticity, Scene& scene);
 
+/// Measures the scene at its nodes in a world of finer elements than those that
+/// an estimator may look at: quadratic simplices, cut twice.
+void MeasureInCutWorld(const IsotropicElasticity& elasticity, Scene& scene);
+
 }  // namespace elastimate::testing
 
 #endif  // ELASTIMATE_TESTS_ELEMENT_KINDS_H_

@@ -37,7 +37,8 @@ class HierarchicalError {
   /// columns of `responses`) and of that to the held displacements (the column
   /// behind them, if there is one), all at nu and num_dofs x n; empty where it
   /// takes too many iterations.
-  /// Precondition: `linear` is of the mesh of the scene, and its last
+  /// Precondition: `linear` is of the mesh of the scene, or of other elements
+  /// of these nodes, whose responses are the given ones then, and its last
   /// factorisation succeeded; the nearer to nu, the fewer iterations.
   /// Cost: for each of some 20 iterations a pass of quadratic elements and a
   /// solve for each response.

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "elastimate/core/algebra/dense_algebra.h"
-#include "elastimate/estimators/statistics/element_errors.h"
 #include "elastimate/estimators/interface/limits.h"
+#include "elastimate/estimators/statistics/element_errors.h"
 #include "elastimate/estimators/statistics/errors_on_bound.h"
 #include "elastimate/estimators/statistics/residual_statistics.h"
 
@@ -102,12 +102,16 @@ class FitDescription {
     if (free_.empty()) {
       return;
     }
+    std::optional<RowChange> change;
+    if (fit_.element_change) {
+      change = {*fit_.element_change, scene.mesh.Order() == 1};
+    }
     elements_.emplace(
         scene, graph, observed_,
         FreeFit{fit_.residual, fit_.sensitivities(Eigen::all, free_),
                 sums_.bread(free_, free_), sums_.weights,
                 losses_.IsLeastSquares()},
-        fit_.element_change, fit_.displacement, estimate_.elasticity);
+        change, fit_.displacement, estimate_.elasticity);
     if (elements_->Correction()) {
       Eigen::Vector2d correction = Eigen::Vector2d::Zero();
       correction(free_) = *elements_->Correction();

@@ -7,6 +7,7 @@
 #include "elastimate/core/mesh/mid_edges.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/rigid_motion.h"
+#include "elastimate/core/scene/simplicial_scene.h"
 
 namespace elastimate {
 namespace {
@@ -29,7 +30,7 @@ std::optional<Eigen::VectorXd> ElementChange::Rows(
     poisson_ratio_ = nu;
     if (scene_.mesh.Order() == 2) {
       change_ = OfQuadraticElements(nu, responses);
-    } else if (HasQuadraticKind(scene_.mesh.kind)) {
+    } else {
       change_ = OfLinearElements(nu, responses, solver_near(nu));
     }
   }
@@ -53,7 +54,8 @@ std::optional<Eigen::MatrixXd> ElementChange::OfLinearElements(
     return std::nullopt;
   }
   if (!hierarchical_) {
-    hierarchical_ = std::make_unique<HierarchicalError>(scene_);
+    hierarchical_ =
+        std::make_unique<HierarchicalError>(SimplicialScene(scene_));
   }
   const int passes = hierarchical_->NumPasses();
   std::optional<Eigen::MatrixXd> change =

@@ -16,9 +16,9 @@
 namespace elastimate {
 
 /// How much the displacements of a scene depend on the order of its elements:
-/// for linear simplices what quadratic ones change (HierarchicalError), for
-/// quadratic ones what they changed against linear ones of the same vertices.
-/// For other elements it is not known.
+/// for linear ones, of any shape, what quadratic simplices of their nodes
+/// change (SimplicialScene, HierarchicalError), for quadratic ones what they
+/// changed against linear ones of the same vertices.
 class ElementChange {
  public:
   /// `scene` must outlive this object.

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/core/scene/simplicial_scene.h"
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
@@ -181,80 +183,164 @@ void EnterElasticity(Estimate& estimate) {
 // A fit, and where it is.
 struct MaterialFit {
   Estimate estimate;
-  std::optional<Eigen::VectorXd> variables;
+  /// Empty where there is no fit.
+  std::optional<BoundedMinimum> minimum;
+  double noise = 0;  ///< DisplacementMisfit::Noise there.
   /// As measured where all is known; empty where there is no fit.
   Eigen::MatrixXd displacement;
+  /// That of the specimen, as far as its elements are known to be finer.
+  Eigen::MatrixXd displacement_of_specimen;
+
+  std::optional<Eigen::VectorXd> Variables() const {
+    return minimum ? std::optional<Eigen::VectorXd>(minimum->variables)
+                   : std::nullopt;
+  }
 };
 
-// How many quadratic elements are worth a look at what they change.
-constexpr Eigen::Index kMostQuadraticElements = 30000;
-
-// What quadratic elements change in the rows of the fit at these variables,
-// where supports moved as they do there; empty where it is not known.
-std::optional<Eigen::VectorXd> ChangeToQuadraticElements(
-    const Scene& scene, const EstimatorOptions& options,
-    const Eigen::VectorXd& variables, DisplacementMisfit& misfit,
-    Estimate& estimate) {
-  if (scene.mesh.Order() != 1 || !HasQuadraticKind(scene.mesh.kind) ||
-      scene.mesh.NumElements() > kMostQuadraticElements) {
-    return std::nullopt;
-  }
-  const Scene quadratic = QuadraticScene(scene);
-  DisplacementMisfit finer(quadratic, options);
-  finer.SetNoise(misfit.Noise());
-  Eigen::VectorXd rows;
-  Eigen::VectorXd finer_rows;
-  const bool is_found = misfit.Evaluate(variables, &rows, nullptr) &&
-                        finer.Evaluate(variables, &finer_rows, nullptr);
-  estimate.work = estimate.work + finer.Model().WorkDone();
-  return is_found ? std::optional<Eigen::VectorXd>(finer_rows - rows)
-                  : std::nullopt;
+// How many finer elements are worth a look at what they change: more where
+// each costs less.
+Eigen::Index MostFinerElements(const Mesh& mesh) {
+  return mesh.Dimension() == 3 ? 30000 : 120000;
 }
 
-// Whether the fit is the last one, in which the elements are looked at.
-enum class Elements { kTakenAsExact, kLookedAt };
+// The same scene with finer elements, and supports that move as they do there.
+class FinerElements {
+ public:
+  FinerElements(const Scene& simplicial, const EstimatorOptions& options)
+      : scene_(QuadraticScene(simplicial)), misfit_(scene_, options) {}
 
-// From `start` on, or from where FitMaterials says.
-MaterialFit FitAll(const Scene& scene, const EstimatorOptions& options,
-                   const std::optional<Eigen::VectorXd>& start,
-                   Elements elements) {
-  MaterialFit fit;
+  // In the rows of the fit at these variables; empty where there is none.
+  std::optional<Eigen::VectorXd> Change(const Eigen::VectorXd& variables,
+                                        DisplacementMisfit& misfit) {
+    misfit_.SetNoise(misfit.Noise());
+    Eigen::VectorXd rows;
+    Eigen::VectorXd finer_rows;
+    return misfit.Evaluate(variables, &rows, nullptr) &&
+                   misfit_.Evaluate(variables, &finer_rows, nullptr)
+               ? std::optional<Eigen::VectorXd>(finer_rows - rows)
+               : std::nullopt;
+  }
+
+  // At the nodes of the scene, whose degrees of freedom are `num_dofs`; empty
+  // where there is none.
+  Eigen::MatrixXd Displacement(const Eigen::VectorXd& variables,
+                               Eigen::Index num_dofs) {
+    Eigen::VectorXd rows;
+    return misfit_.Evaluate(variables, &rows, nullptr)
+               ? Eigen::MatrixXd(misfit_.FittedDisplacement().topRows(num_dofs))
+               : Eigen::MatrixXd();
+  }
+
+  Work WorkDone() { return misfit_.Model().WorkDone(); }
+
+ private:
+  Scene scene_;
+  DisplacementMisfit misfit_;
+};
+
+// Empty for what has too many elements.
+std::unique_ptr<FinerElements> FinerElementsOf(
+    const Scene& scene, const EstimatorOptions& options) {
+  const Scene simplicial = SimplicialScene(scene);
+  return simplicial.mesh.NumElements() > MostFinerElements(scene.mesh)
+             ? nullptr
+             : std::make_unique<FinerElements>(simplicial, options);
+}
+
+// The displacement of the fit, and of finer elements as far as they are there.
+Eigen::MatrixXd DisplacementOfSpecimen(const Eigen::VectorXd& variables,
+                                       const CorrectedMinimum& corrected,
+                                       const Eigen::MatrixXd& displacement,
+                                       FinerElements& finer) {
+  constexpr double kLeastShare = 1e-3;
+  const double share = corrected.share_of_finer;
+  if (share < kLeastShare) {
+    return displacement;
+  }
+  const Eigen::MatrixXd finer_displacement =
+      finer.Displacement(variables + (corrected.variables - variables) / share,
+                         displacement.rows());
+  return finer_displacement.size() == 0
+             ? displacement
+             : (1 - share) * displacement + share * finer_displacement;
+}
+
+// Says what is known at the minimum of the fit, which has one; `finer` may be
+// null.
+void DescribeFit(const Scene& scene, const EstimatorOptions& options,
+                 DisplacementMisfit& misfit, FinerElements* finer,
+                 MaterialFit& fit) {
   Estimate& estimate = fit.estimate;
   Evidence evidence;
-  Stopwatch stopwatch;
-  DisplacementMisfit misfit(scene, options);
-  estimate.stages.push_back({"assemble and analyse", stopwatch.Lap()});
-  const std::optional<BoundedMinimum> minimum =
-      start ? DescendFrom(options, *start, Distance::kNear, misfit)
-            : BestMinimum(scene, options, misfit, estimate);
-  estimate.stages.push_back({"fit", stopwatch.Lap()});
-  if (minimum) {
-    evidence.end = minimum->end;
-    evidence.search_message = minimum->message;
-    EnterParameters(scene, misfit.Free(), minimum->variables, estimate);
-    NoteVariablesOnBounds(misfit.Free(), *minimum, estimate);
-    const std::optional<Eigen::VectorXd> change =
-        elements == Elements::kLookedAt
-            ? ChangeToQuadraticElements(scene, options, minimum->variables,
-                                        misfit, estimate)
-            : std::nullopt;
-    DescribeMinimum(scene, minimum->variables, change, misfit, evidence,
-                    estimate);
-    fit.variables = minimum->variables;
-    Eigen::VectorXd rows;
-    if (misfit.Evaluate(*fit.variables, &rows, nullptr)) {
-      fit.displacement = misfit.FittedDisplacement();
-    }
-  } else {
-    evidence.do_displacements_oppose_loads = true;
+  const Eigen::VectorXd& variables = fit.minimum->variables;
+  evidence.end = fit.minimum->end;
+  evidence.search_message = fit.minimum->message;
+  EnterParameters(scene, misfit.Free(), variables, estimate);
+  NoteVariablesOnBounds(misfit.Free(), *fit.minimum, estimate);
+  const CorrectedMinimum corrected = DescribeMinimum(
+      scene, variables,
+      finer == nullptr ? std::nullopt : finer->Change(variables, misfit),
+      misfit, evidence, estimate);
+  Eigen::VectorXd rows;
+  if (misfit.Evaluate(variables, &rows, nullptr)) {
+    fit.displacement = misfit.FittedDisplacement();
+    fit.displacement_of_specimen =
+        finer == nullptr ? fit.displacement
+                         : DisplacementOfSpecimen(variables, corrected,
+                                                  fit.displacement, *finer);
   }
   if (IsOneIsotropicMaterial(scene.materials)) {
     EnterElasticity(estimate);
   }
   evidence.solver_notice = misfit.Model().Notice();
   Judge(evidence, options, estimate);
+}
+
+// From `start` on, or from where FitMaterials says; elements are taken as
+// exact.
+MaterialFit FitAll(const Scene& scene, const EstimatorOptions& options,
+                   const std::optional<Eigen::VectorXd>& start) {
+  MaterialFit fit;
+  Estimate& estimate = fit.estimate;
+  Stopwatch stopwatch;
+  DisplacementMisfit misfit(scene, options);
+  estimate.stages.push_back({"assemble and analyse", stopwatch.Lap()});
+  fit.minimum = start ? DescendFrom(options, *start, Distance::kNear, misfit)
+                      : BestMinimum(scene, options, misfit, estimate);
+  estimate.stages.push_back({"fit", stopwatch.Lap()});
+  fit.noise = misfit.Noise();
+  if (fit.minimum) {
+    DescribeFit(scene, options, misfit, nullptr, fit);
+  } else {
+    Evidence evidence;
+    evidence.do_displacements_oppose_loads = true;
+    evidence.solver_notice = misfit.Model().Notice();
+    Judge(evidence, options, estimate);
+  }
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
   estimate.work = estimate.work + misfit.Model().WorkDone();
+  return fit;
+}
+
+// The same fit with a look at what its elements miss, where these are not too
+// many.
+MaterialFit LookAtElements(const Scene& scene, const EstimatorOptions& options,
+                           const MaterialFit& of_elements) {
+  Stopwatch stopwatch;
+  const std::unique_ptr<FinerElements> finer = FinerElementsOf(scene, options);
+  if (!finer || !of_elements.minimum) {
+    return of_elements;
+  }
+  MaterialFit fit;
+  fit.minimum = of_elements.minimum;
+  DisplacementMisfit misfit(scene, options);
+  misfit.SetNoise(of_elements.noise);
+  DescribeFit(scene, options, misfit, finer.get(), fit);
+  Estimate& estimate = fit.estimate;
+  estimate.stages = of_elements.estimate.stages;
+  estimate.stages.push_back({"elements", stopwatch.Lap()});
+  estimate.work =
+      of_elements.estimate.work + misfit.Model().WorkDone() + finer->WorkDone();
   return fit;
 }
 
@@ -289,7 +375,7 @@ std::vector<Outlier> OutliersOf(const Scene& scene,
                                 const MaterialFit& fit,
                                 const std::vector<Outlier>& left_out) {
   constexpr double kFarFromUnknown = 3;
-  const OutlierSearch search(scene, observed, fit.displacement);
+  const OutlierSearch search(scene, observed, fit.displacement_of_specimen);
   const std::vector<Outlier> far = search.Beyond(kFarFromUnknown);
   std::vector<Outlier> outliers = search.Beyond(1);
   const auto is_among = [](const std::vector<Outlier>& all,
@@ -316,12 +402,25 @@ std::vector<Outlier> OutliersWithoutSuspects(
     return outliers;
   }
   left_out.insert(left_out.end(), outliers.begin(), outliers.end());
-  const MaterialFit other = FitAll(WithoutOutliers(scene, left_out), options,
-                                   fit.variables, Elements::kTakenAsExact);
+  const MaterialFit other = LookAtElements(
+      WithoutOutliers(scene, left_out), options,
+      FitAll(WithoutOutliers(scene, left_out), options, fit.Variables()));
   work = work + other.estimate.work;
   return other.displacement.size() == 0
              ? outliers
              : OutliersOf(scene, observed, other, left_out);
+}
+
+// Without what is no outlier of a specimen that is finer than the elements.
+std::vector<Outlier> StillAmong(const std::vector<Outlier>& outliers,
+                                const std::vector<Outlier>& left_out) {
+  std::vector<Outlier> still;
+  std::copy_if(left_out.begin(), left_out.end(), std::back_inserter(still),
+               [&](const Outlier& outlier) {
+                 return std::find(outliers.begin(), outliers.end(), outlier) !=
+                        outliers.end();
+               });
+  return still;
 }
 
 // Fits again without the outliers, which are those of the fit without them.
@@ -333,7 +432,7 @@ MaterialFit FitWithoutOutliers(const Scene& scene,
   constexpr double kMost = 1.0 / 3;
   const ObservedDisplacements observed(scene);
   const auto num_points = static_cast<double>(observed.Points().size());
-  MaterialFit fit = FitAll(scene, options, start, Elements::kTakenAsExact);
+  MaterialFit fit = FitAll(scene, options, start);
   const MaterialFit of_all = fit;
   std::vector<Outlier> left_out;
   Work of_suspects;
@@ -357,18 +456,24 @@ MaterialFit FitWithoutOutliers(const Scene& scene,
       break;
     }
     left_out = outliers;
-    fit = FitAll(WithoutOutliers(scene, outliers), options, fit.variables,
-                 Elements::kTakenAsExact);
+    fit = FitAll(WithoutOutliers(scene, outliers), options, fit.Variables());
     fit.estimate.work = fit.estimate.work + work;
   }
   fit.estimate.work = fit.estimate.work + of_suspects;
-  const Eigen::Vector2d by_outliers =
-      LargestChange(of_all.estimate, fit.estimate);
-  if (fit.estimate.IsUsable() && HasQuadraticKind(scene.mesh.kind)) {
-    const Work work = fit.estimate.work;
-    fit = FitAll(WithoutOutliers(scene, left_out), options, fit.variables,
-                 Elements::kLookedAt);
-    fit.estimate.work = fit.estimate.work + work;
+  Eigen::Vector2d by_outliers = LargestChange(of_all.estimate, fit.estimate);
+  if (fit.estimate.IsUsable()) {
+    MaterialFit looked =
+        LookAtElements(WithoutOutliers(scene, left_out), options, fit);
+    const std::vector<Outlier> outliers =
+        StillAmong(OutliersOf(scene, observed, looked, left_out), left_out);
+    if (outliers != left_out) {
+      left_out = outliers;
+      fit = FitAll(WithoutOutliers(scene, outliers), options, fit.Variables());
+      fit.estimate.work = fit.estimate.work + looked.estimate.work;
+      by_outliers = LargestChange(of_all.estimate, fit.estimate);
+      looked = LookAtElements(WithoutOutliers(scene, outliers), options, fit);
+    }
+    fit = looked;
   }
   if (!left_out.empty()) {
     fit.estimate.outliers = left_out;
@@ -409,7 +514,7 @@ class MaterialFitPreparation : public Preparation {
       fit = Fit(scene, options_, std::nullopt);
       fit.estimate.work = fit.estimate.work + work;
     }
-    start_ = fit.estimate.IsUsable() ? fit.variables : std::nullopt;
+    start_ = fit.estimate.IsUsable() ? fit.Variables() : std::nullopt;
     return fit.estimate;
   }
   bool TakesOtherLoadCases() const override { return true; }

@@ -93,13 +93,21 @@ void WeighResultants(const DisplacementMisfit& misfit, double& variance,
       std::sqrt(variance) / misfit.Noise();
 }
 
-// What elements miss of these rows, those of resultants weighed as in the
-// sensitivities; empty where it is not known.
+// The variance of a row, whatever the elements miss: as given, or what is left.
+double VarianceOfRows(const ObservedDisplacements& observed,
+                      const Eigen::VectorXd& rows, Eigen::Index num_fitted) {
+  const double given =
+      observed.GivenNoise() ? 1 / (observed.Norm() * observed.Norm()) : 0;
+  return std::max(
+      given, rows.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(
+                                      observed.Size() - num_fitted, 1)));
+}
+
+// What elements miss of these rows; empty where it is not known.
 std::optional<ElementErrors> FindElementErrors(
     const Scene& scene, const Eigen::VectorXd& rows,
-    const Eigen::MatrixXd& sensitivities,
-    const std::optional<Eigen::VectorXd>& change, double variance,
-    DisplacementMisfit& misfit) {
+    Eigen::MatrixXd sensitivities, const std::optional<Eigen::VectorXd>& change,
+    Eigen::Index num_fitted, DisplacementMisfit& misfit) {
   if (!change) {
     return std::nullopt;
   }
@@ -107,6 +115,8 @@ std::optional<ElementErrors> FindElementErrors(
   Eigen::VectorXd residual = rows;
   Eigen::VectorXd weighed_change = *change;
   if (num_resultants > 0) {
+    double variance = VarianceOfRows(misfit.Observed(), rows, num_fitted);
+    WeighResultants(misfit, variance, sensitivities);
     const double weight = std::sqrt(variance) / misfit.Noise();
     residual.tail(num_resultants) *= weight;
     weighed_change.tail(num_resultants) *= weight;
@@ -116,7 +126,7 @@ std::optional<ElementErrors> FindElementErrors(
                        sensitivities.transpose() * sensitivities, ones, true};
   // What depends on the strain is of elements whose change is not known.
   const ElementErrors errors(scene, misfit.Model().Graph(), misfit.Observed(),
-                             fit, weighed_change, {}, {});
+                             fit, RowChange{weighed_change, true}, {}, {});
   // What is not determined cannot be corrected.
   return errors.Correction()->allFinite() ? std::optional<ElementErrors>(errors)
                                           : std::nullopt;
@@ -165,17 +175,17 @@ Eigen::VectorXd EnterElements(const Scene& scene, const FreeParameters& free,
 
 }  // namespace
 
-void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
-                     const std::optional<Eigen::VectorXd>& change_of_rows,
-                     DisplacementMisfit& misfit, Evidence& evidence,
-                     Estimate& estimate) {
+CorrectedMinimum DescribeMinimum(
+    const Scene& scene, const Eigen::VectorXd& variables,
+    const std::optional<Eigen::VectorXd>& change_of_rows,
+    DisplacementMisfit& misfit, Evidence& evidence, Estimate& estimate) {
   const FreeParameters& free = misfit.Free();
   const ObservedDisplacements& observed = misfit.Observed();
   Eigen::VectorXd rows;
   Eigen::MatrixXd sensitivities;
   if (!misfit.Evaluate(variables, &rows, &sensitivities)) {
     evidence.end = End::kSingularStiffness;
-    return;
+    return {variables};
   }
   Eigen::VectorXd residual = rows.head(observed.Size());
   estimate.displacement_residual = residual.norm() / observed.Measured().norm();
@@ -184,26 +194,25 @@ void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
   if (!observed.GivenNoise() &&
       observed.Size() - num_fitted < kLimits.least_redundancy) {
     evidence.too_few_components = observed.Size();
-    return;
+    return {variables};
   }
-  ResidualVariance variance = EstimateVariance(observed, rows.squaredNorm(),
-                                               num_fitted, evidence, estimate);
   double excess = 1;
   if (misfit.NumResultants() > 0) {
     evidence.resultant_misfit = {rows.tail(misfit.NumResultants()) /
                                  misfit.Noise()};
     excess = std::max(excess, evidence.resultant_misfit->Excess());
   }
+  const std::optional<ElementErrors> elements = FindElementErrors(
+      scene, rows, sensitivities, change_of_rows, num_fitted, misfit);
+  const Eigen::VectorXd rest = elements ? elements->Rest() : rows;
+  residual = rest.head(observed.Size());
+  ResidualVariance variance = EstimateVariance(observed, rest.squaredNorm(),
+                                               num_fitted, evidence, estimate);
   WeighResultants(misfit, variance.variance, sensitivities);
   evidence.is_explained_by_given_noise = variance.is_explained_by_given_noise;
   const Eigen::MatrixXd of_rows = sensitivities.topRows(observed.Size());
   const Eigen::MatrixXd inverse =
       Inverse(sensitivities.transpose() * sensitivities);
-  const std::optional<ElementErrors> elements = FindElementErrors(
-      scene, rows, sensitivities, change_of_rows, variance.variance, misfit);
-  if (elements) {
-    residual = elements->Rest().head(observed.Size());
-  }
   const SmoothSquareSum smooth =
       MeasureSmoothPart(misfit.Model().Graph(), observed, residual, estimate);
   const Eigen::MatrixXd by_correlation = AddedByCorrelation(
@@ -213,14 +222,15 @@ void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
   const Eigen::MatrixXd by_model =
       excess * by_correlation + (excess - 1) * inverse;
   Eigen::MatrixXd covariance = variance.variance * (inverse + by_model);
-  Eigen::VectorXd corrected = variables;
+  CorrectedMinimum corrected = {variables};
   if (elements) {
     const Eigen::MatrixXd by_elements =
         elements->CovarianceOfChange(smooth.most) +
         elements->MissedSquareSum(smooth.most) * inverse;
     covariance += by_elements;
-    corrected = EnterElements(scene, free, variables, by_elements,
-                              *elements->Correction(), estimate);
+    corrected = {EnterElements(scene, free, variables, by_elements,
+                               *elements->Correction(), estimate),
+                 elements->Share()};
   }
   estimate.error_budget.noise =
       ErrorsOfVariables(free, variance.variance * inverse);
@@ -238,7 +248,8 @@ void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
     evidence.smooth_residual_error =
         std::sqrt(covariance.diagonal().maxCoeff());
   }
-  EnterCovariance(free, corrected, covariance, estimate);
+  EnterCovariance(free, corrected.variables, covariance, estimate);
+  return corrected;
 }
 
 }  // namespace elastimate

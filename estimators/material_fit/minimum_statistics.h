@@ -11,6 +11,13 @@
 
 namespace elastimate {
 
+/// A minimum, corrected for what the elements miss.
+struct CorrectedMinimum {
+  Eigen::VectorXd variables;
+  /// Of the change to finer elements, as far as it is expected to be there.
+  double share_of_finer = 0;
+};
+
 /// Enters the noise and the covariance of a minimum into the estimate, whose
 /// parameters are entered, and what there is to judge into the evidence:
 ///
@@ -23,13 +30,14 @@ namespace elastimate {
 ///
 /// An evaluation, and O(n^2) for n points in a load case (CorrelateResiduals).
 ///
-/// `change` is that of the rows to quadratic elements, where it is
-/// known: what of it the residual shows corrects the parameters that are
-/// entered, and its error is part of theirs (ElementErrors).
-void DescribeMinimum(const Scene& scene, const Eigen::VectorXd& variables,
-                     const std::optional<Eigen::VectorXd>& change,
-                     DisplacementMisfit& misfit, Evidence& evidence,
-                     Estimate& estimate);
+/// `change` is that of the rows to finer elements, where it is known: what of
+/// it the residual shows corrects the parameters that are entered, and its
+/// error is part of theirs (ElementErrors).
+CorrectedMinimum DescribeMinimum(const Scene& scene,
+                                 const Eigen::VectorXd& variables,
+                                 const std::optional<Eigen::VectorXd>& change,
+                                 DisplacementMisfit& misfit, Evidence& evidence,
+                                 Estimate& estimate);
 
 }  // namespace elastimate
 

@@ -56,7 +56,7 @@ double UnexplainedShare(const std::optional<NeighbourCorrelation>& neighbours,
 ElementErrors::ElementErrors(const Scene& scene, const NodeGraph& graph,
                              const ObservedDisplacements& observed,
                              const FreeFit& fit,
-                             const std::optional<Eigen::VectorXd>& change,
+                             const std::optional<RowChange>& change,
                              const Eigen::MatrixXd& displacement,
                              const IsotropicElasticity& elasticity)
     : rest_(fit.residual),
@@ -69,20 +69,22 @@ ElementErrors::ElementErrors(const Scene& scene, const NodeGraph& graph,
     }
     return;
   }
+  const Eigen::VectorXd& rows = change->rows;
   of_parameters_ = Inverse(fit.bread) * (fit.sensitivities.transpose() *
-                                         fit.weights.cwiseProduct(*change));
-  const Eigen::VectorXd visible = *change - fit.sensitivities * of_parameters_;
-  if (scene.mesh.Order() == 2) {
+                                         fit.weights.cwiseProduct(rows));
+  const Eigen::VectorXd visible = rows - fit.sensitivities * of_parameters_;
+  if (!change->is_to_finer) {
     visible_norm_ = visible.norm();
-    missed_norm_ = kQuadraticErrorShare * change->norm();
+    missed_norm_ = kQuadraticErrorShare * rows.norm();
     return;
   }
   const FinerSpecimen finer = Compare(graph, observed, fit, visible);
-  rest_ += finer.Mean() * visible;
-  correction_ = -finer.Mean() * of_parameters_;
+  share_ = finer.Mean();
+  rest_ += share_ * visible;
+  correction_ = -share_ * of_parameters_;
   const double size = std::sqrt(finer.probability) * std::abs(finer.share);
   share_variance_ = finer.Variance() + std::pow(kUnequalShare * size, 2);
-  missed_norm_ = kLinearErrorShare * size * change->norm();
+  missed_norm_ = kLinearErrorShare * size * rows.norm();
 }
 
 double ElementErrors::ModelSquareSum(double smooth) const {

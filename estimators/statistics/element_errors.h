@@ -22,21 +22,26 @@ struct FreeFit {
   bool is_least_squares;
 };
 
+/// What other elements change in the rows of a fit.
+struct RowChange {
+  Eigen::VectorXd rows;  ///< For the finer elements minus for the coarser ones.
+  bool is_to_finer;      ///< Whether those of the fit are the coarser ones.
+};
+
 /// What the elements of a fit miss, and what that does to the free parameters:
 ///
-/// - Linear simplices: a change e to quadratic ones is known (ElementChange).
-///   c = (S^T S)^-1 S^T e are the parameters that take it up, g = e - S c shows
-///   in the residual.  FinerSpecimen says how much of it is there; by the mean
-///   of that the parameters are corrected, and its variance is theirs.
-/// - Quadratic ones: a small share of e, what they changed.
-/// - Others: by the strain energy that they miss (DiscretizationError).
+/// - Where a change e to finer ones is known: c = (S^T S)^-1 S^T e are the
+///   parameters that take it up, g = e - S c shows in the residual.
+///   FinerSpecimen says how much of it is there; by the mean of that the
+///   parameters are corrected, and its variance is theirs.
+/// - Where one from coarser ones is known: a small share of that.
+/// - Where none is: by the strain energy that they miss (DiscretizationError).
 class ElementErrors {
  public:
-  /// `change` is that of DisplacementFit.  Precondition: at least one free
-  /// parameter.
+  /// Precondition: at least one free parameter.
   ElementErrors(const Scene& scene, const NodeGraph& graph,
                 const ObservedDisplacements& observed, const FreeFit& fit,
-                const std::optional<Eigen::VectorXd>& change,
+                const std::optional<RowChange>& change,
                 const Eigen::MatrixXd& displacement,
                 const IsotropicElasticity& elasticity);
 
@@ -45,10 +50,13 @@ class ElementErrors {
   bool AreKnown() const { return missed_norm_.has_value(); }
   /// The residual without what a finer specimen explains of it.
   const Eigen::VectorXd& Rest() const { return rest_; }
-  /// Of the free parameters; empty but for linear simplices.
+  /// Of the free parameters; empty unless finer elements are known.
   const std::optional<Eigen::VectorXd>& Correction() const {
     return correction_;
   }
+
+  /// Of the change to finer elements, as far as it is expected to be there.
+  double Share() const { return share_; }
 
   /// The square sum of a model error in the direction of any parameter, where
   /// its part in the residual has `smooth`: a multiple of that as far as finer
@@ -76,9 +84,10 @@ class ElementErrors {
   /// What neighbouring residuals share beside the share of g, over that, up to
   /// 1; 0 where g is not known.
   double unexplained_ = 0;
-  /// Of the share of c, for linear simplices.
+  double share_ = 0;
+  /// Of that share, where finer elements are known.
   double share_variance_ = 0;
-  /// ||g|| of quadratic elements.
+  /// ||g|| where coarser elements are known.
   std::optional<double> visible_norm_;
   /// Of what is missed beside the change.
   std::optional<double> missed_norm_;

@@ -6,6 +6,7 @@
 #include "elastimate/core/mesh/mid_edges.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/core/scene/simplicial_scene.h"
 #include "tests/element_kinds.h"
 
 namespace elastimate {
@@ -97,11 +98,28 @@ TEST(ElementChange, IsFoundOnceForAboutTheSameStiffness) {
   EXPECT_GT(linear.change.WorkDone().element_passes, passes);
 }
 
-TEST(ElementChange, IsNotKnownOfHexahedra) {
-  const Scene scene = MovedScene({ElementKind::kHex8, SectionModel::kSolid});
-  Changing hexahedra(scene);
-  EXPECT_FALSE(hexahedra.At(0.3));
-  EXPECT_EQ(hexahedra.num_solvers, 0);
+// To quadratic simplices of the same nodes.
+TEST(ElementChange, IsKnownOfEveryLinearKind) {
+  for (const testing::KindOfSection& kind : testing::AllKindsOfSections()) {
+    if (TopologyOf(kind.kind).order == 2) {
+      continue;
+    }
+    const Scene scene = MovedScene(kind);
+    const Scene quadratic_scene = QuadraticScene(SimplicialScene(scene));
+    Changing linear(scene);
+    Changing quadratic(quadratic_scene);
+    const auto change = linear.At(0.3);
+    quadratic.At(0.3);
+    ASSERT_TRUE(change) << testing::NameOf(kind);
+    const Eigen::VectorXd expected = linear.observed.Restrict(
+        quadratic.model.Displacement(kModulusOfTetrahedra)
+            .topRows(scene.mesh.NumDofs()) -
+        linear.model.Displacement(kModulusOfTetrahedra));
+    EXPECT_LT((*change - expected).norm(),
+              2 * HierarchicalError::kTolerance * expected.norm())
+        << testing::NameOf(kind);
+    EXPECT_EQ(linear.num_solvers, 1);
+  }
 }
 
 TEST(ElementChange, IsNotKnownWhereMidEdgeNodesAloneHold) {

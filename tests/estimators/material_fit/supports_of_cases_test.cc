@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <cmath>
+#include <random>
 #include <string>
 
+#include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/estimators/registry.h"
 #include "tests/element_kinds.h"
 #include "tests/scenes.h"
@@ -22,8 +25,8 @@ Estimate RunNamed(const std::string& name, const Scene& scene) {
 }
 
 // Held on the side that is opposite to that of SceneOfKind, and moved there.
-Scene SceneHeldAtTheFarSide(const KindOfSection& kind) {
-  Scene scene = testing::SceneOfKind(kind);
+Scene SceneHeldAtTheFarSide(const KindOfSection& kind, int cells = 3) {
+  Scene scene = testing::SceneOfKind(kind, cells);
   const int last = scene.mesh.Dimension() - 1;
   const double far = scene.mesh.nodes.row(last).maxCoeff();
   scene.supports.held.setConstant(false);
@@ -113,6 +116,41 @@ INSTANTIATE_TEST_SUITE_P(All, SupportsOfCases,
                          [](const auto& info) {
                            return testing::NameOf(info.param);
                          });
+
+// Of a specimen that is finer than the mesh.
+TEST(SupportsOfCasesOfElements, HoldWhatElementsMiss) {
+  for (const KindOfSection& kind : testing::AllKindsOfSections()) {
+    if (kind.model == SectionModel::kSolid) {
+      continue;
+    }
+    const int cells = TopologyOf(kind.kind).order == 2 ? 4 : 10;
+    Scene far = SceneHeldAtTheFarSide(kind, cells);
+    Scene near = testing::SceneOfKind(kind, cells);
+    near.load_cases[0].loads = far.load_cases[0].loads;
+    testing::MeasureInCutWorld(kTruthOfCases, near);
+    testing::MeasureInCutWorld(kTruthOfCases, far);
+    Scene scene = Together(near, far);
+    std::mt19937_64 generator(1);
+    for (LoadCase& load_case : scene.load_cases) {
+      const double noise_sd =
+          1e-3 * load_case.displacement.norm() /
+          std::sqrt(static_cast<double>(load_case.displacement.size()));
+      load_case.displacement +=
+          DrawNoiseAt(load_case.displacement, noise_sd, 0, generator);
+    }
+    const Estimate estimate = RunNamed("iterative-fe", scene);
+    ASSERT_EQ(estimate.status, Status::kOk)
+        << testing::NameOf(kind) << estimate.message;
+    EXPECT_LT(std::abs(estimate.elasticity.youngs_modulus -
+                       kTruthOfCases.youngs_modulus),
+              3 * *estimate.YoungsModulusStandardError())
+        << testing::NameOf(kind);
+    EXPECT_LT(std::abs(estimate.elasticity.poisson_ratio -
+                       kTruthOfCases.poisson_ratio),
+              3 * *estimate.PoissonRatioStandardError())
+        << testing::NameOf(kind);
+  }
+}
 
 TEST(SupportsOfCasesOfEstimators, AreRefusedByThoseThatShareThem) {
   const KindOfSection kind = {ElementKind::kTet4, SectionModel::kSolid};

@@ -1,0 +1,50 @@
+#ifndef ELASTIMATE_CORE_MESH_SIMPLICIAL_MESH_H_
+#define ELASTIMATE_CORE_MESH_SIMPLICIAL_MESH_H_
+
+#include <Eigen/Core>
+
+#include "elastimate/core/mesh/mesh.h"
+#include "elastimate/core/mesh/mesh_points.h"
+
+namespace elastimate {
+
+/// The same body as linear tetrahedra or triangles of the same nodes.
+///
+/// A quadratic simplex is cut at the middle of its edges into eight or four of
+/// equal volume, of a tetrahedron along the shortest diagonal inside.  A
+/// hexahedron is cut into six and a quadrilateral into two, each face along the
+/// diagonal from its first node, so that neighbours meet [Dompierre et al.,
+/// Proc. 8th Int. Meshing Roundtable (1999)].  First are every other node along
+/// the edges, as far as there is such a colouring, so that diagonals alternate
+/// and the simplices are no stiffer one way than the other.  Linear simplices
+/// stay what they are.
+///
+/// A hexahedron whose faces are far from flat may become tetrahedra that
+/// overlap, which this does not look for.
+class SimplicialMesh {
+ public:
+  /// Precondition: a valid mesh, which outlives this.  O(num_elements).
+  explicit SimplicialMesh(const Mesh& mesh);
+
+  /// As many for each element, one element after another, of its region.
+  const Mesh& Simplices() const { return simplices_; }
+
+  /// The faces of the simplices that facets of the mesh become, in their order
+  /// and the same way round: 3 x n, in two dimensions 2 x n.  O(num_facets).
+  Eigen::MatrixXi FacetsOf(const Eigen::MatrixXi& facets) const;
+
+  /// The same points in the simplices; those that lie between two, as beside a
+  /// face that is not flat, at the nearest one's face.
+  /// Precondition: ValidatePoints.  O(n).
+  MeshPoints PointsOf(const MeshPoints& points) const;
+
+ private:
+  const Mesh& mesh_;
+  /// The order of the nodes in which diagonals begin; empty for simplices.
+  Eigen::VectorXi rank_;
+  Mesh simplices_;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_MESH_SIMPLICIAL_MESH_H_

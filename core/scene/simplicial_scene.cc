@@ -1,0 +1,42 @@
+#include "elastimate/core/scene/simplicial_scene.h"
+
+#include <variant>
+
+#include "elastimate/core/mesh/simplicial_mesh.h"
+
+namespace elastimate {
+namespace {
+
+// One overload per kind of load.
+struct LoadCutter {
+  const SimplicialMesh& mesh;
+
+  Load operator()(const NodalForces& load) const { return load; }
+  Load operator()(const BodyForce& load) const { return load; }
+  Load operator()(const Traction& load) const {
+    return Traction{mesh.FacetsOf(load.facets), load.traction};
+  }
+  Load operator()(const Pressure& load) const {
+    return Pressure{mesh.FacetsOf(load.facets), load.pressure};
+  }
+  Load operator()(const SurfaceForce& load) const {
+    return SurfaceForce{mesh.FacetsOf(load.facets), load.force};
+  }
+};
+
+}  // namespace
+
+Scene SimplicialScene(const Scene& scene) {
+  const SimplicialMesh mesh(scene.mesh);
+  Scene simplicial = scene;
+  simplicial.mesh = mesh.Simplices();
+  for (LoadCase& load_case : simplicial.load_cases) {
+    for (Load& load : load_case.loads) {
+      load = std::visit(LoadCutter{mesh}, load);
+    }
+    load_case.points.points = mesh.PointsOf(load_case.points.points);
+  }
+  return simplicial;
+}
+
+}  // namespace elastimate

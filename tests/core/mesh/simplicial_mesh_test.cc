@@ -1,0 +1,134 @@
+#include "elastimate/core/mesh/simplicial_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <random>
+#include <set>
+
+#include "elastimate/core/mesh/facets.h"
+#include "tests/element_kinds.h"
+
+namespace elastimate {
+namespace {
+
+using testing::KindOfSection;
+
+constexpr double kRounding = 1e-12;
+
+// Without a sense of rotation.
+std::set<std::array<int, 3>> Unordered(const Eigen::MatrixXi& facets) {
+  std::set<std::array<int, 3>> all;
+  for (const auto& facet : facets.colwise()) {
+    std::array<int, 3> nodes = {};
+    std::copy(facet.begin(), facet.end(), nodes.begin());
+    std::sort(nodes.begin(), nodes.end());
+    all.insert(nodes);
+  }
+  return all;
+}
+
+class SimplicialMeshOfKind : public ::testing::TestWithParam<KindOfSection> {
+ protected:
+  SimplicialMeshOfKind()
+      : mesh_(MeshWithRegions()), cut_(mesh_), simplices_(cut_.Simplices()) {}
+
+  static Mesh MeshWithRegions() {
+    Mesh mesh = testing::MeshOfKind(GetParam());
+    mesh.regions.setLinSpaced(mesh.NumElements(), 1, 7);
+    return mesh;
+  }
+
+  Mesh mesh_;
+  SimplicialMesh cut_;
+  const Mesh& simplices_;
+};
+
+TEST_P(SimplicialMeshOfKind, HasItsNodesAndItsVolume) {
+  ValidateMesh(simplices_);
+  EXPECT_EQ(simplices_.nodes, mesh_.nodes);
+  EXPECT_EQ(simplices_.section.thickness, mesh_.section.thickness);
+  const Eigen::Index num_cuts = simplices_.NumElements() / mesh_.NumElements();
+  const Eigen::VectorXd volumes = ElementVolumes(mesh_);
+  const Eigen::VectorXd of_simplices = ElementVolumes(simplices_);
+  for (Eigen::Index e = 0; e < mesh_.NumElements(); ++e) {
+    const auto cuts = of_simplices.segment(num_cuts * e, num_cuts);
+    // Sides of hexahedra of a distorted block are not flat.
+    const double tolerance =
+        mesh_.kind == ElementKind::kHex8 ? 0.05 : kRounding;
+    EXPECT_NEAR(cuts.sum(), volumes(e), tolerance * volumes(e));
+    EXPECT_GT(cuts.minCoeff(), 0);
+    EXPECT_TRUE((simplices_.regions.segment(num_cuts * e, num_cuts).array() ==
+                 mesh_.regions(e))
+                    .all());
+  }
+  EXPECT_NEAR(of_simplices.sum(), volumes.sum(), 0.01 * volumes.sum());
+}
+
+// Neighbours meet, and facets of loads are faces of the surface.
+TEST_P(SimplicialMeshOfKind, HasItsSurface) {
+  const Eigen::MatrixXi facets = cut_.FacetsOf(BoundaryFacets(mesh_));
+  const Eigen::MatrixXi expected = BoundaryFacets(simplices_);
+  EXPECT_EQ(facets.cols(), expected.cols());
+  EXPECT_EQ(Unordered(facets), Unordered(expected));
+  // The same way round: a closed surface has no area in sum, and a volume.
+  Eigen::VectorXd area = Eigen::VectorXd::Zero(mesh_.Dimension());
+  double volume = 0;
+  for (const auto& facet : facets.colwise()) {
+    const FacetWeights weights = WeightsOfFacet(simplices_, facet);
+    area += weights.area_vector.rowwise().sum();
+    volume +=
+        weights.area_vector.cwiseProduct(simplices_.nodes(Eigen::all, facet))
+            .sum();
+  }
+  EXPECT_LT(area.norm(), kRounding);
+  EXPECT_NEAR(volume / mesh_.Dimension(), ElementVolumes(simplices_).sum(),
+              kRounding);
+}
+
+TEST_P(SimplicialMeshOfKind, HasItsPoints) {
+  std::mt19937_64 generator(1);
+  const MeshPoints points = DrawPoints(mesh_, 500, generator);
+  const MeshPoints found = cut_.PointsOf(points);
+  ValidatePoints(simplices_, found);
+  const Eigen::MatrixXd error =
+      Interpolate(simplices_, found, simplices_.nodes) -
+      Interpolate(mesh_, points, mesh_.nodes);
+  const double size = mesh_.nodes.cwiseAbs().maxCoeff();
+  if (mesh_.kind != ElementKind::kHex8) {
+    EXPECT_LT(error.colwise().norm().maxCoeff(), kRounding * size);
+  }
+  // Between a side that is not flat and its two triangles.
+  EXPECT_LT(error.colwise().norm().maxCoeff(), 0.02 * size);
+}
+
+TEST_P(SimplicialMeshOfKind, LeavesLinearSimplicesAsTheyAre) {
+  EXPECT_EQ(SimplicialMesh(simplices_).Simplices().elements,
+            simplices_.elements);
+}
+
+// So that a grid is cut as a union jack: the nodes at which diagonals meet
+// alternate.
+TEST(SimplicialMesh, HasAlternatingDiagonals) {
+  const Mesh mesh =
+      testing::MeshOfKind({ElementKind::kQuad4, SectionModel::kPlaneStress}, 4);
+  const Mesh simplices = SimplicialMesh(mesh).Simplices();
+  Eigen::VectorXi num_triangles = Eigen::VectorXi::Zero(mesh.NumNodes());
+  for (const int node : simplices.elements.reshaped()) {
+    ++num_triangles(node);
+  }
+  // Of an inner node, all eight triangles around it, or four that have their
+  // longest edges elsewhere.
+  EXPECT_EQ((num_triangles.array() == 8).count(), 5);
+  EXPECT_EQ(num_triangles.maxCoeff(), 8);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SimplicialMeshOfKind,
+                         ::testing::ValuesIn(testing::AllKindsOfSections()),
+                         [](const auto& info) {
+                           return testing::NameOf(info.param);
+                         });
+
+}  // namespace
+}  // namespace elastimate
