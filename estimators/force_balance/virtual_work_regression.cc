@@ -157,7 +157,8 @@ std::optional<Eigen::VectorXd> Start(const FreeParameters& free,
 }
 
 BoundedMinimum Minimize(const FreeParameters& free,
-                        const Eigen::VectorXd& start, WorkBalance& balance) {
+                        const Eigen::VectorXd& start, int max_iterations,
+                        WorkBalance& balance) {
   // Of displacements, for Ceres' tolerances.
   const double unit = balance.DisplacementNorm();
   const ResidualFunction residual = [&](const Eigen::VectorXd& x,
@@ -175,7 +176,7 @@ BoundedMinimum Minimize(const FreeParameters& free,
   };
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = 100;
+  options.max_num_iterations = max_iterations;
   options.initial_trust_region_radius = 1e8;
   options.function_tolerance = 1e-12;
   options.gradient_tolerance = 1e-14;
@@ -188,13 +189,14 @@ BoundedMinimum Minimize(const FreeParameters& free,
 // The best minimum that the starts lead to: near nu = 1/2 the balance has
 // others.  Empty without a start.
 std::optional<BoundedMinimum> BestOfStarts(const FreeParameters& free,
+                                           int max_iterations,
                                            WorkBalance& balance) {
   std::optional<BoundedMinimum> best;
   for (const double poisson_ratio : {0.3, 0.0, 0.45}) {
     const std::optional<Eigen::VectorXd> start =
         Start(free, poisson_ratio, balance);
     if (start) {
-      BoundedMinimum minimum = Minimize(free, *start, balance);
+      BoundedMinimum minimum = Minimize(free, *start, max_iterations, balance);
       if (!best || minimum.cost < best->cost) {
         best = std::move(minimum);
       }
@@ -270,7 +272,8 @@ Estimate BalanceVirtualWork(const Scene& scene,
     Judge(evidence, options, estimate);
     return estimate;
   }
-  const std::optional<BoundedMinimum> best = BestOfStarts(free, balance);
+  const std::optional<BoundedMinimum> best =
+      BestOfStarts(free, options.max_iterations, balance);
   if (!best) {
     evidence.do_displacements_oppose_loads = true;
     Judge(evidence, options, estimate);

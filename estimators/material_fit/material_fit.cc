@@ -46,7 +46,10 @@ std::optional<Eigen::VectorXd> TypicalStart(DisplacementMisfit& misfit) {
 std::optional<Eigen::VectorXd> VirtualFieldsStart(
     const Scene& scene, const EstimatorOptions& options,
     const FreeParameters& free, Estimate& estimate) {
+  // Near the minimum is near enough.
+  constexpr int kIterations = 10;
   EstimatorOptions of_virtual_fields = options;
+  of_virtual_fields.max_iterations = kIterations;
   of_virtual_fields.on_factorization = {};
   const VirtualFields virtual_fields;
   if (!virtual_fields.WhyUnsupported(scene, of_virtual_fields).empty()) {

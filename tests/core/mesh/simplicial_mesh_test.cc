@@ -15,7 +15,7 @@ namespace {
 
 using testing::KindOfSection;
 
-constexpr double kRounding = 1e-12;
+constexpr double kRoundingOfCuts = 1e-12;
 
 // Without a sense of rotation.
 std::set<std::array<int, 3>> Unordered(const Eigen::MatrixXi& facets) {
@@ -56,7 +56,7 @@ TEST_P(SimplicialMeshOfKind, HasItsNodesAndItsVolume) {
     const auto cuts = of_simplices.segment(num_cuts * e, num_cuts);
     // Sides of hexahedra of a distorted block are not flat.
     const double tolerance =
-        mesh_.kind == ElementKind::kHex8 ? 0.05 : kRounding;
+        mesh_.kind == ElementKind::kHex8 ? 0.05 : kRoundingOfCuts;
     EXPECT_NEAR(cuts.sum(), volumes(e), tolerance * volumes(e));
     EXPECT_GT(cuts.minCoeff(), 0);
     EXPECT_TRUE((simplices_.regions.segment(num_cuts * e, num_cuts).array() ==
@@ -82,9 +82,9 @@ TEST_P(SimplicialMeshOfKind, HasItsSurface) {
         weights.area_vector.cwiseProduct(simplices_.nodes(Eigen::all, facet))
             .sum();
   }
-  EXPECT_LT(area.norm(), kRounding);
+  EXPECT_LT(area.norm(), kRoundingOfCuts);
   EXPECT_NEAR(volume / mesh_.Dimension(), ElementVolumes(simplices_).sum(),
-              kRounding);
+              kRoundingOfCuts);
 }
 
 TEST_P(SimplicialMeshOfKind, HasItsPoints) {
@@ -97,7 +97,7 @@ TEST_P(SimplicialMeshOfKind, HasItsPoints) {
       Interpolate(mesh_, points, mesh_.nodes);
   const double size = mesh_.nodes.cwiseAbs().maxCoeff();
   if (mesh_.kind != ElementKind::kHex8) {
-    EXPECT_LT(error.colwise().norm().maxCoeff(), kRounding * size);
+    EXPECT_LT(error.colwise().norm().maxCoeff(), kRoundingOfCuts * size);
   }
   // Between a side that is not flat and its two triangles.
   EXPECT_LT(error.colwise().norm().maxCoeff(), 0.02 * size);
