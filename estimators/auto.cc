@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/unknown_motion.h"
@@ -123,7 +124,7 @@ struct Observations {
     redundancy = std::max<Eigen::Index>(
         observed.Size() - (options.known_poisson_ratio ? 1 : 2), 0);
     if (observed.GivenNoise()) {
-      norm_over_noise = observed.Norm() * observed.Measured().norm();
+      norm_over_noise = observed.Norm() * Norm(observed.Measured());
     }
   }
 };

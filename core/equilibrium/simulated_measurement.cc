@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/equilibrium/forward_model.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/loads.h"
@@ -147,7 +148,7 @@ Eigen::VectorXd DrawNoise(NoiseLaw law, Eigen::Index size, double norm,
     value =
         law == NoiseLaw::kUniform ? uniform(generator) : gaussian(generator);
   }
-  return norm / noise.norm() * noise;
+  return norm / Norm(noise) * noise;
 }
 
 Eigen::MatrixXd DrawNoiseAt(const Eigen::MatrixXd& positions,
@@ -188,7 +189,7 @@ void AddErrors(const MeasurementErrors& errors,
   double standard_deviation = errors.noise_sd;
   if (errors.relative_noise > 0) {
     const double norm =
-        errors.relative_noise * dofs.Restrict(displacement.reshaped()).norm();
+        errors.relative_noise * Norm(dofs.Restrict(displacement.reshaped()));
     standard_deviation = norm / std::sqrt(double(dofs.NumFree()));
     displacement.reshaped() +=
         dofs.Extend(DrawNoise(errors.law, dofs.NumFree(), norm, generator));

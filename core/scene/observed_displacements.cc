@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/mesh/nearest_points.h"
 
 namespace elastimate {
@@ -160,7 +161,7 @@ ObservedDisplacements::ObservedDisplacements(const Scene& scene)
   held_part_ = ToVector(list.held_part);
   given_noise_ = GivenNoiseOf(scene, weights_);
   Remeasure(scene);
-  norm_ = measured_.norm();
+  norm_ = elastimate::Norm(measured_);
   measured_ /= norm_;
   weights_ /= norm_;
   held_part_ /= norm_;

@@ -11,6 +11,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "elastimate/core/algebra/node_sums.h"
+
 namespace elastimate {
 namespace {
 
@@ -169,8 +171,9 @@ bool Cholesky::FactorHasTheEnergyOf(const Eigen::VectorXd& values) {
       const Eigen::SparseMatrix<double, Eigen::ColMajor, std::int64_t>>
       matrix(pattern.Size(), pattern.Size(), values.size(),
              pattern.column_start.data(), pattern.row.data(), values.data());
-  const double energy = x.dot(matrix.selfadjointView<Eigen::Lower>() * x);
-  const double work = x.dot(b);
+  const double energy =
+      InnerProduct(x, matrix.selfadjointView<Eigen::Lower>() * x);
+  const double work = InnerProduct(x, b);
   return std::abs(energy - work) <= kLargestError * work;
 }
 

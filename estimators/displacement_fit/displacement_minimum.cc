@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/estimators/displacement_fit/displacement_profile.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/statistics.h"
@@ -137,7 +138,7 @@ Minimum DescendWith(Side side, const EstimatorOptions& options,
   const bool is_free = side == Side::kNone;
   const double scale = is_free
                            ? start.ComplianceScale(residual.Model().Section()) *
-                                 residual.Model().UnitLoadResponse().norm()
+                                 Norm(residual.Model().UnitLoadResponse())
                        : side == Side::kLower ? *options.youngs_modulus.lower
                                               : *options.youngs_modulus.upper;
   Minimum minimum = {
@@ -200,8 +201,8 @@ IsotropicElasticity DisplacementResidual::Elasticity() const {
     return {std::exp(scale_parameter_->Value()), nu};
   }
   return IsotropicElasticity::FromComplianceScale(
-      std::exp(scale_parameter_->Value()) / model_.UnitLoadResponse().norm(),
-      nu, model_.Section());
+      std::exp(scale_parameter_->Value()) / Norm(model_.UnitLoadResponse()), nu,
+      model_.Section());
 }
 
 double DisplacementResidual::SlopeAtFixedScale() const {
@@ -210,7 +211,7 @@ double DisplacementResidual::SlopeAtFixedScale() const {
   }
   const Eigen::VectorXd& w = model_.UnitLoadResponse();
   return LogYoungsModulusSlope(poisson_ratio_->Value(), model_.Section()) +
-         w.dot(model_.UnitLoadResponseDerivative()) / w.squaredNorm();
+         InnerProduct(w, model_.UnitLoadResponseDerivative()) / SquaredNorm(w);
 }
 
 Minimum Descend(const EstimatorOptions& options,

@@ -4,12 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/estimators/interface/statistics.h"
 
 namespace elastimate {
 
 double CostOf(Loss loss, const Eigen::VectorXd& residual) {
-  return loss == Loss::kNone ? residual.squaredNorm() : residual.lpNorm<1>();
+  return loss == Loss::kNone ? SquaredNorm(residual) : residual.lpNorm<1>();
 }
 
 ProfilePoint EvaluateProfile(const EstimatorOptions& options,
@@ -21,7 +22,7 @@ ProfilePoint EvaluateProfile(const EstimatorOptions& options,
     return {{Estimate::kUnknown, nu}, std::numeric_limits<double>::infinity()};
   }
   const double t = options.loss == Loss::kNone
-                       ? w.dot(rest) / w.squaredNorm()
+                       ? InnerProduct(w, rest) / SquaredNorm(w)
                        : LeastAbsoluteDeviations(w, rest);
   IsotropicElasticity elasticity =
       IsotropicElasticity::FromComplianceScale(t, nu, model.Section());
@@ -39,8 +40,8 @@ ProfilePoint EvaluateProfile(const EstimatorOptions& options,
   const Eigen::VectorXd change = model.PoissonRatioSlope(
       elasticity, youngs_modulus != unbounded.youngs_modulus);
   const double slope = options.loss == Loss::kNone
-                           ? 2 * misfit.dot(change)
-                           : misfit.cwiseSign().dot(change);
+                           ? 2 * InnerProduct(misfit, change)
+                           : InnerProduct(misfit.cwiseSign(), change);
   return {elasticity, CostOf(options.loss, misfit), slope, unbounded,
           CostOf(options.loss, rest - t * w)};
 }

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
 #include "elastimate/estimators/displacement_fit/displacement_minimum.h"
@@ -151,7 +152,7 @@ void DescribeProfileOf(const EstimatorOptions& options,
                        DisplacementResidual& residual, Evidence& evidence,
                        Estimate& estimate) {
   EvaluatedProfile profile(
-      points, {estimate.elasticity, residual.Fit().residual.squaredNorm()});
+      points, {estimate.elasticity, SquaredNorm(residual.Fit().residual)});
   const Bounds bounds = EffectivePoissonRatioBounds(options);
   const double nu = estimate.elasticity.poisson_ratio;
   constexpr double kSettled = 0.05;
@@ -199,7 +200,7 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
       evidence.active.youngs_modulus != Side::kNone) {
     return;
   }
-  const double least = residual.Fit().residual.squaredNorm();
+  const double least = SquaredNorm(residual.Fit().residual);
   const double nu = estimate.elasticity.poisson_ratio;
   const double far = 4 * estimate.PoissonRatioStandardError().value_or(0);
   const bool has_rival =

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/estimators/statistics/scalar_search.h"
 
 namespace elastimate {
@@ -183,9 +184,9 @@ ReducedFit::Projection ReducedFit::Project(
             .cwiseProduct(measured.segment(first, rows));
     auto projected =
         projection.measured.segment(first_projected, load_case.q.cols());
-    projected.noalias() = load_case.q.transpose() * weighted;
+    projected = InnerProducts(load_case.q, weighted);
     projection.rest_square_sum +=
-        std::max(0.0, weighted.squaredNorm() - projected.squaredNorm());
+        std::max(0.0, SquaredNorm(weighted) - projected.squaredNorm());
     first += rows;
     first_projected += projected.size();
   }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/algebra/row_block_qr.h"
 #include "elastimate/core/mechanics/internal_forces.h"
 #include "elastimate/core/mechanics/stiffness_traces.h"
@@ -84,7 +85,7 @@ class Regression {
       const Eigen::MatrixXd stiffened =
           dofs_.Restrict(forces_.Multiply(moduli, dofs_.Extend(free_forces)));
       work_.element_passes += 2;
-      gram += stiffened.transpose() * stiffened;
+      gram += InnerProducts(stiffened, stiffened);
     }
     return gram;
   }
@@ -100,7 +101,7 @@ class Regression {
           dofs_.Restrict(forces_.Columns(probes.col(k)));
       ++work_.element_passes;
       traces_ +=
-          double(cases_.q.cols()) / kProbes * (columns.transpose() * columns);
+          double(cases_.q.cols()) / kProbes * InnerProducts(columns, columns);
     }
   }
 
@@ -130,7 +131,7 @@ double ScaleOfModuli(const Regression& regression, const FreeParameters& free) {
   const Eigen::VectorXd predicted =
       regression.Columns() * free.ModuliAt(typical);
   const double scale =
-      predicted.dot(regression.Loads()) / predicted.squaredNorm();
+      InnerProduct(predicted, regression.Loads()) / SquaredNorm(predicted);
   return scale > 0 ? scale : 1;
 }
 

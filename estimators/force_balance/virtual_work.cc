@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/algebra/row_block_qr.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
@@ -183,9 +184,8 @@ Eigen::MatrixXd VirtualWork::Of(const Eigen::MatrixXd& nodal_forces) const {
   Eigen::Index row = 0;
   for (std::size_t i = 0; i < polynomials_.size(); ++i) {
     const Eigen::Index count = polynomials_[i].cols();
-    work.middleRows(row, count) =
-        polynomials_[i].transpose() *
-        ComponentRows(nodal_forces, i, polynomials_.size());
+    work.middleRows(row, count) = InnerProducts(
+        polynomials_[i], ComponentRows(nodal_forces, i, polynomials_.size()));
     row += count;
   }
   return fields_.transpose() * work;
@@ -205,8 +205,8 @@ double VirtualWork::Imbalance(const Eigen::MatrixXd& nodal_forces) const {
         polynomials_[i] * free_motions_.middleRows(row, count);
     const Eigen::MatrixXd forces =
         ComponentRows(nodal_forces, i, polynomials_.size());
-    work += motions.transpose() * forces;
-    absolute_work += motions.cwiseAbs().transpose() * forces.cwiseAbs();
+    work += InnerProducts(motions, forces);
+    absolute_work += InnerProducts(motions.cwiseAbs(), forces.cwiseAbs());
     row += count;
   }
   return (absolute_work.array() > 0)
@@ -233,8 +233,8 @@ VirtualWorkBalance::VirtualWorkBalance(const VirtualWork& work,
   internal_h_ = work.Of(products.h);
   internal_j_ = work.Of(products.j);
   external_ = work.Of(f);
-  displacement_norm_ = dofs.Restrict(q).norm();
-  loads_do_work_ = external_.norm() > kRoundingOfWork * dofs.Restrict(f).norm();
+  displacement_norm_ = Norm(dofs.Restrict(q));
+  loads_do_work_ = external_.norm() > kRoundingOfWork * Norm(dofs.Restrict(f));
 }
 
 std::optional<FreeDirection> VirtualWorkBalance::CollinearDirection() const {
@@ -390,7 +390,7 @@ VirtualWorkInformation VirtualWorkBalance::InformationAt(
   const VirtualWork::NoiseFactor noise = work_.FactorNoise(fit.poisson_ratio);
   const auto lower = noise.upper.transpose().triangularView<Eigen::Lower>();
   const Eigen::MatrixXd stiffened = work_.Stiffened(fit.poisson_ratio);
-  const Eigen::MatrixXd cross = work_.J().transpose() * stiffened;
+  const Eigen::MatrixXd cross = InnerProducts(work_.J(), stiffened);
   const Eigen::MatrixXd z_b =
       lower.solve(internal_j_ - cross * fit.multipliers);
   const Eigen::MatrixXd z_f = lower.solve(external_);

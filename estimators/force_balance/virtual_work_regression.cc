@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/mechanics/internal_forces.h"
 #include "elastimate/core/mechanics/stiffness_traces.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
@@ -101,8 +102,7 @@ class WorkBalance {
     Eigen::MatrixXd probes(scene.mesh.NumDofs(), kProbes);
     SetTraceProbes(scene.supports.held, probes);
     const double trace =
-        dofs_.Restrict(forces_.Multiply(moduli, probes)).squaredNorm() /
-        kProbes;
+        SquaredNorm(dofs_.Restrict(forces_.Multiply(moduli, probes))) / kProbes;
     ++work_done_.element_passes;
     return ForceResidualNorm(moduli) * ForceResidualNorm(moduli) /
            (trace * double(columns_.size()));
@@ -110,14 +110,13 @@ class WorkBalance {
   double ForceResidualNorm(const Eigen::VectorXd& moduli) const {
     double square_sum = 0;
     for (std::size_t i = 0; i < columns_.size(); ++i) {
-      square_sum +=
-          (dofs_.Restrict(columns_[i] * moduli) - f_.col(Eigen::Index(i)))
-              .squaredNorm();
+      square_sum += SquaredNorm(dofs_.Restrict(columns_[i] * moduli) -
+                                f_.col(Eigen::Index(i)));
     }
     return std::sqrt(square_sum);
   }
-  double LoadNorm() const { return f_.norm(); }
-  double DisplacementNorm() const { return dofs_.Restrict(q_).norm(); }
+  double LoadNorm() const { return Norm(f_); }
+  double DisplacementNorm() const { return Norm(dofs_.Restrict(q_)); }
 
  private:
   DegreesOfFreedom dofs_;

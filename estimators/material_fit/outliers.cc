@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/statistics/node_losses.h"
 #include "elastimate/estimators/statistics/residual_statistics.h"
@@ -26,7 +27,7 @@ OutlierSearch::OutlierSearch(const Scene& scene,
                              const Eigen::MatrixXd& displacement) {
   const Eigen::VectorXd residual =
       observed.Restrict(displacement) - observed.Measured();
-  if (residual.norm() < kExactData || !HasHeavyTails(residual)) {
+  if (Norm(residual) < kExactData || !HasHeavyTails(residual)) {
     return;
   }
   const double deviation = RobustStandardDeviation(residual);

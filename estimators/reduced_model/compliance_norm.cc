@@ -5,6 +5,7 @@
 #include <random>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/algebra/node_sums.h"
 
 namespace elastimate {
 namespace {
@@ -32,7 +33,7 @@ double ComplianceNorm(const Eigen::VectorXd& weights, StiffnessSolver& solver) {
   Eigen::MatrixXd vectors(next.size(), 0);
   Eigen::MatrixXd t;
   for (int step = 0; step < kComplianceSteps; ++step) {
-    const double norm = next.norm();
+    const double norm = Norm(next);
     if (!(norm > 0)) {
       break;
     }
@@ -44,12 +45,12 @@ double ComplianceNorm(const Eigen::VectorXd& weights, StiffnessSolver& solver) {
     if (!next.allFinite()) {
       return std::numeric_limits<double>::infinity();
     }
-    const Eigen::VectorXd column = vectors.transpose() * next;
+    const Eigen::VectorXd column = InnerProducts(vectors, next);
     t.conservativeResize(step + 1, step + 1);
     t.col(step) = column;
     t.row(step) = column.transpose();
     next -= vectors * column;
-    next -= vectors * (vectors.transpose() * next);
+    next -= vectors * (InnerProducts(vectors, next));
   }
   const double largest = DecomposeSymmetric(t).values.maxCoeff();
   return std::sqrt(largest / (1 - MissingShare(dofs.NumFree())));

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/materials/elasticity.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
@@ -107,7 +108,8 @@ bool ReducedModel::SetPole(double poisson_ratio) {
   const StiffnessProducts of_direction = Multiply(direction);
   const auto norm = [poisson_ratio](const auto& vector, const auto& h,
                                     const auto& j) {
-    return std::sqrt(std::max(0.0, vector.dot(h + poisson_ratio * j)));
+    return std::sqrt(
+        std::max(0.0, InnerProduct(vector, h + poisson_ratio * j)));
   };
   for (Eigen::Index k = 0; k < NumResponses(); ++k) {
     Response& response = responses_[k];
@@ -174,8 +176,8 @@ bool ReducedModel::Enlarge(double tolerance) {
 void ReducedModel::Orthogonalize(KrylovStep& step) {
   for (Eigen::Index k = 0; k < step.Count(); ++k) {
     const Response& response = *step.responses[k];
-    step.columns.emplace_back(response.krylov.transpose() *
-                              response.next_product);
+    step.columns.emplace_back(
+        InnerProducts(response.krylov, response.next_product));
     step.z.col(k) -= response.krylov * step.columns.back();
   }
   step.of_z = Multiply(step.z);
@@ -183,7 +185,7 @@ void ReducedModel::Orthogonalize(KrylovStep& step) {
   for (Eigen::Index k = 0; k < step.Count(); ++k) {
     const Eigen::MatrixXd& krylov = step.responses[k]->krylov;
     const Eigen::VectorXd rest =
-        krylov.transpose() * (step.of_z.h.col(k) + Pole() * step.of_z.j.col(k));
+        InnerProducts(krylov, step.of_z.h.col(k) + Pole() * step.of_z.j.col(k));
     step.z.col(k) -= krylov * rest;
     step.errors.push_back(rest.norm());
     is_orthogonal =
@@ -199,7 +201,7 @@ void ReducedModel::ExtendKrylov(Eigen::Index k, double inexactness,
   Response& response = *step.responses[k];
   const Eigen::VectorXd h = step.of_z.h.col(k);
   const Eigen::VectorXd j = step.of_z.j.col(k);
-  const double energy = step.z.col(k).dot(h + Pole() * j);
+  const double energy = InnerProduct(step.z.col(k), h + Pole() * j);
   const double energy_before = energy + step.columns[k].squaredNorm();
   const bool is_new = energy > kDependent * energy_before;
   const double error =
@@ -223,7 +225,7 @@ void ReducedModel::Append(const Eigen::VectorXd& x, const Eigen::VectorXd& h,
   // Below this share of the energy, rounding decides on what is left.
   constexpr double kMostlyDependent = 1e-4;
   const double pole = Pole();
-  const double energy_before = x.dot(h + pole * j);
+  const double energy_before = InnerProduct(x, h + pole * j);
   Eigen::VectorXd rest = x;
   Eigen::VectorXd rest_h = h;
   Eigen::VectorXd rest_j = j;
@@ -234,11 +236,11 @@ void ReducedModel::Append(const Eigen::VectorXd& x, const Eigen::VectorXd& h,
                                            pole * response.reduced_j);
     for (int i = 0; i < 2; ++i) {
       rest -= response.basis *
-              gram.solve(response.basis.transpose() * (rest_h + pole * rest_j));
+              gram.solve(InnerProducts(response.basis, rest_h + pole * rest_j));
       const StiffnessProducts products = Multiply(rest);
       rest_h = products.h;
       rest_j = products.j;
-      energy = rest.dot(rest_h + pole * rest_j);
+      energy = InnerProduct(rest, rest_h + pole * rest_j);
       if (energy > kMostlyDependent * energy_before) {
         break;
       }
@@ -250,9 +252,9 @@ void ReducedModel::Append(const Eigen::VectorXd& x, const Eigen::VectorXd& h,
   const double scale = 1 / std::sqrt(energy);
   response.basis.conservativeResize(Eigen::NoChange, m + 1);
   response.basis.col(m) = scale * rest;
-  AppendSymmetric(scale * (response.basis.transpose() * rest_h),
+  AppendSymmetric(scale * InnerProducts(response.basis, rest_h),
                   response.reduced_h);
-  AppendSymmetric(scale * (response.basis.transpose() * rest_j),
+  AppendSymmetric(scale * InnerProducts(response.basis, rest_j),
                   response.reduced_j);
 }
 
@@ -263,8 +265,8 @@ void ReducedModel::FindModes(Response& response) const {
       response.reduced_j, response.reduced_h + pole * response.reduced_j);
   response.modes = {
       pole, vectors, values,
-      vectors.transpose() * (response.basis.transpose() * response.g0),
-      vectors.transpose() * (response.basis.transpose() * response.g1)};
+      vectors.transpose() * InnerProducts(response.basis, response.g0),
+      vectors.transpose() * InnerProducts(response.basis, response.g1)};
 }
 
 Eigen::MatrixXd ReducedModel::Responses(double poisson_ratio) const {

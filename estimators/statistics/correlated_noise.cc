@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/mesh/mesh_points.h"
 #include "elastimate/core/mesh/nearest_points.h"
 #include "elastimate/estimators/interface/limits.h"
@@ -128,7 +129,7 @@ Autocorrelation CorrelateResiduals(const Scene& scene,
     });
   }
   const double variance =
-      residual.squaredNorm() / static_cast<double>(residual.size());
+      SquaredNorm(residual) / static_cast<double>(residual.size());
   Eigen::Index last = 0;
   Eigen::VectorXd values = Eigen::VectorXd::Zero(num_steps);
   while (last < num_steps && counts(last) > 0) {

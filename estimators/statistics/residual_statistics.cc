@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/statistics/node_losses.h"
 
@@ -78,7 +79,7 @@ void AddProductsOfPoints(const ObservedDisplacements& observed,
 std::optional<NeighbourCorrelation> CorrelateNeighbours(
     const NodeGraph& graph, const ObservedDisplacements& observed,
     const Eigen::VectorXd& residual) {
-  const double square_sum = residual.squaredNorm();
+  const double square_sum = SquaredNorm(residual);
   NeighbourProducts products;
   const Points& points = observed.Points();
   for (auto begin = points.begin(); begin != points.end();) {
@@ -125,7 +126,7 @@ SmoothSquareSum MeasureSmoothPart(const NodeGraph& graph,
                                   const ObservedDisplacements& observed,
                                   const Eigen::VectorXd& residual,
                                   Estimate& estimate) {
-  const double square_sum = residual.squaredNorm();
+  const double square_sum = SquaredNorm(residual);
   const std::optional<NeighbourCorrelation> neighbours =
       CorrelateNeighbours(graph, observed, residual);
   if (!neighbours) {
@@ -170,7 +171,7 @@ bool HasHeavyTails(const Eigen::VectorXd& residual) {
   // The standard deviation of 1.4826 MAD is 1.17 / sqrt(n) of itself.
   const double threshold =
       kLimits.heavy_tails + kLimits.significant_score * 1.17 / std::sqrt(n);
-  return residual.norm() / std::sqrt(n) >
+  return Norm(residual) / std::sqrt(n) >
          threshold * RobustStandardDeviation(residual);
 }
 
