@@ -1,6 +1,7 @@
 #include "elastimate/core/scene/unknown_motion.h"
 
 #include <cmath>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -99,6 +100,19 @@ void ValidateResultant(const Mesh& mesh, const Supports& supports,
              ", so that nothing exerts it; give it as a load of type force, or "
              "hold the nodes");
     }
+  }
+}
+
+void RefuseTheSameResultant(const Resultant& before, const Resultant& resultant,
+                            const std::string& where) {
+  const bool is_known_twice =
+      ((before.force + resultant.force).array().isFinite()).any();
+  if (is_known_twice &&
+      std::set<int>(before.nodes.begin(), before.nodes.end()) ==
+          std::set<int>(resultant.nodes.begin(), resultant.nodes.end())) {
+    Refuse(where +
+           " has a component of the same nodes as one before it; give the mean "
+           "of both, once");
   }
 }
 
@@ -212,10 +226,14 @@ void ValidateUnknownMotion(const Scene& scene) {
       ValidateUnknownDisplacements(scene, *load_case.supports);
     }
     for (std::size_t i = 0; i < load_case.resultants.size(); ++i) {
+      const std::string where = "resultant " + std::to_string(i + 1) +
+                                " of load case " + std::to_string(k + 1);
       ValidateResultant(scene.mesh, SupportsOf(scene, Eigen::Index(k)),
-                        load_case.resultants[i],
-                        "resultant " + std::to_string(i + 1) +
-                            " of load case " + std::to_string(k + 1));
+                        load_case.resultants[i], where);
+      for (std::size_t j = 0; j < i; ++j) {
+        RefuseTheSameResultant(load_case.resultants[j], load_case.resultants[i],
+                               where);
+      }
     }
   }
 }
@@ -291,6 +309,48 @@ Eigen::VectorXd MeasuredSupports(const Scene& scene, Eigen::Index k) {
                                   ? measured
                                   : measured && load_case.observed;
   return known.select(load_case.displacement.array(), 0.0).reshaped();
+}
+
+void FollowNeighbours(const Scene& scene, const NodeGraph& graph,
+                      Eigen::Index k, Eigen::Ref<Eigen::VectorXd> motion) {
+  const ComponentMask as_measured = AsMeasured(SupportsOf(scene, k));
+  if (as_measured.size() == 0) {
+    return;
+  }
+  const auto dimension = static_cast<int>(as_measured.rows());
+  for (int i = 0; i < dimension; ++i) {
+    std::vector<bool> is_known(as_measured.cols());
+    for (Eigen::Index node = 0; node < as_measured.cols(); ++node) {
+      is_known[node] =
+          as_measured(i, node) && IsObserved(scene.load_cases[k], i, node);
+    }
+    bool is_new = true;
+    while (is_new) {
+      is_new = false;
+      Eigen::VectorXd sums = Eigen::VectorXd::Zero(as_measured.cols());
+      Eigen::VectorXi counts = Eigen::VectorXi::Zero(as_measured.cols());
+      const auto follow = [&](Eigen::Index node, Eigen::Index neighbour) {
+        if (as_measured(i, node) && !is_known[node] && is_known[neighbour]) {
+          sums(node) += motion(dimension * neighbour + i);
+          ++counts(node);
+        }
+      };
+      for (Eigen::Index node = 0; node < as_measured.cols(); ++node) {
+        for (Eigen::Index pair = graph.start[node] + 1;
+             pair < graph.start[node + 1]; ++pair) {
+          follow(node, graph.row[pair]);
+          follow(graph.row[pair], node);
+        }
+      }
+      for (Eigen::Index node = 0; node < as_measured.cols(); ++node) {
+        if (counts(node) > 0) {
+          motion(dimension * node + i) = sums(node) / counts(node);
+          is_known[node] = true;
+          is_new = true;
+        }
+      }
+    }
+  }
 }
 
 }  // namespace elastimate

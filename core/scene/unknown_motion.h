@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
+#include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/scene.h"
 
 namespace elastimate {
@@ -46,6 +47,14 @@ struct UnknownMotion {
 /// The displacement of AsMeasured as measured in load case `k`, zero elsewhere
 /// and where a node was not measured: num_dofs values.
 Eigen::VectorXd MeasuredSupports(const Scene& scene, Eigen::Index k);
+
+/// Gives the nodes of AsMeasured that have no measurement in load case `k` the
+/// mean motion of their neighbours that have one, and so on from neighbour to
+/// neighbour: where such nodes move follows from equilibrium too, but is
+/// ill-posed.  `motion` has num_dofs values.  O(num_pairs) for each node that
+/// is farther from a measurement than the one before.
+void FollowNeighbours(const Scene& scene, const NodeGraph& graph,
+                      Eigen::Index k, Eigen::Ref<Eigen::VectorXd> motion);
 
 }  // namespace elastimate
 

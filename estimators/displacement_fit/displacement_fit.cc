@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/statistics/element_errors.h"
 #include "elastimate/estimators/statistics/errors_on_bound.h"
@@ -66,7 +67,7 @@ class FitDescription {
         fit_(fit),
         losses_(losses),
         sums_(SumResiduals(observed, fit, losses)),
-        square_sum_(fit.residual.squaredNorm()),
+        square_sum_(SquaredNorm(fit.residual)),
         evidence_(evidence),
         estimate_(estimate) {
     if (evidence.active.youngs_modulus == Side::kNone) {
@@ -77,7 +78,7 @@ class FitDescription {
       free_.push_back(1);
     }
     estimate.displacement_residual =
-        std::sqrt(square_sum_) / observed.Measured().norm();
+        std::sqrt(square_sum_) / Norm(observed.Measured());
     estimate.identifiability_angle = IdentifiabilityAngle(Gram());
     is_collinear_ =
         std::sin(*estimate.identifiability_angle) < kCollinearSensitivities;
@@ -104,18 +105,20 @@ class FitDescription {
     }
     std::optional<RowChange> change;
     if (fit_.element_change) {
-      change = {*fit_.element_change, scene.mesh.Order() == 1};
+      change = {*fit_.element_change, scene.mesh.Order() == 1, {}};
     }
     elements_.emplace(
         scene, graph, observed_,
         FreeFit{fit_.residual, fit_.sensitivities(Eigen::all, free_),
                 sums_.bread(free_, free_), sums_.weights,
-                losses_.IsLeastSquares()},
+                losses_.IsLeastSquares(), evidence_.active.Any()},
         change, fit_.displacement, estimate_.elasticity);
     if (elements_->Correction()) {
       Eigen::Vector2d correction = Eigen::Vector2d::Zero();
       correction(free_) = *elements_->Correction();
       evidence_.element_correction = correction;
+      correction(free_) = elements_->LikelyChange();
+      evidence_.likely_element_change = correction;
     }
   }
 
@@ -133,7 +136,7 @@ class FitDescription {
   void MeasureNoise(const NodeGraph& graph) {
     if (losses_.IsLeastSquares()) {
       variance_ =
-          EstimateVariance(observed_, Rest().squaredNorm(),
+          EstimateVariance(observed_, SquaredNorm(Rest()),
                            Eigen::Index(free_.size()), evidence_, estimate_);
     } else {
       estimate_.noise_sd = RobustStandardDeviation(Rest()) * observed_.Norm();
@@ -145,7 +148,7 @@ class FitDescription {
         estimate_);
     const double least =
         evidence_.is_explained_by_given_noise ? 0 : smooth.least;
-    evidence_.smooth_part = std::sqrt(least) / observed_.Measured().norm();
+    evidence_.smooth_part = std::sqrt(least) / Norm(observed_.Measured());
     const double missed =
         elements_ ? elements_->MissedSquareSum(smooth.most) : 0;
     smooth_square_sum_ = std::max(0.0, least - missed);
@@ -205,7 +208,7 @@ class FitDescription {
     // The fit without the bound in the linear model u + S delta.
     const Eigen::MatrixXd s = fit_.sensitivities(Eigen::all, parameters);
     const Eigen::VectorXd change = -SolveLeastSquares(s, fit_.residual);
-    const double least = (fit_.residual + s * change).squaredNorm();
+    const double least = SquaredNorm(fit_.residual + s * change);
     evidence_.bound_excess = {
         square_sum_ - least, least / static_cast<double>(fit_.residual.size()),
         estimate_.elasticity.youngs_modulus * std::exp(change(0))};

@@ -96,6 +96,9 @@ struct Evidence {
   std::optional<Eigen::Vector2d> outlier_change;
   /// Of (ln E, nu), for what the elements miss.
   std::optional<Eigen::Vector2d> element_correction;
+  /// The same, of the parameters that it changes most, or what it may have to
+  /// be where something else in the residual hides it.
+  std::optional<Eigen::Vector2d> likely_element_change;
   /// Relative standard error of E by what is smooth in the residual; not a
   /// number for E on a bound.
   std::optional<double> smooth_residual_error;

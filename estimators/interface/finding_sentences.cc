@@ -621,12 +621,14 @@ Finding DiscretizationErrorFinding(ElementKind kind, const Estimate& estimate) {
 }
 
 Finding ElementsTooCoarse(const Eigen::Vector2d& correction) {
-  return Error(FindingCode::kElementsTooCoarse,
-               "linear elements are too coarse here: quadratic ones change E "
-               "by about " +
-                   Percent(std::expm1(correction(0))) + " and nu by " +
-                   TwoDigits(correction(1)),
-               "use quadratic elements (order 2), or refine the mesh");
+  return Error(
+      FindingCode::kElementsTooCoarse,
+      "the elements are too coarse here: finer ones change E "
+      "by about " +
+          Percent(std::expm1(correction(0))) + " and nu by " +
+          TwoDigits(correction(1)),
+      "refine the mesh, or use quadratic elements (order 2) where it has "
+      "simplices");
 }
 
 Finding LinearElementsFitAsWell(const IsotropicElasticity& linear) {

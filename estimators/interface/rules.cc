@@ -319,16 +319,16 @@ Result JudgeCorrection(const Evidence& evidence, const EstimatorOptions&,
 
 Result JudgeElements(const Evidence& evidence, const EstimatorOptions&,
                      const Estimate&) {
-  if (!evidence.element_correction) {
+  if (!evidence.likely_element_change) {
     return std::nullopt;
   }
-  const Eigen::Vector2d& correction = *evidence.element_correction;
-  return std::abs(correction(0)) <=
+  const Eigen::Vector2d& change = *evidence.likely_element_change;
+  return std::abs(change(0)) <=
                      kLimits.largest_correction_of_log_youngs_modulus &&
-                 std::abs(correction(1)) <=
+                 std::abs(change(1)) <=
                      kLimits.largest_correction_of_poisson_ratio
              ? Result()
-             : ElementsTooCoarse(correction);
+             : ElementsTooCoarse(change);
 }
 
 Result JudgeCertificate(const Evidence& evidence, const EstimatorOptions&,

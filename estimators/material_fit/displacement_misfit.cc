@@ -1,6 +1,9 @@
 #include "elastimate/estimators/material_fit/displacement_misfit.h"
 
 #include <cmath>
+#include <random>
+
+#include "elastimate/core/algebra/node_sums.h"
 
 namespace elastimate {
 namespace {
@@ -15,6 +18,12 @@ std::optional<double> PositiveRatio(double numerator, double denominator) {
   const double ratio = numerator / denominator;
   return ratio > 0 && std::isfinite(ratio) ? std::optional<double>(ratio)
                                            : std::nullopt;
+}
+
+Eigen::VectorXd RandomSigns(Eigen::Index size) {
+  std::mt19937 generator;
+  return Eigen::VectorXd::NullaryExpr(
+      size, [&] { return generator() % 2 == 0 ? 1.0 : -1.0; });
 }
 
 }  // namespace
@@ -77,10 +86,10 @@ std::optional<double> DisplacementMisfit::Compliance(
     motion_->SetNoise(0);
   }
   const Eigen::VectorXd by_loads = WithoutMotion(loaded);
-  if (by_loads.squaredNorm() > 0) {
+  if (SquaredNorm(by_loads) > 0) {
     Eigen::VectorXd moved = WithoutMotion(held);
     moved.head(observed_.Size()) -= observed_.Measured();
-    return PositiveRatio(-by_loads.dot(moved), by_loads.squaredNorm());
+    return PositiveRatio(-InnerProduct(by_loads, moved), SquaredNorm(by_loads));
   }
   if (!motion_) {
     return std::nullopt;
@@ -92,17 +101,49 @@ std::optional<double> DisplacementMisfit::Compliance(
   return PositiveRatio(of_unit.squaredNorm(), of_unit.dot(measured));
 }
 
-bool DisplacementMisfit::MoveTo(const Eigen::VectorXd& x) {
-  if (x_.size() == x.size() && x_ == x) {
-    return true;
+std::optional<RowChange> DisplacementMisfit::ChangeTo(
+    const Eigen::VectorXd& x, DisplacementMisfit& finer) {
+  if (!MoveTo(x) || !finer.SolveAt(x)) {
+    return std::nullopt;
   }
+  if (!motion_) {
+    return RowChange{
+        observed_.Restrict(finer.equilibrium_.Displacement().topRows(
+            equilibrium_.Displacement().rows())) -
+            observed_.Restrict(equilibrium_.Displacement()),
+        true,
+        {}};
+  }
+  finer.SetNoise(Noise());
+  const auto change_of = [&](const Eigen::MatrixXd& motion_of_supports) {
+    const Eigen::MatrixXd well_posed = motion_->WellPosed(motion_of_supports);
+    return Eigen::VectorXd(finer.motion_->RowsOfMotion(well_posed) -
+                           motion_->RowsOfMotion(well_posed));
+  };
+  const Eigen::MatrixXd motion = motion_->MotionOfSupports();
+  const Eigen::VectorXd change =
+      finer.motion_->RowsOfModel() - motion_->RowsOfModel() +
+      motion_->RowsOfMotion(motion) + change_of(motion);
+  return RowChange{motion_->Eliminate(change), true,
+                   motion_->Eliminate(change_of(
+                       motion_->MotionThatFits(RandomSigns(NumRows()))))};
+}
+
+bool DisplacementMisfit::SolveAt(const Eigen::VectorXd& x) {
   x_.resize(0);
   if (on_factorization_) {
     on_factorization_(++num_factorizations_);
   }
   const Eigen::VectorXd moduli = free_.ModuliAt(x);
-  if (!moduli.allFinite() || !equilibrium_.Solve(moduli) ||
-      !equilibrium_.Displacement().allFinite()) {
+  return moduli.allFinite() && equilibrium_.Solve(moduli) &&
+         equilibrium_.Displacement().allFinite();
+}
+
+bool DisplacementMisfit::MoveTo(const Eigen::VectorXd& x) {
+  if (x_.size() == x.size() && x_ == x) {
+    return true;
+  }
+  if (!SolveAt(x)) {
     return false;
   }
   residual_ = motion_ ? motion_->Fit()

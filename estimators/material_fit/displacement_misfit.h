@@ -11,6 +11,7 @@
 #include "elastimate/estimators/interface/estimator.h"
 #include "elastimate/estimators/interface/free_parameters.h"
 #include "elastimate/estimators/material_fit/motion_elimination.h"
+#include "elastimate/estimators/statistics/element_errors.h"
 
 namespace elastimate {
 
@@ -47,6 +48,13 @@ class DisplacementMisfit {
   bool Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd* residual,
                 Eigen::MatrixXd* jacobian);
 
+  /// What a mesh of finer elements, the first nodes of which are those of this
+  /// one, changes in the rows at x where the supports move as they do in this
+  /// fit; empty when a stiffness is singular there.  A factorisation of either,
+  /// and three solves for each load case.
+  std::optional<RowChange> ChangeTo(const Eigen::VectorXd& x,
+                                    DisplacementMisfit& finer);
+
   /// u with all motions where the last Evaluate was, num_dofs x
   /// num_load_cases.
   Eigen::MatrixXd FittedDisplacement() const {
@@ -59,6 +67,7 @@ class DisplacementMisfit {
   std::optional<double> Compliance(const Eigen::VectorXd& unit_moduli);
 
  private:
+  bool SolveAt(const Eigen::VectorXd& x);
   bool MoveTo(const Eigen::VectorXd& x);
   Eigen::MatrixXd Sensitivities(const Eigen::VectorXd& x);
   Eigen::VectorXd WithoutMotion(const Eigen::MatrixXd& displacements);

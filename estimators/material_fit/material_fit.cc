@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/simplicial_scene.h"
@@ -110,7 +111,7 @@ double NoiseAt(const Eigen::VectorXd& x, DisplacementMisfit& misfit) {
   }
   const Eigen::Index redundancy =
       observed.Size() - misfit.NumAmounts() - misfit.Free().Size();
-  return residual.head(observed.Size()).norm() /
+  return Norm(residual.head(observed.Size())) /
          std::sqrt(static_cast<double>(std::max<Eigen::Index>(redundancy, 1)));
 }
 
@@ -213,15 +214,9 @@ class FinerElements {
       : scene_(QuadraticScene(simplicial)), misfit_(scene_, options) {}
 
   // In the rows of the fit at these variables; empty where there is none.
-  std::optional<Eigen::VectorXd> Change(const Eigen::VectorXd& variables,
-                                        DisplacementMisfit& misfit) {
-    misfit_.SetNoise(misfit.Noise());
-    Eigen::VectorXd rows;
-    Eigen::VectorXd finer_rows;
-    return misfit.Evaluate(variables, &rows, nullptr) &&
-                   misfit_.Evaluate(variables, &finer_rows, nullptr)
-               ? std::optional<Eigen::VectorXd>(finer_rows - rows)
-               : std::nullopt;
+  std::optional<RowChange> Change(const Eigen::VectorXd& variables,
+                                  DisplacementMisfit& misfit) {
+    return misfit.ChangeTo(variables, misfit_);
   }
 
   // At the nodes of the scene, whose degrees of freedom are `num_dofs`; empty

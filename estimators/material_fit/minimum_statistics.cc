@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
 #include "elastimate/estimators/statistics/correlated_noise.h"
-#include "elastimate/estimators/statistics/element_errors.h"
 #include "elastimate/estimators/statistics/residual_statistics.h"
 
 namespace elastimate {
@@ -54,7 +54,7 @@ double ShareOfResidual(const Eigen::VectorXd& residual, Eigen::Index num_fitted,
   const auto redundancy = static_cast<double>(
       std::max<Eigen::Index>(residual.size() - num_fitted, 1));
   return variance > 0
-             ? std::min(1.0, residual.squaredNorm() / redundancy / variance)
+             ? std::min(1.0, SquaredNorm(residual) / redundancy / variance)
              : 1;
 }
 
@@ -75,7 +75,7 @@ Eigen::MatrixXd AddedByCorrelation(const Scene& scene,
   estimate.correlation_length = correlation.Length();
   const double smooth =
       ShareOfModel(scene.mesh, correlation.Length()) * smooth_part;
-  evidence.smooth_part = std::sqrt(smooth) / observed.Measured().norm();
+  evidence.smooth_part = std::sqrt(smooth) / Norm(observed.Measured());
   return share * PositivePart(CovarianceOfCorrelation(
                      scene, observed, sensitivities, inverse, correlation)) +
          (variance > 0 ? smooth / variance : 0) * inverse;
@@ -99,34 +99,36 @@ double VarianceOfRows(const ObservedDisplacements& observed,
   const double given =
       observed.GivenNoise() ? 1 / (observed.Norm() * observed.Norm()) : 0;
   return std::max(
-      given, rows.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(
-                                      observed.Size() - num_fitted, 1)));
+      given, SquaredNorm(rows) / static_cast<double>(std::max<Eigen::Index>(
+                                     observed.Size() - num_fitted, 1)));
 }
 
 // What elements miss of these rows; empty where it is not known.
 std::optional<ElementErrors> FindElementErrors(
     const Scene& scene, const Eigen::VectorXd& rows,
-    Eigen::MatrixXd sensitivities, const std::optional<Eigen::VectorXd>& change,
-    Eigen::Index num_fitted, DisplacementMisfit& misfit) {
+    Eigen::MatrixXd sensitivities, const std::optional<RowChange>& change,
+    Eigen::Index num_fitted, bool is_on_bound, DisplacementMisfit& misfit) {
   if (!change) {
     return std::nullopt;
   }
   const Eigen::Index num_resultants = misfit.NumResultants();
   Eigen::VectorXd residual = rows;
-  Eigen::VectorXd weighed_change = *change;
+  RowChange weighed_change = *change;
   if (num_resultants > 0) {
     double variance = VarianceOfRows(misfit.Observed(), rows, num_fitted);
     WeighResultants(misfit, variance, sensitivities);
     const double weight = std::sqrt(variance) / misfit.Noise();
     residual.tail(num_resultants) *= weight;
-    weighed_change.tail(num_resultants) *= weight;
+    weighed_change.rows.tail(num_resultants) *= weight;
+    weighed_change.by_noise.tail(num_resultants) *= weight;
   }
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(rows.size());
-  const FreeFit fit = {residual, sensitivities,
-                       sensitivities.transpose() * sensitivities, ones, true};
+  const FreeFit fit = {
+      residual, sensitivities, InnerProducts(sensitivities, sensitivities),
+      ones,     true,          is_on_bound};
   // What depends on the strain is of elements whose change is not known.
   const ElementErrors errors(scene, misfit.Model().Graph(), misfit.Observed(),
-                             fit, RowChange{weighed_change, true}, {}, {});
+                             fit, weighed_change, {}, {});
   // What is not determined cannot be corrected.
   return errors.Correction()->allFinite() ? std::optional<ElementErrors>(errors)
                                           : std::nullopt;
@@ -175,10 +177,11 @@ Eigen::VectorXd EnterElements(const Scene& scene, const FreeParameters& free,
 
 }  // namespace
 
-CorrectedMinimum DescribeMinimum(
-    const Scene& scene, const Eigen::VectorXd& variables,
-    const std::optional<Eigen::VectorXd>& change_of_rows,
-    DisplacementMisfit& misfit, Evidence& evidence, Estimate& estimate) {
+CorrectedMinimum DescribeMinimum(const Scene& scene,
+                                 const Eigen::VectorXd& variables,
+                                 const std::optional<RowChange>& change_of_rows,
+                                 DisplacementMisfit& misfit, Evidence& evidence,
+                                 Estimate& estimate) {
   const FreeParameters& free = misfit.Free();
   const ObservedDisplacements& observed = misfit.Observed();
   Eigen::VectorXd rows;
@@ -188,7 +191,7 @@ CorrectedMinimum DescribeMinimum(
     return {variables};
   }
   Eigen::VectorXd residual = rows.head(observed.Size());
-  estimate.displacement_residual = residual.norm() / observed.Measured().norm();
+  estimate.displacement_residual = Norm(residual) / Norm(observed.Measured());
   const Eigen::Index num_fitted =
       free.Size() + misfit.NumAmounts() - misfit.NumResultants();
   if (!observed.GivenNoise() &&
@@ -202,17 +205,18 @@ CorrectedMinimum DescribeMinimum(
                                  misfit.Noise()};
     excess = std::max(excess, evidence.resultant_misfit->Excess());
   }
-  const std::optional<ElementErrors> elements = FindElementErrors(
-      scene, rows, sensitivities, change_of_rows, num_fitted, misfit);
+  const std::optional<ElementErrors> elements =
+      FindElementErrors(scene, rows, sensitivities, change_of_rows, num_fitted,
+                        !estimate.active_bounds.empty(), misfit);
   const Eigen::VectorXd rest = elements ? elements->Rest() : rows;
   residual = rest.head(observed.Size());
-  ResidualVariance variance = EstimateVariance(observed, rest.squaredNorm(),
+  ResidualVariance variance = EstimateVariance(observed, SquaredNorm(rest),
                                                num_fitted, evidence, estimate);
   WeighResultants(misfit, variance.variance, sensitivities);
   evidence.is_explained_by_given_noise = variance.is_explained_by_given_noise;
   const Eigen::MatrixXd of_rows = sensitivities.topRows(observed.Size());
   const Eigen::MatrixXd inverse =
-      Inverse(sensitivities.transpose() * sensitivities);
+      Inverse(InnerProducts(sensitivities, sensitivities));
   const SmoothSquareSum smooth =
       MeasureSmoothPart(misfit.Model().Graph(), observed, residual, estimate);
   const Eigen::MatrixXd by_correlation = AddedByCorrelation(
@@ -228,6 +232,8 @@ CorrectedMinimum DescribeMinimum(
         elements->CovarianceOfChange(smooth.most) +
         elements->MissedSquareSum(smooth.most) * inverse;
     covariance += by_elements;
+    evidence.likely_element_change =
+        LargestOf(elements->LikelyChange(), estimate, free);
     corrected = {EnterElements(scene, free, variables, by_elements,
                                *elements->Correction(), estimate),
                  elements->Share()};

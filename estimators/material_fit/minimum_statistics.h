@@ -8,6 +8,7 @@
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/evidence.h"
 #include "elastimate/estimators/material_fit/displacement_misfit.h"
+#include "elastimate/estimators/statistics/element_errors.h"
 
 namespace elastimate {
 
@@ -35,7 +36,7 @@ struct CorrectedMinimum {
 /// error is part of theirs (ElementErrors).
 CorrectedMinimum DescribeMinimum(const Scene& scene,
                                  const Eigen::VectorXd& variables,
-                                 const std::optional<Eigen::VectorXd>& change,
+                                 const std::optional<RowChange>& change,
                                  DisplacementMisfit& misfit, Evidence& evidence,
                                  Estimate& estimate);
 

@@ -1,9 +1,11 @@
 #include "elastimate/estimators/material_fit/motion_elimination.h"
 
+#include <Eigen/IterativeLinearSolvers>
 #include <algorithm>
 #include <cmath>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/algebra/node_sums.h"
 
 namespace elastimate {
 namespace {
@@ -29,7 +31,7 @@ constexpr double kDependentAmounts = 1e-13;
 MotionElimination::MotionElimination(const Scene& scene,
                                      const ObservedDisplacements& observed,
                                      Equilibrium& model)
-    : observed_(observed), model_(model) {
+    : scene_(scene), observed_(observed), model_(model) {
   const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
   std::vector<const Supports*> supports_of_motion;
   Eigen::Index num_amounts = 0;
@@ -100,9 +102,41 @@ Eigen::VectorXd MotionElimination::Refit() {
 Eigen::VectorXd MotionElimination::Eliminate(
     const Eigen::MatrixXd& displacements,
     const Eigen::MatrixXd& support_forces) {
-  Eigen::VectorXd rows = RowsOf(displacements, support_forces);
+  return Eliminate(RowsOf(displacements, support_forces));
+}
+
+Eigen::VectorXd MotionElimination::Eliminate(Eigen::VectorXd rows) {
   Minimize(kOfSensitivities, rows);
   return rows;
+}
+
+Eigen::MatrixXd MotionElimination::MotionThatFits(Eigen::VectorXd rows) {
+  return HeldMotion(Minimize(kOfSensitivities, rows));
+}
+
+Eigen::MatrixXd MotionElimination::WellPosed(
+    Eigen::MatrixXd motion_of_supports) const {
+  for (Eigen::Index k = 0; k < motion_of_supports.cols(); ++k) {
+    FollowNeighbours(scene_, model_.Graph(), k, motion_of_supports.col(k));
+  }
+  return motion_of_supports;
+}
+
+Eigen::VectorXd MotionElimination::RowsOfMotion(
+    const Eigen::MatrixXd& of_supports) {
+  Eigen::VectorXd amounts = Eigen::VectorXd::Zero(amounts_.size());
+  for (Eigen::Index k = 0; k < of_supports.cols(); ++k) {
+    const Eigen::SparseMatrix<double> of_first =
+        MotionOf(k).of_supports.topRows(of_supports.rows());
+    if (of_first.cols() > 0) {
+      const Eigen::LeastSquaresConjugateGradient<Eigen::SparseMatrix<double>>
+          solver(of_first);
+      AmountsOf(k, amounts).head(of_first.cols()) =
+          solver.solve(of_supports.col(k));
+    }
+  }
+  const Eigen::MatrixXd motion = SupportMotion(amounts);
+  return RowsOf(motion, model_.HeldForces(motion));
 }
 
 Eigen::VectorXd MotionElimination::Resultants(
@@ -160,23 +194,29 @@ Eigen::VectorXd MotionElimination::MultiplyColumnsTransposed(
   Eigen::VectorXd amounts(amounts_.size());
   for (Eigen::Index k = 0; k < observed_.NumLoadCases(); ++k) {
     AmountsOf(k, amounts) =
-        columns_[k].of_displacements.transpose() *
-            rows.segment(observed_.CaseStart(k), NumObservedOf(k)) +
-        noise_ * (columns_[k].of_resultants.transpose() *
-                  rows.segment(observed_.Size() + first_resultant_[k],
-                               NumResultantsOf(k)));
+        InnerProducts(columns_[k].of_displacements,
+                      rows.segment(observed_.CaseStart(k), NumObservedOf(k))) +
+        noise_ *
+            InnerProducts(columns_[k].of_resultants,
+                          rows.segment(observed_.Size() + first_resultant_[k],
+                                       NumResultantsOf(k)));
   }
   return amounts;
 }
 
-Eigen::MatrixXd MotionElimination::SupportMotion(
-    const Eigen::VectorXd& amounts) {
+Eigen::MatrixXd MotionElimination::HeldMotion(
+    const Eigen::VectorXd& amounts) const {
   Eigen::MatrixXd held(model_.Displacement().rows(), observed_.NumLoadCases());
   for (Eigen::Index k = 0; k < held.cols(); ++k) {
     const Eigen::SparseMatrix<double>& of_supports = MotionOf(k).of_supports;
     held.col(k) = of_supports * AmountsOf(k, amounts).head(of_supports.cols());
   }
-  return model_.Extend(held);
+  return held;
+}
+
+Eigen::MatrixXd MotionElimination::SupportMotion(
+    const Eigen::VectorXd& amounts) {
+  return model_.Extend(HeldMotion(amounts));
 }
 
 Eigen::MatrixXd MotionElimination::WithMotionOfAll(
@@ -217,8 +257,8 @@ Eigen::VectorXd MotionElimination::MultiplyTransposed(
   Eigen::VectorXd amounts(amounts_.size());
   for (Eigen::Index k = 0; k < of_nodes.cols(); ++k) {
     const UnknownMotion& motion = MotionOf(k);
-    AmountsOf(k, amounts) << motion.of_supports.transpose() * of_held.col(k),
-        motion.of_all.transpose() * of_nodes.col(k);
+    AmountsOf(k, amounts) << InnerProducts(motion.of_supports, of_held.col(k)),
+        InnerProducts(motion.of_all, of_nodes.col(k));
   }
   return amounts;
 }
@@ -298,9 +338,9 @@ void MotionElimination::InvertGrams() {
       continue;
     }
     const SymmetricEigenDecomposition gram = DecomposeSymmetric(
-        columns.of_displacements.transpose() * columns.of_displacements +
+        InnerProducts(columns.of_displacements, columns.of_displacements) +
         noise_ * noise_ *
-            (columns.of_resultants.transpose() * columns.of_resultants));
+            InnerProducts(columns.of_resultants, columns.of_resultants));
     // What rigid motions of supports and of all have in common is zero here.
     const double least = kDependentAmounts * gram.values.maxCoeff();
     columns.inverse_gram = gram.vectors *
@@ -330,23 +370,23 @@ Eigen::VectorXd MotionElimination::Minimize(double tolerance,
   if (amounts.size() == 0) {
     return amounts;
   }
-  const double nothing = kRoundingOfRows * kRoundingOfRows * rows.squaredNorm();
+  const double nothing = kRoundingOfRows * kRoundingOfRows * SquaredNorm(rows);
   Eigen::VectorXd gradient = MultiplyTransposed(rows);
   Eigen::VectorXd preconditioned = Precondition(gradient);
   Eigen::VectorXd direction = preconditioned;
-  double square = gradient.dot(preconditioned);
+  double square = InnerProduct(gradient, preconditioned);
   for (int i = 0; i < kMostIterations && square > 0; ++i) {
     const Eigen::VectorXd step = Multiply(direction);
-    const double length = square / step.squaredNorm();
+    const double length = square / SquaredNorm(step);
     amounts += length * direction;
     rows -= length * step;
-    const double left = rows.squaredNorm();
+    const double left = SquaredNorm(rows);
     if (left <= nothing || length * square <= tolerance * left) {
       break;
     }
     gradient = MultiplyTransposed(rows);
     preconditioned = Precondition(gradient);
-    const double next = gradient.dot(preconditioned);
+    const double next = InnerProduct(gradient, preconditioned);
     direction = preconditioned + next / square * direction;
     square = next;
   }

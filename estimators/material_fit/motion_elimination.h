@@ -66,6 +66,24 @@ class MotionElimination {
   Eigen::VectorXd Eliminate(const Eigen::MatrixXd& displacements,
                             const Eigen::MatrixXd& support_forces);
 
+  /// The motion of the supports of the last Fit, zero elsewhere: num_dofs x
+  /// num_load_cases.
+  Eigen::MatrixXd MotionOfSupports() const { return HeldMotion(amounts_); }
+  /// That which fits rows best, as if these were displacements.
+  Eigen::MatrixXd MotionThatFits(Eigen::VectorXd rows);
+  /// Either, with nodes that have no measurement as FollowNeighbours says.
+  Eigen::MatrixXd WellPosed(Eigen::MatrixXd motion_of_supports) const;
+  /// The rows of the model alone, as the last Fit moved it.
+  Eigen::VectorXd RowsOfModel() const {
+    return RowsOf(WithMotionOfAll(amounts_, model_.Displacement()),
+                  model_.SupportForces());
+  }
+  /// The rows of a motion of the supports, of which the first nodes move so;
+  /// nothing else moves or loads.
+  Eigen::VectorXd RowsOfMotion(const Eigen::MatrixXd& of_supports);
+  /// The rows without what amounts could explain.
+  Eigen::VectorXd Eliminate(Eigen::VectorXd rows);
+
   /// Of the forces of supports, the measured ones, each over its standard
   /// deviation.
   Eigen::VectorXd Resultants(const Eigen::MatrixXd& support_forces) const;
@@ -119,8 +137,9 @@ class MotionElimination {
   Eigen::VectorXd Precondition(const Eigen::VectorXd& gradient) const;
   Eigen::VectorXd RowsOf(const Eigen::MatrixXd& displacements,
                          const Eigen::MatrixXd& support_forces) const;
-  /// num_dofs x num_load_cases: those of the supports in equilibrium, and with
-  /// the motion of all.
+  /// num_dofs x num_load_cases: those of the supports alone, in equilibrium,
+  /// and with the motion of all.
+  Eigen::MatrixXd HeldMotion(const Eigen::VectorXd& amounts) const;
   Eigen::MatrixXd SupportMotion(const Eigen::VectorXd& amounts);
   Eigen::MatrixXd WithMotionOfAll(const Eigen::VectorXd& amounts,
                                   Eigen::MatrixXd displacements) const;
@@ -129,6 +148,7 @@ class MotionElimination {
   /// The x of least ||rows - A x||; leaves rows - A x behind.
   Eigen::VectorXd Minimize(double tolerance, Eigen::VectorXd& rows);
 
+  const Scene& scene_;
   const ObservedDisplacements& observed_;
   Equilibrium& model_;
   std::vector<UnknownMotion> motions_;  ///< One for each set of supports.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/mechanics/strain_energy.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/statistics/residual_statistics.h"
@@ -13,9 +14,10 @@ namespace {
 
 // What the elements miss, as a share of a change of the displacements that is
 // known, in the direction of a parameter: of linear elements beside the change
-// to quadratic ones, and by how much of itself that change of the parameters is
-// off; of quadratic ones, of the change from linear ones; and where neither is
-// known, of the share of the energy that is missed [benchmarks: unseen].
+// to quadratic ones, by how much of itself that change of the parameters is
+// off, and how much of it is expected; of quadratic ones, of the change from
+// linear ones; and where neither is known, of the share of the energy that is
+// missed [benchmarks: unseen].
 constexpr double kLinearErrorShare = 0.1;
 constexpr double kUnequalShare = 0.33;
 constexpr double kQuadraticErrorShare = 0.025;
@@ -51,6 +53,28 @@ double UnexplainedShare(const std::optional<NeighbourCorrelation>& neighbours,
   return std::min(1.0, (left / explained - kMostLeft) / (1 - kMostLeft));
 }
 
+// What rows show beside the parameters that take them up.
+Eigen::VectorXd VisibleOf(const FreeFit& fit, const Eigen::VectorXd& rows,
+                          const Eigen::VectorXd& of_parameters) {
+  return rows - fit.sensitivities * of_parameters;
+}
+
+Eigen::VectorXd ParametersOf(const FreeFit& fit, const Eigen::VectorXd& rows) {
+  return Inverse(fit.bread) *
+         InnerProducts(fit.sensitivities, fit.weights.cwiseProduct(rows));
+}
+
+// The weighted square sum of what noise of a variance of 1 adds to what shows
+// of a change.
+double VisibleNoise(const FreeFit& fit, const Eigen::VectorXd& by_noise) {
+  if (by_noise.size() == 0) {
+    return 0;
+  }
+  const Eigen::VectorXd visible =
+      VisibleOf(fit, by_noise, ParametersOf(fit, by_noise));
+  return InnerProduct(fit.weights.cwiseProduct(visible), visible);
+}
+
 }  // namespace
 
 ElementErrors::ElementErrors(const Scene& scene, const NodeGraph& graph,
@@ -64,27 +88,32 @@ ElementErrors::ElementErrors(const Scene& scene, const NodeGraph& graph,
   if (!change) {
     // There is nothing to compare the strain of a single element with.
     if (scene.mesh.NumElements() > 1) {
-      missed_norm_ = kUnknownErrorShare * observed.Measured().norm() *
+      missed_norm_ = kUnknownErrorShare * Norm(observed.Measured()) *
                      DiscretizationError(scene.mesh, elasticity, displacement);
     }
     return;
   }
   const Eigen::VectorXd& rows = change->rows;
-  of_parameters_ = Inverse(fit.bread) * (fit.sensitivities.transpose() *
-                                         fit.weights.cwiseProduct(rows));
-  const Eigen::VectorXd visible = rows - fit.sensitivities * of_parameters_;
+  of_parameters_ = ParametersOf(fit, rows);
+  const Eigen::VectorXd visible = VisibleOf(fit, rows, of_parameters_);
   if (!change->is_to_finer) {
-    visible_norm_ = visible.norm();
-    missed_norm_ = kQuadraticErrorShare * rows.norm();
+    visible_norm_ = Norm(visible);
+    missed_norm_ = kQuadraticErrorShare * Norm(rows);
     return;
   }
-  const FinerSpecimen finer = Compare(graph, observed, fit, visible);
+  const FinerSpecimen finer = Compare(graph, observed, fit, visible,
+                                      VisibleNoise(fit, change->by_noise));
   share_ = finer.Mean();
   rest_ += share_ * visible;
   correction_ = -share_ * of_parameters_;
   const double size = std::sqrt(finer.probability) * std::abs(finer.share);
-  share_variance_ = finer.Variance() + std::pow(kUnequalShare * size, 2);
-  missed_norm_ = kLinearErrorShare * size * rows.norm();
+  // Much of a change may be there of which little shows.
+  const double most =
+      std::max(size, finer.probability * finer.probability * kExpectedShare);
+  share_variance_ = finer.Variance() + std::pow(kUnequalShare * most, 2) +
+                    hidden_share_ * hidden_share_;
+  missed_norm_ = kLinearErrorShare * size * Norm(rows);
+  likely_change_ = -std::max(share_, hidden_share_) * of_parameters_;
 }
 
 double ElementErrors::ModelSquareSum(double smooth) const {
@@ -113,15 +142,23 @@ Eigen::MatrixXd ElementErrors::CovarianceOfChange(double smooth) const {
 FinerSpecimen ElementErrors::Compare(const NodeGraph& graph,
                                      const ObservedDisplacements& observed,
                                      const FreeFit& fit,
-                                     const Eigen::VectorXd& visible) {
+                                     const Eigen::VectorXd& visible,
+                                     double visible_noise) {
   const Eigen::VectorXd weighted = fit.weights.cwiseProduct(visible);
-  const double size = weighted.dot(visible);
+  const double noisy_size = InnerProduct(weighted, visible);
   const double redundancy =
       static_cast<double>(observed.Size() - fit.sensitivities.cols()) - 1;
+  const double product = InnerProduct(weighted, fit.residual);
+  // The variance of a row where the residual shows as much as it can.
+  const double least_variance =
+      (InnerProduct(fit.weights.cwiseProduct(fit.residual), fit.residual) -
+       product * product / noisy_size) /
+      redundancy;
+  const double size = noisy_size - visible_noise * least_variance;
   if (!(size > 0) || redundancy < 1) {
     return CompareWithFinerSpecimen(0, kUnknownShareError, 1);
   }
-  const double share = -weighted.dot(fit.residual) / size;
+  const double share = -product / size;
   const Eigen::VectorXd rest = fit.residual + share * visible;
   const Eigen::VectorXd weighted_rest =
       fit.weights.cwiseSqrt().cwiseProduct(rest);
@@ -136,17 +173,23 @@ FinerSpecimen ElementErrors::Compare(const NodeGraph& graph,
   // As many rows of a first-order process say as much as independent ones.
   const double dependence = (1 + correlation) / (1 - correlation);
   // Of the sum of the products; a loss makes the rows unequal.
-  double variance = size * weighted_rest.squaredNorm() / redundancy;
+  double variance = noisy_size * SquaredNorm(weighted_rest) / redundancy;
   if (!fit.is_least_squares) {
-    variance = weighted.cwiseProduct(rest).squaredNorm();
+    variance = SquaredNorm(weighted.cwiseProduct(rest));
   } else if (observed.GivenNoise()) {
-    variance = std::max(variance, size / (observed.Norm() * observed.Norm()));
+    variance =
+        std::max(variance, noisy_size / (observed.Norm() * observed.Norm()));
   }
   FinerSpecimen finer = CompareWithFinerSpecimen(
       share, std::sqrt(variance * dependence) / size, redundancy / dependence);
-  unexplained_ = UnexplainedShare(neighbours, weighted_rest.squaredNorm(),
+  unexplained_ = UnexplainedShare(neighbours, SquaredNorm(weighted_rest),
                                   share * share * size);
   finer.probability *= 1 - unexplained_;
+  if (!fit.is_on_bound) {
+    hidden_share_ =
+        unexplained_ *
+        std::min(kExpectedShare, std::sqrt(SquaredNorm(weighted_rest) / size));
+  }
   return finer;
 }
 

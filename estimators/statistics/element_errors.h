@@ -20,12 +20,17 @@ struct FreeFit {
   /// How much each row counts; 1 without a loss.
   const Eigen::VectorXd& weights;
   bool is_least_squares;
+  /// What a bound leaves in the residual is no doubt about the model.
+  bool is_on_bound;
 };
 
 /// What other elements change in the rows of a fit.
 struct RowChange {
   Eigen::VectorXd rows;  ///< For the finer elements minus for the coarser ones.
   bool is_to_finer;      ///< Whether those of the fit are the coarser ones.
+  /// What noise of a standard deviation of 1 adds to the change, one draw of
+  /// it: supports that move as measured follow it.  Empty where nothing.
+  Eigen::VectorXd by_noise;
 };
 
 /// What the elements of a fit miss, and what that does to the free parameters:
@@ -55,6 +60,10 @@ class ElementErrors {
     return correction_;
   }
 
+  /// The same, or what a finer specimen would ask for where something else in
+  /// the residual hides how much of that there is.
+  const Eigen::VectorXd& LikelyChange() const { return likely_change_; }
+
   /// Of the change to finer elements, as far as it is expected to be there.
   double Share() const { return share_; }
 
@@ -72,18 +81,24 @@ class ElementErrors {
   Eigen::MatrixXd CovarianceOfChange(double smooth) const;
 
  private:
-  /// What the residual says of the part of the change that it would show.
+  /// What the residual says of the part of the change that it would show, the
+  /// weighted square sum of which has this much of noise in it for each unit of
+  /// its variance.
   FinerSpecimen Compare(const NodeGraph& graph,
                         const ObservedDisplacements& observed,
-                        const FreeFit& fit, const Eigen::VectorXd& visible);
+                        const FreeFit& fit, const Eigen::VectorXd& visible,
+                        double visible_noise);
 
   Eigen::VectorXd rest_;
   std::optional<Eigen::VectorXd> correction_;
+  Eigen::VectorXd likely_change_;
   /// c; zero where no change is known.
   Eigen::VectorXd of_parameters_;
   /// What neighbouring residuals share beside the share of g, over that, up to
   /// 1; 0 where g is not known.
   double unexplained_ = 0;
+  /// What of g something else of the size of the rest may hide.
+  double hidden_share_ = 0;
   double share_ = 0;
   /// Of that share, where finer elements are known.
   double share_variance_ = 0;

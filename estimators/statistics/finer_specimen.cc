@@ -6,10 +6,8 @@
 namespace elastimate {
 namespace {
 
-// What is expected of alpha of a finer specimen: quadratic elements show nearly
-// all of the error of linear ones, and more than that where these are so coarse
-// that the estimate itself is far off.
-constexpr double kExpectedShare = 1;
+// Of alpha of a finer specimen: more where the elements are so coarse that the
+// estimate itself is far off.
 constexpr double kDeviationOfShare = 0.45;
 // The standard error of alpha that rounding leaves.
 constexpr double kRounding = 1e-6;

@@ -5,6 +5,10 @@
 
 namespace elastimate {
 
+/// What is expected of alpha of a finer specimen: quadratic elements show nearly
+/// all of the error of linear ones.
+inline constexpr double kExpectedShare = 1;
+
 /// Whether displacements come from a specimen that is finer than the elements
 /// of a fit, or were computed with these very elements.
 ///

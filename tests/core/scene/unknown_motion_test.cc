@@ -4,6 +4,7 @@
 
 #include "tests/element_kinds.h"
 #include "tests/scenes.h"
+#include "tests/throws.h"
 
 namespace elastimate {
 namespace {
@@ -101,6 +102,41 @@ TEST(UnknownMotionOfScene, OfAllIsRigid) {
     EXPECT_EQ(motion.of_supports.cols(), 0);
     EXPECT_EQ(motion.NumAmounts(), motion.of_all.cols());
   }
+}
+
+TEST(UnknownMotionOfScene, OfLostNodesFollowsTheirNeighbours) {
+  Scene scene = Cube();
+  const NodeGraph graph(scene.mesh);
+  const std::vector<int> nodes = HeldNodesOf(scene);
+  scene.load_cases[0].displacement.setConstant(3, scene.mesh.NumNodes(), 2);
+  scene.load_cases[0].observed.setConstant(3, scene.mesh.NumNodes(), true);
+  for (const int node : {nodes[0], nodes[1], nodes[3]}) {
+    scene.load_cases[0].observed(1, node) = false;
+  }
+  const Eigen::VectorXd measured = MeasuredSupports(scene, 0);
+  EXPECT_EQ(measured.sum(), 2.0 * double(scene.supports.held.count() - 3));
+  Eigen::VectorXd motion = measured;
+  FollowNeighbours(scene, graph, 0, motion);
+  for (const int node : nodes) {
+    EXPECT_EQ(motion.segment<3>(3 * Eigen::Index(node)),
+              Eigen::Vector3d::Constant(2));
+  }
+  EXPECT_EQ(motion.sum(), 2.0 * double(scene.supports.held.count()));
+}
+
+TEST(UnknownMotionOfScene, IsRefusedWithOneResultantTwice) {
+  Scene scene = Cube();
+  const Resultant resultant = {HeldNodesOf(scene), Eigen::Vector3d(0, 0, 1),
+                               Eigen::Vector3d::Constant(0.1)};
+  scene.load_cases[0].resultants = {resultant};
+  EXPECT_NO_THROW(ValidateUnknownMotion(scene));
+  scene.load_cases[0].resultants.push_back(resultant);
+  EXPECT_THROWS_WITH(ValidateUnknownMotion(scene),
+                     "resultant 2 of load case 1 has a component of the same");
+  // Another component of the same nodes is another measurement.
+  scene.load_cases[0].resultants[0].force << testing::kNan, 1, testing::kNan;
+  scene.load_cases[0].resultants[1].force << 1, testing::kNan, testing::kNan;
+  EXPECT_NO_THROW(ValidateUnknownMotion(scene));
 }
 
 }  // namespace

@@ -129,7 +129,6 @@ TEST(MeasuredSupportStatistics, ErrorsAreTrueOfCorrelatedNoise) {
     // independent noise would be about a third of these, and cover half.
     EXPECT_LE(trials.mean_square_score(i), 1.6);
     EXPECT_GE(trials.coverage(i), 0.85);
-    EXPECT_LE(trials.coverage(i), 1);
   }
 }
 
