@@ -7,164 +7,21 @@
 #include <optional>
 #include <vector>
 
-#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/scene/observed_displacements.h"
-#include "elastimate/core/scene/quadratic_scene.h"
-#include "elastimate/core/scene/simplicial_scene.h"
 #include "elastimate/core/scene/unknown_motion.h"
-#include "elastimate/estimators/force_balance/virtual_fields.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
-#include "elastimate/estimators/interface/free_parameters.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 #include "elastimate/estimators/material_fit/displacement_misfit.h"
+#include "elastimate/estimators/material_fit/finer_elements.h"
+#include "elastimate/estimators/material_fit/material_descent.h"
 #include "elastimate/estimators/material_fit/minimum_statistics.h"
 #include "elastimate/estimators/material_fit/outliers.h"
 #include "elastimate/estimators/statistics/bounded_variables.h"
 
 namespace elastimate {
 namespace {
-
-// Steps below this part of a standard error end the fit.
-constexpr double kSmallestStepOfErrors = 1e-2;
-
-// Typical values, their moduli scaled so that the displacements fit best; empty
-// when these oppose the loads.
-std::optional<Eigen::VectorXd> TypicalStart(DisplacementMisfit& misfit) {
-  const FreeParameters& free = misfit.Free();
-  if (const std::optional<double> known = free.All().KnownModulus()) {
-    return free.VariablesOf(free.All().Typical(*known));
-  }
-  const std::optional<double> compliance =
-      misfit.Compliance(free.All().Moduli(free.All().Typical(1)));
-  return compliance ? std::optional<Eigen::VectorXd>(
-                          free.VariablesOf(free.All().Typical(1 / *compliance)))
-                    : std::nullopt;
-}
-
-// From virtual-fields, where it has physical parameters.
-std::optional<Eigen::VectorXd> VirtualFieldsStart(
-    const Scene& scene, const EstimatorOptions& options,
-    const FreeParameters& free, Estimate& estimate) {
-  // Near the minimum is near enough.
-  constexpr int kIterations = 10;
-  EstimatorOptions of_virtual_fields = options;
-  of_virtual_fields.max_iterations = kIterations;
-  of_virtual_fields.on_factorization = {};
-  const VirtualFields virtual_fields;
-  if (!virtual_fields.WhyUnsupported(scene, of_virtual_fields).empty()) {
-    return std::nullopt;
-  }
-  const Estimate start = virtual_fields.Run(scene, of_virtual_fields);
-  estimate.work = estimate.work + start.work;
-  Eigen::VectorXd parameters(Eigen::Index(start.parameters.size()));
-  for (Eigen::Index i = 0; i < parameters.size(); ++i) {
-    parameters(i) = start.parameters[i].value;
-  }
-  if (parameters.size() == 0) {
-    return std::nullopt;
-  }
-  const Eigen::VectorXd variables = free.VariablesOf(parameters);
-  return variables.allFinite() ? std::optional<Eigen::VectorXd>(variables)
-                               : std::nullopt;
-}
-
-// How far a start is from the minimum.
-enum class Distance { kFar, kNear };
-
-BoundedMinimum Descend(const EstimatorOptions& estimator_options,
-                       const Eigen::VectorXd& start, Distance distance,
-                       DisplacementMisfit& misfit) {
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = estimator_options.max_iterations;
-  // Far from the minimum, Gauss-Newton steps lead weakly determined parameters
-  // astray; the radius grows with each step that holds what it promised.
-  constexpr double kLargeRadius = 1e8;
-  options.initial_trust_region_radius =
-      distance == Distance::kFar ? 1 : kLargeRadius;
-  // A step of k standard errors lowers the cost by about k^2 / n of itself.
-  options.function_tolerance = kSmallestStepOfErrors * kSmallestStepOfErrors /
-                               static_cast<double>(misfit.NumRows());
-  options.gradient_tolerance = 1e-14;
-  options.parameter_tolerance = 1e-11;
-  options.logging_type = ceres::SILENT;
-  return MinimizeOverVariables(
-      [&](const Eigen::VectorXd& x, Eigen::VectorXd* residual,
-          Eigen::MatrixXd* jacobian) {
-        return misfit.Evaluate(x, residual, jacobian);
-      },
-      misfit.NumRows(), misfit.Free().VariableBounds(), start, options);
-}
-
-// The standard deviation of a displacement row at x, as given or from what is
-// left there; zero where there is none.
-double NoiseAt(const Eigen::VectorXd& x, DisplacementMisfit& misfit) {
-  const ObservedDisplacements& observed = misfit.Observed();
-  if (observed.GivenNoise()) {
-    return 1 / observed.Norm();
-  }
-  Eigen::VectorXd residual;
-  if (!misfit.Evaluate(x, &residual, nullptr)) {
-    return 0;
-  }
-  const Eigen::Index redundancy =
-      observed.Size() - misfit.NumAmounts() - misfit.Free().Size();
-  return Norm(residual.head(observed.Size())) /
-         std::sqrt(static_cast<double>(std::max<Eigen::Index>(redundancy, 1)));
-}
-
-// From the start on, with resultants that weigh as much as their errors say
-// beside those of the displacements, which the fit shows.
-BoundedMinimum DescendWithResultants(const EstimatorOptions& options,
-                                     const Eigen::VectorXd& start,
-                                     Distance distance,
-                                     DisplacementMisfit& misfit) {
-  constexpr int kWeightings = 5;
-  constexpr double kSettled = 0.05;
-  double noise = std::max(NoiseAt(start, misfit), kLeastNoise);
-  misfit.SetNoise(noise);
-  BoundedMinimum minimum = Descend(options, start, distance, misfit);
-  for (int i = 0; i < kWeightings; ++i) {
-    const double last = noise;
-    noise = std::max(NoiseAt(minimum.variables, misfit), kLeastNoise);
-    if (std::abs(noise - last) < kSettled * last) {
-      break;
-    }
-    misfit.SetNoise(noise);
-    minimum = Descend(options, minimum.variables, Distance::kNear, misfit);
-  }
-  return minimum;
-}
-
-BoundedMinimum DescendFrom(const EstimatorOptions& options,
-                           const Eigen::VectorXd& start, Distance distance,
-                           DisplacementMisfit& misfit) {
-  return misfit.NumResultants() > 0
-             ? DescendWithResultants(options, start, distance, misfit)
-             : Descend(options, start, distance, misfit);
-}
-
-// The best minimum that the starts lead to; empty without a start.
-std::optional<BoundedMinimum> BestMinimum(const Scene& scene,
-                                          const EstimatorOptions& options,
-                                          DisplacementMisfit& misfit,
-                                          Estimate& estimate) {
-  std::optional<BoundedMinimum> best;
-  for (const std::optional<Eigen::VectorXd>& start :
-       {TypicalStart(misfit),
-        VirtualFieldsStart(scene, options, misfit.Free(), estimate)}) {
-    if (start) {
-      BoundedMinimum minimum =
-          DescendFrom(options, *start, Distance::kFar, misfit);
-      if (!best || minimum.cost < best->cost) {
-        best = minimum;
-      }
-    }
-  }
-  return best;
-}
 
 // Where Poisson's ratio of one isotropic material is known, that material.
 std::vector<Material> WithKnownPoissonRatio(const EstimatorOptions& options) {
@@ -201,68 +58,6 @@ struct MaterialFit {
   }
 };
 
-// How many finer elements are worth a look at what they change: more where
-// each costs less.
-Eigen::Index MostFinerElements(const Mesh& mesh) {
-  return mesh.Dimension() == 3 ? 30000 : 120000;
-}
-
-// The same scene with finer elements, and supports that move as they do there.
-class FinerElements {
- public:
-  FinerElements(const Scene& simplicial, const EstimatorOptions& options)
-      : scene_(QuadraticScene(simplicial)), misfit_(scene_, options) {}
-
-  // In the rows of the fit at these variables; empty where there is none.
-  std::optional<RowChange> Change(const Eigen::VectorXd& variables,
-                                  DisplacementMisfit& misfit) {
-    return misfit.ChangeTo(variables, misfit_);
-  }
-
-  // At the nodes of the scene, whose degrees of freedom are `num_dofs`; empty
-  // where there is none.
-  Eigen::MatrixXd Displacement(const Eigen::VectorXd& variables,
-                               Eigen::Index num_dofs) {
-    Eigen::VectorXd rows;
-    return misfit_.Evaluate(variables, &rows, nullptr)
-               ? Eigen::MatrixXd(misfit_.FittedDisplacement().topRows(num_dofs))
-               : Eigen::MatrixXd();
-  }
-
-  Work WorkDone() { return misfit_.Model().WorkDone(); }
-
- private:
-  Scene scene_;
-  DisplacementMisfit misfit_;
-};
-
-// Empty for what has too many elements.
-std::unique_ptr<FinerElements> FinerElementsOf(
-    const Scene& scene, const EstimatorOptions& options) {
-  const Scene simplicial = SimplicialScene(scene);
-  return simplicial.mesh.NumElements() > MostFinerElements(scene.mesh)
-             ? nullptr
-             : std::make_unique<FinerElements>(simplicial, options);
-}
-
-// The displacement of the fit, and of finer elements as far as they are there.
-Eigen::MatrixXd DisplacementOfSpecimen(const Eigen::VectorXd& variables,
-                                       const CorrectedMinimum& corrected,
-                                       const Eigen::MatrixXd& displacement,
-                                       FinerElements& finer) {
-  constexpr double kLeastShare = 1e-3;
-  const double share = corrected.share_of_finer;
-  if (share < kLeastShare) {
-    return displacement;
-  }
-  const Eigen::MatrixXd finer_displacement =
-      finer.Displacement(variables + (corrected.variables - variables) / share,
-                         displacement.rows());
-  return finer_displacement.size() == 0
-             ? displacement
-             : (1 - share) * displacement + share * finer_displacement;
-}
-
 // Says what is known at the minimum of the fit, which has one; `finer` may be
 // null.
 void DescribeFit(const Scene& scene, const EstimatorOptions& options,
@@ -284,8 +79,8 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
     fit.displacement = misfit.FittedDisplacement();
     fit.displacement_of_specimen =
         finer == nullptr ? fit.displacement
-                         : DisplacementOfSpecimen(variables, corrected,
-                                                  fit.displacement, *finer);
+                         : finer->DisplacementOfSpecimen(variables, corrected,
+                                                         fit.displacement);
   }
   if (IsOneIsotropicMaterial(scene.materials)) {
     EnterElasticity(estimate);
@@ -325,7 +120,8 @@ MaterialFit FitAll(const Scene& scene, const EstimatorOptions& options,
 MaterialFit LookAtElements(const Scene& scene, const EstimatorOptions& options,
                            const MaterialFit& of_elements) {
   Stopwatch stopwatch;
-  const std::unique_ptr<FinerElements> finer = FinerElementsOf(scene, options);
+  const std::unique_ptr<FinerElements> finer =
+      FinerElements::Of(scene, options);
   if (!finer || !of_elements.minimum) {
     return of_elements;
   }

@@ -1,0 +1,38 @@
+#include "elastimate/estimators/material_fit/finer_elements.h"
+
+#include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/core/scene/simplicial_scene.h"
+
+namespace elastimate {
+
+FinerElements::FinerElements(const Scene& simplicial,
+                             const EstimatorOptions& options)
+    : scene_(QuadraticScene(simplicial)), misfit_(scene_, options) {}
+
+std::unique_ptr<FinerElements> FinerElements::Of(
+    const Scene& scene, const EstimatorOptions& options) {
+  const Eigen::Index most = scene.mesh.Dimension() == 3 ? 30000 : 120000;
+  const Scene simplicial = SimplicialScene(scene);
+  return simplicial.mesh.NumElements() > most
+             ? nullptr
+             : std::make_unique<FinerElements>(simplicial, options);
+}
+
+Eigen::MatrixXd FinerElements::DisplacementOfSpecimen(
+    const Eigen::VectorXd& variables, const CorrectedMinimum& corrected,
+    const Eigen::MatrixXd& displacement) {
+  constexpr double kLeastShare = 1e-3;
+  const double share = corrected.share_of_finer;
+  if (share < kLeastShare) {
+    return displacement;
+  }
+  Eigen::VectorXd rows;
+  if (!misfit_.Evaluate(variables + (corrected.variables - variables) / share,
+                        &rows, nullptr)) {
+    return displacement;
+  }
+  return (1 - share) * displacement +
+         share * misfit_.FittedDisplacement().topRows(displacement.rows());
+}
+
+}  // namespace elastimate

@@ -1,0 +1,50 @@
+#ifndef ELASTIMATE_ESTIMATORS_MATERIAL_FIT_FINER_ELEMENTS_H_
+#define ELASTIMATE_ESTIMATORS_MATERIAL_FIT_FINER_ELEMENTS_H_
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/material_fit/displacement_misfit.h"
+#include "elastimate/estimators/material_fit/minimum_statistics.h"
+#include "elastimate/estimators/statistics/element_errors.h"
+
+namespace elastimate {
+
+/// A scene in quadratic simplices, of the simplices of its mesh or of those
+/// that its elements are cut into.
+class FinerElements {
+ public:
+  /// Of a scene of linear simplices.
+  FinerElements(const Scene& simplicial, const EstimatorOptions& options);
+  /// Null for a mesh of more than 30 000 simplices, or 120 000 in the plane,
+  /// where each costs less.
+  static std::unique_ptr<FinerElements> Of(const Scene& scene,
+                                           const EstimatorOptions& options);
+
+  /// What they change in the rows of the fit of the scene at these variables
+  /// (DisplacementMisfit::ChangeTo); empty where there is none.
+  std::optional<RowChange> Change(const Eigen::VectorXd& variables,
+                                  DisplacementMisfit& misfit) {
+    return misfit.ChangeTo(variables, misfit_);
+  }
+
+  /// From the displacement of the fit, num_dofs x num_load_cases, that of the
+  /// specimen, which is as much finer as the corrected minimum says.
+  Eigen::MatrixXd DisplacementOfSpecimen(const Eigen::VectorXd& variables,
+                                         const CorrectedMinimum& corrected,
+                                         const Eigen::MatrixXd& displacement);
+
+  Work WorkDone() { return misfit_.Model().WorkDone(); }
+
+ private:
+  Scene scene_;
+  DisplacementMisfit misfit_;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_MATERIAL_FIT_FINER_ELEMENTS_H_

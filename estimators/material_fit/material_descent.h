@@ -1,0 +1,35 @@
+#ifndef ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MATERIAL_DESCENT_H_
+#define ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MATERIAL_DESCENT_H_
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/material_fit/displacement_misfit.h"
+#include "elastimate/estimators/statistics/bounded_variables.h"
+
+namespace elastimate {
+
+/// How far a start is from the minimum.
+enum class Distance { kFar, kNear };
+
+/// The minimum of a misfit within bounds that a start leads to, by Ceres;
+/// resultants weigh there as much as their errors say beside those of the
+/// displacements, which the fit shows (some descents more).
+BoundedMinimum DescendFrom(const EstimatorOptions& options,
+                           const Eigen::VectorXd& start, Distance distance,
+                           DisplacementMisfit& misfit);
+
+/// The best of those that typical values and virtual-fields lead to; empty
+/// where both oppose the loads.  Adds the work of virtual-fields to the
+/// estimate.
+std::optional<BoundedMinimum> BestMinimum(const Scene& scene,
+                                          const EstimatorOptions& options,
+                                          DisplacementMisfit& misfit,
+                                          Estimate& estimate);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MATERIAL_DESCENT_H_
