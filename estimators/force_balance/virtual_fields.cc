@@ -308,37 +308,44 @@ void DescribeCovariance(const EstimatorOptions& options,
   }
 }
 
-// The probability that the specimen is finer than its elements.  Such a
-// specimen leaves a share of the loads in the force residual: on most shapes 1
-// to 10, the least 0.3 [benchmarks: unseen]; where the residual is smaller, the
-// elements are what the displacements were computed with.  Noise leaves as much
-// from a tenth of a per cent of the displacements on, and hides what it is.
+// The probability that the specimen is finer than its elements, by Bayes' rule
+// from the force residual, a share of the loads.  Such a specimen leaves 1 to
+// 10 on most shapes, 0.3 at least [benchmarks: unseen].  Displacements that
+// were computed with these very elements leave what noise makes of them, from
+// rounding to far more than the loads; a residual above that of most finer
+// specimens may be noise of either.  Both are as likely before.
 double ProbabilityOfFinerSpecimen(double force_residual) {
   constexpr double kMeanLog = 0.7;
   constexpr double kDeviationOfLog = 1.1;
-  const double score = (std::log(force_residual) - kMeanLog) / kDeviationOfLog;
-  return std::erfc(-score / std::sqrt(2.0)) / 2;
+  // From 1e-10 to 100 times the loads, for each unit of the logarithm.
+  constexpr double kDensityOfNoise = 1 / 28.0;
+  const double score =
+      std::min(0.0, (std::log(force_residual) - kMeanLog) / kDeviationOfLog);
+  const double density =
+      std::exp(-score * score / 2) / (kDeviationOfLog * std::sqrt(2 * M_PI));
+  return density / (density + kDensityOfNoise);
 }
 
 // Adds what the elements miss to the covariance of the free parameters.
 void AllowForElements(const Scene& scene, Estimate& estimate) {
-  // Of E as of the energy that is missed, of nu about so much less [benchmarks:
-  // unseen].
+  // Of the energy that is missed, in E and nu [benchmarks: unseen].
+  constexpr double kYoungsModulusShare = 1.5;
   constexpr double kPoissonRatioShare = 0.6;
   if (!estimate.IsUsable() || scene.mesh.NumElements() == 1) {
     return;
   }
-  const double missed = DiscretizationError(scene.mesh, estimate.elasticity,
-                                            SmoothDisplacements(scene));
-  const double error =
-      missed * std::sqrt(ProbabilityOfFinerSpecimen(*estimate.force_residual));
+  const double missed =
+      DiscretizationError(scene.mesh, estimate.elasticity,
+                          SmoothDisplacements(scene)) *
+      std::sqrt(ProbabilityOfFinerSpecimen(*estimate.force_residual));
+  const double error = kYoungsModulusShare * missed;
   estimate.discretization_error = error;
   estimate.covariance(0, 0) +=
       std::pow(error * estimate.elasticity.youngs_modulus, 2);
   // Of a nu that is free.
   if (std::isfinite(estimate.covariance(1, 1))) {
-    estimate.poisson_ratio_discretization_error = kPoissonRatioShare * error;
-    const double variance = std::pow(kPoissonRatioShare * error, 2);
+    estimate.poisson_ratio_discretization_error = kPoissonRatioShare * missed;
+    const double variance = std::pow(kPoissonRatioShare * missed, 2);
     estimate.covariance(1, 1) += variance;
     WidenInterval(variance, estimate);
   }
