@@ -29,35 +29,6 @@ Eigen::Vector2d LargestOf(const Eigen::VectorXd& change,
   return largest;
 }
 
-// Without its directions of negative eigenvalues: noise whose neighbours differ
-// by more than chance is taken for independent.
-Eigen::MatrixXd PositivePart(const Eigen::MatrixXd& symmetric) {
-  const SymmetricEigenDecomposition parts = DecomposeSymmetric(symmetric);
-  return parts.vectors * parts.values.cwiseMax(0).asDiagonal() *
-         parts.vectors.transpose();
-}
-
-// How far a residual that is alike over this length is one of the model rather
-// than noise: wholly from an eighth of the specimen on, as a wave of its size
-// is alike, and quickly less below.
-double ShareOfModel(const Mesh& mesh, double length) {
-  const double size =
-      (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff())
-          .norm();
-  return std::min(1.0, std::pow(8 * length / size, 4));
-}
-
-// The part of the variance of a row that the residual has: less than all only
-// where more noise is given than there is, as on data that were computed.
-double ShareOfResidual(const Eigen::VectorXd& residual, Eigen::Index num_fitted,
-                       double variance) {
-  const auto redundancy = static_cast<double>(
-      std::max<Eigen::Index>(residual.size() - num_fitted, 1));
-  return variance > 0
-             ? std::min(1.0, SquaredNorm(residual) / redundancy / variance)
-             : 1;
-}
-
 // The covariance that the correlation of the residual adds to that of
 // independent noise, over the variance of a row: that of correlated noise, of
 // which the residual has this share, and where the model misses something
@@ -70,14 +41,12 @@ Eigen::MatrixXd AddedByCorrelation(const Scene& scene,
                                    double smooth_part,
                                    const ObservedDisplacements& observed,
                                    Evidence& evidence, Estimate& estimate) {
-  const Autocorrelation correlation =
-      CorrelateResiduals(scene, observed, residual);
-  estimate.correlation_length = correlation.Length();
-  const double smooth =
-      ShareOfModel(scene.mesh, correlation.Length()) * smooth_part;
+  const CorrelatedResiduals correlated =
+      DescribeCorrelation(scene, observed, residual, sensitivities);
+  estimate.correlation_length = correlated.length;
+  const double smooth = correlated.share_of_model * smooth_part;
   evidence.smooth_part = std::sqrt(smooth) / Norm(observed.Measured());
-  return share * PositivePart(CovarianceOfCorrelation(
-                     scene, observed, sensitivities, inverse, correlation)) +
+  return share * inverse * correlated.gram * inverse +
          (variance > 0 ? smooth / variance : 0) * inverse;
 }
 

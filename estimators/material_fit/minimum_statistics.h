@@ -24,7 +24,7 @@ struct CorrectedMinimum {
 ///
 ///   sigma^2 (S^T S)^-1, the Cramer-Rao bound, with sigma^2 as given or from
 ///     the residual,
-///   + what correlated residuals add to it (CovarianceOfCorrelation),
+///   + what correlated residuals add to it (DescribeCorrelation),
 ///   + (S^T S)^-1 times the square sum of a residual that is alike over the
 ///     specimen, which no noise is,
 ///   + the square of what outliers that are left pull the parameters by.

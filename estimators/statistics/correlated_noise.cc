@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/mesh/mesh_points.h"
 #include "elastimate/core/mesh/nearest_points.h"
@@ -98,6 +99,27 @@ void VisitPairs(const RowsOfComponent& rows, const Visit& visit) {
   }
 }
 
+Eigen::MatrixXd PositivePart(const Eigen::MatrixXd& symmetric) {
+  const SymmetricEigenDecomposition parts = DecomposeSymmetric(symmetric);
+  return parts.vectors * parts.values.cwiseMax(0).asDiagonal() *
+         parts.vectors.transpose();
+}
+
+// Of rho = share exp(-d^2 / 2 X^2) at two squares of distances.
+void FillSmoothed(double first, double next, const Eigen::Vector2d& squares,
+                  Autocorrelation& correlation) {
+  if (next >= first) {
+    correlation.share = correlation.values(0);
+    correlation.smoothed_length = std::numeric_limits<double>::infinity();
+    return;
+  }
+  const double double_square =
+      (squares(1) - squares(0)) / std::log(first / next);
+  correlation.share = std::clamp(first * std::exp(squares(0) / double_square),
+                                 correlation.values(0), 1.0);
+  correlation.smoothed_length = std::sqrt(M_PI * double_square) / 2;
+}
+
 }  // namespace
 
 Autocorrelation CorrelateResiduals(const Scene& scene,
@@ -119,12 +141,14 @@ Autocorrelation CorrelateResiduals(const Scene& scene,
       1 + static_cast<Eigen::Index>(size / correlation.step);
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(num_steps);
   Eigen::VectorXd counts = Eigen::VectorXd::Zero(num_steps);
+  Eigen::VectorXd square_distances = Eigen::VectorXd::Zero(num_steps);
   for (const RowsOfComponent& rows : all) {
     VisitPairs(rows, [&](Eigen::Index a, Eigen::Index b, double distance) {
       const auto k = static_cast<Eigen::Index>(distance / correlation.step);
       if (k < num_steps) {
         sums(k) += residual(a) * residual(b);
         counts(k) += 1;
+        square_distances(k) += distance * distance;
       }
     });
   }
@@ -140,30 +164,64 @@ Autocorrelation CorrelateResiduals(const Scene& scene,
     ++last;
   }
   correlation.values = values.head(last).cwiseMin(1.0);
+  if (last > 0 && num_steps > 1 && counts(1) > 0) {
+    const double next = std::max(sums(1) / (counts(1) * variance), 0.0) +
+                        kTwoSidedErrors / std::sqrt(counts(1));
+    FillSmoothed(values(0), next,
+                 square_distances.head(2).cwiseQuotient(counts.head(2)),
+                 correlation);
+  }
   return correlation;
 }
 
-Eigen::MatrixXd CovarianceOfCorrelation(const Scene& scene,
-                                        const ObservedDisplacements& observed,
-                                        const Eigen::MatrixXd& sensitivities,
-                                        const Eigen::MatrixXd& inverse,
-                                        const Autocorrelation& correlation) {
+Eigen::MatrixXd GramOfCorrelation(const Scene& scene,
+                                  const ObservedDisplacements& observed,
+                                  const Eigen::MatrixXd& sensitivities,
+                                  const Autocorrelation& correlation) {
   const Eigen::Index m = sensitivities.cols();
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(m, m);
-  // By columns, each a row of influences.
-  const Eigen::MatrixXd influence = inverse * sensitivities.transpose();
+  // By columns, so that those of a row are side by side.
+  const Eigen::MatrixXd by_row = sensitivities.transpose();
   for (const RowsOfComponent& rows : SplitRows(scene, observed)) {
     Eigen::MatrixXd of_component = Eigen::MatrixXd::Zero(m, m);
     VisitPairs(rows, [&](Eigen::Index a, Eigen::Index b, double distance) {
       const double rho = correlation.At(distance);
       if (rho != 0) {
-        of_component += rho * influence.col(a) * influence.col(b).transpose();
+        of_component += rho * by_row.col(a) * by_row.col(b).transpose();
       }
     });
     sum += rows.points_per_row * rows.points_per_row *
            (of_component + of_component.transpose());
   }
   return sum;
+}
+
+double ShareOfModel(const Mesh& mesh, double length) {
+  const double size =
+      (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff())
+          .norm();
+  return std::min(1.0, std::pow(8 * length / size, 4));
+}
+
+CorrelatedResiduals DescribeCorrelation(const Scene& scene,
+                                        const ObservedDisplacements& observed,
+                                        const Eigen::VectorXd& residual,
+                                        const Eigen::MatrixXd& sensitivities) {
+  const Autocorrelation correlation =
+      CorrelateResiduals(scene, observed, residual);
+  return {correlation.Length(),
+          ShareOfModel(scene.mesh, correlation.LengthOfAlike()),
+          PositivePart(
+              GramOfCorrelation(scene, observed, sensitivities, correlation))};
+}
+
+double ShareOfResidual(const Eigen::VectorXd& residual, Eigen::Index num_fitted,
+                       double variance) {
+  const auto redundancy = static_cast<double>(
+      std::max<Eigen::Index>(residual.size() - num_fitted, 1));
+  return variance > 0
+             ? std::min(1.0, SquaredNorm(residual) / redundancy / variance)
+             : 1;
 }
 
 }  // namespace elastimate

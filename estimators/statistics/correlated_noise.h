@@ -2,6 +2,7 @@
 #define ELASTIMATE_ESTIMATORS_STATISTICS_CORRELATED_NOISE_H_
 
 #include <Eigen/Core>
+#include <algorithm>
 
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/scene.h"
@@ -15,6 +16,13 @@ struct Autocorrelation {
   /// At distances in [k step, (k + 1) step); the first is that of neighbours.
   /// Ends where it is no longer significant; empty for independent residuals.
   Eigen::VectorXd values;
+  /// rho just beyond a distance of zero, where residuals that are alike are the
+  /// same: the share of these, beside what is independent at each point.
+  double share = 1;
+  /// The integral of exp(-d^2 / 2 X^2), what was smoothed, which falls no
+  /// faster than the first two steps do [length]; infinite where noise hides
+  /// that they fall.
+  double smoothed_length = 0;
 
   /// Beyond the last step, 0.
   double At(double distance) const {
@@ -23,31 +31,61 @@ struct Autocorrelation {
   }
   /// The integral of rho, 0 for independent residuals [length].
   double Length() const { return step * values.sum(); }
+  /// The same, of those that are alike, as long as it may be.
+  double LengthOfAlike() const {
+    return std::max(Length() / share, smoothed_length);
+  }
 };
 
 /// Of the rows of `residual`, in steps of the median distance of a point to its
 /// nearest neighbour, up to where it first is less than three of its standard
-/// deviations for independent residuals.  `scene` is that of `observed`.
-/// O(n^2) for up to 20 000 points in a load case, of which there are no more:
-/// of others, every second, third and so on is looked at.
+/// deviations for independent residuals.  The share of those that are alike
+/// and the length of what was smoothed go by ln rho of the first two steps,
+/// which is linear in d^2 then, the second as large as it may be.  `scene` is
+/// that of `observed`. O(n^2) for up to 20 000 points in a load case, of which
+/// there are no more: of others, every second, third and so on is looked at.
 Autocorrelation CorrelateResiduals(const Scene& scene,
                                    const ObservedDisplacements& observed,
                                    const Eigen::VectorXd& residual);
 
-/// By how much the covariance of least squares is more than that of independent
-/// noise of variance 1, (S^T S)^-1, when rows are correlated like this,
+/// What noise that is correlated like this adds to the Gram matrix of its
+/// sensitivities S, the rows of `observed`, in the covariance of least squares
+/// over the variance of a row, (S^T S)^-1 (S^T S + G) (S^T S)^-1:
 ///
-///   (S^T S)^-1 (sum over rows i != j of rho(|x_i - x_j|) s_i s_j^T)
-///   (S^T S)^-1,
+///   G = sum over rows i != j of rho(|x_i - x_j|) s_i s_j^T
 ///
-/// where S are the sensitivities of the rows of `observed` [White 1980;
-/// Conley 1999, with rho of all pairs in place of each product of residuals].
-/// It may have negative eigenvalues.  O(n^2), as CorrelateResiduals.
-Eigen::MatrixXd CovarianceOfCorrelation(const Scene& scene,
+/// [White 1980; Conley 1999, with rho of all pairs in place of each product of
+/// residuals].  It may have negative eigenvalues.  O(n^2), as
+/// CorrelateResiduals.
+Eigen::MatrixXd GramOfCorrelation(const Scene& scene,
+                                  const ObservedDisplacements& observed,
+                                  const Eigen::MatrixXd& sensitivities,
+                                  const Autocorrelation& correlation);
+
+/// How far residuals of which some are alike over this length are those of a
+/// model that is wrong rather than of noise: wholly from an eighth of the
+/// specimen on, as a wave of its size is alike, and quickly less below.
+double ShareOfModel(const Mesh& mesh, double length);
+
+/// What the correlation of residuals says of where they come from.
+struct CorrelatedResiduals {
+  double length;          ///< Autocorrelation::Length().
+  double share_of_model;  ///< ShareOfModel() of LengthOfAlike().
+  /// GramOfCorrelation without directions of negative eigenvalues: noise whose
+  /// neighbours differ by more than chance is taken for independent.
+  Eigen::MatrixXd gram;
+};
+
+CorrelatedResiduals DescribeCorrelation(const Scene& scene,
                                         const ObservedDisplacements& observed,
-                                        const Eigen::MatrixXd& sensitivities,
-                                        const Eigen::MatrixXd& inverse,
-                                        const Autocorrelation& correlation);
+                                        const Eigen::VectorXd& residual,
+                                        const Eigen::MatrixXd& sensitivities);
+
+/// The part of the variance of a row that the residual of a fit of so many
+/// parameters has: less than all only where more noise is given than there is,
+/// as on data that were computed.
+double ShareOfResidual(const Eigen::VectorXd& residual, Eigen::Index num_fitted,
+                       double variance);
 
 }  // namespace elastimate
 

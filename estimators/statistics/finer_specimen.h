@@ -5,8 +5,8 @@
 
 namespace elastimate {
 
-/// What is expected of alpha of a finer specimen: quadratic elements show nearly
-/// all of the error of linear ones.
+/// What is expected of alpha of a finer specimen: quadratic elements show
+/// nearly all of the error of linear ones.
 inline constexpr double kExpectedShare = 1;
 
 /// Whether displacements come from a specimen that is finer than the elements

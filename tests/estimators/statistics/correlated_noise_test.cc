@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <random>
 
+#include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "tests/scenes.h"
 
 namespace elastimate {
@@ -45,6 +45,16 @@ Eigen::VectorXd IndependentNoise(Eigen::Index size, unsigned seed) {
                                       [&](auto) { return normal(generator); });
 }
 
+// A cosine of period 14 along x, in both components.
+Eigen::VectorXd AlongX(const Scene& scene) {
+  Eigen::VectorXd field(2 * scene.mesh.NumNodes());
+  for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
+    field.segment(2 * node, 2)
+        .setConstant(std::cos(2 * M_PI * scene.mesh.nodes(0, node) / 14));
+  }
+  return field;
+}
+
 TEST(Autocorrelation, OfIndependentNoiseIsMostlyNone) {
   const Scene scene = Grid();
   const ObservedDisplacements observed(scene);
@@ -62,18 +72,51 @@ TEST(Autocorrelation, OfIndependentNoiseIsMostlyNone) {
 TEST(Autocorrelation, OfAFieldReachesAsFarAsIt) {
   const Scene scene = Grid();
   const ObservedDisplacements observed(scene);
-  Eigen::VectorXd field(observed.Size());
-  for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
-    field.segment(2 * node, 2)
-        .setConstant(std::cos(2 * M_PI * scene.mesh.nodes(0, node) / 14));
-  }
   const Autocorrelation correlation =
-      CorrelateResiduals(scene, observed, field);
+      CorrelateResiduals(scene, observed, AlongX(scene));
   EXPECT_NEAR(correlation.step, 1.5, 1e-12);
   EXPECT_GT(correlation.values(0), 0.8);
   // A cosine of period 14 is no longer alike at a quarter of it.
   EXPECT_GT(correlation.Length(), 2);
   EXPECT_LT(correlation.Length(), 6);
+}
+
+// Half of the variance is that of independent noise, which halves the integral
+// of rho, but not the length over which the other half is alike.
+TEST(Autocorrelation, IndependentNoiseDoesNotShortenTheLengthOfAlike) {
+  const Scene scene = Grid();
+  const ObservedDisplacements observed(scene);
+  const Eigen::VectorXd field = AlongX(scene);
+  const double alone = CorrelateResiduals(scene, observed, field).Length();
+  const double deviation =
+      std::sqrt(field.squaredNorm() / static_cast<double>(field.size()));
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const Autocorrelation correlation = CorrelateResiduals(
+        scene, observed,
+        field + deviation * IndependentNoise(field.size(), seed));
+    EXPECT_NEAR(correlation.share, 0.5, 0.15);
+    EXPECT_LT(correlation.Length(), 0.7 * alone);
+    EXPECT_GT(correlation.LengthOfAlike(), 0.8 * alone);
+  }
+}
+
+TEST(Autocorrelation, OfSmoothedNoiseReachesAsFarAsIt) {
+  constexpr double kLength = 1.5;
+  const Scene scene = Grid();
+  const ObservedDisplacements observed(scene);
+  double mean = 0;
+  constexpr int kFields = 50;
+  for (int seed = 1; seed <= kFields; ++seed) {
+    std::mt19937_64 generator{std::uint64_t(seed)};
+    const Eigen::VectorXd noise =
+        DrawNoiseAt(scene.mesh.nodes, 1, kLength, generator).reshaped();
+    mean +=
+        CorrelateResiduals(scene, observed, noise).LengthOfAlike() / kFields;
+  }
+  // The integral of exp(-d^2 / 2 X^2), and what 225 points leave open.
+  const double integral = kLength * std::sqrt(M_PI / 2);
+  EXPECT_GT(mean, integral);
+  EXPECT_LT(mean, 1.5 * integral);
 }
 
 TEST(Autocorrelation, AddsTheSumOverAllPairs) {
@@ -84,8 +127,6 @@ TEST(Autocorrelation, AddsTheSumOverAllPairs) {
   correlation.values = Eigen::Vector2d(0.6, 0.2);
   const Eigen::MatrixXd sensitivities =
       Eigen::MatrixXd::Random(observed.Size(), 2);
-  const Eigen::Matrix2d gram = sensitivities.transpose() * sensitivities;
-  const Eigen::Matrix2d inverse = gram.inverse();
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
   for (Eigen::Index a = 0; a < scene.mesh.NumNodes(); ++a) {
     for (Eigen::Index b = 0; b < scene.mesh.NumNodes(); ++b) {
@@ -101,10 +142,9 @@ TEST(Autocorrelation, AddsTheSumOverAllPairs) {
       }
     }
   }
-  const Eigen::Matrix2d expected = inverse * sum * inverse;
-  const Eigen::MatrixXd added = CovarianceOfCorrelation(
-      scene, observed, sensitivities, inverse, correlation);
-  EXPECT_LT((added - expected).norm(), 1e-10 * expected.norm());
+  const Eigen::MatrixXd added =
+      GramOfCorrelation(scene, observed, sensitivities, correlation);
+  EXPECT_LT((added - sum).norm(), 1e-10 * sum.norm());
 }
 
 }  // namespace
