@@ -8,7 +8,6 @@
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/estimators/interface/limits.h"
-#include "elastimate/estimators/statistics/correlated_noise.h"
 #include "elastimate/estimators/statistics/element_errors.h"
 #include "elastimate/estimators/statistics/errors_on_bound.h"
 #include "elastimate/estimators/statistics/residual_statistics.h"
@@ -134,7 +133,7 @@ class FitDescription {
     return true;
   }
 
-  void MeasureNoise(const Scene& scene, const NodeGraph& graph) {
+  void MeasureNoise(const NodeGraph& graph) {
     if (losses_.IsLeastSquares()) {
       variance_ =
           EstimateVariance(observed_, SquaredNorm(Rest()),
@@ -147,10 +146,8 @@ class FitDescription {
     const SmoothSquareSum smooth = MeasureSmoothPart(
         graph, observed_, sums_.weights.cwiseSqrt().cwiseProduct(Rest()),
         estimate_);
-    double least = evidence_.is_explained_by_given_noise ? 0 : smooth.least;
-    if (variance_ && smooth.least > 0) {
-      least *= MeasureCorrelation(scene);
-    }
+    const double least =
+        evidence_.is_explained_by_given_noise ? 0 : smooth.least;
     evidence_.smooth_part = std::sqrt(least) / Norm(observed_.Measured());
     const double missed =
         elements_ ? elements_->MissedSquareSum(smooth.most) : 0;
@@ -185,7 +182,7 @@ class FitDescription {
     }
     const Eigen::Vector2d scale(estimate_.elasticity.youngs_modulus, 1);
     estimate_.covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
-    if (smooth_square_sum_ > 0 || !of_correlation_.isZero(0)) {
+    if (smooth_square_sum_ > 0) {
       evidence_.smooth_residual_error = budget.model(0);
     }
   }
@@ -237,17 +234,6 @@ class FitDescription {
   const Eigen::VectorXd& Rest() const {
     return elements_ ? elements_->Rest() : fit_.residual;
   }
-  // Of residuals whose neighbours are alike: how far a model is the cause, and
-  // what noise adds to the covariance.
-  double MeasureCorrelation(const Scene& scene) {
-    const CorrelatedResiduals correlated =
-        DescribeCorrelation(scene, observed_, Rest(), fit_.sensitivities);
-    estimate_.correlation_length = correlated.length;
-    of_correlation_ = ShareOfResidual(Rest(), Eigen::Index(free_.size()),
-                                      variance_->variance) *
-                      variance_->variance * correlated.gram;
-    return correlated.share_of_model;
-  }
   void EnterDiscretization() {
     if (!elements_ || !elements_->AreKnown()) {
       return;
@@ -283,9 +269,7 @@ class FitDescription {
   }
   Eigen::MatrixXd ModelCovariance(
       const std::vector<Eigen::Index>& parameters) const {
-    const Eigen::MatrixXd inverse = Inverse(Gram()(parameters, parameters));
-    return smooth_square_sum_ * inverse +
-           inverse * of_correlation_(parameters, parameters) * inverse;
+    return smooth_square_sum_ * Inverse(Gram()(parameters, parameters));
   }
   Eigen::MatrixXd Covariance(
       const std::vector<Eigen::Index>& parameters) const {
@@ -310,8 +294,6 @@ class FitDescription {
   /// Empty with a loss.
   std::optional<ResidualVariance> variance_;
   double smooth_square_sum_ = 0;
-  /// What correlated noise adds to the Gram matrix, times the variance.
-  Eigen::Matrix2d of_correlation_ = Eigen::Matrix2d::Zero();
   /// Empty where no parameter is free.
   std::optional<ElementErrors> elements_;
   /// Their covariance of the free parameters.
@@ -369,7 +351,7 @@ std::optional<double> DescribeDisplacementFit(
     return std::nullopt;
   }
   description.MeasureElements(scene, graph);
-  description.MeasureNoise(scene, graph);
+  description.MeasureNoise(graph);
   description.FillCovariance();
   const std::optional<double> variance = description.RowVariance();
   if (evidence.active.youngs_modulus != Side::kNone) {

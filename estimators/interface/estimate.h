@@ -160,8 +160,8 @@ struct Estimate {
   /// for independent noise, near 1 when the model misses something smooth.
   std::optional<double> residual_correlation;
   /// Over which displacement residuals are alike, the integral of their
-  /// autocorrelation [length]: 0 for independent noise.  Empty where they are
-  /// not alike, and for fits with a loss.
+  /// autocorrelation [length]: 0 for independent noise.  Of fits of several
+  /// materials and of unknown motions.
   std::optional<double> correlation_length;
   /// What the elements leave uncertain, as one standard deviation, which is
   /// part of the standard errors: relative of E, and of a free nu.

@@ -7,7 +7,6 @@
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/mechanics/strain_energy.h"
 #include "elastimate/estimators/interface/limits.h"
-#include "elastimate/estimators/statistics/correlated_noise.h"
 #include "elastimate/estimators/statistics/residual_statistics.h"
 
 namespace elastimate {
@@ -102,7 +101,7 @@ ElementErrors::ElementErrors(const Scene& scene, const NodeGraph& graph,
     missed_norm_ = kQuadraticErrorShare * Norm(rows);
     return;
   }
-  const FinerSpecimen finer = Compare(scene, graph, observed, fit, visible,
+  const FinerSpecimen finer = Compare(graph, observed, fit, visible,
                                       VisibleNoise(fit, change->by_noise));
   share_ = finer.Mean();
   rest_ += share_ * visible;
@@ -140,7 +139,7 @@ Eigen::MatrixXd ElementErrors::CovarianceOfChange(double smooth) const {
   return variance * (of_parameters_ * of_parameters_.transpose());
 }
 
-FinerSpecimen ElementErrors::Compare(const Scene& scene, const NodeGraph& graph,
+FinerSpecimen ElementErrors::Compare(const NodeGraph& graph,
                                      const ObservedDisplacements& observed,
                                      const FreeFit& fit,
                                      const Eigen::VectorXd& visible,
@@ -185,10 +184,6 @@ FinerSpecimen ElementErrors::Compare(const Scene& scene, const NodeGraph& graph,
       share, std::sqrt(variance * dependence) / size, redundancy / dependence);
   unexplained_ = UnexplainedShare(neighbours, SquaredNorm(weighted_rest),
                                   share * share * size);
-  if (unexplained_ > 0 && fit.is_least_squares) {
-    unexplained_ *= ShareOfModel(
-        scene.mesh, CorrelateResiduals(scene, observed, rest).LengthOfAlike());
-  }
   finer.probability *= 1 - unexplained_;
   if (!fit.is_on_bound) {
     hidden_share_ =

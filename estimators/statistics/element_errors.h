@@ -84,7 +84,7 @@ class ElementErrors {
   /// What the residual says of the part of the change that it would show, the
   /// weighted square sum of which has this much of noise in it for each unit of
   /// its variance.
-  FinerSpecimen Compare(const Scene& scene, const NodeGraph& graph,
+  FinerSpecimen Compare(const NodeGraph& graph,
                         const ObservedDisplacements& observed,
                         const FreeFit& fit, const Eigen::VectorXd& visible,
                         double visible_noise);
@@ -95,7 +95,7 @@ class ElementErrors {
   /// c; zero where no change is known.
   Eigen::VectorXd of_parameters_;
   /// What neighbouring residuals share beside the share of g, over that, up to
-  /// 1, as far as noise does not share it; 0 where g is not known.
+  /// 1; 0 where g is not known.
   double unexplained_ = 0;
   /// What of g something else of the size of the rest may hide.
   double hidden_share_ = 0;
