@@ -29,6 +29,17 @@ Eigen::Vector2d LargestOf(const Eigen::VectorXd& change,
   return largest;
 }
 
+// The part of the variance of a row that the residual has: less than all only
+// where more noise is given than there is, as on data that were computed.
+double ShareOfResidual(const Eigen::VectorXd& residual, Eigen::Index num_fitted,
+                       double variance) {
+  const auto redundancy = static_cast<double>(
+      std::max<Eigen::Index>(residual.size() - num_fitted, 1));
+  return variance > 0
+             ? std::min(1.0, SquaredNorm(residual) / redundancy / variance)
+             : 1;
+}
+
 // The covariance that the correlation of the residual adds to that of
 // independent noise, over the variance of a row: that of correlated noise, of
 // which the residual has this share, and where the model misses something
@@ -144,6 +155,42 @@ Eigen::VectorXd EnterElements(const Scene& scene, const FreeParameters& free,
   return corrected;
 }
 
+// Enters what the elements change and leave uncertain, which adds to the
+// covariance.
+CorrectedMinimum CorrectMinimum(const Scene& scene, const FreeParameters& free,
+                                const Eigen::VectorXd& variables,
+                                const ElementErrors& elements, double smooth,
+                                const Eigen::MatrixXd& inverse,
+                                Eigen::MatrixXd& covariance, Evidence& evidence,
+                                Estimate& estimate) {
+  const Eigen::MatrixXd by_elements =
+      elements.CovarianceOfChange(smooth) +
+      elements.MissedSquareSum(smooth) * inverse;
+  covariance += by_elements;
+  evidence.likely_element_change =
+      LargestOf(elements.LikelyChange(), estimate, free);
+  return {EnterElements(scene, free, variables, by_elements,
+                        *elements.Correction(), estimate),
+          elements.Share()};
+}
+
+// Enters what outliers pull the variables by, which adds to the covariance.
+void AddOutliers(const FreeParameters& free,
+                 const ObservedDisplacements& observed,
+                 const Eigen::VectorXd& residual,
+                 const Eigen::MatrixXd& sensitivities,
+                 Eigen::MatrixXd& covariance, Evidence& evidence,
+                 Estimate& estimate) {
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(free.Size());
+  if (HasHeavyTails(residual)) {
+    change = RobustChange(observed, residual, sensitivities);
+    evidence.outlier_change = LargestOf(change, estimate, free);
+  }
+  covariance += change * change.transpose();
+  estimate.error_budget.outliers =
+      ErrorsOfVariables(free, change.cwiseAbs2().asDiagonal());
+}
+
 }  // namespace
 
 CorrectedMinimum DescribeMinimum(const Scene& scene,
@@ -197,28 +244,15 @@ CorrectedMinimum DescribeMinimum(const Scene& scene,
   Eigen::MatrixXd covariance = variance.variance * (inverse + by_model);
   CorrectedMinimum corrected = {variables};
   if (elements) {
-    const Eigen::MatrixXd by_elements =
-        elements->CovarianceOfChange(smooth.most) +
-        elements->MissedSquareSum(smooth.most) * inverse;
-    covariance += by_elements;
-    evidence.likely_element_change =
-        LargestOf(elements->LikelyChange(), estimate, free);
-    corrected = {EnterElements(scene, free, variables, by_elements,
-                               *elements->Correction(), estimate),
-                 elements->Share()};
+    corrected = CorrectMinimum(scene, free, variables, *elements, smooth.most,
+                               inverse, covariance, evidence, estimate);
   }
   estimate.error_budget.noise =
       ErrorsOfVariables(free, variance.variance * inverse);
   estimate.error_budget.model =
       ErrorsOfVariables(free, variance.variance * by_model);
-  Eigen::VectorXd change = Eigen::VectorXd::Zero(free.Size());
-  if (HasHeavyTails(residual)) {
-    change = RobustChange(observed, residual, of_rows);
-    evidence.outlier_change = LargestOf(change, estimate, free);
-  }
-  covariance += change * change.transpose();
-  estimate.error_budget.outliers =
-      ErrorsOfVariables(free, change.cwiseAbs2().asDiagonal());
+  AddOutliers(free, observed, residual, of_rows, covariance, evidence,
+              estimate);
   if (!by_correlation.isZero(0)) {
     evidence.smooth_residual_error =
         std::sqrt(covariance.diagonal().maxCoeff());

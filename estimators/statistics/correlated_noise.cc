@@ -105,6 +105,44 @@ Eigen::MatrixXd PositivePart(const Eigen::MatrixXd& symmetric) {
          parts.vectors.transpose();
 }
 
+double SizeOf(const Mesh& mesh) {
+  return (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff())
+      .norm();
+}
+
+// How far residuals of which some are alike over this length are those of a
+// model that is wrong rather than of noise: wholly from an eighth of the
+// specimen on, as a wave of its size is alike, and quickly less below.
+double ShareOfModel(const Mesh& mesh, double length) {
+  return std::min(1.0, std::pow(8 * length / SizeOf(mesh), 4));
+}
+
+// Over pairs of rows by steps of their distance.
+struct PairSums {
+  Eigen::VectorXd products;
+  Eigen::VectorXd square_distances;
+  Eigen::VectorXd counts;
+};
+
+PairSums SumPairs(const std::vector<RowsOfComponent>& all,
+                  const Eigen::VectorXd& residual, double step,
+                  Eigen::Index num_steps) {
+  PairSums sums = {Eigen::VectorXd::Zero(num_steps),
+                   Eigen::VectorXd::Zero(num_steps),
+                   Eigen::VectorXd::Zero(num_steps)};
+  for (const RowsOfComponent& rows : all) {
+    VisitPairs(rows, [&](Eigen::Index a, Eigen::Index b, double distance) {
+      const auto k = static_cast<Eigen::Index>(distance / step);
+      if (k < num_steps) {
+        sums.products(k) += residual(a) * residual(b);
+        sums.square_distances(k) += distance * distance;
+        sums.counts(k) += 1;
+      }
+    });
+  }
+  return sums;
+}
+
 // Of rho = share exp(-d^2 / 2 X^2) at two squares of distances.
 void FillSmoothed(double first, double next, const Eigen::Vector2d& squares,
                   Autocorrelation& correlation) {
@@ -134,30 +172,16 @@ Autocorrelation CorrelateResiduals(const Scene& scene,
   }
   // Neighbours are a little nearer or farther than a step.
   correlation.step *= 1.5;
-  const double size = (scene.mesh.nodes.rowwise().maxCoeff() -
-                       scene.mesh.nodes.rowwise().minCoeff())
-                          .norm();
   const Eigen::Index num_steps =
-      1 + static_cast<Eigen::Index>(size / correlation.step);
-  Eigen::VectorXd sums = Eigen::VectorXd::Zero(num_steps);
-  Eigen::VectorXd counts = Eigen::VectorXd::Zero(num_steps);
-  Eigen::VectorXd square_distances = Eigen::VectorXd::Zero(num_steps);
-  for (const RowsOfComponent& rows : all) {
-    VisitPairs(rows, [&](Eigen::Index a, Eigen::Index b, double distance) {
-      const auto k = static_cast<Eigen::Index>(distance / correlation.step);
-      if (k < num_steps) {
-        sums(k) += residual(a) * residual(b);
-        counts(k) += 1;
-        square_distances(k) += distance * distance;
-      }
-    });
-  }
+      1 + static_cast<Eigen::Index>(SizeOf(scene.mesh) / correlation.step);
+  const PairSums sums = SumPairs(all, residual, correlation.step, num_steps);
+  const Eigen::VectorXd& counts = sums.counts;
   const double variance =
       SquaredNorm(residual) / static_cast<double>(residual.size());
   Eigen::Index last = 0;
   Eigen::VectorXd values = Eigen::VectorXd::Zero(num_steps);
   while (last < num_steps && counts(last) > 0) {
-    values(last) = sums(last) / (counts(last) * variance);
+    values(last) = sums.products(last) / (counts(last) * variance);
     if (values(last) < kLimits.explained_score / std::sqrt(counts(last))) {
       break;
     }
@@ -165,10 +189,11 @@ Autocorrelation CorrelateResiduals(const Scene& scene,
   }
   correlation.values = values.head(last).cwiseMin(1.0);
   if (last > 0 && num_steps > 1 && counts(1) > 0) {
-    const double next = std::max(sums(1) / (counts(1) * variance), 0.0) +
-                        kTwoSidedErrors / std::sqrt(counts(1));
+    const double next =
+        std::max(sums.products(1) / (counts(1) * variance), 0.0) +
+        kTwoSidedErrors / std::sqrt(counts(1));
     FillSmoothed(values(0), next,
-                 square_distances.head(2).cwiseQuotient(counts.head(2)),
+                 sums.square_distances.head(2).cwiseQuotient(counts.head(2)),
                  correlation);
   }
   return correlation;
@@ -180,6 +205,9 @@ Eigen::MatrixXd GramOfCorrelation(const Scene& scene,
                                   const Autocorrelation& correlation) {
   const Eigen::Index m = sensitivities.cols();
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(m, m);
+  if (correlation.values.size() == 0) {
+    return sum;
+  }
   // By columns, so that those of a row are side by side.
   const Eigen::MatrixXd by_row = sensitivities.transpose();
   for (const RowsOfComponent& rows : SplitRows(scene, observed)) {
@@ -196,13 +224,6 @@ Eigen::MatrixXd GramOfCorrelation(const Scene& scene,
   return sum;
 }
 
-double ShareOfModel(const Mesh& mesh, double length) {
-  const double size =
-      (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff())
-          .norm();
-  return std::min(1.0, std::pow(8 * length / size, 4));
-}
-
 CorrelatedResiduals DescribeCorrelation(const Scene& scene,
                                         const ObservedDisplacements& observed,
                                         const Eigen::VectorXd& residual,
@@ -213,15 +234,6 @@ CorrelatedResiduals DescribeCorrelation(const Scene& scene,
           ShareOfModel(scene.mesh, correlation.LengthOfAlike()),
           PositivePart(
               GramOfCorrelation(scene, observed, sensitivities, correlation))};
-}
-
-double ShareOfResidual(const Eigen::VectorXd& residual, Eigen::Index num_fitted,
-                       double variance) {
-  const auto redundancy = static_cast<double>(
-      std::max<Eigen::Index>(residual.size() - num_fitted, 1));
-  return variance > 0
-             ? std::min(1.0, SquaredNorm(residual) / redundancy / variance)
-             : 1;
 }
 
 }  // namespace elastimate

@@ -42,7 +42,7 @@ struct Autocorrelation {
 /// deviations for independent residuals.  The share of those that are alike
 /// and the length of what was smoothed go by ln rho of the first two steps,
 /// which is linear in d^2 then, the second as large as it may be.  `scene` is
-/// that of `observed`. O(n^2) for up to 20 000 points in a load case, of which
+/// that of `observed`.  O(n^2) for up to 20 000 points in a load case, of which
 /// there are no more: of others, every second, third and so on is looked at.
 Autocorrelation CorrelateResiduals(const Scene& scene,
                                    const ObservedDisplacements& observed,
@@ -62,15 +62,12 @@ Eigen::MatrixXd GramOfCorrelation(const Scene& scene,
                                   const Eigen::MatrixXd& sensitivities,
                                   const Autocorrelation& correlation);
 
-/// How far residuals of which some are alike over this length are those of a
-/// model that is wrong rather than of noise: wholly from an eighth of the
-/// specimen on, as a wave of its size is alike, and quickly less below.
-double ShareOfModel(const Mesh& mesh, double length);
-
 /// What the correlation of residuals says of where they come from.
 struct CorrelatedResiduals {
-  double length;          ///< Autocorrelation::Length().
-  double share_of_model;  ///< ShareOfModel() of LengthOfAlike().
+  double length;  ///< Autocorrelation::Length().
+  /// How far a model that is wrong is their cause, rather than noise: by
+  /// (8 LengthOfAlike() / size of the mesh)^4, wholly from an eighth on.
+  double share_of_model;
   /// GramOfCorrelation without directions of negative eigenvalues: noise whose
   /// neighbours differ by more than chance is taken for independent.
   Eigen::MatrixXd gram;
@@ -80,12 +77,6 @@ CorrelatedResiduals DescribeCorrelation(const Scene& scene,
                                         const ObservedDisplacements& observed,
                                         const Eigen::VectorXd& residual,
                                         const Eigen::MatrixXd& sensitivities);
-
-/// The part of the variance of a row that the residual of a fit of so many
-/// parameters has: less than all only where more noise is given than there is,
-/// as on data that were computed.
-double ShareOfResidual(const Eigen::VectorXd& residual, Eigen::Index num_fitted,
-                       double variance);
 
 }  // namespace elastimate
 
