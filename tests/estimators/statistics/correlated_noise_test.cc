@@ -17,8 +17,8 @@ Scene Grid() {
   Scene scene;
   scene.mesh.kind = ElementKind::kQuad4;
   scene.mesh.section = {SectionModel::kPlaneStress, 1};
-  scene.mesh.nodes.resize(2, kPoints * kPoints);
-  scene.mesh.elements.resize(4, (kPoints - 1) * (kPoints - 1));
+  scene.mesh.nodes.resize(2, Eigen::Index{kPoints} * kPoints);
+  scene.mesh.elements.resize(4, Eigen::Index{kPoints - 1} * (kPoints - 1));
   const auto node = [&](int i, int j) { return i * kPoints + j; };
   for (int i = 0; i < kPoints; ++i) {
     for (int j = 0; j < kPoints; ++j) {
