@@ -6,49 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "elastimate/core/mesh/node_graph.h"
+#include "elastimate/core/mesh/edges.h"
+#include "elastimate/core/mesh/facets.h"
+#include "elastimate/core/scene/support_ends.h"
 
 namespace elastimate {
 namespace {
-
-// The edges of a linear mesh: the pairs of different nodes of its graph, in
-// the same order.
-class Edges {
- public:
-  explicit Edges(const Mesh& mesh) : graph_(mesh) {
-    ends_.resize(2, graph_.NumPairs() - mesh.NumNodes());
-    for (int low = 0; low < mesh.NumNodes(); ++low) {
-      for (Eigen::Index pair = graph_.start[low] + 1;
-           pair < graph_.start[low + 1]; ++pair) {
-        ends_.col(Index(low, pair)) << low, graph_.row[pair];
-      }
-    }
-  }
-
-  Eigen::Index Size() const { return ends_.cols(); }
-  /// 2 x num_edges nodes, the lower one first.
-  const Eigen::Matrix2Xi& Ends() const { return ends_; }
-
-  /// The edge between two nodes; -1 when there is none.
-  Eigen::Index Find(int a, int b) const {
-    const auto [low, high] = std::minmax(a, b);
-    const auto first = graph_.row.begin() + graph_.start[low];
-    const auto last = graph_.row.begin() + graph_.start[low + 1];
-    const auto found = std::lower_bound(first, last, high);
-    return low == high || found == last || *found != high
-               ? -1
-               : Index(low, found - graph_.row.begin());
-  }
-
- private:
-  // Each column up to that of `low` begins with a pair that is no edge.
-  static Eigen::Index Index(int low, Eigen::Index pair) {
-    return pair - low - 1;
-  }
-
-  NodeGraph graph_;
-  Eigen::Matrix2Xi ends_;
-};
 
 // `values` with columns for the mid-edge nodes.
 template <typename Array>
@@ -148,8 +111,7 @@ Supports WithMidEdgeSupports(const Supports& supports, const Mesh& mesh,
   const Eigen::MatrixXd middles = MeanOfEnds(mesh.nodes, edges);
   for (const HeldBox& box : supports.boxes) {
     for (Eigen::Index edge = 0; edge < edges.Size(); ++edge) {
-      if ((middles.col(edge).array() < box.lower.array()).any() ||
-          (middles.col(edge).array() > box.upper.array()).any()) {
+      if (!box.Contains(middles.col(edge))) {
         continue;
       }
       for (Eigen::Index i = 0; i < held.rows(); ++i) {
@@ -176,8 +138,11 @@ Supports WithMidEdgeSupports(const Supports& supports, const Mesh& mesh,
          face.components});
   }
   return {WithMidEdges(supports.held, held),
-          WithMidEdges(supports.displacement, displacement), supports.boxes,
-          unknown, rigid_faces};
+          WithMidEdges(supports.displacement, displacement),
+          supports.boxes,
+          unknown,
+          rigid_faces,
+          {}};
 }
 
 Eigen::MatrixXi WithMidEdgeNodes(const Eigen::MatrixXi& facets,
@@ -273,6 +238,9 @@ Scene QuadraticScene(const Scene& scene) {
   quadratic.mesh = WithMidEdgeNodes(scene.mesh, edges);
   quadratic.materials = scene.materials;
   quadratic.supports = WithMidEdgeSupports(scene.supports, scene.mesh, edges);
+  quadratic.supports.ends =
+      FindSupportEnds(scene.supports, scene.mesh, edges,
+                      quadratic.supports.held.rightCols(edges.Size()));
   quadratic.is_rigid_motion_free = scene.is_rigid_motion_free;
   for (const LoadCase& load_case : scene.load_cases) {
     quadratic.load_cases.push_back(ToQuadratic(load_case, scene.mesh, edges));

@@ -20,7 +20,8 @@ namespace elastimate {
 ///   interior from one node of the surface to another: the ends may belong to
 ///   two supports, with the specimen between them.  (Inside a held volume the
 ///   neighbours then hold it all the same.)  Where supports are boxes, these
-///   decide instead about each node within.
+///   decide instead about each node within.  Where a support may end along an
+///   edge, Supports::ends says so.
 /// - Loads: nodal forces are zero there, so that their virtual work is that of
 ///   the given forces on the displacements of the vertices.  Body forces,
 ///   tractions and pressures stay what they are; facets get their mid-edge

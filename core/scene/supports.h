@@ -16,6 +16,24 @@ struct HeldBox {
   Eigen::Array<bool, Eigen::Dynamic, 1>
       components;                ///< Which of them it holds.
   Eigen::VectorXd displacement;  ///< Of `dimension` [length].
+
+  bool Contains(const Eigen::Ref<const Eigen::VectorXd>& point) const {
+    return (point.array() >= lower.array()).all() &&
+           (point.array() <= upper.array()).all();
+  }
+};
+
+/// A degree of freedom, and the displacement at which it may be held [length].
+struct HeldComponent {
+  Eigen::Index component;
+  Eigen::Index node;
+  double displacement;
+};
+
+/// An end of a support somewhere along edges whose middles are nodes: of these
+/// it holds the first of some steps, or none.  Each step is held as a whole.
+struct SupportEnd {
+  std::vector<std::vector<HeldComponent>> steps;
 };
 
 /// A part of the specimen that a grip or a platen moves as a rigid body, by a
@@ -38,6 +56,9 @@ struct Supports {
   /// error of a measurement.  dimension x num_nodes; empty when there are none.
   ComponentMask unknown = {};
   std::vector<RigidFace> rigid_faces = {};
+  /// Where QuadraticScene cannot tell which of the nodes that it adds are held
+  /// (FindSupportEnds): none of them, unless a fit finds them (EndingAfter).
+  std::vector<SupportEnd> ends = {};
 
   /// Whether component `i` of `node` is held at a displacement that is known.
   bool IsGiven(int i, Eigen::Index node) const {

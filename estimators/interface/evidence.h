@@ -99,6 +99,9 @@ struct Evidence {
   /// The same, of the parameters that it changes most, or what it may have to
   /// be where something else in the residual hides it.
   std::optional<Eigen::Vector2d> likely_element_change;
+  /// Standard errors of (ln E, nu) by what supports that end within elements
+  /// leave open; zero where a parameter is not free.
+  std::optional<Eigen::Vector2d> support_errors;
   /// Relative standard error of E by what is smooth in the residual; not a
   /// number for E on a bound.
   std::optional<double> smooth_residual_error;

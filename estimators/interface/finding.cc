@@ -64,6 +64,7 @@ constexpr Row kRows[] = {
     {"locking", FindingCode::kLocking},
     {"discretization_error", FindingCode::kDiscretizationError},
     {"elements_too_coarse", FindingCode::kElementsTooCoarse},
+    {"supports_end_within_elements", FindingCode::kSupportsEndWithinElements},
     {"linear_elements_fit_as_well", FindingCode::kLinearElementsFitAsWell},
     {"too_many_elements", FindingCode::kTooManyElements},
     {"solver_fallback", FindingCode::kSolverFallback},

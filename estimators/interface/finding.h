@@ -70,6 +70,7 @@ enum class FindingCode {
   kLocking,
   kDiscretizationError,
   kElementsTooCoarse,
+  kSupportsEndWithinElements,
   kLinearElementsFitAsWell,
   kTooManyElements,
   kSolverFallback,

@@ -631,6 +631,15 @@ Finding ElementsTooCoarse(const Eigen::Vector2d& correction) {
       "simplices");
 }
 
+Finding SupportsEndWithinElements(const Eigen::Vector2d& errors) {
+  return Warning(
+      FindingCode::kSupportsEndWithinElements,
+      "where supports end within elements is not known, which leaves "
+      "E open by " +
+          Percent(errors(0)) + " and nu by " + TwoDigits(errors(1)),
+      "give the supports by place, such as a box");
+}
+
 Finding LinearElementsFitAsWell(const IsotropicElasticity& linear) {
   return Warning(
       FindingCode::kLinearElementsFitAsWell,

@@ -129,6 +129,8 @@ Finding Locking(ElementKind kind);
 std::string DescribeDiscretizationError(const Estimate& estimate);
 /// `correction` is of (ln E, nu).
 Finding ElementsTooCoarse(const Eigen::Vector2d& correction);
+/// `errors` are of (ln E, nu).
+Finding SupportsEndWithinElements(const Eigen::Vector2d& errors);
 Finding DiscretizationErrorFinding(ElementKind kind, const Estimate& estimate);
 Finding LinearElementsFitAsWell(const IsotropicElasticity& linear);
 Finding TooManyElements();

@@ -55,14 +55,17 @@ double LargestPoissonRatio(const Estimate& estimate) {
 
 void JudgeElements(const Mesh& mesh, Estimate& estimate) {
   JudgeLocking(mesh, estimate.elasticity.poisson_ratio, estimate);
-  if (IsDiscretizationErrorNotable(estimate)) {
+  if (IsDiscretizationErrorNotable(estimate) &&
+      !estimate.Has(FindingCode::kSupportsEndWithinElements)) {
     estimate.Add(DiscretizationErrorFinding(mesh.kind, estimate));
   }
 }
 
 // What a method without a finite element solution does not know, the data may.
 void FailUndetermined(Finding finding, Estimate& estimate) {
-  if (IsDiscretizationErrorNotable(estimate)) {
+  if (estimate.Has(FindingCode::kSupportsEndWithinElements)) {
+    finding.advice = "give the supports by place, such as a box";
+  } else if (IsDiscretizationErrorNotable(estimate)) {
     finding.advice =
         "refine the mesh, or use quadratic elements (order 2): most of the "
         "error is that of the elements";
@@ -99,16 +102,9 @@ void JudgeResult(const EstimatorOptions& options, Estimate& estimate) {
 }  // namespace
 
 bool IsDiscretizationErrorNotable(const Estimate& estimate) {
-  const double youngs_modulus =
-      estimate.YoungsModulusStandardError().value_or(0) /
-      estimate.elasticity.youngs_modulus;
-  const double poisson_ratio = estimate.PoissonRatioStandardError().value_or(0);
-  return estimate.discretization_error.value_or(0) >
-             std::max(kLimits.notable_youngs_modulus_error,
-                      kLimits.notable_discretization_share * youngs_modulus) ||
-         estimate.poisson_ratio_discretization_error.value_or(0) >
-             std::max(kLimits.notable_poisson_ratio_error,
-                      kLimits.notable_discretization_share * poisson_ratio);
+  return AreNotable({estimate.discretization_error.value_or(0),
+                     estimate.poisson_ratio_discretization_error.value_or(0)},
+                    estimate);
 }
 
 void Judge(const Evidence& evidence, const EstimatorOptions& options,

@@ -331,6 +331,14 @@ Result JudgeElements(const Evidence& evidence, const EstimatorOptions&,
              : ElementsTooCoarse(change);
 }
 
+Result NoteSupportEnds(const Evidence& evidence, const EstimatorOptions&,
+                       const Estimate& estimate) {
+  return evidence.support_errors &&
+                 AreNotable(*evidence.support_errors, estimate)
+             ? SupportsEndWithinElements(*evidence.support_errors)
+             : Result();
+}
+
 Result JudgeCertificate(const Evidence& evidence, const EstimatorOptions&,
                         const Estimate&) {
   return evidence.end == End::kNotCertified ? FitNotCertified() : Result();
@@ -345,6 +353,19 @@ Result NoteSolver(const Evidence& evidence, const EstimatorOptions&,
 
 }  // namespace
 
+bool AreNotable(const Eigen::Vector2d& errors, const Estimate& estimate) {
+  const double youngs_modulus =
+      estimate.YoungsModulusStandardError().value_or(0) /
+      estimate.elasticity.youngs_modulus;
+  const double poisson_ratio = estimate.PoissonRatioStandardError().value_or(0);
+  return errors(0) >
+             std::max(kLimits.notable_youngs_modulus_error,
+                      kLimits.notable_discretization_share * youngs_modulus) ||
+         errors(1) >
+             std::max(kLimits.notable_poisson_ratio_error,
+                      kLimits.notable_discretization_share * poisson_ratio);
+}
+
 const std::vector<Rule>& Rules() {
   static const std::vector<Rule> rules = {
       // Whether there is anything to estimate.
@@ -354,6 +375,7 @@ const std::vector<Rule>& Rules() {
       // What to say of a usable estimate.
       NoteYoungsModulusOnBound, NotePoissonRatioOnBound, NoteResidualAboveNoise,
       NoteOutliers, NoteSmoothResidual, NoteVirtualWork, NoteResultants,
+      NoteSupportEnds,
       // Whether the data determine it, and the model explains them.
       JudgeBoundExcess, JudgeYoungsModulusOnBound, JudgeLargeResidual,
       JudgeProfile, JudgePoissonRatioAtLimit, JudgePoissonRatioOnBound,

@@ -1,6 +1,7 @@
 #ifndef ELASTIMATE_ESTIMATORS_INTERFACE_RULES_H_
 #define ELASTIMATE_ESTIMATORS_INTERFACE_RULES_H_
 
+#include <Eigen/Core>
 #include <optional>
 #include <vector>
 
@@ -19,6 +20,10 @@ using Rule = std::optional<Finding> (*)(const Evidence& evidence,
 /// All rules about evidence, in the order in which they are applied: of several
 /// errors the first is the reason of the status.
 const std::vector<Rule>& Rules();
+
+/// Whether errors of E (relative) and nu are more than a part of the standard
+/// errors that a user wants to be told of.
+bool AreNotable(const Eigen::Vector2d& errors, const Estimate& estimate);
 
 }  // namespace elastimate
 

@@ -179,6 +179,7 @@ std::vector<Finding> OfElements() {
       DiscretizationErrorFinding(ElementKind::kTet4, of_linear),
       DiscretizationErrorFinding(ElementKind::kHex8, estimate),
       ElementsTooCoarse({0.512345, -0.212345}),
+      SupportsEndWithinElements({0.0312345, 0.0212345}),
       LinearElementsFitAsWell(kLongElasticity),
       TooManyElements(),
       SolverFallback("multigrid did not converge, so that the stiffness was "
