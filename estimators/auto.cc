@@ -92,6 +92,20 @@ bool IsMismatch(const Estimate& estimate) {
          estimate.model_mismatch->p_value < kLimits.mismatch_significance;
 }
 
+// Of a fit by virtual-fields, where that ran.
+void CheckAgainst(const std::optional<Estimate>& virtual_fields,
+                  Estimate& fit) {
+  if (virtual_fields) {
+    fit.model_mismatch = FindModelMismatch(*virtual_fields, fit);
+  }
+}
+
+void NoteMismatch(Estimate& estimate) {
+  if (estimate.IsUsable() && IsMismatch(estimate)) {
+    estimate.Add(ModelMismatchFinding(*estimate.model_mismatch));
+  }
+}
+
 // For a fit at the statistical limit; empty when its elements will do.
 std::string WhyTheModelIsNotEnough(const EstimatorOptions& options,
                                    const Estimate& estimate) {
@@ -131,14 +145,13 @@ struct Observations {
 
 // Whether one of two fits, of as many parameters, explains the displacements
 // far better than the other: by more than noise lets it, and by far where its
-// residual is no noise.
+// residual is no noise.  Outliers, which neither explains, decide nothing.
 bool ExplainsFarBetter(const Estimate& one, const Estimate& other,
                        const Observations& observations) {
-  if (!one.displacement_residual || !other.displacement_residual) {
-    return one.displacement_residual.has_value();
+  if (!one.bounded_residual || !other.bounded_residual) {
+    return one.bounded_residual.has_value();
   }
-  const double share =
-      *one.displacement_residual / *other.displacement_residual;
+  const double share = *one.bounded_residual / *other.bounded_residual;
   if (one.is_model_in_doubt) {
     return share <= kLimits.far_better_residual;
   }
@@ -146,8 +159,8 @@ bool ExplainsFarBetter(const Estimate& one, const Estimate& other,
   const double gain =
       observations.norm_over_noise
           ? std::pow(*observations.norm_over_noise, 2) *
-                (std::pow(*other.displacement_residual, 2) -
-                 std::pow(*one.displacement_residual, 2))
+                (std::pow(*other.bounded_residual, 2) -
+                 std::pow(*one.bounded_residual, 2))
           : -2 * static_cast<double>(observations.redundancy) * std::log(share);
   return gain > kLimits.significant_score * kLimits.significant_score;
 }
@@ -349,30 +362,24 @@ Estimate Auto::DoRun(const Scene& scene,
   if (!ladder.Climb(ReducedFe(), scene, without_degree)) {
     return ladder.Finish();
   }
-  Estimate& linear = ladder.Last();
-  if (virtual_fields) {
-    linear.model_mismatch = FindModelMismatch(*virtual_fields, linear);
-  }
+  CheckAgainst(virtual_fields, ladder.Last());
+  const Estimate linear = ladder.Last();
   std::string why_not_enough = WhyTheModelIsNotEnough(options, linear);
   if (!why_not_enough.empty() && HasQuadraticKind(scene.mesh.kind) &&
       scene.mesh.NumElements() > kMostQuadraticElements) {
-    if (IsMismatch(linear)) {
-      linear.Add(ModelMismatchFinding(*linear.model_mismatch));
-    }
-    linear.Add(TooManyElements());
+    ladder.Last().Add(TooManyElements());
     ladder.Decide("stopped: too many elements for order 2");
-    return ladder.Finish();
-  }
-  if (why_not_enough.empty() || !HasQuadraticKind(scene.mesh.kind)) {
+  } else if (why_not_enough.empty() || !HasQuadraticKind(scene.mesh.kind)) {
     ladder.Decide(why_not_enough.empty()
                       ? "stopped: at the statistical limit of the data"
                       : "stopped: there is no rung above");
-    return ladder.Finish();
+  } else {
+    ladder.Decide("went on: " + why_not_enough);
+    ladder.Climb(ReducedFe(), QuadraticScene(scene), without_degree);
+    CheckAgainst(virtual_fields, ladder.Last());
+    ChooseOrder(linear, Observations(scene, options), ladder);
   }
-  ladder.Decide("went on: " + why_not_enough);
-  const Estimate of_linear = linear;
-  ladder.Climb(ReducedFe(), QuadraticScene(scene), without_degree);
-  ChooseOrder(of_linear, Observations(scene, options), ladder);
+  NoteMismatch(ladder.Last());
   return ladder.Finish();
 }
 

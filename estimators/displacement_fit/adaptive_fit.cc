@@ -308,8 +308,10 @@ Profile AdaptiveFit::ProfileEnds(const ObservedDisplacements& observed,
     return IsotropicElasticity::FromComplianceScale(
         point.compliance_scale, point.poisson_ratio, model_.Section());
   };
-  const auto [lower, upper] = least_squares_->ProfileEnds(
-      observed.Measured(), least_squares_point_, excess);
+  const ReducedFit& fit = fit_.weighted ? *fit_.weighted : *least_squares_;
+  const auto [lower, upper] = fit.ProfileEnds(
+      observed.Measured(), fit_.weighted ? fit_.point : least_squares_point_,
+      excess);
   Profile profile = {elasticity_of(lower), elasticity_of(upper)};
   // Where it reaches the end of the search, it may go on beyond.
   if (profile.lower.poisson_ratio <= *searched_.lower) {

@@ -52,8 +52,9 @@ class AdaptiveFit {
   /// first pole.
   bool Run(const ObservedDisplacements& observed);
 
-  /// The ends of the interval of nu in which the sum of squares of the last fit
-  /// without a loss exceeds its least by no more than `excess`.
+  /// The ends of the interval of nu in which the sum of squares of the last
+  /// fit, with a loss at the weights that it ended with, exceeds its least by
+  /// no more than `excess`.
   Profile ProfileEnds(const ObservedDisplacements& observed,
                       double excess) const;
 

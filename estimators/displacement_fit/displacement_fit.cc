@@ -23,6 +23,7 @@ constexpr double kCollinearSensitivities = 1e-6;
 // are with respect to (ln E, nu); without a loss the bread is S^T S.
 struct ResidualSums {
   Eigen::Matrix2d sensitivity_gram = Eigen::Matrix2d::Zero();
+  Eigen::Matrix2d weighted_gram = Eigen::Matrix2d::Zero();  // S^T W S.
   Eigen::Matrix2d bread = Eigen::Matrix2d::Zero();
   Eigen::Matrix2d meat = Eigen::Matrix2d::Zero();
   // How much residuals count: a loss takes from those of bad nodes.
@@ -42,6 +43,7 @@ ResidualSums SumResiduals(const ObservedDisplacements& observed,
     const Eigen::Vector2d gradient = s.transpose() * r;
     const Eigen::Matrix2d gram = s.transpose() * s;
     sums.sensitivity_gram += gram;
+    sums.weighted_gram += rho[1] * gram;
     sums.bread += rho[1] * gram + 2 * rho[2] * gradient * gradient.transpose();
     sums.meat += rho[1] * rho[1] * gradient * gradient.transpose();
     sums.weights.segment(node.first, node.count).setConstant(rho[1]);
@@ -79,6 +81,8 @@ class FitDescription {
     }
     estimate.displacement_residual =
         std::sqrt(square_sum_) / Norm(observed.Measured());
+    estimate.bounded_residual =
+        BoundedNorm(observed, fit.residual) / Norm(observed.Measured());
     estimate.identifiability_angle = IdentifiabilityAngle(Gram());
     is_collinear_ =
         std::sin(*estimate.identifiability_angle) < kCollinearSensitivities;
@@ -103,16 +107,10 @@ class FitDescription {
     if (free_.empty()) {
       return;
     }
-    std::optional<RowChange> change;
-    if (fit_.element_change) {
-      change = {*fit_.element_change, scene.mesh.Order() == 1, {}};
+    elements_.emplace(ElementsOf(free_, scene, graph));
+    if (IsAtPhysicalLimit()) {
+      elements_off_limit_.emplace(ElementsOf(FreeOffLimit(), scene, graph));
     }
-    elements_.emplace(
-        scene, graph, observed_,
-        FreeFit{fit_.residual, fit_.sensitivities(Eigen::all, free_),
-                sums_.bread(free_, free_), sums_.weights,
-                losses_.IsLeastSquares(), evidence_.active.Any()},
-        change, fit_.displacement, estimate_.elasticity);
     if (elements_->Correction()) {
       Eigen::Vector2d correction = Eigen::Vector2d::Zero();
       correction(free_) = *elements_->Correction();
@@ -143,22 +141,21 @@ class FitDescription {
     }
     evidence_.is_explained_by_given_noise =
         variance_ && variance_->is_explained_by_given_noise;
-    const SmoothSquareSum smooth = MeasureSmoothPart(
-        graph, observed_, sums_.weights.cwiseSqrt().cwiseProduct(Rest()),
-        estimate_);
+    smooth_ = MeasureSmoothPart(graph, observed_,
+                                sums_.weights.cwiseSqrt().cwiseProduct(Rest()),
+                                estimate_);
     const double least =
-        evidence_.is_explained_by_given_noise ? 0 : smooth.least;
+        evidence_.is_explained_by_given_noise ? 0 : smooth_.least;
     evidence_.smooth_part = std::sqrt(least) / Norm(observed_.Measured());
     const double missed =
-        elements_ ? elements_->MissedSquareSum(smooth.most) : 0;
+        elements_ ? elements_->MissedSquareSum(smooth_.most) : 0;
     smooth_square_sum_ = std::max(0.0, least - missed);
     if (elements_) {
       // What a bound leaves in the residual is no doubt about the model.
       if (!evidence_.active.Any()) {
         smooth_square_sum_ = elements_->ModelSquareSum(smooth_square_sum_);
       }
-      of_elements_ = elements_->CovarianceOfChange(smooth.most) +
-                     missed * Inverse(Gram()(free_, free_));
+      of_elements_ = ElementCovariance(*elements_, free_);
     }
   }
 
@@ -187,15 +184,18 @@ class FitDescription {
     }
   }
 
-  // Of a row of the residual, by the standard error of nu; empty when there is
-  // none.
+  // Of a row of the residual of weight 1, by the standard error of nu; empty
+  // when there is none.
   std::optional<double> RowVariance() const {
-    if (!IsPoissonRatioFree()) {
-      return evidence_.active.is_physical_limit && variance_
-                 ? std::optional<double>(variance_->variance)
-                 : std::nullopt;
+    if (IsAtPhysicalLimit()) {
+      return PoissonRatioVarianceOffLimit() /
+             LastOfInverse(sums_.weighted_gram, FreeOffLimit());
     }
-    return estimate_.covariance(1, 1) / LastOfInverse(sums_.bread);
+    if (!IsPoissonRatioFree()) {
+      return std::nullopt;
+    }
+    return estimate_.covariance(1, 1) /
+           LastOfInverse(sums_.weighted_gram, free_);
   }
 
   void MeasureYoungsModulusOnBound() {
@@ -221,15 +221,57 @@ class FitDescription {
   }
 
   void MeasurePoissonRatioOnBound() {
-    const double standard_error = is_collinear_
-                                      ? std::numeric_limits<double>::infinity()
-                                      : std::sqrt(Covariance({0, 1})(1, 1));
+    const double standard_error =
+        is_collinear_         ? std::numeric_limits<double>::infinity()
+        : IsAtPhysicalLimit() ? std::sqrt(PoissonRatioVarianceOffLimit())
+                              : std::sqrt(Covariance({0, 1})(1, 1));
     evidence_.poisson_ratio_on_bound = AllowForPoissonRatioOnBound(
         options_, evidence_.active, YoungsModulusSlope(), standard_error,
         estimate_);
   }
 
  private:
+  ElementErrors ElementsOf(const std::vector<Eigen::Index>& parameters,
+                           const Scene& scene, const NodeGraph& graph) const {
+    std::optional<RowChange> change;
+    if (fit_.element_change) {
+      change = {*fit_.element_change, scene.mesh.Order() == 1, {}};
+    }
+    return {scene,
+            graph,
+            observed_,
+            FreeFit{fit_.residual, fit_.sensitivities(Eigen::all, parameters),
+                    sums_.weights, losses_.IsLeastSquares(),
+                    evidence_.active.Any()},
+            change,
+            fit_.displacement,
+            estimate_.elasticity};
+  }
+  Eigen::MatrixXd ElementCovariance(
+      const ElementErrors& elements,
+      const std::vector<Eigen::Index>& parameters) const {
+    return elements.CovarianceOfChange(smooth_.most) +
+           elements.MissedSquareSum(smooth_.most) *
+               Inverse(Gram()(parameters, parameters));
+  }
+  // Where nu is held by the end of its range alone, it may be off by what it
+  // would be off by if it were free.
+  bool IsAtPhysicalLimit() const {
+    return evidence_.active.is_physical_limit && !is_collinear_;
+  }
+  std::vector<Eigen::Index> FreeOffLimit() const {
+    std::vector<Eigen::Index> parameters = free_;
+    parameters.push_back(1);
+    return parameters;
+  }
+  double PoissonRatioVarianceOffLimit() const {
+    const std::vector<Eigen::Index> parameters = FreeOffLimit();
+    Eigen::MatrixXd covariance = Covariance(parameters);
+    if (elements_off_limit_) {
+      covariance += ElementCovariance(*elements_off_limit_, parameters);
+    }
+    return covariance(covariance.rows() - 1, covariance.cols() - 1);
+  }
   // The residual without what a finer specimen explains of it.
   const Eigen::VectorXd& Rest() const {
     return elements_ ? elements_->Rest() : fit_.residual;
@@ -251,9 +293,10 @@ class FitDescription {
   bool IsPoissonRatioFree() const {
     return !free_.empty() && free_.back() == 1;
   }
-  // The entry of nu, of the inverse over the free parameters.
-  double LastOfInverse(const Eigen::Matrix2d& matrix) const {
-    const Eigen::MatrixXd inverse = Inverse(matrix(free_, free_));
+  // The entry of the last of some parameters, of the inverse over them.
+  static double LastOfInverse(const Eigen::Matrix2d& matrix,
+                              const std::vector<Eigen::Index>& parameters) {
+    const Eigen::MatrixXd inverse = Inverse(matrix(parameters, parameters));
     return inverse(inverse.rows() - 1, inverse.cols() - 1);
   }
 
@@ -293,9 +336,12 @@ class FitDescription {
   bool is_collinear_ = false;
   /// Empty with a loss.
   std::optional<ResidualVariance> variance_;
+  SmoothSquareSum smooth_ = {};
   double smooth_square_sum_ = 0;
   /// Empty where no parameter is free.
   std::optional<ElementErrors> elements_;
+  /// The same with nu free, where it is at an end of its range.
+  std::optional<ElementErrors> elements_off_limit_;
   /// Their covariance of the free parameters.
   Eigen::MatrixXd of_elements_;
 };

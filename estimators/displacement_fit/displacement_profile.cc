@@ -9,15 +9,14 @@
 
 namespace elastimate {
 
-double CostOf(Loss loss, const Eigen::VectorXd& residual) {
-  return loss == Loss::kNone ? SquaredNorm(residual) : residual.lpNorm<1>();
-}
+namespace {
 
-ProfilePoint EvaluateProfile(const EstimatorOptions& options,
-                             ObservedModel& model, double nu) {
-  const Eigen::VectorXd& w = model.UnitLoadResponse();
-  const Eigen::VectorXd rest =
-      model.Observed().Measured() - model.SupportResponse();
+ProfilePoint EvaluateRows(const EstimatorOptions& options,
+                          const Eigen::VectorXd& row_weights,
+                          ObservedModel& model, double nu) {
+  const Eigen::VectorXd w = row_weights.cwiseProduct(model.UnitLoadResponse());
+  const Eigen::VectorXd rest = row_weights.cwiseProduct(
+      model.Observed().Measured() - model.SupportResponse());
   if (w.isZero(0)) {
     return {{Estimate::kUnknown, nu}, std::numeric_limits<double>::infinity()};
   }
@@ -37,13 +36,34 @@ ProfilePoint EvaluateProfile(const EstimatorOptions& options,
       youngs_modulus, options.youngs_modulus.upper.value_or(youngs_modulus));
   const Eigen::VectorXd misfit =
       elasticity.ComplianceScale(model.Section()) * w - rest;
-  const Eigen::VectorXd change = model.PoissonRatioSlope(
-      elasticity, youngs_modulus != unbounded.youngs_modulus);
+  const Eigen::VectorXd change =
+      row_weights.cwiseProduct(model.PoissonRatioSlope(
+          elasticity, youngs_modulus != unbounded.youngs_modulus));
   const double slope = options.loss == Loss::kNone
                            ? 2 * InnerProduct(misfit, change)
                            : InnerProduct(misfit.cwiseSign(), change);
   return {elasticity, CostOf(options.loss, misfit), slope, unbounded,
           CostOf(options.loss, rest - t * w)};
+}
+
+}  // namespace
+
+double CostOf(Loss loss, const Eigen::VectorXd& residual) {
+  return loss == Loss::kNone ? SquaredNorm(residual) : residual.lpNorm<1>();
+}
+
+ProfilePoint EvaluateProfile(const EstimatorOptions& options,
+                             ObservedModel& model, double nu) {
+  return EvaluateRows(options, Eigen::VectorXd::Ones(model.Observed().Size()),
+                      model, nu);
+}
+
+ProfilePoint EvaluateWeightedProfile(const EstimatorOptions& options,
+                                     const Eigen::VectorXd& row_weights,
+                                     ObservedModel& model, double nu) {
+  EstimatorOptions of_squares = options;
+  of_squares.loss = Loss::kNone;
+  return EvaluateRows(of_squares, row_weights, model, nu);
 }
 
 IsotropicElasticity EvaluatedProfile::EndTowards(double limit,

@@ -30,6 +30,10 @@ double CostOf(Loss loss, const Eigen::VectorXd& residual);
 /// At the nu of the model, with the best E within its bounds.
 ProfilePoint EvaluateProfile(const EstimatorOptions& options,
                              ObservedModel& model, double nu);
+/// The same of least squares of rows that are multiplied by these numbers.
+ProfilePoint EvaluateWeightedProfile(const EstimatorOptions& options,
+                                     const Eigen::VectorXd& row_weights,
+                                     ObservedModel& model, double nu);
 
 /// The profile likelihood without bounds on E, as far as it has been evaluated:
 /// the starts, and the fit itself as the best.

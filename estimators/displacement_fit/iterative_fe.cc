@@ -14,6 +14,7 @@
 #include "elastimate/estimators/displacement_fit/displacement_minimum.h"
 #include "elastimate/estimators/displacement_fit/displacement_profile.h"
 #include "elastimate/estimators/displacement_fit/observed_model.h"
+#include "elastimate/estimators/displacement_fit/robust_reduced_fit.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/statistics.h"
@@ -149,10 +150,12 @@ Minimum BestMinimum(const EstimatorOptions& options,
 // Enters the interval of nu, after up to three looks at where each end may be.
 void DescribeProfileOf(const EstimatorOptions& options,
                        const std::vector<ProfilePoint>& points, double variance,
+                       const Eigen::VectorXd& row_weights,
                        DisplacementResidual& residual, Evidence& evidence,
                        Estimate& estimate) {
   EvaluatedProfile profile(
-      points, {estimate.elasticity, SquaredNorm(residual.Fit().residual)});
+      points, {estimate.elasticity,
+               SquaredNorm(row_weights.cwiseProduct(residual.Fit().residual))});
   const Bounds bounds = EffectivePoissonRatioBounds(options);
   const double nu = estimate.elasticity.poisson_ratio;
   constexpr double kSettled = 0.05;
@@ -173,7 +176,8 @@ void DescribeProfileOf(const EstimatorOptions& options,
       last_end = end;
       const double next = end != limit ? end : beyond;
       if (next != nu && residual.Model().SetPoissonRatio(next)) {
-        profile.Add(EvaluateProfile(options, residual.Model(), next));
+        profile.Add(EvaluateWeightedProfile(options, row_weights,
+                                            residual.Model(), next));
       }
     }
   }
@@ -187,7 +191,7 @@ void DescribeProfileOf(const EstimatorOptions& options,
 }
 
 // Fills in what follows from the fit.  `points` of the profile are for the
-// interval of nu.
+// interval of nu; with a loss they are of other weights than those of the fit.
 void DescribeFit(const Scene& scene, const EstimatorOptions& options,
                  const std::vector<ProfilePoint>& points,
                  const NodeLosses& losses, DisplacementResidual& residual,
@@ -196,21 +200,27 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
       scene, residual.Model().Graph(), options, residual.Model().Observed(),
       residual.Fit(), losses, evidence, estimate);
   Judge(evidence, options, estimate);
-  if (!variance || options.loss != Loss::kNone || !estimate.IsUsable() ||
+  if (!variance || !estimate.IsUsable() ||
       evidence.active.youngs_modulus != Side::kNone) {
     return;
   }
-  const double least = SquaredNorm(residual.Fit().residual);
+  const Eigen::VectorXd row_weights =
+      RowWeights(residual.Model().Observed(), residual.Fit().residual, losses);
+  const std::vector<ProfilePoint> of_weights =
+      losses.IsLeastSquares() ? points : std::vector<ProfilePoint>();
+  const double least =
+      SquaredNorm(row_weights.cwiseProduct(residual.Fit().residual));
   const double nu = estimate.elasticity.poisson_ratio;
   const double far = 4 * estimate.PoissonRatioStandardError().value_or(0);
-  const bool has_rival =
-      std::any_of(points.begin(), points.end(), [&](const ProfilePoint& point) {
+  const bool has_rival = std::any_of(
+      of_weights.begin(), of_weights.end(), [&](const ProfilePoint& point) {
         return point.unbounded_cost <= least + kTwoSidedQuantile * *variance &&
                std::abs(point.unbounded.poisson_ratio - nu) > far;
       });
   if (evidence.active.is_physical_limit || has_rival ||
       ShareOfDistanceToPole(estimate) > kLargestLinearShare) {
-    DescribeProfileOf(options, points, *variance, residual, evidence, estimate);
+    DescribeProfileOf(options, of_weights, *variance, row_weights, residual,
+                      evidence, estimate);
   }
 }
 

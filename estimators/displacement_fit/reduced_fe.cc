@@ -69,8 +69,7 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
   Judge(evidence, options, estimate);
   // What looks like a pull to -1 may be data that say nothing of nu.
   const bool is_at_minus_one = estimate.status == Status::kUnphysical;
-  if (!variance || options.loss != Loss::kNone ||
-      !(estimate.IsUsable() || is_at_minus_one)) {
+  if (!variance || !(estimate.IsUsable() || is_at_minus_one)) {
     return;
   }
   const auto profile_of = [&](double quantile) {

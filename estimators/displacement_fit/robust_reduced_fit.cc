@@ -50,6 +50,8 @@ ReducedFit::Point LeastAbsoluteDeviationsFit(
   return best;
 }
 
+}  // namespace
+
 Eigen::VectorXd RowWeights(const ObservedDisplacements& observed,
                            const Eigen::VectorXd& residual,
                            const NodeLosses& losses) {
@@ -62,8 +64,6 @@ Eigen::VectorXd RowWeights(const ObservedDisplacements& observed,
   }
   return weights;
 }
-
-}  // namespace
 
 ModelFit FitRobustly(const ReducedModel& model,
                      const ObservedDisplacements& observed,
@@ -87,10 +87,10 @@ ModelFit FitRobustly(const ReducedModel& model,
     fit.losses = NodeLosses(options.loss, scale);
     for (int k = 0; k < kMostReweightings; ++k) {
       const ReducedFit::Point previous = fit.point;
-      fit.point = ReducedFit(model, observed,
-                             RowWeights(observed, residual, fit.losses),
-                             poisson_ratio, options.youngs_modulus)
-                      .Fit(observed.Measured());
+      fit.weighted = std::make_unique<ReducedFit>(
+          model, observed, RowWeights(observed, residual, fit.losses),
+          poisson_ratio, options.youngs_modulus);
+      fit.point = fit.weighted->Fit(observed.Measured());
       residual = Residual(model, observed, fit.point);
       if (std::abs(fit.point.poisson_ratio - previous.poisson_ratio) <=
               kPointTolerance &&

@@ -1,6 +1,9 @@
 #ifndef ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_ROBUST_REDUCED_FIT_H_
 #define ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_ROBUST_REDUCED_FIT_H_
 
+#include <Eigen/Core>
+#include <memory>
+
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/estimators/displacement_fit/reduced_fit.h"
 #include "elastimate/estimators/interface/estimator.h"
@@ -15,7 +18,14 @@ struct ModelFit {
   /// Of the residuals.
   double standard_deviation;
   NodeLosses losses;
+  /// That of the weights which the loss gives the rows; null without a loss.
+  std::unique_ptr<ReducedFit> weighted = nullptr;
 };
+
+/// The roots of the weights that losses give the rows of a residual.
+Eigen::VectorXd RowWeights(const ObservedDisplacements& observed,
+                           const Eigen::VectorXd& residual,
+                           const NodeLosses& losses);
 
 /// The fit of the model with a loss, by iterative reweighting from the least
 /// absolute deviations, with its scale from 1.4826 MAD of the residuals.

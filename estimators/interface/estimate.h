@@ -149,6 +149,9 @@ struct Estimate {
   std::optional<double> force_residual;
   /// ||u - q|| / ||q|| over the observed free components.
   std::optional<double> displacement_residual;
+  /// The same with points far off counted as at BoundedNorm, by which fits of
+  /// other elements compare.
+  std::optional<double> bounded_residual;
   /// Angle between the sensitivities of the observed displacements to ln E and
   /// to nu [rad]: small when the data determine one combination of them only.
   std::optional<double> identifiability_angle;

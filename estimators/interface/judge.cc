@@ -67,8 +67,10 @@ void FailUndetermined(Finding finding, Estimate& estimate) {
     finding.advice = "give the supports by place, such as a box";
   } else if (IsDiscretizationErrorNotable(estimate)) {
     finding.advice =
-        "refine the mesh, or use quadratic elements (order 2): most of the "
-        "error is that of the elements";
+        std::string("refine the mesh") +
+        (estimate.element_order == 1 ? ", or use quadratic elements (order 2)"
+                                     : "") +
+        ": most of the error is that of the elements";
   } else if (!estimate.displacement_residual) {
     finding.advice += ", or use reduced-fe, which takes more from the data";
   }

@@ -103,9 +103,7 @@ std::optional<ElementErrors> FindElementErrors(
     weighed_change.by_noise.tail(num_resultants) *= weight;
   }
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(rows.size());
-  const FreeFit fit = {
-      residual, sensitivities, InnerProducts(sensitivities, sensitivities),
-      ones,     true,          is_on_bound};
+  const FreeFit fit = {residual, sensitivities, ones, true, is_on_bound};
   // What depends on the strain is of elements whose change is not known.
   const ElementErrors errors(scene, misfit.Model().Graph(), misfit.Observed(),
                              fit, weighed_change, {}, {});

@@ -60,8 +60,9 @@ Eigen::VectorXd VisibleOf(const FreeFit& fit, const Eigen::VectorXd& rows,
 }
 
 Eigen::VectorXd ParametersOf(const FreeFit& fit, const Eigen::VectorXd& rows) {
-  return Inverse(fit.bread) *
-         InnerProducts(fit.sensitivities, fit.weights.cwiseProduct(rows));
+  const Eigen::MatrixXd weighted = fit.weights.asDiagonal() * fit.sensitivities;
+  return Inverse(InnerProducts(fit.sensitivities, weighted)) *
+         InnerProducts(weighted, rows);
 }
 
 // The weighted square sum of what noise of a variance of 1 adds to what shows

@@ -16,8 +16,7 @@ namespace elastimate {
 struct FreeFit {
   const Eigen::VectorXd& residual;  ///< u - q.
   Eigen::MatrixXd sensitivities;    ///< S, rows x num_free.
-  Eigen::MatrixXd bread;            ///< S^T S, or that of a loss.
-  /// How much each row counts; 1 without a loss.
+  /// How much each row counts, diag(W); 1 without a loss.
   const Eigen::VectorXd& weights;
   bool is_least_squares;
   /// What a bound leaves in the residual is no doubt about the model.
@@ -35,8 +34,9 @@ struct RowChange {
 
 /// What the elements of a fit miss, and what that does to the free parameters:
 ///
-/// - Where a change e to finer ones is known: c = (S^T S)^-1 S^T e are the
-///   parameters that take it up, g = e - S c shows in the residual.
+/// - Where a change e to finer ones is known: c = (S^T W S)^-1 S^T W e are the
+///   parameters that take it up at the weights of the fit, g = e - S c shows in
+///   the residual.
 ///   FinerSpecimen says how much of it is there; by the mean of that the
 ///   parameters are corrected, and its variance is theirs.
 /// - Where one from coarser ones is known: a small share of that.

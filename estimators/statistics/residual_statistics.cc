@@ -166,6 +166,19 @@ Eigen::VectorXd RobustChange(const ObservedDisplacements& observed,
   return change;
 }
 
+double BoundedNorm(const ObservedDisplacements& observed,
+                   const Eigen::VectorXd& residual) {
+  constexpr double kMostDeviations = 4;
+  const double most = kMostDeviations * RobustStandardDeviation(residual);
+  double square_sum = 0;
+  for (const ObservedDisplacements::Point& point : observed.Points()) {
+    square_sum +=
+        std::min(residual.segment(point.first, point.count).squaredNorm(),
+                 static_cast<double>(point.count) * most * most);
+  }
+  return std::sqrt(square_sum);
+}
+
 bool HasHeavyTails(const Eigen::VectorXd& residual) {
   const double n = static_cast<double>(residual.size());
   // The standard deviation of 1.4826 MAD is 1.17 / sqrt(n) of itself.

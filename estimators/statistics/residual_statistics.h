@@ -62,6 +62,12 @@ Eigen::VectorXd RobustChange(const ObservedDisplacements& observed,
                              const Eigen::VectorXd& residual,
                              const Eigen::MatrixXd& sensitivities);
 
+/// The norm of a residual in which points beyond four robust standard
+/// deviations (RobustStandardDeviation) count as if they were there [Winsor]: a
+/// few that lie far off do not hide what the others say.
+double BoundedNorm(const ObservedDisplacements& observed,
+                   const Eigen::VectorXd& residual);
+
 /// Whether some residuals are much larger than the bulk of them.
 bool HasHeavyTails(const Eigen::VectorXd& residual);
 

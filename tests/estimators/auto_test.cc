@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
+#include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/estimators/displacement_fit/reduced_fe.h"
 #include "tests/scenes.h"
@@ -127,6 +130,33 @@ TEST(AutoStatistics, TellsWhichElementsTheDisplacementsComeFrom) {
       SCOPED_TRACE(seed);
       Scene measured = scene;
       AddNoise(0.05, seed, measured);
+      const Estimate estimate = Auto().Run(measured, options);
+      ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+      EXPECT_EQ(estimate.element_order, order);
+      EXPECT_NEAR(estimate.elasticity.youngs_modulus, 1e7,
+                  4 * *estimate.YoungsModulusStandardError());
+    }
+  }
+}
+
+// Gross errors are far larger than what tells the elements apart.
+TEST(AutoStatistics, OutliersDoNotHideWhichElementsTheDisplacementsComeFrom) {
+  EstimatorOptions options;
+  options.known_poisson_ratio = 0.3;
+  for (const int order : {1, 2}) {
+    Scene exact = SlenderBar();
+    order == 1 ? Measure({1e7, 0.3}, exact)
+               : MeasureInFinerWorld({1e7, 0.3}, exact);
+    for (int seed = 1; seed <= 10; ++seed) {
+      SCOPED_TRACE(seed);
+      Scene measured = exact;
+      MeasurementErrors errors;
+      errors.relative_noise = 0.02;
+      errors.law = NoiseLaw::kGaussian;
+      errors.outliers = 0.03;
+      std::mt19937_64 generator(seed);
+      AddErrors(errors, measured.mesh.nodes, measured.supports.held, generator,
+                measured.load_cases[0].displacement);
       const Estimate estimate = Auto().Run(measured, options);
       ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
       EXPECT_EQ(estimate.element_order, order);
