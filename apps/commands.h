@@ -12,6 +12,7 @@ namespace elastimate {
 
 int RunEstimate(const std::vector<std::string>& arguments);
 int RunSimulate(const std::vector<std::string>& arguments);
+int RunPlan(const std::vector<std::string>& arguments);
 int RunGenerate(const std::vector<std::string>& arguments);
 int RunEstimators(const std::vector<std::string>& arguments);
 int RunMaterials(const std::vector<std::string>& arguments);

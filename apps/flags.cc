@@ -19,9 +19,12 @@ DEFINE_double(noise_sd, 0,
               "standard deviation of the measured displacement per component, "
               "positive [length]; overrides that of the scene (simulate: of "
               "the Gaussian noise that is added, in the place of --noise)");
-DEFINE_double(noise, 0,
-              "norm of the added noise relative to that of the free "
-              "displacement, from 0 on [-]; none without this flag");
+DEFINE_double(
+    noise, 0,
+    "norm of the added noise relative to that of the free "
+    "displacement, from 0 on [-]; none without this flag (plan: standard "
+    "deviation of the noise over the rms displacement, positive; "
+    "0.01 where neither flags nor the scene say)");
 DEFINE_string(noise_law, "uniform", "law of --noise: uniform or gaussian");
 DEFINE_double(correlation_length, 0,
               "length X over which the noise of --noise_sd is alike, positive "
@@ -61,6 +64,10 @@ DEFINE_string(parameters, "",
               "JSON file with the parameters of all materials, as reports have "
               "them: a list \"parameters\" of \"name\", \"region\" and "
               "\"value\"");
+DEFINE_string(surface, "",
+              "box X0,Y0,Z0,X1,Y1,Z1 (in the plane X0,Y0,X1,Y1) around the "
+              "part of the surface on which plan tries unit loads; without "
+              "this flag the part that the scene loads");
 DEFINE_string(solver, "automatic",
               "how displacements are solved for: cholesky, multigrid, or "
               "automatic, which is multigrid for large scenes");
@@ -131,6 +138,12 @@ const Program& Elastimate() {
         {"youngs", "nu", "parameters", "regions", "model", "thickness", "order",
          "noise", "noise_law", "noise_sd", "correlation_length", "outliers",
          "rigid_motion", "points", "seed", "solver", "threads", "out"}},
+       {"plan",
+        "SCENE",
+        "which load to measure next: the errors that are expected of the "
+        "parameters with one more load case, and no measurement of it",
+        {"youngs", "nu", "parameters", "regions", "model", "thickness", "order",
+         "noise", "noise_sd", "surface", "solver", "threads", "json"}},
        {"generate",
         "cuboid|organ|plate|rectangle",
         "an example geometry with supports and forces",
@@ -152,7 +165,8 @@ std::string Help() {
          "\nAfter -- every argument is a file name, also one that begins with "
          "-.\n"
          "\nExit code: 0 usable estimate; 1 the result is not usable, the "
-         "status says why;\n2 wrong input or flags, nothing is written.\n";
+         "status says why\n(plan: no load determines the parameters); 2 wrong "
+         "input or flags, nothing is\nwritten.\n";
 }
 
 }  // namespace elastimate

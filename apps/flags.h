@@ -28,6 +28,7 @@ DECLARE_string(model);
 DECLARE_double(thickness);
 DECLARE_string(regions);
 DECLARE_string(parameters);
+DECLARE_string(surface);
 DECLARE_string(solver);
 DECLARE_int32(threads);
 DECLARE_uint64(seed);

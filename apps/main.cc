@@ -71,6 +71,9 @@ int RunCommand(const std::string& name,
   if (name == "simulate") {
     return RunSimulate(others);
   }
+  if (name == "plan") {
+    return RunPlan(others);
+  }
   if (name == "generate") {
     return RunGenerate(others);
   }

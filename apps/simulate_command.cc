@@ -13,6 +13,7 @@
 #include "apps/estimator_flags.h"
 #include "apps/flags.h"
 #include "apps/outputs.h"
+#include "apps/parameter_flags.h"
 #include "apps/progress.h"
 #include "apps/section_flags.h"
 #include "elastimate/core/equilibrium/equilibrium.h"
@@ -24,7 +25,6 @@
 #include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/io/points/points_file.h"
-#include "elastimate/io/report/parameters_file.h"
 #include "elastimate/io/scene/scene_reader.h"
 #include "elastimate/io/text/file_output.h"
 #include "elastimate/io/text/printable.h"
@@ -32,40 +32,6 @@
 
 namespace elastimate {
 namespace {
-
-void CheckParameterFlags() {
-  if (IsGiven("parameters")) {
-    if (IsGiven("youngs") || IsGiven("nu")) {
-      throw std::invalid_argument(AsGiven("parameters") + " is given beside " +
-                                  AsGiven(IsGiven("youngs") ? "youngs" : "nu") +
-                                  "; give one or the other");
-    }
-    return;
-  }
-  if (!IsGiven("youngs") || !IsGiven("nu")) {
-    throw std::invalid_argument(
-        "simulate needs --youngs=E and --nu=NU, or --parameters=FILE.json");
-  }
-  if (!(FLAGS_youngs > 0)) {
-    throw std::invalid_argument(AsGiven("youngs") + "; it must be positive");
-  }
-  CheckPoissonRatioFlag();
-}
-
-// Of all materials of the scene: those of --parameters, or E and nu alike.
-Eigen::VectorXd ParametersFromFlags(const Scene& scene) {
-  if (IsGiven("parameters")) {
-    return ReadParameters(FLAGS_parameters, scene);
-  }
-  const MaterialParameters parameters(scene.materials,
-                                      scene.mesh.section.model);
-  Eigen::VectorXd values(parameters.NumParameters());
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    values(i) =
-        parameters.All()[i].law_parameter->is_modulus ? FLAGS_youngs : FLAGS_nu;
-  }
-  return values;
-}
 
 // Whether the measurement is a table of points, in the place of a scene.
 bool WritesTable() { return HasExtension(FLAGS_out, ".csv"); }
@@ -253,6 +219,10 @@ MeasurementErrors ErrorsFromCheckedFlags(
   if (FLAGS_out.empty()) {
     throw std::invalid_argument(
         "simulate needs --out=FILE.vtu, or FILE.csv for a table of points");
+  }
+  if (!AreParametersGiven()) {
+    throw std::invalid_argument(
+        "simulate needs --youngs=E and --nu=NU, or --parameters=FILE.json");
   }
   CheckParameterFlags();
   MeasurementErrors errors = ErrorsFromFlags();

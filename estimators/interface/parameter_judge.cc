@@ -11,9 +11,7 @@
 #include "elastimate/estimators/interface/statistics.h"
 
 namespace elastimate {
-namespace {
-
-std::vector<ParameterEstimate> WithoutValues(
+std::vector<ParameterEstimate> ParametersWithoutValues(
     const Scene& scene, const MaterialParameters& parameters) {
   std::vector<ParameterEstimate> all;
   for (const MaterialParameters::Parameter& parameter : parameters.All()) {
@@ -29,6 +27,8 @@ std::vector<ParameterEstimate> WithoutValues(
   }
   return all;
 }
+
+namespace {
 
 // What has no finite variance is not determined, unless it is known why there
 // is none.
@@ -157,7 +157,7 @@ void JudgeBiasOfParameters(Estimate& estimate) {
 
 void EnterParameters(const Scene& scene, const FreeParameters& free,
                      const Eigen::VectorXd& variables, Estimate& estimate) {
-  estimate.parameters = WithoutValues(scene, free.All());
+  estimate.parameters = ParametersWithoutValues(scene, free.All());
   const Eigen::VectorXd values = free.ParametersAt(variables);
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     estimate.parameters[i].value = values(i);
@@ -195,7 +195,7 @@ void JudgeParameters(Estimate& estimate) {
 void DescribeOneIsotropicMaterial(const Scene& scene,
                                   const EstimatorOptions& options,
                                   Estimate& estimate) {
-  estimate.parameters = WithoutValues(
+  estimate.parameters = ParametersWithoutValues(
       scene, MaterialParameters(scene.materials, scene.mesh.section.model));
   estimate.parameter_covariance = estimate.covariance;
   ParameterEstimate& youngs_modulus = estimate.parameters[0];

@@ -2,6 +2,7 @@
 #define ELASTIMATE_ESTIMATORS_INTERFACE_PARAMETER_JUDGE_H_
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
@@ -9,6 +10,10 @@
 #include "elastimate/estimators/interface/free_parameters.h"
 
 namespace elastimate {
+
+/// The parameters of the materials of a scene, of which no value is entered.
+std::vector<ParameterEstimate> ParametersWithoutValues(
+    const Scene& scene, const MaterialParameters& parameters);
 
 /// Enters the parameters at these variables, without errors.
 void EnterParameters(const Scene& scene, const FreeParameters& free,

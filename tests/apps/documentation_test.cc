@@ -142,14 +142,17 @@ TEST_F(Documentation, HasTheOutputOfTheProgram) {
   testing::WriteText(folder_ / "plate.json",
                      Blocks("docs/measurements.md", "json").at(1));
   std::vector<std::string> samples;
-  for (const std::string document : {"README.md", "docs/measurements.md"}) {
+  testing::WriteText(folder_ / "bar.json",
+                     Blocks("docs/plan.md", "json").at(0));
+  for (const std::string document :
+       {"README.md", "docs/measurements.md", "docs/plan.md"}) {
     for (const std::string& block : Blocks(document, "")) {
       if (block.rfind(prompt, 0) == 0) {
         samples.push_back(block);
       }
     }
   }
-  EXPECT_GE(samples.size(), 5U);
+  EXPECT_GE(samples.size(), 7U);
   for (const std::string& block : samples) {
     const std::vector<std::string> expected = Lines(block);
     const std::vector<std::string> actual =

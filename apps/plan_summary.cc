@@ -1,0 +1,133 @@
+#include "apps/plan_summary.h"
+
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace elastimate {
+namespace {
+
+// With more parameters a line is too long to show the error of each.
+constexpr std::size_t kMostColumns = 6;
+constexpr int kWidthOfName = 22;
+constexpr int kWidthOfColumn = 15;
+
+std::string ShortNumber(double value, int digits) {
+  std::ostringstream text;
+  text << std::setprecision(digits) << value;
+  return text.str();
+}
+
+std::string Padded(const std::string& text, int width) {
+  const std::size_t size = std::size_t(width);
+  return text.size() < size ? text + std::string(size - text.size(), ' ')
+                            : text + " ";
+}
+
+std::string ErrorText(double error, bool is_relative) {
+  return !std::isfinite(error) ? "undetermined"
+         : is_relative         ? ShortNumber(100 * error, 2) + " %"
+                               : ShortNumber(error, 2);
+}
+
+std::string WorstText(const ExpectedErrors& errors,
+                      const std::vector<ParameterEstimate>& free) {
+  const std::string worst = ErrorText(errors.standard_errors(0), false) + ": " +
+                            CombinationInWords(errors.directions.col(0), free);
+  const Eigen::Index undetermined = errors.NumUndetermined();
+  return undetermined > 1
+             ? worst + ", and " + std::to_string(undetermined - 1) + " more"
+             : worst;
+}
+
+std::string Row(const std::string& name, const ExpectedErrors& errors,
+                const std::vector<ParameterEstimate>& free) {
+  std::string row = Padded(name, kWidthOfName);
+  if (free.size() <= kMostColumns) {
+    const Eigen::VectorXd of_parameters = errors.OfParameters();
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      row +=
+          Padded(ErrorText(of_parameters(Eigen::Index(i)), free[i].is_modulus),
+                 kWidthOfColumn);
+    }
+  }
+  return row + WorstText(errors, free);
+}
+
+std::string Heading(const std::vector<ParameterEstimate>& free) {
+  std::string heading = Padded("standard error of", kWidthOfName);
+  if (free.size() <= kMostColumns) {
+    for (const ParameterEstimate& parameter : free) {
+      heading += Padded(parameter.Label(), kWidthOfColumn);
+    }
+  }
+  return heading + "worst combination\n";
+}
+
+std::string ParametersText(const LoadPlan& plan, const PlanBasis& basis) {
+  std::string text;
+  if (plan.parameters.size() <= kMostColumns) {
+    for (const ParameterEstimate& parameter : plan.parameters) {
+      text += parameter.Label() + " " +
+              (parameter.is_modulus && !basis.is_scale_known
+                   ? "of any size"
+                   : ShortNumber(parameter.value, 4)) +
+              (parameter.is_known ? " (known), " : ", ");
+    }
+  } else {
+    text = std::to_string(plan.parameters.size()) + " values, ";
+  }
+  return text + (basis.parameters == "given"      ? "as given"
+                 : basis.parameters == "estimate" ? "as estimated"
+                                                  : "typical values");
+}
+
+std::string LoadCasesText(const PlanBasis& basis) {
+  std::string text =
+      basis.load_cases.size() == 1 ? "load case " : "load cases ";
+  for (std::size_t i = 0; i < basis.load_cases.size(); ++i) {
+    text += (i == 0 ? "" : ", ") + std::to_string(basis.load_cases[i]);
+  }
+  return text + (basis.is_measured ? "" : ", as if it were measured");
+}
+
+}  // namespace
+
+std::string PlanSummary(const LoadPlan& plan, const PlanBasis& basis,
+                        const std::vector<CandidateLoad>& candidates) {
+  const std::vector<ParameterEstimate> free = plan.Free();
+  std::string text =
+      Padded("before", kWidthOfName) + LoadCasesText(basis) + "\n" +
+      Padded("parameters", kWidthOfName) + ParametersText(plan, basis) + "\n" +
+      Padded("noise", kWidthOfName) +
+      (basis.noise_sd ? "standard deviation " + ShortNumber(*basis.noise_sd, 3)
+                      : ShortNumber(100 * basis.relative_noise, 3) +
+                            " % of the rms displacement of each load case") +
+      "\n\n" + Heading(free) + Row("before", plan.before, free) + "\n";
+  for (const PlannedLoad& load : plan.loads) {
+    text += Row("+ " + candidates[load.candidate].name, load.errors, free) +
+            (load.factor ? "\n" : " (moves nothing that is observed)\n");
+  }
+  text += "\n";
+  for (std::size_t i = 0; i < plan.sequence.size(); ++i) {
+    const PlannedLoad& load = plan.sequence[i];
+    const CandidateLoad& candidate = candidates[load.candidate];
+    text +=
+        Padded(i == 0 ? "measure next" : "then", kWidthOfName) + candidate.name;
+    if (candidate.is_free_in_size && basis.is_scale_known && load.factor) {
+      text += " of about " + ShortNumber(*load.factor, 2);
+    }
+    text +=
+        i == 0 ? "\n" : ", which leaves " + WorstText(load.errors, free) + "\n";
+  }
+  const ExpectedErrors& last =
+      plan.sequence.empty() ? plan.before : plan.sequence.back().errors;
+  if (!plan.AreDetermined(last)) {
+    text += Padded("NOT DETERMINED", kWidthOfName) +
+            "all of these loads leave " + WorstText(last, free) +
+            "; observe more, or load elsewhere\n";
+  }
+  return text;
+}
+
+}  // namespace elastimate

@@ -1,0 +1,258 @@
+#include "elastimate/estimators/plan/load_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <stdexcept>
+#include <utility>
+
+#include "elastimate/core/materials/material_parameters.h"
+#include "elastimate/core/scene/rigid_motion.h"
+#include "elastimate/estimators/interface/limits.h"
+#include "elastimate/estimators/interface/parameter_judge.h"
+#include "elastimate/estimators/material_fit/displacement_misfit.h"
+#include "elastimate/estimators/plan/expected_information.h"
+#include "elastimate/estimators/plan/unit_loads.h"
+
+namespace elastimate {
+namespace {
+
+MaterialParameters ParametersOf(const Scene& scene) {
+  return {scene.materials, scene.mesh.section.model};
+}
+
+void CheckPlan(const Scene& scene, const std::vector<CandidateLoad>& candidates,
+               const Eigen::VectorXd& parameters, double relative_noise) {
+  const MaterialParameters of_materials = ParametersOf(scene);
+  if (of_materials.Free().empty()) {
+    throw std::invalid_argument(
+        "all parameters are known; leave one of them to be measured");
+  }
+  if (parameters.size() != of_materials.NumParameters() ||
+      !parameters.allFinite()) {
+    throw std::invalid_argument("a plan needs a value of each parameter");
+  }
+  if (candidates.empty()) {
+    throw std::invalid_argument("there is no load to choose; give candidates");
+  }
+  if (!(relative_noise > 0)) {
+    throw std::invalid_argument(
+        "the noise is not positive; without noise each load that determines "
+        "the parameters is as good as another");
+  }
+  const std::string why_not_held = WhyNotHeld(scene);
+  if (!why_not_held.empty()) {
+    throw std::invalid_argument(why_not_held);
+  }
+}
+
+// The load cases of the scene, and behind them the candidates.
+Scene WithCandidates(Scene scene,
+                     const std::vector<CandidateLoad>& candidates) {
+  for (const CandidateLoad& candidate : candidates) {
+    scene.load_cases.push_back(candidate.load_case);
+  }
+  return scene;
+}
+
+double RmsOfScene(const std::vector<CaseInformation>& cases,
+                  std::size_t num_cases) {
+  double sum = 0;
+  for (std::size_t k = 0; k < num_cases; ++k) {
+    sum += cases[k].rms_displacement * cases[k].rms_displacement;
+  }
+  return std::sqrt(sum / double(num_cases));
+}
+
+// A candidate at its size.
+struct SizedCandidate {
+  Eigen::MatrixXd information;
+  std::optional<double> factor;
+};
+
+SizedCandidate AtItsSize(const CandidateLoad& candidate,
+                         const CaseInformation& as_given, double rms_of_scene) {
+  if (!(as_given.rms_displacement > 0)) {
+    return {as_given.information, std::nullopt};
+  }
+  if (!candidate.is_free_in_size) {
+    return {as_given.information, 1};
+  }
+  const double factor = rms_of_scene / as_given.rms_displacement;
+  // Relative noise grows with the load.
+  const bool is_noise_given = candidate.load_case.noise_sd ||
+                              candidate.load_case.points.noise_sd.size() != 0;
+  return {as_given.information * (is_noise_given ? factor * factor : 1),
+          factor};
+}
+
+// Each candidate beside what is known, the best first.
+std::vector<PlannedLoad> Compare(const Eigen::MatrixXd& known,
+                                 const std::vector<SizedCandidate>& candidates,
+                                 const std::vector<std::size_t>& chosen) {
+  std::vector<PlannedLoad> loads;
+  for (const std::size_t i : chosen) {
+    loads.push_back({i, ExpectedErrors::Of(known + candidates[i].information),
+                     candidates[i].factor});
+  }
+  std::stable_sort(loads.begin(), loads.end(),
+                   [](const PlannedLoad& a, const PlannedLoad& b) {
+                     return a.errors.AreSmallerThan(b.errors);
+                   });
+  return loads;
+}
+
+// Enters the comparison and the sequence.
+void EnterLoads(Eigen::MatrixXd known,
+                const std::vector<SizedCandidate>& candidates, LoadPlan& plan) {
+  std::vector<std::size_t> left(candidates.size());
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    left[i] = i;
+  }
+  plan.before = ExpectedErrors::Of(known);
+  plan.loads = Compare(known, candidates, left);
+  std::vector<PlannedLoad> next = plan.loads;
+  const ExpectedErrors* before = &plan.before;
+  plan.sequence.reserve(candidates.size());
+  while (!next.empty() && next.front().errors.AreSmallerThan(*before)) {
+    plan.sequence.push_back(next.front());
+    before = &plan.sequence.back().errors;
+    if (plan.AreDetermined(*before)) {
+      break;
+    }
+    const std::size_t best = next.front().candidate;
+    known += candidates[best].information;
+    left.erase(std::find(left.begin(), left.end(), best));
+    next = Compare(known, candidates, left);
+  }
+}
+
+}  // namespace
+
+std::vector<ParameterEstimate> LoadPlan::Free() const {
+  std::vector<ParameterEstimate> free;
+  std::copy_if(
+      parameters.begin(), parameters.end(), std::back_inserter(free),
+      [](const ParameterEstimate& parameter) { return !parameter.is_known; });
+  return free;
+}
+
+bool LoadPlan::AreDetermined(const ExpectedErrors& errors) const {
+  const std::vector<ParameterEstimate> free = Free();
+  const Eigen::VectorXd of_parameters = errors.OfParameters();
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const double largest = free[i].is_modulus
+                               ? kLimits.largest_youngs_modulus_error
+                               : kLimits.largest_poisson_ratio_error;
+    if (!(of_parameters(Eigen::Index(i)) <= largest)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+LoadPlan PlanLoads(const Scene& scene,
+                   const std::vector<CandidateLoad>& candidates,
+                   const Eigen::VectorXd& parameters, double relative_noise,
+                   SolverKind solver) {
+  ValidateScene(scene);
+  CheckPlan(scene, candidates, parameters, relative_noise);
+  LoadPlan plan;
+  plan.parameters = ParametersWithoutValues(scene, ParametersOf(scene));
+  for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
+    plan.parameters[i].value = parameters(Eigen::Index(i));
+  }
+  const std::size_t num_cases = scene.load_cases.size();
+  const std::vector<CaseInformation> cases =
+      ExpectedInformation(WithCandidates(scene, candidates), num_cases,
+                          parameters, relative_noise, solver);
+  const double rms_of_scene = RmsOfScene(cases, num_cases);
+  if (!(rms_of_scene > 0)) {
+    throw std::invalid_argument(
+        "nothing that is observed moves under the loads; give loads that "
+        "deform the specimen");
+  }
+  Eigen::MatrixXd known = cases[0].information;
+  for (std::size_t k = 1; k < num_cases; ++k) {
+    known += cases[k].information;
+  }
+  std::vector<SizedCandidate> sized;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    sized.push_back(
+        AtItsSize(candidates[i], cases[num_cases + i], rms_of_scene));
+  }
+  EnterLoads(std::move(known), sized, plan);
+  return plan;
+}
+
+LoadCase ObservedAs(const LoadCase& observed, LoadCase load_case) {
+  load_case.displacement = observed.displacement;
+  load_case.observed = observed.observed;
+  load_case.points = observed.points;
+  load_case.noise_sd = observed.noise_sd;
+  return load_case;
+}
+
+std::vector<CandidateLoad> UnitCandidates(const Scene& scene,
+                                          const Eigen::MatrixXi& facets) {
+  LoadCase load_case = ObservedAs(scene.load_cases[0], {});
+  Supports supports = SupportsOf(scene, 0);
+  if (scene.load_cases[0].supports || !supports.displacement.isZero(0)) {
+    supports.displacement.setZero();
+    load_case.supports = supports;
+  }
+  std::vector<CandidateLoad> candidates;
+  for (const UnitLoad& unit : UnitLoads(scene.mesh, facets)) {
+    load_case.loads = {unit.load};
+    candidates.push_back({unit.name, load_case, true});
+  }
+  return candidates;
+}
+
+Eigen::VectorXd TypicalParameters(const Scene& scene, SolverKind solver) {
+  const MaterialParameters parameters = ParametersOf(scene);
+  const Eigen::VectorXd typical =
+      parameters.Typical(parameters.KnownModulus().value_or(1));
+  if (parameters.KnownModulus() ||
+      !std::all_of(scene.load_cases.begin(), scene.load_cases.end(),
+                   IsMeasured)) {
+    return typical;
+  }
+  EstimatorOptions options;
+  options.solver = solver;
+  DisplacementMisfit misfit(scene, options);
+  const std::optional<double> compliance =
+      misfit.Compliance(parameters.Moduli(typical));
+  return compliance ? parameters.Typical(1 / *compliance) : typical;
+}
+
+std::string CombinationInWords(const Eigen::VectorXd& combination,
+                               const std::vector<ParameterEstimate>& free) {
+  constexpr std::size_t kMost = 4;
+  constexpr double kNotable = 0.2;
+  std::vector<std::pair<double, std::size_t>> shares;
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const double share = std::abs(combination(Eigen::Index(i)));
+    if (share > kNotable * combination.cwiseAbs().maxCoeff()) {
+      shares.emplace_back(-share, i);
+    }
+  }
+  std::stable_sort(
+      shares.begin(), shares.end(),
+      [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::string words;
+  for (std::size_t k = 0; k < std::min(kMost, shares.size()); ++k) {
+    const std::size_t i = shares[k].second;
+    words += k == 0 ? "" : k == 1 ? " with " : ", ";
+    words += free[i].Label();
+    if (shares.size() > 1) {
+      words += combination(Eigen::Index(i)) > 0 ? " up" : " down";
+    }
+  }
+  if (shares.size() > kMost) {
+    words += " and " + std::to_string(shares.size() - kMost) + " more";
+  }
+  return words;
+}
+
+}  // namespace elastimate

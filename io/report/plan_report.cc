@@ -1,0 +1,98 @@
+#include "elastimate/io/report/plan_report.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "elastimate/io/report/report.h"
+#include "elastimate/io/text/printable.h"
+
+namespace elastimate {
+namespace {
+
+using PlanJson = nlohmann::ordered_json;
+
+PlanJson FiniteOrNull(double value) {
+  return std::isfinite(value) ? PlanJson(value) : PlanJson(nullptr);
+}
+
+PlanJson ErrorsJson(const LoadPlan& plan, const ExpectedErrors& errors) {
+  PlanJson of_parameters = PlanJson::array();
+  for (const double error : errors.OfParameters()) {
+    of_parameters.push_back(FiniteOrNull(error));
+  }
+  const Eigen::VectorXd worst = errors.directions.col(0);
+  return {{"standard_errors", of_parameters},
+          {"determined", plan.AreDetermined(errors)},
+          {"undetermined_combinations", errors.NumUndetermined()},
+          {"worst_combination",
+           {{"standard_error", FiniteOrNull(errors.standard_errors(0))},
+            {"direction", std::vector<double>(worst.begin(), worst.end())},
+            {"text", CombinationInWords(worst, plan.Free())}}}};
+}
+
+PlanJson FreeParametersJson(const LoadPlan& plan) {
+  PlanJson list = PlanJson::array();
+  for (const ParameterEstimate& parameter : plan.Free()) {
+    const std::vector<int>& regions = parameter.regions;
+    list.push_back({{"name", parameter.name},
+                    {"region", regions.empty()       ? PlanJson(nullptr)
+                               : regions.size() == 1 ? PlanJson(regions[0])
+                                                     : PlanJson(regions)},
+                    {"value", parameter.value}});
+  }
+  return list;
+}
+
+PlanJson LoadJson(const LoadPlan& plan, const PlannedLoad& load,
+                  const PlanBasis& basis,
+                  const std::vector<CandidateLoad>& candidates) {
+  const CandidateLoad& candidate = candidates[load.candidate];
+  const int load_case = basis.load_case_of_candidate[load.candidate];
+  PlanJson json = {
+      {"name", candidate.name},
+      {"load_case", load_case == 0 ? PlanJson(nullptr) : PlanJson(load_case)},
+      {"size", candidate.is_free_in_size && basis.is_scale_known && load.factor
+                   ? PlanJson(*load.factor)
+                   : PlanJson(nullptr)}};
+  json.update(ErrorsJson(plan, load.errors));
+  json["standard_error_of_worst_before"] =
+      FiniteOrNull(load.errors.Along(plan.before.directions.col(0)));
+  return json;
+}
+
+}  // namespace
+
+std::string JsonPlan(const LoadPlan& plan, const PlanBasis& basis,
+                     const std::vector<CandidateLoad>& candidates,
+                     const std::vector<std::string>& notices) {
+  PlanJson sentences = PlanJson::array();
+  for (const std::string& notice : notices) {
+    sentences.push_back(Printable(notice, kLongestSentence));
+  }
+  PlanJson loads = PlanJson::array();
+  for (const PlannedLoad& load : plan.loads) {
+    loads.push_back(LoadJson(plan, load, basis, candidates));
+  }
+  PlanJson sequence = PlanJson::array();
+  for (const PlannedLoad& load : plan.sequence) {
+    sequence.push_back(LoadJson(plan, load, basis, candidates));
+  }
+  const PlanJson report = {
+      {"elastimate", Version()},
+      {"parameters", FreeParametersJson(plan)},
+      {"parameters_from", basis.parameters},
+      {"noise_sd",
+       basis.noise_sd ? PlanJson(*basis.noise_sd) : PlanJson(nullptr)},
+      {"relative_noise",
+       basis.noise_sd ? PlanJson(nullptr) : PlanJson(basis.relative_noise)},
+      {"before", PlanJson({{"load_cases", basis.load_cases},
+                           {"measured", basis.is_measured}})},
+      {"candidates", loads},
+      {"sequence", sequence},
+      {"notices", sentences}};
+  PlanJson complete = report;
+  complete["before"].update(ErrorsJson(plan, plan.before));
+  return complete.dump(2) + "\n";
+}
+
+}  // namespace elastimate

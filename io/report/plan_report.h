@@ -1,0 +1,39 @@
+#ifndef ELASTIMATE_IO_REPORT_PLAN_REPORT_H_
+#define ELASTIMATE_IO_REPORT_PLAN_REPORT_H_
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "elastimate/estimators/plan/load_plan.h"
+
+namespace elastimate {
+
+/// What a plan was made of.
+struct PlanBasis {
+  /// The load cases of the scene that count as measured, from 1 on, and whether
+  /// they have been.
+  std::vector<int> load_cases;
+  bool is_measured;
+  /// Where the parameters come from: "given", "estimate" or "typical".
+  std::string_view parameters;
+  /// Whether moduli have the unit of the loads, so that the sizes of loads mean
+  /// something.
+  bool is_scale_known;
+  std::optional<double> noise_sd;  ///< [length]; empty: relative.
+  double relative_noise;
+  /// Of each candidate, its load case in the scene, from 1 on; 0 for those that
+  /// are not in it.
+  std::vector<int> load_case_of_candidate;
+};
+
+/// A plan as a JSON text, described in docs/report.md.  Numbers round-trip;
+/// what is undetermined is null.
+std::string JsonPlan(const LoadPlan& plan, const PlanBasis& basis,
+                     const std::vector<CandidateLoad>& candidates,
+                     const std::vector<std::string>& notices);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_IO_REPORT_PLAN_REPORT_H_
