@@ -78,6 +78,33 @@ std::vector<bool> CrossingEdges(const Mesh& mesh, const Edges& edges) {
   return crossing;
 }
 
+// The components of the edges of elements that are held at a node inside the
+// specimen, where no support of its surface is.
+ComponentMask HeldInVolume(const ComponentMask& held, const Mesh& mesh,
+                           const Edges& edges) {
+  std::vector<bool> on_surface(mesh.NumNodes(), false);
+  const Eigen::MatrixXi facets = BoundaryFacets(mesh);
+  for (const int node : facets.reshaped()) {
+    on_surface[node] = true;
+  }
+  ComponentMask in_volume =
+      ComponentMask::Constant(mesh.Dimension(), edges.Size(), false);
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    const auto nodes = mesh.elements.col(e);
+    for (Eigen::Index i = 0; i < held.rows(); ++i) {
+      if (std::none_of(nodes.begin(), nodes.end(), [&](int node) {
+            return !on_surface[node] && held(i, node);
+          })) {
+        continue;
+      }
+      for (const auto& ends : mesh.Topology().edges) {
+        in_volume(i, edges.Find(nodes(ends[0]), nodes(ends[1]))) = true;
+      }
+    }
+  }
+  return in_volume;
+}
+
 // And the mid-edge nodes between two of the nodes.
 template <class Predicate>
 std::vector<int> WithMidEdgeNodes(const std::vector<int>& nodes,
@@ -102,9 +129,10 @@ Supports WithMidEdgeSupports(const Supports& supports, const Mesh& mesh,
   const std::vector<bool> crossing = CrossingEdges(mesh, edges);
   ComponentMask held = supports.held(Eigen::all, edges.Ends().row(0)) &&
                        supports.held(Eigen::all, edges.Ends().row(1));
+  const ComponentMask in_volume = HeldInVolume(supports.held, mesh, edges);
   for (Eigen::Index edge = 0; edge < edges.Size(); ++edge) {
     if (crossing[edge]) {
-      held.col(edge).setConstant(false);
+      held.col(edge) = held.col(edge) && in_volume.col(edge);
     }
   }
   Eigen::MatrixXd displacement = MeanOfEnds(supports.displacement, edges);
@@ -138,11 +166,8 @@ Supports WithMidEdgeSupports(const Supports& supports, const Mesh& mesh,
          face.components});
   }
   return {WithMidEdges(supports.held, held),
-          WithMidEdges(supports.displacement, displacement),
-          supports.boxes,
-          unknown,
-          rigid_faces,
-          {}};
+          WithMidEdges(supports.displacement, displacement), supports.boxes,
+          unknown, rigid_faces};
 }
 
 Eigen::MatrixXi WithMidEdgeNodes(const Eigen::MatrixXi& facets,

@@ -18,10 +18,10 @@ namespace elastimate {
 /// - Supports: a component is held where both ends of the edge hold it, at the
 ///   mean of their displacements.  Not held is an edge that crosses the
 ///   interior from one node of the surface to another: the ends may belong to
-///   two supports, with the specimen between them.  (Inside a held volume the
-///   neighbours then hold it all the same.)  Where supports are boxes, these
-///   decide instead about each node within.  Where a support may end along an
-///   edge, Supports::ends says so.
+///   two supports, with the specimen between them, unless an element of the
+///   edge is held at a node inside the specimen: it is in a held volume.  Where
+///   supports are boxes, these decide instead about each node within.  Where a
+///   support may end along an edge (FindSupportEnds), Supports::ends says so.
 /// - Loads: nodal forces are zero there, so that their virtual work is that of
 ///   the given forces on the displacements of the vertices.  Body forces,
 ///   tractions and pressures stay what they are; facets get their mid-edge

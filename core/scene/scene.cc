@@ -82,6 +82,10 @@ void ValidateSupports(const Mesh& mesh, const Supports& supports,
            std::to_string(d) + " finite numbers of each kind; correct it");
     }
   }
+  if (supports.delimited.size() != 0) {
+    RequireShape(supports.delimited, mesh,
+                 "the mask of delimited supports" + of_case);
+  }
   if (supports.held.all()) {
     Fail("every degree of freedom is held" +
          (of_case.empty() ? "" : " in the supports" + of_case) +

@@ -12,8 +12,12 @@
 namespace elastimate {
 namespace {
 
-bool IsHeldByBox(const Supports& supports, const Mesh& mesh, Eigen::Index i,
-                 int node) {
+// Whether something says where the support of a component ends.
+bool IsToldByPlace(const Supports& supports, const Mesh& mesh, Eigen::Index i,
+                   int node) {
+  if (supports.delimited.size() != 0 && supports.delimited(i, node)) {
+    return true;
+  }
   return std::any_of(
       supports.boxes.begin(), supports.boxes.end(), [&](const HeldBox& box) {
         return box.components(i) && box.Contains(mesh.nodes.col(node));
@@ -86,8 +90,8 @@ class OpenEdges {
   }
 
  private:
-  // The end at which alone a component is held, and not by a box; -1 where
-  // there is none.
+  // The end at which alone a component is held, without a word of where its
+  // support ends; -1 where there is none.
   int HeldEnd(Eigen::Index i, Eigen::Index edge) const {
     const int low = edges_.Ends()(0, edge);
     const int high = edges_.Ends()(1, edge);
@@ -96,7 +100,7 @@ class OpenEdges {
     }
     const int end = supports_.held(i, low) ? low : high;
     return supports_.IsGiven(static_cast<int>(i), end) &&
-                   !IsHeldByBox(supports_, mesh_, i, end)
+                   !IsToldByPlace(supports_, mesh_, i, end)
                ? end
                : -1;
   }
@@ -111,9 +115,18 @@ class OpenEdges {
           }
         }
       }
+      // Nodes of a layer that is held in part stick out of it.
+      std::vector<bool> is_at_volume = is_in_volume;
+      for (Eigen::Index edge = 0; edge < edges_.Size(); ++edge) {
+        const int low = edges_.Ends()(0, edge);
+        const int high = edges_.Ends()(1, edge);
+        if (is_in_volume[low] || is_in_volume[high]) {
+          is_at_volume[low] = is_at_volume[high] = true;
+        }
+      }
       for (Eigen::Index edge = 0; edge < edges_.Size(); ++edge) {
         const int end = HeldEnd(i, edge);
-        open_(i, edge) = end >= 0 && is_in_volume[end];
+        open_(i, edge) = end >= 0 && is_at_volume[end];
       }
     }
   }

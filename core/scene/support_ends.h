@@ -15,8 +15,9 @@ namespace elastimate {
 /// that one end holds, where no box says so and `held` (dimension x num_edges)
 /// does not, and
 ///
-/// - whose held end is a node of an element all of whose nodes are held: the
-///   support is a volume; or
+/// - whose held end is a node of an element all of whose nodes are held, or
+/// next
+///   to one: the support is a volume; or
 /// - which is on the surface, in a facet that goes on without a crease from one
 ///   all of whose nodes are held: the support is a part of a surface.
 ///

@@ -56,6 +56,9 @@ struct Supports {
   /// error of a measurement.  dimension x num_nodes; empty when there are none.
   ComponentMask unknown = {};
   std::vector<RigidFace> rigid_faces = {};
+  /// Held components of supports that end with their nodes, as a part of the
+  /// mesh does.  dimension x num_nodes; empty when there are none.
+  ComponentMask delimited = {};
   /// Where QuadraticScene cannot tell which of the nodes that it adds are held
   /// (FindSupportEnds): none of them, unless a fit finds them (EndingAfter).
   std::vector<SupportEnd> ends = {};

@@ -83,6 +83,8 @@ void AddSupport(const JsonValue& support, const MeshFile& mesh,
   const Components components = ReadComponents(support, dimension);
   const SupportDisplacement displacement =
       ReadSupportDisplacement(support, dimension);
+  const JsonValue selection = support.At("nodes");
+  const bool is_group = !selection.IsString() && selection.Has("physical");
   RigidFace face = {{}, components};
   for (int node = 0; node < nodes.size(); ++node) {
     if (!nodes[node]) {
@@ -102,12 +104,12 @@ void AddSupport(const JsonValue& support, const MeshFile& mesh,
       supports.held(axis, node) = true;
       supports.unknown(axis, node) = displacement.IsUnknown();
       supports.displacement(axis, node) = displacement.given(axis);
+      supports.delimited(axis, node) = is_group;
     }
   }
   if (displacement.is_rigid) {
     supports.rigid_faces.push_back(face);
   }
-  const JsonValue selection = support.At("nodes");
   if (!displacement.IsUnknown() && !selection.IsString() &&
       selection.Has("box")) {
     const BoxCorners box = CornersOfBox(selection.At("box"), mesh);
@@ -122,12 +124,16 @@ Supports ReadSupports(const JsonValue& document, const MeshFile& mesh) {
   Supports supports;
   supports.held.setConstant(mesh.Dimension(), mesh.nodes.cols(), false);
   supports.unknown = supports.held;
+  supports.delimited = supports.held;
   supports.displacement.setZero(mesh.Dimension(), mesh.nodes.cols());
   for (const JsonValue& support : document.At("supports").Items()) {
     AddSupport(support, mesh, supports);
   }
   if (!supports.unknown.any()) {
     supports.unknown.resize(0, 0);
+  }
+  if (!supports.delimited.any()) {
+    supports.delimited.resize(0, 0);
   }
   return supports;
 }

@@ -177,6 +177,7 @@ class SceneNodes {
     KeepColumns(supports.held);
     KeepColumns(supports.displacement);
     KeepColumns(supports.unknown);
+    KeepColumns(supports.delimited);
     for (RigidFace& face : supports.rigid_faces) {
       Renumber(face.nodes);
     }

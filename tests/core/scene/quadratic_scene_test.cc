@@ -11,6 +11,7 @@
 #include "elastimate/core/mesh/mid_edges.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/rigid_motion.h"
+#include "elastimate/core/scene/support_ends.h"
 #include "tests/core/random_values.h"
 #include "tests/quadratic_reference.h"
 #include "tests/scenes.h"
@@ -286,6 +287,17 @@ TEST_F(BoxToConvert, AHeldVolumeHoldsTheEdgesOfItsInside) {
   }
 }
 
+TEST_F(BoxToConvert, AHeldVolumeHoldsWhatCrossesItsCorners) {
+  Hold(0, Coordinate(2) <= 2);
+  const Scene quadratic = QuadraticScene(scene_);
+  for (Eigen::Index node = 0; node < quadratic.mesh.NumNodes(); ++node) {
+    if (quadratic.mesh.nodes(2, node) <= 2) {
+      EXPECT_TRUE(quadratic.supports.held(0, node))
+          << quadratic.mesh.nodes.col(node).transpose();
+    }
+  }
+}
+
 // A slab of one layer of elements, held on both sides: what is between can
 // bulge.
 class SlabToConvert : public BoxToConvert {
@@ -310,6 +322,83 @@ TEST_F(SlabToConvert, BetweenTwoSupportsIsFree) {
       NodeBetween(quadratic.mesh, bottom, bottom + 16);  // Straight above.
   ASSERT_GE(between, 0);
   EXPECT_FALSE(quadratic.supports.held(0, between));
+}
+
+// ---------------------------------------------------------------------------
+// Where supports may end.
+
+class OpenBoxToConvert : public BoxToConvert {
+ protected:
+  std::vector<SupportEnd> Ends() const {
+    return QuadraticScene(scene_).supports.ends;
+  }
+};
+
+TEST_F(OpenBoxToConvert, AFaceUpToItsCreasesLeavesNothingOpen) {
+  Hold(1, Coordinate(2) == 0);
+  EXPECT_TRUE(Ends().empty());
+}
+
+TEST_F(OpenBoxToConvert, APartOfAFaceEndsSomewhereInIt) {
+  Hold(1, Coordinate(2) == 0 && Coordinate(0) <= 1);
+  const Scene quadratic = QuadraticScene(scene_);
+  ASSERT_EQ(quadratic.supports.ends.size(), 1);
+  // 4 edges along x, and 3 diagonals, as far along x as each other.
+  const SupportEnd& end = quadratic.supports.ends[0];
+  ASSERT_EQ(end.steps.size(), 1);
+  EXPECT_EQ(end.steps[0].size(), 7);
+  for (const HeldComponent& open : end.steps[0]) {
+    EXPECT_EQ(open.component, 1);
+    EXPECT_FALSE(quadratic.supports.held(1, open.node));
+    EXPECT_EQ(quadratic.mesh.nodes(0, open.node), 1.5);
+    EXPECT_EQ(quadratic.mesh.nodes(2, open.node), 0);
+  }
+}
+
+TEST_F(OpenBoxToConvert, StepsGoFromTheHeldNodesToTheFreeOnes) {
+  scene_.mesh.nodes.row(0) +=
+      Eigen::RowVectorXd(0.05 * Coordinate(1) + 0.01 * Coordinate(2));
+  Hold(0, Coordinate(0) <= 1.2);
+  scene_.supports.displacement.setConstant(0.5);
+  const Scene quadratic = QuadraticScene(scene_);
+  ASSERT_EQ(quadratic.supports.ends.size(), 1);
+  const SupportEnd& end = quadratic.supports.ends[0];
+  EXPECT_GT(end.steps.size(), 4);
+  double last = 0;
+  std::vector<std::size_t> steps = {0};
+  for (const auto& step : end.steps) {
+    for (const HeldComponent& open : step) {
+      EXPECT_GE(quadratic.mesh.nodes(0, open.node), last);
+      EXPECT_EQ(open.displacement, 0.5);
+    }
+    last = quadratic.mesh.nodes(0, step[0].node);
+    ++steps[0];
+    const Supports ended = EndingAfter(steps, quadratic.supports);
+    EXPECT_TRUE(ended.held(0, step[0].node));
+    EXPECT_EQ(ended.displacement(0, step[0].node), 0.5);
+  }
+  EXPECT_EQ(EndingAfter({0}, quadratic.supports).held.count(),
+            quadratic.supports.held.count());
+}
+
+TEST_F(OpenBoxToConvert, AHeldNodeOrLineIsNoPartOfAFace) {
+  Hold(0, Coordinate(0) == 0 && Coordinate(1) == 0 && Coordinate(2) == 0);
+  Hold(2, Coordinate(1) == 2 && Coordinate(2) == 0);
+  EXPECT_TRUE(Ends().empty());
+}
+
+TEST_F(OpenBoxToConvert, ABoxDecidesAboutItsNodes) {
+  Hold(1, Coordinate(2) == 0 && Coordinate(0) <= 1);
+  scene_.supports.boxes = {
+      {Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(1.2, 4, 0.1),
+       Eigen::Array3<bool>(false, true, false), Eigen::Vector3d::Zero()}};
+  EXPECT_TRUE(Ends().empty());
+}
+
+TEST_F(OpenBoxToConvert, APartOfTheMeshEndsWithItsNodes) {
+  Hold(1, Coordinate(2) == 0 && Coordinate(0) <= 1);
+  scene_.supports.delimited = scene_.supports.held;
+  EXPECT_TRUE(Ends().empty());
 }
 
 // A clamp from x = 0 to between two layers of nodes, nearer to the free one.

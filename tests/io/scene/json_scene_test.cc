@@ -154,6 +154,12 @@ TEST_F(JsonSceneTest, SelectsNodes) {
               ElementsAre(0, 1, 2, 4));
   EXPECT_THAT(Held(WithNodes(R"({"physical": 71})")), ElementsAre(0, 1, 4));
   EXPECT_THAT(Held(WithNodes(R"({"physical": "71"})")), ElementsAre(0, 1, 4));
+  EXPECT_EQ(
+      Read(WithNodes(R"({"ids": [0, 1, 4]})")).scene.supports.delimited.size(),
+      0);
+  const Supports of_group =
+      Read(WithNodes(R"({"physical": 71})")).scene.supports;
+  EXPECT_TRUE((of_group.delimited == of_group.held).all());
   EXPECT_THROWS_WITH(Read(WithNodes(R"("all")")),
                      "scene.json: every degree of freedom is held");
 }
