@@ -120,6 +120,23 @@ class FitDescription {
     }
   }
 
+  void EnterSupports() {
+    const SupportDoubt& supports = fit_.supports;
+    if (free_.empty() || supports.covariance.isZero(0)) {
+      return;
+    }
+    Eigen::Vector2d correction =
+        evidence_.element_correction.value_or(Eigen::Vector2d::Zero());
+    Eigen::Vector2d errors = Eigen::Vector2d::Zero();
+    for (const Eigen::Index i : free_) {
+      correction(i) += supports.correction(i);
+      errors(i) = std::sqrt(supports.covariance(i, i));
+    }
+    evidence_.element_correction = correction;
+    evidence_.support_errors = errors;
+    of_elements_ += supports.covariance(free_, free_);
+  }
+
   // Whether there are no more components than the statistics need.
   bool AreTooFew() {
     if (observed_.GivenNoise() ||
@@ -398,6 +415,7 @@ std::optional<double> DescribeDisplacementFit(
   }
   description.MeasureElements(scene, graph);
   description.MeasureNoise(graph);
+  description.EnterSupports();
   description.FillCovariance();
   const std::optional<double> variance = description.RowVariance();
   if (evidence.active.youngs_modulus != Side::kNone) {

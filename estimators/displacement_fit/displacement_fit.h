@@ -14,6 +14,12 @@
 
 namespace elastimate {
 
+/// What it does to (ln E, nu) that supports end somewhere within elements.
+struct SupportDoubt {
+  Eigen::Vector2d correction = Eigen::Vector2d::Zero();  ///< To be added.
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+};
+
 /// A finite element model at the parameters that fit the measured
 /// displacements best; residual and sensitivities in the rows of
 /// ObservedDisplacements.
@@ -25,11 +31,12 @@ struct DisplacementFit {
   Eigen::Matrix<double, Eigen::Dynamic, 2> sensitivities;
   /// That of ElementChange in u; empty where it is not known.
   std::optional<Eigen::VectorXd> element_change;
+  SupportDoubt supports;
 };
 
-/// Corrects (ln E, nu) of a usable estimate for what the elements miss, as
-/// DescribeDisplacementFit found it, with the interval of nu, which then holds
-/// what they leave uncertain as well.
+/// Corrects (ln E, nu) of a usable estimate for what the elements miss and for
+/// where supports end, as DescribeDisplacementFit found it, with the interval
+/// of nu, which then holds what they leave uncertain as well.
 void CorrectForElements(const Evidence& evidence, Estimate& estimate);
 
 /// Describes a least-squares (or, with `losses`, robust) fit of the
@@ -44,7 +51,8 @@ void CorrectForElements(const Evidence& evidence, Estimate& estimate);
 /// is not noise: its smooth part may hide an error of its own size along the
 /// sensitivities, and ||smooth part||^2 (S^T S)^-1 is added.  So is the square
 /// of what the outliers of a fit without a loss pull the parameters by, and
-/// what the elements leave uncertain (ElementErrors).
+/// what the elements (ElementErrors) and the ends of supports within them leave
+/// uncertain.
 ///
 /// Returns the variance of a row of the residual that the standard error of nu
 /// amounts to, or would, were nu not at the end of its physical range; empty

@@ -46,6 +46,8 @@ class DisplacementResidual : public ceres::EvaluationCallback {
     fit_.element_change = model_.ElementChangeOf(Elasticity());
   }
 
+  void SetSupportDoubt(const SupportDoubt& doubt) { fit_.supports = doubt; }
+
   bool IsValid() const { return is_valid_; }
   ObservedModel& Model() { return model_; }
   const ObservedModel& Model() const { return model_; }

@@ -15,6 +15,7 @@
 #include "elastimate/estimators/displacement_fit/displacement_profile.h"
 #include "elastimate/estimators/displacement_fit/observed_model.h"
 #include "elastimate/estimators/displacement_fit/robust_reduced_fit.h"
+#include "elastimate/estimators/displacement_fit/support_end_search.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/statistics.h"
@@ -224,31 +225,8 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
   }
 }
 
-}  // namespace
-
-std::string_view IterativeFe::Name() const { return "iterative-fe"; }
-
-std::string_view IterativeFe::Description() const {
-  return "maximum likelihood fit of the displacements, a finite element "
-         "solution at each step; unbiased, costs factorisations (reference)";
-}
-
-Capabilities IterativeFe::WhatItTakes() const {
-  Capabilities capabilities;
-  capabilities.needs_supports = true;
-  capabilities.takes_bounds = true;
-  capabilities.takes_losses = true;
-  capabilities.takes_materials = true;
-  capabilities.takes_unknown_motion = true;
-  capabilities.takes_supports_of_cases = true;
-  return capabilities;
-}
-
-Estimate IterativeFe::DoRun(const Scene& scene,
-                            const EstimatorOptions& options) const {
-  if (IsForMaterialFit(scene)) {
-    return FitMaterials(scene, options);
-  }
+Estimate FitIteratively(const Scene& scene, const EstimatorOptions& options,
+                        const SupportDoubt& doubt) {
   Estimate estimate;
   Evidence evidence;
   Stopwatch stopwatch;
@@ -280,6 +258,7 @@ Estimate IterativeFe::DoRun(const Scene& scene,
     evidence.active =
         NoteActiveBounds(options, best.violated, best.poisson_ratio, estimate);
     residual.FindElementChange();
+    residual.SetSupportDoubt(doubt);
     DescribeFit(scene, options, points, best.losses, residual, evidence,
                 estimate);
   }
@@ -289,6 +268,38 @@ Estimate IterativeFe::DoRun(const Scene& scene,
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
   estimate.work = model.WorkDone();
   return estimate;
+}
+
+}  // namespace
+
+std::string_view IterativeFe::Name() const { return "iterative-fe"; }
+
+std::string_view IterativeFe::Description() const {
+  return "maximum likelihood fit of the displacements, a finite element "
+         "solution at each step; unbiased, costs factorisations (reference)";
+}
+
+Capabilities IterativeFe::WhatItTakes() const {
+  Capabilities capabilities;
+  capabilities.needs_supports = true;
+  capabilities.takes_bounds = true;
+  capabilities.takes_losses = true;
+  capabilities.takes_materials = true;
+  capabilities.takes_unknown_motion = true;
+  capabilities.takes_supports_of_cases = true;
+  return capabilities;
+}
+
+Estimate IterativeFe::DoRun(const Scene& scene,
+                            const EstimatorOptions& options) const {
+  if (IsForMaterialFit(scene)) {
+    return FitMaterials(scene, options);
+  }
+  return FitAndFindSupportEnds(
+      scene, options,
+      [&options](const Scene& ended, const SupportDoubt& doubt) {
+        return FitIteratively(ended, options, doubt);
+      });
 }
 
 std::unique_ptr<Preparation> IterativeFe::DoPrepare(

@@ -8,6 +8,7 @@
 #include "elastimate/estimators/displacement_fit/adaptive_fit.h"
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
 #include "elastimate/estimators/displacement_fit/element_change.h"
+#include "elastimate/estimators/displacement_fit/support_end_search.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 #include "elastimate/estimators/statistics/bounded_parameter.h"
@@ -31,7 +32,8 @@ Side BoundOf(const Bounds& bounds, double value) {
 DisplacementFit FitWithChange(const Scene& scene,
                               const ObservedDisplacements& observed,
                               const IsotropicElasticity& elasticity,
-                              ReducedModel& model, ElementChange& change) {
+                              const SupportDoubt& doubt, ReducedModel& model,
+                              ElementChange& change) {
   DisplacementFit fit = ExpandFit(model, observed, elasticity);
   // The model is zero where the supports hold.
   const Eigen::VectorXd held = HeldDisplacement(scene.supports);
@@ -43,12 +45,14 @@ DisplacementFit FitWithChange(const Scene& scene,
   fit.element_change =
       change.Rows(observed, elasticity, responses,
                   [&model](double nu) { return model.SolverNear(nu); });
+  fit.supports = doubt;
   return fit;
 }
 
 // Fills in what follows from a fit of physical parameters.
 void DescribeFit(const Scene& scene, const EstimatorOptions& options,
-                 const ObservedDisplacements& observed, AdaptiveFit& adaptive,
+                 const ObservedDisplacements& observed,
+                 const SupportDoubt& doubt, AdaptiveFit& adaptive,
                  ElementChange& change, Evidence& evidence,
                  Estimate& estimate) {
   const ModelFit& best = adaptive.Best();
@@ -63,8 +67,8 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
       poisson_ratio, estimate);
   const std::optional<double> variance = DescribeDisplacementFit(
       scene, adaptive.Model().Graph(), options, observed,
-      FitWithChange(scene, observed, estimate.elasticity, adaptive.Model(),
-                    change),
+      FitWithChange(scene, observed, estimate.elasticity, doubt,
+                    adaptive.Model(), change),
       best.losses, evidence, estimate);
   Judge(evidence, options, estimate);
   // What looks like a pull to -1 may be data that say nothing of nu.
@@ -85,7 +89,8 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
 // Fits, and describes the fit.
 Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
                         const ObservedDisplacements& observed,
-                        AdaptiveFit& adaptive, ElementChange& change) {
+                        const SupportDoubt& doubt, AdaptiveFit& adaptive,
+                        ElementChange& change) {
   Estimate estimate;
   Evidence evidence;
   Stopwatch stopwatch;
@@ -106,7 +111,8 @@ Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
     Judge(evidence, options, estimate);
     return estimate;
   }
-  DescribeFit(scene, options, observed, adaptive, change, evidence, estimate);
+  DescribeFit(scene, options, observed, doubt, adaptive, change, evidence,
+              estimate);
   if (!adaptive.HasConverged()) {
     evidence.end = End::kNotCertified;
   }
@@ -114,6 +120,20 @@ Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
   Judge(evidence, options, estimate);
   CorrectForElements(evidence, estimate);
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
+  return estimate;
+}
+
+Estimate FitOnce(const Scene& scene, const EstimatorOptions& options,
+                 const SupportDoubt& doubt) {
+  Stopwatch stopwatch;
+  AdaptiveFit adaptive(scene, options);
+  const ObservedDisplacements observed(scene);
+  const double seconds = stopwatch.Lap();
+  ElementChange change(scene);
+  Estimate estimate =
+      RunAdaptiveFit(scene, options, observed, doubt, adaptive, change);
+  estimate.stages.insert(estimate.stages.begin(), {"reduce", seconds});
+  estimate.work = adaptive.Model().WorkDone() + change.WorkDone();
   return estimate;
 }
 
@@ -130,7 +150,7 @@ class ReducedPreparation : public Preparation {
     }
     const Work before = adaptive_.Model().WorkDone() + change_.WorkDone();
     Estimate estimate =
-        RunAdaptiveFit(scene, options_, *observed_, adaptive_, change_);
+        RunAdaptiveFit(scene, options_, *observed_, {}, adaptive_, change_);
     estimate.work = adaptive_.Model().WorkDone() + change_.WorkDone() - before;
     return estimate;
   }
@@ -163,21 +183,18 @@ Capabilities ReducedFe::WhatItTakes() const {
 
 Estimate ReducedFe::DoRun(const Scene& scene,
                           const EstimatorOptions& options) const {
-  Stopwatch stopwatch;
-  AdaptiveFit adaptive(scene, options);
-  const ObservedDisplacements observed(scene);
-  const double seconds = stopwatch.Lap();
-  ElementChange change(scene);
-  Estimate estimate =
-      RunAdaptiveFit(scene, options, observed, adaptive, change);
-  estimate.stages.insert(estimate.stages.begin(), {"reduce", seconds});
-  estimate.work = adaptive.Model().WorkDone() + change.WorkDone();
-  return estimate;
+  return FitAndFindSupportEnds(
+      scene, options,
+      [&options](const Scene& ended, const SupportDoubt& doubt) {
+        return FitOnce(ended, options, doubt);
+      });
 }
 
 std::unique_ptr<Preparation> ReducedFe::DoPrepare(
     const Scene& scene, const EstimatorOptions& options) const {
-  return std::make_unique<ReducedPreparation>(scene, options);
+  return scene.supports.ends.empty()
+             ? std::make_unique<ReducedPreparation>(scene, options)
+             : Estimator::DoPrepare(scene, options);
 }
 
 }  // namespace elastimate

@@ -166,12 +166,14 @@ struct Estimate {
   /// autocorrelation [length]: 0 for independent noise.  Of fits of several
   /// materials and of unknown motions.
   std::optional<double> correlation_length;
-  /// What the elements leave uncertain, as one standard deviation, which is
-  /// part of the standard errors: relative of E, and of a free nu.
+  /// What the elements leave uncertain, and supports that end within them, as
+  /// one standard deviation, which is part of the standard errors: relative of
+  /// E, and of a free nu.
   std::optional<double> discretization_error;
   std::optional<double> poisson_ratio_discretization_error;
-  /// By how much E (relative) and nu were corrected for what the elements miss.
-  /// Of fits of displacements of linear simplices.
+  /// By how much E (relative) and nu were corrected for what the elements miss,
+  /// in fits of displacements of linear simplices, and for where supports end
+  /// within them.
   std::optional<Eigen::Vector2d> discretization_correction;
   /// What virtual-fields says of the model of reduced-fe, where both were run.
   std::optional<ModelMismatch> model_mismatch;

@@ -94,7 +94,8 @@ struct Evidence {
   std::optional<ResidualRatio> above_noise;
   /// Of (ln E, nu), without the pull of outliers.
   std::optional<Eigen::Vector2d> outlier_change;
-  /// Of (ln E, nu), for what the elements miss.
+  /// Of (ln E, nu), for what the elements miss and where supports end within
+  /// them.
   std::optional<Eigen::Vector2d> element_correction;
   /// The same, of the parameters that it changes most, or what it may have to
   /// be where something else in the residual hides it.
