@@ -275,11 +275,22 @@ void ChooseOrder(const Estimate& linear, const Observations& observations,
   }
 }
 
-// Of several materials: only a fit sees that regions are wrong, and it starts
-// from virtual-fields itself.
+// Of several materials: only a fit sees that regions are wrong, and none of
+// those of the force balance is a start that it needs.
 void ClimbOverMaterials(const Scene& scene, const EstimatorOptions& options,
                         Preparation* fit, Ladder& ladder) {
-  if (!ladder.Climb(IterativeFe(), scene, WithoutDegree(options), fit) &&
+  const EstimatorOptions without_degree = WithoutDegree(options);
+  if (ReducedFe().WhyUnsupported(scene, without_degree).empty()) {
+    ladder.Climb(ReducedFe(), scene, without_degree);
+    const Estimate& reduced = ladder.Last();
+    if (!reduced.Has(FindingCode::kFitNotCertified) &&
+        reduced.status != Status::kNumericalFailure) {
+      ladder.Decide("stopped: at the statistical limit of the data");
+      return;
+    }
+    ladder.Decide("went on: not usable: " + reduced.message);
+  }
+  if (!ladder.Climb(IterativeFe(), scene, without_degree, fit) &&
       !ladder.Climb(VirtualFields(), scene, options)) {
     return;
   }
@@ -290,7 +301,8 @@ void ClimbOverMaterials(const Scene& scene, const EstimatorOptions& options,
 class PreparedUnknownMotion : public Preparation {
  public:
   explicit PreparedUnknownMotion(const EstimatorOptions& options)
-      : options_(WithoutDegree(options)), fit_(PrepareMaterialFit(options_)) {}
+      : options_(WithoutDegree(options)),
+        fit_(PrepareMaterialFit(options_, Descent::kFull)) {}
 
   Estimate Run(const Scene& scene) override {
     Ladder ladder;
@@ -311,8 +323,8 @@ std::string_view Auto::Name() const { return "auto"; }
 
 std::string_view Auto::Description() const {
   return "climbs from closed-form over virtual-fields to reduced-fe and "
-         "quadratic elements, as far as the scene needs (of several materials, "
-         "or unknown motions: to iterative-fe)";
+         "quadratic elements, as far as the scene needs (of unknown motions: "
+         "to iterative-fe)";
 }
 
 Capabilities Auto::WhatItTakes() const {

@@ -24,6 +24,10 @@ namespace elastimate {
 /// linear ones that have to, as they do for displacements that were computed
 /// with them.
 ///
+/// Of several materials, it climbs from closed-form to reduced-fe, and to
+/// iterative-fe where that is not certified; of unknown motions and supports of
+/// load cases, to iterative-fe.
+///
 /// A rung that does not support the scene or the options is passed over.  The
 /// estimate is that of the last rung, with the work of all of them;
 /// Estimate::rungs says why each went on or stopped.

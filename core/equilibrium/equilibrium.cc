@@ -26,7 +26,7 @@ Equilibrium::Equilibrium(const Scene& scene, SolverKind solver)
       supports_of_stiffness.push_back(&supports);
       stiffness_.emplace_back(scene.mesh, supports, solver);
     }
-    held_displacement_.col(k) = HeldDisplacement(supports);
+    held_displacement_.col(k) = elastimate::HeldDisplacement(supports);
     Eigen::Index first = 0;
     while (stiffness_of_case_[first] != stiffness_of_case_[k] ||
            held_displacement_.col(first) != held_displacement_.col(k)) {
@@ -74,12 +74,7 @@ bool Equilibrium::Solve(const Eigen::VectorXd& moduli) {
     }
   }
   SolveForSupports(scaled);
-  displacement_ = ByStiffness(
-      stiffness_, load_,
-      [&](SupportedStiffness& stiffness, const Eigen::MatrixXd& loads) {
-        return Eigen::MatrixXd(stiffness.Solve(loads) / scale_);
-      });
-  displacement_ += support_response_;
+  displacement_ = SolveFor(load_) + support_response_;
   return !displacement_.hasNaN();
 }
 
@@ -105,6 +100,14 @@ Eigen::MatrixXd Equilibrium::Sensitivities(const Eigen::MatrixXd& directions) {
             forces_.Columns(displacement_.col(k)) * (directions / scale_));
   }
   return sensitivities;
+}
+
+Eigen::MatrixXd Equilibrium::SolveFor(const Eigen::MatrixXd& forces) {
+  return ByStiffness(
+      stiffness_, forces,
+      [&](SupportedStiffness& stiffness, const Eigen::MatrixXd& columns) {
+        return Eigen::MatrixXd(stiffness.Solve(columns) / scale_);
+      });
 }
 
 Eigen::MatrixXd Equilibrium::Extend(const Eigen::MatrixXd& held) {

@@ -43,6 +43,15 @@ class Equilibrium {
   /// load case.  Precondition: Solve returned true.
   Eigen::MatrixXd Sensitivities(const Eigen::MatrixXd& directions);
 
+  /// K^-1 of the free rows of some forces, n of each load case side by side,
+  /// zero in the held rows: a solve for each.  Precondition as above.
+  Eigen::MatrixXd SolveFor(const Eigen::MatrixXd& forces);
+
+  /// f, num_dofs x num_load_cases [force].
+  const Eigen::MatrixXd& Load() const { return load_; }
+  /// The given displacements, zero in the free rows: num_dofs x num_load_cases.
+  const Eigen::MatrixXd& HeldDisplacement() const { return held_displacement_; }
+
   /// u in equilibrium without loads, of displacements of the held degrees of
   /// freedom alone (zero in the free rows), n of each load case side by side:
   /// a solve for each.  This, its transpose and forces of supports are there

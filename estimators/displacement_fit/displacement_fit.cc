@@ -287,6 +287,7 @@ class FitDescription {
     if (elements_off_limit_) {
       covariance += ElementCovariance(*elements_off_limit_, parameters);
     }
+    covariance += fit_.supports.covariance(parameters, parameters);
     return covariance(covariance.rows() - 1, covariance.cols() - 1);
   }
   // The residual without what a finer specimen explains of it.

@@ -293,7 +293,7 @@ Capabilities IterativeFe::WhatItTakes() const {
 Estimate IterativeFe::DoRun(const Scene& scene,
                             const EstimatorOptions& options) const {
   if (IsForMaterialFit(scene)) {
-    return FitMaterials(scene, options);
+    return FitMaterials(scene, options, Descent::kFull);
   }
   return FitAndFindSupportEnds(
       scene, options,
@@ -304,7 +304,7 @@ Estimate IterativeFe::DoRun(const Scene& scene,
 
 std::unique_ptr<Preparation> IterativeFe::DoPrepare(
     const Scene& scene, const EstimatorOptions& options) const {
-  return IsForMaterialFit(scene) ? PrepareMaterialFit(options)
+  return IsForMaterialFit(scene) ? PrepareMaterialFit(options, Descent::kFull)
                                  : Estimator::DoPrepare(scene, options);
 }
 

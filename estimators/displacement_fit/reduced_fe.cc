@@ -11,6 +11,7 @@
 #include "elastimate/estimators/displacement_fit/support_end_search.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/stopwatch.h"
+#include "elastimate/estimators/material_fit/material_fit.h"
 #include "elastimate/estimators/statistics/bounded_parameter.h"
 #include "elastimate/estimators/statistics/profile_likelihood.h"
 
@@ -178,11 +179,15 @@ Capabilities ReducedFe::WhatItTakes() const {
   capabilities.needs_supports = true;
   capabilities.takes_bounds = true;
   capabilities.takes_losses = true;
+  capabilities.takes_materials = true;
   return capabilities;
 }
 
 Estimate ReducedFe::DoRun(const Scene& scene,
                           const EstimatorOptions& options) const {
+  if (IsForMaterialFit(scene)) {
+    return FitMaterials(scene, options, Descent::kReduced);
+  }
   return FitAndFindSupportEnds(
       scene, options,
       [&options](const Scene& ended, const SupportDoubt& doubt) {
@@ -192,6 +197,9 @@ Estimate ReducedFe::DoRun(const Scene& scene,
 
 std::unique_ptr<Preparation> ReducedFe::DoPrepare(
     const Scene& scene, const EstimatorOptions& options) const {
+  if (IsForMaterialFit(scene)) {
+    return PrepareMaterialFit(options, Descent::kReduced);
+  }
   return scene.supports.ends.empty()
              ? std::make_unique<ReducedPreparation>(scene, options)
              : Estimator::DoPrepare(scene, options);

@@ -45,6 +45,13 @@ namespace elastimate {
 /// 1/2 or without noise), about 45 solves for each load case, of which ten
 /// serve all; memory is that of the factor and about 80 vectors for each load
 /// case.
+///
+/// Of several materials, the minimum is that of reduced models of all load
+/// cases, where the gradient of the full model certifies it (ReducedMinimum):
+/// 2 or 3 factorisations, and more where moduli differ by more than a factor of
+/// ten from typical ones; not certified, the status is iteration_limit.
+/// Outliers, covariance and what elements miss are those of FitMaterials.
+/// Prepared, a fit starts where the last one ended.
 /// Deterministic for a given number of BLAS threads (Estimator::Run).
 class ReducedFe : public Estimator {
  public:

@@ -77,6 +77,7 @@ bool DisplacementMisfit::Evaluate(const Eigen::VectorXd& x,
 std::optional<double> DisplacementMisfit::Compliance(
     const Eigen::VectorXd& unit_moduli) {
   x_.resize(0);
+  placed_.reset();
   if (!equilibrium_.Solve(unit_moduli)) {
     return std::nullopt;
   }
@@ -108,9 +109,9 @@ std::optional<RowChange> DisplacementMisfit::ChangeTo(
   }
   if (!motion_) {
     return RowChange{
-        observed_.Restrict(finer.equilibrium_.Displacement().topRows(
-            equilibrium_.Displacement().rows())) -
-            observed_.Restrict(equilibrium_.Displacement()),
+        observed_.Restrict(
+            finer.equilibrium_.Displacement().topRows(Displacement().rows())) -
+            observed_.Restrict(Displacement()),
         true,
         {}};
   }
@@ -131,12 +132,21 @@ std::optional<RowChange> DisplacementMisfit::ChangeTo(
 
 bool DisplacementMisfit::SolveAt(const Eigen::VectorXd& x) {
   x_.resize(0);
+  placed_.reset();
   if (on_factorization_) {
     on_factorization_(++num_factorizations_);
   }
   const Eigen::VectorXd moduli = free_.ModuliAt(x);
   return moduli.allFinite() && equilibrium_.Solve(moduli) &&
          equilibrium_.Displacement().allFinite();
+}
+
+void DisplacementMisfit::Place(const Eigen::VectorXd& x,
+                               const Eigen::MatrixXd& displacement,
+                               const Eigen::MatrixXd& sensitivities) {
+  placed_ = Placed{displacement, sensitivities};
+  residual_ = observed_.Restrict(displacement) - observed_.Measured();
+  x_ = x;
 }
 
 bool DisplacementMisfit::MoveTo(const Eigen::VectorXd& x) {
@@ -156,7 +166,8 @@ bool DisplacementMisfit::MoveTo(const Eigen::VectorXd& x) {
 Eigen::MatrixXd DisplacementMisfit::Sensitivities(const Eigen::VectorXd& x) {
   const Eigen::Index n = free_.Size();
   const Eigen::MatrixXd directions = free_.ModuliJacobian(x);
-  const Eigen::MatrixXd of_cases = equilibrium_.Sensitivities(directions);
+  const Eigen::MatrixXd of_cases =
+      placed_ ? placed_->sensitivities : equilibrium_.Sensitivities(directions);
   const Eigen::MatrixXd forces =
       motion_ ? equilibrium_.SupportForceSensitivities(directions, of_cases)
               : Eigen::MatrixXd();

@@ -48,6 +48,14 @@ class DisplacementMisfit {
   bool Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd* residual,
                 Eigen::MatrixXd* jacobian);
 
+  /// Solves the model at x, a factorisation.  False when the stiffness is
+  /// singular there.
+  bool SolveAt(const Eigen::VectorXd& x);
+  /// Takes u and du/dx, as Equilibrium has them, for those at x, of which an
+  /// Evaluate there costs nothing.  Precondition: no unknown motions.
+  void Place(const Eigen::VectorXd& x, const Eigen::MatrixXd& displacement,
+             const Eigen::MatrixXd& sensitivities);
+
   /// What a mesh of finer elements, the first nodes of which are those of this
   /// one, changes in the rows at x where the supports move as they do in this
   /// fit; empty when a stiffness is singular there.  A factorisation of either,
@@ -58,8 +66,7 @@ class DisplacementMisfit {
   /// u with all motions where the last Evaluate was, num_dofs x
   /// num_load_cases.
   Eigen::MatrixXd FittedDisplacement() const {
-    return motion_ ? motion_->FittedDisplacement()
-                   : equilibrium_.Displacement();
+    return motion_ ? motion_->FittedDisplacement() : Displacement();
   }
 
   /// 1 / E, or another unit of the moduli, that explains displacements or
@@ -67,7 +74,14 @@ class DisplacementMisfit {
   std::optional<double> Compliance(const Eigen::VectorXd& unit_moduli);
 
  private:
-  bool SolveAt(const Eigen::VectorXd& x);
+  struct Placed {
+    Eigen::MatrixXd displacement;
+    Eigen::MatrixXd sensitivities;
+  };
+
+  const Eigen::MatrixXd& Displacement() const {
+    return placed_ ? placed_->displacement : equilibrium_.Displacement();
+  }
   bool MoveTo(const Eigen::VectorXd& x);
   Eigen::MatrixXd Sensitivities(const Eigen::VectorXd& x);
   Eigen::VectorXd WithoutMotion(const Eigen::MatrixXd& displacements);
@@ -79,6 +93,7 @@ class DisplacementMisfit {
   std::function<void(int)> on_factorization_;
   int num_factorizations_ = 0;
   Eigen::VectorXd x_;  ///< Where the model is; empty where it is nowhere.
+  std::optional<Placed> placed_;  ///< In place of the model.
   Eigen::VectorXd residual_;
 };
 

@@ -14,20 +14,6 @@ namespace {
 // Steps below this part of a standard error end the fit.
 constexpr double kSmallestStepOfErrors = 1e-2;
 
-// Typical values, their moduli scaled so that the displacements fit best; empty
-// when these oppose the loads.
-std::optional<Eigen::VectorXd> TypicalStart(DisplacementMisfit& misfit) {
-  const FreeParameters& free = misfit.Free();
-  if (const std::optional<double> known = free.All().KnownModulus()) {
-    return free.VariablesOf(free.All().Typical(*known));
-  }
-  const std::optional<double> compliance =
-      misfit.Compliance(free.All().Moduli(free.All().Typical(1)));
-  return compliance ? std::optional<Eigen::VectorXd>(
-                          free.VariablesOf(free.All().Typical(1 / *compliance)))
-                    : std::nullopt;
-}
-
 // From virtual-fields, where it has physical parameters.
 std::optional<Eigen::VectorXd> VirtualFieldsStart(
     const Scene& scene, const EstimatorOptions& options,
@@ -121,6 +107,18 @@ BoundedMinimum DescendWithResultants(const EstimatorOptions& options,
 }
 
 }  // namespace
+
+std::optional<Eigen::VectorXd> TypicalStart(DisplacementMisfit& misfit) {
+  const FreeParameters& free = misfit.Free();
+  if (const std::optional<double> known = free.All().KnownModulus()) {
+    return free.VariablesOf(free.All().Typical(*known));
+  }
+  const std::optional<double> compliance =
+      misfit.Compliance(free.All().Moduli(free.All().Typical(1)));
+  return compliance ? std::optional<Eigen::VectorXd>(
+                          free.VariablesOf(free.All().Typical(1 / *compliance)))
+                    : std::nullopt;
+}
 
 BoundedMinimum DescendFrom(const EstimatorOptions& options,
                            const Eigen::VectorXd& start, Distance distance,

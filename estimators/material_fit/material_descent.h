@@ -15,6 +15,11 @@ namespace elastimate {
 /// How far a start is from the minimum.
 enum class Distance { kFar, kNear };
 
+/// Typical values, their moduli scaled so that the displacements fit best;
+/// empty when these oppose the loads.  Where no modulus is known, the model is
+/// left solved at typical values of the scale 1, a factorisation.
+std::optional<Eigen::VectorXd> TypicalStart(DisplacementMisfit& misfit);
+
 /// The minimum of a misfit within bounds that a start leads to, by Ceres;
 /// resultants weigh there as much as their errors say beside those of the
 /// displacements, which the fit shows (some descents more).

@@ -18,6 +18,7 @@
 #include "elastimate/estimators/material_fit/material_descent.h"
 #include "elastimate/estimators/material_fit/minimum_statistics.h"
 #include "elastimate/estimators/material_fit/outliers.h"
+#include "elastimate/estimators/material_fit/reduced_descent.h"
 #include "elastimate/estimators/statistics/bounded_variables.h"
 
 namespace elastimate {
@@ -92,14 +93,19 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
 // From `start` on, or from where FitMaterials says; elements are taken as
 // exact.
 MaterialFit FitAll(const Scene& scene, const EstimatorOptions& options,
+                   Descent descent,
                    const std::optional<Eigen::VectorXd>& start) {
   MaterialFit fit;
   Estimate& estimate = fit.estimate;
   Stopwatch stopwatch;
   DisplacementMisfit misfit(scene, options);
   estimate.stages.push_back({"assemble and analyse", stopwatch.Lap()});
-  fit.minimum = start ? DescendFrom(options, *start, Distance::kNear, misfit)
-                      : BestMinimum(scene, options, misfit, estimate);
+  if (descent == Descent::kReduced) {
+    fit.minimum = ReducedMinimum(start, misfit, estimate);
+  } else {
+    fit.minimum = start ? DescendFrom(options, *start, Distance::kNear, misfit)
+                        : BestMinimum(scene, options, misfit, estimate);
+  }
   estimate.stages.push_back({"fit", stopwatch.Lap()});
   fit.noise = misfit.Noise();
   if (fit.minimum) {
@@ -188,7 +194,7 @@ std::vector<Outlier> OutliersOf(const Scene& scene,
 
 // The same as a fit tells that follows no supports beside them either.
 std::vector<Outlier> OutliersWithoutSuspects(
-    const Scene& scene, const EstimatorOptions& options,
+    const Scene& scene, const EstimatorOptions& options, Descent descent,
     const ObservedDisplacements& observed, const MaterialFit& fit,
     const std::vector<Outlier>& outliers, Work& work) {
   std::vector<Outlier> left_out = SuspectedSupports(scene, outliers);
@@ -196,9 +202,10 @@ std::vector<Outlier> OutliersWithoutSuspects(
     return outliers;
   }
   left_out.insert(left_out.end(), outliers.begin(), outliers.end());
-  const MaterialFit other = LookAtElements(
-      WithoutOutliers(scene, left_out), options,
-      FitAll(WithoutOutliers(scene, left_out), options, fit.Variables()));
+  const MaterialFit other =
+      LookAtElements(WithoutOutliers(scene, left_out), options,
+                     FitAll(WithoutOutliers(scene, left_out), options, descent,
+                            fit.Variables()));
   work = work + other.estimate.work;
   return other.displacement.size() == 0
              ? outliers
@@ -219,14 +226,14 @@ std::vector<Outlier> StillAmong(const std::vector<Outlier>& outliers,
 
 // Fits again without the outliers, which are those of the fit without them.
 MaterialFit FitWithoutOutliers(const Scene& scene,
-                               const EstimatorOptions& options,
+                               const EstimatorOptions& options, Descent descent,
                                const std::optional<Eigen::VectorXd>& start) {
   constexpr int kRounds = 8;
   // What more points contradict is wrong in another way.
   constexpr double kMost = 1.0 / 3;
   const ObservedDisplacements observed(scene);
   const auto num_points = static_cast<double>(observed.Points().size());
-  MaterialFit fit = FitAll(scene, options, start);
+  MaterialFit fit = FitAll(scene, options, descent, start);
   const MaterialFit of_all = fit;
   std::vector<Outlier> left_out;
   Work of_suspects;
@@ -234,7 +241,7 @@ MaterialFit FitWithoutOutliers(const Scene& scene,
   for (int i = 0; i < kRounds && fit.displacement.size() != 0; ++i) {
     std::vector<Outlier> outliers = OutliersOf(scene, observed, fit, left_out);
     if (outliers == left_out) {
-      outliers = OutliersWithoutSuspects(scene, options, observed, fit,
+      outliers = OutliersWithoutSuspects(scene, options, descent, observed, fit,
                                          outliers, of_suspects);
     }
     // Others were left out before, and led here.
@@ -250,7 +257,8 @@ MaterialFit FitWithoutOutliers(const Scene& scene,
       break;
     }
     left_out = outliers;
-    fit = FitAll(WithoutOutliers(scene, outliers), options, fit.Variables());
+    fit = FitAll(WithoutOutliers(scene, outliers), options, descent,
+                 fit.Variables());
     fit.estimate.work = fit.estimate.work + work;
   }
   fit.estimate.work = fit.estimate.work + of_suspects;
@@ -262,7 +270,8 @@ MaterialFit FitWithoutOutliers(const Scene& scene,
         StillAmong(OutliersOf(scene, observed, looked, left_out), left_out);
     if (outliers != left_out) {
       left_out = outliers;
-      fit = FitAll(WithoutOutliers(scene, outliers), options, fit.Variables());
+      fit = FitAll(WithoutOutliers(scene, outliers), options, descent,
+                   fit.Variables());
       fit.estimate.work = fit.estimate.work + looked.estimate.work;
       by_outliers = LargestChange(of_all.estimate, fit.estimate);
       looked = LookAtElements(WithoutOutliers(scene, outliers), options, fit);
@@ -281,16 +290,16 @@ MaterialFit FitWithoutOutliers(const Scene& scene,
 
 // A material of which Poisson's ratio is known is one that has it.
 MaterialFit Fit(const Scene& scene, const EstimatorOptions& options,
-                const std::optional<Eigen::VectorXd>& start) {
+                Descent descent, const std::optional<Eigen::VectorXd>& start) {
   if (!IsOneIsotropicMaterial(scene.materials) ||
       !options.known_poisson_ratio) {
-    return FitWithoutOutliers(scene, options, start);
+    return FitWithoutOutliers(scene, options, descent, start);
   }
   Scene known = scene;
   known.materials = WithKnownPoissonRatio(options);
   EstimatorOptions other_options = options;
   other_options.known_poisson_ratio.reset();
-  MaterialFit fit = FitWithoutOutliers(known, other_options, start);
+  MaterialFit fit = FitWithoutOutliers(known, other_options, descent, start);
   EnterElasticity(fit.estimate);
   return fit;
 }
@@ -298,14 +307,14 @@ MaterialFit Fit(const Scene& scene, const EstimatorOptions& options,
 // Starts where the last usable fit ended.
 class MaterialFitPreparation : public Preparation {
  public:
-  explicit MaterialFitPreparation(const EstimatorOptions& options)
-      : options_(options) {}
+  MaterialFitPreparation(const EstimatorOptions& options, Descent descent)
+      : options_(options), descent_(descent) {}
 
   Estimate Run(const Scene& scene) override {
-    MaterialFit fit = Fit(scene, options_, start_);
+    MaterialFit fit = Fit(scene, options_, descent_, start_);
     if (start_ && !fit.estimate.IsUsable()) {
       const Work work = fit.estimate.work;
-      fit = Fit(scene, options_, std::nullopt);
+      fit = Fit(scene, options_, descent_, std::nullopt);
       fit.estimate.work = fit.estimate.work + work;
     }
     start_ = fit.estimate.IsUsable() ? fit.Variables() : std::nullopt;
@@ -315,6 +324,7 @@ class MaterialFitPreparation : public Preparation {
 
  private:
   const EstimatorOptions& options_;
+  Descent descent_;
   std::optional<Eigen::VectorXd> start_;
 };
 
@@ -325,13 +335,14 @@ bool IsForMaterialFit(const Scene& scene) {
          HasSupportsOfCases(scene);
 }
 
-Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options) {
-  return Fit(scene, options, std::nullopt).estimate;
+Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options,
+                      Descent descent) {
+  return Fit(scene, options, descent, std::nullopt).estimate;
 }
 
-std::unique_ptr<Preparation> PrepareMaterialFit(
-    const EstimatorOptions& options) {
-  return std::make_unique<MaterialFitPreparation>(options);
+std::unique_ptr<Preparation> PrepareMaterialFit(const EstimatorOptions& options,
+                                                Descent descent) {
+  return std::make_unique<MaterialFitPreparation>(options, descent);
 }
 
 }  // namespace elastimate

@@ -13,6 +13,10 @@ namespace elastimate {
 /// that are given, and the same in all load cases, can take.
 bool IsForMaterialFit(const Scene& scene);
 
+/// How a fit finds its minimum: with a factorisation at each step
+/// (BestMinimum), or by reduced models (ReducedMinimum).
+enum class Descent { kFull, kReduced };
+
 /// The parameters p of any materials by a maximum likelihood fit of the
 /// observed displacements, by Ceres within bounds,
 ///
@@ -28,16 +32,18 @@ bool IsForMaterialFit(const Scene& scene);
 /// fitted with the parameters (MotionElimination), and resultants count by
 /// their errors beside the noise.
 ///
-/// Preconditions are those of Estimator::Run; the supports hold the specimen.
-/// Cost: a factorisation at each step, 5 to 8 from each start, and a solve for
-/// each load case and parameter.
-Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options);
+/// Preconditions are those of Estimator::Run; the supports hold the specimen,
+/// and for Descent::kReduced no motions are unknown.  Cost of Descent::kFull: a
+/// factorisation at each step, 5 to 8 from each start, and a solve for each
+/// load case and parameter.
+Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options,
+                      Descent descent);
 
 /// The same for one scene after another, each from where the last usable fit
 /// ended; where that leads to none, as FitMaterials does.  `options` outlive
 /// it.
-std::unique_ptr<Preparation> PrepareMaterialFit(
-    const EstimatorOptions& options);
+std::unique_ptr<Preparation> PrepareMaterialFit(const EstimatorOptions& options,
+                                                Descent descent);
 
 }  // namespace elastimate
 

@@ -1,0 +1,373 @@
+#include "elastimate/estimators/material_fit/reduced_descent.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/algebra/node_sums.h"
+#include "elastimate/estimators/material_fit/material_descent.h"
+#include "elastimate/estimators/reduced_model/nearby_solve.h"
+#include "elastimate/estimators/reduced_model/reduced_equilibrium.h"
+
+namespace elastimate {
+namespace {
+
+// Of a standard error: the step that is left at a minimum, and what the errors
+// of u and of the adjoint may change it by.
+constexpr double kLargestStep = 0.02;
+constexpr double kStepAccuracy = 0.01;
+// The standard deviation of a row that counts as noise at least, where the norm
+// of all rows is 1: exact displacements are fitted to a part of it.
+constexpr double kNoiseOfExactData = 1e-8;
+// Of a standard error: what is less certain than by a factor of e^3 is not
+// determined, whatever the gradient is.
+constexpr double kUndetermined = 3;
+constexpr double kSensitivityAccuracy = 1e-4;
+constexpr int kMostIterationsNearby = 8;
+constexpr int kMostPoles = 10;
+
+class ReducedDescent {
+ public:
+  explicit ReducedDescent(DisplacementMisfit& misfit)
+      : misfit_(misfit), reduced_(misfit.Model(), misfit.Observed()) {}
+
+  /// False where the stiffness is singular.
+  bool SetPole(const Eigen::VectorXd& x);
+  /// The same at typical values, where the model is solved at these but for
+  /// the scale; empty where displacements oppose the loads.
+  std::optional<Eigen::VectorXd> SetTypicalPole();
+  int NumPoles() const { return num_poles_; }
+  /// Whether the last minimum is farther from the pole than the reduced model
+  /// is trusted.
+  bool LeadsAway() const { return leads_away_; }
+
+  BoundedMinimum MinimumFrom(const Eigen::VectorXd& x);
+
+  /// Solves the full model next to the reduced one; false where that is too
+  /// far from the pole.
+  bool Check(const BoundedMinimum& minimum);
+  /// The largest step that is left at the last minimum that was checked, in
+  /// standard errors.
+  double Step() const { return step_; }
+  /// Makes the misfit and its gradient exact there.
+  void Refine();
+  /// Leaves the misfit there.
+  void Finish(const Eigen::VectorXd& x);
+
+  int ElementPasses() const {
+    return element_passes_ + reduced_.ElementPasses();
+  }
+
+ private:
+  /// Those of the variables, and how far from the pole the model is trusted.
+  std::vector<Bounds> TrustBounds() const;
+  double Noise(const Eigen::VectorXd& residual) const;
+  Eigen::MatrixXd WithoutHeld(const Eigen::MatrixXd& displacement) const {
+    return displacement - misfit_.Model().HeldDisplacement();
+  }
+  void AddPole(const Eigen::VectorXd& x, const Eigen::MatrixXd& displacement,
+               const Eigen::MatrixXd& sensitivities);
+  /// df(u)/dx of each load case side by side, at the u of the check.
+  Eigen::MatrixXd ForcesOfVariables();
+  bool SolveForAdjoint(const Eigen::VectorXd& residual, double tolerance);
+  bool SolveNear(const Eigen::MatrixXd& forces,
+                 const Eigen::VectorXd& tolerances, Eigen::MatrixXd& x);
+
+  DisplacementMisfit& misfit_;
+  ReducedEquilibrium reduced_;
+  int num_poles_ = 0;
+  Eigen::VectorXd pole_;
+  bool leads_away_ = false;
+  int element_passes_ = 0;
+
+  // Where the last check was.
+  Eigen::VectorXd moduli_;
+  Eigen::MatrixXd directions_;  ///< d theta / dx.
+  Eigen::MatrixXd displacement_;
+  Eigen::MatrixXd adjoint_;
+  double step_ = 0;
+};
+
+bool ReducedDescent::SetPole(const Eigen::VectorXd& x) {
+  if (!misfit_.SolveAt(x)) {
+    return false;
+  }
+  AddPole(x, misfit_.Model().Displacement(),
+          misfit_.Model().Sensitivities(misfit_.Free().ModuliJacobian(x)));
+  return true;
+}
+
+std::optional<Eigen::VectorXd> ReducedDescent::SetTypicalPole() {
+  const std::optional<Eigen::VectorXd> x = TypicalStart(misfit_);
+  if (!x) {
+    return std::nullopt;
+  }
+  const FreeParameters& free = misfit_.Free();
+  const Eigen::VectorXd moduli = free.ModuliAt(*x);
+  const Eigen::VectorXd unit = free.All().Moduli(free.All().Typical(1));
+  const double scale = moduli.norm() / unit.norm();
+  constexpr double kRounding = 1e-12;
+  if (free.All().KnownModulus() ||
+      (moduli - scale * unit).norm() > kRounding * moduli.norm()) {
+    return SetPole(*x) ? x : std::nullopt;
+  }
+  // The factor at hand is that of the pole but for the scale.
+  Equilibrium& model = misfit_.Model();
+  const Eigen::MatrixXd& held = model.SupportResponse();
+  displacement_ = held + (model.Displacement() - held) / scale;
+  directions_ = free.ModuliJacobian(*x);
+  AddPole(*x, displacement_, model.SolveFor(-ForcesOfVariables()) / scale);
+  return x;
+}
+
+void ReducedDescent::AddPole(const Eigen::VectorXd& x,
+                             const Eigen::MatrixXd& displacement,
+                             const Eigen::MatrixXd& sensitivities) {
+  const Eigen::MatrixXd u = WithoutHeld(displacement);
+  const Eigen::Index n = misfit_.Free().Size();
+  Eigen::MatrixXd vectors(u.rows(), (n + 1) * u.cols());
+  for (Eigen::Index k = 0; k < u.cols(); ++k) {
+    vectors.col((n + 1) * k) = u.col(k);
+    vectors.middleCols((n + 1) * k + 1, n) = sensitivities.middleCols(n * k, n);
+  }
+  reduced_.Extend(misfit_.Free().ModuliAt(x), vectors);
+  pole_ = x;
+  ++num_poles_;
+}
+
+std::vector<Bounds> ReducedDescent::TrustBounds() const {
+  // A modulus may change by a factor of ten, a ratio may go nine tenths of the
+  // way to where its law ends.
+  constexpr double kLargestChange = 2.3;
+  constexpr double kLargestPart = 0.9;
+  const FreeParameters& free = misfit_.Free();
+  std::vector<Bounds> bounds = free.VariableBounds();
+  for (Eigen::Index i = 0; i < free.Size(); ++i) {
+    const LawParameter& parameter =
+        *free.All().All()[free.All().Free()[i]].law_parameter;
+    Bounds& own = bounds[i];
+    double lower = pole_(i) - kLargestChange;
+    double upper = pole_(i) + kLargestChange;
+    if (!parameter.is_modulus) {
+      lower = pole_(i) - kLargestPart * (pole_(i) - parameter.lower);
+      upper = pole_(i) + kLargestPart * (parameter.upper - pole_(i));
+    }
+    own.lower = std::max(own.lower.value_or(lower), lower);
+    own.upper = std::min(own.upper.value_or(upper), upper);
+  }
+  return bounds;
+}
+
+BoundedMinimum ReducedDescent::MinimumFrom(const Eigen::VectorXd& x) {
+  // Steps of a model that costs nothing may be short.
+  constexpr double kRadius = 1;
+  constexpr double kSmallestStepOfErrors = 1e-3;
+  constexpr int kIterations = 200;
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = kIterations;
+  options.initial_trust_region_radius = kRadius;
+  options.function_tolerance = kSmallestStepOfErrors * kSmallestStepOfErrors /
+                               static_cast<double>(misfit_.NumRows());
+  options.gradient_tolerance = 1e-20;
+  options.parameter_tolerance = 1e-12;
+  options.logging_type = ceres::SILENT;
+  const FreeParameters& free = misfit_.Free();
+  const std::vector<Bounds> bounds = TrustBounds();
+  BoundedMinimum minimum = MinimizeOverVariables(
+      [&](const Eigen::VectorXd& variables, Eigen::VectorXd* residual,
+          Eigen::MatrixXd* jacobian) {
+        const Eigen::VectorXd moduli = free.ModuliAt(variables);
+        if (!moduli.allFinite() || !reduced_.Solve(moduli)) {
+          return false;
+        }
+        *residual = reduced_.Residual();
+        if (jacobian != nullptr) {
+          *jacobian = reduced_.Sensitivities(free.ModuliJacobian(variables));
+        }
+        return residual->allFinite();
+      },
+      reduced_.NumRows(), bounds, x, options);
+  leads_away_ = false;
+  for (Eigen::Index i = 0; i < free.Size(); ++i) {
+    const Bounds& own = free.VariableBounds()[i];
+    Side& side = minimum.on_bound[i];
+    if ((side == Side::kLower && bounds[i].lower != own.lower) ||
+        (side == Side::kUpper && bounds[i].upper != own.upper)) {
+      side = Side::kNone;
+      leads_away_ = true;
+    }
+  }
+  return minimum;
+}
+
+double ReducedDescent::Noise(const Eigen::VectorXd& residual) const {
+  const ObservedDisplacements& observed = misfit_.Observed();
+  const Eigen::Index redundancy = observed.Size() - misfit_.Free().Size();
+  const double noise =
+      observed.GivenNoise()
+          ? 1 / observed.Norm()
+          : Norm(residual) / std::sqrt(static_cast<double>(
+                                 std::max<Eigen::Index>(redundancy, 1)));
+  return std::max(noise, kNoiseOfExactData);
+}
+
+Eigen::MatrixXd ReducedDescent::ForcesOfVariables() {
+  const Eigen::Index n = directions_.cols();
+  Eigen::MatrixXd forces(displacement_.rows(), n * displacement_.cols());
+  for (Eigen::Index k = 0; k < displacement_.cols(); ++k) {
+    ++element_passes_;
+    forces.middleCols(n * k, n) =
+        misfit_.Model().Forces().Columns(displacement_.col(k)) * directions_;
+  }
+  return forces;
+}
+
+bool ReducedDescent::SolveNear(const Eigen::MatrixXd& forces,
+                               const Eigen::VectorXd& tolerances,
+                               Eigen::MatrixXd& x) {
+  const std::optional<int> iterations = SolveNearby(
+      moduli_, forces, tolerances, kMostIterationsNearby, misfit_.Model(), x);
+  element_passes_ += 1 + iterations.value_or(kMostIterationsNearby);
+  return iterations.has_value();
+}
+
+bool ReducedDescent::Check(const BoundedMinimum& minimum) {
+  const Eigen::VectorXd& x = minimum.variables;
+  const FreeParameters& free = misfit_.Free();
+  moduli_ = free.ModuliAt(x);
+  directions_ = free.ModuliJacobian(x);
+  if (!moduli_.allFinite() || !reduced_.Solve(moduli_)) {
+    return false;
+  }
+  const Eigen::Index num_cases = misfit_.Observed().NumLoadCases();
+  const double noise = Noise(reduced_.Residual());
+  const Eigen::MatrixXd sensitivities = reduced_.Sensitivities(directions_);
+  const SymmetricEigenDecomposition modes =
+      DecomposeSymmetric(InnerProducts(sensitivities, sensitivities));
+  // The variables of a standard error of 1 where the noise is 1, as columns.
+  const double least = std::max(std::pow(noise / kUndetermined, 2),
+                                1e-14 * modes.values.cwiseAbs().maxCoeff());
+  const Eigen::Index kept = (modes.values.array() > least).count();
+  const Eigen::MatrixXd whitened =
+      modes.vectors.rightCols(kept) *
+      modes.values.tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
+  const double tolerance = kStepAccuracy * noise;
+  displacement_ = reduced_.Displacement();
+  if (!SolveNear(misfit_.Model().Load(),
+                 Eigen::VectorXd::Constant(
+                     num_cases, tolerance / reduced_.ComplianceNorm()),
+                 displacement_)) {
+    return false;
+  }
+  const Eigen::MatrixXd energy = whitened.transpose() *
+                                 reduced_.EnergyOfSensitivities(directions_) *
+                                 whitened;
+  const double largest =
+      kept == 0 ? 1 : DecomposeSymmetric(energy).values.maxCoeff();
+  const Eigen::VectorXd residual = misfit_.Observed().Restrict(displacement_) -
+                                   misfit_.Observed().Measured();
+  if (!SolveForAdjoint(residual, tolerance / std::sqrt(largest))) {
+    return false;
+  }
+  const Eigen::MatrixXd forces = ForcesOfVariables();
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(free.Size());
+  for (Eigen::Index k = 0; k < num_cases; ++k) {
+    gradient -= InnerProducts(forces.middleCols(free.Size() * k, free.Size()),
+                              adjoint_.col(k));
+  }
+  // A bound holds what the gradient drives against it.
+  for (Eigen::Index i = 0; i < free.Size(); ++i) {
+    const Side side = minimum.on_bound[i];
+    if ((side == Side::kLower && gradient(i) > 0) ||
+        (side == Side::kUpper && gradient(i) < 0)) {
+      gradient(i) = 0;
+    }
+  }
+  step_ = Norm(InnerProducts(whitened, gradient)) / noise;
+  return std::isfinite(step_);
+}
+
+bool ReducedDescent::SolveForAdjoint(const Eigen::VectorXd& residual,
+                                     double tolerance) {
+  adjoint_ = reduced_.Adjoint();
+  return SolveNear(misfit_.Observed().RestrictTransposed(residual),
+                   Eigen::VectorXd::Constant(adjoint_.cols(), tolerance),
+                   adjoint_);
+}
+
+void ReducedDescent::Refine() {
+  const Eigen::MatrixXd u = WithoutHeld(displacement_);
+  Eigen::MatrixXd vectors(u.rows(), 2 * u.cols());
+  for (Eigen::Index k = 0; k < u.cols(); ++k) {
+    vectors.col(2 * k) = u.col(k);
+    vectors.col(2 * k + 1) = adjoint_.col(k);
+  }
+  reduced_.Extend(moduli_, vectors);
+}
+
+void ReducedDescent::Finish(const Eigen::VectorXd& x) {
+  Eigen::MatrixXd sensitivities =
+      reduced_.DisplacementSensitivities(directions_);
+  const Eigen::MatrixXd forces = -ForcesOfVariables();
+  const Eigen::VectorXd energies = sensitivities.cwiseProduct(forces)
+                                       .colwise()
+                                       .sum()
+                                       .cwiseMax(0)
+                                       .cwiseSqrt();
+  // Where that takes too long, the misfit solves there when it is asked.
+  if (SolveNear(forces, kSensitivityAccuracy * energies, sensitivities)) {
+    misfit_.Place(x, displacement_, sensitivities);
+  }
+}
+
+// From a pole on.
+BoundedMinimum DescendFromPole(const Eigen::VectorXd& pole,
+                               ReducedDescent& descent) {
+  constexpr double kLeastProgress = 0.5;
+  BoundedMinimum minimum = descent.MinimumFrom(pole);
+  double last_step = std::numeric_limits<double>::infinity();
+  while (true) {
+    const bool is_solved = !descent.LeadsAway() && descent.Check(minimum);
+    if (is_solved && descent.Step() <= kLargestStep) {
+      descent.Finish(minimum.variables);
+      minimum.end = End::kDone;
+      return minimum;
+    }
+    if (is_solved && descent.Step() <= kLeastProgress * last_step) {
+      last_step = descent.Step();
+      descent.Refine();
+    } else if (descent.NumPoles() == kMostPoles) {
+      minimum.end = End::kNotCertified;
+      return minimum;
+    } else if (descent.SetPole(minimum.variables)) {
+      last_step = std::numeric_limits<double>::infinity();
+    } else {
+      minimum.end = End::kSingularStiffness;
+      return minimum;
+    }
+    minimum = descent.MinimumFrom(minimum.variables);
+  }
+}
+
+}  // namespace
+
+std::optional<BoundedMinimum> ReducedMinimum(
+    const std::optional<Eigen::VectorXd>& start, DisplacementMisfit& misfit,
+    Estimate& estimate) {
+  ReducedDescent descent(misfit);
+  std::optional<Eigen::VectorXd> pole = start;
+  if (!pole || !descent.SetPole(*pole)) {
+    pole = descent.SetTypicalPole();
+  }
+  if (!pole) {
+    return std::nullopt;
+  }
+  const BoundedMinimum minimum = DescendFromPole(*pole, descent);
+  estimate.work.element_passes += descent.ElementPasses();
+  return minimum;
+}
+
+}  // namespace elastimate

@@ -1,0 +1,48 @@
+#ifndef ELASTIMATE_ESTIMATORS_MATERIAL_FIT_REDUCED_DESCENT_H_
+#define ELASTIMATE_ESTIMATORS_MATERIAL_FIT_REDUCED_DESCENT_H_
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/estimators/material_fit/displacement_misfit.h"
+#include "elastimate/estimators/statistics/bounded_variables.h"
+
+namespace elastimate {
+
+/// The minimum of a misfit within bounds by reduced models
+/// (ReducedEquilibrium), with few factorisations: from the bases {u, du/dx} at
+/// a pole,
+///
+///   1. the minimum x of the reduced model, where no modulus is more than ten
+///      times that of the pole,
+///   2. u and the adjoint lambda = K^-1 P^T (P u - q) of the full model at x,
+///      by conjugate gradients with the factor of the pole (SolveNearby), and
+///      from them the gradient g of the full misfit at x,
+///   3. where the Gauss-Newton step d = -G^+ g, G = S^T S, on the variables
+///      that g does not hold on a bound, is below a fiftieth of the standard
+///      error in every direction, sqrt(g^T G^+ g) < sigma / 50, x is the
+///      minimum: the end is kDone;
+///   4. else u and lambda go into the bases, with which the reduced misfit and
+///      its gradient are those of the full model at x, and 1 follows; or x
+///      becomes the next pole, where it is far from the last one or the steps
+///      do not halve.
+///
+/// The end is kNotCertified where ten poles do not lead there.  The misfit is
+/// left with u and du/dx at the minimum, by conjugate gradients too, to 1e-4
+/// of their energy norms.
+///
+/// The first pole is at `start`, else at typical values (TypicalStart).  Empty
+/// where displacements oppose the loads.  Adds the work that the equilibrium
+/// does not count to the estimate.
+///
+/// Precondition: no unknown motions.  Cost: 1 to 3 factorisations and, for each
+/// load case and pole, a solve for each variable; and about five times as many
+/// element passes.  Memory: some 6 vectors for each load case and variable.
+std::optional<BoundedMinimum> ReducedMinimum(
+    const std::optional<Eigen::VectorXd>& start, DisplacementMisfit& misfit,
+    Estimate& estimate);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_MATERIAL_FIT_REDUCED_DESCENT_H_

@@ -1,0 +1,32 @@
+#ifndef ELASTIMATE_ESTIMATORS_REDUCED_MODEL_NEARBY_SOLVE_H_
+#define ELASTIMATE_ESTIMATORS_REDUCED_MODEL_NEARBY_SOLVE_H_
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "elastimate/core/equilibrium/equilibrium.h"
+
+namespace elastimate {
+
+/// Solves K(theta) x = b in the free rows by conjugate gradients, with the
+/// factor at hand of other moduli as preconditioner: b and x are num_dofs x n
+/// of each load case side by side, and x starts at what it is, of which the
+/// held rows are kept.
+///
+/// Ends where the error of each column is expected to be below its tolerance in
+/// the energy norm: a step lowers the square of the error by its own energy
+/// [Hestenes & Stiefel 1952], and the next one is at most as long in proportion
+/// as this one is to the last.  Returns how many it took; empty when more than
+/// `most_iterations` are needed.  Cost: an element pass and a solve for each
+/// column in each iteration.
+///
+/// Precondition: the last Solve of the equilibrium returned true.
+std::optional<int> SolveNearby(const Eigen::VectorXd& moduli,
+                               const Eigen::MatrixXd& forces,
+                               const Eigen::VectorXd& tolerances,
+                               int most_iterations, Equilibrium& equilibrium,
+                               Eigen::MatrixXd& x);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_REDUCED_MODEL_NEARBY_SOLVE_H_
