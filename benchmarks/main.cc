@@ -16,6 +16,7 @@
 #include "apps/flag_parser.h"
 #include "apps/progress.h"
 #include "benchmarks/kernels.h"
+#include "benchmarks/materials_study.h"
 #include "benchmarks/measurement_study.h"
 #include "benchmarks/metadata.h"
 #include "benchmarks/paper_study.h"
@@ -55,6 +56,8 @@ constexpr NamedStudy kStudies[] = {
      RunUnseenStudy},
     {"measurement", "what cameras, grips and load cells do to the estimate",
      RunMeasurementStudy},
+    {"materials", "how well several materials are told apart, and how many",
+     RunMaterialsStudy},
 };
 
 const Program& Benchmark() {

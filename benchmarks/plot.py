@@ -566,11 +566,93 @@ def measurement_cells(path):
     return figure
 
 
+MODEL_FACTOR = "regions of the model"
+MATERIALS_ROWS = (
+    ("error_over_cramer_rao [1]", "error of the parameters\nover Cramér-Rao bound [1]", "log"),
+    ("coverage [1]", "intervals that hold\nthe truth [1]", "linear"),
+    ("dishonest_share [1]", "trials that are\ndishonest [1]", "linear"),
+    ("usable_share [1]", "trials that are\nusable [1]", "linear"),
+    ("factorizations [1]", "factorisations\n(median) [1]", "symlog"),
+    ("time [s]", "time\n(median) [s]", "log"),
+)
+
+
+def draw_materials_of_factors(rows):
+    """How well and how honestly several materials are estimated, for each factor."""
+    factors = list(dict.fromkeys(row["factor"] for row in rows))
+    figure, panels = plt.subplots(len(MATERIALS_ROWS), len(factors), sharey="row",
+                                  figsize=(1.7 * len(factors), 1.7 * len(MATERIALS_ROWS)))
+    for number, (column, label, scale) in enumerate(MATERIALS_ROWS):
+        line = panels[number]
+        is_last = number + 1 == len(panels)
+        for axes, factor in zip(line, factors):
+            own = [row for row in rows if row["factor"] == factor]
+            names = list(dict.fromkeys(
+                row["level"] if row["assumption"] == "right" else row["assumption"]
+                for row in own))
+            for (estimator,), trials in group(own, "estimator").items():
+                axes.plot(range(len(trials)), numbers(trials, column), label=estimator,
+                          **STYLES[estimator])
+            axes.set_yscale(scale)
+            axes.margins(x=0.15)
+            axes.set_xticks(range(len(names)), names if is_last else [""] * len(names),
+                            rotation=90, fontsize=7)
+            if number == 0:
+                axes.set_title(factor.replace(" of ", "\nof ", 1), fontsize=7)
+        line[0].set_ylabel(label, fontsize=8)
+    for axes in panels[0]:
+        axes.axhline(1, color="black", linewidth=0.8, linestyle=":")
+    for axes in panels[1]:
+        axes.axhline(0.95, color="black", linewidth=0.8, linestyle=":")
+    finish(figure, "Several materials: what the number of regions, their contrast, the noise and"
+           " the loads do")
+    return figure
+
+
+def draw_materials_of_models(rows):
+    """Too few parameters, the right ones, too many: what that does to the prediction of another
+    load, to the parameters themselves, and to the time."""
+    figure, (prediction, parameters, time) = plt.subplots(1, 3, figsize=(11, 3.4))
+    rows = [row for row in rows if row["estimator"] == "iterative-fe"]
+    for number, ((noise,), own) in enumerate(group(rows, "noise [1]").items()):
+        count = numbers(own, "parameters [1]")
+        style = {"color": f"C{number}", "marker": "os^"[number]}
+        label = f"noise {100 * float(noise):g} %"
+        prediction.plot(count, 100 * numbers(own, "prediction_error [1]"), label=label, **style)
+        parameters.plot(count, 100 * numbers(own, "youngs_modulus_cramer_rao [1]"), label=label,
+                        **style)
+        time.plot(count, numbers(own, "time [s]"), label=label, **style)
+        right = count[[row["assumption"] == "right" for row in own]][0]
+    for axes in (prediction, parameters, time):
+        axes.set(xscale="log", yscale="log", xlabel="parameters of the model [1]")
+        axes.set_xticks(count, [f"{value:g}" for value in count])
+        axes.minorticks_off()
+        axes.axvline(right, color="black", linewidth=0.8, linestyle=":")
+        axes.annotate("right", (right, 0.97), xycoords=("data", "axes fraction"), fontsize=7,
+                      xytext=(3, 0), textcoords="offset points", va="top")
+    prediction.set_ylabel("error of the displacement\nunder another load (median) [%]")
+    parameters.set_ylabel("Cramér-Rao bound of $E$\nof a region (rms) [%]")
+    time.set_ylabel("time (median) [s]")
+    finish(figure, "Four materials, taken for fewer and for more, by iterative-fe", columns=3)
+    return figure
+
+
+def materials_cells(path):
+    rows = read(path)
+    return {
+        "materials_cells": draw_materials_of_factors(
+            [row for row in rows if row["factor"] != MODEL_FACTOR]),
+        "materials_models": draw_materials_of_models(
+            [row for row in rows if row["factor"] == MODEL_FACTOR]),
+    }
+
+
 FIGURES = {
     function.__name__: function
     for function in (paper_noise, paper_spatial_noise, paper_measurements, paper_forces,
                      paper_organ, paper_cuboid_choice, speed_accuracy_points, scaling,
-                     stability_cells, unseen_cells, unseen_regret, measurement_cells)
+                     stability_cells, unseen_cells, unseen_regret, measurement_cells,
+                     materials_cells)
 }
 
 

@@ -91,6 +91,7 @@ std::vector<PlannedLoad> Compare(const Eigen::MatrixXd& known,
                                  const std::vector<SizedCandidate>& candidates,
                                  const std::vector<std::size_t>& chosen) {
   std::vector<PlannedLoad> loads;
+  loads.reserve(chosen.size());
   for (const std::size_t i : chosen) {
     loads.push_back({i, ExpectedErrors::Of(known + candidates[i].information),
                      candidates[i].factor});
@@ -211,7 +212,7 @@ std::vector<CandidateLoad> UnitCandidates(const Scene& scene,
 
 Eigen::VectorXd TypicalParameters(const Scene& scene, SolverKind solver) {
   const MaterialParameters parameters = ParametersOf(scene);
-  const Eigen::VectorXd typical =
+  Eigen::VectorXd typical =
       parameters.Typical(parameters.KnownModulus().value_or(1));
   if (parameters.KnownModulus() ||
       !std::all_of(scene.load_cases.begin(), scene.load_cases.end(),

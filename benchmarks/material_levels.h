@@ -1,0 +1,42 @@
+#ifndef ELASTIMATE_BENCHMARKS_MATERIAL_LEVELS_H_
+#define ELASTIMATE_BENCHMARKS_MATERIAL_LEVELS_H_
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "elastimate/core/scene/scene.h"
+
+namespace elastimate {
+
+/// The factor of levels that differ in the number of parameters of the model.
+inline constexpr char kModelFactor[] = "regions of the model";
+
+/// A specimen, and the materials that an estimator takes it to be of.
+struct MaterialLevel {
+  std::string factor;  ///< What is varied, with its unit.
+  std::string level;
+  /// "right", or what the model has too few, too many or wrong of.
+  std::string assumption;
+  Scene specimen;              ///< With its materials, without measurement.
+  Eigen::VectorXd parameters;  ///< Of these.
+  /// Of the same mesh.
+  Eigen::VectorXi regions_of_model;
+  std::vector<Material> materials_of_model;
+  /// The parameters of the model that make it the specimen; empty where there
+  /// are none.
+  Eigen::VectorXd parameters_of_model;
+  double noise;  ///< Standard deviation over the rms displacement.
+};
+
+/// A strip of 2 x 1 in plane strain, of 24 x 12 quadrilaterals, held at one end
+/// and pulled askew at the other: of pieces of two materials, one behind the
+/// other, unless the level says otherwise.
+std::vector<MaterialLevel> MaterialLevels();
+
+/// Another load of a specimen than any that was measured: gravity, askew.
+LoadCase UnseenLoad();
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_BENCHMARKS_MATERIAL_LEVELS_H_
