@@ -215,7 +215,7 @@ Eigen::MatrixXi SurfaceOfUnitLoads(const Scene& before,
     return facets;
   }
   const Eigen::VectorXd box = NumberList<Eigen::VectorXd>(
-      "surface", FLAGS_surface, "finite numbers", 2 * dimension);
+      "surface", FLAGS_surface, "finite numbers", 2 * Eigen::Index(dimension));
   if (!box.allFinite()) {
     throw std::invalid_argument(AsGiven("surface") +
                                 "; its numbers must be finite");
