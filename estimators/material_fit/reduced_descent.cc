@@ -139,9 +139,14 @@ void ReducedDescent::AddPole(const Eigen::VectorXd& x,
 
 std::vector<Bounds> ReducedDescent::TrustBounds() const {
   // A modulus may change by a factor of ten, a ratio may go nine tenths of the
-  // way to where its law ends.
+  // way to an end of the range of its law, or all of it from nearby.
   constexpr double kLargestChange = 2.3;
   constexpr double kLargestPart = 0.9;
+  constexpr double kNearby = 0.02;
+  const auto towards = [](double from, double end, double range) {
+    const double way = end - from;
+    return std::abs(way) < kNearby * range ? end : from + kLargestPart * way;
+  };
   const FreeParameters& free = misfit_.Free();
   std::vector<Bounds> bounds = free.VariableBounds();
   for (Eigen::Index i = 0; i < free.Size(); ++i) {
@@ -151,8 +156,9 @@ std::vector<Bounds> ReducedDescent::TrustBounds() const {
     double lower = pole_(i) - kLargestChange;
     double upper = pole_(i) + kLargestChange;
     if (!parameter.is_modulus) {
-      lower = pole_(i) - kLargestPart * (pole_(i) - parameter.lower);
-      upper = pole_(i) + kLargestPart * (parameter.upper - pole_(i));
+      const double range = parameter.upper - parameter.lower;
+      lower = towards(pole_(i), parameter.lower, range);
+      upper = towards(pole_(i), parameter.upper, range);
     }
     own.lower = std::max(own.lower.value_or(lower), lower);
     own.upper = std::min(own.upper.value_or(upper), upper);

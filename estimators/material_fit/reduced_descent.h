@@ -15,7 +15,8 @@ namespace elastimate {
 /// a pole,
 ///
 ///   1. the minimum x of the reduced model, where no modulus is more than ten
-///      times that of the pole,
+///      times that of the pole, and no ratio more than nine tenths of the way
+///      to an end of the range of its law that is not near,
 ///   2. u and the adjoint lambda = K^-1 P^T (P u - q) of the full model at x,
 ///      by conjugate gradients with the factor of the pole (SolveNearby), and
 ///      from them the gradient g of the full misfit at x,
@@ -28,7 +29,8 @@ namespace elastimate {
 ///      becomes the next pole, where it is far from the last one or the steps
 ///      do not halve.
 ///
-/// The end is kNotCertified where ten poles do not lead there.  The misfit is
+/// The end is kNotCertified where ten poles do not lead there.  What it says is
+/// that x is a minimum, not that there is no other one far away.  The misfit is
 /// left with u and du/dx at the minimum, by conjugate gradients too, to 1e-4
 /// of their energy norms.
 ///
