@@ -359,8 +359,10 @@ class SupportEndSearch {
         of_parameters.col(k) = parameters;
       }
     }
-    // The variance of what is as likely anywhere is a twelfth of the square.
-    const Eigen::VectorXd prior = 12 * extent.cwiseAbs2().cwiseInverse();
+    // Supports end anywhere from the held to the free vertices, with the
+    // middles half way: ends are as likely anywhere in twice the extent of the
+    // steps.
+    const Eigen::VectorXd prior = 3 * extent.cwiseAbs2().cwiseInverse();
     const Eigen::MatrixXd precision =
         InnerProducts(of_residual, of_residual) / variance +
         Eigen::MatrixXd(prior.asDiagonal());
@@ -368,7 +370,8 @@ class SupportEndSearch {
     Eigen::VectorXd further =
         covariance * (prior.cwiseProduct(extent / 2 - position) -
                       InnerProducts(of_residual, Best().residual) / variance);
-    further = further.cwiseMax(-position).cwiseMin(extent - position);
+    further = further.cwiseMax(-extent / 2 - position)
+                  .cwiseMin(1.5 * extent - position);
     return {of_parameters * further,
             of_parameters * covariance * of_parameters.transpose()};
   }

@@ -20,10 +20,9 @@ using SupportedFit =
 ///
 /// A cut says how many steps of each end are held.  From the fit without any,
 /// each cut that is looked at takes some Gauss-Newton steps in (E, nu), the
-/// first from the nearest cut before.  Between the cuts of one end residuals
-/// are taken as linear: the next cut is where the sum of squares is least by
-/// that, until it is known from neighbouring cuts, or as well as the noise
-/// lets it be: the range of Delta chi^2 <= 9 is wider than what lies between.
+/// first from the nearest cut before.  The gaps on either side of the best are
+/// halved, until they are single steps or less than the range of Delta chi^2 <=
+/// 9, which takes residuals as linear between cuts: the noise hides more.
 /// Ends take turns.
 ///
 /// With residuals r + D x at the best cut, x steps further along the ends, and
@@ -32,8 +31,8 @@ using SupportedFit =
 ///   C = (D^T D / s^2 + P)^-1,  mean = C (P x_0 - D^T r / s^2),
 ///
 /// with s^2 the mean square of r, or that of the given noise where it is more,
-/// and P and x_0 the inverse variances and means of ends anywhere alike along
-/// their steps.
+/// and P and x_0 the inverse variances and means of ends that are as likely
+/// anywhere between held and free vertices, the middles half way.
 /// Of more ends than four, the smallest are held or free together.  A fit
 /// without any of them that is not physical is returned as it is.
 ///

@@ -128,6 +128,43 @@ TEST(TwoOpenClamps, AreFoundTogether) {
                        2 * *estimate.YoungsModulusStandardError());
 }
 
+// A clamp of elements half the size that ends near the free vertices, which no
+// cut of the mesh is as stiff as.
+TEST(OpenClampOfSpecimen, MayEndBeyondTheMiddlesOfEdges) {
+  constexpr IsotropicElasticity kTruth = {12000, 0.3};
+  constexpr double kEnd = 0.71;
+  Scene specimen = ClampedScene({16, 8, 8}, kEnd);
+  specimen.mesh.nodes = testing::BoxMesh({16, 8, 8}, {2, 1, 1}).nodes;
+  Scene scene = ClampedScene({8, 4, 4}, kEnd);
+  scene.mesh.nodes = testing::BoxMesh({8, 4, 4}, {2, 1, 1}).nodes;
+  for (Scene* either : {&specimen, &scene}) {
+    either->supports.held =
+        (either->mesh.nodes.row(0).array() <= kEnd).replicate(3, 1);
+  }
+  MeasureInFinerWorld(kTruth, specimen);
+  const Eigen::MatrixXd fine = specimen.load_cases[0].displacement;
+  Eigen::MatrixXd& measured = scene.load_cases[0].displacement;
+  measured.resize(3, scene.mesh.NumNodes());
+  for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
+    Eigen::Index same = 0;
+    (specimen.mesh.nodes.colwise() - scene.mesh.nodes.col(node))
+        .colwise()
+        .squaredNorm()
+        .minCoeff(&same);
+    measured.col(node) = fine.col(same);
+  }
+  scene.supports.boxes.clear();
+  testing::AddNoise(0.01, 1, scene);
+  const Estimate estimate =
+      MakeEstimator("reduced-fe")->Run(QuadraticScene(scene), {});
+  ASSERT_TRUE(estimate.IsUsable()) << estimate.message;
+  EXPECT_LT(
+      std::abs(estimate.elasticity.youngs_modulus - kTruth.youngs_modulus),
+      2 * *estimate.YoungsModulusStandardError());
+  EXPECT_LT(*estimate.YoungsModulusStandardError(),
+            0.05 * kTruth.youngs_modulus);
+}
+
 // Clamps that end anywhere between two layers of vertices, under noise.
 TEST(OpenClampStatistics, ErrorsAreThoseOfTheEstimates) {
   constexpr int kNumSeeds = 12;
