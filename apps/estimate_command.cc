@@ -13,6 +13,7 @@
 #include "apps/estimator_flags.h"
 #include "apps/flags.h"
 #include "apps/linear_algebra.h"
+#include "apps/material_flags.h"
 #include "apps/outlier_lines.h"
 #include "apps/outputs.h"
 #include "apps/progress.h"
@@ -20,6 +21,7 @@
 #include "apps/section_flags.h"
 #include "apps/series.h"
 #include "apps/summary.h"
+#include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/materials/laws.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/estimators/registry.h"
@@ -43,7 +45,7 @@ double SecondsSince(Clock::time_point start) {
 SceneReading Read(const std::vector<std::string>& arguments) {
   SceneReading reading =
       ReadScene({arguments.begin(), arguments.end()}, Measurement::kRequired,
-                SectionFromFlags(), RegionsFromFlag());
+                SectionFromFlags(), RegionsFromFlag(), LawFromFlags());
   if (IsGiven("noise_sd")) {
     for (LoadCase& load_case : reading.scene.load_cases) {
       load_case.noise_sd = FLAGS_noise_sd;
@@ -59,6 +61,11 @@ void GiveKnownPoissonRatio(Scene& scene, EstimatorOptions& options) {
   }
   const KnownParameter known = {"poisson_ratio", *options.known_poisson_ratio};
   for (Material& material : scene.materials) {
+    if (material.law != IsotropicLaw::kName) {
+      throw std::invalid_argument(
+          AsGiven("nu") + ", but the law " + material.law +
+          " has other parameters; give what is known in a scene.json");
+    }
     const auto is_of_nu = [&](const auto& given) {
       return given.name == known.name;
     };
@@ -255,7 +262,7 @@ int RunMaterials(const std::vector<std::string>& arguments) {
   std::string list;
   for (const Law* const law : Laws()) {
     list += std::string(law->Name()) +
-            std::string(21 - law->Name().size(), ' ') +
+            std::string(24 - law->Name().size(), ' ') +
             std::string(law->Description()) + ": ";
     for (const LawParameter& parameter : law->Parameters()) {
       list += (&parameter == &law->Parameters().front() ? "" : ", ") +

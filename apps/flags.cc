@@ -60,6 +60,14 @@ DEFINE_string(regions, "one",
               "materials of the regions of a mesh: one for all of them, or one "
               "each; overrides those of the scene (without this flag those, "
               "else one)");
+DEFINE_string(material, "isotropic",
+              "law of all materials; 'elastimate materials' lists them; "
+              "overrides those of the scene");
+DEFINE_string(
+    axis, "",
+    "direction of the axis of a material that is not isotropic: "
+    "X,Y,Z, of two axes X1,Y1,Z1,X2,Y2,Z2, in the plane also X,Y [1]; "
+    "overrides those of the scene");
 DEFINE_string(parameters, "",
               "JSON file with the parameters of all materials, as reports have "
               "them: a list \"parameters\" of \"name\", \"region\" and "
@@ -129,21 +137,40 @@ const Program& Elastimate() {
         "SCENE...",
         "Young's modulus and Poisson's ratio of a scene (VTK, Gmsh or "
         "scene.json); several files are further load cases",
-        {"estimator", "nu", "nu_min", "nu_max", "youngs_min", "youngs_max",
-         "regions", "model", "thickness", "order", "noise_sd", "loss", "degree",
-         "solver", "threads", "seed", "json", "series", "out"}},
+        {"estimator", "nu",     "nu_min",  "nu_max", "youngs_min", "youngs_max",
+         "material",  "axis",   "regions", "model",  "thickness",  "order",
+         "noise_sd",  "loss",   "degree",  "solver", "threads",    "seed",
+         "json",      "series", "out"}},
        {"simulate",
         "SCENE",
         "displacements of a scene for given parameters, with noise if wanted",
-        {"youngs", "nu", "parameters", "regions", "model", "thickness", "order",
-         "noise", "noise_law", "noise_sd", "correlation_length", "outliers",
-         "rigid_motion", "points", "seed", "solver", "threads", "out"}},
+        {"youngs",
+         "nu",
+         "parameters",
+         "material",
+         "axis",
+         "regions",
+         "model",
+         "thickness",
+         "order",
+         "noise",
+         "noise_law",
+         "noise_sd",
+         "correlation_length",
+         "outliers",
+         "rigid_motion",
+         "points",
+         "seed",
+         "solver",
+         "threads",
+         "out"}},
        {"plan",
         "SCENE",
         "which load to measure next: the errors that are expected of the "
         "parameters with one more load case, and no measurement of it",
-        {"youngs", "nu", "parameters", "regions", "model", "thickness", "order",
-         "noise", "noise_sd", "surface", "solver", "threads", "json"}},
+        {"youngs", "nu", "parameters", "material", "axis", "regions", "model",
+         "thickness", "order", "noise", "noise_sd", "surface", "solver",
+         "threads", "json"}},
        {"generate",
         "cuboid|organ|plate|rectangle",
         "an example geometry with supports and forces",

@@ -27,6 +27,8 @@ DECLARE_int32(order);
 DECLARE_string(model);
 DECLARE_double(thickness);
 DECLARE_string(regions);
+DECLARE_string(material);
+DECLARE_string(axis);
 DECLARE_string(parameters);
 DECLARE_string(surface);
 DECLARE_string(solver);

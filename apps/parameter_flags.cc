@@ -1,9 +1,11 @@
 #include "apps/parameter_flags.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "apps/estimator_flags.h"
 #include "apps/flags.h"
+#include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/io/report/parameters_file.h"
 
@@ -43,6 +45,15 @@ Eigen::VectorXd ParametersFromFlags(const Scene& scene) {
   }
   const MaterialParameters parameters(scene.materials,
                                       scene.mesh.section.model);
+  if (std::any_of(scene.materials.begin(), scene.materials.end(),
+                  [](const Material& material) {
+                    return material.law != IsotropicLaw::kName;
+                  })) {
+    throw std::invalid_argument(
+        AsGiven("youngs") +
+        " is of isotropic materials, and the scene has others; give "
+        "--parameters=FILE.json");
+  }
   Eigen::VectorXd values(parameters.NumParameters());
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     values(i) =

@@ -9,6 +9,7 @@
 #include "apps/element_order.h"
 #include "apps/estimator_flags.h"
 #include "apps/flags.h"
+#include "apps/material_flags.h"
 #include "apps/number_list.h"
 #include "apps/outputs.h"
 #include "apps/parameter_flags.h"
@@ -271,8 +272,9 @@ int RunPlan(const std::vector<std::string>& arguments) {
   const SolverKind solver = SolverFromFlag();
   const std::string source = PrintablePath(arguments[0]);
   std::optional<Progress> progress("reading " + source);
-  SceneReading reading = ReadScene({arguments[0]}, Measurement::kOptional,
-                                   SectionFromFlags(), RegionsFromFlag());
+  SceneReading reading =
+      ReadScene({arguments[0]}, Measurement::kOptional, SectionFromFlags(),
+                RegionsFromFlag(), LawFromFlags());
   if (reading.frames) {
     throw std::invalid_argument(
         source +

@@ -46,9 +46,9 @@ std::string Row(const std::string& name, const ExpectedErrors& errors,
   if (free.size() <= kMostColumns) {
     const Eigen::VectorXd of_parameters = errors.OfParameters();
     for (std::size_t i = 0; i < free.size(); ++i) {
-      row +=
-          Padded(ErrorText(of_parameters(Eigen::Index(i)), free[i].is_modulus),
-                 kWidthOfColumn);
+      row += Padded(
+          ErrorText(of_parameters(Eigen::Index(i)), free[i].IsStiffness()),
+          kWidthOfColumn);
     }
   }
   return row + WorstText(errors, free);
@@ -69,7 +69,7 @@ std::string ParametersText(const LoadPlan& plan, const PlanBasis& basis) {
   if (plan.parameters.size() <= kMostColumns) {
     for (const ParameterEstimate& parameter : plan.parameters) {
       text += parameter.Label() + " " +
-              (parameter.is_modulus && !basis.is_scale_known
+              (parameter.IsStiffness() && !basis.is_scale_known
                    ? "of any size"
                    : ShortNumber(parameter.value, 4)) +
               (parameter.is_known ? " (known), " : ", ");

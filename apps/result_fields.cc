@@ -27,10 +27,7 @@ std::optional<Eigen::VectorXd> PhysicalParameters(const Estimate& estimate) {
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     const ParameterEstimate& parameter = estimate.parameters[i];
     values(i) = parameter.value;
-    const bool is_physical =
-        parameter.is_modulus ? parameter.value > 0
-                             : parameter.value > -1 && parameter.value < 0.5;
-    if (!is_physical || !std::isfinite(parameter.value)) {
+    if (!parameter.IsPhysical() || !std::isfinite(parameter.value)) {
       return std::nullopt;
     }
   }

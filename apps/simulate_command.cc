@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <iomanip>
 #include <limits>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "apps/error_flags.h"
 #include "apps/estimator_flags.h"
 #include "apps/flags.h"
+#include "apps/material_flags.h"
 #include "apps/outputs.h"
 #include "apps/parameter_flags.h"
 #include "apps/progress.h"
@@ -239,8 +241,9 @@ int RunSimulate(const std::vector<std::string>& arguments) {
   CheckOutputFlags(arguments, OutFormats::kVtuOrTable);
   const std::string source = PrintablePath(arguments[0]);
   std::optional<Progress> progress("reading " + source);
-  SceneReading reading = ReadScene({arguments[0]}, Measurement::kOptional,
-                                   SectionFromFlags(), RegionsFromFlag());
+  SceneReading reading =
+      ReadScene({arguments[0]}, Measurement::kOptional, SectionFromFlags(),
+                RegionsFromFlag(), LawFromFlags());
   Scene& scene = reading.scene;
   errors.rigid_motion = RigidMotionFromFlag(scene.mesh.Dimension());
 

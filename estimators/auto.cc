@@ -55,15 +55,15 @@ std::string WhyNotWithinTolerance(const EstimatorOptions& options,
 // The same of several materials.
 std::string WhyParametersNotWithinTolerance(const Estimate& estimate) {
   for (const ParameterEstimate& parameter : estimate.parameters) {
-    const double error = parameter.standard_error.value_or(0) /
-                         (parameter.is_modulus ? parameter.value : 1);
-    const double tolerance = parameter.is_modulus
+    const double error =
+        parameter.standard_error.value_or(0) / parameter.ErrorUnit();
+    const double tolerance = parameter.IsStiffness()
                                  ? kLimits.notable_youngs_modulus_error
                                  : kLimits.notable_poisson_ratio_error;
     if (error > tolerance) {
       return "the standard error of " + parameter.Label() + " is " +
-             (parameter.is_modulus ? TwoDigits(100 * error) + " %"
-                                   : TwoDigits(error));
+             (parameter.IsStiffness() ? TwoDigits(100 * error) + " %"
+                                      : TwoDigits(error));
     }
   }
   return "";

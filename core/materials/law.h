@@ -2,6 +2,8 @@
 #define ELASTIMATE_CORE_MATERIALS_LAW_H_
 
 #include <Eigen/Core>
+#include <array>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -19,8 +21,22 @@ struct LawParameter {
   /// The closed range that fits search.
   double lower;
   double upper;
-  /// A common value, in any unit for a modulus: where fits start.
+  /// A common value, in any unit for a stiffness: where fits start.
   double typical;
+  /// Of a stiffness off the diagonal, which is no modulus, as it may have
+  /// either sign: the places among the parameters of those on the diagonal in
+  /// its row and its column, whose geometric mean it is smaller than.
+  std::optional<std::array<int, 2>> beside = std::nullopt;
+};
+
+/// A modulus as an entry of the stiffness S on the modes of a material,
+/// S(row, column) = factor theta, row <= column: S has a block for each set of
+/// modes that are not independent, and is positive definite when the stiffness
+/// is.
+struct BlockEntry {
+  int row;
+  int column;
+  double factor;
 };
 
 /// A law of elasticity: the stress at a point, linear in its moduli theta,
@@ -34,6 +50,9 @@ struct LawParameter {
 /// A new one is a file pair, a row in laws.cc, and a row in docs/materials.md;
 /// the tests of all laws run on it by themselves.  Its moduli are free to
 /// choose: small strains make the estimation linear in them.
+///
+/// A law whose material is not alike in all directions speaks in the frame of
+/// that: direction 1, 2 and 3 are those of its axes (MaterialFrames).
 ///
 /// Matrices over H have dimension^2 rows or columns, H in the order of its
 /// columns.  All functions are pure.
@@ -51,6 +70,17 @@ class Law {
   virtual int NumModuli() const = 0;
   /// Whether it knows such a section.
   virtual bool Takes(SectionModel model) const = 0;
+
+  /// How many axes its material has.
+  virtual int NumAxes() const { return 0; }
+  /// Whether these are those of the scene where none are given.
+  virtual bool HasAxesOfScene() const { return NumAxes() == 0; }
+  /// One for each modulus, by which the stiffness is kept positive definite
+  /// (stiffness_factors.h); empty for laws that are fitted by their parameters.
+  virtual const std::vector<BlockEntry>& BlockEntries() const {
+    static const std::vector<BlockEntry> none;
+    return none;
+  }
 
   /// W_k(H), one for each modulus [1].
   virtual Eigen::VectorXd Energies(const Eigen::MatrixXd& gradient,

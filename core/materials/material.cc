@@ -1,5 +1,6 @@
 #include "elastimate/core/materials/material.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <sstream>
@@ -7,6 +8,7 @@
 
 #include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/materials/laws.h"
+#include "elastimate/core/materials/material_frames.h"
 
 namespace elastimate {
 namespace {
@@ -56,6 +58,11 @@ void ValidateWhatIsGiven(const Law& law, const Material& material,
   }
   for (const BoundsOfParameter& bounded : material.bounds) {
     const LawParameter& parameter = FindParameter(law, bounded.name, name);
+    if (parameter.beside) {
+      throw std::invalid_argument(
+          name + " gives bounds of " + bounded.name +
+          ", which the others bound; leave them out, or give its value");
+    }
     require_once(bounded.name);
     const auto& [lower, upper] = bounded.bounds;
     for (const std::optional<double>& bound : {lower, upper}) {
@@ -123,7 +130,43 @@ void ValidateRegions(const std::vector<Material>& materials, const Mesh& mesh) {
   }
 }
 
+void ValidateAxes(const std::vector<Material>& materials, const Mesh& mesh) {
+  std::vector<std::vector<Eigen::Index>> elements(materials.size());
+  const std::vector<int> material_of = MaterialOfElements(materials, mesh);
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    elements[material_of[e]].push_back(e);
+  }
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const Law& law = *FindLaw(materials[i].law, mesh.section.model);
+    if (law.NumAxes() == 0 && !materials[i].axes.empty()) {
+      throw std::invalid_argument(NameOf(i) + " has an axis, but the law " +
+                                  materials[i].law +
+                                  " is alike in all directions; leave it out");
+    }
+    if (law.HasAxesOfScene() && materials[i].axes.empty()) {
+      continue;
+    }
+    const std::string why =
+        WhyNotTheseAxes(materials[i].axes, law.NumAxes(), mesh.Dimension(),
+                        mesh.NumElements(), elements[i]);
+    if (!why.empty()) {
+      throw std::invalid_argument(NameOf(i) + " (" + materials[i].law + ") " +
+                                  why);
+    }
+  }
+}
+
 }  // namespace
+
+bool Material::operator==(const Material& other) const {
+  return law == other.law && regions == other.regions && known == other.known &&
+         bounds == other.bounds &&
+         std::equal(
+             axes.begin(), axes.end(), other.axes.begin(), other.axes.end(),
+             [](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+               return a.rows() == b.rows() && a.cols() == b.cols() && a == b;
+             });
+}
 
 void ValidateMaterials(const std::vector<Material>& materials,
                        const Mesh& mesh) {
@@ -131,22 +174,24 @@ void ValidateMaterials(const std::vector<Material>& materials,
     return;
   }
   for (std::size_t i = 0; i < materials.size(); ++i) {
-    const Law* const law = FindLaw(materials[i].law);
-    if (law == nullptr) {
+    if (FindLaw(materials[i].law) == nullptr) {
       throw std::invalid_argument(
           NameOf(i) + " has the law \"" + materials[i].law +
           "\", which is none; the laws are " + LawNames());
     }
-    if (!law->Takes(mesh.section.model)) {
-      throw std::invalid_argument(
-          NameOf(i) + " has the law " + materials[i].law +
-          ", which is not there for the model " +
-          std::string(SectionModelName(mesh.section.model)) +
-          "; give another law");
+    const SectionModel model = mesh.section.model;
+    const Law* const law = FindLaw(materials[i].law, model);
+    if (law == nullptr) {
+      throw std::invalid_argument(NameOf(i) + " has the law " +
+                                  materials[i].law +
+                                  ", which is not there for the model " +
+                                  std::string(SectionModelName(model)) +
+                                  "; its laws are " + LawNames(model));
     }
     ValidateWhatIsGiven(*law, materials[i], NameOf(i));
   }
   ValidateRegions(materials, mesh);
+  ValidateAxes(materials, mesh);
 }
 
 bool IsOneIsotropicMaterial(const std::vector<Material>& materials) {

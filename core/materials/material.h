@@ -1,6 +1,7 @@
 #ifndef ELASTIMATE_CORE_MATERIALS_MATERIAL_H_
 #define ELASTIMATE_CORE_MATERIALS_MATERIAL_H_
 
+#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,17 +47,18 @@ struct Material {
   std::vector<KnownParameter> known;
   /// Of parameters that are not known.
   std::vector<BoundsOfParameter> bounds;
+  /// Directions of any length that fix its frame (MaterialFrames), as many as
+  /// its law has: each dimension x 1, or dimension x num_elements, of which
+  /// those of its elements count.
+  std::vector<Eigen::MatrixXd> axes = {};
 
-  bool operator==(const Material& other) const {
-    return law == other.law && regions == other.regions &&
-           known == other.known && bounds == other.bounds;
-  }
+  bool operator==(const Material& other) const;
 };
 
 /// Throws std::invalid_argument, with one sentence, unless each material has a
 /// law that exists and takes the section, and known parameters and bounds of
-/// parameters of that law, once each, with values in their range; and each
-/// element is of one material.
+/// parameters of that law, once each, with values in their range; the axes that
+/// its law takes, orthogonal ones; and each element is of one material.
 /// No materials at all are one isotropic one.  O(num_elements).
 void ValidateMaterials(const std::vector<Material>& materials,
                        const Mesh& mesh);

@@ -1,5 +1,7 @@
 #include "elastimate/core/materials/material_parameters.h"
 
+#include <cmath>
+
 #include "elastimate/core/materials/laws.h"
 
 namespace elastimate {
@@ -9,7 +11,7 @@ MaterialParameters::MaterialParameters(const std::vector<Material>& materials,
     : model_(model), first_modulus_({0}), first_parameter_({0}) {
   const std::vector<Material> one = {Material{}};
   for (const Material& material : materials.empty() ? one : materials) {
-    const Law* const law = FindLaw(material.law);
+    const Law* const law = FindLaw(material.law, model);
     for (const LawParameter& law_parameter : law->Parameters()) {
       Parameter parameter = {&law_parameter, laws_.size(), std::nullopt};
       for (const KnownParameter& known : material.known) {
@@ -42,9 +44,25 @@ Eigen::VectorXd MaterialParameters::Typical(double scale) const {
   for (Eigen::Index i = 0; i < NumParameters(); ++i) {
     const LawParameter& parameter = *parameters_[i].law_parameter;
     typical(i) = parameters_[i].known.value_or(
-        parameter.typical * (parameter.is_modulus ? scale : 1));
+        parameter.typical *
+        (parameter.is_modulus || parameter.beside ? scale : 1));
   }
   return typical;
+}
+
+Eigen::VectorXd MaterialParameters::UnitsOfErrors(
+    const Eigen::VectorXd& parameters) const {
+  Eigen::VectorXd units(NumParameters());
+  for (Eigen::Index i = 0; i < NumParameters(); ++i) {
+    const LawParameter& parameter = *parameters_[i].law_parameter;
+    units(i) = parameter.is_modulus ? parameters(i) : 1;
+    if (parameter.beside) {
+      const Eigen::Index first = first_parameter_[parameters_[i].material];
+      units(i) = std::sqrt(parameters(first + (*parameter.beside)[0]) *
+                           parameters(first + (*parameter.beside)[1]));
+    }
+  }
+  return units;
 }
 
 Eigen::VectorXd MaterialParameters::Moduli(

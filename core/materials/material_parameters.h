@@ -36,6 +36,11 @@ class MaterialParameters {
     return first_modulus_[material];
   }
   Eigen::Index NumModuli() const { return first_modulus_.back(); }
+  /// Where its parameters begin in p.
+  Eigen::Index FirstParameter(std::size_t material) const {
+    return first_parameter_[material];
+  }
+  SectionModel Model() const { return model_; }
   /// Which are not known.
   const std::vector<Eigen::Index>& Free() const { return free_; }
 
@@ -43,9 +48,13 @@ class MaterialParameters {
   /// others; empty when none is known.
   std::optional<double> KnownModulus() const;
 
-  /// The known values, and typical ones for the others, moduli of which are
-  /// `scale` times as large.
+  /// The known values, and typical ones for the others, stiffnesses of which
+  /// are `scale` times as large.
   Eigen::VectorXd Typical(double scale) const;
+
+  /// What errors of p are measured by: of a modulus its value, of a stiffness
+  /// off the diagonal the geometric mean of those beside it, of a ratio 1.
+  Eigen::VectorXd UnitsOfErrors(const Eigen::VectorXd& parameters) const;
 
   /// theta(p), its Jacobian (num_moduli x num_parameters), and p(theta).
   Eigen::VectorXd Moduli(const Eigen::VectorXd& parameters) const;

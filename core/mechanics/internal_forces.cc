@@ -14,6 +14,7 @@ InternalForces::InternalForces(const Mesh& mesh,
     : mesh_(mesh),
       parameters_(materials, mesh.section.model),
       material_of_element_(MaterialOfElements(materials, mesh)),
+      frames_(materials, mesh.Dimension()),
       is_isotropic_(std::all_of(materials.begin(), materials.end(),
                                 [](const Material& material) {
                                   return material.law == IsotropicLaw::kName;
@@ -63,8 +64,8 @@ std::vector<Eigen::MatrixXd> InternalForces::OfParts(
   }
   products.assign(most_moduli,
                   Eigen::MatrixXd::Zero(of_nodes.rows(), of_nodes.cols()));
-  AddLawProducts(is_split ? parts_.mesh : mesh_, material_of_element_, tangents,
-                 of_nodes, products);
+  AddLawProducts(is_split ? parts_.mesh : mesh_, material_of_element_, frames_,
+                 tangents, of_nodes, products);
   return products;
 }
 
@@ -133,13 +134,14 @@ std::vector<Eigen::MatrixXd> InternalForces::Tangents(
 
 Eigen::MatrixXd InternalForces::Blocks(const Eigen::VectorXd& moduli,
                                        const NodeGraph& graph) const {
-  return StiffnessBlocks(mesh_, graph, material_of_element_, Tangents(moduli));
+  return StiffnessBlocks(mesh_, graph, material_of_element_, frames_,
+                         Tangents(moduli));
 }
 
 Eigen::VectorXd InternalForces::EnergyDensity(
     const Eigen::VectorXd& moduli, const Eigen::VectorXd& displacement) const {
-  return LawEnergyDensity(mesh_, material_of_element_, Tangents(moduli),
-                          displacement);
+  return LawEnergyDensity(mesh_, material_of_element_, frames_,
+                          Tangents(moduli), displacement);
 }
 
 }  // namespace elastimate

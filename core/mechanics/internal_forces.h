@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "elastimate/core/materials/material.h"
+#include "elastimate/core/materials/material_frames.h"
 #include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/mesh/mesh.h"
@@ -67,6 +68,7 @@ class InternalForces {
   const Mesh& mesh_;
   MaterialParameters parameters_;
   std::vector<int> material_of_element_;
+  MaterialFrames frames_;
   /// Of more than one material; else the whole mesh is the part.
   MeshParts parts_;
   bool is_isotropic_;

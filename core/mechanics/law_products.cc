@@ -13,9 +13,22 @@ template <ElementKind kKind>
 using TangentMatrix =
     Eigen::Matrix<double, kGradientSize<kKind>, kGradientSize<kKind>>;
 
-// What the point of an element adds to one column of the products.
 template <ElementKind kKind>
-void AddAtPoint(const ElementPoint<kKind>& point,
+using Frame = Eigen::Matrix<double, ElementSizes<kKind>::kDimension,
+                            ElementSizes<kKind>::kDimension>;
+
+// The point as seen in a frame.
+template <ElementKind kKind>
+ElementPoint<kKind> SeenIn(const Frame<kKind>& frame,
+                           ElementPoint<kKind> point) {
+  point.gradient = (frame.transpose() * point.gradient).eval();
+  return point;
+}
+
+// What the point of an element, as seen in the frame, adds to one column of the
+// products.
+template <ElementKind kKind>
+void AddAtPoint(const ElementPoint<kKind>& point, const Frame<kKind>& frame,
                 const std::vector<Eigen::MatrixXd>& tangents, const int* nodes,
                 const Eigen::Matrix<double, ElementSizes<kKind>::kDimension,
                                     ElementSizes<kKind>::kNodes>& u,
@@ -34,25 +47,31 @@ void AddAtPoint(const ElementPoint<kKind>& point,
     for (int i = 0; i < ElementSizes<kKind>::kNodes; ++i) {
       Eigen::Map<Eigen::Matrix<double, kDimension, 1>>(
           values + kDimension * Eigen::Index(nodes[i])) +=
-          stress * point.gradient.col(i);
+          frame * (stress * point.gradient.col(i));
     }
   }
 }
 
 template <ElementKind kKind>
 void AddOfKind(const Mesh& mesh, const std::vector<int>& material_of_element,
+               const MaterialFrames& frames,
                const std::vector<std::vector<Eigen::MatrixXd>>& tangents,
                const Eigen::MatrixXd& displacement,
                std::vector<Eigen::MatrixXd>& products) {
   for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
     const int* const nodes = mesh.elements.col(e).data();
+    const int material = material_of_element[e];
+    const Frame<kKind> frame =
+        frames.Of<ElementSizes<kKind>::kDimension>(material, e);
     VisitPoints<kKind>(
         mesh, e, StiffnessRule<kKind>(), [&](const auto& point, const auto&) {
+          const ElementPoint<kKind> seen = SeenIn<kKind>(frame, point);
           for (Eigen::Index c = 0; c < displacement.cols(); ++c) {
             AddAtPoint<kKind>(
-                point, tangents[material_of_element[e]], nodes,
-                GatherNodes<kKind>(mesh, e, displacement.col(c).data()), c,
-                products);
+                seen, frame, tangents[material], nodes,
+                frame.transpose() *
+                    GatherNodes<kKind>(mesh, e, displacement.col(c).data()),
+                c, products);
           }
         });
   }
@@ -61,6 +80,7 @@ void AddOfKind(const Mesh& mesh, const std::vector<int>& material_of_element,
 template <ElementKind kKind>
 void AddBlocksOfKind(const Mesh& mesh, const NodeGraph& graph,
                      const std::vector<int>& material_of_element,
+                     const MaterialFrames& frames,
                      const std::vector<Eigen::MatrixXd>& tangents,
                      Eigen::MatrixXd& blocks) {
   constexpr int kDimension = ElementSizes<kKind>::kDimension;
@@ -69,6 +89,7 @@ void AddBlocksOfKind(const Mesh& mesh, const NodeGraph& graph,
   // K(i, j)_ab = sum_cd g_i,c C_(ac)(bd) g_j,d: by columns (c, d) of C, each a
   // dimension x dimension block over (a, b).
   const auto add = [&](const ElementPoint<kKind>& point,
+                       const Frame<kKind>& frame,
                        const Eigen::MatrixXd& tangent, Eigen::Index e) {
     const int* const nodes = mesh.elements.col(e).data();
     for (int j = 0; j < kNodes; ++j) {
@@ -88,36 +109,41 @@ void AddBlocksOfKind(const Mesh& mesh, const NodeGraph& graph,
                    of_column.template middleRows<kDimension>(kDimension * c);
         }
         blocks.middleCols<kDimension>(
-            kDimension * Eigen::Index(graph.element_pairs(
-                             NodeGraph::LocalPair(i, j), e))) += block;
+            kDimension *
+            Eigen::Index(graph.element_pairs(NodeGraph::LocalPair(i, j), e))) +=
+            frame * block * frame.transpose();
       }
     }
   };
   for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
-    VisitPoints<kKind>(mesh, e, StiffnessRule<kKind>(),
-                       [&](const auto& point, const auto&) {
-                         add(point, tangents[material_of_element[e]], e);
-                       });
+    const int material = material_of_element[e];
+    const Frame<kKind> frame = frames.Of<kDimension>(material, e);
+    VisitPoints<kKind>(
+        mesh, e, StiffnessRule<kKind>(), [&](const auto& point, const auto&) {
+          add(SeenIn<kKind>(frame, point), frame, tangents[material], e);
+        });
   }
 }
 
 template <ElementKind kKind>
 Eigen::VectorXd EnergyDensityOfKind(
     const Mesh& mesh, const std::vector<int>& material_of_element,
-    const std::vector<Eigen::MatrixXd>& tangents,
+    const MaterialFrames& frames, const std::vector<Eigen::MatrixXd>& tangents,
     const Eigen::VectorXd& displacement) {
   constexpr int kDimension = ElementSizes<kKind>::kDimension;
   Eigen::VectorXd density(mesh.NumElements());
   for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    const int material = material_of_element[e];
+    const Frame<kKind> frame = frames.Of<kDimension>(material, e);
     const auto u = GatherNodes<kKind>(mesh, e, displacement.data());
     const Eigen::Map<const TangentMatrix<kKind>> tangent(
-        tangents[material_of_element[e]].data());
+        tangents[material].data());
     double energy = 0;
     double volume = 0;
     VisitPoints<kKind>(
         mesh, e, StiffnessRule<kKind>(), [&](const auto& point, const auto&) {
           const Eigen::Matrix<double, kDimension, kDimension> gradient =
-              u * point.gradient.transpose();
+              frame.transpose() * u * point.gradient.transpose() * frame;
           const Eigen::Map<const Eigen::Matrix<double, kGradientSize<kKind>, 1>>
               h(gradient.data());
           energy += point.volume / 2 * h.dot(tangent * h);
@@ -132,32 +158,36 @@ Eigen::VectorXd EnergyDensityOfKind(
 
 void AddLawProducts(const Mesh& mesh,
                     const std::vector<int>& material_of_element,
+                    const MaterialFrames& frames,
                     const std::vector<std::vector<Eigen::MatrixXd>>& tangents,
                     const Eigen::MatrixXd& displacement,
                     std::vector<Eigen::MatrixXd>& products) {
   VisitElementKind(mesh.kind, [&](auto kind) {
-    AddOfKind<kind>(mesh, material_of_element, tangents, displacement,
+    AddOfKind<kind>(mesh, material_of_element, frames, tangents, displacement,
                     products);
   });
 }
 
 Eigen::VectorXd LawEnergyDensity(const Mesh& mesh,
                                  const std::vector<int>& material_of_element,
+                                 const MaterialFrames& frames,
                                  const std::vector<Eigen::MatrixXd>& tangents,
                                  const Eigen::VectorXd& displacement) {
   return VisitElementKind(mesh.kind, [&](auto kind) {
-    return EnergyDensityOfKind<kind>(mesh, material_of_element, tangents,
-                                     displacement);
+    return EnergyDensityOfKind<kind>(mesh, material_of_element, frames,
+                                     tangents, displacement);
   });
 }
 
 Eigen::MatrixXd StiffnessBlocks(const Mesh& mesh, const NodeGraph& graph,
                                 const std::vector<int>& material_of_element,
+                                const MaterialFrames& frames,
                                 const std::vector<Eigen::MatrixXd>& tangents) {
   Eigen::MatrixXd blocks = Eigen::MatrixXd::Zero(
       mesh.Dimension(), mesh.Dimension() * graph.NumPairs());
   VisitElementKind(mesh.kind, [&](auto kind) {
-    AddBlocksOfKind<kind>(mesh, graph, material_of_element, tangents, blocks);
+    AddBlocksOfKind<kind>(mesh, graph, material_of_element, frames, tangents,
+                          blocks);
   });
   return blocks;
 }

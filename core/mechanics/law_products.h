@@ -4,10 +4,14 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "elastimate/core/materials/material_frames.h"
 #include "elastimate/core/mesh/mesh.h"
 #include "elastimate/core/mesh/node_graph.h"
 
 namespace elastimate {
+
+/// Tangents are those of the frames of the materials, in which each element is
+/// looked at.
 
 /// Adds, for tangents C_k = dP_k / dH of small strains, of the material of each
 /// element, and each column u of `displacement`,
@@ -18,6 +22,7 @@ namespace elastimate {
 /// dimension^2 over gradients in the order of their columns.  One element pass.
 void AddLawProducts(const Mesh& mesh,
                     const std::vector<int>& material_of_element,
+                    const MaterialFrames& frames,
                     const std::vector<std::vector<Eigen::MatrixXd>>& tangents,
                     const Eigen::MatrixXd& displacement,
                     std::vector<Eigen::MatrixXd>& products);
@@ -27,6 +32,7 @@ void AddLawProducts(const Mesh& mesh,
 /// dimension x (dimension num_pairs).  One element pass.
 Eigen::MatrixXd StiffnessBlocks(const Mesh& mesh, const NodeGraph& graph,
                                 const std::vector<int>& material_of_element,
+                                const MaterialFrames& frames,
                                 const std::vector<Eigen::MatrixXd>& tangents);
 
 /// The strain energy of each element over its volume, of a displacement of
@@ -34,6 +40,7 @@ Eigen::MatrixXd StiffnessBlocks(const Mesh& mesh, const NodeGraph& graph,
 /// grad u : C : grad u / 2.  num_elements values [pressure].
 Eigen::VectorXd LawEnergyDensity(const Mesh& mesh,
                                  const std::vector<int>& material_of_element,
+                                 const MaterialFrames& frames,
                                  const std::vector<Eigen::MatrixXd>& tangents,
                                  const Eigen::VectorXd& displacement);
 

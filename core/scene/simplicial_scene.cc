@@ -30,6 +30,18 @@ Scene SimplicialScene(const Scene& scene) {
   const SimplicialMesh mesh(scene.mesh);
   Scene simplicial = scene;
   simplicial.mesh = mesh.Simplices();
+  // The simplices of an element have its axes.
+  const Eigen::Index num_elements = scene.mesh.NumElements();
+  const Eigen::Index num_cuts = simplicial.mesh.NumElements() / num_elements;
+  for (Material& material : simplicial.materials) {
+    for (Eigen::MatrixXd& axis : material.axes) {
+      if (axis.cols() > 1) {
+        axis = axis.replicate(num_cuts, 1)
+                   .reshaped(axis.rows(), num_cuts * num_elements)
+                   .eval();
+      }
+    }
+  }
   for (LoadCase& load_case : simplicial.load_cases) {
     for (Load& load : load_case.loads) {
       load = std::visit(LoadCutter{mesh}, load);

@@ -164,7 +164,7 @@ RegressionFit SearchMinimum(const Regression& regression,
                             free.VariableBounds(), start, options);
   evidence.end = minimum.end;
   evidence.search_message = minimum.message;
-  EnterParameters(scene, free, minimum.variables, estimate);
+  EnterParameters(scene, free, free.ParametersAt(minimum.variables), estimate);
   NoteVariablesOnBounds(free, minimum, estimate);
   return {minimum.variables, free.ModuliAt(minimum.variables)};
 }
@@ -201,7 +201,8 @@ void DescribeErrors(const FreeParameters& free, const RegressionFit& fit,
   Eigen::MatrixXd covariance =
       variance * inverse * regression.StiffenedGram(fit.moduli, directions) *
       inverse;
-  estimate.error_budget.noise = ErrorsOfVariables(free, covariance);
+  estimate.error_budget.noise =
+      ErrorsOfVariables(free, fit.variables, covariance);
 
   // Without the noise in F^T F.
   const Eigen::MatrixXd noise =
@@ -216,7 +217,7 @@ void DescribeErrors(const FreeParameters& free, const RegressionFit& fit,
                       pull.size(), std::numeric_limits<double>::infinity())
                 : Eigen::VectorXd(Inverse(clean) * pull);
   estimate.error_budget.bias =
-      ErrorsOfVariables(free, bias.cwiseAbs2().asDiagonal());
+      ErrorsOfVariables(free, fit.variables, bias * bias.transpose());
   if (!is_hidden) {
     covariance += bias * bias.transpose();
   }
@@ -237,11 +238,8 @@ Estimate RegressForces(const Scene& scene, const EstimatorOptions& options,
   if (!is_bounded && is_linear && moduli) {
     const Eigen::VectorXd parameters = free.All().ParametersOf(*moduli);
     fit = {free.VariablesOf(parameters), *moduli};
-    EnterParameters(scene, free, fit.variables, estimate);
     // As they are: those that are not physical, too.
-    for (Eigen::Index i = 0; i < parameters.size(); ++i) {
-      estimate.parameters[i].value = parameters(i);
-    }
+    EnterParameters(scene, free, parameters, estimate);
   } else {
     fit = SearchMinimum(regression, free, evidence, estimate, scene);
   }

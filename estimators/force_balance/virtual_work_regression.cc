@@ -131,8 +131,8 @@ class WorkBalance {
   Work work_done_;
 };
 
-// Typical values but for this Poisson's ratio, at the scale of the loads; empty
-// when the displacements oppose the loads.
+// Typical values but for these Poisson's ratios, at the scale of the loads;
+// empty when the displacements oppose the loads.
 std::optional<Eigen::VectorXd> Start(const FreeParameters& free,
                                      double poisson_ratio,
                                      const WorkBalance& balance) {
@@ -140,7 +140,7 @@ std::optional<Eigen::VectorXd> Start(const FreeParameters& free,
     Eigen::VectorXd values = free.All().Typical(scale);
     for (const Eigen::Index i : free.All().Free()) {
       const LawParameter& parameter = *free.All().All()[i].law_parameter;
-      if (parameter.name == "poisson_ratio") {
+      if (!parameter.is_modulus && !parameter.beside) {
         values(i) = poisson_ratio;
       }
     }
@@ -191,10 +191,13 @@ std::optional<BoundedMinimum> BestOfStarts(const FreeParameters& free,
                                            int max_iterations,
                                            WorkBalance& balance) {
   std::optional<BoundedMinimum> best;
+  std::optional<Eigen::VectorXd> last;
   for (const double poisson_ratio : {0.3, 0.0, 0.45}) {
     const std::optional<Eigen::VectorXd> start =
         Start(free, poisson_ratio, balance);
-    if (start) {
+    // Of laws without such ratios all are one.
+    if (start && start != last) {
+      last = start;
       BoundedMinimum minimum = Minimize(free, *start, max_iterations, balance);
       if (!best || minimum.cost < best->cost) {
         best = std::move(minimum);
@@ -242,8 +245,8 @@ void DescribeFit(const Scene& scene, const FreeParameters& free,
   const Eigen::MatrixXd inverse = Inverse(jacobian.transpose() * jacobian);
   const Eigen::MatrixXd of_noise = variance * inverse;
   const Eigen::MatrixXd of_model = (is_noise ? 0 : square_sum) * inverse;
-  estimate.error_budget.noise = ErrorsOfVariables(free, of_noise);
-  estimate.error_budget.model = ErrorsOfVariables(free, of_model);
+  estimate.error_budget.noise = ErrorsOfVariables(free, variables, of_noise);
+  estimate.error_budget.model = ErrorsOfVariables(free, variables, of_model);
   estimate.is_model_in_doubt = !is_noise;
   EnterCovariance(free, variables, of_noise + of_model, estimate);
   if (!is_noise) {
@@ -281,7 +284,7 @@ Estimate BalanceVirtualWork(const Scene& scene,
   const BoundedMinimum& minimum = *best;
   evidence.end = minimum.end;
   evidence.search_message = minimum.message;
-  EnterParameters(scene, free, minimum.variables, estimate);
+  EnterParameters(scene, free, free.ParametersAt(minimum.variables), estimate);
   NoteVariablesOnBounds(free, minimum, estimate);
   DescribeFit(scene, free, minimum.variables, balance, evidence, estimate);
   estimate.work = balance.WorkDone();

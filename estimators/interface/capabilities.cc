@@ -1,5 +1,8 @@
 #include "elastimate/estimators/interface/capabilities.h"
 
+#include <algorithm>
+
+#include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/core/scene/unknown_motion.h"
@@ -77,6 +80,17 @@ std::string WhyNotTheseMaterials(const Capabilities& capabilities,
   if (options.known_poisson_ratio) {
     return "Poisson's ratio is given for one material, but the scene says what "
            "its materials are; give it there";
+  }
+  const bool has_bounded_options =
+      options.youngs_modulus.AreGiven() || options.poisson_ratio.AreGiven();
+  const auto is_isotropic = [](const Material& material) {
+    return material.law == IsotropicLaw::kName;
+  };
+  if (has_bounded_options &&
+      !std::all_of(scene.materials.begin(), scene.materials.end(),
+                   is_isotropic)) {
+    return "bounds on E and nu are of isotropic materials, but the scene has "
+           "others; give bounds of their parameters there";
   }
   if (MaterialParameters(scene.materials, scene.mesh.section.model)
           .Free()

@@ -18,11 +18,10 @@ void RemoveFindings(const Predicate& predicate,
                  findings.end());
 }
 
-}  // namespace
-
-std::string ParameterEstimate::Label() const {
+// " of region 3"; nothing of the whole mesh.
+std::string OfRegions(const std::vector<int>& regions) {
   if (regions.empty()) {
-    return symbol;
+    return "";
   }
   constexpr std::size_t kMostNamed = 3;
   const std::size_t num_named =
@@ -34,7 +33,17 @@ std::string ParameterEstimate::Label() const {
   if (num_named < regions.size()) {
     ids += " and " + std::to_string(regions.size() - num_named) + " more";
   }
-  return symbol + (regions.size() == 1 ? " of region " : " of regions ") + ids;
+  return (regions.size() == 1 ? " of region " : " of regions ") + ids;
+}
+
+}  // namespace
+
+std::string ParameterEstimate::Label() const {
+  return symbol + OfRegions(regions);
+}
+
+std::string StiffnessEstimate::Label() const {
+  return "the stiffness" + OfRegions(regions);
 }
 
 bool Estimate::Has(FindingCode code) const {

@@ -34,6 +34,12 @@ struct ParameterEstimate {
   std::vector<int> regions;  ///< Of its material; empty: the whole mesh.
   bool is_modulus = false;   ///< [pressure], else a ratio [1].
   bool is_known = false;     ///< Given, not estimated.
+  /// Of a stiffness off the diagonal, which may have either sign, the geometric
+  /// mean of those beside it, which its errors are relative to [pressure].
+  std::optional<double> beside;
+  /// Between which it is physical, ends excluded: whatever the others are.
+  Interval limits = {-std::numeric_limits<double>::infinity(),
+                     std::numeric_limits<double>::infinity()};
   double value = std::numeric_limits<double>::quiet_NaN();
   /// Empty when unknown, as for a parameter that is given.
   std::optional<double> standard_error;
@@ -41,6 +47,23 @@ struct ParameterEstimate {
   std::optional<Interval> interval;
 
   /// "nu of region 3", "E" of a material of the whole mesh.
+  std::string Label() const;
+  /// Whether errors are relative, to ErrorUnit; else it is a ratio.
+  bool IsStiffness() const { return is_modulus || beside; }
+  double ErrorUnit() const { return is_modulus ? value : beside.value_or(1); }
+  bool IsPhysical() const {
+    return value > limits.lower && value < limits.upper;
+  }
+};
+
+/// The stiffness of a material that is not isotropic, in its own frame and the
+/// notation of Voigt: 6 x 6, in the plane 3 x 3 [pressure].
+struct StiffnessEstimate {
+  std::vector<int> regions;  ///< As of its parameters.
+  Eigen::MatrixXd value;
+  Eigen::MatrixXd standard_error;  ///< NaN where it is unknown.
+
+  /// "the stiffness of region 3".
   std::string Label() const;
 };
 
@@ -129,6 +152,8 @@ struct Estimate {
   /// Of `parameters`, square.  NaN in the rows and columns of what is not
   /// estimated, or unknown.
   Eigen::MatrixXd parameter_covariance;
+  /// Of each material that is not isotropic, of these parameters.
+  std::vector<StiffnessEstimate> stiffnesses;
 
   /// What the errors come from.
   ErrorBudget error_budget;

@@ -10,8 +10,12 @@
 
 namespace elastimate {
 
-/// The parameters of a scene that are not known, as the variables x of a fit:
-/// ln of moduli, ratios as they are.
+/// The parameters of a scene that are not known, as the variables x of a fit.
+///
+/// Of a material of which something is known or bounded, and of each isotropic
+/// one: ln of moduli, ratios as they are, and stiffnesses off the diagonal over
+/// the geometric mean of those beside them.  Of others the factors of their
+/// stiffness (stiffness_factors.h), which is positive definite by construction.
 class FreeParameters {
  public:
   /// Precondition: a valid scene and valid options.
@@ -24,21 +28,31 @@ class FreeParameters {
   /// options, and the range of its law.
   const std::vector<Bounds>& VariableBounds() const { return bounds_; }
 
-  /// All parameters p(x), and x of them, moved into the bounds.
+  /// All parameters p(x), and x of them, moved into the bounds; not numbers
+  /// where a stiffness is not positive definite.
   Eigen::VectorXd ParametersAt(const Eigen::VectorXd& variables) const;
   Eigen::VectorXd VariablesOf(const Eigen::VectorXd& parameters) const;
-  /// dp_i / dx_i of the free parameters.
-  Eigen::VectorXd Slopes(const Eigen::VectorXd& variables) const;
+  /// dp / dx of the free parameters, size x size.
+  Eigen::MatrixXd ParameterJacobian(const Eigen::VectorXd& variables) const;
+  /// The same in the units of their errors: of moduli d ln p / dx.
+  Eigen::MatrixXd RelativeJacobian(const Eigen::VectorXd& variables) const;
   /// theta(x), and d theta / dx (num_moduli x size).
   Eigen::VectorXd ModuliAt(const Eigen::VectorXd& variables) const;
   Eigen::MatrixXd ModuliJacobian(const Eigen::VectorXd& variables) const;
 
  private:
-  const LawParameter& LawParameterOf(Eigen::Index variable) const {
-    return *all_.All()[all_.Free()[variable]].law_parameter;
+  const MaterialParameters::Parameter& Free(Eigen::Index variable) const {
+    return all_.All()[all_.Free()[variable]];
   }
+  bool IsOfFactors(Eigen::Index variable) const {
+    return has_factors_[Free(variable).material];
+  }
+  /// The first variable of each material that has factors as variables.
+  std::vector<Eigen::Index> FirstOfFactors() const;
 
   MaterialParameters all_;
+  /// Of each material, whether its variables are the factors of its stiffness.
+  std::vector<bool> has_factors_;
   std::vector<Bounds> bounds_;
   Eigen::VectorXd known_;  ///< Typical values where none is known.
 };

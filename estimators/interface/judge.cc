@@ -8,6 +8,7 @@
 #include "elastimate/estimators/interface/parameter_judge.h"
 #include "elastimate/estimators/interface/rules.h"
 #include "elastimate/estimators/interface/statistics.h"
+#include "elastimate/estimators/interface/stiffness_estimate.h"
 
 namespace elastimate {
 namespace {
@@ -148,6 +149,7 @@ void FinishEstimate(std::string_view estimator, const Scene& scene,
     }
   }
   if (!IsOneIsotropicMaterial(scene.materials)) {
+    estimate.stiffnesses = StiffnessesOf(scene, estimate);
     JudgeParameters(estimate);
     JudgeLocking(scene.mesh, LargestPoissonRatio(estimate), estimate);
     return;

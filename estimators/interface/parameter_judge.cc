@@ -9,6 +9,7 @@
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/statistics.h"
+#include "elastimate/estimators/interface/stiffness_estimate.h"
 
 namespace elastimate {
 std::vector<ParameterEstimate> ParametersWithoutValues(
@@ -20,6 +21,11 @@ std::vector<ParameterEstimate> ParametersWithoutValues(
     estimate.symbol = parameter.law_parameter->symbol;
     estimate.is_modulus = parameter.law_parameter->is_modulus;
     estimate.is_known = parameter.known.has_value();
+    // Of other laws the stiffness as a whole says what is physical.
+    if (parameters.LawOf(parameter.material).BlockEntries().empty()) {
+      estimate.limits = estimate.is_modulus ? Interval{0, estimate.limits.upper}
+                                            : Interval{-1, 0.5};
+    }
     if (!scene.materials.empty()) {
       estimate.regions = scene.materials[parameter.material].regions;
     }
@@ -29,6 +35,16 @@ std::vector<ParameterEstimate> ParametersWithoutValues(
 }
 
 namespace {
+
+// J C J^T, where what is infinite of one variable stays with that.
+Eigen::MatrixXd Transformed(const Eigen::MatrixXd& covariance,
+                            const Eigen::MatrixXd& jacobian) {
+  if (jacobian.isDiagonal(0)) {
+    return jacobian.diagonal().asDiagonal() * covariance *
+           jacobian.diagonal().asDiagonal();
+  }
+  return jacobian * covariance * jacobian.transpose();
+}
 
 // What has no finite variance is not determined, unless it is known why there
 // is none.
@@ -60,11 +76,6 @@ void EnterErrors(Estimate& estimate) {
   }
 }
 
-bool IsPhysicalParameter(const ParameterEstimate& parameter) {
-  return parameter.is_modulus ? parameter.value > 0
-                              : parameter.value > -1 && parameter.value < 0.5;
-}
-
 void JudgePhysicsOfParameters(Estimate& estimate) {
   std::vector<std::string> unphysical;
   for (const ParameterEstimate& parameter : estimate.parameters) {
@@ -72,10 +83,15 @@ void JudgePhysicsOfParameters(Estimate& estimate) {
       estimate.Fail(NotFinite());
       return;
     }
-    if (!IsPhysicalParameter(parameter)) {
+    if (!parameter.IsPhysical()) {
       std::ostringstream text;
       text << parameter.Label() << " = " << parameter.value;
       unphysical.push_back(text.str());
+    }
+  }
+  for (const StiffnessEstimate& stiffness : estimate.stiffnesses) {
+    if (!IsPositiveDefinite(stiffness)) {
+      unphysical.push_back(stiffness.Label() + " (not positive definite)");
     }
   }
   if (!unphysical.empty()) {
@@ -87,12 +103,12 @@ void JudgeDeterminationOfParameters(Estimate& estimate) {
   std::vector<std::string> undetermined;
   for (const ParameterEstimate& parameter : estimate.parameters) {
     const double error = parameter.standard_error.value_or(0);
-    const double relative = error / parameter.value;
-    if (parameter.is_modulus &&
+    const double relative = error / parameter.ErrorUnit();
+    if (parameter.IsStiffness() &&
         relative > kLimits.largest_youngs_modulus_error) {
       undetermined.push_back(parameter.Label() + " (" +
                              TwoDigits(100 * relative) + " %)");
-    } else if (!parameter.is_modulus &&
+    } else if (!parameter.IsStiffness() &&
                error > kLimits.largest_poisson_ratio_error) {
       undetermined.push_back(parameter.Label() + " (" + TwoDigits(error) + ")");
     }
@@ -106,8 +122,9 @@ void JudgeDeterminationOfParameters(Estimate& estimate) {
 void JudgeNearnessOfLimits(Estimate& estimate) {
   std::vector<std::string> near;
   for (const ParameterEstimate& parameter : estimate.parameters) {
-    if (!parameter.is_modulus && parameter.interval &&
-        !(parameter.interval->lower > -1 && parameter.interval->upper < 0.5)) {
+    if (!parameter.IsStiffness() && parameter.interval &&
+        !(parameter.interval->lower > parameter.limits.lower &&
+          parameter.interval->upper < parameter.limits.upper)) {
       near.push_back(parameter.Label());
     }
   }
@@ -130,16 +147,16 @@ void JudgeBiasOfParameters(Estimate& estimate) {
   std::optional<Finding> finding;
   for (Eigen::Index i = 0; i < bias.size(); ++i) {
     const ParameterEstimate& parameter = estimate.parameters[i];
-    const double unusable = parameter.is_modulus
+    const double unusable = parameter.IsStiffness()
                                 ? kLimits.unusable_error
                                 : kLimits.unusable_poisson_ratio_bias;
-    const double notable = parameter.is_modulus
+    const double notable = parameter.IsStiffness()
                                ? kLimits.notable_youngs_modulus_error
                                : kLimits.notable_poisson_ratio_error;
     if (bias(i) > std::max(notable, noise(i)) && bias(i) / unusable > largest) {
       largest = bias(i) / unusable;
       finding = ParameterBias(
-          parameter.Label(), bias(i), parameter.is_modulus,
+          parameter.Label(), bias(i), parameter.IsStiffness(),
           bias(i) > unusable ? Severity::kError : Severity::kWarning);
     }
   }
@@ -156,11 +173,14 @@ void JudgeBiasOfParameters(Estimate& estimate) {
 }  // namespace
 
 void EnterParameters(const Scene& scene, const FreeParameters& free,
-                     const Eigen::VectorXd& variables, Estimate& estimate) {
+                     const Eigen::VectorXd& values, Estimate& estimate) {
   estimate.parameters = ParametersWithoutValues(scene, free.All());
-  const Eigen::VectorXd values = free.ParametersAt(variables);
+  const Eigen::VectorXd units = free.All().UnitsOfErrors(values);
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     estimate.parameters[i].value = values(i);
+    if (free.All().All()[i].law_parameter->beside) {
+      estimate.parameters[i].beside = units(i);
+    }
   }
   estimate.parameter_covariance.setConstant(values.size(), values.size(),
                                             Estimate::kUnknown);
@@ -169,16 +189,19 @@ void EnterParameters(const Scene& scene, const FreeParameters& free,
 void EnterCovariance(const FreeParameters& free,
                      const Eigen::VectorXd& variables,
                      const Eigen::MatrixXd& covariance, Estimate& estimate) {
-  const Eigen::VectorXd slopes = free.Slopes(variables);
   estimate.parameter_covariance(free.All().Free(), free.All().Free()) =
-      slopes.asDiagonal() * covariance * slopes.asDiagonal();
+      Transformed(covariance, free.ParameterJacobian(variables));
 }
 
 ParameterErrors ErrorsOfVariables(const FreeParameters& free,
+                                  const Eigen::VectorXd& variables,
                                   const Eigen::MatrixXd& covariance) {
   ParameterErrors errors =
       ParameterErrors::Constant(free.All().NumParameters(), Estimate::kUnknown);
-  errors(free.All().Free()) = covariance.diagonal().cwiseSqrt();
+  errors(free.All().Free()) =
+      Transformed(covariance, free.RelativeJacobian(variables))
+          .diagonal()
+          .cwiseSqrt();
   return errors;
 }
 

@@ -15,18 +15,19 @@ namespace elastimate {
 std::vector<ParameterEstimate> ParametersWithoutValues(
     const Scene& scene, const MaterialParameters& parameters);
 
-/// Enters the parameters at these variables, without errors.
+/// Enters all parameters with these values, without errors.
 void EnterParameters(const Scene& scene, const FreeParameters& free,
-                     const Eigen::VectorXd& variables, Estimate& estimate);
+                     const Eigen::VectorXd& values, Estimate& estimate);
 
 /// Enters the covariance of the variables as that of the parameters.
 void EnterCovariance(const FreeParameters& free,
                      const Eigen::VectorXd& variables,
                      const Eigen::MatrixXd& covariance, Estimate& estimate);
 
-/// The roots of the diagonal of a covariance of the variables, for the error
-/// budget.
+/// The errors of the parameters by a covariance of the variables at these, in
+/// the units of the error budget.
 ParameterErrors ErrorsOfVariables(const FreeParameters& free,
+                                  const Eigen::VectorXd& variables,
                                   const Eigen::MatrixXd& covariance);
 
 /// For materials other than one isotropic one: enters standard errors and

@@ -69,7 +69,8 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
   const Eigen::VectorXd& variables = fit.minimum->variables;
   evidence.end = fit.minimum->end;
   evidence.search_message = fit.minimum->message;
-  EnterParameters(scene, misfit.Free(), variables, estimate);
+  EnterParameters(scene, misfit.Free(), misfit.Free().ParametersAt(variables),
+                  estimate);
   NoteVariablesOnBounds(misfit.Free(), *fit.minimum, estimate);
   const CorrectedMinimum corrected = DescribeMinimum(
       scene, variables,
@@ -144,17 +145,18 @@ MaterialFit LookAtElements(const Scene& scene, const EstimatorOptions& options,
   return fit;
 }
 
-// The largest change of ln E, or of another modulus, and of nu, from one
+// The largest change of ln E, or of another stiffness, and of nu, from one
 // estimate to another.
 Eigen::Vector2d LargestChange(const Estimate& from, const Estimate& to) {
   Eigen::Vector2d largest = Eigen::Vector2d::Zero();
   for (std::size_t i = 0; i < to.parameters.size(); ++i) {
-    const bool is_modulus = to.parameters[i].is_modulus;
+    const ParameterEstimate& parameter = to.parameters[i];
     const double before = from.parameters[i].value;
-    const double after = to.parameters[i].value;
-    const double change =
-        is_modulus ? std::log(after / before) : after - before;
-    double& value = largest(is_modulus ? 0 : 1);
+    const double after = parameter.value;
+    const double change = parameter.is_modulus
+                              ? std::log(after / before)
+                              : (after - before) / parameter.ErrorUnit();
+    double& value = largest(parameter.IsStiffness() ? 0 : 1);
     value = std::abs(change) > std::abs(value) ? change : value;
   }
   return largest;

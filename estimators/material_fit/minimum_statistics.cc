@@ -13,15 +13,19 @@
 namespace elastimate {
 namespace {
 
-// The largest of moduli and of ratios.
-Eigen::Vector2d LargestOf(const Eigen::VectorXd& change,
+// The largest of stiffnesses and of ratios that a change of the variables
+// makes.
+Eigen::Vector2d LargestOf(const Eigen::VectorXd& change_of_variables,
+                          const Eigen::VectorXd& variables,
                           const Estimate& estimate,
                           const FreeParameters& free) {
+  const Eigen::VectorXd change =
+      free.RelativeJacobian(variables) * change_of_variables;
   Eigen::Vector2d largest = Eigen::Vector2d::Zero();
   for (Eigen::Index i = 0; i < free.Size(); ++i) {
-    const bool is_modulus =
-        estimate.parameters[free.All().Free()[i]].is_modulus;
-    double& value = largest(is_modulus ? 0 : 1);
+    const bool is_stiffness =
+        estimate.parameters[free.All().Free()[i]].IsStiffness();
+    double& value = largest(is_stiffness ? 0 : 1);
     if (std::abs(change(i)) > std::abs(value)) {
       value = change(i);
     }
@@ -145,8 +149,9 @@ Eigen::VectorXd EnterElements(const Scene& scene, const FreeParameters& free,
       corrected(i) = std::min(corrected(i), (variables(i) + *bounds.upper) / 2);
     }
   }
-  EnterParameters(scene, free, corrected, estimate);
-  estimate.error_budget.discretization = ErrorsOfVariables(free, covariance);
+  EnterParameters(scene, free, free.ParametersAt(corrected), estimate);
+  estimate.error_budget.discretization =
+      ErrorsOfVariables(free, corrected, covariance);
   if (IsOneIsotropicMaterial(scene.materials)) {
     EnterCorrection(free, corrected - variables, estimate);
   }
@@ -166,14 +171,14 @@ CorrectedMinimum CorrectMinimum(const Scene& scene, const FreeParameters& free,
       elements.MissedSquareSum(smooth) * inverse;
   covariance += by_elements;
   evidence.likely_element_change =
-      LargestOf(elements.LikelyChange(), estimate, free);
+      LargestOf(elements.LikelyChange(), variables, estimate, free);
   return {EnterElements(scene, free, variables, by_elements,
                         *elements.Correction(), estimate),
           elements.Share()};
 }
 
 // Enters what outliers pull the variables by, which adds to the covariance.
-void AddOutliers(const FreeParameters& free,
+void AddOutliers(const FreeParameters& free, const Eigen::VectorXd& variables,
                  const ObservedDisplacements& observed,
                  const Eigen::VectorXd& residual,
                  const Eigen::MatrixXd& sensitivities,
@@ -182,11 +187,11 @@ void AddOutliers(const FreeParameters& free,
   Eigen::VectorXd change = Eigen::VectorXd::Zero(free.Size());
   if (HasHeavyTails(residual)) {
     change = RobustChange(observed, residual, sensitivities);
-    evidence.outlier_change = LargestOf(change, estimate, free);
+    evidence.outlier_change = LargestOf(change, variables, estimate, free);
   }
   covariance += change * change.transpose();
   estimate.error_budget.outliers =
-      ErrorsOfVariables(free, change.cwiseAbs2().asDiagonal());
+      ErrorsOfVariables(free, variables, change * change.transpose());
 }
 
 }  // namespace
@@ -246,11 +251,11 @@ CorrectedMinimum DescribeMinimum(const Scene& scene,
                                inverse, covariance, evidence, estimate);
   }
   estimate.error_budget.noise =
-      ErrorsOfVariables(free, variance.variance * inverse);
+      ErrorsOfVariables(free, variables, variance.variance * inverse);
   estimate.error_budget.model =
-      ErrorsOfVariables(free, variance.variance * by_model);
-  AddOutliers(free, observed, residual, of_rows, covariance, evidence,
-              estimate);
+      ErrorsOfVariables(free, variables, variance.variance * by_model);
+  AddOutliers(free, variables, observed, residual, of_rows, covariance,
+              evidence, estimate);
   if (!by_correlation.isZero(0)) {
     evidence.smooth_residual_error =
         std::sqrt(covariance.diagonal().maxCoeff());

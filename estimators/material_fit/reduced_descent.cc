@@ -139,7 +139,7 @@ void ReducedDescent::AddPole(const Eigen::VectorXd& x,
 
 std::vector<Bounds> ReducedDescent::TrustBounds() const {
   // A modulus may change by a factor of ten, a ratio may go nine tenths of the
-  // way to an end of the range of its law, or all of it from nearby.
+  // way to an end of its range, or all of it from nearby.
   constexpr double kLargestChange = 2.3;
   constexpr double kLargestPart = 0.9;
   constexpr double kNearby = 0.02;
@@ -155,10 +155,11 @@ std::vector<Bounds> ReducedDescent::TrustBounds() const {
     Bounds& own = bounds[i];
     double lower = pole_(i) - kLargestChange;
     double upper = pole_(i) + kLargestChange;
-    if (!parameter.is_modulus) {
-      const double range = parameter.upper - parameter.lower;
-      lower = towards(pole_(i), parameter.lower, range);
-      upper = towards(pole_(i), parameter.upper, range);
+    // Logarithms and factors of a stiffness have no range.
+    if (own.lower && own.upper && !parameter.is_modulus) {
+      const double range = *own.upper - *own.lower;
+      lower = towards(pole_(i), *own.lower, range);
+      upper = towards(pole_(i), *own.upper, range);
     }
     own.lower = std::max(own.lower.value_or(lower), lower);
     own.upper = std::min(own.upper.value_or(upper), upper);

@@ -57,17 +57,13 @@ double RootMeanSquare(const ObservedDisplacements& plain,
                        double(count));
 }
 
-// dtheta / d (ln p, or p) of the free parameters p.
+// dtheta / dp of the free parameters p, these in the units of their errors.
 Eigen::MatrixXd Directions(const MaterialParameters& of_materials,
                            const Eigen::VectorXd& parameters) {
   Eigen::MatrixXd directions =
       of_materials.ModuliJacobian(parameters)(Eigen::all, of_materials.Free());
-  for (Eigen::Index i = 0; i < directions.cols(); ++i) {
-    const Eigen::Index place = of_materials.Free()[i];
-    if (of_materials.All()[place].law_parameter->is_modulus) {
-      directions.col(i) *= parameters(place);
-    }
-  }
+  const Eigen::VectorXd units = of_materials.UnitsOfErrors(parameters);
+  directions *= units(of_materials.Free()).asDiagonal();
   return directions;
 }
 

@@ -142,7 +142,7 @@ bool LoadPlan::AreDetermined(const ExpectedErrors& errors) const {
   const std::vector<ParameterEstimate> free = Free();
   const Eigen::VectorXd of_parameters = errors.OfParameters();
   for (std::size_t i = 0; i < free.size(); ++i) {
-    const double largest = free[i].is_modulus
+    const double largest = free[i].IsStiffness()
                                ? kLimits.largest_youngs_modulus_error
                                : kLimits.largest_poisson_ratio_error;
     if (!(of_parameters(Eigen::Index(i)) <= largest)) {
@@ -159,9 +159,14 @@ LoadPlan PlanLoads(const Scene& scene,
   ValidateScene(scene);
   CheckPlan(scene, candidates, parameters, relative_noise);
   LoadPlan plan;
-  plan.parameters = ParametersWithoutValues(scene, ParametersOf(scene));
+  const MaterialParameters of_scene = ParametersOf(scene);
+  const Eigen::VectorXd units = of_scene.UnitsOfErrors(parameters);
+  plan.parameters = ParametersWithoutValues(scene, of_scene);
   for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
     plan.parameters[i].value = parameters(Eigen::Index(i));
+    if (of_scene.All()[i].law_parameter->beside) {
+      plan.parameters[i].beside = units(Eigen::Index(i));
+    }
   }
   const std::size_t num_cases = scene.load_cases.size();
   const std::vector<CaseInformation> cases =

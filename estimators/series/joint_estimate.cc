@@ -92,9 +92,10 @@ std::optional<UsedFrame> Use(const FrameEstimate& frame, std::size_t number,
     used.values(j) =
         parameter.is_modulus ? std::log(parameter.value) : parameter.value;
     slopes(j) = parameter.is_modulus ? 1 / parameter.value : 1;
-    by_loads(j) = parameter.is_modulus && load_error.is_in_frames
-                      ? load_error.relative
-                      : 0;
+    if (load_error.is_in_frames && parameter.IsStiffness()) {
+      by_loads(j) =
+          load_error.relative * (parameter.beside ? parameter.value : 1);
+    }
   }
   used.covariance = slopes.asDiagonal() *
                     estimate.parameter_covariance(free, free) *
@@ -291,7 +292,9 @@ void EnterMean(const Mean& mean, const Eigen::VectorXi& free, double load_error,
     parameter.value =
         parameter.is_modulus ? std::exp(mean.values(j)) : mean.values(j);
     slopes(j) = parameter.is_modulus ? parameter.value : 1;
-    of_loads(j) = parameter.is_modulus ? load_error : 0;
+    of_loads(j) = !parameter.IsStiffness() ? 0
+                  : parameter.beside       ? load_error * parameter.value
+                                           : load_error;
   }
   const Eigen::MatrixXd noise = mean.of_noise + of_loads * of_loads.transpose();
   const auto num_parameters = Eigen::Index(estimate.parameters.size());

@@ -1,5 +1,6 @@
 #include "elastimate/io/report/report.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <nlohmann/json.hpp>
@@ -116,10 +117,18 @@ Json MaterialJson(const Scene& scene) {
   for (const Material& material : scene.materials) {
     regions.push_back(RegionsJson(material.regions));
   }
-  // All of one law.
+  // One law, or that of each material.
+  Json laws = Json::array();
+  for (const Material& material : scene.materials) {
+    laws.push_back(material.law);
+  }
+  const bool is_one_law =
+      std::all_of(laws.begin(), laws.end(),
+                  [&laws](const Json& law) { return law == laws[0]; });
   return {
-      {"law",
-       scene.materials.empty() ? Material().law : scene.materials[0].law},
+      {"law", laws.empty() ? Json(Material().law)
+              : is_one_law ? laws[0]
+                           : laws},
       {"regions", scene.materials.empty() ? Json::array({nullptr}) : regions}};
 }
 
@@ -139,9 +148,9 @@ Json ParametersJson(const Estimate& estimate) {
   return parameters;
 }
 
-Json CovarianceJson(const Estimate& estimate) {
+Json MatrixJson(const Eigen::MatrixXd& matrix) {
   Json rows = Json::array();
-  for (const auto& row : estimate.parameter_covariance.rowwise()) {
+  for (const auto& row : matrix.rowwise()) {
     Json values = Json::array();
     for (const double value : row) {
       values.push_back(OrNull(value));
@@ -149,6 +158,18 @@ Json CovarianceJson(const Estimate& estimate) {
     rows.push_back(values);
   }
   return rows;
+}
+
+// Of each material that is not isotropic.
+Json StiffnessJson(const Estimate& estimate) {
+  Json stiffnesses = Json::array();
+  for (const StiffnessEstimate& stiffness : estimate.stiffnesses) {
+    stiffnesses.push_back(
+        {{"region", RegionsJson(stiffness.regions)},
+         {"value", MatrixJson(stiffness.value)},
+         {"standard_error", MatrixJson(stiffness.standard_error)}});
+  }
+  return stiffnesses;
 }
 
 // By name for one isotropic material, else in the order of the parameters.
@@ -320,7 +341,8 @@ std::string JsonReport(const Estimate& estimate, const Scene& scene,
         {"displacement_relative", OrNull(estimate.displacement_residual)}}},
       {"material", MaterialJson(scene)},
       {"parameters", ParametersJson(estimate)},
-      {"covariance", CovarianceJson(estimate)},
+      {"covariance", MatrixJson(estimate.parameter_covariance)},
+      {"stiffness", StiffnessJson(estimate)},
       {"error_budget", BudgetJson(scene, estimate.error_budget)},
       {"findings", FindingsJson(estimate.findings)},
       {"diagnostics", DiagnosticsJson(estimate)},

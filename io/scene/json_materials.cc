@@ -42,8 +42,50 @@ void ReadWhatIsKnown(const JsonValue& value, const Law& law,
   }
 }
 
-Material ReadMaterial(const JsonValue& value) {
-  value.CheckKeys({"law", "region", "known", "bounds"});
+// A direction, or the cell array of one for each element.
+Eigen::MatrixXd ReadAxis(const JsonValue& value, const MeshFile& mesh) {
+  const int dimension = mesh.Dimension();
+  Eigen::MatrixXd axis;
+  if (value.IsString()) {
+    const std::string name = value.String();
+    const Eigen::MatrixXd* const array = FindArray(mesh.element_arrays, name);
+    if (array == nullptr) {
+      value.Fail("is \"" + Printable(name) +
+                 "\", but the mesh has no such cell array; name one, or give a "
+                 "direction");
+    }
+    if (array->rows() != 3 && array->rows() != dimension) {
+      value.Fail("is the cell array \"" + Printable(name) + "\" of " +
+                 std::to_string(array->rows()) + " components; give it 3");
+    }
+    axis = *array;
+  } else {
+    axis = value.Vector(value.ListSize() == 2 && dimension == 2 ? 2 : 3);
+  }
+  if (!IsInPlane(axis, dimension)) {
+    value.Fail("is out of the plane of the mesh; make its component z 0");
+  }
+  return axis.topRows(dimension);
+}
+
+std::vector<Eigen::MatrixXd> ReadAxes(const JsonValue& value,
+                                      const MeshFile& mesh) {
+  if (value.Has("axis") && value.Has("axes")) {
+    value.At("axes").Fail("is given beside \"axis\"; give one of them");
+  }
+  std::vector<Eigen::MatrixXd> axes;
+  if (value.Has("axis")) {
+    axes.push_back(ReadAxis(value.At("axis"), mesh));
+  } else if (value.Has("axes")) {
+    for (const JsonValue& axis : value.At("axes").Items()) {
+      axes.push_back(ReadAxis(axis, mesh));
+    }
+  }
+  return axes;
+}
+
+Material ReadMaterial(const JsonValue& value, const MeshFile& mesh) {
+  value.CheckKeys({"law", "region", "known", "bounds", "axis", "axes"});
   Material material;
   if (value.Has("law")) {
     material.law = value.At("law").String();
@@ -67,16 +109,23 @@ Material ReadMaterial(const JsonValue& value) {
     }
   }
   ReadWhatIsKnown(value, *law, material);
+  material.axes = ReadAxes(value, mesh);
   return material;
 }
 
 }  // namespace
 
-std::vector<Material> ReadMaterials(const JsonValue& document) {
+bool IsInPlane(const Eigen::MatrixXd& axis, int dimension) {
+  return axis.rows() <= dimension ||
+         axis.bottomRows(axis.rows() - dimension).isZero(0);
+}
+
+std::vector<Material> ReadMaterials(const JsonValue& document,
+                                    const MeshFile& mesh) {
   std::vector<Material> materials;
   if (document.Has("materials")) {
     for (const JsonValue& value : document.At("materials").Items()) {
-      materials.push_back(ReadMaterial(value));
+      materials.push_back(ReadMaterial(value, mesh));
     }
     if (materials.empty()) {
       document.At("materials").Fail("is empty; name one, or leave it out");

@@ -140,7 +140,7 @@ FileScene ReadJsonScene(const std::filesystem::path& path,
   const MeshFile& mesh = file_scene.mesh;
   file_scene.scene.mesh =
       SceneMesh(mesh, SectionOf(mesh, choice), mesh.elements);
-  file_scene.scene.materials = ReadMaterials(document);
+  file_scene.scene.materials = ReadMaterials(document, mesh);
   const std::vector<JsonValue> cases = document.At("cases").Items();
   if (cases.empty()) {
     document.At("cases").Fail("is empty; give at least one load case");

@@ -17,6 +17,7 @@
 #include "elastimate/io/mesh/mesh_file.h"
 #include "elastimate/io/scene/array_scene.h"
 #include "elastimate/io/scene/file_scene.h"
+#include "elastimate/io/scene/json_materials.h"
 #include "elastimate/io/scene/json_scene.h"
 #include "elastimate/io/scene/mesh_reader.h"
 #include "elastimate/io/text/input_error.h"
@@ -265,9 +266,37 @@ void ChooseMaterials(const std::filesystem::path& path, RegionChoice choice,
   }
 }
 
+/// Gives all materials of the scene the law and the axes that were chosen.
+void ChooseLaw(const std::filesystem::path& path, const LawChoice& choice,
+               Scene& scene) {
+  if (choice.law.empty() && choice.axes.empty()) {
+    return;
+  }
+  if (scene.materials.empty()) {
+    scene.materials.emplace_back();
+  }
+  const int dimension = scene.mesh.Dimension();
+  for (Material& material : scene.materials) {
+    material.law = choice.law.empty() ? material.law : choice.law;
+    if (!choice.axes.empty()) {
+      material.axes.clear();
+    }
+    for (const Eigen::VectorXd& axis : choice.axes) {
+      if (!IsInPlane(axis, dimension)) {
+        ThrowInputError(path,
+                        "the axis that is chosen is out of the plane of the "
+                        "mesh; make its component z 0");
+      }
+      material.axes.emplace_back(
+          axis.head(std::min<Eigen::Index>(axis.size(), dimension)));
+    }
+  }
+}
+
 /// The scene without the nodes that no element uses, valid, and their order in
 /// the file.
 Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
+                  RegionChoice regions, const LawChoice& law,
                   SceneReading& reading, std::vector<int>& file_order) {
   std::vector<std::string>& notices = reading.notices;
   const MeshFile& mesh = file_scene.mesh;
@@ -298,6 +327,8 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
   if (file_scene.frames) {
     reading.frames = nodes.Filter(*file_scene.frames);
   }
+  ChooseMaterials(mesh.path, regions, scene);
+  ChooseLaw(path, law, scene);
   try {
     ValidateScene(scene);
   } catch (const std::invalid_argument& error) {
@@ -389,7 +420,7 @@ FileScene ReadFileScene(const std::filesystem::path& path,
 
 SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
                        Measurement measurement, const SectionChoice& section,
-                       RegionChoice regions) {
+                       RegionChoice regions, const LawChoice& law) {
   if (paths.empty()) {
     throw std::invalid_argument("no scene file is given; name one");
   }
@@ -400,7 +431,8 @@ SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
     FileScene file_scene = ReadFileScene(path, measurement, section);
     const std::filesystem::path mesh_path = file_scene.mesh.path;
     std::vector<int> file_order;
-    Scene scene = FinishScene(path, std::move(file_scene), reading, file_order);
+    Scene scene = FinishScene(path, std::move(file_scene), regions, law,
+                              reading, file_order);
     if (reading.frames && paths.size() > 1) {
       ThrowInputError(path,
                       "a scene of frames stands alone; leave the other files "
@@ -408,7 +440,6 @@ SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
     }
     std::vector<LoadCase> load_cases = std::move(scene.load_cases);
     if (&path == &paths.front()) {
-      ChooseMaterials(mesh_path, regions, scene);
       NoteMesh(mesh_path, scene, reading.notices);
       scene.load_cases.clear();
       reading.scene = std::move(scene);

@@ -1,6 +1,7 @@
 #ifndef ELASTIMATE_IO_SCENE_SCENE_READER_H_
 #define ELASTIMATE_IO_SCENE_SCENE_READER_H_
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -26,6 +27,13 @@ enum class RegionChoice {
   kAsGiven,  ///< Those of the scene.json, else one isotropic one.
   kOne,      ///< One isotropic one, whatever the scene says.
   kEach,     ///< An isotropic one for each region id.
+};
+
+/// The law of all materials of a scene.
+struct LawChoice {
+  std::string law;  ///< Empty: of each as it is given, else isotropic.
+  /// Of 3 components, or 2 in the plane; empty: as they are given.
+  std::vector<Eigen::VectorXd> axes;
 };
 
 /// A scene as read, and what the reader has to say about it.
@@ -76,7 +84,8 @@ struct SceneReading {
 SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
                        Measurement measurement,
                        const SectionChoice& section = {},
-                       RegionChoice regions = RegionChoice::kAsGiven);
+                       RegionChoice regions = RegionChoice::kAsGiven,
+                       const LawChoice& law = {});
 
 }  // namespace elastimate
 

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 
 #include "elastimate/core/materials/isotropic_law.h"
@@ -202,7 +203,8 @@ TEST_P(LawConformance, ChartHasItsJacobian) {
 TEST_P(LawConformance, ScalesWithTheUnitOfPressure) {
   Eigen::VectorXd scaled = Parameters();
   for (Eigen::Index i = 0; i < scaled.size(); ++i) {
-    scaled(i) *= law_.Parameters()[i].is_modulus ? 1e3 : 1;
+    const LawParameter& parameter = law_.Parameters()[i];
+    scaled(i) *= parameter.is_modulus || parameter.beside ? 1e3 : 1;
   }
   const Eigen::VectorXd expected = 1e3 * Moduli();
   EXPECT_LT((law_.Moduli(scaled, model_) - expected).norm(),
@@ -266,8 +268,23 @@ TEST(WrongShear, IsFarFromItsQuadraticEnergies) {
 
 TEST(Laws, AreFoundByTheirNames) {
   for (const Law* const law : Laws()) {
-    EXPECT_EQ(FindLaw(law->Name()), law);
+    for (const SectionModel model :
+         {SectionModel::kSolid, SectionModel::kPlaneStrain,
+          SectionModel::kPlaneStress}) {
+      if (law->Takes(model)) {
+        EXPECT_EQ(FindLaw(law->Name(), model), law);
+      }
+    }
+    // The first of a name has all parameters that the others have.
+    std::set<std::string_view> names;
+    for (const LawParameter& parameter : FindLaw(law->Name())->Parameters()) {
+      names.insert(parameter.name);
+    }
+    for (const LawParameter& parameter : law->Parameters()) {
+      EXPECT_EQ(names.count(parameter.name), 1) << parameter.name;
+    }
   }
+  EXPECT_EQ(FindLaw("anisotropic", SectionModel::kPlaneStress), nullptr);
   EXPECT_EQ(FindLaw("rubber"), nullptr);
 }
 

@@ -32,7 +32,8 @@ TEST(Materials, OfEachRegionAreInOrder) {
 TEST(Materials, ThatAreWrongAreNamed) {
   const Mesh mesh = TwoRegionMesh();
   const std::vector<std::pair<std::vector<Material>, std::string>> wrong = {
-      {{{"rubber", {}, {}, {}}}, "the laws are isotropic"},
+      {{{"rubber", {}, {}, {}}},
+       "the laws are isotropic, transversely_isotropic"},
       {{{"isotropic", {3}, {}, {}}}, "is in region 7"},
       {{{"isotropic", {3, 7}, {}, {}}, {"isotropic", {7}, {}, {}}},
        "region 7 is given to material 1 and to material 2"},

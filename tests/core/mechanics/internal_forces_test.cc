@@ -73,8 +73,8 @@ TEST_P(InternalForcesOfKinds, OfAnyLawAreThoseOfTheIsotropicPass) {
        law.Tangent(Eigen::Vector2d(0, 1), rest, mesh.section.model)}};
   std::vector<Eigen::MatrixXd> products(
       2, Eigen::MatrixXd::Zero(u_.rows(), u_.cols()));
-  AddLawProducts(mesh, std::vector<int>(mesh.NumElements(), 0), tangents, u_,
-                 products);
+  AddLawProducts(mesh, std::vector<int>(mesh.NumElements(), 0),
+                 MaterialFrames({}, mesh.Dimension()), tangents, u_, products);
   const StiffnessProducts expected = MultiplyStiffnessBasis(mesh, u_);
   EXPECT_LT((products[0] - expected.h).norm(), 1e-12 * expected.h.norm());
   EXPECT_LT((products[1] - expected.j).norm(), 1e-12 * expected.j.norm());

@@ -1,0 +1,36 @@
+#ifndef ELASTIMATE_CORE_MATERIALS_LAW_PARAMETERS_H_
+#define ELASTIMATE_CORE_MATERIALS_LAW_PARAMETERS_H_
+
+#include <limits>
+#include <string_view>
+
+#include "elastimate/core/materials/law.h"
+
+namespace elastimate {
+
+/// A modulus of any positive value.
+inline LawParameter Modulus(std::string_view name, std::string_view symbol,
+                            double typical) {
+  return {name,
+          symbol,
+          true,
+          std::numeric_limits<double>::min(),
+          std::numeric_limits<double>::max(),
+          typical};
+}
+
+/// Poisson's ratio of one direction to another in a material that is not alike
+/// in all directions: its square is below the ratio of the two moduli, whatever
+/// that is.
+inline LawParameter DirectedPoissonRatio(std::string_view name,
+                                         std::string_view symbol) {
+  constexpr double kLargest = 100;
+  return {name, symbol, false, -kLargest, kLargest, 0.3};
+}
+
+/// The shear modulus of an isotropic material of E = 1, nu = 0.3.
+inline constexpr double kTypicalShearModulus = 1 / 2.6;
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_MATERIALS_LAW_PARAMETERS_H_

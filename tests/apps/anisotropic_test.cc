@@ -1,0 +1,173 @@
+// Materials that are not alike in all directions, by the command line.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "elastimate/io/examples/example_scenes.h"
+#include "elastimate/io/vtk/vtu_writer.h"
+#include "tests/program.h"
+
+namespace elastimate {
+namespace {
+
+using Json = nlohmann::json;
+
+Json ParametersFile(const std::vector<std::pair<std::string, double>>& values) {
+  Json list = Json::array();
+  for (const auto& [name, value] : values) {
+    list.push_back({{"name", name}, {"value", value}});
+  }
+  return {{"parameters", list}};
+}
+
+class AnisotropicCommand : public testing::ProgramTest {
+ protected:
+  void SetUp() override {
+    testing::ProgramTest::SetUp();
+    testing::WriteText(folder_ / "fibres.json",
+                       ParametersFile({{"youngs_modulus_L", 9e4},
+                                       {"youngs_modulus_T", 3e4},
+                                       {"poisson_ratio_LT", 0.32},
+                                       {"poisson_ratio_TT", 0.4},
+                                       {"shear_modulus_LT", 1.5e4}})
+                           .dump());
+  }
+
+  void ExpectFibres(const Json& report) const {
+    EXPECT_EQ(report["status"], "ok") << report["message"];
+    EXPECT_EQ(report["material"]["law"], "transversely_isotropic");
+    const std::vector<double> truth = {9e4, 3e4, 0.32, 0.4, 1.5e4};
+    ASSERT_EQ(report["parameters"].size(), truth.size());
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      EXPECT_NEAR(report["parameters"][i]["value"].get<double>() / truth[i], 1,
+                  1e-6);
+      EXPECT_TRUE(report["parameters"][i]["standard_error"].is_number());
+    }
+  }
+};
+
+TEST_F(AnisotropicCommand, SimulatesAndEstimatesFibres) {
+  Succeed("generate cuboid --out=block.vtu");
+  Succeed(
+      "simulate block.vtu --material=transversely_isotropic --axis=1,1,0 "
+      "--parameters=fibres.json --out=m.vtu");
+  for (const std::string estimator :
+       {"closed-form", "bounded", "virtual-fields", "iterative-fe", "auto"}) {
+    const Json report =
+        Succeed(
+            "estimate m.vtu --material=transversely_isotropic --axis=-2,-2,0 "
+            "--json=- --estimator=" +
+            estimator)
+            .Json();
+    ExpectFibres(report);
+    ASSERT_EQ(report["stiffness"].size(), 1);
+    const Json& stiffness = report["stiffness"][0];
+    EXPECT_TRUE(stiffness["region"].is_null());
+    // G_LT along the axis, and G_TT across it.
+    EXPECT_NEAR(stiffness["value"][5][5].get<double>(), 1.5e4, 0.1);
+    EXPECT_NEAR(stiffness["value"][3][3].get<double>(), 3e4 / 2.8, 0.1);
+    EXPECT_TRUE(stiffness["standard_error"][0][0].is_number());
+  }
+}
+
+// A scene.json with another direction in each element.
+TEST_F(AnisotropicCommand, TakesAnAxisFromACellArray) {
+  const Scene scene = CuboidScene({});
+  Eigen::MatrixXd fibre(3, scene.mesh.NumElements());
+  for (Eigen::Index e = 0; e < fibre.cols(); ++e) {
+    const double angle = scene.mesh.nodes(0, scene.mesh.elements(0, e));
+    fibre.col(e) << 2 * std::cos(angle), 2 * std::sin(angle), 0;
+  }
+  Fields fields = SceneFields(scene);
+  fields.cell.push_back({"fibre", fibre});
+  WriteVtu(folder_ / "block.vtu", scene.mesh, fields);
+  const auto scene_with = [&](const std::string& mesh,
+                              const std::string& displacement) {
+    return R"({"mesh": ")" + mesh +
+           R"(", "materials": [{"law": "transversely_isotropic",
+              "axis": "fibre"}], "supports": [{"nodes": {"array": "fixed"}}],
+              "cases": [{)" +
+           displacement +
+           R"("loads": [{"type": "nodal_force", "nodes": {"array": "free"},
+              "value": [1, 2, -30]}]}]})";
+  };
+  fields.point.push_back(
+      {"free", Eigen::RowVectorXd::Ones(scene.mesh.NumNodes())});
+  WriteVtu(folder_ / "block.vtu", scene.mesh, fields);
+  testing::WriteText(folder_ / "scene.json", scene_with("block.vtu", ""));
+  Succeed("simulate scene.json --parameters=fibres.json --out=m.csv");
+  testing::WriteText(
+      folder_ / "measured.json",
+      scene_with("block.vtu", R"("displacement": {"points": "m.csv"}, )"));
+  ExpectFibres(
+      Succeed("estimate measured.json --estimator=iterative-fe --json=-")
+          .Json());
+}
+
+TEST_F(AnisotropicCommand, EstimatesALamina) {
+  testing::WriteText(folder_ / "lamina.json",
+                     ParametersFile({{"youngs_modulus_1", 1.4e5},
+                                     {"youngs_modulus_2", 1e4},
+                                     {"poisson_ratio_12", 0.3},
+                                     {"shear_modulus_12", 5e3}})
+                         .dump());
+  Succeed("generate plate --cells=10 --out=plate.vtu");
+  Succeed(
+      "simulate plate.vtu --material=orthotropic --axis=1,0.5 "
+      "--parameters=lamina.json --out=m.vtu");
+  const Json report =
+      Succeed(
+          "estimate m.vtu --material=orthotropic --axis=1,0.5,0 "
+          "--estimator=iterative-fe --json=-")
+          .Json();
+  EXPECT_EQ(report["status"], "ok") << report["message"];
+  EXPECT_NEAR(report["parameters"][0]["value"].get<double>(), 1.4e5, 1);
+  EXPECT_NEAR(report["parameters"][2]["value"].get<double>(), 0.3, 1e-5);
+  EXPECT_NEAR(report["parameters"][3]["value"].get<double>(), 5e3, 0.1);
+  Refuse("estimate m.vtu --material=orthotropic --axis=1,0,1",
+         "out of the plane");
+}
+
+TEST_F(AnisotropicCommand, RefusesWhatIsWrong) {
+  Succeed("generate cuboid --out=block.vtu");
+  for (const auto& [flags, says] :
+       std::vector<std::pair<std::string, std::string>>{
+           {"--material=wood", "the laws are isotropic, transversely"},
+           {"--material=orthotropic", "has no axes"},
+           {"--material=orthotropic --axis=1,0,0", "its law takes 2"},
+           {"--material=orthotropic --axis=1,0,0,1,1,0", "not orthogonal"},
+           {"--material=transversely_isotropic --axis=0,0,0", "length 0"},
+           {"--axis=1,0,0", "alike in all directions"},
+           {"--material=transversely_isotropic --axis=1", "it needs three"},
+           {"--material=transversely_isotropic --axis=1,0,0",
+            "give --parameters=FILE.json"}}) {
+    Refuse("simulate block.vtu --youngs=1 --nu=0 --out=a.vtu " + flags, says);
+  }
+  for (const auto& [material, says] :
+       std::vector<std::pair<std::string, std::string>>{
+           {R"({"law": "transversely_isotropic", "axis": "fibre"})",
+            "materials[0].axis is \"fibre\", but the mesh has no such cell"},
+           {R"({"law": "transversely_isotropic", "axis": [1, 0]})",
+            "materials[0].axis"},
+           {R"({"law": "transversely_isotropic", "axis": [1, 0, 0],
+                "axes": [[1, 0, 0]]})",
+            "materials[0].axes is given beside"},
+           {R"({"law": "orthotropic", "axis": [1, 0, 0],
+                "known": {"youngs_modulus": 3}})",
+            "materials[0].known"}}) {
+    testing::WriteText(
+        folder_ / "scene.json",
+        R"({"mesh": "block.vtu", "supports": [{"nodes": {"ids": [0, 1, 2, 3]}}],
+            "cases": [{"loads": []}], "materials": [)" +
+            material + "]}");
+    Refuse("simulate scene.json --youngs=1 --nu=0 --out=a.vtu", says);
+  }
+}
+
+}  // namespace
+}  // namespace elastimate
