@@ -24,6 +24,7 @@
 #include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/materials/laws.h"
 #include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/estimators/material_fit/merge.h"
 #include "elastimate/estimators/registry.h"
 #include "elastimate/estimators/series/joint_estimate.h"
 #include "elastimate/io/report/report.h"
@@ -184,23 +185,68 @@ int RunSeries(const Estimator& estimator, SceneReading reading,
   return joint.IsUsable() ? 0 : 1;
 }
 
+bool MergesRegions() { return FLAGS_regions == "merge"; }
+
+// Merging compares fits, and is of one measurement.
+void CheckMerging(const SceneReading& reading) {
+  if (FLAGS_estimator != "iterative-fe" && FLAGS_estimator != "auto") {
+    throw std::invalid_argument(
+        AsGiven("regions") +
+        " compares fits of displacements; use it with --estimator=iterative-fe "
+        "or auto");
+  }
+  if (reading.frames) {
+    throw std::invalid_argument(
+        AsGiven("regions") +
+        " is of one measurement, and the scene has frames; leave it out, or "
+        "make a scene of one frame");
+  }
+}
+
+// Gives both scenes the materials that the measurement tells apart.
+MaterialMerge MergeRegions(const Estimator& estimator,
+                           const EstimatorOptions& options,
+                           const std::string& sources, Scene& modelled,
+                           Scene& scene, std::vector<std::string>& notices) {
+  const std::string why_not = estimator.WhyUnsupported(modelled, options);
+  if (!why_not.empty()) {
+    throw std::invalid_argument(sources + ": " + why_not);
+  }
+  const MaterialMerge merge = MergeMaterials(modelled, options);
+  if (!merge.why_not.empty()) {
+    notices.push_back(sources + ": the regions could not be compared (" +
+                      merge.why_not + "), so that none were merged");
+  }
+  modelled.materials = merge.materials;
+  scene.materials = merge.materials;
+  return merge;
+}
+
 // One measurement.
 int RunOne(const std::vector<std::string>& arguments,
            const Estimator& estimator, SceneReading reading,
            EstimatorOptions options, double read_seconds,
            Clock::time_point start, std::optional<Progress>& progress) {
-  const Scene& scene = reading.scene;
-  const std::optional<Scene> quadratic =
+  Scene& scene = reading.scene;
+  std::optional<Scene> quadratic =
       QuadraticSceneIfAsked(Sources(arguments), scene, reading.notices);
-  const Scene& modelled = quadratic ? *quadratic : scene;
+  Scene& modelled = quadratic ? *quadratic : scene;
 
   progress->Show(FLAGS_estimator);
   options.on_factorization = [&progress](int count) {
     progress->Show(FLAGS_estimator + ": factorisation " +
                    std::to_string(count));
   };
-  const Estimate estimate =
+  std::optional<MaterialMerge> merge;
+  if (MergesRegions()) {
+    merge = MergeRegions(estimator, options, Sources(arguments), modelled,
+                         scene, reading.notices);
+  }
+  Estimate estimate =
       RunEstimator(estimator, scene, modelled, options, Sources(arguments));
+  if (merge) {
+    EnterMerge(*merge, estimate);
+  }
   // An estimator may have raised the order itself.
   const std::optional<Scene> raised =
       estimate.element_order > modelled.mesh.Order()
@@ -240,6 +286,9 @@ int RunEstimate(const std::vector<std::string>& arguments) {
   std::optional<Progress> progress("reading " + Sources(arguments));
   SceneReading reading = Read(arguments);
   GiveKnownPoissonRatio(reading.scene, options);
+  if (MergesRegions()) {
+    CheckMerging(reading);
+  }
   const double read_seconds = SecondsSince(start);
   if (reading.frames) {
     return RunSeries(*estimator, std::move(reading), options, read_seconds,

@@ -59,7 +59,8 @@ DEFINE_double(thickness, 0,
 DEFINE_string(regions, "one",
               "materials of the regions of a mesh: one for all of them, or one "
               "each; overrides those of the scene (without this flag those, "
-              "else one)");
+              "else one).  merge: as many as the measurement tells apart, with "
+              "iterative-fe and auto");
 DEFINE_string(material, "isotropic",
               "law of all materials; 'elastimate materials' lists them; "
               "overrides those of the scene");

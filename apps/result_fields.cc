@@ -73,6 +73,30 @@ class FieldCollector {
     }
   }
 
+  // Cell arrays of what is left of the measurement in the material of each
+  // element.
+  void AddResiduals(const Scene& scene, const Estimate& estimate) {
+    const std::vector<int> material_of =
+        MaterialOfElements(scene.materials, scene.mesh);
+    const std::size_t num_materials = scene.materials.size();
+    if (estimate.materials.size() != num_materials) {
+      return;
+    }
+    Eigen::VectorXd chi_square(num_materials);
+    Eigen::VectorXd correlation(num_materials);
+    for (std::size_t i = 0; i < num_materials; ++i) {
+      const MaterialEstimate& material = estimate.materials[i];
+      chi_square(Eigen::Index(i)) =
+          material.residual_chi_square.value_or(Estimate::kUnknown);
+      correlation(Eigen::Index(i)) =
+          material.residual_correlation.value_or(Estimate::kUnknown);
+    }
+    fields_.cell.push_back(
+        {"residual_chi_square", chi_square(material_of).transpose()});
+    fields_.cell.push_back(
+        {"residual_correlation", correlation(material_of).transpose()});
+  }
+
   // A cell array of each parameter, of the material of each element.
   void AddParameters(const Scene& scene, const Estimate& estimate) {
     const std::vector<int> material_of =
@@ -133,6 +157,7 @@ Fields ResultFields(const Scene& scene, const Scene& modelled,
   FieldCollector collector(scene.mesh, fields);
   if (!IsOneIsotropicMaterial(scene.materials)) {
     collector.AddParameters(scene, estimate);
+    collector.AddResiduals(scene, estimate);
   }
   const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
   if (!WhyNotHeld(scene).empty()) {

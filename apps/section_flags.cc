@@ -34,8 +34,12 @@ RegionChoice RegionsFromFlag() {
   if (FLAGS_regions == "each") {
     return RegionChoice::kEach;
   }
+  if (FLAGS_regions == "merge") {
+    return RegionChoice::kGivenOrEach;
+  }
   if (FLAGS_regions != "one") {
-    throw std::invalid_argument(AsGiven("regions") + "; it is one or each");
+    throw std::invalid_argument(AsGiven("regions") +
+                                "; it is one, each or merge");
   }
   return RegionChoice::kOne;
 }

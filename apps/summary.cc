@@ -23,7 +23,9 @@ std::string Number(double value, int digits) {
 
 void Line(const std::string& name, const std::string& value,
           std::ostringstream& text) {
-  text << std::left << std::setw(22) << name << value << "\n";
+  constexpr std::size_t kWidth = 22;
+  text << std::left << std::setw(int(kWidth)) << name
+       << (name.size() < kWidth ? "" : " ") << value << "\n";
 }
 
 std::string WithError(double value, const std::optional<double>& error) {
@@ -128,6 +130,28 @@ void AddElasticity(const Estimate& estimate, std::ostringstream& text) {
   }
 }
 
+// "determined, 12 % of the strain energy, residuals of 1.1 of the noise".
+std::string Verdict(const MaterialEstimate& material) {
+  std::string verdict;
+  if (material.determination) {
+    verdict =
+        std::string(DeterminationName(*material.determination)) +
+        (material.determination == Determination::kDetermined ? ""
+                                                              : " determined");
+  }
+  const auto add = [&verdict](const std::string& part) {
+    verdict += (verdict.empty() ? "" : ", ") + part;
+  };
+  if (material.energy_share) {
+    add(Number(100 * *material.energy_share, 2) + " % of the strain energy");
+  }
+  if (material.residual_chi_square) {
+    add("residuals of " + Number(std::sqrt(*material.residual_chi_square), 2) +
+        " of the noise");
+  }
+  return verdict;
+}
+
 void AddParameters(const Estimate& estimate, std::ostringstream& text) {
   for (const ParameterEstimate& parameter : estimate.parameters) {
     Line(parameter.Label(),
@@ -135,6 +159,16 @@ void AddParameters(const Estimate& estimate, std::ostringstream& text) {
              ? Number(parameter.value, 6) + " (known)"
              : WithError(parameter.value, parameter.standard_error),
          text);
+  }
+}
+
+void AddMaterials(const Estimate& estimate, std::ostringstream& text) {
+  AddParameters(estimate, text);
+  for (const MaterialEstimate& material : estimate.materials) {
+    Line(RegionsLabel(material.regions), Verdict(material), text);
+  }
+  for (const std::string& combination : estimate.combinations) {
+    Line("determined only", combination, text);
   }
 }
 
@@ -233,6 +267,29 @@ void AddLoads(const Scene& scene, std::ostringstream& text) {
   }
 }
 
+std::string ListOf(const std::vector<int>& regions) {
+  std::string list;
+  for (const int region : regions) {
+    list += (list.empty() ? "" : ", ") + std::to_string(region);
+  }
+  return list;
+}
+
+// Those that were taken, and the nearest that was not.
+void AddMerges(const std::vector<RegionMerge>& merges,
+               std::ostringstream& text) {
+  for (const RegionMerge& merge : merges) {
+    Line(merge.is_taken ? "merged" : "told apart",
+         "regions " + ListOf(merge.first) + " and " + ListOf(merge.second) +
+             " (chi^2 " + Number(merge.chi_square, 3) + ", limit " +
+             Number(merge.limit, 3) + ")",
+         text);
+    if (!merge.is_taken) {
+      break;
+    }
+  }
+}
+
 void AddSeries(const SeriesSummary& series, std::ostringstream& text) {
   const Interval& loads = series.loads;
   std::string under;
@@ -289,6 +346,7 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
          text);
   }
   AddLoads(scene, text);
+  AddMerges(estimate.merges, text);
   if (estimate.series) {
     AddSeries(*estimate.series, text);
   }
@@ -304,7 +362,7 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
     AddElasticity(estimate, text);
     AddErrors(estimate, text);
   } else {
-    AddParameters(estimate, text);
+    AddMaterials(estimate, text);
   }
   if (!estimate.why_no_standard_error.empty()) {
     Line("", "no standard error: " + estimate.why_no_standard_error, text);

@@ -1,7 +1,9 @@
 #include "tests/regions.h"
 
+#include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/scene/loads.h"
 #include "tests/dense_reference.h"
+#include "tests/scenes.h"
 
 namespace elastimate::testing {
 
@@ -16,6 +18,39 @@ Scene TwoRegionScene(const KindOfSection& parameter, int cells) {
     mesh.regions(e) = x < middle ? 7 : 3;
   }
   scene.materials = IsotropicMaterialOfEachRegion(mesh);
+  return scene;
+}
+
+void DivideIntoRegions(const Eigen::Vector3i& boxes,
+                       const Eigen::Vector3d& size, Scene& scene) {
+  Mesh& mesh = scene.mesh;
+  mesh.regions.resize(mesh.NumElements());
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    const Eigen::Vector3d centre =
+        mesh.nodes(Eigen::all, mesh.elements.col(e)).rowwise().mean();
+    const Eigen::Array3i box =
+        (boxes.cast<double>().cwiseProduct(centre).cwiseQuotient(size))
+            .cast<int>()
+            .cwiseMin(boxes - Eigen::Vector3i::Ones())
+            .cwiseMax(0);
+    mesh.regions(e) = 1 + box(0) + boxes(0) * (box(1) + boxes(1) * box(2));
+  }
+  scene.materials = IsotropicMaterialOfEachRegion(mesh);
+}
+
+Scene BlockUnderTraction(const Eigen::Vector3i& cells,
+                         const Eigen::Vector3d& size) {
+  const Mesh mesh = BoxMesh(cells, size);
+  Scene scene = HeldAtBottom(mesh, mesh, Eigen::Vector3d::Zero());
+  const Eigen::MatrixXi facets = BoundaryFacets(mesh);
+  std::vector<Eigen::Index> top;
+  for (Eigen::Index i = 0; i < facets.cols(); ++i) {
+    if (mesh.nodes(2, facets.col(i)).minCoeff() > 0.999 * size(2)) {
+      top.push_back(i);
+    }
+  }
+  scene.load_cases[0].loads = {
+      Traction{facets(Eigen::all, top), Eigen::Vector3d(40, 20, -100)}};
   return scene;
 }
 

@@ -15,6 +15,15 @@ namespace elastimate::testing {
 /// region 3 first.
 Scene TwoRegionScene(const KindOfSection& parameter, int cells = 3);
 
+/// Regions 1, 2, ... of boxes, so many along each axis of a body from zero to
+/// `size`, the first axis fastest, and an isotropic material in each.
+void DivideIntoRegions(const Eigen::Vector3i& boxes,
+                       const Eigen::Vector3d& size, Scene& scene);
+
+/// BoxMesh held at the bottom, with a slanted traction on its top.
+Scene BlockUnderTraction(const Eigen::Vector3i& cells,
+                         const Eigen::Vector3d& size);
+
 /// TextbookStiffness of the isotropic materials of a scene, one of
 /// `elasticities` for each.
 Eigen::MatrixXd TextbookStiffness(

@@ -258,8 +258,8 @@ class FitDescription {
             graph,
             observed_,
             FreeFit{fit_.residual, fit_.sensitivities(Eigen::all, parameters),
-                    sums_.weights, losses_.IsLeastSquares(),
-                    evidence_.active.Any()},
+                    sums_.weighted_gram(parameters, parameters), sums_.weights,
+                    losses_.IsLeastSquares(), evidence_.active.Any()},
             change,
             fit_.displacement,
             estimate_.elasticity};

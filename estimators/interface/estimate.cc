@@ -18,11 +18,28 @@ void RemoveFindings(const Predicate& predicate,
                  findings.end());
 }
 
-// " of region 3"; nothing of the whole mesh.
-std::string OfRegions(const std::vector<int>& regions) {
+}  // namespace
+
+std::string_view DeterminationName(Determination determination) {
+  switch (determination) {
+    case Determination::kDetermined:
+      return "determined";
+    case Determination::kWeakly:
+      return "weakly";
+    case Determination::kNot:
+      return "not";
+  }
+  return "";
+}
+
+std::string ParameterEstimate::Label() const {
   if (regions.empty()) {
     return "";
   }
+  return symbol + " of " + RegionsLabel(regions);
+}
+
+std::string RegionsLabel(const std::vector<int>& regions) {
   constexpr std::size_t kMostNamed = 3;
   const std::size_t num_named =
       regions.size() > kMostNamed ? 2 : regions.size();
@@ -33,17 +50,7 @@ std::string OfRegions(const std::vector<int>& regions) {
   if (num_named < regions.size()) {
     ids += " and " + std::to_string(regions.size() - num_named) + " more";
   }
-  return (regions.size() == 1 ? " of region " : " of regions ") + ids;
-}
-
-}  // namespace
-
-std::string ParameterEstimate::Label() const {
-  return symbol + OfRegions(regions);
-}
-
-std::string StiffnessEstimate::Label() const {
-  return "the stiffness" + OfRegions(regions);
+  return (regions.size() == 1 ? "region " : "regions ") + ids;
 }
 
 bool Estimate::Has(FindingCode code) const {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "elastimate/core/materials/elasticity.h"
@@ -26,6 +27,9 @@ struct Interval {
   double lower;
   double upper;
 };
+
+/// "region 3", "regions 1, 2 and 4 more".
+std::string RegionsLabel(const std::vector<int>& regions);
 
 /// What is said of one parameter of a material.
 struct ParameterEstimate {
@@ -86,6 +90,41 @@ struct Rung {
   double seconds = 0;
   /// Why the ladder went on, or stopped.
   std::string decision;
+};
+
+/// Regions that became one material, or would have next: two that the
+/// measurement hardly tells apart.
+struct RegionMerge {
+  std::vector<int> first;
+  std::vector<int> second;
+  /// Their distance, of chi^2 where they are the same, and how much is allowed.
+  double chi_square;
+  double limit;
+  bool is_taken;
+};
+
+/// How many of the parameters of a material are determined: all that are not
+/// known, some, or none.
+enum class Determination { kDetermined, kWeakly, kNot };
+
+/// "determined", "weakly" or "not".
+std::string_view DeterminationName(Determination determination);
+
+/// What is said of one of several materials.
+struct MaterialEstimate {
+  std::vector<int> regions;
+  /// Empty where there are no errors.
+  std::optional<Determination> determination;
+  // Of fits of displacements; empty where unknown.
+  /// Of the strain energy, in all load cases together.
+  std::optional<double> energy_share;
+  /// The mean square of the residuals of points in it, over that of the noise.
+  std::optional<double> residual_chi_square;
+  /// Of the residuals of neighbours in it; the estimate's is that of all.
+  std::optional<double> residual_correlation;
+  /// Of a merged material, for each of its parameters, by how much two of its
+  /// regions may differ (95 %), relative for moduli; empty for others.
+  std::vector<double> largest_differences;
 };
 
 /// A measurement that was left out of a fit.
@@ -210,6 +249,13 @@ struct Estimate {
   /// Bounds that the estimate lies on, such as "nu_max".
   std::vector<std::string> active_bounds;
 
+  /// In their order, where they are several; empty for one.
+  std::vector<MaterialEstimate> materials;
+  /// In words, which combinations of parameters are all that is determined of
+  /// them.  Of fits of displacements of several materials.
+  std::vector<std::string> combinations;
+  /// In order, where regions were to be merged; empty for others.
+  std::vector<RegionMerge> merges;
   /// Of a joint estimate of frames; empty for others.
   std::optional<SeriesSummary> series;
 

@@ -298,6 +298,36 @@ Finding ParametersUndetermined(const std::vector<std::string>& parameters) {
                "give what is known of them, join regions, or add load cases");
 }
 
+Finding CombinationsOnly(const std::vector<std::string>& combinations) {
+  return Warning(FindingCode::kCombinationsOnly,
+                 "data determine only " + combinations[0],
+                 "give what is known of them, join regions, or add load cases");
+}
+
+Finding ResidualInRegion(const std::string& region, double correlation) {
+  return Warning(FindingCode::kResidualInRegion,
+                 "in " + region + " the residuals of neighbours are alike (" +
+                     TwoDigits(correlation) +
+                     "): its material may not be the same all over",
+                 "divide it, look at displacement_residual, and check the "
+                 "supports and the loads there");
+}
+
+Finding RegionsMayDiffer(const std::vector<std::string>& differences) {
+  return {FindingCode::kRegionsMayDiffer, Severity::kNotice,
+          "regions that became one material may differ by up to " +
+              FirstOf(differences) + " (95 %)",
+          "use --regions=each for what is known of each of them"};
+}
+
+Finding RegionsNotCompared(const std::vector<std::string>& regions) {
+  return {FindingCode::kRegionsNotCompared, Severity::kNotice,
+          "the data determine too little of " + FirstOf(regions) +
+              " to compare it with others",
+          "strain it by another load case, or say in the scene what it is "
+          "made of"};
+}
+
 Finding DependentForces() {
   return Error(FindingCode::kParametersUndetermined,
                "the data determine combinations of the parameters only",

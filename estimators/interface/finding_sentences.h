@@ -62,6 +62,14 @@ Finding PoissonRatioHiddenByNoise();
 Finding YoungsModulusUndetermined(double youngs_modulus, double standard_error);
 /// `parameters` describes each, such as "E of region 3 (45 %)".
 Finding ParametersUndetermined(const std::vector<std::string>& parameters);
+/// Says the first of them.
+Finding CombinationsOnly(const std::vector<std::string>& combinations);
+/// "region 3".
+Finding ResidualInRegion(const std::string& region, double correlation);
+/// By how much, such as "3 % in E".
+Finding RegionsMayDiffer(const std::vector<std::string>& differences);
+/// "region 3".
+Finding RegionsNotCompared(const std::vector<std::string>& regions);
 Finding DependentForces();
 Finding TooFewMeasurements(Eigen::Index num_components);
 

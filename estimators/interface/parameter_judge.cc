@@ -36,43 +36,151 @@ std::vector<ParameterEstimate> ParametersWithoutValues(
 
 namespace {
 
-// J C J^T, where what is infinite of one variable stays with that.
+// J C J^T, where what is unknown or infinite of a variable stays with the
+// parameters that depend on it.
 Eigen::MatrixXd Transformed(const Eigen::MatrixXd& covariance,
                             const Eigen::MatrixXd& jacobian) {
-  if (jacobian.isDiagonal(0)) {
-    return jacobian.diagonal().asDiagonal() * covariance *
-           jacobian.diagonal().asDiagonal();
+  std::vector<std::vector<Eigen::Index>> variables(jacobian.rows());
+  for (Eigen::Index i = 0; i < jacobian.rows(); ++i) {
+    for (Eigen::Index a = 0; a < jacobian.cols(); ++a) {
+      if (jacobian(i, a) != 0) {
+        variables[i].push_back(a);
+      }
+    }
   }
-  return jacobian * covariance * jacobian.transpose();
+  Eigen::MatrixXd transformed =
+      Eigen::MatrixXd::Zero(jacobian.rows(), jacobian.rows());
+  for (Eigen::Index i = 0; i < jacobian.rows(); ++i) {
+    for (Eigen::Index j = 0; j < jacobian.rows(); ++j) {
+      for (const Eigen::Index a : variables[i]) {
+        for (const Eigen::Index b : variables[j]) {
+          transformed(i, j) +=
+              jacobian(i, a) * covariance(a, b) * jacobian(j, b);
+        }
+      }
+    }
+  }
+  return transformed;
+}
+
+// Whether its error is small enough; of one without an error, it is not known.
+bool IsDetermined(const ParameterEstimate& parameter) {
+  return parameter.standard_error.value_or(0) / parameter.ErrorUnit() <=
+         (parameter.IsStiffness() ? kLimits.largest_youngs_modulus_error
+                                  : kLimits.largest_poisson_ratio_error);
+}
+
+bool HasFiniteVariance(const Estimate& estimate, std::size_t place) {
+  const double variance =
+      estimate.parameter_covariance(Eigen::Index(place), Eigen::Index(place));
+  return std::isfinite(variance) && variance >= 0;
+}
+
+// Those that are not determined, with their errors where these are finite.
+std::vector<std::string> Undetermined(const Estimate& estimate) {
+  std::vector<std::string> undetermined;
+  for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
+    const ParameterEstimate& parameter = estimate.parameters[i];
+    const double error = parameter.standard_error.value_or(0);
+    if (parameter.is_known) {
+      continue;
+    }
+    if (!HasFiniteVariance(estimate, i)) {
+      if (estimate.why_no_standard_error.empty()) {
+        undetermined.push_back(parameter.Label());
+      }
+    } else if (!IsDetermined(parameter)) {
+      undetermined.push_back(
+          parameter.Label() + " (" +
+          (parameter.IsStiffness()
+               ? TwoDigits(100 * error / parameter.ErrorUnit()) + " %"
+               : TwoDigits(error)) +
+          ")");
+    }
+  }
+  return undetermined;
+}
+
+// The errors of those that are determined stay, and of others how large they
+// are.
+void FailUndetermined(Estimate& estimate) {
+  const std::vector<ParameterEstimate> parameters = estimate.parameters;
+  const Eigen::MatrixXd covariance = estimate.parameter_covariance;
+  const ParameterErrors noise = estimate.error_budget.noise;
+  estimate.Fail(ParametersUndetermined(Undetermined(estimate)));
+  estimate.parameters = parameters;
+  estimate.parameter_covariance = covariance;
+  estimate.error_budget.noise = noise;
+  const auto has_error = [](const ParameterEstimate& parameter) {
+    return parameter.standard_error.has_value();
+  };
+  if (std::any_of(parameters.begin(), parameters.end(), has_error)) {
+    estimate.why_no_standard_error.clear();
+  }
 }
 
 // What has no finite variance is not determined, unless it is known why there
 // is none.
 void EnterErrors(Estimate& estimate) {
-  std::vector<std::string> undetermined;
+  bool are_all_finite = true;
   for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
-    const double variance =
-        estimate.parameter_covariance(Eigen::Index(i), Eigen::Index(i));
-    if (!estimate.parameters[i].is_known &&
-        !(std::isfinite(variance) && variance >= 0)) {
-      undetermined.push_back(estimate.parameters[i].Label());
-    } else if (!estimate.parameters[i].is_known) {
-      ParameterEstimate& parameter = estimate.parameters[i];
-      const double error = std::sqrt(variance);
-      parameter.standard_error = error;
-      const double width =
-          TwoSidedErrors(estimate.noise_degrees_of_freedom) * error;
-      parameter.interval = {parameter.value - width, parameter.value + width};
-      if (parameter.is_modulus) {
-        // Symmetric in the logarithm, which is what is fitted.
-        const double factor = std::exp(width / parameter.value);
-        parameter.interval = {parameter.value / factor,
-                              parameter.value * factor};
-      }
+    ParameterEstimate& parameter = estimate.parameters[i];
+    if (parameter.is_known) {
+      continue;
+    }
+    if (!HasFiniteVariance(estimate, i)) {
+      are_all_finite = false;
+      continue;
+    }
+    const double error = std::sqrt(
+        estimate.parameter_covariance(Eigen::Index(i), Eigen::Index(i)));
+    parameter.standard_error = error;
+    const double width =
+        TwoSidedErrors(estimate.noise_degrees_of_freedom) * error;
+    parameter.interval = {parameter.value - width, parameter.value + width};
+    if (parameter.is_modulus) {
+      // Symmetric in the logarithm, which is what is fitted.
+      const double factor = std::exp(width / parameter.value);
+      parameter.interval = {parameter.value / factor, parameter.value * factor};
     }
   }
-  if (!undetermined.empty() && estimate.why_no_standard_error.empty()) {
-    estimate.Fail(ParametersUndetermined(undetermined));
+  if (!are_all_finite && estimate.why_no_standard_error.empty()) {
+    FailUndetermined(estimate);
+  }
+}
+
+// Of each of several materials, how many of its parameters are determined.
+void EnterDetermination(Estimate& estimate) {
+  for (MaterialEstimate& material : estimate.materials) {
+    int num_determined = 0;
+    int num_free = 0;
+    for (const ParameterEstimate& parameter : estimate.parameters) {
+      if (!parameter.is_known && parameter.regions == material.regions) {
+        ++num_free;
+        num_determined +=
+            parameter.standard_error && IsDetermined(parameter) ? 1 : 0;
+      }
+    }
+    material.determination = num_determined == num_free
+                                 ? Determination::kDetermined
+                             : num_determined == 0 ? Determination::kNot
+                                                   : Determination::kWeakly;
+  }
+}
+
+// Those of the parameters, where they are several.
+void EnterMaterials(Estimate& estimate) {
+  if (!estimate.materials.empty()) {
+    return;
+  }
+  for (const ParameterEstimate& parameter : estimate.parameters) {
+    if (!parameter.regions.empty() &&
+        (estimate.materials.empty() ||
+         estimate.materials.back().regions != parameter.regions)) {
+      MaterialEstimate material;
+      material.regions = parameter.regions;
+      estimate.materials.push_back(material);
+    }
   }
 }
 
@@ -100,21 +208,8 @@ void JudgePhysicsOfParameters(Estimate& estimate) {
 }
 
 void JudgeDeterminationOfParameters(Estimate& estimate) {
-  std::vector<std::string> undetermined;
-  for (const ParameterEstimate& parameter : estimate.parameters) {
-    const double error = parameter.standard_error.value_or(0);
-    const double relative = error / parameter.ErrorUnit();
-    if (parameter.IsStiffness() &&
-        relative > kLimits.largest_youngs_modulus_error) {
-      undetermined.push_back(parameter.Label() + " (" +
-                             TwoDigits(100 * relative) + " %)");
-    } else if (!parameter.IsStiffness() &&
-               error > kLimits.largest_poisson_ratio_error) {
-      undetermined.push_back(parameter.Label() + " (" + TwoDigits(error) + ")");
-    }
-  }
-  if (!undetermined.empty()) {
-    estimate.Fail(ParametersUndetermined(undetermined));
+  if (!Undetermined(estimate).empty()) {
+    FailUndetermined(estimate);
   }
 }
 
@@ -205,7 +300,20 @@ ParameterErrors ErrorsOfVariables(const FreeParameters& free,
   return errors;
 }
 
+Eigen::VectorXd LargestErrorsOfVariables(const FreeParameters& free) {
+  Eigen::VectorXd errors(free.Size());
+  for (Eigen::Index i = 0; i < errors.size(); ++i) {
+    const LawParameter& parameter =
+        *free.All().All()[free.All().Free()[i]].law_parameter;
+    errors(i) = parameter.is_modulus || parameter.beside
+                    ? kLimits.largest_youngs_modulus_error
+                    : kLimits.largest_poisson_ratio_error;
+  }
+  return errors;
+}
+
 void JudgeParameters(Estimate& estimate) {
+  EnterMaterials(estimate);
   for (const auto& judge :
        {JudgePhysicsOfParameters, EnterErrors, JudgeBiasOfParameters,
         JudgeDeterminationOfParameters, JudgeNearnessOfLimits}) {
@@ -213,6 +321,17 @@ void JudgeParameters(Estimate& estimate) {
       judge(estimate);
     }
   }
+  if (estimate.IsUsable() ||
+      estimate.Has(FindingCode::kParametersUndetermined)) {
+    EnterDetermination(estimate);
+  }
+}
+
+void JudgeDetermination(Estimate& estimate) {
+  if (estimate.IsUsable()) {
+    JudgeDeterminationOfParameters(estimate);
+  }
+  EnterDetermination(estimate);
 }
 
 void DescribeOneIsotropicMaterial(const Scene& scene,

@@ -30,11 +30,19 @@ ParameterErrors ErrorsOfVariables(const FreeParameters& free,
                                   const Eigen::VectorXd& variables,
                                   const Eigen::MatrixXd& covariance);
 
+/// The errors up to which each variable is determined: of ln of moduli, and of
+/// ratios (Limits).
+Eigen::VectorXd LargestErrorsOfVariables(const FreeParameters& free);
+
 /// For materials other than one isotropic one: enters standard errors and
 /// intervals from the covariance of the parameters, and turns an estimate that
 /// claims to be ok into what it is, where a parameter is not physical, not
-/// determined, or biased by noise.
+/// determined, or biased by noise.  Where some are not determined, the errors
+/// of the others stay.  Says of each of several materials how many are.
 void JudgeParameters(Estimate& estimate);
+
+/// The same of what is determined alone, where standard errors have grown.
+void JudgeDetermination(Estimate& estimate);
 
 /// Enters E and nu, their covariance and interval as the parameters.
 void DescribeOneIsotropicMaterial(const Scene& scene,

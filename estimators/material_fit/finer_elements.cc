@@ -19,15 +19,15 @@ std::unique_ptr<FinerElements> FinerElements::Of(
 }
 
 Eigen::MatrixXd FinerElements::DisplacementOfSpecimen(
-    const Eigen::VectorXd& variables, const CorrectedMinimum& corrected,
+    const Eigen::VectorXd& variables, const MinimumErrors& errors,
     const Eigen::MatrixXd& displacement) {
   constexpr double kLeastShare = 1e-3;
-  const double share = corrected.share_of_finer;
+  const double share = errors.share_of_finer;
   if (share < kLeastShare) {
     return displacement;
   }
   Eigen::VectorXd rows;
-  if (!misfit_.Evaluate(variables + (corrected.variables - variables) / share,
+  if (!misfit_.Evaluate(variables + (errors.corrected - variables) / share,
                         &rows, nullptr)) {
     return displacement;
   }

@@ -33,9 +33,9 @@ class FinerElements {
   }
 
   /// From the displacement of the fit, num_dofs x num_load_cases, that of the
-  /// specimen, which is as much finer as the corrected minimum says.
+  /// specimen, which is as much finer as the errors of the minimum say.
   Eigen::MatrixXd DisplacementOfSpecimen(const Eigen::VectorXd& variables,
-                                         const CorrectedMinimum& corrected,
+                                         const MinimumErrors& errors,
                                          const Eigen::MatrixXd& displacement);
 
   Work WorkDone() { return misfit_.Model().WorkDone(); }

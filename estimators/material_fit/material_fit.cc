@@ -16,6 +16,7 @@
 #include "elastimate/estimators/material_fit/displacement_misfit.h"
 #include "elastimate/estimators/material_fit/finer_elements.h"
 #include "elastimate/estimators/material_fit/material_descent.h"
+#include "elastimate/estimators/material_fit/material_verdicts.h"
 #include "elastimate/estimators/material_fit/minimum_statistics.h"
 #include "elastimate/estimators/material_fit/outliers.h"
 #include "elastimate/estimators/material_fit/reduced_descent.h"
@@ -42,23 +43,6 @@ void EnterElasticity(Estimate& estimate) {
   }
 }
 
-// A fit, and where it is.
-struct MaterialFit {
-  Estimate estimate;
-  /// Empty where there is no fit.
-  std::optional<BoundedMinimum> minimum;
-  double noise = 0;  ///< DisplacementMisfit::Noise there.
-  /// As measured where all is known; empty where there is no fit.
-  Eigen::MatrixXd displacement;
-  /// That of the specimen, as far as its elements are known to be finer.
-  Eigen::MatrixXd displacement_of_specimen;
-
-  std::optional<Eigen::VectorXd> Variables() const {
-    return minimum ? std::optional<Eigen::VectorXd>(minimum->variables)
-                   : std::nullopt;
-  }
-};
-
 // Says what is known at the minimum of the fit, which has one; `finer` may be
 // null.
 void DescribeFit(const Scene& scene, const EstimatorOptions& options,
@@ -72,7 +56,7 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
   EnterParameters(scene, misfit.Free(), misfit.Free().ParametersAt(variables),
                   estimate);
   NoteVariablesOnBounds(misfit.Free(), *fit.minimum, estimate);
-  const CorrectedMinimum corrected = DescribeMinimum(
+  fit.errors = DescribeMinimum(
       scene, variables,
       finer == nullptr ? std::nullopt : finer->Change(variables, misfit),
       misfit, evidence, estimate);
@@ -81,8 +65,9 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
     fit.displacement = misfit.FittedDisplacement();
     fit.displacement_of_specimen =
         finer == nullptr ? fit.displacement
-                         : finer->DisplacementOfSpecimen(variables, corrected,
+                         : finer->DisplacementOfSpecimen(variables, fit.errors,
                                                          fit.displacement);
+    DescribeMaterials(scene, fit.errors, misfit, estimate);
   }
   if (IsOneIsotropicMaterial(scene.materials)) {
     EnterElasticity(estimate);
@@ -290,22 +275,6 @@ MaterialFit FitWithoutOutliers(const Scene& scene,
   return fit;
 }
 
-// A material of which Poisson's ratio is known is one that has it.
-MaterialFit Fit(const Scene& scene, const EstimatorOptions& options,
-                Descent descent, const std::optional<Eigen::VectorXd>& start) {
-  if (!IsOneIsotropicMaterial(scene.materials) ||
-      !options.known_poisson_ratio) {
-    return FitWithoutOutliers(scene, options, descent, start);
-  }
-  Scene known = scene;
-  known.materials = WithKnownPoissonRatio(options);
-  EstimatorOptions other_options = options;
-  other_options.known_poisson_ratio.reset();
-  MaterialFit fit = FitWithoutOutliers(known, other_options, descent, start);
-  EnterElasticity(fit.estimate);
-  return fit;
-}
-
 // Starts where the last usable fit ended.
 class MaterialFitPreparation : public Preparation {
  public:
@@ -313,10 +282,10 @@ class MaterialFitPreparation : public Preparation {
       : options_(options), descent_(descent) {}
 
   Estimate Run(const Scene& scene) override {
-    MaterialFit fit = Fit(scene, options_, descent_, start_);
+    MaterialFit fit = FitMaterialsFrom(start_, scene, options_, descent_);
     if (start_ && !fit.estimate.IsUsable()) {
       const Work work = fit.estimate.work;
-      fit = Fit(scene, options_, descent_, std::nullopt);
+      fit = FitMaterialsFrom(std::nullopt, scene, options_, descent_);
       fit.estimate.work = fit.estimate.work + work;
     }
     start_ = fit.estimate.IsUsable() ? fit.Variables() : std::nullopt;
@@ -337,9 +306,25 @@ bool IsForMaterialFit(const Scene& scene) {
          HasSupportsOfCases(scene);
 }
 
+MaterialFit FitMaterialsFrom(const std::optional<Eigen::VectorXd>& start,
+                             const Scene& scene,
+                             const EstimatorOptions& options, Descent descent) {
+  if (!IsOneIsotropicMaterial(scene.materials) ||
+      !options.known_poisson_ratio) {
+    return FitWithoutOutliers(scene, options, descent, start);
+  }
+  Scene known = scene;
+  known.materials = WithKnownPoissonRatio(options);
+  EstimatorOptions other_options = options;
+  other_options.known_poisson_ratio.reset();
+  MaterialFit fit = FitWithoutOutliers(known, other_options, descent, start);
+  EnterElasticity(fit.estimate);
+  return fit;
+}
+
 Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options,
                       Descent descent) {
-  return Fit(scene, options, descent, std::nullopt).estimate;
+  return FitMaterialsFrom(std::nullopt, scene, options, descent).estimate;
 }
 
 std::unique_ptr<Preparation> PrepareMaterialFit(const EstimatorOptions& options,

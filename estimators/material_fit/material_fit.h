@@ -1,11 +1,15 @@
 #ifndef ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MATERIAL_FIT_H_
 #define ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MATERIAL_FIT_H_
 
+#include <Eigen/Core>
 #include <memory>
+#include <optional>
 
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/material_fit/minimum_statistics.h"
+#include "elastimate/estimators/statistics/bounded_variables.h"
 
 namespace elastimate {
 
@@ -38,6 +42,29 @@ enum class Descent { kFull, kReduced };
 /// load case and parameter.
 Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options,
                       Descent descent);
+
+/// A fit, and where it is.
+struct MaterialFit {
+  Estimate estimate;
+  /// Empty where there is no fit.
+  std::optional<BoundedMinimum> minimum;
+  MinimumErrors errors;
+  double noise = 0;  ///< DisplacementMisfit::Noise there.
+  /// As measured where all is known; empty where there is no fit.
+  Eigen::MatrixXd displacement;
+  /// That of the specimen, as far as its elements are known to be finer.
+  Eigen::MatrixXd displacement_of_specimen;
+
+  std::optional<Eigen::VectorXd> Variables() const {
+    return minimum ? std::optional<Eigen::VectorXd>(minimum->variables)
+                   : std::nullopt;
+  }
+};
+
+/// The same as FitMaterials, from these variables on where there are some.
+MaterialFit FitMaterialsFrom(const std::optional<Eigen::VectorXd>& start,
+                             const Scene& scene,
+                             const EstimatorOptions& options, Descent descent);
 
 /// The same for one scene after another, each from where the last usable fit
 /// ended; where that leads to none, as FitMaterials does.  `options` outlive

@@ -77,6 +77,29 @@ void WeighResultants(const DisplacementMisfit& misfit, double& variance,
       std::sqrt(variance) / misfit.Noise();
 }
 
+// Whether there are too few rows to know the noise from what is left of them.
+bool AreTooFew(const ObservedDisplacements& observed, Eigen::Index num_fitted,
+               Evidence& evidence) {
+  if (observed.GivenNoise() ||
+      observed.Size() - num_fitted >= kLimits.least_redundancy) {
+    return false;
+  }
+  evidence.too_few_components = observed.Size();
+  return true;
+}
+
+// By how much the variance of the resultants is more than stated.
+double ExcessOfResultants(const Eigen::VectorXd& rows,
+                          const DisplacementMisfit& misfit,
+                          Evidence& evidence) {
+  if (misfit.NumResultants() == 0) {
+    return 1;
+  }
+  evidence.resultant_misfit = {rows.tail(misfit.NumResultants()) /
+                               misfit.Noise()};
+  return std::max(1.0, evidence.resultant_misfit->Excess());
+}
+
 // The variance of a row, whatever the elements miss: as given, or what is left.
 double VarianceOfRows(const ObservedDisplacements& observed,
                       const Eigen::VectorXd& rows, Eigen::Index num_fitted) {
@@ -85,6 +108,23 @@ double VarianceOfRows(const ObservedDisplacements& observed,
   return std::max(
       given, SquaredNorm(rows) / static_cast<double>(std::max<Eigen::Index>(
                                      observed.Size() - num_fitted, 1)));
+}
+
+// Of the errors up to which a variable is determined, how many it has
+// beforehand, and how many say that the data added nothing.
+constexpr double kErrorsBeforehand = 30;
+constexpr double kUnknownErrors = 15;
+
+// S^T S with what is known beforehand, which matters for no variable that is
+// determined, in rows of this variance.
+Eigen::MatrixXd InformationOf(const FreeParameters& free,
+                              const Eigen::MatrixXd& sensitivities,
+                              double variance) {
+  const Eigen::ArrayXd error =
+      kErrorsBeforehand * LargestErrorsOfVariables(free).array();
+  Eigen::MatrixXd information = InnerProducts(sensitivities, sensitivities);
+  information.diagonal().array() += variance / error.square();
+  return information;
 }
 
 // What elements miss of these rows; empty where it is not known.
@@ -98,8 +138,8 @@ std::optional<ElementErrors> FindElementErrors(
   const Eigen::Index num_resultants = misfit.NumResultants();
   Eigen::VectorXd residual = rows;
   RowChange weighed_change = *change;
+  double variance = VarianceOfRows(misfit.Observed(), rows, num_fitted);
   if (num_resultants > 0) {
-    double variance = VarianceOfRows(misfit.Observed(), rows, num_fitted);
     WeighResultants(misfit, variance, sensitivities);
     const double weight = std::sqrt(variance) / misfit.Noise();
     residual.tail(num_resultants) *= weight;
@@ -107,7 +147,12 @@ std::optional<ElementErrors> FindElementErrors(
     weighed_change.by_noise.tail(num_resultants) *= weight;
   }
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(rows.size());
-  const FreeFit fit = {residual, sensitivities, ones, true, is_on_bound};
+  const FreeFit fit = {residual,
+                       sensitivities,
+                       InformationOf(misfit.Free(), sensitivities, variance),
+                       ones,
+                       true,
+                       is_on_bound};
   // What depends on the strain is of elements whose change is not known.
   const ElementErrors errors(scene, misfit.Model().Graph(), misfit.Observed(),
                              fit, weighed_change, {}, {});
@@ -160,21 +205,20 @@ Eigen::VectorXd EnterElements(const Scene& scene, const FreeParameters& free,
 
 // Enters what the elements change and leave uncertain, which adds to the
 // covariance.
-CorrectedMinimum CorrectMinimum(const Scene& scene, const FreeParameters& free,
-                                const Eigen::VectorXd& variables,
-                                const ElementErrors& elements, double smooth,
-                                const Eigen::MatrixXd& inverse,
-                                Eigen::MatrixXd& covariance, Evidence& evidence,
-                                Estimate& estimate) {
+Eigen::VectorXd CorrectMinimum(const Scene& scene, const FreeParameters& free,
+                               const Eigen::VectorXd& variables,
+                               const ElementErrors& elements, double smooth,
+                               const Eigen::MatrixXd& inverse,
+                               Eigen::MatrixXd& covariance, Evidence& evidence,
+                               Estimate& estimate) {
   const Eigen::MatrixXd by_elements =
       elements.CovarianceOfChange(smooth) +
       elements.MissedSquareSum(smooth) * inverse;
   covariance += by_elements;
   evidence.likely_element_change =
       LargestOf(elements.LikelyChange(), variables, estimate, free);
-  return {EnterElements(scene, free, variables, by_elements,
-                        *elements.Correction(), estimate),
-          elements.Share()};
+  return EnterElements(scene, free, variables, by_elements,
+                       *elements.Correction(), estimate);
 }
 
 // Enters what outliers pull the variables by, which adds to the covariance.
@@ -194,74 +238,100 @@ void AddOutliers(const FreeParameters& free, const Eigen::VectorXd& variables,
       ErrorsOfVariables(free, variables, change * change.transpose());
 }
 
+// Of variables that the data say nothing of, the errors are not known.
+void EnterErrorsOfKnown(const FreeParameters& free, const MinimumErrors& errors,
+                        Estimate& estimate) {
+  const Eigen::ArrayXd limits = LargestErrorsOfVariables(free).array();
+  Eigen::MatrixXd known = errors.total;
+  for (Eigen::Index i = 0; i < known.cols(); ++i) {
+    if (!(std::sqrt(errors.total(i, i)) < kUnknownErrors * limits(i))) {
+      known.row(i).setConstant(Estimate::kUnknown);
+      known.col(i).setConstant(Estimate::kUnknown);
+    }
+  }
+  EnterCovariance(free, errors.corrected, known, estimate);
+  ErrorBudget& budget = estimate.error_budget;
+  for (const Eigen::Index place : free.All().Free()) {
+    if (std::isfinite(estimate.parameter_covariance(place, place))) {
+      continue;
+    }
+    for (ParameterErrors* const part :
+         {&budget.noise, &budget.model, &budget.outliers,
+          &budget.discretization}) {
+      if (part->size() > 0) {
+        (*part)(place) = Estimate::kUnknown;
+      }
+    }
+  }
+}
+
 }  // namespace
 
-CorrectedMinimum DescribeMinimum(const Scene& scene,
-                                 const Eigen::VectorXd& variables,
-                                 const std::optional<RowChange>& change_of_rows,
-                                 DisplacementMisfit& misfit, Evidence& evidence,
-                                 Estimate& estimate) {
+MinimumErrors DescribeMinimum(const Scene& scene,
+                              const Eigen::VectorXd& variables,
+                              const std::optional<RowChange>& change_of_rows,
+                              DisplacementMisfit& misfit, Evidence& evidence,
+                              Estimate& estimate) {
   const FreeParameters& free = misfit.Free();
   const ObservedDisplacements& observed = misfit.Observed();
+  MinimumErrors errors;
+  errors.variables = variables;
+  errors.corrected = variables;
   Eigen::VectorXd rows;
   Eigen::MatrixXd sensitivities;
   if (!misfit.Evaluate(variables, &rows, &sensitivities)) {
     evidence.end = End::kSingularStiffness;
-    return {variables};
+    return errors;
   }
-  Eigen::VectorXd residual = rows.head(observed.Size());
-  estimate.displacement_residual = Norm(residual) / Norm(observed.Measured());
+  errors.residual = rows.head(observed.Size());
+  estimate.displacement_residual =
+      Norm(errors.residual) / Norm(observed.Measured());
   const Eigen::Index num_fitted =
       free.Size() + misfit.NumAmounts() - misfit.NumResultants();
-  if (!observed.GivenNoise() &&
-      observed.Size() - num_fitted < kLimits.least_redundancy) {
-    evidence.too_few_components = observed.Size();
-    return {variables};
+  if (AreTooFew(observed, num_fitted, evidence)) {
+    return errors;
   }
-  double excess = 1;
-  if (misfit.NumResultants() > 0) {
-    evidence.resultant_misfit = {rows.tail(misfit.NumResultants()) /
-                                 misfit.Noise()};
-    excess = std::max(excess, evidence.resultant_misfit->Excess());
-  }
+  const double excess = ExcessOfResultants(rows, misfit, evidence);
   const std::optional<ElementErrors> elements =
       FindElementErrors(scene, rows, sensitivities, change_of_rows, num_fitted,
                         !estimate.active_bounds.empty(), misfit);
   const Eigen::VectorXd rest = elements ? elements->Rest() : rows;
-  residual = rest.head(observed.Size());
+  errors.residual = rest.head(observed.Size());
   ResidualVariance variance = EstimateVariance(observed, SquaredNorm(rest),
                                                num_fitted, evidence, estimate);
   WeighResultants(misfit, variance.variance, sensitivities);
   evidence.is_explained_by_given_noise = variance.is_explained_by_given_noise;
   const Eigen::MatrixXd of_rows = sensitivities.topRows(observed.Size());
   const Eigen::MatrixXd inverse =
-      Inverse(InnerProducts(sensitivities, sensitivities));
-  const SmoothSquareSum smooth =
-      MeasureSmoothPart(misfit.Model().Graph(), observed, residual, estimate);
+      Inverse(InformationOf(free, sensitivities, variance.variance));
+  const SmoothSquareSum smooth = MeasureSmoothPart(
+      misfit.Model().Graph(), observed, errors.residual, estimate);
   const Eigen::MatrixXd by_correlation = AddedByCorrelation(
-      scene, residual, of_rows, inverse, variance.variance,
-      ShareOfResidual(residual, num_fitted, variance.variance), smooth.least,
-      observed, evidence, estimate);
+      scene, errors.residual, of_rows, inverse, variance.variance,
+      ShareOfResidual(errors.residual, num_fitted, variance.variance),
+      smooth.least, observed, evidence, estimate);
   const Eigen::MatrixXd by_model =
-      excess * by_correlation + (excess - 1) * inverse;
-  Eigen::MatrixXd covariance = variance.variance * (inverse + by_model);
-  CorrectedMinimum corrected = {variables};
+      variance.variance * (excess * by_correlation + (excess - 1) * inverse);
+  errors.variance = variance.variance;
+  errors.of_noise = variance.variance * inverse;
+  errors.total = errors.of_noise + by_model;
   if (elements) {
-    corrected = CorrectMinimum(scene, free, variables, *elements, smooth.most,
-                               inverse, covariance, evidence, estimate);
+    errors.corrected =
+        CorrectMinimum(scene, free, variables, *elements, smooth.most, inverse,
+                       errors.total, evidence, estimate);
+    errors.share_of_finer = elements->Share();
   }
   estimate.error_budget.noise =
-      ErrorsOfVariables(free, variables, variance.variance * inverse);
-  estimate.error_budget.model =
-      ErrorsOfVariables(free, variables, variance.variance * by_model);
-  AddOutliers(free, variables, observed, residual, of_rows, covariance,
+      ErrorsOfVariables(free, variables, errors.of_noise);
+  estimate.error_budget.model = ErrorsOfVariables(free, variables, by_model);
+  AddOutliers(free, variables, observed, errors.residual, of_rows, errors.total,
               evidence, estimate);
   if (!by_correlation.isZero(0)) {
     evidence.smooth_residual_error =
-        std::sqrt(covariance.diagonal().maxCoeff());
+        std::sqrt(errors.total.diagonal().maxCoeff());
   }
-  EnterCovariance(free, corrected.variables, covariance, estimate);
-  return corrected;
+  EnterErrorsOfKnown(free, errors, estimate);
+  return errors;
 }
 
 }  // namespace elastimate

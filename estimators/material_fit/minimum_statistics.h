@@ -12,11 +12,20 @@
 
 namespace elastimate {
 
-/// A minimum, corrected for what the elements miss.
-struct CorrectedMinimum {
+/// What is known of the variables of a minimum; empty matrices where nothing.
+struct MinimumErrors {
   Eigen::VectorXd variables;
+  Eigen::VectorXd corrected;  ///< For what the elements miss.
   /// Of the change to finer elements, as far as it is expected to be there.
   double share_of_finer = 0;
+  /// Covariance by independent noise, and by all that is known.  Beforehand a
+  /// variable is known to 30 of the errors up to which it is determined, so
+  /// that both are finite: without any data, the error is that.
+  Eigen::MatrixXd of_noise;
+  Eigen::MatrixXd total;
+  double variance = 0;  ///< Of noise in a row.
+  /// Of the observed rows, without what finer elements explain.
+  Eigen::VectorXd residual;
 };
 
 /// Enters the noise and the covariance of a minimum into the estimate, whose
@@ -29,16 +38,18 @@ struct CorrectedMinimum {
 ///     specimen, which no noise is,
 ///   + the square of what outliers that are left pull the parameters by.
 ///
+/// Variables that the data say nothing of have no covariance.
+///
 /// An evaluation, and O(n^2) for n points in a load case (CorrelateResiduals).
 ///
 /// `change` is that of the rows to finer elements, where it is known: what of
 /// it the residual shows corrects the parameters that are entered, and its
 /// error is part of theirs (ElementErrors).
-CorrectedMinimum DescribeMinimum(const Scene& scene,
-                                 const Eigen::VectorXd& variables,
-                                 const std::optional<RowChange>& change,
-                                 DisplacementMisfit& misfit, Evidence& evidence,
-                                 Estimate& estimate);
+MinimumErrors DescribeMinimum(const Scene& scene,
+                              const Eigen::VectorXd& variables,
+                              const std::optional<RowChange>& change,
+                              DisplacementMisfit& misfit, Evidence& evidence,
+                              Estimate& estimate);
 
 }  // namespace elastimate
 

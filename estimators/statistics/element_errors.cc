@@ -60,9 +60,8 @@ Eigen::VectorXd VisibleOf(const FreeFit& fit, const Eigen::VectorXd& rows,
 }
 
 Eigen::VectorXd ParametersOf(const FreeFit& fit, const Eigen::VectorXd& rows) {
-  const Eigen::MatrixXd weighted = fit.weights.asDiagonal() * fit.sensitivities;
-  return Inverse(InnerProducts(fit.sensitivities, weighted)) *
-         InnerProducts(weighted, rows);
+  return Inverse(fit.information) *
+         InnerProducts(fit.sensitivities, fit.weights.cwiseProduct(rows));
 }
 
 // The weighted square sum of what noise of a variance of 1 adds to what shows

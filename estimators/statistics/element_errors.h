@@ -16,6 +16,8 @@ namespace elastimate {
 struct FreeFit {
   const Eigen::VectorXd& residual;  ///< u - q.
   Eigen::MatrixXd sensitivities;    ///< S, rows x num_free.
+  /// S^T W S, with what is known beforehand of what the data do not determine.
+  Eigen::MatrixXd information;
   /// How much each row counts, diag(W); 1 without a loss.
   const Eigen::VectorXd& weights;
   bool is_least_squares;

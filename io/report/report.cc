@@ -265,6 +265,35 @@ Json DiagnosticsJson(const Estimate& estimate) {
           {"warnings", estimate.Sentences(Severity::kWarning)}};
 }
 
+// Those of several, in their order.
+Json MaterialsJson(const Estimate& estimate) {
+  Json materials = Json::array();
+  for (const MaterialEstimate& material : estimate.materials) {
+    materials.push_back(
+        {{"region", RegionsJson(material.regions)},
+         {"determination",
+          material.determination
+              ? Json(DeterminationName(*material.determination))
+              : Json(nullptr)},
+         {"energy_share", OrNull(material.energy_share)},
+         {"residual_chi_square", OrNull(material.residual_chi_square)},
+         {"residual_correlation", OrNull(material.residual_correlation)},
+         {"largest_differences", material.largest_differences}});
+  }
+  return materials;
+}
+
+Json MergesJson(const Estimate& estimate) {
+  Json merges = Json::array();
+  for (const RegionMerge& merge : estimate.merges) {
+    merges.push_back({{"regions", {merge.first, merge.second}},
+                      {"chi_square", OrNull(merge.chi_square)},
+                      {"limit", merge.limit},
+                      {"merged", merge.is_taken}});
+  }
+  return merges;
+}
+
 Json SeriesJson(const Estimate& estimate) {
   if (!estimate.series) {
     return nullptr;
@@ -346,6 +375,9 @@ std::string JsonReport(const Estimate& estimate, const Scene& scene,
       {"error_budget", BudgetJson(scene, estimate.error_budget)},
       {"findings", FindingsJson(estimate.findings)},
       {"diagnostics", DiagnosticsJson(estimate)},
+      {"materials", MaterialsJson(estimate)},
+      {"combinations", estimate.combinations},
+      {"merges", MergesJson(estimate)},
       {"series", SeriesJson(estimate)},
       {"work", WorkJson(estimate.work)},
       {"rungs", RungsJson(estimate)},

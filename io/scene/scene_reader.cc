@@ -64,8 +64,9 @@ std::string WhyDifferent(const Scene& first, const Scene& other,
       mesh.regions != other.mesh.regions) {
     return "its array 'region' differs";
   }
-  if (regions == RegionChoice::kAsGiven && !other.materials.empty() &&
-      !(first.materials == other.materials)) {
+  if ((regions == RegionChoice::kAsGiven ||
+       regions == RegionChoice::kGivenOrEach) &&
+      !other.materials.empty() && !(first.materials == other.materials)) {
     return "its materials differ";
   }
   if (first.is_rigid_motion_free != other.is_rigid_motion_free) {
@@ -256,7 +257,9 @@ void ChooseMaterials(const std::filesystem::path& path, RegionChoice choice,
                      Scene& scene) {
   if (choice == RegionChoice::kOne) {
     scene.materials.clear();
-  } else if (choice == RegionChoice::kEach) {
+  } else if (choice == RegionChoice::kEach ||
+             (choice == RegionChoice::kGivenOrEach &&
+              scene.materials.empty())) {
     if (scene.mesh.regions.size() == 0) {
       ThrowInputError(path,
                       "there are no regions to have a material each; add the "

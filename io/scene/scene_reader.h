@@ -24,9 +24,10 @@ struct SectionChoice {
 
 /// Which materials the regions of a mesh have.
 enum class RegionChoice {
-  kAsGiven,  ///< Those of the scene.json, else one isotropic one.
-  kOne,      ///< One isotropic one, whatever the scene says.
-  kEach,     ///< An isotropic one for each region id.
+  kAsGiven,      ///< Those of the scene.json, else one isotropic one.
+  kOne,          ///< One isotropic one, whatever the scene says.
+  kEach,         ///< An isotropic one for each region id.
+  kGivenOrEach,  ///< Those of the scene.json, else one for each region id.
 };
 
 /// The law of all materials of a scene.

@@ -91,6 +91,58 @@ TEST_F(MaterialsCommand, WritesWhatReportsAndScenesAreReadFrom) {
   }
 }
 
+TEST_F(MaterialsCommand, MergesWhatTheMeasurementDoesNotTellApart) {
+  Json truth = Parameters();
+  for (int i = 0; i < 2; ++i) {
+    truth["parameters"][4 + i]["value"] = truth["parameters"][i]["value"];
+  }
+  testing::WriteText(folder_ / "two.json", truth.dump());
+  Succeed(
+      "simulate block.vtu --regions=each --parameters=two.json --noise=1e-3 "
+      "--out=m.vtu");
+  for (const std::string estimator : {"iterative-fe", "auto"}) {
+    const testing::ProgramRun run = Succeed(
+        "estimate m.vtu --regions=merge --json=r.json --out=o.vtu "
+        "--estimator=" +
+        estimator);
+    EXPECT_NE(run.output.find("merged                regions 1 and 3"),
+              std::string::npos)
+        << run.output;
+    EXPECT_NE(run.output.find("told apart            regions 1, 3 and 2"),
+              std::string::npos)
+        << run.output;
+    const Json report = Json::parse(testing::ReadText(folder_ / "r.json"));
+    EXPECT_EQ(report["material"]["regions"], Json({{1, 3}, 2}));
+    EXPECT_EQ(report["parameters"].size(), 4U);
+    ASSERT_EQ(report["merges"].size(), 2U);
+    EXPECT_TRUE(report["merges"][0]["merged"]);
+    EXPECT_FALSE(report["merges"][1]["merged"]);
+    ASSERT_EQ(report["materials"].size(), 2U);
+    double share = 0;
+    for (const Json& material : report["materials"]) {
+      EXPECT_EQ(material["determination"], "determined");
+      share += double(material["energy_share"]);
+      EXPECT_NEAR(double(material["residual_chi_square"]), 1, 0.5);
+    }
+    EXPECT_NEAR(share, 1, 1e-9);
+    EXPECT_EQ(report["materials"][0]["largest_differences"].size(), 2U);
+    const std::string fields = testing::ReadText(folder_ / "o.vtu");
+    for (const std::string name :
+         {"residual_chi_square", "residual_correlation", "youngs_modulus"}) {
+      EXPECT_NE(fields.find('"' + name + '"'), std::string::npos) << name;
+    }
+  }
+}
+
+TEST_F(MaterialsCommand, RefusesToMergeWhatItCannotCompare) {
+  Succeed(
+      "simulate block.vtu --regions=each --parameters=truth.json --out=m.vtu");
+  Refuse("estimate m.vtu --regions=merge",
+         "use it with --estimator=iterative-fe");
+  Refuse("simulate block.vtu --regions=merge --youngs=1 --nu=0 --out=x.vtu",
+         "is for estimate");
+}
+
 TEST_F(MaterialsCommand, TakesWhatTheSceneKnows) {
   Succeed(
       "simulate block.vtu --regions=each --parameters=truth.json --out=m.vtu");
@@ -127,7 +179,7 @@ TEST_F(MaterialsCommand, NamesWhatIsWrong) {
   Refuse("simulate plain.vtu --regions=each --youngs=1 --nu=0 --out=a.vtu",
          "plain.vtu: there are no regions");
   Refuse("simulate block.vtu --regions=two --youngs=1 --nu=0 --out=a.vtu",
-         "--regions=two; it is one or each");
+         "--regions=two; it is one, each or merge");
   Refuse("simulate block.vtu --parameters=truth.json --nu=0 --out=a.vtu",
          "give one or the other");
   Refuse("simulate block.vtu --parameters=truth.json --out=a.vtu",

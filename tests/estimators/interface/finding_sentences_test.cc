@@ -148,26 +148,34 @@ std::vector<Finding> OfResiduals() {
 }
 
 std::vector<Finding> OfParameters() {
-  return {YoungsModulusBias(kLong, true, Severity::kError),
-          YoungsModulusBias({}, false, Severity::kError),
-          YoungsModulusBias(kLong, false, Severity::kWarning),
-          PoissonRatioBias(kLong, true, Severity::kError),
-          PoissonRatioBias(kLong, false, Severity::kWarning),
-          YoungsModulusOnBound(),
-          PoissonRatioOnBound(),
-          PoissonRatioAtLimit(),
-          UnphysicalParameters(ManyParameters()),
-          ParametersUndetermined({"E of region 3 (45 %)"}),
-          ParametersUndetermined(ManyParameters()),
-          DependentForces(),
-          ParametersOnBounds({"nu of region 1000"}),
-          ParametersOnBounds(ManyParameters()),
-          ParametersNearLimits(ManyParameters(), Severity::kError),
-          ParametersNearLimits({"nu of region 3"}, Severity::kWarning),
-          ParameterBias("nu of regions 1, 2 and 17 more", kLong, false,
-                        Severity::kError),
-          ParameterBias("E", std::numeric_limits<double>::infinity(), true,
-                        Severity::kError)};
+  return {
+      YoungsModulusBias(kLong, true, Severity::kError),
+      YoungsModulusBias({}, false, Severity::kError),
+      YoungsModulusBias(kLong, false, Severity::kWarning),
+      PoissonRatioBias(kLong, true, Severity::kError),
+      PoissonRatioBias(kLong, false, Severity::kWarning),
+      YoungsModulusOnBound(),
+      PoissonRatioOnBound(),
+      PoissonRatioAtLimit(),
+      UnphysicalParameters(ManyParameters()),
+      ParametersUndetermined({"E of region 3 (45 %)"}),
+      ParametersUndetermined(ManyParameters()),
+      DependentForces(),
+      CombinationsOnly({"the product of E of regions 1, 2 and 17 more and E "
+                        "of regions 3, 4 and 17 more"}),
+      CombinationsOnly({"E of regions 1, 2 and 17 more, E of regions 3, 4 "
+                        "and 17 more and 12 more in 12 combinations"}),
+      ResidualInRegion("regions 1, 2 and 17 more", kLong),
+      RegionsMayDiffer({"3.1 % in E", "0.012 in nu"}),
+      RegionsNotCompared({"region 1", "region 2", "region 3", "region 4"}),
+      ParametersOnBounds({"nu of region 1000"}),
+      ParametersOnBounds(ManyParameters()),
+      ParametersNearLimits(ManyParameters(), Severity::kError),
+      ParametersNearLimits({"nu of region 3"}, Severity::kWarning),
+      ParameterBias("nu of regions 1, 2 and 17 more", kLong, false,
+                    Severity::kError),
+      ParameterBias("E", std::numeric_limits<double>::infinity(), true,
+                    Severity::kError)};
 }
 
 std::vector<Finding> OfElements() {
