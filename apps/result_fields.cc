@@ -91,6 +91,9 @@ class FieldCollector {
       correlation(Eigen::Index(i)) =
           material.residual_correlation.value_or(Estimate::kUnknown);
     }
+    if (chi_square.array().isNaN().all()) {
+      return;
+    }
     fields_.cell.push_back(
         {"residual_chi_square", chi_square(material_of).transpose()});
     fields_.cell.push_back(

@@ -118,14 +118,19 @@ TEST_F(MaterialsCommand, MergesWhatTheMeasurementDoesNotTellApart) {
     EXPECT_TRUE(report["merges"][0]["merged"]);
     EXPECT_FALSE(report["merges"][1]["merged"]);
     ASSERT_EQ(report["materials"].size(), 2U);
-    double share = 0;
     for (const Json& material : report["materials"]) {
       EXPECT_EQ(material["determination"], "determined");
+    }
+    EXPECT_EQ(report["materials"][0]["largest_differences"].size(), 2U);
+    if (estimator == "auto") {
+      continue;
+    }
+    double share = 0;
+    for (const Json& material : report["materials"]) {
       share += double(material["energy_share"]);
       EXPECT_NEAR(double(material["residual_chi_square"]), 1, 0.5);
     }
     EXPECT_NEAR(share, 1, 1e-9);
-    EXPECT_EQ(report["materials"][0]["largest_differences"].size(), 2U);
     const std::string fields = testing::ReadText(folder_ / "o.vtu");
     for (const std::string name :
          {"residual_chi_square", "residual_correlation", "youngs_modulus"}) {
