@@ -201,6 +201,15 @@ void CheckMerging(const SceneReading& reading) {
         " is of one measurement, and the scene has frames; leave it out, or "
         "make a scene of one frame");
   }
+  if (std::any_of(reading.scene.materials.begin(),
+                  reading.scene.materials.end(), [](const Material& material) {
+                    return material.law != IsotropicLaw::kName;
+                  })) {
+    throw std::invalid_argument(
+        AsGiven("regions") +
+        " compares isotropic materials, and the scene has others; leave it "
+        "out, or give each of them --material=isotropic");
+  }
 }
 
 // Gives both scenes the materials that the measurement tells apart.

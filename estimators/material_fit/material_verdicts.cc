@@ -257,8 +257,10 @@ void DescribeMaterials(const Scene& scene, const MinimumErrors& errors,
     labels.push_back(estimate.parameters[i].Label());
     is_logarithm.push_back(estimate.parameters[i].is_modulus);
   }
+  const Eigen::MatrixXd jacobian = free.RelativeJacobian(errors.corrected);
   estimate.combinations = DeterminedCombinations(
-      errors.total, LargestErrorsOfVariables(free), labels, is_logarithm);
+      jacobian * errors.total * jacobian.transpose(),
+      LargestErrorsOfVariables(free), labels, is_logarithm);
   if (!estimate.combinations.empty()) {
     estimate.Add(CombinationsOnly(estimate.combinations));
   }
