@@ -95,6 +95,20 @@ class WorkBalance {
     return product / square;
   }
 
+  /// The moduli that balance the work of all fields best, unweighted.
+  Eigen::VectorXd LeastSquares() const {
+    const Eigen::Index k = work_of_loads_.rows();
+    Eigen::MatrixXd columns(NumEquations(), work_of_columns_[0].cols());
+    for (std::size_t i = 0; i < work_of_columns_.size(); ++i) {
+      columns.middleRows(k * Eigen::Index(i), k) = work_of_columns_[i];
+    }
+    const Eigen::VectorXd scales = columns.colwise().norm();
+    return SolveLeastSquares(columns * scales.cwiseInverse().asDiagonal(),
+                             work_of_loads_.reshaped())
+        .col(0)
+        .cwiseQuotient(scales);
+  }
+
   /// The variance of the weighted noise by the force residual: it takes as
   /// noise whatever is out of balance at single nodes.
   double ForceVariance(const Scene& scene, const Eigen::VectorXd& moduli) {
@@ -155,6 +169,28 @@ std::optional<Eigen::VectorXd> Start(const FreeParameters& free,
   return free.VariablesOf(values_at(scale));
 }
 
+// That of the moduli which balance the work without weights, but for what is
+// known; empty where their stiffness is not positive definite.
+std::optional<Eigen::VectorXd> LinearStart(const FreeParameters& free,
+                                           const WorkBalance& balance) {
+  Eigen::VectorXd parameters = free.All().ParametersOf(balance.LeastSquares());
+  for (Eigen::Index i = 0; i < parameters.size(); ++i) {
+    parameters(i) = free.All().All()[i].known.value_or(parameters(i));
+  }
+  const Eigen::VectorXd variables = free.VariablesOf(parameters);
+  return variables.allFinite() ? std::optional<Eigen::VectorXd>(variables)
+                               : std::nullopt;
+}
+
+bool AreIsotropic(const MaterialParameters& parameters) {
+  for (std::size_t i = 0; i < parameters.NumMaterials(); ++i) {
+    if (!parameters.LawOf(i).BlockEntries().empty()) {
+      return false;
+    }
+  }
+  return true;
+}
+
 BoundedMinimum Minimize(const FreeParameters& free,
                         const Eigen::VectorXd& start, int max_iterations,
                         WorkBalance& balance) {
@@ -190,6 +226,13 @@ BoundedMinimum Minimize(const FreeParameters& free,
 std::optional<BoundedMinimum> BestOfStarts(const FreeParameters& free,
                                            int max_iterations,
                                            WorkBalance& balance) {
+  if (!AreIsotropic(free.All())) {
+    // Of many moduli, typical values are far off.
+    if (const std::optional<Eigen::VectorXd> start =
+            LinearStart(free, balance)) {
+      return Minimize(free, *start, max_iterations, balance);
+    }
+  }
   std::optional<BoundedMinimum> best;
   std::optional<Eigen::VectorXd> last;
   for (const double poisson_ratio : {0.3, 0.0, 0.45}) {

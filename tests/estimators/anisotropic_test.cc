@@ -163,11 +163,6 @@ TEST_P(Anisotropy, ScalesWithTheUnitOfPressure) {
 
 // Then the variables are the parameters themselves.
 TEST_P(Anisotropy, OfWhichSomethingIsKnownIsFound) {
-  if (law_.Name() == "anisotropic" &&
-      (GetParam().estimator == "virtual-fields" ||
-       GetParam().estimator == "iterative-fe")) {
-    GTEST_SKIP() << "may not converge from typical values: docs/limits.md";
-  }
   MeasureLaw(truth_, scene_);
   for (const Eigen::Index known : {Eigen::Index(0), truth_.size() - 2}) {
     scene_.materials[0].known = {
