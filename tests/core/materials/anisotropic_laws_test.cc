@@ -172,8 +172,9 @@ TEST(MaterialAxes, ThatAreWrongAreNamed) {
       {{"transversely_isotropic", {}, {}, {}, {each.leftCols(3)}},
        "for 3 elements"},
       {{"anisotropic", {}, {}, {{"c12", {1, 2}}}}, "gives bounds of c12"}};
-  for (const auto& [material, why] : wrong) {
-    EXPECT_THROWS_WITH(ValidateMaterials({material}, mesh), why);
+  for (const auto& each_wrong : wrong) {
+    EXPECT_THROWS_WITH(ValidateMaterials({each_wrong.first}, mesh),
+                       each_wrong.second);
   }
   ValidateMaterials(
       {{"orthotropic", {}, {}, {}, {x, Eigen::Vector3d(0, 9, 0)}}}, mesh);
