@@ -193,7 +193,7 @@ double Gap(const Eigen::VectorXd& direction, const Eigen::MatrixXd& held,
          (direction.transpose() * held).maxCoeff();
 }
 
-Eigen::MatrixXd Scatter(const Eigen::MatrixXd& points) {
+Eigen::MatrixXd ScatterMatrix(const Eigen::MatrixXd& points) {
   const Eigen::MatrixXd centred = points.colwise() - points.rowwise().mean();
   return centred * centred.transpose();
 }
@@ -214,7 +214,7 @@ std::optional<Eigen::VectorXd> SeparatingDirection(
       directions.begin(), directions.end(), [&](const auto& a, const auto& b) {
         return Gap(a, held, free) < Gap(b, held, free);
       });
-  const Eigen::MatrixXd scatter = Scatter(held) + Scatter(free);
+  const Eigen::MatrixXd scatter = ScatterMatrix(held) + ScatterMatrix(free);
   const Eigen::MatrixXd ridge = kRidge * scatter.trace() *
                                 Eigen::MatrixXd::Identity(dimension, dimension);
   const Eigen::VectorXd fisher =
