@@ -53,6 +53,11 @@ std::string RegionsLabel(const std::vector<int>& regions) {
   return (regions.size() == 1 ? "region " : "regions ") + ids;
 }
 
+std::string StiffnessEstimate::Label() const {
+  return regions.empty() ? "the stiffness"
+                         : "the stiffness of " + RegionsLabel(regions);
+}
+
 bool Estimate::Has(FindingCode code) const {
   return std::any_of(
       findings.begin(), findings.end(),
