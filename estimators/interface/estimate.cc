@@ -34,7 +34,7 @@ std::string_view DeterminationName(Determination determination) {
 
 std::string ParameterEstimate::Label() const {
   if (regions.empty()) {
-    return "";
+    return symbol;
   }
   return symbol + " of " + RegionsLabel(regions);
 }
