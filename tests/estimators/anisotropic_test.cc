@@ -15,7 +15,6 @@
 #include "tests/anisotropy.h"
 #include "tests/element_kinds.h"
 #include "tests/scenes.h"
-#include "tests/throws.h"
 
 namespace elastimate {
 namespace {
@@ -189,14 +188,6 @@ TEST(AnisotropyOfClosedForm, IsNotUsableWhereTheStiffnessIsNotPositive) {
   testing::AddNoise(0.2, 1, scene);
   const Estimate estimate = MakeEstimator("closed-form")->Run(scene, {});
   EXPECT_FALSE(estimate.IsUsable());
-}
-
-TEST(AnisotropyRefusal, NamesTheAlternative) {
-  const Law& law = *FindLaw("orthotropic");
-  Scene scene = SceneOfLaw(law, SectionModel::kSolid, 2);
-  MeasureLaw(testing::UnlikeTypical(law, kUnit), scene);
-  EXPECT_THROWS_WITH(MakeEstimator("reduced-fe")->Run(scene, {}),
-                     "use iterative-fe or virtual-fields");
 }
 
 // The standard errors of the stiffness against those of moduli that are drawn
