@@ -14,33 +14,6 @@ namespace {
 // Steps below this part of a standard error end the fit.
 constexpr double kSmallestStepOfErrors = 1e-2;
 
-// From virtual-fields, where it has physical parameters.
-std::optional<Eigen::VectorXd> VirtualFieldsStart(
-    const Scene& scene, const EstimatorOptions& options,
-    const FreeParameters& free, Estimate& estimate) {
-  // Near the minimum is near enough.
-  constexpr int kIterations = 10;
-  EstimatorOptions of_virtual_fields = options;
-  of_virtual_fields.max_iterations = kIterations;
-  of_virtual_fields.on_factorization = {};
-  const VirtualFields virtual_fields;
-  if (!virtual_fields.WhyUnsupported(scene, of_virtual_fields).empty()) {
-    return std::nullopt;
-  }
-  const Estimate start = virtual_fields.Run(scene, of_virtual_fields);
-  estimate.work = estimate.work + start.work;
-  Eigen::VectorXd parameters(Eigen::Index(start.parameters.size()));
-  for (Eigen::Index i = 0; i < parameters.size(); ++i) {
-    parameters(i) = start.parameters[i].value;
-  }
-  if (parameters.size() == 0) {
-    return std::nullopt;
-  }
-  const Eigen::VectorXd variables = free.VariablesOf(parameters);
-  return variables.allFinite() ? std::optional<Eigen::VectorXd>(variables)
-                               : std::nullopt;
-}
-
 BoundedMinimum Descend(const EstimatorOptions& estimator_options,
                        const Eigen::VectorXd& start, Distance distance,
                        DisplacementMisfit& misfit) {
@@ -118,6 +91,32 @@ std::optional<Eigen::VectorXd> TypicalStart(DisplacementMisfit& misfit) {
   return compliance ? std::optional<Eigen::VectorXd>(
                           free.VariablesOf(free.All().Typical(1 / *compliance)))
                     : std::nullopt;
+}
+
+std::optional<Eigen::VectorXd> VirtualFieldsStart(
+    const Scene& scene, const EstimatorOptions& options,
+    const FreeParameters& free, Estimate& estimate) {
+  // Near the minimum is near enough.
+  constexpr int kIterations = 10;
+  EstimatorOptions of_virtual_fields = options;
+  of_virtual_fields.max_iterations = kIterations;
+  of_virtual_fields.on_factorization = {};
+  const VirtualFields virtual_fields;
+  if (!virtual_fields.WhyUnsupported(scene, of_virtual_fields).empty()) {
+    return std::nullopt;
+  }
+  const Estimate start = virtual_fields.Run(scene, of_virtual_fields);
+  estimate.work = estimate.work + start.work;
+  Eigen::VectorXd parameters(Eigen::Index(start.parameters.size()));
+  for (Eigen::Index i = 0; i < parameters.size(); ++i) {
+    parameters(i) = start.parameters[i].value;
+  }
+  if (parameters.size() == 0) {
+    return std::nullopt;
+  }
+  const Eigen::VectorXd variables = free.VariablesOf(parameters);
+  return variables.allFinite() ? std::optional<Eigen::VectorXd>(variables)
+                               : std::nullopt;
 }
 
 BoundedMinimum DescendFrom(const EstimatorOptions& options,

@@ -20,6 +20,12 @@ enum class Distance { kFar, kNear };
 /// left solved at typical values of the scale 1, a factorisation.
 std::optional<Eigen::VectorXd> TypicalStart(DisplacementMisfit& misfit);
 
+/// The variables that virtual-fields comes to; empty where it does not take the
+/// scene, or they are not physical.  Adds its work to the estimate.
+std::optional<Eigen::VectorXd> VirtualFieldsStart(
+    const Scene& scene, const EstimatorOptions& options,
+    const FreeParameters& free, Estimate& estimate);
+
 /// The minimum of a misfit within bounds that a start leads to, by Ceres;
 /// resultants weigh there as much as their errors say beside those of the
 /// displacements, which the fit shows (some descents more).

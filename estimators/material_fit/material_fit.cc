@@ -88,6 +88,12 @@ MaterialFit FitAll(const Scene& scene, const EstimatorOptions& options,
   estimate.stages.push_back({"assemble and analyse", stopwatch.Lap()});
   if (descent == Descent::kReduced) {
     fit.minimum = ReducedMinimum(start, misfit, estimate);
+    if (!fit.minimum) {
+      // Typical values beside known ones may be those of no material.
+      fit.minimum = ReducedMinimum(
+          VirtualFieldsStart(scene, options, misfit.Free(), estimate), misfit,
+          estimate);
+    }
   } else {
     fit.minimum = start ? DescendFrom(options, *start, Distance::kNear, misfit)
                         : BestMinimum(scene, options, misfit, estimate);
