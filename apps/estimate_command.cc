@@ -208,7 +208,7 @@ void CheckMerging(const SceneReading& reading) {
     throw std::invalid_argument(
         AsGiven("regions") +
         " compares isotropic materials, and the scene has others; leave it "
-        "out, or give each of them --material=isotropic");
+        "out");
   }
 }
 

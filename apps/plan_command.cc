@@ -41,6 +41,7 @@ void CheckPlanFlags(const std::vector<std::string>& arguments) {
                                 ButGot(arguments));
   }
   CheckParameterFlags();
+  CheckNoMerging();
   if (IsGiven("noise") && !(FLAGS_noise > 0)) {
     throw std::invalid_argument(AsGiven("noise") + "; it must be positive");
   }
@@ -148,7 +149,8 @@ Eigen::VectorXd ChooseParameters(SolverKind solver, Scene& before,
     const Estimate estimate =
         MakeEstimator("iterative-fe")->Run(before, options);
     TakeNoiseFrom(estimate, before, basis);
-    if (!AreParametersGiven() && ArePhysical(before, estimate)) {
+    if (!AreParametersGiven() && estimate.IsUsable() &&
+        ArePhysical(before, estimate)) {
       basis.parameters = "estimate";
       return ValuesOf(estimate);
     }

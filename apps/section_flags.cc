@@ -44,4 +44,11 @@ RegionChoice RegionsFromFlag() {
   return RegionChoice::kOne;
 }
 
+void CheckNoMerging() {
+  if (FLAGS_regions == "merge") {
+    throw std::invalid_argument(AsGiven("regions") +
+                                " is for estimate; it is one or each here");
+  }
+}
+
 }  // namespace elastimate

@@ -12,6 +12,10 @@ SectionChoice SectionFromFlags();
 /// What --regions gives; likewise.
 RegionChoice RegionsFromFlag();
 
+/// Throws std::invalid_argument where it asks for merging, which is of
+/// `estimate` alone.
+void CheckNoMerging();
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_APPS_SECTION_FLAGS_H_

@@ -227,10 +227,7 @@ MeasurementErrors ErrorsFromCheckedFlags(
         "simulate needs --youngs=E and --nu=NU, or --parameters=FILE.json");
   }
   CheckParameterFlags();
-  if (FLAGS_regions == "merge") {
-    throw std::invalid_argument(AsGiven("regions") +
-                                " is for estimate; it is one or each here");
-  }
+  CheckNoMerging();
   MeasurementErrors errors = ErrorsFromFlags();
   CheckPointsFlag();
   return errors;

@@ -275,6 +275,20 @@ void ChooseOrder(const Estimate& linear, const Observations& observations,
   }
 }
 
+// Goes on to quadratic elements where linear ones are too coarse.
+void ClimbToQuadraticElements(const Scene& scene,
+                              const EstimatorOptions& options, Ladder& ladder) {
+  if (!ladder.Last().Has(FindingCode::kElementsTooCoarse) ||
+      !HasQuadraticKind(scene.mesh.kind) ||
+      scene.mesh.NumElements() > kMostQuadraticElements ||
+      !ReducedFe().WhyUnsupported(scene, options).empty()) {
+    return;
+  }
+  ladder.Decide("went on: not usable: " + ladder.Last().message);
+  ladder.Climb(ReducedFe(), QuadraticScene(scene), options);
+  ladder.Decide("stopped: there is no rung above");
+}
+
 // Of several materials: only a fit sees that regions are wrong, and none of
 // those of the force balance is a start that it needs.
 void ClimbOverMaterials(const Scene& scene, const EstimatorOptions& options,
@@ -285,7 +299,10 @@ void ClimbOverMaterials(const Scene& scene, const EstimatorOptions& options,
     const Estimate& reduced = ladder.Last();
     if (!reduced.Has(FindingCode::kFitNotCertified) &&
         reduced.status != Status::kNumericalFailure) {
-      ladder.Decide("stopped: at the statistical limit of the data");
+      ladder.Decide(reduced.IsUsable()
+                        ? "stopped: at the statistical limit of the data"
+                        : "stopped: there is no rung above");
+      ClimbToQuadraticElements(scene, without_degree, ladder);
       return;
     }
     ladder.Decide("went on: not usable: " + reduced.message);
@@ -295,6 +312,7 @@ void ClimbOverMaterials(const Scene& scene, const EstimatorOptions& options,
     return;
   }
   ladder.Decide("stopped: there is no rung above");
+  ClimbToQuadraticElements(scene, without_degree, ladder);
 }
 
 // Of unknown motions, whose only rung is iterative-fe.

@@ -201,6 +201,7 @@ TEST_F(PlanCommand, RefusesWrongInput) {
   Refuse("plan none.vtu", "none.vtu");
   Refuse("plan cuboid.vtu --youngs=5", "--nu");
   Refuse("plan cuboid.vtu --youngs=-5 --nu=0.3", "--youngs=-5");
+  Refuse("plan cuboid.vtu --regions=merge", "one or each");
   Refuse("plan cuboid.vtu --noise=0", "--noise=0");
   Refuse("plan cuboid.vtu --noise_sd=-1", "--noise_sd=-1");
   Refuse("plan cuboid.vtu --noise_sd=1 --noise=1", "one or the other");

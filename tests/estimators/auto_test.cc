@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/estimators/displacement_fit/reduced_fe.h"
@@ -98,6 +99,29 @@ TEST(Auto, RaisesTheOrderWhereLinearElementsAreNotEnough) {
     EXPECT_EQ(estimate.rungs[3].element_order, 2);
     ExpectBooksToBalance(estimate);
   }
+}
+
+TEST(Auto, RaisesTheOrderOfSeveralMaterials) {
+  Scene scene = SlenderBar();
+  scene.mesh.regions = Eigen::VectorXi::Ones(scene.mesh.NumElements());
+  scene.mesh.regions.tail(scene.mesh.NumElements() / 2).setConstant(2);
+  scene.materials = IsotropicMaterialOfEachRegion(scene.mesh);
+  for (Material& material : scene.materials) {
+    material.known.push_back({"poisson_ratio", 0.3});
+  }
+  const Scene quadratic = QuadraticScene(scene);
+  Equilibrium model(quadratic, SolverKind::kCholesky);
+  ASSERT_TRUE(model.Solve(
+      model.Forces().Parameters().Moduli(Eigen::Vector4d(1e7, 0.3, 2e7, 0.3))));
+  scene.load_cases[0].displacement = model.Displacement()
+                                         .reshaped(3, quadratic.mesh.NumNodes())
+                                         .leftCols(scene.mesh.NumNodes());
+  const Estimate estimate = Auto().Run(scene, {});
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  EXPECT_EQ(estimate.rungs.back().element_order, 2);
+  EXPECT_NEAR(estimate.parameters[0].value / 1e7, 1, 1e-5);
+  EXPECT_NEAR(estimate.parameters[2].value / 2e7, 1, 1e-5);
+  ExpectBooksToBalance(estimate);
 }
 
 // The scene is of linear elements, the estimate is not.
