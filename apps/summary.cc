@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "elastimate/core/scene/loads.h"
+#include "elastimate/estimators/interface/finding_sentences.h"
 
 namespace elastimate {
 namespace {
@@ -143,7 +144,7 @@ std::string Verdict(const MaterialEstimate& material) {
     verdict += (verdict.empty() ? "" : ", ") + part;
   };
   if (material.energy_share) {
-    add(Number(100 * *material.energy_share, 2) + " % of the strain energy");
+    add(TwoDigits(100 * *material.energy_share) + " % of the strain energy");
   }
   if (material.residual_chi_square) {
     add("residuals of " + Number(std::sqrt(*material.residual_chi_square), 2) +
@@ -323,11 +324,7 @@ void AddTrend(const std::vector<ParameterEstimate>& parameters,
        text);
 }
 
-}  // namespace
-
-std::string Summary(const Estimate& estimate, const Scene& scene,
-                    const ReportTimes& times) {
-  std::ostringstream text;
+void AddSceneSize(const Scene& scene, std::ostringstream& text) {
   Line("scene",
        std::to_string(scene.mesh.NumVertices()) + " nodes, " +
            std::to_string(scene.mesh.NumElements()) +
@@ -345,6 +342,14 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
              ", thickness " + Number(scene.mesh.section.thickness, 4),
          text);
   }
+}
+
+}  // namespace
+
+std::string Summary(const Estimate& estimate, const Scene& scene,
+                    const ReportTimes& times) {
+  std::ostringstream text;
+  AddSceneSize(scene, text);
   AddLoads(scene, text);
   AddMerges(estimate.merges, text);
   if (estimate.series) {
