@@ -279,8 +279,8 @@ INSTANTIATE_TEST_SUITE_P(
                       "iterative-fe"},
         LawStatistics{"transversely_isotropic", SectionModel::kSolid,
                       "virtual-fields"},
-        LawStatistics{"orthotropic", SectionModel::kSolid, "iterative-fe"},
-        LawStatistics{"anisotropic", SectionModel::kSolid, "iterative-fe"},
+        LawStatistics{"orthotropic", SectionModel::kSolid, "reduced-fe"},
+        LawStatistics{"anisotropic", SectionModel::kSolid, "reduced-fe"},
         LawStatistics{"orthotropic", SectionModel::kPlaneStress,
                       "iterative-fe"}),
     [](const auto& info) {
