@@ -7,6 +7,7 @@
 #include <random>
 
 #include "elastimate/core/equilibrium/equilibrium.h"
+#include "elastimate/core/scene/loads.h"
 #include "elastimate/estimators/plan/load_plan.h"
 #include "elastimate/estimators/plan/unit_loads.h"
 #include "elastimate/estimators/registry.h"

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/estimators/plan/unit_loads.h"
