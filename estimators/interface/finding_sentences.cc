@@ -151,7 +151,7 @@ Finding NoConvergence(int max_iterations) {
   return Error(FindingCode::kNoConvergence,
                "the fit did not converge in " + std::to_string(max_iterations) +
                    " iterations",
-               "allow more, or use reduced-fe");
+               "use reduced-fe");
 }
 
 Finding FitNotCertified() {

@@ -181,7 +181,8 @@ Result JudgeYoungsModulusOnBound(const Evidence& evidence,
 
 Result JudgeLargeResidual(const Evidence& evidence, const EstimatorOptions&,
                           const Estimate& estimate) {
-  if (!evidence.smooth_part) {
+  // What is not known to be the best fit may leave more than the model does.
+  if (!evidence.smooth_part || evidence.end == End::kNotCertified) {
     return std::nullopt;
   }
   if (*evidence.smooth_part > kLimits.large_residual) {

@@ -83,14 +83,16 @@ BoundedMinimum DescendWithResultants(const EstimatorOptions& options,
 
 std::optional<Eigen::VectorXd> TypicalStart(DisplacementMisfit& misfit) {
   const FreeParameters& free = misfit.Free();
-  if (const std::optional<double> known = free.All().KnownModulus()) {
-    return free.VariablesOf(free.All().Typical(*known));
-  }
+  const std::optional<double> known = free.All().KnownModulus();
+  const double scale = known.value_or(1);
   const std::optional<double> compliance =
-      misfit.Compliance(free.All().Moduli(free.All().Typical(1)));
-  return compliance ? std::optional<Eigen::VectorXd>(
-                          free.VariablesOf(free.All().Typical(1 / *compliance)))
-                    : std::nullopt;
+      misfit.Compliance(free.All().Moduli(free.All().Typical(scale)));
+  if (compliance) {
+    return free.VariablesOf(free.All().Typical(scale / *compliance));
+  }
+  return known ? std::optional<Eigen::VectorXd>(
+                     free.VariablesOf(free.All().Typical(*known)))
+               : std::nullopt;
 }
 
 std::optional<Eigen::VectorXd> VirtualFieldsStart(

@@ -15,9 +15,12 @@ namespace elastimate {
 /// How far a start is from the minimum.
 enum class Distance { kFar, kNear };
 
-/// Typical values, their moduli scaled so that the displacements fit best;
-/// empty when these oppose the loads.  Where no modulus is known, the model is
-/// left solved at typical values of the scale 1, a factorisation.
+/// Typical values, the free moduli of the scale at which displacements fit best
+/// when all moduli have it, also the known ones: what is known of a part may be
+/// far from the rest, as of steel beside a soft tissue.  Where displacements
+/// oppose the loads, or there are none, of the scale of the known modulus;
+/// empty where none is known.  The model is left solved at typical values of
+/// the scale 1, or of the known modulus, a factorisation.
 std::optional<Eigen::VectorXd> TypicalStart(DisplacementMisfit& misfit);
 
 /// The variables that virtual-fields comes to; empty where it does not take the

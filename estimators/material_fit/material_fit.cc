@@ -87,12 +87,12 @@ MaterialFit FitAll(const Scene& scene, const EstimatorOptions& options,
   DisplacementMisfit misfit(scene, options);
   estimate.stages.push_back({"assemble and analyse", stopwatch.Lap()});
   if (descent == Descent::kReduced) {
-    fit.minimum = ReducedMinimum(start, misfit, estimate);
+    fit.minimum = ReducedMinimum(start, options, misfit, estimate);
     if (!fit.minimum) {
       // Typical values beside known ones may be those of no material.
       fit.minimum = ReducedMinimum(
-          VirtualFieldsStart(scene, options, misfit.Free(), estimate), misfit,
-          estimate);
+          VirtualFieldsStart(scene, options, misfit.Free(), estimate), options,
+          misfit, estimate);
     }
   } else {
     fit.minimum = start ? DescendFrom(options, *start, Distance::kNear, misfit)

@@ -331,7 +331,7 @@ void ReducedDescent::Finish(const Eigen::VectorXd& x) {
 }
 
 // From a pole on.
-BoundedMinimum DescendFromPole(const Eigen::VectorXd& pole,
+BoundedMinimum DescendFromPole(const Eigen::VectorXd& pole, int most_poles,
                                ReducedDescent& descent) {
   constexpr double kLeastProgress = 0.5;
   BoundedMinimum minimum = descent.MinimumFrom(pole);
@@ -346,7 +346,7 @@ BoundedMinimum DescendFromPole(const Eigen::VectorXd& pole,
     if (is_solved && descent.Step() <= kLeastProgress * last_step) {
       last_step = descent.Step();
       descent.Refine();
-    } else if (descent.NumPoles() == kMostPoles) {
+    } else if (descent.NumPoles() >= most_poles) {
       minimum.end = End::kNotCertified;
       return minimum;
     } else if (descent.SetPole(minimum.variables)) {
@@ -362,7 +362,8 @@ BoundedMinimum DescendFromPole(const Eigen::VectorXd& pole,
 }  // namespace
 
 std::optional<BoundedMinimum> ReducedMinimum(
-    const std::optional<Eigen::VectorXd>& start, DisplacementMisfit& misfit,
+    const std::optional<Eigen::VectorXd>& start,
+    const EstimatorOptions& options, DisplacementMisfit& misfit,
     Estimate& estimate) {
   ReducedDescent descent(misfit);
   std::optional<Eigen::VectorXd> pole = start;
@@ -372,7 +373,8 @@ std::optional<BoundedMinimum> ReducedMinimum(
   if (!pole) {
     return std::nullopt;
   }
-  const BoundedMinimum minimum = DescendFromPole(*pole, descent);
+  const BoundedMinimum minimum = DescendFromPole(
+      *pole, std::min(kMostPoles, options.max_iterations), descent);
   estimate.work.element_passes += descent.ElementPasses();
   return minimum;
 }

@@ -29,8 +29,9 @@ namespace elastimate {
 ///      becomes the next pole, where it is far from the last one or the steps
 ///      do not halve.
 ///
-/// The end is kNotCertified where ten poles do not lead there.  What it says is
-/// that x is a minimum, not that there is no other one far away.  The misfit is
+/// The end is kNotCertified where ten poles, or options.max_iterations, do not
+/// lead there.  What it says is that x is a minimum, not that there is no other
+/// one far away.  The misfit is
 /// left with u and du/dx at the minimum, by conjugate gradients too, to 1e-4
 /// of their energy norms.
 ///
@@ -42,7 +43,8 @@ namespace elastimate {
 /// load case and pole, a solve for each variable; and about five times as many
 /// element passes.  Memory: some 6 vectors for each load case and variable.
 std::optional<BoundedMinimum> ReducedMinimum(
-    const std::optional<Eigen::VectorXd>& start, DisplacementMisfit& misfit,
+    const std::optional<Eigen::VectorXd>& start,
+    const EstimatorOptions& options, DisplacementMisfit& misfit,
     Estimate& estimate);
 
 }  // namespace elastimate
