@@ -20,12 +20,6 @@ constexpr double kUsualNoise = 0.01;
 // The region of an element with this centre, from 1 on.
 using RegionAt = std::function<int(const Eigen::VectorXd& centre)>;
 
-std::string LevelText(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
-
 Scene StripUnder(const std::vector<Eigen::Vector2d>& forces) {
   RectangleOptions options;
   options.cells = {kColumns, kColumns / 2};
@@ -100,6 +94,8 @@ MaterialLevel Right(const std::string& factor, const std::string& level,
   specimen.mesh.regions = RegionsOf(specimen.mesh, region_at);
   specimen.materials = IsotropicMaterialOfEachRegion(specimen.mesh);
   const Eigen::VectorXd parameters = ParametersFrom(elasticities);
+  LoadCase gravity;
+  gravity.loads = {BodyForce{Eigen::Vector2d(1, -2)}};
   return {factor,
           level,
           "right",
@@ -108,7 +104,8 @@ MaterialLevel Right(const std::string& factor, const std::string& level,
           specimen.mesh.regions,
           specimen.materials,
           parameters,
-          kUsualNoise};
+          kUsualNoise,
+          gravity};
 }
 
 // What each region of the model is of, where that is one material.
@@ -145,13 +142,15 @@ MaterialLevel TakenAs(MaterialLevel level, const std::string& assumption,
 }
 
 void AddSpecimens(std::vector<MaterialLevel>& levels) {
-  for (const int count : {1, 2, 3, 4, 6}) {
+  for (const int count : {1, 2, 3, 4, 6, 12}) {
     levels.push_back(Right("regions", std::to_string(count), Strip(),
                            Pieces(count), Alternating(count, 2)));
+    levels.back().is_in_quick = count <= 4;
   }
   for (const double contrast : {1, 2, 10, 100}) {
     levels.push_back(Right("contrast of E", LevelText(contrast), Strip(),
                            Pieces(2), Alternating(2, contrast)));
+    levels.back().is_in_quick = contrast == 100;
   }
   for (const int columns : {2, 4, 8}) {
     levels.push_back(Right("width of an inclusion [cells]",
@@ -161,6 +160,7 @@ void AddSpecimens(std::vector<MaterialLevel>& levels) {
   for (const double nu : {0.3, 0.45, 0.49, 0.499}) {
     levels.push_back(Right("nu of one of two regions", LevelText(nu), Strip(),
                            Pieces(2), {{1e4, nu}, {2e4, 0.2}}));
+    levels.back().is_in_quick = nu == 0.499;
   }
 }
 
@@ -187,10 +187,11 @@ void AddWrongRegions(std::vector<MaterialLevel>& levels) {
       Right("wrong regions", "2", Strip(), Pieces(2), Alternating(2, 2));
   levels.push_back(right);
   levels.push_back(TakenAs(right, "one material", Pieces(1)));
-  // By a twelfth of the strip.
+  // By a twelfth of the strip: the regions stand for the same materials.
   levels.push_back(TakenAs(right, "shifted", [](const Eigen::VectorXd& centre) {
     return centre(0) < kLength * 7 / 12 ? 1 : 2;
   }));
+  levels.back().parameters_of_model = right.parameters;
   levels.push_back(TakenAs(right, "halves along the axis",
                            [](const Eigen::VectorXd& centre) {
                              return centre(1) < kLength / 4 ? 1 : 2;
@@ -201,21 +202,30 @@ void AddModels(std::vector<MaterialLevel>& levels) {
   const std::vector<IsotropicElasticity> four = {
       {1e4, 0.3}, {2e4, 0.2}, {1.5e4, 0.35}, {3e4, 0.25}};
   for (const double percent : {0.1, 1.0, 5.0}) {
-    MaterialLevel right = Right(kModelFactor, "4", Strip(), Pieces(4), four);
+    MaterialLevel right =
+        Right("regions of the model", "4", Strip(), Pieces(4), four);
     right.noise = percent / 100;
-    for (const int count : {1, 2, 4, 8}) {
+    for (const int count : {1, 2, 4, 8, 12}) {
       MaterialLevel level = TakenAs(right,
                                     count < 4   ? "too few"
                                     : count > 4 ? "too many"
                                                 : "right",
                                     Pieces(count));
       level.level = std::to_string(count);
+      level.is_also_merged = count >= 4;
+      level.is_in_quick = percent == 1 && count != 8;
       levels.push_back(level);
     }
   }
 }
 
 }  // namespace
+
+std::string LevelText(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
 
 std::vector<MaterialLevel> MaterialLevels() {
   std::vector<MaterialLevel> levels;
@@ -224,12 +234,6 @@ std::vector<MaterialLevel> MaterialLevels() {
   AddWrongRegions(levels);
   AddModels(levels);
   return levels;
-}
-
-LoadCase UnseenLoad() {
-  LoadCase load_case;
-  load_case.loads = {BodyForce{Eigen::Vector2d(1, -2)}};
-  return load_case;
 }
 
 }  // namespace elastimate

@@ -9,9 +9,6 @@
 
 namespace elastimate {
 
-/// The factor of levels that differ in the number of parameters of the model.
-inline constexpr char kModelFactor[] = "regions of the model";
-
 /// A specimen, and the materials that an estimator takes it to be of.
 struct MaterialLevel {
   std::string factor;  ///< What is varied, with its unit.
@@ -23,19 +20,23 @@ struct MaterialLevel {
   /// Of the same mesh.
   Eigen::VectorXi regions_of_model;
   std::vector<Material> materials_of_model;
-  /// The parameters of the model that make it the specimen; empty where there
-  /// are none.
+  /// Those of the specimen that the parameters of the model stand for; empty
+  /// where there are none.
   Eigen::VectorXd parameters_of_model;
-  double noise;  ///< Standard deviation over the rms displacement.
+  double noise;     ///< Standard deviation over the rms displacement.
+  LoadCase unseen;  ///< Another load of the specimen than any measured.
+  /// Whether regions that are not told apart are also made one.
+  bool is_also_merged = false;
+  bool is_in_quick = true;
 };
+
+/// A number as a level.
+std::string LevelText(double value);
 
 /// A strip of 2 x 1 in plane strain, of 24 x 12 quadrilaterals, held at one end
 /// and pulled askew at the other: of pieces of two materials, one behind the
 /// other, unless the level says otherwise.
 std::vector<MaterialLevel> MaterialLevels();
-
-/// Another load of a specimen than any that was measured: gravity, askew.
-LoadCase UnseenLoad();
 
 }  // namespace elastimate
 

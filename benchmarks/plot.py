@@ -29,6 +29,7 @@ STYLES = {
     "iterative-fe": {"color": "#F0E442", "marker": "X", "linestyle": ":"},
     "reduced-fe": {"color": "#0072B2", "marker": "s", "linestyle": "--"},
     "reduced-fe order 2": {"color": "#56B4E9", "marker": "D", "linestyle": "-"},
+    "iterative-fe merged": {"color": "#D55E00", "marker": "P", "linestyle": "-"},
     "auto": {"color": "#000000", "marker": "*", "linestyle": "-"},
     "Cramér-Rao bound": {"color": "#000000", "marker": "", "linestyle": ":"},
     "prediction": {"color": "#000000", "marker": "", "linestyle": "-."},
@@ -619,7 +620,7 @@ def draw_materials_of_models(rows):
         style = {"color": f"C{number}", "marker": "os^"[number]}
         label = f"noise {100 * float(noise):g} %"
         prediction.plot(count, 100 * numbers(own, "prediction_error [1]"), label=label, **style)
-        parameters.plot(count, 100 * numbers(own, "youngs_modulus_cramer_rao [1]"), label=label,
+        parameters.plot(count, 100 * numbers(own, "stiffness_cramer_rao [1]"), label=label,
                         **style)
         time.plot(count, numbers(own, "time [s]"), label=label, **style)
         right = count[[row["assumption"] == "right" for row in own]][0]

@@ -16,17 +16,28 @@ namespace {
 using testing::ReadTable;
 using testing::TableRow;
 
-constexpr char kBoundOfE[] = "youngs_modulus_cramer_rao [1]";
+constexpr char kBoundOfE[] = "stiffness_cramer_rao [1]";
 constexpr char kPrediction[] = "prediction_error [1]";
+constexpr char kScore[] = "error_over_cramer_rao [1]";
 
 class MaterialsStudy : public testing::ProgramTest {
  protected:
+  std::vector<TableRow> By(const std::string& estimator) const {
+    std::vector<TableRow> own;
+    for (const TableRow& row : rows_) {
+      if (row.Text("estimator") == estimator) {
+        own.push_back(row);
+      }
+    }
+    EXPECT_GT(own.size(), 2U) << estimator;
+    return own;
+  }
+
   // Of the rows of one factor by iterative-fe, in their order.
   std::vector<TableRow> Of(const std::string& factor) const {
     std::vector<TableRow> own;
-    for (const TableRow& row : rows_) {
-      if (row.Text("factor") == factor &&
-          row.Text("estimator") == "iterative-fe") {
+    for (const TableRow& row : By("iterative-fe")) {
+      if (row.Text("factor") == factor) {
         own.push_back(row);
       }
     }
@@ -35,21 +46,40 @@ class MaterialsStudy : public testing::ProgramTest {
   }
 
   void ExpectTrueErrors() const {
-    for (const TableRow& row : rows_) {
+    const std::vector<TableRow> iterative = By("iterative-fe");
+    const std::vector<TableRow> reduced = By("reduced-fe");
+    ASSERT_EQ(iterative.size(), reduced.size());
+    for (std::size_t i = 0; i < iterative.size(); ++i) {
+      const TableRow& row = iterative[i];
       SCOPED_TRACE(row.Text("factor") + " " + row.Text("level"));
-      const double score = row.Number("error_over_cramer_rao [1]");
-      if (row.Text("estimator") == "iterative-fe" && std::isfinite(score)) {
+      const double score = row.Number(kScore);
+      EXPECT_EQ(std::isfinite(score), std::isfinite(reduced[i].Number(kScore)));
+      if (std::isfinite(score)) {
         // The mean of chi^2 of two degrees of freedom or more is below 16 but
         // for 1e-7.
         EXPECT_LT(score, 4);
+        // Both end in the same minimum, to a tenth of a standard error.
+        EXPECT_NEAR(reduced[i].Number(kScore), score, 0.1);
       }
     }
-    // Wrong regions are told.
+  }
+
+  void ExpectWrongModelsToBeTold() const {
     for (const TableRow& row : Of("wrong regions")) {
       EXPECT_EQ(row.Number("usable_share [1]"),
                 row.Text("assumption") == "right" ? 1 : 0)
           << row.Text("assumption");
     }
+    int num_of_wrong_laws = 0;
+    for (const TableRow& row : By("iterative-fe")) {
+      const std::string factor = row.Text("factor");
+      if (factor == "axis off by [degrees]" ||
+          factor == "E_L / E_T by E and nu") {
+        EXPECT_EQ(row.Number("usable_share [1]"), 0) << factor;
+        ++num_of_wrong_laws;
+      }
+    }
+    EXPECT_EQ(num_of_wrong_laws, 2);
   }
 
   void ExpectBoundsToFollow() const {
@@ -75,16 +105,34 @@ class MaterialsStudy : public testing::ProgramTest {
   }
 
   void ExpectTooFewAndTooManyToShow() const {
-    const std::vector<TableRow> models = Of("regions of the model");
-    ASSERT_EQ(models.size(), 12U);  // Four at each of three noises.
-    for (std::size_t i = 0; i < models.size(); i += 4) {
-      const TableRow& right = models[i + 2];
-      EXPECT_EQ(right.Text("assumption"), "right");
-      EXPECT_GT(models[i].Number(kPrediction), 10 * right.Number(kPrediction));
-      EXPECT_GT(models[i].Number(kPrediction),
-                models[i + 1].Number(kPrediction));
-      EXPECT_EQ(models[i].Number("usable_share [1]"), 0);
-      EXPECT_GT(models[i + 3].Number(kBoundOfE), 2 * right.Number(kBoundOfE));
+    for (const std::string factor :
+         {"regions of the model", "law of the model"}) {
+      const std::vector<TableRow> models = Of(factor);
+      const std::size_t right = models.size() - 2;
+      EXPECT_EQ(models[right].Text("assumption"), "right");
+      for (std::size_t i = 0; i < right; ++i) {
+        EXPECT_EQ(models[i].Text("assumption"), "too few");
+        EXPECT_EQ(models[i].Number("usable_share [1]"), 0);
+        EXPECT_GT(models[i].Number(kPrediction),
+                  10 * models[right].Number(kPrediction));
+      }
+      EXPECT_EQ(models.back().Text("assumption"), "too many");
+      EXPECT_GT(models.back().Number(kBoundOfE),
+                2 * models[right].Number(kBoundOfE));
+    }
+  }
+
+  void ExpectMerging() const {
+    for (const TableRow& row : rows_) {
+      if (row.Text("estimator") == "iterative-fe merged") {
+        const double left = row.Number("estimated_parameters [1]");
+        const double of_model = row.Number("parameters [1]");
+        if (row.Text("assumption") == "right") {
+          EXPECT_EQ(left, of_model);
+        } else {
+          EXPECT_LT(left, of_model);
+        }
+      }
     }
   }
 
@@ -95,8 +143,10 @@ TEST_F(MaterialsStudy, FindsWhatFollowsFromTheory) {
   Succeed("study --name=materials --out=. --quick");
   rows_ = ReadTable(folder_ / "materials_cells.csv");
   ExpectTrueErrors();
+  ExpectWrongModelsToBeTold();
   ExpectBoundsToFollow();
   ExpectTooFewAndTooManyToShow();
+  ExpectMerging();
 }
 
 }  // namespace
