@@ -145,8 +145,8 @@ void Disturb(const std::string& source, const MeasurementErrors& errors,
 /// are modelled, as the measurement.
 std::string MeasuredScene(const std::string& source,
                           const MeasurementErrors& errors,
-                          const Solution& solution,
-                          const std::vector<int>& file_order, Scene& scene) {
+                          const Solution& solution, SceneReading& reading) {
+  Scene& scene = reading.scene;
   const Mesh& mesh = scene.mesh;
   std::mt19937_64 generator(FLAGS_seed);
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
@@ -158,7 +158,11 @@ std::string MeasuredScene(const std::string& source,
             generator, displacement);
     scene.load_cases[k].displacement = displacement;
   }
-  return VtuContent(FLAGS_out, mesh, SceneFields(scene), file_order);
+  Fields fields = SceneFields(scene);
+  for (const FileArray& axes : reading.axis_arrays) {
+    fields.cell.push_back({axes.name, axes.values});
+  }
+  return VtuContent(FLAGS_out, mesh, fields, reading.file_order);
 }
 
 /// The table of --points random points, or of all nodes of the scene in the
@@ -267,8 +271,7 @@ int RunSimulate(const std::vector<std::string>& arguments) {
   files.Add(FLAGS_out, WritesTable()
                            ? MeasuredPoints(source, errors, solution,
                                             reading.file_order, scene, modelled)
-                           : MeasuredScene(source, errors, solution,
-                                           reading.file_order, scene));
+                           : MeasuredScene(source, errors, solution, reading));
   progress.reset();
   WriteStandardOutput(forces);
   files.Commit();

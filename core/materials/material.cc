@@ -9,6 +9,7 @@
 #include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/materials/laws.h"
 #include "elastimate/core/materials/material_frames.h"
+#include "elastimate/core/materials/stiffness_factors.h"
 
 namespace elastimate {
 namespace {
@@ -75,6 +76,28 @@ void ValidateWhatIsGiven(const Law& law, const Material& material,
                                   bounded.name +
                                   "; the first must be the smaller one");
     }
+  }
+}
+
+// Of a material of which all is known.
+void RequirePositiveDefinite(const Law& law, const Material& material,
+                             SectionModel model, const std::string& name) {
+  if (material.known.size() != law.Parameters().size()) {
+    return;
+  }
+  Eigen::VectorXd parameters(Eigen::Index(material.known.size()));
+  for (Eigen::Index i = 0; i < parameters.size(); ++i) {
+    const auto is_this = [&](const KnownParameter& known) {
+      return known.name == law.Parameters()[std::size_t(i)].name;
+    };
+    parameters(i) =
+        std::find_if(material.known.begin(), material.known.end(), is_this)
+            ->value;
+  }
+  if (!IsStiffnessPositiveDefinite(law, parameters, model)) {
+    throw std::invalid_argument(name +
+                                " gives known parameters of a stiffness that "
+                                "is not positive definite; correct them");
   }
 }
 
@@ -189,6 +212,7 @@ void ValidateMaterials(const std::vector<Material>& materials,
                                   "; its laws are " + LawNames(model));
     }
     ValidateWhatIsGiven(*law, materials[i], NameOf(i));
+    RequirePositiveDefinite(*law, materials[i], model, NameOf(i));
   }
   ValidateRegions(materials, mesh);
   ValidateAxes(materials, mesh);

@@ -76,6 +76,14 @@ Eigen::MatrixXd ModuliOfFactorsJacobian(const std::vector<BlockEntry>& entries,
   return jacobian;
 }
 
+bool IsStiffnessPositiveDefinite(const Law& law,
+                                 const Eigen::VectorXd& parameters,
+                                 SectionModel model) {
+  return law.BlockEntries().empty() ||
+         FactorsOfModuli(law.BlockEntries(), law.Moduli(parameters, model))
+             .allFinite();
+}
+
 Eigen::VectorXd FactorsOfModuli(const std::vector<BlockEntry>& entries,
                                 const Eigen::VectorXd& moduli) {
   const Eigen::Index size = NumModes(entries);

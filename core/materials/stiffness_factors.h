@@ -22,6 +22,12 @@ Eigen::VectorXd ModuliOfFactors(const std::vector<BlockEntry>& entries,
 Eigen::MatrixXd ModuliOfFactorsJacobian(const std::vector<BlockEntry>& entries,
                                         const Eigen::VectorXd& factors);
 
+/// Whether the stiffness of a law at these parameters is positive definite, as
+/// that of an isotropic one in its range is.
+bool IsStiffnessPositiveDefinite(const Law& law,
+                                 const Eigen::VectorXd& parameters,
+                                 SectionModel model);
+
 /// x of theta; not numbers where the stiffness is not positive definite.
 Eigen::VectorXd FactorsOfModuli(const std::vector<BlockEntry>& entries,
                                 const Eigen::VectorXd& moduli);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "elastimate/core/materials/material_parameters.h"
+#include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
@@ -44,6 +45,22 @@ void CheckPlan(const Scene& scene, const std::vector<CandidateLoad>& candidates,
   if (!why_not_held.empty()) {
     throw std::invalid_argument(why_not_held);
   }
+}
+
+// Something has to say how large displacements are.
+void RequireLoads(const Scene& scene) {
+  const Eigen::MatrixXd forces = AssembleLoadCases(scene);
+  for (Eigen::Index k = 0; k < forces.cols(); ++k) {
+    const Supports& supports = SupportsOf(scene, k);
+    if (IsMeasured(scene.load_cases[k]) || !forces.col(k).isZero(0) ||
+        (supports.held && supports.displacement.array() != 0).any() ||
+        supports.unknown.any()) {
+      return;
+    }
+  }
+  throw std::invalid_argument(
+      "all loads are zero and no support is displaced, so that nothing moves; "
+      "give the load case loads");
 }
 
 // The load cases of the scene, and behind them the candidates.
@@ -158,6 +175,7 @@ LoadPlan PlanLoads(const Scene& scene,
                    SolverKind solver) {
   ValidateScene(scene);
   CheckPlan(scene, candidates, parameters, relative_noise);
+  RequireLoads(scene);
   LoadPlan plan;
   const MaterialParameters of_scene = ParametersOf(scene);
   const Eigen::VectorXd units = of_scene.UnitsOfErrors(parameters);

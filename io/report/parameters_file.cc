@@ -7,6 +7,7 @@
 
 #include "elastimate/core/materials/laws.h"
 #include "elastimate/core/materials/material_parameters.h"
+#include "elastimate/core/materials/stiffness_factors.h"
 #include "elastimate/io/text/input_error.h"
 #include "elastimate/io/text/json_value.h"
 #include "elastimate/io/text/printable.h"
@@ -36,13 +37,35 @@ std::vector<long long> RegionsOf(const Scene& scene, std::size_t material) {
                                       scene.materials[material].regions.end());
 }
 
-std::string Describe(const MaterialParameters::Parameter& parameter,
-                     const std::vector<long long>& regions) {
-  std::string text(parameter.law_parameter->name);
+std::string OfRegions(const std::vector<long long>& regions) {
+  std::string text;
   for (std::size_t i = 0; i < regions.size(); ++i) {
     text += (i == 0 ? " of region " : ", ") + std::to_string(regions[i]);
   }
   return text;
+}
+
+std::string Describe(const MaterialParameters::Parameter& parameter,
+                     const std::vector<long long>& regions) {
+  return std::string(parameter.law_parameter->name) + OfRegions(regions);
+}
+
+void RequirePositiveDefinite(const std::filesystem::path& path,
+                             const Scene& scene,
+                             const MaterialParameters& parameters,
+                             const Eigen::VectorXd& values) {
+  for (std::size_t i = 0; i < parameters.NumMaterials(); ++i) {
+    const Law& law = parameters.LawOf(i);
+    if (!IsStiffnessPositiveDefinite(
+            law,
+            values.segment(parameters.FirstParameter(i),
+                           Eigen::Index(law.Parameters().size())),
+            parameters.Model())) {
+      ThrowInputError(path, "the stiffness" + OfRegions(RegionsOf(scene, i)) +
+                                " that its parameters make is not positive "
+                                "definite; correct them");
+    }
+  }
 }
 
 }  // namespace
@@ -93,6 +116,7 @@ Eigen::VectorXd ReadParameters(const std::filesystem::path& path,
                     "; add it to \"parameters\"");
     }
   }
+  RequirePositiveDefinite(path, scene, parameters, values);
   return values;
 }
 

@@ -109,6 +109,10 @@ LoadCase ReadLoadCase(const MeshFile& mesh, int number,
   if (HasOwnSupports(mesh, number)) {
     load_case.supports = ReadSupports(mesh, number);
   }
+  if (const auto* observed = FindNodeArray(mesh, "observed" + suffix, true)) {
+    load_case.observed = ToComponentMask(
+        mesh.path, "the point array 'observed" + suffix + "'", mesh, *observed);
+  }
   const std::string name = "displacement" + suffix;
   const Eigen::MatrixXd* displacement = FindNodeArray(mesh, name, false);
   if (displacement == nullptr) {
@@ -116,10 +120,6 @@ LoadCase ReadLoadCase(const MeshFile& mesh, int number,
       ThrowMissing(mesh, name);
     }
     return load_case;
-  }
-  if (const auto* observed = FindNodeArray(mesh, "observed" + suffix, true)) {
-    load_case.observed = ToComponentMask(
-        mesh.path, "the point array 'observed" + suffix + "'", mesh, *observed);
   }
   load_case.displacement = VectorField(
       mesh.path, "the point array '" + name + "'", mesh, *displacement,

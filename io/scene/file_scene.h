@@ -22,6 +22,8 @@ struct FileScene {
   /// Of each load case, where its measurement stands, in the order of nodes or
   /// of points; empty where that is no text.
   std::vector<std::vector<FileLines>> measured_lines;
+  /// The cell arrays that materials have axes from.
+  std::vector<FileArray> axis_arrays;
 };
 
 /// The regions from the cell array `region`; empty when there is none.  Throws

@@ -1,6 +1,7 @@
 #include "elastimate/io/scene/json_materials.h"
 
 #include <limits>
+#include <set>
 #include <string>
 
 #include "elastimate/core/materials/laws.h"
@@ -132,6 +133,32 @@ std::vector<Material> ReadMaterials(const JsonValue& document,
     }
   }
   return materials;
+}
+
+std::vector<FileArray> AxisArrays(const JsonValue& document,
+                                  const MeshFile& mesh) {
+  std::set<std::string> names;
+  const auto add = [&names](const JsonValue& axis) {
+    if (axis.IsString()) {
+      names.insert(axis.String());
+    }
+  };
+  if (document.Has("materials")) {
+    for (const JsonValue& material : document.At("materials").Items()) {
+      if (material.Has("axis")) {
+        add(material.At("axis"));
+      } else if (material.Has("axes")) {
+        for (const JsonValue& axis : material.At("axes").Items()) {
+          add(axis);
+        }
+      }
+    }
+  }
+  std::vector<FileArray> arrays;
+  for (const std::string& name : names) {
+    arrays.push_back({name, *FindArray(mesh.element_arrays, name)});
+  }
+  return arrays;
 }
 
 }  // namespace elastimate

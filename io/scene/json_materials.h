@@ -20,6 +20,11 @@ bool IsInPlane(const Eigen::MatrixXd& axis, int dimension);
 std::vector<Material> ReadMaterials(const JsonValue& document,
                                     const MeshFile& mesh);
 
+/// The cell arrays that these materials have axes from, each once.
+/// Precondition: ReadMaterials takes the document.
+std::vector<FileArray> AxisArrays(const JsonValue& document,
+                                  const MeshFile& mesh);
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_IO_SCENE_JSON_MATERIALS_H_

@@ -141,6 +141,7 @@ FileScene ReadJsonScene(const std::filesystem::path& path,
   file_scene.scene.mesh =
       SceneMesh(mesh, SectionOf(mesh, choice), mesh.elements);
   file_scene.scene.materials = ReadMaterials(document, mesh);
+  file_scene.axis_arrays = AxisArrays(document, mesh);
   const std::vector<JsonValue> cases = document.At("cases").Items();
   if (cases.empty()) {
     document.At("cases").Fail("is empty; give at least one load case");

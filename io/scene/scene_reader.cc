@@ -252,16 +252,36 @@ void NoteMesh(const std::filesystem::path& path, const Scene& scene,
   }
 }
 
-/// Gives the scene the materials that were chosen for its regions.
-void ChooseMaterials(const std::filesystem::path& path, RegionChoice choice,
-                     Scene& scene) {
-  if (choice == RegionChoice::kOne) {
+/// Whether these materials say more than which regions they fill.
+bool SayMore(const std::vector<Material>& materials) {
+  return std::any_of(
+      materials.begin(), materials.end(), [](const Material& material) {
+        return !(material == Material{"isotropic", material.regions, {}, {}});
+      });
+}
+
+/// Gives the scene, which `path` describes, the materials that were chosen for
+/// its regions, which `mesh_path` has.
+void ChooseMaterials(const std::filesystem::path& path,
+                     const std::filesystem::path& mesh_path,
+                     RegionChoice choice, Scene& scene,
+                     std::vector<std::string>& notices) {
+  const bool is_one = choice == RegionChoice::kOne;
+  if ((is_one || choice == RegionChoice::kEach) && SayMore(scene.materials)) {
+    notices.push_back(PrintablePath(path) +
+                      ": the laws, axes, known parameters and bounds of its "
+                      "materials are left out, because " +
+                      (is_one ? "all regions share one isotropic material"
+                              : "each region has an isotropic material of its "
+                                "own"));
+  }
+  if (is_one) {
     scene.materials.clear();
   } else if (choice == RegionChoice::kEach ||
              (choice == RegionChoice::kGivenOrEach &&
               scene.materials.empty())) {
     if (scene.mesh.regions.size() == 0) {
-      ThrowInputError(path,
+      ThrowInputError(mesh_path,
                       "there are no regions to have a material each; add the "
                       "cell array 'region'");
     }
@@ -330,7 +350,7 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
   if (file_scene.frames) {
     reading.frames = nodes.Filter(*file_scene.frames);
   }
-  ChooseMaterials(mesh.path, regions, scene);
+  ChooseMaterials(path, mesh.path, regions, scene, notices);
   ChooseLaw(path, law, scene);
   try {
     ValidateScene(scene);
@@ -433,6 +453,9 @@ SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
   for (const std::filesystem::path& path : paths) {
     FileScene file_scene = ReadFileScene(path, measurement, section);
     const std::filesystem::path mesh_path = file_scene.mesh.path;
+    if (&path == &paths.front()) {
+      reading.axis_arrays = file_scene.axis_arrays;
+    }
     std::vector<int> file_order;
     Scene scene = FinishScene(path, std::move(file_scene), regions, law,
                               reading, file_order);

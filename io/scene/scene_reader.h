@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "elastimate/core/scene/scene.h"
+#include "elastimate/io/mesh/mesh_file.h"
 #include "elastimate/io/scene/frame_series.h"
 #include "elastimate/io/text/file_lines.h"
 
@@ -52,6 +53,8 @@ struct SceneReading {
   /// Of each load case, where its measurement stands, in the order of nodes or
   /// of points; empty where that is no text.
   std::vector<std::vector<FileLines>> measured_lines;
+  /// The cell arrays that the scene.json names as axes of materials.
+  std::vector<FileArray> axis_arrays;
 };
 
 /// Reads a scene from files whose arrays make it up (.vtu, .vtk, or .msh with

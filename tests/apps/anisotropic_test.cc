@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "elastimate/io/examples/example_scenes.h"
+#include "elastimate/io/scene/scene_reader.h"
 #include "elastimate/io/vtk/vtu_writer.h"
 #include "tests/program.h"
 
@@ -108,6 +109,66 @@ TEST_F(AnisotropicCommand, TakesAnAxisFromACellArray) {
   ExpectFibres(
       Succeed("estimate measured.json --estimator=iterative-fe --json=-")
           .Json());
+}
+
+// Of a scene.json whose axes are a cell array, and of a mesh file.
+TEST_F(AnisotropicCommand, SimulatesWhatCanBeReadAgain) {
+  const Scene scene = CuboidScene({});
+  const Mesh& mesh = scene.mesh;
+  Fields fields = SceneFields(scene);
+  Eigen::MatrixXd fibre = Eigen::MatrixXd::Ones(3, mesh.NumElements());
+  fibre.row(2).setLinSpaced(-1, 1);
+  const Eigen::RowVectorXd seen =
+      (mesh.nodes.row(0).array() > 0.3).cast<double>();
+  fields.cell.push_back({"fibre", fibre});
+  fields.point.push_back({"observed", seen});
+  WriteVtu(folder_ / "block.vtu", mesh, fields);
+  const auto write_scene = [&](const std::string& of_mesh) {
+    testing::WriteText(
+        folder_ / "scene.json",
+        R"({"mesh": ")" + of_mesh + R"(", "materials":
+            [{"law": "transversely_isotropic", "axis": "fibre"}],
+            "supports": [{"nodes": {"box": [[-1,-1,-1],[2,2,1e-9]]}}],
+            "cases": [{)" +
+            (of_mesh == "m.vtu" ? R"("displacement": {"array": "displacement"},
+                                     )"
+                                : "") +
+            R"("loads": [{"type": "nodal_force", "nodes": "free",
+                          "value": [1, 2, -30]}]}]})");
+  };
+  write_scene("block.vtu");
+  Succeed("simulate scene.json --parameters=fibres.json --out=m.vtu");
+  write_scene("m.vtu");
+  ExpectFibres(
+      Succeed("estimate scene.json --estimator=iterative-fe --json=-").Json());
+
+  Succeed("simulate block.vtu --youngs=1e4 --nu=0.3 --out=seen.vtu");
+  const Scene measured =
+      ReadScene({folder_ / "seen.vtu"}, Measurement::kRequired).scene;
+  const ComponentMask& observed = measured.load_cases[0].observed;
+  ASSERT_EQ(observed.cols(), mesh.NumNodes());
+  for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
+    EXPECT_EQ(observed(0, node), seen(node) != 0);
+  }
+}
+
+TEST_F(AnisotropicCommand, SaysWhichParametersAreOfNoMaterial) {
+  testing::WriteText(folder_ / "wrong.json",
+                     ParametersFile({{"youngs_modulus_L", 1e4},
+                                     {"youngs_modulus_T", 9e4},
+                                     {"poisson_ratio_LT", 0.5},
+                                     {"poisson_ratio_TT", 0.4},
+                                     {"shear_modulus_LT", 1.5e4}})
+                         .dump());
+  Succeed("generate cuboid --out=block.vtu");
+  for (const std::string command :
+       {"simulate block.vtu --out=m.vtu", "plan block.vtu"}) {
+    Refuse(command +
+               " --material=transversely_isotropic --axis=0,0,1 "
+               "--parameters=wrong.json",
+           "wrong.json: the stiffness that its parameters make is not positive "
+           "definite");
+  }
 }
 
 TEST_F(AnisotropicCommand, EstimatesALamina) {

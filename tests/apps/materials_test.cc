@@ -1,5 +1,6 @@
 // Several materials by the command line.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -12,6 +13,8 @@ namespace elastimate {
 namespace {
 
 using Json = nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 class MaterialsCommand : public testing::ProgramTest {
  protected:
@@ -177,6 +180,30 @@ TEST_F(MaterialsCommand, TakesWhatTheSceneKnows) {
   EXPECT_TRUE(known["parameters"][5]["known"]);
   EXPECT_EQ(known["parameters"][5]["value"], 0.2);
   Refuse("estimate scene.json", "bounds of a material");
+}
+
+TEST_F(MaterialsCommand, SaysWhichMaterialsItLeavesOut) {
+  const auto write_scene = [&](const std::string& materials) {
+    testing::WriteText(folder_ / "scene.json",
+                       R"({"mesh": "block.vtu", "supports": [{"nodes":
+             {"box": [[-1,-1,-1],[2,2,1e-9]]}}],
+            "cases": [{"loads": [{"type": "nodal_force", "nodes": "free",
+                                  "value": [0, 0, -1]}]}],
+            "materials": )" +
+                           materials + "}");
+  };
+  const std::string simulate =
+      "simulate scene.json --youngs=1e4 --nu=0.3 --out=m.vtu --regions=";
+  const char said[] = "scene.json: the laws, axes, known parameters and bounds";
+  write_scene(R"([{"region": [1, 2, 3], "law": "transversely_isotropic",
+                   "axis": [0, 0, 1]}])");
+  EXPECT_THAT(Succeed(simulate + "each").errors, HasSubstr(said));
+  EXPECT_THAT(Succeed(simulate + "one").errors, HasSubstr(said));
+  write_scene(R"([{"region": 1, "known": {"poisson_ratio": 0.2}},
+                  {"region": [2, 3]}])");
+  EXPECT_THAT(Succeed(simulate + "each").errors, HasSubstr(said));
+  write_scene(R"([{"region": [1, 2, 3]}])");
+  EXPECT_THAT(Succeed(simulate + "each").errors, Not(HasSubstr(said)));
 }
 
 TEST_F(MaterialsCommand, NamesWhatIsWrong) {

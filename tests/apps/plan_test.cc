@@ -193,6 +193,12 @@ TEST_F(PlanCommand, TakesPlanarScenes) {
   EXPECT_EQ(
       NamesOf(Succeed("plan plate.vtu --json=-").Json()),
       std::set<std::string>({"force along x", "force along y", "moment"}));
+  // A box in the plane.
+  EXPECT_EQ(
+      NamesOf(Succeed("plan plate.vtu --surface=10,0,10,10 --json=-").Json())
+          .size(),
+      3U);
+  Refuse("plan plate.vtu --surface=10,0,0,10,10,0", "four finite numbers");
 }
 
 TEST_F(PlanCommand, RefusesWrongInput) {
@@ -209,6 +215,8 @@ TEST_F(PlanCommand, RefusesWrongInput) {
   Refuse("plan cuboid.vtu --surface=5,5,5,6,6,6", "no face of the surface");
   Refuse("plan cuboid.vtu --json=cuboid.vtu", "cuboid.vtu");
   Refuse("plan cuboid.vtu --estimator=auto", "--estimator");
+  WriteBar({{{"loads", Json::array()}}});
+  Refuse("plan bar.json --surface=4,0,0,4,1,1", "bar.json: all loads are zero");
   // Held ends that move, and no load that has a surface.
   Succeed("generate plate --cells=6 --ends=grips --out=grips.vtu");
   Refuse("plan grips.vtu", "--surface");
