@@ -10,6 +10,7 @@ it, of the same name, or several of the names that the function gives them.  Nee
 import csv
 import json
 import pathlib
+import re
 import sys
 from collections import defaultdict
 
@@ -567,74 +568,115 @@ def measurement_cells(path):
     return figure
 
 
-MODEL_FACTOR = "regions of the model"
 MATERIALS_ROWS = (
     ("error_over_cramer_rao [1]", "error of the parameters\nover Cramér-Rao bound [1]", "log"),
     ("coverage [1]", "intervals that hold\nthe truth [1]", "linear"),
     ("dishonest_share [1]", "trials that are\ndishonest [1]", "linear"),
     ("usable_share [1]", "trials that are\nusable [1]", "linear"),
+    ("prediction_error [1]", "error under another load\n(median) [1]", "log"),
     ("factorizations [1]", "factorisations\n(median) [1]", "symlog"),
     ("time [s]", "time\n(median) [s]", "log"),
 )
+LARGEST_SHOWN_PREDICTION_ERROR = 2  # What is beyond is left out.
+# Those of materials that are not alike in all directions.
+ANISOTROPY_FACTORS = ("E_L / E_T by five parameters", "E_L / E_T by E and nu",
+                      "E_L / E_T by 21 moduli", "axis off by [degrees]",
+                      "load cases of 21 moduli")
+# Those of one specimen by models of more and more parameters.
+MODEL_FACTORS = {"regions of the model": "four materials", "law of the model": "one bar of fibres"}
 
 
-def draw_materials_of_factors(rows):
+def draw_materials_of_factors(rows, title):
     """How well and how honestly several materials are estimated, for each factor."""
     factors = list(dict.fromkeys(row["factor"] for row in rows))
     figure, panels = plt.subplots(len(MATERIALS_ROWS), len(factors), sharey="row",
-                                  figsize=(1.7 * len(factors), 1.7 * len(MATERIALS_ROWS)))
+                                  figsize=(1.8 * len(factors), 1.6 * len(MATERIALS_ROWS)))
     for number, (column, label, scale) in enumerate(MATERIALS_ROWS):
         line = panels[number]
         is_last = number + 1 == len(panels)
         for axes, factor in zip(line, factors):
             own = [row for row in rows if row["factor"] == factor]
             names = list(dict.fromkeys(
-                row["level"] if row["assumption"] == "right" else row["assumption"]
+                row["assumption"] if row["factor"] == "wrong regions" else row["level"]
                 for row in own))
             for (estimator,), trials in group(own, "estimator").items():
+                # `auto` is often one of the others, which shall show below it.
                 axes.plot(range(len(trials)), numbers(trials, column), label=estimator,
-                          **STYLES[estimator])
+                          **{**STYLES[estimator],
+                             "linewidth": 0.8 if estimator == "auto" else 1.8})
             axes.set_yscale(scale)
-            axes.margins(x=0.15)
+            axes.set_xlim(-0.5, len(names) - 0.5)
             axes.set_xticks(range(len(names)), names if is_last else [""] * len(names),
                             rotation=90, fontsize=7)
             if number == 0:
-                axes.set_title(factor.replace(" of ", "\nof ", 1), fontsize=7)
-        line[0].set_ylabel(label, fontsize=8)
+                axes.set_title(re.sub(" (of|by|at|\\[)", r"\n\1", factor, count=1), fontsize=7)
+        line[0].set_ylabel(label, fontsize=7)
+        if column.startswith("prediction"):
+            line[0].set_ylim(top=LARGEST_SHOWN_PREDICTION_ERROR)
     for axes in panels[0]:
         axes.axhline(1, color="black", linewidth=0.8, linestyle=":")
     for axes in panels[1]:
         axes.axhline(0.95, color="black", linewidth=0.8, linestyle=":")
-    finish(figure, "Several materials: what the number of regions, their contrast, the noise and"
-           " the loads do")
+    finish(figure, title, columns=5)
     return figure
+
+
+def draw_model(axes, own, x, y, style, label):
+    """Models of one specimen at one noise, those with a cross on them refused in half of the
+    trials or more."""
+    axes.plot(x, y, label=label, **style)
+    refused = numbers(own, "usable_share [1]") <= 0.5
+    axes.plot(x[refused], y[refused], "kx", markersize=7, label="refused in half of the trials or more")
 
 
 def draw_materials_of_models(rows):
     """Too few parameters, the right ones, too many: what that does to the prediction of another
     load, to the parameters themselves, and to the time."""
-    figure, (prediction, parameters, time) = plt.subplots(1, 3, figsize=(11, 3.4))
-    rows = [row for row in rows if row["estimator"] == "iterative-fe"]
-    for number, ((noise,), own) in enumerate(group(rows, "noise [1]").items()):
-        count = numbers(own, "parameters [1]")
-        style = {"color": f"C{number}", "marker": "os^"[number]}
-        label = f"noise {100 * float(noise):g} %"
-        prediction.plot(count, 100 * numbers(own, "prediction_error [1]"), label=label, **style)
-        parameters.plot(count, 100 * numbers(own, "stiffness_cramer_rao [1]"), label=label,
-                        **style)
-        time.plot(count, numbers(own, "time [s]"), label=label, **style)
+    figure, lines = plt.subplots(len(MODEL_FACTORS), 3, figsize=(11, 6.4))
+    for (prediction, parameters, time), (factor, title) in zip(lines, MODEL_FACTORS.items()):
+        of_factor = [row for row in rows if row["factor"] == factor]
+        for number, ((noise,), of_noise) in enumerate(group(of_factor, "noise [1]").items()):
+            own = [row for row in of_noise if row["estimator"] == "reduced-fe"]
+            count = numbers(own, "parameters [1]")
+            error = 100 * numbers(own, "prediction_error [1]")
+            seconds = numbers(own, "time [s]")
+            style = {"color": f"C{number}", "marker": "os^"[number]}
+            label = f"reduced-fe, noise {100 * float(noise):g} %"
+            draw_model(prediction, own, count, error, style, label)
+            draw_model(time, own, seconds, error, style, label)
+            parameters.plot(count, 100 * numbers(own, "stiffness_cramer_rao [1]"), label=label,
+                            **style)
+            for place in zip(count, seconds, error):
+                time.annotate(f"{place[0]:g}", place[1:], fontsize=7, xytext=(4, 3),
+                              textcoords="offset points")
+                if number == 1:
+                    prediction.annotate(f"{place[1]:.2g} s", place[::2], fontsize=7, xytext=(3, 5),
+                                        textcoords="offset points")
+            merged = [row for row in of_noise if row["estimator"] == "iterative-fe merged"
+                      and row["assumption"] == "too many"]
+            for axes, x in ((prediction, "estimated_parameters [1]"), (time, "time [s]")):
+                draw_model(axes, merged, numbers(merged, x),
+                           100 * numbers(merged, "prediction_error [1]"),
+                           {"color": style["color"], "linestyle": "", "marker": "P",
+                            "markerfacecolor": "none", "markersize": 8},
+                           "iterative-fe, too many merged")
         right = count[[row["assumption"] == "right" for row in own]][0]
-    for axes in (prediction, parameters, time):
-        axes.set(xscale="log", yscale="log", xlabel="parameters of the model [1]")
-        axes.set_xticks(count, [f"{value:g}" for value in count])
-        axes.minorticks_off()
-        axes.axvline(right, color="black", linewidth=0.8, linestyle=":")
-        axes.annotate("right", (right, 0.97), xycoords=("data", "axes fraction"), fontsize=7,
-                      xytext=(3, 0), textcoords="offset points", va="top")
-    prediction.set_ylabel("error of the displacement\nunder another load (median) [%]")
-    parameters.set_ylabel("Cramér-Rao bound of $E$\nof a region (rms) [%]")
-    time.set_ylabel("time (median) [s]")
-    finish(figure, "Four materials, taken for fewer and for more, by iterative-fe", columns=3)
+        for axes in (prediction, parameters):
+            axes.set(xscale="log", yscale="log", xlabel="parameters of the model [1]")
+            axes.set_xticks(count, [f"{value:g}" for value in count])
+            axes.axvline(right, color="black", linewidth=0.8, linestyle=":")
+            axes.annotate("right", (right, 0.97), xycoords=("data", "axes fraction"), fontsize=7,
+                          xytext=(3, 0), textcoords="offset points", va="top")
+        time.set(xscale="log", yscale="log", xlabel="time of a fit (median) [s]")
+        for axes in (prediction, parameters, time):
+            axes.minorticks_off()
+            axes.margins(0.12)
+        prediction.set_ylabel(f"{title}: error of the displacement\nunder another load (median) [%]",
+                              fontsize=8)
+        parameters.set_ylabel("Cramér-Rao bound of\nstiffnesses (rms) [%]", fontsize=8)
+        time.set_ylabel("the same error, by models\nof as many parameters [%]", fontsize=8)
+    finish(figure, "Model no more than a scene needs: too few parameters, the right ones, too many",
+           columns=5)
     return figure
 
 
@@ -642,9 +684,13 @@ def materials_cells(path):
     rows = read(path)
     return {
         "materials_cells": draw_materials_of_factors(
-            [row for row in rows if row["factor"] != MODEL_FACTOR]),
-        "materials_models": draw_materials_of_models(
-            [row for row in rows if row["factor"] == MODEL_FACTOR]),
+            [row for row in rows if row["factor"] not in (*MODEL_FACTORS, *ANISOTROPY_FACTORS)],
+            "Several materials: what the number of regions, their contrast, the noise and the loads"
+            " do"),
+        "materials_anisotropy": draw_materials_of_factors(
+            [row for row in rows if row["factor"] in ANISOTROPY_FACTORS],
+            "A bar of fibres: what their stiffness, the law, a wrong axis and the loads do"),
+        "materials_models": draw_materials_of_models(rows),
     }
 
 
