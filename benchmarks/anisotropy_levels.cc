@@ -1,5 +1,6 @@
 #include "benchmarks/anisotropy_levels.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -189,7 +190,7 @@ void AddLaws(std::vector<MaterialLevel>& levels) {
           Bar("law of the model", std::string(law), kUsualRatio, kUsualCases),
           law);
       level.noise = percent / 100;
-      level.is_in_quick = percent == 1 && law != AnisotropicLaw::kName;
+      level.is_in_quick = percent == 0.1 && law != AnisotropicLaw::kName;
       levels.push_back(level);
     }
   }

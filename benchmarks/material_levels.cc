@@ -80,6 +80,7 @@ Eigen::VectorXd ParametersFrom(
 // Stiff and soft in turn.
 std::vector<IsotropicElasticity> Alternating(int count, double contrast) {
   std::vector<IsotropicElasticity> elasticities;
+  elasticities.reserve(std::size_t(count));
   for (int i = 0; i < count; ++i) {
     elasticities.push_back(i % 2 == 0
                                ? IsotropicElasticity{1e4, 0.3}
@@ -213,7 +214,7 @@ void AddModels(std::vector<MaterialLevel>& levels) {
                                     Pieces(count));
       level.level = std::to_string(count);
       level.is_also_merged = count >= 4;
-      level.is_in_quick = percent == 1 && count != 8;
+      level.is_in_quick = percent == 0.1 && count != 8;
       levels.push_back(level);
     }
   }

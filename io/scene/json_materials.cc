@@ -155,6 +155,7 @@ std::vector<FileArray> AxisArrays(const JsonValue& document,
     }
   }
   std::vector<FileArray> arrays;
+  arrays.reserve(names.size());
   for (const std::string& name : names) {
     arrays.push_back({name, *FindArray(mesh.element_arrays, name)});
   }
