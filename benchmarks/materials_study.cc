@@ -66,7 +66,7 @@ std::vector<MaterialMethod> MethodsFor(const MaterialLevel& level) {
     methods.push_back({name, name});
   }
   if (!IsOfMany(level)) {
-    // Which ends at reduced-fe for these, too, after longer.
+    // Left out of the others to save time, as its rungs are there.
     methods.push_back({"auto", "auto"});
   }
   if (level.is_also_merged) {
