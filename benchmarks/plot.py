@@ -32,6 +32,8 @@ STYLES = {
     "reduced-fe order 2": {"color": "#56B4E9", "marker": "D", "linestyle": "-"},
     "iterative-fe merged": {"color": "#D55E00", "marker": "P", "linestyle": "-"},
     "auto": {"color": "#000000", "marker": "*", "linestyle": "-"},
+    "reduced-fe huber": {"color": "#0072B2", "marker": "P", "linestyle": ":"},
+    "auto huber": {"color": "#CC79A7", "marker": "p", "linestyle": "-"},
     "Cramér-Rao bound": {"color": "#000000", "marker": "", "linestyle": ":"},
     "prediction": {"color": "#000000", "marker": "", "linestyle": "-."},
 }
@@ -486,8 +488,8 @@ def set_noise_axis(axes, deviations):
 
 def unseen_cells(path):
     rows, deviations = unseen_rows(path)
-    worlds = ("same mesh", "finer world")
-    figure, panels = plt.subplots(len(worlds), len(UNSEEN_SHARES), figsize=(10, 5.6),
+    worlds = ("same mesh", "finer world", "same mesh, outliers", "finer world, outliers")
+    figure, panels = plt.subplots(len(worlds), len(UNSEEN_SHARES), figsize=(10, 10.4),
                                   sharex=True, sharey="col")
     for line, world in zip(panels, worlds):
         for axes, (column, title) in zip(line, UNSEEN_SHARES):
@@ -516,6 +518,8 @@ def unseen_regret(path):
             "processor time [that of the cheapest]",
             "error, at least 0.01 [that of the cheapest]")):
         for (world,), own in group(rows, "world").items():
+            if world not in UNSEEN_WORLDS:
+                continue
             places = [deviations.index(float(row[DEVIATION])) for row in own]
             for share, line in (("median", "-"), ("90_percent", ":")):
                 axes.plot(places, numbers(own, f"{share}_{what}_ratio [1]"), linestyle=line,

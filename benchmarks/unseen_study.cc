@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +30,7 @@ constexpr std::array<double, 4> kPoissonRatios = {0, 0.3, 0.45, 0.49};
 constexpr std::array<double, 5> kDeviations = {0, 0.001, 0.01, 0.03, 0.1};
 constexpr int kReplicates = 2;
 constexpr int kMaxExperiments = 2;  // On one shape.
+constexpr double kOutliers = 0.03;  // Of the nodes, 20 to 100 sd of the noise.
 
 // Trilinear hexahedra lock beyond: at 0.45 those of this size are 0.5 to 1 %
 // too stiff, here less than half of that.
@@ -43,6 +45,8 @@ struct Method {
   std::unique_ptr<Estimator> estimator;
   int order = 1;
   bool is_costly = false;
+  Loss loss = Loss::kNone;
+  bool sees_outliers = false;
 };
 
 std::vector<Method> Methods() {
@@ -50,9 +54,14 @@ std::vector<Method> Methods() {
   for (const char* name : {"virtual-fields", "reduced-fe", "iterative-fe"}) {
     methods.push_back({name, MakeEstimator(name)});
   }
-  methods.push_back({"auto", MakeEstimator("auto"), 1, true});
+  methods.push_back(
+      {"auto", MakeEstimator("auto"), 1, true, Loss::kNone, true});
   methods.push_back(
       {"reduced-fe order 2", MakeEstimator("reduced-fe"), 2, true});
+  for (const char* name : {"reduced-fe", "auto"}) {
+    methods.push_back({std::string(name) + " huber", MakeEstimator(name), 1,
+                       true, Loss::kHuber, true});
+  }
   return methods;
 }
 
@@ -84,15 +93,22 @@ struct Setting {
   int poisson_ratio;
   int deviation;
   int replicate;
+  bool has_outliers = false;
+
+  std::string World() const {
+    return kWorldNames[world] + std::string(has_outliers ? ", outliers" : "");
+  }
 
   /// Another for each, the same in the quick study as in the full one.
   std::int64_t Seed() const {
+    constexpr std::int64_t kOfOutliers = 1'000'000;
     std::int64_t seed = shape;
     seed = seed * kMaxExperiments + experiment;
     seed = seed * kNumWorlds + world;
     seed = seed * std::int64_t(kPoissonRatios.size()) + poisson_ratio;
     seed = seed * std::int64_t(kDeviations.size()) + deviation;
-    return seed * kReplicates + replicate + 1;
+    seed = seed * kReplicates + replicate + 1;
+    return has_outliers ? kOfOutliers + seed : seed;
   }
 };
 
@@ -160,6 +176,21 @@ Eigen::Matrix2d Bound(const Scene& exact, int world,
                         truth, noise_sd);
 }
 
+Scene Noisy(const Scene& exact, const Setting& setting) {
+  const double deviation = kDeviations[setting.deviation];
+  if (!setting.has_outliers) {
+    return WithNoise(exact, deviation, setting.Seed());
+  }
+  MeasurementErrors errors;
+  errors.relative_noise = deviation;
+  errors.outliers = kOutliers;
+  std::mt19937_64 generator(setting.Seed());
+  Scene noisy = exact;
+  AddErrors(errors, noisy.mesh.nodes, noisy.supports.held, generator,
+            noisy.load_cases[0].displacement);
+  return noisy;
+}
+
 // The members of the error budget, each for E and nu.
 struct BudgetPart {
   const char* name;
@@ -185,7 +216,7 @@ class TrialsTable {
         specimen.shape.name,
         specimen.shape.experiments[setting.experiment].name,
         std::string(HalfName(specimen.shape.half)),
-        kWorldNames[setting.world],
+        setting.World(),
         kDeviations[setting.deviation],
         processor_seconds,
         std::int64_t{estimate.work.solves},
@@ -255,7 +286,7 @@ class TrialsTable {
 UnseenOutcome OutcomeOf(const Specimen& specimen, const Setting& setting,
                         const Trial& trial, double processor_seconds) {
   const Estimate& estimate = trial.estimate;
-  return {kWorldNames[setting.world],
+  return {setting.World(),
           std::string(HalfName(specimen.shape.half)),
           kDeviations[setting.deviation],
           estimate.estimator,
@@ -315,16 +346,24 @@ class UnseenStudy {
     for (const int deviation : extent_.deviations) {
       setting.deviation = deviation;
       const double size = kDeviations[deviation];
+      const Trial trial = {0, truth, size * size * bound, {}};
       for (int i = 0; i < (size == 0 ? 1 : kReplicates); ++i) {
         setting.replicate = i;
-        const std::int64_t seed = setting.Seed();
-        RunMethods(specimen, setting, WithNoise(exact, size, seed),
-                   {seed, truth, size * size * bound, {}});
+        RunMethods(specimen, setting, exact, trial);
+      }
+      if (size > 0 && setting.world != kHexahedra) {
+        Setting of_outliers = setting;
+        of_outliers.replicate = 0;
+        of_outliers.has_outliers = true;
+        RunMethods(specimen, of_outliers, exact, trial);
       }
     }
   }
 
   bool IsRun(const Method& method, const Setting& setting) const {
+    if (setting.has_outliers || method.loss != Loss::kNone) {
+      return setting.has_outliers && method.sees_outliers;
+    }
     // Quadratic elements are of no use where linear ones made the data.
     return (method.order == 1 || setting.world != kSameMesh) &&
            (!method.is_costly || extent_.has_all_costly ||
@@ -332,7 +371,9 @@ class UnseenStudy {
   }
 
   void RunMethods(const Specimen& specimen, const Setting& setting,
-                  const Scene& measured, Trial trial) {
+                  const Scene& exact, Trial trial) {
+    const Scene measured = Noisy(exact, setting);
+    trial.seed = setting.Seed();
     for (const Method& method : methods_) {
       if (!IsRun(method, setting)) {
         continue;
@@ -340,7 +381,9 @@ class UnseenStudy {
       const Scene scene =
           method.order == 2 ? QuadraticScene(measured) : measured;
       const double start = ProcessorSeconds();
-      trial.estimate = method.estimator->Run(scene, {});
+      EstimatorOptions options;
+      options.loss = method.loss;
+      trial.estimate = method.estimator->Run(scene, options);
       const double seconds = ProcessorSeconds() - start;
       trial.estimate.estimator = method.name;
       trials_.Add(specimen, setting, trial, seconds);
@@ -364,6 +407,9 @@ StudyResult RunUnseenStudy(bool is_quick, Progress& progress) {
       study.Tables(),
       {{"youngs_modulus [Pa]", kYoungsModulus},
        {"noise_law", "uniform"},
+       {"outliers",
+        "3 % of the nodes, by 20 to 100 standard deviations of the noise; "
+        "seen by auto without a loss, and with Huber's"},
        {"noise_seeds", "another for each measurement; column seed"},
        {"blas_threads", 1},
        {"intervals", "95 %; those of E over the true E"},

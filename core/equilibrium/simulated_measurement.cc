@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "elastimate/core/algebra/node_sums.h"
+#include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/equilibrium/forward_model.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/loads.h"
@@ -113,21 +114,34 @@ std::vector<Eigen::Index> FreePoints(const ComponentMask& held) {
   return points;
 }
 
+constexpr const char* kSingular =
+    "the stiffness matrix is singular to working precision";
+
+// Those of all load cases side by side.
+void SetDisplacements(const Eigen::MatrixXd& displacements, Scene& scene) {
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    scene.load_cases[k].displacement =
+        displacements.col(Eigen::Index(k))
+            .reshaped(scene.mesh.Dimension(), scene.mesh.NumNodes());
+  }
+}
+
 }  // namespace
 
 void Measure(const IsotropicElasticity& elasticity, Scene& scene) {
   ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene));
   if (!model.SetPoissonRatio(elasticity.poisson_ratio)) {
-    throw std::runtime_error(
-        "the stiffness matrix is singular to working precision");
+    throw std::runtime_error(kSingular);
   }
-  const Eigen::MatrixXd displacement =
-      model.Displacement(elasticity.youngs_modulus);
-  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-    scene.load_cases[k].displacement =
-        displacement.col(Eigen::Index(k))
-            .reshaped(scene.mesh.Dimension(), scene.mesh.NumNodes());
+  SetDisplacements(model.Displacement(elasticity.youngs_modulus), scene);
+}
+
+void MeasureMaterials(const Eigen::VectorXd& parameters, Scene& scene) {
+  Equilibrium model(scene, SolverKind::kAutomatic);
+  if (!model.Solve(model.Forces().Parameters().Moduli(parameters))) {
+    throw std::runtime_error(kSingular);
   }
+  SetDisplacements(model.Displacement(), scene);
 }
 
 void MeasureInFinerWorld(const IsotropicElasticity& elasticity, Scene& scene) {

@@ -21,7 +21,11 @@ enum class NoiseLaw {
 /// when the stiffness is singular to working precision.  One factorisation.
 void Measure(const IsotropicElasticity& elasticity, Scene& scene);
 
-/// The same with quadratic tetrahedra on the mesh of linear ones
+/// The same of the materials of the scene, with the parameters of all of them,
+/// one behind the other (MaterialParameters).
+void MeasureMaterials(const Eigen::VectorXd& parameters, Scene& scene);
+
+/// Measure with quadratic tetrahedra on the mesh of linear ones
 /// (QuadraticScene), of which the displacements of the vertices are measured.
 void MeasureInFinerWorld(const IsotropicElasticity& elasticity, Scene& scene);
 

@@ -127,11 +127,11 @@ bool IsDishonestByStandardErrors(const TableRow& row) {
 
 // In a finer world nine of ten intervals do at least, and one trial of 200 is
 // dishonest at most, in the same sense.
-void ExpectHonestyInTheFinerWorld(const Rows& rows) {
-  for (const char* estimator : {"reduced-fe", "iterative-fe", "auto"}) {
+void ExpectHonesty(const Rows& rows, const std::string& world,
+                   const std::vector<std::string>& estimators) {
+  for (const std::string& estimator : estimators) {
     const Rows all = Where(rows, [&](const TableRow& row) {
-      return row.Text("world") == "finer world" &&
-             row.Text("estimator") == estimator;
+      return row.Text("world") == world && row.Text("estimator") == estimator;
     });
     const int num_honest = Count(all, [](const TableRow& row) {
       return !IsDishonestByStandardErrors(row);
@@ -284,7 +284,10 @@ TEST_F(UnseenStudy, FindsWhatTheoryPredicts) {
   ExpectTheTruthWithoutNoise(rows);
   ExpectTheFinerWorldToBeMissed(rows);
   ExpectCoverageOnTheSameMesh(rows);
-  ExpectHonestyInTheFinerWorld(rows);
+  ExpectHonesty(rows, "finer world", {"reduced-fe", "iterative-fe", "auto"});
+  for (const char* world : {"same mesh, outliers", "finer world, outliers"}) {
+    ExpectHonesty(rows, world, {"reduced-fe huber", "auto huber"});
+  }
   ExpectIntervalsAndWhatTheyCover(rows);
   ExpectOneSeedForEachMeasurement(rows);
   ExpectCellsAddUpMeasurements(rows, ReadTable(folder_ / "unseen_cells.csv"));

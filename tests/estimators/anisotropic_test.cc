@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "elastimate/core/equilibrium/equilibrium.h"
+#include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/core/materials/laws.h"
 #include "elastimate/estimators/registry.h"
 #include "tests/anisotropy.h"
@@ -65,18 +65,6 @@ Scene SceneOfLaw(const Law& law, SectionModel model, int cells) {
   return scene;
 }
 
-void MeasureLaw(const Eigen::VectorXd& parameters, Scene& scene) {
-  Equilibrium equilibrium(scene, SolverKind::kCholesky);
-  ASSERT_TRUE(
-      equilibrium.Solve(equilibrium.Forces().Parameters().Moduli(parameters)));
-  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-    scene.load_cases[k].displacement =
-        equilibrium.Displacement()
-            .col(Eigen::Index(k))
-            .reshaped(scene.mesh.Dimension(), scene.mesh.NumNodes());
-  }
-}
-
 // Relative to what errors are measured by.
 void ExpectNear(const Estimate& estimate, const Eigen::VectorXd& expected,
                 double tolerance) {
@@ -106,7 +94,7 @@ class Anisotropy : public ::testing::TestWithParam<LawAndEstimator> {
 };
 
 TEST_P(Anisotropy, IsFoundExactlyWithoutNoise) {
-  MeasureLaw(truth_, scene_);
+  MeasureMaterials(truth_, scene_);
   const Estimate estimate = Run(scene_);
   ExpectNear(estimate, truth_, IsDirect() ? 1e-8 : 1e-6);
   ASSERT_EQ(estimate.stiffnesses.size(), 1);
@@ -117,7 +105,7 @@ TEST_P(Anisotropy, IsFoundExactlyWithoutNoise) {
 
 // What is turned as a whole has the same parameters, whatever the noise.
 TEST_P(Anisotropy, IsTheSameInATurnedScene) {
-  MeasureLaw(truth_, scene_);
+  MeasureMaterials(truth_, scene_);
   testing::AddNoise(1e-3, 3, scene_);
   const Estimate expected = Run(scene_);
   Scene turned = scene_;
@@ -146,7 +134,7 @@ TEST_P(Anisotropy, IsTheSameInATurnedScene) {
 }
 
 TEST_P(Anisotropy, ScalesWithTheUnitOfPressure) {
-  MeasureLaw(truth_, scene_);
+  MeasureMaterials(truth_, scene_);
   for (LoadCase& load_case : scene_.load_cases) {
     for (Load& load : load_case.loads) {
       std::get<NodalForces>(load).force *= 1e7;
@@ -162,7 +150,7 @@ TEST_P(Anisotropy, ScalesWithTheUnitOfPressure) {
 
 // Then the variables are the parameters themselves.
 TEST_P(Anisotropy, OfWhichSomethingIsKnownIsFound) {
-  MeasureLaw(truth_, scene_);
+  MeasureMaterials(truth_, scene_);
   for (const Eigen::Index known : {Eigen::Index(0), truth_.size() - 2}) {
     scene_.materials[0].known = {
         {std::string(law_.Parameters()[known].name), truth_(known)}};
@@ -184,7 +172,7 @@ INSTANTIATE_TEST_SUITE_P(All, Anisotropy,
 TEST(AnisotropyOfClosedForm, IsNotUsableWhereTheStiffnessIsNotPositive) {
   const Law& law = *FindLaw("anisotropic");
   Scene scene = SceneOfLaw(law, SectionModel::kSolid, 3);
-  MeasureLaw(testing::UnlikeTypical(law, kUnit), scene);
+  MeasureMaterials(testing::UnlikeTypical(law, kUnit), scene);
   testing::AddNoise(0.2, 1, scene);
   const Estimate estimate = MakeEstimator("closed-form")->Run(scene, {});
   EXPECT_FALSE(estimate.IsUsable());
@@ -197,7 +185,7 @@ TEST(AnisotropyOfStiffness, HasTheErrorsOfTheDeltaMethod) {
   const Law& law = *FindLaw("transversely_isotropic");
   Scene scene = SceneOfLaw(law, SectionModel::kSolid, 3);
   const Eigen::VectorXd truth = testing::UnlikeTypical(law, kUnit);
-  MeasureLaw(truth, scene);
+  MeasureMaterials(truth, scene);
   testing::AddNoise(1e-3, 1, scene);
   const Estimate estimate = MakeEstimator("iterative-fe")->Run(scene, {});
   ASSERT_TRUE(estimate.IsUsable()) << estimate.message;
@@ -243,7 +231,7 @@ TEST_P(AnisotropyStatistics, StandardErrorsAreThoseOfTheErrors) {
   const Eigen::VectorXd truth = testing::UnlikeTypical(law, kUnit);
   Scene exact = SceneOfLaw(law, GetParam().model,
                            GetParam().model == SectionModel::kSolid ? 5 : 16);
-  MeasureLaw(truth, exact);
+  MeasureMaterials(truth, exact);
   Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(truth.size());
   Eigen::ArrayXd inside = Eigen::ArrayXd::Zero(truth.size());
   int usable = 0;

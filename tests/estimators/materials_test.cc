@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "elastimate/core/equilibrium/equilibrium.h"
+#include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/estimators/registry.h"
 #include "tests/regions.h"
@@ -32,19 +32,6 @@ std::vector<std::string> EstimatorsOfMaterials() {
     }
   }
   return names;
-}
-
-// By the library's own equilibrium, for scenes too large for a textbook.
-void MeasureByEquilibrium(const Eigen::VectorXd& parameters, Scene& scene) {
-  Equilibrium equilibrium(scene, SolverKind::kCholesky);
-  ASSERT_TRUE(
-      equilibrium.Solve(equilibrium.Forces().Parameters().Moduli(parameters)));
-  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-    scene.load_cases[k].displacement =
-        equilibrium.Displacement()
-            .col(Eigen::Index(k))
-            .reshaped(scene.mesh.Dimension(), scene.mesh.NumNodes());
-  }
 }
 
 void ExpectParameters(const Estimate& estimate, const Eigen::VectorXd& expected,
@@ -98,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(All, MaterialsOfKinds,
 
 class Materials : public ::testing::TestWithParam<std::string> {
  protected:
-  Materials() { MeasureByEquilibrium(kParameters, scene_); }
+  Materials() { MeasureMaterials(kParameters, scene_); }
 
   Estimate Run(const EstimatorOptions& options = {}) const {
     return MakeEstimator(GetParam())->Run(scene_, options);
@@ -123,7 +110,7 @@ TEST_P(Materials, ThatAreKnownAreNotEstimated) {
 // One material with a known modulus is one of several parameters less.
 TEST_P(Materials, MayBeOneWithAKnownModulus) {
   scene_.materials = {{"isotropic", {}, {{"youngs_modulus", 3e3}}, {}}};
-  MeasureByEquilibrium(Eigen::Vector2d(3e3, 0.35), scene_);
+  MeasureMaterials(Eigen::Vector2d(3e3, 0.35), scene_);
   const Estimate estimate = Run();
   ExpectParameters(estimate, Eigen::Vector2d(3e3, 0.35), 1e-6);
   EXPECT_TRUE(estimate.parameters[0].regions.empty());
@@ -180,7 +167,7 @@ TEST_P(Materials, ThatDoNotStrainAreNotDetermined) {
       }
     }
   }
-  MeasureByEquilibrium(kParameters, scene_);
+  MeasureMaterials(kParameters, scene_);
   const Estimate estimate = Run();
   EXPECT_EQ(estimate.status, Status::kNotIdentifiable) << estimate.message;
   EXPECT_TRUE(estimate.Has(FindingCode::kParametersUndetermined))
@@ -195,7 +182,7 @@ TEST_P(Materials, ThatAreAllKnownAreRefused) {
 
 TEST_P(Materials, NextToIncompressibleOnesAreFoundAndSaid) {
   const Eigen::Vector4d parameters(2e3, 0.2, 5e3, 0.499);
-  MeasureByEquilibrium(parameters, scene_);
+  MeasureMaterials(parameters, scene_);
   const Estimate estimate = Run();
   ExpectParameters(estimate, parameters, 1e-4);
   EXPECT_TRUE(estimate.Has(FindingCode::kLocking));
@@ -217,7 +204,7 @@ INSTANTIATE_TEST_SUITE_P(Estimators, Materials,
 
 TEST(MaterialsRefusal, NamesTheAlternative) {
   Scene scene = TwoRegionScene({ElementKind::kTet4, SectionModel::kSolid}, 2);
-  MeasureByEquilibrium(kParameters, scene);
+  MeasureMaterials(kParameters, scene);
   scene.load_cases.push_back(scene.load_cases[0]);
   scene.load_cases[1].supports = scene.supports;
   EXPECT_THROWS_WITH(MakeEstimator("reduced-fe")->Run(scene, {}),
@@ -226,7 +213,7 @@ TEST(MaterialsRefusal, NamesTheAlternative) {
 
 TEST(MaterialsOfClosedForm, SaysWhenNoiseBiasesIt) {
   Scene scene = TwoRegionScene({ElementKind::kTet4, SectionModel::kSolid}, 4);
-  MeasureByEquilibrium(kParameters, scene);
+  MeasureMaterials(kParameters, scene);
   testing::AddNoise(1e-2, 1, scene);
   const Estimate estimate = MakeEstimator("closed-form")->Run(scene, {});
   EXPECT_FALSE(estimate.IsUsable());
@@ -250,7 +237,7 @@ class MaterialsStatistics : public ::testing::TestWithParam<StatisticsCase> {};
 TEST_P(MaterialsStatistics, StandardErrorsAreThoseOfTheErrors) {
   constexpr int kSeeds = 50;
   Scene scene = TwoRegionScene({ElementKind::kTet4, SectionModel::kSolid}, 4);
-  MeasureByEquilibrium(kParameters, scene);
+  MeasureMaterials(kParameters, scene);
   const Scene exact = scene;
   Eigen::Array4d squares = Eigen::Array4d::Zero();
   Eigen::Array4d ratios = Eigen::Array4d::Zero();

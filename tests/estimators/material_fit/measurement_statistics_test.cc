@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "elastimate/core/equilibrium/equilibrium.h"
+#include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/estimators/registry.h"
 #include "tests/element_kinds.h"
 
@@ -44,10 +44,7 @@ Scene Strip() {
   forces.force.rightCols(kRows + 1).row(1).setConstant(100);
   scene.load_cases.resize(1);
   scene.load_cases[0].loads = {forces};
-  Equilibrium equilibrium(scene, SolverKind::kCholesky);
-  EXPECT_TRUE(equilibrium.Solve(equilibrium.Forces().Parameters().Moduli(
-      Eigen::Vector2d(kSteel.youngs_modulus, kSteel.poisson_ratio))));
-  scene.load_cases[0].displacement = equilibrium.Displacement().reshaped(2, n);
+  Measure(kSteel, scene);
   scene.supports.unknown = scene.supports.held;
   return scene;
 }

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "elastimate/core/equilibrium/equilibrium.h"
+#include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/simplicial_scene.h"
 #include "elastimate/estimators/registry.h"
@@ -42,17 +42,12 @@ Eigen::VectorXd ParametersOf(const std::vector<IsotropicElasticity>& truth) {
 
 // Measures the nodes of `scene` in the world of another of the same materials,
 // the first nodes of which are those.
-void MeasureInWorld(const Scene& world,
-                    const std::vector<IsotropicElasticity>& truth,
+void MeasureInWorld(Scene world, const std::vector<IsotropicElasticity>& truth,
                     Scene& scene) {
-  Equilibrium model(world, SolverKind::kCholesky);
-  ASSERT_TRUE(
-      model.Solve(model.Forces().Parameters().Moduli(ParametersOf(truth))));
+  MeasureMaterials(ParametersOf(truth), world);
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-    scene.load_cases[k].displacement = model.Displacement()
-                                           .col(Eigen::Index(k))
-                                           .reshaped(3, world.mesh.NumNodes())
-                                           .leftCols(scene.mesh.NumNodes());
+    scene.load_cases[k].displacement =
+        world.load_cases[k].displacement.leftCols(scene.mesh.NumNodes());
   }
 }
 

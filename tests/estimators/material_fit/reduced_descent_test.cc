@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "elastimate/core/equilibrium/equilibrium.h"
+#include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/estimators/registry.h"
 #include "tests/scenes.h"
 
@@ -48,12 +48,11 @@ Scene SceneOf(const HardScene& hard, std::uint64_t seed) {
   SetRegions(hard.width, hard.shift, truth.mesh);
   scene.materials = IsotropicMaterialOfEachRegion(scene.mesh);
   truth.materials = scene.materials;
-  Equilibrium equilibrium(truth, SolverKind::kCholesky);
-  EXPECT_TRUE(equilibrium.Solve(equilibrium.Forces().Parameters().Moduli(
-      Eigen::Map<const Eigen::VectorXd>(
-          hard.parameters.data(), Eigen::Index(hard.parameters.size())))));
-  scene.load_cases[0].displacement =
-      equilibrium.Displacement().reshaped(3, mesh.NumNodes());
+  MeasureMaterials(
+      Eigen::Map<const Eigen::VectorXd>(hard.parameters.data(),
+                                        Eigen::Index(hard.parameters.size())),
+      truth);
+  scene.load_cases = truth.load_cases;
   if (hard.noise > 0) {
     testing::AddNoise(hard.noise, seed, scene);
   }
