@@ -488,7 +488,7 @@ def set_noise_axis(axes, deviations):
 
 def unseen_cells(path):
     rows, deviations = unseen_rows(path)
-    worlds = ("same mesh", "finer world", "same mesh, outliers", "finer world, outliers")
+    worlds = ("same mesh", "finer world", "same mesh with outliers", "finer world with outliers")
     figure, panels = plt.subplots(len(worlds), len(UNSEEN_SHARES), figsize=(10, 10.4),
                                   sharex=True, sharey="col")
     for line, world in zip(panels, worlds):

@@ -96,7 +96,8 @@ struct Setting {
   bool has_outliers = false;
 
   std::string World() const {
-    return kWorldNames[world] + std::string(has_outliers ? ", outliers" : "");
+    return kWorldNames[world] +
+           std::string(has_outliers ? " with outliers" : "");
   }
 
   /// Another for each, the same in the quick study as in the full one.

@@ -18,17 +18,20 @@ std::unique_ptr<FinerElements> FinerElements::Of(
              : std::make_unique<FinerElements>(simplicial, options);
 }
 
-Eigen::MatrixXd FinerElements::DisplacementOfSpecimen(
-    const Eigen::VectorXd& variables, const MinimumErrors& errors,
-    const Eigen::MatrixXd& displacement) {
-  constexpr double kLeastShare = 1e-3;
-  const double share = errors.share_of_finer;
-  if (share < kLeastShare) {
-    return displacement;
-  }
+std::optional<Eigen::VectorXd> FinerElements::Rows(
+    const Eigen::VectorXd& variables) {
   Eigen::VectorXd rows;
-  if (!misfit_.Evaluate(variables + (errors.corrected - variables) / share,
-                        &rows, nullptr)) {
+  return misfit_.NumResultants() == 0 &&
+                 misfit_.Evaluate(variables, &rows, nullptr)
+             ? std::optional<Eigen::VectorXd>(rows)
+             : std::nullopt;
+}
+
+Eigen::MatrixXd FinerElements::DisplacementOfSpecimen(
+    const Eigen::VectorXd& variables, double share,
+    const Eigen::MatrixXd& displacement) {
+  Eigen::VectorXd rows;
+  if (share == 0 || !misfit_.Evaluate(variables, &rows, nullptr)) {
     return displacement;
   }
   return (1 - share) * displacement +

@@ -9,7 +9,6 @@
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
 #include "elastimate/estimators/material_fit/displacement_misfit.h"
-#include "elastimate/estimators/material_fit/minimum_statistics.h"
 #include "elastimate/estimators/statistics/element_errors.h"
 
 namespace elastimate {
@@ -32,10 +31,16 @@ class FinerElements {
     return misfit.ChangeTo(variables, misfit_);
   }
 
+  /// Model - measurement of these elements at some variables, in the rows of
+  /// the fit; empty where the stiffness is singular, and where resultants are
+  /// weighed in the rows.
+  std::optional<Eigen::VectorXd> Rows(const Eigen::VectorXd& variables);
+
   /// From the displacement of the fit, num_dofs x num_load_cases, that of the
-  /// specimen, which is as much finer as the errors of the minimum say.
+  /// specimen, which has this share of the difference to these elements at some
+  /// variables.
   Eigen::MatrixXd DisplacementOfSpecimen(const Eigen::VectorXd& variables,
-                                         const MinimumErrors& errors,
+                                         double share,
                                          const Eigen::MatrixXd& displacement);
 
   Work WorkDone() { return misfit_.Model().WorkDone(); }

@@ -56,17 +56,16 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
   EnterParameters(scene, misfit.Free(), misfit.Free().ParametersAt(variables),
                   estimate);
   NoteVariablesOnBounds(misfit.Free(), *fit.minimum, estimate);
-  fit.errors = DescribeMinimum(
-      scene, variables,
-      finer == nullptr ? std::nullopt : finer->Change(variables, misfit),
-      misfit, evidence, estimate);
+  fit.errors =
+      DescribeMinimum(scene, variables, finer, misfit, evidence, estimate);
   Eigen::VectorXd rows;
   if (misfit.Evaluate(variables, &rows, nullptr)) {
     fit.displacement = misfit.FittedDisplacement();
     fit.displacement_of_specimen =
         finer == nullptr ? fit.displacement
-                         : finer->DisplacementOfSpecimen(variables, fit.errors,
-                                                         fit.displacement);
+                         : finer->DisplacementOfSpecimen(
+                               fit.errors.of_finer, fit.errors.share_of_finer,
+                               fit.displacement);
     DescribeMaterials(scene, fit.errors, misfit, estimate);
   }
   if (IsOneIsotropicMaterial(scene.materials)) {

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
+#include "elastimate/estimators/material_fit/curvature.h"
 #include "elastimate/estimators/statistics/correlated_noise.h"
+#include "elastimate/estimators/statistics/element_errors.h"
 #include "elastimate/estimators/statistics/residual_statistics.h"
 
 namespace elastimate {
@@ -115,23 +118,29 @@ double VarianceOfRows(const ObservedDisplacements& observed,
 constexpr double kErrorsBeforehand = 30;
 constexpr double kUnknownErrors = 15;
 
-// S^T S with what is known beforehand, which matters for no variable that is
-// determined, in rows of this variance.
+// What is known beforehand, which matters for no variable that is determined,
+// beside S^T S in rows of this variance.
+Eigen::VectorXd KnownBeforehand(const FreeParameters& free, double variance) {
+  return variance /
+         (kErrorsBeforehand * LargestErrorsOfVariables(free).array()).square();
+}
+
 Eigen::MatrixXd InformationOf(const FreeParameters& free,
                               const Eigen::MatrixXd& sensitivities,
                               double variance) {
-  const Eigen::ArrayXd error =
-      kErrorsBeforehand * LargestErrorsOfVariables(free).array();
   Eigen::MatrixXd information = InnerProducts(sensitivities, sensitivities);
-  information.diagonal().array() += variance / error.square();
+  information.diagonal() += KnownBeforehand(free, variance);
   return information;
 }
 
 // What elements miss of these rows; empty where it is not known.
 std::optional<ElementErrors> FindElementErrors(
-    const Scene& scene, const Eigen::VectorXd& rows,
-    Eigen::MatrixXd sensitivities, const std::optional<RowChange>& change,
-    Eigen::Index num_fitted, bool is_on_bound, DisplacementMisfit& misfit) {
+    const Scene& scene, const Eigen::VectorXd& variables,
+    const Eigen::VectorXd& rows, Eigen::MatrixXd sensitivities,
+    FinerElements* finer, Eigen::Index num_fitted, bool is_on_bound,
+    DisplacementMisfit& misfit) {
+  const std::optional<RowChange> change =
+      finer == nullptr ? std::nullopt : finer->Change(variables, misfit);
   if (!change) {
     return std::nullopt;
   }
@@ -178,12 +187,10 @@ void EnterCorrection(const FreeParameters& free,
   }
 }
 
-// The corrected variables, half of the way to a bound at most.
-Eigen::VectorXd EnterElements(const Scene& scene, const FreeParameters& free,
-                              const Eigen::VectorXd& variables,
-                              const Eigen::MatrixXd& covariance,
-                              const Eigen::VectorXd& correction,
-                              Estimate& estimate) {
+// Half of the way to a bound at most.
+Eigen::VectorXd Corrected(const FreeParameters& free,
+                          const Eigen::VectorXd& variables,
+                          const Eigen::VectorXd& correction) {
   Eigen::VectorXd corrected = variables + correction;
   for (Eigen::Index i = 0; i < corrected.size(); ++i) {
     const Bounds& bounds = free.VariableBounds()[i];
@@ -194,31 +201,56 @@ Eigen::VectorXd EnterElements(const Scene& scene, const FreeParameters& free,
       corrected(i) = std::min(corrected(i), (variables(i) + *bounds.upper) / 2);
     }
   }
-  EnterParameters(scene, free, free.ParametersAt(corrected), estimate);
-  estimate.error_budget.discretization =
-      ErrorsOfVariables(free, corrected, covariance);
-  if (IsOneIsotropicMaterial(scene.materials)) {
-    EnterCorrection(free, corrected - variables, estimate);
-  }
   return corrected;
+}
+
+void EnterElements(const Scene& scene, const FreeParameters& free,
+                   const MinimumErrors& errors,
+                   const Eigen::MatrixXd& by_elements, Estimate& estimate) {
+  EnterParameters(scene, free, free.ParametersAt(errors.corrected), estimate);
+  estimate.error_budget.discretization =
+      ErrorsOfVariables(free, errors.corrected, by_elements);
+  if (IsOneIsotropicMaterial(scene.materials)) {
+    EnterCorrection(free, errors.corrected - errors.variables, estimate);
+  }
+}
+
+// The step to the minimum of finer elements, where a correction for them leads:
+// zero where it leads there, as it does in a linear model.
+Eigen::VectorXd StepOfFiner(const Eigen::VectorXd& of_finer,
+                            const Eigen::MatrixXd& sensitivities,
+                            const Eigen::MatrixXd& inverse,
+                            FinerElements& finer) {
+  const std::optional<Eigen::VectorXd> rows = finer.Rows(of_finer);
+  return rows ? Eigen::VectorXd(-inverse * InnerProducts(sensitivities, *rows))
+              : Eigen::VectorXd::Zero(of_finer.size());
 }
 
 // Enters what the elements change and leave uncertain, which adds to the
 // covariance.
-Eigen::VectorXd CorrectMinimum(const Scene& scene, const FreeParameters& free,
-                               const Eigen::VectorXd& variables,
-                               const ElementErrors& elements, double smooth,
-                               const Eigen::MatrixXd& inverse,
-                               Eigen::MatrixXd& covariance, Evidence& evidence,
-                               Estimate& estimate) {
-  const Eigen::MatrixXd by_elements =
-      elements.CovarianceOfChange(smooth) +
-      elements.MissedSquareSum(smooth) * inverse;
-  covariance += by_elements;
+void CorrectMinimum(const Scene& scene, const FreeParameters& free,
+                    const ElementErrors& elements, double smooth,
+                    const Eigen::MatrixXd& sensitivities,
+                    const Eigen::MatrixXd& inverse, FinerElements& finer,
+                    Evidence& evidence, MinimumErrors& errors,
+                    Estimate& estimate) {
+  constexpr double kLeastShare = 1e-3;
+  errors.corrected = Corrected(free, errors.variables, *elements.Correction());
+  Eigen::MatrixXd by_elements = elements.CovarianceOfChange(smooth) +
+                                elements.MissedSquareSum(smooth) * inverse;
+  if (elements.Share() >= kLeastShare) {
+    errors.share_of_finer = elements.Share();
+    errors.of_finer = errors.variables +
+                      (errors.corrected - errors.variables) / elements.Share();
+    const Eigen::VectorXd step =
+        elements.Share() *
+        StepOfFiner(errors.of_finer, sensitivities, inverse, finer);
+    by_elements += step * step.transpose();
+  }
+  errors.total += by_elements;
   evidence.likely_element_change =
-      LargestOf(elements.LikelyChange(), variables, estimate, free);
-  return EnterElements(scene, free, variables, by_elements,
-                       *elements.Correction(), estimate);
+      LargestOf(elements.LikelyChange(), errors.variables, estimate, free);
+  EnterElements(scene, free, errors, by_elements, estimate);
 }
 
 // Enters what outliers pull the variables by, which adds to the covariance.
@@ -236,6 +268,17 @@ void AddOutliers(const FreeParameters& free, const Eigen::VectorXd& variables,
   covariance += change * change.transpose();
   estimate.error_budget.outliers =
       ErrorsOfVariables(free, variables, change * change.transpose());
+}
+
+// Where resultants are weighed in the rows, these are not those of the misfit.
+void AddCurvature(const Eigen::VectorXd& variables,
+                  const Eigen::MatrixXd& sensitivities,
+                  DisplacementMisfit& misfit, MinimumErrors& errors) {
+  if (misfit.NumResultants() == 0) {
+    errors.total += CovarianceOfCurvature(
+        variables, errors.total, sensitivities,
+        KnownBeforehand(misfit.Free(), errors.variance), misfit);
+  }
 }
 
 // Of variables that the data say nothing of, the errors are not known.
@@ -269,9 +312,8 @@ void EnterErrorsOfKnown(const FreeParameters& free, const MinimumErrors& errors,
 
 MinimumErrors DescribeMinimum(const Scene& scene,
                               const Eigen::VectorXd& variables,
-                              const std::optional<RowChange>& change_of_rows,
-                              DisplacementMisfit& misfit, Evidence& evidence,
-                              Estimate& estimate) {
+                              FinerElements* finer, DisplacementMisfit& misfit,
+                              Evidence& evidence, Estimate& estimate) {
   const FreeParameters& free = misfit.Free();
   const ObservedDisplacements& observed = misfit.Observed();
   MinimumErrors errors;
@@ -293,8 +335,8 @@ MinimumErrors DescribeMinimum(const Scene& scene,
   }
   const double excess = ExcessOfResultants(rows, misfit, evidence);
   const std::optional<ElementErrors> elements =
-      FindElementErrors(scene, rows, sensitivities, change_of_rows, num_fitted,
-                        !estimate.active_bounds.empty(), misfit);
+      FindElementErrors(scene, variables, rows, sensitivities, finer,
+                        num_fitted, !estimate.active_bounds.empty(), misfit);
   const Eigen::VectorXd rest = elements ? elements->Rest() : rows;
   errors.residual = rest.head(observed.Size());
   ResidualVariance variance = EstimateVariance(observed, SquaredNorm(rest),
@@ -316,16 +358,15 @@ MinimumErrors DescribeMinimum(const Scene& scene,
   errors.of_noise = variance.variance * inverse;
   errors.total = errors.of_noise + by_model;
   if (elements) {
-    errors.corrected =
-        CorrectMinimum(scene, free, variables, *elements, smooth.most, inverse,
-                       errors.total, evidence, estimate);
-    errors.share_of_finer = elements->Share();
+    CorrectMinimum(scene, free, *elements, smooth.most, sensitivities, inverse,
+                   *finer, evidence, errors, estimate);
   }
   estimate.error_budget.noise =
       ErrorsOfVariables(free, variables, errors.of_noise);
   estimate.error_budget.model = ErrorsOfVariables(free, variables, by_model);
   AddOutliers(free, variables, observed, errors.residual, of_rows, errors.total,
               evidence, estimate);
+  AddCurvature(variables, sensitivities, misfit, errors);
   if (!by_correlation.isZero(0)) {
     evidence.smooth_residual_error =
         std::sqrt(errors.total.diagonal().maxCoeff());

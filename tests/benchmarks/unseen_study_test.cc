@@ -285,7 +285,8 @@ TEST_F(UnseenStudy, FindsWhatTheoryPredicts) {
   ExpectTheFinerWorldToBeMissed(rows);
   ExpectCoverageOnTheSameMesh(rows);
   ExpectHonesty(rows, "finer world", {"reduced-fe", "iterative-fe", "auto"});
-  for (const char* world : {"same mesh, outliers", "finer world, outliers"}) {
+  for (const char* world :
+       {"same mesh with outliers", "finer world with outliers"}) {
     ExpectHonesty(rows, world, {"reduced-fe huber", "auto huber"});
   }
   ExpectIntervalsAndWhatTheyCover(rows);

@@ -1,0 +1,36 @@
+#ifndef ELASTIMATE_ESTIMATORS_MATERIAL_FIT_CURVATURE_H_
+#define ELASTIMATE_ESTIMATORS_MATERIAL_FIT_CURVATURE_H_
+
+#include <Eigen/Core>
+
+#include "elastimate/estimators/material_fit/displacement_misfit.h"
+
+namespace elastimate {
+
+/// What a covariance C of the variables at a minimum x understates, because the
+/// misfit is not quadratic as far as C reaches.
+///
+/// Looked at are the combinations a^T x of the variables that are known worst,
+/// those of the largest eigenvalues of the covariance of the parameters, of
+/// stiffnesses relative, of ratios over the way to the nearer end of their
+/// range.  Each is moved by two standard errors to either side,
+/// m = +- 2 C a / sqrt(a^T C a), and the square sum of the residual is taken
+/// there at the least over all other combinations, by a Gauss-Newton step.
+/// Where it is only a part p of what a quadratic misfit would rise to, the
+/// error is 1 / sqrt(p) times as large: (1 / p - 1) m m^T / 4 is added.
+///
+/// Nothing where all errors are small, which costs nothing; else two
+/// evaluations of the misfit, a factorisation each, for each combination of at
+/// most two.  `sensitivities` is S at x in the rows of the misfit, `beforehand`
+/// the diagonal of what is known without them, in the unit of S^T S.
+///
+/// See Seber & Wild, Nonlinear Regression, 1989, section 5.2.
+Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,
+                                      const Eigen::MatrixXd& covariance,
+                                      const Eigen::MatrixXd& sensitivities,
+                                      const Eigen::VectorXd& beforehand,
+                                      DisplacementMisfit& misfit);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_MATERIAL_FIT_CURVATURE_H_
