@@ -12,6 +12,7 @@
 #include "apps/element_order.h"
 #include "apps/estimator_flags.h"
 #include "apps/flags.h"
+#include "apps/law_choice.h"
 #include "apps/linear_algebra.h"
 #include "apps/material_flags.h"
 #include "apps/outlier_lines.h"
@@ -24,6 +25,7 @@
 #include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/materials/laws.h"
 #include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/estimators/material_fit/law_choice.h"
 #include "elastimate/estimators/material_fit/merge.h"
 #include "elastimate/estimators/registry.h"
 #include "elastimate/estimators/series/joint_estimate.h"
@@ -46,7 +48,8 @@ double SecondsSince(Clock::time_point start) {
 SceneReading Read(const std::vector<std::string>& arguments) {
   SceneReading reading =
       ReadScene({arguments.begin(), arguments.end()}, Measurement::kRequired,
-                SectionFromFlags(), RegionsFromFlag(), LawFromFlags());
+                SectionFromFlags(), RegionsFromFlag(),
+                ChoosesLaw() ? AxesOfLawsToChoose() : LawFromFlags());
   if (IsGiven("noise_sd")) {
     for (LoadCase& load_case : reading.scene.load_cases) {
       load_case.noise_sd = FLAGS_noise_sd;
@@ -251,10 +254,18 @@ int RunOne(const std::vector<std::string>& arguments,
     merge = MergeRegions(estimator, options, Sources(arguments), modelled,
                          scene, reading.notices);
   }
+  std::optional<ChosenLaw> law;
+  if (ChoosesLaw()) {
+    law = GiveChosenLaw(options, Sources(arguments), modelled, scene,
+                        reading.notices);
+  }
   Estimate estimate =
       RunEstimator(estimator, scene, modelled, options, Sources(arguments));
   if (merge) {
     EnterMerge(*merge, estimate);
+  }
+  if (law) {
+    EnterLawChoice(*law, estimate);
   }
   // An estimator may have raised the order itself.
   const std::optional<Scene> raised =
@@ -294,6 +305,9 @@ int RunEstimate(const std::vector<std::string>& arguments) {
 
   std::optional<Progress> progress("reading " + Sources(arguments));
   SceneReading reading = Read(arguments);
+  if (ChoosesLaw()) {
+    CheckLawChoice(reading, options);
+  }
   GiveKnownPoissonRatio(reading.scene, options);
   if (MergesRegions()) {
     CheckMerging(reading);
@@ -320,7 +334,7 @@ int RunMaterials(const std::vector<std::string>& arguments) {
   std::string list;
   for (const Law* const law : Laws()) {
     list += std::string(law->Name()) +
-            std::string(24 - law->Name().size(), ' ') +
+            std::string(34 - law->Name().size(), ' ') +
             std::string(law->Description()) + ": ";
     for (const LawParameter& parameter : law->Parameters()) {
       list += (&parameter == &law->Parameters().front() ? "" : ", ") +

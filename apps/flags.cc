@@ -63,11 +63,13 @@ DEFINE_string(regions, "one",
               "iterative-fe and auto");
 DEFINE_string(material, "isotropic",
               "law of all materials; 'elastimate materials' lists them; "
-              "overrides those of the scene");
+              "overrides those of the scene.  auto: that which the measurement "
+              "asks for, with iterative-fe, reduced-fe and auto");
 DEFINE_string(
     axis, "",
     "direction of the axis of a material that is not isotropic: "
-    "X,Y,Z, of two axes X1,Y1,Z1,X2,Y2,Z2, in the plane also X,Y [1]; "
+    "X,Y,Z, of two axes X1,Y1,Z1,X2,Y2,Z2, in the plane also X,Y [1]; free: "
+    "to be found with the parameters of transversely_isotropic; "
     "overrides those of the scene");
 DEFINE_string(parameters, "",
               "JSON file with the parameters of all materials, as reports have "

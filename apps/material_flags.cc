@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "apps/flags.h"
 #include "apps/number_list.h"
 #include "elastimate/core/materials/laws.h"
+#include "elastimate/core/materials/orthotropic_law.h"
+#include "elastimate/core/materials/transversely_isotropic_law.h"
 
 namespace elastimate {
 namespace {
@@ -17,11 +20,19 @@ std::vector<Eigen::VectorXd> AxesFromFlag() {
       1 + std::count(FLAGS_axis.begin(), FLAGS_axis.end(), ',');
   const bool is_known = count == 2 || count == 3 || count == 6;
   const auto numbers = NumberList<Eigen::VectorXd>(
-      "axis", FLAGS_axis, "numbers (of two axes six)", is_known ? count : 3);
+      "axis", FLAGS_axis, "numbers (of two axes six), or free",
+      is_known ? count : 3);
   if (count == 6) {
     return {numbers.head(3), numbers.tail(3)};
   }
   return {numbers};
+}
+
+void GiveAxes(LawChoice& choice) {
+  choice.has_free_axis = FLAGS_axis == "free";
+  if (!choice.has_free_axis) {
+    choice.axes = AxesFromFlag();
+  }
 }
 
 }  // namespace
@@ -36,7 +47,20 @@ LawChoice LawFromFlags() {
     }
   }
   if (IsGiven("axis")) {
-    choice.axes = AxesFromFlag();
+    GiveAxes(choice);
+  }
+  return choice;
+}
+
+bool ChoosesLaw() { return FLAGS_material == "auto"; }
+
+LawChoice AxesOfLawsToChoose() {
+  LawChoice choice;
+  if (IsGiven("axis")) {
+    GiveAxes(choice);
+    choice.law = choice.axes.size() == 2
+                     ? std::string_view(OrthotropicLaw::kName)
+                     : std::string_view(TransverselyIsotropicLaw::kName);
   }
   return choice;
 }

@@ -9,6 +9,12 @@ namespace elastimate {
 /// flag, for a value that is none.
 LawChoice LawFromFlags();
 
+/// Whether --material=auto has the measurement choose the law.
+bool ChoosesLaw();
+
+/// What --axis gives then: axes are those of a law that takes as many.
+LawChoice AxesOfLawsToChoose();
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_APPS_MATERIAL_FLAGS_H_

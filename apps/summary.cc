@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "elastimate/core/scene/loads.h"
+#include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 
 namespace elastimate {
@@ -154,7 +155,12 @@ std::string Verdict(const MaterialEstimate& material) {
 }
 
 void AddParameters(const Estimate& estimate, std::ostringstream& text) {
-  for (const ParameterEstimate& parameter : estimate.parameters) {
+  for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
+    const ParameterEstimate& parameter = estimate.parameters[i];
+    // The axis says it in words.
+    if (AxisOfParameter(estimate, i) != nullptr) {
+      continue;
+    }
     Line(parameter.Label(),
          parameter.is_known
              ? Number(parameter.value, 6) + " (known)"
@@ -163,8 +169,31 @@ void AddParameters(const Estimate& estimate, std::ostringstream& text) {
   }
 }
 
+// "0.0012, 0.7066, 0.7076 +- 0.42 degrees".
+void AddAxes(const Estimate& estimate, std::ostringstream& text) {
+  for (const AxisEstimate& axis : estimate.axes) {
+    std::string components;
+    for (const double component : axis.direction) {
+      components += (components.empty() ? "" : ", ") + Number(component, 4);
+    }
+    // Without "the".
+    Line(axis.Label().substr(4),
+         !axis.direction.allFinite()
+             ? "not determined"
+             : components +
+                   (axis.standard_error
+                        ? " +- " +
+                              Number(kDegreesPerRadian * *axis.standard_error,
+                                     2) +
+                              " degrees"
+                        : " (no standard error)"),
+         text);
+  }
+}
+
 void AddMaterials(const Estimate& estimate, std::ostringstream& text) {
   AddParameters(estimate, text);
+  AddAxes(estimate, text);
   for (const MaterialEstimate& material : estimate.materials) {
     Line(RegionsLabel(material.regions), Verdict(material), text);
   }
@@ -291,6 +320,18 @@ void AddMerges(const std::vector<RegionMerge>& merges,
   }
 }
 
+// Those that were compared, the best first.
+void AddLaws(const std::vector<LawComparison>& laws, std::ostringstream& text) {
+  for (const LawComparison& law : laws) {
+    Line(&law == laws.data() ? "law chosen" : "not",
+         law.law + " (" + std::to_string(law.num_parameters) +
+             " parameters, chi^2 " + Number(law.chi_square, 3) + ", BIC " +
+             (&law == laws.data() ? "least" : "+" + Number(law.criterion, 3)) +
+             ")",
+         text);
+  }
+}
+
 void AddSeries(const SeriesSummary& series, std::ostringstream& text) {
   const Interval& loads = series.loads;
   std::string under;
@@ -352,6 +393,7 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
   AddSceneSize(scene, text);
   AddLoads(scene, text);
   AddMerges(estimate.merges, text);
+  AddLaws(estimate.laws, text);
   if (estimate.series) {
     AddSeries(*estimate.series, text);
   }

@@ -351,6 +351,7 @@ Capabilities Auto::WhatItTakes() const {
   capabilities.takes_losses = true;
   capabilities.takes_degree = true;
   capabilities.takes_materials = true;
+  capabilities.takes_free_axes = true;
   capabilities.takes_unknown_motion = true;
   capabilities.takes_supports_of_cases = true;
   return capabilities;

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "elastimate/core/materials/anisotropic_law.h"
+#include "elastimate/core/materials/free_axis_law.h"
 #include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/materials/orthotropic_law.h"
 #include "elastimate/core/materials/transversely_isotropic_law.h"
@@ -30,11 +31,13 @@ std::string NamesOf(const Predicate& is_named) {
 const std::vector<const Law*>& Laws() {
   static const IsotropicLaw isotropic;
   static const TransverselyIsotropicLaw transversely_isotropic;
+  static const FreeAxisLaw free_axis;
   static const OrthotropicLaw orthotropic(SectionModel::kSolid);
   static const OrthotropicLaw lamina(SectionModel::kPlaneStress);
   static const AnisotropicLaw anisotropic;
   static const std::vector<const Law*> laws = {
-      &isotropic, &transversely_isotropic, &orthotropic, &lamina, &anisotropic};
+      &isotropic,  &transversely_isotropic, &free_axis, &orthotropic, &lamina,
+      &anisotropic};
   return laws;
 }
 

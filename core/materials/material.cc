@@ -162,9 +162,11 @@ void ValidateAxes(const std::vector<Material>& materials, const Mesh& mesh) {
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Law& law = *FindLaw(materials[i].law, mesh.section.model);
     if (law.NumAxes() == 0 && !materials[i].axes.empty()) {
-      throw std::invalid_argument(NameOf(i) + " has an axis, but the law " +
-                                  materials[i].law +
-                                  " is alike in all directions; leave it out");
+      throw std::invalid_argument(
+          NameOf(i) + " has an axis, but the law " + materials[i].law +
+          (law.NumModuli() == 2 ? " is alike in all directions"
+                                : " finds its axis") +
+          "; leave it out");
     }
     if (law.HasAxesOfScene() && materials[i].axes.empty()) {
       continue;

@@ -180,6 +180,7 @@ Capabilities ReducedFe::WhatItTakes() const {
   capabilities.takes_bounds = true;
   capabilities.takes_losses = true;
   capabilities.takes_materials = true;
+  capabilities.takes_free_axes = true;
   return capabilities;
 }
 

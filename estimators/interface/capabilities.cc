@@ -6,6 +6,7 @@
 #include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/core/scene/unknown_motion.h"
+#include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
 
 namespace elastimate {
@@ -73,6 +74,10 @@ std::string WhyNotTheseMaterials(const Capabilities& capabilities,
   if (!capabilities.takes_materials) {
     return "it takes one isotropic material of which nothing is known; use "
            "iterative-fe or virtual-fields";
+  }
+  if (!capabilities.takes_free_axes && HasFreeAxis(scene)) {
+    return "it takes materials whose axis is known; use iterative-fe or "
+           "reduced-fe, or give the axis";
   }
   if (options.loss != Loss::kNone) {
     return "a loss function is for one isotropic material; leave it out";

@@ -22,6 +22,8 @@ struct Capabilities {
   bool takes_degree = false;
   /// Materials other than one isotropic one of which nothing is known.
   bool takes_materials = false;
+  /// Materials whose axis is to be found with their parameters.
+  bool takes_free_axes = false;
   /// Supports that moved by unknown amounts, resultants of supports, and a
   /// rigid motion of all that is free.
   bool takes_unknown_motion = false;

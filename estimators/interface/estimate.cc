@@ -58,6 +58,10 @@ std::string StiffnessEstimate::Label() const {
                          : "the stiffness of " + RegionsLabel(regions);
 }
 
+std::string AxisEstimate::Label() const {
+  return regions.empty() ? "the axis" : "the axis of " + RegionsLabel(regions);
+}
+
 bool Estimate::Has(FindingCode code) const {
   return std::any_of(
       findings.begin(), findings.end(),
@@ -109,6 +113,9 @@ void Estimate::Fail(const Finding& finding) {
   for (ParameterEstimate& parameter : parameters) {
     parameter.standard_error.reset();
     parameter.interval.reset();
+  }
+  for (AxisEstimate& axis : axes) {
+    axis.standard_error.reset();
   }
   error_budget.noise.resize(0);
   why_no_standard_error = "the estimate is not usable";

@@ -71,6 +71,23 @@ struct StiffnessEstimate {
   std::string Label() const;
 };
 
+/// The axis of a material whose axis was not known.
+struct AxisEstimate {
+  std::vector<int> regions;  ///< As of its parameters.
+  /// Of its parameters, the first component of the rotation; all follow.
+  std::size_t first_rotation = 0;
+  /// A unit vector, of either end; not numbers where it is not determined.
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+  /// Towards where it is largest [rad]; empty where it is unknown.
+  std::optional<double> standard_error;
+  /// How far its material is from one that is alike in all directions, of chi^2
+  /// with 3 degrees of freedom where it is one, about an axis that is given.
+  double anisotropy = 0;
+
+  /// "the axis of region 3".
+  std::string Label() const;
+};
+
 /// The disagreement of two estimators, one of which leans on the model less.
 struct ModelMismatch {
   double statistic;  ///< chi^2 with 2 degrees of freedom when the model holds.
@@ -101,6 +118,18 @@ struct RegionMerge {
   double chi_square;
   double limit;
   bool is_taken;
+};
+
+/// A law that was compared with others.
+struct LawComparison {
+  std::string law;
+  Eigen::Index num_parameters;  ///< Of all materials.
+  /// The distance of its nearest parameters from those of no symmetry, of
+  /// chi^2 where the material is of this law.
+  double chi_square;
+  /// The Bayesian information criterion, chi^2 + num_parameters ln n, less
+  /// that of the best.
+  double criterion;
 };
 
 /// How many of the parameters of a material are determined: all that are not
@@ -194,6 +223,9 @@ struct Estimate {
   /// Of each material that is not isotropic, of these parameters.
   std::vector<StiffnessEstimate> stiffnesses;
 
+  /// Of each material whose axis was to be found, by these parameters.
+  std::vector<AxisEstimate> axes;
+
   /// What the errors come from.
   ErrorBudget error_budget;
   /// Where nu lies with a probability of 95 %: one-sided when it reaches -1 or
@@ -256,6 +288,8 @@ struct Estimate {
   std::vector<std::string> combinations;
   /// In order, where regions were to be merged; empty for others.
   std::vector<RegionMerge> merges;
+  /// The best first, where the law was to be chosen; empty for others.
+  std::vector<LawComparison> laws;
   /// Of a joint estimate of frames; empty for others.
   std::optional<SeriesSummary> series;
 

@@ -298,6 +298,17 @@ Finding ParametersUndetermined(const std::vector<std::string>& parameters) {
                "give what is known of them, join regions, or add load cases");
 }
 
+Finding AxisUndetermined(const std::vector<std::string>& axes) {
+  return Error(FindingCode::kAxisUndetermined,
+               "the data do not determine " + axes[0] +
+                   (axes.size() == 1
+                        ? ""
+                        : " and " + std::to_string(axes.size() - 1) + " more") +
+                   ", as of an isotropic material",
+               "use --material=isotropic or auto, give the axis, or add load "
+               "cases");
+}
+
 Finding CombinationsOnly(const std::vector<std::string>& combinations) {
   return Warning(FindingCode::kCombinationsOnly,
                  "data determine only " + combinations[0],
@@ -326,6 +337,14 @@ Finding RegionsNotCompared(const std::vector<std::string>& regions) {
               " to compare it with others",
           "strain it by another load case, or say in the scene what it is "
           "made of"};
+}
+
+Finding LawsFitAlike(const std::string& chosen, const std::string& other,
+                     double difference) {
+  return Warning(FindingCode::kLawsFitAlike,
+                 "the law " + other + " explains the data about as well as " +
+                     chosen + " (BIC differs by " + TwoDigits(difference) + ")",
+                 "measure another load case, or name the law by --material");
 }
 
 Finding DependentForces() {

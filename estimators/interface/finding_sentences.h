@@ -62,6 +62,8 @@ Finding PoissonRatioHiddenByNoise();
 Finding YoungsModulusUndetermined(double youngs_modulus, double standard_error);
 /// `parameters` describes each, such as "E of region 3 (45 %)".
 Finding ParametersUndetermined(const std::vector<std::string>& parameters);
+/// `axes` describes each, such as "the axis of region 3 (24 degrees)".
+Finding AxisUndetermined(const std::vector<std::string>& axes);
 /// Says the first of them.
 Finding CombinationsOnly(const std::vector<std::string>& combinations);
 /// "region 3".
@@ -70,6 +72,9 @@ Finding ResidualInRegion(const std::string& region, double correlation);
 Finding RegionsMayDiffer(const std::vector<std::string>& differences);
 /// "region 3".
 Finding RegionsNotCompared(const std::vector<std::string>& regions);
+/// By how much their Bayesian information criteria differ.
+Finding LawsFitAlike(const std::string& chosen, const std::string& other,
+                     double difference);
 Finding DependentForces();
 Finding TooFewMeasurements(Eigen::Index num_components);
 

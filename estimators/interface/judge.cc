@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
@@ -150,6 +151,7 @@ void FinishEstimate(std::string_view estimator, const Scene& scene,
   }
   if (!IsOneIsotropicMaterial(scene.materials)) {
     estimate.stiffnesses = StiffnessesOf(scene, estimate);
+    estimate.axes = AxesOf(scene, estimate);
     JudgeParameters(estimate);
     JudgeLocking(scene.mesh, LargestPoissonRatio(estimate), estimate);
     return;

@@ -72,6 +72,13 @@ struct Limits {
   /// A standard error of nu above this says that the data do not determine nu:
   /// its whole range for common materials is 0 to 0.5 [1].
   double largest_poisson_ratio_error = 0.15;
+  /// The same of the direction of an axis [rad], the scale of which is a
+  /// right angle.
+  double largest_axis_error = 0.15;
+  /// A distance from isotropy below this (chi^2 with 3 degrees of freedom,
+  /// about the one of all axes where chance makes it largest) says that there
+  /// is none, however small the error about a minimum that noise made is.
+  double least_anisotropy = 30;
   /// A relative standard error of E above this says that the data do not
   /// determine E: zero and infinity are within three standard errors.
   double largest_youngs_modulus_error = 1.0 / 3;

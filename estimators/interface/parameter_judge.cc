@@ -6,6 +6,8 @@
 #include <sstream>
 #include <vector>
 
+#include "elastimate/core/materials/isotropic_law.h"
+#include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/statistics.h"
@@ -22,7 +24,7 @@ std::vector<ParameterEstimate> ParametersWithoutValues(
     estimate.is_modulus = parameter.law_parameter->is_modulus;
     estimate.is_known = parameter.known.has_value();
     // Of other laws the stiffness as a whole says what is physical.
-    if (parameters.LawOf(parameter.material).BlockEntries().empty()) {
+    if (parameters.LawOf(parameter.material).Name() == IsotropicLaw::kName) {
       estimate.limits = estimate.is_modulus ? Interval{0, estimate.limits.upper}
                                             : Interval{-1, 0.5};
     }
@@ -76,12 +78,48 @@ bool HasFiniteVariance(const Estimate& estimate, std::size_t place) {
   return std::isfinite(variance) && variance >= 0;
 }
 
+bool IsDetermined(const AxisEstimate& axis, const Estimate& estimate) {
+  return axis.direction.allFinite() &&
+         (axis.standard_error || !estimate.why_no_standard_error.empty());
+}
+
+constexpr double kDegreesOfRadian = 57.295779513082323;
+
+// " (24 degrees)"; of an error that is small enough, or unknown, nothing.
+std::string ErrorInDegrees(const AxisEstimate& axis) {
+  return axis.standard_error.value_or(0) > kLimits.largest_axis_error
+             ? " (" + TwoDigits(*axis.standard_error * kDegreesOfRadian) +
+                   " degrees)"
+             : "";
+}
+
+// Whether there is an axis among what is not determined, and nothing else.
+bool AreAxesOnly(const Estimate& estimate) {
+  bool is_axis_determined = true;
+  for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
+    const ParameterEstimate& parameter = estimate.parameters[i];
+    if (const AxisEstimate* const axis = AxisOfParameter(estimate, i)) {
+      is_axis_determined = is_axis_determined && IsDetermined(*axis, estimate);
+    } else if (!parameter.is_known &&
+               !(HasFiniteVariance(estimate, i) && IsDetermined(parameter))) {
+      return false;
+    }
+  }
+  return !is_axis_determined;
+}
+
 // Those that are not determined, with their errors where these are finite.
 std::vector<std::string> Undetermined(const Estimate& estimate) {
   std::vector<std::string> undetermined;
   for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
     const ParameterEstimate& parameter = estimate.parameters[i];
     const double error = parameter.standard_error.value_or(0);
+    if (const AxisEstimate* const axis = AxisOfParameter(estimate, i)) {
+      if (axis->first_rotation == i && !IsDetermined(*axis, estimate)) {
+        undetermined.push_back(axis->Label() + ErrorInDegrees(*axis));
+      }
+      continue;
+    }
     if (parameter.is_known) {
       continue;
     }
@@ -107,10 +145,14 @@ void FailUndetermined(Estimate& estimate) {
   const std::vector<ParameterEstimate> parameters = estimate.parameters;
   const Eigen::MatrixXd covariance = estimate.parameter_covariance;
   const ParameterErrors noise = estimate.error_budget.noise;
-  estimate.Fail(ParametersUndetermined(Undetermined(estimate)));
+  const std::vector<AxisEstimate> axes = estimate.axes;
+  const std::vector<std::string> undetermined = Undetermined(estimate);
+  estimate.Fail(AreAxesOnly(estimate) ? AxisUndetermined(undetermined)
+                                      : ParametersUndetermined(undetermined));
   estimate.parameters = parameters;
   estimate.parameter_covariance = covariance;
   estimate.error_budget.noise = noise;
+  estimate.axes = axes;
   const auto has_error = [](const ParameterEstimate& parameter) {
     return parameter.standard_error.has_value();
   };
@@ -322,7 +364,8 @@ void JudgeParameters(Estimate& estimate) {
     }
   }
   if (estimate.IsUsable() ||
-      estimate.Has(FindingCode::kParametersUndetermined)) {
+      estimate.Has(FindingCode::kParametersUndetermined) ||
+      estimate.Has(FindingCode::kAxisUndetermined)) {
     EnterDetermination(estimate);
   }
 }

@@ -1,6 +1,7 @@
 #include "elastimate/estimators/interface/stiffness_estimate.h"
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/materials/kelvin_law.h"
 #include "elastimate/core/materials/material_parameters.h"
 
@@ -47,7 +48,7 @@ std::vector<StiffnessEstimate> StiffnessesOf(const Scene& scene,
   const Eigen::MatrixXd covariance = CovarianceOf(estimate);
   for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
     const Law& law = all.LawOf(i);
-    if (law.BlockEntries().empty()) {
+    if (law.Name() == IsotropicLaw::kName) {
       continue;
     }
     const Eigen::Index first = all.FirstParameter(i);

@@ -9,6 +9,7 @@
 
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/unknown_motion.h"
+#include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
@@ -18,6 +19,7 @@
 #include "elastimate/estimators/material_fit/material_descent.h"
 #include "elastimate/estimators/material_fit/material_verdicts.h"
 #include "elastimate/estimators/material_fit/minimum_statistics.h"
+#include "elastimate/estimators/material_fit/nearest_symmetry.h"
 #include "elastimate/estimators/material_fit/outliers.h"
 #include "elastimate/estimators/material_fit/reduced_descent.h"
 #include "elastimate/estimators/statistics/bounded_variables.h"
@@ -110,6 +112,22 @@ MaterialFit FitAll(const Scene& scene, const EstimatorOptions& options,
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
   estimate.work = estimate.work + misfit.Model().WorkDone();
   return fit;
+}
+
+// Where the fit of a scene with free axes starts: next to that of the same
+// moduli without a symmetry.  Adds its work.
+std::optional<Eigen::VectorXd> StartOfFreeAxes(const Scene& scene,
+                                               const EstimatorOptions& options,
+                                               Descent descent, Work& work) {
+  const Scene without = WithoutFreeAxes(scene);
+  const MaterialFit fit = FitAll(without, options, descent, std::nullopt);
+  work = work + fit.estimate.work;
+  if (fit.errors.total.size() == 0) {
+    return std::nullopt;
+  }
+  return NearestVariables(FreeParameters(scene, options),
+                          FreeParameters(without, options),
+                          fit.errors.variables, fit.errors.total);
 }
 
 // The same fit with a look at what its elements miss, where these are not too
@@ -314,6 +332,14 @@ bool IsForMaterialFit(const Scene& scene) {
 MaterialFit FitMaterialsFrom(const std::optional<Eigen::VectorXd>& start,
                              const Scene& scene,
                              const EstimatorOptions& options, Descent descent) {
+  if (!start && HasFreeAxis(scene)) {
+    Work work;
+    const std::optional<Eigen::VectorXd> nearest =
+        StartOfFreeAxes(scene, options, descent, work);
+    MaterialFit fit = FitWithoutOutliers(scene, options, descent, nearest);
+    fit.estimate.work = fit.estimate.work + work;
+    return fit;
+  }
   if (!IsOneIsotropicMaterial(scene.materials) ||
       !options.known_poisson_ratio) {
     return FitWithoutOutliers(scene, options, descent, start);

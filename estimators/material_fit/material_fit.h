@@ -32,6 +32,9 @@ enum class Descent { kFull, kReduced };
 /// (OutlierSearch); covariance as by DescribeMinimum.  Of parameters on bounds,
 /// the covariance is that without bounds.
 ///
+/// Where an axis is to be found, the fit starts next to that of a material of
+/// no symmetry (NearestVariables), which costs as much again and more.
+///
 /// Where supports or the whole specimen moved by unknown amounts, these are
 /// fitted with the parameters (MotionElimination), and resultants count by
 /// their errors beside the noise.

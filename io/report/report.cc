@@ -172,6 +172,25 @@ Json StiffnessJson(const Estimate& estimate) {
   return stiffnesses;
 }
 
+// Of each material whose axis was to be found.
+Json AxesJson(const Estimate& estimate) {
+  Json axes = Json::array();
+  for (const AxisEstimate& axis : estimate.axes) {
+    Json direction = Json::array();
+    for (const double component : axis.direction) {
+      direction.push_back(component);
+    }
+    axes.push_back(
+        {{"region", RegionsJson(axis.regions)},
+         {"direction", axis.direction.allFinite() ? direction : Json(nullptr)},
+         {"standard_error_deg",
+          axis.standard_error && axis.direction.allFinite()
+              ? Json(kDegreesPerRadian * *axis.standard_error)
+              : Json(nullptr)}});
+  }
+  return axes;
+}
+
 // By name for one isotropic material, else in the order of the parameters.
 Json BudgetJson(const Scene& scene, const ErrorBudget& budget) {
   const bool is_by_name = IsOneIsotropicMaterial(scene.materials);
@@ -294,6 +313,17 @@ Json MergesJson(const Estimate& estimate) {
   return merges;
 }
 
+Json LawsJson(const Estimate& estimate) {
+  Json laws = Json::array();
+  for (const LawComparison& law : estimate.laws) {
+    laws.push_back({{"law", law.law},
+                    {"num_parameters", law.num_parameters},
+                    {"chi_square", OrNull(law.chi_square)},
+                    {"bic_difference", OrNull(law.criterion)}});
+  }
+  return laws;
+}
+
 Json SeriesJson(const Estimate& estimate) {
   if (!estimate.series) {
     return nullptr;
@@ -372,12 +402,14 @@ std::string JsonReport(const Estimate& estimate, const Scene& scene,
       {"parameters", ParametersJson(estimate)},
       {"covariance", MatrixJson(estimate.parameter_covariance)},
       {"stiffness", StiffnessJson(estimate)},
+      {"axes", AxesJson(estimate)},
       {"error_budget", BudgetJson(scene, estimate.error_budget)},
       {"findings", FindingsJson(estimate.findings)},
       {"diagnostics", DiagnosticsJson(estimate)},
       {"materials", MaterialsJson(estimate)},
       {"combinations", estimate.combinations},
       {"merges", MergesJson(estimate)},
+      {"laws", LawsJson(estimate)},
       {"series", SeriesJson(estimate)},
       {"work", WorkJson(estimate.work)},
       {"rungs", RungsJson(estimate)},

@@ -4,7 +4,9 @@
 #include <set>
 #include <string>
 
+#include "elastimate/core/materials/free_axis_law.h"
 #include "elastimate/core/materials/laws.h"
+#include "elastimate/core/materials/transversely_isotropic_law.h"
 #include "elastimate/io/text/printable.h"
 
 namespace elastimate {
@@ -47,6 +49,11 @@ void ReadWhatIsKnown(const JsonValue& value, const Law& law,
 Eigen::MatrixXd ReadAxis(const JsonValue& value, const MeshFile& mesh) {
   const int dimension = mesh.Dimension();
   Eigen::MatrixXd axis;
+  if (!value.IsString() && value.ListSize() == 0) {
+    value.Fail(
+        "must be a direction of 3 numbers, the name of a cell array, or "
+        "\"free\"");
+  }
   if (value.IsString()) {
     const std::string name = value.String();
     const Eigen::MatrixXd* const array = FindArray(mesh.element_arrays, name);
@@ -69,6 +76,10 @@ Eigen::MatrixXd ReadAxis(const JsonValue& value, const MeshFile& mesh) {
   return axis.topRows(dimension);
 }
 
+bool IsFree(const JsonValue& axis) {
+  return axis.IsString() && axis.String() == "free";
+}
+
 std::vector<Eigen::MatrixXd> ReadAxes(const JsonValue& value,
                                       const MeshFile& mesh) {
   if (value.Has("axis") && value.Has("axes")) {
@@ -76,6 +87,9 @@ std::vector<Eigen::MatrixXd> ReadAxes(const JsonValue& value,
   }
   std::vector<Eigen::MatrixXd> axes;
   if (value.Has("axis")) {
+    if (IsFree(value.At("axis"))) {
+      return axes;
+    }
     axes.push_back(ReadAxis(value.At("axis"), mesh));
   } else if (value.Has("axes")) {
     for (const JsonValue& axis : value.At("axes").Items()) {
@@ -91,10 +105,19 @@ Material ReadMaterial(const JsonValue& value, const MeshFile& mesh) {
   if (value.Has("law")) {
     material.law = value.At("law").String();
   }
-  const Law* const law = FindLaw(material.law);
+  const Law* law = FindLaw(material.law);
   if (law == nullptr) {
     value.At("law").Fail("is \"" + Printable(material.law) +
                          "\"; the laws known here are " + LawNames());
+  }
+  if (value.Has("axis") && IsFree(value.At("axis"))) {
+    const std::string free = LawOfFreeAxis(material.law);
+    if (free.empty()) {
+      value.At("axis").Fail("is \"free\", but the law is " + material.law +
+                            WhyNoFreeAxis());
+    }
+    material.law = free;
+    law = FindLaw(free);
   }
   if (value.Has("region")) {
     const JsonValue region = value.At("region");
@@ -119,6 +142,17 @@ Material ReadMaterial(const JsonValue& value, const MeshFile& mesh) {
 bool IsInPlane(const Eigen::MatrixXd& axis, int dimension) {
   return axis.rows() <= dimension ||
          axis.bottomRows(axis.rows() - dimension).isZero(0);
+}
+
+std::string LawOfFreeAxis(const std::string& law) {
+  return law == TransverselyIsotropicLaw::kName || law == FreeAxisLaw::kName
+             ? std::string(FreeAxisLaw::kName)
+             : "";
+}
+
+std::string WhyNoFreeAxis() {
+  return ", whose axis is not looked for; only that of "
+         "transversely_isotropic, in three dimensions, can be free";
 }
 
 std::vector<Material> ReadMaterials(const JsonValue& document,

@@ -1,6 +1,7 @@
 #ifndef ELASTIMATE_IO_SCENE_JSON_MATERIALS_H_
 #define ELASTIMATE_IO_SCENE_JSON_MATERIALS_H_
 
+#include <string>
 #include <vector>
 
 #include "elastimate/core/materials/material.h"
@@ -13,10 +14,16 @@ namespace elastimate {
 /// dimension, so that a component z of a planar one is zero.
 bool IsInPlane(const Eigen::MatrixXd& axis, int dimension);
 
+/// What "axis": "free" makes of a law: the one that has the axis among its
+/// parameters; empty where there is none.
+std::string LawOfFreeAxis(const std::string& law);
+/// "which ...; ...", of a law that has none.
+std::string WhyNoFreeAxis();
+
 /// The key "materials" of a scene: a list of {"law", "region", "known",
 /// "bounds", "axis" or "axes"}, of which the last are directions or cell arrays
-/// of the mesh; empty without the key.  Throws std::invalid_argument, naming
-/// the file and the place in it.
+/// of the mesh, and "axis" may be "free"; empty without the key.  Throws
+/// std::invalid_argument, naming the file and the place in it.
 std::vector<Material> ReadMaterials(const JsonValue& document,
                                     const MeshFile& mesh);
 

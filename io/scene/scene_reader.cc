@@ -12,6 +12,8 @@
 #include <utility>
 #include <variant>
 
+#include "elastimate/core/materials/free_axis_law.h"
+#include "elastimate/core/materials/transversely_isotropic_law.h"
 #include "elastimate/core/mesh/coincident_nodes.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/io/mesh/mesh_file.h"
@@ -292,7 +294,7 @@ void ChooseMaterials(const std::filesystem::path& path,
 /// Gives all materials of the scene the law and the axes that were chosen.
 void ChooseLaw(const std::filesystem::path& path, const LawChoice& choice,
                Scene& scene) {
-  if (choice.law.empty() && choice.axes.empty()) {
+  if (choice.law.empty() && choice.axes.empty() && !choice.has_free_axis) {
     return;
   }
   if (scene.materials.empty()) {
@@ -301,8 +303,20 @@ void ChooseLaw(const std::filesystem::path& path, const LawChoice& choice,
   const int dimension = scene.mesh.Dimension();
   for (Material& material : scene.materials) {
     material.law = choice.law.empty() ? material.law : choice.law;
-    if (!choice.axes.empty()) {
+    if (!choice.axes.empty() || choice.has_free_axis) {
       material.axes.clear();
+    }
+    if (!choice.axes.empty() && material.law == FreeAxisLaw::kName) {
+      material.law = TransverselyIsotropicLaw::kName;
+    }
+    if (choice.has_free_axis) {
+      const std::string free = LawOfFreeAxis(material.law);
+      if (free.empty()) {
+        ThrowInputError(path,
+                        "the axis that is chosen is free, but the law is " +
+                            material.law + WhyNoFreeAxis());
+      }
+      material.law = free;
     }
     for (const Eigen::VectorXd& axis : choice.axes) {
       if (!IsInPlane(axis, dimension)) {

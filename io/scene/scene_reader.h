@@ -36,6 +36,8 @@ struct LawChoice {
   std::string law;  ///< Empty: of each as it is given, else isotropic.
   /// Of 3 components, or 2 in the plane; empty: as they are given.
   std::vector<Eigen::VectorXd> axes;
+  /// Whether the axis is to be found, whatever axes are given.
+  bool has_free_axis = false;
 };
 
 /// A scene as read, and what the reader has to say about it.

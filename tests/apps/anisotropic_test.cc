@@ -171,6 +171,108 @@ TEST_F(AnisotropicCommand, SaysWhichParametersAreOfNoMaterial) {
   }
 }
 
+// A block pulled aside, with fibres along this axis.
+std::string SceneOfFibres(const std::string& axis,
+                          const std::string& displacement) {
+  return R"({"mesh": "block.vtu", "materials":
+              [{"law": "transversely_isotropic", "axis": )" +
+         axis +
+         R"(}], "supports": [{"nodes": {"box": [[-1, -1, -1], [2, 2, 0.001]]}}],
+              "cases": [{)" +
+         displacement +
+         R"("loads": [{"type": "force", "value": [3, 1, -5],
+              "surface": {"box": [[-1, -1, 0.39], [2, 2, 1]]}}]}]})";
+}
+
+TEST_F(AnisotropicCommand, FindsAnAxis) {
+  Succeed("generate cuboid --out=block.vtu");
+  testing::WriteText(folder_ / "known.json", SceneOfFibres("[1, -2, 2]", ""));
+  Succeed(
+      "simulate known.json --parameters=fibres.json --noise=0.001 --out=m.csv");
+  const std::string measured = R"("displacement": {"points": "m.csv"}, )";
+  testing::WriteText(folder_ / "known.json",
+                     SceneOfFibres("[1, -2, 2]", measured));
+  testing::WriteText(folder_ / "free.json",
+                     SceneOfFibres("\"free\"", measured));
+  for (const std::string scene : {"free.json", "known.json --axis=free"}) {
+    const Json report =
+        Succeed("estimate " + scene + " --estimator=auto --json=-").Json();
+    EXPECT_EQ(report["status"], "ok") << report["message"];
+    EXPECT_EQ(report["material"]["law"], "transversely_isotropic_free_axis");
+    ASSERT_EQ(report["axes"].size(), 1);
+    const Json& axis = report["axes"][0];
+    EXPECT_TRUE(axis["region"].is_null());
+    const double error = axis["standard_error_deg"].get<double>();
+    EXPECT_GT(error, 0);
+    EXPECT_LT(error, 0.5);
+    const std::vector<double> truth = {1.0 / 3, -2.0 / 3, 2.0 / 3};
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      EXPECT_NEAR(axis["direction"][i].get<double>(), truth[i],
+                  5 * error / 57.3);
+    }
+    EXPECT_EQ(report["parameters"].size(), 7);
+    EXPECT_EQ(report["covariance"].size(), 7);
+  }
+  const std::string text =
+      Succeed("estimate free.json --estimator=reduced-fe").output;
+  EXPECT_NE(text.find("axis                  0.33"), std::string::npos) << text;
+  EXPECT_NE(text.find(" degrees\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("w_y"), std::string::npos) << text;
+  // An axis that is given takes the place of one to be found.
+  const Json known = Succeed(
+                         "estimate free.json --axis=1,-2,2 "
+                         "--estimator=reduced-fe --json=-")
+                         .Json();
+  EXPECT_EQ(known["material"]["law"], "transversely_isotropic");
+  EXPECT_EQ(known["axes"].size(), 0);
+  Refuse("estimate free.json --estimator=closed-form",
+         "use iterative-fe or reduced-fe");
+}
+
+TEST_F(AnisotropicCommand, ChoosesTheLaw) {
+  Succeed("generate cuboid --out=block.vtu");
+  Succeed(
+      "simulate block.vtu --material=transversely_isotropic --axis=1,-2,2 "
+      "--parameters=fibres.json --noise=0.01 --out=fibres.vtu");
+  Succeed("simulate block.vtu --youngs=5e4 --nu=0.3 --noise=0.01 --out=m.vtu");
+  const Json report =
+      Succeed("estimate fibres.vtu --material=auto --estimator=auto --json=-")
+          .Json();
+  EXPECT_EQ(report["status"], "ok") << report["message"];
+  ASSERT_EQ(report["laws"].size(), 3);
+  EXPECT_EQ(report["laws"][0]["law"], "transversely_isotropic_free_axis");
+  EXPECT_EQ(report["laws"][0]["num_parameters"], 7);
+  EXPECT_EQ(report["laws"][0]["bic_difference"], 0);
+  EXPECT_EQ(report["material"]["law"], report["laws"][0]["law"]);
+  const Json about_axis = Succeed(
+                              "estimate fibres.vtu --material=auto "
+                              "--axis=1,-2,2 --estimator=auto --json=-")
+                              .Json();
+  EXPECT_EQ(about_axis["material"]["law"], "transversely_isotropic");
+  const Json isotropic =
+      Succeed("estimate m.vtu --material=auto --estimator=auto --json=-")
+          .Json();
+  EXPECT_EQ(isotropic["material"]["law"], "isotropic");
+  EXPECT_TRUE(isotropic["youngs_modulus"].is_number());
+  const std::string text =
+      Succeed("estimate m.vtu --material=auto --estimator=auto").output;
+  EXPECT_NE(text.find("law chosen            isotropic (2 parameters, chi^2"),
+            std::string::npos)
+      << text;
+  for (const auto& [flags, says] :
+       std::vector<std::pair<std::string, std::string>>{
+           {"--estimator=auto --nu=0.3", "without what is known of E"},
+           {"--estimator=closed-form", "compares fits of displacements"}}) {
+    Refuse("estimate m.vtu --material=auto " + flags, says);
+  }
+  Refuse("simulate block.vtu --material=auto --youngs=1 --nu=0 --out=a.vtu",
+         "the laws are isotropic");
+  Succeed("generate plate --cells=10 --out=plate.vtu");
+  Succeed("simulate plate.vtu --youngs=1 --nu=0 --out=p.vtu");
+  Refuse("estimate p.vtu --material=auto --estimator=auto",
+         "in three dimensions");
+}
+
 TEST_F(AnisotropicCommand, EstimatesALamina) {
   testing::WriteText(folder_ / "lamina.json",
                      ParametersFile({{"youngs_modulus_1", 1.4e5},
@@ -205,6 +307,9 @@ TEST_F(AnisotropicCommand, RefusesWhatIsWrong) {
            {"--material=orthotropic --axis=1,0,0,1,1,0", "not orthogonal"},
            {"--material=transversely_isotropic --axis=0,0,0", "length 0"},
            {"--axis=1,0,0", "alike in all directions"},
+           {"--axis=free", "the law is isotropic, whose axis is not looked"},
+           {"--material=orthotropic --axis=free",
+            "only that of transversely_isotropic"},
            {"--material=transversely_isotropic --axis=1", "it needs three"},
            {"--material=transversely_isotropic --axis=1,0,0",
             "give --parameters=FILE.json"}}) {
@@ -216,6 +321,14 @@ TEST_F(AnisotropicCommand, RefusesWhatIsWrong) {
             "materials[0].axis is \"fibre\", but the mesh has no such cell"},
            {R"({"law": "transversely_isotropic", "axis": [1, 0]})",
             "materials[0].axis"},
+           {R"({"law": "transversely_isotropic", "axis": 5})",
+            "axis must be a direction of 3 numbers, the name of a cell array, "
+            "or \"free\""},
+           {R"({"law": "anisotropic", "axis": "free"})",
+            "materials[0].axis is \"free\", but the law is anisotropic"},
+           {R"({"law": "transversely_isotropic", "axis": "free",
+                "axes": [[1, 0, 0]]})",
+            "materials[0].axes is given beside"},
            {R"({"law": "transversely_isotropic", "axis": [1, 0, 0],
                 "axes": [[1, 0, 0]]})",
             "materials[0].axes is given beside"},

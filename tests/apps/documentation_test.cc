@@ -253,6 +253,7 @@ TEST_F(Documentation, SaysWhatEachEstimatorTakes) {
           std::pair(takes.takes_losses, " taken |"),
           std::pair(takes.takes_degree, " taken |"),
           std::pair(takes.takes_materials, " taken |"),
+          std::pair(takes.takes_free_axes, " taken |"),
           std::pair(takes.takes_unknown_motion, " taken |"),
           std::pair(takes.takes_supports_of_cases, " taken |")}) {
       row += is_set ? word : " |";

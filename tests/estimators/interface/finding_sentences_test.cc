@@ -160,6 +160,8 @@ std::vector<Finding> OfParameters() {
       UnphysicalParameters(ManyParameters()),
       ParametersUndetermined({"E of region 3 (45 %)"}),
       ParametersUndetermined(ManyParameters()),
+      AxisUndetermined({"the axis of region 3 (24 degrees)"}),
+      AxisUndetermined(ManyParameters()),
       DependentForces(),
       CombinationsOnly({"the product of E of regions 1, 2 and 17 more and E "
                         "of regions 3, 4 and 17 more"}),
@@ -168,6 +170,7 @@ std::vector<Finding> OfParameters() {
       ResidualInRegion("regions 1, 2 and 17 more", kLong),
       RegionsMayDiffer({"3.1 % in E", "0.012 in nu"}),
       RegionsNotCompared({"region 1", "region 2", "region 3", "region 4"}),
+      LawsFitAlike("transversely_isotropic_free_axis", "anisotropic", 3.21),
       ParametersOnBounds({"nu of region 1000"}),
       ParametersOnBounds(ManyParameters()),
       ParametersNearLimits(ManyParameters(), Severity::kError),

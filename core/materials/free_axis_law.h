@@ -1,0 +1,75 @@
+#ifndef ELASTIMATE_CORE_MATERIALS_FREE_AXIS_LAW_H_
+#define ELASTIMATE_CORE_MATERIALS_FREE_AXIS_LAW_H_
+
+#include <string_view>
+#include <vector>
+
+#include "elastimate/core/materials/anisotropic_law.h"
+
+namespace elastimate {
+
+/// A law whose axis is a parameter: that of a material which is alike in all
+/// directions across an axis L that is not known.
+///
+/// The chart has the parameters of TransverselyIsotropicLaw, and the rotation
+/// vector w = (0, w_y, w_z) [rad] which turns the direction x into the axis,
+///
+///   R = exp([w]_x),   L = R x,   C(p, w) = K(R) C(p) K(R)^T,
+///
+/// K(R) the rotation of strains in the notation of Kelvin [Mehrabadi & Cowin,
+/// Q. J. Mech. Appl. Math. 43 (1990) 15].  theta are all 21 stiffnesses, as of
+/// AnisotropicLaw, in the frame of the scene: stresses are linear in them.
+///
+/// L and -L are one axis, so that |w| <= pi / 2 has all of them; the chart is
+/// regular for |w| < pi, so that no axis is at an end of it.  Where the
+/// stiffness is that of an isotropic material, all w have the same theta.
+class FreeAxisLaw : public AnisotropicLaw {
+ public:
+  static constexpr std::string_view kName = "transversely_isotropic_free_axis";
+
+  FreeAxisLaw();
+
+  std::string_view Name() const override { return kName; }
+  std::string_view Description() const override;
+  const std::vector<LawParameter>& Parameters() const override {
+    return parameters_;
+  }
+  int NumAxes() const override { return 0; }
+  /// None: that the stiffness is positive definite is up to the parameters.
+  const std::vector<BlockEntry>& BlockEntries() const override {
+    return Law::BlockEntries();
+  }
+  Eigen::VectorXd Moduli(const Eigen::VectorXd& parameters,
+                         SectionModel model) const override;
+  Eigen::MatrixXd ModuliJacobian(const Eigen::VectorXd& parameters,
+                                 SectionModel model) const override;
+  /// Those of the nearest stiffness of the law, in the norm of C.
+  Eigen::VectorXd ParametersOf(const Eigen::VectorXd& moduli,
+                               SectionModel model) const override;
+
+  /// The parameters of which ||W (theta(p) - moduli)|| is least among positive
+  /// definite stiffnesses, by a Gauss-Newton descent from each of 48 axes over
+  /// a half sphere, as there may be several minima; not numbers where none is
+  /// positive definite.  W has 21 columns.  Some hundred least squares of its
+  /// rows and 7 unknowns.
+  Eigen::VectorXd NearestParameters(const Eigen::VectorXd& moduli,
+                                    const Eigen::MatrixXd& weights) const;
+
+  /// The axis of these parameters, a unit vector with its first component not
+  /// negative, and its derivative, 3 x num_parameters.
+  static Eigen::Vector3d Axis(const Eigen::VectorXd& parameters);
+  static Eigen::MatrixXd AxisJacobian(const Eigen::VectorXd& parameters);
+
+  /// (ln(E_L / E_T), nu_LT - nu_TT, ln(2 G_LT (1 + nu_TT) / E_T)), which is
+  /// zero where the material is isotropic, and its derivative, 3 x
+  /// num_parameters.
+  static Eigen::Vector3d Anisotropy(const Eigen::VectorXd& parameters);
+  static Eigen::MatrixXd AnisotropyJacobian(const Eigen::VectorXd& parameters);
+
+ private:
+  std::vector<LawParameter> parameters_;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_MATERIALS_FREE_AXIS_LAW_H_

@@ -1,0 +1,103 @@
+#include "elastimate/estimators/interface/axis_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/materials/free_axis_law.h"
+#include "elastimate/core/materials/material_parameters.h"
+#include "elastimate/estimators/interface/limits.h"
+
+namespace elastimate {
+namespace {
+
+// Those of w, at the end of the parameters of the law.
+constexpr std::size_t kNumRotations = 2;
+
+// Of those from `first` on; what is given has no error.
+Eigen::MatrixXd CovarianceOfParameters(const Estimate& estimate,
+                                       Eigen::Index first, Eigen::Index count) {
+  Eigen::MatrixXd covariance =
+      estimate.parameter_covariance.block(first, first, count, count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    if (estimate.parameters[first + k].is_known) {
+      covariance.row(k).setZero();
+      covariance.col(k).setZero();
+    }
+  }
+  return covariance;
+}
+
+double ChiSquareOfAnisotropy(const Eigen::VectorXd& parameters,
+                             const Eigen::MatrixXd& covariance) {
+  // Of exact displacements, or of parameters that are given.
+  constexpr double kRounding = 1e-8;
+  const Eigen::Vector3d anisotropy = FreeAxisLaw::Anisotropy(parameters);
+  const Eigen::MatrixXd jacobian = FreeAxisLaw::AnisotropyJacobian(parameters);
+  Eigen::MatrixXd of_anisotropy = jacobian * covariance * jacobian.transpose();
+  of_anisotropy.diagonal().array() += kRounding * kRounding;
+  const double chi_square =
+      (anisotropy.transpose() * Inverse(of_anisotropy) * anisotropy).value();
+  return std::isfinite(chi_square) ? chi_square : 0;
+}
+
+}  // namespace
+
+bool HasFreeAxis(const Scene& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [](const Material& material) {
+                       return material.law == FreeAxisLaw::kName;
+                     });
+}
+
+std::vector<AxisEstimate> AxesOf(const Scene& scene, const Estimate& estimate) {
+  std::vector<AxisEstimate> axes;
+  if (estimate.parameters.empty() || !HasFreeAxis(scene)) {
+    return axes;
+  }
+  const MaterialParameters all(scene.materials, scene.mesh.section.model);
+  for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
+    if (all.LawOf(i).Name() != FreeAxisLaw::kName) {
+      continue;
+    }
+    const Eigen::Index first = all.FirstParameter(i);
+    const auto count = Eigen::Index(all.LawOf(i).Parameters().size());
+    const Eigen::VectorXd parameters = Eigen::VectorXd::NullaryExpr(
+        count,
+        [&](Eigen::Index k) { return estimate.parameters[first + k].value; });
+    AxisEstimate axis;
+    axis.regions = estimate.parameters[first].regions;
+    axis.first_rotation = std::size_t(first + count) - kNumRotations;
+    axis.direction = FreeAxisLaw::Axis(parameters);
+    const Eigen::MatrixXd jacobian =
+        FreeAxisLaw::AxisJacobian(parameters).rightCols(kNumRotations);
+    const Eigen::MatrixXd own = CovarianceOfParameters(estimate, first, count);
+    const Eigen::MatrixXd covariance =
+        jacobian * own.bottomRightCorner(kNumRotations, kNumRotations) *
+        jacobian.transpose();
+    if (covariance.allFinite()) {
+      axis.standard_error =
+          std::sqrt(std::max(DecomposeSymmetric(covariance).values(2), 0.0));
+      axis.anisotropy = ChiSquareOfAnisotropy(parameters, own);
+      if (!(*axis.standard_error <= kLimits.largest_axis_error &&
+            axis.anisotropy >= kLimits.least_anisotropy)) {
+        axis.direction.setConstant(Estimate::kUnknown);
+      }
+    }
+    axes.push_back(axis);
+  }
+  return axes;
+}
+
+const AxisEstimate* AxisOfParameter(const Estimate& estimate,
+                                    std::size_t place) {
+  for (const AxisEstimate& axis : estimate.axes) {
+    if (place >= axis.first_rotation &&
+        place < axis.first_rotation + kNumRotations) {
+      return &axis;
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace elastimate
