@@ -39,7 +39,7 @@ ChosenLaw GiveChosenLaw(const EstimatorOptions& options,
   if (!why_not.empty()) {
     throw std::invalid_argument(sources + ": " + why_not);
   }
-  const ChosenLaw choice = ChooseLaw(modelled, options);
+  ChosenLaw choice = ChooseLaw(modelled, options);
   if (!choice.why_not.empty()) {
     notices.push_back(sources + ": laws could not be compared (" +
                       choice.why_not + "), so that none was chosen");

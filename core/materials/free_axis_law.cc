@@ -190,7 +190,7 @@ std::optional<FitOfAxis> NextAxis(const FitOfAxis& fit,
   constexpr double kLongest = 0.5;
   step *= std::min(1.0, kLongest / step.norm());
   for (int i = 0; i < kHalvings; ++i) {
-    const std::optional<FitOfAxis> next =
+    std::optional<FitOfAxis> next =
         FitAxis(fit.w + step, weighted_moduli, weights, entries);
     if (next && next->square_sum < fit.square_sum) {
       return next;
@@ -242,6 +242,11 @@ FreeAxisLaw::FreeAxisLaw() : parameters_(ParametersOfFreeAxis()) {}
 
 std::string_view FreeAxisLaw::Description() const {
   return "the same with an axis that is not known, x turned by a vector w";
+}
+
+const std::vector<BlockEntry>& FreeAxisLaw::BlockEntries() const {
+  static const std::vector<BlockEntry> none;
+  return none;
 }
 
 Eigen::VectorXd FreeAxisLaw::Moduli(const Eigen::VectorXd& parameters,

@@ -36,9 +36,7 @@ class FreeAxisLaw : public AnisotropicLaw {
   }
   int NumAxes() const override { return 0; }
   /// None: that the stiffness is positive definite is up to the parameters.
-  const std::vector<BlockEntry>& BlockEntries() const override {
-    return Law::BlockEntries();
-  }
+  const std::vector<BlockEntry>& BlockEntries() const override;
   Eigen::VectorXd Moduli(const Eigen::VectorXd& parameters,
                          SectionModel model) const override;
   Eigen::MatrixXd ModuliJacobian(const Eigen::VectorXd& parameters,

@@ -78,8 +78,8 @@ std::vector<std::vector<Material>> Candidates(
 // the frame, in that of the scene: 21 x num_moduli.
 Eigen::MatrixXd UnitsInScene(const Law& law, const Eigen::Matrix3d& frame) {
   Eigen::MatrixXd turn(9, 9);  // Of Q X Q^T from X, by columns.
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) {
       turn.block<3, 3>(3 * i, 3 * j) = frame(i, j) * frame;
     }
   }
