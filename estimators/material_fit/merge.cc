@@ -41,20 +41,12 @@ bool HoldsWhatWasPlanned(const MergePlan& plan, std::size_t num_steps,
          DistanceOfGroups(last.groups, parameters, apart, variables) <= allowed;
 }
 
-// The errors up to which materials are compared, a share of those up to which
-// they are determined: of E a tenth.  What is known less well may be another
-// material than those it cannot be told from.
-Eigen::VectorXd LargestErrorsOfCompared(const FreeParameters& free) {
-  constexpr double kShare = 0.3;
-  return kShare * LargestErrorsOfVariables(free);
-}
-
-// The regions of materials with a variable of a larger error, which no step of
-// the plan compares.
+// The regions of materials with a variable that is not determined, which no
+// step of the plan compares.
 std::vector<std::vector<int>> NotCompared(
     const std::vector<Material>& materials, const FreeParameters& free,
     const Eigen::MatrixXd& covariance, const MergePlan& plan) {
-  const Eigen::VectorXd limits = LargestErrorsOfCompared(free);
+  const Eigen::VectorXd limits = LargestErrorsOfVariables(free);
   std::vector<bool> are_left_out(materials.size(), false);
   for (Eigen::Index i = 0; i < free.Size(); ++i) {
     if (!(std::sqrt(covariance(i, i)) <= limits(i))) {
@@ -192,7 +184,7 @@ MaterialMerge MergeMaterials(const Scene& scene,
   const VariableEstimate variables = {apart.errors.corrected,
                                       apart.errors.total};
   const MergePlan plan = PlanMerges(
-      scene.materials, free.All(), LargestErrorsOfCompared(free), variables,
+      scene.materials, free.All(), LargestErrorsOfVariables(free), variables,
       static_cast<double>(ObservedDisplacements(scene).Size()));
   const std::size_t num_taken =
       NumBorneOut(plan, WithoutOutliers(scene, apart.estimate.outliers),
