@@ -311,7 +311,7 @@ Finding AxisUndetermined(const std::vector<std::string>& axes) {
 
 Finding CombinationsOnly(const std::vector<std::string>& combinations) {
   return Warning(FindingCode::kCombinationsOnly,
-                 "data determine only " + combinations[0],
+                 "the data determine only " + combinations[0],
                  "give what is known of them, join regions, or add load cases");
 }
 
@@ -324,8 +324,9 @@ Finding ResidualInRegion(const std::string& region, double correlation) {
                  "supports and the loads there");
 }
 
-Finding RegionsMayDiffer(const std::vector<std::string>& differences) {
-  return {FindingCode::kRegionsMayDiffer, Severity::kNotice,
+Finding RegionsMayDiffer(const std::vector<std::string>& differences,
+                         Severity severity) {
+  return {FindingCode::kRegionsMayDiffer, severity,
           "regions that became one material may differ by up to " +
               FirstOf(differences) + " (95 %)",
           "use --regions=each for what is known of each of them"};

@@ -69,7 +69,8 @@ Finding CombinationsOnly(const std::vector<std::string>& combinations);
 /// "region 3".
 Finding ResidualInRegion(const std::string& region, double correlation);
 /// By how much, such as "3 % in E".
-Finding RegionsMayDiffer(const std::vector<std::string>& differences);
+Finding RegionsMayDiffer(const std::vector<std::string>& differences,
+                         Severity severity);
 /// "region 3".
 Finding RegionsNotCompared(const std::vector<std::string>& regions);
 /// By how much their Bayesian information criteria differ.

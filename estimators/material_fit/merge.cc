@@ -167,6 +167,21 @@ std::vector<std::string> DifferencesInWords(
   return words;
 }
 
+// Whether a region may be another one than its material by more than a user
+// may take for its error: that of the material is that of what they share.
+bool AreNotable(const Estimate& estimate, const Eigen::VectorXd& differences) {
+  constexpr double kNotableOfModulus = 0.2;
+  constexpr double kNotableOfRatio = 0.06;
+  for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
+    if (differences(Eigen::Index(i)) > (estimate.parameters[i].is_modulus
+                                            ? kNotableOfModulus
+                                            : kNotableOfRatio)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 MaterialMerge MergeMaterials(const Scene& scene,
@@ -242,7 +257,9 @@ void EnterMerge(const MaterialMerge& merge, Estimate& estimate) {
   const std::vector<std::string> words =
       DifferencesInWords(estimate, differences);
   if (!words.empty()) {
-    estimate.Add(RegionsMayDiffer(words));
+    estimate.Add(RegionsMayDiffer(words, AreNotable(estimate, differences)
+                                             ? Severity::kWarning
+                                             : Severity::kNotice));
   }
 }
 

@@ -223,6 +223,24 @@ TEST(MergeStatistics, TellsNothingApartByWhatElementsMiss) {
   }
 }
 
+std::ptrdiff_t WarningsOfDifferences(const Estimate& estimate) {
+  return std::count_if(estimate.findings.begin(), estimate.findings.end(),
+                       [](const Finding& finding) {
+                         return finding.code ==
+                                    FindingCode::kRegionsMayDiffer &&
+                                finding.severity == Severity::kWarning;
+                       });
+}
+
+// By noise that hides a tenth of E, they become one.
+TEST(MergeMaterials, WarnsWhereRegionsMayDifferByMuch) {
+  Scene scene = BlockOfSixRegions();
+  MeasureInWorld(scene, WithOthersInTheMiddle({5.5e3, 0.3}), scene);
+  const auto [merge, estimate] = MergeAndEstimate(WithNoiseOf(scene, 0.1, 1));
+  EXPECT_EQ(estimate.merges.size(), 5U);
+  EXPECT_EQ(WarningsOfDifferences(estimate), 1);
+}
+
 TEST(MergeMaterials, SaysWhatItDid) {
   Scene scene = BlockOfSixRegions();
   MeasureInWorld(scene, WithOthersInTheMiddle({1e4, 0.3}), scene);
@@ -237,6 +255,7 @@ TEST(MergeMaterials, SaysWhatItDid) {
   EXPECT_GT(merge.work.factorizations, 0);
   EXPECT_EQ(estimate.merges.size(), 5U);
   EXPECT_TRUE(estimate.Has(FindingCode::kRegionsMayDiffer));
+  EXPECT_EQ(WarningsOfDifferences(estimate), 0);
   ASSERT_EQ(estimate.materials.size(), 2U);
   ASSERT_EQ(estimate.materials[0].largest_differences.size(), 2U);
   // Two of its regions are no better known than to a few percent.
