@@ -159,8 +159,8 @@ std::string MeasuredScene(const std::string& source,
     scene.load_cases[k].displacement = displacement;
   }
   Fields fields = SceneFields(scene);
-  for (const FileArray& axes : reading.axis_arrays) {
-    fields.cell.push_back({axes.name, axes.values});
+  for (const auto& [name, axes] : reading.axis_arrays) {
+    fields.cell.push_back({name, axes});
   }
   return VtuContent(FLAGS_out, mesh, fields, reading.file_order);
 }

@@ -1,6 +1,7 @@
 #ifndef ELASTIMATE_IO_SCENE_FILE_SCENE_H_
 #define ELASTIMATE_IO_SCENE_FILE_SCENE_H_
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,7 +24,7 @@ struct FileScene {
   /// of points; empty where that is no text.
   std::vector<std::vector<FileLines>> measured_lines;
   /// The cell arrays that materials have axes from.
-  std::vector<FileArray> axis_arrays;
+  std::map<std::string, Eigen::MatrixXd> axis_arrays;
 };
 
 /// The regions from the cell array `region`; empty when there is none.  Throws

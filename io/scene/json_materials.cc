@@ -1,7 +1,7 @@
 #include "elastimate/io/scene/json_materials.h"
 
 #include <limits>
-#include <set>
+#include <map>
 #include <string>
 
 #include "elastimate/core/materials/free_axis_law.h"
@@ -169,12 +169,13 @@ std::vector<Material> ReadMaterials(const JsonValue& document,
   return materials;
 }
 
-std::vector<FileArray> AxisArrays(const JsonValue& document,
-                                  const MeshFile& mesh) {
-  std::set<std::string> names;
-  const auto add = [&names](const JsonValue& axis) {
-    if (axis.IsString()) {
-      names.insert(axis.String());
+std::map<std::string, Eigen::MatrixXd> AxisArrays(const JsonValue& document,
+                                                  const MeshFile& mesh) {
+  std::map<std::string, Eigen::MatrixXd> arrays;
+  const auto add = [&](const JsonValue& axis) {
+    if (axis.IsString() && !IsFree(axis)) {
+      const std::string name = axis.String();
+      arrays.emplace(name, *FindArray(mesh.element_arrays, name));
     }
   };
   if (document.Has("materials")) {
@@ -187,11 +188,6 @@ std::vector<FileArray> AxisArrays(const JsonValue& document,
         }
       }
     }
-  }
-  std::vector<FileArray> arrays;
-  arrays.reserve(names.size());
-  for (const std::string& name : names) {
-    arrays.push_back({name, *FindArray(mesh.element_arrays, name)});
   }
   return arrays;
 }

@@ -1,6 +1,7 @@
 #ifndef ELASTIMATE_IO_SCENE_JSON_MATERIALS_H_
 #define ELASTIMATE_IO_SCENE_JSON_MATERIALS_H_
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -27,10 +28,10 @@ std::string WhyNoFreeAxis();
 std::vector<Material> ReadMaterials(const JsonValue& document,
                                     const MeshFile& mesh);
 
-/// The cell arrays that these materials have axes from, each once.
+/// The cell arrays that these materials have axes from, by name.
 /// Precondition: ReadMaterials takes the document.
-std::vector<FileArray> AxisArrays(const JsonValue& document,
-                                  const MeshFile& mesh);
+std::map<std::string, Eigen::MatrixXd> AxisArrays(const JsonValue& document,
+                                                  const MeshFile& mesh);
 
 }  // namespace elastimate
 

@@ -3,12 +3,12 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "elastimate/core/scene/scene.h"
-#include "elastimate/io/mesh/mesh_file.h"
 #include "elastimate/io/scene/frame_series.h"
 #include "elastimate/io/text/file_lines.h"
 
@@ -55,8 +55,9 @@ struct SceneReading {
   /// Of each load case, where its measurement stands, in the order of nodes or
   /// of points; empty where that is no text.
   std::vector<std::vector<FileLines>> measured_lines;
-  /// The cell arrays that the scene.json names as axes of materials.
-  std::vector<FileArray> axis_arrays;
+  /// The cell arrays that the scene.json names as axes of materials, one column
+  /// for each element, by name.
+  std::map<std::string, Eigen::MatrixXd> axis_arrays;
 };
 
 /// Reads a scene from files whose arrays make it up (.vtu, .vtk, or .msh with
