@@ -311,7 +311,7 @@ Finding AxisUndetermined(const std::vector<std::string>& axes) {
 
 Finding CombinationsOnly(const std::vector<std::string>& combinations) {
   return Warning(FindingCode::kCombinationsOnly,
-                 "the data determine only " + combinations[0],
+                 "data determine only " + combinations[0],
                  "give what is known of them, join regions, or add load cases");
 }
 

@@ -1,5 +1,6 @@
 #include "elastimate/estimators/material_fit/curvature.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <optional>

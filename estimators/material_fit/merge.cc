@@ -171,7 +171,7 @@ std::vector<std::string> DifferencesInWords(
 // may take for its error: that of the material is that of what they share.
 bool AreNotable(const Estimate& estimate, const Eigen::VectorXd& differences) {
   constexpr double kNotableOfModulus = 0.2;
-  constexpr double kNotableOfRatio = 0.06;
+  constexpr double kNotableOfRatio = 0.1;
   for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
     if (differences(Eigen::Index(i)) > (estimate.parameters[i].is_modulus
                                             ? kNotableOfModulus
