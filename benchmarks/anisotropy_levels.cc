@@ -105,19 +105,8 @@ MaterialLevel Bar(const std::string& factor, const std::string& level,
                   double ratio, std::size_t num_cases) {
   Scene specimen = BarUnder(num_cases);
   specimen.materials = {MaterialOf(TransverselyIsotropicLaw::kName, {kAxis})};
-  const Eigen::VectorXd parameters = FibreParameters(ratio);
-  LoadCase gravity;
-  gravity.loads = {BodyForce{Eigen::Vector3d(-10, 20, 5)}};
-  return {factor,
-          level,
-          "right",
-          specimen,
-          parameters,
-          specimen.mesh.regions,
-          specimen.materials,
-          parameters,
-          kUsualNoiseOfBar,
-          gravity};
+  return RightLevel(factor, level, specimen, FibreParameters(ratio),
+                    kUsualNoiseOfBar, Eigen::Vector3d(-10, 20, 5));
 }
 
 // The same bar taken to be of another law.

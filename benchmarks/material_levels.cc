@@ -94,19 +94,8 @@ MaterialLevel Right(const std::string& factor, const std::string& level,
                     const std::vector<IsotropicElasticity>& elasticities) {
   specimen.mesh.regions = RegionsOf(specimen.mesh, region_at);
   specimen.materials = IsotropicMaterialOfEachRegion(specimen.mesh);
-  const Eigen::VectorXd parameters = ParametersFrom(elasticities);
-  LoadCase gravity;
-  gravity.loads = {BodyForce{Eigen::Vector2d(1, -2)}};
-  return {factor,
-          level,
-          "right",
-          specimen,
-          parameters,
-          specimen.mesh.regions,
-          specimen.materials,
-          parameters,
-          kUsualNoise,
-          gravity};
+  return RightLevel(factor, level, specimen, ParametersFrom(elasticities),
+                    kUsualNoise, Eigen::Vector2d(1, -2));
 }
 
 // What each region of the model is of, where that is one material.
@@ -221,6 +210,24 @@ void AddModels(std::vector<MaterialLevel>& levels) {
 }
 
 }  // namespace
+
+MaterialLevel RightLevel(const std::string& factor, const std::string& level,
+                         const Scene& specimen,
+                         const Eigen::VectorXd& parameters, double noise,
+                         const Eigen::VectorXd& body_force) {
+  LoadCase unseen;
+  unseen.loads = {BodyForce{body_force}};
+  return {factor,
+          level,
+          "right",
+          specimen,
+          parameters,
+          specimen.mesh.regions,
+          specimen.materials,
+          parameters,
+          noise,
+          unseen};
+}
 
 std::string LevelText(double value) {
   std::ostringstream text;

@@ -30,6 +30,13 @@ struct MaterialLevel {
   bool is_in_quick = true;
 };
 
+/// That of a specimen which the model takes for what it is; `body_force` is the
+/// load that is not measured.
+MaterialLevel RightLevel(const std::string& factor, const std::string& level,
+                         const Scene& specimen,
+                         const Eigen::VectorXd& parameters, double noise,
+                         const Eigen::VectorXd& body_force);
+
 /// A number as a level.
 std::string LevelText(double value);
 
