@@ -2,8 +2,8 @@
 """Draws the materials of an estimate: plot.py RESULT.vtu REPORT.json PICTURE.png [TRUTH.json]
 
 On the left the regions, coloured by the first parameter of their law; on the right
-that parameter of each material with its 95 % interval, grey where it is not
-determined, and the truth where it is given.
+that parameter of each material with its 95 % interval, and the truth where it is
+given.  What is not determined is grey.
 """
 
 import json
@@ -22,7 +22,7 @@ from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 
 def surface(path, name):
-    """The corners of the polygons of the surface, and a cell array there."""
+    """The corners of the polygons of the surface, and there a cell array and the region."""
     reader = vtkXMLUnstructuredGridReader()
     reader.SetFileName(path)
     cut = vtkDataSetSurfaceFilter()
@@ -32,19 +32,23 @@ def surface(path, name):
     nodes = vtk_to_numpy(polygons.GetPoints().GetData())
     starts = vtk_to_numpy(polygons.GetPolys().GetOffsetsArray())
     corners = np.split(vtk_to_numpy(polygons.GetPolys().GetConnectivityArray()), starts[1:-1])
-    array = polygons.GetCellData().GetArray(name)
-    if array is None:
-        sys.exit(f"{path} has no cell array {name}; make it by --regions=each or merge and --out")
-    return [nodes[corner] for corner in corners], nodes, vtk_to_numpy(array)
+    arrays = []
+    for wanted in (name, "region"):
+        array = polygons.GetCellData().GetArray(wanted)
+        if array is None:
+            sys.exit(f"{path} has no cell array {wanted}; make it by --regions=each or merge and --out")
+        arrays.append(vtk_to_numpy(array))
+    return [nodes[corner] for corner in corners], nodes, *arrays
 
 
-def label(regions):
-    return ", ".join(map(str, regions)) if isinstance(regions, list) else str(regions)
+def as_list(regions):
+    return regions if isinstance(regions, list) else [regions]
 
 
-def draw_regions(figure, place, path, name, norm):
-    polygons, nodes, values = surface(path, name)
+def draw_regions(figure, place, path, name, norm, undetermined):
+    polygons, nodes, values, regions = surface(path, name)
     colors = matplotlib.cm.viridis(norm(values))
+    colors[np.isin(regions, undetermined)] = matplotlib.colors.to_rgba("0.6")
     if np.ptp(nodes[:, 2]) == 0:
         axis = figure.add_subplot(place)
         axis.add_collection(matplotlib.collections.PolyCollection(
@@ -68,6 +72,7 @@ def main():
     with open(sys.argv[2], encoding="utf-8") as file:
         report = json.load(file)
     name = report["parameters"][0]["name"]
+    title = name.replace("youngs", "Young's").replace("_", " ")
     shown = [parameter for parameter in report["parameters"] if parameter["name"] == name]
     determination = [material["determination"] for material in report["materials"]] or ["determined"]
     truth = {}
@@ -77,24 +82,25 @@ def main():
                      for parameter in json.load(file)["parameters"] if parameter["name"] == name}
     values = [parameter["value"] for parameter in shown]
     norm = LogNorm(0.8 * min(values), 1.25 * max(values))
+    is_determined = [verdict == "determined" for verdict in determination]
+    undetermined = [region for parameter, known in zip(shown, is_determined) if not known
+                    for region in as_list(parameter["region"])]
     figure = plt.figure(figsize=(12, 4.5), layout="constrained")
-    axis = draw_regions(figure, 121, sys.argv[1], name, norm)
-    figure.colorbar(matplotlib.cm.ScalarMappable(norm, "viridis"), ax=axis, label=name.replace("_", " "),
+    axis = draw_regions(figure, 121, sys.argv[1], name, norm, undetermined)
+    figure.colorbar(matplotlib.cm.ScalarMappable(norm, "viridis"), ax=axis, label=title,
                     shrink=0.7, location="left")
     bars = figure.add_subplot(122)
     for i, parameter in enumerate(shown):
-        is_determined = i < len(determination) and determination[i] == "determined"
-        color = matplotlib.cm.viridis(norm(parameter["value"])) if is_determined else "0.6"
+        color = matplotlib.cm.viridis(norm(parameter["value"])) if is_determined[i] else "0.6"
         if parameter["interval"]:
             bars.plot([i, i], parameter["interval"], color=color, linewidth=3)
         bars.plot(i, parameter["value"], "o", color=color, markeredgecolor="k")
-        regions = parameter["region"] if isinstance(parameter["region"], list) else [parameter["region"]]
-        for region in regions:
+        for region in as_list(parameter["region"]):
             if region in truth:
                 bars.plot(i, truth[region], "kx")
     bars.set_yscale("log")
-    bars.set_xticks(range(len(shown)), [label(parameter["region"]) for parameter in shown])
-    bars.set(xlabel="regions", ylabel=name.replace("_", " ") + ", 95 %",
+    bars.set_xticks(range(len(shown)), [", ".join(map(str, as_list(parameter["region"]))) for parameter in shown])
+    bars.set(xlabel="regions", ylabel=title + ", 95 %",
              title="grey: not determined" + (", cross: truth" if truth else ""))
     figure.savefig(sys.argv[3], dpi=120)
 

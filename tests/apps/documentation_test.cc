@@ -186,6 +186,25 @@ TEST_F(Documentation, HasTheReportOfTheProgram) {
               json::parse(reports[0]));
 }
 
+TEST_F(Documentation, HasTheCommandsOfTheTenBlocks) {
+  const std::vector<std::string> blocks =
+      Blocks("examples/ten_blocks/README.md", "");
+  ASSERT_EQ(blocks.size(), 2U);
+  const std::string folder =
+      std::filesystem::path(ELASTIMATE_PROGRAM).parent_path().string();
+  // What the data do not determine makes the exit code of the last but one 1.
+  testing::WriteText(folder_ / "commands.sh",
+                     "export PATH='" + folder + "':\"$PATH\"\n" + blocks[0]);
+  const std::string command =
+      "cd '" + folder_.string() + "' && sh commands.sh >output 2>errors";
+  EXPECT_EQ(std::system(command.c_str()), 0)
+      << testing::ReadText(folder_ / "errors");
+  EXPECT_NE(testing::ReadText(folder_ / "output")
+                .find("the data do not determine E of region 10 ("),
+            std::string::npos);
+  EXPECT_GT(std::filesystem::file_size(folder_ / "ten_blocks.png"), 10000U);
+}
+
 TEST_F(Documentation, HasASceneThatCanBeRead) {
   const std::vector<std::string> scenes = Blocks("README.md", "json");
   ASSERT_EQ(scenes.size(), 1U);
