@@ -79,6 +79,18 @@ struct ResultantMisfit {
   double Excess() const;
 };
 
+/// A rotation of axes that were given, which would fit better.
+struct AxisTurn {
+  double angle;        ///< [rad]
+  std::string region;  ///< "" for all of a specimen.
+  /// Of so large a gain, were the axes right.
+  double probability;
+  /// The largest change of a parameter, relative or of a ratio, and of one in
+  /// its standard errors by noise.
+  double change;
+  double change_in_errors;
+};
+
 /// What virtual work said of a force residual.
 enum class WorkCheck { kNotMade, kIsNoise, kIsMore, kContradicts };
 
@@ -113,6 +125,7 @@ struct Evidence {
   /// Of the displacements that balances the loads, relative to them.
   std::optional<double> correction;
 
+  std::optional<AxisTurn> axis_turn;
   std::optional<ResultantMisfit> resultant_misfit;
   std::optional<BoundExcess> bound_excess;
   std::optional<ErrorsOnBound> youngs_modulus_on_bound;

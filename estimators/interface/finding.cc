@@ -47,6 +47,7 @@ constexpr Row kRows[] = {
     {"residual_above_noise", FindingCode::kResidualAboveNoise},
     {"smooth_residual", FindingCode::kSmoothResidual},
     {"residual_in_region", FindingCode::kResidualInRegion},
+    {"axis_turned", FindingCode::kAxisTurned},
     {"large_residual", FindingCode::kLargeResidual},
     {"virtual_work_imbalance", FindingCode::kVirtualWorkImbalance},
     {"model_mismatch", FindingCode::kModelMismatch},

@@ -52,6 +52,7 @@ enum class FindingCode {
   kResidualAboveNoise,
   kSmoothResidual,
   kResidualInRegion,
+  kAxisTurned,
   kLargeResidual,
   kVirtualWorkImbalance,
   kModelMismatch,

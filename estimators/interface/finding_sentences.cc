@@ -324,6 +324,16 @@ Finding ResidualInRegion(const std::string& region, double correlation) {
                  "supports and the loads there");
 }
 
+Finding AxisTurned(double angle, const std::string& region, double change) {
+  constexpr double kDegrees = 180 / M_PI;
+  return Warning(FindingCode::kAxisTurned,
+                 "axes" + (region.empty() ? "" : " of " + region) +
+                     " that are turned by " + TwoDigits(kDegrees * angle) +
+                     " degrees fit better, with parameters " + Percent(change) +
+                     " away, which errors hold",
+                 "check them, or use --axis=free");
+}
+
 Finding RegionsMayDiffer(const std::vector<std::string>& differences,
                          Severity severity) {
   return {FindingCode::kRegionsMayDiffer, severity,

@@ -68,7 +68,8 @@ Finding AxisUndetermined(const std::vector<std::string>& axes);
 Finding CombinationsOnly(const std::vector<std::string>& combinations);
 /// "region 3".
 Finding ResidualInRegion(const std::string& region, double correlation);
-/// By how much, such as "3 % in E".
+/// By an angle [rad]; of a region, "" where there is one material.
+Finding AxisTurned(double angle, const std::string& region, double change);
 Finding RegionsMayDiffer(const std::vector<std::string>& differences,
                          Severity severity);
 /// "region 3".

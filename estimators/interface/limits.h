@@ -30,6 +30,8 @@ struct Limits {
   double mismatch_significance = 1e-3;
   /// Probability below which resultants contradict a fit.
   double resultant_significance = 1e-3;
+  /// Probability below which a fit with other axes is better.
+  double axis_significance = 1e-3;
   /// Root mean square of the residuals over their robust standard deviation,
   /// from which on outliers are looked for: 1 for Gaussian noise, 1.4 for
   /// Laplacian.

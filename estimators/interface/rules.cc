@@ -139,6 +139,16 @@ Result NoteSmoothResidual(const Evidence& evidence, const EstimatorOptions&,
              : Result();
 }
 
+Result NoteAxes(const Evidence& evidence, const EstimatorOptions&,
+                const Estimate&) {
+  const std::optional<AxisTurn>& turn = evidence.axis_turn;
+  return turn && turn->probability < kLimits.axis_significance &&
+                 turn->change > kLimits.notable_youngs_modulus_error &&
+                 turn->change_in_errors > 1
+             ? AxisTurned(turn->angle, turn->region, turn->change)
+             : Result();
+}
+
 Result NoteVirtualWork(const Evidence& evidence, const EstimatorOptions&,
                        const Estimate&) {
   return evidence.virtual_work_error.value_or(0) >
@@ -375,8 +385,8 @@ const std::vector<Rule>& Rules() {
       JudgePhysics, JudgeHiddenPoissonRatio, JudgeCount,
       // What to say of a usable estimate.
       NoteYoungsModulusOnBound, NotePoissonRatioOnBound, NoteResidualAboveNoise,
-      NoteOutliers, NoteSmoothResidual, NoteVirtualWork, NoteResultants,
-      NoteSupportEnds,
+      NoteOutliers, NoteSmoothResidual, NoteAxes, NoteVirtualWork,
+      NoteResultants, NoteSupportEnds,
       // Whether the data determine it, and the model explains them.
       JudgeBoundExcess, JudgeYoungsModulusOnBound, JudgeLargeResidual,
       JudgeProfile, JudgePoissonRatioAtLimit, JudgePoissonRatioOnBound,

@@ -141,6 +141,14 @@ bool DisplacementMisfit::SolveAt(const Eigen::VectorXd& x) {
          equilibrium_.Displacement().allFinite();
 }
 
+bool DisplacementMisfit::Factorize(const Eigen::VectorXd& x) {
+  if (placed_) {
+    placed_.reset();
+    x_.resize(0);
+  }
+  return MoveTo(x);
+}
+
 void DisplacementMisfit::Place(const Eigen::VectorXd& x,
                                const Eigen::MatrixXd& displacement,
                                const Eigen::MatrixXd& sensitivities) {

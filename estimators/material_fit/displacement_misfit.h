@@ -51,6 +51,9 @@ class DisplacementMisfit {
   /// Solves the model at x, a factorisation.  False when the stiffness is
   /// singular there.
   bool SolveAt(const Eigen::VectorXd& x);
+  /// Has the model itself at x: a factorisation, unless it is there.  False as
+  /// above.
+  bool Factorize(const Eigen::VectorXd& x);
   /// Takes u and du/dx, as Equilibrium has them, for those at x, of which an
   /// Evaluate there costs nothing.  Precondition: no unknown motions.
   void Place(const Eigen::VectorXd& x, const Eigen::MatrixXd& displacement,

@@ -8,6 +8,7 @@
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
+#include "elastimate/estimators/material_fit/axis_rotation.h"
 #include "elastimate/estimators/material_fit/curvature.h"
 #include "elastimate/estimators/statistics/correlated_noise.h"
 #include "elastimate/estimators/statistics/element_errors.h"
@@ -270,6 +271,41 @@ void AddOutliers(const FreeParameters& free, const Eigen::VectorXd& variables,
       ErrorsOfVariables(free, variables, change * change.transpose());
 }
 
+// Enters what a rotation of the given axes would change, which adds to the
+// covariance as far as it is more than chance.
+void AddAxisRotation(const Scene& scene, const Eigen::VectorXd& variables,
+                     const Eigen::VectorXd& rows,
+                     const Eigen::MatrixXd& sensitivities,
+                     const Eigen::MatrixXd& inverse, DisplacementMisfit& misfit,
+                     MinimumErrors& errors, Evidence& evidence,
+                     Estimate& estimate) {
+  const std::optional<double> given =
+      misfit.Observed().GivenNoise() ? std::optional<double>(errors.variance)
+                                     : std::nullopt;
+  const std::optional<AxisRotation> rotation = FindAxisRotation(
+      scene, variables, rows, sensitivities, inverse, given, misfit);
+  if (!rotation) {
+    return;
+  }
+  const FreeParameters& free = misfit.Free();
+  const Eigen::Vector2d largest =
+      LargestOf(rotation->change, variables, estimate, free);
+  const Eigen::ArrayXd by_noise = errors.of_noise.diagonal().array().sqrt();
+  evidence.axis_turn = {
+      rotation->angle,
+      scene.materials.size() == 1
+          ? ""
+          : RegionsLabel(scene.materials[rotation->material].regions),
+      rotation->Probability(), largest.cwiseAbs().maxCoeff(),
+      (rotation->change.array().abs() / by_noise).maxCoeff()};
+  const Eigen::MatrixXd added = rotation->BeyondChance() * rotation->change *
+                                rotation->change.transpose();
+  errors.total += added;
+  const ParameterErrors of_axes = ErrorsOfVariables(free, variables, added);
+  ParameterErrors& model = estimate.error_budget.model;
+  model = (model.array().square() + of_axes.array().square()).sqrt();
+}
+
 // Where resultants are weighed in the rows, these are not those of the misfit.
 void AddCurvature(const Eigen::VectorXd& variables,
                   const Eigen::MatrixXd& sensitivities,
@@ -366,6 +402,8 @@ MinimumErrors DescribeMinimum(const Scene& scene,
   estimate.error_budget.model = ErrorsOfVariables(free, variables, by_model);
   AddOutliers(free, variables, observed, errors.residual, of_rows, errors.total,
               evidence, estimate);
+  AddAxisRotation(scene, variables, rest, sensitivities, inverse, misfit,
+                  errors, evidence, estimate);
   AddCurvature(variables, sensitivities, misfit, errors);
   if (!by_correlation.isZero(0)) {
     evidence.smooth_residual_error =

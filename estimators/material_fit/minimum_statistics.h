@@ -39,6 +39,8 @@ struct MinimumErrors {
 ///   + (S^T S)^-1 times the square sum of a residual that is alike over the
 ///     specimen, which no noise is,
 ///   + the square of what outliers that are left pull the parameters by,
+///   + the square of what a rotation of given axes would change, as far as the
+///     residual asks for it by more than chance (FindAxisRotation),
 ///   + what the first two understate far from the minimum
 ///     (CovarianceOfCurvature).
 ///

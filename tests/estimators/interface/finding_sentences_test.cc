@@ -168,6 +168,7 @@ std::vector<Finding> OfParameters() {
       CombinationsOnly({"E of regions 1, 2 and 17 more, E of regions 3, 4 "
                         "and 17 more and 12 more in 12 combinations"}),
       ResidualInRegion("regions 1, 2 and 17 more", kLong),
+      AxisTurned(0.0123, "regions 1, 2 and 17 more", kLong),
       RegionsMayDiffer({"3.1 % in E", "0.012 in nu"}, Severity::kNotice),
       RegionsNotCompared({"region 1", "region 2", "region 3", "region 4"}),
       LawsFitAlike("transversely_isotropic_free_axis", "anisotropic", 3.21),
