@@ -46,6 +46,18 @@ std::string Text(double value) {
 
 std::string Percent(double ratio) { return TwoDigits(100 * ratio) + " %"; }
 
+// The largest relative change of a stiffness, and that of a ratio.
+std::string ChangesOf(const Eigen::Vector2d& change, const Estimate& estimate) {
+  const bool is_isotropic =
+      std::all_of(estimate.parameters.begin(), estimate.parameters.end(),
+                  [](const ParameterEstimate& parameter) {
+                    return parameter.symbol == "E" || parameter.symbol == "nu";
+                  });
+  return std::string(is_isotropic ? "E" : "stiffnesses") + " by " +
+         Percent(change(0)) + " and " + (is_isotropic ? "nu" : "ratios") +
+         " by " + TwoDigits(change(1));
+}
+
 std::string Describe(const IsotropicElasticity& elasticity) {
   return "E = " + Text(elasticity.youngs_modulus) +
          ", nu = " + Text(elasticity.poisson_ratio);
@@ -177,11 +189,11 @@ Finding UnphysicalByNoise(const IsotropicElasticity& elasticity) {
 }
 
 Finding UnphysicalParameters(const std::vector<std::string>& parameters) {
-  return Error(
-      FindingCode::kUnphysical,
-      FirstOf(parameters) + (parameters.size() == 1 ? " is" : " are") +
-          " not physical",
-      std::string("use bounded or iterative-fe, and ") + kCheckTheModel);
+  return Error(FindingCode::kUnphysical,
+               FirstOf(parameters) + (parameters.size() == 1 ? " is" : " are") +
+                   " not physical",
+               std::string("give bounds on them or what is known, and ") +
+                   kCheckTheModel);
 }
 
 Finding DisplacementsOpposeLoads() {
@@ -481,17 +493,17 @@ Finding ModelMismatchFinding(const ModelMismatch& mismatch) {
                  kCheckTheModel);
 }
 
-Finding Outliers(const Eigen::Vector2d& change) {
+Finding Outliers(const Eigen::Vector2d& change, const Estimate& estimate) {
   return Warning(FindingCode::kOutliers,
-                 "some nodes lie far off, and without their pull E would "
-                 "change by " +
-                     Percent(change(0)) + " and nu by " + TwoDigits(change(1)),
+                 "some nodes lie far off; leaving them out would change " +
+                     ChangesOf(change, estimate),
                  "use a loss (huber or cauchy); the standard errors allow for "
                  "the pull");
 }
 
 Finding OutliersLeftOut(const std::vector<Outlier>& outliers,
-                        const Eigen::Vector2d& change) {
+                        const Eigen::Vector2d& change,
+                        const Estimate& estimate) {
   constexpr std::size_t kMostNames = 3;
   std::string names;
   for (std::size_t i = 0; i < std::min(outliers.size(), kMostNames); ++i) {
@@ -504,8 +516,8 @@ Finding OutliersLeftOut(const std::vector<Outlier>& outliers,
   }
   return Warning(FindingCode::kOutliersLeftOut,
                  std::to_string(outliers.size()) + " outliers (" + names +
-                     ") are left out, which changes E by " +
-                     Percent(change(0)) + " and nu by " + TwoDigits(change(1)),
+                     ") are left out, which changes " +
+                     ChangesOf(change, estimate),
                  "look at them in the output of --out, where they are marked");
 }
 
@@ -680,13 +692,12 @@ Finding DiscretizationErrorFinding(ElementKind kind, const Estimate& estimate) {
                           : ""));
 }
 
-Finding ElementsTooCoarse(const Eigen::Vector2d& correction) {
+Finding ElementsTooCoarse(const Eigen::Vector2d& correction,
+                          const Estimate& estimate) {
   return Error(
       FindingCode::kElementsTooCoarse,
-      "the elements are too coarse here: finer ones change E "
-      "by about " +
-          Percent(std::expm1(correction(0))) + " and nu by " +
-          TwoDigits(correction(1)),
+      "the elements are too coarse here: finer ones change " +
+          ChangesOf({std::expm1(correction(0)), correction(1)}, estimate),
       "refine the mesh, or use quadratic elements (order 2) where it has "
       "simplices");
 }

@@ -104,11 +104,12 @@ Finding VirtualWorkImbalance(double force_residual, Severity severity);
 Finding ModelDoesNotFitAtLimit();
 Finding ModelMismatchFinding(const ModelMismatch& mismatch);
 /// `change` is that of (ln E, nu) without the pull of the outliers.
-Finding Outliers(const Eigen::Vector2d& change);
+Finding Outliers(const Eigen::Vector2d& change, const Estimate& estimate);
 /// `load_cases` holds their numbers, from 1 on.  Precondition: not empty.
 /// `change` is of ln E and nu.
 Finding OutliersLeftOut(const std::vector<Outlier>& outliers,
-                        const Eigen::Vector2d& change);
+                        const Eigen::Vector2d& change,
+                        const Estimate& estimate);
 Finding HeldNodesMoved(const std::vector<std::size_t>& load_cases);
 /// In standard deviations, as stated.
 Finding ResultantsContradicted(double distance);
@@ -143,7 +144,8 @@ Finding Locking(ElementKind kind);
 /// Precondition: there is a discretisation error.
 std::string DescribeDiscretizationError(const Estimate& estimate);
 /// `correction` is of (ln E, nu).
-Finding ElementsTooCoarse(const Eigen::Vector2d& correction);
+Finding ElementsTooCoarse(const Eigen::Vector2d& correction,
+                          const Estimate& estimate);
 /// `errors` are of (ln E, nu).
 Finding SupportsEndWithinElements(const Eigen::Vector2d& errors);
 Finding DiscretizationErrorFinding(ElementKind kind, const Estimate& estimate);

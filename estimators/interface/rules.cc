@@ -122,10 +122,10 @@ Result NoteResidualAboveNoise(const Evidence& evidence, const EstimatorOptions&,
 }
 
 Result NoteOutliers(const Evidence& evidence, const EstimatorOptions&,
-                    const Estimate&) {
+                    const Estimate& estimate) {
   return evidence.outlier_change && std::abs((*evidence.outlier_change)(0)) >
                                         kLimits.notable_youngs_modulus_error
-             ? Outliers(*evidence.outlier_change)
+             ? Outliers(*evidence.outlier_change, estimate)
              : Result();
 }
 
@@ -329,7 +329,7 @@ Result JudgeCorrection(const Evidence& evidence, const EstimatorOptions&,
 }
 
 Result JudgeElements(const Evidence& evidence, const EstimatorOptions&,
-                     const Estimate&) {
+                     const Estimate& estimate) {
   if (!evidence.likely_element_change) {
     return std::nullopt;
   }
@@ -339,7 +339,7 @@ Result JudgeElements(const Evidence& evidence, const EstimatorOptions&,
                  std::abs(change(1)) <=
                      kLimits.largest_correction_of_poisson_ratio
              ? Result()
-             : ElementsTooCoarse(change);
+             : ElementsTooCoarse(change, estimate);
 }
 
 Result NoteSupportEnds(const Evidence& evidence, const EstimatorOptions&,

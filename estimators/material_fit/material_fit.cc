@@ -290,7 +290,7 @@ MaterialFit FitWithoutOutliers(const Scene& scene,
   }
   if (!left_out.empty()) {
     fit.estimate.outliers = left_out;
-    fit.estimate.Add(OutliersLeftOut(left_out, by_outliers));
+    fit.estimate.Add(OutliersLeftOut(left_out, by_outliers, fit.estimate));
   }
   if (HasUnknownMotion(scene)) {
     fit.estimate.fitted_displacement = fit.displacement;

@@ -137,12 +137,12 @@ std::vector<Finding> OfResiduals() {
           VirtualWorkImbalance(kLong, Severity::kWarning),
           ModelDoesNotFitAtLimit(),
           ModelMismatchFinding({kLong, kLong, true}),
-          Outliers({kLong, kLong}),
+          Outliers({kLong, kLong}, {}),
           OutliersLeftOut({{0, 1000000, false},
                            {0, 1000001, false},
                            {0, 1000002, true},
                            {1, 1000003, true}},
-                          {kLong, kLong}),
+                          {kLong, kLong}, {}),
           HeldNodesMoved({1000}),
           HeldNodesMoved({1000, 1001, 1002})};
 }
@@ -190,7 +190,7 @@ std::vector<Finding> OfElements() {
       Locking(ElementKind::kTet4),
       DiscretizationErrorFinding(ElementKind::kTet4, of_linear),
       DiscretizationErrorFinding(ElementKind::kHex8, estimate),
-      ElementsTooCoarse({0.512345, -0.212345}),
+      ElementsTooCoarse({0.512345, -0.212345}, {}),
       SupportsEndWithinElements({0.0312345, 0.0212345}),
       LinearElementsFitAsWell(kLongElasticity),
       TooManyElements(),
