@@ -462,7 +462,8 @@ std::string_view VirtualFields::Name() const { return "virtual-fields"; }
 
 std::string_view VirtualFields::Description() const {
   return "virtual work of polynomial fields, weighted by its own covariance; "
-         "noise does not bias it, no factorisation [Avril & Pierron 2007]";
+         "noise does not bias it, no factorisation of one material [Avril & "
+         "Pierron 2007]";
 }
 
 Capabilities VirtualFields::WhatItTakes() const {

@@ -42,8 +42,9 @@ namespace elastimate {
 /// Cost: one element pass of 12, 30 or 60 columns for the degrees 1, 2 and 3 of
 /// EstimatorOptions::virtual_field_degree and a QR factorisation of as many
 /// columns twice, which depend on the mesh only, and four passes of one to
-/// three columns; no factorisation of a stiffness matrix.  Single-threaded,
-/// deterministic.
+/// three columns; no factorisation of a stiffness matrix.  Of several materials
+/// CheckByDisplacements as well, with one to three factorisations.
+/// Single-threaded, deterministic.
 class VirtualFields : public Estimator {
  public:
   /// The degree where none is asked for.

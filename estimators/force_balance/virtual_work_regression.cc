@@ -5,13 +5,10 @@
 #include <utility>
 
 #include "elastimate/core/algebra/dense_algebra.h"
-#include "elastimate/core/algebra/node_sums.h"
-#include "elastimate/core/mechanics/internal_forces.h"
-#include "elastimate/core/mechanics/stiffness_traces.h"
-#include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/loads.h"
-#include "elastimate/estimators/force_balance/force_residual.h"
+#include "elastimate/estimators/force_balance/displacement_check.h"
 #include "elastimate/estimators/force_balance/virtual_work.h"
+#include "elastimate/estimators/force_balance/work_balance.h"
 #include "elastimate/estimators/interface/free_parameters.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/limits.h"
@@ -24,126 +21,6 @@ namespace {
 
 // Of polynomials: several materials need more fields than one.
 constexpr int kDefaultDegree = 3;
-
-// The balance of virtual work of a measurement.
-class WorkBalance {
- public:
-  WorkBalance(const Scene& scene, const VirtualWork& work)
-      : dofs_(scene.supports),
-        forces_(scene.mesh, scene.materials),
-        work_(work),
-        fields_(work.Fields()) {
-    auto [q, f] = WeightLoadCases(scene);
-    q_ = std::move(q);
-    f_ = dofs_.Restrict(f);
-    for (Eigen::Index k = 0; k < q_.cols(); ++k) {
-      columns_.push_back(forces_.Columns(q_.col(k)));
-      work_of_columns_.push_back(work.Of(columns_.back()));
-      ++work_done_.element_passes;
-    }
-    work_of_loads_ = work.Of(f);
-  }
-
-  Eigen::Index NumEquations() const { return work_of_loads_.size(); }
-  const Work& WorkDone() const { return work_done_; }
-
-  /// L^-1 r of all load cases, and its derivative by theta along directions.
-  bool Evaluate(const Eigen::VectorXd& moduli,
-                const Eigen::MatrixXd& directions, Eigen::VectorXd* residual,
-                Eigen::MatrixXd* jacobian) {
-    ++work_done_.element_passes;
-    const Eigen::MatrixXd stiffened =
-        dofs_.Restrict(forces_.Multiply(moduli, fields_));
-    const Eigen::MatrixXd upper = TriangularFactor(stiffened);
-    if (!(upper.diagonal().cwiseAbs().minCoeff() > 0) || !upper.allFinite()) {
-      return false;
-    }
-    const Eigen::Index k = upper.cols();
-    residual->resize(NumEquations());
-    if (jacobian != nullptr) {
-      jacobian->resize(NumEquations(), directions.cols());
-    }
-    const auto lower = upper.transpose().triangularView<Eigen::Lower>();
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      const Eigen::VectorXd z = lower.solve(Eigen::VectorXd(
-          work_of_columns_[i] * moduli - work_of_loads_.col(Eigen::Index(i))));
-      residual->segment(k * Eigen::Index(i), k) = z;
-      if (jacobian != nullptr) {
-        const Eigen::VectorXd multipliers =
-            upper.triangularView<Eigen::Upper>().solve(z);
-        const Eigen::VectorXd correction =
-            dofs_.Extend(stiffened * multipliers);
-        ++work_done_.element_passes;
-        jacobian->middleRows(k * Eigen::Index(i), k) =
-            lower.solve(Eigen::MatrixXd(
-                (work_of_columns_[i] - work_.Of(forces_.Columns(correction))) *
-                directions));
-      }
-    }
-    return true;
-  }
-
-  /// The factor on all moduli that balances the work of all fields best.
-  double BestScale(const Eigen::VectorXd& moduli) const {
-    double product = 0;
-    double square = 0;
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      const Eigen::VectorXd internal = work_of_columns_[i] * moduli;
-      product += internal.dot(work_of_loads_.col(Eigen::Index(i)));
-      square += internal.squaredNorm();
-    }
-    return product / square;
-  }
-
-  /// The moduli that balance the work of all fields best, unweighted.
-  Eigen::VectorXd LeastSquares() const {
-    const Eigen::Index k = work_of_loads_.rows();
-    Eigen::MatrixXd columns(NumEquations(), work_of_columns_[0].cols());
-    for (std::size_t i = 0; i < work_of_columns_.size(); ++i) {
-      columns.middleRows(k * Eigen::Index(i), k) = work_of_columns_[i];
-    }
-    const Eigen::VectorXd scales = columns.colwise().norm();
-    return SolveLeastSquares(columns * scales.cwiseInverse().asDiagonal(),
-                             work_of_loads_.reshaped())
-        .col(0)
-        .cwiseQuotient(scales);
-  }
-
-  /// The variance of the weighted noise by the force residual: it takes as
-  /// noise whatever is out of balance at single nodes.
-  double ForceVariance(const Scene& scene, const Eigen::VectorXd& moduli) {
-    constexpr Eigen::Index kProbes = 2;
-    Eigen::MatrixXd probes(scene.mesh.NumDofs(), kProbes);
-    SetTraceProbes(scene.supports.held, probes);
-    const double trace =
-        SquaredNorm(dofs_.Restrict(forces_.Multiply(moduli, probes))) / kProbes;
-    ++work_done_.element_passes;
-    return ForceResidualNorm(moduli) * ForceResidualNorm(moduli) /
-           (trace * double(columns_.size()));
-  }
-  double ForceResidualNorm(const Eigen::VectorXd& moduli) const {
-    double square_sum = 0;
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      square_sum += SquaredNorm(dofs_.Restrict(columns_[i] * moduli) -
-                                f_.col(Eigen::Index(i)));
-    }
-    return std::sqrt(square_sum);
-  }
-  double LoadNorm() const { return Norm(f_); }
-  double DisplacementNorm() const { return Norm(dofs_.Restrict(q_)); }
-
- private:
-  DegreesOfFreedom dofs_;
-  InternalForces forces_;
-  const VirtualWork& work_;
-  Eigen::MatrixXd fields_;
-  Eigen::MatrixXd q_;
-  Eigen::MatrixXd f_;  ///< On the free rows.
-  std::vector<Eigen::MatrixXd> columns_;
-  std::vector<Eigen::MatrixXd> work_of_columns_;
-  Eigen::MatrixXd work_of_loads_;
-  Work work_done_;
-};
 
 // Typical values but for these Poisson's ratios, at the scale of the loads;
 // empty when the displacements oppose the loads.
@@ -250,91 +127,99 @@ std::optional<BoundedMinimum> BestOfStarts(const FreeParameters& free,
   return best;
 }
 
-// Enters noise and covariance of a fit.
-void DescribeFit(const Scene& scene, const FreeParameters& free,
-                 const Eigen::VectorXd& variables, WorkBalance& balance,
-                 Evidence& evidence, Estimate& estimate) {
+// A measurement, and the virtual fields that it is to balance.
+struct Problem {
+  VirtualWork work;
+  FreeParameters free;
+  WorkBalance balance;
+
+  Problem(const Scene& scene, const EstimatorOptions& options)
+      : work(scene.mesh, scene.supports,
+             options.virtual_field_degree.value_or(kDefaultDegree)),
+        free(scene, options),
+        balance(scene, work) {}
+
+  bool IsDetermined() const { return balance.NumEquations() > free.Size(); }
+};
+
+// Enters what the balance itself says of its fit; empty where it says nothing.
+std::optional<BalanceFit> DescribeFit(const Scene& scene,
+                                      const Eigen::VectorXd& variables,
+                                      Problem& problem, Evidence& evidence,
+                                      Estimate& estimate) {
+  const FreeParameters& free = problem.free;
+  WorkBalance& balance = problem.balance;
   const Eigen::VectorXd moduli = free.ModuliAt(variables);
-  Eigen::VectorXd residual;
-  Eigen::MatrixXd jacobian;
-  if (!balance.Evaluate(moduli, free.ModuliJacobian(variables), &residual,
-                        &jacobian)) {
+  BalanceFit fit = {variables, {}, {}};
+  if (!balance.Evaluate(moduli, free.ModuliJacobian(variables), &fit.residual,
+                        &fit.jacobian)) {
     evidence.end = End::kSearchFailed;
-    return;
+    return std::nullopt;
   }
-  const double square_sum = residual.squaredNorm();
-  const double m =
-      double(std::max<Eigen::Index>(balance.NumEquations() - free.Size(), 1));
-  const std::optional<double>& given = scene.load_cases.front().noise_sd;
-  double variance = square_sum / m;
-  estimate.noise_sd = given.value_or(std::sqrt(variance));
-  if (!given) {
-    estimate.noise_degrees_of_freedom = m;
-  }
+  const bool is_given = scene.load_cases.front().noise_sd.has_value();
+  const double variance = std::max(is_given ? 1.0 : 0.0, fit.Variance());
+  estimate.noise_sd =
+      is_given ? *scene.load_cases.front().noise_sd : std::sqrt(variance);
   estimate.force_residual =
       balance.ForceResidualNorm(moduli) / balance.LoadNorm();
-  bool is_noise = false;
-  if (given && variance <= 1 + kLimits.significant_score * std::sqrt(2 / m)) {
-    variance = 1;
-    is_noise = true;
-  } else {
-    if (given) {
-      evidence.above_noise = {ResidualKind::kVirtualWork, std::sqrt(variance)};
-    }
-    const double rough = balance.ForceVariance(scene, moduli);
-    is_noise =
-        variance <= rough * (1 + kLimits.significant_score * std::sqrt(2 / m));
-  }
-  const Eigen::MatrixXd inverse = Inverse(jacobian.transpose() * jacobian);
-  const Eigen::MatrixXd of_noise = variance * inverse;
-  const Eigen::MatrixXd of_model = (is_noise ? 0 : square_sum) * inverse;
-  estimate.error_budget.noise = ErrorsOfVariables(free, variables, of_noise);
-  estimate.error_budget.model = ErrorsOfVariables(free, variables, of_model);
-  estimate.is_model_in_doubt = !is_noise;
-  EnterCovariance(free, variables, of_noise + of_model, estimate);
-  if (!is_noise) {
-    evidence.virtual_work_error =
-        std::sqrt((of_noise + of_model).diagonal().maxCoeff());
-  }
-  evidence.correction = std::sqrt(square_sum) / balance.DisplacementNorm();
+  EnterCovariance(free, variables, variance * fit.Inverse(), estimate);
+  evidence.correction = fit.residual.norm() / balance.DisplacementNorm();
+  return fit;
 }
 
 }  // namespace
+
+std::optional<BoundedMinimum> MinimizeVirtualWork(
+    const Scene& scene, const EstimatorOptions& options, Work& work) {
+  Problem problem(scene, options);
+  std::optional<BoundedMinimum> best;
+  if (problem.IsDetermined()) {
+    best = BestOfStarts(problem.free, options.max_iterations, problem.balance);
+  }
+  work = work + problem.balance.WorkDone();
+  // The fields.
+  ++work.element_passes;
+  return best;
+}
 
 Estimate BalanceVirtualWork(const Scene& scene,
                             const EstimatorOptions& options) {
   Estimate estimate;
   Evidence evidence;
   Stopwatch stopwatch;
-  const VirtualWork work(scene.mesh, scene.supports,
-                         options.virtual_field_degree.value_or(kDefaultDegree));
+  Problem problem(scene, options);
   estimate.stages.push_back({"prepare mesh", stopwatch.Lap()});
-  const FreeParameters free(scene, options);
-  WorkBalance balance(scene, work);
-  evidence.load_imbalance = work.Imbalance(AssembleLoadCases(scene));
-  if (balance.NumEquations() <= free.Size()) {
-    evidence.are_forces_dependent = true;
-    Judge(evidence, options, estimate);
+  evidence.load_imbalance = problem.work.Imbalance(AssembleLoadCases(scene));
+  evidence.are_forces_dependent = !problem.IsDetermined();
+  Judge(evidence, options, estimate);
+  if (!estimate.IsUsable()) {
     return estimate;
   }
-  const std::optional<BoundedMinimum> best =
-      BestOfStarts(free, options.max_iterations, balance);
-  if (!best) {
+  const std::optional<BoundedMinimum> minimum =
+      BestOfStarts(problem.free, options.max_iterations, problem.balance);
+  if (!minimum) {
     evidence.do_displacements_oppose_loads = true;
     Judge(evidence, options, estimate);
     return estimate;
   }
-  const BoundedMinimum& minimum = *best;
-  evidence.end = minimum.end;
-  evidence.search_message = minimum.message;
-  EnterParameters(scene, free, free.ParametersAt(minimum.variables), estimate);
-  NoteVariablesOnBounds(free, minimum, estimate);
-  DescribeFit(scene, free, minimum.variables, balance, evidence, estimate);
-  estimate.work = balance.WorkDone();
+  evidence.end = minimum->end;
+  evidence.search_message = minimum->message;
+  EnterParameters(scene, problem.free,
+                  problem.free.ParametersAt(minimum->variables), estimate);
+  NoteVariablesOnBounds(problem.free, *minimum, estimate);
+  const std::optional<BalanceFit> fit =
+      DescribeFit(scene, minimum->variables, problem, evidence, estimate);
+  estimate.work = problem.balance.WorkDone();
   // The fields.
   ++estimate.work.element_passes;
   Judge(evidence, options, estimate);
   estimate.stages.push_back({"fit", stopwatch.Lap()});
+  if (fit && estimate.IsUsable()) {
+    CheckByDisplacements(scene, options, problem.work, *fit, problem.free,
+                         evidence, estimate);
+    Judge(evidence, options, estimate);
+    estimate.stages.push_back({"check", stopwatch.Lap()});
+  }
   return estimate;
 }
 

@@ -1,9 +1,12 @@
 #ifndef ELASTIMATE_ESTIMATORS_FORCE_BALANCE_VIRTUAL_WORK_REGRESSION_H_
 #define ELASTIMATE_ESTIMATORS_FORCE_BALANCE_VIRTUAL_WORK_REGRESSION_H_
 
+#include <optional>
+
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/statistics/bounded_variables.h"
 
 namespace elastimate {
 
@@ -16,16 +19,25 @@ namespace elastimate {
 ///
 /// With lambda = G^-1 r and the corrected displacements q - M lambda, the
 /// derivative of L^-1 r (G = L L^T) is taken as
-/// L^-1 V^T f_k(q - M lambda), which makes that of S exact.  The covariance of
-/// theta is sigma^2 (D^T G^-1 D)^-1 with D = V^T f_k(q - M lambda), and where
-/// the force residual says that the balance is off by more than noise, S (D^T
-/// G^-1 D)^-1 more.
+/// L^-1 V^T f_k(q - M lambda), which makes that of S exact.  Under noise of q
+/// of variance sigma^2, the covariance of theta is sigma^2 (D^T G^-1 D)^-1 with
+/// D = V^T f_k(q - M lambda).
+///
+/// What is usable by that is held against the displacements
+/// (CheckByDisplacements), which alone say whether the regions are right and
+/// what the elements miss.
 ///
 /// Preconditions are those of Estimator::Run; every free component is observed.
 /// Cost: in each step an element pass of as many columns as there are fields
-/// (60 of degree 3 in three dimensions, 20 in two), and their QR factorisation.
+/// (60 of degree 3 in three dimensions, 20 in two), and their QR factorisation;
+/// and that of the check.
 Estimate BalanceVirtualWork(const Scene& scene,
                             const EstimatorOptions& options);
+
+/// Where the minimum of S is, without a check; empty where there is none.  Adds
+/// its work.
+std::optional<BoundedMinimum> MinimizeVirtualWork(
+    const Scene& scene, const EstimatorOptions& options, Work& work);
 
 }  // namespace elastimate
 

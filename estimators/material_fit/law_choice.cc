@@ -21,10 +21,10 @@
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/free_parameters.h"
-#include "elastimate/estimators/material_fit/displacement_misfit.h"
 #include "elastimate/estimators/material_fit/material_fit.h"
 #include "elastimate/estimators/material_fit/nearest_symmetry.h"
 #include "elastimate/estimators/material_fit/outliers.h"
+#include "elastimate/estimators/misfit/displacement_misfit.h"
 
 namespace elastimate {
 namespace {

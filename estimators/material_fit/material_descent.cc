@@ -1,86 +1,11 @@
 #include "elastimate/estimators/material_fit/material_descent.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "elastimate/core/algebra/node_sums.h"
-#include "elastimate/core/scene/observed_displacements.h"
+#include "elastimate/core/materials/material.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
+#include "elastimate/estimators/force_balance/virtual_work_regression.h"
 #include "elastimate/estimators/interface/free_parameters.h"
 
 namespace elastimate {
-namespace {
-
-// Steps below this part of a standard error end the fit.
-constexpr double kSmallestStepOfErrors = 1e-2;
-
-BoundedMinimum Descend(const EstimatorOptions& estimator_options,
-                       const Eigen::VectorXd& start, Distance distance,
-                       DisplacementMisfit& misfit) {
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = estimator_options.max_iterations;
-  // Far from the minimum, Gauss-Newton steps lead weakly determined parameters
-  // astray; the radius grows with each step that holds what it promised.
-  constexpr double kLargeRadius = 1e8;
-  options.initial_trust_region_radius =
-      distance == Distance::kFar ? 1 : kLargeRadius;
-  // A step of k standard errors lowers the cost by about k^2 / n of itself.
-  options.function_tolerance = kSmallestStepOfErrors * kSmallestStepOfErrors /
-                               static_cast<double>(misfit.NumRows());
-  options.gradient_tolerance = 1e-14;
-  options.parameter_tolerance = 1e-11;
-  options.logging_type = ceres::SILENT;
-  return MinimizeOverVariables(
-      [&](const Eigen::VectorXd& x, Eigen::VectorXd* residual,
-          Eigen::MatrixXd* jacobian) {
-        return misfit.Evaluate(x, residual, jacobian);
-      },
-      misfit.NumRows(), misfit.Free().VariableBounds(), start, options);
-}
-
-// The standard deviation of a displacement row at x, as given or from what is
-// left there; zero where there is none.
-double NoiseAt(const Eigen::VectorXd& x, DisplacementMisfit& misfit) {
-  const ObservedDisplacements& observed = misfit.Observed();
-  if (observed.GivenNoise()) {
-    return 1 / observed.Norm();
-  }
-  Eigen::VectorXd residual;
-  if (!misfit.Evaluate(x, &residual, nullptr)) {
-    return 0;
-  }
-  const Eigen::Index redundancy =
-      observed.Size() - misfit.NumAmounts() - misfit.Free().Size();
-  return Norm(residual.head(observed.Size())) /
-         std::sqrt(static_cast<double>(std::max<Eigen::Index>(redundancy, 1)));
-}
-
-// From the start on, with resultants that weigh as much as their errors say
-// beside those of the displacements, which the fit shows.
-BoundedMinimum DescendWithResultants(const EstimatorOptions& options,
-                                     const Eigen::VectorXd& start,
-                                     Distance distance,
-                                     DisplacementMisfit& misfit) {
-  constexpr int kWeightings = 5;
-  constexpr double kSettled = 0.05;
-  double noise = std::max(NoiseAt(start, misfit), kLeastNoise);
-  misfit.SetNoise(noise);
-  BoundedMinimum minimum = Descend(options, start, distance, misfit);
-  for (int i = 0; i < kWeightings; ++i) {
-    const double last = noise;
-    noise = std::max(NoiseAt(minimum.variables, misfit), kLeastNoise);
-    if (std::abs(noise - last) < kSettled * last) {
-      break;
-    }
-    misfit.SetNoise(noise);
-    minimum = Descend(options, minimum.variables, Distance::kNear, misfit);
-  }
-  return minimum;
-}
-
-}  // namespace
-
 std::optional<Eigen::VectorXd> TypicalStart(DisplacementMisfit& misfit) {
   const FreeParameters& free = misfit.Free();
   const std::optional<double> known = free.All().KnownModulus();
@@ -107,6 +32,12 @@ std::optional<Eigen::VectorXd> VirtualFieldsStart(
   if (!virtual_fields.WhyUnsupported(scene, of_virtual_fields).empty()) {
     return std::nullopt;
   }
+  if (!IsOneIsotropicMaterial(scene.materials)) {
+    const std::optional<BoundedMinimum> minimum =
+        MinimizeVirtualWork(scene, of_virtual_fields, estimate.work);
+    return minimum ? std::optional<Eigen::VectorXd>(minimum->variables)
+                   : std::nullopt;
+  }
   const Estimate start = virtual_fields.Run(scene, of_virtual_fields);
   estimate.work = estimate.work + start.work;
   Eigen::VectorXd parameters(Eigen::Index(start.parameters.size()));
@@ -119,14 +50,6 @@ std::optional<Eigen::VectorXd> VirtualFieldsStart(
   const Eigen::VectorXd variables = free.VariablesOf(parameters);
   return variables.allFinite() ? std::optional<Eigen::VectorXd>(variables)
                                : std::nullopt;
-}
-
-BoundedMinimum DescendFrom(const EstimatorOptions& options,
-                           const Eigen::VectorXd& start, Distance distance,
-                           DisplacementMisfit& misfit) {
-  return misfit.NumResultants() > 0
-             ? DescendWithResultants(options, start, distance, misfit)
-             : Descend(options, start, distance, misfit);
 }
 
 std::optional<BoundedMinimum> BestMinimum(const Scene& scene,

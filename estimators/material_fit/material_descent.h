@@ -7,13 +7,11 @@
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
-#include "elastimate/estimators/material_fit/displacement_misfit.h"
+#include "elastimate/estimators/misfit/descent.h"
+#include "elastimate/estimators/misfit/displacement_misfit.h"
 #include "elastimate/estimators/statistics/bounded_variables.h"
 
 namespace elastimate {
-
-/// How far a start is from the minimum.
-enum class Distance { kFar, kNear };
 
 /// Typical values, the free moduli of the scale at which displacements fit best
 /// when all moduli have it, also the known ones: what is known of a part may be
@@ -28,13 +26,6 @@ std::optional<Eigen::VectorXd> TypicalStart(DisplacementMisfit& misfit);
 std::optional<Eigen::VectorXd> VirtualFieldsStart(
     const Scene& scene, const EstimatorOptions& options,
     const FreeParameters& free, Estimate& estimate);
-
-/// The minimum of a misfit within bounds that a start leads to, by Ceres;
-/// resultants weigh there as much as their errors say beside those of the
-/// displacements, which the fit shows (some descents more).
-BoundedMinimum DescendFrom(const EstimatorOptions& options,
-                           const Eigen::VectorXd& start, Distance distance,
-                           DisplacementMisfit& misfit);
 
 /// The best of those that typical values and virtual-fields lead to; empty
 /// where both oppose the loads.  Adds the work of virtual-fields to the

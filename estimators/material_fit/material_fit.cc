@@ -14,14 +14,14 @@
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
 #include "elastimate/estimators/interface/stopwatch.h"
-#include "elastimate/estimators/material_fit/displacement_misfit.h"
-#include "elastimate/estimators/material_fit/finer_elements.h"
 #include "elastimate/estimators/material_fit/material_descent.h"
-#include "elastimate/estimators/material_fit/material_verdicts.h"
-#include "elastimate/estimators/material_fit/minimum_statistics.h"
 #include "elastimate/estimators/material_fit/nearest_symmetry.h"
 #include "elastimate/estimators/material_fit/outliers.h"
 #include "elastimate/estimators/material_fit/reduced_descent.h"
+#include "elastimate/estimators/misfit/displacement_misfit.h"
+#include "elastimate/estimators/misfit/finer_elements.h"
+#include "elastimate/estimators/misfit/material_verdicts.h"
+#include "elastimate/estimators/misfit/minimum_statistics.h"
 #include "elastimate/estimators/statistics/bounded_variables.h"
 
 namespace elastimate {

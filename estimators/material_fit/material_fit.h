@@ -8,7 +8,7 @@
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
-#include "elastimate/estimators/material_fit/minimum_statistics.h"
+#include "elastimate/estimators/misfit/minimum_statistics.h"
 #include "elastimate/estimators/statistics/bounded_variables.h"
 
 namespace elastimate {

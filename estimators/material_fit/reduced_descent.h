@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "elastimate/estimators/interface/estimate.h"
-#include "elastimate/estimators/material_fit/displacement_misfit.h"
+#include "elastimate/estimators/misfit/displacement_misfit.h"
 #include "elastimate/estimators/statistics/bounded_variables.h"
 
 namespace elastimate {

@@ -7,7 +7,7 @@
 #include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/unknown_motion.h"
-#include "elastimate/estimators/material_fit/motion_elimination.h"
+#include "elastimate/estimators/misfit/motion_elimination.h"
 
 namespace elastimate {
 namespace {

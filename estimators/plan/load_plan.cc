@@ -11,7 +11,7 @@
 #include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
-#include "elastimate/estimators/material_fit/displacement_misfit.h"
+#include "elastimate/estimators/misfit/displacement_misfit.h"
 #include "elastimate/estimators/plan/expected_information.h"
 #include "elastimate/estimators/plan/unit_loads.h"
 

@@ -68,6 +68,8 @@ class ElementErrors {
 
   /// Of the change to finer elements, as far as it is expected to be there.
   double Share() const { return share_; }
+  /// Of that share, where finer elements are known.
+  double ShareVariance() const { return share_variance_; }
 
   /// The square sum of a model error in the direction of any parameter, where
   /// its part in the residual has `smooth`: a multiple of that as far as finer

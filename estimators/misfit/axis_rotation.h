@@ -1,11 +1,11 @@
-#ifndef ELASTIMATE_ESTIMATORS_MATERIAL_FIT_AXIS_ROTATION_H_
-#define ELASTIMATE_ESTIMATORS_MATERIAL_FIT_AXIS_ROTATION_H_
+#ifndef ELASTIMATE_ESTIMATORS_MISFIT_AXIS_ROTATION_H_
+#define ELASTIMATE_ESTIMATORS_MISFIT_AXIS_ROTATION_H_
 
 #include <Eigen/Core>
 #include <optional>
 
 #include "elastimate/core/scene/scene.h"
-#include "elastimate/estimators/material_fit/displacement_misfit.h"
+#include "elastimate/estimators/misfit/displacement_misfit.h"
 
 namespace elastimate {
 
@@ -55,4 +55,4 @@ std::optional<AxisRotation> FindAxisRotation(
 
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_ESTIMATORS_MATERIAL_FIT_AXIS_ROTATION_H_
+#endif  // ELASTIMATE_ESTIMATORS_MISFIT_AXIS_ROTATION_H_

@@ -1,11 +1,17 @@
-#ifndef ELASTIMATE_ESTIMATORS_MATERIAL_FIT_CURVATURE_H_
-#define ELASTIMATE_ESTIMATORS_MATERIAL_FIT_CURVATURE_H_
+#ifndef ELASTIMATE_ESTIMATORS_MISFIT_CURVATURE_H_
+#define ELASTIMATE_ESTIMATORS_MISFIT_CURVATURE_H_
 
 #include <Eigen/Core>
 
-#include "elastimate/estimators/material_fit/displacement_misfit.h"
+#include "elastimate/estimators/misfit/displacement_misfit.h"
 
 namespace elastimate {
+
+/// Whether the misfit is nearly quadratic from x as far as x + step:
+/// stiffnesses change by less than a tenth, ratios by less than that of the way
+/// from x to the nearer end of their range.
+bool IsNearlyQuadratic(const FreeParameters& free, const Eigen::VectorXd& x,
+                       const Eigen::VectorXd& step);
 
 /// What a covariance C of the variables at a minimum x understates, because the
 /// misfit is not quadratic as far as C reaches.
@@ -33,4 +39,4 @@ Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,
 
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_ESTIMATORS_MATERIAL_FIT_CURVATURE_H_
+#endif  // ELASTIMATE_ESTIMATORS_MISFIT_CURVATURE_H_

@@ -1,4 +1,4 @@
-#include "elastimate/estimators/material_fit/motion_elimination.h"
+#include "elastimate/estimators/misfit/motion_elimination.h"
 
 #include <Eigen/IterativeLinearSolvers>
 #include <algorithm>

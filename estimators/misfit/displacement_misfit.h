@@ -1,5 +1,5 @@
-#ifndef ELASTIMATE_ESTIMATORS_MATERIAL_FIT_DISPLACEMENT_MISFIT_H_
-#define ELASTIMATE_ESTIMATORS_MATERIAL_FIT_DISPLACEMENT_MISFIT_H_
+#ifndef ELASTIMATE_ESTIMATORS_MISFIT_DISPLACEMENT_MISFIT_H_
+#define ELASTIMATE_ESTIMATORS_MISFIT_DISPLACEMENT_MISFIT_H_
 
 #include <Eigen/Core>
 #include <functional>
@@ -10,7 +10,7 @@
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimator.h"
 #include "elastimate/estimators/interface/free_parameters.h"
-#include "elastimate/estimators/material_fit/motion_elimination.h"
+#include "elastimate/estimators/misfit/motion_elimination.h"
 #include "elastimate/estimators/statistics/element_errors.h"
 
 namespace elastimate {
@@ -102,4 +102,4 @@ class DisplacementMisfit {
 
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_ESTIMATORS_MATERIAL_FIT_DISPLACEMENT_MISFIT_H_
+#endif  // ELASTIMATE_ESTIMATORS_MISFIT_DISPLACEMENT_MISFIT_H_

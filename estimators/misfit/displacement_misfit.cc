@@ -1,4 +1,4 @@
-#include "elastimate/estimators/material_fit/displacement_misfit.h"
+#include "elastimate/estimators/misfit/displacement_misfit.h"
 
 #include <cmath>
 #include <random>

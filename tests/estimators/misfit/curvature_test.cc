@@ -1,4 +1,4 @@
-#include "elastimate/estimators/material_fit/curvature.h"
+#include "elastimate/estimators/misfit/curvature.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "elastimate/estimators/material_fit/finer_elements.h"
+#include "elastimate/estimators/misfit/finer_elements.h"
 
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/simplicial_scene.h"
@@ -27,15 +27,23 @@ std::optional<Eigen::VectorXd> FinerElements::Rows(
              : std::nullopt;
 }
 
+std::optional<Eigen::MatrixXd> FinerElements::Displacement(
+    const Eigen::VectorXd& variables) {
+  Eigen::VectorXd rows;
+  return misfit_.Evaluate(variables, &rows, nullptr)
+             ? std::optional<Eigen::MatrixXd>(misfit_.FittedDisplacement())
+             : std::nullopt;
+}
+
 Eigen::MatrixXd FinerElements::DisplacementOfSpecimen(
     const Eigen::VectorXd& variables, double share,
     const Eigen::MatrixXd& displacement) {
-  Eigen::VectorXd rows;
-  if (share == 0 || !misfit_.Evaluate(variables, &rows, nullptr)) {
-    return displacement;
-  }
-  return (1 - share) * displacement +
-         share * misfit_.FittedDisplacement().topRows(displacement.rows());
+  const std::optional<Eigen::MatrixXd> of_finer =
+      share == 0 ? std::nullopt : Displacement(variables);
+  return of_finer
+             ? Eigen::MatrixXd((1 - share) * displacement +
+                               share * of_finer->topRows(displacement.rows()))
+             : displacement;
 }
 
 }  // namespace elastimate

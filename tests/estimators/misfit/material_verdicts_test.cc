@@ -1,4 +1,4 @@
-#include "elastimate/estimators/material_fit/material_verdicts.h"
+#include "elastimate/estimators/misfit/material_verdicts.h"
 
 #include <gtest/gtest.h>
 

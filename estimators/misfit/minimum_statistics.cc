@@ -1,4 +1,4 @@
-#include "elastimate/estimators/material_fit/minimum_statistics.h"
+#include "elastimate/estimators/misfit/minimum_statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
-#include "elastimate/estimators/material_fit/axis_rotation.h"
-#include "elastimate/estimators/material_fit/curvature.h"
+#include "elastimate/estimators/misfit/axis_rotation.h"
+#include "elastimate/estimators/misfit/curvature.h"
 #include "elastimate/estimators/statistics/correlated_noise.h"
 #include "elastimate/estimators/statistics/element_errors.h"
 #include "elastimate/estimators/statistics/residual_statistics.h"
@@ -237,8 +237,8 @@ void CorrectMinimum(const Scene& scene, const FreeParameters& free,
                     Estimate& estimate) {
   constexpr double kLeastShare = 1e-3;
   errors.corrected = Corrected(free, errors.variables, *elements.Correction());
-  Eigen::MatrixXd by_elements = elements.CovarianceOfChange(smooth) +
-                                elements.MissedSquareSum(smooth) * inverse;
+  errors.share_variance = elements.ShareVariance();
+  errors.of_change = elements.CovarianceOfChange(smooth);
   if (elements.Share() >= kLeastShare) {
     errors.share_of_finer = elements.Share();
     errors.of_finer = errors.variables +
@@ -246,8 +246,10 @@ void CorrectMinimum(const Scene& scene, const FreeParameters& free,
     const Eigen::VectorXd step =
         elements.Share() *
         StepOfFiner(errors.of_finer, sensitivities, inverse, finer);
-    by_elements += step * step.transpose();
+    errors.of_change += step * step.transpose();
   }
+  const Eigen::MatrixXd by_elements =
+      errors.of_change + elements.MissedSquareSum(smooth) * inverse;
   errors.total += by_elements;
   evidence.likely_element_change =
       LargestOf(elements.LikelyChange(), errors.variables, estimate, free);
@@ -317,6 +319,17 @@ void AddCurvature(const Eigen::VectorXd& variables,
   }
 }
 
+// The rows of a misfit and their derivatives S where it was evaluated, and rows
+// and variables of its minimum, there or where the linear model has it.
+struct Minimum {
+  Eigen::VectorXd evaluated_at;
+  Eigen::VectorXd variables;
+  Eigen::VectorXd rows;
+  Eigen::MatrixXd sensitivities;
+
+  bool IsEvaluated() const { return variables == evaluated_at; }
+};
+
 // Of variables that the data say nothing of, the errors are not known.
 void EnterErrorsOfKnown(const FreeParameters& free, const MinimumErrors& errors,
                         Estimate& estimate) {
@@ -344,23 +357,17 @@ void EnterErrorsOfKnown(const FreeParameters& free, const MinimumErrors& errors,
   }
 }
 
-}  // namespace
-
-MinimumErrors DescribeMinimum(const Scene& scene,
-                              const Eigen::VectorXd& variables,
-                              FinerElements* finer, DisplacementMisfit& misfit,
-                              Evidence& evidence, Estimate& estimate) {
+// What is known of the minimum.
+MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
+                       FinerElements* finer, DisplacementMisfit& misfit,
+                       Evidence& evidence, Estimate& estimate) {
   const FreeParameters& free = misfit.Free();
   const ObservedDisplacements& observed = misfit.Observed();
+  const Eigen::VectorXd& rows = minimum.rows;
+  Eigen::MatrixXd sensitivities = minimum.sensitivities;
   MinimumErrors errors;
-  errors.variables = variables;
-  errors.corrected = variables;
-  Eigen::VectorXd rows;
-  Eigen::MatrixXd sensitivities;
-  if (!misfit.Evaluate(variables, &rows, &sensitivities)) {
-    evidence.end = End::kSingularStiffness;
-    return errors;
-  }
+  errors.variables = minimum.variables;
+  errors.corrected = minimum.variables;
   errors.residual = rows.head(observed.Size());
   estimate.displacement_residual =
       Norm(errors.residual) / Norm(observed.Measured());
@@ -371,7 +378,7 @@ MinimumErrors DescribeMinimum(const Scene& scene,
   }
   const double excess = ExcessOfResultants(rows, misfit, evidence);
   const std::optional<ElementErrors> elements =
-      FindElementErrors(scene, variables, rows, sensitivities, finer,
+      FindElementErrors(scene, minimum.evaluated_at, rows, sensitivities, finer,
                         num_fitted, !estimate.active_bounds.empty(), misfit);
   const Eigen::VectorXd rest = elements ? elements->Rest() : rows;
   errors.residual = rest.head(observed.Size());
@@ -398,19 +405,65 @@ MinimumErrors DescribeMinimum(const Scene& scene,
                    *finer, evidence, errors, estimate);
   }
   estimate.error_budget.noise =
-      ErrorsOfVariables(free, variables, errors.of_noise);
-  estimate.error_budget.model = ErrorsOfVariables(free, variables, by_model);
-  AddOutliers(free, variables, observed, errors.residual, of_rows, errors.total,
-              evidence, estimate);
-  AddAxisRotation(scene, variables, rest, sensitivities, inverse, misfit,
-                  errors, evidence, estimate);
-  AddCurvature(variables, sensitivities, misfit, errors);
+      ErrorsOfVariables(free, errors.variables, errors.of_noise);
+  estimate.error_budget.model =
+      ErrorsOfVariables(free, errors.variables, by_model);
+  AddOutliers(free, errors.variables, observed, errors.residual, of_rows,
+              errors.total, evidence, estimate);
+  AddAxisRotation(scene, minimum.evaluated_at, rest, sensitivities, inverse,
+                  misfit, errors, evidence, estimate);
+  if (minimum.IsEvaluated()) {
+    AddCurvature(errors.variables, sensitivities, misfit, errors);
+  }
   if (!by_correlation.isZero(0)) {
     evidence.smooth_residual_error =
         std::sqrt(errors.total.diagonal().maxCoeff());
   }
   EnterErrorsOfKnown(free, errors, estimate);
   return errors;
+}
+
+}  // namespace
+
+MinimumErrors DescribeMinimum(const Scene& scene,
+                              const Eigen::VectorXd& variables,
+                              FinerElements* finer, DisplacementMisfit& misfit,
+                              Evidence& evidence, Estimate& estimate) {
+  Minimum minimum = {variables, variables, {}, {}};
+  if (!misfit.Evaluate(variables, &minimum.rows, &minimum.sensitivities)) {
+    evidence.end = End::kSingularStiffness;
+    return {};
+  }
+  return Describe(scene, minimum, finer, misfit, evidence, estimate);
+}
+
+std::optional<Eigen::VectorXd> LinearMinimum(const Eigen::VectorXd& variables,
+                                             DisplacementMisfit& misfit) {
+  Eigen::VectorXd rows;
+  Eigen::MatrixXd sensitivities;
+  if (!misfit.Evaluate(variables, &rows, &sensitivities)) {
+    return std::nullopt;
+  }
+  const FreeParameters& free = misfit.Free();
+  const double variance = VarianceOfRows(misfit.Observed(), rows, free.Size());
+  return Corrected(free, variables,
+                   -Inverse(InformationOf(free, sensitivities, variance)) *
+                       InnerProducts(sensitivities, rows));
+}
+
+MinimumErrors DescribeLinearMinimum(const Scene& scene,
+                                    const Eigen::VectorXd& variables,
+                                    const Eigen::VectorXd& at_minimum,
+                                    FinerElements* finer,
+                                    DisplacementMisfit& misfit,
+                                    Evidence& evidence, Estimate& estimate) {
+  Minimum minimum = {variables, at_minimum, {}, {}};
+  if (!misfit.Evaluate(variables, &minimum.rows, &minimum.sensitivities)) {
+    evidence.end = End::kSingularStiffness;
+    return {};
+  }
+  minimum.rows += minimum.sensitivities * (at_minimum - variables);
+  return Describe(scene, minimum, finer, misfit, evidence, estimate);
 }
 
 }  // namespace elastimate

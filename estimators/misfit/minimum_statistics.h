@@ -1,13 +1,14 @@
-#ifndef ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MINIMUM_STATISTICS_H_
-#define ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MINIMUM_STATISTICS_H_
+#ifndef ELASTIMATE_ESTIMATORS_MISFIT_MINIMUM_STATISTICS_H_
+#define ELASTIMATE_ESTIMATORS_MISFIT_MINIMUM_STATISTICS_H_
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/evidence.h"
-#include "elastimate/estimators/material_fit/displacement_misfit.h"
-#include "elastimate/estimators/material_fit/finer_elements.h"
+#include "elastimate/estimators/misfit/displacement_misfit.h"
+#include "elastimate/estimators/misfit/finer_elements.h"
 
 namespace elastimate {
 
@@ -18,6 +19,7 @@ struct MinimumErrors {
   /// Of the change to finer elements, as far as it is expected to be there; 0
   /// where that is next to nothing.
   double share_of_finer = 0;
+  double share_variance = 0;  ///< Of that share.
   /// Where a specimen would be that is as fine as those.
   Eigen::VectorXd of_finer;
   /// Covariance by independent noise, and by all that is known.  Beforehand a
@@ -25,6 +27,9 @@ struct MinimumErrors {
   /// that both are finite: without any data, the error is that.
   Eigen::MatrixXd of_noise;
   Eigen::MatrixXd total;
+  /// Of the total, by what is not known of the change to finer elements; empty
+  /// where there is none.
+  Eigen::MatrixXd of_change;
   double variance = 0;  ///< Of noise in a row.
   /// Of the observed rows, without what finer elements explain.
   Eigen::VectorXd residual;
@@ -58,6 +63,20 @@ MinimumErrors DescribeMinimum(const Scene& scene,
                               FinerElements* finer, DisplacementMisfit& misfit,
                               Evidence& evidence, Estimate& estimate);
 
+/// The minimum of the linear model u + S d at some variables, within half of
+/// the way to their bounds; empty where the stiffness is singular.
+std::optional<Eigen::VectorXd> LinearMinimum(const Eigen::VectorXd& variables,
+                                             DisplacementMisfit& misfit);
+
+/// The same as DescribeMinimum of that minimum, without a look at how far the
+/// misfit is from that model (CovarianceOfCurvature).
+MinimumErrors DescribeLinearMinimum(const Scene& scene,
+                                    const Eigen::VectorXd& variables,
+                                    const Eigen::VectorXd& at_minimum,
+                                    FinerElements* finer,
+                                    DisplacementMisfit& misfit,
+                                    Evidence& evidence, Estimate& estimate);
+
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MINIMUM_STATISTICS_H_
+#endif  // ELASTIMATE_ESTIMATORS_MISFIT_MINIMUM_STATISTICS_H_

@@ -1,5 +1,5 @@
-#ifndef ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MATERIAL_VERDICTS_H_
-#define ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MATERIAL_VERDICTS_H_
+#ifndef ELASTIMATE_ESTIMATORS_MISFIT_MATERIAL_VERDICTS_H_
+#define ELASTIMATE_ESTIMATORS_MISFIT_MATERIAL_VERDICTS_H_
 
 #include <Eigen/Core>
 #include <string>
@@ -7,8 +7,8 @@
 
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
-#include "elastimate/estimators/material_fit/displacement_misfit.h"
-#include "elastimate/estimators/material_fit/minimum_statistics.h"
+#include "elastimate/estimators/misfit/displacement_misfit.h"
+#include "elastimate/estimators/misfit/minimum_statistics.h"
 
 namespace elastimate {
 
@@ -44,4 +44,4 @@ std::vector<std::string> DeterminedCombinations(
 
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_ESTIMATORS_MATERIAL_FIT_MATERIAL_VERDICTS_H_
+#endif  // ELASTIMATE_ESTIMATORS_MISFIT_MATERIAL_VERDICTS_H_

@@ -1,4 +1,4 @@
-#include "elastimate/estimators/material_fit/curvature.h"
+#include "elastimate/estimators/misfit/curvature.h"
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -113,6 +113,11 @@ std::optional<double> RiseAt(const Eigen::VectorXd& moved,
 }
 
 }  // namespace
+
+bool IsNearlyQuadratic(const FreeParameters& free, const Eigen::VectorXd& x,
+                       const Eigen::VectorXd& step) {
+  return (ScaledJacobian(free, x) * step).cwiseAbs().maxCoeff() < kLeastError;
+}
 
 Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,
                                       const Eigen::MatrixXd& covariance,

@@ -1,5 +1,5 @@
-#ifndef ELASTIMATE_ESTIMATORS_MATERIAL_FIT_FINER_ELEMENTS_H_
-#define ELASTIMATE_ESTIMATORS_MATERIAL_FIT_FINER_ELEMENTS_H_
+#ifndef ELASTIMATE_ESTIMATORS_MISFIT_FINER_ELEMENTS_H_
+#define ELASTIMATE_ESTIMATORS_MISFIT_FINER_ELEMENTS_H_
 
 #include <Eigen/Core>
 #include <memory>
@@ -8,7 +8,7 @@
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
-#include "elastimate/estimators/material_fit/displacement_misfit.h"
+#include "elastimate/estimators/misfit/displacement_misfit.h"
 #include "elastimate/estimators/statistics/element_errors.h"
 
 namespace elastimate {
@@ -36,6 +36,10 @@ class FinerElements {
   /// weighed in the rows.
   std::optional<Eigen::VectorXd> Rows(const Eigen::VectorXd& variables);
 
+  /// u of these elements at some variables, of their nodes, num_dofs x
+  /// num_load_cases; empty where the stiffness is singular.
+  std::optional<Eigen::MatrixXd> Displacement(const Eigen::VectorXd& variables);
+
   /// From the displacement of the fit, num_dofs x num_load_cases, that of the
   /// specimen, which has this share of the difference to these elements at some
   /// variables.
@@ -52,4 +56,4 @@ class FinerElements {
 
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_ESTIMATORS_MATERIAL_FIT_FINER_ELEMENTS_H_
+#endif  // ELASTIMATE_ESTIMATORS_MISFIT_FINER_ELEMENTS_H_

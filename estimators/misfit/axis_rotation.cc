@@ -1,4 +1,4 @@
-#include "elastimate/estimators/material_fit/axis_rotation.h"
+#include "elastimate/estimators/misfit/axis_rotation.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

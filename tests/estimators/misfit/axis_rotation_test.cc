@@ -1,6 +1,6 @@
 // Axes that were given, and are not those of the specimen.
 
-#include "elastimate/estimators/material_fit/axis_rotation.h"
+#include "elastimate/estimators/misfit/axis_rotation.h"
 
 #include <gtest/gtest.h>
 
