@@ -28,6 +28,14 @@ inline LawParameter DirectedPoissonRatio(std::string_view name,
   return {name, symbol, false, -kLargest, kLargest, 0.3};
 }
 
+/// Poisson's ratio in a plane that is alike in all directions, between -1 and 1
+/// whatever is across it.
+inline LawParameter PoissonRatioInPlane(std::string_view name,
+                                        std::string_view symbol) {
+  constexpr double kLargest = 0.9999;
+  return {name, symbol, false, -kLargest, kLargest, 0.3};
+}
+
 /// The shear modulus of an isotropic material of E = 1, nu = 0.3.
 inline constexpr double kTypicalShearModulus = 1 / 2.6;
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
 #include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/materials/laws.h"
@@ -79,22 +81,69 @@ void ValidateWhatIsGiven(const Law& law, const Material& material,
   }
 }
 
-// Of a material of which all is known.
+std::optional<double> KnownValue(const Material& material,
+                                 std::string_view parameter) {
+  const auto place = std::find_if(material.known.begin(), material.known.end(),
+                                  [parameter](const KnownParameter& known) {
+                                    return known.name == parameter;
+                                  });
+  return place == material.known.end() ? std::nullopt
+                                       : std::optional<double>(place->value);
+}
+
+// Of a material of which all is known, but perhaps shear moduli, which are
+// positive, and no more is asked of them.
+bool IsKnownNotPositiveDefinite(const Law& law, const Material& material,
+                                SectionModel model) {
+  Eigen::VectorXd parameters(Eigen::Index(law.Parameters().size()));
+  for (Eigen::Index i = 0; i < parameters.size(); ++i) {
+    const LawParameter& parameter = law.Parameters()[std::size_t(i)];
+    const std::optional<double> known = KnownValue(material, parameter.name);
+    if (!known && parameter.name.rfind("shear_modulus", 0) != 0) {
+      return false;
+    }
+    parameters(i) = known.value_or(parameter.typical);
+  }
+  return !IsStiffnessPositiveDefinite(law, parameters, model);
+}
+
+// Whether a stiffness off the diagonal is known with those beside it, or
+// nu_ij with E_i and E_j, and they are those of no material, whatever the
+// others are: c_ij^2 >= c_ii c_jj, or nu_ij^2 >= E_i / E_j.
+bool IsTooLarge(const Law& law, const Material& material,
+                const LawParameter& parameter) {
+  std::string first = "youngs_modulus_";
+  std::string second = first;
+  constexpr std::string_view kRatio = "poisson_ratio_";
+  if (parameter.beside) {
+    first = law.Parameters()[std::size_t((*parameter.beside)[0])].name;
+    second = law.Parameters()[std::size_t((*parameter.beside)[1])].name;
+  } else if (parameter.name.rfind(kRatio, 0) == 0 &&
+             parameter.name.size() == kRatio.size() + 2) {
+    first += parameter.name[kRatio.size()];
+    second += parameter.name[kRatio.size() + 1];
+  }
+  const std::optional<double> value = KnownValue(material, parameter.name);
+  const std::optional<double> of_first = KnownValue(material, first);
+  const std::optional<double> of_second = KnownValue(material, second);
+  return value && of_first && of_second &&
+         *value * *value >= (parameter.beside ? *of_first * *of_second
+                                              : *of_first / *of_second);
+}
+
+// Throws where no values of the other parameters make what is known a material.
+// Finds that of two directions, and where all but shear moduli are known.
 void RequirePositiveDefinite(const Law& law, const Material& material,
                              SectionModel model, const std::string& name) {
-  if (material.known.size() != law.Parameters().size()) {
-    return;
+  for (const LawParameter& parameter : law.Parameters()) {
+    if (IsTooLarge(law, material, parameter)) {
+      throw std::invalid_argument(
+          name + " gives " + std::string(parameter.name) +
+          " farther from zero than any positive definite stiffness has it "
+          "beside the other known parameters; correct them");
+    }
   }
-  Eigen::VectorXd parameters(Eigen::Index(material.known.size()));
-  for (Eigen::Index i = 0; i < parameters.size(); ++i) {
-    const auto is_this = [&](const KnownParameter& known) {
-      return known.name == law.Parameters()[std::size_t(i)].name;
-    };
-    parameters(i) =
-        std::find_if(material.known.begin(), material.known.end(), is_this)
-            ->value;
-  }
-  if (!IsStiffnessPositiveDefinite(law, parameters, model)) {
+  if (IsKnownNotPositiveDefinite(law, material, model)) {
     throw std::invalid_argument(name +
                                 " gives known parameters of a stiffness that "
                                 "is not positive definite; correct them");

@@ -44,7 +44,7 @@ TransverselyIsotropicLaw::TransverselyIsotropicLaw()
           {Modulus("youngs_modulus_L", "E_L", 1),
            Modulus("youngs_modulus_T", "E_T", 1),
            DirectedPoissonRatio("poisson_ratio_LT", "nu_LT"),
-           DirectedPoissonRatio("poisson_ratio_TT", "nu_TT"),
+           PoissonRatioInPlane("poisson_ratio_TT", "nu_TT"),
            Modulus("shear_modulus_LT", "G_LT", kTypicalShearModulus)},
           ModesOfAxis(),
           {{0, 0, 1}, {0, 1, kRootOfTwo}, {1, 1, 2}, {2, 2, 2}, {3, 3, 2}}) {}

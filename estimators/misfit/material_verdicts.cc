@@ -94,6 +94,10 @@ void DescribeResiduals(const Scene& scene, const MinimumErrors& errors,
   const double noise = observed.GivenNoise()
                            ? 1 / (observed.Norm() * observed.Norm())
                            : errors.variance;
+  // What is left of exact displacements says nothing.
+  constexpr double kRounding = 1e-9;
+  const bool is_rounding =
+      Norm(errors.residual) < kRounding * Norm(observed.Measured());
   double highest_score = kLimits.significant_score;
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     MaterialEstimate& material = estimate.materials[i];
@@ -115,7 +119,7 @@ void DescribeResiduals(const Scene& scene, const MinimumErrors& errors,
         std::clamp(neighbours->correlation, -1.0, 1.0);
     const double score =
         neighbours->correlation / neighbours->standard_deviation;
-    if (score > highest_score) {
+    if (score > highest_score && !is_rounding) {
       highest_score = score;
       estimate.Remove(FindingCode::kResidualInRegion);
       estimate.Add(ResidualInRegion(RegionsLabel(material.regions),

@@ -124,6 +124,9 @@ Material ReadMaterial(const JsonValue& value, const MeshFile& mesh) {
     if (region.IsInteger()) {
       material.regions.push_back(ReadRegion(region));
     } else {
+      if (!region.IsList()) {
+        region.Fail("must be the id of a region, or a list of ids");
+      }
       for (const JsonValue& each : region.Items()) {
         material.regions.push_back(ReadRegion(each));
       }

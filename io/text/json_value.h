@@ -34,6 +34,7 @@ class JsonValue {
   std::vector<JsonValue> Items() const;
 
   bool IsString() const { return value_->is_string(); }
+  bool IsList() const { return value_->is_array(); }
   bool IsObject() const { return value_->is_object(); }
   bool IsInteger() const { return value_->is_number_integer(); }
   bool IsNull() const { return value_->is_null(); }

@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/apps/region_scene.h"
 #include "tests/program.h"
@@ -204,6 +206,25 @@ TEST_F(MaterialsCommand, SaysWhichMaterialsItLeavesOut) {
   EXPECT_THAT(Succeed(simulate + "each").errors, HasSubstr(said));
   write_scene(R"([{"region": [1, 2, 3]}])");
   EXPECT_THAT(Succeed(simulate + "each").errors, Not(HasSubstr(said)));
+}
+
+TEST_F(MaterialsCommand, RefusesWhatIsOfNoRegionOrNoMaterial) {
+  Succeed(
+      "simulate block.vtu --regions=each --parameters=truth.json --out=m.vtu");
+  for (const auto& [material, why] :
+       std::vector<std::pair<std::string, std::string>>{
+           {R"("region": "1")", "must be the id of a region, or a list of ids"},
+           {R"("region": 1.5)", "must be the id of a region, or a list of ids"},
+           {R"("region": [1, 2, 3], "law": "anisotropic",
+               "known": {"c11": 100, "c22": 100, "c12": 200})",
+            "material 1 gives c12 farther from zero"}}) {
+    testing::WriteText(folder_ / "scene.json", R"({"mesh": "m.vtu",
+        "materials": [{)" + material + R"(}],
+        "supports": [{"nodes": {"box": [[-1,-1,-1],[2,2,1e-9]]}}],
+        "cases": [{"displacement": {"array": "displacement"},
+                   "loads": [{"type": "nodal_force", "array": "force"}]}]})");
+    Refuse("estimate scene.json --estimator=reduced-fe --out=o.vtu", why);
+  }
 }
 
 TEST_F(MaterialsCommand, NamesWhatIsWrong) {

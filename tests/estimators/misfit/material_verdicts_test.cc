@@ -80,6 +80,26 @@ TEST(MaterialVerdicts, SayWhichPartOfTheEnergyIsWhere) {
   EXPECT_EQ(estimate.materials[0].determination, Determination::kDetermined);
 }
 
+// What is left of displacements that are exact is rounding, alike or not.
+TEST(MaterialVerdicts, AreSilentAboutRounding) {
+  for (const int boxes : {2, 3}) {
+    Scene scene = testing::BlockUnderTraction({6, 3, 3}, {3, 1, 1});
+    testing::DivideIntoRegions({boxes, 1, 1}, {3, 1, 1}, scene);
+    Eigen::VectorXd truth(2 * boxes);
+    for (int i = 0; i < boxes; ++i) {
+      truth.segment<2>(2 * i) << 1e3 * (i + 1), 0.3;
+    }
+    MeasureMaterials(truth, scene);
+    for (const std::string estimator : {"iterative-fe", "reduced-fe"}) {
+      EXPECT_TRUE(MakeEstimator(estimator)
+                      ->Run(scene, {})
+                      .Sentences(Severity::kWarning)
+                      .empty())
+          << estimator;
+    }
+  }
+}
+
 // Ten blocks between 1000 and 8000, thirty points on the surface.
 class TenBlocks : public ::testing::Test {
  protected:
