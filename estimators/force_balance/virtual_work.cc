@@ -24,11 +24,12 @@ constexpr double kRoundingOfWork = 1e-10;
 // rounding, not the data, decides.
 constexpr double kCollinearWork = 1e-10;
 
-// An orthonormal basis of the polynomials on the nodes where `component` is
-// free, zero elsewhere: num_nodes x m.
+// An orthonormal basis of the polynomials times each window on the nodes where
+// `component` is free, zero elsewhere: num_nodes x m.
 Eigen::MatrixXd OrthonormalPolynomials(const Mesh& mesh,
                                        const Supports& supports, int component,
-                                       int degree) {
+                                       int degree,
+                                       const Eigen::MatrixXd& windows) {
   std::vector<Eigen::Index> free_nodes;
   for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
     if (!supports.held(component, node)) {
@@ -38,9 +39,19 @@ Eigen::MatrixXd OrthonormalPolynomials(const Mesh& mesh,
   if (free_nodes.empty()) {
     return Eigen::MatrixXd(mesh.NumNodes(), 0);
   }
+  const Eigen::MatrixXd monomials =
+      Monomials(mesh.nodes(Eigen::all, free_nodes), degree);
+  const Eigen::Index count = monomials.cols();
+  Eigen::MatrixXd all = monomials;
+  if (windows.cols() > 0) {
+    all.resize(monomials.rows(), count * windows.cols());
+    for (Eigen::Index i = 0; i < windows.cols(); ++i) {
+      all.middleCols(count * i, count) =
+          windows(free_nodes, i).asDiagonal() * monomials;
+    }
+  }
   const Eigen::MatrixXd on_free_nodes =
-      OrthonormalBasis(Monomials(mesh.nodes(Eigen::all, free_nodes), degree),
-                       kDependentMonomial);
+      OrthonormalBasis(all, kDependentMonomial);
   Eigen::MatrixXd basis =
       Eigen::MatrixXd::Zero(mesh.NumNodes(), on_free_nodes.cols());
   basis(free_nodes, Eigen::all) = on_free_nodes;
@@ -142,11 +153,13 @@ Eigen::MatrixXd ComponentRows(const Eigen::MatrixXd& all, std::size_t component,
 
 }  // namespace
 
-VirtualWork::VirtualWork(const Mesh& mesh, const Supports& supports, int degree)
+VirtualWork::VirtualWork(const Mesh& mesh, const Supports& supports, int degree,
+                         const Eigen::MatrixXd& windows)
     : section_model_(mesh.section.model) {
   assert(degree >= 1 && degree <= 3);
   for (int i = 0; i < mesh.Dimension(); ++i) {
-    polynomials_.push_back(OrthonormalPolynomials(mesh, supports, i, degree));
+    polynomials_.push_back(
+        OrthonormalPolynomials(mesh, supports, i, degree, windows));
   }
   const Eigen::MatrixXd triangle =
       StiffenedTriangle(mesh, supports, polynomials_);
@@ -162,6 +175,9 @@ VirtualWork::VirtualWork(const Mesh& mesh, const Supports& supports, int degree)
   h_ = triangle.leftCols(columns) * fields_;
   j_ = triangle.rightCols(columns) * fields_;
 
+  if (windows.cols() > 0) {
+    return;
+  }
   // Half a step changes the stiffness by 19 %.
   constexpr Eigen::Index kScanPoints = 64;
   scan_.reserve(kScanPoints);

@@ -40,7 +40,11 @@ class VirtualWork {
   /// vectors over the nodes as one third of that number, and a block of fixed
   /// size.  Single-threaded, deterministic.
   /// Preconditions: a valid scene's mesh and supports; 1 <= degree <= 3.
-  VirtualWork(const Mesh& mesh, const Supports& supports, int degree);
+  ///
+  /// With windows (num_nodes x n) the fields are the products of each with the
+  /// polynomials, n times as many, and there is no Scan.
+  VirtualWork(const Mesh& mesh, const Supports& supports, int degree,
+              const Eigen::MatrixXd& windows = {});
 
   /// What relates t to E.
   SectionModel Model() const { return section_model_; }

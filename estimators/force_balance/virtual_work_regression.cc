@@ -127,15 +127,49 @@ std::optional<BoundedMinimum> BestOfStarts(const FreeParameters& free,
   return best;
 }
 
+// The part of the volume around each node that each material has, num_nodes x
+// num_materials.
+Eigen::MatrixXd WindowsOf(const Scene& scene) {
+  const Mesh& mesh = scene.mesh;
+  const std::vector<int> material_of =
+      MaterialOfElements(scene.materials, mesh);
+  const Eigen::VectorXd volumes = ElementVolumes(mesh);
+  Eigen::MatrixXd windows = Eigen::MatrixXd::Zero(
+      mesh.NumNodes(), Eigen::Index(scene.materials.size()));
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    for (const int node : mesh.elements.col(e)) {
+      windows(node, material_of[std::size_t(e)]) += volumes(e);
+    }
+  }
+  return windows.array().colwise() / windows.rowwise().sum().array();
+}
+
+// Polynomials over the whole of a specimen, or of each material.
+enum class Reach { kWhole, kMaterial };
+
+// From so many materials on, cubics over the whole of a specimen are too few to
+// tell them apart.
+constexpr std::size_t kFewestOfWindows = 5;
+constexpr int kDegreeOfWindows = 2;
+
+VirtualWork FieldsFor(const Scene& scene, const EstimatorOptions& options,
+                      Reach reach) {
+  const bool has_windows =
+      reach == Reach::kMaterial && scene.materials.size() >= kFewestOfWindows;
+  const int degree = options.virtual_field_degree.value_or(
+      has_windows ? kDegreeOfWindows : kDefaultDegree);
+  return VirtualWork(scene.mesh, scene.supports, degree,
+                     has_windows ? WindowsOf(scene) : Eigen::MatrixXd());
+}
+
 // A measurement, and the virtual fields that it is to balance.
 struct Problem {
   VirtualWork work;
   FreeParameters free;
   WorkBalance balance;
 
-  Problem(const Scene& scene, const EstimatorOptions& options)
-      : work(scene.mesh, scene.supports,
-             options.virtual_field_degree.value_or(kDefaultDegree)),
+  Problem(const Scene& scene, const EstimatorOptions& options, Reach reach)
+      : work(FieldsFor(scene, options, reach)),
         free(scene, options),
         balance(scene, work) {}
 
@@ -171,7 +205,7 @@ std::optional<BalanceFit> DescribeFit(const Scene& scene,
 
 std::optional<BoundedMinimum> MinimizeVirtualWork(
     const Scene& scene, const EstimatorOptions& options, Work& work) {
-  Problem problem(scene, options);
+  Problem problem(scene, options, Reach::kWhole);
   std::optional<BoundedMinimum> best;
   if (problem.IsDetermined()) {
     best = BestOfStarts(problem.free, options.max_iterations, problem.balance);
@@ -187,7 +221,7 @@ Estimate BalanceVirtualWork(const Scene& scene,
   Estimate estimate;
   Evidence evidence;
   Stopwatch stopwatch;
-  Problem problem(scene, options);
+  Problem problem(scene, options, Reach::kMaterial);
   estimate.stages.push_back({"prepare mesh", stopwatch.Lap()});
   evidence.load_imbalance = problem.work.Imbalance(AssembleLoadCases(scene));
   evidence.are_forces_dependent = !problem.IsDetermined();

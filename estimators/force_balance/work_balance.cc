@@ -5,7 +5,6 @@
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/node_sums.h"
-#include "elastimate/core/mechanics/stiffness_traces.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/estimators/force_balance/force_residual.h"
 
@@ -84,18 +83,6 @@ Eigen::VectorXd WorkBalance::LeastSquares() const {
                            work_of_loads_.reshaped())
       .col(0)
       .cwiseQuotient(scales);
-}
-
-double WorkBalance::ForceVariance(const Scene& scene,
-                                  const Eigen::VectorXd& moduli) {
-  constexpr Eigen::Index kProbes = 2;
-  Eigen::MatrixXd probes(scene.mesh.NumDofs(), kProbes);
-  SetTraceProbes(scene.supports.held, probes);
-  const double trace =
-      SquaredNorm(dofs_.Restrict(forces_.Multiply(moduli, probes))) / kProbes;
-  ++work_done_.element_passes;
-  return ForceResidualNorm(moduli) * ForceResidualNorm(moduli) /
-         (trace * double(columns_.size()));
 }
 
 double WorkBalance::ForceResidualNorm(const Eigen::VectorXd& moduli) const {

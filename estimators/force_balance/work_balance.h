@@ -42,9 +42,6 @@ class WorkBalance {
   /// The moduli that balance the work of all fields best, unweighted.
   Eigen::VectorXd LeastSquares() const;
 
-  /// The variance of the weighted noise by the force residual: it takes as
-  /// noise whatever is out of balance at single nodes.
-  double ForceVariance(const Scene& scene, const Eigen::VectorXd& moduli);
   double ForceResidualNorm(const Eigen::VectorXd& moduli) const;
   double LoadNorm() const;
   double DisplacementNorm() const;

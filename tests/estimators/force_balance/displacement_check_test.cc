@@ -15,6 +15,7 @@
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/simplicial_scene.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
+#include "elastimate/estimators/plan/load_plan.h"
 #include "tests/regions.h"
 #include "tests/scenes.h"
 #include "tests/shapes.h"
@@ -152,6 +153,41 @@ TEST(DisplacementCheckStatistics, IsHonestBesideANearlyIncompressiblePart) {
     count.Add(VirtualFields().Run(scene, {}), truth);
   }
   EXPECT_EQ(count.dishonest, 0);
+}
+
+// More materials than polynomials over the whole of a specimen tell apart have
+// fields of their own.
+TEST(WindowStatistics, TellManyMaterialsApart) {
+  constexpr int kSeeds = 6;
+  constexpr double kNoise = 2e-3;
+  Scene specimen = testing::BlockUnderTraction({3, 3, 12}, {1, 1, 4});
+  testing::DivideIntoRegions({1, 1, 6}, {1, 1, 4}, specimen);
+  Eigen::VectorXd truth(12);
+  for (int i = 0; i < 6; ++i) {
+    truth.segment<2>(2 * i) << (i % 2 == 0 ? 1e4 : 2e4), 0.2 + 0.02 * i;
+  }
+  MeasureMaterials(truth, specimen);
+  Scene noisy = specimen;
+  noisy.load_cases[0].noise_sd = testing::AddNoise(kNoise, 1, noisy);
+  const Eigen::VectorXd bounds =
+      PlanLoads(noisy, {{"again", noisy.load_cases[0]}}, truth, kNoise)
+          .before.OfParameters();
+  double square_sum = 0;
+  Count count;
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+    Scene scene = specimen;
+    testing::AddNoise(kNoise, seed, scene);
+    const Estimate estimate = VirtualFields().Run(scene, {});
+    EXPECT_TRUE(estimate.IsUsable()) << estimate.message;
+    count.Add(estimate, truth);
+    for (Eigen::Index i = 0; i < truth.size() && estimate.IsUsable(); ++i) {
+      const ParameterEstimate& parameter = estimate.parameters[std::size_t(i)];
+      square_sum += std::pow(
+          (parameter.value - truth(i)) / parameter.ErrorUnit() / bounds(i), 2);
+    }
+  }
+  EXPECT_EQ(count.dishonest, 0);
+  EXPECT_LT(std::sqrt(square_sum / (kSeeds * 12)), 2);
 }
 
 // What the check costs is said, and it is not made of one material.
