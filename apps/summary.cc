@@ -15,8 +15,6 @@
 namespace elastimate {
 namespace {
 
-constexpr double kDegreesPerRadian = 57.295779513082323;
-
 std::string Number(double value, int digits) {
   std::ostringstream text;
   text << std::setprecision(digits) << value;
@@ -183,7 +181,7 @@ void AddAxes(const Estimate& estimate, std::ostringstream& text) {
              : components +
                    (axis.standard_error
                         ? " +- " +
-                              Number(kDegreesPerRadian * *axis.standard_error,
+                              Number(kDegreesOfRadian * *axis.standard_error,
                                      2) +
                               " degrees"
                         : " (no standard error)"),
@@ -228,7 +226,7 @@ void AddDiagnostics(const Estimate& estimate, std::ostringstream& text) {
   }
   if (estimate.identifiability_angle) {
     Line("identifiability angle",
-         Number(kDegreesPerRadian * *estimate.identifiability_angle, 3) +
+         Number(kDegreesOfRadian * *estimate.identifiability_angle, 3) +
              " degrees",
          text);
   }

@@ -108,6 +108,12 @@ Eigen::VectorXd UnlikeTypical(const Law& law, double unit) {
   return parameters;
 }
 
+Eigen::VectorXd ConstantsOfFibres() {
+  Eigen::VectorXd constants(5);
+  constants << 9e4, 3e4, 0.32, 0.4, 1.5e4;
+  return constants;
+}
+
 Eigen::MatrixXd RandomFrame(Eigen::Index dimension, unsigned seed) {
   const double angle = 0.7 + 1.3 * seed;
   if (dimension == 2) {

@@ -23,6 +23,10 @@ Eigen::MatrixXd SeenFromOutside(const Eigen::MatrixXd& stiffness,
 /// another share of itself.
 Eigen::VectorXd UnlikeTypical(const Law& law, double unit);
 
+/// Constants of transversely_isotropic that is three times as stiff along its
+/// axis.
+Eigen::VectorXd ConstantsOfFibres();
+
 /// A rotation by other angles for each seed: dimension x dimension.
 Eigen::MatrixXd RandomFrame(Eigen::Index dimension, unsigned seed);
 

@@ -11,6 +11,7 @@
 #include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/materials/laws.h"
 #include "elastimate/core/materials/material_frames.h"
+#include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/materials/stiffness_factors.h"
 
 namespace elastimate {
@@ -81,69 +82,67 @@ void ValidateWhatIsGiven(const Law& law, const Material& material,
   }
 }
 
-std::optional<double> KnownValue(const Material& material,
-                                 std::string_view parameter) {
-  const auto place = std::find_if(material.known.begin(), material.known.end(),
-                                  [parameter](const KnownParameter& known) {
-                                    return known.name == parameter;
-                                  });
-  return place == material.known.end() ? std::nullopt
-                                       : std::optional<double>(place->value);
-}
-
 // Of a material of which all is known, but perhaps shear moduli, which are
 // positive, and no more is asked of them.
-bool IsKnownNotPositiveDefinite(const Law& law, const Material& material,
-                                SectionModel model) {
-  Eigen::VectorXd parameters(Eigen::Index(law.Parameters().size()));
-  for (Eigen::Index i = 0; i < parameters.size(); ++i) {
-    const LawParameter& parameter = law.Parameters()[std::size_t(i)];
-    const std::optional<double> known = KnownValue(material, parameter.name);
-    if (!known && parameter.name.rfind("shear_modulus", 0) != 0) {
-      return false;
+bool IsKnownNotPositiveDefinite(const MaterialParameters& parameters) {
+  const auto can_be_any = [](const MaterialParameters::Parameter& parameter) {
+    return !parameter.known &&
+           parameter.law_parameter->name.rfind("shear_modulus", 0) != 0;
+  };
+  return std::none_of(parameters.All().begin(), parameters.All().end(),
+                      can_be_any) &&
+         !IsStiffnessPositiveDefinite(
+             parameters.LawOf(0), parameters.Typical(1), parameters.Model());
+}
+
+// The value of the parameter of this name, where there is one and it is known.
+std::optional<double> KnownValue(const MaterialParameters& parameters,
+                                 std::string_view name) {
+  for (const MaterialParameters::Parameter& parameter : parameters.All()) {
+    if (parameter.law_parameter->name == name) {
+      return parameter.known;
     }
-    parameters(i) = known.value_or(parameter.typical);
   }
-  return !IsStiffnessPositiveDefinite(law, parameters, model);
+  return std::nullopt;
 }
 
 // Whether a stiffness off the diagonal is known with those beside it, or
 // nu_ij with E_i and E_j, and they are those of no material, whatever the
 // others are: c_ij^2 >= c_ii c_jj, or nu_ij^2 >= E_i / E_j.
-bool IsTooLarge(const Law& law, const Material& material,
-                const LawParameter& parameter) {
-  std::string first = "youngs_modulus_";
-  std::string second = first;
+bool IsTooLarge(const LawParameter& parameter,
+                const MaterialParameters& parameters) {
   constexpr std::string_view kRatio = "poisson_ratio_";
+  const std::optional<double> value = KnownValue(parameters, parameter.name);
+  std::optional<double> first;
+  std::optional<double> second;
   if (parameter.beside) {
-    first = law.Parameters()[std::size_t((*parameter.beside)[0])].name;
-    second = law.Parameters()[std::size_t((*parameter.beside)[1])].name;
-  } else if (parameter.name.rfind(kRatio, 0) == 0 &&
-             parameter.name.size() == kRatio.size() + 2) {
-    first += parameter.name[kRatio.size()];
-    second += parameter.name[kRatio.size() + 1];
+    first = parameters.All()[std::size_t((*parameter.beside)[0])].known;
+    second = parameters.All()[std::size_t((*parameter.beside)[1])].known;
+  } else if (parameter.name.rfind(kRatio, 0) == 0) {
+    const std::string_view directions = parameter.name.substr(kRatio.size());
+    const std::string modulus = "youngs_modulus_";
+    first = KnownValue(parameters, modulus + directions.front());
+    second = KnownValue(parameters, modulus + directions.back());
   }
-  const std::optional<double> value = KnownValue(material, parameter.name);
-  const std::optional<double> of_first = KnownValue(material, first);
-  const std::optional<double> of_second = KnownValue(material, second);
-  return value && of_first && of_second &&
-         *value * *value >= (parameter.beside ? *of_first * *of_second
-                                              : *of_first / *of_second);
+  return value && first && second &&
+         *value * *value >=
+             (parameter.beside ? *first * *second : *first / *second);
 }
 
 // Throws where no values of the other parameters make what is known a material.
 // Finds that of two directions, and where all but shear moduli are known.
-void RequirePositiveDefinite(const Law& law, const Material& material,
-                             SectionModel model, const std::string& name) {
-  for (const LawParameter& parameter : law.Parameters()) {
-    if (IsTooLarge(law, material, parameter)) {
+void RequirePositiveDefinite(const Material& material, SectionModel model,
+                             const std::string& name) {
+  const MaterialParameters parameters({material}, model);
+  for (const LawParameter& parameter : parameters.LawOf(0).Parameters()) {
+    if (IsTooLarge(parameter, parameters)) {
       throw std::invalid_argument(
           name + " gives " + std::string(parameter.name) +
           " farther from zero than any positive definite stiffness has it "
           "beside the other known parameters; correct them");
     }
   }
-  if (IsKnownNotPositiveDefinite(law, material, model)) {
+  if (IsKnownNotPositiveDefinite(parameters)) {
     throw std::invalid_argument(name +
                                 " gives known parameters of a stiffness that "
                                 "is not positive definite; correct them");
@@ -263,7 +262,7 @@ void ValidateMaterials(const std::vector<Material>& materials,
                                   "; its laws are " + LawNames(model));
     }
     ValidateWhatIsGiven(*law, materials[i], NameOf(i));
-    RequirePositiveDefinite(*law, materials[i], model, NameOf(i));
+    RequirePositiveDefinite(materials[i], model, NameOf(i));
   }
   ValidateRegions(materials, mesh);
   ValidateAxes(materials, mesh);

@@ -31,6 +31,17 @@ inline Eigen::MatrixXd RigidMotionsAt(const Eigen::VectorXd& arm) {
   return motions;
 }
 
+/// The same of some points (dimension x n), each below the other:
+/// (dimension n) x NumRigidMotions.
+inline Eigen::MatrixXd RigidMotionsOf(const Eigen::MatrixXd& arms) {
+  const Eigen::Index dimension = arms.rows();
+  Eigen::MatrixXd motions(arms.size(), NumRigidMotions(int(dimension)));
+  for (Eigen::Index i = 0; i < arms.cols(); ++i) {
+    motions.middleRows(dimension * i, dimension) = RigidMotionsAt(arms.col(i));
+  }
+  return motions;
+}
+
 /// Why the supports do not hold the specimen: a sentence that names a motion
 /// without strain which they allow (a translation or a rotation of a part of
 /// the mesh), or an empty string when there is none. A finite element solution

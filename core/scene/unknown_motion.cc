@@ -29,17 +29,11 @@ std::string NodeText(Eigen::Index node, int component) {
 // Rigid motions of some nodes, rotations about their middle by their size:
 // (dimension num_nodes) x 3 or 6.
 template <class Nodes>
-Eigen::MatrixXd RigidMotionsOf(const Mesh& mesh, const Nodes& nodes) {
-  const int dimension = mesh.Dimension();
+Eigen::MatrixXd RigidMotionsOfNodes(const Mesh& mesh, const Nodes& nodes) {
   const Eigen::MatrixXd positions = mesh.nodes(Eigen::all, nodes);
   const Eigen::MatrixXd arms = positions.colwise() - positions.rowwise().mean();
   const double size = arms.cwiseAbs().maxCoeff();
-  Eigen::MatrixXd motions(arms.size(), NumRigidMotions(dimension));
-  for (Eigen::Index i = 0; i < arms.cols(); ++i) {
-    motions.middleRows(dimension * i, dimension) =
-        RigidMotionsAt(arms.col(i) / (size > 0 ? size : 1));
-  }
-  return motions;
+  return RigidMotionsOf(arms / (size > 0 ? size : 1));
 }
 
 void ValidateRigidFace(const Mesh& mesh, const Supports& supports,
@@ -275,7 +269,7 @@ UnknownMotion::UnknownMotion(const Scene& scene, const Supports& supports)
     }
   }
   for (const RigidFace& face : supports.rigid_faces) {
-    Eigen::MatrixXd motions = RigidMotionsOf(mesh, face.nodes);
+    Eigen::MatrixXd motions = RigidMotionsOfNodes(mesh, face.nodes);
     for (Eigen::Index row = 0; row < motions.rows(); ++row) {
       motions.row(row) *= face.components(row % dimension) ? 1 : 0;
     }
@@ -295,7 +289,7 @@ UnknownMotion::UnknownMotion(const Scene& scene, const Supports& supports)
   of_supports.resize(mesh.NumDofs(), num_columns);
   of_supports.setFromTriplets(entries.begin(), entries.end());
   if (scene.is_rigid_motion_free) {
-    of_all = OrthonormalBasis(RigidMotionsOf(mesh, Eigen::all), kNoMotion);
+    of_all = OrthonormalBasis(RigidMotionsOfNodes(mesh, Eigen::all), kNoMotion);
   }
 }
 

@@ -29,13 +29,9 @@ Scene HeldScene(const Scene& scene) {
   held.is_rigid_motion_free = true;
   const Eigen::MatrixXd& nodes = scene.mesh.nodes;
   const Eigen::VectorXd centre = nodes.rowwise().mean();
-  const Eigen::Index dimension = nodes.rows();
   const double size = (nodes.colwise() - centre).colwise().norm().maxCoeff();
-  Eigen::MatrixXd motions(nodes.size(), NumRigidMotions(int(dimension)));
-  for (Eigen::Index j = 0; j < nodes.cols(); ++j) {
-    motions.middleRows(dimension * j, dimension) =
-        RigidMotionsAt((nodes.col(j) - centre) / size);
-  }
+  const Eigen::MatrixXd motions =
+      RigidMotionsOf((nodes.colwise() - centre) / size);
   const auto is_held = scene.supports.held.reshaped();
   Eigen::MatrixXd of_held = motions;
   for (Eigen::Index i = 0; i < of_held.rows(); ++i) {

@@ -42,13 +42,10 @@ Eigen::MatrixXd OrthonormalPolynomials(const Mesh& mesh,
   const Eigen::MatrixXd monomials =
       Monomials(mesh.nodes(Eigen::all, free_nodes), degree);
   const Eigen::Index count = monomials.cols();
-  Eigen::MatrixXd all = monomials;
-  if (windows.cols() > 0) {
-    all.resize(monomials.rows(), count * windows.cols());
-    for (Eigen::Index i = 0; i < windows.cols(); ++i) {
-      all.middleCols(count * i, count) =
-          windows(free_nodes, i).asDiagonal() * monomials;
-    }
+  Eigen::MatrixXd all(monomials.rows(), count * windows.cols());
+  for (Eigen::Index i = 0; i < windows.cols(); ++i) {
+    all.middleCols(count * i, count) =
+        windows(free_nodes, i).asDiagonal() * monomials;
   }
   const Eigen::MatrixXd on_free_nodes =
       OrthonormalBasis(all, kDependentMonomial);
@@ -157,9 +154,12 @@ VirtualWork::VirtualWork(const Mesh& mesh, const Supports& supports, int degree,
                          const Eigen::MatrixXd& windows)
     : section_model_(mesh.section.model) {
   assert(degree >= 1 && degree <= 3);
+  const bool has_windows = windows.cols() > 0;
+  const Eigen::MatrixXd all_windows =
+      has_windows ? windows : Eigen::MatrixXd::Ones(mesh.NumNodes(), 1);
   for (int i = 0; i < mesh.Dimension(); ++i) {
     polynomials_.push_back(
-        OrthonormalPolynomials(mesh, supports, i, degree, windows));
+        OrthonormalPolynomials(mesh, supports, i, degree, all_windows));
   }
   const Eigen::MatrixXd triangle =
       StiffenedTriangle(mesh, supports, polynomials_);
@@ -175,7 +175,7 @@ VirtualWork::VirtualWork(const Mesh& mesh, const Supports& supports, int degree,
   h_ = triangle.leftCols(columns) * fields_;
   j_ = triangle.rightCols(columns) * fields_;
 
-  if (windows.cols() > 0) {
+  if (has_windows) {
     return;
   }
   // Half a step changes the stiffness by 19 %.

@@ -11,7 +11,6 @@
 #include "elastimate/estimators/force_balance/work_balance.h"
 #include "elastimate/estimators/interface/free_parameters.h"
 #include "elastimate/estimators/interface/judge.h"
-#include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 #include "elastimate/estimators/statistics/bounded_variables.h"

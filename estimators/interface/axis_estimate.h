@@ -9,6 +9,9 @@
 
 namespace elastimate {
 
+/// In which people read angles.
+inline constexpr double kDegreesOfRadian = 57.295779513082323;
+
 /// Whether a material has an axis that is to be found (FreeAxisLaw).
 bool HasFreeAxis(const Scene& scene);
 

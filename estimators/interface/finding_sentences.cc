@@ -6,6 +6,7 @@
 #include <sstream>
 #include <vector>
 
+#include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/interface/limits.h"
 
 namespace elastimate {
@@ -337,10 +338,10 @@ Finding ResidualInRegion(const std::string& region, double correlation) {
 }
 
 Finding AxisTurned(double angle, const std::string& region, double change) {
-  constexpr double kDegrees = 180 / M_PI;
   return Warning(FindingCode::kAxisTurned,
                  "axes" + (region.empty() ? "" : " of " + region) +
-                     " that are turned by " + TwoDigits(kDegrees * angle) +
+                     " that are turned by " +
+                     TwoDigits(kDegreesOfRadian * angle) +
                      " degrees fit better, with parameters " + Percent(change) +
                      " away, which errors hold",
                  "check them, or use --axis=free");

@@ -70,6 +70,7 @@ Finding CombinationsOnly(const std::vector<std::string>& combinations);
 Finding ResidualInRegion(const std::string& region, double correlation);
 /// By an angle [rad]; of a region, "" where there is one material.
 Finding AxisTurned(double angle, const std::string& region, double change);
+/// By how much, such as "3 % in E".
 Finding RegionsMayDiffer(const std::vector<std::string>& differences,
                          Severity severity);
 /// "region 3".

@@ -83,8 +83,6 @@ bool IsDetermined(const AxisEstimate& axis, const Estimate& estimate) {
          (axis.standard_error || !estimate.why_no_standard_error.empty());
 }
 
-constexpr double kDegreesOfRadian = 57.295779513082323;
-
 // " (24 degrees)"; of an error that is small enough, or unknown, nothing.
 std::string ErrorInDegrees(const AxisEstimate& axis) {
   return axis.standard_error.value_or(0) > kLimits.largest_axis_error

@@ -105,11 +105,8 @@ std::vector<UnitLoad> UnitLoads(const Mesh& mesh,
   const int num_motions = NumRigidMotions(dimension);
   // Nodal forces of the tractions that look like the rigid motions, side by
   // side: the work of one of them on another is a resultant.
-  Eigen::MatrixXd motions(mesh.NumDofs(), num_motions);
-  for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
-    motions.middleRows(dimension * node, dimension) =
-        RigidMotionsAt(mesh.nodes.col(node) - centroid);
-  }
+  const Eigen::MatrixXd motions =
+      RigidMotionsOf(mesh.nodes.colwise() - centroid);
   const Eigen::VectorXd of_dofs =
       area.transpose().replicate(dimension, 1).reshaped();
   const Eigen::MatrixXd tractions = of_dofs.asDiagonal() * motions;

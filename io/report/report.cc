@@ -7,14 +7,13 @@
 #include <optional>
 
 #include "elastimate/core/scene/loads.h"
+#include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/io/text/printable.h"
 
 namespace elastimate {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kDegreesPerRadian = 57.295779513082323;
 
 Json OrNull(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
@@ -185,7 +184,7 @@ Json AxesJson(const Estimate& estimate) {
          {"direction", axis.direction.allFinite() ? direction : Json(nullptr)},
          {"standard_error_deg",
           axis.standard_error && axis.direction.allFinite()
-              ? Json(kDegreesPerRadian * *axis.standard_error)
+              ? Json(kDegreesOfRadian * *axis.standard_error)
               : Json(nullptr)}});
   }
   return axes;
@@ -267,7 +266,7 @@ Json OutliersJson(const std::vector<Outlier>& outliers) {
 Json DiagnosticsJson(const Estimate& estimate) {
   std::optional<double> angle = estimate.identifiability_angle;
   if (angle) {
-    *angle *= kDegreesPerRadian;
+    *angle *= kDegreesOfRadian;
   }
   return {{"identifiability_angle_deg", OrNull(angle)},
           {"noise_attenuation", OrNull(estimate.noise_attenuation)},

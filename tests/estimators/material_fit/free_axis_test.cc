@@ -21,12 +21,6 @@ namespace {
 constexpr char kFreeAxis[] = "transversely_isotropic_free_axis";
 constexpr double kRadianOfDegrees = 0.017453292519943295;
 
-Eigen::VectorXd ConstantsOfFibres() {
-  Eigen::VectorXd constants(5);
-  constants << 9e4, 3e4, 0.32, 0.4, 1.5e4;
-  return constants;
-}
-
 Eigen::VectorXd ConstantsOfLayers() {
   Eigen::VectorXd constants(5);
   constants << 2e4, 3e4, 0.2, 0.3, 0.8e4;
@@ -70,7 +64,7 @@ double AngleOfAxes(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 TEST(FreeAxis, IsFoundExactlyWithoutNoise) {
   for (const Eigen::VectorXd& constants :
-       {ConstantsOfFibres(), ConstantsOfLayers()}) {
+       {testing::ConstantsOfFibres(), ConstantsOfLayers()}) {
     for (const Eigen::Vector3d& axis :
          {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0),
           Eigen::Vector3d(0, 0, -2), Eigen::Vector3d(-1, 2, 3)}) {
@@ -109,7 +103,7 @@ TEST(FreeAxis, IsFoundInARegion) {
   }
   const Eigen::Vector3d axis = {1, 1, -0.5};
   Eigen::VectorXd parameters(7);
-  parameters << 5e4, 0.3, ConstantsOfFibres();
+  parameters << 5e4, 0.3, testing::ConstantsOfFibres();
   MeasureMaterials({{"isotropic", {7}, {}, {}},
                     {"transversely_isotropic", {3}, {}, {}, {axis}}},
                    parameters, scene);
@@ -128,7 +122,7 @@ TEST(FreeAxis, IsFoundInARegion) {
 // Some of its constants may be known.
 TEST(FreeAxis, IsFoundBesideWhatIsKnown) {
   const Eigen::Vector3d axis = {1, -1, 2};
-  Scene scene = BlockOfAxis(ConstantsOfFibres(), axis, 4);
+  Scene scene = BlockOfAxis(testing::ConstantsOfFibres(), axis, 4);
   scene.materials[0].known = {{"youngs_modulus_L", 9e4},
                               {"poisson_ratio_TT", 0.4}};
   testing::AddNoise(1e-3, 1, scene);
@@ -165,7 +159,7 @@ TEST(AxisOfIsotropyStatistics, IsNotDetermined) {
 }
 
 TEST(FreeAxis, IsRefusedByWhatCannotFindIt) {
-  const Scene scene = BlockOfAxis(ConstantsOfFibres(), {0, 0, 1}, 2);
+  const Scene scene = BlockOfAxis(testing::ConstantsOfFibres(), {0, 0, 1}, 2);
   for (const std::string estimator :
        {"closed-form", "bounded", "virtual-fields"}) {
     EXPECT_THROWS_WITH(
@@ -191,8 +185,9 @@ class FreeAxisStatistics : public ::testing::TestWithParam<AxisStatistics> {};
 // standard deviation of .18, and cover 95 % with one of 2.8 %; 5 of them.
 TEST_P(FreeAxisStatistics, ErrorsOfAxisAndConstantsAreThoseTheyState) {
   constexpr int kSeeds = 60;
-  const Eigen::VectorXd constants =
-      GetParam().are_layers ? ConstantsOfLayers() : ConstantsOfFibres();
+  const Eigen::VectorXd constants = GetParam().are_layers
+                                        ? ConstantsOfLayers()
+                                        : testing::ConstantsOfFibres();
   const Eigen::Vector3d axis = Eigen::Vector3d(1, -2, 2) / 3;
   const Scene exact = BlockOfAxis(constants, axis, 5);
   Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(5);

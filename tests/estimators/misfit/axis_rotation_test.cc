@@ -34,12 +34,6 @@ Scene Measured(const Material& material, const Eigen::VectorXd& truth,
   return scene;
 }
 
-Eigen::VectorXd StrongFibres() {
-  Eigen::VectorXd constants(5);
-  constants << 9e4, 3e4, 0.32, 0.4, 1.5e4;
-  return constants;
-}
-
 Material Fibres() {
   return {
       "transversely_isotropic", {}, {}, {}, {Eigen::Vector3d(1, -2, 2) / 3}};
@@ -82,7 +76,7 @@ const Eigen::Vector3d kAcross = Eigen::Vector3d(2, 2, 1) / 3;
 class WrongAxis : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(WrongAxis, IsSaidAndHeldByTheErrors) {
-  const Eigen::VectorXd truth = StrongFibres();
+  const Eigen::VectorXd truth = testing::ConstantsOfFibres();
   for (const double degrees : {1.0, 2.0, 4.0}) {
     Scene scene = Measured(Fibres(), truth, SectionModel::kSolid, 5e-4, 3);
     scene.materials = {Turned(Fibres(), kAcross, -degrees)};
@@ -100,8 +94,8 @@ TEST_P(WrongAxis, IsSaidAndHeldByTheErrors) {
 
 TEST_P(WrongAxis, IsNotSaidWhereItIsRight) {
   for (const double noise : {0.0, 1e-3, 1e-2}) {
-    const Scene scene =
-        Measured(Fibres(), StrongFibres(), SectionModel::kSolid, noise, 5);
+    const Scene scene = Measured(Fibres(), testing::ConstantsOfFibres(),
+                                 SectionModel::kSolid, noise, 5);
     const Estimate estimate = MakeEstimator(GetParam())->Run(scene, {});
     ASSERT_TRUE(estimate.IsUsable()) << estimate.message;
     EXPECT_FALSE(estimate.Has(FindingCode::kAxisTurned)) << noise;
@@ -115,29 +109,43 @@ INSTANTIATE_TEST_SUITE_P(Estimators, WrongAxis,
                                                              : "iterative_fe";
                          });
 
+// A fit at the true parameters of a specimen.
+struct FitAtTruth {
+  DisplacementMisfit misfit;
+  Eigen::VectorXd x;
+  Eigen::VectorXd rows;
+  Eigen::MatrixXd sensitivities;
+  Eigen::MatrixXd inverse;
+
+  FitAtTruth(const Scene& scene, const Eigen::VectorXd& truth)
+      : misfit(scene, {}), x(misfit.Free().VariablesOf(truth)) {
+    EXPECT_TRUE(misfit.Evaluate(x, &rows, &sensitivities));
+    inverse = (sensitivities.transpose() * sensitivities).inverse();
+  }
+
+  // The change of the variables to the minimum of these rows.
+  Eigen::VectorXd Step(const Eigen::VectorXd& of_rows) const {
+    return -inverse * (sensitivities.transpose() * of_rows);
+  }
+};
+
 // The step against the angle by which the axes were turned, and against a fit
 // with the right axes.
 TEST(AxisRotation, IsThatOfTheSpecimen) {
-  const Eigen::VectorXd truth = StrongFibres();
+  const Eigen::VectorXd truth = testing::ConstantsOfFibres();
   Scene scene = Measured(Fibres(), truth, SectionModel::kSolid, 0, 1);
   constexpr double kDegrees = 0.1;
   scene.materials = {Turned(Fibres(), kAcross, -kDegrees)};
-  const EstimatorOptions options;
-  DisplacementMisfit misfit(scene, options);
-  const Eigen::VectorXd x = misfit.Free().VariablesOf(truth);
-  Eigen::VectorXd rows;
-  Eigen::MatrixXd sensitivities;
-  ASSERT_TRUE(misfit.Evaluate(x, &rows, &sensitivities));
-  const Eigen::MatrixXd inverse =
-      (sensitivities.transpose() * sensitivities).inverse();
-  const std::optional<AxisRotation> rotation = FindAxisRotation(
-      scene, x, rows, sensitivities, inverse, std::nullopt, misfit);
+  FitAtTruth fit(scene, truth);
+  const std::optional<AxisRotation> rotation =
+      FindAxisRotation(scene, fit.x, fit.rows, fit.sensitivities, fit.inverse,
+                       std::nullopt, fit.misfit);
   ASSERT_TRUE(rotation);
   EXPECT_EQ(rotation->num_rotations, 2);
   EXPECT_NEAR(rotation->angle, kDegrees * kDegree, 0.02 * kDegrees * kDegree);
   // The rows are those of the true parameters about the wrong axis: with the
   // rotation, the step of the variables stays where it is.
-  const Eigen::VectorXd alone = -inverse * (sensitivities.transpose() * rows);
+  const Eigen::VectorXd alone = fit.Step(fit.rows);
   EXPECT_LT((alone + rotation->change).norm(), 0.02 * alone.norm());
 }
 
@@ -155,20 +163,15 @@ TEST(AxisRotation, IsOneInThePlane) {
   EXPECT_EQ(NumMissed(estimate, truth), 0);
 }
 
-// Where the axes are right: the share of measurements of which that is not
-// said, and what is added to the variance of the noise.
+// Where the axes are right, chi^2 is that of chance, and little is added to the
+// variance of the noise.
 TEST(AxisRotationStatistics, LeavesTheErrorsOfRightAxes) {
   constexpr int kSeeds = 1000;
   constexpr double kNoise = 1e-2;
-  const Eigen::VectorXd truth = StrongFibres();
+  const Eigen::VectorXd truth = testing::ConstantsOfFibres();
   const Scene scene = Measured(Fibres(), truth, SectionModel::kSolid, 0, 1);
-  DisplacementMisfit misfit(scene, {});
-  const Eigen::VectorXd x = misfit.Free().VariablesOf(truth);
-  Eigen::VectorXd rows;
-  Eigen::MatrixXd sensitivities;
-  ASSERT_TRUE(misfit.Evaluate(x, &rows, &sensitivities));
-  const Eigen::MatrixXd inverse =
-      (sensitivities.transpose() * sensitivities).inverse();
+  FitAtTruth fit(scene, truth);
+  Eigen::VectorXd rows = fit.rows;
   std::mt19937 generator(1);
   std::normal_distribution<double> normal(0, kNoise);
   double added = 0;
@@ -177,16 +180,17 @@ TEST(AxisRotationStatistics, LeavesTheErrorsOfRightAxes) {
     for (double& row : rows) {
       row = normal(generator);
     }
-    const Eigen::VectorXd left =
-        rows - sensitivities * (inverse * (sensitivities.transpose() * rows));
-    const std::optional<AxisRotation> rotation = FindAxisRotation(
-        scene, x, left, sensitivities, inverse, kNoise * kNoise, misfit);
+    const Eigen::VectorXd left = rows + fit.sensitivities * fit.Step(rows);
+    const std::optional<AxisRotation> rotation =
+        FindAxisRotation(scene, fit.x, left, fit.sensitivities, fit.inverse,
+                         kNoise * kNoise, fit.misfit);
     ASSERT_TRUE(rotation);
     chi_square += rotation->chi_square / kSeeds;
-    added += rotation->BeyondChance() *
-             (rotation->change.array().square() / inverse.diagonal().array())
-                 .mean() /
-             (kNoise * kNoise) / kSeeds;
+    added +=
+        rotation->BeyondChance() *
+        (rotation->change.array().square() / fit.inverse.diagonal().array())
+            .mean() /
+        (kNoise * kNoise) / kSeeds;
   }
   // chi^2 of two degrees of freedom has a standard deviation of 2.
   EXPECT_NEAR(chi_square, 2, 4 * 2 / std::sqrt(double(kSeeds)));
