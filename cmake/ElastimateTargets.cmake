@@ -15,6 +15,9 @@ function(elastimate_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_17)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Werror)
+  # Where OpenMP is on, as in core, Eigen's threads spin while they wait for each other: ten times slower beside other
+  # programs.  The same instances of its templates serve all libraries.
+  target_compile_definitions(${target} PRIVATE EIGEN_DONT_PARALLELIZE)
   elastimate_unite_folders(${target})
   get_target_property(type ${target} TYPE)
   if(NOT type STREQUAL SHARED_LIBRARY)

@@ -7,6 +7,7 @@
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/estimators/force_balance/displacement_check.h"
+#include "elastimate/estimators/force_balance/monomials.h"
 #include "elastimate/estimators/force_balance/virtual_work.h"
 #include "elastimate/estimators/force_balance/work_balance.h"
 #include "elastimate/estimators/interface/free_parameters.h"
@@ -18,8 +19,7 @@
 namespace elastimate {
 namespace {
 
-// Of polynomials: several materials need more fields than one.
-constexpr int kDefaultDegree = 3;
+constexpr int kHighestDegree = 3;
 
 // Typical values but for these Poisson's ratios, at the scale of the loads;
 // empty when the displacements oppose the loads.
@@ -143,22 +143,38 @@ Eigen::MatrixXd WindowsOf(const Scene& scene) {
   return windows.array().colwise() / windows.rowwise().sum().array();
 }
 
-// Polynomials over the whole of a specimen, or of each material.
-enum class Reach { kWhole, kMaterial };
+// Quadratic polynomials tell more materials apart as well, at half as many.
+constexpr std::size_t kMostOfCubics = 4;
 
-// From so many materials on, cubics over the whole of a specimen are too few to
-// tell them apart.
-constexpr std::size_t kFewestOfWindows = 5;
-constexpr int kDegreeOfWindows = 2;
+int DegreeOfEstimate(const Scene& scene, const EstimatorOptions& options) {
+  return options.virtual_field_degree.value_or(
+      scene.materials.size() > kMostOfCubics ? 2 : kHighestDegree);
+}
 
-VirtualWork FieldsFor(const Scene& scene, const EstimatorOptions& options,
-                      Reach reach) {
-  const bool has_windows =
-      reach == Reach::kMaterial && scene.materials.size() >= kFewestOfWindows;
-  const int degree = options.virtual_field_degree.value_or(
-      has_windows ? kDegreeOfWindows : kDefaultDegree);
-  return VirtualWork(scene.mesh, scene.supports, degree,
-                     has_windows ? WindowsOf(scene) : Eigen::MatrixXd());
+// Of several materials the least that leaves twice as many equations as there
+// is to find.
+int DegreeOfStart(const Scene& scene, const EstimatorOptions& options) {
+  if (scene.materials.size() == 1) {
+    return kHighestDegree;
+  }
+  const Eigen::Index dimension = scene.mesh.Dimension();
+  const Eigen::Index num_fields_of_one =
+      dimension *
+      Eigen::Index(scene.materials.size() * scene.load_cases.size());
+  const Eigen::Index size = FreeParameters(scene, options).Size();
+  int degree = 1;
+  while (degree < kHighestDegree &&
+         num_fields_of_one * NumMonomials(dimension, degree) < 2 * size) {
+    ++degree;
+  }
+  return degree;
+}
+
+// Polynomials over the whole of a specimen hardly tell materials apart.
+VirtualWork FieldsOf(const Scene& scene, int degree) {
+  return VirtualWork(
+      scene.mesh, scene.supports, degree,
+      scene.materials.size() > 1 ? WindowsOf(scene) : Eigen::MatrixXd());
 }
 
 // A measurement, and the virtual fields that it is to balance.
@@ -167,8 +183,8 @@ struct Problem {
   FreeParameters free;
   WorkBalance balance;
 
-  Problem(const Scene& scene, const EstimatorOptions& options, Reach reach)
-      : work(FieldsFor(scene, options, reach)),
+  Problem(const Scene& scene, const EstimatorOptions& options, int degree)
+      : work(FieldsOf(scene, degree)),
         free(scene, options),
         balance(scene, work) {}
 
@@ -204,7 +220,7 @@ std::optional<BalanceFit> DescribeFit(const Scene& scene,
 
 std::optional<BoundedMinimum> MinimizeVirtualWork(
     const Scene& scene, const EstimatorOptions& options, Work& work) {
-  Problem problem(scene, options, Reach::kWhole);
+  Problem problem(scene, options, DegreeOfStart(scene, options));
   std::optional<BoundedMinimum> best;
   if (problem.IsDetermined()) {
     best = BestOfStarts(problem.free, options.max_iterations, problem.balance);
@@ -220,7 +236,7 @@ Estimate BalanceVirtualWork(const Scene& scene,
   Estimate estimate;
   Evidence evidence;
   Stopwatch stopwatch;
-  Problem problem(scene, options, Reach::kMaterial);
+  Problem problem(scene, options, DegreeOfEstimate(scene, options));
   estimate.stages.push_back({"prepare mesh", stopwatch.Lap()});
   evidence.load_imbalance = problem.work.Imbalance(AssembleLoadCases(scene));
   evidence.are_forces_dependent = !problem.IsDetermined();

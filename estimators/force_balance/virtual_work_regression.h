@@ -11,9 +11,10 @@
 namespace elastimate {
 
 /// The parameters of any materials from the balance of virtual work of
-/// polynomial fields V (VirtualWork, of degree 3 unless another is asked for;
-/// from five materials on of degree 2 times the part of the volume around each
-/// node that a material has, for each of them), weighted by its own covariance:
+/// polynomial fields V (VirtualWork), of several materials times the part of
+/// the volume around each node that a material has, for each of them, of degree
+/// 3 unless another is asked for, from five materials on of degree 2, weighted
+/// by its own covariance:
 ///
 ///   min S = r^T G^-1 r,   r = V^T (F(q) theta - f),   G = M^T M,
 ///   M = K(theta) V on the free rows.
@@ -30,14 +31,13 @@ namespace elastimate {
 ///
 /// Preconditions are those of Estimator::Run; every free component is observed.
 /// Cost: in each step an element pass of as many columns as there are fields
-/// (60 of degree 3 in three dimensions, 20 in two; 30 or 12 for each of five
-/// materials and more), and their QR factorisation;
-/// and that of the check.
+/// (60 for each material in three dimensions, 20 in two; 30 or 12 of five
+/// materials and more), and their QR factorisation; and that of the check.
 Estimate BalanceVirtualWork(const Scene& scene,
                             const EstimatorOptions& options);
 
-/// Where the minimum of S is, without a check; empty where there is none.  Adds
-/// its work.
+/// About where the minimum of S is, without a check: by no more fields than
+/// that takes.  Empty where there is none.  Adds its work.
 std::optional<BoundedMinimum> MinimizeVirtualWork(
     const Scene& scene, const EstimatorOptions& options, Work& work);
 

@@ -30,28 +30,32 @@ bool WorkBalance::Evaluate(const Eigen::VectorXd& moduli,
                            const Eigen::MatrixXd& directions,
                            Eigen::VectorXd* residual,
                            Eigen::MatrixXd* jacobian) {
-  ++work_done_.element_passes;
-  const Eigen::MatrixXd stiffened =
-      dofs_.Restrict(forces_.Multiply(moduli, fields_));
-  const Eigen::MatrixXd upper = TriangularFactor(stiffened);
-  if (!(upper.diagonal().cwiseAbs().minCoeff() > 0) || !upper.allFinite()) {
+  // A value and its derivatives are asked for one after the other.
+  if (moduli_of_noise_.size() == 0 || moduli != moduli_of_noise_) {
+    ++work_done_.element_passes;
+    moduli_of_noise_ = moduli;
+    noise_ =
+        TriangularFactor(dofs_.Restrict(forces_.Multiply(moduli, fields_)));
+  }
+  if (!(noise_.diagonal().cwiseAbs().minCoeff() > 0) || !noise_.allFinite()) {
     return false;
   }
-  const Eigen::Index k = upper.cols();
+  const Eigen::Index k = noise_.cols();
   residual->resize(NumEquations());
   if (jacobian != nullptr) {
     jacobian->resize(NumEquations(), directions.cols());
   }
-  const auto lower = upper.transpose().triangularView<Eigen::Lower>();
+  const auto lower = noise_.transpose().triangularView<Eigen::Lower>();
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     const Eigen::VectorXd z = lower.solve(Eigen::VectorXd(
         work_of_columns_[i] * moduli - work_of_loads_.col(Eigen::Index(i))));
     residual->segment(k * Eigen::Index(i), k) = z;
     if (jacobian != nullptr) {
       const Eigen::VectorXd multipliers =
-          upper.triangularView<Eigen::Upper>().solve(z);
-      const Eigen::VectorXd correction = dofs_.Extend(stiffened * multipliers);
-      ++work_done_.element_passes;
+          noise_.triangularView<Eigen::Upper>().solve(z);
+      const Eigen::VectorXd correction = dofs_.Extend(
+          dofs_.Restrict(forces_.Multiply(moduli, fields_ * multipliers)));
+      work_done_.element_passes += 2;
       jacobian->middleRows(k * Eigen::Index(i), k) =
           lower.solve(Eigen::MatrixXd(
               (work_of_columns_[i] - work_.Of(forces_.Columns(correction))) *

@@ -30,8 +30,9 @@ class WorkBalance {
   const Work& WorkDone() const { return work_done_; }
 
   /// L^-1 r, and its derivative by theta along directions (num_moduli x n)
-  /// where it is asked for.  False where M is singular.  A pass of as many
-  /// columns as there are fields, and their QR factorisation.
+  /// where it is asked for.  False where M is singular.  At moduli other than
+  /// the last ones, a pass of as many columns as there are fields, and their QR
+  /// factorisation; for derivatives two passes for each load case.
   bool Evaluate(const Eigen::VectorXd& moduli,
                 const Eigen::MatrixXd& directions, Eigen::VectorXd* residual,
                 Eigen::MatrixXd* jacobian);
@@ -56,6 +57,8 @@ class WorkBalance {
   std::vector<Eigen::MatrixXd> columns_;
   std::vector<Eigen::MatrixXd> work_of_columns_;
   Eigen::MatrixXd work_of_loads_;
+  Eigen::VectorXd moduli_of_noise_;  ///< Of the last evaluation.
+  Eigen::MatrixXd noise_;            ///< L^T there.
   Work work_done_;
 };
 

@@ -150,7 +150,8 @@ Finding NotFinite() {
 Finding SingularStiffness() {
   return Error(FindingCode::kSingularStiffness,
                "the stiffness matrix is singular to working precision",
-               "check the mesh for slivers and loose parts, and the supports");
+               "check the mesh for slivers and loose parts, the supports, and "
+               "known values");
 }
 
 Finding SearchFailed(const std::string& reason) {
@@ -171,7 +172,7 @@ Finding FitNotCertified() {
   return Error(FindingCode::kFitNotCertified,
                "the reduced model did not become accurate enough to exclude a "
                "better fit elsewhere",
-               "use iterative-fe, or give bounds on Poisson's ratio");
+               "use iterative-fe, or give bounds on parameters");
 }
 
 Finding Unphysical(const IsotropicElasticity& elasticity) {
@@ -344,7 +345,7 @@ Finding AxisTurned(double angle, const std::string& region, double change) {
                      TwoDigits(kDegreesOfRadian * angle) +
                      " degrees fit better, with parameters " + Percent(change) +
                      " away, which errors hold",
-                 "check them, or use --axis=free");
+                 "check them, or free an axis (--axis=free)");
 }
 
 Finding RegionsMayDiffer(const std::vector<std::string>& differences,
