@@ -7,7 +7,6 @@
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/estimators/force_balance/displacement_check.h"
-#include "elastimate/estimators/force_balance/monomials.h"
 #include "elastimate/estimators/force_balance/virtual_work.h"
 #include "elastimate/estimators/force_balance/work_balance.h"
 #include "elastimate/estimators/interface/free_parameters.h"
@@ -151,29 +150,15 @@ int DegreeOfEstimate(const Scene& scene, const EstimatorOptions& options) {
       scene.materials.size() > kMostOfCubics ? 2 : kHighestDegree);
 }
 
-// Of several materials the least that leaves twice as many equations as there
-// is to find.
-int DegreeOfStart(const Scene& scene, const EstimatorOptions& options) {
-  if (scene.materials.size() == 1) {
-    return kHighestDegree;
-  }
-  const Eigen::Index dimension = scene.mesh.Dimension();
-  const Eigen::Index num_fields_of_one =
-      dimension *
-      Eigen::Index(scene.materials.size() * scene.load_cases.size());
-  const Eigen::Index size = FreeParameters(scene, options).Size();
-  int degree = 1;
-  while (degree < kHighestDegree &&
-         num_fields_of_one * NumMonomials(dimension, degree) < 2 * size) {
-    ++degree;
-  }
-  return degree;
+VirtualWork FieldsOfWhole(const Scene& scene) {
+  return VirtualWork(scene.mesh, scene.supports, kHighestDegree);
 }
 
 // Polynomials over the whole of a specimen hardly tell materials apart.
-VirtualWork FieldsOf(const Scene& scene, int degree) {
+VirtualWork FieldsOfMaterials(const Scene& scene,
+                              const EstimatorOptions& options) {
   return VirtualWork(
-      scene.mesh, scene.supports, degree,
+      scene.mesh, scene.supports, DegreeOfEstimate(scene, options),
       scene.materials.size() > 1 ? WindowsOf(scene) : Eigen::MatrixXd());
 }
 
@@ -183,10 +168,9 @@ struct Problem {
   FreeParameters free;
   WorkBalance balance;
 
-  Problem(const Scene& scene, const EstimatorOptions& options, int degree)
-      : work(FieldsOf(scene, degree)),
-        free(scene, options),
-        balance(scene, work) {}
+  Problem(const Scene& scene, const EstimatorOptions& options,
+          VirtualWork fields)
+      : work(std::move(fields)), free(scene, options), balance(scene, work) {}
 
   bool IsDetermined() const { return balance.NumEquations() > free.Size(); }
 };
@@ -220,7 +204,7 @@ std::optional<BalanceFit> DescribeFit(const Scene& scene,
 
 std::optional<BoundedMinimum> MinimizeVirtualWork(
     const Scene& scene, const EstimatorOptions& options, Work& work) {
-  Problem problem(scene, options, DegreeOfStart(scene, options));
+  Problem problem(scene, options, FieldsOfWhole(scene));
   std::optional<BoundedMinimum> best;
   if (problem.IsDetermined()) {
     best = BestOfStarts(problem.free, options.max_iterations, problem.balance);
@@ -236,7 +220,7 @@ Estimate BalanceVirtualWork(const Scene& scene,
   Estimate estimate;
   Evidence evidence;
   Stopwatch stopwatch;
-  Problem problem(scene, options, DegreeOfEstimate(scene, options));
+  Problem problem(scene, options, FieldsOfMaterials(scene, options));
   estimate.stages.push_back({"prepare mesh", stopwatch.Lap()});
   evidence.load_imbalance = problem.work.Imbalance(AssembleLoadCases(scene));
   evidence.are_forces_dependent = !problem.IsDetermined();
