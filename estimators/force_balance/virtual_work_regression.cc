@@ -18,7 +18,7 @@
 namespace elastimate {
 namespace {
 
-constexpr int kHighestDegree = 3;
+constexpr int kUsualDegree = 3;
 
 // Typical values but for these Poisson's ratios, at the scale of the loads;
 // empty when the displacements oppose the loads.
@@ -144,22 +144,24 @@ Eigen::MatrixXd WindowsOf(const Scene& scene) {
 
 // Quadratic polynomials tell more materials apart as well, at half as many.
 constexpr std::size_t kMostOfCubics = 4;
+constexpr int kDegreeOfMany = 2;
 
-int DegreeOfEstimate(const Scene& scene, const EstimatorOptions& options) {
-  return options.virtual_field_degree.value_or(
-      scene.materials.size() > kMostOfCubics ? 2 : kHighestDegree);
-}
-
-VirtualWork FieldsOfWhole(const Scene& scene) {
-  return VirtualWork(scene.mesh, scene.supports, kHighestDegree);
+VirtualWork FieldsOfWhole(const Scene& scene, const EstimatorOptions& options) {
+  return VirtualWork(scene.mesh, scene.supports,
+                     options.virtual_field_degree.value_or(kUsualDegree));
 }
 
 // Polynomials over the whole of a specimen hardly tell materials apart.
 VirtualWork FieldsOfMaterials(const Scene& scene,
                               const EstimatorOptions& options) {
-  return VirtualWork(
-      scene.mesh, scene.supports, DegreeOfEstimate(scene, options),
-      scene.materials.size() > 1 ? WindowsOf(scene) : Eigen::MatrixXd());
+  if (scene.materials.size() == 1) {
+    return FieldsOfWhole(scene, options);
+  }
+  const int usual =
+      scene.materials.size() > kMostOfCubics ? kDegreeOfMany : kUsualDegree;
+  return VirtualWork(scene.mesh, scene.supports,
+                     options.virtual_field_degree.value_or(usual),
+                     WindowsOf(scene));
 }
 
 // A measurement, and the virtual fields that it is to balance.
@@ -204,7 +206,7 @@ std::optional<BalanceFit> DescribeFit(const Scene& scene,
 
 std::optional<BoundedMinimum> MinimizeVirtualWork(
     const Scene& scene, const EstimatorOptions& options, Work& work) {
-  Problem problem(scene, options, FieldsOfWhole(scene));
+  Problem problem(scene, options, FieldsOfWhole(scene, options));
   std::optional<BoundedMinimum> best;
   if (problem.IsDetermined()) {
     best = BestOfStarts(problem.free, options.max_iterations, problem.balance);

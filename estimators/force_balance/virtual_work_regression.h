@@ -36,8 +36,8 @@ namespace elastimate {
 Estimate BalanceVirtualWork(const Scene& scene,
                             const EstimatorOptions& options);
 
-/// About where the minimum of S is, without a check: by no more fields than
-/// that takes.  Empty where there is none.  Adds its work.
+/// About where the minimum of S is, by fields over the whole of the specimen
+/// and without a check; empty where there is none.  Adds its work.
 std::optional<BoundedMinimum> MinimizeVirtualWork(
     const Scene& scene, const EstimatorOptions& options, Work& work);
 
