@@ -203,7 +203,7 @@ void AddModels(std::vector<MaterialLevel>& levels) {
                                     Pieces(count));
       level.level = std::to_string(count);
       level.is_also_merged = count >= 4;
-      level.is_in_quick = percent == 0.1 && count != 8;
+      level.is_in_quick = percent == 0.1 || (percent == 5 && count == 4);
       levels.push_back(level);
     }
   }

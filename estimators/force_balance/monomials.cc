@@ -27,9 +27,7 @@ Eigen::MatrixXd Standardize(Eigen::MatrixXd x) {
 Eigen::MatrixXd Monomials(const Eigen::MatrixXd& points, int degree) {
   const Eigen::MatrixXd x = Standardize(points);
   const bool is_planar = x.rows() == 2;
-  const int in_plane = (degree + 1) * (degree + 2) / 2;
-  Eigen::MatrixXd monomials(x.cols(),
-                            is_planar ? in_plane : in_plane * (degree + 3) / 3);
+  Eigen::MatrixXd monomials(x.cols(), NumMonomials(x.rows(), degree));
   monomials.col(0).setOnes();
   Eigen::Index column = 0;
   for (int i = 0; i <= degree; ++i) {

@@ -5,12 +5,16 @@
 
 namespace elastimate {
 
+/// Of degree <= `degree` in two or three variables.
+constexpr Eigen::Index NumMonomials(Eigen::Index dimension, int degree) {
+  const Eigen::Index in_plane = (degree + 1) * (degree + 2) / 2;
+  return dimension == 2 ? in_plane : in_plane * (degree + 3) / 3;
+}
+
 /// The monomials of degree <= `degree` at some points (dimension x num_points),
 /// in coordinates of zero mean and unit covariance: they span the polynomials
 /// of that degree, and are well conditioned for slender specimens too.  Points
-/// in a plane or on a line leave some of them zero. num_points x (degree +
-/// 1)(degree + 2)(degree + 3) / 6, in two dimensions num_points x (degree +
-/// 1)(degree + 2) / 2.
+/// in a plane or on a line leave some of them zero. num_points x NumMonomials.
 Eigen::MatrixXd Monomials(const Eigen::MatrixXd& points, int degree);
 
 /// A monomial of which no more than this share is independent of the others is

@@ -7,6 +7,7 @@
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/estimators/force_balance/displacement_check.h"
+#include "elastimate/estimators/force_balance/monomials.h"
 #include "elastimate/estimators/force_balance/virtual_work.h"
 #include "elastimate/estimators/force_balance/work_balance.h"
 #include "elastimate/estimators/interface/free_parameters.h"
@@ -164,6 +165,29 @@ VirtualWork FieldsOfMaterials(const Scene& scene,
                      WindowsOf(scene));
 }
 
+// What is near enough to start from: of many materials the least degree that
+// leaves twice as many equations as there is to find, since the whole of a
+// specimen shows too little of each.  Of fewer materials with a contrast of
+// thousands these would lead farther astray.
+VirtualWork FieldsOfStart(const Scene& scene, const EstimatorOptions& options) {
+  if (scene.materials.size() <= kMostOfCubics) {
+    return FieldsOfWhole(scene, options);
+  }
+  const Eigen::Index dimension = scene.mesh.Dimension();
+  const Eigen::Index num_fields_of_one =
+      dimension *
+      Eigen::Index(scene.materials.size() * scene.load_cases.size());
+  const Eigen::Index size = FreeParameters(scene, options).Size();
+  int degree = 1;
+  while (degree < kDegreeOfMany &&
+         num_fields_of_one * NumMonomials(dimension, degree) < 2 * size) {
+    ++degree;
+  }
+  return VirtualWork(scene.mesh, scene.supports,
+                     options.virtual_field_degree.value_or(degree),
+                     WindowsOf(scene));
+}
+
 // A measurement, and the virtual fields that it is to balance.
 struct Problem {
   VirtualWork work;
@@ -206,7 +230,7 @@ std::optional<BalanceFit> DescribeFit(const Scene& scene,
 
 std::optional<BoundedMinimum> MinimizeVirtualWork(
     const Scene& scene, const EstimatorOptions& options, Work& work) {
-  Problem problem(scene, options, FieldsOfWhole(scene, options));
+  Problem problem(scene, options, FieldsOfStart(scene, options));
   std::optional<BoundedMinimum> best;
   if (problem.IsDetermined()) {
     best = BestOfStarts(problem.free, options.max_iterations, problem.balance);

@@ -36,8 +36,9 @@ namespace elastimate {
 Estimate BalanceVirtualWork(const Scene& scene,
                             const EstimatorOptions& options);
 
-/// About where the minimum of S is, by fields over the whole of the specimen
-/// and without a check; empty where there is none.  Adds its work.
+/// About where the minimum of S is, without a check: by fields over the whole
+/// of the specimen, or by few of each of five materials and more; empty where
+/// there is none.  Adds its work.
 std::optional<BoundedMinimum> MinimizeVirtualWork(
     const Scene& scene, const EstimatorOptions& options, Work& work);
 

@@ -165,7 +165,7 @@ Finding NoConvergence(int max_iterations) {
   return Error(FindingCode::kNoConvergence,
                "the fit did not converge in " + std::to_string(max_iterations) +
                    " iterations",
-               "use reduced-fe");
+               "use reduced-fe, or give bounds on parameters");
 }
 
 Finding FitNotCertified() {

@@ -1,11 +1,25 @@
 #include "elastimate/estimators/material_fit/material_descent.h"
 
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/materials/material.h"
+#include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
 #include "elastimate/estimators/force_balance/virtual_work_regression.h"
 #include "elastimate/estimators/interface/free_parameters.h"
 
 namespace elastimate {
+namespace {
+
+// Whether displacements at x are nearer to the measured ones than none at all
+// are.
+bool ExplainsAnything(const Eigen::VectorXd& x, DisplacementMisfit& misfit) {
+  Eigen::VectorXd residual;
+  return misfit.Evaluate(x, &residual, nullptr) &&
+         Norm(residual.head(misfit.Observed().Size())) < 1;
+}
+
+}  // namespace
+
 std::optional<Eigen::VectorXd> TypicalStart(DisplacementMisfit& misfit) {
   const FreeParameters& free = misfit.Free();
   const std::optional<double> known = free.All().KnownModulus();
@@ -60,7 +74,9 @@ std::optional<BoundedMinimum> BestMinimum(const Scene& scene,
   for (const std::optional<Eigen::VectorXd>& start :
        {TypicalStart(misfit),
         VirtualFieldsStart(scene, options, misfit.Free(), estimate)}) {
-    if (start) {
+    // A descent that begins beyond all data takes hundreds of steps, and ends
+    // there.
+    if (start && (!best || ExplainsAnything(*start, misfit))) {
       BoundedMinimum minimum =
           DescendFrom(options, *start, Distance::kFar, misfit);
       if (!best || minimum.cost < best->cost) {

@@ -107,9 +107,15 @@ class MaterialsStudy : public testing::ProgramTest {
   void ExpectTooFewAndTooManyToShow() const {
     for (const std::string factor :
          {"regions of the model", "law of the model"}) {
-      const std::vector<TableRow> models = Of(factor);
-      const std::size_t right = models.size() - 2;
-      EXPECT_EQ(models[right].Text("assumption"), "right");
+      std::vector<TableRow> models = Of(factor);
+      while (models.back().Number("noise [1]") >
+             models[0].Number("noise [1]")) {
+        models.pop_back();
+      }
+      std::size_t right = 0;
+      while (models.at(right).Text("assumption") != "right") {
+        ++right;
+      }
       for (std::size_t i = 0; i < right; ++i) {
         EXPECT_EQ(models[i].Text("assumption"), "too few");
         EXPECT_EQ(models[i].Number("usable_share [1]"), 0);
@@ -122,9 +128,19 @@ class MaterialsStudy : public testing::ProgramTest {
     }
   }
 
+  // Where virtual fields lead astray, a descent from there takes hundreds.
+  void ExpectFewFactorizations() const {
+    for (const TableRow& row : By("iterative-fe")) {
+      EXPECT_LT(row.Number("factorizations [1]"), 60)
+          << row.Text("factor") << " " << row.Text("level");
+    }
+  }
+
   void ExpectMerging() const {
     for (const TableRow& row : rows_) {
-      if (row.Text("estimator") == "iterative-fe merged") {
+      // At 5 % of noise, what is not told apart becomes one.
+      if (row.Text("estimator") == "iterative-fe merged" &&
+          row.Number("noise [1]") < 0.05) {
         const double left = row.Number("estimated_parameters [1]");
         const double of_model = row.Number("parameters [1]");
         if (row.Text("assumption") == "right") {
@@ -146,6 +162,7 @@ TEST_F(MaterialsStudy, FindsWhatFollowsFromTheory) {
   ExpectWrongModelsToBeTold();
   ExpectBoundsToFollow();
   ExpectTooFewAndTooManyToShow();
+  ExpectFewFactorizations();
   ExpectMerging();
 }
 
