@@ -209,6 +209,41 @@ void AddModels(std::vector<MaterialLevel>& levels) {
   }
 }
 
+// A bar of 1 x 1 x 3 of ten pieces, one on the other, of this many cells of
+// five tetrahedra across.
+MaterialLevel BarOfTenPieces(int cells) {
+  constexpr int kPieces = 10;
+  constexpr double kHeight = 3;
+  CuboidOptions options;
+  options.cells = {cells, cells, 3 * cells};
+  options.size = {1, 1, kHeight};
+  Scene specimen = CuboidScene(options);
+  const Mesh& mesh = specimen.mesh;
+  const Eigen::MatrixXi end = FacetsWhere(mesh, [&](int node) {
+    return mesh.nodes(2, node) > kHeight * (1 - 1e-9);
+  });
+  specimen.load_cases.resize(1);
+  specimen.load_cases[0].loads = {
+      SurfaceForce{end, Eigen::Vector3d(30, 20, 100)}};
+  specimen.mesh.regions =
+      RegionsOf(specimen.mesh, [](const Eigen::VectorXd& centre) {
+        return 1 + static_cast<int>(kPieces * centre(2) / kHeight);
+      });
+  specimen.materials = IsotropicMaterialOfEachRegion(specimen.mesh);
+  return RightLevel("tetrahedra of ten regions",
+                    std::to_string(specimen.mesh.NumElements()), specimen,
+                    ParametersFrom(Alternating(kPieces, 2)), kUsualNoise,
+                    Eigen::Vector3d(1, -2, 1));
+}
+
+void AddSizes(std::vector<MaterialLevel>& levels) {
+  for (const int cells : {5, 10, 15}) {
+    levels.push_back(BarOfTenPieces(cells));
+    levels.back().is_for_fits_alone = true;
+    levels.back().is_in_quick = cells == 5;
+  }
+}
+
 }  // namespace
 
 MaterialLevel RightLevel(const std::string& factor, const std::string& level,
@@ -241,6 +276,7 @@ std::vector<MaterialLevel> MaterialLevels() {
   AddMeasurements(levels);
   AddWrongRegions(levels);
   AddModels(levels);
+  AddSizes(levels);
   return levels;
 }
 

@@ -27,6 +27,8 @@ struct MaterialLevel {
   LoadCase unseen;  ///< Another load of the specimen than any measured.
   /// Whether regions that are not told apart are also made one.
   bool is_also_merged = false;
+  /// Whether one trial of each fit is all that there is time for.
+  bool is_for_fits_alone = false;
   bool is_in_quick = true;
 };
 
@@ -42,7 +44,8 @@ std::string LevelText(double value);
 
 /// A strip of 2 x 1 in plane strain, of 24 x 12 quadrilaterals, held at one end
 /// and pulled askew at the other: of pieces of two materials, one behind the
-/// other, unless the level says otherwise.
+/// other, unless the level says otherwise.  Last a bar of ten such pieces, of
+/// more and more tetrahedra.
 std::vector<MaterialLevel> MaterialLevels();
 
 }  // namespace elastimate
