@@ -15,6 +15,7 @@
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/limits.h"
+#include "elastimate/estimators/interface/parameter_judge.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 #include "elastimate/estimators/material_fit/material_fit.h"
 #include "elastimate/estimators/statistics/model_mismatch.h"
@@ -84,6 +85,18 @@ std::string WhyNotEnough(const Scene& scene, const EstimatorOptions& options,
   return IsOneIsotropicMaterial(scene.materials)
              ? WhyNotWithinTolerance(options, estimate)
              : WhyParametersNotWithinTolerance(estimate);
+}
+
+// The same of closed-form, which does not know what elements miss: only loads
+// that balance in these elements, but for rounding, exclude it.
+std::string WhyClosedFormIsNotEnough(const Scene& scene,
+                                     const EstimatorOptions& options,
+                                     const Estimate& estimate) {
+  constexpr double kRounding = 1e-6;
+  const std::string why_not = WhyNotEnough(scene, options, estimate);
+  return why_not.empty() && !(estimate.force_residual.value_or(0) <= kRounding)
+             ? "what its elements miss is not known"
+             : why_not;
 }
 
 // Whether virtual-fields contradicts the model of the fit.
@@ -278,14 +291,22 @@ void ChooseOrder(const Estimate& linear, const Observations& observations,
 // Goes on to quadratic elements where linear ones are too coarse.
 void ClimbToQuadraticElements(const Scene& scene,
                               const EstimatorOptions& options, Ladder& ladder) {
-  if (!ladder.Last().Has(FindingCode::kElementsTooCoarse) ||
-      !HasQuadraticKind(scene.mesh.kind) ||
+  const Estimate& linear = ladder.Last();
+  const bool are_too_coarse =
+      linear.Has(FindingCode::kElementsTooCoarse) ||
+      (!linear.IsUsable() && AreUndeterminedByElements(linear));
+  if (!are_too_coarse || !HasQuadraticKind(scene.mesh.kind) ||
       scene.mesh.NumElements() > kMostQuadraticElements ||
       !ReducedFe().WhyUnsupported(scene, options).empty()) {
     return;
   }
-  ladder.Decide("went on: not usable: " + ladder.Last().message);
-  ladder.Climb(ReducedFe(), QuadraticScene(scene), options);
+  ladder.Decide("went on: not usable: " + linear.message);
+  const Scene quadratic = QuadraticScene(scene);
+  ladder.Climb(ReducedFe(), quadratic, options);
+  if (ladder.Last().Has(FindingCode::kFitNotCertified)) {
+    ladder.Decide("went on: not usable: " + ladder.Last().message);
+    ladder.Climb(IterativeFe(), quadratic, options);
+  }
   ladder.Decide("stopped: there is no rung above");
 }
 
@@ -376,7 +397,8 @@ Estimate Auto::DoRun(const Scene& scene,
   const EstimatorOptions without_degree = WithoutDegree(options);
   Ladder ladder;
   if (ladder.Climb(ClosedForm(), scene, without_degree) &&
-      StopsHere(WhyNotEnough(scene, options, ladder.Last()), ladder)) {
+      StopsHere(WhyClosedFormIsNotEnough(scene, options, ladder.Last()),
+                ladder)) {
     return ladder.Finish();
   }
   if (IsForMaterialFit(scene)) {

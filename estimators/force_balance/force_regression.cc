@@ -165,7 +165,7 @@ RegressionFit SearchMinimum(const Regression& regression,
   evidence.end = minimum.end;
   evidence.search_message = minimum.message;
   EnterParameters(scene, free, free.ParametersAt(minimum.variables), estimate);
-  NoteVariablesOnBounds(free, minimum, estimate);
+  NoteVariablesOnBounds(free, minimum, evidence, estimate);
   return {minimum.variables, free.ModuliAt(minimum.variables)};
 }
 

@@ -265,7 +265,7 @@ Estimate BalanceVirtualWork(const Scene& scene,
   evidence.search_message = minimum->message;
   EnterParameters(scene, problem.free,
                   problem.free.ParametersAt(minimum->variables), estimate);
-  NoteVariablesOnBounds(problem.free, *minimum, estimate);
+  NoteVariablesOnBounds(problem.free, *minimum, evidence, estimate);
   const std::optional<BalanceFit> fit =
       DescribeFit(scene, minimum->variables, problem, evidence, estimate);
   estimate.work = problem.balance.WorkDone();

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "elastimate/core/materials/elasticity.h"
 #include "elastimate/estimators/interface/active_bounds.h"
@@ -141,6 +142,8 @@ struct Evidence {
   End end = End::kDone;
   WorkCheck work_check = WorkCheck::kNotMade;
   ActiveBounds active;
+  /// Of several materials: Poisson's ratios at the end of their range.
+  std::vector<std::string> ratios_at_limit;
   /// Whether displacement noise biases the method.
   bool is_biased_by_noise = false;
   bool do_loads_work = true;

@@ -113,6 +113,12 @@ std::string FirstOf(const std::vector<std::string>& names) {
                    " more";
 }
 
+bool IsSomethingKnown(const Estimate& estimate) {
+  return std::any_of(
+      estimate.parameters.begin(), estimate.parameters.end(),
+      [](const ParameterEstimate& parameter) { return parameter.is_known; });
+}
+
 Finding Error(FindingCode code, std::string text, std::string advice) {
   return {code, Severity::kError, std::move(text), std::move(advice)};
 }
@@ -312,6 +318,25 @@ Finding ParametersUndetermined(const std::vector<std::string>& parameters) {
                "give what is known of them, join regions, or add load cases");
 }
 
+Finding ParametersUndeterminedByElements(
+    const std::vector<std::string>& parameters, const Estimate& estimate) {
+  return Error(FindingCode::kParametersUndetermined,
+               "elements this coarse do not determine " + FirstOf(parameters),
+               std::string("refine the mesh") +
+                   (estimate.element_order == 2
+                        ? ""
+                        : ", or use quadratic elements (order 2) where it has "
+                          "simplices"));
+}
+
+Finding ParametersUndeterminedOnBounds(
+    const std::vector<std::string>& parameters) {
+  return Error(FindingCode::kParametersUndetermined,
+               "on the bounds that hold them, the data do not determine " +
+                   FirstOf(parameters),
+               "check the bounds, which the data may contradict");
+}
+
 Finding AxisUndetermined(const std::vector<std::string>& axes) {
   return Error(FindingCode::kAxisUndetermined,
                "the data do not determine " + axes[0] +
@@ -334,8 +359,8 @@ Finding ResidualInRegion(const std::string& region, double correlation) {
                  "in " + region + " the residuals of neighbours are alike (" +
                      TwoDigits(correlation) +
                      "): its material may not be the same all over",
-                 "divide it, look at displacement_residual, and check the "
-                 "supports and the loads there");
+                 "divide it, and check known values, supports and loads there "
+                 "(displacement_residual)");
 }
 
 Finding AxisTurned(double angle, const std::string& region, double change) {
@@ -485,6 +510,14 @@ Finding ModelDoesNotFitAtLimit() {
   return Error(FindingCode::kPoissonRatioAtLimit,
                "the data pull Poisson's ratio to 1/2 and leave a residual that "
                "is not noise",
+               kCheckTheModel);
+}
+
+Finding RatiosAtLimit(const std::vector<std::string>& parameters) {
+  return Error(FindingCode::kPoissonRatioAtLimit,
+               "the data pull " + FirstOf(parameters) +
+                   " to the end of its range and leave a residual that is not "
+                   "noise",
                kCheckTheModel);
 }
 
@@ -700,8 +733,12 @@ Finding ElementsTooCoarse(const Eigen::Vector2d& correction,
       FindingCode::kElementsTooCoarse,
       "the elements are too coarse here: finer ones change " +
           ChangesOf({std::expm1(correction(0)), correction(1)}, estimate),
-      "refine the mesh, or use quadratic elements (order 2) where it has "
-      "simplices");
+      std::string("refine the mesh") +
+          (estimate.element_order == 2
+               ? ""
+               : ", or use quadratic elements (order 2) where it has "
+                 "simplices") +
+          (IsSomethingKnown(estimate) ? ", and check what is known" : ""));
 }
 
 Finding SupportsEndWithinElements(const Eigen::Vector2d& errors) {

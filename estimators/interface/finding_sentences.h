@@ -62,6 +62,12 @@ Finding PoissonRatioHiddenByNoise();
 Finding YoungsModulusUndetermined(double youngs_modulus, double standard_error);
 /// `parameters` describes each, such as "E of region 3 (45 %)".
 Finding ParametersUndetermined(const std::vector<std::string>& parameters);
+/// The same where most of the errors is what the elements miss.
+Finding ParametersUndeterminedByElements(
+    const std::vector<std::string>& parameters, const Estimate& estimate);
+/// The same where bounds that a user gave hold some of them.
+Finding ParametersUndeterminedOnBounds(
+    const std::vector<std::string>& parameters);
 /// `axes` describes each, such as "the axis of region 3 (24 degrees)".
 Finding AxisUndetermined(const std::vector<std::string>& axes);
 /// Says the first of them.
@@ -103,6 +109,8 @@ Finding VirtualWorkImbalance();
 /// By the check of another method: `force_residual` is relative to the load.
 Finding VirtualWorkImbalance(double force_residual, Severity severity);
 Finding ModelDoesNotFitAtLimit();
+/// Of several materials.
+Finding RatiosAtLimit(const std::vector<std::string>& parameters);
 Finding ModelMismatchFinding(const ModelMismatch& mismatch);
 /// `change` is that of (ln E, nu) without the pull of the outliers.
 Finding Outliers(const Eigen::Vector2d& change, const Estimate& estimate);

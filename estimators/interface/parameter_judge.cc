@@ -137,6 +137,28 @@ std::vector<std::string> Undetermined(const Estimate& estimate) {
   return undetermined;
 }
 
+Finding FindingOfUndetermined(const Estimate& estimate) {
+  const std::vector<std::string> undetermined = Undetermined(estimate);
+  if (AreAxesOnly(estimate)) {
+    return AxisUndetermined(undetermined);
+  }
+  const auto is_on_bound = [&](const ParameterEstimate& parameter) {
+    const auto& active = estimate.active_bounds;
+    return parameter.is_modulus && !IsDetermined(parameter) &&
+           std::any_of(active.begin(), active.end(),
+                       [&](const std::string& bound) {
+                         return bound.rfind(parameter.Label() + " (", 0) == 0;
+                       });
+  };
+  if (std::any_of(estimate.parameters.begin(), estimate.parameters.end(),
+                  is_on_bound)) {
+    return ParametersUndeterminedOnBounds(undetermined);
+  }
+  return AreUndeterminedByElements(estimate)
+             ? ParametersUndeterminedByElements(undetermined, estimate)
+             : ParametersUndetermined(undetermined);
+}
+
 // The errors of those that are determined stay, and of others how large they
 // are.
 void FailUndetermined(Estimate& estimate) {
@@ -144,9 +166,7 @@ void FailUndetermined(Estimate& estimate) {
   const Eigen::MatrixXd covariance = estimate.parameter_covariance;
   const ParameterErrors noise = estimate.error_budget.noise;
   const std::vector<AxisEstimate> axes = estimate.axes;
-  const std::vector<std::string> undetermined = Undetermined(estimate);
-  estimate.Fail(AreAxesOnly(estimate) ? AxisUndetermined(undetermined)
-                                      : ParametersUndetermined(undetermined));
+  estimate.Fail(FindingOfUndetermined(estimate));
   estimate.parameters = parameters;
   estimate.parameter_covariance = covariance;
   estimate.error_budget.noise = noise;
@@ -309,6 +329,7 @@ void JudgeBiasOfParameters(Estimate& estimate) {
 
 void EnterParameters(const Scene& scene, const FreeParameters& free,
                      const Eigen::VectorXd& values, Estimate& estimate) {
+  estimate.element_order = scene.mesh.Order();
   estimate.parameters = ParametersWithoutValues(scene, free.All());
   const Eigen::VectorXd units = free.All().UnitsOfErrors(values);
   for (Eigen::Index i = 0; i < values.size(); ++i) {
@@ -350,6 +371,27 @@ Eigen::VectorXd LargestErrorsOfVariables(const FreeParameters& free) {
                     : kLimits.largest_poisson_ratio_error;
   }
   return errors;
+}
+
+bool AreUndeterminedByElements(const Estimate& estimate) {
+  constexpr double kMostOfVariance = 0.5;
+  const ParameterErrors& missed = estimate.error_budget.discretization;
+  if (missed.size() != Eigen::Index(estimate.parameters.size())) {
+    return false;
+  }
+  bool is_any_undetermined = false;
+  for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
+    const ParameterEstimate& parameter = estimate.parameters[i];
+    if (parameter.is_known || IsDetermined(parameter)) {
+      continue;
+    }
+    const double error = *parameter.standard_error / parameter.ErrorUnit();
+    if (!(std::pow(missed(Eigen::Index(i)) / error, 2) > kMostOfVariance)) {
+      return false;
+    }
+    is_any_undetermined = true;
+  }
+  return is_any_undetermined;
 }
 
 void JudgeParameters(Estimate& estimate) {

@@ -44,6 +44,10 @@ void JudgeParameters(Estimate& estimate);
 /// The same of what is determined alone, where standard errors have grown.
 void JudgeDetermination(Estimate& estimate);
 
+/// Whether most of the errors of all parameters that are not determined is what
+/// the elements miss.
+bool AreUndeterminedByElements(const Estimate& estimate);
+
 /// Enters E and nu, their covariance and interval as the parameters.
 void DescribeOneIsotropicMaterial(const Scene& scene,
                                   const EstimatorOptions& options,

@@ -342,6 +342,13 @@ Result JudgeElements(const Evidence& evidence, const EstimatorOptions&,
              : ElementsTooCoarse(change, estimate);
 }
 
+Result JudgeRatiosAtLimit(const Evidence& evidence, const EstimatorOptions&,
+                          const Estimate& estimate) {
+  return estimate.is_model_in_doubt && !evidence.ratios_at_limit.empty()
+             ? RatiosAtLimit(evidence.ratios_at_limit)
+             : Result();
+}
+
 Result NoteSupportEnds(const Evidence& evidence, const EstimatorOptions&,
                        const Estimate& estimate) {
   return evidence.support_errors &&
@@ -390,8 +397,8 @@ const std::vector<Rule>& Rules() {
       // Whether the data determine it, and the model explains them.
       JudgeBoundExcess, JudgeYoungsModulusOnBound, JudgeLargeResidual,
       JudgeProfile, JudgePoissonRatioAtLimit, JudgePoissonRatioOnBound,
-      JudgeKnownPoissonRatio, JudgeElements, JudgeNoiseBias, JudgeWorkCheck,
-      JudgeCorrection, JudgeCertificate, NoteSolver};
+      JudgeKnownPoissonRatio, JudgeElements, JudgeRatiosAtLimit, JudgeNoiseBias,
+      JudgeWorkCheck, JudgeCorrection, JudgeCertificate, NoteSolver};
   return rules;
 }
 

@@ -57,7 +57,7 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
   evidence.search_message = fit.minimum->message;
   EnterParameters(scene, misfit.Free(), misfit.Free().ParametersAt(variables),
                   estimate);
-  NoteVariablesOnBounds(misfit.Free(), *fit.minimum, estimate);
+  NoteVariablesOnBounds(misfit.Free(), *fit.minimum, evidence, estimate);
   fit.errors =
       DescribeMinimum(scene, variables, finer, misfit, evidence, estimate);
   Eigen::VectorXd rows;
@@ -270,6 +270,15 @@ MaterialFit FitWithoutOutliers(const Scene& scene,
     fit = FitAll(WithoutOutliers(scene, outliers), options, descent,
                  fit.Variables());
     fit.estimate.work = fit.estimate.work + work;
+  }
+  const std::vector<Outlier> apart = OutliersApart(scene, observed, left_out);
+  if (apart != left_out) {
+    const Work work = fit.estimate.work;
+    left_out = apart;
+    fit = apart.empty() ? of_all
+                        : FitAll(WithoutOutliers(scene, apart), options,
+                                 descent, fit.Variables());
+    fit.estimate.work = apart.empty() ? work : fit.estimate.work + work;
   }
   fit.estimate.work = fit.estimate.work + of_suspects;
   Eigen::Vector2d by_outliers = LargestChange(of_all.estimate, fit.estimate);

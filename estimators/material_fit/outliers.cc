@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/poisson.hpp>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 
 #include "elastimate/core/algebra/node_sums.h"
+#include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/statistics/node_losses.h"
 #include "elastimate/estimators/statistics/residual_statistics.h"
@@ -19,6 +21,50 @@ namespace {
 constexpr double kProbability = 0.05;
 // Of a residual over the measurement, whose norm is 1: that of exact data.
 constexpr double kExactData = 1e-9;
+
+// Pairs of neighbours among the observed points, by their places.
+std::vector<std::array<Eigen::Index, 2>> Neighbours(
+    const Scene& scene, const ObservedDisplacements& observed) {
+  std::vector<std::array<Eigen::Index, 2>> pairs =
+      observed.NeighbouringPoints();
+  const NodeGraph graph(scene.mesh);
+  const std::vector<ObservedDisplacements::Point>& points = observed.Points();
+  std::vector<Eigen::Index> place_of(scene.mesh.NumNodes());
+  for (std::size_t first = 0; first < points.size();) {
+    std::fill(place_of.begin(), place_of.end(), -1);
+    const Eigen::Index load_case = points[first].load_case;
+    for (; first < points.size() && points[first].load_case == load_case;
+         ++first) {
+      if (points[first].index < scene.mesh.NumNodes()) {
+        place_of[points[first].index] = Eigen::Index(first);
+      }
+    }
+    for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
+      for (Eigen::Index k = graph.start[node] + 1; k < graph.start[node + 1];
+           ++k) {
+        if (place_of[node] >= 0 && place_of[graph.row[k]] >= 0) {
+          pairs.push_back({place_of[node], place_of[graph.row[k]]});
+        }
+      }
+    }
+  }
+  return pairs;
+}
+
+// Whether so many of the pairs of neighbours being outliers is more than
+// chance.
+bool AreMoreThanChance(Eigen::Index num_of_outliers, std::size_t num_pairs,
+                       std::size_t num_outliers, std::size_t num_points) {
+  constexpr double kSignificance = 1e-3;
+  const auto m = static_cast<double>(num_outliers);
+  const auto n = static_cast<double>(num_points);
+  const double expected =
+      static_cast<double>(num_pairs) * m * (m - 1) / (n * (n - 1));
+  return expected > 0 &&
+         boost::math::cdf(boost::math::complement(
+             boost::math::poisson(expected),
+             static_cast<double>(num_of_outliers - 1))) < kSignificance;
+}
 
 }  // namespace
 
@@ -92,6 +138,44 @@ std::vector<Outlier> SuspectedSupports(const Scene& scene,
     }
   }
   return suspects;
+}
+
+std::vector<Outlier> OutliersApart(const Scene& scene,
+                                   const ObservedDisplacements& observed,
+                                   const std::vector<Outlier>& outliers) {
+  const std::vector<ObservedDisplacements::Point>& points = observed.Points();
+  std::vector<char> is_outlier(points.size(), 0);
+  const auto outlier_at = [&](const ObservedDisplacements::Point& point) {
+    const Eigen::Index number = point.index - scene.mesh.NumNodes();
+    return Outlier{point.load_case, number < 0 ? point.index : number,
+                   number >= 0};
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    is_outlier[i] = std::find(outliers.begin(), outliers.end(),
+                              outlier_at(points[i])) != outliers.end();
+  }
+  const std::vector<std::array<Eigen::Index, 2>> pairs =
+      Neighbours(scene, observed);
+  Eigen::Index num_of_outliers = 0;
+  std::vector<char> has_neighbour(points.size(), 0);
+  for (const auto& [a, b] : pairs) {
+    if (is_outlier[a] != 0 && is_outlier[b] != 0) {
+      ++num_of_outliers;
+      has_neighbour[a] = has_neighbour[b] = 1;
+    }
+  }
+  if (num_of_outliers == 0 ||
+      !AreMoreThanChance(num_of_outliers, pairs.size(), outliers.size(),
+                         points.size())) {
+    return outliers;
+  }
+  std::vector<Outlier> apart;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (is_outlier[i] != 0 && has_neighbour[i] == 0) {
+      apart.push_back(outlier_at(points[i]));
+    }
+  }
+  return apart;
 }
 
 Scene WithoutOutliers(const Scene& scene,

@@ -37,6 +37,15 @@ class OutlierSearch {
 std::vector<Outlier> SuspectedSupports(const Scene& scene,
                                        const std::vector<Outlier>& outliers);
 
+/// Those of some outliers that lie apart: noise and mistakes of a measurement
+/// strike here and there, what a model lacks lies side by side.  All of them,
+/// unless more pairs are neighbours (nodes of one element, points as by
+/// NeighbouringPoints) than chance explains in one measurement of a thousand;
+/// then those without a neighbour among them.  O(num_elements + num_points).
+std::vector<Outlier> OutliersApart(const Scene& scene,
+                                   const ObservedDisplacements& observed,
+                                   const std::vector<Outlier>& outliers);
+
 /// The scene without what was measured at these points.
 Scene WithoutOutliers(const Scene& scene, const std::vector<Outlier>& outliers);
 

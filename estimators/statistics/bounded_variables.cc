@@ -89,8 +89,12 @@ BoundedMinimum MinimizeOverVariables(const ResidualFunction& residual,
   return minimum;
 }
 
+// How near its range ends.
+constexpr double kNearLimit = 1e-8;
+
 void NoteVariablesOnBounds(const FreeParameters& free,
-                           const BoundedMinimum& minimum, Estimate& estimate) {
+                           const BoundedMinimum& minimum, Evidence& evidence,
+                           Estimate& estimate) {
   std::vector<std::string> names;
   for (Eigen::Index i = 0; i < free.Size(); ++i) {
     if (minimum.on_bound[i] != Side::kNone) {
@@ -100,6 +104,11 @@ void NoteVariablesOnBounds(const FreeParameters& free,
       estimate.active_bounds.push_back(
           names.back() +
           (minimum.on_bound[i] == Side::kLower ? " (lower)" : " (upper)"));
+      if (parameter.name == "poisson_ratio" &&
+          (parameter.value < kSmallestPoissonRatio + kNearLimit ||
+           parameter.value > kLargestPoissonRatio - kNearLimit)) {
+        evidence.ratios_at_limit.push_back(parameter.Label());
+      }
     }
   }
   if (!names.empty()) {

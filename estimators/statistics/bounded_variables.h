@@ -39,9 +39,11 @@ BoundedMinimum MinimizeOverVariables(const ResidualFunction& residual,
                                      const ceres::Solver::Options& options);
 
 /// Enters the bounds that hold the minimum into the estimate, whose parameters
-/// are entered, with a warning.
+/// are entered, with a warning, and which are the ends of the range of a
+/// Poisson's ratio.
 void NoteVariablesOnBounds(const FreeParameters& free,
-                           const BoundedMinimum& minimum, Estimate& estimate);
+                           const BoundedMinimum& minimum, Evidence& evidence,
+                           Estimate& estimate);
 
 }  // namespace elastimate
 
