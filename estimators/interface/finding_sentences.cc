@@ -332,8 +332,7 @@ Finding ParametersUndeterminedByElements(
 Finding ParametersUndeterminedOnBounds(
     const std::vector<std::string>& parameters) {
   return Error(FindingCode::kParametersUndetermined,
-               "on the bounds that hold them, the data do not determine " +
-                   FirstOf(parameters),
+               "on bounds, the data do not determine " + FirstOf(parameters),
                "check the bounds, which the data may contradict");
 }
 
@@ -379,6 +378,14 @@ Finding RegionsMayDiffer(const std::vector<std::string>& differences,
           "regions that became one material may differ by up to " +
               FirstOf(differences) + " (95 %)",
           "use --regions=each for what is known of each of them"};
+}
+
+Finding RegionMayBeAnother(const std::string& region,
+                           const std::vector<std::string>& differences) {
+  return Warning(FindingCode::kRegionsMayDiffer,
+                 region + " may be off the material it became part of by " +
+                     FirstOf(differences) + " (95 %)",
+                 "use --regions=each for what is known of it");
 }
 
 Finding RegionsNotCompared(const std::vector<std::string>& regions) {
@@ -514,11 +521,15 @@ Finding ModelDoesNotFitAtLimit() {
 }
 
 Finding RatiosAtLimit(const std::vector<std::string>& parameters) {
-  return Error(FindingCode::kPoissonRatioAtLimit,
-               "the data pull " + FirstOf(parameters) +
-                   " to the end of its range and leave a residual that is not "
-                   "noise",
-               kCheckTheModel);
+  return Error(
+      FindingCode::kPoissonRatioAtLimit,
+      "the data pull " + parameters[0] +
+          (parameters.size() == 1
+               ? ""
+               : " and " + std::to_string(parameters.size() - 1) + " more") +
+          " to the end of its range and leave a residual that is not "
+          "noise",
+      kCheckTheModel);
 }
 
 Finding ModelMismatchFinding(const ModelMismatch& mismatch) {

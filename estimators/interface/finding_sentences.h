@@ -80,6 +80,9 @@ Finding AxisTurned(double angle, const std::string& region, double change);
 Finding RegionsMayDiffer(const std::vector<std::string>& differences,
                          Severity severity);
 /// "region 3".
+/// The same of one of them, by more than the errors of the material hold.
+Finding RegionMayBeAnother(const std::string& region,
+                           const std::vector<std::string>& differences);
 Finding RegionsNotCompared(const std::vector<std::string>& regions);
 /// By how much their Bayesian information criteria differ.
 Finding LawsFitAlike(const std::string& chosen, const std::string& other,

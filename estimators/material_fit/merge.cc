@@ -7,6 +7,7 @@
 
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
+#include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
 #include "elastimate/estimators/material_fit/material_fit.h"
 #include "elastimate/estimators/material_fit/outliers.h"
@@ -144,6 +145,37 @@ void EnterOneIsotropicMaterial(Estimate& estimate) {
   }
 }
 
+// The region that may be farthest off its material, in errors that this has.
+struct FarthestRegion {
+  std::vector<int> regions;
+  double in_errors = 0;
+  /// 95 %, of all parameters, zero for those of other materials.
+  Eigen::VectorXd differences;
+
+  void Look(const std::vector<int>& regions_of_member,
+            const Eigen::VectorXd& errors, Eigen::Index first,
+            const Estimate& estimate) {
+    double farthest = 0;
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(
+        static_cast<Eigen::Index>(estimate.parameters.size()));
+    for (Eigen::Index k = 0, i = first; k < errors.size(); ++i) {
+      const ParameterEstimate& parameter = estimate.parameters[std::size_t(i)];
+      if (parameter.is_known) {
+        continue;
+      }
+      all(i) = kTwoSidedErrors * errors(k);
+      if (parameter.standard_error) {
+        farthest = std::max(farthest, errors(k) * parameter.ErrorUnit() /
+                                          *parameter.standard_error);
+      }
+      ++k;
+    }
+    if (farthest > in_errors) {
+      *this = {regions_of_member, farthest, all};
+    }
+  }
+};
+
 // "3 % in E", of the largest of the parameters of one symbol.
 std::vector<std::string> DifferencesInWords(
     const Estimate& estimate, const Eigen::VectorXd& differences) {
@@ -198,9 +230,11 @@ MaterialMerge MergeMaterials(const Scene& scene,
   const FreeParameters free(scene, options);
   const VariableEstimate variables = {apart.errors.corrected,
                                       apart.errors.total};
-  const MergePlan plan = PlanMerges(
-      scene.materials, free.All(), LargestErrorsOfVariables(free), variables,
-      static_cast<double>(ObservedDisplacements(scene).Size()));
+  const auto num_observations =
+      static_cast<double>(ObservedDisplacements(scene).Size());
+  const MergePlan plan =
+      PlanMerges(scene.materials, free.All(), LargestErrorsOfVariables(free),
+                 variables, num_observations);
   const std::size_t num_taken =
       NumBorneOut(plan, WithoutOutliers(scene, apart.estimate.outliers),
                   options, free.All(), variables, merge.work);
@@ -215,8 +249,14 @@ MaterialMerge MergeMaterials(const Scene& scene,
   if (num_taken > 0) {
     const MaterialGroups& groups = plan.path[num_taken - 1].groups;
     merge.materials = MaterialsOfGroups(scene.materials, groups);
-    merge.spreads =
-        SpreadOfMembers(groups, free.All(), variables, apart.errors.of_noise);
+    merge.spreads = SpreadOfMembers(groups, free.All(), variables,
+                                    apart.errors.of_noise, num_observations);
+    for (const std::vector<std::size_t>& group : groups) {
+      merge.members.emplace_back();
+      for (const std::size_t member : group) {
+        merge.members.back().push_back(scene.materials[member].regions);
+      }
+    }
   }
   return merge;
 }
@@ -237,8 +277,10 @@ void EnterMerge(const MaterialMerge& merge, Estimate& estimate) {
   Eigen::Index place = 0;
   Eigen::VectorXd differences =
       Eigen::VectorXd::Zero(Eigen::Index(estimate.parameters.size()));
+  FarthestRegion farthest;
   for (std::size_t i = 0; i < merge.spreads.size(); ++i) {
     const MemberSpread& spread = merge.spreads[i];
+    const Eigen::Index first = place;
     for (Eigen::Index k = 0; k < spread.variance.size(); ++k) {
       while (estimate.parameters[std::size_t(place)].is_known) {
         ++place;
@@ -247,6 +289,10 @@ void EnterMerge(const MaterialMerge& merge, Estimate& estimate) {
       AddVariance(spread.variance(k), place, estimate);
       ++place;
     }
+    for (std::size_t j = 0; j < merge.members[i].size(); ++j) {
+      farthest.Look(merge.members[i][j], spread.errors.col(Eigen::Index(j)),
+                    first, estimate);
+    }
     if (i < estimate.materials.size() && spread.largest_differences.any()) {
       estimate.materials[i].largest_differences = {
           spread.largest_differences.begin(), spread.largest_differences.end()};
@@ -254,6 +300,13 @@ void EnterMerge(const MaterialMerge& merge, Estimate& estimate) {
   }
   EnterOneIsotropicMaterial(estimate);
   JudgeDetermination(estimate);
+  constexpr double kManyErrors = 3;
+  if (farthest.in_errors > kManyErrors) {
+    estimate.Add(
+        RegionMayBeAnother(RegionsLabel(farthest.regions),
+                           DifferencesInWords(estimate, farthest.differences)));
+    return;
+  }
   const std::vector<std::string> words =
       DifferencesInWords(estimate, differences);
   if (!words.empty()) {

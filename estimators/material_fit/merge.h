@@ -18,6 +18,8 @@ struct MaterialMerge {
   std::vector<RegionMerge> path;
   /// Of each of the materials.
   std::vector<MemberSpread> spreads;
+  /// The regions of the members of each of them.
+  std::vector<std::vector<std::vector<int>>> members;
   /// The regions of materials that are not determined, and were not compared.
   std::vector<std::vector<int>> not_compared;
   /// Why nothing could be merged; empty where it was looked at.

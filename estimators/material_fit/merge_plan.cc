@@ -176,6 +176,36 @@ double LargestDifference(const VariableEstimate& estimate, Eigen::Index i,
          kTwoSidedErrors * std::sqrt(std::max(variance, 0.0));
 }
 
+// MemberSpread::errors of the member at `place` of a group, squared.
+Eigen::VectorXd SquaredErrorsOfMember(
+    const std::vector<std::size_t>& group, std::size_t place,
+    const std::vector<std::vector<Eigen::Index>>& variables,
+    const VariableEstimate& estimate, double num_observations) {
+  State state = {{}, {}, estimate};
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    const std::size_t member = group[(place + 1 + i) % group.size()];
+    state.groups.push_back({member});
+    state.variables.push_back(variables[member]);
+  }
+  while (state.groups.size() > 2) {
+    state.Merge(0, 1);
+  }
+  const std::vector<Eigen::Index>& own = variables[group[place]];
+  const double information =
+      static_cast<double>(own.size()) * std::log(num_observations);
+  const double apart =
+      1 / (1 + std::exp((information - state.ChiSquare(0, 1)) / 2));
+  state.Merge(0, 1);
+  const Eigen::ArrayXd together =
+      state.estimate.covariance.diagonal()(state.variables[0]).array();
+  const Eigen::ArrayXd alone =
+      estimate.covariance.diagonal()(own).array() +
+      (estimate.variables(own) - state.estimate.variables(state.variables[0]))
+          .array()
+          .square();
+  return (1 - apart) * together + apart * alone;
+}
+
 }  // namespace
 
 MergePlan PlanMerges(const std::vector<Material>& materials,
@@ -230,7 +260,8 @@ double DistanceOfGroups(const MaterialGroups& groups,
 
 std::vector<MemberSpread> SpreadOfMembers(
     const MaterialGroups& groups, const MaterialParameters& parameters,
-    const VariableEstimate& estimate, const Eigen::MatrixXd& noise_covariance) {
+    const VariableEstimate& estimate, const Eigen::MatrixXd& noise_covariance,
+    double num_observations) {
   const std::vector<std::vector<Eigen::Index>> variables =
       VariablesOfMaterials(parameters);
   const Constraints constraints(groups, variables);
@@ -251,8 +282,16 @@ std::vector<MemberSpread> SpreadOfMembers(
   std::vector<MemberSpread> spreads;
   for (const std::vector<std::size_t>& group : groups) {
     const auto num_variables = Eigen::Index(variables[group[0]].size());
+    const auto num_members = Eigen::Index(group.size());
     MemberSpread spread = {Eigen::VectorXd::Zero(num_variables),
-                           Eigen::VectorXd::Zero(num_variables)};
+                           Eigen::VectorXd::Zero(num_variables),
+                           Eigen::MatrixXd::Zero(num_variables, num_members)};
+    for (Eigen::Index i = 0; num_members > 1 && i < num_members; ++i) {
+      spread.errors.col(i) =
+          SquaredErrorsOfMember(group, std::size_t(i), variables, estimate,
+                                num_observations)
+              .cwiseSqrt();
+    }
     for (Eigen::Index k = 0; k < num_variables; ++k) {
       double sum = 0;
       double sum_of_weights = 0;

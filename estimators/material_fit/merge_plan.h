@@ -86,12 +86,24 @@ struct MemberSpread {
   Eigen::VectorXd variance;
   /// Of two members, |x_i - x_j| and 1.96 of its errors.
   Eigen::VectorXd largest_differences;
+  /// The error of each member's variables where those of the group stand for
+  /// it, k x num_members: the root of
+  ///
+  ///   (1 - w) C + w (C_ii + (x_i - x)^2),   w = 1 / (1 + exp((k ln n - d^2) /
+  ///   2)),
+  ///
+  /// in which w is the probability that it is another than the rest of them,
+  /// at the distance d from it, by the Bayesian information criterion [Hoeting
+  /// et al., Statist. Sci. 14 (1999) 382].
+  Eigen::MatrixXd errors;
 };
 
-/// That of each group; zeros for a single member.  O(p^3).
+/// That of each group by n observations; zeros for a single member.
+/// O(num_members^2 p^2 k + p^3).
 std::vector<MemberSpread> SpreadOfMembers(
     const MaterialGroups& groups, const MaterialParameters& parameters,
-    const VariableEstimate& estimate, const Eigen::MatrixXd& noise_covariance);
+    const VariableEstimate& estimate, const Eigen::MatrixXd& noise_covariance,
+    double num_observations);
 
 /// One material for each group; none where one of all is isotropic, and nothing
 /// of it given.

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
+#include "elastimate/estimators/interface/parameter_judge.h"
+
 namespace elastimate {
 namespace {
 
@@ -43,6 +47,21 @@ TEST(Judge, TakesTheFirstErrorForTheReason) {
   estimate = Judged(evidence);
   EXPECT_EQ(estimate.status, Status::kUnphysical);
   EXPECT_FALSE(estimate.Has(FindingCode::kSearchFailed));
+}
+
+// As of one material, a ratio that a wrong model pulls to its limit is no
+// estimate; a material may be that of a limit.
+TEST(Judge, RatiosAtTheirLimitNeedAModelThatFits) {
+  Evidence evidence;
+  evidence.ratios_at_limit = {"nu of region 1"};
+  EXPECT_TRUE(Judged(evidence).IsUsable());
+  Estimate estimate = Measured();
+  estimate.is_model_in_doubt = true;
+  Judge({}, {}, estimate);
+  EXPECT_TRUE(estimate.IsUsable());
+  Judge(evidence, {}, estimate);
+  EXPECT_FALSE(estimate.IsUsable());
+  EXPECT_TRUE(estimate.Has(FindingCode::kPoissonRatioAtLimit));
 }
 
 TEST(Judge, SaysTheSameWhenAskedAgain) {
@@ -141,6 +160,50 @@ TEST(Judge, ALargeResidualThatIsSmoothIsNoNoise) {
   Judge(evidence, {}, estimate);
   EXPECT_TRUE(estimate.IsUsable());
   EXPECT_TRUE(estimate.Has(FindingCode::kLargeResidual));
+}
+
+// Two materials, of the second of which too little is known.
+Estimate OfTwoMaterials() {
+  Estimate estimate = Measured();
+  estimate.Accept();
+  estimate.parameters.resize(2);
+  for (int i = 0; i < 2; ++i) {
+    ParameterEstimate& parameter = estimate.parameters[std::size_t(i)];
+    parameter.symbol = "E";
+    parameter.value = 100;
+    parameter.is_modulus = true;
+    parameter.regions = {i + 1};
+  }
+  estimate.parameter_covariance =
+      Eigen::Vector2d(1, 60 * 60).asDiagonal().toDenseMatrix();
+  estimate.error_budget.noise = Eigen::Vector2d(0.01, 0.1);
+  return estimate;
+}
+
+// What is to be done depends on what the errors come from.
+TEST(JudgeParameters, SaysWhatLeavesThemUndetermined) {
+  Estimate by_data = OfTwoMaterials();
+  by_data.error_budget.discretization = Eigen::Vector2d(0, 0.1);
+  JudgeParameters(by_data);
+  EXPECT_EQ(by_data.message,
+            "the data do not determine E of region 2 (60 %); give what is "
+            "known of them, join regions, or add load cases");
+  EXPECT_FALSE(AreUndeterminedByElements(by_data));
+
+  Estimate by_elements = OfTwoMaterials();
+  by_elements.element_order = 2;
+  by_elements.error_budget.discretization = Eigen::Vector2d(0, 0.59);
+  JudgeParameters(by_elements);
+  EXPECT_EQ(by_elements.message,
+            "elements this coarse do not determine E of region 2 (60 %); "
+            "refine the mesh");
+  EXPECT_TRUE(AreUndeterminedByElements(by_elements));
+
+  Estimate on_bound = OfTwoMaterials();
+  on_bound.active_bounds = {"E of region 2 (lower)"};
+  JudgeParameters(on_bound);
+  EXPECT_NE(on_bound.message.find("check the bounds"), std::string::npos)
+      << on_bound.message;
 }
 
 }  // namespace

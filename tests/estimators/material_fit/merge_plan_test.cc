@@ -148,13 +148,24 @@ TEST(MergePlan, TellsHowMembersSpread) {
   const Eigen::MatrixXd covariance =
       Eigen::VectorXd::Constant(6, 1e-4).asDiagonal();
   const std::vector<MemberSpread> spreads = SpreadOfMembers(
-      {{0, 1}, {2}}, parameters, {x, 4 * covariance}, covariance);
+      {{0, 1}, {2}}, parameters, {x, 4 * covariance}, covariance, 100);
   // Each is 0.05 from the mean, with half of the variance of its noise.
   EXPECT_NEAR(spreads[0].variance(0), 0.05 * 0.05 - 0.5e-4, 1e-12);
   EXPECT_EQ(spreads[0].variance(1), 0);
   EXPECT_NEAR(spreads[0].largest_differences(0), 0.1 + 1.96 * std::sqrt(8e-4),
               1e-12);
   EXPECT_NEAR(spreads[0].largest_differences(1), 1.96 * std::sqrt(8e-4), 1e-12);
+  // d^2 = 0.1^2 / 8e-4, of two variables.
+  const double apart =
+      1 / (1 + std::exp((2 * std::log(100) - 0.1 * 0.1 / 8e-4) / 2));
+  EXPECT_GT(apart, 0.5);
+  for (const Eigen::Index member : {0, 1}) {
+    EXPECT_NEAR(spreads[0].errors(0, member),
+                std::sqrt((1 - apart) * 2e-4 + apart * (4e-4 + 0.05 * 0.05)),
+                1e-12);
+    EXPECT_NEAR(spreads[0].errors(1, member),
+                std::sqrt((1 - apart) * 2e-4 + apart * 4e-4), 1e-12);
+  }
   EXPECT_EQ(spreads[1].variance, Eigen::Vector2d::Zero());
   EXPECT_EQ(spreads[1].largest_differences, Eigen::Vector2d::Zero());
 }
