@@ -1,12 +1,14 @@
 #include "elastimate/core/equilibrium/hierarchical_error.h"
 
+#include <Eigen/LU>
 #include <vector>
 
-#include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/materials/elasticity.h"
 #include "elastimate/core/mesh/shape_functions.h"
+#include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/core/scene/simplicial_scene.h"
 
 namespace elastimate {
 namespace {
@@ -14,13 +16,35 @@ namespace {
 constexpr int kMostIterations = 150;
 // The energy that so many steps added tells what the next ones will add.
 constexpr int kDelay = 4;
-// Of the energy of a response: what linear elements miss by rounding alone.
+// Of the energy of a response: what elements miss by rounding alone.
 constexpr double kRoundingEnergy = 1e-20;
 
 // Sums of the products of columns.
 Eigen::RowVectorXd ColumnProducts(const Eigen::MatrixXd& a,
                                   const Eigen::MatrixXd& b) {
   return a.cwiseProduct(b).colwise().sum();
+}
+
+// Those of blocks side by side and the rows from `first` on.
+template <int kDimension>
+void AddBlockProducts(const Eigen::MatrixXd& blocks, const Eigen::MatrixXd& x,
+                      Eigen::Index first, Eigen::MatrixXd& sum) {
+  for (Eigen::Index k = 0; k < x.cols(); ++k) {
+    for (Eigen::Index i = 0; i < blocks.cols(); i += kDimension) {
+      sum.col(k).segment<kDimension>(first + i).noalias() +=
+          blocks.block<kDimension, kDimension>(0, i) *
+          x.col(k).segment<kDimension>(first + i);
+    }
+  }
+}
+
+template <int kDimension>
+void InvertBlocks(Eigen::MatrixXd& blocks) {
+  for (Eigen::Index i = 0; i < blocks.cols(); i += kDimension) {
+    auto block = blocks.block<kDimension, kDimension>(0, i);
+    const Eigen::Matrix<double, kDimension, kDimension> copy = block;
+    block = copy.inverse();
+  }
 }
 
 // Zero where a column is exact and has no direction left.
@@ -32,16 +56,18 @@ Eigen::RowVectorXd Quotients(const Eigen::RowVectorXd& of,
 }  // namespace
 
 HierarchicalError::HierarchicalError(const Scene& scene)
-    : quadratic_(QuadraticScene(scene)),
-      mid_edges_(quadratic_.mesh),
-      stiffness_(quadratic_.mesh),
-      is_free_((!quadratic_.supports.held).cast<double>().matrix().reshaped()),
-      force_(AssembleLoadCases(quadratic_)) {}
+    : finer_(QuadraticScene(SimplicialScene(scene))),
+      nodes_(scene.mesh, finer_.mesh),
+      stiffness_(finer_.mesh),
+      is_free_((!finer_.supports.held).cast<double>().matrix().reshaped()),
+      held_(HeldDisplacement(finer_.supports)),
+      force_(AssembleLoadCases(finer_)) {}
 
 std::optional<Eigen::MatrixXd> HierarchicalError::Find(
     double poisson_ratio, const Eigen::MatrixXd& responses,
-    StiffnessSolver& linear) {
-  const Eigen::MatrixXd start = mid_edges_.Interpolate(responses);
+    StiffnessSolver& solver) {
+  Eigen::MatrixXd start = is_free_.asDiagonal() * nodes_.Interpolate(responses);
+  start.rightCols(responses.cols() - force_.cols()).colwise() += held_;
   Eigen::MatrixXd product = Multiply(poisson_ratio, start);
   // Of all rows: the forces on the free ones are in balance.
   const Eigen::RowVectorXd rounding =
@@ -57,7 +83,7 @@ std::optional<Eigen::MatrixXd> HierarchicalError::Find(
   std::vector<Eigen::RowVectorXd> energies = {
       Eigen::RowVectorXd::Zero(start.cols())};
   for (int step = 0; step < kMostIterations; ++step) {
-    const Eigen::MatrixXd z = Precondition(inverses, residual, linear);
+    const Eigen::MatrixXd z = Precondition(inverses, residual, solver);
     const Eigen::RowVectorXd rz = ColumnProducts(residual, z);
     if ((rz.array() <= rounding.array()).all()) {
       return Eigen::MatrixXd(error.topRows(responses.rows()));
@@ -93,25 +119,25 @@ Eigen::MatrixXd HierarchicalError::Multiply(double poisson_ratio,
 
 Eigen::MatrixXd HierarchicalError::Precondition(const Eigen::MatrixXd& inverses,
                                                 const Eigen::MatrixXd& residual,
-                                                StiffnessSolver& linear) const {
-  const int dimension = quadratic_.mesh.Dimension();
-  Eigen::MatrixXd z = mid_edges_.Interpolate(
-      linear.Solve(mid_edges_.Restrict(residual), kTolerance));
-  for (Eigen::Index i = 0; i < mid_edges_.Ends().cols(); ++i) {
-    const Eigen::Index row = dimension * (mid_edges_.NumVertices() + i);
-    z.middleRows(row, dimension) +=
-        inverses.middleCols(dimension * i, dimension) *
-        residual.middleRows(row, dimension);
+                                                StiffnessSolver& solver) const {
+  const int dimension = finer_.mesh.Dimension();
+  Eigen::MatrixXd z =
+      nodes_.Interpolate(solver.Solve(nodes_.Restrict(residual), kTolerance));
+  const Eigen::Index first = dimension * nodes_.NumNodes();
+  if (dimension == 3) {
+    AddBlockProducts<3>(inverses, residual, first, z);
+  } else {
+    AddBlockProducts<2>(inverses, residual, first, z);
   }
   return is_free_.asDiagonal() * z;
 }
 
 Eigen::MatrixXd HierarchicalError::InverseBlocks(double poisson_ratio) const {
-  const Mesh& mesh = quadratic_.mesh;
+  const Mesh& mesh = finer_.mesh;
   const int dimension = mesh.Dimension();
   const double shear_share = ShearShareOfJ(mesh.section.model);
   Eigen::MatrixXd blocks =
-      Eigen::MatrixXd::Zero(dimension, dimension * mid_edges_.Ends().cols());
+      Eigen::MatrixXd::Zero(dimension, dimension * nodes_.NumMidEdges());
   VisitElementKind(mesh.kind, [&](auto kind) {
     for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
       VisitPoints<kind>(
@@ -125,16 +151,17 @@ Eigen::MatrixXd HierarchicalError::InverseBlocks(double poisson_ratio) const {
               auto h = (0.5 * outer).eval();
               h.diagonal().array() += 0.5 * gradient.squaredNorm();
               blocks.middleCols(
-                  dimension * (mesh.elements(i, e) - mid_edges_.NumVertices()),
+                  dimension * (mesh.elements(i, e) - nodes_.NumNodes()),
                   dimension) += point.volume *
                                 (h + poisson_ratio * (outer - shear_share * h));
             }
           });
     }
   });
-  for (Eigen::Index i = 0; i < mid_edges_.Ends().cols(); ++i) {
-    auto block = blocks.middleCols(dimension * i, dimension);
-    block = Inverse(block);
+  if (dimension == 3) {
+    InvertBlocks<3>(blocks);
+  } else {
+    InvertBlocks<2>(blocks);
   }
   return blocks;
 }
