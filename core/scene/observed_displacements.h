@@ -42,6 +42,9 @@ class ObservedDisplacements {
   /// with the normalisation as it was.
   void Remeasure(const Scene& scene);
 
+  /// Takes these rows for what was measured.
+  void SetMeasured(const Eigen::VectorXd& rows) { measured_ = rows; }
+
   int Dimension() const { return dimension_; }
   Eigen::Index NumLoadCases() const {
     return static_cast<Eigen::Index>(rows_.size());

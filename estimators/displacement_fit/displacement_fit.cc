@@ -201,18 +201,16 @@ class FitDescription {
     }
   }
 
-  // Of a row of the residual of weight 1, by the standard error of nu; empty
-  // when there is none.
-  std::optional<double> RowVariance() const {
-    if (IsAtPhysicalLimit()) {
-      return PoissonRatioVarianceOffLimit() /
-             LastOfInverse(sums_.weighted_gram, FreeOffLimit());
+  FitStatistics Statistics() const {
+    FitStatistics statistics;
+    statistics.row_variance = RowVariance();
+    statistics.rest = BoundedNorm(observed_, Rest());
+    if (elements_ && elements_->Correction()) {
+      statistics.share_of_finer = elements_->Share();
+      statistics.correction(free_) = *elements_->Correction();
+      statistics.excess_of_finer = ExcessOfFiner();
     }
-    if (!IsPoissonRatioFree()) {
-      return std::nullopt;
-    }
-    return estimate_.covariance(1, 1) /
-           LastOfInverse(sums_.weighted_gram, free_);
+    return statistics;
   }
 
   void MeasureYoungsModulusOnBound() {
@@ -248,11 +246,41 @@ class FitDescription {
   }
 
  private:
+  // Of twice the change that is seen beside E, and what noise hides.
+  double ExcessOfFiner() const {
+    constexpr double kShare = 2;
+    constexpr double kNoise = 3;
+    const Eigen::VectorXd by_log_youngs_modulus = fit_.sensitivities.col(0);
+    const Eigen::VectorXd& change = *fit_.element_change;
+    const Eigen::VectorXd visible =
+        change -
+        by_log_youngs_modulus * (InnerProduct(by_log_youngs_modulus, change) /
+                                 SquaredNorm(by_log_youngs_modulus));
+    return std::pow(
+        kShare * Norm(visible) + kNoise * Norm(fit_.residual) /
+                                     std::sqrt(double(fit_.residual.size())),
+        2);
+  }
+
+  // Of a row of the residual of weight 1, by the standard error of nu; empty
+  // when there is none.
+  std::optional<double> RowVariance() const {
+    if (IsAtPhysicalLimit()) {
+      return PoissonRatioVarianceOffLimit() /
+             LastOfInverse(sums_.weighted_gram, FreeOffLimit());
+    }
+    if (!IsPoissonRatioFree()) {
+      return std::nullopt;
+    }
+    return estimate_.covariance(1, 1) /
+           LastOfInverse(sums_.weighted_gram, free_);
+  }
+
   ElementErrors ElementsOf(const std::vector<Eigen::Index>& parameters,
                            const Scene& scene, const NodeGraph& graph) const {
     std::optional<RowChange> change;
     if (fit_.element_change) {
-      change = {*fit_.element_change, scene.mesh.Order() == 1, {}};
+      change = {*fit_.element_change, {}, fit_.taken};
     }
     return {scene,
             graph,
@@ -267,7 +295,7 @@ class FitDescription {
   Eigen::MatrixXd ElementCovariance(
       const ElementErrors& elements,
       const std::vector<Eigen::Index>& parameters) const {
-    return elements.CovarianceOfChange(smooth_.most) +
+    return elements.CovarianceOfChange() +
            elements.MissedSquareSum(smooth_.most) *
                Inverse(Gram()(parameters, parameters));
   }
@@ -366,7 +394,16 @@ class FitDescription {
 
 }  // namespace
 
-void CorrectForElements(const Evidence& evidence, Estimate& estimate) {
+IsotropicElasticity Corrected(const IsotropicElasticity& elasticity,
+                              const Eigen::Vector2d& correction) {
+  const double nu = elasticity.poisson_ratio;
+  return {elasticity.youngs_modulus * std::exp(correction(0)),
+          nu + std::clamp(correction(1), -(1 + nu) / 2, (0.5 - nu) / 2)};
+}
+
+void CorrectForElements(const Evidence& evidence,
+                        const IsotropicElasticity& uncorrected,
+                        Estimate& estimate) {
   if (!estimate.IsUsable()) {
     return;
   }
@@ -384,12 +421,12 @@ void CorrectForElements(const Evidence& evidence, Estimate& estimate) {
   if (!evidence.element_correction) {
     return;
   }
-  const double ratio = std::exp((*evidence.element_correction)(0));
-  // Half of the way to a limit at most.
-  const double change = std::clamp((*evidence.element_correction)(1),
-                                   -(1 + nu) / 2, (0.5 - nu) / 2);
-  estimate.elasticity.youngs_modulus *= ratio;
-  nu += change;
+  const IsotropicElasticity corrected =
+      Corrected(estimate.elasticity, *evidence.element_correction);
+  const double ratio =
+      corrected.youngs_modulus / estimate.elasticity.youngs_modulus;
+  const double change = corrected.poisson_ratio - nu;
+  estimate.elasticity = corrected;
   const Eigen::Vector2d scale(ratio, 1);
   estimate.covariance =
       scale.asDiagonal() * estimate.covariance * scale.asDiagonal();
@@ -399,33 +436,32 @@ void CorrectForElements(const Evidence& evidence, Estimate& estimate) {
     lower = lower == -1 ? -1 : std::max(lower + change, -1.0);
     upper = upper == 0.5 ? 0.5 : std::min(upper + change, 0.5);
   }
-  estimate.discretization_correction = {ratio - 1, change};
+  estimate.discretization_correction = {
+      estimate.elasticity.youngs_modulus / uncorrected.youngs_modulus - 1,
+      nu - uncorrected.poisson_ratio};
 }
 
-std::optional<double> DescribeDisplacementFit(
+FitStatistics DescribeDisplacementFit(
     const Scene& scene, const NodeGraph& graph, const EstimatorOptions& options,
     const ObservedDisplacements& observed, const DisplacementFit& fit,
     const NodeLosses& losses, Evidence& evidence, Estimate& estimate) {
   FitDescription description(options, observed, fit, losses, evidence,
                              estimate);
-  if (description.FindFreeDirection()) {
-    return std::nullopt;
-  }
-  if (description.AreTooFew()) {
-    return std::nullopt;
+  if (description.FindFreeDirection() || description.AreTooFew()) {
+    return {};
   }
   description.MeasureElements(scene, graph);
   description.MeasureNoise(graph);
   description.EnterSupports();
   description.FillCovariance();
-  const std::optional<double> variance = description.RowVariance();
+  const FitStatistics statistics = description.Statistics();
   if (evidence.active.youngs_modulus != Side::kNone) {
     description.MeasureYoungsModulusOnBound();
   }
   if (evidence.active.poisson_ratio != Side::kNone) {
     description.MeasurePoissonRatioOnBound();
   }
-  return variance;
+  return statistics;
 }
 
 }  // namespace elastimate

@@ -26,18 +26,46 @@ struct SupportDoubt {
 struct DisplacementFit {
   /// u of all nodes, num_dofs x num_load_cases.
   Eigen::MatrixXd displacement;
-  Eigen::VectorXd residual;  ///< u - q.
+  /// u - q, of q without what was taken from it.
+  Eigen::VectorXd residual;
   /// du / d (ln E, nu).
   Eigen::Matrix<double, Eigen::Dynamic, 2> sensitivities;
   /// That of ElementChange in u; empty where it is not known.
   std::optional<Eigen::VectorXd> element_change;
+  /// The part of such a change that was taken from the measurement before it
+  /// was fitted; empty where nothing.
+  Eigen::VectorXd taken;
   SupportDoubt supports;
 };
 
+/// What a fit leaves to be done.
+struct FitStatistics {
+  /// The variance of a row of the residual that the standard error of nu
+  /// amounts to, or would, were nu not at the end of its physical range; empty
+  /// when there is none.
+  std::optional<double> row_variance;
+  /// Of the change to finer elements, as far as it is expected to be there.
+  double share_of_finer = 0;
+  /// Of (ln E, nu), for what finer elements explain of the residual.
+  Eigen::Vector2d correction = Eigen::Vector2d::Zero();
+  /// How much more than the least the square sum may be of a fit that becomes
+  /// the best once that change is taken from the measurement.
+  double excess_of_finer = 0;
+  /// BoundedNorm of the residual that is left.
+  double rest = 0;
+};
+
+/// With another (ln E, nu); nu moves half of the way to a limit at most.
+IsotropicElasticity Corrected(const IsotropicElasticity& elasticity,
+                              const Eigen::Vector2d& correction);
+
 /// Corrects (ln E, nu) of a usable estimate for what the elements miss and for
 /// where supports end, as DescribeDisplacementFit found it, with the interval
-/// of nu, which then holds what they leave uncertain as well.
-void CorrectForElements(const Evidence& evidence, Estimate& estimate);
+/// of nu, which then holds what they leave uncertain as well.  `uncorrected`
+/// are those of a fit to the measurement as it is.
+void CorrectForElements(const Evidence& evidence,
+                        const IsotropicElasticity& uncorrected,
+                        Estimate& estimate);
 
 /// Describes a least-squares (or, with `losses`, robust) fit of the
 /// displacements: fills in covariance, noise, residual statistics,
@@ -53,11 +81,7 @@ void CorrectForElements(const Evidence& evidence, Estimate& estimate);
 /// of what the outliers of a fit without a loss pull the parameters by, and
 /// what the elements (ElementErrors) and the ends of supports within them leave
 /// uncertain.
-///
-/// Returns the variance of a row of the residual that the standard error of nu
-/// amounts to, or would, were nu not at the end of its physical range; empty
-/// when there is none.
-std::optional<double> DescribeDisplacementFit(
+FitStatistics DescribeDisplacementFit(
     const Scene& scene, const NodeGraph& graph, const EstimatorOptions& options,
     const ObservedDisplacements& observed, const DisplacementFit& fit,
     const NodeLosses& losses, Evidence& evidence, Estimate& estimate);

@@ -46,6 +46,9 @@ class DisplacementResidual : public ceres::EvaluationCallback {
     fit_.element_change = model_.ElementChangeOf(Elasticity());
   }
 
+  /// What was taken from the measurement of the model before it was fitted.
+  void SetTaken(const Eigen::VectorXd& taken) { fit_.taken = taken; }
+
   void SetSupportDoubt(const SupportDoubt& doubt) { fit_.supports = doubt; }
 
   bool IsValid() const { return is_valid_; }

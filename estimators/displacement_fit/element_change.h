@@ -3,9 +3,9 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "elastimate/core/equilibrium/hierarchical_error.h"
 #include "elastimate/core/materials/elasticity.h"
@@ -15,44 +15,50 @@
 
 namespace elastimate {
 
-/// How much the displacements of a scene depend on the order of its elements:
-/// for linear ones, of any shape, what quadratic simplices of their nodes
-/// change (SimplicialScene, HierarchicalError), for quadratic ones what they
-/// changed against linear ones of the same vertices.
+/// What finer elements change in the displacements of a scene: quadratic
+/// simplices of its nodes (SimplicialScene, HierarchicalError), which for
+/// quadratic elements are of half the size.
 class ElementChange {
  public:
   /// `scene` must outlive this object.
   explicit ElementChange(const Scene& scene) : scene_(scene) {}
 
-  /// Of the observed rows of u = t w + v, for quadratic elements minus for
-  /// linear ones; empty where it is not known.  `responses` are w and v at nu,
-  /// as those of ForwardModel.  `solver_near` gives a solver of the mesh of the
-  /// scene that is factorised at or near a nu, or null; it is asked only where
-  /// there is something to solve.
+  /// A model of the scene at some nu: w and v, as those of ForwardModel, and a
+  /// solver of its mesh that is factorised there or near there; null where
+  /// there is none.
+  struct Model {
+    Eigen::MatrixXd responses;
+    StiffnessSolver* solver;
+  };
+  using ModelAt = std::function<Model(double poisson_ratio)>;
+
+  /// Of the observed rows of u = t w + v, for the finer elements minus for
+  /// those of the scene; empty where it is not known.  `model_at` is asked only
+  /// where there is something to solve.
   ///
-  /// Found once for all nu whose stiffness is about the same.  Cost: that of
-  /// HierarchicalError; for quadratic elements that of a ForwardModel of linear
-  /// ones.
-  std::optional<Eigen::VectorXd> Rows(
-      const ObservedDisplacements& observed,
-      const IsotropicElasticity& elasticity, const Eigen::MatrixXd& responses,
-      const std::function<StiffnessSolver*(double poisson_ratio)>& solver_near);
+  /// Found once for all nu whose stiffness is about the same.  Next to nu =
+  /// 1/2, where iterations would not end, that of quadratic elements, which do
+  /// not lock, is taken as it is at 0.495.  Cost: that of HierarchicalError.
+  std::optional<Eigen::VectorXd> Rows(const ObservedDisplacements& observed,
+                                      const IsotropicElasticity& elasticity,
+                                      const ModelAt& model_at);
 
   Work WorkDone() const { return work_; }
 
  private:
-  std::optional<Eigen::MatrixXd> OfLinearElements(
-      double poisson_ratio, const Eigen::MatrixXd& responses,
-      StiffnessSolver* solver);
-  std::optional<Eigen::MatrixXd> OfQuadraticElements(
-      double poisson_ratio, const Eigen::MatrixXd& responses);
+  // At one nu.
+  struct Found {
+    double poisson_ratio;
+    /// Of w and v.
+    std::optional<Eigen::MatrixXd> change;
+  };
+
+  std::optional<Eigen::MatrixXd> Find(double poisson_ratio,
+                                      const ModelAt& model_at);
 
   const Scene& scene_;
   std::unique_ptr<HierarchicalError> hierarchical_;
-  /// NaN before it was found.
-  double poisson_ratio_ = std::numeric_limits<double>::quiet_NaN();
-  /// Of w and v.
-  std::optional<Eigen::MatrixXd> change_;
+  std::vector<Found> found_;
   Work work_;
 };
 

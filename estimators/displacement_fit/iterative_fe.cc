@@ -10,6 +10,7 @@
 
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/scene/unknown_motion.h"
+#include "elastimate/estimators/displacement_fit/corrected_fit.h"
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
 #include "elastimate/estimators/displacement_fit/displacement_minimum.h"
 #include "elastimate/estimators/displacement_fit/displacement_profile.h"
@@ -150,10 +151,11 @@ Minimum BestMinimum(const EstimatorOptions& options,
 
 // Enters the interval of nu, after up to three looks at where each end may be.
 void DescribeProfileOf(const EstimatorOptions& options,
-                       const std::vector<ProfilePoint>& points, double variance,
+                       const std::vector<ProfilePoint>& points,
                        const Eigen::VectorXd& row_weights,
-                       DisplacementResidual& residual, Evidence& evidence,
-                       Estimate& estimate) {
+                       DisplacementResidual& residual,
+                       CorrectedFit& corrected) {
+  Estimate& estimate = corrected.fit.estimate;
   EvaluatedProfile profile(
       points, {estimate.elasticity,
                SquaredNorm(row_weights.cwiseProduct(residual.Fit().residual))});
@@ -169,7 +171,8 @@ void DescribeProfileOf(const EstimatorOptions& options,
     // Nobody has looked at what lies beyond the last point.
     for (const double beyond : {first, limit, limit}) {
       const double end =
-          profile.EndTowards(limit, kTwoSidedQuantile * variance).poisson_ratio;
+          profile.EndTowards(limit, corrected.ExcessOf(kTwoSidedQuantile))
+              .poisson_ratio;
       if (end != limit &&
           std::abs(end - last_end) < kSettled * std::abs(end - nu)) {
         break;
@@ -182,90 +185,206 @@ void DescribeProfileOf(const EstimatorOptions& options,
       }
     }
   }
-  evidence.profile_interval = DescribeProfile(
+  corrected.fit.evidence.profile_interval = DescribeProfile(
       [&](double quantile) {
-        const double excess = quantile * variance;
-        return Profile{profile.EndTowards(*bounds.lower, excess),
-                       profile.EndTowards(*bounds.upper, excess)};
+        const double excess = corrected.ExcessOf(quantile);
+        return corrected.WithRival({profile.EndTowards(*bounds.lower, excess),
+                                    profile.EndTowards(*bounds.upper, excess)});
       },
       estimate);
 }
 
-// Fills in what follows from the fit.  `points` of the profile are for the
-// interval of nu; with a loss they are of other weights than those of the fit.
-void DescribeFit(const Scene& scene, const EstimatorOptions& options,
-                 const std::vector<ProfilePoint>& points,
-                 const NodeLosses& losses, DisplacementResidual& residual,
-                 Evidence& evidence, Estimate& estimate) {
-  const std::optional<double> variance = DescribeDisplacementFit(
-      scene, residual.Model().Graph(), options, residual.Model().Observed(),
-      residual.Fit(), losses, evidence, estimate);
+// Fits of a model to its measurement, or to what is left of it.
+class CorrectableIterativeFit : public CorrectableFit {
+ public:
+  CorrectableIterativeFit(const Scene& scene, const EstimatorOptions& options,
+                          const SupportDoubt& doubt, ObservedModel& model)
+      : scene_(scene),
+        options_(options),
+        doubt_(doubt),
+        measured_(model.Observed().Measured()),
+        model_(model),
+        residual_(model) {}
+
+  bool Fit(const Eigen::VectorXd& taken) override {
+    Take(taken);
+    points_ = EvaluateStarts(scene_, options_, model_);
+    const std::vector<IsotropicElasticity> basins = BasinsOf(points_);
+    if (basins.empty()) {
+      best_.reset();
+      return false;
+    }
+    best_.emplace(BestMinimum(options_, basins, residual_, points_));
+    return Evaluate();
+  }
+
+  bool FitNear(const IsotropicElasticity& start,
+               const Eigen::VectorXd& taken) override {
+    Take(taken);
+    points_.clear();
+    best_.emplace(Descend(options_, start, residual_));
+    return Evaluate();
+  }
+
+  DescribedFit Describe() override {
+    DescribedFit described;
+    Estimate& estimate = described.estimate;
+    estimate.elasticity = residual_.Elasticity();
+    described.evidence.end = EndOf(best_->summary);
+    described.evidence.search_message = "Ceres: " + best_->summary.message;
+    described.evidence.active = NoteActiveBounds(
+        options_, best_->violated, best_->poisson_ratio, estimate);
+    residual_.FindElementChange();
+    described.statistics = DescribeDisplacementFit(
+        scene_, model_.Graph(), options_, model_.Observed(), residual_.Fit(),
+        best_->losses, described.evidence, estimate);
+    described.element_change = residual_.Fit().element_change;
+    described.by_log_youngs_modulus = residual_.Fit().sensitivities.col(0);
+    described.taken = residual_.Fit().taken;
+    return described;
+  }
+
+  // By the starts; absolute deviations are no squares.
+  Profile RangeWithin(double excess) override {
+    const auto is_less = [](const IsotropicElasticity& a,
+                            const IsotropicElasticity& b) {
+      return a.poisson_ratio < b.poisson_ratio;
+    };
+    Profile range = {residual_.Elasticity(), residual_.Elasticity()};
+    const double most = SquaredNorm(residual_.Fit().residual) + excess;
+    for (const ProfilePoint& point : points_) {
+      if (options_.loss == Loss::kNone && point.unbounded_cost <= most) {
+        range = {std::min(range.lower, point.unbounded, is_less),
+                 std::max(range.upper, point.unbounded, is_less)};
+      }
+    }
+    return range;
+  }
+
+  std::optional<Eigen::VectorXd> ChangeAt(double poisson_ratio) override {
+    model_.SetMeasured(measured_);
+    if (!model_.SetPoissonRatio(poisson_ratio)) {
+      return std::nullopt;
+    }
+    const IsotropicElasticity elasticity =
+        EvaluateProfile(options_, model_, poisson_ratio).elasticity;
+    return elasticity.IsPhysical() ? model_.ElementChangeOf(elasticity)
+                                   : std::nullopt;
+  }
+
+  // Of the last fit.
+
+  bool HasBasin() const { return best_.has_value(); }
+  bool IsValid() const { return residual_.IsValid(); }
+  const Minimum& Best() const { return *best_; }
+  DisplacementResidual& Residual() { return residual_; }
+  /// Of the profile; with a loss of other weights than those of the fit.
+  const std::vector<ProfilePoint>& Points() const { return points_; }
+
+ private:
+  void Take(const Eigen::VectorXd& taken) {
+    residual_.SetTaken(taken);
+    model_.SetMeasured(taken.size() == 0 ? measured_
+                                         : Eigen::VectorXd(measured_ - taken));
+  }
+
+  bool Evaluate() {
+    residual_.SetParameters(best_->meaning, &best_->scale,
+                            &best_->poisson_ratio);
+    residual_.PrepareForEvaluation(true, true);
+    residual_.SetSupportDoubt(doubt_);
+    return residual_.IsValid() && residual_.Elasticity().IsPhysical();
+  }
+
+  const Scene& scene_;
+  const EstimatorOptions& options_;
+  const SupportDoubt& doubt_;
+  const Eigen::VectorXd measured_;
+  ObservedModel& model_;
+  DisplacementResidual residual_;
+  std::vector<ProfilePoint> points_;
+  std::optional<Minimum> best_;
+};
+
+// Enters the interval of nu where it is not that of a linear model.
+void EnterProfile(const EstimatorOptions& options, CorrectableIterativeFit& fit,
+                  CorrectedFit& corrected) {
+  Estimate& estimate = corrected.fit.estimate;
+  const Evidence& evidence = corrected.fit.evidence;
   Judge(evidence, options, estimate);
+  const std::optional<double>& variance = corrected.fit.statistics.row_variance;
   if (!variance || !estimate.IsUsable() ||
       evidence.active.youngs_modulus != Side::kNone) {
     return;
   }
+  DisplacementResidual& residual = fit.Residual();
+  const NodeLosses& losses = fit.Best().losses;
   const Eigen::VectorXd row_weights =
       RowWeights(residual.Model().Observed(), residual.Fit().residual, losses);
   const std::vector<ProfilePoint> of_weights =
-      losses.IsLeastSquares() ? points : std::vector<ProfilePoint>();
+      losses.IsLeastSquares() ? fit.Points() : std::vector<ProfilePoint>();
   const double least =
       SquaredNorm(row_weights.cwiseProduct(residual.Fit().residual));
   const double nu = estimate.elasticity.poisson_ratio;
   const double far = 4 * estimate.PoissonRatioStandardError().value_or(0);
-  const bool has_rival = std::any_of(
-      of_weights.begin(), of_weights.end(), [&](const ProfilePoint& point) {
-        return point.unbounded_cost <= least + kTwoSidedQuantile * *variance &&
-               std::abs(point.unbounded.poisson_ratio - nu) > far;
-      });
+  const bool has_rival =
+      corrected.rival ||
+      std::any_of(of_weights.begin(), of_weights.end(),
+                  [&](const ProfilePoint& point) {
+                    return point.unbounded_cost <=
+                               least + kTwoSidedQuantile * *variance &&
+                           std::abs(point.unbounded.poisson_ratio - nu) > far;
+                  });
   if (evidence.active.is_physical_limit || has_rival ||
       ShareOfDistanceToPole(estimate) > kLargestLinearShare) {
-    DescribeProfileOf(options, of_weights, *variance, row_weights, residual,
-                      evidence, estimate);
+    DescribeProfileOf(options, of_weights, row_weights, residual, corrected);
   }
+}
+
+// The estimate, but for its work, from the first fit.
+DescribedFit DescribeBest(const Scene& scene, const EstimatorOptions& options,
+                          bool is_fitted, CorrectableIterativeFit& fit) {
+  DescribedFit described;
+  Evidence& evidence = described.evidence;
+  if (!fit.HasBasin()) {
+    if (fit.Points().empty()) {
+      evidence.end = End::kSingularStiffness;
+    } else {
+      evidence.do_displacements_oppose_loads = true;
+      described.estimate.elasticity = fit.Points().front().elasticity;
+    }
+    return described;
+  }
+  if (!fit.IsValid()) {
+    evidence.end = EndOf(fit.Best().summary);
+    evidence.search_message = "Ceres: " + fit.Best().summary.message;
+    return described;
+  }
+  CorrectedFit corrected = is_fitted ? FitCorrected(scene, options, fit)
+                                     : CorrectedFit{fit.Describe(), 0, {}};
+  EnterProfile(options, fit, corrected);
+  return corrected.fit;
 }
 
 Estimate FitIteratively(const Scene& scene, const EstimatorOptions& options,
                         const SupportDoubt& doubt) {
-  Estimate estimate;
-  Evidence evidence;
   Stopwatch stopwatch;
   ObservedModel model(scene, options);
-  estimate.stages.push_back({"assemble and analyse", stopwatch.Lap()});
-
-  std::vector<ProfilePoint> points = EvaluateStarts(scene, options, model);
-  const std::vector<IsotropicElasticity> basins = BasinsOf(points);
-  if (basins.empty()) {
-    if (points.empty()) {
-      evidence.end = End::kSingularStiffness;
-    } else {
-      evidence.do_displacements_oppose_loads = true;
-      estimate.elasticity = points.front().elasticity;
-    }
-    Judge(evidence, options, estimate);
-    estimate.work = model.WorkDone();
-    return estimate;
-  }
-  DisplacementResidual residual(model);
-  const Minimum best = BestMinimum(options, basins, residual, points);
-  residual.SetParameters(best.meaning, &best.scale, &best.poisson_ratio);
-  residual.PrepareForEvaluation(true, true);
-  estimate.stages.push_back({"fit", stopwatch.Lap()});
-  evidence.end = EndOf(best.summary);
-  evidence.search_message = "Ceres: " + best.summary.message;
-  if (residual.IsValid()) {
-    estimate.elasticity = residual.Elasticity();
-    evidence.active =
-        NoteActiveBounds(options, best.violated, best.poisson_ratio, estimate);
-    residual.FindElementChange();
-    residual.SetSupportDoubt(doubt);
-    DescribeFit(scene, options, points, best.losses, residual, evidence,
-                estimate);
-  }
-  evidence.solver_notice = model.SolverNotice();
-  Judge(evidence, options, estimate);
-  CorrectForElements(evidence, estimate);
-  estimate.stages.push_back({"statistics", stopwatch.Lap()});
+  std::vector<StageTime> stages = {{"assemble and analyse", stopwatch.Lap()}};
+  CorrectableIterativeFit fit(scene, options, doubt, model);
+  const bool is_fitted = fit.Fit({});
+  stages.push_back({"fit", stopwatch.Lap()});
+  const IsotropicElasticity uncorrected =
+      fit.HasBasin() && fit.IsValid()
+          ? fit.Residual().Elasticity()
+          : IsotropicElasticity{Estimate::kUnknown, Estimate::kUnknown};
+  DescribedFit described = DescribeBest(scene, options, is_fitted, fit);
+  Estimate& estimate = described.estimate;
+  described.evidence.solver_notice = model.SolverNotice();
+  Judge(described.evidence, options, estimate);
+  CorrectForElements(described.evidence, uncorrected, estimate);
+  stages.push_back({"statistics", stopwatch.Lap()});
+  estimate.stages = stages;
   estimate.work = model.WorkDone();
   return estimate;
 }

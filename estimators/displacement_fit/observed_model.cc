@@ -60,8 +60,15 @@ Eigen::VectorXd ObservedModel::PoissonRatioSlope(
 
 std::optional<Eigen::VectorXd> ObservedModel::ElementChangeOf(
     const IsotropicElasticity& elasticity) {
-  return change_.Rows(observed_, elasticity, model_.Responses(),
-                      [this](double /*nu*/) { return &model_.Solver(); });
+  const double nu = model_.PoissonRatio();
+  std::optional<Eigen::VectorXd> rows = change_.Rows(
+      observed_, elasticity, [this](double near) -> ElementChange::Model {
+        return SetPoissonRatio(near)
+                   ? ElementChange::Model{model_.Responses(), &model_.Solver()}
+                   : ElementChange::Model{{}, nullptr};
+      });
+  SetPoissonRatio(nu);
+  return rows;
 }
 
 }  // namespace elastimate

@@ -48,6 +48,9 @@ class ObservedModel {
   std::optional<Eigen::VectorXd> ElementChangeOf(
       const IsotropicElasticity& elasticity);
 
+  /// Takes these rows for what was measured.
+  void SetMeasured(const Eigen::VectorXd& rows) { observed_.SetMeasured(rows); }
+
   SectionModel Section() const { return section_model_; }
   const ObservedDisplacements& Observed() const { return observed_; }
   const NodeGraph& Graph() const { return model_.Graph(); }

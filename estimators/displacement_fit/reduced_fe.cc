@@ -2,10 +2,14 @@
 
 #include <cmath>
 #include <optional>
+#include <utility>
+#include <vector>
 
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/estimators/displacement_fit/adaptive_fit.h"
+#include "elastimate/estimators/displacement_fit/corrected_fit.h"
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
 #include "elastimate/estimators/displacement_fit/element_change.h"
 #include "elastimate/estimators/displacement_fit/support_end_search.h"
@@ -29,6 +33,17 @@ Side BoundOf(const Bounds& bounds, double value) {
   return Side::kNone;
 }
 
+IsotropicElasticity ElasticityOf(const AdaptiveFit& adaptive) {
+  const ReducedFit::Point& best = adaptive.Best().point;
+  return IsotropicElasticity::FromComplianceScale(
+      best.compliance_scale, best.poisson_ratio, adaptive.Model().Section());
+}
+
+bool IsPhysicalFit(const AdaptiveFit& adaptive) {
+  const IsotropicElasticity elasticity = ElasticityOf(adaptive);
+  return elasticity.IsPhysical() && std::isfinite(elasticity.youngs_modulus);
+}
+
 // The fit with what its elements miss.
 DisplacementFit FitWithChange(const Scene& scene,
                               const ObservedDisplacements& observed,
@@ -39,46 +54,121 @@ DisplacementFit FitWithChange(const Scene& scene,
   // The model is zero where the supports hold.
   const Eigen::VectorXd held = HeldDisplacement(scene.supports);
   fit.displacement.colwise() += held;
-  Eigen::MatrixXd responses = model.Responses(elasticity.poisson_ratio);
-  if (model.HasSupportResponse()) {
-    responses.rightCols<1>() += held;
-  }
   fit.element_change =
-      change.Rows(observed, elasticity, responses,
-                  [&model](double nu) { return model.SolverNear(nu); });
+      change.Rows(observed, elasticity, [&](double nu) -> ElementChange::Model {
+        Eigen::MatrixXd responses = model.Responses(nu);
+        if (model.HasSupportResponse()) {
+          responses.rightCols<1>() += held;
+        }
+        return {responses, model.SolverNear(nu)};
+      });
   fit.supports = doubt;
   return fit;
 }
 
-// Fills in what follows from a fit of physical parameters.
-void DescribeFit(const Scene& scene, const EstimatorOptions& options,
-                 const ObservedDisplacements& observed,
-                 const SupportDoubt& doubt, AdaptiveFit& adaptive,
-                 ElementChange& change, Evidence& evidence,
-                 Estimate& estimate) {
-  const ModelFit& best = adaptive.Best();
-  const BoundedParameter poisson_ratio =
-      options.known_poisson_ratio
-          ? BoundedParameter::Constant(*options.known_poisson_ratio)
-          : BoundedParameter(best.point.poisson_ratio,
-                             adaptive.PoissonRatioBounds());
-  evidence.active = NoteActiveBounds(
-      options,
-      BoundOf(options.youngs_modulus, estimate.elasticity.youngs_modulus),
-      poisson_ratio, estimate);
-  const std::optional<double> variance = DescribeDisplacementFit(
-      scene, adaptive.Model().Graph(), options, observed,
-      FitWithChange(scene, observed, estimate.elasticity, doubt,
-                    adaptive.Model(), change),
-      best.losses, evidence, estimate);
+// Fits of a reduced model to its measurement, or to what is left of it.
+class CorrectableAdaptiveFit : public CorrectableFit {
+ public:
+  // `observed` was fitted.
+  CorrectableAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
+                         const SupportDoubt& doubt,
+                         const ObservedDisplacements& observed,
+                         AdaptiveFit& adaptive, ElementChange& change)
+      : scene_(scene),
+        options_(options),
+        doubt_(doubt),
+        measured_(observed.Measured()),
+        adaptive_(adaptive),
+        change_(change),
+        data_(observed) {}
+
+  bool Fit(const Eigen::VectorXd& taken) override {
+    taken_ = taken;
+    data_.SetMeasured(taken.size() == 0 ? measured_
+                                        : Eigen::VectorXd(measured_ - taken));
+    return adaptive_.Run(data_) && IsPhysicalFit(adaptive_);
+  }
+
+  // All of the range costs no more.
+  bool FitNear(const IsotropicElasticity& /*start*/,
+               const Eigen::VectorXd& taken) override {
+    return Fit(taken);
+  }
+
+  DescribedFit Describe() override {
+    DescribedFit described;
+    Estimate& estimate = described.estimate;
+    const ModelFit& best = adaptive_.Best();
+    estimate.elasticity = ElasticityOf(adaptive_);
+    const BoundedParameter poisson_ratio =
+        options_.known_poisson_ratio
+            ? BoundedParameter::Constant(*options_.known_poisson_ratio)
+            : BoundedParameter(best.point.poisson_ratio,
+                               adaptive_.PoissonRatioBounds());
+    described.evidence.active = NoteActiveBounds(
+        options_,
+        BoundOf(options_.youngs_modulus, estimate.elasticity.youngs_modulus),
+        poisson_ratio, estimate);
+    DisplacementFit fit = FitWithChange(scene_, data_, estimate.elasticity,
+                                        doubt_, adaptive_.Model(), change_);
+    fit.taken = taken_;
+    described.statistics = DescribeDisplacementFit(
+        scene_, adaptive_.Model().Graph(), options_, data_, fit, best.losses,
+        described.evidence, estimate);
+    described.element_change = std::move(fit.element_change);
+    described.by_log_youngs_modulus = fit.sensitivities.col(0);
+    described.taken = taken_;
+    return described;
+  }
+
+  Profile RangeWithin(double excess) override {
+    return adaptive_.ProfileEnds(data_, excess);
+  }
+
+  std::optional<Eigen::VectorXd> ChangeAt(double poisson_ratio) override {
+    data_.SetMeasured(measured_);
+    const DisplacementFit unit =
+        ExpandFit(adaptive_.Model(), data_, {1, poisson_ratio});
+    // The residual is t w + v - q, du / d ln E = -t w.
+    const Eigen::VectorXd w = -unit.sensitivities.col(0);
+    const double ratio = 1 - InnerProduct(w, unit.residual) / SquaredNorm(w);
+    if (!(ratio > 0) || !std::isfinite(ratio)) {
+      return std::nullopt;
+    }
+    return FitWithChange(scene_, data_, {1 / ratio, poisson_ratio}, doubt_,
+                         adaptive_.Model(), change_)
+        .element_change;
+  }
+
+  // What was fitted last.
+  const ObservedDisplacements& Data() const { return data_; }
+
+ private:
+  const Scene& scene_;
+  const EstimatorOptions& options_;
+  const SupportDoubt& doubt_;
+  const Eigen::VectorXd measured_;
+  AdaptiveFit& adaptive_;
+  ElementChange& change_;
+  ObservedDisplacements data_;
+  Eigen::VectorXd taken_;
+};
+
+void DescribeProfileOf(const EstimatorOptions& options,
+                       const ObservedDisplacements& data,
+                       const AdaptiveFit& adaptive, CorrectedFit& corrected) {
+  Estimate& estimate = corrected.fit.estimate;
+  Evidence& evidence = corrected.fit.evidence;
   Judge(evidence, options, estimate);
   // What looks like a pull to -1 may be data that say nothing of nu.
   const bool is_at_minus_one = estimate.status == Status::kUnphysical;
-  if (!variance || !(estimate.IsUsable() || is_at_minus_one)) {
+  if (!corrected.fit.statistics.row_variance ||
+      !(estimate.IsUsable() || is_at_minus_one)) {
     return;
   }
   const auto profile_of = [&](double quantile) {
-    return adaptive.ProfileEnds(observed, quantile * *variance);
+    return corrected.WithRival(
+        adaptive.ProfileEnds(data, corrected.ExcessOf(quantile)));
   };
   if (evidence.active.is_physical_limit ||
       ShareOfDistanceToPole(estimate) > kLargestLinearShare ||
@@ -87,41 +177,50 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
   }
 }
 
+// Of a fit that cannot be described.
+Estimate Undescribed(const EstimatorOptions& options,
+                     const IsotropicElasticity& elasticity,
+                     const Evidence& evidence,
+                     const std::vector<StageTime>& stages) {
+  Estimate estimate;
+  estimate.stages = stages;
+  estimate.elasticity = elasticity;
+  Judge(evidence, options, estimate);
+  return estimate;
+}
+
 // Fits, and describes the fit.
 Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
                         const ObservedDisplacements& observed,
                         const SupportDoubt& doubt, AdaptiveFit& adaptive,
                         ElementChange& change) {
-  Estimate estimate;
-  Evidence evidence;
   Stopwatch stopwatch;
+  Evidence evidence;
   const bool is_regular = adaptive.Run(observed);
-  estimate.stages.push_back({"fit", stopwatch.Lap()});
+  std::vector<StageTime> stages = {{"fit", stopwatch.Lap()}};
   if (!is_regular) {
     evidence.end = End::kSingularStiffness;
-    Judge(evidence, options, estimate);
-    return estimate;
+    return Undescribed(options, {Estimate::kUnknown, Estimate::kUnknown},
+                       evidence, stages);
   }
-  const ReducedFit::Point& best = adaptive.Best().point;
-  estimate.elasticity = IsotropicElasticity::FromComplianceScale(
-      best.compliance_scale, best.poisson_ratio, adaptive.Model().Section());
-  evidence.do_displacements_oppose_loads =
-      !estimate.elasticity.IsPhysical() ||
-      !std::isfinite(estimate.elasticity.youngs_modulus);
-  if (evidence.do_displacements_oppose_loads) {
-    Judge(evidence, options, estimate);
-    return estimate;
+  const IsotropicElasticity uncorrected = ElasticityOf(adaptive);
+  if (!IsPhysicalFit(adaptive)) {
+    evidence.do_displacements_oppose_loads = true;
+    return Undescribed(options, uncorrected, evidence, stages);
   }
-  DescribeFit(scene, options, observed, doubt, adaptive, change, evidence,
-              estimate);
+  CorrectableAdaptiveFit fit(scene, options, doubt, observed, adaptive, change);
+  CorrectedFit corrected = FitCorrected(scene, options, fit);
+  DescribeProfileOf(options, fit.Data(), adaptive, corrected);
+  DescribedFit& described = corrected.fit;
   if (!adaptive.HasConverged()) {
-    evidence.end = End::kNotCertified;
+    described.evidence.end = End::kNotCertified;
   }
-  evidence.solver_notice = adaptive.Model().Notice();
-  Judge(evidence, options, estimate);
-  CorrectForElements(evidence, estimate);
-  estimate.stages.push_back({"statistics", stopwatch.Lap()});
-  return estimate;
+  described.evidence.solver_notice = adaptive.Model().Notice();
+  Judge(described.evidence, options, described.estimate);
+  CorrectForElements(described.evidence, uncorrected, described.estimate);
+  stages.push_back({"statistics", stopwatch.Lap()});
+  described.estimate.stages = stages;
+  return described.estimate;
 }
 
 Estimate FitOnce(const Scene& scene, const EstimatorOptions& options,

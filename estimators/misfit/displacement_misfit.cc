@@ -112,7 +112,7 @@ std::optional<RowChange> DisplacementMisfit::ChangeTo(
         observed_.Restrict(
             finer.equilibrium_.Displacement().topRows(Displacement().rows())) -
             observed_.Restrict(Displacement()),
-        true,
+        {},
         {}};
   }
   finer.SetNoise(Noise());
@@ -125,9 +125,10 @@ std::optional<RowChange> DisplacementMisfit::ChangeTo(
   const Eigen::VectorXd change =
       finer.motion_->RowsOfModel() - motion_->RowsOfModel() +
       motion_->RowsOfMotion(motion) + change_of(motion);
-  return RowChange{motion_->Eliminate(change), true,
+  return RowChange{motion_->Eliminate(change),
                    motion_->Eliminate(change_of(
-                       motion_->MotionThatFits(RandomSigns(NumRows()))))};
+                       motion_->MotionThatFits(RandomSigns(NumRows())))),
+                   {}};
 }
 
 bool DisplacementMisfit::SolveAt(const Eigen::VectorXd& x) {

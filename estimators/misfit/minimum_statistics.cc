@@ -238,7 +238,7 @@ void CorrectMinimum(const Scene& scene, const FreeParameters& free,
   constexpr double kLeastShare = 1e-3;
   errors.corrected = Corrected(free, errors.variables, *elements.Correction());
   errors.share_variance = elements.ShareVariance();
-  errors.of_change = elements.CovarianceOfChange(smooth);
+  errors.of_change = elements.CovarianceOfChange();
   if (elements.Share() >= kLeastShare) {
     errors.share_of_finer = elements.Share();
     errors.of_finer = errors.variables +

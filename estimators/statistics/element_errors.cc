@@ -12,22 +12,15 @@
 namespace elastimate {
 namespace {
 
-// What the elements miss, as a share of a change of the displacements that is
-// known, in the direction of a parameter: of linear elements beside the change
-// to quadratic ones, by how much of itself that change of the parameters is
-// off, and how much of it is expected; of quadratic ones, of the change from
-// linear ones; and where neither is known, of the share of the energy that is
-// missed [benchmarks: unseen].
+// What the elements miss beside the change to finer ones, as a share of that,
+// in the direction of a parameter; by how much of itself that change of the
+// parameters is off; and where it is not known, what they miss as a share of
+// the share of the energy that is missed [benchmarks: unseen].
 constexpr double kLinearErrorShare = 0.1;
 constexpr double kUnequalShare = 0.33;
-constexpr double kQuadraticErrorShare = 0.025;
-constexpr double kQuadraticUnequalShare = 0.08;
 constexpr double kUnknownErrorShare = 0.3;
 // How much more of an error than of the residual that it leaves the parameters
-// may take up, squared: of quadratic elements, of their change of the
-// parameters, and of other elements.
-constexpr double kInSpan = 4;
-constexpr double kMostVisible = 9;
+// may take up, squared.
 constexpr double kMostInSpan = 100;
 // The same of another model error, which moves all displacements rather than
 // bends them [benchmarks: stability, inclusions].
@@ -83,7 +76,9 @@ ElementErrors::ElementErrors(const Scene& scene, const NodeGraph& graph,
                              const std::optional<RowChange>& change,
                              const Eigen::MatrixXd& displacement,
                              const IsotropicElasticity& elasticity)
-    : rest_(fit.residual),
+    : expected_share_(ExpectedShare(scene.mesh.Order())),
+      rest_(fit.residual),
+      of_measurement_(fit.residual),
       of_parameters_(Eigen::VectorXd::Zero(fit.sensitivities.cols())) {
   if (!change) {
     // There is nothing to compare the strain of a single element with.
@@ -96,20 +91,21 @@ ElementErrors::ElementErrors(const Scene& scene, const NodeGraph& graph,
   const Eigen::VectorXd& rows = change->rows;
   of_parameters_ = ParametersOf(fit, rows);
   const Eigen::VectorXd visible = VisibleOf(fit, rows, of_parameters_);
-  if (!change->is_to_finer) {
-    visible_norm_ = Norm(visible);
-    missed_norm_ = kQuadraticErrorShare * Norm(rows);
-    return;
+  Eigen::VectorXd of_taken = Eigen::VectorXd::Zero(of_parameters_.size());
+  if (change->taken.size() > 0) {
+    of_taken = ParametersOf(fit, change->taken);
+    rest_ -= VisibleOf(fit, change->taken, of_taken);
   }
+  of_measurement_ = rest_;
   const FinerSpecimen finer = Compare(graph, observed, fit, visible,
                                       VisibleNoise(fit, change->by_noise));
   share_ = finer.Mean();
   rest_ += share_ * visible;
-  correction_ = -share_ * of_parameters_;
+  correction_ = of_taken - share_ * of_parameters_;
   const double size = std::sqrt(finer.probability) * std::abs(finer.share);
   // Much of a change may be there of which little shows.
   const double most =
-      std::max(size, finer.probability * finer.probability * kExpectedShare);
+      std::max(size, finer.probability * finer.probability * expected_share_);
   share_variance_ = finer.Variance() + std::pow(kUnequalShare * most, 2) +
                     hidden_share_ * hidden_share_;
   missed_norm_ = kLinearErrorShare * size * Norm(rows);
@@ -124,19 +120,11 @@ double ElementErrors::MissedSquareSum(double smooth) const {
   if (!missed_norm_) {
     return 0;
   }
-  return std::min(*missed_norm_ * *missed_norm_,
-                  (visible_norm_ ? kInSpan : kMostInSpan) * smooth);
+  return std::min(*missed_norm_ * *missed_norm_, kMostInSpan * smooth);
 }
 
-Eigen::MatrixXd ElementErrors::CovarianceOfChange(double smooth) const {
-  double variance = share_variance_;
-  if (visible_norm_ && *visible_norm_ > 0) {
-    const double share =
-        std::min(kQuadraticUnequalShare,
-                 std::sqrt(kMostVisible * smooth) / *visible_norm_);
-    variance = share * share;
-  }
-  return variance * (of_parameters_ * of_parameters_.transpose());
+Eigen::MatrixXd ElementErrors::CovarianceOfChange() const {
+  return share_variance_ * (of_parameters_ * of_parameters_.transpose());
 }
 
 FinerSpecimen ElementErrors::Compare(const NodeGraph& graph,
@@ -148,18 +136,19 @@ FinerSpecimen ElementErrors::Compare(const NodeGraph& graph,
   const double noisy_size = InnerProduct(weighted, visible);
   const double redundancy =
       static_cast<double>(observed.Size() - fit.sensitivities.cols()) - 1;
-  const double product = InnerProduct(weighted, fit.residual);
+  const double product = InnerProduct(weighted, of_measurement_);
   // The variance of a row where the residual shows as much as it can.
   const double least_variance =
-      (InnerProduct(fit.weights.cwiseProduct(fit.residual), fit.residual) -
+      (InnerProduct(fit.weights.cwiseProduct(of_measurement_),
+                    of_measurement_) -
        product * product / noisy_size) /
       redundancy;
   const double size = noisy_size - visible_noise * least_variance;
   if (!(size > 0) || redundancy < 1) {
-    return CompareWithFinerSpecimen(0, kUnknownShareError, 1);
+    return CompareWithFinerSpecimen(0, kUnknownShareError, 1, expected_share_);
   }
   const double share = -product / size;
-  const Eigen::VectorXd rest = fit.residual + share * visible;
+  const Eigen::VectorXd rest = of_measurement_ + share * visible;
   const Eigen::VectorXd weighted_rest =
       fit.weights.cwiseSqrt().cwiseProduct(rest);
   const std::optional<NeighbourCorrelation> neighbours =
@@ -180,15 +169,16 @@ FinerSpecimen ElementErrors::Compare(const NodeGraph& graph,
     variance =
         std::max(variance, noisy_size / (observed.Norm() * observed.Norm()));
   }
-  FinerSpecimen finer = CompareWithFinerSpecimen(
-      share, std::sqrt(variance * dependence) / size, redundancy / dependence);
+  FinerSpecimen finer =
+      CompareWithFinerSpecimen(share, std::sqrt(variance * dependence) / size,
+                               redundancy / dependence, expected_share_);
   unexplained_ = UnexplainedShare(neighbours, SquaredNorm(weighted_rest),
                                   share * share * size);
   finer.probability *= 1 - unexplained_;
   if (!fit.is_on_bound) {
     hidden_share_ =
         unexplained_ *
-        std::min(kExpectedShare, std::sqrt(SquaredNorm(weighted_rest) / size));
+        std::min(expected_share_, std::sqrt(SquaredNorm(weighted_rest) / size));
   }
   return finer;
 }

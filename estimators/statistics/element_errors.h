@@ -25,13 +25,15 @@ struct FreeFit {
   bool is_on_bound;
 };
 
-/// What other elements change in the rows of a fit.
+/// What finer elements change in the rows of a fit.
 struct RowChange {
-  Eigen::VectorXd rows;  ///< For the finer elements minus for the coarser ones.
-  bool is_to_finer;      ///< Whether those of the fit are the coarser ones.
+  Eigen::VectorXd rows;  ///< For the finer elements minus for those of the fit.
   /// What noise of a standard deviation of 1 adds to the change, one draw of
   /// it: supports that move as measured follow it.  Empty where nothing.
   Eigen::VectorXd by_noise;
+  /// What was taken from the measurement as such a change before the fit; empty
+  /// where nothing.
+  Eigen::VectorXd taken;
 };
 
 /// What the elements of a fit miss, and what that does to the free parameters:
@@ -41,8 +43,8 @@ struct RowChange {
 ///   the residual.
 ///   FinerSpecimen says how much of it is there; by the mean of that the
 ///   parameters are corrected, and its variance is theirs.
-/// - Where one from coarser ones is known: a small share of that.
-/// - Where none is: by the strain energy that they miss (DiscretizationError).
+/// - Where none is known: by the strain energy that they miss
+///   (DiscretizationError).
 class ElementErrors {
  public:
   /// Precondition: at least one free parameter.
@@ -57,13 +59,14 @@ class ElementErrors {
   bool AreKnown() const { return missed_norm_.has_value(); }
   /// The residual without what a finer specimen explains of it.
   const Eigen::VectorXd& Rest() const { return rest_; }
-  /// Of the free parameters; empty unless finer elements are known.
+  /// Of the free parameters, from those of the fit; empty unless finer elements
+  /// are known.
   const std::optional<Eigen::VectorXd>& Correction() const {
     return correction_;
   }
 
-  /// The same, or what a finer specimen would ask for where something else in
-  /// the residual hides how much of that there is.
+  /// The correction, or what a finer specimen would ask for where something
+  /// else in the residual hides how much of that there is.
   const Eigen::VectorXd& LikelyChange() const { return likely_change_; }
 
   /// Of the change to finer elements, as far as it is expected to be there.
@@ -82,7 +85,7 @@ class ElementErrors {
   /// any parameter.
   double MissedSquareSum(double smooth) const;
   /// The covariance of the free parameters that comes with the change.
-  Eigen::MatrixXd CovarianceOfChange(double smooth) const;
+  Eigen::MatrixXd CovarianceOfChange() const;
 
  private:
   /// What the residual says of the part of the change that it would show, the
@@ -93,7 +96,10 @@ class ElementErrors {
                         const FreeFit& fit, const Eigen::VectorXd& visible,
                         double visible_noise);
 
+  double expected_share_;
   Eigen::VectorXd rest_;
+  /// The residual of a fit to the measurement as it is.
+  Eigen::VectorXd of_measurement_;
   std::optional<Eigen::VectorXd> correction_;
   Eigen::VectorXd likely_change_;
   /// c; zero where no change is known.
@@ -106,8 +112,6 @@ class ElementErrors {
   double share_ = 0;
   /// Of that share, where finer elements are known.
   double share_variance_ = 0;
-  /// ||g|| where coarser elements are known.
-  std::optional<double> visible_norm_;
   /// Of what is missed beside the change.
   std::optional<double> missed_norm_;
 };

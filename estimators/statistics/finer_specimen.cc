@@ -15,7 +15,8 @@ constexpr double kRounding = 1e-6;
 }  // namespace
 
 FinerSpecimen CompareWithFinerSpecimen(double share, double standard_error,
-                                       double degrees_of_freedom) {
+                                       double degrees_of_freedom,
+                                       double expected_share) {
   const double variance =
       std::max(standard_error * standard_error, kRounding * kRounding);
   const double prior = kDeviationOfShare * kDeviationOfShare;
@@ -26,13 +27,13 @@ FinerSpecimen CompareWithFinerSpecimen(double share, double standard_error,
            (n + 1) / 2 * std::log1p(distance * distance / of_variance / n);
   };
   const double log_odds =
-      log_density(share - kExpectedShare, variance + prior) -
+      log_density(share - expected_share, variance + prior) -
       log_density(share, variance);
   FinerSpecimen finer;
   finer.probability = 1 / (1 + std::exp(-log_odds));
   finer.share_variance = 1 / (1 / variance + 1 / prior);
   finer.share =
-      finer.share_variance * (share / variance + kExpectedShare / prior);
+      finer.share_variance * (share / variance + expected_share / prior);
   return finer;
 }
 

@@ -223,7 +223,10 @@ TEST(Auto, TakesQuadraticElementsWhereBothExplainTheDisplacements) {
   const Estimate estimate = Auto().Run(scene, options);
   ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
   EXPECT_EQ(estimate.element_order, 2);
-  EXPECT_NEAR(estimate.elasticity.youngs_modulus / 1e7, 1, 1e-6);
+  // One component does not tell whether there is what finer elements change.
+  const double error = *estimate.YoungsModulusStandardError() / 1e7;
+  EXPECT_LT(error, 0.01);
+  EXPECT_NEAR(estimate.elasticity.youngs_modulus / 1e7, 1, 2 * error);
   EXPECT_TRUE(estimate.Has(FindingCode::kLinearElementsFitAsWell));
 }
 

@@ -9,26 +9,31 @@ namespace elastimate {
 namespace {
 
 constexpr double kManyRows = 1000;
+constexpr double kExpected = 1;
 
 TEST(FinerSpecimen, IsSeenWhereTheChangeIsInTheResidual) {
-  const FinerSpecimen finer = CompareWithFinerSpecimen(1.1, 0.01, kManyRows);
+  const FinerSpecimen finer =
+      CompareWithFinerSpecimen(1.1, 0.01, kManyRows, kExpected);
   EXPECT_NEAR(finer.probability, 1, 1e-9);
   EXPECT_NEAR(finer.Mean(), 1.1, 1e-3);
   EXPECT_NEAR(finer.Variance(), 1e-4, 1e-6);
 }
 
 TEST(FinerSpecimen, IsNoneWhereTheResidualLacksTheChange) {
-  const FinerSpecimen own = CompareWithFinerSpecimen(0.01, 0.01, kManyRows);
+  const FinerSpecimen own =
+      CompareWithFinerSpecimen(0.01, 0.01, kManyRows, kExpected);
   EXPECT_LT(own.probability, 0.02);
   EXPECT_LT(std::abs(own.Mean()), 1e-3);
   // Exact displacements, but for rounding.
-  const FinerSpecimen exact = CompareWithFinerSpecimen(1e-13, 0, kManyRows);
+  const FinerSpecimen exact =
+      CompareWithFinerSpecimen(1e-13, 0, kManyRows, kExpected);
   EXPECT_LT(exact.probability, 1e-5);
   EXPECT_LT(exact.Variance(), 1e-10);
 }
 
 TEST(FinerSpecimen, IsAsLikelyAsNotWhereNoiseHidesIt) {
-  const FinerSpecimen hidden = CompareWithFinerSpecimen(3, 1e3, kManyRows);
+  const FinerSpecimen hidden =
+      CompareWithFinerSpecimen(3, 1e3, kManyRows, kExpected);
   EXPECT_NEAR(hidden.probability, 0.5, 1e-3);
   // Between a share of 0 and one of 1 +- 0.45.
   EXPECT_NEAR(hidden.Mean(), 0.5, 1e-3);
@@ -46,7 +51,7 @@ TEST(FinerSpecimen, GrowsLessCertainWithNoise) {
       double sum = 0;
       for (int seed = 0; seed < 200; ++seed) {
         sum += CompareWithFinerSpecimen(truth + noise * normal(generator),
-                                        noise, kManyRows)
+                                        noise, kManyRows, kExpected)
                    .Variance();
       }
       EXPECT_GT(sum, last) << truth << ", " << noise;
@@ -65,7 +70,7 @@ TEST(FinerSpecimenStatistics, CoversTheShare) {
     for (int seed = 0; seed < kSeeds; ++seed) {
       const double truth = seed % 2 == 0 ? 0 : 1 + 0.45 * normal(generator);
       const FinerSpecimen finer = CompareWithFinerSpecimen(
-          truth + noise * normal(generator), noise, kManyRows);
+          truth + noise * normal(generator), noise, kManyRows, kExpected);
       square_sum += std::pow(truth - finer.Mean(), 2) / finer.Variance();
     }
     // The mean square of standardised errors of a Bayesian mean is 1; a

@@ -1,0 +1,161 @@
+#include "elastimate/estimators/displacement_fit/corrected_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "elastimate/core/algebra/node_sums.h"
+#include "elastimate/estimators/interface/judge.h"
+#include "elastimate/estimators/interface/limits.h"
+#include "elastimate/estimators/statistics/bounded_parameter.h"
+#include "elastimate/estimators/statistics/finer_specimen.h"
+
+namespace elastimate {
+namespace {
+
+// Whether finer elements ask for other parameters, beside their errors.
+bool IsCorrectionNotable(const DescribedFit& described) {
+  constexpr double kNotable = 0.05;
+  const Estimate& estimate = described.estimate;
+  const Eigen::Array2d errors =
+      estimate.covariance.diagonal().array().sqrt() /
+      Eigen::Array2d(estimate.elasticity.youngs_modulus, 1);
+  // Of a known or bounded parameter there is no error.
+  return (described.statistics.correction.array().abs() > kNotable * errors)
+      .any();
+}
+
+bool AreElementsTooCoarse(const EstimatorOptions& options,
+                          const DescribedFit& described) {
+  Estimate estimate = described.estimate;
+  Judge(described.evidence, options, estimate);
+  return estimate.Has(FindingCode::kElementsTooCoarse);
+}
+
+// Takes what finer elements explain, and fits again, until that asks for no
+// other parameters.
+DescribedFit Settle(DescribedFit described, CorrectableFit& fit) {
+  constexpr int kMostRefits = 4;
+  for (int i = 0; i < kMostRefits && IsCorrectionNotable(described); ++i) {
+    const Eigen::VectorXd taken =
+        described.statistics.share_of_finer * *described.element_change;
+    const IsotropicElasticity start = Corrected(
+        described.estimate.elasticity, described.statistics.correction);
+    if (!fit.FitNear(start, taken)) {
+      fit.FitNear(described.estimate.elasticity, described.taken);
+      break;
+    }
+    described = fit.Describe();
+  }
+  return described;
+}
+
+// A nu that may become the best once the change to finer elements is taken, as
+// far from that of the fit as to change differently there; empty where there is
+// none.
+std::optional<double> OtherPoissonRatio(const EstimatorOptions& options,
+                                        const DescribedFit& described,
+                                        CorrectableFit& fit) {
+  constexpr double kUsual = 0.3;
+  constexpr double kFar = 0.7;
+  if (options.known_poisson_ratio) {
+    return std::nullopt;
+  }
+  const Bounds bounds = EffectivePoissonRatioBounds(options);
+  double other = std::clamp(kUsual, *bounds.lower, *bounds.upper);
+  if (described.element_change) {
+    const Profile range = fit.RangeWithin(described.statistics.excess_of_finer);
+    other =
+        std::clamp(other, range.lower.poisson_ratio, range.upper.poisson_ratio);
+  }
+  const double nu = described.estimate.elasticity.poisson_ratio;
+  return std::abs(LogStiffnessRatio(other) - LogStiffnessRatio(nu)) > kFar
+             ? std::optional<double>(other)
+             : std::nullopt;
+}
+
+// The square sum of the difference of what finer elements change at two nu, as
+// far as E does not take it up.
+double SquareDifference(const DescribedFit& described,
+                        const Eigen::VectorXd& elsewhere) {
+  if (!described.element_change) {
+    return 0;
+  }
+  const Eigen::VectorXd difference = *described.element_change - elsewhere;
+  const Eigen::VectorXd& scale = described.by_log_youngs_modulus;
+  return SquaredNorm(difference) -
+         std::pow(InnerProduct(scale, difference), 2) / SquaredNorm(scale);
+}
+
+// From two fits, of which the other was the last.  As much of a difference of
+// changes is doubtful as either sees of the changes.
+CorrectedFit BetterOf(const DescribedFit& one, const DescribedFit& other,
+                      double difference, CorrectableFit& fit) {
+  const bool is_other = other.statistics.rest < one.statistics.rest;
+  const DescribedFit& rival = is_other ? one : other;
+  const double share = std::max(std::abs(one.statistics.share_of_finer),
+                                std::abs(other.statistics.share_of_finer));
+  CorrectedFit best = {is_other ? other : one, share * share * difference, {}};
+  const double excess = best.ExcessOf(kTwoSidedQuantile) -
+                        (std::pow(rival.statistics.rest, 2) -
+                         std::pow(best.fit.statistics.rest, 2));
+  if (excess > 0) {
+    if (is_other) {
+      fit.FitNear(rival.estimate.elasticity, rival.taken);
+    }
+    best.rival = fit.RangeWithin(excess);
+  }
+  if (excess > 0 || !is_other) {
+    fit.FitNear(best.fit.estimate.elasticity, best.fit.taken);
+  }
+  return best;
+}
+
+// Of a fit that has settled, from the first one, and what settles from the
+// measurement without all that finer elements change at another nu.
+CorrectedFit BestOf(const DescribedFit& first, const DescribedFit& settled,
+                    double other, CorrectableFit& fit) {
+  const std::optional<Eigen::VectorXd> change = fit.ChangeAt(other);
+  if (change && fit.Fit(ExpectedShare(2) * *change)) {
+    const DescribedFit of_finer = Settle(fit.Describe(), fit);
+    if (of_finer.element_change) {
+      return BetterOf(settled, of_finer, SquareDifference(first, *change), fit);
+    }
+  }
+  fit.FitNear(settled.estimate.elasticity, settled.taken);
+  return {settled, 0, {}};
+}
+
+}  // namespace
+
+Profile CorrectedFit::WithRival(const Profile& profile) const {
+  if (!rival) {
+    return profile;
+  }
+  const auto is_less = [](const IsotropicElasticity& a,
+                          const IsotropicElasticity& b) {
+    return a.poisson_ratio < b.poisson_ratio;
+  };
+  return {std::min(profile.lower, rival->lower, is_less),
+          std::max(profile.upper, rival->upper, is_less)};
+}
+
+CorrectedFit FitCorrected(const Scene& scene, const EstimatorOptions& options,
+                          CorrectableFit& fit) {
+  const DescribedFit first = fit.Describe();
+  if (AreElementsTooCoarse(options, first)) {
+    return {first, 0, {}};
+  }
+  const std::optional<double> elsewhere =
+      scene.mesh.Order() == 2 ? OtherPoissonRatio(options, first, fit)
+                              : std::nullopt;
+  CorrectedFit corrected = {Settle(first, fit), 0, {}};
+  if (elsewhere) {
+    corrected = BestOf(first, corrected.fit, *elsewhere, fit);
+  }
+  corrected.fit.estimate.displacement_residual =
+      first.estimate.displacement_residual;
+  corrected.fit.estimate.bounded_residual = first.estimate.bounded_residual;
+  return corrected;
+}
+
+}  // namespace elastimate
