@@ -77,16 +77,15 @@ std::optional<Eigen::MatrixXd> HierarchicalError::Find(
   residual.leftCols(force_.cols()) += is_free_.asDiagonal() * force_;
   const Eigen::MatrixXd inverses = InverseBlocks(poisson_ratio);
 
-  Eigen::MatrixXd error = Eigen::MatrixXd::Zero(start.rows(), start.cols());
+  std::vector<Eigen::RowVectorXd> energies = {
+      BeginWithLast(poisson_ratio, residual)};
   Eigen::MatrixXd direction;
   Eigen::RowVectorXd previous;
-  std::vector<Eigen::RowVectorXd> energies = {
-      Eigen::RowVectorXd::Zero(start.cols())};
   for (int step = 0; step < kMostIterations; ++step) {
     const Eigen::MatrixXd z = Precondition(inverses, residual, solver);
     const Eigen::RowVectorXd rz = ColumnProducts(residual, z);
     if ((rz.array() <= rounding.array()).all()) {
-      return Eigen::MatrixXd(error.topRows(responses.rows()));
+      return Eigen::MatrixXd(error_.topRows(responses.rows()));
     }
     if (step == 0) {
       direction = z;
@@ -97,17 +96,33 @@ std::optional<Eigen::MatrixXd> HierarchicalError::Find(
     product = Multiply(poisson_ratio, direction);
     const Eigen::RowVectorXd length =
         Quotients(rz, ColumnProducts(direction, product));
-    error += direction * length.asDiagonal();
+    error_ += direction * length.asDiagonal();
     residual -= product * length.asDiagonal();
     energies.push_back(energies.back() + length.cwiseProduct(rz));
     if (step >= kDelay &&
         ((energies.back() - energies[step + 1 - kDelay]).array() <=
          kTolerance * kTolerance * energies.back().array())
             .all()) {
-      return Eigen::MatrixXd(error.topRows(responses.rows()));
+      return Eigen::MatrixXd(error_.topRows(responses.rows()));
     }
   }
+  error_.resize(0, 0);
   return std::nullopt;
+}
+
+Eigen::RowVectorXd HierarchicalError::BeginWithLast(double poisson_ratio,
+                                                    Eigen::MatrixXd& residual) {
+  if (error_.size() != residual.size()) {
+    error_ = Eigen::MatrixXd::Zero(residual.rows(), residual.cols());
+    return Eigen::RowVectorXd::Zero(residual.cols());
+  }
+  const Eigen::MatrixXd product = Multiply(poisson_ratio, error_);
+  const Eigen::RowVectorXd of_residual = ColumnProducts(error_, residual);
+  const Eigen::RowVectorXd scale =
+      Quotients(of_residual, ColumnProducts(error_, product));
+  error_ = error_ * scale.asDiagonal();
+  residual -= product * scale.asDiagonal();
+  return scale.cwiseProduct(of_residual);
 }
 
 Eigen::MatrixXd HierarchicalError::Multiply(double poisson_ratio,

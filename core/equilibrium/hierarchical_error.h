@@ -24,7 +24,8 @@ namespace elastimate {
 /// already, and by the 3 x 3 (2 x 2) blocks of the mid-edge nodes [Deuflhard,
 /// Leinen & Yserentant, IMPACT Comput. Sci. Eng. 1 (1989) 3].  The iterations
 /// do not grow with the mesh, but next to nu = 1/2.  The finer elements are
-/// never assembled.
+/// never assembled.  They begin with the error at the last nu, of the
+/// size that leaves the least energy.
 ///
 /// The functions have to be those of the elements themselves: were quadratic
 /// ones replaced by linear ones of half the size, a bent or twisted e, of large
@@ -35,8 +36,8 @@ class HierarchicalError {
   static constexpr double kTolerance = 0.03;
 
   /// `scene` must outlive this object.  Preconditions and exceptions are those
-  /// of QuadraticScene.  O(num_elements) time; memory as for ten displacements
-  /// of the finer mesh.
+  /// of QuadraticScene.  O(num_elements) time; memory as for eleven
+  /// displacements of the finer mesh.
   explicit HierarchicalError(const Scene& scene);
 
   /// The error at the nodes of the responses to the load cases (the first
@@ -45,8 +46,9 @@ class HierarchicalError {
   /// takes too many iterations.
   /// Precondition: `solver` is of the mesh of the scene, and its last
   /// factorisation succeeded; the nearer to nu, the fewer iterations.
-  /// Cost: for each of some 20 to 30 iterations (45 at nu = 0.45, 80 at 0.49) a
-  /// pass of the finer elements and a solve for each response.
+  /// Cost: for each of some 20 to 30 iterations (45 at nu = 0.45, 80 at 0.49),
+  /// and half as many where one was found at a nu nearby, a pass of the finer
+  /// elements and a solve for each response.
   std::optional<Eigen::MatrixXd> Find(double poisson_ratio,
                                       const Eigen::MatrixXd& responses,
                                       StiffnessSolver& solver);
@@ -54,6 +56,10 @@ class HierarchicalError {
   int NumPasses() const { return num_passes_; }
 
  private:
+  /// Takes what is explained by the last error, which is scaled for that, from
+  /// the residual of none, and returns its energies; zeros where there is none.
+  Eigen::RowVectorXd BeginWithLast(double poisson_ratio,
+                                   Eigen::MatrixXd& residual);
   /// A_finer x, zero in the held rows.
   Eigen::MatrixXd Multiply(double poisson_ratio, const Eigen::MatrixXd& x);
   Eigen::MatrixXd Precondition(const Eigen::MatrixXd& inverses,
@@ -69,6 +75,8 @@ class HierarchicalError {
   Eigen::VectorXd held_;     ///< Displacement; zero where it is free.
   Eigen::MatrixXd force_;
   StiffnessProducts products_;
+  /// What was found last; empty before.
+  Eigen::MatrixXd error_;
   int num_passes_ = 0;
 };
 

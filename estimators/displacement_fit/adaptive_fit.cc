@@ -132,7 +132,9 @@ bool AdaptiveFit::EnlargeUntil(double nu, double limit) {
   return true;
 }
 
-bool AdaptiveFit::Run(const ObservedDisplacements& observed) {
+bool AdaptiveFit::Run(const ObservedDisplacements& observed,
+                      double known_error) {
+  known_error_ = known_error;
   has_converged_ = false;
   if (!is_regular_) {
     return false;
@@ -187,7 +189,9 @@ double AdaptiveFit::NoiseOf(const ObservedDisplacements& observed) const {
 }
 
 double AdaptiveFit::SmallestError() const {
-  return model_.UsesMultigrid() ? kSmallestErrorOfMultigrid : kSmallestError;
+  return std::max(
+      kErrorOverNoise * known_error_,
+      model_.UsesMultigrid() ? kSmallestErrorOfMultigrid : kSmallestError);
 }
 
 ReducedFit::ModelError AdaptiveFit::ErrorAt(double nu) const {

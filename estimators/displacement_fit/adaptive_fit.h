@@ -48,9 +48,10 @@ class AdaptiveFit {
   /// ReducedModel.
   AdaptiveFit(const Scene& scene, const EstimatorOptions& options);
 
-  /// Fits, and refines the model.  False when the stiffness is singular at the
-  /// first pole.
-  bool Run(const ObservedDisplacements& observed);
+  /// Fits, and refines the model, but not below an error of the measurement of
+  /// this norm, which no residual shows.  False when the stiffness is singular
+  /// at the first pole.
+  bool Run(const ObservedDisplacements& observed, double known_error = 0);
 
   /// The ends of the interval of nu in which the sum of squares of the last
   /// fit, with a loss at the weights that it ended with, exceeds its least by
@@ -88,6 +89,7 @@ class AdaptiveFit {
 
   void Fit(const ObservedDisplacements& observed);
   double NoiseOf(const ObservedDisplacements& observed) const;
+  /// That of the observed displacements that always may remain.
   double SmallestError() const;
   ReducedFit::ModelError ErrorAt(double nu) const;
   std::optional<Doubt> DoubtAtTheEstimate(
@@ -109,6 +111,7 @@ class AdaptiveFit {
   int fitted_version_ = 0;
   ReducedFit::Point least_squares_point_;
   ModelFit fit_;
+  double known_error_ = 0;
   bool has_converged_ = false;
   int num_poles_ = 0;
   int num_vectors_of_pole_ = 0;

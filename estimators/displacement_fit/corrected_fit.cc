@@ -142,12 +142,11 @@ Profile CorrectedFit::WithRival(const Profile& profile) const {
 CorrectedFit FitCorrected(const Scene& scene, const EstimatorOptions& options,
                           CorrectableFit& fit) {
   const DescribedFit first = fit.Describe();
-  if (AreElementsTooCoarse(options, first)) {
+  if (scene.mesh.Order() == 1 || AreElementsTooCoarse(options, first)) {
     return {first, 0, {}};
   }
   const std::optional<double> elsewhere =
-      scene.mesh.Order() == 2 ? OtherPoissonRatio(options, first, fit)
-                              : std::nullopt;
+      OtherPoissonRatio(options, first, fit);
   CorrectedFit corrected = {Settle(first, fit), 0, {}};
   if (elsewhere) {
     corrected = BestOf(first, corrected.fit, *elsewhere, fit);

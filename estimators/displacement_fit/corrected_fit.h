@@ -80,9 +80,9 @@ struct CorrectedFit {
 /// rival.
 ///
 /// Elements that are too coarse for a correction are left as they are, and so
-/// would linear ones be whose e decides between minima.  The last fit of `fit`
-/// is the one that is returned; the residuals of the estimate are those of the
-/// measurement as it is.
+/// are linear ones: simplices have quadratic ones above them.  The last fit of
+/// `fit` is the one that is returned; the residuals of the estimate are those
+/// of the measurement as it is.
 CorrectedFit FitCorrected(const Scene& scene, const EstimatorOptions& options,
                           CorrectableFit& fit);
 

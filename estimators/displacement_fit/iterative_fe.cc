@@ -280,6 +280,12 @@ class CorrectableIterativeFit : public CorrectableFit {
   DisplacementResidual& Residual() { return residual_; }
   /// Of the profile; with a loss of other weights than those of the fit.
   const std::vector<ProfilePoint>& Points() const { return points_; }
+  /// The same where the fit was reached from some parameters.
+  void LookAround() {
+    if (points_.empty() && options_.loss == Loss::kNone) {
+      points_ = EvaluateStarts(scene_, options_, model_);
+    }
+  }
 
  private:
   void Take(const Eigen::VectorXd& taken) {
@@ -317,6 +323,7 @@ void EnterProfile(const EstimatorOptions& options, CorrectableIterativeFit& fit,
       evidence.active.youngs_modulus != Side::kNone) {
     return;
   }
+  fit.LookAround();
   DisplacementResidual& residual = fit.Residual();
   const NodeLosses& losses = fit.Best().losses;
   const Eigen::VectorXd row_weights =

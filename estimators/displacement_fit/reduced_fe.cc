@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "elastimate/core/algebra/node_sums.h"
+#include "elastimate/core/equilibrium/hierarchical_error.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/estimators/displacement_fit/adaptive_fit.h"
@@ -86,7 +87,8 @@ class CorrectableAdaptiveFit : public CorrectableFit {
     taken_ = taken;
     data_.SetMeasured(taken.size() == 0 ? measured_
                                         : Eigen::VectorXd(measured_ - taken));
-    return adaptive_.Run(data_) && IsPhysicalFit(adaptive_);
+    return adaptive_.Run(data_, HierarchicalError::kTolerance * Norm(taken)) &&
+           IsPhysicalFit(adaptive_);
   }
 
   // All of the range costs no more.

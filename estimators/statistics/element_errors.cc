@@ -16,7 +16,7 @@ namespace {
 // in the direction of a parameter; by how much of itself that change of the
 // parameters is off; and where it is not known, what they miss as a share of
 // the share of the energy that is missed [benchmarks: unseen].
-constexpr double kLinearErrorShare = 0.1;
+constexpr double kErrorShare = 0.1;
 constexpr double kUnequalShare = 0.33;
 constexpr double kUnknownErrorShare = 0.3;
 // How much more of an error than of the residual that it leaves the parameters
@@ -108,7 +108,7 @@ ElementErrors::ElementErrors(const Scene& scene, const NodeGraph& graph,
       std::max(size, finer.probability * finer.probability * expected_share_);
   share_variance_ = finer.Variance() + std::pow(kUnequalShare * most, 2) +
                     hidden_share_ * hidden_share_;
-  missed_norm_ = kLinearErrorShare * size * Norm(rows);
+  missed_norm_ = kErrorShare * size * Norm(rows);
   likely_change_ = -std::max(share_, hidden_share_) * of_parameters_;
 }
 
