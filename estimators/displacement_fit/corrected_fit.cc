@@ -73,8 +73,8 @@ std::optional<double> OtherPoissonRatio(const EstimatorOptions& options,
              : std::nullopt;
 }
 
-// The square sum of the difference of what finer elements change at two nu, as
-// far as E does not take it up.
+// The square sum of the difference of what finer elements change at another nu,
+// as far as E does not take it up.
 double SquareDifference(const DescribedFit& described,
                         const Eigen::VectorXd& elsewhere) {
   if (!described.element_change) {
@@ -86,15 +86,17 @@ double SquareDifference(const DescribedFit& described,
          std::pow(InnerProduct(scale, difference), 2) / SquaredNorm(scale);
 }
 
-// From two fits, of which the other was the last.  As much of a difference of
-// changes is doubtful as either sees of the changes.
+// From two fits, of which the other was the last, and what finer elements
+// change at the nu that the other began at.  As much of the difference to that
+// is doubtful as either fit sees of the changes.
 CorrectedFit BetterOf(const DescribedFit& one, const DescribedFit& other,
-                      double difference, CorrectableFit& fit) {
+                      const Eigen::VectorXd& elsewhere, CorrectableFit& fit) {
   const bool is_other = other.statistics.rest < one.statistics.rest;
   const DescribedFit& rival = is_other ? one : other;
   const double share = std::max(std::abs(one.statistics.share_of_finer),
                                 std::abs(other.statistics.share_of_finer));
-  CorrectedFit best = {is_other ? other : one, share * share * difference, {}};
+  CorrectedFit best = {is_other ? other : one, 0, {}};
+  best.doubt = share * share * SquareDifference(best.fit, elsewhere);
   const double excess = best.ExcessOf(kTwoSidedQuantile) -
                         (std::pow(rival.statistics.rest, 2) -
                          std::pow(best.fit.statistics.rest, 2));
@@ -110,15 +112,15 @@ CorrectedFit BetterOf(const DescribedFit& one, const DescribedFit& other,
   return best;
 }
 
-// Of a fit that has settled, from the first one, and what settles from the
-// measurement without all that finer elements change at another nu.
-CorrectedFit BestOf(const DescribedFit& first, const DescribedFit& settled,
-                    double other, CorrectableFit& fit) {
+// Of a fit that has settled, and what settles from the measurement without all
+// that finer elements change at another nu.
+CorrectedFit BestOf(const DescribedFit& settled, double other,
+                    CorrectableFit& fit) {
   const std::optional<Eigen::VectorXd> change = fit.ChangeAt(other);
   if (change && fit.Fit(ExpectedShare(2) * *change)) {
     const DescribedFit of_finer = Settle(fit.Describe(), fit);
     if (of_finer.element_change) {
-      return BetterOf(settled, of_finer, SquareDifference(first, *change), fit);
+      return BetterOf(settled, of_finer, *change, fit);
     }
   }
   fit.FitNear(settled.estimate.elasticity, settled.taken);
@@ -149,7 +151,7 @@ CorrectedFit FitCorrected(const Scene& scene, const EstimatorOptions& options,
       OtherPoissonRatio(options, first, fit);
   CorrectedFit corrected = {Settle(first, fit), 0, {}};
   if (elsewhere) {
-    corrected = BestOf(first, corrected.fit, *elsewhere, fit);
+    corrected = BestOf(corrected.fit, *elsewhere, fit);
   }
   corrected.fit.estimate.displacement_residual =
       first.estimate.displacement_residual;
