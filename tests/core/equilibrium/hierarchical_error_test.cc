@@ -82,6 +82,29 @@ TEST_P(HierarchicalErrorOfKinds, TakesNoMoreIterationsOnFinerMeshes) {
   EXPECT_LT(Find(MovedScene(GetParam(), 8), 0.3).num_passes, 1.5 * coarse);
 }
 
+TEST_P(HierarchicalErrorOfKinds, TakesFewerIterationsFromThatOfANuNearby) {
+  const Scene scene = MovedScene(GetParam(), 4);
+  StiffnessSolver solver(scene.mesh, scene.supports, SolverKind::kCholesky);
+  HierarchicalError error(scene);
+  ASSERT_TRUE(solver.Factorize(0.3));
+  ASSERT_TRUE(error.Find(0.3, Responses(scene, 0.3), solver));
+  const int passes = error.NumPasses();
+  ASSERT_TRUE(solver.Factorize(0.33));
+  const auto found = error.Find(0.33, Responses(scene, 0.33), solver);
+  ASSERT_TRUE(found);
+  const Found alone = Find(scene, 0.33);
+  EXPECT_LT(error.NumPasses() - passes, alone.num_passes);
+  const Eigen::MatrixXd expected =
+      Responses(QuadraticScene(SimplicialScene(scene)), 0.33)
+          .topRows(scene.mesh.NumDofs()) -
+      Responses(scene, 0.33);
+  for (Eigen::Index k = 0; k < expected.cols(); ++k) {
+    EXPECT_LT((found->col(k) - expected.col(k)).norm(),
+              2 * HierarchicalError::kTolerance * expected.col(k).norm())
+        << "column " << k;
+  }
+}
+
 TEST_P(HierarchicalErrorOfKinds, IsZeroWhereTheElementsAreExact) {
   Scene scene = testing::SceneOfKind(GetParam(), 3);
   const int dimension = scene.mesh.Dimension();
