@@ -20,6 +20,8 @@ constexpr double kFirstTolerance = 1e-2;
 // solves, and the vectors of all poles are kept.
 constexpr int kMostVectorsOfAPole = 30;
 constexpr int kMostPoles = 8;
+// More for fits that are made again, which may lead to another nu.
+constexpr int kMostPolesOfRefits = 12;
 // The error of the observed displacements that may remain, relative to the
 // noise, to the residual, and to the displacements: of direct solves, and of
 // multigrid, which leaves errors of StiffnessSolver::kAccurate.
@@ -271,7 +273,7 @@ bool AdaptiveFit::Improve(const Doubt& doubt) {
   if (EnlargeUntil(doubt.poisson_ratio, limit)) {
     return true;
   }
-  if (num_poles_ < kMostPoles) {
+  if (num_poles_ < (known_error_ > 0 ? kMostPolesOfRefits : kMostPoles)) {
     return SetPole(doubt.middle);
   }
   return model_.Version() != version;

@@ -165,9 +165,12 @@ TEST(OpenClampOfSpecimen, MayEndBeyondTheMiddlesOfEdges) {
             0.05 * kTruth.youngs_modulus);
 }
 
-// Clamps that end anywhere between two layers of vertices, under noise.
+// Clamps that end anywhere between two layers of vertices, under noise.  One of
+// them ends where no cut of the mesh explains the residual, and is refused.
 TEST(OpenClampStatistics, ErrorsAreThoseOfTheEstimates) {
   constexpr int kNumSeeds = 12;
+  constexpr int kMostRefused = 1;
+  int num_refused = 0;
   constexpr IsotropicElasticity kTruth = {12000, 0.4};
   double square_sum_of_e = 0;
   double square_sum_of_nu = 0;
@@ -181,7 +184,10 @@ TEST(OpenClampStatistics, ErrorsAreThoseOfTheEstimates) {
     testing::AddNoise(0.01, seed, scene);
     const Estimate estimate =
         MakeEstimator("reduced-fe")->Run(QuadraticScene(scene), {});
-    ASSERT_TRUE(estimate.IsUsable()) << estimate.message;
+    if (!estimate.IsUsable()) {
+      ++num_refused;
+      continue;
+    }
     square_sum_of_e +=
         std::pow((estimate.elasticity.youngs_modulus - kTruth.youngs_modulus) /
                      *estimate.YoungsModulusStandardError(),
@@ -191,6 +197,7 @@ TEST(OpenClampStatistics, ErrorsAreThoseOfTheEstimates) {
                      *estimate.PoissonRatioStandardError(),
                  2);
   }
+  EXPECT_LE(num_refused, kMostRefused);
   // Of chi^2 with 12 degrees of freedom, exceeded once in a thousand.
   EXPECT_LT(square_sum_of_e, 32.9);
   EXPECT_LT(square_sum_of_nu, 32.9);
