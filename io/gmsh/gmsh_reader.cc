@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "elastimate/io/text/input_error.h"
+#include "elastimate/io/text/printable.h"
 
 namespace elastimate {
 namespace {
@@ -384,6 +385,59 @@ void ReadViews(const Numbering& nodes, const Numbering& elements,
   }
 }
 
+std::string GroupName(const MeshFile& mesh, int number) {
+  const auto group = std::find_if(
+      mesh.groups.begin(), mesh.groups.end(), [&](const PhysicalGroup& one) {
+        return one.dimension == mesh.Dimension() && one.number == number;
+      });
+  return std::to_string(number) +
+         (group == mesh.groups.end() || group->name.empty()
+              ? ""
+              : " \"" + Printable(group->name) + "\"");
+}
+
+/// Enters `number` for the elements of the entity; says which one has another
+/// number already.
+void EnterRegion(int number, int entity, const Numbering& elements,
+                 Eigen::MatrixXd& regions, MeshFile& mesh) {
+  for (const std::vector<std::size_t>& of_type :
+       GmshElements(mesh.Dimension(), entity).numbers) {
+    for (const std::size_t element : of_type) {
+      double& region = regions(elements.Find(element));
+      if (region != 0 && region != number && mesh.why_no_regions.empty()) {
+        mesh.why_no_regions = mesh.Shape() + " " +
+                              std::to_string(elements.Find(element)) +
+                              " is in the physical groups " +
+                              GroupName(mesh, static_cast<int>(region)) +
+                              " and " + GroupName(mesh, number);
+      }
+      region = number;
+    }
+  }
+}
+
+/// Makes the physical groups of the elements the array `region`, where the file
+/// has none and no element is in two of them.
+void ReadRegions(const Numbering& elements, MeshFile& mesh) {
+  gmsh::vectorpair groups;
+  gmsh::model::getPhysicalGroups(groups, mesh.Dimension());
+  if (groups.empty() || FindArray(mesh.element_arrays, "region") != nullptr) {
+    return;
+  }
+  Eigen::MatrixXd regions = Eigen::MatrixXd::Zero(1, mesh.elements.cols());
+  for (const auto& [dimension, number] : groups) {
+    std::vector<int> entities;
+    gmsh::model::getEntitiesForPhysicalGroup(dimension, number, entities);
+    for (const int entity : entities) {
+      EnterRegion(number, entity, elements, regions, mesh);
+    }
+  }
+  mesh.are_regions_groups = mesh.why_no_regions.empty();
+  if (mesh.are_regions_groups) {
+    mesh.element_arrays.push_back({"region", regions});
+  }
+}
+
 }  // namespace
 
 MeshFile ReadByGmsh(const std::filesystem::path& link,
@@ -408,6 +462,7 @@ MeshFile ReadByGmsh(const std::filesystem::path& link,
     const Numbering elements = ReadElements(gmsh_elements, nodes, mesh);
     ReadPhysicalGroups(nodes, kind->facet_type, mesh);
     ReadViews(nodes, elements, mesh);
+    ReadRegions(elements, mesh);
     mesh.has_other_cells = NumElementsOfAnyDimension() > mesh.elements.cols();
   } catch (const std::string& message) {
     ThrowSaidByGmsh(link, path, message);  // Gmsh throws strings.

@@ -177,6 +177,8 @@ void ReadMesh(Reader& reader, MeshFile& mesh) {
     reader.Bytes(&mesh.thickness.emplace(), sizeof(double));
   }
   ReadGroups(reader, mesh);
+  mesh.are_regions_groups = reader.Number() != 0;
+  mesh.why_no_regions = reader.Text();
   mesh.has_other_cells = reader.Number() != 0;
   mesh.is_vtk = reader.Number() != 0;
   reader.Values(mesh.node_numbers);
@@ -219,6 +221,8 @@ void WriteMesh(std::FILE* file, const MeshFile& mesh) {
     writer.Values(group.nodes);
     writer.Entries(group.facets);
   }
+  writer.Number(mesh.are_regions_groups ? 1 : 0);
+  writer.Text(mesh.why_no_regions);
   writer.Number(mesh.has_other_cells ? 1 : 0);
   writer.Number(mesh.is_vtk ? 1 : 0);
   writer.Values(mesh.node_numbers);

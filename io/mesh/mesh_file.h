@@ -44,6 +44,12 @@ struct MeshFile {
   std::vector<FileArray> node_arrays;
   std::vector<FileArray> element_arrays;
   std::vector<PhysicalGroup> groups;
+  /// The element array `region` has the numbers of the physical groups that the
+  /// elements are in, and zero for those in none.
+  bool are_regions_groups = false;
+  /// Why groups of elements make no such array, "tetrahedron 5 is in ..."; else
+  /// empty.
+  std::string why_no_regions;
 
   /// The field data of these names in a VTK file.
   std::optional<double> model;  ///< A place in kNumberedModels, if valid.

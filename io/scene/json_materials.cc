@@ -21,6 +21,57 @@ int ReadRegion(const JsonValue& value) {
   return static_cast<int>(region);
 }
 
+// The numbers of the groups of that name that are regions of the mesh.
+std::vector<int> ReadNamedRegion(const JsonValue& value, const MeshFile& mesh) {
+  const std::string name = value.String();
+  std::vector<int> regions;
+  std::string names;
+  for (const PhysicalGroup& group : mesh.groups) {
+    if (!mesh.are_regions_groups || group.dimension != mesh.Dimension() ||
+        group.name.empty()) {
+      continue;
+    }
+    names += (names.empty() ? "\"" : ", \"") + Printable(group.name) + "\"";
+    if (group.name == name) {
+      regions.push_back(group.number);
+    }
+  }
+  if (regions.empty()) {
+    value.Fail(
+        "is \"" + Printable(name) + "\", but " +
+        (!names.empty() ? "the regions of the mesh are named " + names +
+                              "; give one of these, or an id"
+         : mesh.why_no_regions.empty()
+             ? "the regions of the mesh have no names; give the id of a "
+               "region, an integer"
+             : mesh.why_no_regions + "; make groups that do not overlap"));
+  }
+  return regions;
+}
+
+std::vector<int> ReadRegions(const JsonValue& value, const MeshFile& mesh) {
+  if (value.IsString()) {
+    return ReadNamedRegion(value, mesh);
+  }
+  if (!value.IsList()) {
+    if (!value.IsInteger()) {
+      value.Fail("must be the id of a region, or its name, or a list of these");
+    }
+    return {ReadRegion(value)};
+  }
+  std::vector<int> regions;
+  for (const JsonValue& each : value.Items()) {
+    const std::vector<int> of_one = each.IsString()
+                                        ? ReadNamedRegion(each, mesh)
+                                        : std::vector<int>{ReadRegion(each)};
+    regions.insert(regions.end(), of_one.begin(), of_one.end());
+  }
+  if (regions.empty()) {
+    value.Fail("is empty; name a region, or leave it out");
+  }
+  return regions;
+}
+
 // Numbers and bounds of parameters of a law, by their names.
 void ReadWhatIsKnown(const JsonValue& value, const Law& law,
                      Material& material) {
@@ -120,20 +171,7 @@ Material ReadMaterial(const JsonValue& value, const MeshFile& mesh) {
     law = FindLaw(free);
   }
   if (value.Has("region")) {
-    const JsonValue region = value.At("region");
-    if (region.IsInteger()) {
-      material.regions.push_back(ReadRegion(region));
-    } else {
-      if (!region.IsList()) {
-        region.Fail("must be the id of a region, or a list of ids");
-      }
-      for (const JsonValue& each : region.Items()) {
-        material.regions.push_back(ReadRegion(each));
-      }
-      if (material.regions.empty()) {
-        region.Fail("is empty; name a region, or leave it out");
-      }
-    }
+    material.regions = ReadRegions(value.At("region"), mesh);
   }
   ReadWhatIsKnown(value, *law, material);
   material.axes = ReadAxes(value, mesh);

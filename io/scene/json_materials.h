@@ -23,7 +23,8 @@ std::string WhyNoFreeAxis();
 
 /// The key "materials" of a scene: a list of {"law", "region", "known",
 /// "bounds", "axis" or "axes"}, of which the last are directions or cell arrays
-/// of the mesh, and "axis" may be "free"; empty without the key.  Throws
+/// of the mesh, and "axis" may be "free"; a region is an id or, where regions
+/// are physical groups, the name of one.  Empty without the key.  Throws
 /// std::invalid_argument, naming the file and the place in it.
 std::vector<Material> ReadMaterials(const JsonValue& document,
                                     const MeshFile& mesh);

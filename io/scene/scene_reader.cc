@@ -35,6 +35,15 @@ bool AreClose(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return (a - b).cwiseAbs().maxCoeff() <= kSameLength * a.cwiseAbs().maxCoeff();
 }
 
+/// One region all over is none: a mesh of Gmsh mostly has one physical group.
+bool AreSameRegions(const Eigen::VectorXi& a, const Eigen::VectorXi& b) {
+  const auto is_one = [](const Eigen::VectorXi& regions) {
+    return regions.size() == 0 || (regions.array() == regions(0)).all();
+  };
+  return (a.size() == b.size() && a == b) ||
+         ((a.size() == 0 || b.size() == 0) && is_one(a) && is_one(b));
+}
+
 /// What differs between the specimens of two scenes; empty when nothing does.
 std::string WhyDifferent(const Scene& first, const Scene& other,
                          RegionChoice regions) {
@@ -62,9 +71,8 @@ std::string WhyDifferent(const Scene& first, const Scene& other,
       mesh.elements != other.mesh.elements) {
     return "its cells differ";
   }
-  if (mesh.regions.size() != other.mesh.regions.size() ||
-      mesh.regions != other.mesh.regions) {
-    return "its array 'region' differs";
+  if (!AreSameRegions(mesh.regions, other.mesh.regions)) {
+    return "its regions differ";
   }
   if ((regions == RegionChoice::kAsGiven ||
        regions == RegionChoice::kGivenOrEach) &&
@@ -227,16 +235,24 @@ void CheckObserved(const std::filesystem::path& path, const Scene& scene) {
   }
 }
 
-/// What of a mesh may be meant otherwise than it is read.
-void NoteMesh(const std::filesystem::path& path, const Scene& scene,
+/// What of a mesh may be meant otherwise than it is read.  `why_no_regions` is
+/// that of its file.
+void NoteMesh(const std::filesystem::path& path,
+              const std::string& why_no_regions, const Scene& scene,
               std::vector<std::string>& notices) {
   const Mesh& mesh = scene.mesh;
+  if (!why_no_regions.empty()) {
+    notices.push_back(PrintablePath(path) + ": its physical groups overlap (" +
+                      why_no_regions +
+                      "), so that they are not the regions of materials");
+  }
   const std::set<int> regions(mesh.regions.begin(), mesh.regions.end());
   if (regions.size() > 1 && scene.materials.empty()) {
-    notices.push_back(PrintablePath(path) + ": the array 'region' has " +
+    notices.push_back(PrintablePath(path) + ": the mesh has " +
                       std::to_string(regions.size()) +
-                      " different ids, but all regions share one material: E "
-                      "and nu are those of the mesh as a whole");
+                      " regions, but all regions share one material: E and nu "
+                      "are those of the mesh as a whole; --regions=each gives "
+                      "each its own");
   }
   const std::vector<std::array<int, 2>> coincident = CoincidentNodes(mesh);
   if (!coincident.empty()) {
@@ -262,10 +278,36 @@ bool SayMore(const std::vector<Material>& materials) {
       });
 }
 
+/// Where the materials of the scene, or the choice, need regions that the mesh
+/// does not have.
+void RequireRegions(const MeshFile& mesh, bool is_one_for_each,
+                    const Scene& scene) {
+  const bool is_one_named = std::any_of(
+      scene.materials.begin(), scene.materials.end(),
+      [](const Material& material) { return !material.regions.empty(); });
+  if (scene.mesh.regions.size() != 0 || (!is_one_for_each && !is_one_named)) {
+    return;
+  }
+  const std::string none =
+      is_one_for_each ? "there are no regions to have a material each"
+                      : "materials name regions, but the mesh has none";
+  if (!mesh.why_no_regions.empty()) {
+    ThrowInputError(mesh.path,
+                    none + ": " + mesh.why_no_regions +
+                        "; put it into one (in .msh of versions 1 and 2 a "
+                        "group is of whole elementary entities), or add the "
+                        "element data \"region\"");
+  }
+  ThrowInputError(mesh.path,
+                  none + (mesh.is_vtk ? "; add the cell array 'region'"
+                                      : "; put the elements into physical "
+                                        "groups, or add the element data "
+                                        "\"region\""));
+}
+
 /// Gives the scene, which `path` describes, the materials that were chosen for
-/// its regions, which `mesh_path` has.
-void ChooseMaterials(const std::filesystem::path& path,
-                     const std::filesystem::path& mesh_path,
+/// the regions of its mesh.
+void ChooseMaterials(const std::filesystem::path& path, const MeshFile& mesh,
                      RegionChoice choice, Scene& scene,
                      std::vector<std::string>& notices) {
   const bool is_one = choice == RegionChoice::kOne;
@@ -279,14 +321,13 @@ void ChooseMaterials(const std::filesystem::path& path,
   }
   if (is_one) {
     scene.materials.clear();
-  } else if (choice == RegionChoice::kEach ||
-             (choice == RegionChoice::kGivenOrEach &&
-              scene.materials.empty())) {
-    if (scene.mesh.regions.size() == 0) {
-      ThrowInputError(mesh_path,
-                      "there are no regions to have a material each; add the "
-                      "cell array 'region'");
-    }
+    return;
+  }
+  const bool is_one_for_each =
+      choice == RegionChoice::kEach ||
+      (choice == RegionChoice::kGivenOrEach && scene.materials.empty());
+  RequireRegions(mesh, is_one_for_each, scene);
+  if (is_one_for_each) {
     scene.materials = IsotropicMaterialOfEachRegion(scene.mesh);
   }
 }
@@ -364,7 +405,7 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
   if (file_scene.frames) {
     reading.frames = nodes.Filter(*file_scene.frames);
   }
-  ChooseMaterials(path, mesh.path, regions, scene, notices);
+  ChooseMaterials(path, mesh, regions, scene, notices);
   ChooseLaw(path, law, scene);
   try {
     ValidateScene(scene);
@@ -467,6 +508,7 @@ SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
   for (const std::filesystem::path& path : paths) {
     FileScene file_scene = ReadFileScene(path, measurement, section);
     const std::filesystem::path mesh_path = file_scene.mesh.path;
+    const std::string why_no_regions = file_scene.mesh.why_no_regions;
     if (&path == &paths.front()) {
       reading.axis_arrays = file_scene.axis_arrays;
     }
@@ -480,7 +522,7 @@ SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
     }
     std::vector<LoadCase> load_cases = std::move(scene.load_cases);
     if (&path == &paths.front()) {
-      NoteMesh(mesh_path, scene, reading.notices);
+      NoteMesh(mesh_path, why_no_regions, scene, reading.notices);
       scene.load_cases.clear();
       reading.scene = std::move(scene);
       reading.file_order = std::move(file_order);

@@ -213,8 +213,11 @@ TEST_F(MaterialsCommand, RefusesWhatIsOfNoRegionOrNoMaterial) {
       "simulate block.vtu --regions=each --parameters=truth.json --out=m.vtu");
   for (const auto& [material, why] :
        std::vector<std::pair<std::string, std::string>>{
-           {R"("region": "1")", "must be the id of a region, or a list of ids"},
-           {R"("region": 1.5)", "must be the id of a region, or a list of ids"},
+           {R"("region": "1")",
+            "region is \"1\", but the regions of the mesh have no names; give "
+            "the id of a region, an integer"},
+           {R"("region": 1.5)",
+            "must be the id of a region, or its name, or a list of these"},
            {R"("region": [1, 2, 3], "law": "anisotropic",
                "known": {"c11": 100, "c22": 100, "c12": 200})",
             "material 1 gives c12 farther from zero"}}) {

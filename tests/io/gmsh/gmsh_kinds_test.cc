@@ -11,6 +11,7 @@
 
 #include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/scene/loads.h"
+#include "elastimate/io/scene/file_scene.h"
 #include "elastimate/io/scene/mesh_reader.h"
 #include "elastimate/io/scene/scene_reader.h"
 #include "tests/io/scene_files.h"
@@ -81,6 +82,10 @@ TEST_P(GmshKinds, AreRead) {
     const MeshFile file = ReadMeshFile(path);
     EXPECT_EQ(file.kind, GetParam());
     EXPECT_TRUE(file.used.all());
+    if (path.extension() == ".msh") {
+      EXPECT_EQ(ReadRegions(file),
+                Eigen::VectorXi::Constant(file.elements.cols(), 1));
+    }
     const auto end = std::find_if(
         file.groups.begin(), file.groups.end(),
         [](const PhysicalGroup& group) { return group.name == "end"; });

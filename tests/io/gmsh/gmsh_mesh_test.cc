@@ -4,6 +4,12 @@
 #include <gmsh.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "elastimate/io/scene/file_scene.h"
 #include "elastimate/io/scene/mesh_reader.h"
 #include "elastimate/io/scene/scene_reader.h"
 #include "tests/io/gmsh_files.h"
@@ -144,6 +150,91 @@ TEST_F(GmshMeshTest, ReadsRegionsFromElementData) {
                        "4 7\n$EndElementData\n");
   EXPECT_EQ(ReadScene({path}, Measurement::kRequired).scene.mesh.regions,
             Eigen::Vector2i(7, 8));
+  EXPECT_FALSE(ReadMeshFile(path).are_regions_groups);
+}
+
+// Of each volume, in which elements are numbered without regard to groups.
+TEST_F(GmshMeshTest, ReadsRegionsFromPhysicalGroups) {
+  const std::string two = Replaced(
+      Replaced(GmshVersion2Mesh(), "3 1 \"body\"", "3 9 \"body\""),
+      "4 4 2 1 1 10 2 3 5\n5 4 2 1 1", "5 4 2 9 2 10 2 3 5\n4 4 2 7 1");
+  std::vector<std::filesystem::path> paths = {folder_.Write("two.msh", two)};
+  gmsh::initialize(0, nullptr, false);
+  gmsh::option::setNumber("General.Terminal", 0);
+  gmsh::merge(paths.front().string());
+  for (const auto& [version, binary] :
+       {std::pair(1.0, 0), std::pair(2.2, 0), std::pair(2.2, 1),
+        std::pair(4.0, 0), std::pair(4.1, 0), std::pair(4.1, 1)}) {
+    paths.push_back(folder_.Path() /
+                    ("mesh" + std::to_string(paths.size()) + ".msh"));
+    gmsh::option::setNumber("Mesh.MshFileVersion", version);
+    gmsh::option::setNumber("Mesh.Binary", binary);
+    gmsh::write(paths.back().string());
+  }
+  gmsh::finalize();
+  for (const std::filesystem::path& path : paths) {
+    SCOPED_TRACE(path.filename());
+    const MeshFile mesh = ReadMeshFile(path);
+    EXPECT_TRUE(mesh.are_regions_groups);
+    const Eigen::VectorXi regions = ReadRegions(mesh);
+    ASSERT_EQ(regions.size(), 2);
+    for (Eigen::Index e = 0; e < 2; ++e) {
+      const bool is_below =
+          (mesh.nodes.row(2)(mesh.elements.col(e)).array() < 0).any();
+      EXPECT_EQ(regions(e), is_below ? 7 : 9);
+    }
+  }
+}
+
+TEST_F(GmshMeshTest, ReadsElementsOfNoGroupAsRegionZero) {
+  const MeshFile mesh = Read(
+      Replaced(GmshVersion2Mesh(), "5 4 2 1 1 10 2 3 7", "5 4 2 0 2 10 2 3 7"));
+  EXPECT_EQ(ReadRegions(mesh), Eigen::Vector2i(1, 0));
+  const MeshFile none = Read(
+      Replaced(GmshVersion2Mesh(), "4 4 2 1 1 10 2 3 5\n5 4 2 1 1 10 2 3 7",
+               "4 4 2 0 1 10 2 3 5\n5 4 2 0 2 10 2 3 7"));
+  EXPECT_EQ(ReadRegions(none).size(), 0);
+  EXPECT_FALSE(none.are_regions_groups);
+}
+
+// A group of the whole beside groups of its parts is for loads and supports.
+TEST_F(GmshMeshTest, HasNoRegionsWhereAnElementIsInTwoGroups) {
+  const std::string content =
+      Replaced(GmshVersion4Scene(), "1 0 0 -1 1 1 1 1 1 0\n",
+               "1 0 0 -1 1 1 1 2 1 3 0\n");
+  const auto path = folder_.Write("scene.msh", content);
+  const SceneReading reading = ReadScene({path}, Measurement::kRequired);
+  EXPECT_EQ(reading.scene.mesh.regions.size(), 0);
+  EXPECT_THAT(reading.notices, ElementsAre(::testing::HasSubstr(
+                                   "its physical groups overlap (tetrahedron "
+                                   "0 is in the physical groups 1")));
+  EXPECT_THROWS_WITH(
+      ReadScene({path}, Measurement::kRequired, {}, RegionChoice::kEach),
+      "scene.msh: there are no regions to have a material each: tetrahedron 0 "
+      "is in the physical groups 1 \"body\" and 3; put it into one");
+}
+
+TEST_F(GmshMeshTest, SaysHowAMeshHasRegions) {
+  const auto path = folder_.Write(
+      "scene.msh",
+      Replaced(GmshVersion2Scene(), "4 4 2 1 1 10 2 3 5\n5 4 2 1 1 10 2 3 7",
+               "4 4 2 0 1 10 2 3 5\n5 4 2 0 1 10 2 3 7"));
+  EXPECT_THROWS_WITH(
+      ReadScene({path}, Measurement::kRequired, {}, RegionChoice::kEach),
+      "scene.msh: there are no regions to have a material each; put the "
+      "elements into physical groups, or add the element data \"region\"");
+}
+
+TEST_F(GmshMeshTest, NotesRegionsThatShareOneMaterial) {
+  const auto path = folder_.Write(
+      "scene.msh", Replaced(GmshVersion2Scene(), "5 4 2 1 1 10 2 3 7",
+                            "5 4 2 2 2 10 2 3 7"));
+  EXPECT_THAT(ReadScene({path}, Measurement::kRequired).notices,
+              ElementsAre(::testing::HasSubstr(
+                  "the mesh has 2 regions, but all regions share one")));
+  EXPECT_THAT(ReadScene({path}, Measurement::kRequired, {}, RegionChoice::kEach)
+                  .scene.materials,
+              ::testing::SizeIs(2));
 }
 
 TEST_F(GmshMeshTest, SaysThatAMeshIsNoScene) {

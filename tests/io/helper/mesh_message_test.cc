@@ -18,6 +18,8 @@ MeshFile SomeMesh() {
   mesh.node_arrays = {{"u", Eigen::MatrixXd::Random(3, 5)}};
   mesh.element_arrays = {{"region", Eigen::MatrixXd::Random(1, 2)}};
   mesh.groups = {{2, 70, "top", {0, 1, 4}, Eigen::MatrixXi::Ones(3, 2)}};
+  mesh.are_regions_groups = true;
+  mesh.why_no_regions = "tetrahedron 1 is in two groups";
   mesh.has_other_cells = true;
   mesh.is_vtk = false;
   mesh.model = 2;
@@ -59,6 +61,8 @@ TEST(MeshMessage, BringsAMesh) {
   EXPECT_EQ(message.mesh.groups.at(0).name, "top");
   EXPECT_EQ(message.mesh.groups[0].nodes, mesh.groups[0].nodes);
   EXPECT_EQ(message.mesh.groups[0].facets, mesh.groups[0].facets);
+  EXPECT_TRUE(message.mesh.are_regions_groups);
+  EXPECT_EQ(message.mesh.why_no_regions, mesh.why_no_regions);
   EXPECT_EQ(message.mesh.kind, mesh.kind);
   EXPECT_EQ(message.mesh.model, 2);
   EXPECT_EQ(message.mesh.thickness, 0.1);

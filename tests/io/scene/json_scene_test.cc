@@ -438,6 +438,34 @@ TEST_F(JsonSceneTest, ReadsObservedComponentsFromAnArray) {
   EXPECT_FALSE(scene.load_cases[0].observed(0, 2));
 }
 
+TEST_F(JsonSceneTest, NamesRegionsByPhysicalGroups) {
+  const std::string groups = Replaced(
+      Replaced(GmshVersion2Mesh(), "5 4 2 1 1 10 2 3 7", "5 4 2 2 2 10 2 3 7"),
+      "3\n2 70 \"top\"", "4\n3 2 \"tissue\"\n2 70 \"top\"");
+  UseGmshMesh(groups);
+  const auto materials = [](const std::string& list) {
+    return Replaced(kDocument, "{\n", "{ \"materials\": " + list + ",\n");
+  };
+  const Scene scene =
+      Read(materials(R"([{"region": "tissue"}, {"region": 1}])")).scene;
+  EXPECT_THAT(scene.materials.at(0).regions, ElementsAre(2));
+  EXPECT_THAT(scene.materials.at(1).regions, ElementsAre(1));
+  EXPECT_THAT(Read(materials(R"([{"region": ["tissue", "body"]}])"))
+                  .scene.materials.at(0)
+                  .regions,
+              ElementsAre(2, 1));
+  EXPECT_THROWS_WITH(
+      Read(materials(R"([{"region": "top"}, {"region": 1}])")),
+      "materials\\[0\\].region is \"top\", but the regions of the mesh are "
+      "named \"body\", \"tissue\"; give one of these, or an id");
+  UseGmshMesh(groups +
+              "$ElementData\n1\n\"region\"\n1\n0\n3\n0\n1\n2\n4 1\n"
+              "5 2\n$EndElementData\n");
+  EXPECT_THROWS_WITH(
+      Read(materials(R"([{"region": "tissue"}, {"region": 1}])")),
+      "is \"tissue\", but the regions of the mesh have no names; give the id");
+}
+
 TEST_F(JsonSceneTest, ErrsOnWhatIsNotInTheSchema) {
   const auto expect = [&](const std::string& from, const std::string& to,
                           const std::string& pattern) {

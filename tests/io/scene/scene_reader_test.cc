@@ -134,8 +134,9 @@ TEST_F(SceneReaderTest, NotesRegionsOnce) {
   EXPECT_THAT(
       ReadScene({first, second}, Measurement::kRequired).notices,
       ElementsAre(::testing::EndsWith(
-          "first.vtu: the array 'region' has 2 different ids, but all regions "
-          "share one material: E and nu are those of the mesh as a whole")));
+          "first.vtu: the mesh has 2 regions, but all regions share one "
+          "material: E and nu are those of the mesh as a whole; "
+          "--regions=each gives each its own")));
   fields_.cell[0].values.setConstant(7);
   EXPECT_THAT(Read(scene_.mesh, fields_).notices, IsEmpty());
 }
@@ -615,7 +616,7 @@ TEST_F(SceneReaderTest, SaysHowFilesDiffer) {
   expect(mesh, fields_, "its cells differ");
   Fields fields = fields_;
   fields.cell.clear();
-  expect(scene_.mesh, fields, "its array 'region' differs");
+  expect(scene_.mesh, fields, "its regions differ");
   const auto larger = folder_.Write("larger.vtk", LegacySceneText());
   EXPECT_THROWS_WITH(
       ReadScene({larger, folder_.Write("smaller.vtk",
