@@ -165,6 +165,20 @@ std::map<int, int> MaterialOfRegions(const std::vector<Material>& materials) {
   return material_of;
 }
 
+// "1, 2, 5"; of many, the first.
+std::string ListOf(const std::set<int>& ids) {
+  constexpr std::size_t kMost = 20;
+  std::string list;
+  std::size_t count = 0;
+  for (const int id : ids) {
+    if (++count > kMost) {
+      return list + ", ...";
+    }
+    list += (list.empty() ? "" : ", ") + std::to_string(id);
+  }
+  return list;
+}
+
 void ValidateRegions(const std::vector<Material>& materials, const Mesh& mesh) {
   if (materials.size() == 1 && materials[0].regions.empty()) {
     return;
@@ -179,16 +193,17 @@ void ValidateRegions(const std::vector<Material>& materials, const Mesh& mesh) {
   }
   if (mesh.regions.size() == 0) {
     throw std::invalid_argument(
-        "materials name regions, but the mesh has none; give the cell array "
-        "\"region\"");
+        "materials name regions, but the mesh has none; give it an id for each "
+        "element");
   }
   const std::set<int> ids(mesh.regions.begin(), mesh.regions.end());
   for (const auto& [region, material] : material_of) {
     if (ids.count(region) == 0) {
       throw std::invalid_argument(NameOf(material) + " names region " +
                                   std::to_string(region) +
-                                  ", of which the mesh has no element; correct "
-                                  "the region");
+                                  ", of which the mesh has no element; its "
+                                  "regions are " +
+                                  ListOf(ids) + "; correct the region");
     }
   }
   for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {

@@ -21,7 +21,10 @@ std::vector<long long> ReadRegions(const JsonValue& entry) {
     return regions;
   }
   const JsonValue region = entry.At("region");
-  if (region.IsInteger()) {
+  if (!region.IsList()) {
+    if (!region.IsInteger()) {
+      region.Fail("must be the id of a region, a list of ids, or null");
+    }
     return {region.Integer()};
   }
   for (const JsonValue& each : region.Items()) {
@@ -48,6 +51,40 @@ std::string OfRegions(const std::vector<long long>& regions) {
 std::string Describe(const MaterialParameters::Parameter& parameter,
                      const std::vector<long long>& regions) {
   return std::string(parameter.law_parameter->name) + OfRegions(regions);
+}
+
+/// Why no material has a parameter of this name and these regions, and what to
+/// do about it.
+std::string WhyNoParameter(const std::vector<long long>& regions,
+                           const Scene& scene,
+                           const MaterialParameters& parameters) {
+  std::string all;  // "region 1; region 2, 3"
+  std::string names;
+  for (std::size_t i = 0; i < parameters.NumMaterials(); ++i) {
+    const std::vector<long long> of_one = RegionsOf(scene, i);
+    all += of_one.empty() ? "" : (all.empty() ? "" : ";") + OfRegions(of_one);
+    if (of_one == regions) {
+      names.clear();
+      for (const LawParameter& parameter : parameters.LawOf(i).Parameters()) {
+        names += (names.empty() ? "" : ", ") + std::string(parameter.name);
+      }
+    }
+  }
+  if (all.empty() && !regions.empty()) {
+    return scene.mesh.regions.size() == 0
+               ? "names a region, but the mesh has none; leave it out"
+               : "names a region, but all regions share one material; give "
+                 "each its own by --regions=each, or leave the region out";
+  }
+  if (!all.empty() && regions.empty()) {
+    return "names no region, but the materials of the scene are" + all +
+           "; name the region";
+  }
+  return names.empty() ? "is" + OfRegions(regions) +
+                             ", but the materials of the scene are" + all +
+                             "; correct the region"
+                       : "is no parameter of its material, which has " + names +
+                             "; correct the name";
 }
 
 void RequirePositiveDefinite(const std::filesystem::path& path,
@@ -102,9 +139,8 @@ Eigen::VectorXd ReadParameters(const std::filesystem::path& path,
       is_found = true;
     }
     if (!is_found) {
-      entry.Fail("(" + Printable(name) +
-                 ") is no parameter of a material of the scene; correct its "
-                 "name or its region");
+      entry.Fail("(" + Printable(name) + ") " +
+                 WhyNoParameter(regions, scene, parameters));
     }
   }
   for (Eigen::Index i = 0; i < values.size(); ++i) {

@@ -159,7 +159,7 @@ Material ReadMaterial(const JsonValue& value, const MeshFile& mesh) {
   const Law* law = FindLaw(material.law);
   if (law == nullptr) {
     value.At("law").Fail("is \"" + Printable(material.law) +
-                         "\"; the laws known here are " + LawNames());
+                         "\", which is no law; make it one of " + LawNames());
   }
   if (value.Has("axis") && IsFree(value.At("axis"))) {
     const std::string free = LawOfFreeAxis(material.law);

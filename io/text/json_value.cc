@@ -1,6 +1,7 @@
 #include "elastimate/io/text/json_value.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <set>
 
@@ -15,6 +16,9 @@ using nlohmann::json;
 
 /// Characters of the parser's own messages, which quote the text.
 constexpr std::size_t kLongestParserMessage = 160;
+
+/// Below what a double holds, above all that a file counts.
+constexpr double kLargestInteger = 1e12 - 1;
 
 /// Without this, the last of several equal keys would silently win.  (A filter
 /// of json::parse would do, but takes a time that grows with the square of the
@@ -147,12 +151,19 @@ std::string JsonValue::String() const {
   return value_->get<std::string>();
 }
 
+bool JsonValue::IsInteger() const {
+  return value_->is_number_integer() ||
+         (value_->is_number_float() &&
+          value_->get<double>() == std::floor(value_->get<double>()));
+}
+
 long long JsonValue::Integer() const {
-  // Beyond its range nlohmann's get wraps around.
-  if (!value_->is_number_integer() ||
-      (value_->is_number_unsigned() &&
-       value_->get<unsigned long long>() > 1000000000000ULL)) {
+  if (!IsInteger()) {
     Fail("must be an integer");
+  }
+  // Beyond its range nlohmann's get wraps around.
+  if (std::abs(value_->get<double>()) > kLargestInteger) {
+    Fail("must be an integer of at most 12 digits");
   }
   return value_->get<long long>();
 }

@@ -36,7 +36,8 @@ class JsonValue {
   bool IsString() const { return value_->is_string(); }
   bool IsList() const { return value_->is_array(); }
   bool IsObject() const { return value_->is_object(); }
-  bool IsInteger() const { return value_->is_number_integer(); }
+  /// JSON does not tell 1.0 from 1.
+  bool IsInteger() const;
   bool IsNull() const { return value_->is_null(); }
   std::string String() const;
   long long Integer() const;

@@ -218,6 +218,11 @@ TEST_F(MaterialsCommand, RefusesWhatIsOfNoRegionOrNoMaterial) {
             "the id of a region, an integer"},
            {R"("region": 1.5)",
             "must be the id of a region, or its name, or a list of these"},
+           {R"("region": 9223372036854775808)",
+            "region must be an integer of at most 12 digits"},
+           {R"("region": [1.0, 2, -1])",
+            "material 1 names region -1, of which the mesh has no element; its "
+            "regions are 1, 2, 3; correct the region"},
            {R"("region": [1, 2, 3], "law": "anisotropic",
                "known": {"c11": 100, "c22": 100, "c12": 200})",
             "material 1 gives c12 farther from zero"}}) {
@@ -239,7 +244,35 @@ TEST_F(MaterialsCommand, NamesWhatIsWrong) {
   Refuse("simulate block.vtu --parameters=truth.json --nu=0 --out=a.vtu",
          "give one or the other");
   Refuse("simulate block.vtu --parameters=truth.json --out=a.vtu",
-         "truth.json: parameters[0] (youngs_modulus) is no parameter");
+         "truth.json: parameters[0] (youngs_modulus) names a region, but all "
+         "regions share one material; give each its own by --regions=each");
+  Refuse("plan plain.vtu --parameters=truth.json",
+         "truth.json: parameters[0] (youngs_modulus) names a region, but the "
+         "mesh has none; leave it out");
+  testing::WriteText(
+      folder_ / "plain.json",
+      R"({"parameters": [{"name": "youngs_modulus_1", "value": 1}]})");
+  Refuse("plan plain.vtu --parameters=plain.json",
+         "parameters[0] (youngs_modulus_1) is no parameter of its material, "
+         "which has youngs_modulus, poisson_ratio; correct the name");
+  for (const auto& [entry, says] : std::vector<std::pair<Json, std::string>>{
+           {{{"name", "E"}, {"region", 1}, {"value", 1}},
+            "parameters[0] (E) is no parameter of its material, which has "
+            "youngs_modulus, poisson_ratio; correct the name"},
+           {{{"name", "youngs_modulus"}, {"region", 9}, {"value", 1}},
+            "is of region 9, but the materials of the scene are of region 1; "
+            "of region 2; of region 3; correct the region"},
+           {{{"name", "youngs_modulus"}, {"value", 1}},
+            "names no region, but the materials of the scene are of region 1"},
+           {{{"name", "youngs_modulus"}, {"region", "1"}, {"value", 1}},
+            "parameters[0].region must be the id of a region, a list of ids, "
+            "or null"}}) {
+    testing::WriteText(folder_ / "one.json",
+                       Json({{"parameters", Json::array({entry})}}).dump());
+    Refuse(
+        "simulate block.vtu --regions=each --parameters=one.json --out=a.vtu",
+        says);
+  }
   Json few = Parameters();
   few["parameters"].erase(5);
   testing::WriteText(folder_ / "few.json", few.dump());
@@ -261,7 +294,7 @@ TEST_F(MaterialsCommand, NamesWhatIsWrong) {
       const auto& [materials, says] :
       std::vector<std::pair<std::string, std::string>>{
           {R"([{"law": "rubber"}])",
-           "materials[0].law is \"rubber\"; the laws known here are "
+           "materials[0].law is \"rubber\", which is no law; make it one of "
            "isotropic"},
           {R"([{"region": 1}])", "element"},
           {R"([{"region": [1, 2, 3], "known": {"E": 1}}])",

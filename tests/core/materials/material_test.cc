@@ -39,7 +39,9 @@ TEST(Materials, ThatAreWrongAreNamed) {
        "region 7 is given to material 1 and to material 2"},
       {{{"isotropic", {3}, {}, {}}, {"isotropic", {}, {}, {}}},
        "material 2 names no region"},
-      {{{"isotropic", {3, 7, 8}, {}, {}}}, "the mesh has no element"},
+      {{{"isotropic", {3, 7, 8}, {}, {}}},
+       "region 8, of which the mesh has no element; its regions are 3, 7; "
+       "correct the region"},
       {{{"isotropic", {}, {{"shear_modulus", 1}}, {}}},
        "youngs_modulus, poisson_ratio only"},
       {{{"isotropic", {}, {{"poisson_ratio", 0.6}}, {}}},

@@ -487,7 +487,8 @@ TEST_F(JsonSceneTest, ErrsOnWhatIsNotInTheSchema) {
          "to 4");
   expect("[0, 1, 4]", "[-1]", "supports\\[0\\].nodes.ids\\[0\\] is -1");
   expect("[0, 1, 4]", "[1.5]", "supports.*ids\\[0\\] must be an integer");
-  expect("[0, 1, 4]", "[18446744073709551615]", "supports.*must be an integer");
+  expect("[0, 1, 4]", "[18446744073709551615]",
+         "supports.*must be an integer of at most 12 digits");
   expect("[0, 1, 4]", "[]", "supports\\[0\\].nodes selects no node");
   expect("[0, 1, 4]", "3", "supports\\[0\\].nodes.ids must be a list");
   expect("{\"ids\": [0, 1, 4]}", "\"some\"",
