@@ -9,8 +9,8 @@
 namespace elastimate {
 namespace {
 
-// As many as fit into a sentence.
-constexpr std::size_t kMostLines = 100;
+// As many as a sentence is read to the end with.
+constexpr std::size_t kMostLines = 10;
 
 }  // namespace
 
@@ -34,10 +34,12 @@ std::vector<std::string> OutlierLines(
     for (std::size_t i = 0; i < lines.size() && i < kMostLines; ++i) {
       list += (i == 0 ? "" : ", ") + std::to_string(lines[i]);
     }
-    sentences.push_back(PrintablePath(file) + ": " +
-                        (lines.size() == 1 ? "an outlier is on line "
-                                           : "outliers are on the lines ") +
-                        list + (lines.size() > kMostLines ? ", ..." : ""));
+    sentences.push_back(
+        PrintablePath(file) + ": " +
+        (lines.size() == 1
+             ? "an outlier is on line "
+             : std::to_string(lines.size()) + " outliers are on the lines ") +
+        list + (lines.size() > kMostLines ? ", ..." : ""));
   }
   return sentences;
 }

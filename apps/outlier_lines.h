@@ -9,7 +9,8 @@
 
 namespace elastimate {
 
-/// "points.csv: outliers are on the lines 6, 10, 11": a sentence for each file
+/// "points.csv: 3 outliers are on the lines 6, 10, 11", of many the first: a
+/// sentence for each file
 /// with some, as far as measurements are lines of text (SceneReading).
 std::vector<std::string> OutlierLines(
     const std::vector<Outlier>& outliers,

@@ -193,7 +193,11 @@ void AddMaterials(const Estimate& estimate, std::ostringstream& text) {
   AddParameters(estimate, text);
   AddAxes(estimate, text);
   for (const MaterialEstimate& material : estimate.materials) {
-    Line(RegionsLabel(material.regions), Verdict(material), text);
+    // Some estimators have none.
+    const std::string verdict = Verdict(material);
+    if (!verdict.empty()) {
+      Line(RegionsLabel(material.regions), verdict, text);
+    }
   }
   for (const std::string& combination : estimate.combinations) {
     Line("determined only", combination, text);

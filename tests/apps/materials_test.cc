@@ -71,6 +71,17 @@ TEST_F(MaterialsCommand, SimulatesAndEstimatesEachRegion) {
     EXPECT_EQ(report["covariance"].size(), 6U);
     EXPECT_EQ(report["error_budget"]["noise"].size(), 6U);
   }
+  // Of what is not usable they say nothing of a region.
+  Succeed(
+      "simulate block.vtu --regions=each --parameters=truth.json --noise=0.05 "
+      "--out=noisy.vtu");
+  for (const std::string estimator : {"closed-form", "bounded"}) {
+    const std::string table =
+        Run("estimate noisy.vtu --regions=each --estimator=" + estimator)
+            .output;
+    EXPECT_THAT(table, HasSubstr("NOT USABLE"));
+    EXPECT_THAT(table, Not(HasSubstr("\nregion 1  ")));
+  }
   // The wrong model does not fit.
   const std::string one =
       Run("estimate m.vtu --estimator=iterative-fe --json=-").output;

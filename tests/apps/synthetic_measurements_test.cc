@@ -112,6 +112,11 @@ TEST_F(SyntheticMeasurements, WithOutliersAndSmoothNoiseAreStillEstimated) {
   WriteScene("camera.csv", force);
   const nlohmann::json with_outliers = Estimate();
   ExpectWithinThreeErrors(with_outliers);
+  // All are in the report, the first ten lines of the file in the notice.
+  EXPECT_THAT(
+      with_outliers["notices"].back().get<std::string>(),
+      ::testing::ContainsRegex("camera.csv: 3[01] outliers are on the lines "
+                               "([0-9]+, ){10}\\.\\.\\.$"));
   Simulate("--points=1000 --noise_sd=5e-5 --out=plain.csv --seed=4");
   const Eigen::MatrixXd gross =
       Points("camera.csv").displacement - Points("plain.csv").displacement;
