@@ -1,6 +1,7 @@
 #include "elastimate/io/points/measured_points.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <sstream>
 #include <utility>
@@ -65,6 +66,12 @@ std::string LengthText(double length) {
   return text.str();
 }
 
+// A number of three digits that is above a positive length, and hardly more.
+double RoundedUp(double length) {
+  const double unit = std::pow(10, std::floor(std::log10(length)) - 2);
+  return unit * std::ceil(length * (1 + 1e-9) / unit);
+}
+
 void CheckDistances(const std::filesystem::path& path, const PointsFile& file,
                     const Eigen::VectorXd& distance, double tolerance,
                     std::vector<std::string>& notices) {
@@ -74,9 +81,12 @@ void CheckDistances(const std::filesystem::path& path, const PointsFile& file,
           path, "line " + std::to_string(file.lines[point]) + ": the point " +
                     PositionText(file.positions.col(point)) + " lies " +
                     LengthText(distance(point)) +
-                    " outside the mesh; use the mesh's units and axes, leave "
-                    "it out, or give a \"tolerance\" above " +
-                    LengthText(tolerance));
+                    " outside the mesh, more than the tolerance of " +
+                    LengthText(tolerance) +
+                    "; use the mesh's units and axes, leave it out, or give "
+                    "the \"tolerance\" " +
+                    LengthText(RoundedUp(distance.maxCoeff())) +
+                    ", which takes all points of the file");
     }
   }
   const Eigen::Index num_outside = (distance.array() > 0).count();

@@ -97,16 +97,19 @@ TEST_F(MeasuredPointsTest, MayComeFromSeveralFiles) {
 
 TEST_F(MeasuredPointsTest, AreRefusedOutside) {
   folder_.Write("points.csv",
-                "x,y,z,ux,uy,uz\n.5,.5,.5,0,0,1\n.5,.5,1.25,0,0,1\n");
+                "x,y,z,ux,uy,uz\n.5,.5,.5,0,0,1\n.5,.5,1.25,0,0,1\n"
+                ".5,.5,1.31234,0,0,1\n");
   EXPECT_THROWS_WITH(
       Read(kPointsDocument),
       "points.csv: line 3: the point \\(0.5, 0.5, 1.25\\) lies 0.25 outside "
-      "the mesh; .* or give a .tolerance. above 0.00173");
-  const SceneReading reading = Read(Replaced(
-      kPointsDocument, R"("points.csv")", R"("points.csv", "tolerance": 0.3)"));
+      "the mesh, more than the tolerance of 0.00173; .* or give the "
+      ".tolerance. 0.313, which takes all points of the file");
+  const SceneReading reading =
+      Read(Replaced(kPointsDocument, R"("points.csv")",
+                    R"("points.csv", "tolerance": 0.313)"));
   ASSERT_EQ(reading.notices.size(), 1U);
   EXPECT_THAT(reading.notices[0],
-              HasSubstr("1 of 2 points lie outside the mesh, up to 0.25"));
+              HasSubstr("2 of 3 points lie outside the mesh, up to 0.312"));
 }
 
 TEST_F(MeasuredPointsTest, NameWhatIsWrong) {
