@@ -68,8 +68,9 @@ std::string WhyNotTheseAxes(const std::vector<Eigen::MatrixXd>& axes,
                             Eigen::Index num_elements,
                             const std::vector<Eigen::Index>& elements) {
   if (axes.empty()) {
-    return num_axes == 1 ? "has no axis; give its direction, \"axis\""
-                         : "has no axes; give two directions, \"axes\"";
+    return num_axes == 1
+               ? "has no axis; give its direction, by \"axis\" or --axis"
+               : "has no axes; give two directions, by \"axes\" or --axis";
   }
   if (int(axes.size()) != num_axes) {
     return "has " + std::to_string(axes.size()) +

@@ -302,7 +302,10 @@ TEST_F(AnisotropicCommand, RefusesWhatIsWrong) {
   for (const auto& [flags, says] :
        std::vector<std::pair<std::string, std::string>>{
            {"--material=wood", "the laws are isotropic, transversely"},
-           {"--material=orthotropic", "has no axes"},
+           {"--material=orthotropic",
+            "has no axes; give two directions, by \"axes\" or --axis"},
+           {"--material=transversely_isotropic",
+            "has no axis; give its direction, by \"axis\" or --axis"},
            {"--material=orthotropic --axis=1,0,0", "its law takes 2"},
            {"--material=orthotropic --axis=1,0,0,1,1,0", "not orthogonal"},
            {"--material=transversely_isotropic --axis=0,0,0", "length 0"},

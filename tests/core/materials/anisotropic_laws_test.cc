@@ -155,7 +155,8 @@ TEST(MaterialAxes, ThatAreWrongAreNamed) {
   Eigen::MatrixXd each = x.replicate(1, mesh.NumElements());
   each.col(4).setZero();
   const std::vector<std::pair<Material, std::string>> wrong = {
-      {{"transversely_isotropic", {}, {}, {}}, "has no axis"},
+      {{"transversely_isotropic", {}, {}, {}},
+       "has no axis; give its direction, by \"axis\" or --axis"},
       {{"orthotropic", {}, {}, {}}, "has no axes"},
       {{"orthotropic", {}, {}, {}, {x}}, "has 1 axis, and its law takes 2"},
       {{"isotropic", {}, {}, {}, {x}}, "alike in all directions"},
