@@ -18,7 +18,7 @@
 
 #include "elastimate/estimators/interface/finding.h"
 #include "elastimate/estimators/registry.h"
-#include "tests/apps/region_scene.h"
+#include "elastimate/io/scene/scene_reader.h"
 #include "tests/program.h"
 
 namespace elastimate {
@@ -144,15 +144,15 @@ TEST_F(Documentation, HasTheOutputOfTheProgram) {
   std::vector<std::string> samples;
   testing::WriteText(folder_ / "bar.json",
                      Blocks("docs/plan.md", "json").at(0));
-  for (const std::string document :
-       {"README.md", "docs/measurements.md", "docs/plan.md"}) {
+  for (const std::string document : {"README.md", "docs/measurements.md",
+                                     "docs/materials.md", "docs/plan.md"}) {
     for (const std::string& block : Blocks(document, "")) {
       if (block.rfind(prompt, 0) == 0) {
         samples.push_back(block);
       }
     }
   }
-  EXPECT_GE(samples.size(), 7U);
+  EXPECT_GE(samples.size(), 8U);
   for (const std::string& block : samples) {
     const std::vector<std::string> expected = Lines(block);
     const std::vector<std::string> actual =
@@ -242,13 +242,38 @@ TEST_F(Documentation, HasEveryLaw) {
             NamesAfter("\n", "\n" + Succeed("materials").output));
 }
 
-TEST_F(Documentation, HasMaterialsThatCanBeRead) {
-  const std::vector<std::string> scenes = Blocks("docs/materials.md", "json");
-  ASSERT_EQ(scenes.size(), 2U);
-  testing::WriteRegions(folder_ / "block.vtu");
-  testing::WriteText(folder_ / "scene.json", scenes[0]);
-  testing::WriteText(folder_ / "parameters.json", scenes[1]);
-  Succeed("simulate scene.json --parameters=parameters.json --out=a.vtu");
+TEST_F(Documentation, HasTheFilesOfTheThreeRegions) {
+  const std::vector<std::string> samples = Blocks("docs/materials.md", "json");
+  ASSERT_EQ(samples.size(), 2U);
+  const std::string folder = "examples/three_regions/";
+  EXPECT_EQ(samples[0], testing::ReadText(Source(folder + "scene.json")));
+  EXPECT_EQ(samples[1], testing::ReadText(Source(folder + "parameters.json")));
+}
+
+TEST_F(Documentation, HasTheCommandsOfTheThreeRegions) {
+  const std::vector<std::string> blocks =
+      Blocks("examples/three_regions/README.md", "");
+  ASSERT_EQ(blocks.size(), 2U);
+  const std::string prompt = "elastimate ";
+  for (std::string block : blocks) {
+    for (std::size_t i = block.find("\\\n"); i != std::string::npos;
+         i = block.find("\\\n")) {
+      block.erase(i, 2);
+    }
+    for (const std::string& line : Lines(block)) {
+      ASSERT_EQ(line.substr(0, prompt.size()), prompt);
+      Succeed(line.substr(prompt.size()));
+    }
+  }
+  const auto displacement_of = [](const std::filesystem::path& path) {
+    return ReadScene({path}, Measurement::kRequired)
+        .scene.load_cases.at(0)
+        .displacement;
+  };
+  EXPECT_TRUE(
+      displacement_of(folder_ / "block.vtu")
+          .isApprox(displacement_of(Source("examples/three_regions/block.vtu")),
+                    1e-9));
 }
 
 TEST_F(Documentation, HasEveryEstimator) {
