@@ -256,6 +256,10 @@ int RunOne(const std::vector<std::string>& arguments,
   }
   std::optional<ChosenLaw> law;
   if (ChoosesLaw()) {
+    // Now, for who would not wait.
+    progress.reset();
+    PrintNotices(NoticesOfLawChoice(modelled));
+    progress.emplace("comparing laws");
     law = GiveChosenLaw(options, Sources(arguments), modelled, scene,
                         reading.notices);
   }

@@ -1,11 +1,41 @@
 #include "apps/law_choice.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <stdexcept>
 
 #include "apps/flags.h"
+#include "elastimate/core/materials/anisotropic_law.h"
+#include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/estimators/displacement_fit/iterative_fe.h"
 
 namespace elastimate {
+namespace {
+
+// Of the fit of no symmetry with which all laws are compared.
+std::size_t NumStiffnesses(const Scene& scene) {
+  return AnisotropicLaw().Parameters().size() *
+         std::max<std::size_t>(scene.materials.size(), 1);
+}
+
+std::string HowManyStiffnesses(const Scene& scene) {
+  return "laws are compared by a fit of the stiffnesses of all materials, " +
+         std::to_string(NumStiffnesses(scene)) + " parameters";
+}
+
+// Fewer components than parameters determine none of these.
+void RequireMoreDataThanParameters(const Scene& scene) {
+  const Eigen::Index num_observed = ObservedDisplacements(scene).Size();
+  if (num_observed <= static_cast<Eigen::Index>(NumStiffnesses(scene))) {
+    throw std::invalid_argument(
+        AsGiven("material") + ": " + HowManyStiffnesses(scene) + ", and " +
+        std::to_string(num_observed) +
+        " components were measured; name the law, join regions in the "
+        "\"materials\" of a scene.json, or measure more");
+  }
+}
+
+}  // namespace
 
 void CheckLawChoice(const SceneReading& reading,
                     const EstimatorOptions& options) {
@@ -30,6 +60,16 @@ void CheckLawChoice(const SceneReading& reading,
   if (!why_not.empty()) {
     throw std::invalid_argument(AsGiven("material") + ": " + why_not);
   }
+  RequireMoreDataThanParameters(reading.scene);
+}
+
+std::vector<std::string> NoticesOfLawChoice(const Scene& scene) {
+  if (scene.materials.size() < 2) {
+    return {};
+  }
+  return {AsGiven("material") + ": " + HowManyStiffnesses(scene) +
+          ", which may take many minutes; a law that is named, or fewer "
+          "materials, take less"};
 }
 
 ChosenLaw GiveChosenLaw(const EstimatorOptions& options,

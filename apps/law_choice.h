@@ -12,9 +12,14 @@ namespace elastimate {
 
 /// Choosing a law (--material=auto) compares fits, and is of one measurement:
 /// throws std::invalid_argument, naming the flag, where flags, scene or options
-/// do not go with it.
+/// do not go with it, and where there are fewer measured components than
+/// stiffnesses of all materials.
 void CheckLawChoice(const SceneReading& reading,
                     const EstimatorOptions& options);
+
+/// What there is to say before laws are compared: that it takes long for
+/// several materials.
+std::vector<std::string> NoticesOfLawChoice(const Scene& scene);
 
 /// Gives a scene, and the same at the element order that was asked for, the
 /// materials of the law that the measurement asks for; where laws cannot be

@@ -246,6 +246,28 @@ TEST_F(MaterialsCommand, RefusesWhatIsOfNoRegionOrNoMaterial) {
   }
 }
 
+// A fit of all stiffnesses of many materials takes long.
+TEST_F(MaterialsCommand, SaysHowManyStiffnessesAChoiceOfLawsFits) {
+  Succeed("generate cuboid --cells=1,1,1 --out=cell.vtu");
+  Succeed("simulate cell.vtu --youngs=1 --nu=0.3 --out=one.vtu");
+  Refuse("estimate one.vtu --material=auto --estimator=iterative-fe",
+         "--material=auto: laws are compared by a fit of the stiffnesses of "
+         "all materials, 21 parameters, and 12 components were measured; name "
+         "the law");
+  const std::string materials =
+      R"({"mesh": "m.vtu", "materials": [{"region": 1}, {"region": [2, 3]}],
+          "supports": [{"nodes": {"box": [[-1,-1,-1],[2,2,1e-9]]}}],
+          "cases": [{"displacement": {"array": "displacement"},
+                     "loads": [{"type": "nodal_force", "array": "force"}]}]})";
+  testing::WriteText(folder_ / "two.json", materials);
+  Succeed("simulate block.vtu --youngs=1e4 --nu=0.3 --out=m.vtu");
+  EXPECT_THAT(
+      Run("estimate two.json --material=auto --estimator=reduced-fe").errors,
+      HasSubstr("notice: --material=auto: laws are compared by a fit "
+                "of the stiffnesses of all materials, 42 parameters, "
+                "which may take many minutes; "));
+}
+
 TEST_F(MaterialsCommand, NamesWhatIsWrong) {
   Succeed("generate cuboid --out=plain.vtu");
   Refuse("simulate plain.vtu --regions=each --youngs=1 --nu=0 --out=a.vtu",
