@@ -595,6 +595,15 @@ TEST_F(JsonSceneTest, JoinsWithOtherFilesOfTheMesh) {
   EXPECT_EQ(
       ReadScene({json, msh}, Measurement::kRequired).scene.load_cases.size(),
       2);
+  // Whose one group is a region all over, which is as good as none.
+  Scene scene = ReadScene({msh}, Measurement::kRequired).scene;
+  EXPECT_EQ(scene.mesh.regions, Eigen::Vector2i(1, 1));
+  scene.mesh.regions.resize(0);
+  scene.load_cases[0].displacement *= 2;
+  const auto vtu = folder_.Path() / "without.vtu";
+  WriteVtu(vtu, scene.mesh, SceneFields(scene));
+  EXPECT_EQ(
+      ReadScene({msh, vtu}, Measurement::kRequired).scene.load_cases.size(), 2);
 }
 
 TEST_F(JsonSceneTest, ErrsOnALoadCaseGivenTwice) {
