@@ -294,7 +294,8 @@ void ClimbToQuadraticElements(const Scene& scene,
   const Estimate& linear = ladder.Last();
   const bool are_too_coarse =
       linear.Has(FindingCode::kElementsTooCoarse) ||
-      (!linear.IsUsable() && AreUndeterminedByElements(linear));
+      (!linear.IsUsable() && (linear.Has(FindingCode::kPoissonRatioAtLimit) ||
+                              AreUndeterminedByElements(linear)));
   if (!are_too_coarse || !HasQuadraticKind(scene.mesh.kind) ||
       scene.mesh.NumElements() > kMostQuadraticElements ||
       !ReducedFe().WhyUnsupported(scene, options).empty()) {
