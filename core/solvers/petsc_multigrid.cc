@@ -49,8 +49,9 @@ std::mutex& PetscMutex() {
 // PETSc 3.18 takes, which coarsens meshes with nodes of few neighbours by two
 // only.  Chebyshev smoothing is symmetric, and twice as fast as SOR.  Its
 // largest eigenvalue is estimated by GMRES, since conjugate gradients, which
-// PETSc would take, end early where a matrix is not positive definite, and PETSc
-// reads numbers then that nothing has set, some of which it never ends with.
+// PETSc would take, end early where a matrix is not positive definite, and
+// PETSc reads numbers then that nothing has set, some of which it never ends
+// with.
 constexpr char kOptions[] =
     "-elastimate_ksp_type cg -elastimate_ksp_norm_type natural "
 #ifdef ELASTIMATE_HAS_ML

@@ -17,6 +17,7 @@ namespace {
 std::vector<Outlier> AtNodes(std::vector<Eigen::Index> nodes) {
   std::sort(nodes.begin(), nodes.end());
   std::vector<Outlier> outliers;
+  outliers.reserve(nodes.size());
   for (const Eigen::Index node : nodes) {
     outliers.push_back({0, node, false});
   }
