@@ -445,6 +445,7 @@ FitStatistics DescribeDisplacementFit(
     const Scene& scene, const NodeGraph& graph, const EstimatorOptions& options,
     const ObservedDisplacements& observed, const DisplacementFit& fit,
     const NodeLosses& losses, Evidence& evidence, Estimate& estimate) {
+  estimate.element_order = scene.mesh.Order();
   FitDescription description(options, observed, fit, losses, evidence,
                              estimate);
   if (description.FindFreeDirection() || description.AreTooFew()) {

@@ -176,8 +176,15 @@ double LargestDifference(const VariableEstimate& estimate, Eigen::Index i,
          kTwoSidedErrors * std::sqrt(std::max(variance, 0.0));
 }
 
-// MemberSpread::errors of the member at `place` of a group, squared.
-Eigen::VectorXd SquaredErrorsOfMember(
+// What follows where the member at `place` of a group may be another than the
+// rest of it.
+struct DoubtOfMember {
+  Eigen::VectorXd squared_errors;  ///< MemberSpread::errors, squared.
+  /// w (x_rest - x)^2, by what it pulls the others.
+  Eigen::VectorXd squared_pull;
+};
+
+DoubtOfMember DoubtMember(
     const std::vector<std::size_t>& group, std::size_t place,
     const std::vector<std::vector<Eigen::Index>>& variables,
     const VariableEstimate& estimate, double num_observations) {
@@ -195,15 +202,15 @@ Eigen::VectorXd SquaredErrorsOfMember(
       static_cast<double>(own.size()) * std::log(num_observations);
   const double apart =
       1 / (1 + std::exp((information - state.ChiSquare(0, 1)) / 2));
+  const Eigen::ArrayXd rest = state.estimate.variables(state.variables[0]);
   state.Merge(0, 1);
+  const Eigen::ArrayXd all = state.estimate.variables(state.variables[0]);
   const Eigen::ArrayXd together =
       state.estimate.covariance.diagonal()(state.variables[0]).array();
-  const Eigen::ArrayXd alone =
-      estimate.covariance.diagonal()(own).array() +
-      (estimate.variables(own) - state.estimate.variables(state.variables[0]))
-          .array()
-          .square();
-  return (1 - apart) * together + apart * alone;
+  const Eigen::ArrayXd alone = estimate.covariance.diagonal()(own).array() +
+                               (estimate.variables(own).array() - all).square();
+  return {(1 - apart) * together + apart * alone,
+          apart * (rest - all).square()};
 }
 
 }  // namespace
@@ -286,11 +293,12 @@ std::vector<MemberSpread> SpreadOfMembers(
     MemberSpread spread = {Eigen::VectorXd::Zero(num_variables),
                            Eigen::VectorXd::Zero(num_variables),
                            Eigen::MatrixXd::Zero(num_variables, num_members)};
+    Eigen::VectorXd squared_pull = Eigen::VectorXd::Zero(num_variables);
     for (Eigen::Index i = 0; num_members > 1 && i < num_members; ++i) {
-      spread.errors.col(i) =
-          SquaredErrorsOfMember(group, std::size_t(i), variables, estimate,
-                                num_observations)
-              .cwiseSqrt();
+      const DoubtOfMember doubt = DoubtMember(group, std::size_t(i), variables,
+                                              estimate, num_observations);
+      spread.errors.col(i) = doubt.squared_errors.cwiseSqrt();
+      squared_pull = squared_pull.cwiseMax(doubt.squared_pull);
     }
     for (Eigen::Index k = 0; k < num_variables; ++k) {
       double sum = 0;
@@ -306,7 +314,8 @@ std::vector<MemberSpread> SpreadOfMembers(
                        LargestDifference(estimate, i, variables[other][k]));
         }
       }
-      spread.variance(k) = std::max(0.0, sum / sum_of_weights);
+      spread.variance(k) =
+          std::max({0.0, sum / sum_of_weights, squared_pull(k)});
     }
     spreads.push_back(spread);
   }

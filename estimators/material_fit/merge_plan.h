@@ -82,7 +82,9 @@ struct MemberSpread {
   ///
   /// [DerSimonian & Laird, Control. Clin. Trials 7 (1986) 177, with correlated
   /// errors]: a region of the material is that much more uncertain than their
-  /// mean.
+  /// mean.  At least the largest w (x_rest - x)^2
+  /// of members that may be others than the rest of them (see errors), by which
+  /// these pull it.
   Eigen::VectorXd variance;
   /// Of two members, |x_i - x_j| and 1.96 of its errors.
   Eigen::VectorXd largest_differences;

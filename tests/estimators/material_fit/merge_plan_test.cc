@@ -170,6 +170,33 @@ TEST(MergePlan, TellsHowMembersSpread) {
   EXPECT_EQ(spreads[1].largest_differences, Eigen::Vector2d::Zero());
 }
 
+// Of ten members, the one that is known best is off by 0.015: it pulls the
+// others, as far as it may be another.
+TEST(MergePlan, HoldsWhatOneMemberPullsTheOthersBy) {
+  constexpr int kMembers = 10;
+  const std::vector<Material> materials = MaterialsApart(kMembers);
+  const MaterialParameters parameters(materials, SectionModel::kSolid);
+  Eigen::VectorXd x(2 * kMembers);
+  Eigen::VectorXd variances(2 * kMembers);
+  MaterialGroups groups(1);
+  for (int i = 0; i < kMembers; ++i) {
+    const bool is_last = i + 1 == kMembers;
+    x.segment<2>(2 * i) << (is_last ? 8.015 : 8), 0.3;
+    variances.segment<2>(2 * i).setConstant(is_last ? 9e-6 : 1e-4);
+    groups[0].push_back(std::size_t(i));
+  }
+  const Eigen::MatrixXd covariance = variances.asDiagonal();
+  const MemberSpread spread =
+      SpreadOfMembers(groups, parameters, {x, covariance}, covariance, 100)[0];
+  const double of_rest = 1e-4 / 9;
+  const double apart =
+      1 / (1 + std::exp((2 * std::log(100) - 0.015 * 0.015 / (of_rest + 9e-6)) /
+                        2));
+  const double pull = 0.015 * of_rest / (of_rest + 9e-6);
+  EXPECT_NEAR(spread.variance(0), apart * pull * pull, 1e-12);
+  EXPECT_NEAR(spread.variance(1), 0, 1e-12);
+}
+
 TEST(MergePlan, MakesOneOfAll) {
   EXPECT_TRUE(MaterialsOfGroups(MaterialsApart(3), {{0, 1, 2}}).empty());
   std::vector<Material> known = MaterialsApart(2);
