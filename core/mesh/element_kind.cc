@@ -73,10 +73,4 @@ ElementKind QuadraticKind(ElementKind kind) {
   return kind == ElementKind::kTet4 ? ElementKind::kTet10 : ElementKind::kTri6;
 }
 
-ElementKind LinearKind(ElementKind kind) {
-  const ElementTopology& topology = TopologyOf(kind);
-  assert(topology.num_vertices == topology.dimension + 1);
-  return topology.dimension == 3 ? ElementKind::kTet4 : ElementKind::kTri3;
-}
-
 }  // namespace elastimate

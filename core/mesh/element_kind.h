@@ -82,9 +82,6 @@ ElementKind QuadraticKind(ElementKind kind);
 /// Whether there is a QuadraticKind.
 bool HasQuadraticKind(ElementKind kind);
 
-/// The kind of order 1 with the same vertices.  Precondition: a simplex.
-ElementKind LinearKind(ElementKind kind);
-
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_CORE_MESH_ELEMENT_KIND_H_

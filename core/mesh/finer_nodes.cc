@@ -3,38 +3,26 @@
 #include <algorithm>
 #include <vector>
 
+#include "elastimate/core/mesh/mesh_points.h"
+
 namespace elastimate {
 namespace {
 
-// The barycentric coordinates of a node of a quadratic simplex.
-Eigen::VectorXd BarycentricOf(const ElementTopology& topology, int node) {
-  Eigen::VectorXd coordinates = Eigen::VectorXd::Zero(topology.num_vertices);
+using Entries = std::vector<Eigen::Triplet<double, Eigen::Index>>;
+
+// The reference coordinates of a node of a quadratic simplex, of which vertex 0
+// is the origin.
+Eigen::VectorXd ReferenceOf(const ElementTopology& topology, int node) {
+  Eigen::VectorXd barycentric = Eigen::VectorXd::Zero(topology.num_vertices);
   if (node < topology.num_vertices) {
-    coordinates(node) = 1;
+    barycentric(node) = 1;
   } else {
     for (const int end : topology.edges[node - topology.num_vertices]) {
-      coordinates(end) = 0.5;
+      barycentric(end) = 0.5;
     }
   }
-  return coordinates;
+  return barycentric.tail(topology.num_vertices - 1);
 }
-
-// The shape functions of a quadratic simplex.
-Eigen::VectorXd QuadraticFunctionsAt(const ElementTopology& topology,
-                                     const Eigen::VectorXd& barycentric) {
-  Eigen::VectorXd values(topology.num_nodes);
-  for (int node = 0; node < topology.num_nodes; ++node) {
-    if (node < topology.num_vertices) {
-      values(node) = barycentric(node) * (2 * barycentric(node) - 1);
-    } else {
-      const auto& [a, b] = topology.edges[node - topology.num_vertices];
-      values(node) = 4 * barycentric(a) * barycentric(b);
-    }
-  }
-  return values;
-}
-
-using Entries = std::vector<Eigen::Triplet<double, Eigen::Index>>;
 
 // Of the nodes of an element in the middle between two of them.
 void AddWeights(const Mesh& mesh, Eigen::Index element, int a, int b,
@@ -44,15 +32,16 @@ void AddWeights(const Mesh& mesh, Eigen::Index element, int a, int b,
     weights.emplace_back(row, b, 0.5);
     return;
   }
-  const ElementTopology& topology = mesh.Topology();
   const auto nodes = mesh.elements.col(element);
-  const auto place_of = [&](int node) {
-    return int(std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
+  const auto reference_of = [&](int node) {
+    return ReferenceOf(
+        mesh.Topology(),
+        int(std::find(nodes.begin(), nodes.end(), node) - nodes.begin()));
   };
-  const Eigen::VectorXd values = QuadraticFunctionsAt(
-      topology, 0.5 * (BarycentricOf(topology, place_of(a)) +
-                       BarycentricOf(topology, place_of(b))));
-  for (int i = 0; i < topology.num_nodes; ++i) {
+  const Eigen::VectorXd values =
+      ShapeFunctionsOf(mesh, {Eigen::VectorXi::Constant(1, int(element)),
+                              0.5 * (reference_of(a) + reference_of(b))});
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
     if (values(i) != 0) {
       weights.emplace_back(row, nodes(i), values(i));
     }

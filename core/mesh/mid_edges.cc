@@ -18,22 +18,6 @@ MidEdges::MidEdges(const Mesh& mesh)
   }
 }
 
-Eigen::MatrixXd MidEdges::Interpolate(
-    const Eigen::MatrixXd& at_vertices) const {
-  Eigen::MatrixXd all(dimension_ * (num_vertices_ + ends_.cols()),
-                      at_vertices.cols());
-  all.topRows(at_vertices.rows()) = at_vertices;
-  for (Eigen::Index i = 0; i < ends_.cols(); ++i) {
-    const auto at = [&](int end) {
-      return at_vertices.middleRows(dimension_ * Eigen::Index(ends_(end, i)),
-                                    dimension_);
-    };
-    all.middleRows(dimension_ * (num_vertices_ + i), dimension_) =
-        0.5 * (at(0) + at(1));
-  }
-  return all;
-}
-
 Eigen::MatrixXd MidEdges::Restrict(const Eigen::MatrixXd& forces) const {
   Eigen::MatrixXd at_vertices = forces.topRows(dimension_ * num_vertices_);
   for (Eigen::Index i = 0; i < ends_.cols(); ++i) {

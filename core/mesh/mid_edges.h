@@ -19,13 +19,9 @@ class MidEdges {
   const Eigen::Matrix2Xi& Ends() const { return ends_; }
   Eigen::Index NumVertices() const { return num_vertices_; }
 
-  /// The displacements of linear elements, given at the vertices, at all nodes:
-  /// the mean of the ends in the middle of an edge.
-  Eigen::MatrixXd Interpolate(const Eigen::MatrixXd& at_vertices) const;
-
-  /// The transpose: the forces on the vertices that do the same work as
-  /// `forces` on every displacement which is linear in each element, f_a plus
-  /// half of each f_ab.  They have the same resultant and moment.
+  /// The forces on the vertices that do the same work as `forces` on every
+  /// displacement which is linear in each element, f_a plus half of each f_ab.
+  /// They have the same resultant and moment.
   Eigen::MatrixXd Restrict(const Eigen::MatrixXd& forces) const;
 
  private:

@@ -130,15 +130,12 @@ CorrectedFit BestOf(const DescribedFit& settled, double other,
 }  // namespace
 
 Profile CorrectedFit::WithRival(const Profile& profile) const {
-  if (!rival) {
-    return profile;
-  }
-  const auto is_less = [](const IsotropicElasticity& a,
-                          const IsotropicElasticity& b) {
-    return a.poisson_ratio < b.poisson_ratio;
-  };
-  return {std::min(profile.lower, rival->lower, is_less),
-          std::max(profile.upper, rival->upper, is_less)};
+  return rival ? Hull(profile, *rival) : profile;
+}
+
+Eigen::VectorXd WhatIsLeft(const Eigen::VectorXd& measured,
+                           const Eigen::VectorXd& taken) {
+  return taken.size() == 0 ? measured : measured - taken;
 }
 
 CorrectedFit FitCorrected(const Scene& scene, const EstimatorOptions& options,

@@ -68,6 +68,11 @@ struct CorrectedFit {
   Profile WithRival(const Profile& profile) const;
 };
 
+/// Of a measurement without some rows of it, which are empty where nothing is
+/// taken.
+Eigen::VectorXd WhatIsLeft(const Eigen::VectorXd& measured,
+                           const Eigen::VectorXd& taken);
+
 /// The fit to a measurement without what finer elements explain of it, from the
 /// fit to the measurement as it is, which was the last.
 ///

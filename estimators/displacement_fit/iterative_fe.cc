@@ -246,16 +246,11 @@ class CorrectableIterativeFit : public CorrectableFit {
 
   // By the starts; absolute deviations are no squares.
   Profile RangeWithin(double excess) override {
-    const auto is_less = [](const IsotropicElasticity& a,
-                            const IsotropicElasticity& b) {
-      return a.poisson_ratio < b.poisson_ratio;
-    };
     Profile range = {residual_.Elasticity(), residual_.Elasticity()};
     const double most = SquaredNorm(residual_.Fit().residual) + excess;
     for (const ProfilePoint& point : points_) {
       if (options_.loss == Loss::kNone && point.unbounded_cost <= most) {
-        range = {std::min(range.lower, point.unbounded, is_less),
-                 std::max(range.upper, point.unbounded, is_less)};
+        range = Hull(range, {point.unbounded, point.unbounded});
       }
     }
     return range;
@@ -290,8 +285,7 @@ class CorrectableIterativeFit : public CorrectableFit {
  private:
   void Take(const Eigen::VectorXd& taken) {
     residual_.SetTaken(taken);
-    model_.SetMeasured(taken.size() == 0 ? measured_
-                                         : Eigen::VectorXd(measured_ - taken));
+    model_.SetMeasured(WhatIsLeft(measured_, taken));
   }
 
   bool Evaluate() {

@@ -85,8 +85,7 @@ class CorrectableAdaptiveFit : public CorrectableFit {
 
   bool Fit(const Eigen::VectorXd& taken) override {
     taken_ = taken;
-    data_.SetMeasured(taken.size() == 0 ? measured_
-                                        : Eigen::VectorXd(measured_ - taken));
+    data_.SetMeasured(WhatIsLeft(measured_, taken));
     return adaptive_.Run(data_, HierarchicalError::kTolerance * Norm(taken)) &&
            IsPhysicalFit(adaptive_);
   }

@@ -147,45 +147,41 @@ Eigen::MatrixXd WindowsOf(const Scene& scene) {
 constexpr std::size_t kMostOfCubics = 4;
 constexpr int kDegreeOfMany = 2;
 
-VirtualWork FieldsOfWhole(const Scene& scene, const EstimatorOptions& options) {
+// Of this degree unless another is asked for.
+VirtualWork FieldsOf(const Scene& scene, const EstimatorOptions& options,
+                     int degree, const Eigen::MatrixXd& windows) {
   return VirtualWork(scene.mesh, scene.supports,
-                     options.virtual_field_degree.value_or(kUsualDegree));
+                     options.virtual_field_degree.value_or(degree), windows);
 }
 
 // Polynomials over the whole of a specimen hardly tell materials apart.
 VirtualWork FieldsOfMaterials(const Scene& scene,
                               const EstimatorOptions& options) {
   if (scene.materials.size() == 1) {
-    return FieldsOfWhole(scene, options);
+    return FieldsOf(scene, options, kUsualDegree, {});
   }
-  const int usual =
-      scene.materials.size() > kMostOfCubics ? kDegreeOfMany : kUsualDegree;
-  return VirtualWork(scene.mesh, scene.supports,
-                     options.virtual_field_degree.value_or(usual),
-                     WindowsOf(scene));
+  return FieldsOf(
+      scene, options,
+      scene.materials.size() > kMostOfCubics ? kDegreeOfMany : kUsualDegree,
+      WindowsOf(scene));
 }
 
-// What is near enough to start from: of many materials the least degree that
-// leaves twice as many equations as there is to find, since the whole of a
-// specimen shows too little of each.  Of fewer materials with a contrast of
-// thousands these would lead farther astray.
+// What is near enough to start from: of many materials linear polynomials,
+// where these leave twice as many equations as there is to find, since the
+// whole of a specimen shows too little of each.  Of fewer materials with a
+// contrast of thousands these would lead farther astray.
 VirtualWork FieldsOfStart(const Scene& scene, const EstimatorOptions& options) {
   if (scene.materials.size() <= kMostOfCubics) {
-    return FieldsOfWhole(scene, options);
+    return FieldsOf(scene, options, kUsualDegree, {});
   }
   const Eigen::Index dimension = scene.mesh.Dimension();
-  const Eigen::Index num_fields_of_one =
-      dimension *
+  const Eigen::Index num_equations =
+      NumMonomials(dimension, 1) * dimension *
       Eigen::Index(scene.materials.size() * scene.load_cases.size());
-  const Eigen::Index size = FreeParameters(scene, options).Size();
-  int degree = 1;
-  while (degree < kDegreeOfMany &&
-         num_fields_of_one * NumMonomials(dimension, degree) < 2 * size) {
-    ++degree;
-  }
-  return VirtualWork(scene.mesh, scene.supports,
-                     options.virtual_field_degree.value_or(degree),
-                     WindowsOf(scene));
+  const bool is_linear_enough =
+      num_equations >= 2 * FreeParameters(scene, options).Size();
+  return FieldsOf(scene, options, is_linear_enough ? 1 : kDegreeOfMany,
+                  WindowsOf(scene));
 }
 
 // A measurement, and the virtual fields that it is to balance.

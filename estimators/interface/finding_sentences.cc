@@ -113,6 +113,13 @@ std::string FirstOf(const std::vector<std::string>& names) {
                    " more";
 }
 
+std::string RefinementAdvice(const Estimate& estimate) {
+  return std::string("refine the mesh") +
+         (estimate.element_order == 2
+              ? ""
+              : ", or use quadratic elements (order 2) where it has simplices");
+}
+
 bool IsSomethingKnown(const Estimate& estimate) {
   return std::any_of(
       estimate.parameters.begin(), estimate.parameters.end(),
@@ -322,11 +329,7 @@ Finding ParametersUndeterminedByElements(
     const std::vector<std::string>& parameters, const Estimate& estimate) {
   return Error(FindingCode::kParametersUndetermined,
                "elements this coarse do not determine " + FirstOf(parameters),
-               std::string("refine the mesh") +
-                   (estimate.element_order == 2
-                        ? ""
-                        : ", or use quadratic elements (order 2) where it has "
-                          "simplices"));
+               RefinementAdvice(estimate));
 }
 
 Finding ParametersUndeterminedOnBounds(
@@ -744,11 +747,7 @@ Finding ElementsTooCoarse(const Eigen::Vector2d& correction,
       FindingCode::kElementsTooCoarse,
       "the elements are too coarse here: finer ones change " +
           ChangesOf({std::expm1(correction(0)), correction(1)}, estimate),
-      std::string("refine the mesh") +
-          (estimate.element_order == 2
-               ? ""
-               : ", or use quadratic elements (order 2) where it has "
-                 "simplices") +
+      RefinementAdvice(estimate) +
           (IsSomethingKnown(estimate) ? ", and check what is known" : ""));
 }
 

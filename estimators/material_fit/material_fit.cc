@@ -234,18 +234,36 @@ std::vector<Outlier> StillAmong(const std::vector<Outlier>& outliers,
   return still;
 }
 
-// Fits again without the outliers, which are those of the fit without them.
-MaterialFit FitWithoutOutliers(const Scene& scene,
-                               const EstimatorOptions& options, Descent descent,
-                               const std::optional<Eigen::VectorXd>& start) {
+struct FitOfOthers {
+  MaterialFit fit;
+  std::vector<Outlier> left_out;
+};
+
+// Fits again without the outliers, until they are those of the fit without
+// them; only those that lie apart are left out in the end.
+FitOfOthers LeaveOutliersOut(const Scene& scene,
+                             const EstimatorOptions& options, Descent descent,
+                             const ObservedDisplacements& observed,
+                             const MaterialFit& of_all) {
   constexpr int kRounds = 8;
   // What more points contradict is wrong in another way.
   constexpr double kMost = 1.0 / 3;
-  const ObservedDisplacements observed(scene);
   const auto num_points = static_cast<double>(observed.Points().size());
-  MaterialFit fit = FitAll(scene, options, descent, start);
-  const MaterialFit of_all = fit;
-  std::vector<Outlier> left_out;
+  FitOfOthers others = {of_all, {}};
+  MaterialFit& fit = others.fit;
+  std::vector<Outlier>& left_out = others.left_out;
+  const auto leave_out = [&](const std::vector<Outlier>& outliers) {
+    const Work work = fit.estimate.work;
+    left_out = outliers;
+    if (outliers.empty()) {
+      fit = of_all;
+      fit.estimate.work = work;
+      return;
+    }
+    fit = FitAll(WithoutOutliers(scene, outliers), options, descent,
+                 fit.Variables());
+    fit.estimate.work = fit.estimate.work + work;
+  };
   Work of_suspects;
   std::vector<std::vector<Outlier>> tried = {{}};
   for (int i = 0; i < kRounds && fit.displacement.size() != 0; ++i) {
@@ -259,28 +277,28 @@ MaterialFit FitWithoutOutliers(const Scene& scene,
       break;
     }
     tried.push_back(outliers);
-    const Work work = fit.estimate.work;
     if (static_cast<double>(outliers.size()) > kMost * num_points) {
-      fit = of_all;
-      fit.estimate.work = work;
-      left_out.clear();
+      leave_out({});
       break;
     }
-    left_out = outliers;
-    fit = FitAll(WithoutOutliers(scene, outliers), options, descent,
-                 fit.Variables());
-    fit.estimate.work = fit.estimate.work + work;
+    leave_out(outliers);
   }
   const std::vector<Outlier> apart = OutliersApart(scene, observed, left_out);
   if (apart != left_out) {
-    const Work work = fit.estimate.work;
-    left_out = apart;
-    fit = apart.empty() ? of_all
-                        : FitAll(WithoutOutliers(scene, apart), options,
-                                 descent, fit.Variables());
-    fit.estimate.work = apart.empty() ? work : fit.estimate.work + work;
+    leave_out(apart);
   }
   fit.estimate.work = fit.estimate.work + of_suspects;
+  return others;
+}
+
+// The fit without outliers, as far as they are none of finer elements either.
+MaterialFit FitWithoutOutliers(const Scene& scene,
+                               const EstimatorOptions& options, Descent descent,
+                               const std::optional<Eigen::VectorXd>& start) {
+  const ObservedDisplacements observed(scene);
+  const MaterialFit of_all = FitAll(scene, options, descent, start);
+  auto [fit, left_out] =
+      LeaveOutliersOut(scene, options, descent, observed, of_all);
   Eigen::Vector2d by_outliers = LargestChange(of_all.estimate, fit.estimate);
   if (fit.estimate.IsUsable()) {
     MaterialFit looked =

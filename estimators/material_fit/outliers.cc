@@ -22,38 +22,15 @@ constexpr double kProbability = 0.05;
 // Of a residual over the measurement, whose norm is 1: that of exact data.
 constexpr double kExactData = 1e-9;
 
-// Pairs of neighbours among the observed points, by their places.
-std::vector<std::array<Eigen::Index, 2>> Neighbours(
-    const Scene& scene, const ObservedDisplacements& observed) {
-  std::vector<std::array<Eigen::Index, 2>> pairs =
-      observed.NeighbouringPoints();
-  const NodeGraph graph(scene.mesh);
-  const std::vector<ObservedDisplacements::Point>& points = observed.Points();
-  std::vector<Eigen::Index> place_of(scene.mesh.NumNodes());
-  for (std::size_t first = 0; first < points.size();) {
-    std::fill(place_of.begin(), place_of.end(), -1);
-    const Eigen::Index load_case = points[first].load_case;
-    for (; first < points.size() && points[first].load_case == load_case;
-         ++first) {
-      if (points[first].index < scene.mesh.NumNodes()) {
-        place_of[points[first].index] = Eigen::Index(first);
-      }
-    }
-    for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
-      for (Eigen::Index k = graph.start[node] + 1; k < graph.start[node + 1];
-           ++k) {
-        if (place_of[node] >= 0 && place_of[graph.row[k]] >= 0) {
-          pairs.push_back({place_of[node], place_of[graph.row[k]]});
-        }
-      }
-    }
-  }
-  return pairs;
+Outlier OutlierAt(const Scene& scene,
+                  const ObservedDisplacements::Point& point) {
+  const Eigen::Index number = point.index - scene.mesh.NumNodes();
+  return {point.load_case, number < 0 ? point.index : number, number >= 0};
 }
 
 // Whether so many of the pairs of neighbours being outliers is more than
 // chance.
-bool AreMoreThanChance(Eigen::Index num_of_outliers, std::size_t num_pairs,
+bool AreMoreThanChance(std::size_t num_of_outliers, std::size_t num_pairs,
                        std::size_t num_outliers, std::size_t num_points) {
   constexpr double kSignificance = 1e-3;
   const auto m = static_cast<double>(num_outliers);
@@ -88,9 +65,7 @@ OutlierSearch::OutlierSearch(const Scene& scene,
   for (const ObservedDisplacements::Point& point : observed.Points()) {
     const double distance = residual.segment(point.first, point.count).norm();
     if (distance > limits[point.count - 1]) {
-      const Eigen::Index number = point.index - scene.mesh.NumNodes();
-      outliers_.push_back(
-          {point.load_case, number < 0 ? point.index : number, number >= 0});
+      outliers_.push_back(OutlierAt(scene, point));
       distances_.push_back(distance / limits[point.count - 1]);
     }
   }
@@ -143,36 +118,38 @@ std::vector<Outlier> SuspectedSupports(const Scene& scene,
 std::vector<Outlier> OutliersApart(const Scene& scene,
                                    const ObservedDisplacements& observed,
                                    const std::vector<Outlier>& outliers) {
+  if (outliers.size() < 2) {
+    return outliers;
+  }
   const std::vector<ObservedDisplacements::Point>& points = observed.Points();
   std::vector<char> is_outlier(points.size(), 0);
-  const auto outlier_at = [&](const ObservedDisplacements::Point& point) {
-    const Eigen::Index number = point.index - scene.mesh.NumNodes();
-    return Outlier{point.load_case, number < 0 ? point.index : number,
-                   number >= 0};
-  };
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    is_outlier[i] = std::find(outliers.begin(), outliers.end(),
-                              outlier_at(points[i])) != outliers.end();
-  }
-  const std::vector<std::array<Eigen::Index, 2>> pairs =
-      Neighbours(scene, observed);
-  Eigen::Index num_of_outliers = 0;
-  std::vector<char> has_neighbour(points.size(), 0);
-  for (const auto& [a, b] : pairs) {
-    if (is_outlier[a] != 0 && is_outlier[b] != 0) {
-      ++num_of_outliers;
-      has_neighbour[a] = has_neighbour[b] = 1;
+  auto next = outliers.begin();
+  for (std::size_t i = 0; i < points.size() && next != outliers.end(); ++i) {
+    if (*next == OutlierAt(scene, points[i])) {
+      is_outlier[i] = 1;
+      ++next;
     }
   }
+  std::size_t num_pairs = 0;
+  std::size_t num_of_outliers = 0;
+  std::vector<char> has_neighbour(points.size(), 0);
+  VisitNeighbours(NodeGraph(scene.mesh), observed,
+                  [&](Eigen::Index a, Eigen::Index b) {
+                    ++num_pairs;
+                    if (is_outlier[a] != 0 && is_outlier[b] != 0) {
+                      ++num_of_outliers;
+                      has_neighbour[a] = has_neighbour[b] = 1;
+                    }
+                  });
   if (num_of_outliers == 0 ||
-      !AreMoreThanChance(num_of_outliers, pairs.size(), outliers.size(),
+      !AreMoreThanChance(num_of_outliers, num_pairs, outliers.size(),
                          points.size())) {
     return outliers;
   }
   std::vector<Outlier> apart;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (is_outlier[i] != 0 && has_neighbour[i] == 0) {
-      apart.push_back(outlier_at(points[i]));
+      apart.push_back(OutlierAt(scene, points[i]));
     }
   }
   return apart;

@@ -39,9 +39,9 @@ std::vector<Outlier> SuspectedSupports(const Scene& scene,
 
 /// Those of some outliers that lie apart: noise and mistakes of a measurement
 /// strike here and there, what a model lacks lies side by side.  All of them,
-/// unless more pairs are neighbours (nodes of one element, points as by
-/// NeighbouringPoints) than chance explains in one measurement of a thousand;
-/// then those without a neighbour among them.  O(num_elements + num_points).
+/// unless more pairs are neighbours (VisitNeighbours) than chance explains in
+/// one measurement of a thousand; then those without a neighbour among them.
+/// Precondition: in the order of OutlierSearch.  O(num_elements + num_points).
 std::vector<Outlier> OutliersApart(const Scene& scene,
                                    const ObservedDisplacements& observed,
                                    const std::vector<Outlier>& outliers);

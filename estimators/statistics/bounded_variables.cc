@@ -89,12 +89,11 @@ BoundedMinimum MinimizeOverVariables(const ResidualFunction& residual,
   return minimum;
 }
 
-// How near its range ends.
-constexpr double kNearLimit = 1e-8;
-
 void NoteVariablesOnBounds(const FreeParameters& free,
                            const BoundedMinimum& minimum, Evidence& evidence,
                            Estimate& estimate) {
+  // How near its range ends.
+  constexpr double kNearLimit = 1e-8;
   std::vector<std::string> names;
   for (Eigen::Index i = 0; i < free.Size(); ++i) {
     if (minimum.on_bound[i] != Side::kNone) {

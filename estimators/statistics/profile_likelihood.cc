@@ -50,6 +50,15 @@ double ShareOfDistanceToPole(const Estimate& estimate) {
          std::min(0.5 - nu, 1 + nu);
 }
 
+Profile Hull(const Profile& one, const Profile& other) {
+  const auto is_less = [](const IsotropicElasticity& a,
+                          const IsotropicElasticity& b) {
+    return a.poisson_ratio < b.poisson_ratio;
+  };
+  return {std::min(one.lower, other.lower, is_less),
+          std::max(one.upper, other.upper, is_less)};
+}
+
 bool HasRivalMinimum(const std::function<Profile(double quantile)>& profile_of,
                      const Estimate& estimate) {
   constexpr double kFar = 4;

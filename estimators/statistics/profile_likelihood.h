@@ -23,6 +23,9 @@ struct Profile {
   IsotropicElasticity upper;
 };
 
+/// Of the least interval of nu that holds both.
+Profile Hull(const Profile& one, const Profile& other);
+
 /// Whether the 95 % interval of the profile reaches several standard errors
 /// further than these, to another minimum that is nearly as good.
 bool HasRivalMinimum(const std::function<Profile(double quantile)>& profile_of,

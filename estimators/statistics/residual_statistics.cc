@@ -24,72 +24,54 @@ struct NeighbourProducts {
   }
 };
 
-using Points = std::vector<ObservedDisplacements::Point>;
-
-// Those of nodes that share an element; `begin` to `end` are of one load case.
-void AddProductsOfNodes(const NodeGraph& graph,
-                        const ObservedDisplacements& observed,
-                        Points::const_iterator begin,
-                        Points::const_iterator end,
-                        const Eigen::VectorXd& residual,
-                        NeighbourProducts& products) {
-  const Eigen::Index num_nodes = Eigen::Index(graph.start.size()) - 1;
-  // Row of each component of each node, or -1.
-  Eigen::Matrix<Eigen::Index, Eigen::Dynamic, Eigen::Dynamic> rows;
-  rows.setConstant(observed.Dimension(), num_nodes, -1);
-  for (auto point = begin; point != end && point->index < num_nodes; ++point) {
-    for (int k = 0; k < point->count; ++k) {
-      const Eigen::Index row = point->first + k;
-      rows(observed.Component(row), point->index) = row;
-    }
-  }
-  for (Eigen::Index node = 0; node < num_nodes; ++node) {
-    for (Eigen::Index k = graph.start[node] + 1; k < graph.start[node + 1];
-         ++k) {
-      for (int i = 0; i < observed.Dimension(); ++i) {
-        const Eigen::Index row = rows(i, node);
-        const Eigen::Index other = rows(i, graph.row[k]);
-        if (row >= 0 && other >= 0) {
-          products.Add(residual(row) * residual(other));
-        }
-      }
-    }
-  }
-}
-
-void AddProductsOfPoints(const ObservedDisplacements& observed,
-                         const Eigen::VectorXd& residual,
-                         NeighbourProducts& products) {
-  for (const auto& [a, b] : observed.NeighbouringPoints()) {
-    const ObservedDisplacements::Point& one = observed.Points()[a];
-    const ObservedDisplacements::Point& other = observed.Points()[b];
-    for (int i = 0; i < one.count; ++i) {
-      for (int k = 0; k < other.count; ++k) {
-        if (observed.Component(one.first + i) ==
-            observed.Component(other.first + k)) {
-          products.Add(residual(one.first + i) * residual(other.first + k));
-        }
-      }
-    }
-  }
-}
-
 }  // namespace
+
+void VisitNeighbours(
+    const NodeGraph& graph, const ObservedDisplacements& observed,
+    const std::function<void(Eigen::Index a, Eigen::Index b)>& visit) {
+  const std::vector<ObservedDisplacements::Point>& points = observed.Points();
+  const Eigen::Index num_nodes = Eigen::Index(graph.start.size()) - 1;
+  std::vector<Eigen::Index> place_of(std::size_t(num_nodes), -1);
+  for (std::size_t next = 0; next < points.size();) {
+    std::fill(place_of.begin(), place_of.end(), -1);
+    const Eigen::Index load_case = points[next].load_case;
+    for (; next < points.size() && points[next].load_case == load_case;
+         ++next) {
+      if (points[next].index < num_nodes) {
+        place_of[points[next].index] = Eigen::Index(next);
+      }
+    }
+    for (Eigen::Index node = 0; node < num_nodes; ++node) {
+      for (Eigen::Index k = graph.start[node] + 1; k < graph.start[node + 1];
+           ++k) {
+        if (place_of[node] >= 0 && place_of[graph.row[k]] >= 0) {
+          visit(place_of[node], place_of[graph.row[k]]);
+        }
+      }
+    }
+  }
+  for (const auto& [a, b] : observed.NeighbouringPoints()) {
+    visit(a, b);
+  }
+}
 
 std::optional<NeighbourCorrelation> CorrelateNeighbours(
     const NodeGraph& graph, const ObservedDisplacements& observed,
     const Eigen::VectorXd& residual) {
   const double square_sum = SquaredNorm(residual);
   NeighbourProducts products;
-  const Points& points = observed.Points();
-  for (auto begin = points.begin(); begin != points.end();) {
-    const auto end = std::find_if(begin, points.end(), [&](const auto& point) {
-      return point.load_case != begin->load_case;
-    });
-    AddProductsOfNodes(graph, observed, begin, end, residual, products);
-    begin = end;
-  }
-  AddProductsOfPoints(observed, residual, products);
+  const std::vector<ObservedDisplacements::Point>& points = observed.Points();
+  VisitNeighbours(graph, observed, [&](Eigen::Index a, Eigen::Index b) {
+    for (int i = 0; i < points[a].count; ++i) {
+      for (int k = 0; k < points[b].count; ++k) {
+        const Eigen::Index row = points[a].first + i;
+        const Eigen::Index other = points[b].first + k;
+        if (observed.Component(row) == observed.Component(other)) {
+          products.Add(residual(row) * residual(other));
+        }
+      }
+    }
+  });
   if (products.count == 0 || square_sum == 0) {
     return std::nullopt;
   }

@@ -2,6 +2,7 @@
 #define ELASTIMATE_ESTIMATORS_STATISTICS_RESIDUAL_STATISTICS_H_
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 
 #include "elastimate/core/mesh/node_graph.h"
@@ -12,8 +13,15 @@
 
 namespace elastimate {
 
-/// How alike the residuals of neighbours are [Moran 1950]: of nodes that share
-/// an element, and of other points that are near each other.
+/// Calls visit(a, b) for each two neighbours in one load case, by their places
+/// in observed.Points(): nodes that share an element, and other points that are
+/// near each other.  `graph` is that of the mesh.  O(num_pairs) for each load
+/// case.
+void VisitNeighbours(
+    const NodeGraph& graph, const ObservedDisplacements& observed,
+    const std::function<void(Eigen::Index a, Eigen::Index b)>& visit);
+
+/// How alike the residuals of neighbours are [Moran 1950] (VisitNeighbours).
 struct NeighbourCorrelation {
   /// Mean product of the residuals of two neighbours, over the mean square:
   /// near 0 for independent noise, near 1 for a smooth field.

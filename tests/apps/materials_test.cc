@@ -288,6 +288,9 @@ TEST_F(MaterialsCommand, NamesWhatIsWrong) {
   Refuse("plan plain.vtu --parameters=plain.json",
          "parameters[0] (youngs_modulus_1) is no parameter of its material, "
          "which has youngs_modulus, poisson_ratio; correct the name");
+}
+
+TEST_F(MaterialsCommand, NamesTheParameterThatIsWrong) {
   for (const auto& [entry, says] : std::vector<std::pair<Json, std::string>>{
            {{{"name", "E"}, {"region", 1}, {"value", 1}},
             "parameters[0] (E) is no parameter of its material, which has "
@@ -323,6 +326,9 @@ TEST_F(MaterialsCommand, NamesWhatIsWrong) {
   Refuse(
       "simulate block.vtu --regions=each --parameters=twice.json --out=a.vtu",
       "parameters[6] is the second value of youngs_modulus of region 1");
+}
+
+TEST_F(MaterialsCommand, NamesTheMaterialThatIsWrong) {
   for (
       const auto& [materials, says] :
       std::vector<std::pair<std::string, std::string>>{

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastimate/core/mesh/finer_nodes.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "tests/element_kinds.h"
 
@@ -14,17 +15,20 @@ class MidEdgesOfKinds
   MidEdgesOfKinds()
       : linear_(testing::SceneOfKind(GetParam()).mesh),
         quadratic_(QuadraticScene(testing::SceneOfKind(GetParam())).mesh),
-        mid_edges_(quadratic_) {}
+        mid_edges_(quadratic_),
+        finer_nodes_(linear_, quadratic_) {}
 
   Mesh linear_;
   Mesh quadratic_;
   MidEdges mid_edges_;
+  // Which take displacements of the linear elements to all nodes.
+  FinerNodes finer_nodes_;
 };
 
 TEST_P(MidEdgesOfKinds, InterpolateLinearFields) {
   EXPECT_EQ(mid_edges_.NumVertices(), linear_.NumNodes());
   const Eigen::VectorXd at_vertices = linear_.nodes.reshaped();
-  EXPECT_TRUE(mid_edges_.Interpolate(at_vertices)
+  EXPECT_TRUE(finer_nodes_.Interpolate(at_vertices)
                   .isApprox(quadratic_.nodes.reshaped(), 1e-14));
 }
 
@@ -35,7 +39,7 @@ TEST_P(MidEdgesOfKinds, RestrictByTheTranspose) {
       Eigen::MatrixXd::Random(linear_.NumDofs(), 2);
   const double work =
       (displacements.transpose() * mid_edges_.Restrict(forces) -
-       mid_edges_.Interpolate(displacements).transpose() * forces)
+       finer_nodes_.Interpolate(displacements).transpose() * forces)
           .norm();
   EXPECT_LT(work, 1e-12 * forces.norm() * displacements.norm());
 }

@@ -162,8 +162,9 @@ TEST(Judge, ALargeResidualThatIsSmoothIsNoNoise) {
   EXPECT_TRUE(estimate.Has(FindingCode::kLargeResidual));
 }
 
-// Two materials, of the second of which too little is known.
-Estimate OfTwoMaterials() {
+// Two materials, of the second of which too little is known; elements miss this
+// part of it.
+Estimate OfTwoMaterials(double missed) {
   Estimate estimate = Measured();
   estimate.Accept();
   estimate.parameters.resize(2);
@@ -177,29 +178,28 @@ Estimate OfTwoMaterials() {
   estimate.parameter_covariance =
       Eigen::Vector2d(1, 60 * 60).asDiagonal().toDenseMatrix();
   estimate.error_budget.noise = Eigen::Vector2d(0.01, 0.1);
+  estimate.error_budget.discretization = Eigen::Vector2d(0, missed);
   return estimate;
 }
 
 // What is to be done depends on what the errors come from.
 TEST(JudgeParameters, SaysWhatLeavesThemUndetermined) {
-  Estimate by_data = OfTwoMaterials();
-  by_data.error_budget.discretization = Eigen::Vector2d(0, 0.1);
+  Estimate by_data = OfTwoMaterials(0.1);
   JudgeParameters(by_data);
   EXPECT_EQ(by_data.message,
             "the data do not determine E of region 2 (60 %); give what is "
             "known of them, join regions, or add load cases");
   EXPECT_FALSE(AreUndeterminedByElements(by_data));
 
-  Estimate by_elements = OfTwoMaterials();
+  Estimate by_elements = OfTwoMaterials(0.59);
   by_elements.element_order = 2;
-  by_elements.error_budget.discretization = Eigen::Vector2d(0, 0.59);
   JudgeParameters(by_elements);
   EXPECT_EQ(by_elements.message,
             "elements this coarse do not determine E of region 2 (60 %); "
             "refine the mesh");
   EXPECT_TRUE(AreUndeterminedByElements(by_elements));
 
-  Estimate on_bound = OfTwoMaterials();
+  Estimate on_bound = OfTwoMaterials(0.1);
   on_bound.active_bounds = {"E of region 2 (lower)"};
   JudgeParameters(on_bound);
   EXPECT_NE(on_bound.message.find("check the bounds"), std::string::npos)
