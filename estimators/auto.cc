@@ -4,12 +4,11 @@
 #include <cmath>
 #include <memory>
 
-#include "elastimate/core/algebra/node_sums.h"
-#include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/displacement_fit/iterative_fe.h"
 #include "elastimate/estimators/displacement_fit/reduced_fe.h"
+#include "elastimate/estimators/element_order.h"
 #include "elastimate/estimators/force_balance/closed_form.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
@@ -140,44 +139,6 @@ std::string WhyTheModelIsNotEnough(const EstimatorOptions& options,
   return "";
 }
 
-// What fits of a scene of different orders are held against.
-struct Observations {
-  Eigen::Index redundancy;  // Rows without those that fix the parameters.
-  /// Of all rows over their noise; empty where that is not given.
-  std::optional<double> norm_over_noise;
-
-  Observations(const Scene& scene, const EstimatorOptions& options) {
-    const ObservedDisplacements observed(scene);
-    redundancy = std::max<Eigen::Index>(
-        observed.Size() - (options.known_poisson_ratio ? 1 : 2), 0);
-    if (observed.GivenNoise()) {
-      norm_over_noise = observed.Norm() * Norm(observed.Measured());
-    }
-  }
-};
-
-// Whether one of two fits, of as many parameters, explains the displacements
-// far better than the other: by more than noise lets it, and by far where its
-// residual is no noise.  Outliers, which neither explains, decide nothing.
-bool ExplainsFarBetter(const Estimate& one, const Estimate& other,
-                       const Observations& observations) {
-  if (!one.bounded_residual || !other.bounded_residual) {
-    return one.bounded_residual.has_value();
-  }
-  const double share = *one.bounded_residual / *other.bounded_residual;
-  if (one.is_model_in_doubt) {
-    return share <= kLimits.far_better_residual;
-  }
-  // Twice the difference of the logarithms of the likelihoods.
-  const double gain =
-      observations.norm_over_noise
-          ? std::pow(*observations.norm_over_noise, 2) *
-                (std::pow(*other.bounded_residual, 2) -
-                 std::pow(*one.bounded_residual, 2))
-          : -2 * static_cast<double>(observations.redundancy) * std::log(share);
-  return gain > kLimits.significant_score * kLimits.significant_score;
-}
-
 // Climbs, and keeps the books.
 class Ladder {
  public:
@@ -247,8 +208,8 @@ bool StopsHere(const std::string& why_not_enough, Ladder& ladder) {
 }
 
 // Of the rungs of both orders, when the lower one was not enough.
-void ChooseOrder(const Estimate& linear, const Observations& observations,
-                 Ladder& ladder) {
+void ChooseOrder(const Scene& scene, const EstimatorOptions& options,
+                 const Estimate& linear, Ladder& ladder) {
   Estimate& quadratic = ladder.Last();
   if (quadratic.status == Status::kNumericalFailure) {
     ladder.Decide("stopped: it failed, and linear elements are kept: " +
@@ -256,35 +217,44 @@ void ChooseOrder(const Estimate& linear, const Observations& observations,
     ladder.Return(linear);
     return;
   }
+  const OrderComparison compared(scene, options, linear, quadratic);
   const bool is_coarse =
       IsDiscretizationErrorNotable(linear) || !linear.IsUsable();
-  const bool is_better = ExplainsFarBetter(quadratic, linear, observations);
   const bool is_too_coarse = linear.Has(FindingCode::kElementsTooCoarse);
   if (!linear.IsUsable() && !is_too_coarse && quadratic.IsUsable() &&
-      !is_better) {
+      !compared.IsQuadraticFarBetter()) {
     ladder.Decide(
         "stopped: it does not explain the displacements far better, so that "
         "what linear elements were refused for stands");
     ladder.Return(linear);
     return;
   }
-  if (is_coarse && ExplainsFarBetter(linear, quadratic, observations)) {
+  if (is_coarse && compared.IsLinearFarBetter()) {
     ladder.Decide(
         "stopped: linear elements, which are kept, explain the displacements "
         "far better");
     ladder.Return(linear);
     return;
   }
-  if (!is_coarse && !is_better) {
+  if (linear.IsUsable() && compared.IsLinearLikely()) {
+    ladder.Decide(
+        "stopped: linear elements, which are kept, are likelier to have made "
+        "the displacements");
+    ladder.Return(linear);
+    return;
+  }
+  if (!is_coarse && !compared.IsQuadraticFarBetter()) {
     ladder.Decide(
         "stopped: the residual is not that of linear elements, which are kept");
     ladder.Return(linear);
     return;
   }
   ladder.Decide("stopped: there is no rung above");
-  if (!is_better && quadratic.IsUsable() &&
-      (linear.IsUsable() || is_too_coarse)) {
-    quadratic.Add(LinearElementsFitAsWell(linear.elasticity));
+  if (quadratic.IsUsable() && (linear.IsUsable() || is_too_coarse)) {
+    compared.HoldLinear(quadratic);
+    if (!compared.IsQuadraticLikely()) {
+      quadratic.Add(LinearElementsFitAsWell(compared.ByLinear()));
+    }
   }
 }
 
@@ -431,7 +401,7 @@ Estimate Auto::DoRun(const Scene& scene,
     ladder.Decide("went on: " + why_not_enough);
     ladder.Climb(ReducedFe(), QuadraticScene(scene), without_degree);
     CheckAgainst(virtual_fields, ladder.Last());
-    ChooseOrder(linear, Observations(scene, options), ladder);
+    ChooseOrder(scene, options, linear, ladder);
   }
   NoteMismatch(ladder.Last());
   return ladder.Finish();

@@ -21,8 +21,9 @@ namespace elastimate {
 /// discretisation error above 1 % (0.01 in nu) and half a standard error.
 /// Quadratic elements then have to explain the displacements far better than
 /// linear ones to be taken; after a notable discretisation error it is the
-/// linear ones that have to, as they do for displacements that were computed
-/// with them.
+/// linear ones that have to be likelier than 95 %, as they are for
+/// displacements that were computed with them.  Quadratic ones hold in their
+/// errors what the linear ones say as far as that is likely (OrderComparison).
 ///
 /// Of several materials, it climbs from closed-form to reduced-fe, and to
 /// iterative-fe where that is not certified; of unknown motions and supports of

@@ -12,9 +12,18 @@
 namespace elastimate {
 namespace {
 
-// Whether finer elements ask for other parameters, beside their errors.
-bool IsCorrectionNotable(const DescribedFit& described) {
+// Whether finer elements ask for other parameters, beside their errors, where
+// it is likely that there are such; what a bound that is given leaves is none.
+// What was taken is given back in any case.
+bool AsksForOthers(const DescribedFit& described) {
   constexpr double kNotable = 0.05;
+  constexpr double kLikelyShare = 0.5;
+  const ActiveBounds& active = described.evidence.active;
+  const bool is_taken = described.taken.size() > 0;
+  if (!is_taken && (described.statistics.share_of_finer < kLikelyShare ||
+                    (active.Any() && !active.is_physical_limit))) {
+    return false;
+  }
   const Estimate& estimate = described.estimate;
   const Eigen::Array2d errors =
       estimate.covariance.diagonal().array().sqrt() /
@@ -35,7 +44,7 @@ bool AreElementsTooCoarse(const EstimatorOptions& options,
 // other parameters.
 DescribedFit Settle(DescribedFit described, CorrectableFit& fit) {
   constexpr int kMostRefits = 4;
-  for (int i = 0; i < kMostRefits && IsCorrectionNotable(described); ++i) {
+  for (int i = 0; i < kMostRefits && AsksForOthers(described); ++i) {
     const Eigen::VectorXd taken =
         described.statistics.share_of_finer * *described.element_change;
     const IsotropicElasticity start = Corrected(
@@ -117,7 +126,7 @@ CorrectedFit BetterOf(const DescribedFit& one, const DescribedFit& other,
 CorrectedFit BestOf(const DescribedFit& settled, double other,
                     CorrectableFit& fit) {
   const std::optional<Eigen::VectorXd> change = fit.ChangeAt(other);
-  if (change && fit.Fit(ExpectedShare(2) * *change)) {
+  if (change && fit.Fit(PriorOfSpecimen(2).share * *change)) {
     const DescribedFit of_finer = Settle(fit.Describe(), fit);
     if (of_finer.element_change) {
       return BetterOf(settled, of_finer, *change, fit);
@@ -141,11 +150,12 @@ Eigen::VectorXd WhatIsLeft(const Eigen::VectorXd& measured,
 CorrectedFit FitCorrected(const Scene& scene, const EstimatorOptions& options,
                           CorrectableFit& fit) {
   const DescribedFit first = fit.Describe();
-  if (scene.mesh.Order() == 1 || AreElementsTooCoarse(options, first)) {
+  if (AreElementsTooCoarse(options, first)) {
     return {first, 0, {}};
   }
   const std::optional<double> elsewhere =
-      OtherPoissonRatio(options, first, fit);
+      scene.mesh.Order() == 1 ? std::nullopt
+                              : OtherPoissonRatio(options, first, fit);
   CorrectedFit corrected = {Settle(first, fit), 0, {}};
   if (elsewhere) {
     corrected = BestOf(corrected.fit, *elsewhere, fit);

@@ -80,14 +80,14 @@ Eigen::VectorXd WhatIsLeft(const Eigen::VectorXd& measured,
 /// linear.  Therefore alpha e, with alpha as ElementErrors has it, is taken
 /// from the measurement, and the parameters are fitted again, until e and alpha
 /// ask for no others.  Where nu is known so little that e may decide between
-/// minima, the same begins from a measurement without all of the e of another
-/// nu; the fit that leaves the smaller residual is the one, the other its
-/// rival.
+/// minima of quadratic elements, the same begins from a measurement without all
+/// of the e of another nu; the fit that leaves the smaller residual is the one,
+/// the other its rival.  Linear elements, for which that would go too far from
+/// what they describe, have quadratic ones above them.
 ///
-/// Elements that are too coarse for a correction are left as they are, and so
-/// are linear ones: simplices have quadratic ones above them.  The last fit of
-/// `fit` is the one that is returned; the residuals of the estimate are those
-/// of the measurement as it is.
+/// Elements that are too coarse for a correction are left as they are.  The
+/// last fit of `fit` is the one that is returned; the residuals of the estimate
+/// are those of the measurement as it is.
 CorrectedFit FitCorrected(const Scene& scene, const EstimatorOptions& options,
                           CorrectableFit& fit);
 

@@ -764,10 +764,10 @@ Finding LinearElementsFitAsWell(const IsotropicElasticity& linear) {
   return Warning(
       FindingCode::kLinearElementsFitAsWell,
       "linear elements explain the displacements as well, with E = " +
-          TwoDigits(linear.youngs_modulus) +
-          " and nu = " + TwoDigits(linear.poisson_ratio),
-      "take that if the displacements were simulated with these "
-      "very elements, which alone are that stiff");
+          TwoDigits(linear.youngs_modulus) + " and nu = " +
+          TwoDigits(linear.poisson_ratio) + ", which the error bars hold",
+      "use reduced-fe, with order 2 for displacements of a specimen, with "
+      "order 1 for those that linear elements of this mesh made");
 }
 
 Finding TooManyElements() {

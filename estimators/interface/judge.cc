@@ -67,6 +67,10 @@ void JudgeElements(const Mesh& mesh, Estimate& estimate) {
 void FailUndetermined(Finding finding, Estimate& estimate) {
   if (estimate.Has(FindingCode::kSupportsEndWithinElements)) {
     finding.advice = "give the supports by place, such as a box";
+  } else if (estimate.Has(FindingCode::kLinearElementsFitAsWell)) {
+    finding.advice =
+        "use reduced-fe, with order 2 for displacements of a specimen, with "
+        "order 1 for those that linear elements of this mesh made";
   } else if (IsDiscretizationErrorNotable(estimate)) {
     finding.advice =
         std::string("refine the mesh") +

@@ -27,8 +27,6 @@ constexpr double kMostInSpan = 100;
 constexpr double kModelErrorInSpan = 16;
 // Of what finer elements explain, that they leave [benchmarks: unseen].
 constexpr double kMostLeft = 1.0 / 3;
-// Of neighbours, above which residuals say nothing.
-constexpr double kMostCorrelation = 0.99;
 constexpr double kUnknownShareError = 1e3;
 
 // What neighbours share of a rest of this square sum: as far as it is above a
@@ -76,7 +74,7 @@ ElementErrors::ElementErrors(const Scene& scene, const NodeGraph& graph,
                              const std::optional<RowChange>& change,
                              const Eigen::MatrixXd& displacement,
                              const IsotropicElasticity& elasticity)
-    : expected_share_(ExpectedShare(scene.mesh.Order())),
+    : prior_(PriorOfSpecimen(scene.mesh.Order())),
       rest_(fit.residual),
       of_measurement_(fit.residual),
       of_parameters_(Eigen::VectorXd::Zero(fit.sensitivities.cols())) {
@@ -105,7 +103,7 @@ ElementErrors::ElementErrors(const Scene& scene, const NodeGraph& graph,
   const double size = std::sqrt(finer.probability) * std::abs(finer.share);
   // Much of a change may be there of which little shows.
   const double most =
-      std::max(size, finer.probability * finer.probability * expected_share_);
+      std::max(size, finer.probability * finer.probability * prior_.share);
   share_variance_ = finer.Variance() + std::pow(kUnequalShare * most, 2) +
                     hidden_share_ * hidden_share_;
   missed_norm_ = kErrorShare * size * Norm(rows);
@@ -145,7 +143,7 @@ FinerSpecimen ElementErrors::Compare(const NodeGraph& graph,
       redundancy;
   const double size = noisy_size - visible_noise * least_variance;
   if (!(size > 0) || redundancy < 1) {
-    return CompareWithFinerSpecimen(0, kUnknownShareError, 1, expected_share_);
+    return CompareWithFinerSpecimen(0, kUnknownShareError, 1, prior_);
   }
   const double share = -product / size;
   const Eigen::VectorXd rest = of_measurement_ + share * visible;
@@ -153,14 +151,11 @@ FinerSpecimen ElementErrors::Compare(const NodeGraph& graph,
       fit.weights.cwiseSqrt().cwiseProduct(rest);
   const std::optional<NeighbourCorrelation> neighbours =
       CorrelateNeighbours(graph, observed, weighted_rest);
-  const double correlation =
-      neighbours ? std::clamp(neighbours->correlation -
-                                  kLimits.explained_score *
-                                      neighbours->standard_deviation,
-                              0.0, kMostCorrelation)
-                 : 0;
-  // As many rows of a first-order process say as much as independent ones.
-  const double dependence = (1 + correlation) / (1 - correlation);
+  const double dependence =
+      neighbours
+          ? RowsForOne(neighbours->correlation -
+                       kLimits.explained_score * neighbours->standard_deviation)
+          : 1;
   // Of the sum of the products; a loss makes the rows unequal.
   double variance = noisy_size * SquaredNorm(weighted_rest) / redundancy;
   if (!fit.is_least_squares) {
@@ -171,14 +166,14 @@ FinerSpecimen ElementErrors::Compare(const NodeGraph& graph,
   }
   FinerSpecimen finer =
       CompareWithFinerSpecimen(share, std::sqrt(variance * dependence) / size,
-                               redundancy / dependence, expected_share_);
+                               redundancy / dependence, prior_);
   unexplained_ = UnexplainedShare(neighbours, SquaredNorm(weighted_rest),
                                   share * share * size);
   finer.probability *= 1 - unexplained_;
   if (!fit.is_on_bound) {
     hidden_share_ =
         unexplained_ *
-        std::min(expected_share_, std::sqrt(SquaredNorm(weighted_rest) / size));
+        std::min(prior_.share, std::sqrt(SquaredNorm(weighted_rest) / size));
   }
   return finer;
 }

@@ -96,7 +96,7 @@ class ElementErrors {
                         const FreeFit& fit, const Eigen::VectorXd& visible,
                         double visible_noise);
 
-  double expected_share_;
+  SpecimenPrior prior_;
   Eigen::VectorXd rest_;
   /// The residual of a fit to the measurement as it is.
   Eigen::VectorXd of_measurement_;

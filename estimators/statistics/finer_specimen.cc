@@ -16,10 +16,10 @@ constexpr double kRounding = 1e-6;
 
 FinerSpecimen CompareWithFinerSpecimen(double share, double standard_error,
                                        double degrees_of_freedom,
-                                       double expected_share) {
+                                       const SpecimenPrior& prior) {
   const double variance =
       std::max(standard_error * standard_error, kRounding * kRounding);
-  const double prior = kDeviationOfShare * kDeviationOfShare;
+  const double variance_of_share = kDeviationOfShare * kDeviationOfShare;
   const double n = std::max(degrees_of_freedom, 1.0);
   // Logarithms of the densities at `share`, but for a common factor.
   const auto log_density = [n](double distance, double of_variance) {
@@ -27,13 +27,14 @@ FinerSpecimen CompareWithFinerSpecimen(double share, double standard_error,
            (n + 1) / 2 * std::log1p(distance * distance / of_variance / n);
   };
   const double log_odds =
-      log_density(share - expected_share, variance + prior) -
+      std::log(prior.odds) +
+      log_density(share - prior.share, variance + variance_of_share) -
       log_density(share, variance);
   FinerSpecimen finer;
   finer.probability = 1 / (1 + std::exp(-log_odds));
-  finer.share_variance = 1 / (1 / variance + 1 / prior);
-  finer.share =
-      finer.share_variance * (share / variance + expected_share / prior);
+  finer.share_variance = 1 / (1 / variance + 1 / variance_of_share);
+  finer.share = finer.share_variance *
+                (share / variance + prior.share / variance_of_share);
   return finer;
 }
 

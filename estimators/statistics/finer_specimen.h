@@ -5,12 +5,21 @@
 
 namespace elastimate {
 
-/// What is expected of alpha of a finer specimen than elements of an order:
-/// quadratic elements show nearly all of the error of linear ones, and what
-/// such of half the size change in quadratic ones is less than these miss by
-/// 0.29 of itself, with a standard deviation of 0.13 [benchmarks: unseen,
-/// calibration half].
-constexpr double ExpectedShare(int order) { return order == 1 ? 1 : 1.3; }
+/// What is expected before the residual of a fit is looked at.
+struct SpecimenPrior {
+  double odds;   ///< That there is a finer specimen: its probability over rest.
+  double share;  ///< Of alpha if there is.
+};
+
+/// Linear elements may have computed the displacements or not; quadratic ones
+/// of the very mesh of an estimate hardly do.  These show nearly all of the
+/// error of linear ones, and what such of half the size change in quadratic
+/// ones is less than these miss by 0.29 of itself, with a standard deviation of
+/// 0.13 [benchmarks: unseen, calibration half, as are the odds: of 504 noisy
+/// fits of quadratic elements they leave 1 dishonest one, equal odds 3].
+constexpr SpecimenPrior PriorOfSpecimen(int order) {
+  return order == 1 ? SpecimenPrior{1, 1} : SpecimenPrior{9, 1.3};
+}
 
 /// Whether displacements come from a specimen that is finer than the elements
 /// of a fit, or were computed with these very elements.
@@ -18,8 +27,8 @@ constexpr double ExpectedShare(int order) { return order == 1 ? 1 : 1.3; }
 /// The finer specimen moves by a share alpha of e more, what finer elements
 /// change: q = u + S d + alpha e + noise.  A fit without alpha leaves the
 /// residual alpha g + noise, g = e - S c the part of e that the parameters do
-/// not take up.  alpha is 0 in the one world, about ExpectedShare in the other,
-/// and both are as likely before the residual is looked at.
+/// not take up.  alpha is 0 in the one world, about SpecimenPrior::share in the
+/// other.
 struct FinerSpecimen {
   double probability = 0;     ///< Of the finer specimen.
   double share = 0;           ///< Expected alpha if it is finer.
@@ -33,10 +42,10 @@ struct FinerSpecimen {
 };
 
 /// By Bayes' rule from the least-squares estimate of alpha, its standard error
-/// and the degrees of freedom of that (Student's t), and the expected alpha.
+/// and the degrees of freedom of that (Student's t).
 FinerSpecimen CompareWithFinerSpecimen(double share, double standard_error,
                                        double degrees_of_freedom,
-                                       double expected_share);
+                                       const SpecimenPrior& prior);
 
 }  // namespace elastimate
 

@@ -125,6 +125,12 @@ SmoothSquareSum MeasureSmoothPart(const NodeGraph& graph,
           within(std::max(correlation, 0.0) + kTwoSidedErrors * deviation)};
 }
 
+double RowsForOne(double correlation) {
+  constexpr double kMostCorrelation = 0.99;  // Above, residuals say nothing.
+  const double rho = std::clamp(correlation, 0.0, kMostCorrelation);
+  return (1 + rho) / (1 - rho);
+}
+
 Eigen::VectorXd RobustChange(const ObservedDisplacements& observed,
                              const Eigen::VectorXd& residual,
                              const Eigen::MatrixXd& sensitivities) {

@@ -63,6 +63,10 @@ SmoothSquareSum MeasureSmoothPart(const NodeGraph& graph,
                                   const Eigen::VectorXd& residual,
                                   Estimate& estimate);
 
+/// How many rows of a first-order process with this correlation of neighbours
+/// say as much as one independent row; 1 where it is negative.
+double RowsForOne(double correlation);
+
 /// The change of the parameters from the least-squares fit to a robust one, in
 /// the linear model u + S delta of sensitivities S: the weighted least squares
 /// of Huber's loss.

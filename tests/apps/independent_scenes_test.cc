@@ -233,7 +233,8 @@ TEST_F(IndependentScenes, DataFromAFinerWorld) {
   // The truth is 8000 and 0.4.
   EXPECT_NEAR(report["youngs_modulus"].get<double>(), 8000, 400);
   EXPECT_EQ(report["status"], "not_identifiable");
-  EXPECT_LE(report["work"]["factorizations"].get<int>(), 20);
+  // Of the fit, and of fits without what finer elements change.
+  EXPECT_LE(report["work"]["factorizations"].get<int>(), 45);
   const nlohmann::json closed =
       Run("estimate --json=- " + Path("cylinder_finer_world.vtu")).Json();
   EXPECT_NEAR(closed["youngs_modulus"].get<double>(), 7624, 1);

@@ -9,7 +9,7 @@ namespace elastimate {
 namespace {
 
 constexpr double kManyRows = 1000;
-constexpr double kExpected = 1;
+constexpr SpecimenPrior kExpected = {1, 1};
 
 TEST(FinerSpecimen, IsSeenWhereTheChangeIsInTheResidual) {
   const FinerSpecimen finer =
@@ -40,6 +40,14 @@ TEST(FinerSpecimen, IsAsLikelyAsNotWhereNoiseHidesIt) {
   EXPECT_NEAR(hidden.Variance(), 0.25 + 0.2025 / 2, 1e-3);
 }
 
+TEST(FinerSpecimen, IsAsLikelyAsExpectedWhereNoiseHidesIt) {
+  const SpecimenPrior expected = PriorOfSpecimen(2);
+  const FinerSpecimen hidden =
+      CompareWithFinerSpecimen(3, 1e3, kManyRows, expected);
+  EXPECT_NEAR(hidden.probability, expected.odds / (1 + expected.odds), 1e-3);
+  EXPECT_NEAR(hidden.Mean(), 0.9 * 1.3, 1e-3);
+}
+
 // More noise never makes the uncertainty of the share smaller than sampling
 // does: on the mean over measurements of either world.
 TEST(FinerSpecimen, GrowsLessCertainWithNoise) {
@@ -63,19 +71,25 @@ TEST(FinerSpecimen, GrowsLessCertainWithNoise) {
 // What it says of the share is right in the worlds that it expects.
 TEST(FinerSpecimenStatistics, CoversTheShare) {
   constexpr int kSeeds = 4000;
-  for (const double noise : {0.02, 0.2, 1.0}) {
-    std::mt19937_64 generator(2);
-    std::normal_distribution<double> normal;
-    double square_sum = 0;
-    for (int seed = 0; seed < kSeeds; ++seed) {
-      const double truth = seed % 2 == 0 ? 0 : 1 + 0.45 * normal(generator);
-      const FinerSpecimen finer = CompareWithFinerSpecimen(
-          truth + noise * normal(generator), noise, kManyRows, kExpected);
-      square_sum += std::pow(truth - finer.Mean(), 2) / finer.Variance();
+  for (const int order : {1, 2}) {
+    const SpecimenPrior expected = PriorOfSpecimen(order);
+    for (const double noise : {0.02, 0.2, 1.0}) {
+      std::mt19937_64 generator(2);
+      std::normal_distribution<double> normal;
+      std::bernoulli_distribution is_finer(expected.odds / (1 + expected.odds));
+      double square_sum = 0;
+      for (int seed = 0; seed < kSeeds; ++seed) {
+        const double of_finer = expected.share + 0.45 * normal(generator);
+        const double truth = is_finer(generator) ? of_finer : 0;
+        const FinerSpecimen finer = CompareWithFinerSpecimen(
+            truth + noise * normal(generator), noise, kManyRows, expected);
+        square_sum += std::pow(truth - finer.Mean(), 2) / finer.Variance();
+      }
+      // The mean square of standardised errors of a Bayesian mean is 1; a
+      // mixture of kurtosis up to 30 has it within these bounds.
+      EXPECT_NEAR(square_sum / kSeeds, 1, 4 * std::sqrt(30.0 / kSeeds))
+          << order << ", " << noise;
     }
-    // The mean square of standardised errors of a Bayesian mean is 1; a
-    // mixture of kurtosis up to 30 has it within these bounds.
-    EXPECT_NEAR(square_sum / kSeeds, 1, 4 * std::sqrt(30.0 / kSeeds)) << noise;
   }
 }
 
