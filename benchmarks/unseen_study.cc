@@ -43,7 +43,7 @@ enum World { kSameMesh, kFinerWorld, kHexahedra, kNumWorlds };
 constexpr const char* kWorldNames[kNumWorlds] = {"same mesh", "finer world",
                                                  "hexahedra"};
 // Of each size of noise; with outliers half as many.
-constexpr std::array<int, kNumWorlds> kReplicates = {4, 2, 2};
+constexpr std::array<int, kNumWorlds> kReplicates = {2, 2, 2};
 constexpr int kMaxReplicates = 4;
 
 struct Method {

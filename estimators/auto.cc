@@ -218,8 +218,9 @@ void ChooseOrder(const Scene& scene, const EstimatorOptions& options,
     return;
   }
   const OrderComparison compared(scene, options, linear, quadratic);
-  const bool is_coarse =
-      IsDiscretizationErrorNotable(linear) || !linear.IsUsable();
+  const bool is_coarse = IsDiscretizationErrorNotable(linear) ||
+                         linear.Has(FindingCode::kLocking) ||
+                         !linear.IsUsable();
   const bool is_too_coarse = linear.Has(FindingCode::kElementsTooCoarse);
   if (!linear.IsUsable() && !is_too_coarse && quadratic.IsUsable() &&
       !compared.IsQuadraticFarBetter()) {

@@ -34,7 +34,8 @@ struct Observations {
 // many parameters, if the rows are independent.
 double Gain(const Estimate& one, const Estimate& other,
             const Observations& observations) {
-  if (!one.bounded_residual || !other.bounded_residual) {
+  if (!one.bounded_residual || !other.bounded_residual ||
+      *one.bounded_residual == *other.bounded_residual) {
     return 0;
   }
   return observations.norm_over_noise

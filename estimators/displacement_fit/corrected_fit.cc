@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/node_sums.h"
+#include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/statistics/bounded_parameter.h"
@@ -12,16 +14,22 @@
 namespace elastimate {
 namespace {
 
+constexpr double kUsualPoissonRatio = 0.3;
+
+bool IsOnGivenBound(const DescribedFit& described) {
+  const ActiveBounds& active = described.evidence.active;
+  return active.Any() && !active.is_physical_limit;
+}
+
 // Whether finer elements ask for other parameters, beside their errors, where
 // it is likely that there are such; what a bound that is given leaves is none.
 // What was taken is given back in any case.
 bool AsksForOthers(const DescribedFit& described) {
   constexpr double kNotable = 0.05;
   constexpr double kLikelyShare = 0.5;
-  const ActiveBounds& active = described.evidence.active;
-  const bool is_taken = described.taken.size() > 0;
-  if (!is_taken && (described.statistics.share_of_finer < kLikelyShare ||
-                    (active.Any() && !active.is_physical_limit))) {
+  if (described.taken.size() == 0 &&
+      (described.statistics.share_of_finer < kLikelyShare ||
+       IsOnGivenBound(described))) {
     return false;
   }
   const Estimate& estimate = described.estimate;
@@ -64,13 +72,12 @@ DescribedFit Settle(DescribedFit described, CorrectableFit& fit) {
 std::optional<double> OtherPoissonRatio(const EstimatorOptions& options,
                                         const DescribedFit& described,
                                         CorrectableFit& fit) {
-  constexpr double kUsual = 0.3;
   constexpr double kFar = 0.7;
   if (options.known_poisson_ratio) {
     return std::nullopt;
   }
   const Bounds bounds = EffectivePoissonRatioBounds(options);
-  double other = std::clamp(kUsual, *bounds.lower, *bounds.upper);
+  double other = std::clamp(kUsualPoissonRatio, *bounds.lower, *bounds.upper);
   if (described.element_change) {
     const Profile range = fit.RangeWithin(described.statistics.excess_of_finer);
     other =
@@ -125,15 +132,71 @@ CorrectedFit BetterOf(const DescribedFit& one, const DescribedFit& other,
 // that finer elements change at another nu.
 CorrectedFit BestOf(const DescribedFit& settled, double other,
                     CorrectableFit& fit) {
-  const std::optional<Eigen::VectorXd> change = fit.ChangeAt(other);
-  if (change && fit.Fit(PriorOfSpecimen(2).share * *change)) {
+  const std::optional<FitAtRatio> change = fit.FitAt(other);
+  if (change && fit.Fit(PriorOfSpecimen(2).share * change->element_change)) {
     const DescribedFit of_finer = Settle(fit.Describe(), fit);
     if (of_finer.element_change) {
-      return BetterOf(settled, of_finer, *change, fit);
+      return BetterOf(settled, of_finer, change->element_change, fit);
     }
   }
   fit.FitNear(settled.estimate.elasticity, settled.taken);
   return {settled, 0, {}};
+}
+
+// The change of (ln E, nu) of a fit to where the u + e of another nu, with
+// another scale and the slope of u in nu, leaves no more of the measurement
+// than `most`; empty where it leaves more.
+std::optional<Eigen::Vector2d> ChangeToSpecimen(
+    const FitAtRatio& other, const IsotropicElasticity& elasticity,
+    double most) {
+  const Eigen::VectorXd displacement = -other.sensitivities.col(0);
+  const Eigen::VectorXd measured = displacement - other.residual;
+  Eigen::MatrixXd columns(measured.size(), 2);
+  columns << displacement + other.element_change, other.sensitivities.col(1);
+  const Eigen::VectorXd scale_and_step = SolveLeastSquares(columns, measured);
+  const double scale = scale_and_step(0);
+  if (!(scale > 0) || !(Norm(measured - columns * scale_and_step) <= most)) {
+    return std::nullopt;
+  }
+  return Eigen::Vector2d(std::log(other.elasticity.youngs_modulus / scale /
+                                  elasticity.youngs_modulus),
+                         other.elasticity.poisson_ratio +
+                             scale_and_step(1) / scale -
+                             elasticity.poisson_ratio);
+}
+
+bool IsTooLarge(const Eigen::Vector2d& correction) {
+  return std::abs(correction(0)) >
+             kLimits.largest_correction_of_log_youngs_modulus ||
+         std::abs(correction(1)) > kLimits.largest_correction_of_poisson_ratio;
+}
+
+// Linear elements that would be too coarse for a specimen may fit one with
+// other parameters, as far off as no linear model sees.  Where a specimen
+// explains the measurement as well, but for chance, the fit is asked to change
+// to that.
+void LookForSpecimenElsewhere(CorrectableFit& fit, DescribedFit& described) {
+  const Estimate& estimate = described.estimate;
+  const IsotropicElasticity& elasticity = estimate.elasticity;
+  const std::optional<FitAtRatio> here = fit.FitAt(elasticity.poisson_ratio);
+  if (here && IsTooLarge(SolveLeastSquares(here->sensitivities,
+                                           here->element_change))) {
+    // Within three standard errors, of residuals that are noise.
+    constexpr double kExcess = 9;
+    const double left =
+        *estimate.displacement_residual *
+        Norm(here->sensitivities.col(0) + here->residual) *
+        std::sqrt(1 + kExcess / static_cast<double>(here->residual.size()));
+    for (const std::optional<FitAtRatio>& other :
+         {here, fit.FitAt(kUsualPoissonRatio)}) {
+      const std::optional<Eigen::Vector2d> change =
+          other ? ChangeToSpecimen(*other, elasticity, left) : std::nullopt;
+      if (change && IsTooLarge(*change)) {
+        described.evidence.likely_element_change = *change;
+      }
+    }
+  }
+  fit.FitNear(elasticity, described.taken);
 }
 
 }  // namespace
@@ -159,10 +222,18 @@ CorrectedFit FitCorrected(const Scene& scene, const EstimatorOptions& options,
   CorrectedFit corrected = {Settle(first, fit), 0, {}};
   if (elsewhere) {
     corrected = BestOf(corrected.fit, *elsewhere, fit);
+  } else if (scene.mesh.Order() == 1 && !options.known_poisson_ratio &&
+             !IsOnGivenBound(first)) {
+    LookForSpecimenElsewhere(fit, corrected.fit);
   }
-  corrected.fit.estimate.displacement_residual =
-      first.estimate.displacement_residual;
-  corrected.fit.estimate.bounded_residual = first.estimate.bounded_residual;
+  Estimate& estimate = corrected.fit.estimate;
+  estimate.displacement_residual = first.estimate.displacement_residual;
+  // Of quadratic elements, which stand for a specimen, what that leaves.
+  estimate.bounded_residual =
+      scene.mesh.Order() == 1
+          ? first.estimate.bounded_residual
+          : corrected.fit.statistics.rest /
+                Norm(ObservedDisplacements(scene).Measured());
   return corrected;
 }
 

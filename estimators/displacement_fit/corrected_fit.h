@@ -27,6 +27,15 @@ struct DescribedFit {
   Eigen::VectorXd taken;
 };
 
+/// A fit of E alone at some nu, and what finer elements change there.
+struct FitAtRatio {
+  IsotropicElasticity elasticity;
+  Eigen::VectorXd residual;  ///< u - q.
+  /// du / d (ln E, nu).
+  Eigen::Matrix<double, Eigen::Dynamic, 2> sensitivities;
+  Eigen::VectorXd element_change;
+};
+
 /// A method that can fit its measurement without some rows of it, in the rows
 /// of ObservedDisplacements; empty where nothing is taken.
 class CorrectableFit {
@@ -46,9 +55,9 @@ class CorrectableFit {
   /// least by no more than `excess`.
   virtual Profile RangeWithin(double excess) = 0;
 
-  /// What finer elements change at the E that fits the whole measurement best
-  /// at this nu; empty where it is not known.
-  virtual std::optional<Eigen::VectorXd> ChangeAt(double poisson_ratio) = 0;
+  /// To the whole measurement at this nu; empty where there is none, or the
+  /// change is not known.
+  virtual std::optional<FitAtRatio> FitAt(double poisson_ratio) = 0;
 };
 
 struct CorrectedFit {
@@ -82,8 +91,9 @@ Eigen::VectorXd WhatIsLeft(const Eigen::VectorXd& measured,
 /// ask for no others.  Where nu is known so little that e may decide between
 /// minima of quadratic elements, the same begins from a measurement without all
 /// of the e of another nu; the fit that leaves the smaller residual is the one,
-/// the other its rival.  Linear elements, for which that would go too far from
-/// what they describe, have quadratic ones above them.
+/// the other its rival.  Linear elements of which all of e would be too much
+/// are too coarse where some u + e of this or of a usual nu, in the linear
+/// model of (ln E, nu), leaves no more of the measurement than they do.
 ///
 /// Elements that are too coarse for a correction are left as they are.  The
 /// last fit of `fit` is the one that is returned; the residuals of the estimate

@@ -401,12 +401,9 @@ IsotropicElasticity Corrected(const IsotropicElasticity& elasticity,
           nu + std::clamp(correction(1), -(1 + nu) / 2, (0.5 - nu) / 2)};
 }
 
-void CorrectForElements(const Evidence& evidence,
-                        const IsotropicElasticity& uncorrected,
-                        Estimate& estimate) {
-  if (!estimate.IsUsable()) {
-    return;
-  }
+namespace {
+
+void ApplyCorrection(const Evidence& evidence, Estimate& estimate) {
   double& nu = estimate.elasticity.poisson_ratio;
   if (estimate.poisson_ratio_interval) {
     // An error of the elements is none of the measurement, of which the profile
@@ -436,9 +433,22 @@ void CorrectForElements(const Evidence& evidence,
     lower = lower == -1 ? -1 : std::max(lower + change, -1.0);
     upper = upper == 0.5 ? 0.5 : std::min(upper + change, 0.5);
   }
-  estimate.discretization_correction = {
-      estimate.elasticity.youngs_modulus / uncorrected.youngs_modulus - 1,
-      nu - uncorrected.poisson_ratio};
+}
+
+}  // namespace
+
+void CorrectForElements(const Evidence& evidence,
+                        const IsotropicElasticity& uncorrected,
+                        Estimate& estimate) {
+  if (estimate.IsUsable()) {
+    ApplyCorrection(evidence, estimate);
+  }
+  if (evidence.element_correction) {
+    const IsotropicElasticity& corrected = estimate.elasticity;
+    estimate.discretization_correction = {
+        corrected.youngs_modulus / uncorrected.youngs_modulus - 1,
+        corrected.poisson_ratio - uncorrected.poisson_ratio};
+  }
 }
 
 FitStatistics DescribeDisplacementFit(

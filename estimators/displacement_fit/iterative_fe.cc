@@ -256,15 +256,26 @@ class CorrectableIterativeFit : public CorrectableFit {
     return range;
   }
 
-  std::optional<Eigen::VectorXd> ChangeAt(double poisson_ratio) override {
+  std::optional<FitAtRatio> FitAt(double poisson_ratio) override {
     model_.SetMeasured(measured_);
     if (!model_.SetPoissonRatio(poisson_ratio)) {
       return std::nullopt;
     }
     const IsotropicElasticity elasticity =
         EvaluateProfile(options_, model_, poisson_ratio).elasticity;
-    return elasticity.IsPhysical() ? model_.ElementChangeOf(elasticity)
-                                   : std::nullopt;
+    if (!elasticity.IsPhysical()) {
+      return std::nullopt;
+    }
+    const std::optional<Eigen::VectorXd> change =
+        model_.ElementChangeOf(elasticity);
+    if (!change) {
+      return std::nullopt;
+    }
+    const double scale = elasticity.ComplianceScale(model_.Section());
+    return FitAtRatio{elasticity,
+                      scale * model_.UnitLoadResponse() +
+                          model_.SupportResponse() - measured_,
+                      model_.Sensitivities(elasticity.youngs_modulus), *change};
   }
 
   // Of the last fit.

@@ -126,7 +126,7 @@ class CorrectableAdaptiveFit : public CorrectableFit {
     return adaptive_.ProfileEnds(data_, excess);
   }
 
-  std::optional<Eigen::VectorXd> ChangeAt(double poisson_ratio) override {
+  std::optional<FitAtRatio> FitAt(double poisson_ratio) override {
     data_.SetMeasured(measured_);
     const DisplacementFit unit =
         ExpandFit(adaptive_.Model(), data_, {1, poisson_ratio});
@@ -136,9 +136,14 @@ class CorrectableAdaptiveFit : public CorrectableFit {
     if (!(ratio > 0) || !std::isfinite(ratio)) {
       return std::nullopt;
     }
-    return FitWithChange(scene_, data_, {1 / ratio, poisson_ratio}, doubt_,
-                         adaptive_.Model(), change_)
-        .element_change;
+    const IsotropicElasticity elasticity = {1 / ratio, poisson_ratio};
+    const DisplacementFit fit = FitWithChange(scene_, data_, elasticity, doubt_,
+                                              adaptive_.Model(), change_);
+    if (!fit.element_change) {
+      return std::nullopt;
+    }
+    return FitAtRatio{elasticity, fit.residual, fit.sensitivities,
+                      *fit.element_change};
   }
 
   // What was fitted last.

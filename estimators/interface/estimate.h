@@ -268,8 +268,8 @@ struct Estimate {
   std::optional<double> discretization_error;
   std::optional<double> poisson_ratio_discretization_error;
   /// By how much E (relative) and nu were corrected for what the elements miss,
-  /// in fits of displacements of linear simplices, and for where supports end
-  /// within them.
+  /// in fits of displacements of simplices, and for where supports end within
+  /// them.  Also of what was refused, as far as that was corrected.
   std::optional<Eigen::Vector2d> discretization_correction;
   /// What virtual-fields says of the model of reduced-fe, where both were run.
   std::optional<ModelMismatch> model_mismatch;

@@ -767,7 +767,8 @@ Finding LinearElementsFitAsWell(const IsotropicElasticity& linear) {
           TwoDigits(linear.youngs_modulus) + " and nu = " +
           TwoDigits(linear.poisson_ratio) + ", which the error bars hold",
       "use reduced-fe, with order 2 for displacements of a specimen, with "
-      "order 1 for those that linear elements of this mesh made");
+      "order 1 only for those that were simulated with linear elements of this "
+      "mesh");
 }
 
 Finding TooManyElements() {

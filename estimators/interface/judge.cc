@@ -70,7 +70,8 @@ void FailUndetermined(Finding finding, Estimate& estimate) {
   } else if (estimate.Has(FindingCode::kLinearElementsFitAsWell)) {
     finding.advice =
         "use reduced-fe, with order 2 for displacements of a specimen, with "
-        "order 1 for those that linear elements of this mesh made";
+        "order 1 only for those that were simulated with linear elements of "
+        "this mesh";
   } else if (IsDiscretizationErrorNotable(estimate)) {
     finding.advice =
         std::string("refine the mesh") +
@@ -81,6 +82,18 @@ void FailUndetermined(Finding finding, Estimate& estimate) {
     finding.advice += ", or use reduced-fe, which takes more from the data";
   }
   estimate.Fail(finding);
+}
+
+// Where nu has no standard error.
+bool IsIntervalTooWide(const Estimate& estimate) {
+  if (!estimate.poisson_ratio_interval ||
+      estimate.PoissonRatioStandardError()) {
+    return false;
+  }
+  const auto& [lower, upper] = *estimate.poisson_ratio_interval;
+  const double nu = estimate.elasticity.poisson_ratio;
+  return std::max(nu - lower, upper - nu) >
+         kLimits.LargestPoissonRatioDistance();
 }
 
 void JudgeResult(const EstimatorOptions& options, Estimate& estimate) {
@@ -99,6 +112,9 @@ void JudgeResult(const EstimatorOptions& options, Estimate& estimate) {
              estimate.PoissonRatioStandardError().value_or(0) >
                  kLimits.largest_poisson_ratio_error) {
     FailUndetermined(PoissonRatioUndetermined(estimate), estimate);
+  } else if (!options.known_poisson_ratio && IsIntervalTooWide(estimate)) {
+    FailUndetermined(
+        PoissonRatioBetween(*estimate.poisson_ratio_interval, false), estimate);
   } else if (youngs_modulus_error >
              kLimits.largest_youngs_modulus_error * elasticity.youngs_modulus) {
     FailUndetermined(YoungsModulusUndetermined(elasticity.youngs_modulus,

@@ -4,8 +4,10 @@
 
 #include <cmath>
 #include <string_view>
+#include <vector>
 
 #include "elastimate/core/equilibrium/hierarchical_error.h"
+#include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/simplicial_scene.h"
 #include "elastimate/estimators/registry.h"
@@ -72,6 +74,66 @@ TEST_P(CorrectedFitOf, IsThatOfQuadraticElementsWhereLinearOnesAreTooStiff) {
   const double correction = (*estimate.discretization_correction)(1);
   EXPECT_GT(correction, 0.02);
   EXPECT_LT(std::abs(error), 0.1 * correction);
+}
+
+// A column of one or two elements across, twisted by forces on two sides of its
+// end: linear elements are four times too stiff, and fit it with nu next to
+// 1/2.
+Scene TwistedColumn(const Eigen::Vector3i& cells, const Eigen::Vector3d& size) {
+  const Mesh mesh = testing::BoxMesh(cells, size);
+  Scene scene = testing::HeldAtBottom(mesh, mesh, Eigen::Vector3d::Zero());
+  scene.load_cases[0].loads.clear();
+  const Eigen::MatrixXi facets = BoundaryFacets(mesh);
+  const double end = size(2) * (1 - 1.01 / cells(2));
+  for (const double side : {0.0, size(1)}) {
+    std::vector<Eigen::Index> loaded;
+    for (Eigen::Index i = 0; i < facets.cols(); ++i) {
+      const auto nodes = mesh.nodes(Eigen::all, facets.col(i));
+      if ((nodes.row(1).array() - side).abs().maxCoeff() < 1e-9 &&
+          nodes.row(2).minCoeff() > end) {
+        loaded.push_back(i);
+      }
+    }
+    scene.load_cases[0].loads.push_back(
+        SurfaceForce{facets(Eigen::all, loaded),
+                     Eigen::Vector3d(side == 0 ? 0.1 : -0.1, 0, 0)});
+  }
+  return scene;
+}
+
+class LockedFit : public ::testing::TestWithParam<std::string_view> {};
+
+TEST_P(LockedFit, IsNotTakenForASpecimen) {
+  constexpr int kSeeds = 6;
+  const Eigen::Vector3i thin(1, 1, 5);
+  const Eigen::Vector3i thick(2, 2, 5);
+  for (const Eigen::Vector3i& cells : {thin, thick}) {
+    Scene exact = TwistedColumn(cells, 0.3 * cells.cast<double>());
+    testing::MeasureInFinerWorld({1000, 0.2}, exact);
+    for (int seed = 1; seed <= kSeeds; ++seed) {
+      Scene measured = exact;
+      testing::AddNoise(0.05, seed, measured);
+      const Estimate estimate = MakeEstimator(GetParam())->Run(measured, {});
+      EXPECT_TRUE(!estimate.IsUsable() ||
+                  std::abs(estimate.elasticity.youngs_modulus - 1000) <
+                      3.5 * *estimate.YoungsModulusStandardError())
+          << cells.transpose() << ", seed " << seed << ": "
+          << estimate.elasticity.youngs_modulus;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Estimators, LockedFit,
+                         ::testing::Values("reduced-fe", "iterative-fe",
+                                           "auto"));
+
+TEST_P(CorrectedFitOf, SaysThatItDidNotCorrectWhatIsTooCoarse) {
+  Scene scene = testing::BlockUnderTraction({4, 4, 12}, {1, 1, 3});
+  testing::MeasureInFinerWorld({5000, 0.45}, scene);
+  const Estimate estimate = MakeEstimator(GetParam())->Run(scene, {});
+  ASSERT_EQ(estimate.status, Status::kNotIdentifiable);
+  ASSERT_TRUE(estimate.discretization_correction);
+  EXPECT_EQ(*estimate.discretization_correction, Eigen::Vector2d::Zero());
 }
 
 TEST_P(CorrectedFitOf, IsTheFitWhereItsElementsWereMeasured) {
