@@ -97,7 +97,7 @@ double SquareDifference(const DescribedFit& described,
     return 0;
   }
   const Eigen::VectorXd difference = *described.element_change - elsewhere;
-  const Eigen::VectorXd& scale = described.by_log_youngs_modulus;
+  const Eigen::VectorXd scale = described.sensitivities.col(0);
   return SquaredNorm(difference) -
          std::pow(InnerProduct(scale, difference), 2) / SquaredNorm(scale);
 }
@@ -175,25 +175,32 @@ bool IsTooLarge(const Eigen::Vector2d& correction) {
 // other parameters, as far off as no linear model sees.  Where a specimen
 // explains the measurement as well, but for chance, the fit is asked to change
 // to that.
-void LookForSpecimenElsewhere(CorrectableFit& fit, DescribedFit& described) {
-  const Estimate& estimate = described.estimate;
-  const IsotropicElasticity& elasticity = estimate.elasticity;
-  const std::optional<FitAtRatio> here = fit.FitAt(elasticity.poisson_ratio);
-  if (here && IsTooLarge(SolveLeastSquares(here->sensitivities,
-                                           here->element_change))) {
-    // Within three standard errors, of residuals that are noise.
-    constexpr double kExcess = 9;
+void LookForSpecimenElsewhere(const EstimatorOptions& options,
+                              CorrectableFit& fit, DescribedFit& described) {
+  // Within three standard errors, of residuals that are noise.
+  constexpr double kExcess = 9;
+  const IsotropicElasticity& elasticity = described.estimate.elasticity;
+  if (!described.element_change || !elasticity.IsPhysical() ||
+      !IsTooLarge(SolveLeastSquares(described.sensitivities,
+                                    *described.element_change))) {
+    return;
+  }
+  const Bounds bounds = EffectivePoissonRatioBounds(options);
+  const double usual =
+      std::clamp(kUsualPoissonRatio, *bounds.lower, *bounds.upper);
+  for (const double nu : {elasticity.poisson_ratio, usual}) {
+    const std::optional<FitAtRatio> other = fit.FitAt(nu);
+    if (!other) {
+      continue;
+    }
     const double left =
-        *estimate.displacement_residual *
-        Norm(here->sensitivities.col(0) + here->residual) *
-        std::sqrt(1 + kExcess / static_cast<double>(here->residual.size()));
-    for (const std::optional<FitAtRatio>& other :
-         {here, fit.FitAt(kUsualPoissonRatio)}) {
-      const std::optional<Eigen::Vector2d> change =
-          other ? ChangeToSpecimen(*other, elasticity, left) : std::nullopt;
-      if (change && IsTooLarge(*change)) {
-        described.evidence.likely_element_change = *change;
-      }
+        *described.estimate.displacement_residual *
+        Norm(other->sensitivities.col(0) + other->residual) *
+        std::sqrt(1 + kExcess / static_cast<double>(other->residual.size()));
+    const std::optional<Eigen::Vector2d> change =
+        ChangeToSpecimen(*other, elasticity, left);
+    if (change && IsTooLarge(*change)) {
+      described.evidence.likely_element_change = *change;
     }
   }
   fit.FitNear(elasticity, described.taken);
@@ -224,7 +231,7 @@ CorrectedFit FitCorrected(const Scene& scene, const EstimatorOptions& options,
     corrected = BestOf(corrected.fit, *elsewhere, fit);
   } else if (scene.mesh.Order() == 1 && !options.known_poisson_ratio &&
              !IsOnGivenBound(first)) {
-    LookForSpecimenElsewhere(fit, corrected.fit);
+    LookForSpecimenElsewhere(options, fit, corrected.fit);
   }
   Estimate& estimate = corrected.fit.estimate;
   estimate.displacement_residual = first.estimate.displacement_residual;

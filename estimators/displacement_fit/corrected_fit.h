@@ -21,8 +21,8 @@ struct DescribedFit {
   Evidence evidence;
   FitStatistics statistics;
   std::optional<Eigen::VectorXd> element_change;
-  /// du / d ln E.
-  Eigen::VectorXd by_log_youngs_modulus;
+  /// du / d (ln E, nu).
+  Eigen::Matrix<double, Eigen::Dynamic, 2> sensitivities;
   /// As of DisplacementFit.
   Eigen::VectorXd taken;
 };

@@ -239,7 +239,7 @@ class CorrectableIterativeFit : public CorrectableFit {
         scene_, model_.Graph(), options_, model_.Observed(), residual_.Fit(),
         best_->losses, described.evidence, estimate);
     described.element_change = residual_.Fit().element_change;
-    described.by_log_youngs_modulus = residual_.Fit().sensitivities.col(0);
+    described.sensitivities = residual_.Fit().sensitivities;
     described.taken = residual_.Fit().taken;
     return described;
   }

@@ -117,7 +117,7 @@ class CorrectableAdaptiveFit : public CorrectableFit {
         scene_, adaptive_.Model().Graph(), options_, data_, fit, best.losses,
         described.evidence, estimate);
     described.element_change = std::move(fit.element_change);
-    described.by_log_youngs_modulus = fit.sensitivities.col(0);
+    described.sensitivities = fit.sensitivities;
     described.taken = taken_;
     return described;
   }

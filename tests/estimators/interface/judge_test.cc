@@ -5,6 +5,7 @@
 #include <string>
 
 #include "elastimate/estimators/interface/parameter_judge.h"
+#include "tests/scenes.h"
 
 namespace elastimate {
 namespace {
@@ -146,6 +147,21 @@ TEST(Judge, AnIntervalThatReachesAFarEndSaysNothing) {
   EXPECT_TRUE(Judged(evidence).IsUsable());
   evidence.chance_interval = evidence.profile_interval;
   EXPECT_TRUE(Judged(evidence).Has(FindingCode::kPoissonRatioUndetermined));
+}
+
+// At its limit nu has an interval, but no standard error.
+TEST(Judge, AWideIntervalIsNoEstimateWithoutAStandardErrorEither) {
+  const Scene scene = testing::SmallScene("cuboid");
+  for (const double lower : {0.25, 0.15}) {
+    Estimate estimate = Measured();
+    estimate.Accept();
+    estimate.elasticity.poisson_ratio = 0.49999;
+    estimate.covariance.row(1).setConstant(Estimate::kUnknown);
+    estimate.covariance.col(1).setConstant(Estimate::kUnknown);
+    estimate.poisson_ratio_interval = {lower, 0.5};
+    FinishEstimate("reduced-fe", scene, {}, {}, estimate);
+    EXPECT_EQ(estimate.IsUsable(), lower == 0.25) << estimate.message;
+  }
 }
 
 TEST(Judge, ALargeResidualThatIsSmoothIsNoNoise) {
