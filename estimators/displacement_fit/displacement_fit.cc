@@ -465,7 +465,7 @@ FitStatistics DescribeDisplacementFit(
   description.MeasureNoise(graph);
   description.EnterSupports();
   description.FillCovariance();
-  const FitStatistics statistics = description.Statistics();
+  FitStatistics statistics = description.Statistics();
   if (evidence.active.youngs_modulus != Side::kNone) {
     description.MeasureYoungsModulusOnBound();
   }

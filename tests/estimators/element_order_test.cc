@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "elastimate/estimators/auto.h"
+#include "tests/regions.h"
 #include "tests/scenes.h"
 
 namespace elastimate {

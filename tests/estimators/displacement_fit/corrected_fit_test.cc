@@ -11,6 +11,7 @@
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/simplicial_scene.h"
 #include "elastimate/estimators/registry.h"
+#include "tests/regions.h"
 #include "tests/scenes.h"
 
 namespace elastimate {
