@@ -107,15 +107,15 @@ double SquareDifference(const DescribedFit& described,
 // is doubtful as either fit sees of the changes.
 CorrectedFit BetterOf(const DescribedFit& one, const DescribedFit& other,
                       const Eigen::VectorXd& elsewhere, CorrectableFit& fit) {
-  const bool is_other = other.statistics.rest < one.statistics.rest;
+  const bool is_other = *other.statistics.rest < *one.statistics.rest;
   const DescribedFit& rival = is_other ? one : other;
   const double share = std::max(std::abs(one.statistics.share_of_finer),
                                 std::abs(other.statistics.share_of_finer));
   CorrectedFit best = {is_other ? other : one, 0, {}};
   best.doubt = share * share * SquareDifference(best.fit, elsewhere);
   const double excess = best.ExcessOf(kTwoSidedQuantile) -
-                        (std::pow(rival.statistics.rest, 2) -
-                         std::pow(best.fit.statistics.rest, 2));
+                        (std::pow(*rival.statistics.rest, 2) -
+                         std::pow(*best.fit.statistics.rest, 2));
   if (excess > 0) {
     if (is_other) {
       fit.FitNear(rival.estimate.elasticity, rival.taken);
@@ -135,7 +135,8 @@ CorrectedFit BestOf(const DescribedFit& settled, double other,
   const std::optional<FitAtRatio> change = fit.FitAt(other);
   if (change && fit.Fit(PriorOfSpecimen(2).share * change->element_change)) {
     const DescribedFit of_finer = Settle(fit.Describe(), fit);
-    if (of_finer.element_change) {
+    if (of_finer.element_change && of_finer.statistics.rest &&
+        settled.statistics.rest) {
       return BetterOf(settled, of_finer, change->element_change, fit);
     }
   }
@@ -235,12 +236,12 @@ CorrectedFit FitCorrected(const Scene& scene, const EstimatorOptions& options,
   }
   Estimate& estimate = corrected.fit.estimate;
   estimate.displacement_residual = first.estimate.displacement_residual;
+  estimate.bounded_residual = first.estimate.bounded_residual;
   // Of quadratic elements, which stand for a specimen, what that leaves.
-  estimate.bounded_residual =
-      scene.mesh.Order() == 1
-          ? first.estimate.bounded_residual
-          : corrected.fit.statistics.rest /
-                Norm(ObservedDisplacements(scene).Measured());
+  if (scene.mesh.Order() == 2 && corrected.fit.statistics.rest) {
+    estimate.bounded_residual = *corrected.fit.statistics.rest /
+                                Norm(ObservedDisplacements(scene).Measured());
+  }
   return corrected;
 }
 

@@ -51,8 +51,9 @@ struct FitStatistics {
   /// How much more than the least the square sum may be of a fit that becomes
   /// the best once that change is taken from the measurement.
   double excess_of_finer = 0;
-  /// BoundedNorm of the residual that is left.
-  double rest = 0;
+  /// BoundedNorm of the residual that is left; empty where there is too little
+  /// to describe the fit by.
+  std::optional<double> rest;
 };
 
 /// With another (ln E, nu); nu moves half of the way to a limit at most.

@@ -128,6 +128,23 @@ INSTANTIATE_TEST_SUITE_P(Estimators, LockedFit,
                          ::testing::Values("reduced-fe", "iterative-fe",
                                            "auto"));
 
+// Of two rows more than there are parameters no noise is estimated, and nothing
+// is corrected; orders are still compared by what they leave.
+TEST_P(CorrectedFitOf, HasTheResidualOfTooFewMeasurements) {
+  Scene scene = BentBar();
+  testing::Measure(kBarTruth, scene);
+  testing::AddNoise(0.01, 1, scene);
+  LoadCase& load_case = scene.load_cases[0];
+  load_case.observed = ComponentMask::Constant(3, scene.mesh.NumNodes(), false);
+  load_case.observed.col(scene.mesh.NumNodes() - 1).setConstant(true);
+  load_case.observed(0, scene.mesh.NumNodes() - 2) = true;
+  const Estimate estimate = MakeEstimator(GetParam())->Run(scene, {});
+  ASSERT_TRUE(estimate.Has(FindingCode::kTooFewMeasurements))
+      << estimate.message;
+  EXPECT_NEAR(*estimate.bounded_residual, *estimate.displacement_residual,
+              1e-12);
+}
+
 TEST_P(CorrectedFitOf, SaysThatItDidNotCorrectWhatIsTooCoarse) {
   Scene scene = testing::BlockUnderTraction({4, 4, 12}, {1, 1, 3});
   testing::MeasureInFinerWorld({5000, 0.45}, scene);
