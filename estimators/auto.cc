@@ -1,7 +1,5 @@
 #include "elastimate/estimators/auto.h"
 
-#include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include "elastimate/core/scene/quadratic_scene.h"
@@ -353,7 +351,7 @@ Capabilities Auto::WhatItTakes() const {
 std::string Auto::WhyUnsupported(const Scene& scene,
                                  const EstimatorOptions& options) const {
   const EstimatorOptions without_degree = WithoutDegree(options);
-  const std::string why_not =
+  std::string why_not =
       IsForMaterialFit(scene)
           ? IterativeFe().WhyUnsupported(scene, without_degree)
           : ReducedFe().WhyUnsupported(scene, without_degree);

@@ -7,6 +7,7 @@
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/estimators/interface/limits.h"
+#include "elastimate/estimators/statistics/profile_likelihood.h"
 #include "elastimate/estimators/statistics/residual_statistics.h"
 
 namespace elastimate {
@@ -106,16 +107,7 @@ void OrderComparison::HoldLinear(Estimate& quadratic) const {
   if (quadratic.poisson_ratio_discretization_error) {
     add(change(1), *quadratic.poisson_ratio_discretization_error);
   }
-  if (quadratic.poisson_ratio_interval) {
-    auto& [lower, upper] = *quadratic.poisson_ratio_interval;
-    const double nu = quadratic.elasticity.poisson_ratio;
-    double below = nu - lower;
-    double above = upper - nu;
-    add(kTwoSidedErrors * change(1), below);
-    add(kTwoSidedErrors * change(1), above);
-    lower = std::max(-1.0, nu - below);
-    upper = std::min(0.5, nu + above);
-  }
+  WidenInterval(p * change(1) * change(1), quadratic);
 }
 
 }  // namespace elastimate

@@ -8,6 +8,7 @@
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/limits.h"
+#include "elastimate/estimators/interface/rules.h"
 #include "elastimate/estimators/statistics/bounded_parameter.h"
 #include "elastimate/estimators/statistics/finer_specimen.h"
 
@@ -146,7 +147,7 @@ CorrectedFit BestOf(const DescribedFit& settled, double other,
 
 // The change of (ln E, nu) of a fit to where the u + e of another nu, with
 // another scale and the slope of u in nu, leaves no more of the measurement
-// than `most`; empty where it leaves more.
+// than this share; empty where it leaves more.
 std::optional<Eigen::Vector2d> ChangeToSpecimen(
     const FitAtRatio& other, const IsotropicElasticity& elasticity,
     double most) {
@@ -156,7 +157,8 @@ std::optional<Eigen::Vector2d> ChangeToSpecimen(
   columns << displacement + other.element_change, other.sensitivities.col(1);
   const Eigen::VectorXd scale_and_step = SolveLeastSquares(columns, measured);
   const double scale = scale_and_step(0);
-  if (!(scale > 0) || !(Norm(measured - columns * scale_and_step) <= most)) {
+  if (!(scale > 0) ||
+      !(Norm(measured - columns * scale_and_step) <= most * Norm(measured))) {
     return std::nullopt;
   }
   return Eigen::Vector2d(std::log(other.elasticity.youngs_modulus / scale /
@@ -164,12 +166,6 @@ std::optional<Eigen::Vector2d> ChangeToSpecimen(
                          other.elasticity.poisson_ratio +
                              scale_and_step(1) / scale -
                              elasticity.poisson_ratio);
-}
-
-bool IsTooLarge(const Eigen::Vector2d& correction) {
-  return std::abs(correction(0)) >
-             kLimits.largest_correction_of_log_youngs_modulus ||
-         std::abs(correction(1)) > kLimits.largest_correction_of_poisson_ratio;
 }
 
 // Linear elements that would be too coarse for a specimen may fit one with
@@ -182,25 +178,22 @@ void LookForSpecimenElsewhere(const EstimatorOptions& options,
   constexpr double kExcess = 9;
   const IsotropicElasticity& elasticity = described.estimate.elasticity;
   if (!described.element_change || !elasticity.IsPhysical() ||
-      !IsTooLarge(SolveLeastSquares(described.sensitivities,
-                                    *described.element_change))) {
+      !IsCorrectionTooLarge(SolveLeastSquares(described.sensitivities,
+                                              *described.element_change))) {
     return;
   }
   const Bounds bounds = EffectivePoissonRatioBounds(options);
   const double usual =
       std::clamp(kUsualPoissonRatio, *bounds.lower, *bounds.upper);
+  const double most =
+      *described.estimate.displacement_residual *
+      std::sqrt(1 + kExcess /
+                        static_cast<double>(described.element_change->size()));
   for (const double nu : {elasticity.poisson_ratio, usual}) {
     const std::optional<FitAtRatio> other = fit.FitAt(nu);
-    if (!other) {
-      continue;
-    }
-    const double left =
-        *described.estimate.displacement_residual *
-        Norm(other->sensitivities.col(0) + other->residual) *
-        std::sqrt(1 + kExcess / static_cast<double>(other->residual.size()));
     const std::optional<Eigen::Vector2d> change =
-        ChangeToSpecimen(*other, elasticity, left);
-    if (change && IsTooLarge(*change)) {
+        other ? ChangeToSpecimen(*other, elasticity, most) : std::nullopt;
+    if (change && IsCorrectionTooLarge(*change)) {
       described.evidence.likely_element_change = *change;
     }
   }

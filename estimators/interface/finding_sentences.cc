@@ -766,9 +766,13 @@ Finding LinearElementsFitAsWell(const IsotropicElasticity& linear) {
       "linear elements explain the displacements as well, with E = " +
           TwoDigits(linear.youngs_modulus) + " and nu = " +
           TwoDigits(linear.poisson_ratio) + ", which the error bars hold",
-      "use reduced-fe, with order 2 for displacements of a specimen, with "
-      "order 1 only for those that were simulated with linear elements of this "
-      "mesh");
+      OrderAdvice());
+}
+
+std::string OrderAdvice() {
+  return "use reduced-fe, with order 2 for displacements of a specimen, with "
+         "order 1 only for those that were simulated with linear elements of "
+         "this mesh";
 }
 
 Finding TooManyElements() {

@@ -162,6 +162,8 @@ Finding ElementsTooCoarse(const Eigen::Vector2d& correction,
 Finding SupportsEndWithinElements(const Eigen::Vector2d& errors);
 Finding DiscretizationErrorFinding(ElementKind kind, const Estimate& estimate);
 Finding LinearElementsFitAsWell(const IsotropicElasticity& linear);
+/// What to do where these fit as well.
+std::string OrderAdvice();
 Finding TooManyElements();
 Finding SolverFallback(const std::string& notice);
 

@@ -68,10 +68,7 @@ void FailUndetermined(Finding finding, Estimate& estimate) {
   if (estimate.Has(FindingCode::kSupportsEndWithinElements)) {
     finding.advice = "give the supports by place, such as a box";
   } else if (estimate.Has(FindingCode::kLinearElementsFitAsWell)) {
-    finding.advice =
-        "use reduced-fe, with order 2 for displacements of a specimen, with "
-        "order 1 only for those that were simulated with linear elements of "
-        "this mesh";
+    finding.advice = OrderAdvice();
   } else if (IsDiscretizationErrorNotable(estimate)) {
     finding.advice =
         std::string("refine the mesh") +

@@ -334,12 +334,8 @@ Result JudgeElements(const Evidence& evidence, const EstimatorOptions&,
     return std::nullopt;
   }
   const Eigen::Vector2d& change = *evidence.likely_element_change;
-  return std::abs(change(0)) <=
-                     kLimits.largest_correction_of_log_youngs_modulus &&
-                 std::abs(change(1)) <=
-                     kLimits.largest_correction_of_poisson_ratio
-             ? Result()
-             : ElementsTooCoarse(change, estimate);
+  return IsCorrectionTooLarge(change) ? ElementsTooCoarse(change, estimate)
+                                      : Result();
 }
 
 Result JudgeRatiosAtLimit(const Evidence& evidence, const EstimatorOptions&,
@@ -382,6 +378,14 @@ bool AreNotable(const Eigen::Vector2d& errors, const Estimate& estimate) {
          errors(1) >
              std::max(kLimits.notable_poisson_ratio_error,
                       kLimits.notable_discretization_share * poisson_ratio);
+}
+
+bool IsCorrectionTooLarge(const Eigen::Vector2d& correction) {
+  // What is no number is no correction either.
+  return !(std::abs(correction(0)) <=
+               kLimits.largest_correction_of_log_youngs_modulus &&
+           std::abs(correction(1)) <=
+               kLimits.largest_correction_of_poisson_ratio);
 }
 
 const std::vector<Rule>& Rules() {
