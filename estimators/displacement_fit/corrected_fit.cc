@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/node_sums.h"
@@ -11,6 +12,7 @@
 #include "elastimate/estimators/interface/rules.h"
 #include "elastimate/estimators/statistics/bounded_parameter.h"
 #include "elastimate/estimators/statistics/finer_specimen.h"
+#include "elastimate/estimators/statistics/residual_statistics.h"
 
 namespace elastimate {
 namespace {
@@ -67,27 +69,67 @@ DescribedFit Settle(DescribedFit described, CorrectableFit& fit) {
   return described;
 }
 
-// A nu that may become the best once the change to finer elements is taken, as
-// far from that of the fit as to change differently there; empty where there is
-// none.
-std::optional<double> OtherPoissonRatio(const EstimatorOptions& options,
-                                        const DescribedFit& described,
-                                        CorrectableFit& fit) {
+// Those nu that may become the best once the change to finer elements is taken,
+// as far from that of the fit as to change differently there.
+std::vector<double> OtherPoissonRatios(const EstimatorOptions& options,
+                                       const DescribedFit& described,
+                                       CorrectableFit& fit) {
   constexpr double kFar = 0.7;
   if (options.known_poisson_ratio) {
-    return std::nullopt;
+    return {};
   }
   const Bounds bounds = EffectivePoissonRatioBounds(options);
-  double other = std::clamp(kUsualPoissonRatio, *bounds.lower, *bounds.upper);
+  double lower = *bounds.lower;
+  double upper = *bounds.upper;
   if (described.element_change) {
     const Profile range = fit.RangeWithin(described.statistics.excess_of_finer);
-    other =
-        std::clamp(other, range.lower.poisson_ratio, range.upper.poisson_ratio);
+    lower = std::max(lower, range.lower.poisson_ratio);
+    upper = std::min(upper, range.upper.poisson_ratio);
   }
-  const double nu = described.estimate.elasticity.poisson_ratio;
-  return std::abs(LogStiffnessRatio(other) - LogStiffnessRatio(nu)) > kFar
-             ? std::optional<double>(other)
-             : std::nullopt;
+  std::vector<double> others;
+  const auto is_far = [](double one, double other) {
+    return std::abs(LogStiffnessRatio(one) - LogStiffnessRatio(other)) > kFar;
+  };
+  for (const double usual : {kUsualPoissonRatio, -0.5, 0.0, 0.45}) {
+    const double other = std::clamp(usual, lower, upper);
+    if (is_far(other, described.estimate.elasticity.poisson_ratio) &&
+        std::none_of(others.begin(), others.end(),
+                     [&](double nu) { return !is_far(other, nu); })) {
+      others.push_back(other);
+    }
+  }
+  return others;
+}
+
+// The measurement without what finer elements change at another nu, of which
+// the measurement says how much there is.
+struct ChangeElsewhere {
+  IsotropicElasticity elasticity;
+  Eigen::VectorXd change;  ///< All of it.
+  Eigen::VectorXd taken;
+  double rest;  ///< BoundedNorm of what E leaves.
+};
+
+std::optional<ChangeElsewhere> FitElsewhere(
+    const ObservedDisplacements& observed, double poisson_ratio,
+    CorrectableFit& fit) {
+  const std::optional<FitAtRatio> at = fit.FitAt(poisson_ratio);
+  if (!at) {
+    return std::nullopt;
+  }
+  Eigen::MatrixXd columns(observed.Size(), 2);
+  columns << at->sensitivities.col(0), at->element_change;
+  const double share =
+      std::clamp(RobustChange(observed, at->residual, columns)(1), 0.0,
+                 2 * PriorOfSpecimen(2).share);
+  ChangeElsewhere elsewhere = {at->elasticity, at->element_change,
+                               share * at->element_change, 0};
+  const Eigen::VectorXd residual = at->residual + elsewhere.taken;
+  const Eigen::VectorXd scale = columns.col(0);
+  const Eigen::VectorXd change = RobustChange(observed, residual, scale);
+  elsewhere.elasticity.youngs_modulus *= std::exp(change(0));
+  elsewhere.rest = BoundedNorm(observed, residual + scale * change);
+  return elsewhere;
 }
 
 // The square sum of the difference of what finer elements change at another nu,
@@ -129,20 +171,51 @@ CorrectedFit BetterOf(const DescribedFit& one, const DescribedFit& other,
   return best;
 }
 
-// Of a fit that has settled, and what settles from the measurement without all
-// that finer elements change at another nu.
-CorrectedFit BestOf(const DescribedFit& settled, double other,
+// Of a fit that has settled, and what settles from the measurement without what
+// finer elements change at other nu.  Where that change moves the fit by more
+// than the step of nu to which it belongs, no fit settles at the best of them:
+// those that leave as little as any stay rivals as they are.
+CorrectedFit BestOf(const ObservedDisplacements& observed,
+                    const DescribedFit& settled,
+                    const std::vector<double>& other_ratios,
                     CorrectableFit& fit) {
-  const std::optional<FitAtRatio> change = fit.FitAt(other);
-  if (change && fit.Fit(PriorOfSpecimen(2).share * change->element_change)) {
-    const DescribedFit of_finer = Settle(fit.Describe(), fit);
-    if (of_finer.element_change && of_finer.statistics.rest &&
-        settled.statistics.rest) {
-      return BetterOf(settled, of_finer, change->element_change, fit);
+  std::vector<ChangeElsewhere> others;
+  for (const double nu : other_ratios) {
+    const std::optional<ChangeElsewhere> other =
+        FitElsewhere(observed, nu, fit);
+    if (other) {
+      others.push_back(*other);
     }
   }
-  fit.FitNear(settled.estimate.elasticity, settled.taken);
-  return {settled, 0, {}};
+  const auto best_other = std::min_element(
+      others.begin(), others.end(),
+      [](const ChangeElsewhere& one, const ChangeElsewhere& other) {
+        return one.rest < other.rest;
+      });
+  CorrectedFit best = {settled, 0, {}};
+  if (best_other == others.end() || !settled.statistics.rest) {
+    fit.FitNear(settled.estimate.elasticity, settled.taken);
+    return best;
+  }
+  bool is_settled_last = false;
+  if (fit.FitNear(best_other->elasticity, best_other->taken)) {
+    const DescribedFit of_finer = Settle(fit.Describe(), fit);
+    if (of_finer.element_change && of_finer.statistics.rest) {
+      best = BetterOf(settled, of_finer, best_other->change, fit);
+      is_settled_last = true;
+    }
+  }
+  if (!is_settled_last) {
+    fit.FitNear(settled.estimate.elasticity, settled.taken);
+  }
+  const double least = std::min(best_other->rest, *best.fit.statistics.rest);
+  for (const ChangeElsewhere& other : others) {
+    if (std::pow(other.rest, 2) - std::pow(least, 2) <=
+        best.ExcessOf(kTwoSidedQuantile)) {
+      best.rival = best.WithRival({other.elasticity, other.elasticity});
+    }
+  }
+  return best;
 }
 
 // The change of (ln E, nu) of a fit to where the u + e of another nu, with
@@ -217,12 +290,13 @@ CorrectedFit FitCorrected(const Scene& scene, const EstimatorOptions& options,
   if (AreElementsTooCoarse(options, first)) {
     return {first, 0, {}};
   }
-  const std::optional<double> elsewhere =
-      scene.mesh.Order() == 1 ? std::nullopt
-                              : OtherPoissonRatio(options, first, fit);
+  const ObservedDisplacements observed(scene);
+  const std::vector<double> other_ratios =
+      scene.mesh.Order() == 1 ? std::vector<double>()
+                              : OtherPoissonRatios(options, first, fit);
   CorrectedFit corrected = {Settle(first, fit), 0, {}};
-  if (elsewhere) {
-    corrected = BestOf(corrected.fit, *elsewhere, fit);
+  if (!other_ratios.empty()) {
+    corrected = BestOf(observed, corrected.fit, other_ratios, fit);
   } else if (scene.mesh.Order() == 1 && !options.known_poisson_ratio &&
              !IsOnGivenBound(first)) {
     LookForSpecimenElsewhere(options, fit, corrected.fit);
@@ -232,8 +306,8 @@ CorrectedFit FitCorrected(const Scene& scene, const EstimatorOptions& options,
   estimate.bounded_residual = first.estimate.bounded_residual;
   // Of quadratic elements, which stand for a specimen, what that leaves.
   if (scene.mesh.Order() == 2 && corrected.fit.statistics.rest) {
-    estimate.bounded_residual = *corrected.fit.statistics.rest /
-                                Norm(ObservedDisplacements(scene).Measured());
+    estimate.bounded_residual =
+        *corrected.fit.statistics.rest / Norm(observed.Measured());
   }
   return corrected;
 }

@@ -36,8 +36,10 @@ void AddPoissonRatioInterval(Estimate& estimate) {
 
 void JudgeLocking(const Mesh& mesh, double poisson_ratio, Estimate& estimate) {
   // Those of the estimate may be of a higher order than those of the scene.  In
-  // plane stress a volume may change across the plane.
+  // plane stress a volume may change across the plane.  Errors that hold what
+  // the elements miss hold this.
   if (estimate.IsUsable() && estimate.element_order == 1 &&
+      !estimate.error_budget.discretization.array().isFinite().any() &&
       mesh.section.model != SectionModel::kPlaneStress &&
       poisson_ratio >= kLimits.locking_poisson_ratio) {
     estimate.Add(Locking(mesh.kind));

@@ -13,6 +13,7 @@
 #include "elastimate/estimators/registry.h"
 #include "tests/regions.h"
 #include "tests/scenes.h"
+#include "tests/shapes.h"
 
 namespace elastimate {
 namespace {
@@ -120,6 +121,34 @@ TEST_P(LockedFit, IsNotTakenForASpecimen) {
                       3.5 * *estimate.YoungsModulusStandardError())
           << cells.transpose() << ", seed " << seed << ": "
           << estimate.elasticity.youngs_modulus;
+    }
+  }
+}
+
+// In torsion nu shows in little but what finer elements change, which as a
+// function of nu takes up what nu does: with nu = 0 a fit that starts at 0.3
+// stays there, 0.29 +- 0.09 at 1 % of noise.
+TEST_P(CorrectedFitOf, KnowsNoPoissonRatioThatElementsTakeUp) {
+  constexpr IsotropicElasticity kTruth = {5000, 0};
+  const Scene linear = testing::ShapeScene("dumbbell", "torsion");
+  Scene exact = QuadraticScene(linear);
+  Scene finer = QuadraticScene(SimplicialScene(exact));
+  testing::Measure(kTruth, finer);
+  const Eigen::Index num_nodes = exact.mesh.NumNodes();
+  LoadCase& load_case = exact.load_cases[0];
+  load_case.displacement = finer.load_cases[0].displacement.leftCols(num_nodes);
+  load_case.observed = ComponentMask::Constant(3, num_nodes, false);
+  load_case.observed.leftCols(linear.mesh.NumNodes()).setConstant(true);
+  for (const double noise : {0.01, 0.03}) {
+    for (const int seed : {1, 2, 3}) {
+      Scene measured = exact;
+      testing::AddNoise(noise, seed, measured);
+      const Estimate estimate = MakeEstimator(GetParam())->Run(measured, {});
+      EXPECT_TRUE(!estimate.IsUsable() ||
+                  std::abs(estimate.elasticity.poisson_ratio) <
+                      3 * estimate.PoissonRatioStandardError().value_or(0))
+          << noise << ", seed " << seed << ": "
+          << estimate.elasticity.poisson_ratio;
     }
   }
 }
