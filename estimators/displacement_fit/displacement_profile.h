@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "elastimate/core/materials/elasticity.h"
-#include "elastimate/estimators/displacement_fit/observed_model.h"
+#include "elastimate/estimators/misfit/observed_model.h"
 #include "elastimate/estimators/interface/estimator.h"
 
 namespace elastimate {

@@ -14,7 +14,7 @@
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
 #include "elastimate/estimators/displacement_fit/displacement_minimum.h"
 #include "elastimate/estimators/displacement_fit/displacement_profile.h"
-#include "elastimate/estimators/displacement_fit/observed_model.h"
+#include "elastimate/estimators/misfit/observed_model.h"
 #include "elastimate/estimators/displacement_fit/robust_reduced_fit.h"
 #include "elastimate/estimators/displacement_fit/support_end_search.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"

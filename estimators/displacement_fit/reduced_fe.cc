@@ -12,7 +12,7 @@
 #include "elastimate/estimators/displacement_fit/adaptive_fit.h"
 #include "elastimate/estimators/displacement_fit/corrected_fit.h"
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
-#include "elastimate/estimators/displacement_fit/element_change.h"
+#include "elastimate/estimators/misfit/element_change.h"
 #include "elastimate/estimators/displacement_fit/support_end_search.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/stopwatch.h"

@@ -7,13 +7,16 @@
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/mechanics/strain_energy.h"
 #include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/estimators/force_balance/force_residual.h"
 #include "elastimate/estimators/force_balance/monomials.h"
+#include "elastimate/estimators/force_balance/solution_check.h"
 #include "elastimate/estimators/force_balance/virtual_work.h"
 #include "elastimate/estimators/force_balance/virtual_work_regression.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/stopwatch.h"
+#include "elastimate/estimators/misfit/observed_model.h"
 #include "elastimate/estimators/statistics/errors_on_bound.h"
 #include "elastimate/estimators/statistics/profile_likelihood.h"
 
@@ -326,12 +329,13 @@ double ProbabilityOfFinerSpecimen(double force_residual) {
   return density / (density + kDensityOfNoise);
 }
 
-// Adds what the elements miss to the covariance of the free parameters.
+// Adds what the elements miss to the covariance of the free parameters, by the
+// energy that the smoothed displacements miss.
 void AllowForElements(const Scene& scene, Estimate& estimate) {
   // Of the energy that is missed, in E and nu [benchmarks: unseen].
   constexpr double kYoungsModulusShare = 1.5;
   constexpr double kPoissonRatioShare = 0.6;
-  if (!estimate.IsUsable() || scene.mesh.NumElements() == 1) {
+  if (scene.mesh.NumElements() == 1) {
     return;
   }
   const double missed =
@@ -351,6 +355,22 @@ void AllowForElements(const Scene& scene, Estimate& estimate) {
   }
 }
 
+// Adds what the elements miss, and whatever else a solution of the model tells.
+void CheckModel(const Scene& scene, const EstimatorOptions& options,
+                VirtualFields::Check check, Evidence& evidence,
+                Estimate& estimate) {
+  constexpr double kNotable = 0.01;
+  if (check == VirtualFields::Check::kByEnergy || !WhyNotHeld(scene).empty() ||
+      ProbabilityOfFinerSpecimen(*estimate.force_residual) < kNotable) {
+    AllowForElements(scene, estimate);
+    return;
+  }
+  ObservedModel model(scene, options);
+  CheckBySolution(scene, options, model, evidence, estimate);
+  evidence.solver_notice = model.SolverNotice();
+  estimate.work = estimate.work + model.WorkDone();
+}
+
 // Whether the curvature at the fit says too little of nu.
 bool NeedsProfile(const EstimatorOptions& options, const ActiveBounds& active,
                   const Estimate& estimate) {
@@ -365,7 +385,8 @@ bool NeedsProfile(const EstimatorOptions& options, const ActiveBounds& active,
 void DescribeFit(const Scene& scene, const EstimatorOptions& options,
                  const VirtualWorkBalance& balance,
                  const ForceResidual& force_residual, const VirtualWorkFit& fit,
-                 Evidence& evidence, Estimate& estimate) {
+                 VirtualFields::Check check, Evidence& evidence,
+                 Estimate& estimate) {
   const BoundedParameter poisson_ratio =
       options.known_poisson_ratio
           ? BoundedParameter::Constant(fit.poisson_ratio)
@@ -398,8 +419,8 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
   if (residual && NeedsProfile(options, active, estimate)) {
     DescribeProfileOf(balance, fit, *residual, evidence, estimate);
   }
-  if (residual) {
-    AllowForElements(scene, estimate);
+  if (residual && estimate.IsUsable()) {
+    CheckModel(scene, options, check, evidence, estimate);
   }
   evidence.correction = std::sqrt(fit.square_sum) / balance.DisplacementNorm();
 }
@@ -411,7 +432,8 @@ int DegreeOf(const EstimatorOptions& options) {
 // `imbalance` is that of the loads.
 Estimate BalanceWork(const VirtualWorkBalance& balance,
                      const ForceResidual& force_residual, double imbalance,
-                     const Scene& scene, const EstimatorOptions& options) {
+                     const Scene& scene, const EstimatorOptions& options,
+                     VirtualFields::Check check) {
   Estimate estimate;
   Evidence evidence;
   Stopwatch stopwatch;
@@ -429,7 +451,8 @@ Estimate BalanceWork(const VirtualWorkBalance& balance,
   if (!estimate.IsUsable()) {
     return estimate;
   }
-  DescribeFit(scene, options, balance, force_residual, fit, evidence, estimate);
+  DescribeFit(scene, options, balance, force_residual, fit, check, evidence,
+              estimate);
   Judge(evidence, options, estimate);
   estimate.stages.push_back({"fit", stopwatch.Lap()});
   return estimate;
@@ -437,8 +460,10 @@ Estimate BalanceWork(const VirtualWorkBalance& balance,
 
 class WorkPreparation : public Preparation {
  public:
-  WorkPreparation(const Scene& scene, const EstimatorOptions& options)
+  WorkPreparation(const Scene& scene, const EstimatorOptions& options,
+                  VirtualFields::Check check)
       : options_(options),
+        check_(check),
         work_(scene.mesh, scene.supports, DegreeOf(options)),
         forces_(scene),
         imbalance_(work_.Imbalance(AssembleLoadCases(scene))) {}
@@ -446,11 +471,12 @@ class WorkPreparation : public Preparation {
   Estimate Run(const Scene& scene) override {
     return BalanceWork(VirtualWorkBalance(work_, scene),
                        ForceResidual(forces_, scene), imbalance_, scene,
-                       options_);
+                       options_, check_);
   }
 
  private:
   const EstimatorOptions& options_;
+  VirtualFields::Check check_;
   VirtualWork work_;
   ForceScene forces_;
   double imbalance_;
@@ -462,8 +488,9 @@ std::string_view VirtualFields::Name() const { return "virtual-fields"; }
 
 std::string_view VirtualFields::Description() const {
   return "virtual work of polynomial fields, weighted by its own covariance; "
-         "noise does not bias it, no factorisation of one material [Avril & "
-         "Pierron 2007]";
+         "noise does not bias it; held against one finite element solution "
+         "[Avril "
+         "& Pierron 2007]";
 }
 
 Capabilities VirtualFields::WhatItTakes() const {
@@ -483,9 +510,9 @@ Estimate VirtualFields::DoRun(const Scene& scene,
   Stopwatch stopwatch;
   const VirtualWork work(scene.mesh, scene.supports, DegreeOf(options));
   const double seconds = stopwatch.Lap();
-  Estimate estimate =
-      BalanceWork(VirtualWorkBalance(work, scene), ForceResidual(scene),
-                  work.Imbalance(AssembleLoadCases(scene)), scene, options);
+  Estimate estimate = BalanceWork(
+      VirtualWorkBalance(work, scene), ForceResidual(scene),
+      work.Imbalance(AssembleLoadCases(scene)), scene, options, check_);
   // The fields.
   ++estimate.work.element_passes;
   estimate.stages.insert(estimate.stages.begin(), {"prepare mesh", seconds});
@@ -497,7 +524,7 @@ std::unique_ptr<Preparation> VirtualFields::DoPrepare(
   if (!IsOneIsotropicMaterial(scene.materials)) {
     return Estimator::DoPrepare(scene, options);
   }
-  return std::make_unique<WorkPreparation>(scene, options);
+  return std::make_unique<WorkPreparation>(scene, options, check_);
 }
 
 }  // namespace elastimate

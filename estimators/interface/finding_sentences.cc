@@ -314,7 +314,9 @@ Finding YoungsModulusUndetermined(double youngs_modulus,
   return Error(
       FindingCode::kYoungsModulusUndetermined,
       "the data do not determine Young's modulus: E = " + Text(youngs_modulus) +
-          " has a standard error of " + Text(standard_error),
+          (std::isfinite(standard_error)
+               ? " has a standard error of " + Text(standard_error)
+               : " may be any"),
       "heed the warnings, if there are any, or measure larger "
       "displacements, or more load cases");
 }
@@ -521,6 +523,14 @@ Finding ModelDoesNotFitAtLimit() {
                "the data pull Poisson's ratio to 1/2 and leave a residual that "
                "is not noise",
                kCheckTheModel);
+}
+
+Finding OutliersAtLimit() {
+  return Error(
+      FindingCode::kPoissonRatioAtLimit,
+      "some nodes lie far off, which may be what pulls Poisson's ratio "
+      "to 1/2",
+      "use a loss (huber or cauchy)");
 }
 
 Finding RatiosAtLimit(const std::vector<std::string>& parameters) {

@@ -112,6 +112,7 @@ Finding VirtualWorkImbalance();
 /// By the check of another method: `force_residual` is relative to the load.
 Finding VirtualWorkImbalance(double force_residual, Severity severity);
 Finding ModelDoesNotFitAtLimit();
+Finding OutliersAtLimit();
 /// Of several materials.
 Finding RatiosAtLimit(const std::vector<std::string>& parameters);
 Finding ModelMismatchFinding(const ModelMismatch& mismatch);

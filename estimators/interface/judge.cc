@@ -100,8 +100,9 @@ void JudgeResult(const EstimatorOptions& options, Estimate& estimate) {
     return;
   }
   const IsotropicElasticity& elasticity = estimate.elasticity;
-  const double youngs_modulus_error =
-      estimate.YoungsModulusStandardError().value_or(0);
+  // Infinite where nothing limits E; not a number, which exceeds nothing, where
+  // E is not free.
+  const double youngs_modulus_error = std::sqrt(estimate.covariance(0, 0));
   if (!std::isfinite(elasticity.youngs_modulus) ||
       !std::isfinite(elasticity.poisson_ratio)) {
     estimate.Fail(NotFinite());

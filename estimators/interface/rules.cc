@@ -235,6 +235,10 @@ Result JudgePoissonRatioAtLimit(const Evidence& evidence,
   if (evidence.active.poisson_ratio == Side::kLower) {
     return PoissonRatioAtMinusOne();
   }
+  // The fit without them is too far for a linear model.
+  if (evidence.outlier_change) {
+    return OutliersAtLimit();
+  }
   return estimate.is_model_in_doubt ? ModelDoesNotFitAtLimit() : Result();
 }
 

@@ -136,6 +136,7 @@ std::vector<Finding> OfResiduals() {
           VirtualWorkImbalance(kLong, Severity::kError),
           VirtualWorkImbalance(kLong, Severity::kWarning),
           ModelDoesNotFitAtLimit(),
+          OutliersAtLimit(),
           ModelMismatchFinding({kLong, kLong, true}),
           Outliers({kLong, kLong}, {}),
           OutliersLeftOut({{0, 1000000, false},

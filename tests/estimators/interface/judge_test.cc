@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <string>
 
 #include "elastimate/estimators/interface/parameter_judge.h"
@@ -162,6 +163,32 @@ TEST(Judge, AWideIntervalIsNoEstimateWithoutAStandardErrorEither) {
     FinishEstimate("reduced-fe", scene, {}, {}, estimate);
     EXPECT_EQ(estimate.IsUsable(), lower == 0.25) << estimate.message;
   }
+}
+
+// Noise of virtual fields next to nu = 1/2 left E open by any factor, of which
+// there is no standard error, and that passed for none.
+TEST(Judge, AYoungsModulusWithoutLimitIsNoEstimate) {
+  const Scene scene = testing::BlockUnderTraction({2, 2, 2}, {1, 1, 1});
+  Estimate estimate = Measured();
+  estimate.Accept();
+  estimate.covariance << std::numeric_limits<double>::infinity(), 0, 0, 1e-4;
+  FinishEstimate("some", scene, {}, {}, estimate);
+  EXPECT_EQ(estimate.status, Status::kNotIdentifiable);
+  EXPECT_TRUE(estimate.Has(FindingCode::kYoungsModulusUndetermined));
+}
+
+// A fit without the outliers is too far from nu = 1/2 for a linear model.
+TEST(Judge, ARatioThatOutliersMayPullToItsLimitIsNoEstimate) {
+  Evidence evidence;
+  evidence.active.poisson_ratio = Side::kUpper;
+  evidence.active.is_physical_limit = true;
+  evidence.poisson_ratio_on_bound = ErrorsOnBound{};
+  EXPECT_TRUE(Judged(evidence).IsUsable());
+  evidence.outlier_change = {0.02, 0};
+  const Estimate estimate = Judged(evidence);
+  EXPECT_FALSE(estimate.IsUsable());
+  EXPECT_NE(estimate.message.find("use a loss"), std::string::npos)
+      << estimate.message;
 }
 
 TEST(Judge, ALargeResidualThatIsSmoothIsNoNoise) {

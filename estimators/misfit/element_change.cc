@@ -1,4 +1,4 @@
-#include "elastimate/estimators/displacement_fit/element_change.h"
+#include "elastimate/estimators/misfit/element_change.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "elastimate/estimators/displacement_fit/observed_model.h"
+#include "elastimate/estimators/misfit/observed_model.h"
 
 #include "elastimate/core/scene/loads.h"
 

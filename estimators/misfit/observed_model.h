@@ -1,5 +1,5 @@
-#ifndef ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_OBSERVED_MODEL_H_
-#define ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_OBSERVED_MODEL_H_
+#ifndef ELASTIMATE_ESTIMATORS_MISFIT_OBSERVED_MODEL_H_
+#define ELASTIMATE_ESTIMATORS_MISFIT_OBSERVED_MODEL_H_
 
 #include <Eigen/Core>
 #include <functional>
@@ -10,8 +10,8 @@
 #include "elastimate/core/materials/elasticity.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/scene.h"
-#include "elastimate/estimators/displacement_fit/element_change.h"
 #include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/misfit/element_change.h"
 
 namespace elastimate {
 
@@ -70,4 +70,4 @@ class ObservedModel {
 
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_OBSERVED_MODEL_H_
+#endif  // ELASTIMATE_ESTIMATORS_MISFIT_OBSERVED_MODEL_H_

@@ -1,0 +1,100 @@
+#include "elastimate/estimators/force_balance/solution_check.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "elastimate/estimators/force_balance/virtual_fields.h"
+#include "tests/scenes.h"
+#include "tests/shapes.h"
+
+namespace elastimate {
+namespace {
+
+using Check = VirtualFields::Check;
+
+bool IsWithinErrors(const Estimate& estimate,
+                    const IsotropicElasticity& truth) {
+  constexpr double kErrors = 3;
+  return std::abs(estimate.elasticity.youngs_modulus - truth.youngs_modulus) <
+             kErrors * estimate.YoungsModulusStandardError().value_or(0) &&
+         std::abs(estimate.elasticity.poisson_ratio - truth.poisson_ratio) <
+             kErrors * estimate.PoissonRatioStandardError().value_or(0);
+}
+
+Scene MeasuredShape(const std::string& shape, const std::string& load,
+                    const IsotropicElasticity& truth, double noise, int seed) {
+  Scene scene = testing::ShapeScene(shape, load);
+  testing::MeasureInFinerWorld(truth, scene);
+  testing::AddNoise(noise, seed, scene);
+  return scene;
+}
+
+// Polynomials smooth away how thin parts bend: the energy that linear elements
+// miss there is far more than that of the smoothed displacements.
+TEST(SolutionCheck, SeesWhatPolynomialsDoNotDescribe) {
+  constexpr IsotropicElasticity kTruth = {5000, 0.3};
+  int num_wrong_by_energy = 0;
+  for (const std::string load : {"swelling", "bending"}) {
+    for (const int seed : {1, 2}) {
+      const Scene scene = MeasuredShape("lattice", load, kTruth, 0.03, seed);
+      const Estimate by_energy = VirtualFields(Check::kByEnergy).Run(scene, {});
+      num_wrong_by_energy +=
+          by_energy.IsUsable() && !IsWithinErrors(by_energy, kTruth) ? 1 : 0;
+      const Estimate estimate = VirtualFields().Run(scene, {});
+      EXPECT_TRUE(!estimate.IsUsable() || IsWithinErrors(estimate, kTruth))
+          << load << ", seed " << seed << ": "
+          << estimate.elasticity.youngs_modulus;
+    }
+  }
+  EXPECT_GE(num_wrong_by_energy, 3);
+}
+
+// Data of these very elements are told from those of a specimen, so that error
+// bars are those of noise.
+TEST(SolutionCheck, LeavesNothingToElementsThatMadeTheData) {
+  constexpr IsotropicElasticity kTruth = {5000, 0.3};
+  Scene scene = testing::BlockUnderTraction({6, 6, 6}, {1, 1, 1});
+  testing::Measure(kTruth, scene);
+  testing::AddNoise(1e-3, 1, scene);
+  const Estimate by_energy = VirtualFields(Check::kByEnergy).Run(scene, {});
+  const Estimate estimate = VirtualFields().Run(scene, {});
+  ASSERT_TRUE(by_energy.IsUsable()) << by_energy.message;
+  ASSERT_TRUE(estimate.IsUsable()) << estimate.message;
+  EXPECT_EQ(estimate.elasticity.youngs_modulus,
+            by_energy.elasticity.youngs_modulus);
+  EXPECT_LT(*estimate.YoungsModulusStandardError(),
+            0.2 * *by_energy.YoungsModulusStandardError());
+  EXPECT_TRUE(IsWithinErrors(estimate, kTruth));
+  EXPECT_EQ(estimate.work.factorizations, 1);
+  EXPECT_EQ(by_energy.work.factorizations, 0);
+}
+
+// Forces that balance in these elements, but for rounding, exclude another
+// specimen.
+TEST(SolutionCheck, IsNotMadeWithoutNeed) {
+  Scene scene = testing::BlockUnderTraction({3, 3, 3}, {1, 1, 1});
+  testing::Measure({5000, 0.3}, scene);
+  const Estimate estimate = VirtualFields().Run(scene, {});
+  ASSERT_TRUE(estimate.IsUsable()) << estimate.message;
+  EXPECT_EQ(estimate.work.factorizations, 0);
+}
+
+// Where nu is given, only E can be off.
+TEST(SolutionCheck, KeepsWhatIsGiven) {
+  constexpr IsotropicElasticity kTruth = {5000, 0.3};
+  EstimatorOptions options;
+  options.known_poisson_ratio = kTruth.poisson_ratio;
+  const Scene scene = MeasuredShape("wedge", "tension", kTruth, 0.01, 1);
+  const Estimate estimate = VirtualFields().Run(scene, options);
+  EXPECT_EQ(estimate.elasticity.poisson_ratio, kTruth.poisson_ratio);
+  EXPECT_FALSE(estimate.PoissonRatioStandardError());
+  EXPECT_FALSE(estimate.poisson_ratio_discretization_error);
+  ASSERT_TRUE(estimate.IsUsable()) << estimate.message;
+  EXPECT_LT(std::abs(estimate.elasticity.youngs_modulus / 5000 - 1),
+            3 * *estimate.YoungsModulusStandardError() / 5000);
+}
+
+}  // namespace
+}  // namespace elastimate
