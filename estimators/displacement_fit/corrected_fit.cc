@@ -69,8 +69,9 @@ DescribedFit Settle(DescribedFit described, CorrectableFit& fit) {
   return described;
 }
 
-// Those nu that may become the best once the change to finer elements is taken,
-// as far from that of the fit as to change differently there.
+// Those nu that may become the best once the change to finer elements is taken:
+// none where the change at the fit hides none that is as far as to change
+// differently, else all over the range, since what changes there may hide more.
 std::vector<double> OtherPoissonRatios(const EstimatorOptions& options,
                                        const DescribedFit& described,
                                        CorrectableFit& fit) {
@@ -78,27 +79,36 @@ std::vector<double> OtherPoissonRatios(const EstimatorOptions& options,
   if (options.known_poisson_ratio) {
     return {};
   }
-  const Bounds bounds = EffectivePoissonRatioBounds(options);
-  double lower = *bounds.lower;
-  double upper = *bounds.upper;
-  if (described.element_change) {
-    const Profile range = fit.RangeWithin(described.statistics.excess_of_finer);
-    lower = std::max(lower, range.lower.poisson_ratio);
-    upper = std::min(upper, range.upper.poisson_ratio);
-  }
-  std::vector<double> others;
-  const auto is_far = [](double one, double other) {
+  const auto are_far = [](double one, double other) {
     return std::abs(LogStiffnessRatio(one) - LogStiffnessRatio(other)) > kFar;
   };
+  const double nu = described.estimate.elasticity.poisson_ratio;
+  if (described.element_change) {
+    const Profile range = fit.RangeWithin(described.statistics.excess_of_finer);
+    if (!are_far(range.lower.poisson_ratio, nu) &&
+        !are_far(range.upper.poisson_ratio, nu)) {
+      return {};
+    }
+  }
+  const Bounds bounds = EffectivePoissonRatioBounds(options);
+  std::vector<double> others;
   for (const double usual : {kUsualPoissonRatio, -0.5, 0.0, 0.45}) {
-    const double other = std::clamp(usual, lower, upper);
-    if (is_far(other, described.estimate.elasticity.poisson_ratio) &&
-        std::none_of(others.begin(), others.end(),
-                     [&](double nu) { return !is_far(other, nu); })) {
+    const double other = std::clamp(usual, *bounds.lower, *bounds.upper);
+    if (are_far(other, nu) &&
+        std::all_of(others.begin(), others.end(),
+                    [&](double one) { return are_far(one, other); })) {
       others.push_back(other);
     }
   }
   return others;
+}
+
+// Of rows, as far as E does not take them up.
+double VisibleSquareSum(const Eigen::VectorXd& rows,
+                        const Eigen::VectorXd& by_log_youngs_modulus) {
+  return SquaredNorm(rows) -
+         std::pow(InnerProduct(by_log_youngs_modulus, rows), 2) /
+             SquaredNorm(by_log_youngs_modulus);
 }
 
 // The measurement without what finer elements change at another nu, of which
@@ -107,7 +117,8 @@ struct ChangeElsewhere {
   IsotropicElasticity elasticity;
   Eigen::VectorXd change;  ///< All of it.
   Eigen::VectorXd taken;
-  double rest;  ///< BoundedNorm of what E leaves.
+  double rest;   ///< BoundedNorm of what E leaves.
+  double doubt;  ///< Square sum of what the change may be off by in that.
 };
 
 std::optional<ChangeElsewhere> FitElsewhere(
@@ -123,26 +134,24 @@ std::optional<ChangeElsewhere> FitElsewhere(
       std::clamp(RobustChange(observed, at->residual, columns)(1), 0.0,
                  2 * PriorOfSpecimen(2).share);
   ChangeElsewhere elsewhere = {at->elasticity, at->element_change,
-                               share * at->element_change, 0};
+                               share * at->element_change, 0, 0};
   const Eigen::VectorXd residual = at->residual + elsewhere.taken;
   const Eigen::VectorXd scale = columns.col(0);
   const Eigen::VectorXd change = RobustChange(observed, residual, scale);
   elsewhere.elasticity.youngs_modulus *= std::exp(change(0));
   elsewhere.rest = BoundedNorm(observed, residual + scale * change);
+  elsewhere.doubt = std::pow(PriorOfSpecimen(2).unequal, 2) *
+                    VisibleSquareSum(elsewhere.taken, scale);
   return elsewhere;
 }
 
-// The square sum of the difference of what finer elements change at another nu,
-// as far as E does not take it up.
+// Of what finer elements change at another nu, the difference.
 double SquareDifference(const DescribedFit& described,
                         const Eigen::VectorXd& elsewhere) {
-  if (!described.element_change) {
-    return 0;
-  }
-  const Eigen::VectorXd difference = *described.element_change - elsewhere;
-  const Eigen::VectorXd scale = described.sensitivities.col(0);
-  return SquaredNorm(difference) -
-         std::pow(InnerProduct(scale, difference), 2) / SquaredNorm(scale);
+  return described.element_change
+             ? VisibleSquareSum(*described.element_change - elsewhere,
+                                described.sensitivities.col(0))
+             : 0;
 }
 
 // From two fits, of which the other was the last, and what finer elements
@@ -211,7 +220,8 @@ CorrectedFit BestOf(const ObservedDisplacements& observed,
   const double least = std::min(best_other->rest, *best.fit.statistics.rest);
   for (const ChangeElsewhere& other : others) {
     if (std::pow(other.rest, 2) - std::pow(least, 2) <=
-        best.ExcessOf(kTwoSidedQuantile)) {
+        kTwoSidedQuantile * std::pow(least, 2) / double(observed.Size()) +
+            other.doubt) {
       best.rival = best.WithRival({other.elasticity, other.elasticity});
     }
   }

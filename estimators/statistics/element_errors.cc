@@ -12,16 +12,6 @@
 namespace elastimate {
 namespace {
 
-// Of the change to finer elements: what these elements miss beside it, in the
-// direction of a parameter, and by how much of itself the change of the
-// parameters is off [benchmarks: unseen, calibration half].
-struct LeftOfChange {
-  double missed;
-  double unequal;
-};
-constexpr LeftOfChange LeftOfChangeOf(int order) {
-  return order == 1 ? LeftOfChange{0.1, 0.33} : LeftOfChange{0.05, 0.15};
-}
 // Where it is not known, what they miss as a share of the share of the energy
 // that is missed [benchmarks: unseen].
 constexpr double kUnknownErrorShare = 0.3;
@@ -110,10 +100,9 @@ ElementErrors::ElementErrors(const Scene& scene, const NodeGraph& graph,
   // Much of a change may be there of which little shows.
   const double most =
       std::max(size, finer.probability * finer.probability * prior_.share);
-  const LeftOfChange left = LeftOfChangeOf(scene.mesh.Order());
-  share_variance_ = finer.Variance() + std::pow(left.unequal * most, 2) +
+  share_variance_ = finer.Variance() + std::pow(prior_.unequal * most, 2) +
                     hidden_share_ * hidden_share_;
-  missed_norm_ = left.missed * size * Norm(rows);
+  missed_norm_ = prior_.missed * size * Norm(rows);
   likely_change_ = -std::max(share_, hidden_share_) * of_parameters_;
 }
 

@@ -9,16 +9,22 @@ namespace elastimate {
 struct SpecimenPrior {
   double odds;   ///< That there is a finer specimen: its probability over rest.
   double share;  ///< Of alpha if there is.
+  /// Of the change to finer elements: what the elements miss beside it, in the
+  /// direction of a parameter, and by how much of itself the change of the
+  /// parameters is off.
+  double missed;
+  double unequal;
 };
 
 /// Linear elements may have computed the displacements or not; quadratic ones
 /// of the very mesh of an estimate hardly do.  These show nearly all of the
 /// error of linear ones, and what such of half the size change in quadratic
 /// ones is less than these miss by 0.29 of itself, with a standard deviation of
-/// 0.13 [benchmarks: unseen, calibration half, as are the odds: of 504 noisy
-/// fits of quadratic elements they leave 1 dishonest one, equal odds 3].
+/// 0.13 [benchmarks: unseen, calibration half, as is the rest: of 504 noisy
+/// fits of quadratic elements these odds leave 1 dishonest one, equal odds 3].
 constexpr SpecimenPrior PriorOfSpecimen(int order) {
-  return order == 1 ? SpecimenPrior{1, 1} : SpecimenPrior{9, 1.3};
+  return order == 1 ? SpecimenPrior{1, 1, 0.1, 0.33}
+                    : SpecimenPrior{9, 1.3, 0.05, 0.15};
 }
 
 /// Whether displacements come from a specimen that is finer than the elements

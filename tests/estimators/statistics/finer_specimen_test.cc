@@ -9,7 +9,7 @@ namespace elastimate {
 namespace {
 
 constexpr double kManyRows = 1000;
-constexpr SpecimenPrior kExpected = {1, 1};
+constexpr SpecimenPrior kExpected = PriorOfSpecimen(1);
 
 TEST(FinerSpecimen, IsSeenWhereTheChangeIsInTheResidual) {
   const FinerSpecimen finer =
