@@ -8,8 +8,8 @@
 
 #include "elastimate/core/materials/elasticity.h"
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
-#include "elastimate/estimators/misfit/observed_model.h"
 #include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/misfit/observed_model.h"
 #include "elastimate/estimators/statistics/bounded_parameter.h"
 #include "elastimate/estimators/statistics/node_losses.h"
 

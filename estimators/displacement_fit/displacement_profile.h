@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "elastimate/core/materials/elasticity.h"
-#include "elastimate/estimators/misfit/observed_model.h"
 #include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/misfit/observed_model.h"
 
 namespace elastimate {
 

@@ -12,11 +12,11 @@
 #include "elastimate/estimators/displacement_fit/adaptive_fit.h"
 #include "elastimate/estimators/displacement_fit/corrected_fit.h"
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
-#include "elastimate/estimators/misfit/element_change.h"
 #include "elastimate/estimators/displacement_fit/support_end_search.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 #include "elastimate/estimators/material_fit/material_fit.h"
+#include "elastimate/estimators/misfit/element_change.h"
 #include "elastimate/estimators/statistics/bounded_parameter.h"
 #include "elastimate/estimators/statistics/profile_likelihood.h"
 

@@ -13,9 +13,9 @@
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/scene/support_ends.h"
 #include "elastimate/estimators/displacement_fit/displacement_profile.h"
-#include "elastimate/estimators/misfit/observed_model.h"
 #include "elastimate/estimators/displacement_fit/robust_reduced_fit.h"
 #include "elastimate/estimators/interface/stopwatch.h"
+#include "elastimate/estimators/misfit/observed_model.h"
 #include "elastimate/estimators/statistics/bounded_parameter.h"
 #include "elastimate/estimators/statistics/node_losses.h"
 

@@ -17,7 +17,7 @@ namespace elastimate {
 ///
 /// to the least misfit of u + S d, corrected by c for what finer elements
 /// change (ElementErrors), is what x may be off by [the difference of an
-/// efficient and a robust estimate: Hausman, Econometrica 46 (1978) 1251].  Adds
+/// efficient and a robust estimate: Hausman, Econometrica 46 (1978) 1251]. Adds
 /// to its covariance
 ///
 ///   alpha d d^T + (1 - alpha) d d^T / 1.96^2 + C',

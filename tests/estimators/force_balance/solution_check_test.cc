@@ -6,6 +6,7 @@
 #include <string>
 
 #include "elastimate/estimators/force_balance/virtual_fields.h"
+#include "tests/regions.h"
 #include "tests/scenes.h"
 #include "tests/shapes.h"
 

@@ -168,7 +168,7 @@ TEST(Judge, AWideIntervalIsNoEstimateWithoutAStandardErrorEither) {
 // Noise of virtual fields next to nu = 1/2 left E open by any factor, of which
 // there is no standard error, and that passed for none.
 TEST(Judge, AYoungsModulusWithoutLimitIsNoEstimate) {
-  const Scene scene = testing::BlockUnderTraction({2, 2, 2}, {1, 1, 1});
+  const Scene scene = testing::SmallScene("cuboid");
   Estimate estimate = Measured();
   estimate.Accept();
   estimate.covariance << std::numeric_limits<double>::infinity(), 0, 0, 1e-4;
