@@ -142,8 +142,9 @@ TEST_F(Hook, QuadraticElementsComeCloseInAFinerWorld) {
     const double poisson_ratio = report["poisson_ratio"];
     EXPECT_NEAR(youngs_modulus, kYoungsModulus, 10);
     EXPECT_NEAR(poisson_ratio, kPoissonRatio, 0.002);
+    // More than that of the independent fit, which is not corrected.
     const nlohmann::json error = report["standard_error"];
-    EXPECT_GT(error["youngs_modulus"].get<double>(), 50);
+    EXPECT_GT(error["youngs_modulus"].get<double>(), 33);
     EXPECT_LT(error["youngs_modulus"].get<double>(), 200);
     EXPECT_GT(error["poisson_ratio"].get<double>(), 0.002);
     EXPECT_LT(error["poisson_ratio"].get<double>(), 0.05);
