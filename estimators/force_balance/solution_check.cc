@@ -36,6 +36,27 @@ struct Covariances {
   Eigen::Matrix2d of_elements = Eigen::Matrix2d::Zero();
 };
 
+// Of a step of the free ones of (ln E, nu) in the model that is linear in them,
+// that of models that are linear in 1 / E and in LogStiffnessRatio, where these
+// are larger: next to nu = 1/2 the former reaches no other nu.
+void Lengthen(const std::vector<Eigen::Index>& free,
+              const IsotropicElasticity& elasticity, Eigen::VectorXd& step) {
+  constexpr double kMost = 0.999;  // A thousand times as stiff.
+  const double nu = elasticity.poisson_ratio;
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    double& change = step(Eigen::Index(i));
+    const double other = free[i] == 0
+                             ? -std::log1p(-std::min(change, kMost))
+                             : PoissonRatioOfLogStiffnessRatio(
+                                   LogStiffnessRatio(nu) +
+                                   3 * change / ((1 + nu) * (1 - 2 * nu))) -
+                                   nu;
+    if (std::abs(other) > std::abs(change)) {
+      change = other;
+    }
+  }
+}
+
 Covariances CompareWithSolution(const Scene& scene,
                                 const std::vector<Eigen::Index>& free,
                                 ObservedModel& model, Evidence& evidence,
@@ -69,6 +90,7 @@ Covariances CompareWithSolution(const Scene& scene,
     likely(free) = elements.LikelyChange();
     evidence.likely_element_change = likely;
   }
+  Lengthen(free, estimate.elasticity, step);
   const Eigen::MatrixXd inverse = Inverse(information);
   const double missed = elements.MissedSquareSum(smooth.most);
   const Eigen::MatrixXd of_difference = step * step.transpose();

@@ -16,9 +16,10 @@ namespace elastimate {
 ///   d = -(S^T S)^-1 S^T (u - q) + c
 ///
 /// to the least misfit of u + S d, corrected by c for what finer elements
-/// change (ElementErrors), is what x may be off by [the difference of an
-/// efficient and a robust estimate: Hausman, Econometrica 46 (1978) 1251]. Adds
-/// to its covariance
+/// change (ElementErrors), or that of a model linear in 1 / E and in
+/// ln((1 + nu) / (1 - 2 nu)) where it is larger, is what x may be off by [the
+/// difference of an efficient and a robust estimate: Hausman, Econometrica 46
+/// (1978) 1251]. Adds to its covariance
 ///
 ///   alpha d d^T + (1 - alpha) d d^T / 1.96^2 + C',
 ///

@@ -82,6 +82,28 @@ TEST(SolutionCheck, IsNotMadeWithoutNeed) {
   EXPECT_EQ(estimate.work.factorizations, 0);
 }
 
+// Next to nu = 1/2 a linear step hardly reaches another nu: slender bars of
+// 0.33 were taken for ones of 0.49 +- 0.03.
+TEST(SolutionCheck, ReachesAwayFromTheLimit) {
+  constexpr IsotropicElasticity kTruth = {5000, 0.33};
+  Scene scene = testing::BlockUnderTraction({2, 2, 12}, {0.2, 0.2, 1});
+  testing::Measure(kTruth, scene);
+  testing::AddNoise(0.01, 1, scene);
+  for (const double nu : {0.4, 0.49, 0.499}) {
+    Estimate estimate;
+    estimate.Accept();
+    estimate.elasticity = {4500, nu};
+    estimate.covariance = Eigen::Vector2d(100, 1e-3).cwiseAbs2().asDiagonal();
+    estimate.error_budget.model = Eigen::Vector2d::Zero();
+    Evidence evidence;
+    ObservedModel model(scene, {});
+    CheckBySolution(scene, {}, model, evidence, estimate);
+    EXPECT_GT(1.96 * *estimate.PoissonRatioStandardError(),
+              0.8 * (nu - kTruth.poisson_ratio))
+        << nu;
+  }
+}
+
 // Where nu is given, only E can be off.
 TEST(SolutionCheck, KeepsWhatIsGiven) {
   constexpr IsotropicElasticity kTruth = {5000, 0.3};
