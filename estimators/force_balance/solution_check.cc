@@ -83,7 +83,6 @@ Covariances CompareWithSolution(const Scene& scene,
       estimate.elasticity);
   const SmoothSquareSum smooth =
       MeasureSmoothPart(model.Graph(), observed, elements.Rest(), estimate);
-  evidence.smooth_part = std::sqrt(smooth.least) / Norm(observed.Measured());
   if (elements.Correction()) {
     step += *elements.Correction();
     Eigen::Vector2d likely = Eigen::Vector2d::Zero();

@@ -70,6 +70,7 @@ TEST(SolutionCheck, LeavesNothingToElementsThatMadeTheData) {
   EXPECT_TRUE(IsWithinErrors(estimate, kTruth));
   EXPECT_EQ(estimate.work.factorizations, 1);
   EXPECT_EQ(by_energy.work.factorizations, 0);
+  EXPECT_TRUE(estimate.findings.empty()) << estimate.findings[0].text;
 }
 
 // Forces that balance in these elements, but for rounding, exclude another
