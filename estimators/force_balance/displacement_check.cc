@@ -1,6 +1,5 @@
 #include "elastimate/estimators/force_balance/displacement_check.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -9,6 +8,7 @@
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/scene/rigid_motion.h"
+#include "elastimate/estimators/force_balance/held_scene.h"
 #include "elastimate/estimators/force_balance/work_balance.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
@@ -21,38 +21,6 @@
 
 namespace elastimate {
 namespace {
-
-// The same scene held in as many components more as its supports leave it
-// motions without strain, with all of these free again.
-Scene HeldScene(const Scene& scene) {
-  Scene held = scene;
-  held.is_rigid_motion_free = true;
-  const Eigen::MatrixXd& nodes = scene.mesh.nodes;
-  const Eigen::VectorXd centre = nodes.rowwise().mean();
-  const double size = (nodes.colwise() - centre).colwise().norm().maxCoeff();
-  const Eigen::MatrixXd motions =
-      RigidMotionsOf((nodes.colwise() - centre) / size);
-  const auto is_held = scene.supports.held.reshaped();
-  Eigen::MatrixXd of_held = motions;
-  for (Eigen::Index i = 0; i < of_held.rows(); ++i) {
-    if (!is_held(i)) {
-      of_held.row(i).setZero();
-    }
-  }
-  constexpr double kFree = 1e-10;
-  const SymmetricEigenDecomposition holding =
-      DecomposeSymmetric(of_held.transpose() * of_held);
-  const Eigen::Index num_free =
-      (holding.values.array() < kFree * double(nodes.size())).count();
-  const Eigen::MatrixXd free = motions * holding.vectors.leftCols(num_free);
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivoted(free.transpose());
-  for (Eigen::Index i = 0; i < num_free; ++i) {
-    const Eigen::Index row = pivoted.colsPermutation().indices()(i);
-    held.supports.held.reshaped()(row) = true;
-    held.supports.displacement.reshaped()(row) = 0;
-  }
-  return held;
-}
 
 // The minimum of the misfit near x, described; empty matrices where there is
 // none.
@@ -170,9 +138,8 @@ void CheckByDisplacements(const Scene& scene, const EstimatorOptions& options,
                           const VirtualWork& work, const BalanceFit& fit,
                           const FreeParameters& free, Evidence& evidence,
                           Estimate& estimate) {
-  const bool is_held = WhyNotHeld(scene).empty();
-  const Scene held = is_held ? scene : HeldScene(scene);
-  if (!is_held && !WhyNotHeld(held).empty()) {
+  const Scene held = HeldScene(scene);
+  if (!WhyNotHeld(held).empty()) {
     evidence.end = End::kSingularStiffness;
     return;
   }

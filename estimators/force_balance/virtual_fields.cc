@@ -9,6 +9,7 @@
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/estimators/force_balance/force_residual.h"
+#include "elastimate/estimators/force_balance/held_scene.h"
 #include "elastimate/estimators/force_balance/monomials.h"
 #include "elastimate/estimators/force_balance/solution_check.h"
 #include "elastimate/estimators/force_balance/virtual_work.h"
@@ -360,13 +361,18 @@ void CheckModel(const Scene& scene, const EstimatorOptions& options,
                 VirtualFields::Check check, Evidence& evidence,
                 Estimate& estimate) {
   constexpr double kNotable = 0.01;
-  if (check == VirtualFields::Check::kByEnergy || !WhyNotHeld(scene).empty() ||
+  if (check == VirtualFields::Check::kByEnergy ||
       ProbabilityOfFinerSpecimen(*estimate.force_residual) < kNotable) {
     AllowForElements(scene, estimate);
     return;
   }
-  ObservedModel model(scene, options);
-  CheckBySolution(scene, options, model, evidence, estimate);
+  const Scene held = HeldScene(scene);
+  if (!WhyNotHeld(held).empty()) {
+    evidence.end = End::kSingularStiffness;
+    return;
+  }
+  ObservedModel model(held, options);
+  CheckBySolution(held, options, model, evidence, estimate);
   evidence.solver_notice = model.SolverNotice();
   estimate.work = estimate.work + model.WorkDone();
 }

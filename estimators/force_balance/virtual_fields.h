@@ -38,10 +38,10 @@ namespace elastimate {
 ///
 /// A specimen that is finer than its elements moves as no polynomial tells.
 /// Where the force residual leaves that open, CheckBySolution therefore holds
-/// the estimate against a finite element solution; of a body that its supports
-/// leave free, and where Check::kByEnergy asks for it, the discretisation error
-/// is that of the measured displacements smoothed by a cubic, which is too
-/// small for slender bodies.
+/// the estimate against a finite element solution (HeldScene, of a body that
+/// its supports leave free).  Where Check::kByEnergy asks for it, the
+/// discretisation error is instead that of the measured displacements smoothed
+/// by a cubic, which costs no solution, and is too small for slender bodies.
 ///
 /// Cost: one element pass of 12, 30 or 60 columns for the degrees 1, 2 and 3 of
 /// EstimatorOptions::virtual_field_degree and a QR factorisation of as many
