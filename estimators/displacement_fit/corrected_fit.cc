@@ -69,14 +69,37 @@ DescribedFit Settle(DescribedFit described, CorrectableFit& fit) {
   return described;
 }
 
+// Of rows, as far as the parameters do not take them up.
+double VisibleSquareSum(const Eigen::VectorXd& rows,
+                        const Eigen::MatrixXd& sensitivities) {
+  return SquaredNorm(rows -
+                     sensitivities * SolveLeastSquares(sensitivities, rows));
+}
+
+// Whether noise may hide that linear elements fit a specimen, at a nu where
+// less of the change to it shows than at that of the fit.
+bool MayHideSpecimen(const DescribedFit& described) {
+  // In variances of a row: 45 standard errors of the change at the fit.
+  constexpr double kMostVisible = 2000;
+  if (!described.element_change || IsOnGivenBound(described)) {
+    return false;
+  }
+  const Eigen::VectorXd& change = *described.element_change;
+  const double variance = std::pow(described.statistics.rest.value_or(0), 2) /
+                          double(change.size());
+  return VisibleSquareSum(change, described.sensitivities) <=
+         kMostVisible * variance;
+}
+
 // Those nu that may become the best once the change to finer elements is taken:
 // none where the change at the fit hides none that is as far as to change
 // differently, else all over the range, since what changes there may hide more.
 std::vector<double> OtherPoissonRatios(const EstimatorOptions& options,
-                                       const DescribedFit& described,
+                                       int order, const DescribedFit& described,
                                        CorrectableFit& fit) {
   constexpr double kFar = 0.7;
-  if (options.known_poisson_ratio) {
+  if (options.known_poisson_ratio ||
+      (order == 1 && !MayHideSpecimen(described))) {
     return {};
   }
   const auto are_far = [](double one, double other) {
@@ -103,13 +126,9 @@ std::vector<double> OtherPoissonRatios(const EstimatorOptions& options,
   return others;
 }
 
-// Of rows, as far as E does not take them up.
-double VisibleSquareSum(const Eigen::VectorXd& rows,
-                        const Eigen::VectorXd& by_log_youngs_modulus) {
-  return SquaredNorm(rows) -
-         std::pow(InnerProduct(by_log_youngs_modulus, rows), 2) /
-             SquaredNorm(by_log_youngs_modulus);
-}
+// Linear elements may have computed the measurement: as far as their change, of
+// which much shows, may be off, a specimen would always explain that as well.
+bool IsChangeInDoubt(int order) { return order == 2; }
 
 // The measurement without what finer elements change at another nu, of which
 // the measurement says how much there is.
@@ -117,31 +136,49 @@ struct ChangeElsewhere {
   IsotropicElasticity elasticity;
   Eigen::VectorXd change;  ///< All of it.
   Eigen::VectorXd taken;
-  double rest;   ///< BoundedNorm of what E leaves.
-  double doubt;  ///< Square sum of what the change may be off by in that.
+  double rest;  ///< BoundedNorm of what E leaves.
+  /// What ln E may be off by since the change may.
+  double log_youngs_modulus_error;
+  /// Square sum of what the change may be off by in that.
+  double doubt = 0;
+
+  /// As far from an estimate as E may be here.
+  IsotropicElasticity FarFrom(const Estimate& estimate) const {
+    const bool is_stiffer =
+        elasticity.youngs_modulus > estimate.elasticity.youngs_modulus;
+    return {elasticity.youngs_modulus *
+                std::exp(is_stiffer ? log_youngs_modulus_error
+                                    : -log_youngs_modulus_error),
+            elasticity.poisson_ratio};
+  }
 };
 
 std::optional<ChangeElsewhere> FitElsewhere(
-    const ObservedDisplacements& observed, double poisson_ratio,
+    const ObservedDisplacements& observed, int order, double poisson_ratio,
     CorrectableFit& fit) {
   const std::optional<FitAtRatio> at = fit.FitAt(poisson_ratio);
   if (!at) {
     return std::nullopt;
   }
+  const SpecimenPrior prior = PriorOfSpecimen(order);
   Eigen::MatrixXd columns(observed.Size(), 2);
   columns << at->sensitivities.col(0), at->element_change;
-  const double share =
-      std::clamp(RobustChange(observed, at->residual, columns)(1), 0.0,
-                 2 * PriorOfSpecimen(2).share);
-  ChangeElsewhere elsewhere = {at->elasticity, at->element_change,
-                               share * at->element_change, 0, 0};
+  const double share = std::clamp(
+      RobustChange(observed, at->residual, columns)(1), 0.0, 2 * prior.share);
+  ChangeElsewhere elsewhere = {
+      at->elasticity, at->element_change, share * at->element_change, 0, 0, 0};
   const Eigen::VectorXd residual = at->residual + elsewhere.taken;
   const Eigen::VectorXd scale = columns.col(0);
   const Eigen::VectorXd change = RobustChange(observed, residual, scale);
   elsewhere.elasticity.youngs_modulus *= std::exp(change(0));
   elsewhere.rest = BoundedNorm(observed, residual + scale * change);
-  elsewhere.doubt = std::pow(PriorOfSpecimen(2).unequal, 2) *
-                    VisibleSquareSum(elsewhere.taken, scale);
+  elsewhere.log_youngs_modulus_error =
+      prior.unequal *
+      std::abs(InnerProduct(scale, elsewhere.taken) / SquaredNorm(scale));
+  if (IsChangeInDoubt(order)) {
+    elsewhere.doubt =
+        std::pow(prior.unequal, 2) * VisibleSquareSum(elsewhere.taken, scale);
+  }
   return elsewhere;
 }
 
@@ -158,13 +195,16 @@ double SquareDifference(const DescribedFit& described,
 // change at the nu that the other began at.  As much of the difference to that
 // is doubtful as either fit sees of the changes.
 CorrectedFit BetterOf(const DescribedFit& one, const DescribedFit& other,
-                      const Eigen::VectorXd& elsewhere, CorrectableFit& fit) {
+                      const Eigen::VectorXd& elsewhere, int order,
+                      CorrectableFit& fit) {
   const bool is_other = *other.statistics.rest < *one.statistics.rest;
   const DescribedFit& rival = is_other ? one : other;
-  const double share = std::max(std::abs(one.statistics.share_of_finer),
-                                std::abs(other.statistics.share_of_finer));
   CorrectedFit best = {is_other ? other : one, 0, {}};
-  best.doubt = share * share * SquareDifference(best.fit, elsewhere);
+  if (IsChangeInDoubt(order)) {
+    const double share = std::max(std::abs(one.statistics.share_of_finer),
+                                  std::abs(other.statistics.share_of_finer));
+    best.doubt = share * share * SquareDifference(best.fit, elsewhere);
+  }
   const double excess = best.ExcessOf(kTwoSidedQuantile) -
                         (std::pow(*rival.statistics.rest, 2) -
                          std::pow(*best.fit.statistics.rest, 2));
@@ -184,14 +224,14 @@ CorrectedFit BetterOf(const DescribedFit& one, const DescribedFit& other,
 // finer elements change at other nu.  Where that change moves the fit by more
 // than the step of nu to which it belongs, no fit settles at the best of them:
 // those that leave as little as any stay rivals as they are.
-CorrectedFit BestOf(const ObservedDisplacements& observed,
+CorrectedFit BestOf(const ObservedDisplacements& observed, int order,
                     const DescribedFit& settled,
                     const std::vector<double>& other_ratios,
                     CorrectableFit& fit) {
   std::vector<ChangeElsewhere> others;
   for (const double nu : other_ratios) {
     const std::optional<ChangeElsewhere> other =
-        FitElsewhere(observed, nu, fit);
+        FitElsewhere(observed, order, nu, fit);
     if (other) {
       others.push_back(*other);
     }
@@ -210,7 +250,7 @@ CorrectedFit BestOf(const ObservedDisplacements& observed,
   if (fit.FitNear(best_other->elasticity, best_other->taken)) {
     const DescribedFit of_finer = Settle(fit.Describe(), fit);
     if (of_finer.element_change && of_finer.statistics.rest) {
-      best = BetterOf(settled, of_finer, best_other->change, fit);
+      best = BetterOf(settled, of_finer, best_other->change, order, fit);
       is_settled_last = true;
     }
   }
@@ -222,7 +262,8 @@ CorrectedFit BestOf(const ObservedDisplacements& observed,
     if (std::pow(other.rest, 2) - std::pow(least, 2) <=
         kTwoSidedQuantile * std::pow(least, 2) / double(observed.Size()) +
             other.doubt) {
-      best.rival = best.WithRival({other.elasticity, other.elasticity});
+      const IsotropicElasticity end = other.FarFrom(best.fit.estimate);
+      best.rival = best.WithRival({end, end});
     }
   }
   return best;
@@ -301,21 +342,21 @@ CorrectedFit FitCorrected(const Scene& scene, const EstimatorOptions& options,
     return {first, 0, {}};
   }
   const ObservedDisplacements observed(scene);
+  const int order = scene.mesh.Order();
   const std::vector<double> other_ratios =
-      scene.mesh.Order() == 1 ? std::vector<double>()
-                              : OtherPoissonRatios(options, first, fit);
+      OtherPoissonRatios(options, order, first, fit);
   CorrectedFit corrected = {Settle(first, fit), 0, {}};
   if (!other_ratios.empty()) {
-    corrected = BestOf(observed, corrected.fit, other_ratios, fit);
-  } else if (scene.mesh.Order() == 1 && !options.known_poisson_ratio &&
-             !IsOnGivenBound(first)) {
+    corrected = BestOf(observed, order, corrected.fit, other_ratios, fit);
+  }
+  if (order == 1 && !options.known_poisson_ratio && !IsOnGivenBound(first)) {
     LookForSpecimenElsewhere(options, fit, corrected.fit);
   }
   Estimate& estimate = corrected.fit.estimate;
   estimate.displacement_residual = first.estimate.displacement_residual;
   estimate.bounded_residual = first.estimate.bounded_residual;
   // Of quadratic elements, which stand for a specimen, what that leaves.
-  if (scene.mesh.Order() == 2 && corrected.fit.statistics.rest) {
+  if (order == 2 && corrected.fit.statistics.rest) {
     estimate.bounded_residual =
         *corrected.fit.statistics.rest / Norm(observed.Measured());
   }

@@ -89,9 +89,12 @@ Eigen::VectorXd WhatIsLeft(const Eigen::VectorXd& measured,
 /// linear.  Therefore alpha e, with alpha as ElementErrors has it, is taken
 /// from the measurement, and the parameters are fitted again, until e and alpha
 /// ask for no others.  Where nu is known so little that e may decide between
-/// minima of quadratic elements, the same begins from a measurement without all
-/// of the e of another nu; the fit that leaves the smaller residual is the one,
-/// the other its rival.  Linear elements of which all of e would be too much
+/// minima, the same begins from a measurement without the e of another nu, as
+/// much of it as explains the measurement best; the fit that leaves the smaller
+/// residual is the one, the other its rival, with any that leaves as little but
+/// for chance.  Of linear elements that is so under much noise only: what shows
+/// of e at one nu may be as much as it is, and nothing at another.  Linear
+/// elements of which all of e would be too much
 /// are too coarse where some u + e of this or of a usual nu, in the linear
 /// model of (ln E, nu), leaves no more of the measurement than they do.
 ///

@@ -11,27 +11,40 @@
 namespace elastimate {
 namespace {
 
+// The standard errors to another minimum.
+constexpr double kFar = 4;
+
 // Widens the standard errors to a profile likelihood with a 95 % interval of
 // nu, each end with the E that fits best there.  An end at the limit of the
-// range is left out.
+// range is left out.  One at another minimum is as likely as the estimate,
+// however near the other end is.
 void WidenToProfile(const Profile& profile, Estimate& estimate) {
+  const double poisson_ratio_error =
+      estimate.PoissonRatioStandardError().value_or(INFINITY);
   Eigen::Vector2d square_sum = Eigen::Vector2d::Zero();
+  Eigen::Vector2d of_other_minimum = Eigen::Vector2d::Zero();
   int num_ends = 0;
   for (const IsotropicElasticity& end : {profile.lower, profile.upper}) {
     if (end.poisson_ratio > kSmallestPoissonRatio &&
         end.poisson_ratio < kLargestPoissonRatio) {
-      square_sum += Eigen::Vector2d(
-                        end.youngs_modulus - estimate.elasticity.youngs_modulus,
-                        end.poisson_ratio - estimate.elasticity.poisson_ratio)
-                        .cwiseAbs2();
+      const Eigen::Vector2d square =
+          Eigen::Vector2d(
+              end.youngs_modulus - estimate.elasticity.youngs_modulus,
+              end.poisson_ratio - estimate.elasticity.poisson_ratio)
+              .cwiseAbs2();
+      square_sum += square;
       ++num_ends;
+      if (square(1) > std::pow(kFar * poisson_ratio_error, 2)) {
+        of_other_minimum = of_other_minimum.cwiseMax(square);
+      }
     }
   }
   if (num_ends == 0) {
     return;
   }
   const Eigen::Vector2d error =
-      (square_sum / num_ends).cwiseSqrt() / kTwoSidedErrors;
+      (square_sum / num_ends).cwiseMax(of_other_minimum).cwiseSqrt() /
+      kTwoSidedErrors;
   // Of a parameter that varies; NaN compares false.
   const auto factor = [&](int i) {
     const double ratio = error(i) / std::sqrt(estimate.covariance(i, i));
@@ -61,7 +74,6 @@ Profile Hull(const Profile& one, const Profile& other) {
 
 bool HasRivalMinimum(const std::function<Profile(double quantile)>& profile_of,
                      const Estimate& estimate) {
-  constexpr double kFar = 4;
   const Profile profile = profile_of(kTwoSidedQuantile);
   const double nu = estimate.elasticity.poisson_ratio;
   const std::optional<double> error = estimate.PoissonRatioStandardError();

