@@ -67,16 +67,26 @@ std::string WhyParametersNotWithinTolerance(const Estimate& estimate) {
   return "";
 }
 
+// Without advice, which the next rung takes.
+std::string WhyNotUsable(const Estimate& estimate) {
+  for (const Finding& finding : estimate.findings) {
+    if (finding.severity == Severity::kError) {
+      return "not usable: " + finding.text;
+    }
+  }
+  return "not usable: " + estimate.message;
+}
+
 // For a rung whose errors may come from its method; empty when it will do.
 std::string WhyNotEnough(const Scene& scene, const EstimatorOptions& options,
                          const Estimate& estimate) {
   if (!estimate.IsUsable()) {
-    return "not usable: " + estimate.message;
+    return WhyNotUsable(estimate);
   }
   for (const Finding& finding : estimate.findings) {
     if (finding.severity == Severity::kWarning &&
         finding.code != FindingCode::kLocking) {
-      return "it warns: " + Sentence(finding);
+      return "it warns: " + finding.text;
     }
   }
   return IsOneIsotropicMaterial(scene.materials)
@@ -120,7 +130,7 @@ void NoteMismatch(Estimate& estimate) {
 std::string WhyTheModelIsNotEnough(const EstimatorOptions& options,
                                    const Estimate& estimate) {
   if (!estimate.IsUsable()) {
-    return "not usable: " + estimate.message;
+    return WhyNotUsable(estimate);
   }
   if (IsMismatch(estimate)) {
     return ModelMismatchFinding(*estimate.model_mismatch).text;
@@ -270,11 +280,11 @@ void ClimbToQuadraticElements(const Scene& scene,
       !ReducedFe().WhyUnsupported(scene, options).empty()) {
     return;
   }
-  ladder.Decide("went on: not usable: " + linear.message);
+  ladder.Decide("went on: " + WhyNotUsable(linear));
   const Scene quadratic = QuadraticScene(scene);
   ladder.Climb(ReducedFe(), quadratic, options);
   if (ladder.Last().Has(FindingCode::kFitNotCertified)) {
-    ladder.Decide("went on: not usable: " + ladder.Last().message);
+    ladder.Decide("went on: " + WhyNotUsable(ladder.Last()));
     ladder.Climb(IterativeFe(), quadratic, options);
   }
   ladder.Decide("stopped: there is no rung above");
@@ -296,7 +306,7 @@ void ClimbOverMaterials(const Scene& scene, const EstimatorOptions& options,
       ClimbToQuadraticElements(scene, without_degree, ladder);
       return;
     }
-    ladder.Decide("went on: not usable: " + reduced.message);
+    ladder.Decide("went on: " + WhyNotUsable(reduced));
   }
   if (!ladder.Climb(IterativeFe(), scene, without_degree, fit) &&
       !ladder.Climb(VirtualFields(), scene, options)) {

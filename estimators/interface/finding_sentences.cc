@@ -12,11 +12,14 @@
 namespace elastimate {
 namespace {
 
-constexpr char kCheckTheModel[] =
-    "check that the mesh, the supports and the loads describe the experiment";
-constexpr char kGiveMore[] =
-    "give Poisson's ratio, or add a load case that strains the specimen "
-    "otherwise";
+constexpr char kCheckTheModel[] = "check mesh, supports and loads";
+constexpr char kCheckWhatIsGiven[] =
+    "check mesh, supports, loads and given values";
+constexpr char kCheckTheMeasurement[] =
+    "check mesh, supports, loads, given values and smoothing";
+constexpr char kGiveMore[] = "give Poisson's ratio or another load case";
+constexpr char kUnbiased[] = "use reduced-fe, or give Poisson's ratio";
+constexpr char kErrorsHold[] = ", which the error bars hold";
 
 // The rate d ln M / d nu along the direction that the data leave free, below
 // which the modulus M is called determined by them [1]. Next to nu = 1/2 it
@@ -55,8 +58,11 @@ std::string ChangesOf(const Eigen::Vector2d& change, const Estimate& estimate) {
                     return parameter.symbol == "E" || parameter.symbol == "nu";
                   });
   return std::string(is_isotropic ? "E" : "stiffnesses") + " by " +
-         Percent(change(0)) + " and " + (is_isotropic ? "nu" : "ratios") +
-         " by " + TwoDigits(change(1));
+         Percent(change(0)) +
+         (change(1) == 0
+              ? ""
+              : std::string(" and ") + (is_isotropic ? "nu" : "ratios") +
+                    " by " + TwoDigits(change(1)));
 }
 
 std::string Describe(const IsotropicElasticity& elasticity) {
@@ -94,10 +100,9 @@ std::string DescribeDetermined(const Estimate& estimate) {
       best_error = error;
     }
   }
-  return best ? ", but they determine " + best->name + " = " +
-                    Text(best->value) + " +- " + Text(best->value * best_error)
-              : ", nor E, the shear or the bulk modulus to " +
-                    Percent(kLimits.determined_modulus);
+  return best ? ", but " + best->name + " = " + Text(best->value) + " +- " +
+                    Text(best->value * best_error)
+              : ", nor any modulus to " + Percent(kLimits.determined_modulus);
 }
 
 // "a, b, c and 4 more".
@@ -117,7 +122,7 @@ std::string RefinementAdvice(const Estimate& estimate) {
   return std::string("refine the mesh") +
          (estimate.element_order == 2
               ? ""
-              : ", or use quadratic elements (order 2) where it has simplices");
+              : ", or use quadratic simplices (order 2)");
 }
 
 bool IsSomethingKnown(const Estimate& estimate) {
@@ -132,13 +137,6 @@ Finding Error(FindingCode code, std::string text, std::string advice) {
 
 Finding Warning(FindingCode code, std::string text, std::string advice) {
   return {code, Severity::kWarning, std::move(text), std::move(advice)};
-}
-
-std::string BiasAdvice(bool is_bounded) {
-  return std::string(
-             "use reduced-fe, which noise does not bias, or give "
-             "Poisson's ratio, and check the mesh, the supports") +
-         (is_bounded ? ", the loads and the bounds" : " and the loads");
 }
 
 }  // namespace
@@ -197,18 +195,15 @@ Finding Unphysical(const IsotropicElasticity& elasticity) {
 Finding UnphysicalByNoise(const IsotropicElasticity& elasticity) {
   return Error(FindingCode::kUnphysical,
                Describe(elasticity) +
-                   " is not physical: displacement noise pulls nu of this "
-                   "method towards 2/3 and E below zero",
-               "use reduced-fe, which noise does not bias, or give Poisson's "
-               "ratio, and check the mesh, the supports and the loads");
+                   " is not physical, as noise makes it in this method",
+               kUnbiased);
 }
 
 Finding UnphysicalParameters(const std::vector<std::string>& parameters) {
   return Error(FindingCode::kUnphysical,
                FirstOf(parameters) + (parameters.size() == 1 ? " is" : " are") +
                    " not physical",
-               std::string("give bounds on them or what is known, and ") +
-                   kCheckTheModel);
+               std::string("give bounds, and ") + kCheckTheModel);
 }
 
 Finding DisplacementsOpposeLoads() {
@@ -228,17 +223,14 @@ Finding YoungsModulusDiverges() {
 Finding PoissonRatioAtMinusOne() {
   return Error(FindingCode::kPoissonRatioDiverges,
                "the data pull Poisson's ratio to -1, where no material is",
-               std::string("give Poisson's ratio, if the data may not "
-                           "determine it, or ") +
-                   kCheckTheModel);
+               std::string("give Poisson's ratio, or ") + kCheckTheModel);
 }
 
 Finding PoissonRatioDivergesByNoise() {
   return Error(FindingCode::kPoissonRatioDiverges,
                "the data pull Poisson's ratio to the end of its range, as "
                "displacement noise does with this method",
-               "give bounds that the material is known to keep, or use "
-               "reduced-fe");
+               "give bounds, or use reduced-fe");
 }
 
 Finding LoadsDoNoWork() {
@@ -259,8 +251,8 @@ Finding OneCombination(const IsotropicElasticity& elasticity,
 Finding YoungsModulusOnBoundUndetermined(const IsotropicElasticity& elasticity,
                                          const Eigen::Vector2d& direction) {
   return Error(FindingCode::kYoungsModulusUndetermined,
-               "Young's modulus lies on its bound, but the data determine one "
-               "combination of E and nu only" +
+               "Young's modulus lies on its bound, and the data determine one "
+               "combination only" +
                    Unchanged(elasticity, direction),
                kGiveMore);
 }
@@ -268,8 +260,8 @@ Finding YoungsModulusOnBoundUndetermined(const IsotropicElasticity& elasticity,
 Finding PoissonRatioOnBoundUndetermined(const IsotropicElasticity& elasticity,
                                         const Eigen::Vector2d& direction) {
   return Error(FindingCode::kPoissonRatioUndetermined,
-               "Poisson's ratio lies on its bound, but the data determine one "
-               "combination of E and nu only" +
+               "Poisson's ratio lies on its bound, and the data determine one "
+               "combination only" +
                    Unchanged(elasticity, direction),
                kGiveMore);
 }
@@ -317,8 +309,7 @@ Finding YoungsModulusUndetermined(double youngs_modulus,
           (std::isfinite(standard_error)
                ? " has a standard error of " + Text(standard_error)
                : " may be any"),
-      "heed the warnings, if there are any, or measure larger "
-      "displacements, or more load cases");
+      "heed warnings, or add load cases");
 }
 
 Finding ParametersUndetermined(const std::vector<std::string>& parameters) {
@@ -348,8 +339,7 @@ Finding AxisUndetermined(const std::vector<std::string>& axes) {
                         ? ""
                         : " and " + std::to_string(axes.size() - 1) + " more") +
                    ", as of an isotropic material",
-               "use --material=isotropic or auto, give the axis, or add load "
-               "cases");
+               "use --material=auto, or give the axis");
 }
 
 Finding CombinationsOnly(const std::vector<std::string>& combinations) {
@@ -361,20 +351,17 @@ Finding CombinationsOnly(const std::vector<std::string>& combinations) {
 Finding ResidualInRegion(const std::string& region, double correlation) {
   return Warning(FindingCode::kResidualInRegion,
                  "in " + region + " the residuals of neighbours are alike (" +
-                     TwoDigits(correlation) +
-                     "): its material may not be the same all over",
-                 "divide it, and check known values, supports and loads there "
-                 "(displacement_residual)");
+                     TwoDigits(correlation) + "): its material may vary",
+                 "divide it, or check what is known there");
 }
 
 Finding AxisTurned(double angle, const std::string& region, double change) {
   return Warning(FindingCode::kAxisTurned,
                  "axes" + (region.empty() ? "" : " of " + region) +
-                     " that are turned by " +
-                     TwoDigits(kDegreesOfRadian * angle) +
+                     " turned by " + TwoDigits(kDegreesOfRadian * angle) +
                      " degrees fit better, with parameters " + Percent(change) +
-                     " away, which errors hold",
-                 "check them, or free an axis (--axis=free)");
+                     " away" + kErrorsHold,
+                 "check them, or use --axis=free");
 }
 
 Finding RegionsMayDiffer(const std::vector<std::string>& differences,
@@ -382,7 +369,7 @@ Finding RegionsMayDiffer(const std::vector<std::string>& differences,
   return {FindingCode::kRegionsMayDiffer, severity,
           "regions that became one material may differ by up to " +
               FirstOf(differences) + " (95 %)",
-          "use --regions=each for what is known of each of them"};
+          "use --regions=each"};
 }
 
 Finding RegionMayBeAnother(const std::string& region,
@@ -390,15 +377,14 @@ Finding RegionMayBeAnother(const std::string& region,
   return Warning(FindingCode::kRegionsMayDiffer,
                  region + " may be off the material it became part of by " +
                      FirstOf(differences) + " (95 %)",
-                 "use --regions=each for what is known of it");
+                 "use --regions=each");
 }
 
 Finding RegionsNotCompared(const std::vector<std::string>& regions) {
   return {FindingCode::kRegionsNotCompared, Severity::kNotice,
           "the data determine too little of " + FirstOf(regions) +
               " to compare it with others",
-          "strain it by another load case, or say in the scene what it is "
-          "made of"};
+          "add another load case, or name its material in the scene"};
 }
 
 Finding LawsFitAlike(const std::string& chosen, const std::string& other,
@@ -423,12 +409,12 @@ Finding TooFewMeasurements(Eigen::Index num_components) {
                "measure more, or give the standard deviation of the noise");
 }
 
-Finding BoundContradicted(double youngs_modulus_without) {
+Finding BoundContradicted(bool is_less_asked_for) {
   return Error(FindingCode::kBoundContradicted,
-               "the data contradict the bound on Young's modulus: without it, "
-               "E is " +
-                   TwoDigits(youngs_modulus_without),
-               std::string("check the bound, and ") + kCheckTheModel);
+               std::string("the data contradict the bound on Young's modulus, "
+                           "and ask for ") +
+                   (is_less_asked_for ? "less" : "more"),
+               "check the bound, mesh, supports and loads");
 }
 
 Finding KnownPoissonRatioContradicted(double poisson_ratio,
@@ -437,17 +423,15 @@ Finding KnownPoissonRatioContradicted(double poisson_ratio,
   return {FindingCode::kKnownPoissonRatioContradicted, severity,
           "the data contradict the given Poisson's ratio: they ask for " +
               TwoDigits(poisson_ratio) + " +- " + TwoDigits(standard_error),
-          std::string("check the given value, and ") + kCheckTheModel};
+          "check that value, mesh, supports and loads"};
 }
 
 Finding LargeCorrection(double correction) {
   return Error(FindingCode::kLargeCorrection,
-               "the loads are in balance only with displacements that differ "
-               "from the measured ones by " +
-                   Percent(correction) + " of them",
-               std::string(kCheckTheModel) +
-                   ", bounds and a given Poisson's ratio too, and whether "
-                   "noise outweighs the measurement");
+               "the loads balance only with displacements that differ from the "
+               "measured ones by " +
+                   Percent(correction),
+               "check mesh, supports, loads, noise and given values");
 }
 
 Finding LoadsOutOfBalance(double imbalance, Severity severity) {
@@ -464,29 +448,25 @@ Finding ResidualAboveNoise(ResidualKind kind, double ratio) {
           ? "the displacement residual is " + times + "the given noise"
       : kind == ResidualKind::kForce
           ? "the force residual is " + times + "what the given noise explains"
-          : "the balance of virtual work is off by " + times +
+          : "virtual work is off balance by " + times +
                 "what the given noise explains";
-  return Warning(FindingCode::kResidualAboveNoise,
-                 what + ", so the standard errors are widened to match",
-                 std::string("check the given noise, and ") + kCheckTheModel);
+  return Warning(FindingCode::kResidualAboveNoise, what + kErrorsHold,
+                 "check the noise, mesh, supports and loads");
 }
 
 Finding SmoothResidual(double correlation) {
   return Warning(
       FindingCode::kSmoothResidual,
       "the displacement residual is alike at neighbouring nodes (correlation " +
-          TwoDigits(correlation) +
-          "), as noise is not, so the standard errors are widened",
-      std::string(kCheckTheModel) +
-          ", and whether the measurement was smoothed");
+          TwoDigits(correlation) + ")" + kErrorsHold,
+      kCheckTheMeasurement);
 }
 
 Finding LargeSmoothResidual(double smooth) {
   return Error(FindingCode::kSmoothResidual,
                "the model misses a smooth part of the measured displacement, " +
                    Percent(smooth) + " of it",
-               std::string(kCheckTheModel) +
-                   ", and a given Poisson's ratio the material");
+               kCheckWhatIsGiven);
 }
 
 Finding LargeResidual(double displacement_residual) {
@@ -500,22 +480,17 @@ Finding LargeResidual(double displacement_residual) {
 Finding VirtualWorkImbalance() {
   return Warning(
       FindingCode::kVirtualWorkImbalance,
-      "the balance of virtual work is off by more than noise explains, so the "
-      "standard errors are widened to allow for it",
-      std::string(kCheckTheModel) +
-          ", and whether the measurement was smoothed");
+      std::string("virtual work is off balance by more than noise explains") +
+          kErrorsHold,
+      kCheckTheMeasurement);
 }
 
 Finding VirtualWorkImbalance(double force_residual, Severity severity) {
   return {FindingCode::kVirtualWorkImbalance, severity,
-          "the force residual is " + TwoDigits(force_residual) +
-              " of the load, and virtual work (virtual-fields) shows more "
-              "than noise in it" +
-              (severity == Severity::kWarning
-                   ? ", so the standard errors are widened"
-                   : ""),
-          std::string(kCheckTheModel) +
-              ", bounds and a given Poisson's ratio the material"};
+          "virtual-fields finds more than noise in the force residual (" +
+              TwoDigits(force_residual) + " of the load)" +
+              (severity == Severity::kWarning ? kErrorsHold : ""),
+          kCheckWhatIsGiven};
 }
 
 Finding ModelDoesNotFitAtLimit() {
@@ -556,8 +531,7 @@ Finding Outliers(const Eigen::Vector2d& change, const Estimate& estimate) {
   return Warning(FindingCode::kOutliers,
                  "some nodes lie far off; leaving them out would change " +
                      ChangesOf(change, estimate),
-                 "use a loss (huber or cauchy); the standard errors allow for "
-                 "the pull");
+                 "use a loss (huber or cauchy)");
 }
 
 Finding OutliersLeftOut(const std::vector<Outlier>& outliers,
@@ -577,27 +551,26 @@ Finding OutliersLeftOut(const std::vector<Outlier>& outliers,
                  std::to_string(outliers.size()) + " outliers (" + names +
                      ") are left out, which changes " +
                      ChangesOf(change, estimate),
-                 "look at them in the output of --out, where they are marked");
+                 "look at them, marked in --out");
 }
 
 Finding HeldNodesMoved(const std::vector<std::size_t>& load_cases) {
   const std::size_t num_others = load_cases.size() - 1;
   return Warning(
       FindingCode::kHeldNodesMoved,
-      "the measured displacement of held nodes in load case " +
-          std::to_string(load_cases.front()) +
+      "held nodes of load case " + std::to_string(load_cases.front()) +
           (num_others == 0 ? ""
                            : " (and " + std::to_string(num_others) + " more)") +
-          " differs from the one they are held at, which is used",
+          " were measured elsewhere, which is not used",
       "check the supports");
 }
 
 Finding ResultantsContradicted(double distance) {
   return Warning(FindingCode::kResultantsContradicted,
                  "a measured resultant is " + TwoDigits(distance) +
-                     " of its standard deviations from the force of the fit, "
-                     "and the standard errors are widened",
-                 "check loads, resultants and their errors");
+                     " of its standard deviations from the force of the fit" +
+                     kErrorsHold,
+                 "check loads and resultants");
 }
 
 Finding NoFrameUsable(std::size_t num_frames, const std::string& reason) {
@@ -616,12 +589,11 @@ Finding FramesScatter(double excess, std::size_t farthest) {
 }
 
 Finding FramesAlike(double correlation) {
-  return Warning(
-      FindingCode::kFramesAlike,
-      "the residuals of frames are alike (correlation " +
-          TwoDigits(correlation) +
-          "), and what they share does not average out",
-      "look for what they share: a reference image, supports, loads");
+  return Warning(FindingCode::kFramesAlike,
+                 "the residuals of frames are alike (correlation " +
+                     TwoDigits(correlation) +
+                     "), and what they share does not average out",
+                 "check the reference image, supports and loads");
 }
 
 Finding FramesLeftOut(std::size_t num_left_out, std::size_t num_frames) {
@@ -636,19 +608,17 @@ Finding TrendOverFrames(const std::string& parameter, bool is_relative,
   const auto text = [is_relative](double value) {
     return is_relative ? Percent(value) : TwoDigits(value);
   };
-  return Warning(
-      FindingCode::kTrendOverFrames,
-      parameter + " changes by " + text(trend.change(place)) + " +- " +
-          text(trend.standard_error(place)) +
-          (trend.is_over_load ? " from the least load to the largest"
-                              : " from the first frame to the last"),
-      trend.is_over_load
-          ? "take frames of small load: material or motion are not linear"
-          : "look whether the material creeps, or the camera or the load "
-            "drifts");
+  return Warning(FindingCode::kTrendOverFrames,
+                 parameter + " changes by " + text(trend.change(place)) +
+                     " +- " + text(trend.standard_error(place)) +
+                     (trend.is_over_load ? " from the least load to the largest"
+                                         : " from the first frame to the last"),
+                 trend.is_over_load
+                     ? "take frames of small load"
+                     : "look for creep, and drift of camera or load");
 }
 
-Finding YoungsModulusBias(const std::optional<double>& bias, bool is_bounded,
+Finding YoungsModulusBias(const std::optional<double>& bias,
                           Severity severity) {
   const std::string size = bias ? Percent(*bias) : "its whole size";
   return {FindingCode::kNoiseBias, severity,
@@ -657,10 +627,10 @@ Finding YoungsModulusBias(const std::optional<double>& bias, bool is_bounded,
                    ? ", more than the " + Percent(kLimits.unusable_error) +
                          " that are usable"
                    : ", which the standard errors allow for"),
-          BiasAdvice(is_bounded)};
+          kUnbiased};
 }
 
-Finding PoissonRatioBias(double bias, bool is_bounded, Severity severity) {
+Finding PoissonRatioBias(double bias, Severity severity) {
   return {FindingCode::kNoiseBias, severity,
           "displacement noise biases Poisson's ratio by about " +
               TwoDigits(bias) +
@@ -669,7 +639,7 @@ Finding PoissonRatioBias(double bias, bool is_bounded, Severity severity) {
                          Text(kLimits.unusable_poisson_ratio_bias) +
                          " that are usable"
                    : ", which the standard errors allow for"),
-          BiasAdvice(is_bounded)};
+          kUnbiased};
 }
 
 Finding YoungsModulusOnBound() {
@@ -689,8 +659,7 @@ Finding PoissonRatioOnBound() {
 Finding PoissonRatioAtLimit() {
   return Warning(FindingCode::kPoissonRatioAtLimit,
                  "Poisson's ratio has run to the end of its physical range",
-                 "give bounds that the material is known to keep, or take mu "
-                 "and 1 / kappa");
+                 "give bounds, or take mu and 1 / kappa");
 }
 
 Finding ParametersOnBounds(const std::vector<std::string>& parameters) {
@@ -721,25 +690,23 @@ Finding ParameterBias(const std::string& parameter, double bias,
 }
 
 Finding Locking(ElementKind kind) {
-  return Warning(
-      FindingCode::kLocking,
-      "linear " + std::string(TopologyOf(kind).shapes) +
-          " are too stiff from nu = " + Text(kLimits.locking_poisson_ratio) +
-          " on (they lock), which biases E and nu and makes their "
-          "standard errors too small",
-      std::string(HasQuadraticKind(kind) ? "use quadratic elements (order 2)"
-                                         : "mesh with quadratic simplices") +
-          ", unless the displacements come from the same mesh");
+  return Warning(FindingCode::kLocking,
+                 "linear " + std::string(TopologyOf(kind).shapes) +
+                     " are too stiff (lock) from nu = " +
+                     Text(kLimits.locking_poisson_ratio) +
+                     " on, which biases E and nu beyond their errors",
+                 HasQuadraticKind(kind) ? "use quadratic elements (order 2)"
+                                        : "mesh with quadratic simplices");
 }
 
 std::string DescribeDiscretizationError(const Estimate& estimate) {
-  std::string text = "the error of E is mostly that of the elements (" +
-                     Percent(*estimate.discretization_error);
+  std::string text =
+      "the elements leave E open by " + Percent(*estimate.discretization_error);
   if (estimate.poisson_ratio_discretization_error) {
     text +=
-        "; of nu " + TwoDigits(*estimate.poisson_ratio_discretization_error);
+        " and nu by " + TwoDigits(*estimate.poisson_ratio_discretization_error);
   }
-  return text + ")";
+  return text;
 }
 
 Finding DiscretizationErrorFinding(ElementKind kind, const Estimate& estimate) {
@@ -755,10 +722,10 @@ Finding ElementsTooCoarse(const Eigen::Vector2d& correction,
                           const Estimate& estimate) {
   return Error(
       FindingCode::kElementsTooCoarse,
-      "the elements are too coarse here: finer ones change " +
+      "the elements are too coarse: finer ones change " +
           ChangesOf({std::expm1(correction(0)), correction(1)}, estimate),
-      RefinementAdvice(estimate) +
-          (IsSomethingKnown(estimate) ? ", and check what is known" : ""));
+      IsSomethingKnown(estimate) ? "refine the mesh, or check what is known"
+                                 : RefinementAdvice(estimate));
 }
 
 Finding SupportsEndWithinElements(const Eigen::Vector2d& errors) {
@@ -767,23 +734,18 @@ Finding SupportsEndWithinElements(const Eigen::Vector2d& errors) {
       "where supports end within elements is not known, which leaves "
       "E open by " +
           Percent(errors(0)) + " and nu by " + TwoDigits(errors(1)),
-      "give the supports by place, such as a box");
+      "give the supports as boxes");
 }
 
 Finding LinearElementsFitAsWell(const IsotropicElasticity& linear) {
-  return Warning(
-      FindingCode::kLinearElementsFitAsWell,
-      "linear elements explain the displacements as well, with E = " +
-          TwoDigits(linear.youngs_modulus) + " and nu = " +
-          TwoDigits(linear.poisson_ratio) + ", which the error bars hold",
-      OrderAdvice());
+  return Warning(FindingCode::kLinearElementsFitAsWell,
+                 "linear elements fit as well, with E = " +
+                     TwoDigits(linear.youngs_modulus) + " and nu = " +
+                     TwoDigits(linear.poisson_ratio) + kErrorsHold,
+                 OrderAdvice());
 }
 
-std::string OrderAdvice() {
-  return "use reduced-fe, with order 2 for displacements of a specimen, with "
-         "order 1 only for those that were simulated with linear elements of "
-         "this mesh";
-}
+std::string OrderAdvice() { return "use order 2, or 1 for simulations"; }
 
 Finding TooManyElements() {
   return Warning(FindingCode::kTooManyElements,

@@ -91,7 +91,7 @@ Finding DependentForces();
 Finding TooFewMeasurements(Eigen::Index num_components);
 
 // What the model does not explain.
-Finding BoundContradicted(double youngs_modulus_without);
+Finding BoundContradicted(bool is_less_asked_for);
 /// nu that the data ask for, and its standard error.
 Finding KnownPoissonRatioContradicted(double poisson_ratio,
                                       double standard_error, Severity severity);
@@ -139,9 +139,8 @@ Finding FramesAlike(double correlation);
 
 // What the method does to the estimate.
 /// `bias` of E is relative, and empty when it is as large as E.
-Finding YoungsModulusBias(const std::optional<double>& bias, bool is_bounded,
-                          Severity severity);
-Finding PoissonRatioBias(double bias, bool is_bounded, Severity severity);
+Finding YoungsModulusBias(const std::optional<double>& bias, Severity severity);
+Finding PoissonRatioBias(double bias, Severity severity);
 Finding YoungsModulusOnBound();
 Finding PoissonRatioOnBound();
 Finding PoissonRatioAtLimit();

@@ -68,17 +68,15 @@ void JudgeElements(const Mesh& mesh, Estimate& estimate) {
 // What a method without a finite element solution does not know, the data may.
 void FailUndetermined(Finding finding, Estimate& estimate) {
   if (estimate.Has(FindingCode::kSupportsEndWithinElements)) {
-    finding.advice = "give the supports by place, such as a box";
+    finding.advice = "give the supports as boxes";
   } else if (estimate.Has(FindingCode::kLinearElementsFitAsWell)) {
     finding.advice = OrderAdvice();
   } else if (IsDiscretizationErrorNotable(estimate)) {
-    finding.advice =
-        std::string("refine the mesh") +
-        (estimate.element_order == 1 ? ", or use quadratic elements (order 2)"
-                                     : "") +
-        ": most of the error is that of the elements";
+    finding.advice = estimate.element_order == 1
+                         ? "refine the mesh, or use order 2"
+                         : "refine the mesh";
   } else if (!estimate.displacement_residual) {
-    finding.advice += ", or use reduced-fe, which takes more from the data";
+    finding.advice += ", or use reduced-fe";
   }
   estimate.Fail(finding);
 }

@@ -169,7 +169,7 @@ Result JudgeBoundExcess(const Evidence& evidence, const EstimatorOptions&,
   return change > kLimits.unusable_error &&
                  excess > kLimits.significant_score *
                               kLimits.significant_score * variance
-             ? BoundContradicted(without)
+             ? BoundContradicted(without < estimate.elasticity.youngs_modulus)
              : Result();
 }
 
@@ -279,27 +279,24 @@ Result JudgeNoiseBias(const Evidence& evidence, const EstimatorOptions&,
     return std::nullopt;
   }
   const NoiseBias& bias = *evidence.noise_bias;
-  const bool is_bounded = evidence.active.Any();
   const double of_youngs = std::abs(bias.youngs_modulus);
   const double of_poisson = std::abs(bias.poisson_ratio);
   if (!(of_youngs <= kLimits.unusable_error)) {
     return YoungsModulusBias(std::isfinite(bias.youngs_modulus)
                                  ? std::optional<double>(bias.youngs_modulus)
                                  : std::nullopt,
-                             is_bounded, Severity::kError);
+                             Severity::kError);
   }
   if (!(of_poisson <= kLimits.unusable_poisson_ratio_bias)) {
-    return PoissonRatioBias(bias.poisson_ratio, is_bounded, Severity::kError);
+    return PoissonRatioBias(bias.poisson_ratio, Severity::kError);
   }
   if (of_youngs > std::max(kLimits.notable_youngs_modulus_error,
                            bias.youngs_modulus_error)) {
-    return YoungsModulusBias(bias.youngs_modulus, is_bounded,
-                             Severity::kWarning);
+    return YoungsModulusBias(bias.youngs_modulus, Severity::kWarning);
   }
   return of_poisson > std::max(kLimits.notable_poisson_ratio_error,
                                bias.poisson_ratio_error)
-             ? PoissonRatioBias(bias.poisson_ratio, is_bounded,
-                                Severity::kWarning)
+             ? PoissonRatioBias(bias.poisson_ratio, Severity::kWarning)
              : Result();
 }
 

@@ -14,6 +14,23 @@ namespace {
 // The standard errors to another minimum.
 constexpr double kFar = 4;
 
+// Whatever its cause is, an error is as much larger as the model is curved.
+void ScaleParts(const Eigen::Vector2d& factors, Estimate& estimate) {
+  ErrorBudget& budget = estimate.error_budget;
+  for (ParameterErrors* part :
+       {&budget.noise, &budget.model, &budget.outliers}) {
+    if (part->size() == factors.size()) {
+      part->array() *= factors.array();
+    }
+  }
+  if (estimate.discretization_error) {
+    *estimate.discretization_error *= factors(0);
+  }
+  if (estimate.poisson_ratio_discretization_error) {
+    *estimate.poisson_ratio_discretization_error *= factors(1);
+  }
+}
+
 // Widens the standard errors to a profile likelihood with a 95 % interval of
 // nu, each end with the E that fits best there.  An end at the limit of the
 // range is left out.  One at another minimum is as likely as the estimate,
@@ -53,6 +70,7 @@ void WidenToProfile(const Profile& profile, Estimate& estimate) {
   const Eigen::Vector2d factors(factor(0), factor(1));
   estimate.covariance =
       factors.asDiagonal() * estimate.covariance * factors.asDiagonal();
+  ScaleParts(factors, estimate);
 }
 
 }  // namespace

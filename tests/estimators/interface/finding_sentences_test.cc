@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -48,9 +49,7 @@ TEST(PoissonRatioUndetermined, TheShearModulus) {
 TEST(PoissonRatioUndetermined, Nothing) {
   const std::string text =
       PoissonRatioUndetermined(WithCovariance(50, 0.5, 0)).text;
-  EXPECT_NE(text.find(", nor E, the shear or the bulk modulus to 10 %"),
-            std::string::npos)
-      << text;
+  EXPECT_NE(text.find(", nor any modulus to 10 %"), std::string::npos) << text;
 }
 
 TEST(OneCombination, NamesTheModulusThatStays) {
@@ -122,7 +121,7 @@ std::vector<Finding> OfResiduals() {
                           {true, numbers, numbers, numbers}, 0),
           TrendOverFrames("E of region 1000", true,
                           {false, numbers, numbers, numbers}, 0),
-          BoundContradicted(kLong),
+          BoundContradicted(true),
           KnownPoissonRatioContradicted(kLong, kLong, Severity::kWarning),
           LargeCorrection(kLong),
           LoadsOutOfBalance(kLong, Severity::kError),
@@ -150,11 +149,11 @@ std::vector<Finding> OfResiduals() {
 
 std::vector<Finding> OfParameters() {
   return {
-      YoungsModulusBias(kLong, true, Severity::kError),
-      YoungsModulusBias({}, false, Severity::kError),
-      YoungsModulusBias(kLong, false, Severity::kWarning),
-      PoissonRatioBias(kLong, true, Severity::kError),
-      PoissonRatioBias(kLong, false, Severity::kWarning),
+      YoungsModulusBias(kLong, Severity::kError),
+      YoungsModulusBias({}, Severity::kError),
+      YoungsModulusBias(kLong, Severity::kWarning),
+      PoissonRatioBias(kLong, Severity::kError),
+      PoissonRatioBias(kLong, Severity::kWarning),
       YoungsModulusOnBound(),
       PoissonRatioOnBound(),
       PoissonRatioAtLimit(),
@@ -215,10 +214,19 @@ std::vector<Finding> EveryFinding() {
   return findings;
 }
 
+// Parameters, regions or nodes that are listed are one word.
+std::string WithoutLists(const std::string& text) {
+  static const std::regex list(
+      "((E|nu) of )?(region|node|point)s? [0-9]+( \\([0-9.]+\\))?"
+      "(, (((E|nu) of )?(region|node|point)s? )?([0-9]+( \\([0-9.]+\\))?|"
+      "[.]{3}))*( and [0-9]+ more)?");
+  return std::regex_replace(text, list, "list");
+}
+
 TEST(FindingSentences, AreShort) {
   for (const Finding& finding : EveryFinding()) {
     SCOPED_TRACE(finding.text);
-    std::istringstream words(finding.text);
+    std::istringstream words(WithoutLists(finding.text) + " " + finding.advice);
     int num_words = 0;
     for (std::string word; words >> word;) {
       ++num_words;
