@@ -51,8 +51,8 @@ std::optional<Scene> QuadraticSceneIfAsked(const std::string& source,
   }
   if (HasNodalForces(scene)) {
     notices.emplace_back(
-        "nodal forces act at the vertices only, with --order=2 too; where they "
-        "stand for a force on a surface, a traction, a pressure or a body "
+        "nodal forces on all nodes of a face or an element are spread over it, "
+        "others act at vertices, with --order=2; where they stand for another "
         "force, give that, in a scene.json");
   }
   return QuadraticScene(scene);

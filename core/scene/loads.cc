@@ -6,6 +6,11 @@
 namespace elastimate {
 namespace {
 
+// Of one that all share, or of each its own.
+auto ColumnOf(const Eigen::MatrixXd& density, Eigen::Index i) {
+  return density.col(density.cols() == 1 ? 0 : i);
+}
+
 // Adds each load's nodal forces; one overload per kind of load.
 class LoadAssembler {
  public:
@@ -23,7 +28,7 @@ class LoadAssembler {
                             for (Eigen::Index i = 0; i < at.value.size(); ++i) {
                               force_.col(mesh_.elements(i, element)) +=
                                   point.volume * at.value(i) *
-                                  load.force_density;
+                                  ColumnOf(load.force_density, element);
                             }
                           });
       }
@@ -31,10 +36,11 @@ class LoadAssembler {
   }
 
   void operator()(const Traction& load) {
-    for (const auto& facet : load.facets.colwise()) {
+    for (Eigen::Index j = 0; j < load.facets.cols(); ++j) {
+      const auto facet = load.facets.col(j);
       const Eigen::VectorXd area = WeightsOfFacet(mesh_, facet).area;
       for (Eigen::Index i = 0; i < facet.size(); ++i) {
-        force_.col(facet(i)) += area(i) * load.traction;
+        force_.col(facet(i)) += area(i) * ColumnOf(load.traction, j);
       }
     }
   }
@@ -65,12 +71,19 @@ struct Summation {
     return {"nodal_force", load.force.rowwise().sum(), std::nullopt};
   }
   LoadResultant operator()(const BodyForce& load) const {
-    return {"body_force", ElementVolumes(mesh).sum() * load.force_density,
-            std::nullopt};
+    const Eigen::VectorXd volumes = ElementVolumes(mesh);
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(mesh.Dimension());
+    for (Eigen::Index i = 0; i < volumes.size(); ++i) {
+      force += volumes(i) * ColumnOf(load.force_density, i);
+    }
+    return {"body_force", force, std::nullopt};
   }
   LoadResultant operator()(const Traction& load) const {
-    const double area = FacetArea(mesh, load.facets);
-    return {"traction", area * load.traction, area};
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(mesh.Dimension());
+    for (Eigen::Index i = 0; i < load.facets.cols(); ++i) {
+      force += FacetArea(mesh, load.facets.col(i)) * ColumnOf(load.traction, i);
+    }
+    return {"traction", force, FacetArea(mesh, load.facets)};
   }
   LoadResultant operator()(const Pressure& load) const {
     Eigen::VectorXd area_vector = Eigen::VectorXd::Zero(mesh.Dimension());

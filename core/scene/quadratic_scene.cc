@@ -8,6 +8,7 @@
 
 #include "elastimate/core/mesh/edges.h"
 #include "elastimate/core/mesh/facets.h"
+#include "elastimate/core/scene/spread_loads.h"
 #include "elastimate/core/scene/support_ends.h"
 
 namespace elastimate {
@@ -214,12 +215,12 @@ struct LoadConverter {
   }
 };
 
-LoadCase ToQuadratic(const LoadCase& load_case, const Mesh& mesh,
-                     const Edges& edges) {
+LoadCase ToQuadratic(const LoadCase& load_case, const ComponentMask& held,
+                     const Mesh& mesh, const Edges& edges) {
   LoadCase quadratic;
   quadratic.noise_sd = load_case.noise_sd;
   quadratic.points = load_case.points;
-  for (const Load& load : load_case.loads) {
+  for (const Load& load : SpreadLoads(mesh, held, load_case.loads)) {
     quadratic.loads.push_back(std::visit(LoadConverter{mesh, edges}, load));
   }
   const ComponentMask measured =
@@ -268,7 +269,8 @@ Scene QuadraticScene(const Scene& scene) {
                       quadratic.supports.held.rightCols(edges.Size()));
   quadratic.is_rigid_motion_free = scene.is_rigid_motion_free;
   for (const LoadCase& load_case : scene.load_cases) {
-    quadratic.load_cases.push_back(ToQuadratic(load_case, scene.mesh, edges));
+    quadratic.load_cases.push_back(
+        ToQuadratic(load_case, scene.supports.held, scene.mesh, edges));
   }
   return quadratic;
 }

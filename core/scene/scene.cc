@@ -48,6 +48,18 @@ void RequireVector(const Eigen::VectorXd& vector, const Mesh& mesh,
   RequireRepresentable(vector.cwiseAbs().maxCoeff(), what);
 }
 
+// One for all of `count`, or one for each.
+void RequireVectors(const Eigen::MatrixXd& vectors, const Mesh& mesh,
+                    Eigen::Index count, const std::string& what) {
+  if (vectors.cols() != 1 && vectors.cols() != count) {
+    Fail(what + " has " + std::to_string(vectors.cols()) + " columns for " +
+         std::to_string(count) + " places; give one for all or one for each");
+  }
+  for (const auto& vector : vectors.colwise()) {
+    RequireVector(vector, mesh, what);
+  }
+}
+
 // `values` may be an expression; it is not kept.
 template <class Values>
 void RequireFinite(const Values& values, const std::string& what) {
@@ -137,11 +149,13 @@ struct LoadValidator {
     RequireFinite(load.force, "the force in " + where);
   }
   void operator()(const BodyForce& load) const {
-    RequireVector(load.force_density, mesh, "the body force in " + where);
+    RequireVectors(load.force_density, mesh, mesh.NumElements(),
+                   "the body force in " + where);
   }
   void operator()(const Traction& load) const {
     ValidateFacets(mesh, load.facets, "the traction in " + where);
-    RequireVector(load.traction, mesh, "the traction in " + where);
+    RequireVectors(load.traction, mesh, load.facets.cols(),
+                   "the traction in " + where);
   }
   void operator()(const Pressure& load) const {
     ValidateFacets(mesh, load.facets, "the pressure in " + where);

@@ -20,15 +20,17 @@ struct NodalForces {
   Eigen::MatrixXd force;  ///< dimension x num_nodes [force].
 };
 
-/// A uniform force per volume, such as gravity.
+/// A force per volume, such as gravity, uniform or uniform in each element.
 struct BodyForce {
-  Eigen::VectorXd force_density;  ///< [force / length^3], of `dimension`.
+  /// [force / length^3], dimension x 1 or dimension x num_elements.
+  Eigen::MatrixXd force_density;
 };
 
-/// A uniform force per (undeformed) area on some facets.
+/// A force per (undeformed) area on some facets, uniform or uniform on each.
 struct Traction {
-  Eigen::MatrixXi facets;    ///< As those of BoundaryFacets.
-  Eigen::VectorXd traction;  ///< [force / length^2], of `dimension`.
+  Eigen::MatrixXi facets;  ///< As those of BoundaryFacets.
+  /// [force / length^2], dimension x 1 or dimension x num_facets.
+  Eigen::MatrixXd traction;
 };
 
 /// A uniform pressure on some facets; positive pushes against the outward

@@ -3,18 +3,31 @@
 #include <variant>
 
 #include "elastimate/core/mesh/simplicial_mesh.h"
+#include "elastimate/core/scene/spread_loads.h"
 
 namespace elastimate {
 namespace {
+
+// Columns of one for all, or of one each, for what these were cut into.
+Eigen::MatrixXd ForCuts(const Eigen::MatrixXd& columns, Eigen::Index num_cuts) {
+  return columns.cols() <= 1
+             ? columns
+             : Eigen::MatrixXd(columns.replicate(num_cuts / columns.cols(), 1)
+                                   .reshaped(columns.rows(), num_cuts));
+}
 
 // One overload per kind of load.
 struct LoadCutter {
   const SimplicialMesh& mesh;
 
   Load operator()(const NodalForces& load) const { return load; }
-  Load operator()(const BodyForce& load) const { return load; }
+  Load operator()(const BodyForce& load) const {
+    return BodyForce{
+        ForCuts(load.force_density, mesh.Simplices().NumElements())};
+  }
   Load operator()(const Traction& load) const {
-    return Traction{mesh.FacetsOf(load.facets), load.traction};
+    const Eigen::MatrixXi facets = mesh.FacetsOf(load.facets);
+    return Traction{facets, ForCuts(load.traction, facets.cols())};
   }
   Load operator()(const Pressure& load) const {
     return Pressure{mesh.FacetsOf(load.facets), load.pressure};
@@ -43,6 +56,10 @@ Scene SimplicialScene(const Scene& scene) {
     }
   }
   for (LoadCase& load_case : simplicial.load_cases) {
+    if (scene.mesh.Order() == 1) {
+      load_case.loads =
+          SpreadLoads(scene.mesh, scene.supports.held, load_case.loads);
+    }
     for (Load& load : load_case.loads) {
       load = std::visit(LoadCutter{mesh}, load);
     }

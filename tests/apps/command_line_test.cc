@@ -1346,7 +1346,7 @@ TEST_F(QuadraticElements, NoiseIsRelativeToTheVertices) {
 
 TEST_F(QuadraticElements, NoticeWhatNodalForcesMean) {
   MakeExactScene();
-  const std::string notice = "notice: nodal forces act at the vertices only";
+  const std::string notice = "notice: nodal forces on all nodes of a face";
   // Whether the estimate is usable or not.
   const auto has_notice = [&](const std::string& arguments) {
     return Run(arguments).errors.find(notice) != std::string::npos;

@@ -8,8 +8,10 @@
 #include <cmath>
 #include <limits>
 #include <string_view>
+#include <vector>
 
 #include "elastimate/core/mechanics/stiffness_product.h"
+#include "elastimate/core/scene/loads.h"
 #include "elastimate/estimators/displacement_fit/reduced_fe.h"
 #include "elastimate/estimators/reduced_model/krylov_bound.h"
 #include "elastimate/estimators/registry.h"
@@ -68,7 +70,8 @@ TEST_P(OnEachKind, EstimatorsTakeAKnownPoissonRatio) {
 // At the same displacements: twice the force by twice the modulus, and by the
 // same one at twice the thickness.
 TEST_P(OnEachKind, EstimatesScaleWithForceAndThickness) {
-  std::get<NodalForces>(scene_.load_cases[0].loads[0]).force *= 2;
+  std::vector<Load>& loads = scene_.load_cases[0].loads;
+  loads = {NodalForces{2 * AssembleLoads(scene_.mesh, loads)}};
   ExpectExact(scene_, {}, 2 * kYoungsModulus);
   if (scene_.mesh.Dimension() == 2) {
     scene_.mesh.section.thickness *= 2;

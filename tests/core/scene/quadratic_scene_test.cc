@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "elastimate/core/mesh/edges.h"
 #include "elastimate/core/mesh/mid_edges.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/rigid_motion.h"
@@ -139,11 +140,32 @@ TEST_F(ConvertedOrgan, HoldsMidEdgesAtTheMeanOfTheirEnds) {
   }
 }
 
-TEST_F(ConvertedOrgan, LetsNodalForcesActAtTheVertices) {
+// Of half of the force on each mid-edge node at either end of its edge.
+TEST_F(ConvertedOrgan, SpreadsNodalForces) {
+  const Eigen::MatrixXd force =
+      AssembleLoads(quadratic_.mesh, quadratic_.load_cases[0].loads);
+  EXPECT_FALSE(force.rightCols(NumMidEdges()).isZero(0));
+  const Eigen::MatrixXd& given =
+      std::get<NodalForces>(scene_.load_cases[0].loads[0]).force;
+  Eigen::MatrixXd at_vertices = force.leftCols(NumVertices());
+  const Eigen::Matrix2Xi ends = Edges(scene_.mesh).Ends();
+  for (Eigen::Index i = 0; i < NumMidEdges(); ++i) {
+    at_vertices.col(ends(0, i)) += force.col(NumVertices() + i) / 2;
+    at_vertices.col(ends(1, i)) += force.col(NumVertices() + i) / 2;
+  }
+  EXPECT_LT((at_vertices - given).norm(), 1e-12 * given.norm());
+}
+
+TEST_F(ConvertedOrgan, LetsPointForcesActAtTheirVertex) {
+  Scene scene = scene_;
+  NodalForces point{Eigen::MatrixXd::Zero(3, NumVertices())};
+  point.force(2, NumVertices() - 1) = 3;
+  scene.load_cases[0].loads = {point};
+  const Scene quadratic = QuadraticScene(scene);
+  ASSERT_EQ(quadratic.load_cases[0].loads.size(), 1);
   const auto& force =
-      std::get<NodalForces>(quadratic_.load_cases[0].loads[0]).force;
-  EXPECT_EQ(force.leftCols(NumVertices()),
-            std::get<NodalForces>(scene_.load_cases[0].loads[0]).force);
+      std::get<NodalForces>(quadratic.load_cases[0].loads[0]).force;
+  EXPECT_EQ(force.leftCols(NumVertices()), point.force);
   EXPECT_TRUE(force.rightCols(NumMidEdges()).isZero(0));
 }
 
