@@ -11,6 +11,7 @@
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/rules.h"
 #include "elastimate/estimators/statistics/bounded_parameter.h"
+#include "elastimate/estimators/statistics/error_propagation.h"
 #include "elastimate/estimators/statistics/finer_specimen.h"
 #include "elastimate/estimators/statistics/residual_statistics.h"
 
@@ -18,6 +19,8 @@ namespace elastimate {
 namespace {
 
 constexpr double kUsualPoissonRatio = 0.3;
+// Of the change to finer elements, from which on there is likely to be one.
+constexpr double kLikelyShare = 0.5;
 
 bool IsOnGivenBound(const DescribedFit& described) {
   const ActiveBounds& active = described.evidence.active;
@@ -29,7 +32,6 @@ bool IsOnGivenBound(const DescribedFit& described) {
 // What was taken is given back in any case.
 bool AsksForOthers(const DescribedFit& described) {
   constexpr double kNotable = 0.05;
-  constexpr double kLikelyShare = 0.5;
   if (described.taken.size() == 0 &&
       (described.statistics.share_of_finer < kLikelyShare ||
        IsOnGivenBound(described))) {
@@ -67,6 +69,74 @@ DescribedFit Settle(DescribedFit described, CorrectableFit& fit) {
     described = fit.Describe();
   }
   return described;
+}
+
+// Whether what finer elements change may change with nu as much as matters
+// beside what a fit sees of nu: as fast as by all of itself over this step.
+bool MayChangeWithPoissonRatio(const DescribedFit& described) {
+  constexpr double kStep = 0.05;
+  constexpr double kNotable = 0.2;
+  const Eigen::VectorXd& scale = described.sensitivities.col(0);
+  const Eigen::VectorXd& by_poisson_ratio = described.sensitivities.col(1);
+  const double visible =
+      SquaredNorm(by_poisson_ratio) -
+      std::pow(InnerProduct(scale, by_poisson_ratio), 2) / SquaredNorm(scale);
+  return SquaredNorm(*described.element_change) >
+         std::pow(kNotable * kStep, 2) * visible;
+}
+
+// dc / dnu of the (ln E, nu) that take up what finer elements change, towards
+// the nu that they ask for, where there is likely to be a finer specimen; zero
+// where that does not matter, or is not known.
+Eigen::Vector2d SlopeOfChange(const EstimatorOptions& options,
+                              const DescribedFit& described,
+                              CorrectableFit& fit) {
+  // In LogStiffnessRatio.
+  constexpr double kStep = 0.3;
+  if (!described.element_change || described.evidence.active.Any() ||
+      described.statistics.share_of_finer < kLikelyShare ||
+      !MayChangeWithPoissonRatio(described)) {
+    return Eigen::Vector2d::Zero();
+  }
+  const IsotropicElasticity& elasticity = described.estimate.elasticity;
+  const double nu = elasticity.poisson_ratio;
+  const double step = std::copysign(kStep, described.statistics.correction(1));
+  const Bounds bounds = EffectivePoissonRatioBounds(options);
+  double other = PoissonRatioOfLogStiffnessRatio(LogStiffnessRatio(nu) + step);
+  if (!(*bounds.lower <= other && other <= *bounds.upper)) {
+    other = PoissonRatioOfLogStiffnessRatio(LogStiffnessRatio(nu) - step);
+  }
+  if (!(*bounds.lower <= other && other <= *bounds.upper)) {
+    return Eigen::Vector2d::Zero();
+  }
+  const std::optional<FitAtRatio> there = fit.FitAt(other);
+  fit.FitNear(elasticity, described.taken);
+  if (!there) {
+    return Eigen::Vector2d::Zero();
+  }
+  return (SolveLeastSquares(there->sensitivities, there->element_change) -
+          SolveLeastSquares(described.sensitivities,
+                            *described.element_change)) /
+         (other - nu);
+}
+
+// A fit without what finer elements change at a nu is a fixed point where it
+// has that nu: of p = p_0 - alpha c(nu), c with this slope.  An error of p_0 is
+// as much larger in p as that takes up what nu changes.
+void AllowForSlope(const Eigen::Vector2d& slope, DescribedFit& described) {
+  // A smaller one is as good as none.
+  constexpr double kLeast = 0.02;
+  const Eigen::Vector2d of_nu = described.statistics.share_of_finer * slope;
+  if (!(of_nu(1) < 0)) {
+    return;
+  }
+  const double left = std::max(1 + of_nu(1), kLeast);
+  Eigen::Matrix2d propagation;
+  propagation << 1, -of_nu(0) / left, 0, 1 / left;
+  PropagateErrors(propagation, described.estimate);
+  if (described.statistics.row_variance) {
+    *described.statistics.row_variance /= left * left;
+  }
 }
 
 // Of rows, as far as the parameters do not take them up.
@@ -345,6 +415,9 @@ CorrectedFit FitCorrected(const Scene& scene, const EstimatorOptions& options,
   const int order = scene.mesh.Order();
   const std::vector<double> other_ratios =
       OtherPoissonRatios(options, order, first, fit);
+  const Eigen::Vector2d slope = order == 1 && !options.known_poisson_ratio
+                                    ? SlopeOfChange(options, first, fit)
+                                    : Eigen::Vector2d::Zero().eval();
   CorrectedFit corrected = {Settle(first, fit), 0, {}};
   if (!other_ratios.empty()) {
     corrected = BestOf(observed, order, corrected.fit, other_ratios, fit);
@@ -352,6 +425,7 @@ CorrectedFit FitCorrected(const Scene& scene, const EstimatorOptions& options,
   if (order == 1 && !options.known_poisson_ratio && !IsOnGivenBound(first)) {
     LookForSpecimenElsewhere(options, fit, corrected.fit);
   }
+  AllowForSlope(slope, corrected.fit);
   Estimate& estimate = corrected.fit.estimate;
   estimate.displacement_residual = first.estimate.displacement_residual;
   estimate.bounded_residual = first.estimate.bounded_residual;

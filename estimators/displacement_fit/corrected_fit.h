@@ -88,9 +88,12 @@ Eigen::VectorXd WhatIsLeft(const Eigen::VectorXd& measured,
 /// That change e moves the parameters along a line as far as the model is
 /// linear.  Therefore alpha e, with alpha as ElementErrors has it, is taken
 /// from the measurement, and the parameters are fitted again, until e and alpha
-/// ask for no others.  Where nu is known so little that e may decide between
-/// minima, the same begins from a measurement without the e of another nu, as
-/// much of it as explains the measurement best; the fit that leaves the smaller
+/// ask for no others.  Since e depends on nu, errors of such a fit are as much
+/// larger as e takes up what nu changes: with c the parameters that take up e,
+/// by (I + alpha (0, dc / dnu))^-1, for which linear elements find e at a
+/// second nu.  Where nu is known so little that e may decide between minima,
+/// the same begins from a measurement without the e of another nu, as much of
+/// it as explains the measurement best; the fit that leaves the smaller
 /// residual is the one, the other its rival, with any that leaves as little but
 /// for chance.  Of linear elements that is so under much noise only: what shows
 /// of e at one nu may be as much as it is, and nothing at another.  Linear

@@ -11,6 +11,8 @@ namespace {
 // How far the ratio of the stiffness against volume to that against shear may
 // change, in its logarithm, before the change is found again.
 constexpr double kSameStiffness = 0.2;
+// How far, where the change is about linear in nu.
+constexpr double kAlike = 0.5;
 constexpr double kLargestOfQuadratic = 0.495;
 
 }  // namespace
@@ -22,29 +24,48 @@ std::optional<Eigen::VectorXd> ElementChange::Rows(
       scene_.mesh.Order() == 2
           ? std::min(elasticity.poisson_ratio, kLargestOfQuadratic)
           : elasticity.poisson_ratio;
-  auto known =
-      std::find_if(found_.begin(), found_.end(), [nu](const Found& found) {
-        return std::abs(LogStiffnessRatio(nu) -
-                        LogStiffnessRatio(found.poisson_ratio)) <=
-               kSameStiffness;
-      });
-  if (known == found_.end()) {
+  const Found* nearest = Nearest(nu, kSameStiffness, nullptr);
+  if (nearest == nullptr) {
     found_.push_back({nu, Find(nu, model_at)});
-    known = found_.end() - 1;
+    nearest = &found_.back();
   }
-  const std::optional<Eigen::MatrixXd>& of_responses = known->change;
-  if (!of_responses) {
+  if (!nearest->change) {
     return std::nullopt;
   }
-  const IsotropicElasticity there = {elasticity.youngs_modulus,
-                                     known->poisson_ratio};
-  const auto num_cases = Eigen::Index(scene_.load_cases.size());
-  Eigen::MatrixXd change = there.ComplianceScale(scene_.mesh.section.model) *
-                           of_responses->leftCols(num_cases);
-  if (of_responses->cols() > num_cases) {
-    change.colwise() += of_responses->rightCols<1>();
+  Eigen::MatrixXd change = ChangeOf(*nearest, elasticity.youngs_modulus);
+  const Found* other = Nearest(nu, kAlike, nearest);
+  if (other != nullptr && other->change) {
+    change += (nu - nearest->poisson_ratio) /
+              (other->poisson_ratio - nearest->poisson_ratio) *
+              (ChangeOf(*other, elasticity.youngs_modulus) - change);
   }
   return observed.Restrict(change);
+}
+
+const ElementChange::Found* ElementChange::Nearest(double nu, double within,
+                                                   const Found* but) const {
+  const Found* nearest = nullptr;
+  for (const Found& found : found_) {
+    const double distance = std::abs(LogStiffnessRatio(nu) -
+                                     LogStiffnessRatio(found.poisson_ratio));
+    if (&found != but && distance <= within) {
+      nearest = &found;
+      within = distance;
+    }
+  }
+  return nearest;
+}
+
+Eigen::MatrixXd ElementChange::ChangeOf(const Found& found,
+                                        double youngs_modulus) const {
+  const IsotropicElasticity there = {youngs_modulus, found.poisson_ratio};
+  const auto num_cases = Eigen::Index(scene_.load_cases.size());
+  Eigen::MatrixXd change = there.ComplianceScale(scene_.mesh.section.model) *
+                           found.change->leftCols(num_cases);
+  if (found.change->cols() > num_cases) {
+    change.colwise() += found.change->rightCols<1>();
+  }
+  return change;
 }
 
 std::optional<Eigen::MatrixXd> ElementChange::Find(double poisson_ratio,

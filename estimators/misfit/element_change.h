@@ -36,7 +36,8 @@ class ElementChange {
   /// those of the scene; empty where it is not known.  `model_at` is asked only
   /// where there is something to solve.
   ///
-  /// Found once for all nu whose stiffness is about the same.  Next to nu =
+  /// Found once for all nu whose stiffness is about the same; where it is known
+  /// at another nu nearby, it is linear in nu between the two.  Next to nu =
   /// 1/2, where iterations would not end, that of quadratic elements, which do
   /// not lock, is taken as it is at 0.495.  Cost: that of HierarchicalError.
   std::optional<Eigen::VectorXd> Rows(const ObservedDisplacements& observed,
@@ -53,6 +54,11 @@ class ElementChange {
     std::optional<Eigen::MatrixXd> change;
   };
 
+  // Of those found, but for one, at most this far in LogStiffnessRatio; null
+  // where there is none.
+  const Found* Nearest(double nu, double within, const Found* but) const;
+  // Of u.  Precondition: found.change.
+  Eigen::MatrixXd ChangeOf(const Found& found, double youngs_modulus) const;
   std::optional<Eigen::MatrixXd> Find(double poisson_ratio,
                                       const ModelAt& model_at);
 

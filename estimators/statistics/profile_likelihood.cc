@@ -7,29 +7,13 @@
 
 #include "elastimate/estimators/interface/estimator.h"
 #include "elastimate/estimators/interface/limits.h"
+#include "elastimate/estimators/statistics/error_propagation.h"
 
 namespace elastimate {
 namespace {
 
 // The standard errors to another minimum.
 constexpr double kFar = 4;
-
-// Whatever its cause is, an error is as much larger as the model is curved.
-void ScaleParts(const Eigen::Vector2d& factors, Estimate& estimate) {
-  ErrorBudget& budget = estimate.error_budget;
-  for (ParameterErrors* part :
-       {&budget.noise, &budget.model, &budget.outliers}) {
-    if (part->size() == factors.size()) {
-      part->array() *= factors.array();
-    }
-  }
-  if (estimate.discretization_error) {
-    *estimate.discretization_error *= factors(0);
-  }
-  if (estimate.poisson_ratio_discretization_error) {
-    *estimate.poisson_ratio_discretization_error *= factors(1);
-  }
-}
 
 // Widens the standard errors to a profile likelihood with a 95 % interval of
 // nu, each end with the E that fits best there.  An end at the limit of the
@@ -67,10 +51,10 @@ void WidenToProfile(const Profile& profile, Estimate& estimate) {
     const double ratio = error(i) / std::sqrt(estimate.covariance(i, i));
     return ratio > 1 ? ratio : 1;
   };
-  const Eigen::Vector2d factors(factor(0), factor(1));
-  estimate.covariance =
-      factors.asDiagonal() * estimate.covariance * factors.asDiagonal();
-  ScaleParts(factors, estimate);
+  // Whatever its cause is, an error is as much larger as the model is curved.
+  PropagateErrors(
+      Eigen::Vector2d(factor(0), factor(1)).asDiagonal().toDenseMatrix(),
+      estimate);
 }
 
 }  // namespace

@@ -234,8 +234,9 @@ TEST_F(IndependentScenes, DataFromAFinerWorld) {
   // The truth is 8000 and 0.4.
   EXPECT_NEAR(report["youngs_modulus"].get<double>(), 8000, 400);
   EXPECT_EQ(report["status"], "not_identifiable");
-  // Of the fit, and of fits without what finer elements change.
-  EXPECT_LE(report["work"]["factorizations"].get<int>(), 45);
+  // Of the fit, of fits without what finer elements change, and of that change
+  // at two nu.
+  EXPECT_LE(report["work"]["factorizations"].get<int>(), 48);
   const nlohmann::json closed =
       Run("estimate --json=- " + Path("cylinder_finer_world.vtu")).Json();
   EXPECT_NEAR(closed["youngs_modulus"].get<double>(), 7624, 1);

@@ -70,7 +70,9 @@ TEST_P(CoverageStatistics, OfReducedFeIsThatOfItsIntervals) {
       "%.3f (nu), coverage %.4f (E), %.4f (nu), Cramer-Rao sd of nu %.3g\n",
       shape.c_str(), nu, noise, num_usable, kSeeds, youngs, poisson,
       num_youngs / n, num_poisson / n, std::sqrt(bound(1, 1)));
-  EXPECT_EQ(num_usable, kSeeds);
+  // At a nu further than three standard errors from the true one, which is as
+  // rare, a specimen of another nu may explain the measurement as well.
+  EXPECT_GE(num_usable, (1 - 0.0027) * kSeeds);
   EXPECT_LT(youngs, 1.1);
   EXPECT_LT(poisson, 1.1);
   EXPECT_GT(youngs, 0.9);

@@ -99,6 +99,26 @@ TEST(ElementChange, IsFoundOnceForAboutTheSameStiffness) {
   EXPECT_GT(linear.change.WorkDone().element_passes, passes);
 }
 
+// The error of a straight line between two is of second order; that of the
+// nearer of them, of first.
+TEST(ElementChange, IsLinearBetweenThoseThatAreKnown) {
+  const Scene scene = MovedScene(kTetrahedra);
+  Changing exact(scene);
+  const auto expected = exact.At(0.31);
+  Changing linear(scene);
+  const auto one = linear.At(0.28);
+  ASSERT_TRUE(linear.At(0.33));
+  ASSERT_TRUE(expected && one);
+  const int num_solvers = linear.num_solvers;
+  ASSERT_EQ(num_solvers, 2);
+  const auto between = linear.At(0.31);
+  ASSERT_TRUE(between);
+  EXPECT_EQ(linear.num_solvers, num_solvers);
+  const double of_nearer = (*one - *expected).norm();
+  EXPECT_GT(of_nearer, 1e-2 * expected->norm());
+  EXPECT_LT((*between - *expected).norm(), 0.2 * of_nearer);
+}
+
 // To quadratic simplices of the same nodes.
 TEST(ElementChange, IsKnownOfEveryKind) {
   for (const testing::KindOfSection& kind : testing::AllKindsOfSections()) {
