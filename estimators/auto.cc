@@ -215,14 +215,25 @@ bool StopsHere(const std::string& why_not_enough, Ladder& ladder) {
   return why_not_enough.empty();
 }
 
+// Ends at linear elements, after quadratic ones were tried.
+void KeepLinear(const std::string& why, Estimate linear, Ladder& ladder) {
+  ladder.Decide("stopped: " + why);
+  for (Finding& finding : linear.findings) {
+    finding = WithoutOrderAdvice(finding);
+    if (finding.severity == Severity::kError) {
+      linear.message = Sentence(finding);
+    }
+  }
+  ladder.Return(linear);
+}
+
 // Of the rungs of both orders, when the lower one was not enough.
 void ChooseOrder(const Scene& scene, const EstimatorOptions& options,
                  const Estimate& linear, Ladder& ladder) {
   Estimate& quadratic = ladder.Last();
   if (quadratic.status == Status::kNumericalFailure) {
-    ladder.Decide("stopped: it failed, and linear elements are kept: " +
-                  quadratic.message);
-    ladder.Return(linear);
+    KeepLinear("it failed, and linear elements are kept: " + quadratic.message,
+               linear, ladder);
     return;
   }
   const OrderComparison compared(scene, options, linear, quadratic);
@@ -232,30 +243,29 @@ void ChooseOrder(const Scene& scene, const EstimatorOptions& options,
   const bool is_too_coarse = linear.Has(FindingCode::kElementsTooCoarse);
   if (!linear.IsUsable() && !is_too_coarse && quadratic.IsUsable() &&
       !compared.IsQuadraticFarBetter()) {
-    ladder.Decide(
-        "stopped: it does not explain the displacements far better, so that "
-        "what linear elements were refused for stands");
-    ladder.Return(linear);
+    KeepLinear(
+        "it does not explain the displacements far better, so that "
+        "what linear elements were refused for stands",
+        linear, ladder);
     return;
   }
   if (is_coarse && compared.IsLinearFarBetter()) {
-    ladder.Decide(
-        "stopped: linear elements, which are kept, explain the displacements "
-        "far better");
-    ladder.Return(linear);
+    KeepLinear(
+        "linear elements, which are kept, explain the displacements "
+        "far better",
+        linear, ladder);
     return;
   }
   if (linear.IsUsable() && compared.IsLinearLikely()) {
-    ladder.Decide(
-        "stopped: linear elements, which are kept, are likelier to have made "
-        "the displacements");
-    ladder.Return(linear);
+    KeepLinear(
+        "linear elements, which are kept, are likelier to have made "
+        "the displacements",
+        linear, ladder);
     return;
   }
   if (!is_coarse && !compared.IsQuadraticFarBetter()) {
-    ladder.Decide(
-        "stopped: the residual is not that of linear elements, which are kept");
-    ladder.Return(linear);
+    KeepLinear("the residual is not that of linear elements, which are kept",
+               linear, ladder);
     return;
   }
   ladder.Decide("stopped: there is no rung above");

@@ -195,7 +195,7 @@ Finding Unphysical(const IsotropicElasticity& elasticity) {
 Finding UnphysicalByNoise(const IsotropicElasticity& elasticity) {
   return Error(FindingCode::kUnphysical,
                Describe(elasticity) +
-                   " is not physical, as noise makes it in this method",
+                   " is not physical, as noise or coarse elements make it here",
                kUnbiased);
 }
 
@@ -229,7 +229,7 @@ Finding PoissonRatioAtMinusOne() {
 Finding PoissonRatioDivergesByNoise() {
   return Error(FindingCode::kPoissonRatioDiverges,
                "the data pull Poisson's ratio to the end of its range, as "
-               "displacement noise does with this method",
+               "noise or coarse elements do here",
                "give bounds, or use reduced-fe");
 }
 
@@ -746,6 +746,13 @@ Finding LinearElementsFitAsWell(const IsotropicElasticity& linear) {
 }
 
 std::string OrderAdvice() { return "use order 2, or 1 for simulations"; }
+
+Finding WithoutOrderAdvice(Finding finding) {
+  if (finding.advice.find("order 2") != std::string::npos) {
+    finding.advice = "refine the mesh";
+  }
+  return finding;
+}
 
 Finding TooManyElements() {
   return Warning(FindingCode::kTooManyElements,

@@ -164,6 +164,8 @@ Finding DiscretizationErrorFinding(ElementKind kind, const Estimate& estimate);
 Finding LinearElementsFitAsWell(const IsotropicElasticity& linear);
 /// What to do where these fit as well.
 std::string OrderAdvice();
+/// Advises no quadratic elements, which were tried.
+Finding WithoutOrderAdvice(Finding finding);
 Finding TooManyElements();
 Finding SolverFallback(const std::string& notice);
 

@@ -106,8 +106,10 @@ Result NoteYoungsModulusOnBound(const Evidence& evidence,
 }
 
 Result NotePoissonRatioOnBound(const Evidence& evidence,
-                               const EstimatorOptions&, const Estimate&) {
-  if (evidence.active.poisson_ratio == Side::kNone) {
+                               const EstimatorOptions& options,
+                               const Estimate& estimate) {
+  if (evidence.active.poisson_ratio == Side::kNone ||
+      JudgeLimitOfBiasedMethod(evidence, options, estimate)) {
     return std::nullopt;
   }
   return evidence.active.is_physical_limit ? PoissonRatioAtLimit()

@@ -154,6 +154,26 @@ TEST(Auto, DoesNotWarnOfElementsThatItHasLeft) {
   EXPECT_FALSE(estimate.Has(FindingCode::kLocking));
 }
 
+TEST(Auto, DoesNotAdviseWhatItHasTried) {
+  int num_kept = 0;
+  for (int seed = 1; seed <= 2; ++seed) {
+    Scene scene = SlenderBar();
+    Measure({1e7, 0}, scene);
+    AddNoise(0.1, seed, scene);
+    const Estimate estimate = Auto().Run(scene, {});
+    if (estimate.element_order == 2 ||
+        estimate.rungs.back().element_order == 1) {
+      continue;
+    }
+    ++num_kept;
+    for (const Finding& finding : estimate.findings) {
+      EXPECT_EQ(Sentence(finding).find("order 2"), std::string::npos)
+          << Sentence(finding);
+    }
+  }
+  EXPECT_GT(num_kept, 0);
+}
+
 TEST(AutoStatistics, DoesNotRaiseTheOrderForNoise) {
   for (int seed = 1; seed <= 20; ++seed) {
     Scene scene = SmallScene("organ");
