@@ -1,6 +1,7 @@
 #include "elastimate/estimators/displacement_fit/corrected_fit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -339,37 +340,45 @@ CorrectedFit BestOf(const ObservedDisplacements& observed, int order,
   return best;
 }
 
-// The change of (ln E, nu) of a fit to where the u + e of another nu, with
-// another scale and the slope of u in nu, leaves no more of the measurement
-// than this share; empty where it leaves more.
-std::optional<Eigen::Vector2d> ChangeToSpecimen(
-    const FitAtRatio& other, const IsotropicElasticity& elasticity,
-    double most) {
+// Where the u + e of another nu, with another scale and the slope of u in nu,
+// explains the measurement.
+struct SpecimenElsewhere {
+  Eigen::Vector2d change;  ///< Of (ln E, nu), from those of a fit.
+  double of_elements;      ///< Norm of its e, relative to the measurement.
+  double left;             ///< Of the measurement, relative to it.
+};
+
+std::optional<SpecimenElsewhere> SpecimenNear(
+    const FitAtRatio& other, const IsotropicElasticity& elasticity) {
   const Eigen::VectorXd displacement = -other.sensitivities.col(0);
   const Eigen::VectorXd measured = displacement - other.residual;
   Eigen::MatrixXd columns(measured.size(), 2);
   columns << displacement + other.element_change, other.sensitivities.col(1);
   const Eigen::VectorXd scale_and_step = SolveLeastSquares(columns, measured);
   const double scale = scale_and_step(0);
-  if (!(scale > 0) ||
-      !(Norm(measured - columns * scale_and_step) <= most * Norm(measured))) {
+  if (!(scale > 0)) {
     return std::nullopt;
   }
-  return Eigen::Vector2d(std::log(other.elasticity.youngs_modulus / scale /
-                                  elasticity.youngs_modulus),
-                         other.elasticity.poisson_ratio +
-                             scale_and_step(1) / scale -
-                             elasticity.poisson_ratio);
+  return SpecimenElsewhere{
+      {std::log(other.elasticity.youngs_modulus / scale /
+                elasticity.youngs_modulus),
+       other.elasticity.poisson_ratio + scale_and_step(1) / scale -
+           elasticity.poisson_ratio},
+      scale * Norm(other.element_change) / Norm(measured),
+      Norm(measured - columns * scale_and_step) / Norm(measured)};
 }
 
 // Linear elements that would be too coarse for a specimen may fit one with
-// other parameters, as far off as no linear model sees.  Where a specimen
-// explains the measurement as well, but for chance, the fit is asked to change
-// to that.
+// other parameters, as far off as no linear model sees.  Where a specimen of
+// this or a usual nu explains the measurement as well, but for chance, the fit
+// is asked to change to that; so it is of other nu where that nearly does.
 void LookForSpecimenElsewhere(const EstimatorOptions& options,
                               CorrectableFit& fit, DescribedFit& described) {
   // Within three standard errors, of residuals that are noise.
   constexpr double kExcess = 9;
+  constexpr double kNearly = 2;
+  // Of e, that a specimen does otherwise.
+  constexpr double kMissed = 0.03;
   const IsotropicElasticity& elasticity = described.estimate.elasticity;
   if (!described.element_change || !elasticity.IsPhysical() ||
       !IsCorrectionTooLarge(SolveLeastSquares(described.sensitivities,
@@ -377,18 +386,29 @@ void LookForSpecimenElsewhere(const EstimatorOptions& options,
     return;
   }
   const Bounds bounds = EffectivePoissonRatioBounds(options);
-  const double usual =
-      std::clamp(kUsualPoissonRatio, *bounds.lower, *bounds.upper);
   const double most =
       *described.estimate.displacement_residual *
       std::sqrt(1 + kExcess /
                         static_cast<double>(described.element_change->size()));
-  for (const double nu : {elasticity.poisson_ratio, usual}) {
-    const std::optional<FitAtRatio> other = fit.FitAt(nu);
-    const std::optional<Eigen::Vector2d> change =
-        other ? ChangeToSpecimen(*other, elasticity, most) : std::nullopt;
-    if (change && IsCorrectionTooLarge(*change)) {
-      described.evidence.likely_element_change = *change;
+  const std::array<double, 4> ratios = {elasticity.poisson_ratio,
+                                        kUsualPoissonRatio, 0, 0.45};
+  double left = 0;
+  for (std::size_t i = 0; i < ratios.size(); ++i) {
+    if (i >= 2 && left > kNearly * most) {
+      break;
+    }
+    const std::optional<FitAtRatio> other =
+        fit.FitAt(std::clamp(ratios[i], *bounds.lower, *bounds.upper));
+    const std::optional<SpecimenElsewhere> specimen =
+        other ? SpecimenNear(*other, elasticity) : std::nullopt;
+    if (!specimen) {
+      continue;
+    }
+    left = specimen->left;
+    if (left <= std::hypot(most, kMissed * specimen->of_elements) &&
+        IsCorrectionTooLarge(specimen->change)) {
+      described.evidence.likely_element_change = specimen->change;
+      break;
     }
   }
   fit.FitNear(elasticity, described.taken);

@@ -126,6 +126,47 @@ TEST_P(LockedFit, IsNotTakenForASpecimen) {
   }
 }
 
+// Three quarters of a turn, of these cells across and along, with a pressure of
+// 1 from above.
+Scene Helix(const Eigen::Vector3i& cells) {
+  const Mesh mesh = testing::BoxMesh(cells, {1, 1, 1});
+  Scene scene = testing::HeldAtBottom(mesh, mesh, Eigen::Vector3d::Zero());
+  const Eigen::MatrixXi facets = BoundaryFacets(mesh);
+  std::vector<Eigen::Index> above;
+  for (Eigen::Index i = 0; i < facets.cols(); ++i) {
+    if (mesh.nodes(1, facets.col(i)).minCoeff() > 1 - 1e-9) {
+      above.push_back(i);
+    }
+  }
+  scene.load_cases[0].loads = {Pressure{facets(Eigen::all, above), 1}};
+  for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
+    const Eigen::Vector3d at = mesh.nodes.col(node);
+    const double angle = 5 * at(2);
+    const double radius = 1.4 + at(0);
+    scene.mesh.nodes.col(node) << radius * std::cos(angle),
+        radius * std::sin(angle), 0.72 * at(1) + 2.15 * at(2);
+  }
+  return scene;
+}
+
+// Linear elements ten times too stiff fit it with a nu far from 0.3 as well.
+TEST_P(LockedFit, IsNotTakenForASpecimenOfAnotherPoissonRatio) {
+  for (const int length : {8, 11}) {
+    Scene exact = Helix({2, 1, length});
+    testing::MeasureInFinerWorld({1000, 0}, exact);
+    for (const double noise : {0.05, 0.08, 0.12}) {
+      Scene measured = exact;
+      testing::AddNoise(noise, 1, measured);
+      const Estimate estimate = MakeEstimator(GetParam())->Run(measured, {});
+      EXPECT_TRUE(!estimate.IsUsable() ||
+                  std::abs(estimate.elasticity.youngs_modulus - 1000) <
+                      3.5 * *estimate.YoungsModulusStandardError())
+          << length << " cells, noise " << noise << ": "
+          << estimate.elasticity.youngs_modulus;
+    }
+  }
+}
+
 // In torsion nu shows in little but what finer elements change, which as a
 // function of nu takes up what nu does: with nu = 0 a fit that starts at 0.3
 // stays there, 0.34 +- 0.11 at 1 % of noise.
