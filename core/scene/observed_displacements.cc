@@ -219,4 +219,26 @@ Eigen::VectorXd ObservedDisplacements::BoundingWeights() const {
   return weights;
 }
 
+bool AreFreePointsMeasured(const Scene& scene, Eigen::Index load_case) {
+  const PointDisplacements& measured = scene.load_cases[load_case].points;
+  const Supports& supports = SupportsOf(scene, load_case);
+  const Eigen::MatrixXd shape_functions =
+      ShapeFunctionsOf(scene.mesh, measured.points);
+  for (Eigen::Index point = 0; point < measured.points.Size(); ++point) {
+    const auto nodes = scene.mesh.elements.col(measured.points.elements(point));
+    for (int i = 0; i < scene.mesh.Dimension(); ++i) {
+      if (std::isnan(measured.displacement(i, point))) {
+        continue;
+      }
+      for (Eigen::Index j = 0; j < nodes.size(); ++j) {
+        if (std::abs(shape_functions(j, point)) > kNoPart &&
+            (scene.is_rigid_motion_free || !supports.IsGiven(i, nodes(j)))) {
+          return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
 }  // namespace elastimate

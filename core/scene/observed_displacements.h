@@ -101,6 +101,10 @@ class ObservedDisplacements {
   std::optional<double> given_noise_;
 };
 
+/// Whether any component that was measured at a point of a load case, beside
+/// those of nodes, has a row in ObservedDisplacements.  O(num_points).
+bool AreFreePointsMeasured(const Scene& scene, Eigen::Index load_case);
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_CORE_SCENE_OBSERVED_DISPLACEMENTS_H_

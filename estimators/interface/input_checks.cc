@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
 
@@ -54,9 +55,9 @@ MeasurementSummary Summarize(const Scene& scene, Eigen::Index k) {
       }
     }
   }
+  summary.any_observed |= AreFreePointsMeasured(scene, k);
   for (const double q : load_case.points.displacement.reshaped()) {
     if (!std::isnan(q)) {
-      summary.any_observed = true;
       summary.any_displacement |= q != 0;
       summary.free_square_sum += q * q;
     }

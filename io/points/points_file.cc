@@ -1,10 +1,12 @@
 #include "elastimate/io/points/points_file.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "elastimate/io/text/csv_table.h"
 #include "elastimate/io/text/input_error.h"
@@ -76,6 +78,33 @@ double Deviation(const CsvTable& table, const CsvTable::Row& row,
   return value;
 }
 
+// A row that is there twice would count as two measurements.
+void CheckRowsDiffer(const std::filesystem::path& path,
+                     const PointsFile& file) {
+  Eigen::MatrixXd rows(2 * file.positions.rows(), file.positions.cols());
+  rows << file.positions, file.displacement;
+  std::vector<Eigen::Index> order;
+  for (Eigen::Index point = 0; point < rows.cols(); ++point) {
+    if (rows.col(point).allFinite()) {
+      order.push_back(point);
+    }
+  }
+  const auto is_less = [&rows](Eigen::Index a, Eigen::Index b) {
+    return std::lexicographical_compare(rows.col(a).begin(), rows.col(a).end(),
+                                        rows.col(b).begin(), rows.col(b).end());
+  };
+  std::stable_sort(order.begin(), order.end(), is_less);
+  const auto twin = std::adjacent_find(
+      order.begin(), order.end(),
+      [&](Eigen::Index a, Eigen::Index b) { return !is_less(a, b); });
+  if (twin != order.end()) {
+    ThrowInputError(path, "line " + std::to_string(file.lines[twin[1]]) +
+                              " has the same point and displacement as line " +
+                              std::to_string(file.lines[twin[0]]) +
+                              "; leave one out");
+  }
+}
+
 // The fewest digits that are read as the same number.
 void AppendNumber(double value, std::string& text) {
   std::array<char, 32> digits;
@@ -109,6 +138,7 @@ PointsFile ReadPointsFile(const std::filesystem::path& path, int dimension) {
       }
     }
   }
+  CheckRowsDiffer(path, file);
   return file;
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "elastimate/estimators/registry.h"
@@ -50,6 +51,25 @@ TEST_P(PointsOfEachKind, GiveTheTruthWithoutNoise) {
                   1e-6);
       EXPECT_NEAR(estimate.elasticity.poisson_ratio, kRatioOfPoints, 1e-6);
     }
+  }
+}
+
+// Points on a face that is held move with it, whatever the material is.
+TEST_P(PointsOfEachKind, AreRefusedWhereAllAreHeld) {
+  Scene scene = scene_;
+  scene.supports.held.setConstant(true);
+  scene.supports.held(0, scene.mesh.NumNodes() - 1) = false;
+  PointDisplacements& measured = scene.load_cases[0].points;
+  for (Eigen::Index point = 0; point < measured.points.Size(); ++point) {
+    const auto nodes = scene.mesh.elements.col(measured.points.elements(point));
+    if ((nodes.array() == scene.mesh.NumNodes() - 1).any()) {
+      measured.displacement.col(point).setConstant(
+          std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  for (const std::string name : {"reduced-fe", "iterative-fe", "auto"}) {
+    EXPECT_THROWS_WITH(MakeEstimator(name)->Run(scene, {}),
+                       "no free component of the displacement was measured");
   }
 }
 

@@ -63,6 +63,12 @@ TEST_F(PointsFileTest, ReadsWhatIsWrittenToTheLastBit) {
   }
 }
 
+TEST_F(PointsFileTest, ReadsAPointThatWasMeasuredTwice) {
+  const PointsFile file =
+      Read("x,y,ux,uy\n1,2,3,4\n1,2,3,5\n1,2,,4\n1,2,,4\n", 2);
+  EXPECT_EQ(file.positions.cols(), 4);
+}
+
 TEST_F(PointsFileTest, NamesLineAndColumn) {
   EXPECT_THROWS_WITH(Read("x,y,ux,uy,uz\n1,2,3,4,5\n"),
                      "no column 'z' among x, y, ux, uy, uz; add it");
@@ -82,6 +88,8 @@ TEST_F(PointsFileTest, NamesLineAndColumn) {
                      "line 3 has 3 columns where 4 are due");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy\n1,2,3,\"4\n", 2),
                      "line 2: the quotes do not match");
+  EXPECT_THROWS_WITH(Read("x,y,ux,uy\n1,2,3,4\n5,6,7,8\n1,2,3,4\n", 2),
+                     "line 4 has the same point and displacement as line 2");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy\n", 2), "no row of numbers");
   EXPECT_THROWS_WITH(Read("\n", 2), "no row of numbers");
   EXPECT_THROWS_WITH(Read("", 2), "the file is empty");
