@@ -427,7 +427,11 @@ Estimate Auto::DoRun(const Scene& scene,
   } else {
     ladder.Decide("went on: " + why_not_enough);
     ladder.Climb(ReducedFe(), QuadraticScene(scene), without_degree);
-    CheckAgainst(virtual_fields, ladder.Last());
+    // Linear elements that do not bear the balance say nothing of finer ones.
+    if (virtual_fields &&
+        !virtual_fields->Has(FindingCode::kVirtualWorkImbalance)) {
+      CheckAgainst(virtual_fields, ladder.Last());
+    }
     ChooseOrder(scene, options, linear, ladder);
   }
   NoteMismatch(ladder.Last());

@@ -164,6 +164,8 @@ Finding DiscretizationErrorFinding(ElementKind kind, const Estimate& estimate);
 Finding LinearElementsFitAsWell(const IsotropicElasticity& linear);
 /// What to do where these fit as well.
 std::string OrderAdvice();
+/// Says nothing of error bars, of which there are none.
+Finding WithoutErrorBars(Finding finding);
 /// Advises no quadratic elements, which were tried.
 Finding WithoutOrderAdvice(Finding finding);
 Finding TooManyElements();

@@ -34,11 +34,27 @@ void AddPoissonRatioInterval(Estimate& estimate) {
   }
 }
 
+void RemoveErrorBarsOfNone(Estimate& estimate) {
+  if (!estimate.IsUsable()) {
+    std::transform(estimate.findings.begin(), estimate.findings.end(),
+                   estimate.findings.begin(), WithoutErrorBars);
+  }
+}
+
+// Whether the elements leave nothing but rounding, as those that computed the
+// displacements.
+bool AreElementsExact(const Estimate& estimate) {
+  constexpr double kRounding = 1e-6;
+  return estimate.displacement_residual.value_or(
+             estimate.force_residual.value_or(1)) <= kRounding;
+}
+
 void JudgeLocking(const Mesh& mesh, double poisson_ratio, Estimate& estimate) {
   // Those of the estimate may be of a higher order than those of the scene.  In
   // plane stress a volume may change across the plane.  Errors that hold what
   // the elements miss hold this.
   if (estimate.IsUsable() && estimate.element_order == 1 &&
+      !AreElementsExact(estimate) &&
       !estimate.error_budget.discretization.array().isFinite().any() &&
       mesh.section.model != SectionModel::kPlaneStress &&
       poisson_ratio >= kLimits.locking_poisson_ratio) {
@@ -172,6 +188,7 @@ void FinishEstimate(std::string_view estimator, const Scene& scene,
     estimate.axes = AxesOf(scene, estimate);
     JudgeParameters(estimate);
     JudgeLocking(scene.mesh, LargestPoissonRatio(estimate), estimate);
+    RemoveErrorBarsOfNone(estimate);
     return;
   }
   estimate.error_budget.discretization = Eigen::Vector2d(
@@ -182,6 +199,7 @@ void FinishEstimate(std::string_view estimator, const Scene& scene,
     AddPoissonRatioInterval(estimate);
     JudgeElements(scene.mesh, estimate);
   }
+  RemoveErrorBarsOfNone(estimate);
   DescribeOneIsotropicMaterial(scene, options, estimate);
 }
 

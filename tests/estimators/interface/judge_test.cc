@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "elastimate/estimators/interface/parameter_judge.h"
 #include "tests/scenes.h"
@@ -64,6 +65,43 @@ TEST(Judge, RatiosAtTheirLimitNeedAModelThatFits) {
   Judge(evidence, {}, estimate);
   EXPECT_FALSE(estimate.IsUsable());
   EXPECT_TRUE(estimate.Has(FindingCode::kPoissonRatioAtLimit));
+}
+
+TEST(Judge, SaysNoElementsLockThatLeaveRoundingOnly) {
+  const Scene scene = testing::HeldAtBottom(
+      testing::BoxMesh({1, 1, 1}, {1, 1, 1}),
+      testing::BoxMesh({1, 1, 1}, {1, 1, 1}), Eigen::Vector3d::Zero());
+  for (const double residual : {1e-12, 0.01}) {
+    Estimate estimate = Measured();
+    estimate.elasticity.poisson_ratio = 0.49;
+    estimate.covariance = Eigen::Vector2d(1, 1e-6).asDiagonal();
+    estimate.displacement_residual = residual;
+    Judge({}, {}, estimate);
+    FinishEstimate("reduced-fe", scene, {}, {}, estimate);
+    EXPECT_EQ(estimate.Has(FindingCode::kLocking), residual > 1e-6);
+  }
+}
+
+TEST(Judge, SpeaksOfErrorBarsWhereThereAreSome) {
+  const Scene scene = testing::HeldAtBottom(
+      testing::BoxMesh({1, 1, 1}, {1, 1, 1}),
+      testing::BoxMesh({1, 1, 1}, {1, 1, 1}), Eigen::Vector3d::Zero());
+  Evidence evidence;
+  evidence.virtual_work_error = 0.1;
+  for (const bool is_usable : {false, true}) {
+    evidence.do_displacements_oppose_loads = !is_usable;
+    Estimate estimate = Measured();
+    Judge(evidence, {}, estimate);
+    estimate.covariance = Eigen::Vector2d(1, 1e-6).asDiagonal();
+    FinishEstimate("virtual-fields", scene, {}, {}, estimate);
+    ASSERT_EQ(estimate.IsUsable(), is_usable);
+    const std::vector<std::string> warnings =
+        estimate.Sentences(Severity::kWarning);
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_EQ(
+        warnings[0].find("which the error bars hold") != std::string::npos,
+        is_usable);
+  }
 }
 
 TEST(Judge, SaysTheSameWhenAskedAgain) {
