@@ -377,8 +377,9 @@ void LookForSpecimenElsewhere(const EstimatorOptions& options,
   // Within three standard errors, of residuals that are noise.
   constexpr double kExcess = 9;
   constexpr double kNearly = 2;
-  // Of e, that a specimen does otherwise.
+  // Of e, that a specimen does otherwise, where the noise is about as large.
   constexpr double kMissed = 0.03;
+  constexpr double kAlike = 1.1;
   const IsotropicElasticity& elasticity = described.estimate.elasticity;
   if (!described.element_change || !elasticity.IsPhysical() ||
       !IsCorrectionTooLarge(SolveLeastSquares(described.sensitivities,
@@ -386,10 +387,10 @@ void LookForSpecimenElsewhere(const EstimatorOptions& options,
     return;
   }
   const Bounds bounds = EffectivePoissonRatioBounds(options);
+  const double residual = *described.estimate.displacement_residual;
   const double most =
-      *described.estimate.displacement_residual *
-      std::sqrt(1 + kExcess /
-                        static_cast<double>(described.element_change->size()));
+      residual * std::sqrt(1 + kExcess / static_cast<double>(
+                                             described.element_change->size()));
   const std::array<double, 4> ratios = {elasticity.poisson_ratio,
                                         kUsualPoissonRatio, 0, 0.45};
   double left = 0;
@@ -405,7 +406,9 @@ void LookForSpecimenElsewhere(const EstimatorOptions& options,
       continue;
     }
     left = specimen->left;
-    if (left <= std::hypot(most, kMissed * specimen->of_elements) &&
+    const double with_missed = std::min(
+        kAlike * residual, std::hypot(most, kMissed * specimen->of_elements));
+    if (left <= std::max(most, with_missed) &&
         IsCorrectionTooLarge(specimen->change)) {
       described.evidence.likely_element_change = specimen->change;
       break;
