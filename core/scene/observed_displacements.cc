@@ -40,6 +40,12 @@ class Measurement {
   Eigen::Index num_nodes_;
 };
 
+// Whether a support says where a degree of freedom moves.
+bool IsKnown(const Scene& scene, const Supports& supports, int component,
+             Eigen::Index node) {
+  return !scene.is_rigid_motion_free && supports.IsGiven(component, node);
+}
+
 // The rows of all load cases while they are collected.
 struct RowList {
   const Scene& scene;
@@ -70,7 +76,7 @@ struct RowList {
       const std::size_t num_entries = entries.size();
       double held = 0;
       for (Eigen::Index j = 0; j < nodes.size(); ++j) {
-        if (!scene.is_rigid_motion_free && supports.IsGiven(i, nodes(j))) {
+        if (IsKnown(scene, supports, i, nodes(j))) {
           held += shape_functions(j) * supports.displacement(i, nodes(j));
         } else if (std::abs(shape_functions(j)) > kNoPart) {
           entries.emplace_back(
@@ -231,8 +237,8 @@ bool AreFreePointsMeasured(const Scene& scene, Eigen::Index load_case) {
         continue;
       }
       for (Eigen::Index j = 0; j < nodes.size(); ++j) {
-        if (std::abs(shape_functions(j, point)) > kNoPart &&
-            (scene.is_rigid_motion_free || !supports.IsGiven(i, nodes(j)))) {
+        if (!IsKnown(scene, supports, i, nodes(j)) &&
+            std::abs(shape_functions(j, point)) > kNoPart) {
           return true;
         }
       }

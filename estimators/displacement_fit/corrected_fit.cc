@@ -368,18 +368,32 @@ std::optional<SpecimenElsewhere> SpecimenNear(
       Norm(measured - columns * scale_and_step) / Norm(measured)};
 }
 
-// Linear elements that would be too coarse for a specimen may fit one with
-// other parameters, as far off as no linear model sees.  Where a specimen of
-// this or a usual nu explains the measurement as well, but for chance, the fit
-// is asked to change to that; so it is of other nu where that nearly does.
-void LookForSpecimenElsewhere(const EstimatorOptions& options,
-                              CorrectableFit& fit, DescribedFit& described) {
-  // Within three standard errors, of residuals that are noise.
+// What noise lets a specimen leave more than a fit does: within three standard
+// errors.
+double MostByChance(double residual, Eigen::Index num_rows) {
   constexpr double kExcess = 9;
-  constexpr double kNearly = 2;
-  // Of e, that a specimen does otherwise, where the noise is about as large.
+  return residual * std::sqrt(1 + kExcess / static_cast<double>(num_rows));
+}
+
+// Whether it leaves no more than a fit, but for chance and what a specimen does
+// otherwise than e, where the noise is about as large.
+bool ExplainsAsWell(const SpecimenElsewhere& specimen, double residual,
+                    Eigen::Index num_rows) {
   constexpr double kMissed = 0.03;
   constexpr double kAlike = 1.1;
+  const double by_chance = MostByChance(residual, num_rows);
+  const double with_missed = std::min(
+      kAlike * residual, std::hypot(by_chance, kMissed * specimen.of_elements));
+  return specimen.left <= std::max(by_chance, with_missed);
+}
+
+// Linear elements that would be too coarse for a specimen may fit one with
+// other parameters, as far off as no linear model sees.  Where a specimen of
+// this or a usual nu explains the measurement as well, the fit is asked to
+// change to that; so it is of other nu where that nearly does.
+void LookForSpecimenElsewhere(const EstimatorOptions& options,
+                              CorrectableFit& fit, DescribedFit& described) {
+  constexpr double kNearly = 2;
   const IsotropicElasticity& elasticity = described.estimate.elasticity;
   if (!described.element_change || !elasticity.IsPhysical() ||
       !IsCorrectionTooLarge(SolveLeastSquares(described.sensitivities,
@@ -388,14 +402,12 @@ void LookForSpecimenElsewhere(const EstimatorOptions& options,
   }
   const Bounds bounds = EffectivePoissonRatioBounds(options);
   const double residual = *described.estimate.displacement_residual;
-  const double most =
-      residual * std::sqrt(1 + kExcess / static_cast<double>(
-                                             described.element_change->size()));
+  const Eigen::Index num_rows = described.element_change->size();
   const std::array<double, 4> ratios = {elasticity.poisson_ratio,
                                         kUsualPoissonRatio, 0, 0.45};
   double left = 0;
   for (std::size_t i = 0; i < ratios.size(); ++i) {
-    if (i >= 2 && left > kNearly * most) {
+    if (i >= 2 && left > kNearly * MostByChance(residual, num_rows)) {
       break;
     }
     const std::optional<FitAtRatio> other =
@@ -406,9 +418,7 @@ void LookForSpecimenElsewhere(const EstimatorOptions& options,
       continue;
     }
     left = specimen->left;
-    const double with_missed = std::min(
-        kAlike * residual, std::hypot(most, kMissed * specimen->of_elements));
-    if (left <= std::max(most, with_missed) &&
+    if (ExplainsAsWell(*specimen, residual, num_rows) &&
         IsCorrectionTooLarge(specimen->change)) {
       described.evidence.likely_element_change = specimen->change;
       break;

@@ -28,6 +28,11 @@ Estimate Judged(const Evidence& evidence,
   return estimate;
 }
 
+Scene OneCube() {
+  const Mesh mesh = testing::BoxMesh({1, 1, 1}, {1, 1, 1});
+  return testing::HeldAtBottom(mesh, mesh, Eigen::Vector3d::Zero());
+}
+
 TEST(Judge, AcceptsWhatNothingSpeaksAgainst) {
   const Estimate estimate = Judged({});
   EXPECT_TRUE(estimate.IsUsable());
@@ -68,9 +73,7 @@ TEST(Judge, RatiosAtTheirLimitNeedAModelThatFits) {
 }
 
 TEST(Judge, SaysNoElementsLockThatLeaveRoundingOnly) {
-  const Scene scene = testing::HeldAtBottom(
-      testing::BoxMesh({1, 1, 1}, {1, 1, 1}),
-      testing::BoxMesh({1, 1, 1}, {1, 1, 1}), Eigen::Vector3d::Zero());
+  const Scene scene = OneCube();
   for (const double residual : {1e-12, 0.01}) {
     Estimate estimate = Measured();
     estimate.elasticity.poisson_ratio = 0.49;
@@ -83,9 +86,7 @@ TEST(Judge, SaysNoElementsLockThatLeaveRoundingOnly) {
 }
 
 TEST(Judge, SpeaksOfErrorBarsWhereThereAreSome) {
-  const Scene scene = testing::HeldAtBottom(
-      testing::BoxMesh({1, 1, 1}, {1, 1, 1}),
-      testing::BoxMesh({1, 1, 1}, {1, 1, 1}), Eigen::Vector3d::Zero());
+  const Scene scene = OneCube();
   Evidence evidence;
   evidence.virtual_work_error = 0.1;
   for (const bool is_usable : {false, true}) {
