@@ -99,9 +99,9 @@ std::string WhyNotEnough(const Scene& scene, const EstimatorOptions& options,
 std::string WhyClosedFormIsNotEnough(const Scene& scene,
                                      const EstimatorOptions& options,
                                      const Estimate& estimate) {
-  constexpr double kRounding = 1e-6;
   const std::string why_not = WhyNotEnough(scene, options, estimate);
-  return why_not.empty() && !(estimate.force_residual.value_or(0) <= kRounding)
+  return why_not.empty() && !(estimate.force_residual.value_or(0) <=
+                              kLimits.exact_residual)
              ? "what its elements miss is not known"
              : why_not;
 }

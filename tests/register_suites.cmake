@@ -18,8 +18,8 @@ set(script "")
 foreach(suite ${suites})
   string(REGEX REPLACE "\\.\n" "" suite "${suite}")
   set(label ${FOLDER})
-  if(suite MATCHES "Statistics")
-    string(APPEND label -statistical)
+  if(suite MATCHES "Statistics|Large")
+    string(APPEND label -long)
   endif()
   string(
     APPEND

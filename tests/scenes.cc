@@ -5,6 +5,8 @@
 #include <stdexcept>
 
 #include "elastimate/core/scene/degrees_of_freedom.h"
+#include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/core/scene/simplicial_scene.h"
 #include "tests/dense_reference.h"
 
 namespace elastimate::testing {
@@ -122,6 +124,16 @@ double AddNoise(double relative, std::uint64_t seed, Scene& scene) {
     first_sd = k == 0 ? sd : first_sd;
   }
   return first_sd;
+}
+
+void MeasureInRefinedWorld(const IsotropicElasticity& elasticity,
+                           Scene& scene) {
+  Scene finer = QuadraticScene(SimplicialScene(QuadraticScene(scene)));
+  Measure(elasticity, finer);
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    scene.load_cases[k].displacement =
+        finer.load_cases[k].displacement.leftCols(scene.mesh.NumNodes());
+  }
 }
 
 Scene WithThreeForces(const Scene& scene) {

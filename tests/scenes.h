@@ -33,6 +33,8 @@ std::vector<std::string> SmallSceneNames();
 
 using elastimate::Measure;
 using elastimate::MeasureInFinerWorld;
+/// At the nodes, in a world of quadratic elements of half the size.
+void MeasureInRefinedWorld(const IsotropicElasticity& elasticity, Scene& scene);
 
 /// Adds independent Gaussian noise to the free components; its standard
 /// deviation is `relative` times the root mean square of the free displacement

@@ -44,9 +44,8 @@ void RemoveErrorBarsOfNone(Estimate& estimate) {
 // Whether the elements leave nothing but rounding, as those that computed the
 // displacements.
 bool AreElementsExact(const Estimate& estimate) {
-  constexpr double kRounding = 1e-6;
   return estimate.displacement_residual.value_or(
-             estimate.force_residual.value_or(1)) <= kRounding;
+             estimate.force_residual.value_or(1)) <= kLimits.exact_residual;
 }
 
 void JudgeLocking(const Mesh& mesh, double poisson_ratio, Estimate& estimate) {

@@ -95,7 +95,10 @@ struct Limits {
   double largest_correction_of_log_youngs_modulus = 0.25;
   double largest_correction_of_poisson_ratio = 0.15;
 
-  // What is called determined.
+  // What is called exact, or determined.
+
+  /// A displacement or force residual that is rounding alone.
+  double exact_residual = 1e-6;
 
   /// Relative standard error of a modulus that is, where nu is not.
   double determined_modulus = 0.1;

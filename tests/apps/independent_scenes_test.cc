@@ -244,7 +244,7 @@ TEST_F(IndependentScenes, DataFromAFinerWorld) {
 }
 
 // The same scene with its load as what it is.
-class FinerWorld : public IndependentScenes {
+class LargeFinerWorld : public IndependentScenes {
  protected:
   void SetUp() override {
     IndependentScenes::SetUp();
@@ -264,19 +264,13 @@ class FinerWorld : public IndependentScenes {
   }
 };
 
-TEST_F(FinerWorld, QuadraticElementsFindYoungsModulus) {
-  const auto youngs = [&](const std::string& order) {
-    return Fit(Run("estimate scene.json --json=- --estimator=iterative-fe "
-                   "--order=" +
-                   order)
-                   .Json())
-        .youngs_modulus;
-  };
-  EXPECT_NEAR(youngs("1"), 6590, 5);
-  EXPECT_NEAR(youngs("2") / 8000, 1, 0.01);
+TEST_F(LargeFinerWorld, LinearElementsAgree) {
+  const Fit fit(
+      Run("estimate scene.json --json=- --estimator=iterative-fe").Json());
+  EXPECT_NEAR(fit.youngs_modulus, 6590, 5);
 }
 
-TEST_F(FinerWorld, AutoEndsAtQuadraticElements) {
+TEST_F(LargeFinerWorld, AutoEndsAtQuadraticElements) {
   const ProgramRun run =
       Succeed("estimate scene.json --json=- --estimator=auto --out=auto.vtu");
   const nlohmann::json report = run.Json();
@@ -291,13 +285,13 @@ TEST_F(FinerWorld, AutoEndsAtQuadraticElements) {
 
 // The other code held every node below 24 mm, so also mid-edge nodes of edges
 // with a free upper end.  With these held, both codes have the same equations.
-TEST_F(FinerWorld, QuadraticElementsAreThoseOfTheOtherCode) {
+TEST_F(LargeFinerWorld, QuadraticElementsAreThoseOfTheOtherCode) {
   Scene scene = QuadraticScene(
       ReadScene({folder_ / "scene.json"}, Measurement::kRequired).scene);
   scene.supports.held =
       scene.supports.held ||
       (scene.mesh.nodes.row(2).array() < 0.024).replicate<3, 1>();
-  const Estimate estimate = MakeEstimator("iterative-fe")->Run(scene, {});
+  const Estimate estimate = MakeEstimator("reduced-fe")->Run(scene, {});
   EXPECT_EQ(estimate.status, Status::kOk);
   EXPECT_NEAR(estimate.elasticity.youngs_modulus / 8000, 1, 1e-6);
   EXPECT_NEAR(estimate.elasticity.poisson_ratio, 0.4, 1e-6);

@@ -6,7 +6,6 @@
 
 #include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/core/scene/quadratic_scene.h"
-#include "elastimate/core/scene/simplicial_scene.h"
 #include "elastimate/estimators/displacement_fit/reduced_fe.h"
 #include "elastimate/estimators/force_balance/closed_form.h"
 #include "tests/regions.h"
@@ -160,10 +159,7 @@ TEST(Auto, DoesNotHoldQuadraticElementsAgainstABalanceThatIsNone) {
   const Mesh mesh = testing::BoxMesh({2, 2, 8}, {2, 2, 8});
   Scene scene = testing::HeldAtBottom(mesh, mesh, Eigen::Vector3d::Zero());
   scene.load_cases[0].loads = {BodyForce{Eigen::Vector3d(0, 0, -10)}};
-  Scene finer = QuadraticScene(SimplicialScene(QuadraticScene(scene)));
-  Measure({5000, 0.45}, finer);
-  scene.load_cases[0].displacement =
-      finer.load_cases[0].displacement.leftCols(mesh.NumNodes());
+  testing::MeasureInRefinedWorld({5000, 0.45}, scene);
   AddNoise(0.03, 1, scene);
   const Estimate estimate = Auto().Run(scene, {});
   ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;

@@ -117,7 +117,7 @@ TEST(OrderComparison, HoldsWhatLinearElementsSayUncorrected) {
 
 // Under noise that hides which elements made the displacements, of which the
 // linear ones are too stiff, `auto` is right about either.
-TEST(OrderComparison, KeepsAutoHonestAboutEither) {
+TEST(OrderComparisonStatistics, KeepsAutoHonestAboutEither) {
   const Mesh mesh = testing::BoxMesh({4, 4, 8}, {0.3, 0.3, 0.8});
   Scene bar = testing::HeldAtBottom(mesh, mesh, Eigen::Vector3d::Zero());
   bar.load_cases[0].loads = {BodyForce{Eigen::Vector3d(1e4, 0, 2e4)}};

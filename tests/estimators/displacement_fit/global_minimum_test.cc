@@ -100,7 +100,7 @@ TEST(GlobalMinimumStatistics, OfATwistedDumbbellNextToOneHalf) {
 }
 
 // A crest lies between the start at 0.45 and the minimum.
-TEST(GlobalMinimum, BehindACrest) {
+TEST(GlobalMinimumStatistics, BehindACrest) {
   for (const std::string shape : {"ring", "dumbbell", "spring"}) {
     for (const double nu : {0.48, 0.485, 0.49, 0.4925, 0.495}) {
       SCOPED_TRACE(shape + ", nu " + std::to_string(nu));
@@ -109,8 +109,7 @@ TEST(GlobalMinimum, BehindACrest) {
   }
 }
 
-// Bounds that hold the truth may not become the answer.
-TEST(GlobalMinimum, IsNotTrappedByABound) {
+void ExpectNotTrappedByABound(const std::string& shape) {
   struct Case {
     double nu;
     Bounds bounds;
@@ -120,20 +119,28 @@ TEST(GlobalMinimum, IsNotTrappedByABound) {
       {0.499, {0.45, {}}}, {0.499, {0.48, {}}}, {0.46, {0.45, 0.4995}},
       {-0.97, {{}, -0.8}}, {-0.9, {{}, -0.8}},  {-0.9, {-0.99, -0.7}},
       {0.1, {{}, 0.2}},    {-0.3, {{}, 0.2}},   {-0.98, {-0.999, {}}}};
-  for (const std::string shape : {"bracket", "dome", "tree"}) {
-    for (const Case& test : cases) {
-      SCOPED_TRACE(shape + ", nu " + std::to_string(test.nu));
-      EstimatorOptions options;
-      options.poisson_ratio = test.bounds;
-      const MeasuredShape measured =
-          MeasureShape(shape, "bending", test.nu, 1e-2, 1);
-      const Estimate estimate = ExpectSameMinimum(measured, options);
-      if (estimate.IsUsable()) {
-        EXPECT_NEAR(estimate.elasticity.youngs_modulus / kTrueYoungsModulus, 1,
-                    0.2);
-      }
+  for (const Case& test : cases) {
+    SCOPED_TRACE(shape + ", nu " + std::to_string(test.nu));
+    EstimatorOptions options;
+    options.poisson_ratio = test.bounds;
+    const MeasuredShape measured =
+        MeasureShape(shape, "bending", test.nu, 1e-2, 1);
+    const Estimate estimate = ExpectSameMinimum(measured, options);
+    if (estimate.IsUsable()) {
+      EXPECT_NEAR(estimate.elasticity.youngs_modulus / kTrueYoungsModulus, 1,
+                  0.2);
     }
   }
+}
+
+// Bounds that hold the truth may not become the answer.
+TEST(GlobalMinimum, IsNotTrappedByABound) {
+  ExpectNotTrappedByABound("bracket");
+}
+
+TEST(GlobalMinimumStatistics, IsNotTrappedByABoundOfOtherShapes) {
+  ExpectNotTrappedByABound("dome");
+  ExpectNotTrappedByABound("tree");
 }
 
 TEST(GlobalMinimum, IsFoundBeyondTheUsualRange) {
@@ -147,7 +154,7 @@ TEST(GlobalMinimum, IsFoundBeyondTheUsualRange) {
 }
 
 // With 3 % of the components observed.
-TEST(GlobalMinimum, OfFewObservations) {
+TEST(GlobalMinimumStatistics, OfFewObservations) {
   for (const std::string& shape : ShapeNames()) {
     for (const double nu : {0.2, 0.497}) {
       SCOPED_TRACE(shape + ", nu " + std::to_string(nu));

@@ -244,7 +244,7 @@ TEST(PreparedReducedFe, GivesWhatTheEstimatorGives) {
 }
 
 // 2 % of the nodes displaced by 20 standard deviations of the noise.
-TEST(PreparedReducedFe, HuberHardlyFeelsAFewGrossOutliers) {
+TEST(PreparedReducedFeStatistics, HuberHardlyFeelsAFewGrossOutliers) {
   constexpr int kSeeds = 400;
   constexpr double kNoise = 0.01;
   Scene exact = SmallScene("organ");

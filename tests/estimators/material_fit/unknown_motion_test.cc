@@ -399,10 +399,10 @@ INSTANTIATE_TEST_SUITE_P(All, ElementsOfUnknownMotion,
 
 // The noise of nodes that a support follows shows in what finer elements
 // change, which must not hide that these bend further.
-class ElementsOfMeasuredSupports
+class ElementsOfMeasuredSupportsStatistics
     : public ::testing::TestWithParam<KindOfSection> {};
 
-TEST_P(ElementsOfMeasuredSupports, MissTheBendingOfBeamsAndSaySo) {
+TEST_P(ElementsOfMeasuredSupportsStatistics, MissTheBendingOfBeamsAndSaySo) {
   const int dimension = TopologyOf(GetParam().kind).dimension;
   Scene beam = testing::SceneOfKind(GetParam(), dimension == 2 ? 12 : 6);
   beam.mesh.nodes.row(dimension - 1) *= 4;
@@ -426,7 +426,7 @@ TEST_P(ElementsOfMeasuredSupports, MissTheBendingOfBeamsAndSaySo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    All, ElementsOfMeasuredSupports,
+    All, ElementsOfMeasuredSupportsStatistics,
     ::testing::Values(
         KindOfSection{ElementKind::kTri3, SectionModel::kPlaneStress},
         KindOfSection{ElementKind::kQuad4, SectionModel::kPlaneStress},
