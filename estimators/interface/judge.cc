@@ -81,13 +81,13 @@ void JudgeElements(const Mesh& mesh, Estimate& estimate) {
 }
 
 // What a method without a finite element solution does not know, the data may.
-void FailUndetermined(Finding finding, Estimate& estimate) {
+void FailUndetermined(ElementKind kind, Finding finding, Estimate& estimate) {
   if (estimate.Has(FindingCode::kSupportsEndWithinElements)) {
     finding.advice = "give the supports as boxes";
   } else if (estimate.Has(FindingCode::kLinearElementsFitAsWell)) {
     finding.advice = OrderAdvice();
   } else if (IsDiscretizationErrorNotable(estimate)) {
-    finding.advice = estimate.element_order == 1
+    finding.advice = estimate.element_order == 1 && HasQuadraticKind(kind)
                          ? "refine the mesh, or use order 2"
                          : "refine the mesh";
   } else if (!estimate.displacement_residual) {
@@ -108,7 +108,8 @@ bool IsIntervalTooWide(const Estimate& estimate) {
          kLimits.LargestPoissonRatioDistance();
 }
 
-void JudgeResult(const EstimatorOptions& options, Estimate& estimate) {
+void JudgeResult(ElementKind kind, const EstimatorOptions& options,
+                 Estimate& estimate) {
   if (!estimate.IsUsable()) {
     return;
   }
@@ -124,13 +125,15 @@ void JudgeResult(const EstimatorOptions& options, Estimate& estimate) {
   } else if (!options.known_poisson_ratio &&
              estimate.PoissonRatioStandardError().value_or(0) >
                  kLimits.largest_poisson_ratio_error) {
-    FailUndetermined(PoissonRatioUndetermined(estimate), estimate);
+    FailUndetermined(kind, PoissonRatioUndetermined(estimate), estimate);
   } else if (!options.known_poisson_ratio && IsIntervalTooWide(estimate)) {
     FailUndetermined(
-        PoissonRatioBetween(*estimate.poisson_ratio_interval, false), estimate);
+        kind, PoissonRatioBetween(*estimate.poisson_ratio_interval, false),
+        estimate);
   } else if (youngs_modulus_error >
              kLimits.largest_youngs_modulus_error * elasticity.youngs_modulus) {
-    FailUndetermined(YoungsModulusUndetermined(elasticity.youngs_modulus,
+    FailUndetermined(kind,
+                     YoungsModulusUndetermined(elasticity.youngs_modulus,
                                                youngs_modulus_error),
                      estimate);
   }
@@ -193,7 +196,7 @@ void FinishEstimate(std::string_view estimator, const Scene& scene,
   estimate.error_budget.discretization = Eigen::Vector2d(
       estimate.discretization_error.value_or(Estimate::kUnknown),
       estimate.poisson_ratio_discretization_error.value_or(Estimate::kUnknown));
-  JudgeResult(options, estimate);
+  JudgeResult(scene.mesh.kind, options, estimate);
   if (estimate.IsUsable()) {
     AddPoissonRatioInterval(estimate);
     JudgeElements(scene.mesh, estimate);

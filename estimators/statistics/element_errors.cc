@@ -91,8 +91,14 @@ ElementErrors::ElementErrors(const Scene& scene, const NodeGraph& graph,
     rest_ -= VisibleOf(fit, change->taken, of_taken);
   }
   of_measurement_ = rest_;
-  const FinerSpecimen finer = Compare(graph, observed, fit, visible,
-                                      VisibleNoise(fit, change->by_noise));
+  // Finer elements that others are cut into change what those of their own
+  // kind would not, which decides where the others are very coarse.
+  const bool is_unlike =
+      !IsSimplex(scene.mesh.kind) &&
+      of_parameters_.cwiseAbs().maxCoeff() > kLimits.unusable_error;
+  const FinerSpecimen finer =
+      Compare(graph, observed, fit, rows, is_unlike ? prior_.missed : 0,
+              visible, VisibleNoise(fit, change->by_noise));
   share_ = finer.Mean();
   rest_ += share_ * visible;
   correction_ = of_taken - share_ * of_parameters_;
@@ -100,7 +106,10 @@ ElementErrors::ElementErrors(const Scene& scene, const NodeGraph& graph,
   // Much of a change may be there of which little shows.
   const double most =
       std::max(size, finer.probability * finer.probability * prior_.share);
-  share_variance_ = finer.Variance() + std::pow(prior_.unequal * most, 2) +
+  // A share other than is expected says that it is another change.
+  const double unequal = std::hypot(
+      prior_.unequal, is_unlike ? finer.share / prior_.share - 1 : 0);
+  share_variance_ = finer.Variance() + std::pow(unequal * most, 2) +
                     hidden_share_ * hidden_share_;
   missed_norm_ = prior_.missed * size * Norm(rows);
   likely_change_ = -std::max(share_, hidden_share_) * of_parameters_;
@@ -121,11 +130,10 @@ Eigen::MatrixXd ElementErrors::CovarianceOfChange() const {
   return share_variance_ * (of_parameters_ * of_parameters_.transpose());
 }
 
-FinerSpecimen ElementErrors::Compare(const NodeGraph& graph,
-                                     const ObservedDisplacements& observed,
-                                     const FreeFit& fit,
-                                     const Eigen::VectorXd& visible,
-                                     double visible_noise) {
+FinerSpecimen ElementErrors::Compare(
+    const NodeGraph& graph, const ObservedDisplacements& observed,
+    const FreeFit& fit, const Eigen::VectorXd& change, double missed_share,
+    const Eigen::VectorXd& visible, double visible_noise) {
   const Eigen::VectorXd weighted = fit.weights.cwiseProduct(visible);
   const double noisy_size = InnerProduct(weighted, visible);
   const double redundancy =
@@ -139,7 +147,7 @@ FinerSpecimen ElementErrors::Compare(const NodeGraph& graph,
       redundancy;
   const double size = noisy_size - visible_noise * least_variance;
   if (!(size > 0) || redundancy < 1) {
-    return CompareWithFinerSpecimen(0, kUnknownShareError, 1, prior_);
+    return CompareWithFinerSpecimen(0, kUnknownShareError, 1, 0, prior_);
   }
   const double share = -product / size;
   const Eigen::VectorXd rest = of_measurement_ + share * visible;
@@ -160,9 +168,13 @@ FinerSpecimen ElementErrors::Compare(const NodeGraph& graph,
     variance =
         std::max(variance, noisy_size / (observed.Norm() * observed.Norm()));
   }
+  const double missed =
+      missed_share *
+      std::sqrt(InnerProduct(fit.weights.cwiseProduct(change), change) /
+                noisy_size);
   FinerSpecimen finer =
       CompareWithFinerSpecimen(share, std::sqrt(variance * dependence) / size,
-                               redundancy / dependence, prior_);
+                               redundancy / dependence, missed, prior_);
   unexplained_ = UnexplainedShare(neighbours, SquaredNorm(weighted_rest),
                                   share * share * size);
   finer.probability *= 1 - unexplained_;

@@ -90,10 +90,11 @@ class ElementErrors {
  private:
   /// What the residual says of the part of the change that it would show, the
   /// weighted square sum of which has this much of noise in it for each unit of
-  /// its variance.
+  /// its variance.  Beside the change the elements miss this share of it.
   FinerSpecimen Compare(const NodeGraph& graph,
                         const ObservedDisplacements& observed,
-                        const FreeFit& fit, const Eigen::VectorXd& visible,
+                        const FreeFit& fit, const Eigen::VectorXd& change,
+                        double missed_share, const Eigen::VectorXd& visible,
                         double visible_noise);
 
   SpecimenPrior prior_;

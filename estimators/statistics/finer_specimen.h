@@ -48,9 +48,12 @@ struct FinerSpecimen {
 };
 
 /// By Bayes' rule from the least-squares estimate of alpha, its standard error
-/// and the degrees of freedom of that (Student's t).
+/// and the degrees of freedom of that (Student's t).  `missed` is what a finer
+/// specimen shows beside the change, in the direction of g and over |g|, as far
+/// as no data say how much that is: it makes the specimen no less likely, and
+/// the estimate none of its alpha.
 FinerSpecimen CompareWithFinerSpecimen(double share, double standard_error,
-                                       double degrees_of_freedom,
+                                       double degrees_of_freedom, double missed,
                                        const SpecimenPrior& prior);
 
 }  // namespace elastimate

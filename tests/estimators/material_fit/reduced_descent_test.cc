@@ -69,9 +69,9 @@ Scene SceneOf(const HardScene& hard, std::uint64_t seed) {
   return scene;
 }
 
-class ReducedDescentOf : public ::testing::TestWithParam<HardScene> {};
+class ReducedDescentStatistics : public ::testing::TestWithParam<HardScene> {};
 
-TEST_P(ReducedDescentOf, FindsTheMinimumOfTheFullModel) {
+TEST_P(ReducedDescentStatistics, FindsTheMinimumOfTheFullModel) {
   for (const std::uint64_t seed : {1, 2}) {
     const Scene scene = SceneOf(GetParam(), seed);
     const Estimate reduced = MakeEstimator("reduced-fe")->Run(scene, {});
@@ -100,7 +100,7 @@ TEST_P(ReducedDescentOf, FindsTheMinimumOfTheFullModel) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Hard, ReducedDescentOf,
+    Hard, ReducedDescentStatistics,
     ::testing::Values(
         HardScene{"plain", {1e3, 0.2, 3e3, 0.35, 2e3, 0.3, 1.5e3, 0.25}, 0.01},
         HardScene{"contrast", {1e3, 0.2, 1e7, 0.35, 1e5, 0.3, 1e4, 0.25}, 0.01},
