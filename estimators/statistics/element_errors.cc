@@ -92,10 +92,11 @@ ElementErrors::ElementErrors(const Scene& scene, const NodeGraph& graph,
   }
   of_measurement_ = rest_;
   // Finer elements that others are cut into change what those of their own
-  // kind would not, which decides where the others are very coarse.
-  const bool is_unlike =
-      !IsSimplex(scene.mesh.kind) &&
-      of_parameters_.cwiseAbs().maxCoeff() > kLimits.unusable_error;
+  // kind would not, which decides where the others are very coarse and E alone
+  // takes up nearly all that finer ones change.
+  const bool is_unlike = !IsSimplex(scene.mesh.kind) &&
+                         of_parameters_.size() == 1 &&
+                         std::abs(of_parameters_(0)) > kLimits.unusable_error;
   const FinerSpecimen finer =
       Compare(graph, observed, fit, rows, is_unlike ? prior_.missed : 0,
               visible, VisibleNoise(fit, change->by_noise));
