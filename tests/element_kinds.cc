@@ -408,10 +408,7 @@ void MeasureInCutWorld(const IsotropicElasticity& elasticity, Scene& scene) {
   Scene finer = QuadraticScene(SimplicialScene(scene));
   finer = QuadraticScene(SimplicialScene(finer));
   Measure(elasticity, finer);
-  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-    scene.load_cases[k].displacement =
-        finer.load_cases[k].displacement.leftCols(scene.mesh.NumNodes());
-  }
+  TakeDisplacements(finer, scene);
 }
 
 }  // namespace elastimate::testing

@@ -18,7 +18,7 @@ set(script "")
 foreach(suite ${suites})
   string(REGEX REPLACE "\\.\n" "" suite "${suite}")
   set(label ${FOLDER})
-  if(suite MATCHES "Statistics|Large")
+  if(suite MATCHES "(Statistics|Long)$")
     string(APPEND label -long)
   endif()
   string(

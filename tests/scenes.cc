@@ -126,14 +126,18 @@ double AddNoise(double relative, std::uint64_t seed, Scene& scene) {
   return first_sd;
 }
 
-void MeasureInRefinedWorld(const IsotropicElasticity& elasticity,
-                           Scene& scene) {
-  Scene finer = QuadraticScene(SimplicialScene(QuadraticScene(scene)));
-  Measure(elasticity, finer);
+void TakeDisplacements(const Scene& finer, Scene& scene) {
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     scene.load_cases[k].displacement =
         finer.load_cases[k].displacement.leftCols(scene.mesh.NumNodes());
   }
+}
+
+void MeasureInRefinedWorld(const IsotropicElasticity& elasticity,
+                           Scene& scene) {
+  Scene finer = QuadraticScene(SimplicialScene(QuadraticScene(scene)));
+  Measure(elasticity, finer);
+  TakeDisplacements(finer, scene);
 }
 
 Scene WithThreeForces(const Scene& scene) {

@@ -33,6 +33,9 @@ std::vector<std::string> SmallSceneNames();
 
 using elastimate::Measure;
 using elastimate::MeasureInFinerWorld;
+/// Takes the displacements of a finer scene, whose first nodes are those of
+/// this one.
+void TakeDisplacements(const Scene& finer, Scene& scene);
 /// At the nodes, in a world of quadratic elements of half the size.
 void MeasureInRefinedWorld(const IsotropicElasticity& elasticity, Scene& scene);
 

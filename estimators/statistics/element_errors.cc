@@ -51,15 +51,18 @@ Eigen::VectorXd ParametersOf(const FreeFit& fit, const Eigen::VectorXd& rows) {
          InnerProducts(fit.sensitivities, fit.weights.cwiseProduct(rows));
 }
 
+double WeightedSquareSum(const FreeFit& fit, const Eigen::VectorXd& rows) {
+  return InnerProduct(fit.weights.cwiseProduct(rows), rows);
+}
+
 // The weighted square sum of what noise of a variance of 1 adds to what shows
 // of a change.
 double VisibleNoise(const FreeFit& fit, const Eigen::VectorXd& by_noise) {
   if (by_noise.size() == 0) {
     return 0;
   }
-  const Eigen::VectorXd visible =
-      VisibleOf(fit, by_noise, ParametersOf(fit, by_noise));
-  return InnerProduct(fit.weights.cwiseProduct(visible), visible);
+  return WeightedSquareSum(
+      fit, VisibleOf(fit, by_noise, ParametersOf(fit, by_noise)));
 }
 
 }  // namespace
@@ -97,9 +100,9 @@ ElementErrors::ElementErrors(const Scene& scene, const NodeGraph& graph,
   const bool is_unlike = !IsSimplex(scene.mesh.kind) &&
                          of_parameters_.size() == 1 &&
                          std::abs(of_parameters_(0)) > kLimits.unusable_error;
-  const FinerSpecimen finer =
-      Compare(graph, observed, fit, rows, is_unlike ? prior_.missed : 0,
-              visible, VisibleNoise(fit, change->by_noise));
+  const FinerSpecimen finer = Compare(
+      graph, observed, fit, visible, VisibleNoise(fit, change->by_noise),
+      is_unlike ? prior_.missed * std::sqrt(WeightedSquareSum(fit, rows)) : 0);
   share_ = finer.Mean();
   rest_ += share_ * visible;
   correction_ = of_taken - share_ * of_parameters_;
@@ -131,21 +134,20 @@ Eigen::MatrixXd ElementErrors::CovarianceOfChange() const {
   return share_variance_ * (of_parameters_ * of_parameters_.transpose());
 }
 
-FinerSpecimen ElementErrors::Compare(
-    const NodeGraph& graph, const ObservedDisplacements& observed,
-    const FreeFit& fit, const Eigen::VectorXd& change, double missed_share,
-    const Eigen::VectorXd& visible, double visible_noise) {
+FinerSpecimen ElementErrors::Compare(const NodeGraph& graph,
+                                     const ObservedDisplacements& observed,
+                                     const FreeFit& fit,
+                                     const Eigen::VectorXd& visible,
+                                     double visible_noise, double missed_size) {
   const Eigen::VectorXd weighted = fit.weights.cwiseProduct(visible);
   const double noisy_size = InnerProduct(weighted, visible);
   const double redundancy =
       static_cast<double>(observed.Size() - fit.sensitivities.cols()) - 1;
   const double product = InnerProduct(weighted, of_measurement_);
   // The variance of a row where the residual shows as much as it can.
-  const double least_variance =
-      (InnerProduct(fit.weights.cwiseProduct(of_measurement_),
-                    of_measurement_) -
-       product * product / noisy_size) /
-      redundancy;
+  const double least_variance = (WeightedSquareSum(fit, of_measurement_) -
+                                 product * product / noisy_size) /
+                                redundancy;
   const double size = noisy_size - visible_noise * least_variance;
   if (!(size > 0) || redundancy < 1) {
     return CompareWithFinerSpecimen(0, kUnknownShareError, 1, 0, prior_);
@@ -169,13 +171,9 @@ FinerSpecimen ElementErrors::Compare(
     variance =
         std::max(variance, noisy_size / (observed.Norm() * observed.Norm()));
   }
-  const double missed =
-      missed_share *
-      std::sqrt(InnerProduct(fit.weights.cwiseProduct(change), change) /
-                noisy_size);
-  FinerSpecimen finer =
-      CompareWithFinerSpecimen(share, std::sqrt(variance * dependence) / size,
-                               redundancy / dependence, missed, prior_);
+  FinerSpecimen finer = CompareWithFinerSpecimen(
+      share, std::sqrt(variance * dependence) / size, redundancy / dependence,
+      missed_size / std::sqrt(noisy_size), prior_);
   unexplained_ = UnexplainedShare(neighbours, SquaredNorm(weighted_rest),
                                   share * share * size);
   finer.probability *= 1 - unexplained_;

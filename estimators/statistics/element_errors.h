@@ -90,12 +90,12 @@ class ElementErrors {
  private:
   /// What the residual says of the part of the change that it would show, the
   /// weighted square sum of which has this much of noise in it for each unit of
-  /// its variance.  Beside the change the elements miss this share of it.
+  /// its variance, beside something of a weighted norm `missed_size` that the
+  /// change does not hold.
   FinerSpecimen Compare(const NodeGraph& graph,
                         const ObservedDisplacements& observed,
-                        const FreeFit& fit, const Eigen::VectorXd& change,
-                        double missed_share, const Eigen::VectorXd& visible,
-                        double visible_noise);
+                        const FreeFit& fit, const Eigen::VectorXd& visible,
+                        double visible_noise, double missed_size);
 
   SpecimenPrior prior_;
   Eigen::VectorXd rest_;

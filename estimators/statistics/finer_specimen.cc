@@ -24,18 +24,16 @@ FinerSpecimen CompareWithFinerSpecimen(double share, double standard_error,
   const double variance_if_finer =
       variance + std::max(missed * missed - variance_of_share, 0.0);
   const double n = std::max(degrees_of_freedom, 1.0);
-  // Logarithms of the densities at `share`, but for a common factor.
-  const auto log_density = [n](double distance, double of_variance) {
-    return -0.5 * std::log(of_variance) -
-           (n + 1) / 2 * std::log1p(distance * distance / of_variance / n);
+  // Logarithms of the densities at `share` over their largest.
+  const auto log_decay = [n](double distance, double of_variance) {
+    return -(n + 1) / 2 * std::log1p(distance * distance / of_variance / n);
   };
-  const double ignorance =
-      0.5 * std::log((variance_if_finer + variance_of_share) /
-                     (variance + variance_of_share));
+  // The largest are as if nothing were missed.
   const double log_odds =
-      std::log(prior.odds) + ignorance +
-      log_density(share - prior.share, variance_if_finer + variance_of_share) -
-      log_density(share, variance);
+      std::log(prior.odds) +
+      0.5 * std::log(variance / (variance + variance_of_share)) +
+      log_decay(share - prior.share, variance_if_finer + variance_of_share) -
+      log_decay(share, variance);
   FinerSpecimen finer;
   finer.probability = 1 / (1 + std::exp(-log_odds));
   finer.share_variance = 1 / (1 / variance_if_finer + 1 / variance_of_share);

@@ -73,7 +73,7 @@ TEST_P(Conformance, RecoversTheTruthFromExactData) {
 // Or it says before it runs that the mid-edge nodes were not measured.
 TEST_P(Conformance, RecoversTheTruthWithQuadraticElements) {
   for (const std::string& shape : SmallSceneNames()) {
-    for (const double nu : {-0.5, 0.3, 0.499}) {
+    for (const double nu : {-0.5, 0.0, 0.3, 0.45, 0.499}) {
       SCOPED_TRACE(shape + ", nu = " + std::to_string(nu));
       Scene scene = QuadraticScene(SmallScene(shape));
       Measure({5e4, nu}, scene);

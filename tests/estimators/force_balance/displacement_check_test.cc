@@ -41,10 +41,7 @@ void Divide(double part, int axis, Scene& scene) {
 void MeasureInFinestWorld(const Eigen::VectorXd& truth, Scene& scene) {
   Scene world = QuadraticScene(SimplicialScene(QuadraticScene(scene)));
   MeasureMaterials(truth, world);
-  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-    scene.load_cases[k].displacement =
-        world.load_cases[k].displacement.leftCols(scene.mesh.NumNodes());
-  }
+  testing::TakeDisplacements(world, scene);
 }
 
 // Estimates that are usable, and what their intervals hold of the parameters.
