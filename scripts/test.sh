@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds optimised, and runs all tests.
+# Installs what is missing, builds optimised, and runs the tests of the libraries and of the command line.
+# The benchmarks and their tests are built by .ci/run.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -1,6 +1,8 @@
 #include "elastimate/estimators/interface/statistics.h"
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/poisson.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <utility>
@@ -21,6 +23,26 @@ double OneSidedErrors(const std::optional<double>& degrees_of_freedom) {
              ? boost::math::quantile(
                    boost::math::students_t(*degrees_of_freedom), 0.95)
              : kOneSidedErrors;
+}
+
+double StudentTwoSidedProbability(double degrees_of_freedom, double t) {
+  return 2 * boost::math::cdf(boost::math::complement(
+                 boost::math::students_t(degrees_of_freedom), std::abs(t)));
+}
+
+double ChiSquaredProbability(double degrees_of_freedom, double value) {
+  return boost::math::cdf(boost::math::complement(
+      boost::math::chi_squared(degrees_of_freedom), value));
+}
+
+double ChiSquaredQuantile(double degrees_of_freedom, double probability_above) {
+  return boost::math::quantile(boost::math::complement(
+      boost::math::chi_squared(degrees_of_freedom), probability_above));
+}
+
+double PoissonProbability(double expected, double count) {
+  return boost::math::cdf(
+      boost::math::complement(boost::math::poisson(expected), count - 1));
 }
 
 double Median(std::vector<double> values) {

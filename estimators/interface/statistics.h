@@ -14,6 +14,22 @@ namespace elastimate {
 double TwoSidedErrors(const std::optional<double>& degrees_of_freedom);
 double OneSidedErrors(const std::optional<double>& degrees_of_freedom);
 
+// Boost's distributions are called here only: a compiler takes seconds for each
+// source that names one.
+
+/// The probability that |Student's t| exceeds |t|.
+double StudentTwoSidedProbability(double degrees_of_freedom, double t);
+
+/// The probability that chi^2 of so many degrees of freedom exceeds `value`,
+/// and the value that it exceeds with this probability.  Preconditions:
+/// positive degrees of freedom, `value` >= 0.
+double ChiSquaredProbability(double degrees_of_freedom, double value);
+double ChiSquaredQuantile(double degrees_of_freedom, double probability_above);
+
+/// The probability of `count` and more of events of which so many are expected.
+/// Preconditions: `expected` > 0, `count` >= 1.
+double PoissonProbability(double expected, double count);
+
 /// The median; the mean of the middle two of an even number of values.
 /// Precondition: not empty.  O(n).
 double Median(std::vector<double> values);

@@ -1,13 +1,13 @@
 #include "elastimate/estimators/material_fit/merge_plan.h"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <optional>
 #include <utility>
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/estimators/interface/limits.h"
+#include "elastimate/estimators/interface/statistics.h"
 
 namespace elastimate {
 namespace {
@@ -105,11 +105,10 @@ double LimitOfDistance(double num_variables, std::size_t num_members,
                        double num_observations) {
   // By chance, of groups that are the same.
   constexpr double kSignificance = 0.01;
-  const boost::math::chi_squared scatter(num_variables *
-                                         static_cast<double>(num_members - 1));
   return std::max(
       num_variables * std::log(num_observations),
-      boost::math::quantile(boost::math::complement(scatter, kSignificance)));
+      ChiSquaredQuantile(num_variables * static_cast<double>(num_members - 1),
+                         kSignificance));
 }
 
 std::optional<Pair> NearestPair(const std::vector<Material>& materials,

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/poisson.hpp>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -11,6 +9,7 @@
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/unknown_motion.h"
+#include "elastimate/estimators/interface/statistics.h"
 #include "elastimate/estimators/statistics/node_losses.h"
 #include "elastimate/estimators/statistics/residual_statistics.h"
 
@@ -38,9 +37,8 @@ bool AreMoreThanChance(std::size_t num_of_outliers, std::size_t num_pairs,
   const double expected =
       static_cast<double>(num_pairs) * m * (m - 1) / (n * (n - 1));
   return expected > 0 &&
-         boost::math::cdf(boost::math::complement(
-             boost::math::poisson(expected),
-             static_cast<double>(num_of_outliers - 1))) < kSignificance;
+         PoissonProbability(expected, static_cast<double>(num_of_outliers)) <
+             kSignificance;
 }
 
 }  // namespace
@@ -59,8 +57,7 @@ OutlierSearch::OutlierSearch(const Scene& scene,
   std::array<double, 3> limits = {};
   for (std::size_t i = 0; i < limits.size(); ++i) {
     limits[i] =
-        deviation * std::sqrt(boost::math::quantile(boost::math::complement(
-                        boost::math::chi_squared(double(i + 1)), probability)));
+        deviation * std::sqrt(ChiSquaredQuantile(double(i + 1), probability));
   }
   for (const ObservedDisplacements::Point& point : observed.Points()) {
     const double distance = residual.segment(point.first, point.count).norm();

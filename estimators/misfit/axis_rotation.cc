@@ -2,13 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <vector>
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/mechanics/internal_forces.h"
+#include "elastimate/estimators/interface/statistics.h"
 
 namespace elastimate {
 namespace {
@@ -101,9 +101,8 @@ double AxisRotation::BeyondChance() const {
 }
 
 double AxisRotation::Probability() const {
-  return boost::math::cdf(boost::math::complement(
-      boost::math::chi_squared(static_cast<double>(num_rotations)),
-      std::max(chi_square, 0.0)));
+  return ChiSquaredProbability(static_cast<double>(num_rotations),
+                               std::max(chi_square, 0.0));
 }
 
 std::optional<AxisRotation> FindAxisRotation(

@@ -65,8 +65,8 @@ double LeastSquareSum(const Eigen::VectorXd& rows,
   if (a.size() == 1) {
     return square_sum;
   }
-  const Eigen::MatrixXd q = a.householderQr().householderQ();
-  const Eigen::MatrixXd others = q.rightCols(a.size() - 1);
+  const Eigen::MatrixXd others =
+      DecomposeSingularValues(a.transpose()).v.rightCols(a.size() - 1);
   const Eigen::VectorXd gradient =
       others.transpose() * InnerProducts(sensitivities, rows);
   // No more than one step is trusted to gain.

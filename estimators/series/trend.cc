@@ -1,8 +1,9 @@
 #include "elastimate/estimators/series/trend.h"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+
+#include "elastimate/estimators/interface/statistics.h"
 
 namespace elastimate {
 
@@ -35,12 +36,10 @@ std::optional<Trend> FindTrend(const Eigen::VectorXd& x,
             .sum() /
         static_cast<double>(x.size() - 2);
     const double error = std::sqrt(std::max(1.0, scatter) / inertia);
-    const boost::math::students_t distribution(
-        static_cast<double>(x.size() - 2));
     trend.change(j) = range * slope;
     trend.standard_error(j) = range * error;
-    trend.p_value(j) = 2 * boost::math::cdf(boost::math::complement(
-                               distribution, std::abs(slope) / error));
+    trend.p_value(j) = StudentTwoSidedProbability(
+        static_cast<double>(x.size() - 2), slope / error);
   }
   return trend;
 }
