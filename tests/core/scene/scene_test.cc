@@ -254,6 +254,8 @@ TEST_F(ValidatedScene, IgnoresDisplacementsThatWereNotObserved) {
 }
 
 TEST_F(ValidatedScene, NeedsAPositiveNoise) {
+  Second().noise_sd = -2e-9;
+  EXPECT_THROWS_WITH(ValidateScene(scene_), "is -2e-09; it must be positive");
   for (const double bad : {0.0, -1e-3, kNan, kInfinity}) {
     Second().noise_sd = bad;
     EXPECT_THROWS_WITH(ValidateScene(scene_),
