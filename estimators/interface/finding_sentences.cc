@@ -444,7 +444,7 @@ Finding ResidualAboveNoise(ResidualKind kind, double ratio) {
 
 Finding SmoothResidual(double correlation) {
   return Warning(FindingCode::kSmoothResidual,
-                 "residuals of neighbours are alike (correlation " +
+                 "neighbouring residuals are alike (correlation " +
                      TwoDigits(correlation) + ")" + kErrorsHold,
                  "check mesh, supports, loads, smoothing; the material may not "
                  "be the same all over");
@@ -477,7 +477,7 @@ Finding VirtualWorkImbalance() {
 Finding VirtualWorkImbalance(double force_residual, Severity severity) {
   return {FindingCode::kVirtualWorkImbalance, severity,
           "virtual-fields finds more than noise in the force residual (" +
-              PercentOf(force_residual, "the load") + ")" +
+              TwoDigits(force_residual) + " of the load)" +
               (severity == Severity::kWarning ? kErrorsHold : ""),
           kCheckWhatIsGiven};
 }

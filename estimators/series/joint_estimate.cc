@@ -195,8 +195,8 @@ void RaiseSmallErrors(const Eigen::ArrayXd& usual,
 // variances.  A frame whose estimate errs may err in its
 // variance as well, so that these are the usual ones beside noise and load, as
 // far as its own are not far from them.
-Eigen::ArrayXXd WeightsOf(const std::optional<Eigen::ArrayXd>& usual,
-                          const std::vector<UsedFrame>& frames) {
+Eigen::ArrayXXd WeightsOfFrames(const std::optional<Eigen::ArrayXd>& usual,
+                                const std::vector<UsedFrame>& frames) {
   constexpr double kFar = 4;
   Eigen::ArrayXXd weights(frames.front().values.size(),
                           Eigen::Index(frames.size()));
@@ -524,7 +524,7 @@ Estimate JointEstimate(const Scene& scene, const EstimatorOptions& options,
   const auto num_parameters = Eigen::Index(first.parameters.size());
   joint.error_budget.discretization =
       MeanDiscretization(used, free, num_parameters);
-  const Mean mean = MeanOf(used, WeightsOf(usual, used));
+  const Mean mean = MeanOf(used, WeightsOfFrames(usual, used));
   EnterMean(mean, free, load_error.relative, joint);
   if (IsOneIsotropicMaterial(scene.materials)) {
     EnterOneIsotropicMaterial(joint);

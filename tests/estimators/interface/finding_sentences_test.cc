@@ -251,7 +251,6 @@ TEST(FindingSentences, HaveNoPercentageBeyondAThousand) {
          {YoungsModulusOnBoundUndetermined(ratio), LargeCorrection(ratio),
           LoadsOutOfBalance(ratio, Severity::kError),
           LargeSmoothResidual(ratio), LargeResidual(ratio),
-          VirtualWorkImbalance(ratio, Severity::kError),
           AxisTurned(0.01, "", ratio), Outliers({ratio, 0}, {}),
           OutliersLeftOut({{0, 1, false}}, {ratio, 0}, {}),
           TrendOverFrames("E", true, {true, numbers, numbers, numbers}, 0),

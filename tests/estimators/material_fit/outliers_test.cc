@@ -119,7 +119,7 @@ Scene BlockOfUnknownInclusion() {
   scene.materials = IsotropicMaterialOfEachRegion(mesh);
   scene.load_cases.resize(1);
   LoadCase& load_case = scene.load_cases[0];
-  const std::vector<IsotropicElasticity> truth = {{1e-2, 0.45}, {1, 0.45}};
+  const std::vector<IsotropicElasticity> truth = {{1e-2, 0.45}, {0.04, 0.45}};
   const Eigen::VectorXd exact = testing::SolveByTextbook(scene, truth);
   const Eigen::MatrixXd force =
       (testing::TextbookStiffness(scene, truth) * exact)
@@ -146,7 +146,7 @@ TEST(FarNodes, OfAnotherMaterialDoNotHideWhatResultantsTell) {
       MakeEstimator("iterative-fe")->Run(BlockOfUnknownInclusion(), {});
   EXPECT_EQ(estimate.status, Status::kOk) << estimate.message;
   EXPECT_GT(estimate.elasticity.youngs_modulus, 1e-2);
-  EXPECT_LT(estimate.elasticity.youngs_modulus, 1);
+  EXPECT_LT(estimate.elasticity.youngs_modulus, 0.04);
   // That they are far off is noticed, and changes less than the value itself.
   EXPECT_TRUE(estimate.error_budget.outliers(0) > 0 &&
               estimate.error_budget.outliers(0) < 1)

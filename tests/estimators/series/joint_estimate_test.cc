@@ -285,6 +285,7 @@ TEST(JointEstimate, IsNotMisledByNoiseThatFewDegreesOfFreedomTell) {
 struct Scores {
   Eigen::Vector2d mean_square = Eigen::Vector2d::Zero();
   double share_of_trends = 0;
+  double share_of_scatters = 0;
 };
 
 Scores ScoresOf(int num_series, double scatter) {
@@ -312,6 +313,8 @@ Scores ScoresOf(int num_series, double scatter) {
         num_series;
     scores.share_of_trends +=
         double(joint.Has(FindingCode::kTrendOverFrames)) / num_series;
+    scores.share_of_scatters +=
+        double(joint.Has(FindingCode::kFramesScatter)) / num_series;
   }
   return scores;
 }
@@ -322,14 +325,16 @@ TEST(JointEstimateStatistics, ErrorsAreTrueOfIndependentFrames) {
   const Scores scores = ScoresOf(400, 1);
   EXPECT_LT(scores.mean_square.maxCoeff(), 1.2);
   EXPECT_GT(scores.mean_square.minCoeff(), 0.6);
-  // Of a probability of .01.
+  // Of a probability of .01, and of .001.
   EXPECT_LT(scores.share_of_trends, 0.03);
+  EXPECT_LE(scores.share_of_scatters, 0.01);
 }
 
 TEST(JointEstimateStatistics, ErrorsAreTrueOfFramesThatScatterMore) {
   const Scores scores = ScoresOf(400, 3);
   EXPECT_LT(scores.mean_square.maxCoeff(), 1.35);
   EXPECT_GT(scores.mean_square.minCoeff(), 0.7);
+  EXPECT_GT(scores.share_of_scatters, 0.9);
   EXPECT_LT(scores.share_of_trends, 0.03);
 }
 
