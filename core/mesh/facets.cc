@@ -80,8 +80,8 @@ Eigen::VectorXi NodesOfFace(const Mesh& mesh, Eigen::Index element,
   return nodes;
 }
 
-// Alike for all facets of the same nodes whose vertices follow each other in
-// the same circle, from whichever vertex on and whichever way around.
+// Two facets of the same nodes have the same circle if their vertices follow
+// each other alike, from whichever vertex on and whichever way around.
 std::vector<int> CircleOf(const Eigen::Ref<const Eigen::VectorXi>& facet,
                           int num_vertices) {
   std::vector<int> circle(facet.begin(), facet.end());

@@ -22,7 +22,8 @@ namespace {
 // in the variance of exact data.
 constexpr double kLeastError = 1e-12;
 constexpr double kLeastShare = 1e-6;
-// Of any parameter, where it has no trend, or frames scatter by noise only.
+// How often a trend, or a scatter, of any parameter is found where there is
+// none.
 constexpr double kProbabilityOfTrend = 0.01;
 constexpr double kProbabilityOfScatter = 1e-3;
 // Standard deviations are those of linear models at estimated parameters, and
@@ -37,8 +38,8 @@ struct UsedFrame {
   std::size_t number;  // From 1 on.
   Eigen::VectorXd values;
   Eigen::MatrixXd covariance;  // Without what is common by the loads.
-  // Of the variance of each parameter, what varies between frames: of all
-  // parameters zero where it is not known.
+  // How much of the variance of each parameter varies between frames: zero for
+  // all parameters where it is not known.
   Eigen::ArrayXd noise_share;
   double noise_sd;  // Not a number where it is not known.
 
