@@ -323,8 +323,10 @@ int RunEstimate(const std::vector<std::string>& arguments) {
   }
   if (!FLAGS_series.empty()) {
     throw std::invalid_argument(
-        AsGiven("series") + " is of a scene of frames; give " +
-        Sources(arguments) + " the key \"frames\", or leave the flag out");
+        AsGiven("series") + " is of a scene of frames, and " +
+        Sources(arguments) +
+        " has none; give a scene.json the key \"frames\", or leave the flag "
+        "out");
   }
   return RunOne(arguments, *estimator, std::move(reading), options,
                 read_seconds, start, progress);

@@ -6,18 +6,13 @@
 #include <vector>
 
 #include "apps/flags.h"
+#include "elastimate/core/text/numbers.h"
 
 namespace elastimate {
 namespace {
 
 std::optional<double> Given(const std::string& flag, double value) {
   return IsGiven(flag) ? std::optional<double>(value) : std::nullopt;
-}
-
-std::string Text(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
 }
 
 void Require(bool condition, const std::string& flag, const std::string& rule) {
@@ -48,9 +43,10 @@ void CheckPoissonRatioFlags(const EstimatorOptions& options) {
   const std::optional<double>& lower = options.poisson_ratio.lower;
   const std::optional<double>& upper = options.poisson_ratio.upper;
   Require(!lower || (*lower >= -1 && *lower < kLargestPoissonRatio), "nu_min",
-          "it must be from -1 to below " + Text(kLargestPoissonRatio));
-  Require(!upper || (*upper > kSmallestPoissonRatio && *upper <= 0.5), "nu_max",
-          "it must be from above " + Text(kSmallestPoissonRatio) + " to 0.5");
+          "it must be from -1 to below " + NumberText(kLargestPoissonRatio));
+  Require(
+      !upper || (*upper > kSmallestPoissonRatio && *upper <= 0.5), "nu_max",
+      "it must be from above " + NumberText(kSmallestPoissonRatio) + " to 0.5");
   RequireInOrder("nu", options.poisson_ratio);
 }
 

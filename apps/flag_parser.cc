@@ -17,6 +17,7 @@ namespace elastimate {
 namespace {
 
 constexpr const char* kEndOfFlags = "--";
+constexpr const char* kHelpCommand = "help";
 
 std::string TypeOf(const std::string& flag) {
   gflags::CommandLineFlagInfo info;
@@ -90,6 +91,12 @@ void CheckIsTheSame(const std::string& flag, const std::string& first,
   }
 }
 
+std::string Usage(const Program& program, const Command& command) {
+  return program.name + " " + command.name +
+         (command.arguments.empty() ? "" : " " + command.arguments) + "\n    " +
+         command.summary + "\n";
+}
+
 }  // namespace
 
 const Command& FindCommand(const Program& program, const std::string& name) {
@@ -158,30 +165,47 @@ std::string AsGiven(const std::string& flag) {
 }
 
 std::string CommandsHelp(const Program& program) {
-  std::ostringstream help;
+  std::string help;
   for (const Command& command : program.commands) {
-    help << "\n"
-         << program.name << " " << command.name << " " << command.arguments
-         << "\n    " << command.summary << "\n";
-    for (const std::string& flag : command.flags) {
-      gflags::CommandLineFlagInfo info;
-      gflags::GetCommandLineFlagInfo(flag.c_str(), &info);
-      // A default of 0 stands for "not given", except where it means itself.
-      const bool shows_default = !info.default_value.empty() &&
-                                 info.default_value != "0" &&
-                                 info.type != "bool";
-      help << "      --" << flag << "  " << info.description
-           << (shows_default
-                   ? " (default " + ValueText(info, info.default_value) + ")"
-                   : "")
-           << "\n";
-    }
+    help += Usage(program, command);
+  }
+  return help;
+}
+
+std::string CommandHelp(const Program& program, const Command& command) {
+  std::size_t width = 0;
+  for (const std::string& flag : command.flags) {
+    width = std::max(width, flag.size());
+  }
+  std::ostringstream help;
+  help << Usage(program, command) << (command.flags.empty() ? "" : "\n");
+  for (const std::string& flag : command.flags) {
+    gflags::CommandLineFlagInfo info;
+    gflags::GetCommandLineFlagInfo(flag.c_str(), &info);
+    // A default of 0 stands for "not given", except where it means itself.
+    const bool shows_default = !info.default_value.empty() &&
+                               info.default_value != "0" && info.type != "bool";
+    help << "  --" << std::left << std::setw(int(width)) << flag << "  "
+         << info.description
+         << (shows_default
+                 ? " (default " + ValueText(info, info.default_value) + ")"
+                 : "")
+         << "\n";
   }
   return help.str();
 }
 
+const Command* CommandToExplain(const Program& program,
+                                const std::vector<std::string>& arguments) {
+  const std::size_t place =
+      !arguments.empty() && arguments[0] == kHelpCommand ? 1 : 0;
+  return place < arguments.size() && arguments[place][0] != '-'
+             ? &FindCommand(program, arguments[place])
+             : nullptr;
+}
+
 bool AsksForHelp(const std::vector<std::string>& arguments) {
-  return (!arguments.empty() && arguments[0] == "help") ||
+  return (!arguments.empty() && arguments[0] == kHelpCommand) ||
          std::any_of(arguments.begin(),
                      std::find(arguments.begin(), arguments.end(), kEndOfFlags),
                      [](const std::string& argument) {

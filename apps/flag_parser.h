@@ -38,8 +38,16 @@ bool IsGiven(const std::string& flag);
 /// The flag with its value, such as "--nu=0.3".
 std::string AsGiven(const std::string& flag);
 
-/// Usage of all commands and the meaning of their flags.
+/// Usage of all commands, without their flags.
 std::string CommandsHelp(const Program& program);
+
+/// Usage of one command, with a line for each of its flags.
+std::string CommandHelp(const Program& program, const Command& command);
+
+/// The command that arguments name beside what asks for help, null where they
+/// name none.  Throws std::invalid_argument for one that there is not.
+const Command* CommandToExplain(const Program& program,
+                                const std::vector<std::string>& arguments);
 
 /// Whether the arguments ask for help, by "help", or by "--help" or "-h" before
 /// any "--".

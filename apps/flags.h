@@ -4,6 +4,7 @@
 #include <gflags/gflags_declare.h>
 
 #include <string>
+#include <vector>
 
 #include "apps/flag_parser.h"
 
@@ -52,8 +53,10 @@ namespace elastimate {
 /// The program `elastimate`.
 const Program& Elastimate();
 
-/// Usage of all commands and the meaning of their flags.
-std::string Help();
+/// What arguments that ask for help (AsksForHelp) ask for: the usage of the
+/// command that they name, with the meaning of its flags, else a list of the
+/// commands.  Throws std::invalid_argument where there is no such command.
+std::string HelpFor(const std::vector<std::string>& arguments);
 
 }  // namespace elastimate
 

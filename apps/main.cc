@@ -88,7 +88,7 @@ int Run(const std::vector<std::string>& arguments) {
     throw std::invalid_argument("give a command; see elastimate --help");
   }
   if (AsksForHelp(arguments)) {
-    WriteStandardOutput(Help());
+    WriteStandardOutput(HelpFor(arguments));
     return 0;
   }
   if (arguments[0] == "--version") {
@@ -117,8 +117,7 @@ std::string ButGot(const std::vector<std::string>& arguments) {
 
 int main(int argc, char** argv) {
   elastimate::OpenClosedStandardStreams();
-  // Output that nobody reads, or that grows too large, is an error like any
-  // other.
+  // A pipe or a file that takes no more is told by the call that writes to it.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   elastimate::CleanUpOnSignals();

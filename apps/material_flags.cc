@@ -43,7 +43,7 @@ LawChoice LawFromFlags() {
     choice.law = FLAGS_material;
     if (FindLaw(choice.law) == nullptr) {
       throw std::invalid_argument(AsGiven("material") + "; the laws are " +
-                                  LawNames());
+                                  LawNames() + "; estimate takes auto too");
     }
   }
   if (IsGiven("axis")) {

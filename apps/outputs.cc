@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "apps/flags.h"
+#include "apps/signals.h"
 #include "elastimate/io/text/file_output.h"
 #include "elastimate/io/text/printable.h"
 
@@ -143,8 +144,12 @@ void CheckOutputFlags(const std::vector<std::string>& inputs,
 }
 
 void WriteStandardOutput(const std::string& text) {
+  errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() ||
       std::fflush(stdout) != 0) {
+    if (errno == EPIPE) {
+      EndByClosedPipe();
+    }
     throw std::invalid_argument("standard output cannot be written (" +
                                 std::string(strerror(errno)) +
                                 "); send it elsewhere");

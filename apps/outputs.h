@@ -23,7 +23,8 @@ bool HasExtension(const std::string& file, const std::string& extension);
 void CheckOutputFlags(const std::vector<std::string>& inputs,
                       OutFormats formats = OutFormats::kVtu);
 
-/// Throws std::invalid_argument when not all of the text arrives.
+/// Throws std::invalid_argument when not all of the text arrives.  Where its
+/// reader is gone, as after `| head -1`, this ends the program as SIGPIPE does.
 void WriteStandardOutput(const std::string& text);
 
 /// Writes the notices to standard error, one a line.

@@ -1,8 +1,8 @@
 #include "apps/plan_summary.h"
 
 #include <cmath>
-#include <iomanip>
-#include <sstream>
+
+#include "elastimate/core/text/numbers.h"
 
 namespace elastimate {
 namespace {
@@ -12,12 +12,6 @@ constexpr std::size_t kMostColumns = 6;
 constexpr int kWidthOfName = 22;
 constexpr int kWidthOfColumn = 15;
 
-std::string ShortNumber(double value, int digits) {
-  std::ostringstream text;
-  text << std::setprecision(digits) << value;
-  return text.str();
-}
-
 std::string Padded(const std::string& text, int width) {
   const std::size_t size = std::size_t(width);
   return text.size() < size ? text + std::string(size - text.size(), ' ')
@@ -26,8 +20,8 @@ std::string Padded(const std::string& text, int width) {
 
 std::string ErrorText(double error, bool is_relative) {
   return !std::isfinite(error) ? "undetermined"
-         : is_relative         ? ShortNumber(100 * error, 2) + " %"
-                               : ShortNumber(error, 2);
+         : is_relative         ? Percent(error)
+                               : NumberText(error, 2);
 }
 
 std::string WorstText(const ExpectedErrors& errors,
@@ -71,7 +65,7 @@ std::string ParametersText(const LoadPlan& plan, const PlanBasis& basis) {
       text += parameter.Label() + " " +
               (parameter.IsStiffness() && !basis.is_scale_known
                    ? "of any size"
-                   : ShortNumber(parameter.value, 4)) +
+                   : NumberText(parameter.value, 4)) +
               (parameter.is_known ? " (known), " : ", ");
     }
   } else {
@@ -100,9 +94,9 @@ std::string PlanSummary(const LoadPlan& plan, const PlanBasis& basis,
       Padded("before", kWidthOfName) + LoadCasesText(basis) + "\n" +
       Padded("parameters", kWidthOfName) + ParametersText(plan, basis) + "\n" +
       Padded("noise", kWidthOfName) +
-      (basis.noise_sd ? "standard deviation " + ShortNumber(*basis.noise_sd, 3)
-                      : ShortNumber(100 * basis.relative_noise, 3) +
-                            " % of the rms displacement of each load case") +
+      (basis.noise_sd ? "standard deviation " + NumberText(*basis.noise_sd, 3)
+                      : PercentOf(basis.relative_noise,
+                                  "the rms displacement of each load case")) +
       "\n\n" + Heading(free) + Row("before", plan.before, free) + "\n";
   for (const PlannedLoad& load : plan.loads) {
     text += Row("+ " + candidates[load.candidate].name, load.errors, free) +
@@ -115,7 +109,7 @@ std::string PlanSummary(const LoadPlan& plan, const PlanBasis& basis,
     text +=
         Padded(i == 0 ? "measure next" : "then", kWidthOfName) + candidate.name;
     if (candidate.is_free_in_size && basis.is_scale_known && load.factor) {
-      text += " of about " + ShortNumber(*load.factor, 2);
+      text += " of about " + NumberText(*load.factor, 2);
     }
     text +=
         i == 0 ? "\n" : ", which leaves " + WorstText(load.errors, free) + "\n";

@@ -1,6 +1,7 @@
 #include "apps/signals.h"
 
 #include <pthread.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <csignal>
@@ -12,6 +13,13 @@ namespace {
 
 pthread_t main_thread;
 
+// Whoever waits for the program sees that a signal ended it.
+void EndBySignal(int signal_number) {
+  UnlinkStagedFiles();
+  signal(signal_number, SIG_DFL);
+  raise(signal_number);
+}
+
 // The main thread, which writes the outputs, must not make another one after
 // they are removed: so it is the one that removes them.
 void CleanUpAndEnd(int signal_number) {
@@ -21,10 +29,7 @@ void CleanUpAndEnd(int signal_number) {
     errno = reason;
     return;
   }
-  UnlinkStagedFiles();
-  // Whoever waits for the program sees that a signal ended it.
-  signal(signal_number, SIG_DFL);
-  raise(signal_number);
+  EndBySignal(signal_number);
 }
 
 }  // namespace
@@ -41,6 +46,11 @@ void CleanUpOnSignals() {
       sigaction(signal_number, &action, nullptr);
     }
   }
+}
+
+void EndByClosedPipe() {
+  EndBySignal(SIGPIPE);
+  _exit(128 + SIGPIPE);  // Where the signal is blocked: what shells make of it.
 }
 
 }  // namespace elastimate

@@ -9,6 +9,10 @@ namespace elastimate {
 /// is the only one that may write outputs.
 void CleanUpOnSignals();
 
+/// Ends the program as SIGPIPE does one that does not ignore it, and leaves no
+/// part of an output.
+[[noreturn]] void EndByClosedPipe();
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_APPS_SIGNALS_H_

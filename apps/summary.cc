@@ -9,17 +9,12 @@
 #include <vector>
 
 #include "elastimate/core/scene/loads.h"
+#include "elastimate/core/text/numbers.h"
 #include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 
 namespace elastimate {
 namespace {
-
-std::string Number(double value, int digits) {
-  std::ostringstream text;
-  text << std::setprecision(digits) << value;
-  return text.str();
-}
 
 void Line(const std::string& name, const std::string& value,
           std::ostringstream& text) {
@@ -38,8 +33,8 @@ std::string WithError(double value, const std::optional<double>& error) {
     const double ratio = std::abs(value) / *error;
     digits = std::min(10, std::max(3, 2 + int(std::ceil(std::log10(ratio)))));
   }
-  return Number(value, digits) +
-         (error ? " +- " + Number(*error, 2) : " (no standard error)");
+  return NumberText(value, digits) +
+         (error ? " +- " + NumberText(*error, 2) : " (no standard error)");
 }
 
 // Near nu = 1/2 and -1, E and nu are not what the data determine.
@@ -48,11 +43,10 @@ bool ReachesLimit(const Estimate& estimate) {
          estimate.poisson_ratio_interval->lower == -1;
 }
 
-// What the error of E (place 0, in percent) or of nu (1) is made of, the
-// largest part first.
+// What the error of E (place 0, relative) or of nu (1) is made of, the largest
+// part first.
 void AddErrors(const std::string& name, Eigen::Index place,
                const ErrorBudget& budget, std::ostringstream& text) {
-  const double unit = place == 0 ? 100 : 1;
   std::vector<std::pair<double, const char*>> parts;
   for (const auto& [errors, cause] :
        {std::pair{&budget.noise, "noise"}, std::pair{&budget.bias, "its bias"},
@@ -60,7 +54,7 @@ void AddErrors(const std::string& name, Eigen::Index place,
         std::pair{&budget.outliers, "outliers"},
         std::pair{&budget.discretization, "the mesh"}}) {
     if (errors->size() > place && (*errors)(place) > 0) {
-      parts.emplace_back(unit * (*errors)(place), cause);
+      parts.emplace_back((*errors)(place), cause);
     }
   }
   if (parts.empty()) {
@@ -73,7 +67,7 @@ void AddErrors(const std::string& name, Eigen::Index place,
   for (const auto& [error, cause] : parts) {
     if (error >= kSmallest * parts.front().first) {
       list += std::string(list.empty() ? "mostly " : ", ") + cause + " (" +
-              Number(error, 2) + (place == 0 ? " %)" : ")");
+              (place == 0 ? Percent(error) : TwoDigits(error)) + ")";
     }
   }
   Line("error of " + name, list, text);
@@ -96,8 +90,8 @@ void AddErrors(const Estimate& estimate, std::ostringstream& text) {
       std::abs(correction(1)) >
           kNotable * estimate.PoissonRatioStandardError().value_or(0)) {
     Line("corrected by",
-         Number(100 * correction(0), 2) + " % of E and " +
-             Number(correction(1), 2) + " in nu for what the elements miss",
+         PercentOf(correction(0), "E") + " and " +
+             NumberText(correction(1), 2) + " in nu for what the elements miss",
          text);
   }
 }
@@ -115,8 +109,8 @@ void AddElasticity(const Estimate& estimate, std::ostringstream& text) {
       text);
   if (estimate.poisson_ratio_interval && ReachesLimit(estimate)) {
     Line("",
-         "between " + Number(estimate.poisson_ratio_interval->lower, 4) +
-             " and " + Number(estimate.poisson_ratio_interval->upper, 4) +
+         "between " + NumberText(estimate.poisson_ratio_interval->lower, 4) +
+             " and " + NumberText(estimate.poisson_ratio_interval->upper, 4) +
              " (95 %)",
          text);
     Line("shear modulus mu",
@@ -143,10 +137,11 @@ std::string Verdict(const MaterialEstimate& material) {
     verdict += (verdict.empty() ? "" : ", ") + part;
   };
   if (material.energy_share) {
-    add(TwoDigits(100 * *material.energy_share) + " % of the strain energy");
+    add(PercentOf(*material.energy_share, "the strain energy"));
   }
   if (material.residual_chi_square) {
-    add("residuals of " + Number(std::sqrt(*material.residual_chi_square), 2) +
+    add("residuals of " +
+        NumberText(std::sqrt(*material.residual_chi_square), 2) +
         " of the noise");
   }
   return verdict;
@@ -161,7 +156,7 @@ void AddParameters(const Estimate& estimate, std::ostringstream& text) {
     }
     Line(parameter.Label(),
          parameter.is_known
-             ? Number(parameter.value, 6) + " (known)"
+             ? NumberText(parameter.value, 6) + " (known)"
              : WithError(parameter.value, parameter.standard_error),
          text);
   }
@@ -172,7 +167,7 @@ void AddAxes(const Estimate& estimate, std::ostringstream& text) {
   for (const AxisEstimate& axis : estimate.axes) {
     std::string components;
     for (const double component : axis.direction) {
-      components += (components.empty() ? "" : ", ") + Number(component, 4);
+      components += (components.empty() ? "" : ", ") + NumberText(component, 4);
     }
     // Without "the".
     Line(axis.Label().substr(4),
@@ -181,8 +176,8 @@ void AddAxes(const Estimate& estimate, std::ostringstream& text) {
              : components +
                    (axis.standard_error
                         ? " +- " +
-                              Number(kDegreesOfRadian * *axis.standard_error,
-                                     2) +
+                              NumberText(
+                                  kDegreesOfRadian * *axis.standard_error, 2) +
                               " degrees"
                         : " (no standard error)"),
          text);
@@ -206,31 +201,32 @@ void AddMaterials(const Estimate& estimate, std::ostringstream& text) {
 
 void AddDiagnostics(const Estimate& estimate, std::ostringstream& text) {
   if (estimate.noise_sd) {
-    Line("noise sd", Number(*estimate.noise_sd, 3), text);
+    Line("noise sd", NumberText(*estimate.noise_sd, 3), text);
   }
   if (estimate.force_residual) {
-    Line("force residual", Number(*estimate.force_residual, 3) + " of the load",
-         text);
+    Line("force residual",
+         NumberText(*estimate.force_residual, 3) + " of the load", text);
   }
   if (estimate.displacement_residual) {
     Line("displacement residual",
-         Number(*estimate.displacement_residual, 3) + " of the measured", text);
+         NumberText(*estimate.displacement_residual, 3) + " of the measured",
+         text);
   }
   if (estimate.residual_correlation) {
     Line("residual correlation",
-         Number(*estimate.residual_correlation, 2) + " between neighbours" +
+         NumberText(*estimate.residual_correlation, 2) + " between neighbours" +
              (estimate.correlation_length.value_or(0) > 0
                   ? ", alike over a length of " +
-                        Number(*estimate.correlation_length, 2)
+                        NumberText(*estimate.correlation_length, 2)
                   : ""),
          text);
   }
   if (estimate.noise_attenuation) {
-    Line("noise attenuation", Number(*estimate.noise_attenuation, 3), text);
+    Line("noise attenuation", NumberText(*estimate.noise_attenuation, 3), text);
   }
   if (estimate.identifiability_angle) {
     Line("identifiability angle",
-         Number(kDegreesOfRadian * *estimate.identifiability_angle, 3) +
+         NumberText(kDegreesOfRadian * *estimate.identifiability_angle, 3) +
              " degrees",
          text);
   }
@@ -254,7 +250,7 @@ std::string Vector(const Eigen::VectorXd& values) {
   std::string text;
   for (const double value : values) {
     text += (text.empty() ? "(" : ", ") +
-            Number(std::abs(value) > rounding ? value : 0, 4);
+            NumberText(std::abs(value) > rounding ? value : 0, 4);
   }
   return text + ")";
 }
@@ -271,8 +267,9 @@ void AddLoads(const std::string& name, const Mesh& mesh,
       Line(name,
            std::string(resultant.type) + ", resultant " +
                Vector(resultant.force) +
-               (resultant.area ? " on an area of " + Number(*resultant.area, 4)
-                               : ""),
+               (resultant.area
+                    ? " on an area of " + NumberText(*resultant.area, 4)
+                    : ""),
            text);
     }
   }
@@ -313,8 +310,8 @@ void AddMerges(const std::vector<RegionMerge>& merges,
   for (const RegionMerge& merge : merges) {
     Line(merge.is_taken ? "merged" : "told apart",
          "regions " + ListOf(merge.first) + " and " + ListOf(merge.second) +
-             " (chi^2 " + Number(merge.chi_square, 3) + ", limit " +
-             Number(merge.limit, 3) + ")",
+             " (chi^2 " + NumberText(merge.chi_square, 3) + ", limit " +
+             NumberText(merge.limit, 3) + ")",
          text);
     if (!merge.is_taken) {
       break;
@@ -327,8 +324,9 @@ void AddLaws(const std::vector<LawComparison>& laws, std::ostringstream& text) {
   for (const LawComparison& law : laws) {
     Line(&law == laws.data() ? "law chosen" : "not",
          law.law + " (" + std::to_string(law.num_parameters) +
-             " parameters, chi^2 " + Number(law.chi_square, 3) + ", BIC " +
-             (&law == laws.data() ? "least" : "+" + Number(law.criterion, 3)) +
+             " parameters, chi^2 " + NumberText(law.chi_square, 3) + ", BIC " +
+             (&law == laws.data() ? "least"
+                                  : "+" + NumberText(law.criterion, 3)) +
              ")",
          text);
   }
@@ -338,9 +336,10 @@ void AddSeries(const SeriesSummary& series, std::ostringstream& text) {
   const Interval& loads = series.loads;
   std::string under;
   if (loads.lower != 1 || loads.upper != 1) {
-    under = ", at " + Number(loads.lower, 4) +
-            (loads.lower < loads.upper ? " to " + Number(loads.upper, 4) : "") +
-            " times the loads";
+    under =
+        ", at " + NumberText(loads.lower, 4) +
+        (loads.lower < loads.upper ? " to " + NumberText(loads.upper, 4) : "") +
+        " times the loads";
   }
   Line("frames",
        std::to_string(series.num_used) + " of " +
@@ -349,6 +348,18 @@ void AddSeries(const SeriesSummary& series, std::ostringstream& text) {
 }
 
 // From the least load to the largest, or in time.
+// "5.1 +- 0.2 %".
+std::string ChangeText(double change, double error, bool is_relative) {
+  if (!is_relative) {
+    return TwoDigits(change) + " +- " + TwoDigits(error);
+  }
+  std::string text = Percent(change);
+  if (text.back() == '%') {
+    text.erase(text.size() - 2);
+  }
+  return text + " +- " + Percent(error);
+}
+
 void AddTrend(const std::vector<ParameterEstimate>& parameters,
               const Trend& trend, std::ostringstream& text) {
   std::string changes;
@@ -357,11 +368,9 @@ void AddTrend(const std::vector<ParameterEstimate>& parameters,
     if (std::isnan(trend.change(place))) {
       continue;
     }
-    const double unit = parameters[i].is_modulus ? 100 : 1;
     changes += (changes.empty() ? "" : ", ") + parameters[i].Label() + " " +
-               Number(unit * trend.change(place), 2) + " +- " +
-               Number(unit * trend.standard_error(place), 2) +
-               (parameters[i].is_modulus ? " %" : "");
+               ChangeText(trend.change(place), trend.standard_error(place),
+                          parameters[i].is_modulus);
   }
   Line(trend.is_over_load ? "change over the load" : "change in time", changes,
        text);
@@ -382,7 +391,7 @@ void AddSceneSize(const Scene& scene, std::ostringstream& text) {
          std::string(scene.mesh.section.model == SectionModel::kPlaneStress
                          ? "plane stress"
                          : "plane strain") +
-             ", thickness " + Number(scene.mesh.section.thickness, 4),
+             ", thickness " + NumberText(scene.mesh.section.thickness, 4),
          text);
   }
 }
@@ -422,19 +431,20 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
   }
   Line("work",
        std::to_string(estimate.work.element_passes) + " element passes, " +
-           Solving(estimate.work) + Number(estimate.seconds, 3) + " s",
+           Solving(estimate.work) + NumberText(estimate.seconds, 3) + " s",
        text);
   Line("time",
-       Number(times.read, 3) + " s to read the scene, " +
-           Number(times.total, 3) + " s in all",
+       NumberText(times.read, 3) + " s to read the scene, " +
+           NumberText(times.total, 3) + " s in all",
        text);
   for (const Rung& rung : estimate.rungs) {
-    Line("rung",
-         rung.estimator +
-             (rung.element_order == 2 ? " with quadratic elements" : "") +
-             (rung.status ? ", " + Number(rung.seconds, 2) + " s, " : ", ") +
-             rung.decision,
-         text);
+    Line(
+        "rung",
+        rung.estimator +
+            (rung.element_order == 2 ? " with quadratic elements" : "") +
+            (rung.status ? ", " + NumberText(rung.seconds, 2) + " s, " : ", ") +
+            rung.decision,
+        text);
   }
   for (const Severity severity : {Severity::kWarning, Severity::kNotice}) {
     for (const std::string& sentence : estimate.Sentences(severity)) {

@@ -78,7 +78,9 @@ std::string Help() {
   std::ostringstream help;
   help << "elastimate_benchmark: the studies that compare the estimators, and "
           "the times of the kernels.\n"
-       << CommandsHelp(Benchmark()) << "\nStudies:\n";
+       << CommandHelp(Benchmark(), FindCommand(Benchmark(), "study"))
+       << CommandHelp(Benchmark(), FindCommand(Benchmark(), "kernels"))
+       << "\nStudies:\n";
   for (const NamedStudy& study : kStudies) {
     help << "      " << study.name << "  " << study.summary << "\n";
   }

@@ -4,6 +4,7 @@
 
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/unknown_motion.h"
+#include "elastimate/core/text/numbers.h"
 #include "elastimate/estimators/displacement_fit/iterative_fe.h"
 #include "elastimate/estimators/displacement_fit/reduced_fe.h"
 #include "elastimate/estimators/element_order.h"
@@ -42,7 +43,7 @@ std::string WhyNotWithinTolerance(const EstimatorOptions& options,
   }
   const double relative = *youngs / estimate.elasticity.youngs_modulus;
   if (relative > kLimits.notable_youngs_modulus_error) {
-    return "the standard error of E is " + TwoDigits(100 * relative) + " %";
+    return "the standard error of E is " + Percent(relative);
   }
   if (poisson.value_or(0) > kLimits.notable_poisson_ratio_error) {
     return "the standard error of nu is " + TwoDigits(*poisson);
@@ -60,8 +61,7 @@ std::string WhyParametersNotWithinTolerance(const Estimate& estimate) {
                                  : kLimits.notable_poisson_ratio_error;
     if (error > tolerance) {
       return "the standard error of " + parameter.Label() + " is " +
-             (parameter.IsStiffness() ? TwoDigits(100 * error) + " %"
-                                      : TwoDigits(error));
+             (parameter.IsStiffness() ? Percent(error) : TwoDigits(error));
     }
   }
   return "";

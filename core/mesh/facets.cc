@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <set>
 #include <tuple>
 #include <vector>
 
@@ -59,6 +60,38 @@ std::vector<ElementFace> OuterFaces(const Mesh& mesh) {
                      std::tie(b.element, b.index);
             });
   return outer;
+}
+
+// The nodes of a face of an element as those of a facet, which points as the
+// topology has it.
+Eigen::VectorXi NodesOfFace(const Mesh& mesh, Eigen::Index element,
+                            const std::vector<int>& vertices) {
+  const ElementTopology& topology = mesh.Topology();
+  const int num_vertices = topology.NumVerticesOfFace();
+  Eigen::VectorXi nodes(topology.NumNodesOfFace());
+  for (int k = 0; k < num_vertices; ++k) {
+    nodes(k) = mesh.elements(vertices[k], element);
+  }
+  for (int k = num_vertices; k < nodes.size(); ++k) {
+    const int a = vertices[k - num_vertices];
+    const int b = vertices[(k - num_vertices + 1) % num_vertices];
+    nodes(k) = mesh.elements(topology.MidEdgeNode(a, b), element);
+  }
+  return nodes;
+}
+
+// Two facets of the same nodes have the same circle if their vertices follow
+// each other alike, from whichever vertex on and whichever way around.
+std::vector<int> CircleOf(const Eigen::Ref<const Eigen::VectorXi>& facet,
+                          int num_vertices) {
+  std::vector<int> circle(facet.begin(), facet.end());
+  const auto end = circle.begin() + num_vertices;
+  std::rotate(circle.begin(), std::min_element(circle.begin(), end), end);
+  if (circle[1] > *(end - 1)) {
+    std::reverse(circle.begin() + 1, end);
+  }
+  std::sort(end, circle.end());
+  return circle;
 }
 
 // The determinant of the edges from the first corner.
@@ -129,16 +162,42 @@ Eigen::MatrixXi BoundaryFacets(const Mesh& mesh) {
       std::reverse(vertices.begin() + (num_vertices == 2 ? 0 : 1),
                    vertices.end());
     }
-    for (int k = 0; k < num_vertices; ++k) {
-      facets(k, i) = mesh.elements(vertices[k], face.element);
-    }
-    for (int k = num_vertices; k < facets.rows(); ++k) {
-      const int a = vertices[k - num_vertices];
-      const int b = vertices[(k - num_vertices + 1) % num_vertices];
-      facets(k, i) = mesh.elements(topology.MidEdgeNode(a, b), face.element);
-    }
+    facets.col(i) = NodesOfFace(mesh, face.element, vertices);
   }
   return facets;
+}
+
+std::optional<Eigen::Index> FirstThatIsNoFace(const Mesh& mesh,
+                                              const Eigen::MatrixXi& facets) {
+  const ElementTopology& topology = mesh.Topology();
+  const int num_vertices = topology.NumVerticesOfFace();
+  std::set<std::vector<int>> missing;
+  std::vector<char> is_in_facet(mesh.NumNodes(), 0);
+  for (const auto& facet : facets.colwise()) {
+    missing.insert(CircleOf(facet, num_vertices));
+    for (const int node : facet) {
+      is_in_facet[node] = 1;
+    }
+  }
+  for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
+    int num_shared = 0;
+    for (const int node : mesh.elements.col(element)) {
+      num_shared += is_in_facet[node];
+    }
+    if (num_shared < num_vertices) {
+      continue;
+    }
+    for (const std::vector<int>& vertices : topology.faces) {
+      missing.erase(
+          CircleOf(NodesOfFace(mesh, element, vertices), num_vertices));
+    }
+  }
+  for (Eigen::Index facet = 0; facet < facets.cols(); ++facet) {
+    if (missing.count(CircleOf(facets.col(facet), num_vertices)) != 0) {
+      return facet;
+    }
+  }
+  return std::nullopt;
 }
 
 FacetWeights WeightsOfFacet(const Mesh& mesh,

@@ -2,6 +2,7 @@
 #define ELASTIMATE_CORE_MESH_FACETS_H_
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "elastimate/core/mesh/mesh.h"
 
@@ -17,6 +18,13 @@ namespace elastimate {
 /// right of the way from x0 to x1.  In the order of the elements that own them.
 /// O(num_elements).
 Eigen::MatrixXi BoundaryFacets(const Mesh& mesh);
+
+/// The first facet that is no face of any element, in any order of vertices
+/// around it, with the middles of its edges where elements are quadratic; empty
+/// if each is one.  Precondition: NumNodesOfFace() nodes in range.
+/// O(num_elements + num_facets log num_facets).
+std::optional<Eigen::Index> FirstThatIsNoFace(const Mesh& mesh,
+                                              const Eigen::MatrixXi& facets);
 
 /// What a facet gives to its nodes of a uniform load.
 struct FacetWeights {

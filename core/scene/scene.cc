@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 #include "elastimate/core/mesh/axis_names.h"
+#include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/mesh/representable.h"
-#include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/unknown_motion.h"
+#include "elastimate/core/text/numbers.h"
 
 namespace elastimate {
 namespace {
@@ -137,6 +137,13 @@ void ValidateFacets(const Mesh& mesh, const Eigen::MatrixXi& facets,
       }
     }
   }
+  if (const std::optional<Eigen::Index> facet =
+          FirstThatIsNoFace(mesh, facets)) {
+    Fail("facet " + std::to_string(*facet) + " of " + what + " is no " +
+         (mesh.Dimension() == 3 ? "face" : "edge") + " of " +
+         std::string(topology.shapes) +
+         "; take the facets from the mesh, as BoundaryFacets has them");
+  }
 }
 
 // One overload per kind of load.
@@ -167,10 +174,6 @@ struct LoadValidator {
   void operator()(const SurfaceForce& load) const {
     ValidateFacets(mesh, load.facets, "the force on a surface in " + where);
     RequireVector(load.force, mesh, "the force on a surface in " + where);
-    if (!(FacetArea(mesh, load.facets) > 0)) {
-      Fail("the force on a surface in " + where +
-           " acts on facets without area; name a part of the surface");
-    }
   }
 };
 
@@ -210,7 +213,7 @@ void ValidatePointDisplacements(const Mesh& mesh,
         const double sd = measured.noise_sd(i, point);
         if (!(std::isfinite(sd) && sd > 0)) {
           Fail("the noise standard deviation of " + where + " is " +
-               std::to_string(sd) + "; it must be positive");
+               NumberText(sd) + "; it must be positive");
         }
         RequireRepresentable(sd, "the noise standard deviation of " + where);
       }
@@ -228,7 +231,7 @@ void ValidateMeasurement(const Mesh& mesh, const LoadCase& load_case,
   if (load_case.noise_sd &&
       !(std::isfinite(*load_case.noise_sd) && *load_case.noise_sd > 0)) {
     Fail("the noise standard deviation of " + name + " is " +
-         std::to_string(*load_case.noise_sd) + "; it must be positive");
+         NumberText(*load_case.noise_sd) + "; it must be positive");
   }
   RequireRepresentable(load_case.noise_sd.value_or(0),
                        "the noise standard deviation of " + name);

@@ -4,6 +4,7 @@
 #include <sstream>
 #include <utility>
 
+#include "elastimate/core/text/numbers.h"
 #include "elastimate/estimators/interface/input_checks.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/stopwatch.h"
@@ -11,24 +12,19 @@
 namespace elastimate {
 namespace {
 
-std::string AsText(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
-
 std::string WhyInvalidBounds(const Bounds& bounds, const std::string& name,
                              double smallest, double largest,
                              const std::string& range) {
   for (const auto& bound : {bounds.lower, bounds.upper}) {
     if (bound && !(*bound >= smallest && *bound <= largest)) {
-      return "a bound on " + name + " is " + AsText(*bound) + "; it must be " +
-             range;
+      return "a bound on " + name + " is " + NumberText(*bound) +
+             "; it must be " + range;
     }
   }
   if (bounds.lower && bounds.upper && !(*bounds.lower < *bounds.upper)) {
     return "the bounds on " + name + " are crossed: the lower is " +
-           AsText(*bounds.lower) + ", the upper " + AsText(*bounds.upper);
+           NumberText(*bounds.lower) + ", the upper " +
+           NumberText(*bounds.upper);
   }
   return "";
 }
@@ -51,7 +47,7 @@ class NoPreparation : public Preparation {
 std::string EstimatorOptions::WhyInvalid() const {
   if (known_poisson_ratio &&
       !(*known_poisson_ratio > -1 && *known_poisson_ratio < 0.5)) {
-    return "the known Poisson's ratio is " + AsText(*known_poisson_ratio) +
+    return "the known Poisson's ratio is " + NumberText(*known_poisson_ratio) +
            "; it must be above -1 and below 0.5";
   }
   if (known_poisson_ratio && poisson_ratio.AreGiven()) {
@@ -64,8 +60,8 @@ std::string EstimatorOptions::WhyInvalid() const {
       (poisson_ratio.lower.value_or(-1) >= kLargestPoissonRatio ||
        poisson_ratio.upper.value_or(0.5) <= kSmallestPoissonRatio)) {
     why = "the bounds on Poisson's ratio leave nothing between " +
-          AsText(kSmallestPoissonRatio) + " and " +
-          AsText(kLargestPoissonRatio);
+          NumberText(kSmallestPoissonRatio) + " and " +
+          NumberText(kLargestPoissonRatio);
   }
   if (why.empty()) {
     why = WhyInvalidBounds(

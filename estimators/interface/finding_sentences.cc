@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
+#include <string>
 #include <vector>
 
+#include "elastimate/core/text/numbers.h"
 #include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/interface/limits.h"
 
@@ -42,13 +43,11 @@ std::array<Modulus, 3> Moduli(const IsotropicElasticity& elasticity) {
           "the bulk modulus", elasticity.BulkModulus(), {1, 2 / (1 - 2 * nu)}}};
 }
 
-std::string Text(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
+// "about 5 %".
+std::string AboutPercent(double ratio) {
+  const std::string percent = Percent(ratio);
+  return (percent.back() == '%' ? "about " : "") + percent;
 }
-
-std::string Percent(double ratio) { return TwoDigits(100 * ratio) + " %"; }
 
 // The largest relative change of a stiffness, and that of a ratio.
 std::string ChangesOf(const Eigen::Vector2d& change, const Estimate& estimate) {
@@ -66,8 +65,8 @@ std::string ChangesOf(const Eigen::Vector2d& change, const Estimate& estimate) {
 }
 
 std::string Describe(const IsotropicElasticity& elasticity) {
-  return "E = " + Text(elasticity.youngs_modulus) +
-         ", nu = " + Text(elasticity.poisson_ratio);
+  return "E = " + NumberText(elasticity.youngs_modulus) +
+         ", nu = " + NumberText(elasticity.poisson_ratio);
 }
 
 // ", the shear modulus = 3", of the moduli that do not change along
@@ -78,7 +77,7 @@ std::string Unchanged(const IsotropicElasticity& elasticity,
   for (const Modulus& modulus : Moduli(elasticity)) {
     if (std::abs(modulus.gradient.dot(direction)) <
         kUnchanged * std::abs(direction(1))) {
-      text += ", " + modulus.name + " = " + Text(modulus.value);
+      text += ", " + modulus.name + " = " + NumberText(modulus.value);
     }
   }
   return text;
@@ -100,8 +99,8 @@ std::string DescribeDetermined(const Estimate& estimate) {
       best_error = error;
     }
   }
-  return best ? ", but " + best->name + " = " + Text(best->value) + " +- " +
-                    Text(best->value * best_error)
+  return best ? ", but " + best->name + " = " + NumberText(best->value) +
+                    " +- " + NumberText(best->value * best_error)
               : ", nor any modulus to " + Percent(kLimits.determined_modulus);
 }
 
@@ -140,18 +139,6 @@ Finding Warning(FindingCode code, std::string text, std::string advice) {
 }
 
 }  // namespace
-
-std::string TwoDigits(double value) {
-  std::ostringstream text;
-  if (value == 0 || !std::isfinite(value)) {
-    text << value;
-    return text.str();
-  }
-  // By precision(2), 100 is 1e+02.
-  const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) - 1);
-  text << std::round(value / unit) * unit;
-  return text.str();
-}
 
 Finding NotFinite() {
   return Error(FindingCode::kNotFinite, "the result is not finite",
@@ -277,7 +264,7 @@ Finding YoungsModulusOnBoundUndetermined(double standard_error) {
 Finding PoissonRatioUndetermined(const Estimate& estimate) {
   return Error(FindingCode::kPoissonRatioUndetermined,
                "the data do not determine Poisson's ratio (standard error " +
-                   Text(*estimate.PoissonRatioStandardError()) + ")" +
+                   NumberText(*estimate.PoissonRatioStandardError()) + ")" +
                    DescribeDetermined(estimate),
                kGiveMore);
 }
@@ -305,9 +292,10 @@ Finding YoungsModulusUndetermined(double youngs_modulus,
                                   double standard_error) {
   return Error(
       FindingCode::kYoungsModulusUndetermined,
-      "the data do not determine Young's modulus: E = " + Text(youngs_modulus) +
+      "the data do not determine Young's modulus: E = " +
+          NumberText(youngs_modulus) +
           (std::isfinite(standard_error)
-               ? " has a standard error of " + Text(standard_error)
+               ? " has a standard error of " + NumberText(standard_error)
                : " may be any"),
       "heed warnings, or add load cases");
 }
@@ -437,7 +425,7 @@ Finding LargeCorrection(double correction) {
 Finding LoadsOutOfBalance(double imbalance, Severity severity) {
   return {FindingCode::kLoadsOutOfBalance, severity,
           "the supports leave the specimen free to move, and " +
-              Percent(imbalance) + " of the loads push it that way",
+              PercentOf(imbalance, "the loads") + " push it that way",
           "complete the supports or the loads"};
 }
 
@@ -455,25 +443,26 @@ Finding ResidualAboveNoise(ResidualKind kind, double ratio) {
 }
 
 Finding SmoothResidual(double correlation) {
-  return Warning(
-      FindingCode::kSmoothResidual,
-      "the displacement residual is alike at neighbouring nodes (correlation " +
-          TwoDigits(correlation) + ")" + kErrorsHold,
-      kCheckTheMeasurement);
+  return Warning(FindingCode::kSmoothResidual,
+                 "neighbouring residuals are alike (correlation " +
+                     TwoDigits(correlation) + ")" + kErrorsHold,
+                 "check mesh, supports, loads, smoothing; the material may not "
+                 "be the same all over");
 }
 
 Finding LargeSmoothResidual(double smooth) {
   return Error(FindingCode::kSmoothResidual,
                "the model misses a smooth part of the measured displacement, " +
-                   Percent(smooth) + " of it",
-               kCheckWhatIsGiven);
+                   PercentOf(smooth, "it"),
+               "check mesh, supports, loads, given values, and whether the "
+               "material varies");
 }
 
 Finding LargeResidual(double displacement_residual) {
   return Warning(
       FindingCode::kLargeResidual,
-      "the displacement residual is " + Percent(displacement_residual) +
-          " of the measured displacement",
+      "the displacement residual is " +
+          PercentOf(displacement_residual, "the measured displacement"),
       std::string(kCheckTheModel) + ", unless the noise is as large");
 }
 
@@ -532,6 +521,13 @@ Finding Outliers(const Eigen::Vector2d& change, const Estimate& estimate) {
                  "some nodes lie far off; leaving them out would change " +
                      ChangesOf(change, estimate),
                  "use a loss (huber or cauchy)");
+}
+
+Finding FarNeighbours() {
+  return Warning(FindingCode::kOutliers,
+                 "neighbouring nodes lie far off, so that the material may not "
+                 "be the same all over",
+                 "give it regions, or check mesh, supports and loads");
 }
 
 Finding OutliersLeftOut(const std::vector<Outlier>& outliers,
@@ -620,9 +616,9 @@ Finding TrendOverFrames(const std::string& parameter, bool is_relative,
 
 Finding YoungsModulusBias(const std::optional<double>& bias,
                           Severity severity) {
-  const std::string size = bias ? Percent(*bias) : "its whole size";
+  const std::string size = bias ? AboutPercent(*bias) : "its whole size";
   return {FindingCode::kNoiseBias, severity,
-          "displacement noise biases Young's modulus by about " + size +
+          "displacement noise biases Young's modulus by " + size +
               (severity == Severity::kError
                    ? ", more than the " + Percent(kLimits.unusable_error) +
                          " that are usable"
@@ -636,7 +632,7 @@ Finding PoissonRatioBias(double bias, Severity severity) {
               TwoDigits(bias) +
               (severity == Severity::kError
                    ? ", more than the " +
-                         Text(kLimits.unusable_poisson_ratio_bias) +
+                         NumberText(kLimits.unusable_poisson_ratio_bias) +
                          " that are usable"
                    : ", which the standard errors allow for"),
           kUnbiased};
@@ -681,19 +677,20 @@ Finding ParametersNearLimits(const std::vector<std::string>& parameters,
 
 Finding ParameterBias(const std::string& parameter, double bias,
                       bool is_relative, Severity severity) {
-  return {FindingCode::kNoiseBias, severity,
-          std::isfinite(bias)
-              ? "displacement noise biases " + parameter + " by about " +
-                    (is_relative ? Percent(bias) : TwoDigits(bias))
-              : "displacement noise hides " + parameter,
-          "use iterative-fe or virtual-fields, which noise does not bias"};
+  return {
+      FindingCode::kNoiseBias, severity,
+      std::isfinite(bias)
+          ? "displacement noise biases " + parameter + " by " +
+                (is_relative ? AboutPercent(bias) : "about " + TwoDigits(bias))
+          : "displacement noise hides " + parameter,
+      "use iterative-fe or virtual-fields, which noise does not bias"};
 }
 
 Finding Locking(ElementKind kind) {
   return Warning(FindingCode::kLocking,
                  "linear " + std::string(TopologyOf(kind).shapes) +
                      " are too stiff (lock) from nu = " +
-                     Text(kLimits.locking_poisson_ratio) +
+                     NumberText(kLimits.locking_poisson_ratio) +
                      " on, which biases E and nu beyond their errors",
                  HasQuadraticKind(kind) ? "use quadratic elements (order 2)"
                                         : "mesh with quadratic simplices");

@@ -16,9 +16,6 @@ namespace elastimate {
 // The sentences of each finding, made from its numbers.  Who decides whether
 // there is something to say is the judge (judge.h).
 
-/// A number for a sentence, to two significant digits.
-std::string TwoDigits(double value);
-
 // Why there is no estimate.
 Finding NotFinite();
 Finding SingularStiffness();
@@ -118,6 +115,9 @@ Finding RatiosAtLimit(const std::vector<std::string>& parameters);
 Finding ModelMismatchFinding(const ModelMismatch& mismatch);
 /// `change` is that of (ln E, nu) without the pull of the outliers.
 Finding Outliers(const Eigen::Vector2d& change, const Estimate& estimate);
+/// Where the residuals of neighbours are alike as well, so that leaving nodes
+/// out would not help.
+Finding FarNeighbours();
 /// `load_cases` holds their numbers, from 1 on.  Precondition: not empty.
 /// `change` is of ln E and nu.
 Finding OutliersLeftOut(const std::vector<Outlier>& outliers,

@@ -191,6 +191,7 @@ void FinishEstimate(std::string_view estimator, const Scene& scene,
     JudgeParameters(estimate);
     JudgeLocking(scene.mesh, LargestPoissonRatio(estimate), estimate);
     RemoveErrorBarsOfNone(estimate);
+    EnterElasticity(estimate);
     return;
   }
   estimate.error_budget.discretization = Eigen::Vector2d(

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <sstream>
 #include <vector>
 
 #include "elastimate/core/materials/isotropic_law.h"
+#include "elastimate/core/text/numbers.h"
 #include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
@@ -126,12 +126,11 @@ std::vector<std::string> Undetermined(const Estimate& estimate) {
         undetermined.push_back(parameter.Label());
       }
     } else if (!IsDetermined(parameter)) {
-      undetermined.push_back(
-          parameter.Label() + " (" +
-          (parameter.IsStiffness()
-               ? TwoDigits(100 * error / parameter.ErrorUnit()) + " %"
-               : TwoDigits(error)) +
-          ")");
+      undetermined.push_back(parameter.Label() + " (" +
+                             (parameter.IsStiffness()
+                                  ? Percent(error / parameter.ErrorUnit())
+                                  : TwoDigits(error)) +
+                             ")");
     }
   }
   return undetermined;
@@ -252,9 +251,8 @@ void JudgePhysicsOfParameters(Estimate& estimate) {
       return;
     }
     if (!parameter.IsPhysical()) {
-      std::ostringstream text;
-      text << parameter.Label() << " = " << parameter.value;
-      unphysical.push_back(text.str());
+      unphysical.push_back(parameter.Label() + " = " +
+                           NumberText(parameter.value));
     }
   }
   for (const StiffnessEstimate& stiffness : estimate.stiffnesses) {
@@ -415,6 +413,21 @@ void JudgeDetermination(Estimate& estimate) {
     JudgeDeterminationOfParameters(estimate);
   }
   EnterDetermination(estimate);
+}
+
+void EnterElasticity(Estimate& estimate) {
+  const std::vector<ParameterEstimate>& parameters = estimate.parameters;
+  if (parameters.size() != 2 || parameters[0].symbol != "E" ||
+      parameters[1].symbol != "nu") {
+    return;
+  }
+  estimate.elasticity = {parameters[0].value, parameters[1].value};
+  if (estimate.parameter_covariance.size() != 0) {
+    estimate.covariance = estimate.parameter_covariance;
+  }
+  if (parameters[1].interval) {
+    estimate.poisson_ratio_interval = parameters[1].interval;
+  }
 }
 
 void DescribeOneIsotropicMaterial(const Scene& scene,

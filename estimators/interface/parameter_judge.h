@@ -48,6 +48,10 @@ void JudgeDetermination(Estimate& estimate);
 /// the elements miss.
 bool AreUndeterminedByElements(const Estimate& estimate);
 
+/// Where the parameters are E and nu of one isotropic material: enters them,
+/// their covariance and the interval of nu beside the parameters.
+void EnterElasticity(Estimate& estimate);
+
 /// Enters E and nu, their covariance and interval as the parameters.
 void DescribeOneIsotropicMaterial(const Scene& scene,
                                   const EstimatorOptions& options,

@@ -127,7 +127,9 @@ Result NoteOutliers(const Evidence& evidence, const EstimatorOptions&,
                     const Estimate& estimate) {
   return evidence.outlier_change && std::abs((*evidence.outlier_change)(0)) >
                                         kLimits.notable_youngs_modulus_error
-             ? Outliers(*evidence.outlier_change, estimate)
+             ? (estimate.is_model_in_doubt
+                    ? FarNeighbours()
+                    : Outliers(*evidence.outlier_change, estimate))
              : Result();
 }
 

@@ -34,17 +34,6 @@ std::vector<Material> WithKnownPoissonRatio(const EstimatorOptions& options) {
   return {material};
 }
 
-// E and nu of one isotropic material, and their covariance.
-void EnterElasticity(Estimate& estimate) {
-  if (!estimate.parameters.empty()) {
-    estimate.elasticity = {estimate.parameters[0].value,
-                           estimate.parameters[1].value};
-  }
-  if (estimate.parameter_covariance.size() != 0) {
-    estimate.covariance = estimate.parameter_covariance;
-  }
-}
-
 // Says what is known at the minimum of the fit, which has one; `finer` may be
 // null.
 void DescribeFit(const Scene& scene, const EstimatorOptions& options,

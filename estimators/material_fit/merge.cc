@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "elastimate/core/scene/observed_displacements.h"
+#include "elastimate/core/text/numbers.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
@@ -191,9 +192,9 @@ std::vector<std::string> DifferencesInWords(
       }
     }
     if (is_first && largest > 0) {
-      words.push_back((parameter.is_modulus ? TwoDigits(100 * largest) + " %"
-                                            : TwoDigits(largest)) +
-                      " in " + parameter.symbol);
+      words.push_back(
+          (parameter.is_modulus ? Percent(largest) : TwoDigits(largest)) +
+          " in " + parameter.symbol);
     }
   }
   return words;

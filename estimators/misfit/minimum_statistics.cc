@@ -257,15 +257,30 @@ void CorrectMinimum(const Scene& scene, const FreeParameters& free,
 }
 
 // Enters what outliers pull the variables by, which adds to the covariance.
+// `residual` are the displacements of a minimum of all rows, those of
+// `sensitivities` and of what is known beforehand.
 void AddOutliers(const FreeParameters& free, const Eigen::VectorXd& variables,
                  const ObservedDisplacements& observed,
                  const Eigen::VectorXd& residual,
                  const Eigen::MatrixXd& sensitivities,
+                 const Eigen::VectorXd& known_beforehand,
                  Eigen::MatrixXd& covariance, Evidence& evidence,
                  Estimate& estimate) {
   Eigen::VectorXd change = Eigen::VectorXd::Zero(free.Size());
   if (HasHeavyTails(residual)) {
-    change = RobustChange(observed, residual, sensitivities);
+    const Eigen::Index size = sensitivities.rows() + free.Size();
+    Eigen::MatrixXd all(size, free.Size());
+    all << sensitivities,
+        Eigen::MatrixXd(known_beforehand.cwiseSqrt().asDiagonal());
+    // At a minimum, the gradient of the other rows is that of the displacements
+    // with its sign changed.
+    const Eigen::Index num_others = size - residual.size();
+    const Eigen::VectorXd of_others = -SolveLeastSquares(
+        all.bottomRows(num_others).transpose(),
+        InnerProducts(all.topRows(residual.size()), residual));
+    Eigen::VectorXd left(size);
+    left << residual, of_others;
+    change = RobustChange(observed, left, all);
     evidence.outlier_change = LargestOf(change, variables, estimate, free);
   }
   covariance += change * change.transpose();
@@ -408,8 +423,9 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
       ErrorsOfVariables(free, errors.variables, errors.of_noise);
   estimate.error_budget.model =
       ErrorsOfVariables(free, errors.variables, by_model);
-  AddOutliers(free, errors.variables, observed, errors.residual, of_rows,
-              errors.total, evidence, estimate);
+  AddOutliers(free, errors.variables, observed, errors.residual, sensitivities,
+              KnownBeforehand(free, variance.variance), errors.total, evidence,
+              estimate);
   AddAxisRotation(scene, minimum.evaluated_at, rest, sensitivities, inverse,
                   misfit, errors, evidence, estimate);
   if (minimum.IsEvaluated()) {

@@ -18,22 +18,43 @@
 namespace elastimate {
 namespace {
 
-// Of exact data: what rounding leaves of a logarithm, or of a ratio.
+// What rounding leaves of a logarithm, or of a ratio, and of the share of noise
+// in the variance of exact data.
 constexpr double kLeastError = 1e-12;
 constexpr double kLeastShare = 1e-6;
-// Of any parameter that has none.
+// How often a trend, or a scatter, of any parameter is found where there is
+// none.
 constexpr double kProbabilityOfTrend = 0.01;
 constexpr double kProbabilityOfScatter = 1e-3;
+// Standard deviations are those of linear models at estimated parameters, and
+// hardly better known than that.
+constexpr double kNotableScatter = 1.25;
 constexpr double kNotableLikeness = 0.1;
 
 // A frame that is used, in the logarithms of moduli and the ratios that are
 // free.
 struct UsedFrame {
   const FrameEstimate* frame;
+  std::size_t number;  // From 1 on.
   Eigen::VectorXd values;
-  Eigen::MatrixXd covariance;
-  double noise_share;  // Of the covariance, what varies between frames.
-  std::size_t number;  // Of the frame, from 1 on.
+  Eigen::MatrixXd covariance;  // Without what is common by the loads.
+  // How much of the variance of each parameter varies between frames: zero for
+  // all parameters where it is not known.
+  Eigen::ArrayXd noise_share;
+  double noise_sd;  // Not a number where it is not known.
+
+  Eigen::ArrayXd Variances() const { return covariance.diagonal().array(); }
+  bool IsNoiseKnown() const { return (noise_share > 0).all(); }
+  // The covariance of what varies.
+  Eigen::MatrixXd OfNoise() const { return Part(noise_share); }
+  // The covariance of the rest.
+  Eigen::MatrixXd Common() const { return Part(1 - noise_share); }
+
+ private:
+  Eigen::MatrixXd Part(const Eigen::ArrayXd& share) const {
+    const Eigen::VectorXd root = share.sqrt();
+    return root.asDiagonal() * covariance * root.asDiagonal();
+  }
 };
 
 // Their places among the parameters.
@@ -48,18 +69,19 @@ Eigen::VectorXi FreeParametersOf(const Estimate& estimate) {
   return free.head(num_free);
 }
 
-double NoiseShare(const Estimate& estimate, const Eigen::VectorXi& free,
-                  const Eigen::VectorXd& by_loads,
-                  const Eigen::MatrixXd& covariance) {
+Eigen::ArrayXd NoiseShare(const Estimate& estimate, const Eigen::VectorXi& free,
+                          const Eigen::VectorXd& by_loads,
+                          const Eigen::MatrixXd& covariance) {
   const ParameterErrors& noise = estimate.error_budget.noise;
+  const Eigen::ArrayXd unknown = Eigen::ArrayXd::Zero(free.size());
   if (noise.size() != Eigen::Index(estimate.parameters.size())) {
-    return 0;
+    return unknown;
   }
-  const double share =
-      ((noise(free).array().square() - by_loads.array().square()).max(0) /
-       covariance.diagonal().array())
-          .minCoeff();
-  return std::isfinite(share) ? std::clamp(share, kLeastShare, 1.0) : 0;
+  const Eigen::ArrayXd share =
+      (noise(free).array().square() - by_loads.array().square()).max(0) /
+      covariance.diagonal().array();
+  return share.isFinite().all() ? Eigen::ArrayXd(share.max(kLeastShare).min(1))
+                                : unknown;
 }
 
 // Without the part of an error that is alike in all frames, and without
@@ -84,7 +106,9 @@ std::optional<UsedFrame> Use(const FrameEstimate& frame, std::size_t number,
           Eigen::Index(estimate.parameters.size())) {
     return std::nullopt;
   }
-  UsedFrame used = {&frame, Eigen::VectorXd(free.size()), {}, 0, number};
+  UsedFrame used = {
+      &frame, number, Eigen::VectorXd(free.size()),
+      {},     {},     estimate.noise_sd.value_or(Estimate::kUnknown)};
   Eigen::VectorXd slopes(free.size());
   Eigen::VectorXd by_loads = Eigen::VectorXd::Zero(free.size());
   for (Eigen::Index j = 0; j < used.values.size(); ++j) {
@@ -111,33 +135,83 @@ std::optional<UsedFrame> Use(const FrameEstimate& frame, std::size_t number,
 // The variance of noise over the load, to which those of parameters are
 // proportional; not a number where it is not known.
 double NoiseOverLoad(const UsedFrame& frame) {
-  const double ratio =
-      frame.frame->estimate.noise_sd.value_or(Estimate::kUnknown) /
-      frame.frame->load;
+  const double ratio = frame.noise_sd / frame.frame->load;
   return ratio * ratio;
 }
 
-// Raises standard deviations that are far smaller than those of other frames.
-void RaiseSmallErrors(std::vector<UsedFrame>& frames) {
-  constexpr double kFarSmaller = 0.5;
-  for (Eigen::Index p = 0; p < frames.front().values.size(); ++p) {
+// Noise that each frame knows from few degrees of freedom only is taken to be
+// the same in all of them: by the median of its variances, of chi^2.
+void ShareNoiseOfFewDegreesOfFreedom(std::vector<UsedFrame>& frames) {
+  std::vector<double> variances;
+  for (const UsedFrame& frame : frames) {
+    const std::optional<double>& freedom =
+        frame.frame->estimate.noise_degrees_of_freedom;
+    if (!freedom || !(frame.noise_sd > 0)) {
+      return;
+    }
+    variances.push_back(
+        frame.noise_sd * frame.noise_sd * *freedom /
+        boost::math::median(boost::math::chi_squared(*freedom)));
+  }
+  const double noise_sd = std::sqrt(Median(variances));
+  for (UsedFrame& frame : frames) {
+    const double factor = noise_sd / frame.noise_sd;
+    frame.covariance *= factor * factor;
+    frame.noise_sd = noise_sd;
+  }
+}
+
+// How the variances of each parameter compare with the noise over the load of
+// their frames, usually; empty where that is not known of all.
+std::optional<Eigen::ArrayXd> UsualVariances(
+    const std::vector<UsedFrame>& frames) {
+  Eigen::ArrayXd usual(frames.front().values.size());
+  for (Eigen::Index p = 0; p < usual.size(); ++p) {
     std::vector<double> ratios;
     for (const UsedFrame& frame : frames) {
-      const double ratio =
-          std::sqrt(frame.covariance(p, p) / NoiseOverLoad(frame));
-      if (!(std::isfinite(ratio) && ratio > 0)) {
-        return;
-      }
-      ratios.push_back(ratio);
-    }
-    const double usual = Median(ratios);
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      if (ratios[i] < kFarSmaller * usual) {
-        frames[i].covariance.row(p) *= usual / ratios[i];
-        frames[i].covariance.col(p) *= usual / ratios[i];
+      ratios.push_back(frame.covariance(p, p) / NoiseOverLoad(frame));
+      if (!(std::isfinite(ratios.back()) && ratios.back() > 0)) {
+        return std::nullopt;
       }
     }
+    usual(p) = Median(ratios);
   }
+  return usual;
+}
+
+// Raises standard deviations that are far smaller than those of other frames.
+void RaiseSmallErrors(const Eigen::ArrayXd& usual,
+                      std::vector<UsedFrame>& frames) {
+  constexpr double kFarSmaller = 0.5;
+  for (UsedFrame& frame : frames) {
+    const Eigen::ArrayXd raise =
+        (usual * NoiseOverLoad(frame) / frame.Variances()).sqrt();
+    const Eigen::VectorXd factors = (raise > 1 / kFarSmaller).select(raise, 1);
+    frame.covariance =
+        factors.asDiagonal() * frame.covariance * factors.asDiagonal();
+  }
+}
+
+// The weights of each parameter of the frames, in columns: the inverses of the
+// variances.  A frame whose estimate errs may err in its
+// variance as well, so that these are the usual ones beside noise and load, as
+// far as its own are not far from them.
+Eigen::ArrayXXd WeightsOfFrames(const std::optional<Eigen::ArrayXd>& usual,
+                                const std::vector<UsedFrame>& frames) {
+  constexpr double kFar = 4;
+  Eigen::ArrayXXd weights(frames.front().values.size(),
+                          Eigen::Index(frames.size()));
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const UsedFrame& frame = frames[i];
+    const Eigen::ArrayXd own = frame.Variances();
+    Eigen::ArrayXd variances = own;
+    if (usual) {
+      variances =
+          (*usual * NoiseOverLoad(frame)).max(own / kFar).min(kFar * own);
+    }
+    weights.col(Eigen::Index(i)) = variances.inverse();
+  }
+  return weights.colwise() / weights.rowwise().sum();
 }
 
 // The correlation of residuals that frames have in common, if it is one.
@@ -160,37 +234,48 @@ Eigen::MatrixXd SquareRoot(const Eigen::MatrixXd& covariance) {
          parts.vectors.transpose();
 }
 
-// Of the frames over their noise.
+// The scatter of the frames.
 struct Scatter {
-  double excess = 1;  // chi^2 per degree of freedom, if above 1.
+  // chi^2 per degree of freedom over the noise, of each parameter.
+  Eigen::ArrayXd over_noise;
+  // Of as large a scatter of any parameter, by all errors of the frames.
   double p_value = 1;
   std::size_t farthest = 0;  // The number of the frame that is.
+
+  // The noise that it shows, never below what frames say.
+  Eigen::ArrayXd Excess() const { return over_noise.max(1); }
 };
 
+// What smooth noise, elements and the correction for them contribute may differ
+// between frames as well, so that the test allows for all of it.  Parameters
+// are looked at one by one: the errors that frames have in common correlate
+// them otherwise than those that differ.
 Scatter ScatterOf(const std::vector<UsedFrame>& frames,
                   const Eigen::VectorXd& mean) {
-  double chi_squared = 0;
+  const Eigen::Index size = mean.size();
+  Scatter scatter = {Eigen::ArrayXd::Zero(size)};
+  Eigen::ArrayXd by_all = scatter.over_noise;
   double largest = 0;
-  Scatter scatter;
   for (const UsedFrame& frame : frames) {
-    if (frame.noise_share == 0) {
-      return {};
+    if (!frame.IsNoiseKnown()) {
+      return {Eigen::ArrayXd::Zero(size)};
     }
-    const Eigen::VectorXd off = frame.values - mean;
-    const double part =
-        off.dot(Inverse(frame.covariance) * off) / frame.noise_share;
-    chi_squared += part;
-    if (part > largest) {
-      largest = part;
+    const Eigen::ArrayXd squares =
+        (frame.values - mean).array().square() / frame.Variances();
+    scatter.over_noise += squares / frame.noise_share;
+    by_all += squares;
+    if (squares.maxCoeff() > largest) {
+      largest = squares.maxCoeff();
       scatter.farthest = frame.number;
     }
   }
-  const double freedom =
-      double(mean.size()) * (static_cast<double>(frames.size()) - 1);
-  if (freedom > 0 && std::isfinite(chi_squared)) {
-    scatter.excess = std::max(1.0, chi_squared / freedom);
-    scatter.p_value = boost::math::cdf(boost::math::complement(
-        boost::math::chi_squared(freedom), chi_squared));
+  const double freedom = static_cast<double>(frames.size()) - 1;
+  if (freedom > 0 && by_all.isFinite().all()) {
+    scatter.over_noise /= freedom;
+    scatter.p_value = std::min(
+        1.0, static_cast<double>(size) *
+                 boost::math::cdf(boost::math::complement(
+                     boost::math::chi_squared(freedom), by_all.maxCoeff())));
   }
   return scatter;
 }
@@ -203,26 +288,23 @@ struct Mean {
   Scatter scatter;
 };
 
-Mean MeanOf(const std::vector<UsedFrame>& frames) {
+Mean MeanOf(const std::vector<UsedFrame>& frames,
+            const Eigen::ArrayXXd& weights) {
   const Eigen::Index size = frames.front().values.size();
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size);
-  for (const UsedFrame& frame : frames) {
-    information += Inverse(frame.covariance);
-  }
-  const Eigen::MatrixXd least = Inverse(information);
   Mean mean;
   mean.values.setZero(size);
   mean.of_noise.setZero(size, size);
   Eigen::MatrixXd root = Eigen::MatrixXd::Zero(size, size);
-  for (const UsedFrame& frame : frames) {
-    const Eigen::MatrixXd weight = least * Inverse(frame.covariance);
-    mean.values += weight * frame.values;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const Eigen::VectorXd weight = weights.col(Eigen::Index(i));
+    mean.values += weight.cwiseProduct(frames[i].values);
     mean.of_noise +=
-        frame.noise_share * weight * frame.covariance * weight.transpose();
-    root += weight * SquareRoot((1 - frame.noise_share) * frame.covariance);
+        weight.asDiagonal() * frames[i].OfNoise() * weight.asDiagonal();
+    root += weight.asDiagonal() * SquareRoot(frames[i].Common());
   }
   mean.scatter = ScatterOf(frames, mean.values);
-  mean.of_noise *= mean.scatter.excess;
+  const Eigen::VectorXd excess = mean.scatter.Excess().sqrt();
+  mean.of_noise = excess.asDiagonal() * mean.of_noise * excess.asDiagonal();
   mean.common = root * root.transpose();
   return mean;
 }
@@ -238,8 +320,11 @@ std::optional<Trend> TrendOver(const std::vector<UsedFrame>& frames,
     const UsedFrame& frame = frames[i];
     loads(i) = frame.frame->load;
     values.row(i) = frame.values.transpose();
-    variances.row(i) = (frame.noise_share == 0 ? 1 : frame.noise_share) *
-                       frame.covariance.diagonal().transpose();
+    const Eigen::ArrayXd varying =
+        frame.IsNoiseKnown()
+            ? Eigen::ArrayXd(frame.noise_share * frame.Variances())
+            : frame.Variances();
+    variances.row(i) = varying.matrix().transpose();
   }
   std::optional<Trend> of_free = FindTrend(loads, values, variances);
   const bool is_over_load = of_free.has_value();
@@ -423,7 +508,11 @@ Estimate JointEstimate(const Scene& scene, const EstimatorOptions& options,
                                                 : first.message));
     return joint;
   }
-  RaiseSmallErrors(used);
+  ShareNoiseOfFewDegreesOfFreedom(used);
+  const std::optional<Eigen::ArrayXd> usual = UsualVariances(used);
+  if (usual) {
+    RaiseSmallErrors(*usual, used);
+  }
   const double likeness = LikenessOf(used);
   for (UsedFrame& frame : used) {
     frame.noise_share *= 1 - likeness;
@@ -436,7 +525,7 @@ Estimate JointEstimate(const Scene& scene, const EstimatorOptions& options,
   const auto num_parameters = Eigen::Index(first.parameters.size());
   joint.error_budget.discretization =
       MeanDiscretization(used, free, num_parameters);
-  const Mean mean = MeanOf(used);
+  const Mean mean = MeanOf(used, WeightsOfFrames(usual, used));
   EnterMean(mean, free, load_error.relative, joint);
   if (IsOneIsotropicMaterial(scene.materials)) {
     EnterOneIsotropicMaterial(joint);
@@ -444,9 +533,10 @@ Estimate JointEstimate(const Scene& scene, const EstimatorOptions& options,
   joint.noise_sd = MeanNoise(used);
   joint.series->trend = TrendOver(used, free, num_parameters);
   AddSharedFindings(used, joint);
-  if (!AddTrend(free, joint) && mean.scatter.p_value < kProbabilityOfScatter) {
-    joint.Add(
-        FramesScatter(std::sqrt(mean.scatter.excess), mean.scatter.farthest));
+  const double scatter = std::sqrt(mean.scatter.Excess().maxCoeff());
+  if (!AddTrend(free, joint) && mean.scatter.p_value < kProbabilityOfScatter &&
+      scatter > kNotableScatter) {
+    joint.Add(FramesScatter(scatter, mean.scatter.farthest));
   }
   if (likeness > kNotableLikeness) {
     joint.Add(FramesAlike(likeness));

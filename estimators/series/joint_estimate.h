@@ -31,25 +31,32 @@ struct LoadError {
 
 /// What all frames say together.  Of those that are usable, with a finite
 /// covariance C_i of y = (ln of moduli, ratios), the mean is that of least
-/// variance,
+/// variance, parameter by parameter,
 ///
-///   y = sum of A_i y_i,   A_i = (sum of C_j^-1)^-1 C_i^-1.
+///   y = sum of W_i y_i,   W_i diagonal, of weights 1 / v_i whose sum is 1.
 ///
-/// Of each C_i the share s_i that is noise (the smallest of its parameters', by
-/// the error budget) differs from frame to frame, but for the correlation of
-/// the residuals of one frame and the next; what the model, the elements and
-/// correlated noise contribute is taken as common to all, and never averages
-/// out, nor does `load_error`:
+/// A parameter that errs may err in its variance as well, which would bias the
+/// mean, so that v_i is what noise over load usually tells of it, by the median
+/// of all frames, within a factor of 4 of its own variance.  Where each frame
+/// knows its noise from few degrees of freedom only, all have that of the
+/// median frame.  Standard deviations that are less than half of the usual ones
+/// are raised to these: next to nu = 1/2 a frame knows less than it says.
 ///
-/// Standard deviations that are less than half of what the noise of a frame
-/// over its load says, beside the median of all frames, are raised to that:
-/// next to nu = 1/2 a frame knows less than it says.
+/// The shares S_i of the variances that are noise (by the error budget) differ
+/// from frame to frame, but for the correlation of the residuals of one frame
+/// and the next; what the model, the elements and correlated noise contribute
+/// is taken as common to all, and never averages out, nor does `load_error`:
 ///
-///   Cov = b sum of A_i s_i C_i A_i^T + M M^T + load_error.relative^2 1 1^T,
-///   M = sum of A_i ((1 - s_i) C_i)^(1/2),
+///   Cov = B^(1/2) (sum of W_i N_i W_i) B^(1/2) + M M^T
+///         + load_error.relative^2 1 1^T,
+///   N_i = S_i^(1/2) C_i S_i^(1/2),
+///   M = sum of W_i ((1 - S_i)^(1/2) C_i (1 - S_i)^(1/2))^(1/2),
 ///
-/// where the ones are those of moduli, and b, at least 1, is chi^2 per degree
-/// of freedom of the scatter between frames over their noise [Birge 1932].
+/// where the ones are those of moduli, and B has, for each parameter, chi^2 per
+/// degree of freedom of the scatter between frames over their noise, at least 1
+/// [Birge 1932].  Frames are said to scatter where it is notable and more than
+/// all of C_i explains: parts of what the elements and smooth noise contribute
+/// differ between frames as well, in a way that is not known.
 ///
 /// Estimate::series has the number of frames and how the parameters change
 /// with the load, or from the first frame to the last where loads are the same

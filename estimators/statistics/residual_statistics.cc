@@ -135,13 +135,16 @@ Eigen::VectorXd RobustChange(const ObservedDisplacements& observed,
                              const Eigen::VectorXd& residual,
                              const Eigen::MatrixXd& sensitivities) {
   constexpr int kReweightings = 50;
-  const Eigen::Index n = sensitivities.cols();
-  Eigen::VectorXd change = Eigen::VectorXd::Zero(n);
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(sensitivities.cols());
   for (int i = 0; i < kReweightings; ++i) {
     const Eigen::VectorXd moved = residual + sensitivities * change;
-    const NodeLosses losses(Loss::kHuber, RobustStandardDeviation(moved));
-    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
-    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
+    const NodeLosses losses(
+        Loss::kHuber,
+        RobustStandardDeviation(Eigen::VectorXd(moved.head(observed.Size()))));
+    const Eigen::Index num_others = moved.size() - observed.Size();
+    const auto others = sensitivities.bottomRows(num_others);
+    Eigen::MatrixXd gram = others.transpose() * others;
+    Eigen::VectorXd gradient = others.transpose() * moved.tail(num_others);
     for (const ObservedDisplacements::Point& node : observed.Points()) {
       const auto r = moved.segment(node.first, node.count);
       const auto s = sensitivities.middleRows(node.first, node.count);

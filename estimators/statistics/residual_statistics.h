@@ -69,7 +69,8 @@ double RowsForOne(double correlation);
 
 /// The change of the parameters from the least-squares fit to a robust one, in
 /// the linear model u + S delta of sensitivities S: the weighted least squares
-/// of Huber's loss.
+/// of Huber's loss.  Rows after those of `observed`, as of resultants, are no
+/// outliers.
 Eigen::VectorXd RobustChange(const ObservedDisplacements& observed,
                              const Eigen::VectorXd& residual,
                              const Eigen::MatrixXd& sensitivities);

@@ -18,6 +18,14 @@ std::string FileExtension(const std::filesystem::path& path) {
   return path.extension() == capital ? small : path.extension().string();
 }
 
+std::string ArrayNames(const std::vector<FileArray>& arrays) {
+  std::string names;
+  for (const FileArray& array : arrays) {
+    names += (names.empty() ? "" : ", ") + Printable(array.name);
+  }
+  return names.empty() ? "none" : names;
+}
+
 std::string NodeName(const MeshFile& mesh, Eigen::Index node) {
   if (mesh.node_numbers.empty()) {
     return "node " + std::to_string(node);

@@ -44,6 +44,8 @@ struct MeshFile {
   std::vector<FileArray> node_arrays;
   std::vector<FileArray> element_arrays;
   std::vector<PhysicalGroup> groups;
+  /// The element array that has the regions; there may be none of this name.
+  std::string region_array = "region";
   /// The element array `region` has the numbers of the physical groups that the
   /// elements are in, and zero for those in none.
   bool are_regions_groups = false;
@@ -94,6 +96,9 @@ inline const Eigen::MatrixXd* FindArray(const std::vector<FileArray>& arrays,
   }
   return nullptr;
 }
+
+/// "a, b", the names of arrays; "none" where there are none.
+std::string ArrayNames(const std::vector<FileArray>& arrays);
 
 /// "node 7" or "node 7 (number 12 in Gmsh)", for error messages.
 std::string NodeName(const MeshFile& mesh, Eigen::Index node);

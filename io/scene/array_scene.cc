@@ -1,5 +1,6 @@
 #include "elastimate/io/scene/array_scene.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,14 +16,6 @@ std::string CaseSuffix(int number) {
   return number == 1 ? "" : "_" + std::to_string(number);
 }
 
-std::string ArrayNames(const MeshFile& mesh) {
-  std::string names;
-  for (const FileArray& array : mesh.node_arrays) {
-    names += (names.empty() ? "" : ", ") + Printable(array.name);
-  }
-  return names.empty() ? "none" : names;
-}
-
 [[noreturn]] void ThrowMissing(const MeshFile& mesh, const std::string& name) {
   if (!mesh.is_vtk && mesh.node_arrays.empty()) {
     ThrowInputError(mesh.path,
@@ -34,7 +27,7 @@ std::string ArrayNames(const MeshFile& mesh) {
   ThrowInputError(mesh.path, "the point array '" + name +
                                  "' is missing; add it (the point arrays of "
                                  "this file are: " +
-                                 ArrayNames(mesh) + ")");
+                                 ArrayNames(mesh.node_arrays) + ")");
 }
 
 /// Null when there is no such array.
@@ -177,6 +170,27 @@ void CheckCaseNumbers(const MeshFile& mesh, int num_cases) {
   }
 }
 
+/// Without these arrays a scene is another one, so that a name that seems to be
+/// misspelt is an error; other arrays are nobody's business.
+void CheckOptionalNames(const MeshFile& mesh) {
+  for (const FileArray& array : mesh.node_arrays) {
+    const std::string stem = array.name.substr(0, array.name.find('_'));
+    for (const std::string name : {"prescribed", "observed"}) {
+      constexpr std::size_t kTelling = 5;  // Letters.
+      const bool is_alike =
+          std::equal(name.begin(), name.begin() + kTelling, array.name.begin(),
+                     array.name.begin() + std::min(array.name.size(), kTelling),
+                     [](char a, char b) { return a == (b | 0x20); });
+      if (is_alike && stem != name) {
+        ThrowInputError(mesh.path, "the point array '" + Printable(array.name) +
+                                       "' is not read; call it '" + name +
+                                       "' if it is that, and otherwise "
+                                       "something else");
+      }
+    }
+  }
+}
+
 void NoteLostForces(FileScene& file_scene) {
   for (std::size_t i = 0; i < file_scene.scene.load_cases.size(); ++i) {
     const auto& force =
@@ -206,6 +220,7 @@ FileScene SceneFromArrays(MeshFile mesh, Measurement measurement,
         ReadLoadCase(mesh, number, measurement));
   }
   CheckCaseNumbers(mesh, num_cases);
+  CheckOptionalNames(mesh);
   file_scene.scene.supports = ReadSupports(mesh, 1);
   file_scene.mesh = std::move(mesh);
   NoteLostForces(file_scene);

@@ -2,10 +2,10 @@
 
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <utility>
 
 #include "elastimate/core/mesh/axis_names.h"
+#include "elastimate/core/text/numbers.h"
 #include "elastimate/io/text/input_error.h"
 
 namespace elastimate {
@@ -21,7 +21,7 @@ void RequireFinite(const std::filesystem::path& file, const std::string& what,
       if (mask(axis, node) && !std::isfinite(value)) {
         ThrowInputError(file, what + " of " + NodeName(mesh, node) + " (" +
                                   kAxisNames[axis] + ") is " +
-                                  std::to_string(value).append("; " + mend));
+                                  NumberText(value) + "; " + mend);
       }
     }
   }
@@ -30,24 +30,23 @@ void RequireFinite(const std::filesystem::path& file, const std::string& what,
 }  // namespace
 
 Eigen::VectorXi ReadRegions(const MeshFile& mesh) {
-  const Eigen::MatrixXd* array = FindArray(mesh.element_arrays, "region");
+  const Eigen::MatrixXd* array =
+      FindArray(mesh.element_arrays, mesh.region_array);
+  const std::string name =
+      "the cell array '" + Printable(mesh.region_array) + "'";
   if (array == nullptr) {
     return {};
   }
   if (array->rows() != 1) {
-    ThrowInputError(mesh.path, "the cell array 'region' has " +
-                                   std::to_string(array->rows()) +
+    ThrowInputError(mesh.path, name + " has " + std::to_string(array->rows()) +
                                    " components; give it one");
   }
   for (Eigen::Index i = 0; i < array->cols(); ++i) {
     const double value = (*array)(0, i);
     if (value != std::floor(value) ||
         std::abs(value) > std::numeric_limits<int>::max()) {
-      std::ostringstream number;  // Of few digits, whatever its magnitude.
-      number << value;
-      ThrowInputError(mesh.path, "the cell array 'region' is " + number.str() +
-                                     " at " + mesh.Shape() + " " +
-                                     std::to_string(i) +
+      ThrowInputError(mesh.path, name + " is " + NumberText(value) + " at " +
+                                     mesh.Shape() + " " + std::to_string(i) +
                                      "; give it integers below 2^31");
     }
   }
@@ -69,10 +68,8 @@ Eigen::MatrixXd VectorField(const std::filesystem::path& file,
   if (mesh.Dimension() == 2 && values.rows() == 3) {
     for (Eigen::Index node = 0; node < values.cols(); ++node) {
       if (mesh.used[node] && mask.col(node).any() && values(2, node) != 0) {
-        std::ostringstream number;
-        number << values(2, node);
         ThrowInputError(file, what + " of " + NodeName(mesh, node) +
-                                  " (z) is " + number.str() +
+                                  " (z) is " + NumberText(values(2, node)) +
                                   ", but the mesh is planar; make it 0");
       }
     }

@@ -27,7 +27,8 @@ struct FileScene {
   std::map<std::string, Eigen::MatrixXd> axis_arrays;
 };
 
-/// The regions from the cell array `region`; empty when there is none.  Throws
+/// The regions from the cell array MeshFile::region_array; empty when there is
+/// none.  Throws
 /// std::invalid_argument, naming the file, when it is not one of integers.
 Eigen::VectorXi ReadRegions(const MeshFile& mesh);
 

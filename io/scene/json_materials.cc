@@ -72,6 +72,15 @@ std::vector<int> ReadRegions(const JsonValue& value, const MeshFile& mesh) {
   return regions;
 }
 
+[[noreturn]] void FailForLackOfCellArray(const JsonValue& name,
+                                         const MeshFile& mesh,
+                                         const std::string& else_do) {
+  name.Fail("is \"" + Printable(name.String()) + "\", but '" +
+            PrintablePath(mesh.path) +
+            "' has no such cell array; name one of its cell arrays (" +
+            ArrayNames(mesh.element_arrays) + "), " + else_do);
+}
+
 // Numbers and bounds of parameters of a law, by their names.
 void ReadWhatIsKnown(const JsonValue& value, const Law& law,
                      Material& material) {
@@ -109,9 +118,7 @@ Eigen::MatrixXd ReadAxis(const JsonValue& value, const MeshFile& mesh) {
     const std::string name = value.String();
     const Eigen::MatrixXd* const array = FindArray(mesh.element_arrays, name);
     if (array == nullptr) {
-      value.Fail("is \"" + Printable(name) +
-                 "\", but the mesh has no such cell array; name one, or give a "
-                 "direction");
+      FailForLackOfCellArray(value, mesh, "or give a direction");
     }
     if (array->rows() != 3 && array->rows() != dimension) {
       value.Fail("is the cell array \"" + Printable(name) + "\" of " +
@@ -194,6 +201,22 @@ std::string LawOfFreeAxis(const std::string& law) {
 std::string WhyNoFreeAxis() {
   return ", whose axis is not looked for; only that of "
          "transversely_isotropic, in three dimensions, can be free";
+}
+
+void ChooseRegions(const JsonValue& document, MeshFile& mesh) {
+  if (!document.Has("regions")) {
+    return;
+  }
+  document.At("regions").CheckKeys({"array"});
+  const JsonValue name = document.At("regions").At("array");
+  if (FindArray(mesh.element_arrays, name.String()) == nullptr) {
+    FailForLackOfCellArray(name, mesh, "or leave out \"regions\"");
+  }
+  if (name.String() != mesh.region_array) {
+    mesh.region_array = name.String();
+    mesh.are_regions_groups = false;
+    mesh.why_no_regions.clear();
+  }
 }
 
 std::vector<Material> ReadMaterials(const JsonValue& document,

@@ -21,6 +21,12 @@ std::string LawOfFreeAxis(const std::string& law);
 /// "which ...; ...", of a law that has none.
 std::string WhyNoFreeAxis();
 
+/// The key "regions" of a scene, {"array": NAME}: takes the regions from the
+/// cell array of that name, in the place of `region` and physical groups.
+/// Throws std::invalid_argument, naming the file and the place in it, where the
+/// mesh has none.
+void ChooseRegions(const JsonValue& document, MeshFile& mesh);
+
 /// The key "materials" of a scene: a list of {"law", "region", "known",
 /// "bounds", "axis" or "axes"}, of which the last are directions or cell arrays
 /// of the mesh, and "axis" may be "free"; a region is an id or, where regions

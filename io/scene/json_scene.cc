@@ -132,11 +132,12 @@ FileScene ReadJsonScene(const std::filesystem::path& path,
                         Measurement measurement, const SectionChoice& section) {
   const nlohmann::json parsed = ParseJsonFile(path);
   const JsonValue document(path, parsed);
-  document.CheckKeys({"model", "thickness", "mesh", "materials", "supports",
-                      "rigid_motion", "cases", "frames"});
+  document.CheckKeys({"model", "thickness", "mesh", "regions", "materials",
+                      "supports", "rigid_motion", "cases", "frames"});
   const SectionChoice choice = Choose(section, ReadSection(document));
   FileScene file_scene;
   file_scene.mesh = ReadNamedMesh(document.At("mesh"), file_scene.notices);
+  ChooseRegions(document, file_scene.mesh);
   const MeshFile& mesh = file_scene.mesh;
   file_scene.scene.mesh =
       SceneMesh(mesh, SectionOf(mesh, choice), mesh.elements);

@@ -1,5 +1,6 @@
 #include "elastimate/io/scene/json_supports.h"
 
+#include <algorithm>
 #include <string>
 
 #include "elastimate/core/mesh/axis_names.h"
@@ -65,18 +66,33 @@ SupportDisplacement ReadSupportDisplacement(const JsonValue& support,
   return displacement;
 }
 
-// Whether the supports before this one hold a component otherwise.
-bool IsContradicted(const Supports& supports, Eigen::Index axis,
-                    Eigen::Index node,
-                    const SupportDisplacement& displacement) {
-  return supports.held(axis, node) &&
-         (displacement.is_rigid || supports.unknown(axis, node) ||
-          displacement.is_measured ||
-          supports.displacement(axis, node) != displacement.given(axis));
+/// What the supports before one hold.
+struct HeldSoFar {
+  Supports supports;
+  /// The last support that holds each component, -1 where none does.
+  Eigen::ArrayXXi holder;
+};
+
+/// Whether a support says the same of a component as those before it.
+bool IsHeldAlike(const HeldSoFar& so_far, Eigen::Index axis, Eigen::Index node,
+                 const SupportDisplacement& displacement) {
+  const Supports& supports = so_far.supports;
+  if (displacement.IsUnknown() || supports.unknown(axis, node)) {
+    // Faces that move by themselves never say the same.
+    const auto is_of = [&](const RigidFace& face) {
+      return face.components(axis) &&
+             std::binary_search(face.nodes.begin(), face.nodes.end(), node);
+    };
+    return displacement.is_measured && supports.unknown(axis, node) &&
+           std::none_of(supports.rigid_faces.begin(),
+                        supports.rigid_faces.end(), is_of);
+  }
+  return supports.displacement(axis, node) == displacement.given(axis);
 }
 
-void AddSupport(const JsonValue& support, const MeshFile& mesh,
-                Supports& supports) {
+void AddSupport(const JsonValue& support, int number, const MeshFile& mesh,
+                HeldSoFar& so_far) {
+  Supports& supports = so_far.supports;
   support.CheckKeys({"nodes", "components", "displacement"});
   const NodeMask nodes = SelectNodes(support.At("nodes"), mesh, nullptr);
   const int dimension = mesh.Dimension();
@@ -95,16 +111,20 @@ void AddSupport(const JsonValue& support, const MeshFile& mesh,
       if (!components[axis]) {
         continue;
       }
-      if (IsContradicted(supports, axis, node, displacement)) {
+      const int holder = so_far.holder(axis, node);
+      if (holder >= 0 && !IsHeldAlike(so_far, axis, node, displacement)) {
         support.Fail("holds the " + std::string(kAxisNames[axis]) +
                      " component of " + NodeName(mesh, node) +
-                     " at another displacement than a support before it; "
-                     "select each only once");
+                     " otherwise than supports[" + std::to_string(holder) +
+                     "] does; leave it out of one of them");
       }
+      // A support that ends with its nodes may go on in another one.
+      supports.delimited(axis, node) =
+          is_group && (holder < 0 || supports.delimited(axis, node));
+      so_far.holder(axis, node) = number;
       supports.held(axis, node) = true;
       supports.unknown(axis, node) = displacement.IsUnknown();
       supports.displacement(axis, node) = displacement.given(axis);
-      supports.delimited(axis, node) = is_group;
     }
   }
   if (displacement.is_rigid) {
@@ -121,13 +141,16 @@ void AddSupport(const JsonValue& support, const MeshFile& mesh,
 }  // namespace
 
 Supports ReadSupports(const JsonValue& document, const MeshFile& mesh) {
-  Supports supports;
+  HeldSoFar so_far;
+  Supports& supports = so_far.supports;
   supports.held.setConstant(mesh.Dimension(), mesh.nodes.cols(), false);
   supports.unknown = supports.held;
   supports.delimited = supports.held;
   supports.displacement.setZero(mesh.Dimension(), mesh.nodes.cols());
+  so_far.holder.setConstant(mesh.Dimension(), mesh.nodes.cols(), -1);
+  int number = 0;
   for (const JsonValue& support : document.At("supports").Items()) {
-    AddSupport(support, mesh, supports);
+    AddSupport(support, number++, mesh, so_far);
   }
   if (!supports.unknown.any()) {
     supports.unknown.resize(0, 0);

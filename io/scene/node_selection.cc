@@ -223,7 +223,9 @@ const Eigen::MatrixXd& NamedNodeArray(
   const Eigen::MatrixXd* array = FindArray(mesh.node_arrays, name.String());
   if (array == nullptr) {
     name.Fail("names the array '" + Printable(name.String()) + "', which '" +
-              PrintablePath(mesh.path) + "' does not have");
+              PrintablePath(mesh.path) +
+              "' does not have; its point arrays are: " +
+              ArrayNames(mesh.node_arrays));
   }
   if (std::find(components.begin(), components.end(), array->rows()) ==
       components.end()) {

@@ -298,11 +298,14 @@ void RequireRegions(const MeshFile& mesh, bool is_one_for_each,
                         "group is of whole elementary entities), or add the "
                         "element data \"region\"");
   }
-  ThrowInputError(mesh.path,
-                  none + (mesh.is_vtk ? "; add the cell array 'region'"
-                                      : "; put the elements into physical "
-                                        "groups, or add the element data "
-                                        "\"region\""));
+  ThrowInputError(
+      mesh.path,
+      none + (mesh.is_vtk ? "; add the cell array 'region', or name another "
+                            "by \"regions\": {\"array\": NAME} "
+                            "in a scene.json"
+                          : "; put the elements into physical "
+                            "groups, or add the element data "
+                            "\"region\""));
 }
 
 /// Gives the scene, which `path` describes, the materials that were chosen for

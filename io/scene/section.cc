@@ -4,6 +4,7 @@
 #include <sstream>
 #include <string>
 
+#include "elastimate/core/text/numbers.h"
 #include "elastimate/io/mesh/section_number.h"
 #include "elastimate/io/text/input_error.h"
 
@@ -19,9 +20,8 @@ SectionChoice FieldData(const MeshFile& mesh) {
       }
     }
     if (!choice.model) {
-      std::ostringstream number;
-      number << *mesh.model;
-      ThrowInputError(mesh.path, "the field data 'model' is " + number.str() +
+      ThrowInputError(mesh.path, "the field data 'model' is " +
+                                     NumberText(*mesh.model) +
                                      "; make it 0 for 3d, 1 for plane_stress "
                                      "or 2 for plane_strain");
     }

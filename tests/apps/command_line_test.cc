@@ -48,17 +48,47 @@ class CommandLine : public ProgramTest {
   }
 };
 
-TEST_F(CommandLine, HelpNamesEveryCommandAndFlag) {
+// Lines of at most 100 characters, as many as a screen has.
+void ExpectAScreen(const std::string& help) {
+  std::istringstream lines(help);
+  int num_lines = 0;
+  for (std::string line; std::getline(lines, line); ++num_lines) {
+    EXPECT_LE(line.size(), 100U) << line;
+  }
+  EXPECT_LE(num_lines, 40);
+}
+
+TEST_F(CommandLine, HelpNamesEveryCommand) {
   const std::string help = Succeed("--help").output;
+  ExpectAScreen(help);
   for (const std::string words :
        {"elastimate estimate SCENE...", "elastimate simulate SCENE",
         "elastimate generate cuboid|organ|plate|rectangle",
-        "elastimate estimators", "--estimator", "--nu_min", "--youngs_max",
-        "--noise_sd", "--loss", "--noise_law", "--json", "--out", "--cells",
-        "Exit code"}) {
+        "elastimate estimators", "COMMAND --help", "Exit code"}) {
     EXPECT_NE(help.find(words), std::string::npos) << words;
   }
-  EXPECT_EQ(Succeed("estimate --help").output, help);
+  EXPECT_EQ(Succeed("help").output, help);
+  EXPECT_EQ(Succeed("-h").output, help);
+}
+
+TEST_F(CommandLine, HelpOfACommandHasItsFlagsAlone) {
+  const std::string help = Succeed("estimate --help").output;
+  EXPECT_EQ(help.find("elastimate estimate SCENE..."), 0U);
+  EXPECT_EQ(help.find("simulate SCENE"), std::string::npos);
+  for (const std::string flag :
+       {"--estimator ", "--nu_min ", "--youngs_max ", "--noise_sd ", "--loss ",
+        "--json ", "--out "}) {
+    EXPECT_NE(help.find("\n  " + flag), std::string::npos) << flag;
+  }
+  EXPECT_EQ(help.find("--cells"), std::string::npos);
+  EXPECT_EQ(Succeed("help estimate").output, help);
+  EXPECT_EQ(Succeed("estimate scene.vtu --nu=0.3 -h").output, help);
+  for (const std::string command : {"estimate", "simulate", "plan", "generate",
+                                    "estimators", "materials"}) {
+    ExpectAScreen(Succeed(command + " --help").output);
+  }
+  Refuse("estimat --help", "unknown command 'estimat'");
+  Refuse("help estimat", "unknown command 'estimat'");
 }
 
 TEST_F(CommandLine, VersionNamesTheBlasInUse) {
@@ -566,11 +596,24 @@ TEST_F(CommandLine, SaysWhenStandardOutputIsLost) {
   EXPECT_EQ(Read("a.vtu").mesh.NumElements(), 250);
 }
 
-TEST_F(CommandLine, SaysWhenTheReaderOfStandardOutputIsGone) {
+TEST_F(CommandLine, EndsQuietlyWhereTheReaderOfStandardOutputIsGone) {
+  MakeExactScene();
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
-  // The shell's descriptor 3 lets the pipe open for writing; then it closes.
-  Refuse("--help", "standard output cannot be written (Broken pipe)",
-         "3<>pipe >pipe 3<&-");
+  for (const std::string arguments :
+       {"--help", "estimate --help", "estimate exact.vtu",
+        "estimate exact.vtu --json=- --out=result.vtu"}) {
+    const auto before = Files();
+    // The shell's descriptor 3 lets the pipe open for writing; then it closes.
+    // `exec` lets the test see how the program ended.
+    const int status = std::system(("cd '" + folder_.string() +
+                                    "' && exec '" ELASTIMATE_PROGRAM "' " +
+                                    arguments + " 2>.errors 3<>pipe >pipe 3<&-")
+                                       .c_str());
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGPIPE)
+        << arguments << ": " << status;
+    EXPECT_EQ(ReadText(folder_ / ".errors"), "") << arguments;
+    EXPECT_EQ(Files(), before);
+  }
 }
 
 TEST_F(CommandLine, WorksWithClosedStandardStreams) {
@@ -744,7 +787,7 @@ TEST_F(CommandLine, OrdinaryOutcomesAreSilentOnStandardError) {
 }
 
 TEST_F(CommandLine, HelpStatesTheDefaultsOfTheExampleScenes) {
-  const std::string help = Succeed("--help").output;
+  const std::string help = Succeed("generate --help").output;
   const auto text = [](const auto& triple) {
     std::ostringstream stream;
     stream << triple[0] << "," << triple[1] << "," << triple[2];
@@ -759,14 +802,13 @@ TEST_F(CommandLine, HelpStatesTheDefaultsOfTheExampleScenes) {
   for (const std::string& words :
        {"(default " + text(cuboid.cells) + ")",
         "(default " + text(cuboid.size) + ")",
-        "(default " + text(cuboid.force) + " for the cuboid, " +
-            text(organ.force) + " for the organ)",
+        "per free node (cuboid " + text(cuboid.force) + "; organ " +
+            text(organ.force) + "); total: plate " +
+            std::to_string(int(plate.force)),
         "(default " + std::to_string(organ.tetrahedra) + ")",
         std::string("(default 0.2)"), std::string("(default 2.5)"),
-        "edges, from 2 to 1414; " + std::to_string(plate.cells) + " without",
-        "along x,y; " + size + " without",
-        "total force along x, " + std::to_string(int(plate.force)) +
-            " without"}) {
+        "plate: N; " + std::to_string(plate.cells) + ")",
+        "plate: x,y; " + size + ")"}) {
     EXPECT_NE(help.find(words), std::string::npos) << words;
   }
   Succeed("generate cuboid --out=cuboid.vtu");

@@ -155,6 +155,36 @@ TEST_F(MaterialsCommand, MergesWhatTheMeasurementDoesNotTellApart) {
   }
 }
 
+TEST_F(MaterialsCommand, ReportsEAndNuOfOneMaterialOfWhichSomethingIsKnown) {
+  Succeed("simulate block.vtu --youngs=1e4 --nu=0.3 --noise=0.01 --out=m.vtu");
+  for (const std::string material :
+       {R"({"known": {"poisson_ratio": 0.3}})",
+        R"({"bounds": {"poisson_ratio": [0.1, 0.45]}})",
+        R"({"region": [1, 2, 3], "known": {"youngs_modulus": 1e4}})"}) {
+    SCOPED_TRACE(material);
+    testing::WriteText(folder_ / "scene.json",
+                       R"({"mesh": "m.vtu", "materials": [)" + material +
+                           R"(],
+          "supports": [{"nodes": {"box": [[-1,-1,-1],[2,2,1e-9]]}}],
+          "cases": [{"displacement": {"array": "displacement"},
+                     "loads": [{"type": "nodal_force", "array": "force"}]}]})");
+    const Json report =
+        Succeed("estimate scene.json --estimator=iterative-fe --json=-").Json();
+    const Json& errors = report["standard_error"];
+    for (const Json& parameter : report["parameters"]) {
+      const std::string name = parameter["name"];
+      EXPECT_FALSE(parameter["value"].is_null());
+      EXPECT_EQ(report[name], parameter["value"]);
+      EXPECT_EQ(errors[name].is_null(), bool(parameter["known"])) << errors;
+      if (!errors[name].is_null()) {
+        EXPECT_NEAR(double(errors[name]) / double(parameter["standard_error"]),
+                    1, 1e-9);
+      }
+    }
+    EXPECT_FALSE(report["shear_modulus"].is_null());
+  }
+}
+
 TEST_F(MaterialsCommand, RefusesToMergeWhatItCannotCompare) {
   Succeed(
       "simulate block.vtu --regions=each --parameters=truth.json --out=m.vtu");

@@ -7,6 +7,7 @@
 #include <iomanip>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -65,6 +66,36 @@ class Series : public testing::ProgramTest {
       record << stress * 2 * 0.5 << "\n";
     }
     testing::WriteText(folder_ / "load.csv", record.str());
+  }
+
+  // So many frames under the same load, whose force is known to 2 %: its error
+  // is the same in all of them, and far above that of noise.
+  void WriteFramesOfOneLoad(int count) const {
+    std::mt19937_64 generator(4);
+    std::normal_distribution<double> noise(0, 0.1 * kNoise);
+    for (int number = 0; number < count; ++number) {
+      std::ostringstream text;
+      text << std::setprecision(17) << "x,y,ux,uy\n";
+      for (int i = 0; i <= 12; ++i) {
+        for (int j = 0; j <= 4; ++j) {
+          const double of_x = noise(generator);
+          text << 0.5 * i << "," << 0.5 * j << ","
+               << 5 / kYoungs * 0.5 * i + of_x << ","
+               << -5 / kYoungs * kPoisson * 0.5 * j + noise(generator) << "\n";
+        }
+      }
+      testing::WriteText(folder_ / ("frame_" + std::to_string(number) + ".csv"),
+                         text.str());
+    }
+    const std::string scene = testing::ReadText(folder_ / "scene.json");
+    testing::WriteText(
+        folder_ / "scene.json",
+        std::regex_replace(
+            std::regex_replace(
+                std::regex_replace(scene, std::regex("\"sd\": 1e-4"),
+                                   "\"relative_sd\": 0.02"),
+                std::regex("\\[1, null\\]"), "[5, null]"),
+            std::regex(", \"load_record\": \\{[^}]*\\}"), ""));
   }
 
   void WriteScene(const std::string& frames) const {
@@ -148,6 +179,23 @@ TEST_F(Series, TellsWhatFramesShare) {
     return double(report["standard_error"]["poisson_ratio"]);
   };
   EXPECT_GT(error(shared) / error(alone), 3);
+}
+
+TEST_F(Series, AveragesTheNoiseOfWhatLoadsSayNothingOf) {
+  WriteFramesOfOneLoad(60);
+  const nlohmann::json report =
+      Succeed("estimate scene.json --estimator=iterative-fe --json=-").Json();
+  EXPECT_EQ(report["series"]["used"], 60);
+  for (const nlohmann::json& finding : report["findings"]) {
+    EXPECT_NE(finding["code"], "frames_scatter") << finding["text"];
+  }
+  // The error of the load is that of E alone.
+  EXPECT_NEAR(double(report["standard_error"]["youngs_modulus"]) / kYoungs,
+              0.02, 0.002);
+  const double error = report["standard_error"]["poisson_ratio"];
+  EXPECT_NEAR(report["poisson_ratio"], kPoisson, 4 * error);
+  // One frame tells nu to 0.0008.
+  EXPECT_LT(error, 3 * 0.0008 / std::sqrt(60));
 }
 
 TEST_F(Series, HasARowForAFrameThatCannotBeRead) {

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <optional>
 
 #include "elastimate/core/equilibrium/forward_model.h"
 #include "elastimate/core/mechanics/stiffness_assembly.h"
@@ -199,6 +201,31 @@ TEST_P(ElementKinds, SpreadATractionOverItsArea) {
   const Eigen::MatrixXd of_total =
       AssembleLoads(mesh_, {SurfaceForce{facets, area * traction}});
   EXPECT_TRUE(of_total.isApprox(force, 1e-12));
+}
+
+TEST_P(ElementKinds, TellTheirFacesFromOtherNodes) {
+  const Eigen::MatrixXi faces = BoundaryFacets(mesh_);
+  EXPECT_EQ(FirstThatIsNoFace(mesh_, faces), std::nullopt);
+  // A vertex of it is far off.
+  const int num_vertices = mesh_.Topology().NumVerticesOfFace();
+  Eigen::Index farthest = 0;
+  (mesh_.nodes.colwise() - mesh_.nodes.col(faces(0, 7)))
+      .colwise()
+      .squaredNorm()
+      .maxCoeff(&farthest);
+  Eigen::MatrixXi mixed = faces;
+  mixed(num_vertices - 1, 7) = static_cast<int>(farthest);
+  EXPECT_EQ(FirstThatIsNoFace(mesh_, mixed), Eigen::Index(7));
+  if (num_vertices == 4) {
+    Eigen::MatrixXi crossed = faces;
+    std::swap(crossed(1, 7), crossed(2, 7));
+    EXPECT_EQ(FirstThatIsNoFace(mesh_, crossed), Eigen::Index(7));
+  }
+  if (mesh_.Order() == 2) {
+    Eigen::MatrixXi other_middle = faces;
+    other_middle(num_vertices, 7) = faces(num_vertices, 0);
+    EXPECT_EQ(FirstThatIsNoFace(mesh_, other_middle), Eigen::Index(7));
+  }
 }
 
 TEST_P(ElementKinds, AreHeldOnlyAsAWhole) {

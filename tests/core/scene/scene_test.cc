@@ -141,11 +141,22 @@ TEST_F(ValidatedScene, NeedsAFiniteForceOnASurface) {
                      "magnitude 1e\\+60");
 }
 
-TEST_F(ValidatedScene, NeedsAreaUnderAForceOnASurface) {
-  SecondLoad<SurfaceForce>(3).facets.setConstant(3);
-  EXPECT_THROWS_WITH(ValidateScene(scene_),
-                     "the force on a surface in load 4 of load case 2 acts on "
-                     "facets without area");
+TEST_F(ValidatedScene, NeedsFacetsThatAreFaces) {
+  Eigen::MatrixXi& facets = SecondLoad<SurfaceForce>(3).facets;
+  const Eigen::Vector3i face = facets.col(3);
+  facets.col(3) << face(1), face(0), face(2);  // Whichever way around.
+  EXPECT_NO_THROW(ValidateScene(scene_));
+  // Some nodes are corners of opposite sides of the block, others the same.
+  for (const auto& none : {Eigen::Vector3i(0, 1, scene_.mesh.NumNodes() - 1),
+                           Eigen::Vector3i(face(0), face(0), face(1))}) {
+    facets.col(3) = none;
+    EXPECT_THROWS_WITH(ValidateScene(scene_),
+                       "facet 3 of the force on a surface in load 4 of load "
+                       "case 2 is no face");
+  }
+}
+
+TEST_F(ValidatedScene, NeedsAFacetUnderAForceOnASurface) {
   SecondLoad<SurfaceForce>(3).facets.resize(3, 0);
   EXPECT_THROWS_WITH(ValidateScene(scene_),
                      "the force on a surface in load 4 of load case 2 acts on "
@@ -243,6 +254,8 @@ TEST_F(ValidatedScene, IgnoresDisplacementsThatWereNotObserved) {
 }
 
 TEST_F(ValidatedScene, NeedsAPositiveNoise) {
+  Second().noise_sd = -2e-9;
+  EXPECT_THROWS_WITH(ValidateScene(scene_), "is -2e-09; it must be positive");
   for (const double bad : {0.0, -1e-3, kNan, kInfinity}) {
     Second().noise_sd = bad;
     EXPECT_THROWS_WITH(ValidateScene(scene_),

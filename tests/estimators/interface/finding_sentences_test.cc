@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <regex.h>
 
+#include <cmath>
 #include <limits>
 #include <sstream>
 #include <string>
@@ -10,18 +11,6 @@
 
 namespace elastimate {
 namespace {
-
-TEST(TwoDigits, AreForSentences) {
-  EXPECT_EQ(TwoDigits(0), "0");
-  EXPECT_EQ(TwoDigits(0.01234), "0.012");
-  EXPECT_EQ(TwoDigits(-0.07), "-0.07");
-  EXPECT_EQ(TwoDigits(0.9951), "1");
-  EXPECT_EQ(TwoDigits(3), "3");
-  EXPECT_EQ(TwoDigits(99.9), "100");
-  EXPECT_EQ(TwoDigits(1234), "1200");
-  EXPECT_EQ(TwoDigits(1.26e7), "1.3e+07");
-  EXPECT_EQ(TwoDigits(std::numeric_limits<double>::infinity()), "inf");
-}
 
 Estimate WithCovariance(double youngs_sd, double nu_sd, double correlation) {
   Estimate estimate;
@@ -138,6 +127,7 @@ std::vector<Finding> OfResiduals() {
           OutliersAtLimit(),
           ModelMismatchFinding({kLong, kLong, true}),
           Outliers({kLong, kLong}, {}),
+          FarNeighbours(),
           OutliersLeftOut({{0, 1000000, false},
                            {0, 1000001, false},
                            {0, 1000002, true},
@@ -247,6 +237,34 @@ TEST(FindingSentences, AreShort) {
     for (const std::string& sentence : {finding.text, finding.advice}) {
       EXPECT_NE(sentence.back(), '.');
       EXPECT_EQ(sentence.find(". "), std::string::npos);
+    }
+  }
+}
+
+TEST(FindingSentences, HaveNoPercentageBeyondAThousand) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double ratio : {-20.0, 12.0, 82.0, 4.3e12, infinity}) {
+    const Eigen::VectorXd numbers = Eigen::VectorXd::Constant(1, ratio);
+    Estimate open;
+    open.discretization_error = ratio;
+    for (const Finding& finding :
+         {YoungsModulusOnBoundUndetermined(ratio), LargeCorrection(ratio),
+          LoadsOutOfBalance(ratio, Severity::kError),
+          LargeSmoothResidual(ratio), LargeResidual(ratio),
+          AxisTurned(0.01, "", ratio), Outliers({ratio, 0}, {}),
+          OutliersLeftOut({{0, 1, false}}, {ratio, 0}, {}),
+          TrendOverFrames("E", true, {true, numbers, numbers, numbers}, 0),
+          YoungsModulusBias(ratio, Severity::kError),
+          ParameterBias("E", ratio, true, Severity::kError),
+          DiscretizationErrorFinding(ElementKind::kTet4, open),
+          ElementsTooCoarse({std::log1p(std::abs(ratio)), 0}, {}),
+          SupportsEndWithinElements({ratio, 0})}) {
+      const std::size_t place = finding.text.find(" %");
+      if (place != std::string::npos) {  // That of a limit.
+        const std::size_t start = finding.text.rfind(' ', place - 1) + 1;
+        EXPECT_LE(std::stod(finding.text.substr(start)), 1000) << finding.text;
+      }
+      EXPECT_EQ(finding.text.find("e+"), std::string::npos) << finding.text;
     }
   }
 }

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -89,6 +91,68 @@ TEST(OutliersApart, DoNotHideWhatTheModelLacks) {
                 3 * *parameter.standard_error)
         << parameter.Label();
   }
+}
+
+// A block between platens, a corner of which is stiffer, taken for one material
+// of known nu: displacements say nothing of E there, the load cell does.
+Scene BlockOfUnknownInclusion() {
+  Scene scene;
+  scene.mesh = testing::BoxMesh({4, 4, 4}, {10, 10, 10});
+  Mesh& mesh = scene.mesh;
+  scene.supports.held.setConstant(3, mesh.NumNodes(), false);
+  scene.supports.displacement.setZero(3, mesh.NumNodes());
+  std::vector<int> top;
+  for (int node = 0; node < mesh.NumNodes(); ++node) {
+    const double z = mesh.nodes(2, node);
+    scene.supports.held.col(node).setConstant(z < 0.1 || z > 9.9);
+    if (z > 9.9) {
+      scene.supports.displacement(2, node) = -0.1;
+      top.push_back(node);
+    }
+  }
+  mesh.regions.resize(mesh.NumElements());
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    const Eigen::Vector3d centre =
+        mesh.nodes(Eigen::all, mesh.elements.col(e)).rowwise().mean();
+    mesh.regions(e) = (centre.array() < 5).all() ? 2 : 1;
+  }
+  scene.materials = IsotropicMaterialOfEachRegion(mesh);
+  scene.load_cases.resize(1);
+  LoadCase& load_case = scene.load_cases[0];
+  const std::vector<IsotropicElasticity> truth = {{1e-2, 0.45}, {0.04, 0.45}};
+  const Eigen::VectorXd exact = testing::SolveByTextbook(scene, truth);
+  const Eigen::MatrixXd force =
+      (testing::TextbookStiffness(scene, truth) * exact)
+          .reshaped(3, mesh.NumNodes());
+  const double total = force(2, top).sum();
+  constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+  load_case.resultants = {
+      {top, Eigen::Vector3d(kNotMeasured, kNotMeasured, total),
+       Eigen::Vector3d(kNotMeasured, kNotMeasured, 0.01 * std::abs(total))}};
+  load_case.displacement = exact.reshaped(3, mesh.NumNodes());
+  std::mt19937_64 generator(2);
+  std::normal_distribution<double> noise(0, 5e-5);
+  for (double& value : load_case.displacement.reshaped()) {
+    value += noise(generator);
+  }
+  mesh.regions.resize(0);
+  scene.materials = {Material()};
+  scene.materials[0].known = {{"poisson_ratio", 0.45}};
+  return scene;
+}
+
+TEST(FarNodes, OfAnotherMaterialDoNotHideWhatResultantsTell) {
+  const Estimate estimate =
+      MakeEstimator("iterative-fe")->Run(BlockOfUnknownInclusion(), {});
+  EXPECT_EQ(estimate.status, Status::kOk) << estimate.message;
+  EXPECT_GT(estimate.elasticity.youngs_modulus, 1e-2);
+  EXPECT_LT(estimate.elasticity.youngs_modulus, 0.04);
+  // That they are far off is noticed, and changes less than the value itself.
+  EXPECT_TRUE(estimate.error_budget.outliers(0) > 0 &&
+              estimate.error_budget.outliers(0) < 1)
+      << estimate.error_budget.outliers.transpose();
+  EXPECT_TRUE(estimate.Has(FindingCode::kSmoothResidual) ||
+              estimate.Has(FindingCode::kOutliers));
 }
 
 }  // namespace

@@ -192,11 +192,100 @@ TEST(JointEstimate, SharesWhatMostFramesFound) {
   EXPECT_TRUE(Join(frames).Has(FindingCode::kSmoothResidual));
 }
 
+// A series of 200 frames that scatter by the noise alone, which the elements'
+// error, the same in all of them, exceeds by far and correlates otherwise.
+std::vector<FrameEstimate> FramesOfOneElementError(std::mt19937_64& generator,
+                                                   double more_noise = 1) {
+  std::normal_distribution<double> normal;
+  const Eigen::Vector2d noise(0.004, 0.003);
+  const Eigen::Vector2d elements(0.032, -0.0155);
+  std::vector<FrameEstimate> frames;
+  for (int k = 0; k < 200; ++k) {
+    const double x = normal(generator);
+    const double y = 0.8 * x + 0.6 * normal(generator);
+    frames.push_back(FrameOf(kYoungs * std::exp(more_noise * noise(0) * x),
+                             kPoisson + more_noise * noise(1) * y, noise,
+                             noise));
+    Estimate& estimate = frames.back().estimate;
+    const double of_frame = 1 + 0.05 * normal(generator);
+    const double size = of_frame * of_frame;
+    const Eigen::Vector2d to_value(estimate.elasticity.youngs_modulus, 1);
+    const double covariance =
+        0.8 * noise(0) * noise(1) + size * elements(0) * elements(1);
+    estimate.covariance << std::pow(noise(0), 2) +
+                               size * std::pow(elements(0), 2),
+        covariance, covariance,
+        std::pow(noise(1), 2) + size * std::pow(elements(1), 2);
+    estimate.covariance =
+        to_value.asDiagonal() * estimate.covariance * to_value.asDiagonal();
+    estimate.parameter_covariance = estimate.covariance;
+  }
+  return frames;
+}
+
+TEST(JointEstimate, IsNotMisledByWhatElementsAddToTheErrors) {
+  std::mt19937_64 generator(3);
+  constexpr int kSeries = 40;
+  double square_sum = 0;
+  for (int i = 0; i < kSeries; ++i) {
+    const Estimate joint = Join(FramesOfOneElementError(generator));
+    EXPECT_FALSE(joint.Has(FindingCode::kFramesScatter));
+    const double of_noise = 0.003 / std::sqrt(200);
+    EXPECT_NEAR(joint.error_budget.noise(1), of_noise, 0.3 * of_noise);
+    EXPECT_NEAR(*joint.PoissonRatioStandardError(), 0.0155, 0.002);
+    square_sum +=
+        std::pow((joint.elasticity.poisson_ratio - kPoisson) / of_noise, 2);
+  }
+  // chi^2 of 40 degrees of freedom has a standard deviation of 9.
+  EXPECT_NEAR(square_sum, kSeries, 4 * 9);
+  // A scatter beyond all errors is told.
+  EXPECT_TRUE(Join(FramesOfOneElementError(generator, 20))
+                  .Has(FindingCode::kFramesScatter));
+}
+
+// Each frame knows its noise from four degrees of freedom.
+TEST(JointEstimate, IsNotMisledByNoiseThatFewDegreesOfFreedomTell) {
+  constexpr int kSeries = 100;
+  constexpr double kFreedom = 4;
+  std::mt19937_64 generator(5);
+  std::normal_distribution<double> normal;
+  std::chi_squared_distribution<double> chi_squared(kFreedom);
+  int num_alarms = 0;
+  Eigen::Vector2d square_sum = Eigen::Vector2d::Zero();
+  for (int i = 0; i < kSeries; ++i) {
+    std::vector<FrameEstimate> frames;
+    for (int k = 0; k < 200; ++k) {
+      const double noise = std::sqrt(chi_squared(generator) / kFreedom);
+      const Eigen::Vector2d errors = noise * Eigen::Vector2d(0.02, 0.03);
+      frames.push_back(FrameOf(kYoungs * std::exp(0.02 * normal(generator)),
+                               kPoisson + 0.03 * normal(generator), errors,
+                               errors));
+      frames.back().estimate.noise_sd = noise;
+      frames.back().estimate.noise_degrees_of_freedom = kFreedom;
+    }
+    const Estimate joint = Join(frames);
+    num_alarms += joint.Has(FindingCode::kFramesScatter) ? 1 : 0;
+    square_sum +=
+        Eigen::Vector2d(std::pow((joint.elasticity.youngs_modulus - kYoungs) /
+                                     *joint.YoungsModulusStandardError(),
+                                 2),
+                        std::pow((joint.elasticity.poisson_ratio - kPoisson) /
+                                     *joint.PoissonRatioStandardError(),
+                                 2));
+  }
+  // Of a probability of .001.
+  EXPECT_LE(num_alarms, 2);
+  // chi^2 of 100 degrees of freedom has a standard deviation of 14.
+  EXPECT_LT(square_sum.maxCoeff(), kSeries + 4 * 14);
+  EXPECT_GT(square_sum.minCoeff(), kSeries - 4 * 14);
+}
+
 // Of many series: the scores of the joint estimate, and how often a trend is
 // found.  `scatter` is that between frames, in standard deviations of noise.
 struct Scores {
   Eigen::Vector2d mean_square = Eigen::Vector2d::Zero();
   double share_of_trends = 0;
+  double share_of_scatters = 0;
 };
 
 Scores ScoresOf(int num_series, double scatter) {
@@ -224,6 +313,8 @@ Scores ScoresOf(int num_series, double scatter) {
         num_series;
     scores.share_of_trends +=
         double(joint.Has(FindingCode::kTrendOverFrames)) / num_series;
+    scores.share_of_scatters +=
+        double(joint.Has(FindingCode::kFramesScatter)) / num_series;
   }
   return scores;
 }
@@ -234,14 +325,16 @@ TEST(JointEstimateStatistics, ErrorsAreTrueOfIndependentFrames) {
   const Scores scores = ScoresOf(400, 1);
   EXPECT_LT(scores.mean_square.maxCoeff(), 1.2);
   EXPECT_GT(scores.mean_square.minCoeff(), 0.6);
-  // Of a probability of .01.
+  // Of a probability of .01, and of .001.
   EXPECT_LT(scores.share_of_trends, 0.03);
+  EXPECT_LE(scores.share_of_scatters, 0.01);
 }
 
 TEST(JointEstimateStatistics, ErrorsAreTrueOfFramesThatScatterMore) {
   const Scores scores = ScoresOf(400, 3);
   EXPECT_LT(scores.mean_square.maxCoeff(), 1.35);
   EXPECT_GT(scores.mean_square.minCoeff(), 0.7);
+  EXPECT_GT(scores.share_of_scatters, 0.9);
   EXPECT_LT(scores.share_of_trends, 0.03);
 }
 

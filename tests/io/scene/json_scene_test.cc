@@ -248,8 +248,71 @@ TEST_F(JsonSceneTest, HoldsComponentsAtDisplacements) {
         {"nodes": {"ids": [0]}},
         {"nodes": {"ids": [0]}, "displacement": [0, 1, 0]} ])")),
       "scene.json: supports\\[1\\] holds the y component of node 0 \\(number "
-      "2 in Gmsh\\) at another displacement");
+      "2 in Gmsh\\) otherwise than supports\\[0\\] does");
   EXPECT_FALSE(Read(WithSupports("[]")).scene.supports.held.any());
+}
+
+TEST_F(JsonSceneTest, TakesSupportsThatSayTheSameOfANode) {
+  const auto both = [&](const std::string& first, const std::string& second) {
+    return WithSupports(R"([ {"nodes": {"ids": [0, 1]}, )" + first +
+                        R"(}, {"nodes": {"ids": [1, 4]}, )" + second + "} ]");
+  };
+  const std::string measured = R"("displacement": "measured")";
+  // The corner of two planes of symmetry, and of two whole clamps.
+  for (const char* const components : {"x", "xyz"}) {
+    const Supports supports =
+        Read(both(R"("components": "x", )" + measured,
+                  R"("components": ")" + std::string(components) + "\", " +
+                      measured))
+            .scene.supports;
+    EXPECT_TRUE(supports.held(0, 0) && supports.unknown(0, 0));
+    EXPECT_TRUE(supports.held(0, 1) && supports.unknown(0, 1));
+    EXPECT_TRUE(supports.held(0, 4) && supports.unknown(0, 4));
+  }
+  const std::string rigid = R"("displacement": "rigid")";
+  const std::string given = R"("displacement": [0, 0, 0])";
+  for (const auto& [first, second] : {std::pair{measured, given},
+                                      {given, measured},
+                                      {measured, rigid},
+                                      {rigid, measured},
+                                      {rigid, rigid},
+                                      {given, rigid},
+                                      {rigid, given}}) {
+    EXPECT_THROWS_WITH(Read(both(first, second)),
+                       "supports\\[1\\] holds the x component of node 1 "
+                       "otherwise than supports\\[0\\]");
+  }
+  const Supports apart = Read(both(R"("components": "x", )" + rigid,
+                                   R"("components": "yz", )" + measured))
+                             .scene.supports;
+  EXPECT_TRUE(apart.held.col(1).all());
+}
+
+TEST_F(JsonSceneTest, TakesRegionsFromTheArrayThatIsNamed) {
+  folder_.Write("mesh.vtk", LegacySceneText().replace(
+                                LegacySceneText().find("POINT_DATA"), 0,
+                                "SCALARS dataset int 1\nLOOKUP_TABLE default\n"
+                                "0 3 0 4\n"
+                                "SCALARS share double 1\nLOOKUP_TABLE default\n"
+                                "0 .5 0 1\n"));
+  folder_.Write("u.csv",
+                "x,y,z\n0,0,0\n0,0,0\n9,9,9\n0,0,0\n.1,.2,.3\n.4,.5,.6\n");
+  const auto regions = [&](const std::string& value) {
+    return Read(Replaced(kDocument, R"("mesh": "mesh.vtu",)",
+                         R"("mesh": "mesh.vtk", "regions": )" + value +
+                             R"(, "materials": [ {"region": 3},
+                                                 {"region": 4} ],)"))
+        .scene.mesh.regions;
+  };
+  EXPECT_EQ(regions(R"({"array": "dataset"})"), Eigen::Vector2i(3, 4));
+  EXPECT_THROWS_WITH(regions(R"({"array": "datset"})"),
+                     "regions.array is \"datset\", but .*mesh.vtk' has no such "
+                     "cell array; .*region, dataset, share");
+  EXPECT_THROWS_WITH(regions(R"({"array": "share"})"),
+                     "the cell array 'share' is 0.5 .*integers");
+  EXPECT_THROWS_WITH(regions(R"("dataset")"), "regions must be");
+  EXPECT_THROWS_WITH(regions(R"({"name": "dataset"})"),
+                     "regions has the unknown key");
 }
 
 TEST_F(JsonSceneTest, ReadsNodalForces) {

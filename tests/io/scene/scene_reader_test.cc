@@ -239,6 +239,21 @@ TEST_F(SceneReaderTest, NamesWronglyShapedArrays) {
   EXPECT_THROWS_WITH(Read(scene_.mesh, fields_), "'region' has 3 components");
 }
 
+TEST_F(SceneReaderTest, NamesOptionalArraysThatSeemMisspelt) {
+  for (const std::string name :
+       {"prescribd", "Prescribed", "PRESCRIBED_2", "observd", "Observed"}) {
+    Fields fields = fields_;
+    fields.point.push_back(FieldOf(fields, "force"));
+    fields.point.back().name = name;
+    EXPECT_THROWS_WITH(Read(scene_.mesh, fields),
+                       "the point array '" + name + "' is not read");
+  }
+  Fields fields = fields_;
+  fields.point.push_back(FieldOf(fields, "force"));
+  fields.point.back().name = "temperature";
+  EXPECT_NO_THROW(Read(scene_.mesh, fields));
+}
+
 TEST_F(SceneReaderTest, NamesLoadCasesOutOfSequence) {
   Fields fields = fields_;
   FieldOf(fields, "displacement_2").name = "displacement_3";
