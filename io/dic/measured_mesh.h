@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "elastimate/core/scene/scene.h"
-#include "elastimate/io/dic/dic_file.h"
 #include "elastimate/io/mesh/mesh_file.h"
+#include "elastimate/io/points/table_options.h"
 #include "elastimate/io/text/json_value.h"
 
 namespace elastimate {
@@ -22,17 +22,14 @@ namespace elastimate {
 MeshFile ReadMeasuredMesh(const JsonValue& mesh,
                           std::vector<std::string>& notices);
 
-/// How that value says that its file is read.  Throws as above.
-DicOptions ReadDicOptions(const JsonValue& mesh);
-
 /// Enters what another file of the camera says of the nodes of such a mesh, 2 x
 /// n, which are found by their positions, to a thousandth of the least distance
 /// between two of them: their displacement, and which of them were observed.
 /// Throws std::invalid_argument, naming the file, where fewer than half of them
 /// were.
 void ReadMeasuredFrame(const std::filesystem::path& path,
-                       const DicOptions& options, const Eigen::Matrix2Xd& nodes,
-                       LoadCase& load_case);
+                       const TableOptions& options,
+                       const Eigen::Matrix2Xd& nodes, LoadCase& load_case);
 
 }  // namespace elastimate
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "elastimate/io/points/points_file.h"
+#include "elastimate/io/points/table_options.h"
 #include "elastimate/io/text/input_error.h"
 #include "elastimate/io/text/printable.h"
 
@@ -99,6 +100,17 @@ void CheckDistances(const std::filesystem::path& path, const PointsFile& file,
   }
 }
 
+// All files are over one mesh, whatever its unit is.
+void CheckUnit(const std::filesystem::path& path, const std::string& own,
+               std::string& unit) {
+  if (!own.empty() && !unit.empty() && own != unit) {
+    ThrowInputError(path, "positions are in " + own +
+                              ", but those of other files of the scene in " +
+                              unit + "; give all in the unit of the mesh");
+  }
+  unit = own.empty() ? unit : own;
+}
+
 // The columns of `b` behind those of `a`.
 Eigen::MatrixXd Append(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   Eigen::MatrixXd both(b.rows(), a.cols() + b.cols());
@@ -122,16 +134,20 @@ void AppendPoints(const PointsFile& file, const MeshPoints& points,
 PointDisplacements ReadMeasuredPoints(const JsonValue& displacement,
                                       const Mesh& mesh,
                                       const PointLocator& locator,
+                                      std::string& unit,
                                       std::vector<std::string>& notices,
                                       std::vector<FileLines>& lines) {
-  displacement.CheckKeys({"points", "tolerance"});
+  displacement.CheckKeys(WithTableKeys({"points", "tolerance"}));
+  const TableOptions options = ReadTableOptions(displacement, mesh.Dimension());
   const double tolerance = ToleranceOf(displacement, mesh);
   PointDisplacements all;
   all.points.local.resize(mesh.Dimension(), 0);
   all.displacement.resize(mesh.Dimension(), 0);
   all.noise_sd.resize(mesh.Dimension(), 0);
   for (const std::filesystem::path& path : FilesOf(displacement.At("points"))) {
-    const PointsFile file = ReadPointsFile(path, mesh.Dimension());
+    const PointsFile file = ReadPointsFile(path, mesh.Dimension(), options);
+    CheckUnit(path, file.unit, unit);
+    notices.insert(notices.end(), file.notices.begin(), file.notices.end());
     const LocatedPoints located = locator.Locate(file.positions);
     CheckDistances(path, file, located.distance, tolerance, notices);
     AppendPoints(file, located.points, all);

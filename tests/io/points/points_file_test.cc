@@ -71,19 +71,20 @@ TEST_F(PointsFileTest, ReadsAPointThatWasMeasuredTwice) {
 
 TEST_F(PointsFileTest, NamesLineAndColumn) {
   EXPECT_THROWS_WITH(Read("x,y,ux,uy,uz\n1,2,3,4,5\n"),
-                     "no column 'z' among x, y, ux, uy, uz; add it");
+                     "its columns .x, y, ux, uy, uz. are not those of .* name "
+                     "those of x, y, z");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy,sd_ux\n1,2,3,4,5\n", 2),
                      "no column 'sd_uy'");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy,x\n1,2,3,4,5\n", 2),
                      "several columns have the name 'x'");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy\n1,2,3,4\n,2,3,4\n", 2),
-                     "line 3: x is not a finite number");
+                     "line 3: x of the position is not a finite number");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy\n1,2,3,inf\n", 2),
-                     "line 2: uy is infinite");
+                     "line 2: y of the displacement is infinite");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy\n1,2,3,four\n", 2),
                      "line 2, column 4: 'four' is not a number");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy,sd_ux,sd_uy\n1,2,3,4,0,1\n", 2),
-                     "line 2: sd_ux must be positive");
+                     "line 2: x of the standard deviation must be positive");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy\n1,2,3,4\n1,2,3\n", 2),
                      "line 3 has 3 columns where 4 are due");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy\n1,2,3,\"4\n", 2),
