@@ -38,11 +38,15 @@ std::vector<std::filesystem::path> FilesOf(const JsonValue& points) {
   return files;
 }
 
+// The diagonal of the bounding box.
+double SpanOf(const Eigen::MatrixXd& positions) {
+  return (positions.rowwise().maxCoeff() - positions.rowwise().minCoeff())
+      .norm();
+}
+
 double ToleranceOf(const JsonValue& displacement, const Mesh& mesh) {
   if (!displacement.Has("tolerance")) {
-    return kUsualTolerance *
-           (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff())
-               .norm();
+    return kUsualTolerance * SpanOf(mesh.nodes);
   }
   const double tolerance = displacement.At("tolerance").Number();
   if (!(tolerance >= 0)) {
@@ -84,8 +88,8 @@ void CheckDistances(const std::filesystem::path& path, const PointsFile& file,
                     LengthText(distance(point)) +
                     " outside the mesh, more than the tolerance of " +
                     LengthText(tolerance) +
-                    "; use the mesh's units and axes, leave it out, or give "
-                    "the \"tolerance\" " +
+                    "; use the mesh's axes and its \"unit\", leave it out, or "
+                    "give the \"tolerance\" " +
                     LengthText(RoundedUp(distance.maxCoeff())) +
                     ", which takes all points of the file");
     }
@@ -106,9 +110,28 @@ void CheckUnit(const std::filesystem::path& path, const std::string& own,
   if (!own.empty() && !unit.empty() && own != unit) {
     ThrowInputError(path, "positions are in " + own +
                               ", but those of other files of the scene in " +
-                              unit + "; give all in the unit of the mesh");
+                              unit + "; give all in that of the mesh, or name that as \"unit\"");
   }
   unit = own.empty() ? unit : own;
+}
+
+// Points that were measured in another unit than the mesh has may all lie in a
+// corner of it.
+void CheckSpan(const std::filesystem::path& path, const PointsFile& file,
+               const Mesh& mesh, const TableOptions& options) {
+  constexpr double kLeastSpan = 0.01;
+  constexpr Eigen::Index kFewPoints = 3;
+  const double span = SpanOf(file.positions);
+  const double size = SpanOf(mesh.nodes);
+  if (file.positions.cols() > kFewPoints && span < kLeastSpan * size &&
+      !options.unit) {
+    ThrowInputError(
+        path, "its points span " + LengthText(span) +
+                  (file.unit.empty() ? "" : " " + file.unit) +
+                  " of a mesh that spans " + LengthText(size) +
+                  "; if both are as they should be, give the \"unit\" of the "
+                  "mesh beside \"points\"");
+  }
 }
 
 // The columns of `b` behind those of `a`.
@@ -149,6 +172,7 @@ PointDisplacements ReadMeasuredPoints(const JsonValue& displacement,
     CheckUnit(path, file.unit, unit);
     notices.insert(notices.end(), file.notices.begin(), file.notices.end());
     const LocatedPoints located = locator.Locate(file.positions);
+    CheckSpan(path, file, mesh, options);
     CheckDistances(path, file, located.distance, tolerance, notices);
     AppendPoints(file, located.points, all);
     lines.push_back({path, file.lines});

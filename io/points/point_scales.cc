@@ -86,10 +86,10 @@ void FillUnits(const CsvTable& table, const std::vector<std::size_t>& columns,
             "their units, such as \"columns\": {\"x\": \"" +
             Printable(table.titles[columns[0]].name) + " [mm]\", ...}");
   }
-  notices.push_back(PrintablePath(table.path) + ": " +
-                    QuotedList(table, without) +
-                    " without a unit are taken in " + unit.name + ", as " +
-                    Quoted(table, columns[place]) + " is");
+  notices.push_back(PrintablePath(table.path) +
+                    ": columns without a unit are taken in " + unit.name +
+                    ", as " + Quoted(table, columns[place]) +
+                    " is: " + QuotedList(table, without));
 }
 
 void CheckScale(const CsvTable& table, const std::vector<std::size_t>& columns,
@@ -111,6 +111,38 @@ void CheckScale(const CsvTable& table, const std::vector<std::size_t>& columns,
   }
 }
 
+// And the unit, and a notice of what is converted to it.
+void AddFactors(const CsvTable& table, const std::vector<std::size_t>& columns,
+                const Units& units, const TableOptions& options,
+                PointScales& scales) {
+  const auto first =
+      std::find_if(units.begin(), units.end(),
+                   [](const auto& unit) { return unit && !unit->IsPixel(); });
+  const std::optional<LengthUnit> base =
+      options.unit || first == units.end() ? options.unit : *first;
+  scales.unit = base ? base->name : "";
+  std::vector<std::size_t> converted;
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    if (!units[i] || units[i]->IsPixel()) {
+      scales.factors.push_back(options.length_per_pixel.value_or(1));
+      continue;
+    }
+    scales.factors.push_back(units[i]->nanometres / base->nanometres);
+    if (scales.factors.back() != 1) {
+      converted.push_back(columns[i]);
+    }
+  }
+  if (!converted.empty()) {
+    scales.notices.push_back(
+        PrintablePath(table.path) + ": columns are converted to " +
+        scales.unit +
+        (options.unit ? ""
+                      : ", the unit of " +
+                            Quoted(table, columns[first - units.begin()])) +
+        ": " + QuotedList(table, converted));
+  }
+}
+
 }  // namespace
 
 std::vector<std::optional<LengthUnit>> UnitsOf(
@@ -124,10 +156,11 @@ std::vector<std::optional<LengthUnit>> UnitsOf(
                  i < options.columns.size() ? options.columns[i] : "");
     units.push_back(LengthUnitOf(text));
     if (!text.empty() && !units.back()) {
-      ThrowInputError(table.path,
-                      "the unit '" + Printable(text) + "' of the column " +
-                          Quoted(table, columns[i]) +
-                          " is not known here; make it one of " + kLengthUnits);
+      ThrowInputError(table.path, "the unit '" + Printable(text) +
+                                      "' of the column " +
+                                      Quoted(table, columns[i]) +
+                                      " is not known here; make it one of " +
+                                      kLengthUnits + ", pixel");
     }
   }
   return units;
@@ -152,29 +185,7 @@ PointScales ScalesOf(const CsvTable& table, const PointColumns& found,
     units.push_back(of_deviations[i] ? of_deviations[i] : units[dimension + i]);
   }
   CheckScale(table, columns, units, options);
-  const auto base =
-      std::find_if(units.begin(), units.end(),
-                   [](const auto& unit) { return unit && !unit->IsPixel(); });
-  std::vector<std::size_t> converted;
-  for (std::size_t i = 0; i < units.size(); ++i) {
-    if (!units[i] || units[i]->IsPixel()) {
-      scales.factors.push_back(options.length_per_pixel.value_or(1));
-      continue;
-    }
-    scales.factors.push_back(units[i]->nanometres / (*base)->nanometres);
-    if (scales.factors.back() != 1) {
-      converted.push_back(columns[i]);
-    }
-  }
-  if (base != units.end()) {
-    scales.unit = (*base)->name;
-  }
-  if (!converted.empty()) {
-    scales.notices.push_back(
-        PrintablePath(table.path) + ": " + QuotedList(table, converted) +
-        " are converted to " + scales.unit + ", the unit of " +
-        Quoted(table, columns[base - units.begin()]));
-  }
+  AddFactors(table, columns, units, options, scales);
   return scales;
 }
 

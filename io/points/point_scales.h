@@ -28,8 +28,8 @@ struct PointScales {
   std::vector<std::string> notices;
 };
 
-/// The unit is that of the first column which has a unit of length, so that
-/// positions keep theirs and displacements are converted.  Pixels, and tables
+/// The unit is that of the options, or that of the first column which has a unit
+/// of length, so that positions keep theirs and displacements are converted.  Pixels, and tables
 /// without any unit, have `length_per_pixel` of it.  Columns without a unit are
 /// in that of the others, with a notice.  `deviations` are those of the
 /// displacement, or none, in its unit unless they have their own. Throws

@@ -6,7 +6,8 @@
 namespace elastimate {
 
 std::vector<std::string> WithTableKeys(std::vector<std::string> keys) {
-  keys.insert(keys.end(), {"format", "columns", "length_per_pixel", "flip_y"});
+  keys.insert(keys.end(),
+              {"format", "columns", "unit", "length_per_pixel", "flip_y"});
   return keys;
 }
 
@@ -29,6 +30,15 @@ TableOptions ReadTableOptions(const JsonValue& value, int dimension) {
     columns.CheckKeys(names);
     for (const std::string& name : names) {
       options.columns.push_back(columns.At(name).String());
+    }
+  }
+  if (value.Has("unit")) {
+    const JsonValue unit = value.At("unit");
+    options.unit = LengthUnitOf(unit.String());
+    if (!options.unit || options.unit->IsPixel()) {
+      unit.Fail("is \"" + Printable(unit.String()) +
+                "\"; make it the unit of length of the scene, one of " +
+                kLengthUnits);
     }
   }
   if (value.Has("length_per_pixel")) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "elastimate/io/text/json_value.h"
+#include "elastimate/io/text/length_unit.h"
 
 namespace elastimate {
 
@@ -17,6 +18,8 @@ struct TableOptions {
   /// The titles of x, y, u, v, or x, y, z, u, v, w, for any other format.  They
   /// may have a unit where those of the table have none.
   std::vector<std::string> columns;
+  /// That of the scene; without it, that of the table.
+  std::optional<LengthUnit> unit;
   /// For columns in pixels.
   std::optional<double> length_per_pixel;
   /// Turns y and v round, where y points down.

@@ -194,6 +194,11 @@ class TableReader {
     if (!has_titles_) {
       table_.titles = ColumnTitles(likely_);
     }
+    // Rows that something else separates have no numbers either.
+    if (has_titles_ && table_.rows.empty() && !table_.units.empty() &&
+        table_.units.size() != table_.titles.Size()) {
+      ThrowCount(table_.units.size(), line_of_units_);
+    }
     if (has_titles_ ? table_.rows.empty() : likely_.empty()) {
       ThrowInputError(
           table_.path,
@@ -263,6 +268,7 @@ class TableReader {
     if (table_.rows.empty() && !HasNumber(*cells)) {
       if (table_.units.empty()) {
         table_.units = std::move(*cells);
+        line_of_units_ = number;
       }
       return;
     }
@@ -286,6 +292,7 @@ class TableReader {
 
   const IsTable& is_table_;
   CsvTable table_;
+  std::size_t line_of_units_ = 0;
   bool has_titles_ = false;
   std::optional<TitleLine> of_comment_;
   Cells likely_;  // Titles, should none be found.

@@ -17,10 +17,10 @@ struct LengthUnit {
 };
 
 /// For messages.
-constexpr char kLengthUnits[] = "m, cm, mm, um, nm, in, pixel";
+constexpr char kLengthUnits[] = "m, cm, mm, um, nm, in";
 
 /// The unit of that name or symbol, in small or capital letters; empty where it
-/// is not one of kLengthUnits.
+/// is not one of kLengthUnits or a pixel.
 std::optional<LengthUnit> LengthUnitOf(std::string_view name);
 
 }  // namespace elastimate

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
+#include <map>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -22,7 +23,8 @@ struct NamePart {
   bool is_text = false;
   int sign = 0;
   long long power = 0;
-  std::string digits;  ///< Without zeros at both ends; the text of a text.
+  std::string digits;    ///< Without zeros at both ends; the text of a text.
+  std::string decimals;  ///< As they are written.
 
   bool operator<(const NamePart& other) const {
     if (is_text || other.is_text || sign != other.sign) {
@@ -38,6 +40,7 @@ struct NamePart {
 NamePart NumberPart(bool is_negative, std::string_view integer,
                     std::string_view decimals, long long exponent) {
   NamePart part;
+  part.decimals = decimals;
   part.digits = std::string(integer).append(decimals);
   const std::size_t first =
       std::min(part.digits.find_first_not_of('0'), part.digits.size());
@@ -63,7 +66,7 @@ class NameReader {
       const bool is_negative = IsMinus();
       if (!is_negative && !IsDigit(name_[place_])) {
         if (parts.empty() || !parts.back().is_text) {
-          parts.push_back({true, 0, 0, ""});
+          parts.push_back({true, 0, 0, "", ""});
         }
         parts.back().digits += name_[place_++];
         continue;
@@ -163,20 +166,37 @@ std::vector<NamedParts> SortedParts(const std::vector<std::string>& names,
   return sorted;
 }
 
+// Whether numbers with a point are two integers: where one has two points, and
+// where one ends in a zero that a shorter one in its place has not, as 1.10
+// beside 1.9.
+bool HasCounters(const std::vector<std::string>& names) {
+  const std::vector<NamedParts> all = SortedParts(names, true);
+  std::map<std::size_t, std::size_t> fewest;
+  for (const auto& [parts, name] : all) {
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      if (const std::size_t size = parts[i].decimals.size(); size > 0) {
+        const auto place = fewest.emplace(i, size).first;
+        place->second = std::min(place->second, size);
+      }
+    }
+  }
+  return std::any_of(all.begin(), all.end(), [&](const NamedParts& one) {
+    for (std::size_t i = 0; i < one.first.size(); ++i) {
+      const std::string& decimals = one.first[i].decimals;
+      if (decimals.size() > 1 && decimals.back() == '0' &&
+          decimals.size() > fewest[i]) {
+        return true;
+      }
+    }
+    return NameReader(one.second, true).MostPoints() > 1;
+  });
+}
+
 }  // namespace
 
 void SortByNumbers(std::vector<std::string>& names) {
-  const bool has_integers =
-      std::any_of(names.begin(), names.end(), [](const std::string& name) {
-        return NameReader(name, true).MostPoints() > 1;
-      });
-  std::vector<NamedParts> sorted = SortedParts(names, !has_integers);
-  const auto same = std::adjacent_find(
-      sorted.begin(), sorted.end(),
-      [](const auto& a, const auto& b) { return !(a.first < b.first); });
-  if (!has_integers && same != sorted.end()) {
-    sorted = SortedParts(names, false);
-  }
+  const std::vector<NamedParts> sorted =
+      SortedParts(names, !HasCounters(names));
   for (std::size_t i = 0; i < names.size(); ++i) {
     names[i] = sorted[i].second;
   }
