@@ -13,10 +13,10 @@
 
 namespace elastimate {
 
-/// The key "mesh" of a scene where it is {"points": FILE, "format", "columns",
-/// "length_per_pixel", "flip_y", "max_edge"}: a planar mesh of the points that
-/// a camera followed (ReadDicFile, MeshOfPoints), with their displacements as
-/// the node array "displacement".  What was left out and the size of the mesh,
+/// The key "mesh" of a scene where it is {"points": FILE, "max_edge"} with the
+/// keys of ReadTableOptions: a planar mesh of the points that a camera followed
+/// (ReadDicFile, MeshOfPoints), with their displacements as the node array
+/// "displacement".  What was left out and the size of the mesh,
 /// which scales E, become a notice.  Throws std::invalid_argument, naming the
 /// file and the place in it.
 MeshFile ReadMeasuredMesh(const JsonValue& mesh,
