@@ -108,9 +108,10 @@ void CheckDistances(const std::filesystem::path& path, const PointsFile& file,
 void CheckUnit(const std::filesystem::path& path, const std::string& own,
                std::string& unit) {
   if (!own.empty() && !unit.empty() && own != unit) {
-    ThrowInputError(path, "positions are in " + own +
-                              ", but those of other files of the scene in " +
-                              unit + "; give all in that of the mesh, or name that as \"unit\"");
+    ThrowInputError(
+        path, "positions are in " + own +
+                  ", but those of other files of the scene in " + unit +
+                  "; give all in that of the mesh, or name that as \"unit\"");
   }
   unit = own.empty() ? unit : own;
 }

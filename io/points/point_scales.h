@@ -28,14 +28,15 @@ struct PointScales {
   std::vector<std::string> notices;
 };
 
-/// The unit is that of the options, or that of the first column which has a unit
-/// of length, so that positions keep theirs and displacements are converted.  Pixels, and tables
-/// without any unit, have `length_per_pixel` of it.  Columns without a unit are
-/// in that of the others, with a notice.  `deviations` are those of the
-/// displacement, or none, in its unit unless they have their own. Throws
-/// std::invalid_argument, naming the file and the column, where a unit is not
-/// known, pixels have no scale, a scale has no pixels, or positions without a
-/// unit stand beside displacements in pixels, um or nm.
+/// The unit is that of the options, or that of the first column which has a
+/// unit of length, so that positions keep theirs and displacements are
+/// converted.  Pixels, and tables without any unit, have `length_per_pixel` of
+/// it.  Columns without a unit are in that of the others, with a notice.
+/// `deviations` are those of the displacement, or none, in its unit unless they
+/// have their own. Throws std::invalid_argument, naming the file and the
+/// column, where a unit is not known, pixels have no scale, a scale has no
+/// pixels, or positions without a unit stand beside displacements in pixels, um
+/// or nm.
 PointScales ScalesOf(const CsvTable& table, const PointColumns& columns,
                      const std::vector<std::size_t>& deviations,
                      const TableOptions& options);

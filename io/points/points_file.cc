@@ -172,6 +172,7 @@ PointsFile ReadPointsFile(const std::filesystem::path& path, int dimension,
     file.noise_sd = file.noise_sd(Eigen::all, measured).eval();
   }
   std::vector<std::size_t> lines;
+  lines.reserve(measured.size());
   for (const Eigen::Index point : measured) {
     lines.push_back(file.lines[point]);
   }

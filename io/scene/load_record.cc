@@ -26,9 +26,9 @@ std::string WithoutExtension(const std::string& name) {
 }
 
 /// Frames by what a record may call them.
-class FrameNames {
+class NamedFrames {
  public:
-  explicit FrameNames(const std::vector<std::string>& frames) {
+  explicit NamedFrames(const std::vector<std::string>& frames) {
     for (std::size_t i = 0; i < frames.size(); ++i) {
       const std::string name = WithoutFolder(frames[i]);
       whole_.emplace(frames[i], i);
@@ -61,14 +61,14 @@ class FrameNames {
   std::map<std::string, std::vector<std::size_t>> stems_;
 };
 
-bool IsNumber(const std::string& cell) {
+bool IsPlainNumber(const std::string& cell) {
   return cell.find_first_not_of("0123456789+-.,eE") == std::string::npos;
 }
 
 // The column that names frames; empty where there is none.
 std::optional<std::size_t> FindFilesColumn(const JsonValue& record,
                                            const CsvTable& table,
-                                           const FrameNames& frames) {
+                                           const NamedFrames& frames) {
   if (record.Has("files_column")) {
     return table.At(record.At("files_column").String());
   }
@@ -76,7 +76,8 @@ std::optional<std::size_t> FindFilesColumn(const JsonValue& record,
   for (std::size_t column = 0; column < table.titles.Size(); ++column) {
     const bool names_any = std::any_of(
         table.rows.begin(), table.rows.end(), [&](const CsvTable::Row& row) {
-          return !IsNumber(row.cells[column]) && frames.Find(row.cells[column]);
+          return !IsPlainNumber(row.cells[column]) &&
+                 frames.Find(row.cells[column]);
         });
     if (names_any && found) {
       record.Fail("has two columns that name frames, '" +
@@ -92,7 +93,7 @@ std::optional<std::size_t> FindFilesColumn(const JsonValue& record,
 // For each frame, the row that names it.
 std::vector<std::size_t> RowsByName(const CsvTable& table, std::size_t column,
                                     const std::vector<std::string>& files,
-                                    const FrameNames& frames) {
+                                    const NamedFrames& frames) {
   std::vector<std::optional<std::size_t>> row_of(files.size());
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     const std::string& cell = table.rows[row].cells[column];
@@ -160,7 +161,7 @@ std::vector<double> ReadLoadRecord(const JsonValue& record,
                    });
   const std::size_t column = table.At(load);
   table.CheckDecimalMarks({column});
-  const FrameNames names(frames);
+  const NamedFrames names(frames);
   std::vector<std::size_t> rows(table.rows.size());
   if (const auto by_name = FindFilesColumn(record, table, names)) {
     rows = RowsByName(table, *by_name, frames, names);
@@ -176,6 +177,7 @@ std::vector<double> ReadLoadRecord(const JsonValue& record,
             Reason(table, column, frames.size()));
   }
   std::vector<double> loads;
+  loads.reserve(rows.size());
   for (const std::size_t row : rows) {
     loads.push_back(table.Number(table.rows[row], column)
                         .value_or(std::numeric_limits<double>::quiet_NaN()));

@@ -16,19 +16,19 @@
 namespace elastimate {
 namespace {
 
-using Cells = std::vector<std::string>;
+using CellTexts = std::vector<std::string>;
 
 // The cells of one line, by libcsv; empty when quotes are wrong.
-std::optional<Cells> SplitLine(std::string_view line, char delimiter) {
+std::optional<CellTexts> SplitLine(std::string_view line, char delimiter) {
   csv_parser parser;
   if (csv_init(&parser, CSV_STRICT | CSV_STRICT_FINI) != 0) {
     throw std::bad_alloc();
   }
   csv_set_delim(&parser, static_cast<unsigned char>(delimiter));
-  Cells cells;
+  CellTexts cells;
   const auto add = [](void* text, std::size_t size, void* data) {
-    static_cast<Cells*>(data)->emplace_back(static_cast<const char*>(text),
-                                            size);
+    static_cast<CellTexts*>(data)->emplace_back(static_cast<const char*>(text),
+                                                size);
   };
   const bool is_read = csv_parse(&parser, line.data(), line.size(), add,
                                  nullptr, &cells) == line.size() &&
@@ -38,7 +38,7 @@ std::optional<Cells> SplitLine(std::string_view line, char delimiter) {
   if (!is_read && error != CSV_EPARSE) {
     throw std::bad_alloc();
   }
-  return is_read ? std::optional<Cells>(std::move(cells)) : std::nullopt;
+  return is_read ? std::optional<CellTexts>(std::move(cells)) : std::nullopt;
 }
 
 constexpr char kSpaces[] = " \t";
@@ -67,8 +67,8 @@ bool IsComment(std::string_view line) {
 }
 
 // What spaces separate outside of quotes; empty when quotes are wrong.
-std::optional<Cells> SplitWords(std::string_view line) {
-  Cells words;
+std::optional<CellTexts> SplitWords(std::string_view line) {
+  CellTexts words;
   bool is_quoted = false;
   bool is_in_word = false;
   for (const char c : line) {
@@ -88,20 +88,20 @@ std::optional<Cells> SplitWords(std::string_view line) {
       words.back() += c;
     }
   }
-  return is_quoted ? std::nullopt : std::optional<Cells>(std::move(words));
+  return is_quoted ? std::nullopt : std::optional<CellTexts>(std::move(words));
 }
 
-std::optional<Cells> CellsOf(std::string_view line, char delimiter) {
+std::optional<CellTexts> CellsOf(std::string_view line, char delimiter) {
   return delimiter == ' ' ? SplitWords(line) : SplitLine(line, delimiter);
 }
 
 // What titles a line has; empty when quotes are wrong.
-std::optional<Cells> TitlesOf(std::string_view line, char delimiter) {
-  std::optional<Cells> cells = CellsOf(line, delimiter);
+std::optional<CellTexts> TitlesOf(std::string_view line, char delimiter) {
+  std::optional<CellTexts> cells = CellsOf(line, delimiter);
   if (!cells) {
     return cells;
   }
-  Cells titles;
+  CellTexts titles;
   for (std::string& cell : *cells) {
     const bool is_unit =
         delimiter == ' ' && !cell.empty() && (cell[0] == '[' || cell[0] == '(');
@@ -128,12 +128,12 @@ bool IsNumberText(const std::string& cell) {
   return error != std::errc::invalid_argument && stop == end;
 }
 
-bool HasNumber(const Cells& cells) {
+bool HasNumber(const CellTexts& cells) {
   return std::any_of(cells.begin(), cells.end(), IsNumberText);
 }
 
 // And empty cells.
-bool HasOnlyNumbers(const Cells& cells) {
+bool HasOnlyNumbers(const CellTexts& cells) {
   return std::all_of(cells.begin(), cells.end(), [](const std::string& cell) {
     return cell.empty() || IsNumberText(cell);
   });
@@ -147,7 +147,7 @@ struct TitleLine {
 
 std::optional<TitleLine> FindTitles(std::string_view line,
                                     const IsTable& is_table) {
-  const std::optional<Cells> usual = CellsOf(line, DelimiterOf(line));
+  const std::optional<CellTexts> usual = CellsOf(line, DelimiterOf(line));
   if (usual && HasOnlyNumbers(*usual)) {
     return std::nullopt;
   }
@@ -157,7 +157,7 @@ std::optional<TitleLine> FindTitles(std::string_view line,
         line.find(delimiter) == std::string_view::npos) {
       continue;
     }
-    if (const std::optional<Cells> texts = TitlesOf(line, delimiter)) {
+    if (const std::optional<CellTexts> texts = TitlesOf(line, delimiter)) {
       ColumnTitles titles(*texts);
       if (is_table(titles)) {
         return TitleLine{std::move(titles), delimiter};
@@ -181,9 +181,7 @@ class TableReader {
     }
     if (IsComment(line)) {
       AddComment(line);
-    } else if (has_titles_) {
-      AddRow(line, number);
-    } else if (of_comment_ && TakeComment(line)) {
+    } else if (has_titles_ || (of_comment_ && TakeComment(line))) {
       AddRow(line, number);
     } else {
       AddTitles(line);
@@ -224,7 +222,7 @@ class TableReader {
     std::vector<char> delimiters = {comment.delimiter};
     delimiters.insert(delimiters.end(), kDelimiters.begin(), kDelimiters.end());
     for (const char delimiter : delimiters) {
-      std::optional<Cells> cells = CellsOf(row, delimiter);
+      std::optional<CellTexts> cells = CellsOf(row, delimiter);
       if (cells && cells->size() > comment.titles.Size() &&
           cells->back().empty()) {
         cells->pop_back();
@@ -247,7 +245,7 @@ class TableReader {
       has_titles_ = true;
       return;
     }
-    const std::optional<Cells> cells = TitlesOf(line, DelimiterOf(line));
+    const std::optional<CellTexts> cells = TitlesOf(line, DelimiterOf(line));
     if (cells && (likely_.empty() ||
                   (!HasNumber(*cells) &&
                    (HasNumber(likely_) || cells->size() > likely_.size())))) {
@@ -256,7 +254,7 @@ class TableReader {
   }
 
   void AddRow(std::string_view line, std::size_t number) {
-    std::optional<Cells> cells = CellsOf(line, table_.delimiter);
+    std::optional<CellTexts> cells = CellsOf(line, table_.delimiter);
     if (!cells) {
       ThrowInputError(table_.path,
                       "line " + std::to_string(number) +
@@ -295,7 +293,7 @@ class TableReader {
   std::size_t line_of_units_ = 0;
   bool has_titles_ = false;
   std::optional<TitleLine> of_comment_;
-  Cells likely_;  // Titles, should none be found.
+  CellTexts likely_;  // Titles, should none be found.
 };
 
 }  // namespace

@@ -159,6 +159,7 @@ using NamedParts = std::pair<std::vector<NamePart>, std::string>;
 std::vector<NamedParts> SortedParts(const std::vector<std::string>& names,
                                     bool has_decimals) {
   std::vector<NamedParts> sorted;
+  sorted.reserve(names.size());
   for (const std::string& name : names) {
     sorted.emplace_back(NameReader(name, has_decimals).Parts(), name);
   }

@@ -3,6 +3,7 @@
 #include <iconv.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <string_view>
@@ -19,8 +20,8 @@ using namespace std::string_view_literals;
 // `encoding` as iconv calls it.
 std::string ToUtf8(const std::filesystem::path& path, std::string text,
                    const char* encoding) {
-  const iconv_t conversion = iconv_open("UTF-8", encoding);
-  if (conversion == reinterpret_cast<iconv_t>(-1)) {
+  iconv_t conversion = iconv_open("UTF-8", encoding);
+  if (reinterpret_cast<std::intptr_t>(conversion) == -1) {
     throw std::system_error(errno, std::generic_category(), encoding);
   }
   // A character of two bytes becomes one of up to three.
