@@ -33,7 +33,7 @@ std::vector<std::size_t> ComponentColumns(const ColumnTitles& titles,
   return ways.empty() ? std::vector<std::size_t>() : ways[0];
 }
 
-// The mesh does not say in which unit it is.
+// Refuses what can hardly be in the unit of the mesh, which no file says.
 void CheckUnits(const CsvTable& table,
                 const std::vector<std::size_t>& columns) {
   const auto units = UnitsOf(table, columns, {});

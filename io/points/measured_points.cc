@@ -104,7 +104,7 @@ void CheckDistances(const std::filesystem::path& path, const PointsFile& file,
   }
 }
 
-// All files are over one mesh, whatever its unit is.
+// All files lie over one mesh, so that they have its unit, whatever that is.
 void CheckUnit(const std::filesystem::path& path, const std::string& own,
                std::string& unit) {
   if (!own.empty() && !unit.empty() && own != unit) {

@@ -11,12 +11,12 @@
 namespace elastimate {
 namespace {
 
-/// What a program names the columns of x, y, z, u, v and w, without their
-/// units; null where it has none.
+/// The names that a program gives the columns of x, y, z, u, v and w, without
+/// their units; null where it has no such column.
 struct Format {
   const char* name;
   std::array<const char*, 6> columns;
-  /// Of which a number below `least` marks a point as not found.
+  /// A number below `least` in this column marks a point as not found.
   const char* quality;
   double least;
   /// A column without which it is another format.
@@ -24,7 +24,7 @@ struct Format {
   bool is_in_pixels;
 };
 
-// What is more special comes first.
+// Formats whose names are more special come first.
 constexpr Format kFormats[] = {
     {"matchid",
      {"coor.X", "coor.Y", "coor.Z", "disp.Horizontal Displacement U",
@@ -137,8 +137,9 @@ std::vector<Matches> PositionMeanings(const ColumnTitles& titles,
                                       int dimension) {
   const std::string axes = std::string("xyz").substr(0, dimension);
   std::vector<Matches> meanings;
-  for (const char* const word : {"", "coordinate", "coord", "coor", "position",
-                                 "pos", "0", "undef", "undeformed"}) {
+  for (const char* const word :
+       {"", "coordinate", "coordinates", "coord", "coor", "position", "pos",
+        "0", "undef", "undeformed"}) {
     AddMeanings(titles, axes, word, meanings);
   }
   return meanings;

@@ -26,7 +26,7 @@ std::string QuotedList(const CsvTable& table,
   return list;
 }
 
-// A cell of the row below the titles without its brackets.
+// The cell below a title, without brackets.
 std::string CellUnit(const CsvTable& table, std::size_t column) {
   const std::string cell =
       column < table.units.size() ? table.units[column] : "";
@@ -45,7 +45,7 @@ bool HasUnitRow(const CsvTable& table,
   });
 }
 
-// As the table or, where it has none, the options write it.
+// The unit as the table writes it, or, where it has none, the options.
 std::string UnitText(const CsvTable& table, std::size_t column,
                      bool has_unit_row, const std::string& named) {
   const std::string& own = table.titles[column].unit;
@@ -111,7 +111,7 @@ void CheckScale(const CsvTable& table, const std::vector<std::size_t>& columns,
   }
 }
 
-// And the unit, and a notice of what is converted to it.
+// Enters the factors and their unit, and notes what is converted.
 void AddFactors(const CsvTable& table, const std::vector<std::size_t>& columns,
                 const Units& units, const TableOptions& options,
                 PointScales& scales) {

@@ -128,7 +128,7 @@ std::vector<std::size_t> RowsByName(const CsvTable& table, std::size_t column,
   return rows;
 }
 
-// What may be wrong where rows and frames are not as many.
+// The likely reason why there are not as many rows as frames.
 std::string Reason(const CsvTable& table, std::size_t column,
                    std::size_t num_frames) {
   if (table.rows.size() == num_frames + 1) {

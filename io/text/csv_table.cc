@@ -46,7 +46,7 @@ constexpr char kSpaces[] = " \t";
 // of a number.
 constexpr std::array<char, 4> kDelimiters = {';', '\t', ',', ' '};
 
-// That a line has most of, or spaces where it has none.
+// The separator that a line has most of; a space where it has none.
 char DelimiterOf(std::string_view line) {
   const char delimiter = *std::max_element(
       kDelimiters.begin(), kDelimiters.end() - 1, [&line](char a, char b) {
@@ -66,7 +66,7 @@ bool IsComment(std::string_view line) {
   return line[begin] == '#' || line.compare(begin, 3, "***") == 0;
 }
 
-// What spaces separate outside of quotes; empty when quotes are wrong.
+// Splits at spaces outside of quotes; empty when quotes are wrong.
 std::optional<CellTexts> SplitWords(std::string_view line) {
   CellTexts words;
   bool is_quoted = false;
@@ -95,7 +95,7 @@ std::optional<CellTexts> CellsOf(std::string_view line, char delimiter) {
   return delimiter == ' ' ? SplitWords(line) : SplitLine(line, delimiter);
 }
 
-// What titles a line has; empty when quotes are wrong.
+// The titles that a line has; empty when quotes are wrong.
 std::optional<CellTexts> TitlesOf(std::string_view line, char delimiter) {
   std::optional<CellTexts> cells = CellsOf(line, delimiter);
   if (!cells) {
@@ -117,7 +117,7 @@ std::optional<CellTexts> TitlesOf(std::string_view line, char delimiter) {
   return titles;
 }
 
-// With a decimal point or a decimal comma.
+// The number may have a decimal comma.
 bool IsNumberText(const std::string& cell) {
   const std::size_t sign = cell.empty() || cell[0] != '+' ? 0 : 1;
   std::string text = cell.substr(sign);
@@ -132,7 +132,7 @@ bool HasNumber(const CellTexts& cells) {
   return std::any_of(cells.begin(), cells.end(), IsNumberText);
 }
 
-// And empty cells.
+// Empty cells may stand for numbers.
 bool HasOnlyNumbers(const CellTexts& cells) {
   return std::all_of(cells.begin(), cells.end(), [](const std::string& cell) {
     return cell.empty() || IsNumberText(cell);
