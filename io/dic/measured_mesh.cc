@@ -11,6 +11,7 @@
 #include "elastimate/io/dic/dic_file.h"
 #include "elastimate/io/dic/point_mesh.h"
 #include "elastimate/io/mesh/mesh_file_check.h"
+#include "elastimate/io/points/table_options.h"
 #include "elastimate/io/text/input_error.h"
 #include "elastimate/io/text/printable.h"
 
@@ -94,39 +95,16 @@ std::string Description(const std::filesystem::path& path,
 
 }  // namespace
 
-DicOptions ReadDicOptions(const JsonValue& mesh) {
-  DicOptions options;
-  if (mesh.Has("format")) {
-    const JsonValue format = mesh.At("format");
-    options.format = format.String();
-    if (("auto, " + DicFormatNames() + ", ").find(options.format + ", ") ==
-        std::string::npos) {
-      format.Fail("is \"" + Printable(options.format) +
-                  "\"; the formats known here are auto, " + DicFormatNames());
-    }
-  }
-  if (mesh.Has("columns")) {
-    const JsonValue columns = mesh.At("columns");
-    columns.CheckKeys({"x", "y", "u", "v"});
-    options.columns = {columns.At("x").String(), columns.At("y").String(),
-                       columns.At("u").String(), columns.At("v").String()};
-  }
-  options.length_per_pixel = ReadLength(mesh, "length_per_pixel");
-  options.flip_y = mesh.Has("flip_y") && mesh.At("flip_y").Boolean();
-  return options;
-}
-
 MeshFile ReadMeasuredMesh(const JsonValue& mesh,
                           std::vector<std::string>& notices) {
-  mesh.CheckKeys({"points", "format", "columns", "length_per_pixel", "flip_y",
-                  "max_edge"});
+  mesh.CheckKeys(WithTableKeys({"points", "max_edge"}));
   const JsonValue name = mesh.At("points");
   if (name.String().empty()) {
     name.Fail("is empty; give the path of a file");
   }
   const std::filesystem::path path = name.File().parent_path() / name.String();
   const DicFrame frame =
-      WithLostPoints(ReadDicFile(path, ReadDicOptions(mesh)));
+      WithLostPoints(ReadDicFile(path, ReadTableOptions(mesh, 2)));
   const PointMesh points = MeshOf(path, frame, ReadLength(mesh, "max_edge"));
   MeshFile file;
   file.path = path;
@@ -141,12 +119,13 @@ MeshFile ReadMeasuredMesh(const JsonValue& mesh,
   }
   CheckMeshFile(file);
   notices.push_back(Description(path, frame, points, file));
+  notices.insert(notices.end(), frame.notices.begin(), frame.notices.end());
   return file;
 }
 
 void ReadMeasuredFrame(const std::filesystem::path& path,
-                       const DicOptions& options, const Eigen::Matrix2Xd& nodes,
-                       LoadCase& load_case) {
+                       const TableOptions& options,
+                       const Eigen::Matrix2Xd& nodes, LoadCase& load_case) {
   const DicFrame frame = ReadDicFile(path, options);
   load_case.displacement.setZero(2, nodes.cols());
   load_case.observed.setConstant(2, nodes.cols(), false);

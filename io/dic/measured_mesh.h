@@ -7,23 +7,20 @@
 #include <vector>
 
 #include "elastimate/core/scene/scene.h"
-#include "elastimate/io/dic/dic_file.h"
 #include "elastimate/io/mesh/mesh_file.h"
+#include "elastimate/io/points/table_options.h"
 #include "elastimate/io/text/json_value.h"
 
 namespace elastimate {
 
-/// The key "mesh" of a scene where it is {"points": FILE, "format", "columns",
-/// "length_per_pixel", "flip_y", "max_edge"}: a planar mesh of the points that
-/// a camera followed (ReadDicFile, MeshOfPoints), with their displacements as
-/// the node array "displacement".  What was left out and the size of the mesh,
+/// The key "mesh" of a scene where it is {"points": FILE, "max_edge"} with the
+/// keys of ReadTableOptions: a planar mesh of the points that a camera followed
+/// (ReadDicFile, MeshOfPoints), with their displacements as the node array
+/// "displacement".  What was left out and the size of the mesh,
 /// which scales E, become a notice.  Throws std::invalid_argument, naming the
 /// file and the place in it.
 MeshFile ReadMeasuredMesh(const JsonValue& mesh,
                           std::vector<std::string>& notices);
-
-/// How that value says that its file is read.  Throws as above.
-DicOptions ReadDicOptions(const JsonValue& mesh);
 
 /// Enters what another file of the camera says of the nodes of such a mesh, 2 x
 /// n, which are found by their positions, to a thousandth of the least distance
@@ -31,8 +28,8 @@ DicOptions ReadDicOptions(const JsonValue& mesh);
 /// Throws std::invalid_argument, naming the file, where fewer than half of them
 /// were.
 void ReadMeasuredFrame(const std::filesystem::path& path,
-                       const DicOptions& options, const Eigen::Matrix2Xd& nodes,
-                       LoadCase& load_case);
+                       const TableOptions& options,
+                       const Eigen::Matrix2Xd& nodes, LoadCase& load_case);
 
 }  // namespace elastimate
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "elastimate/io/points/points_file.h"
+#include "elastimate/io/points/table_options.h"
 #include "elastimate/io/text/input_error.h"
 #include "elastimate/io/text/printable.h"
 
@@ -37,11 +38,15 @@ std::vector<std::filesystem::path> FilesOf(const JsonValue& points) {
   return files;
 }
 
+// The diagonal of the bounding box.
+double SpanOf(const Eigen::MatrixXd& positions) {
+  return (positions.rowwise().maxCoeff() - positions.rowwise().minCoeff())
+      .norm();
+}
+
 double ToleranceOf(const JsonValue& displacement, const Mesh& mesh) {
   if (!displacement.Has("tolerance")) {
-    return kUsualTolerance *
-           (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff())
-               .norm();
+    return kUsualTolerance * SpanOf(mesh.nodes);
   }
   const double tolerance = displacement.At("tolerance").Number();
   if (!(tolerance >= 0)) {
@@ -83,8 +88,8 @@ void CheckDistances(const std::filesystem::path& path, const PointsFile& file,
                     LengthText(distance(point)) +
                     " outside the mesh, more than the tolerance of " +
                     LengthText(tolerance) +
-                    "; use the mesh's units and axes, leave it out, or give "
-                    "the \"tolerance\" " +
+                    "; use the mesh's axes and its \"unit\", leave it out, or "
+                    "give the \"tolerance\" " +
                     LengthText(RoundedUp(distance.maxCoeff())) +
                     ", which takes all points of the file");
     }
@@ -96,6 +101,37 @@ void CheckDistances(const std::filesystem::path& path, const PointsFile& file,
                       " points lie outside the mesh, up to " +
                       LengthText(distance.maxCoeff()) +
                       "; they count as the nearest points of its surface");
+  }
+}
+
+// All files lie over one mesh, so that they have its unit, whatever that is.
+void CheckUnit(const std::filesystem::path& path, const std::string& own,
+               std::string& unit) {
+  if (!own.empty() && !unit.empty() && own != unit) {
+    ThrowInputError(
+        path, "positions are in " + own +
+                  ", but those of other files of the scene in " + unit +
+                  "; give all in that of the mesh, or name that as \"unit\"");
+  }
+  unit = own.empty() ? unit : own;
+}
+
+// Points that were measured in another unit than the mesh has may all lie in a
+// corner of it.
+void CheckSpan(const std::filesystem::path& path, const PointsFile& file,
+               const Mesh& mesh, const TableOptions& options) {
+  constexpr double kLeastSpan = 0.01;
+  constexpr Eigen::Index kFewPoints = 3;
+  const double span = SpanOf(file.positions);
+  const double size = SpanOf(mesh.nodes);
+  if (file.positions.cols() > kFewPoints && span < kLeastSpan * size &&
+      !options.unit) {
+    ThrowInputError(
+        path, "its points span " + LengthText(span) +
+                  (file.unit.empty() ? "" : " " + file.unit) +
+                  " of a mesh that spans " + LengthText(size) +
+                  "; if both are as they should be, give the \"unit\" of the "
+                  "mesh beside \"points\"");
   }
 }
 
@@ -122,17 +158,22 @@ void AppendPoints(const PointsFile& file, const MeshPoints& points,
 PointDisplacements ReadMeasuredPoints(const JsonValue& displacement,
                                       const Mesh& mesh,
                                       const PointLocator& locator,
+                                      std::string& unit,
                                       std::vector<std::string>& notices,
                                       std::vector<FileLines>& lines) {
-  displacement.CheckKeys({"points", "tolerance"});
+  displacement.CheckKeys(WithTableKeys({"points", "tolerance"}));
+  const TableOptions options = ReadTableOptions(displacement, mesh.Dimension());
   const double tolerance = ToleranceOf(displacement, mesh);
   PointDisplacements all;
   all.points.local.resize(mesh.Dimension(), 0);
   all.displacement.resize(mesh.Dimension(), 0);
   all.noise_sd.resize(mesh.Dimension(), 0);
   for (const std::filesystem::path& path : FilesOf(displacement.At("points"))) {
-    const PointsFile file = ReadPointsFile(path, mesh.Dimension());
+    const PointsFile file = ReadPointsFile(path, mesh.Dimension(), options);
+    CheckUnit(path, file.unit, unit);
+    notices.insert(notices.end(), file.notices.begin(), file.notices.end());
     const LocatedPoints located = locator.Locate(file.positions);
+    CheckSpan(path, file, mesh, options);
     CheckDistances(path, file, located.distance, tolerance, notices);
     AppendPoints(file, located.points, all);
     lines.push_back({path, file.lines});

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "elastimate/io/points/point_columns.h"
+#include "elastimate/io/points/point_scales.h"
 #include "elastimate/io/text/csv_table.h"
 #include "elastimate/io/text/input_error.h"
 
@@ -16,66 +18,70 @@ namespace {
 
 using Columns = std::vector<std::size_t>;
 
-constexpr std::array<const char*, 3> kPositions = {"x", "y", "z"};
-constexpr std::array<const char*, 3> kDisplacements = {"ux", "uy", "uz"};
-constexpr std::array<const char*, 3> kDeviations = {"sd_ux", "sd_uy", "sd_uz"};
-
-Columns Find(const CsvTable& table, const std::array<const char*, 3>& names,
-             int dimension) {
-  Columns columns;
-  for (int i = 0; i < dimension; ++i) {
-    columns.push_back(table.At(names[i]));
-  }
-  return columns;
-}
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 // The columns of standard deviations; none where the file has none of them.
 Columns FindDeviations(const CsvTable& table, int dimension) {
-  bool has_any = false;
-  for (int i = 0; i < dimension; ++i) {
-    has_any = has_any || table.Find(kDeviations[i]);
+  for (const std::string axes : {"xyz", "uvw"}) {
+    const std::string begin = axes == "xyz" ? "sd_u" : "sd_";
+    bool has_any = false;
+    for (int i = 0; i < dimension; ++i) {
+      has_any = has_any || !table.titles.FindAlike(begin + axes[i]).empty();
+    }
+    Columns columns;
+    for (int i = 0; has_any && i < dimension; ++i) {
+      columns.push_back(table.At(begin + axes[i]));
+    }
+    if (has_any) {
+      return columns;
+    }
   }
-  return has_any ? Find(table, kDeviations, dimension) : Columns{};
+  return {};
 }
 
-std::string Place(const CsvTable& table, const CsvTable::Row& row,
-                  std::size_t column) {
-  return "line " + std::to_string(row.line) + ": " + table.columns[column];
+bool IsFound(const CsvTable& table, const CsvTable::Row& row,
+             const PointColumns& columns) {
+  return !columns.quality ||
+         table.Number(row, *columns.quality).value_or(kNoNumber) >=
+             columns.least;
 }
 
-double Position(const CsvTable& table, const CsvTable::Row& row,
-                std::size_t column) {
-  const std::optional<double> value = table.Number(row, column);
-  if (!value || !std::isfinite(*value)) {
-    ThrowInputError(table.path,
-                    Place(table, row, column) +
-                        " is not a finite number; give the position of each "
-                        "point, or leave out the row");
+void CheckPoint(const std::filesystem::path& path, const PointsFile& file,
+                Eigen::Index point) {
+  const auto fail = [&](Eigen::Index i, const std::string& sentence) {
+    ThrowInputError(path, "line " + std::to_string(file.lines[point]) + ": " +
+                              "xyz"[i] + " of " + sentence);
+  };
+  for (Eigen::Index i = 0; i < file.positions.rows(); ++i) {
+    const double value = file.displacement(i, point);
+    const double sd = file.noise_sd.size() == 0 ? 1 : file.noise_sd(i, point);
+    if (!std::isfinite(file.positions(i, point))) {
+      fail(i,
+           "the position is not a finite number; give the position of each "
+           "point, or leave out the row");
+    }
+    if (std::isinf(value)) {
+      fail(i,
+           "the displacement is infinite; correct it, or leave the cell "
+           "empty");
+    }
+    if (!std::isnan(value) && !(sd > 0 && std::isfinite(sd))) {
+      fail(i,
+           "the standard deviation must be positive where a displacement "
+           "was measured; correct it");
+    }
   }
-  return *value;
 }
 
-double Displacement(const CsvTable& table, const CsvTable::Row& row,
-                    std::size_t column) {
-  const double value = table.Number(row, column)
-                           .value_or(std::numeric_limits<double>::quiet_NaN());
-  if (std::isinf(value)) {
-    ThrowInputError(table.path,
-                    Place(table, row, column) +
-                        " is infinite; correct it, or leave the cell empty");
+// Where something was measured.
+std::vector<Eigen::Index> MeasuredPoints(const PointsFile& file) {
+  std::vector<Eigen::Index> measured;
+  for (Eigen::Index point = 0; point < file.positions.cols(); ++point) {
+    if (!file.displacement.col(point).array().isNaN().all()) {
+      measured.push_back(point);
+    }
   }
-  return value;
-}
-
-double Deviation(const CsvTable& table, const CsvTable::Row& row,
-                 std::size_t column) {
-  const double value = table.Number(row, column).value_or(0);
-  if (!(value > 0 && std::isfinite(value))) {
-    ThrowInputError(table.path, Place(table, row, column) +
-                                    " must be positive where a displacement "
-                                    "was measured; correct it");
-  }
-  return value;
+  return measured;
 }
 
 // A row that is there twice would count as two measurements.
@@ -115,28 +121,67 @@ void AppendNumber(double value, std::string& text) {
 
 }  // namespace
 
-PointsFile ReadPointsFile(const std::filesystem::path& path, int dimension) {
-  const CsvTable table = ReadCsvTable(path);
-  const Columns x = Find(table, kPositions, dimension);
-  const Columns u = Find(table, kDisplacements, dimension);
-  const Columns sd = FindDeviations(table, dimension);
-  const Eigen::Index n = static_cast<Eigen::Index>(table.rows.size());
-  PointsFile file;
-  file.positions.resize(dimension, n);
-  file.displacement.resize(dimension, n);
-  if (!sd.empty()) {
-    file.noise_sd.setOnes(dimension, n);
+PointsFile ReadPointRows(const std::filesystem::path& path, int dimension,
+                         const TableOptions& options) {
+  PointColumns found;
+  const CsvTable table = ReadTableOfPoints(path, options, dimension, found);
+  Columns columns = found.columns;
+  const Columns deviations = FindDeviations(table, dimension);
+  PointScales scales = ScalesOf(table, found, deviations, options);
+  columns.insert(columns.end(), deviations.begin(), deviations.end());
+  table.CheckDecimalMarks(columns);
+  if (options.flip_y) {
+    scales.factors[1] *= -1;
+    scales.factors[dimension + 1] *= -1;
   }
-  for (Eigen::Index point = 0; point < n; ++point) {
-    const CsvTable::Row& row = table.rows[point];
-    file.lines.push_back(row.line);
-    for (int i = 0; i < dimension; ++i) {
-      file.positions(i, point) = Position(table, row, x[i]);
-      file.displacement(i, point) = Displacement(table, row, u[i]);
-      if (!sd.empty() && !std::isnan(file.displacement(i, point))) {
-        file.noise_sd(i, point) = Deviation(table, row, sd[i]);
-      }
+  Eigen::MatrixXd values(columns.size(), table.rows.size());
+  PointsFile file;
+  for (const CsvTable::Row& row : table.rows) {
+    auto point = values.col(Eigen::Index(file.lines.size()));
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      point(Eigen::Index(i)) =
+          scales.factors[i] * table.Number(row, columns[i]).value_or(kNoNumber);
     }
+    if (!IsFound(table, row, found)) {
+      point.setConstant(kNoNumber);
+    }
+    file.lines.push_back(row.line);
+  }
+  file.format = found.format;
+  file.positions = values.topRows(dimension);
+  file.displacement = values.middleRows(dimension, dimension);
+  if (!deviations.empty()) {
+    file.noise_sd = values.bottomRows(dimension);
+  }
+  file.unit = scales.unit;
+  file.notices = scales.notices;
+  return file;
+}
+
+PointsFile ReadPointsFile(const std::filesystem::path& path, int dimension,
+                          const TableOptions& options) {
+  PointsFile file = ReadPointRows(path, dimension, options);
+  const std::vector<Eigen::Index> measured = MeasuredPoints(file);
+  if (measured.empty()) {
+    ThrowInputError(path,
+                    "no row has a displacement; give those of the points");
+  }
+  file.positions = file.positions(Eigen::all, measured).eval();
+  file.displacement = file.displacement(Eigen::all, measured).eval();
+  if (file.noise_sd.size() != 0) {
+    file.noise_sd = file.noise_sd(Eigen::all, measured).eval();
+  }
+  std::vector<std::size_t> lines;
+  lines.reserve(measured.size());
+  for (const Eigen::Index point : measured) {
+    lines.push_back(file.lines[point]);
+  }
+  file.lines = lines;
+  for (Eigen::Index point = 0; point < file.positions.cols(); ++point) {
+    CheckPoint(path, file, point);
+  }
+  if (file.noise_sd.size() != 0) {
+    file.noise_sd = file.displacement.array().isNaN().select(1, file.noise_sd);
   }
   CheckRowsDiffer(path, file);
   return file;

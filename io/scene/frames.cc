@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <limits>
 #include <memory>
 #include <string>
 #include <system_error>
@@ -13,18 +11,17 @@
 
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/io/dic/measured_mesh.h"
+#include "elastimate/io/points/table_options.h"
 #include "elastimate/io/scene/json_loads.h"
 #include "elastimate/io/scene/json_measurement.h"
-#include "elastimate/io/text/csv_table.h"
-#include "elastimate/io/text/input_error.h"
+#include "elastimate/io/scene/load_record.h"
+#include "elastimate/io/text/natural_order.h"
 #include "elastimate/io/text/printable.h"
 
 namespace elastimate {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 bool IsPattern(const std::string& name) {
   return name.find_first_of("*?") != std::string::npos;
@@ -43,11 +40,7 @@ std::vector<std::string> FindFiles(const JsonValue& value) {
       names.push_back((pattern.parent_path() / name).string());
     }
   }
-  // By the size of numbers in them: frame_9 comes before frame_10.
-  std::sort(names.begin(), names.end(),
-            [](const std::string& a, const std::string& b) {
-              return strverscmp(a.c_str(), b.c_str()) < 0;
-            });
+  SortByNumbers(names);
   if (names.empty()) {
     value.Fail("is \"" + Printable(value.String()) +
                "\", which no file is called; correct the pattern");
@@ -85,26 +78,6 @@ double RelativeError(const JsonValue& value) {
   return error;
 }
 
-// One number for each frame; not a number where the record has none.
-std::vector<double> ReadLoadRecord(const JsonValue& record,
-                                   std::size_t num_frames) {
-  record.CheckKeys({"file", "column", "relative_sd"});
-  const CsvTable table =
-      ReadCsvTable(record.File().parent_path() / record.At("file").String());
-  const std::size_t column = table.At(record.At("column").String());
-  if (table.rows.size() != num_frames) {
-    ThrowInputError(table.path,
-                    "the load record has " + std::to_string(table.rows.size()) +
-                        " rows for " + std::to_string(num_frames) +
-                        " frames; give one for each, in their order");
-  }
-  std::vector<double> loads;
-  for (const CsvTable::Row& row : table.rows) {
-    loads.push_back(table.Number(row, column).value_or(kNone));
-  }
-  return loads;
-}
-
 // Of each resultant, the standard deviation over the size of its force, where
 // it is given so.
 std::vector<std::optional<double>> RelativeErrors(const JsonValue& load_case) {
@@ -126,8 +99,8 @@ struct FrameReader {
   Mesh scene_mesh;
   LoadCase loads;  // Of the scene, without a measurement.
   std::vector<std::optional<double>> relative_errors;
-  std::optional<DicOptions> camera;
-  nlohmann::json displacement;  // As of a load case, without the file.
+  std::optional<TableOptions> camera;
+  nlohmann::json displacement;  // As of the load case, but for the file.
   std::string file_key;         // "points" or "file".
   std::vector<std::string> names;
   std::vector<double> factors;
@@ -191,16 +164,15 @@ FrameSeries ReadFrames(const JsonValue& document, const FileScene& file_scene) {
   reader->relative_errors = RelativeErrors(cases[0]);
   reader->names = FrameNames(frames.At("files"));
   if (document.At("mesh").IsObject()) {
-    reader->camera = ReadDicOptions(document.At("mesh"));
+    reader->camera = ReadTableOptions(document.At("mesh"), 2);
   }
   reader->displacement = nlohmann::json::object();
   reader->file_key = "points";
   if (cases[0].Has("displacement")) {
     const JsonValue displacement = cases[0].At("displacement");
     reader->file_key = displacement.Has("points") ? "points" : "file";
-    if (displacement.Has("tolerance")) {
-      reader->displacement["tolerance"] = displacement.At("tolerance").Number();
-    }
+    reader->displacement = displacement.Json();
+    reader->displacement.erase("array");
   }
   FrameSeries series;
   for (const std::string& name : reader->names) {
@@ -212,7 +184,7 @@ FrameSeries ReadFrames(const JsonValue& document, const FileScene& file_scene) {
   }
   if (frames.Has("load_record")) {
     const JsonValue record = frames.At("load_record");
-    series.loads = ReadLoadRecord(record, series.files.size());
+    series.loads = ReadLoadRecord(record, reader->names);
     if (record.Has("relative_sd")) {
       series.load_error = {RelativeError(record.At("relative_sd")), false};
     }

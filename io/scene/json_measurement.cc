@@ -1,7 +1,5 @@
 #include "elastimate/io/scene/json_measurement.h"
 
-#include <numeric>
-
 #include "elastimate/io/points/measured_points.h"
 #include "elastimate/io/scene/file_scene.h"
 #include "elastimate/io/scene/node_field.h"
@@ -37,21 +35,15 @@ std::vector<FileLines> MeasurementReader::Read(
       locator_.emplace(scene_mesh_);
     }
     load_case.points = ReadMeasuredPoints(displacement, scene_mesh_, *locator_,
-                                          notices, lines);
+                                          unit_, notices, lines);
     return lines;
   }
   displacement.CheckKeys({"file", "array"});
   load_case.displacement = ReadNodeField(
       displacement, mesh_,
       load_case.observed.size() > 0 ? load_case.observed : AllComponents(mesh_),
-      "correct it or leave it out of the observed nodes");
+      "correct it or leave it out of the observed nodes", &lines);
   ClearUnobserved(load_case);
-  if (displacement.Has("file")) {
-    // Below the header.
-    std::vector<std::size_t> of_nodes(mesh_.nodes.cols());
-    std::iota(of_nodes.begin(), of_nodes.end(), 2);
-    lines.push_back({ResolvePath(displacement.At("file")), of_nodes});
-  }
   return lines;
 }
 

@@ -1,8 +1,8 @@
 #include "elastimate/io/scene/node_field.h"
 
+#include "elastimate/io/points/csv_field.h"
 #include "elastimate/io/scene/file_scene.h"
 #include "elastimate/io/scene/node_selection.h"
-#include "elastimate/io/text/csv_field.h"
 #include "elastimate/io/text/printable.h"
 
 namespace elastimate {
@@ -22,7 +22,8 @@ std::vector<Eigen::Index> VectorSizes(const MeshFile& mesh) {
 
 Eigen::MatrixXd ReadNodeField(const JsonValue& value, const MeshFile& mesh,
                               const ComponentMask& mask,
-                              const std::string& mend) {
+                              const std::string& mend,
+                              std::vector<FileLines>* lines) {
   if (value.Has("file") == value.Has("array")) {
     value.Fail("must have exactly one of the keys file, array");
   }
@@ -32,7 +33,12 @@ Eigen::MatrixXd ReadNodeField(const JsonValue& value, const MeshFile& mesh,
   if (value.Has("file")) {
     RequireNodePositions(mesh);
     file = ResolvePath(value.At("file"));
-    field = ReadCsvField(file, mesh.nodes.cols(), mesh.Dimension());
+    const CsvField table =
+        ReadCsvField(file, mesh.nodes.cols(), mesh.Dimension());
+    field = table.values;
+    if (lines != nullptr) {
+      lines->push_back({file, table.lines});
+    }
     what = "the row";
   } else {
     field = NamedNodeArray(value.At("array"), mesh, VectorSizes(mesh));

@@ -8,6 +8,7 @@
 
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/io/mesh/mesh_file.h"
+#include "elastimate/io/text/file_lines.h"
 #include "elastimate/io/text/json_value.h"
 
 namespace elastimate {
@@ -21,10 +22,12 @@ std::vector<Eigen::Index> VectorSizes(const MeshFile& mesh);
 
 /// A vector per node, dimension x num_nodes, from the one of the keys `file`
 /// and `array` that `value` has; finite where `mask` says.  Throws
-/// std::invalid_argument, naming the file and the node, with this mend.
+/// std::invalid_argument, naming the file and the node, with this mend. `lines`
+/// gets where the rows of a file stand.
 Eigen::MatrixXd ReadNodeField(const JsonValue& value, const MeshFile& mesh,
                               const ComponentMask& mask,
-                              const std::string& mend);
+                              const std::string& mend,
+                              std::vector<FileLines>* lines = nullptr);
 
 }  // namespace elastimate
 

@@ -5,32 +5,30 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <fstream>
 #include <new>
-#include <sstream>
 #include <system_error>
 #include <utility>
 
 #include "elastimate/io/text/input_error.h"
-#include "elastimate/io/text/input_file.h"
 #include "elastimate/io/text/printable.h"
+#include "elastimate/io/text/text_file.h"
 
 namespace elastimate {
 namespace {
 
-using Cells = std::vector<std::string>;
+using CellTexts = std::vector<std::string>;
 
 // The cells of one line, by libcsv; empty when quotes are wrong.
-std::optional<Cells> SplitLine(const std::string& line, char delimiter) {
+std::optional<CellTexts> SplitLine(std::string_view line, char delimiter) {
   csv_parser parser;
   if (csv_init(&parser, CSV_STRICT | CSV_STRICT_FINI) != 0) {
     throw std::bad_alloc();
   }
   csv_set_delim(&parser, static_cast<unsigned char>(delimiter));
-  Cells cells;
+  CellTexts cells;
   const auto add = [](void* text, std::size_t size, void* data) {
-    static_cast<Cells*>(data)->emplace_back(static_cast<const char*>(text),
-                                            size);
+    static_cast<CellTexts*>(data)->emplace_back(static_cast<const char*>(text),
+                                                size);
   };
   const bool is_read = csv_parse(&parser, line.data(), line.size(), add,
                                  nullptr, &cells) == line.size() &&
@@ -40,183 +38,334 @@ std::optional<Cells> SplitLine(const std::string& line, char delimiter) {
   if (!is_read && error != CSV_EPARSE) {
     throw std::bad_alloc();
   }
-  return is_read ? std::optional<Cells>(std::move(cells)) : std::nullopt;
+  return is_read ? std::optional<CellTexts>(std::move(cells)) : std::nullopt;
 }
 
-constexpr char kSpaces[] = " \t\r";
+constexpr char kSpaces[] = " \t";
+// In the order in which they are tried: a semicolon or a tabulator is no part
+// of a number.
+constexpr std::array<char, 4> kDelimiters = {';', '\t', ',', ' '};
 
-// A space where the header has neither commas, semicolons nor tabulators.
-char DelimiterOf(const std::string& header) {
-  constexpr std::array<char, 3> kDelimiters = {',', ';', '\t'};
+// The separator that a line has most of; a space where it has none.
+char DelimiterOf(std::string_view line) {
   const char delimiter = *std::max_element(
-      kDelimiters.begin(), kDelimiters.end(), [&header](char a, char b) {
-        return std::count(header.begin(), header.end(), a) <
-               std::count(header.begin(), header.end(), b);
+      kDelimiters.begin(), kDelimiters.end() - 1, [&line](char a, char b) {
+        return std::count(line.begin(), line.end(), a) <
+               std::count(line.begin(), line.end(), b);
       });
-  return header.find(delimiter) == std::string::npos ? ' ' : delimiter;
+  return line.find(delimiter) == std::string::npos ? ' ' : delimiter;
 }
 
-bool IsBlank(const std::string& line) {
-  return line.find_first_not_of(kSpaces) == std::string::npos;
+bool IsBlank(std::string_view line) {
+  return line.find_first_not_of(kSpaces) == std::string_view::npos;
 }
 
 // "# a comment", "*** a comment".
-bool IsComment(const std::string& line) {
+bool IsComment(std::string_view line) {
   const std::size_t begin = line.find_first_not_of(kSpaces);
   return line[begin] == '#' || line.compare(begin, 3, "***") == 0;
 }
 
-// Each run of spaces between words as one delimiter.
-std::string WithCommas(const std::string& line) {
-  std::istringstream words(line);
-  std::string joined;
-  for (std::string word; words >> word;) {
-    joined += (joined.empty() ? "" : ",") + word;
+// Splits at spaces outside of quotes; empty when quotes are wrong.
+std::optional<CellTexts> SplitWords(std::string_view line) {
+  CellTexts words;
+  bool is_quoted = false;
+  bool is_in_word = false;
+  for (const char c : line) {
+    const bool is_space =
+        std::string_view(kSpaces).find(c) != std::string_view::npos;
+    if (is_space && !is_quoted) {
+      is_in_word = false;
+      continue;
+    }
+    if (!is_in_word) {
+      words.emplace_back();
+      is_in_word = true;
+    }
+    if (c == '"') {
+      is_quoted = !is_quoted;
+    } else {
+      words.back() += c;
+    }
   }
-  return joined;
+  return is_quoted ? std::nullopt : std::optional<CellTexts>(std::move(words));
 }
 
-std::optional<Cells> CellsOf(const std::string& line, char delimiter) {
-  return delimiter == ' ' ? SplitLine(WithCommas(line), ',')
-                          : SplitLine(line, delimiter);
+std::optional<CellTexts> CellsOf(std::string_view line, char delimiter) {
+  return delimiter == ' ' ? SplitWords(line) : SplitLine(line, delimiter);
 }
 
-void RemoveByteOrderMark(std::string& line) {
-  const std::string_view mark = "\xEF\xBB\xBF";
-  if (std::string_view(line).substr(0, mark.size()) == mark) {
-    line.erase(0, mark.size());
+// The titles that a line has; empty when quotes are wrong.
+std::optional<CellTexts> TitlesOf(std::string_view line, char delimiter) {
+  std::optional<CellTexts> cells = CellsOf(line, delimiter);
+  if (!cells) {
+    return cells;
   }
+  CellTexts titles;
+  for (std::string& cell : *cells) {
+    const bool is_unit =
+        delimiter == ' ' && !cell.empty() && (cell[0] == '[' || cell[0] == '(');
+    if (is_unit && !titles.empty()) {
+      titles.back() += " " + cell;
+    } else {
+      titles.push_back(std::move(cell));
+    }
+  }
+  while (!titles.empty() && titles.back().empty()) {
+    titles.pop_back();
+  }
+  return titles;
 }
 
-bool BeginsWithNumber(const std::string& cell) {
+// The number may have a decimal comma.
+bool IsNumberText(const std::string& cell) {
+  const std::size_t sign = cell.empty() || cell[0] != '+' ? 0 : 1;
+  std::string text = cell.substr(sign);
+  std::replace(text.begin(), text.end(), ',', '.');
   double value = 0;
-  return std::from_chars(cell.data(), cell.data() + cell.size(), value).ec ==
-         std::errc();
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  return error != std::errc::invalid_argument && stop == end;
 }
 
-bool HasNumber(const Cells& cells) {
-  return std::any_of(cells.begin(), cells.end(), BeginsWithNumber);
+bool HasNumber(const CellTexts& cells) {
+  return std::any_of(cells.begin(), cells.end(), IsNumberText);
 }
 
-// The columns that a comment right above the numbers names, as ARAMIS writes
-// them; none where it does not name as many.
-Cells ColumnsOfComment(const std::string& comment, char delimiter,
-                       const Cells& numbers) {
-  const std::size_t begin = comment.find_first_not_of("# \t");
-  if (begin == std::string::npos ||
-      !std::all_of(numbers.begin(), numbers.end(), BeginsWithNumber)) {
-    return {};
-  }
-  const std::optional<Cells> cells = CellsOf(comment.substr(begin), delimiter);
-  return cells && cells->size() == numbers.size() ? *cells : Cells{};
+// Empty cells may stand for numbers.
+bool HasOnlyNumbers(const CellTexts& cells) {
+  return std::all_of(cells.begin(), cells.end(), [](const std::string& cell) {
+    return cell.empty() || IsNumberText(cell);
+  });
 }
 
-void CheckCount(const CsvTable& table, CsvTable::Row& row) {
-  Cells& cells = row.cells;
-  // Behind a delimiter at the end of the line.
-  if (cells.size() == table.columns.size() + 1 && cells.back().empty()) {
-    cells.pop_back();
+// Titles that were found, and what separates them.
+struct TitleLine {
+  ColumnTitles titles;
+  char delimiter;
+};
+
+std::optional<TitleLine> FindTitles(std::string_view line,
+                                    const IsTable& is_table) {
+  const std::optional<CellTexts> usual = CellsOf(line, DelimiterOf(line));
+  if (usual && HasOnlyNumbers(*usual)) {
+    return std::nullopt;
   }
-  if (cells.size() != table.columns.size()) {
-    ThrowInputError(table.path, "line " + std::to_string(row.line) + " has " +
-                                    std::to_string(cells.size()) +
-                                    " columns where " +
-                                    std::to_string(table.columns.size()) +
-                                    " are due; correct it");
+  for (const char delimiter : kDelimiters) {
+    // The first one, where the line has none of it, makes one title of it.
+    if (delimiter != kDelimiters[0] &&
+        line.find(delimiter) == std::string_view::npos) {
+      continue;
+    }
+    if (const std::optional<CellTexts> texts = TitlesOf(line, delimiter)) {
+      ColumnTitles titles(*texts);
+      if (is_table(titles)) {
+        return TitleLine{std::move(titles), delimiter};
+      }
+    }
   }
+  return std::nullopt;
 }
+
+// Reads a table line by line.
+class TableReader {
+ public:
+  TableReader(const std::filesystem::path& path, const IsTable& is_table)
+      : is_table_(is_table) {
+    table_.path = path;
+  }
+
+  void Add(std::string_view line, std::size_t number) {
+    if (IsBlank(line)) {
+      return;
+    }
+    if (IsComment(line)) {
+      AddComment(line);
+    } else if (has_titles_ || (of_comment_ && TakeComment(line))) {
+      AddRow(line, number);
+    } else {
+      AddTitles(line);
+    }
+  }
+
+  CsvTable Table() {
+    if (!has_titles_) {
+      table_.titles = ColumnTitles(likely_);
+    }
+    // Rows that something else separates have no numbers either.
+    if (has_titles_ && table_.rows.empty() && !table_.units.empty() &&
+        table_.units.size() != table_.titles.Size()) {
+      ThrowCount(table_.units.size(), line_of_units_);
+    }
+    if (has_titles_ ? table_.rows.empty() : likely_.empty()) {
+      ThrowInputError(
+          table_.path,
+          "the file has no row of numbers below a header; add them");
+    }
+    return std::move(table_);
+  }
+
+ private:
+  void AddComment(std::string_view line) {
+    const std::size_t begin = line.find_first_not_of("#* \t");
+    if (!has_titles_ && begin != std::string_view::npos) {
+      if (auto found = FindTitles(line.substr(begin), is_table_)) {
+        of_comment_ = std::move(found);
+      }
+    }
+  }
+
+  // Whether the titles of a comment are those of the row of numbers below it.
+  bool TakeComment(std::string_view row) {
+    const TitleLine comment = std::move(*of_comment_);
+    of_comment_.reset();
+    std::vector<char> delimiters = {comment.delimiter};
+    delimiters.insert(delimiters.end(), kDelimiters.begin(), kDelimiters.end());
+    for (const char delimiter : delimiters) {
+      std::optional<CellTexts> cells = CellsOf(row, delimiter);
+      if (cells && cells->size() > comment.titles.Size() &&
+          cells->back().empty()) {
+        cells->pop_back();
+      }
+      if (cells && cells->size() == comment.titles.Size() &&
+          HasOnlyNumbers(*cells) && HasNumber(*cells)) {
+        table_.titles = comment.titles;
+        table_.delimiter = delimiter;
+        has_titles_ = true;
+        return true;
+      }
+    }
+    return false;
+  }
+
+  void AddTitles(std::string_view line) {
+    if (std::optional<TitleLine> found = FindTitles(line, is_table_)) {
+      table_.titles = std::move(found->titles);
+      table_.delimiter = found->delimiter;
+      has_titles_ = true;
+      return;
+    }
+    const std::optional<CellTexts> cells = TitlesOf(line, DelimiterOf(line));
+    if (cells && (likely_.empty() ||
+                  (!HasNumber(*cells) &&
+                   (HasNumber(likely_) || cells->size() > likely_.size())))) {
+      likely_ = *cells;
+    }
+  }
+
+  void AddRow(std::string_view line, std::size_t number) {
+    std::optional<CellTexts> cells = CellsOf(line, table_.delimiter);
+    if (!cells) {
+      ThrowInputError(table_.path,
+                      "line " + std::to_string(number) +
+                          ": the quotes do not match; correct them");
+    }
+    while (cells->size() > table_.titles.Size() && cells->back().empty()) {
+      cells->pop_back();
+    }
+    if (table_.rows.empty() && !HasNumber(*cells)) {
+      if (table_.units.empty()) {
+        table_.units = std::move(*cells);
+        line_of_units_ = number;
+      }
+      return;
+    }
+    if (cells->size() != table_.titles.Size()) {
+      ThrowCount(cells->size(), number);
+    }
+    table_.rows.push_back({number, std::move(*cells)});
+  }
+
+  [[noreturn]] void ThrowCount(std::size_t num_cells, std::size_t line) const {
+    ThrowInputError(
+        table_.path,
+        "line " + std::to_string(line) + " has " + std::to_string(num_cells) +
+            " columns where " + std::to_string(table_.titles.Size()) +
+            " are due; correct it" +
+            (table_.delimiter == ',' && num_cells > table_.titles.Size()
+                 ? ", and separate the columns by semicolons where the comma "
+                   "is the decimal mark"
+                 : ""));
+  }
+
+  const IsTable& is_table_;
+  CsvTable table_;
+  std::size_t line_of_units_ = 0;
+  bool has_titles_ = false;
+  std::optional<TitleLine> of_comment_;
+  CellTexts likely_;  // Titles, should none be found.
+};
 
 }  // namespace
 
-std::optional<std::size_t> CsvTable::Find(std::string_view column) const {
-  const auto found = std::find(columns.begin(), columns.end(), column);
-  if (found == columns.end()) {
-    return std::nullopt;
+std::size_t CsvTable::One(const std::vector<std::size_t>& found,
+                          std::string_view title) const {
+  if (found.empty()) {
+    ThrowInputError(path, "there is no column '" + Printable(title) +
+                              "' among " + titles.List() + "; add it");
   }
-  if (std::find(found + 1, columns.end(), column) != columns.end()) {
-    ThrowInputError(path, "several columns have the name '" +
-                              Printable(column) + "'; name each once");
+  if (found.size() > 1) {
+    ThrowInputError(path, "several columns have the name '" + Printable(title) +
+                              "' (" + Printable(titles[found[0]].text) + ", " +
+                              Printable(titles[found[1]].text) +
+                              "); name each once");
   }
-  return static_cast<std::size_t>(found - columns.begin());
+  return found[0];
 }
 
-std::size_t CsvTable::At(std::string_view column) const {
-  const std::optional<std::size_t> place = Find(column);
-  if (!place) {
-    std::string names;
-    for (const std::string& name : columns) {
-      names += (names.empty() ? "" : ", ") + Printable(name);
-    }
-    ThrowInputError(path, "there is no column '" + Printable(column) +
-                              "' among " + names + "; add it");
-  }
-  return *place;
+std::size_t CsvTable::At(std::string_view title) const {
+  return One(titles.FindAlike(title), title);
 }
 
 std::optional<double> CsvTable::Number(const Row& row,
                                        std::size_t column) const {
   const std::string& cell = row.cells[column];
-  return cell.empty() ? std::nullopt
-                      : std::optional<double>(
-                            NumberOfCell(path, cell, row.line, column));
+  if (cell.empty()) {
+    return std::nullopt;
+  }
+  const std::size_t comma =
+      delimiter == ',' ? std::string::npos : cell.find(',');
+  if (comma == std::string::npos || cell.find('.') != std::string::npos) {
+    return NumberOfCell(path, cell, row.line, column);
+  }
+  std::string with_point = cell;
+  with_point[comma] = '.';
+  return NumberOfCell(path, with_point, row.line, column);
 }
 
-CsvTable ReadCsvTable(const std::filesystem::path& path) {
-  CheckReadable(path);
-  std::ifstream file(path);
-  CsvTable table;
-  table.path = path;
-  std::string line;
-  std::string comment;
-  std::string header;
-  char delimiter = ',';
-  std::size_t number = 0;
-  while (std::getline(file, line)) {
-    ++number;
-    RemoveByteOrderMark(line);
-    if (IsBlank(line)) {
-      continue;
+void CsvTable::CheckDecimalMarks(
+    const std::vector<std::size_t>& columns) const {
+  const Row* with_comma = nullptr;
+  const Row* with_point = nullptr;
+  for (const Row& row : rows) {
+    for (const std::size_t column : columns) {
+      const std::string& cell = row.cells[column];
+      with_comma = cell.find(',') != std::string::npos ? &row : with_comma;
+      with_point = cell.find('.') != std::string::npos ? &row : with_point;
     }
-    if (IsComment(line)) {
-      comment = line;
-      continue;
+    if (with_comma != nullptr && with_point != nullptr) {
+      ThrowInputError(path, "line " + std::to_string(with_comma->line) +
+                                " has a decimal comma and line " +
+                                std::to_string(with_point->line) +
+                                " a decimal point; write all with points");
     }
-    if (table.columns.empty()) {
-      delimiter = DelimiterOf(line);
-    }
-    std::optional<Cells> cells = CellsOf(line, delimiter);
-    if (!cells) {
-      ThrowInputError(path, "line " + std::to_string(number) +
-                                ": the quotes do not match; correct them");
-    }
-    // One column may have a name of several words.
-    if (delimiter == ' ' && table.rows.empty() && cells->size() == 1 &&
-        !header.empty()) {
-      table.columns = SplitLine(header, ',').value_or(Cells{header});
-    }
-    if (table.columns.empty()) {
-      header = line.substr(0, line.find_last_not_of(kSpaces) + 1);
-      table.columns = ColumnsOfComment(comment, delimiter, *cells);
-      if (table.columns.empty()) {
-        table.columns = std::move(*cells);
-        continue;
-      }
-    }
-    CsvTable::Row row = {number, std::move(*cells)};
-    if (table.rows.empty() && !HasNumber(row.cells)) {
-      continue;
-    }
-    CheckCount(table, row);
-    table.rows.push_back(std::move(row));
   }
-  if (file.bad()) {
-    ThrowInputError(path, "the file cannot be read to its end");
+}
+
+CsvTable ReadCsvTable(const std::filesystem::path& path,
+                      const IsTable& is_table) {
+  const std::string text = ReadTextFile(path);
+  TableReader reader(path, is_table);
+  std::string_view rest = text;
+  for (std::size_t number = 1; !rest.empty(); ++number) {
+    const std::size_t end = std::min(rest.find_first_of("\r\n"), rest.size());
+    reader.Add(rest.substr(0, end), number);
+    rest.remove_prefix(end);
+    rest.remove_prefix(rest.substr(0, 2) == "\r\n"
+                           ? 2
+                           : std::min<std::size_t>(1, rest.size()));
   }
-  if (table.rows.empty()) {
-    ThrowInputError(path,
-                    "the file has no row of numbers below a header; add them");
-  }
-  return table;
+  return reader.Table();
 }
 
 double NumberOfCell(const std::filesystem::path& path, std::string_view cell,

@@ -3,15 +3,18 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "elastimate/io/text/column_titles.h"
+
 namespace elastimate {
 
-/// A file of values separated by commas, semicolons or tabulators, whichever
-/// its header has most of, or by spaces where it has none of these.
+/// A table of a text file, with cells that are separated by semicolons,
+/// tabulators, commas or spaces.
 struct CsvTable {
   struct Row {
     std::size_t line;  ///< In the file, from 1 on.
@@ -19,28 +22,43 @@ struct CsvTable {
   };
 
   std::filesystem::path path;
-  std::vector<std::string> columns;
+  ColumnTitles titles;
+  /// The cells of a row without numbers below the titles; may be fewer.
+  std::vector<std::string> units;
   std::vector<Row> rows;  ///< Of one cell for each column.
+  char delimiter = ',';
 
-  /// The place of a column; empty where there is none.  Throws
-  /// std::invalid_argument, naming the file, where several have the name.
-  std::optional<std::size_t> Find(std::string_view column) const;
-  /// Throws std::invalid_argument, naming the file, the columns that there are,
-  /// and the one that is missing.
-  std::size_t At(std::string_view column) const;
-  /// A number, or empty where the cell is.  Throws std::invalid_argument,
-  /// naming the file, the line and the column, for anything else.
+  /// The place of a column by its title (ColumnTitles::FindAlike).  Throws
+  /// std::invalid_argument, naming the file and the columns that there are,
+  /// where none has that title, or several.
+  std::size_t At(std::string_view title) const;
+  /// Throws, as At does, unless exactly one is found.
+  std::size_t One(const std::vector<std::size_t>& found,
+                  std::string_view title) const;
+  /// A number, or empty where the cell is.  A comma is a decimal mark where
+  /// cells are not separated by commas.  Throws std::invalid_argument, naming
+  /// the file, the line and the column, for anything else.
   std::optional<double> Number(const Row& row, std::size_t column) const;
+  /// Throws std::invalid_argument, naming the file and two lines, where numbers
+  /// of the columns have decimal commas and decimal points.
+  void CheckDecimalMarks(const std::vector<std::size_t>& columns) const;
 };
 
-/// A header of several words above rows of one is that of one column.  Cells
-/// may be quoted; lines that are blank or begin with # or *** are
-/// skipped, and so is a row of units below the header, which has no number.  A
-/// comment right above the first row is the header where there is no other and
-/// it names as many columns.  Throws std::invalid_argument, naming the file and
-/// the line, when a row has another number of cells than the header, or a file
-/// has none.
-CsvTable ReadCsvTable(const std::filesystem::path& path);
+/// Whether these are the titles of the table that is looked for.
+using IsTable = std::function<bool(const ColumnTitles&)>;
+
+/// The first table whose titles `is_table` takes; what stands above it is
+/// skipped.  Cells may be quoted; of words that are separated by spaces, "[mm]"
+/// and "(mm)" belong to the word before them.  Lines that are blank or begin
+/// with # or *** are skipped.  A comment right above the first row has the
+/// titles where it names as many.  Without such a table there are no rows, and
+/// the titles are those of the line that looks most like it, for a message.
+///
+/// Throws std::invalid_argument, naming the file and the line, where a row has
+/// another number of cells than titles, or the table has no row.
+/// O(size of the file).
+CsvTable ReadCsvTable(const std::filesystem::path& path,
+                      const IsTable& is_table);
 
 /// The number in a cell; `nan` and `inf` are numbers.  Throws
 /// std::invalid_argument: "FILE: line 3, column 2: 'abc' is not a number;

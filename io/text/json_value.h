@@ -48,6 +48,9 @@ class JsonValue {
   /// Of how many items it is a list; 0 of anything else.
   Eigen::Index ListSize() const;
 
+  /// The value without where it is.
+  const nlohmann::json& Json() const { return *value_; }
+
   const std::filesystem::path& File() const { return *file_; }
   const std::string& Place() const { return place_; }
 

@@ -15,7 +15,8 @@ using ::testing::ElementsAre;
 
 class DicFileTest : public ::testing::Test {
  protected:
-  DicFrame Read(const std::string& text, const DicOptions& options = {}) const {
+  DicFrame Read(const std::string& text,
+                const TableOptions& options = {}) const {
     return ReadDicFile(folder_.Write("frame.csv", text), options);
   }
 
@@ -48,7 +49,7 @@ TEST_F(DicFileTest, OfMatchIdInPixelsNeedsAScale) {
       "disp.Horizontal Displacement U [Pixel],"
       "disp.Vertical Displacement V [Pixel]\n10,20,1,2\n";
   EXPECT_THROWS_WITH(Read(text), "are in pixels; give \"length_per_pixel\"");
-  DicOptions options;
+  TableOptions options;
   options.length_per_pixel = 0.5;
   ExpectPoint(Read(text, options), 0, 5, 10, 0.5, 1);
   options.flip_y = true;
@@ -74,7 +75,7 @@ TEST_F(DicFileTest, OfDice) {
       "SIGMA,STATUS_FLAG\n"
       "0,10,20,1,2,0.003,4\n1,30,20,0,0,-1,4\n",
       [] {
-        DicOptions options;
+        TableOptions options;
         options.length_per_pixel = 0.1;
         return options;
       }());
@@ -85,7 +86,7 @@ TEST_F(DicFileTest, OfDice) {
 }
 
 TEST_F(DicFileTest, OfPyvaleWithSpaces) {
-  DicOptions options;
+  TableOptions options;
   options.length_per_pixel = 1;
   const DicFrame frame = Read(
       "x y u v mag converged cost\n"
@@ -114,11 +115,11 @@ TEST_F(DicFileTest, OfAramisNamesItsColumnsInAComment) {
 }
 
 TEST_F(DicFileTest, OfOtherColumnsByTheirNames) {
-  DicOptions options;
-  options.columns = {"a", "b [mm]", "c", "d"};
-  ExpectPoint(Read("d,c,b [mm],a\n4,3,2,1\n", options), 0, 1, 2, 3, 4);
+  TableOptions options;
+  options.columns = {"a", "b [mm]", "c", "e"};
+  ExpectPoint(Read("e,c,b [mm],a\n4,3,2,1\n", options), 0, 1, 2, 3, 4);
   EXPECT_THROWS_WITH(Read("a,b,c,d\n1,2,3,4\n", options),
-                     "there is no column 'b");
+                     "there is no column 'e' among a, b, c, d");
 }
 
 TEST_F(DicFileTest, OfUnknownColumnsNamesThem) {
@@ -126,7 +127,7 @@ TEST_F(DicFileTest, OfUnknownColumnsNamesThem) {
                      "are not those of a format known here");
   EXPECT_THROWS_WITH(Read("a,b\n1,2\n"),
                      "name those of x, y, u and v as \"columns\"");
-  DicOptions options;
+  TableOptions options;
   options.format = "vic";
   EXPECT_THROWS_WITH(Read("x,y,ux,uy\n1,2,3,4\n", options),
                      "are not those of vic");

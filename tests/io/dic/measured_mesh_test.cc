@@ -126,6 +126,20 @@ TEST_F(MeasuredMeshTest, OtherEstimatorsSayWhichOneToUse) {
   }
 }
 
+TEST_F(MeasuredMeshTest, OfMicrometresGivesTheTruth) {
+  std::string frame = Frame();
+  frame.replace(0, frame.find('\n'), "X [um],Y [um],U [nm],V [nm]");
+  folder_.Write("frame.csv", frame);
+  const SceneReading reading = Read(kStrip);
+  EXPECT_THAT(reading.notices,
+              ElementsAre(HasSubstr("points"), HasSubstr("converted to um")));
+  const Estimate estimate =
+      MakeEstimator("iterative-fe")->Run(reading.scene, {});
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  EXPECT_NEAR(estimate.elasticity.youngs_modulus, 1e3 * kModulus,
+              1e-5 * kModulus);
+}
+
 TEST_F(MeasuredMeshTest, TellsWhatIsWrong) {
   const auto expect = [&](const std::string& from, const std::string& to,
                           const std::string& message) {

@@ -112,6 +112,48 @@ TEST_F(MeasuredPointsTest, AreRefusedOutside) {
               HasSubstr("2 of 3 points lie outside the mesh, up to 0.312"));
 }
 
+// The mesh does not say in which unit it is.
+TEST_F(MeasuredPointsTest, AreInTheUnitOfTheScene) {
+  const Eigen::MatrixXd displacement = scene_.load_cases[0].points.displacement;
+  std::string table = Table(0, 100);
+  table.replace(0, table.find('\n'),
+                "X [cm],Y [cm],Z [cm],U [mm],V [mm],W [mm]");
+  folder_.Write("points.csv", table);
+  EXPECT_LT((Read(kPointsDocument).scene.load_cases[0].points.displacement -
+             0.1 * displacement)
+                .norm(),
+            1e-14 * displacement.norm());
+  // In a cube of 101 mm they would all be in a corner.
+  WriteVtu(folder_.Path() / "cube.vtu",
+           testing::BoxMesh({4, 4, 4}, {101, 101, 101}), {});
+  const auto with_keys = [](const std::string& keys) {
+    return R"({"mesh": "cube.vtu", "supports": [ {"nodes": {"ids": [0, 1, 5]}} ],
+      "cases": [ {"displacement": {"points": "points.csv")" +
+           keys +
+           R"(}, "loads": [{"type": "body_force", "value": [0, 0, 1]}]} ]})";
+  };
+  EXPECT_THROWS_WITH(Read(with_keys("")),
+                     "points.csv: its points span .* cm of a mesh that spans "
+                     "175; .* \"unit\"");
+  const Scene scene = Read(with_keys(R"(, "unit": "mm")")).scene;
+  EXPECT_LT((scene.load_cases[0].points.displacement - displacement).norm(),
+            1e-14 * displacement.norm());
+  EXPECT_THROWS_WITH(Read(with_keys(R"(, "unit": "px")")),
+                     "displacement.unit is \"px\"; make");
+}
+
+TEST_F(MeasuredPointsTest, AreInOneUnitInAllFiles) {
+  const std::string titles = "x [mm],y [mm],z [mm],ux [mm],uy [mm],uz [mm]\n";
+  folder_.Write("a.csv", titles + ".5,.5,.5,0,0,1\n");
+  folder_.Write("b.csv",
+                Replaced(titles, "x [mm],y [mm],z [mm]", "x [m],y [m],z [m]") +
+                    ".5,.5,.5,0,0,1\n");
+  EXPECT_THROWS_WITH(Read(Replaced(kPointsDocument, R"("points.csv")",
+                                   R"(["a.csv", "b.csv"])")),
+                     "b.csv: positions are in m, but those of other files of "
+                     "the scene in mm");
+}
+
 TEST_F(MeasuredPointsTest, NameWhatIsWrong) {
   const auto with = [](const std::string& displacement) {
     return Replaced(kPointsDocument, R"({"points": "points.csv"})",

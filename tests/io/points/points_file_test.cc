@@ -69,21 +69,158 @@ TEST_F(PointsFileTest, ReadsAPointThatWasMeasuredTwice) {
   EXPECT_EQ(file.positions.cols(), 4);
 }
 
+TEST_F(PointsFileTest, KnowsTitlesByTheirMeaning) {
+  Eigen::Vector2d position(1, 2);
+  Eigen::Vector2d displacement(3, 4);
+  for (const std::string titles :
+       {"x,y,ux,uy", "X,Y,U,V", "x [mm],y [mm],u_x [mm],u_y [mm]",
+        "x (mm),y (mm),dx (mm),dy (mm)", "x_mm,y_mm,u_mm,v_mm",
+        "X / mm,Y / mm,Displacement X / mm,Displacement Y / mm",
+        "\"X [mm]\",\"Y [mm]\",\"Displacement_x [mm]\",\"Displacement_y "
+        "[mm]\"",
+        "x-coordinate [mm],y-coordinate [mm],x-displacement [mm],"
+        "y-displacement [mm]",
+        "pos_x,pos_y,disp.x,disp.y", "x_undef,y_undef,u,v"}) {
+    const PointsFile file = Read(titles + "\n1,2,3,4\n", 2);
+    EXPECT_EQ(file.positions, position) << titles;
+    EXPECT_EQ(file.displacement, displacement) << titles;
+    EXPECT_TRUE(file.notices.empty()) << titles;
+  }
+}
+
+TEST_F(PointsFileTest, RefusesTitlesOfSeveralMeanings) {
+  EXPECT_THROWS_WITH(Read("x,y,dx,dy,u,v\n1,2,3,4,5,6\n", 2),
+                     "'dx' or 'u' of x, y, dx, dy, u, v.* as .columns.");
+  EXPECT_EQ(Read("x,y,ux,uy,u,v\n1,2,3,4,5,6\n", 2).displacement(0, 0), 3);
+  EXPECT_THROWS_WITH(Read("coor.X [mm],coor.X [px],coor.Y [mm],"
+                          "disp.Horizontal Displacement U [mm],"
+                          "disp.Vertical Displacement V [mm]\n1,2,3,4,5\n",
+                          2),
+                     "several columns have the name 'coor.X'");
+}
+
+TEST_F(PointsFileTest, ConvertsToTheUnitOfPositions) {
+  Eigen::Vector2d displacement(3e-3, 4e-3);
+  for (const std::string titles :
+       {"x [mm],y [mm],u [um],v [um]", "x [mm],y [mm],u [\xC2\xB5m],v [\xB5m]",
+        "x (m),y (m),u (mm),v (Millimeters)", "x_mm,y_mm,u_um,v_um"}) {
+    const PointsFile file = Read(titles + "\n1,2,3,4\n", 2);
+    EXPECT_EQ(file.positions, Eigen::Vector2d(1, 2)) << titles;
+    EXPECT_EQ(file.displacement, displacement) << titles;
+    EXPECT_EQ(file.notices.size(), 1U) << titles;
+  }
+}
+
+TEST_F(PointsFileTest, ConvertsByTheRowOfUnitsAndTheColumnsOfTheScene) {
+  Eigen::Vector2d displacement(3e-3, 4e-3);
+  EXPECT_EQ(Read("x;y;ux;uy\nmm;mm;um;um\n1;2;3;4\n", 2).displacement,
+            displacement);
+  EXPECT_EQ(Read("x;y;ux;uy\n[mm];[mm];[um];[um]\n1;2;3;4\n", 2).displacement,
+            displacement);
+  TableOptions options;
+  options.columns = {"a [mm]", "b [mm]", "c [um]", "d [um]"};
+  const auto path = folder_.Write("points.csv", "a,b,c,d\n1,2,3,4\n");
+  EXPECT_EQ(ReadPointsFile(path, 2, options).displacement, displacement);
+}
+
+TEST_F(PointsFileTest, ConvertsToTheUnitOfTheScene) {
+  TableOptions options;
+  options.unit = LengthUnitOf("m");
+  const auto path =
+      folder_.Write("points.csv", "x [mm],y [mm],ux [um],uy [um]\n1,2,3,4\n");
+  const PointsFile file = ReadPointsFile(path, 2, options);
+  EXPECT_EQ(file.positions, Eigen::Vector2d(1e-3, 2e-3));
+  EXPECT_EQ(file.displacement, Eigen::Vector2d(3e-6, 4e-6));
+}
+
+TEST_F(PointsFileTest, ScalesDeviationsAsTheirDisplacements) {
+  const std::string titles = "x [mm],y [mm],ux [um],uy [um],";
+  EXPECT_EQ(Read(titles + "sd_ux,sd_uy\n1,2,3,4,5,6\n", 2).noise_sd,
+            Eigen::Vector2d(5e-3, 6e-3));
+  EXPECT_EQ(Read(titles + "sd_u [mm],sd_v [mm]\n1,2,3,4,5,6\n", 2).noise_sd,
+            Eigen::Vector2d(5, 6));
+}
+
+// The unit of the one is taken for the other where both are likely to be in it.
+TEST_F(PointsFileTest, SaysWhichColumnsHaveNoUnit) {
+  const PointsFile file = Read("X [mm],Y [mm],U,V\n1,2,3,4\n", 2);
+  EXPECT_EQ(file.displacement, Eigen::Vector2d(3, 4));
+  EXPECT_EQ(file.notices.size(), 1U);
+  EXPECT_EQ(Read("X,Y,U [mm],V [mm]\n1,2,3,4\n", 2).notices.size(), 1U);
+  for (const std::string unit : {"um", "nm", "px"}) {
+    EXPECT_THROWS_WITH(
+        Read("X,Y,U [" + unit + "],V [" + unit + "]\n1,2,3,4\n", 2),
+        "'X' has no unit; .* .columns.: .*X .mm.");
+  }
+  EXPECT_THROWS_WITH(Read("X [mm],Y [mm],U [ell],V [ell]\n1,2,3,4\n", 2),
+                     "the unit 'ell' of the column 'U .ell.'");
+}
+
+TEST_F(PointsFileTest, ScalesPixelsOnly) {
+  const auto path =
+      folder_.Write("points.csv", "X [mm],Y [mm],U [px],V [Pixel]\n1,2,3,4\n");
+  EXPECT_THROWS_WITH(ReadPointsFile(path, 2, {}),
+                     "'U .px.'. are in pixels; give .length_per_pixel.");
+  TableOptions options;
+  options.length_per_pixel = 0.5;
+  const PointsFile file = ReadPointsFile(path, 2, options);
+  EXPECT_EQ(file.positions, Eigen::Vector2d(1, 2));
+  EXPECT_EQ(file.displacement, Eigen::Vector2d(1.5, 2));
+  folder_.Write("points.csv", "X [mm],Y [mm],U [mm],V [mm]\n1,2,3,4\n");
+  EXPECT_THROWS_WITH(ReadPointsFile(path, 2, options),
+                     "leave out .length_per_pixel.");
+}
+
+TEST_F(PointsFileTest, ReadsFormatsOfCamerasInSpace) {
+  const PointsFile matchid = Read(
+      "coor.X [mm];coor.Y [mm];coor.Z [mm];disp.Horizontal Displacement U [mm];"
+      "disp.Vertical Displacement V [mm];disp.Out-Of-Plane: W [mm]\n"
+      "1,5;2;3;4;5;6\nNaN;NaN;NaN;NaN;NaN;NaN\n;;;;;\n");
+  EXPECT_EQ(matchid.positions, Eigen::Vector3d(1.5, 2, 3));
+  EXPECT_EQ(matchid.displacement, Eigen::Vector3d(4, 5, 6));
+  const PointsFile vic = Read(
+      "\"X [mm]\",\"Y [mm]\",\"Z [mm]\",\"U [mm]\",\"V [mm]\",\"W [mm]\",x,y,"
+      "\"sigma [pixel]\"\n0,0,0,9,9,9,0,0,-1\n1,2,3,4,5,6,0,0,0.01\n");
+  EXPECT_EQ(vic.positions, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(vic.lines, (std::vector<std::size_t>{3}));
+}
+
+// As GOM Correlate, ARAMIS Professional and ZEISS Inspect write a component.
+TEST_F(PointsFileTest, ReadsTheTableBelowThatOfTheStage) {
+  const PointsFile file = Read(
+      "# Units: length:mm angle:deg time:s\n"
+      "stage;index;relative_time;date\n"
+      "\"Stage 2\";2;21.5;\"2024-01-01T00:00:00\"\n"
+      "# Name : Surface component 1\n"
+      "id;x;y;z;displacement_x;displacement_y;displacement_z\n"
+      "0;1;2;3;4;5;6\n");
+  EXPECT_EQ(file.positions, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(file.displacement, Eigen::Vector3d(4, 5, 6));
+}
+
+TEST_F(PointsFileTest, LeavesOutWhatWasNotMeasured) {
+  const PointsFile file =
+      Read("x,y,ux,uy\n1,2,3,4\n5,6,nan,\n,,,\n7,8,,9\n", 2);
+  EXPECT_EQ(file.lines, (std::vector<std::size_t>{2, 5}));
+  EXPECT_THROWS_WITH(Read("x,y,ux,uy\n1,2,nan,nan\n", 2), "no row has");
+}
+
 TEST_F(PointsFileTest, NamesLineAndColumn) {
   EXPECT_THROWS_WITH(Read("x,y,ux,uy,uz\n1,2,3,4,5\n"),
-                     "no column 'z' among x, y, ux, uy, uz; add it");
+                     "its columns .x, y, ux, uy, uz. are not those of .* name "
+                     "those of x, y, z");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy,sd_ux\n1,2,3,4,5\n", 2),
                      "no column 'sd_uy'");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy,x\n1,2,3,4,5\n", 2),
                      "several columns have the name 'x'");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy\n1,2,3,4\n,2,3,4\n", 2),
-                     "line 3: x is not a finite number");
+                     "line 3: x of the position is not a finite number");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy\n1,2,3,inf\n", 2),
-                     "line 2: uy is infinite");
+                     "line 2: y of the displacement is infinite");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy\n1,2,3,four\n", 2),
                      "line 2, column 4: 'four' is not a number");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy,sd_ux,sd_uy\n1,2,3,4,0,1\n", 2),
-                     "line 2: sd_ux must be positive");
+                     "line 2: x of the standard deviation must be positive");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy\n1,2,3,4\n1,2,3\n", 2),
                      "line 3 has 3 columns where 4 are due");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy\n1,2,3,\"4\n", 2),

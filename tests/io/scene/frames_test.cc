@@ -148,6 +148,81 @@ TEST_F(FramesTest, AreOfTheNodesThatElementsUse) {
   EXPECT_EQ(series.read(0).displacement.col(3), Eigen::Vector3d(.1, .2, .3));
 }
 
+TEST_F(FramesTest, AreInTheOrderOfDecimals) {
+  for (const std::string load : {"1.0", "1.25", "1.5", "2.0"}) {
+    folder_.Write("load_" + load + "kN.csv", Frame(1));
+  }
+  folder_.Write("load.csv", "Force [N]\n1000\n1250\n1500\n2000\n");
+  const FrameSeries series =
+      Read(Replaced(kFilmedStrip, "frame_*.csv", "load_*.csv"));
+  ASSERT_EQ(series.files.size(), 4U);
+  EXPECT_EQ(series.files[1].filename(), "load_1.25kN.csv");
+  EXPECT_EQ(series.files[2].filename(), "load_1.5kN.csv");
+  EXPECT_EQ(series.Load(2), 1500);
+}
+
+// Names of the frames, of their images, or of both with folders.
+TEST_F(FramesTest, GetTheLoadsOfTheRowsThatNameThem) {
+  for (const std::string record :
+       {"Force [N],file\n5,frame_2.csv\n6,frame_10.csv\n7,frame_1.csv\n",
+        "image;Force [N]\nframe_10;6,0\nframe_1;7,0\nframe_2;5,0\n",
+        "n\tForce [N]\tfile\n1\t5\tC:\\dic\\frame_2.tif\n"
+        "2\t7\tframe_1.tif\n10\t6\timages/frame_10.tif\n"}) {
+    folder_.Write("load.csv", record);
+    EXPECT_THAT(Read(kFilmedStrip).loads, ElementsAre(7, 5, 6)) << record;
+  }
+  // Numbers are names where the scene says so.
+  folder_.Write("1.csv", Frame(1));
+  folder_.Write("2.csv", Frame(1));
+  folder_.Write("load.csv", "number,Force [N]\n2,8\n1,9\n");
+  const std::string document = Replaced(kFilmedStrip, "frame_*.csv", "?.csv");
+  EXPECT_THAT(Read(document).loads, ElementsAre(8, 9));
+  EXPECT_THAT(Read(Replaced(document, "\"Force [N]\"",
+                            "\"Force\", \"files_column\": \"number\""))
+                  .loads,
+              ElementsAre(9, 8));
+}
+
+TEST_F(FramesTest, NeedARowEachAndRowsAFrame) {
+  const std::string rows = "file,Force [N]\nframe_1,5\nframe_2,6\n";
+  folder_.Write("load.csv", rows);
+  EXPECT_THROWS_WITH(Read(kFilmedStrip),
+                     "load.csv: no row names the frame frame_10.csv");
+  folder_.Write("load.csv", rows + "frame_3,6\n");
+  EXPECT_THROWS_WITH(Read(kFilmedStrip), "line 4: 'frame_3' is the name of no");
+  folder_.Write("load.csv", rows + "frame_2.tif,6\n");
+  EXPECT_THROWS_WITH(Read(kFilmedStrip),
+                     "line 4: 'frame_2.tif' names the frame of line 3");
+  folder_.Write("load.csv",
+                "a,b,Force [N]\nframe_1,frame_1,5\n,,6\nframe_2,frame_2,7\n");
+  EXPECT_THROWS_WITH(Read(kFilmedStrip),
+                     "load_record has two columns .* 'a' and 'b'.* "
+                     "\"files_column\"");
+}
+
+TEST_F(FramesTest, HaveNoRowOfAReferenceFrame) {
+  folder_.Write("load.csv", "Force [N]\n0\n1\n2\n3\n");
+  EXPECT_THROWS_WITH(Read(kFilmedStrip),
+                     "4 rows for 3 frames; .*; line 2 is under no load, as a "
+                     "reference frame is: leave it out");
+  folder_.Write("load.csv", "Force [N]\n1\n2\n");
+  EXPECT_THROWS_WITH(Read(kFilmedStrip), "leave a reference frame out");
+}
+
+// The frames are read as the displacement of the load case is.
+TEST_F(FramesTest, MayBeTablesOfOtherTitles) {
+  WriteVtu(folder_.Path() / "mesh.vtu", RectangleScene({}).mesh, {});
+  folder_.Write("a.csv", "a [m];b [m];c [mm];d [mm]\n0,01;0,01;1;2\n");
+  const FrameSeries series = Read(R"({
+    "mesh": "mesh.vtu", "model": "plane_stress", "thickness": 1,
+    "supports": [ {"nodes": {"box": [[0, -1], [0, 1]]}} ],
+    "cases": [ {"displacement": {"points": "a.csv", "columns":
+                  {"x": "a", "y": "b", "u": "c", "v": "d"}},
+                "loads": [ {"type": "body_force", "value": [2, 0]} ]} ],
+    "frames": {"files": ["a.csv"]} })");
+  EXPECT_EQ(series.read(0).points.displacement, Eigen::Vector2d(1e-3, 2e-3));
+}
+
 TEST_F(FramesTest, TellWhatIsWrong) {
   EXPECT_THROWS_WITH(Read(Replaced(kFilmedStrip, "frame_*.csv", "image_*.csv")),
                      "csv\", which no file is called");

@@ -215,7 +215,7 @@ TEST_F(PlanarSceneTest, ErrsOnWhatIsNotOfAPlane) {
          "box\\[1\\] must be a list of 2 numbers");
   folder_.Write("u.csv", "ux,uz\n");
   EXPECT_THROWS_WITH(Read(kPlanarDocument),
-                     "u.csv: line 1: the header must be x,y or ux,uy");
+                     "u.csv: the header must be x,y or ux,uy");
 }
 
 TEST_F(PlanarSceneTest, ErrsOnNodesThatAreNotInOnePlane) {

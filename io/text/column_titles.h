@@ -1,0 +1,63 @@
+#ifndef ELASTIMATE_IO_TEXT_COLUMN_TITLES_H_
+#define ELASTIMATE_IO_TEXT_COLUMN_TITLES_H_
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+namespace elastimate {
+
+/// The title of a column, which may have a unit: "X [mm]", "x (mm)", "x / mm",
+/// "x_mm".  In square brackets it may be any, else one of LengthUnitOf.
+struct ColumnTitle {
+  std::string text;  ///< The whole title.
+  std::string name;  ///< Without the unit.
+  std::string unit;  ///< Empty without one.
+
+  explicit ColumnTitle(std::string_view title);
+};
+
+/// Small letters without spaces, underscores, hyphens, dots and brackets, so
+/// that "Displacement_X" is "displacementx".
+std::string PlainName(std::string_view name);
+
+/// The titles of a table, in which columns are found by their names.
+class ColumnTitles {
+ public:
+  ColumnTitles() = default;
+  /// O(size of the texts).
+  explicit ColumnTitles(const std::vector<std::string>& texts);
+
+  std::size_t Size() const { return titles_.size(); }
+  const ColumnTitle& operator[](std::size_t column) const {
+    return titles_[column];
+  }
+
+  /// The columns of which `title` is the whole title; where there is none,
+  /// those whose titles differ from it by the unit that one of them has and the
+  /// other has not.
+  std::vector<std::size_t> Find(std::string_view title) const;
+  /// As before; where there is none, those that are the same to PlainName, with
+  /// the same condition for units.
+  std::vector<std::size_t> FindAlike(std::string_view title) const;
+
+  /// "x, y [mm], ...", for messages.
+  std::string List() const;
+
+ private:
+  using Places = std::unordered_map<std::string, std::vector<std::size_t>>;
+
+  std::vector<std::size_t> Fitting(const Places& places, const std::string& key,
+                                   const ColumnTitle& title) const;
+
+  std::vector<ColumnTitle> titles_;
+  Places of_texts_;
+  Places of_names_;
+  Places of_plain_names_;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_IO_TEXT_COLUMN_TITLES_H_
