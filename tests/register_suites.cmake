@@ -1,8 +1,9 @@
-# cmake -D PROGRAM=<test program> -D FOLDER=<folder> -D COST=<number> -D FILE=<file to write> -P register_suites.cmake
+# cmake -D PROGRAM=<test program> -D FOLDER=<folder> -D COST=<number> -D TIMEOUT=<seconds> -D FILE=<file to write> -P register_suites.cmake
 #
 # Writes what registers each suite of a test program as one test.  A test of its own for each test would start the
 # program, and load its libraries, many times more often, which takes longer than most tests.  A suite that skips a test
-# counts as skipped, unless it fails: then it does not end with the list of skipped tests.
+# counts as skipped, unless it fails: then it does not end with the list of skipped tests.  A suite may take TIMEOUT
+# seconds, and six times as long where its name ends with "Statistics" or "Long".
 execute_process(
   COMMAND ${PROGRAM} --gtest_list_tests
   OUTPUT_VARIABLE lines
@@ -18,14 +19,16 @@ set(script "")
 foreach(suite ${suites})
   string(REGEX REPLACE "\\.\n" "" suite "${suite}")
   set(label ${FOLDER})
+  set(timeout ${TIMEOUT})
   if(suite MATCHES "(Statistics|Long)$")
     string(APPEND label -long)
+    math(EXPR timeout "6 * ${TIMEOUT}")
   endif()
   string(
     APPEND
     script
     "add_test([[${FOLDER}.${suite}]] [[${PROGRAM}]] [[--gtest_filter=${suite}.*]])\n"
-    "set_tests_properties([[${FOLDER}.${suite}]] PROPERTIES TIMEOUT 1200 LABELS ${label} COST ${COST}\n"
+    "set_tests_properties([[${FOLDER}.${suite}]] PROPERTIES TIMEOUT ${timeout} LABELS ${label} COST ${COST}\n"
     "  SKIP_REGULAR_EXPRESSION [[\\[  SKIPPED \\] [^ \n]+\n$]])\n")
 endforeach()
 file(WRITE ${FILE} "${script}")

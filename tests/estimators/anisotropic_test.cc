@@ -223,10 +223,10 @@ struct LawStatistics {
 
 class AnisotropyStatistics : public ::testing::TestWithParam<LawStatistics> {};
 
-// Standard scores of 40 seeds have the variance 1, with a standard deviation of
-// .22, and cover 95 % with one of 3.4 %; 5 of them, for up to 21 parameters.
+// Standard scores of 16 seeds have the variance 1, with a standard deviation of
+// .35, and cover 95 % with one of 5.4 %; 5 of them, for up to 21 parameters.
 TEST_P(AnisotropyStatistics, StandardErrorsAreThoseOfTheErrors) {
-  constexpr int kSeeds = 40;
+  constexpr int kSeeds = 16;
   const Law& law = *FindLaw(GetParam().law, GetParam().model);
   const Eigen::VectorXd truth = testing::UnlikeTypical(law, kUnit);
   Scene exact = SceneOfLaw(law, GetParam().model,
@@ -253,10 +253,10 @@ TEST_P(AnisotropyStatistics, StandardErrorsAreThoseOfTheErrors) {
                    truth(i) <= parameter.interval->upper;
     }
   }
-  EXPECT_GE(usable, 38);
+  EXPECT_GE(usable, kSeeds - 1);
   for (Eigen::Index i = 0; i < truth.size(); ++i) {
-    EXPECT_NEAR(squares(i) / usable, 1, 1.1) << law.Parameters()[i].name;
-    EXPECT_GE(inside(i) / usable, 0.95 - 5 * 0.034) << law.Parameters()[i].name;
+    EXPECT_NEAR(squares(i) / usable, 1, 5 * 0.35) << law.Parameters()[i].name;
+    EXPECT_GE(inside(i) / usable, 0.95 - 5 * 0.054) << law.Parameters()[i].name;
   }
 }
 

@@ -235,11 +235,11 @@ struct StatisticsCase {
 
 class MaterialsStatistics : public ::testing::TestWithParam<StatisticsCase> {};
 
-// Standard scores of 50 seeds have the variance 1, with a standard deviation of
-// .2, root mean squares one of 10 %, and they cover 95 % with one of 3.1 %; so
+// Standard scores of 20 seeds have the variance 1, with a standard deviation of
+// .32, root mean squares one of 16 %, and they cover 95 % with one of 4.9 %; so
 // 4 of them each.
 TEST_P(MaterialsStatistics, StandardErrorsAreThoseOfTheErrors) {
-  constexpr int kSeeds = 50;
+  constexpr int kSeeds = 20;
   Scene scene = TwoRegionScene({ElementKind::kTet4, SectionModel::kSolid}, 4);
   MeasureMaterials(kParameters, scene);
   const Scene exact = scene;
@@ -273,12 +273,13 @@ TEST_P(MaterialsStatistics, StandardErrorsAreThoseOfTheErrors) {
                    kParameters(i) <= parameter.interval->upper;
     }
   }
-  EXPECT_GE(usable, 47);
+  EXPECT_GE(usable, kSeeds - 2);
   for (Eigen::Index i = 0; i < 4; ++i) {
-    EXPECT_NEAR(squares(i) / usable, 1, 0.8) << i;
-    EXPECT_LE(std::sqrt(ratios(i) / usable), GetParam().largest_ratio * 1.4)
+    EXPECT_NEAR(squares(i) / usable, 1, 4 * 0.32) << i;
+    EXPECT_LE(std::sqrt(ratios(i) / usable),
+              GetParam().largest_ratio * (1 + 4 * 0.16))
         << i;
-    EXPECT_GE(inside(i) / usable, 0.95 - 4 * 0.031) << i;
+    EXPECT_GE(inside(i) / usable, 0.95 - 4 * 0.049) << i;
   }
 }
 
@@ -288,7 +289,6 @@ INSTANTIATE_TEST_SUITE_P(
                       StatisticsCase{"virtual-fields", 1e-2, 2},
                       StatisticsCase{"reduced-fe", 1e-3, 1.2},
                       StatisticsCase{"reduced-fe", 1e-2, 1.2},
-                      StatisticsCase{"iterative-fe", 1e-3, 1.2},
                       StatisticsCase{"iterative-fe", 1e-2, 1.2}));
 
 }  // namespace

@@ -179,18 +179,18 @@ struct Trials {
 std::vector<Trials> AllTrials() {
   std::vector<Trials> trials;
   for (const VtkEncoding& encoding : AllVtkEncodings()) {
-    trials.push_back({encoding.name, encoding.is_legacy ? 30 : 200});
+    trials.push_back({encoding.name, encoding.is_legacy ? 8 : 60});
   }
   for (const std::string name : {"Msh1", "Msh2", "Msh41", "Msh2Binary", "Msh40",
                                  "Msh41Binary", "Medit", "Unv", "Bdf"}) {
-    trials.push_back({name, 13});
+    trials.push_back({name, 5});
   }
   for (const std::string name : {"LegacyTri6", "LegacyQuad4"}) {
-    trials.push_back({name, 30});
+    trials.push_back({name, 8});
   }
   for (const std::string name :
        {"XmlHex8", "XmlTet10", "XmlQuad4", "PlanarJson", "Json", "Csv"}) {
-    trials.push_back({name, 300});
+    trials.push_back({name, 50});
   }
   for (const std::string name : {"Points", "PointsUtf16"}) {
     trials.push_back({name, 100});

@@ -127,7 +127,7 @@ class LockedFitStatistics : public ::testing::TestWithParam<std::string_view> {
 };
 
 TEST_P(LockedFitStatistics, IsNotTakenForASpecimen) {
-  constexpr int kSeeds = 6;
+  constexpr int kSeeds = 2;
   const Eigen::Vector3i thin(1, 1, 5);
   const Eigen::Vector3i thick(2, 2, 5);
   for (const Eigen::Vector3i& cells : {thin, thick}) {
@@ -167,7 +167,7 @@ TEST_P(LockedFitStatistics, IsNotTakenForASpecimenOfAnotherPoissonRatio) {
   for (const int length : {8, 11}) {
     Scene exact = Helix({2, 1, length});
     testing::MeasureInFinerWorld({1000, 0}, exact);
-    for (const double noise : {0.05, 0.08, 0.12}) {
+    for (const double noise : {0.05, 0.12}) {
       Scene measured = exact;
       testing::AddNoise(noise, 1, measured);
       const Estimate estimate = MakeEstimator(GetParam())->Run(measured, {});
@@ -191,15 +191,13 @@ TEST_P(LockedFitStatistics, IsNotTakenForASpecimenOfAKnownPoissonRatio) {
     exact.load_cases[0].loads = {BodyForce{Eigen::Vector3d(1e-3, 0, 0)}};
     testing::MeasureInCutWorld(kTruth, exact);
     for (const double noise : {0.01, 0.03, 0.1}) {
-      for (const int seed : {1, 2}) {
-        Scene measured = exact;
-        testing::AddNoise(noise, seed, measured);
-        const Estimate estimate =
-            MakeEstimator(GetParam())->Run(measured, options);
-        EXPECT_TRUE(IsRefusedOrHolds(estimate, kTruth.youngs_modulus, 3.5))
-            << cells << " cells, noise " << noise << ", seed " << seed << ": "
-            << estimate.elasticity.youngs_modulus;
-      }
+      Scene measured = exact;
+      testing::AddNoise(noise, 1, measured);
+      const Estimate estimate =
+          MakeEstimator(GetParam())->Run(measured, options);
+      EXPECT_TRUE(IsRefusedOrHolds(estimate, kTruth.youngs_modulus, 3.5))
+          << cells << " cells, noise " << noise << ": "
+          << estimate.elasticity.youngs_modulus;
     }
   }
 }
@@ -241,7 +239,7 @@ TEST_P(LockedFitStatistics, KnowsNoPoissonRatioThatTheChangeTakesUp) {
   Scene exact = testing::ShapeScene("bracket", "torsion");
   testing::MeasureInRefinedWorld(kTruth, exact);
   for (const double noise : {0.05, 0.1}) {
-    for (const int seed : {2, 3, 5}) {
+    for (const int seed : {2}) {
       Scene measured = exact;
       testing::AddNoise(noise, seed, measured);
       const Estimate estimate = MakeEstimator(GetParam())->Run(measured, {});
@@ -260,7 +258,7 @@ TEST_P(LockedFitStatistics, KnowsNoPoissonRatioThatTheElementsPrescribe) {
   const Mesh mesh = testing::BoxMesh(cells, {2, 2, 15});
   Scene scene = testing::HeldAtBottom(mesh, mesh, Eigen::Vector3d::Zero());
   scene.load_cases[0].loads = {BodyForce{Eigen::Vector3d(0, 0, -10)}};
-  for (const double nu : {0.1, 0.2, 0.35, 0.4}) {
+  for (const double nu : {0.1, 0.4}) {
     Scene exact = scene;
     testing::MeasureInRefinedWorld({5000, nu}, exact);
     for (const double noise : {0.0, 0.01, 0.1}) {

@@ -187,7 +187,7 @@ TEST_P(DisplacementEstimators, SayThatTheDataContradictABound) {
 // The truth is within narrow bounds, and E what the nu in them leave open.
 TEST_P(DisplacementEstimators, ErrorsOfEAllowForTheRoomOfNu) {
   int num_on_bound = 0;
-  for (int seed = 1; seed <= 40; ++seed) {
+  for (int seed = 1; seed <= 10; ++seed) {
     Scene scene = SmallScene("cuboid");
     Measure({5e4, 0.3}, scene);
     AddNoise(5e-2, seed, scene);
@@ -201,8 +201,8 @@ TEST_P(DisplacementEstimators, ErrorsOfEAllowForTheRoomOfNu) {
           << seed;
     }
   }
-  std::cout << "seeds 1 to 40: " << num_on_bound << " on a bound and usable\n";
-  EXPECT_GT(num_on_bound, 10);
+  std::cout << "seeds 1 to 10: " << num_on_bound << " on a bound and usable\n";
+  EXPECT_GT(num_on_bound, 2);
 }
 
 // What the shear modulus alone determines stays open, however narrow the bounds
@@ -228,7 +228,7 @@ TEST_P(DisplacementEstimators, ANarrowEDoesNotHideACollinearNu) {
 // The truth is within narrow bounds, and nu what the E in them leave open.
 TEST_P(DisplacementEstimators, ErrorsOfNuAllowForTheRoomOfE) {
   int num_on_bound = 0;
-  for (int seed = 1; seed <= 40; ++seed) {
+  for (int seed = 1; seed <= 10; ++seed) {
     Scene scene = SmallScene("cuboid");
     Measure({5e4, 0.3}, scene);
     AddNoise(2e-2, seed, scene);
@@ -242,7 +242,7 @@ TEST_P(DisplacementEstimators, ErrorsOfNuAllowForTheRoomOfE) {
           << seed;
     }
   }
-  std::cout << "seeds 1 to 40: " << num_on_bound << " on a bound and usable\n";
+  std::cout << "seeds 1 to 10: " << num_on_bound << " on a bound and usable\n";
   EXPECT_GT(num_on_bound, 20);
 }
 

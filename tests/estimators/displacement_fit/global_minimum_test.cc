@@ -72,22 +72,20 @@ TEST(GlobalMinimumStatistics, OfManyShapes) {
   std::size_t count = 0;
   for (const std::string& shape : ShapeNames()) {
     for (const double nu : {-0.6, 0.0, 0.3, 0.45, 0.49, 0.4985, 0.4995}) {
-      for (int repetition = 0; repetition < 2; ++repetition) {
-        const std::string& load = loads[count % loads.size()];
-        const double noise = noises[count % std::size(noises)];
-        ++count;
-        SCOPED_TRACE(shape + ", " + load + ", nu " + std::to_string(nu) +
-                     ", noise " + std::to_string(noise));
-        ExpectSameMinimum(MeasureShape(shape, load, nu, noise, count), {});
-      }
+      const std::string& load = loads[count % loads.size()];
+      const double noise = noises[count % std::size(noises)];
+      ++count;
+      SCOPED_TRACE(shape + ", " + load + ", nu " + std::to_string(nu) +
+                   ", noise " + std::to_string(noise));
+      ExpectSameMinimum(MeasureShape(shape, load, nu, noise, count), {});
     }
   }
 }
 
 // The narrow minimum next to 1/2 is easily passed over.
 TEST(GlobalMinimumStatistics, OfATwistedDumbbellNextToOneHalf) {
-  for (const double nu : {0.499, 0.4992, 0.4994, 0.4996, 0.4997}) {
-    for (int seed = 1; seed <= 6; ++seed) {
+  for (const double nu : {0.499, 0.4994, 0.4997}) {
+    for (int seed = 1; seed <= 3; ++seed) {
       SCOPED_TRACE(std::to_string(nu) + ", seed " + std::to_string(seed));
       const MeasuredShape measured =
           MeasureShape("dumbbell", "torsion", nu, 1e-2, seed);
@@ -102,7 +100,7 @@ TEST(GlobalMinimumStatistics, OfATwistedDumbbellNextToOneHalf) {
 // A crest lies between the start at 0.45 and the minimum.
 TEST(GlobalMinimumStatistics, BehindACrest) {
   for (const std::string shape : {"ring", "dumbbell", "spring"}) {
-    for (const double nu : {0.48, 0.485, 0.49, 0.4925, 0.495}) {
+    for (const double nu : {0.48, 0.49, 0.495}) {
       SCOPED_TRACE(shape + ", nu " + std::to_string(nu));
       ExpectSameMinimum(MeasureShape(shape, "tension", nu, 2e-2, 1), {});
     }
@@ -138,8 +136,7 @@ TEST(GlobalMinimum, IsNotTrappedByABound) {
   ExpectNotTrappedByABound("bracket");
 }
 
-TEST(GlobalMinimumStatistics, IsNotTrappedByABoundOfOtherShapes) {
-  ExpectNotTrappedByABound("dome");
+TEST(GlobalMinimumStatistics, IsNotTrappedByABoundOfAnotherShape) {
   ExpectNotTrappedByABound("tree");
 }
 

@@ -99,10 +99,10 @@ class PointsOfABlock : public ::testing::Test {
   double deviation_;
 };
 
-// Over 400 seeds a root mean square has a deviation of 3.5 %, a coverage of 95
-// % one of 1.1 %; 4 of them.
-TEST_F(PointsOfABlock, ReachTheCramerRaoBoundStatistics) {
-  constexpr int kSeeds = 400;
+// Over 100 seeds a root mean square has a deviation of 7 %, a coverage of 95 %
+// one of 2.2 %; 4 of them.
+TEST_F(PointsOfABlock, ReachTheCramerRaoBound) {
+  constexpr int kSeeds = 100;
   const Eigen::Matrix2d bound =
       CramerRaoBound(scene_, {kModulusOfPoints, kRatioOfPoints},
                      Eigen::VectorXd::Constant(1, deviation_));
@@ -126,10 +126,10 @@ TEST_F(PointsOfABlock, ReachTheCramerRaoBoundStatistics) {
   }
   const Eigen::Array2d ratio =
       (squares / kSeeds / bound.diagonal().array()).sqrt();
-  EXPECT_GT(ratio.minCoeff(), 1 - 4 * 0.035);
-  EXPECT_LT(ratio.maxCoeff(), 1 + 4 * 0.035);
+  EXPECT_GT(ratio.minCoeff(), 1 - 4 * 0.07);
+  EXPECT_LT(ratio.maxCoeff(), 1 + 4 * 0.07);
   // The elements may be coarser than the specimen, for all that noise shows.
-  EXPECT_GT(covered.minCoeff() / kSeeds, 0.95 - 4 * 0.011);
+  EXPECT_GT(covered.minCoeff() / kSeeds, 0.95 - 4 * 0.022);
 }
 
 // The second half is ten times as noisy, and counts a hundredth as much.

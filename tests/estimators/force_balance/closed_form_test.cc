@@ -94,7 +94,7 @@ TEST(ClosedForm, IsTheLeastSquaresSolutionUnderNoise) {
 
 // E[nu_hat] = nu + rho (nu_n - nu): nu is drawn towards that of pure noise.
 TEST(ClosedForm, FollowsTheBiasLaw) {
-  constexpr int kSeeds = 400;
+  constexpr int kSeeds = 100;
   constexpr double kNu = 0.3;
   Scene exact = SmallScene("organ");
   Measure({5e4, kNu}, exact);
@@ -117,7 +117,7 @@ TEST(ClosedForm, FollowsTheBiasLaw) {
   const double mean = sum / kSeeds;
   const double sd = std::sqrt((square_sum / kSeeds - mean * mean) / kSeeds);
   ASSERT_GT(rho, 0.1) << "the noise is too small to test the law";
-  // Seeds 1 to 400: Monte Carlo error, and the next order of the law, a ratio
+  // Monte Carlo error, and the next order of the law, a ratio
   // of means for a mean of ratios (1 / number of equations).
   EXPECT_NEAR(mean, expected, 4 * sd + std::abs(expected - kNu) / 50);
   EXPECT_NEAR(attenuation_sum / kSeeds, rho, 0.05 * rho);
@@ -150,7 +150,7 @@ TEST(ClosedForm, SaysThatNoiseBiasesNu) {
 }
 
 TEST(ClosedForm, AKnownPoissonRatioLeavesNoBias) {
-  constexpr int kSeeds = 200;
+  constexpr int kSeeds = 50;
   Scene exact = SmallScene("organ");
   Measure({5e4, 0.3}, exact);
   EstimatorOptions options;

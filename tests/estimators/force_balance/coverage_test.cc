@@ -21,9 +21,9 @@ using testing::AddNoise;
 using testing::Measure;
 using testing::SmallScene;
 
-// Seeds 1, 2, ...; a root mean square of errors has a standard deviation of
-// 2.2 % over these many.
-constexpr int kSeeds = 1000;
+// Seeds 1, 2, ...; a root mean square of errors has a standard deviation of 5 %
+// over these many.  The study `unseen` counts thousands.
+constexpr int kSeeds = 200;
 
 class CoverageStatistics
     : public ::testing::TestWithParam<std::tuple<std::string, double, double>> {
@@ -72,21 +72,19 @@ TEST_P(CoverageStatistics, OfReducedFeIsThatOfItsIntervals) {
       num_youngs / n, num_poisson / n, std::sqrt(bound(1, 1)));
   // At a nu further than three standard errors from the true one, which is as
   // rare, a specimen of another nu may explain the measurement as well.
-  EXPECT_GE(num_usable, (1 - 0.0027) * kSeeds);
-  EXPECT_LT(youngs, 1.1);
-  EXPECT_LT(poisson, 1.1);
-  EXPECT_GT(youngs, 0.9);
-  EXPECT_GT(poisson, 0.9);
+  EXPECT_GE(num_usable, kSeeds - 4);
+  EXPECT_NEAR(youngs, 1, 4 * 0.05);
+  EXPECT_NEAR(poisson, 1, 4 * 0.05);
   const double four_deviations = 4 * std::sqrt(0.95 * 0.05 / kSeeds);
   EXPECT_NEAR(num_youngs / n, 0.95, four_deviations);
   EXPECT_NEAR(num_poisson / n, 0.95, four_deviations);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Scenes, CoverageStatistics,
-    ::testing::Combine(::testing::Values("cuboid", "organ"),
-                       ::testing::Values(0.0, 0.3, 0.45, 0.49),
-                       ::testing::Values(1e-3, 1e-2, 1e-1)));
+INSTANTIATE_TEST_SUITE_P(Scenes, CoverageStatistics,
+                         ::testing::Combine(::testing::Values("cuboid",
+                                                              "organ"),
+                                            ::testing::Values(0.0, 0.3, 0.49),
+                                            ::testing::Values(1e-3, 1e-1)));
 
 struct CoverageCase {
   int degree;

@@ -138,7 +138,7 @@ TEST(AxisOfIsotropyStatistics, IsNotDetermined) {
   Eigen::VectorXd constants(5);
   constants << 5e4, 5e4, 0.3, 0.3, 5e4 / 2.6;
   const Scene exact = BlockOfAxis(constants, {0, 0, 1}, 4);
-  for (int seed = 0; seed <= 25; ++seed) {
+  for (int seed = 0; seed <= 8; ++seed) {
     Scene scene = exact;
     if (seed > 0) {
       testing::AddNoise(1e-2, seed, scene);
@@ -181,10 +181,10 @@ struct AxisStatistics {
 class FreeAxisStatistics : public ::testing::TestWithParam<AxisStatistics> {};
 
 // One load, 1 % of noise.  chi^2 of both rotations by their covariance is below
-// 5.99 in 95 %, and standard scores of 60 seeds have the variance 1, with a
-// standard deviation of .18, and cover 95 % with one of 2.8 %; 5 of them.
+// 5.99 in 95 %, and standard scores of 20 seeds have the variance 1, with a
+// standard deviation of .32, and cover 95 % with one of 4.9 %; 5 of them.
 TEST_P(FreeAxisStatistics, ErrorsOfAxisAndConstantsAreThoseTheyState) {
-  constexpr int kSeeds = 60;
+  constexpr int kSeeds = 20;
   const Eigen::VectorXd constants = GetParam().are_layers
                                         ? ConstantsOfLayers()
                                         : testing::ConstantsOfFibres();
@@ -233,11 +233,11 @@ TEST_P(FreeAxisStatistics, ErrorsOfAxisAndConstantsAreThoseTheyState) {
     error_square_sum += std::pow(*estimate.axes[0].standard_error, 2);
   }
   EXPECT_GE(num_usable, kSeeds - 2);
-  EXPECT_GE(num_covered, (0.95 - 5 * 0.028) * num_usable);
+  EXPECT_GE(num_covered, (0.95 - 5 * 0.049) * num_usable);
   // chi^2 of 2 degrees of freedom has a standard deviation of 2.
   EXPECT_NEAR(chi_square_sum / num_usable, 2, 5 * 2 / std::sqrt(num_usable));
   for (Eigen::Index i = 0; i < 5; ++i) {
-    EXPECT_NEAR(squares(i) / num_usable, 1, 0.9) << i;
+    EXPECT_NEAR(squares(i) / num_usable, 1, 5 * 0.32) << i;
   }
   const double angle = std::sqrt(angle_square_sum / num_usable);
   const double error = std::sqrt(error_square_sum / num_usable);

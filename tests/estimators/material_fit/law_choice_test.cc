@@ -16,7 +16,7 @@ namespace elastimate {
 namespace {
 
 constexpr char kFreeAxisName[] = "transversely_isotropic_free_axis";
-constexpr int kSeeds = 15;
+constexpr int kSeeds = 6;
 
 Eigen::VectorXd Parameters(const std::vector<double>& values) {
   return Eigen::VectorXd::Map(values.data(), Eigen::Index(values.size()));

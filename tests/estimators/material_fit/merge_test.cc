@@ -160,7 +160,7 @@ std::vector<IsotropicElasticity> WithOthersInTheMiddle(
   return truth;
 }
 
-constexpr unsigned kMergeSeeds = 30;
+constexpr unsigned kMergeSeeds = 12;
 
 // On the same elements at this noise.
 MergeTrials TryOnItsElements(const std::vector<IsotropicElasticity>& truth,
@@ -171,12 +171,12 @@ MergeTrials TryOnItsElements(const std::vector<IsotropicElasticity>& truth,
   return TryMerging(scene, truth, partition, noise, kMergeSeeds);
 }
 
-// Were one of a hundred wrong, as the limits of steps say, 3 of 30 would be so
-// in one test of 300.
+// Were one of a hundred wrong, as the limits of steps say, 2 of 12 would be so
+// in one test of 160.
 TEST(MergeStatistics, FindsThatAllAreOne) {
   for (const double noise : {0.01, 0.05}) {
     const MergeTrials trials = TryOnItsElements(kOneMaterial, {}, noise);
-    EXPECT_GE(trials.num_right, 28);
+    EXPECT_GE(trials.num_right, 11);
     EXPECT_EQ(trials.num_usable, int(kMergeSeeds));
     EXPECT_GT(trials.Coverage(), 0.9);
   }
@@ -185,24 +185,24 @@ TEST(MergeStatistics, FindsThatAllAreOne) {
 TEST(MergeStatistics, FindsTwoModuli) {
   const MergeTrials trials =
       TryOnItsElements(WithOthersInTheMiddle({6e3, 0.3}), kTwoMaterials, 0.01);
-  EXPECT_GE(trials.num_right, 28);
+  EXPECT_GE(trials.num_right, 11);
   EXPECT_GT(trials.Coverage(), 0.9);
 }
 
 // Numpy prototypes found .67 of such partitions, and .79 of the next: three
-// standard deviations less of 30 are 12 and 17.  Where it merges what differs,
+// standard deviations less of 12 are 3 and 5.  Where it merges what differs,
 // the errors hold that.
 TEST(MergeStatistics, FindsModuliThatAreNear) {
   const MergeTrials trials =
       TryOnItsElements(WithOthersInTheMiddle({5250, 0.3}), kTwoMaterials, 0.01);
-  EXPECT_GE(trials.num_right, 12);
+  EXPECT_GE(trials.num_right, 3);
   EXPECT_GT(trials.Coverage(), 0.9);
 }
 
 TEST(MergeStatistics, FindsTwoPoissonRatios) {
   const MergeTrials trials =
       TryOnItsElements(WithOthersInTheMiddle({5e3, 0.35}), kTwoMaterials, 0.01);
-  EXPECT_GE(trials.num_right, 17);
+  EXPECT_GE(trials.num_right, 5);
   EXPECT_GT(trials.Coverage(), 0.9);
 }
 
@@ -215,7 +215,7 @@ TEST(MergeStatistics, TellsNothingApartByWhatElementsMiss) {
   MeasureInWorld(QuadraticScene(SimplicialScene(finer)), kOneMaterial, scene);
   for (const double noise : {0.0, 0.01, 0.05}) {
     const MergeTrials trials =
-        TryMerging(scene, kOneMaterial, {}, noise, noise == 0 ? 1 : 8);
+        TryMerging(scene, kOneMaterial, {}, noise, noise == 0 ? 1 : 3);
     EXPECT_EQ(trials.num_told_apart, 0) << noise;
     if (trials.num_usable > 0) {
       EXPECT_GT(trials.Coverage(), 0.9) << noise;
@@ -249,7 +249,7 @@ TEST(MergeStatistics, NamesARegionThatMayBeAnother) {
   Scene scene = BlockOfSixRegions();
   MeasureInWorld(scene, truth, scene);
   int num_wrong = 0;
-  for (unsigned seed = 1; seed <= 20; ++seed) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
     const auto [merge, estimate] =
         MergeAndEstimate(WithNoiseOf(scene, 0.05, seed));
     for (const ParameterEstimate& parameter : estimate.parameters) {

@@ -166,7 +166,7 @@ TEST(AxisRotation, IsOneInThePlane) {
 // Where the axes are right, chi^2 is that of chance, and little is added to the
 // variance of the noise.
 TEST(AxisRotationStatistics, LeavesTheErrorsOfRightAxes) {
-  constexpr int kSeeds = 1000;
+  constexpr int kSeeds = 300;
   constexpr double kNoise = 1e-2;
   const Eigen::VectorXd truth = testing::ConstantsOfFibres();
   const Scene scene = Measured(Fibres(), truth, SectionModel::kSolid, 0, 1);

@@ -169,7 +169,7 @@ using TenBlocksStatistics = TenBlocks;
 // What is called determined is true to its errors, and there is much of it; an
 // estimate is usable where all is determined.
 TEST_F(TenBlocksStatistics, AreKnownAsFarAsIsSaid) {
-  constexpr int kMeasurements = 20;
+  constexpr int kMeasurements = 8;
   for (const double noise : {0.01, 0.1}) {
     int num_determined = 0;
     int num_covering = 0;
