@@ -1,7 +1,6 @@
 #include "elastimate/estimators/series/joint_estimate.h"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -149,9 +148,8 @@ void ShareNoiseOfFewDegreesOfFreedom(std::vector<UsedFrame>& frames) {
     if (!freedom || !(frame.noise_sd > 0)) {
       return;
     }
-    variances.push_back(
-        frame.noise_sd * frame.noise_sd * *freedom /
-        boost::math::median(boost::math::chi_squared(*freedom)));
+    variances.push_back(frame.noise_sd * frame.noise_sd * *freedom /
+                        ChiSquaredQuantile(*freedom, 0.5));
   }
   const double noise_sd = std::sqrt(Median(variances));
   for (UsedFrame& frame : frames) {
@@ -272,10 +270,9 @@ Scatter ScatterOf(const std::vector<UsedFrame>& frames,
   const double freedom = static_cast<double>(frames.size()) - 1;
   if (freedom > 0 && by_all.isFinite().all()) {
     scatter.over_noise /= freedom;
-    scatter.p_value = std::min(
-        1.0, static_cast<double>(size) *
-                 boost::math::cdf(boost::math::complement(
-                     boost::math::chi_squared(freedom), by_all.maxCoeff())));
+    scatter.p_value =
+        std::min(1.0, static_cast<double>(size) *
+                          ChiSquaredProbability(freedom, by_all.maxCoeff()));
   }
   return scatter;
 }
