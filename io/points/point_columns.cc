@@ -266,12 +266,17 @@ CsvTable ReadTableOfPoints(const std::filesystem::path& path,
   AppendColumns(table, found->positions, dimension, columns.columns);
   AppendColumns(table, found->displacements, dimension, columns.columns);
   if (found->of_program != nullptr) {
-    const Format& format = *found->of_program;
-    columns.is_in_pixels = format.is_in_pixels;
-    columns.least = format.least;
-    if (format.quality != nullptr &&
+    columns.is_in_pixels = found->of_program->is_in_pixels;
+  }
+  for (const Format& format : kFormats) {
+    // Columns that are named may be those of a program as well.
+    const bool is_it = found->of_program == nullptr
+                           ? options.format == format.name
+                           : found->of_program == &format;
+    if (is_it && format.quality != nullptr &&
         !table.titles.Find(format.quality).empty()) {
       columns.quality = table.At(format.quality);
+      columns.least = format.least;
     }
   }
   return table;

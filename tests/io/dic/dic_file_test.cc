@@ -122,6 +122,15 @@ TEST_F(DicFileTest, OfOtherColumnsByTheirNames) {
                      "there is no column 'e' among a, b, c, d");
 }
 
+TEST_F(DicFileTest, OfNamedColumnsKnowsWhatTheFormatMarks) {
+  TableOptions options;
+  options.columns = {"a", "b", "c", "d"};
+  const std::string text = "a,b,c,d,sigma\n1,2,3,4,0.01\n5,6,7,8,-1\n";
+  EXPECT_EQ(Read(text, options).positions.cols(), 2);
+  options.format = "vic";
+  EXPECT_EQ(Read(text, options).positions.cols(), 1);
+}
+
 TEST_F(DicFileTest, OfUnknownColumnsNamesThem) {
   EXPECT_THROWS_WITH(Read("a,b\n1,2\n"),
                      "are not those of a format known here");
