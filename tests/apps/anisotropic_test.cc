@@ -321,7 +321,7 @@ TEST_F(AnisotropicCommand, RefusesWhatIsWrong) {
   for (const auto& [material, says] :
        std::vector<std::pair<std::string, std::string>>{
            {R"({"law": "transversely_isotropic", "axis": "fibre"})",
-            "materials[0].axis is \"fibre\", but the mesh has no such cell"},
+            "materials[0].axis is \"fibre\", but 'block.vtu' has no such cell"},
            {R"({"law": "transversely_isotropic", "axis": [1, 0]})",
             "materials[0].axis"},
            {R"({"law": "transversely_isotropic", "axis": 5})",

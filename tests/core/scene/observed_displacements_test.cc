@@ -147,7 +147,7 @@ TEST(ObservedPointsOfSupports, AreRefusedWithWrongShapesAndNumbers) {
   points.noise_sd.setOnes(3, 5);
   points.noise_sd(2, 4) = 0;
   EXPECT_THROWS_WITH(ValidateScene(scene),
-                     "of point 4 \\(z\\) in load case 1 is 0.0+; it must be");
+                     "of point 4 \\(z\\) in load case 1 is 0; it must be");
   points.noise_sd.resize(3, 4);
   EXPECT_THROWS_WITH(ValidateScene(scene), "is 3 x 4; make it 3 x 5");
 }

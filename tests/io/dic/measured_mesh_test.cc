@@ -157,8 +157,9 @@ TEST_F(MeasuredMeshTest, TellsWhatIsWrong) {
          "size");
   expect(R"("displacement": "measured"})", R"("displacement": "free"})",
          R"(make it "measured", "rigid" or a vector)");
-  expect(R"([[6, 0], [6, 2]]}, "displacement")",
-         R"([[0, 0], [6, 2]]}, "displacement")", "select each only once");
+  expect(R"([[6, 0], [6, 2]]}, "displacement": "measured")",
+         R"([[0, 0], [6, 2]]}, "displacement": "rigid")",
+         "otherwise than supports\\[0\\] does");
   expect(R"("relative_sd": 0.01)", R"("nothing": 0.01)", "nothing");
   expect(R"(,
                           "relative_sd": 0.01)",
