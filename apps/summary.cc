@@ -52,7 +52,9 @@ void AddErrors(const std::string& name, Eigen::Index place,
        {std::pair{&budget.noise, "noise"}, std::pair{&budget.bias, "its bias"},
         std::pair{&budget.model, "the model"},
         std::pair{&budget.outliers, "outliers"},
-        std::pair{&budget.discretization, "the mesh"}}) {
+        std::pair{&budget.discretization, "the mesh"},
+        std::pair{&budget.kinematics, "large deformations"},
+        std::pair{&budget.section, "the margin"}}) {
     if (errors->size() > place && (*errors)(place) > 0) {
       parts.emplace_back((*errors)(place), cause);
     }

@@ -77,15 +77,27 @@ std::string WhyNotUsable(const Estimate& estimate) {
   return "not usable: " + estimate.message;
 }
 
+// No other estimator takes displacements that are too large for this one.
+bool IsRefusedForItsSize(const Estimate& estimate) {
+  return !estimate.IsUsable() && !estimate.findings.empty() &&
+         estimate.findings[0].code == FindingCode::kLargeDeformation;
+}
+
 // For a rung whose errors may come from its method; empty when it will do.
 std::string WhyNotEnough(const Scene& scene, const EstimatorOptions& options,
                          const Estimate& estimate) {
+  if (IsRefusedForItsSize(estimate)) {
+    return "";
+  }
   if (!estimate.IsUsable()) {
     return WhyNotUsable(estimate);
   }
   for (const Finding& finding : estimate.findings) {
     if (finding.severity == Severity::kWarning &&
-        finding.code != FindingCode::kLocking) {
+        finding.code != FindingCode::kLocking &&
+        finding.code != FindingCode::kLargeDeformation &&
+        finding.code != FindingCode::kNegativePoissonRatio &&
+        finding.code != FindingCode::kMarginNotGiven) {
       return "it warns: " + finding.text;
     }
   }

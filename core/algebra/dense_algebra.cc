@@ -32,7 +32,16 @@ Eigen::MatrixXd SolveLeastSquares(const Eigen::MatrixXd& a,
                                   const Eigen::MatrixXd& b, double threshold) {
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(a);
   qr.setThreshold(threshold);
-  return qr.solve(b);
+  // The solve of Eigen counts pivots that are not zero by its own threshold.
+  const Eigen::Index rank = qr.rank();
+  const Eigen::MatrixXd q =
+      qr.householderQ() * Eigen::MatrixXd::Identity(a.rows(), rank);
+  Eigen::MatrixXd x = Eigen::MatrixXd::Zero(a.cols(), b.cols());
+  x.topRows(rank) = qr.matrixQR()
+                        .topLeftCorner(rank, rank)
+                        .triangularView<Eigen::Upper>()
+                        .solve(q.transpose() * b);
+  return qr.colsPermutation() * x;
 }
 
 Eigen::MatrixXd SolveLeastSquares(const Eigen::MatrixXd& a,

@@ -23,6 +23,9 @@ struct Section {
   /// Of a planar section [length], which all volumes and areas contain; 1 in
   /// three dimensions.
   double thickness = 1;
+  /// Standard deviation of the thickness, relative to it: it is one of every
+  /// modulus, which no number of measurements averages.
+  double thickness_relative_sd = 0;
 };
 
 /// A mesh of the specimen, of elements of one kind.

@@ -25,6 +25,11 @@ struct ErrorBudget {
   ParameterErrors discretization;
   /// The spread of the laws that fit alike.
   ParameterErrors law;
+  /// What small-strain elasticity leaves out of strains and rotations as large
+  /// as those measured; empty where they are small.
+  ParameterErrors kinematics;
+  /// Of the thickness (Section::thickness_relative_sd); empty where it is none.
+  ParameterErrors section;
 };
 
 /// The roots of the diagonal of a covariance of (E, nu) at this estimate.

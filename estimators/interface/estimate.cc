@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "elastimate/estimators/interface/limits.h"
+
 namespace elastimate {
 namespace {
 
@@ -142,6 +144,17 @@ std::optional<double> Estimate::BulkComplianceStandardError() const {
 std::optional<double> Estimate::Correlation() const {
   return FiniteOrNothing(covariance(0, 1) /
                          std::sqrt(covariance(0, 0) * covariance(1, 1)));
+}
+
+void WidenInterval(double variance, Estimate& estimate) {
+  if (!estimate.poisson_ratio_interval) {
+    return;
+  }
+  auto& [lower, upper] = *estimate.poisson_ratio_interval;
+  const double nu = estimate.elasticity.poisson_ratio;
+  const double distance = kTwoSidedErrors * std::sqrt(variance);
+  lower = std::max(nu - std::hypot(nu - lower, distance), -1.0);
+  upper = std::min(nu + std::hypot(upper - nu, distance), 0.5);
 }
 
 }  // namespace elastimate

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/scene/deformation_size.h"
 #include "elastimate/core/solvers/stiffness_solver.h"
 #include "elastimate/estimators/interface/error_budget.h"
 #include "elastimate/estimators/interface/finding.h"
@@ -228,6 +229,8 @@ struct Estimate {
 
   /// What the errors come from.
   ErrorBudget error_budget;
+  /// How large the measured deformation is (MeasureDeformation).
+  DeformationSize deformation;
   /// Where nu lies with a probability of 95 %: one-sided when it reaches -1 or
   /// 1/2, where a standard error says little.  Empty when unknown.
   std::optional<Interval> poisson_ratio_interval;
@@ -326,6 +329,10 @@ struct Estimate {
 
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 };
+
+/// Widens the interval of nu, where there is one, by an independent error of
+/// this variance.
+void WidenInterval(double variance, Estimate& estimate);
 
 }  // namespace elastimate
 

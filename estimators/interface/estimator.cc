@@ -1,9 +1,11 @@
 #include "elastimate/estimators/interface/estimator.h"
 
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <utility>
 
+#include "elastimate/core/scene/deformation_size.h"
 #include "elastimate/core/text/numbers.h"
 #include "elastimate/estimators/interface/input_checks.h"
 #include "elastimate/estimators/interface/judge.h"
@@ -89,10 +91,16 @@ std::string Estimator::WhyUnsupported(const Scene& scene,
   return elastimate::WhyUnsupported(WhatItTakes(), scene, options);
 }
 
-Estimate Estimator::Run(const Scene& scene,
+Estimate Estimator::Run(const Scene& measured,
                         const EstimatorOptions& options) const {
   Stopwatch stopwatch;
-  ValidateScene(scene);
+  ValidateScene(measured);
+  std::optional<Scene> turned;
+  if (measured.is_rigid_motion_free) {
+    turned = measured;
+    RemoveFreeRotation(*turned);
+  }
+  const Scene& scene = turned ? *turned : measured;
   CheckOptions(options);
   const std::vector<Finding> findings = CheckMeasurements(scene);
   CheckLoads(scene);

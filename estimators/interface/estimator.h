@@ -79,7 +79,7 @@ class Estimator {
   /// the same number of BLAS threads, unless another thread calls rand()
   /// meanwhile, which the ordering of a factorisation (METIS) seeds and draws
   /// from.
-  Estimate Run(const Scene& scene, const EstimatorOptions& options) const;
+  Estimate Run(const Scene& measured, const EstimatorOptions& options) const;
 
   /// Does all that does not depend on what was measured, for a scene that is
   /// measured again and again; displacements of `scene` are not looked at.

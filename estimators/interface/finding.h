@@ -45,6 +45,9 @@ enum class FindingCode {
   kTooFewMeasurements,
   kNoFrameUsable,
   // What the model does not explain.
+  kLargeDeformation,
+  kNegativePoissonRatio,
+  kMarginNotGiven,
   kBoundContradicted,
   kKnownPoissonRatioContradicted,
   kLargeCorrection,

@@ -686,6 +686,49 @@ Finding ParameterBias(const std::string& parameter, double bias,
       "use iterative-fe or virtual-fields, which noise does not bias"};
 }
 
+Finding LargeDeformation(const DeformationSize& size,
+                         double relative_error_of_modulus, Severity severity) {
+  if (size.strain > kLimits.impossible_strain) {
+    return {FindingCode::kLargeDeformation, severity,
+            "the displacements are larger than the body: they are strains of " +
+                TwoDigits(size.strain),
+            "check that displacements and coordinates are in the same unit of "
+            "length"};
+  }
+  constexpr double kDegreesOfRadian = 57.29578;
+  const bool is_turned = size.strain < kLimits.mentioned_strain;
+  return {FindingCode::kLargeDeformation, severity,
+          "strains of " + Percent(size.strain) + " and rotations of " +
+              TwoDigits(kDegreesOfRadian * size.rotation) +
+              " degrees are beyond small-strain elasticity, which puts moduli "
+              "off by about " +
+              Percent(relative_error_of_modulus),
+          std::string("measure at smaller loads; larger displacements make it "
+                      "worse") +
+              (is_turned ? ", and a camera or specimen that turned as a whole "
+                           "needs \"rigid_motion\": \"free\""
+                         : "")};
+}
+
+Finding MarginNotGiven(double relative_error) {
+  return Warning(FindingCode::kMarginNotGiven,
+                 "the points may end within the specimen: half a spacing at "
+                 "each free edge would change E by " +
+                     Percent(relative_error) + kErrorsHold,
+                 "give \"margin\" beside \"points\": how far the specimen "
+                 "reaches beyond them, 0 where they reach its edges");
+}
+
+Finding NegativePoissonRatio(const ParameterEstimate& poisson_ratio) {
+  return Warning(
+      FindingCode::kNegativePoissonRatio,
+      poisson_ratio.Label() + " is negative, " +
+          TwoDigits(poisson_ratio.value) +
+          ", which few materials are, and one displacement "
+          "component of the wrong sign makes",
+      "check that y and v, x and u (and z and w) point the same way");
+}
+
 Finding Locking(ElementKind kind) {
   return Warning(FindingCode::kLocking,
                  "linear " + std::string(TopologyOf(kind).shapes) +

@@ -153,6 +153,12 @@ Finding ParametersNearLimits(const std::vector<std::string>& parameters,
 Finding ParameterBias(const std::string& parameter, double bias,
                       bool is_relative, Severity severity);
 Finding Locking(ElementKind kind);
+/// What linear kinematics leave out (KinematicErrorOf).
+Finding LargeDeformation(const DeformationSize& size,
+                         double relative_error_of_modulus, Severity severity);
+/// How much a margin of half a spacing of the points changes E.
+Finding MarginNotGiven(double relative_error);
+Finding NegativePoissonRatio(const ParameterEstimate& poisson_ratio);
 /// Precondition: there is a discretisation error.
 std::string DescribeDiscretizationError(const Estimate& estimate);
 /// `correction` is of (ln E, nu).

@@ -5,6 +5,7 @@
 
 #include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
+#include "elastimate/estimators/interface/kinematic_error.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
 #include "elastimate/estimators/interface/rules.h"
@@ -185,6 +186,8 @@ void FinishEstimate(std::string_view estimator, const Scene& scene,
       estimate.findings.insert(estimate.findings.begin(), *finding);
     }
   }
+  JudgeKinematics(scene, options, estimate);
+  JudgeThickness(scene, estimate);
   if (!IsOneIsotropicMaterial(scene.materials)) {
     estimate.stiffnesses = StiffnessesOf(scene, estimate);
     estimate.axes = AxesOf(scene, estimate);
@@ -192,6 +195,7 @@ void FinishEstimate(std::string_view estimator, const Scene& scene,
     JudgeLocking(scene.mesh, LargestPoissonRatio(estimate), estimate);
     RemoveErrorBarsOfNone(estimate);
     EnterElasticity(estimate);
+    JudgeSignOfPoissonRatio(estimate);
     return;
   }
   estimate.error_budget.discretization = Eigen::Vector2d(
@@ -204,6 +208,7 @@ void FinishEstimate(std::string_view estimator, const Scene& scene,
   }
   RemoveErrorBarsOfNone(estimate);
   DescribeOneIsotropicMaterial(scene, options, estimate);
+  JudgeSignOfPoissonRatio(estimate);
 }
 
 }  // namespace elastimate

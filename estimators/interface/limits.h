@@ -95,6 +95,15 @@ struct Limits {
   double largest_correction_of_log_youngs_modulus = 0.25;
   double largest_correction_of_poisson_ratio = 0.15;
 
+  // What small-strain elasticity leaves out.
+
+  /// Root mean square strain, and rotation [rad, 3 degrees], below which nobody
+  /// mentions it.
+  double mentioned_strain = 0.01;
+  double mentioned_rotation = 0.0524;
+  /// A strain beyond this is no strain, but another unit of length.
+  double impossible_strain = 1;
+
   // What is called exact, or determined.
 
   /// A displacement or force residual that is rounding alone.

@@ -101,15 +101,4 @@ Interval DescribeProfile(
   return *estimate.poisson_ratio_interval;
 }
 
-void WidenInterval(double variance, Estimate& estimate) {
-  if (!estimate.poisson_ratio_interval) {
-    return;
-  }
-  auto& [lower, upper] = *estimate.poisson_ratio_interval;
-  const double nu = estimate.elasticity.poisson_ratio;
-  const double distance = kTwoSidedErrors * std::sqrt(variance);
-  lower = std::max(nu - std::hypot(nu - lower, distance), -1.0);
-  upper = std::min(nu + std::hypot(upper - nu, distance), 0.5);
-}
-
 }  // namespace elastimate

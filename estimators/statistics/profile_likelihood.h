@@ -42,10 +42,6 @@ Interval DescribeProfile(
     const std::function<Profile(double quantile)>& profile_of,
     Estimate& estimate);
 
-/// Widens the interval of nu, where there is one, by an error of this variance
-/// that the profile does not hold.
-void WidenInterval(double variance, Estimate& estimate);
-
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_ESTIMATORS_STATISTICS_PROFILE_LIKELIHOOD_H_

@@ -64,13 +64,33 @@ PointMesh MeshOf(const std::filesystem::path& path, const DicFrame& frame,
   }
 }
 
+Eigen::Index NumBeside(const DicFrame& frame, const PointMesh& points) {
+  return frame.positions.cols() - Eigen::Index(points.points.size());
+}
+
+// A mesh of a part of the specimen would bear the force of all of it.
+void CheckPointsBeside(const std::filesystem::path& path, const DicFrame& frame,
+                       const PointMesh& points) {
+  constexpr double kMostBeside = 0.05;
+  const Eigen::Index num_beside = NumBeside(frame, points);
+  if (static_cast<double>(num_beside) >
+      kMostBeside * static_cast<double>(frame.positions.cols())) {
+    ThrowInputError(
+        path, std::to_string(num_beside) + " of its " +
+                  std::to_string(frame.positions.cols()) +
+                  " points do not hang together with the others, of which the "
+                  "mesh is made; leave out those that are not of the specimen, "
+                  "or give \"max_edge\" above the gap between them");
+  }
+}
+
 std::string Description(const std::filesystem::path& path,
                         const DicFrame& frame, const PointMesh& points,
                         const MeshFile& mesh) {
   const Eigen::Vector2d size =
       (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff())
           .head<2>();
-  const Eigen::Index num_beside = frame.positions.cols() - mesh.nodes.cols();
+  const Eigen::Index num_beside = NumBeside(frame, points);
   const Eigen::Index num_lost =
       FindArray(mesh.node_arrays, "displacement")->array().isNaN().count() / 2;
   std::ostringstream text;
@@ -88,8 +108,6 @@ std::string Description(const std::filesystem::path& path,
     text << "; " << num_lost
          << " nodes are points that the grid has no measurement of";
   }
-  text << "; where a specimen is wider than its measured points, give the "
-          "share of the force that their width carries";
   return text.str();
 }
 
@@ -97,7 +115,7 @@ std::string Description(const std::filesystem::path& path,
 
 MeshFile ReadMeasuredMesh(const JsonValue& mesh,
                           std::vector<std::string>& notices) {
-  mesh.CheckKeys(WithTableKeys({"points", "max_edge"}));
+  mesh.CheckKeys(WithTableKeys({"points", "max_edge", "margin"}));
   const JsonValue name = mesh.At("points");
   if (name.String().empty()) {
     name.Fail("is empty; give the path of a file");
@@ -106,6 +124,7 @@ MeshFile ReadMeasuredMesh(const JsonValue& mesh,
   const DicFrame frame =
       WithLostPoints(ReadDicFile(path, ReadTableOptions(mesh, 2)));
   const PointMesh points = MeshOf(path, frame, ReadLength(mesh, "max_edge"));
+  CheckPointsBeside(path, frame, points);
   MeshFile file;
   file.path = path;
   file.kind = points.kind;

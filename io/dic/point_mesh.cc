@@ -145,6 +145,57 @@ std::vector<GridPlace> TakeGap(const GridPlace& first,
   return gap;
 }
 
+// Of `empty`, the places that lie between two points of the same column (axis
+// 1) or row (axis 0), `most` places at most.
+std::set<GridPlace> BetweenPoints(const PointGrid& grid,
+                                  const std::set<GridPlace>& empty,
+                                  std::size_t axis, long long most) {
+  std::set<GridPlace> between;
+  for (const GridPlace& place : empty) {
+    std::array<long long, 2> distance = {1, 1};
+    for (const int side : {0, 1}) {
+      GridPlace next = place;
+      const long long step = side == 0 ? -1 : 1;
+      next[axis] += step;
+      while (distance[side] <= most && grid.point_at.count(next) == 0) {
+        ++distance[side];
+        next[axis] += step;
+      }
+    }
+    if (distance[0] + distance[1] - 1 <= most) {
+      between.insert(place);
+    }
+  }
+  return between;
+}
+
+// Takes rows or columns that were lost over the whole width of what they cross
+// from `empty`.  A slot, which ends at points, is a hole.
+std::vector<GridPlace> TakeLostLines(const PointGrid& grid, long long most,
+                                     std::set<GridPlace>& empty) {
+  std::vector<GridPlace> lost;
+  for (const std::size_t across : {0U, 1U}) {
+    std::set<GridPlace> between = BetweenPoints(grid, empty, across, most);
+    while (!between.empty()) {
+      const std::vector<GridPlace> line = TakeGap(*between.begin(), between);
+      const bool ends_at_points =
+          std::any_of(line.begin(), line.end(), [&](GridPlace place) {
+            --place[1 - across];
+            const bool before = grid.point_at.count(place) > 0;
+            place[1 - across] += 2;
+            return before || grid.point_at.count(place) > 0;
+          });
+      if (!ends_at_points) {
+        lost.insert(lost.end(), line.begin(), line.end());
+        for (const GridPlace& place : line) {
+          empty.erase(place);
+        }
+      }
+    }
+  }
+  return lost;
+}
+
 double EdgeLength(const Eigen::Matrix2Xd& positions, int a, int b) {
   return (positions.col(a) - positions.col(b)).norm();
 }
@@ -331,7 +382,7 @@ Eigen::Matrix2Xd LostPoints(const Eigen::Matrix2Xd& positions) {
       }
     }
   }
-  std::vector<GridPlace> lost;
+  std::vector<GridPlace> lost = TakeLostLines(*grid, kMostLost, empty);
   while (!empty.empty()) {
     const std::vector<GridPlace> gap = TakeGap(*empty.begin(), empty);
     if (gap.size() <= kMostLost) {

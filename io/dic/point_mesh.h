@@ -27,9 +27,10 @@ struct PointMesh {
 PointMesh MeshOfPoints(const Eigen::Matrix2Xd& positions,
                        std::optional<double> max_edge);
 
-/// Where a grid along the axes has no point, in gaps of up to four places: what
-/// a camera lost, rather than a hole of the specimen.  2 x n; none where the
-/// points are not on a grid.  O(n log n).
+/// Where a grid along the axes has no point, in gaps of up to four places, and
+/// in rows and columns, up to four side by side, that are missing over the
+/// whole width: what a camera lost, rather than a hole of the specimen.  2 x n;
+/// none where the points are not on a grid.  O(n log n).
 Eigen::Matrix2Xd LostPoints(const Eigen::Matrix2Xd& positions);
 
 }  // namespace elastimate

@@ -210,7 +210,9 @@ Json BudgetJson(const Scene& scene, const ErrorBudget& budget) {
           {"model", of(budget.model)},
           {"outliers", of(budget.outliers)},
           {"discretization", of(budget.discretization)},
-          {"law", of(budget.law)}};
+          {"law", of(budget.law)},
+          {"kinematics", of(budget.kinematics)},
+          {"section", of(budget.section)}};
 }
 
 Json MismatchJson(const Estimate& estimate) {
@@ -403,6 +405,9 @@ std::string JsonReport(const Estimate& estimate, const Scene& scene,
       {"stiffness", StiffnessJson(estimate)},
       {"axes", AxesJson(estimate)},
       {"error_budget", BudgetJson(scene, estimate.error_budget)},
+      {"deformation",
+       {{"strain", OrNull(estimate.deformation.strain)},
+        {"rotation", OrNull(estimate.deformation.rotation)}}},
       {"findings", FindingsJson(estimate.findings)},
       {"diagnostics", DiagnosticsJson(estimate)},
       {"materials", MaterialsJson(estimate)},

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "elastimate/io/dic/margin.h"
 #include "elastimate/io/dic/measured_mesh.h"
 #include "elastimate/io/scene/file_scene.h"
 #include "elastimate/io/scene/frames.h"
@@ -105,6 +106,22 @@ LoadCase ReadLoadCase(const JsonValue& value, const LoadContext& of_scene,
   return load_case;
 }
 
+/// Of a mesh that was made of measured points, which may end within the
+/// specimen.
+void AllowForMarginOf(const JsonValue& mesh, FileScene& file_scene) {
+  if (!mesh.IsObject()) {
+    return;
+  }
+  std::optional<double> margin;
+  if (mesh.Has("margin")) {
+    margin = mesh.At("margin").Number();
+    if (!(*margin >= 0)) {
+      mesh.At("margin").Fail("is negative; give 0 or a length");
+    }
+  }
+  AllowForMargin(margin, file_scene.scene, file_scene.notices);
+}
+
 /// Where the supports of the scene stand: at the top or, where each load case
 /// has its own, in the first.
 const JsonValue& OwnerOfSupports(const JsonValue& document,
@@ -160,6 +177,7 @@ FileScene ReadJsonScene(const std::filesystem::path& path,
                      has_frames ? Measurement::kOptional : measurement,
                      file_scene.measured_lines.emplace_back()));
   }
+  AllowForMarginOf(document.At("mesh"), file_scene);
   if (has_frames) {
     file_scene.frames = ReadFrames(document, file_scene);
   }

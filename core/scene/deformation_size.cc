@@ -1,0 +1,326 @@
+#include "elastimate/core/scene/deformation_size.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "elastimate/core/algebra/dense_algebra.h"
+
+namespace elastimate {
+namespace {
+
+constexpr Eigen::Index kMostPoints = 4000;
+constexpr Eigen::Index kVolumePoints = 1000;
+constexpr int kLargestDegree = 4;
+// Observed values for each coefficient of a polynomial, so that noise is
+// smoothed.
+constexpr Eigen::Index kValuesPerMonomial = 4;
+// Points on a surface leave polynomials dependent; further from that than
+// rounding, they still amplify noise.
+constexpr double kDependent = 1e-4;
+constexpr double kVolumeShare = 0.95;
+// A smaller rotation [rad] is one to first order.
+constexpr double kSmallRotation = 1e-3;
+
+// What was observed of each component: positions, dimension x n, and values.
+struct Observed {
+  Eigen::MatrixXd positions;
+  Eigen::VectorXd values;
+};
+
+Eigen::MatrixXd PositionsOfPoints(const Scene& scene,
+                                  const LoadCase& load_case) {
+  return Interpolate(scene.mesh, load_case.points.points, scene.mesh.nodes);
+}
+
+Observed ObservedComponent(const Scene& scene, const LoadCase& load_case,
+                           const Eigen::MatrixXd& points, int component) {
+  std::vector<Eigen::Index> nodes;
+  for (Eigen::Index node = 0;
+       load_case.displacement.size() != 0 && node < scene.mesh.NumNodes();
+       ++node) {
+    if (IsObserved(load_case, component, node)) {
+      nodes.push_back(node);
+    }
+  }
+  std::vector<Eigen::Index> others;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    if (!std::isnan(load_case.points.displacement(component, i))) {
+      others.push_back(i);
+    }
+  }
+  const auto num_nodes = static_cast<Eigen::Index>(nodes.size());
+  const Eigen::Index all = num_nodes + static_cast<Eigen::Index>(others.size());
+  const Eigen::Index stride = std::max<Eigen::Index>(1, all / kMostPoints);
+  const Eigen::Index count = (all + stride - 1) / stride;
+  Observed observed = {Eigen::MatrixXd(scene.mesh.Dimension(), count),
+                       Eigen::VectorXd(count)};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index at = i * stride;
+    if (at < num_nodes) {
+      const Eigen::Index node = nodes[static_cast<std::size_t>(at)];
+      observed.positions.col(i) = scene.mesh.nodes.col(node);
+      observed.values(i) = load_case.displacement(component, node);
+    } else {
+      const Eigen::Index point =
+          others[static_cast<std::size_t>(at - num_nodes)];
+      observed.positions.col(i) = points.col(point);
+      observed.values(i) = load_case.points.displacement(component, point);
+    }
+  }
+  return observed;
+}
+
+// The exponents of the monomials of degree <= `degree`.
+std::vector<Eigen::Array3i> ExponentsUpTo(int degree, Eigen::Index dimension) {
+  std::vector<Eigen::Array3i> exponents;
+  for (int i = 0; i <= degree; ++i) {
+    for (int j = 0; i + j <= degree; ++j) {
+      for (int k = 0; k <= (dimension == 3 ? degree - i - j : 0); ++k) {
+        exponents.emplace_back(i, j, k);
+      }
+    }
+  }
+  return exponents;
+}
+
+// The product of the powers of the coordinates, all but `left_out`.
+Eigen::ArrayXd Powers(const Eigen::MatrixXd& x, const Eigen::Array3i& exponents,
+                      Eigen::Index left_out) {
+  Eigen::ArrayXd product = Eigen::ArrayXd::Ones(x.cols());
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    for (int power = 0; i != left_out && power < exponents(i); ++power) {
+      product *= x.row(i).transpose().array();
+    }
+  }
+  return product;
+}
+
+// The box of the mesh as the cube from -1 to 1, so that slender bodies are well
+// conditioned as well.
+struct Frame {
+  explicit Frame(const Mesh& mesh)
+      : middle((mesh.nodes.rowwise().maxCoeff() +
+                mesh.nodes.rowwise().minCoeff()) /
+               2),
+        scale((mesh.nodes.rowwise().maxCoeff() -
+               mesh.nodes.rowwise().minCoeff()) /
+              2) {}
+  Eigen::MatrixXd Coordinates(const Eigen::MatrixXd& positions) const {
+    return (positions.colwise() - middle).array().colwise() / scale.array();
+  }
+  Eigen::VectorXd middle;
+  Eigen::VectorXd scale;
+};
+
+// The gradient of the polynomial of least squares, dimension x num_points;
+// empty where there are too few values.
+Eigen::MatrixXd GradientAt(const Frame& frame, const Observed& observed,
+                           const Eigen::MatrixXd& points) {
+  const Eigen::Index dimension = points.rows();
+  int degree = kLargestDegree;
+  std::vector<Eigen::Array3i> exponents = ExponentsUpTo(degree, dimension);
+  while (degree > 0 &&
+         kValuesPerMonomial * static_cast<Eigen::Index>(exponents.size()) >
+             observed.values.size()) {
+    exponents = ExponentsUpTo(--degree, dimension);
+  }
+  if (degree == 0) {
+    return {};
+  }
+  const auto num_monomials = static_cast<Eigen::Index>(exponents.size());
+  const Eigen::MatrixXd x = frame.Coordinates(observed.positions);
+  Eigen::MatrixXd monomials(x.cols(), num_monomials);
+  for (Eigen::Index m = 0; m < num_monomials; ++m) {
+    monomials.col(m) = Powers(x, exponents[static_cast<std::size_t>(m)], -1);
+  }
+  const Eigen::VectorXd coefficients =
+      SolveLeastSquares(monomials, observed.values, kDependent);
+  const Eigen::MatrixXd at = frame.Coordinates(points);
+  Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(dimension, points.cols());
+  for (Eigen::Index m = 0; m < num_monomials; ++m) {
+    const Eigen::Array3i& powers = exponents[static_cast<std::size_t>(m)];
+    for (Eigen::Index j = 0; j < dimension; ++j) {
+      if (powers(j) > 0) {
+        const Eigen::ArrayXd along =
+            powers(j) * at.row(j).transpose().array().pow(powers(j) - 1);
+        gradient.row(j) +=
+            (coefficients(m) / frame.scale(j) * along * Powers(at, powers, j))
+                .matrix()
+                .transpose();
+      }
+    }
+  }
+  return gradient;
+}
+
+struct Polar {
+  Eigen::MatrixXd rotation;
+  Eigen::VectorXd stretches;
+};
+
+// F = R U.
+Polar DecomposePolar(const Eigen::MatrixXd& f) {
+  const SymmetricEigenDecomposition squares =
+      DecomposeSymmetric(f.transpose() * f);
+  const Eigen::VectorXd stretches = squares.values.cwiseMax(1e-20).cwiseSqrt();
+  return {f * squares.vectors * stretches.cwiseInverse().asDiagonal() *
+              squares.vectors.transpose(),
+          stretches};
+}
+
+double AngleOf(const Eigen::MatrixXd& rotation) {
+  const double cosine =
+      rotation.rows() == 2 ? rotation.trace() / 2 : (rotation.trace() - 1) / 2;
+  return std::acos(std::clamp(cosine, -1.0, 1.0));
+}
+
+Eigen::MatrixXd PointsOfTheVolume(const Scene& scene, const LoadCase& load_case,
+                                  const Eigen::MatrixXd& points,
+                                  const Observed& observed) {
+  if (points.size() != 0 || load_case.observed.size() != 0) {
+    return observed.positions;
+  }
+  std::mt19937_64 generator(1);
+  return Interpolate(scene.mesh,
+                     DrawPoints(scene.mesh, kVolumePoints, generator),
+                     scene.mesh.nodes);
+}
+
+// F at points of the volume; empty where too little was observed.
+std::vector<Eigen::MatrixXd> DeformationGradients(const Scene& scene,
+                                                  const LoadCase& load_case) {
+  const int dimension = scene.mesh.Dimension();
+  const Frame frame(scene.mesh);
+  const Eigen::MatrixXd points = load_case.points.points.Size() == 0
+                                     ? Eigen::MatrixXd(dimension, 0)
+                                     : PositionsOfPoints(scene, load_case);
+  std::vector<Eigen::MatrixXd> gradients;
+  Eigen::MatrixXd at;
+  for (int component = 0; component < dimension; ++component) {
+    const Observed observed =
+        ObservedComponent(scene, load_case, points, component);
+    if (component == 0) {
+      at = PointsOfTheVolume(scene, load_case, points, observed);
+      gradients.assign(static_cast<std::size_t>(at.cols()),
+                       Eigen::MatrixXd::Identity(dimension, dimension));
+    }
+    const Eigen::MatrixXd gradient = GradientAt(frame, observed, at);
+    if (gradient.size() == 0) {
+      return {};
+    }
+    for (Eigen::Index i = 0; i < at.cols(); ++i) {
+      gradients[static_cast<std::size_t>(i)].row(component) +=
+          gradient.col(i).transpose();
+    }
+  }
+  return gradients;
+}
+
+DeformationSize SizeOf(const std::vector<Eigen::MatrixXd>& gradients,
+                       bool is_rigid_motion_free) {
+  if (gradients.empty()) {
+    return {};
+  }
+  const Eigen::Index dimension = gradients[0].rows();
+  Eigen::MatrixXd frame = Eigen::MatrixXd::Zero(dimension, dimension);
+  for (const Eigen::MatrixXd& f : gradients) {
+    frame += f / static_cast<double>(gradients.size());
+  }
+  frame =
+      is_rigid_motion_free
+          ? DecomposePolar(frame).rotation
+          : Eigen::MatrixXd(Eigen::MatrixXd::Identity(dimension, dimension));
+  double square_sum = 0;
+  std::vector<double> angles;
+  for (const Eigen::MatrixXd& f : gradients) {
+    const Polar polar = DecomposePolar(frame.transpose() * f);
+    square_sum += (polar.stretches.array() - 1).square().maxCoeff();
+    angles.push_back(AngleOf(polar.rotation));
+  }
+  const auto large = angles.begin() +
+                     static_cast<std::ptrdiff_t>(
+                         kVolumeShare * static_cast<double>(angles.size() - 1));
+  std::nth_element(angles.begin(), large, angles.end());
+  return {std::sqrt(square_sum / static_cast<double>(gradients.size())),
+          *large};
+}
+
+// R of the rotation that takes positions nearest to others, by least squares.
+Eigen::MatrixXd NearestRotation(const Eigen::MatrixXd& from,
+                                const Eigen::MatrixXd& to) {
+  const SingularValueDecomposition svd =
+      DecomposeSingularValues(to * from.transpose());
+  Eigen::VectorXd signs = Eigen::VectorXd::Ones(from.rows());
+  const double handedness = (svd.u * svd.v.transpose()).determinant();
+  signs(from.rows() - 1) = handedness < 0 ? -1 : 1;
+  return svd.u * signs.asDiagonal() * svd.v.transpose();
+}
+
+// Of the points that were observed: all components of each, or none.
+void RemoveRotation(const Eigen::MatrixXd& positions,
+                    const ComponentMask& is_observed,
+                    Eigen::MatrixXd& displacement) {
+  std::vector<Eigen::Index> observed;
+  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
+    if (is_observed.col(i).all()) {
+      observed.push_back(i);
+    } else if (is_observed.col(i).any()) {
+      return;
+    }
+  }
+  if (observed.empty()) {
+    return;
+  }
+  const Eigen::MatrixXd before = positions(Eigen::all, observed);
+  const Eigen::MatrixXd after = before + displacement(Eigen::all, observed);
+  const Eigen::VectorXd middle = after.rowwise().mean();
+  const Eigen::MatrixXd from = before.colwise() - before.rowwise().mean();
+  const Eigen::MatrixXd to = after.colwise() - middle;
+  const Eigen::MatrixXd rotation = NearestRotation(from, to);
+  if (AngleOf(rotation) > kSmallRotation) {
+    displacement(Eigen::all, observed) = rotation.transpose() * to - from;
+  }
+}
+
+}  // namespace
+
+DeformationSize MeasureDeformation(const Scene& scene) {
+  DeformationSize size;
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    const LoadCase& load_case = scene.load_cases[k];
+    const bool is_free =
+        scene.is_rigid_motion_free ||
+        !SupportsOf(scene, static_cast<Eigen::Index>(k)).held.any();
+    const DeformationSize of_case =
+        SizeOf(DeformationGradients(scene, load_case), is_free);
+    size.strain = std::max(size.strain, of_case.strain);
+    size.rotation = std::max(size.rotation, of_case.rotation);
+  }
+  return size;
+}
+
+void RemoveFreeRotation(Scene& scene) {
+  if (!scene.is_rigid_motion_free) {
+    return;
+  }
+  for (LoadCase& load_case : scene.load_cases) {
+    if (load_case.displacement.size() != 0) {
+      RemoveRotation(scene.mesh.nodes,
+                     load_case.observed.size() != 0
+                         ? load_case.observed
+                         : ComponentMask::Constant(scene.mesh.Dimension(),
+                                                   scene.mesh.NumNodes(), true),
+                     load_case.displacement);
+    }
+    PointDisplacements& points = load_case.points;
+    if (points.points.Size() != 0) {
+      RemoveRotation(PositionsOfPoints(scene, load_case),
+                     !points.displacement.array().isNaN(), points.displacement);
+    }
+  }
+}
+
+}  // namespace elastimate

@@ -1,0 +1,114 @@
+#include "elastimate/estimators/interface/kinematic_error.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "elastimate/estimators/interface/finding_sentences.h"
+#include "elastimate/estimators/interface/limits.h"
+
+namespace elastimate {
+namespace {
+
+bool IsMentioned(const DeformationSize& size) {
+  return size.strain >= kLimits.mentioned_strain ||
+         size.rotation >= kLimits.mentioned_rotation;
+}
+
+// A failed estimate may have no parameters, of which a ratio is then taken to
+// be free.
+bool IsARatioFree(const EstimatorOptions& options, const Estimate& estimate) {
+  return !options.known_poisson_ratio &&
+         (estimate.parameters.empty() ||
+          std::any_of(estimate.parameters.begin(), estimate.parameters.end(),
+                      [](const ParameterEstimate& parameter) {
+                        return !parameter.is_known && !parameter.IsStiffness();
+                      }));
+}
+
+bool IsUnusable(const KinematicError& error, bool is_ratio_free) {
+  return !(error.log_modulus <= kLimits.unusable_error) ||
+         (is_ratio_free &&
+          !(error.ratio <= kLimits.unusable_poisson_ratio_bias));
+}
+
+// Adds the squares of errors that are independent of the others, and enters
+// them as those of a cause.
+void AddError(const KinematicError& error, ParameterErrors& of_cause,
+              Estimate& estimate) {
+  estimate.covariance(0, 0) +=
+      std::pow(error.log_modulus * estimate.elasticity.youngs_modulus, 2);
+  estimate.covariance(1, 1) += std::pow(error.ratio, 2);
+  WidenInterval(std::pow(error.ratio, 2), estimate);
+  const auto size = static_cast<Eigen::Index>(estimate.parameters.size());
+  if (size == 0) {
+    of_cause = Eigen::Vector2d(error.log_modulus, error.ratio);
+    return;
+  }
+  of_cause.resize(size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const ParameterEstimate& parameter =
+        estimate.parameters[static_cast<std::size_t>(i)];
+    const double relative =
+        parameter.IsStiffness() ? error.log_modulus : error.ratio;
+    of_cause(i) = parameter.is_known ? Estimate::kUnknown : relative;
+    if (estimate.parameter_covariance.size() != 0) {
+      estimate.parameter_covariance(i, i) +=
+          std::pow(relative * parameter.ErrorUnit(), 2);
+    }
+  }
+}
+
+}  // namespace
+
+KinematicError KinematicErrorOf(const DeformationSize& size) {
+  if (!IsMentioned(size)) {
+    return {0, 0};
+  }
+  const double square = size.rotation * size.rotation;
+  return {0.8 * size.strain + 0.54 * square,
+          0.35 * size.strain + 0.25 * square};
+}
+
+void JudgeKinematics(const Scene& scene, const EstimatorOptions& options,
+                     Estimate& estimate) {
+  if (estimate.Has(FindingCode::kLargeDeformation)) {
+    return;
+  }
+  estimate.deformation = MeasureDeformation(scene);
+  if (!IsMentioned(estimate.deformation)) {
+    return;
+  }
+  const KinematicError error = KinematicErrorOf(estimate.deformation);
+  if (IsUnusable(error, IsARatioFree(options, estimate))) {
+    estimate.Fail(LargeDeformation(estimate.deformation, error.log_modulus,
+                                   Severity::kError));
+    return;
+  }
+  estimate.Add(LargeDeformation(estimate.deformation, error.log_modulus,
+                                Severity::kWarning));
+  if (estimate.IsUsable()) {
+    AddError(error, estimate.error_budget.kinematics, estimate);
+  }
+}
+
+void JudgeThickness(const Scene& scene, Estimate& estimate) {
+  const double error = scene.mesh.section.thickness_relative_sd;
+  if (error == 0 || !estimate.IsUsable() ||
+      estimate.Has(FindingCode::kMarginNotGiven)) {
+    return;
+  }
+  estimate.Add(MarginNotGiven(error));
+  AddError({error, 0}, estimate.error_budget.section, estimate);
+}
+
+void JudgeSignOfPoissonRatio(Estimate& estimate) {
+  for (const ParameterEstimate& parameter : estimate.parameters) {
+    if (estimate.IsUsable() && parameter.name == "poisson_ratio" &&
+        parameter.standard_error &&
+        parameter.value < -2 * *parameter.standard_error) {
+      estimate.Add(NegativePoissonRatio(parameter));
+    }
+  }
+}
+
+}  // namespace elastimate

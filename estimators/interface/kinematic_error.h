@@ -1,0 +1,43 @@
+#ifndef ELASTIMATE_ESTIMATORS_INTERFACE_KINEMATIC_ERROR_H_
+#define ELASTIMATE_ESTIMATORS_INTERFACE_KINEMATIC_ERROR_H_
+
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/estimators/interface/estimator.h"
+
+namespace elastimate {
+
+/// One standard deviation of what small-strain elasticity leaves out, for a
+/// strain e and a rotation theta [rad]:
+///
+///   of ln E  .8 e + .54 theta^2,    of nu  .35 e + .25 theta^2.
+///
+/// The first terms are the spread of the bias over neo-Hookean and St
+/// Venant-Kirchhoff materials in tension and compression, of which it is not
+/// known which one a specimen is; the second ones are the bias in bending.
+struct KinematicError {
+  double log_modulus;
+  double ratio;
+};
+KinematicError KinematicErrorOf(const DeformationSize& size);
+
+/// Measures the deformation and, from 1 % of strain or 3 degrees of rotation
+/// on, adds what linear kinematics leave out to the covariances, the error
+/// budget (ErrorBudget::kinematics) and the findings of an estimate, or turns
+/// it into one that is not usable, where that is more than Limits allow for
+/// biases (finding `large_deformation`).  An estimate that has been through
+/// this stays as it is.
+void JudgeKinematics(const Scene& scene, const EstimatorOptions& options,
+                     Estimate& estimate);
+
+/// Adds the standard deviation of the thickness to those of moduli, and warns
+/// of it, once.
+void JudgeThickness(const Scene& scene, Estimate& estimate);
+
+/// Warns of a Poisson's ratio that is negative by more than two standard
+/// errors, which displacements of one wrong sign bring about.
+void JudgeSignOfPoissonRatio(Estimate& estimate);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_INTERFACE_KINEMATIC_ERROR_H_
