@@ -14,7 +14,8 @@ namespace elastimate {
 ///
 /// The functions of simplices are among those of the finer ones, and so are
 /// taken over as they are: linear ones by the mean of the ends of an edge,
-/// quadratic ones by their values at the middle of edges of half the size.
+/// quadratic ones by their values at the middle of edges of half the size, in
+/// reference coordinates where they are curved.
 /// Hexahedra and quadrilaterals are taken as the linear simplices of their
 /// nodes.
 class FinerNodes {

@@ -1,0 +1,42 @@
+#include "elastimate/core/scene/finer_scene.h"
+
+#include <utility>
+
+#include "elastimate/core/mesh/finer_nodes.h"
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/core/scene/simplicial_scene.h"
+
+namespace elastimate {
+namespace {
+
+// Nodal forces were spread over facets that are not curved.
+void BalanceLoads(const Scene& scene, const FinerNodes& nodes, Scene& finer) {
+  const Eigen::MatrixXd rest =
+      AssembleLoadCases(scene) - nodes.Restrict(AssembleLoadCases(finer));
+  for (std::size_t k = 0; k < finer.load_cases.size(); ++k) {
+    NodalForces forces{
+        Eigen::MatrixXd::Zero(scene.mesh.Dimension(), finer.mesh.NumNodes())};
+    forces.force.leftCols(scene.mesh.NumNodes()) =
+        rest.col(Eigen::Index(k))
+            .reshaped(scene.mesh.Dimension(), scene.mesh.NumNodes());
+    finer.load_cases[k].loads.emplace_back(std::move(forces));
+  }
+}
+
+}  // namespace
+
+Scene FinerScene(const Scene& scene) {
+  Scene finer = QuadraticScene(SimplicialScene(scene));
+  if (IsCurved(scene.mesh.kind)) {
+    const FinerNodes nodes(scene.mesh, finer.mesh);
+    finer.mesh.kind = scene.mesh.kind;
+    finer.mesh.nodes =
+        nodes.Interpolate(scene.mesh.nodes.reshaped())
+            .reshaped(scene.mesh.Dimension(), finer.mesh.NumNodes());
+    BalanceLoads(scene, nodes, finer);
+  }
+  return finer;
+}
+
+}  // namespace elastimate
