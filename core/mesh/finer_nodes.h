@@ -36,11 +36,12 @@ class FinerNodes {
   /// as `forces` on every displacement of its elements.
   Eigen::MatrixXd Restrict(const Eigen::MatrixXd& forces) const;
 
- private:
   using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor, Eigen::Index>;
+  /// Of the nodes of the mesh at the mid-edge nodes, num_mid_edges x num_nodes.
+  const Weights& WeightsOfNodes() const { return weights_; }
 
+ private:
   int dimension_;
-  /// Of the nodes of the mesh at the mid-edge nodes.
   Weights weights_;
 };
 

@@ -24,6 +24,27 @@ void BalanceLoads(const Scene& scene, const FinerNodes& nodes, Scene& finer) {
   }
 }
 
+// What is held all around a new node moves it as the elements say, rather than
+// by the mean of its two neighbours.
+void MoveSupports(const FinerNodes& nodes, Supports& supports) {
+  const FinerNodes::Weights& weights = nodes.WeightsOfNodes();
+  for (Eigen::Index row = 0; row < nodes.NumMidEdges(); ++row) {
+    const Eigen::Index node = nodes.NumNodes() + row;
+    for (Eigen::Index i = 0; i < supports.held.rows(); ++i) {
+      bool is_held = supports.held(i, node);
+      double displacement = 0;
+      for (FinerNodes::Weights::InnerIterator weight(weights, row); weight;
+           ++weight) {
+        is_held = is_held && supports.held(i, weight.col());
+        displacement += weight.value() * supports.displacement(i, weight.col());
+      }
+      if (is_held) {
+        supports.displacement(i, node) = displacement;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 Scene FinerScene(const Scene& scene) {
@@ -34,6 +55,12 @@ Scene FinerScene(const Scene& scene) {
     finer.mesh.nodes =
         nodes.Interpolate(scene.mesh.nodes.reshaped())
             .reshaped(scene.mesh.Dimension(), finer.mesh.NumNodes());
+    MoveSupports(nodes, finer.supports);
+    for (LoadCase& load_case : finer.load_cases) {
+      if (load_case.supports) {
+        MoveSupports(nodes, *load_case.supports);
+      }
+    }
     BalanceLoads(scene, nodes, finer);
   }
   return finer;
