@@ -382,7 +382,9 @@ void AddSceneSize(const Scene& scene, std::ostringstream& text) {
   Line("scene",
        std::to_string(scene.mesh.NumVertices()) + " nodes, " +
            std::to_string(scene.mesh.NumElements()) +
-           (scene.mesh.Order() == 2 ? " quadratic " : " ") +
+           (IsCurved(scene.mesh.kind) ? " curved quadratic "
+            : scene.mesh.Order() == 2 ? " quadratic "
+                                      : " ") +
            std::string(
                scene.mesh.Topology().ShapeName(scene.mesh.NumElements())) +
            ", " + std::to_string(scene.load_cases.size()) + " load case" +

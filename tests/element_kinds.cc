@@ -5,9 +5,10 @@
 #include <cmath>
 #include <functional>
 
+#include "elastimate/core/mesh/shape_functions.h"
+#include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
-#include "elastimate/core/scene/simplicial_scene.h"
 #include "tests/dense_reference.h"
 #include "tests/quadratic_reference.h"
 #include "tests/scenes.h"
@@ -91,6 +92,7 @@ Mesh UndistortedMesh(const KindOfSection& parameter, int cells) {
   switch (parameter.kind) {
     case ElementKind::kTet4:
     case ElementKind::kTet10:
+    case ElementKind::kCurvedTet10:
       mesh = BoxMesh({cells, cells, cells}, {1, 1, 1});
       break;
     case ElementKind::kHex8:
@@ -98,6 +100,7 @@ Mesh UndistortedMesh(const KindOfSection& parameter, int cells) {
       break;
     case ElementKind::kTri3:
     case ElementKind::kTri6:
+    case ElementKind::kCurvedTri6:
       mesh = TriangleGrid(cells);
       break;
     case ElementKind::kQuad4:
@@ -110,12 +113,21 @@ Mesh UndistortedMesh(const KindOfSection& parameter, int cells) {
 }
 
 // Of order 2 where the parameter says so, with every node measured.
-Scene RaisedScene(const KindOfSection& parameter, const Scene& scene) {
+Scene RaisedScene(const KindOfSection& parameter, int cells,
+                  const Scene& scene) {
   if (TopologyOf(parameter.kind).order == 1) {
     return scene;
   }
   Scene raised = QuadraticScene(scene);
   raised.load_cases[0].observed.resize(0, 0);
+  if (IsCurved(parameter.kind)) {
+    // The edges are bent as the block is.
+    Scene straight = scene;
+    straight.mesh = UndistortedMesh(parameter, cells);
+    raised.mesh = QuadraticScene(straight).mesh;
+    raised.mesh.kind = parameter.kind;
+    Distort(raised.mesh);
+  }
   return raised;
 }
 
@@ -206,11 +218,29 @@ Eigen::RowVectorXd Monomials(const Reference& reference,
   return row;
 }
 
+// The points of the library, which are part of what a curved element is: its
+// stiffness is the integral of no polynomial.  How exact they are is tested by
+// themselves.
+void ForEachPointOfCurved(
+    ElementKind kind,
+    const std::function<void(const Eigen::VectorXd&, double)>& visit) {
+  VisitElementKind(kind, [&](auto constant) {
+    constexpr int kDimension = ElementSizes<constant>::kDimension;
+    for (const auto& at : IntegrationRule<constant>()) {
+      visit(at.vertex_value.template tail<kDimension>(), at.weight);
+    }
+  });
+}
+
 // Calls visit(xi, weight) at Gauss points: two along each axis of a square or a
 // cube, four of the cube collapsed onto a simplex.
 void ForEachPoint(
     ElementKind kind,
     const std::function<void(const Eigen::VectorXd&, double)>& visit) {
+  if (IsCurved(kind)) {
+    ForEachPointOfCurved(kind, visit);
+    return;
+  }
   const int d = TopologyOf(kind).dimension;
   std::vector<double> points = {-1 / std::sqrt(3.0), 1 / std::sqrt(3.0)};
   std::vector<double> weights = {1, 1};
@@ -313,7 +343,7 @@ std::string NameOf(const KindOfSection& parameter) {
 }
 
 Scene SceneOfKind(const KindOfSection& parameter, int cells) {
-  return RaisedScene(parameter, VertexScene(parameter, cells));
+  return RaisedScene(parameter, cells, VertexScene(parameter, cells));
 }
 
 Mesh MeshOfKind(const KindOfSection& parameter, int cells) {
@@ -405,8 +435,8 @@ void MeasureByTextbook(const IsotropicElasticity& elasticity, Scene& scene) {
 }
 
 void MeasureInCutWorld(const IsotropicElasticity& elasticity, Scene& scene) {
-  Scene finer = QuadraticScene(SimplicialScene(scene));
-  finer = QuadraticScene(SimplicialScene(finer));
+  Scene finer = FinerScene(scene);
+  finer = FinerScene(finer);
   Measure(elasticity, finer);
   TakeDisplacements(finer, scene);
 }

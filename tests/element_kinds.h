@@ -25,7 +25,8 @@ std::string NameOf(const KindOfSection& parameter);
 
 /// A distorted block, or a rectangle of thickness 0.7, of `cells` elements (or
 /// pairs of triangles, or sixes of tetrahedra) along each axis.  Every other
-/// element is of negative orientation.
+/// element is of negative orientation.  The edges of curved elements are bent
+/// as the block is.
 Mesh MeshOfKind(const KindOfSection& parameter, int cells = 3);
 
 /// The mesh held where its last coordinate is least before it is distorted,

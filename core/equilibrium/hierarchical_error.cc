@@ -6,9 +6,8 @@
 #include "elastimate/core/materials/elasticity.h"
 #include "elastimate/core/mesh/shape_functions.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
+#include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/core/scene/loads.h"
-#include "elastimate/core/scene/quadratic_scene.h"
-#include "elastimate/core/scene/simplicial_scene.h"
 
 namespace elastimate {
 namespace {
@@ -56,7 +55,7 @@ Eigen::RowVectorXd Quotients(const Eigen::RowVectorXd& of,
 }  // namespace
 
 HierarchicalError::HierarchicalError(const Scene& scene)
-    : finer_(QuadraticScene(SimplicialScene(scene))),
+    : finer_(FinerScene(scene)),
       nodes_(scene.mesh, finer_.mesh),
       stiffness_(finer_.mesh),
       is_free_((!finer_.supports.held).cast<double>().matrix().reshaped()),

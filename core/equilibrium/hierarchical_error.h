@@ -12,7 +12,7 @@
 namespace elastimate {
 
 /// What elements miss of the displacements of quadratic simplices of their
-/// nodes (SimplicialScene), which for quadratic elements are of half the size:
+/// nodes (FinerScene), which for quadratic elements are of half the size:
 /// the error of a response x of A(nu) = H + nu J to the loads (w) or to the
 /// held displacements (v),
 ///

@@ -1,5 +1,6 @@
 #include "elastimate/core/mechanics/strain_energy.h"
 
+#include <array>
 #include <vector>
 
 #include "elastimate/core/mesh/shape_functions.h"
@@ -53,6 +54,43 @@ void VisitGradients(const Mesh& mesh, Eigen::Index element,
       });
 }
 
+// Calls visit(displacement gradient, volume that it stands for) for each vertex
+// of an element.
+template <ElementKind kKind, class Visitor>
+void VisitVertices(const Mesh& mesh, Eigen::Index element,
+                   const double* displacement, const Visitor& visit) {
+  if constexpr (!IsCurved(kKind)) {
+    VisitGradients<kKind>(mesh, element, VertexRule<kKind>(), displacement,
+                          [&](const Gradient<kKind>& gradient, double volume,
+                              const auto&) { visit(gradient, volume); });
+  } else {
+    // The linear function of the reference element nearest to the gradient: at
+    // a vertex itself the map may be singular.  The inverse of the matrix of
+    // the means of lambda_a lambda_b is n (n + 1) (I - 1 1^T / (n + 1)).
+    constexpr int kVertices = ElementSizes<kKind>::kVertices;
+    std::array<Gradient<kKind>, kVertices> moments;
+    moments.fill(Gradient<kKind>::Zero());
+    Gradient<kKind> sum = Gradient<kKind>::Zero();
+    double volume = 0;
+    double weights = 0;
+    VisitGradients<kKind>(
+        mesh, element, IntegrationRule<kKind>(), displacement,
+        [&](const Gradient<kKind>& gradient, double volume_of_point,
+            const ShapeFunctions<kKind>& at) {
+          for (int a = 0; a < kVertices; ++a) {
+            moments[a] += at.weight * at.vertex_value(a) * gradient;
+          }
+          sum += at.weight * gradient;
+          weights += at.weight;
+          volume += volume_of_point;
+        });
+    for (const Gradient<kKind>& moment : moments) {
+      visit(kVertices / weights * ((kVertices + 1) * moment - sum),
+            volume / kVertices);
+    }
+  }
+}
+
 // At each node that is a vertex, the mean over the elements around it, weighted
 // by the volumes that the vertices stand for.
 template <ElementKind kKind>
@@ -61,16 +99,14 @@ std::vector<Gradient<kKind>> RecoveredGradient(const Mesh& mesh,
   std::vector<Gradient<kKind>> recovered(mesh.NumNodes(),
                                          Gradient<kKind>::Zero());
   std::vector<double> volumes(mesh.NumNodes(), 0.0);
-  const auto& vertices = VertexRule<kKind>();
   for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
     const int* node = mesh.elements.col(e).data();
-    VisitGradients<kKind>(mesh, e, vertices, displacement,
-                          [&](const Gradient<kKind>& gradient, double volume,
-                              const ShapeFunctions<kKind>&) {
-                            recovered[*node] += volume * gradient;
-                            volumes[*node] += volume;
-                            ++node;
-                          });
+    VisitVertices<kKind>(mesh, e, displacement,
+                         [&](const Gradient<kKind>& gradient, double volume) {
+                           recovered[*node] += volume * gradient;
+                           volumes[*node] += volume;
+                           ++node;
+                         });
   }
   for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
     if (volumes[node] > 0) {

@@ -33,16 +33,20 @@ const std::vector<std::array<int, 2>> kQuadrilateralEdges = {
 const std::vector<std::vector<int>> kQuadrilateralCorners = {
     {0, 1, 3}, {1, 2, 0}, {2, 3, 1}, {3, 0, 2}};
 
-const std::array<ElementTopology, 6> kTopologies = {{
+const std::array<ElementTopology, 8> kTopologies = {{
     {"tet4", "tetrahedron", "tetrahedra", 3, 1, 4, 4, kTetrahedronEdges,
      kTetrahedronFaces, kTetrahedronCorners},
     {"tet10", "tetrahedron", "tetrahedra", 3, 2, 10, 4, kTetrahedronEdges,
      kTetrahedronFaces, kTetrahedronCorners},
+    {"curved_tet10", "tetrahedron", "tetrahedra", 3, 2, 10, 4,
+     kTetrahedronEdges, kTetrahedronFaces, kTetrahedronCorners},
     {"hex8", "hexahedron", "hexahedra", 3, 1, 8, 8, kHexahedronEdges,
      kHexahedronFaces, kHexahedronCorners},
     {"tri3", "triangle", "triangles", 2, 1, 3, 3, kTriangleEdges,
      kTriangleFaces, kTriangleCorners},
     {"tri6", "triangle", "triangles", 2, 2, 6, 3, kTriangleEdges,
+     kTriangleFaces, kTriangleCorners},
+    {"curved_tri6", "triangle", "triangles", 2, 2, 6, 3, kTriangleEdges,
      kTriangleFaces, kTriangleCorners},
     {"quad4", "quadrilateral", "quadrilaterals", 2, 1, 4, 4,
      kQuadrilateralEdges, kQuadrilateralFaces, kQuadrilateralCorners},
@@ -71,6 +75,12 @@ bool HasQuadraticKind(ElementKind kind) {
 ElementKind QuadraticKind(ElementKind kind) {
   assert(HasQuadraticKind(kind));
   return kind == ElementKind::kTet4 ? ElementKind::kTet10 : ElementKind::kTri6;
+}
+
+ElementKind CurvedKind(ElementKind kind) {
+  assert(TopologyOf(kind).order == 2);
+  return DimensionOf(kind) == 3 ? ElementKind::kCurvedTet10
+                                : ElementKind::kCurvedTri6;
 }
 
 }  // namespace elastimate

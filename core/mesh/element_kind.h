@@ -13,28 +13,42 @@ namespace elastimate {
 enum class ElementKind {
   kTet4,   ///< The linear tetrahedron.
   kTet10,  ///< The quadratic tetrahedron with straight edges.
-  kHex8,   ///< The trilinear hexahedron.
-  kTri3,   ///< The linear triangle.
-  kTri6,   ///< The quadratic triangle with straight edges.
-  kQuad4,  ///< The bilinear quadrilateral.
+  /// The isoparametric quadratic tetrahedron: its shape functions map the
+  /// reference element to it too, so that its edges and faces may be curved.
+  kCurvedTet10,
+  kHex8,        ///< The trilinear hexahedron.
+  kTri3,        ///< The linear triangle.
+  kTri6,        ///< The quadratic triangle with straight edges.
+  kCurvedTri6,  ///< The isoparametric quadratic triangle.
+  kQuad4,       ///< The bilinear quadrilateral.
 };
 
-inline constexpr std::array<ElementKind, 6> kElementKinds = {
-    ElementKind::kTet4, ElementKind::kTet10, ElementKind::kHex8,
-    ElementKind::kTri3, ElementKind::kTri6,  ElementKind::kQuad4};
+inline constexpr std::array<ElementKind, 8> kElementKinds = {
+    ElementKind::kTet4,       ElementKind::kTet10, ElementKind::kCurvedTet10,
+    ElementKind::kHex8,       ElementKind::kTri3,  ElementKind::kTri6,
+    ElementKind::kCurvedTri6, ElementKind::kQuad4};
 
 /// 2 or 3.
 constexpr int DimensionOf(ElementKind kind) {
   return kind == ElementKind::kTri3 || kind == ElementKind::kTri6 ||
-                 kind == ElementKind::kQuad4
+                 kind == ElementKind::kCurvedTri6 || kind == ElementKind::kQuad4
              ? 2
              : 3;
 }
 
-/// Whether the map from the reference element to one with straight edges is
-/// affine.
+/// Whether it is a tetrahedron or a triangle.
 constexpr bool IsSimplex(ElementKind kind) {
   return kind != ElementKind::kHex8 && kind != ElementKind::kQuad4;
+}
+
+/// Whether its nodes in the middle of edges may be off the straight line.
+constexpr bool IsCurved(ElementKind kind) {
+  return kind == ElementKind::kCurvedTet10 || kind == ElementKind::kCurvedTri6;
+}
+
+/// Whether the map from the reference element to it is affine.
+constexpr bool IsAffine(ElementKind kind) {
+  return IsSimplex(kind) && !IsCurved(kind);
 }
 
 /// How the nodes of an element lie to each other.
@@ -81,6 +95,9 @@ ElementKind QuadraticKind(ElementKind kind);
 
 /// Whether there is a QuadraticKind.
 bool HasQuadraticKind(ElementKind kind);
+
+/// The curved kind of a quadratic one.  Precondition: a kind of order 2.
+ElementKind CurvedKind(ElementKind kind);
 
 }  // namespace elastimate
 

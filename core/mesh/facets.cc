@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 #include <tuple>
 #include <vector>
@@ -106,6 +107,25 @@ double Orientation(const Mesh& mesh, Eigen::Index element) {
                                : Eigen::Matrix2d(edges).determinant();
 }
 
+// The integral over a facet that is no flat triangle, by the rule of an element
+// of its shape: the cross product of the tangents is the area vector.
+template <ElementKind kFacet>
+FacetWeights WeightsOfSurface(const Mesh& mesh,
+                              const Eigen::Ref<const Eigen::VectorXi>& facet) {
+  constexpr int kNodes = ElementSizes<kFacet>::kNodes;
+  FacetWeights weights = {Eigen::VectorXd::Zero(kNodes),
+                          Eigen::MatrixXd::Zero(3, kNodes)};
+  const Eigen::Matrix<double, 3, kNodes> x = mesh.nodes(Eigen::all, facet);
+  for (const auto& at : IntegrationRule<kFacet>()) {
+    const Eigen::Matrix<double, 3, 2> tangents = x * at.gradient.transpose();
+    const Eigen::Vector3d area_vector =
+        at.weight * tangents.col(0).cross(tangents.col(1));
+    weights.area += area_vector.norm() * at.value;
+    weights.area_vector += area_vector * at.value.transpose();
+  }
+  return weights;
+}
+
 FacetWeights WeightsOfTriangle(const Mesh& mesh,
                                const Eigen::Ref<const Eigen::VectorXi>& facet) {
   const Eigen::Vector3d origin = mesh.nodes.col(facet(0));
@@ -118,19 +138,8 @@ FacetWeights WeightsOfTriangle(const Mesh& mesh,
   return {area_vector.norm() * share, area_vector * share.transpose()};
 }
 
-FacetWeights WeightsOfQuadrilateral(
-    const Mesh& mesh, const Eigen::Ref<const Eigen::VectorXi>& facet) {
-  FacetWeights weights = {Eigen::VectorXd::Zero(4),
-                          Eigen::MatrixXd::Zero(3, 4)};
-  const Eigen::Matrix<double, 3, 4> x = mesh.nodes(Eigen::all, facet);
-  for (const auto& at : IntegrationRule<ElementKind::kQuad4>()) {
-    const Eigen::Matrix<double, 3, 2> tangents = x * at.gradient.transpose();
-    const Eigen::Vector3d area_vector =
-        at.weight * tangents.col(0).cross(tangents.col(1));
-    weights.area += area_vector.norm() * at.value;
-    weights.area_vector += area_vector * at.value.transpose();
-  }
-  return weights;
+Eigen::Vector2d TurnedOutwards(const Eigen::Vector2d& tangent) {
+  return {tangent.y(), -tangent.x()};
 }
 
 FacetWeights WeightsOfEdge(const Mesh& mesh,
@@ -138,7 +147,7 @@ FacetWeights WeightsOfEdge(const Mesh& mesh,
   const Eigen::Vector2d edge =
       mesh.nodes.col(facet(1)) - mesh.nodes.col(facet(0));
   const Eigen::Vector2d area_vector =
-      mesh.section.thickness * Eigen::Vector2d(edge.y(), -edge.x());
+      mesh.section.thickness * TurnedOutwards(edge);
   Eigen::VectorXd share(facet.size());
   if (facet.size() == 2) {
     share << 0.5, 0.5;
@@ -146,6 +155,26 @@ FacetWeights WeightsOfEdge(const Mesh& mesh,
     share << 1.0 / 6, 1.0 / 6, 4.0 / 6;
   }
   return {area_vector.norm() * share, area_vector * share.transpose()};
+}
+
+// By three Gauss points of the interval from -1 to 1, where the shape functions
+// are t (t - 1) / 2, t (t + 1) / 2 and 1 - t^2.
+FacetWeights WeightsOfCurvedEdge(
+    const Mesh& mesh, const Eigen::Ref<const Eigen::VectorXi>& facet) {
+  FacetWeights weights = {Eigen::VectorXd::Zero(3),
+                          Eigen::MatrixXd::Zero(2, 3)};
+  const Eigen::Matrix<double, 2, 3> x = mesh.nodes(Eigen::all, facet);
+  const double outer = std::sqrt(0.6);
+  for (const double t : {-outer, 0.0, outer}) {
+    const Eigen::Vector3d value(t * (t - 1) / 2, t * (t + 1) / 2, 1 - t * t);
+    const Eigen::Vector3d derivative(t - 0.5, t + 0.5, -2 * t);
+    const Eigen::Vector2d area_vector = mesh.section.thickness *
+                                        (t == 0 ? 8.0 : 5.0) / 9 *
+                                        TurnedOutwards(x * derivative);
+    weights.area += area_vector.norm() * value;
+    weights.area_vector += area_vector * value.transpose();
+  }
+  return weights;
 }
 
 }  // namespace
@@ -204,11 +233,14 @@ FacetWeights WeightsOfFacet(const Mesh& mesh,
                             const Eigen::Ref<const Eigen::VectorXi>& facet) {
   switch (mesh.Topology().NumVerticesOfFace()) {
     case 2:
-      return WeightsOfEdge(mesh, facet);
+      return IsCurved(mesh.kind) ? WeightsOfCurvedEdge(mesh, facet)
+                                 : WeightsOfEdge(mesh, facet);
     case 3:
-      return WeightsOfTriangle(mesh, facet);
+      return IsCurved(mesh.kind)
+                 ? WeightsOfSurface<ElementKind::kCurvedTri6>(mesh, facet)
+                 : WeightsOfTriangle(mesh, facet);
     default:
-      return WeightsOfQuadrilateral(mesh, facet);
+      return WeightsOfSurface<ElementKind::kQuad4>(mesh, facet);
   }
 }
 

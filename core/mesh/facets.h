@@ -36,7 +36,8 @@ struct FacetWeights {
 };
 
 /// Areas contain the thickness of a planar section.  Exact for straight edges
-/// and flat faces; 4 points in a quadrilateral.
+/// and flat faces; 4 points in a quadrilateral.  The area vectors of curved
+/// facets are exact, and areas are by 3 points in an edge or 6 in a triangle.
 FacetWeights WeightsOfFacet(const Mesh& mesh,
                             const Eigen::Ref<const Eigen::VectorXi>& facet);
 

@@ -4,25 +4,12 @@
 #include <vector>
 
 #include "elastimate/core/mesh/mesh_points.h"
+#include "elastimate/core/mesh/shape_functions.h"
 
 namespace elastimate {
 namespace {
 
 using Entries = std::vector<Eigen::Triplet<double, Eigen::Index>>;
-
-// The reference coordinates of a node of a quadratic simplex, of which vertex 0
-// is the origin.
-Eigen::VectorXd ReferenceOf(const ElementTopology& topology, int node) {
-  Eigen::VectorXd barycentric = Eigen::VectorXd::Zero(topology.num_vertices);
-  if (node < topology.num_vertices) {
-    barycentric(node) = 1;
-  } else {
-    for (const int end : topology.edges[node - topology.num_vertices]) {
-      barycentric(end) = 0.5;
-    }
-  }
-  return barycentric.tail(topology.num_vertices - 1);
-}
 
 // Of the nodes of an element in the middle between two of them.
 void AddWeights(const Mesh& mesh, Eigen::Index element, int a, int b,
@@ -33,10 +20,10 @@ void AddWeights(const Mesh& mesh, Eigen::Index element, int a, int b,
     return;
   }
   const auto nodes = mesh.elements.col(element);
+  const Eigen::MatrixXd reference = ReferenceNodes(mesh.kind);
   const auto reference_of = [&](int node) {
-    return ReferenceOf(
-        mesh.Topology(),
-        int(std::find(nodes.begin(), nodes.end(), node) - nodes.begin()));
+    return reference.col(std::find(nodes.begin(), nodes.end(), node) -
+                         nodes.begin());
   };
   const Eigen::VectorXd values =
       ShapeFunctionsOf(mesh, {Eigen::VectorXi::Constant(1, int(element)),

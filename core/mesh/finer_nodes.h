@@ -14,7 +14,8 @@ namespace elastimate {
 ///
 /// The functions of simplices are among those of the finer ones, and so are
 /// taken over as they are: linear ones by the mean of the ends of an edge,
-/// quadratic ones by their values at the middle of edges of half the size.
+/// quadratic ones by their values at the middle of edges of half the size, in
+/// reference coordinates where they are curved.
 /// Hexahedra and quadrilaterals are taken as the linear simplices of their
 /// nodes.
 class FinerNodes {
@@ -35,11 +36,12 @@ class FinerNodes {
   /// as `forces` on every displacement of its elements.
   Eigen::MatrixXd Restrict(const Eigen::MatrixXd& forces) const;
 
- private:
   using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor, Eigen::Index>;
+  /// Of the nodes of the mesh at the mid-edge nodes, num_mid_edges x num_nodes.
+  const Weights& WeightsOfNodes() const { return weights_; }
 
+ private:
   int dimension_;
-  /// Of the nodes of the mesh at the mid-edge nodes.
   Weights weights_;
 };
 

@@ -91,15 +91,35 @@ Eigen::Matrix<double, kDimension, kDimension> EdgesOfCorner(const Mesh& mesh,
   return edges;
 }
 
-// "flat" or "folded", where an element is; else empty.
+// Whether the determinant of the map has the sign of `orientation` at all
+// points of integration.
+template <ElementKind kKind>
+bool IsOriented(const Mesh& mesh, Eigen::Index element, double orientation) {
+  const auto nodes = GatherMapNodes<kKind>(mesh, element);
+  const auto& rule = IntegrationRule<kKind>();
+  return std::all_of(rule.begin(), rule.end(), [&](const auto& at) {
+    return (nodes * at.MapGradient().transpose()).determinant() * orientation >
+           0;
+  });
+}
+
+// "flat", "folded" or "bent", where an element is; else empty.
 template <int kDimension>
 std::string_view WhyNoElement(const Mesh& mesh, const ElementTopology& topology,
                               Eigen::Index element) {
   const int* const nodes = mesh.elements.col(element).data();
   if (IsSimplex(mesh.kind)) {
     constexpr int kVertices[] = {0, 1, 2, 3};
-    return IsFlat(EdgesOfCorner<kDimension>(mesh, nodes, kVertices)) ? "flat"
-                                                                     : "";
+    const auto edges = EdgesOfCorner<kDimension>(mesh, nodes, kVertices);
+    if (IsFlat(edges)) {
+      return "flat";
+    }
+    constexpr ElementKind kCurved =
+        kDimension == 3 ? ElementKind::kCurvedTet10 : ElementKind::kCurvedTri6;
+    return IsCurved(mesh.kind) &&
+                   !IsOriented<kCurved>(mesh, element, edges.determinant())
+               ? "bent"
+               : "";
   }
   double orientation = 0;
   for (const std::vector<int>& corner : topology.corners) {
@@ -113,17 +133,10 @@ std::string_view WhyNoElement(const Mesh& mesh, const ElementTopology& topology,
     }
     orientation = determinant;
   }
-  if (mesh.kind == ElementKind::kHex8) {
-    const auto vertices = GatherVertices<ElementKind::kHex8>(mesh, element);
-    for (const auto& at : IntegrationRule<ElementKind::kHex8>()) {
-      if (!((vertices * at.vertex_gradient.transpose()).determinant() *
-                orientation >
-            0)) {
-        return "folded";
-      }
-    }
-  }
-  return "";
+  return mesh.kind == ElementKind::kHex8 &&
+                 !IsOriented<ElementKind::kHex8>(mesh, element, orientation)
+             ? "folded"
+             : "";
 }
 
 void ValidateSection(const Mesh& mesh) {
@@ -213,6 +226,13 @@ std::vector<char> ValidateElements(const Mesh& mesh) {
           " is flat (its smallest height is less than a millionth of its "
           "longest edge); remove it or mesh again");
     }
+    if (why_not == "bent") {
+      throw std::invalid_argument(
+          ElementName(mesh, element) +
+          " is bent so far that it folds onto itself (the determinant of its "
+          "map changes sign); order its nodes as VTK does, or mesh again with "
+          "smaller elements or straight edges");
+    }
     if (!why_not.empty()) {
       throw std::invalid_argument(
           ElementName(mesh, element) +
@@ -240,12 +260,14 @@ void ValidateMidEdgeNodes(const Mesh& mesh) {
             ElementName(mesh, element) + " is numbered before vertex " +
             std::to_string(num_vertices - 1) + "; number all vertices first");
       }
-      if (!IsInTheMiddle(mesh, node, a, b)) {
+      if (!IsCurved(mesh.kind) && !IsInTheMiddle(mesh, node, a, b)) {
         throw std::invalid_argument(
             "mid-edge node " + std::to_string(node) + " of " +
             ElementName(mesh, element) + " is not in the middle between " +
             std::to_string(a) + " and " + std::to_string(b) +
-            "; straighten the edges, and order the nodes as VTK does");
+            "; straighten the edges, and order the nodes as VTK does, or make "
+            "the elements of kind " +
+            std::string(TopologyOf(CurvedKind(mesh.kind)).name));
       }
     }
   }

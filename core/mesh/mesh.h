@@ -38,9 +38,9 @@ struct Mesh {
   Section section;
   Eigen::MatrixXd nodes;  ///< dimension x num_nodes, positions [length].
   /// num_nodes of the kind x num_elements, zero-based node indices in the order
-  /// of VTK: the vertices, then, in quadratic elements, whose edges are
-  /// straight, the nodes in the middle of the edges (ElementTopology).  In a
-  /// quadratic mesh all vertices are numbered before all mid-edge nodes, and
+  /// of VTK: the vertices, then, in quadratic elements, the nodes of the edges
+  /// (ElementTopology), which are in the middle unless the kind is curved.  In
+  /// a quadratic mesh all vertices are numbered before all mid-edge nodes, and
   /// elements that share an edge share its node.
   Eigen::MatrixXi elements;
   Eigen::VectorXi regions;  ///< num_elements material region ids, or empty.
@@ -65,10 +65,11 @@ struct Mesh {
 /// dimension with a positive thickness, finite positions, an extent between
 /// 1e-50 and 1e50, node indices in range, every node used by an element, no
 /// flat or folded element (a height at a vertex below 1e-6 of the longest edge
-/// there, or vertices of different orientation), no hexahedra with 3 nodes of a
-/// side in common but not the fourth, mid-edge nodes after all vertices and in
-/// the middle of their edges (within 1e-6 of their length), and region ids for
-/// all elements or for none.  O(num_elements), of hexahedra times a logarithm.
+/// there, or vertices or integration points of different orientation), no
+/// hexahedra with 3 nodes of a side in common but not the fourth, mid-edge
+/// nodes after all vertices and, unless elements are curved, in the middle of
+/// their edges (within 1e-6 of their length), and region ids for all elements
+/// or for none.  O(num_elements), of hexahedra times a logarithm.
 void ValidateMesh(const Mesh& mesh);
 
 /// Whether `node` is in the middle between `a` and `b`, to within a millionth

@@ -41,21 +41,21 @@ auto DrawReferencePoint(std::mt19937_64& generator) {
 template <ElementKind kKind>
 auto DrawLocalPoint(const Mesh& mesh, Eigen::Index element,
                     std::mt19937_64& generator) {
-  if (IsSimplex(kKind)) {
+  if (IsAffine(kKind)) {
     return DrawReferencePoint<kKind>(generator);
   }
-  const auto vertices = GatherVertices<kKind>(mesh, element);
+  const auto nodes = GatherMapNodes<kKind>(mesh, element);
   Eigen::Matrix<double, 1, ElementSizes<kKind>::kDimension> longest;
   longest.setZero();
   for (const ShapeFunctions<kKind>& at : VertexRule<kKind>()) {
     longest = longest.cwiseMax(
-        (vertices * at.vertex_gradient.transpose()).colwise().norm());
+        (nodes * at.MapGradient().transpose()).colwise().norm());
   }
   UnitDistribution share(0, 1);
   while (true) {
     auto xi = DrawReferencePoint<kKind>(generator);
     const auto at = ShapeFunctionsAt<kKind>(xi, 1);
-    if (ElementMap<kKind>(vertices, at, 1).volume_ratio >=
+    if (ElementMap<kKind>(nodes, at, 1).volume_ratio >=
         share(generator) * longest.prod()) {
       return xi;
     }

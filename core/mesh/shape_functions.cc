@@ -1,5 +1,7 @@
 #include "elastimate/core/mesh/shape_functions.h"
 
+#include <algorithm>
+#include <array>
 #include <vector>
 
 namespace elastimate {
@@ -57,11 +59,55 @@ void SetQuadraticFunctions(ShapeFunctions<kKind>& at) {
   }
 }
 
+// Points that are all permutations of some barycentric coordinates, and the
+// weight of each, relative to the size of the reference element.
+struct Orbit {
+  double weight;
+  std::array<double, 4> barycentric;
+};
+
+template <ElementKind kKind>
+std::vector<ShapeFunctions<kKind>> MakeCurvedRule() {
+  constexpr int kDimension = ElementSizes<kKind>::kDimension;
+  constexpr double kOfFaces = 0.31088591926330060980;
+  constexpr double kOfVertices = 0.092735250310891226402;
+  constexpr double kOfEdges = 0.045503704125649649492;
+  constexpr double kOfSides = 0.44594849091596488632;
+  constexpr double kOfCorners = 0.091576213509770743460;
+  const std::vector<Orbit> orbits =
+      kDimension == 3
+          ? std::vector<Orbit>{{0.11268792571801585080,
+                                {1 - 3 * kOfFaces, kOfFaces, kOfFaces,
+                                 kOfFaces}},
+                               {0.073493043116361949544,
+                                {kOfVertices, kOfVertices, kOfVertices,
+                                 1 - 3 * kOfVertices}},
+                               {0.042546020777081466438,
+                                {kOfEdges, kOfEdges, 0.5 - kOfEdges,
+                                 0.5 - kOfEdges}}}
+          : std::vector<Orbit>{{0.22338158967801146570,
+                                {1 - 2 * kOfSides, kOfSides, kOfSides}},
+                               {0.10995174365532186764,
+                                {kOfCorners, kOfCorners, 1 - 2 * kOfCorners}}};
+  std::vector<ShapeFunctions<kKind>> rule;
+  for (Orbit orbit : orbits) {
+    auto* const first = orbit.barycentric.data();
+    do {
+      rule.push_back(
+          ShapeFunctionsAt<kKind>(Eigen::Map<const Point<kKind>>(first + 1),
+                                  orbit.weight / (kDimension == 3 ? 6 : 2)));
+    } while (std::next_permutation(first, first + kDimension + 1));
+  }
+  return rule;
+}
+
 template <ElementKind kKind>
 std::vector<ShapeFunctions<kKind>> MakeIntegrationRule() {
   constexpr int kDimension = ElementSizes<kKind>::kDimension;
   std::vector<ShapeFunctions<kKind>> rule;
-  if constexpr (IsSimplex(kKind)) {
+  if constexpr (IsCurved(kKind)) {
+    rule = MakeCurvedRule<kKind>();
+  } else if constexpr (IsSimplex(kKind)) {
     // Barycentric coordinates (b, a, a, a) and its permutations.
     const double a = kDimension == 3 ? (5 - std::sqrt(5.0)) / 20 : 1.0 / 6;
     const double b = 1 - kDimension * a;
@@ -151,6 +197,18 @@ const std::vector<ShapeFunctions<kKind>>& VertexRule() {
   return rule;
 }
 
+Eigen::MatrixXd ReferenceNodes(ElementKind kind) {
+  const ElementTopology& topology = TopologyOf(kind);
+  const int dimension = topology.dimension;
+  Eigen::MatrixXd nodes = Eigen::MatrixXd::Zero(dimension, topology.num_nodes);
+  nodes.middleCols(1, dimension).setIdentity();
+  for (int i = topology.num_vertices; i < topology.num_nodes; ++i) {
+    const auto [a, b] = topology.edges[i - topology.num_vertices];
+    nodes.col(i) = 0.5 * (nodes.col(a) + nodes.col(b));
+  }
+  return nodes;
+}
+
 #define ELASTIMATE_INSTANTIATE(kind)                                         \
   template ShapeFunctions<kind> ShapeFunctionsAt<kind>(                      \
       const Eigen::Matrix<double, ElementSizes<kind>::kDimension, 1>&,       \
@@ -161,9 +219,11 @@ const std::vector<ShapeFunctions<kKind>>& VertexRule() {
 
 ELASTIMATE_INSTANTIATE(ElementKind::kTet4)
 ELASTIMATE_INSTANTIATE(ElementKind::kTet10)
+ELASTIMATE_INSTANTIATE(ElementKind::kCurvedTet10)
 ELASTIMATE_INSTANTIATE(ElementKind::kHex8)
 ELASTIMATE_INSTANTIATE(ElementKind::kTri3)
 ELASTIMATE_INSTANTIATE(ElementKind::kTri6)
+ELASTIMATE_INSTANTIATE(ElementKind::kCurvedTri6)
 ELASTIMATE_INSTANTIATE(ElementKind::kQuad4)
 
 }  // namespace elastimate

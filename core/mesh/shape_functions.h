@@ -13,32 +13,44 @@
 
 namespace elastimate {
 
-/// Sizes of an element kind that are known to the compiler.
+/// Sizes of an element kind that are known to the compiler.  The nodes that the
+/// map from the reference element takes are the first kMapNodes: all of an
+/// isoparametric element, the vertices of one with straight edges.
 template <ElementKind kKind>
 struct ElementSizes;
 template <>
 struct ElementSizes<ElementKind::kTet4> {
-  static constexpr int kDimension = 3, kNodes = 4, kVertices = 4;
+  static constexpr int kDimension = 3, kNodes = 4, kVertices = 4, kMapNodes = 4;
 };
 template <>
 struct ElementSizes<ElementKind::kTet10> {
-  static constexpr int kDimension = 3, kNodes = 10, kVertices = 4;
+  static constexpr int kDimension = 3, kNodes = 10, kVertices = 4,
+                       kMapNodes = 4;
+};
+template <>
+struct ElementSizes<ElementKind::kCurvedTet10> {
+  static constexpr int kDimension = 3, kNodes = 10, kVertices = 4,
+                       kMapNodes = 10;
 };
 template <>
 struct ElementSizes<ElementKind::kHex8> {
-  static constexpr int kDimension = 3, kNodes = 8, kVertices = 8;
+  static constexpr int kDimension = 3, kNodes = 8, kVertices = 8, kMapNodes = 8;
 };
 template <>
 struct ElementSizes<ElementKind::kTri3> {
-  static constexpr int kDimension = 2, kNodes = 3, kVertices = 3;
+  static constexpr int kDimension = 2, kNodes = 3, kVertices = 3, kMapNodes = 3;
 };
 template <>
 struct ElementSizes<ElementKind::kTri6> {
-  static constexpr int kDimension = 2, kNodes = 6, kVertices = 3;
+  static constexpr int kDimension = 2, kNodes = 6, kVertices = 3, kMapNodes = 3;
+};
+template <>
+struct ElementSizes<ElementKind::kCurvedTri6> {
+  static constexpr int kDimension = 2, kNodes = 6, kVertices = 3, kMapNodes = 6;
 };
 template <>
 struct ElementSizes<ElementKind::kQuad4> {
-  static constexpr int kDimension = 2, kNodes = 4, kVertices = 4;
+  static constexpr int kDimension = 2, kNodes = 4, kVertices = 4, kMapNodes = 4;
 };
 
 /// The shape functions of an element kind at a point of its reference element.
@@ -48,11 +60,21 @@ struct ShapeFunctions {
   Eigen::Matrix<double, Sizes::kNodes, 1> value;  ///< N_i.
   /// dN_i / dxi, dimension x num_nodes.
   Eigen::Matrix<double, Sizes::kDimension, Sizes::kNodes> gradient;
-  /// Those of the vertices alone, of order 1: the position in the element is
-  /// sum_i M_i x_i, since edges are straight.
+  /// Those of the vertices alone, of order 1.
   Eigen::Matrix<double, Sizes::kVertices, 1> vertex_value;
   Eigen::Matrix<double, Sizes::kDimension, Sizes::kVertices> vertex_gradient;
   double weight;  ///< Of this point in the rule that it is part of.
+
+  /// dM_i / dxi, dimension x kMapNodes: the position in the element is
+  /// sum_i M_i x_i, over its vertices where edges are straight, else over all
+  /// nodes.
+  const auto& MapGradient() const {
+    if constexpr (IsCurved(kKind)) {
+      return gradient;
+    } else {
+      return vertex_gradient;
+    }
+  }
 };
 
 /// At the reference coordinates xi: those of the vertices of a tetrahedron are
@@ -64,9 +86,17 @@ ShapeFunctions<kKind> ShapeFunctionsAt(
     double weight);
 
 /// Points and weights that integrate over the reference element: products of
-/// two linear functions exactly over a simplex (4 points in a tetrahedron, 3 in
-/// a triangle), and cubics along each axis of a hexahedron (8 points) or a
-/// quadrilateral (4) [Zienkiewicz & Taylor, The Finite Element Method].
+/// two linear functions exactly over a simplex with straight edges (4 points in
+/// a tetrahedron, 3 in a triangle), and cubics along each axis of a hexahedron
+/// (8 points) or a quadrilateral (4) [Zienkiewicz & Taylor, The Finite Element
+/// Method].
+///
+/// The determinant of the map of a curved simplex is of degree 3 (in a triangle
+/// 2).  Polynomials of degree 5 (4), which is that of a shape function times
+/// this determinant, are integrated exactly by 14 points [Walkington,
+/// Quadrature on simplices of arbitrary dimension, 2000] (6 [Dunavant, Int. J.
+/// Numer. Methods Eng. 21 (1985) 1129]).  Volumes, uniform body forces and the
+/// forces of a uniform stress are then exact, and all weights are positive.
 template <ElementKind kKind>
 const std::vector<ShapeFunctions<kKind>>& IntegrationRule();
 
@@ -80,15 +110,19 @@ const std::vector<ShapeFunctions<kKind>>& StiffnessRule();
 template <ElementKind kKind>
 const std::vector<ShapeFunctions<kKind>>& VertexRule();
 
-/// The positions of the vertices of an element, dimension x num_vertices.
+/// The reference coordinates of the nodes of a simplex, dimension x num_nodes.
+Eigen::MatrixXd ReferenceNodes(ElementKind kind);
+
+/// The positions of the nodes of an element that its map takes, dimension x
+/// kMapNodes.
 template <ElementKind kKind>
 Eigen::Matrix<double, ElementSizes<kKind>::kDimension,
-              ElementSizes<kKind>::kVertices>
-GatherVertices(const Mesh& mesh, Eigen::Index element) {
+              ElementSizes<kKind>::kMapNodes>
+GatherMapNodes(const Mesh& mesh, Eigen::Index element) {
   using Sizes = ElementSizes<kKind>;
-  Eigen::Matrix<double, Sizes::kDimension, Sizes::kVertices> x;
+  Eigen::Matrix<double, Sizes::kDimension, Sizes::kMapNodes> x;
   const int* const nodes = mesh.elements.col(element).data();
-  for (int i = 0; i < Sizes::kVertices; ++i) {
+  for (int i = 0; i < Sizes::kMapNodes; ++i) {
     x.col(i) = Eigen::Map<const Eigen::Matrix<double, Sizes::kDimension, 1>>(
         mesh.nodes.data() + Sizes::kDimension * Eigen::Index(nodes[i]));
   }
@@ -112,7 +146,7 @@ GatherNodes(const Mesh& mesh, Eigen::Index element, const double* values) {
 }
 
 /// The map from the reference element to an element at one of its points; at
-/// all of them where IsSimplex.
+/// all of them where IsAffine.
 template <ElementKind kKind>
 struct ElementMap {
   using Sizes = ElementSizes<kKind>;
@@ -122,12 +156,12 @@ struct ElementMap {
   /// |det dx/dxi|, times the thickness of a planar section.
   double volume_ratio;
 
-  /// `vertices` are those of GatherVertices; the thickness is 1 in three
+  /// `nodes` are those of GatherMapNodes; the thickness is 1 in three
   /// dimensions.
-  ElementMap(const Eigen::Matrix<double, Sizes::kDimension, Sizes::kVertices>&
-                 vertices,
-             const ShapeFunctions<kKind>& at, double thickness) {
-    const Jacobian jacobian = vertices * at.vertex_gradient.transpose();
+  ElementMap(
+      const Eigen::Matrix<double, Sizes::kDimension, Sizes::kMapNodes>& nodes,
+      const ShapeFunctions<kKind>& at, double thickness) {
+    const Jacobian jacobian = nodes * at.MapGradient().transpose();
     inverse_transpose = jacobian.inverse().transpose();
     volume_ratio = std::abs(jacobian.determinant()) * thickness;
   }
@@ -153,11 +187,11 @@ template <ElementKind kKind, class Visitor>
 void VisitPoints(const Mesh& mesh, Eigen::Index element,
                  const std::vector<ShapeFunctions<kKind>>& rule,
                  const Visitor& visit) {
-  const auto vertices = GatherVertices<kKind>(mesh, element);
-  ElementMap<kKind> map(vertices, rule[0], mesh.section.thickness);
+  const auto nodes = GatherMapNodes<kKind>(mesh, element);
+  ElementMap<kKind> map(nodes, rule[0], mesh.section.thickness);
   for (std::size_t i = 0; i < rule.size(); ++i) {
-    if (!IsSimplex(kKind) && i > 0) {
-      map = ElementMap<kKind>(vertices, rule[i], mesh.section.thickness);
+    if (!IsAffine(kKind) && i > 0) {
+      map = ElementMap<kKind>(nodes, rule[i], mesh.section.thickness);
     }
     visit(ElementPoint<kKind>(map, rule[i]), rule[i]);
   }
@@ -173,6 +207,9 @@ decltype(auto) VisitElementKind(ElementKind kind, Function&& function) {
     case ElementKind::kTet10:
       return function(
           std::integral_constant<ElementKind, ElementKind::kTet10>());
+    case ElementKind::kCurvedTet10:
+      return function(
+          std::integral_constant<ElementKind, ElementKind::kCurvedTet10>());
     case ElementKind::kHex8:
       return function(
           std::integral_constant<ElementKind, ElementKind::kHex8>());
@@ -182,6 +219,9 @@ decltype(auto) VisitElementKind(ElementKind kind, Function&& function) {
     case ElementKind::kTri6:
       return function(
           std::integral_constant<ElementKind, ElementKind::kTri6>());
+    case ElementKind::kCurvedTri6:
+      return function(
+          std::integral_constant<ElementKind, ElementKind::kCurvedTri6>());
     case ElementKind::kQuad4:
       break;
   }

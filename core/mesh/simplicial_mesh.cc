@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "elastimate/core/mesh/shape_functions.h"
+
 namespace elastimate {
 namespace {
 
@@ -139,10 +141,12 @@ Simplices Cut(const Mesh& mesh, Eigen::Index element,
     case ElementKind::kTri3:
       return {{nodes(0), nodes(1), nodes(2)}};
     case ElementKind::kTet10:
+    case ElementKind::kCurvedTet10:
       return CutQuadraticTetrahedron(mesh, element);
     case ElementKind::kHex8:
       return CutHexahedron(mesh, element, rank);
     case ElementKind::kTri6:
+    case ElementKind::kCurvedTri6:
       for (const auto& [a, b, c] : kTriangleCuts) {
         cuts.push_back({nodes(a), nodes(b), nodes(c)});
       }
@@ -162,11 +166,11 @@ Simplices Cut(const Mesh& mesh, Eigen::Index element,
 std::vector<Triangle> CutFacet(const Mesh& mesh,
                                const Eigen::Ref<const Eigen::VectorXi>& nodes,
                                const Eigen::VectorXi& rank) {
-  if (mesh.kind == ElementKind::kTri6) {
+  if (mesh.Dimension() == 2) {
     return {{nodes(0), nodes(2)}, {nodes(2), nodes(1)}};
   }
   std::vector<Triangle> cuts;
-  if (mesh.kind == ElementKind::kTet10) {
+  if (IsSimplex(mesh.kind)) {
     for (const auto& [a, b, c] : kTriangleCuts) {
       cuts.push_back({nodes(a), nodes(b), nodes(c)});
     }
@@ -179,14 +183,30 @@ std::vector<Triangle> CutFacet(const Mesh& mesh,
   return cuts;
 }
 
-// The reference coordinates in a simplex of a point in space.
-Eigen::VectorXd LocalIn(const Mesh& simplices, Eigen::Index simplex,
+// The reference coordinates of a point in the simplex of these vertices.
+Eigen::VectorXd LocalIn(const Eigen::MatrixXd& vertices,
                         const Eigen::VectorXd& position) {
-  const Eigen::MatrixXd x =
-      simplices.nodes(Eigen::all, simplices.elements.col(simplex));
   const Eigen::MatrixXd edges =
-      x.rightCols(simplices.Dimension()).colwise() - x.col(0);
-  return edges.partialPivLu().solve(position - x.col(0));
+      vertices.rightCols(position.size()).colwise() - vertices.col(0);
+  return edges.partialPivLu().solve(position - vertices.col(0));
+}
+
+// The vertices of a cut of an element, as reference coordinates of the element
+// where that is a simplex, so that a point of a curved one stays in place, else
+// as positions.
+Eigen::MatrixXd VerticesOfCut(const Mesh& mesh, Eigen::Index element,
+                              const Eigen::Ref<const Eigen::VectorXi>& cut) {
+  if (!IsSimplex(mesh.kind)) {
+    return mesh.nodes(Eigen::all, cut);
+  }
+  const Eigen::MatrixXd reference = ReferenceNodes(mesh.kind);
+  const auto nodes = mesh.elements.col(element);
+  Eigen::MatrixXd vertices(reference.rows(), cut.size());
+  for (Eigen::Index i = 0; i < cut.size(); ++i) {
+    vertices.col(i) = reference.col(
+        std::find(nodes.begin(), nodes.end(), cut(i)) - nodes.begin());
+  }
+  return vertices;
 }
 
 // How far within the reference simplex, negative outside.
@@ -244,7 +264,9 @@ MeshPoints SimplicialMesh::PointsOf(const MeshPoints& points) const {
   if (num_cuts == 1) {
     return points;
   }
-  const Eigen::MatrixXd positions = Interpolate(mesh_, points, mesh_.nodes);
+  const Eigen::MatrixXd positions =
+      IsSimplex(mesh_.kind) ? points.local
+                            : Interpolate(mesh_, points, mesh_.nodes);
   MeshPoints found = {Eigen::VectorXi(points.Size()),
                       Eigen::MatrixXd(mesh_.Dimension(), points.Size())};
   for (Eigen::Index i = 0; i < points.Size(); ++i) {
@@ -252,7 +274,9 @@ MeshPoints SimplicialMesh::PointsOf(const MeshPoints& points) const {
     for (Eigen::Index k = 0; k < num_cuts; ++k) {
       const Eigen::Index simplex = num_cuts * points.elements(i) + k;
       const Eigen::VectorXd local =
-          LocalIn(simplices_, simplex, positions.col(i));
+          LocalIn(VerticesOfCut(mesh_, points.elements(i),
+                                simplices_.elements.col(simplex)),
+                  positions.col(i));
       if (Depth(local) > deepest) {
         deepest = Depth(local);
         found.elements(i) = static_cast<int>(simplex);

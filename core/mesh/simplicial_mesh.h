@@ -10,8 +10,9 @@ namespace elastimate {
 
 /// The same body as linear tetrahedra or triangles of the same nodes.
 ///
-/// A quadratic simplex is cut at the middle of its edges into eight or four of
-/// equal volume, of a tetrahedron along the shortest diagonal inside.  A
+/// A quadratic simplex is cut at the middle of its edges into eight or four, of
+/// equal volume if its edges are straight, of a tetrahedron along the shortest
+/// diagonal inside; a curved one is replaced by simplices that are not.  A
 /// hexahedron is cut into six and a quadrilateral into two, each face along the
 /// diagonal from its first node, so that neighbours meet [Dompierre et al.,
 /// Proc. 8th Int. Meshing Roundtable (1999)].  First are every other node along
@@ -33,8 +34,9 @@ class SimplicialMesh {
   /// and the same way round: 3 x n, in two dimensions 2 x n.  O(num_facets).
   Eigen::MatrixXi FacetsOf(const Eigen::MatrixXi& facets) const;
 
-  /// The same points in the simplices; those that lie between two, as beside a
-  /// face that is not flat, at the nearest one's face.
+  /// The same points in the simplices: of simplices those of the same reference
+  /// coordinates, else of the same place; those that lie between two, as beside
+  /// a face that is not flat, at the nearest one's face.
   /// Precondition: ValidatePoints.  O(n).
   MeshPoints PointsOf(const MeshPoints& points) const;
 

@@ -15,7 +15,7 @@ using TetrahedronNodes = Eigen::Matrix<double, 3, 4>;
 
 inline TetrahedronNodes GatherTetrahedron(const Mesh& mesh,
                                           Eigen::Index element) {
-  return GatherVertices<ElementKind::kTet4>(mesh, element);
+  return GatherMapNodes<ElementKind::kTet4>(mesh, element);
 }
 
 /// The linear tetrahedron: constant shape function gradients and the volume.

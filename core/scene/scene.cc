@@ -126,7 +126,8 @@ void ValidateFacets(const Mesh& mesh, const Eigen::MatrixXi& facets,
            " has a node index outside 0.." +
            std::to_string(mesh.NumNodes() - 1));
     }
-    for (int i = num_vertices; i < topology.NumNodesOfFace(); ++i) {
+    for (int i = num_vertices;
+         !IsCurved(mesh.kind) && i < topology.NumNodesOfFace(); ++i) {
       const int a = i - num_vertices;
       const int b = (a + 1) % num_vertices;
       if (!IsInTheMiddle(mesh, facets(i, facet), facets(a, facet),

@@ -9,11 +9,6 @@ namespace elastimate {
 /// (SimplicialMesh): what nodes are held, are pushed by and were measured at
 /// stays what it is, facets and points become those of the simplices.
 ///
-///   const Scene finer = QuadraticScene(SimplicialScene(scene));
-///
-/// has finer elements than `scene`, whatever these are: quadratic ones for
-/// linear ones, and of half the size for quadratic ones.
-///
 /// Precondition: a valid scene (ValidateScene).  O(num_elements) time and
 /// memory.
 Scene SimplicialScene(const Scene& scene);

@@ -1,21 +1,20 @@
 #include "elastimate/estimators/misfit/finer_elements.h"
 
-#include "elastimate/core/scene/quadratic_scene.h"
-#include "elastimate/core/scene/simplicial_scene.h"
+#include "elastimate/core/mesh/simplicial_mesh.h"
+#include "elastimate/core/scene/finer_scene.h"
 
 namespace elastimate {
 
-FinerElements::FinerElements(const Scene& simplicial,
+FinerElements::FinerElements(const Scene& scene,
                              const EstimatorOptions& options)
-    : scene_(QuadraticScene(simplicial)), misfit_(scene_, options) {}
+    : scene_(FinerScene(scene)), misfit_(scene_, options) {}
 
 std::unique_ptr<FinerElements> FinerElements::Of(
     const Scene& scene, const EstimatorOptions& options) {
   const Eigen::Index most = scene.mesh.Dimension() == 3 ? 30000 : 120000;
-  const Scene simplicial = SimplicialScene(scene);
-  return simplicial.mesh.NumElements() > most
+  return SimplicialMesh(scene.mesh).Simplices().NumElements() > most
              ? nullptr
-             : std::make_unique<FinerElements>(simplicial, options);
+             : std::make_unique<FinerElements>(scene, options);
 }
 
 std::optional<Eigen::VectorXd> FinerElements::Rows(

@@ -13,12 +13,10 @@
 
 namespace elastimate {
 
-/// A scene in quadratic simplices, of the simplices of its mesh or of those
-/// that its elements are cut into.
+/// A scene in finer elements (FinerScene).
 class FinerElements {
  public:
-  /// Of a scene of linear simplices.
-  FinerElements(const Scene& simplicial, const EstimatorOptions& options);
+  FinerElements(const Scene& scene, const EstimatorOptions& options);
   /// Null for a mesh of more than 30 000 simplices, or 120 000 in the plane,
   /// where each costs less.
   static std::unique_ptr<FinerElements> Of(const Scene& scene,

@@ -29,6 +29,12 @@ struct PhysicalGroup {
   Eigen::MatrixXi facets;
 };
 
+/// A node that is elsewhere than in the file.
+struct MovedNode {
+  Eigen::Index node;
+  Eigen::Vector3d in_file;  ///< Its position there.
+};
+
 /// What a VTK or Gmsh file holds, in one form.
 ///
 /// A node is known by its zero-based position among all nodes of the file,
@@ -56,6 +62,10 @@ struct MeshFile {
   /// The field data of these names in a VTK file.
   std::optional<double> model;  ///< A place in kNumberedModels, if valid.
   std::optional<double> thickness;
+
+  /// Mid-edge nodes that rounded positions had beside the straight edges of
+  /// quadratic elements, into the middle of which they were put.
+  std::vector<MovedNode> moved;
 
   Eigen::Array<bool, 1, Eigen::Dynamic> used;  ///< By an element.
   bool has_other_cells = false;  ///< Cells of lower dimension were ignored.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <map>
 #include <numeric>
 #include <sstream>
 #include <string>
@@ -111,43 +113,72 @@ void CheckElementsDiffer(const MeshFile& mesh) {
   }
 }
 
-void CheckMidEdgeNodes(const MeshFile& mesh) {
+// Calls visit(element, edge, mid-edge node) of quadratic elements.
+template <class Visitor>
+void VisitMidEdgeNodes(const MeshFile& mesh, const Visitor& visit) {
   const ElementTopology& topology = mesh.Topology();
-  if (topology.order == 1) {
-    return;
+  for (Eigen::Index element = 0; element < mesh.elements.cols(); ++element) {
+    for (Eigen::Index i = topology.num_vertices; i < topology.num_nodes; ++i) {
+      visit(element, topology.edges[i - topology.num_vertices],
+            mesh.elements(i, element));
+    }
   }
+}
+
+void CheckMidEdgeNodes(const MeshFile& mesh) {
   std::vector<char> is_vertex(mesh.nodes.cols(), 0);
   for (const int node :
-       mesh.elements.topRows(topology.num_vertices).reshaped()) {
+       mesh.elements.topRows(mesh.Topology().num_vertices).reshaped()) {
     is_vertex[node] = 1;
   }
-  for (Eigen::Index element = 0; element < mesh.elements.cols(); ++element) {
-    for (std::size_t i = 0; i < topology.edges.size(); ++i) {
-      const int node = mesh.elements(
-          topology.num_vertices + static_cast<Eigen::Index>(i), element);
-      const int a = mesh.elements(topology.edges[i][0], element);
-      const int b = mesh.elements(topology.edges[i][1], element);
-      const auto what = [&] {
-        return "the mid-edge " + NodeName(mesh, node) + " of " + mesh.Shape() +
-               " " + std::to_string(element);
-      };
-      if (is_vertex[node] != 0) {
-        ThrowInputError(mesh.path,
-                        what() +
-                            " is a vertex of another one; mesh the specimen "
-                            "with elements that share whole edges");
-      }
-      const Eigen::Vector3d edge = mesh.nodes.col(b) - mesh.nodes.col(a);
-      if (!((mesh.nodes.col(node) - mesh.nodes.col(a) - 0.5 * edge).norm() <=
-            kSamePlace * edge.norm())) {
-        ThrowInputError(
-            mesh.path,
-            what() + " is not in the middle between " + NodeName(mesh, a) +
-                " and " + NodeName(mesh, b) +
-                "; quadratic elements need straight edges here (in Gmsh "
-                "Mesh.SecondOrderLinear = 1)");
-      }
+  VisitMidEdgeNodes(
+      mesh, [&](Eigen::Index element, const std::array<int, 2>&, int node) {
+        if (is_vertex[node] != 0) {
+          ThrowInputError(mesh.path,
+                          "the mid-edge " + NodeName(mesh, node) + " of " +
+                              mesh.Shape() + " " + std::to_string(element) +
+                              " is a vertex of another one; mesh the specimen "
+                              "with elements that share whole edges");
+        }
+      });
+}
+
+// Puts mid-edge nodes that are beside straight edges by rounding into the
+// middle, or leaves all where they are and makes the elements curved.
+void StraightenOrCurve(MeshFile& mesh) {
+  // Of the length of an edge: what positions of six digits leave.
+  constexpr double kRounded = 1e-3;
+  // Positions of single precision far from the origin may leave more.  A
+  // position and the mean of two others err by half a unit in the last place
+  // each, 2^-24 of the largest coordinate, along three axes.
+  constexpr double kMostRounded = 1e-2;
+  const double of_single_precision =
+      2 * std::sqrt(3.0) * std::ldexp(1.0, -24) *
+      mesh.nodes(Eigen::all, mesh.elements.reshaped()).cwiseAbs().maxCoeff();
+  std::map<int, Eigen::Vector3d> middles;
+  bool is_curved = false;
+  VisitMidEdgeNodes(mesh, [&](Eigen::Index element,
+                              const std::array<int, 2>& ends, int node) {
+    const Eigen::Vector3d a = mesh.nodes.col(mesh.elements(ends[0], element));
+    const Eigen::Vector3d b = mesh.nodes.col(mesh.elements(ends[1], element));
+    const double length = (b - a).norm();
+    const Eigen::Vector3d middle = 0.5 * (a + b);
+    const double distance = (mesh.nodes.col(node) - middle).norm();
+    is_curved = is_curved ||
+                !(distance <=
+                  std::max(kRounded * length, std::min(kMostRounded * length,
+                                                       of_single_precision)));
+    if (distance > kSamePlace * length) {
+      middles.emplace(node, middle);
     }
+  });
+  if (is_curved) {
+    mesh.kind = CurvedKind(mesh.kind);
+    return;
+  }
+  for (const auto& [node, middle] : middles) {
+    mesh.moved.push_back({node, mesh.nodes.col(node)});
+    mesh.nodes.col(node) = middle;
   }
 }
 
@@ -159,7 +190,10 @@ void CheckMeshFile(MeshFile& mesh) {
   CheckPositions(mesh);
   CheckPlane(mesh);
   CheckElementsDiffer(mesh);
-  CheckMidEdgeNodes(mesh);
+  if (mesh.Topology().order == 2) {
+    CheckMidEdgeNodes(mesh);
+    StraightenOrCurve(mesh);
+  }
 }
 
 }  // namespace elastimate

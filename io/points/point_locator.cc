@@ -1,44 +1,24 @@
 #include "elastimate/io/points/point_locator.h"
 
 #include <vtkCell.h>
-#include <vtkCellArray.h>
-#include <vtkCellType.h>
 #include <vtkGenericCell.h>
 #include <vtkIdList.h>
 #include <vtkNew.h>
-#include <vtkPoints.h>
 #include <vtkStaticCellLocator.h>
 #include <vtkUnstructuredGrid.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "elastimate/core/mesh/element_kind.h"
+#include "elastimate/io/points/curved_locator.h"
+#include "elastimate/io/points/point_grid.h"
 
 namespace elastimate {
 namespace {
-
-// Of reference coordinates, and of the diagonal of the mesh.
-constexpr double kRounding = 1e-9;
-
-// Of the element of order 1 with the same vertices: edges are straight.
-int CellTypeOfVertices(ElementKind kind) {
-  if (kind == ElementKind::kHex8) {
-    return VTK_HEXAHEDRON;
-  }
-  if (kind == ElementKind::kQuad4) {
-    return VTK_QUAD;
-  }
-  return DimensionOf(kind) == 3 ? VTK_TETRA : VTK_TRIANGLE;
-}
-
-Eigen::Vector3d ToSpace(const Eigen::Ref<const Eigen::VectorXd>& x) {
-  Eigen::Vector3d in_space = Eigen::Vector3d::Zero();
-  in_space.head(x.size()) = x;
-  return in_space;
-}
 
 // How far parametric coordinates of VTK, 0 to 1 in every element, are outside.
 double Excess(ElementKind kind, const Eigen::Vector3d& parametric) {
@@ -69,10 +49,11 @@ struct PointLocator::Grid {
   ElementKind kind;
   vtkNew<vtkUnstructuredGrid> cells;
   vtkNew<vtkStaticCellLocator> locator;
+  std::optional<CurvedLocator> curved;  // Which needs none of these two.
 
   // Among the elements around it the one that a point is least outside of.
   Place PlaceOf(Eigen::Vector3d x, vtkGenericCell* cell) const {
-    const double margin = kRounding * cells->GetLength();
+    const double margin = kRoundingOfPlaces * cells->GetLength();
     double box[6] = {x(0) - margin, x(0) + margin, x(1) - margin,
                      x(1) + margin, x(2) - margin, x(2) + margin};
     vtkNew<vtkIdList> candidates;
@@ -102,23 +83,11 @@ struct PointLocator::Grid {
 
 PointLocator::PointLocator(const Mesh& mesh) : grid_(new Grid) {
   grid_->kind = mesh.kind;
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(mesh.NumNodes());
-  for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
-    points->SetPoint(node, ToSpace(mesh.nodes.col(node)).data());
+  if (IsCurved(mesh.kind)) {
+    grid_->curved.emplace(mesh);
+    return;
   }
-  vtkNew<vtkCellArray> cells;
-  const int num_vertices = mesh.Topology().num_vertices;
-  std::vector<vtkIdType> vertices(num_vertices);
-  for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
-    for (int i = 0; i < num_vertices; ++i) {
-      vertices[i] = mesh.elements(i, element);
-    }
-    cells->InsertNextCell(num_vertices, vertices.data());
-  }
-  grid_->cells->SetPoints(points);
-  grid_->cells->SetCells(CellTypeOfVertices(mesh.kind), cells);
+  SetCells(mesh, grid_->cells);
   grid_->locator->SetDataSet(grid_->cells);
   grid_->locator->BuildLocator();
 }
@@ -132,11 +101,21 @@ LocatedPoints PointLocator::Locate(const Eigen::MatrixXd& positions) const {
   LocatedPoints located = {
       {Eigen::VectorXi(n), Eigen::MatrixXd(positions.rows(), n)},
       Eigen::VectorXd::Zero(n)};
+  if (grid_->curved) {
+    for (Eigen::Index point = 0; point < n; ++point) {
+      const CurvedPlace place =
+          grid_->curved->Find(ToSpace(positions.col(point)));
+      located.points.elements(point) = static_cast<int>(place.element);
+      located.points.local.col(point) = place.local;
+      located.distance(point) = place.distance;
+    }
+    return located;
+  }
   vtkNew<vtkGenericCell> cell;
   for (Eigen::Index point = 0; point < n; ++point) {
     Eigen::Vector3d x = ToSpace(positions.col(point));
     Grid::Place place = grid_->PlaceOf(x, cell);
-    if (!(place.excess < kRounding)) {
+    if (!(place.excess < kRoundingOfPlaces)) {
       Eigen::Vector3d closest;
       vtkIdType element = -1;
       int part = 0;

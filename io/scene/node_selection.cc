@@ -26,10 +26,16 @@ void SelectIds(const JsonValue& ids, const MeshFile& mesh, NodeMask& mask) {
 
 void SelectBox(const JsonValue& box, const MeshFile& mesh, NodeMask& mask) {
   const auto [low, high] = CornersOfBox(box, mesh);
+  const auto contains = [&, low = low, high = high](const auto& position) {
+    const auto x = position.head(low.size()).array();
+    return (x >= low.array()).all() && (x <= high.array()).all();
+  };
   for (Eigen::Index node = 0; node < mesh.nodes.cols(); ++node) {
-    const auto position = mesh.nodes.col(node).head(low.size()).array();
-    mask[node] =
-        (position >= low.array()).all() && (position <= high.array()).all();
+    mask[node] = contains(mesh.nodes.col(node));
+  }
+  // A box is made for the positions of the file.
+  for (const auto& [node, in_file] : mesh.moved) {
+    mask[node] = mask[node] || contains(in_file);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iomanip>
 #include <iterator>
 #include <set>
 #include <sstream>
@@ -374,6 +375,24 @@ void ChooseLaw(const std::filesystem::path& path, const LawChoice& choice,
   }
 }
 
+/// How far mid-edge nodes of rounded positions were put, if any were.
+void NoteMovedNodes(const MeshFile& mesh, std::vector<std::string>& notices) {
+  if (mesh.moved.empty()) {
+    return;
+  }
+  double farthest = 0;
+  for (const auto& [node, in_file] : mesh.moved) {
+    farthest = std::max(farthest, (mesh.nodes.col(node) - in_file).norm());
+  }
+  std::ostringstream sentence;
+  sentence << PrintablePath(mesh.path) << ": put " << mesh.moved.size()
+           << (mesh.moved.size() == 1 ? " mid-edge node of a straight edge"
+                                      : " mid-edge nodes of straight edges")
+           << " into the middle, from up to " << std::setprecision(2)
+           << farthest << " beside it, as rounded positions leave them";
+  notices.push_back(sentence.str());
+}
+
 /// The scene without the nodes that no element uses, valid, and their order in
 /// the file.
 Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
@@ -383,6 +402,7 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
   const MeshFile& mesh = file_scene.mesh;
   notices.insert(notices.end(), file_scene.notices.begin(),
                  file_scene.notices.end());
+  NoteMovedNodes(mesh, notices);
   const SceneNodes nodes(mesh, file_scene.scene.mesh);
   file_order = nodes.FileOrder();
   const Eigen::Index num_dropped = nodes.NumDropped() + mesh.num_nodes_left_out;

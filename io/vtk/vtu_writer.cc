@@ -60,12 +60,14 @@ vtkSmartPointer<vtkCellArray> ToVtkCells(const Eigen::MatrixXi& elements,
 int CellType(ElementKind kind) {
   switch (kind) {
     case ElementKind::kTet10:
+    case ElementKind::kCurvedTet10:
       return VTK_QUADRATIC_TETRA;
     case ElementKind::kHex8:
       return VTK_HEXAHEDRON;
     case ElementKind::kTri3:
       return VTK_TRIANGLE;
     case ElementKind::kTri6:
+    case ElementKind::kCurvedTri6:
       return VTK_QUADRATIC_TRIANGLE;
     case ElementKind::kQuad4:
       return VTK_QUAD;

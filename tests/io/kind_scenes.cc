@@ -35,6 +35,14 @@ Scene Quadratic(const Scene& linear) {
 }
 
 Scene UnmeasuredScene(const std::string& kind, SectionModel model) {
+  if (kind.rfind("curved_", 0) == 0) {
+    Scene scene = UnmeasuredScene(kind.substr(7), model);
+    scene.mesh.kind = CurvedKind(scene.mesh.kind);
+    for (auto x : scene.mesh.nodes.colwise()) {
+      x(0) += 0.3 * x(1) * x(1);
+    }
+    return scene;
+  }
   if (kind == "tet10") {
     return Quadratic(LinearScene(ElementKind::kTet4, model));
   }

@@ -3,9 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "elastimate/core/equilibrium/forward_model.h"
+#include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/core/scene/loads.h"
-#include "elastimate/core/scene/quadratic_scene.h"
-#include "elastimate/core/scene/simplicial_scene.h"
 #include "tests/element_kinds.h"
 
 namespace elastimate {
@@ -66,8 +65,7 @@ TEST_P(HierarchicalErrorOfKinds, IsThatToFinerElements) {
   const Eigen::Index n = scene.mesh.NumDofs();
   for (const double nu : {-0.5, 0.3, 0.45}) {
     const Eigen::MatrixXd expected =
-        Responses(QuadraticScene(SimplicialScene(scene)), nu).topRows(n) -
-        Responses(scene, nu);
+        Responses(FinerScene(scene), nu).topRows(n) - Responses(scene, nu);
     const Eigen::MatrixXd error = Find(scene, nu).error;
     for (Eigen::Index k = 0; k < expected.cols(); ++k) {
       EXPECT_LT((error.col(k) - expected.col(k)).norm(),
@@ -95,8 +93,7 @@ TEST_P(HierarchicalErrorOfKinds, TakesFewerIterationsFromThatOfANuNearby) {
   const Found alone = Find(scene, 0.33);
   EXPECT_LT(error.NumPasses() - passes, alone.num_passes);
   const Eigen::MatrixXd expected =
-      Responses(QuadraticScene(SimplicialScene(scene)), 0.33)
-          .topRows(scene.mesh.NumDofs()) -
+      Responses(FinerScene(scene), 0.33).topRows(scene.mesh.NumDofs()) -
       Responses(scene, 0.33);
   for (Eigen::Index k = 0; k < expected.cols(); ++k) {
     EXPECT_LT((found->col(k) - expected.col(k)).norm(),

@@ -67,8 +67,10 @@ TEST(ElementTopology, FindsTheNodeInTheMiddleOfAnEdge) {
 TEST(ElementTopology, KnowsWhichKindsCanBeRaised) {
   EXPECT_EQ(QuadraticKind(ElementKind::kTet4), ElementKind::kTet10);
   EXPECT_EQ(QuadraticKind(ElementKind::kTri3), ElementKind::kTri6);
-  for (const ElementKind kind : {ElementKind::kHex8, ElementKind::kQuad4,
-                                 ElementKind::kTet10, ElementKind::kTri6}) {
+  for (const ElementKind kind :
+       {ElementKind::kHex8, ElementKind::kQuad4, ElementKind::kTet10,
+        ElementKind::kTri6, ElementKind::kCurvedTet10,
+        ElementKind::kCurvedTri6}) {
     EXPECT_FALSE(HasQuadraticKind(kind));
   }
 }

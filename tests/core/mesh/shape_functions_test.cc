@@ -131,5 +131,37 @@ TEST(IntegrationRule, IsExactForProductsOfLinearFunctions) {
   });
 }
 
+double Factorial(int n) { return n == 0 ? 1 : n * Factorial(n - 1); }
+
+// The integral of x^a y^b z^c over the reference simplex is
+// a! b! c! / (a + b + c + dimension)!.
+template <ElementKind kKind>
+void ExpectExactUpTo(int degree) {
+  constexpr int kDimension = ElementSizes<kKind>::kDimension;
+  for (int a = 0; a <= degree; ++a) {
+    for (int b = 0; a + b <= degree; ++b) {
+      for (int c = 0; c <= (kDimension == 3 ? degree - a - b : 0); ++c) {
+        double sum = 0;
+        for (const auto& at : IntegrationRule<kKind>()) {
+          EXPECT_GT(at.weight, 0);
+          sum += at.weight * std::pow(at.vertex_value(1), a) *
+                 std::pow(at.vertex_value(2), b) *
+                 std::pow(at.vertex_value(kDimension), c);
+        }
+        EXPECT_NEAR(sum,
+                    Factorial(a) * Factorial(b) * Factorial(c) /
+                        Factorial(a + b + c + kDimension),
+                    1e-16)
+            << a << b << c;
+      }
+    }
+  }
+}
+
+TEST(IntegrationRule, IsExactForWhatCurvedElementsHoldOfAUniformForce) {
+  ExpectExactUpTo<ElementKind::kCurvedTet10>(5);
+  ExpectExactUpTo<ElementKind::kCurvedTri6>(4);
+}
+
 }  // namespace
 }  // namespace elastimate

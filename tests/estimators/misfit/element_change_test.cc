@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "elastimate/core/equilibrium/forward_model.h"
+#include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
-#include "elastimate/core/scene/simplicial_scene.h"
 #include "tests/element_kinds.h"
 
 namespace elastimate {
@@ -50,7 +50,7 @@ struct Changing {
 TEST(ElementChange, KnowsMidEdgeNodesToo) {
   Scene scene = QuadraticScene(MovedScene(kTetrahedra));
   scene.load_cases[0].observed.setConstant(true);
-  const Scene finer_scene = QuadraticScene(SimplicialScene(scene));
+  const Scene finer_scene = FinerScene(scene);
   Changing quadratic(scene);
   Changing finer(finer_scene);
   const auto change = quadratic.At(0.3);
@@ -71,7 +71,7 @@ TEST(ElementChange, IsKnownOfQuadraticElementsNextToOneHalf) {
   linear_scene.load_cases[0].displacement.setOnes(3,
                                                   linear_scene.mesh.NumNodes());
   const Scene scene = QuadraticScene(linear_scene);
-  const Scene finer_scene = QuadraticScene(SimplicialScene(scene));
+  const Scene finer_scene = FinerScene(scene);
   Changing quadratic(scene);
   Changing finer(finer_scene);
   const auto change = quadratic.At(kNextToLimit);
@@ -123,7 +123,7 @@ TEST(ElementChange, IsLinearBetweenThoseThatAreKnown) {
 TEST(ElementChange, IsKnownOfEveryKind) {
   for (const testing::KindOfSection& kind : testing::AllKindsOfSections()) {
     const Scene scene = MovedScene(kind);
-    const Scene finer_scene = QuadraticScene(SimplicialScene(scene));
+    const Scene finer_scene = FinerScene(scene);
     Changing coarse(scene);
     Changing finer(finer_scene);
     const auto change = coarse.At(0.3);

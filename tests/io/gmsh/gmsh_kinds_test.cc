@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -133,9 +134,88 @@ TEST_P(GmshKinds, AreScenes) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, GmshKinds, ::testing::ValuesIn(kElementKinds),
+std::vector<ElementKind> KindsOfStraightEdges() {
+  std::vector<ElementKind> kinds(kElementKinds.begin(), kElementKinds.end());
+  kinds.erase(std::remove_if(kinds.begin(), kinds.end(), IsCurved),
+              kinds.end());
+  return kinds;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, GmshKinds,
+                         ::testing::ValuesIn(KindsOfStraightEdges()),
                          [](const auto& kind) {
                            return std::string(TopologyOf(kind.param).name);
+                         });
+
+// A quarter of a ring of radii 1 and 2, or of a tube of length 1, of order 2;
+// the group "inside" is where the radius is 1.
+void WriteQuarterOfRing(int dimension, const std::filesystem::path& path) {
+  gmsh::initialize(0, nullptr, false);
+  gmsh::option::setNumber("General.Terminal", 0);
+  namespace geo = gmsh::model::geo;
+  const double size = 0.4;
+  const int centre = geo::addPoint(0, 0, 0, size);
+  const int points[4] = {
+      geo::addPoint(1, 0, 0, size), geo::addPoint(2, 0, 0, size),
+      geo::addPoint(0, 2, 0, size), geo::addPoint(0, 1, 0, size)};
+  const std::vector<int> lines = {
+      geo::addLine(points[0], points[1]),
+      geo::addCircleArc(points[1], centre, points[2]),
+      geo::addLine(points[2], points[3]),
+      geo::addCircleArc(points[3], centre, points[0])};
+  int body = geo::addPlaneSurface({geo::addCurveLoop(lines)});
+  int inside = lines[3];
+  if (dimension == 3) {
+    gmsh::vectorpair made;
+    geo::extrude({{2, body}}, 0, 0, 1, made);
+    body = made[1].second;
+    inside = made[5].second;  // Swept by the fourth line.
+  }
+  geo::synchronize();
+  gmsh::model::addPhysicalGroup(dimension, {body});
+  gmsh::model::setPhysicalName(
+      dimension - 1, gmsh::model::addPhysicalGroup(dimension - 1, {inside}),
+      "inside");
+  gmsh::model::mesh::generate(dimension);
+  gmsh::model::mesh::setOrder(2);
+  gmsh::write(path.string());
+  gmsh::finalize();
+}
+
+class CurvedByGmsh : public ::testing::TestWithParam<int> {};
+
+TEST_P(CurvedByGmsh, AreScenes) {
+  const TemporaryFolder folder;
+  const bool is_solid = GetParam() == 3;
+  WriteQuarterOfRing(GetParam(), folder.Path() / "mesh.msh");
+  const Scene scene =
+      ReadScene(
+          {folder.Write("scene.json",
+                        std::string("{") +
+                            (is_solid ? "" : R"("model": "plane_strain",)") +
+                            R"(
+    "mesh": "mesh.msh",
+    "supports": [{"nodes": {"box": )" +
+                            (is_solid ? "[[0, -1, 0], [3, 1e-9, 1]]"
+                                      : "[[0, -1], [3, 1e-9]]") +
+                            R"(}}],
+    "cases": [{"loads": [
+      {"type": "pressure", "value": 6, "surface": {"physical": "inside"}}]}]})")},
+          Measurement::kOptional)
+          .scene;
+  EXPECT_EQ(scene.mesh.kind,
+            is_solid ? ElementKind::kCurvedTet10 : ElementKind::kCurvedTri6);
+  EXPECT_NEAR(ElementVolumes(scene.mesh).sum(), M_PI * 3 / 4, 1e-4);
+  const Eigen::MatrixXd force =
+      AssembleLoads(scene.mesh, scene.load_cases[0].loads);
+  // The inner edge has no gap, so that x and y of its ends are all there is.
+  EXPECT_NEAR(force.row(0).sum(), 6, 1e-9);
+  EXPECT_NEAR(force.row(1).sum(), 6, 1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, CurvedByGmsh, ::testing::Values(2, 3),
+                         [](const auto& info) {
+                           return std::to_string(info.param) + "d";
                          });
 
 TEST(GmshMixture, IsRefused) {

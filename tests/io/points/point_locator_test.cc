@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/element_kinds.h"
 #include "tests/random_points.h"
 #include "tests/scenes.h"
@@ -51,6 +53,67 @@ TEST(LocatedPoints, OutsideAreTheNearestOfTheSurface) {
   nearest.transpose() << 0.4, 0.7, 3, 0, 0, 1.5, 0.5, 1, 1.5;
   EXPECT_TRUE(
       Interpolate(mesh, located.points, mesh.nodes).isApprox(nearest, 1e-9));
+}
+
+// A quarter of a ring of radii 1 and 2 in two curved triangles.
+Mesh QuarterOfRing() {
+  const double angles[3] = {0, M_PI / 4, M_PI / 2};
+  Mesh mesh;
+  mesh.kind = ElementKind::kCurvedTri6;
+  mesh.section.model = SectionModel::kPlaneStress;
+  mesh.nodes.resize(2, 9);
+  const auto at = [&](double radius, int k) {
+    return radius * Eigen::Vector2d(std::cos(angles[k]), std::sin(angles[k]));
+  };
+  mesh.nodes << at(1, 0), at(2, 0), at(2, 2), at(1, 2), at(1.5, 0), at(2, 1),
+      at(1.5, 2), at(1, 1), at(1.5, 1);
+  mesh.elements.resize(6, 2);
+  mesh.elements.transpose() << 0, 1, 2, 4, 5, 8,  //
+      0, 2, 3, 8, 6, 7;
+  ValidateMesh(mesh);
+  return mesh;
+}
+
+// At the nodes of the arcs, where they touch the circles, and off them.
+TEST(LocatedPoints, OutsideOfCurvedElementsAreTheNearestOfTheirEdges) {
+  const Mesh mesh = QuarterOfRing();
+  const Eigen::Vector2d middle(std::sqrt(0.5), std::sqrt(0.5));
+  Eigen::MatrixXd positions(2, 4);
+  positions << 2.4 * middle, 0.7 * middle, Eigen::Vector2d(1.5, -0.2),
+      1.99 * middle;
+  const LocatedPoints located = PointLocator(mesh).Locate(positions);
+  EXPECT_NEAR(located.distance(0), 0.4, 1e-12);
+  EXPECT_NEAR(located.distance(1), 0.3, 1e-12);
+  EXPECT_NEAR(located.distance(2), 0.2, 1e-3);
+  EXPECT_EQ(located.distance(3), 0);
+  const Eigen::MatrixXd found = Interpolate(mesh, located.points, mesh.nodes);
+  EXPECT_TRUE(found.col(0).isApprox(2 * middle, 1e-9));
+  EXPECT_TRUE(found.col(1).isApprox(middle, 1e-9));
+  EXPECT_TRUE(found.col(3).isApprox(1.99 * middle, 1e-9));
+}
+
+// No point of the outline is nearer, which is looked at closely.
+TEST(LocatedPoints, OutsideOfCurvedElementsHaveNoNearerOnes) {
+  const Mesh mesh = QuarterOfRing();
+  constexpr int kSteps = 4000;
+  MeshPoints outer = {Eigen::VectorXi::Zero(kSteps + 1),
+                      Eigen::MatrixXd(2, kSteps + 1)};
+  for (int i = 0; i <= kSteps; ++i) {  // From node 1 to node 2.
+    const double t = double(i) / kSteps;
+    outer.local.col(i) << 1 - t, t;
+  }
+  const Eigen::MatrixXd arc = Interpolate(mesh, outer, mesh.nodes);
+  Eigen::MatrixXd positions(2, 30);
+  for (int i = 0; i < 30; ++i) {
+    const double angle = 0.05 + 1.4 * i / 30;
+    positions.col(i) << 2.3 * std::cos(angle), 2.3 * std::sin(angle);
+  }
+  const LocatedPoints located = PointLocator(mesh).Locate(positions);
+  for (int i = 0; i < 30; ++i) {
+    EXPECT_NEAR(located.distance(i),
+                (arc.colwise() - positions.col(i)).colwise().norm().minCoeff(),
+                1e-6);
+  }
 }
 
 }  // namespace

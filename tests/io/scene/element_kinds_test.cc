@@ -5,14 +5,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <numeric>
 #include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "elastimate/estimators/registry.h"
 #include "elastimate/io/scene/mesh_reader.h"
+#include "elastimate/io/scene/node_selection.h"
 #include "elastimate/io/scene/scene_reader.h"
 #include "elastimate/io/vtk/vtu_writer.h"
 #include "tests/io/kind_scenes.h"
@@ -141,17 +145,101 @@ class QuadraticFiles : public ::testing::TestWithParam<std::string> {
   const Mesh mesh_ = SceneOf(GetParam()).mesh;
 };
 
-TEST_P(QuadraticFiles, ErrOnCurvedEdges) {
+double RoundedToSixDigits(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", x);
+  return std::atof(text);
+}
+
+// The nodes off the middle of straight edges by rounding.
+TEST_P(QuadraticFiles, AreStraightenedWhereTheirPositionsAreRounded) {
+  const auto to_single = [](double x) { return double(float(x)); };
+  for (const bool is_far : {false, true}) {
+    Mesh mesh = mesh_;
+    mesh.nodes *= 1 / 3.0;
+    // A thousand times the size away, single precision has four digits left.
+    mesh.nodes.array() += is_far ? 700 : 0;
+    mesh.nodes = is_far ? mesh.nodes.unaryExpr(to_single).eval()
+                        : mesh.nodes.unaryExpr(&RoundedToSixDigits).eval();
+    ASSERT_THROW(ValidateMesh(mesh), std::invalid_argument);
+    const MeshFile file = ReadMeshFile(Write(mesh));
+    EXPECT_EQ(file.kind, mesh_.kind);
+    ASSERT_FALSE(file.moved.empty());
+    Eigen::MatrixXd in_file = file.nodes;
+    for (const MovedNode& moved : file.moved) {
+      in_file.col(moved.node) = moved.in_file;
+    }
+    EXPECT_EQ(in_file.topRows(mesh.nodes.rows()), mesh.nodes);
+    EXPECT_GT((file.nodes - in_file).norm(), 0);
+    mesh.nodes = file.nodes.topRows(mesh.nodes.rows());
+    EXPECT_NO_THROW(ValidateMesh(mesh));
+  }
+}
+
+TEST_P(QuadraticFiles, AreEstimatedWhereTheirPositionsAreRounded) {
+  Scene scene = SceneOf(GetParam());
+  scene.mesh.nodes = scene.mesh.nodes.unaryExpr(
+      [](double x) { return RoundedToSixDigits(x + 1.0 / 3); });
+  const auto path = folder_.Path() / "scene.vtu";
+  WriteVtu(path, scene.mesh, SceneFields(scene));
+  const SceneReading reading = ReadScene({path}, Measurement::kRequired);
+  EXPECT_THAT(reading.notices,
+              ::testing::Contains(::testing::HasSubstr("mid-edge nodes")));
+  const Estimate estimate =
+      MakeEstimator("closed-form")->Run(reading.scene, {});
+  EXPECT_EQ(estimate.status, Status::kOk) << estimate.message;
+  EXPECT_NEAR(
+      estimate.elasticity.youngs_modulus / kMeasuredElasticity.youngs_modulus,
+      1, 1e-4);
+  EXPECT_NEAR(estimate.elasticity.poisson_ratio,
+              kMeasuredElasticity.poisson_ratio, 1e-4);
+}
+
+// A box that holds a node where the file has it, and nothing else.
+TEST_P(QuadraticFiles, HaveTheirMovedNodesInTheBoxesOfTheFile) {
   Mesh mesh = mesh_;
-  const int num_vertices = mesh.Topology().num_vertices;
-  const int node = mesh.elements(num_vertices, 0);
-  mesh.nodes(1, node) += 1e-3;
-  EXPECT_THROWS_WITH(ReadMeshFile(Write(mesh)),
-                     "mesh.vtu: the mid-edge node " + std::to_string(node) +
-                         " of " + std::string(mesh.Topology().shape) +
-                         " 0 is not in the middle between node " +
-                         std::to_string(mesh.elements(0, 0)) + " and node " +
-                         std::to_string(mesh.elements(1, 0)));
+  const int node = mesh.elements(mesh.Topology().num_vertices, 0);
+  mesh.nodes(1, node) += 1e-4;
+  const MeshFile file = ReadMeshFile(Write(mesh));
+  ASSERT_EQ(file.moved.size(), 1U);
+  for (const Eigen::VectorXd& x : {Eigen::VectorXd(mesh.nodes.col(node)),
+                                   Eigen::VectorXd(mesh_.nodes.col(node))}) {
+    std::ostringstream text;
+    text.precision(17);
+    const char* separator = "[";
+    for (const double coordinate : x) {
+      text << separator << coordinate;
+      separator = ", ";
+    }
+    const nlohmann::json box = nlohmann::json::parse(
+        "{\"box\": [" + text.str() + "], " + text.str() + "]]}");
+    const std::filesystem::path path = "scene.json";
+    const NodeMask mask = SelectNodes(JsonValue(path, box), file, nullptr);
+    EXPECT_EQ(mask.count(), 1);
+    EXPECT_TRUE(mask(node));
+  }
+}
+
+TEST_P(QuadraticFiles, AreCurvedWhereOneEdgeIs) {
+  Mesh mesh = mesh_;
+  const int node = mesh.elements(mesh.Topology().num_vertices, 0);
+  mesh.nodes(1, node) += 0.01;
+  const MeshFile file = ReadMeshFile(Write(mesh));
+  EXPECT_EQ(file.kind, CurvedKind(mesh.kind));
+  EXPECT_TRUE(file.moved.empty());
+  EXPECT_EQ(file.nodes.topRows(mesh.nodes.rows()), mesh.nodes);
+}
+
+TEST_P(QuadraticFiles, ErrOnElementsThatFold) {
+  Scene scene = SceneOf(GetParam());
+  // As where nodes are in another order.
+  scene.mesh.elements.bottomRows(2).row(0).swap(
+      scene.mesh.elements.bottomRows(2).row(1));
+  const auto path = folder_.Path() / "scene.vtu";
+  WriteVtu(path, scene.mesh, SceneFields(scene));
+  EXPECT_THROWS_WITH(ReadScene({path}, Measurement::kRequired),
+                     "scene.vtu: " + std::string(scene.mesh.Topology().shape) +
+                         " 0 .* is bent so far that it folds onto itself");
 }
 
 TEST_P(QuadraticFiles, ErrOnMidEdgeNodesThatAreVertices) {
