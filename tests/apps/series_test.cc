@@ -101,7 +101,7 @@ class Series : public testing::ProgramTest {
   void WriteScene(const std::string& frames) const {
     testing::WriteText(folder_ / "scene.json", R"({
       "model": "plane_stress", "thickness": 0.5,
-      "mesh": {"points": "frame_5.csv"},
+      "mesh": {"points": "frame_5.csv", "margin": 0},
       "supports": [
         {"nodes": {"box": [[0, 0], [0, 2]]}, "displacement": "measured"},
         {"nodes": {"box": [[6, 0], [6, 2]]}, "displacement": "measured"} ],

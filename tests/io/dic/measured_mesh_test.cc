@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 #include <string>
@@ -27,7 +28,7 @@ constexpr double kRatio = 0.25;
 // A strip of 6 x 2, of thickness 0.5, that grips pull and a camera sees.
 const std::string kStrip = R"({
   "model": "plane_stress", "thickness": 0.5,
-  "mesh": {"points": "frame.csv"},
+  "mesh": {"points": "frame.csv", "margin": 0},
   "supports": [ {"nodes": {"box": [[0, 0], [0, 2]]}, "displacement": "measured"},
                 {"nodes": {"box": [[6, 0], [6, 2]]}, "displacement": "measured"} ],
   "cases": [ {"loads": [ {"type": "resultant", "value": [3, null],
@@ -62,13 +63,57 @@ class MeasuredMeshTest : public ::testing::Test {
   const TemporaryFolder folder_;
 };
 
+// A strip that is seen 1.5 wide of its width of 2.
+TEST_F(MeasuredMeshTest, AllowsForTheMarginOfTheSpecimen) {
+  std::istringstream frame(Frame());
+  std::string within;
+  for (std::string line; std::getline(frame, line);) {
+    const bool is_rim = line.find(",0,") != std::string::npos &&
+                        line.find(",0,") == line.find(',');
+    within += is_rim ? "" : line + "\n";
+  }
+  folder_.Write("frame.csv", within);
+  std::string document = kStrip;
+  const std::string margin = "\"margin\": 0";
+  document.replace(document.find(margin), margin.size(), "\"margin\": 0.25");
+  const Estimate given =
+      MakeEstimator("iterative-fe")->Run(Read(document).scene, {});
+  ASSERT_TRUE(given.IsUsable()) << given.message;
+  EXPECT_NEAR(given.elasticity.youngs_modulus, kModulus, 1e-3 * kModulus);
+  EXPECT_FALSE(given.Has(FindingCode::kMarginNotGiven));
+
+  folder_.Write("frame.csv", Frame());
+  const std::string key = ", \"margin\": 0.25";
+  document.erase(document.find(key), key.size());
+  const Estimate open =
+      MakeEstimator("iterative-fe")->Run(Read(document).scene, {});
+  ASSERT_TRUE(open.IsUsable()) << open.message;
+  EXPECT_TRUE(open.Has(FindingCode::kMarginNotGiven));
+  // Half a spacing of 0.5 at 12 of free edges around 12.
+  EXPECT_NEAR(*open.YoungsModulusStandardError() / kModulus,
+              std::hypot(0.01, 0.25), 1e-3);
+}
+
+// A part of them would bear the force of all.
+TEST_F(MeasuredMeshTest, IsNotOfAPartOfThePoints) {
+  std::string apart = Frame();
+  for (int i = 0; i < 20; ++i) {
+    apart += std::to_string(0.5 * i) + ",30,0,0\n" + std::to_string(0.5 * i) +
+             ",30.5,0,0\n";
+  }
+  folder_.Write("frame.csv", apart);
+  EXPECT_THAT([&] { Read(kStrip); },
+              ::testing::ThrowsMessage<std::invalid_argument>(
+                  HasSubstr("40 of its 105 points")));
+}
+
 TEST_F(MeasuredMeshTest, WithGripsAndALoadCellGivesTheTruth) {
   const SceneReading reading = Read(kStrip);
   EXPECT_EQ(reading.scene.mesh.kind, ElementKind::kQuad4);
   EXPECT_EQ(reading.scene.mesh.NumElements(), 48);
   EXPECT_THAT(reading.notices,
               ElementsAre(HasSubstr("48 quadrilaterals of 65 points (csv), "
-                                    "6 x 2; where a specimen is wider")));
+                                    "6 x 2")));
   for (const std::string estimator : {"iterative-fe", "auto"}) {
     const Estimate estimate = MakeEstimator(estimator)->Run(reading.scene, {});
     ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
@@ -103,7 +148,7 @@ TEST_F(MeasuredMeshTest, WithLostPointsGivesTheTruth) {
 TEST_F(MeasuredMeshTest, WithTractionAndAFreeCameraGivesTheTruth) {
   const std::string document = R"({
     "model": "plane_stress", "thickness": 0.5,
-    "mesh": {"points": "frame.csv"},
+    "mesh": {"points": "frame.csv", "margin": 0},
     "rigid_motion": "free",
     "supports": [ {"nodes": {"box": [[0, 0], [0, 2]]}, "components": "x"},
                   {"nodes": {"box": [[0, 0], [0, 0]]}, "components": "y"} ],

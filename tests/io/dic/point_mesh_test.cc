@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
 #include <set>
 #include <vector>
@@ -91,6 +92,53 @@ TEST(LostPoints, AreThoseOfSmallGapsOfAGrid) {
     EXPECT_LT((found.colwise() - x).colwise().norm().minCoeff(), 1e-9);
   }
   EXPECT_EQ(LostPoints(Eigen::Matrix2Xd::Random(2, 30)).cols(), 0);
+}
+
+// Of 21 x 8 points, those for which `is_there`.
+Eigen::Matrix2Xd GridWhere(const std::function<bool(int, int)>& is_there) {
+  Eigen::Matrix2Xd points(2, 0);
+  for (int i = 0; i < 21; ++i) {
+    for (int j = 0; j < 8; ++j) {
+      if (is_there(i, j)) {
+        points.conservativeResize(Eigen::NoChange, points.cols() + 1);
+        points.rightCols<1>() << i, j;
+      }
+    }
+  }
+  return points;
+}
+
+TEST(LostPoints, AreWholeRowsAndColumns) {
+  EXPECT_EQ(LostPoints(GridWhere([](int, int j) { return j != 2; })).cols(),
+            21);
+  EXPECT_EQ(
+      LostPoints(GridWhere([](int, int j) { return j != 2 && j != 3; })).cols(),
+      42);
+  EXPECT_EQ(LostPoints(GridWhere([](int i, int) { return i != 9; })).cols(), 8);
+  // Up to a hole on one side, and through it.
+  const auto is_in_hole = [](int i, int j) {
+    return i > 6 && i < 14 && j > 0 && j < 7;
+  };
+  EXPECT_EQ(LostPoints(GridWhere([&](int i, int j) {
+              return !is_in_hole(i, j) && (j != 3 || i >= 7);
+            })).cols(),
+            7);
+  EXPECT_EQ(LostPoints(GridWhere([&](int i, int j) {
+              return !is_in_hole(i, j) && i != 9;
+            })).cols(),
+            2);
+}
+
+TEST(LostPoints, AreNoSlotOfTheSpecimen) {
+  EXPECT_EQ(LostPoints(GridWhere([](int i, int j) {
+              return j != 3 || i < 5 || i > 15;
+            })).cols(),
+            0);
+  // One that is open at one end.
+  EXPECT_EQ(LostPoints(GridWhere([](int i, int j) {
+              return j != 3 || i > 15;
+            })).cols(),
+            0);
 }
 
 TEST(PointMesh, OfScatteredPointsIsOfTrianglesWithoutGaps) {

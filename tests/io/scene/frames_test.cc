@@ -23,7 +23,7 @@ using ::testing::ElementsAre;
 // A strip of 4 x 2 that a camera sees, the load of which is recorded.
 const std::string kFilmedStrip = R"({
   "model": "plane_stress", "thickness": 0.5,
-  "mesh": {"points": "frame_1.csv"},
+  "mesh": {"points": "frame_1.csv", "margin": 0},
   "supports": [ {"nodes": {"box": [[0, 0], [0, 2]]}, "displacement": "measured"},
                 {"nodes": {"box": [[4, 0], [4, 2]]}, "displacement": "measured"} ],
   "cases": [ {"loads": [ {"type": "resultant", "value": [2, null],

@@ -1,0 +1,135 @@
+#include "elastimate/estimators/interface/kinematic_error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "elastimate/core/mesh/facets.h"
+#include "elastimate/estimators/registry.h"
+#include "tests/scenes.h"
+
+namespace elastimate {
+namespace {
+
+// A cube under uniaxial traction, which stretches it by `strain` and narrows it
+// as a compressible neo-Hookean material, W = mu/2 (I1 - 3 - 2 ln J) +
+// lambda/2 (ln J)^2, of E = 1000 and nu = 0.3.
+Scene NeoHookeanCube(double strain) {
+  const Mesh mesh = testing::BoxMesh({3, 3, 3}, {1, 1, 1});
+  Scene scene = testing::HeldAtBottom(mesh, mesh, Eigen::Vector3d::Zero());
+  constexpr double kShear = 1000 / 2.6;
+  constexpr double kLame = 300 / (1.3 * 0.4);
+  const double along = 1 + strain;
+  // No stress across: mu (s^2 - 1) + lambda ln(s^2 along) = 0, by bisection.
+  double lower = 0.5;
+  double upper = 1.5;
+  for (int i = 0; i < 60; ++i) {
+    const double across = (lower + upper) / 2;
+    const double stress = kShear * (across * across - 1) +
+                          kLame * std::log(across * across * along);
+    (stress > 0 ? upper : lower) = across;
+  }
+  const double volume = lower * lower * along;
+  const double traction =
+      (kShear * (along * along - 1) + kLame * std::log(volume)) / along;
+  scene.supports.held.setConstant(false);
+  for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
+    for (int i = 0; i < 3; ++i) {
+      scene.supports.held(i, node) = mesh.nodes(i, node) < 1e-9;
+    }
+  }
+  const Eigen::MatrixXi facets = BoundaryFacets(mesh);
+  Eigen::MatrixXi top(facets.rows(), 0);
+  for (const auto& facet : facets.colwise()) {
+    if ((mesh.nodes(2, facet).array() > 1 - 1e-9).all()) {
+      top.conservativeResize(Eigen::NoChange, top.cols() + 1);
+      top.col(top.cols() - 1) = facet;
+    }
+  }
+  LoadCase& load_case = scene.load_cases[0];
+  load_case.loads = {Traction{top, Eigen::Vector3d(0, 0, traction)}};
+  load_case.displacement =
+      Eigen::Vector3d(lower - 1, lower - 1, strain).asDiagonal() * mesh.nodes;
+  return scene;
+}
+
+Estimate EstimateOf(const Scene& scene, const std::string& estimator) {
+  return MakeEstimator(estimator)->Run(scene, {});
+}
+
+TEST(KinematicError, OfSmallStrainsIsNotMentioned) {
+  Scene scene = NeoHookeanCube(0.005);
+  testing::AddNoise(1e-3, 1, scene);
+  const Estimate estimate = EstimateOf(scene, "auto");
+  ASSERT_TRUE(estimate.IsUsable()) << estimate.message;
+  EXPECT_FALSE(estimate.Has(FindingCode::kLargeDeformation));
+  EXPECT_NEAR(estimate.deformation.strain, 0.005, 1e-4);
+}
+
+TEST(KinematicError, OfModerateStrainsIsPartOfTheErrors) {
+  for (const std::string estimator :
+       {"closed-form", "virtual-fields", "reduced-fe", "iterative-fe"}) {
+    for (const double strain : {0.03, -0.03, 0.06}) {
+      Scene scene = NeoHookeanCube(strain);
+      testing::AddNoise(1e-4, 1, scene);
+      const Estimate estimate = EstimateOf(scene, estimator);
+      SCOPED_TRACE(estimator + ", " + std::to_string(strain));
+      ASSERT_TRUE(estimate.IsUsable()) << estimate.message;
+      EXPECT_TRUE(estimate.Has(FindingCode::kLargeDeformation));
+      EXPECT_LT(std::abs(estimate.elasticity.youngs_modulus - 1000),
+                2 * *estimate.YoungsModulusStandardError());
+      EXPECT_LT(std::abs(estimate.elasticity.poisson_ratio - 0.3),
+                2 * *estimate.PoissonRatioStandardError());
+      EXPECT_NEAR(estimate.error_budget.kinematics(0), 0.8 * std::abs(strain),
+                  1e-3);
+    }
+  }
+}
+
+TEST(KinematicError, OfLargeStrainsIsTheReasonToRefuse) {
+  for (const std::string estimator : {"closed-form", "reduced-fe", "auto"}) {
+    Scene scene = NeoHookeanCube(0.2);
+    testing::AddNoise(1e-3, 1, scene);
+    const Estimate estimate = EstimateOf(scene, estimator);
+    EXPECT_FALSE(estimate.IsUsable()) << estimator;
+    EXPECT_EQ(estimate.findings[0].code, FindingCode::kLargeDeformation)
+        << estimator << ": " << estimate.message;
+  }
+}
+
+// With nu given, E alone has to be within its limit.
+TEST(KinematicError, OfAGivenPoissonRatioIsThatOfEAlone) {
+  Scene scene = NeoHookeanCube(0.1);
+  testing::AddNoise(1e-3, 1, scene);
+  EstimatorOptions options;
+  EXPECT_FALSE(MakeEstimator("reduced-fe")->Run(scene, options).IsUsable());
+  options.known_poisson_ratio = 0.3;
+  const Estimate estimate = MakeEstimator("reduced-fe")->Run(scene, options);
+  EXPECT_TRUE(estimate.IsUsable()) << estimate.message;
+}
+
+TEST(KinematicError, AsksForTheUnitOfImpossibleStrains) {
+  Scene scene = NeoHookeanCube(0.003);
+  scene.load_cases[0].displacement *= 1000;  // In mm, of a cube in m.
+  const Estimate estimate = EstimateOf(scene, "auto");
+  ASSERT_EQ(estimate.findings[0].code, FindingCode::kLargeDeformation)
+      << estimate.message;
+  EXPECT_NE(estimate.message.find("unit"), std::string::npos);
+}
+
+TEST(NegativePoissonRatio, AsksForSigns) {
+  for (const bool is_flipped : {false, true}) {
+    Scene scene = NeoHookeanCube(0.003);
+    if (is_flipped) {
+      scene.load_cases[0].displacement.topRows(2) *= -1;
+    }
+    testing::AddNoise(1e-3, 1, scene);
+    const Estimate estimate = EstimateOf(scene, "reduced-fe");
+    ASSERT_TRUE(estimate.IsUsable()) << estimate.message;
+    EXPECT_EQ(estimate.Has(FindingCode::kNegativePoissonRatio), is_flipped);
+  }
+}
+
+}  // namespace
+}  // namespace elastimate
