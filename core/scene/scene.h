@@ -132,7 +132,7 @@ bool HasSupportsOfCases(const Scene& scene);
 /// zero (displacements only where they are observed or held); unknown
 /// displacements are of held components, in rigid faces or measured at nodes;
 /// resultants are of held components; every facet has nodes in range (and
-/// mid-edge nodes in the middle); points lie in their
+/// mid-edge nodes in the middle of straight edges); points lie in their
 /// elements (ValidatePoints); the facets of a surface force have an area; noise
 /// standard deviations are positive; there is a load case; and at least one
 /// degree of freedom is free in each.  O(num_elements + num_nodes *
