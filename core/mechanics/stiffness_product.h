@@ -26,8 +26,8 @@ struct StiffnessProducts {
 ///   b_i = integral of tr(e) grad(N_i) - c a_i,
 ///
 /// c of ShearShareOfJ, so that no element matrix is formed.  In a linear
-/// simplex both factors are constant, in a quadratic one both are linear, and
-/// the integrals exact.
+/// simplex both factors are constant, in a quadratic one with straight edges
+/// both are linear, and the integrals exact.
 ///
 /// Precondition: a valid mesh (ValidateMesh) and num_dofs rows.
 /// Cost: one element pass, O(num_elements * num_columns) time (for quadratic

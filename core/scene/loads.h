@@ -14,11 +14,11 @@ namespace elastimate {
 /// The consistent nodal forces of `loads`, dimension x num_nodes [force]: f_i =
 /// integral of N_i times the load.  On linear tetrahedra a uniform body force
 /// puts a quarter of an element's share on each node, a uniform traction,
-/// pressure or surface force a third of a facet's; on quadratic ones it is
-/// -1/20 at the vertices and 1/5 at the mid-edge nodes of an element, 0 and 1/3
-/// of a facet [Zienkiewicz & Taylor, The Finite Element Method]. Precondition:
-/// a valid scene (ValidateScene). O(num_nodes + num_elements + num_facets) per
-/// load.
+/// pressure or surface force a third of a facet's; on quadratic ones with
+/// straight edges it is -1/20 at the vertices and 1/5 at the mid-edge nodes of
+/// an element, 0 and 1/3 of a facet [Zienkiewicz & Taylor, The Finite Element
+/// Method].  Precondition: a valid scene (ValidateScene).  O(num_nodes +
+/// num_elements + num_facets) per load.
 Eigen::MatrixXd AssembleLoads(const Mesh& mesh, const std::vector<Load>& loads);
 
 /// AssembleLoads for each load case, one column each:

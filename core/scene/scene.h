@@ -131,11 +131,12 @@ bool HasSupportsOfCases(const Scene& scene);
 /// number is finite, and no array's largest one beyond 1e-50 to 1e50 unless
 /// zero (displacements only where they are observed or held); unknown
 /// displacements are of held components, in rigid faces or measured at nodes;
-/// resultants are of held components; every facet is a face of an element;
-/// points lie in their elements (ValidatePoints); noise standard deviations are
-/// positive; there is a load case; and at least one degree of freedom is free
-/// in each.  O(num_elements + num_nodes * num_load_cases), and O(num_elements)
-/// for each load on facets.
+/// resultants are of held components; every facet is a face of an element (and
+/// its mid-edge nodes lie in the middle of straight edges); points lie in their
+/// elements (ValidatePoints); the facets of a surface force have an area; noise
+/// standard deviations are positive; there is a load case; and at least one
+/// degree of freedom is free in each.  O(num_elements + num_nodes *
+/// num_load_cases), and O(num_elements) for each load on facets.
 void ValidateScene(const Scene& scene);
 
 /// The part of ValidateScene that is about observed components, displacements

@@ -16,7 +16,7 @@
 namespace elastimate {
 
 /// What finer elements change in the displacements of a scene: quadratic
-/// simplices of its nodes (SimplicialScene, HierarchicalError), which for
+/// simplices of its nodes (FinerScene, HierarchicalError), which for
 /// quadratic elements are of half the size.
 class ElementChange {
  public:

@@ -12,7 +12,6 @@
 #include <cmath>
 #include <type_traits>
 
-#include "elastimate/core/mesh/mid_edges.h"
 #include "elastimate/core/mesh/shape_functions.h"
 #include "elastimate/core/mesh/simplicial_mesh.h"
 #include "elastimate/io/points/point_grid.h"
@@ -91,13 +90,15 @@ CurvedLocator::CurvedLocator(const Mesh& mesh) : mesh_(mesh) {
     }
   }
   // sum_ab 4 lambda_a lambda_b over the edges is 3 / 2 at most.
-  const MidEdges edges(mesh);
-  for (Eigen::Index i = 0; i < edges.Ends().cols(); ++i) {
-    const auto [a, b] = std::pair(edges.Ends()(0, i), edges.Ends()(1, i));
-    margin_ =
-        std::max(margin_, 1.5 * (mesh.nodes.col(edges.NumVertices() + i) -
-                                 0.5 * (mesh.nodes.col(a) + mesh.nodes.col(b)))
-                                    .norm());
+  const ElementTopology& topology = mesh.Topology();
+  for (const auto& nodes : mesh.elements.colwise()) {
+    for (int i = topology.num_vertices; i < topology.num_nodes; ++i) {
+      const auto [a, b] = topology.edges[i - topology.num_vertices];
+      margin_ = std::max(margin_, 1.5 * (mesh.nodes.col(nodes(i)) -
+                                         0.5 * (mesh.nodes.col(nodes(a)) +
+                                                mesh.nodes.col(nodes(b))))
+                                            .norm());
+    }
   }
 }
 
@@ -127,7 +128,11 @@ CurvedPlace CurvedLocator::NearestWithin(Eigen::Vector3d x,
 }
 
 CurvedPlace CurvedLocator::Find(Eigen::Vector3d x) const {
-  CurvedPlace place = NearestWithin(x, margin_ + rounding_);
+  // Mostly it lies in the element of the simplex that it lies in.
+  CurvedPlace place = NearestWithin(x, rounding_);
+  if (!(place.distance <= rounding_)) {
+    place = NearestWithin(x, margin_ + rounding_);
+  }
   if (!(place.distance <= rounding_)) {
     vtkNew<vtkGenericCell> cell;
     Eigen::Vector3d closest;

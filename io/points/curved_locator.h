@@ -27,7 +27,8 @@ struct CurvedPlace {
 /// (Gauss-Newton; inside the element Newton's method).
 class CurvedLocator {
  public:
-  /// Keeps a copy of the mesh.  Precondition: valid and of a curved kind.
+  /// Keeps a copy of the mesh.  Precondition: valid, but for the order of
+  /// nodes and for those that no element uses, and of a curved kind.
   explicit CurvedLocator(const Mesh& mesh);
 
   /// The nearest place; the distance is zero, but for 1e-9 of the extent,

@@ -375,7 +375,7 @@ void ChooseLaw(const std::filesystem::path& path, const LawChoice& choice,
   }
 }
 
-/// How far mid-edge nodes of rounded positions were put, if any were.
+/// How many mid-edge nodes were put into the middle, and how far, if any were.
 void NoteMovedNodes(const MeshFile& mesh, std::vector<std::string>& notices) {
   if (mesh.moved.empty()) {
     return;
@@ -384,12 +384,15 @@ void NoteMovedNodes(const MeshFile& mesh, std::vector<std::string>& notices) {
   for (const auto& [node, in_file] : mesh.moved) {
     farthest = std::max(farthest, (mesh.nodes.col(node) - in_file).norm());
   }
+  const bool is_one = mesh.moved.size() == 1;
   std::ostringstream sentence;
-  sentence << PrintablePath(mesh.path) << ": put " << mesh.moved.size()
-           << (mesh.moved.size() == 1 ? " mid-edge node of a straight edge"
-                                      : " mid-edge nodes of straight edges")
-           << " into the middle, from up to " << std::setprecision(2)
-           << farthest << " beside it, as rounded positions leave them";
+  sentence << PrintablePath(mesh.path) << ": " << mesh.moved.size()
+           << (is_one ? " mid-edge node lies" : " mid-edge nodes lie")
+           << " beside the middle of "
+           << (is_one ? "its straight edge" : "their straight edges")
+           << ", by up to " << std::setprecision(2) << farthest
+           << ", as rounded positions do; " << (is_one ? "it was" : "they were")
+           << " put into the middle";
   notices.push_back(sentence.str());
 }
 

@@ -19,9 +19,11 @@ namespace {
 const std::map<ElementKind, int> kCellTypes = {
     {ElementKind::kTet4, VTK_TETRA},
     {ElementKind::kTet10, VTK_QUADRATIC_TETRA},
+    {ElementKind::kCurvedTet10, VTK_QUADRATIC_TETRA},
     {ElementKind::kHex8, VTK_HEXAHEDRON},
     {ElementKind::kTri3, VTK_TRIANGLE},
     {ElementKind::kTri6, VTK_QUADRATIC_TRIANGLE},
+    {ElementKind::kCurvedTri6, VTK_QUADRATIC_TRIANGLE},
     {ElementKind::kQuad4, VTK_QUAD}};
 
 void AddFields(const std::vector<Field>& fields, vtkDataSetAttributes* to) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -135,9 +136,9 @@ TEST_P(GmshKinds, AreScenes) {
 }
 
 std::vector<ElementKind> KindsOfStraightEdges() {
-  std::vector<ElementKind> kinds(kElementKinds.begin(), kElementKinds.end());
-  kinds.erase(std::remove_if(kinds.begin(), kinds.end(), IsCurved),
-              kinds.end());
+  std::vector<ElementKind> kinds;
+  std::remove_copy_if(kElementKinds.begin(), kElementKinds.end(),
+                      std::back_inserter(kinds), IsCurved);
   return kinds;
 }
 
@@ -190,15 +191,17 @@ TEST_P(CurvedByGmsh, AreScenes) {
   WriteQuarterOfRing(GetParam(), folder.Path() / "mesh.msh");
   const Scene scene =
       ReadScene(
-          {folder.Write("scene.json",
-                        std::string("{") +
-                            (is_solid ? "" : R"("model": "plane_strain",)") +
-                            R"(
+          {folder.Write(
+              "scene.json",
+              std::string("{") +
+                  (is_solid ? ""
+                            : R"("model": "plane_strain", "thickness": 1,)") +
+                  R"(
     "mesh": "mesh.msh",
     "supports": [{"nodes": {"box": )" +
-                            (is_solid ? "[[0, -1, 0], [3, 1e-9, 1]]"
-                                      : "[[0, -1], [3, 1e-9]]") +
-                            R"(}}],
+                  (is_solid ? "[[0, -1, 0], [3, 1e-9, 1]]"
+                            : "[[0, -1], [3, 1e-9]]") +
+                  R"(}}],
     "cases": [{"loads": [
       {"type": "pressure", "value": 6, "surface": {"physical": "inside"}}]}]})")},
           Measurement::kOptional)

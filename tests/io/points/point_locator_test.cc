@@ -62,7 +62,7 @@ Mesh QuarterOfRing() {
   mesh.kind = ElementKind::kCurvedTri6;
   mesh.section.model = SectionModel::kPlaneStress;
   mesh.nodes.resize(2, 9);
-  const auto at = [&](double radius, int k) {
+  const auto at = [&](double radius, int k) -> Eigen::Vector2d {
     return radius * Eigen::Vector2d(std::cos(angles[k]), std::sin(angles[k]));
   };
   mesh.nodes << at(1, 0), at(2, 0), at(2, 2), at(1, 2), at(1.5, 0), at(2, 1),
@@ -90,6 +90,19 @@ TEST(LocatedPoints, OutsideOfCurvedElementsAreTheNearestOfTheirEdges) {
   EXPECT_TRUE(found.col(0).isApprox(2 * middle, 1e-9));
   EXPECT_TRUE(found.col(1).isApprox(middle, 1e-9));
   EXPECT_TRUE(found.col(3).isApprox(1.99 * middle, 1e-9));
+}
+
+// As files number them: mid-edge nodes before vertices, and one of no element.
+TEST(LocatedPoints, AreFoundWhateverTheOrderOfNodes) {
+  Mesh mesh = QuarterOfRing();
+  mesh.elements = 9 - mesh.elements.array();
+  mesh.nodes.conservativeResize(2, 10);
+  mesh.nodes.col(9).setZero();
+  mesh.nodes = mesh.nodes.rowwise().reverse().eval();
+  const Eigen::Vector2d x(0.3, 1.4);
+  const LocatedPoints located = PointLocator(mesh).Locate(x);
+  EXPECT_EQ(located.distance(0), 0);
+  EXPECT_TRUE(Interpolate(mesh, located.points, mesh.nodes).isApprox(x, 1e-9));
 }
 
 // No point of the outline is nearer, which is looked at closely.
