@@ -114,6 +114,9 @@ struct Scene {
   /// Whether the displacements were measured but for a rigid motion, of the
   /// camera or of the whole specimen, in each load case another.
   bool is_rigid_motion_free = false;
+  /// Whether the displacements were computed by linear elasticity, which is
+  /// exact at strains and rotations of any size.
+  bool is_of_linear_elasticity = false;
 };
 
 /// The supports in load case `k`.

@@ -75,7 +75,7 @@ void JudgeKinematics(const Scene& scene, const EstimatorOptions& options,
     return;
   }
   estimate.deformation = MeasureDeformation(scene);
-  if (!IsMentioned(estimate.deformation)) {
+  if (scene.is_of_linear_elasticity || !IsMentioned(estimate.deformation)) {
     return;
   }
   const KinematicError error = KinematicErrorOf(estimate.deformation);

@@ -62,6 +62,8 @@ struct MeshFile {
   /// The field data of these names in a VTK file.
   std::optional<double> model;  ///< A place in kNumberedModels, if valid.
   std::optional<double> thickness;
+  /// Whether linear elasticity computed the displacements.
+  bool is_of_linear_elasticity = false;
 
   /// Mid-edge nodes that rounded positions had beside the straight edges of
   /// quadratic elements, into the middle of which they were put.

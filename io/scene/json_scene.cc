@@ -158,6 +158,7 @@ FileScene ReadJsonScene(const std::filesystem::path& path,
   const MeshFile& mesh = file_scene.mesh;
   file_scene.scene.mesh =
       SceneMesh(mesh, SectionOf(mesh, choice), mesh.elements);
+  file_scene.scene.is_of_linear_elasticity = mesh.is_of_linear_elasticity;
   file_scene.scene.materials = ReadMaterials(document, mesh);
   file_scene.axis_arrays = AxisArrays(document, mesh);
   const std::vector<JsonValue> cases = document.At("cases").Items();

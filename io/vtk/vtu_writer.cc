@@ -109,13 +109,19 @@ void AddField(const std::string& name, const Eigen::MatrixXd& values,
   attributes->AddArray(array);
 }
 
+void AddNumber(const char* name, int value, vtkFieldData* data) {
+  vtkNew<vtkIntArray> number;
+  number->SetName(name);
+  number->InsertNextValue(value);
+  data->AddArray(number);
+}
+
 void AddSection(const Section& section, vtkFieldData* data) {
-  vtkNew<vtkIntArray> model;
-  model->SetName("model");
-  model->InsertNextValue(static_cast<int>(
-      std::find(kNumberedModels.begin(), kNumberedModels.end(), section.model) -
-      kNumberedModels.begin()));
-  data->AddArray(model);
+  AddNumber("model",
+            static_cast<int>(std::find(kNumberedModels.begin(),
+                                       kNumberedModels.end(), section.model) -
+                             kNumberedModels.begin()),
+            data);
   vtkNew<vtkDoubleArray> thickness;
   thickness->SetName("thickness");
   thickness->InsertNextValue(section.thickness);
@@ -142,6 +148,9 @@ vtkSmartPointer<vtkUnstructuredGrid> ToVtkGrid(
   if (mesh.Dimension() == 2) {
     AddSection(mesh.section, grid->GetFieldData());
   }
+  if (fields.are_of_linear_elasticity) {
+    AddNumber("linear_elasticity", 1, grid->GetFieldData());
+  }
   return grid;
 }
 
@@ -164,6 +173,7 @@ void AddSupports(const Supports& supports, const std::string& suffix,
 
 Fields SceneFields(const Scene& scene) {
   Fields fields;
+  fields.are_of_linear_elasticity = scene.is_of_linear_elasticity;
   AddSupports(scene.supports, "", fields);
   for (std::size_t i = 0; i < scene.load_cases.size(); ++i) {
     const LoadCase& load_case = scene.load_cases[i];
