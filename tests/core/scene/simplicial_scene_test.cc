@@ -5,8 +5,8 @@
 #include <random>
 
 #include "elastimate/core/equilibrium/simulated_measurement.h"
-#include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/finer_scene.h"
+#include "elastimate/core/scene/loads.h"
 #include "tests/element_kinds.h"
 
 namespace elastimate {
