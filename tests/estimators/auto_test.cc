@@ -136,6 +136,7 @@ TEST(Auto, RaisesTheOrderOfSeveralMaterials) {
   MeasureMaterials(Eigen::Vector4d(1e7, 0.3, 2e7, 0.3), quadratic);
   scene.load_cases[0].displacement =
       quadratic.load_cases[0].displacement.leftCols(scene.mesh.NumNodes());
+  scene.is_of_linear_elasticity = true;
   const Estimate estimate = Auto().Run(scene, {});
   ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
   EXPECT_EQ(estimate.rungs.back().element_order, 2);

@@ -47,6 +47,7 @@ TEST_P(CorrectedFitOf, IsThatOfFinerElementsWhereTheseWereMeasured) {
   MeasureInFinerWorld(kBarTruth, finer);
   scene.load_cases[0].displacement =
       finer.load_cases[0].displacement.leftCols(scene.mesh.NumNodes());
+  scene.is_of_linear_elasticity = true;
   const Estimate estimate = MakeEstimator(GetParam())->Run(scene, {});
   ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
   ASSERT_TRUE(estimate.discretization_correction);
@@ -214,6 +215,7 @@ TEST_P(CorrectedFitStatistics, KnowsNoPoissonRatioThatElementsTakeUp) {
   Scene finer = QuadraticScene(SimplicialScene(exact));
   testing::Measure(kTruth, finer);
   const Eigen::Index num_nodes = exact.mesh.NumNodes();
+  exact.is_of_linear_elasticity = true;
   LoadCase& load_case = exact.load_cases[0];
   load_case.displacement = finer.load_cases[0].displacement.leftCols(num_nodes);
   load_case.observed = ComponentMask::Constant(3, num_nodes, false);
