@@ -21,8 +21,8 @@ constexpr Eigen::Index kValuesPerMonomial = 4;
 // rounding, they still amplify noise.
 constexpr double kDependent = 1e-4;
 constexpr double kVolumeShare = 0.95;
-// A smaller rotation [rad] is one to first order.
-constexpr double kSmallRotation = 1e-3;
+// A smaller rotation [rad] is one to first order: it makes strains of 2e-6.
+constexpr double kSmallRotation = 2e-3;
 
 // What was observed of each component: positions, dimension x n, and values.
 struct Observed {
@@ -303,7 +303,7 @@ DeformationSize MeasureDeformation(const Scene& scene) {
 }
 
 void RemoveFreeRotation(Scene& scene) {
-  if (!scene.is_rigid_motion_free) {
+  if (!scene.is_rigid_motion_free || scene.is_of_linear_elasticity) {
     return;
   }
   for (LoadCase& load_case : scene.load_cases) {

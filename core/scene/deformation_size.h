@@ -33,8 +33,9 @@ DeformationSize MeasureDeformation(const Scene& scene);
 /// means a and b of observed positions before and after minimise the sum of
 /// |x + u - b - R (x - a)|^2.  What is left is small enough for the linear
 /// rigid motions that fits eliminate.  A load case in which some components of
-/// a point were observed and others were not stays as it is.
-/// Precondition: a valid scene.  O(num_nodes + num_points).
+/// a point were observed and others were not stays as it is, and so does a
+/// scene whose displacements linear elasticity computed. Precondition: a valid
+/// scene.  O(num_nodes + num_points).
 void RemoveFreeRotation(Scene& scene);
 
 }  // namespace elastimate

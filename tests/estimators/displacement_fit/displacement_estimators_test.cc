@@ -243,7 +243,7 @@ TEST_P(DisplacementEstimators, ErrorsOfNuAllowForTheRoomOfE) {
     }
   }
   std::cout << "seeds 1 to 10: " << num_on_bound << " on a bound and usable\n";
-  EXPECT_GT(num_on_bound, 20);
+  EXPECT_GT(num_on_bound, 5);
 }
 
 TEST_P(DisplacementEstimators, KnowsTheIdentifiabilityOfAGivenPoissonRatio) {

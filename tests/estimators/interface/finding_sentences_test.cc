@@ -185,6 +185,16 @@ std::vector<Finding> OfElements() {
   of_linear.element_order = 1;
   return {
       Locking(ElementKind::kTet4),
+      LargeDeformation({0.2, 0.1}, 0.17, Severity::kError),
+      LargeDeformation({0.001, 0.3}, 0.05, Severity::kWarning),
+      LargeDeformation({30, 0.1}, 24, Severity::kError),
+      NegativePoissonRatio([] {
+        ParameterEstimate nu;
+        nu.symbol = "nu";
+        nu.value = -0.3;
+        return nu;
+      }()),
+      MarginNotGiven(0.06),
       DiscretizationErrorFinding(ElementKind::kTet4, of_linear),
       DiscretizationErrorFinding(ElementKind::kHex8, estimate),
       ElementsTooCoarse({0.512345, -0.212345}, {}),

@@ -22,7 +22,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 constexpr double kStress = 3;
-constexpr double kModulus = 200;
+constexpr double kModulus = 2000;
 constexpr double kRatio = 0.25;
 
 // A strip of 6 x 2, of thickness 0.5, that grips pull and a camera sees.
@@ -48,8 +48,8 @@ class MeasuredMeshTest : public ::testing::Test {
       for (int j = 0; j <= 4; ++j) {
         const double x = 0.5 * i;
         const double y = 0.5 * j;
-        text << x << "," << y << "," << kStress / kModulus * x - 0.01 * y + 0.2
-             << "," << -kRatio * kStress / kModulus * y + 0.01 * x << "\n";
+        text << x << "," << y << "," << kStress / kModulus * x - 1e-4 * y + 0.2
+             << "," << -kRatio * kStress / kModulus * y + 1e-4 * x << "\n";
       }
     }
     return text.str();
