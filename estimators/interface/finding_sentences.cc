@@ -696,37 +696,31 @@ Finding LargeDeformation(const DeformationSize& size,
             "length"};
   }
   constexpr double kDegreesOfRadian = 57.29578;
-  const bool is_turned = size.strain < kLimits.mentioned_strain;
   return {FindingCode::kLargeDeformation, severity,
           "strains of " + Percent(size.strain) + " and rotations of " +
               TwoDigits(kDegreesOfRadian * size.rotation) +
-              " degrees are beyond small-strain elasticity, which puts moduli "
-              "off by about " +
-              Percent(relative_error_of_modulus),
-          std::string("measure at smaller loads; larger displacements make it "
-                      "worse") +
-              (is_turned ? ", and a camera or specimen that turned as a whole "
-                           "needs \"rigid_motion\": \"free\""
-                         : "")};
+              " degrees are beyond small-strain elasticity (E +- " +
+              Percent(relative_error_of_modulus) + ")",
+          size.strain < kLimits.mentioned_strain
+              ? "measure at smaller loads, or say \"rigid_motion\": \"free\""
+              : "measure at smaller loads, not larger ones"};
 }
 
 Finding MarginNotGiven(double relative_error) {
   return Warning(FindingCode::kMarginNotGiven,
-                 "the points may end within the specimen: half a spacing at "
-                 "each free edge would change E by " +
-                     Percent(relative_error) + kErrorsHold,
-                 "give \"margin\" beside \"points\": how far the specimen "
-                 "reaches beyond them, 0 where they reach its edges");
+                 "the points may end within the specimen: half a spacing "
+                 "changes E by " +
+                     Percent(relative_error),
+                 "give \"margin\", how far it reaches beyond its \"points\"");
 }
 
 Finding NegativePoissonRatio(const ParameterEstimate& poisson_ratio) {
-  return Warning(
-      FindingCode::kNegativePoissonRatio,
-      poisson_ratio.Label() + " is negative, " +
-          TwoDigits(poisson_ratio.value) +
-          ", which few materials are, and one displacement "
-          "component of the wrong sign makes",
-      "check that y and v, x and u (and z and w) point the same way");
+  return Warning(FindingCode::kNegativePoissonRatio,
+                 poisson_ratio.Label() + " is negative, " +
+                     TwoDigits(poisson_ratio.value) +
+                     ", as one displacement component of the wrong sign makes "
+                     "it",
+                 "check that y and v, x and u point the same way");
 }
 
 Finding Locking(ElementKind kind) {
