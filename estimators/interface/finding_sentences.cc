@@ -720,7 +720,7 @@ Finding NegativePoissonRatio(const ParameterEstimate& poisson_ratio) {
                      TwoDigits(poisson_ratio.value) +
                      ", as one displacement component of the wrong sign makes "
                      "it",
-                 "check that y and v, x and u point the same way");
+                 "check that x and u, y and v point alike");
 }
 
 Finding Locking(ElementKind kind) {
