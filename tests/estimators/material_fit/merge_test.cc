@@ -163,6 +163,10 @@ std::vector<IsotropicElasticity> WithOthersInTheMiddle(
 
 constexpr unsigned kMergeSeeds = 12;
 
+// E and nu of two materials are about two independent intervals a seed, of 24
+// of which a share of .95 has a standard deviation of .044: three of them less.
+constexpr double kLeastCoverage = 0.95 - 3 * 0.044;
+
 // On the same elements at this noise.
 MergeTrials TryOnItsElements(const std::vector<IsotropicElasticity>& truth,
                              const std::vector<Regions>& partition,
@@ -179,7 +183,7 @@ TEST(MergeStatistics, FindsThatAllAreOne) {
     const MergeTrials trials = TryOnItsElements(kOneMaterial, {}, noise);
     EXPECT_GE(trials.num_right, 11);
     EXPECT_EQ(trials.num_usable, int(kMergeSeeds));
-    EXPECT_GT(trials.Coverage(), 0.9);
+    EXPECT_GT(trials.Coverage(), kLeastCoverage);
   }
 }
 
@@ -187,7 +191,7 @@ TEST(MergeStatistics, FindsTwoModuli) {
   const MergeTrials trials =
       TryOnItsElements(WithOthersInTheMiddle({6e3, 0.3}), kTwoMaterials, 0.01);
   EXPECT_GE(trials.num_right, 11);
-  EXPECT_GT(trials.Coverage(), 0.9);
+  EXPECT_GT(trials.Coverage(), kLeastCoverage);
 }
 
 // Numpy prototypes found .67 of such partitions, and .79 of the next: three
@@ -197,14 +201,14 @@ TEST(MergeStatistics, FindsModuliThatAreNear) {
   const MergeTrials trials =
       TryOnItsElements(WithOthersInTheMiddle({5250, 0.3}), kTwoMaterials, 0.01);
   EXPECT_GE(trials.num_right, 3);
-  EXPECT_GT(trials.Coverage(), 0.9);
+  EXPECT_GT(trials.Coverage(), kLeastCoverage);
 }
 
 TEST(MergeStatistics, FindsTwoPoissonRatios) {
   const MergeTrials trials =
       TryOnItsElements(WithOthersInTheMiddle({5e3, 0.35}), kTwoMaterials, 0.01);
   EXPECT_GE(trials.num_right, 5);
-  EXPECT_GT(trials.Coverage(), 0.9);
+  EXPECT_GT(trials.Coverage(), kLeastCoverage);
 }
 
 // A block under a slanted traction, in a world of quadratic elements, cut
@@ -219,7 +223,7 @@ TEST(MergeStatistics, TellsNothingApartByWhatElementsMiss) {
         TryMerging(scene, kOneMaterial, {}, noise, noise == 0 ? 1 : 3);
     EXPECT_EQ(trials.num_told_apart, 0) << noise;
     if (trials.num_usable > 0) {
-      EXPECT_GT(trials.Coverage(), 0.9) << noise;
+      EXPECT_GT(trials.Coverage(), kLeastCoverage) << noise;
     }
   }
 }
@@ -250,7 +254,7 @@ TEST(MergeStatistics, NamesARegionThatMayBeAnother) {
   Scene scene = BlockOfSixRegions();
   MeasureInWorld(scene, truth, scene);
   int num_wrong = 0;
-  for (unsigned seed = 1; seed <= 10; ++seed) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
     const auto [merge, estimate] =
         MergeAndEstimate(WithNoiseOf(scene, 0.05, seed));
     for (const ParameterEstimate& parameter : estimate.parameters) {
