@@ -24,7 +24,7 @@
 #include "apps/summary.h"
 #include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/materials/laws.h"
-#include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/estimators/material_fit/law_choice.h"
 #include "elastimate/estimators/material_fit/merge.h"
 #include "elastimate/estimators/registry.h"
@@ -55,6 +55,7 @@ SceneReading Read(const std::vector<std::string>& arguments) {
       load_case.noise_sd = FLAGS_noise_sd;
     }
   }
+  reading.scene.origin = OriginFromFlag().value_or(reading.scene.origin);
   return reading;
 }
 
@@ -123,6 +124,7 @@ Estimate RunEstimator(const Estimator& estimator, const Scene& scene,
 // Of the flags, all of which are checked before anything is read.
 EstimatorOptions CheckFlags(const std::vector<std::string>& arguments) {
   EstimatorOptions options = OptionsFromFlags();
+  OriginFromFlag();
   if (IsGiven("noise_sd") && !(FLAGS_noise_sd > 0)) {
     throw std::invalid_argument(AsGiven("noise_sd") + "; it must be positive");
   }
@@ -271,10 +273,10 @@ int RunOne(const std::vector<std::string>& arguments,
   if (law) {
     EnterLawChoice(*law, estimate);
   }
-  // An estimator may have raised the order itself.
+  // Fits of measured displacements raise the order themselves.
   const std::optional<Scene> raised =
       estimate.element_order > modelled.mesh.Order()
-          ? std::optional<Scene>(QuadraticScene(scene))
+          ? std::optional<Scene>(FinerScene(modelled))
           : std::nullopt;
   const Scene& reported = raised ? *raised : modelled;
   StagedFiles files;

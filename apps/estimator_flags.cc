@@ -7,6 +7,7 @@
 
 #include "apps/flags.h"
 #include "elastimate/core/text/numbers.h"
+#include "elastimate/io/scene/origin.h"
 
 namespace elastimate {
 namespace {
@@ -67,7 +68,24 @@ Loss LossFromFlag() {
                                   : Loss::kNone;
 }
 
+Refine RefinementFromFlag() {
+  Require(FLAGS_refine == "auto" || FLAGS_refine == "0" || FLAGS_refine == "1",
+          "refine", "it is 0, 1 or auto");
+  return FLAGS_refine == "0"   ? Refine::kNever
+         : FLAGS_refine == "1" ? Refine::kAlways
+                               : Refine::kAutomatic;
+}
+
 }  // namespace
+
+std::optional<Origin> OriginFromFlag() {
+  if (!IsGiven("origin")) {
+    return std::nullopt;
+  }
+  const std::optional<Origin> origin = OriginOfName(FLAGS_origin);
+  Require(origin.has_value(), "origin", "it is measured or computed");
+  return origin;
+}
 
 SolverKind SolverFromFlag() {
   Require(FLAGS_solver == "automatic" || FLAGS_solver == "cholesky" ||
@@ -91,6 +109,7 @@ EstimatorOptions OptionsFromFlags() {
   options.youngs_modulus = {Given("youngs_min", FLAGS_youngs_min),
                             Given("youngs_max", FLAGS_youngs_max)};
   options.loss = LossFromFlag();
+  options.refinement = RefinementFromFlag();
   options.solver = SolverFromFlag();
   if (IsGiven("degree")) {
     Require(FLAGS_degree >= 1 && FLAGS_degree <= 3, "degree",
@@ -110,7 +129,7 @@ void CheckPoissonRatioFlag() {
 std::string GivenOptionFlags() {
   std::string given;
   for (const std::string flag : {"nu", "nu_min", "nu_max", "youngs_min",
-                                 "youngs_max", "loss", "degree"}) {
+                                 "youngs_max", "loss", "refine", "degree"}) {
     if (IsGiven(flag)) {
       given += (given.empty() ? "" : " ") + AsGiven(flag);
     }

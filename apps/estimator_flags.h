@@ -1,8 +1,10 @@
 #ifndef ELASTIMATE_APPS_ESTIMATOR_FLAGS_H_
 #define ELASTIMATE_APPS_ESTIMATOR_FLAGS_H_
 
+#include <optional>
 #include <string>
 
+#include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimator.h"
 
 namespace elastimate {
@@ -10,6 +12,10 @@ namespace elastimate {
 /// The options that the flags give.  Throws std::invalid_argument, naming the
 /// flags, for what the library would refuse by its own names.
 EstimatorOptions OptionsFromFlags();
+
+/// What --origin says; empty where it is not given.  Throws
+/// std::invalid_argument for any other word.
+std::optional<Origin> OriginFromFlag();
 
 /// That of --solver.  Throws std::invalid_argument for any other word, and for
 /// multigrid where it is not there.

@@ -27,6 +27,12 @@ DEFINE_string(rigid_motion, "",
 DEFINE_int32(points, 0,
              "number of random points of --out=FILE.csv; without it all nodes");
 DEFINE_string(loss, "none", "treatment of outliers: none, huber or cauchy");
+DEFINE_string(origin, "",
+              "measured, or computed with elements of this mesh; overrides the "
+              "scene");
+DEFINE_string(refine, "auto",
+              "how often fits of measured displacements divide the mesh: 0, 1 "
+              "or auto");
 DEFINE_int32(degree, 2, "degree of the polynomial virtual fields, 1 to 3");
 DEFINE_int32(order, 1,
              "1: linear elements, 2: quadratic ones on the same mesh");
@@ -91,8 +97,8 @@ const Program& Elastimate() {
         "further load cases",
         {"estimator", "nu",     "nu_min",  "nu_max", "youngs_min", "youngs_max",
          "material",  "axis",   "regions", "model",  "thickness",  "order",
-         "noise_sd",  "loss",   "degree",  "solver", "threads",    "seed",
-         "json",      "series", "out"}},
+         "noise_sd",  "loss",   "origin",  "refine", "degree",     "solver",
+         "threads",   "seed",   "json",    "series", "out"}},
        {"simulate",
         "SCENE",
         "displacements of a scene for given parameters, with noise if wanted",

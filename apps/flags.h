@@ -23,6 +23,8 @@ DECLARE_double(outliers);
 DECLARE_string(rigid_motion);
 DECLARE_int32(points);
 DECLARE_string(loss);
+DECLARE_string(origin);
+DECLARE_string(refine);
 DECLARE_int32(degree);
 DECLARE_int32(order);
 DECLARE_string(model);

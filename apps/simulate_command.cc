@@ -158,7 +158,8 @@ std::string MeasuredScene(const std::string& source,
             generator, displacement);
     scene.load_cases[k].displacement = displacement;
   }
-  scene.is_of_linear_elasticity = true;
+  scene.origin =
+      FLAGS_order == mesh.Order() ? Origin::kComputed : Origin::kMeasured;
   Fields fields = SceneFields(scene);
   for (const auto& [name, axes] : reading.axis_arrays) {
     fields.cell.push_back({name, axes});

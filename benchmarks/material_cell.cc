@@ -79,7 +79,7 @@ PreparedLevel::PreparedLevel(const MaterialLevel& level)
     const Eigen::Index column = Eigen::Index(k);
     model_.load_cases[k].displacement =
         displacement.col(column).reshaped(mesh.Dimension(), mesh.NumNodes());
-    model_.is_of_linear_elasticity = true;
+    model_.origin = Origin::kComputed;
     noise_sd_.push_back(level.noise * free.col(column).norm() /
                         std::sqrt(double(free.rows())));
   }

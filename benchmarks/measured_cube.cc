@@ -25,7 +25,7 @@ Scene MeasuredCube(int cells, const IsotropicElasticity& elasticity) {
   forces.force = scene.supports.held.select(0, forces.force);
   scene.load_cases[0].loads = {forces};
   scene.load_cases[0].displacement = displacement;
-  scene.is_of_linear_elasticity = true;
+  scene.origin = Origin::kComputed;
   return scene;
 }
 

@@ -65,7 +65,7 @@ World MakeWorld(PlateEnds ends, int cells) {
   }
   scene.load_cases[0].displacement =
       model.Displacement().col(0).reshaped(2, scene.mesh.NumNodes());
-  scene.is_of_linear_elasticity = true;
+  scene.origin = Origin::kComputed;
   if (ends == PlateEnds::kTraction) {
     world.force = options.force;
   } else {
@@ -191,7 +191,7 @@ Scene WithUniformTraction(const World& world, const World& of_traction,
   std::mt19937_64 generator(seed);
   Scene scene = of_traction.scene;
   scene.load_cases[0].displacement = world.scene.load_cases[0].displacement;
-  scene.is_of_linear_elasticity = true;
+  scene.origin = Origin::kComputed;
   Disturb(plan, generator, scene);
   for (Load& load : scene.load_cases[0].loads) {
     std::get<SurfaceForce>(load).force(0) = world.force;

@@ -395,7 +395,7 @@ void AddInclusions(Levels& levels) {
     Scene scene = block;
     scene.load_cases[0].displacement =
         displacement.reshaped(3, block.mesh.NumNodes());
-    scene.is_of_linear_elasticity = true;
+    scene.origin = Origin::kComputed;
     levels.push_back(
         WithNoiseOnly("inclusion stiffness [1]", Text(contrast), scene));
   }

@@ -169,7 +169,7 @@ void MeasureByHalfTheSize(const IsotropicElasticity& truth, Scene& scene) {
     scene.load_cases[k].displacement =
         displacement.col(Eigen::Index(k))
             .reshaped(scene.mesh.Dimension(), scene.mesh.NumNodes());
-    scene.is_of_linear_elasticity = true;
+    scene.origin = Origin::kComputed;
   }
 }
 
@@ -189,7 +189,7 @@ Scene Measured(const Specimen& specimen, int world,
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     scene.load_cases[k].displacement =
         of_world.load_cases[k].displacement.leftCols(scene.mesh.NumNodes());
-    scene.is_of_linear_elasticity = true;
+    scene.origin = Origin::kComputed;
   }
   return scene;
 }

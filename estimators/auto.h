@@ -9,25 +9,18 @@ namespace elastimate {
 
 /// Models no more than the scene needs: climbs
 ///
-///   closed-form, virtual-fields, reduced-fe, reduced-fe with quadratic
-///   elements
+///   closed-form, virtual-fields, reduced-fe, iterative-fe
 ///
 /// and stops at the first rung that is usable, has nothing to warn of, and
-/// whose standard errors are within 1 % of E and 0.01 in nu.  reduced-fe is at
-/// the statistical limit of the data, so that there a larger standard error is
-/// no reason to climb: what sends it to quadratic elements is a residual that
-/// is no noise, or a disagreement with virtual-fields that noise does not
-/// explain (Hausman), where it matters by more than these tolerances; or a
-/// discretisation error above 1 % (0.01 in nu) and half a standard error.
-/// Quadratic elements then have to explain the displacements far better than
-/// linear ones to be taken; after a notable discretisation error it is the
-/// linear ones that have to be likelier than 95 %, as they are for
-/// displacements that were computed with them.  Quadratic ones hold in their
-/// errors what the linear ones say as far as that is likely (OrderComparison).
+/// whose standard errors are within 1 % of E and 0.01 in nu.  reduced-fe and
+/// iterative-fe are at the statistical limit of the data, so that a larger
+/// standard error is no reason to go on: iterative-fe is the last rung, for
+/// scenes that reduced-fe does not take and fits that it cannot certify.
 ///
-/// Of several materials, it climbs from closed-form to reduced-fe, and to
-/// iterative-fe where that is not certified; of unknown motions and supports of
-/// load cases, to iterative-fe.
+/// Measured displacements (Origin::kMeasured) begin at reduced-fe, since the
+/// rungs below it know no mesh error; finer elements are tried within that rung
+/// as far as the mesh error asks for them (FitRefined).  Several materials,
+/// unknown motions and supports of load cases are passed over by virtual-fields.
 ///
 /// A rung that does not support the scene or the options is passed over.  The
 /// estimate is that of the last rung, with the work of all of them;

@@ -431,7 +431,7 @@ void MeasureByTextbook(const IsotropicElasticity& elasticity, Scene& scene) {
         SolveDensely(stiffness(free, free), force.col(Eigen::Index(k))(free));
     scene.load_cases[k].displacement =
         u.reshaped(mesh.nodes.rows(), mesh.NumNodes());
-    scene.is_of_linear_elasticity = true;
+    scene.origin = Origin::kComputed;
   }
 }
 

@@ -99,7 +99,7 @@ void MeasureByTextbook(const std::vector<IsotropicElasticity>& elasticities,
   for (Eigen::Index k = 0; k < u.cols(); ++k) {
     scene.load_cases[k].displacement =
         u.col(k).reshaped(scene.mesh.Dimension(), scene.mesh.NumNodes());
-    scene.is_of_linear_elasticity = true;
+    scene.origin = Origin::kComputed;
   }
 }
 

@@ -131,7 +131,7 @@ void TakeDisplacements(const Scene& finer, Scene& scene) {
     scene.load_cases[k].displacement =
         finer.load_cases[k].displacement.leftCols(scene.mesh.NumNodes());
   }
-  scene.is_of_linear_elasticity = finer.is_of_linear_elasticity;
+  scene.origin = Origin::kMeasured;
 }
 
 void MeasureInRefinedWorld(const IsotropicElasticity& elasticity,

@@ -124,7 +124,7 @@ void SetDisplacements(const Eigen::MatrixXd& displacements, Scene& scene) {
         displacements.col(Eigen::Index(k))
             .reshaped(scene.mesh.Dimension(), scene.mesh.NumNodes());
   }
-  scene.is_of_linear_elasticity = true;
+  scene.origin = Origin::kComputed;
 }
 
 }  // namespace
@@ -152,7 +152,7 @@ void MeasureInFinerWorld(const IsotropicElasticity& elasticity, Scene& scene) {
     scene.load_cases[k].displacement =
         quadratic.load_cases[k].displacement.leftCols(scene.mesh.NumNodes());
   }
-  scene.is_of_linear_elasticity = true;
+  scene.origin = Origin::kMeasured;
 }
 
 Eigen::VectorXd DrawNoise(NoiseLaw law, Eigen::Index size, double norm,

@@ -304,7 +304,7 @@ DeformationSize MeasureDeformation(const Scene& scene) {
 }
 
 void RemoveFreeRotation(Scene& scene) {
-  if (!scene.is_rigid_motion_free || scene.is_of_linear_elasticity) {
+  if (!scene.is_rigid_motion_free || scene.origin == Origin::kComputed) {
     return;
   }
   for (LoadCase& load_case : scene.load_cases) {

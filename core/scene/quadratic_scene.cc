@@ -268,7 +268,7 @@ Scene QuadraticScene(const Scene& scene) {
       FindSupportEnds(scene.supports, scene.mesh, edges,
                       quadratic.supports.held.rightCols(edges.Size()));
   quadratic.is_rigid_motion_free = scene.is_rigid_motion_free;
-  quadratic.is_of_linear_elasticity = scene.is_of_linear_elasticity;
+  quadratic.origin = scene.origin;
   for (const LoadCase& load_case : scene.load_cases) {
     quadratic.load_cases.push_back(
         ToQuadratic(load_case, scene.supports.held, scene.mesh, edges));

@@ -104,6 +104,15 @@ inline bool IsMeasured(const LoadCase& load_case) {
          load_case.points.points.Size() != 0;
 }
 
+/// Where displacements come from.
+enum class Origin {
+  kMeasured,  ///< A specimen, which its mesh describes but for a mesh error.
+  /// A finite element solution of linear elasticity with the very elements of
+  /// the mesh, so that there is no mesh error, and strains and rotations of any
+  /// size are exact.
+  kComputed,
+};
+
 /// Geometry, materials, supports, and one or more load cases.
 struct Scene {
   Mesh mesh;
@@ -114,9 +123,7 @@ struct Scene {
   /// Whether the displacements were measured but for a rigid motion, of the
   /// camera or of the whole specimen, in each load case another.
   bool is_rigid_motion_free = false;
-  /// Whether the displacements were computed by linear elasticity, which is
-  /// exact at strains and rotations of any size.
-  bool is_of_linear_elasticity = false;
+  Origin origin = Origin::kMeasured;
 };
 
 /// The supports in load case `k`.

@@ -8,7 +8,6 @@
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/estimators/interface/limits.h"
-#include "elastimate/estimators/statistics/element_errors.h"
 #include "elastimate/estimators/statistics/errors_on_bound.h"
 #include "elastimate/estimators/statistics/residual_statistics.h"
 
@@ -81,8 +80,6 @@ class FitDescription {
     }
     estimate.displacement_residual =
         std::sqrt(square_sum_) / Norm(observed.Measured());
-    estimate.bounded_residual =
-        BoundedNorm(observed, fit.residual) / Norm(observed.Measured());
     estimate.identifiability_angle = IdentifiabilityAngle(Gram());
     is_collinear_ =
         std::sin(*estimate.identifiability_angle) < kCollinearSensitivities;
@@ -103,40 +100,6 @@ class FitDescription {
     return true;
   }
 
-  void MeasureElements(const Scene& scene, const NodeGraph& graph) {
-    if (free_.empty()) {
-      return;
-    }
-    elements_.emplace(ElementsOf(free_, scene, graph));
-    if (IsAtPhysicalLimit()) {
-      elements_off_limit_.emplace(ElementsOf(FreeOffLimit(), scene, graph));
-    }
-    if (elements_->Correction()) {
-      Eigen::Vector2d correction = Eigen::Vector2d::Zero();
-      correction(free_) = *elements_->Correction();
-      evidence_.element_correction = correction;
-      correction(free_) = elements_->LikelyChange();
-      evidence_.likely_element_change = correction;
-    }
-  }
-
-  void EnterSupports() {
-    const SupportDoubt& supports = fit_.supports;
-    if (free_.empty() || supports.covariance.isZero(0)) {
-      return;
-    }
-    Eigen::Vector2d correction =
-        evidence_.element_correction.value_or(Eigen::Vector2d::Zero());
-    Eigen::Vector2d errors = Eigen::Vector2d::Zero();
-    for (const Eigen::Index i : free_) {
-      correction(i) += supports.correction(i);
-      errors(i) = std::sqrt(supports.covariance(i, i));
-    }
-    evidence_.element_correction = correction;
-    evidence_.support_errors = errors;
-    of_elements_ += supports.covariance(free_, free_);
-  }
-
   // Whether there are no more components than the statistics need.
   bool AreTooFew() {
     if (observed_.GivenNoise() ||
@@ -151,42 +114,32 @@ class FitDescription {
   void MeasureNoise(const NodeGraph& graph) {
     if (losses_.IsLeastSquares()) {
       variance_ =
-          EstimateVariance(observed_, SquaredNorm(Rest()),
+          EstimateVariance(observed_, SquaredNorm(fit_.residual),
                            Eigen::Index(free_.size()), evidence_, estimate_);
     } else {
-      estimate_.noise_sd = RobustStandardDeviation(Rest()) * observed_.Norm();
+      estimate_.noise_sd = RobustStandardDeviation(fit_.residual) * observed_.Norm();
     }
     evidence_.is_explained_by_given_noise =
         variance_ && variance_->is_explained_by_given_noise;
     smooth_ = MeasureSmoothPart(graph, observed_,
-                                sums_.weights.cwiseSqrt().cwiseProduct(Rest()),
+                                sums_.weights.cwiseSqrt().cwiseProduct(fit_.residual),
                                 estimate_);
     const double least =
         evidence_.is_explained_by_given_noise ? 0 : smooth_.least;
     evidence_.smooth_part = std::sqrt(least) / Norm(observed_.Measured());
-    const double missed =
-        elements_ ? elements_->MissedSquareSum(smooth_.most) : 0;
-    smooth_square_sum_ = std::max(0.0, least - missed);
-    if (elements_) {
-      // What a bound leaves in the residual is no doubt about the model.
-      if (!evidence_.active.Any()) {
-        smooth_square_sum_ = elements_->ModelSquareSum(smooth_square_sum_);
-      }
-      of_elements_ = ElementCovariance(*elements_, free_);
-    }
+    smooth_square_sum_ = least;
   }
 
   void FillCovariance() {
     ErrorBudget& budget = estimate_.error_budget;
     budget.noise = ErrorsOf(NoiseCovariance(free_));
     budget.model = ErrorsOf(ModelCovariance(free_));
-    EnterDiscretization();
     Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(Estimate::kUnknown);
-    covariance(free_, free_) = Covariance(free_) + of_elements_;
+    covariance(free_, free_) = Covariance(free_);
     if (losses_.IsLeastSquares() && !free_.empty()) {
       Eigen::Vector2d change = Eigen::Vector2d::Zero();
-      if (HasHeavyTails(Rest())) {
-        change(free_) = RobustChange(observed_, Rest(),
+      if (HasHeavyTails(fit_.residual)) {
+        change(free_) = RobustChange(observed_, fit_.residual,
                                      fit_.sensitivities(Eigen::all, free_));
         evidence_.outlier_change = change;
       }
@@ -204,12 +157,6 @@ class FitDescription {
   FitStatistics Statistics() const {
     FitStatistics statistics;
     statistics.row_variance = RowVariance();
-    statistics.rest = BoundedNorm(observed_, Rest());
-    if (elements_ && elements_->Correction()) {
-      statistics.share_of_finer = elements_->Share();
-      statistics.correction(free_) = *elements_->Correction();
-      statistics.excess_of_finer = ExcessOfFiner();
-    }
     return statistics;
   }
 
@@ -246,22 +193,6 @@ class FitDescription {
   }
 
  private:
-  // Of twice the change that is seen beside E, and what noise hides.
-  double ExcessOfFiner() const {
-    constexpr double kShare = 2;
-    constexpr double kNoise = 3;
-    const Eigen::VectorXd by_log_youngs_modulus = fit_.sensitivities.col(0);
-    const Eigen::VectorXd& change = *fit_.element_change;
-    const Eigen::VectorXd visible =
-        change -
-        by_log_youngs_modulus * (InnerProduct(by_log_youngs_modulus, change) /
-                                 SquaredNorm(by_log_youngs_modulus));
-    return std::pow(
-        kShare * Norm(visible) + kNoise * Norm(fit_.residual) /
-                                     std::sqrt(double(fit_.residual.size())),
-        2);
-  }
-
   // Of a row of the residual of weight 1, by the standard error of nu; empty
   // when there is none.
   std::optional<double> RowVariance() const {
@@ -276,29 +207,6 @@ class FitDescription {
            LastOfInverse(sums_.weighted_gram, free_);
   }
 
-  ElementErrors ElementsOf(const std::vector<Eigen::Index>& parameters,
-                           const Scene& scene, const NodeGraph& graph) const {
-    std::optional<RowChange> change;
-    if (fit_.element_change) {
-      change = {*fit_.element_change, {}, fit_.taken};
-    }
-    return {scene,
-            graph,
-            observed_,
-            FreeFit{fit_.residual, fit_.sensitivities(Eigen::all, parameters),
-                    sums_.weighted_gram(parameters, parameters), sums_.weights,
-                    losses_.IsLeastSquares(), evidence_.active.Any()},
-            change,
-            fit_.displacement,
-            estimate_.elasticity};
-  }
-  Eigen::MatrixXd ElementCovariance(
-      const ElementErrors& elements,
-      const std::vector<Eigen::Index>& parameters) const {
-    return elements.CovarianceOfChange() +
-           elements.MissedSquareSum(smooth_.most) *
-               Inverse(Gram()(parameters, parameters));
-  }
   // Where nu is held by the end of its range alone, it may be off by what it
   // would be off by if it were free.
   bool IsAtPhysicalLimit() const {
@@ -311,28 +219,9 @@ class FitDescription {
   }
   double PoissonRatioVarianceOffLimit() const {
     const std::vector<Eigen::Index> parameters = FreeOffLimit();
-    Eigen::MatrixXd covariance = Covariance(parameters);
-    if (elements_off_limit_) {
-      covariance += ElementCovariance(*elements_off_limit_, parameters);
-    }
-    covariance += fit_.supports.covariance(parameters, parameters);
+    const Eigen::MatrixXd covariance = Covariance(parameters);
     return covariance(covariance.rows() - 1, covariance.cols() - 1);
   }
-  // The residual without what a finer specimen explains of it.
-  const Eigen::VectorXd& Rest() const {
-    return elements_ ? elements_->Rest() : fit_.residual;
-  }
-  void EnterDiscretization() {
-    if (!elements_ || !elements_->AreKnown()) {
-      return;
-    }
-    const ParameterErrors errors = ErrorsOf(of_elements_);
-    estimate_.discretization_error = errors(0);
-    if (IsPoissonRatioFree()) {
-      estimate_.poisson_ratio_discretization_error = errors(1);
-    }
-  }
-
   const Eigen::Matrix2d& Gram() const { return sums_.sensitivity_gram; }
   // d ln E / d nu of the parameters that fit alike.
   double YoungsModulusSlope() const { return -Gram()(0, 1) / Gram()(0, 0); }
@@ -384,72 +273,9 @@ class FitDescription {
   std::optional<ResidualVariance> variance_;
   SmoothSquareSum smooth_ = {};
   double smooth_square_sum_ = 0;
-  /// Empty where no parameter is free.
-  std::optional<ElementErrors> elements_;
-  /// The same with nu free, where it is at an end of its range.
-  std::optional<ElementErrors> elements_off_limit_;
-  /// Their covariance of the free parameters.
-  Eigen::MatrixXd of_elements_;
 };
 
 }  // namespace
-
-IsotropicElasticity Corrected(const IsotropicElasticity& elasticity,
-                              const Eigen::Vector2d& correction) {
-  const double nu = elasticity.poisson_ratio;
-  return {elasticity.youngs_modulus * std::exp(correction(0)),
-          nu + std::clamp(correction(1), -(1 + nu) / 2, (0.5 - nu) / 2)};
-}
-
-namespace {
-
-void ApplyCorrection(const Evidence& evidence, Estimate& estimate) {
-  double& nu = estimate.elasticity.poisson_ratio;
-  if (estimate.poisson_ratio_interval) {
-    // An error of the elements is none of the measurement, of which the profile
-    // knows how it acts next to a limit.
-    auto& [lower, upper] = *estimate.poisson_ratio_interval;
-    const double distance =
-        kTwoSidedErrors *
-        estimate.poisson_ratio_discretization_error.value_or(0);
-    lower = std::max(std::min(lower, nu - distance), -1.0);
-    upper = std::min(std::max(upper, nu + distance), 0.5);
-  }
-  if (!evidence.element_correction) {
-    return;
-  }
-  const IsotropicElasticity corrected =
-      Corrected(estimate.elasticity, *evidence.element_correction);
-  const double ratio =
-      corrected.youngs_modulus / estimate.elasticity.youngs_modulus;
-  const double change = corrected.poisson_ratio - nu;
-  estimate.elasticity = corrected;
-  const Eigen::Vector2d scale(ratio, 1);
-  estimate.covariance =
-      scale.asDiagonal() * estimate.covariance * scale.asDiagonal();
-  if (estimate.poisson_ratio_interval) {
-    auto& [lower, upper] = *estimate.poisson_ratio_interval;
-    // A limit stays one.
-    lower = lower == -1 ? -1 : std::max(lower + change, -1.0);
-    upper = upper == 0.5 ? 0.5 : std::min(upper + change, 0.5);
-  }
-}
-
-}  // namespace
-
-void CorrectForElements(const Evidence& evidence,
-                        const IsotropicElasticity& uncorrected,
-                        Estimate& estimate) {
-  if (estimate.IsUsable()) {
-    ApplyCorrection(evidence, estimate);
-  }
-  if (evidence.element_correction) {
-    const IsotropicElasticity& corrected = estimate.elasticity;
-    estimate.discretization_correction = {
-        corrected.youngs_modulus / uncorrected.youngs_modulus - 1,
-        corrected.poisson_ratio - uncorrected.poisson_ratio};
-  }
-}
 
 FitStatistics DescribeDisplacementFit(
     const Scene& scene, const NodeGraph& graph, const EstimatorOptions& options,
@@ -461,9 +287,7 @@ FitStatistics DescribeDisplacementFit(
   if (description.FindFreeDirection() || description.AreTooFew()) {
     return {};
   }
-  description.MeasureElements(scene, graph);
   description.MeasureNoise(graph);
-  description.EnterSupports();
   description.FillCovariance();
   FitStatistics statistics = description.Statistics();
   if (evidence.active.youngs_modulus != Side::kNone) {

@@ -41,16 +41,6 @@ class DisplacementResidual : public ceres::EvaluationCallback {
   /// At the parameters.  Precondition: the model is at their nu.
   IsotropicElasticity Elasticity() const;
 
-  /// Adds what the elements miss to the fit.
-  void FindElementChange() {
-    fit_.element_change = model_.ElementChangeOf(Elasticity());
-  }
-
-  /// What was taken from the measurement of the model before it was fitted.
-  void SetTaken(const Eigen::VectorXd& taken) { fit_.taken = taken; }
-
-  void SetSupportDoubt(const SupportDoubt& doubt) { fit_.supports = doubt; }
-
   bool IsValid() const { return is_valid_; }
   ObservedModel& Model() { return model_; }
   const ObservedModel& Model() const { return model_; }

@@ -10,12 +10,10 @@
 
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/scene/unknown_motion.h"
-#include "elastimate/estimators/displacement_fit/corrected_fit.h"
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
 #include "elastimate/estimators/displacement_fit/displacement_minimum.h"
 #include "elastimate/estimators/displacement_fit/displacement_profile.h"
 #include "elastimate/estimators/displacement_fit/robust_reduced_fit.h"
-#include "elastimate/estimators/displacement_fit/support_end_search.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/statistics.h"
@@ -152,10 +150,9 @@ Minimum BestMinimum(const EstimatorOptions& options,
 // Enters the interval of nu, after up to three looks at where each end may be.
 void DescribeProfileOf(const EstimatorOptions& options,
                        const std::vector<ProfilePoint>& points,
-                       const Eigen::VectorXd& row_weights,
-                       DisplacementResidual& residual,
-                       CorrectedFit& corrected) {
-  Estimate& estimate = corrected.fit.estimate;
+                       const Eigen::VectorXd& row_weights, double row_variance,
+                       DisplacementResidual& residual, Evidence& evidence,
+                       Estimate& estimate) {
   EvaluatedProfile profile(
       points, {estimate.elasticity,
                SquaredNorm(row_weights.cwiseProduct(residual.Fit().residual))});
@@ -171,7 +168,7 @@ void DescribeProfileOf(const EstimatorOptions& options,
     // Nobody has looked at what lies beyond the last point.
     for (const double beyond : {first, limit, limit}) {
       const double end =
-          profile.EndTowards(limit, corrected.ExcessOf(kTwoSidedQuantile))
+          profile.EndTowards(limit, kTwoSidedQuantile * row_variance)
               .poisson_ratio;
       if (end != limit &&
           std::abs(end - last_end) < kSettled * std::abs(end - nu)) {
@@ -185,100 +182,47 @@ void DescribeProfileOf(const EstimatorOptions& options,
       }
     }
   }
-  corrected.fit.evidence.profile_interval = DescribeProfile(
-      [&](double quantile) {
-        const double excess = corrected.ExcessOf(quantile);
-        return corrected.WithRival({profile.EndTowards(*bounds.lower, excess),
-                                    profile.EndTowards(*bounds.upper, excess)});
+  evidence.profile_interval = DescribeProfile(
+      [&](double quantile) -> Profile {
+        const double excess = quantile * row_variance;
+        return {profile.EndTowards(*bounds.lower, excess),
+                profile.EndTowards(*bounds.upper, excess)};
       },
       estimate);
 }
 
-// Fits of a model to its measurement, or to what is left of it.
-class CorrectableIterativeFit : public CorrectableFit {
+// A fit of a model to its measurement.
+class IterativeFit {
  public:
-  CorrectableIterativeFit(const Scene& scene, const EstimatorOptions& options,
-                          const SupportDoubt& doubt, ObservedModel& model)
-      : scene_(scene),
-        options_(options),
-        doubt_(doubt),
-        measured_(model.Observed().Measured()),
-        model_(model),
-        residual_(model) {}
+  IterativeFit(const Scene& scene, const EstimatorOptions& options,
+               ObservedModel& model)
+      : scene_(scene), options_(options), model_(model), residual_(model) {}
 
-  bool Fit(const Eigen::VectorXd& taken) override {
-    Take(taken);
+  // Whether there is a fit of physical parameters.
+  bool Fit() {
     points_ = EvaluateStarts(scene_, options_, model_);
     const std::vector<IsotropicElasticity> basins = BasinsOf(points_);
     if (basins.empty()) {
-      best_.reset();
       return false;
     }
     best_.emplace(BestMinimum(options_, basins, residual_, points_));
-    return Evaluate();
+    residual_.SetParameters(best_->meaning, &best_->scale,
+                            &best_->poisson_ratio);
+    residual_.PrepareForEvaluation(true, true);
+    return residual_.IsValid() && residual_.Elasticity().IsPhysical();
   }
 
-  bool FitNear(const IsotropicElasticity& start,
-               const Eigen::VectorXd& taken) override {
-    Take(taken);
-    points_.clear();
-    best_.emplace(Descend(options_, start, residual_));
-    return Evaluate();
-  }
-
-  DescribedFit Describe() override {
-    DescribedFit described;
-    Estimate& estimate = described.estimate;
+  // Describes the fit but for the profile likelihood.
+  FitStatistics Describe(Evidence& evidence, Estimate& estimate) {
     estimate.elasticity = residual_.Elasticity();
-    described.evidence.end = EndOf(best_->summary);
-    described.evidence.search_message = "Ceres: " + best_->summary.message;
-    described.evidence.active = NoteActiveBounds(
-        options_, best_->violated, best_->poisson_ratio, estimate);
-    residual_.FindElementChange();
-    described.statistics = DescribeDisplacementFit(
+    evidence.end = EndOf(best_->summary);
+    evidence.search_message = "Ceres: " + best_->summary.message;
+    evidence.active = NoteActiveBounds(options_, best_->violated,
+                                       best_->poisson_ratio, estimate);
+    return DescribeDisplacementFit(
         scene_, model_.Graph(), options_, model_.Observed(), residual_.Fit(),
-        best_->losses, described.evidence, estimate);
-    described.element_change = residual_.Fit().element_change;
-    described.sensitivities = residual_.Fit().sensitivities;
-    described.taken = residual_.Fit().taken;
-    return described;
+        best_->losses, evidence, estimate);
   }
-
-  // By the starts; absolute deviations are no squares.
-  Profile RangeWithin(double excess) override {
-    Profile range = {residual_.Elasticity(), residual_.Elasticity()};
-    const double most = SquaredNorm(residual_.Fit().residual) + excess;
-    for (const ProfilePoint& point : points_) {
-      if (options_.loss == Loss::kNone && point.unbounded_cost <= most) {
-        range = Hull(range, {point.unbounded, point.unbounded});
-      }
-    }
-    return range;
-  }
-
-  std::optional<FitAtRatio> FitAt(double poisson_ratio) override {
-    model_.SetMeasured(measured_);
-    if (!model_.SetPoissonRatio(poisson_ratio)) {
-      return std::nullopt;
-    }
-    const IsotropicElasticity elasticity =
-        EvaluateProfile(options_, model_, poisson_ratio).elasticity;
-    if (!elasticity.IsPhysical()) {
-      return std::nullopt;
-    }
-    const std::optional<Eigen::VectorXd> change =
-        model_.ElementChangeOf(elasticity);
-    if (!change) {
-      return std::nullopt;
-    }
-    const double scale = elasticity.ComplianceScale(model_.Section());
-    return FitAtRatio{elasticity,
-                      scale * model_.UnitLoadResponse() +
-                          model_.SupportResponse() - measured_,
-                      model_.Sensitivities(elasticity.youngs_modulus), *change};
-  }
-
-  // Of the last fit.
 
   bool HasBasin() const { return best_.has_value(); }
   bool IsValid() const { return residual_.IsValid(); }
@@ -286,31 +230,10 @@ class CorrectableIterativeFit : public CorrectableFit {
   DisplacementResidual& Residual() { return residual_; }
   /// Of the profile; with a loss of other weights than those of the fit.
   const std::vector<ProfilePoint>& Points() const { return points_; }
-  /// The same where the fit was reached from some parameters.
-  void LookAround() {
-    if (points_.empty() && options_.loss == Loss::kNone) {
-      points_ = EvaluateStarts(scene_, options_, model_);
-    }
-  }
 
  private:
-  void Take(const Eigen::VectorXd& taken) {
-    residual_.SetTaken(taken);
-    model_.SetMeasured(WhatIsLeft(measured_, taken));
-  }
-
-  bool Evaluate() {
-    residual_.SetParameters(best_->meaning, &best_->scale,
-                            &best_->poisson_ratio);
-    residual_.PrepareForEvaluation(true, true);
-    residual_.SetSupportDoubt(doubt_);
-    return residual_.IsValid() && residual_.Elasticity().IsPhysical();
-  }
-
   const Scene& scene_;
   const EstimatorOptions& options_;
-  const SupportDoubt& doubt_;
-  const Eigen::VectorXd measured_;
   ObservedModel& model_;
   DisplacementResidual residual_;
   std::vector<ProfilePoint> points_;
@@ -318,17 +241,15 @@ class CorrectableIterativeFit : public CorrectableFit {
 };
 
 // Enters the interval of nu where it is not that of a linear model.
-void EnterProfile(const EstimatorOptions& options, CorrectableIterativeFit& fit,
-                  CorrectedFit& corrected) {
-  Estimate& estimate = corrected.fit.estimate;
-  const Evidence& evidence = corrected.fit.evidence;
+void EnterProfile(const EstimatorOptions& options,
+                  const FitStatistics& statistics, IterativeFit& fit,
+                  Evidence& evidence, Estimate& estimate) {
   Judge(evidence, options, estimate);
-  const std::optional<double>& variance = corrected.fit.statistics.row_variance;
+  const std::optional<double>& variance = statistics.row_variance;
   if (!variance || !estimate.IsUsable() ||
       evidence.active.youngs_modulus != Side::kNone) {
     return;
   }
-  fit.LookAround();
   DisplacementResidual& residual = fit.Residual();
   const NodeLosses& losses = fit.Best().losses;
   const Eigen::VectorXd row_weights =
@@ -340,7 +261,6 @@ void EnterProfile(const EstimatorOptions& options, CorrectableIterativeFit& fit,
   const double nu = estimate.elasticity.poisson_ratio;
   const double far = 4 * estimate.PoissonRatioStandardError().value_or(0);
   const bool has_rival =
-      corrected.rival ||
       std::any_of(of_weights.begin(), of_weights.end(),
                   [&](const ProfilePoint& point) {
                     return point.unbounded_cost <=
@@ -349,52 +269,43 @@ void EnterProfile(const EstimatorOptions& options, CorrectableIterativeFit& fit,
                   });
   if (evidence.active.is_physical_limit || has_rival ||
       ShareOfDistanceToPole(estimate) > kLargestLinearShare) {
-    DescribeProfileOf(options, of_weights, row_weights, residual, corrected);
+    DescribeProfileOf(options, of_weights, row_weights, *variance, residual,
+                      evidence, estimate);
   }
 }
 
-// The estimate, but for its work, from the first fit.
-DescribedFit DescribeBest(const Scene& scene, const EstimatorOptions& options,
-                          bool is_fitted, CorrectableIterativeFit& fit) {
-  DescribedFit described;
-  Evidence& evidence = described.evidence;
-  if (!fit.HasBasin()) {
-    if (fit.Points().empty()) {
-      evidence.end = End::kSingularStiffness;
-    } else {
-      evidence.do_displacements_oppose_loads = true;
-      described.estimate.elasticity = fit.Points().front().elasticity;
-    }
-    return described;
-  }
-  if (!fit.IsValid()) {
+// What there is to say where there is no fit of physical parameters.
+Evidence EvidenceOfNoFit(const IterativeFit& fit, Estimate& estimate) {
+  Evidence evidence;
+  if (!fit.HasBasin() && fit.Points().empty()) {
+    evidence.end = End::kSingularStiffness;
+  } else if (!fit.HasBasin()) {
+    evidence.do_displacements_oppose_loads = true;
+    estimate.elasticity = fit.Points().front().elasticity;
+  } else {
     evidence.end = EndOf(fit.Best().summary);
     evidence.search_message = "Ceres: " + fit.Best().summary.message;
-    return described;
   }
-  CorrectedFit corrected = is_fitted ? FitCorrected(scene, options, fit)
-                                     : CorrectedFit{fit.Describe(), 0, {}};
-  EnterProfile(options, fit, corrected);
-  return corrected.fit;
+  return evidence;
 }
 
-Estimate FitIteratively(const Scene& scene, const EstimatorOptions& options,
-                        const SupportDoubt& doubt) {
+Estimate FitIteratively(const Scene& scene, const EstimatorOptions& options) {
   Stopwatch stopwatch;
   ObservedModel model(scene, options);
   std::vector<StageTime> stages = {{"assemble and analyse", stopwatch.Lap()}};
-  CorrectableIterativeFit fit(scene, options, doubt, model);
-  const bool is_fitted = fit.Fit({});
+  IterativeFit fit(scene, options, model);
+  const bool is_fitted = fit.Fit();
   stages.push_back({"fit", stopwatch.Lap()});
-  const IsotropicElasticity uncorrected =
-      fit.HasBasin() && fit.IsValid()
-          ? fit.Residual().Elasticity()
-          : IsotropicElasticity{Estimate::kUnknown, Estimate::kUnknown};
-  DescribedFit described = DescribeBest(scene, options, is_fitted, fit);
-  Estimate& estimate = described.estimate;
-  described.evidence.solver_notice = model.SolverNotice();
-  Judge(described.evidence, options, estimate);
-  CorrectForElements(described.evidence, uncorrected, estimate);
+  Estimate estimate;
+  Evidence evidence;
+  if (is_fitted || (fit.HasBasin() && fit.IsValid())) {
+    const FitStatistics statistics = fit.Describe(evidence, estimate);
+    EnterProfile(options, statistics, fit, evidence, estimate);
+  } else {
+    evidence = EvidenceOfNoFit(fit, estimate);
+  }
+  evidence.solver_notice = model.SolverNotice();
+  Judge(evidence, options, estimate);
   stages.push_back({"statistics", stopwatch.Lap()});
   estimate.stages = stages;
   estimate.work = model.WorkDone();
@@ -415,6 +326,7 @@ Capabilities IterativeFe::WhatItTakes() const {
   capabilities.needs_supports = true;
   capabilities.takes_bounds = true;
   capabilities.takes_losses = true;
+  capabilities.takes_refinement = true;
   capabilities.takes_materials = true;
   capabilities.takes_free_axes = true;
   capabilities.takes_unknown_motion = true;
@@ -427,11 +339,7 @@ Estimate IterativeFe::DoRun(const Scene& scene,
   if (IsForMaterialFit(scene)) {
     return FitMaterials(scene, options, Descent::kFull);
   }
-  return FitAndFindSupportEnds(
-      scene, options,
-      [&options](const Scene& ended, const SupportDoubt& doubt) {
-        return FitIteratively(ended, options, doubt);
-      });
+  return FitIteratively(scene, options);
 }
 
 std::unique_ptr<Preparation> IterativeFe::DoPrepare(

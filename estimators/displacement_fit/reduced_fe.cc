@@ -5,18 +5,13 @@
 #include <utility>
 #include <vector>
 
-#include "elastimate/core/algebra/node_sums.h"
-#include "elastimate/core/equilibrium/hierarchical_error.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/estimators/displacement_fit/adaptive_fit.h"
-#include "elastimate/estimators/displacement_fit/corrected_fit.h"
 #include "elastimate/estimators/displacement_fit/displacement_fit.h"
-#include "elastimate/estimators/displacement_fit/support_end_search.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 #include "elastimate/estimators/material_fit/material_fit.h"
-#include "elastimate/estimators/misfit/element_change.h"
 #include "elastimate/estimators/statistics/bounded_parameter.h"
 #include "elastimate/estimators/statistics/profile_likelihood.h"
 
@@ -45,136 +40,44 @@ bool IsPhysicalFit(const AdaptiveFit& adaptive) {
   return elasticity.IsPhysical() && std::isfinite(elasticity.youngs_modulus);
 }
 
-// The fit with what its elements miss.
-DisplacementFit FitWithChange(const Scene& scene,
-                              const ObservedDisplacements& observed,
-                              const IsotropicElasticity& elasticity,
-                              const SupportDoubt& doubt, ReducedModel& model,
-                              ElementChange& change) {
-  DisplacementFit fit = ExpandFit(model, observed, elasticity);
+// Describes the fit but for the profile likelihood.
+FitStatistics DescribeFit(const Scene& scene, const EstimatorOptions& options,
+                          const ObservedDisplacements& observed,
+                          AdaptiveFit& adaptive, Evidence& evidence,
+                          Estimate& estimate) {
+  const ModelFit& best = adaptive.Best();
+  estimate.elasticity = ElasticityOf(adaptive);
+  const BoundedParameter poisson_ratio =
+      options.known_poisson_ratio
+          ? BoundedParameter::Constant(*options.known_poisson_ratio)
+          : BoundedParameter(best.point.poisson_ratio,
+                             adaptive.PoissonRatioBounds());
+  evidence.active = NoteActiveBounds(
+      options,
+      BoundOf(options.youngs_modulus, estimate.elasticity.youngs_modulus),
+      poisson_ratio, estimate);
+  DisplacementFit fit =
+      ExpandFit(adaptive.Model(), observed, estimate.elasticity);
   // The model is zero where the supports hold.
-  const Eigen::VectorXd held = HeldDisplacement(scene.supports);
-  fit.displacement.colwise() += held;
-  fit.element_change =
-      change.Rows(observed, elasticity, [&](double nu) -> ElementChange::Model {
-        Eigen::MatrixXd responses = model.Responses(nu);
-        if (model.HasSupportResponse()) {
-          responses.rightCols<1>() += held;
-        }
-        return {responses, model.SolverNear(nu)};
-      });
-  fit.supports = doubt;
-  return fit;
+  fit.displacement.colwise() += HeldDisplacement(scene.supports);
+  return DescribeDisplacementFit(scene, adaptive.Model().Graph(), options,
+                                 observed, fit, best.losses, evidence,
+                                 estimate);
 }
 
-// Fits of a reduced model to its measurement, or to what is left of it.
-class CorrectableAdaptiveFit : public CorrectableFit {
- public:
-  // `observed` was fitted.
-  CorrectableAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
-                         const SupportDoubt& doubt,
-                         const ObservedDisplacements& observed,
-                         AdaptiveFit& adaptive, ElementChange& change)
-      : scene_(scene),
-        options_(options),
-        doubt_(doubt),
-        measured_(observed.Measured()),
-        adaptive_(adaptive),
-        change_(change),
-        data_(observed) {}
-
-  bool Fit(const Eigen::VectorXd& taken) override {
-    taken_ = taken;
-    data_.SetMeasured(WhatIsLeft(measured_, taken));
-    return adaptive_.Run(data_, HierarchicalError::kTolerance * Norm(taken)) &&
-           IsPhysicalFit(adaptive_);
-  }
-
-  // All of the range costs no more.
-  bool FitNear(const IsotropicElasticity& /*start*/,
-               const Eigen::VectorXd& taken) override {
-    return Fit(taken);
-  }
-
-  DescribedFit Describe() override {
-    DescribedFit described;
-    Estimate& estimate = described.estimate;
-    const ModelFit& best = adaptive_.Best();
-    estimate.elasticity = ElasticityOf(adaptive_);
-    const BoundedParameter poisson_ratio =
-        options_.known_poisson_ratio
-            ? BoundedParameter::Constant(*options_.known_poisson_ratio)
-            : BoundedParameter(best.point.poisson_ratio,
-                               adaptive_.PoissonRatioBounds());
-    described.evidence.active = NoteActiveBounds(
-        options_,
-        BoundOf(options_.youngs_modulus, estimate.elasticity.youngs_modulus),
-        poisson_ratio, estimate);
-    DisplacementFit fit = FitWithChange(scene_, data_, estimate.elasticity,
-                                        doubt_, adaptive_.Model(), change_);
-    fit.taken = taken_;
-    described.statistics = DescribeDisplacementFit(
-        scene_, adaptive_.Model().Graph(), options_, data_, fit, best.losses,
-        described.evidence, estimate);
-    described.element_change = std::move(fit.element_change);
-    described.sensitivities = fit.sensitivities;
-    described.taken = taken_;
-    return described;
-  }
-
-  Profile RangeWithin(double excess) override {
-    return adaptive_.ProfileEnds(data_, excess);
-  }
-
-  std::optional<FitAtRatio> FitAt(double poisson_ratio) override {
-    data_.SetMeasured(measured_);
-    const DisplacementFit unit =
-        ExpandFit(adaptive_.Model(), data_, {1, poisson_ratio});
-    // The residual is t w + v - q, du / d ln E = -t w.
-    const Eigen::VectorXd w = -unit.sensitivities.col(0);
-    const double ratio = 1 - InnerProduct(w, unit.residual) / SquaredNorm(w);
-    if (!(ratio > 0) || !std::isfinite(ratio)) {
-      return std::nullopt;
-    }
-    const IsotropicElasticity elasticity = {1 / ratio, poisson_ratio};
-    const DisplacementFit fit = FitWithChange(scene_, data_, elasticity, doubt_,
-                                              adaptive_.Model(), change_);
-    if (!fit.element_change) {
-      return std::nullopt;
-    }
-    return FitAtRatio{elasticity, fit.residual, fit.sensitivities,
-                      *fit.element_change};
-  }
-
-  // What was fitted last.
-  const ObservedDisplacements& Data() const { return data_; }
-
- private:
-  const Scene& scene_;
-  const EstimatorOptions& options_;
-  const SupportDoubt& doubt_;
-  const Eigen::VectorXd measured_;
-  AdaptiveFit& adaptive_;
-  ElementChange& change_;
-  ObservedDisplacements data_;
-  Eigen::VectorXd taken_;
-};
-
 void DescribeProfileOf(const EstimatorOptions& options,
-                       const ObservedDisplacements& data,
-                       const AdaptiveFit& adaptive, CorrectedFit& corrected) {
-  Estimate& estimate = corrected.fit.estimate;
-  Evidence& evidence = corrected.fit.evidence;
+                       const ObservedDisplacements& observed,
+                       const AdaptiveFit& adaptive,
+                       const FitStatistics& statistics, Evidence& evidence,
+                       Estimate& estimate) {
   Judge(evidence, options, estimate);
   // What looks like a pull to -1 may be data that say nothing of nu.
   const bool is_at_minus_one = estimate.status == Status::kUnphysical;
-  if (!corrected.fit.statistics.row_variance ||
-      !(estimate.IsUsable() || is_at_minus_one)) {
+  if (!statistics.row_variance || !(estimate.IsUsable() || is_at_minus_one)) {
     return;
   }
   const auto profile_of = [&](double quantile) {
-    return corrected.WithRival(
-        adaptive.ProfileEnds(data, corrected.ExcessOf(quantile)));
+    return adaptive.ProfileEnds(observed, quantile * *statistics.row_variance);
   };
   if (evidence.active.is_physical_limit ||
       ShareOfDistanceToPole(estimate) > kLargestLinearShare ||
@@ -198,8 +101,7 @@ Estimate Undescribed(const EstimatorOptions& options,
 // Fits, and describes the fit.
 Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
                         const ObservedDisplacements& observed,
-                        const SupportDoubt& doubt, AdaptiveFit& adaptive,
-                        ElementChange& change) {
+                        AdaptiveFit& adaptive) {
   Stopwatch stopwatch;
   Evidence evidence;
   const bool is_regular = adaptive.Run(observed);
@@ -209,44 +111,29 @@ Estimate RunAdaptiveFit(const Scene& scene, const EstimatorOptions& options,
     return Undescribed(options, {Estimate::kUnknown, Estimate::kUnknown},
                        evidence, stages);
   }
-  const IsotropicElasticity uncorrected = ElasticityOf(adaptive);
   if (!IsPhysicalFit(adaptive)) {
     evidence.do_displacements_oppose_loads = true;
-    return Undescribed(options, uncorrected, evidence, stages);
+    return Undescribed(options, ElasticityOf(adaptive), evidence, stages);
   }
-  CorrectableAdaptiveFit fit(scene, options, doubt, observed, adaptive, change);
-  CorrectedFit corrected = FitCorrected(scene, options, fit);
-  DescribeProfileOf(options, fit.Data(), adaptive, corrected);
-  DescribedFit& described = corrected.fit;
+  Estimate estimate;
+  const FitStatistics statistics =
+      DescribeFit(scene, options, observed, adaptive, evidence, estimate);
+  DescribeProfileOf(options, observed, adaptive, statistics, evidence,
+                    estimate);
   if (!adaptive.HasConverged()) {
-    described.evidence.end = End::kNotCertified;
+    evidence.end = End::kNotCertified;
   }
-  described.evidence.solver_notice = adaptive.Model().Notice();
-  Judge(described.evidence, options, described.estimate);
-  CorrectForElements(described.evidence, uncorrected, described.estimate);
+  evidence.solver_notice = adaptive.Model().Notice();
+  Judge(evidence, options, estimate);
   stages.push_back({"statistics", stopwatch.Lap()});
-  described.estimate.stages = stages;
-  return described.estimate;
-}
-
-Estimate FitOnce(const Scene& scene, const EstimatorOptions& options,
-                 const SupportDoubt& doubt) {
-  Stopwatch stopwatch;
-  AdaptiveFit adaptive(scene, options);
-  const ObservedDisplacements observed(scene);
-  const double seconds = stopwatch.Lap();
-  ElementChange change(scene);
-  Estimate estimate =
-      RunAdaptiveFit(scene, options, observed, doubt, adaptive, change);
-  estimate.stages.insert(estimate.stages.begin(), {"reduce", seconds});
-  estimate.work = adaptive.Model().WorkDone() + change.WorkDone();
+  estimate.stages = stages;
   return estimate;
 }
 
 class ReducedPreparation : public Preparation {
  public:
   ReducedPreparation(const Scene& scene, const EstimatorOptions& options)
-      : options_(options), adaptive_(scene, options), change_(scene) {}
+      : options_(options), adaptive_(scene, options) {}
 
   Estimate Run(const Scene& scene) override {
     if (!observed_) {
@@ -254,17 +141,15 @@ class ReducedPreparation : public Preparation {
     } else {
       observed_->Remeasure(scene);
     }
-    const Work before = adaptive_.Model().WorkDone() + change_.WorkDone();
-    Estimate estimate =
-        RunAdaptiveFit(scene, options_, *observed_, {}, adaptive_, change_);
-    estimate.work = adaptive_.Model().WorkDone() + change_.WorkDone() - before;
+    const Work before = adaptive_.Model().WorkDone();
+    Estimate estimate = RunAdaptiveFit(scene, options_, *observed_, adaptive_);
+    estimate.work = adaptive_.Model().WorkDone() - before;
     return estimate;
   }
 
  private:
   const EstimatorOptions& options_;
   AdaptiveFit adaptive_;
-  ElementChange change_;
   /// Empty before the first measurement.
   std::optional<ObservedDisplacements> observed_;
 };
@@ -284,6 +169,7 @@ Capabilities ReducedFe::WhatItTakes() const {
   capabilities.needs_supports = true;
   capabilities.takes_bounds = true;
   capabilities.takes_losses = true;
+  capabilities.takes_refinement = true;
   capabilities.takes_materials = true;
   capabilities.takes_free_axes = true;
   return capabilities;
@@ -294,11 +180,14 @@ Estimate ReducedFe::DoRun(const Scene& scene,
   if (IsForMaterialFit(scene)) {
     return FitMaterials(scene, options, Descent::kReduced);
   }
-  return FitAndFindSupportEnds(
-      scene, options,
-      [&options](const Scene& ended, const SupportDoubt& doubt) {
-        return FitOnce(ended, options, doubt);
-      });
+  Stopwatch stopwatch;
+  AdaptiveFit adaptive(scene, options);
+  const ObservedDisplacements observed(scene);
+  const double seconds = stopwatch.Lap();
+  Estimate estimate = RunAdaptiveFit(scene, options, observed, adaptive);
+  estimate.stages.insert(estimate.stages.begin(), {"reduce", seconds});
+  estimate.work = adaptive.Model().WorkDone();
+  return estimate;
 }
 
 std::unique_ptr<Preparation> ReducedFe::DoPrepare(
@@ -306,9 +195,7 @@ std::unique_ptr<Preparation> ReducedFe::DoPrepare(
   if (IsForMaterialFit(scene)) {
     return PrepareMaterialFit(options, Descent::kReduced);
   }
-  return scene.supports.ends.empty()
-             ? std::make_unique<ReducedPreparation>(scene, options)
-             : Estimator::DoPrepare(scene, options);
+  return std::make_unique<ReducedPreparation>(scene, options);
 }
 
 }  // namespace elastimate

@@ -5,19 +5,13 @@
 #include <limits>
 
 #include "elastimate/core/algebra/dense_algebra.h"
-#include "elastimate/core/mechanics/strain_energy.h"
 #include "elastimate/core/scene/loads.h"
-#include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/estimators/force_balance/force_residual.h"
-#include "elastimate/estimators/force_balance/held_scene.h"
-#include "elastimate/estimators/force_balance/monomials.h"
-#include "elastimate/estimators/force_balance/solution_check.h"
 #include "elastimate/estimators/force_balance/virtual_work.h"
 #include "elastimate/estimators/force_balance/virtual_work_regression.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/stopwatch.h"
-#include "elastimate/estimators/misfit/observed_model.h"
 #include "elastimate/estimators/statistics/errors_on_bound.h"
 #include "elastimate/estimators/statistics/profile_likelihood.h"
 
@@ -240,31 +234,6 @@ void MeasureYoungsModulusOnBound(
       StandardErrorOrInfinity(covariance, 0), estimate);
 }
 
-// The displacements of all load cases without most of their noise, and without
-// what varies faster than a cubic: num_dofs x num_load_cases.
-Eigen::MatrixXd SmoothDisplacements(const Scene& scene) {
-  constexpr int kDegree = 3;
-  const Eigen::Index num_nodes = scene.mesh.NumNodes();
-  const Eigen::Index dimension = scene.mesh.Dimension();
-  const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
-  // The components of all load cases side by side: num_nodes x (dimension
-  // num_cases).
-  Eigen::MatrixXd measured(num_nodes, dimension * num_cases);
-  for (Eigen::Index k = 0; k < num_cases; ++k) {
-    const Eigen::MatrixXd displacement = scene.supports.held.select(
-        scene.supports.displacement, scene.load_cases[k].displacement);
-    measured.middleCols(dimension * k, dimension) = displacement.transpose();
-  }
-  const Eigen::MatrixXd smooth =
-      SmoothByPolynomials(scene.mesh.nodes, measured, kDegree);
-  Eigen::MatrixXd displacements(scene.mesh.NumDofs(), num_cases);
-  for (Eigen::Index k = 0; k < num_cases; ++k) {
-    displacements.col(k).reshaped(dimension, num_nodes) =
-        smooth.middleCols(dimension * k, dimension).transpose();
-  }
-  return displacements;
-}
-
 // The fit, and what it alone says.
 VirtualWorkFit Fit(const EstimatorOptions& options,
                    const VirtualWorkBalance& balance, Evidence& evidence,
@@ -312,71 +281,6 @@ void DescribeCovariance(const EstimatorOptions& options,
   }
 }
 
-// The probability that the specimen is finer than its elements, by Bayes' rule
-// from the force residual, a share of the loads.  Such a specimen leaves 1 to
-// 10 on most shapes, 0.3 at least [benchmarks: unseen].  Displacements that
-// were computed with these very elements leave what noise makes of them, from
-// rounding to far more than the loads; a residual above that of most finer
-// specimens may be noise of either.  Both are as likely before.
-double ProbabilityOfFinerSpecimen(double force_residual) {
-  constexpr double kMeanLog = 0.7;
-  constexpr double kDeviationOfLog = 1.1;
-  // From 1e-10 to 100 times the loads, for each unit of the logarithm.
-  constexpr double kDensityOfNoise = 1 / 28.0;
-  const double score =
-      std::min(0.0, (std::log(force_residual) - kMeanLog) / kDeviationOfLog);
-  const double density =
-      std::exp(-score * score / 2) / (kDeviationOfLog * std::sqrt(2 * M_PI));
-  return density / (density + kDensityOfNoise);
-}
-
-// Adds what the elements miss to the covariance of the free parameters, by the
-// energy that the smoothed displacements miss.
-void AllowForElements(const Scene& scene, Estimate& estimate) {
-  // Of the energy that is missed, in E and nu [benchmarks: unseen].
-  constexpr double kYoungsModulusShare = 1.5;
-  constexpr double kPoissonRatioShare = 0.6;
-  if (scene.mesh.NumElements() == 1) {
-    return;
-  }
-  const double missed =
-      DiscretizationError(scene.mesh, estimate.elasticity,
-                          SmoothDisplacements(scene)) *
-      std::sqrt(ProbabilityOfFinerSpecimen(*estimate.force_residual));
-  const double error = kYoungsModulusShare * missed;
-  estimate.discretization_error = error;
-  estimate.covariance(0, 0) +=
-      std::pow(error * estimate.elasticity.youngs_modulus, 2);
-  // Of a nu that is free.
-  if (std::isfinite(estimate.covariance(1, 1))) {
-    estimate.poisson_ratio_discretization_error = kPoissonRatioShare * missed;
-    const double variance = std::pow(kPoissonRatioShare * missed, 2);
-    estimate.covariance(1, 1) += variance;
-    WidenInterval(variance, estimate);
-  }
-}
-
-// Adds what the elements miss, and whatever else a solution of the model tells.
-void CheckModel(const Scene& scene, const EstimatorOptions& options,
-                VirtualFields::Check check, Evidence& evidence,
-                Estimate& estimate) {
-  constexpr double kNotable = 0.01;
-  if (check == VirtualFields::Check::kByEnergy ||
-      ProbabilityOfFinerSpecimen(*estimate.force_residual) < kNotable) {
-    AllowForElements(scene, estimate);
-    return;
-  }
-  const Scene held = HeldScene(scene);
-  if (!WhyNotHeld(held).empty()) {
-    evidence.end = End::kSingularStiffness;
-    return;
-  }
-  ObservedModel model(held, options);
-  CheckBySolution(held, options, model, evidence, estimate);
-  evidence.solver_notice = model.SolverNotice();
-  estimate.work = estimate.work + model.WorkDone();
-}
-
 // Whether the curvature at the fit says too little of nu.
 bool NeedsProfile(const EstimatorOptions& options, const ActiveBounds& active,
                   const Estimate& estimate) {
@@ -391,8 +295,7 @@ bool NeedsProfile(const EstimatorOptions& options, const ActiveBounds& active,
 void DescribeFit(const Scene& scene, const EstimatorOptions& options,
                  const VirtualWorkBalance& balance,
                  const ForceResidual& force_residual, const VirtualWorkFit& fit,
-                 VirtualFields::Check check, Evidence& evidence,
-                 Estimate& estimate) {
+                 Evidence& evidence, Estimate& estimate) {
   const BoundedParameter poisson_ratio =
       options.known_poisson_ratio
           ? BoundedParameter::Constant(fit.poisson_ratio)
@@ -425,9 +328,6 @@ void DescribeFit(const Scene& scene, const EstimatorOptions& options,
   if (residual && NeedsProfile(options, active, estimate)) {
     DescribeProfileOf(balance, fit, *residual, evidence, estimate);
   }
-  if (residual && estimate.IsUsable()) {
-    CheckModel(scene, options, check, evidence, estimate);
-  }
   evidence.correction = std::sqrt(fit.square_sum) / balance.DisplacementNorm();
 }
 
@@ -438,8 +338,8 @@ int DegreeOf(const EstimatorOptions& options) {
 // `imbalance` is that of the loads.
 Estimate BalanceWork(const VirtualWorkBalance& balance,
                      const ForceResidual& force_residual, double imbalance,
-                     const Scene& scene, const EstimatorOptions& options,
-                     VirtualFields::Check check) {
+                     const Scene& scene,
+                     const EstimatorOptions& options) {
   Estimate estimate;
   Evidence evidence;
   Stopwatch stopwatch;
@@ -457,8 +357,7 @@ Estimate BalanceWork(const VirtualWorkBalance& balance,
   if (!estimate.IsUsable()) {
     return estimate;
   }
-  DescribeFit(scene, options, balance, force_residual, fit, check, evidence,
-              estimate);
+  DescribeFit(scene, options, balance, force_residual, fit, evidence, estimate);
   Judge(evidence, options, estimate);
   estimate.stages.push_back({"fit", stopwatch.Lap()});
   return estimate;
@@ -466,10 +365,8 @@ Estimate BalanceWork(const VirtualWorkBalance& balance,
 
 class WorkPreparation : public Preparation {
  public:
-  WorkPreparation(const Scene& scene, const EstimatorOptions& options,
-                  VirtualFields::Check check)
+  WorkPreparation(const Scene& scene, const EstimatorOptions& options)
       : options_(options),
-        check_(check),
         work_(scene.mesh, scene.supports, DegreeOf(options)),
         forces_(scene),
         imbalance_(work_.Imbalance(AssembleLoadCases(scene))) {}
@@ -477,12 +374,11 @@ class WorkPreparation : public Preparation {
   Estimate Run(const Scene& scene) override {
     return BalanceWork(VirtualWorkBalance(work_, scene),
                        ForceResidual(forces_, scene), imbalance_, scene,
-                       options_, check_);
+                       options_);
   }
 
  private:
   const EstimatorOptions& options_;
-  VirtualFields::Check check_;
   VirtualWork work_;
   ForceScene forces_;
   double imbalance_;
@@ -518,7 +414,7 @@ Estimate VirtualFields::DoRun(const Scene& scene,
   const double seconds = stopwatch.Lap();
   Estimate estimate = BalanceWork(
       VirtualWorkBalance(work, scene), ForceResidual(scene),
-      work.Imbalance(AssembleLoadCases(scene)), scene, options, check_);
+      work.Imbalance(AssembleLoadCases(scene)), scene, options);
   // The fields.
   ++estimate.work.element_passes;
   estimate.stages.insert(estimate.stages.begin(), {"prepare mesh", seconds});
@@ -530,7 +426,7 @@ std::unique_ptr<Preparation> VirtualFields::DoPrepare(
   if (!IsOneIsotropicMaterial(scene.materials)) {
     return Estimator::DoPrepare(scene, options);
   }
-  return std::make_unique<WorkPreparation>(scene, options, check_);
+  return std::make_unique<WorkPreparation>(scene, options);
 }
 
 }  // namespace elastimate

@@ -36,27 +36,18 @@ namespace elastimate {
 /// It is held against the given noise, or against that which the force residual
 /// shows, most of which lies in wavelengths far below those of the fields.
 ///
-/// A specimen that is finer than its elements moves as no polynomial tells.
-/// Where the force residual leaves that open, CheckBySolution therefore holds
-/// the estimate against a finite element solution (HeldScene, of a body that
-/// its supports leave free).  Where Check::kByEnergy asks for it, the
-/// discretisation error is instead that of the measured displacements smoothed
-/// by a cubic, which costs no solution, and is too small for slender bodies.
+/// Nothing here sees what the elements miss: of measured displacements
+/// (Origin::kMeasured) the errors are those of noise alone, with a warning.
 ///
 /// Cost: one element pass of 12, 30 or 60 columns for the degrees 1, 2 and 3 of
 /// EstimatorOptions::virtual_field_degree and a QR factorisation of as many
 /// columns twice, which depend on the mesh only, and four passes of one to
-/// three columns; CheckBySolution, with one factorisation of a stiffness
-/// matrix. Of several materials CheckByDisplacements, with one to three.
+/// three columns.
 /// Single-threaded, deterministic.
 class VirtualFields : public Estimator {
  public:
   /// The degree where none is asked for.
   static constexpr int kDefaultDegree = 2;
-
-  /// By what the elements of one material are judged.
-  enum class Check { kBySolution, kByEnergy };
-  explicit VirtualFields(Check check = Check::kBySolution) : check_(check) {}
 
   std::string_view Name() const override;
   std::string_view Description() const override;
@@ -67,9 +58,6 @@ class VirtualFields : public Estimator {
                  const EstimatorOptions& options) const override;
   std::unique_ptr<Preparation> DoPrepare(
       const Scene& scene, const EstimatorOptions& options) const override;
-
- private:
-  Check check_;
 };
 
 }  // namespace elastimate

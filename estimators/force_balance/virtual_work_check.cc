@@ -15,7 +15,7 @@ WorkCheck CheckByVirtualWork(const Scene& scene,
   EstimatorOptions of_degree_one = options;
   of_degree_one.virtual_field_degree = 1;
   const Estimate check =
-      VirtualFields(VirtualFields::Check::kByEnergy).Run(scene, of_degree_one);
+      VirtualFields().Run(scene, of_degree_one);
   estimate.work = estimate.work + check.work;
   if (!check.IsUsable()) {
     estimate.is_model_in_doubt = true;

@@ -6,7 +6,6 @@
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/scene/loads.h"
-#include "elastimate/estimators/force_balance/displacement_check.h"
 #include "elastimate/estimators/force_balance/monomials.h"
 #include "elastimate/estimators/force_balance/virtual_work.h"
 #include "elastimate/estimators/force_balance/work_balance.h"
@@ -197,29 +196,33 @@ struct Problem {
   bool IsDetermined() const { return balance.NumEquations() > free.Size(); }
 };
 
-// Enters what the balance itself says of its fit; empty where it says nothing.
-std::optional<BalanceFit> DescribeFit(const Scene& scene,
-                                      const Eigen::VectorXd& variables,
-                                      Problem& problem, Evidence& evidence,
-                                      Estimate& estimate) {
+// Enters what the balance says of its fit.
+void DescribeFit(const Scene& scene, const Eigen::VectorXd& variables,
+                 Problem& problem, Evidence& evidence, Estimate& estimate) {
   const FreeParameters& free = problem.free;
   WorkBalance& balance = problem.balance;
   const Eigen::VectorXd moduli = free.ModuliAt(variables);
-  BalanceFit fit = {variables, {}, {}};
-  if (!balance.Evaluate(moduli, free.ModuliJacobian(variables), &fit.residual,
-                        &fit.jacobian)) {
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd jacobian;
+  if (!balance.Evaluate(moduli, free.ModuliJacobian(variables), &residual,
+                        &jacobian)) {
     evidence.end = End::kSearchFailed;
-    return std::nullopt;
+    return;
   }
+  const auto redundancy = static_cast<double>(
+      std::max<Eigen::Index>(residual.size() - variables.size(), 1));
   const bool is_given = scene.load_cases.front().noise_sd.has_value();
-  const double variance = std::max(is_given ? 1.0 : 0.0, fit.Variance());
+  const double variance =
+      std::max(is_given ? 1.0 : 0.0, residual.squaredNorm() / redundancy);
   estimate.noise_sd =
       is_given ? *scene.load_cases.front().noise_sd : std::sqrt(variance);
   estimate.force_residual =
       balance.ForceResidualNorm(moduli) / balance.LoadNorm();
-  EnterCovariance(free, variables, variance * fit.Inverse(), estimate);
-  evidence.correction = fit.residual.norm() / balance.DisplacementNorm();
-  return fit;
+  const Eigen::MatrixXd covariance =
+      variance * Inverse(jacobian.transpose() * jacobian);
+  EnterCovariance(free, variables, covariance, estimate);
+  estimate.error_budget.noise = ErrorsOfVariables(free, variables, covariance);
+  evidence.correction = residual.norm() / balance.DisplacementNorm();
 }
 
 }  // namespace
@@ -262,19 +265,12 @@ Estimate BalanceVirtualWork(const Scene& scene,
   EnterParameters(scene, problem.free,
                   problem.free.ParametersAt(minimum->variables), estimate);
   NoteVariablesOnBounds(problem.free, *minimum, evidence, estimate);
-  const std::optional<BalanceFit> fit =
-      DescribeFit(scene, minimum->variables, problem, evidence, estimate);
+  DescribeFit(scene, minimum->variables, problem, evidence, estimate);
   estimate.work = problem.balance.WorkDone();
   // The fields.
   ++estimate.work.element_passes;
   Judge(evidence, options, estimate);
   estimate.stages.push_back({"fit", stopwatch.Lap()});
-  if (fit && estimate.IsUsable()) {
-    CheckByDisplacements(scene, options, problem.work, *fit, problem.free,
-                         evidence, estimate);
-    Judge(evidence, options, estimate);
-    estimate.stages.push_back({"check", stopwatch.Lap()});
-  }
   return estimate;
 }
 

@@ -25,18 +25,16 @@ namespace elastimate {
 /// of variance sigma^2, the covariance of theta is sigma^2 (D^T G^-1 D)^-1 with
 /// D = V^T f_k(q - M lambda).
 ///
-/// What is usable by that is held against the displacements
-/// (CheckByDisplacements), which alone say whether the regions are right and
-/// what the elements miss.
+/// Nothing here sees whether the regions are right and what the elements miss.
 ///
 /// Preconditions are those of Estimator::Run; every free component is observed.
 /// Cost: in each step an element pass of as many columns as there are fields
 /// (60 for each material in three dimensions, 20 in two; 30 or 12 of five
-/// materials and more), and their QR factorisation; and that of the check.
+/// materials and more), and their QR factorisation.
 Estimate BalanceVirtualWork(const Scene& scene,
                             const EstimatorOptions& options);
 
-/// About where the minimum of S is, without a check: by fields over the whole
+/// About where the minimum of S is, as a start: by fields over the whole
 /// of the specimen, or by few of each of five materials and more; empty where
 /// there is none.  Adds its work.
 std::optional<BoundedMinimum> MinimizeVirtualWork(

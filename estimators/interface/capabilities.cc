@@ -79,9 +79,6 @@ std::string WhyNotTheseMaterials(const Capabilities& capabilities,
     return "it takes materials whose axis is known; use iterative-fe or "
            "reduced-fe, or give the axis";
   }
-  if (options.loss != Loss::kNone) {
-    return "a loss function is for one isotropic material; leave it out";
-  }
   if (options.known_poisson_ratio) {
     return "Poisson's ratio is given for one material, but the scene says what "
            "its materials are; give it there";
@@ -134,6 +131,10 @@ std::string WhyUnsupported(const Capabilities& capabilities, const Scene& scene,
   }
   if (!capabilities.takes_losses && options.loss != Loss::kNone) {
     return "a loss function needs displacement residuals; use reduced-fe";
+  }
+  if (!capabilities.takes_refinement &&
+      options.refinement != Refine::kAutomatic) {
+    return "it solves with no finer elements; use reduced-fe";
   }
   if (!capabilities.takes_degree && options.virtual_field_degree) {
     return "it has no virtual fields to take a degree; use virtual-fields";

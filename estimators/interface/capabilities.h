@@ -18,6 +18,8 @@ struct Capabilities {
   bool needs_supports = false;
   bool takes_bounds = false;  ///< On E and nu.
   bool takes_losses = false;
+  /// Finer elements that tell of the mesh error.
+  bool takes_refinement = false;
   /// It has virtual fields, of a degree that may be chosen.
   bool takes_degree = false;
   /// Materials other than one isotropic one of which nothing is known.

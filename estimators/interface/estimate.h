@@ -89,13 +89,6 @@ struct AxisEstimate {
   std::string Label() const;
 };
 
-/// The disagreement of two estimators, one of which leans on the model less.
-struct ModelMismatch {
-  double statistic;  ///< chi^2 with 2 degrees of freedom when the model holds.
-  double p_value;    ///< Probability of a larger one when the model holds.
-  bool matters;      ///< Whether they differ notably in E or nu (Limits).
-};
-
 /// An estimator that `auto` ran, or passed over.
 struct Rung {
   std::string estimator;
@@ -197,6 +190,8 @@ struct Estimate {
   /// The order of the elements: 1 for linear ones, 2 for quadratic ones; 0 as
   /// long as no estimator was run.
   int element_order = 0;
+  /// How often the mesh was divided for that.
+  int mesh_divisions = 0;
   /// Whether the residual is none that independent noise leaves, so that the
   /// mesh, the supports or the loads are not those of the experiment.
   bool is_model_in_doubt = false;
@@ -248,9 +243,6 @@ struct Estimate {
   std::optional<double> force_residual;
   /// ||u - q|| / ||q|| over the observed free components.
   std::optional<double> displacement_residual;
-  /// The same with points far off counted as at BoundedNorm, by which fits of
-  /// other elements compare.
-  std::optional<double> bounded_residual;
   /// Angle between the sensitivities of the observed displacements to ln E and
   /// to nu [rad]: small when the data determine one combination of them only.
   std::optional<double> identifiability_angle;
@@ -274,8 +266,6 @@ struct Estimate {
   /// in fits of displacements of simplices, and for where supports end within
   /// them.  Also of what was refused, as far as that was corrected.
   std::optional<Eigen::Vector2d> discretization_correction;
-  /// What virtual-fields says of the model of reduced-fe, where both were run.
-  std::optional<ModelMismatch> model_mismatch;
   /// Points that lie too far off for noise, and were left out.
   std::vector<Outlier> outliers;
   /// Of a scene of unknown motion, with the motion: num_dofs x num_load_cases

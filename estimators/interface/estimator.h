@@ -22,6 +22,14 @@ enum class Loss {
   kCauchy,  ///< Logarithmic beyond 2.385 robust standard deviations.
 };
 
+/// How often fits of measured displacements divide the mesh to find its error
+/// (FitRefined).
+enum class Refine {
+  kAutomatic,  ///< Once where the error of the mesh as it is matters.
+  kNever,      ///< The error is then that of quadratic elements of the mesh.
+  kAlways,     ///< Once.
+};
+
 /// The defaults suit a scene of which nothing more is known.
 struct EstimatorOptions {
   // What is estimated.  What is known of one of several materials stands in
@@ -40,6 +48,7 @@ struct EstimatorOptions {
 
   /// Treatment of outliers among the measured displacements.
   Loss loss = Loss::kNone;
+  Refine refinement = Refine::kAutomatic;
   /// Degree of the polynomial virtual fields, 1 to 3, for the estimators that
   /// have some; the others refuse it.
   std::optional<int> virtual_field_degree;

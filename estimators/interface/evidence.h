@@ -107,12 +107,6 @@ struct Evidence {
   std::optional<ResidualRatio> above_noise;
   /// Of (ln E, nu), without the pull of outliers.
   std::optional<Eigen::Vector2d> outlier_change;
-  /// Of (ln E, nu), for what the elements miss and where supports end within
-  /// them.
-  std::optional<Eigen::Vector2d> element_correction;
-  /// The same, of the parameters that it changes most, or what it may have to
-  /// be where something else in the residual hides it.
-  std::optional<Eigen::Vector2d> likely_element_change;
   /// Standard errors of (ln E, nu) by what supports that end within elements
   /// leave open; zero where a parameter is not free.
   std::optional<Eigen::Vector2d> support_errors;

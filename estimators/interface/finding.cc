@@ -53,7 +53,6 @@ constexpr Row kRows[] = {
     {"axis_turned", FindingCode::kAxisTurned},
     {"large_residual", FindingCode::kLargeResidual},
     {"virtual_work_imbalance", FindingCode::kVirtualWorkImbalance},
-    {"model_mismatch", FindingCode::kModelMismatch},
     {"outliers", FindingCode::kOutliers},
     {"outliers_left_out", FindingCode::kOutliersLeftOut},
     {"held_nodes_moved", FindingCode::kHeldNodesMoved},
@@ -71,12 +70,10 @@ constexpr Row kRows[] = {
     {"poisson_ratio_at_limit", FindingCode::kPoissonRatioAtLimit},
     {"parameters_on_bounds", FindingCode::kParametersOnBounds},
     {"parameters_near_limits", FindingCode::kParametersNearLimits},
-    {"locking", FindingCode::kLocking},
     {"discretization_error", FindingCode::kDiscretizationError},
-    {"elements_too_coarse", FindingCode::kElementsTooCoarse},
+    {"mesh_error_unknown", FindingCode::kMeshErrorUnknown},
+    {"computed_by_linear_elements", FindingCode::kComputedByLinearElements},
     {"supports_end_within_elements", FindingCode::kSupportsEndWithinElements},
-    {"linear_elements_fit_as_well", FindingCode::kLinearElementsFitAsWell},
-    {"too_many_elements", FindingCode::kTooManyElements},
     {"solver_fallback", FindingCode::kSolverFallback},
 };
 

@@ -58,7 +58,6 @@ enum class FindingCode {
   kAxisTurned,
   kLargeResidual,
   kVirtualWorkImbalance,
-  kModelMismatch,
   kOutliers,
   kOutliersLeftOut,
   kHeldNodesMoved,
@@ -77,12 +76,10 @@ enum class FindingCode {
   kPoissonRatioAtLimit,
   kParametersOnBounds,
   kParametersNearLimits,
-  kLocking,
   kDiscretizationError,
-  kElementsTooCoarse,
+  kMeshErrorUnknown,
+  kComputedByLinearElements,
   kSupportsEndWithinElements,
-  kLinearElementsFitAsWell,
-  kTooManyElements,
   kSolverFallback,
 };
 

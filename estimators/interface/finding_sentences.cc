@@ -117,18 +117,7 @@ std::string FirstOf(const std::vector<std::string>& names) {
                    " more";
 }
 
-std::string RefinementAdvice(const Estimate& estimate) {
-  return std::string("refine the mesh") +
-         (estimate.element_order == 2
-              ? ""
-              : ", or use quadratic simplices (order 2)");
-}
-
-bool IsSomethingKnown(const Estimate& estimate) {
-  return std::any_of(
-      estimate.parameters.begin(), estimate.parameters.end(),
-      [](const ParameterEstimate& parameter) { return parameter.is_known; });
-}
+constexpr const char* kRefineTheMesh = "use a finer mesh";
 
 Finding Error(FindingCode code, std::string text, std::string advice) {
   return {code, Severity::kError, std::move(text), std::move(advice)};
@@ -307,10 +296,10 @@ Finding ParametersUndetermined(const std::vector<std::string>& parameters) {
 }
 
 Finding ParametersUndeterminedByElements(
-    const std::vector<std::string>& parameters, const Estimate& estimate) {
+    const std::vector<std::string>& parameters) {
   return Error(FindingCode::kParametersUndetermined,
                "elements this coarse do not determine " + FirstOf(parameters),
-               RefinementAdvice(estimate));
+               kRefineTheMesh);
 }
 
 Finding ParametersUndeterminedOnBounds(
@@ -507,13 +496,6 @@ Finding RatiosAtLimit(const std::vector<std::string>& parameters) {
           " to the end of its range and leave a residual that is not "
           "noise",
       kCheckTheModel);
-}
-
-Finding ModelMismatchFinding(const ModelMismatch& mismatch) {
-  return Warning(FindingCode::kModelMismatch,
-                 "virtual-fields disagrees by more than noise explains (p = " +
-                     TwoDigits(mismatch.p_value) + ")",
-                 kCheckTheModel);
 }
 
 Finding Outliers(const Eigen::Vector2d& change, const Estimate& estimate) {
@@ -723,43 +705,31 @@ Finding NegativePoissonRatio(const ParameterEstimate& poisson_ratio) {
                  "check that x and u, y and v point alike");
 }
 
-Finding Locking(ElementKind kind) {
-  return Warning(FindingCode::kLocking,
-                 "linear " + std::string(TopologyOf(kind).shapes) +
-                     " are too stiff (lock) from nu = " +
-                     NumberText(kLimits.locking_poisson_ratio) +
-                     " on, which biases E and nu beyond their errors",
-                 HasQuadraticKind(kind) ? "use quadratic elements (order 2)"
-                                        : "mesh with quadratic simplices");
-}
-
-std::string DescribeDiscretizationError(const Estimate& estimate) {
+Finding DiscretizationErrorFinding(const Estimate& estimate) {
   std::string text =
-      "the elements leave E open by " + Percent(*estimate.discretization_error);
+      "the mesh leaves E open by " + Percent(*estimate.discretization_error);
   if (estimate.poisson_ratio_discretization_error) {
     text +=
         " and nu by " + TwoDigits(*estimate.poisson_ratio_discretization_error);
   }
-  return text;
+  return Warning(FindingCode::kDiscretizationError, text,
+                 "use a finer mesh if you need a smaller error");
 }
 
-Finding DiscretizationErrorFinding(ElementKind kind, const Estimate& estimate) {
-  return Warning(FindingCode::kDiscretizationError,
-                 DescribeDiscretizationError(estimate),
-                 std::string("refine the mesh") +
-                     (HasQuadraticKind(kind) && estimate.element_order == 1
-                          ? ", or use quadratic elements (order 2)"
-                          : ""));
+Finding MeshErrorUnknown() {
+  return Warning(FindingCode::kMeshErrorUnknown,
+                 "the errors are those of noise; this estimator does not know "
+                 "how much the mesh adds",
+                 "use --estimator=reduced-fe, or --origin=computed if elements "
+                 "of this mesh computed the displacements");
 }
 
-Finding ElementsTooCoarse(const Eigen::Vector2d& correction,
-                          const Estimate& estimate) {
-  return Error(
-      FindingCode::kElementsTooCoarse,
-      "the elements are too coarse: finer ones change " +
-          ChangesOf({std::expm1(correction(0)), correction(1)}, estimate),
-      IsSomethingKnown(estimate) ? "refine the mesh, or check what is known"
-                                 : RefinementAdvice(estimate));
+Finding ComputedByLinearElements() {
+  return Error(FindingCode::kComputedByLinearElements,
+               "linear elements of this mesh explain the displacements far "
+               "better than finer ones, as if they had computed them",
+               "if they did, say so with --origin=computed (\"origin\" in "
+               "scene.json)");
 }
 
 Finding SupportsEndWithinElements(const Eigen::Vector2d& errors) {
@@ -771,36 +741,12 @@ Finding SupportsEndWithinElements(const Eigen::Vector2d& errors) {
       "give the supports as boxes");
 }
 
-Finding LinearElementsFitAsWell(const IsotropicElasticity& linear) {
-  return Warning(FindingCode::kLinearElementsFitAsWell,
-                 "linear elements fit as well, with E = " +
-                     TwoDigits(linear.youngs_modulus) + " and nu = " +
-                     TwoDigits(linear.poisson_ratio) + kErrorsHold,
-                 OrderAdvice());
-}
-
-std::string OrderAdvice() { return "use order 2, or 1 for simulations"; }
-
 Finding WithoutErrorBars(Finding finding) {
   const std::size_t place = finding.text.rfind(kErrorsHold);
   if (place != std::string::npos) {
     finding.text.erase(place);
   }
   return finding;
-}
-
-Finding WithoutOrderAdvice(Finding finding) {
-  if (finding.advice.find("order 2") != std::string::npos) {
-    finding.advice = "refine the mesh";
-  }
-  return finding;
-}
-
-Finding TooManyElements() {
-  return Warning(FindingCode::kTooManyElements,
-                 "quadratic elements may mend what linear ones leave, but are "
-                 "many for this mesh",
-                 "use reduced-fe with order 2, if there is the memory");
 }
 
 Finding SolverFallback(const std::string& notice) {

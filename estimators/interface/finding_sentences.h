@@ -61,7 +61,7 @@ Finding YoungsModulusUndetermined(double youngs_modulus, double standard_error);
 Finding ParametersUndetermined(const std::vector<std::string>& parameters);
 /// The same where most of the errors is what the elements miss.
 Finding ParametersUndeterminedByElements(
-    const std::vector<std::string>& parameters, const Estimate& estimate);
+    const std::vector<std::string>& parameters);
 /// The same where bounds that a user gave hold some of them.
 Finding ParametersUndeterminedOnBounds(
     const std::vector<std::string>& parameters);
@@ -112,7 +112,6 @@ Finding ModelDoesNotFitAtLimit();
 Finding OutliersAtLimit();
 /// Of several materials.
 Finding RatiosAtLimit(const std::vector<std::string>& parameters);
-Finding ModelMismatchFinding(const ModelMismatch& mismatch);
 /// `change` is that of (ln E, nu) without the pull of the outliers.
 Finding Outliers(const Eigen::Vector2d& change, const Estimate& estimate);
 /// Where the residuals of neighbours are alike as well, so that leaving nodes
@@ -152,29 +151,22 @@ Finding ParametersNearLimits(const std::vector<std::string>& parameters,
 /// Of several materials; the one that is biased most.
 Finding ParameterBias(const std::string& parameter, double bias,
                       bool is_relative, Severity severity);
-Finding Locking(ElementKind kind);
 /// What linear kinematics leave out (KinematicErrorOf).
 Finding LargeDeformation(const DeformationSize& size,
                          double relative_error_of_modulus, Severity severity);
 /// How much a margin of half a spacing of the points changes E.
 Finding MarginNotGiven(double relative_error);
 Finding NegativePoissonRatio(const ParameterEstimate& poisson_ratio);
-/// Precondition: there is a discretisation error.
-std::string DescribeDiscretizationError(const Estimate& estimate);
-/// `correction` is of (ln E, nu).
-Finding ElementsTooCoarse(const Eigen::Vector2d& correction,
-                          const Estimate& estimate);
 /// `errors` are of (ln E, nu).
 Finding SupportsEndWithinElements(const Eigen::Vector2d& errors);
-Finding DiscretizationErrorFinding(ElementKind kind, const Estimate& estimate);
-Finding LinearElementsFitAsWell(const IsotropicElasticity& linear);
-/// What to do where these fit as well.
-std::string OrderAdvice();
+/// Precondition: there is a discretisation error.
+Finding DiscretizationErrorFinding(const Estimate& estimate);
+/// Measured displacements and a method that sees no mesh error.
+Finding MeshErrorUnknown();
+/// Displacements that are said to be measured, and are those of the elements.
+Finding ComputedByLinearElements();
 /// Says nothing of error bars, of which there are none.
 Finding WithoutErrorBars(Finding finding);
-/// Advises no quadratic elements, which were tried.
-Finding WithoutOrderAdvice(Finding finding);
-Finding TooManyElements();
 Finding SolverFallback(const std::string& notice);
 
 }  // namespace elastimate

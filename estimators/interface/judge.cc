@@ -42,55 +42,27 @@ void RemoveErrorBarsOfNone(Estimate& estimate) {
   }
 }
 
-// Whether the elements leave nothing but rounding, as those that computed the
-// displacements.
-bool AreElementsExact(const Estimate& estimate) {
-  return estimate.displacement_residual.value_or(
-             estimate.force_residual.value_or(1)) <= kLimits.exact_residual;
-}
-
-void JudgeLocking(const Mesh& mesh, double poisson_ratio, Estimate& estimate) {
-  // Those of the estimate may be of a higher order than those of the scene.  In
-  // plane stress a volume may change across the plane.  Errors that hold what
-  // the elements miss hold this.
-  if (estimate.IsUsable() && estimate.element_order == 1 &&
-      !AreElementsExact(estimate) &&
-      !estimate.error_budget.discretization.array().isFinite().any() &&
-      mesh.section.model != SectionModel::kPlaneStress &&
-      poisson_ratio >= kLimits.locking_poisson_ratio) {
-    estimate.Add(Locking(mesh.kind));
+// What the mesh leaves open.
+void JudgeMeshError(const Scene& scene, Estimate& estimate) {
+  if (!estimate.IsUsable()) {
+    return;
   }
-}
-
-// Of several materials.
-double LargestPoissonRatio(const Estimate& estimate) {
-  double largest = -1;
-  for (const ParameterEstimate& parameter : estimate.parameters) {
-    if (parameter.name == "poisson_ratio") {
-      largest = std::max(largest, parameter.value);
-    }
-  }
-  return largest;
-}
-
-void JudgeElements(const Mesh& mesh, Estimate& estimate) {
-  JudgeLocking(mesh, estimate.elasticity.poisson_ratio, estimate);
-  if (IsDiscretizationErrorNotable(estimate) &&
-      !estimate.Has(FindingCode::kSupportsEndWithinElements)) {
-    estimate.Add(DiscretizationErrorFinding(mesh.kind, estimate));
+  const bool is_known =
+      estimate.error_budget.discretization.array().isFinite().any();
+  if (scene.origin == Origin::kMeasured && !is_known) {
+    estimate.Add(MeshErrorUnknown());
+  } else if (IsDiscretizationErrorNotable(estimate) &&
+             !estimate.Has(FindingCode::kSupportsEndWithinElements)) {
+    estimate.Add(DiscretizationErrorFinding(estimate));
   }
 }
 
 // What a method without a finite element solution does not know, the data may.
-void FailUndetermined(ElementKind kind, Finding finding, Estimate& estimate) {
+void FailUndetermined(Finding finding, Estimate& estimate) {
   if (estimate.Has(FindingCode::kSupportsEndWithinElements)) {
     finding.advice = "give the supports as boxes";
-  } else if (estimate.Has(FindingCode::kLinearElementsFitAsWell)) {
-    finding.advice = OrderAdvice();
   } else if (IsDiscretizationErrorNotable(estimate)) {
-    finding.advice = estimate.element_order == 1 && HasQuadraticKind(kind)
-                         ? "refine the mesh, or use order 2"
-                         : "refine the mesh";
+    finding.advice = "use a finer mesh";
   } else if (!estimate.displacement_residual) {
     finding.advice += ", or use reduced-fe";
   }
@@ -109,7 +81,7 @@ bool IsIntervalTooWide(const Estimate& estimate) {
          kLimits.LargestPoissonRatioDistance();
 }
 
-void JudgeResult(ElementKind kind, const EstimatorOptions& options,
+void JudgeResult(const EstimatorOptions& options,
                  Estimate& estimate) {
   if (!estimate.IsUsable()) {
     return;
@@ -126,15 +98,14 @@ void JudgeResult(ElementKind kind, const EstimatorOptions& options,
   } else if (!options.known_poisson_ratio &&
              estimate.PoissonRatioStandardError().value_or(0) >
                  kLimits.largest_poisson_ratio_error) {
-    FailUndetermined(kind, PoissonRatioUndetermined(estimate), estimate);
+    FailUndetermined(PoissonRatioUndetermined(estimate), estimate);
   } else if (!options.known_poisson_ratio && IsIntervalTooWide(estimate)) {
     FailUndetermined(
-        kind, PoissonRatioBetween(*estimate.poisson_ratio_interval, false),
+        PoissonRatioBetween(*estimate.poisson_ratio_interval, false),
         estimate);
   } else if (youngs_modulus_error >
              kLimits.largest_youngs_modulus_error * elasticity.youngs_modulus) {
-    FailUndetermined(kind,
-                     YoungsModulusUndetermined(elasticity.youngs_modulus,
+    FailUndetermined(YoungsModulusUndetermined(elasticity.youngs_modulus,
                                                youngs_modulus_error),
                      estimate);
   }
@@ -192,7 +163,7 @@ void FinishEstimate(std::string_view estimator, const Scene& scene,
     estimate.stiffnesses = StiffnessesOf(scene, estimate);
     estimate.axes = AxesOf(scene, estimate);
     JudgeParameters(estimate);
-    JudgeLocking(scene.mesh, LargestPoissonRatio(estimate), estimate);
+    JudgeMeshError(scene, estimate);
     RemoveErrorBarsOfNone(estimate);
     EnterElasticity(estimate);
     JudgeSignOfPoissonRatio(estimate);
@@ -201,10 +172,10 @@ void FinishEstimate(std::string_view estimator, const Scene& scene,
   estimate.error_budget.discretization = Eigen::Vector2d(
       estimate.discretization_error.value_or(Estimate::kUnknown),
       estimate.poisson_ratio_discretization_error.value_or(Estimate::kUnknown));
-  JudgeResult(scene.mesh.kind, options, estimate);
+  JudgeResult(options, estimate);
   if (estimate.IsUsable()) {
     AddPoissonRatioInterval(estimate);
-    JudgeElements(scene.mesh, estimate);
+    JudgeMeshError(scene, estimate);
   }
   RemoveErrorBarsOfNone(estimate);
   DescribeOneIsotropicMaterial(scene, options, estimate);

@@ -23,8 +23,8 @@ void Judge(const Evidence& evidence, const EstimatorOptions& options,
 bool IsDiscretizationErrorNotable(const Estimate& estimate);
 
 /// Enters the estimator's name, the findings of its input, and an interval of
-/// nu where only its standard error is known; warns of what linear elements do
-/// near nu = 1/2 and of a notable discretisation error; and turns an estimate
+/// nu where only its standard error is known; warns of a mesh error that is
+/// notable or unknown; and turns an estimate
 /// that claims to be ok into what it is, when it is not finite, not physical,
 /// or not determined.
 void FinishEstimate(std::string_view estimator, const Scene& scene,

@@ -75,7 +75,7 @@ void JudgeKinematics(const Scene& scene, const EstimatorOptions& options,
     return;
   }
   estimate.deformation = MeasureDeformation(scene);
-  if (scene.is_of_linear_elasticity || !IsMentioned(estimate.deformation)) {
+  if (scene.origin == Origin::kComputed || !IsMentioned(estimate.deformation)) {
     return;
   }
   const KinematicError error = KinematicErrorOf(estimate.deformation);

@@ -25,9 +25,6 @@ struct Limits {
   /// beyond.  Independent noise is, in one measurement of 700, and then a
   /// little.
   double explained_score = 3;
-  /// Probability below which a disagreement of two estimates (ModelMismatch)
-  /// is one.  Larger than that of 5 standard scores: it only sends `auto` on.
-  double mismatch_significance = 1e-3;
   /// Probability below which resultants contradict a fit.
   double resultant_significance = 1e-3;
   /// Probability below which a fit with other axes is better.
@@ -51,8 +48,6 @@ struct Limits {
   double notable_poisson_ratio_error = 0.01;
   /// Discretisation error in standard errors: below, it does not show.
   double notable_discretization_share = 0.5;
-  /// nu from which on linear tetrahedra lock [1].
-  double locking_poisson_ratio = 0.45;
   /// Motion of held nodes over that of the free ones (root of the square
   /// sums): noise of measured supports is less.
   double held_motion = 0.1;
@@ -82,18 +77,13 @@ struct Limits {
   /// is none, however small the error about a minimum that noise made is.
   double least_anisotropy = 30;
   /// A relative standard error of E above this says that the data do not
-  /// determine E: zero and infinity are within three standard errors.
-  double largest_youngs_modulus_error = 1.0 / 3;
+  /// determine E: zero is within four standard errors.
+  double largest_youngs_modulus_error = 0.25;
   /// An end of the 95 % interval of nu further than this from the estimate
   /// says the same as its largest standard error [1].
   double LargestPoissonRatioDistance() const {
     return kTwoSidedErrors * largest_poisson_ratio_error;
   }
-
-  /// Corrections of ln E and nu for what the elements miss, above which the
-  /// estimate of the correction is none.
-  double largest_correction_of_log_youngs_modulus = 0.25;
-  double largest_correction_of_poisson_ratio = 0.15;
 
   // What small-strain elasticity leaves out.
 
@@ -111,9 +101,6 @@ struct Limits {
 
   /// Relative standard error of a modulus that is, where nu is not.
   double determined_modulus = 0.1;
-  /// Ratio of two displacement residuals that are no noise, below which the
-  /// smaller is far better.
-  double far_better_residual = 0.5;
 };
 
 inline constexpr Limits kLimits{};

@@ -154,7 +154,7 @@ Finding FindingOfUndetermined(const Estimate& estimate) {
     return ParametersUndeterminedOnBounds(undetermined);
   }
   return AreUndeterminedByElements(estimate)
-             ? ParametersUndeterminedByElements(undetermined, estimate)
+             ? ParametersUndeterminedByElements(undetermined)
              : ParametersUndetermined(undetermined);
 }
 

@@ -333,16 +333,6 @@ Result JudgeCorrection(const Evidence& evidence, const EstimatorOptions&,
              : Result();
 }
 
-Result JudgeElements(const Evidence& evidence, const EstimatorOptions&,
-                     const Estimate& estimate) {
-  if (!evidence.likely_element_change) {
-    return std::nullopt;
-  }
-  const Eigen::Vector2d& change = *evidence.likely_element_change;
-  return IsCorrectionTooLarge(change) ? ElementsTooCoarse(change, estimate)
-                                      : Result();
-}
-
 Result JudgeRatiosAtLimit(const Evidence& evidence, const EstimatorOptions&,
                           const Estimate& estimate) {
   return estimate.is_model_in_doubt && !evidence.ratios_at_limit.empty()
@@ -385,14 +375,6 @@ bool AreNotable(const Eigen::Vector2d& errors, const Estimate& estimate) {
                       kLimits.notable_discretization_share * poisson_ratio);
 }
 
-bool IsCorrectionTooLarge(const Eigen::Vector2d& correction) {
-  // What is no number is no correction either.
-  return !(std::abs(correction(0)) <=
-               kLimits.largest_correction_of_log_youngs_modulus &&
-           std::abs(correction(1)) <=
-               kLimits.largest_correction_of_poisson_ratio);
-}
-
 const std::vector<Rule>& Rules() {
   static const std::vector<Rule> rules = {
       // Whether there is anything to estimate.
@@ -406,7 +388,7 @@ const std::vector<Rule>& Rules() {
       // Whether the data determine it, and the model explains them.
       JudgeBoundExcess, JudgeYoungsModulusOnBound, JudgeLargeResidual,
       JudgeProfile, JudgePoissonRatioAtLimit, JudgePoissonRatioOnBound,
-      JudgeKnownPoissonRatio, JudgeElements, JudgeRatiosAtLimit, JudgeNoiseBias,
+      JudgeKnownPoissonRatio, JudgeRatiosAtLimit, JudgeNoiseBias,
       JudgeWorkCheck, JudgeCorrection, JudgeCertificate, NoteSolver};
   return rules;
 }

@@ -25,10 +25,6 @@ const std::vector<Rule>& Rules();
 /// errors that a user wants to be told of.
 bool AreNotable(const Eigen::Vector2d& errors, const Estimate& estimate);
 
-/// Whether a correction of (ln E, nu) for what elements miss is more than such
-/// elements are good for.
-bool IsCorrectionTooLarge(const Eigen::Vector2d& correction);
-
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_ESTIMATORS_INTERFACE_RULES_H_

@@ -8,18 +8,13 @@
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
-#include "elastimate/estimators/misfit/minimum_statistics.h"
-#include "elastimate/estimators/statistics/bounded_variables.h"
+#include "elastimate/estimators/material_fit/space_fit.h"
 
 namespace elastimate {
 
 /// Whether a scene has more than fits of one isotropic material on supports
-/// that are given, and the same in all load cases, can take.
+/// that are given, and the same in all load cases, can take, or was measured.
 bool IsForMaterialFit(const Scene& scene);
-
-/// How a fit finds its minimum: with a factorisation at each step
-/// (BestMinimum), or by reduced models (ReducedMinimum).
-enum class Descent { kFull, kReduced };
 
 /// The parameters p of any materials by a maximum likelihood fit of the
 /// observed displacements, by Ceres within bounds,
@@ -45,24 +40,6 @@ enum class Descent { kFull, kReduced };
 /// load case and parameter.
 Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options,
                       Descent descent);
-
-/// A fit, and where it is.
-struct MaterialFit {
-  Estimate estimate;
-  /// Empty where there is no fit.
-  std::optional<BoundedMinimum> minimum;
-  MinimumErrors errors;
-  double noise = 0;  ///< DisplacementMisfit::Noise there.
-  /// As measured where all is known; empty where there is no fit.
-  Eigen::MatrixXd displacement;
-  /// That of the specimen, as far as its elements are known to be finer.
-  Eigen::MatrixXd displacement_of_specimen;
-
-  std::optional<Eigen::VectorXd> Variables() const {
-    return minimum ? std::optional<Eigen::VectorXd>(minimum->variables)
-                   : std::nullopt;
-  }
-};
 
 /// The same as FitMaterials, from these variables on where there are some.
 MaterialFit FitMaterialsFrom(const std::optional<Eigen::VectorXd>& start,

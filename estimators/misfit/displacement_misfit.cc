@@ -1,7 +1,6 @@
 #include "elastimate/estimators/misfit/displacement_misfit.h"
 
 #include <cmath>
-#include <random>
 
 #include "elastimate/core/algebra/node_sums.h"
 
@@ -18,12 +17,6 @@ std::optional<double> PositiveRatio(double numerator, double denominator) {
   const double ratio = numerator / denominator;
   return ratio > 0 && std::isfinite(ratio) ? std::optional<double>(ratio)
                                            : std::nullopt;
-}
-
-Eigen::VectorXd RandomSigns(Eigen::Index size) {
-  std::mt19937 generator;
-  return Eigen::VectorXd::NullaryExpr(
-      size, [&] { return generator() % 2 == 0 ? 1.0 : -1.0; });
 }
 
 }  // namespace
@@ -71,6 +64,12 @@ bool DisplacementMisfit::Evaluate(const Eigen::VectorXd& x,
   if (jacobian != nullptr) {
     *jacobian = Sensitivities(x);
   }
+  if (factors_.size() != 0) {
+    residual->array() *= factors_.array();
+    if (jacobian != nullptr) {
+      *jacobian = (factors_.asDiagonal() * *jacobian).eval();
+    }
+  }
   return residual->allFinite();
 }
 
@@ -100,35 +99,6 @@ std::optional<double> DisplacementMisfit::Compliance(
       motion_->Resultants(equilibrium_.SupportForces());
   const Eigen::VectorXd measured = motion_->MeasuredResultants();
   return PositiveRatio(of_unit.squaredNorm(), of_unit.dot(measured));
-}
-
-std::optional<RowChange> DisplacementMisfit::ChangeTo(
-    const Eigen::VectorXd& x, DisplacementMisfit& finer) {
-  if (!MoveTo(x) || !finer.SolveAt(x)) {
-    return std::nullopt;
-  }
-  if (!motion_) {
-    return RowChange{
-        observed_.Restrict(
-            finer.equilibrium_.Displacement().topRows(Displacement().rows())) -
-            observed_.Restrict(Displacement()),
-        {},
-        {}};
-  }
-  finer.SetNoise(Noise());
-  const auto change_of = [&](const Eigen::MatrixXd& motion_of_supports) {
-    const Eigen::MatrixXd well_posed = motion_->WellPosed(motion_of_supports);
-    return Eigen::VectorXd(finer.motion_->RowsOfMotion(well_posed) -
-                           motion_->RowsOfMotion(well_posed));
-  };
-  const Eigen::MatrixXd motion = motion_->MotionOfSupports();
-  const Eigen::VectorXd change =
-      finer.motion_->RowsOfModel() - motion_->RowsOfModel() +
-      motion_->RowsOfMotion(motion) + change_of(motion);
-  return RowChange{motion_->Eliminate(change),
-                   motion_->Eliminate(change_of(
-                       motion_->MotionThatFits(RandomSigns(NumRows())))),
-                   {}};
 }
 
 bool DisplacementMisfit::SolveAt(const Eigen::VectorXd& x) {

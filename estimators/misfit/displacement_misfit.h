@@ -11,7 +11,6 @@
 #include "elastimate/estimators/interface/estimator.h"
 #include "elastimate/estimators/interface/free_parameters.h"
 #include "elastimate/estimators/misfit/motion_elimination.h"
-#include "elastimate/estimators/statistics/element_errors.h"
 
 namespace elastimate {
 
@@ -42,6 +41,12 @@ class DisplacementMisfit {
   /// Zero without resultants.
   double Noise() const { return NumResultants() > 0 ? motion_->Noise() : 0; }
 
+  /// Multiplies the rows of displacements, and their derivatives, by these
+  /// factors, the roots of weights; an empty vector takes them back.
+  /// Precondition: no unknown motions.
+  void SetFactors(const Eigen::VectorXd& factors) { factors_ = factors; }
+  const Eigen::VectorXd& Factors() const { return factors_; }
+
   /// A factorisation, and a solve for each load case and variable; times the
   /// iterations of MotionElimination where motions are unknown.  False when the
   /// stiffness is singular at x.
@@ -58,13 +63,6 @@ class DisplacementMisfit {
   /// Evaluate there costs nothing.  Precondition: no unknown motions.
   void Place(const Eigen::VectorXd& x, const Eigen::MatrixXd& displacement,
              const Eigen::MatrixXd& sensitivities);
-
-  /// What a mesh of finer elements, the first nodes of which are those of this
-  /// one, changes in the rows at x where the supports move as they do in this
-  /// fit; empty when a stiffness is singular there.  A factorisation of either,
-  /// and three solves for each load case.
-  std::optional<RowChange> ChangeTo(const Eigen::VectorXd& x,
-                                    DisplacementMisfit& finer);
 
   /// u with all motions where the last Evaluate was, num_dofs x
   /// num_load_cases.
@@ -98,6 +96,7 @@ class DisplacementMisfit {
   Eigen::VectorXd x_;  ///< Where the model is; empty where it is nowhere.
   std::optional<Placed> placed_;  ///< In place of the model.
   Eigen::VectorXd residual_;
+  Eigen::VectorXd factors_;
 };
 
 }  // namespace elastimate

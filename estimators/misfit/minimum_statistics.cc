@@ -10,8 +10,8 @@
 #include "elastimate/estimators/interface/parameter_judge.h"
 #include "elastimate/estimators/misfit/axis_rotation.h"
 #include "elastimate/estimators/misfit/curvature.h"
+#include "elastimate/estimators/misfit/mesh_error.h"
 #include "elastimate/estimators/statistics/correlated_noise.h"
-#include "elastimate/estimators/statistics/element_errors.h"
 #include "elastimate/estimators/statistics/residual_statistics.h"
 
 namespace elastimate {
@@ -134,43 +134,6 @@ Eigen::MatrixXd InformationOf(const FreeParameters& free,
   return information;
 }
 
-// What elements miss of these rows; empty where it is not known.
-std::optional<ElementErrors> FindElementErrors(
-    const Scene& scene, const Eigen::VectorXd& variables,
-    const Eigen::VectorXd& rows, Eigen::MatrixXd sensitivities,
-    FinerElements* finer, Eigen::Index num_fitted, bool is_on_bound,
-    DisplacementMisfit& misfit) {
-  const std::optional<RowChange> change =
-      finer == nullptr ? std::nullopt : finer->Change(variables, misfit);
-  if (!change) {
-    return std::nullopt;
-  }
-  const Eigen::Index num_resultants = misfit.NumResultants();
-  Eigen::VectorXd residual = rows;
-  RowChange weighed_change = *change;
-  double variance = VarianceOfRows(misfit.Observed(), rows, num_fitted);
-  if (num_resultants > 0) {
-    WeighResultants(misfit, variance, sensitivities);
-    const double weight = std::sqrt(variance) / misfit.Noise();
-    residual.tail(num_resultants) *= weight;
-    weighed_change.rows.tail(num_resultants) *= weight;
-    weighed_change.by_noise.tail(num_resultants) *= weight;
-  }
-  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(rows.size());
-  const FreeFit fit = {residual,
-                       sensitivities,
-                       InformationOf(misfit.Free(), sensitivities, variance),
-                       ones,
-                       true,
-                       is_on_bound};
-  // What depends on the strain is of elements whose change is not known.
-  const ElementErrors errors(scene, misfit.Model().Graph(), misfit.Observed(),
-                             fit, weighed_change, {}, {});
-  // What is not determined cannot be corrected.
-  return errors.Correction()->allFinite() ? std::optional<ElementErrors>(errors)
-                                          : std::nullopt;
-}
-
 // Of one isotropic material, in which either parameter may be known.
 void EnterCorrection(const FreeParameters& free,
                      const Eigen::VectorXd& correction, Estimate& estimate) {
@@ -216,44 +179,29 @@ void EnterElements(const Scene& scene, const FreeParameters& free,
   }
 }
 
-// The step to the minimum of finer elements, where a correction for them leads:
-// zero where it leads there, as it does in a linear model.
-Eigen::VectorXd StepOfFiner(const Eigen::VectorXd& of_finer,
-                            const Eigen::MatrixXd& sensitivities,
-                            const Eigen::MatrixXd& inverse,
-                            FinerElements& finer) {
-  const std::optional<Eigen::VectorXd> rows = finer.Rows(of_finer);
-  return rows ? Eigen::VectorXd(-inverse * InnerProducts(sensitivities, *rows))
-              : Eigen::VectorXd::Zero(of_finer.size());
-}
-
-// Enters what the elements change and leave uncertain, which adds to the
-// covariance.
-void CorrectMinimum(const Scene& scene, const FreeParameters& free,
-                    const ElementErrors& elements, double smooth,
-                    const Eigen::MatrixXd& sensitivities,
-                    const Eigen::MatrixXd& inverse, FinerElements& finer,
-                    Evidence& evidence, MinimumErrors& errors,
-                    Estimate& estimate) {
-  constexpr double kLeastShare = 1e-3;
-  errors.corrected = Corrected(free, errors.variables, *elements.Correction());
-  errors.share_variance = elements.ShareVariance();
-  errors.of_change = elements.CovarianceOfChange();
-  if (elements.Share() >= kLeastShare) {
-    errors.share_of_finer = elements.Share();
-    errors.of_finer = errors.variables +
-                      (errors.corrected - errors.variables) / elements.Share();
-    const Eigen::VectorXd step =
-        elements.Share() *
-        StepOfFiner(errors.of_finer, sensitivities, inverse, finer);
-    errors.of_change += step * step.transpose();
+// Corrects the minimum for the mesh error, which adds to the covariance.
+void AddMeshError(const Scene& scene, const SpaceChange& change,
+                  const Eigen::MatrixXd& sensitivities,
+                  const Eigen::MatrixXd& inverse,
+                  const DisplacementMisfit& misfit, Evidence& evidence,
+                  MinimumErrors& errors, Estimate& estimate) {
+  const FreeParameters& free = misfit.Free();
+  SpaceChange weighed = change;
+  if (misfit.NumResultants() > 0) {
+    weighed.rows.tail(misfit.NumResultants()) *=
+        std::sqrt(errors.variance) / misfit.Noise();
   }
-  const Eigen::MatrixXd by_elements =
-      errors.of_change + elements.MissedSquareSum(smooth) * inverse;
-  errors.total += by_elements;
-  evidence.likely_element_change =
-      LargestOf(elements.LikelyChange(), errors.variables, estimate, free);
-  EnterElements(scene, free, errors, by_elements, estimate);
+  const MeshError mesh = MeshErrorOf(weighed, free, sensitivities, inverse,
+                                     misfit.Observed().Size());
+  errors.corrected = Corrected(free, errors.variables, mesh.correction);
+  errors.of_mesh = mesh.covariance;
+  errors.total += mesh.covariance;
+  if (change.by_supports.size() != 0) {
+    evidence.support_errors = LargestOf(
+        mesh.of_supports.diagonal().cwiseSqrt(), errors.variables, estimate,
+        free);
+  }
+  EnterElements(scene, free, errors, mesh.covariance, estimate);
 }
 
 // Enters what outliers pull the variables by, which adds to the covariance.
@@ -374,7 +322,7 @@ void EnterErrorsOfKnown(const FreeParameters& free, const MinimumErrors& errors,
 
 // What is known of the minimum.
 MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
-                       FinerElements* finer, DisplacementMisfit& misfit,
+                       const SpaceChange* change, DisplacementMisfit& misfit,
                        Evidence& evidence, Estimate& estimate) {
   const FreeParameters& free = misfit.Free();
   const ObservedDisplacements& observed = misfit.Observed();
@@ -392,12 +340,7 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
     return errors;
   }
   const double excess = ExcessOfResultants(rows, misfit, evidence);
-  const std::optional<ElementErrors> elements =
-      FindElementErrors(scene, minimum.evaluated_at, rows, sensitivities, finer,
-                        num_fitted, !estimate.active_bounds.empty(), misfit);
-  const Eigen::VectorXd rest = elements ? elements->Rest() : rows;
-  errors.residual = rest.head(observed.Size());
-  ResidualVariance variance = EstimateVariance(observed, SquaredNorm(rest),
+  ResidualVariance variance = EstimateVariance(observed, SquaredNorm(rows),
                                                num_fitted, evidence, estimate);
   WeighResultants(misfit, variance.variance, sensitivities);
   evidence.is_explained_by_given_noise = variance.is_explained_by_given_noise;
@@ -415,9 +358,9 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
   errors.variance = variance.variance;
   errors.of_noise = variance.variance * inverse;
   errors.total = errors.of_noise + by_model;
-  if (elements) {
-    CorrectMinimum(scene, free, *elements, smooth.most, sensitivities, inverse,
-                   *finer, evidence, errors, estimate);
+  if (change != nullptr) {
+    AddMeshError(scene, *change, sensitivities, inverse, misfit, evidence,
+                 errors, estimate);
   }
   estimate.error_budget.noise =
       ErrorsOfVariables(free, errors.variables, errors.of_noise);
@@ -426,7 +369,7 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
   AddOutliers(free, errors.variables, observed, errors.residual, sensitivities,
               KnownBeforehand(free, variance.variance), errors.total, evidence,
               estimate);
-  AddAxisRotation(scene, minimum.evaluated_at, rest, sensitivities, inverse,
+  AddAxisRotation(scene, minimum.evaluated_at, rows, sensitivities, inverse,
                   misfit, errors, evidence, estimate);
   if (minimum.IsEvaluated()) {
     AddCurvature(errors.variables, sensitivities, misfit, errors);
@@ -443,14 +386,14 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
 
 MinimumErrors DescribeMinimum(const Scene& scene,
                               const Eigen::VectorXd& variables,
-                              FinerElements* finer, DisplacementMisfit& misfit,
+                              const SpaceChange* change, DisplacementMisfit& misfit,
                               Evidence& evidence, Estimate& estimate) {
   Minimum minimum = {variables, variables, {}, {}};
   if (!misfit.Evaluate(variables, &minimum.rows, &minimum.sensitivities)) {
     evidence.end = End::kSingularStiffness;
     return {};
   }
-  return Describe(scene, minimum, finer, misfit, evidence, estimate);
+  return Describe(scene, minimum, change, misfit, evidence, estimate);
 }
 
 std::optional<Eigen::VectorXd> LinearMinimum(const Eigen::VectorXd& variables,
@@ -470,7 +413,7 @@ std::optional<Eigen::VectorXd> LinearMinimum(const Eigen::VectorXd& variables,
 MinimumErrors DescribeLinearMinimum(const Scene& scene,
                                     const Eigen::VectorXd& variables,
                                     const Eigen::VectorXd& at_minimum,
-                                    FinerElements* finer,
+                                    const SpaceChange* change,
                                     DisplacementMisfit& misfit,
                                     Evidence& evidence, Estimate& estimate) {
   Minimum minimum = {variables, at_minimum, {}, {}};
@@ -479,7 +422,7 @@ MinimumErrors DescribeLinearMinimum(const Scene& scene,
     return {};
   }
   minimum.rows += minimum.sensitivities * (at_minimum - variables);
-  return Describe(scene, minimum, finer, misfit, evidence, estimate);
+  return Describe(scene, minimum, change, misfit, evidence, estimate);
 }
 
 }  // namespace elastimate

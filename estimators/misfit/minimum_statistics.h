@@ -8,7 +8,7 @@
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/evidence.h"
 #include "elastimate/estimators/misfit/displacement_misfit.h"
-#include "elastimate/estimators/misfit/finer_elements.h"
+#include "elastimate/estimators/misfit/mesh_error.h"
 
 namespace elastimate {
 
@@ -16,23 +16,15 @@ namespace elastimate {
 struct MinimumErrors {
   Eigen::VectorXd variables;
   Eigen::VectorXd corrected;  ///< For what the elements miss.
-  /// Of the change to finer elements, as far as it is expected to be there; 0
-  /// where that is next to nothing.
-  double share_of_finer = 0;
-  double share_variance = 0;  ///< Of that share.
-  /// Where a specimen would be that is as fine as those.
-  Eigen::VectorXd of_finer;
   /// Covariance by independent noise, and by all that is known.  Beforehand a
   /// variable is known to 30 of the errors up to which it is determined, so
   /// that both are finite: without any data, the error is that.
   Eigen::MatrixXd of_noise;
   Eigen::MatrixXd total;
-  /// Of the total, by what is not known of the change to finer elements; empty
-  /// where there is none.
-  Eigen::MatrixXd of_change;
+  /// The part of the total that the mesh error has; empty where none is known.
+  Eigen::MatrixXd of_mesh;
   double variance = 0;  ///< Of noise in a row.
-  /// Of the observed rows, without what finer elements explain.
-  Eigen::VectorXd residual;
+  Eigen::VectorXd residual;  ///< Of the observed rows.
 };
 
 /// Enters the noise and the covariance of a minimum into the estimate, whose
@@ -53,14 +45,12 @@ struct MinimumErrors {
 ///
 /// An evaluation, and O(n^2) for n points in a load case (CorrelateResiduals).
 ///
-/// `finer` may be null.  What of the change of the rows to finer elements the
-/// residual shows corrects the parameters that are entered, and its error is
-/// part of theirs (ElementErrors); so is the step that is left to the minimum
-/// of the finer elements where the correction leads, which is zero where the
-/// change is that of a linear model.
+/// `change` to the elements of the misfit from coarser ones corrects the
+/// parameters that are entered for the mesh error, and adds its covariance to
+/// theirs (MeshErrorOf); null where nothing is known of it.
 MinimumErrors DescribeMinimum(const Scene& scene,
                               const Eigen::VectorXd& variables,
-                              FinerElements* finer, DisplacementMisfit& misfit,
+                              const SpaceChange* change, DisplacementMisfit& misfit,
                               Evidence& evidence, Estimate& estimate);
 
 /// The minimum of the linear model u + S d at some variables, within half of
@@ -73,7 +63,7 @@ std::optional<Eigen::VectorXd> LinearMinimum(const Eigen::VectorXd& variables,
 MinimumErrors DescribeLinearMinimum(const Scene& scene,
                                     const Eigen::VectorXd& variables,
                                     const Eigen::VectorXd& at_minimum,
-                                    FinerElements* finer,
+                                    const SpaceChange* change,
                                     DisplacementMisfit& misfit,
                                     Evidence& evidence, Estimate& estimate);
 

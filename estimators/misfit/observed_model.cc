@@ -11,7 +11,6 @@ ObservedModel::ObservedModel(const Scene& scene,
              options.solver),
       num_load_cases_(Eigen::Index(scene.load_cases.size())),
       observed_(scene),
-      change_(scene),
       on_factorization_(options.on_factorization) {}
 
 bool ObservedModel::SetPoissonRatio(double poisson_ratio) {
@@ -56,19 +55,6 @@ Eigen::VectorXd ObservedModel::PoissonRatioSlope(
           ? 0
           : LogYoungsModulusSlope(elasticity.poisson_ratio, section_model_);
   return sensitivities.col(1) + log_youngs_modulus_slope * sensitivities.col(0);
-}
-
-std::optional<Eigen::VectorXd> ObservedModel::ElementChangeOf(
-    const IsotropicElasticity& elasticity) {
-  const double nu = model_.PoissonRatio();
-  std::optional<Eigen::VectorXd> rows = change_.Rows(
-      observed_, elasticity, [this](double near) -> ElementChange::Model {
-        return SetPoissonRatio(near)
-                   ? ElementChange::Model{model_.Responses(), &model_.Solver()}
-                   : ElementChange::Model{{}, nullptr};
-      });
-  SetPoissonRatio(nu);
-  return rows;
 }
 
 }  // namespace elastimate

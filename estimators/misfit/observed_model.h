@@ -11,7 +11,6 @@
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimator.h"
-#include "elastimate/estimators/misfit/element_change.h"
 
 namespace elastimate {
 
@@ -44,17 +43,10 @@ class ObservedModel {
   /// The rows of du/dnu: at fixed E, or else at fixed t.
   Eigen::VectorXd PoissonRatioSlope(const IsotropicElasticity& elasticity,
                                     bool at_fixed_youngs_modulus);
-  /// The rows of what the elements miss.
-  std::optional<Eigen::VectorXd> ElementChangeOf(
-      const IsotropicElasticity& elasticity);
-
-  /// Takes these rows for what was measured.
-  void SetMeasured(const Eigen::VectorXd& rows) { observed_.SetMeasured(rows); }
-
   SectionModel Section() const { return section_model_; }
   const ObservedDisplacements& Observed() const { return observed_; }
   const NodeGraph& Graph() const { return model_.Graph(); }
-  Work WorkDone() const { return model_.WorkDone() + change_.WorkDone(); }
+  Work WorkDone() const { return model_.WorkDone(); }
   const std::string& SolverNotice() const { return model_.Notice(); }
 
  private:
@@ -62,7 +54,6 @@ class ObservedModel {
   ForwardModel model_;
   Eigen::Index num_load_cases_;
   ObservedDisplacements observed_;
-  ElementChange change_;
   std::function<void(int)> on_factorization_;
   int num_factorizations_ = 0;
   Eigen::VectorXd unit_load_response_;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "elastimate/core/mesh/element_kind.h"
+#include "elastimate/core/scene/scene.h"
 
 namespace elastimate {
 
@@ -62,8 +63,7 @@ struct MeshFile {
   /// The field data of these names in a VTK file.
   std::optional<double> model;  ///< A place in kNumberedModels, if valid.
   std::optional<double> thickness;
-  /// Whether linear elasticity computed the displacements.
-  bool is_of_linear_elasticity = false;
+  Origin origin = Origin::kMeasured;
 
   /// Mid-edge nodes that rounded positions had beside the straight edges of
   /// quadratic elements, into the middle of which they were put.

@@ -215,14 +215,6 @@ Json BudgetJson(const Scene& scene, const ErrorBudget& budget) {
           {"section", of(budget.section)}};
 }
 
-Json MismatchJson(const Estimate& estimate) {
-  if (!estimate.model_mismatch) {
-    return nullptr;
-  }
-  return {{"chi_squared", estimate.model_mismatch->statistic},
-          {"p_value", estimate.model_mismatch->p_value}};
-}
-
 Json CorrectionJson(const Estimate& estimate) {
   if (!estimate.discretization_correction) {
     return nullptr;
@@ -278,7 +270,6 @@ Json DiagnosticsJson(const Estimate& estimate) {
           {"poisson_ratio_discretization_error",
            OrNull(estimate.poisson_ratio_discretization_error)},
           {"discretization_correction", CorrectionJson(estimate)},
-          {"model_mismatch", MismatchJson(estimate)},
           {"outliers", OutliersJson(estimate.outliers)},
           {"active_bounds", estimate.active_bounds},
           {"why_no_standard_error", estimate.why_no_standard_error},

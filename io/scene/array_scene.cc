@@ -214,7 +214,7 @@ FileScene SceneFromArrays(MeshFile mesh, Measurement measurement,
   FileScene file_scene;
   file_scene.scene.mesh =
       SceneMesh(mesh, SectionOf(mesh, section), std::move(mesh.elements));
-  file_scene.scene.is_of_linear_elasticity = mesh.is_of_linear_elasticity;
+  file_scene.scene.origin = mesh.origin;
   const int num_cases = CountLoadCases(mesh);
   for (int number = 1; number <= num_cases; ++number) {
     file_scene.scene.load_cases.push_back(

@@ -15,6 +15,7 @@
 #include "elastimate/io/scene/json_supports.h"
 #include "elastimate/io/scene/mesh_reader.h"
 #include "elastimate/io/scene/node_field.h"
+#include "elastimate/io/scene/origin.h"
 #include "elastimate/io/scene/section.h"
 #include "elastimate/io/text/json_value.h"
 #include "elastimate/io/text/printable.h"
@@ -66,6 +67,18 @@ bool ReadIsRigidMotionFree(const JsonValue& document) {
                "\"; make it \"free\", or leave it out");
   }
   return true;
+}
+
+Origin ReadOrigin(const JsonValue& document, Origin of_mesh) {
+  if (!document.Has("origin")) {
+    return of_mesh;
+  }
+  const JsonValue value = document.At("origin");
+  const std::optional<Origin> origin = OriginOfName(value.String());
+  if (!origin) {
+    value.Fail("is \"" + Printable(value.String()) + "\"; make it " + kOrigins);
+  }
+  return *origin;
 }
 
 LoadCase ReadLoadCase(const JsonValue& value, const LoadContext& of_scene,
@@ -150,7 +163,8 @@ FileScene ReadJsonScene(const std::filesystem::path& path,
   const nlohmann::json parsed = ParseJsonFile(path);
   const JsonValue document(path, parsed);
   document.CheckKeys({"model", "thickness", "mesh", "regions", "materials",
-                      "supports", "rigid_motion", "cases", "frames"});
+                      "supports", "rigid_motion", "origin", "cases",
+                      "frames"});
   const SectionChoice choice = Choose(section, ReadSection(document));
   FileScene file_scene;
   file_scene.mesh = ReadNamedMesh(document.At("mesh"), file_scene.notices);
@@ -158,7 +172,7 @@ FileScene ReadJsonScene(const std::filesystem::path& path,
   const MeshFile& mesh = file_scene.mesh;
   file_scene.scene.mesh =
       SceneMesh(mesh, SectionOf(mesh, choice), mesh.elements);
-  file_scene.scene.is_of_linear_elasticity = mesh.is_of_linear_elasticity;
+  file_scene.scene.origin = ReadOrigin(document, mesh.origin);
   file_scene.scene.materials = ReadMaterials(document, mesh);
   file_scene.axis_arrays = AxisArrays(document, mesh);
   const std::vector<JsonValue> cases = document.At("cases").Items();

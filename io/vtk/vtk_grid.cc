@@ -312,9 +312,9 @@ MeshFile ToMeshFile(const std::filesystem::path& path,
   MeshFile mesh = ToMeshFile(path, ToVtkGrid(grid));
   mesh.model = FieldNumber(path, "model", grid->GetFieldData());
   mesh.thickness = FieldNumber(path, "thickness", grid->GetFieldData());
-  mesh.is_of_linear_elasticity =
-      FieldNumber(path, "linear_elasticity", grid->GetFieldData())
-          .value_or(0) == 1;
+  if (FieldNumber(path, "computed", grid->GetFieldData()).value_or(0) == 1) {
+    mesh.origin = Origin::kComputed;
+  }
   return mesh;
 }
 

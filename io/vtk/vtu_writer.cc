@@ -148,8 +148,8 @@ vtkSmartPointer<vtkUnstructuredGrid> ToVtkGrid(
   if (mesh.Dimension() == 2) {
     AddSection(mesh.section, grid->GetFieldData());
   }
-  if (fields.are_of_linear_elasticity) {
-    AddNumber("linear_elasticity", 1, grid->GetFieldData());
+  if (fields.origin == Origin::kComputed) {
+    AddNumber("computed", 1, grid->GetFieldData());
   }
   return grid;
 }
@@ -173,7 +173,7 @@ void AddSupports(const Supports& supports, const std::string& suffix,
 
 Fields SceneFields(const Scene& scene) {
   Fields fields;
-  fields.are_of_linear_elasticity = scene.is_of_linear_elasticity;
+  fields.origin = scene.origin;
   AddSupports(scene.supports, "", fields);
   for (std::size_t i = 0; i < scene.load_cases.size(); ++i) {
     const LoadCase& load_case = scene.load_cases[i];

@@ -20,15 +20,15 @@ struct Field {
 struct Fields {
   std::vector<Field> point;
   std::vector<Field> cell;
-  /// Whether linear elasticity computed the displacements.
-  bool are_of_linear_elasticity = false;
+  Origin origin = Origin::kMeasured;
 };
 
 /// The arrays that ReadScene reads back as `scene`: `fixed`, `prescribed` when
 /// a support is held away from zero, `region`, and for each load case k > 1
 /// with suffix `_k`: `force` (the loads assembled to consistent nodal forces),
 /// `displacement` and `observed` where there are any; and the field data
-/// `linear_elasticity` (1) where that computed the displacements.
+/// `computed` (1) where elements of the mesh computed the displacements
+/// (Origin::kComputed).
 Fields SceneFields(const Scene& scene);
 
 /// The mesh with its fields as the content of a VTU file (binary, Float64) that

@@ -261,7 +261,7 @@ TEST(DisplacementFit, AModelThatMissesMuchIsNotUsable) {
   }
   Measure({5e4, 0.3}, other);
   scene.load_cases[0].displacement = other.load_cases[0].displacement;
-  scene.is_of_linear_elasticity = true;
+  scene.origin = Origin::kComputed;
   EstimatorOptions options;
   options.known_poisson_ratio = 0.3;
   const Estimate estimate = IterativeFe().Run(scene, options);

@@ -25,7 +25,7 @@ void MeasureDensely(const IsotropicElasticity& elasticity, Scene& scene) {
   Eigen::VectorXd u = Eigen::VectorXd::Zero(dofs.NumAll());
   u(dofs.free) = testing::DenseFreeDisplacement(scene, elasticity, 0);
   scene.load_cases[0].displacement = u.reshaped(3, scene.mesh.NumNodes());
-  scene.is_of_linear_elasticity = true;
+  scene.origin = Origin::kComputed;
 }
 
 class ExactData : public ::testing::TestWithParam<double> {};

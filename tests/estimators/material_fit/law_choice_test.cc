@@ -35,7 +35,7 @@ Scene BlockOfMaterials(const std::vector<Material>& materials,
     scene.load_cases[k].displacement = equilibrium.Displacement()
                                            .col(Eigen::Index(k))
                                            .reshaped(3, scene.mesh.NumNodes());
-    scene.is_of_linear_elasticity = true;
+    scene.origin = Origin::kComputed;
   }
   scene.materials.clear();
   return scene;

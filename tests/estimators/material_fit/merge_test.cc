@@ -48,7 +48,7 @@ void MeasureInWorld(Scene world, const std::vector<IsotropicElasticity>& truth,
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     scene.load_cases[k].displacement =
         world.load_cases[k].displacement.leftCols(scene.mesh.NumNodes());
-    scene.is_of_linear_elasticity = true;
+    scene.origin = Origin::kComputed;
   }
 }
 

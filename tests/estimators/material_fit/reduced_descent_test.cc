@@ -53,7 +53,7 @@ Scene SceneOf(const HardScene& hard, std::uint64_t seed) {
                                         Eigen::Index(hard.parameters.size())),
       truth);
   scene.load_cases = truth.load_cases;
-  scene.is_of_linear_elasticity = true;
+  scene.origin = Origin::kComputed;
   if (hard.noise > 0) {
     testing::AddNoise(hard.noise, seed, scene);
   }

@@ -1,0 +1,49 @@
+#ifndef ELASTIMATE_ESTIMATORS_MATERIAL_FIT_REFINED_FIT_H_
+#define ELASTIMATE_ESTIMATORS_MATERIAL_FIT_REFINED_FIT_H_
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/material_fit/space_fit.h"
+
+namespace elastimate {
+
+/// The fit of a measured scene, whose specimen is no assembly of its elements.
+/// The parameters are fitted with finer and finer elements, each fit started at
+/// the last one:
+///
+/// 1. the elements of the mesh, where these are linear;
+/// 2. quadratic elements of the same mesh, of quadrilaterals and hexahedra
+///    those of the simplices that they are cut into;
+/// 3. quadratic elements of the mesh divided once (8 children of each
+///    tetrahedron, 4 of each triangle).
+///
+/// The finest fit is reported, corrected by a part of the last change, of which
+/// a part is the mesh error (MeshErrorOf).  Outliers are those of the second
+/// fit (LeaveOutliersOut).
+///
+/// EstimatorOptions::refinement says where it ends.  By default it stops at the
+/// second fit where the mesh error of each parameter is below half of its error
+/// by noise or below the tolerances that `auto` has, and where the divided mesh
+/// would have more elements than are solved for here.  Where it stops for its
+/// small error, half of the tolerance is part of the error, since some errors
+/// are small by accident.
+///
+/// Where a support ends within quadratic elements (Supports::ends), the second
+/// and third fit are made with all of the nodes in doubt held and with all of
+/// them free.  The estimate is the mean, and half of the difference an error.
+///
+/// The estimate is refused with FindingCode::kComputedByLinearElements where
+/// linear elements explain the measurement so much better than quadratic ones
+/// that they must have computed it.
+///
+/// Preconditions are those of Estimator::Run; the supports hold the specimen.
+MaterialFit FitRefined(const Scene& scene, const EstimatorOptions& options,
+                       Descent descent,
+                       const std::optional<Eigen::VectorXd>& start);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_MATERIAL_FIT_REFINED_FIT_H_

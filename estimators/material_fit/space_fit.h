@@ -1,0 +1,81 @@
+#ifndef ELASTIMATE_ESTIMATORS_MATERIAL_FIT_SPACE_FIT_H_
+#define ELASTIMATE_ESTIMATORS_MATERIAL_FIT_SPACE_FIT_H_
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/misfit/displacement_misfit.h"
+#include "elastimate/estimators/misfit/mesh_error.h"
+#include "elastimate/estimators/misfit/minimum_statistics.h"
+#include "elastimate/estimators/statistics/bounded_variables.h"
+
+namespace elastimate {
+
+/// How a fit finds its minimum: with a factorisation at each step
+/// (BestMinimum), or by reduced models (ReducedMinimum).
+enum class Descent { kFull, kReduced };
+
+/// A fit, and where it is.
+struct MaterialFit {
+  Estimate estimate;
+  /// Empty where there is no fit.
+  std::optional<BoundedMinimum> minimum;
+  MinimumErrors errors;
+  /// As measured where all is known; empty where there is no fit.
+  Eigen::MatrixXd displacement;
+
+  std::optional<Eigen::VectorXd> Variables() const {
+    return minimum ? std::optional<Eigen::VectorXd>(minimum->variables)
+                   : std::nullopt;
+  }
+};
+
+/// A scene with its model against the measurement, and the fit of that.
+class SpaceFit {
+ public:
+  /// Preconditions are those of Estimator::Run; the supports hold the specimen.
+  /// `options` must outlive this object.
+  SpaceFit(Scene scene, const EstimatorOptions& options);
+  SpaceFit(const SpaceFit&) = delete;
+  SpaceFit& operator=(const SpaceFit&) = delete;
+
+  /// Finds the minimum from `start` on, or from where FitMaterials says, and
+  /// describes it as if the elements were exact.
+  void Minimize(Descent descent, const std::optional<Eigen::VectorXd>& start);
+
+  /// Describes the minimum again, with the mesh error that `change` from
+  /// coarser elements tells of.  Precondition: there is a minimum.
+  void Describe(const SpaceChange& change);
+
+  /// What the elements of this fit changed from those of a coarser one of the
+  /// same measurement: one solution of the coarse model.  Empty where its
+  /// stiffness is singular at this minimum.  Precondition: both have a minimum.
+  std::optional<SpaceChange> ChangeFrom(SpaceFit& coarse);
+
+  const Scene& OwnScene() const { return scene_; }
+  DisplacementMisfit& Misfit() { return misfit_; }
+  MaterialFit& Fit() { return fit_; }
+  const MaterialFit& Fit() const { return fit_; }
+
+ private:
+  /// Moves to the minimum with the loss of the options, by reweighting.
+  void Reweigh();
+  void Describe(const SpaceChange* change);
+
+  const EstimatorOptions& options_;
+  Scene scene_;
+  DisplacementMisfit misfit_;
+  MaterialFit fit_;
+};
+
+/// The fit of a scene with its elements taken as exact.
+MaterialFit FitSpace(const Scene& scene, const EstimatorOptions& options,
+                     Descent descent,
+                     const std::optional<Eigen::VectorXd>& start);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_MATERIAL_FIT_SPACE_FIT_H_

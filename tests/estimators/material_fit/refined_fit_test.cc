@@ -1,0 +1,205 @@
+// Fits of measured displacements by finer and finer elements.
+
+#include "elastimate/estimators/material_fit/refined_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "elastimate/core/scene/finer_scene.h"
+#include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/estimators/registry.h"
+#include "tests/element_kinds.h"
+#include "tests/regions.h"
+#include "tests/scenes.h"
+
+namespace elastimate {
+namespace {
+
+using testing::AddNoise;
+using testing::KindOfSection;
+
+constexpr IsotropicElasticity kTruth = {5e4, 0.35};
+
+Estimate Run(const Scene& scene, const EstimatorOptions& options = {},
+             const std::string& estimator = "reduced-fe") {
+  return MakeEstimator(estimator)->Run(scene, options);
+}
+
+void ExpectToHold(const IsotropicElasticity& truth, const Estimate& estimate) {
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  EXPECT_LT(std::abs(estimate.elasticity.youngs_modulus - truth.youngs_modulus),
+            3 * *estimate.YoungsModulusStandardError());
+  EXPECT_LT(std::abs(estimate.elasticity.poisson_ratio - truth.poisson_ratio),
+            3 * *estimate.PoissonRatioStandardError());
+}
+
+// The strains are small, as the loads are.
+Scene Block(const Eigen::Vector3i& cells) {
+  Scene scene = testing::BlockUnderTraction(cells, {1, 1, 2});
+  scene.load_cases[0].loads = {BodyForce{Eigen::Vector3d(40, 0, -80)}};
+  return scene;
+}
+
+class RefinedFitOfKinds : public ::testing::TestWithParam<KindOfSection> {};
+
+TEST_P(RefinedFitOfKinds, HoldsTheTruthOfAFinerSpecimen) {
+  Scene scene = testing::SceneOfKind(GetParam());
+  scene.load_cases[0].loads = {
+      BodyForce{Eigen::VectorXd::Constant(scene.mesh.Dimension(), 30)}};
+  testing::MeasureInCutWorld(kTruth, scene);
+  AddNoise(0.003, 1, scene);
+  const Estimate estimate = Run(scene);
+  ExpectToHold(kTruth, estimate);
+  EXPECT_EQ(estimate.element_order, 2);
+  EXPECT_GT(*estimate.discretization_error, 0);
+  EXPECT_GT(estimate.error_budget.noise(0), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, RefinedFitOfKinds,
+                         ::testing::ValuesIn(testing::AllKindsOfSections()),
+                         [](const auto& info) {
+                           return testing::NameOf(info.param);
+                         });
+
+TEST(RefinedFit, OfBothDescentsIsTheSame) {
+  Scene scene = Block({2, 2, 4});
+  testing::MeasureInCutWorld(kTruth, scene);
+  AddNoise(0.003, 1, scene);
+  const Estimate reduced = Run(scene);
+  const Estimate iterative = Run(scene, {}, "iterative-fe");
+  ExpectToHold(kTruth, iterative);
+  const double error = *reduced.YoungsModulusStandardError();
+  EXPECT_NEAR(reduced.elasticity.youngs_modulus,
+              iterative.elasticity.youngs_modulus, 0.05 * error);
+  EXPECT_NEAR(*iterative.YoungsModulusStandardError(), error, 0.05 * error);
+}
+
+TEST(RefinedFit, DividesTheMeshAsOftenAsIsAskedFor) {
+  Scene scene = Block({2, 2, 4});
+  testing::MeasureInCutWorld(kTruth, scene);
+  AddNoise(0.003, 1, scene);
+  EstimatorOptions options;
+  options.refinement = Refine::kNever;
+  const Estimate never = Run(scene, options);
+  options.refinement = Refine::kAlways;
+  const Estimate always = Run(scene, options);
+  ExpectToHold(kTruth, always);
+  EXPECT_EQ(never.mesh_divisions, 0);
+  EXPECT_EQ(always.mesh_divisions, 1);
+  EXPECT_GT(*never.discretization_error, 3 * *always.discretization_error);
+  options.refinement = Refine::kAutomatic;
+  EXPECT_EQ(Run(scene, options).mesh_divisions, 1);
+}
+
+// Where noise is all that matters, a divided mesh would tell nothing.
+TEST(RefinedFit, KeepsTheMeshWhereNoiseMattersMore) {
+  const KindOfSection plane = {ElementKind::kTri3, SectionModel::kPlaneStress};
+  Scene scene = testing::SceneOfKind(plane, 12);
+  scene.load_cases[0].loads = {BodyForce{Eigen::Vector2d(30, 30)}};
+  testing::MeasureInCutWorld(kTruth, scene);
+  AddNoise(0.2, 1, scene);
+  const Estimate estimate = Run(scene);
+  ExpectToHold(kTruth, estimate);
+  EXPECT_EQ(estimate.mesh_divisions, 0);
+  EXPECT_GE(*estimate.discretization_error, 0.005);
+}
+
+TEST(RefinedFit, OfTwoRegionsHoldsBoth) {
+  Scene scene = Block({2, 2, 4});
+  testing::DivideIntoRegions({1, 1, 2}, {1, 1, 2}, scene);
+  Scene finer = FinerScene(FinerScene(scene));
+  const Eigen::Vector4d truth(5e4, 0.35, 1e5, 0.2);
+  MeasureMaterials(truth, finer);
+  testing::TakeDisplacements(finer, scene);
+  AddNoise(0.002, 1, scene);
+  const Estimate estimate = Run(scene);
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  for (Eigen::Index i = 0; i < truth.size(); ++i) {
+    const ParameterEstimate& parameter = estimate.parameters[i];
+    EXPECT_LT(std::abs(parameter.value - truth(i)),
+              3 * *parameter.standard_error)
+        << parameter.Label();
+    EXPECT_GT(estimate.error_budget.discretization(i), 0);
+  }
+}
+
+TEST(RefinedFit, RefusesWhatLinearElementsComputed) {
+  for (const double noise : {0.0, 0.05}) {
+    Scene scene = testing::SmallScene("organ");
+    Measure(kTruth, scene);
+    if (noise > 0) {
+      AddNoise(noise, 1, scene);
+    }
+    scene.origin = Origin::kMeasured;
+    const Estimate estimate = Run(scene);
+    EXPECT_EQ(estimate.status, Status::kNotIdentifiable);
+    EXPECT_TRUE(estimate.Has(FindingCode::kComputedByLinearElements))
+        << estimate.message;
+  }
+}
+
+TEST(RefinedFit, WithALossWithstandsOutliers) {
+  Scene scene = Block({2, 2, 4});
+  testing::MeasureInCutWorld(kTruth, scene);
+  MeasurementErrors errors;
+  errors.relative_noise = 0.005;
+  errors.law = NoiseLaw::kGaussian;
+  errors.outliers = 0.1;
+  std::mt19937_64 generator(3);
+  AddErrors(errors, scene.mesh.nodes, scene.supports.held, generator,
+            scene.load_cases[0].displacement);
+  EstimatorOptions options;
+  options.loss = Loss::kHuber;
+  const Estimate huber = Run(scene, options);
+  ExpectToHold(kTruth, huber);
+  EXPECT_TRUE(huber.outliers.empty());
+  const Estimate left_out = Run(scene);
+  ExpectToHold(kTruth, left_out);
+  EXPECT_FALSE(left_out.outliers.empty());
+}
+
+TEST(RefinedFit, OfQuadraticElementsDividesThem) {
+  Scene scene = Block({1, 1, 2});
+  Scene quadratic = QuadraticScene(scene);
+  testing::MeasureInCutWorld(kTruth, quadratic);
+  AddNoise(0.003, 1, quadratic);
+  const Estimate estimate = Run(quadratic);
+  ExpectToHold(kTruth, estimate);
+  EXPECT_EQ(estimate.mesh_divisions, 1);
+}
+
+// A bar that a clamp holds from x = 0 to beyond the middle of the edges around
+// its end, of which the mask of its nodes does not tell.
+TEST(RefinedFit, HoldsWhatTheEndOfASupportLeavesOpen) {
+  Scene scene;
+  scene.mesh = testing::Distorted(testing::BoxMesh({6, 3, 3}, {2, 1, 1}));
+  const Eigen::Index num_nodes = scene.mesh.NumNodes();
+  constexpr double kEnd = 0.85;
+  const HeldBox clamp = {
+      Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(kEnd, 2, 2),
+      Eigen::Array3<bool>::Constant(true), Eigen::Vector3d::Zero()};
+  scene.supports = {ComponentMask::Constant(3, num_nodes, false),
+                    Eigen::MatrixXd::Zero(3, num_nodes),
+                    {clamp}};
+  for (Eigen::Index node = 0; node < num_nodes; ++node) {
+    scene.supports.held.col(node).setConstant(scene.mesh.nodes(0, node) <=
+                                              kEnd);
+  }
+  LoadCase load_case;
+  load_case.loads = {BodyForce{Eigen::Vector3d(200, -50, -30)}};
+  scene.load_cases = {load_case};
+  testing::MeasureInCutWorld(kTruth, scene);
+  const Estimate of_box = Run(scene);
+  ExpectToHold(kTruth, of_box);
+  scene.supports.boxes.clear();
+  const Estimate of_mask = Run(scene);
+  ExpectToHold(kTruth, of_mask);
+  EXPECT_GT(*of_mask.YoungsModulusStandardError(),
+            *of_box.YoungsModulusStandardError());
+}
+
+}  // namespace
+}  // namespace elastimate
