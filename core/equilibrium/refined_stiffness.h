@@ -1,0 +1,82 @@
+#ifndef ELASTIMATE_CORE_EQUILIBRIUM_REFINED_STIFFNESS_H_
+#define ELASTIMATE_CORE_EQUILIBRIUM_REFINED_STIFFNESS_H_
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "elastimate/core/equilibrium/supported_stiffness.h"
+
+namespace elastimate {
+
+/// The stiffness of the finest of some spaces that contain each other on some
+/// supports, which is never assembled: systems are solved by conjugate
+/// gradients.  One V(1,1)-cycle over the spaces preconditions them: on each
+/// finer space two steps of Chebyshev's iteration with the diagonal blocks of
+/// the nodes [Adams, Brezina, Hu & Tuminaro, J. Comput. Phys. 188 (2003) 593]
+/// before and after the correction by the next coarser space, on the coarsest a
+/// StiffnessSolver at the same moduli.
+///
+/// The iterations do not grow with the mesh.  On blocky bodies it takes 10 to
+/// 15 of them for an error of 1e-8 at nu = 0.3, more near nu = 1/2, in slender
+/// bodies and in thin walls.
+class RefinedStiffness : public SupportedStiffness {
+ public:
+  static constexpr int kMostIterations = 200;
+
+  /// `supports` are those of each space, from coarse to fine, and `coarsest` is
+  /// the mesh of the first.  A solution may differ by `tolerance` of itself in
+  /// the energy norm.  Preconditions and exceptions are those of
+  /// StiffnessSolver, for the coarsest space.
+  RefinedStiffness(const Mesh& coarsest,
+                   const std::vector<const Supports*>& supports,
+                   SolverKind solver,
+                   double tolerance = StiffnessSolver::kAccurate);
+
+  bool Factorize(const NestedStiffness& stiffness,
+                 bool with_held_rows) override;
+
+  /// An iteration takes five element passes of the finest space, four of each
+  /// one between, and a solve on the coarsest, for all columns.
+  using SupportedStiffness::Solve;
+  Eigen::MatrixXd Solve(const Eigen::MatrixXd& all,
+                        const Eigen::MatrixXd& start) override;
+
+  Eigen::MatrixXd HeldForces(
+      const Eigen::MatrixXd& displacements) const override;
+  Eigen::MatrixXd HeldForcesTransposed(
+      const Eigen::MatrixXd& held) const override;
+
+  const NodeGraph& GraphOfAssembled() const override {
+    return coarsest_.Graph();
+  }
+  /// The solves and element passes are those of the finest space.
+  Work WorkDone() const override;
+  const std::string& Notice() const override { return coarsest_.Notice(); }
+
+ private:
+  struct Space {
+    Eigen::VectorXd is_free;  ///< 1 or 0 for each degree of freedom.
+    Eigen::MatrixXd inverse_blocks;
+  };
+
+  /// K_ff of a finer space.
+  Eigen::MatrixXd Multiply(std::size_t space, const Eigen::MatrixXd& x);
+  /// What two steps of Chebyshev's iteration make of a residual.
+  Eigen::MatrixXd Smooth(std::size_t space, const Eigen::MatrixXd& residual);
+  /// The V-cycle from a space down.
+  Eigen::MatrixXd Precondition(std::size_t space,
+                               const Eigen::MatrixXd& residual);
+
+  StiffnessSolver coarsest_;
+  std::vector<Space> spaces_;  ///< Coarse to fine; the first has no blocks.
+  double tolerance_;
+  const NestedStiffness* stiffness_ = nullptr;
+  /// That the last solution met.
+  double smallest_eigenvalue_ = 1;
+  Work work_;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_EQUILIBRIUM_REFINED_STIFFNESS_H_
