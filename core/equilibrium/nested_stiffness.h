@@ -29,7 +29,7 @@ class NestedStiffness {
   explicit NestedStiffness(const std::vector<const Scene*>& spaces);
 
   /// `graph` is of the coarsest mesh.  One element pass, and for each finer
-  /// space about a dozen.
+  /// space about ten.
   void SetModuli(const Eigen::VectorXd& moduli, const NodeGraph& graph);
 
   std::size_t NumSpaces() const { return forces_.size(); }
@@ -54,8 +54,9 @@ class NestedStiffness {
   const Eigen::MatrixXd& DiagonalBlocks(std::size_t space) const {
     return finer_[space - 1].diagonal_blocks;
   }
-  /// About the largest eigenvalue of D^-1 K for the diagonal blocks D of a
-  /// finer space, without supports; with any, the eigenvalues are not larger.
+  /// The largest eigenvalue of D^-1 K for the diagonal blocks D of a finer
+  /// space, or up to a tenth less, without supports; with any, the eigenvalues
+  /// are not larger.
   /// NaN where K is not positive definite.
   double LargestEigenvalue(std::size_t space) const {
     return finer_[space - 1].largest_eigenvalue;
@@ -87,6 +88,11 @@ Eigen::MatrixXd InverseBlocks(const Eigen::MatrixXd& blocks,
 /// Blocks of DiagonalBlocks times the rows of their nodes: num_dofs x n.
 Eigen::MatrixXd MultiplyBlocks(const Eigen::MatrixXd& blocks,
                                const Eigen::MatrixXd& columns);
+
+/// x = keep x + scale B (a - b) for such blocks B, in one pass over memory.
+void AddBlockProducts(const Eigen::MatrixXd& blocks, const Eigen::MatrixXd& a,
+                      const Eigen::MatrixXd& b, double keep, double scale,
+                      Eigen::MatrixXd& x);
 
 }  // namespace elastimate
 

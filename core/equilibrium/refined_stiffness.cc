@@ -9,7 +9,7 @@ namespace {
 
 // Eigenvalues of D^-1 K between these shares of the largest one that was
 // estimated are what is smoothed; the rest is left to the coarser space.
-constexpr double kUpper = 1.1;
+constexpr double kUpper = 1.2;
 constexpr double kLower = 0.1;
 // An iterative solver of the coarsest space need not be more accurate than the
 // preconditioner that it is part of.
@@ -54,7 +54,9 @@ Eigen::MatrixXd RefinedStiffness::Solve(const Eigen::MatrixXd& all,
   options.most_iterations = kMostIterations;
   options.smallest_eigenvalue = smallest_eigenvalue_;
   ConjugateGradientResult result = SolveByConjugateGradients(
-      [&](const Eigen::MatrixXd& x) { return Multiply(finest, x); },
+      [&](const Eigen::MatrixXd& x) {
+        return Eigen::MatrixXd(is_free.asDiagonal() * Multiply(finest, x));
+      },
       [&](const Eigen::MatrixXd& x) { return Precondition(finest, x); },
       is_free.asDiagonal() * all,
       start.size() > 0 ? Eigen::MatrixXd(is_free.asDiagonal() * start) : start,
@@ -74,37 +76,46 @@ Eigen::MatrixXd RefinedStiffness::Multiply(std::size_t space,
   if (space + 1 == spaces_.size()) {
     ++work_.element_passes;
   }
-  return spaces_[space].is_free.asDiagonal() * stiffness_->Multiply(space, x);
+  return stiffness_->Multiply(space, x);
+}
+
+Eigen::MatrixXd RefinedStiffness::RestOf(std::size_t space,
+                                         const Eigen::MatrixXd& force,
+                                         const Eigen::MatrixXd& x) {
+  Eigen::MatrixXd rest = Multiply(space, x);
+  rest = spaces_[space].is_free.asDiagonal() * (force - rest);
+  return rest;
 }
 
 Eigen::MatrixXd RefinedStiffness::Smooth(std::size_t space,
-                                         const Eigen::MatrixXd& residual) {
+                                         const Eigen::MatrixXd& force) {
   const double largest = stiffness_->LargestEigenvalue(space);
   const double middle = (kUpper + kLower) / 2 * largest;
   const double radius = (kUpper - kLower) / 2 * largest;
   const Eigen::MatrixXd& inverses = spaces_[space].inverse_blocks;
   // Two steps of the three-term recurrence from zero [Saad, Iterative Methods
-  // for Sparse Linear Systems, algorithm 12.1].
+  // for Sparse Linear Systems, algorithm 12.1].  The blocks are zero in the
+  // held rows and columns.
   const double share = 1 / (2 * middle / radius - radius / middle);
-  Eigen::MatrixXd first = MultiplyBlocks(inverses, residual) / middle;
-  const Eigen::MatrixXd second =
-      MultiplyBlocks(inverses, residual - Multiply(space, first));
-  first += share * (radius / middle) * first + 2 * share / radius * second;
-  return first;
+  Eigen::MatrixXd x = MultiplyBlocks(inverses, force) / middle;
+  AddBlockProducts(inverses, force, Multiply(space, x),
+                   1 + share * radius / middle, 2 * share / radius, x);
+  return x;
 }
 
-Eigen::MatrixXd RefinedStiffness::Precondition(
-    std::size_t space, const Eigen::MatrixXd& residual) {
+Eigen::MatrixXd RefinedStiffness::Precondition(std::size_t space,
+                                               const Eigen::MatrixXd& force) {
   if (space == 0) {
-    return coarsest_.Solve(residual, kCoarseTolerance);
+    return coarsest_.Solve(force, kCoarseTolerance);
   }
   const FinerNodes& nodes = stiffness_->NodesAfter(space - 1);
-  Eigen::MatrixXd x = Smooth(space, residual);
-  x += spaces_[space].is_free.asDiagonal() *
-       nodes.Interpolate(Precondition(
-           space - 1, spaces_[space - 1].is_free.asDiagonal() *
-                          nodes.Restrict(residual - Multiply(space, x))));
-  return x + Smooth(space, residual - Multiply(space, x));
+  Eigen::MatrixXd x = Smooth(space, force);
+  const Eigen::MatrixXd coarse =
+      Precondition(space - 1, spaces_[space - 1].is_free.asDiagonal() *
+                                  nodes.Restrict(RestOf(space, force, x)));
+  x += spaces_[space].is_free.asDiagonal() * nodes.Interpolate(coarse);
+  x += Smooth(space, RestOf(space, force, x));
+  return x;
 }
 
 Eigen::MatrixXd RefinedStiffness::HeldForces(

@@ -60,13 +60,15 @@ class RefinedStiffness : public SupportedStiffness {
     Eigen::MatrixXd inverse_blocks;
   };
 
-  /// K_ff of a finer space.
+  /// K x in a finer space, of all rows.
   Eigen::MatrixXd Multiply(std::size_t space, const Eigen::MatrixXd& x);
-  /// What two steps of Chebyshev's iteration make of a residual.
-  Eigen::MatrixXd Smooth(std::size_t space, const Eigen::MatrixXd& residual);
+  /// force - K x in the free rows.
+  Eigen::MatrixXd RestOf(std::size_t space, const Eigen::MatrixXd& force,
+                         const Eigen::MatrixXd& x);
+  /// What two steps of Chebyshev's iteration for K x = force make of x = 0.
+  Eigen::MatrixXd Smooth(std::size_t space, const Eigen::MatrixXd& force);
   /// The V-cycle from a space down.
-  Eigen::MatrixXd Precondition(std::size_t space,
-                               const Eigen::MatrixXd& residual);
+  Eigen::MatrixXd Precondition(std::size_t space, const Eigen::MatrixXd& force);
 
   StiffnessSolver coarsest_;
   std::vector<Space> spaces_;  ///< Coarse to fine; the first has no blocks.

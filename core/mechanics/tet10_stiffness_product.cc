@@ -30,8 +30,13 @@ constexpr std::ptrdiff_t kMostColumns = 4;
 
 constexpr std::ptrdiff_t kMostLanes = 8;
 
-// Positions and displacements of a node are four values, of which the last is
-// zero, and sums at a node as many for each product.
+// Four values each, of which the last is zero, are the position of a node, and
+// in its record for each column its displacement, the sum at it, and that of
+// the second product, if there are two.
+constexpr std::ptrdiff_t kFour = 4;
+constexpr std::ptrdiff_t kSizeForSum = 2 * kFour;
+constexpr std::ptrdiff_t kSizeForProducts = 3 * kFour;
+
 struct QuadraticPass {
   const int* elements;  // 10 x num_elements.
   std::ptrdiff_t num_elements;
@@ -42,8 +47,7 @@ struct QuadraticPass {
   const double* coefficients_of_a;
   const double* coefficients_of_p;
   std::ptrdiff_t num_columns;
-  const double* displacement[kMostColumns];
-  double* sums[kMostColumns];
+  double* records[kMostColumns];
 };
 
 }  // namespace
@@ -55,29 +59,31 @@ namespace elastimate {
 namespace HWY_NAMESPACE {
 namespace {
 
-constexpr std::ptrdiff_t kPosition = 4;
-
-// The records of the nodes of as many elements as there are lanes, of this
-// size.  Lanes beyond the last element repeat it.
-template <class Value>
+// The records of the first nodes of as many elements as there are lanes, of
+// this size.  Lanes beyond the last element repeat it.
+template <int kNodes, class Value>
 struct NodeRecords {
-  Value* record[10][kLanes];
+  Value* record[kNodes][kLanes];
 
   HWY_INLINE NodeRecords(const int* elements, std::ptrdiff_t count,
-                         Value* records, std::ptrdiff_t size, int num_nodes) {
+                         Value* records, std::ptrdiff_t size) {
     for (std::ptrdiff_t lane = 0; lane < kLanes; ++lane) {
       const int* const nodes = elements + 10 * std::min(lane, count - 1);
-      for (int i = 0; i < num_nodes; ++i) {
+      for (int i = 0; i < kNodes; ++i) {
         record[i][lane] = records + size * nodes[i];
       }
     }
   }
 };
 
+using Corners = NodeRecords<4, const double>;
+using Nodes = NodeRecords<10, double>;
+
 #if ELASTIMATE_HAS_BATCHES
 
 // The vectors of node i minus those of node 0.
-HWY_INLINE Vector Difference(const NodeRecords<const double>& nodes, int i) {
+template <class Records>
+HWY_INLINE Vector Difference(const Records& nodes, int i) {
   const auto row = [&](std::size_t k) HWY_ATTR {
     return hn::Sub(LoadRow(nodes.record[i], k, 0),
                    LoadRow(nodes.record[0], k, 0));
@@ -121,7 +127,8 @@ HWY_INLINE Vector LoadVector(const double* p) {
   return {hn::Load(d, p), hn::Load(d, p + 1), hn::Load(d, p + 2)};
 }
 
-HWY_INLINE Vector Difference(const NodeRecords<const double>& nodes, int i) {
+template <class Records>
+HWY_INLINE Vector Difference(const Records& nodes, int i) {
   return LoadVector(nodes.record[i][0]) - LoadVector(nodes.record[0][0]);
 }
 
@@ -142,8 +149,7 @@ struct Barycentric {
   Vector g0, g1, g2, g3;
   Values mass;
 
-  HWY_INLINE Barycentric(const NodeRecords<const double>& nodes,
-                         std::ptrdiff_t count) {
+  HWY_INLINE Barycentric(const Corners& nodes, std::ptrdiff_t count) {
     const Lanes d;
     const Vector e1 = Difference(nodes, 1);
     const Vector e2 = Difference(nodes, 2);
@@ -229,8 +235,7 @@ HWY_INLINE Values TraceOf(const Symmetric& e) {
 struct VertexStrains {
   Symmetric e0, e1, e2, e3;
 
-  HWY_INLINE VertexStrains(const NodeRecords<const double>& nodes,
-                           const Barycentric& g) {
+  HWY_INLINE VertexStrains(const Nodes& nodes, const Barycentric& g) {
     const Values three = hn::Set(Lanes(), 3.0);
     const Values four = hn::Set(Lanes(), 4.0);
     // Four times one minus the other.
@@ -262,9 +267,9 @@ struct VertexStrains {
 
 // Adds the forces of the stresses at the vertices to the records of the nodes.
 template <class Stress>
-HWY_INLINE void AddForces(const NodeRecords<double>& nodes,
-                          std::ptrdiff_t offset, const Barycentric& g,
-                          const Stress& s0, const Stress& s1, const Stress& s2,
+HWY_INLINE void AddForces(const Nodes& nodes, std::ptrdiff_t offset,
+                          const Barycentric& g, const Stress& s0,
+                          const Stress& s1, const Stress& s2,
                           const Stress& s3) {
   const Stress sum = s0 + s1 + s2 + s3;
   // Four times tau.
@@ -305,9 +310,7 @@ template <bool kIsSum>
 HWY_INLINE void AddElements(const QuadraticPass& pass, std::ptrdiff_t first,
                             std::ptrdiff_t count) {
   const int* const elements = pass.elements + 10 * first;
-  const Barycentric g(
-      NodeRecords<const double>(elements, count, pass.positions, kPosition, 4),
-      count);
+  const Barycentric g(Corners(elements, count, pass.positions, kFour), count);
   const Lanes d;
   Values a = hn::Zero(d);
   Values p = hn::Zero(d);
@@ -316,18 +319,15 @@ HWY_INLINE void AddElements(const QuadraticPass& pass, std::ptrdiff_t first,
     p = hn::LoadU(d, pass.coefficients_of_p + first);
   }
   for (std::ptrdiff_t k = 0; k < pass.num_columns; ++k) {
-    const VertexStrains e(
-        NodeRecords<const double>(elements, count, pass.displacement[k],
-                                  kPosition, 10),
-        g);
-    const NodeRecords<double> sums(elements, count, pass.sums[k],
-                                   kIsSum ? kPosition : 2 * kPosition, 10);
+    const Nodes nodes(elements, count, pass.records[k],
+                      kIsSum ? kSizeForSum : kSizeForProducts);
+    const VertexStrains e(nodes, g);
     if (kIsSum) {
-      AddForces(sums, 0, g, StressOf(e.e0, a, p), StressOf(e.e1, a, p),
+      AddForces(nodes, kFour, g, StressOf(e.e0, a, p), StressOf(e.e1, a, p),
                 StressOf(e.e2, a, p), StressOf(e.e3, a, p));
     } else {
-      AddForces(sums, 0, g, e.e0, e.e1, e.e2, e.e3);
-      AddForces(sums, kPosition, g, Scalar{TraceOf(e.e0)},
+      AddForces(nodes, kFour, g, e.e0, e.e1, e.e2, e.e3);
+      AddForces(nodes, 2 * kFour, g, Scalar{TraceOf(e.e0)},
                 Scalar{TraceOf(e.e1)}, Scalar{TraceOf(e.e2)},
                 Scalar{TraceOf(e.e3)});
     }
@@ -374,53 +374,55 @@ Records AllocateRecords(Eigen::Index size) {
   return records;
 }
 
-// Three values of each node to four.
+// The values of each node in the first four of its record, and zeros.  Loops of
+// a length that the compiler knows become vectors rather than calls.
+template <Eigen::Index kSize>
 void FillRecords(const double* values, Eigen::Index num_nodes,
                  double* records) {
-  for (Eigen::Index i = 0; i < num_nodes; ++i) {
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      records[4 * i + k] = values[3 * i + k];
+  for (Eigen::Index i = 0; i < num_nodes; ++i, records += kSize, values += 3) {
+    const double x = values[0];
+    const double y = values[1];
+    const double z = values[2];
+    records[0] = x;
+    records[1] = y;
+    records[2] = z;
+    for (Eigen::Index k = 3; k < kSize; ++k) {
+      records[k] = 0;
     }
-    records[4 * i + 3] = 0;
   }
 }
 
-// Calls collect(column, sums) with the sums of each column: `size` values of
-// each node.
-template <class Collect>
+// Calls collect(column, records) with the records of each column.
+template <Eigen::Index kSize, class Collect>
 void RunInColumns(const Mesh& mesh, const double* coefficients_of_a,
                   const double* coefficients_of_p,
-                  const Eigen::MatrixXd& displacement, Eigen::Index size,
-                  const Collect& collect) {
+                  const Eigen::MatrixXd& displacement, const Collect& collect) {
   if (displacement.cols() == 0) {
     return;
   }
   const Eigen::Index num_nodes = mesh.NumNodes();
-  const Records positions = AllocateRecords(4 * num_nodes);
-  FillRecords(mesh.nodes.data(), num_nodes, positions.get());
-  const Eigen::Index most =
-      std::min<Eigen::Index>(kMostColumns, displacement.cols());
-  const Records displacements = AllocateRecords(4 * num_nodes * most);
-  const Records sums = AllocateRecords(size * num_nodes * most);
+  const Records positions = AllocateRecords(kFour * num_nodes);
+  FillRecords<kFour>(mesh.nodes.data(), num_nodes, positions.get());
   QuadraticPass pass;
   pass.elements = mesh.elements.data();
   pass.num_elements = mesh.NumElements();
   pass.positions = positions.get();
   pass.coefficients_of_a = coefficients_of_a;
   pass.coefficients_of_p = coefficients_of_p;
+  const Eigen::Index most =
+      std::min<Eigen::Index>(kMostColumns, displacement.cols());
+  const Records records = AllocateRecords(kSize * num_nodes * most);
   for (Eigen::Index first = 0; first < displacement.cols();
        first += kMostColumns) {
     pass.num_columns = std::min(most, displacement.cols() - first);
     for (Eigen::Index k = 0; k < pass.num_columns; ++k) {
-      double* const records = displacements.get() + 4 * num_nodes * k;
-      FillRecords(displacement.col(first + k).data(), num_nodes, records);
-      pass.displacement[k] = records;
-      pass.sums[k] = sums.get() + size * num_nodes * k;
-      std::fill_n(pass.sums[k], size * num_nodes, 0.0);
+      pass.records[k] = records.get() + kSize * num_nodes * k;
+      FillRecords<kSize>(displacement.col(first + k).data(), num_nodes,
+                         pass.records[k]);
     }
     HWY_DYNAMIC_DISPATCH(RunQuadraticPass)(pass);
     for (Eigen::Index k = 0; k < pass.num_columns; ++k) {
-      collect(first + k, pass.sums[k]);
+      collect(first + k, pass.records[k]);
     }
   }
 }
@@ -433,18 +435,20 @@ void MultiplyQuadraticTetrahedra(const Mesh& mesh,
   assert(mesh.kind == ElementKind::kTet10);
   products.h.resize(displacement.rows(), displacement.cols());
   products.j.resize(displacement.rows(), displacement.cols());
-  RunInColumns(mesh, nullptr, nullptr, displacement, 8,
-               [&](Eigen::Index column, const double* sums) {
-                 double* const h = products.h.col(column).data();
-                 double* const j = products.j.col(column).data();
-                 for (Eigen::Index i = 0; i < mesh.NumNodes(); ++i) {
-                   for (Eigen::Index k = 0; k < 3; ++k) {
-                     const double a = sums[8 * i + k];
-                     h[3 * i + k] = a;
-                     j[3 * i + k] = sums[8 * i + 4 + k] - 2 * a;
-                   }
-                 }
-               });
+  RunInColumns<kSizeForProducts>(
+      mesh, nullptr, nullptr, displacement,
+      [&](Eigen::Index column, const double* record) {
+        double* h = products.h.col(column).data();
+        double* j = products.j.col(column).data();
+        for (Eigen::Index i = 0; i < mesh.NumNodes();
+             ++i, record += kSizeForProducts, h += 3, j += 3) {
+          for (int k = 0; k < 3; ++k) {
+            const double a = record[kFour + k];
+            h[k] = a;
+            j[k] = record[2 * kFour + k] - 2 * a;
+          }
+        }
+      });
 }
 
 Eigen::MatrixXd MultiplyQuadraticTetrahedra(
@@ -457,15 +461,16 @@ Eigen::MatrixXd MultiplyQuadraticTetrahedra(
   of_a.head(mesh.NumElements()) = coefficients.row(0) - 2 * coefficients.row(1);
   of_p.head(mesh.NumElements()) = coefficients.row(1);
   Eigen::MatrixXd forces(displacement.rows(), displacement.cols());
-  RunInColumns(mesh, of_a.data(), of_p.data(), displacement, 4,
-               [&](Eigen::Index column, const double* sums) {
-                 double* const values = forces.col(column).data();
-                 for (Eigen::Index i = 0; i < mesh.NumNodes(); ++i) {
-                   for (Eigen::Index k = 0; k < 3; ++k) {
-                     values[3 * i + k] = sums[4 * i + k];
-                   }
-                 }
-               });
+  RunInColumns<kSizeForSum>(mesh, of_a.data(), of_p.data(), displacement,
+                            [&](Eigen::Index column, const double* record) {
+                              double* force = forces.col(column).data();
+                              for (Eigen::Index i = 0; i < mesh.NumNodes();
+                                   ++i, record += kSizeForSum, force += 3) {
+                                for (int k = 0; k < 3; ++k) {
+                                  force[k] = record[kFour + k];
+                                }
+                              }
+                            });
   return forces;
 }
 
