@@ -25,29 +25,29 @@
 namespace elastimate {
 namespace {
 
-// Columns that share the geometry of an element.
-constexpr std::ptrdiff_t kMostColumns = 4;
-
 constexpr std::ptrdiff_t kMostLanes = 8;
 
-// Four values each, of which the last is zero, are the position of a node, and
-// in its record for each column its displacement, the sum at it, and that of
-// the second product, if there are two.
+// Four values each, of which the last is zero, are in the record of a node its
+// displacement, the sum at it, and that of the second product, if there are
+// two.
 constexpr std::ptrdiff_t kFour = 4;
 constexpr std::ptrdiff_t kSizeForSum = 2 * kFour;
 constexpr std::ptrdiff_t kSizeForProducts = 3 * kFour;
 
+// For one column: to share the geometry of an element among several ones saves
+// less than their records cost that do not fit into the cache together.
 struct QuadraticPass {
   const int* elements;  // 10 x num_elements.
   std::ptrdiff_t num_elements;
+  // 3 x num_nodes.  Four values are read at each vertex, behind which there are
+  // nodes in the middle of edges.
   const double* positions;
   // Null: the products are a = integral of e grad(N), and p = integral of
   // tr(e) grad(N) behind it.  Else their sum with these coefficients is the
   // only one; there are as many more of them, of any value, as there are lanes.
   const double* coefficients_of_a;
   const double* coefficients_of_p;
-  std::ptrdiff_t num_columns;
-  double* records[kMostColumns];
+  double* records;
 };
 
 }  // namespace
@@ -310,7 +310,7 @@ template <bool kIsSum>
 HWY_INLINE void AddElements(const QuadraticPass& pass, std::ptrdiff_t first,
                             std::ptrdiff_t count) {
   const int* const elements = pass.elements + 10 * first;
-  const Barycentric g(Corners(elements, count, pass.positions, kFour), count);
+  const Barycentric g(Corners(elements, count, pass.positions, 3), count);
   const Lanes d;
   Values a = hn::Zero(d);
   Values p = hn::Zero(d);
@@ -318,19 +318,16 @@ HWY_INLINE void AddElements(const QuadraticPass& pass, std::ptrdiff_t first,
     a = hn::LoadU(d, pass.coefficients_of_a + first);
     p = hn::LoadU(d, pass.coefficients_of_p + first);
   }
-  for (std::ptrdiff_t k = 0; k < pass.num_columns; ++k) {
-    const Nodes nodes(elements, count, pass.records[k],
-                      kIsSum ? kSizeForSum : kSizeForProducts);
-    const VertexStrains e(nodes, g);
-    if (kIsSum) {
-      AddForces(nodes, kFour, g, StressOf(e.e0, a, p), StressOf(e.e1, a, p),
-                StressOf(e.e2, a, p), StressOf(e.e3, a, p));
-    } else {
-      AddForces(nodes, kFour, g, e.e0, e.e1, e.e2, e.e3);
-      AddForces(nodes, 2 * kFour, g, Scalar{TraceOf(e.e0)},
-                Scalar{TraceOf(e.e1)}, Scalar{TraceOf(e.e2)},
-                Scalar{TraceOf(e.e3)});
-    }
+  const Nodes nodes(elements, count, pass.records,
+                    kIsSum ? kSizeForSum : kSizeForProducts);
+  const VertexStrains e(nodes, g);
+  if (kIsSum) {
+    AddForces(nodes, kFour, g, StressOf(e.e0, a, p), StressOf(e.e1, a, p),
+              StressOf(e.e2, a, p), StressOf(e.e3, a, p));
+  } else {
+    AddForces(nodes, kFour, g, e.e0, e.e1, e.e2, e.e3);
+    AddForces(nodes, 2 * kFour, g, Scalar{TraceOf(e.e0)}, Scalar{TraceOf(e.e1)},
+              Scalar{TraceOf(e.e2)}, Scalar{TraceOf(e.e3)});
   }
 }
 
@@ -392,38 +389,25 @@ void FillRecords(const double* values, Eigen::Index num_nodes,
   }
 }
 
-// Calls collect(column, records) with the records of each column.
+// Calls collect(column, records) for one column after the other.
 template <Eigen::Index kSize, class Collect>
 void RunInColumns(const Mesh& mesh, const double* coefficients_of_a,
                   const double* coefficients_of_p,
                   const Eigen::MatrixXd& displacement, const Collect& collect) {
-  if (displacement.cols() == 0) {
-    return;
-  }
   const Eigen::Index num_nodes = mesh.NumNodes();
-  const Records positions = AllocateRecords(kFour * num_nodes);
-  FillRecords<kFour>(mesh.nodes.data(), num_nodes, positions.get());
+  const Records records = AllocateRecords(kSize * num_nodes);
   QuadraticPass pass;
   pass.elements = mesh.elements.data();
   pass.num_elements = mesh.NumElements();
-  pass.positions = positions.get();
+  pass.positions = mesh.nodes.data();
   pass.coefficients_of_a = coefficients_of_a;
   pass.coefficients_of_p = coefficients_of_p;
-  const Eigen::Index most =
-      std::min<Eigen::Index>(kMostColumns, displacement.cols());
-  const Records records = AllocateRecords(kSize * num_nodes * most);
-  for (Eigen::Index first = 0; first < displacement.cols();
-       first += kMostColumns) {
-    pass.num_columns = std::min(most, displacement.cols() - first);
-    for (Eigen::Index k = 0; k < pass.num_columns; ++k) {
-      pass.records[k] = records.get() + kSize * num_nodes * k;
-      FillRecords<kSize>(displacement.col(first + k).data(), num_nodes,
-                         pass.records[k]);
-    }
+  pass.records = records.get();
+  for (Eigen::Index column = 0; column < displacement.cols(); ++column) {
+    FillRecords<kSize>(displacement.col(column).data(), num_nodes,
+                       records.get());
     HWY_DYNAMIC_DISPATCH(RunQuadraticPass)(pass);
-    for (Eigen::Index k = 0; k < pass.num_columns; ++k) {
-      collect(first + k, pass.records[k]);
-    }
+    collect(column, records.get());
   }
 }
 

@@ -100,10 +100,10 @@ HWY_INLINE Values LoadRow(Value* const (&records)[kLanes], std::size_t row,
                           std::ptrdiff_t offset) {
 #if HWY_CAP_GE512
   const hn::Half<Lanes> half;
-  return hn::Combine(Lanes(), hn::Load(half, records[row + 4] + offset),
-                     hn::Load(half, records[row] + offset));
+  return hn::Combine(Lanes(), hn::LoadU(half, records[row + 4] + offset),
+                     hn::LoadU(half, records[row] + offset));
 #else
-  return hn::Load(Lanes(), records[row] + offset);
+  return hn::LoadU(Lanes(), records[row] + offset);
 #endif
 }
 
