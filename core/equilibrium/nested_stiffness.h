@@ -27,6 +27,8 @@ class NestedStiffness {
   /// Refers to the scenes, which have to stay as they are.
   /// Precondition: one scene, or AreNested(spaces).
   explicit NestedStiffness(const std::vector<const Scene*>& spaces);
+  NestedStiffness(const NestedStiffness&) = delete;
+  NestedStiffness& operator=(const NestedStiffness&) = delete;
 
   /// `graph` is of the coarsest mesh.  One element pass, and for each finer
   /// space about ten.

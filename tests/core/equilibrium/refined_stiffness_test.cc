@@ -267,6 +267,18 @@ TEST(RefinedStiffness, IteratesAsOftenOnFinerMeshes) {
   }
 }
 
+TEST(RefinedStiffness, GivesUpWhereIterationsDoNotConverge) {
+  const Spaces spaces(Block(3), 1);
+  Equilibrium equilibrium(spaces.All(), SolverKind::kCholesky);
+  const MaterialParameters& chart = equilibrium.Forces().Parameters();
+  EXPECT_FALSE(equilibrium.Solve(chart.Moduli(Eigen::Vector2d(3, 0.5 - 1e-7))));
+  EXPECT_LE(equilibrium.WorkDone().iterations,
+            RefinedStiffness::kMostIterations);
+  // What was not found is no start for what is.
+  ASSERT_TRUE(equilibrium.Solve(chart.Moduli(Eigen::Vector2d(3, 0.3))));
+  EXPECT_TRUE(equilibrium.Displacement().allFinite());
+}
+
 TEST(RefinedStiffness, TakesMaterialsWithAnAxis) {
   Scene scene = Block(2);
   Material fibres;
