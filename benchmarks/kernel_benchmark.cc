@@ -23,12 +23,14 @@
 #include <vector>
 
 #include "benchmarks/random_matrix.h"
+#include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/equilibrium/forward_model.h"
 #include "elastimate/core/mechanics/stiffness_assembly.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/mechanics/stiffness_traces.h"
 #include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
+#include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/solvers/cholesky.h"
@@ -195,6 +197,38 @@ void CholeskySolve(benchmark::State& state) {
   CountTetrahedra(state, scene.mesh);
 }
 
+// Displacements of quadratic elements of a cube, without their factor: the
+// moduli are those of nu = range(1) / 100.  With `kFiner` = 2, of elements of
+// half the size.
+template <int kFiner>
+void RefinedSolve(benchmark::State& state) {
+  std::vector<Scene> scenes = {Cube(state.range(0))};
+  for (int i = 0; i < kFiner; ++i) {
+    scenes.push_back(FinerScene(scenes.back()));
+  }
+  std::vector<const Scene*> spaces;
+  for (const Scene& scene : scenes) {
+    spaces.push_back(&scene);
+  }
+  Work work;
+  while (state.KeepRunning()) {
+    state.PauseTiming();
+    // One that has no solution to begin with.
+    Equilibrium equilibrium(spaces, SolverKind::kCholesky);
+    const Eigen::VectorXd moduli = equilibrium.Forces().Parameters().Moduli(
+        Eigen::Vector2d(1, 0.01 * static_cast<double>(state.range(1))));
+    state.ResumeTiming();
+    if (!equilibrium.Solve(moduli)) {
+      state.SkipWithError("the iterations did not converge");
+      break;
+    }
+    work = equilibrium.WorkDone();
+  }
+  CountTetrahedra(state, scenes.back().mesh);
+  state.counters["iterations"] = work.iterations;
+  state.counters["passes"] = work.element_passes;
+}
+
 // ---------------------------------------------------------------------------
 // Estimators, end to end, on displacements of E = 10 kPa, nu = 0.3.
 
@@ -267,6 +301,17 @@ void RegisterQuadraticBenchmarks() {
     add(prefix + "Quadratic/CholeskyFactorization",
         CholeskyFactorization<QuadraticCube>);
     add(prefix + "Quadratic/CholeskySolve", CholeskySolve<QuadraticCube>);
+  }
+  for (const std::int64_t hundredths : {30, 45, 49}) {
+    const auto add = [hundredths](const char* name, auto function) {
+      benchmark::RegisterBenchmark(name, function)
+          ->ArgNames({"cells", "hundredths_of_nu"})
+          ->Args({kTiny, hundredths})
+          ->Unit(benchmark::kMillisecond)
+          ->UseRealTime();
+    };
+    add("Quadratic/RefinedSolve", RefinedSolve<1>);
+    add("Divided/RefinedSolve", RefinedSolve<2>);
   }
 }
 

@@ -2,17 +2,33 @@
 
 #include <algorithm>
 
+#include "elastimate/core/equilibrium/assembled_stiffness.h"
+#include "elastimate/core/equilibrium/refined_stiffness.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/unknown_motion.h"
 
 namespace elastimate {
 
+namespace {
+
+// Those in which systems are solved.
+std::vector<const Scene*> UsedSpaces(const std::vector<const Scene*>& spaces) {
+  return AreNested(spaces) ? spaces : std::vector<const Scene*>{spaces.back()};
+}
+
+}  // namespace
+
 Equilibrium::Equilibrium(const Scene& scene, SolverKind solver)
-    : forces_(scene.mesh, scene.materials),
-      load_(AssembleLoadCases(scene)),
+    : Equilibrium(std::vector<const Scene*>{&scene}, solver) {}
+
+Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
+                         SolverKind solver, double tolerance)
+    : values_(UsedSpaces(spaces)),
+      load_(AssembleLoadCases(*spaces.back())),
       held_displacement_(load_.rows(), load_.cols()),
       held_forces_(load_.cols()),
-      has_unknown_motion_(HasUnknownMotion(scene)) {
+      has_unknown_motion_(HasUnknownMotion(*spaces.back())) {
+  const Scene& scene = *spaces.back();
   std::vector<const Supports*> supports_of_stiffness;
   for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
     const Supports& supports = SupportsOf(scene, k);
@@ -24,7 +40,7 @@ Equilibrium::Equilibrium(const Scene& scene, SolverKind solver)
     stiffness_of_case_.push_back(same - supports_of_stiffness.begin());
     if (same == supports_of_stiffness.end()) {
       supports_of_stiffness.push_back(&supports);
-      stiffness_.emplace_back(scene.mesh, supports, solver);
+      AddStiffness(UsedSpaces(spaces), k, solver, tolerance);
     }
     held_displacement_.col(k) = elastimate::HeldDisplacement(supports);
     Eigen::Index first = 0;
@@ -34,58 +50,81 @@ Equilibrium::Equilibrium(const Scene& scene, SolverKind solver)
     }
     first_held_alike_.push_back(first);
     if (first == k && !held_displacement_.col(k).isZero(0)) {
-      held_forces_[k] = forces_.Columns(held_displacement_.col(k));
+      held_forces_[k] = Forces().Columns(held_displacement_.col(k));
       ++element_passes_;
     }
   }
+  if (IsRefined()) {
+    graph_.emplace(scene.mesh);
+  }
 }
 
-template <class Stiffnesses, class Function>
-Eigen::MatrixXd Equilibrium::ByStiffness(Stiffnesses& stiffnesses,
-                                         const Eigen::MatrixXd& columns,
-                                         const Function& of_stiffness) const {
-  if (stiffnesses.size() == 1) {
-    return of_stiffness(stiffnesses[0], columns);
+void Equilibrium::AddStiffness(const std::vector<const Scene*>& spaces,
+                               Eigen::Index k, SolverKind solver,
+                               double tolerance) {
+  const Mesh& coarsest = spaces.front()->mesh;
+  std::vector<const Supports*> supports;
+  for (const Scene* const space : spaces) {
+    supports.push_back(&SupportsOf(*space, k));
   }
+  if (spaces.size() > 1) {
+    stiffness_.push_back(std::make_unique<RefinedStiffness>(coarsest, supports,
+                                                            solver, tolerance));
+  } else {
+    stiffness_.push_back(
+        std::make_unique<AssembledStiffness>(coarsest, *supports[0], solver));
+  }
+}
+
+template <class Function>
+Eigen::MatrixXd Equilibrium::ByStiffness(const Eigen::MatrixXd& columns,
+                                         const Function& of_stiffness) const {
   const Eigen::Index n = columns.cols() / NumLoadCases();
+  std::vector<std::vector<Eigen::Index>> own(stiffness_.size());
+  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+    own[stiffness_of_case_[j / n]].push_back(j);
+  }
+  if (stiffness_.size() == 1) {
+    return of_stiffness(*stiffness_[0], columns, own[0]);
+  }
   Eigen::MatrixXd results(columns.rows(), columns.cols());
-  for (std::size_t i = 0; i < stiffnesses.size(); ++i) {
-    std::vector<Eigen::Index> own;
-    for (Eigen::Index j = 0; j < columns.cols(); ++j) {
-      if (stiffness_of_case_[j / n] == Eigen::Index(i)) {
-        own.push_back(j);
-      }
-    }
-    results(Eigen::all, own) =
-        of_stiffness(stiffnesses[i], columns(Eigen::all, own));
+  for (std::size_t i = 0; i < stiffness_.size(); ++i) {
+    results(Eigen::all, own[i]) =
+        of_stiffness(*stiffness_[i], columns(Eigen::all, own[i]), own[i]);
   }
   return results;
 }
 
 bool Equilibrium::Solve(const Eigen::VectorXd& moduli) {
-  ++element_passes_;
   // Of moduli of any unit, a stiffness without one.
   scale_ = moduli.cwiseAbs().maxCoeff();
   const Eigen::VectorXd scaled = moduli / scale_;
-  const Eigen::MatrixXd blocks = forces_.Blocks(scaled, Graph());
-  for (SupportedStiffness& stiffness : stiffness_) {
-    if (!stiffness.Factorize(blocks, has_unknown_motion_)) {
+  values_.SetModuli(scaled, stiffness_[0]->GraphOfAssembled());
+  for (const std::unique_ptr<SupportedStiffness>& stiffness : stiffness_) {
+    if (!stiffness->Factorize(values_, has_unknown_motion_)) {
       return false;
     }
   }
+  const Eigen::MatrixXd start = displacement_ - support_response_;
   SolveForSupports(scaled);
-  displacement_ = SolveFor(load_) + support_response_;
+  displacement_ = SolveFrom(start, load_) + support_response_;
   return !displacement_.hasNaN();
 }
 
 void Equilibrium::SolveForSupports(const Eigen::VectorXd& scaled_moduli) {
+  // What the free nodes did at the last moduli is what they begin with.
+  const Eigen::MatrixXd start =
+      support_response_.size() > 0
+          ? Eigen::MatrixXd(held_displacement_ - support_response_)
+          : Eigen::MatrixXd();
   support_response_ = held_displacement_;
   for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
     if (first_held_alike_[k] != k) {
       support_response_.col(k) = support_response_.col(first_held_alike_[k]);
     } else if (held_forces_[k].size() > 0) {
-      support_response_.col(k) -= stiffness_[stiffness_of_case_[k]].Solve(
-          held_forces_[k] * scaled_moduli);
+      support_response_.col(k) -= stiffness_[stiffness_of_case_[k]]->Solve(
+          held_forces_[k] * scaled_moduli,
+          start.size() > 0 ? Eigen::MatrixXd(start.col(k)) : start);
     }
   }
 }
@@ -93,42 +132,54 @@ void Equilibrium::SolveForSupports(const Eigen::VectorXd& scaled_moduli) {
 Eigen::MatrixXd Equilibrium::Sensitivities(const Eigen::MatrixXd& directions) {
   const Eigen::Index n = directions.cols();
   Eigen::MatrixXd sensitivities(displacement_.rows(), n * displacement_.cols());
+  const bool has_start = sensitivities_.cols() == sensitivities.cols();
   for (Eigen::Index k = 0; k < displacement_.cols(); ++k) {
     ++element_passes_;
     sensitivities.middleCols(n * k, n) =
-        -stiffness_[stiffness_of_case_[k]].Solve(
-            forces_.Columns(displacement_.col(k)) * (directions / scale_));
+        -stiffness_[stiffness_of_case_[k]]->Solve(
+            Forces().Columns(displacement_.col(k)) * (directions / scale_),
+            has_start ? Eigen::MatrixXd(sensitivities_.middleCols(n * k, n))
+                      : Eigen::MatrixXd());
+  }
+  if (IsRefined()) {
+    sensitivities_ = sensitivities;
   }
   return sensitivities;
 }
 
 Eigen::MatrixXd Equilibrium::SolveFor(const Eigen::MatrixXd& forces) {
-  return ByStiffness(
-      stiffness_, forces,
-      [&](SupportedStiffness& stiffness, const Eigen::MatrixXd& columns) {
-        return Eigen::MatrixXd(stiffness.Solve(columns) / scale_);
-      });
+  return SolveFrom({}, forces);
+}
+
+Eigen::MatrixXd Equilibrium::SolveFrom(const Eigen::MatrixXd& start,
+                                       const Eigen::MatrixXd& forces) {
+  return ByStiffness(forces, [&](SupportedStiffness& stiffness,
+                                 const Eigen::MatrixXd& columns,
+                                 const std::vector<Eigen::Index>& own) {
+    return Eigen::MatrixXd(
+        stiffness.Solve(columns, start.size() > 0
+                                     ? Eigen::MatrixXd(start(Eigen::all, own))
+                                     : start) /
+        scale_);
+  });
 }
 
 Eigen::MatrixXd Equilibrium::Extend(const Eigen::MatrixXd& held) {
   return ByStiffness(
-      stiffness_, held,
-      [](SupportedStiffness& stiffness, const Eigen::MatrixXd& columns) {
-        return stiffness.Extend(columns);
-      });
+      held, [](SupportedStiffness& stiffness, const Eigen::MatrixXd& columns,
+               const auto& /*own*/) { return stiffness.Extend(columns); });
 }
 
 Eigen::MatrixXd Equilibrium::ExtendTransposed(const Eigen::MatrixXd& values) {
   return ByStiffness(
-      stiffness_, values,
-      [](SupportedStiffness& stiffness, const Eigen::MatrixXd& columns) {
-        return stiffness.ExtendTransposed(columns);
-      });
+      values,
+      [](SupportedStiffness& stiffness, const Eigen::MatrixXd& columns,
+         const auto& /*own*/) { return stiffness.ExtendTransposed(columns); });
 }
 
 Eigen::MatrixXd Equilibrium::ExtendInCase(Eigen::Index k,
                                           const Eigen::MatrixXd& held) {
-  return stiffness_[stiffness_of_case_[k]].Extend(held);
+  return stiffness_[stiffness_of_case_[k]]->Extend(held);
 }
 
 void Equilibrium::Superpose(const Eigen::MatrixXd& displacement) {
@@ -138,32 +189,31 @@ void Equilibrium::Superpose(const Eigen::MatrixXd& displacement) {
 Eigen::MatrixXd Equilibrium::HeldForces(
     const Eigen::MatrixXd& displacements) const {
   return ByStiffness(
-      stiffness_, displacements,
-      [&](const SupportedStiffness& stiffness, const Eigen::MatrixXd& columns) {
+      displacements, [&](const SupportedStiffness& stiffness,
+                         const Eigen::MatrixXd& columns, const auto& /*own*/) {
         return Eigen::MatrixXd(scale_ * stiffness.HeldForces(columns));
       });
 }
 
 Eigen::MatrixXd Equilibrium::HeldForcesTransposed(
     const Eigen::MatrixXd& held) const {
-  return ByStiffness(
-      stiffness_, held,
-      [&](const SupportedStiffness& stiffness, const Eigen::MatrixXd& columns) {
-        return Eigen::MatrixXd(scale_ *
-                               stiffness.HeldForcesTransposed(columns));
-      });
+  return ByStiffness(held, [&](const SupportedStiffness& stiffness,
+                               const Eigen::MatrixXd& columns,
+                               const auto& /*own*/) {
+    return Eigen::MatrixXd(scale_ * stiffness.HeldForcesTransposed(columns));
+  });
 }
 
 Eigen::MatrixXd Equilibrium::HeldForcesInCase(
     Eigen::Index k, const Eigen::MatrixXd& displacements) const {
-  return scale_ * stiffness_[stiffness_of_case_[k]].HeldForces(displacements);
+  return scale_ * stiffness_[stiffness_of_case_[k]]->HeldForces(displacements);
 }
 
 Eigen::MatrixXd Equilibrium::SupportForces() const {
   return HeldForces(displacement_) -
-         ByStiffness(stiffness_, load_,
+         ByStiffness(load_,
                      [](const SupportedStiffness& stiffness,
-                        const Eigen::MatrixXd& loads) {
+                        const Eigen::MatrixXd& loads, const auto& /*own*/) {
                        return stiffness.OfHeld(loads);
                      });
 }
@@ -174,28 +224,28 @@ Eigen::MatrixXd Equilibrium::SupportForceSensitivities(
   Eigen::MatrixXd forces = HeldForces(sensitivities);
   for (Eigen::Index k = 0; k < displacement_.cols(); ++k) {
     ++element_passes_;
-    forces.middleCols(n * k, n) += stiffness_[stiffness_of_case_[k]].OfHeld(
-        forces_.Columns(displacement_.col(k)) * directions);
+    forces.middleCols(n * k, n) += stiffness_[stiffness_of_case_[k]]->OfHeld(
+        Forces().Columns(displacement_.col(k)) * directions);
   }
   return forces;
 }
 
 Work Equilibrium::WorkDone() const {
   Work work;
-  for (const SupportedStiffness& stiffness : stiffness_) {
-    work = work + stiffness.Solver().WorkDone();
+  for (const std::unique_ptr<SupportedStiffness>& stiffness : stiffness_) {
+    work = work + stiffness->WorkDone();
   }
-  work.element_passes += element_passes_;
+  work.element_passes += element_passes_ + values_.NumPasses();
   return work;
 }
 
 const std::string& Equilibrium::Notice() const {
-  for (const SupportedStiffness& stiffness : stiffness_) {
-    if (!stiffness.Solver().Notice().empty()) {
-      return stiffness.Solver().Notice();
+  for (const std::unique_ptr<SupportedStiffness>& stiffness : stiffness_) {
+    if (!stiffness->Notice().empty()) {
+      return stiffness->Notice();
     }
   }
-  return stiffness_[0].Solver().Notice();
+  return stiffness_[0]->Notice();
 }
 
 }  // namespace elastimate

@@ -2,10 +2,12 @@
 #define ELASTIMATE_CORE_EQUILIBRIUM_EQUILIBRIUM_H_
 
 #include <Eigen/Core>
-#include <deque>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "elastimate/core/equilibrium/nested_stiffness.h"
 #include "elastimate/core/equilibrium/supported_stiffness.h"
 #include "elastimate/core/mechanics/internal_forces.h"
 #include "elastimate/core/scene/scene.h"
@@ -25,6 +27,21 @@ class Equilibrium {
   /// those of StiffnessSolver.
   Equilibrium(const Scene& scene, SolverKind solver);
 
+  /// The same in the last of these spaces of one specimen, from coarse to fine,
+  /// all of which have to stay as they are.  Where they contain each other
+  /// (IsRefinable), no more than the stiffness of the first is factorised, and
+  /// systems are solved by iterations that leave a relative error of
+  /// `tolerance` in the energy norm (RefinedStiffness): they begin with the
+  /// solutions for the last moduli.  Else the stiffness of the last space is
+  /// factorised, and the others are not used.
+  Equilibrium(const std::vector<const Scene*>& spaces, SolverKind solver,
+              double tolerance = StiffnessSolver::kAccurate);
+
+  /// Whether AreNested.
+  static bool IsRefinable(const std::vector<const Scene*>& spaces) {
+    return AreNested(spaces);
+  }
+
   /// Solves for u at these moduli: an element pass, for each set of held
   /// degrees of freedom a factorisation, and a solve for each load case (one
   /// more for each set of held displacements).  False when the stiffness is not
@@ -40,7 +57,8 @@ class Equilibrium {
 
   /// du / dp for directions d theta / d p (num_moduli x n): one num_dofs x
   /// n matrix for each load case, side by side.  A pass and n solves for each
-  /// load case.  Precondition: Solve returned true.
+  /// load case.  NaN where iterations do not converge, as in all that is solved
+  /// for below.  Precondition: Solve returned true.
   Eigen::MatrixXd Sensitivities(const Eigen::MatrixXd& directions);
 
   /// K^-1 of the free rows of some forces, n of each load case side by side,
@@ -81,24 +99,35 @@ class Equilibrium {
   Eigen::MatrixXd SupportForceSensitivities(
       const Eigen::MatrixXd& directions, const Eigen::MatrixXd& sensitivities);
 
-  const InternalForces& Forces() const { return forces_; }
-  const NodeGraph& Graph() const { return stiffness_[0].Solver().Graph(); }
+  const InternalForces& Forces() const {
+    return values_.Forces(values_.NumSpaces() - 1);
+  }
+  const NodeGraph& Graph() const {
+    return graph_ ? *graph_ : stiffness_[0]->GraphOfAssembled();
+  }
   Work WorkDone() const;
   /// That of the StiffnessSolver that has one.
   const std::string& Notice() const;
 
  private:
   Eigen::Index NumLoadCases() const { return load_.cols(); }
+  bool IsRefined() const { return values_.NumSpaces() > 1; }
+  void AddStiffness(const std::vector<const Scene*>& spaces, Eigen::Index k,
+                    SolverKind solver, double tolerance);
   /// What `of_stiffness` makes of columns, n of each load case side by side, by
   /// the stiffness of theirs.
-  template <class Stiffnesses, class Function>
-  Eigen::MatrixXd ByStiffness(Stiffnesses& stiffnesses,
-                              const Eigen::MatrixXd& columns,
+  template <class Function>
+  Eigen::MatrixXd ByStiffness(const Eigen::MatrixXd& columns,
                               const Function& of_stiffness) const;
+  /// SolveFor, with a guess of each column or none.
+  Eigen::MatrixXd SolveFrom(const Eigen::MatrixXd& start,
+                            const Eigen::MatrixXd& forces);
   void SolveForSupports(const Eigen::VectorXd& scaled_moduli);
 
-  InternalForces forces_;
-  std::deque<SupportedStiffness> stiffness_;  ///< Which do not move.
+  NestedStiffness values_;
+  std::vector<std::unique_ptr<SupportedStiffness>> stiffness_;
+  /// Where it is not that of a mesh whose stiffness is assembled.
+  std::optional<NodeGraph> graph_;
   std::vector<Eigen::Index> stiffness_of_case_;
   Eigen::MatrixXd load_;
   Eigen::MatrixXd held_displacement_;  ///< num_dofs x num_load_cases.
@@ -109,6 +138,8 @@ class Equilibrium {
   std::vector<Eigen::MatrixXd> held_forces_;
   Eigen::MatrixXd displacement_;
   Eigen::MatrixXd support_response_;
+  /// Those that were found last, to begin iterations with.
+  Eigen::MatrixXd sensitivities_;
   double scale_ = 1;  ///< Of the moduli over those of the factor.
   bool has_unknown_motion_;
   int element_passes_ = 0;

@@ -6,6 +6,7 @@
 
 #include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/mechanics/law_products.h"
+#include "elastimate/core/mechanics/tet10_stiffness_product.h"
 
 namespace elastimate {
 
@@ -94,12 +95,37 @@ Eigen::MatrixXd InternalForces::Columns(
   return columns;
 }
 
+Eigen::Matrix2Xd InternalForces::ModuliOfElements(
+    const Eigen::VectorXd& moduli) const {
+  assert(is_isotropic_);
+  Eigen::Matrix2Xd of_elements(2, mesh_.NumElements());
+  for (Eigen::Index e = 0; e < mesh_.NumElements(); ++e) {
+    of_elements.col(e) = moduli.segment<2>(
+        parameters_.FirstModulus(std::size_t(material_of_element_[e])));
+  }
+  return of_elements;
+}
+
 Eigen::MatrixXd InternalForces::Multiply(
     const Eigen::VectorXd& moduli, const Eigen::MatrixXd& displacements) const {
-  const std::vector<Eigen::MatrixXd> products = OfParts(displacements);
-  const Eigen::Index dimension = mesh_.Dimension();
   Eigen::MatrixXd forces =
       Eigen::MatrixXd::Zero(displacements.rows(), displacements.cols());
+  if (!is_isotropic_) {
+    std::vector<std::vector<Eigen::MatrixXd>> tangents;
+    for (Eigen::MatrixXd& tangent : Tangents(moduli)) {
+      tangents.push_back({std::move(tangent)});
+    }
+    std::vector<Eigen::MatrixXd> sum = {std::move(forces)};
+    AddLawProducts(mesh_, material_of_element_, frames_, tangents,
+                   displacements, sum);
+    return std::move(sum[0]);
+  }
+  if (mesh_.kind == ElementKind::kTet10) {
+    return MultiplyQuadraticTetrahedra(mesh_, ModuliOfElements(moduli),
+                                       displacements);
+  }
+  const std::vector<Eigen::MatrixXd> products = OfParts(displacements);
+  const Eigen::Index dimension = mesh_.Dimension();
   for (Eigen::Index k = 0; k < Eigen::Index(products.size()); ++k) {
     if (parameters_.NumMaterials() == 1) {
       forces += moduli(k) * products[k];
@@ -136,6 +162,15 @@ Eigen::MatrixXd InternalForces::Blocks(const Eigen::VectorXd& moduli,
                                        const NodeGraph& graph) const {
   return StiffnessBlocks(mesh_, graph, material_of_element_, frames_,
                          Tangents(moduli));
+}
+
+Eigen::MatrixXd InternalForces::DiagonalBlocks(
+    const Eigen::VectorXd& moduli) const {
+  if (is_isotropic_) {
+    return DiagonalStiffnessBlocks(mesh_, ModuliOfElements(moduli));
+  }
+  return DiagonalStiffnessBlocks(mesh_, material_of_element_, frames_,
+                                 Tangents(moduli));
 }
 
 Eigen::VectorXd InternalForces::EnergyDensity(

@@ -51,6 +51,10 @@ class InternalForces {
   Eigen::MatrixXd Blocks(const Eigen::VectorXd& moduli,
                          const NodeGraph& graph) const;
 
+  /// The blocks K_ii(theta) of all nodes side by side: dimension x num_dofs.
+  /// One element pass.
+  Eigen::MatrixXd DiagonalBlocks(const Eigen::VectorXd& moduli) const;
+
   /// The strain energy of each element over its volume [pressure], of one
   /// displacement (num_dofs): num_elements values.
   Eigen::VectorXd EnergyDensity(const Eigen::VectorXd& moduli,
@@ -60,6 +64,9 @@ class InternalForces {
   /// What each modulus, by its place in its law, gives to each copy of a node.
   std::vector<Eigen::MatrixXd> OfParts(
       const Eigen::MatrixXd& displacements) const;
+  /// Those of H and J in each element: 2 x num_elements.  Precondition:
+  /// isotropic materials.
+  Eigen::Matrix2Xd ModuliOfElements(const Eigen::VectorXd& moduli) const;
   /// The tangent of each material.
   std::vector<Eigen::MatrixXd> Tangents(const Eigen::VectorXd& moduli) const;
   /// Of the law of each material, the tangent of each unit modulus.

@@ -1,5 +1,8 @@
 #include "elastimate/core/mechanics/law_products.h"
 
+#include <array>
+
+#include "elastimate/core/materials/elasticity.h"
 #include "elastimate/core/mesh/shape_functions.h"
 
 namespace elastimate {
@@ -125,6 +128,72 @@ void AddBlocksOfKind(const Mesh& mesh, const NodeGraph& graph,
   }
 }
 
+// Calls visit(e, i, M) with M = integral of grad(N_i) grad(N_i)^T over element
+// e, for each of its nodes i.
+template <ElementKind kKind, class Visitor>
+void VisitOwnProducts(const Mesh& mesh, const Visitor& visit) {
+  constexpr int kDimension = ElementSizes<kKind>::kDimension;
+  constexpr int kNodes = ElementSizes<kKind>::kNodes;
+  std::array<Frame<kKind>, kNodes> products;
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    products.fill(Frame<kKind>::Zero());
+    VisitPoints<kKind>(
+        mesh, e, StiffnessRule<kKind>(), [&](const auto& point, const auto&) {
+          for (int i = 0; i < kNodes; ++i) {
+            const Eigen::Matrix<double, kDimension, 1> scaled =
+                point.volume * point.gradient.col(i);
+            products[i].noalias() += scaled * point.gradient.col(i).transpose();
+          }
+        });
+    for (int i = 0; i < kNodes; ++i) {
+      visit(e, i, products[i]);
+    }
+  }
+}
+
+// K_ii,ab = sum_cd M_cd C_(ac)(bd), of M as seen in the frame.
+template <ElementKind kKind>
+void AddDiagonalOfKind(const Mesh& mesh,
+                       const std::vector<int>& material_of_element,
+                       const MaterialFrames& frames,
+                       const std::vector<Eigen::MatrixXd>& tangents,
+                       Eigen::MatrixXd& blocks) {
+  constexpr int kDimension = ElementSizes<kKind>::kDimension;
+  VisitOwnProducts<kKind>(mesh, [&](Eigen::Index e, int i,
+                                    const Frame<kKind>& products) {
+    const int material = material_of_element[e];
+    const Frame<kKind> frame = frames.Of<kDimension>(material, e);
+    const Frame<kKind> seen = frame.transpose() * products * frame;
+    Frame<kKind> block = Frame<kKind>::Zero();
+    for (int c = 0; c < kDimension; ++c) {
+      for (int d = 0; d < kDimension; ++d) {
+        block += seen(c, d) * tangents[material].block<kDimension, kDimension>(
+                                  kDimension * c, kDimension * d);
+      }
+    }
+    blocks.middleCols<kDimension>(kDimension *
+                                  Eigen::Index(mesh.elements(i, e))) +=
+        frame * block * frame.transpose();
+  });
+}
+
+// c_0 H_ii + c_1 J_ii of StiffnessBlockH and StiffnessBlockJ.
+template <ElementKind kKind>
+void AddIsotropicDiagonalOfKind(const Mesh& mesh,
+                                const Eigen::Matrix2Xd& coefficients,
+                                Eigen::MatrixXd& blocks) {
+  constexpr int kDimension = ElementSizes<kKind>::kDimension;
+  const double share = ShearShareOfJ(mesh.section.model);
+  VisitOwnProducts<kKind>(
+      mesh, [&](Eigen::Index e, int i, const Frame<kKind>& products) {
+        const double of_h = coefficients(0, e) - share * coefficients(1, e);
+        auto block = blocks.middleCols<kDimension>(
+            kDimension * Eigen::Index(mesh.elements(i, e)));
+        block += (of_h / 2 + coefficients(1, e)) * products;
+        block.diagonal().array() += of_h / 2 * products.trace();
+      });
+}
+
 template <ElementKind kKind>
 Eigen::VectorXd EnergyDensityOfKind(
     const Mesh& mesh, const std::vector<int>& material_of_element,
@@ -188,6 +257,29 @@ Eigen::MatrixXd StiffnessBlocks(const Mesh& mesh, const NodeGraph& graph,
   VisitElementKind(mesh.kind, [&](auto kind) {
     AddBlocksOfKind<kind>(mesh, graph, material_of_element, frames, tangents,
                           blocks);
+  });
+  return blocks;
+}
+
+Eigen::MatrixXd DiagonalStiffnessBlocks(const Mesh& mesh,
+                                        const Eigen::Matrix2Xd& coefficients) {
+  Eigen::MatrixXd blocks =
+      Eigen::MatrixXd::Zero(mesh.Dimension(), mesh.NumDofs());
+  VisitElementKind(mesh.kind, [&](auto kind) {
+    AddIsotropicDiagonalOfKind<kind>(mesh, coefficients, blocks);
+  });
+  return blocks;
+}
+
+Eigen::MatrixXd DiagonalStiffnessBlocks(
+    const Mesh& mesh, const std::vector<int>& material_of_element,
+    const MaterialFrames& frames,
+    const std::vector<Eigen::MatrixXd>& tangents) {
+  Eigen::MatrixXd blocks =
+      Eigen::MatrixXd::Zero(mesh.Dimension(), mesh.NumDofs());
+  VisitElementKind(mesh.kind, [&](auto kind) {
+    AddDiagonalOfKind<kind>(mesh, material_of_element, frames, tangents,
+                            blocks);
   });
   return blocks;
 }

@@ -35,6 +35,17 @@ Eigen::MatrixXd StiffnessBlocks(const Mesh& mesh, const NodeGraph& graph,
                                 const MaterialFrames& frames,
                                 const std::vector<Eigen::MatrixXd>& tangents);
 
+/// The blocks K_ii of StiffnessBlocks alone, of all nodes side by side:
+/// dimension x num_dofs.  One element pass, without a graph.
+Eigen::MatrixXd DiagonalStiffnessBlocks(
+    const Mesh& mesh, const std::vector<int>& material_of_element,
+    const MaterialFrames& frames, const std::vector<Eigen::MatrixXd>& tangents);
+
+/// The same of isotropic materials, from the coefficients of H and of J in each
+/// element (2 x num_elements), in a third of the time.
+Eigen::MatrixXd DiagonalStiffnessBlocks(const Mesh& mesh,
+                                        const Eigen::Matrix2Xd& coefficients);
+
 /// The strain energy of each element over its volume, of a displacement of
 /// num_dofs values and one tangent C of each material: the mean of
 /// grad u : C : grad u / 2.  num_elements values [pressure].

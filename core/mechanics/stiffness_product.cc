@@ -15,13 +15,13 @@ namespace {
 // All kinds but linear tetrahedra.
 void MultiplyOtherKinds(const Mesh& mesh, const Eigen::MatrixXd& displacement,
                         StiffnessProducts& products) {
+  if (mesh.kind == ElementKind::kTet10) {
+    MultiplyQuadraticTetrahedra(mesh, displacement, products);
+    return;
+  }
   products.h.setZero(displacement.rows(), displacement.cols());
   products.j.setZero(displacement.rows(), displacement.cols());
-  if (mesh.kind == ElementKind::kTet10) {
-    AddQuadraticStrainProducts(mesh, displacement, products.h, products.j);
-  } else {
-    AddStrainProducts(mesh, displacement, products.h, products.j);
-  }
+  AddStrainProducts(mesh, displacement, products.h, products.j);
   products.j -= ShearShareOfJ(mesh.section.model) * products.h;
 }
 

@@ -31,7 +31,7 @@ struct StiffnessProducts {
 ///
 /// Precondition: a valid mesh (ValidateMesh) and num_dofs rows.
 /// Cost: one element pass, O(num_elements * num_columns) time (for quadratic
-/// tetrahedra about 20 times that for linear ones).  Single-threaded; the
+/// tetrahedra about four times that for linear ones).  Single-threaded; the
 /// same input gives the same bits on the same kind of processor.
 StiffnessProducts MultiplyStiffnessBasis(const Mesh& mesh,
                                          const Eigen::MatrixXd& displacement);

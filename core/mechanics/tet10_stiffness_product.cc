@@ -1,57 +1,462 @@
 #include "elastimate/core/mechanics/tet10_stiffness_product.h"
 
-#include "elastimate/core/mesh/shape_functions.h"
+#include <hwy/aligned_allocator.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <new>
+
 #include "elastimate/core/mesh/tet10.h"
 
+// The rest of this file is compiled once for each kind of processor, and the
+// best one that the program finds is used.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE \
+  "elastimate/core/mechanics/tet10_stiffness_product.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h.
+#include <hwy/highway.h>
+
+#include "elastimate/core/mechanics/vector_lanes-inl.h"
+
+#ifndef ELASTIMATE_CORE_QUADRATIC_PASS_
+#define ELASTIMATE_CORE_QUADRATIC_PASS_
 namespace elastimate {
 namespace {
 
-// One column of one element.
-void AddColumn(const Mesh& mesh, Eigen::Index e,
-               const TetrahedronGradients& element, const double* q, double* a,
-               double* p) {
-  const Eigen::Matrix<double, 3, 4>& g = element.gradient;
-  const QuadraticDisplacementGradient gradient(
-      GatherNodes<ElementKind::kTet10>(mesh, e, q), g);
-  const auto node = [&](double* values, int i) {
-    return Eigen::Map<Eigen::Vector3d>(values +
-                                       3 * Eigen::Index(mesh.elements(i, e)));
-  };
-  const Eigen::Matrix3d mean =
-      (element.volume / 2) * (gradient.mean + gradient.mean.transpose());
-  const double mean_trace = mean.trace();
-  std::array<Eigen::Matrix3d, 4> t;
-  std::array<double, 4> trace;
-  for (int i = 0; i < 4; ++i) {
-    t[i] = 0.8 * mean +
-           (element.volume / 10) *
-               (gradient.at_vertex[i] + gradient.at_vertex[i].transpose());
-    trace[i] = t[i].trace();
-    node(a, i) += (t[i] - mean) * g.col(i);
-    node(p, i) += (trace[i] - mean_trace) * g.col(i);
+constexpr std::ptrdiff_t kMostLanes = 8;
+
+// Four values each, of which the last is zero, are in the record of a node its
+// displacement, the sum at it, and that of the second product, if there are
+// two.
+constexpr std::ptrdiff_t kFour = 4;
+constexpr std::ptrdiff_t kSizeForSum = 2 * kFour;
+constexpr std::ptrdiff_t kSizeForProducts = 3 * kFour;
+
+// For one column: to share the geometry of an element among several ones saves
+// less than their records cost that do not fit into the cache together.
+struct QuadraticPass {
+  const int* elements;  // 10 x num_elements.
+  std::ptrdiff_t num_elements;
+  // 3 x num_nodes.  Four values are read at each vertex, behind which there are
+  // nodes in the middle of edges.
+  const double* positions;
+  // Null: the products are a = integral of e grad(N), and p = integral of
+  // tr(e) grad(N) behind it.  Else their sum with these coefficients is the
+  // only one; there are as many more of them, of any value, as there are lanes.
+  const double* coefficients_of_a;
+  const double* coefficients_of_p;
+  double* records;
+};
+
+}  // namespace
+}  // namespace elastimate
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace elastimate {
+namespace HWY_NAMESPACE {
+namespace {
+
+// The records of the first nodes of as many elements as there are lanes, of
+// this size.  Lanes beyond the last element repeat it.
+template <int kNodes, class Value>
+struct NodeRecords {
+  Value* record[kNodes][kLanes];
+
+  HWY_INLINE NodeRecords(const int* elements, std::ptrdiff_t count,
+                         Value* records, std::ptrdiff_t size) {
+    for (std::ptrdiff_t lane = 0; lane < kLanes; ++lane) {
+      const int* const nodes = elements + 10 * std::min(lane, count - 1);
+      for (int i = 0; i < kNodes; ++i) {
+        record[i][lane] = records + size * nodes[i];
+      }
+    }
   }
-  for (int i = 0; i < 6; ++i) {
-    const int k = kTetrahedronEdges[i][0];
-    const int l = kTetrahedronEdges[i][1];
-    node(a, 4 + i) += t[k] * g.col(l) + t[l] * g.col(k);
-    node(p, 4 + i) += trace[k] * g.col(l) + trace[l] * g.col(k);
+};
+
+using Corners = NodeRecords<4, const double>;
+using Nodes = NodeRecords<10, double>;
+
+#if ELASTIMATE_HAS_BATCHES
+
+// The vectors of node i minus those of node 0.
+template <class Records>
+HWY_INLINE Vector Difference(const Records& nodes, int i) {
+  const auto row = [&](std::size_t k) HWY_ATTR {
+    return hn::Sub(LoadRow(nodes.record[i], k, 0),
+                   LoadRow(nodes.record[0], k, 0));
+  };
+  const Rows components = Transpose({row(0), row(1), row(2), row(3)});
+  return {components.row0, components.row1, components.row2};
+}
+
+template <class V>
+HWY_INLINE void AddFour(V v, double* p) {
+  const hn::DFromV<V> d;
+  hn::Store(hn::Add(hn::Load(d, p), v), d, p);
+}
+
+// One element after the other: they may share nodes.
+HWY_INLINE void AddToNode(const Vector& v, double* const (&records)[kLanes],
+                          std::ptrdiff_t offset) {
+  const Rows rows = Transpose({v.x, v.y, v.z, hn::Zero(Lanes())});
+#if HWY_CAP_GE512
+  const hn::Half<Lanes> half;
+  AddFour(hn::LowerHalf(half, rows.row0), records[0] + offset);
+  AddFour(hn::LowerHalf(half, rows.row1), records[1] + offset);
+  AddFour(hn::LowerHalf(half, rows.row2), records[2] + offset);
+  AddFour(hn::LowerHalf(half, rows.row3), records[3] + offset);
+  AddFour(hn::UpperHalf(half, rows.row0), records[4] + offset);
+  AddFour(hn::UpperHalf(half, rows.row1), records[5] + offset);
+  AddFour(hn::UpperHalf(half, rows.row2), records[6] + offset);
+  AddFour(hn::UpperHalf(half, rows.row3), records[7] + offset);
+#else
+  AddFour(rows.row0, records[0] + offset);
+  AddFour(rows.row1, records[1] + offset);
+  AddFour(rows.row2, records[2] + offset);
+  AddFour(rows.row3, records[3] + offset);
+#endif
+}
+
+#else
+
+HWY_INLINE Vector LoadVector(const double* p) {
+  const Lanes d;
+  return {hn::Load(d, p), hn::Load(d, p + 1), hn::Load(d, p + 2)};
+}
+
+template <class Records>
+HWY_INLINE Vector Difference(const Records& nodes, int i) {
+  return LoadVector(nodes.record[i][0]) - LoadVector(nodes.record[0][0]);
+}
+
+HWY_INLINE void AddToNode(const Vector& v, double* const (&records)[kLanes],
+                          std::ptrdiff_t offset) {
+  const Lanes d;
+  double* const p = records[0] + offset;
+  const Vector sum = LoadVector(p) + v;
+  hn::Store(sum.x, d, p);
+  hn::Store(sum.y, d, p + 1);
+  hn::Store(sum.z, d, p + 2);
+}
+
+#endif
+
+// The gradients of the barycentric coordinates, and V / 20.
+struct Barycentric {
+  Vector g0, g1, g2, g3;
+  Values mass;
+
+  HWY_INLINE Barycentric(const Corners& nodes, std::ptrdiff_t count) {
+    const Lanes d;
+    const Vector e1 = Difference(nodes, 1);
+    const Vector e2 = Difference(nodes, 2);
+    const Vector e3 = Difference(nodes, 3);
+    const Vector c1 = Cross(e2, e3);
+    const Values determinant = MultiplyAdd3(e1.x, c1.x, e1.y, c1.y, e1.z, c1.z);
+    const Values inverse = hn::Div(hn::Set(d, 1.0), determinant);
+    g1 = inverse * c1;
+    g2 = inverse * Cross(e3, e1);
+    g3 = inverse * Cross(e1, e2);
+    g0 = Vector{hn::Zero(d), hn::Zero(d), hn::Zero(d)} - (g1 + g2 + g3);
+    mass = hn::Mul(hn::Set(d, 1.0 / 120), hn::Abs(determinant));
+    if (count < kLanes) {
+      // Repeated elements add nothing.
+      mass = hn::IfThenElseZero(hn::FirstN(d, count), mass);
+    }
+  }
+};
+
+// A symmetric matrix.
+struct Symmetric {
+  Values xx, yy, zz, xy, xz, yz;
+
+  HWY_INLINE Vector Times(const Vector& g) const {
+    return {MultiplyAdd3(xx, g.x, xy, g.y, xz, g.z),
+            MultiplyAdd3(xy, g.x, yy, g.y, yz, g.z),
+            MultiplyAdd3(xz, g.x, yz, g.y, zz, g.z)};
+  }
+};
+
+HWY_INLINE Symmetric operator+(const Symmetric& a, const Symmetric& b) {
+  return {hn::Add(a.xx, b.xx), hn::Add(a.yy, b.yy), hn::Add(a.zz, b.zz),
+          hn::Add(a.xy, b.xy), hn::Add(a.xz, b.xz), hn::Add(a.yz, b.yz)};
+}
+
+HWY_INLINE Symmetric operator*(Values a, const Symmetric& b) {
+  return {hn::Mul(a, b.xx), hn::Mul(a, b.yy), hn::Mul(a, b.zz),
+          hn::Mul(a, b.xy), hn::Mul(a, b.xz), hn::Mul(a, b.yz)};
+}
+
+// A multiple of the unit matrix.
+struct Scalar {
+  Values value;
+
+  HWY_INLINE Vector Times(const Vector& g) const { return value * g; }
+};
+
+HWY_INLINE Scalar operator+(const Scalar& a, const Scalar& b) {
+  return {hn::Add(a.value, b.value)};
+}
+
+HWY_INLINE Scalar operator*(Values a, const Scalar& b) {
+  return {hn::Mul(a, b.value)};
+}
+
+// sym(b1 g1^T + b2 g2^T + b3 g3^T).
+HWY_INLINE Symmetric StrainOf(const Barycentric& g, const Vector& b1,
+                              const Vector& b2, const Vector& b3) {
+  const auto on = [&](Values a1, Values c1, Values a2, Values c2, Values a3,
+                      Values c3, Values start) HWY_ATTR {
+    return hn::MulAdd(a1, c1, hn::MulAdd(a2, c2, hn::MulAdd(a3, c3, start)));
+  };
+  const Values half = hn::Set(Lanes(), 0.5);
+  const Vector& g1 = g.g1;
+  const Vector& g2 = g.g2;
+  const Vector& g3 = g.g3;
+  return {MultiplyAdd3(b1.x, g1.x, b2.x, g2.x, b3.x, g3.x),
+          MultiplyAdd3(b1.y, g1.y, b2.y, g2.y, b3.y, g3.y),
+          MultiplyAdd3(b1.z, g1.z, b2.z, g2.z, b3.z, g3.z),
+          hn::Mul(half, on(b1.x, g1.y, b2.x, g2.y, b3.x, g3.y,
+                           MultiplyAdd3(b1.y, g1.x, b2.y, g2.x, b3.y, g3.x))),
+          hn::Mul(half, on(b1.x, g1.z, b2.x, g2.z, b3.x, g3.z,
+                           MultiplyAdd3(b1.z, g1.x, b2.z, g2.x, b3.z, g3.x))),
+          hn::Mul(half, on(b1.y, g1.z, b2.y, g2.z, b3.y, g3.z,
+                           MultiplyAdd3(b1.z, g1.y, b2.z, g2.y, b3.z, g3.y)))};
+}
+
+HWY_INLINE Values TraceOf(const Symmetric& e) {
+  return hn::Add(hn::Add(e.xx, e.yy), e.zz);
+}
+
+// The strains at the four vertices.
+struct VertexStrains {
+  Symmetric e0, e1, e2, e3;
+
+  HWY_INLINE VertexStrains(const Nodes& nodes, const Barycentric& g) {
+    const Values three = hn::Set(Lanes(), 3.0);
+    const Values four = hn::Set(Lanes(), 4.0);
+    // Four times one minus the other.
+    const auto bent = [&](const Vector& middle, const Vector& end) HWY_ATTR {
+      return Vector{hn::MulSub(four, middle.x, end.x),
+                    hn::MulSub(four, middle.y, end.y),
+                    hn::MulSub(four, middle.z, end.z)};
+    };
+    const Vector w1 = Difference(nodes, 1);
+    const Vector w2 = Difference(nodes, 2);
+    const Vector w3 = Difference(nodes, 3);
+    const Vector w01 = Difference(nodes, kMidEdgeNodes[0][1]);
+    const Vector w02 = Difference(nodes, kMidEdgeNodes[0][2]);
+    const Vector w03 = Difference(nodes, kMidEdgeNodes[0][3]);
+    const Vector w12 = Difference(nodes, kMidEdgeNodes[1][2]);
+    const Vector w13 = Difference(nodes, kMidEdgeNodes[1][3]);
+    const Vector w23 = Difference(nodes, kMidEdgeNodes[2][3]);
+    // Without vertex 0, by g0 = -(g1 + g2 + g3): its coefficient is taken from
+    // those of the others, and is 4 w_v0 at vertex v, which is 0 at vertex 0.
+    e0 = StrainOf(g, bent(w01, w1), bent(w02, w2), bent(w03, w3));
+    e1 = StrainOf(g, three * w1 - four * w01, bent(w12 - w01, w2),
+                  bent(w13 - w01, w3));
+    e2 = StrainOf(g, bent(w12 - w02, w1), three * w2 - four * w02,
+                  bent(w23 - w02, w3));
+    e3 = StrainOf(g, bent(w13 - w03, w1), bent(w23 - w03, w2),
+                  three * w3 - four * w03);
+  }
+};
+
+// Adds the forces of the stresses at the vertices to the records of the nodes.
+template <class Stress>
+HWY_INLINE void AddForces(const Nodes& nodes, std::ptrdiff_t offset,
+                          const Barycentric& g, const Stress& s0,
+                          const Stress& s1, const Stress& s2,
+                          const Stress& s3) {
+  const Stress sum = s0 + s1 + s2 + s3;
+  // Four times tau.
+  const Values mass = hn::Mul(hn::Set(Lanes(), 4.0), g.mass);
+  const Stress t0 = mass * (s0 + sum);
+  const Stress t1 = mass * (s1 + sum);
+  const Stress t2 = mass * (s2 + sum);
+  const Stress t3 = mass * (s3 + sum);
+  // The sum of tau: that of the four (s + sum) is five times `sum`.
+  const Stress all = hn::Mul(hn::Set(Lanes(), 5.0), g.mass) * sum;
+  const auto add = [&](int i, const Vector& v)
+                       HWY_ATTR { AddToNode(v, nodes.record[i], offset); };
+  add(0, t0.Times(g.g0) - all.Times(g.g0));
+  add(1, t1.Times(g.g1) - all.Times(g.g1));
+  add(2, t2.Times(g.g2) - all.Times(g.g2));
+  add(3, t3.Times(g.g3) - all.Times(g.g3));
+  add(kMidEdgeNodes[0][1], t0.Times(g.g1) + t1.Times(g.g0));
+  add(kMidEdgeNodes[1][2], t1.Times(g.g2) + t2.Times(g.g1));
+  add(kMidEdgeNodes[2][0], t2.Times(g.g0) + t0.Times(g.g2));
+  add(kMidEdgeNodes[0][3], t0.Times(g.g3) + t3.Times(g.g0));
+  add(kMidEdgeNodes[1][3], t1.Times(g.g3) + t3.Times(g.g1));
+  add(kMidEdgeNodes[2][3], t2.Times(g.g3) + t3.Times(g.g2));
+}
+
+// a e + p tr(e) I.
+HWY_INLINE Symmetric StressOf(const Symmetric& e, Values a, Values p) {
+  const Values pressure = hn::Mul(p, TraceOf(e));
+  return {hn::MulAdd(a, e.xx, pressure),
+          hn::MulAdd(a, e.yy, pressure),
+          hn::MulAdd(a, e.zz, pressure),
+          hn::Mul(a, e.xy),
+          hn::Mul(a, e.xz),
+          hn::Mul(a, e.yz)};
+}
+
+// `count` elements from the first on, an element in each lane.
+template <bool kIsSum>
+HWY_INLINE void AddElements(const QuadraticPass& pass, std::ptrdiff_t first,
+                            std::ptrdiff_t count) {
+  const int* const elements = pass.elements + 10 * first;
+  const Barycentric g(Corners(elements, count, pass.positions, 3), count);
+  const Lanes d;
+  Values a = hn::Zero(d);
+  Values p = hn::Zero(d);
+  if (kIsSum) {
+    a = hn::LoadU(d, pass.coefficients_of_a + first);
+    p = hn::LoadU(d, pass.coefficients_of_p + first);
+  }
+  const Nodes nodes(elements, count, pass.records,
+                    kIsSum ? kSizeForSum : kSizeForProducts);
+  const VertexStrains e(nodes, g);
+  if (kIsSum) {
+    AddForces(nodes, kFour, g, StressOf(e.e0, a, p), StressOf(e.e1, a, p),
+              StressOf(e.e2, a, p), StressOf(e.e3, a, p));
+  } else {
+    AddForces(nodes, kFour, g, e.e0, e.e1, e.e2, e.e3);
+    AddForces(nodes, 2 * kFour, g, Scalar{TraceOf(e.e0)}, Scalar{TraceOf(e.e1)},
+              Scalar{TraceOf(e.e2)}, Scalar{TraceOf(e.e3)});
+  }
+}
+
+template <bool kIsSum>
+void AddAllElements(const QuadraticPass& pass) {
+  std::ptrdiff_t first = 0;
+  for (; first + kLanes <= pass.num_elements; first += kLanes) {
+    AddElements<kIsSum>(pass, first, kLanes);
+  }
+  if (first < pass.num_elements) {
+    AddElements<kIsSum>(pass, first, pass.num_elements - first);
+  }
+}
+
+void RunQuadraticPass(const QuadraticPass& pass) {
+  if (pass.coefficients_of_a != nullptr) {
+    AddAllElements<true>(pass);
+  } else {
+    AddAllElements<false>(pass);
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace elastimate
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace elastimate {
+namespace {
+
+HWY_EXPORT(RunQuadraticPass);
+
+using Records = hwy::AlignedFreeUniquePtr<double[]>;
+
+Records AllocateRecords(Eigen::Index size) {
+  Records records = hwy::AllocateAligned<double>(std::size_t(size));
+  if (!records) {
+    throw std::bad_alloc();
+  }
+  return records;
+}
+
+// The values of each node in the first four of its record, and zeros.  Loops of
+// a length that the compiler knows become vectors rather than calls.
+template <Eigen::Index kSize>
+void FillRecords(const double* values, Eigen::Index num_nodes,
+                 double* records) {
+  for (Eigen::Index i = 0; i < num_nodes; ++i, records += kSize, values += 3) {
+    const double x = values[0];
+    const double y = values[1];
+    const double z = values[2];
+    records[0] = x;
+    records[1] = y;
+    records[2] = z;
+    for (Eigen::Index k = 3; k < kSize; ++k) {
+      records[k] = 0;
+    }
+  }
+}
+
+// Calls collect(column, records) for one column after the other.
+template <Eigen::Index kSize, class Collect>
+void RunInColumns(const Mesh& mesh, const double* coefficients_of_a,
+                  const double* coefficients_of_p,
+                  const Eigen::MatrixXd& displacement, const Collect& collect) {
+  const Eigen::Index num_nodes = mesh.NumNodes();
+  const Records records = AllocateRecords(kSize * num_nodes);
+  QuadraticPass pass;
+  pass.elements = mesh.elements.data();
+  pass.num_elements = mesh.NumElements();
+  pass.positions = mesh.nodes.data();
+  pass.coefficients_of_a = coefficients_of_a;
+  pass.coefficients_of_p = coefficients_of_p;
+  pass.records = records.get();
+  for (Eigen::Index column = 0; column < displacement.cols(); ++column) {
+    FillRecords<kSize>(displacement.col(column).data(), num_nodes,
+                       records.get());
+    HWY_DYNAMIC_DISPATCH(RunQuadraticPass)(pass);
+    collect(column, records.get());
   }
 }
 
 }  // namespace
 
-void AddQuadraticStrainProducts(const Mesh& mesh,
-                                const Eigen::MatrixXd& displacement,
-                                Eigen::MatrixXd& a, Eigen::MatrixXd& p) {
-  const Eigen::Index rows = displacement.rows();
-  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
-    const TetrahedronGradients element(GatherTetrahedron(mesh, e));
-    for (Eigen::Index column = 0; column < displacement.cols(); ++column) {
-      const Eigen::Index offset = column * rows;
-      AddColumn(mesh, e, element, displacement.data() + offset,
-                a.data() + offset, p.data() + offset);
-    }
-  }
+void MultiplyQuadraticTetrahedra(const Mesh& mesh,
+                                 const Eigen::MatrixXd& displacement,
+                                 StiffnessProducts& products) {
+  assert(mesh.kind == ElementKind::kTet10);
+  products.h.resize(displacement.rows(), displacement.cols());
+  products.j.resize(displacement.rows(), displacement.cols());
+  RunInColumns<kSizeForProducts>(
+      mesh, nullptr, nullptr, displacement,
+      [&](Eigen::Index column, const double* record) {
+        double* h = products.h.col(column).data();
+        double* j = products.j.col(column).data();
+        for (Eigen::Index i = 0; i < mesh.NumNodes();
+             ++i, record += kSizeForProducts, h += 3, j += 3) {
+          for (int k = 0; k < 3; ++k) {
+            const double a = record[kFour + k];
+            h[k] = a;
+            j[k] = record[2 * kFour + k] - 2 * a;
+          }
+        }
+      });
+}
+
+Eigen::MatrixXd MultiplyQuadraticTetrahedra(
+    const Mesh& mesh, const Eigen::Matrix2Xd& coefficients,
+    const Eigen::MatrixXd& displacement) {
+  assert(mesh.kind == ElementKind::kTet10);
+  // J q = p - 2 a.
+  Eigen::VectorXd of_a = Eigen::VectorXd::Zero(mesh.NumElements() + kMostLanes);
+  Eigen::VectorXd of_p = of_a;
+  of_a.head(mesh.NumElements()) = coefficients.row(0) - 2 * coefficients.row(1);
+  of_p.head(mesh.NumElements()) = coefficients.row(1);
+  Eigen::MatrixXd forces(displacement.rows(), displacement.cols());
+  RunInColumns<kSizeForSum>(mesh, of_a.data(), of_p.data(), displacement,
+                            [&](Eigen::Index column, const double* record) {
+                              double* force = forces.col(column).data();
+                              for (Eigen::Index i = 0; i < mesh.NumNodes();
+                                   ++i, record += kSizeForSum, force += 3) {
+                                for (int k = 0; k < 3; ++k) {
+                                  force[k] = record[kFour + k];
+                                }
+                              }
+                            });
+  return forces;
 }
 
 }  // namespace elastimate
+#endif

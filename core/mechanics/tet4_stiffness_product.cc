@@ -19,6 +19,8 @@
 // After foreach_target.h.
 #include <hwy/highway.h>
 
+#include "elastimate/core/mechanics/vector_lanes-inl.h"
+
 #ifndef ELASTIMATE_CORE_NODE_RECORDS_
 #define ELASTIMATE_CORE_NODE_RECORDS_
 namespace elastimate {
@@ -53,18 +55,6 @@ namespace HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Fewer than four lanes are not worth the transposition.
-#if HWY_CAP_GE256 && !HWY_HAVE_SCALABLE
-#define ELASTIMATE_HAS_BATCHES 1
-using Lanes = hn::CappedTag<double, 8>;
-#else
-#define ELASTIMATE_HAS_BATCHES 0
-using Lanes = hn::CappedTag<double, 1>;
-#endif
-
-using Values = hn::Vec<Lanes>;
-constexpr std::ptrdiff_t kLanes = hn::MaxLanes(Lanes());
-
 // Where the values of a node are in its record, counted in doubles: position,
 // displacement, and the sums of a and of p.  Component i of column k of these
 // three is kColumns i + k after their first.
@@ -84,33 +74,6 @@ struct SeveralColumns {
   static constexpr std::ptrdiff_t kSize = kP + 3 * kLanes;
   static constexpr std::ptrdiff_t kColumns = kLanes;
 };
-
-struct Vector {
-  Values x, y, z;
-};
-
-HWY_INLINE Vector operator-(const Vector& a, const Vector& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-
-HWY_INLINE Vector operator+(const Vector& a, const Vector& b) {
-  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
-
-HWY_INLINE Vector operator*(Values a, const Vector& b) {
-  return {hn::Mul(a, b.x), hn::Mul(a, b.y), hn::Mul(a, b.z)};
-}
-
-HWY_INLINE Values MultiplyAdd3(Values a, Values b, Values c, Values d, Values e,
-                               Values f) {
-  return hn::MulAdd(a, b, hn::MulAdd(c, d, hn::Mul(e, f)));
-}
-
-HWY_INLINE Vector Cross(const Vector& a, const Vector& b) {
-  return {hn::MulSub(a.y, b.z, hn::Mul(a.z, b.y)),
-          hn::MulSub(a.z, b.x, hn::Mul(a.x, b.z)),
-          hn::MulSub(a.x, b.y, hn::Mul(a.y, b.x))};
-}
 
 struct Geometry {
   Vector c1, c2, c3;
@@ -195,51 +158,6 @@ inline std::uintptr_t OriginOf(const double* records, std::ptrdiff_t first_node,
 }
 
 #if ELASTIMATE_HAS_BATCHES
-
-// Each group of four lanes of the rows is a row of a 4 x 4 matrix.
-struct Rows {
-  Values row0, row1, row2, row3;
-};
-
-// The first, and the last, two of each four lanes of `low`, then of `high`.
-HWY_INLINE Values LowerPairs(Values high, Values low) {
-#if HWY_CAP_GE512
-  return hn::OddEvenBlocks(hn::SwapAdjacentBlocks(high), low);
-#else
-  return hn::ConcatLowerLower(Lanes(), high, low);
-#endif
-}
-
-HWY_INLINE Values UpperPairs(Values high, Values low) {
-#if HWY_CAP_GE512
-  return hn::OddEvenBlocks(high, hn::SwapAdjacentBlocks(low));
-#else
-  return hn::ConcatUpperUpper(Lanes(), high, low);
-#endif
-}
-
-HWY_INLINE Rows Transpose(const Rows& in) {
-  const Lanes d;
-  const Values low01 = hn::InterleaveLower(d, in.row0, in.row1);
-  const Values high01 = hn::InterleaveUpper(d, in.row0, in.row1);
-  const Values low23 = hn::InterleaveLower(d, in.row2, in.row3);
-  const Values high23 = hn::InterleaveUpper(d, in.row2, in.row3);
-  return {LowerPairs(low23, low01), LowerPairs(high23, high01),
-          UpperPairs(low23, low01), UpperPairs(high23, high01)};
-}
-
-// The four values at `offset` in the records of a corner in lane `row` and, in
-// vectors of eight, in lane `row` + 4.
-HWY_INLINE Values LoadRow(double* const (&records)[kLanes], std::size_t row,
-                          std::ptrdiff_t offset) {
-#if HWY_CAP_GE512
-  const hn::Half<Lanes> half;
-  return hn::Combine(Lanes(), hn::Load(half, records[row + 4] + offset),
-                     hn::Load(half, records[row] + offset));
-#else
-  return hn::Load(Lanes(), records[row] + offset);
-#endif
-}
 
 // The vectors at `offset` in the records of corner i minus those of corner 0,
 // an element in each lane.
@@ -637,8 +555,6 @@ std::ptrdiff_t RecordSize(std::ptrdiff_t num_columns) {
   return num_columns == 1 ? OneColumn::kSize
                           : std::max(OneColumn::kSize, SeveralColumns::kSize);
 }
-
-#undef ELASTIMATE_HAS_BATCHES
 
 }  // namespace
 }  // namespace HWY_NAMESPACE

@@ -61,29 +61,64 @@ FinerNodes::FinerNodes(const Mesh& mesh, const Mesh& finer)
 // By rows rather than as products of matrices, which Eigen spreads over threads
 // that wait for each other longer than they work.
 
+namespace {
+
+template <int kDimension>
+void InterpolateColumn(const FinerNodes::Weights& weights,
+                       const double* at_nodes, double* at_mid_edges) {
+  using Values = Eigen::Matrix<double, kDimension, 1>;
+  for (Eigen::Index row = 0; row < weights.rows(); ++row) {
+    Values sum = Values::Zero();
+    for (FinerNodes::Weights::InnerIterator weight(weights, row); weight;
+         ++weight) {
+      sum += weight.value() *
+             Eigen::Map<const Values>(at_nodes + kDimension * weight.col());
+    }
+    Eigen::Map<Values>(at_mid_edges + kDimension * row) = sum;
+  }
+}
+
+template <int kDimension>
+void RestrictColumn(const FinerNodes::Weights& weights,
+                    const double* at_mid_edges, double* on_nodes) {
+  using Values = Eigen::Matrix<double, kDimension, 1>;
+  for (Eigen::Index row = 0; row < weights.rows(); ++row) {
+    const Values of_row =
+        Eigen::Map<const Values>(at_mid_edges + kDimension * row);
+    for (FinerNodes::Weights::InnerIterator weight(weights, row); weight;
+         ++weight) {
+      Eigen::Map<Values>(on_nodes + kDimension * weight.col()) +=
+          weight.value() * of_row;
+    }
+  }
+}
+
+}  // namespace
+
 Eigen::MatrixXd FinerNodes::Interpolate(const Eigen::MatrixXd& at_nodes) const {
-  Eigen::MatrixXd all(dimension_ * (NumNodes() + NumMidEdges()),
-                      at_nodes.cols());
-  all << at_nodes,
-      Eigen::MatrixXd::Zero(dimension_ * NumMidEdges(), at_nodes.cols());
-  for (Eigen::Index row = 0; row < NumMidEdges(); ++row) {
-    auto of_row = all.middleRows(dimension_ * (NumNodes() + row), dimension_);
-    for (Weights::InnerIterator weight(weights_, row); weight; ++weight) {
-      of_row += weight.value() *
-                at_nodes.middleRows(dimension_ * weight.col(), dimension_);
+  const Eigen::Index first = dimension_ * NumNodes();
+  Eigen::MatrixXd all(first + dimension_ * NumMidEdges(), at_nodes.cols());
+  all.topRows(first) = at_nodes;
+  for (Eigen::Index k = 0; k < all.cols(); ++k) {
+    double* const values = all.col(k).data();
+    if (dimension_ == 3) {
+      InterpolateColumn<3>(weights_, values, values + first);
+    } else {
+      InterpolateColumn<2>(weights_, values, values + first);
     }
   }
   return all;
 }
 
 Eigen::MatrixXd FinerNodes::Restrict(const Eigen::MatrixXd& forces) const {
-  Eigen::MatrixXd on_nodes = forces.topRows(dimension_ * NumNodes());
-  for (Eigen::Index row = 0; row < NumMidEdges(); ++row) {
-    const auto of_row =
-        forces.middleRows(dimension_ * (NumNodes() + row), dimension_);
-    for (Weights::InnerIterator weight(weights_, row); weight; ++weight) {
-      on_nodes.middleRows(dimension_ * weight.col(), dimension_) +=
-          weight.value() * of_row;
+  const Eigen::Index first = dimension_ * NumNodes();
+  Eigen::MatrixXd on_nodes = forces.topRows(first);
+  for (Eigen::Index k = 0; k < forces.cols(); ++k) {
+    const double* const at_mid_edges = forces.col(k).data() + first;
+    if (dimension_ == 3) {
+      RestrictColumn<3>(weights_, at_mid_edges, on_nodes.col(k).data());
+    } else {
+      RestrictColumn<2>(weights_, at_mid_edges, on_nodes.col(k).data());
     }
   }
   return on_nodes;

@@ -93,6 +93,11 @@ TEST_P(AnisotropicForces, AreThoseOfTheTextbookInTheirFrame) {
                 1e-12 * stiffness.norm());
     }
   }
+  const Eigen::MatrixXd diagonal = forces.DiagonalBlocks(moduli);
+  for (Eigen::Index i = 0; i < mesh_.NumDofs(); i += d) {
+    EXPECT_LT((diagonal.middleCols(i, d) - stiffness.block(i, i, d, d)).norm(),
+              1e-12 * stiffness.norm());
+  }
 }
 
 // Other axes in each element, beside elements of an isotropic material.

@@ -51,8 +51,13 @@ TEST_P(InternalForcesOfKinds, OfAMaterialAreZeroOutsideIt) {
 TEST_P(InternalForcesOfKinds, HaveTheBlocksOfTheTextbook) {
   const NodeGraph graph(scene_.mesh);
   const Eigen::MatrixXd blocks = forces_.Blocks(moduli_, graph);
+  const Eigen::MatrixXd diagonal = forces_.DiagonalBlocks(moduli_);
   const Eigen::Index d = scene_.mesh.Dimension();
   for (Eigen::Index node = 0; node < scene_.mesh.NumNodes(); ++node) {
+    EXPECT_LT((diagonal.middleCols(d * node, d) -
+               stiffness_.block(d * node, d * node, d, d))
+                  .norm(),
+              1e-12 * stiffness_.norm());
     for (Eigen::Index k = graph.start[node]; k < graph.start[node + 1]; ++k) {
       EXPECT_LT((blocks.middleCols(d * k, d) -
                  stiffness_.block(d * graph.row[k], d * node, d, d))

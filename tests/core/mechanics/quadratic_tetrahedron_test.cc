@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <string>
 #include <vector>
 
 #include "elastimate/core/materials/elasticity.h"
@@ -11,10 +12,12 @@
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/mechanics/stiffness_traces.h"
 #include "elastimate/core/mechanics/strain_energy.h"
+#include "elastimate/core/mechanics/tet10_stiffness_product.h"
 #include "elastimate/core/mesh/mesh.h"
 #include "elastimate/core/mesh/mid_edges.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/quadratic_scene.h"
+#include "tests/core/instruction_sets.h"
 #include "tests/core/random_values.h"
 #include "tests/dense_reference.h"
 #include "tests/element_kinds.h"
@@ -161,6 +164,70 @@ TEST_F(QuadraticTetrahedra, ProductOfSeveralColumnsIsThatOfEachBitForBit) {
   EXPECT_EQ(none.h.rows(), q_.rows());
   EXPECT_EQ(none.j.cols(), 0);
 }
+
+// Each coefficient counts in its own element alone.
+TEST_F(QuadraticTetrahedra, ProductOfCoefficientsIsTheSumOverElements) {
+  const Eigen::Matrix2Xd coefficients = RandomMatrix(2, mesh_.NumElements(), 7);
+  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(q_.rows(), q_.cols());
+  for (Eigen::Index e = 0; e < mesh_.NumElements(); ++e) {
+    Mesh one = mesh_;
+    one.elements = mesh_.elements.col(e);
+    expected += TextbookStiffness(one, coefficients(0, e) * DenseDH() +
+                                           coefficients(1, e) * DenseDJ()) *
+                q_;
+  }
+  const Eigen::MatrixXd product =
+      MultiplyQuadraticTetrahedra(mesh_, coefficients, q_);
+  EXPECT_LT((product - expected).cwiseAbs().maxCoeff(),
+            kReferenceRounding * Scale(q_) *
+                coefficients.cwiseAbs().colwise().sum().maxCoeff());
+  for (Eigen::Index i = 0; i < q_.cols(); ++i) {
+    EXPECT_EQ(MultiplyQuadraticTetrahedra(mesh_, coefficients, q_.col(i)),
+              product.col(i));
+  }
+}
+
+using QuadraticByInstructionSet = testing::InstructionSet;
+
+// The last batch of elements and the last group of columns may be full or not.
+TEST_P(QuadraticByInstructionSet, ProductEqualsTheTextbookForAnyCount) {
+  const Mesh whole = WithMidEdgeNodes(
+      WithBothOrientations(Distorted(BoxMesh({2, 1, 2}, {1, 0.8, 1.2}))));
+  const Eigen::MatrixXd q = RandomMatrix(3 * whole.NumNodes(), 9, 2);
+  for (const int num_elements : {1, 3, 4, 5, 7, 8, 9, 16, 17}) {
+    Mesh mesh = whole;
+    mesh.elements.conservativeResize(10, num_elements);
+    const Eigen::MatrixXd h = TextbookStiffness(mesh, DenseDH());
+    const Eigen::MatrixXd j = TextbookStiffness(mesh, DenseDJ());
+    const double tolerance =
+        kReferenceRounding * (j.cwiseAbs() * q.cwiseAbs()).maxCoeff();
+    for (const int num_columns : {1, 4, 5, 9}) {
+      SCOPED_TRACE(std::to_string(num_elements) + " elements, " +
+                   std::to_string(num_columns) + " columns");
+      const Eigen::MatrixXd columns = q.leftCols(num_columns);
+      const StiffnessProducts products = MultiplyStiffnessBasis(mesh, columns);
+      EXPECT_LT((products.h - h * columns).cwiseAbs().maxCoeff(), tolerance);
+      EXPECT_LT((products.j - j * columns).cwiseAbs().maxCoeff(), tolerance);
+      const Eigen::MatrixXd sum = MultiplyQuadraticTetrahedra(
+          mesh, Eigen::Vector2d(2, -0.5).replicate(1, num_elements), columns);
+      EXPECT_LT((sum - (2 * h - 0.5 * j) * columns).cwiseAbs().maxCoeff(),
+                3 * tolerance);
+    }
+  }
+}
+
+TEST_P(QuadraticByInstructionSet, ProductOfATranslationIsZero) {
+  const Mesh mesh = WithMidEdgeNodes(Distorted(BoxMesh({2, 1, 2}, {1, 1, 1})));
+  const Eigen::VectorXd q =
+      Eigen::Vector3d(1e3, -7, 0.1).replicate(mesh.NumNodes(), 1);
+  const StiffnessProducts products = MultiplyStiffnessBasis(mesh, q);
+  EXPECT_TRUE(products.h.isZero(0));
+  EXPECT_TRUE(products.j.isZero(0));
+}
+
+INSTANTIATE_TEST_SUITE_P(Supported, QuadraticByInstructionSet,
+                         ::testing::ValuesIn(testing::InstructionSets()),
+                         testing::InstructionSetName);
 
 TEST_F(QuadraticTetrahedra, ProductOfARigidMotionIsZero) {
   for (int axis = 0; axis < 3; ++axis) {

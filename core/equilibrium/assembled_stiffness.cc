@@ -1,0 +1,52 @@
+#include "elastimate/core/equilibrium/assembled_stiffness.h"
+
+#include <vector>
+
+namespace elastimate {
+
+AssembledStiffness::AssembledStiffness(const Mesh& mesh,
+                                       const Supports& supports,
+                                       SolverKind solver)
+    : SupportedStiffness(supports), solver_(mesh, supports, solver) {}
+
+bool AssembledStiffness::Factorize(const NestedStiffness& stiffness,
+                                   bool with_held_rows) {
+  if (!solver_.FactorizeBlocks(stiffness.CoarsestBlocks())) {
+    return false;
+  }
+  if (with_held_rows) {
+    AssembleHeldRows(stiffness.CoarsestBlocks());
+  }
+  return true;
+}
+
+void AssembledStiffness::AssembleHeldRows(const Eigen::MatrixXd& blocks) {
+  const NodeGraph& graph = solver_.Graph();
+  const DegreesOfFreedom& dofs = Dofs();
+  const Eigen::Index d = blocks.rows();
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto add = [&](Eigen::Index row, Eigen::Index column, double value) {
+    if (dofs.place[row] < 0) {
+      entries.emplace_back(row, column, value);
+    }
+  };
+  for (Eigen::Index j = 0; j + 1 < Eigen::Index(graph.start.size()); ++j) {
+    for (Eigen::Index pair = graph.start[j]; pair < graph.start[j + 1];
+         ++pair) {
+      const Eigen::Index i = graph.row[pair];
+      for (Eigen::Index a = 0; a < d; ++a) {
+        for (Eigen::Index b = 0; b < d; ++b) {
+          const double value = blocks(a, d * pair + b);
+          add(d * i + a, d * j + b, value);
+          if (i != j) {
+            add(d * j + b, d * i + a, value);
+          }
+        }
+      }
+    }
+  }
+  held_rows_.resize(dofs.NumAll(), dofs.NumAll());
+  held_rows_.setFromTriplets(entries.begin(), entries.end());
+}
+
+}  // namespace elastimate

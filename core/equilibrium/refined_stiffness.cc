@@ -1,0 +1,138 @@
+#include "elastimate/core/equilibrium/refined_stiffness.h"
+
+#include <limits>
+
+#include "elastimate/core/solvers/conjugate_gradients.h"
+
+namespace elastimate {
+namespace {
+
+// Eigenvalues of D^-1 K between these shares of the largest one that was
+// estimated are what is smoothed; the rest is left to the coarser space.
+constexpr double kUpper = 1.2;
+constexpr double kLower = 0.1;
+// An iterative solver of the coarsest space need not be more accurate than the
+// preconditioner that it is part of.
+constexpr double kCoarseTolerance = 1e-2;
+
+}  // namespace
+
+RefinedStiffness::RefinedStiffness(const Mesh& coarsest,
+                                   const std::vector<const Supports*>& supports,
+                                   SolverKind solver, double tolerance)
+    : SupportedStiffness(*supports.back()),
+      coarsest_(coarsest, *supports.front(), solver),
+      tolerance_(tolerance) {
+  for (const Supports* const of_space : supports) {
+    spaces_.push_back(
+        {(!of_space->held).cast<double>().matrix().reshaped(), {}});
+  }
+}
+
+bool RefinedStiffness::Factorize(const NestedStiffness& stiffness,
+                                 bool /*with_held_rows*/) {
+  stiffness_ = &stiffness;
+  if (!coarsest_.FactorizeBlocks(stiffness.CoarsestBlocks())) {
+    return false;
+  }
+  for (std::size_t i = 1; i < spaces_.size(); ++i) {
+    if (!(stiffness.LargestEigenvalue(i) > 0)) {
+      return false;
+    }
+    spaces_[i].inverse_blocks =
+        InverseBlocks(stiffness.DiagonalBlocks(i), spaces_[i].is_free);
+  }
+  return true;
+}
+
+Eigen::MatrixXd RefinedStiffness::Solve(const Eigen::MatrixXd& all,
+                                        const Eigen::MatrixXd& start) {
+  const std::size_t finest = spaces_.size() - 1;
+  const Eigen::VectorXd& is_free = spaces_[finest].is_free;
+  ConjugateGradientOptions options;
+  options.tolerance = tolerance_;
+  options.most_iterations = kMostIterations;
+  options.smallest_eigenvalue = smallest_eigenvalue_;
+  ConjugateGradientResult result = SolveByConjugateGradients(
+      [&](const Eigen::MatrixXd& x) {
+        return Eigen::MatrixXd(is_free.asDiagonal() * Multiply(finest, x));
+      },
+      [&](const Eigen::MatrixXd& x) { return Precondition(finest, x); },
+      is_free.asDiagonal() * all,
+      start.size() > 0 ? Eigen::MatrixXd(is_free.asDiagonal() * start) : start,
+      options);
+  work_.solves += static_cast<int>(all.cols());
+  work_.iterations += result.iterations;
+  if (!result.has_converged) {
+    return Eigen::MatrixXd::Constant(all.rows(), all.cols(),
+                                     std::numeric_limits<double>::quiet_NaN());
+  }
+  smallest_eigenvalue_ = result.smallest_eigenvalue;
+  return std::move(result.solution);
+}
+
+Eigen::MatrixXd RefinedStiffness::Multiply(std::size_t space,
+                                           const Eigen::MatrixXd& x) {
+  if (space + 1 == spaces_.size()) {
+    ++work_.element_passes;
+  }
+  return stiffness_->Multiply(space, x);
+}
+
+Eigen::MatrixXd RefinedStiffness::RestOf(std::size_t space,
+                                         const Eigen::MatrixXd& force,
+                                         const Eigen::MatrixXd& x) {
+  Eigen::MatrixXd rest = Multiply(space, x);
+  rest = spaces_[space].is_free.asDiagonal() * (force - rest);
+  return rest;
+}
+
+Eigen::MatrixXd RefinedStiffness::Smooth(std::size_t space,
+                                         const Eigen::MatrixXd& force) {
+  const double largest = stiffness_->LargestEigenvalue(space);
+  const double middle = (kUpper + kLower) / 2 * largest;
+  const double radius = (kUpper - kLower) / 2 * largest;
+  const Eigen::MatrixXd& inverses = spaces_[space].inverse_blocks;
+  // Two steps of the three-term recurrence from zero [Saad, Iterative Methods
+  // for Sparse Linear Systems, algorithm 12.1].  The blocks are zero in the
+  // held rows and columns.
+  const double share = 1 / (2 * middle / radius - radius / middle);
+  Eigen::MatrixXd x = MultiplyBlocks(inverses, force) / middle;
+  AddBlockProducts(inverses, force, Multiply(space, x),
+                   1 + share * radius / middle, 2 * share / radius, x);
+  return x;
+}
+
+Eigen::MatrixXd RefinedStiffness::Precondition(std::size_t space,
+                                               const Eigen::MatrixXd& force) {
+  if (space == 0) {
+    return coarsest_.Solve(force, kCoarseTolerance);
+  }
+  const FinerNodes& nodes = stiffness_->NodesAfter(space - 1);
+  Eigen::MatrixXd x = Smooth(space, force);
+  const Eigen::MatrixXd coarse =
+      Precondition(space - 1, spaces_[space - 1].is_free.asDiagonal() *
+                                  nodes.Restrict(RestOf(space, force, x)));
+  x += spaces_[space].is_free.asDiagonal() * nodes.Interpolate(coarse);
+  x += Smooth(space, RestOf(space, force, x));
+  return x;
+}
+
+Eigen::MatrixXd RefinedStiffness::HeldForces(
+    const Eigen::MatrixXd& displacements) const {
+  return OfHeld(stiffness_->Multiply(spaces_.size() - 1, displacements));
+}
+
+Eigen::MatrixXd RefinedStiffness::HeldForcesTransposed(
+    const Eigen::MatrixXd& held) const {
+  return stiffness_->Multiply(spaces_.size() - 1, OfHeld(held));
+}
+
+Work RefinedStiffness::WorkDone() const {
+  Work of_coarsest = coarsest_.WorkDone();
+  of_coarsest.element_passes = 0;
+  of_coarsest.solves = 0;
+  return of_coarsest + work_;
+}
+
+}  // namespace elastimate

@@ -1,0 +1,231 @@
+#include "elastimate/core/solvers/conjugate_gradients.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace elastimate {
+namespace {
+
+using Columns = std::vector<Eigen::Index>;
+
+Eigen::RowVectorXd ProductsOfColumns(const Eigen::MatrixXd& a,
+                                     const Eigen::MatrixXd& b) {
+  return a.cwiseProduct(b).colwise().sum();
+}
+
+// The tridiagonal matrix of one column, whose eigenvalues are Ritz values of
+// M A [Golub & Van Loan, Matrix Computations].
+class LanczosMatrix {
+ public:
+  // `length` is that of the step along a direction, into which `share` of the
+  // direction before went.
+  void Add(double length, double share) {
+    diagonal_.push_back(1 / length);
+    if (diagonal_.size() > 1) {
+      diagonal_.back() += share / last_length_;
+      beside_.push_back(std::sqrt(std::max(share, 0.0)) / last_length_);
+    }
+    last_length_ = length;
+  }
+
+  // Ascending; none before the first step.
+  Eigen::VectorXd Eigenvalues() const {
+    if (diagonal_.empty()) {
+      return {};
+    }
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+    solver.computeFromTridiagonal(
+        Eigen::Map<const Eigen::VectorXd>(diagonal_.data(),
+                                          Eigen::Index(diagonal_.size())),
+        Eigen::Map<const Eigen::VectorXd>(beside_.data(),
+                                          Eigen::Index(beside_.size())),
+        Eigen::EigenvaluesOnly);
+    return solver.eigenvalues();
+  }
+
+ private:
+  std::vector<double> diagonal_;
+  std::vector<double> beside_;
+  double last_length_ = 0;
+};
+
+// The columns that are not done, side by side.
+class Iterations {
+ public:
+  Iterations(const ColumnOperator& multiply, const ColumnOperator& precondition,
+             const Eigen::MatrixXd& right_hand_sides,
+             const ConjugateGradientOptions& options)
+      : multiply_(multiply), precondition_(precondition), options_(options) {
+    result_.smallest_eigenvalue = options.smallest_eigenvalue;
+    result_.solution =
+        Eigen::MatrixXd::Zero(right_hand_sides.rows(), right_hand_sides.cols());
+    for (Eigen::Index k = 0; k < right_hand_sides.cols(); ++k) {
+      // Without a force there is no displacement, whatever the guess.
+      if (!right_hand_sides.col(k).isZero(0)) {
+        columns_.push_back(k);
+      }
+    }
+    force_ = right_hand_sides(Eigen::all, columns_);
+    residual_ = force_;
+    x_ = Eigen::MatrixXd::Zero(force_.rows(), force_.cols());
+    lanczos_.resize(columns_.size());
+  }
+
+  void BeginWith(const Eigen::MatrixXd& start) {
+    if (start.size() == 0 || columns_.empty()) {
+      return;
+    }
+    Eigen::MatrixXd guess = start(Eigen::all, columns_);
+    for (auto column : guess.colwise()) {
+      if (!column.allFinite()) {
+        column.setZero();
+      }
+    }
+    const Eigen::MatrixXd product = Multiply(guess);
+    const Eigen::RowVectorXd energy = ProductsOfColumns(guess, product);
+    const Eigen::RowVectorXd work = ProductsOfColumns(guess, force_);
+    const Eigen::RowVectorXd scale =
+        (energy.array() > 0).select(work.array() / energy.array(), 0.0);
+    x_ = guess * scale.asDiagonal();
+    residual_ -= product * scale.asDiagonal();
+  }
+
+  ConjugateGradientResult Run() {
+    int step = 0;
+    while (!columns_.empty() && Step(step)) {
+      ++step;
+    }
+    result_.has_converged = columns_.empty();
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      result_.solution.col(columns_[k]) = x_.col(Eigen::Index(k));
+      TakeEigenvaluesOf(lanczos_[k]);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  Eigen::MatrixXd Multiply(const Eigen::MatrixXd& x) {
+    ++result_.products;
+    return multiply_(x);
+  }
+
+  // Whether the iterations may go on.
+  bool Step(int step) {
+    Eigen::MatrixXd z = precondition_(residual_);
+    Eigen::RowVectorXd rz = ProductsOfColumns(residual_, z);
+    if (!(rz.array() >= 0).all() || !rz.allFinite()) {
+      return false;
+    }
+    TakeWhatIsDone(z, rz);
+    if (columns_.empty() || step == options_.most_iterations) {
+      return false;
+    }
+    Eigen::RowVectorXd share = Eigen::RowVectorXd::Zero(rz.cols());
+    if (step > 0) {
+      share = -(length_.array() * ProductsOfColumns(z, product_).array() /
+                last_rz_.array())
+                   .matrix();
+      direction_ = z + direction_ * share.asDiagonal();
+    } else {
+      direction_ = std::move(z);
+    }
+    product_ = Multiply(direction_);
+    const Eigen::RowVectorXd energy = ProductsOfColumns(direction_, product_);
+    if (!(energy.array() > 0).all() || !energy.allFinite()) {
+      return false;
+    }
+    length_ = rz.cwiseQuotient(energy);
+    last_rz_ = rz;
+    x_ += direction_ * length_.asDiagonal();
+    residual_ -= product_ * length_.asDiagonal();
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      lanczos_[k].Add(length_(Eigen::Index(k)), share(Eigen::Index(k)));
+    }
+    result_.iterations += static_cast<int>(columns_.size());
+    return true;
+  }
+
+  void TakeEigenvaluesOf(const LanczosMatrix& lanczos) {
+    const Eigen::VectorXd values = lanczos.Eigenvalues();
+    if (values.size() > 0 && values.allFinite()) {
+      result_.smallest_eigenvalue =
+          std::min(result_.smallest_eigenvalue, values(0));
+      result_.largest_eigenvalue =
+          std::max(result_.largest_eigenvalue, values(values.size() - 1));
+    }
+  }
+
+  bool IsDone(std::size_t k, double rz) {
+    const auto column = Eigen::Index(k);
+    const double most =
+        options_.tolerance * options_.tolerance *
+        x_.col(column).dot(force_.col(column) - residual_.col(column));
+    if (!(rz <= most)) {
+      return false;
+    }
+    TakeEigenvaluesOf(lanczos_[k]);
+    return rz <= most * result_.smallest_eigenvalue;
+  }
+
+  // Puts the columns that are done into the result, and keeps the others.
+  void TakeWhatIsDone(Eigen::MatrixXd& z, Eigen::RowVectorXd& rz) {
+    Columns kept;
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      if (IsDone(k, rz(Eigen::Index(k)))) {
+        result_.solution.col(columns_[k]) = x_.col(Eigen::Index(k));
+      } else {
+        kept.push_back(Eigen::Index(k));
+      }
+    }
+    if (kept.size() == columns_.size()) {
+      return;
+    }
+    for (Eigen::MatrixXd* const matrix :
+         {&force_, &x_, &residual_, &direction_, &product_, &z}) {
+      if (matrix->size() > 0) {
+        *matrix = (*matrix)(Eigen::all, kept).eval();
+      }
+    }
+    for (Eigen::RowVectorXd* const row : {&rz, &length_, &last_rz_}) {
+      if (row->size() > 0) {
+        *row = (*row)(kept).eval();
+      }
+    }
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      columns_[k] = columns_[kept[k]];
+      lanczos_[k] = lanczos_[kept[k]];
+    }
+    columns_.resize(kept.size());
+    lanczos_.resize(kept.size());
+  }
+
+  const ColumnOperator& multiply_;
+  const ColumnOperator& precondition_;
+  const ConjugateGradientOptions& options_;
+  ConjugateGradientResult result_;
+  Columns columns_;  // Of the right-hand sides, in ascending order.
+  Eigen::MatrixXd force_;
+  Eigen::MatrixXd x_;
+  Eigen::MatrixXd residual_;
+  Eigen::MatrixXd direction_;
+  Eigen::MatrixXd product_;  // With the direction.
+  Eigen::RowVectorXd length_;
+  Eigen::RowVectorXd last_rz_;
+  std::vector<LanczosMatrix> lanczos_;
+};
+
+}  // namespace
+
+ConjugateGradientResult SolveByConjugateGradients(
+    const ColumnOperator& multiply, const ColumnOperator& precondition,
+    const Eigen::MatrixXd& right_hand_sides, const Eigen::MatrixXd& start,
+    const ConjugateGradientOptions& options) {
+  Iterations iterations(multiply, precondition, right_hand_sides, options);
+  iterations.BeginWith(start);
+  return iterations.Run();
+}
+
+}  // namespace elastimate

@@ -1,0 +1,52 @@
+#ifndef ELASTIMATE_CORE_SOLVERS_CONJUGATE_GRADIENTS_H_
+#define ELASTIMATE_CORE_SOLVERS_CONJUGATE_GRADIENTS_H_
+
+#include <Eigen/Core>
+#include <functional>
+
+namespace elastimate {
+
+/// What a matrix or a preconditioner makes of some columns: size x n.
+using ColumnOperator = std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>;
+
+struct ConjugateGradientOptions {
+  /// The relative error, in the energy norm, at which a column is done.
+  double tolerance = 1e-8;
+  int most_iterations = 200;
+  /// A first guess of the smallest eigenvalue of M A, which is 1 for M = A^-1.
+  double smallest_eigenvalue = 1;
+};
+
+struct ConjugateGradientResult {
+  Eigen::MatrixXd solution;    ///< As far as it was found: size x n.
+  bool has_converged = false;  ///< Whether all columns have.
+  int iterations = 0;          ///< Of all columns in sum.
+  int products = 0;            ///< With A, each of any number of columns.
+  /// The extreme eigenvalues of M A as the iterations see them (Ritz values);
+  /// the guess and 0 where there was no iteration.
+  double smallest_eigenvalue = 1;
+  double largest_eigenvalue = 0;
+};
+
+/// Solves A x = b for each column b of `right_hand_sides` by conjugate
+/// gradients that are preconditioned by M, which may change a little from one
+/// call to the next [Notay, SIAM J. Sci. Comput. 22 (2000) 1444].
+///
+/// All columns share the calls of `multiply` (A) and `precondition` (M), which
+/// take those that are not done: both are symmetric and positive definite, and
+/// M is close to A^-1.  A column is done when r^T M r, which is at least the
+/// smallest eigenvalue of M A times the squared energy of the error, tells that
+/// the error is small enough.
+///
+/// `start` is empty or has a guess of each column, of which the multiple with
+/// the least error is taken; a guess that is not finite is none.  The result
+/// has not converged where A or M is not positive definite in the directions
+/// that were met, where a number is not finite, and after too many iterations.
+ConjugateGradientResult SolveByConjugateGradients(
+    const ColumnOperator& multiply, const ColumnOperator& precondition,
+    const Eigen::MatrixXd& right_hand_sides, const Eigen::MatrixXd& start,
+    const ConjugateGradientOptions& options);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_SOLVERS_CONJUGATE_GRADIENTS_H_

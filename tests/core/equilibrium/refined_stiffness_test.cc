@@ -1,0 +1,333 @@
+// Equilibrium in nested spaces, beside that of the finest one by its factor.
+
+#include "elastimate/core/equilibrium/refined_stiffness.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <deque>
+#include <vector>
+
+#include "elastimate/core/equilibrium/equilibrium.h"
+#include "elastimate/core/materials/laws.h"
+#include "elastimate/core/scene/finer_scene.h"
+#include "tests/anisotropy.h"
+#include "tests/core/random_values.h"
+#include "tests/regions.h"
+#include "tests/scenes.h"
+
+namespace elastimate {
+namespace {
+
+using testing::KindOfSection;
+using testing::RandomMatrix;
+
+// A scene, and so many finer ones of it.
+class Spaces {
+ public:
+  Spaces(const Scene& scene, int num_finer) : scenes_{scene} {
+    for (int i = 0; i < num_finer; ++i) {
+      scenes_.push_back(FinerScene(scenes_.back()));
+    }
+    for (const Scene& space : scenes_) {
+      pointers_.push_back(&space);
+    }
+  }
+  Spaces(const Spaces&) = delete;
+  Spaces& operator=(const Spaces&) = delete;
+
+  const std::vector<const Scene*>& All() const { return pointers_; }
+  const Scene& Finest() const { return scenes_.back(); }
+
+ private:
+  std::deque<Scene> scenes_;
+  std::vector<const Scene*> pointers_;
+};
+
+// Columns of displacements that cancel most of each other have a larger error
+// relative to themselves than in the energy norm.
+constexpr double kSameDisplacement = 1e-6;
+
+void ExpectSame(const Eigen::MatrixXd& actual, const Eigen::MatrixXd& expected,
+                double tolerance = kSameDisplacement) {
+  ASSERT_EQ(actual.cols(), expected.cols());
+  for (Eigen::Index k = 0; k < expected.cols(); ++k) {
+    EXPECT_LE((actual.col(k) - expected.col(k)).norm(),
+              tolerance * expected.col(k).norm())
+        << "column " << k;
+  }
+}
+
+struct KindAndSpaces {
+  KindOfSection kind;
+  int num_finer;
+};
+
+class RefinedEquilibrium : public ::testing::TestWithParam<KindAndSpaces> {
+ protected:
+  RefinedEquilibrium() {
+    scene_.load_cases.push_back(scene_.load_cases[0]);
+    BodyForce weight;
+    weight.force_density =
+        Eigen::VectorXd::LinSpaced(scene_.mesh.Dimension(), -0.3, 0.5);
+    scene_.load_cases[1].loads = {weight};
+    testing::DisplaceSupports(scene_);
+  }
+
+  Scene scene_ = testing::TwoRegionScene(GetParam().kind, 2);
+  Eigen::Vector4d parameters_{2, 0.1, 5, 0.4};
+};
+
+TEST_P(RefinedEquilibrium, IsThatOfTheFactorisedStiffness) {
+  const Spaces spaces(scene_, GetParam().num_finer);
+  Equilibrium refined(spaces.All(), SolverKind::kCholesky);
+  Equilibrium direct(spaces.Finest(), SolverKind::kCholesky);
+  const MaterialParameters& chart = direct.Forces().Parameters();
+  const Eigen::VectorXd moduli = chart.Moduli(parameters_);
+  ASSERT_TRUE(refined.Solve(moduli));
+  ASSERT_TRUE(direct.Solve(moduli));
+  ExpectSame(refined.Displacement(), direct.Displacement());
+  ExpectSame(refined.SupportResponse(), direct.SupportResponse());
+  const Eigen::MatrixXd directions = chart.ModuliJacobian(parameters_);
+  ExpectSame(refined.Sensitivities(directions),
+             direct.Sensitivities(directions));
+  const Eigen::MatrixXd forces =
+      RandomMatrix(spaces.Finest().mesh.NumDofs(), 4, 1);
+  ExpectSame(refined.SolveFor(forces), direct.SolveFor(forces));
+  EXPECT_EQ(refined.Graph().NumPairs(), direct.Graph().NumPairs());
+  EXPECT_EQ(refined.WorkDone().factorizations, 1);
+  EXPECT_EQ(refined.WorkDone().solves, 2 + 1 + 2 * 4 + 4);
+}
+
+TEST_P(RefinedEquilibrium, IsThatOfTheTextbook) {
+  const Spaces spaces(scene_, 1);
+  Equilibrium refined(spaces.All(), SolverKind::kCholesky);
+  ASSERT_TRUE(refined.Solve(refined.Forces().Parameters().Moduli(parameters_)));
+  ExpectSame(refined.Displacement(),
+             testing::SolveByTextbook(spaces.Finest(), {{2, 0.1}, {5, 0.4}}));
+}
+
+TEST_P(RefinedEquilibrium, HasTheSupportsOfEachLoadCase) {
+  Supports other = scene_.supports;
+  const Eigen::Index last = scene_.mesh.NumNodes() - 1;
+  other.held.col(last).setConstant(true);
+  // Not all components of a node.
+  other.held(0, last) = false;
+  other.displacement.col(last).setConstant(0.01);
+  scene_.load_cases[1].supports = other;
+  scene_.is_rigid_motion_free = true;
+  const Spaces spaces(scene_, GetParam().num_finer);
+  Equilibrium refined(spaces.All(), SolverKind::kCholesky);
+  Equilibrium direct(spaces.Finest(), SolverKind::kCholesky);
+  const MaterialParameters& chart = direct.Forces().Parameters();
+  const Eigen::VectorXd moduli = chart.Moduli(parameters_);
+  ASSERT_TRUE(refined.Solve(moduli));
+  ASSERT_TRUE(direct.Solve(moduli));
+  ExpectSame(refined.Displacement(), direct.Displacement());
+  EXPECT_EQ(refined.WorkDone().factorizations, 2);
+  const Eigen::MatrixXd directions = chart.ModuliJacobian(parameters_);
+  const Eigen::MatrixXd slopes = direct.Sensitivities(directions);
+  ExpectSame(refined.Sensitivities(directions), slopes);
+  const Eigen::MatrixXd values =
+      RandomMatrix(spaces.Finest().mesh.NumDofs(), 4, 2);
+  const Eigen::MatrixXd two = values.leftCols(2);
+  const Eigen::MatrixXd held = OfHeld(spaces.Finest(), two);
+  ExpectSame(refined.Extend(held), direct.Extend(held));
+  ExpectSame(refined.ExtendInCase(1, held), direct.ExtendInCase(1, held));
+  ExpectSame(refined.ExtendTransposed(values), direct.ExtendTransposed(values));
+  // Without solutions.
+  constexpr double kRounding = 1e-12;
+  ExpectSame(refined.HeldForces(values), direct.HeldForces(values), kRounding);
+  ExpectSame(refined.HeldForcesTransposed(values),
+             direct.HeldForcesTransposed(values), kRounding);
+  ExpectSame(refined.HeldForcesInCase(1, values),
+             direct.HeldForcesInCase(1, values), kRounding);
+  ExpectSame(refined.SupportForces(), direct.SupportForces());
+  ExpectSame(refined.SupportForceSensitivities(directions, slopes),
+             direct.SupportForceSensitivities(directions, slopes));
+}
+
+TEST_P(RefinedEquilibrium, BeginsWithTheLastSolution) {
+  const Spaces spaces(scene_, GetParam().num_finer);
+  Equilibrium equilibrium(spaces.All(), SolverKind::kCholesky);
+  const MaterialParameters& chart = equilibrium.Forces().Parameters();
+  const Eigen::MatrixXd directions = chart.ModuliJacobian(parameters_);
+  // Of a solution and its sensitivities.
+  const auto iterations = [&](const Eigen::VectorXd& moduli) {
+    const int before = equilibrium.WorkDone().iterations;
+    EXPECT_TRUE(equilibrium.Solve(moduli));
+    equilibrium.Sensitivities(directions);
+    return equilibrium.WorkDone().iterations - before;
+  };
+  const Eigen::VectorXd moduli = chart.Moduli(parameters_);
+  const int cold = iterations(moduli);
+  EXPECT_GT(cold, 0);
+  EXPECT_EQ(iterations(moduli), 0);
+  const Eigen::VectorXd changed =
+      moduli.cwiseProduct(Eigen::Vector4d(1.001, 0.999, 0.999, 1.001));
+  const int warm = iterations(changed);
+  EXPECT_GT(warm, 0);
+  EXPECT_LT(warm, 0.8 * cold);
+}
+
+TEST_P(RefinedEquilibrium, RefusesAStiffnessThatIsNotPositive) {
+  const Spaces spaces(scene_, GetParam().num_finer);
+  Equilibrium equilibrium(spaces.All(), SolverKind::kCholesky);
+  const MaterialParameters& chart = equilibrium.Forces().Parameters();
+  EXPECT_FALSE(
+      equilibrium.Solve(chart.Moduli(Eigen::Vector4d(2, 0.1, -5, 0.4))));
+  EXPECT_FALSE(equilibrium.Solve(Eigen::VectorXd::Constant(4, testing::kNan)));
+  const Eigen::VectorXd moduli = chart.Moduli(parameters_);
+  EXPECT_TRUE(equilibrium.Solve(moduli));
+  Equilibrium other(spaces.All(), SolverKind::kCholesky);
+  EXPECT_TRUE(other.Solve(moduli));
+  ExpectSame(equilibrium.Displacement(), other.Displacement());
+}
+
+TEST_P(RefinedEquilibrium, EndsWellNextToIncompressibility) {
+  const Spaces spaces(scene_, GetParam().num_finer);
+  Equilibrium equilibrium(spaces.All(), SolverKind::kCholesky);
+  const MaterialParameters& chart = equilibrium.Forces().Parameters();
+  for (const double below : {1e-4, 1e-6, 1e-9, 1e-13}) {
+    const bool is_solved = equilibrium.Solve(
+        chart.Moduli(Eigen::Vector4d(2, 0.5 - below, 5, 0.5 - below)));
+    EXPECT_TRUE(!is_solved || equilibrium.Displacement().allFinite());
+  }
+}
+
+std::vector<KindAndSpaces> AllKindsAndSpaces() {
+  std::vector<KindAndSpaces> all;
+  for (const KindOfSection kind :
+       {KindOfSection{ElementKind::kTet4, SectionModel::kSolid},
+        KindOfSection{ElementKind::kTri3, SectionModel::kPlaneStrain},
+        KindOfSection{ElementKind::kTri3, SectionModel::kPlaneStress}}) {
+    for (const int num_finer : {1, 2}) {
+      all.push_back({kind, num_finer});
+    }
+  }
+  // A quadratic space may be the one that is factorised.
+  all.push_back({{ElementKind::kTri6, SectionModel::kPlaneStress}, 1});
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, RefinedEquilibrium,
+                         ::testing::ValuesIn(AllKindsAndSpaces()),
+                         [](const auto& info) {
+                           return testing::NameOf(info.param.kind) + "_" +
+                                  std::to_string(info.param.num_finer);
+                         });
+
+// A block that is held at its bottom, of one material.
+Scene Block(int cells) {
+  const Mesh mesh = testing::BoxMesh({cells, cells, cells}, {1, 1, 1});
+  return testing::UnderBodyForce(testing::HeldAtBottom(
+      testing::Distorted(mesh), mesh, Eigen::Vector3d(0, 0, -1)));
+}
+
+TEST(RefinedStiffness, LeavesTheErrorThatItIsAskedFor) {
+  const Spaces spaces(Block(3), 2);
+  Equilibrium direct(spaces.Finest(), SolverKind::kCholesky);
+  for (const double nu : {-0.5, 0.3, 0.49}) {
+    const Eigen::VectorXd moduli =
+        direct.Forces().Parameters().Moduli(Eigen::Vector2d(3, nu));
+    ASSERT_TRUE(direct.Solve(moduli));
+    for (const double tolerance : {1e-2, 1e-4, 1e-8}) {
+      Equilibrium refined(spaces.All(), SolverKind::kCholesky, tolerance);
+      ASSERT_TRUE(refined.Solve(moduli));
+      const Eigen::VectorXd error =
+          refined.Displacement() - direct.Displacement();
+      const Eigen::VectorXd force = direct.Forces().Multiply(moduli, error);
+      const double energy =
+          direct.Displacement().col(0).dot(direct.Load().col(0));
+      EXPECT_LE(std::sqrt(error.dot(force) / energy), tolerance) << nu;
+    }
+  }
+}
+
+// A cycle leaves about a quarter of the error at nu = 0.3, more next to 1/2,
+// and as much on each mesh.
+TEST(RefinedStiffness, IteratesAsOftenOnFinerMeshes) {
+  struct Most {
+    double nu, tolerance;
+    int iterations;
+  };
+  for (const auto& [nu, tolerance, most] :
+       {Most{0.3, 1e-2, 5}, Most{0.3, 1e-8, 20}, Most{0.45, 1e-2, 8},
+        Most{0.45, 1e-8, 32}}) {
+    std::vector<int> iterations;
+    for (const int cells : {2, 4, 6}) {
+      const Spaces spaces(Block(cells), 1);
+      Equilibrium equilibrium(spaces.All(), SolverKind::kCholesky, tolerance);
+      ASSERT_TRUE(equilibrium.Solve(
+          equilibrium.Forces().Parameters().Moduli(Eigen::Vector2d(3, nu))));
+      iterations.push_back(equilibrium.WorkDone().iterations);
+      EXPECT_LE(iterations.back(), most) << nu << ", cells " << cells;
+    }
+    EXPECT_LE(iterations[2], iterations[1] + 1);
+  }
+}
+
+TEST(RefinedStiffness, GivesUpWhereIterationsDoNotConverge) {
+  const Spaces spaces(Block(3), 1);
+  Equilibrium equilibrium(spaces.All(), SolverKind::kCholesky);
+  const MaterialParameters& chart = equilibrium.Forces().Parameters();
+  EXPECT_FALSE(equilibrium.Solve(chart.Moduli(Eigen::Vector2d(3, 0.5 - 1e-7))));
+  EXPECT_LE(equilibrium.WorkDone().iterations,
+            RefinedStiffness::kMostIterations);
+  // What was not found is no start for what is.
+  ASSERT_TRUE(equilibrium.Solve(chart.Moduli(Eigen::Vector2d(3, 0.3))));
+  EXPECT_TRUE(equilibrium.Displacement().allFinite());
+}
+
+TEST(RefinedStiffness, TakesMaterialsWithAnAxis) {
+  Scene scene = Block(2);
+  Material fibres;
+  fibres.law = "transversely_isotropic";
+  fibres.axes = {Eigen::Vector3d(1, 2, 0.5)};
+  scene.materials = {fibres};
+  const Spaces spaces(scene, 2);
+  Equilibrium refined(spaces.All(), SolverKind::kCholesky);
+  Equilibrium direct(spaces.Finest(), SolverKind::kCholesky);
+  const Eigen::VectorXd moduli =
+      direct.Forces().Parameters().Moduli(testing::ConstantsOfFibres());
+  ASSERT_TRUE(refined.Solve(moduli));
+  ASSERT_TRUE(direct.Solve(moduli));
+  ExpectSame(refined.Displacement(), direct.Displacement());
+  const Eigen::MatrixXd every =
+      Eigen::MatrixXd::Identity(moduli.size(), moduli.size());
+  ExpectSame(refined.Sensitivities(every), direct.Sensitivities(every));
+}
+
+TEST(RefinedStiffness, TakesMultigridForTheCoarsestSpace) {
+  if (!HasMultigrid()) {
+    GTEST_SKIP() << WhyNoMultigrid();
+  }
+  const Spaces spaces(Block(3), 1);
+  Equilibrium refined(spaces.All(), SolverKind::kMultigrid);
+  Equilibrium direct(spaces.Finest(), SolverKind::kCholesky);
+  const Eigen::VectorXd moduli =
+      direct.Forces().Parameters().Moduli(Eigen::Vector2d(3, 0.4));
+  ASSERT_TRUE(refined.Solve(moduli));
+  ASSERT_TRUE(direct.Solve(moduli));
+  EXPECT_EQ(refined.WorkDone().factorizations, 0);
+  EXPECT_GT(refined.WorkDone().multigrid_set_ups, 0);
+  ExpectSame(refined.Displacement(), direct.Displacement());
+}
+
+TEST(RefinedStiffness, IsForSimplicesWithStraightEdges) {
+  for (const KindOfSection& kind : testing::AllKindsOfSections()) {
+    const Spaces spaces(testing::SceneOfKind(kind, 2), 1);
+    EXPECT_EQ(Equilibrium::IsRefinable(spaces.All()), IsAffine(kind.kind));
+    EXPECT_FALSE(Equilibrium::IsRefinable({&spaces.Finest()}));
+    Equilibrium refined(spaces.All(), SolverKind::kCholesky);
+    Equilibrium direct(spaces.Finest(), SolverKind::kCholesky);
+    const Eigen::VectorXd moduli =
+        direct.Forces().Parameters().Moduli(Eigen::Vector2d(3, 0.3));
+    ASSERT_TRUE(refined.Solve(moduli));
+    ASSERT_TRUE(direct.Solve(moduli));
+    ExpectSame(refined.Displacement(), direct.Displacement());
+  }
+}
+
+}  // namespace
+}  // namespace elastimate
