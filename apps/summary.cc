@@ -27,14 +27,8 @@ std::string WithError(double value, const std::optional<double>& error) {
   if (!std::isfinite(value)) {
     return "none";
   }
-  // Digits down to the second of the standard error say what is known.
-  int digits = 6;
-  if (error && *error > 0 && value != 0) {
-    const double ratio = std::abs(value) / *error;
-    digits = std::min(10, std::max(3, 2 + int(std::ceil(std::log10(ratio)))));
-  }
-  return NumberText(value, digits) +
-         (error ? " +- " + NumberText(*error, 2) : " (no standard error)");
+  return error ? ValueWithError(value, *error)
+               : NumberText(value) + " (no standard error)";
 }
 
 // Near nu = 1/2 and -1, E and nu are not what the data determine.

@@ -3,7 +3,7 @@
 # Writes what registers each suite of a test program as one test.  A test of its own for each test would start the
 # program, and load its libraries, many times more often, which takes longer than most tests.  A suite that skips a test
 # counts as skipped, unless it fails: then it does not end with the list of skipped tests.  A suite may take TIMEOUT
-# seconds, and six times as long where its name ends with "Statistics" or "Long".
+# seconds, six times as long where its name ends with "Statistics" or "Long", and twenty times where with "Remade".
 execute_process(
   COMMAND ${PROGRAM} --gtest_list_tests
   OUTPUT_VARIABLE lines
@@ -23,6 +23,9 @@ foreach(suite ${suites})
   if(suite MATCHES "(Statistics|Long)$")
     string(APPEND label -long)
     math(EXPR timeout "6 * ${TIMEOUT}")
+  elseif(suite MATCHES "Remade$")
+    set(label studies)
+    math(EXPR timeout "20 * ${TIMEOUT}")
   endif()
   string(
     APPEND

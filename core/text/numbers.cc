@@ -1,5 +1,6 @@
 #include "elastimate/core/text/numbers.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -8,6 +9,29 @@ namespace elastimate {
 namespace {
 
 constexpr double kLargestRatio = 10;
+
+// Numbers in a table without an exponent.
+constexpr double kSmallestPlain = 1e-4;
+constexpr double kLargestPlain = 1e7;
+constexpr int kMostDigits = 10;
+
+// The power of ten of the first digit of a number that is not zero.
+int PlaceOf(double value) {
+  return static_cast<int>(std::floor(std::log10(std::abs(value))));
+}
+
+// Rounded to the digit of this power of ten, without an exponent.
+std::string PlainText(double value, int place) {
+  const double unit = std::pow(10, place);
+  if (std::abs(value) < unit / 2) {
+    value = 0;  // Without a sign.
+  } else if (place > 0) {
+    value = std::round(value / unit) * unit;
+  }
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(std::max(-place, 0)) << value;
+  return text.str();
+}
 
 }  // namespace
 
@@ -27,6 +51,25 @@ std::string TwoDigits(double value) {
   // With a precision of 2, 100 is 1e+02.
   const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) - 1);
   return NumberText(std::round(value / unit) * unit);
+}
+
+std::string ValueWithError(double value, double error) {
+  const double larger = std::max(std::abs(value), error);
+  if (!(error > 0) || larger < kSmallestPlain || !(larger < kLargestPlain)) {
+    int digits = 6;
+    if (error > 0 && value != 0) {
+      const double ratio = std::abs(value) / error;
+      digits =
+          std::clamp(2 + int(std::ceil(std::log10(ratio))), 3, kMostDigits);
+    }
+    return NumberText(value, digits) + " +- " + NumberText(error, 2);
+  }
+  // Of the second digit of the error, which rounding may carry into a third.
+  int place = PlaceOf(error) - 1;
+  place += std::round(error / std::pow(10, place)) > 99 ? 1 : 0;
+  const int least = PlaceOf(larger) + 1 - kMostDigits;
+  return PlainText(value, std::max(place, least)) + " +- " +
+         (place >= least ? PlainText(error, place) : NumberText(error, 2));
 }
 
 std::string Percent(double ratio) {

@@ -71,7 +71,7 @@ KinematicError KinematicErrorOf(const DeformationSize& size) {
 
 void JudgeKinematics(const Scene& scene, const EstimatorOptions& options,
                      Estimate& estimate) {
-  if (estimate.Has(FindingCode::kLargeDeformation)) {
+  if (estimate.Has(FindingCode::kLargeDeformation) || estimate.series) {
     return;
   }
   estimate.deformation = MeasureDeformation(scene);

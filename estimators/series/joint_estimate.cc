@@ -341,30 +341,54 @@ std::optional<Trend> TrendOver(const std::vector<UsedFrame>& frames,
   return trend;
 }
 
-// Weighted by the variance of each parameter.
-ParameterErrors MeanDiscretization(const std::vector<UsedFrame>& frames,
-                                   const Eigen::VectorXi& free,
-                                   Eigen::Index num_parameters) {
+// Whether frames that have no part of a cause in their budget do not know it,
+// or do not have it.
+enum class Missing { kUnknown, kZero };
+
+// The part of a cause that frames have in common, weighted by the variance of
+// each parameter; empty where no frame has it, not a number where it is
+// unknown.
+ParameterErrors MeanPart(const std::vector<UsedFrame>& frames,
+                         ParameterErrors ErrorBudget::*cause, Missing missing,
+                         const Eigen::VectorXi& free,
+                         Eigen::Index num_parameters) {
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(free.size());
   Eigen::ArrayXd weights = sum;
+  bool has_any = false;
   for (const UsedFrame& frame : frames) {
-    const ParameterErrors& errors =
-        frame.frame->estimate.error_budget.discretization;
-    if (errors.size() == num_parameters && errors(free).allFinite()) {
-      const Eigen::ArrayXd weight =
-          frame.covariance.diagonal().array().inverse();
+    const ParameterErrors& errors = frame.frame->estimate.error_budget.*cause;
+    const bool is_known =
+        errors.size() == num_parameters && errors(free).allFinite();
+    has_any = has_any || is_known;
+    const Eigen::ArrayXd weight = frame.Variances().inverse();
+    if (is_known) {
       sum += weight * errors(free).array();
+    }
+    if (is_known || missing == Missing::kZero) {
       weights += weight;
     }
   }
+  if (!has_any && missing == Missing::kZero) {
+    return {};
+  }
   ParameterErrors mean =
       ParameterErrors::Constant(num_parameters, Estimate::kUnknown);
-  if ((weights > 0).all()) {
-    mean(free) = sum / weights;
-  }
+  mean(free) = sum / weights;
   return mean;
 }
 
+// The squares of those of free parameters; zero where they are not known.
+Eigen::ArrayXd KnownSquares(const ParameterErrors& errors,
+                            const Eigen::VectorXi& free) {
+  if (errors.size() == 0) {
+    return Eigen::ArrayXd::Zero(free.size());
+  }
+  const Eigen::ArrayXd squares = errors(free).array().square();
+  return squares.isNaN().select(0, squares);
+}
+
+// What frames have in common is that of the model, but for what the budget has
+// already.
 void EnterMean(const Mean& mean, const Eigen::VectorXi& free, double load_error,
                Estimate& estimate) {
   Eigen::VectorXd slopes(free.size());
@@ -387,15 +411,13 @@ void EnterMean(const Mean& mean, const Eigen::VectorXi& free, double load_error,
       slopes.asDiagonal() * (noise + mean.common) * slopes.asDiagonal();
   estimate.error_budget.noise = unknown;
   estimate.error_budget.noise(free) = noise.diagonal().cwiseSqrt();
-  const Eigen::ArrayXd by_elements =
-      estimate.error_budget.discretization(free).array().isNaN().select(
-          0, estimate.error_budget.discretization(free).array());
+  const ErrorBudget& budget = estimate.error_budget;
+  const Eigen::ArrayXd others = KnownSquares(budget.discretization, free) +
+                                KnownSquares(budget.kinematics, free) +
+                                KnownSquares(budget.section, free);
   estimate.error_budget.model = unknown;
   estimate.error_budget.model(free) =
-      (mean.common.diagonal().array() - by_elements.square())
-          .max(0)
-          .sqrt()
-          .matrix();
+      (mean.common.diagonal().array() - others).max(0).sqrt().matrix();
 }
 
 std::optional<double> IfFinite(double value) {
@@ -520,8 +542,19 @@ Estimate JointEstimate(const Scene& scene, const EstimatorOptions& options,
   joint.parameters = first.parameters;
   const Eigen::VectorXi free = FreeParametersOf(first);
   const auto num_parameters = Eigen::Index(first.parameters.size());
-  joint.error_budget.discretization =
-      MeanDiscretization(used, free, num_parameters);
+  for (const UsedFrame& frame : used) {
+    const DeformationSize& size = frame.frame->estimate.deformation;
+    joint.deformation.strain = std::max(joint.deformation.strain, size.strain);
+    joint.deformation.rotation =
+        std::max(joint.deformation.rotation, size.rotation);
+  }
+  const auto part = [&](ParameterErrors ErrorBudget::*cause, Missing missing) {
+    joint.error_budget.*cause =
+        MeanPart(used, cause, missing, free, num_parameters);
+  };
+  part(&ErrorBudget::discretization, Missing::kUnknown);
+  part(&ErrorBudget::kinematics, Missing::kZero);
+  part(&ErrorBudget::section, Missing::kZero);
   const Mean mean = MeanOf(used, WeightsOfFrames(usual, used));
   EnterMean(mean, free, load_error.relative, joint);
   if (IsOneIsotropicMaterial(scene.materials)) {

@@ -48,6 +48,11 @@ class CommandLine : public ProgramTest {
   }
 };
 
+// What it refuses, and what becomes of files and streams, in suites that may
+// run side by side.
+class CommandLineErrors : public CommandLine {};
+class CommandLineOutputs : public CommandLine {};
+
 // Lines of at most 100 characters, as many as a screen has.
 void ExpectAScreen(const std::string& help) {
   std::istringstream lines(help);
@@ -404,7 +409,7 @@ TEST_F(CommandLine, ReadsASceneThatIsWrittenOut) {
   EXPECT_NEAR(report["youngs_modulus"].get<double>() / 1e5, 1, 1e-9);
 }
 
-TEST_F(CommandLine, WritesWhatParaViewShows) {
+TEST_F(CommandLineOutputs, WritesWhatParaViewShows) {
   MakeExactScene();
   for (const std::string name : {"closed-form", "iterative-fe"}) {
     Succeed("estimate exact.vtu --out=result.vtu --estimator=" + name);
@@ -423,7 +428,7 @@ TEST_F(CommandLine, WritesWhatParaViewShows) {
   }
 }
 
-TEST_F(CommandLine, RefusesWrongFlags) {
+TEST_F(CommandLineErrors, RefusesWrongFlags) {
   MakeExactScene();
   Refuse("", "give a command");
   Refuse("''", "unknown command ''");
@@ -450,7 +455,7 @@ TEST_F(CommandLine, RefusesWrongFlags) {
   Refuse("estimators exact.vtu", "takes no arguments; it got exact.vtu");
 }
 
-TEST_F(CommandLine, TakesWhatFollowsTwoDashesForFiles) {
+TEST_F(CommandLineErrors, TakesWhatFollowsTwoDashesForFiles) {
   MakeExactScene();
   std::filesystem::copy_file(folder_ / "exact.vtu", folder_ / "-nu=0.1.vtu");
   std::filesystem::copy_file(folder_ / "exact.vtu", folder_ / "--help");
@@ -467,7 +472,7 @@ TEST_F(CommandLine, TakesWhatFollowsTwoDashesForFiles) {
             std::string::npos);
 }
 
-TEST_F(CommandLine, RefusesWrongValues) {
+TEST_F(CommandLineErrors, RefusesWrongValues) {
   MakeExactScene();
   for (const std::string value : {"abc", "nan", "inf", "1e999", "0.3x"}) {
     Refuse("estimate exact.vtu --nu=" + value,
@@ -491,7 +496,7 @@ TEST_F(CommandLine, RefusesWrongValues) {
   Succeed("simulate cuboid.vtu --youngs 1 --nu -0.2 --out a.vtu");
 }
 
-TEST_F(CommandLine, RefusesWrongParametersByTheirFlags) {
+TEST_F(CommandLineErrors, RefusesWrongParametersByTheirFlags) {
   MakeExactScene();
   Refuse("estimate exact.vtu --nu=0.5",
          "--nu=0.5; it must be above -1 and below 0.5");
@@ -520,7 +525,7 @@ TEST_F(CommandLine, RefusesWrongParametersByTheirFlags) {
          "--loss=tukey; it is none, huber or cauchy");
 }
 
-TEST_F(CommandLine, RefusesWrongSimulations) {
+TEST_F(CommandLineErrors, RefusesWrongSimulations) {
   Succeed("generate cuboid --out=cuboid.vtu");
   Refuse("simulate cuboid.vtu --youngs=1 --nu=0.3", "needs --out");
   Refuse("simulate cuboid.vtu --youngs=1 --out=a.vtu", "--nu=NU");
@@ -542,7 +547,7 @@ TEST_F(CommandLine, RefusesWrongSimulations) {
          "cuboid.vtu: ");
 }
 
-TEST_F(CommandLine, RefusesWrongGeometriesByTheirFlags) {
+TEST_F(CommandLineErrors, RefusesWrongGeometriesByTheirFlags) {
   Refuse("generate sphere --out=a.vtu",
          "cuboid, organ, plate or rectangle; it got sphere");
   Refuse("generate --out=a.vtu",
@@ -576,7 +581,7 @@ TEST_F(CommandLine, RefusesWrongGeometriesByTheirFlags) {
   Refuse(organ + "--force=1,2", "--force=1,2; it needs three finite numbers");
 }
 
-TEST_F(CommandLine, SaysWhenStandardOutputIsLost) {
+TEST_F(CommandLineOutputs, SaysWhenStandardOutputIsLost) {
   MakeExactScene();
   for (const std::string arguments :
        {"--help", "help", "--version", "estimators", "estimate exact.vtu",
@@ -596,7 +601,7 @@ TEST_F(CommandLine, SaysWhenStandardOutputIsLost) {
   EXPECT_EQ(Read("a.vtu").mesh.NumElements(), 250);
 }
 
-TEST_F(CommandLine, EndsQuietlyWhereTheReaderOfStandardOutputIsGone) {
+TEST_F(CommandLineOutputs, EndsQuietlyWhereTheReaderOfStandardOutputIsGone) {
   MakeExactScene();
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   for (const std::string arguments :
@@ -616,7 +621,7 @@ TEST_F(CommandLine, EndsQuietlyWhereTheReaderOfStandardOutputIsGone) {
   }
 }
 
-TEST_F(CommandLine, WorksWithClosedStandardStreams) {
+TEST_F(CommandLineOutputs, WorksWithClosedStandardStreams) {
   MakeExactScene();
   EXPECT_EQ(Run("estimate exact.vtu --json=report.json --out=result.vtu",
                 ">.output <&- 2>&-")
@@ -627,7 +632,7 @@ TEST_F(CommandLine, WorksWithClosedStandardStreams) {
   EXPECT_EQ(Read("result.vtu").mesh.NumElements(), 250);
 }
 
-TEST_F(CommandLine, NeverOverwritesAnInput) {
+TEST_F(CommandLineOutputs, NeverOverwritesAnInput) {
   MakeExactScene();
   std::filesystem::create_directory(folder_ / "folder");
   std::filesystem::create_symlink("../exact.vtu",
@@ -651,7 +656,7 @@ TEST_F(CommandLine, NeverOverwritesAnInput) {
          "would overwrite the input folder/../cuboid.vtu");
 }
 
-TEST_F(CommandLine, RefusesTwoOutputsInOnePlace) {
+TEST_F(CommandLineErrors, RefusesTwoOutputsInOnePlace) {
   MakeExactScene();
   std::filesystem::create_symlink("result.vtu", folder_ / "link.json");
   for (const std::string json : {"result.vtu", "./result.vtu", "link.json"}) {
@@ -671,7 +676,7 @@ TEST_F(CommandLine, RefusesTwoOutputsInOnePlace) {
             0);
 }
 
-TEST_F(CommandLine, WritesAllOutputsOrNone) {
+TEST_F(CommandLineOutputs, WritesAllOutputsOrNone) {
   MakeExactScene();
   Refuse("estimate exact.vtu --out=result.vtu --json=/dev/full",
          "/dev/full: cannot be written (No space left on device)");
@@ -689,7 +694,7 @@ TEST_F(CommandLine, WritesAllOutputsOrNone) {
          "no/result.vtu: there is no folder");
 }
 
-TEST_F(CommandLine, WritesWholeFilesUnderADeviceFolderToo) {
+TEST_F(CommandLineOutputs, WritesWholeFilesUnderADeviceFolderToo) {
   if (access("/dev/shm", W_OK) != 0) {
     GTEST_SKIP() << "no writable folder /dev/shm";
   }
@@ -704,7 +709,7 @@ TEST_F(CommandLine, WritesWholeFilesUnderADeviceFolderToo) {
   std::filesystem::remove(name);
 }
 
-TEST_F(CommandLine, RefusesToWriteToAnOpenFile) {
+TEST_F(CommandLineErrors, RefusesToWriteToAnOpenFile) {
   MakeExactScene();
   const std::string says = "this is the number of an open file, which could be";
   std::filesystem::create_symlink("/dev/fd/3", folder_ / "link.vtu");
@@ -727,7 +732,7 @@ TEST_F(CommandLine, RefusesToWriteToAnOpenFile) {
             true);
 }
 
-TEST_F(CommandLine, WritesVtuFilesOnly) {
+TEST_F(CommandLineOutputs, WritesVtuFilesOnly) {
   MakeExactScene();
   for (const std::string command :
        {"estimate exact.vtu", "simulate cuboid.vtu --youngs=1 --nu=0",
@@ -815,7 +820,7 @@ TEST_F(CommandLine, HelpStatesTheDefaultsOfTheExampleScenes) {
   EXPECT_EQ(Read("cuboid.vtu").mesh.nodes, CuboidScene(cuboid).mesh.nodes);
 }
 
-TEST_F(CommandLine, SaysWhenNumbersLeaveDoublePrecision) {
+TEST_F(CommandLineErrors, SaysWhenNumbersLeaveDoublePrecision) {
   Succeed("generate cuboid --out=cuboid.vtu");
   const auto write_scene = [this](const std::string& displacement,
                                   const std::string& force) {
@@ -848,7 +853,7 @@ TEST_F(CommandLine, SaysWhenNumbersLeaveDoublePrecision) {
          "cuboid.vtu: the simulated displacement has the magnitude inf");
 }
 
-TEST_F(CommandLine, RefusesWrongFilesByName) {
+TEST_F(CommandLineErrors, RefusesWrongFilesByName) {
   MakeExactScene();
   Refuse("estimate nothing.vtu", "nothing.vtu");
   Refuse("estimate .", ".: this is a folder");
@@ -868,7 +873,7 @@ TEST_F(CommandLine, RefusesWrongFilesByName) {
   Refuse("generate cuboid --out=exact.vtu/out.vtu", "exact.vtu/out.vtu");
 }
 
-TEST_F(CommandLine, NeedsSupportsForAFiniteElementFitOnly) {
+TEST_F(CommandLineErrors, NeedsSupportsForAFiniteElementFitOnly) {
   Succeed("generate cuboid --out=cuboid.vtu");
   WriteText(folder_ / "scene.json", R"({
     "mesh": "cuboid.vtu", "supports": [],
@@ -882,7 +887,7 @@ TEST_F(CommandLine, NeedsSupportsForAFiniteElementFitOnly) {
 // ---------------------------------------------------------------------------
 // Text of others in messages.
 
-TEST_F(CommandLine, QuotesOnlyWhatIsFitToPrint) {
+TEST_F(CommandLineErrors, QuotesOnlyWhatIsFitToPrint) {
   MakeExactScene();
   const std::string longest(2000, 'a');
   const std::string cut = std::string(37, 'a') + "..." + std::string(20, 'a');

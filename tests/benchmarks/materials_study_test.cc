@@ -20,7 +20,7 @@ constexpr char kBoundOfE[] = "stiffness_cramer_rao [1]";
 constexpr char kPrediction[] = "prediction_error [1]";
 constexpr char kScore[] = "error_over_cramer_rao [1]";
 
-class MaterialsStudy : public testing::ProgramTest {
+class MaterialsStudyRemade : public testing::ProgramTest {
  protected:
   std::vector<TableRow> By(const std::string& estimator) const {
     std::vector<TableRow> own;
@@ -155,7 +155,7 @@ class MaterialsStudy : public testing::ProgramTest {
   std::vector<TableRow> rows_;
 };
 
-TEST_F(MaterialsStudy, FindsWhatFollowsFromTheory) {
+TEST_F(MaterialsStudyRemade, FindsWhatFollowsFromTheory) {
   Succeed("study --name=materials --out=. --quick");
   rows_ = ReadTable(folder_ / "materials_cells.csv");
   ExpectTrueErrors();

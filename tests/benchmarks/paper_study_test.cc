@@ -140,9 +140,9 @@ void ExpectMetadata(const nlohmann::json& metadata) {
   }
 }
 
-class PaperStudy : public testing::ProgramTest {};
+class PaperStudyRemade : public testing::ProgramTest {};
 
-TEST_F(PaperStudy, FindsWhatTheoryPredicts) {
+TEST_F(PaperStudyRemade, FindsWhatTheoryPredicts) {
   Succeed("study --name=paper --out=. --quick");
   const std::vector<TableRow> noise = ReadTable(folder_ / "paper_noise.csv");
   const RowsByDeviation closed_form = ByDeviation(noise, "closed-form");

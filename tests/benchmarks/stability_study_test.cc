@@ -205,9 +205,9 @@ void ExpectCellsAddUpTrials(const std::vector<TableRow>& rows,
   }
 }
 
-class StabilityStudy : public testing::ProgramTest {};
+class StabilityStudyRemade : public testing::ProgramTest {};
 
-TEST_F(StabilityStudy, FindsWhatTheoryPredicts) {
+TEST_F(StabilityStudyRemade, FindsWhatTheoryPredicts) {
   Succeed("study --name=stability --out=. --quick");
   const std::vector<TableRow> rows = ReadTable(folder_ / "stability.csv");
   const Trials trials = Index(rows);

@@ -276,9 +276,9 @@ void ExpectRegretOfTheTrials(const Rows& rows, const Rows& regrets) {
   EXPECT_GT(count, 0);
 }
 
-class UnseenStudy : public testing::ProgramTest {};
+class UnseenStudyRemade : public testing::ProgramTest {};
 
-TEST_F(UnseenStudy, FindsWhatTheoryPredicts) {
+TEST_F(UnseenStudyRemade, FindsWhatTheoryPredicts) {
   Succeed("study --name=unseen --out=. --quick");
   const Rows rows = ReadTable(folder_ / "unseen.csv");
   ExpectTheTruthWithoutNoise(rows);

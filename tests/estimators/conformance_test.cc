@@ -632,9 +632,16 @@ TEST_P(Conformance, ThreadsAtOnceGiveTheSameBits) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Estimators, Conformance,
-                         ::testing::ValuesIn(EstimatorNames()),
+// In several suites, which may run side by side.
+INSTANTIATE_TEST_SUITE_P(Auto, Conformance, ::testing::Values("auto"),
                          testing::EstimatorTestName);
+INSTANTIATE_TEST_SUITE_P(IterativeFe, Conformance,
+                         ::testing::Values("iterative-fe"),
+                         testing::EstimatorTestName);
+INSTANTIATE_TEST_SUITE_P(
+    Others, Conformance,
+    ::testing::ValuesIn(testing::EstimatorNamesBut({"auto", "iterative-fe"})),
+    testing::EstimatorTestName);
 
 }  // namespace
 }  // namespace elastimate

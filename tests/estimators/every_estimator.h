@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "elastimate/estimators/registry.h"
 
@@ -21,6 +22,18 @@ class EveryEstimator : public ::testing::TestWithParam<std::string_view> {
     return MakeEstimator(GetParam())->Run(scene, options);
   }
 };
+
+/// All estimators but some.
+inline std::vector<std::string_view> EstimatorNamesBut(
+    const std::vector<std::string_view>& others) {
+  std::vector<std::string_view> names;
+  for (const std::string_view name : EstimatorNames()) {
+    if (std::find(others.begin(), others.end(), name) == others.end()) {
+      names.push_back(name);
+    }
+  }
+  return names;
+}
 
 inline std::string EstimatorTestName(
     const ::testing::TestParamInfo<std::string_view>& estimator) {

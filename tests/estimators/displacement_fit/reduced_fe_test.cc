@@ -110,7 +110,7 @@ TEST(ReducedFe, EstimatesTheSameByMultigrid) {
 
 // Multigrid lacks the soft bending modes of a slender bar, so that a residual
 // may be small while most of the energy is missing.
-TEST(ReducedFe, EstimatesTheSameByMultigridInASlenderBar) {
+TEST(ReducedFeLong, EstimatesTheSameByMultigridInASlenderBar) {
   if (!HasMultigrid()) {
     GTEST_SKIP() << "built without PETSc";
   }

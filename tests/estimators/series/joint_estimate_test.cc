@@ -85,6 +85,38 @@ TEST(JointEstimate, AveragesNoiseAlone) {
               1e-9);
 }
 
+// Of nine parts of the variance that is no noise, strains make four, and an
+// unknown thickness one.
+TEST(JointEstimate, TellsWhatStrainsAndThicknessDoFromTheModel) {
+  const Eigen::Vector2d errors(0.03, 0.06);
+  std::vector<FrameEstimate> frames(
+      100, FrameOf(100, 0.3, errors * std::sqrt(1.1), errors * std::sqrt(0.1)));
+  for (FrameEstimate& frame : frames) {
+    frame.estimate.error_budget.kinematics = errors * 2 / 3;
+    frame.estimate.error_budget.section = errors / 3;
+    frame.estimate.deformation = {0.02, 0.01};
+  }
+  frames[7].estimate.deformation = {0.03, 0.005};
+  const Estimate joint = Join(frames);
+  EXPECT_NEAR(joint.error_budget.kinematics(0), 0.02, 1e-9);
+  EXPECT_NEAR(joint.error_budget.kinematics(1), 0.04, 1e-9);
+  EXPECT_NEAR(joint.error_budget.section(0), 0.01, 1e-9);
+  EXPECT_NEAR(joint.error_budget.model(0), 0.02, 1e-9);
+  EXPECT_NEAR(joint.error_budget.model(1), 0.04, 1e-9);
+  EXPECT_EQ(joint.deformation.strain, 0.03);
+  EXPECT_EQ(joint.deformation.rotation, 0.01);
+  // Frames of small strains have no such part, and half of them make half of
+  // it.
+  for (std::size_t i = 0; i < 50; ++i) {
+    frames[i].estimate.error_budget.kinematics = {};
+  }
+  EXPECT_NEAR(Join(frames).error_budget.kinematics(0), 0.01, 1e-9);
+  for (FrameEstimate& frame : frames) {
+    frame.estimate.error_budget.kinematics = {};
+  }
+  EXPECT_EQ(Join(frames).error_budget.kinematics.size(), 0);
+}
+
 // Each of a hundred frames has it in its error, which is that of noise else.
 TEST(JointEstimate, CountsTheErrorOfLoadsOnce) {
   const Eigen::Vector2d errors(0.01, 0.02);
