@@ -9,6 +9,7 @@
 
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/scene/finer_scene.h"
+#include "elastimate/core/scene/simplicial_scene.h"
 #include "elastimate/core/scene/support_ends.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
@@ -22,6 +23,10 @@ namespace {
 Eigen::Index MostDividedElements(int dimension) {
   return dimension == 3 ? 20000 : 100000;
 }
+
+// Elements from which on a factor takes longer than iterations in nested
+// spaces.
+constexpr Eigen::Index kLeastNested = 4000;
 
 // Next to the end of the range of a ratio a misfit hardly has a slope: where
 // coarse elements end there, finer ones start farther inside.
@@ -117,8 +122,11 @@ class Refinement {
                            const std::optional<Eigen::VectorXd>& start,
                            const std::optional<Eigen::VectorXd>& other);
   std::unique_ptr<SpaceFit> MinimizeOn(
-      const Scene& scene, const std::optional<Eigen::VectorXd>& start) const {
-    auto space = std::make_unique<SpaceFit>(scene, options_);
+      const Scene& scene, const std::optional<Eigen::VectorXd>& start,
+      const std::vector<const Scene*>& coarser = {}) const {
+    const bool is_small = scene.mesh.NumElements() < kLeastNested;
+    auto space = std::make_unique<SpaceFit>(
+        scene, options_, is_small ? std::vector<const Scene*>() : coarser);
     space->Minimize(descent_, start);
     return space;
   }
@@ -134,6 +142,8 @@ class Refinement {
   Descent descent_;
   /// Where the elements of the scene are linear.
   std::unique_ptr<SpaceFit> linear_;
+  /// Its simplices, which the quadratic ones are nested in.
+  std::optional<Scene> simplicial_;
   /// The least residual of the second fits, on any support ends.
   double least_of_quadratic_ = std::numeric_limits<double>::infinity();
 };
@@ -157,7 +167,11 @@ void DescribeChange(SpaceFit& coarse, bool is_last,
 MaterialFit Refinement::FitQuadratic(
     const Scene& quadratic, const std::optional<Eigen::VectorXd>& start,
     const std::optional<Eigen::VectorXd>& other) {
-  std::unique_ptr<SpaceFit> coarse = MinimizeOn(quadratic, start);
+  std::vector<const Scene*> coarser;
+  if (simplicial_) {
+    coarser.push_back(&*simplicial_);
+  }
+  std::unique_ptr<SpaceFit> coarse = MinimizeOn(quadratic, start, coarser);
   if (!coarse->Fit().minimum) {
     return coarse->Fit();
   }
@@ -170,7 +184,7 @@ MaterialFit Refinement::FitQuadratic(
   Work work = inliers.fit.estimate.work;
   if (!inliers.left_out.empty() && inliers.fit.minimum) {
     coarse = MinimizeOn(WithoutOutliers(quadratic, inliers.left_out),
-                        inliers.fit.Variables());
+                        inliers.fit.Variables(), coarser);
     work = work + coarse->Fit().estimate.work;
     if (linear_) {
       linear_ = MinimizeOn(WithoutOutliers(scene_, inliers.left_out),
@@ -187,8 +201,9 @@ MaterialFit Refinement::FitQuadratic(
   if (MayDivide(quadratic) &&
       (options_.refinement == Refine::kAlways ||
        !IsMeshErrorSmall(finest->Fit().estimate))) {
+    coarser.push_back(&finest->OwnScene());
     std::unique_ptr<SpaceFit> divided = MinimizeOn(
-        FinerScene(finest->OwnScene()), finest->Fit().Variables());
+        FinerScene(finest->OwnScene()), finest->Fit().Variables(), coarser);
     if (divided->Fit().minimum) {
       DescribeChange(*finest, false, other, *divided);
       work = work + divided->Fit().estimate.work;
@@ -208,6 +223,7 @@ MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start) {
   Work work;
   if (scene_.mesh.Order() == 1) {
     linear_ = MinimizeOn(scene_, start);
+    simplicial_ = SimplicialScene(scene_);
     if (!linear_->Fit().minimum) {
       return linear_->Fit();
     }

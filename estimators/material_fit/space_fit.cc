@@ -74,12 +74,19 @@ Eigen::VectorXd FactorsAtMinimum(Loss loss,
   return factors;
 }
 
+std::vector<const Scene*> WithFinest(std::vector<const Scene*> coarser,
+                                     const Scene& finest) {
+  coarser.push_back(&finest);
+  return coarser;
+}
+
 }  // namespace
 
-SpaceFit::SpaceFit(Scene scene, const EstimatorOptions& options)
+SpaceFit::SpaceFit(Scene scene, const EstimatorOptions& options,
+                   const std::vector<const Scene*>& coarser)
     : options_(options),
       scene_(std::move(scene)),
-      misfit_(scene_, options) {}
+      misfit_(WithFinest(coarser, scene_), options) {}
 
 void SpaceFit::Minimize(Descent descent,
                         const std::optional<Eigen::VectorXd>& start) {

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
@@ -37,8 +38,11 @@ struct MaterialFit {
 class SpaceFit {
  public:
   /// Preconditions are those of Estimator::Run; the supports hold the specimen.
-  /// `options` must outlive this object.
-  SpaceFit(Scene scene, const EstimatorOptions& options);
+  /// `coarser` are spaces of the same specimen, from coarse to fine, by which
+  /// systems are solved without a factor of this one; none where that is
+  /// faster.  They and `options` must outlive this object.
+  SpaceFit(Scene scene, const EstimatorOptions& options,
+           const std::vector<const Scene*>& coarser = {});
   SpaceFit(const SpaceFit&) = delete;
   SpaceFit& operator=(const SpaceFit&) = delete;
 

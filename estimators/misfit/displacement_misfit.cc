@@ -19,16 +19,25 @@ std::optional<double> PositiveRatio(double numerator, double denominator) {
                                            : std::nullopt;
 }
 
+// Of iterative solutions, relative in the energy norm.  What finer elements
+// change is a thousandth of a displacement at least where it matters; the
+// elimination of motions asks for more.
+double ToleranceFor(const Scene& scene) {
+  constexpr double kOfDisplacements = 1e-5;
+  return HasUnknownMotion(scene) ? StiffnessSolver::kAccurate
+                                 : kOfDisplacements;
+}
+
 }  // namespace
 
-DisplacementMisfit::DisplacementMisfit(const Scene& scene,
+DisplacementMisfit::DisplacementMisfit(const std::vector<const Scene*>& spaces,
                                        const EstimatorOptions& options)
-    : free_(scene, options),
-      equilibrium_(scene, options.solver),
-      observed_(scene),
+    : free_(*spaces.back(), options),
+      equilibrium_(spaces, options.solver, ToleranceFor(*spaces.back())),
+      observed_(*spaces.back()),
       on_factorization_(options.on_factorization) {
-  if (HasUnknownMotion(scene)) {
-    motion_.emplace(scene, observed_, equilibrium_);
+  if (HasUnknownMotion(*spaces.back())) {
+    motion_.emplace(*spaces.back(), observed_, equilibrium_);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/scene/observed_displacements.h"
@@ -25,7 +26,14 @@ inline constexpr double kLeastNoise = 1e-12;
 class DisplacementMisfit {
  public:
   /// Preconditions are those of Estimator::Run.  `scene` must outlive this.
-  DisplacementMisfit(const Scene& scene, const EstimatorOptions& options);
+  DisplacementMisfit(const Scene& scene, const EstimatorOptions& options)
+      : DisplacementMisfit(std::vector<const Scene*>{&scene}, options) {}
+
+  /// The same in the last of some spaces of one specimen, from coarse to fine,
+  /// in which systems are solved without its factor (Equilibrium).  All must
+  /// outlive this.
+  DisplacementMisfit(const std::vector<const Scene*>& spaces,
+                     const EstimatorOptions& options);
 
   const FreeParameters& Free() const { return free_; }
   const ObservedDisplacements& Observed() const { return observed_; }
