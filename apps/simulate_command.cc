@@ -158,7 +158,8 @@ std::string MeasuredScene(const std::string& source,
             generator, displacement);
     scene.load_cases[k].displacement = displacement;
   }
-  scene.is_of_linear_elasticity = true;
+  // The rotation is a finite one, to be treated as that of a camera.
+  scene.is_of_linear_elasticity = errors.rigid_motion.size() == 0;
   Fields fields = SceneFields(scene);
   for (const auto& [name, axes] : reading.axis_arrays) {
     fields.cell.push_back({name, axes});
