@@ -8,6 +8,7 @@
 
 #include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/mesh/mid_edges.h"
+#include "elastimate/core/scene/deformation_size.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
@@ -130,8 +131,11 @@ class FieldCollector {
   Fields& fields_;
 };
 
-Eigen::MatrixXd MeasuredMinus(const Scene& scene,
+// Without the rotation of each load case where that is free, as the estimate
+// was made.
+Eigen::MatrixXd MeasuredMinus(Scene scene,
                               const Eigen::MatrixXd& displacement) {
+  RemoveFreeRotation(scene);
   Eigen::MatrixXd difference =
       Eigen::MatrixXd::Zero(displacement.rows(), displacement.cols());
   const int dimension = scene.mesh.Dimension();

@@ -9,6 +9,7 @@
 
 #include "apps/flags.h"
 #include "elastimate/core/mesh/mesh_points.h"
+#include "elastimate/core/scene/deformation_size.h"
 #include "elastimate/io/text/input_error.h"
 
 namespace elastimate {
@@ -58,14 +59,16 @@ void CheckFirst(const Estimator& estimator, const Scene& scene,
   }
 }
 
-// What is left of a measurement; not a number where there is none, or it was
-// left out.
-Eigen::VectorXd ResidualOf(const Mesh& mesh, const LoadCase& frame,
+// What is left of a measurement, without its rotation where that is free; not a
+// number where there is none, or it was left out.
+Eigen::VectorXd ResidualOf(const Scene& scene, LoadCase frame,
                            const Estimate& estimate) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (estimate.fitted_displacement.size() == 0) {
     return {};
   }
+  RemoveFreeRotation(scene, frame);
+  const Mesh& mesh = scene.mesh;
   const Eigen::MatrixXd fitted = estimate.fitted_displacement.col(0).reshaped(
       mesh.Dimension(), mesh.NumNodes());
   Eigen::MatrixXd residual;
@@ -128,7 +131,7 @@ std::vector<FrameEstimate> EstimateFrames(
         Prepare(estimator, scene, *frame, options, prepared);
         estimate.estimate = prepared->RunLoadCases({*frame});
         const Eigen::VectorXd residual =
-            ResidualOf(scene.mesh, *frame, estimate.estimate);
+            ResidualOf(scene, *frame, estimate.estimate);
         CompareWith(residual_before, residual, estimate);
         residual_before = residual;
       } catch (const std::invalid_argument& error) {

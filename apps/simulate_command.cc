@@ -158,8 +158,10 @@ std::string MeasuredScene(const std::string& source,
             generator, displacement);
     scene.load_cases[k].displacement = displacement;
   }
-  scene.origin =
-      FLAGS_order == mesh.Order() ? Origin::kComputed : Origin::kMeasured;
+  // A finite rotation is to be treated as that of a camera.
+  const bool is_of_this_mesh =
+      FLAGS_order == mesh.Order() && errors.rigid_motion.size() == 0;
+  scene.origin = is_of_this_mesh ? Origin::kComputed : Origin::kMeasured;
   Fields fields = SceneFields(scene);
   for (const auto& [name, axes] : reading.axis_arrays) {
     fields.cell.push_back({name, axes});

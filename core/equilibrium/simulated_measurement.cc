@@ -203,9 +203,13 @@ void AddErrors(const MeasurementErrors& errors,
                std::mt19937_64& generator, Eigen::MatrixXd& displacement) {
   const DegreesOfFreedom dofs({held, {}});
   double standard_deviation = errors.noise_sd;
+  const double norm =
+      errors.relative_noise * Norm(dofs.Restrict(displacement.reshaped()));
+  if (errors.rigid_motion.size() > 0) {
+    displacement =
+        MovedRigidly(positions + displacement, errors.rigid_motion) - positions;
+  }
   if (errors.relative_noise > 0) {
-    const double norm =
-        errors.relative_noise * Norm(dofs.Restrict(displacement.reshaped()));
     standard_deviation = norm / std::sqrt(double(dofs.NumFree()));
     displacement.reshaped() +=
         dofs.Extend(DrawNoise(errors.law, dofs.NumFree(), norm, generator));
@@ -218,12 +222,6 @@ void AddErrors(const MeasurementErrors& errors,
     displacement +=
         DrawOutliers(FreePoints(held), errors.outliers, standard_deviation,
                      int(positions.rows()), positions.cols(), generator);
-  }
-  if (errors.rigid_motion.size() > 0) {
-    for (Eigen::Index point = 0; point < positions.cols(); ++point) {
-      displacement.col(point) +=
-          RigidMotionsAt(positions.col(point)) * errors.rigid_motion;
-    }
   }
 }
 

@@ -72,16 +72,16 @@ struct MeasurementErrors {
   /// deviations of the noise; those of relative noise are its norm over the
   /// root of the number of components.
   double outliers = 0;
-  /// Small translations along the axes, then small rotations [rad] about axes
-  /// through the origin (RigidMotionsAt), of the camera or of all that was
-  /// measured; empty for none.
+  /// The translation, then the angle or rotation vector [rad] about the origin
+  /// (MovedRigidly), of the camera or of all that was measured; empty for none.
   Eigen::VectorXd rigid_motion;
 };
 
 /// Adds the errors to displacements at some positions, both dimension x n. Held
 /// components (dimension x n) have no noise, and points with such no gross
-/// error; the rigid motion is that of all.  First the noise is drawn, then the
-/// outliers.  Throws as DrawNoiseAt does.
+/// error; the rigid motion is that of all, and takes place before noise and
+/// outliers are added.  First the noise is drawn, then the outliers.  Throws as
+/// DrawNoiseAt does.
 void AddErrors(const MeasurementErrors& errors,
                const Eigen::MatrixXd& positions, const ComponentMask& held,
                std::mt19937_64& generator, Eigen::MatrixXd& displacement);

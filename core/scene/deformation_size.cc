@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -21,9 +22,12 @@ constexpr Eigen::Index kValuesPerMonomial = 4;
 // rounding, they still amplify noise.
 constexpr double kDependent = 1e-4;
 constexpr double kVolumeShare = 0.95;
-// A smaller rotation [rad] is left to the linear motions that fits eliminate:
-// it makes strains of 5e-5.
-constexpr double kSmallRotation = 1e-2;
+// Rotations [rad] that are taken out whatever the strains are, and those that
+// are left to the linear motions that fits eliminate, for rounding.  Of those
+// between, what is less than the strains may be the turn of the specimen
+// itself, and changes them by less than half of their square.
+constexpr double kLargeRotation = 1e-2;
+constexpr double kSmallRotation = 1e-4;
 
 // What was observed of each component: positions, dimension x n, and values.
 struct Observed {
@@ -260,30 +264,19 @@ Eigen::MatrixXd NearestRotation(const Eigen::MatrixXd& from,
   return svd.u * signs.asDiagonal() * svd.v.transpose();
 }
 
-// Of the points that were observed: all components of each, or none.
-void RemoveRotation(const Eigen::MatrixXd& positions,
-                    const ComponentMask& is_observed,
-                    Eigen::MatrixXd& displacement) {
+// The points of which all components were observed; nothing where some
+// components of a point were, and others were not.
+std::optional<std::vector<Eigen::Index>> WhollyObserved(
+    const ComponentMask& is_observed) {
   std::vector<Eigen::Index> observed;
-  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
+  for (Eigen::Index i = 0; i < is_observed.cols(); ++i) {
     if (is_observed.col(i).all()) {
       observed.push_back(i);
     } else if (is_observed.col(i).any()) {
-      return;
+      return std::nullopt;
     }
   }
-  if (observed.empty()) {
-    return;
-  }
-  const Eigen::MatrixXd before = positions(Eigen::all, observed);
-  const Eigen::MatrixXd after = before + displacement(Eigen::all, observed);
-  const Eigen::VectorXd middle = after.rowwise().mean();
-  const Eigen::MatrixXd from = before.colwise() - before.rowwise().mean();
-  const Eigen::MatrixXd to = after.colwise() - middle;
-  const Eigen::MatrixXd rotation = NearestRotation(from, to);
-  if (AngleOf(rotation) > kSmallRotation) {
-    displacement(Eigen::all, observed) = rotation.transpose() * to - from;
-  }
+  return observed;
 }
 
 }  // namespace
@@ -304,23 +297,54 @@ DeformationSize MeasureDeformation(const Scene& scene) {
 }
 
 void RemoveFreeRotation(Scene& scene) {
-  if (!scene.is_rigid_motion_free || scene.origin == Origin::kComputed) {
+  for (LoadCase& load_case : scene.load_cases) {
+    RemoveFreeRotation(scene, load_case);
+  }
+}
+
+void RemoveFreeRotation(const Scene& scene, LoadCase& load_case) {
+  if (!scene.is_rigid_motion_free || scene.origin == Origin::kComputed ||
+      !IsMeasured(load_case)) {
     return;
   }
-  for (LoadCase& load_case : scene.load_cases) {
-    if (load_case.displacement.size() != 0) {
-      RemoveRotation(scene.mesh.nodes,
-                     load_case.observed.size() != 0
-                         ? load_case.observed
-                         : ComponentMask::Constant(scene.mesh.Dimension(),
-                                                   scene.mesh.NumNodes(), true),
-                     load_case.displacement);
-    }
-    PointDisplacements& points = load_case.points;
-    if (points.points.Size() != 0) {
-      RemoveRotation(PositionsOfPoints(scene, load_case),
-                     !points.displacement.array().isNaN(), points.displacement);
-    }
+  Eigen::MatrixXd& of_nodes = load_case.displacement;
+  Eigen::MatrixXd& of_points = load_case.points.displacement;
+  const auto nodes = WhollyObserved(
+      of_nodes.size() != 0 && load_case.observed.size() != 0
+          ? load_case.observed
+          : ComponentMask::Constant(of_nodes.rows(), of_nodes.cols(), true));
+  const auto points = WhollyObserved(!of_points.array().isNaN());
+  if (!nodes || !points || nodes->size() + points->size() == 0) {
+    return;
+  }
+  const auto num_nodes = static_cast<Eigen::Index>(nodes->size());
+  const auto num_points = static_cast<Eigen::Index>(points->size());
+  Eigen::MatrixXd before(scene.mesh.Dimension(), num_nodes + num_points);
+  Eigen::MatrixXd after = before;
+  if (num_nodes > 0) {
+    before.leftCols(num_nodes) = scene.mesh.nodes(Eigen::all, *nodes);
+    after.leftCols(num_nodes) = of_nodes(Eigen::all, *nodes);
+  }
+  if (num_points > 0) {
+    before.rightCols(num_points) =
+        PositionsOfPoints(scene, load_case)(Eigen::all, *points);
+    after.rightCols(num_points) = of_points(Eigen::all, *points);
+  }
+  after += before;
+  const Eigen::MatrixXd from = before.colwise() - before.rowwise().mean();
+  const Eigen::MatrixXd to = after.colwise() - after.rowwise().mean();
+  const Eigen::MatrixXd rotation = NearestRotation(from, to);
+  const Eigen::MatrixXd turned = rotation.transpose() * to - from;
+  const double strain = turned.norm() / from.norm();
+  if (!(AngleOf(rotation) >
+        std::clamp(strain, kSmallRotation, kLargeRotation))) {
+    return;
+  }
+  if (num_nodes > 0) {
+    of_nodes(Eigen::all, *nodes) = turned.leftCols(num_nodes);
+  }
+  if (num_points > 0) {
+    of_points(Eigen::all, *points) = turned.rightCols(num_points);
   }
 }
 

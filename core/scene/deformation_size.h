@@ -32,11 +32,16 @@ DeformationSize MeasureDeformation(const Scene& scene);
 /// rigid motion is free: u becomes R^T (x + u - b) + a - x, where R and the
 /// means a and b of observed positions before and after minimise the sum of
 /// |x + u - b - R (x - a)|^2.  What is left is small enough for the linear
-/// rigid motions that fits eliminate.  A load case in which some components of
-/// a point were observed and others were not stays as it is, and so does a
-/// scene whose displacements linear elasticity computed. Precondition: a valid
-/// scene.  O(num_nodes + num_points).
+/// rigid motions that fits eliminate.  A rotation below 0.01 rad stays where it
+/// is less than the root mean square of what it leaves of u, over that of x -
+/// a: it may be the turn of the specimen itself.  A load case in which some
+/// components of a point were observed and others were not stays as it is, and
+/// so does a scene whose displacements linear elasticity computed.
+/// Precondition: a valid scene.  O(num_nodes + num_points).
 void RemoveFreeRotation(Scene& scene);
+
+/// The same of one load case of the scene, or of another of its kind.
+void RemoveFreeRotation(const Scene& scene, LoadCase& load_case);
 
 }  // namespace elastimate
 

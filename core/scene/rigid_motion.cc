@@ -340,6 +340,20 @@ std::string WhyNotHeld(const Mesh& mesh, const Supports& supports,
 
 }  // namespace
 
+Eigen::MatrixXd MovedRigidly(const Eigen::MatrixXd& points,
+                             const Eigen::VectorXd& motion) {
+  const Eigen::Index dimension = points.rows();
+  Eigen::MatrixXd rotation;
+  if (dimension == 2) {
+    rotation = Eigen::Rotation2Dd(motion(2)).toRotationMatrix();
+  } else {
+    const Eigen::Vector3d turn = motion.tail(3);
+    rotation = Eigen::AngleAxisd(turn.norm(), turn.stableNormalized())
+                   .toRotationMatrix();
+  }
+  return (rotation * points).colwise() + motion.head(dimension);
+}
+
 std::string WhyNotHeld(const Mesh& mesh, const Supports& supports) {
   const std::vector<Body> bodies = BodiesOf(mesh);
   std::vector<int> first(mesh.NumNodes(), -1);

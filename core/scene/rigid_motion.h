@@ -42,6 +42,13 @@ inline Eigen::MatrixXd RigidMotionsOf(const Eigen::MatrixXd& arms) {
   return motions;
 }
 
+/// Where a rigid motion of any size takes points (dimension x n): R x + t, with
+/// the translation t first in `motion`, then the angle [rad] about the origin,
+/// in space the rotation vector: the axis times the angle.  To first order,
+/// RigidMotionsAt(x) * motion is what it adds to x.
+Eigen::MatrixXd MovedRigidly(const Eigen::MatrixXd& points,
+                             const Eigen::VectorXd& motion);
+
 /// Why the supports do not hold the specimen: a sentence that names a motion
 /// without strain which they allow (a translation or a rotation of a part of
 /// the mesh), or an empty string when there is none. A finite element solution

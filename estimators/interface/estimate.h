@@ -268,8 +268,9 @@ struct Estimate {
   std::optional<Eigen::Vector2d> discretization_correction;
   /// Points that lie too far off for noise, and were left out.
   std::vector<Outlier> outliers;
-  /// Of a scene of unknown motion, with the motion: num_dofs x num_load_cases
-  /// [length]; empty for others.
+  /// Of a scene of unknown motion, with the motion but for the rotation that
+  /// RemoveFreeRotation takes out: num_dofs x num_load_cases [length]; empty
+  /// for others.
   Eigen::MatrixXd fitted_displacement;
   /// Bounds that the estimate lies on, such as "nu_max".
   std::vector<std::string> active_bounds;

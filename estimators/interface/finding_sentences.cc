@@ -690,10 +690,10 @@ Finding LargeDeformation(const DeformationSize& size,
 
 Finding MarginNotGiven(double relative_error) {
   return Warning(FindingCode::kMarginNotGiven,
-                 "the points may end within the specimen: half a spacing "
-                 "changes E by " +
+                 "the mesh ends at its outermost points; half a spacing more "
+                 "would change E by " +
                      Percent(relative_error),
-                 "give \"margin\", how far it reaches beyond its \"points\"");
+                 "give \"margin\", their distance from the free edges");
 }
 
 Finding NegativePoissonRatio(const ParameterEstimate& poisson_ratio) {

@@ -94,19 +94,20 @@ std::string Description(const std::filesystem::path& path,
   const Eigen::Index num_lost =
       FindArray(mesh.node_arrays, "displacement")->array().isNaN().count() / 2;
   std::ostringstream text;
-  text << PrintablePath(path) << ": " << mesh.elements.cols() << " "
-       << mesh.Shapes() << " of " << mesh.nodes.cols() << " points ("
-       << frame.format << "), " << size(0) << " x " << size(1);
+  text << PrintablePath(path) << ": the mesh of its points (format "
+       << frame.format << ") has " << mesh.elements.cols() << " "
+       << mesh.Shapes() << " and " << mesh.nodes.cols() << " nodes, and is "
+       << size(0) << " x " << size(1) << " in size";
   if (points.max_edge > 0) {
-    text << ", edges up to " << points.max_edge;
+    text << ", with edges up to " << points.max_edge;
   }
   if (frame.num_invalid + num_beside > 0) {
     text << "; " << frame.num_invalid << " points without a measurement and "
-         << num_beside << " beside the mesh are left out";
+         << num_beside << " that do not hang together with it are left out";
   }
   if (num_lost > 0) {
     text << "; " << num_lost
-         << " nodes are points that the grid has no measurement of";
+         << " of its nodes fill gaps of the grid, without a measurement";
   }
   return text.str();
 }

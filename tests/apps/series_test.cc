@@ -21,6 +21,7 @@ namespace elastimate {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr double kYoungs = 2000;
 constexpr double kPoisson = 0.3;
@@ -37,8 +38,10 @@ class Series : public testing::ProgramTest {
   }
 
   // E falls by a share of `softening` up to the largest load; the reference
-  // image has noise of the standard deviation `shared`.
-  void WriteFrames(double softening, double shared = 0) const {
+  // image has noise of the standard deviation `shared`, and after it the camera
+  // turned by `angle`.
+  void WriteFrames(double softening, double shared = 0,
+                   double angle = 0) const {
     std::ostringstream record;
     record << "Force [N]\n";
     std::mt19937_64 generator(3);
@@ -56,8 +59,13 @@ class Series : public testing::ProgramTest {
           const double y = 0.5 * j;
           const double of_x = noise(generator) + shared * common(reference);
           const double of_y = noise(generator) + shared * common(reference);
-          text << x << "," << y << "," << strain * x + of_x << ","
-               << -kPoisson * strain * y + of_y << "\n";
+          const double to_x = (1 + strain) * x;
+          const double to_y = (1 - kPoisson * strain) * y;
+          text << x << "," << y << ","
+               << std::cos(angle) * to_x - std::sin(angle) * to_y - x + of_x
+               << ","
+               << std::sin(angle) * to_x + std::cos(angle) * to_y - y + of_y
+               << "\n";
         }
       }
       testing::WriteText(
@@ -179,6 +187,22 @@ TEST_F(Series, TellsWhatFramesShare) {
     return double(report["standard_error"]["poisson_ratio"]);
   };
   EXPECT_GT(error(shared) / error(alone), 3);
+}
+
+TEST_F(Series, DoesNotTakeARotationForWhatFramesShare) {
+  WriteFrames(0, 0, 0.05);
+  const std::string scene = testing::ReadText(folder_ / "scene.json");
+  testing::WriteText(
+      folder_ / "scene.json",
+      std::regex_replace(scene, std::regex("\"model\""),
+                         "\"rigid_motion\": \"free\", \"model\""));
+  const nlohmann::json report =
+      Succeed("estimate scene.json --estimator=iterative-fe --json=-").Json();
+  EXPECT_EQ(report["series"]["used"], 6);
+  EXPECT_EQ(report["status"], "ok");
+  EXPECT_THAT(report["findings"].dump(), Not(HasSubstr("frames_alike")));
+  EXPECT_NEAR(report["youngs_modulus"], kYoungs,
+              3 * double(report["standard_error"]["youngs_modulus"]));
 }
 
 TEST_F(Series, AveragesTheNoiseOfWhatLoadsSayNothingOf) {

@@ -189,27 +189,53 @@ TEST_F(Errors, OfOutliersAreOnTopOfTheSameNoise) {
 }
 
 TEST_F(Errors, OfARigidMotionMoveHeldPointsToo) {
-  MeasurementErrors errors;
-  errors.rigid_motion = Eigen::Vector3d(0.3, -0.2, 0.01);
-  const Eigen::MatrixXd moved = Added(errors);
-  for (Eigen::Index point = 0; point < 400; ++point) {
-    const Eigen::Vector2d expected(0.3 - 0.01 * positions_(1, point),
-                                   -0.2 + 0.01 * positions_(0, point));
-    EXPECT_LT((moved.col(point) - expected).norm(), 1e-14);
+  for (const double angle : {0.0, 0.01, 2.0}) {
+    MeasurementErrors errors;
+    errors.rigid_motion = Eigen::Vector3d(0.3, -0.2, angle);
+    const Eigen::MatrixXd moved = Added(errors);
+    for (Eigen::Index point = 0; point < 400; ++point) {
+      // Every component of the displacement is 2.
+      const double x = positions_(0, point) + 2;
+      const double y = positions_(1, point) + 2;
+      const Eigen::Vector2d expected(
+          0.3 + std::cos(angle) * x - std::sin(angle) * y - x,
+          -0.2 + std::sin(angle) * x + std::cos(angle) * y - y);
+      EXPECT_LT((moved.col(point) - expected).norm(), 1e-13);
+    }
   }
 }
 
-TEST(ErrorsInSpace, HaveRotationsAboutTheAxes) {
+TEST_F(Errors, OfARigidMotionLeaveTheNoiseAsItIs) {
+  MeasurementErrors errors;
+  errors.relative_noise = 0.05;
+  const Eigen::MatrixXd noise = Added(errors);
+  errors.rigid_motion = Eigen::Vector3d(0.3, -0.2, 1);
+  const Eigen::MatrixXd both = Added(errors);
+  errors.relative_noise = 0;
+  EXPECT_LT((both - Added(errors) - noise).norm(), 1e-12);
+}
+
+TEST(ErrorsInSpace, TurnAboutTheAxisOfTheRotation) {
   MeasurementErrors errors;
   errors.rigid_motion.resize(6);
-  errors.rigid_motion << 1, 2, 3, 0.1, 0.2, 0.3;
-  Eigen::MatrixXd displacement = Eigen::MatrixXd::Zero(3, 1);
   const Eigen::Vector3d position(4, 5, 6);
-  std::mt19937_64 generator(1);
-  AddErrors(errors, position, ComponentMask::Constant(3, 1, true), generator,
-            displacement);
-  // (1, 2, 3) + (0.1, 0.2, 0.3) x (4, 5, 6).
-  EXPECT_LT((displacement - Eigen::Vector3d(0.7, 2.6, 2.7)).norm(), 1e-14);
+  const auto moved = [&]() -> Eigen::Vector3d {
+    Eigen::MatrixXd displacement = Eigen::MatrixXd::Zero(3, 1);
+    std::mt19937_64 generator(1);
+    AddErrors(errors, position, ComponentMask::Constant(3, 1, true), generator,
+              displacement);
+    return displacement;
+  };
+  // A third of a turn about (1, 1, 1) takes x to y, y to z and z to x.
+  const double third = 2 * M_PI / 3 / std::sqrt(3);
+  errors.rigid_motion << 1, 2, 3, third, third, third;
+  EXPECT_LT((moved() - Eigen::Vector3d(1 + 6 - 4, 2 + 4 - 5, 3 + 5 - 6)).norm(),
+            1e-13);
+  // Of a small turn, (1, 2, 3) + (0.1, 0.2, 0.3) x (4, 5, 6), to first order.
+  errors.rigid_motion << 1, 2, 3, 0.1e-6, 0.2e-6, 0.3e-6;
+  EXPECT_LT(
+      (moved() - Eigen::Vector3d(1 - 0.3e-6, 2 + 0.6e-6, 3 - 0.3e-6)).norm(),
+      1e-11);
 }
 
 }  // namespace

@@ -101,5 +101,42 @@ TEST(RemoveFreeRotation, LeavesTheStrain) {
   }
 }
 
+// As large a turn may be that of the specimen itself.
+TEST(RemoveFreeRotation, LeavesATurnThatIsLessThanTheStrains) {
+  for (const double angle : {5e-5, 1e-3, 5e-3}) {
+    Scene scene = BarMovedBy([&](const Eigen::Vector3d& x) {
+      const Eigen::Vector3d turn(angle * x(2), 0, -angle * x(0));
+      return Eigen::Vector3d(turn + Stretched(x) / 25);
+    });
+    scene.is_rigid_motion_free = true;
+    const Eigen::MatrixXd measured = scene.load_cases[0].displacement;
+    RemoveFreeRotation(scene);
+    // The strain is 0.002.
+    EXPECT_EQ(scene.load_cases[0].displacement == measured, angle < 2e-3);
+  }
+}
+
+// Those of nodes and of points beside them turn alike.
+TEST(RemoveFreeRotation, IsOneForNodesAndPoints) {
+  const Eigen::Matrix3d rotation =
+      Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  Scene scene = BarMovedBy([&](const Eigen::Vector3d& x) {
+    return Eigen::Vector3d(rotation * (x + Stretched(x)) - x);
+  });
+  scene.is_rigid_motion_free = true;
+  LoadCase& load_case = scene.load_cases[0];
+  std::mt19937_64 generator(1);
+  PointDisplacements& points = load_case.points;
+  points.points = DrawPoints(scene.mesh, 20, generator);
+  points.displacement =
+      Interpolate(scene.mesh, points.points, load_case.displacement);
+  RemoveFreeRotation(scene);
+  const Eigen::MatrixXd at_points =
+      Interpolate(scene.mesh, points.points, load_case.displacement);
+  EXPECT_LT((points.displacement - at_points).cwiseAbs().maxCoeff(), 1e-9);
+  // A strain of 0.05 over the half of the length.
+  EXPECT_LT(load_case.displacement.cwiseAbs().maxCoeff(), 0.25);
+}
+
 }  // namespace
 }  // namespace elastimate

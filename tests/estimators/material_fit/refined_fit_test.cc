@@ -23,8 +23,8 @@ using testing::KindOfSection;
 
 constexpr IsotropicElasticity kTruth = {5e4, 0.35};
 
-Estimate Run(const Scene& scene, const EstimatorOptions& options = {},
-             const std::string& estimator = "reduced-fe") {
+Estimate Fitted(const Scene& scene, const EstimatorOptions& options = {},
+                const std::string& estimator = "reduced-fe") {
   return MakeEstimator(estimator)->Run(scene, options);
 }
 
@@ -51,7 +51,7 @@ TEST_P(RefinedFitOfKinds, HoldsTheTruthOfAFinerSpecimen) {
       BodyForce{Eigen::VectorXd::Constant(scene.mesh.Dimension(), 30)}};
   testing::MeasureInCutWorld(kTruth, scene);
   AddNoise(0.003, 1, scene);
-  const Estimate estimate = Run(scene);
+  const Estimate estimate = Fitted(scene);
   ExpectToHold(kTruth, estimate);
   EXPECT_EQ(estimate.element_order, 2);
   EXPECT_GT(*estimate.discretization_error, 0);
@@ -68,8 +68,8 @@ TEST(RefinedFit, OfBothDescentsIsTheSame) {
   Scene scene = Block({2, 2, 4});
   testing::MeasureInCutWorld(kTruth, scene);
   AddNoise(0.003, 1, scene);
-  const Estimate reduced = Run(scene);
-  const Estimate iterative = Run(scene, {}, "iterative-fe");
+  const Estimate reduced = Fitted(scene);
+  const Estimate iterative = Fitted(scene, {}, "iterative-fe");
   ExpectToHold(kTruth, iterative);
   const double error = *reduced.YoungsModulusStandardError();
   EXPECT_NEAR(reduced.elasticity.youngs_modulus,
@@ -83,15 +83,15 @@ TEST(RefinedFit, DividesTheMeshAsOftenAsIsAskedFor) {
   AddNoise(0.003, 1, scene);
   EstimatorOptions options;
   options.refinement = Refine::kNever;
-  const Estimate never = Run(scene, options);
+  const Estimate never = Fitted(scene, options);
   options.refinement = Refine::kAlways;
-  const Estimate always = Run(scene, options);
+  const Estimate always = Fitted(scene, options);
   ExpectToHold(kTruth, always);
   EXPECT_EQ(never.mesh_divisions, 0);
   EXPECT_EQ(always.mesh_divisions, 1);
   EXPECT_GT(*never.discretization_error, 3 * *always.discretization_error);
   options.refinement = Refine::kAutomatic;
-  EXPECT_EQ(Run(scene, options).mesh_divisions, 1);
+  EXPECT_EQ(Fitted(scene, options).mesh_divisions, 1);
 }
 
 // Where noise is all that matters, a divided mesh would tell nothing.
@@ -101,7 +101,7 @@ TEST(RefinedFit, KeepsTheMeshWhereNoiseMattersMore) {
   scene.load_cases[0].loads = {BodyForce{Eigen::Vector2d(30, 30)}};
   testing::MeasureInCutWorld(kTruth, scene);
   AddNoise(0.2, 1, scene);
-  const Estimate estimate = Run(scene);
+  const Estimate estimate = Fitted(scene);
   ExpectToHold(kTruth, estimate);
   EXPECT_EQ(estimate.mesh_divisions, 0);
   EXPECT_GE(*estimate.discretization_error, 0.005);
@@ -115,7 +115,7 @@ TEST(RefinedFit, OfTwoRegionsHoldsBoth) {
   MeasureMaterials(truth, finer);
   testing::TakeDisplacements(finer, scene);
   AddNoise(0.002, 1, scene);
-  const Estimate estimate = Run(scene);
+  const Estimate estimate = Fitted(scene);
   ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
   for (Eigen::Index i = 0; i < truth.size(); ++i) {
     const ParameterEstimate& parameter = estimate.parameters[i];
@@ -134,7 +134,7 @@ TEST(RefinedFit, RefusesWhatLinearElementsComputed) {
       AddNoise(noise, 1, scene);
     }
     scene.origin = Origin::kMeasured;
-    const Estimate estimate = Run(scene);
+    const Estimate estimate = Fitted(scene);
     EXPECT_EQ(estimate.status, Status::kNotIdentifiable);
     EXPECT_TRUE(estimate.Has(FindingCode::kComputedByLinearElements))
         << estimate.message;
@@ -153,10 +153,10 @@ TEST(RefinedFit, WithALossWithstandsOutliers) {
             scene.load_cases[0].displacement);
   EstimatorOptions options;
   options.loss = Loss::kHuber;
-  const Estimate huber = Run(scene, options);
+  const Estimate huber = Fitted(scene, options);
   ExpectToHold(kTruth, huber);
   EXPECT_TRUE(huber.outliers.empty());
-  const Estimate left_out = Run(scene);
+  const Estimate left_out = Fitted(scene);
   ExpectToHold(kTruth, left_out);
   EXPECT_FALSE(left_out.outliers.empty());
 }
@@ -166,7 +166,7 @@ TEST(RefinedFit, OfQuadraticElementsDividesThem) {
   Scene quadratic = QuadraticScene(scene);
   testing::MeasureInCutWorld(kTruth, quadratic);
   AddNoise(0.003, 1, quadratic);
-  const Estimate estimate = Run(quadratic);
+  const Estimate estimate = Fitted(quadratic);
   ExpectToHold(kTruth, estimate);
   EXPECT_EQ(estimate.mesh_divisions, 1);
 }
@@ -192,10 +192,10 @@ TEST(RefinedFit, HoldsWhatTheEndOfASupportLeavesOpen) {
   load_case.loads = {BodyForce{Eigen::Vector3d(200, -50, -30)}};
   scene.load_cases = {load_case};
   testing::MeasureInCutWorld(kTruth, scene);
-  const Estimate of_box = Run(scene);
+  const Estimate of_box = Fitted(scene);
   ExpectToHold(kTruth, of_box);
   scene.supports.boxes.clear();
-  const Estimate of_mask = Run(scene);
+  const Estimate of_mask = Fitted(scene);
   ExpectToHold(kTruth, of_mask);
   EXPECT_GT(*of_mask.YoungsModulusStandardError(),
             *of_box.YoungsModulusStandardError());

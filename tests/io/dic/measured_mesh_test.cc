@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -50,6 +51,24 @@ class MeasuredMeshTest : public ::testing::Test {
         const double y = 0.5 * j;
         text << x << "," << y << "," << kStress / kModulus * x - 1e-4 * y + 0.2
              << "," << -kRatio * kStress / kModulus * y + 1e-4 * x << "\n";
+      }
+    }
+    return text.str();
+  }
+
+  // The strain of Frame, seen by a camera that turned by an angle.
+  static std::string TurnedFrame(double angle) {
+    std::ostringstream text;
+    text << std::setprecision(17) << "x,y,ux,uy\n";
+    for (int i = 0; i <= 12; ++i) {
+      for (int j = 0; j <= 4; ++j) {
+        const Eigen::Vector2d x(0.5 * i, 0.5 * j);
+        const Eigen::Vector2d strain(kStress / kModulus,
+                                     -kRatio * kStress / kModulus);
+        const Eigen::Vector2d u = Eigen::Rotation2Dd(angle).toRotationMatrix() *
+                                      (x + strain.cwiseProduct(x)) -
+                                  x;
+        text << x(0) << "," << x(1) << "," << u(0) << "," << u(1) << "\n";
       }
     }
     return text.str();
@@ -111,9 +130,11 @@ TEST_F(MeasuredMeshTest, WithGripsAndALoadCellGivesTheTruth) {
   const SceneReading reading = Read(kStrip);
   EXPECT_EQ(reading.scene.mesh.kind, ElementKind::kQuad4);
   EXPECT_EQ(reading.scene.mesh.NumElements(), 48);
-  EXPECT_THAT(reading.notices,
-              ElementsAre(HasSubstr("48 quadrilaterals of 65 points (csv), "
-                                    "6 x 2")));
+  EXPECT_THAT(
+      reading.notices,
+      ElementsAre(HasSubstr(
+          "points (format csv) has 48 quadrilaterals and 65 nodes, and is "
+          "6 x 2")));
   for (const std::string estimator : {"iterative-fe", "auto"}) {
     const Estimate estimate = MakeEstimator(estimator)->Run(reading.scene, {});
     ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
@@ -137,7 +158,7 @@ TEST_F(MeasuredMeshTest, WithLostPointsGivesTheTruth) {
   const SceneReading reading = Read(kStrip);
   EXPECT_EQ(reading.scene.mesh.NumElements(), 48);
   EXPECT_EQ(reading.scene.load_cases[0].observed.count(), 2 * (65 - 3));
-  EXPECT_THAT(reading.notices[0], HasSubstr("; 3 nodes are points that"));
+  EXPECT_THAT(reading.notices[0], HasSubstr("; 3 of its nodes fill gaps"));
   const Estimate estimate =
       MakeEstimator("iterative-fe")->Run(reading.scene, {});
   ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
@@ -155,11 +176,15 @@ TEST_F(MeasuredMeshTest, WithTractionAndAFreeCameraGivesTheTruth) {
     "cases": [ {"loads": [ {"type": "force", "value": [3, 0],
                             "surface": {"box": [[6, 0], [6, 2]]}} ]} ]
   })";
-  const Estimate estimate =
-      MakeEstimator("iterative-fe")->Run(Read(document).scene, {});
-  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
-  EXPECT_NEAR(estimate.elasticity.youngs_modulus, kModulus, 1e-8 * kModulus);
-  EXPECT_NEAR(estimate.elasticity.poisson_ratio, kRatio, 1e-8);
+  for (const std::string& frame :
+       {Frame(), TurnedFrame(5e-3), TurnedFrame(0.3), TurnedFrame(3)}) {
+    folder_.Write("frame.csv", frame);
+    const Estimate estimate =
+        MakeEstimator("iterative-fe")->Run(Read(document).scene, {});
+    ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+    EXPECT_NEAR(estimate.elasticity.youngs_modulus, kModulus, 1e-8 * kModulus);
+    EXPECT_NEAR(estimate.elasticity.poisson_ratio, kRatio, 1e-8);
+  }
 }
 
 TEST_F(MeasuredMeshTest, OtherEstimatorsSayWhichOneToUse) {
