@@ -64,6 +64,7 @@ void Equilibrium::AddStiffness(const std::vector<const Scene*>& spaces,
                                double tolerance) {
   const Mesh& coarsest = spaces.front()->mesh;
   std::vector<const Supports*> supports;
+  supports.reserve(spaces.size());
   for (const Scene* const space : spaces) {
     supports.push_back(&SupportsOf(*space, k));
   }
