@@ -27,24 +27,25 @@ namespace {
 
 constexpr std::ptrdiff_t kMostLanes = 8;
 
-// Four values each, of which the last is zero, are in the record of a node its
-// displacement, the sum at it, and that of the second product, if there are
-// two.
+// The record of a node has four values, of which the last is zero, for its
+// displacement, for the sum at it, and for the sum of the second product if
+// there are two.
 constexpr std::ptrdiff_t kFour = 4;
 constexpr std::ptrdiff_t kSizeForSum = 2 * kFour;
 constexpr std::ptrdiff_t kSizeForProducts = 3 * kFour;
 
-// For one column: to share the geometry of an element among several ones saves
-// less than their records cost that do not fit into the cache together.
+// A pass is for one column.  Columns that share the geometry of an element save
+// less than it costs that their records do not fit into the cache together.
 struct QuadraticPass {
   const int* elements;  // 10 x num_elements.
   std::ptrdiff_t num_elements;
   // 3 x num_nodes.  Four values are read at each vertex, behind which there are
   // nodes in the middle of edges.
   const double* positions;
-  // Null: the products are a = integral of e grad(N), and p = integral of
-  // tr(e) grad(N) behind it.  Else their sum with these coefficients is the
-  // only one; there are as many more of them, of any value, as there are lanes.
+  // Where these are null, the products are a = integral of e grad(N) and,
+  // behind it, p = integral of tr(e) grad(N).  Else the sum of both with these
+  // coefficients is the only product; behind those of the elements there are
+  // kMostLanes more, of any value.
   const double* coefficients_of_a;
   const double* coefficients_of_p;
   double* records;
@@ -253,8 +254,8 @@ struct VertexStrains {
     const Vector w12 = Difference(nodes, kMidEdgeNodes[1][2]);
     const Vector w13 = Difference(nodes, kMidEdgeNodes[1][3]);
     const Vector w23 = Difference(nodes, kMidEdgeNodes[2][3]);
-    // Without vertex 0, by g0 = -(g1 + g2 + g3): its coefficient is taken from
-    // those of the others, and is 4 w_v0 at vertex v, which is 0 at vertex 0.
+    // As g0 = -(g1 + g2 + g3), the coefficient of g0 is taken from those of the
+    // others.  It is 4 w_v0 at vertex v, and 0 at vertex 0.
     e0 = StrainOf(g, bent(w01, w1), bent(w02, w2), bent(w03, w3));
     e1 = StrainOf(g, three * w1 - four * w01, bent(w12 - w01, w2),
                   bent(w13 - w01, w3));

@@ -112,7 +112,7 @@ class Iterations {
     return multiply_(x);
   }
 
-  // Whether the iterations may go on.
+  // Makes a step, and tells whether the iterations may go on.
   bool Step(int step) {
     Eigen::MatrixXd z = precondition_(residual_);
     Eigen::RowVectorXd rz = ProductsOfColumns(residual_, z);
