@@ -155,9 +155,9 @@ Eigen::MatrixXd MultiplyBlocks(const Eigen::MatrixXd& blocks,
   return products;
 }
 
-void AddBlockProducts(const Eigen::MatrixXd& blocks, const Eigen::MatrixXd& a,
-                      const Eigen::MatrixXd& b, double keep, double scale,
-                      Eigen::MatrixXd& x) {
+void RelaxByBlocks(const Eigen::MatrixXd& blocks, const Eigen::MatrixXd& a,
+                   const Eigen::MatrixXd& b, double keep, double scale,
+                   Eigen::MatrixXd& x) {
   if (blocks.rows() == 3) {
     AddEach<3>(blocks, a, b, keep, scale, x);
   } else {

@@ -93,9 +93,9 @@ Eigen::MatrixXd MultiplyBlocks(const Eigen::MatrixXd& blocks,
 
 /// Sets x to keep x + scale B (a - b) for such blocks B, in one pass over
 /// memory.
-void AddBlockProducts(const Eigen::MatrixXd& blocks, const Eigen::MatrixXd& a,
-                      const Eigen::MatrixXd& b, double keep, double scale,
-                      Eigen::MatrixXd& x);
+void RelaxByBlocks(const Eigen::MatrixXd& blocks, const Eigen::MatrixXd& a,
+                   const Eigen::MatrixXd& b, double keep, double scale,
+                   Eigen::MatrixXd& x);
 
 }  // namespace elastimate
 

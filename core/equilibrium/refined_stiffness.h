@@ -17,9 +17,10 @@ namespace elastimate {
 /// and after the correction by the next coarser space.  On the coarsest one a
 /// StiffnessSolver solves at the same moduli.
 ///
-/// The iterations do not grow with the mesh.  On blocky bodies an error of 1e-8
-/// (1e-2) takes 12 to 20 (4) of them at nu = 0.3, 20 to 32 (7) at 0.45 and 45
-/// to 70 (15) at 0.49; slender bodies and thin walls take more.
+/// The iterations do not grow with the mesh.  On blocks and bars an error of
+/// 1e-8 (1e-2) takes 12 to 20 (4) of them at nu = 0.3, 20 to 32 (7) at 0.45 and
+/// 45 to 70 (15) at 0.49.  Flat elements take many more: ten times as many
+/// where they are five times as wide as thick.
 class RefinedStiffness : public SupportedStiffness {
  public:
   static constexpr int kMostIterations = 200;

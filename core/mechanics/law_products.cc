@@ -29,18 +29,18 @@ ElementPoint<kKind> SeenIn(const Frame<kKind>& frame,
 }
 
 template <ElementKind kKind>
-using NodeVectors = Eigen::Matrix<double, ElementSizes<kKind>::kDimension,
-                                  ElementSizes<kKind>::kNodes>;
+using ElementVectors = Eigen::Matrix<double, ElementSizes<kKind>::kDimension,
+                                     ElementSizes<kKind>::kNodes>;
 
 // The forces on the nodes of an element, as seen in its frame, for displacement
 // gradients at its points and a tangent.
 template <ElementKind kKind>
-NodeVectors<kKind> ForcesOf(const std::vector<ElementPoint<kKind>>& points,
-                            const std::vector<Frame<kKind>>& gradients,
-                            const Eigen::MatrixXd& tangent) {
+ElementVectors<kKind> ForcesOf(const std::vector<ElementPoint<kKind>>& points,
+                               const std::vector<Frame<kKind>>& gradients,
+                               const Eigen::MatrixXd& tangent) {
   using Values = Eigen::Matrix<double, kGradientSize<kKind>, 1>;
   const Eigen::Map<const TangentMatrix<kKind>> c(tangent.data());
-  NodeVectors<kKind> forces = NodeVectors<kKind>::Zero();
+  ElementVectors<kKind> forces = ElementVectors<kKind>::Zero();
   for (std::size_t i = 0; i < points.size(); ++i) {
     Frame<kKind> stress;
     Eigen::Map<Values>(stress.data()).noalias() =
@@ -69,14 +69,14 @@ void AddOfKind(const Mesh& mesh, const std::vector<int>& material_of_element,
                          points.push_back(SeenIn<kKind>(frame, point));
                        });
     for (Eigen::Index column = 0; column < displacement.cols(); ++column) {
-      const NodeVectors<kKind> u =
+      const ElementVectors<kKind> u =
           frame.transpose() *
           GatherNodes<kKind>(mesh, e, displacement.col(column).data());
       for (std::size_t i = 0; i < points.size(); ++i) {
         gradients[i].noalias() = u * points[i].gradient.transpose();
       }
       for (std::size_t k = 0; k < tangents[material].size(); ++k) {
-        const NodeVectors<kKind> forces =
+        const ElementVectors<kKind> forces =
             frame * ForcesOf<kKind>(points, gradients, tangents[material][k]);
         double* const values = products[k].col(column).data();
         for (int i = 0; i < ElementSizes<kKind>::kNodes; ++i) {

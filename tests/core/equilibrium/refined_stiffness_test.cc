@@ -226,7 +226,7 @@ Scene Block(int cells) {
 }
 
 TEST(RefinedStiffness, LeavesTheErrorThatItIsAskedFor) {
-  const Spaces spaces(Block(3), 2);
+  const Spaces spaces(Block(2), 2);
   Equilibrium direct(spaces.Finest(), SolverKind::kCholesky);
   for (const double nu : {-0.5, 0.3, 0.49}) {
     const Eigen::VectorXd moduli =
@@ -313,6 +313,15 @@ TEST(RefinedStiffness, TakesMultigridForTheCoarsestSpace) {
   EXPECT_EQ(refined.WorkDone().factorizations, 0);
   EXPECT_GT(refined.WorkDone().multigrid_set_ups, 0);
   ExpectSame(refined.Displacement(), direct.Displacement());
+}
+
+TEST(RefinedStiffness, IsForSpacesOfOneMesh) {
+  const Spaces spaces(Block(2), 2);
+  const Spaces others(Block(3), 1);
+  EXPECT_TRUE(Equilibrium::IsRefinable(spaces.All()));
+  EXPECT_FALSE(Equilibrium::IsRefinable({spaces.All()[0], &others.Finest()}));
+  EXPECT_FALSE(Equilibrium::IsRefinable({spaces.All()[1], spaces.All()[0]}));
+  EXPECT_FALSE(Equilibrium::IsRefinable({spaces.All()[0], spaces.All()[0]}));
 }
 
 TEST(RefinedStiffness, IsForSimplicesWithStraightEdges) {
