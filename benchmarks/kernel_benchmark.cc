@@ -197,9 +197,9 @@ void CholeskySolve(benchmark::State& state) {
   CountTetrahedra(state, scene.mesh);
 }
 
-// Displacements of quadratic elements of a cube, without their factor: the
-// moduli are those of nu = range(1) / 100.  With `kFiner` = 2, of elements of
-// half the size.
+// Solves for displacements of quadratic elements of a cube without their
+// factor, at nu = range(1) / 100.  With `kFiner` = 2 the elements have half the
+// size.
 template <int kFiner>
 void RefinedSolve(benchmark::State& state) {
   std::vector<Scene> scenes = {Cube(state.range(0))};
@@ -213,7 +213,7 @@ void RefinedSolve(benchmark::State& state) {
   Work work;
   while (state.KeepRunning()) {
     state.PauseTiming();
-    // One that has no solution to begin with.
+    // A new equilibrium has no solution to begin with.
     Equilibrium equilibrium(spaces, SolverKind::kCholesky);
     const Eigen::VectorXd moduli = equilibrium.Forces().Parameters().Moduli(
         Eigen::Vector2d(1, 0.01 * static_cast<double>(state.range(1))));

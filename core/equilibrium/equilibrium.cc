@@ -11,7 +11,8 @@ namespace elastimate {
 
 namespace {
 
-// Those in which systems are solved.
+// The spaces in which systems are solved: all of them where they are nested,
+// else the finest.
 std::vector<const Scene*> UsedSpaces(const std::vector<const Scene*>& spaces) {
   return AreNested(spaces) ? spaces : std::vector<const Scene*>{spaces.back()};
 }
@@ -64,6 +65,7 @@ void Equilibrium::AddStiffness(const std::vector<const Scene*>& spaces,
                                double tolerance) {
   const Mesh& coarsest = spaces.front()->mesh;
   std::vector<const Supports*> supports;
+  supports.reserve(spaces.size());
   for (const Scene* const space : spaces) {
     supports.push_back(&SupportsOf(*space, k));
   }
@@ -112,7 +114,8 @@ bool Equilibrium::Solve(const Eigen::VectorXd& moduli) {
 }
 
 void Equilibrium::SolveForSupports(const Eigen::VectorXd& scaled_moduli) {
-  // What the free nodes did at the last moduli is what they begin with.
+  // The iterations begin with the response of the free nodes at the last
+  // moduli.
   const Eigen::MatrixXd start =
       support_response_.size() > 0
           ? Eigen::MatrixXd(held_displacement_ - support_response_)

@@ -27,17 +27,19 @@ class Equilibrium {
   /// those of StiffnessSolver.
   Equilibrium(const Scene& scene, SolverKind solver);
 
-  /// The same in the last of these spaces of one specimen, from coarse to fine,
-  /// all of which have to stay as they are.  Where they contain each other
-  /// (IsRefinable), no more than the stiffness of the first is factorised, and
-  /// systems are solved by iterations that leave a relative error of
-  /// `tolerance` in the energy norm (RefinedStiffness): they begin with the
-  /// solutions for the last moduli.  Else the stiffness of the last space is
-  /// factorised, and the others are not used.
+  /// Solves in the last of some spaces of one specimen, which are given from
+  /// coarse to fine; the scenes have to stay as they are.  Where the spaces
+  /// contain each other (IsRefinable), only the stiffness of the first one is
+  /// factorised.  Iterations (RefinedStiffness) then solve the systems of the
+  /// last one, and leave a relative error of `tolerance` in the energy norm.
+  /// They begin with the solutions for the last moduli, so a Solve whose moduli
+  /// change displacements by less than the tolerance leaves them as they are
+  /// but for a factor.  Where the spaces do not contain each other, the
+  /// stiffness of the last one is factorised and the others are not used.
   Equilibrium(const std::vector<const Scene*>& spaces, SolverKind solver,
               double tolerance = StiffnessSolver::kAccurate);
 
-  /// Whether AreNested.
+  /// Tells whether the spaces contain each other (AreNested).
   static bool IsRefinable(const std::vector<const Scene*>& spaces) {
     return AreNested(spaces);
   }
@@ -119,14 +121,15 @@ class Equilibrium {
   template <class Function>
   Eigen::MatrixXd ByStiffness(const Eigen::MatrixXd& columns,
                               const Function& of_stiffness) const;
-  /// SolveFor, with a guess of each column or none.
+  /// Does what SolveFor does, and begins with `start`, which has a guess of
+  /// each column or is empty.
   Eigen::MatrixXd SolveFrom(const Eigen::MatrixXd& start,
                             const Eigen::MatrixXd& forces);
   void SolveForSupports(const Eigen::VectorXd& scaled_moduli);
 
   NestedStiffness values_;
   std::vector<std::unique_ptr<SupportedStiffness>> stiffness_;
-  /// Where it is not that of a mesh whose stiffness is assembled.
+  /// The graph of the finest mesh where its stiffness is not assembled.
   std::optional<NodeGraph> graph_;
   std::vector<Eigen::Index> stiffness_of_case_;
   Eigen::MatrixXd load_;
@@ -138,7 +141,7 @@ class Equilibrium {
   std::vector<Eigen::MatrixXd> held_forces_;
   Eigen::MatrixXd displacement_;
   Eigen::MatrixXd support_response_;
-  /// Those that were found last, to begin iterations with.
+  /// The last sensitivities, with which iterations begin.
   Eigen::MatrixXd sensitivities_;
   double scale_ = 1;  ///< Of the moduli over those of the factor.
   bool has_unknown_motion_;

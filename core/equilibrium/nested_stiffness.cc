@@ -56,12 +56,19 @@ void AddEach(const Eigen::MatrixXd& blocks, const Eigen::MatrixXd& a,
   }
 }
 
-// Signs that no mode of a specimen is orthogonal to but by accident, and the
-// same in every run.
+// Returns signs that are the same in every run, and to which no mode of a
+// specimen is orthogonal but by accident.
 Eigen::VectorXd RandomSigns(Eigen::Index size) {
   std::minstd_rand random(1);
   return Eigen::VectorXd::NullaryExpr(
       size, [&] { return random() % 2 == 0 ? 1.0 : -1.0; });
+}
+
+bool BeginsWithNodesOf(const Mesh& coarse, const Mesh& fine) {
+  return coarse.Dimension() == fine.Dimension() &&
+         coarse.NumNodes() < fine.NumNodes() &&
+         fine.NumElements() % coarse.NumElements() == 0 &&
+         fine.nodes.leftCols(coarse.NumNodes()) == coarse.nodes;
 }
 
 }  // namespace
@@ -72,8 +79,10 @@ bool AreNested(const std::vector<const Scene*>& spaces) {
   }
   for (std::size_t i = 0; i < spaces.size(); ++i) {
     const Mesh& mesh = spaces[i]->mesh;
-    if (!IsAffine(mesh.kind) || (i > 0 && mesh.Order() != 2) ||
-        mesh.Dimension() != spaces[0]->mesh.Dimension()) {
+    if (!IsAffine(mesh.kind) || (i > 0 && mesh.Order() != 2)) {
+      return false;
+    }
+    if (i > 0 && !BeginsWithNodesOf(spaces[i - 1]->mesh, mesh)) {
       return false;
     }
   }
@@ -112,8 +121,9 @@ void NestedStiffness::SetModuli(const Eigen::VectorXd& moduli,
         [&](const Eigen::MatrixXd& x) { return MultiplyBlocks(inverses, x); },
         MultiplyBlocks(finer.diagonal_blocks, RandomSigns(every.size())), {},
         options);
-    // A few elements have no more directions; none at all has positive energy
-    // where the first one has not.
+    // A few elements have fewer directions than there are steps.  Where not
+    // even the first direction has a positive energy, K is not positive
+    // definite.
     finer.largest_eigenvalue = result.iterations > 0
                                    ? result.largest_eigenvalue
                                    : std::numeric_limits<double>::quiet_NaN();
@@ -145,9 +155,9 @@ Eigen::MatrixXd MultiplyBlocks(const Eigen::MatrixXd& blocks,
   return products;
 }
 
-void AddBlockProducts(const Eigen::MatrixXd& blocks, const Eigen::MatrixXd& a,
-                      const Eigen::MatrixXd& b, double keep, double scale,
-                      Eigen::MatrixXd& x) {
+void RelaxByBlocks(const Eigen::MatrixXd& blocks, const Eigen::MatrixXd& a,
+                   const Eigen::MatrixXd& b, double keep, double scale,
+                   Eigen::MatrixXd& x) {
   if (blocks.rows() == 3) {
     AddEach<3>(blocks, a, b, keep, scale, x);
   } else {

@@ -12,16 +12,16 @@
 
 namespace elastimate {
 
-/// Whether scenes, from coarse to fine, are spaces that contain each other,
-/// which RefinedStiffness takes: there are two or more of them, the elements
-/// are simplices with straight edges, and each scene is FinerScene of the one
-/// before.
+/// Tells whether RefinedStiffness takes these scenes, from coarse to fine:
+/// there are two or more, all elements are simplices with straight edges, those
+/// of the finer scenes are quadratic, and the first nodes of each scene are
+/// those of the one before, as FinerScene has them.  O(num_nodes).
 bool AreNested(const std::vector<const Scene*>& spaces);
 
 /// The stiffness K(theta) of one specimen in some spaces that contain each
-/// other, from coarse to fine, at the same moduli: what it has whatever the
-/// supports are.  The coarsest is there as blocks to be assembled, the finer
-/// ones as products with columns.
+/// other, from coarse to fine, at the same moduli, as far as it does not depend
+/// on supports.  The coarsest one comes as blocks that can be assembled, and
+/// the finer ones multiply columns.
 class NestedStiffness {
  public:
   /// Refers to the scenes, which have to stay as they are.
@@ -35,11 +35,11 @@ class NestedStiffness {
   void SetModuli(const Eigen::VectorXd& moduli, const NodeGraph& graph);
 
   std::size_t NumSpaces() const { return forces_.size(); }
-  /// In a space.
+  /// Returns the internal forces in a space.
   const InternalForces& Forces(std::size_t space) const {
     return forces_[space];
   }
-  /// Between a space and the next finer one.
+  /// Returns the transfer between a space and the next finer one.
   const FinerNodes& NodesAfter(std::size_t space) const {
     return nodes_after_[space];
   }
@@ -47,7 +47,7 @@ class NestedStiffness {
   /// InternalForces::Blocks of the coarsest space.
   const Eigen::MatrixXd& CoarsestBlocks() const { return blocks_; }
 
-  /// K V in a space.  One element pass.
+  /// Returns K V in a space.  One element pass.
   Eigen::MatrixXd Multiply(std::size_t space,
                            const Eigen::MatrixXd& columns) const {
     return forces_[space].Multiply(moduli_, columns);
@@ -56,10 +56,10 @@ class NestedStiffness {
   const Eigen::MatrixXd& DiagonalBlocks(std::size_t space) const {
     return finer_[space - 1].diagonal_blocks;
   }
-  /// The largest eigenvalue of D^-1 K for the diagonal blocks D of a finer
-  /// space, or up to a tenth less, without supports; with any, the eigenvalues
-  /// are not larger.
-  /// NaN where K is not positive definite.
+  /// Estimates the largest eigenvalue of D^-1 K for the diagonal blocks D of a
+  /// finer space without supports; the estimate may be a tenth too small.
+  /// Supports do not make the eigenvalues larger.  The result is NaN where K is
+  /// seen not to be positive definite.
   double LargestEigenvalue(std::size_t space) const {
     return finer_[space - 1].largest_eigenvalue;
   }
@@ -81,20 +81,21 @@ class NestedStiffness {
   int num_passes_ = 0;
 };
 
-/// The inverse of each block of DiagonalBlocks, on its free components: zero in
-/// the rows and columns of the others.  `is_free` is 1 or 0 for each degree of
-/// freedom.  Side by side as the blocks are.
+/// Inverts each block of DiagonalBlocks on its free components, and leaves
+/// zeros in the rows and columns of the held ones.  `is_free` is 1 or 0 for
+/// each degree of freedom.  The inverses stand side by side as the blocks do.
 Eigen::MatrixXd InverseBlocks(const Eigen::MatrixXd& blocks,
                               const Eigen::VectorXd& is_free);
 
-/// Blocks of DiagonalBlocks times the rows of their nodes: num_dofs x n.
+/// Multiplies the rows of each node by its block: num_dofs x n.
 Eigen::MatrixXd MultiplyBlocks(const Eigen::MatrixXd& blocks,
                                const Eigen::MatrixXd& columns);
 
-/// x = keep x + scale B (a - b) for such blocks B, in one pass over memory.
-void AddBlockProducts(const Eigen::MatrixXd& blocks, const Eigen::MatrixXd& a,
-                      const Eigen::MatrixXd& b, double keep, double scale,
-                      Eigen::MatrixXd& x);
+/// Sets x to keep x + scale B (a - b) for such blocks B, in one pass over
+/// memory.
+void RelaxByBlocks(const Eigen::MatrixXd& blocks, const Eigen::MatrixXd& a,
+                   const Eigen::MatrixXd& b, double keep, double scale,
+                   Eigen::MatrixXd& x);
 
 }  // namespace elastimate
 

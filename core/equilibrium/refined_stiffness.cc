@@ -98,8 +98,8 @@ Eigen::MatrixXd RefinedStiffness::Smooth(std::size_t space,
   // held rows and columns.
   const double share = 1 / (2 * middle / radius - radius / middle);
   Eigen::MatrixXd x = MultiplyBlocks(inverses, force) / middle;
-  AddBlockProducts(inverses, force, Multiply(space, x),
-                   1 + share * radius / middle, 2 * share / radius, x);
+  RelaxByBlocks(inverses, force, Multiply(space, x),
+                1 + share * radius / middle, 2 * share / radius, x);
   return x;
 }
 

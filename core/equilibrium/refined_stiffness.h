@@ -9,17 +9,18 @@
 
 namespace elastimate {
 
-/// The stiffness of the finest of some spaces that contain each other on some
-/// supports, which is never assembled: systems are solved by conjugate
-/// gradients.  One V(1,1)-cycle over the spaces preconditions them: on each
-/// finer space two steps of Chebyshev's iteration with the diagonal blocks of
-/// the nodes [Adams, Brezina, Hu & Tuminaro, J. Comput. Phys. 188 (2003) 593]
-/// before and after the correction by the next coarser space, on the coarsest a
-/// StiffnessSolver at the same moduli.
+/// The stiffness, on some supports, of the finest of some spaces that contain
+/// each other.  It is never assembled: conjugate gradients solve with it, and
+/// one V(1,1)-cycle over the spaces preconditions them.  On each finer space,
+/// two steps of Chebyshev's iteration with the diagonal blocks of the nodes
+/// [Adams, Brezina, Hu & Tuminaro, J. Comput. Phys. 188 (2003) 593] come before
+/// and after the correction by the next coarser space.  On the coarsest one a
+/// StiffnessSolver solves at the same moduli.
 ///
-/// The iterations do not grow with the mesh.  On blocky bodies an error of 1e-8
-/// (1e-2) takes 12 to 20 (4) of them at nu = 0.3, 20 to 32 (7) at 0.45 and 45
-/// to 70 (15) at 0.49; slender bodies and thin walls take more.
+/// The iterations do not grow with the mesh.  On blocks and bars an error of
+/// 1e-8 (1e-2) takes 12 to 20 (4) of them at nu = 0.3, 20 to 32 (7) at 0.45 and
+/// 45 to 70 (15) at 0.49.  Flat elements take many more: ten times as many
+/// where they are five times as wide as thick.
 class RefinedStiffness : public SupportedStiffness {
  public:
   static constexpr int kMostIterations = 200;
@@ -60,14 +61,15 @@ class RefinedStiffness : public SupportedStiffness {
     Eigen::MatrixXd inverse_blocks;
   };
 
-  /// K x in a finer space, of all rows.
+  /// Returns K x in a finer space, held rows included.
   Eigen::MatrixXd Multiply(std::size_t space, const Eigen::MatrixXd& x);
-  /// force - K x in the free rows.
+  /// Returns force - K x in the free rows, and zeros in the held ones.
   Eigen::MatrixXd RestOf(std::size_t space, const Eigen::MatrixXd& force,
                          const Eigen::MatrixXd& x);
-  /// What two steps of Chebyshev's iteration for K x = force make of x = 0.
+  /// Returns what two steps of Chebyshev's iteration for K x = force make of
+  /// x = 0.
   Eigen::MatrixXd Smooth(std::size_t space, const Eigen::MatrixXd& force);
-  /// The V-cycle from a space down.
+  /// Runs the V-cycle from a space down.
   Eigen::MatrixXd Precondition(std::size_t space, const Eigen::MatrixXd& force);
 
   StiffnessSolver coarsest_;

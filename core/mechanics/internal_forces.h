@@ -51,7 +51,8 @@ class InternalForces {
   Eigen::MatrixXd Blocks(const Eigen::VectorXd& moduli,
                          const NodeGraph& graph) const;
 
-  /// The blocks K_ii(theta) of all nodes side by side: dimension x num_dofs.
+  /// Returns the blocks K_ii(theta) of all nodes side by side: dimension x
+  /// num_dofs.
   /// One element pass.
   Eigen::MatrixXd DiagonalBlocks(const Eigen::VectorXd& moduli) const;
 
@@ -64,8 +65,8 @@ class InternalForces {
   /// What each modulus, by its place in its law, gives to each copy of a node.
   std::vector<Eigen::MatrixXd> OfParts(
       const Eigen::MatrixXd& displacements) const;
-  /// Those of H and J in each element: 2 x num_elements.  Precondition:
-  /// isotropic materials.
+  /// Returns the moduli of H and of J in each element, 2 x num_elements.
+  /// Precondition: all materials are isotropic.
   Eigen::Matrix2Xd ModuliOfElements(const Eigen::VectorXd& moduli) const;
   /// The tangent of each material.
   std::vector<Eigen::MatrixXd> Tangents(const Eigen::VectorXd& moduli) const;

@@ -28,31 +28,26 @@ ElementPoint<kKind> SeenIn(const Frame<kKind>& frame,
   return point;
 }
 
-// What the point of an element, as seen in the frame, adds to one column of the
-// products.
 template <ElementKind kKind>
-void AddAtPoint(const ElementPoint<kKind>& point, const Frame<kKind>& frame,
-                const std::vector<Eigen::MatrixXd>& tangents, const int* nodes,
-                const Eigen::Matrix<double, ElementSizes<kKind>::kDimension,
-                                    ElementSizes<kKind>::kNodes>& u,
-                Eigen::Index column, std::vector<Eigen::MatrixXd>& products) {
-  constexpr int kDimension = ElementSizes<kKind>::kDimension;
-  using Gradient = Eigen::Matrix<double, kDimension, kDimension>;
-  const Gradient gradient = u * point.gradient.transpose();
-  const Eigen::Map<const Eigen::Matrix<double, kGradientSize<kKind>, 1>> h(
-      gradient.data());
-  for (std::size_t k = 0; k < tangents.size(); ++k) {
-    Gradient stress;
-    Eigen::Map<Eigen::Matrix<double, kGradientSize<kKind>, 1>>(stress.data()) =
-        point.volume *
-        (Eigen::Map<const TangentMatrix<kKind>>(tangents[k].data()) * h);
-    double* const values = products[k].col(column).data();
-    for (int i = 0; i < ElementSizes<kKind>::kNodes; ++i) {
-      Eigen::Map<Eigen::Matrix<double, kDimension, 1>>(
-          values + kDimension * Eigen::Index(nodes[i])) +=
-          frame * (stress * point.gradient.col(i));
-    }
+using ElementVectors = Eigen::Matrix<double, ElementSizes<kKind>::kDimension,
+                                     ElementSizes<kKind>::kNodes>;
+
+// The forces on the nodes of an element, as seen in its frame, for displacement
+// gradients at its points and a tangent.
+template <ElementKind kKind>
+ElementVectors<kKind> ForcesOf(const std::vector<ElementPoint<kKind>>& points,
+                               const std::vector<Frame<kKind>>& gradients,
+                               const Eigen::MatrixXd& tangent) {
+  using Values = Eigen::Matrix<double, kGradientSize<kKind>, 1>;
+  const Eigen::Map<const TangentMatrix<kKind>> c(tangent.data());
+  ElementVectors<kKind> forces = ElementVectors<kKind>::Zero();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Frame<kKind> stress;
+    Eigen::Map<Values>(stress.data()).noalias() =
+        points[i].volume * (c * Eigen::Map<const Values>(gradients[i].data()));
+    forces.noalias() += stress * points[i].gradient;
   }
+  return forces;
 }
 
 template <ElementKind kKind>
@@ -61,22 +56,36 @@ void AddOfKind(const Mesh& mesh, const std::vector<int>& material_of_element,
                const std::vector<std::vector<Eigen::MatrixXd>>& tangents,
                const Eigen::MatrixXd& displacement,
                std::vector<Eigen::MatrixXd>& products) {
+  constexpr int kDimension = ElementSizes<kKind>::kDimension;
+  std::vector<ElementPoint<kKind>> points;
+  std::vector<Frame<kKind>> gradients(StiffnessRule<kKind>().size());
+  points.reserve(gradients.size());
   for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
-    const int* const nodes = mesh.elements.col(e).data();
     const int material = material_of_element[e];
-    const Frame<kKind> frame =
-        frames.Of<ElementSizes<kKind>::kDimension>(material, e);
-    VisitPoints<kKind>(
-        mesh, e, StiffnessRule<kKind>(), [&](const auto& point, const auto&) {
-          const ElementPoint<kKind> seen = SeenIn<kKind>(frame, point);
-          for (Eigen::Index c = 0; c < displacement.cols(); ++c) {
-            AddAtPoint<kKind>(
-                seen, frame, tangents[material], nodes,
-                frame.transpose() *
-                    GatherNodes<kKind>(mesh, e, displacement.col(c).data()),
-                c, products);
-          }
-        });
+    const Frame<kKind> frame = frames.Of<kDimension>(material, e);
+    points.clear();
+    VisitPoints<kKind>(mesh, e, StiffnessRule<kKind>(),
+                       [&](const auto& point, const auto&) {
+                         points.push_back(SeenIn<kKind>(frame, point));
+                       });
+    for (Eigen::Index column = 0; column < displacement.cols(); ++column) {
+      const ElementVectors<kKind> u =
+          frame.transpose() *
+          GatherNodes<kKind>(mesh, e, displacement.col(column).data());
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        gradients[i].noalias() = u * points[i].gradient.transpose();
+      }
+      for (std::size_t k = 0; k < tangents[material].size(); ++k) {
+        const ElementVectors<kKind> forces =
+            frame * ForcesOf<kKind>(points, gradients, tangents[material][k]);
+        double* const values = products[k].col(column).data();
+        for (int i = 0; i < ElementSizes<kKind>::kNodes; ++i) {
+          Eigen::Map<Eigen::Matrix<double, kDimension, 1>>(
+              values + kDimension * Eigen::Index(mesh.elements(i, e))) +=
+              forces.col(i);
+        }
+      }
+    }
   }
 }
 

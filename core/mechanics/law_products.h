@@ -35,14 +35,14 @@ Eigen::MatrixXd StiffnessBlocks(const Mesh& mesh, const NodeGraph& graph,
                                 const MaterialFrames& frames,
                                 const std::vector<Eigen::MatrixXd>& tangents);
 
-/// The blocks K_ii of StiffnessBlocks alone, of all nodes side by side:
-/// dimension x num_dofs.  One element pass, without a graph.
+/// Returns only the blocks K_ii of StiffnessBlocks, those of all nodes side by
+/// side: dimension x num_dofs.  One element pass, which needs no graph.
 Eigen::MatrixXd DiagonalStiffnessBlocks(
     const Mesh& mesh, const std::vector<int>& material_of_element,
     const MaterialFrames& frames, const std::vector<Eigen::MatrixXd>& tangents);
 
-/// The same of isotropic materials, from the coefficients of H and of J in each
-/// element (2 x num_elements), in a third of the time.
+/// Returns these blocks for isotropic materials, whose coefficients of H and of
+/// J in each element are 2 x num_elements.  It takes a third of the time.
 Eigen::MatrixXd DiagonalStiffnessBlocks(const Mesh& mesh,
                                         const Eigen::Matrix2Xd& coefficients);
 

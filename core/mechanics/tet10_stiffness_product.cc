@@ -27,24 +27,25 @@ namespace {
 
 constexpr std::ptrdiff_t kMostLanes = 8;
 
-// Four values each, of which the last is zero, are in the record of a node its
-// displacement, the sum at it, and that of the second product, if there are
-// two.
+// The record of a node has four values, of which the last is zero, for its
+// displacement, for the sum at it, and for the sum of the second product if
+// there are two.
 constexpr std::ptrdiff_t kFour = 4;
 constexpr std::ptrdiff_t kSizeForSum = 2 * kFour;
 constexpr std::ptrdiff_t kSizeForProducts = 3 * kFour;
 
-// For one column: to share the geometry of an element among several ones saves
-// less than their records cost that do not fit into the cache together.
+// A pass is for one column.  Columns that share the geometry of an element save
+// less than it costs that their records do not fit into the cache together.
 struct QuadraticPass {
   const int* elements;  // 10 x num_elements.
   std::ptrdiff_t num_elements;
   // 3 x num_nodes.  Four values are read at each vertex, behind which there are
   // nodes in the middle of edges.
   const double* positions;
-  // Null: the products are a = integral of e grad(N), and p = integral of
-  // tr(e) grad(N) behind it.  Else their sum with these coefficients is the
-  // only one; there are as many more of them, of any value, as there are lanes.
+  // Where these are null, the products are a = integral of e grad(N) and,
+  // behind it, p = integral of tr(e) grad(N).  Else the sum of both with these
+  // coefficients is the only product; behind those of the elements there are
+  // kMostLanes more, of any value.
   const double* coefficients_of_a;
   const double* coefficients_of_p;
   double* records;
@@ -81,9 +82,9 @@ using Nodes = NodeRecords<10, double>;
 
 #if ELASTIMATE_HAS_BATCHES
 
-// The vectors of node i minus those of node 0.
+// Returns the vectors of node i minus those of node 0.
 template <class Records>
-HWY_INLINE Vector Difference(const Records& nodes, int i) {
+HWY_INLINE Vector FromVertex0(const Records& nodes, int i) {
   const auto row = [&](std::size_t k) HWY_ATTR {
     return hn::Sub(LoadRow(nodes.record[i], k, 0),
                    LoadRow(nodes.record[0], k, 0));
@@ -128,7 +129,7 @@ HWY_INLINE Vector LoadVector(const double* p) {
 }
 
 template <class Records>
-HWY_INLINE Vector Difference(const Records& nodes, int i) {
+HWY_INLINE Vector FromVertex0(const Records& nodes, int i) {
   return LoadVector(nodes.record[i][0]) - LoadVector(nodes.record[0][0]);
 }
 
@@ -151,9 +152,9 @@ struct Barycentric {
 
   HWY_INLINE Barycentric(const Corners& nodes, std::ptrdiff_t count) {
     const Lanes d;
-    const Vector e1 = Difference(nodes, 1);
-    const Vector e2 = Difference(nodes, 2);
-    const Vector e3 = Difference(nodes, 3);
+    const Vector e1 = FromVertex0(nodes, 1);
+    const Vector e2 = FromVertex0(nodes, 2);
+    const Vector e3 = FromVertex0(nodes, 3);
     const Vector c1 = Cross(e2, e3);
     const Values determinant = MultiplyAdd3(e1.x, c1.x, e1.y, c1.y, e1.z, c1.z);
     const Values inverse = hn::Div(hn::Set(d, 1.0), determinant);
@@ -244,17 +245,17 @@ struct VertexStrains {
                     hn::MulSub(four, middle.y, end.y),
                     hn::MulSub(four, middle.z, end.z)};
     };
-    const Vector w1 = Difference(nodes, 1);
-    const Vector w2 = Difference(nodes, 2);
-    const Vector w3 = Difference(nodes, 3);
-    const Vector w01 = Difference(nodes, kMidEdgeNodes[0][1]);
-    const Vector w02 = Difference(nodes, kMidEdgeNodes[0][2]);
-    const Vector w03 = Difference(nodes, kMidEdgeNodes[0][3]);
-    const Vector w12 = Difference(nodes, kMidEdgeNodes[1][2]);
-    const Vector w13 = Difference(nodes, kMidEdgeNodes[1][3]);
-    const Vector w23 = Difference(nodes, kMidEdgeNodes[2][3]);
-    // Without vertex 0, by g0 = -(g1 + g2 + g3): its coefficient is taken from
-    // those of the others, and is 4 w_v0 at vertex v, which is 0 at vertex 0.
+    const Vector w1 = FromVertex0(nodes, 1);
+    const Vector w2 = FromVertex0(nodes, 2);
+    const Vector w3 = FromVertex0(nodes, 3);
+    const Vector w01 = FromVertex0(nodes, kMidEdgeNodes[0][1]);
+    const Vector w02 = FromVertex0(nodes, kMidEdgeNodes[0][2]);
+    const Vector w03 = FromVertex0(nodes, kMidEdgeNodes[0][3]);
+    const Vector w12 = FromVertex0(nodes, kMidEdgeNodes[1][2]);
+    const Vector w13 = FromVertex0(nodes, kMidEdgeNodes[1][3]);
+    const Vector w23 = FromVertex0(nodes, kMidEdgeNodes[2][3]);
+    // As g0 = -(g1 + g2 + g3), the coefficient of g0 is taken from those of the
+    // others.  It is 4 w_v0 at vertex v, and 0 at vertex 0.
     e0 = StrainOf(g, bent(w01, w1), bent(w02, w2), bent(w03, w3));
     e1 = StrainOf(g, three * w1 - four * w01, bent(w12 - w01, w2),
                   bent(w13 - w01, w3));
@@ -374,8 +375,8 @@ Records AllocateRecords(Eigen::Index size) {
 // The values of each node in the first four of its record, and zeros.  Loops of
 // a length that the compiler knows become vectors rather than calls.
 template <Eigen::Index kSize>
-void FillRecords(const double* values, Eigen::Index num_nodes,
-                 double* records) {
+void FillNodeRecords(const double* values, Eigen::Index num_nodes,
+                     double* records) {
   for (Eigen::Index i = 0; i < num_nodes; ++i, records += kSize, values += 3) {
     const double x = values[0];
     const double y = values[1];
@@ -404,8 +405,8 @@ void RunInColumns(const Mesh& mesh, const double* coefficients_of_a,
   pass.coefficients_of_p = coefficients_of_p;
   pass.records = records.get();
   for (Eigen::Index column = 0; column < displacement.cols(); ++column) {
-    FillRecords<kSize>(displacement.col(column).data(), num_nodes,
-                       records.get());
+    FillNodeRecords<kSize>(displacement.col(column).data(), num_nodes,
+                           records.get());
     HWY_DYNAMIC_DISPATCH(RunQuadraticPass)(pass);
     collect(column, records.get());
   }

@@ -32,9 +32,9 @@ void MultiplyQuadraticTetrahedra(const Mesh& mesh,
                                  const Eigen::MatrixXd& displacement,
                                  StiffnessProducts& products);
 
-/// The sum over the elements of c_0 H_e q + c_1 J_e q, with the coefficients c
-/// of each element (2 x num_elements), for each column of `displacement`.  Two
-/// thirds of the time of both products.
+/// Returns the sum over the elements of c_0 H_e q + c_1 J_e q, with the
+/// coefficients c of each element (2 x num_elements), for each column of
+/// `displacement`.  It takes two thirds of the time of both products.
 Eigen::MatrixXd MultiplyQuadraticTetrahedra(
     const Mesh& mesh, const Eigen::Matrix2Xd& coefficients,
     const Eigen::MatrixXd& displacement);

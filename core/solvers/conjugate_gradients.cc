@@ -9,8 +9,6 @@
 namespace elastimate {
 namespace {
 
-using Columns = std::vector<Eigen::Index>;
-
 Eigen::RowVectorXd ProductsOfColumns(const Eigen::MatrixXd& a,
                                      const Eigen::MatrixXd& b) {
   return a.cwiseProduct(b).colwise().sum();
@@ -112,7 +110,7 @@ class Iterations {
     return multiply_(x);
   }
 
-  // Whether the iterations may go on.
+  // Makes a step, and tells whether the iterations may go on.
   bool Step(int step) {
     Eigen::MatrixXd z = precondition_(residual_);
     Eigen::RowVectorXd rz = ProductsOfColumns(residual_, z);
@@ -172,7 +170,7 @@ class Iterations {
 
   // Puts the columns that are done into the result, and keeps the others.
   void TakeWhatIsDone(Eigen::MatrixXd& z, Eigen::RowVectorXd& rz) {
-    Columns kept;
+    std::vector<Eigen::Index> kept;
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       if (IsDone(k, rz(Eigen::Index(k)))) {
         result_.solution.col(columns_[k]) = x_.col(Eigen::Index(k));
@@ -206,7 +204,8 @@ class Iterations {
   const ColumnOperator& precondition_;
   const ConjugateGradientOptions& options_;
   ConjugateGradientResult result_;
-  Columns columns_;  // Of the right-hand sides, in ascending order.
+  std::vector<Eigen::Index>
+      columns_;  // Of the right-hand sides, in ascending order.
   Eigen::MatrixXd force_;
   Eigen::MatrixXd x_;
   Eigen::MatrixXd residual_;

@@ -6,7 +6,7 @@
 
 namespace elastimate {
 
-/// What a matrix or a preconditioner makes of some columns: size x n.
+/// A matrix or a preconditioner, which makes columns of columns: size x n.
 using ColumnOperator = std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>;
 
 struct ConjugateGradientOptions {

@@ -1,4 +1,5 @@
-// Equilibrium in nested spaces, beside that of the finest one by its factor.
+// Compares Equilibrium in nested spaces with Equilibrium in the finest one by
+// its factor.
 
 #include "elastimate/core/equilibrium/refined_stiffness.h"
 
@@ -111,7 +112,7 @@ TEST_P(RefinedEquilibrium, HasTheSupportsOfEachLoadCase) {
   Supports other = scene_.supports;
   const Eigen::Index last = scene_.mesh.NumNodes() - 1;
   other.held.col(last).setConstant(true);
-  // Not all components of a node.
+  // The node is held in some of its components.
   other.held(0, last) = false;
   other.displacement.col(last).setConstant(0.01);
   scene_.load_cases[1].supports = other;
@@ -135,7 +136,7 @@ TEST_P(RefinedEquilibrium, HasTheSupportsOfEachLoadCase) {
   ExpectSame(refined.Extend(held), direct.Extend(held));
   ExpectSame(refined.ExtendInCase(1, held), direct.ExtendInCase(1, held));
   ExpectSame(refined.ExtendTransposed(values), direct.ExtendTransposed(values));
-  // Without solutions.
+  // These need no solution of a system.
   constexpr double kRounding = 1e-12;
   ExpectSame(refined.HeldForces(values), direct.HeldForces(values), kRounding);
   ExpectSame(refined.HeldForcesTransposed(values),
@@ -152,7 +153,7 @@ TEST_P(RefinedEquilibrium, BeginsWithTheLastSolution) {
   Equilibrium equilibrium(spaces.All(), SolverKind::kCholesky);
   const MaterialParameters& chart = equilibrium.Forces().Parameters();
   const Eigen::MatrixXd directions = chart.ModuliJacobian(parameters_);
-  // Of a solution and its sensitivities.
+  // Counts those of a solution and of its sensitivities.
   const auto iterations = [&](const Eigen::VectorXd& moduli) {
     const int before = equilibrium.WorkDone().iterations;
     EXPECT_TRUE(equilibrium.Solve(moduli));
@@ -225,7 +226,7 @@ Scene Block(int cells) {
 }
 
 TEST(RefinedStiffness, LeavesTheErrorThatItIsAskedFor) {
-  const Spaces spaces(Block(3), 2);
+  const Spaces spaces(Block(2), 2);
   Equilibrium direct(spaces.Finest(), SolverKind::kCholesky);
   for (const double nu : {-0.5, 0.3, 0.49}) {
     const Eigen::VectorXd moduli =
@@ -312,6 +313,15 @@ TEST(RefinedStiffness, TakesMultigridForTheCoarsestSpace) {
   EXPECT_EQ(refined.WorkDone().factorizations, 0);
   EXPECT_GT(refined.WorkDone().multigrid_set_ups, 0);
   ExpectSame(refined.Displacement(), direct.Displacement());
+}
+
+TEST(RefinedStiffness, IsForSpacesOfOneMesh) {
+  const Spaces spaces(Block(2), 2);
+  const Spaces others(Block(3), 1);
+  EXPECT_TRUE(Equilibrium::IsRefinable(spaces.All()));
+  EXPECT_FALSE(Equilibrium::IsRefinable({spaces.All()[0], &others.Finest()}));
+  EXPECT_FALSE(Equilibrium::IsRefinable({spaces.All()[1], spaces.All()[0]}));
+  EXPECT_FALSE(Equilibrium::IsRefinable({spaces.All()[0], spaces.All()[0]}));
 }
 
 TEST(RefinedStiffness, IsForSimplicesWithStraightEdges) {

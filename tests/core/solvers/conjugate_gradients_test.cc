@@ -15,7 +15,7 @@ using testing::RandomMatrix;
 
 class ConjugateGradients : public ::testing::Test {
  protected:
-  // Symmetric, with these eigenvalues.
+  // Returns a symmetric matrix with these eigenvalues.
   static Eigen::MatrixXd WithEigenvalues(const Eigen::VectorXd& values) {
     const Eigen::VectorXd v =
         RandomMatrix(values.size(), 1, 5).col(0).normalized();
@@ -34,7 +34,7 @@ class ConjugateGradients : public ::testing::Test {
         b, start, options_);
   }
 
-  // Of the energy norm, relative to the solution.
+  // Returns the error in the energy norm, relative to the solution.
   double Error(const Eigen::VectorXd& x, const Eigen::VectorXd& b) const {
     const Eigen::VectorXd expected = testing::SolveDensely(a_, b);
     const Eigen::VectorXd error = x - expected;
