@@ -24,10 +24,6 @@ Eigen::Index MostDividedElements(int dimension) {
   return dimension == 3 ? 20000 : 100000;
 }
 
-// Elements from which on a factor takes longer than iterations in nested
-// spaces.
-constexpr Eigen::Index kLeastNested = 4000;
-
 // Next to the end of the range of a ratio a misfit hardly has a slope: where
 // coarse elements end there, finer ones start farther inside.
 Eigen::VectorXd AwayFromEnds(const FreeParameters& free,
@@ -106,6 +102,11 @@ bool IsMeshErrorSmall(const Estimate& estimate) {
   return estimate.IsUsable() && mesh.size() > 0;
 }
 
+bool IsSolved(const MaterialFit& fit) {
+  return fit.minimum && fit.minimum->end != End::kSingularStiffness &&
+         fit.minimum->end != End::kSearchFailed;
+}
+
 // The fits of one scene on finer and finer elements.
 class Refinement {
  public:
@@ -124,10 +125,13 @@ class Refinement {
   std::unique_ptr<SpaceFit> MinimizeOn(
       const Scene& scene, const std::optional<Eigen::VectorXd>& start,
       const std::vector<const Scene*>& coarser = {}) const {
-    const bool is_small = scene.mesh.NumElements() < kLeastNested;
-    auto space = std::make_unique<SpaceFit>(
-        scene, options_, is_small ? std::vector<const Scene*>() : coarser);
+    auto space = std::make_unique<SpaceFit>(scene, options_, coarser);
     space->Minimize(descent_, start);
+    // Iterations may not converge for flat elements and next to nu = 1/2.
+    if (!coarser.empty() && !IsSolved(space->Fit())) {
+      space = std::make_unique<SpaceFit>(scene, options_);
+      space->Minimize(descent_, start);
+    }
     return space;
   }
   bool MayDivide(const Scene& quadratic) const {

@@ -180,16 +180,10 @@ TEST_P(Materials, ThatAreAllKnownAreRefused) {
   EXPECT_THROWS_WITH(Run(), "leave one to estimate");
 }
 
-TEST_P(Materials, NextToIncompressibleOnesAreFoundAndSaid) {
+TEST_P(Materials, NextToIncompressibleOnesAreFound) {
   const Eigen::Vector4d parameters(2e3, 0.2, 5e3, 0.499);
   MeasureMaterials(parameters, scene_);
   ExpectParameters(Run(), parameters, 1e-4);
-  // What leaves rounding only is of these elements.
-  testing::AddNoise(1e-5, 1, scene_);
-  const Estimate estimate = Run();
-  // Error bars that hold what the elements miss hold this too.
-  EXPECT_EQ(estimate.Has(FindingCode::kLocking),
-            !estimate.error_budget.discretization.array().isFinite().any());
 }
 
 TEST_P(Materials, RefuseWhatIsForOneMaterial) {

@@ -125,7 +125,6 @@ std::vector<Finding> OfResiduals() {
           VirtualWorkImbalance(kLong, Severity::kWarning),
           ModelDoesNotFitAtLimit(),
           OutliersAtLimit(),
-          ModelMismatchFinding({kLong, kLong, true}),
           Outliers({kLong, kLong}, {}),
           FarNeighbours(),
           OutliersLeftOut({{0, 1000000, false},
@@ -150,8 +149,8 @@ std::vector<Finding> OfParameters() {
       UnphysicalParameters(ManyParameters()),
       ParametersUndetermined({"E of region 3 (45 %)"}),
       ParametersUndetermined(ManyParameters()),
-      ParametersUndeterminedByElements({"E of region 3 (45 %)"}, {}),
-      ParametersUndeterminedByElements(ManyParameters(), {}),
+      ParametersUndeterminedByElements({"E of region 3 (45 %)"}),
+      ParametersUndeterminedByElements(ManyParameters()),
       ParametersUndeterminedOnBounds(ManyParameters()),
       RatiosAtLimit({"nu of region 3"}),
       RatiosAtLimit(ManyParameters()),
@@ -181,10 +180,7 @@ std::vector<Finding> OfParameters() {
 
 std::vector<Finding> OfElements() {
   const Estimate estimate = EstimateOfShearModulus();
-  Estimate of_linear = estimate;
-  of_linear.element_order = 1;
   return {
-      Locking(ElementKind::kTet4),
       LargeDeformation({0.2, 0.1}, 0.17, Severity::kError),
       LargeDeformation({0.001, 0.3}, 0.05, Severity::kWarning),
       LargeDeformation({30, 0.1}, 24, Severity::kError),
@@ -195,12 +191,10 @@ std::vector<Finding> OfElements() {
         return nu;
       }()),
       MarginNotGiven(0.06),
-      DiscretizationErrorFinding(ElementKind::kTet4, of_linear),
-      DiscretizationErrorFinding(ElementKind::kHex8, estimate),
-      ElementsTooCoarse({0.512345, -0.212345}, {}),
+      DiscretizationErrorFinding(estimate),
+      MeshErrorUnknown(),
+      ComputedByLinearElements(),
       SupportsEndWithinElements({0.0312345, 0.0212345}),
-      LinearElementsFitAsWell(kLongElasticity),
-      TooManyElements(),
       SolverFallback("multigrid did not converge, so that the stiffness was "
                      "factorised")};
 }
@@ -266,8 +260,7 @@ TEST(FindingSentences, HaveNoPercentageBeyondAThousand) {
           TrendOverFrames("E", true, {true, numbers, numbers, numbers}, 0),
           YoungsModulusBias(ratio, Severity::kError),
           ParameterBias("E", ratio, true, Severity::kError),
-          DiscretizationErrorFinding(ElementKind::kTet4, open),
-          ElementsTooCoarse({std::log1p(std::abs(ratio)), 0}, {}),
+          DiscretizationErrorFinding(open),
           SupportsEndWithinElements({ratio, 0})}) {
       const std::size_t place = finding.text.find(" %");
       if (place != std::string::npos) {  // That of a limit.

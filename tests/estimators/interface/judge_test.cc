@@ -72,16 +72,17 @@ TEST(Judge, RatiosAtTheirLimitNeedAModelThatFits) {
   EXPECT_TRUE(estimate.Has(FindingCode::kPoissonRatioAtLimit));
 }
 
-TEST(Judge, SaysNoElementsLockThatLeaveRoundingOnly) {
-  const Scene scene = OneCube();
-  for (const double residual : {1e-12, 0.01}) {
+TEST(Judge, WarnsOfAMeshErrorThatIsUnknown) {
+  Scene scene = OneCube();
+  for (const Origin origin : {Origin::kMeasured, Origin::kComputed}) {
+    scene.origin = origin;
     Estimate estimate = Measured();
-    estimate.elasticity.poisson_ratio = 0.49;
     estimate.covariance = Eigen::Vector2d(1, 1e-6).asDiagonal();
-    estimate.displacement_residual = residual;
     Judge({}, {}, estimate);
-    FinishEstimate("reduced-fe", scene, {}, {}, estimate);
-    EXPECT_EQ(estimate.Has(FindingCode::kLocking), residual > 1e-6);
+    FinishEstimate("virtual-fields", scene, {}, {}, estimate);
+    ASSERT_TRUE(estimate.IsUsable()) << estimate.message;
+    EXPECT_EQ(estimate.Has(FindingCode::kMeshErrorUnknown),
+              origin == Origin::kMeasured);
   }
 }
 

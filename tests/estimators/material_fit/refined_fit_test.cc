@@ -21,7 +21,7 @@ namespace {
 using testing::AddNoise;
 using testing::KindOfSection;
 
-constexpr IsotropicElasticity kTruth = {5e4, 0.35};
+constexpr IsotropicElasticity kSpecimen = {5e4, 0.35};
 
 Estimate Fitted(const Scene& scene, const EstimatorOptions& options = {},
                 const std::string& estimator = "reduced-fe") {
@@ -49,10 +49,10 @@ TEST_P(RefinedFitOfKinds, HoldsTheTruthOfAFinerSpecimen) {
   Scene scene = testing::SceneOfKind(GetParam());
   scene.load_cases[0].loads = {
       BodyForce{Eigen::VectorXd::Constant(scene.mesh.Dimension(), 30)}};
-  testing::MeasureInCutWorld(kTruth, scene);
+  testing::MeasureInCutWorld(kSpecimen, scene);
   AddNoise(0.003, 1, scene);
   const Estimate estimate = Fitted(scene);
-  ExpectToHold(kTruth, estimate);
+  ExpectToHold(kSpecimen, estimate);
   EXPECT_EQ(estimate.element_order, 2);
   EXPECT_GT(*estimate.discretization_error, 0);
   EXPECT_GT(estimate.error_budget.noise(0), 0);
@@ -66,11 +66,11 @@ INSTANTIATE_TEST_SUITE_P(All, RefinedFitOfKinds,
 
 TEST(RefinedFit, OfBothDescentsIsTheSame) {
   Scene scene = Block({2, 2, 4});
-  testing::MeasureInCutWorld(kTruth, scene);
+  testing::MeasureInCutWorld(kSpecimen, scene);
   AddNoise(0.003, 1, scene);
   const Estimate reduced = Fitted(scene);
   const Estimate iterative = Fitted(scene, {}, "iterative-fe");
-  ExpectToHold(kTruth, iterative);
+  ExpectToHold(kSpecimen, iterative);
   const double error = *reduced.YoungsModulusStandardError();
   EXPECT_NEAR(reduced.elasticity.youngs_modulus,
               iterative.elasticity.youngs_modulus, 0.05 * error);
@@ -79,14 +79,14 @@ TEST(RefinedFit, OfBothDescentsIsTheSame) {
 
 TEST(RefinedFit, DividesTheMeshAsOftenAsIsAskedFor) {
   Scene scene = Block({2, 2, 4});
-  testing::MeasureInCutWorld(kTruth, scene);
+  testing::MeasureInCutWorld(kSpecimen, scene);
   AddNoise(0.003, 1, scene);
   EstimatorOptions options;
   options.refinement = Refine::kNever;
   const Estimate never = Fitted(scene, options);
   options.refinement = Refine::kAlways;
   const Estimate always = Fitted(scene, options);
-  ExpectToHold(kTruth, always);
+  ExpectToHold(kSpecimen, always);
   EXPECT_EQ(never.mesh_divisions, 0);
   EXPECT_EQ(always.mesh_divisions, 1);
   EXPECT_GT(*never.discretization_error, 3 * *always.discretization_error);
@@ -99,10 +99,10 @@ TEST(RefinedFit, KeepsTheMeshWhereNoiseMattersMore) {
   const KindOfSection plane = {ElementKind::kTri3, SectionModel::kPlaneStress};
   Scene scene = testing::SceneOfKind(plane, 12);
   scene.load_cases[0].loads = {BodyForce{Eigen::Vector2d(30, 30)}};
-  testing::MeasureInCutWorld(kTruth, scene);
+  testing::MeasureInCutWorld(kSpecimen, scene);
   AddNoise(0.2, 1, scene);
   const Estimate estimate = Fitted(scene);
-  ExpectToHold(kTruth, estimate);
+  ExpectToHold(kSpecimen, estimate);
   EXPECT_EQ(estimate.mesh_divisions, 0);
   EXPECT_GE(*estimate.discretization_error, 0.005);
 }
@@ -129,7 +129,7 @@ TEST(RefinedFit, OfTwoRegionsHoldsBoth) {
 TEST(RefinedFit, RefusesWhatLinearElementsComputed) {
   for (const double noise : {0.0, 0.05}) {
     Scene scene = testing::SmallScene("organ");
-    Measure(kTruth, scene);
+    Measure(kSpecimen, scene);
     if (noise > 0) {
       AddNoise(noise, 1, scene);
     }
@@ -143,7 +143,7 @@ TEST(RefinedFit, RefusesWhatLinearElementsComputed) {
 
 TEST(RefinedFit, WithALossWithstandsOutliers) {
   Scene scene = Block({2, 2, 4});
-  testing::MeasureInCutWorld(kTruth, scene);
+  testing::MeasureInCutWorld(kSpecimen, scene);
   MeasurementErrors errors;
   errors.relative_noise = 0.005;
   errors.law = NoiseLaw::kGaussian;
@@ -154,20 +154,20 @@ TEST(RefinedFit, WithALossWithstandsOutliers) {
   EstimatorOptions options;
   options.loss = Loss::kHuber;
   const Estimate huber = Fitted(scene, options);
-  ExpectToHold(kTruth, huber);
+  ExpectToHold(kSpecimen, huber);
   EXPECT_TRUE(huber.outliers.empty());
   const Estimate left_out = Fitted(scene);
-  ExpectToHold(kTruth, left_out);
+  ExpectToHold(kSpecimen, left_out);
   EXPECT_FALSE(left_out.outliers.empty());
 }
 
 TEST(RefinedFit, OfQuadraticElementsDividesThem) {
   Scene scene = Block({1, 1, 2});
   Scene quadratic = QuadraticScene(scene);
-  testing::MeasureInCutWorld(kTruth, quadratic);
+  testing::MeasureInCutWorld(kSpecimen, quadratic);
   AddNoise(0.003, 1, quadratic);
   const Estimate estimate = Fitted(quadratic);
-  ExpectToHold(kTruth, estimate);
+  ExpectToHold(kSpecimen, estimate);
   EXPECT_EQ(estimate.mesh_divisions, 1);
 }
 
@@ -191,12 +191,12 @@ TEST(RefinedFit, HoldsWhatTheEndOfASupportLeavesOpen) {
   LoadCase load_case;
   load_case.loads = {BodyForce{Eigen::Vector3d(200, -50, -30)}};
   scene.load_cases = {load_case};
-  testing::MeasureInCutWorld(kTruth, scene);
+  testing::MeasureInCutWorld(kSpecimen, scene);
   const Estimate of_box = Fitted(scene);
-  ExpectToHold(kTruth, of_box);
+  ExpectToHold(kSpecimen, of_box);
   scene.supports.boxes.clear();
   const Estimate of_mask = Fitted(scene);
-  ExpectToHold(kTruth, of_mask);
+  ExpectToHold(kSpecimen, of_mask);
   EXPECT_GT(*of_mask.YoungsModulusStandardError(),
             *of_box.YoungsModulusStandardError());
 }
