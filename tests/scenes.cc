@@ -180,6 +180,7 @@ Scene ShearedBlock() {
   scene.supports.held.col(12) << false, false, true;
   scene.load_cases[0].loads = {forces};
   scene.load_cases[0].displacement = displacement;
+  scene.origin = Origin::kComputed;
   return scene;
 }
 

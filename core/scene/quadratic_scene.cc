@@ -166,9 +166,19 @@ Supports WithMidEdgeSupports(const Supports& supports, const Mesh& mesh,
                           [&](Eigen::Index edge) { return !crossing[edge]; }),
          face.components});
   }
-  return {WithMidEdges(supports.held, held),
-          WithMidEdges(supports.displacement, displacement), supports.boxes,
-          unknown, rigid_faces};
+  Supports quadratic = {WithMidEdges(supports.held, held),
+                        WithMidEdges(supports.displacement, displacement),
+                        supports.boxes, unknown, rigid_faces};
+  quadratic.middles = supports.middles;
+  for (Eigen::Index edge = 0; edge < edges.Size(); ++edge) {
+    const auto node = mesh.NumNodes() + edge;
+    if (unknown.size() != 0 && unknown.col(node).any()) {
+      quadratic.middles.push_back(
+          {static_cast<int>(node),
+           {edges.Ends()(0, edge), edges.Ends()(1, edge)}});
+    }
+  }
+  return quadratic;
 }
 
 Eigen::MatrixXi WithMidEdgeNodes(const Eigen::MatrixXi& facets,

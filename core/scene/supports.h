@@ -43,6 +43,12 @@ struct RigidFace {
   Eigen::Array<bool, Eigen::Dynamic, 1> components;  ///< Of `dimension`.
 };
 
+/// A node that a refinement put in the middle between two others.
+struct MiddleNode {
+  int node;
+  int ends[2];
+};
+
 /// The held degrees of freedom, and the displacement they are held at.
 struct Supports {
   ComponentMask held;            ///< dimension x num_nodes.
@@ -62,6 +68,11 @@ struct Supports {
   /// Where QuadraticScene cannot tell which of the nodes that it adds are held
   /// (FindSupportEnds): none of them, unless a fit finds them (EndingAfter).
   std::vector<SupportEnd> ends = {};
+
+  /// The nodes that QuadraticScene put between held nodes of unknown
+  /// displacement, each after the nodes at its ends: where it was not measured
+  /// itself, it moves as their mean.
+  std::vector<MiddleNode> middles = {};
 
   /// Whether component `i` of `node` is held at a displacement that is known.
   bool IsGiven(int i, Eigen::Index node) const {

@@ -1,6 +1,7 @@
 #include "elastimate/core/scene/unknown_motion.h"
 
 #include <cmath>
+#include <map>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -110,37 +111,57 @@ void RefuseTheSameResultant(const Resultant& before, const Resultant& resultant,
   }
 }
 
-// Of a mesh of order 2, in the load cases of some supports: the nodes in the
-// middle of edges that were measured in none of them, and move with the ends.
+// The nodes of some supports that move as the mean of two others, since they
+// were measured in no load case of these supports: those that a refinement put
+// there, and the mid-edge nodes of a mesh of order 2.
 struct TiedNodes {
   TiedNodes(const Scene& scene, const Supports& supports)
       : is_tied(ComponentMask::Constant(supports.held.rows(),
                                         supports.held.cols(), false)) {
     const ComponentMask measured = AsMeasured(supports);
-    if (scene.mesh.Order() == 1 || measured.size() == 0) {
+    if (measured.size() == 0) {
+      return;
+    }
+    for (const MiddleNode& middle : supports.middles) {
+      Tie(scene, supports, measured, middle);
+    }
+    if (scene.mesh.Order() == 1) {
       return;
     }
     const MidEdges edges(scene.mesh);
-    ends = edges.Ends();
-    first = edges.NumVertices();
-    for (Eigen::Index edge = 0; edge < ends.cols(); ++edge) {
-      for (int i = 0; i < measured.rows(); ++i) {
-        is_tied(i, first + edge) = measured(i, first + edge) &&
-                                   measured(i, ends(0, edge)) &&
-                                   measured(i, ends(1, edge));
-        for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-          is_tied(i, first + edge) =
-              is_tied(i, first + edge) &&
-              (&SupportsOf(scene, Eigen::Index(k)) != &supports ||
-               !IsObserved(scene.load_cases[k], i, first + edge));
-        }
-      }
+    for (Eigen::Index edge = 0; edge < edges.Ends().cols(); ++edge) {
+      Tie(scene, supports, measured,
+          {static_cast<int>(edges.NumVertices() + edge),
+           {edges.Ends()(0, edge), edges.Ends()(1, edge)}});
     }
   }
 
-  ComponentMask is_tied;  // dimension x num_nodes.
-  Eigen::Matrix2Xi ends;  // Of node first + i in column i.
-  Eigen::Index first = 0;
+  ComponentMask is_tied;            // dimension x num_nodes.
+  std::vector<MiddleNode> middles;  // Each after the nodes at its ends.
+
+ private:
+  void Tie(const Scene& scene, const Supports& supports,
+           const ComponentMask& measured, const MiddleNode& middle) {
+    const auto& [node, ends] = middle;
+    bool is_any_new = false;
+    for (int i = 0; i < measured.rows(); ++i) {
+      if (is_tied(i, node) || !measured(i, node) || !measured(i, ends[0]) ||
+          !measured(i, ends[1])) {
+        continue;
+      }
+      bool is_observed = false;
+      for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+        is_observed = is_observed ||
+                      (&SupportsOf(scene, Eigen::Index(k)) == &supports &&
+                       IsObserved(scene.load_cases[k], i, node));
+      }
+      is_tied(i, node) = !is_observed;
+      is_any_new = is_any_new || !is_observed;
+    }
+    if (is_any_new) {
+      middles.push_back(middle);
+    }
+  }
 };
 
 // A few nodes may have been lost: their motion follows from their neighbours'.
@@ -250,22 +271,29 @@ UnknownMotion::UnknownMotion(const Scene& scene, const Supports& supports)
   Eigen::Index num_columns = 0;
   const ComponentMask measured = AsMeasured(supports);
   const TiedNodes tied(scene, supports);
-  std::vector<Eigen::Index> column_of_dof(mesh.NumDofs(), -1);
+  // The columns of each degree of freedom, with their shares.
+  std::vector<std::map<Eigen::Index, double>> shares(mesh.NumDofs());
   for (Eigen::Index dof = 0; dof < measured.size(); ++dof) {
     if (measured.reshaped()(dof) && !tied.is_tied.reshaped()(dof)) {
-      column_of_dof[dof] = num_columns;
-      entries.emplace_back(dof, num_columns++, 1);
+      shares[dof][num_columns++] = 1;
     }
   }
-  for (Eigen::Index edge = 0; edge < tied.ends.cols(); ++edge) {
+  for (const auto& [node, ends] : tied.middles) {
     for (int i = 0; i < dimension; ++i) {
-      if (tied.is_tied(i, tied.first + edge)) {
-        for (const int end : tied.ends.col(edge)) {
-          entries.emplace_back(dimension * (tied.first + edge) + i,
-                               column_of_dof[dimension * Eigen::Index(end) + i],
-                               0.5);
+      if (!tied.is_tied(i, node)) {
+        continue;
+      }
+      for (const int end : ends) {
+        for (const auto& [column, share] :
+             shares[dimension * Eigen::Index(end) + i]) {
+          shares[dimension * Eigen::Index(node) + i][column] += share / 2;
         }
       }
+    }
+  }
+  for (Eigen::Index dof = 0; dof < mesh.NumDofs(); ++dof) {
+    for (const auto& [column, share] : shares[dof]) {
+      entries.emplace_back(dof, column, share);
     }
   }
   for (const RigidFace& face : supports.rigid_faces) {
@@ -303,48 +331,6 @@ Eigen::VectorXd MeasuredSupports(const Scene& scene, Eigen::Index k) {
                                   ? measured
                                   : measured && load_case.observed;
   return known.select(load_case.displacement.array(), 0.0).reshaped();
-}
-
-void FollowNeighbours(const Scene& scene, const NodeGraph& graph,
-                      Eigen::Index k, Eigen::Ref<Eigen::VectorXd> motion) {
-  const ComponentMask as_measured = AsMeasured(SupportsOf(scene, k));
-  if (as_measured.size() == 0) {
-    return;
-  }
-  const auto dimension = static_cast<int>(as_measured.rows());
-  for (int i = 0; i < dimension; ++i) {
-    std::vector<bool> is_known(as_measured.cols());
-    for (Eigen::Index node = 0; node < as_measured.cols(); ++node) {
-      is_known[node] =
-          as_measured(i, node) && IsObserved(scene.load_cases[k], i, node);
-    }
-    bool is_new = true;
-    while (is_new) {
-      is_new = false;
-      Eigen::VectorXd sums = Eigen::VectorXd::Zero(as_measured.cols());
-      Eigen::VectorXi counts = Eigen::VectorXi::Zero(as_measured.cols());
-      const auto follow = [&](Eigen::Index node, Eigen::Index neighbour) {
-        if (as_measured(i, node) && !is_known[node] && is_known[neighbour]) {
-          sums(node) += motion(dimension * neighbour + i);
-          ++counts(node);
-        }
-      };
-      for (Eigen::Index node = 0; node < as_measured.cols(); ++node) {
-        for (Eigen::Index pair = graph.start[node] + 1;
-             pair < graph.start[node + 1]; ++pair) {
-          follow(node, graph.row[pair]);
-          follow(graph.row[pair], node);
-        }
-      }
-      for (Eigen::Index node = 0; node < as_measured.cols(); ++node) {
-        if (counts(node) > 0) {
-          motion(dimension * node + i) = sums(node) / counts(node);
-          is_known[node] = true;
-          is_new = true;
-        }
-      }
-    }
-  }
 }
 
 }  // namespace elastimate

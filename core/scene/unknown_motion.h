@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
-#include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/scene.h"
 
 namespace elastimate {
@@ -26,9 +25,10 @@ ComponentMask AsMeasured(const Supports& supports);
 ///
 ///   u of the supports = given + G b,   what was measured = u + R a + noise.
 ///
-/// Amounts are lengths.  On a mesh of order 2, mid-edge nodes of supports that
-/// moved as measured, but were measured in no load case of these supports, move
-/// as the mean of the ends of their edge.
+/// Amounts are lengths.  Nodes that a refinement put into supports that moved as
+/// measured (Supports::middles), and mid-edge nodes of a mesh of order 2 there,
+/// move as the mean of the two nodes at their ends where they were measured in
+/// no load case of these supports.
 struct UnknownMotion {
   /// G: num_dofs x n.  One column for each displacement that is as measured,
   /// and the rigid motions of each face, three to six at most.
@@ -47,14 +47,6 @@ struct UnknownMotion {
 /// The displacement of AsMeasured as measured in load case `k`, zero elsewhere
 /// and where a node was not measured: num_dofs values.
 Eigen::VectorXd MeasuredSupports(const Scene& scene, Eigen::Index k);
-
-/// Gives the nodes of AsMeasured that have no measurement in load case `k` the
-/// mean motion of their neighbours that have one, and so on from neighbour to
-/// neighbour: where such nodes move follows from equilibrium too, but is
-/// ill-posed.  `motion` has num_dofs values.  O(num_pairs) for each node that
-/// is farther from a measurement than the one before.
-void FollowNeighbours(const Scene& scene, const NodeGraph& graph,
-                      Eigen::Index k, Eigen::Ref<Eigen::VectorXd> motion);
 
 }  // namespace elastimate
 

@@ -161,7 +161,8 @@ class Iterations {
     const double most =
         options_.tolerance * options_.tolerance *
         x_.col(column).dot(force_.col(column) - residual_.col(column));
-    if (!(rz <= most)) {
+    // The smallest eigenvalue that is known only falls.
+    if (!(rz <= most * result_.smallest_eigenvalue)) {
       return false;
     }
     TakeEigenvaluesOf(lanczos_[k]);

@@ -718,18 +718,16 @@ Finding DiscretizationErrorFinding(const Estimate& estimate) {
 
 Finding MeshErrorUnknown() {
   return Warning(FindingCode::kMeshErrorUnknown,
-                 "the errors are those of noise; this estimator does not know "
-                 "how much the mesh adds",
-                 "use --estimator=reduced-fe, or --origin=computed if elements "
-                 "of this mesh computed the displacements");
+                 "this estimator does not know the mesh error, so that the "
+                 "errors are those of noise",
+                 "use reduced-fe, or --origin=computed for simulated data");
 }
 
 Finding ComputedByLinearElements() {
   return Error(FindingCode::kComputedByLinearElements,
-               "linear elements of this mesh explain the displacements far "
-               "better than finer ones, as if they had computed them",
-               "if they did, say so with --origin=computed (\"origin\" in "
-               "scene.json)");
+               "linear elements of this mesh fit far better than finer ones, "
+               "as if they had computed the data",
+               "if so, give --origin=computed");
 }
 
 Finding SupportsEndWithinElements(const Eigen::Vector2d& errors) {

@@ -62,7 +62,7 @@ std::vector<Outlier> OutliersOf(const Scene& scene,
 
 // The same as a fit tells that follows no supports beside them either.
 std::vector<Outlier> OutliersWithoutSuspects(
-    const Scene& scene, const EstimatorOptions& options, Descent descent,
+    const Scene& scene, const FitFunction& fit_scene,
     const ObservedDisplacements& observed, const MaterialFit& fit,
     const std::vector<Outlier>& outliers, Work& work) {
   std::vector<Outlier> left_out = SuspectedSupports(scene, outliers);
@@ -70,8 +70,8 @@ std::vector<Outlier> OutliersWithoutSuspects(
     return outliers;
   }
   left_out.insert(left_out.end(), outliers.begin(), outliers.end());
-  const MaterialFit other = FitSpace(WithoutOutliers(scene, left_out), options,
-                                   descent, fit.Variables());
+  const MaterialFit other =
+      fit_scene(WithoutOutliers(scene, left_out), fit.Variables());
   work = work + other.estimate.work;
   return other.displacement.size() == 0
              ? outliers
@@ -80,8 +80,8 @@ std::vector<Outlier> OutliersWithoutSuspects(
 
 }  // namespace
 
-InlierFit LeaveOutliersOut(const Scene& scene, const EstimatorOptions& options,
-                           Descent descent, const MaterialFit& of_all) {
+InlierFit LeaveOutliersOut(const Scene& scene, const FitFunction& fit_scene,
+                           const MaterialFit& of_all) {
   constexpr int kRounds = 8;
   // What more points contradict is wrong in another way.
   constexpr double kMost = 1.0 / 3;
@@ -98,8 +98,7 @@ InlierFit LeaveOutliersOut(const Scene& scene, const EstimatorOptions& options,
       fit.estimate.work = work;
       return;
     }
-    fit = FitSpace(WithoutOutliers(scene, outliers), options, descent,
-                 fit.Variables());
+    fit = fit_scene(WithoutOutliers(scene, outliers), fit.Variables());
     fit.estimate.work = fit.estimate.work + work;
   };
   Work of_suspects;
@@ -107,8 +106,8 @@ InlierFit LeaveOutliersOut(const Scene& scene, const EstimatorOptions& options,
   for (int i = 0; i < kRounds && fit.displacement.size() != 0; ++i) {
     std::vector<Outlier> outliers = OutliersOf(scene, observed, fit, left_out);
     if (outliers == left_out) {
-      outliers = OutliersWithoutSuspects(scene, options, descent, observed, fit,
-                                         outliers, of_suspects);
+      outliers = OutliersWithoutSuspects(scene, fit_scene, observed, fit, outliers,
+                                         of_suspects);
     }
     // Others were left out before, and led here.
     if (std::find(tried.begin(), tried.end(), outliers) != tried.end()) {

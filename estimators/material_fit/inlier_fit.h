@@ -1,12 +1,14 @@
 #ifndef ELASTIMATE_ESTIMATORS_MATERIAL_FIT_INLIER_FIT_H_
 #define ELASTIMATE_ESTIMATORS_MATERIAL_FIT_INLIER_FIT_H_
 
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
-#include "elastimate/estimators/interface/estimator.h"
 #include "elastimate/estimators/material_fit/space_fit.h"
 
 namespace elastimate {
@@ -17,12 +19,16 @@ struct InlierFit {
   std::vector<Outlier> left_out;
 };
 
+/// Fits the displacements of a scene from some variables on.
+using FitFunction = std::function<MaterialFit(
+    const Scene& scene, const std::optional<Eigen::VectorXd>& start)>;
+
 /// Fits again without the outliers of a fit of all (OutlierSearch), until they
 /// are those of the fit without them; only those that lie apart
 /// (OutliersApart) are left out in the end, and none where they are more than
 /// a third of all points, since something else is wrong then.
-InlierFit LeaveOutliersOut(const Scene& scene, const EstimatorOptions& options,
-                           Descent descent, const MaterialFit& of_all);
+InlierFit LeaveOutliersOut(const Scene& scene, const FitFunction& fit,
+                           const MaterialFit& of_all);
 
 /// Enters which measurements were left out, and what that changed.
 void EnterOutliers(const std::vector<Outlier>& left_out,

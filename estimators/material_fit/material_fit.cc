@@ -51,7 +51,12 @@ MaterialFit FitByOrigin(const Scene& scene, const EstimatorOptions& options,
   if (options.loss != Loss::kNone) {
     return of_all;
   }
-  InlierFit inliers = LeaveOutliersOut(scene, options, descent, of_all);
+  InlierFit inliers = LeaveOutliersOut(
+      scene,
+      [&](const Scene& others, const std::optional<Eigen::VectorXd>& from) {
+        return FitSpace(others, options, descent, from);
+      },
+      of_all);
   EnterOutliers(inliers.left_out, of_all.estimate, inliers.fit.estimate,
                 inliers.fit.estimate);
   if (HasUnknownMotion(scene)) {

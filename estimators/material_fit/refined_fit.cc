@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/core/scene/simplicial_scene.h"
 #include "elastimate/core/scene/support_ends.h"
+#include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/material_fit/inlier_fit.h"
@@ -70,18 +70,17 @@ Scene WithEnds(Scene scene, bool are_held) {
   return scene;
 }
 
-double ResidualSquareSum(const SpaceFit& space) {
-  return SquaredNorm(space.Fit().errors.residual);
-}
-
 // Whether linear elements explain so much more than quadratic ones that they
 // computed the measurement: displacements of a specimen never ask for that, and
 // those of linear elements always do.
 bool AreOfLinearElements(Eigen::Index num_rows, double of_linear,
                          double of_quadratic) {
   constexpr double kLogLikelihoodRatio = -9;
-  return static_cast<double>(num_rows) * std::log(of_linear / of_quadratic) <
-         kLogLikelihoodRatio;
+  // Where the strain is uniform, both are exact; the measurement has norm 1.
+  constexpr double kExact = kLimits.exact_residual * kLimits.exact_residual;
+  return of_quadratic > kExact &&
+         static_cast<double>(num_rows) * std::log(of_linear / of_quadratic) <
+             kLogLikelihoodRatio;
 }
 
 // What is left where the mesh is not divided.
@@ -89,6 +88,10 @@ bool IsMeshErrorSmall(const Estimate& estimate) {
   constexpr double kShareOfNoise = 0.5;
   const ParameterErrors& mesh = estimate.error_budget.discretization;
   const ParameterErrors& noise = estimate.error_budget.noise;
+  if (!estimate.IsUsable() || mesh.size() == 0 ||
+      noise.size() != mesh.size()) {
+    return false;
+  }
   for (Eigen::Index i = 0; i < mesh.size(); ++i) {
     const ParameterEstimate& parameter = estimate.parameters[i];
     const double tolerance = parameter.IsStiffness()
@@ -99,7 +102,7 @@ bool IsMeshErrorSmall(const Estimate& estimate) {
       return false;
     }
   }
-  return estimate.IsUsable() && mesh.size() > 0;
+  return true;
 }
 
 bool IsSolved(const MaterialFit& fit) {
@@ -159,20 +162,22 @@ void DescribeChange(SpaceFit& coarse, bool is_last,
                     SpaceFit& fine) {
   std::optional<SpaceChange> change = fine.ChangeFrom(coarse);
   if (!change) {
+    fine.Describe(nullptr);
     return;
   }
   change->is_kept_for_its_size = is_last;
   if (other) {
     change->by_supports = (*other - fine.Fit().minimum->variables) / 2;
   }
-  fine.Describe(*change);
+  fine.Describe(&*change);
 }
 
 MaterialFit Refinement::FitQuadratic(
     const Scene& quadratic, const std::optional<Eigen::VectorXd>& start,
     const std::optional<Eigen::VectorXd>& other) {
   std::vector<const Scene*> coarser;
-  if (simplicial_) {
+  // The elimination of motions asks for a solution for each of its steps.
+  if (simplicial_ && !HasUnknownMotion(scene_)) {
     coarser.push_back(&*simplicial_);
   }
   std::unique_ptr<SpaceFit> coarse = MinimizeOn(quadratic, start, coarser);
@@ -183,7 +188,13 @@ MaterialFit Refinement::FitQuadratic(
   // A loss takes the weight from outliers.
   const InlierFit inliers =
       options_.loss == Loss::kNone
-          ? LeaveOutliersOut(quadratic, options_, descent_, of_all)
+          ? LeaveOutliersOut(
+                quadratic,
+                [&](const Scene& others,
+                    const std::optional<Eigen::VectorXd>& from) {
+                  return MinimizeOn(others, from, coarser)->Fit();
+                },
+                of_all)
           : InlierFit{of_all, {}};
   Work work = inliers.fit.estimate.work;
   if (!inliers.left_out.empty() && inliers.fit.minimum) {
@@ -198,14 +209,18 @@ MaterialFit Refinement::FitQuadratic(
   }
   std::unique_ptr<SpaceFit> finest = std::move(coarse);
   least_of_quadratic_ =
-      std::min(least_of_quadratic_, ResidualSquareSum(*finest));
+      std::min(least_of_quadratic_, finest->SquareSum());
   if (linear_ && linear_->Fit().minimum) {
     DescribeChange(*linear_, true, other, *finest);
+  } else {
+    finest->Describe(nullptr);
   }
   if (MayDivide(quadratic) &&
       (options_.refinement == Refine::kAlways ||
        !IsMeshErrorSmall(finest->Fit().estimate))) {
-    coarser.push_back(&finest->OwnScene());
+    if (!HasUnknownMotion(scene_)) {
+      coarser.push_back(&finest->OwnScene());
+    }
     std::unique_ptr<SpaceFit> divided = MinimizeOn(
         FinerScene(finest->OwnScene()), finest->Fit().Variables(), coarser);
     if (divided->Fit().minimum) {
@@ -248,8 +263,8 @@ MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start) {
   MaterialFit fit = FitQuadratic(WithEnds(quadratic, false), last, of_held);
   fit.estimate.work = fit.estimate.work + work;
   if (linear_ && linear_->Fit().minimum &&
-      AreOfLinearElements(linear_->Fit().errors.residual.size(),
-                          ResidualSquareSum(*linear_), least_of_quadratic_)) {
+      AreOfLinearElements(linear_->NumRows(), linear_->SquareSum(),
+                          least_of_quadratic_)) {
     fit.estimate.Fail(ComputedByLinearElements());
   }
   if (fit.displacement.size() != 0) {

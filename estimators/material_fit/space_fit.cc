@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/materials/material.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
@@ -97,17 +98,27 @@ void SpaceFit::Minimize(Descent descent,
   if (options_.loss != Loss::kNone && fit_.minimum) {
     Reweigh();
   }
-  estimate.stages.push_back({"fit", stopwatch.Lap()});
   if (fit_.minimum) {
-    Describe(nullptr);
+    EnterMinimum();
   } else {
     Evidence evidence;
     evidence.do_displacements_oppose_loads = true;
     evidence.solver_notice = misfit_.Model().Notice();
     Judge(evidence, options_, estimate);
   }
-  estimate.stages.push_back({"statistics", stopwatch.Lap()});
+  estimate.stages.push_back({"fit", stopwatch.Lap()});
   estimate.work = estimate.work + misfit_.Model().WorkDone();
+}
+
+void SpaceFit::EnterMinimum() {
+  EnterParameters(scene_, misfit_.Free(),
+                  misfit_.Free().ParametersAt(fit_.minimum->variables),
+                  fit_.estimate);
+  Eigen::VectorXd rows;
+  if (misfit_.Evaluate(fit_.minimum->variables, &rows, nullptr)) {
+    fit_.displacement = misfit_.FittedDisplacement();
+    square_sum_ = SquaredNorm(rows.head(misfit_.Observed().Size()));
+  }
 }
 
 void SpaceFit::Reweigh() {
@@ -129,23 +140,13 @@ void SpaceFit::Reweigh() {
   }
 }
 
-void SpaceFit::Describe(const SpaceChange& change) {
-  // What was said of elements that are exact.
-  const Work work = fit_.estimate.work;
-  const std::vector<StageTime> stages = fit_.estimate.stages;
-  fit_.estimate = Estimate();
-  fit_.estimate.work = work;
-  fit_.estimate.stages = stages;
+void SpaceFit::Describe(const SpaceChange* change) {
+  // What was said before is said anew.
+  Estimate estimate;
+  estimate.work = fit_.estimate.work;
+  estimate.stages = fit_.estimate.stages;
   Stopwatch stopwatch;
   const Work before = misfit_.Model().WorkDone();
-  Describe(&change);
-  fit_.estimate.work =
-      fit_.estimate.work + (misfit_.Model().WorkDone() - before);
-  fit_.estimate.stages.push_back({"mesh error", stopwatch.Lap()});
-}
-
-void SpaceFit::Describe(const SpaceChange* change) {
-  Estimate& estimate = fit_.estimate;
   Evidence evidence;
   const Eigen::VectorXd& variables = fit_.minimum->variables;
   evidence.end = fit_.minimum->end;
@@ -157,7 +158,6 @@ void SpaceFit::Describe(const SpaceChange* change) {
       DescribeMinimum(scene_, variables, change, misfit_, evidence, estimate);
   Eigen::VectorXd rows;
   if (misfit_.Evaluate(variables, &rows, nullptr)) {
-    fit_.displacement = misfit_.FittedDisplacement();
     DescribeMaterials(scene_, fit_.errors, misfit_, estimate);
   }
   if (IsOneIsotropicMaterial(scene_.materials)) {
@@ -165,6 +165,9 @@ void SpaceFit::Describe(const SpaceChange* change) {
   }
   evidence.solver_notice = misfit_.Model().Notice();
   Judge(evidence, options_, estimate);
+  estimate.work = estimate.work + (misfit_.Model().WorkDone() - before);
+  estimate.stages.push_back({"statistics", stopwatch.Lap()});
+  fit_.estimate = estimate;
 }
 
 std::optional<SpaceChange> SpaceFit::ChangeFrom(SpaceFit& coarse) {
@@ -196,6 +199,9 @@ MaterialFit FitSpace(const Scene& scene, const EstimatorOptions& options,
   space.Fit().estimate.stages.push_back(
       {"assemble and analyse", stopwatch.Lap()});
   space.Minimize(descent, start);
+  if (space.Fit().minimum) {
+    space.Describe(nullptr);
+  }
   return space.Fit();
 }
 

@@ -46,33 +46,40 @@ class SpaceFit {
   SpaceFit(const SpaceFit&) = delete;
   SpaceFit& operator=(const SpaceFit&) = delete;
 
-  /// Finds the minimum from `start` on, or from where FitMaterials says, and
-  /// describes it as if the elements were exact.
+  /// Finds the minimum from `start` on, or from where FitMaterials says, with
+  /// its parameters, its displacement and its residual.  Without a minimum, the
+  /// estimate says that displacements oppose the loads.
   void Minimize(Descent descent, const std::optional<Eigen::VectorXd>& start);
 
-  /// Describes the minimum again, with the mesh error that `change` from
-  /// coarser elements tells of.  Precondition: there is a minimum.
-  void Describe(const SpaceChange& change);
+  /// Describes the minimum, with the mesh error that `change` from coarser
+  /// elements tells of; null where the elements are taken as exact.
+  /// Precondition: there is a minimum.
+  void Describe(const SpaceChange* change);
 
   /// What the elements of this fit changed from those of a coarser one of the
   /// same measurement: one solution of the coarse model.  Empty where its
   /// stiffness is singular at this minimum.  Precondition: both have a minimum.
   std::optional<SpaceChange> ChangeFrom(SpaceFit& coarse);
 
+  /// The square sum of what is left of the displacements at the minimum.
+  double SquareSum() const { return square_sum_; }
+  Eigen::Index NumRows() const { return misfit_.Observed().Size(); }
   const Scene& OwnScene() const { return scene_; }
   DisplacementMisfit& Misfit() { return misfit_; }
   MaterialFit& Fit() { return fit_; }
   const MaterialFit& Fit() const { return fit_; }
 
  private:
+  /// Enters what is there at the minimum before it is described.
+  void EnterMinimum();
   /// Moves to the minimum with the loss of the options, by reweighting.
   void Reweigh();
-  void Describe(const SpaceChange* change);
 
   const EstimatorOptions& options_;
   Scene scene_;
   DisplacementMisfit misfit_;
   MaterialFit fit_;
+  double square_sum_ = 0;
 };
 
 /// The fit of a scene with its elements taken as exact.

@@ -13,8 +13,8 @@ namespace elastimate {
 struct AxisRotation {
   /// By how much the axes of the material whose rotation is the least likely
   /// by chance should be turned [rad], and the place of that.
-  double angle;
-  std::size_t material;
+  double angle = 0;
+  std::size_t material = 0;
   /// What the rotations of all materials would explain, in variances of the
   /// noise, and how many of them there are: chi^2 of as many degrees of freedom
   /// where all axes are right.

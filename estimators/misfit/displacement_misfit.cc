@@ -72,6 +72,10 @@ bool DisplacementMisfit::Evaluate(const Eigen::VectorXd& x,
   *residual = residual_;
   if (jacobian != nullptr) {
     *jacobian = Sensitivities(x);
+    // Iterations that do not converge leave none.
+    if (!jacobian->allFinite()) {
+      return false;
+    }
   }
   if (factors_.size() != 0) {
     residual->array() *= factors_.array();

@@ -1,6 +1,5 @@
 #include "elastimate/estimators/misfit/motion_elimination.h"
 
-#include <Eigen/IterativeLinearSolvers>
 #include <algorithm>
 #include <cmath>
 
@@ -108,35 +107,6 @@ Eigen::VectorXd MotionElimination::Eliminate(
 Eigen::VectorXd MotionElimination::Eliminate(Eigen::VectorXd rows) {
   Minimize(kOfSensitivities, rows);
   return rows;
-}
-
-Eigen::MatrixXd MotionElimination::MotionThatFits(Eigen::VectorXd rows) {
-  return HeldMotion(Minimize(kOfSensitivities, rows));
-}
-
-Eigen::MatrixXd MotionElimination::WellPosed(
-    Eigen::MatrixXd motion_of_supports) const {
-  for (Eigen::Index k = 0; k < motion_of_supports.cols(); ++k) {
-    FollowNeighbours(scene_, model_.Graph(), k, motion_of_supports.col(k));
-  }
-  return motion_of_supports;
-}
-
-Eigen::VectorXd MotionElimination::RowsOfMotion(
-    const Eigen::MatrixXd& of_supports) {
-  Eigen::VectorXd amounts = Eigen::VectorXd::Zero(amounts_.size());
-  for (Eigen::Index k = 0; k < of_supports.cols(); ++k) {
-    const Eigen::SparseMatrix<double> of_first =
-        MotionOf(k).of_supports.topRows(of_supports.rows());
-    if (of_first.cols() > 0) {
-      const Eigen::LeastSquaresConjugateGradient<Eigen::SparseMatrix<double>>
-          solver(of_first);
-      AmountsOf(k, amounts).head(of_first.cols()) =
-          solver.solve(of_supports.col(k));
-    }
-  }
-  const Eigen::MatrixXd motion = SupportMotion(amounts);
-  return RowsOf(motion, model_.HeldForces(motion));
 }
 
 Eigen::VectorXd MotionElimination::Resultants(

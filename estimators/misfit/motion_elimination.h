@@ -66,21 +66,6 @@ class MotionElimination {
   Eigen::VectorXd Eliminate(const Eigen::MatrixXd& displacements,
                             const Eigen::MatrixXd& support_forces);
 
-  /// The motion of the supports of the last Fit, zero elsewhere: num_dofs x
-  /// num_load_cases.
-  Eigen::MatrixXd MotionOfSupports() const { return HeldMotion(amounts_); }
-  /// That which fits rows best, as if these were displacements.
-  Eigen::MatrixXd MotionThatFits(Eigen::VectorXd rows);
-  /// Either, with nodes that have no measurement as FollowNeighbours says.
-  Eigen::MatrixXd WellPosed(Eigen::MatrixXd motion_of_supports) const;
-  /// The rows of the model alone, as the last Fit moved it.
-  Eigen::VectorXd RowsOfModel() const {
-    return RowsOf(WithMotionOfAll(amounts_, model_.Displacement()),
-                  model_.SupportForces());
-  }
-  /// The rows of a motion of the supports, of which the first nodes move so;
-  /// nothing else moves or loads.
-  Eigen::VectorXd RowsOfMotion(const Eigen::MatrixXd& of_supports);
   /// The rows without what amounts could explain.
   Eigen::VectorXd Eliminate(Eigen::VectorXd rows);
 

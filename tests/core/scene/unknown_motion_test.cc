@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastimate/core/scene/finer_scene.h"
 #include "tests/element_kinds.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
@@ -104,24 +105,31 @@ TEST(UnknownMotionOfScene, OfAllIsRigid) {
   }
 }
 
-TEST(UnknownMotionOfScene, OfLostNodesFollowsTheirNeighbours) {
+// Twice refined, a support that moved as measured has as many amounts as
+// before, and moves linearly between its nodes.
+TEST(UnknownMotionOfScene, OfNodesThatRefinementAddedIsThatOfTheirEnds) {
   Scene scene = Cube();
-  const NodeGraph graph(scene.mesh);
-  const std::vector<int> nodes = HeldNodesOf(scene);
-  scene.load_cases[0].displacement.setConstant(3, scene.mesh.NumNodes(), 2);
-  scene.load_cases[0].observed.setConstant(3, scene.mesh.NumNodes(), true);
-  for (const int node : {nodes[0], nodes[1], nodes[3]}) {
-    scene.load_cases[0].observed(1, node) = false;
+  scene.load_cases[0].displacement.setZero(3, scene.mesh.NumNodes());
+  const Eigen::Index num_amounts =
+      UnknownMotion(scene, scene.supports).NumAmounts();
+  const Scene finer = FinerScene(FinerScene(scene));
+  const UnknownMotion motion(finer, finer.supports);
+  EXPECT_EQ(motion.NumAmounts(), num_amounts);
+  const Eigen::Matrix3d gradient{{1, 2, 3}, {4, 5, 6}, {7, 8, 10}};
+  Eigen::VectorXd linear = (gradient * finer.mesh.nodes).reshaped();
+  const ComponentMask mask = AsMeasured(finer.supports);
+  const Eigen::Array<bool, Eigen::Dynamic, 1> held = mask.reshaped();
+  linear = held.select(linear, 0.0).eval();
+  Eigen::VectorXd amounts(num_amounts);
+  Eigen::Index next = 0;
+  for (Eigen::Index dof = 0; dof < scene.mesh.NumDofs(); ++dof) {
+    if (held(dof)) {
+      amounts(next++) = linear(dof);
+    }
   }
-  const Eigen::VectorXd measured = MeasuredSupports(scene, 0);
-  EXPECT_EQ(measured.sum(), 2.0 * double(scene.supports.held.count() - 3));
-  Eigen::VectorXd motion = measured;
-  FollowNeighbours(scene, graph, 0, motion);
-  for (const int node : nodes) {
-    EXPECT_EQ(motion.segment<3>(3 * Eigen::Index(node)),
-              Eigen::Vector3d::Constant(2));
-  }
-  EXPECT_EQ(motion.sum(), 2.0 * double(scene.supports.held.count()));
+  ASSERT_EQ(next, num_amounts);
+  EXPECT_LT((motion.of_supports * amounts - linear).norm(),
+            1e-12 * linear.norm());
 }
 
 TEST(UnknownMotionOfScene, IsRefusedWithOneResultantTwice) {

@@ -87,7 +87,8 @@ TEST(Judge, WarnsOfAMeshErrorThatIsUnknown) {
 }
 
 TEST(Judge, SpeaksOfErrorBarsWhereThereAreSome) {
-  const Scene scene = OneCube();
+  Scene scene = OneCube();
+  scene.origin = Origin::kComputed;
   Evidence evidence;
   evidence.virtual_work_error = 0.1;
   for (const bool is_usable : {false, true}) {
@@ -166,7 +167,7 @@ TEST(Judge, ABoundThatLeavesTooMuchRoomIsNoEstimate) {
   EstimatorOptions known;
   known.known_poisson_ratio = 0.3;
   Evidence evidence;
-  evidence.youngs_modulus_on_bound = {0.3, 0, 0.3, 0.1};
+  evidence.youngs_modulus_on_bound = {0.2, 0, 0.2, 0.1};
   EXPECT_TRUE(Judged(evidence).IsUsable());
   evidence.youngs_modulus_on_bound = {0.4, 0, 0.4, 0.1};
   EXPECT_TRUE(Judged(evidence).Has(FindingCode::kYoungsModulusUndetermined));
@@ -279,7 +280,7 @@ TEST(JudgeParameters, SaysWhatLeavesThemUndetermined) {
   JudgeParameters(by_elements);
   EXPECT_EQ(by_elements.message,
             "elements this coarse do not determine E of region 2 (60 %); "
-            "refine the mesh");
+            "use a finer mesh");
   EXPECT_TRUE(AreUndeterminedByElements(by_elements));
 
   Estimate on_bound = OfTwoMaterials(0.1);

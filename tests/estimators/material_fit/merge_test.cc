@@ -337,6 +337,7 @@ TEST(MergeMaterials, NoticesThatRegionsAreWrong) {
   EXPECT_TRUE(estimate.is_model_in_doubt);
   // The right ones leave nothing.
   world.load_cases = scene.load_cases;
+  world.origin = scene.origin;
   EXPECT_FALSE(MergeAndEstimate(WithNoiseOf(world, 0.01, 1))
                    .estimate.Has(FindingCode::kResidualInRegion));
 }

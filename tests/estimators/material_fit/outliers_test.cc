@@ -136,6 +136,7 @@ Scene BlockOfUnknownInclusion() {
     value += noise(generator);
   }
   mesh.regions.resize(0);
+  scene.origin = Origin::kComputed;
   scene.materials = {Material()};
   scene.materials[0].known = {{"poisson_ratio", 0.45}};
   return scene;

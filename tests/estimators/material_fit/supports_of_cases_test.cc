@@ -127,8 +127,11 @@ TEST(SupportsOfCasesOfElements, HoldWhatElementsMiss) {
     Scene far = SceneHeldAtTheFarSide(kind, cells);
     Scene near = testing::SceneOfKind(kind, cells);
     near.load_cases[0].loads = far.load_cases[0].loads;
-    testing::MeasureInCutWorld(kTruthOfCases, near);
-    testing::MeasureInCutWorld(kTruthOfCases, far);
+    // At small strains.
+    constexpr IsotropicElasticity kStiff = {
+        1e3 * kTruthOfCases.youngs_modulus, kTruthOfCases.poisson_ratio};
+    testing::MeasureInCutWorld(kStiff, near);
+    testing::MeasureInCutWorld(kStiff, far);
     Scene scene = Together(near, far);
     std::mt19937_64 generator(1);
     for (LoadCase& load_case : scene.load_cases) {
@@ -142,11 +145,11 @@ TEST(SupportsOfCasesOfElements, HoldWhatElementsMiss) {
     ASSERT_EQ(estimate.status, Status::kOk)
         << testing::NameOf(kind) << estimate.message;
     EXPECT_LT(std::abs(estimate.elasticity.youngs_modulus -
-                       kTruthOfCases.youngs_modulus),
+                       kStiff.youngs_modulus),
               3 * *estimate.YoungsModulusStandardError())
         << testing::NameOf(kind);
     EXPECT_LT(std::abs(estimate.elasticity.poisson_ratio -
-                       kTruthOfCases.poisson_ratio),
+                       kStiff.poisson_ratio),
               3 * *estimate.PoissonRatioStandardError())
         << testing::NameOf(kind);
   }
