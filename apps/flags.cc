@@ -31,8 +31,7 @@ DEFINE_string(origin, "",
               "measured, or computed with elements of this mesh; overrides the "
               "scene");
 DEFINE_string(refine, "auto",
-              "how often fits of measured displacements divide the mesh: 0, 1 "
-              "or auto");
+              "how often fits of measured data divide the mesh: 0, 1, auto");
 DEFINE_int32(degree, 2, "degree of the polynomial virtual fields, 1 to 3");
 DEFINE_int32(order, 1,
              "1: linear elements, 2: quadratic ones on the same mesh");

@@ -77,8 +77,8 @@ struct Limits {
   /// is none, however small the error about a minimum that noise made is.
   double least_anisotropy = 30;
   /// A relative standard error of E above this says that the data do not
-  /// determine E: zero is within four standard errors.
-  double largest_youngs_modulus_error = 0.25;
+  /// determine E: zero and infinity are within three standard errors.
+  double largest_youngs_modulus_error = 1.0 / 3;
   /// An end of the 95 % interval of nu further than this from the estimate
   /// says the same as its largest standard error [1].
   double LargestPoissonRatioDistance() const {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/core/scene/simplicial_scene.h"
 #include "elastimate/core/scene/support_ends.h"
@@ -70,22 +71,8 @@ Scene WithEnds(Scene scene, bool are_held) {
   return scene;
 }
 
-// Whether linear elements explain so much more than quadratic ones that they
-// computed the measurement: displacements of a specimen never ask for that, and
-// those of linear elements always do.
-bool AreOfLinearElements(Eigen::Index num_rows, double of_linear,
-                         double of_quadratic) {
-  constexpr double kLogLikelihoodRatio = -9;
-  // Where the strain is uniform, both are exact; the measurement has norm 1.
-  constexpr double kExact = kLimits.exact_residual * kLimits.exact_residual;
-  return of_quadratic > kExact &&
-         static_cast<double>(num_rows) * std::log(of_linear / of_quadratic) <
-             kLogLikelihoodRatio;
-}
-
-// What is left where the mesh is not divided.
+// Whether a divided mesh could hardly lower the errors, of which noise has more.
 bool IsMeshErrorSmall(const Estimate& estimate) {
-  constexpr double kShareOfNoise = 0.5;
   const ParameterErrors& mesh = estimate.error_budget.discretization;
   const ParameterErrors& noise = estimate.error_budget.noise;
   if (!estimate.IsUsable() || mesh.size() == 0 ||
@@ -93,12 +80,7 @@ bool IsMeshErrorSmall(const Estimate& estimate) {
     return false;
   }
   for (Eigen::Index i = 0; i < mesh.size(); ++i) {
-    const ParameterEstimate& parameter = estimate.parameters[i];
-    const double tolerance = parameter.IsStiffness()
-                                 ? kLimits.notable_youngs_modulus_error
-                                 : kLimits.notable_poisson_ratio_error;
-    if (!parameter.is_known &&
-        !(mesh(i) <= std::max(tolerance, kShareOfNoise * noise(i)))) {
+    if (!estimate.parameters[i].is_known && !(mesh(i) <= noise(i))) {
       return false;
     }
   }
@@ -115,27 +97,58 @@ class Refinement {
  public:
   Refinement(const Scene& scene, const EstimatorOptions& options,
              Descent descent)
-      : scene_(scene), options_(options), descent_(descent) {}
+      : scene_(scene),
+        options_(options),
+        descent_(descent),
+        neighbours_(scene.mesh) {}
 
   MaterialFit Fit(const std::optional<Eigen::VectorXd>& start);
 
  private:
-  /// The second and third fit; with the minimum of other support ends in
-  /// `other`, the mean of both.
-  MaterialFit FitQuadratic(const Scene& quadratic,
-                           const std::optional<Eigen::VectorXd>& start,
-                           const std::optional<Eigen::VectorXd>& other);
+  /// The second fit and, where the mesh is divided, the third, with what
+  /// changed to the last one.
+  struct Chain {
+    std::unique_ptr<SpaceFit> quadratic;
+    std::unique_ptr<SpaceFit> divided;
+    std::optional<SpaceChange> change;
+    std::vector<Outlier> left_out;
+    Estimate of_all;      ///< Before outliers were left out of the second fit.
+    Estimate of_inliers;  ///< After that, where there were some.
+    Work work;
+
+    SpaceFit& Finest() const { return divided ? *divided : *quadratic; }
+  };
+
+  Chain FitQuadratic(const Scene& quadratic,
+                     const std::optional<Eigen::VectorXd>& start);
+  void LeaveOut(const MaterialFit& of_all, const Scene& quadratic,
+                const std::vector<const Scene*>& coarser, Chain& chain);
+  static Chain MeanOf(Chain held, Chain free);
   std::unique_ptr<SpaceFit> MinimizeOn(
       const Scene& scene, const std::optional<Eigen::VectorXd>& start,
       const std::vector<const Scene*>& coarser = {}) const {
     auto space = std::make_unique<SpaceFit>(scene, options_, coarser);
+    space->Misfit().SetNeighbours(neighbours_);
     space->Minimize(descent_, start);
     // Iterations may not converge for flat elements and next to nu = 1/2.
     if (!coarser.empty() && !IsSolved(space->Fit())) {
       space = std::make_unique<SpaceFit>(scene, options_);
+      space->Misfit().SetNeighbours(neighbours_);
       space->Minimize(descent_, start);
     }
     return space;
+  }
+  /// Whether linear elements explain so much more than quadratic ones that they
+  /// computed the measurement: displacements of a specimen never ask for that,
+  /// and those of linear elements always do.
+  bool IsOfLinearElements() const {
+    constexpr double kLogLikelihoodRatio = -9;
+    // Where the strain is uniform, both are exact; the measurement has norm 1.
+    constexpr double kExact = kLimits.exact_residual * kLimits.exact_residual;
+    return linear_ && linear_->Fit().minimum && least_of_quadratic_ > kExact &&
+           static_cast<double>(linear_->NumRows()) *
+                   std::log(linear_->SquareSum() / least_of_quadratic_) <
+               kLogLikelihoodRatio;
   }
   bool MayDivide(const Scene& quadratic) const {
     return options_.refinement != Refine::kNever &&
@@ -147,6 +160,7 @@ class Refinement {
   const Scene& scene_;
   const EstimatorOptions& options_;
   Descent descent_;
+  NodeGraph neighbours_;
   /// Where the elements of the scene are linear.
   std::unique_ptr<SpaceFit> linear_;
   /// Its simplices, which the quadratic ones are nested in.
@@ -155,86 +169,98 @@ class Refinement {
   double least_of_quadratic_ = std::numeric_limits<double>::infinity();
 };
 
-// Describes the finer one of two fits by what changed, which the other support
-// ends shift.
-void DescribeChange(SpaceFit& coarse, bool is_last,
-                    const std::optional<Eigen::VectorXd>& other,
-                    SpaceFit& fine) {
+// Describes the finer one of two fits by what changed.
+std::optional<SpaceChange> DescribeChange(SpaceFit& coarse, bool is_last,
+                                          SpaceFit& fine) {
   std::optional<SpaceChange> change = fine.ChangeFrom(coarse);
-  if (!change) {
-    fine.Describe(nullptr);
-    return;
+  if (change) {
+    change->is_kept_for_its_size = is_last;
   }
-  change->is_kept_for_its_size = is_last;
-  if (other) {
-    change->by_supports = (*other - fine.Fit().minimum->variables) / 2;
-  }
-  fine.Describe(&*change);
+  fine.Describe(change ? &*change : nullptr);
+  return change;
 }
 
-MaterialFit Refinement::FitQuadratic(
-    const Scene& quadratic, const std::optional<Eigen::VectorXd>& start,
-    const std::optional<Eigen::VectorXd>& other) {
+void Refinement::LeaveOut(const MaterialFit& of_all, const Scene& quadratic,
+                          const std::vector<const Scene*>& coarser,
+                          Chain& chain) {
+  const InlierFit inliers = LeaveOutliersOut(
+      quadratic,
+      [&](const Scene& others, const std::optional<Eigen::VectorXd>& from) {
+        return MinimizeOn(others, from, coarser)->Fit();
+      },
+      of_all);
+  chain.work = inliers.fit.estimate.work;
+  if (inliers.left_out.empty() || !inliers.fit.minimum) {
+    return;
+  }
+  chain.left_out = inliers.left_out;
+  chain.of_inliers = inliers.fit.estimate;
+  chain.quadratic = MinimizeOn(WithoutOutliers(quadratic, inliers.left_out),
+                               inliers.fit.Variables(), coarser);
+  chain.work = chain.work + chain.quadratic->Fit().estimate.work;
+  if (linear_) {
+    linear_ = MinimizeOn(WithoutOutliers(scene_, inliers.left_out),
+                         linear_->Fit().Variables());
+    chain.work = chain.work + linear_->Fit().estimate.work;
+  }
+}
+
+Refinement::Chain Refinement::FitQuadratic(
+    const Scene& quadratic, const std::optional<Eigen::VectorXd>& start) {
+  Chain chain;
   std::vector<const Scene*> coarser;
   // The elimination of motions asks for a solution for each of its steps.
   if (simplicial_ && !HasUnknownMotion(scene_)) {
     coarser.push_back(&*simplicial_);
   }
-  std::unique_ptr<SpaceFit> coarse = MinimizeOn(quadratic, start, coarser);
-  if (!coarse->Fit().minimum) {
-    return coarse->Fit();
+  chain.quadratic = MinimizeOn(quadratic, start, coarser);
+  chain.work = chain.quadratic->Fit().estimate.work;
+  if (!chain.quadratic->Fit().minimum) {
+    return chain;
   }
-  const MaterialFit of_all = coarse->Fit();
+  const MaterialFit of_all = chain.quadratic->Fit();
+  chain.of_all = of_all.estimate;
   // A loss takes the weight from outliers.
-  const InlierFit inliers =
-      options_.loss == Loss::kNone
-          ? LeaveOutliersOut(
-                quadratic,
-                [&](const Scene& others,
-                    const std::optional<Eigen::VectorXd>& from) {
-                  return MinimizeOn(others, from, coarser)->Fit();
-                },
-                of_all)
-          : InlierFit{of_all, {}};
-  Work work = inliers.fit.estimate.work;
-  if (!inliers.left_out.empty() && inliers.fit.minimum) {
-    coarse = MinimizeOn(WithoutOutliers(quadratic, inliers.left_out),
-                        inliers.fit.Variables(), coarser);
-    work = work + coarse->Fit().estimate.work;
-    if (linear_) {
-      linear_ = MinimizeOn(WithoutOutliers(scene_, inliers.left_out),
-                           linear_->Fit().Variables());
-      work = work + linear_->Fit().estimate.work;
-    }
+  if (options_.loss == Loss::kNone) {
+    LeaveOut(of_all, quadratic, coarser, chain);
   }
-  std::unique_ptr<SpaceFit> finest = std::move(coarse);
-  least_of_quadratic_ =
-      std::min(least_of_quadratic_, finest->SquareSum());
+  SpaceFit& fit = *chain.quadratic;
+  least_of_quadratic_ = std::min(least_of_quadratic_, fit.SquareSum());
   if (linear_ && linear_->Fit().minimum) {
-    DescribeChange(*linear_, true, other, *finest);
+    chain.change = DescribeChange(*linear_, true, fit);
   } else {
-    finest->Describe(nullptr);
+    fit.Describe(nullptr);
   }
-  if (MayDivide(quadratic) &&
+  if (!IsOfLinearElements() && MayDivide(quadratic) &&
       (options_.refinement == Refine::kAlways ||
-       !IsMeshErrorSmall(finest->Fit().estimate))) {
+       !IsMeshErrorSmall(fit.Fit().estimate))) {
     if (!HasUnknownMotion(scene_)) {
-      coarser.push_back(&finest->OwnScene());
+      coarser.push_back(&fit.OwnScene());
     }
     std::unique_ptr<SpaceFit> divided = MinimizeOn(
-        FinerScene(finest->OwnScene()), finest->Fit().Variables(), coarser);
+        FinerScene(fit.OwnScene()), fit.Fit().Variables(), coarser);
+    chain.work = chain.work + divided->Fit().estimate.work;
     if (divided->Fit().minimum) {
-      DescribeChange(*finest, false, other, *divided);
-      work = work + divided->Fit().estimate.work;
-      divided->Fit().estimate.mesh_divisions = 1;
-      finest = std::move(divided);
+      chain.change = DescribeChange(fit, false, *divided);
+      chain.divided = std::move(divided);
     }
   }
-  MaterialFit fit = finest->Fit();
-  fit.estimate.work = work;
-  EnterOutliers(inliers.left_out, of_all.estimate, inliers.fit.estimate,
-                fit.estimate);
-  return fit;
+  return chain;
+}
+
+// Of two ends of supports the one that leaves less, shifted to the mean.
+Refinement::Chain Refinement::MeanOf(Chain held, Chain free) {
+  Chain& best =
+      held.Finest().SquareSum() < free.Finest().SquareSum() ? held : free;
+  const Chain& other = &best == &held ? free : held;
+  if (best.change) {
+    best.change->by_supports = (other.Finest().Fit().minimum->variables -
+                                best.Finest().Fit().minimum->variables) /
+                               2;
+    best.Finest().Describe(&*best.change);
+  }
+  best.work = best.work + other.work;
+  return std::move(best);
 }
 
 MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start) {
@@ -252,19 +278,18 @@ MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start) {
   }
   const Scene quadratic =
       scene_.mesh.Order() == 1 ? FinerScene(scene_) : scene_;
-  std::optional<Eigen::VectorXd> of_held;
-  if (HasOpenEnds(quadratic)) {
-    const MaterialFit held =
-        FitQuadratic(WithEnds(quadratic, true), last, std::nullopt);
-    of_held = held.Variables();
-    last = of_held ? of_held : last;
-    work = work + held.estimate.work;
+  Chain chain = FitQuadratic(WithEnds(quadratic, false), last);
+  if (HasOpenEnds(quadratic) && chain.Finest().Fit().minimum) {
+    Chain held = FitQuadratic(WithEnds(quadratic, true), last);
+    if (held.Finest().Fit().minimum) {
+      chain = MeanOf(std::move(held), std::move(chain));
+    }
   }
-  MaterialFit fit = FitQuadratic(WithEnds(quadratic, false), last, of_held);
-  fit.estimate.work = fit.estimate.work + work;
-  if (linear_ && linear_->Fit().minimum &&
-      AreOfLinearElements(linear_->NumRows(), linear_->SquareSum(),
-                          least_of_quadratic_)) {
+  MaterialFit fit = chain.Finest().Fit();
+  fit.estimate.mesh_divisions = chain.divided ? 1 : 0;
+  fit.estimate.work = work + chain.work;
+  EnterOutliers(chain.left_out, chain.of_all, chain.of_inliers, fit.estimate);
+  if (IsOfLinearElements()) {
     fit.estimate.Fail(ComputedByLinearElements());
   }
   if (fit.displacement.size() != 0) {

@@ -25,11 +25,10 @@ namespace elastimate {
 /// fit (LeaveOutliersOut).
 ///
 /// EstimatorOptions::refinement says where it ends.  By default it stops at the
-/// second fit where the mesh error of each parameter is below half of its error
-/// by noise or below the tolerances that `auto` has, and where the divided mesh
-/// would have more elements than are solved for here.  Where it stops for its
-/// small error, half of the tolerance is part of the error, since some errors
-/// are small by accident.
+/// second fit where noise has a larger part in the error of each parameter than
+/// the mesh, and where the divided mesh would have more elements than are solved
+/// for here.  Half of what is notable (Limits) is then part of the error at
+/// least, since some changes are small by accident.
 ///
 /// Where a support ends within quadratic elements (Supports::ends), the second
 /// and third fit are made with all of the nodes in doubt held and with all of

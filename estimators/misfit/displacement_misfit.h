@@ -39,6 +39,14 @@ class DisplacementMisfit {
   const ObservedDisplacements& Observed() const { return observed_; }
   Equilibrium& Model() { return equilibrium_; }
 
+  /// Takes these nodes for neighbours in statistics of the residual: those of
+  /// the mesh that was measured, whose nodes have none in a finer one.
+  /// `graph` must outlive this.
+  void SetNeighbours(const NodeGraph& graph) { neighbours_ = &graph; }
+  const NodeGraph& Neighbours() const {
+    return neighbours_ != nullptr ? *neighbours_ : equilibrium_.Graph();
+  }
+
   Eigen::Index NumRows() const;
   /// Of unknown motions, which are fitted as the variables are.
   Eigen::Index NumAmounts() const;
@@ -105,6 +113,7 @@ class DisplacementMisfit {
   std::optional<Placed> placed_;  ///< In place of the model.
   Eigen::VectorXd residual_;
   Eigen::VectorXd factors_;
+  const NodeGraph* neighbours_ = nullptr;
 };
 
 }  // namespace elastimate

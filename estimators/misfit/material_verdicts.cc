@@ -111,7 +111,7 @@ void DescribeResiduals(const Scene& scene, const MinimumErrors& errors,
           SquaredNorm(rows.cwiseProduct(errors.residual)) / rows.sum() / noise;
     }
     const std::optional<NeighbourCorrelation> neighbours = CorrelateWithin(
-        rows, misfit.Model().Graph(), observed, errors.residual);
+        rows, misfit.Neighbours(), observed, errors.residual);
     if (!neighbours) {
       continue;
     }

@@ -348,7 +348,7 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
   const Eigen::MatrixXd inverse =
       Inverse(InformationOf(free, sensitivities, variance.variance));
   const SmoothSquareSum smooth = MeasureSmoothPart(
-      misfit.Model().Graph(), observed, errors.residual, estimate);
+      misfit.Neighbours(), observed, errors.residual, estimate);
   const Eigen::MatrixXd by_correlation = AddedByCorrelation(
       scene, errors.residual, of_rows, inverse, variance.variance,
       ShareOfResidual(errors.residual, num_fitted, variance.variance),

@@ -90,7 +90,7 @@ TEST_F(AnisotropicCommand, TakesAnAxisFromACellArray) {
       {"held", scene.supports.held.colwise().any().cast<double>()});
   const auto scene_with = [&](const std::string& mesh,
                               const std::string& displacement) {
-    return R"({"mesh": ")" + mesh +
+    return R"({"origin": "computed", "mesh": ")" + mesh +
            R"(", "materials": [{"law": "transversely_isotropic",
               "axis": "fibre"}], "supports": [{"nodes": {"array": "held"}}],
               "cases": [{)" +
@@ -126,7 +126,7 @@ TEST_F(AnisotropicCommand, SimulatesWhatCanBeReadAgain) {
   const auto write_scene = [&](const std::string& of_mesh) {
     testing::WriteText(
         folder_ / "scene.json",
-        R"({"mesh": ")" + of_mesh + R"(", "materials":
+        R"({"origin": "computed", "mesh": ")" + of_mesh + R"(", "materials":
             [{"law": "transversely_isotropic", "axis": "fibre"}],
             "supports": [{"nodes": {"box": [[-1,-1,-1],[2,2,1e-9]]}}],
             "cases": [{)" +
@@ -174,7 +174,7 @@ TEST_F(AnisotropicCommand, SaysWhichParametersAreOfNoMaterial) {
 // A block pulled aside, with fibres along this axis.
 std::string SceneOfFibres(const std::string& axis,
                           const std::string& displacement) {
-  return R"({"mesh": "block.vtu", "materials":
+  return R"({"origin": "computed", "mesh": "block.vtu", "materials":
               [{"law": "transversely_isotropic", "axis": )" +
          axis +
          R"(}], "supports": [{"nodes": {"box": [[-1, -1, -1], [2, 2, 0.001]]}}],

@@ -310,7 +310,7 @@ class Gel : public testing::ProgramTest {
 
   void WriteScene(const std::string& frames) const {
     testing::WriteText(folder_ / "scene.json", R"({
-  "mesh": "gel.vtu",
+  "mesh": "gel.vtu", "origin": "computed",
   "supports": [ {"nodes": {"box": [[-1, -1, -1], [61, 61, 0.001]]}} ],
   "cases": [
     { "loads": [ {"type": "force", "value": [0, 0, -1],

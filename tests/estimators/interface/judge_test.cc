@@ -167,7 +167,7 @@ TEST(Judge, ABoundThatLeavesTooMuchRoomIsNoEstimate) {
   EstimatorOptions known;
   known.known_poisson_ratio = 0.3;
   Evidence evidence;
-  evidence.youngs_modulus_on_bound = {0.2, 0, 0.2, 0.1};
+  evidence.youngs_modulus_on_bound = {0.3, 0, 0.3, 0.1};
   EXPECT_TRUE(Judged(evidence).IsUsable());
   evidence.youngs_modulus_on_bound = {0.4, 0, 0.4, 0.1};
   EXPECT_TRUE(Judged(evidence).Has(FindingCode::kYoungsModulusUndetermined));

@@ -126,6 +126,20 @@ TEST(RefinedFit, OfTwoRegionsHoldsBoth) {
   }
 }
 
+// Neighbours are those of the mesh that was measured.
+TEST(RefinedFit, SeesThatTheMaterialIsNotTheSameAllOver) {
+  Scene scene = Block({2, 2, 4});
+  Scene of_two = scene;
+  testing::DivideIntoRegions({1, 1, 2}, {1, 1, 2}, of_two);
+  Scene finer = FinerScene(FinerScene(of_two));
+  MeasureMaterials(Eigen::Vector4d(5e4, 0.35, 1e5, 0.2), finer);
+  testing::TakeDisplacements(finer, scene);
+  AddNoise(0.002, 1, scene);
+  const Estimate estimate = Fitted(scene);
+  EXPECT_TRUE(estimate.is_model_in_doubt);
+  EXPECT_GT(estimate.error_budget.model(0), 0);
+}
+
 TEST(RefinedFit, RefusesWhatLinearElementsComputed) {
   for (const double noise : {0.0, 0.05}) {
     Scene scene = testing::SmallScene("organ");

@@ -77,7 +77,9 @@ TEST_F(MeasuredPointsTest, GiveTheTruth) {
   const SceneReading reading = Read(kPointsDocument);
   EXPECT_THAT(reading.notices, ElementsAre());
   EXPECT_EQ(reading.scene.load_cases[0].displacement.size(), 0);
-  const Estimate estimate = MakeEstimator("auto")->Run(reading.scene, {});
+  Scene scene = reading.scene;
+  scene.origin = Origin::kComputed;
+  const Estimate estimate = MakeEstimator("auto")->Run(scene, {});
   EXPECT_EQ(estimate.status, Status::kOk) << estimate.message;
   EXPECT_NEAR(estimate.elasticity.youngs_modulus / kModulusOfPoints, 1, 1e-6);
   EXPECT_NEAR(estimate.elasticity.poisson_ratio, kRatioOfPoints, 1e-6);
