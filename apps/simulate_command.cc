@@ -160,7 +160,8 @@ std::string MeasuredScene(const std::string& source,
   }
   // A finite rotation is to be treated as that of a camera.
   const bool is_of_this_mesh =
-      std::max<int>(FLAGS_order, mesh.Order()) == mesh.Order() && errors.rigid_motion.size() == 0;
+      std::max<int>(FLAGS_order, mesh.Order()) == mesh.Order() &&
+      errors.rigid_motion.size() == 0;
   scene.origin = is_of_this_mesh ? Origin::kComputed : Origin::kMeasured;
   Fields fields = SceneFields(scene);
   for (const auto& [name, axes] : reading.axis_arrays) {

@@ -168,7 +168,7 @@ bool StopsHere(const std::string& why_not_enough, Ladder& ladder) {
 // The fits of displacements, which alone see what the elements miss, and
 // whether regions are right.
 void ClimbFits(const Scene& scene, const EstimatorOptions& options,
-                        Preparation* fit, Ladder& ladder) {
+               Preparation* fit, Ladder& ladder) {
   const EstimatorOptions without_degree = WithoutDegree(options);
   if (ReducedFe().WhyUnsupported(scene, without_degree).empty()) {
     ladder.Climb(ReducedFe(), scene, without_degree);

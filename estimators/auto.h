@@ -20,7 +20,8 @@ namespace elastimate {
 /// Measured displacements (Origin::kMeasured) begin at reduced-fe, since the
 /// rungs below it know no mesh error; finer elements are tried within that rung
 /// as far as the mesh error asks for them (FitRefined).  Several materials,
-/// unknown motions and supports of load cases are passed over by virtual-fields.
+/// unknown motions and supports of load cases are passed over by
+/// virtual-fields.
 ///
 /// A rung that does not support the scene or the options is passed over.  The
 /// estimate is that of the last rung, with the work of all of them;

@@ -151,9 +151,9 @@ struct TiedNodes {
       }
       bool is_observed = false;
       for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-        is_observed = is_observed ||
-                      (&SupportsOf(scene, Eigen::Index(k)) == &supports &&
-                       IsObserved(scene.load_cases[k], i, node));
+        is_observed =
+            is_observed || (&SupportsOf(scene, Eigen::Index(k)) == &supports &&
+                            IsObserved(scene.load_cases[k], i, node));
       }
       is_tied(i, node) = !is_observed;
       is_any_new = is_any_new || !is_observed;

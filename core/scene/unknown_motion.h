@@ -25,10 +25,10 @@ ComponentMask AsMeasured(const Supports& supports);
 ///
 ///   u of the supports = given + G b,   what was measured = u + R a + noise.
 ///
-/// Amounts are lengths.  Nodes that a refinement put into supports that moved as
-/// measured (Supports::middles), and mid-edge nodes of a mesh of order 2 there,
-/// move as the mean of the two nodes at their ends where they were measured in
-/// no load case of these supports.
+/// Amounts are lengths.  Nodes that a refinement put into supports that moved
+/// as measured (Supports::middles), and mid-edge nodes of a mesh of order 2
+/// there, move as the mean of the two nodes at their ends where they were
+/// measured in no load case of these supports.
 struct UnknownMotion {
   /// G: num_dofs x n.  One column for each displacement that is as measured,
   /// and the rigid motions of each face, three to six at most.

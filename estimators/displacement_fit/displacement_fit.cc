@@ -117,13 +117,14 @@ class FitDescription {
           EstimateVariance(observed_, SquaredNorm(fit_.residual),
                            Eigen::Index(free_.size()), evidence_, estimate_);
     } else {
-      estimate_.noise_sd = RobustStandardDeviation(fit_.residual) * observed_.Norm();
+      estimate_.noise_sd =
+          RobustStandardDeviation(fit_.residual) * observed_.Norm();
     }
     evidence_.is_explained_by_given_noise =
         variance_ && variance_->is_explained_by_given_noise;
-    smooth_ = MeasureSmoothPart(graph, observed_,
-                                sums_.weights.cwiseSqrt().cwiseProduct(fit_.residual),
-                                estimate_);
+    smooth_ = MeasureSmoothPart(
+        graph, observed_, sums_.weights.cwiseSqrt().cwiseProduct(fit_.residual),
+        estimate_);
     const double least =
         evidence_.is_explained_by_given_noise ? 0 : smooth_.least;
     evidence_.smooth_part = std::sqrt(least) / Norm(observed_.Measured());

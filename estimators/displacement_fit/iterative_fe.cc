@@ -219,9 +219,9 @@ class IterativeFit {
     evidence.search_message = "Ceres: " + best_->summary.message;
     evidence.active = NoteActiveBounds(options_, best_->violated,
                                        best_->poisson_ratio, estimate);
-    return DescribeDisplacementFit(
-        scene_, model_.Graph(), options_, model_.Observed(), residual_.Fit(),
-        best_->losses, evidence, estimate);
+    return DescribeDisplacementFit(scene_, model_.Graph(), options_,
+                                   model_.Observed(), residual_.Fit(),
+                                   best_->losses, evidence, estimate);
   }
 
   bool HasBasin() const { return best_.has_value(); }
@@ -260,13 +260,11 @@ void EnterProfile(const EstimatorOptions& options,
       SquaredNorm(row_weights.cwiseProduct(residual.Fit().residual));
   const double nu = estimate.elasticity.poisson_ratio;
   const double far = 4 * estimate.PoissonRatioStandardError().value_or(0);
-  const bool has_rival =
-      std::any_of(of_weights.begin(), of_weights.end(),
-                  [&](const ProfilePoint& point) {
-                    return point.unbounded_cost <=
-                               least + kTwoSidedQuantile * *variance &&
-                           std::abs(point.unbounded.poisson_ratio - nu) > far;
-                  });
+  const bool has_rival = std::any_of(
+      of_weights.begin(), of_weights.end(), [&](const ProfilePoint& point) {
+        return point.unbounded_cost <= least + kTwoSidedQuantile * *variance &&
+               std::abs(point.unbounded.poisson_ratio - nu) > far;
+      });
   if (evidence.active.is_physical_limit || has_rival ||
       ShareOfDistanceToPole(estimate) > kLargestLinearShare) {
     DescribeProfileOf(options, of_weights, row_weights, *variance, residual,

@@ -338,8 +338,7 @@ int DegreeOf(const EstimatorOptions& options) {
 // `imbalance` is that of the loads.
 Estimate BalanceWork(const VirtualWorkBalance& balance,
                      const ForceResidual& force_residual, double imbalance,
-                     const Scene& scene,
-                     const EstimatorOptions& options) {
+                     const Scene& scene, const EstimatorOptions& options) {
   Estimate estimate;
   Evidence evidence;
   Stopwatch stopwatch;
@@ -412,9 +411,9 @@ Estimate VirtualFields::DoRun(const Scene& scene,
   Stopwatch stopwatch;
   const VirtualWork work(scene.mesh, scene.supports, DegreeOf(options));
   const double seconds = stopwatch.Lap();
-  Estimate estimate = BalanceWork(
-      VirtualWorkBalance(work, scene), ForceResidual(scene),
-      work.Imbalance(AssembleLoadCases(scene)), scene, options);
+  Estimate estimate =
+      BalanceWork(VirtualWorkBalance(work, scene), ForceResidual(scene),
+                  work.Imbalance(AssembleLoadCases(scene)), scene, options);
   // The fields.
   ++estimate.work.element_passes;
   estimate.stages.insert(estimate.stages.begin(), {"prepare mesh", seconds});

@@ -14,8 +14,7 @@ WorkCheck CheckByVirtualWork(const Scene& scene,
   }
   EstimatorOptions of_degree_one = options;
   of_degree_one.virtual_field_degree = 1;
-  const Estimate check =
-      VirtualFields().Run(scene, of_degree_one);
+  const Estimate check = VirtualFields().Run(scene, of_degree_one);
   estimate.work = estimate.work + check.work;
   if (!check.IsUsable()) {
     estimate.is_model_in_doubt = true;

@@ -81,8 +81,7 @@ bool IsIntervalTooWide(const Estimate& estimate) {
          kLimits.LargestPoissonRatioDistance();
 }
 
-void JudgeResult(const EstimatorOptions& options,
-                 Estimate& estimate) {
+void JudgeResult(const EstimatorOptions& options, Estimate& estimate) {
   if (!estimate.IsUsable()) {
     return;
   }
@@ -101,8 +100,7 @@ void JudgeResult(const EstimatorOptions& options,
     FailUndetermined(PoissonRatioUndetermined(estimate), estimate);
   } else if (!options.known_poisson_ratio && IsIntervalTooWide(estimate)) {
     FailUndetermined(
-        PoissonRatioBetween(*estimate.poisson_ratio_interval, false),
-        estimate);
+        PoissonRatioBetween(*estimate.poisson_ratio_interval, false), estimate);
   } else if (youngs_modulus_error >
              kLimits.largest_youngs_modulus_error * elasticity.youngs_modulus) {
     FailUndetermined(YoungsModulusUndetermined(elasticity.youngs_modulus,

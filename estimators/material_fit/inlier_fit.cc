@@ -106,8 +106,8 @@ InlierFit LeaveOutliersOut(const Scene& scene, const FitFunction& fit_scene,
   for (int i = 0; i < kRounds && fit.displacement.size() != 0; ++i) {
     std::vector<Outlier> outliers = OutliersOf(scene, observed, fit, left_out);
     if (outliers == left_out) {
-      outliers = OutliersWithoutSuspects(scene, fit_scene, observed, fit, outliers,
-                                         of_suspects);
+      outliers = OutliersWithoutSuspects(scene, fit_scene, observed, fit,
+                                         outliers, of_suspects);
     }
     // Others were left out before, and led here.
     if (std::find(tried.begin(), tried.end(), outliers) != tried.end()) {
@@ -128,15 +128,14 @@ InlierFit LeaveOutliersOut(const Scene& scene, const FitFunction& fit_scene,
   return others;
 }
 
-void EnterOutliers(const std::vector<Outlier>& left_out,
-                   const Estimate& of_all, const Estimate& of_inliers,
-                   Estimate& estimate) {
+void EnterOutliers(const std::vector<Outlier>& left_out, const Estimate& of_all,
+                   const Estimate& of_inliers, Estimate& estimate) {
   if (left_out.empty()) {
     return;
   }
   estimate.outliers = left_out;
-  estimate.Add(OutliersLeftOut(left_out, LargestChange(of_all, of_inliers),
-                               estimate));
+  estimate.Add(
+      OutliersLeftOut(left_out, LargestChange(of_all, of_inliers), estimate));
 }
 
 }  // namespace elastimate

@@ -31,9 +31,8 @@ InlierFit LeaveOutliersOut(const Scene& scene, const FitFunction& fit,
                            const MaterialFit& of_all);
 
 /// Enters which measurements were left out, and what that changed.
-void EnterOutliers(const std::vector<Outlier>& left_out,
-                   const Estimate& of_all, const Estimate& of_inliers,
-                   Estimate& estimate);
+void EnterOutliers(const std::vector<Outlier>& left_out, const Estimate& of_all,
+                   const Estimate& of_inliers, Estimate& estimate);
 
 }  // namespace elastimate
 

@@ -71,12 +71,12 @@ Scene WithEnds(Scene scene, bool are_held) {
   return scene;
 }
 
-// Whether a divided mesh could hardly lower the errors, of which noise has more.
+// Whether a divided mesh could hardly lower the errors, of which noise has
+// more.
 bool IsMeshErrorSmall(const Estimate& estimate) {
   const ParameterErrors& mesh = estimate.error_budget.discretization;
   const ParameterErrors& noise = estimate.error_budget.noise;
-  if (!estimate.IsUsable() || mesh.size() == 0 ||
-      noise.size() != mesh.size()) {
+  if (!estimate.IsUsable() || mesh.size() == 0 || noise.size() != mesh.size()) {
     return false;
   }
   for (Eigen::Index i = 0; i < mesh.size(); ++i) {
@@ -237,8 +237,8 @@ Refinement::Chain Refinement::FitQuadratic(
     if (!HasUnknownMotion(scene_)) {
       coarser.push_back(&fit.OwnScene());
     }
-    std::unique_ptr<SpaceFit> divided = MinimizeOn(
-        FinerScene(fit.OwnScene()), fit.Fit().Variables(), coarser);
+    std::unique_ptr<SpaceFit> divided =
+        MinimizeOn(FinerScene(fit.OwnScene()), fit.Fit().Variables(), coarser);
     chain.work = chain.work + divided->Fit().estimate.work;
     if (divided->Fit().minimum) {
       chain.change = DescribeChange(fit, false, *divided);
@@ -293,8 +293,7 @@ MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start) {
     fit.estimate.Fail(ComputedByLinearElements());
   }
   if (fit.displacement.size() != 0) {
-    fit.displacement =
-        fit.displacement.topRows(scene_.mesh.NumDofs()).eval();
+    fit.displacement = fit.displacement.topRows(scene_.mesh.NumDofs()).eval();
   }
   return fit;
 }

@@ -26,9 +26,9 @@ namespace elastimate {
 ///
 /// EstimatorOptions::refinement says where it ends.  By default it stops at the
 /// second fit where noise has a larger part in the error of each parameter than
-/// the mesh, and where the divided mesh would have more elements than are solved
-/// for here.  Half of what is notable (Limits) is then part of the error at
-/// least, since some changes are small by accident.
+/// the mesh, and where the divided mesh would have more elements than are
+/// solved for here.  Half of what is notable (Limits) is then part of the error
+/// at least, since some changes are small by accident.
 ///
 /// Where a support ends within quadratic elements (Supports::ends), the second
 /// and third fit are made with all of the nodes in doubt held and with all of

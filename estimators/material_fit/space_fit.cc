@@ -63,9 +63,8 @@ Eigen::VectorXd FactorsAtMinimum(Loss loss,
   constexpr double kSettled = 1e-4;
   Eigen::VectorXd factors = FactorsOf(loss, observed, residual);
   for (int i = 0; i < kIterations; ++i) {
-    const Eigen::VectorXd step =
-        -SolveLeastSquares(factors.asDiagonal() * sensitivities,
-                           factors.cwiseProduct(residual));
+    const Eigen::VectorXd step = -SolveLeastSquares(
+        factors.asDiagonal() * sensitivities, factors.cwiseProduct(residual));
     const Eigen::VectorXd last = factors;
     factors = FactorsOf(loss, observed, residual + sensitivities * step);
     if ((factors - last).cwiseAbs().maxCoeff() < kSettled) {
@@ -129,8 +128,7 @@ void SpaceFit::Reweigh() {
     Eigen::VectorXd residual;
     Eigen::MatrixXd sensitivities;
     misfit_.SetFactors({});
-    if (!misfit_.Evaluate(fit_.minimum->variables, &residual,
-                          &sensitivities)) {
+    if (!misfit_.Evaluate(fit_.minimum->variables, &residual, &sensitivities)) {
       return;
     }
     misfit_.SetFactors(FactorsAtMinimum(options_.loss, misfit_.Observed(),
@@ -182,8 +180,8 @@ std::optional<SpaceChange> SpaceFit::ChangeFrom(SpaceFit& coarse) {
   const bool is_solved =
       misfit_.Evaluate(variables, &change.rows, nullptr) &&
       coarse.misfit_.Evaluate(variables, &of_coarse, nullptr);
-  coarse.fit_.estimate.work = coarse.fit_.estimate.work +
-                              (coarse.misfit_.Model().WorkDone() - before);
+  coarse.fit_.estimate.work =
+      coarse.fit_.estimate.work + (coarse.misfit_.Model().WorkDone() - before);
   if (!is_solved) {
     return std::nullopt;
   }

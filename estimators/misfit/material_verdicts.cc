@@ -110,8 +110,8 @@ void DescribeResiduals(const Scene& scene, const MinimumErrors& errors,
       material.residual_chi_square =
           SquaredNorm(rows.cwiseProduct(errors.residual)) / rows.sum() / noise;
     }
-    const std::optional<NeighbourCorrelation> neighbours = CorrelateWithin(
-        rows, misfit.Neighbours(), observed, errors.residual);
+    const std::optional<NeighbourCorrelation> neighbours =
+        CorrelateWithin(rows, misfit.Neighbours(), observed, errors.residual);
     if (!neighbours) {
       continue;
     }

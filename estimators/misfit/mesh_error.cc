@@ -63,10 +63,10 @@ Eigen::VectorXd CautiousChange(const SpaceChange& change,
 
 // Of a mesh error that is taken for small.
 double LeastVariance(const FreeParameters& free, Eigen::Index variable) {
-  return std::pow(0.5 * (IsModulus(free, variable)
-                             ? kLimits.notable_youngs_modulus_error
-                             : kLimits.notable_poisson_ratio_error),
-                  2);
+  return std::pow(
+      0.5 * (IsModulus(free, variable) ? kLimits.notable_youngs_modulus_error
+                                       : kLimits.notable_poisson_ratio_error),
+      2);
 }
 
 }  // namespace
@@ -76,9 +76,8 @@ MeshError MeshErrorOf(const SpaceChange& change, const FreeParameters& free,
                       const Eigen::MatrixXd& inverse,
                       Eigen::Index num_displacements) {
   const Fractions fractions = FractionsOf(change, free);
-  const Eigen::VectorXd d = change.is_of_quadratic
-                                ? change.variables
-                                : CautiousChange(change, free);
+  const Eigen::VectorXd d =
+      change.is_of_quadratic ? change.variables : CautiousChange(change, free);
   Eigen::VectorXd sizes = change.rows.cwiseAbs();
   sizes.head(num_displacements)
       .setConstant(Norm(change.rows.head(num_displacements)));

@@ -48,7 +48,8 @@ struct MeshError {
 ///
 ///   quadratic elements on the divided mesh:   k = c = 1/2, b = 0.075 sqrt(2/m)
 ///   the same where Poisson's ratio is given:  k = c = 0.35, b = 0
-///   quadratic elements on the same mesh:      k = 0, c = 1/2, b = 0.03 sqrt(2/m)
+///   quadratic elements on the same mesh:      k = 0, c = 1/2, b = 0.03
+///   sqrt(2/m)
 ///
 /// and on the same mesh the change of each ratio counts as 0.2 of the largest
 /// change of a modulus at least, since linear elements may have Poisson's ratio

@@ -197,9 +197,8 @@ void AddMeshError(const Scene& scene, const SpaceChange& change,
   errors.of_mesh = mesh.covariance;
   errors.total += mesh.covariance;
   if (change.by_supports.size() != 0) {
-    evidence.support_errors = LargestOf(
-        mesh.of_supports.diagonal().cwiseSqrt(), errors.variables, estimate,
-        free);
+    evidence.support_errors = LargestOf(mesh.of_supports.diagonal().cwiseSqrt(),
+                                        errors.variables, estimate, free);
   }
   EnterElements(scene, free, errors, mesh.covariance, estimate);
 }
@@ -386,8 +385,9 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
 
 MinimumErrors DescribeMinimum(const Scene& scene,
                               const Eigen::VectorXd& variables,
-                              const SpaceChange* change, DisplacementMisfit& misfit,
-                              Evidence& evidence, Estimate& estimate) {
+                              const SpaceChange* change,
+                              DisplacementMisfit& misfit, Evidence& evidence,
+                              Estimate& estimate) {
   Minimum minimum = {variables, variables, {}, {}};
   if (!misfit.Evaluate(variables, &minimum.rows, &minimum.sensitivities)) {
     evidence.end = End::kSingularStiffness;

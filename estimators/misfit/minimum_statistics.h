@@ -23,7 +23,7 @@ struct MinimumErrors {
   Eigen::MatrixXd total;
   /// The part of the total that the mesh error has; empty where none is known.
   Eigen::MatrixXd of_mesh;
-  double variance = 0;  ///< Of noise in a row.
+  double variance = 0;       ///< Of noise in a row.
   Eigen::VectorXd residual;  ///< Of the observed rows.
 };
 
@@ -50,8 +50,9 @@ struct MinimumErrors {
 /// theirs (MeshErrorOf); null where nothing is known of it.
 MinimumErrors DescribeMinimum(const Scene& scene,
                               const Eigen::VectorXd& variables,
-                              const SpaceChange* change, DisplacementMisfit& misfit,
-                              Evidence& evidence, Estimate& estimate);
+                              const SpaceChange* change,
+                              DisplacementMisfit& misfit, Evidence& evidence,
+                              Estimate& estimate);
 
 /// The minimum of the linear model u + S d at some variables, within half of
 /// the way to their bounds; empty where the stiffness is singular.

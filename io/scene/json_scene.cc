@@ -163,8 +163,7 @@ FileScene ReadJsonScene(const std::filesystem::path& path,
   const nlohmann::json parsed = ParseJsonFile(path);
   const JsonValue document(path, parsed);
   document.CheckKeys({"model", "thickness", "mesh", "regions", "materials",
-                      "supports", "rigid_motion", "origin", "cases",
-                      "frames"});
+                      "supports", "rigid_motion", "origin", "cases", "frames"});
   const SectionChoice choice = Choose(section, ReadSection(document));
   FileScene file_scene;
   file_scene.mesh = ReadNamedMesh(document.At("mesh"), file_scene.notices);

@@ -1317,8 +1317,9 @@ class QuadraticElements : public CommandLine {
 TEST_F(QuadraticElements, RecoverWhatTheyMeasured) {
   MakeMeasuredScene();
   const nlohmann::json report =
-      Succeed("estimate scene.json --estimator=iterative-fe --order=2 --json=- "
-              "--origin=computed")
+      Succeed(
+          "estimate scene.json --estimator=iterative-fe --order=2 --json=- "
+          "--origin=computed")
           .Json();
   // An iterative estimator stops short of rounding.
   EXPECT_NEAR(report["youngs_modulus"].get<double>() / 1e5, 1, 1e-6);

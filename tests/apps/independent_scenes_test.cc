@@ -129,8 +129,8 @@ TEST_F(Hook, LinearElementsAgreeInAFinerWorld) {
 TEST_F(Hook, QuadraticElementsAgreeInAFinerWorld) {
   for (const std::string name : {"iterative-fe", "reduced-fe"}) {
     SCOPED_TRACE(name);
-    const Fit fit(ReportOf(name, kComputed + ("--order=2 " +
-                                              Path("hook_finer_world.json"))));
+    const Fit fit(ReportOf(
+        name, kComputed + ("--order=2 " + Path("hook_finer_world.json"))));
     EXPECT_NEAR(fit.youngs_modulus, 19800, kSmallPart * 33);
     EXPECT_NEAR(fit.poisson_ratio, 0.3496, kSmallPart * 0.008);
   }
@@ -139,8 +139,7 @@ TEST_F(Hook, QuadraticElementsAgreeInAFinerWorld) {
 TEST_F(Hook, TheTruthIsHeldInAFinerWorld) {
   for (const std::string name : {"iterative-fe", "reduced-fe", "auto"}) {
     SCOPED_TRACE(name);
-    const nlohmann::json report =
-        ReportOf(name, Path("hook_finer_world.json"));
+    const nlohmann::json report = ReportOf(name, Path("hook_finer_world.json"));
     ExpectToHold(kYoungsModulus, kPoissonRatio, report);
     EXPECT_EQ(report["mesh"]["order"], 2);
     const nlohmann::json error = report["standard_error"];
@@ -220,10 +219,10 @@ TEST_F(IndependentScenes, TheClosedFormAgreesAndSaysThatItIsNotUsable) {
 }
 
 TEST_F(IndependentScenes, AutoStopsAtTheClosedFormWithoutNoise) {
-  const nlohmann::json report = Succeed("estimate --json=- --estimator=auto " +
-                                        std::string(kComputed) +
-                                        Path("liver_same_mesh.vtu"))
-                                    .Json();
+  const nlohmann::json report =
+      Succeed("estimate --json=- --estimator=auto " + std::string(kComputed) +
+              Path("liver_same_mesh.vtu"))
+          .Json();
   ASSERT_EQ(report["rungs"].size(), 1);
   EXPECT_EQ(report["rungs"][0]["estimator"], "closed-form");
   EXPECT_EQ(report["work"]["factorizations"], 0);

@@ -95,8 +95,9 @@ TEST_F(SyntheticMeasurements, OfAPlateInGripsGiveWhatWasSimulated) {
 
 // A specimen of quadratic elements, before a camera that moves.
 TEST_F(SyntheticMeasurements, OfAMovingCameraGiveWhatWasSimulated) {
-  Succeed("generate plate --cells=16 --elements=tri3 --ends=grips "
-          "--out=plate.vtu");
+  Succeed(
+      "generate plate --cells=16 --elements=tri3 --ends=grips "
+      "--out=plate.vtu");
   const std::string force =
       PrintedForce(Simulate("--order=2 --points=500 --out=still.csv"));
   for (const std::string angle : {"0.00005", "0.003", "0.5"}) {

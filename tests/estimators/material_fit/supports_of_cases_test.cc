@@ -128,8 +128,8 @@ TEST(SupportsOfCasesOfElements, HoldWhatElementsMiss) {
     Scene near = testing::SceneOfKind(kind, cells);
     near.load_cases[0].loads = far.load_cases[0].loads;
     // At small strains.
-    constexpr IsotropicElasticity kStiff = {
-        1e3 * kTruthOfCases.youngs_modulus, kTruthOfCases.poisson_ratio};
+    constexpr IsotropicElasticity kStiff = {1e3 * kTruthOfCases.youngs_modulus,
+                                            kTruthOfCases.poisson_ratio};
     testing::MeasureInCutWorld(kStiff, near);
     testing::MeasureInCutWorld(kStiff, far);
     Scene scene = Together(near, far);
@@ -144,13 +144,13 @@ TEST(SupportsOfCasesOfElements, HoldWhatElementsMiss) {
     const Estimate estimate = RunNamed("iterative-fe", scene);
     ASSERT_EQ(estimate.status, Status::kOk)
         << testing::NameOf(kind) << estimate.message;
-    EXPECT_LT(std::abs(estimate.elasticity.youngs_modulus -
-                       kStiff.youngs_modulus),
-              3 * *estimate.YoungsModulusStandardError())
+    EXPECT_LT(
+        std::abs(estimate.elasticity.youngs_modulus - kStiff.youngs_modulus),
+        3 * *estimate.YoungsModulusStandardError())
         << testing::NameOf(kind);
-    EXPECT_LT(std::abs(estimate.elasticity.poisson_ratio -
-                       kStiff.poisson_ratio),
-              3 * *estimate.PoissonRatioStandardError())
+    EXPECT_LT(
+        std::abs(estimate.elasticity.poisson_ratio - kStiff.poisson_ratio),
+        3 * *estimate.PoissonRatioStandardError())
         << testing::NameOf(kind);
   }
 }

@@ -16,16 +16,16 @@ class MeshErrorTest : public ::testing::Test {
   MeshErrorTest() {
     std::mt19937_64 generator(7);
     std::normal_distribution<double> normal;
-    sensitivities_ = Eigen::MatrixXd::NullaryExpr(
-        7, 2, [&] { return normal(generator); });
+    sensitivities_ =
+        Eigen::MatrixXd::NullaryExpr(7, 2, [&] { return normal(generator); });
     change_.rows = Eigen::VectorXd::NullaryExpr(
         7, [&] { return 0.01 * normal(generator); });
     inverse_ = (sensitivities_.transpose() * sensitivities_).inverse();
   }
 
   MeshError Run(const EstimatorOptions& options = {}) const {
-    return MeshErrorOf(change_, FreeParameters(scene_, options),
-                       sensitivities_, inverse_, kNumDisplacements);
+    return MeshErrorOf(change_, FreeParameters(scene_, options), sensitivities_,
+                       inverse_, kNumDisplacements);
   }
 
   // G diag(||du||^2, dR^2) G^T.
