@@ -18,7 +18,7 @@ namespace {
 using testing::ReadTable;
 using testing::TableRow;
 
-class SpeedAccuracyStudy : public testing::ProgramTest {};
+class SpeedAccuracyStudyLong : public testing::ProgramTest {};
 
 // By "scene/world/deviation/method".
 using Points = std::map<std::string, TableRow>;
@@ -106,7 +106,7 @@ void ExpectSummary(const Points& points, const std::vector<TableRow>& summary) {
   }
 }
 
-TEST_F(SpeedAccuracyStudy, FindsWhatTheoryPredicts) {
+TEST_F(SpeedAccuracyStudyLong, FindsWhatTheoryPredicts) {
   Succeed("study --name=speed_accuracy --out=. --quick");
   const Points points = ReadPoints(folder_ / "speed_accuracy_points.csv");
   ExpectReducedFeAtTheBound(points);
