@@ -123,6 +123,8 @@ class Ladder {
       FinishEstimate(estimator.Name(), scene, options, {}, estimate_);
       estimate_.seconds = stopwatch.Lap();
     }
+    // A fit of measured displacements ends at quadratic elements.
+    rung.element_order = estimate_.element_order;
     work_ = work_ + estimate_.work;
     for (const StageTime& stage : estimate_.stages) {
       stages_.push_back({std::string(estimator.Name()) +
