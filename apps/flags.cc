@@ -28,10 +28,10 @@ DEFINE_int32(points, 0,
              "number of random points of --out=FILE.csv; without it all nodes");
 DEFINE_string(loss, "none", "treatment of outliers: none, huber or cauchy");
 DEFINE_string(origin, "",
-              "measured, or computed with elements of this mesh; overrides the "
-              "scene");
+              "displacements are measured (default) or computed with this "
+              "mesh");
 DEFINE_string(refine, "auto",
-              "how often fits of measured data divide the mesh: 0, 1, auto");
+              "divide the mesh for its error: 0 never, 1 once, auto if needed");
 DEFINE_int32(degree, 2, "degree of the polynomial virtual fields, 1 to 3");
 DEFINE_int32(order, 1,
              "1: linear elements, 2: quadratic ones on the same mesh");

@@ -1,5 +1,6 @@
 #include "elastimate/estimators/material_fit/material_fit.h"
 
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -117,6 +118,10 @@ MaterialFit FitMaterialsFrom(const std::optional<Eigen::VectorXd>& start,
   EstimatorOptions other_options = options;
   other_options.known_poisson_ratio.reset();
   MaterialFit fit = FitByOrigin(known, other_options, descent, start);
+  const ParameterErrors& of_mesh = fit.estimate.error_budget.discretization;
+  if (of_mesh.size() > 0 && std::isfinite(of_mesh(0))) {
+    fit.estimate.discretization_error = of_mesh(0);
+  }
   EnterElasticity(fit.estimate);
   return fit;
 }

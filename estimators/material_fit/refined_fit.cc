@@ -145,10 +145,20 @@ class Refinement {
     constexpr double kLogLikelihoodRatio = -9;
     // Where the strain is uniform, both are exact; the measurement has norm 1.
     constexpr double kExact = kLimits.exact_residual * kLimits.exact_residual;
-    return linear_ && linear_->Fit().minimum && least_of_quadratic_ > kExact &&
+    return linear_ && linear_->Fit().minimum && !HasBounds() &&
+           least_of_quadratic_ > kExact &&
            static_cast<double>(linear_->NumRows()) *
                    std::log(linear_->SquareSum() / least_of_quadratic_) <
                kLogLikelihoodRatio;
+  }
+  /// Whether bounds are given, which a fit may end on that would go on without.
+  bool HasBounds() const {
+    return options_.youngs_modulus.AreGiven() ||
+           options_.poisson_ratio.AreGiven() ||
+           std::any_of(scene_.materials.begin(), scene_.materials.end(),
+                       [](const Material& material) {
+                         return !material.bounds.empty();
+                       });
   }
   bool MayDivide(const Scene& quadratic) const {
     return options_.refinement != Refine::kNever &&
@@ -290,6 +300,8 @@ MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start) {
   fit.estimate.work = work + chain.work;
   EnterOutliers(chain.left_out, chain.of_all, chain.of_inliers, fit.estimate);
   if (IsOfLinearElements()) {
+    // What else there is to say follows from that.
+    fit.estimate.findings.clear();
     fit.estimate.Fail(ComputedByLinearElements());
   }
   if (fit.displacement.size() != 0) {

@@ -69,9 +69,18 @@ bool ReadIsRigidMotionFree(const JsonValue& document) {
   return true;
 }
 
+// What the mesh file says holds for the displacements that are its arrays.
 Origin ReadOrigin(const JsonValue& document, Origin of_mesh) {
   if (!document.Has("origin")) {
-    return of_mesh;
+    const std::vector<JsonValue> cases = document.At("cases").Items();
+    const bool are_arrays =
+        !document.Has("frames") &&
+        std::all_of(cases.begin(), cases.end(), [](const JsonValue& value) {
+          return value.Has("displacement") &&
+                 value.At("displacement").IsObject() &&
+                 value.At("displacement").Has("array");
+        });
+    return are_arrays ? of_mesh : Origin::kMeasured;
   }
   const JsonValue value = document.At("origin");
   const std::optional<Origin> origin = OriginOfName(value.String());

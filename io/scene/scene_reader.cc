@@ -565,6 +565,12 @@ SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
                                 PrintablePath(paths.front()) +
                                 "; each load case is taken with its own");
     }
+    if (scene.origin != reading.scene.origin && &path != &paths.front()) {
+      reading.scene.origin = Origin::kMeasured;
+      reading.notices.push_back(
+          "some of the files have computed displacements, others measured "
+          "ones; all are taken as measured (--origin says otherwise)");
+    }
     AddLoadCases(path, std::move(load_cases), reading.scene, names);
   }
   return reading;
