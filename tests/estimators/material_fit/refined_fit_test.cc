@@ -155,6 +155,32 @@ TEST(RefinedFit, RefusesWhatLinearElementsComputed) {
   }
 }
 
+// A bound that the data contradict is no sign of linear elements.
+TEST(RefinedFit, TakesNoBoundForLinearElements) {
+  Scene scene = Block({2, 2, 4});
+  testing::MeasureInCutWorld(kSpecimen, scene);
+  AddNoise(0.003, 1, scene);
+  EstimatorOptions options;
+  options.youngs_modulus.upper = kSpecimen.youngs_modulus / 2;
+  EXPECT_FALSE(
+      Fitted(scene, options).Has(FindingCode::kComputedByLinearElements));
+}
+
+TEST(RefinedFit, OfAGivenRatioKnowsItsMeshError) {
+  Scene scene = Block({2, 2, 4});
+  testing::MeasureInCutWorld(kSpecimen, scene);
+  AddNoise(0.003, 1, scene);
+  EstimatorOptions options;
+  options.known_poisson_ratio = kSpecimen.poisson_ratio;
+  const Estimate estimate = Fitted(scene, options);
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  EXPECT_LT(
+      std::abs(estimate.elasticity.youngs_modulus - kSpecimen.youngs_modulus),
+      3 * *estimate.YoungsModulusStandardError());
+  EXPECT_GT(*estimate.discretization_error, 0);
+  EXPECT_FALSE(estimate.Has(FindingCode::kMeshErrorUnknown));
+}
+
 TEST(RefinedFit, WithALossWithstandsOutliers) {
   Scene scene = Block({2, 2, 4});
   testing::MeasureInCutWorld(kSpecimen, scene);
