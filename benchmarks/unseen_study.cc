@@ -29,7 +29,7 @@
 namespace elastimate {
 namespace {
 
-constexpr double kYoungsModulus = 5e3;
+constexpr double kYoungsModulus = 5e6;  // At small strains.
 constexpr std::array<double, 4> kPoissonRatios = {0, 0.3, 0.45, 0.49};
 constexpr std::array<double, 5> kDeviations = {0, 0.001, 0.01, 0.03, 0.1};
 constexpr int kReplicates = 2;      // Of each size of noise.
@@ -169,7 +169,6 @@ void MeasureByHalfTheSize(const IsotropicElasticity& truth, Scene& scene) {
     scene.load_cases[k].displacement =
         displacement.col(Eigen::Index(k))
             .reshaped(scene.mesh.Dimension(), scene.mesh.NumNodes());
-    scene.origin = Origin::kComputed;
   }
 }
 
@@ -189,8 +188,8 @@ Scene Measured(const Specimen& specimen, int world,
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     scene.load_cases[k].displacement =
         of_world.load_cases[k].displacement.leftCols(scene.mesh.NumNodes());
-    scene.origin = Origin::kComputed;
   }
+  scene.origin = world == kSameMesh ? Origin::kComputed : Origin::kMeasured;
   return scene;
 }
 
