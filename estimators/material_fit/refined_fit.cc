@@ -145,8 +145,10 @@ class Refinement {
     constexpr double kLogLikelihoodRatio = -9;
     // Where the strain is uniform, both are exact; the measurement has norm 1.
     constexpr double kExact = kLimits.exact_residual * kLimits.exact_residual;
+    // Supports that follow the noise of their nodes leave another residual of
+    // it in each space.
     return linear_ && linear_->Fit().minimum && !HasBounds() &&
-           least_of_quadratic_ > kExact &&
+           !HasUnknownMotion(scene_) && least_of_quadratic_ > kExact &&
            static_cast<double>(linear_->NumRows()) *
                    std::log(linear_->SquareSum() / least_of_quadratic_) <
                kLogLikelihoodRatio;
