@@ -251,7 +251,7 @@ Estimate Auto::DoRun(const Scene& scene,
                      const EstimatorOptions& options) const {
   const EstimatorOptions without_degree = WithoutDegree(options);
   Ladder ladder;
-  // Of measured displacements the balance of forces knows no mesh error.
+  // The balance of forces knows no mesh error of measured displacements.
   if (scene.origin == Origin::kComputed) {
     if (ladder.Climb(ClosedForm(), scene, without_degree) &&
         StopsHere(WhyNotEnough(scene, options, ladder.Last()), ladder)) {

@@ -46,10 +46,4 @@ Eigen::MatrixXd Monomials(const Eigen::MatrixXd& points, int degree) {
   return monomials;
 }
 
-Eigen::MatrixXd SmoothByPolynomials(const Eigen::MatrixXd& points,
-                                    const Eigen::MatrixXd& values, int degree) {
-  const Eigen::MatrixXd monomials = Monomials(points, degree);
-  return monomials * SolveLeastSquares(monomials, values, kDependentMonomial);
-}
-
 }  // namespace elastimate

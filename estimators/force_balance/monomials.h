@@ -21,13 +21,6 @@ Eigen::MatrixXd Monomials(const Eigen::MatrixXd& points, int degree);
 /// so by rounding only: few points, or points in a plane, make some dependent.
 inline constexpr double kDependentMonomial = 1e-10;
 
-/// The polynomials of degree <= `degree` in the position that are nearest to
-/// the values at all points by least squares, at these points.
-/// `values` is num_points x n, and so is the result.
-/// O(num_points * num_monomials^2).
-Eigen::MatrixXd SmoothByPolynomials(const Eigen::MatrixXd& points,
-                                    const Eigen::MatrixXd& values, int degree);
-
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_ESTIMATORS_FORCE_BALANCE_MONOMIALS_H_

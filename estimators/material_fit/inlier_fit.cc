@@ -60,7 +60,7 @@ std::vector<Outlier> OutliersOf(const Scene& scene,
   return outliers;
 }
 
-// The same as a fit tells that follows no supports beside them either.
+// The outliers that are found when supports next to them are left out as well.
 std::vector<Outlier> OutliersWithoutSuspects(
     const Scene& scene, const FitFunction& fit_scene,
     const ObservedDisplacements& observed, const MaterialFit& fit,

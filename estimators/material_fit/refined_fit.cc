@@ -260,7 +260,7 @@ Refinement::Chain Refinement::FitQuadratic(
   return chain;
 }
 
-// Of two ends of supports the one that leaves less, shifted to the mean.
+// Takes the ends of supports that leave less, shifted to the mean of both.
 Refinement::Chain Refinement::MeanOf(Chain held, Chain free) {
   Chain& best =
       held.Finest().SquareSum() < free.Finest().SquareSum() ? held : free;

@@ -114,11 +114,6 @@ std::optional<double> RiseAt(const Eigen::VectorXd& moved,
 
 }  // namespace
 
-bool IsNearlyQuadratic(const FreeParameters& free, const Eigen::VectorXd& x,
-                       const Eigen::VectorXd& step) {
-  return (ScaledJacobian(free, x) * step).cwiseAbs().maxCoeff() < kLeastError;
-}
-
 Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,
                                       const Eigen::MatrixXd& covariance,
                                       const Eigen::MatrixXd& sensitivities,

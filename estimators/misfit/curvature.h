@@ -7,12 +7,6 @@
 
 namespace elastimate {
 
-/// Whether the misfit is nearly quadratic from x as far as x + step:
-/// stiffnesses change by less than a tenth, ratios by less than that of the way
-/// from x to the nearer end of their range.
-bool IsNearlyQuadratic(const FreeParameters& free, const Eigen::VectorXd& x,
-                       const Eigen::VectorXd& step);
-
 /// What a covariance C of the variables at a minimum x understates, because the
 /// misfit is not quadratic as far as C reaches.
 ///

@@ -104,16 +104,6 @@ double ExcessOfResultants(const Eigen::VectorXd& rows,
   return std::max(1.0, evidence.resultant_misfit->Excess());
 }
 
-// The variance of a row, whatever the elements miss: as given, or what is left.
-double VarianceOfRows(const ObservedDisplacements& observed,
-                      const Eigen::VectorXd& rows, Eigen::Index num_fitted) {
-  const double given =
-      observed.GivenNoise() ? 1 / (observed.Norm() * observed.Norm()) : 0;
-  return std::max(
-      given, SquaredNorm(rows) / static_cast<double>(std::max<Eigen::Index>(
-                                     observed.Size() - num_fitted, 1)));
-}
-
 // Of the errors up to which a variable is determined, how many it has
 // beforehand, and how many say that the data added nothing.
 constexpr double kErrorsBeforehand = 30;
@@ -281,15 +271,12 @@ void AddCurvature(const Eigen::VectorXd& variables,
   }
 }
 
-// The rows of a misfit and their derivatives S where it was evaluated, and rows
-// and variables of its minimum, there or where the linear model has it.
+// The variables of a minimum, the rows of the misfit there, and their
+// derivatives S.
 struct Minimum {
-  Eigen::VectorXd evaluated_at;
   Eigen::VectorXd variables;
   Eigen::VectorXd rows;
   Eigen::MatrixXd sensitivities;
-
-  bool IsEvaluated() const { return variables == evaluated_at; }
 };
 
 // Of variables that the data say nothing of, the errors are not known.
@@ -368,11 +355,9 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
   AddOutliers(free, errors.variables, observed, errors.residual, sensitivities,
               KnownBeforehand(free, variance.variance), errors.total, evidence,
               estimate);
-  AddAxisRotation(scene, minimum.evaluated_at, rows, sensitivities, inverse,
+  AddAxisRotation(scene, minimum.variables, rows, sensitivities, inverse,
                   misfit, errors, evidence, estimate);
-  if (minimum.IsEvaluated()) {
-    AddCurvature(errors.variables, sensitivities, misfit, errors);
-  }
+  AddCurvature(errors.variables, sensitivities, misfit, errors);
   if (!by_correlation.isZero(0)) {
     evidence.smooth_residual_error =
         std::sqrt(errors.total.diagonal().maxCoeff());
@@ -388,40 +373,11 @@ MinimumErrors DescribeMinimum(const Scene& scene,
                               const SpaceChange* change,
                               DisplacementMisfit& misfit, Evidence& evidence,
                               Estimate& estimate) {
-  Minimum minimum = {variables, variables, {}, {}};
+  Minimum minimum = {variables, {}, {}};
   if (!misfit.Evaluate(variables, &minimum.rows, &minimum.sensitivities)) {
     evidence.end = End::kSingularStiffness;
     return {};
   }
-  return Describe(scene, minimum, change, misfit, evidence, estimate);
-}
-
-std::optional<Eigen::VectorXd> LinearMinimum(const Eigen::VectorXd& variables,
-                                             DisplacementMisfit& misfit) {
-  Eigen::VectorXd rows;
-  Eigen::MatrixXd sensitivities;
-  if (!misfit.Evaluate(variables, &rows, &sensitivities)) {
-    return std::nullopt;
-  }
-  const FreeParameters& free = misfit.Free();
-  const double variance = VarianceOfRows(misfit.Observed(), rows, free.Size());
-  return Corrected(free, variables,
-                   -Inverse(InformationOf(free, sensitivities, variance)) *
-                       InnerProducts(sensitivities, rows));
-}
-
-MinimumErrors DescribeLinearMinimum(const Scene& scene,
-                                    const Eigen::VectorXd& variables,
-                                    const Eigen::VectorXd& at_minimum,
-                                    const SpaceChange* change,
-                                    DisplacementMisfit& misfit,
-                                    Evidence& evidence, Estimate& estimate) {
-  Minimum minimum = {variables, at_minimum, {}, {}};
-  if (!misfit.Evaluate(variables, &minimum.rows, &minimum.sensitivities)) {
-    evidence.end = End::kSingularStiffness;
-    return {};
-  }
-  minimum.rows += minimum.sensitivities * (at_minimum - variables);
   return Describe(scene, minimum, change, misfit, evidence, estimate);
 }
 

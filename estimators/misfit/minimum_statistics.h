@@ -54,20 +54,6 @@ MinimumErrors DescribeMinimum(const Scene& scene,
                               DisplacementMisfit& misfit, Evidence& evidence,
                               Estimate& estimate);
 
-/// The minimum of the linear model u + S d at some variables, within half of
-/// the way to their bounds; empty where the stiffness is singular.
-std::optional<Eigen::VectorXd> LinearMinimum(const Eigen::VectorXd& variables,
-                                             DisplacementMisfit& misfit);
-
-/// The same as DescribeMinimum of that minimum, without a look at how far the
-/// misfit is from that model (CovarianceOfCurvature).
-MinimumErrors DescribeLinearMinimum(const Scene& scene,
-                                    const Eigen::VectorXd& variables,
-                                    const Eigen::VectorXd& at_minimum,
-                                    const SpaceChange* change,
-                                    DisplacementMisfit& misfit,
-                                    Evidence& evidence, Estimate& estimate);
-
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_ESTIMATORS_MISFIT_MINIMUM_STATISTICS_H_

@@ -125,12 +125,6 @@ SmoothSquareSum MeasureSmoothPart(const NodeGraph& graph,
           within(std::max(correlation, 0.0) + kTwoSidedErrors * deviation)};
 }
 
-double RowsForOne(double correlation) {
-  constexpr double kMostCorrelation = 0.99;  // Above, residuals say nothing.
-  const double rho = std::clamp(correlation, 0.0, kMostCorrelation);
-  return (1 + rho) / (1 - rho);
-}
-
 Eigen::VectorXd RobustChange(const ObservedDisplacements& observed,
                              const Eigen::VectorXd& residual,
                              const Eigen::MatrixXd& sensitivities) {
@@ -155,19 +149,6 @@ Eigen::VectorXd RobustChange(const ObservedDisplacements& observed,
     change -= SolveLeastSquares(gram, gradient);
   }
   return change;
-}
-
-double BoundedNorm(const ObservedDisplacements& observed,
-                   const Eigen::VectorXd& residual) {
-  constexpr double kMostDeviations = 4;
-  const double most = kMostDeviations * RobustStandardDeviation(residual);
-  double square_sum = 0;
-  for (const ObservedDisplacements::Point& point : observed.Points()) {
-    square_sum +=
-        std::min(residual.segment(point.first, point.count).squaredNorm(),
-                 static_cast<double>(point.count) * most * most);
-  }
-  return std::sqrt(square_sum);
 }
 
 bool HasHeavyTails(const Eigen::VectorXd& residual) {

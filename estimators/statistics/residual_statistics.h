@@ -63,10 +63,6 @@ SmoothSquareSum MeasureSmoothPart(const NodeGraph& graph,
                                   const Eigen::VectorXd& residual,
                                   Estimate& estimate);
 
-/// How many rows of a first-order process with this correlation of neighbours
-/// say as much as one independent row; 1 where it is negative.
-double RowsForOne(double correlation);
-
 /// The change of the parameters from the least-squares fit to a robust one, in
 /// the linear model u + S delta of sensitivities S: the weighted least squares
 /// of Huber's loss.  Rows after those of `observed`, as of resultants, are no
@@ -74,12 +70,6 @@ double RowsForOne(double correlation);
 Eigen::VectorXd RobustChange(const ObservedDisplacements& observed,
                              const Eigen::VectorXd& residual,
                              const Eigen::MatrixXd& sensitivities);
-
-/// The norm of a residual in which points beyond four robust standard
-/// deviations (RobustStandardDeviation) count as if they were there [Winsor]: a
-/// few that lie far off do not hide what the others say.
-double BoundedNorm(const ObservedDisplacements& observed,
-                   const Eigen::VectorXd& residual);
 
 /// Whether some residuals are much larger than the bulk of them.
 bool HasHeavyTails(const Eigen::VectorXd& residual);
