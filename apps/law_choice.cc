@@ -7,7 +7,7 @@
 #include "apps/flags.h"
 #include "elastimate/core/materials/anisotropic_law.h"
 #include "elastimate/core/scene/observed_displacements.h"
-#include "elastimate/estimators/displacement_fit/iterative_fe.h"
+#include "elastimate/estimators/material_fit/iterative_fe.h"
 
 namespace elastimate {
 namespace {

@@ -34,7 +34,7 @@
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/solvers/cholesky.h"
-#include "elastimate/estimators/displacement_fit/reduced_fe.h"
+#include "elastimate/estimators/material_fit/reduced_fe.h"
 #include "elastimate/estimators/registry.h"
 #include "elastimate/io/examples/example_scenes.h"
 

@@ -4,15 +4,15 @@
 
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/core/text/numbers.h"
-#include "elastimate/estimators/displacement_fit/iterative_fe.h"
-#include "elastimate/estimators/displacement_fit/reduced_fe.h"
 #include "elastimate/estimators/force_balance/closed_form.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/stopwatch.h"
+#include "elastimate/estimators/material_fit/iterative_fe.h"
 #include "elastimate/estimators/material_fit/material_fit.h"
+#include "elastimate/estimators/material_fit/reduced_fe.h"
 
 namespace elastimate {
 namespace {
@@ -194,9 +194,9 @@ void ClimbFits(const Scene& scene, const EstimatorOptions& options,
 // Of unknown motions, whose only rung is iterative-fe.
 class PreparedUnknownMotion : public Preparation {
  public:
-  explicit PreparedUnknownMotion(const EstimatorOptions& options)
+  PreparedUnknownMotion(const Scene& scene, const EstimatorOptions& options)
       : options_(WithoutDegree(options)),
-        fit_(PrepareMaterialFit(options_, Descent::kFull)) {}
+        fit_(PrepareMaterialFit(scene, options_, Descent::kFull)) {}
 
   Estimate Run(const Scene& scene) override {
     Ladder ladder;
@@ -236,15 +236,9 @@ Capabilities Auto::WhatItTakes() const {
 std::string Auto::WhyUnsupported(const Scene& scene,
                                  const EstimatorOptions& options) const {
   const EstimatorOptions without_degree = WithoutDegree(options);
-  std::string why_not =
-      IsForMaterialFit(scene)
-          ? IterativeFe().WhyUnsupported(scene, without_degree)
-          : ReducedFe().WhyUnsupported(scene, without_degree);
-  if (why_not.empty() ||
-      VirtualFields().WhyUnsupported(scene, options).empty()) {
-    return "";
-  }
-  return why_not;
+  const std::string why_not =
+      IterativeFe().WhyUnsupported(scene, without_degree);
+  return VirtualFields().WhyUnsupported(scene, options).empty() ? "" : why_not;
 }
 
 Estimate Auto::DoRun(const Scene& scene,
@@ -270,7 +264,7 @@ Estimate Auto::DoRun(const Scene& scene,
 std::unique_ptr<Preparation> Auto::DoPrepare(
     const Scene& scene, const EstimatorOptions& options) const {
   if (HasUnknownMotion(scene)) {
-    return std::make_unique<PreparedUnknownMotion>(options);
+    return std::make_unique<PreparedUnknownMotion>(scene, options);
   }
   return Estimator::DoPrepare(scene, options);
 }

@@ -4,11 +4,11 @@
 #include <string>
 
 #include "elastimate/estimators/auto.h"
-#include "elastimate/estimators/displacement_fit/iterative_fe.h"
-#include "elastimate/estimators/displacement_fit/reduced_fe.h"
 #include "elastimate/estimators/force_balance/bounded.h"
 #include "elastimate/estimators/force_balance/closed_form.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
+#include "elastimate/estimators/material_fit/iterative_fe.h"
+#include "elastimate/estimators/material_fit/reduced_fe.h"
 
 namespace elastimate {
 namespace {

@@ -7,11 +7,26 @@ namespace elastimate {
 AssembledStiffness::AssembledStiffness(const Mesh& mesh,
                                        const Supports& supports,
                                        SolverKind solver)
-    : SupportedStiffness(supports), solver_(mesh, supports, solver) {}
+    : SupportedStiffness(supports),
+      mesh_(mesh),
+      supports_(supports),
+      kind_(solver) {}
+
+StiffnessSolver& AssembledStiffness::Solver() const {
+  if (!solver_) {
+    solver_ = std::make_unique<StiffnessSolver>(mesh_, supports_, kind_);
+  }
+  return *solver_;
+}
+
+const std::string& AssembledStiffness::Notice() const {
+  static const std::string none;
+  return solver_ ? solver_->Notice() : none;
+}
 
 bool AssembledStiffness::Factorize(const NestedStiffness& stiffness,
                                    bool with_held_rows) {
-  if (!solver_.FactorizeBlocks(stiffness.CoarsestBlocks())) {
+  if (!Solver().FactorizeBlocks(stiffness.CoarsestBlocks())) {
     return false;
   }
   if (with_held_rows) {
@@ -21,7 +36,7 @@ bool AssembledStiffness::Factorize(const NestedStiffness& stiffness,
 }
 
 void AssembledStiffness::AssembleHeldRows(const Eigen::MatrixXd& blocks) {
-  const NodeGraph& graph = solver_.Graph();
+  const NodeGraph& graph = Solver().Graph();
   const DegreesOfFreedom& dofs = Dofs();
   const Eigen::Index d = blocks.rows();
   std::vector<Eigen::Triplet<double>> entries;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <memory>
 #include <string>
 
 #include "elastimate/core/equilibrium/supported_stiffness.h"
@@ -11,10 +12,12 @@
 namespace elastimate {
 
 /// A stiffness on some supports that is assembled, and solved with by a
-/// StiffnessSolver.
+/// StiffnessSolver, which analyses the mesh when it is first needed: a reduced
+/// model may stand in all the time.
 class AssembledStiffness : public SupportedStiffness {
  public:
-  /// Preconditions and exceptions are those of StiffnessSolver.
+  /// Preconditions and exceptions are those of StiffnessSolver.  The mesh and
+  /// the supports must outlive this object.
   AssembledStiffness(const Mesh& mesh, const Supports& supports,
                      SolverKind solver);
 
@@ -26,7 +29,7 @@ class AssembledStiffness : public SupportedStiffness {
   using SupportedStiffness::Solve;
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& all,
                         const Eigen::MatrixXd& /*start*/) override {
-    return solver_.Solve(all);
+    return Solver().Solve(all);
   }
 
   Eigen::MatrixXd HeldForces(
@@ -38,14 +41,22 @@ class AssembledStiffness : public SupportedStiffness {
     return held_rows_.transpose() * held;
   }
 
-  const NodeGraph& GraphOfAssembled() const override { return solver_.Graph(); }
-  Work WorkDone() const override { return solver_.WorkDone(); }
-  const std::string& Notice() const override { return solver_.Notice(); }
+  const NodeGraph& GraphOfAssembled() const override {
+    return Solver().Graph();
+  }
+  Work WorkDone() const override {
+    return solver_ ? solver_->WorkDone() : Work();
+  }
+  const std::string& Notice() const override;
 
  private:
+  StiffnessSolver& Solver() const;
   void AssembleHeldRows(const Eigen::MatrixXd& blocks);
 
-  StiffnessSolver solver_;
+  const Mesh& mesh_;
+  const Supports& supports_;
+  SolverKind kind_;
+  mutable std::unique_ptr<StiffnessSolver> solver_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> held_rows_;
 };
 

@@ -107,9 +107,8 @@ struct Evidence {
   std::optional<ResidualRatio> above_noise;
   /// Of (ln E, nu), without the pull of outliers.
   std::optional<Eigen::Vector2d> outlier_change;
-  /// Standard errors of (ln E, nu) by what supports that end within elements
-  /// leave open; zero where a parameter is not free.
-  std::optional<Eigen::Vector2d> support_errors;
+  /// Standard errors by what supports that end within elements leave open.
+  std::optional<ParameterErrors> support_errors;
   /// Relative standard error of E by what is smooth in the residual; not a
   /// number for E on a bound.
   std::optional<double> smooth_residual_error;

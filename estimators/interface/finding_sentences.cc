@@ -127,6 +127,29 @@ Finding Warning(FindingCode code, std::string text, std::string advice) {
   return {code, Severity::kWarning, std::move(text), std::move(advice)};
 }
 
+// "E open by 3% and nu by 0.02": the largest error of a stiffness, and that of
+// a ratio, as far as they are known.
+std::string LargestErrors(const ParameterErrors& errors,
+                          const std::vector<ParameterEstimate>& parameters) {
+  Eigen::Index stiffness = -1;
+  Eigen::Index ratio = -1;
+  for (Eigen::Index i = 0; i < errors.size(); ++i) {
+    Eigen::Index& largest = parameters[i].IsStiffness() ? stiffness : ratio;
+    if (errors(i) > 0 && (largest < 0 || errors(i) > errors(largest))) {
+      largest = i;
+    }
+  }
+  const auto text_of = [&](Eigen::Index i, const std::string& open) {
+    return parameters[i].Label() + open + "by " +
+           (parameters[i].IsStiffness() ? Percent(errors(i))
+                                        : TwoDigits(errors(i)));
+  };
+  if (stiffness < 0 || ratio < 0) {
+    return text_of(std::max(stiffness, ratio), " open ");
+  }
+  return text_of(stiffness, " open ") + " and " + text_of(ratio, " ");
+}
+
 }  // namespace
 
 Finding NotFinite() {
@@ -706,14 +729,11 @@ Finding NegativePoissonRatio(const ParameterEstimate& poisson_ratio) {
 }
 
 Finding DiscretizationErrorFinding(const Estimate& estimate) {
-  std::string text =
-      "the mesh leaves E open by " + Percent(*estimate.discretization_error);
-  if (estimate.poisson_ratio_discretization_error) {
-    text +=
-        " and nu by " + TwoDigits(*estimate.poisson_ratio_discretization_error);
-  }
-  return Warning(FindingCode::kDiscretizationError, text,
-                 "use a finer mesh if you need a smaller error");
+  return Warning(
+      FindingCode::kDiscretizationError,
+      "the mesh leaves " + LargestErrors(estimate.error_budget.discretization,
+                                         estimate.parameters),
+      "use a finer mesh if you need a smaller error");
 }
 
 Finding MeshErrorUnknown() {
@@ -730,13 +750,13 @@ Finding ComputedByLinearElements() {
                "if so, give --origin=computed");
 }
 
-Finding SupportsEndWithinElements(const Eigen::Vector2d& errors) {
-  return Warning(
-      FindingCode::kSupportsEndWithinElements,
-      "where supports end within elements is not known, which leaves "
-      "E open by " +
-          Percent(errors(0)) + " and nu by " + TwoDigits(errors(1)),
-      "give the supports as boxes");
+Finding SupportsEndWithinElements(const ParameterErrors& errors,
+                                  const Estimate& estimate) {
+  return Warning(FindingCode::kSupportsEndWithinElements,
+                 "where supports end within elements is not known, which "
+                 "leaves " +
+                     LargestErrors(errors, estimate.parameters),
+                 "give the supports as boxes");
 }
 
 Finding WithoutErrorBars(Finding finding) {

@@ -158,7 +158,8 @@ Finding LargeDeformation(const DeformationSize& size,
 Finding MarginNotGiven(double relative_error);
 Finding NegativePoissonRatio(const ParameterEstimate& poisson_ratio);
 /// `errors` are of (ln E, nu).
-Finding SupportsEndWithinElements(const Eigen::Vector2d& errors);
+Finding SupportsEndWithinElements(const ParameterErrors& errors,
+                                  const Estimate& estimate);
 /// Precondition: there is a discretisation error.
 Finding DiscretizationErrorFinding(const Estimate& estimate);
 /// Measured displacements and a method that sees no mesh error.

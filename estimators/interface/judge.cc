@@ -112,9 +112,7 @@ void JudgeResult(const EstimatorOptions& options, Estimate& estimate) {
 }  // namespace
 
 bool IsDiscretizationErrorNotable(const Estimate& estimate) {
-  return AreNotable({estimate.discretization_error.value_or(0),
-                     estimate.poisson_ratio_discretization_error.value_or(0)},
-                    estimate);
+  return AreNotable(estimate.error_budget.discretization, estimate);
 }
 
 void Judge(const Evidence& evidence, const EstimatorOptions& options,
@@ -157,7 +155,8 @@ void FinishEstimate(std::string_view estimator, const Scene& scene,
   }
   JudgeKinematics(scene, options, estimate);
   JudgeThickness(scene, estimate);
-  if (!IsOneIsotropicMaterial(scene.materials)) {
+  if (!estimate.parameters.empty() ||
+      !IsOneIsotropicMaterial(scene.materials)) {
     estimate.stiffnesses = StiffnessesOf(scene, estimate);
     estimate.axes = AxesOf(scene, estimate);
     JudgeParameters(estimate);

@@ -153,9 +153,13 @@ Finding FindingOfUndetermined(const Estimate& estimate) {
                   is_on_bound)) {
     return ParametersUndeterminedOnBounds(undetermined);
   }
-  return AreUndeterminedByElements(estimate)
-             ? ParametersUndeterminedByElements(undetermined)
-             : ParametersUndetermined(undetermined);
+  Finding finding = AreUndeterminedByElements(estimate)
+                        ? ParametersUndeterminedByElements(undetermined)
+                        : ParametersUndetermined(undetermined);
+  if (estimate.Has(FindingCode::kSupportsEndWithinElements)) {
+    finding.advice = "give the supports as boxes";
+  }
+  return finding;
 }
 
 // The errors of those that are determined stay, and of others how large they
@@ -178,6 +182,28 @@ void FailUndetermined(Estimate& estimate) {
   }
 }
 
+// Of 95 %: of a modulus symmetric in its logarithm, which is what is fitted; of
+// a ratio one-sided where it reaches an end of its range.
+Interval IntervalOf(const ParameterEstimate& parameter,
+                    const Estimate& estimate) {
+  const std::optional<double>& degrees = estimate.noise_degrees_of_freedom;
+  const double value = parameter.value;
+  const double width = TwoSidedErrors(degrees) * *parameter.standard_error;
+  if (parameter.is_modulus) {
+    const double factor = std::exp(width / value);
+    return {value / factor, value * factor};
+  }
+  const auto& [lowest, highest] = parameter.limits;
+  const double one_sided = OneSidedErrors(degrees) * *parameter.standard_error;
+  if (value + one_sided > highest) {
+    return {std::max(lowest, value - one_sided), highest};
+  }
+  if (value - one_sided < lowest) {
+    return {lowest, value + one_sided};
+  }
+  return {std::max(lowest, value - width), std::min(highest, value + width)};
+}
+
 // What has no finite variance is not determined, unless it is known why there
 // is none.
 void EnterErrors(Estimate& estimate) {
@@ -194,14 +220,7 @@ void EnterErrors(Estimate& estimate) {
     const double error = std::sqrt(
         estimate.parameter_covariance(Eigen::Index(i), Eigen::Index(i)));
     parameter.standard_error = error;
-    const double width =
-        TwoSidedErrors(estimate.noise_degrees_of_freedom) * error;
-    parameter.interval = {parameter.value - width, parameter.value + width};
-    if (parameter.is_modulus) {
-      // Symmetric in the logarithm, which is what is fitted.
-      const double factor = std::exp(width / parameter.value);
-      parameter.interval = {parameter.value / factor, parameter.value * factor};
-    }
+    parameter.interval = IntervalOf(parameter, estimate);
   }
   if (!are_all_finite && estimate.why_no_standard_error.empty()) {
     FailUndetermined(estimate);

@@ -344,7 +344,7 @@ Result NoteSupportEnds(const Evidence& evidence, const EstimatorOptions&,
                        const Estimate& estimate) {
   return evidence.support_errors &&
                  AreNotable(*evidence.support_errors, estimate)
-             ? SupportsEndWithinElements(*evidence.support_errors)
+             ? SupportsEndWithinElements(*evidence.support_errors, estimate)
              : Result();
 }
 
@@ -362,17 +362,21 @@ Result NoteSolver(const Evidence& evidence, const EstimatorOptions&,
 
 }  // namespace
 
-bool AreNotable(const Eigen::Vector2d& errors, const Estimate& estimate) {
-  const double youngs_modulus =
-      estimate.YoungsModulusStandardError().value_or(0) /
-      estimate.elasticity.youngs_modulus;
-  const double poisson_ratio = estimate.PoissonRatioStandardError().value_or(0);
-  return errors(0) >
-             std::max(kLimits.notable_youngs_modulus_error,
-                      kLimits.notable_discretization_share * youngs_modulus) ||
-         errors(1) >
-             std::max(kLimits.notable_poisson_ratio_error,
-                      kLimits.notable_discretization_share * poisson_ratio);
+bool AreNotable(const ParameterErrors& errors, const Estimate& estimate) {
+  const Eigen::MatrixXd& covariance = estimate.parameter_covariance;
+  for (Eigen::Index i = 0; i < errors.size(); ++i) {
+    const ParameterEstimate& parameter = estimate.parameters[i];
+    const double variance = covariance.size() != 0 ? covariance(i, i) : 0;
+    const double standard_error =
+        variance > 0 ? std::sqrt(variance) / parameter.ErrorUnit() : 0;
+    if (errors(i) >
+        std::max(parameter.IsStiffness() ? kLimits.notable_youngs_modulus_error
+                                         : kLimits.notable_poisson_ratio_error,
+                 kLimits.notable_discretization_share * standard_error)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 const std::vector<Rule>& Rules() {

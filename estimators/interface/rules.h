@@ -21,9 +21,10 @@ using Rule = std::optional<Finding> (*)(const Evidence& evidence,
 /// errors the first is the reason of the status.
 const std::vector<Rule>& Rules();
 
-/// Whether errors of E (relative) and nu are more than a part of the standard
-/// errors that a user wants to be told of.
-bool AreNotable(const Eigen::Vector2d& errors, const Estimate& estimate);
+/// Whether one of some errors of the parameters, in their order and units of
+/// errors, is more than a part of its standard error that a user wants to be
+/// told of.  Errors that are not numbers are not notable.
+bool AreNotable(const ParameterErrors& errors, const Estimate& estimate);
 
 }  // namespace elastimate
 

@@ -1,11 +1,15 @@
 #include "elastimate/estimators/material_fit/material_descent.h"
 
+#include <algorithm>
+#include <vector>
+
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/materials/material.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
 #include "elastimate/estimators/force_balance/virtual_work_regression.h"
 #include "elastimate/estimators/interface/free_parameters.h"
+#include "elastimate/estimators/material_fit/certified_descent.h"
 
 namespace elastimate {
 namespace {
@@ -16,6 +20,39 @@ bool ExplainsAnything(const Eigen::VectorXd& x, DisplacementMisfit& misfit) {
   Eigen::VectorXd residual;
   return misfit.Evaluate(x, &residual, nullptr) &&
          Norm(residual.head(misfit.Observed().Size())) < 1;
+}
+
+// Where the misfit of one isotropic material is least among neighbours, of some
+// nu that cover its range, each with the E that fits best there; none of other
+// scenes, and where E is known.
+std::vector<std::optional<Eigen::VectorXd>> StartsOverPoissonRatios(
+    const Scene& scene, DisplacementMisfit& misfit) {
+  std::vector<std::optional<Eigen::VectorXd>> starts;
+  const FreeParameters& free = misfit.Free();
+  if (!CertifiedDescent::Takes(scene) || free.Size() < 2) {
+    return starts;
+  }
+  const Bounds& range = free.VariableBounds()[1];
+  std::vector<Eigen::VectorXd> points;
+  std::vector<double> square_sums;
+  for (const double nu : {-0.85, -0.5, 0.0, 0.3, 0.45, 0.48, 0.495, 0.499}) {
+    const double within = std::clamp(nu, *range.lower, *range.upper);
+    double square_sum = 0;
+    const std::optional<double> compliance = misfit.Compliance(
+        free.All().Moduli(Eigen::Vector2d(1, within)), &square_sum);
+    if (compliance && (points.empty() || points.back()(1) != within)) {
+      points.push_back(
+          free.VariablesOf(Eigen::Vector2d(1 / *compliance, within)));
+      square_sums.push_back(square_sum);
+    }
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!(i > 0 && square_sums[i - 1] < square_sums[i]) &&
+        !(i + 1 < points.size() && square_sums[i + 1] < square_sums[i])) {
+      starts.emplace_back(points[i]);
+    }
+  }
+  return starts;
 }
 
 }  // namespace
@@ -70,10 +107,14 @@ std::optional<BoundedMinimum> BestMinimum(const Scene& scene,
                                           const EstimatorOptions& options,
                                           DisplacementMisfit& misfit,
                                           Estimate& estimate) {
+  std::vector<std::optional<Eigen::VectorXd>> starts =
+      StartsOverPoissonRatios(scene, misfit);
+  if (starts.empty()) {
+    starts.push_back(TypicalStart(misfit));
+  }
+  starts.push_back(VirtualFieldsStart(scene, options, misfit.Free(), estimate));
   std::optional<BoundedMinimum> best;
-  for (const std::optional<Eigen::VectorXd>& start :
-       {TypicalStart(misfit),
-        VirtualFieldsStart(scene, options, misfit.Free(), estimate)}) {
+  for (const std::optional<Eigen::VectorXd>& start : starts) {
     // A descent that begins beyond all data takes hundreds of steps, and ends
     // there.
     if (start && (!best || ExplainsAnything(*start, misfit))) {

@@ -1,25 +1,18 @@
 #include "elastimate/estimators/material_fit/material_fit.h"
 
-#include <cmath>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/interface/axis_estimate.h"
-#include "elastimate/estimators/interface/parameter_judge.h"
+#include "elastimate/estimators/material_fit/certified_descent.h"
 #include "elastimate/estimators/material_fit/inlier_fit.h"
 #include "elastimate/estimators/material_fit/nearest_symmetry.h"
 #include "elastimate/estimators/material_fit/refined_fit.h"
 
 namespace elastimate {
 namespace {
-
-// Where Poisson's ratio of one isotropic material is known, that material.
-std::vector<Material> WithKnownPoissonRatio(const EstimatorOptions& options) {
-  Material material;
-  material.known.push_back({"poisson_ratio", *options.known_poisson_ratio});
-  return {material};
-}
 
 // Where the fit of a scene with free axes starts: next to that of the same
 // moduli without a symmetry.  Adds its work.
@@ -37,33 +30,72 @@ std::optional<Eigen::VectorXd> StartOfFreeAxes(const Scene& scene,
                           fit.errors.variables, fit.errors.total);
 }
 
+// The fit of a scene whose elements computed it, without outliers.
+class ComputedFit {
+ public:
+  ComputedFit(const Scene& scene, const EstimatorOptions& options,
+              Descent descent)
+      : options_(options), descent_(descent), space_(scene, options) {}
+
+  MaterialFit Fit(const Scene& scene,
+                  const std::optional<Eigen::VectorXd>& start) {
+    MaterialFit of_all = FitFrom(start);
+    if (options_.loss != Loss::kNone) {
+      return of_all;
+    }
+    InlierFit inliers = LeaveOutliersOut(
+        scene,
+        [&](const Scene& others, const std::optional<Eigen::VectorXd>& from) {
+          if (HasUnknownMotion(others)) {
+            return FitSpace(others, options_, descent_, from);
+          }
+          space_.Measure(others, SpaceFit::Rows::kOther);
+          has_other_rows_ = true;
+          return FitFrom(IsCertified(others) ? std::nullopt : from);
+        },
+        of_all);
+    EnterOutliers(inliers.left_out, of_all.estimate, inliers.fit.estimate,
+                  inliers.fit.estimate);
+    return inliers.fit;
+  }
+
+  /// Takes another measurement at the same nodes.
+  void Remeasure(const Scene& scene) {
+    space_.Measure(scene, std::exchange(has_other_rows_, false)
+                              ? SpaceFit::Rows::kOther
+                              : SpaceFit::Rows::kSame);
+  }
+
+ private:
+  bool IsCertified(const Scene& scene) const {
+    return descent_ == Descent::kReduced && CertifiedDescent::Takes(scene);
+  }
+  MaterialFit FitFrom(const std::optional<Eigen::VectorXd>& start) {
+    space_.Minimize(descent_, start);
+    if (space_.Fit().minimum) {
+      space_.Describe(nullptr);
+    }
+    return space_.Fit();
+  }
+
+  const EstimatorOptions& options_;
+  Descent descent_;
+  SpaceFit space_;
+  bool has_other_rows_ = false;
+};
+
 // The fit of the scene as its origin asks for it, without outliers.
 MaterialFit FitByOrigin(const Scene& scene, const EstimatorOptions& options,
                         Descent descent,
                         const std::optional<Eigen::VectorXd>& start) {
-  if (scene.origin == Origin::kMeasured) {
-    MaterialFit refined = FitRefined(scene, options, descent, start);
-    if (HasUnknownMotion(scene)) {
-      refined.estimate.fitted_displacement = refined.displacement;
-    }
-    return refined;
-  }
-  MaterialFit of_all = FitSpace(scene, options, descent, start);
-  if (options.loss != Loss::kNone) {
-    return of_all;
-  }
-  InlierFit inliers = LeaveOutliersOut(
-      scene,
-      [&](const Scene& others, const std::optional<Eigen::VectorXd>& from) {
-        return FitSpace(others, options, descent, from);
-      },
-      of_all);
-  EnterOutliers(inliers.left_out, of_all.estimate, inliers.fit.estimate,
-                inliers.fit.estimate);
+  MaterialFit fit =
+      scene.origin == Origin::kMeasured
+          ? FitRefined(scene, options, descent, start)
+          : ComputedFit(scene, options, descent).Fit(scene, start);
   if (HasUnknownMotion(scene)) {
-    inliers.fit.estimate.fitted_displacement = inliers.fit.displacement;
+    fit.estimate.fitted_displacement = fit.displacement;
   }
-  return inliers.fit;
+  return fit;
 }
 
 // Starts where the last usable fit ended.
@@ -90,39 +122,40 @@ class MaterialFitPreparation : public Preparation {
   std::optional<Eigen::VectorXd> start_;
 };
 
-}  // namespace
+// Keeps the reduced model with its certificate, which needs no start.
+class CertifiedPreparation : public Preparation {
+ public:
+  explicit CertifiedPreparation(const EstimatorOptions& options)
+      : options_(options) {}
 
-bool IsForMaterialFit(const Scene& scene) {
-  return scene.origin == Origin::kMeasured ||
-         !IsOneIsotropicMaterial(scene.materials) || HasUnknownMotion(scene) ||
-         HasSupportsOfCases(scene);
-}
+  Estimate Run(const Scene& scene) override {
+    if (fit_) {
+      fit_->Remeasure(scene);
+    } else {
+      fit_.emplace(scene, options_, Descent::kReduced);
+    }
+    return fit_->Fit(scene, std::nullopt).estimate;
+  }
+
+ private:
+  const EstimatorOptions& options_;
+  /// Empty before the first measurement.
+  std::optional<ComputedFit> fit_;
+};
+
+}  // namespace
 
 MaterialFit FitMaterialsFrom(const std::optional<Eigen::VectorXd>& start,
                              const Scene& scene,
                              const EstimatorOptions& options, Descent descent) {
-  if (!start && HasFreeAxis(scene)) {
-    Work work;
-    const std::optional<Eigen::VectorXd> nearest =
-        StartOfFreeAxes(scene, options, descent, work);
-    MaterialFit fit = FitByOrigin(scene, options, descent, nearest);
-    fit.estimate.work = fit.estimate.work + work;
-    return fit;
-  }
-  if (!IsOneIsotropicMaterial(scene.materials) ||
-      !options.known_poisson_ratio) {
+  if (start || !HasFreeAxis(scene)) {
     return FitByOrigin(scene, options, descent, start);
   }
-  Scene known = scene;
-  known.materials = WithKnownPoissonRatio(options);
-  EstimatorOptions other_options = options;
-  other_options.known_poisson_ratio.reset();
-  MaterialFit fit = FitByOrigin(known, other_options, descent, start);
-  const ParameterErrors& of_mesh = fit.estimate.error_budget.discretization;
-  if (of_mesh.size() > 0 && std::isfinite(of_mesh(0))) {
-    fit.estimate.discretization_error = of_mesh(0);
-  }
-  EnterElasticity(fit.estimate);
+  Work work;
+  const std::optional<Eigen::VectorXd> nearest =
+      StartOfFreeAxes(scene, options, descent, work);
+  MaterialFit fit = FitByOrigin(scene, options, descent, nearest);
+  fit.estimate.work = fit.estimate.work + work;
   return fit;
 }
 
@@ -131,8 +164,13 @@ Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options,
   return FitMaterialsFrom(std::nullopt, scene, options, descent).estimate;
 }
 
-std::unique_ptr<Preparation> PrepareMaterialFit(const EstimatorOptions& options,
+std::unique_ptr<Preparation> PrepareMaterialFit(const Scene& scene,
+                                                const EstimatorOptions& options,
                                                 Descent descent) {
+  if (descent == Descent::kReduced && scene.origin == Origin::kComputed &&
+      CertifiedDescent::Takes(scene)) {
+    return std::make_unique<CertifiedPreparation>(options);
+  }
   return std::make_unique<MaterialFitPreparation>(options, descent);
 }
 

@@ -12,10 +12,6 @@
 
 namespace elastimate {
 
-/// Whether a scene has more than fits of one isotropic material on supports
-/// that are given, and the same in all load cases, can take, or was measured.
-bool IsForMaterialFit(const Scene& scene);
-
 /// The parameters p of any materials by a maximum likelihood fit of the
 /// observed displacements, by Ceres within bounds,
 ///
@@ -46,10 +42,13 @@ MaterialFit FitMaterialsFrom(const std::optional<Eigen::VectorXd>& start,
                              const Scene& scene,
                              const EstimatorOptions& options, Descent descent);
 
-/// The same for one scene after another, each from where the last usable fit
-/// ended; where that leads to none, as FitMaterials does.  `options` outlive
-/// it.
-std::unique_ptr<Preparation> PrepareMaterialFit(const EstimatorOptions& options,
+/// FitMaterials for one measurement of a scene after another.  Where the
+/// minimum is certified and the elements are exact, the reduced model is kept,
+/// so that a further measurement of the same nodes costs no factorisation.
+/// Elsewhere each fit starts where the last usable one ended; where that leads
+/// to none, as FitMaterials does.  `options` must outlive it.
+std::unique_ptr<Preparation> PrepareMaterialFit(const Scene& scene,
+                                                const EstimatorOptions& options,
                                                 Descent descent);
 
 }  // namespace elastimate

@@ -19,24 +19,6 @@
 namespace elastimate {
 namespace {
 
-// Empty where displacements oppose the loads.
-std::optional<BoundedMinimum> FindMinimum(
-    const Scene& scene, const EstimatorOptions& options, Descent descent,
-    const std::optional<Eigen::VectorXd>& start, DisplacementMisfit& misfit,
-    Estimate& estimate) {
-  if (descent == Descent::kFull) {
-    return start ? DescendFrom(options, *start, Distance::kNear, misfit)
-                 : BestMinimum(scene, options, misfit, estimate);
-  }
-  const std::optional<BoundedMinimum> minimum =
-      ReducedMinimum(start, options, misfit, estimate);
-  // Typical values beside known ones may be those of no material.
-  return minimum ? minimum
-                 : ReducedMinimum(VirtualFieldsStart(scene, options,
-                                                     misfit.Free(), estimate),
-                                  options, misfit, estimate);
-}
-
 // The roots of the weights of a loss whose scale is that of the residual.
 Eigen::VectorXd FactorsOf(Loss loss, const ObservedDisplacements& observed,
                           const Eigen::VectorXd& residual) {
@@ -86,14 +68,68 @@ SpaceFit::SpaceFit(Scene scene, const EstimatorOptions& options,
                    const std::vector<const Scene*>& coarser)
     : options_(options),
       scene_(std::move(scene)),
+      is_finest_of_several_(!coarser.empty()),
       misfit_(WithFinest(coarser, scene_), options) {}
+
+void SpaceFit::Measure(const Scene& scene, Rows rows) {
+  for (std::size_t k = 0; k < scene_.load_cases.size(); ++k) {
+    LoadCase& load_case = scene_.load_cases[k];
+    load_case.displacement = scene.load_cases[k].displacement;
+    load_case.observed = scene.load_cases[k].observed;
+    load_case.points = scene.load_cases[k].points;
+  }
+  if (rows == Rows::kSame) {
+    misfit_.Remeasure(scene_);
+    return;
+  }
+  misfit_.ObserveAnew(scene_);
+  if (certified_) {
+    certified_->ForgetRows();
+  }
+}
+
+const std::string& SpaceFit::SolverNotice() {
+  const std::string& notice = misfit_.Model().Notice();
+  return notice.empty() && certified_ ? certified_->SolverNotice() : notice;
+}
+
+Work SpaceFit::WorkDone() {
+  const Work work = misfit_.Model().WorkDone();
+  return certified_ ? work + certified_->WorkDone() : work;
+}
+
+// Empty where displacements oppose the loads.
+std::optional<BoundedMinimum> SpaceFit::FindMinimum(
+    Descent descent, const std::optional<Eigen::VectorXd>& start) {
+  if (descent == Descent::kFull) {
+    return start ? DescendFrom(options_, *start, Distance::kNear, misfit_)
+                 : BestMinimum(scene_, options_, misfit_, fit_.estimate);
+  }
+  if (!start && !is_finest_of_several_ && CertifiedDescent::Takes(scene_)) {
+    if (!certified_) {
+      certified_.emplace(scene_, options_, misfit_);
+      misfit_.SetNeighbours(certified_->Graph());
+    }
+    return certified_->Minimize();
+  }
+  const std::optional<BoundedMinimum> minimum =
+      ReducedMinimum(start, options_, misfit_, fit_.estimate);
+  // Typical values beside known ones may be those of no material.
+  return minimum
+             ? minimum
+             : ReducedMinimum(VirtualFieldsStart(scene_, options_,
+                                                 misfit_.Free(), fit_.estimate),
+                              options_, misfit_, fit_.estimate);
+}
 
 void SpaceFit::Minimize(Descent descent,
                         const std::optional<Eigen::VectorXd>& start) {
+  fit_ = MaterialFit();
+  misfit_.SetFactors({});
   Estimate& estimate = fit_.estimate;
   Stopwatch stopwatch;
-  fit_.minimum =
-      FindMinimum(scene_, options_, descent, start, misfit_, estimate);
+  const Work before = WorkDone();
+  fit_.minimum = FindMinimum(descent, start);
   if (options_.loss != Loss::kNone && fit_.minimum) {
     Reweigh();
   }
@@ -102,11 +138,11 @@ void SpaceFit::Minimize(Descent descent,
   } else {
     Evidence evidence;
     evidence.do_displacements_oppose_loads = true;
-    evidence.solver_notice = misfit_.Model().Notice();
+    evidence.solver_notice = SolverNotice();
     Judge(evidence, options_, estimate);
   }
   estimate.stages.push_back({"fit", stopwatch.Lap()});
-  estimate.work = estimate.work + misfit_.Model().WorkDone();
+  estimate.work = estimate.work + (WorkDone() - before);
 }
 
 void SpaceFit::EnterMinimum() {
@@ -144,7 +180,7 @@ void SpaceFit::Describe(const SpaceChange* change) {
   estimate.work = fit_.estimate.work;
   estimate.stages = fit_.estimate.stages;
   Stopwatch stopwatch;
-  const Work before = misfit_.Model().WorkDone();
+  const Work before = WorkDone();
   Evidence evidence;
   const Eigen::VectorXd& variables = fit_.minimum->variables;
   evidence.end = fit_.minimum->end;
@@ -161,9 +197,9 @@ void SpaceFit::Describe(const SpaceChange* change) {
   if (IsOneIsotropicMaterial(scene_.materials)) {
     EnterElasticity(estimate);
   }
-  evidence.solver_notice = misfit_.Model().Notice();
+  evidence.solver_notice = SolverNotice();
   Judge(evidence, options_, estimate);
-  estimate.work = estimate.work + (misfit_.Model().WorkDone() - before);
+  estimate.work = estimate.work + (WorkDone() - before);
   estimate.stages.push_back({"statistics", stopwatch.Lap()});
   fit_.estimate = estimate;
 }
@@ -173,7 +209,7 @@ std::optional<SpaceChange> SpaceFit::ChangeFrom(SpaceFit& coarse) {
   SpaceChange change;
   change.variables = variables - coarse.fit_.minimum->variables;
   change.is_of_quadratic = coarse.scene_.mesh.Order() == 2;
-  const Work before = coarse.misfit_.Model().WorkDone();
+  const Work before = coarse.WorkDone();
   Eigen::VectorXd of_coarse;
   coarse.misfit_.SetNoise(misfit_.Noise());
   coarse.misfit_.SetFactors(misfit_.Factors());
@@ -181,7 +217,7 @@ std::optional<SpaceChange> SpaceFit::ChangeFrom(SpaceFit& coarse) {
       misfit_.Evaluate(variables, &change.rows, nullptr) &&
       coarse.misfit_.Evaluate(variables, &of_coarse, nullptr);
   coarse.fit_.estimate.work =
-      coarse.fit_.estimate.work + (coarse.misfit_.Model().WorkDone() - before);
+      coarse.fit_.estimate.work + (coarse.WorkDone() - before);
   if (!is_solved) {
     return std::nullopt;
   }
@@ -194,9 +230,10 @@ MaterialFit FitSpace(const Scene& scene, const EstimatorOptions& options,
                      const std::optional<Eigen::VectorXd>& start) {
   Stopwatch stopwatch;
   SpaceFit space(scene, options);
-  space.Fit().estimate.stages.push_back(
-      {"assemble and analyse", stopwatch.Lap()});
+  const StageTime assembly = {"assemble and analyse", stopwatch.Lap()};
   space.Minimize(descent, start);
+  std::vector<StageTime>& stages = space.Fit().estimate.stages;
+  stages.insert(stages.begin(), assembly);
   if (space.Fit().minimum) {
     space.Describe(nullptr);
   }

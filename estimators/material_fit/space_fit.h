@@ -8,6 +8,7 @@
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/material_fit/certified_descent.h"
 #include "elastimate/estimators/misfit/displacement_misfit.h"
 #include "elastimate/estimators/misfit/mesh_error.h"
 #include "elastimate/estimators/misfit/minimum_statistics.h"
@@ -16,7 +17,9 @@
 namespace elastimate {
 
 /// How a fit finds its minimum: with a factorisation at each step
-/// (BestMinimum), or by reduced models (ReducedMinimum).
+/// (BestMinimum), or by reduced models: where it has no start and there is a
+/// certificate, the global minimum (CertifiedDescent), else that which it comes
+/// to from its start (ReducedMinimum).
 enum class Descent { kFull, kReduced };
 
 /// A fit, and where it is.
@@ -61,6 +64,12 @@ class SpaceFit {
   /// stiffness is singular at this minimum.  Precondition: both have a minimum.
   std::optional<SpaceChange> ChangeFrom(SpaceFit& coarse);
 
+  /// Takes what a scene that differs in its measured displacements alone has
+  /// measured: at the same nodes, or at others.  Minimize starts anew then.
+  /// Precondition: no unknown motions.
+  enum class Rows { kSame, kOther };
+  void Measure(const Scene& scene, Rows rows);
+
   /// The square sum of what is left of the displacements at the minimum.
   double SquareSum() const { return square_sum_; }
   Eigen::Index NumRows() const { return misfit_.Observed().Size(); }
@@ -74,10 +83,17 @@ class SpaceFit {
   void EnterMinimum();
   /// Moves to the minimum with the loss of the options, by reweighting.
   void Reweigh();
+  std::optional<BoundedMinimum> FindMinimum(
+      Descent descent, const std::optional<Eigen::VectorXd>& start);
+  Work WorkDone();
+  const std::string& SolverNotice();
 
   const EstimatorOptions& options_;
   Scene scene_;
+  bool is_finest_of_several_;
   DisplacementMisfit misfit_;
+  /// Empty before it is asked for, and where there is no certificate.
+  std::optional<CertifiedDescent> certified_;
   MaterialFit fit_;
   double square_sum_ = 0;
 };

@@ -41,6 +41,18 @@ DisplacementMisfit::DisplacementMisfit(const std::vector<const Scene*>& spaces,
   }
 }
 
+void DisplacementMisfit::Remeasure(const Scene& scene) {
+  observed_.Remeasure(scene);
+  x_.resize(0);
+  placed_.reset();
+}
+
+void DisplacementMisfit::ObserveAnew(const Scene& scene) {
+  observed_ = ObservedDisplacements(scene);
+  x_.resize(0);
+  placed_.reset();
+}
+
 Eigen::Index DisplacementMisfit::NumRows() const {
   return motion_ ? motion_->NumRows() : observed_.Size();
 }
@@ -87,7 +99,7 @@ bool DisplacementMisfit::Evaluate(const Eigen::VectorXd& x,
 }
 
 std::optional<double> DisplacementMisfit::Compliance(
-    const Eigen::VectorXd& unit_moduli) {
+    const Eigen::VectorXd& unit_moduli, double* square_sum) {
   x_.resize(0);
   placed_.reset();
   if (!equilibrium_.Solve(unit_moduli)) {
@@ -102,7 +114,12 @@ std::optional<double> DisplacementMisfit::Compliance(
   if (SquaredNorm(by_loads) > 0) {
     Eigen::VectorXd moved = WithoutMotion(held);
     moved.head(observed_.Size()) -= observed_.Measured();
-    return PositiveRatio(-InnerProduct(by_loads, moved), SquaredNorm(by_loads));
+    const std::optional<double> compliance =
+        PositiveRatio(-InnerProduct(by_loads, moved), SquaredNorm(by_loads));
+    if (compliance && square_sum != nullptr) {
+      *square_sum = SquaredNorm(*compliance * by_loads + moved);
+    }
+    return compliance;
   }
   if (!motion_) {
     return std::nullopt;
@@ -126,11 +143,7 @@ bool DisplacementMisfit::SolveAt(const Eigen::VectorXd& x) {
 }
 
 bool DisplacementMisfit::Factorize(const Eigen::VectorXd& x) {
-  if (placed_) {
-    placed_.reset();
-    x_.resize(0);
-  }
-  return MoveTo(x);
+  return (!placed_ && IsAt(x)) || MoveModelTo(x);
 }
 
 void DisplacementMisfit::Place(const Eigen::VectorXd& x,
@@ -142,9 +155,18 @@ void DisplacementMisfit::Place(const Eigen::VectorXd& x,
 }
 
 bool DisplacementMisfit::MoveTo(const Eigen::VectorXd& x) {
-  if (x_.size() == x.size() && x_ == x) {
+  if (IsAt(x)) {
     return true;
   }
+  Placed placed;
+  if (solution_ && solution_(x, &placed.displacement, &placed.sensitivities)) {
+    Place(x, placed.displacement, placed.sensitivities);
+    return true;
+  }
+  return MoveModelTo(x);
+}
+
+bool DisplacementMisfit::MoveModelTo(const Eigen::VectorXd& x) {
   if (!SolveAt(x)) {
     return false;
   }

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "elastimate/core/equilibrium/equilibrium.h"
@@ -47,6 +48,19 @@ class DisplacementMisfit {
     return neighbours_ != nullptr ? *neighbours_ : equilibrium_.Graph();
   }
 
+  /// Takes what a scene that differs in its measured displacements alone has
+  /// measured; with other rows, at other nodes.  Precondition of both: no
+  /// unknown motions.
+  void Remeasure(const Scene& scene);
+  void ObserveAnew(const Scene& scene);
+
+  /// Solves in place of the model: u and, side by side for each load case,
+  /// du/dx at x; false where it cannot.  Empty takes it back.
+  using Solution = std::function<bool(const Eigen::VectorXd& x,
+                                      Eigen::MatrixXd* displacement,
+                                      Eigen::MatrixXd* sensitivities)>;
+  void SetSolution(Solution solution) { solution_ = std::move(solution); }
+
   Eigen::Index NumRows() const;
   /// Of unknown motions, which are fitted as the variables are.
   Eigen::Index NumAmounts() const;
@@ -88,7 +102,9 @@ class DisplacementMisfit {
 
   /// 1 / E, or another unit of the moduli, that explains displacements or
   /// resultants best where the moduli are 1; empty when they oppose the loads.
-  std::optional<double> Compliance(const Eigen::VectorXd& unit_moduli);
+  /// Of what it leaves of displacements, `square_sum` is the square sum.
+  std::optional<double> Compliance(const Eigen::VectorXd& unit_moduli,
+                                   double* square_sum = nullptr);
 
  private:
   struct Placed {
@@ -99,7 +115,11 @@ class DisplacementMisfit {
   const Eigen::MatrixXd& Displacement() const {
     return placed_ ? placed_->displacement : equilibrium_.Displacement();
   }
+  bool IsAt(const Eigen::VectorXd& x) const {
+    return x_.size() == x.size() && x_ == x;
+  }
   bool MoveTo(const Eigen::VectorXd& x);
+  bool MoveModelTo(const Eigen::VectorXd& x);
   Eigen::MatrixXd Sensitivities(const Eigen::VectorXd& x);
   Eigen::VectorXd WithoutMotion(const Eigen::MatrixXd& displacements);
 
@@ -111,6 +131,7 @@ class DisplacementMisfit {
   int num_factorizations_ = 0;
   Eigen::VectorXd x_;  ///< Where the model is; empty where it is nowhere.
   std::optional<Placed> placed_;  ///< In place of the model.
+  Solution solution_;
   Eigen::VectorXd residual_;
   Eigen::VectorXd factors_;
   const NodeGraph* neighbours_ = nullptr;

@@ -187,8 +187,8 @@ void AddMeshError(const Scene& scene, const SpaceChange& change,
   errors.of_mesh = mesh.covariance;
   errors.total += mesh.covariance;
   if (change.by_supports.size() != 0) {
-    evidence.support_errors = LargestOf(mesh.of_supports.diagonal().cwiseSqrt(),
-                                        errors.variables, estimate, free);
+    evidence.support_errors =
+        ErrorsOfVariables(free, errors.corrected, mesh.of_supports);
   }
   EnterElements(scene, free, errors, mesh.covariance, estimate);
 }

@@ -318,4 +318,34 @@ Work ReducedModel::WorkDone() const {
   return work;
 }
 
+ReducedSolution SolveReduced(const ReducedModel& model,
+                             const IsotropicElasticity& elasticity) {
+  const Eigen::Index num_cases = model.NumLoadCases();
+  const double nu = elasticity.poisson_ratio;
+  const double t = elasticity.ComplianceScale(model.Section());
+  const double dt_dnu = t * LogYoungsModulusSlope(nu, model.Section());
+  const auto value_and_slope = [&model, nu](Eigen::Index k) {
+    const ReducedModes& modes = model.Modes(k);
+    Eigen::MatrixXd coefficients(modes.theta.size(), 2);
+    coefficients << modes.At(nu), modes.DerivativeAt(nu);
+    return Eigen::MatrixXd(model.Basis(k) * (modes.vectors * coefficients));
+  };
+  const Eigen::Index num_rows = model.Basis(0).rows();
+  const Eigen::MatrixXd support = model.HasSupportResponse()
+                                      ? value_and_slope(num_cases)
+                                      : Eigen::MatrixXd::Zero(num_rows, 2);
+  ReducedSolution solution;
+  solution.displacement.resize(num_rows, num_cases);
+  solution.by_log_youngs_modulus.resize(num_rows, num_cases);
+  solution.by_poisson_ratio.resize(num_rows, num_cases);
+  for (Eigen::Index k = 0; k < num_cases; ++k) {
+    const Eigen::MatrixXd load = value_and_slope(k);
+    solution.displacement.col(k) = t * load.col(0) + support.col(0);
+    solution.by_log_youngs_modulus.col(k) = -t * load.col(0);
+    solution.by_poisson_ratio.col(k) =
+        dt_dnu * load.col(0) + t * load.col(1) + support.col(1);
+  }
+  return solution;
+}
+
 }  // namespace elastimate

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "elastimate/core/materials/elasticity.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/core/solvers/stiffness_solver.h"
@@ -155,6 +156,19 @@ class ReducedModel {
   int element_passes_ = 0;
   int version_ = 0;
 };
+
+/// What a ReducedModel says of (E, nu), without the held displacements, which
+/// are zero in it.
+struct ReducedSolution {
+  Eigen::MatrixXd displacement;           ///< num_dofs x num_load_cases.
+  Eigen::MatrixXd by_log_youngs_modulus;  ///< du / d ln E, of that shape.
+  Eigen::MatrixXd by_poisson_ratio;       ///< du / d nu.
+};
+
+/// u = t w(nu) + v(nu), t = (1 + nu)(1 - 2 nu) / E, and its derivatives.
+/// O(num_nodes m).
+ReducedSolution SolveReduced(const ReducedModel& model,
+                             const IsotropicElasticity& elasticity);
 
 }  // namespace elastimate
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "elastimate/core/equilibrium/simulated_measurement.h"
-#include "elastimate/estimators/displacement_fit/reduced_fe.h"
+#include "elastimate/estimators/material_fit/reduced_fe.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
 

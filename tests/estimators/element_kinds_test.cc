@@ -12,7 +12,7 @@
 
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/scene/loads.h"
-#include "elastimate/estimators/displacement_fit/reduced_fe.h"
+#include "elastimate/estimators/material_fit/reduced_fe.h"
 #include "elastimate/estimators/reduced_model/krylov_bound.h"
 #include "elastimate/estimators/registry.h"
 #include "elastimate/estimators/statistics/cramer_rao.h"

@@ -9,8 +9,8 @@
 #include <string>
 #include <tuple>
 
-#include "elastimate/estimators/displacement_fit/reduced_fe.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
+#include "elastimate/estimators/material_fit/reduced_fe.h"
 #include "elastimate/estimators/statistics/cramer_rao.h"
 #include "tests/scenes.h"
 

@@ -178,8 +178,18 @@ std::vector<Finding> OfParameters() {
                     Severity::kError)};
 }
 
+// One that the mesh leaves open, of E by this share.
+Estimate EstimateOfElements(double share) {
+  Estimate estimate;
+  estimate.parameters.resize(2);
+  estimate.parameters[0].symbol = "E";
+  estimate.parameters[0].is_modulus = true;
+  estimate.parameters[1].symbol = "nu";
+  estimate.error_budget.discretization = Eigen::Vector2d(share, 0.0212345);
+  return estimate;
+}
+
 std::vector<Finding> OfElements() {
-  const Estimate estimate = EstimateOfShearModulus();
   return {
       LargeDeformation({0.2, 0.1}, 0.17, Severity::kError),
       LargeDeformation({0.001, 0.3}, 0.05, Severity::kWarning),
@@ -191,10 +201,11 @@ std::vector<Finding> OfElements() {
         return nu;
       }()),
       MarginNotGiven(0.06),
-      DiscretizationErrorFinding(estimate),
+      DiscretizationErrorFinding(EstimateOfElements(0.0312345)),
       MeshErrorUnknown(),
       ComputedByLinearElements(),
-      SupportsEndWithinElements({0.0312345, 0.0212345}),
+      SupportsEndWithinElements(Eigen::Vector2d(0.0312345, 0.0212345),
+                                EstimateOfElements(0.0312345)),
       SolverFallback("multigrid did not converge, so that the stiffness was "
                      "factorised")};
 }
@@ -249,8 +260,7 @@ TEST(FindingSentences, HaveNoPercentageBeyondAThousand) {
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double ratio : {-20.0, 12.0, 82.0, 4.3e12, infinity}) {
     const Eigen::VectorXd numbers = Eigen::VectorXd::Constant(1, ratio);
-    Estimate open;
-    open.discretization_error = ratio;
+    const Estimate open = EstimateOfElements(ratio);
     for (const Finding& finding :
          {YoungsModulusOnBoundUndetermined(ratio), LargeCorrection(ratio),
           LoadsOutOfBalance(ratio, Severity::kError),
@@ -261,7 +271,7 @@ TEST(FindingSentences, HaveNoPercentageBeyondAThousand) {
           YoungsModulusBias(ratio, Severity::kError),
           ParameterBias("E", ratio, true, Severity::kError),
           DiscretizationErrorFinding(open),
-          SupportsEndWithinElements({ratio, 0})}) {
+          SupportsEndWithinElements(Eigen::Vector2d(ratio, 0), open)}) {
       const std::size_t place = finding.text.find(" %");
       if (place != std::string::npos) {  // That of a limit.
         const std::size_t start = finding.text.rfind(' ', place - 1) + 1;

@@ -377,7 +377,8 @@ INSTANTIATE_TEST_SUITE_P(All, ElementsOfUnknownMotion,
                            return testing::NameOf(info.param);
                          });
 
-// Linear elements bend too little, and a support follows the noise of its nodes.
+// Linear elements bend too little, and a support follows the noise of its
+// nodes.
 class ElementsOfMeasuredSupportsStatistics
     : public ::testing::TestWithParam<KindOfSection> {};
 

@@ -1,4 +1,4 @@
-#include "elastimate/estimators/displacement_fit/reduced_fit.h"
+#include "elastimate/estimators/reduced_model/reduced_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,12 +33,10 @@ Eigen::VectorXd ScanOf(const Bounds& poisson_ratio) {
 
 ReducedFit::ReducedFit(const ReducedModel& model,
                        const ObservedDisplacements& observed,
-                       const Eigen::VectorXd& row_weights,
                        const Bounds& poisson_ratio,
                        const Bounds& youngs_modulus)
     : section_model_(model.Section()),
       youngs_modulus_(youngs_modulus),
-      row_weights_(row_weights),
       scan_(ScanOf(poisson_ratio)) {
   const Eigen::Index num_cases = model.NumLoadCases();
   for (Eigen::Index k = 0; k < num_cases; ++k) {
@@ -49,12 +47,9 @@ ReducedFit::ReducedFit(const ReducedModel& model,
         model.HasSupportResponse() ? model.Basis(num_cases).cols() : 0;
     Eigen::MatrixXd bases(rows, load_columns + support_columns);
     for (Eigen::Index i = 0; i < bases.cols(); ++i) {
-      bases.col(i) =
-          row_weights.segment(first, rows)
-              .cwiseProduct(observed.RestrictToCase(
-                  k, i < load_columns
-                         ? model.Basis(k).col(i)
-                         : model.Basis(num_cases).col(i - load_columns)));
+      bases.col(i) = observed.RestrictToCase(
+          k, i < load_columns ? model.Basis(k).col(i)
+                              : model.Basis(num_cases).col(i - load_columns));
     }
     QrDecomposition qr = DecomposeQr(bases);
     LoadCaseFit fit;
@@ -141,35 +136,6 @@ std::vector<ReducedFit::ResidualBracket> ReducedFit::BracketResiduals(
   return brackets;
 }
 
-std::pair<ReducedFit::Point, ReducedFit::Point> ReducedFit::ProfileEnds(
-    const Eigen::VectorXd& measured, const Point& best, double excess) const {
-  constexpr int kHalvings = 40;
-  const Projection projection = Project(measured);
-  const double limit = best.square_sum + excess;
-  const auto is_inside = [&](double nu) {
-    const Point point = At(nu, projection);
-    return point.compliance_scale > 0 && point.square_sum <= limit;
-  };
-  // From the far end inwards, so that a second minimum nearly as good is
-  // inside.
-  const auto end_towards = [&](Eigen::Index far, Eigen::Index step) {
-    double outside = scan_(far);
-    for (Eigen::Index i = far;
-         i >= 0 && i < scan_.size() &&
-         (scan_(i) - best.poisson_ratio) * static_cast<double>(step) < 0;
-         i += step) {
-      if (is_inside(scan_(i))) {
-        return i == far ? scan_(far)
-                        : LastInside(is_inside, scan_(i), outside, kHalvings);
-      }
-      outside = scan_(i);
-    }
-    return LastInside(is_inside, best.poisson_ratio, outside, kHalvings);
-  };
-  return {At(end_towards(0, 1), projection),
-          At(end_towards(scan_.size() - 1, -1), projection)};
-}
-
 ReducedFit::Projection ReducedFit::Project(
     const Eigen::VectorXd& measured) const {
   Projection projection;
@@ -179,14 +145,12 @@ ReducedFit::Projection ReducedFit::Project(
   Eigen::Index first_projected = 0;
   for (const LoadCaseFit& load_case : load_cases_) {
     const Eigen::Index rows = load_case.q.rows();
-    const Eigen::VectorXd weighted =
-        row_weights_.segment(first, rows)
-            .cwiseProduct(measured.segment(first, rows));
+    const Eigen::VectorXd of_case = measured.segment(first, rows);
     auto projected =
         projection.measured.segment(first_projected, load_case.q.cols());
-    projected = InnerProducts(load_case.q, weighted);
+    projected = InnerProducts(load_case.q, of_case);
     projection.rest_square_sum +=
-        std::max(0.0, SquaredNorm(weighted) - projected.squaredNorm());
+        std::max(0.0, SquaredNorm(of_case) - projected.squaredNorm());
     first += rows;
     first_projected += projected.size();
   }
@@ -267,43 +231,6 @@ double ReducedFit::FindMinimum(double inner, double inner_slope, double outer,
   return ZeroBetween([&](double nu) { return SlopeAt(nu, projection); }, inner,
                      inner_slope, outer, SlopeAt(outer, projection),
                      kTolerance);
-}
-
-DisplacementFit ExpandFit(const ReducedModel& model,
-                          const ObservedDisplacements& observed,
-                          const IsotropicElasticity& elasticity) {
-  const Eigen::Index num_cases = model.NumLoadCases();
-  const double nu = elasticity.poisson_ratio;
-  const double t = elasticity.ComplianceScale(model.Section());
-  const double dt_dnu = t * LogYoungsModulusSlope(nu, model.Section());
-  // Value and derivative.
-  const auto response = [&model, nu](Eigen::Index k) {
-    const ReducedModes& modes = model.Modes(k);
-    Eigen::MatrixXd coefficients(modes.theta.size(), 2);
-    coefficients << modes.At(nu), modes.DerivativeAt(nu);
-    return Eigen::MatrixXd(model.Basis(k) * (modes.vectors * coefficients));
-  };
-  const Eigen::Index num_rows = model.Basis(0).rows();
-  const Eigen::MatrixXd support = model.HasSupportResponse()
-                                      ? response(num_cases)
-                                      : Eigen::MatrixXd::Zero(num_rows, 2);
-  Eigen::MatrixXd displacement(num_rows, num_cases);
-  Eigen::MatrixXd by_log_youngs_modulus(num_rows, num_cases);
-  Eigen::MatrixXd by_poisson_ratio(num_rows, num_cases);
-  for (Eigen::Index k = 0; k < num_cases; ++k) {
-    const Eigen::MatrixXd load = response(k);
-    displacement.col(k) = t * load.col(0) + support.col(0);
-    by_log_youngs_modulus.col(k) = -t * load.col(0);
-    by_poisson_ratio.col(k) =
-        dt_dnu * load.col(0) + t * load.col(1) + support.col(1);
-  }
-  DisplacementFit fit;
-  fit.residual = observed.Restrict(displacement) - observed.Measured();
-  fit.sensitivities.resize(observed.Size(), 2);
-  fit.sensitivities << observed.Restrict(by_log_youngs_modulus),
-      observed.Restrict(by_poisson_ratio);
-  fit.displacement = std::move(displacement);
-  return fit;
 }
 
 }  // namespace elastimate

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "elastimate/estimators/displacement_fit/iterative_fe.h"
-#include "elastimate/estimators/displacement_fit/reduced_fe.h"
+#include "elastimate/estimators/material_fit/iterative_fe.h"
+#include "elastimate/estimators/material_fit/reduced_fe.h"
 #include "tests/scenes.h"
 #include "tests/shapes.h"
 

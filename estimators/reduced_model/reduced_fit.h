@@ -1,20 +1,18 @@
-#ifndef ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_REDUCED_FIT_H_
-#define ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_REDUCED_FIT_H_
+#ifndef ELASTIMATE_ESTIMATORS_REDUCED_MODEL_REDUCED_FIT_H_
+#define ELASTIMATE_ESTIMATORS_REDUCED_MODEL_REDUCED_FIT_H_
 
 #include <Eigen/Core>
-#include <utility>
 #include <vector>
 
 #include "elastimate/core/scene/observed_displacements.h"
-#include "elastimate/estimators/displacement_fit/displacement_fit.h"
 #include "elastimate/estimators/interface/estimator.h"
 #include "elastimate/estimators/reduced_model/reduced_model.h"
 
 namespace elastimate {
 
-/// The weighted least-squares fit of a ReducedModel to observed displacements,
+/// The least-squares fit of a ReducedModel to observed displacements q,
 ///
-///   min over nu and t of ||W (t w(nu) + v(nu) - q)||^2,
+///   min over nu and t of ||t w(nu) + v(nu) - q||^2,
 ///
 /// compressed: with the QR factorisation of the observed rows of the bases of
 /// each load case, the sum of squares is one over the basis vectors and a
@@ -28,12 +26,10 @@ class ReducedFit {
     double square_sum;
   };
 
-  /// `row_weights` (one for each row of `observed`) are the diagonal of W.
   /// Precondition: both bounds on nu are given.
   /// Cost: O(rows m^2) for m basis vectors of a load case.
   ReducedFit(const ReducedModel& model, const ObservedDisplacements& observed,
-             const Eigen::VectorXd& row_weights, const Bounds& poisson_ratio,
-             const Bounds& youngs_modulus);
+             const Bounds& poisson_ratio, const Bounds& youngs_modulus);
 
   /// The best fit to `measured`, rows as in ObservedDisplacements: the whole
   /// range of nu is scanned, and the zeros of the slope beside all minima of
@@ -61,13 +57,6 @@ class ReducedFit {
       const std::vector<ModelError>& errors) const;
   /// nu of the scan, ascending.
   const Eigen::VectorXd& Scan() const { return scan_; }
-
-  /// The best fits at the outermost nu at which the best sum of squares exceeds
-  /// that of `best` = Fit(measured) by no more than `excess`: the profile
-  /// likelihood, with every minimum that is nearly as good inside.  At the ends
-  /// of the scan where the sum of squares stays below.
-  std::pair<Point, Point> ProfileEnds(const Eigen::VectorXd& measured,
-                                      const Point& best, double excess) const;
 
  private:
   // The observed rows of w and v in an orthonormal basis: stacked over the load
@@ -115,7 +104,6 @@ class ReducedFit {
 
   SectionModel section_model_;
   Bounds youngs_modulus_;
-  Eigen::VectorXd row_weights_;
   std::vector<LoadCaseFit> load_cases_;
   /// Of the orthonormal bases of all load cases.
   Eigen::Index num_projected_ = 0;
@@ -125,11 +113,6 @@ class ReducedFit {
   Eigen::MatrixXd scan_v_;
 };
 
-/// The model at (E, nu).  O(num_nodes m).
-DisplacementFit ExpandFit(const ReducedModel& model,
-                          const ObservedDisplacements& observed,
-                          const IsotropicElasticity& elasticity);
-
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_REDUCED_FIT_H_
+#endif  // ELASTIMATE_ESTIMATORS_REDUCED_MODEL_REDUCED_FIT_H_

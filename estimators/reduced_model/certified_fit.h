@@ -1,17 +1,16 @@
-#ifndef ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_ADAPTIVE_FIT_H_
-#define ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_ADAPTIVE_FIT_H_
+#ifndef ELASTIMATE_ESTIMATORS_REDUCED_MODEL_CERTIFIED_FIT_H_
+#define ELASTIMATE_ESTIMATORS_REDUCED_MODEL_CERTIFIED_FIT_H_
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/scene.h"
-#include "elastimate/estimators/displacement_fit/reduced_fit.h"
-#include "elastimate/estimators/displacement_fit/robust_reduced_fit.h"
+#include "elastimate/estimators/reduced_model/reduced_fit.h"
 #include "elastimate/estimators/interface/estimator.h"
 #include "elastimate/estimators/reduced_model/reduced_model.h"
-#include "elastimate/estimators/statistics/profile_likelihood.h"
 
 namespace elastimate {
 
@@ -29,43 +28,42 @@ namespace elastimate {
 /// says that the full model leaves as much at every nu.
 ///
 /// Errors of the model come from ReducedModel::ErrorBound in the energy, and
-/// from the energy to the observed displacements by ComplianceNorm.  With a
-/// loss, (2) holds for the fit without it, on whose model the fit with the loss
-/// is made.
+/// from the energy to the observed displacements by ComplianceNorm.
 ///
 /// nu is searched within the bounds, and where there are none from
 /// kUsualSmallest to kLargestPoissonRatio, by multigrid, which does not
 /// converge next to 1/2, to kUsualLargestOfMultigrid.  Where the residual at an
 /// end that no bound has set is near the least, the search goes on beyond it,
 /// to kSmallestPoissonRatio or kLargestPoissonRatio.
-class AdaptiveFit {
+class CertifiedFit {
  public:
   static constexpr double kUsualSmallest = -0.95;
   static constexpr double kUsualLargestOfMultigrid = 0.495;
 
-  /// Factorises once, and once more where nu may be near 1/2 or near -1.
-  /// `scene` must outlive this object.  Preconditions and exceptions: those of
-  /// ReducedModel.
-  AdaptiveFit(const Scene& scene, const EstimatorOptions& options);
+  /// Factorises once, and once more where nu may be near 1/2 or near -1.  Both
+  /// bounds on nu are given, and alike where nu is known; those on E need not
+  /// be.  `on_factorization` is that of EstimatorOptions.  `scene` must outlive
+  /// this object.  Preconditions and exceptions: those of ReducedModel.
+  CertifiedFit(const Scene& scene, const Bounds& poisson_ratio,
+               const Bounds& youngs_modulus, SolverKind solver,
+               std::function<void(int)> on_factorization);
 
-  /// Fits, and refines the model, but not below an error of the measurement of
-  /// this norm, which no residual shows.  False when the stiffness is singular
-  /// at the first pole.
-  bool Run(const ObservedDisplacements& observed, double known_error = 0);
+  /// Fits, and refines the model.  False when the stiffness is singular at the
+  /// first pole.
+  bool Run(const ObservedDisplacements& observed);
 
-  /// The ends of the interval of nu in which the sum of squares of the last
-  /// fit, with a loss at the weights that it ended with, exceeds its least by
-  /// no more than `excess`.
-  Profile ProfileEnds(const ObservedDisplacements& observed,
-                      double excess) const;
+  /// Has the next Run take rows that are others than those of the last one: of
+  /// other nodes, or with other weights.
+  void ForgetRows();
 
-  const ModelFit& Best() const { return fit_; }
+  const ReducedFit::Point& Best() const { return best_; }
   /// Whether the last fit is certified.
   bool HasConverged() const { return has_converged_; }
-  /// What nu was searched for in.
-  const Bounds& PoissonRatioBounds() const { return searched_; }
+  /// Whether the model is off at this point by less than a tenth of the
+  /// standard deviation of the noise, all together.
+  bool IsAccurateAt(const ReducedFit::Point& point,
+                    const ObservedDisplacements& observed) const;
   const ReducedModel& Model() const { return model_; }
-  ReducedModel& Model() { return model_; }
 
  private:
   // Where the model is not yet good enough.
@@ -89,8 +87,9 @@ class AdaptiveFit {
 
   void Fit(const ObservedDisplacements& observed);
   double NoiseOf(const ObservedDisplacements& observed) const;
-  /// That of the observed displacements that always may remain.
+  /// The error of the observed displacements that always may remain.
   double SmallestError() const;
+  double AllowedError(const ObservedDisplacements& observed) const;
   ReducedFit::ModelError ErrorAt(double nu) const;
   std::optional<Doubt> DoubtAtTheEstimate(
       const ObservedDisplacements& observed) const;
@@ -98,10 +97,11 @@ class AdaptiveFit {
       const ObservedDisplacements& observed,
       const std::vector<ReducedFit::ResidualBracket>& brackets) const;
 
-  EstimatorOptions options_;
+  std::function<void(int)> on_factorization_;
   ReducedModel model_;
   Bounds largest_range_;
   Bounds searched_;
+  Bounds youngs_modulus_;
   bool is_regular_ = true;
   /// ComplianceNorm of the observed components at a pole; zero before.
   double compliance_norm_ = 0;
@@ -109,9 +109,7 @@ class AdaptiveFit {
   /// Of the model at `fitted_version_`.
   std::unique_ptr<ReducedFit> least_squares_;
   int fitted_version_ = 0;
-  ReducedFit::Point least_squares_point_;
-  ModelFit fit_;
-  double known_error_ = 0;
+  ReducedFit::Point best_ = {};
   bool has_converged_ = false;
   int num_poles_ = 0;
   int num_vectors_of_pole_ = 0;
@@ -119,4 +117,4 @@ class AdaptiveFit {
 
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_ESTIMATORS_DISPLACEMENT_FIT_ADAPTIVE_FIT_H_
+#endif  // ELASTIMATE_ESTIMATORS_REDUCED_MODEL_CERTIFIED_FIT_H_

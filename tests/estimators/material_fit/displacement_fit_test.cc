@@ -1,12 +1,10 @@
-#include "elastimate/estimators/displacement_fit/displacement_fit.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 #include <string>
 
-#include "elastimate/estimators/displacement_fit/iterative_fe.h"
+#include "elastimate/estimators/material_fit/iterative_fe.h"
 #include "tests/scenes.h"
 
 namespace elastimate {

@@ -1,10 +1,10 @@
-#include "elastimate/estimators/displacement_fit/adaptive_fit.h"
+#include "elastimate/estimators/reduced_model/certified_fit.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "elastimate/core/materials/elasticity.h"
-#include "elastimate/estimators/statistics/bounded_parameter.h"
 
 namespace elastimate {
 namespace {
@@ -20,8 +20,6 @@ constexpr double kFirstTolerance = 1e-2;
 // solves, and the vectors of all poles are kept.
 constexpr int kMostVectorsOfAPole = 30;
 constexpr int kMostPoles = 8;
-// More for fits that are made again, which may lead to another nu.
-constexpr int kMostPolesOfRefits = 12;
 // The error of the observed displacements that may remain, relative to the
 // noise, to the residual, and to the displacements: of direct solves, and of
 // multigrid, which leaves errors of StiffnessSolver::kAccurate.
@@ -29,13 +27,6 @@ constexpr double kErrorOverNoise = 0.1;
 constexpr double kErrorOverResidual = 5e-4;
 constexpr double kSmallestError = 1e-8;
 constexpr double kSmallestErrorOfMultigrid = 1e-6;
-
-Bounds LargestRange(const EstimatorOptions& options) {
-  if (options.known_poisson_ratio) {
-    return {options.known_poisson_ratio, options.known_poisson_ratio};
-  }
-  return EffectivePoissonRatioBounds(options);
-}
 
 double MiddleOf(double nu, double other) {
   return PoissonRatioOfLogStiffnessRatio(
@@ -60,19 +51,21 @@ double SolveTolerance(double error, double limit) {
 
 }  // namespace
 
-AdaptiveFit::AdaptiveFit(const Scene& scene, const EstimatorOptions& options)
-    : options_(options),
-      model_(scene, options.solver),
-      largest_range_(LargestRange(options)),
-      searched_(largest_range_) {
-  if (!options.known_poisson_ratio) {
-    if (!options.poisson_ratio.lower && *searched_.upper > kUsualSmallest) {
-      searched_.lower = kUsualSmallest;
-    }
-    if (!options.poisson_ratio.upper && model_.UsesMultigrid() &&
-        *searched_.lower < kUsualLargestOfMultigrid) {
-      searched_.upper = kUsualLargestOfMultigrid;
-    }
+CertifiedFit::CertifiedFit(const Scene& scene, const Bounds& poisson_ratio,
+                           const Bounds& youngs_modulus, SolverKind solver,
+                           std::function<void(int)> on_factorization)
+    : on_factorization_(std::move(on_factorization)),
+      model_(scene, solver),
+      largest_range_(poisson_ratio),
+      searched_(poisson_ratio),
+      youngs_modulus_(youngs_modulus) {
+  if (*searched_.lower == kSmallestPoissonRatio &&
+      *searched_.upper > kUsualSmallest) {
+    searched_.lower = kUsualSmallest;
+  }
+  if (*searched_.upper == kLargestPoissonRatio && model_.UsesMultigrid() &&
+      *searched_.lower < kUsualLargestOfMultigrid) {
+    searched_.upper = kUsualLargestOfMultigrid;
   }
   const double lower = *searched_.lower;
   const double upper = *searched_.upper;
@@ -99,16 +92,16 @@ AdaptiveFit::AdaptiveFit(const Scene& scene, const EstimatorOptions& options)
   }
 }
 
-bool AdaptiveFit::SetPole(double nu) {
-  if (options_.on_factorization) {
-    options_.on_factorization(num_poles_ + 1);
+bool CertifiedFit::SetPole(double nu) {
+  if (on_factorization_) {
+    on_factorization_(num_poles_ + 1);
   }
   ++num_poles_;
   num_vectors_of_pole_ = 0;
   return model_.SetPole(nu);
 }
 
-bool AdaptiveFit::EnlargeUntil(double nu, double limit) {
+bool CertifiedFit::EnlargeUntil(double nu, double limit) {
   constexpr int kStep = 2;
   double error = model_.RelativeErrorBound(nu);
   while (error > limit) {
@@ -134,9 +127,7 @@ bool AdaptiveFit::EnlargeUntil(double nu, double limit) {
   return true;
 }
 
-bool AdaptiveFit::Run(const ObservedDisplacements& observed,
-                      double known_error) {
-  known_error_ = known_error;
+bool CertifiedFit::Run(const ObservedDisplacements& observed) {
   has_converged_ = false;
   if (!is_regular_) {
     return false;
@@ -167,36 +158,42 @@ bool AdaptiveFit::Run(const ObservedDisplacements& observed,
   }
 }
 
-void AdaptiveFit::Fit(const ObservedDisplacements& observed) {
+void CertifiedFit::ForgetRows() {
+  compliance_norm_ = 0;
+  least_squares_.reset();
+}
+
+void CertifiedFit::Fit(const ObservedDisplacements& observed) {
   if (!least_squares_ || fitted_version_ != model_.Version()) {
-    least_squares_ = std::make_unique<ReducedFit>(
-        model_, observed, Eigen::VectorXd::Ones(observed.Size()), searched_,
-        options_.youngs_modulus);
+    least_squares_ = std::make_unique<ReducedFit>(model_, observed, searched_,
+                                                  youngs_modulus_);
     fitted_version_ = model_.Version();
   }
-  least_squares_point_ = least_squares_->Fit(observed.Measured());
-  if (options_.loss != Loss::kNone) {
-    fit_ = FitRobustly(model_, observed, options_, searched_);
-    return;
-  }
-  fit_.point = least_squares_point_;
-  fit_.standard_deviation =
-      std::sqrt(fit_.point.square_sum / static_cast<double>(observed.Size()));
+  best_ = least_squares_->Fit(observed.Measured());
 }
 
-double AdaptiveFit::NoiseOf(const ObservedDisplacements& observed) const {
-  return observed.GivenNoise()
-             ? std::min(fit_.standard_deviation, 1 / observed.Norm())
-             : fit_.standard_deviation;
+double CertifiedFit::NoiseOf(const ObservedDisplacements& observed) const {
+  const double left =
+      std::sqrt(best_.square_sum / static_cast<double>(observed.Size()));
+  return observed.GivenNoise() ? std::min(left, 1 / observed.Norm()) : left;
 }
 
-double AdaptiveFit::SmallestError() const {
-  return std::max(
-      kErrorOverNoise * known_error_,
-      model_.UsesMultigrid() ? kSmallestErrorOfMultigrid : kSmallestError);
+double CertifiedFit::SmallestError() const {
+  return model_.UsesMultigrid() ? kSmallestErrorOfMultigrid : kSmallestError;
 }
 
-ReducedFit::ModelError AdaptiveFit::ErrorAt(double nu) const {
+double CertifiedFit::AllowedError(const ObservedDisplacements& observed) const {
+  return std::max(SmallestError(), kErrorOverNoise * NoiseOf(observed));
+}
+
+bool CertifiedFit::IsAccurateAt(const ReducedFit::Point& point,
+                                const ObservedDisplacements& observed) const {
+  const ReducedFit::ModelError error = ErrorAt(point.poisson_ratio);
+  return std::abs(point.compliance_scale) * error.w + error.v <=
+         AllowedError(observed);
+}
+
+ReducedFit::ModelError CertifiedFit::ErrorAt(double nu) const {
   const double of_energy =
       compliance_norm_ /
       std::sqrt(SmallestEnergyRatio(nu, compliance_pole_, model_.Section()));
@@ -213,23 +210,22 @@ ReducedFit::ModelError AdaptiveFit::ErrorAt(double nu) const {
   return {of_energy * std::sqrt(square_sum), of_energy * of_supports};
 }
 
-std::optional<AdaptiveFit::Doubt> AdaptiveFit::DoubtAtTheEstimate(
+std::optional<CertifiedFit::Doubt> CertifiedFit::DoubtAtTheEstimate(
     const ObservedDisplacements& observed) const {
-  const double nu = fit_.point.poisson_ratio;
+  const double nu = best_.poisson_ratio;
   const ReducedFit::ModelError error = ErrorAt(nu);
-  const double size = std::abs(fit_.point.compliance_scale) * error.w + error.v;
-  const double allowed =
-      std::max(SmallestError(), kErrorOverNoise * NoiseOf(observed));
+  const double size = std::abs(best_.compliance_scale) * error.w + error.v;
+  const double allowed = AllowedError(observed);
   if (size <= allowed) {
     return std::nullopt;
   }
   return Doubt{nu, allowed / size, nu};
 }
 
-std::optional<AdaptiveFit::Doubt> AdaptiveFit::DoubtElsewhere(
+std::optional<CertifiedFit::Doubt> CertifiedFit::DoubtElsewhere(
     const ObservedDisplacements& observed,
     const std::vector<ReducedFit::ResidualBracket>& brackets) const {
-  const double residual = std::sqrt(least_squares_point_.square_sum);
+  const double residual = std::sqrt(best_.square_sum);
   const double allowed =
       std::max(SmallestError(), std::min(kErrorOverNoise * NoiseOf(observed),
                                          kErrorOverResidual * residual));
@@ -264,7 +260,7 @@ std::optional<AdaptiveFit::Doubt> AdaptiveFit::DoubtElsewhere(
                MiddleOf(scan(first), scan(last))};
 }
 
-bool AdaptiveFit::Improve(const Doubt& doubt) {
+bool CertifiedFit::Improve(const Doubt& doubt) {
   // Bounds are not met to the last digit, and others move with the fit.
   constexpr double kSafety = 0.5;
   const double limit =
@@ -273,22 +269,22 @@ bool AdaptiveFit::Improve(const Doubt& doubt) {
   if (EnlargeUntil(doubt.poisson_ratio, limit)) {
     return true;
   }
-  if (num_poles_ < (known_error_ > 0 ? kMostPolesOfRefits : kMostPoles)) {
+  if (num_poles_ < kMostPoles) {
     return SetPole(doubt.middle);
   }
   return model_.Version() != version;
 }
 
-bool AdaptiveFit::SearchFurther(
+bool CertifiedFit::SearchFurther(
     const ObservedDisplacements& observed,
     const std::vector<ReducedFit::ResidualBracket>& brackets) {
   // Beyond this excess of the sum of squares over its least, in variances, no
   // interval of nu ends.
   constexpr double kFarExcess = 10;
   const double variance =
-      least_squares_point_.square_sum / static_cast<double>(observed.Size());
+      best_.square_sum / static_cast<double>(observed.Size());
   const auto is_near_least = [&](const ReducedFit::ResidualBracket& end) {
-    return end.reduced * end.reduced - least_squares_point_.square_sum <=
+    return end.reduced * end.reduced - best_.square_sum <=
            kFarExcess * variance;
   };
   bool has_grown = false;
@@ -306,27 +302,6 @@ bool AdaptiveFit::SearchFurther(
     least_squares_.reset();
   }
   return has_grown;
-}
-
-Profile AdaptiveFit::ProfileEnds(const ObservedDisplacements& observed,
-                                 double excess) const {
-  const auto elasticity_of = [this](const ReducedFit::Point& point) {
-    return IsotropicElasticity::FromComplianceScale(
-        point.compliance_scale, point.poisson_ratio, model_.Section());
-  };
-  const ReducedFit& fit = fit_.weighted ? *fit_.weighted : *least_squares_;
-  const auto [lower, upper] = fit.ProfileEnds(
-      observed.Measured(), fit_.weighted ? fit_.point : least_squares_point_,
-      excess);
-  Profile profile = {elasticity_of(lower), elasticity_of(upper)};
-  // Where it reaches the end of the search, it may go on beyond.
-  if (profile.lower.poisson_ratio <= *searched_.lower) {
-    profile.lower.poisson_ratio = *largest_range_.lower;
-  }
-  if (profile.upper.poisson_ratio >= *searched_.upper) {
-    profile.upper.poisson_ratio = *largest_range_.upper;
-  }
-  return profile;
 }
 
 }  // namespace elastimate

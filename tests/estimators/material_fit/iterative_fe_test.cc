@@ -1,8 +1,8 @@
-#include "elastimate/estimators/displacement_fit/iterative_fe.h"
+#include "elastimate/estimators/material_fit/iterative_fe.h"
 
 #include <gtest/gtest.h>
 
-#include "elastimate/estimators/displacement_fit/reduced_fe.h"
+#include "elastimate/estimators/material_fit/reduced_fe.h"
 #include "tests/scenes.h"
 
 namespace elastimate {

@@ -1,0 +1,37 @@
+#include "elastimate/estimators/material_fit/iterative_fe.h"
+
+#include "elastimate/estimators/material_fit/material_fit.h"
+
+namespace elastimate {
+
+std::string_view IterativeFe::Name() const { return "iterative-fe"; }
+
+std::string_view IterativeFe::Description() const {
+  return "maximum likelihood fit of the displacements, a finite element "
+         "solution at each step; unbiased, costs factorisations (reference)";
+}
+
+Capabilities IterativeFe::WhatItTakes() const {
+  Capabilities capabilities;
+  capabilities.needs_supports = true;
+  capabilities.takes_bounds = true;
+  capabilities.takes_losses = true;
+  capabilities.takes_refinement = true;
+  capabilities.takes_materials = true;
+  capabilities.takes_free_axes = true;
+  capabilities.takes_unknown_motion = true;
+  capabilities.takes_supports_of_cases = true;
+  return capabilities;
+}
+
+Estimate IterativeFe::DoRun(const Scene& scene,
+                            const EstimatorOptions& options) const {
+  return FitMaterials(scene, options, Descent::kFull);
+}
+
+std::unique_ptr<Preparation> IterativeFe::DoPrepare(
+    const Scene& scene, const EstimatorOptions& options) const {
+  return PrepareMaterialFit(scene, options, Descent::kFull);
+}
+
+}  // namespace elastimate
