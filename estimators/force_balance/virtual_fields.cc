@@ -210,10 +210,11 @@ void MeasureYoungsModulusOnBound(
           : balance.Minimize(EffectivePoissonRatioBounds(options), Bounds{});
   evidence.bound_excess = {
       fit.square_sum - unbounded.square_sum,
-      unbounded.square_sum / static_cast<double>(balance.NumEquations()),
+      unbounded.square_sum / static_cast<double>(balance.NumEquations()), "E",
       IsotropicElasticity::FromComplianceScale(
           unbounded.compliance_scale, unbounded.poisson_ratio, balance.Model())
-          .youngs_modulus};
+              .youngs_modulus /
+          estimate.elasticity.youngs_modulus};
   if (!residual) {
     return;
   }

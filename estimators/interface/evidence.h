@@ -36,11 +36,13 @@ struct FreeDirection {
   Eigen::Vector2d direction;
 };
 
-/// What the bound on E costs: the square sum exceeds its least by `excess`.
+/// What a bound on a modulus costs: the square sum exceeds its least by
+/// `excess`.
 struct BoundExcess {
   double excess;
-  double variance;                ///< Of each residual.
-  double youngs_modulus_without;  ///< E that fits best.
+  double variance;       ///< Of each residual.
+  std::string label;     ///< That of the modulus.
+  double ratio_without;  ///< The modulus that fits best over that on the bound.
 };
 
 /// What E or nu may be off by where one of them lies on a bound.
@@ -137,6 +139,7 @@ struct Evidence {
   ActiveBounds active;
   /// Of several materials: Poisson's ratios at the end of their range.
   std::vector<std::string> ratios_at_limit;
+  bool is_a_ratio_at_minus_one = false;
   /// Whether displacement noise biases the method.
   bool is_biased_by_noise = false;
   bool do_loads_work = true;

@@ -144,6 +144,9 @@ std::string LargestErrors(const ParameterErrors& errors,
            (parameters[i].IsStiffness() ? Percent(errors(i))
                                         : TwoDigits(errors(i)));
   };
+  if (stiffness < 0 && ratio < 0) {
+    return "the parameters open";
+  }
   if (stiffness < 0 || ratio < 0) {
     return text_of(std::max(stiffness, ratio), " open ");
   }
@@ -409,11 +412,10 @@ Finding TooFewMeasurements(Eigen::Index num_components) {
                "measure more, or give the standard deviation of the noise");
 }
 
-Finding BoundContradicted(bool is_less_asked_for) {
+Finding BoundContradicted(const std::string& modulus, bool is_less_asked_for) {
   return Error(FindingCode::kBoundContradicted,
-               std::string("the data contradict the bound on Young's modulus, "
-                           "and ask for ") +
-                   (is_less_asked_for ? "less" : "more"),
+               "the data contradict the bound on " + modulus +
+                   ", and ask for " + (is_less_asked_for ? "less" : "more"),
                "check the bound, mesh, supports and loads");
 }
 

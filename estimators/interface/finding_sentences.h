@@ -88,7 +88,7 @@ Finding DependentForces();
 Finding TooFewMeasurements(Eigen::Index num_components);
 
 // What the model does not explain.
-Finding BoundContradicted(bool is_less_asked_for);
+Finding BoundContradicted(const std::string& modulus, bool is_less_asked_for);
 /// nu that the data ask for, and its standard error.
 Finding KnownPoissonRatioContradicted(double poisson_ratio,
                                       double standard_error, Severity severity);

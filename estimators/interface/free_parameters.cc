@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/materials/stiffness_factors.h"
@@ -68,12 +69,17 @@ FreeParameters::FreeParameters(const Scene& scene,
                            scene.materials[i].known.empty() &&
                            scene.materials[i].bounds.empty());
   }
+  errors_by_bounds_.setConstant(Size(),
+                                std::numeric_limits<double>::infinity());
   for (Eigen::Index i = 0; i < Size(); ++i) {
-    bounds_.push_back(
-        IsOfFactors(i)
-            ? Bounds{}
-            : BoundsOfVariable(*Free(i).law_parameter,
-                               GivenBounds(scene, options, Free(i))));
+    const Bounds given = GivenBounds(scene, options, Free(i));
+    bounds_.push_back(IsOfFactors(i)
+                          ? Bounds{}
+                          : BoundsOfVariable(*Free(i).law_parameter, given));
+    const Bounds& bounds = bounds_.back();
+    if (given.AreGiven() && bounds.lower && bounds.upper) {
+      errors_by_bounds_(i) = (*bounds.upper - *bounds.lower) / std::sqrt(12.0);
+    }
   }
 }
 

@@ -172,10 +172,10 @@ void FinishEstimate(std::string_view estimator, const Scene& scene,
   JudgeResult(options, estimate);
   if (estimate.IsUsable()) {
     AddPoissonRatioInterval(estimate);
-    JudgeMeshError(scene, estimate);
   }
-  RemoveErrorBarsOfNone(estimate);
   DescribeOneIsotropicMaterial(scene, options, estimate);
+  JudgeMeshError(scene, estimate);
+  RemoveErrorBarsOfNone(estimate);
   JudgeSignOfPoissonRatio(estimate);
 }
 

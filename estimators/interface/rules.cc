@@ -163,17 +163,15 @@ Result NoteVirtualWork(const Evidence& evidence, const EstimatorOptions&,
 
 // A bound that the data contradict leaves much that is no noise.
 Result JudgeBoundExcess(const Evidence& evidence, const EstimatorOptions&,
-                        const Estimate& estimate) {
+                        const Estimate&) {
   if (!evidence.bound_excess) {
     return std::nullopt;
   }
-  const auto& [excess, variance, without] = *evidence.bound_excess;
-  const double change =
-      std::abs(without / estimate.elasticity.youngs_modulus - 1);
-  return change > kLimits.unusable_error &&
+  const auto& [excess, variance, label, ratio] = *evidence.bound_excess;
+  return std::abs(ratio - 1) > kLimits.unusable_error &&
                  excess > kLimits.significant_score *
                               kLimits.significant_score * variance
-             ? BoundContradicted(without < estimate.elasticity.youngs_modulus)
+             ? BoundContradicted(label, ratio < 1)
              : Result();
 }
 
@@ -335,6 +333,9 @@ Result JudgeCorrection(const Evidence& evidence, const EstimatorOptions&,
 
 Result JudgeRatiosAtLimit(const Evidence& evidence, const EstimatorOptions&,
                           const Estimate& estimate) {
+  if (evidence.is_a_ratio_at_minus_one) {
+    return PoissonRatioAtMinusOne();
+  }
   return estimate.is_model_in_doubt && !evidence.ratios_at_limit.empty()
              ? RatiosAtLimit(evidence.ratios_at_limit)
              : Result();
@@ -364,6 +365,9 @@ Result NoteSolver(const Evidence& evidence, const EstimatorOptions&,
 
 bool AreNotable(const ParameterErrors& errors, const Estimate& estimate) {
   const Eigen::MatrixXd& covariance = estimate.parameter_covariance;
+  if (errors.size() != Eigen::Index(estimate.parameters.size())) {
+    return false;
+  }
   for (Eigen::Index i = 0; i < errors.size(); ++i) {
     const ParameterEstimate& parameter = estimate.parameters[i];
     const double variance = covariance.size() != 0 ? covariance(i, i) : 0;

@@ -22,34 +22,50 @@ bool ExplainsAnything(const Eigen::VectorXd& x, DisplacementMisfit& misfit) {
          Norm(residual.head(misfit.Observed().Size())) < 1;
 }
 
-// Where the misfit of one isotropic material is least among neighbours, of some
-// nu that cover its range, each with the E that fits best there; none of other
-// scenes, and where E is known.
-std::vector<std::optional<Eigen::VectorXd>> StartsOverPoissonRatios(
-    const Scene& scene, DisplacementMisfit& misfit) {
-  std::vector<std::optional<Eigen::VectorXd>> starts;
+struct Start {
+  Eigen::VectorXd variables;
+  double cost;
+};
+
+// Some nu over the range of one isotropic material, each with the E that fits
+// best there; none of other scenes, and where E or nu is known.
+std::vector<Start> StartsOverPoissonRatios(const Scene& scene, Loss loss,
+                                           DisplacementMisfit& misfit) {
+  std::vector<Start> starts;
   const FreeParameters& free = misfit.Free();
   if (!CertifiedDescent::Takes(scene) || free.Size() < 2) {
     return starts;
   }
   const Bounds& range = free.VariableBounds()[1];
-  std::vector<Eigen::VectorXd> points;
-  std::vector<double> square_sums;
   for (const double nu : {-0.85, -0.5, 0.0, 0.3, 0.45, 0.48, 0.495, 0.499}) {
     const double within = std::clamp(nu, *range.lower, *range.upper);
-    double square_sum = 0;
-    const std::optional<double> compliance = misfit.Compliance(
-        free.All().Moduli(Eigen::Vector2d(1, within)), &square_sum);
-    if (compliance && (points.empty() || points.back()(1) != within)) {
-      points.push_back(
-          free.VariablesOf(Eigen::Vector2d(1 / *compliance, within)));
-      square_sums.push_back(square_sum);
+    if (!starts.empty() && starts.back().variables(1) == within) {
+      continue;
+    }
+    const auto fit =
+        misfit.FitScale(free.All().Moduli(Eigen::Vector2d(1, within)), loss);
+    if (fit) {
+      starts.push_back(
+          {free.VariablesOf(Eigen::Vector2d(1 / fit->compliance, within)),
+           fit->cost});
     }
   }
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!(i > 0 && square_sums[i - 1] < square_sums[i]) &&
-        !(i + 1 < points.size() && square_sums[i + 1] < square_sums[i])) {
-      starts.emplace_back(points[i]);
+  return starts;
+}
+
+// From where descents lead to every minimum that shows.
+std::vector<std::optional<Eigen::VectorXd>> StartsOf(
+    const Scene& scene, DisplacementMisfit& misfit) {
+  const std::vector<Start> all =
+      StartsOverPoissonRatios(scene, Loss::kNone, misfit);
+  if (all.empty()) {
+    return {TypicalStart(misfit)};
+  }
+  std::vector<std::optional<Eigen::VectorXd>> starts;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!(i > 0 && all[i - 1].cost < all[i].cost) &&
+        !(i + 1 < all.size() && all[i + 1].cost < all[i].cost)) {
+      starts.emplace_back(all[i].variables);
     }
   }
   return starts;
@@ -61,14 +77,25 @@ std::optional<Eigen::VectorXd> TypicalStart(DisplacementMisfit& misfit) {
   const FreeParameters& free = misfit.Free();
   const std::optional<double> known = free.All().KnownModulus();
   const double scale = known.value_or(1);
-  const std::optional<double> compliance =
-      misfit.Compliance(free.All().Moduli(free.All().Typical(scale)));
-  if (compliance) {
-    return free.VariablesOf(free.All().Typical(scale / *compliance));
+  const auto fit = misfit.FitScale(free.All().Moduli(free.All().Typical(scale)),
+                                   Loss::kNone);
+  if (fit) {
+    return free.VariablesOf(free.All().Typical(scale / fit->compliance));
   }
   return known ? std::optional<Eigen::VectorXd>(
                      free.VariablesOf(free.All().Typical(*known)))
                : std::nullopt;
+}
+
+std::optional<Eigen::VectorXd> RobustStart(const Scene& scene, Loss loss,
+                                           DisplacementMisfit& misfit) {
+  const std::vector<Start> starts =
+      StartsOverPoissonRatios(scene, loss, misfit);
+  const auto best = std::min_element(
+      starts.begin(), starts.end(),
+      [](const Start& a, const Start& b) { return a.cost < b.cost; });
+  return best == starts.end() ? std::nullopt
+                              : std::optional<Eigen::VectorXd>(best->variables);
 }
 
 std::optional<Eigen::VectorXd> VirtualFieldsStart(
@@ -107,11 +134,7 @@ std::optional<BoundedMinimum> BestMinimum(const Scene& scene,
                                           const EstimatorOptions& options,
                                           DisplacementMisfit& misfit,
                                           Estimate& estimate) {
-  std::vector<std::optional<Eigen::VectorXd>> starts =
-      StartsOverPoissonRatios(scene, misfit);
-  if (starts.empty()) {
-    starts.push_back(TypicalStart(misfit));
-  }
+  std::vector<std::optional<Eigen::VectorXd>> starts = StartsOf(scene, misfit);
   starts.push_back(VirtualFieldsStart(scene, options, misfit.Free(), estimate));
   std::optional<BoundedMinimum> best;
   for (const std::optional<Eigen::VectorXd>& start : starts) {

@@ -21,6 +21,12 @@ namespace elastimate {
 /// the scale 1, or of the known modulus, a factorisation.
 std::optional<Eigen::VectorXd> TypicalStart(DisplacementMisfit& misfit);
 
+/// The best start with a loss where one isotropic material has several nu to
+/// choose from: that of the least absolute deviations, of which outliers, which
+/// could turn a least-squares fit around, say little.  Empty for others.
+std::optional<Eigen::VectorXd> RobustStart(const Scene& scene, Loss loss,
+                                           DisplacementMisfit& misfit);
+
 /// The variables that virtual-fields comes to; empty where it does not take the
 /// scene, or they are not physical.  Adds its work to the estimate.
 std::optional<Eigen::VectorXd> VirtualFieldsStart(

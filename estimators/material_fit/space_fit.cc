@@ -101,6 +101,14 @@ Work SpaceFit::WorkDone() {
 // Empty where displacements oppose the loads.
 std::optional<BoundedMinimum> SpaceFit::FindMinimum(
     Descent descent, const std::optional<Eigen::VectorXd>& start) {
+  if (options_.loss != Loss::kNone && !start) {
+    if (const std::optional<Eigen::VectorXd> robust =
+            RobustStart(scene_, options_.loss, misfit_)) {
+      return BoundedMinimum{*robust, 0,
+                            std::vector<Side>(robust->size(), Side::kNone),
+                            End::kDone, ""};
+    }
+  }
   if (descent == Descent::kFull) {
     return start ? DescendFrom(options_, *start, Distance::kNear, misfit_)
                  : BestMinimum(scene_, options_, misfit_, fit_.estimate);
@@ -188,8 +196,8 @@ void SpaceFit::Describe(const SpaceChange* change) {
   EnterParameters(scene_, misfit_.Free(),
                   misfit_.Free().ParametersAt(variables), estimate);
   NoteVariablesOnBounds(misfit_.Free(), *fit_.minimum, evidence, estimate);
-  fit_.errors =
-      DescribeMinimum(scene_, variables, change, misfit_, evidence, estimate);
+  fit_.errors = DescribeMinimum(scene_, *fit_.minimum, change, misfit_,
+                                evidence, estimate);
   Eigen::VectorXd rows;
   if (misfit_.Evaluate(variables, &rows, nullptr)) {
     DescribeMaterials(scene_, fit_.errors, misfit_, estimate);

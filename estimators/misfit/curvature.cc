@@ -56,23 +56,29 @@ Eigen::VectorXd Moved(const FreeParameters& free, const Eigen::VectorXd& x,
   return moved;
 }
 
-// The least square sum near rows r + S d where a^T d = 0.
-double LeastSquareSum(const Eigen::VectorXd& rows,
-                      const Eigen::MatrixXd& sensitivities,
-                      const Eigen::MatrixXd& information,
-                      const Eigen::VectorXd& a) {
+// The least square sum near rows r + S d where a^T d = 0, and d there.
+struct Least {
+  double square_sum;
+  Eigen::VectorXd change;
+};
+
+Least LeastSquareSum(const Eigen::VectorXd& rows,
+                     const Eigen::MatrixXd& sensitivities,
+                     const Eigen::MatrixXd& information,
+                     const Eigen::VectorXd& a) {
   const double square_sum = SquaredNorm(rows);
   if (a.size() == 1) {
-    return square_sum;
+    return {square_sum, Eigen::VectorXd::Zero(1)};
   }
   const Eigen::MatrixXd others =
       DecomposeSingularValues(a.transpose()).v.rightCols(a.size() - 1);
   const Eigen::VectorXd gradient =
       others.transpose() * InnerProducts(sensitivities, rows);
+  const Eigen::VectorXd step =
+      -Inverse(others.transpose() * information * others) * gradient;
   // No more than one step is trusted to gain.
-  const double gain = gradient.dot(
-      Inverse(others.transpose() * information * others) * gradient);
-  return square_sum - std::clamp(gain, 0.0, square_sum);
+  const double gain = -gradient.dot(step);
+  return {square_sum - std::clamp(gain, 0.0, square_sum), others * step};
 }
 
 Eigen::MatrixXd InformationOf(const Eigen::MatrixXd& sensitivities,
@@ -90,25 +96,31 @@ struct Combination {
   double variance;  ///< a^T (S^T S)^-1 a, where the noise is 1.
 };
 
-// The rise of the square sum where the combination is moved, over that of a
-// quadratic misfit; empty where there is none.
-std::optional<double> RiseAt(const Eigen::VectorXd& moved,
-                             const Combination& combination,
-                             const Eigen::VectorXd& beforehand,
-                             DisplacementMisfit& misfit) {
+// What is found where the combination is moved.
+struct Look {
+  double rise;  ///< Of the square sum, over that of a quadratic misfit.
+  Eigen::VectorXd bend;  ///< Of the others, off the straight line.
+};
+
+// Empty where there is no model.
+std::optional<Look> LookAt(const Eigen::VectorXd& moved,
+                           const Combination& combination,
+                           const Eigen::VectorXd& beforehand,
+                           DisplacementMisfit& misfit) {
   const double way = combination.a.dot(moved - combination.x);
   Eigen::VectorXd rows;
   Eigen::MatrixXd sensitivities;
   if (way == 0 || !misfit.Evaluate(moved, &rows, &sensitivities)) {
     return std::nullopt;
   }
-  const double rise =
+  const Least least =
       LeastSquareSum(rows, sensitivities,
-                     InformationOf(sensitivities, beforehand), combination.a) -
-      combination.square_sum;
+                     InformationOf(sensitivities, beforehand), combination.a);
+  const double rise = least.square_sum - combination.square_sum;
   const double expected = way * way / combination.variance;
   return std::isfinite(rise) && expected > 0
-             ? std::optional<double>(std::max(rise / expected, kLeastRise))
+             ? std::optional<Look>(
+                   {std::max(rise / expected, kLeastRise), least.change})
              : std::nullopt;
 }
 
@@ -145,13 +157,19 @@ Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,
     const Combination combination = {x, square_sum, a, a.dot(inverse * a)};
     const Eigen::VectorXd move = kStandardErrors / error * (covariance * a);
     double rise = 1;
+    Eigen::VectorXd bend = Eigen::VectorXd::Zero(x.size());
     for (const double side : {-1.0, 1.0}) {
       const Eigen::VectorXd moved = Moved(misfit.Free(), x, side * move);
-      rise = std::min(
-          rise, RiseAt(moved, combination, beforehand, misfit).value_or(1));
+      const std::optional<Look> look =
+          LookAt(moved, combination, beforehand, misfit);
+      if (look) {
+        rise = std::min(rise, look->rise);
+        bend = bend.cwiseAbs().cwiseMax(look->bend.cwiseAbs());
+      }
     }
-    added += (1 / rise - 1) / (kStandardErrors * kStandardErrors) *
-             (move * move.transpose());
+    const double square = kStandardErrors * kStandardErrors;
+    added += (1 / rise - 1) / square * (move * move.transpose());
+    added += Eigen::MatrixXd(bend.cwiseAbs2().asDiagonal()) / square;
   }
   return added;
 }

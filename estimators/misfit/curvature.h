@@ -17,7 +17,9 @@ namespace elastimate {
 /// m = +- 2 C a / sqrt(a^T C a), and the square sum of the residual is taken
 /// there at the least over all other combinations, by a Gauss-Newton step.
 /// Where it is only a part p of what a quadratic misfit would rise to, the
-/// error is 1 / sqrt(p) times as large: (1 / p - 1) m m^T / 4 is added.
+/// error is 1 / sqrt(p) times as large: (1 / p - 1) m m^T / 4 is added.  Where
+/// the others are off the straight line by b there, as E of a bent plate, which
+/// does not change with nu to first order, diag(b^2) / 4 is added.
 ///
 /// Nothing where all errors are small, which costs nothing; else two
 /// evaluations of the misfit, a factorisation each, for each combination of at

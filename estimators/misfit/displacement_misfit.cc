@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "elastimate/core/algebra/node_sums.h"
+#include "elastimate/estimators/interface/statistics.h"
 
 namespace elastimate {
 namespace {
@@ -13,10 +14,11 @@ Eigen::MatrixXd OfVariable(const Eigen::MatrixXd& of_cases, Eigen::Index i,
   return of_cases(Eigen::all, Eigen::seq(i, Eigen::last, num_variables));
 }
 
-std::optional<double> PositiveRatio(double numerator, double denominator) {
-  const double ratio = numerator / denominator;
-  return ratio > 0 && std::isfinite(ratio) ? std::optional<double>(ratio)
-                                           : std::nullopt;
+std::optional<DisplacementMisfit::ScaleFit> IfPositive(
+    const DisplacementMisfit::ScaleFit& fit) {
+  return fit.compliance > 0 && std::isfinite(fit.compliance)
+             ? std::optional<DisplacementMisfit::ScaleFit>(fit)
+             : std::nullopt;
 }
 
 // Of iterative solutions, relative in the energy norm.  What finer elements
@@ -98,8 +100,8 @@ bool DisplacementMisfit::Evaluate(const Eigen::VectorXd& x,
   return residual->allFinite();
 }
 
-std::optional<double> DisplacementMisfit::Compliance(
-    const Eigen::VectorXd& unit_moduli, double* square_sum) {
+std::optional<DisplacementMisfit::ScaleFit> DisplacementMisfit::FitScale(
+    const Eigen::VectorXd& unit_moduli, Loss loss) {
   x_.resize(0);
   placed_.reset();
   if (!equilibrium_.Solve(unit_moduli)) {
@@ -112,14 +114,15 @@ std::optional<double> DisplacementMisfit::Compliance(
   }
   const Eigen::VectorXd by_loads = WithoutMotion(loaded);
   if (SquaredNorm(by_loads) > 0) {
-    Eigen::VectorXd moved = WithoutMotion(held);
-    moved.head(observed_.Size()) -= observed_.Measured();
-    const std::optional<double> compliance =
-        PositiveRatio(-InnerProduct(by_loads, moved), SquaredNorm(by_loads));
-    if (compliance && square_sum != nullptr) {
-      *square_sum = SquaredNorm(*compliance * by_loads + moved);
-    }
-    return compliance;
+    Eigen::VectorXd rest = -WithoutMotion(held);
+    rest.head(observed_.Size()) += observed_.Measured();
+    const double compliance =
+        loss == Loss::kNone
+            ? InnerProduct(by_loads, rest) / SquaredNorm(by_loads)
+            : LeastAbsoluteDeviations(by_loads, rest);
+    const Eigen::VectorXd left = rest - compliance * by_loads;
+    return IfPositive({compliance, loss == Loss::kNone ? SquaredNorm(left)
+                                                       : left.lpNorm<1>()});
   }
   if (!motion_) {
     return std::nullopt;
@@ -128,7 +131,7 @@ std::optional<double> DisplacementMisfit::Compliance(
   const Eigen::VectorXd of_unit =
       motion_->Resultants(equilibrium_.SupportForces());
   const Eigen::VectorXd measured = motion_->MeasuredResultants();
-  return PositiveRatio(of_unit.squaredNorm(), of_unit.dot(measured));
+  return IfPositive({of_unit.squaredNorm() / of_unit.dot(measured), 0});
 }
 
 bool DisplacementMisfit::SolveAt(const Eigen::VectorXd& x) {

@@ -100,11 +100,16 @@ class DisplacementMisfit {
     return motion_ ? motion_->FittedDisplacement() : Displacement();
   }
 
-  /// 1 / E, or another unit of the moduli, that explains displacements or
-  /// resultants best where the moduli are 1; empty when they oppose the loads.
-  /// Of what it leaves of displacements, `square_sum` is the square sum.
-  std::optional<double> Compliance(const Eigen::VectorXd& unit_moduli,
-                                   double* square_sum = nullptr);
+  /// A factor on the displacements, and what it leaves.
+  struct ScaleFit {
+    double compliance;  ///< 1 / E, or another unit of the moduli.
+    double cost;
+  };
+  /// What explains displacements or resultants best where the moduli are 1, in
+  /// the sum of squares or, with a loss, that of absolute deviations; empty
+  /// when they oppose the loads.  Of resultants alone the cost is zero.
+  std::optional<ScaleFit> FitScale(const Eigen::VectorXd& unit_moduli,
+                                   Loss loss);
 
  private:
   struct Placed {

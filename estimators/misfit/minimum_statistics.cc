@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "elastimate/core/algebra/dense_algebra.h"
@@ -109,19 +110,118 @@ double ExcessOfResultants(const Eigen::VectorXd& rows,
 constexpr double kErrorsBeforehand = 30;
 constexpr double kUnknownErrors = 15;
 
-// What is known beforehand, which matters for no variable that is determined,
-// beside S^T S in rows of this variance.
+// What is known beforehand, which without bounds matters for no variable that
+// is determined, beside S^T S in rows of this variance.
 Eigen::VectorXd KnownBeforehand(const FreeParameters& free, double variance) {
-  return variance /
-         (kErrorsBeforehand * LargestErrorsOfVariables(free).array()).square();
+  return variance / (kErrorsBeforehand * LargestErrorsOfVariables(free))
+                        .cwiseMin(free.ErrorsByBounds())
+                        .array()
+                        .square();
 }
 
-Eigen::MatrixXd InformationOf(const FreeParameters& free,
-                              const Eigen::MatrixXd& sensitivities,
-                              double variance) {
-  Eigen::MatrixXd information = InnerProducts(sensitivities, sensitivities);
-  information.diagonal() += KnownBeforehand(free, variance);
+// What rows say of the variables, with what is known beforehand.
+struct Information {
+  /// The inverse of S^T S; without the combinations below.
+  Eigen::MatrixXd inverse;
+  /// Combinations that the rows say nothing of, up to rounding, as columns, and
+  /// their covariance by what is known beforehand.
+  Eigen::MatrixXd free_combinations;
+  Eigen::MatrixXd of_free_combinations;
+};
+
+Information InformationOf(const FreeParameters& free,
+                          const Eigen::MatrixXd& sensitivities,
+                          double variance) {
+  // The sine of the angle between columns below which rounding decides, which
+  // comes from the square root of a difference.
+  constexpr double kCollinear = 1e-6;
+  constexpr double kSmallest = std::numeric_limits<double>::min();
+  const Eigen::Index n = free.Size();
+  const Eigen::VectorXd scale =
+      sensitivities.colwise().norm().cwiseMax(kSmallest).cwiseInverse();
+  const Eigen::MatrixXd gram = InnerProducts(sensitivities, sensitivities);
+  const SymmetricEigenDecomposition modes =
+      DecomposeSymmetric(scale.asDiagonal() * gram * scale.asDiagonal());
+  const Eigen::Index num_free =
+      (modes.values.array() < kCollinear * kCollinear).count();
+  Information information;
+  information.free_combinations =
+      scale.asDiagonal() * modes.vectors.leftCols(num_free);
+  information.free_combinations.colwise().normalize();
+  information.of_free_combinations.setZero(n, n);
+  if (num_free == 0) {
+    Eigen::MatrixXd known = gram;
+    known.diagonal() += KnownBeforehand(free, variance);
+    information.inverse = Inverse(known);
+    return information;
+  }
+  const Eigen::MatrixXd determined =
+      scale.asDiagonal() * modes.vectors.rightCols(n - num_free);
+  information.inverse =
+      determined * modes.values.tail(n - num_free).cwiseInverse().asDiagonal() *
+      determined.transpose();
+  const Eigen::MatrixXd& combinations = information.free_combinations;
+  information.of_free_combinations =
+      combinations *
+      Inverse(combinations.transpose() * KnownBeforehand(free, 1).asDiagonal() *
+              combinations) *
+      combinations.transpose();
   return information;
+}
+
+// Notes what the rows of one isotropic material leave free, where what is known
+// beforehand does not determine it.
+void NoteFreeDirection(const FreeParameters& free,
+                       const Information& information,
+                       const Eigen::VectorXd& variables, Evidence& evidence) {
+  const Eigen::MatrixXd& free_combinations = information.free_combinations;
+  const Eigen::VectorXd parameters = free.ParametersAt(variables);
+  if (free_combinations.cols() != 1 || free.Size() != 2 ||
+      parameters.size() != 2 ||
+      !(information.of_free_combinations.diagonal().cwiseSqrt().array() >
+        LargestErrorsOfVariables(free).array())
+           .any()) {
+    return;
+  }
+  evidence.free_direction = {{parameters(0), parameters(1)},
+                             free_combinations.col(0)};
+}
+
+// Notes by how much a bound on a stiffness is contradicted: the rows r + S d
+// are least without it.
+void NoteBoundExcess(const FreeParameters& free, const BoundedMinimum& minimum,
+                     const Eigen::VectorXd& rows,
+                     const Eigen::MatrixXd& sensitivities,
+                     const Eigen::MatrixXd& inverse, const Estimate& estimate,
+                     Evidence& evidence) {
+  const Eigen::VectorXd change = -inverse * InnerProducts(sensitivities, rows);
+  const double least = SquaredNorm(rows + sensitivities * change);
+  double largest = 0;
+  for (Eigen::Index i = 0; i < free.Size(); ++i) {
+    const ParameterEstimate& parameter =
+        estimate.parameters[free.All().Free()[i]];
+    if (minimum.on_bound[i] != Side::kNone && parameter.is_modulus &&
+        std::abs(change(i)) > largest) {
+      largest = std::abs(change(i));
+      evidence.bound_excess = {SquaredNorm(rows) - least,
+                               least / static_cast<double>(rows.size()),
+                               parameter.Label(), std::exp(change(i))};
+    }
+  }
+}
+
+// The angle between the sensitivities to ln E and to nu.
+void EnterIdentifiabilityAngle(const FreeParameters& free,
+                               const Eigen::MatrixXd& of_rows,
+                               Estimate& estimate) {
+  if (free.Size() == 2 && estimate.parameters.size() == 2) {
+    const double cosine =
+        std::abs(InnerProduct(of_rows.col(0), of_rows.col(1)));
+    const double square =
+        SquaredNorm(of_rows.col(0)) * SquaredNorm(of_rows.col(1));
+    estimate.identifiability_angle =
+        std::atan2(std::sqrt(std::max(0.0, square - cosine * cosine)), cosine);
+  }
 }
 
 // Of one isotropic material, in which either parameter may be known.
@@ -271,10 +371,9 @@ void AddCurvature(const Eigen::VectorXd& variables,
   }
 }
 
-// The variables of a minimum, the rows of the misfit there, and their
-// derivatives S.
+// A minimum, the rows of the misfit there, and their derivatives S.
 struct Minimum {
-  Eigen::VectorXd variables;
+  const BoundedMinimum& found;
   Eigen::VectorXd rows;
   Eigen::MatrixXd sensitivities;
 };
@@ -315,8 +414,8 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
   const Eigen::VectorXd& rows = minimum.rows;
   Eigen::MatrixXd sensitivities = minimum.sensitivities;
   MinimumErrors errors;
-  errors.variables = minimum.variables;
-  errors.corrected = minimum.variables;
+  errors.variables = minimum.found.variables;
+  errors.corrected = errors.variables;
   errors.residual = rows.head(observed.Size());
   estimate.displacement_residual =
       Norm(errors.residual) / Norm(observed.Measured());
@@ -331,8 +430,13 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
   WeighResultants(misfit, variance.variance, sensitivities);
   evidence.is_explained_by_given_noise = variance.is_explained_by_given_noise;
   const Eigen::MatrixXd of_rows = sensitivities.topRows(observed.Size());
-  const Eigen::MatrixXd inverse =
-      Inverse(InformationOf(free, sensitivities, variance.variance));
+  const Information information =
+      InformationOf(free, sensitivities, variance.variance);
+  const Eigen::MatrixXd& inverse = information.inverse;
+  NoteFreeDirection(free, information, errors.variables, evidence);
+  NoteBoundExcess(free, minimum.found, rows, sensitivities, inverse, estimate,
+                  evidence);
+  EnterIdentifiabilityAngle(free, of_rows, estimate);
   const SmoothSquareSum smooth = MeasureSmoothPart(
       misfit.Neighbours(), observed, errors.residual, estimate);
   const Eigen::MatrixXd by_correlation = AddedByCorrelation(
@@ -342,7 +446,8 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
   const Eigen::MatrixXd by_model =
       variance.variance * (excess * by_correlation + (excess - 1) * inverse);
   errors.variance = variance.variance;
-  errors.of_noise = variance.variance * inverse;
+  errors.of_noise =
+      variance.variance * inverse + information.of_free_combinations;
   errors.total = errors.of_noise + by_model;
   if (change != nullptr) {
     AddMeshError(scene, *change, sensitivities, inverse, misfit, evidence,
@@ -355,8 +460,8 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
   AddOutliers(free, errors.variables, observed, errors.residual, sensitivities,
               KnownBeforehand(free, variance.variance), errors.total, evidence,
               estimate);
-  AddAxisRotation(scene, minimum.variables, rows, sensitivities, inverse,
-                  misfit, errors, evidence, estimate);
+  AddAxisRotation(scene, errors.variables, rows, sensitivities, inverse, misfit,
+                  errors, evidence, estimate);
   AddCurvature(errors.variables, sensitivities, misfit, errors);
   if (!by_correlation.isZero(0)) {
     evidence.smooth_residual_error =
@@ -368,13 +473,13 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
 
 }  // namespace
 
-MinimumErrors DescribeMinimum(const Scene& scene,
-                              const Eigen::VectorXd& variables,
+MinimumErrors DescribeMinimum(const Scene& scene, const BoundedMinimum& found,
                               const SpaceChange* change,
                               DisplacementMisfit& misfit, Evidence& evidence,
                               Estimate& estimate) {
-  Minimum minimum = {variables, {}, {}};
-  if (!misfit.Evaluate(variables, &minimum.rows, &minimum.sensitivities)) {
+  Minimum minimum = {found, {}, {}};
+  if (!misfit.Evaluate(found.variables, &minimum.rows,
+                       &minimum.sensitivities)) {
     evidence.end = End::kSingularStiffness;
     return {};
   }

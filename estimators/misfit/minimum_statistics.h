@@ -9,6 +9,7 @@
 #include "elastimate/estimators/interface/evidence.h"
 #include "elastimate/estimators/misfit/displacement_misfit.h"
 #include "elastimate/estimators/misfit/mesh_error.h"
+#include "elastimate/estimators/statistics/bounded_variables.h"
 
 namespace elastimate {
 
@@ -41,6 +42,8 @@ struct MinimumErrors {
 ///   + what the first two understate far from the minimum
 ///     (CovarianceOfCurvature).
 ///
+/// Bounds that are given are known beforehand (FreeParameters::ErrorsByBounds);
+/// that a minimum lies on one is not, so that its errors are those without it.
 /// Variables that the data say nothing of have no covariance.
 ///
 /// An evaluation, and O(n^2) for n points in a load case (CorrelateResiduals).
@@ -48,8 +51,7 @@ struct MinimumErrors {
 /// `change` to the elements of the misfit from coarser ones corrects the
 /// parameters that are entered for the mesh error, and adds its covariance to
 /// theirs (MeshErrorOf); null where nothing is known of it.
-MinimumErrors DescribeMinimum(const Scene& scene,
-                              const Eigen::VectorXd& variables,
+MinimumErrors DescribeMinimum(const Scene& scene, const BoundedMinimum& found,
                               const SpaceChange* change,
                               DisplacementMisfit& misfit, Evidence& evidence,
                               Estimate& estimate);

@@ -245,9 +245,8 @@ Eigen::VectorXd TypicalParameters(const Scene& scene, SolverKind solver) {
   EstimatorOptions options;
   options.solver = solver;
   DisplacementMisfit misfit(scene, options);
-  const std::optional<double> compliance =
-      misfit.Compliance(parameters.Moduli(typical));
-  return compliance ? parameters.Typical(1 / *compliance) : typical;
+  const auto fit = misfit.FitScale(parameters.Moduli(typical), Loss::kNone);
+  return fit ? parameters.Typical(1 / fit->compliance) : typical;
 }
 
 std::string CombinationInWords(const Eigen::VectorXd& combination,

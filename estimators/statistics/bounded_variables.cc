@@ -107,6 +107,7 @@ void NoteVariablesOnBounds(const FreeParameters& free,
           (parameter.value < kSmallestPoissonRatio + kNearLimit ||
            parameter.value > kLargestPoissonRatio - kNearLimit)) {
         evidence.ratios_at_limit.push_back(parameter.Label());
+        evidence.is_a_ratio_at_minus_one |= minimum.on_bound[i] == Side::kLower;
       }
     }
   }

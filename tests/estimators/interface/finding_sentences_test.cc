@@ -110,7 +110,7 @@ std::vector<Finding> OfResiduals() {
                           {true, numbers, numbers, numbers}, 0),
           TrendOverFrames("E of region 1000", true,
                           {false, numbers, numbers, numbers}, 0),
-          BoundContradicted(true),
+          BoundContradicted("E of regions 1, 2 and 17 more", true),
           KnownPoissonRatioContradicted(kLong, kLong, Severity::kWarning),
           LargeCorrection(kLong),
           LoadsOutOfBalance(kLong, Severity::kError),

@@ -155,11 +155,11 @@ TEST(Judge, WarnsBeforeItRefuses) {
 
 TEST(Judge, ABoundIsContradictedWhereItMattersAndIsSignificant) {
   Evidence evidence;
-  evidence.bound_excess = {26, 1, 120};
+  evidence.bound_excess = {26, 1, "E", 1.2};
   EXPECT_TRUE(Judged(evidence).Has(FindingCode::kBoundContradicted));
-  evidence.bound_excess = {24, 1, 120};
+  evidence.bound_excess = {24, 1, "E", 1.2};
   EXPECT_TRUE(Judged(evidence).IsUsable());
-  evidence.bound_excess = {26, 1, 105};
+  evidence.bound_excess = {26, 1, "E", 1.05};
   EXPECT_TRUE(Judged(evidence).IsUsable());
 }
 
