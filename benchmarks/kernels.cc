@@ -274,8 +274,8 @@ class Cube {
   Eigen::MatrixXd eight_;
   StiffnessAssembly assembly_;
   Eigen::VectorXd stiffness_;
-  std::unique_ptr<Estimator> closed_form_;
-  std::vector<std::unique_ptr<Estimator>> estimators_;
+  std::shared_ptr<const Estimator> closed_form_;
+  std::vector<std::shared_ptr<const Estimator>> estimators_;
   StiffnessProducts products_;
   StiffnessProducts one_products_;
   StiffnessProducts eight_products_;
