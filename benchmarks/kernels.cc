@@ -181,7 +181,7 @@ class Cube {
     AddAssembly(kernels);
     kernels.push_back(
         {"closed-form", "natural", 1, 1, {kUnknown, kUnknown}, [&] {
-           closed_form_->Run(scene_, {});
+           static_cast<void>(closed_form_->Run(scene_, {}));
          }});
     AddFurtherMeasurements(kernels);
     return kernels;
@@ -207,7 +207,8 @@ class Cube {
                          1,
                          {kUnknown, kUnknown},
                          [this, prepared] {
-                           prepared->Run({scene_.load_cases[0].displacement});
+                           static_cast<void>(prepared->Run(
+                               {scene_.load_cases[0].displacement}));
                          }});
     }
   }

@@ -92,12 +92,11 @@ Scene MakeScene() {
   const int connectivity[] = {0, 1, 2, 3, 4, 5, 6, 7};
   Scene scene = elastimate::UnsupportedScene(elastimate::MakeMesh(
       ElementKind::kHex8, coordinates, 8, connectivity, 1));
-  elastimate::HoldInBox(
-      Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.1, 0.1, 0), scene);
+  elastimate::HoldInBox(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.1, 0.1, 0),
+                        scene);
   elastimate::LoadCase load_case;
   load_case.loads = {elastimate::TractionInBox(
-      scene.mesh,
-      Eigen::Vector3d(0, 0, 0.2), Eigen::Vector3d(0.1, 0.1, 0.2),
+      scene.mesh, Eigen::Vector3d(0, 0, 0.2), Eigen::Vector3d(0.1, 0.1, 0.2),
       Eigen::Vector3d(0, 0, -100))};
   scene.load_cases = {load_case};
   return scene;

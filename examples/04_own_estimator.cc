@@ -79,12 +79,11 @@ Scene MakeScene() {
   const int connectivity[] = {0, 1, 4, 3, 1, 2, 5, 4};
   Scene scene = elastimate::UnsupportedScene(elastimate::MakeMesh(
       elastimate::ElementKind::kQuad4, coordinates, 6, connectivity, 2));
-  elastimate::HoldInBox(Eigen::Vector2d(0, 0), Eigen::Vector2d(0, 1),
-                        scene);
+  elastimate::HoldInBox(Eigen::Vector2d(0, 0), Eigen::Vector2d(0, 1), scene);
   elastimate::LoadCase load_case;
-  load_case.loads = {elastimate::TractionInBox(
-      scene.mesh, Eigen::Vector2d(2, 0), Eigen::Vector2d(2, 1),
-      Eigen::Vector2d(1, 0))};
+  load_case.loads = {
+      elastimate::TractionInBox(scene.mesh, Eigen::Vector2d(2, 0),
+                                Eigen::Vector2d(2, 1), Eigen::Vector2d(1, 0))};
   scene.load_cases = {load_case};
   return scene;
 }
