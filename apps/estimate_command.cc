@@ -305,7 +305,7 @@ int RunEstimate(const std::vector<std::string>& arguments) {
     throw std::invalid_argument(
         "estimate needs a scene file (.vtu, .vtk, .msh or .json)");
   }
-  const std::unique_ptr<Estimator> estimator =
+  const std::shared_ptr<const Estimator> estimator =
       MakeEstimator(Printable(FLAGS_estimator));
   EstimatorOptions options = CheckFlags(arguments);
 

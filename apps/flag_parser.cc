@@ -26,8 +26,13 @@ std::string TypeOf(const std::string& flag) {
 }
 
 bool Takes(const Command& command, const std::string& flag) {
-  return std::find(command.flags.begin(), command.flags.end(), flag) !=
-         command.flags.end();
+  return std::any_of(
+      command.groups.begin(), command.groups.end(),
+      [&flag](const FlagGroup& group) {
+        return std::any_of(
+            group.flags.begin(), group.flags.end(),
+            [&flag](const CommandFlag& taken) { return taken.name == flag; });
+      });
 }
 
 // As people write it: gflags has all digits of 0.1.
@@ -51,7 +56,8 @@ void CheckIsTaken(const Program& program, const Command& command,
                   [&flag](const Command& other) { return Takes(other, flag); });
   throw std::invalid_argument(
       (elsewhere ? command.name + " takes no flag --" : "unknown flag --") +
-      Printable(flag) + "; see " + program.name + " --help");
+      Printable(flag) + "; see " + program.name + " " + command.name +
+      " --help");
 }
 
 // In --flag VALUE a flag that follows is not the value, but -1 and - are.
@@ -93,8 +99,31 @@ void CheckIsTheSame(const std::string& flag, const std::string& first,
 
 std::string Usage(const Program& program, const Command& command) {
   return program.name + " " + command.name +
-         (command.arguments.empty() ? "" : " " + command.arguments) + "\n    " +
-         command.summary + "\n";
+         (command.arguments.empty() ? "" : " " + command.arguments);
+}
+
+std::size_t WidthOfFlags(const Command& command) {
+  std::size_t width = 0;
+  for (const FlagGroup& group : command.groups) {
+    for (const CommandFlag& flag : group.flags) {
+      width = std::max(width, flag.name.size());
+    }
+  }
+  return width;
+}
+
+std::string FlagHelp(const CommandFlag& flag, std::size_t width) {
+  gflags::CommandLineFlagInfo info;
+  gflags::GetCommandLineFlagInfo(flag.name.c_str(), &info);
+  // A default of 0 stands for "not given", except where it means itself.
+  const bool shows_default = !info.default_value.empty() &&
+                             info.default_value != "0" && info.type != "bool";
+  return "  --" + flag.name + std::string(width - flag.name.size(), ' ') +
+         "  " + (flag.meaning.empty() ? info.description : flag.meaning) +
+         (shows_default
+              ? " (default " + ValueText(info, info.default_value) + ")"
+              : "") +
+         "\n";
 }
 
 }  // namespace
@@ -165,34 +194,29 @@ std::string AsGiven(const std::string& flag) {
 }
 
 std::string CommandsHelp(const Program& program) {
+  constexpr std::size_t kWidth = 32;
   std::string help;
   for (const Command& command : program.commands) {
-    help += Usage(program, command);
+    const std::string usage = Usage(program, command);
+    help += "  " + usage +
+            (usage.size() < kWidth ? std::string(kWidth - usage.size(), ' ')
+                                   : "\n" + std::string(kWidth + 2, ' ')) +
+            command.summary + "\n";
   }
   return help;
 }
 
 std::string CommandHelp(const Program& program, const Command& command) {
-  std::size_t width = 0;
-  for (const std::string& flag : command.flags) {
-    width = std::max(width, flag.size());
+  std::string help =
+      Usage(program, command) + "\n    " + command.summary + "\n";
+  const std::size_t width = WidthOfFlags(command);
+  for (const FlagGroup& group : command.groups) {
+    help += "\n" + (group.title.empty() ? "" : group.title + ":\n");
+    for (const CommandFlag& flag : group.flags) {
+      help += FlagHelp(flag, width);
+    }
   }
-  std::ostringstream help;
-  help << Usage(program, command) << (command.flags.empty() ? "" : "\n");
-  for (const std::string& flag : command.flags) {
-    gflags::CommandLineFlagInfo info;
-    gflags::GetCommandLineFlagInfo(flag.c_str(), &info);
-    // A default of 0 stands for "not given", except where it means itself.
-    const bool shows_default = !info.default_value.empty() &&
-                               info.default_value != "0" && info.type != "bool";
-    help << "  --" << std::left << std::setw(int(width)) << flag << "  "
-         << info.description
-         << (shows_default
-                 ? " (default " + ValueText(info, info.default_value) + ")"
-                 : "")
-         << "\n";
-  }
-  return help.str();
+  return help;
 }
 
 const Command* CommandToExplain(const Program& program,

@@ -6,12 +6,26 @@
 
 namespace elastimate {
 
+/// A flag that a command takes.
+struct CommandFlag {
+  std::string name;
+  /// What it means to the command.  Where this is empty, the help has the
+  /// description that the flag is defined with.
+  std::string meaning = {};
+};
+
+/// Flags that stand together in the help.
+struct FlagGroup {
+  std::string title;
+  std::vector<CommandFlag> flags;
+};
+
 /// A command, the flags it takes, and what it is called with.
 struct Command {
   std::string name;
   std::string arguments;  ///< For people, such as "SCENE...".
   std::string summary;
-  std::vector<std::string> flags;
+  std::vector<FlagGroup> groups;
 };
 
 /// A program and all its commands.
@@ -38,10 +52,10 @@ bool IsGiven(const std::string& flag);
 /// The flag with its value, such as "--nu=0.3".
 std::string AsGiven(const std::string& flag);
 
-/// Usage of all commands, without their flags.
+/// A list of all commands, without their flags.
 std::string CommandsHelp(const Program& program);
 
-/// Usage of one command, with a line for each of its flags.
+/// Usage of one command, with a line for each of its flags, by groups.
 std::string CommandHelp(const Program& program, const Command& command);
 
 /// The command that arguments name beside what asks for help, null where they

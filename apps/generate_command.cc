@@ -24,7 +24,7 @@ void RejectFlags(const std::string& geometry,
   const auto given = std::find_if(flags.begin(), flags.end(), IsGiven);
   if (given != flags.end()) {
     throw std::invalid_argument("generate " + geometry + " takes no flag --" +
-                                *given + "; see elastimate --help");
+                                *given + "; see elastimate generate --help");
   }
 }
 

@@ -18,7 +18,7 @@
 #include "apps/linear_algebra.h"
 #include "apps/outputs.h"
 #include "apps/signals.h"
-#include "elastimate/io/report/report.h"
+#include "elastimate/core/package/version.h"
 #include "elastimate/io/text/printable.h"
 #include "elastimate/petsc/start_petsc.h"
 

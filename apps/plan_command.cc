@@ -18,6 +18,7 @@
 #include "apps/section_flags.h"
 #include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/scene/rigid_motion.h"
+#include "elastimate/core/scene/scene_builder.h"
 #include "elastimate/estimators/plan/load_plan.h"
 #include "elastimate/estimators/plan/unit_loads.h"
 #include "elastimate/estimators/registry.h"

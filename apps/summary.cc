@@ -162,12 +162,13 @@ void AddParameters(const Estimate& estimate, std::ostringstream& text) {
 void AddAxes(const Estimate& estimate, std::ostringstream& text) {
   for (const AxisEstimate& axis : estimate.axes) {
     std::string components;
-    for (const double component : axis.direction) {
+    for (const double component :
+         axis.direction.value_or(Eigen::Vector3d::Zero())) {
       components += (components.empty() ? "" : ", ") + NumberText(component, 4);
     }
     // Without "the".
     Line(axis.Label().substr(4),
-         !axis.direction.allFinite()
+         !axis.direction
              ? "not determined"
              : components +
                    (axis.standard_error

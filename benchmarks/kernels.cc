@@ -181,7 +181,7 @@ class Cube {
     AddAssembly(kernels);
     kernels.push_back(
         {"closed-form", "natural", 1, 1, {kUnknown, kUnknown}, [&] {
-           closed_form_->Run(scene_, {});
+           static_cast<void>(closed_form_->Run(scene_, {}));
          }});
     AddFurtherMeasurements(kernels);
     return kernels;
@@ -207,7 +207,8 @@ class Cube {
                          1,
                          {kUnknown, kUnknown},
                          [this, prepared] {
-                           prepared->Run({scene_.load_cases[0].displacement});
+                           static_cast<void>(prepared->Run(
+                               {scene_.load_cases[0].displacement}));
                          }});
     }
   }
@@ -274,8 +275,8 @@ class Cube {
   Eigen::MatrixXd eight_;
   StiffnessAssembly assembly_;
   Eigen::VectorXd stiffness_;
-  std::unique_ptr<Estimator> closed_form_;
-  std::vector<std::unique_ptr<Estimator>> estimators_;
+  std::shared_ptr<const Estimator> closed_form_;
+  std::vector<std::shared_ptr<const Estimator>> estimators_;
   StiffnessProducts products_;
   StiffnessProducts one_products_;
   StiffnessProducts eight_products_;

@@ -66,11 +66,11 @@ const Program& Benchmark() {
       {{"study",
         "",
         "runs a study and writes its tables",
-        {"name", "out", "quick"}},
+        {{"", {{"name"}, {"out"}, {"quick"}}}}},
        {"kernels",
         "",
         "times the kernels, prints the table and, with --out, writes it",
-        {"out", "quick"}}}};
+        {{"", {{"out"}, {"quick"}}}}}}};
   return program;
 }
 

@@ -41,7 +41,8 @@ Estimate RunMerged(const Estimator& estimator, Scene scene) {
 void RunMaterialMethod(const MaterialMethod& method,
                        const PreparedLevel& prepared, int num_trials,
                        Table& table) {
-  const std::unique_ptr<Estimator> estimator = MakeEstimator(method.estimator);
+  const std::shared_ptr<const Estimator> estimator =
+      MakeEstimator(method.estimator);
   MaterialCell cell(prepared);
   for (int seed = 1; seed <= num_trials; ++seed) {
     const Scene scene = prepared.Measured(seed);

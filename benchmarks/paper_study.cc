@@ -75,7 +75,7 @@ class Comparison {
  private:
   IsotropicElasticity truth_;
   EstimatorOptions options_;
-  std::unique_ptr<Estimator> paper_method_;
+  std::shared_ptr<const Estimator> paper_method_;
   ReducedFe reduced_fe_;
   PreparedEstimator prepared_;
   Eigen::Matrix2d bound_;  // For a deviation of 1.

@@ -58,7 +58,7 @@ struct Run {
 
 std::string RunEstimator(std::string_view name, int cells) {
   const Scene scene = NoisyCube(cells);
-  const std::unique_ptr<Estimator> estimator = MakeEstimator(name);
+  const std::shared_ptr<const Estimator> estimator = MakeEstimator(name);
   Estimate estimate;
   int repetitions = 0;
   double seconds = 0;

@@ -161,7 +161,8 @@ int NumTrials(const Specimen& specimen, const Method& method) {
 
 Point RunTrials(const Specimen& specimen, const World& world, double deviation,
                 const Method& method) {
-  const std::unique_ptr<Estimator> estimator = MakeEstimator(method.estimator);
+  const std::shared_ptr<const Estimator> estimator =
+      MakeEstimator(method.estimator);
   const int num_trials = NumTrials(specimen, method);
   Point point = {method, {}};
   for (int seed = 1; seed <= num_trials; ++seed) {

@@ -24,7 +24,7 @@ constexpr int kQuickTrials = 2;
 // An estimator with its options; a row of the charts.
 struct Method {
   std::string name;
-  std::unique_ptr<Estimator> estimator;
+  std::shared_ptr<const Estimator> estimator;
   EstimatorOptions options;
 };
 

@@ -47,7 +47,7 @@ constexpr const char* kWorldNames[kNumWorlds] = {"same mesh", "finer world",
 
 struct Method {
   std::string name;
-  std::unique_ptr<Estimator> estimator;
+  std::shared_ptr<const Estimator> estimator;
   int order = 1;
   bool is_costly = false;
   Loss loss = Loss::kNone;

@@ -8,6 +8,36 @@ function(elastimate_prepare_include_directory)
   endforeach()
 endfunction()
 
+# Sets the variable of the name of a macro of Eigen to its value under the flags of the build, a number of bytes.
+function(elastimate_read_alignment_of_eigen macro)
+  include(CheckCXXSourceCompiles)
+  string(TOUPPER "${CMAKE_BUILD_TYPE}" configuration)
+  string(MD5 flags "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${configuration}}")
+  set(CMAKE_REQUIRED_LIBRARIES Eigen3::Eigen)
+  set(CMAKE_REQUIRED_QUIET ON)
+  set(CMAKE_TRY_COMPILE_CONFIGURATION ${CMAKE_BUILD_TYPE})
+  set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
+  foreach(bytes 16 32 64 0)
+    set(result ELASTIMATE_${macro}_IS_${bytes}_${flags})
+    check_cxx_source_compiles("#include <Eigen/Core>\nstatic_assert(${macro} == ${bytes}, \"\");" ${result})
+    if(${result})
+      set(${macro} ${bytes} PARENT_SCOPE)
+      return()
+    endif()
+  endforeach()
+  message(FATAL_ERROR "${macro} of Eigen is none of 16, 32, 64 and 0 with the flags '${CMAKE_CXX_FLAGS}'")
+endfunction()
+
+# Writes the header that tells sources how the libraries were built (cmake/build_settings.h.in).
+function(elastimate_write_build_settings)
+  elastimate_read_alignment_of_eigen(EIGEN_DEFAULT_ALIGN_BYTES)
+  elastimate_read_alignment_of_eigen(EIGEN_MAX_STATIC_ALIGN_BYTES)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/build_settings.h.in
+                 ${PROJECT_BINARY_DIR}/include/elastimate/generated/build_settings.h @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/include/elastimate/generated/build_settings.h
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/elastimate/generated)
+endfunction()
+
 # Warnings are errors in the project's own sources only.  What is linked into a program stays hidden in it: else the
 # program's instances of Eigen's templates stand in for those within other libraries, which may have been built with
 # another allocator.

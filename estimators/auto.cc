@@ -1,5 +1,6 @@
 #include "elastimate/estimators/auto.h"
 
+#include <cmath>
 #include <memory>
 
 #include "elastimate/core/scene/unknown_motion.h"
@@ -133,7 +134,9 @@ class Ladder {
                          stage.seconds});
     }
     rung.status = estimate_.status;
-    rung.elasticity = estimate_.elasticity;
+    if (std::isfinite(estimate_.elasticity.youngs_modulus)) {
+      rung.elasticity = estimate_.elasticity;
+    }
     rung.work = estimate_.work;
     rung.seconds = estimate_.seconds;
     rungs_.push_back(rung);

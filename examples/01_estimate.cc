@@ -13,8 +13,7 @@
 // The "measurement" comes from the library's own forward model here; in an
 // experiment it comes from a camera or a scanner.
 
-#include <elastimate/core/equilibrium/forward_model.h>
-#include <elastimate/core/scene/loads.h>
+#include <elastimate/core/equilibrium/simulated_measurement.h>
 #include <elastimate/core/scene/scene.h>
 #include <elastimate/estimators/registry.h>
 
@@ -63,10 +62,7 @@ int main() {
   scene.load_cases = {load_case};
 
   // 4. The measurement.
-  elastimate::ForwardModel model(scene.mesh, scene.supports,
-                                 elastimate::AssembleLoadCases(scene));
-  model.SetPoissonRatio(0.4);
-  scene.load_cases[0].displacement = model.Displacement(20e3).reshaped(3, 9);
+  elastimate::Measure({20e3, 0.4}, scene);
 
   // 5. The estimate.
   const auto estimator = elastimate::MakeEstimator("closed-form");

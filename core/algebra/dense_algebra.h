@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 
+#include "elastimate/core/algebra/eigen_abi.h"
+
 namespace elastimate {
 
 // Eigen's decompositions of dense matrices, compiled once: their templates take
@@ -14,22 +16,24 @@ struct QrDecomposition {
   Eigen::MatrixXd q;  ///< m x min(m, n)
   Eigen::MatrixXd r;  ///< min(m, n) x n, upper triangular.
 };
-QrDecomposition DecomposeQr(const Eigen::MatrixXd& a);
+[[nodiscard]] QrDecomposition DecomposeQr(const Eigen::MatrixXd& a);
 
 /// R alone.
-Eigen::MatrixXd TriangularFactor(const Eigen::MatrixXd& a);
+[[nodiscard]] Eigen::MatrixXd TriangularFactor(const Eigen::MatrixXd& a);
 
 /// An orthonormal basis, m x rank, of the space of the columns.  A column whose
 /// pivot is not above `threshold` times the largest counts as dependent.
-Eigen::MatrixXd OrthonormalBasis(const Eigen::MatrixXd& a, double threshold);
+[[nodiscard]] Eigen::MatrixXd OrthonormalBasis(const Eigen::MatrixXd& a,
+                                               double threshold);
 
 /// The X that minimises ||A X - B||, by QR with column pivoting; of dependent
 /// columns, as above, some get zero.
-Eigen::MatrixXd SolveLeastSquares(const Eigen::MatrixXd& a,
-                                  const Eigen::MatrixXd& b, double threshold);
+[[nodiscard]] Eigen::MatrixXd SolveLeastSquares(const Eigen::MatrixXd& a,
+                                                const Eigen::MatrixXd& b,
+                                                double threshold);
 /// The same, with Eigen's threshold, that of rounding.
-Eigen::MatrixXd SolveLeastSquares(const Eigen::MatrixXd& a,
-                                  const Eigen::MatrixXd& b);
+[[nodiscard]] Eigen::MatrixXd SolveLeastSquares(const Eigen::MatrixXd& a,
+                                                const Eigen::MatrixXd& b);
 
 /// A = U diag(values) V^T, values in descending order.
 struct SingularValueDecomposition {
@@ -37,7 +41,8 @@ struct SingularValueDecomposition {
   Eigen::MatrixXd u;       ///< m x min(m, n)
   Eigen::MatrixXd v;       ///< n x n: the last n - min(m, n) map to zero.
 };
-SingularValueDecomposition DecomposeSingularValues(const Eigen::MatrixXd& a);
+[[nodiscard]] SingularValueDecomposition DecomposeSingularValues(
+    const Eigen::MatrixXd& a);
 
 /// A X = B X diag(values), values in ascending order, X^T B X = 1.
 struct SymmetricEigenDecomposition {
@@ -45,14 +50,15 @@ struct SymmetricEigenDecomposition {
   Eigen::MatrixXd vectors;
 };
 /// Of a symmetric matrix, of which the lower triangle is read; B = 1.
-SymmetricEigenDecomposition DecomposeSymmetric(const Eigen::MatrixXd& a);
+[[nodiscard]] SymmetricEigenDecomposition DecomposeSymmetric(
+    const Eigen::MatrixXd& a);
 /// Of a symmetric one and a positive definite one, of which the lower triangles
 /// are read.
-SymmetricEigenDecomposition DecomposeSymmetric(const Eigen::MatrixXd& a,
-                                               const Eigen::MatrixXd& b);
+[[nodiscard]] SymmetricEigenDecomposition DecomposeSymmetric(
+    const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
 /// Of a square matrix; entries that are not finite when it is singular.
-Eigen::MatrixXd Inverse(const Eigen::MatrixXd& a);
+[[nodiscard]] Eigen::MatrixXd Inverse(const Eigen::MatrixXd& a);
 
 }  // namespace elastimate
 

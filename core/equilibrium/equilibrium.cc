@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "elastimate/core/equilibrium/assembled_stiffness.h"
+#include "elastimate/core/equilibrium/nested_stiffness.h"
 #include "elastimate/core/equilibrium/refined_stiffness.h"
+#include "elastimate/core/equilibrium/supported_stiffness.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/unknown_motion.h"
 
@@ -24,7 +26,7 @@ Equilibrium::Equilibrium(const Scene& scene, SolverKind solver)
 
 Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
                          SolverKind solver, double tolerance)
-    : values_(UsedSpaces(spaces)),
+    : values_(std::make_unique<NestedStiffness>(UsedSpaces(spaces))),
       load_(AssembleLoadCases(*spaces.back())),
       held_displacement_(load_.rows(), load_.cols()),
       held_forces_(load_.cols()),
@@ -97,13 +99,31 @@ Eigen::MatrixXd Equilibrium::ByStiffness(const Eigen::MatrixXd& columns,
   return results;
 }
 
+Equilibrium::~Equilibrium() = default;
+Equilibrium::Equilibrium(Equilibrium&&) noexcept = default;
+Equilibrium& Equilibrium::operator=(Equilibrium&&) noexcept = default;
+
+bool Equilibrium::IsRefinable(const std::vector<const Scene*>& spaces) {
+  return AreNested(spaces);
+}
+
+const InternalForces& Equilibrium::Forces() const {
+  return values_->Forces(values_->NumSpaces() - 1);
+}
+
+const NodeGraph& Equilibrium::Graph() const {
+  return graph_ ? *graph_ : stiffness_[0]->GraphOfAssembled();
+}
+
+bool Equilibrium::IsRefined() const { return values_->NumSpaces() > 1; }
+
 bool Equilibrium::Solve(const Eigen::VectorXd& moduli) {
   // Of moduli of any unit, a stiffness without one.
   scale_ = moduli.cwiseAbs().maxCoeff();
   const Eigen::VectorXd scaled = moduli / scale_;
-  values_.SetModuli(scaled, stiffness_[0]->GraphOfAssembled());
+  values_->SetModuli(scaled, stiffness_[0]->GraphOfAssembled());
   for (const std::unique_ptr<SupportedStiffness>& stiffness : stiffness_) {
-    if (!stiffness->Factorize(values_, has_unknown_motion_)) {
+    if (!stiffness->Factorize(*values_, has_unknown_motion_)) {
       return false;
     }
   }
@@ -238,7 +258,7 @@ Work Equilibrium::WorkDone() const {
   for (const std::unique_ptr<SupportedStiffness>& stiffness : stiffness_) {
     work = work + stiffness->WorkDone();
   }
-  work.element_passes += element_passes_ + values_.NumPasses();
+  work.element_passes += element_passes_ + values_->NumPasses();
   return work;
 }
 

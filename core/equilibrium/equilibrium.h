@@ -7,12 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "elastimate/core/equilibrium/nested_stiffness.h"
-#include "elastimate/core/equilibrium/supported_stiffness.h"
 #include "elastimate/core/mechanics/internal_forces.h"
 #include "elastimate/core/scene/scene.h"
+#include "elastimate/core/solvers/stiffness_solver.h"
 
 namespace elastimate {
+
+class NestedStiffness;
+class SupportedStiffness;
 
 /// Equilibrium of small strains of the materials of a scene,
 ///
@@ -23,9 +25,11 @@ namespace elastimate {
 /// faster for one isotropic material on supports that all load cases share.
 class Equilibrium {
  public:
-  /// Assembles the pattern and analyses it.  Preconditions and exceptions are
-  /// those of StiffnessSolver.
+  /// Assembles the pattern and analyses it.  Refers to `scene`, which has to
+  /// stay as it is; a temporary one does not compile.  Preconditions and
+  /// exceptions are those of StiffnessSolver.
   Equilibrium(const Scene& scene, SolverKind solver);
+  Equilibrium(const Scene&&, SolverKind) = delete;
 
   /// Solves in the last of some spaces of one specimen, which are given from
   /// coarse to fine; the scenes have to stay as they are.  Where the spaces
@@ -39,16 +43,22 @@ class Equilibrium {
   Equilibrium(const std::vector<const Scene*>& spaces, SolverKind solver,
               double tolerance = StiffnessSolver::kAccurate);
 
-  /// Tells whether the spaces contain each other (AreNested).
-  static bool IsRefinable(const std::vector<const Scene*>& spaces) {
-    return AreNested(spaces);
-  }
+  ~Equilibrium();
+  Equilibrium(Equilibrium&&) noexcept;
+  Equilibrium& operator=(Equilibrium&&) noexcept;
+
+  /// Tells whether the spaces contain each other: there are two or more, all
+  /// elements are simplices with straight edges, those of the finer scenes are
+  /// quadratic, and the first nodes of each scene are those of the one before,
+  /// as FinerScene has them.  O(num_nodes).
+  [[nodiscard]] static bool IsRefinable(
+      const std::vector<const Scene*>& spaces);
 
   /// Solves for u at these moduli: an element pass, for each set of held
   /// degrees of freedom a factorisation, and a solve for each load case (one
   /// more for each set of held displacements).  False when the stiffness is not
   /// positive definite to working precision; there is no u then.
-  bool Solve(const Eigen::VectorXd& moduli);
+  [[nodiscard]] bool Solve(const Eigen::VectorXd& moduli);
 
   /// u of all load cases, num_dofs x num_load_cases [length].
   const Eigen::MatrixXd& Displacement() const { return displacement_; }
@@ -101,19 +111,15 @@ class Equilibrium {
   Eigen::MatrixXd SupportForceSensitivities(
       const Eigen::MatrixXd& directions, const Eigen::MatrixXd& sensitivities);
 
-  const InternalForces& Forces() const {
-    return values_.Forces(values_.NumSpaces() - 1);
-  }
-  const NodeGraph& Graph() const {
-    return graph_ ? *graph_ : stiffness_[0]->GraphOfAssembled();
-  }
+  const InternalForces& Forces() const;
+  const NodeGraph& Graph() const;
   Work WorkDone() const;
   /// That of the StiffnessSolver that has one.
   const std::string& Notice() const;
 
  private:
   Eigen::Index NumLoadCases() const { return load_.cols(); }
-  bool IsRefined() const { return values_.NumSpaces() > 1; }
+  bool IsRefined() const;
   void AddStiffness(const std::vector<const Scene*>& spaces, Eigen::Index k,
                     SolverKind solver, double tolerance);
   /// What `of_stiffness` makes of columns, n of each load case side by side, by
@@ -127,7 +133,7 @@ class Equilibrium {
                             const Eigen::MatrixXd& forces);
   void SolveForSupports(const Eigen::VectorXd& scaled_moduli);
 
-  NestedStiffness values_;
+  std::unique_ptr<NestedStiffness> values_;
   std::vector<std::unique_ptr<SupportedStiffness>> stiffness_;
   /// The graph of the finest mesh where its stiffness is not assembled.
   std::optional<NodeGraph> graph_;

@@ -35,7 +35,7 @@ class ForwardModel {
  public:
   /// Assembles and analyses.  `force` is num_dofs x num_load_cases
   /// [force]; its rows at held degrees of freedom have no effect.
-  /// `mesh` must outlive this object.
+  /// `mesh` must outlive this object; a temporary one does not compile.
   /// Preconditions: a valid scene; HasMultigrid() for kMultigrid.
   /// Throws std::invalid_argument with the sentence of WhyNotHeld when the
   /// supports do not hold the specimen, and std::bad_alloc when the factor does
@@ -43,6 +43,8 @@ class ForwardModel {
   ForwardModel(const Mesh& mesh, const Supports& supports,
                const Eigen::MatrixXd& force,
                SolverKind solver = SolverKind::kAutomatic);
+  ForwardModel(const Mesh&&, const Supports&, const Eigen::MatrixXd&,
+               SolverKind = SolverKind::kAutomatic) = delete;
 
   /// Factorises A(nu) and solves for w and v; does nothing when nu is the
   /// present one.  False when A(nu) is singular to working precision (nu at or

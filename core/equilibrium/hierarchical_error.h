@@ -35,10 +35,12 @@ class HierarchicalError {
   /// Relative, in the energy norm of the error itself.
   static constexpr double kTolerance = 0.03;
 
-  /// `scene` must outlive this object.  Preconditions and exceptions are those
-  /// of QuadraticScene.  O(num_elements) time; memory as for eleven
+  /// Preconditions and exceptions are those of QuadraticScene.  O(num_elements)
+  /// time; memory as for eleven
   /// displacements of the finer mesh.
   explicit HierarchicalError(const Scene& scene);
+  HierarchicalError(const HierarchicalError&) = delete;
+  HierarchicalError& operator=(const HierarchicalError&) = delete;
 
   /// The error at the nodes of the responses to the load cases (the first
   /// columns of `responses`) and of that to the held displacements (the column

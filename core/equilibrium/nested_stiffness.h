@@ -16,7 +16,7 @@ namespace elastimate {
 /// there are two or more, all elements are simplices with straight edges, those
 /// of the finer scenes are quadratic, and the first nodes of each scene are
 /// those of the one before, as FinerScene has them.  O(num_nodes).
-bool AreNested(const std::vector<const Scene*>& spaces);
+[[nodiscard]] bool AreNested(const std::vector<const Scene*>& spaces);
 
 /// The stiffness K(theta) of one specimen in some spaces that contain each
 /// other, from coarse to fine, at the same moduli, as far as it does not depend
@@ -84,12 +84,12 @@ class NestedStiffness {
 /// Inverts each block of DiagonalBlocks on its free components, and leaves
 /// zeros in the rows and columns of the held ones.  `is_free` is 1 or 0 for
 /// each degree of freedom.  The inverses stand side by side as the blocks do.
-Eigen::MatrixXd InverseBlocks(const Eigen::MatrixXd& blocks,
-                              const Eigen::VectorXd& is_free);
+[[nodiscard]] Eigen::MatrixXd InverseBlocks(const Eigen::MatrixXd& blocks,
+                                            const Eigen::VectorXd& is_free);
 
 /// Multiplies the rows of each node by its block: num_dofs x n.
-Eigen::MatrixXd MultiplyBlocks(const Eigen::MatrixXd& blocks,
-                               const Eigen::MatrixXd& columns);
+[[nodiscard]] Eigen::MatrixXd MultiplyBlocks(const Eigen::MatrixXd& blocks,
+                                             const Eigen::MatrixXd& columns);
 
 /// Sets x to keep x + scale B (a - b) for such blocks B, in one pass over
 /// memory.

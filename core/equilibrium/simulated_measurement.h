@@ -30,8 +30,9 @@ void MeasureMaterials(const Eigen::VectorXd& parameters, Scene& scene);
 void MeasureInFinerWorld(const IsotropicElasticity& elasticity, Scene& scene);
 
 /// Independent noise of mean zero, scaled to exactly this norm.
-Eigen::VectorXd DrawNoise(NoiseLaw law, Eigen::Index size, double norm,
-                          std::mt19937_64& generator);
+[[nodiscard]] Eigen::VectorXd DrawNoise(NoiseLaw law, Eigen::Index size,
+                                        double norm,
+                                        std::mt19937_64& generator);
 
 /// Gaussian noise of mean zero and this standard deviation in each component at
 /// each of n positions (dimension x n), independent of the other components:
@@ -47,17 +48,19 @@ Eigen::VectorXd DrawNoise(NoiseLaw law, Eigen::Index size, double norm,
 /// positions extend over so many lengths X (in the plane about 2000) that the
 /// lattice would have more than 2e7 points.  O(n), with 17^dimension lattice
 /// points for each position, and O(number of lattice points).
-Eigen::MatrixXd DrawNoiseAt(const Eigen::MatrixXd& positions,
-                            double standard_deviation,
-                            double correlation_length,
-                            std::mt19937_64& generator);
+[[nodiscard]] Eigen::MatrixXd DrawNoiseAt(const Eigen::MatrixXd& positions,
+                                          double standard_deviation,
+                                          double correlation_length,
+                                          std::mt19937_64& generator);
 
 /// Gross errors of `share` of `candidates` (to the nearest number), which are
 /// columns of dimension x n; zero in all other columns.  Each has a direction
 /// of its own, and a length of 20 to 100 standard deviations, drawn uniformly.
-Eigen::MatrixXd DrawOutliers(std::vector<Eigen::Index> candidates, double share,
-                             double standard_deviation, int dimension,
-                             Eigen::Index n, std::mt19937_64& generator);
+[[nodiscard]] Eigen::MatrixXd DrawOutliers(std::vector<Eigen::Index> candidates,
+                                           double share,
+                                           double standard_deviation,
+                                           int dimension, Eigen::Index n,
+                                           std::mt19937_64& generator);
 
 /// What a measurement has beside the displacement; nothing by default.
 struct MeasurementErrors {

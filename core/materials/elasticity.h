@@ -71,24 +71,28 @@ T ComplianceFactor(const T& poisson_ratio, SectionModel model) {
 }
 
 /// d (E t) / d nu.
-double ComplianceFactorSlope(double poisson_ratio, SectionModel model);
+[[nodiscard]] double ComplianceFactorSlope(double poisson_ratio,
+                                           SectionModel model);
 
 /// d ln E / d nu of what has the same compliance scale t.
-double LogYoungsModulusSlope(double poisson_ratio, SectionModel model);
+[[nodiscard]] double LogYoungsModulusSlope(double poisson_ratio,
+                                           SectionModel model);
 
 /// ln((1 + nu) / (1 - 2 nu)) = ln(3 kappa / (2 mu)): the scale on which the
 /// stiffness changes evenly over the whole range of nu.
-double LogStiffnessRatio(double poisson_ratio);
+[[nodiscard]] double LogStiffnessRatio(double poisson_ratio);
 
 /// nu of a LogStiffnessRatio.
-double PoissonRatioOfLogStiffnessRatio(double log_stiffness_ratio);
+[[nodiscard]] double PoissonRatioOfLogStiffnessRatio(
+    double log_stiffness_ratio);
 
 /// d (mu, 1 / kappa) / d (E, nu): rows (mu, 1 / kappa), columns (E, nu).
-Eigen::Matrix2d ShearAndBulkJacobian(const IsotropicElasticity& elasticity);
+[[nodiscard]] Eigen::Matrix2d ShearAndBulkJacobian(
+    const IsotropicElasticity& elasticity);
 
 /// d (nu, t) / d (E, nu): rows (nu, t), columns (E, nu).
-Eigen::Matrix2d ComplianceScaleJacobian(const IsotropicElasticity& elasticity,
-                                        SectionModel model);
+[[nodiscard]] Eigen::Matrix2d ComplianceScaleJacobian(
+    const IsotropicElasticity& elasticity, SectionModel model);
 
 }  // namespace elastimate
 

@@ -47,9 +47,9 @@ struct BlockEntry {
 /// with P_k = dW_k / dH of energy densities W_k; and its chart, which makes
 /// theta of parameters p that people know.
 ///
-/// A new one is a file pair, a row in laws.cc, and a row in docs/materials.md;
-/// the tests of all laws run on it by themselves.  Its moduli are free to
-/// choose: small strains make the estimation linear in them.
+/// CONTRIBUTING.md says how to add one, to the library or to a program of its
+/// own (RegisterLaw).  CheckLaw tells what is wrong with it.  Its moduli are
+/// free to choose: small strains make the estimation linear in them.
 ///
 /// A law whose material is not alike in all directions speaks in the frame of
 /// that: direction 1, 2 and 3 are those of its axes (MaterialFrames).

@@ -1,16 +1,48 @@
 #include "elastimate/core/materials/laws.h"
 
 #include <algorithm>
+#include <iterator>
+#include <mutex>
 #include <sstream>
+#include <stdexcept>
+#include <utility>
 
 #include "elastimate/core/materials/anisotropic_law.h"
 #include "elastimate/core/materials/free_axis_law.h"
 #include "elastimate/core/materials/isotropic_law.h"
+#include "elastimate/core/materials/law_check.h"
 #include "elastimate/core/materials/orthotropic_law.h"
 #include "elastimate/core/materials/transversely_isotropic_law.h"
 
 namespace elastimate {
 namespace {
+
+using LawList = std::vector<std::shared_ptr<const Law>>;
+
+// All laws, for one thread at a time.
+struct LawRegistry {
+  std::mutex mutex;
+  LawList laws = {std::make_shared<IsotropicLaw>(),
+                  std::make_shared<TransverselyIsotropicLaw>(),
+                  std::make_shared<FreeAxisLaw>(),
+                  std::make_shared<OrthotropicLaw>(SectionModel::kSolid),
+                  std::make_shared<OrthotropicLaw>(SectionModel::kPlaneStress),
+                  std::make_shared<AnisotropicLaw>()};
+};
+
+LawRegistry& RegistryOfLaws() {
+  static LawRegistry registry;
+  return registry;
+}
+
+// Whether a material could mean either law.
+bool AreAmbiguous(const Law& a, const Law& b) {
+  return a.Name() == b.Name() &&
+         std::any_of(std::begin(kAllSectionModels), std::end(kAllSectionModels),
+                     [&](SectionModel model) {
+                       return a.Takes(model) && b.Takes(model);
+                     });
+}
 
 template <class Predicate>
 std::string NamesOf(const Predicate& is_named) {
@@ -28,17 +60,42 @@ std::string NamesOf(const Predicate& is_named) {
 
 }  // namespace
 
-const std::vector<const Law*>& Laws() {
-  static const IsotropicLaw isotropic;
-  static const TransverselyIsotropicLaw transversely_isotropic;
-  static const FreeAxisLaw free_axis;
-  static const OrthotropicLaw orthotropic(SectionModel::kSolid);
-  static const OrthotropicLaw lamina(SectionModel::kPlaneStress);
-  static const AnisotropicLaw anisotropic;
-  static const std::vector<const Law*> laws = {
-      &isotropic,  &transversely_isotropic, &free_axis, &orthotropic, &lamina,
-      &anisotropic};
-  return laws;
+std::vector<const Law*> Laws() {
+  LawRegistry& registry = RegistryOfLaws();
+  const std::lock_guard<std::mutex> lock(registry.mutex);
+  std::vector<const Law*> all;
+  all.reserve(registry.laws.size());
+  for (const auto& law : registry.laws) {
+    all.push_back(law.get());
+  }
+  return all;
+}
+
+void RegisterLaw(std::shared_ptr<const Law> law) {
+  if (!law) {
+    throw std::invalid_argument(
+        "the law to be registered is a null pointer; give one of "
+        "std::make_shared");
+  }
+  const std::vector<std::string> wrong = CheckLaw(*law);
+  if (!wrong.empty()) {
+    throw std::invalid_argument(
+        wrong[0] + (wrong.size() == 1
+                        ? ""
+                        : " (and " + std::to_string(wrong.size() - 1) +
+                              " more; CheckLaw returns all sentences)"));
+  }
+  LawRegistry& registry = RegistryOfLaws();
+  const std::lock_guard<std::mutex> lock(registry.mutex);
+  for (const auto& other : registry.laws) {
+    if (AreAmbiguous(*law, *other)) {
+      throw std::invalid_argument(
+          "there is a law '" + std::string(law->Name()) +
+          "' already for a section that the new one takes; give the new one "
+          "another name");
+    }
+  }
+  registry.laws.push_back(std::move(law));
 }
 
 std::string LawNames() {

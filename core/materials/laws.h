@@ -1,6 +1,7 @@
 #ifndef ELASTIMATE_CORE_MATERIALS_LAWS_H_
 #define ELASTIMATE_CORE_MATERIALS_LAWS_H_
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,24 +10,38 @@
 
 namespace elastimate {
 
-/// Every law, in the order in which people see them.  Two of one name take
-/// different sections.
-const std::vector<const Law*>& Laws();
+/// Returns every law, in the order in which people see them: those of the
+/// library, then those of RegisterLaw.  Two of one name take different
+/// sections.  The laws stay where they are until the program ends.  May be
+/// called from several threads at once.
+[[nodiscard]] std::vector<const Law*> Laws();
+
+/// Adds a law of the calling program, which materials can name from then on
+/// (Material::law):
+///
+///   RegisterLaw(std::make_shared<MyLaw>());
+///
+/// Throws std::invalid_argument, and adds nothing, when the pointer is null,
+/// when CheckLaw finds something wrong, which the sentence says, or when there
+/// is a law of that name for a section that this one takes.  The cost is that
+/// of CheckLaw.  May be called from several threads at once.
+void RegisterLaw(std::shared_ptr<const Law> law);
 
 /// "isotropic, ...", for messages; of those that take the section.
-std::string LawNames();
-std::string LawNames(SectionModel model);
+[[nodiscard]] std::string LawNames();
+[[nodiscard]] std::string LawNames(SectionModel model);
 
 /// What is wrong with the value of a parameter of a law: "must be positive and
 /// finite"; empty when nothing is.
-std::string WhyOutOfRange(const LawParameter& parameter, double value);
+[[nodiscard]] std::string WhyOutOfRange(const LawParameter& parameter,
+                                        double value);
 
 /// The first law of this name, which has all parameters that another of that
 /// name has; null when there is none.
-const Law* FindLaw(std::string_view name);
+[[nodiscard]] const Law* FindLaw(std::string_view name);
 
 /// The law of this name that takes the section; null when there is none.
-const Law* FindLaw(std::string_view name, SectionModel model);
+[[nodiscard]] const Law* FindLaw(std::string_view name, SectionModel model);
 
 }  // namespace elastimate
 

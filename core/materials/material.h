@@ -64,14 +64,16 @@ void ValidateMaterials(const std::vector<Material>& materials,
                        const Mesh& mesh);
 
 /// Whether this is one isotropic material of which nothing is known.
-bool IsOneIsotropicMaterial(const std::vector<Material>& materials);
+[[nodiscard]] bool IsOneIsotropicMaterial(
+    const std::vector<Material>& materials);
 
 /// An isotropic material for each region id of the mesh, ascending.
-std::vector<Material> IsotropicMaterialOfEachRegion(const Mesh& mesh);
+[[nodiscard]] std::vector<Material> IsotropicMaterialOfEachRegion(
+    const Mesh& mesh);
 
 /// The place in `materials` of that of each element.  Precondition: valid ones.
-std::vector<int> MaterialOfElements(const std::vector<Material>& materials,
-                                    const Mesh& mesh);
+[[nodiscard]] std::vector<int> MaterialOfElements(
+    const std::vector<Material>& materials, const Mesh& mesh);
 
 }  // namespace elastimate
 

@@ -36,10 +36,9 @@ class MaterialFrames {
 /// What is wrong with the axes of a material of a law that has `num_axes` of
 /// them: "has an axis of length 0 at element 3; ..."; empty when nothing is.
 /// `elements` are those of the material, of all `num_elements`.
-std::string WhyNotTheseAxes(const std::vector<Eigen::MatrixXd>& axes,
-                            int num_axes, int dimension,
-                            Eigen::Index num_elements,
-                            const std::vector<Eigen::Index>& elements);
+[[nodiscard]] std::string WhyNotTheseAxes(
+    const std::vector<Eigen::MatrixXd>& axes, int num_axes, int dimension,
+    Eigen::Index num_elements, const std::vector<Eigen::Index>& elements);
 
 }  // namespace elastimate
 

@@ -36,7 +36,7 @@ struct ElementBlocks {
 /// Blocks that are as small as they can be while few nodes are in two.  A mesh
 /// whose numbering has no locality is one block.
 /// O(num_elements) time, less than a tenth of an element pass.
-ElementBlocks ChooseElementBlocks(const Mesh& mesh);
+[[nodiscard]] ElementBlocks ChooseElementBlocks(const Mesh& mesh);
 
 }  // namespace elastimate
 

@@ -29,9 +29,11 @@ namespace elastimate {
 /// of StiffnessOperator.
 class InternalForces {
  public:
-  /// Preconditions: a valid mesh, valid materials of it.
+  /// Preconditions: a valid mesh, valid materials of it.  Refers to `mesh`,
+  /// which has to stay as it is; a temporary one does not compile.
   /// O(num_elements log num_materials).
   InternalForces(const Mesh& mesh, const std::vector<Material>& materials);
+  InternalForces(const Mesh&&, const std::vector<Material>&) = delete;
   InternalForces(const InternalForces&) = delete;
   InternalForces& operator=(const InternalForces&) = delete;
 

@@ -33,8 +33,8 @@ struct StiffnessProducts {
 /// Cost: one element pass, O(num_elements * num_columns) time (for quadratic
 /// tetrahedra about four times that for linear ones).  Single-threaded; the
 /// same input gives the same bits on the same kind of processor.
-StiffnessProducts MultiplyStiffnessBasis(const Mesh& mesh,
-                                         const Eigen::MatrixXd& displacement);
+[[nodiscard]] StiffnessProducts MultiplyStiffnessBasis(
+    const Mesh& mesh, const Eigen::MatrixXd& displacement);
 
 /// The stiffness bases H and J of a mesh, to be multiplied many times: what
 /// MultiplyStiffnessBasis does, with threads, and after the mesh has been
@@ -48,8 +48,8 @@ StiffnessProducts MultiplyStiffnessBasis(const Mesh& mesh,
 /// visited in another order.
 class StiffnessOperator {
  public:
-  /// Refers to `mesh`, which has to stay as it is.  Precondition: a valid mesh,
-  /// and at least one thread.
+  /// Refers to `mesh`, which has to stay as it is; a temporary one does not
+  /// compile.  Precondition: a valid mesh, and at least one thread.
   ///
   /// Threads are OpenMP's, for linear tetrahedra, one for each 16384 of them at
   /// most.  There is one unless more are asked for: a pass is short, and its
@@ -58,6 +58,7 @@ class StiffnessOperator {
   /// Cost: O(num_elements) time; a tenth of an element pass if the numbering is
   /// good, and else several passes (OrderForLocality).
   explicit StiffnessOperator(const Mesh& mesh, int num_threads = 1);
+  explicit StiffnessOperator(const Mesh&&, int = 1) = delete;
 
   /// Whether the mesh was numbered again.
   bool IsReordered() const { return !places_.empty(); }

@@ -20,8 +20,8 @@ namespace elastimate {
 ///
 /// Exact, through the node graph: about the time of ten element passes.
 /// O(num_elements) time and memory.
-Eigen::Matrix2d StiffnessTraces(const Mesh& mesh,
-                                const DegreesOfFreedom& degrees_of_freedom);
+[[nodiscard]] Eigen::Matrix2d StiffnessTraces(
+    const Mesh& mesh, const DegreesOfFreedom& degrees_of_freedom);
 
 /// Makes `probes`, of num_dofs rows, columns of random signs z in the free
 /// rows, zero in the held ones.  Deterministic.
@@ -31,7 +31,7 @@ void SetTraceProbes(const ComponentMask& held,
 /// An unbiased estimate of StiffnessTraces from the products H z and J z of
 /// probes: the mean of z^T X Y z (Hutchinson 1990), with two of them of
 /// relative standard error below about 1 / sqrt(num_free).  O(num_nodes).
-Eigen::Matrix2d EstimateStiffnessTraces(
+[[nodiscard]] Eigen::Matrix2d EstimateStiffnessTraces(
     const ComponentMask& held, const Eigen::Ref<const Eigen::MatrixXd>& h,
     const Eigen::Ref<const Eigen::MatrixXd>& j);
 

@@ -13,9 +13,9 @@ namespace elastimate {
 /// mean where the strain e varies.  lambda is 2 lambda mu / (lambda + 2 mu) in
 /// plane stress.  `displacement` is dimension x num_nodes.  Precondition: a
 /// valid mesh. Cost: one element pass.
-Eigen::VectorXd StrainEnergyDensity(const Mesh& mesh,
-                                    const IsotropicElasticity& elasticity,
-                                    const Eigen::MatrixXd& displacement);
+[[nodiscard]] Eigen::VectorXd StrainEnergyDensity(
+    const Mesh& mesh, const IsotropicElasticity& elasticity,
+    const Eigen::MatrixXd& displacement);
 
 /// The discretisation error of finite element displacements: the strain energy
 /// that the elements miss, relative to theirs, as Zienkiewicz & Zhu estimate it
@@ -33,9 +33,9 @@ Eigen::VectorXd StrainEnergyDensity(const Mesh& mesh,
 /// `displacement` is num_dofs x num_load_cases, whose energies are summed.
 /// Zero without any strain.  Precondition: a valid mesh.
 /// Cost: two element passes.
-double DiscretizationError(const Mesh& mesh,
-                           const IsotropicElasticity& elasticity,
-                           const Eigen::MatrixXd& displacement);
+[[nodiscard]] double DiscretizationError(const Mesh& mesh,
+                                         const IsotropicElasticity& elasticity,
+                                         const Eigen::MatrixXd& displacement);
 
 }  // namespace elastimate
 

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "elastimate/core/algebra/eigen_abi.h"
+
 namespace elastimate {
 
 /// The finite elements that a mesh may be made of.  Their nodes are in the
@@ -87,17 +89,17 @@ struct ElementTopology {
   int MidEdgeNode(int a, int b) const;
 };
 
-const ElementTopology& TopologyOf(ElementKind kind);
+[[nodiscard]] const ElementTopology& TopologyOf(ElementKind kind);
 
 /// The kind of order 2 with the same vertices.  Precondition: a simplex of
 /// order 1.
-ElementKind QuadraticKind(ElementKind kind);
+[[nodiscard]] ElementKind QuadraticKind(ElementKind kind);
 
 /// Whether there is a QuadraticKind.
-bool HasQuadraticKind(ElementKind kind);
+[[nodiscard]] bool HasQuadraticKind(ElementKind kind);
 
 /// The curved kind of a quadratic one.  Precondition: a kind of order 2.
-ElementKind CurvedKind(ElementKind kind);
+[[nodiscard]] ElementKind CurvedKind(ElementKind kind);
 
 }  // namespace elastimate
 

@@ -17,14 +17,14 @@ namespace elastimate {
 /// (x1 - x0) x (x2 - x0) points outwards, and in two the outside is on the
 /// right of the way from x0 to x1.  In the order of the elements that own them.
 /// O(num_elements).
-Eigen::MatrixXi BoundaryFacets(const Mesh& mesh);
+[[nodiscard]] Eigen::MatrixXi BoundaryFacets(const Mesh& mesh);
 
 /// The first facet that is no face of any element, in any order of vertices
 /// around it, with the middles of its edges where elements are quadratic; empty
 /// if each is one.  Precondition: NumNodesOfFace() nodes in range.
 /// O(num_elements + num_facets log num_facets).
-std::optional<Eigen::Index> FirstThatIsNoFace(const Mesh& mesh,
-                                              const Eigen::MatrixXi& facets);
+[[nodiscard]] std::optional<Eigen::Index> FirstThatIsNoFace(
+    const Mesh& mesh, const Eigen::MatrixXi& facets);
 
 /// What a facet gives to its nodes of a uniform load.
 struct FacetWeights {
@@ -38,11 +38,11 @@ struct FacetWeights {
 /// Areas contain the thickness of a planar section.  Exact for straight edges
 /// and flat faces; 4 points in a quadrilateral.  The area vectors of curved
 /// facets are exact, and areas are by 3 points in an edge or 6 in a triangle.
-FacetWeights WeightsOfFacet(const Mesh& mesh,
-                            const Eigen::Ref<const Eigen::VectorXi>& facet);
+[[nodiscard]] FacetWeights WeightsOfFacet(
+    const Mesh& mesh, const Eigen::Ref<const Eigen::VectorXi>& facet);
 
 /// The area of facets with nodes in range [length^2].  O(num_facets).
-double FacetArea(const Mesh& mesh, const Eigen::MatrixXi& facets);
+[[nodiscard]] double FacetArea(const Mesh& mesh, const Eigen::MatrixXi& facets);
 
 }  // namespace elastimate
 

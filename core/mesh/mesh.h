@@ -14,8 +14,13 @@ enum class SectionModel {
   kPlaneStress,  ///< Of two: a thin plate without stress across it.
 };
 
+/// All of them.
+inline constexpr SectionModel kAllSectionModels[] = {
+    SectionModel::kSolid, SectionModel::kPlaneStrain,
+    SectionModel::kPlaneStress};
+
 /// "3d", "plane_strain" or "plane_stress".
-std::string_view SectionModelName(SectionModel model);
+[[nodiscard]] std::string_view SectionModelName(SectionModel model);
 
 /// The body that a mesh is a section of.
 struct Section {
@@ -74,18 +79,19 @@ void ValidateMesh(const Mesh& mesh);
 
 /// Whether `node` is in the middle between `a` and `b`, to within a millionth
 /// of their distance: what single precision coordinates leave.
-bool IsInTheMiddle(const Mesh& mesh, int node, int a, int b);
+[[nodiscard]] bool IsInTheMiddle(const Mesh& mesh, int node, int a, int b);
 
 /// The volume of each element [length^3], that of a planar one by its
 /// thickness.  num_elements values.  O(num_elements).
-Eigen::VectorXd ElementVolumes(const Mesh& mesh);
+[[nodiscard]] Eigen::VectorXd ElementVolumes(const Mesh& mesh);
 
 /// The centre of an element: the mean of its vertices, dimension values.
-Eigen::VectorXd ElementCentre(const Mesh& mesh, Eigen::Index element);
+[[nodiscard]] Eigen::VectorXd ElementCentre(const Mesh& mesh,
+                                            Eigen::Index element);
 
 /// The smallest dihedral angle of each tetrahedron [rad], the usual measure of
 /// a sliver.  num_elements values.  Precondition: a mesh of tetrahedra.
-Eigen::VectorXd SmallestDihedralAngles(const Mesh& mesh);
+[[nodiscard]] Eigen::VectorXd SmallestDihedralAngles(const Mesh& mesh);
 
 }  // namespace elastimate
 

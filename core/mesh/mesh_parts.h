@@ -22,7 +22,8 @@ struct MeshParts {
 
 /// `part_of_element` has num_elements values, from 0 on.
 /// O(num_elements log num_parts).
-MeshParts SplitMesh(const Mesh& mesh, const std::vector<int>& part_of_element);
+[[nodiscard]] MeshParts SplitMesh(const Mesh& mesh,
+                                  const std::vector<int>& part_of_element);
 
 }  // namespace elastimate
 

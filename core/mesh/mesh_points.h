@@ -25,19 +25,21 @@ void ValidatePoints(const Mesh& mesh, const MeshPoints& points);
 
 /// N_i at each point, num_nodes_of_element x n: what the nodes of its element
 /// have in a value there.  Precondition: ValidatePoints.  O(n).
-Eigen::MatrixXd ShapeFunctionsOf(const Mesh& mesh, const MeshPoints& points);
+[[nodiscard]] Eigen::MatrixXd ShapeFunctionsOf(const Mesh& mesh,
+                                               const MeshPoints& points);
 
 /// The values at the points of a field of the nodes, rows x num_nodes: rows x
 /// n.  The positions are those of the field mesh.nodes.
 /// Precondition: ValidatePoints.  O(rows n).
-Eigen::MatrixXd Interpolate(const Mesh& mesh, const MeshPoints& points,
-                            const Eigen::MatrixXd& field);
+[[nodiscard]] Eigen::MatrixXd Interpolate(const Mesh& mesh,
+                                          const MeshPoints& points,
+                                          const Eigen::MatrixXd& field);
 
 /// `count` points anywhere in the mesh: as many in one part of it as in another
 /// of the same volume, but for chance.  Precondition: a valid mesh.
 /// O(num_elements + count), more where elements are sheared.
-MeshPoints DrawPoints(const Mesh& mesh, Eigen::Index count,
-                      std::mt19937_64& generator);
+[[nodiscard]] MeshPoints DrawPoints(const Mesh& mesh, Eigen::Index count,
+                                    std::mt19937_64& generator);
 
 }  // namespace elastimate
 

@@ -5,12 +5,14 @@
 #include <array>
 #include <vector>
 
+#include "elastimate/core/algebra/eigen_abi.h"
+
 namespace elastimate {
 
 /// The pairs of points of which one is among the `count` points that are
 /// nearest to the other, each pair once, the lesser index first, ascending.
 /// `positions` is dimension x n, finite.  O(n log n), by a tree of nanoflann.
-std::vector<std::array<Eigen::Index, 2>> NearestPairs(
+[[nodiscard]] std::vector<std::array<Eigen::Index, 2>> NearestPairs(
     const Eigen::MatrixXd& positions, int count);
 
 /// A point that is nearest to another.
@@ -21,8 +23,8 @@ struct NearestPoint {
 
 /// Of n points, dimension x n with n > 0, the nearest to each of `others`,
 /// dimension x m, all finite.  O((n + m) log n), by the same tree.
-std::vector<NearestPoint> NearestPoints(const Eigen::MatrixXd& positions,
-                                        const Eigen::MatrixXd& others);
+[[nodiscard]] std::vector<NearestPoint> NearestPoints(
+    const Eigen::MatrixXd& positions, const Eigen::MatrixXd& others);
 
 }  // namespace elastimate
 

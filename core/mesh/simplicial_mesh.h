@@ -24,8 +24,10 @@ namespace elastimate {
 /// overlap, which this does not look for.
 class SimplicialMesh {
  public:
-  /// Precondition: a valid mesh, which outlives this.  O(num_elements).
+  /// Precondition: a valid mesh, which outlives this; a temporary one does not
+  /// compile.  O(num_elements).
   explicit SimplicialMesh(const Mesh& mesh);
+  explicit SimplicialMesh(const Mesh&&) = delete;
 
   /// As many for each element, one element after another, of its region.
   const Mesh& Simplices() const { return simplices_; }

@@ -26,7 +26,7 @@ struct DeformationSize {
 /// for the volume.  Precondition: a valid scene with a measurement in each load
 /// case.  Some thousand points of large scenes are taken, so that it costs
 /// O(num_elements) at most, and little.
-DeformationSize MeasureDeformation(const Scene& scene);
+[[nodiscard]] DeformationSize MeasureDeformation(const Scene& scene);
 
 /// Takes a finite rotation out of the displacements of each load case, where a
 /// rigid motion is free: u becomes R^T (x + u - b) + a - x, where R and the

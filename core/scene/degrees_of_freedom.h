@@ -31,11 +31,12 @@ struct DegreesOfFreedom {
 
 /// The displacement of the held degrees of freedom, zero in the free rows:
 /// dimension * num_nodes values.
-Eigen::VectorXd HeldDisplacement(const Supports& supports);
+[[nodiscard]] Eigen::VectorXd HeldDisplacement(const Supports& supports);
 
 /// Of values in each load case (num_dofs x num_load_cases), those in the rows
 /// that it holds, zero elsewhere.
-Eigen::MatrixXd OfHeld(const Scene& scene, const Eigen::MatrixXd& values);
+[[nodiscard]] Eigen::MatrixXd OfHeld(const Scene& scene,
+                                     const Eigen::MatrixXd& values);
 
 }  // namespace elastimate
 

@@ -15,7 +15,7 @@ namespace elastimate {
 ///
 /// Precondition: a valid scene (ValidateScene).  O(num_elements) time and
 /// memory.
-Scene FinerScene(const Scene& scene);
+[[nodiscard]] Scene FinerScene(const Scene& scene);
 
 }  // namespace elastimate
 

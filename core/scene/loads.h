@@ -19,16 +19,17 @@ namespace elastimate {
 /// an element, 0 and 1/3 of a facet [Zienkiewicz & Taylor, The Finite Element
 /// Method].  Precondition: a valid scene (ValidateScene).  O(num_nodes +
 /// num_elements + num_facets) per load.
-Eigen::MatrixXd AssembleLoads(const Mesh& mesh, const std::vector<Load>& loads);
+[[nodiscard]] Eigen::MatrixXd AssembleLoads(const Mesh& mesh,
+                                            const std::vector<Load>& loads);
 
 /// AssembleLoads for each load case, one column each:
 /// num_dofs x num_load_cases, row dimension * node + component.
-Eigen::MatrixXd AssembleLoadCases(const Scene& scene);
+[[nodiscard]] Eigen::MatrixXd AssembleLoadCases(const Scene& scene);
 /// The same into columns that are there.
 void AssembleLoadCases(const Scene& scene, Eigen::Ref<Eigen::MatrixXd> force);
 
 /// A load that is so many times another.
-Load Scaled(const Load& load, double factor);
+[[nodiscard]] Load Scaled(const Load& load, double factor);
 
 /// A load in sum.
 struct LoadResultant {
@@ -41,7 +42,7 @@ struct LoadResultant {
 
 /// The resultant of one load of a valid scene, the same for each element order.
 /// O(num_nodes + num_elements + num_facets).
-LoadResultant ResultantOf(const Mesh& mesh, const Load& load);
+[[nodiscard]] LoadResultant ResultantOf(const Mesh& mesh, const Load& load);
 
 }  // namespace elastimate
 

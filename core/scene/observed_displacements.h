@@ -103,7 +103,8 @@ class ObservedDisplacements {
 
 /// Whether any component that was measured at a point of a load case, beside
 /// those of nodes, has a row in ObservedDisplacements.  O(num_points).
-bool AreFreePointsMeasured(const Scene& scene, Eigen::Index load_case);
+[[nodiscard]] bool AreFreePointsMeasured(const Scene& scene,
+                                         Eigen::Index load_case);
 
 }  // namespace elastimate
 

@@ -35,7 +35,7 @@ namespace elastimate {
 ///   const Scene quadratic = QuadraticScene(scene);
 ///   const Estimate estimate = MakeEstimator("iterative-fe")->Run(quadratic,
 ///                                                               {});
-Scene QuadraticScene(const Scene& scene);
+[[nodiscard]] Scene QuadraticScene(const Scene& scene);
 
 }  // namespace elastimate
 

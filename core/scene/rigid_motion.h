@@ -46,8 +46,8 @@ inline Eigen::MatrixXd RigidMotionsOf(const Eigen::MatrixXd& arms) {
 /// the translation t first in `motion`, then the angle [rad] about the origin,
 /// in space the rotation vector: the axis times the angle.  To first order,
 /// RigidMotionsAt(x) * motion is what it adds to x.
-Eigen::MatrixXd MovedRigidly(const Eigen::MatrixXd& points,
-                             const Eigen::VectorXd& motion);
+[[nodiscard]] Eigen::MatrixXd MovedRigidly(const Eigen::MatrixXd& points,
+                                           const Eigen::VectorXd& motion);
 
 /// Why the supports do not hold the specimen: a sentence that names a motion
 /// without strain which they allow (a translation or a rotation of a part of
@@ -60,11 +60,12 @@ Eigen::MatrixXd MovedRigidly(const Eigen::MatrixXd& points,
 ///
 /// Precondition: a valid mesh.  O(num_elements log(num_elements)), and a sparse
 /// factorisation with as many unknowns as rigid motions for each hinged body.
-std::string WhyNotHeld(const Mesh& mesh, const Supports& supports);
+[[nodiscard]] std::string WhyNotHeld(const Mesh& mesh,
+                                     const Supports& supports);
 
 /// The same of the supports of each load case of a scene; names the load case
 /// where they are its own.
-std::string WhyNotHeld(const Scene& scene);
+[[nodiscard]] std::string WhyNotHeld(const Scene& scene);
 
 }  // namespace elastimate
 

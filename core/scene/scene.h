@@ -133,7 +133,7 @@ inline const Supports& SupportsOf(const Scene& scene, Eigen::Index k) {
 }
 
 /// Whether supports differ between load cases.  O(num_load_cases).
-bool HasSupportsOfCases(const Scene& scene);
+[[nodiscard]] bool HasSupportsOfCases(const Scene& scene);
 
 /// Throws std::invalid_argument with one sentence that names the load case, the
 /// array, and the node or element, unless: the mesh and its materials are

@@ -11,7 +11,7 @@ namespace elastimate {
 ///
 /// Precondition: a valid scene (ValidateScene).  O(num_elements) time and
 /// memory.
-Scene SimplicialScene(const Scene& scene);
+[[nodiscard]] Scene SimplicialScene(const Scene& scene);
 
 }  // namespace elastimate
 

@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "elastimate/core/algebra/eigen_abi.h"
+
 namespace elastimate {
 
 /// One flag per displacement component: dimension x num_nodes.

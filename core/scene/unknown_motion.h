@@ -10,7 +10,7 @@ namespace elastimate {
 
 /// Whether displacements of supports, or of the whole specimen, are not known,
 /// or forces of supports were measured.  O(1).
-bool HasUnknownMotion(const Scene& scene);
+[[nodiscard]] bool HasUnknownMotion(const Scene& scene);
 
 /// The part of ValidateScene about unknown displacements of supports and about
 /// resultants.  O(num_dofs num_load_cases).
@@ -19,7 +19,7 @@ void ValidateUnknownMotion(const Scene& scene);
 /// The held components that moved as measured: those of unknown displacement
 /// that are not in rigid faces.  dimension x num_nodes; empty when there are
 /// none of unknown displacement.
-ComponentMask AsMeasured(const Supports& supports);
+[[nodiscard]] ComponentMask AsMeasured(const Supports& supports);
 
 /// What moved by unknown amounts b and a in a load case,
 ///
@@ -46,7 +46,8 @@ struct UnknownMotion {
 
 /// The displacement of AsMeasured as measured in load case `k`, zero elsewhere
 /// and where a node was not measured: num_dofs values.
-Eigen::VectorXd MeasuredSupports(const Scene& scene, Eigen::Index k);
+[[nodiscard]] Eigen::VectorXd MeasuredSupports(const Scene& scene,
+                                               Eigen::Index k);
 
 }  // namespace elastimate
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "elastimate/core/algebra/eigen_abi.h"
 #include "elastimate/core/mechanics/stiffness_assembly.h"
 #include "elastimate/core/solvers/linear_solver.h"
 

@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "elastimate/core/algebra/eigen_abi.h"
+
 namespace elastimate {
 
 /// Solves linear systems with the symmetric positive definite matrices that

@@ -24,14 +24,14 @@ void SetStartOfPetsc(void (*start)());
 /// has a function that starts it.  Else why not, in a few words.  The module is
 /// loaded at the first call, for PETSc brings libraries that take longer to
 /// load than a small scene takes to estimate.
-std::string WhyNoMultigrid();
+[[nodiscard]] std::string WhyNoMultigrid();
 
 inline bool HasMultigrid() { return WhyNoMultigrid().empty(); }
 
 /// A PetscMultigrid, which cannot be set up where PETSc fails to start.
 /// `assembly` and `degrees_of_freedom` must outlive it.
 /// Precondition: HasMultigrid().
-std::unique_ptr<LinearSolver> MakeMultigrid(
+[[nodiscard]] std::unique_ptr<LinearSolver> MakeMultigrid(
     const Mesh& mesh, const StiffnessAssembly& assembly,
     const DegreesOfFreedom& degrees_of_freedom);
 

@@ -63,12 +63,12 @@ class StiffnessSolver {
   /// Factorises A(nu); does nothing when nu is the present one.  False when
   /// A(nu) is singular to working precision (nu at or beyond -1 or 1/2, or an
   /// extremely ill-conditioned mesh).
-  bool Factorize(double poisson_ratio);
+  [[nodiscard]] bool Factorize(double poisson_ratio);
 
   /// Factorises the stiffness of these blocks instead: for each pair of the
   /// graph, dimension x (dimension num_pairs), side by side.  False when it is
   /// singular to working precision.
-  bool FactorizeBlocks(const Eigen::MatrixXd& blocks);
+  [[nodiscard]] bool FactorizeBlocks(const Eigen::MatrixXd& blocks);
 
   /// A^-1 of the free rows of each column of `all` (num_dofs x n), zero in
   /// the held rows.  Where multigrid does not converge, A is factorised from

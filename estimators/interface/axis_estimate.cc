@@ -68,7 +68,10 @@ std::vector<AxisEstimate> AxesOf(const Scene& scene, const Estimate& estimate) {
     AxisEstimate axis;
     axis.regions = estimate.parameters[first].regions;
     axis.first_rotation = std::size_t(first + count) - kNumRotations;
-    axis.direction = FreeAxisLaw::Axis(parameters);
+    const Eigen::Vector3d direction = FreeAxisLaw::Axis(parameters);
+    if (direction.allFinite()) {
+      axis.direction = direction;
+    }
     const Eigen::MatrixXd jacobian =
         FreeAxisLaw::AxisJacobian(parameters).rightCols(kNumRotations);
     const Eigen::MatrixXd own = CovarianceOfParameters(estimate, first, count);
@@ -81,7 +84,7 @@ std::vector<AxisEstimate> AxesOf(const Scene& scene, const Estimate& estimate) {
       axis.anisotropy = ChiSquareOfAnisotropy(parameters, own);
       if (!(*axis.standard_error <= kLimits.largest_axis_error &&
             axis.anisotropy >= kLimits.least_anisotropy)) {
-        axis.direction.setConstant(Estimate::kUnknown);
+        axis.direction.reset();
       }
     }
     axes.push_back(axis);

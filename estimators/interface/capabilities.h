@@ -38,8 +38,9 @@ struct Capabilities {
 /// are written.
 /// Preconditions: a valid scene and valid options.  O(num_dofs num_load_cases),
 /// and the cost of WhyNotHeld where it needs supports.
-std::string WhyUnsupported(const Capabilities& capabilities, const Scene& scene,
-                           const EstimatorOptions& options);
+[[nodiscard]] std::string WhyUnsupported(const Capabilities& capabilities,
+                                         const Scene& scene,
+                                         const EstimatorOptions& options);
 
 }  // namespace elastimate
 

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "elastimate/core/algebra/eigen_abi.h"
 #include "elastimate/core/materials/elasticity.h"
 
 namespace elastimate {
@@ -33,8 +34,8 @@ struct ErrorBudget {
 };
 
 /// The roots of the diagonal of a covariance of (E, nu) at this estimate.
-ParameterErrors StandardErrors(const Eigen::Matrix2d& covariance,
-                               const IsotropicElasticity& elasticity);
+[[nodiscard]] ParameterErrors StandardErrors(
+    const Eigen::Matrix2d& covariance, const IsotropicElasticity& elasticity);
 
 }  // namespace elastimate
 

@@ -30,7 +30,7 @@ struct Interval {
 };
 
 /// "region 3", "regions 1, 2 and 4 more".
-std::string RegionsLabel(const std::vector<int>& regions);
+[[nodiscard]] std::string RegionsLabel(const std::vector<int>& regions);
 
 /// What is said of one parameter of a material.
 struct ParameterEstimate {
@@ -77,8 +77,8 @@ struct AxisEstimate {
   std::vector<int> regions;  ///< As of its parameters.
   /// Of its parameters, the first component of the rotation; all follow.
   std::size_t first_rotation = 0;
-  /// A unit vector, of either end; not numbers where it is not determined.
-  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+  /// A unit vector, of either end; empty where it is not determined.
+  std::optional<Eigen::Vector3d> direction;
   /// Towards where it is largest [rad]; empty where it is unknown.
   std::optional<double> standard_error;
   /// How far its material is from one that is alike in all directions, of chi^2
@@ -95,8 +95,8 @@ struct Rung {
   int element_order = 1;
   /// Empty when it was passed over.
   std::optional<Status> status;
-  IsotropicElasticity elasticity = {std::numeric_limits<double>::quiet_NaN(),
-                                    std::numeric_limits<double>::quiet_NaN()};
+  /// Of one isotropic material; empty where there is no number.
+  std::optional<IsotropicElasticity> elasticity;
   Work work;
   double seconds = 0;
   /// Why the ladder went on, or stopped.
@@ -131,7 +131,7 @@ struct LawComparison {
 enum class Determination { kDetermined, kWeakly, kNot };
 
 /// "determined", "weakly" or "not".
-std::string_view DeterminationName(Determination determination);
+[[nodiscard]] std::string_view DeterminationName(Determination determination);
 
 /// What is said of one of several materials.
 struct MaterialEstimate {

@@ -9,6 +9,7 @@
 #include "elastimate/core/text/numbers.h"
 #include "elastimate/estimators/interface/input_checks.h"
 #include "elastimate/estimators/interface/judge.h"
+#include "elastimate/estimators/interface/missing_errors.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 
 namespace elastimate {
@@ -106,13 +107,15 @@ Estimate Estimator::Run(const Scene& measured,
   CheckLoads(scene);
   CheckSupported(*this, scene, options);
   Estimate estimate = DoRun(scene, options);
+  FailWithoutParameters(Name(), scene, estimate);
   FinishEstimate(Name(), scene, options, findings, estimate);
+  FailWithoutErrors(estimate);
   estimate.seconds = stopwatch.Lap();
   return estimate;
 }
 
 PreparedEstimator Estimator::Prepare(const Scene& scene,
-                                     const EstimatorOptions& options) const {
+                                     const EstimatorOptions& options) const& {
   return PreparedEstimator(*this, scene, options);
 }
 

@@ -62,16 +62,17 @@ struct EstimatorOptions {
 
   /// A sentence that names the option, its value and the broken rule; empty
   /// when the options are valid.
-  std::string WhyInvalid() const;
+  [[nodiscard]] std::string WhyInvalid() const;
 };
 
-/// A method that turns a scene into an estimate of E and nu.
-///
-/// A new one is one header/source pair, one line in the table of registry.cc,
-/// and one row in docs/estimators.md; the conformance suite runs on it by
-/// itself.
-class Estimator {
+/// A method that turns a scene into an estimate of the parameters of its
+/// materials.  CONTRIBUTING.md says how to add one, to the library or to a
+/// program of its own (RegisterEstimator).
+class Estimator : public std::enable_shared_from_this<Estimator> {
  public:
+  Estimator() = default;
+  Estimator(const Estimator&) = delete;
+  Estimator& operator=(const Estimator&) = delete;
   virtual ~Estimator() = default;
 
   /// Checks the input, runs the method, and checks the result.
@@ -83,19 +84,28 @@ class Estimator {
   /// free degrees of freedom.  Numerical outcomes never throw: they are
   /// statuses of the estimate.
   ///
+  /// An estimate that the method calls usable, but that has neither a standard
+  /// error of each parameter that it estimates nor a reason for that
+  /// (`why_no_standard_error`), comes back as a failure (`errors_missing`).
+  ///
   /// May be called from several threads at once.  The same input gives the same
   /// bits in each of them and on every call, on the same kind of processor with
   /// the same number of BLAS threads, unless another thread calls rand()
   /// meanwhile, which the ordering of a factorisation (METIS) seeds and draws
   /// from.
-  Estimate Run(const Scene& measured, const EstimatorOptions& options) const;
+  [[nodiscard]] Estimate Run(const Scene& measured,
+                             const EstimatorOptions& options) const;
 
   /// Does all that does not depend on what was measured, for a scene that is
   /// measured again and again; displacements of `scene` are not looked at.
-  /// Throws std::invalid_argument as Run does.  This estimator has to outlive
-  /// what it prepares.
-  PreparedEstimator Prepare(const Scene& scene,
-                            const EstimatorOptions& options) const;
+  /// Copies the scene and the options.  Throws std::invalid_argument as Run
+  /// does.  What is prepared keeps an estimator that a std::shared_ptr owns, as
+  /// that of MakeEstimator is, so MakeEstimator(name)->Prepare(...) is safe.  A
+  /// local one has to outlive it, and a temporary one does not compile.
+  [[nodiscard]] PreparedEstimator Prepare(
+      const Scene& scene, const EstimatorOptions& options) const&;
+  PreparedEstimator Prepare(const Scene&,
+                            const EstimatorOptions&) const&& = delete;
 
   /// The name by which the registry knows it, such as "closed-form".
   virtual std::string_view Name() const = 0;
@@ -106,16 +116,21 @@ class Estimator {
   /// Why it cannot serve this scene with these options, and what could; empty
   /// when it can: what follows from its capabilities.
   /// Preconditions: a valid scene and valid options.
-  virtual std::string WhyUnsupported(const Scene& scene,
-                                     const EstimatorOptions& options) const;
+  [[nodiscard]] virtual std::string WhyUnsupported(
+      const Scene& scene, const EstimatorOptions& options) const;
 
  protected:
   friend class PreparedEstimator;
 
+  /// Estimates from a scene and options that Run has checked.  An estimate
+  /// starts out as a failure: Estimate::Accept makes it usable, and
+  /// Estimate::Fail names the reason why it is not.  Run checks afterwards
+  /// whether it is finite, physical and determined.
   virtual Estimate DoRun(const Scene& scene,
                          const EstimatorOptions& options) const = 0;
-  /// Of an estimator that keeps nothing, DoRun for each measurement.  `scene`,
-  /// without displacements, and `options` outlive the preparation.
+  /// Prepares what does not depend on the measurement.  The default keeps
+  /// nothing, and calls DoRun for each measurement.  `scene`, without
+  /// displacements, and `options` outlive the preparation.
   virtual std::unique_ptr<Preparation> DoPrepare(
       const Scene& scene, const EstimatorOptions& options) const;
 };

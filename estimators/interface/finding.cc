@@ -23,6 +23,7 @@ constexpr Row kRows[] = {
     {"no_convergence", FindingCode::kNoConvergence, Status::kIterationLimit},
     {"fit_not_certified", FindingCode::kFitNotCertified,
      Status::kIterationLimit},
+    {"errors_missing", FindingCode::kErrorsMissing, Status::kNumericalFailure},
     {"unphysical", FindingCode::kUnphysical, Status::kUnphysical},
     {"displacements_oppose_loads", FindingCode::kDisplacementsOpposeLoads,
      Status::kUnphysical},

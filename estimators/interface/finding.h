@@ -18,7 +18,7 @@ enum class Status {
 
 /// "ok", "not_identifiable", "unphysical", "iteration_limit" or
 /// "numerical_failure".
-std::string_view StatusName(Status status);
+[[nodiscard]] std::string_view StatusName(Status status);
 
 /// What there is to say about an estimate; docs/findings.md explains each.
 enum class FindingCode {
@@ -29,6 +29,7 @@ enum class FindingCode {
   kSearchFailed,
   kNoConvergence,
   kFitNotCertified,
+  kErrorsMissing,
   // Why it is unphysical.
   kUnphysical,
   kDisplacementsOpposeLoads,
@@ -100,16 +101,16 @@ struct Finding {
 };
 
 /// The name of a code in reports, such as "smooth_residual".
-std::string_view FindingCodeName(FindingCode code);
+[[nodiscard]] std::string_view FindingCodeName(FindingCode code);
 /// "notice", "warning" or "error".
-std::string_view SeverityName(Severity severity);
+[[nodiscard]] std::string_view SeverityName(Severity severity);
 /// The status of an estimate that is not usable for this reason.
-Status StatusOf(FindingCode code);
+[[nodiscard]] Status StatusOf(FindingCode code);
 /// All codes, in the order above.
-std::vector<FindingCode> AllFindingCodes();
+[[nodiscard]] std::vector<FindingCode> AllFindingCodes();
 
 /// "text; advice".
-std::string Sentence(const Finding& finding);
+[[nodiscard]] std::string Sentence(const Finding& finding);
 
 }  // namespace elastimate
 

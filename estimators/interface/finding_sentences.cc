@@ -188,6 +188,13 @@ Finding FitNotCertified() {
                "use iterative-fe, or give bounds on parameters");
 }
 
+Finding ErrorsMissing(const std::string& estimator, const std::string& what) {
+  return Error(
+      FindingCode::kErrorsMissing,
+      "the estimator " + estimator + " gives neither " + what + " nor a reason",
+      "use another one, or enter a covariance or why_no_standard_error");
+}
+
 Finding Unphysical(const IsotropicElasticity& elasticity) {
   return Error(FindingCode::kUnphysical,
                Describe(elasticity) + " is not physical (E > 0, -1 < nu < 0.5)",

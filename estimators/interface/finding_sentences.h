@@ -23,6 +23,9 @@ Finding SingularStiffness();
 Finding SearchFailed(const std::string& reason);
 Finding NoConvergence(int max_iterations);
 Finding FitNotCertified();
+/// `estimator` calls an estimate usable without `what` it owes, such as "a
+/// standard error of E".
+Finding ErrorsMissing(const std::string& estimator, const std::string& what);
 
 // Why it is unphysical.
 Finding Unphysical(const IsotropicElasticity& elasticity);

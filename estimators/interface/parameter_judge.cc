@@ -79,7 +79,7 @@ bool HasFiniteVariance(const Estimate& estimate, std::size_t place) {
 }
 
 bool IsDetermined(const AxisEstimate& axis, const Estimate& estimate) {
-  return axis.direction.allFinite() &&
+  return axis.direction &&
          (axis.standard_error || !estimate.why_no_standard_error.empty());
 }
 

@@ -10,6 +10,7 @@
 #include "elastimate/estimators/interface/estimator.h"
 #include "elastimate/estimators/interface/input_checks.h"
 #include "elastimate/estimators/interface/judge.h"
+#include "elastimate/estimators/interface/missing_errors.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 
 namespace elastimate {
@@ -78,6 +79,8 @@ bool IsMeasuredAlike(const Mesh& mesh, const LoadCase& a, const LoadCase& b) {
 
 struct PreparedEstimator::State {
   const Estimator& estimator;
+  /// Keeps the estimator, where a std::shared_ptr owns it.
+  std::shared_ptr<const Estimator> owner;
   std::string name;
   Scene scene;
   EstimatorOptions options;
@@ -87,8 +90,9 @@ struct PreparedEstimator::State {
 PreparedEstimator::PreparedEstimator(const Estimator& estimator,
                                      const Scene& scene,
                                      const EstimatorOptions& options)
-    : state_(new State{estimator, std::string(estimator.Name()),
-                       WithoutMeasurement(scene), options, nullptr}) {
+    : state_(new State{estimator, estimator.weak_from_this().lock(),
+                       std::string(estimator.Name()), WithoutMeasurement(scene),
+                       options, nullptr}) {
   ValidateScene(state_->scene);
   CheckOptions(options);
   CheckLoads(state_->scene);
@@ -131,7 +135,9 @@ Estimate PreparedEstimator::RunHere() {
   const Scene& scene = state_->scene;
   const std::vector<Finding> findings = CheckMeasurements(scene);
   Estimate estimate = state_->preparation->Run(scene);
+  FailWithoutParameters(state_->name, scene, estimate);
   FinishEstimate(state_->name, scene, state_->options, findings, estimate);
+  FailWithoutErrors(estimate);
   return estimate;
 }
 

@@ -39,9 +39,11 @@ class Preparation {
 ///   }
 class PreparedEstimator {
  public:
-  /// As Estimator::Prepare, which says more.
+  /// Does what Estimator::Prepare does, which says more.
   PreparedEstimator(const Estimator& estimator, const Scene& scene,
                     const EstimatorOptions& options);
+  PreparedEstimator(const Estimator&&, const Scene&,
+                    const EstimatorOptions&) = delete;
   ~PreparedEstimator();
   PreparedEstimator(PreparedEstimator&&) noexcept;
   PreparedEstimator& operator=(PreparedEstimator&&) noexcept;
@@ -53,7 +55,7 @@ class PreparedEstimator {
   /// leaves this object as it was, when a shape is wrong, or for displacements
   /// that Estimator::Run would refuse.  Not to be called from two threads at
   /// once.
-  Estimate Run(const std::vector<Eigen::MatrixXd>& displacements);
+  [[nodiscard]] Estimate Run(const std::vector<Eigen::MatrixXd>& displacements);
 
   /// The estimate from load cases that may differ in all that there is of
   /// them: loads, and which points were measured.  Where only displacements
@@ -61,7 +63,7 @@ class PreparedEstimator {
   /// any more is done anew.  `iterative-fe` (and `auto`, of unknown motions)
   /// starts where the last usable estimate ended.  Throws std::invalid_argument
   /// as Estimator::Run does, and takes other load cases all the same.
-  Estimate RunLoadCases(const std::vector<LoadCase>& load_cases);
+  [[nodiscard]] Estimate RunLoadCases(const std::vector<LoadCase>& load_cases);
 
  private:
   struct State;

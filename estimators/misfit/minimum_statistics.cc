@@ -304,7 +304,9 @@ void AddOutliers(const FreeParameters& free, const Eigen::VectorXd& variables,
                  Eigen::MatrixXd& covariance, Evidence& evidence,
                  Estimate& estimate) {
   Eigen::VectorXd change = Eigen::VectorXd::Zero(free.Size());
-  if (HasHeavyTails(residual)) {
+  // What is left of exact displacements is rounding, which has no outliers.
+  if (Norm(residual) > kLimits.exact_residual * Norm(observed.Measured()) &&
+      HasHeavyTails(residual)) {
     const Eigen::Index size = sensitivities.rows() + free.Size();
     Eigen::MatrixXd all(size, free.Size());
     all << sensitivities,

@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 
+#include "elastimate/core/algebra/eigen_abi.h"
+
 namespace elastimate {
 
 /// What an information leaves uncertain: the directions d of the parameters, of

@@ -63,28 +63,31 @@ struct LoadPlan {
 /// Throws as ExpectedInformation does, and std::invalid_argument for a scene
 /// that is invalid or not held, parameters that are not those of its
 /// materials, no free parameter, no candidates, or noise that is not positive.
-LoadPlan PlanLoads(const Scene& scene,
-                   const std::vector<CandidateLoad>& candidates,
-                   const Eigen::VectorXd& parameters, double relative_noise,
-                   SolverKind solver = SolverKind::kAutomatic);
+[[nodiscard]] LoadPlan PlanLoads(const Scene& scene,
+                                 const std::vector<CandidateLoad>& candidates,
+                                 const Eigen::VectorXd& parameters,
+                                 double relative_noise,
+                                 SolverKind solver = SolverKind::kAutomatic);
 
 /// A load case of which the same is observed as of another, with its noise.
-LoadCase ObservedAs(const LoadCase& observed, LoadCase load_case);
+[[nodiscard]] LoadCase ObservedAs(const LoadCase& observed, LoadCase load_case);
 
 /// The unit loads on some facets (UnitLoads) as candidates that are observed as
 /// the first load case of the scene is, and held as it is, at zero.
-std::vector<CandidateLoad> UnitCandidates(const Scene& scene,
-                                          const Eigen::MatrixXi& facets);
+[[nodiscard]] std::vector<CandidateLoad> UnitCandidates(
+    const Scene& scene, const Eigen::MatrixXi& facets);
 
 /// Typical parameters of the materials of a scene, with the known ones; moduli
 /// so large that the displacements are those measured, where all load cases
 /// have some.
-Eigen::VectorXd TypicalParameters(const Scene& scene, SolverKind solver);
+[[nodiscard]] Eigen::VectorXd TypicalParameters(const Scene& scene,
+                                                SolverKind solver);
 
 /// A combination of parameters for people, by labels: "E up with nu down".  The
 /// four largest shares are named, of those above a fifth of the largest.
-std::string CombinationInWords(const Eigen::VectorXd& combination,
-                               const std::vector<ParameterEstimate>& free);
+[[nodiscard]] std::string CombinationInWords(
+    const Eigen::VectorXd& combination,
+    const std::vector<ParameterEstimate>& free);
 
 }  // namespace elastimate
 

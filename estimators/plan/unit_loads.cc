@@ -77,20 +77,6 @@ Eigen::MatrixXi LoadedFacets(const Scene& scene) {
   return facets;
 }
 
-Eigen::MatrixXi FacetsInBox(const Mesh& mesh, const Eigen::VectorXd& lower,
-                            const Eigen::VectorXd& upper) {
-  constexpr double kTolerance = 1e-9;
-  const double extent =
-      (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff())
-          .maxCoeff();
-  const Eigen::ArrayXd from = lower.array() - kTolerance * extent;
-  const Eigen::ArrayXd to = upper.array() + kTolerance * extent;
-  return FacetsWhere(mesh, BoundaryFacets(mesh), [&](int node) {
-    const auto at = mesh.nodes.col(node).array();
-    return (at >= from).all() && (at <= to).all();
-  });
-}
-
 std::vector<UnitLoad> UnitLoads(const Mesh& mesh,
                                 const Eigen::MatrixXi& facets) {
   const int dimension = mesh.Dimension();

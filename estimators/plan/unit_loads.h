@@ -13,13 +13,7 @@ namespace elastimate {
 /// and surface forces, each once, and the boundary facets whose vertices all
 /// have a nodal force.  Empty where there are none, as under body forces.
 /// O(num_elements + num_facets log num_facets).
-Eigen::MatrixXi LoadedFacets(const Scene& scene);
-
-/// The boundary facets whose vertices all lie in a box, bounds (`dimension`
-/// coordinates each) included to within 1e-9 of the extent of the mesh.
-/// O(num_elements).
-Eigen::MatrixXi FacetsInBox(const Mesh& mesh, const Eigen::VectorXd& lower,
-                            const Eigen::VectorXd& upper);
+[[nodiscard]] Eigen::MatrixXi LoadedFacets(const Scene& scene);
 
 /// A load whose resultant is 1 along one axis, and 0 along all others.
 struct UnitLoad {
@@ -34,8 +28,8 @@ struct UnitLoad {
 ///   f_i = t(x_i) A_i,   A_i = integral of N_i,   sum of (x_i - c) x f_i = e.
 ///
 /// Precondition: facets of an area.  O(num_nodes + num_facets).
-std::vector<UnitLoad> UnitLoads(const Mesh& mesh,
-                                const Eigen::MatrixXi& facets);
+[[nodiscard]] std::vector<UnitLoad> UnitLoads(const Mesh& mesh,
+                                              const Eigen::MatrixXi& facets);
 
 }  // namespace elastimate
 

@@ -65,10 +65,11 @@ struct LoadError {
 ///
 /// Preconditions: `scene` and `options` are those that the frames were
 /// estimated with, by `estimator`; at least one frame.  O(num_frames).
-Estimate JointEstimate(const Scene& scene, const EstimatorOptions& options,
-                       const Estimator& estimator,
-                       const std::vector<FrameEstimate>& frames,
-                       const LoadError& load_error);
+[[nodiscard]] Estimate JointEstimate(const Scene& scene,
+                                     const EstimatorOptions& options,
+                                     const Estimator& estimator,
+                                     const std::vector<FrameEstimate>& frames,
+                                     const LoadError& load_error);
 
 }  // namespace elastimate
 

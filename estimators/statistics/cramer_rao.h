@@ -26,9 +26,9 @@ namespace elastimate {
 /// positive for each load case; std::runtime_error when the stiffness is
 /// singular to working precision.
 /// Cost: one factorisation and two solves for each load case.
-Eigen::Matrix2d CramerRaoBound(const Scene& scene,
-                               const IsotropicElasticity& elasticity,
-                               const Eigen::VectorXd& noise_sd);
+[[nodiscard]] Eigen::Matrix2d CramerRaoBound(
+    const Scene& scene, const IsotropicElasticity& elasticity,
+    const Eigen::VectorXd& noise_sd);
 
 }  // namespace elastimate
 

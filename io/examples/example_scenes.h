@@ -28,7 +28,7 @@ struct CuboidOptions {
 /// and no measurement.  The nodes are numbered along x first, then y, then z.
 /// Throws std::invalid_argument, beginning with the option's name, for an
 /// option out of its range.  O(num_elements): 0.03 s for a million tetrahedra.
-Scene CuboidScene(const CuboidOptions& options);
+[[nodiscard]] Scene CuboidScene(const CuboidOptions& options);
 
 /// A strip of sheet metal of `cells` quadrilaterals, or of twice as many
 /// triangles, that is pulled.
@@ -51,7 +51,7 @@ struct RectangleOptions {
 /// The nodes are numbered along x first, then y.  Throws std::invalid_argument,
 /// beginning with the option's name, for an option out of its range.
 /// O(num_elements).
-Scene RectangleScene(const RectangleOptions& options);
+[[nodiscard]] Scene RectangleScene(const RectangleOptions& options);
 
 /// What pulls the end of a plate.
 enum class PlateEnds {
@@ -92,7 +92,7 @@ struct PlateOptions {
 /// first, then from the x axis to the y axis.  Throws std::invalid_argument,
 /// beginning with the option's name, for an option out of its range.
 /// O(num_elements).
-Scene PlateScene(const PlateOptions& options);
+[[nodiscard]] Scene PlateScene(const PlateOptions& options);
 
 /// A smooth, closed, liver-like solid: a big right lobe (small x) that tapers
 /// to a thin left lobe, domed above, hollow behind and below, with a thin lower
@@ -126,7 +126,7 @@ struct OrganOptions {
 /// option out of its range, and std::runtime_error, naming the step, when the
 /// meshing fails, which the program elastimate-organ does in a process of its
 /// own.
-Scene OrganScene(const OrganOptions& options);
+[[nodiscard]] Scene OrganScene(const OrganOptions& options);
 
 }  // namespace elastimate
 

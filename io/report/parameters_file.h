@@ -17,8 +17,8 @@ namespace elastimate {
 /// Throws std::invalid_argument with one sentence, naming the file and the
 /// entry, for what is no parameter of a material of the scene, is given twice,
 /// out of the range of its law, or missing.
-Eigen::VectorXd ReadParameters(const std::filesystem::path& path,
-                               const Scene& scene);
+[[nodiscard]] Eigen::VectorXd ReadParameters(const std::filesystem::path& path,
+                                             const Scene& scene);
 
 }  // namespace elastimate
 

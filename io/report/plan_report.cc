@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "elastimate/io/report/report.h"
+#include "elastimate/core/package/version.h"
 #include "elastimate/io/text/printable.h"
 
 namespace elastimate {

@@ -30,9 +30,9 @@ struct PlanBasis {
 
 /// A plan as a JSON text, described in docs/report.md.  Numbers round-trip;
 /// what is undetermined is null.
-std::string JsonPlan(const LoadPlan& plan, const PlanBasis& basis,
-                     const std::vector<CandidateLoad>& candidates,
-                     const std::vector<std::string>& notices);
+[[nodiscard]] std::string JsonPlan(const LoadPlan& plan, const PlanBasis& basis,
+                                   const std::vector<CandidateLoad>& candidates,
+                                   const std::vector<std::string>& notices);
 
 }  // namespace elastimate
 

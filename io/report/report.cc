@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <vector>
 
+#include "elastimate/core/package/version.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/io/text/printable.h"
@@ -175,17 +177,17 @@ Json StiffnessJson(const Estimate& estimate) {
 Json AxesJson(const Estimate& estimate) {
   Json axes = Json::array();
   for (const AxisEstimate& axis : estimate.axes) {
-    Json direction = Json::array();
-    for (const double component : axis.direction) {
-      direction.push_back(component);
+    Json direction;
+    if (axis.direction) {
+      direction =
+          std::vector<double>(axis.direction->begin(), axis.direction->end());
     }
-    axes.push_back(
-        {{"region", RegionsJson(axis.regions)},
-         {"direction", axis.direction.allFinite() ? direction : Json(nullptr)},
-         {"standard_error_deg",
-          axis.standard_error && axis.direction.allFinite()
-              ? Json(kDegreesOfRadian * *axis.standard_error)
-              : Json(nullptr)}});
+    axes.push_back({{"region", RegionsJson(axis.regions)},
+                    {"direction", direction},
+                    {"standard_error_deg",
+                     axis.standard_error && axis.direction
+                         ? Json(kDegreesOfRadian * *axis.standard_error)
+                         : Json(nullptr)}});
   }
   return axes;
 }
@@ -234,15 +236,19 @@ Json WorkJson(const Work& work) {
 Json RungsJson(const Estimate& estimate) {
   Json rungs = Json::array();
   for (const Rung& rung : estimate.rungs) {
-    rungs.push_back({{"estimator", rung.estimator},
-                     {"order", rung.element_order},
-                     {"status", rung.status ? Json(StatusName(*rung.status))
-                                            : Json(nullptr)},
-                     {"youngs_modulus", OrNull(rung.elasticity.youngs_modulus)},
-                     {"poisson_ratio", OrNull(rung.elasticity.poisson_ratio)},
-                     {"work", WorkJson(rung.work)},
-                     {"seconds", rung.seconds},
-                     {"decision", rung.decision}});
+    const auto& elasticity = rung.elasticity;
+    rungs.push_back(
+        {{"estimator", rung.estimator},
+         {"order", rung.element_order},
+         {"status",
+          rung.status ? Json(StatusName(*rung.status)) : Json(nullptr)},
+         {"youngs_modulus",
+          elasticity ? Json(elasticity->youngs_modulus) : Json(nullptr)},
+         {"poisson_ratio",
+          elasticity ? OrNull(elasticity->poisson_ratio) : Json(nullptr)},
+         {"work", WorkJson(rung.work)},
+         {"seconds", rung.seconds},
+         {"decision", rung.decision}});
   }
   return rungs;
 }
@@ -355,8 +361,6 @@ Json SecondsJson(const Estimate& estimate, const ReportTimes& times) {
 }
 
 }  // namespace
-
-std::string Version() { return ELASTIMATE_VERSION; }
 
 std::string JsonReport(const Estimate& estimate, const Scene& scene,
                        const EstimatorOptions& options,

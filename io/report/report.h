@@ -10,9 +10,6 @@
 
 namespace elastimate {
 
-/// The version of the library, such as "0.1.0".
-std::string Version();
-
 /// Wall-clock seconds around an estimate.
 struct ReportTimes {
   double read;   ///< Reading the scene.

@@ -15,9 +15,9 @@ namespace elastimate {
 /// the number of outliers, the codes of findings, separated by spaces, and, of
 /// a frame that is not usable, the reason.  What is unknown is empty; numbers
 /// round-trip.  `frames` has an estimate for each file of `series`.
-std::string SeriesTable(const FrameSeries& series,
-                        const std::vector<FrameEstimate>& frames,
-                        const Estimate& joint);
+[[nodiscard]] std::string SeriesTable(const FrameSeries& series,
+                                      const std::vector<FrameEstimate>& frames,
+                                      const Estimate& joint);
 
 }  // namespace elastimate
 

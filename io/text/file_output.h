@@ -56,8 +56,8 @@ void UnlinkStagedFiles();
 void CheckWritable(const std::filesystem::path& path);
 
 /// Whether the two names lead to one file, which need not exist.
-bool AreSameFile(const std::filesystem::path& first,
-                 const std::filesystem::path& second);
+[[nodiscard]] bool AreSameFile(const std::filesystem::path& first,
+                               const std::filesystem::path& second);
 
 }  // namespace elastimate
 

@@ -29,7 +29,7 @@ struct Fields {
 /// `displacement` and `observed` where there are any; and the field data
 /// `computed` (1) where elements of the mesh computed the displacements
 /// (Origin::kComputed).
-Fields SceneFields(const Scene& scene);
+[[nodiscard]] Fields SceneFields(const Scene& scene);
 
 /// The mesh with its fields as the content of a VTU file (binary, Float64) that
 /// ParaView opens.  What is planar lies at z = 0, its vectors too, with its

@@ -33,7 +33,7 @@ TEST_P(ConformanceStatistics, StandardErrorsCoverTheTruth) {
     if (noise_is_known) {  // That of any seed.
       exact.load_cases[0].noise_sd = AddNoise(kSmallNoise, 1, noisy);
     }
-    const std::unique_ptr<const Estimator> estimator =
+    const std::shared_ptr<const Estimator> estimator =
         MakeEstimator(GetParam());
     PreparedEstimator prepared = estimator->Prepare(exact, {});
     int youngs_covered = 0;

@@ -1,6 +1,6 @@
 # Installs the build in BUILD to a fresh folder, which is not the one that it was configured for, and builds the examples
-# of SOURCE and the project beside this file against it with FLAGS, and runs them.  MULTIGRID tells whether it was built, and
-# PROGRAM whether the command line was.
+# of SOURCE and the projects beside this file against it with FLAGS, and runs them.  MULTIGRID tells whether it was built,
+# and PROGRAM whether the command line was.  COMPILER compiles headers with the include directory of Eigen, EIGEN.
 
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
@@ -15,11 +15,47 @@ file(REMOVE_RECURSE ${work})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${work}/prefix)
 function(build source folder)
   run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${source} -B ${work}/${folder} -D CMAKE_PREFIX_PATH=${work}/prefix
-      -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_FLAGS=${FLAGS} -Wno-dev)
+      -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_FLAGS=${FLAGS} -Wno-dev ${ARGN})
   run(${CMAKE_COMMAND} --build ${work}/${folder})
 endfunction()
 build(${SOURCE}/examples examples)
 build(${CMAKE_CURRENT_LIST_DIR} user)
+
+# What an installed header includes is installed.
+file(GLOB_RECURSE headers RELATIVE ${work}/prefix/include ${work}/prefix/include/*.h)
+foreach(header IN LISTS headers)
+  file(STRINGS ${work}/prefix/include/${header} includes REGEX "^#include \"")
+  foreach(include IN LISTS includes)
+    string(REGEX REPLACE "^#include \"(.*)\"" "\\1" included "${include}")
+    if(NOT EXISTS ${work}/prefix/include/${included})
+      message(FATAL_ERROR "${header} includes ${included}, which is not installed")
+    endif()
+  endforeach()
+endforeach()
+
+# Each component works by itself, and there are no others.
+foreach(component core estimators io)
+  build(${CMAKE_CURRENT_LIST_DIR}/components ${component} -D COMPONENT=${component})
+  run(${work}/${component}/user_of_component)
+endforeach()
+execute_process(COMMAND ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/components -B ${work}/nonsense
+                        -D CMAKE_PREFIX_PATH=${work}/prefix -D COMPONENT=nonsense
+                RESULT_VARIABLE result OUTPUT_QUIET ERROR_VARIABLE output)
+if(result EQUAL 0 OR NOT output MATCHES "nonsense")
+  message(FATAL_ERROR "the component nonsense was found: ${output}")
+endif()
+
+# A source that aligns Eigen's matrices otherwise than the libraries does not compile.
+file(STRINGS ${work}/prefix/include/elastimate/generated/build_settings.h alignment REGEX DEFAULT_ALIGN_BYTES)
+if(CMAKE_HOST_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND alignment MATCHES " 16$")
+  file(WRITE ${work}/aligned.cc "#include <elastimate/core/mesh/mesh.h>\n")
+  set(compile ${COMPILER} -std=c++17 -fsyntax-only -I${work}/prefix/include -I${EIGEN} ${work}/aligned.cc)
+  execute_process(COMMAND ${compile} -mavx2 RESULT_VARIABLE result ERROR_VARIABLE output)
+  if(result EQUAL 0 OR NOT output MATCHES "aligns Eigen's matrices otherwise than the elastimate library")
+    message(FATAL_ERROR "a source with -mavx2 compiles, or fails for another reason: ${output}")
+  endif()
+  run(${compile} -mavx2 -mno-avx)
+endif()
 
 run(${work}/examples/01_estimate)
 if(NOT output MATCHES "E = 20000 Pa, nu = 0\\.4")
@@ -28,6 +64,14 @@ endif()
 run(${work}/examples/02_estimate_file ${SOURCE}/examples/scenes/organ.vtu)
 if(NOT output MATCHES "\"status\": \"ok\"")
   message(FATAL_ERROR "02_estimate_file printed ${output}")
+endif()
+run(${work}/examples/03_own_law)
+if(NOT output MATCHES "^E = 20000 \\+- [0-9.]+ Pa")
+  message(FATAL_ERROR "03_own_law printed ${output}")
+endif()
+run(${work}/examples/04_own_estimator)
+if(NOT output MATCHES "^E = 500, without a standard error: clapeyron")
+  message(FATAL_ERROR "04_own_estimator printed ${output}")
 endif()
 if(PROGRAM)
   run(${work}/prefix/bin/elastimate --version)

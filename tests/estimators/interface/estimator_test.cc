@@ -95,7 +95,7 @@ TEST(Registry, TheDefaultIsTheClosedForm) {
 
 TEST(Registry, MakesEveryNamedEstimator) {
   for (const std::string_view name : EstimatorNames()) {
-    const std::unique_ptr<Estimator> estimator = MakeEstimator(name);
+    const std::shared_ptr<const Estimator> estimator = MakeEstimator(name);
     EXPECT_EQ(estimator->Name(), name);
     EXPECT_FALSE(estimator->Description().empty());
   }

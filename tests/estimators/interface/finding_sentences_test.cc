@@ -76,6 +76,7 @@ std::vector<Finding> OfSolutions() {
           SearchFailed("reason"),
           NoConvergence(1000),
           FitNotCertified(),
+          ErrorsMissing("name", "a standard error of nu of region 1000"),
           Unphysical(kLongElasticity),
           UnphysicalByNoise(kLongElasticity),
           DisplacementsOpposeLoads(),

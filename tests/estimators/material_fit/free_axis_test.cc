@@ -74,8 +74,8 @@ TEST(FreeAxis, IsFoundExactlyWithoutNoise) {
         const Estimate estimate = RunOn(scene, estimator);
         ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
         ASSERT_EQ(estimate.axes.size(), 1U);
-        EXPECT_LT(AngleOfAxes(estimate.axes[0].direction, axis), 1e-5);
-        EXPECT_NEAR(estimate.axes[0].direction.norm(), 1, 1e-12);
+        EXPECT_LT(AngleOfAxes(estimate.axes[0].direction.value(), axis), 1e-5);
+        EXPECT_NEAR(estimate.axes[0].direction->norm(), 1, 1e-12);
         ASSERT_EQ(estimate.parameters.size(), 7U);
         for (Eigen::Index i = 0; i < 5; ++i) {
           EXPECT_NEAR(
@@ -115,7 +115,7 @@ TEST(FreeAxis, IsFoundInARegion) {
   ASSERT_EQ(estimate.axes.size(), 1U);
   EXPECT_EQ(estimate.axes[0].Label(), "the axis of region 3");
   EXPECT_EQ(estimate.axes[0].first_rotation, 7U);
-  EXPECT_LT(AngleOfAxes(estimate.axes[0].direction, axis),
+  EXPECT_LT(AngleOfAxes(estimate.axes[0].direction.value(), axis),
             5 * *estimate.axes[0].standard_error);
   EXPECT_LT(*estimate.axes[0].standard_error, kRadianOfDegrees);
 }
@@ -130,7 +130,7 @@ TEST(FreeAxis, IsFoundBesideWhatIsKnown) {
   const Estimate estimate = RunOn(scene, "iterative-fe");
   ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
   EXPECT_EQ(estimate.parameters[0].value, 9e4);
-  EXPECT_LT(AngleOfAxes(estimate.axes[0].direction, axis),
+  EXPECT_LT(AngleOfAxes(estimate.axes[0].direction.value(), axis),
             5 * *estimate.axes[0].standard_error);
 }
 
@@ -154,7 +154,7 @@ TEST(AxisOfIsotropyStatistics, IsNotDetermined) {
           << seed << " " << estimator << " " << estimate.message;
       EXPECT_EQ(estimate.status, Status::kNotIdentifiable);
       ASSERT_EQ(estimate.axes.size(), 1U);
-      EXPECT_FALSE(estimate.axes[0].direction.allFinite());
+      EXPECT_FALSE(estimate.axes[0].direction);
     }
   }
 }
@@ -230,7 +230,7 @@ TEST_P(FreeAxisStatistics, ErrorsOfAxisAndConstantsAreThoseTheyState) {
     chi_square_sum += chi_square;
     num_covered += chi_square < 5.99 ? 1 : 0;
     angle_square_sum +=
-        std::pow(AngleOfAxes(estimate.axes[0].direction, axis), 2);
+        std::pow(AngleOfAxes(estimate.axes[0].direction.value(), axis), 2);
     error_square_sum += std::pow(*estimate.axes[0].standard_error, 2);
   }
   EXPECT_GE(num_usable, kSeeds - 2);

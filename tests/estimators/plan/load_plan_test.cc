@@ -11,6 +11,7 @@
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/rigid_motion.h"
+#include "elastimate/core/scene/scene_builder.h"
 #include "elastimate/estimators/plan/unit_loads.h"
 #include "elastimate/estimators/statistics/cramer_rao.h"
 #include "tests/regions.h"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "elastimate/core/mesh/facets.h"
+#include "elastimate/core/scene/scene_builder.h"
 #include "tests/element_kinds.h"
 #include "tests/scenes.h"
 

@@ -1,0 +1,40 @@
+#include "elastimate/estimators/interface/missing_errors.h"
+
+#include <string>
+
+#include "elastimate/estimators/interface/finding_sentences.h"
+
+namespace elastimate {
+
+void FailWithoutParameters(std::string_view estimator, const Scene& scene,
+                           Estimate& estimate) {
+  if (!estimate.IsUsable() || IsOneIsotropicMaterial(scene.materials)) {
+    return;
+  }
+  const auto size = Eigen::Index(estimate.parameters.size());
+  if (size == 0) {
+    estimate.Fail(
+        ErrorsMissing(std::string(estimator), "parameters of the materials"));
+  } else if (estimate.parameter_covariance.rows() != size ||
+             estimate.parameter_covariance.cols() != size) {
+    estimate.Fail(ErrorsMissing(
+        std::string(estimator),
+        "a covariance of its " + std::to_string(size) + " parameters"));
+  }
+}
+
+void FailWithoutErrors(Estimate& estimate) {
+  if (!estimate.IsUsable() || !estimate.why_no_standard_error.empty()) {
+    return;
+  }
+  for (const ParameterEstimate& parameter : estimate.parameters) {
+    if (!parameter.is_known && !parameter.standard_error &&
+        !parameter.interval) {
+      estimate.Fail(ErrorsMissing(estimate.estimator,
+                                  "a standard error of " + parameter.Label()));
+      return;
+    }
+  }
+}
+
+}  // namespace elastimate

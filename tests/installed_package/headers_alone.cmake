@@ -1,0 +1,32 @@
+# Installs the headers of the build in BUILD to a fresh folder, and compiles each of them alone with COMPILER and the
+# include directory of Eigen, EIGEN.  Those that use Eigen have to compare its alignment (core/algebra/eigen_abi.h), and
+# none may read headers of Ceres, CHOLMOD, VTK or nlohmann-json.
+set(work ${BUILD}/headers_alone_test)
+file(REMOVE_RECURSE ${work})
+execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${work} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+file(GLOB_RECURSE headers RELATIVE ${work}/include ${work}/include/*.h)
+list(LENGTH headers count)
+if(count LESS 50)
+  message(FATAL_ERROR "only ${count} headers are installed")
+endif()
+set(errors "")
+foreach(header IN LISTS headers)
+  file(WRITE ${work}/alone.cc "#include <${header}>\n")
+  execute_process(COMMAND ${COMPILER} -std=c++17 -Wall -Wextra -Wpedantic -fsyntax-only -MD -MF ${work}/read
+                          -I${work}/include -isystem ${EIGEN} ${work}/alone.cc
+                  RESULT_VARIABLE result ERROR_VARIABLE output)
+  if(NOT result EQUAL 0 OR output)
+    string(APPEND errors "${header} does not compile alone:\n${output}\n")
+    continue()
+  endif()
+  file(READ ${work}/read files)
+  if(files MATCHES "Eigen/Core" AND NOT files MATCHES "eigen_abi\\.h")
+    string(APPEND errors "${header} uses Eigen without core/algebra/eigen_abi.h\n")
+  endif()
+  if(files MATCHES "/(ceres/|cholmod\\.h|vtk[A-Z]|nlohmann/)[^ ]*")
+    string(APPEND errors "${header} reads ${CMAKE_MATCH_0}\n")
+  endif()
+endforeach()
+if(errors)
+  message(FATAL_ERROR "${errors}")
+endif()
