@@ -174,7 +174,8 @@ class FitDescription {
     const double least = SquaredNorm(fit_.residual + s * change);
     evidence_.bound_excess = {
         square_sum_ - least, least / static_cast<double>(fit_.residual.size()),
-        estimate_.elasticity.youngs_modulus * std::exp(change(0))};
+        estimate_.elasticity.youngs_modulus * std::exp(change(0)),
+        estimate_.elasticity.youngs_modulus, "E"};
     const double standard_error = !options_.known_poisson_ratio && is_collinear_
                                       ? std::numeric_limits<double>::infinity()
                                       : std::sqrt(Covariance(parameters)(0, 0));

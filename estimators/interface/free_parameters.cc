@@ -45,11 +45,24 @@ Bounds BoundsOfVariable(const LawParameter& parameter, Bounds bounds) {
           std::min(bounds.upper.value_or(parameter.upper), parameter.upper)};
 }
 
+// The options know Poisson's ratio of one isotropic material.
+std::vector<Material> WithKnownPoissonRatio(const Scene& scene,
+                                            const EstimatorOptions& options) {
+  if (!options.known_poisson_ratio ||
+      !IsOneIsotropicMaterial(scene.materials)) {
+    return scene.materials;
+  }
+  Material material = scene.materials.empty() ? Material() : scene.materials[0];
+  material.known.push_back({"poisson_ratio", *options.known_poisson_ratio});
+  return {material};
+}
+
 }  // namespace
 
 FreeParameters::FreeParameters(const Scene& scene,
                                const EstimatorOptions& options)
-    : all_(scene.materials, scene.mesh.section.model), known_(all_.Typical(1)) {
+    : all_(WithKnownPoissonRatio(scene, options), scene.mesh.section.model),
+      known_(all_.Typical(1)) {
   for (std::size_t i = 0; i < all_.NumMaterials(); ++i) {
     has_factors_.push_back(!all_.LawOf(i).BlockEntries().empty() &&
                            scene.materials[i].known.empty() &&

@@ -261,7 +261,8 @@ void JudgePhysicsOfParameters(Estimate& estimate) {
     }
   }
   if (!unphysical.empty()) {
-    estimate.Fail(UnphysicalParameters(unphysical));
+    estimate.Fail(
+        UnphysicalParameters(unphysical, !estimate.displacement_residual));
   }
 }
 

@@ -32,8 +32,7 @@ std::optional<BoundedMinimum> FindMinimum(
       ReducedMinimum(start, options, misfit, estimate);
   // Typical values beside known ones may be those of no material.
   return minimum ? minimum
-                 : ReducedMinimum(VirtualFieldsStart(scene, options,
-                                                     misfit.Free(), estimate),
+                 : ReducedMinimum(VirtualFieldsStart(scene, options, estimate),
                                   options, misfit, estimate);
 }
 

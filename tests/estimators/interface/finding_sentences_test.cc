@@ -77,7 +77,6 @@ std::vector<Finding> OfSolutions() {
           NoConvergence(1000),
           FitNotCertified(),
           Unphysical(kLongElasticity),
-          UnphysicalByNoise(kLongElasticity),
           DisplacementsOpposeLoads(),
           YoungsModulusDiverges(),
           PoissonRatioAtMinusOne(),
@@ -92,9 +91,7 @@ std::vector<Finding> OfUndeterminedParameters() {
           YoungsModulusOnBoundUndetermined(kLong),
           PoissonRatioUndetermined(EstimateOfShearModulus()),
           PoissonRatioUndetermined(WithCovariance(50, 0.5, 0)),
-          PoissonRatioBetween({kLong, kLong}, true),
-          PoissonRatioBetween({kLong, kLong}, false),
-          PoissonRatioHiddenByNoise(),
+          PoissonRatioBetween({kLong, kLong}),
           YoungsModulusUndetermined(kLong, kLong)};
 }
 
@@ -110,8 +107,9 @@ std::vector<Finding> OfResiduals() {
                           {true, numbers, numbers, numbers}, 0),
           TrendOverFrames("E of region 1000", true,
                           {false, numbers, numbers, numbers}, 0),
-          BoundContradicted(true),
-          KnownPoissonRatioContradicted(kLong, kLong, Severity::kWarning),
+          BoundContradicted("E of region 1000", true),
+          KnownPoissonRatioContradicted("nu of region 1000", kLong, kLong,
+                                        Severity::kWarning),
           LargeCorrection(kLong),
           LoadsOutOfBalance(kLong, Severity::kError),
           ResidualAboveNoise(ResidualKind::kDisplacement, kLong),
@@ -138,15 +136,11 @@ std::vector<Finding> OfResiduals() {
 
 std::vector<Finding> OfParameters() {
   return {
-      YoungsModulusBias(kLong, Severity::kError),
-      YoungsModulusBias({}, Severity::kError),
-      YoungsModulusBias(kLong, Severity::kWarning),
-      PoissonRatioBias(kLong, Severity::kError),
-      PoissonRatioBias(kLong, Severity::kWarning),
       YoungsModulusOnBound(),
       PoissonRatioOnBound(),
       PoissonRatioAtLimit(),
-      UnphysicalParameters(ManyParameters()),
+      UnphysicalParameters(ManyParameters(), true),
+      UnphysicalParameters(ManyParameters(), false),
       ParametersUndetermined({"E of region 3 (45 %)"}),
       ParametersUndetermined(ManyParameters()),
       ParametersUndeterminedByElements({"E of region 3 (45 %)"}),
@@ -258,7 +252,6 @@ TEST(FindingSentences, HaveNoPercentageBeyondAThousand) {
           AxisTurned(0.01, "", ratio), Outliers({ratio, 0}, {}),
           OutliersLeftOut({{0, 1, false}}, {ratio, 0}, {}),
           TrendOverFrames("E", true, {true, numbers, numbers, numbers}, 0),
-          YoungsModulusBias(ratio, Severity::kError),
           ParameterBias("E", ratio, true, Severity::kError),
           DiscretizationErrorFinding(open),
           SupportsEndWithinElements({ratio, 0})}) {
