@@ -111,6 +111,8 @@ BoundedMinimum SearchMinimum(const ForceResidual& forces,
   options.function_tolerance = 0;
   options.gradient_tolerance = 1e-16;
   options.parameter_tolerance = 1e-15;
+  // At rounding, no step is one.
+  options.max_num_consecutive_invalid_steps = 50;
   options.logging_type = ceres::SILENT;
   return MinimizeOverVariables(residual, triangle.rows(), free.VariableBounds(),
                                start, options);
@@ -258,18 +260,25 @@ Eigen::MatrixXd DerivativesAt(const FreeParameters& free,
 
 }  // namespace
 
+std::optional<double> NoiseVarianceAt(const FreeParameters& free,
+                                      const Eigen::VectorXd& variables,
+                                      const ForceResidual& forces) {
+  const double redundancy = forces.NumEquations() - double(free.Size());
+  if (!(redundancy > 0)) {
+    return std::nullopt;
+  }
+  return ResidualAt(free, variables, NoiseOfForces(forces), forces)
+             .squaredNorm() *
+         forces.NumEquations() / redundancy;
+}
+
 UnbiasedFit FitWithoutBias(const FreeParameters& free,
                            const Eigen::VectorXd& start,
                            const ForceResidual& forces) {
-  const SizeFunction size_of = NoiseOfForces(forces);
   UnbiasedFit fit;
-  fit.variables = SearchMinimum(forces, free, size_of, start).variables;
-  const double redundancy = forces.NumEquations() - double(free.Size());
-  if (redundancy > 0) {
-    fit.noise_variance =
-        ResidualAt(free, fit.variables, size_of, forces).squaredNorm() *
-        forces.NumEquations() / redundancy;
-  }
+  fit.variables =
+      SearchMinimum(forces, free, NoiseOfForces(forces), start).variables;
+  fit.noise_variance = NoiseVarianceAt(free, fit.variables, forces);
   return fit;
 }
 

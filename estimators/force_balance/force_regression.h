@@ -53,12 +53,17 @@ Estimate RegressForces(const Scene& scene, const EstimatorOptions& options,
 std::unique_ptr<Preparation> PrepareForceRegression(
     const Scene& scene, const EstimatorOptions& options, bool is_bounded);
 
+/// The variance of the weighted noise that the force residual of some variables
+/// shows, ||F theta - f||^2 / (theta^T T theta) over the redundant equations;
+/// empty where there are no more equations than unknowns.
+std::optional<double> NoiseVarianceAt(const FreeParameters& free,
+                                      const Eigen::VectorXd& variables,
+                                      const ForceResidual& forces);
+
 /// The minimum of ||F theta - f|| / sqrt(theta^T T theta).
 struct UnbiasedFit {
   Eigen::VectorXd variables;
-  /// Of the weighted noise; empty where there are no more equations than
-  /// unknowns.
-  std::optional<double> noise_variance;
+  std::optional<double> noise_variance;  ///< NoiseVarianceAt there.
 };
 UnbiasedFit FitWithoutBias(const FreeParameters& free,
                            const Eigen::VectorXd& start,

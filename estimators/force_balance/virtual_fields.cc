@@ -163,13 +163,7 @@ class WorkEstimate {
       }
       evidence_.above_noise = {ResidualKind::kVirtualWork, std::sqrt(variance)};
     }
-    const FreeParameters unbounded = WithoutBounds(scene_, options_);
-    const std::optional<double> rough_variance =
-        FitWithoutBias(
-            unbounded,
-            unbounded.VariablesOf(free_.ParametersAt(minimum_.variables)),
-            forces_)
-            .noise_variance;
+    const std::optional<double> rough_variance = VarianceOfForces();
     // The stiffness colours the force residual, which takes up to three
     // quarters of its degrees of freedom.
     const double rough_m = forces_.NumEquations() / 4;
@@ -178,6 +172,18 @@ class WorkEstimate {
         variance <= *rough_variance * (1 + kLimits.significant_score *
                                                std::sqrt(2 / m + 2 / rough_m));
     return ResidualJudgement{variance, is_noise ? 0 : square_sum};
+  }
+
+  // The variance of the weighted noise that the force residual shows: on a
+  // bound that residual is that of the bound, too.
+  std::optional<double> VarianceOfForces() const {
+    if (estimate_.active_bounds.empty()) {
+      return NoiseVarianceAt(free_, minimum_.variables, forces_);
+    }
+    const FreeParameters unbounded = WithoutBounds(scene_, options_);
+    const Eigen::VectorXd start =
+        unbounded.VariablesOf(free_.ParametersAt(minimum_.variables));
+    return FitWithoutBias(unbounded, start, forces_).noise_variance;
   }
 
   void Describe() {
