@@ -59,7 +59,7 @@ TEST(Bounded, IsTheClosedFormOfTheBoundWhenOneIsActive) {
       estimate.elasticity.youngs_modulus / expected.elasticity.youngs_modulus,
       1, 1e-9);
   EXPECT_NEAR(estimate.elasticity.poisson_ratio, 0.3, 1e-12);
-  EXPECT_EQ(estimate.active_bounds, std::vector<std::string>{"nu (upper)"});
+  EXPECT_EQ(estimate.active_bounds, std::vector<std::string>{"nu_max"});
   EXPECT_TRUE(estimate.Has(FindingCode::kParametersOnBounds));
 }
 
@@ -72,7 +72,7 @@ TEST(Bounded, StandardErrorsOnABoundAreThoseWithoutIt) {
   const Estimate estimate =
       Bounded().Run(scene, WithBounds({{}, nu - 1e-4}, {}));
   ASSERT_TRUE(estimate.IsUsable()) << estimate.message;
-  EXPECT_EQ(estimate.active_bounds, std::vector<std::string>{"nu (upper)"});
+  EXPECT_EQ(estimate.active_bounds, std::vector<std::string>{"nu_max"});
   // The noise level is estimated at a slightly different point.
   EXPECT_NEAR(estimate.error_budget.noise(0) / expected.error_budget.noise(0),
               1, 0.05);
@@ -109,7 +109,7 @@ TEST(Bounded, KeepsBoundsOnYoungsModulus) {
     EXPECT_NEAR(estimate.elasticity.youngs_modulus / bound, 1, 1e-12);
     EXPECT_NEAR(estimate.elasticity.poisson_ratio, best_nu, 2e-5);
     EXPECT_EQ(estimate.active_bounds,
-              std::vector<std::string>{upper ? "E (upper)" : "E (lower)"});
+              std::vector<std::string>{upper ? "youngs_max" : "youngs_min"});
     // A bound on the wrong side of the truth contradicts the data.
     EXPECT_FALSE(estimate.IsUsable());
   }
