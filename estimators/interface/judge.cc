@@ -157,8 +157,9 @@ void FinishEstimate(std::string_view estimator, const Scene& scene,
   }
   JudgeKinematics(scene, options, estimate);
   JudgeThickness(scene, estimate);
-  if (!estimate.parameters.empty() ||
-      !IsOneIsotropicMaterial(scene.materials)) {
+  // Fits of displacements of one isotropic material are judged by E and nu.
+  if (!IsOneIsotropicMaterial(scene.materials) ||
+      (!estimate.parameters.empty() && !estimate.displacement_residual)) {
     estimate.stiffnesses = StiffnessesOf(scene, estimate);
     estimate.axes = AxesOf(scene, estimate);
     JudgeParameters(estimate);
