@@ -142,25 +142,10 @@ std::optional<Eigen::VectorXd> LinearMinimum(const ForceResidual& forces) {
   return moduli / solution(given);
 }
 
-// Typical parameters at the scale of the loads; empty when the displacements
-// oppose the loads.
-std::optional<Eigen::VectorXd> StartOfTypical(const ForceResidual& forces,
-                                              const FreeParameters& free) {
-  if (const std::optional<double> known = free.All().KnownModulus()) {
-    return free.VariablesOf(free.All().Typical(*known));
-  }
-  const Eigen::VectorXd moduli = free.All().Moduli(free.All().Typical(1));
-  const double compliance = (forces.Columns() * moduli).dot(forces.Loads()) /
-                            forces.Loads().squaredNorm();
-  return compliance > 0 ? std::optional<Eigen::VectorXd>(free.VariablesOf(
-                              free.All().Typical(1 / compliance)))
-                        : std::nullopt;
-}
-
 // These moduli, but for what is known, moved into the bounds; empty where they
 // are not physical.
-std::optional<Eigen::VectorXd> StartOfModuli(const Eigen::VectorXd& moduli,
-                                             const FreeParameters& free) {
+std::optional<Eigen::VectorXd> VariablesOfModuli(const Eigen::VectorXd& moduli,
+                                                 const FreeParameters& free) {
   Eigen::VectorXd parameters = free.All().ParametersOf(moduli);
   for (Eigen::Index i = 0; i < parameters.size(); ++i) {
     parameters(i) = free.All().All()[i].known.value_or(parameters(i));
@@ -170,11 +155,28 @@ std::optional<Eigen::VectorXd> StartOfModuli(const Eigen::VectorXd& moduli,
                                : std::nullopt;
 }
 
+// These variables at the scale that fits the loads best [eq. 20], where no
+// known modulus gives another; empty when the displacements oppose the loads.
+std::optional<Eigen::VectorXd> AtScaleOfLoads(
+    const std::optional<Eigen::VectorXd>& variables,
+    const ForceResidual& forces, const FreeParameters& free) {
+  if (!variables || free.All().KnownModulus()) {
+    return variables;
+  }
+  const Eigen::VectorXd moduli = free.ModuliAt(*variables);
+  const double scale = forces.Loads().squaredNorm() /
+                       (forces.Columns() * moduli).dot(forces.Loads());
+  return scale > 0 ? VariablesOfModuli(scale * moduli, free) : std::nullopt;
+}
+
 // The better of the minima of the residual over the mean stiffness that these
 // starts lead to; empty where there is none.
 std::optional<BoundedMinimum> BestMinimumOf(
     const std::vector<std::optional<Eigen::VectorXd>>& starts,
     const ForceResidual& forces, const FreeParameters& free) {
+  // What is better by less is the same minimum, which the first start is nearer
+  // to.
+  constexpr double kRounding = 1e-9;
   std::optional<BoundedMinimum> best;
   double least = std::numeric_limits<double>::infinity();
   for (const std::optional<Eigen::VectorXd>& start : starts) {
@@ -185,7 +187,7 @@ std::optional<BoundedMinimum> BestMinimumOf(
     const BoundedMinimum minimum = SearchMinimum(forces, free, size_of, *start);
     const double residual =
         ResidualAt(free, minimum.variables, size_of, forces).norm();
-    if (!best || residual < least) {
+    if (!best || residual < (1 - kRounding) * least) {
       best = minimum;
       least = residual;
     }
@@ -398,10 +400,14 @@ class ForceRegression {
       return forces_.Prepared().Weights().dot(*moduli_) > 0 ||
              !AreRatiosPhysical();
     }
-    const std::optional<BoundedMinimum> minimum =
-        BestMinimumOf({moduli_ ? StartOfModuli(*moduli_, free_) : std::nullopt,
-                       StartOfTypical(forces_, free_)},
-                      forces_, free_);
+    const Eigen::VectorXd typical = free_.VariablesOf(
+        free_.All().Typical(free_.All().KnownModulus().value_or(1)));
+    const std::optional<BoundedMinimum> minimum = BestMinimumOf(
+        {moduli_ ? AtScaleOfLoads(VariablesOfModuli(*moduli_, free_), forces_,
+                                  free_)
+                 : std::nullopt,
+         AtScaleOfLoads(typical, forces_, free_)},
+        forces_, free_);
     if (!minimum) {
       return false;
     }
