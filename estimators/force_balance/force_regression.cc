@@ -416,6 +416,15 @@ class ForceRegression {
     evidence_.search_message = minimum->message;
     EnterParameters(scene_, free_, free_.ParametersAt(variables_), estimate_);
     NoteVariablesOnBounds(free_, *minimum, evidence_, estimate_);
+    for (Eigen::Index i = 0; i < free_.Size(); ++i) {
+      // The search ends far off where no bound does.
+      const Bounds& bounds = free_.VariableBounds()[i];
+      const Side side = minimum->on_bound[i];
+      evidence_.does_youngs_modulus_diverge =
+          evidence_.does_youngs_modulus_diverge ||
+          (side == Side::kLower && !bounds.lower) ||
+          (side == Side::kUpper && !bounds.upper);
+    }
     SetForceResidual(free_.ModuliAt(variables_));
     return true;
   }
