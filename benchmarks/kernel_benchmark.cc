@@ -94,8 +94,9 @@ void QuadraticElementPass(benchmark::State& state) {
 void TracesExact(benchmark::State& state) {
   const Scene& scene = Cube(state.range(0));
   const DegreesOfFreedom dofs(scene.supports);
+  const InternalForces forces(scene.mesh, {});
   while (state.KeepRunning()) {
-    benchmark::DoNotOptimize(StiffnessTraces(scene.mesh, dofs));
+    benchmark::DoNotOptimize(StiffnessTraces(scene.mesh, forces, dofs));
   }
   CountTetrahedra(state, scene.mesh);
 }
@@ -103,13 +104,13 @@ void TracesExact(benchmark::State& state) {
 void TracesEstimated(benchmark::State& state) {
   const Scene& scene = Cube(state.range(0));
   const ComponentMask& held = scene.supports.held;
+  const DegreesOfFreedom dofs(scene.supports);
+  const InternalForces forces(scene.mesh, {});
   Eigen::MatrixXd probes(held.size(), 2);
   while (state.KeepRunning()) {
     SetTraceProbes(held, probes);
-    const StiffnessProducts products =
-        MultiplyStiffnessBasis(scene.mesh, probes);
     benchmark::DoNotOptimize(
-        EstimateStiffnessTraces(held, products.h, products.j));
+        EstimateStiffnessTraces(dofs, forces.Products(probes)));
   }
   CountTetrahedra(state, scene.mesh);
 }

@@ -108,16 +108,30 @@ Table NoisePrediction(const Scene& exact) {
   Table table("paper_noise_prediction",
               {"displacement_deviation [1]", "youngs_modulus_error [1]",
                "poisson_ratio_error [1]"});
-  const ForceResidual residual(exact);
-  const Eigen::Matrix2d traces = residual.ProjectedTraces();
-  const double b_squared = std::pow(residual.Triangle()(1, 1), 2);
+  const ForceScene prepared(exact);
+  ForceResidual residual(prepared, exact);
+  const Eigen::VectorXd f = residual.Loads();
+  const auto a = residual.Columns().col(0);
+  const auto b = residual.Columns().col(1);
+  const double b_squared =
+      b.squaredNorm() - std::pow(b.dot(f), 2) / f.squaredNorm();
+  // Without what t fits: ||(x H + y J) f||^2 over f.f.
+  const auto fitted = [&](double x, double y) {
+    return residual.StiffenedGram(Eigen::Vector2d(x, y),
+                                  Eigen::Vector3d(0, 0, 1))(0, 0) /
+           f.squaredNorm();
+  };
+  const double t_jj = prepared.Traces()(1, 1) - fitted(0, 1);
+  const double t_hj = prepared.Traces()(0, 1) -
+                      (fitted(1, 1) - fitted(1, 0) - fitted(0, 1)) / 2;
   for (const double deviation : kDeviations) {
-    const double noise = NoiseSd(exact, deviation).squaredNorm() * traces(1, 1);
+    const double noise = NoiseSd(exact, deviation).squaredNorm() * t_jj;
     const double rho = noise / (b_squared + noise);
-    const double bias =
-        rho * (-traces(0, 1) / traces(1, 1) - kCuboidElasticity.poisson_ratio);
+    const double bias = rho * (-t_hj / t_jj - kCuboidElasticity.poisson_ratio);
+    const double nu = kCuboidElasticity.poisson_ratio + bias;
     const IsotropicElasticity expected =
-        residual.At(kCuboidElasticity.poisson_ratio + bias);
+        IsotropicElasticity::FromComplianceScale(
+            f.dot(a + nu * b) / f.squaredNorm(), nu, SectionModel::kSolid);
     table.AddRow(
         {deviation,
          expected.youngs_modulus / kCuboidElasticity.youngs_modulus - 1, bias});

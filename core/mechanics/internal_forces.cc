@@ -70,27 +70,34 @@ std::vector<Eigen::MatrixXd> InternalForces::OfParts(
   return products;
 }
 
+std::vector<Eigen::MatrixXd> InternalForces::Products(
+    const Eigen::MatrixXd& displacements) const {
+  assert(displacements.rows() == mesh_.NumDofs());
+  std::vector<Eigen::MatrixXd> of_parts = OfParts(displacements);
+  if (parameters_.NumMaterials() == 1) {
+    return of_parts;
+  }
+  const Eigen::Index dimension = mesh_.Dimension();
+  std::vector<Eigen::MatrixXd> products(
+      parameters_.NumModuli(),
+      Eigen::MatrixXd::Zero(mesh_.NumDofs(), displacements.cols()));
+  for (std::size_t copy = 0; copy < parts_.node.size(); ++copy) {
+    const std::size_t material = parts_.part[copy];
+    for (Eigen::Index k = 0; k < parameters_.LawOf(material).NumModuli(); ++k) {
+      products[parameters_.FirstModulus(material) + k].middleRows(
+          dimension * Eigen::Index(parts_.node[copy]), dimension) =
+          of_parts[k].middleRows(dimension * Eigen::Index(copy), dimension);
+    }
+  }
+  return products;
+}
+
 Eigen::MatrixXd InternalForces::Columns(
     const Eigen::VectorXd& displacement) const {
-  assert(displacement.size() == mesh_.NumDofs());
-  const std::vector<Eigen::MatrixXd> products = OfParts(displacement);
-  const Eigen::Index dimension = mesh_.Dimension();
-  Eigen::MatrixXd columns =
-      Eigen::MatrixXd::Zero(mesh_.NumDofs(), parameters_.NumModuli());
-  for (Eigen::Index k = 0; k < Eigen::Index(products.size()); ++k) {
-    if (parameters_.NumMaterials() == 1) {
-      columns.col(k) = products[k];
-      continue;
-    }
-    for (std::size_t copy = 0; copy < parts_.node.size(); ++copy) {
-      const std::size_t material = parts_.part[copy];
-      if (k < parameters_.LawOf(material).NumModuli()) {
-        columns.col(parameters_.FirstModulus(material) + k)
-            .segment(dimension * Eigen::Index(parts_.node[copy]), dimension) =
-            products[k].col(0).segment(dimension * Eigen::Index(copy),
-                                       dimension);
-      }
-    }
+  const std::vector<Eigen::MatrixXd> products = Products(displacement);
+  Eigen::MatrixXd columns(mesh_.NumDofs(), parameters_.NumModuli());
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    columns.col(k) = products[k];
   }
   return columns;
 }

@@ -39,6 +39,11 @@ class InternalForces {
 
   const MaterialParameters& Parameters() const { return parameters_; }
 
+  /// f_k(u) of some displacements, num_dofs x n, for each modulus k.
+  /// One element pass.
+  std::vector<Eigen::MatrixXd> Products(
+      const Eigen::MatrixXd& displacements) const;
+
   /// f_k(u) of one displacement (num_dofs) as columns: num_dofs x num_moduli.
   /// One element pass.
   Eigen::MatrixXd Columns(const Eigen::VectorXd& displacement) const;

@@ -1,55 +1,61 @@
 #include "elastimate/core/mechanics/stiffness_traces.h"
 
+#include <cmath>
 #include <cstdint>
 #include <random>
 
-#include "elastimate/core/mechanics/gradient_products.h"
+#include "elastimate/core/algebra/node_sums.h"
+#include "elastimate/core/mesh/node_graph.h"
 
 namespace elastimate {
-
 namespace {
 
-template <int kDimension>
-Eigen::Matrix2d TracesOfDimension(const Mesh& mesh,
-                                  const DegreesOfFreedom& degrees_of_freedom) {
-  using Block = NodeBlock<kDimension>;
-  const NodeGraph graph(mesh);
-  const Eigen::MatrixXd products = GradientProducts(mesh, graph);
-  const double shear_share = ShearShareOfJ(mesh.section.model);
-  const auto free = [&](Eigen::Index node) {
-    Eigen::Matrix<double, kDimension, 1> mask;
-    for (int i = 0; i < kDimension; ++i) {
-      mask(i) = degrees_of_freedom.place[kDimension * node + i] >= 0 ? 1 : 0;
-    }
-    return mask;
+// Sets the rows and columns of the held degrees of freedom to zero, and
+// multiplies the blocks of different nodes, which stand for two of the matrix,
+// by sqrt(2).
+void WeighFreeBlocks(const NodeGraph& graph, const DegreesOfFreedom& dofs,
+                     Eigen::MatrixXd& blocks) {
+  const int dimension = dofs.dimension;
+  const auto is_held = [&](Eigen::Index node, int component) {
+    return dofs.place[dimension * node + component] < 0;
   };
-  Eigen::Matrix2d traces = Eigen::Matrix2d::Zero();
-  for (Eigen::Index j = 0; j < mesh.NumNodes(); ++j) {
-    const auto free_j = free(j);
+  for (Eigen::Index j = 0; j + 1 < Eigen::Index(graph.start.size()); ++j) {
     for (Eigen::Index k = graph.start[j]; k < graph.start[j + 1]; ++k) {
-      const int i = graph.row[k];
-      const Block mask = free(i) * free_j.transpose();
-      const Block m = products.block<kDimension, kDimension>(0, kDimension * k);
-      const Block block_h = StiffnessBlockH<kDimension>(m).cwiseProduct(mask);
-      const Block block_j =
-          StiffnessBlockJ<kDimension>(m, shear_share).cwiseProduct(mask);
-      // A pair of different nodes stands for two blocks of the matrix.
-      const double weight = i == j ? 1 : 2;
-      traces(0, 0) += weight * block_h.squaredNorm();
-      traces(0, 1) += weight * block_h.cwiseProduct(block_j).sum();
-      traces(1, 1) += weight * block_j.squaredNorm();
+      auto block = blocks.middleCols(dimension * k, dimension);
+      if (graph.row[k] != j) {
+        block *= std::sqrt(2);
+      }
+      for (int i = 0; i < dimension; ++i) {
+        if (is_held(graph.row[k], i)) {
+          block.row(i).setZero();
+        }
+        if (is_held(j, i)) {
+          block.col(i).setZero();
+        }
+      }
     }
   }
-  traces(1, 0) = traces(0, 1);
-  return traces;
 }
 
 }  // namespace
 
-Eigen::Matrix2d StiffnessTraces(const Mesh& mesh,
+Eigen::MatrixXd StiffnessTraces(const Mesh& mesh, const InternalForces& forces,
                                 const DegreesOfFreedom& degrees_of_freedom) {
-  return mesh.Dimension() == 3 ? TracesOfDimension<3>(mesh, degrees_of_freedom)
-                               : TracesOfDimension<2>(mesh, degrees_of_freedom);
+  const NodeGraph graph(mesh);
+  const Eigen::Index m = forces.Parameters().NumModuli();
+  std::vector<Eigen::MatrixXd> blocks;
+  for (Eigen::Index k = 0; k < m; ++k) {
+    blocks.push_back(forces.Blocks(Eigen::VectorXd::Unit(m, k), graph));
+    WeighFreeBlocks(graph, degrees_of_freedom, blocks.back());
+  }
+  Eigen::MatrixXd traces(m, m);
+  for (Eigen::Index k = 0; k < m; ++k) {
+    for (Eigen::Index l = 0; l <= k; ++l) {
+      traces(k, l) = InnerProduct(blocks[k].reshaped(), blocks[l].reshaped());
+      traces(l, k) = traces(k, l);
+    }
+  }
+  return traces;
 }
 
 void SetTraceProbes(const ComponentMask& held,
@@ -72,19 +78,21 @@ void SetTraceProbes(const ComponentMask& held,
   }
 }
 
-Eigen::Matrix2d EstimateStiffnessTraces(
-    const ComponentMask& held, const Eigen::Ref<const Eigen::MatrixXd>& h,
-    const Eigen::Ref<const Eigen::MatrixXd>& j) {
-  Eigen::Matrix2d traces = Eigen::Matrix2d::Zero();
-  for (Eigen::Index k = 0; k < h.cols(); ++k) {
-    for (Eigen::Index dof = 0; dof < held.size(); ++dof) {
-      if (!held.data()[dof]) {
-        const Eigen::Vector2d products(h(dof, k), j(dof, k));
-        traces += products * products.transpose();
+Eigen::MatrixXd EstimateStiffnessTraces(
+    const DegreesOfFreedom& degrees_of_freedom,
+    const std::vector<Eigen::MatrixXd>& products) {
+  const auto m = Eigen::Index(products.size());
+  Eigen::MatrixXd traces = Eigen::MatrixXd::Zero(m, m);
+  Eigen::VectorXd row(m);
+  for (Eigen::Index probe = 0; probe < products[0].cols(); ++probe) {
+    for (const Eigen::Index dof : degrees_of_freedom.free) {
+      for (Eigen::Index k = 0; k < m; ++k) {
+        row(k) = products[k](dof, probe);
       }
+      traces.noalias() += row * row.transpose();
     }
   }
-  return traces / static_cast<double>(h.cols());
+  return traces / static_cast<double>(products[0].cols());
 }
 
 }  // namespace elastimate

@@ -5,18 +5,20 @@
 
 namespace elastimate {
 
-/// The bounded least squares of Becker & Teschner 2007, eq. 24:
+/// The least force residual over the mean stiffness within bounds
+/// (RegressForces).  For one isotropic material it is the bounded least squares
+/// of Becker & Teschner 2007, eq. 24:
 ///
 ///   min ||a + nu b - t f||,  t = (1 + nu)(1 - 2 nu) / E,
 ///   nu_min <= nu <= nu_max,  E_min <= E <= E_max,
 ///
-/// by Ceres on the three residuals that closed-form compresses the scene to.
+/// by Ceres on the few residuals that closed-form compresses the scene to.
 /// Without bounds, nu is kept within its physical range.
 ///
-/// Needs what closed-form needs.  A parameter on a bound has no standard error,
-/// and that of the other one holds for this bound.  Noise still pulls nu up to
-/// its bound: E is right when the bound is, and the estimate says when the
-/// difference matters.
+/// Needs what closed-form needs.  Where a parameter lies on a bound, the
+/// standard errors are those without it.  Noise still pulls nu up to its bound:
+/// E is right when the bound is, and the estimate says when the difference
+/// matters.
 ///
 /// Cost: that of closed-form.  Single-threaded, deterministic.
 class Bounded : public Estimator {

@@ -5,7 +5,8 @@
 
 namespace elastimate {
 
-/// The linear least squares of Becker & Teschner 2007:
+/// The least force residual over the mean stiffness (RegressForces).  For one
+/// isotropic material it is the linear least squares of Becker & Teschner 2007:
 ///
 ///   min over (nu, t) of ||a + nu b - t f||,  a = H q, b = J q   [eq. 21, 23]
 ///   t = f.(a + nu b) / f.f  for a known nu                      [eq. 20]
@@ -18,11 +19,8 @@ namespace elastimate {
 /// 2/3 and E towards and below zero, the more the finer the mesh: the estimate
 /// says itself when that makes it unusable.  With a known nu, E has no bias.
 ///
-/// Cost: one element pass, and one more of four columns (up to 10 000 elements
-/// one of two, and the exact traces) for the standard errors and the noise
-/// diagnostics (and one of 12 columns for a usable estimate whose force
-/// residual is above a tenth of the load, to see whether noise explains it); no
-/// factorisation.  Single-threaded, deterministic.
+/// Cost: that of RegressForces; no factorisation.  Single-threaded,
+/// deterministic.
 class ClosedForm : public Estimator {
  public:
   std::string_view Name() const override;

@@ -1,33 +1,80 @@
 #ifndef ELASTIMATE_ESTIMATORS_FORCE_BALANCE_FORCE_REGRESSION_H_
 #define ELASTIMATE_ESTIMATORS_FORCE_BALANCE_FORCE_REGRESSION_H_
 
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+
 #include "elastimate/core/scene/scene.h"
+#include "elastimate/estimators/force_balance/force_residual.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/interface/free_parameters.h"
 
 namespace elastimate {
 
-/// The parameters of any materials by regression of the loads on the columns of
-/// the internal forces of the measured displacements, over the free degrees of
-/// freedom of all load cases,
+/// The parameters x of any materials that leave the least force residual,
 ///
-///   min ||F theta - f||^2,   F = [f_1(q) ... f_m(q)].
+///   min over x of ||F theta(x) - f|| / s(theta(x)),   F = [f_1(q) ... f_m(q)],
 ///
-/// Unlike the paper's residual of one isotropic material, whose coefficient of
-/// H q is 1, the loads are the response.  With bounds, or known parameters, the
-/// minimum is sought by Ceres over the parameters, in the triangle of the QR
-/// factorisation of [F f].
+/// where s is the mean stiffness (ForceScene::Weights).  For one isotropic
+/// material this is ||a + nu b - t f||, t = 1 / s, a = H q, b = J q [Becker &
+/// Teschner 2007, eq. 20-24].  Where no parameter is known or bounded, theta /
+/// s and 1 / s are a linear least-squares problem; else the minimum is sought
+/// by Ceres, in the triangle of the QR factorisation of [F f].
 ///
-/// Noise of variance sigma^2 in q biases theta by -(F^T F - sigma^2 T)^-1
-/// sigma^2 T theta to first order, T_kl = tr(K_k K_l), and gives it the
-/// covariance sigma^2 N^-1 F^T K K F N^-1, N = F^T F.  sigma^2 is as given, or
-/// from the residual: ||r||^2 = sigma^2 theta^T T theta in the mean.
+/// Noise of variance sigma^2 in q adds sigma^2 theta^T T theta / s^2 to the
+/// expectation of the square of that residual, which biases its minimum.  What
+/// it does not bias is the minimum of
+///
+///   ||F theta - f|| / sqrt(theta^T T theta)
+///
+/// (total least squares, Golub & Van Loan 1980), whose square over the
+/// redundant equations estimates sigma^2.  The distance of the two minima is
+/// the bias, the square of which is added to the covariance
+///
+///   sigma^2 A^-1 (X^T K K X / s^2) A^-1,   A = X^T X,
+///
+/// X the derivatives of the residual by x.  The covariance of a parameter on a
+/// bound is that without the bound.
+///
+/// Where Poisson's ratios are known, the second minimum without them says
+/// whether the data contradict them.  For a force residual above a tenth of the
+/// loads, the balance of virtual work says whether noise explains it.
 ///
 /// Preconditions are those of Estimator::Run; every free component is observed.
-/// Cost: two element passes and one of m columns for each load case, and two
-/// passes for T.
+/// Cost: three element passes, one more for known Poisson's ratios, and that of
+/// virtual-fields of degree 1 where it is asked.
 Estimate RegressForces(const Scene& scene, const EstimatorOptions& options,
                        bool is_bounded);
+
+/// The same for one measurement after another: what does not depend on the
+/// measurement is kept, and an estimate takes two element passes.
+std::unique_ptr<Preparation> PrepareForceRegression(
+    const Scene& scene, const EstimatorOptions& options, bool is_bounded);
+
+/// The variance of the weighted noise that the force residual of some variables
+/// shows, ||F theta - f||^2 / (theta^T T theta) over the redundant equations;
+/// empty where there are no more equations than unknowns.
+std::optional<double> NoiseVarianceAt(const FreeParameters& free,
+                                      const Eigen::VectorXd& variables,
+                                      const ForceResidual& forces);
+
+/// The minimum of ||F theta - f|| / sqrt(theta^T T theta).
+struct UnbiasedFit {
+  Eigen::VectorXd variables;
+  std::optional<double> noise_variance;  ///< NoiseVarianceAt there.
+};
+UnbiasedFit FitWithoutBias(const FreeParameters& free,
+                           const Eigen::VectorXd& start,
+                           const ForceResidual& forces);
+
+/// The covariance of the variables of that minimum to first order in the noise;
+/// empty where they are not determined, or noise makes up half of A or more.
+/// One element pass.
+std::optional<Eigen::MatrixXd> CovarianceOf(const UnbiasedFit& fit,
+                                            const FreeParameters& free,
+                                            ForceResidual& forces);
 
 }  // namespace elastimate
 

@@ -1,15 +1,39 @@
 #include "elastimate/estimators/force_balance/virtual_work_check.h"
 
+#include <cmath>
+
 #include "elastimate/estimators/force_balance/virtual_fields.h"
 #include "elastimate/estimators/interface/limits.h"
+#include "elastimate/estimators/interface/parameter_judge.h"
 
 namespace elastimate {
+namespace {
+
+// Whether nothing else makes the estimate one that is not usable.
+bool WouldBeUsable(Estimate estimate) {
+  JudgeParameters(estimate);
+  return estimate.IsUsable();
+}
+
+// The roots of the diagonal of a covariance of the parameters, in the units of
+// the error budget; not numbers for those that are known.
+ParameterErrors ErrorsOfParameters(const Eigen::MatrixXd& covariance,
+                                   const Estimate& estimate) {
+  ParameterErrors errors(covariance.rows());
+  for (Eigen::Index i = 0; i < errors.size(); ++i) {
+    errors(i) =
+        std::sqrt(covariance(i, i)) / estimate.parameters[i].ErrorUnit();
+  }
+  return errors;
+}
+
+}  // namespace
 
 WorkCheck CheckByVirtualWork(const Scene& scene,
                              const EstimatorOptions& options,
                              Estimate& estimate) {
-  if (!estimate.IsUsable() ||
-      !(*estimate.force_residual > kLimits.small_force_residual)) {
+  if (!(estimate.force_residual.value_or(0) > kLimits.small_force_residual) ||
+      !WouldBeUsable(estimate)) {
     return WorkCheck::kNotMade;
   }
   EstimatorOptions of_degree_one = options;
@@ -22,13 +46,12 @@ WorkCheck CheckByVirtualWork(const Scene& scene,
   }
   ParameterErrors& model = estimate.error_budget.model;
   if (!check.is_model_in_doubt) {
-    model = Eigen::Vector2d(
-        0, options.known_poisson_ratio ? Estimate::kUnknown : 0);
+    model = ErrorsOfParameters(0 * check.parameter_covariance, estimate);
     return WorkCheck::kIsNoise;
   }
   estimate.is_model_in_doubt = true;
-  estimate.covariance += check.covariance;
-  model = StandardErrors(check.covariance, estimate.elasticity);
+  estimate.parameter_covariance += check.parameter_covariance;
+  model = ErrorsOfParameters(check.parameter_covariance, estimate);
   return WorkCheck::kIsMore;
 }
 

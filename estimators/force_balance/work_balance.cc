@@ -1,29 +1,86 @@
 #include "elastimate/estimators/force_balance/work_balance.h"
 
-#include <cmath>
-#include <utility>
+#include <random>
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/node_sums.h"
-#include "elastimate/core/scene/loads.h"
-#include "elastimate/estimators/force_balance/force_residual.h"
+#include "elastimate/core/materials/isotropic_law.h"
 
 namespace elastimate {
+namespace {
 
-WorkBalance::WorkBalance(const Scene& scene, const VirtualWork& work)
-    : dofs_(scene.supports),
-      forces_(scene.mesh, scene.materials),
-      work_(work),
-      fields_(work.Fields()) {
-  auto [q, f] = WeightLoadCases(scene);
-  q_ = std::move(q);
-  f_ = dofs_.Restrict(f);
-  for (Eigen::Index k = 0; k < q_.cols(); ++k) {
-    columns_.push_back(forces_.Columns(q_.col(k)));
-    work_of_columns_.push_back(work.Of(columns_.back()));
-    ++work_done_.element_passes;
+// The work of loads that do none, relative to their norm, is rounding.
+constexpr double kRoundingOfLoads = 1e-10;
+
+// Of k fields, so many probes give traces with a relative standard error of
+// about sqrt(2 / (16 k)).
+constexpr Eigen::Index kFieldProbes = 16;
+
+Eigen::MatrixXd RandomSigns(Eigen::Index num_rows, Eigen::Index num_columns) {
+  std::mt19937_64 generator(20071107);
+  Eigen::MatrixXd signs(num_rows, num_columns);
+  for (double& sign : signs.reshaped()) {
+    sign = (generator() >> 63U) != 0 ? 1 : -1;
   }
-  work_of_loads_ = work.Of(f);
+  return signs;
+}
+
+bool IsOneOfIsotropicLaw(const MaterialParameters& parameters) {
+  return parameters.NumMaterials() == 1 &&
+         parameters.LawOf(0).Name() == IsotropicLaw::kName;
+}
+
+}  // namespace
+
+WorkBalance::WorkBalance(const VirtualWork& work, const ForceResidual& forces)
+    : work_(work),
+      forces_(forces),
+      has_triangle_(
+          IsOneOfIsotropicLaw(forces.Prepared().Forces().Parameters())),
+      work_of_loads_(work.Of(forces.Prepared().Loads())) {
+  if (!has_triangle_) {
+    fields_ = work.Fields();
+  }
+  const std::vector<Eigen::MatrixXd>& products = forces.Products();
+  std::vector<Eigen::MatrixXd> of_moduli;
+  for (const Eigen::MatrixXd& product : products) {
+    of_moduli.push_back(work.Of(product));
+  }
+  for (Eigen::Index i = 0; i < work_of_loads_.cols(); ++i) {
+    Eigen::MatrixXd columns(work_of_loads_.rows(),
+                            Eigen::Index(of_moduli.size()));
+    for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+      columns.col(k) = of_moduli[k].col(i);
+    }
+    work_of_columns_.push_back(columns);
+  }
+}
+
+bool WorkBalance::DoLoadsWork() const {
+  return work_of_loads_.norm() >
+         kRoundingOfLoads * Norm(forces_.Prepared().Loads());
+}
+
+Eigen::MatrixXd WorkBalance::Stiffened(const Eigen::VectorXd& moduli) const {
+  if (has_triangle_) {
+    return moduli(0) * work_.H() + moduli(1) * work_.J();
+  }
+  return forces_.Prepared().Dofs().Restrict(
+      forces_.Prepared().Forces().Multiply(moduli, fields_));
+}
+
+Eigen::MatrixXd WorkBalance::WorkOfCorrection(
+    const Eigen::VectorXd& multipliers) {
+  const Eigen::VectorXd correction = stiffened_ * multipliers;
+  if (has_triangle_) {
+    Eigen::MatrixXd work(multipliers.size(), 2);
+    work << work_.H().transpose() * correction,
+        work_.J().transpose() * correction;
+    return work;
+  }
+  ++work_done_.element_passes;
+  return work_.Of(forces_.Prepared().Forces().Columns(
+      forces_.Prepared().Dofs().Extend(correction)));
 }
 
 bool WorkBalance::Evaluate(const Eigen::VectorXd& moduli,
@@ -31,44 +88,75 @@ bool WorkBalance::Evaluate(const Eigen::VectorXd& moduli,
                            Eigen::VectorXd* residual,
                            Eigen::MatrixXd* jacobian) {
   // A value and its derivatives are asked for one after the other.
-  if (moduli_of_noise_.size() == 0 || moduli != moduli_of_noise_) {
-    ++work_done_.element_passes;
-    moduli_of_noise_ = moduli;
-    noise_ =
-        TriangularFactor(dofs_.Restrict(forces_.Multiply(moduli, fields_)));
+  if (moduli_.size() == 0 || moduli != moduli_) {
+    work_done_.element_passes += has_triangle_ ? 0 : 1;
+    moduli_ = moduli;
+    stiffened_ = Stiffened(moduli);
+    factor_ = TriangularFactor(stiffened_);
   }
-  if (!(noise_.diagonal().cwiseAbs().minCoeff() > 0) || !noise_.allFinite()) {
+  if (!(factor_.diagonal().cwiseAbs().minCoeff() > 0) || !factor_.allFinite()) {
     return false;
   }
-  const Eigen::Index k = noise_.cols();
+  const Eigen::Index k = factor_.cols();
   residual->resize(NumEquations());
   if (jacobian != nullptr) {
     jacobian->resize(NumEquations(), directions.cols());
   }
-  const auto lower = noise_.transpose().triangularView<Eigen::Lower>();
-  for (std::size_t i = 0; i < columns_.size(); ++i) {
+  const auto lower = factor_.transpose().triangularView<Eigen::Lower>();
+  for (std::size_t i = 0; i < work_of_columns_.size(); ++i) {
+    const Eigen::Index first = k * Eigen::Index(i);
     const Eigen::VectorXd z = lower.solve(Eigen::VectorXd(
         work_of_columns_[i] * moduli - work_of_loads_.col(Eigen::Index(i))));
-    residual->segment(k * Eigen::Index(i), k) = z;
+    residual->segment(first, k) = z;
     if (jacobian != nullptr) {
       const Eigen::VectorXd multipliers =
-          noise_.triangularView<Eigen::Upper>().solve(z);
-      const Eigen::VectorXd correction = dofs_.Extend(
-          dofs_.Restrict(forces_.Multiply(moduli, fields_ * multipliers)));
-      work_done_.element_passes += 2;
-      jacobian->middleRows(k * Eigen::Index(i), k) =
-          lower.solve(Eigen::MatrixXd(
-              (work_of_columns_[i] - work_.Of(forces_.Columns(correction))) *
-              directions));
+          factor_.triangularView<Eigen::Upper>().solve(z);
+      jacobian->middleRows(first, k) = lower.solve(Eigen::MatrixXd(
+          (work_of_columns_[i] - WorkOfCorrection(multipliers)) * directions));
     }
   }
   return true;
 }
 
+Eigen::MatrixXd WorkBalance::NoiseOfInformation(
+    const Eigen::MatrixXd& directions) {
+  const auto upper = factor_.triangularView<Eigen::Upper>();
+  const auto lower = factor_.transpose().triangularView<Eigen::Lower>();
+  const Eigen::Index k = factor_.cols();
+  // K_k V L^-T of all fields, or of probes of them.
+  std::vector<Eigen::MatrixXd> of_moduli;
+  double num_probes = 1;
+  const Eigen::MatrixXd all = Eigen::MatrixXd::Identity(k, k);
+  if (has_triangle_) {
+    const Eigen::MatrixXd inverse = upper.solve(all);
+    of_moduli = {work_.H() * inverse, work_.J() * inverse};
+  } else {
+    num_probes = kFieldProbes;
+    const Eigen::MatrixXd probes = upper.solve(RandomSigns(k, kFieldProbes));
+    of_moduli = forces_.Prepared().Forces().Products(fields_ * probes);
+    ++work_done_.element_passes;
+    for (Eigen::MatrixXd& product : of_moduli) {
+      product = forces_.Prepared().Dofs().Restrict(product);
+    }
+  }
+  Eigen::MatrixXd columns(of_moduli[0].size(), directions.cols());
+  Eigen::MatrixXd spanned(k * of_moduli[0].cols(), directions.cols());
+  columns.setZero();
+  spanned.setZero();
+  for (Eigen::Index i = 0; i < directions.rows(); ++i) {
+    const Eigen::MatrixXd within =
+        lower.solve(InnerProducts(stiffened_, of_moduli[i]));
+    columns += of_moduli[i].reshaped() * directions.row(i);
+    spanned += within.reshaped() * directions.row(i);
+  }
+  return double(work_of_columns_.size()) / num_probes *
+         (InnerProducts(columns, columns) - spanned.transpose() * spanned);
+}
+
 double WorkBalance::BestScale(const Eigen::VectorXd& moduli) const {
   double product = 0;
   double square = 0;
-  for (std::size_t i = 0; i < columns_.size(); ++i) {
+  for (std::size_t i = 0; i < work_of_columns_.size(); ++i) {
     const Eigen::VectorXd internal = work_of_columns_[i] * moduli;
     product += internal.dot(work_of_loads_.col(Eigen::Index(i)));
     square += internal.squaredNorm();
@@ -87,21 +175,6 @@ Eigen::VectorXd WorkBalance::LeastSquares() const {
                            work_of_loads_.reshaped())
       .col(0)
       .cwiseQuotient(scales);
-}
-
-double WorkBalance::ForceResidualNorm(const Eigen::VectorXd& moduli) const {
-  double square_sum = 0;
-  for (std::size_t i = 0; i < columns_.size(); ++i) {
-    square_sum += SquaredNorm(dofs_.Restrict(columns_[i] * moduli) -
-                              f_.col(Eigen::Index(i)));
-  }
-  return std::sqrt(square_sum);
-}
-
-double WorkBalance::LoadNorm() const { return Norm(f_); }
-
-double WorkBalance::DisplacementNorm() const {
-  return Norm(dofs_.Restrict(q_));
 }
 
 }  // namespace elastimate

@@ -4,61 +4,74 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "elastimate/core/mechanics/internal_forces.h"
-#include "elastimate/core/scene/degrees_of_freedom.h"
-#include "elastimate/core/scene/scene.h"
+#include "elastimate/core/solvers/stiffness_solver.h"
+#include "elastimate/estimators/force_balance/force_residual.h"
 #include "elastimate/estimators/force_balance/virtual_work.h"
-#include "elastimate/estimators/interface/estimate.h"
 
 namespace elastimate {
 
-/// The balance of virtual work of the measurement of a scene of any materials,
-/// with the fields V of `work`, in all load cases below each other:
+/// The balance of virtual work of a measurement, of the moduli theta of any
+/// materials and the fields V of `work`, in all load cases below each other:
 ///
-///   L^-1 r,   r = V^T (F(q) theta - f),   L L^T = M^T M,
-///   M = K(theta) V on the free rows,
+///   z = L^-1 r,   r = V^T (F theta - f),   L L^T = G = M^T M,
+///   M = K(theta) V on the free rows.
 ///
-/// the size of which is that of the displacements that would bring the work
-/// into balance, over the noise where that is given.
+/// Independent noise of variance sigma^2 in q gives r the covariance sigma^2 G,
+/// and ||z|| is the size of the smallest correction M lambda of the
+/// displacements, lambda = G^-1 r, that brings the work into balance.
+///
+/// For one isotropic material, M is the combination of H V and J V, which
+/// VirtualWork keeps as a triangle: an evaluation then takes no pass over the
+/// elements, which on 200 000 tetrahedra makes an estimate nine times as fast.
 class WorkBalance {
  public:
-  /// Preconditions: every free component is observed; `work` is that of the
-  /// scene, and outlives this.  An element pass for each load case.
-  WorkBalance(const Scene& scene, const VirtualWork& work);
+  /// `work` has the fields of the scene of `forces`; both outlive this object.
+  WorkBalance(const VirtualWork& work, const ForceResidual& forces);
 
   Eigen::Index NumEquations() const { return work_of_loads_.size(); }
   const Work& WorkDone() const { return work_done_; }
+  /// Whether the loads do work on the fields at all, beyond rounding.
+  bool DoLoadsWork() const;
 
-  /// L^-1 r, and its derivative by theta along directions (num_moduli x n)
-  /// where it is asked for.  False where M is singular.  At moduli other than
-  /// the last ones, a pass of as many columns as there are fields, and their QR
+  /// z, and where it is asked for its derivative along directions of theta
+  /// (num_moduli x n), taken as L^-1 V^T f_k(q - M lambda), which makes that of
+  /// ||z||^2 exact.  False where M is singular.  At moduli other than the last
+  /// ones, a pass of as many columns as there are fields, and their QR
   /// factorisation; for derivatives two passes for each load case.
   bool Evaluate(const Eigen::VectorXd& moduli,
                 const Eigen::MatrixXd& directions, Eigen::VectorXd* residual,
                 Eigen::MatrixXd* jacobian);
 
+  /// The part of jacobian^T jacobian of the last evaluation that noise of
+  /// variance 1 makes in the mean, along directions of theta:
+  ///
+  ///   N_kl = num_load_cases tr(L^-1 (K_k V)^T (I - P) (K_l V) L^-T),
+  ///
+  /// P = M G^-1 M^T.  For other materials than one isotropic one by random
+  /// probes of the fields: a pass of as many columns.
+  Eigen::MatrixXd NoiseOfInformation(const Eigen::MatrixXd& directions);
+
   /// The factor on all moduli that balances the work of all fields best.
   double BestScale(const Eigen::VectorXd& moduli) const;
-
   /// The moduli that balance the work of all fields best, unweighted.
   Eigen::VectorXd LeastSquares() const;
 
-  double ForceResidualNorm(const Eigen::VectorXd& moduli) const;
-  double LoadNorm() const;
-  double DisplacementNorm() const;
-
  private:
-  DegreesOfFreedom dofs_;
-  InternalForces forces_;
+  Eigen::MatrixXd Stiffened(const Eigen::VectorXd& moduli) const;
+  /// V^T f_k(M lambda), k x num_moduli.
+  Eigen::MatrixXd WorkOfCorrection(const Eigen::VectorXd& multipliers);
+
   const VirtualWork& work_;
-  Eigen::MatrixXd fields_;
-  Eigen::MatrixXd q_;
-  Eigen::MatrixXd f_;  ///< On the free rows.
-  std::vector<Eigen::MatrixXd> columns_;
+  const ForceResidual& forces_;
+  bool has_triangle_;
+  Eigen::MatrixXd fields_;  ///< Empty where there is a triangle.
+  /// V^T f_k(q) for each load case, k x num_moduli; V^T f.
   std::vector<Eigen::MatrixXd> work_of_columns_;
   Eigen::MatrixXd work_of_loads_;
-  Eigen::VectorXd moduli_of_noise_;  ///< Of the last evaluation.
-  Eigen::MatrixXd noise_;            ///< L^T there.
+  // Of the last evaluation.
+  Eigen::VectorXd moduli_;
+  Eigen::MatrixXd stiffened_;  ///< M, or rows of the same products.
+  Eigen::MatrixXd factor_;     ///< L^T.
   Work work_done_;
 };
 

@@ -36,13 +36,14 @@ struct FreeDirection {
   Eigen::Vector2d direction;
 };
 
-/// What a bound on a modulus costs: the square sum exceeds its least by
+/// What the bound on a modulus costs: the square sum exceeds its least by
 /// `excess`.
 struct BoundExcess {
   double excess;
-  double variance;       ///< Of each residual.
-  std::string label;     ///< That of the modulus.
-  double ratio_without;  ///< The modulus that fits best over that on the bound.
+  double variance;    ///< Of each residual.
+  double without;     ///< The modulus that fits best.
+  double with;        ///< That of the estimate.
+  std::string label;  ///< Of the modulus.
 };
 
 /// What E or nu may be off by where one of them lies on a bound.
@@ -57,20 +58,13 @@ struct ErrorsOnBound {
   double poisson_ratio;
 };
 
-/// nu that the data ask for where another is given.
-struct UnbiasedPoissonRatio {
-  double poisson_ratio;
-  double standard_error;
-  double youngs_modulus_ratio;  ///< E with that nu over E with the given one.
-};
-
-/// What noise does to a method that it biases.
-struct NoiseBias {
-  double youngs_modulus;  ///< Relative; infinite where it hides E.
-  double poisson_ratio;
-  /// Standard errors without it, relative for E; zero when unknown.
-  double youngs_modulus_error;
-  double poisson_ratio_error;
+/// The known Poisson's ratio that the data contradict most.
+struct KnownRatio {
+  std::string label;  ///< Of the parameter.
+  double difference;  ///< Of what the data ask for from what is known.
+  double asked_for;
+  double standard_error;    ///< Of what the data ask for.
+  double change_of_moduli;  ///< Their largest relative change by it.
 };
 
 /// Resultants against the forces of a fit, in their standard deviations.
@@ -126,11 +120,9 @@ struct Evidence {
   std::optional<BoundExcess> bound_excess;
   std::optional<ErrorsOnBound> youngs_modulus_on_bound;
   std::optional<ErrorsOnBound> poisson_ratio_on_bound;
-  /// Of 95 %, by the profile likelihood; one that chance alone allows.
+  /// Of 95 %, by the profile likelihood.
   std::optional<Interval> profile_interval;
-  std::optional<Interval> chance_interval;
-  std::optional<UnbiasedPoissonRatio> unbiased;
-  std::optional<NoiseBias> noise_bias;
+  std::optional<KnownRatio> known_ratio;
 
   std::string search_message;  ///< Why the search failed.
   std::string solver_notice;
@@ -140,15 +132,11 @@ struct Evidence {
   /// Of several materials: Poisson's ratios at the end of their range.
   std::vector<std::string> ratios_at_limit;
   bool is_a_ratio_at_minus_one = false;
-  /// Whether displacement noise biases the method.
-  bool is_biased_by_noise = false;
   bool do_loads_work = true;
   /// Whether the forces of some moduli are combinations of those of others.
   bool are_forces_dependent = false;
   bool do_displacements_oppose_loads = false;
   bool does_youngs_modulus_diverge = false;
-  /// Whether noise leaves the fit without a covariance.
-  bool is_poisson_ratio_hidden = false;
   bool is_explained_by_given_noise = false;
 };
 

@@ -201,18 +201,17 @@ Finding Unphysical(const IsotropicElasticity& elasticity) {
                kCheckTheModel);
 }
 
-Finding UnphysicalByNoise(const IsotropicElasticity& elasticity) {
-  return Error(FindingCode::kUnphysical,
-               Describe(elasticity) +
-                   " is not physical, as noise or coarse elements make it here",
-               kUnbiased);
-}
-
-Finding UnphysicalParameters(const std::vector<std::string>& parameters) {
-  return Error(FindingCode::kUnphysical,
-               FirstOf(parameters) + (parameters.size() == 1 ? " is" : " are") +
-                   " not physical",
-               std::string("give bounds, and ") + kCheckTheModel);
+Finding UnphysicalParameters(const std::vector<std::string>& parameters,
+                             bool is_by_noise) {
+  const std::string text = FirstOf(parameters) +
+                           (parameters.size() == 1 ? " is" : " are") +
+                           " not physical";
+  return is_by_noise
+             ? Error(FindingCode::kUnphysical,
+                     text + ", as noise or coarse elements make it here",
+                     kUnbiased)
+             : Error(FindingCode::kUnphysical, text,
+                     std::string("give bounds, and ") + kCheckTheModel);
 }
 
 Finding DisplacementsOpposeLoads() {
@@ -291,23 +290,12 @@ Finding PoissonRatioUndetermined(const Estimate& estimate) {
                kGiveMore);
 }
 
-Finding PoissonRatioBetween(const Interval& interval, bool by_virtual_work) {
-  return Error(
-      FindingCode::kPoissonRatioUndetermined,
-      (by_virtual_work ? "virtual work leaves" : "the data leave") +
-          std::string(" Poisson's ratio between ") + TwoDigits(interval.lower) +
-          " and " + TwoDigits(interval.upper),
-      by_virtual_work ? "give Poisson's ratio, or use reduced-fe"
-                      : "give it, or measure larger displacements or other "
-                        "load cases");
-}
-
-Finding PoissonRatioHiddenByNoise() {
+Finding PoissonRatioBetween(const Interval& interval) {
   return Error(FindingCode::kPoissonRatioUndetermined,
-               "displacement noise hides Poisson's ratio from these virtual "
-               "fields",
-               "give Poisson's ratio, raise the degree of the fields, or use "
-               "reduced-fe");
+               "the data leave Poisson's ratio between " +
+                   TwoDigits(interval.lower) + " and " +
+                   TwoDigits(interval.upper),
+               "give it, or measure larger displacements or other load cases");
 }
 
 Finding YoungsModulusUndetermined(double youngs_modulus,
@@ -419,18 +407,19 @@ Finding TooFewMeasurements(Eigen::Index num_components) {
                "measure more, or give the standard deviation of the noise");
 }
 
-Finding BoundContradicted(const std::string& modulus, bool is_less_asked_for) {
+Finding BoundContradicted(const std::string& label, bool is_less_asked_for) {
   return Error(FindingCode::kBoundContradicted,
-               "the data contradict the bound on " + modulus +
-                   ", and ask for " + (is_less_asked_for ? "less" : "more"),
+               "the data contradict the bound on " + label + ", and ask for " +
+                   (is_less_asked_for ? "less" : "more"),
                "check the bound, mesh, supports and loads");
 }
 
-Finding KnownPoissonRatioContradicted(double poisson_ratio,
+Finding KnownPoissonRatioContradicted(const std::string& label,
+                                      double poisson_ratio,
                                       double standard_error,
                                       Severity severity) {
   return {FindingCode::kKnownPoissonRatioContradicted, severity,
-          "the data contradict the given Poisson's ratio: they ask for " +
+          "the data contradict the given " + label + ": they ask for " +
               TwoDigits(poisson_ratio) + " +- " + TwoDigits(standard_error),
           "check that value, mesh, supports and loads"};
 }
@@ -628,30 +617,6 @@ Finding TrendOverFrames(const std::string& parameter, bool is_relative,
                      : "look for creep, and drift of camera or load");
 }
 
-Finding YoungsModulusBias(const std::optional<double>& bias,
-                          Severity severity) {
-  const std::string size = bias ? AboutPercent(*bias) : "its whole size";
-  return {FindingCode::kNoiseBias, severity,
-          "displacement noise biases Young's modulus by " + size +
-              (severity == Severity::kError
-                   ? ", more than the " + Percent(kLimits.unusable_error) +
-                         " that are usable"
-                   : ", which the standard errors allow for"),
-          kUnbiased};
-}
-
-Finding PoissonRatioBias(double bias, Severity severity) {
-  return {FindingCode::kNoiseBias, severity,
-          "displacement noise biases Poisson's ratio by about " +
-              TwoDigits(bias) +
-              (severity == Severity::kError
-                   ? ", more than the " +
-                         NumberText(kLimits.unusable_poisson_ratio_bias) +
-                         " that are usable"
-                   : ", which the standard errors allow for"),
-          kUnbiased};
-}
-
 Finding YoungsModulusOnBound() {
   return Warning(FindingCode::kYoungsModulusOnBound,
                  "Young's modulus lies on its bound, and Poisson's ratio holds "
@@ -697,7 +662,7 @@ Finding ParameterBias(const std::string& parameter, double bias,
           ? "displacement noise biases " + parameter + " by " +
                 (is_relative ? AboutPercent(bias) : "about " + TwoDigits(bias))
           : "displacement noise hides " + parameter,
-      "use iterative-fe or virtual-fields, which noise does not bias"};
+      "use reduced-fe or virtual-fields, which noise does not bias"};
 }
 
 Finding LargeDeformation(const DeformationSize& size,

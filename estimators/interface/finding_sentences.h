@@ -29,11 +29,10 @@ Finding ErrorsMissing(const std::string& estimator, const std::string& what);
 
 // Why it is unphysical.
 Finding Unphysical(const IsotropicElasticity& elasticity);
-/// Of a method whose estimate noise drives out of the physical range.
-Finding UnphysicalByNoise(const IsotropicElasticity& elasticity);
-/// Of several materials: `parameters` describes each, such as "E of region 3 =
-/// -2".
-Finding UnphysicalParameters(const std::vector<std::string>& parameters);
+/// `parameters` describes each, such as "E of region 3 = -2"; `is_by_noise` for
+/// a method whose estimate noise drives out of the physical range.
+Finding UnphysicalParameters(const std::vector<std::string>& parameters,
+                             bool is_by_noise);
 Finding DisplacementsOpposeLoads();
 Finding YoungsModulusDiverges();
 Finding PoissonRatioAtMinusOne();
@@ -57,8 +56,7 @@ Finding YoungsModulusOnBoundUndetermined(double standard_error);
 /// Names the modulus that the covariance says is determined all the same: E,
 /// mu, kappa or none.  Precondition: a finite elasticity.
 Finding PoissonRatioUndetermined(const Estimate& estimate);
-Finding PoissonRatioBetween(const Interval& interval, bool by_virtual_work);
-Finding PoissonRatioHiddenByNoise();
+Finding PoissonRatioBetween(const Interval& interval);
 Finding YoungsModulusUndetermined(double youngs_modulus, double standard_error);
 /// `parameters` describes each, such as "E of region 3 (45 %)".
 Finding ParametersUndetermined(const std::vector<std::string>& parameters);
@@ -91,9 +89,10 @@ Finding DependentForces();
 Finding TooFewMeasurements(Eigen::Index num_components);
 
 // What the model does not explain.
-Finding BoundContradicted(const std::string& modulus, bool is_less_asked_for);
-/// nu that the data ask for, and its standard error.
-Finding KnownPoissonRatioContradicted(double poisson_ratio,
+Finding BoundContradicted(const std::string& label, bool is_less_asked_for);
+/// `label` names the known ratio; the data ask for `poisson_ratio`.
+Finding KnownPoissonRatioContradicted(const std::string& label,
+                                      double poisson_ratio,
                                       double standard_error, Severity severity);
 /// Relative to the measured displacements.
 Finding LargeCorrection(double correction);
@@ -140,9 +139,6 @@ Finding FramesScatter(double excess, std::size_t farthest);
 Finding FramesAlike(double correlation);
 
 // What the method does to the estimate.
-/// `bias` of E is relative, and empty when it is as large as E.
-Finding YoungsModulusBias(const std::optional<double>& bias, Severity severity);
-Finding PoissonRatioBias(double bias, Severity severity);
 Finding YoungsModulusOnBound();
 Finding PoissonRatioOnBound();
 Finding PoissonRatioAtLimit();

@@ -99,8 +99,8 @@ void JudgeResult(const EstimatorOptions& options, Estimate& estimate) {
                  kLimits.largest_poisson_ratio_error) {
     FailUndetermined(PoissonRatioUndetermined(estimate), estimate);
   } else if (!options.known_poisson_ratio && IsIntervalTooWide(estimate)) {
-    FailUndetermined(
-        PoissonRatioBetween(*estimate.poisson_ratio_interval, false), estimate);
+    FailUndetermined(PoissonRatioBetween(*estimate.poisson_ratio_interval),
+                     estimate);
   } else if (youngs_modulus_error >
              kLimits.largest_youngs_modulus_error * elasticity.youngs_modulus) {
     FailUndetermined(YoungsModulusUndetermined(elasticity.youngs_modulus,

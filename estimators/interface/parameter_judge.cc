@@ -14,6 +14,17 @@
 #include "elastimate/estimators/interface/stiffness_estimate.h"
 
 namespace elastimate {
+
+std::string NameOfBound(const ParameterEstimate& parameter, bool is_lower) {
+  if (parameter.regions.empty() && parameter.name == "youngs_modulus") {
+    return is_lower ? "youngs_min" : "youngs_max";
+  }
+  if (parameter.regions.empty() && parameter.name == "poisson_ratio") {
+    return is_lower ? "nu_min" : "nu_max";
+  }
+  return parameter.Label() + (is_lower ? " (lower)" : " (upper)");
+}
+
 std::vector<ParameterEstimate> ParametersWithoutValues(
     const Scene& scene, const MaterialParameters& parameters) {
   std::vector<ParameterEstimate> all;
@@ -146,7 +157,8 @@ Finding FindingOfUndetermined(const Estimate& estimate) {
     return parameter.is_modulus && !IsDetermined(parameter) &&
            std::any_of(active.begin(), active.end(),
                        [&](const std::string& bound) {
-                         return bound.rfind(parameter.Label() + " (", 0) == 0;
+                         return bound == NameOfBound(parameter, true) ||
+                                bound == NameOfBound(parameter, false);
                        });
   };
   if (std::any_of(estimate.parameters.begin(), estimate.parameters.end(),
@@ -280,7 +292,8 @@ void JudgePhysicsOfParameters(Estimate& estimate) {
     }
   }
   if (!unphysical.empty()) {
-    estimate.Fail(UnphysicalParameters(unphysical));
+    estimate.Fail(
+        UnphysicalParameters(unphysical, !estimate.displacement_residual));
   }
 }
 

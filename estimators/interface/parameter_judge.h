@@ -2,6 +2,7 @@
 #define ELASTIMATE_ESTIMATORS_INTERFACE_PARAMETER_JUDGE_H_
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "elastimate/core/scene/scene.h"
@@ -10,6 +11,10 @@
 #include "elastimate/estimators/interface/free_parameters.h"
 
 namespace elastimate {
+
+/// The name of a bound that an estimate lies on: "nu_max" of one material, as
+/// the options have it, else as "nu of region 3 (upper)".
+std::string NameOfBound(const ParameterEstimate& parameter, bool is_lower);
 
 /// The parameters of the materials of a scene, of which no value is entered.
 std::vector<ParameterEstimate> ParametersWithoutValues(

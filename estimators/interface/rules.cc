@@ -68,30 +68,6 @@ Result JudgeEnd(const Evidence& evidence, const EstimatorOptions& options,
   return std::nullopt;
 }
 
-Result JudgeLimitOfBiasedMethod(const Evidence& evidence,
-                                const EstimatorOptions&, const Estimate&) {
-  return evidence.is_biased_by_noise && evidence.active.is_physical_limit
-             ? PoissonRatioDivergesByNoise()
-             : Result();
-}
-
-Result JudgePhysics(const Evidence& evidence, const EstimatorOptions&,
-                    const Estimate& estimate) {
-  const IsotropicElasticity& elasticity = estimate.elasticity;
-  if (!evidence.is_biased_by_noise || elasticity.IsPhysical()) {
-    return std::nullopt;
-  }
-  const double nu = elasticity.poisson_ratio;
-  return nu > -1 && nu < 0.5 ? DisplacementsOpposeLoads()
-                             : UnphysicalByNoise(elasticity);
-}
-
-Result JudgeHiddenPoissonRatio(const Evidence& evidence,
-                               const EstimatorOptions&, const Estimate&) {
-  return evidence.is_poisson_ratio_hidden ? PoissonRatioHiddenByNoise()
-                                          : Result();
-}
-
 Result JudgeCount(const Evidence& evidence, const EstimatorOptions&,
                   const Estimate&) {
   return evidence.too_few_components
@@ -106,10 +82,8 @@ Result NoteYoungsModulusOnBound(const Evidence& evidence,
 }
 
 Result NotePoissonRatioOnBound(const Evidence& evidence,
-                               const EstimatorOptions& options,
-                               const Estimate& estimate) {
-  if (evidence.active.poisson_ratio == Side::kNone ||
-      JudgeLimitOfBiasedMethod(evidence, options, estimate)) {
+                               const EstimatorOptions&, const Estimate&) {
+  if (evidence.active.poisson_ratio == Side::kNone) {
     return std::nullopt;
   }
   return evidence.active.is_physical_limit ? PoissonRatioAtLimit()
@@ -167,11 +141,11 @@ Result JudgeBoundExcess(const Evidence& evidence, const EstimatorOptions&,
   if (!evidence.bound_excess) {
     return std::nullopt;
   }
-  const auto& [excess, variance, label, ratio] = *evidence.bound_excess;
-  return std::abs(ratio - 1) > kLimits.unusable_error &&
-                 excess > kLimits.significant_score *
-                              kLimits.significant_score * variance
-             ? BoundContradicted(label, ratio < 1)
+  const BoundExcess& bound = *evidence.bound_excess;
+  return std::abs(bound.without / bound.with - 1) > kLimits.unusable_error &&
+                 bound.excess > kLimits.significant_score *
+                                    kLimits.significant_score * bound.variance
+             ? BoundContradicted(bound.label, bound.without < bound.with)
              : Result();
 }
 
@@ -215,16 +189,9 @@ Result JudgeProfile(const Evidence& evidence, const EstimatorOptions&,
   const double nu = estimate.elasticity.poisson_ratio;
   const double largest = kLimits.LargestPoissonRatioDistance();
   const Interval& profile = *evidence.profile_interval;
-  if ((profile.lower == -1 && nu + 1 > largest) ||
-      (profile.upper == 0.5 && 0.5 - nu > largest)) {
-    return PoissonRatioBetween(profile, evidence.chance_interval.has_value());
-  }
-  if (!evidence.chance_interval) {
-    return std::nullopt;
-  }
-  const Interval& chance = *evidence.chance_interval;
-  return std::max(chance.upper - nu, nu - chance.lower) > largest
-             ? PoissonRatioBetween(chance, true)
+  return (profile.lower == -1 && nu + 1 > largest) ||
+                 (profile.upper == 0.5 && 0.5 - nu > largest)
+             ? PoissonRatioBetween(profile)
              : Result();
 }
 
@@ -257,49 +224,22 @@ Result JudgePoissonRatioOnBound(const Evidence& evidence,
              : Result();
 }
 
-Result JudgeKnownPoissonRatio(const Evidence& evidence, const EstimatorOptions&,
-                              const Estimate& estimate) {
+Result JudgeKnownRatio(const Evidence& evidence, const EstimatorOptions&,
+                       const Estimate&) {
   // Rounding has no standard error.
   constexpr double kRounding = 1e-6;
-  if (!evidence.unbiased) {
+  if (!evidence.known_ratio) {
     return std::nullopt;
   }
-  const auto& [nu, error, ratio] = *evidence.unbiased;
-  if (!(std::abs(nu - estimate.elasticity.poisson_ratio) >
-        kLimits.significant_score * error + kRounding)) {
+  const KnownRatio& known = *evidence.known_ratio;
+  if (!(std::abs(known.difference) >
+        kLimits.significant_score * known.standard_error + kRounding)) {
     return std::nullopt;
   }
   return KnownPoissonRatioContradicted(
-      nu, error,
-      std::abs(ratio - 1) <= kLimits.unusable_error ? Severity::kWarning
-                                                    : Severity::kError);
-}
-
-Result JudgeNoiseBias(const Evidence& evidence, const EstimatorOptions&,
-                      const Estimate&) {
-  if (!evidence.noise_bias) {
-    return std::nullopt;
-  }
-  const NoiseBias& bias = *evidence.noise_bias;
-  const double of_youngs = std::abs(bias.youngs_modulus);
-  const double of_poisson = std::abs(bias.poisson_ratio);
-  if (!(of_youngs <= kLimits.unusable_error)) {
-    return YoungsModulusBias(std::isfinite(bias.youngs_modulus)
-                                 ? std::optional<double>(bias.youngs_modulus)
-                                 : std::nullopt,
-                             Severity::kError);
-  }
-  if (!(of_poisson <= kLimits.unusable_poisson_ratio_bias)) {
-    return PoissonRatioBias(bias.poisson_ratio, Severity::kError);
-  }
-  if (of_youngs > std::max(kLimits.notable_youngs_modulus_error,
-                           bias.youngs_modulus_error)) {
-    return YoungsModulusBias(bias.youngs_modulus, Severity::kWarning);
-  }
-  return of_poisson > std::max(kLimits.notable_poisson_ratio_error,
-                               bias.poisson_ratio_error)
-             ? PoissonRatioBias(bias.poisson_ratio, Severity::kWarning)
-             : Result();
+      known.label, known.asked_for, known.standard_error,
+      known.change_of_moduli <= kLimits.unusable_error ? Severity::kWarning
+                                                       : Severity::kError);
 }
 
 Result JudgeWorkCheck(const Evidence& evidence, const EstimatorOptions&,
@@ -333,12 +273,17 @@ Result JudgeCorrection(const Evidence& evidence, const EstimatorOptions&,
 
 Result JudgeRatiosAtLimit(const Evidence& evidence, const EstimatorOptions&,
                           const Estimate& estimate) {
+  if (evidence.ratios_at_limit.empty()) {
+    return std::nullopt;
+  }
   if (evidence.is_a_ratio_at_minus_one) {
     return PoissonRatioAtMinusOne();
   }
-  return estimate.is_model_in_doubt && !evidence.ratios_at_limit.empty()
-             ? RatiosAtLimit(evidence.ratios_at_limit)
-             : Result();
+  if (estimate.noise_attenuation) {
+    return PoissonRatioDivergesByNoise();
+  }
+  return estimate.is_model_in_doubt ? RatiosAtLimit(evidence.ratios_at_limit)
+                                    : Result();
 }
 
 Result NoteSupportEnds(const Evidence& evidence, const EstimatorOptions&,
@@ -387,8 +332,7 @@ const std::vector<Rule>& Rules() {
   static const std::vector<Rule> rules = {
       // Whether there is anything to estimate.
       JudgeLoadBalance, JudgeLoadWork, JudgeSigns, JudgeDivergence,
-      JudgeFreeDirection, JudgeDependence, JudgeEnd, JudgeLimitOfBiasedMethod,
-      JudgePhysics, JudgeHiddenPoissonRatio, JudgeCount,
+      JudgeFreeDirection, JudgeDependence, JudgeEnd, JudgeCount,
       // What to say of a usable estimate.
       NoteYoungsModulusOnBound, NotePoissonRatioOnBound, NoteResidualAboveNoise,
       NoteOutliers, NoteSmoothResidual, NoteAxes, NoteVirtualWork,
@@ -396,8 +340,8 @@ const std::vector<Rule>& Rules() {
       // Whether the data determine it, and the model explains them.
       JudgeBoundExcess, JudgeYoungsModulusOnBound, JudgeLargeResidual,
       JudgeProfile, JudgePoissonRatioAtLimit, JudgePoissonRatioOnBound,
-      JudgeKnownPoissonRatio, JudgeRatiosAtLimit, JudgeNoiseBias,
-      JudgeWorkCheck, JudgeCorrection, JudgeCertificate, NoteSolver};
+      JudgeKnownRatio, JudgeRatiosAtLimit, JudgeWorkCheck, JudgeCorrection,
+      JudgeCertificate, NoteSolver};
   return rules;
 }
 

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "elastimate/core/algebra/node_sums.h"
-#include "elastimate/core/materials/material.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
 #include "elastimate/estimators/force_balance/virtual_work_regression.h"
@@ -99,8 +98,7 @@ std::optional<Eigen::VectorXd> RobustStart(const Scene& scene, Loss loss,
 }
 
 std::optional<Eigen::VectorXd> VirtualFieldsStart(
-    const Scene& scene, const EstimatorOptions& options,
-    const FreeParameters& free, Estimate& estimate) {
+    const Scene& scene, const EstimatorOptions& options, Estimate& estimate) {
   // Near the minimum is near enough.
   constexpr int kIterations = 10;
   EstimatorOptions of_virtual_fields = options;
@@ -110,24 +108,10 @@ std::optional<Eigen::VectorXd> VirtualFieldsStart(
   if (!virtual_fields.WhyUnsupported(scene, of_virtual_fields).empty()) {
     return std::nullopt;
   }
-  if (!IsOneIsotropicMaterial(scene.materials)) {
-    const std::optional<BoundedMinimum> minimum =
-        MinimizeVirtualWork(scene, of_virtual_fields, estimate.work);
-    return minimum ? std::optional<Eigen::VectorXd>(minimum->variables)
-                   : std::nullopt;
-  }
-  const Estimate start = virtual_fields.Run(scene, of_virtual_fields);
-  estimate.work = estimate.work + start.work;
-  Eigen::VectorXd parameters(Eigen::Index(start.parameters.size()));
-  for (Eigen::Index i = 0; i < parameters.size(); ++i) {
-    parameters(i) = start.parameters[i].value;
-  }
-  if (parameters.size() == 0) {
-    return std::nullopt;
-  }
-  const Eigen::VectorXd variables = free.VariablesOf(parameters);
-  return variables.allFinite() ? std::optional<Eigen::VectorXd>(variables)
-                               : std::nullopt;
+  const std::optional<BoundedMinimum> minimum =
+      MinimizeVirtualWork(scene, of_virtual_fields, estimate.work);
+  return minimum ? std::optional<Eigen::VectorXd>(minimum->variables)
+                 : std::nullopt;
 }
 
 std::optional<BoundedMinimum> BestMinimum(const Scene& scene,
@@ -135,7 +119,7 @@ std::optional<BoundedMinimum> BestMinimum(const Scene& scene,
                                           DisplacementMisfit& misfit,
                                           Estimate& estimate) {
   std::vector<std::optional<Eigen::VectorXd>> starts = StartsOf(scene, misfit);
-  starts.push_back(VirtualFieldsStart(scene, options, misfit.Free(), estimate));
+  starts.push_back(VirtualFieldsStart(scene, options, estimate));
   std::optional<BoundedMinimum> best;
   for (const std::optional<Eigen::VectorXd>& start : starts) {
     // A descent that begins beyond all data takes hundreds of steps, and ends

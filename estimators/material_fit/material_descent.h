@@ -30,8 +30,7 @@ std::optional<Eigen::VectorXd> RobustStart(const Scene& scene, Loss loss,
 /// The variables that virtual-fields comes to; empty where it does not take the
 /// scene, or they are not physical.  Adds its work to the estimate.
 std::optional<Eigen::VectorXd> VirtualFieldsStart(
-    const Scene& scene, const EstimatorOptions& options,
-    const FreeParameters& free, Estimate& estimate);
+    const Scene& scene, const EstimatorOptions& options, Estimate& estimate);
 
 /// The best of those that typical values and virtual-fields lead to; empty
 /// where both oppose the loads.  Adds the work of virtual-fields to the

@@ -125,8 +125,7 @@ std::optional<BoundedMinimum> SpaceFit::FindMinimum(
   // Typical values beside known ones may be those of no material.
   return minimum
              ? minimum
-             : ReducedMinimum(VirtualFieldsStart(scene_, options_,
-                                                 misfit_.Free(), fit_.estimate),
+             : ReducedMinimum(VirtualFieldsStart(scene_, options_, fit_.estimate),
                               options_, misfit_, fit_.estimate);
 }
 

@@ -205,7 +205,8 @@ void NoteBoundExcess(const FreeParameters& free, const BoundedMinimum& minimum,
       largest = std::abs(change(i));
       evidence.bound_excess = {SquaredNorm(rows) - least,
                                least / static_cast<double>(rows.size()),
-                               parameter.Label(), std::exp(change(i))};
+                               parameter.value * std::exp(change(i)),
+                               parameter.value, parameter.Label()};
     }
   }
 }

@@ -101,8 +101,7 @@ void NoteVariablesOnBounds(const FreeParameters& free,
           estimate.parameters[free.All().Free()[i]];
       names.push_back(parameter.Label());
       estimate.active_bounds.push_back(
-          names.back() +
-          (minimum.on_bound[i] == Side::kLower ? " (lower)" : " (upper)"));
+          NameOfBound(parameter, minimum.on_bound[i] == Side::kLower));
       if (parameter.name == "poisson_ratio" &&
           (parameter.value < kSmallestPoissonRatio + kNearLimit ||
            parameter.value > kLargestPoissonRatio - kNearLimit)) {

@@ -354,7 +354,7 @@ TEST_P(Conformance, TheErrorBudgetMakesUpTheStandardErrors) {
               1e-6);
   if (estimate.discretization_error) {
     EXPECT_EQ(budget.discretization(0), *estimate.discretization_error);
-  } else {
+  } else if (budget.discretization.size() > 0) {
     EXPECT_TRUE(std::isnan(budget.discretization(0)));
   }
 }
@@ -472,11 +472,14 @@ TEST_P(Conformance, AnEstimateThatIsNotUsableHasAReasonAndNoStandardError) {
     EXPECT_EQ(num_errors, estimate.IsUsable() ? 0 : 1);
     if (!estimate.IsUsable()) {
       ++num_failures;
-      EXPECT_TRUE(estimate.covariance.array().isNaN().all());
-      EXPECT_FALSE(estimate.YoungsModulusStandardError().has_value());
-      EXPECT_FALSE(estimate.ShearModulusStandardError().has_value());
-      EXPECT_EQ(estimate.error_budget.noise.size(), 0);
-      EXPECT_FALSE(estimate.why_no_standard_error.empty());
+      // Where some parameters are not determined, how well others are is said.
+      if (!estimate.Has(FindingCode::kParametersUndetermined)) {
+        EXPECT_TRUE(estimate.covariance.array().isNaN().all());
+        EXPECT_FALSE(estimate.YoungsModulusStandardError().has_value());
+        EXPECT_FALSE(estimate.ShearModulusStandardError().has_value());
+        EXPECT_EQ(estimate.error_budget.noise.size(), 0);
+        EXPECT_FALSE(estimate.why_no_standard_error.empty());
+      }
     }
   }
   EXPECT_GT(num_failures, 4);

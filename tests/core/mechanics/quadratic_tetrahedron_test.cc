@@ -9,6 +9,7 @@
 #include "elastimate/core/materials/elasticity.h"
 #include "elastimate/core/mechanics/gradient_products.h"
 #include "elastimate/core/mechanics/stiffness_assembly.h"
+#include "elastimate/core/mechanics/internal_forces.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/mechanics/stiffness_traces.h"
 #include "elastimate/core/mechanics/strain_energy.h"
@@ -352,7 +353,8 @@ TEST_F(QuadraticTetrahedra, TracesEqualTheSumsOverTheFreeRowsAndColumns) {
   Eigen::Matrix2d expected;
   expected << h.squaredNorm(), h.cwiseProduct(j).sum(), h.cwiseProduct(j).sum(),
       j.squaredNorm();
-  EXPECT_TRUE(StiffnessTraces(mesh_, dofs).isApprox(expected, 1e-12));
+  EXPECT_TRUE(StiffnessTraces(mesh_, InternalForces(mesh_, {}), dofs)
+                  .isApprox(expected, 1e-12));
 }
 
 TEST_F(QuadraticTetrahedra, StrainEnergyIsTheMeanOverTheElement) {

@@ -125,6 +125,9 @@ TEST_P(VirtualFieldsCoverageStatistics, IsThatOfItsStandardErrors) {
     noisy.load_cases[0].displacement = exact.load_cases[0].displacement;
     AddNoise(GetParam().noise, std::uint64_t(seed), noisy);
     const Estimate estimate = prepared.Run({noisy.load_cases[0].displacement});
+    EXPECT_TRUE(estimate.IsUsable())
+        << "seed " << seed << ", nu = " << estimate.elasticity.poisson_ratio
+        << ": " << estimate.message;
     if (!estimate.IsUsable()) {
       continue;
     }
@@ -150,7 +153,6 @@ TEST_P(VirtualFieldsCoverageStatistics, IsThatOfItsStandardErrors) {
             << (rms * n / standard_error_sum).transpose()
             << ", bias in standard deviations of the mean " << bias.transpose()
             << ", coverage " << coverage.transpose() << " (E, nu)\n";
-  EXPECT_EQ(num_usable, kFewerSeeds);
   EXPECT_LT(bias.maxCoeff(), 4);
   // Three standard deviations of a root mean square, and of a frequency.
   EXPECT_GT(over_bound.minCoeff(), 1 - 3 / std::sqrt(2.0 * kFewerSeeds));
