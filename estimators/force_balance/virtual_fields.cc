@@ -389,9 +389,7 @@ std::string_view VirtualFields::Name() const { return "virtual-fields"; }
 
 std::string_view VirtualFields::Description() const {
   return "virtual work of polynomial fields, weighted by its own covariance; "
-         "noise does not bias it; held against one finite element solution "
-         "[Avril "
-         "& Pierron 2007]";
+         "noise does not bias it [Avril & Pierron 2007]";
 }
 
 Capabilities VirtualFields::WhatItTakes() const {
