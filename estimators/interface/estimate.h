@@ -95,7 +95,7 @@ struct Rung {
   int element_order = 1;
   /// Empty when it was passed over.
   std::optional<Status> status;
-  /// Of one isotropic material; empty where there is no number.
+  /// E and nu of one isotropic material; empty where there is no number.
   std::optional<IsotropicElasticity> elasticity;
   Work work;
   double seconds = 0;

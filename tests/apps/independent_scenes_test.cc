@@ -239,7 +239,8 @@ TEST_F(IndependentScenes, LinearElementsAgreeInAFinerWorld) {
   EXPECT_NEAR(closed["poisson_ratio"].get<double>(), 0.426, 5e-4);
 }
 
-// The same scene with its load and its support as what they are.
+// The file names nodes and their forces.  Given as the traction and the box of
+// the experiment, load and support do not depend on the mesh.
 class FinerWorldLong : public IndependentScenes {
  protected:
   void SetUp() override {
