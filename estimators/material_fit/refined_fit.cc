@@ -189,6 +189,10 @@ std::optional<SpaceChange> DescribeChange(SpaceFit& coarse, bool is_last,
     change->is_kept_for_its_size = is_last;
   }
   fine.Describe(change ? &*change : nullptr);
+  if (!change) {
+    fine.Fit().estimate.Fail(SearchFailed(
+        "the coarser elements have no equilibrium at the fit of the finer"));
+  }
   return change;
 }
 

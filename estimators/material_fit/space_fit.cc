@@ -216,20 +216,33 @@ std::optional<SpaceChange> SpaceFit::ChangeFrom(SpaceFit& coarse) {
   SpaceChange change;
   change.variables = variables - coarse.fit_.minimum->variables;
   change.is_of_quadratic = coarse.scene_.mesh.Order() == 2;
-  const Work before = coarse.WorkDone();
-  Eigen::VectorXd of_coarse;
   coarse.misfit_.SetNoise(misfit_.Noise());
   coarse.misfit_.SetFactors(misfit_.Factors());
-  const bool is_solved =
-      misfit_.Evaluate(variables, &change.rows, nullptr) &&
-      coarse.misfit_.Evaluate(variables, &of_coarse, nullptr);
-  coarse.fit_.estimate.work =
-      coarse.fit_.estimate.work + (coarse.WorkDone() - before);
-  if (!is_solved) {
+  Eigen::VectorXd of_coarse;
+  if (!misfit_.Evaluate(variables, &change.rows, nullptr) ||
+      !coarse.ResidualAt(variables, of_coarse)) {
     return std::nullopt;
   }
   change.rows -= of_coarse;
   return change;
+}
+
+bool SpaceFit::ResidualAt(const Eigen::VectorXd& variables,
+                          Eigen::VectorXd& residual) {
+  const Work before = WorkDone();
+  bool is_solved = misfit_.Evaluate(variables, &residual, nullptr);
+  Work work = WorkDone() - before;
+  // Iterations over coarser spaces may not converge next to nu = 1/2, where
+  // this fit did not end itself.
+  if (!is_solved && is_finest_of_several_) {
+    DisplacementMisfit factorized({&scene_}, options_);
+    factorized.SetNoise(misfit_.Noise());
+    factorized.SetFactors(misfit_.Factors());
+    is_solved = factorized.Evaluate(variables, &residual, nullptr);
+    work = work + factorized.Model().WorkDone();
+  }
+  fit_.estimate.work = fit_.estimate.work + work;
+  return is_solved;
 }
 
 MaterialFit FitSpace(const Scene& scene, const EstimatorOptions& options,

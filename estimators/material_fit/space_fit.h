@@ -60,8 +60,9 @@ class SpaceFit {
   void Describe(const SpaceChange* change);
 
   /// What the elements of this fit changed from those of a coarser one of the
-  /// same measurement: one solution of the coarse model.  Empty where its
-  /// stiffness is singular at this minimum.  Precondition: both have a minimum.
+  /// same measurement: one solution of the coarse model.  Empty where that
+  /// model cannot be solved at this minimum.  Precondition: both have a
+  /// minimum.
   std::optional<SpaceChange> ChangeFrom(SpaceFit& coarse);
 
   /// Takes what a scene that differs in its measured displacements alone has
@@ -81,6 +82,9 @@ class SpaceFit {
  private:
   /// Enters what is there at the minimum before it is described.
   void EnterMinimum();
+  /// Computes the residual at some variables; false where the model cannot be
+  /// solved there.
+  bool ResidualAt(const Eigen::VectorXd& variables, Eigen::VectorXd& residual);
   /// Moves to the minimum with the loss of the options, by reweighting.
   void Reweigh();
   std::optional<BoundedMinimum> FindMinimum(

@@ -11,14 +11,18 @@
 namespace elastimate {
 namespace {
 
-// Of a parameter, or of the way to the end of its range: below, the misfit is
-// nearly quadratic; above, the parameter is not determined anyway.
+// Below this error of a parameter, or of the way to the end of its range, the
+// misfit is nearly quadratic.
 constexpr double kLeastError = 0.1;
+// Above this error a parameter is not determined anyway.
 constexpr double kMostError = 2;
 constexpr int kMostCombinations = 2;
 constexpr double kStandardErrors = 2;
-// Of a misfit that rises less the errors are no longer those of a minimum.
+// One look widens an error by a factor of ten at most.
 constexpr double kLeastRise = 0.01;
+constexpr int kMostLooks = 5;
+// A rise from which the error is taken, over that of two standard errors.
+constexpr double kSettled = 0.6;
 
 // The change of the parameters by the variables, in the units in which the
 // misfit is not quadratic.
@@ -119,9 +123,55 @@ std::optional<Look> LookAt(const Eigen::VectorXd& moved,
   const double rise = least.square_sum - combination.square_sum;
   const double expected = way * way / combination.variance;
   return std::isfinite(rise) && expected > 0
-             ? std::optional<Look>(
-                   {std::max(rise / expected, kLeastRise), least.change})
+             ? std::optional<Look>({rise / expected, least.change})
              : std::nullopt;
+}
+
+// The least that the misfit rises at the ends of +- `move`, over what a
+// quadratic one would, and the largest bend there.
+Look LookAtBothEnds(const Eigen::VectorXd& move, const Combination& combination,
+                    const Eigen::VectorXd& beforehand,
+                    DisplacementMisfit& misfit) {
+  Look both = {1, Eigen::VectorXd::Zero(move.size())};
+  for (const double side : {-1.0, 1.0}) {
+    const std::optional<Look> look =
+        LookAt(Moved(misfit.Free(), combination.x, side * move), combination,
+               beforehand, misfit);
+    if (look) {
+      both.rise = std::min(both.rise, look->rise);
+      both.bend = both.bend.cwiseMax(look->bend.cwiseAbs());
+    }
+  }
+  return both;
+}
+
+// What is added for one combination, from the ends of two standard errors.
+Eigen::MatrixXd CovarianceAlong(const Eigen::VectorXd& move,
+                                const Combination& combination,
+                                const Eigen::VectorXd& beforehand,
+                                DisplacementMisfit& misfit) {
+  // Where the misfit rises by less than a minimum with these errors would, as
+  // around a dip, only a look from farther away tells of their size.
+  Look look = {1, Eigen::VectorXd::Zero(move.size())};
+  double moves = 1;
+  bool is_settled = false;
+  for (int i = 0; i < kMostLooks && !is_settled; ++i) {
+    const double last = look.rise;
+    look = LookAtBothEnds(moves * move, combination, beforehand, misfit);
+    look.rise = std::clamp(look.rise, kLeastRise * last, last);
+    is_settled = look.rise * moves * moves > kSettled;
+    moves *= std::max(2.0, 1 / (moves * std::sqrt(look.rise)));
+  }
+  constexpr double kSquare = kStandardErrors * kStandardErrors;
+  return (1 / look.rise - 1) / kSquare * move * move.transpose() +
+         Eigen::MatrixXd(look.bend.cwiseAbs2().asDiagonal()) / kSquare;
+}
+
+// The largest error of a parameter, of which a move has two.
+double LargestError(const FreeParameters& free, const Eigen::VectorXd& x,
+                    const Eigen::VectorXd& move) {
+  return (free.RelativeJacobian(x) * move).cwiseAbs().maxCoeff() /
+         kStandardErrors;
 }
 
 }  // namespace
@@ -149,27 +199,14 @@ Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,
     if (error < kLeastError) {
       break;
     }
-    if (error > kMostError) {
+    const Eigen::VectorXd a = jacobian.transpose() * modes.vectors.col(i);
+    const Eigen::VectorXd move = kStandardErrors / error * (covariance * a);
+    if (LargestError(misfit.Free(), x, move) > kMostError) {
       continue;
     }
     ++num_looked_at;
-    const Eigen::VectorXd a = jacobian.transpose() * modes.vectors.col(i);
-    const Combination combination = {x, square_sum, a, a.dot(inverse * a)};
-    const Eigen::VectorXd move = kStandardErrors / error * (covariance * a);
-    double rise = 1;
-    Eigen::VectorXd bend = Eigen::VectorXd::Zero(x.size());
-    for (const double side : {-1.0, 1.0}) {
-      const Eigen::VectorXd moved = Moved(misfit.Free(), x, side * move);
-      const std::optional<Look> look =
-          LookAt(moved, combination, beforehand, misfit);
-      if (look) {
-        rise = std::min(rise, look->rise);
-        bend = bend.cwiseAbs().cwiseMax(look->bend.cwiseAbs());
-      }
-    }
-    const double square = kStandardErrors * kStandardErrors;
-    added += (1 / rise - 1) / square * (move * move.transpose());
-    added += Eigen::MatrixXd(bend.cwiseAbs2().asDiagonal()) / square;
+    added += CovarianceAlong(move, {x, square_sum, a, a.dot(inverse * a)},
+                             beforehand, misfit);
   }
   return added;
 }

@@ -18,13 +18,18 @@ namespace elastimate {
 /// there at the least over all other combinations, by a Gauss-Newton step.
 /// Where it is only a part p of what a quadratic misfit would rise to, the
 /// error is 1 / sqrt(p) times as large: (1 / p - 1) m m^T / 4 is added.  Where
-/// the others are off the straight line by b there, as E of a bent plate, which
-/// does not change with nu to first order, diag(b^2) / 4 is added.
+/// the square sum rises to less than 0.6 of what two standard errors mean, as
+/// around a dip next to nu = 1/2, the move is lengthened until it does, four
+/// times at most, and p is that of the last.  Where the others are off the
+/// straight line by b there, as E of a bent plate, which does not change with
+/// nu to first order, diag(b^2) / 4 is added.
 ///
-/// Nothing where all errors are small, which costs nothing; else two
-/// evaluations of the misfit, a factorisation each, for each combination of at
-/// most two.  `sensitivities` is S at x in the rows of the misfit, `beforehand`
-/// the diagonal of what is known without them, in the unit of S^T S.
+/// Nothing is added where all errors are small, which costs nothing, or so
+/// large that the parameter is not determined anyway; else each of at most two
+/// combinations takes two evaluations of the misfit, a factorisation each, for
+/// each look.  `sensitivities` is S at x in the rows of the misfit,
+/// `beforehand` the diagonal of what is known without them, in the unit of S^T
+/// S.
 ///
 /// See Seber & Wild, Nonlinear Regression, 1989, section 5.2.
 Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "elastimate/core/algebra/dense_algebra.h"
@@ -135,7 +134,8 @@ Information InformationOf(const FreeParameters& free,
   // The sine of the angle between columns below which rounding decides, which
   // comes from the square root of a difference.
   constexpr double kCollinear = 1e-6;
-  constexpr double kSmallest = std::numeric_limits<double>::min();
+  // This stands for the norm of a column of zeros, and has a square.
+  constexpr double kSmallest = 1e-150;
   const Eigen::Index n = free.Size();
   const Eigen::VectorXd scale =
       sensitivities.colwise().norm().cwiseMax(kSmallest).cwiseInverse();

@@ -65,7 +65,7 @@ TEST_P(DisplacementEstimators, ALockedPlateDoesNotDetermineNu) {
     scene = exact;
     AddNoise(0.01, seed, scene);
     const Estimate estimate = Run(scene, {});
-    EXPECT_EQ(estimate.status, Status::kNotIdentifiable)
+    EXPECT_FALSE(estimate.IsUsable())
         << "E = " << estimate.elasticity.youngs_modulus
         << ", nu = " << estimate.elasticity.poisson_ratio;
   }
@@ -148,7 +148,7 @@ TEST_P(DisplacementEstimators, KeepsBounds) {
   const Estimate estimate = Run(scene, options);
   ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
   EXPECT_NEAR(estimate.elasticity.poisson_ratio, 0.35, 1e-12);
-  EXPECT_EQ(estimate.active_bounds, std::vector<std::string>{"nu (lower)"});
+  EXPECT_EQ(estimate.active_bounds, std::vector<std::string>{"nu_min"});
   EXPECT_TRUE(estimate.PoissonRatioStandardError().has_value());
   EXPECT_TRUE(estimate.YoungsModulusStandardError().has_value());
   EstimatorOptions known;
@@ -161,7 +161,7 @@ TEST_P(DisplacementEstimators, KeepsBounds) {
   soft.youngs_modulus.upper = 4.8e4;
   const Estimate softer = Run(scene, soft);
   EXPECT_NEAR(softer.elasticity.youngs_modulus / 4.8e4, 1, 1e-12);
-  EXPECT_EQ(softer.active_bounds, std::vector<std::string>{"E (upper)"});
+  EXPECT_EQ(softer.active_bounds, std::vector<std::string>{"youngs_max"});
   EXPECT_TRUE(softer.YoungsModulusStandardError().has_value());
   EXPECT_TRUE(softer.PoissonRatioStandardError().has_value());
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "elastimate/estimators/material_fit/iterative_fe.h"
+#include "elastimate/estimators/material_fit/reduced_fe.h"
 #include "tests/scenes.h"
 
 namespace elastimate {
@@ -63,7 +64,9 @@ TEST(DisplacementFit, WrongSupportsWidenTheStandardErrors) {
   }
 }
 
-TEST(DisplacementFit, GivenNoiseThatExplainsTheResidualIsBelieved) {
+// Noise is given for each component alone, so that its size says nothing of a
+// residual that is alike between neighbours.
+TEST(DisplacementFit, GivenNoiseOfItsSizeDoesNotExplainASmoothResidual) {
   Scene scene = MeasuredOrgan();
   // A smooth measurement error of the given size.
   Eigen::MatrixXd& q = scene.load_cases[0].displacement;
@@ -72,11 +75,12 @@ TEST(DisplacementFit, GivenNoiseThatExplainsTheResidualIsBelieved) {
   const Estimate estimate = IterativeFe().Run(scene, {});
   scene.load_cases[0].noise_sd = size;
   const Estimate told = IterativeFe().Run(scene, {});
-  EXPECT_TRUE(estimate.Has(FindingCode::kSmoothResidual));
-  EXPECT_FALSE(told.Has(FindingCode::kSmoothResidual));
+  EXPECT_TRUE(told.Has(FindingCode::kSmoothResidual));
   EXPECT_FALSE(told.Has(FindingCode::kResidualAboveNoise));
-  EXPECT_LT(*told.YoungsModulusStandardError(),
-            *estimate.YoungsModulusStandardError());
+  EXPECT_NEAR(*told.YoungsModulusStandardError(),
+              *estimate.YoungsModulusStandardError(),
+              0.1 * *estimate.YoungsModulusStandardError());
+  ExpectHonest(told);
 }
 
 // A cube under pressure from all sides, with the six supports that stop its
@@ -183,11 +187,13 @@ TEST(DisplacementFit, NuAtTheLowerEndOfItsRangeIsNotBelieved) {
   Measure({2e3 * 0.1, -0.9}, other);
   scene.load_cases[0].displacement +=
       scene.load_cases[0].displacement - other.load_cases[0].displacement;
-  const Estimate estimate = IterativeFe().Run(scene, {});
-  ASSERT_LT(estimate.elasticity.poisson_ratio, -0.9998);
+  const Estimate estimate = ReducedFe().Run(scene, {});
+  ASSERT_LT(estimate.elasticity.poisson_ratio, -0.999);
   EXPECT_EQ(estimate.status, Status::kUnphysical);
   EXPECT_TRUE(estimate.Has(FindingCode::kPoissonRatioDiverges))
       << estimate.message;
+  // Iterations approach the end of the range, but do not come to it.
+  EXPECT_FALSE(IterativeFe().Run(scene, {}).IsUsable());
 }
 
 // The load of a fit is what most nodes say; zeros are a common way to mark what

@@ -11,19 +11,6 @@ namespace {
 using testing::Measure;
 using testing::SmallScene;
 
-TEST(IterativeFe, OneFactorizationServesAllLoadCases) {
-  EstimatorOptions options;
-  options.known_poisson_ratio = 0.3;
-  Scene one = SmallScene("cuboid");
-  Measure({5e4, 0.3}, one);
-  Scene three = testing::WithThreeForces(one);
-  Measure({5e4, 0.3}, three);
-  const Work of_one = IterativeFe().Run(one, options).work;
-  const Work of_three = IterativeFe().Run(three, options).work;
-  EXPECT_EQ(of_three.factorizations, of_one.factorizations);
-  EXPECT_EQ(of_three.solves, 3 * of_one.solves);
-}
-
 TEST(IterativeFe, SaysWhenItRunsOutOfIterations) {
   Scene scene = SmallScene("organ");
   Measure({5e4, 0.49}, scene);
