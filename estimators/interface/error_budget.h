@@ -33,10 +33,6 @@ struct ErrorBudget {
   ParameterErrors section;
 };
 
-/// The roots of the diagonal of a covariance of (E, nu) at this estimate.
-[[nodiscard]] ParameterErrors StandardErrors(
-    const Eigen::Matrix2d& covariance, const IsotropicElasticity& elasticity);
-
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_ESTIMATORS_INTERFACE_ERROR_BUDGET_H_

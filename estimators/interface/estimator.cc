@@ -109,7 +109,6 @@ Estimate Estimator::Run(const Scene& measured,
   Estimate estimate = DoRun(scene, options);
   FailWithoutParameters(Name(), scene, estimate);
   FinishEstimate(Name(), scene, options, findings, estimate);
-  FailWithoutErrors(estimate);
   estimate.seconds = stopwatch.Lap();
   return estimate;
 }

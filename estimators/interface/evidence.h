@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "elastimate/core/materials/elasticity.h"
-#include "elastimate/estimators/interface/active_bounds.h"
 #include "elastimate/estimators/interface/estimate.h"
 
 namespace elastimate {
@@ -44,18 +43,6 @@ struct BoundExcess {
   double without;     ///< The modulus that fits best.
   double with;        ///< That of the estimate.
   std::string label;  ///< Of the modulus.
-};
-
-/// What E or nu may be off by where one of them lies on a bound.
-struct ErrorsOnBound {
-  /// Of the parameter on the bound, without it; of ln E.
-  double standard_error;
-  /// d ln E / d nu for nu on a bound, else d nu / d ln E, of the parameters
-  /// that fit alike.
-  double slope;
-  /// With the room that the bounds leave; relative for E.
-  double youngs_modulus;
-  double poisson_ratio;
 };
 
 /// The known Poisson's ratio that the data contradict most.
@@ -105,8 +92,7 @@ struct Evidence {
   std::optional<Eigen::Vector2d> outlier_change;
   /// Standard errors by what supports that end within elements leave open.
   std::optional<ParameterErrors> support_errors;
-  /// Relative standard error of E by what is smooth in the residual; not a
-  /// number for E on a bound.
+  /// Relative standard error of E by what is smooth in the residual.
   std::optional<double> smooth_residual_error;
   /// The smooth part of the displacement residual over the measurement.
   std::optional<double> smooth_part;
@@ -118,18 +104,13 @@ struct Evidence {
   std::optional<AxisTurn> axis_turn;
   std::optional<ResultantMisfit> resultant_misfit;
   std::optional<BoundExcess> bound_excess;
-  std::optional<ErrorsOnBound> youngs_modulus_on_bound;
-  std::optional<ErrorsOnBound> poisson_ratio_on_bound;
-  /// Of 95 %, by the profile likelihood.
-  std::optional<Interval> profile_interval;
   std::optional<KnownRatio> known_ratio;
 
   std::string search_message;  ///< Why the search failed.
   std::string solver_notice;
   End end = End::kDone;
   WorkCheck work_check = WorkCheck::kNotMade;
-  ActiveBounds active;
-  /// Of several materials: Poisson's ratios at the end of their range.
+  /// Poisson's ratios at the end of their range.
   std::vector<std::string> ratios_at_limit;
   bool is_a_ratio_at_minus_one = false;
   bool do_loads_work = true;

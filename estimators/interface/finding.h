@@ -38,8 +38,6 @@ enum class FindingCode {
   // What the data do not determine.
   kLoadsDoNoWork,
   kOneCombination,
-  kYoungsModulusUndetermined,
-  kPoissonRatioUndetermined,
   kParametersUndetermined,
   kAxisUndetermined,
   kCombinationsOnly,
@@ -72,8 +70,6 @@ enum class FindingCode {
   kFramesAlike,
   // What the method does to the estimate.
   kNoiseBias,
-  kYoungsModulusOnBound,
-  kPoissonRatioOnBound,
   kPoissonRatioAtLimit,
   kParametersOnBounds,
   kParametersNearLimits,

@@ -64,11 +64,6 @@ std::string ChangesOf(const Eigen::Vector2d& change, const Estimate& estimate) {
                     " by " + TwoDigits(change(1)));
 }
 
-std::string Describe(const IsotropicElasticity& elasticity) {
-  return "E = " + NumberText(elasticity.youngs_modulus) +
-         ", nu = " + NumberText(elasticity.poisson_ratio);
-}
-
 // ", the shear modulus = 3", of the moduli that do not change along
 // `direction`; none if that leaves nu as it is.
 std::string Unchanged(const IsotropicElasticity& elasticity,
@@ -83,25 +78,12 @@ std::string Unchanged(const IsotropicElasticity& elasticity,
   return text;
 }
 
-// The modulus of the smallest standard error, if that is small enough.
-std::string DescribeDetermined(const Estimate& estimate) {
-  const Eigen::Vector2d to_logarithm(1 / estimate.elasticity.youngs_modulus, 1);
-  const Eigen::Matrix2d covariance = to_logarithm.asDiagonal() *
-                                     estimate.covariance *
-                                     to_logarithm.asDiagonal();
-  std::optional<Modulus> best;
-  double best_error = kLimits.determined_modulus;
-  for (const Modulus& modulus : Moduli(estimate.elasticity)) {
-    const double error =
-        std::sqrt(modulus.gradient * covariance * modulus.gradient.transpose());
-    if (error < best_error) {
-      best = modulus;
-      best_error = error;
-    }
-  }
-  return best ? ", but " + best->name + " = " + NumberText(best->value) +
-                    " +- " + NumberText(best->value * best_error)
-              : ", nor any modulus to " + Percent(kLimits.determined_modulus);
+// "a and 2 more".
+std::string FirstAndMore(const std::vector<std::string>& names) {
+  return names[0] +
+         (names.size() == 1
+              ? ""
+              : " and " + std::to_string(names.size() - 1) + " more");
 }
 
 // "a, b, c and 4 more".
@@ -195,12 +177,6 @@ Finding ErrorsMissing(const std::string& estimator, const std::string& what) {
       "use another one, or enter a covariance or why_no_standard_error");
 }
 
-Finding Unphysical(const IsotropicElasticity& elasticity) {
-  return Error(FindingCode::kUnphysical,
-               Describe(elasticity) + " is not physical (E > 0, -1 < nu < 0.5)",
-               kCheckTheModel);
-}
-
 Finding UnphysicalParameters(const std::vector<std::string>& parameters,
                              bool is_by_noise) {
   const std::string text = FirstOf(parameters) +
@@ -254,60 +230,6 @@ Finding OneCombination(const IsotropicElasticity& elasticity,
                "Poisson's ratio only" +
                    Unchanged(elasticity, direction),
                kGiveMore);
-}
-
-Finding YoungsModulusOnBoundUndetermined(const IsotropicElasticity& elasticity,
-                                         const Eigen::Vector2d& direction) {
-  return Error(FindingCode::kYoungsModulusUndetermined,
-               "Young's modulus lies on its bound, and the data determine one "
-               "combination only" +
-                   Unchanged(elasticity, direction),
-               kGiveMore);
-}
-
-Finding PoissonRatioOnBoundUndetermined(const IsotropicElasticity& elasticity,
-                                        const Eigen::Vector2d& direction) {
-  return Error(FindingCode::kPoissonRatioUndetermined,
-               "Poisson's ratio lies on its bound, and the data determine one "
-               "combination only" +
-                   Unchanged(elasticity, direction),
-               kGiveMore);
-}
-
-Finding YoungsModulusOnBoundUndetermined(double standard_error) {
-  return Error(FindingCode::kYoungsModulusUndetermined,
-               "Young's modulus lies on its bound, but the data do not "
-               "determine it (standard error " +
-                   Percent(standard_error) + ")",
-               "measure larger displacements, or more load cases");
-}
-
-Finding PoissonRatioUndetermined(const Estimate& estimate) {
-  return Error(FindingCode::kPoissonRatioUndetermined,
-               "the data do not determine Poisson's ratio (standard error " +
-                   NumberText(*estimate.PoissonRatioStandardError()) + ")" +
-                   DescribeDetermined(estimate),
-               kGiveMore);
-}
-
-Finding PoissonRatioBetween(const Interval& interval) {
-  return Error(FindingCode::kPoissonRatioUndetermined,
-               "the data leave Poisson's ratio between " +
-                   TwoDigits(interval.lower) + " and " +
-                   TwoDigits(interval.upper),
-               "give it, or measure larger displacements or other load cases");
-}
-
-Finding YoungsModulusUndetermined(double youngs_modulus,
-                                  double standard_error) {
-  return Error(
-      FindingCode::kYoungsModulusUndetermined,
-      "the data do not determine Young's modulus: E = " +
-          NumberText(youngs_modulus) +
-          (std::isfinite(standard_error)
-               ? " has a standard error of " + NumberText(standard_error)
-               : " may be any"),
-      "heed warnings, or add load cases");
 }
 
 Finding ParametersUndetermined(const std::vector<std::string>& parameters) {
@@ -492,31 +414,19 @@ Finding VirtualWorkImbalance(double force_residual, Severity severity) {
           kCheckWhatIsGiven};
 }
 
-Finding ModelDoesNotFitAtLimit() {
+Finding RatiosAtLimit(const std::vector<std::string>& parameters) {
   return Error(FindingCode::kPoissonRatioAtLimit,
-               "the data pull Poisson's ratio to 1/2 and leave a residual that "
-               "is not noise",
+               "the data pull " + FirstAndMore(parameters) +
+                   " to the end of its range and leave a residual that is not "
+                   "noise",
                kCheckTheModel);
 }
 
-Finding OutliersAtLimit() {
-  return Error(
-      FindingCode::kPoissonRatioAtLimit,
-      "some nodes lie far off, which may be what pulls Poisson's ratio "
-      "to 1/2",
-      "use a loss (huber or cauchy)");
-}
-
-Finding RatiosAtLimit(const std::vector<std::string>& parameters) {
-  return Error(
-      FindingCode::kPoissonRatioAtLimit,
-      "the data pull " + parameters[0] +
-          (parameters.size() == 1
-               ? ""
-               : " and " + std::to_string(parameters.size() - 1) + " more") +
-          " to the end of its range and leave a residual that is not "
-          "noise",
-      kCheckTheModel);
+Finding OutliersAtLimit(const std::vector<std::string>& parameters) {
+  return Error(FindingCode::kPoissonRatioAtLimit,
+               "some nodes lie far off, which may be what pulls " +
+                   FirstAndMore(parameters) + " to the end of its range",
+               "use a loss (huber or cauchy)");
 }
 
 Finding Outliers(const Eigen::Vector2d& change, const Estimate& estimate) {
@@ -615,26 +525,6 @@ Finding TrendOverFrames(const std::string& parameter, bool is_relative,
                  trend.is_over_load
                      ? "take frames of small load"
                      : "look for creep, and drift of camera or load");
-}
-
-Finding YoungsModulusOnBound() {
-  return Warning(FindingCode::kYoungsModulusOnBound,
-                 "Young's modulus lies on its bound, and Poisson's ratio holds "
-                 "only if the bound is the true value",
-                 "check the bound");
-}
-
-Finding PoissonRatioOnBound() {
-  return Warning(FindingCode::kPoissonRatioOnBound,
-                 "Poisson's ratio lies on its bound, and the standard error of "
-                 "E allows for the room that data and bounds leave",
-                 "check the bound");
-}
-
-Finding PoissonRatioAtLimit() {
-  return Warning(FindingCode::kPoissonRatioAtLimit,
-                 "Poisson's ratio has run to the end of its physical range",
-                 "give bounds, or take mu and 1 / kappa");
 }
 
 Finding ParametersOnBounds(const std::vector<std::string>& parameters) {

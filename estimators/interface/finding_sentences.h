@@ -28,7 +28,6 @@ Finding FitNotCertified();
 Finding ErrorsMissing(const std::string& estimator, const std::string& what);
 
 // Why it is unphysical.
-Finding Unphysical(const IsotropicElasticity& elasticity);
 /// `parameters` describes each, such as "E of region 3 = -2"; `is_by_noise` for
 /// a method whose estimate noise drives out of the physical range.
 Finding UnphysicalParameters(const std::vector<std::string>& parameters,
@@ -46,18 +45,6 @@ Finding LoadsDoNoWork();
 /// at `elasticity`.
 Finding OneCombination(const IsotropicElasticity& elasticity,
                        const Eigen::Vector2d& direction);
-/// The same for E or nu on a bound.
-Finding YoungsModulusOnBoundUndetermined(const IsotropicElasticity& elasticity,
-                                         const Eigen::Vector2d& direction);
-Finding PoissonRatioOnBoundUndetermined(const IsotropicElasticity& elasticity,
-                                        const Eigen::Vector2d& direction);
-/// For E on a bound and a known nu; relative.
-Finding YoungsModulusOnBoundUndetermined(double standard_error);
-/// Names the modulus that the covariance says is determined all the same: E,
-/// mu, kappa or none.  Precondition: a finite elasticity.
-Finding PoissonRatioUndetermined(const Estimate& estimate);
-Finding PoissonRatioBetween(const Interval& interval);
-Finding YoungsModulusUndetermined(double youngs_modulus, double standard_error);
 /// `parameters` describes each, such as "E of region 3 (45 %)".
 Finding ParametersUndetermined(const std::vector<std::string>& parameters);
 /// The same where most of the errors is what the elements miss.
@@ -110,10 +97,9 @@ Finding LargeResidual(double displacement_residual);
 Finding VirtualWorkImbalance();
 /// By the check of another method: `force_residual` is relative to the load.
 Finding VirtualWorkImbalance(double force_residual, Severity severity);
-Finding ModelDoesNotFitAtLimit();
-Finding OutliersAtLimit();
-/// Of several materials.
+/// `parameters` names each, as below.
 Finding RatiosAtLimit(const std::vector<std::string>& parameters);
+Finding OutliersAtLimit(const std::vector<std::string>& parameters);
 /// `change` is that of (ln E, nu) without the pull of the outliers.
 Finding Outliers(const Eigen::Vector2d& change, const Estimate& estimate);
 /// Where the residuals of neighbours are alike as well, so that leaving nodes
@@ -139,9 +125,6 @@ Finding FramesScatter(double excess, std::size_t farthest);
 Finding FramesAlike(double correlation);
 
 // What the method does to the estimate.
-Finding YoungsModulusOnBound();
-Finding PoissonRatioOnBound();
-Finding PoissonRatioAtLimit();
 /// `parameters` names each, such as "nu of region 3".
 Finding ParametersOnBounds(const std::vector<std::string>& parameters);
 /// `parameters` names each.

@@ -7,6 +7,7 @@
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/kinematic_error.h"
 #include "elastimate/estimators/interface/limits.h"
+#include "elastimate/estimators/interface/missing_errors.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
 #include "elastimate/estimators/interface/rules.h"
 #include "elastimate/estimators/interface/statistics.h"
@@ -14,26 +15,6 @@
 
 namespace elastimate {
 namespace {
-
-void AddPoissonRatioInterval(Estimate& estimate) {
-  const std::optional<double> error = estimate.PoissonRatioStandardError();
-  if (estimate.poisson_ratio_interval || !error) {
-    return;
-  }
-  const double nu = estimate.elasticity.poisson_ratio;
-  const double one_sided =
-      OneSidedErrors(estimate.noise_degrees_of_freedom) * *error;
-  const double two_sided =
-      TwoSidedErrors(estimate.noise_degrees_of_freedom) * *error;
-  if (nu + one_sided > 0.5) {
-    estimate.poisson_ratio_interval = {nu - one_sided, 0.5};
-  } else if (nu - one_sided < -1) {
-    estimate.poisson_ratio_interval = {-1, nu + one_sided};
-  } else {
-    estimate.poisson_ratio_interval = {std::max(-1.0, nu - two_sided),
-                                       std::min(0.5, nu + two_sided)};
-  }
-}
 
 void RemoveErrorBarsOfNone(Estimate& estimate) {
   if (!estimate.IsUsable()) {
@@ -54,58 +35,6 @@ void JudgeMeshError(const Scene& scene, Estimate& estimate) {
   } else if (IsDiscretizationErrorNotable(estimate) &&
              !estimate.Has(FindingCode::kSupportsEndWithinElements)) {
     estimate.Add(DiscretizationErrorFinding(estimate));
-  }
-}
-
-// What a method without a finite element solution does not know, the data may.
-void FailUndetermined(Finding finding, Estimate& estimate) {
-  if (estimate.Has(FindingCode::kSupportsEndWithinElements)) {
-    finding.advice = "give the supports as boxes";
-  } else if (IsDiscretizationErrorNotable(estimate)) {
-    finding.advice = "use a finer mesh";
-  } else if (!estimate.displacement_residual) {
-    finding.advice += ", or use reduced-fe";
-  }
-  estimate.Fail(finding);
-}
-
-// Where nu has no standard error.
-bool IsIntervalTooWide(const Estimate& estimate) {
-  if (!estimate.poisson_ratio_interval ||
-      estimate.PoissonRatioStandardError()) {
-    return false;
-  }
-  const auto& [lower, upper] = *estimate.poisson_ratio_interval;
-  const double nu = estimate.elasticity.poisson_ratio;
-  return std::max(nu - lower, upper - nu) >
-         kLimits.LargestPoissonRatioDistance();
-}
-
-void JudgeResult(const EstimatorOptions& options, Estimate& estimate) {
-  if (!estimate.IsUsable()) {
-    return;
-  }
-  const IsotropicElasticity& elasticity = estimate.elasticity;
-  // Infinite where nothing limits E; not a number, which exceeds nothing, where
-  // E is not free.
-  const double youngs_modulus_error = std::sqrt(estimate.covariance(0, 0));
-  if (!std::isfinite(elasticity.youngs_modulus) ||
-      !std::isfinite(elasticity.poisson_ratio)) {
-    estimate.Fail(NotFinite());
-  } else if (!elasticity.IsPhysical()) {
-    estimate.Fail(Unphysical(elasticity));
-  } else if (!options.known_poisson_ratio &&
-             estimate.PoissonRatioStandardError().value_or(0) >
-                 kLimits.largest_poisson_ratio_error) {
-    FailUndetermined(PoissonRatioUndetermined(estimate), estimate);
-  } else if (!options.known_poisson_ratio && IsIntervalTooWide(estimate)) {
-    FailUndetermined(PoissonRatioBetween(*estimate.poisson_ratio_interval),
-                     estimate);
-  } else if (youngs_modulus_error >
-             kLimits.largest_youngs_modulus_error * elasticity.youngs_modulus) {
-    FailUndetermined(YoungsModulusUndetermined(elasticity.youngs_modulus,
-                                               youngs_modulus_error),
-                     estimate);
   }
 }
 
@@ -134,9 +63,6 @@ void Judge(const Evidence& evidence, const EstimatorOptions& options,
     return;
   }
   estimate.Accept();
-  if (evidence.active.Any()) {
-    estimate.why_no_standard_error = "a parameter on a bound has none";
-  }
 }
 
 void FinishEstimate(std::string_view estimator, const Scene& scene,
@@ -155,27 +81,16 @@ void FinishEstimate(std::string_view estimator, const Scene& scene,
   }
   JudgeKinematics(scene, options, estimate);
   JudgeThickness(scene, estimate);
-  if (!estimate.parameters.empty() ||
-      !IsOneIsotropicMaterial(scene.materials)) {
-    estimate.stiffnesses = StiffnessesOf(scene, estimate);
-    estimate.axes = AxesOf(scene, estimate);
-    JudgeParameters(estimate);
-    JudgeMeshError(scene, estimate);
-    RemoveErrorBarsOfNone(estimate);
-    EnterElasticity(estimate);
-    JudgeSignOfPoissonRatio(estimate);
-    return;
+  if (estimate.parameters.empty() && IsOneIsotropicMaterial(scene.materials)) {
+    EnterParametersOfElasticity(scene, options, estimate);
+    FailWithoutErrors(estimate);
   }
-  estimate.error_budget.discretization = Eigen::Vector2d(
-      estimate.discretization_error.value_or(Estimate::kUnknown),
-      estimate.poisson_ratio_discretization_error.value_or(Estimate::kUnknown));
-  JudgeResult(options, estimate);
-  if (estimate.IsUsable()) {
-    AddPoissonRatioInterval(estimate);
-  }
-  DescribeOneIsotropicMaterial(scene, options, estimate);
+  estimate.stiffnesses = StiffnessesOf(scene, estimate);
+  estimate.axes = AxesOf(scene, estimate);
+  JudgeParameters(estimate);
   JudgeMeshError(scene, estimate);
   RemoveErrorBarsOfNone(estimate);
+  EnterElasticity(estimate);
   JudgeSignOfPoissonRatio(estimate);
 }
 

@@ -6,11 +6,9 @@
 namespace elastimate {
 
 /// Standard deviations of a normal distribution that hold 95 % of it, on both
-/// sides and on one, and their squares, the quantiles of chi^2.
+/// sides and on one.
 inline constexpr double kTwoSidedErrors = 1.960;
 inline constexpr double kOneSidedErrors = 1.645;
-inline constexpr double kTwoSidedQuantile = 3.841;
-inline constexpr double kOneSidedQuantile = 2.706;
 
 /// Where a number of an estimate becomes a finding or a status.  All of them
 /// stand here, and nowhere else; tolerances of algorithms (rounding,
@@ -79,11 +77,6 @@ struct Limits {
   /// A relative standard error of E above this says that the data do not
   /// determine E: zero and infinity are within three standard errors.
   double largest_youngs_modulus_error = 1.0 / 3;
-  /// An end of the 95 % interval of nu further than this from the estimate
-  /// says the same as its largest standard error [1].
-  double LargestPoissonRatioDistance() const {
-    return kTwoSidedErrors * largest_poisson_ratio_error;
-  }
 
   // What small-strain elasticity leaves out.
 
@@ -94,13 +87,10 @@ struct Limits {
   /// A strain beyond this is no strain, but another unit of length.
   double impossible_strain = 1;
 
-  // What is called exact, or determined.
+  // What is called exact.
 
   /// A displacement or force residual that is rounding alone.
   double exact_residual = 1e-6;
-
-  /// Relative standard error of a modulus that is, where nu is not.
-  double determined_modulus = 0.1;
 };
 
 inline constexpr Limits kLimits{};

@@ -1,5 +1,6 @@
 #include "elastimate/estimators/interface/missing_errors.h"
 
+#include <cmath>
 #include <string>
 
 #include "elastimate/estimators/interface/finding_sentences.h"
@@ -27,9 +28,10 @@ void FailWithoutErrors(Estimate& estimate) {
   if (!estimate.IsUsable() || !estimate.why_no_standard_error.empty()) {
     return;
   }
-  for (const ParameterEstimate& parameter : estimate.parameters) {
-    if (!parameter.is_known && !parameter.standard_error &&
-        !parameter.interval) {
+  const Eigen::VectorXd variances = estimate.parameter_covariance.diagonal();
+  for (Eigen::Index i = 0; i < variances.size(); ++i) {
+    const ParameterEstimate& parameter = estimate.parameters[i];
+    if (!parameter.is_known && std::isnan(variances(i))) {
       estimate.Fail(ErrorsMissing(estimate.estimator,
                                   "a standard error of " + parameter.Label()));
       return;

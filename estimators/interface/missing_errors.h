@@ -15,10 +15,10 @@ namespace elastimate {
 void FailWithoutParameters(std::string_view estimator, const Scene& scene,
                            Estimate& estimate);
 
-/// Makes a usable estimate a failure where a parameter that it estimates has
-/// neither a standard error nor an interval, and `why_no_standard_error` is
-/// empty: nobody could tell how far to trust the number.  Leaves all others as
-/// they are.  To be called after FinishEstimate.  O(number of parameters).
+/// Makes an estimate that claims to be usable a failure where the variance of a
+/// parameter that it estimates is not a number, and `why_no_standard_error` is
+/// empty: nobody could tell how far to trust the value.  O(number of
+/// parameters).
 void FailWithoutErrors(Estimate& estimate);
 
 }  // namespace elastimate

@@ -462,26 +462,14 @@ void EnterElasticity(Estimate& estimate) {
   }
 }
 
-void DescribeOneIsotropicMaterial(const Scene& scene,
-                                  const EstimatorOptions& options,
-                                  Estimate& estimate) {
-  estimate.parameters = ParametersWithoutValues(
-      scene, MaterialParameters(scene.materials, scene.mesh.section.model));
+void EnterParametersOfElasticity(const Scene& scene,
+                                 const EstimatorOptions& options,
+                                 Estimate& estimate) {
+  EnterParameters(scene, FreeParameters(scene, options),
+                  Eigen::Vector2d(estimate.elasticity.youngs_modulus,
+                                  estimate.elasticity.poisson_ratio),
+                  estimate);
   estimate.parameter_covariance = estimate.covariance;
-  ParameterEstimate& youngs_modulus = estimate.parameters[0];
-  ParameterEstimate& poisson_ratio = estimate.parameters[1];
-  youngs_modulus.value = estimate.elasticity.youngs_modulus;
-  youngs_modulus.standard_error = estimate.YoungsModulusStandardError();
-  if (youngs_modulus.standard_error) {
-    const double width = TwoSidedErrors(estimate.noise_degrees_of_freedom) *
-                         *youngs_modulus.standard_error;
-    youngs_modulus.interval = {youngs_modulus.value - width,
-                               youngs_modulus.value + width};
-  }
-  poisson_ratio.value = estimate.elasticity.poisson_ratio;
-  poisson_ratio.is_known = options.known_poisson_ratio.has_value();
-  poisson_ratio.standard_error = estimate.PoissonRatioStandardError();
-  poisson_ratio.interval = estimate.poisson_ratio_interval;
 }
 
 }  // namespace elastimate

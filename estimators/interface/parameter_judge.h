@@ -57,10 +57,11 @@ bool AreUndeterminedByElements(const Estimate& estimate);
 /// their covariance and the interval of nu beside the parameters.
 void EnterElasticity(Estimate& estimate);
 
-/// Enters E and nu, their covariance and interval as the parameters.
-void DescribeOneIsotropicMaterial(const Scene& scene,
-                                  const EstimatorOptions& options,
-                                  Estimate& estimate);
+/// Enters E and nu of one isotropic material, and their covariance, as its
+/// parameters.
+void EnterParametersOfElasticity(const Scene& scene,
+                                 const EstimatorOptions& options,
+                                 Estimate& estimate);
 
 }  // namespace elastimate
 

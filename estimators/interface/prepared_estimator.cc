@@ -137,7 +137,6 @@ Estimate PreparedEstimator::RunHere() {
   Estimate estimate = state_->preparation->Run(scene);
   FailWithoutParameters(state_->name, scene, estimate);
   FinishEstimate(state_->name, scene, state_->options, findings, estimate);
-  FailWithoutErrors(estimate);
   return estimate;
 }
 

@@ -75,21 +75,6 @@ Result JudgeCount(const Evidence& evidence, const EstimatorOptions&,
              : Result();
 }
 
-Result NoteYoungsModulusOnBound(const Evidence& evidence,
-                                const EstimatorOptions&, const Estimate&) {
-  return evidence.active.youngs_modulus != Side::kNone ? YoungsModulusOnBound()
-                                                       : Result();
-}
-
-Result NotePoissonRatioOnBound(const Evidence& evidence,
-                               const EstimatorOptions&, const Estimate&) {
-  if (evidence.active.poisson_ratio == Side::kNone) {
-    return std::nullopt;
-  }
-  return evidence.active.is_physical_limit ? PoissonRatioAtLimit()
-                                           : PoissonRatioOnBound();
-}
-
 Result NoteResidualAboveNoise(const Evidence& evidence, const EstimatorOptions&,
                               const Estimate&) {
   return evidence.above_noise ? ResidualAboveNoise(evidence.above_noise->kind,
@@ -109,10 +94,9 @@ Result NoteOutliers(const Evidence& evidence, const EstimatorOptions&,
 
 Result NoteSmoothResidual(const Evidence& evidence, const EstimatorOptions&,
                           const Estimate& estimate) {
-  // An error that is not a number is that of E on a bound.
   return evidence.smooth_residual_error &&
-                 !(*evidence.smooth_residual_error <=
-                   kLimits.notable_youngs_modulus_error)
+                 *evidence.smooth_residual_error >
+                     kLimits.notable_youngs_modulus_error
              ? SmoothResidual(*estimate.residual_correlation)
              : Result();
 }
@@ -149,22 +133,6 @@ Result JudgeBoundExcess(const Evidence& evidence, const EstimatorOptions&,
              : Result();
 }
 
-Result JudgeYoungsModulusOnBound(const Evidence& evidence,
-                                 const EstimatorOptions& options,
-                                 const Estimate& estimate) {
-  const std::optional<ErrorsOnBound>& errors = evidence.youngs_modulus_on_bound;
-  // Not a number for a slope that the data do not determine.
-  if (!errors ||
-      (errors->youngs_modulus <= kLimits.largest_youngs_modulus_error &&
-       errors->poisson_ratio <= kLimits.largest_poisson_ratio_error)) {
-    return std::nullopt;
-  }
-  return options.known_poisson_ratio
-             ? YoungsModulusOnBoundUndetermined(errors->standard_error)
-             : YoungsModulusOnBoundUndetermined(estimate.elasticity,
-                                                {1, errors->slope});
-}
-
 Result JudgeLargeResidual(const Evidence& evidence, const EstimatorOptions&,
                           const Estimate& estimate) {
   // What is not known to be the best fit may leave more than the model does.
@@ -178,49 +146,6 @@ Result JudgeLargeResidual(const Evidence& evidence, const EstimatorOptions&,
                  *evidence.smooth_part == 0 &&
                  !evidence.is_explained_by_given_noise
              ? LargeResidual(*estimate.displacement_residual)
-             : Result();
-}
-
-Result JudgeProfile(const Evidence& evidence, const EstimatorOptions&,
-                    const Estimate& estimate) {
-  if (!evidence.profile_interval) {
-    return std::nullopt;
-  }
-  const double nu = estimate.elasticity.poisson_ratio;
-  const double largest = kLimits.LargestPoissonRatioDistance();
-  const Interval& profile = *evidence.profile_interval;
-  return (profile.lower == -1 && nu + 1 > largest) ||
-                 (profile.upper == 0.5 && 0.5 - nu > largest)
-             ? PoissonRatioBetween(profile)
-             : Result();
-}
-
-Result JudgePoissonRatioAtLimit(const Evidence& evidence,
-                                const EstimatorOptions&,
-                                const Estimate& estimate) {
-  if (!evidence.poisson_ratio_on_bound || !evidence.active.is_physical_limit) {
-    return std::nullopt;
-  }
-  if (evidence.active.poisson_ratio == Side::kLower) {
-    return PoissonRatioAtMinusOne();
-  }
-  // The fit without them is too far for a linear model.
-  if (evidence.outlier_change) {
-    return OutliersAtLimit();
-  }
-  return estimate.is_model_in_doubt ? ModelDoesNotFitAtLimit() : Result();
-}
-
-Result JudgePoissonRatioOnBound(const Evidence& evidence,
-                                const EstimatorOptions&,
-                                const Estimate& estimate) {
-  const std::optional<ErrorsOnBound>& errors = evidence.poisson_ratio_on_bound;
-  return errors &&
-                 errors->standard_error > kLimits.largest_poisson_ratio_error &&
-                 (evidence.active.is_physical_limit ||
-                  errors->youngs_modulus > kLimits.largest_youngs_modulus_error)
-             ? PoissonRatioOnBoundUndetermined(estimate.elasticity,
-                                               {errors->slope, 1})
              : Result();
 }
 
@@ -282,6 +207,10 @@ Result JudgeRatiosAtLimit(const Evidence& evidence, const EstimatorOptions&,
   if (estimate.noise_attenuation) {
     return PoissonRatioDivergesByNoise();
   }
+  // The fit without them is too far for a linear model.
+  if (evidence.outlier_change) {
+    return OutliersAtLimit(evidence.ratios_at_limit);
+  }
   return estimate.is_model_in_doubt ? RatiosAtLimit(evidence.ratios_at_limit)
                                     : Result();
 }
@@ -334,14 +263,11 @@ const std::vector<Rule>& Rules() {
       JudgeLoadBalance, JudgeLoadWork, JudgeSigns, JudgeDivergence,
       JudgeFreeDirection, JudgeDependence, JudgeEnd, JudgeCount,
       // What to say of a usable estimate.
-      NoteYoungsModulusOnBound, NotePoissonRatioOnBound, NoteResidualAboveNoise,
-      NoteOutliers, NoteSmoothResidual, NoteAxes, NoteVirtualWork,
-      NoteResultants, NoteSupportEnds,
+      NoteResidualAboveNoise, NoteOutliers, NoteSmoothResidual, NoteAxes,
+      NoteVirtualWork, NoteResultants, NoteSupportEnds,
       // Whether the data determine it, and the model explains them.
-      JudgeBoundExcess, JudgeYoungsModulusOnBound, JudgeLargeResidual,
-      JudgeProfile, JudgePoissonRatioAtLimit, JudgePoissonRatioOnBound,
-      JudgeKnownRatio, JudgeRatiosAtLimit, JudgeWorkCheck, JudgeCorrection,
-      JudgeCertificate, NoteSolver};
+      JudgeBoundExcess, JudgeLargeResidual, JudgeKnownRatio, JudgeRatiosAtLimit,
+      JudgeWorkCheck, JudgeCorrection, JudgeCertificate, NoteSolver};
   return rules;
 }
 

@@ -19,41 +19,47 @@
 namespace elastimate {
 namespace {
 
-// The roots of the weights of a loss whose scale is that of the residual.
-Eigen::VectorXd FactorsOf(Loss loss, const ObservedDisplacements& observed,
-                          const Eigen::VectorXd& residual) {
+// The weights of a loss whose scale is that of the residual.
+DisplacementMisfit::Weights WeightsOf(Loss loss,
+                                      const ObservedDisplacements& observed,
+                                      const Eigen::VectorXd& residual) {
   // Exact data have no scale.
   constexpr double kExactFit = 1e-12;
   const NodeLosses losses(
       loss, std::max(RobustStandardDeviation(residual), kExactFit));
-  Eigen::VectorXd factors(residual.size());
+  DisplacementMisfit::Weights weights;
+  weights.factors.resize(residual.size());
+  double sum_of_slopes = 0;
   for (const ObservedDisplacements::Point& point : observed.Points()) {
     const double square_sum =
         residual.segment(point.first, point.count).squaredNorm();
-    factors.segment(point.first, point.count)
-        .setConstant(std::sqrt(losses.Evaluate(point.count, square_sum)[1]));
+    const auto [value, first, second] =
+        losses.Evaluate(point.count, square_sum);
+    weights.factors.segment(point.first, point.count)
+        .setConstant(std::sqrt(first));
+    sum_of_slopes += point.count * first + 2 * square_sum * second;
   }
-  return factors;
+  weights.mean_slope = sum_of_slopes / static_cast<double>(residual.size());
+  return weights;
 }
 
-// The factors at the robust minimum of the linear model u + S d.
-Eigen::VectorXd FactorsAtMinimum(Loss loss,
-                                 const ObservedDisplacements& observed,
-                                 const Eigen::VectorXd& residual,
-                                 const Eigen::MatrixXd& sensitivities) {
+// The weights at the robust minimum of the linear model u + S d.
+DisplacementMisfit::Weights WeightsAtMinimum(
+    Loss loss, const ObservedDisplacements& observed,
+    const Eigen::VectorXd& residual, const Eigen::MatrixXd& sensitivities) {
   constexpr int kIterations = 50;
   constexpr double kSettled = 1e-4;
-  Eigen::VectorXd factors = FactorsOf(loss, observed, residual);
+  DisplacementMisfit::Weights weights = WeightsOf(loss, observed, residual);
   for (int i = 0; i < kIterations; ++i) {
+    const Eigen::VectorXd last = weights.factors;
     const Eigen::VectorXd step = -SolveLeastSquares(
-        factors.asDiagonal() * sensitivities, factors.cwiseProduct(residual));
-    const Eigen::VectorXd last = factors;
-    factors = FactorsOf(loss, observed, residual + sensitivities * step);
-    if ((factors - last).cwiseAbs().maxCoeff() < kSettled) {
+        last.asDiagonal() * sensitivities, last.cwiseProduct(residual));
+    weights = WeightsOf(loss, observed, residual + sensitivities * step);
+    if ((weights.factors - last).cwiseAbs().maxCoeff() < kSettled) {
       break;
     }
   }
-  return factors;
+  return weights;
 }
 
 std::vector<const Scene*> WithFinest(std::vector<const Scene*> coarser,
@@ -123,16 +129,16 @@ std::optional<BoundedMinimum> SpaceFit::FindMinimum(
   const std::optional<BoundedMinimum> minimum =
       ReducedMinimum(start, options_, misfit_, fit_.estimate);
   // Typical values beside known ones may be those of no material.
-  return minimum
-             ? minimum
-             : ReducedMinimum(VirtualFieldsStart(scene_, options_, fit_.estimate),
-                              options_, misfit_, fit_.estimate);
+  return minimum ? minimum
+                 : ReducedMinimum(
+                       VirtualFieldsStart(scene_, options_, fit_.estimate),
+                       options_, misfit_, fit_.estimate);
 }
 
 void SpaceFit::Minimize(Descent descent,
                         const std::optional<Eigen::VectorXd>& start) {
   fit_ = MaterialFit();
-  misfit_.SetFactors({});
+  misfit_.SetWeights({});
   Estimate& estimate = fit_.estimate;
   Stopwatch stopwatch;
   const Work before = WorkDone();
@@ -170,11 +176,11 @@ void SpaceFit::Reweigh() {
   for (int i = 0; i < kRounds; ++i) {
     Eigen::VectorXd residual;
     Eigen::MatrixXd sensitivities;
-    misfit_.SetFactors({});
+    misfit_.SetWeights({});
     if (!misfit_.Evaluate(fit_.minimum->variables, &residual, &sensitivities)) {
       return;
     }
-    misfit_.SetFactors(FactorsAtMinimum(options_.loss, misfit_.Observed(),
+    misfit_.SetWeights(WeightsAtMinimum(options_.loss, misfit_.Observed(),
                                         residual, sensitivities));
     fit_.minimum = DescendFrom(options_, fit_.minimum->variables,
                                Distance::kNear, misfit_);
@@ -217,7 +223,7 @@ std::optional<SpaceChange> SpaceFit::ChangeFrom(SpaceFit& coarse) {
   change.variables = variables - coarse.fit_.minimum->variables;
   change.is_of_quadratic = coarse.scene_.mesh.Order() == 2;
   coarse.misfit_.SetNoise(misfit_.Noise());
-  coarse.misfit_.SetFactors(misfit_.Factors());
+  coarse.misfit_.SetWeights(misfit_.RowWeights());
   Eigen::VectorXd of_coarse;
   if (!misfit_.Evaluate(variables, &change.rows, nullptr) ||
       !coarse.ResidualAt(variables, of_coarse)) {
@@ -237,7 +243,7 @@ bool SpaceFit::ResidualAt(const Eigen::VectorXd& variables,
   if (!is_solved && is_finest_of_several_) {
     DisplacementMisfit factorized({&scene_}, options_);
     factorized.SetNoise(misfit_.Noise());
-    factorized.SetFactors(misfit_.Factors());
+    factorized.SetWeights(misfit_.RowWeights());
     is_solved = factorized.Evaluate(variables, &residual, nullptr);
     work = work + factorized.Model().WorkDone();
   }

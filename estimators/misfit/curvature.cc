@@ -95,9 +95,12 @@ Eigen::MatrixXd InformationOf(const Eigen::MatrixXd& sensitivities,
 // A minimum, and one combination of its variables.
 struct Combination {
   const Eigen::VectorXd& x;
-  double square_sum;
   Eigen::VectorXd a;
-  double variance;  ///< a^T (S^T S)^-1 a, where the noise is 1.
+  double variance;    ///< a^T (S^T S)^-1 a, where the noise is 1.
+  double square_sum;  ///< The least at the combination as it is.
+  /// That of the square sum: zero but on a bound, and where a loss leaves rows
+  /// whose rounding is large beside the noise.
+  double slope;
 };
 
 // What is found where the combination is moved.
@@ -120,7 +123,8 @@ std::optional<Look> LookAt(const Eigen::VectorXd& moved,
   const Least least =
       LeastSquareSum(rows, sensitivities,
                      InformationOf(sensitivities, beforehand), combination.a);
-  const double rise = least.square_sum - combination.square_sum;
+  const double rise =
+      least.square_sum - combination.square_sum - combination.slope * way;
   const double expected = way * way / combination.variance;
   return std::isfinite(rise) && expected > 0
              ? std::optional<Look>({rise / expected, least.change})
@@ -132,11 +136,18 @@ std::optional<Look> LookAt(const Eigen::VectorXd& moved,
 Look LookAtBothEnds(const Eigen::VectorXd& move, const Combination& combination,
                     const Eigen::VectorXd& beforehand,
                     DisplacementMisfit& misfit) {
+  constexpr double kLeastWay = 0.1;
   Look both = {1, Eigen::VectorXd::Zero(move.size())};
   for (const double side : {-1.0, 1.0}) {
+    const Eigen::VectorXd moved =
+        Moved(misfit.Free(), combination.x, side * move);
+    // A bound next to the minimum leaves no room to look at.
+    if (combination.a.dot(moved - combination.x) * side <
+        kLeastWay * combination.a.dot(move)) {
+      continue;
+    }
     const std::optional<Look> look =
-        LookAt(Moved(misfit.Free(), combination.x, side * move), combination,
-               beforehand, misfit);
+        LookAt(moved, combination, beforehand, misfit);
     if (look) {
       both.rise = std::min(both.rise, look->rise);
       both.bend = both.bend.cwiseMax(look->bend.cwiseAbs());
@@ -186,9 +197,9 @@ Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,
   if (!covariance.allFinite() || !misfit.Evaluate(x, &rows, nullptr)) {
     return added;
   }
-  const double square_sum = SquaredNorm(rows);
-  const Eigen::MatrixXd inverse =
-      Inverse(InformationOf(sensitivities, beforehand));
+  const Eigen::MatrixXd information = InformationOf(sensitivities, beforehand);
+  const Eigen::MatrixXd inverse = Inverse(information);
+  const Eigen::VectorXd newton = inverse * InnerProducts(sensitivities, rows);
   const Eigen::MatrixXd jacobian = ScaledJacobian(misfit.Free(), x);
   const SymmetricEigenDecomposition modes =
       DecomposeSymmetric(jacobian * covariance * jacobian.transpose());
@@ -205,8 +216,13 @@ Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,
       continue;
     }
     ++num_looked_at;
-    added += CovarianceAlong(move, {x, square_sum, a, a.dot(inverse * a)},
-                             beforehand, misfit);
+    const double variance = a.dot(inverse * a);
+    added += CovarianceAlong(
+        move,
+        {x, a, variance,
+         LeastSquareSum(rows, sensitivities, information, a).square_sum,
+         2 * a.dot(newton) / variance},
+        beforehand, misfit);
   }
   return added;
 }

@@ -91,10 +91,11 @@ bool DisplacementMisfit::Evaluate(const Eigen::VectorXd& x,
       return false;
     }
   }
-  if (factors_.size() != 0) {
-    residual->array() *= factors_.array();
+  const Eigen::VectorXd& factors = weights_.factors;
+  if (factors.size() != 0) {
+    residual->array() *= factors.array();
     if (jacobian != nullptr) {
-      *jacobian = (factors_.asDiagonal() * *jacobian).eval();
+      *jacobian = (factors.asDiagonal() * *jacobian).eval();
     }
   }
   return residual->allFinite();

@@ -71,11 +71,16 @@ class DisplacementMisfit {
   /// Zero without resultants.
   double Noise() const { return NumResultants() > 0 ? motion_->Noise() : 0; }
 
-  /// Multiplies the rows of displacements, and their derivatives, by these
-  /// factors, the roots of weights; an empty vector takes them back.
+  /// How a loss weighs the rows r of displacements: by w = psi(r) / r.
+  struct Weights {
+    /// The roots of w, which multiply the rows and their derivatives; empty
+    /// without a loss.
+    Eigen::VectorXd factors;
+    double mean_slope = 1;  ///< The mean of d psi / d r.
+  };
   /// Precondition: no unknown motions.
-  void SetFactors(const Eigen::VectorXd& factors) { factors_ = factors; }
-  const Eigen::VectorXd& Factors() const { return factors_; }
+  void SetWeights(const Weights& weights) { weights_ = weights; }
+  const Weights& RowWeights() const { return weights_; }
 
   /// A factorisation, and a solve for each load case and variable; times the
   /// iterations of MotionElimination where motions are unknown.  False when the
@@ -138,7 +143,7 @@ class DisplacementMisfit {
   std::optional<Placed> placed_;  ///< In place of the model.
   Solution solution_;
   Eigen::VectorXd residual_;
-  Eigen::VectorXd factors_;
+  Weights weights_;
   const NodeGraph* neighbours_ = nullptr;
 };
 

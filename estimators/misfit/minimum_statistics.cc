@@ -69,6 +69,18 @@ Eigen::MatrixXd AddedByCorrelation(const Scene& scene,
          (variance > 0 ? smooth / variance : 0) * inverse;
 }
 
+// The square sum whose mean is the variance that (S^T S)^-1 has as a factor. By
+// a loss the rows r count by psi(r) = w r, and the rows and S are multiplied by
+// the root of w [Street, Carroll & Ruppert, Am. Stat. 42 (1988) 152].
+double SquareSumOfNoise(const Eigen::VectorXd& rows,
+                        const DisplacementMisfit::Weights& weights) {
+  const Eigen::VectorXd& factors = weights.factors;
+  return factors.size() == 0 ? SquaredNorm(rows)
+                             : SquaredNorm(factors.cwiseProduct(rows)) *
+                                   factors.array().square().mean() /
+                                   (weights.mean_slope * weights.mean_slope);
+}
+
 // Weighs the resultants beside noise of this variance, rather than of what they
 // were weighed beside in the fit, which is the least where data are exact.
 void WeighResultants(const DisplacementMisfit& misfit, double& variance,
@@ -428,8 +440,9 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
     return errors;
   }
   const double excess = ExcessOfResultants(rows, misfit, evidence);
-  ResidualVariance variance = EstimateVariance(observed, SquaredNorm(rows),
-                                               num_fitted, evidence, estimate);
+  ResidualVariance variance =
+      EstimateVariance(observed, SquareSumOfNoise(rows, misfit.RowWeights()),
+                       num_fitted, evidence, estimate);
   WeighResultants(misfit, variance.variance, sensitivities);
   evidence.is_explained_by_given_noise = variance.is_explained_by_given_noise;
   const Eigen::MatrixXd of_rows = sensitivities.topRows(observed.Size());

@@ -279,19 +279,6 @@ Eigen::MatrixXd ReducedModel::Responses(double poisson_ratio) const {
   return all;
 }
 
-StiffnessSolver* ReducedModel::SolverNear(double poisson_ratio) {
-  // Of the ratio of the stiffness against volume to that against shear.
-  constexpr double kNear = 0.7;
-  if (std::abs(LogStiffnessRatio(poisson_ratio) - LogStiffnessRatio(Pole())) <=
-      kNear) {
-    return &solver_;
-  }
-  for (Response& response : responses_) {
-    response.krylov.resize(response.g0.size(), 0);
-  }
-  return solver_.Factorize(poisson_ratio) ? &solver_ : nullptr;
-}
-
 double ReducedModel::ErrorBound(Eigen::Index k, double poisson_ratio) const {
   double least = std::numeric_limits<double>::infinity();
   for (const KrylovBound& bound : responses_[k].bounds) {

@@ -83,11 +83,6 @@ class ReducedModel {
   /// nu: num_dofs x num_responses.  O(num_nodes m).
   Eigen::MatrixXd Responses(double poisson_ratio) const;
 
-  /// For systems of others: factorised at nu, or near it where the present pole
-  /// is.  Null where A(nu) is singular to working precision.  The spaces do not
-  /// grow any more before the next pole where this was another nu.
-  StiffnessSolver* SolverNear(double poisson_ratio);
-
   /// Whether solves are inexact.
   bool UsesMultigrid() const { return solver_.UsesMultigrid(); }
 

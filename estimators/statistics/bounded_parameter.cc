@@ -14,23 +14,10 @@ constexpr double kInwardGradient = 1e-6;
 
 }  // namespace
 
-Bounds EffectivePoissonRatioBounds(const EstimatorOptions& options) {
-  return {std::max(options.poisson_ratio.lower.value_or(kSmallestPoissonRatio),
-                   kSmallestPoissonRatio),
-          std::min(options.poisson_ratio.upper.value_or(kLargestPoissonRatio),
-                   kLargestPoissonRatio)};
-}
-
 BoundedParameter::BoundedParameter(double value, const Bounds& bounds)
     : value_(value), bounds_(bounds) {
   value_ = std::max(value_, bounds_.lower.value_or(value_));
   value_ = std::min(value_, bounds_.upper.value_or(value_));
-}
-
-BoundedParameter BoundedParameter::Constant(double value) {
-  BoundedParameter parameter(value, Bounds{});
-  parameter.is_constant_ = true;
-  return parameter;
 }
 
 Side BoundedParameter::OnBound() const {
@@ -44,10 +31,6 @@ Side BoundedParameter::OnBound() const {
 }
 
 void BoundedParameter::Constrain(ceres::Problem& problem) {
-  if (is_constant_) {
-    problem.SetParameterBlockConstant(&value_);
-    return;
-  }
   if (bounds_.lower) {
     problem.SetParameterLowerBound(&value_, 0, *bounds_.lower);
   }
@@ -95,15 +78,13 @@ ceres::Solver::Summary MinimizeWithinBounds(
   for (int round = 0; round < kMaxRounds && summary.IsSolutionUsable();
        ++round) {
     std::size_t num_held = 0;
-    std::size_t num_constant = 0;
     for (BoundedParameter* parameter : parameters) {
       num_held += parameter->Hold(problem) ? 1 : 0;
-      num_constant += parameter->IsConstant() ? 1 : 0;
     }
     if (num_held == 0) {
       break;
     }
-    if (num_held + num_constant < parameters.size()) {
+    if (num_held < parameters.size()) {
       ceres::Solve(options, &problem, &summary);
     }
     bool any_released = false;
@@ -127,30 +108,6 @@ End EndOf(const ceres::Solver::Summary& summary) {
     default:
       return End::kSearchFailed;
   }
-}
-
-ActiveBounds NoteActiveBounds(const EstimatorOptions& options,
-                              Side youngs_modulus,
-                              const BoundedParameter& poisson_ratio,
-                              Estimate& estimate) {
-  ActiveBounds active;
-  active.youngs_modulus = youngs_modulus;
-  if (youngs_modulus != Side::kNone) {
-    const bool lower = youngs_modulus == Side::kLower;
-    estimate.active_bounds.emplace_back(lower ? "youngs_min" : "youngs_max");
-    estimate.elasticity.youngs_modulus =
-        lower ? *options.youngs_modulus.lower : *options.youngs_modulus.upper;
-  }
-  active.poisson_ratio = poisson_ratio.OnBound();
-  if (active.poisson_ratio != Side::kNone) {
-    const bool lower = active.poisson_ratio == Side::kLower;
-    estimate.active_bounds.emplace_back(lower ? "nu_min" : "nu_max");
-    const std::optional<double>& given =
-        lower ? options.poisson_ratio.lower : options.poisson_ratio.upper;
-    active.is_physical_limit =
-        !given || std::abs(*given - poisson_ratio.Value()) > kOnBound;
-  }
-  return active;
 }
 
 }  // namespace elastimate

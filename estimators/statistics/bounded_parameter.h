@@ -7,28 +7,23 @@
 #include <string>
 #include <vector>
 
-#include "elastimate/estimators/interface/active_bounds.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
 #include "elastimate/estimators/interface/evidence.h"
 
 namespace elastimate {
 
-/// `options.poisson_ratio`, with the range that fits search where no narrower
-/// bound is given.
-Bounds EffectivePoissonRatioBounds(const EstimatorOptions& options);
+/// The bound that a parameter lies on.
+enum class Side { kNone, kLower, kUpper };
 
 /// A parameter block of size one of a Ceres problem, with its bounds.
 class BoundedParameter {
  public:
   /// Starts at `value`, moved into the bounds.
   BoundedParameter(double value, const Bounds& bounds);
-  /// A parameter that keeps its value.
-  static BoundedParameter Constant(double value);
 
   double Value() const { return value_; }
   double* Block() { return &value_; }
-  bool IsConstant() const { return is_constant_; }
   /// Which bound it lies on.
   Side OnBound() const;
 
@@ -47,7 +42,6 @@ class BoundedParameter {
 
   double value_;
   Bounds bounds_;
-  bool is_constant_ = false;
 };
 
 /// Minimises `problem`, which has all `parameters` as its blocks.
@@ -62,13 +56,6 @@ ceres::Solver::Summary MinimizeWithinBounds(
 
 /// How Ceres ended.
 End EndOf(const ceres::Solver::Summary& summary);
-
-/// Which bounds hold the estimate.  Enters them into `estimate`, and sets E and
-/// nu to the given bounds they lie on.
-ActiveBounds NoteActiveBounds(const EstimatorOptions& options,
-                              Side youngs_modulus,
-                              const BoundedParameter& poisson_ratio,
-                              Estimate& estimate);
 
 }  // namespace elastimate
 

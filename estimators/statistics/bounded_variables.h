@@ -11,6 +11,7 @@
 #include "elastimate/estimators/interface/evidence.h"
 #include "elastimate/estimators/interface/free_parameters.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
+#include "elastimate/estimators/statistics/bounded_parameter.h"
 
 namespace elastimate {
 

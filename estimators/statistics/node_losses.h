@@ -15,8 +15,6 @@ namespace elastimate {
 /// three observed components each, so that a bad node counts less as a whole.
 class NodeLosses {
  public:
-  /// Least squares.
-  NodeLosses() = default;
   /// Huber's (k = 1.345) or Cauchy's (c = 2.385) for residuals of this standard
   /// deviation per component; the norm of n of them is sqrt(n) standard
   /// deviations in the mean.

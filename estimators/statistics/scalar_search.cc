@@ -52,13 +52,4 @@ double ZeroBetween(const std::function<double(double)>& f, double a, double f_a,
   return left + (right - left) / 2;
 }
 
-double LastInside(const std::function<bool(double)>& is_inside, double inside,
-                  double outside, int num_halvings) {
-  for (int i = 0; i < num_halvings; ++i) {
-    const double middle = (inside + outside) / 2;
-    (is_inside(middle) ? inside : outside) = middle;
-  }
-  return inside;
-}
-
 }  // namespace elastimate

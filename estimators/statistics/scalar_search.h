@@ -24,13 +24,6 @@ Eigen::VectorXd EvenPoissonRatios(double lower, double upper,
 double ZeroBetween(const std::function<double(double)>& f, double a, double f_a,
                    double b, double f_b, double tolerance);
 
-/// The last point for which `is_inside` was true while the way from `inside` to
-/// `outside`, which are what their names say, was halved: it is `inside`, or at
-/// most a part 2^-num_halvings of the way before a point that is not inside.
-/// One evaluation for each halving.
-double LastInside(const std::function<bool(double)>& is_inside, double inside,
-                  double outside, int num_halvings);
-
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_ESTIMATORS_STATISTICS_SCALAR_SEARCH_H_

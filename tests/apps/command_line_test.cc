@@ -309,9 +309,8 @@ TEST_F(CommandLine, BoundsAndKnownValuesAreHonoured) {
     EXPECT_NEAR(bounded["poisson_ratio"].get<double>(), 0.3, 1e-9);
     EXPECT_EQ(bounded["diagnostics"]["active_bounds"],
               nlohmann::json({"nu_max"}));
-    // The error of bounded is that without the bound.
-    EXPECT_EQ(bounded["standard_error"]["poisson_ratio"].is_null(),
-              name != "bounded" || bounded["status"] != "ok");
+    // That of a fit without the bound, which the truth lies beyond.
+    EXPECT_GT(bounded["standard_error"]["poisson_ratio"].get<double>(), 0.01);
   }
 }
 

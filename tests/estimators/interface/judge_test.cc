@@ -110,10 +110,9 @@ TEST(Judge, SpeaksOfErrorBarsWhereThereAreSome) {
 TEST(Judge, SaysTheSameWhenAskedAgain) {
   Evidence evidence;
   evidence.outlier_change = {0.5, 0};
-  evidence.active.youngs_modulus = Side::kUpper;
+  evidence.above_noise = {ResidualKind::kDisplacement, 2};
   Estimate estimate = Judged(evidence);
   EXPECT_TRUE(estimate.IsUsable());
-  EXPECT_FALSE(estimate.why_no_standard_error.empty());
   ASSERT_EQ(estimate.findings.size(), 2U);
   evidence.correction = 1;
   for (int i = 0; i < 2; ++i) {
@@ -155,47 +154,6 @@ TEST(Judge, ABoundIsContradictedWhereItMattersAndIsSignificant) {
   EXPECT_TRUE(Judged(evidence).IsUsable());
 }
 
-TEST(Judge, ABoundThatLeavesTooMuchRoomIsNoEstimate) {
-  EstimatorOptions known;
-  known.known_poisson_ratio = 0.3;
-  Evidence evidence;
-  evidence.youngs_modulus_on_bound = {0.3, 0, 0.3, 0.1};
-  EXPECT_TRUE(Judged(evidence).IsUsable());
-  evidence.youngs_modulus_on_bound = {0.4, 0, 0.4, 0.1};
-  EXPECT_TRUE(Judged(evidence).Has(FindingCode::kYoungsModulusUndetermined));
-  EXPECT_TRUE(
-      Judged(evidence, known).Has(FindingCode::kYoungsModulusUndetermined));
-  // The slope of data that do not determine it.
-  evidence.youngs_modulus_on_bound = {0.3, Estimate::kUnknown, 0.3,
-                                      Estimate::kUnknown};
-  EXPECT_FALSE(Judged(evidence).IsUsable());
-}
-
-TEST(Judge, AnIntervalThatReachesAFarEndSaysNothing) {
-  Evidence evidence;
-  evidence.profile_interval = {0.1, 0.5};
-  EXPECT_TRUE(Judged(evidence).IsUsable());
-  evidence.profile_interval = {-1, 0.4};
-  EXPECT_TRUE(Judged(evidence).Has(FindingCode::kPoissonRatioUndetermined));
-  evidence.profile_interval = {-0.3, 0.4};
-  EXPECT_TRUE(Judged(evidence).IsUsable());
-}
-
-// At its limit nu has an interval, but no standard error.
-TEST(Judge, AWideIntervalIsNoEstimateWithoutAStandardErrorEither) {
-  const Scene scene = testing::SmallScene("cuboid");
-  for (const double lower : {0.25, 0.15}) {
-    Estimate estimate = Measured();
-    estimate.Accept();
-    estimate.elasticity.poisson_ratio = 0.49999;
-    estimate.covariance.row(1).setConstant(Estimate::kUnknown);
-    estimate.covariance.col(1).setConstant(Estimate::kUnknown);
-    estimate.poisson_ratio_interval = {lower, 0.5};
-    FinishEstimate("reduced-fe", scene, {}, {}, estimate);
-    EXPECT_EQ(estimate.IsUsable(), lower == 0.25) << estimate.message;
-  }
-}
-
 // Noise of virtual fields next to nu = 1/2 left E open by any factor, of which
 // there is no standard error, and that passed for none.
 TEST(Judge, AYoungsModulusWithoutLimitIsNoEstimate) {
@@ -205,15 +163,13 @@ TEST(Judge, AYoungsModulusWithoutLimitIsNoEstimate) {
   estimate.covariance << std::numeric_limits<double>::infinity(), 0, 0, 1e-4;
   FinishEstimate("some", scene, {}, {}, estimate);
   EXPECT_EQ(estimate.status, Status::kNotIdentifiable);
-  EXPECT_TRUE(estimate.Has(FindingCode::kYoungsModulusUndetermined));
+  EXPECT_TRUE(estimate.Has(FindingCode::kParametersUndetermined));
 }
 
 // A fit without the outliers is too far from nu = 1/2 for a linear model.
 TEST(Judge, ARatioThatOutliersMayPullToItsLimitIsNoEstimate) {
   Evidence evidence;
-  evidence.active.poisson_ratio = Side::kUpper;
-  evidence.active.is_physical_limit = true;
-  evidence.poisson_ratio_on_bound = ErrorsOnBound{};
+  evidence.ratios_at_limit = {"nu"};
   EXPECT_TRUE(Judged(evidence).IsUsable());
   evidence.outlier_change = {0.02, 0};
   const Estimate estimate = Judged(evidence);

@@ -205,23 +205,22 @@ TEST_P(DisplacementEstimators, ErrorsOfEAllowForTheRoomOfNu) {
   EXPECT_GT(num_on_bound, 2);
 }
 
-// What the shear modulus alone determines stays open, however narrow the bounds
-// on E are; where the fit ends on one, nu follows from that E.
-TEST_P(DisplacementEstimators, ANarrowEDoesNotHideACollinearNu) {
+// Where the data determine the shear modulus alone, bounds on E leave nu no
+// more room than they leave E.
+TEST_P(DisplacementEstimators, ANarrowEDeterminesACollinearNu) {
   for (int seed = 1; seed <= 5; ++seed) {
+    SCOPED_TRACE(seed);
     Scene scene = testing::ShearedBlock();
     AddNoise(1e-3, seed, scene);
+    EXPECT_EQ(Run(scene, {}).status, Status::kNotIdentifiable);
     EstimatorOptions options;
     options.youngs_modulus = {4.95e4, 5.05e4};
     const Estimate estimate = Run(scene, options);
-    if (estimate.active_bounds.empty()) {
-      EXPECT_EQ(estimate.status, Status::kNotIdentifiable) << seed;
-    } else {
-      ASSERT_TRUE(estimate.PoissonRatioStandardError().has_value()) << seed;
-      EXPECT_LT(std::abs(estimate.elasticity.poisson_ratio - 0.3),
-                2 * *estimate.PoissonRatioStandardError())
-          << seed;
-    }
+    ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+    const double standard_error = *estimate.PoissonRatioStandardError();
+    EXPECT_LT(std::abs(estimate.elasticity.poisson_ratio - 0.3),
+              2 * standard_error);
+    EXPECT_NEAR(standard_error, 1.3 * 0.02 / std::sqrt(12.0), 0.002);
   }
 }
 
@@ -246,16 +245,6 @@ TEST_P(DisplacementEstimators, ErrorsOfNuAllowForTheRoomOfE) {
   EXPECT_GT(num_on_bound, 5);
 }
 
-TEST_P(DisplacementEstimators, KnowsTheIdentifiabilityOfAGivenPoissonRatio) {
-  Scene scene = SmallScene("organ");
-  Measure({5e4, 0.3}, scene);
-  AddNoise(1e-4, 1, scene);
-  EstimatorOptions known;
-  known.known_poisson_ratio = 0.3;
-  EXPECT_NEAR(*Run(scene, known).identifiability_angle,
-              *Run(scene, {}).identifiability_angle, 1e-3);
-}
-
 class DisplacementEstimatorsStatistics : public DisplacementEstimators {};
 
 TEST_P(DisplacementEstimatorsStatistics, LossesRejectOutliers) {
@@ -270,9 +259,7 @@ TEST_P(DisplacementEstimatorsStatistics, LossesRejectOutliers) {
     EstimatorOptions options;
     options.loss = loss;
     const Estimate estimate = Run(scene, options);
-    // Without a loss they may hide that the elements miss something.
-    EXPECT_TRUE(estimate.status == Status::kOk || loss == Loss::kNone)
-        << estimate.message;
+    EXPECT_EQ(estimate.status, Status::kOk) << estimate.message;
     return std::pow(estimate.elasticity.youngs_modulus / 5e4 - 1, 2);
   };
   for (int seed = 1; seed <= kSeeds; ++seed) {
@@ -290,7 +277,8 @@ TEST_P(DisplacementEstimatorsStatistics, LossesRejectOutliers) {
     robust[1] += squared_error(scene, Loss::kCauchy);
   }
   // Ratios of chi^2 sums of 30 have a relative sd of about 0.36.
-  EXPECT_GT(contaminated, 4 * clean);
+  // Without a loss, points so far off are left out.
+  EXPECT_LT(contaminated, 2 * clean);
   EXPECT_LT(robust[0], 2 * clean);
   EXPECT_LT(robust[1], 2 * clean);
 }

@@ -118,23 +118,5 @@ TEST(ZeroBetween, EndsWhereThereIsNone) {
   EXPECT_LE(unknown.num_evaluations, 62);
 }
 
-TEST(LastInside, IsInsideAndNoFurtherThanTheHalvingsFromTheEdge) {
-  for (const double outside : {1.0, -1.0}) {
-    for (const int num_halvings : {0, 1, 12, 40}) {
-      int num_evaluations = 0;
-      const double edge = outside / 3;
-      const double last = LastInside(
-          [&](double x) {
-            ++num_evaluations;
-            return std::abs(x) <= std::abs(edge);
-          },
-          0, outside, num_halvings);
-      EXPECT_LE(std::abs(last), std::abs(edge));
-      EXPECT_LE(std::abs(last - edge), std::ldexp(1, -num_halvings));
-      EXPECT_EQ(num_evaluations, num_halvings);
-    }
-  }
-}
-
 }  // namespace
 }  // namespace elastimate
