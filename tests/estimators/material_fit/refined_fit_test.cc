@@ -77,6 +77,17 @@ TEST(RefinedFit, OfBothDescentsIsTheSame) {
   EXPECT_NEAR(*iterative.YoungsModulusStandardError(), error, 0.05 * error);
 }
 
+// Iterations over nested spaces do not converge next to nu = 1/2, where the
+// coarser elements have to be compared all the same.
+TEST(RefinedFit, NextToIncompressibleTheMeshErrorIsKnown) {
+  Scene scene = Block({2, 2, 4});
+  testing::MeasureInCutWorld({5e4, 0.49999}, scene);
+  const Estimate estimate = Fitted(scene);
+  EXPECT_GT(estimate.elasticity.poisson_ratio, 0.49);
+  EXPECT_FALSE(estimate.Has(FindingCode::kMeshErrorUnknown));
+  EXPECT_FALSE(estimate.Has(FindingCode::kSearchFailed));
+}
+
 TEST(RefinedFit, DividesTheMeshAsOftenAsIsAskedFor) {
   Scene scene = Block({2, 2, 4});
   testing::MeasureInCutWorld(kSpecimen, scene);
