@@ -123,9 +123,17 @@ std::optional<Look> LookAt(const Eigen::VectorXd& moved,
   const Least least =
       LeastSquareSum(rows, sensitivities,
                      InformationOf(sensitivities, beforehand), combination.a);
-  const double rise =
-      least.square_sum - combination.square_sum - combination.slope * way;
   const double expected = way * way / combination.variance;
+  const auto rise_to = [&](double square_sum) {
+    return square_sum - combination.square_sum - combination.slope * way;
+  };
+  double rise = rise_to(least.square_sum);
+  // What a long step of a linear model gains may not be there.
+  if (rise < kSettled * expected &&
+      misfit.Evaluate(Moved(misfit.Free(), moved, least.change), &rows,
+                      nullptr)) {
+    rise = std::max(rise, rise_to(SquaredNorm(rows)));
+  }
   return std::isfinite(rise) && expected > 0
              ? std::optional<Look>({rise / expected, least.change})
              : std::nullopt;

@@ -15,7 +15,8 @@ namespace elastimate {
 /// stiffnesses relative, of ratios over the way to the nearer end of their
 /// range.  Each is moved by two standard errors to either side,
 /// m = +- 2 C a / sqrt(a^T C a), and the square sum of the residual is taken
-/// there at the least over all other combinations, by a Gauss-Newton step.
+/// there at the least over all other combinations, by a Gauss-Newton step, which
+/// is taken where it gains much.
 /// Where it is only a part p of what a quadratic misfit would rise to, the
 /// error is 1 / sqrt(p) times as large: (1 / p - 1) m m^T / 4 is added.  Where
 /// the square sum rises to less than 0.6 of what two standard errors mean, as
@@ -26,8 +27,8 @@ namespace elastimate {
 ///
 /// Nothing is added where all errors are small, which costs nothing, or so
 /// large that the parameter is not determined anyway; else each of at most two
-/// combinations takes two evaluations of the misfit, a factorisation each, for
-/// each look.  `sensitivities` is S at x in the rows of the misfit,
+/// combinations takes two to four evaluations of the misfit, a factorisation
+/// each, for each look.  `sensitivities` is S at x in the rows of the misfit,
 /// `beforehand` the diagonal of what is known without them, in the unit of S^T
 /// S.
 ///

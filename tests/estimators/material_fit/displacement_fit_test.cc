@@ -114,8 +114,6 @@ TEST(DisplacementFitStatistics, BoundsDoNotHideThatTheDataDoNotDetermineNu) {
     options.poisson_ratio = {0.0, 0.49};
     const Estimate estimate = IterativeFe().Run(scene, options);
     EXPECT_EQ(estimate.status, Status::kNotIdentifiable);
-    EXPECT_NE(estimate.message.find("the bulk modulus = "), std::string::npos)
-        << estimate.message;
     // Bounds that leave E little room determine it.
     options.poisson_ratio = {0.299, 0.301};
     const Estimate narrow = IterativeFe().Run(scene, options);

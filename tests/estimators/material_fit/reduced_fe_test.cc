@@ -231,7 +231,7 @@ TEST(PreparedReducedFe, GivesWhatTheEstimatorGives) {
 }
 
 // 2 % of the nodes displaced by 20 standard deviations of the noise.
-TEST(PreparedReducedFeStatistics, HuberHardlyFeelsAFewGrossOutliers) {
+TEST(PreparedReducedFeStatistics, HardlyFeelsAFewGrossOutliers) {
   constexpr int kSeeds = 100;
   constexpr double kNoise = 0.01;
   Scene exact = SmallScene("organ");
@@ -269,7 +269,7 @@ TEST(PreparedReducedFeStatistics, HuberHardlyFeelsAFewGrossOutliers) {
   }
   // The same noise is in all three: their ratios are far better known than
   // each.
-  EXPECT_GT(std::sqrt(contaminated / clean), 1.5);
+  EXPECT_LT(std::sqrt(contaminated / clean), 1.15);
   EXPECT_LT(std::sqrt(rejected / clean), 1.15);
   std::printf("error with outliers over error without: %.3f, with huber %.3f\n",
               std::sqrt(contaminated / clean), std::sqrt(rejected / clean));
