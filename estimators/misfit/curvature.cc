@@ -95,6 +95,9 @@ Eigen::MatrixXd InformationOf(const Eigen::MatrixXd& sensitivities,
 // A minimum, and one combination of its variables.
 struct Combination {
   const Eigen::VectorXd& x;
+  const Eigen::VectorXd& rows;
+  const Eigen::MatrixXd& sensitivities;
+  const Eigen::MatrixXd& information;
   Eigen::VectorXd a;
   double variance;    ///< a^T (S^T S)^-1 a, where the noise is 1.
   double square_sum;  ///< The least at the combination as it is.
@@ -106,7 +109,7 @@ struct Combination {
 // What is found where the combination is moved.
 struct Look {
   double rise;  ///< Of the square sum, over that of a quadratic misfit.
-  Eigen::VectorXd bend;  ///< Of the others, off the straight line.
+  Eigen::VectorXd bend;  ///< Of the others, off those of the linear model.
 };
 
 // Empty where there is no model.
@@ -123,6 +126,9 @@ std::optional<Look> LookAt(const Eigen::VectorXd& moved,
   const Least least =
       LeastSquareSum(rows, sensitivities,
                      InformationOf(sensitivities, beforehand), combination.a);
+  const Least of_linear_model = LeastSquareSum(
+      combination.rows + combination.sensitivities * (moved - combination.x),
+      combination.sensitivities, combination.information, combination.a);
   const double expected = way * way / combination.variance;
   const auto rise_to = [&](double square_sum) {
     return square_sum - combination.square_sum - combination.slope * way;
@@ -135,7 +141,8 @@ std::optional<Look> LookAt(const Eigen::VectorXd& moved,
     rise = std::max(rise, rise_to(SquaredNorm(rows)));
   }
   return std::isfinite(rise) && expected > 0
-             ? std::optional<Look>({rise / expected, least.change})
+             ? std::optional<Look>(
+                   {rise / expected, least.change - of_linear_model.change})
              : std::nullopt;
 }
 
@@ -227,7 +234,7 @@ Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,
     const double variance = a.dot(inverse * a);
     added += CovarianceAlong(
         move,
-        {x, a, variance,
+        {x, rows, sensitivities, information, a, variance,
          LeastSquareSum(rows, sensitivities, information, a).square_sum,
          2 * a.dot(newton) / variance},
         beforehand, misfit);

@@ -15,15 +15,15 @@ namespace elastimate {
 /// stiffnesses relative, of ratios over the way to the nearer end of their
 /// range.  Each is moved by two standard errors to either side,
 /// m = +- 2 C a / sqrt(a^T C a), and the square sum of the residual is taken
-/// there at the least over all other combinations, by a Gauss-Newton step, which
-/// is taken where it gains much.
-/// Where it is only a part p of what a quadratic misfit would rise to, the
-/// error is 1 / sqrt(p) times as large: (1 / p - 1) m m^T / 4 is added.  Where
-/// the square sum rises to less than 0.6 of what two standard errors mean, as
-/// around a dip next to nu = 1/2, the move is lengthened until it does, four
-/// times at most, and p is that of the last.  Where the others are off the
-/// straight line by b there, as E of a bent plate, which does not change with
-/// nu to first order, diag(b^2) / 4 is added.
+/// there at the least over all other combinations, by a Gauss-Newton step,
+/// which is taken where it gains much. Where it is only a part p of what a
+/// quadratic misfit would rise to, the error is 1 / sqrt(p) times as large: (1
+/// / p - 1) m m^T / 4 is added.  Where the square sum rises to less than 0.6 of
+/// what two standard errors mean, as around a dip next to nu = 1/2, the move is
+/// lengthened until it does, four times at most, and p is that of the last.
+/// Where the others are off those of the linear model by b there, as E of a
+/// bent plate, which does not change with nu to first order, diag(b^2) / 4 is
+/// added.
 ///
 /// Nothing is added where all errors are small, which costs nothing, or so
 /// large that the parameter is not determined anyway; else each of at most two
