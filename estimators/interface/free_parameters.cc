@@ -69,18 +69,27 @@ FreeParameters::FreeParameters(const Scene& scene,
                            scene.materials[i].known.empty() &&
                            scene.materials[i].bounds.empty());
   }
-  errors_by_bounds_.setConstant(Size(),
-                                std::numeric_limits<double>::infinity());
   for (Eigen::Index i = 0; i < Size(); ++i) {
     const Bounds given = GivenBounds(scene, options, Free(i));
     bounds_.push_back(IsOfFactors(i)
                           ? Bounds{}
                           : BoundsOfVariable(*Free(i).law_parameter, given));
-    const Bounds& bounds = bounds_.back();
-    if (given.AreGiven() && bounds.lower && bounds.upper) {
-      errors_by_bounds_(i) = (*bounds.upper - *bounds.lower) / std::sqrt(12.0);
+    are_bounds_given_.push_back(given.AreGiven());
+  }
+}
+
+Eigen::VectorXd FreeParameters::ErrorsByBounds(
+    const Eigen::VectorXd& variables) const {
+  Eigen::VectorXd errors = Eigen::VectorXd::Constant(
+      Size(), std::numeric_limits<double>::infinity());
+  for (Eigen::Index i = 0; i < Size(); ++i) {
+    const auto& [lower, upper] = bounds_[i];
+    if (are_bounds_given_[i] && lower && upper) {
+      errors(i) = std::hypot((*upper - *lower) / std::sqrt(12.0),
+                             variables(i) - (*lower + *upper) / 2);
     }
   }
+  return errors;
 }
 
 std::vector<Eigen::Index> FreeParameters::FirstOfFactors() const {

@@ -27,11 +27,11 @@ class FreeParameters {
   /// The bounds of each variable: as given for its material, else by the
   /// options, and the range of its law.
   const std::vector<Bounds>& VariableBounds() const { return bounds_; }
-  /// What the bounds that are given say of a variable: as much as an error of
-  /// their distance over sqrt(12) does, the standard deviation of any value
-  /// between them.  Infinite where none is given, or on one side of a modulus
-  /// alone.
-  const Eigen::VectorXd& ErrorsByBounds() const { return errors_by_bounds_; }
+  /// What the bounds that are given say of the errors of variables: the root
+  /// mean square distance of any value between them, their distance over
+  /// sqrt(12) from the middle and over sqrt(3) from one of them.  Infinite
+  /// where none is given, or on one side of a modulus alone.
+  Eigen::VectorXd ErrorsByBounds(const Eigen::VectorXd& variables) const;
 
   /// All parameters p(x), and x of them, moved into the bounds; not numbers
   /// where a stiffness is not positive definite.
@@ -59,7 +59,7 @@ class FreeParameters {
   /// Of each material, whether its variables are the factors of its stiffness.
   std::vector<bool> has_factors_;
   std::vector<Bounds> bounds_;
-  Eigen::VectorXd errors_by_bounds_;
+  std::vector<bool> are_bounds_given_;
   Eigen::VectorXd known_;  ///< Typical values where none is known.
 };
 

@@ -130,8 +130,10 @@ std::optional<Look> LookAt(const Eigen::VectorXd& moved,
       combination.rows + combination.sensitivities * (moved - combination.x),
       combination.sensitivities, combination.information, combination.a);
   const double expected = way * way / combination.variance;
+  const double of_known = beforehand.dot((moved - combination.x).cwiseAbs2());
   const auto rise_to = [&](double square_sum) {
-    return square_sum - combination.square_sum - combination.slope * way;
+    return square_sum - combination.square_sum - combination.slope * way +
+           of_known;
   };
   double rise = rise_to(least.square_sum);
   // What a long step of a linear model gains may not be there.

@@ -123,9 +123,11 @@ constexpr double kUnknownErrors = 15;
 
 // What is known beforehand, which without bounds matters for no variable that
 // is determined, beside S^T S in rows of this variance.
-Eigen::VectorXd KnownBeforehand(const FreeParameters& free, double variance) {
+Eigen::VectorXd KnownBeforehand(const FreeParameters& free,
+                                const Eigen::VectorXd& variables,
+                                double variance) {
   return variance / (kErrorsBeforehand * LargestErrorsOfVariables(free))
-                        .cwiseMin(free.ErrorsByBounds())
+                        .cwiseMin(free.ErrorsByBounds(variables))
                         .array()
                         .square();
 }
@@ -141,6 +143,7 @@ struct Information {
 };
 
 Information InformationOf(const FreeParameters& free,
+                          const Eigen::VectorXd& variables,
                           const Eigen::MatrixXd& sensitivities,
                           double variance) {
   // The sine of the angle between columns below which rounding decides, which
@@ -163,7 +166,7 @@ Information InformationOf(const FreeParameters& free,
   information.of_free_combinations.setZero(n, n);
   if (num_free == 0) {
     Eigen::MatrixXd known = gram;
-    known.diagonal() += KnownBeforehand(free, variance);
+    known.diagonal() += KnownBeforehand(free, variables, variance);
     information.inverse = Inverse(known);
     return information;
   }
@@ -175,8 +178,8 @@ Information InformationOf(const FreeParameters& free,
   const Eigen::MatrixXd& combinations = information.free_combinations;
   information.of_free_combinations =
       combinations *
-      Inverse(combinations.transpose() * KnownBeforehand(free, 1).asDiagonal() *
-              combinations) *
+      Inverse(combinations.transpose() *
+              KnownBeforehand(free, variables, 1).asDiagonal() * combinations) *
       combinations.transpose();
   return information;
 }
@@ -382,7 +385,7 @@ void AddCurvature(const Eigen::VectorXd& variables,
   if (misfit.NumResultants() == 0) {
     errors.total += CovarianceOfCurvature(
         variables, errors.total, sensitivities,
-        KnownBeforehand(misfit.Free(), errors.variance), misfit);
+        KnownBeforehand(misfit.Free(), variables, errors.variance), misfit);
   }
 }
 
@@ -447,7 +450,7 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
   evidence.is_explained_by_given_noise = variance.is_explained_by_given_noise;
   const Eigen::MatrixXd of_rows = sensitivities.topRows(observed.Size());
   const Information information =
-      InformationOf(free, sensitivities, variance.variance);
+      InformationOf(free, errors.variables, sensitivities, variance.variance);
   const Eigen::MatrixXd& inverse = information.inverse;
   NoteFreeDirection(free, information, errors.variables, evidence);
   NoteBoundExcess(free, minimum.found, rows, sensitivities, inverse, estimate,
@@ -474,8 +477,8 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
   estimate.error_budget.model =
       ErrorsOfVariables(free, errors.variables, by_model);
   AddOutliers(free, errors.variables, observed, errors.residual, sensitivities,
-              KnownBeforehand(free, variance.variance), errors.total, evidence,
-              estimate);
+              KnownBeforehand(free, errors.variables, variance.variance),
+              errors.total, evidence, estimate);
   AddAxisRotation(scene, errors.variables, rows, sensitivities, inverse, misfit,
                   errors, evidence, estimate);
   AddCurvature(errors.variables, sensitivities, misfit, errors);
