@@ -335,6 +335,16 @@ std::vector<KindOfSection> AllKindsOfSections() {
   return all;
 }
 
+std::vector<KindOfSection> KindsOfDimension(int dimension) {
+  std::vector<KindOfSection> kinds;
+  for (const KindOfSection& kind : AllKindsOfSections()) {
+    if (TopologyOf(kind.kind).dimension == dimension) {
+      kinds.push_back(kind);
+    }
+  }
+  return kinds;
+}
+
 std::string NameOf(const KindOfSection& parameter) {
   return std::string(TopologyOf(parameter.kind).name) +
          (parameter.model == SectionModel::kSolid

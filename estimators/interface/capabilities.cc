@@ -136,6 +136,11 @@ std::string WhyUnsupported(const Capabilities& capabilities, const Scene& scene,
       options.refinement != Refine::kAutomatic) {
     return "it solves with no finer elements; use reduced-fe";
   }
+  if (options.refinement == Refine::kAlways &&
+      scene.origin == Origin::kComputed) {
+    return "finer elements say nothing of displacements that were computed "
+           "with this mesh; leave the refinement automatic";
+  }
   if (!capabilities.takes_degree && options.virtual_field_degree) {
     return "it has no virtual fields to take a degree; use virtual-fields";
   }

@@ -10,6 +10,7 @@
 #include "elastimate/core/package/version.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/estimators/interface/axis_estimate.h"
+#include "elastimate/io/scene/origin.h"
 #include "elastimate/io/text/printable.h"
 
 namespace elastimate {
@@ -37,7 +38,7 @@ Json OptionsJson(const EstimatorOptions& options) {
           {"solver", solver_names[static_cast<int>(options.solver)]}};
 }
 
-Json MeshJson(const Scene& scene) {
+Json MeshJson(const Scene& scene, const Estimate& estimate) {
   const Mesh& mesh = scene.mesh;
   Json json = {
       {"kind", mesh.Topology().name},
@@ -52,6 +53,7 @@ Json MeshJson(const Scene& scene) {
   }
   json["load_cases"] = scene.load_cases.size();
   json["order"] = mesh.Order();
+  json["divisions"] = estimate.mesh_divisions;
   return json;
 }
 
@@ -388,8 +390,9 @@ std::string JsonReport(const Estimate& estimate, const Scene& scene,
       {"bulk_modulus", OrNull(elasticity.BulkModulus())},
       {"bulk_compliance", OrNull(elasticity.BulkCompliance())},
       {"noise_sd", OrNull(estimate.noise_sd)},
-      {"mesh", MeshJson(scene)},
+      {"mesh", MeshJson(scene, estimate)},
       {"loads", LoadsJson(scene)},
+      {"origin", NameOf(scene.origin)},
       {"notices", NoticesJson(notices)},
       {"residual",
        {{"force_relative", OrNull(estimate.force_residual)},

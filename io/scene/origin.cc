@@ -2,12 +2,17 @@
 
 namespace elastimate {
 
+std::string_view NameOf(Origin origin) {
+  return origin == Origin::kMeasured ? "measured" : "computed";
+}
+
 std::optional<Origin> OriginOfName(std::string_view name) {
-  if (name == "measured") {
-    return Origin::kMeasured;
+  for (const Origin origin : {Origin::kMeasured, Origin::kComputed}) {
+    if (NameOf(origin) == name) {
+      return origin;
+    }
   }
-  return name == "computed" ? std::optional<Origin>(Origin::kComputed)
-                            : std::nullopt;
+  return std::nullopt;
 }
 
 }  // namespace elastimate

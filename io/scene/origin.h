@@ -11,7 +11,9 @@ namespace elastimate {
 /// The names of origins, for sentences.
 inline constexpr const char* kOrigins = "\"measured\" or \"computed\"";
 
-/// "measured" or "computed"; empty for other names.
+/// "measured" or "computed".
+std::string_view NameOf(Origin origin);
+/// The origin of such a name; empty for other names.
 std::optional<Origin> OriginOfName(std::string_view name);
 
 }  // namespace elastimate

@@ -453,10 +453,13 @@ TEST_F(CommandLineErrors, RefusesWrongFlags) {
     Refuse("simulate exact.vtu --youngs=1 --nu=0 --out=a.vtu --order=" + order,
            "--order=" + order + "; it is 1 for linear elements or 2");
   }
+  Refuse("estimate exact.vtu --estimator=reduced-fe --refine=1",
+         "computed with this mesh");
   Refuse("estimate exact.vtu --noise_sd=0",
          "--noise_sd=0; it must be positive");
   Refuse("estimate exact.vtu --threads=-1", "--threads=-1");
-  Refuse("estimate exact.vtu --seed=-1", "--seed needs an integer from 0 to");
+  Refuse("simulate exact.vtu --youngs=1 --nu=0.3 --out=x.vtu --seed=-1",
+         "--seed needs an integer from 0 to");
   Refuse("estimators exact.vtu", "takes no arguments; it got exact.vtu");
 }
 

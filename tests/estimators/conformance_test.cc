@@ -612,7 +612,7 @@ TEST_P(Conformance, ThreadsAtOnceGiveTheSameBits) {
   AddNoise(kSmallNoise, 1, scene);
   const Estimate expected = Run(scene);
   constexpr int kThreads = 2;
-  constexpr int kRuns = 10;
+  constexpr int kRuns = 5;
   std::vector<Estimate> estimates(kThreads * kRuns);
   std::vector<std::thread> threads;
   threads.reserve(kThreads);

@@ -58,8 +58,13 @@ TEST_P(RefinedFitOfKinds, HoldsTheTruthOfAFinerSpecimen) {
   EXPECT_GT(estimate.error_budget.noise(0), 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, RefinedFitOfKinds,
-                         ::testing::ValuesIn(testing::AllKindsOfSections()),
+INSTANTIATE_TEST_SUITE_P(Solid, RefinedFitOfKinds,
+                         ::testing::ValuesIn(testing::KindsOfDimension(3)),
+                         [](const auto& info) {
+                           return testing::NameOf(info.param);
+                         });
+INSTANTIATE_TEST_SUITE_P(Planar, RefinedFitOfKinds,
+                         ::testing::ValuesIn(testing::KindsOfDimension(2)),
                          [](const auto& info) {
                            return testing::NameOf(info.param);
                          });
@@ -118,7 +123,7 @@ TEST(RefinedFit, KeepsTheMeshWhereNoiseMattersMore) {
   EXPECT_GE(*estimate.discretization_error, 0.005);
 }
 
-TEST(RefinedFit, OfTwoRegionsHoldsBoth) {
+TEST(RefinedFitOfSpecialScenes, OfTwoRegionsHoldsBoth) {
   Scene scene = Block({2, 2, 4});
   testing::DivideIntoRegions({1, 1, 2}, {1, 1, 2}, scene);
   Scene finer = FinerScene(FinerScene(scene));
@@ -138,7 +143,7 @@ TEST(RefinedFit, OfTwoRegionsHoldsBoth) {
 }
 
 // Neighbours are those of the mesh that was measured.
-TEST(RefinedFit, SeesThatTheMaterialIsNotTheSameAllOver) {
+TEST(RefinedFitOfSpecialScenes, SeesThatTheMaterialIsNotTheSameAllOver) {
   Scene scene = Block({2, 2, 4});
   Scene of_two = scene;
   testing::DivideIntoRegions({1, 1, 2}, {1, 1, 2}, of_two);
@@ -177,7 +182,7 @@ TEST(RefinedFit, TakesNoBoundForLinearElements) {
       Fitted(scene, options).Has(FindingCode::kComputedByLinearElements));
 }
 
-TEST(RefinedFit, OfAGivenRatioKnowsItsMeshError) {
+TEST(RefinedFitOfSpecialScenes, OfAGivenRatioKnowsItsMeshError) {
   Scene scene = Block({2, 2, 4});
   testing::MeasureInCutWorld(kSpecimen, scene);
   AddNoise(0.003, 1, scene);
@@ -192,7 +197,7 @@ TEST(RefinedFit, OfAGivenRatioKnowsItsMeshError) {
   EXPECT_FALSE(estimate.Has(FindingCode::kMeshErrorUnknown));
 }
 
-TEST(RefinedFit, WithALossWithstandsOutliers) {
+TEST(RefinedFitOfSpecialScenes, WithALossWithstandsOutliers) {
   Scene scene = Block({2, 2, 4});
   testing::MeasureInCutWorld(kSpecimen, scene);
   MeasurementErrors errors;
@@ -212,7 +217,7 @@ TEST(RefinedFit, WithALossWithstandsOutliers) {
   EXPECT_FALSE(left_out.outliers.empty());
 }
 
-TEST(RefinedFit, OfQuadraticElementsDividesThem) {
+TEST(RefinedFitOfSpecialScenes, OfQuadraticElementsDividesThem) {
   Scene scene = Block({1, 1, 2});
   Scene quadratic = QuadraticScene(scene);
   testing::MeasureInCutWorld(kSpecimen, quadratic);
@@ -224,7 +229,7 @@ TEST(RefinedFit, OfQuadraticElementsDividesThem) {
 
 // A bar that a clamp holds from x = 0 to beyond the middle of the edges around
 // its end, of which the mask of its nodes does not tell.
-TEST(RefinedFit, HoldsWhatTheEndOfASupportLeavesOpen) {
+TEST(RefinedFitOfSpecialScenes, HoldsWhatTheEndOfASupportLeavesOpen) {
   Scene scene;
   scene.mesh = testing::BoxMesh({10, 3, 3}, {3, 1, 1});
   const Eigen::Index num_nodes = scene.mesh.NumNodes();

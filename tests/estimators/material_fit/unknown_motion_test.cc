@@ -371,8 +371,13 @@ TEST_P(ElementsOfUnknownMotion, HaveAMeshErrorThatIsKnown) {
   EXPECT_GT(*estimate.discretization_error, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ElementsOfUnknownMotion,
-                         ::testing::ValuesIn(testing::AllKindsOfSections()),
+INSTANTIATE_TEST_SUITE_P(Solid, ElementsOfUnknownMotion,
+                         ::testing::ValuesIn(testing::KindsOfDimension(3)),
+                         [](const auto& info) {
+                           return testing::NameOf(info.param);
+                         });
+INSTANTIATE_TEST_SUITE_P(Planar, ElementsOfUnknownMotion,
+                         ::testing::ValuesIn(testing::KindsOfDimension(2)),
                          [](const auto& info) {
                            return testing::NameOf(info.param);
                          });
