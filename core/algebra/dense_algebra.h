@@ -31,7 +31,7 @@ struct QrDecomposition {
 [[nodiscard]] Eigen::MatrixXd SolveLeastSquares(const Eigen::MatrixXd& a,
                                                 const Eigen::MatrixXd& b,
                                                 double threshold);
-/// The same, with Eigen's threshold, that of rounding.
+/// Solves as above, with Eigen's threshold, which is that of rounding.
 [[nodiscard]] Eigen::MatrixXd SolveLeastSquares(const Eigen::MatrixXd& a,
                                                 const Eigen::MatrixXd& b);
 
@@ -49,15 +49,15 @@ struct SymmetricEigenDecomposition {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;
 };
-/// Of a symmetric matrix, of which the lower triangle is read; B = 1.
+/// Decomposes a symmetric matrix, of which the lower triangle is read; B = 1.
 [[nodiscard]] SymmetricEigenDecomposition DecomposeSymmetric(
     const Eigen::MatrixXd& a);
-/// Of a symmetric one and a positive definite one, of which the lower triangles
-/// are read.
+/// Decomposes a symmetric A beside a positive definite B, of which the lower
+/// triangles are read.
 [[nodiscard]] SymmetricEigenDecomposition DecomposeSymmetric(
     const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-/// Of a square matrix; entries that are not finite when it is singular.
+/// Inverts a square matrix; the entries are not finite when it is singular.
 [[nodiscard]] Eigen::MatrixXd Inverse(const Eigen::MatrixXd& a);
 
 }  // namespace elastimate

@@ -90,7 +90,7 @@ class Equilibrium {
   Eigen::MatrixXd Extend(const Eigen::MatrixXd& held);
   /// The transpose of Extend, zero in the free rows.
   Eigen::MatrixXd ExtendTransposed(const Eigen::MatrixXd& values);
-  /// The same as Extend, of any displacements in load case `k`: num_dofs x n.
+  /// Extends any displacements as in load case `k`: num_dofs x n.
   Eigen::MatrixXd ExtendInCase(Eigen::Index k, const Eigen::MatrixXd& held);
   /// Adds displacements of each load case that Extend returned.
   void Superpose(const Eigen::MatrixXd& displacement);
@@ -100,7 +100,7 @@ class Equilibrium {
   Eigen::MatrixXd HeldForces(const Eigen::MatrixXd& displacements) const;
   /// Its transpose, of values in the held rows.
   Eigen::MatrixXd HeldForcesTransposed(const Eigen::MatrixXd& held) const;
-  /// The same as HeldForces, of any columns in load case `k`: num_dofs x n.
+  /// Returns the held forces of any columns as in load case `k`: num_dofs x n.
   Eigen::MatrixXd HeldForcesInCase(Eigen::Index k,
                                    const Eigen::MatrixXd& displacements) const;
   /// The forces that the supports exert in each load case, K u - f in the held
@@ -114,7 +114,7 @@ class Equilibrium {
   const InternalForces& Forces() const;
   const NodeGraph& Graph() const;
   Work WorkDone() const;
-  /// That of the StiffnessSolver that has one.
+  /// What the first StiffnessSolver that has something to tell says.
   const std::string& Notice() const;
 
  private:
@@ -149,7 +149,7 @@ class Equilibrium {
   Eigen::MatrixXd support_response_;
   /// The last sensitivities, with which iterations begin.
   Eigen::MatrixXd sensitivities_;
-  double scale_ = 1;  ///< Of the moduli over those of the factor.
+  double scale_ = 1;  ///< The moduli are this times those of the factor.
   bool has_unknown_motion_;
   int element_passes_ = 0;
 };

@@ -79,7 +79,7 @@ class ForwardModel {
   StiffnessSolver& Solver() { return solver_; }
   const NodeGraph& Graph() const { return solver_.Graph(); }
   Work WorkDone() const;
-  /// That of StiffnessSolver.
+  /// What the StiffnessSolver says (StiffnessSolver::Notice).
   const std::string& Notice() const { return solver_.Notice(); }
 
  private:

@@ -67,7 +67,7 @@ class HierarchicalError {
   Eigen::MatrixXd Precondition(const Eigen::MatrixXd& inverses,
                                const Eigen::MatrixXd& residual,
                                StiffnessSolver& solver) const;
-  /// Of the blocks of A_finer of the mid-edge nodes, side by side.
+  /// Inverts the blocks of A_finer of the mid-edge nodes, side by side.
   Eigen::MatrixXd InverseBlocks(double poisson_ratio) const;
 
   Scene finer_;

@@ -21,7 +21,7 @@ enum class NoiseLaw {
 /// when the stiffness is singular to working precision.  One factorisation.
 void Measure(const IsotropicElasticity& elasticity, Scene& scene);
 
-/// The same of the materials of the scene, with the parameters of all of them,
+/// Measures as above with the materials of the scene, whose `parameters` stand
 /// one behind the other (MaterialParameters).
 void MeasureMaterials(const Eigen::VectorXd& parameters, Scene& scene);
 

@@ -41,7 +41,8 @@ class FreeAxisLaw : public AnisotropicLaw {
                          SectionModel model) const override;
   Eigen::MatrixXd ModuliJacobian(const Eigen::VectorXd& parameters,
                                  SectionModel model) const override;
-  /// Those of the nearest stiffness of the law, in the norm of C.
+  /// Returns the parameters of the nearest stiffness of the law, in the norm
+  /// of C.
   Eigen::VectorXd ParametersOf(const Eigen::VectorXd& moduli,
                                SectionModel model) const override;
 

@@ -23,9 +23,9 @@ struct LawParameter {
   double upper;
   /// A common value, in any unit for a stiffness: where fits start.
   double typical;
-  /// Of a stiffness off the diagonal, which is no modulus, as it may have
-  /// either sign: the places among the parameters of those on the diagonal in
-  /// its row and its column, whose geometric mean it is smaller than.
+  /// A stiffness off the diagonal is no modulus, as it may have either sign.
+  /// It has here the places of the parameters on the diagonal in its row and
+  /// its column, whose geometric mean it is smaller than.
   std::optional<std::array<int, 2>> beside = std::nullopt;
 };
 

@@ -45,7 +45,7 @@ struct Material {
   /// The region ids of the mesh that it fills; empty: all elements.
   std::vector<int> regions;
   std::vector<KnownParameter> known;
-  /// Of parameters that are not known.
+  /// The bounds of parameters that are not known.
   std::vector<BoundsOfParameter> bounds;
   /// Directions of any length that fix its frame (MaterialFrames), as many as
   /// its law has: each dimension x 1, or dimension x num_elements, of which

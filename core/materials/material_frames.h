@@ -28,8 +28,8 @@ class MaterialFrames {
   }
 
  private:
-  /// Of each material, dimension x dimension blocks side by side: one, or one
-  /// for each element.
+  /// Each material has blocks of dimension x dimension side by side: one, or
+  /// one for each element.
   std::vector<Eigen::MatrixXd> frames_;
 };
 

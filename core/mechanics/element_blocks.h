@@ -28,7 +28,7 @@ struct ElementBlock {
 /// nodes with each other, nor do those of odd number.
 struct ElementBlocks {
   std::vector<ElementBlock> blocks;
-  std::ptrdiff_t most_nodes = 0;  ///< Of a block.
+  std::ptrdiff_t most_nodes = 0;  ///< The largest number in a block.
   /// The nodes that are in no block of even number.
   std::vector<NodeRange> gaps;
 };

@@ -77,14 +77,14 @@ class InternalForces {
   Eigen::Matrix2Xd ModuliOfElements(const Eigen::VectorXd& moduli) const;
   /// The tangent of each material.
   std::vector<Eigen::MatrixXd> Tangents(const Eigen::VectorXd& moduli) const;
-  /// Of the law of each material, the tangent of each unit modulus.
+  /// Returns the tangent of each unit modulus of the law of each material.
   std::vector<std::vector<Eigen::MatrixXd>> UnitTangents() const;
 
   const Mesh& mesh_;
   MaterialParameters parameters_;
   std::vector<int> material_of_element_;
   MaterialFrames frames_;
-  /// Of more than one material; else the whole mesh is the part.
+  /// Several materials have parts; the part of a single one is the whole mesh.
   MeshParts parts_;
   bool is_isotropic_;
   std::optional<StiffnessOperator> stiffness_;

@@ -50,7 +50,7 @@ class StiffnessAssembly {
   Eigen::VectorXd Combine(double poisson_ratio) const {
     return h_ + poisson_ratio * j_;
   }
-  /// The same into memory that is used again, which takes half the time.
+  /// Combines into memory that is used again, which takes half the time.
   void Combine(double poisson_ratio, Eigen::VectorXd& values) const {
     values = h_ + poisson_ratio * j_;
   }

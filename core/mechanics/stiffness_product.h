@@ -63,8 +63,9 @@ class StiffnessOperator {
   /// Whether the mesh was numbered again.
   bool IsReordered() const { return !places_.empty(); }
 
-  /// As MultiplyStiffnessBasis; matrices of the right shape in `products` are
-  /// used again.  The bits do not depend on the number of threads.
+  /// Multiplies as MultiplyStiffnessBasis does; matrices of the right shape in
+  /// `products` are used again.  The bits do not depend on the number of
+  /// threads.
   void Multiply(const Eigen::MatrixXd& displacement,
                 StiffnessProducts& products) const;
 
@@ -75,7 +76,7 @@ class StiffnessOperator {
   /// where the numbering of mesh_ is good.
   Mesh reordered_;
   std::vector<int> places_;
-  /// Of the mesh that is worked on, if its tetrahedra are linear.
+  /// The blocks of the mesh that is worked on, if its tetrahedra are linear.
   ElementBlocks blocks_;
 };
 

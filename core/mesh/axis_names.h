@@ -3,7 +3,7 @@
 
 namespace elastimate {
 
-// As messages name them.
+// Messages name the axes so.
 inline constexpr const char* kAxisNames[3] = {"x", "y", "z"};
 
 }  // namespace elastimate

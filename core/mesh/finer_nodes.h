@@ -24,7 +24,7 @@ class FinerNodes {
   /// of its elements, one after another.  O(num_elements).
   FinerNodes(const Mesh& mesh, const Mesh& finer);
 
-  /// Of the mesh; the others come behind them.
+  /// The nodes of the mesh come first, the others behind them.
   Eigen::Index NumNodes() const { return weights_.cols(); }
   Eigen::Index NumMidEdges() const { return weights_.rows(); }
 
@@ -37,7 +37,8 @@ class FinerNodes {
   Eigen::MatrixXd Restrict(const Eigen::MatrixXd& forces) const;
 
   using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor, Eigen::Index>;
-  /// Of the nodes of the mesh at the mid-edge nodes, num_mid_edges x num_nodes.
+  /// The weights that the nodes of the mesh have at the mid-edge nodes:
+  /// num_mid_edges x num_nodes.
   const Weights& WeightsOfNodes() const { return weights_; }
 
  private:

@@ -9,9 +9,9 @@ namespace elastimate {
 
 /// What a mesh stands for in space.
 enum class SectionModel {
-  kSolid,        ///< Of three dimensions: itself.
-  kPlaneStrain,  ///< Of two: a slice of a body that cannot strain across it.
-  kPlaneStress,  ///< Of two: a thin plate without stress across it.
+  kSolid,        ///< A body of three dimensions.
+  kPlaneStrain,  ///< A slice of a body that cannot strain across it.
+  kPlaneStress,  ///< A thin plate without stress across it.
 };
 
 /// All of them.
@@ -25,8 +25,8 @@ inline constexpr SectionModel kAllSectionModels[] = {
 /// The body that a mesh is a section of.
 struct Section {
   SectionModel model = SectionModel::kSolid;
-  /// Of a planar section [length], which all volumes and areas contain; 1 in
-  /// three dimensions.
+  /// The thickness of a planar section [length], which all volumes and areas
+  /// contain; 1 in three dimensions.
   double thickness = 1;
   /// Standard deviation of the thickness, relative to it: it is one of every
   /// modulus, which no number of measurements averages.
@@ -57,7 +57,7 @@ struct Mesh {
   Eigen::Index NumElements() const { return elements.cols(); }
   /// The degrees of freedom: row dimension * node + component of a vector.
   Eigen::Index NumDofs() const { return Dimension() * NumNodes(); }
-  /// Of the shape functions: 1 for linear, 2 for quadratic elements.
+  /// The order of the shape functions: 1 for linear, 2 for quadratic elements.
   int Order() const { return Topology().order; }
   /// The nodes that are vertices come first.  O(num_elements) for quadratic
   /// elements.

@@ -14,7 +14,7 @@ struct MeshParts {
   /// Elements as in the whole mesh; without regions.
   Mesh mesh;
   std::vector<int> node;  ///< In the whole mesh, of each copy, ascending.
-  std::vector<int> part;  ///< Of each copy.
+  std::vector<int> part;  ///< The part that each copy belongs to.
 
   /// The rows of the copies, of `whole` (num_dofs x n of the whole mesh).
   Eigen::MatrixXd Gather(const Eigen::MatrixXd& whole) const;

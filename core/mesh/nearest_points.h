@@ -21,8 +21,8 @@ struct NearestPoint {
   double distance;  ///< [length]
 };
 
-/// Of n points, dimension x n with n > 0, the nearest to each of `others`,
-/// dimension x m, all finite.  O((n + m) log n), by the same tree.
+/// Returns which of n points, dimension x n with n > 0, is the nearest to each
+/// of `others`, dimension x m, all finite.  O((n + m) log n), by the same tree.
 [[nodiscard]] std::vector<NearestPoint> NearestPoints(
     const Eigen::MatrixXd& positions, const Eigen::MatrixXd& others);
 

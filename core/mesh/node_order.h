@@ -20,7 +20,7 @@ struct OrderedMesh {
   std::vector<int> places;  ///< Its node i is node places[i] of the other mesh.
 };
 
-/// The same mesh with its nodes in the order in which a breadth-first search
+/// Returns the mesh with its nodes in the order in which a breadth-first search
 /// along the elements finds them, from one end of its longest extent [Cuthill &
 /// McKee 1969], and its elements in that of their first node: the nodes of an
 /// element are then at most two fronts of the search apart.

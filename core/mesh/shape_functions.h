@@ -60,10 +60,10 @@ struct ShapeFunctions {
   Eigen::Matrix<double, Sizes::kNodes, 1> value;  ///< N_i.
   /// dN_i / dxi, dimension x num_nodes.
   Eigen::Matrix<double, Sizes::kDimension, Sizes::kNodes> gradient;
-  /// Those of the vertices alone, of order 1.
+  /// The functions of order 1 of the vertices alone.
   Eigen::Matrix<double, Sizes::kVertices, 1> vertex_value;
   Eigen::Matrix<double, Sizes::kDimension, Sizes::kVertices> vertex_gradient;
-  double weight;  ///< Of this point in the rule that it is part of.
+  double weight;  ///< What the point counts in its rule of integration.
 
   /// dM_i / dxi, dimension x kMapNodes: the position in the element is
   /// sum_i M_i x_i, over its vertices where edges are straight, else over all
@@ -152,7 +152,7 @@ struct ElementMap {
   using Sizes = ElementSizes<kKind>;
   using Jacobian = Eigen::Matrix<double, Sizes::kDimension, Sizes::kDimension>;
 
-  Jacobian inverse_transpose;  ///< Of dx/dxi [1 / length].
+  Jacobian inverse_transpose;  ///< (dx/dxi)^-T [1 / length].
   /// |det dx/dxi|, times the thickness of a planar section.
   double volume_ratio;
 
@@ -173,7 +173,7 @@ struct ElementPoint {
   using Sizes = ElementSizes<kKind>;
   /// grad N_i, dimension x num_nodes [1 / length].
   Eigen::Matrix<double, Sizes::kDimension, Sizes::kNodes> gradient;
-  double volume;  ///< That the point stands for [length^3].
+  double volume;  ///< The volume that the point stands for [length^3].
 
   ElementPoint(const ElementMap<kKind>& map, const ShapeFunctions<kKind>& at)
       : volume(map.volume_ratio * at.weight) {

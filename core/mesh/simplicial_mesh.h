@@ -8,7 +8,7 @@
 
 namespace elastimate {
 
-/// The same body as linear tetrahedra or triangles of the same nodes.
+/// The body of a mesh as linear tetrahedra or triangles of the same nodes.
 ///
 /// A quadratic simplex is cut at the middle of its edges into eight or four, of
 /// equal volume if its edges are straight, of a tetrahedron along the shortest
@@ -29,16 +29,17 @@ class SimplicialMesh {
   explicit SimplicialMesh(const Mesh& mesh);
   explicit SimplicialMesh(const Mesh&&) = delete;
 
-  /// As many for each element, one element after another, of its region.
+  /// Each element has as many, one element after another, in its region.
   const Mesh& Simplices() const { return simplices_; }
 
   /// The faces of the simplices that facets of the mesh become, in their order
   /// and the same way round: 3 x n, in two dimensions 2 x n.  O(num_facets).
   Eigen::MatrixXi FacetsOf(const Eigen::MatrixXi& facets) const;
 
-  /// The same points in the simplices: of simplices those of the same reference
-  /// coordinates, else of the same place; those that lie between two, as beside
-  /// a face that is not flat, at the nearest one's face.
+  /// Returns points of the mesh as points of the simplices.  In simplices they
+  /// keep their reference coordinates, in other elements their place.  A point
+  /// that lies in no simplex, as beside a face that is not flat, is put on the
+  /// face of the nearest one.
   /// Precondition: ValidatePoints.  O(n).
   MeshPoints PointsOf(const MeshPoints& points) const;
 

@@ -12,7 +12,7 @@ namespace elastimate {
 void* FindInModule(const std::string& module, const char* function,
                    std::string& why);
 
-/// The same for a function of this type.
+/// Finds a function of this type as above.
 template <typename Function>
 Function* FindInModule(const std::string& module, const char* function,
                        std::string& why) {

@@ -40,7 +40,7 @@ struct DeformationSize {
 /// Precondition: a valid scene.  O(num_nodes + num_points).
 void RemoveFreeRotation(Scene& scene);
 
-/// The same of one load case of the scene, or of another of its kind.
+/// Removes it from one load case of the scene, or from another of its kind.
 void RemoveFreeRotation(const Scene& scene, LoadCase& load_case);
 
 }  // namespace elastimate

@@ -33,8 +33,8 @@ struct DegreesOfFreedom {
 /// dimension * num_nodes values.
 [[nodiscard]] Eigen::VectorXd HeldDisplacement(const Supports& supports);
 
-/// Of values in each load case (num_dofs x num_load_cases), those in the rows
-/// that it holds, zero elsewhere.
+/// Returns the values of each load case (num_dofs x num_load_cases) in the rows
+/// that it holds, and zeros elsewhere.
 [[nodiscard]] Eigen::MatrixXd OfHeld(const Scene& scene,
                                      const Eigen::MatrixXd& values);
 

@@ -5,10 +5,10 @@
 
 namespace elastimate {
 
-/// The same scene modelled with finer elements, whatever these are: the
+/// Returns the scene modelled with finer elements: for linear elements the
 /// quadratic simplices (QuadraticScene) of what SimplicialScene cuts them into,
 /// for quadratic elements of half the size.
-/// Those of curved elements are parts of the curved body: the nodes in the
+/// Curved elements are cut into parts of the curved body: the nodes in the
 /// middle of their edges are where the map of the element that was cut has
 /// them, and all loads do the work on the displacements of the elements that
 /// they did before.

@@ -25,7 +25,7 @@ namespace elastimate {
 /// AssembleLoads for each load case, one column each:
 /// num_dofs x num_load_cases, row dimension * node + component.
 [[nodiscard]] Eigen::MatrixXd AssembleLoadCases(const Scene& scene);
-/// The same into columns that are there.
+/// Assembles into columns that are there.
 void AssembleLoadCases(const Scene& scene, Eigen::Ref<Eigen::MatrixXd> force);
 
 /// A load that is so many times another.
@@ -37,7 +37,7 @@ struct LoadResultant {
   Eigen::VectorXd force;  ///< The sum of its nodal forces [force], with the
                           ///< share on held components, which the supports
                           ///< take without straining the specimen.
-  std::optional<double> area;  ///< Of its facets [length^2], if it has any.
+  std::optional<double> area;  ///< The area of its facets, if any [length^2].
 };
 
 /// The resultant of one load of a valid scene, the same for each element order.

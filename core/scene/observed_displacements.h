@@ -69,8 +69,8 @@ class ObservedDisplacements {
   /// The rows of load case `k` are [CaseStart(k), CaseStart(k + 1)).
   Eigen::Index CaseStart(Eigen::Index k) const { return case_start_[k]; }
 
-  /// The same rows of other displacements, num_dofs x num_load_cases, with the
-  /// same weights and normalisation, without the part of held degrees of
+  /// Returns these rows of other displacements, num_dofs x num_load_cases, with
+  /// the same weights and normalisation, without the part of held degrees of
   /// freedom.
   Eigen::VectorXd Restrict(const Eigen::MatrixXd& displacements) const;
   /// The rows of load case `k` of one displacement, num_dofs values.
@@ -94,7 +94,7 @@ class ObservedDisplacements {
   std::vector<int> component_;
   std::vector<Rows> rows_;
   Eigen::VectorXd weights_;
-  /// Of the held degrees of freedom, weighted.
+  /// What the held degrees of freedom add to the rows, weighted.
   Eigen::VectorXd held_part_;
   Eigen::VectorXd measured_;
   double norm_;

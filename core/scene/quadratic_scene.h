@@ -8,7 +8,7 @@
 
 namespace elastimate {
 
-/// The same scene modelled with quadratic simplices: a node in the middle of
+/// Returns the scene modelled with quadratic simplices: a node in the middle of
 /// each straight edge, which bends with the specimen (element order 2).
 ///
 /// The mid-edge nodes come after those of `scene`, in ascending order of the

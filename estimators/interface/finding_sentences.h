@@ -114,10 +114,10 @@ Finding HeldNodesMoved(const std::vector<std::size_t>& load_cases);
 /// In standard deviations, as stated.
 Finding ResultantsContradicted(double distance);
 // Of a series of frames.
-/// `reason` is that of the first.
+/// `reason` says why the first frame is not usable.
 Finding NoFrameUsable(std::size_t num_frames, const std::string& reason);
 Finding FramesLeftOut(std::size_t num_left_out, std::size_t num_frames);
-/// Of the parameter in `place`, which it names.
+/// Names the parameter in `place`.
 Finding TrendOverFrames(const std::string& parameter, bool is_relative,
                         const Trend& trend, Eigen::Index place);
 /// By so many times their noise; `farthest` is the number of a frame.
@@ -130,7 +130,7 @@ Finding ParametersOnBounds(const std::vector<std::string>& parameters);
 /// `parameters` names each.
 Finding ParametersNearLimits(const std::vector<std::string>& parameters,
                              Severity severity);
-/// Of several materials; the one that is biased most.
+/// Names the parameter that is biased most.
 Finding ParameterBias(const std::string& parameter, double bias,
                       bool is_relative, Severity severity);
 /// What linear kinematics leave out (KinematicErrorOf).

@@ -39,7 +39,7 @@ class FreeParameters {
   Eigen::VectorXd VariablesOf(const Eigen::VectorXd& parameters) const;
   /// dp / dx of the free parameters, size x size.
   Eigen::MatrixXd ParameterJacobian(const Eigen::VectorXd& variables) const;
-  /// The same in the units of their errors: of moduli d ln p / dx.
+  /// dp / dx in the units of the errors: for moduli it is d ln p / dx.
   Eigen::MatrixXd RelativeJacobian(const Eigen::VectorXd& variables) const;
   /// theta(x), and d theta / dx (num_moduli x size).
   Eigen::VectorXd ModuliAt(const Eigen::VectorXd& variables) const;
@@ -56,7 +56,7 @@ class FreeParameters {
   std::vector<Eigen::Index> FirstOfFactors() const;
 
   MaterialParameters all_;
-  /// Of each material, whether its variables are the factors of its stiffness.
+  /// Whether the variables of each material are the factors of its stiffness.
   std::vector<bool> has_factors_;
   std::vector<Bounds> bounds_;
   std::vector<bool> are_bounds_given_;

@@ -22,7 +22,7 @@ void CheckSupported(const Estimator& estimator, const Scene& scene,
 /// most one of each code.
 std::vector<Finding> CheckMeasurements(const Scene& scene);
 
-/// The same of the loads, and of what is said about noise.
+/// Checks the loads likewise, and what is said about noise.
 void CheckLoads(const Scene& scene);
 
 }  // namespace elastimate

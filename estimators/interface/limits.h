@@ -67,8 +67,8 @@ struct Limits {
   /// A standard error of nu above this says that the data do not determine nu:
   /// its whole range for common materials is 0 to 0.5 [1].
   double largest_poisson_ratio_error = 0.15;
-  /// The same of the direction of an axis [rad], the scale of which is a
-  /// right angle.
+  /// A standard error of the direction of an axis above this [rad] says that
+  /// the data do not determine it; its scale is a right angle.
   double largest_axis_error = 0.15;
   /// A distance from isotropy below this (chi^2 with 3 degrees of freedom,
   /// about the one of all axes where chance makes it largest) says that there

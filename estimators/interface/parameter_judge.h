@@ -46,7 +46,7 @@ Eigen::VectorXd LargestErrorsOfVariables(const FreeParameters& free);
 /// of the others stay.  Says of each of several materials how many are.
 void JudgeParameters(Estimate& estimate);
 
-/// The same of what is determined alone, where standard errors have grown.
+/// Judges again what is determined, where standard errors have grown.
 void JudgeDetermination(Estimate& estimate);
 
 /// Whether most of the errors of all parameters that are not determined is what

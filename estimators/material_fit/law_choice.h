@@ -12,7 +12,7 @@ namespace elastimate {
 
 /// The law that a measurement asks for.
 struct ChosenLaw {
-  /// Those of the scene, of the law that was chosen.
+  /// The materials of the scene, with the law that was chosen.
   std::vector<Material> materials;
   /// What was compared, the best first.
   std::vector<LawComparison> laws;

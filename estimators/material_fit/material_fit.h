@@ -37,7 +37,7 @@ namespace elastimate {
 Estimate FitMaterials(const Scene& scene, const EstimatorOptions& options,
                       Descent descent);
 
-/// The same as FitMaterials, from these variables on where there are some.
+/// Fits as FitMaterials does, from these variables on where there are some.
 MaterialFit FitMaterialsFrom(const std::optional<Eigen::VectorXd>& start,
                              const Scene& scene,
                              const EstimatorOptions& options, Descent descent);

@@ -16,7 +16,7 @@ struct MaterialMerge {
   std::vector<Material> materials;
   /// The steps that led there, and those that would have followed.
   std::vector<RegionMerge> path;
-  /// Of each of the materials.
+  /// How far the members of each material differ.
   std::vector<MemberSpread> spreads;
   /// The regions of the members of each of them.
   std::vector<std::vector<std::vector<int>>> members;

@@ -86,7 +86,7 @@ struct MemberSpread {
   /// of members that may be others than the rest of them (see errors), by which
   /// these pull it.
   Eigen::VectorXd variance;
-  /// Of two members, |x_i - x_j| and 1.96 of its errors.
+  /// The largest |x_i - x_j| of two members, with 1.96 of its errors.
   Eigen::VectorXd largest_differences;
   /// The error of each member's variables where those of the group stand for
   /// it, k x num_members: the root of
@@ -100,7 +100,8 @@ struct MemberSpread {
   Eigen::MatrixXd errors;
 };
 
-/// That of each group by n observations; zeros for a single member.
+/// Returns the spread of each group by n observations; zeros for a single
+/// member.
 /// O(num_members^2 p^2 k + p^3).
 std::vector<MemberSpread> SpreadOfMembers(
     const MaterialGroups& groups, const MaterialParameters& parameters,

@@ -9,9 +9,9 @@
 
 namespace elastimate {
 
-/// The same scene, of which the materials whose axis is to be found have no
-/// symmetry, in the frame of the scene: their moduli are the same, and no axis
-/// has to be guessed to fit them.
+/// Returns the scene with materials without symmetry, in its own frame, in
+/// place of those whose axis is to be found: their moduli are the same, and no
+/// axis has to be guessed to fit them.
 Scene WithoutFreeAxes(const Scene& scene);
 
 /// Variables of a scene next to the minimum of its fit, from those of the scene

@@ -22,7 +22,7 @@ class OutlierSearch {
   OutlierSearch(const Scene& scene, const ObservedDisplacements& observed,
                 const Eigen::MatrixXd& displacement);
 
-  /// Those beyond so many times the quantile.
+  /// Returns the outliers beyond so many times the quantile.
   std::vector<Outlier> Beyond(double distance) const;
 
  private:
@@ -37,11 +37,12 @@ class OutlierSearch {
 std::vector<Outlier> SuspectedSupports(const Scene& scene,
                                        const std::vector<Outlier>& outliers);
 
-/// Those of some outliers that lie apart: noise and mistakes of a measurement
-/// strike here and there, what a model lacks lies side by side.  All of them,
-/// unless more pairs are neighbours (VisitNeighbours) than chance explains in
-/// one measurement of a thousand; then those without a neighbour among them.
-/// Precondition: in the order of OutlierSearch.  O(num_elements + num_points).
+/// Returns those of some outliers that lie apart: noise and mistakes of a
+/// measurement strike here and there, and what a model lacks lies side by side.
+/// These are all of them, unless more pairs are neighbours (VisitNeighbours)
+/// than chance explains in one measurement of a thousand; then those without a
+/// neighbour among them. Precondition: in the order of OutlierSearch.
+/// O(num_elements + num_points).
 std::vector<Outlier> OutliersApart(const Scene& scene,
                                    const ObservedDisplacements& observed,
                                    const std::vector<Outlier>& outliers);

@@ -28,7 +28,7 @@ struct MaterialFit {
   /// Empty where there is no fit.
   std::optional<BoundedMinimum> minimum;
   MinimumErrors errors;
-  /// As measured where all is known; empty where there is no fit.
+  /// The fitted displacement; empty where there is no fit.
   Eigen::MatrixXd displacement;
 
   std::optional<Eigen::VectorXd> Variables() const {

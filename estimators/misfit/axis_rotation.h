@@ -20,13 +20,13 @@ struct AxisRotation {
   /// where all axes are right.
   double chi_square;
   Eigen::Index num_rotations;
-  /// Of the variables, with those rotations.
+  /// How the variables change with those rotations.
   Eigen::VectorXd change;
 
   /// The share of the square of the change that right axes do not explain, from
   /// three times the expected chi^2 on.
   double BeyondChance() const;
-  /// Of so large a chi^2, where all axes are right.
+  /// The probability of so large a chi^2 where all axes are right.
   double Probability() const;
 };
 

@@ -30,8 +30,8 @@ class DisplacementMisfit {
   DisplacementMisfit(const Scene& scene, const EstimatorOptions& options)
       : DisplacementMisfit(std::vector<const Scene*>{&scene}, options) {}
 
-  /// The same in the last of some spaces of one specimen, from coarse to fine,
-  /// in which systems are solved without its factor (Equilibrium).  All must
+  /// Takes the last of some spaces of one specimen, from coarse to fine, by
+  /// which systems are solved without its factor (Equilibrium).  All must
   /// outlive this.
   DisplacementMisfit(const std::vector<const Scene*>& spaces,
                      const EstimatorOptions& options);
@@ -62,7 +62,8 @@ class DisplacementMisfit {
   void SetSolution(Solution solution) { solution_ = std::move(solution); }
 
   Eigen::Index NumRows() const;
-  /// Of unknown motions, which are fitted as the variables are.
+  /// The numbers of unknown motions, which are fitted as the variables are, and
+  /// of measured resultants.
   Eigen::Index NumAmounts() const;
   Eigen::Index NumResultants() const;
 

@@ -29,8 +29,8 @@ struct SpaceChange {
 /// The mesh error of the fine one of two fits: what finer elements still would
 /// change.
 struct MeshError {
-  Eigen::VectorXd correction;  ///< Of the variables x_fine.
-  Eigen::MatrixXd covariance;  ///< Of the corrected variables.
+  Eigen::VectorXd correction;  ///< What is added to the variables x_fine.
+  Eigen::MatrixXd covariance;  ///< That the corrected variables have by it.
   /// The part of the covariance that the ends of supports have.
   Eigen::MatrixXd of_supports;
 };

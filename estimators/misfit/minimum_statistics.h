@@ -24,8 +24,8 @@ struct MinimumErrors {
   Eigen::MatrixXd total;
   /// The part of the total that the mesh error has; empty where none is known.
   Eigen::MatrixXd of_mesh;
-  double variance = 0;       ///< Of noise in a row.
-  Eigen::VectorXd residual;  ///< Of the observed rows.
+  double variance = 0;       ///< The variance of the noise of a row.
+  Eigen::VectorXd residual;  ///< What is left in the observed rows.
 };
 
 /// Enters the noise and the covariance of a minimum into the estimate, whose

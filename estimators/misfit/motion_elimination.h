@@ -34,7 +34,7 @@ class MotionElimination {
   MotionElimination(const Scene& scene, const ObservedDisplacements& observed,
                     Equilibrium& model);
 
-  /// Of all rows, and of amounts in all load cases.
+  /// The numbers of all rows, and of the amounts of all load cases.
   Eigen::Index NumRows() const {
     return observed_.Size() + Eigen::Index(resultants_.size());
   }
@@ -52,7 +52,7 @@ class MotionElimination {
   /// the measurement best, and returns the rows of what is left, model -
   /// measurement.
   Eigen::VectorXd Fit();
-  /// The same at the moduli of the last Fit, under another noise.
+  /// Fits again at the moduli of the last Fit, under another noise.
   Eigen::VectorXd Refit();
 
   /// The displacements of the model with the motion of all of the last Fit:
@@ -69,7 +69,7 @@ class MotionElimination {
   /// The rows without what amounts could explain.
   Eigen::VectorXd Eliminate(Eigen::VectorXd rows);
 
-  /// Of the forces of supports, the measured ones, each over its standard
+  /// Picks the measured ones of the forces of supports, each over its standard
   /// deviation.
   Eigen::VectorXd Resultants(const Eigen::MatrixXd& support_forces) const;
   /// What was measured of them, likewise.
@@ -102,8 +102,8 @@ class MotionElimination {
   const UnknownMotion& MotionOf(Eigen::Index k) const {
     return motions_[motion_of_case_[k]];
   }
-  /// Those of load case `k` among the amounts of all: of supports, and then of
-  /// the motion of all.
+  /// Returns the part that load case `k` has of all amounts: those of its
+  /// supports, and then those of the motion as a whole.
   template <class Amounts>
   auto AmountsOf(Eigen::Index k, Amounts& amounts) const {
     return amounts.segment(first_amount_[k], MotionOf(k).NumAmounts());
@@ -113,7 +113,7 @@ class MotionElimination {
   /// Where amounts are few, a solve for each, unless others' will do.
   void SolveForColumns();
   bool AreAmountsFew() const;
-  /// Those of the load cases that have this one of the motions.
+  /// Solves for the columns of the load cases that have this motion.
   void SolveForColumnsOf(std::size_t index);
   void AddResultants(const Scene& scene, Eigen::Index k);
   void InvertGrams();
@@ -144,7 +144,7 @@ class MotionElimination {
   std::vector<Columns> columns_;  ///< By load cases; empty where they are many.
   bool are_columns_of_here_ = false;  ///< Rather than of other moduli.
   double noise_ = 0;
-  Eigen::VectorXd amounts_;  ///< Of all load cases, of the last fit.
+  Eigen::VectorXd amounts_;  ///< In all load cases, by the last fit.
 };
 
 }  // namespace elastimate

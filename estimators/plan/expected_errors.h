@@ -18,7 +18,8 @@ struct ExpectedErrors {
   Eigen::VectorXd standard_errors;  ///< s, the largest first.
   Eigen::MatrixXd directions;       ///< d as columns.
 
-  /// Of a positive semidefinite information, num_parameters x num_parameters.
+  /// Takes a positive semidefinite information, num_parameters x
+  /// num_parameters.
   /// An eigenvalue below 1e-13 of the largest comes from rounding.
   static ExpectedErrors Of(const Eigen::MatrixXd& information);
 

@@ -19,9 +19,9 @@ struct CaseInformation {
   double rms_displacement;
 };
 
-/// That of each load case at `parameters` of the materials of the scene (in the
-/// order of MaterialParameters), a Fisher information [Rao 1945], whose inverse
-/// is the Cramer-Rao bound of the covariance.
+/// Returns the Fisher information [Rao 1945] of each load case at `parameters`
+/// of the materials of the scene (in the order of MaterialParameters).  Its
+/// inverse is the Cramer-Rao bound of the covariance.
 ///
 /// In load cases without a measurement, and in those from `first_planned` on,
 /// whose displacements say only what is observed, displacements are those of

@@ -36,8 +36,8 @@ struct PlannedLoad {
 struct LoadPlan {
   /// All parameters of the materials, with their values.
   std::vector<ParameterEstimate> parameters;
-  ExpectedErrors before;  ///< Of the load cases of the scene alone.
-  /// That of each candidate, the one that leaves the smallest errors first
+  ExpectedErrors before;  ///< By the load cases of the scene alone.
+  /// What each candidate leaves, the smallest errors first
   /// (ExpectedErrors::AreSmallerThan).
   std::vector<PlannedLoad> loads;
   /// The candidates to measure one after another, each the best beside those

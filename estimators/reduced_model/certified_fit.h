@@ -8,8 +8,8 @@
 
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/scene.h"
-#include "elastimate/estimators/reduced_model/reduced_fit.h"
 #include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/reduced_model/reduced_fit.h"
 #include "elastimate/estimators/reduced_model/reduced_model.h"
 
 namespace elastimate {
@@ -106,7 +106,7 @@ class CertifiedFit {
   /// ComplianceNorm of the observed components at a pole; zero before.
   double compliance_norm_ = 0;
   double compliance_pole_ = 0;
-  /// Of the model at `fitted_version_`.
+  /// Fits the model as it was at `fitted_version_`.
   std::unique_ptr<ReducedFit> least_squares_;
   int fitted_version_ = 0;
   ReducedFit::Point best_ = {};

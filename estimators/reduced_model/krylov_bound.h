@@ -46,8 +46,8 @@ class KrylovBound {
   void Extend(const Eigen::VectorXd& column, double solve_error,
               double remainder_norm);
 
-  /// Of the error of x(p) + (nu - p) V y, in the energy norm of A(nu).  O(m^2)
-  /// for m vectors.
+  /// Bounds the error of x(p) + (nu - p) V y in the energy norm of A(nu).
+  /// O(m^2) for m vectors.
   double At(double poisson_ratio) const;
 
  private:

@@ -22,7 +22,7 @@ namespace elastimate {
 /// are ||r||^2 and its gradient -2 lambda^T f_k(u) for every modulus.
 class ReducedEquilibrium {
  public:
-  /// Of the loads, supports and materials of `full`, which outlives it, as does
+  /// Takes loads, supports and materials of `full`, which outlives it, as does
   /// `observed`.  An element pass for each load case of displaced supports.
   ReducedEquilibrium(const Equilibrium& full,
                      const ObservedDisplacements& observed);
@@ -38,7 +38,7 @@ class ReducedEquilibrium {
   /// precision.  O(m^2 (num_moduli + m)) for each load case, as all below.
   bool Solve(const Eigen::VectorXd& moduli);
 
-  // Of the last Solve, which returned true:
+  // What follows is that of the last Solve, which returned true:
 
   /// P u - q, turned into few rows of the same inner products: at most
   /// sum (m + 1) over the load cases.

@@ -105,7 +105,7 @@ class ReducedFit {
   SectionModel section_model_;
   Bounds youngs_modulus_;
   std::vector<LoadCaseFit> load_cases_;
-  /// Of the orthonormal bases of all load cases.
+  /// How many vectors the orthonormal bases of all load cases have.
   Eigen::Index num_projected_ = 0;
   Eigen::VectorXd scan_;
   /// The responses at the points of the scan, one column each.

@@ -108,7 +108,7 @@ class ReducedModel {
   int Version() const { return version_; }
   const NodeGraph& Graph() const { return solver_.Graph(); }
   Work WorkDone() const;
-  /// That of StiffnessSolver.
+  /// What the StiffnessSolver says (StiffnessSolver::Notice).
   const std::string& Notice() const { return solver_.Notice(); }
 
  private:

@@ -15,7 +15,7 @@ namespace elastimate {
 /// loads that are multiples of those of its scene.
 struct FrameEstimate {
   double load = 1;    ///< By which the loads were multiplied.
-  Estimate estimate;  ///< Of the frame alone.
+  Estimate estimate;  ///< What the frame alone says.
   /// The correlation of its residual with that of the frame before it, over as
   /// many components; empty where it is not known.
   std::optional<double> likeness = {};

@@ -19,9 +19,9 @@ namespace elastimate {
 struct BoundedMinimum {
   Eigen::VectorXd variables;
   double cost;
-  std::vector<Side> on_bound;  ///< Of each variable.
+  std::vector<Side> on_bound;  ///< Which bound each variable lies on.
   End end;
-  std::string message;  ///< Of Ceres.
+  std::string message;  ///< What Ceres says of its end.
 };
 
 /// r and, where it is asked for, dr/dx (of the size of r x that of x); false

@@ -31,19 +31,20 @@ struct Autocorrelation {
   }
   /// The integral of rho, 0 for independent residuals [length].
   double Length() const { return step * values.sum(); }
-  /// The same, of those that are alike, as long as it may be.
+  /// The length over which those are alike that are, as long as it may be.
   double LengthOfAlike() const {
     return std::max(Length() / share, smoothed_length);
   }
 };
 
-/// Of the rows of `residual`, in steps of the median distance of a point to its
-/// nearest neighbour, up to where it first is less than three of its standard
-/// deviations for independent residuals.  The share of those that are alike
-/// and the length of what was smoothed go by ln rho of the first two steps,
-/// which is linear in d^2 then, the second as large as it may be.  `scene` is
-/// that of `observed`.  O(n^2) for up to 20 000 points in a load case, of which
-/// there are no more: of others, every second, third and so on is looked at.
+/// Correlates the rows of `residual`, in steps of the median distance of a
+/// point to its nearest neighbour, up to where the correlation is first less
+/// than three of its standard deviations for independent residuals.  The share
+/// of those that are alike, and the length over which they were smoothed, come
+/// from ln rho of the first two steps, which is linear in d^2 where noise was
+/// smoothed, the second as large as it may be.  `scene` is that of `observed`.
+/// O(n^2) for up to 20 000 points in a load case, of which there are no more:
+/// of others, every second, third and so on is looked at.
 Autocorrelation CorrelateResiduals(const Scene& scene,
                                    const ObservedDisplacements& observed,
                                    const Eigen::VectorXd& residual);
