@@ -10,7 +10,7 @@
 
 namespace elastimate {
 
-/// Of a body: three in the plane, six in space.
+/// A body has three rigid motions in the plane, and six in space.
 constexpr int NumRigidMotions(int dimension) { return dimension == 3 ? 6 : 3; }
 
 /// What rigid motions move a point: the translations along the axes, then the
@@ -31,7 +31,8 @@ inline Eigen::MatrixXd RigidMotionsAt(const Eigen::VectorXd& arm) {
   return motions;
 }
 
-/// The same of some points (dimension x n), each below the other:
+/// Returns the rigid motions of some points (dimension x n), each below the
+/// other:
 /// (dimension n) x NumRigidMotions.
 inline Eigen::MatrixXd RigidMotionsOf(const Eigen::MatrixXd& arms) {
   const Eigen::Index dimension = arms.rows();
@@ -63,7 +64,7 @@ inline Eigen::MatrixXd RigidMotionsOf(const Eigen::MatrixXd& arms) {
 [[nodiscard]] std::string WhyNotHeld(const Mesh& mesh,
                                      const Supports& supports);
 
-/// The same of the supports of each load case of a scene; names the load case
+/// Says so of the supports of each load case of a scene; names the load case
 /// where they are its own.
 [[nodiscard]] std::string WhyNotHeld(const Scene& scene);
 

@@ -85,7 +85,7 @@ struct LoadCase {
   std::optional<double> noise_sd;  ///< Standard deviation of the measured
                                    ///< displacement per component [length].
   std::vector<Resultant> resultants = {};
-  /// Those of this load case, where they are not those of the scene.
+  /// The supports of this load case, where they are not those of the scene.
   std::optional<Supports> supports = {};
 };
 
@@ -118,7 +118,7 @@ struct Scene {
   Mesh mesh;
   /// Empty: one isotropic material.
   std::vector<Material> materials;
-  Supports supports;  ///< Of all load cases that have none of their own.
+  Supports supports;  ///< For all load cases that have none of their own.
   std::vector<LoadCase> load_cases;
   /// Whether the displacements were measured but for a rigid motion, of the
   /// camera or of the whole specimen, in each load case another.

@@ -13,11 +13,11 @@ using ComponentMask = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// A part of space in which a specimen is held, bounds included.
 struct HeldBox {
-  Eigen::VectorXd lower;  ///< Of `dimension` coordinates [length].
+  Eigen::VectorXd lower;  ///< Has `dimension` coordinates [length].
   Eigen::VectorXd upper;
   Eigen::Array<bool, Eigen::Dynamic, 1>
       components;                ///< Which of them it holds.
-  Eigen::VectorXd displacement;  ///< Of `dimension` [length].
+  Eigen::VectorXd displacement;  ///< Has `dimension` components [length].
 
   bool Contains(const Eigen::Ref<const Eigen::VectorXd>& point) const {
     return (point.array() >= lower.array()).all() &&
@@ -42,7 +42,7 @@ struct SupportEnd {
 /// motion that is not known: some components of u = a + w x (x - x0).
 struct RigidFace {
   std::vector<int> nodes;
-  Eigen::Array<bool, Eigen::Dynamic, 1> components;  ///< Of `dimension`.
+  Eigen::Array<bool, Eigen::Dynamic, 1> components;  ///< Has `dimension`.
 };
 
 /// A node that a refinement put in the middle between two others.

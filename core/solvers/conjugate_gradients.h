@@ -20,7 +20,7 @@ struct ConjugateGradientOptions {
 struct ConjugateGradientResult {
   Eigen::MatrixXd solution;    ///< As far as it was found: size x n.
   bool has_converged = false;  ///< Whether all columns have.
-  int iterations = 0;          ///< Of all columns in sum.
+  int iterations = 0;          ///< The sum over all columns.
   int products = 0;            ///< With A, each of any number of columns.
   /// The extreme eigenvalues of M A as the iterations see them (Ritz values);
   /// the guess and 0 where there was no iteration.

@@ -19,7 +19,7 @@ struct Work {
   int factorizations = 0;  ///< Numeric Cholesky factorisations.
   int multigrid_set_ups = 0;
   int solves = 0;      ///< Right-hand sides that were solved for.
-  int iterations = 0;  ///< Of conjugate gradients, for all of them.
+  int iterations = 0;  ///< By conjugate gradients, for all solves.
 };
 
 inline Work operator+(const Work& a, const Work& b) {
@@ -93,7 +93,7 @@ class StiffnessSolver {
 
   DegreesOfFreedom degrees_of_freedom_;
   std::unique_ptr<StiffnessAssembly> assembly_;
-  Eigen::VectorXd values_;  ///< Of the last matrix, memory to be used again.
+  Eigen::VectorXd values_;  ///< The last matrix, memory to be used again.
   std::unique_ptr<LinearSolver> solver_;
   bool is_multigrid_ = false;
   /// NaN before the first factorisation and after a failed one.

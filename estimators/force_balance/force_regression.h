@@ -48,7 +48,7 @@ namespace elastimate {
 Estimate RegressForces(const Scene& scene, const EstimatorOptions& options,
                        bool is_bounded);
 
-/// The same for one measurement after another: what does not depend on the
+/// Prepares for one measurement after another: what does not depend on the
 /// measurement is kept, and an estimate takes two element passes.
 std::unique_ptr<Preparation> PrepareForceRegression(
     const Scene& scene, const EstimatorOptions& options, bool is_bounded);

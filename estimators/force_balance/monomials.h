@@ -5,7 +5,7 @@
 
 namespace elastimate {
 
-/// Of degree <= `degree` in two or three variables.
+/// How many monomials of degree <= `degree` two or three variables have.
 constexpr Eigen::Index NumMonomials(Eigen::Index dimension, int degree) {
   const Eigen::Index in_plane = (degree + 1) * (degree + 2) / 2;
   return dimension == 2 ? in_plane : in_plane * (degree + 3) / 3;

@@ -68,7 +68,7 @@ class WorkBalance {
   /// V^T f_k(q) for each load case, k x num_moduli; V^T f.
   std::vector<Eigen::MatrixXd> work_of_columns_;
   Eigen::MatrixXd work_of_loads_;
-  // Of the last evaluation.
+  // What follows is that of the last evaluation.
   Eigen::VectorXd moduli_;
   Eigen::MatrixXd stiffened_;  ///< M, or rows of the same products.
   Eigen::MatrixXd factor_;     ///< L^T.

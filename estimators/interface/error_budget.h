@@ -17,8 +17,8 @@ using ParameterErrors = Eigen::VectorXd;
 /// The errors of an estimate by their cause; what a method does not look at is
 /// unknown, and what it looked at and did not find is zero.
 struct ErrorBudget {
-  ParameterErrors noise;  ///< Of noise alone.
-  ParameterErrors bias;   ///< That noise puts on the method.
+  ParameterErrors noise;  ///< By noise alone.
+  ParameterErrors bias;   ///< By the pull of noise on the method.
   ParameterErrors model;  ///< Seen in residuals that are no noise.
   /// By how much outliers pull a fit without a loss.
   ParameterErrors outliers;
@@ -29,7 +29,7 @@ struct ErrorBudget {
   /// What small-strain elasticity leaves out of strains and rotations as large
   /// as those measured; empty where they are small.
   ParameterErrors kinematics;
-  /// Of the thickness (Section::thickness_relative_sd); empty where it is none.
+  /// By the thickness (Section::thickness_relative_sd); empty without any.
   ParameterErrors section;
 };
 

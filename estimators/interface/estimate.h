@@ -36,11 +36,11 @@ struct Interval {
 struct ParameterEstimate {
   std::string name;          ///< As its law calls it, "youngs_modulus".
   std::string symbol;        ///< As people write it, "E".
-  std::vector<int> regions;  ///< Of its material; empty: the whole mesh.
+  std::vector<int> regions;  ///< Where its material is; empty: everywhere.
   bool is_modulus = false;   ///< [pressure], else a ratio [1].
   bool is_known = false;     ///< Given, not estimated.
-  /// Of a stiffness off the diagonal, which may have either sign, the geometric
-  /// mean of those beside it, which its errors are relative to [pressure].
+  /// A stiffness off the diagonal may have either sign.  Its errors are
+  /// relative to this geometric mean of those beside it [pressure].
   std::optional<double> beside;
   /// Between which it is physical, ends excluded: whatever the others are.
   Interval limits = {-std::numeric_limits<double>::infinity(),
@@ -75,7 +75,8 @@ struct StiffnessEstimate {
 /// The axis of a material whose axis was not known.
 struct AxisEstimate {
   std::vector<int> regions;  ///< As of its parameters.
-  /// Of its parameters, the first component of the rotation; all follow.
+  /// The place of the first component of the rotation among its parameters; the
+  /// others follow.
   std::size_t first_rotation = 0;
   /// A unit vector, of either end; empty where it is not determined.
   std::optional<Eigen::Vector3d> direction;
@@ -117,7 +118,7 @@ struct RegionMerge {
 /// A law that was compared with others.
 struct LawComparison {
   std::string law;
-  Eigen::Index num_parameters;  ///< Of all materials.
+  Eigen::Index num_parameters;  ///< In all materials.
   /// The distance of its nearest parameters from those of no symmetry, of
   /// chi^2 where the material is of this law.
   double chi_square;
@@ -138,22 +139,22 @@ struct MaterialEstimate {
   std::vector<int> regions;
   /// Empty where there are no errors.
   std::optional<Determination> determination;
-  // Of fits of displacements; empty where unknown.
-  /// Of the strain energy, in all load cases together.
+  // Fits of displacements know what follows; it is empty where unknown.
+  /// Its part of the strain energy of all load cases together.
   std::optional<double> energy_share;
   /// The mean square of the residuals of points in it, over that of the noise.
   std::optional<double> residual_chi_square;
-  /// Of the residuals of neighbours in it; the estimate's is that of all.
+  /// The correlation of the residuals of neighbours in it.
   std::optional<double> residual_correlation;
-  /// Of a merged material, for each of its parameters, by how much two of its
-  /// regions may differ (95 %), relative for moduli; empty for others.
+  /// By how much two regions of a merged material may differ (95 %) in each of
+  /// its parameters, relative for moduli; empty for others.
   std::vector<double> largest_differences;
 };
 
 /// A measurement that was left out of a fit.
 struct Outlier {
   Eigen::Index load_case;
-  Eigen::Index index;  ///< Of its node or, as `is_point`, of its point.
+  Eigen::Index index;  ///< Names its node or, with `is_point`, its point.
   bool is_point;
 
   bool operator==(const Outlier& other) const {
@@ -170,7 +171,7 @@ struct Trend {
   bool is_over_load = false;
   Eigen::VectorXd change;
   Eigen::VectorXd standard_error;
-  Eigen::VectorXd p_value;  ///< Of as large a change, where there is none.
+  Eigen::VectorXd p_value;  ///< How probable so large a change is by chance.
 };
 
 /// What a joint estimate of many frames was made of.
@@ -198,8 +199,8 @@ struct Estimate {
   /// Why the status is not ok, and what to do: the sentence of the finding that
   /// is an error; empty when there is none.
   std::string message = "the estimator was not run; run it on a scene";
-  /// Of one isotropic material, else NaN: E [pressure] and nu [-]; NaN where
-  /// there is no number at all.
+  /// E [pressure] and nu [-] of one isotropic material; NaN of others, and
+  /// where there is no number at all.
   IsotropicElasticity elasticity = {kUnknown, kUnknown};
   /// Covariance of (E, nu) of one isotropic material.  NaN in the row and
   /// column of a parameter that was given, or that is held by a bound, or of
@@ -213,13 +214,13 @@ struct Estimate {
 
   /// The parameters of the materials of the scene, in their order.
   std::vector<ParameterEstimate> parameters;
-  /// Of `parameters`, square.  NaN in the rows and columns of what is not
-  /// estimated, or unknown.
+  /// The covariance of `parameters`, square.  NaN stands in the rows and
+  /// columns of what is not estimated, or unknown.
   Eigen::MatrixXd parameter_covariance;
-  /// Of each material that is not isotropic, of these parameters.
+  /// The stiffness of each material that is not isotropic, by its parameters.
   std::vector<StiffnessEstimate> stiffnesses;
 
-  /// Of each material whose axis was to be found, by these parameters.
+  /// The axis of each material whose axis was to be found, by its parameters.
   std::vector<AxisEstimate> axes;
 
   /// What the errors come from.
@@ -268,9 +269,9 @@ struct Estimate {
   std::optional<Eigen::Vector2d> discretization_correction;
   /// Points that lie too far off for noise, and were left out.
   std::vector<Outlier> outliers;
-  /// Of a scene of unknown motion, with the motion but for the rotation that
-  /// RemoveFreeRotation takes out: num_dofs x num_load_cases [length]; empty
-  /// for others.
+  /// The fitted displacement of a scene of unknown motion, with the motion but
+  /// for the rotation that RemoveFreeRotation takes out: num_dofs x
+  /// num_load_cases [length]; empty for other scenes.
   Eigen::MatrixXd fitted_displacement;
   /// Bounds that the estimate lies on, such as "nu_max".
   std::vector<std::string> active_bounds;
@@ -284,7 +285,7 @@ struct Estimate {
   std::vector<RegionMerge> merges;
   /// The best first, where the law was to be chosen; empty for others.
   std::vector<LawComparison> laws;
-  /// Of a joint estimate of frames; empty for others.
+  /// What the frames of a joint estimate say together; empty for others.
   std::optional<SeriesSummary> series;
 
   /// What `auto` ran, in order; empty for other estimators.
@@ -313,8 +314,8 @@ struct Estimate {
   std::optional<double> PoissonRatioStandardError() const;
   /// Correlation of the errors of E and nu; empty when unknown.
   std::optional<double> Correlation() const;
-  /// Of mu and of 1 / kappa, to first order; empty unless the covariance of
-  /// both E and nu is known.
+  /// The standard errors of mu and of 1 / kappa, to first order; empty unless
+  /// the covariance of both E and nu is known.
   std::optional<double> ShearModulusStandardError() const;
   std::optional<double> BulkComplianceStandardError() const;
 

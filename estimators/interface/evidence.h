@@ -39,18 +39,18 @@ struct FreeDirection {
 /// `excess`.
 struct BoundExcess {
   double excess;
-  double variance;    ///< Of each residual.
+  double variance;    ///< The variance of each residual.
   double without;     ///< The modulus that fits best.
-  double with;        ///< That of the estimate.
-  std::string label;  ///< Of the modulus.
+  double with;        ///< The modulus of the estimate.
+  std::string label;  ///< Names the modulus.
 };
 
 /// The known Poisson's ratio that the data contradict most.
 struct KnownRatio {
-  std::string label;  ///< Of the parameter.
-  double difference;  ///< Of what the data ask for from what is known.
+  std::string label;  ///< Names the parameter.
+  double difference;  ///< From what is known to what the data ask for.
   double asked_for;
-  double standard_error;    ///< Of what the data ask for.
+  double standard_error;    ///< That what the data ask for has.
   double change_of_moduli;  ///< Their largest relative change by it.
 };
 
@@ -67,7 +67,7 @@ struct ResultantMisfit {
 struct AxisTurn {
   double angle;        ///< [rad]
   std::string region;  ///< "" for all of a specimen.
-  /// Of so large a gain, were the axes right.
+  /// How probable so large a gain is, were the axes right.
   double probability;
   /// The largest change of a parameter, relative or of a ratio, and of one in
   /// its standard errors by noise.
@@ -88,7 +88,7 @@ struct Evidence {
   std::optional<Eigen::Index> too_few_components;
 
   std::optional<ResidualRatio> above_noise;
-  /// Of (ln E, nu), without the pull of outliers.
+  /// How E (relative) and nu change without the pull of outliers.
   std::optional<Eigen::Vector2d> outlier_change;
   /// Standard errors by what supports that end within elements leave open.
   std::optional<ParameterErrors> support_errors;
@@ -98,7 +98,7 @@ struct Evidence {
   std::optional<double> smooth_part;
   /// Relative standard error of E where virtual work finds more than noise.
   std::optional<double> virtual_work_error;
-  /// Of the displacements that balances the loads, relative to them.
+  /// The change of the displacements that balances the loads, relative to them.
   std::optional<double> correction;
 
   std::optional<AxisTurn> axis_turn;

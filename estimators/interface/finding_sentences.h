@@ -35,7 +35,7 @@ Finding UnphysicalParameters(const std::vector<std::string>& parameters,
 Finding DisplacementsOpposeLoads();
 Finding YoungsModulusDiverges();
 Finding PoissonRatioAtMinusOne();
-/// Of a method that noise drives to the end of the range of nu.
+/// For a method that noise drives to the end of the range of nu.
 Finding PoissonRatioDivergesByNoise();
 
 // What the data do not determine.
@@ -47,10 +47,10 @@ Finding OneCombination(const IsotropicElasticity& elasticity,
                        const Eigen::Vector2d& direction);
 /// `parameters` describes each, such as "E of region 3 (45 %)".
 Finding ParametersUndetermined(const std::vector<std::string>& parameters);
-/// The same where most of the errors is what the elements miss.
+/// Says so where most of the errors is what the elements miss.
 Finding ParametersUndeterminedByElements(
     const std::vector<std::string>& parameters);
-/// The same where bounds that a user gave hold some of them.
+/// Says so where bounds that a user gave hold some of them.
 Finding ParametersUndeterminedOnBounds(
     const std::vector<std::string>& parameters);
 /// `axes` describes each, such as "the axis of region 3 (24 degrees)".
@@ -88,9 +88,10 @@ Finding LoadsOutOfBalance(double imbalance, Severity severity);
 /// `ratio` is that of the residual to what the given noise explains, in
 /// standard deviations.
 Finding ResidualAboveNoise(ResidualKind kind, double ratio);
-/// Of a smooth residual that matters to the standard errors.
+/// For a smooth residual that matters to the standard errors.
 Finding SmoothResidual(double correlation);
-/// Of one that is too large for a usable estimate; relative to the measurement.
+/// For one that is too large for a usable estimate; relative to the
+/// measurement.
 Finding LargeSmoothResidual(double smooth);
 Finding LargeResidual(double displacement_residual);
 /// By virtual-fields itself.
@@ -113,7 +114,7 @@ Finding OutliersLeftOut(const std::vector<Outlier>& outliers,
 Finding HeldNodesMoved(const std::vector<std::size_t>& load_cases);
 /// In standard deviations, as stated.
 Finding ResultantsContradicted(double distance);
-// Of a series of frames.
+// What a series of frames shows.
 /// `reason` says why the first frame is not usable.
 Finding NoFrameUsable(std::size_t num_frames, const std::string& reason);
 Finding FramesLeftOut(std::size_t num_left_out, std::size_t num_frames);

@@ -30,7 +30,7 @@ struct SpaceChange {
 /// change.
 struct MeshError {
   Eigen::VectorXd correction;  ///< What is added to the variables x_fine.
-  Eigen::MatrixXd covariance;  ///< That the corrected variables have by it.
+  Eigen::MatrixXd covariance;  ///< What it adds to that of the variables.
   /// The part of the covariance that the ends of supports have.
   Eigen::MatrixXd of_supports;
 };

@@ -26,7 +26,7 @@ struct NeighbourCorrelation {
   /// Mean product of the residuals of two neighbours, over the mean square:
   /// near 0 for independent noise, near 1 for a smooth field.
   double correlation;
-  double standard_deviation;  ///< That `correlation` has by independent noise.
+  double standard_deviation;  ///< How much independent noise makes of it.
 };
 
 /// Empty when no two neighbours were observed, or all residuals are zero.
