@@ -45,7 +45,7 @@ std::string WhyNotWithinTolerance(const EstimatorOptions& options,
   return "";
 }
 
-// The same of several materials.
+// Says so for the parameters of any materials.
 std::string WhyParametersNotWithinTolerance(const Estimate& estimate) {
   for (const ParameterEstimate& parameter : estimate.parameters) {
     const double error =
@@ -146,7 +146,7 @@ class Ladder {
   void Decide(const std::string& decision) {
     rungs_.back().decision = decision;
   }
-  /// Of the last rung that ran.
+  /// The estimate of the last rung that ran.
   Estimate& Last() { return estimate_; }
 
   Estimate Finish() {
@@ -194,7 +194,7 @@ void ClimbFits(const Scene& scene, const EstimatorOptions& options,
   ladder.Decide("stopped: there is no rung above");
 }
 
-// Of unknown motions, whose only rung is iterative-fe.
+// Unknown motions have one rung, iterative-fe.
 class PreparedUnknownMotion : public Preparation {
  public:
   PreparedUnknownMotion(const Scene& scene, const EstimatorOptions& options)

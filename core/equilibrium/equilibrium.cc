@@ -118,7 +118,7 @@ const NodeGraph& Equilibrium::Graph() const {
 bool Equilibrium::IsRefined() const { return values_->NumSpaces() > 1; }
 
 bool Equilibrium::Solve(const Eigen::VectorXd& moduli) {
-  // Of moduli of any unit, a stiffness without one.
+  // Whatever the unit of the moduli, the stiffness that is factorised has none.
   scale_ = moduli.cwiseAbs().maxCoeff();
   const Eigen::VectorXd scaled = moduli / scale_;
   values_->SetModuli(scaled, stiffness_[0]->GraphOfAssembled());

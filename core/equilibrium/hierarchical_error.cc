@@ -15,7 +15,7 @@ namespace {
 constexpr int kMostIterations = 150;
 // The energy that so many steps added tells what the next ones will add.
 constexpr int kDelay = 4;
-// Of the energy of a response: what elements miss by rounding alone.
+// Elements miss this part of the energy of a response by rounding alone.
 constexpr double kRoundingEnergy = 1e-20;
 
 // Sums of the products of columns.
@@ -24,7 +24,7 @@ Eigen::RowVectorXd ColumnProducts(const Eigen::MatrixXd& a,
   return a.cwiseProduct(b).colwise().sum();
 }
 
-// Those of blocks side by side and the rows from `first` on.
+// Multiplies blocks side by side with the rows from `first` on.
 template <int kDimension>
 void AddBlockProducts(const Eigen::MatrixXd& blocks, const Eigen::MatrixXd& x,
                       Eigen::Index first, Eigen::MatrixXd& sum) {
@@ -68,7 +68,7 @@ std::optional<Eigen::MatrixXd> HierarchicalError::Find(
   Eigen::MatrixXd start = is_free_.asDiagonal() * nodes_.Interpolate(responses);
   start.rightCols(responses.cols() - force_.cols()).colwise() += held_;
   Eigen::MatrixXd product = Multiply(poisson_ratio, start);
-  // Of all rows: the forces on the free ones are in balance.
+  // All rows count here, since the forces on the free ones are in balance.
   const Eigen::RowVectorXd rounding =
       kRoundingEnergy *
       ColumnProducts(start, products_.h + poisson_ratio * products_.j);

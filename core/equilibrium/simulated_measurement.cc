@@ -17,7 +17,7 @@
 namespace elastimate {
 namespace {
 
-// Of outliers, in standard deviations of the noise.
+// Outliers are at least so many standard deviations of the noise.
 constexpr double kSmallestOutlier = 20;
 constexpr double kLargestOutlier = 100;
 
@@ -57,7 +57,7 @@ class NoiseLattice {
     }
   }
 
-  // Of one component and standard deviation 1.
+  // Draws one component with standard deviation 1.
   Eigen::RowVectorXd Draw(std::mt19937_64& generator) const {
     const Eigen::VectorXd white =
         DrawGaussian(counts_[0] * counts_[1] * counts_[2], 1, generator);
@@ -81,7 +81,7 @@ class NoiseLattice {
       }
       const double cell = std::floor(x(axis));
       first[axis] = static_cast<Eigen::Index>(cell);
-      // Of lattice points from `kReach` cells before x on; x = 2 r / X.
+      // The lattice points begin `kReach` cells before x; x = 2 r / X.
       const Eigen::ArrayXd r =
           Eigen::ArrayXd::LinSpaced(kStencil, -kReach, kReach) -
           (x(axis) - cell);
@@ -117,7 +117,7 @@ std::vector<Eigen::Index> FreePoints(const ComponentMask& held) {
 constexpr const char* kSingular =
     "the stiffness matrix is singular to working precision";
 
-// Those of all load cases side by side.
+// `displacements` has the load cases side by side.
 void SetDisplacements(const Eigen::MatrixXd& displacements, Scene& scene) {
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     scene.load_cases[k].displacement =

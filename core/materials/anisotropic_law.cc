@@ -17,7 +17,7 @@ constexpr std::array<std::string_view, 21> kStiffnessNames = {
 // The place of a stiffness on the diagonal.
 constexpr int DiagonalPlace(int row) { return row * (13 - row) / 2; }
 
-// Of an isotropic material of E = 1, nu = 0.3.
+// The typical stiffness is that of an isotropic material of E = 1, nu = 0.3.
 double TypicalStiffness(int row, int column) {
   constexpr double kLambda = 0.3 / (1.3 * 0.4);
   if (row != column) {

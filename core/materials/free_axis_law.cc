@@ -108,7 +108,7 @@ std::vector<Matrix6d> StiffnessesOfUnitModuli() {
   return stiffnesses;
 }
 
-// Those of unit moduli of the known axis, seen after this rotation, as columns.
+// Returns as columns what this rotation makes of unit moduli of the known axis.
 Eigen::MatrixXd UnitModuli(const Eigen::Matrix3d& rotation,
                            const std::vector<BlockEntry>& entries) {
   static const std::vector<Matrix6d> stiffnesses = StiffnessesOfUnitModuli();
@@ -302,7 +302,7 @@ Eigen::VectorXd FreeAxisLaw::NearestParameters(
     return parameters;
   }
   Eigen::Vector3d& w = best->w;
-  // Of the two ends of the axis, the one next to x.
+  // The axis has two ends, of which the one next to x is taken.
   const double angle = std::remainder(w.norm(), kPi);
   w *= w.norm() > 0 ? angle / w.norm() : 1;
   parameters << OfKnownAxis().ParametersOf(best->moduli, kModel), w.tail(2);

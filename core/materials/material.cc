@@ -82,8 +82,8 @@ void ValidateWhatIsGiven(const Law& law, const Material& material,
   }
 }
 
-// Of a material of which all is known, but perhaps shear moduli, which are
-// positive, and no more is asked of them.
+// Asks of a material of which all is known, but perhaps shear moduli.  These
+// are positive, and no more is asked of them.
 bool IsKnownNotPositiveDefinite(const MaterialParameters& parameters) {
   const auto can_be_any = [](const MaterialParameters::Parameter& parameter) {
     return !parameter.known &&

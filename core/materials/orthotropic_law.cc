@@ -39,7 +39,7 @@ std::vector<Eigen::MatrixXd> ComponentModes(int num_components) {
   return modes;
 }
 
-// Those of normal strains row by row, then the shears.
+// The entries of normal strains come row by row, then the shears.
 std::vector<BlockEntry> OrthotropicEntries(int num_directions) {
   std::vector<BlockEntry> entries;
   for (int i = 0; i < num_directions; ++i) {

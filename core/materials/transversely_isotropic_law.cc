@@ -25,7 +25,8 @@ std::vector<Eigen::MatrixXd> ModesOfAxis() {
   return {Eigen::VectorXd::Unit(6, 0), dilation, across, along};
 }
 
-// Of e_LL and the dilation across the axis.
+// The compliance relates e_LL and the dilation across the axis to their
+// stresses.
 Eigen::Matrix2d DilationCompliance(const Eigen::VectorXd& p) {
   const double coupling = -kRootOfTwo * p(2) / p(0);
   return (Eigen::Matrix2d() << 1 / p(0), coupling, coupling, (1 - p(3)) / p(1))

@@ -38,7 +38,7 @@ std::vector<ElementBlock> Merged(const std::vector<ElementBlock>& blocks) {
   return merged;
 }
 
-// Those of the blocks first, first + 2, .., in ascending order.
+// Returns the ranges of the blocks first, first + 2, .., in ascending order.
 std::vector<NodeRange> NodeRanges(const std::vector<ElementBlock>& blocks,
                                   std::size_t first) {
   std::vector<NodeRange> ranges;

@@ -13,7 +13,7 @@ class EnergyDensity {
  public:
   EnergyDensity(const IsotropicElasticity& elasticity, SectionModel model)
       : mu_(elasticity.ShearModulus()),
-        // That of s (nu tr(e) + (1 - c nu) e), 2 mu = s (1 - c nu).
+        // The stress is s (nu tr(e) + (1 - c nu) e), and 2 mu = s (1 - c nu).
         lambda_(elasticity.StiffnessScale(model) * elasticity.poisson_ratio) {}
 
   template <class Gradient>
@@ -44,7 +44,7 @@ void VisitGradients(const Mesh& mesh, Eigen::Index element,
   VisitPoints<kKind>(
       mesh, element, rule,
       [&](const ElementPoint<kKind>& point, const auto& at) {
-        // That of a linear simplex is the same everywhere.
+        // The strain of a linear simplex is the same everywhere.
         if (!(kKind == ElementKind::kTet4 || kKind == ElementKind::kTri3) ||
             !is_known) {
           gradient.noalias() = u * point.gradient.transpose();
@@ -116,7 +116,7 @@ std::vector<Gradient<kKind>> RecoveredGradient(const Mesh& mesh,
   return recovered;
 }
 
-// Of the elements, and of what they miss.
+// The energies of the elements, and of what they miss.
 struct Energies {
   double of_elements = 0;
   double missed = 0;

@@ -103,7 +103,7 @@ void AddLinearGradientProducts(const Mesh& mesh, const NodeGraph& graph,
                                Eigen::Index first, Eigen::Index end,
                                Eigen::Index pair_mask,
                                Eigen::MatrixXd& products) {
-  // As many as make the processor wait for no value that it has just written.
+  // With so many, the processor waits for no value that it has just written.
   constexpr Eigen::Index kElementsAtATime = 64;
   std::array<LinearFactors, kElementsAtATime> factors;
   const auto add_outer_products = HWY_DYNAMIC_DISPATCH(AddOuterProducts);

@@ -187,8 +187,8 @@ HWY_INLINE void AddFours(const Corners& corners, std::size_t lane,
   hn::Store(hn::Add(hn::Load(d, p3), v3), d, p3);
 }
 
-// The same for vectors with an element in each lane, one element after the
-// other: they may share nodes.
+// Adds vectors with an element in each lane, one element after the other, since
+// these may share nodes.
 HWY_INLINE void AddToCorners(const Corners& corners, std::ptrdiff_t offset,
                              const Vector& v1, const Vector& v2,
                              const Vector& v3) {

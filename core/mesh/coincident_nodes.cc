@@ -9,8 +9,8 @@
 namespace elastimate {
 namespace {
 
-// Of the shortest edge: above what a file in text or in single precision makes
-// of equal positions, and far below any gap that is meant.
+// This part of the shortest edge is above what a file in text or in single
+// precision makes of equal positions, and far below any gap that is meant.
 constexpr double kSamePlace = 1e-4;
 
 Eigen::VectorXd ShortestEdges(const Mesh& mesh) {

@@ -41,7 +41,7 @@ std::vector<ElementFace> FacesOf(const Mesh& mesh) {
   return faces;
 }
 
-// Those that no other element has.
+// Returns the faces that no other element has.
 std::vector<ElementFace> OuterFaces(const Mesh& mesh) {
   const std::vector<ElementFace> faces = FacesOf(mesh);
   std::vector<ElementFace> outer;

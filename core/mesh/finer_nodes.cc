@@ -11,7 +11,8 @@ namespace {
 
 using Entries = std::vector<Eigen::Triplet<double, Eigen::Index>>;
 
-// Of the nodes of an element in the middle between two of them.
+// Adds the weights of the nodes of an element in the middle between two of
+// them.
 void AddWeights(const Mesh& mesh, Eigen::Index element, int a, int b,
                 Eigen::Index row, Entries& weights) {
   if (mesh.Order() == 1) {

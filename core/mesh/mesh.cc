@@ -66,7 +66,7 @@ bool IsFlat(const Eigen::Matrix3d& edges) {
                              std::sqrt(largest_area_square));
 }
 
-// The same of the triangle of these edges.
+// Whether the triangle of these edges is flat.
 bool IsFlat(const Eigen::Matrix2d& edges) {
   const double longest_square =
       std::max({edges.col(0).squaredNorm(), edges.col(1).squaredNorm(),
@@ -207,7 +207,7 @@ std::vector<char> ValidateElements(const Mesh& mesh) {
         " nodes per element; those of kind " + std::string(topology.name) +
         " have " + std::to_string(topology.num_nodes));
   }
-  // Of characters, which are faster to write than bits.
+  // Characters are faster to write than bits.
   std::vector<char> used(mesh.NumNodes(), 0);
   for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
     const int* const nodes = mesh.elements.col(element).data();

@@ -161,8 +161,8 @@ Simplices Cut(const Mesh& mesh, Eigen::Index element,
   return cuts;
 }
 
-// Of a kind whose facets are no simplices of the vertices alone; of an edge,
-// the first two nodes.
+// Cuts a facet of a kind whose facets are no simplices of the vertices alone.
+// The first two nodes of a triangle are those of an edge.
 std::vector<Triangle> CutFacet(const Mesh& mesh,
                                const Eigen::Ref<const Eigen::VectorXi>& nodes,
                                const Eigen::VectorXi& rank) {

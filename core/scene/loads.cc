@@ -6,7 +6,7 @@
 namespace elastimate {
 namespace {
 
-// Of one that all share, or of each its own.
+// Returns the density that all share, or the own one of facet or element i.
 auto ColumnOf(const Eigen::MatrixXd& density, Eigen::Index i) {
   return density.col(density.cols() == 1 ? 0 : i);
 }

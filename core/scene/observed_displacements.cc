@@ -10,7 +10,7 @@ namespace {
 
 // A shape function below it is zero but for rounding.
 constexpr double kNoPart = 1e-9;
-// Of a point in a regular grid along the axes.
+// So many neighbours has a point in a regular grid along the axes.
 int NumNeighbours(int dimension) { return 2 * dimension; }
 
 // What one load case measured of its nodes, and behind them of its points.
@@ -54,7 +54,7 @@ struct RowList {
   std::vector<int> component;
   std::vector<double> weights;
   std::vector<double> held_part;
-  /// Of the present load case, which begins with row `first`.
+  /// The entries of the present load case, which begins with row `first`.
   std::vector<Eigen::Triplet<double, Eigen::Index>> entries;
   Eigen::Index first = 0;
 
@@ -138,7 +138,7 @@ Eigen::VectorXd ToVector(const std::vector<double>& values) {
                                            Eigen::Index(values.size()));
 }
 
-// As of ObservedDisplacements::GivenNoise; `weights` are not normalised.
+// Computes ObservedDisplacements::GivenNoise; `weights` are not normalised.
 std::optional<double> GivenNoiseOf(const Scene& scene,
                                    const Eigen::VectorXd& weights) {
   const LoadCase& load_case = scene.load_cases.front();

@@ -154,8 +154,8 @@ std::vector<Body> BodiesOf(const Mesh& mesh) {
   return bodies;
 }
 
-// Of the directions that the orthonormal columns of `span` span, the one
-// closest to an axis: "x", or "(0.6, 0.8, 0)".
+// Names the direction closest to an axis among those that the orthonormal
+// columns of `span` span: "x", or "(0.6, 0.8, 0)".
 std::string DescribeDirection(const Eigen::MatrixXd& span) {
   const Eigen::MatrixXd projection = span * span.transpose();
   Eigen::Index axis = 0;
@@ -177,7 +177,7 @@ std::string DescribeDirection(const Eigen::MatrixXd& span) {
 // One of the rigid motions that the columns span; a translation if there is
 // one, since any rotation about an axis off the centroid moves that too.
 std::string DescribeRigidMotion(const Eigen::MatrixXd& columns) {
-  // Of a part, columns may be dependent.
+  // The columns of a part may be dependent.
   constexpr double kSmall = 1e-5;
   const SingularValueDecomposition span = DecomposeSingularValues(columns);
   const Eigen::MatrixXd motions =
@@ -374,7 +374,7 @@ std::string WhyNotHeld(const Mesh& mesh, const Supports& supports) {
                               [](const auto& group) { return group.empty(); }),
                groups.end());
   for (const std::vector<const Body*>& group : groups) {
-    // As a whole, and then part by part.
+    // The body is looked at as a whole, and then part by part.
     std::string why;
     if (group.size() > 1) {
       const Body whole = Union(mesh, group);

@@ -24,7 +24,7 @@ NodeMask IsInside(const Mesh& mesh, const Eigen::MatrixXi& surface) {
   return is_inside;
 }
 
-// Those of which all nodes are loaded.
+// Returns the cells of which all nodes are loaded.
 std::vector<Eigen::Index> LoadedCells(const Eigen::MatrixXi& cells,
                                       const NodeMask& is_loaded) {
   std::vector<Eigen::Index> loaded;

@@ -24,7 +24,7 @@ bool IsToldByPlace(const Supports& supports, const Mesh& mesh, Eigen::Index i,
       });
 }
 
-// Of the surface of a mesh.
+// The facets of the surface of a mesh, and their edges.
 class SurfaceFacets {
  public:
   explicit SurfaceFacets(const Mesh& mesh)
@@ -47,7 +47,7 @@ class SurfaceFacets {
   // nodes are held.
   bool GoesOnFromHeld(Eigen::Index facet, int node,
                       const Eigen::Array<bool, 1, Eigen::Dynamic>& held) const {
-    // Of an angle of 45 degrees.
+    // This is the cosine of 45 degrees.
     constexpr double kSmooth = 0.7;
     return std::any_of(
         of_node_[node].begin(), of_node_[node].end(), [&](Eigen::Index other) {
@@ -77,7 +77,7 @@ class OpenEdges {
   }
 
   const ComponentMask& Open() const { return open_; }
-  // Of an edge that is open.
+  // Returns the two ends of an edge that is open.
   std::pair<int, int> HeldAndFree(Eigen::Index edge) const {
     const int low = edges_.Ends()(0, edge);
     const int high = edges_.Ends()(1, edge);

@@ -15,8 +15,9 @@
 namespace elastimate {
 namespace {
 
-// Of motions of a face, beside the largest: those along a line that all its
-// nodes are on, or of components that it leaves free.
+// Motions of a face that are smaller than this beside the largest are none:
+// they are about a line that all its nodes are on, or of components that it
+// leaves free.
 constexpr double kNoMotion = 1e-6;
 
 [[noreturn]] void Refuse(const std::string& message) {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #ifdef ELASTIMATE_HAS_ML
-// As in ml_utils.h, which would bring in all of Trilinos.
+// This is declared in ml_utils.h, which would bring in all of Trilinos.
 extern "C" void ML_set_random_seed(int seed);
 #endif
 
@@ -114,7 +114,7 @@ struct PetscMultigrid::Workspace {
   std::vector<PetscInt> block_start;
   std::vector<PetscInt> row_start;
   std::vector<PetscInt> column;
-  std::vector<double> entries;  ///< Of the matrix.
+  std::vector<double> entries;  ///< What the matrix has there.
   Mat matrix = nullptr;
   Vec right_hand_side = nullptr;
   Vec solution = nullptr;
@@ -147,8 +147,8 @@ struct PetscMultigrid::Workspace {
   void Fill(const Eigen::VectorXd& values, double* entries) const;
   void SetNearNullSpace(const Mesh& mesh);
   void CreateSolver(const Mesh& mesh);
-  /// Of the last solution, relative to it: ||e||_A^2 = r^T A^-1 r is at most
-  /// r^T B r / (smallest eigenvalue of B A).
+  /// Bounds the error of the last solution, relative to it: ||e||_A^2 =
+  /// r^T A^-1 r is at most r^T B r / (smallest eigenvalue of B A).
   double EnergyErrorBound(PetscInt iterations) const;
 };
 

@@ -64,7 +64,7 @@ std::string ValueWithError(double value, double error) {
     }
     return NumberText(value, digits) + " +- " + NumberText(error, 2);
   }
-  // Of the second digit of the error, which rounding may carry into a third.
+  // The second digit of the error is here; rounding may carry it into a third.
   int place = PlaceOf(error) - 1;
   place += std::round(error / std::pow(10, place)) > 99 ? 1 : 0;
   const int least = PlaceOf(larger) + 1 - kMostDigits;

@@ -197,7 +197,7 @@ std::optional<BoundedMinimum> BestMinimumOf(
 
 // What noise makes of a minimum.
 struct NoiseOfMinimum {
-  double variance;           ///< Of the weighted noise.
+  double variance;           ///< That the weighted noise has.
   Eigen::MatrixXd bread;     ///< A.
   Eigen::MatrixXd of_noise;  ///< The part of A that is noise.
   Eigen::MatrixXd filling;   ///< X^T K K X / s^2.
@@ -393,7 +393,7 @@ class ForceRegression {
     const bool is_linear = free_.Size() == free_.All().NumParameters();
     if (!is_bounded && is_linear && moduli_) {
       const Eigen::VectorXd parameters = free_.All().ParametersOf(*moduli_);
-      // As they are: those that are not physical, too.
+      // Parameters that are not physical are entered, too.
       EnterParameters(scene_, free_, parameters, estimate_);
       variables_ = free_.VariablesOf(parameters);
       SetForceResidual(*moduli_);

@@ -26,7 +26,7 @@ constexpr double kDependentWork = 1e-10;
 
 // What the residual says about its causes.
 struct ResidualJudgement {
-  /// Of the weighted noise.
+  /// The variance of the weighted noise.
   double noise_variance;
   /// The square sum that may hide an error of the model of its own size.
   double model_square_sum;

@@ -34,8 +34,8 @@ std::optional<Eigen::VectorXd> Start(const FreeParameters& free,
   return free.VariablesOf(values_at(scale));
 }
 
-// That of the moduli which balance the work without weights, but for what is
-// known; empty where their stiffness is not positive definite.
+// Starts from the moduli which balance the work without weights, but for what
+// is known; empty where their stiffness is not positive definite.
 std::optional<Eigen::VectorXd> LinearStart(const FreeParameters& free,
                                            const WorkBalance& balance) {
   Eigen::VectorXd parameters = free.All().ParametersOf(balance.LeastSquares());
@@ -153,10 +153,10 @@ std::optional<BoundedMinimum> MinimizeWorkBalance(const FreeParameters& free,
                                                   int max_iterations,
                                                   const ForceResidual& forces,
                                                   WorkBalance& balance) {
-  // Of displacements, for Ceres' tolerances.
+  // Ceres' tolerances ask for displacements of this unit.
   const double unit = forces.DisplacementNorm();
   if (!AreIsotropic(free.All())) {
-    // Of many moduli, typical values are far off.
+    // Where there are many moduli, typical values are far off.
     if (const std::optional<Eigen::VectorXd> start =
             LinearStart(free, balance)) {
       return MinimizeFrom(free, *start, max_iterations, unit, balance);
@@ -167,7 +167,7 @@ std::optional<BoundedMinimum> MinimizeWorkBalance(const FreeParameters& free,
   for (const double poisson_ratio : {0.3, 0.0, 0.45}) {
     const std::optional<Eigen::VectorXd> start =
         Start(free, poisson_ratio, balance);
-    // Of laws without such ratios all are one.
+    // Laws without such ratios have one start.
     if (start && start != last) {
       last = start;
       BoundedMinimum minimum =

@@ -12,8 +12,8 @@ namespace {
 // The work of loads that do none, relative to their norm, is rounding.
 constexpr double kRoundingOfLoads = 1e-10;
 
-// Of k fields, so many probes give traces with a relative standard error of
-// about sqrt(2 / (16 k)).
+// So many probes give the traces of k fields a relative standard error of about
+// sqrt(2 / (16 k)).
 constexpr Eigen::Index kFieldProbes = 16;
 
 Eigen::MatrixXd RandomSigns(Eigen::Index num_rows, Eigen::Index num_columns) {

@@ -11,10 +11,10 @@
 namespace elastimate {
 namespace {
 
-// Those of w, at the end of the parameters of the law.
+// The components of w are at the end of the parameters of the law.
 constexpr std::size_t kNumRotations = 2;
 
-// Of those from `first` on; what is given has no error.
+// Returns the covariance from parameter `first` on; what is given has no error.
 Eigen::MatrixXd CovarianceOfParameters(const Estimate& estimate,
                                        Eigen::Index first, Eigen::Index count) {
   Eigen::MatrixXd covariance =
@@ -30,7 +30,8 @@ Eigen::MatrixXd CovarianceOfParameters(const Estimate& estimate,
 
 double ChiSquareOfAnisotropy(const Eigen::VectorXd& parameters,
                              const Eigen::MatrixXd& covariance) {
-  // Of exact displacements, or of parameters that are given.
+  // Exact displacements, and parameters that are given, leave no more than
+  // this.
   constexpr double kRounding = 1e-8;
   const Eigen::Vector3d anisotropy = FreeAxisLaw::Anisotropy(parameters);
   const Eigen::MatrixXd jacobian = FreeAxisLaw::AnisotropyJacobian(parameters);

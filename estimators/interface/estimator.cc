@@ -32,7 +32,7 @@ std::string WhyInvalidBounds(const Bounds& bounds, const std::string& name,
   return "";
 }
 
-// Of an estimator that keeps nothing.
+// This runs an estimator that keeps nothing.
 class NoPreparation : public Preparation {
  public:
   explicit NoPreparation(std::function<Estimate(const Scene&)> run)

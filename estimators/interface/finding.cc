@@ -9,7 +9,7 @@ namespace {
 struct Row {
   const char* name;
   FindingCode code;
-  // Of an estimate that is not usable for this reason.
+  // The status of an estimate that is not usable for this reason.
   Status status = Status::kNotIdentifiable;
 };
 

@@ -34,7 +34,7 @@ std::vector<ParameterEstimate> ParametersWithoutValues(
     estimate.symbol = parameter.law_parameter->symbol;
     estimate.is_modulus = parameter.law_parameter->is_modulus;
     estimate.is_known = parameter.known.has_value();
-    // Of other laws the stiffness as a whole says what is physical.
+    // The stiffness as a whole says what is physical for other laws.
     if (parameters.LawOf(parameter.material).Name() == IsotropicLaw::kName) {
       estimate.limits = estimate.is_modulus ? Interval{0, estimate.limits.upper}
                                             : Interval{-1, 0.5};
@@ -117,7 +117,8 @@ bool AreAxesOnly(const Estimate& estimate) {
   return !is_axis_determined;
 }
 
-// Those that are not determined, with their errors where these are finite.
+// Names those that are not determined, with their errors where these are
+// finite.
 std::vector<std::string> Undetermined(const Estimate& estimate) {
   std::vector<std::string> undetermined;
   for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
@@ -194,8 +195,8 @@ void FailUndetermined(Estimate& estimate) {
   }
 }
 
-// Of 95 %: of a modulus symmetric in its logarithm, which is what is fitted; of
-// a ratio one-sided where it reaches an end of its range.
+// The interval of 95 % is symmetric in the logarithm of a modulus, which is
+// what is fitted, and one-sided where a ratio reaches an end of its range.
 Interval IntervalOf(const ParameterEstimate& parameter,
                     const Estimate& estimate) {
   const std::optional<double>& degrees = estimate.noise_degrees_of_freedom;
@@ -239,7 +240,7 @@ void EnterErrors(Estimate& estimate) {
   }
 }
 
-// Of each of several materials, how many of its parameters are determined.
+// Says of each of several materials how many of its parameters are determined.
 void EnterDetermination(Estimate& estimate) {
   for (MaterialEstimate& material : estimate.materials) {
     int num_determined = 0;
@@ -258,7 +259,7 @@ void EnterDetermination(Estimate& estimate) {
   }
 }
 
-// Those of the parameters, where they are several.
+// Enters the materials of the parameters, where they are several.
 void EnterMaterials(Estimate& estimate) {
   if (!estimate.materials.empty()) {
     return;
@@ -324,7 +325,7 @@ void JudgeNearnessOfLimits(Estimate& estimate) {
   }
 }
 
-// Of the parameter whose bias exceeds its limit by most.
+// The parameter whose bias exceeds its limit by most decides.
 void JudgeBiasOfParameters(Estimate& estimate) {
   const ParameterErrors bias = estimate.error_budget.bias;
   const ParameterErrors& noise = estimate.error_budget.noise;

@@ -30,7 +30,7 @@ Scene WithoutMeasurement(Scene scene) {
   return scene;
 }
 
-// Of the points of load case `k`, whose rows stay.
+// Sets what was measured at the points of load case `k`, whose rows stay.
 void SetAtPoints(const Eigen::MatrixXd& displacement, std::size_t k,
                  PointDisplacements& points) {
   if (displacement.rows() != points.displacement.rows() ||
@@ -97,7 +97,7 @@ PreparedEstimator::PreparedEstimator(const Estimator& estimator,
   CheckOptions(options);
   CheckLoads(state_->scene);
   CheckSupported(estimator, state_->scene, options);
-  // Of the scene and options that stay where they are.
+  // The preparation refers to a scene and options that stay where they are.
   state_->preparation = estimator.DoPrepare(state_->scene, state_->options);
 }
 

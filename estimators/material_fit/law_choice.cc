@@ -39,7 +39,7 @@ struct MeasuredStiffness {
   Eigen::MatrixXd weights;
 };
 
-// Of a law, one for each material of the scene, which has some.
+// Makes each material of the scene, which has some, one of this law.
 std::vector<Material> MaterialsOf(std::string_view law, std::size_t num_axes,
                                   const std::vector<Material>& materials) {
   std::vector<Material> of_law;
@@ -100,7 +100,7 @@ Eigen::MatrixXd UnitsInScene(const Law& law, const Eigen::Matrix3d& frame) {
   return units;
 }
 
-// The same of all materials, of all their moduli.
+// Returns the units of all moduli of all materials.
 Eigen::MatrixXd UnitsInScene(const std::vector<Material>& materials) {
   const MaterialParameters all(materials, kSolid);
   const MaterialFrames frames(materials, 3);
@@ -228,8 +228,8 @@ Scene WithNoiseOfCases(const Scene& scene, const MaterialFit& fit) {
   return whitened;
 }
 
-// Of noise that is at least this part of the displacements: rounding, and where
-// the descent ends, are no noise.
+// The noise counts as this part of the displacements at least: rounding, and
+// where the descent ends, are no noise.
 Eigen::MatrixXd CovarianceOf(const MaterialFit& fit, const Scene& scene,
                              const EstimatorOptions& options) {
   constexpr double kLeastPart = 1e-5;
@@ -323,7 +323,8 @@ ChosenLaw ChooseLaw(const Scene& scene, const EstimatorOptions& options) {
 }
 
 void EnterLawChoice(const ChosenLaw& choice, Estimate& estimate) {
-  // Of ratios of probabilities of e^3, 20, which are evidence.
+  // This is twice the logarithm of a ratio of probabilities of 20, which is
+  // evidence.
   constexpr double kEvidence = 6;
   estimate.laws = choice.laws;
   estimate.work = estimate.work + choice.work;

@@ -273,7 +273,7 @@ std::vector<MemberSpread> SpreadOfMembers(
   const Constraints constraints(groups, variables);
   const Eigen::MatrixXd& covariance = estimate.covariance;
   const Eigen::Index n = covariance.cols();
-  // Of x - x_0 in x.
+  // The part of x - x_0 that lies in x.
   Eigen::MatrixXd projection = Eigen::MatrixXd::Zero(n, n);
   if (constraints.Size() > 0) {
     const Eigen::MatrixXd rows = constraints.Differences(covariance);

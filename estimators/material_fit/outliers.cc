@@ -16,9 +16,9 @@
 namespace elastimate {
 namespace {
 
-// That of any false one in a measurement.
+// The probability of any false outlier in a measurement.
 constexpr double kProbability = 0.05;
-// Of a residual over the measurement, whose norm is 1: that of exact data.
+// Exact data leave no more of a measurement of norm 1 than this.
 constexpr double kExactData = 1e-9;
 
 Outlier OutlierAt(const Scene& scene,

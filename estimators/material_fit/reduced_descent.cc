@@ -14,15 +14,15 @@
 namespace elastimate {
 namespace {
 
-// Of a standard error: the step that is left at a minimum, and what the errors
-// of u and of the adjoint may change it by.
+// The step that is left at a minimum, and what the errors of u and of the
+// adjoint may change it by, in standard errors.
 constexpr double kLargestStep = 0.02;
 constexpr double kStepAccuracy = 0.01;
 // The standard deviation of a row that counts as noise at least, where the norm
 // of all rows is 1: exact displacements are fitted to a part of it.
 constexpr double kNoiseOfExactData = 1e-8;
-// Of a standard error: what is less certain than by a factor of e^3 is not
-// determined, whatever the gradient is.
+// What is less certain than by a factor of e^3 is not determined, whatever the
+// gradient is.
 constexpr double kUndetermined = 3;
 constexpr double kSensitivityAccuracy = 1e-4;
 constexpr int kMostIterationsNearby = 8;
@@ -35,8 +35,8 @@ class ReducedDescent {
 
   /// False where the stiffness is singular.
   bool SetPole(const Eigen::VectorXd& x);
-  /// The same at typical values, where the model is solved at these but for
-  /// the scale; empty where displacements oppose the loads.
+  /// Sets the pole at typical values, where the model is solved but for the
+  /// scale; empty where displacements oppose the loads.
   std::optional<Eigen::VectorXd> SetTypicalPole();
   int NumPoles() const { return num_poles_; }
   /// Whether the last minimum is farther from the pole than the reduced model
@@ -61,7 +61,8 @@ class ReducedDescent {
   }
 
  private:
-  /// Those of the variables, and how far from the pole the model is trusted.
+  /// Returns the bounds of the variables, narrowed to where the model is
+  /// trusted.
   std::vector<Bounds> TrustBounds() const;
   double Noise(const Eigen::VectorXd& residual) const;
   Eigen::MatrixXd WithoutHeld(const Eigen::MatrixXd& displacement) const {

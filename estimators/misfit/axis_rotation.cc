@@ -58,7 +58,7 @@ Eigen::MatrixXd RowsOfRotations(const Scene& scene,
                                 const std::vector<TurnedMaterial>& all,
                                 const Eigen::VectorXd& x,
                                 DisplacementMisfit& misfit) {
-  // Of a polynomial in cosines and sines, to 1e-8.
+  // The slope of a polynomial in cosines and sines is right to 1e-8 with this.
   constexpr double kStep = 1e-4;
   const Eigen::VectorXd moduli = misfit.Free().ModuliAt(x);
   const Eigen::MatrixXd& displacement = misfit.Model().Displacement();

@@ -42,7 +42,7 @@ Eigen::MatrixXd ScaledJacobian(const FreeParameters& free,
   return jacobian;
 }
 
-// As far as the bounds allow.
+// Moves x as far as the bounds allow.
 Eigen::VectorXd Moved(const FreeParameters& free, const Eigen::VectorXd& x,
                       const Eigen::VectorXd& move) {
   Eigen::VectorXd moved = x + move;
@@ -101,15 +101,16 @@ struct Combination {
   Eigen::VectorXd a;
   double variance;    ///< a^T (S^T S)^-1 a, where the noise is 1.
   double square_sum;  ///< The least at the combination as it is.
-  /// That of the square sum: zero but on a bound, and where a loss leaves rows
-  /// whose rounding is large beside the noise.
+  /// How the square sum rises with the combination: zero but on a bound, and
+  /// where a loss leaves rows whose rounding is large beside the noise.
   double slope;
 };
 
 // What is found where the combination is moved.
 struct Look {
-  double rise;  ///< Of the square sum, over that of a quadratic misfit.
-  Eigen::VectorXd bend;  ///< Of the others, off those of the linear model.
+  double
+      rise;  ///< What the square sum rises by, over what a quadratic one would.
+  Eigen::VectorXd bend;  ///< How far the others are off the linear model.
 };
 
 // Empty where there is no model.

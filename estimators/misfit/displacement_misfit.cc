@@ -21,9 +21,9 @@ std::optional<DisplacementMisfit::ScaleFit> IfPositive(
              : std::nullopt;
 }
 
-// Of iterative solutions, relative in the energy norm.  What finer elements
-// change is a thousandth of a displacement at least where it matters; the
-// elimination of motions asks for more.
+// Returns the error that iterative solutions may have, relative in the energy
+// norm.  What finer elements change is a thousandth of a displacement at least
+// where it matters; the elimination of motions asks for more.
 double ToleranceFor(const Scene& scene) {
   constexpr double kOfDisplacements = 1e-5;
   return HasUnknownMotion(scene) ? StiffnessSolver::kAccurate

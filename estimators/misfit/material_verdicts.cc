@@ -128,10 +128,11 @@ void DescribeResiduals(const Scene& scene, const MinimumErrors& errors,
   }
 }
 
-// Those that take part in the same directions, which are orthonormal columns.
+// Groups those that take part in the same directions, which are orthonormal
+// columns.
 std::vector<std::vector<Eigen::Index>> TogetherIn(
     const Eigen::MatrixXd& directions) {
-  // Of an entry of the projector that is there.
+  // An entry of the projector that is larger is there.
   constexpr double kLeast = 0.2;
   const Eigen::MatrixXd projector = directions * directions.transpose();
   std::vector<std::vector<Eigen::Index>> groups;

@@ -61,7 +61,7 @@ Eigen::VectorXd CautiousChange(const SpaceChange& change,
   return cautious;
 }
 
-// Of a mesh error that is taken for small.
+// Returns the variance of a mesh error that is taken for small.
 double LeastVariance(const FreeParameters& free, Eigen::Index variable) {
   return std::pow(
       0.5 * (IsModulus(free, variable) ? kLimits.notable_youngs_modulus_error

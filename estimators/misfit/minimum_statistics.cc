@@ -116,8 +116,8 @@ double ExcessOfResultants(const Eigen::VectorXd& rows,
   return std::max(1.0, evidence.resultant_misfit->Excess());
 }
 
-// Of the errors up to which a variable is determined, how many it has
-// beforehand, and how many say that the data added nothing.
+// A variable has so many of the errors up to which it counts as determined
+// beforehand, and so many say that the data added nothing.
 constexpr double kErrorsBeforehand = 30;
 constexpr double kUnknownErrors = 15;
 
@@ -240,7 +240,8 @@ void EnterIdentifiabilityAngle(const FreeParameters& free,
   }
 }
 
-// Of one isotropic material, in which either parameter may be known.
+// Enters the correction of one isotropic material, in which either parameter
+// may be known.
 void EnterCorrection(const FreeParameters& free,
                      const Eigen::VectorXd& correction, Estimate& estimate) {
   Eigen::Vector2d of_both = Eigen::Vector2d::Zero();
@@ -396,7 +397,7 @@ struct Minimum {
   Eigen::MatrixXd sensitivities;
 };
 
-// Of variables that the data say nothing of, the errors are not known.
+// The errors of variables that the data say nothing of are not known.
 void EnterErrorsOfKnown(const FreeParameters& free, const MinimumErrors& errors,
                         Estimate& estimate) {
   const Eigen::ArrayXd limits = LargestErrorsOfVariables(free).array();

@@ -21,7 +21,8 @@ constexpr Eigen::Index kMostColumnsAnew = kColumnsAtATime;
 constexpr Eigen::Index kMostColumns = 400;
 constexpr Eigen::Index kMostEntries = 20'000'000;
 constexpr int kMostIterations = 2000;
-// Of a square sum, and of eigenvalues of A^T A, relative to the largest.
+// Rounding makes this part of a square sum, and of the largest eigenvalue of
+// A^T A.
 constexpr double kRoundingOfRows = 1e-14;
 constexpr double kDependentAmounts = 1e-13;
 

@@ -10,7 +10,7 @@ namespace {
 
 // A ratio of informations that comes from rounding.
 constexpr double kRoundingOfInformation = 1e-13;
-// Of a combination, along directions that are not determined.
+// A combination with less along directions that are not determined has none.
 constexpr double kNoPartOfCombination = 1e-6;
 constexpr double kRoundingOfErrors = 1e-6;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

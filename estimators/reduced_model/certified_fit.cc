@@ -41,8 +41,8 @@ double NuAtDistance(double nu, double distance) {
   return PoissonRatioOfLogStiffnessRatio(LogStiffnessRatio(nu) + distance);
 }
 
-// Of iterative solves: an inexact vector counts by its share of the response,
-// which is about the present error.
+// Returns the tolerance of iterative solves: an inexact vector counts by its
+// share of the response, which is about the present error.
 double SolveTolerance(double error, double limit) {
   constexpr double kUsualLimit = 1e-6;
   constexpr double kShare = 0.1;

@@ -10,8 +10,8 @@
 namespace elastimate {
 namespace {
 
-// Of vectors of unit energy: what others leave less than this of, and
-// combinations that have less, are rounding.
+// Vectors of unit energy of which others leave less than this, and combinations
+// that have less, are rounding.
 constexpr double kRoundingOfRest = 1e-20;
 constexpr double kRoundingOfCombination = 1e-12;
 

@@ -236,7 +236,8 @@ Eigen::MatrixXd SquareRoot(const Eigen::MatrixXd& covariance) {
 struct Scatter {
   // chi^2 per degree of freedom over the noise, of each parameter.
   Eigen::ArrayXd over_noise;
-  // Of as large a scatter of any parameter, by all errors of the frames.
+  // How probable as large a scatter of any parameter is by the errors of the
+  // frames.
   double p_value = 1;
   std::size_t farthest = 0;  // The number of the frame that is.
 
@@ -435,7 +436,8 @@ void EnterOneIsotropicMaterial(Estimate& estimate) {
       IfFinite(estimate.error_budget.discretization(1));
 }
 
-// Those that more than half of the used frames have, as the first has them.
+// Adds the findings that more than half of the used frames have, as the first
+// has them.
 void AddSharedFindings(const std::vector<UsedFrame>& frames,
                        Estimate& estimate) {
   std::map<FindingCode, std::size_t> counts;

@@ -11,7 +11,7 @@
 namespace elastimate {
 namespace {
 
-// Of a variable without a bound: ln of a million.
+// A variable without a bound may change by the logarithm of a million.
 constexpr double kLargestChange = 14;
 
 // All residuals, of one block for each variable, so that each may be held.

@@ -143,7 +143,7 @@ PairSums SumPairs(const std::vector<RowsOfComponent>& all,
   return sums;
 }
 
-// Of rho = share exp(-d^2 / 2 X^2) at two squares of distances.
+// Finds rho = share exp(-d^2 / 2 X^2) from two squares of distances.
 void FillSmoothed(double first, double next, const Eigen::Vector2d& squares,
                   Autocorrelation& correlation) {
   if (next >= first) {
