@@ -108,8 +108,7 @@ struct Combination {
 
 // What is found where the combination is moved.
 struct Look {
-  double
-      rise;  ///< What the square sum rises by, over what a quadratic one would.
+  double rise;  ///< The square sum rises to this part of a quadratic one.
   Eigen::VectorXd bend;  ///< How far the others are off the linear model.
 };
 
