@@ -59,7 +59,7 @@ SceneReading Read(const std::vector<std::string>& arguments) {
   return reading;
 }
 
-// That of --nu is that of each material of which none is known.
+// --nu holds for each material of which no Poisson's ratio is known.
 void GiveKnownPoissonRatio(Scene& scene, EstimatorOptions& options) {
   if (!options.known_poisson_ratio || IsOneIsotropicMaterial(scene.materials)) {
     return;
@@ -121,7 +121,7 @@ Estimate RunEstimator(const Estimator& estimator, const Scene& scene,
   }
 }
 
-// Of the flags, all of which are checked before anything is read.
+// Takes the flags, all of which are checked before anything is read.
 EstimatorOptions CheckFlags(const std::vector<std::string>& arguments) {
   EstimatorOptions options = OptionsFromFlags();
   OriginFromFlag();

@@ -17,8 +17,8 @@ EstimatorOptions OptionsFromFlags();
 /// std::invalid_argument for any other word.
 std::optional<Origin> OriginFromFlag();
 
-/// That of --solver.  Throws std::invalid_argument for any other word, and for
-/// multigrid where it is not there.
+/// Returns the solver of --solver.  Throws std::invalid_argument for any other
+/// word, and for multigrid where it is not there.
 SolverKind SolverFromFlag();
 
 /// Throws std::invalid_argument unless --nu is a Poisson's ratio.

@@ -38,7 +38,7 @@ Scene FlagsNamed(Make make) {
   }
 }
 
-// That of --elements, or `otherwise` where it is not given.
+// Returns the kind of --elements, or `otherwise` where it is not given.
 ElementKind KindFromFlag(ElementKind otherwise) {
   if (!IsGiven("elements")) {
     return otherwise;

@@ -12,7 +12,7 @@
 namespace elastimate {
 namespace {
 
-// Of the fit of no symmetry with which all laws are compared.
+// Speaks of the fit without symmetry with which all laws are compared.
 std::size_t NumStiffnesses(const Scene& scene) {
   return AnisotropicLaw().Parameters().size() *
          std::max<std::size_t>(scene.materials.size(), 1);

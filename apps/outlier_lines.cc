@@ -9,7 +9,7 @@
 namespace elastimate {
 namespace {
 
-// As many as a sentence is read to the end with.
+// A sentence with so many is read to the end.
 constexpr std::size_t kMostLines = 10;
 
 }  // namespace

@@ -30,7 +30,7 @@
 namespace elastimate {
 namespace {
 
-// Of the rms displacement, where nothing is known of the noise.
+// The noise is this part of the rms displacement where nothing is known of it.
 constexpr double kUsualNoise = 0.01;
 // Below, a residual is one of simulated data, and says nothing of a measurement
 // to come.
@@ -140,7 +140,7 @@ void TakeNoiseFrom(const Estimate& estimate, Scene& before, PlanBasis& basis) {
   }
 }
 
-// Those of the flags, of the measurement, or typical ones.
+// Takes the parameters of the flags, of the measurement, or typical ones.
 Eigen::VectorXd ChooseParameters(SolverKind solver, Scene& before,
                                  PlanBasis& basis) {
   basis.is_scale_known = true;

@@ -15,7 +15,7 @@
 namespace elastimate {
 namespace {
 
-// Of a frame that no estimator has seen.
+// The row of a frame that no estimator has seen.
 Estimate NotRun(const std::string& why) {
   Estimate estimate;
   estimate.message = why;
@@ -87,7 +87,7 @@ Eigen::VectorXd ResidualOf(const Scene& scene, LoadCase frame,
   return residual.reshaped();
 }
 
-// Of the components that both frames have.
+// Compares the components that both frames have.
 void CompareWith(const Eigen::VectorXd& before, const Eigen::VectorXd& residual,
                  FrameEstimate& frame) {
   if (before.size() == 0 || before.size() != residual.size()) {

@@ -92,7 +92,7 @@ void AddErrors(const Estimate& estimate, std::ostringstream& text) {
   }
 }
 
-// Of one isotropic material.
+// The lines of one isotropic material.
 void AddElasticity(const Estimate& estimate, std::ostringstream& text) {
   const IsotropicElasticity& elasticity = estimate.elasticity;
   Line("Young's modulus E",
@@ -301,7 +301,7 @@ std::string ListOf(const std::vector<int>& regions) {
   return list;
 }
 
-// Those that were taken, and the nearest that was not.
+// The merges that were taken, and the nearest that was not.
 void AddMerges(const std::vector<RegionMerge>& merges,
                std::ostringstream& text) {
   for (const RegionMerge& merge : merges) {
@@ -316,7 +316,7 @@ void AddMerges(const std::vector<RegionMerge>& merges,
   }
 }
 
-// Those that were compared, the best first.
+// The laws that were compared, the best first.
 void AddLaws(const std::vector<LawComparison>& laws, std::ostringstream& text) {
   for (const LawComparison& law : laws) {
     Line(&law == laws.data() ? "law chosen" : "not",

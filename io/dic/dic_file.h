@@ -16,9 +16,9 @@ struct DicFrame {
   std::string format;
   Eigen::Matrix2Xd positions;        ///< [length]
   Eigen::Matrix2Xd displacement;     ///< [length]
-  std::vector<std::size_t> lines;    ///< Of the file, one for each point.
+  std::vector<std::size_t> lines;    ///< Where each point stands in the file.
   Eigen::Index num_invalid = 0;      ///< Points that were left out.
-  std::vector<std::string> notices;  ///< Of units.
+  std::vector<std::string> notices;  ///< What is said of units.
 };
 
 /// The points of a table (ReadPointRows) without those that have no finite

@@ -18,7 +18,7 @@
 namespace elastimate {
 namespace {
 
-// Of points, beside the least distance between two of them.
+// Points may differ by this, beside the least distance between two of them.
 constexpr double kSamePosition = 1e-3;
 
 double LeastDistance(const Eigen::Matrix2Xd& points) {

@@ -25,11 +25,11 @@ namespace {
 
 using Elements = std::vector<std::vector<int>>;
 
-// Of a grid, beside its spacing.
+// A grid may be uneven by this, beside its spacing.
 constexpr double kOffGrid = 0.02;
 // The least height of a triangle of the rim over its longest edge.
 constexpr double kLeastHeight = 0.2;
-// The same of points on a line.
+// Points on a line may be off it by this.
 constexpr double kFlat = 1e-6;
 // An edge over the one that nine of ten are shorter than, from which on it
 // bridges a gap.
@@ -145,8 +145,8 @@ std::vector<GridPlace> TakeGap(const GridPlace& first,
   return gap;
 }
 
-// Of `empty`, the places that lie between two points of the same column (axis
-// 1) or row (axis 0), `most` places at most.
+// Returns the places of `empty` that lie between two points of the same column
+// (axis 1) or row (axis 0), `most` places at most.
 std::set<GridPlace> BetweenPoints(const PointGrid& grid,
                                   const std::set<GridPlace>& empty,
                                   std::size_t axis, long long most) {
@@ -361,7 +361,7 @@ PointMesh Number(ElementKind kind, const Elements& elements) {
 Eigen::Matrix2Xd LostPoints(const Eigen::Matrix2Xd& positions) {
   // More in a row are a hole.
   constexpr std::size_t kMostLost = 4;
-  // Of the box of a grid, that points fill.
+  // Points fill this share of the box of a grid at least.
   constexpr long long kSparsest = 8;
   const std::optional<PointGrid> grid = GridOf(positions);
   if (!grid) {

@@ -13,7 +13,7 @@ namespace elastimate {
 struct PointMesh {
   ElementKind kind = ElementKind::kTri3;
   std::vector<Eigen::Index> points;  ///< The point of each node, ascending.
-  Eigen::MatrixXi elements;          ///< Of nodes, counterclockwise.
+  Eigen::MatrixXi elements;          ///< Their nodes, counterclockwise.
   double max_edge = 0;               ///< As given, or as found.
 };
 

@@ -30,7 +30,7 @@ constexpr double kMaxCellAspect = 1e5;
 constexpr int kMaxPlateCells = 1414;
 // Beyond, the cells beside a corner are slivers.
 constexpr double kMaxPlateAspect = 100;
-// Of the shorter edge: a ligament of nothing would be left beyond.
+// A hole may take this part of the shorter edge: no ligament is left beyond.
 constexpr double kLargestHole = 0.99;
 // Of W.
 constexpr double kUsualElongation = 1e-3;
@@ -71,7 +71,7 @@ void CheckForce(const Eigen::VectorXd& force) {
           "the largest must be " + Range() + ", or all zero");
 }
 
-/// Of a grid of cells, each cut into no more than five elements.
+/// Makes a grid of cells, each cut into no more than five elements.
 void CheckGrid(const Eigen::VectorXi& cells, const Eigen::VectorXd& size) {
   Require(cells.minCoeff() >= 1, "cells", CommaSeparated(cells),
           "each must be at least 1");
@@ -99,7 +99,7 @@ void CheckOptions(const CuboidOptions& options) {
   CheckForce(options.force);
 }
 
-/// Of a planar `geometry`.
+/// Makes the scene of a planar `geometry`.
 void CheckSheet(const std::string& geometry, ElementKind kind,
                 const Section& section) {
   Require(kind == ElementKind::kTri3 || kind == ElementKind::kQuad4, "elements",

@@ -215,7 +215,9 @@ std::string ElementTypeName(int type) {
   return name;
 }
 
-/// Of dimension 3 where there is one, else of dimension 2, and of one kind.
+/// The elements of dimension 3 count where there is one, else those of
+/// dimension
+// 2; all are of one kind.
 /// Null where there are none.
 const GmshKind* FindKind(const std::filesystem::path& path,
                          const GmshElements& elements) {

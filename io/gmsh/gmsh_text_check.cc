@@ -103,7 +103,7 @@ std::string WhyGmshTextIsDamaged(const std::filesystem::path& path) {
   TextSection section;
   std::string line;
   while (TakeLine(file, line)) {
-    // Of .msh or of .mesh.
+    // Which format it is: .msh or .mesh.
     if (line[0] == '$' || std::isupper(static_cast<unsigned char>(line[0]))) {
       const std::string damage = WhyDamaged(section, version);
       if (!damage.empty()) {

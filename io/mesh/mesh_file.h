@@ -23,9 +23,10 @@ struct FileArray {
 struct PhysicalGroup {
   int dimension;
   int number;
-  std::string name;        ///< Empty when the file gives it no name.
-  std::vector<int> nodes;  ///< Of its elements; ascending, without repeats.
-  /// Those of its elements that have the nodes of a face of the mesh's elements
+  std::string name;  ///< Empty when the file gives it no name.
+  std::vector<int>
+      nodes;  ///< The nodes of its elements; ascending, without repeats.
+  /// Its elements that have the nodes of a face of the mesh's elements
   /// (in a planar mesh, of an edge): num_nodes_of_face x num_facets.
   Eigen::MatrixXi facets;
 };
@@ -72,7 +73,7 @@ struct MeshFile {
   Eigen::Array<bool, 1, Eigen::Dynamic> used;  ///< By an element.
   bool has_other_cells = false;  ///< Cells of lower dimension were ignored.
 
-  /// Of nodes that are rows of a table, their lines; else empty.
+  /// The lines of nodes that are rows of a table; else empty.
   std::vector<std::size_t> node_lines;
 
   bool is_vtk = true;

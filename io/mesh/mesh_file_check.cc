@@ -15,8 +15,8 @@
 namespace elastimate {
 namespace {
 
-// Of the extent of a planar mesh, and of the length of an edge: what positions
-// of single precision leave.
+// This part of the extent of a planar mesh, and of the length of an edge, is
+// what positions of single precision leave.
 constexpr double kSamePlace = 1e-6;
 
 void CheckHasElements(const MeshFile& mesh) {
@@ -146,7 +146,7 @@ void CheckMidEdgeNodes(const MeshFile& mesh) {
 // Puts mid-edge nodes that are beside straight edges by rounding into the
 // middle, or leaves all where they are and makes the elements curved.
 void StraightenOrCurve(MeshFile& mesh) {
-  // Of the length of an edge: what positions of six digits leave.
+  // Positions of six digits leave this part of the length of an edge.
   constexpr double kRounded = 1e-3;
   // Positions of single precision far from the origin may leave more.  A
   // position and the mean of two others err by half a unit in the last place

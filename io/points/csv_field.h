@@ -11,7 +11,7 @@ namespace elastimate {
 /// A vector per node.
 struct CsvField {
   Eigen::MatrixXd values;          ///< A column for each node.
-  std::vector<std::size_t> lines;  ///< Of the file, one for each node.
+  std::vector<std::size_t> lines;  ///< Where each node stands in the file.
 };
 
 /// Reads a table (ReadCsvTable) with a row for each node and no other columns

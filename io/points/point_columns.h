@@ -15,7 +15,7 @@ namespace elastimate {
 /// Where a table of points has what.
 struct PointColumns {
   std::string format;
-  /// Of x, y, u, v, or x, y, z, u, v, w.
+  /// The columns of x, y, u, v, or of x, y, z, u, v, w.
   std::vector<std::size_t> columns;
   /// A number below `least` in it marks a point as not found.
   std::optional<std::size_t> quality;

@@ -18,9 +18,9 @@ struct PointsFile {
   Eigen::MatrixXd displacement;  ///< dimension x n; nan: not measured.
   /// dimension x n, 1 where nothing was measured; empty without such columns.
   Eigen::MatrixXd noise_sd;
-  std::vector<std::size_t> lines;    ///< Of the file, one for each point.
-  std::string unit;                  ///< Of lengths; empty where none is known.
-  std::vector<std::string> notices;  ///< Of units.
+  std::vector<std::size_t> lines;  ///< Where each point stands in the file.
+  std::string unit;  ///< The unit of lengths; empty where none is known.
+  std::vector<std::string> notices;  ///< What is said of units.
 };
 
 /// The rows of a table of points (ReadTableOfPoints) in one unit of length
@@ -31,9 +31,9 @@ struct PointsFile {
 PointsFile ReadPointRows(const std::filesystem::path& path, int dimension,
                          const TableOptions& options);
 
-/// Those of them at which something was measured, without the others.  Throws
-/// as well where one of them has no position, an infinite displacement or no
-/// positive standard deviation, one is there twice, or there is none.
+/// Returns the points at which something was measured, without the others.
+/// Throws as well where one of them has no position, an infinite displacement
+/// or no positive standard deviation, one is there twice, or there is none.
 PointsFile ReadPointsFile(const std::filesystem::path& path, int dimension,
                           const TableOptions& options = {});
 

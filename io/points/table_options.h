@@ -18,7 +18,7 @@ struct TableOptions {
   /// The titles of x, y, u, v, or x, y, z, u, v, w, for any other format.  They
   /// may have a unit where those of the table have none.
   std::vector<std::string> columns;
-  /// That of the scene; without it, that of the table.
+  /// The unit of the scene; without it, that of the table.
   std::optional<LengthUnit> unit;
   /// For columns in pixels.
   std::optional<double> length_per_pixel;

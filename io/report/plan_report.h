@@ -23,7 +23,7 @@ struct PlanBasis {
   bool is_scale_known;
   std::optional<double> noise_sd;  ///< [length]; empty: relative.
   double relative_noise;
-  /// Of each candidate, its load case in the scene, from 1 on; 0 for those that
+  /// The load case of each candidate in the scene, from 1 on; 0 for those that
   /// are not in it.
   std::vector<int> load_case_of_candidate;
 };

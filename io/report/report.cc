@@ -163,7 +163,7 @@ Json MatrixJson(const Eigen::MatrixXd& matrix) {
   return rows;
 }
 
-// Of each material that is not isotropic.
+// Says what is known of each material that is not isotropic.
 Json StiffnessJson(const Estimate& estimate) {
   Json stiffnesses = Json::array();
   for (const StiffnessEstimate& stiffness : estimate.stiffnesses) {
@@ -175,7 +175,7 @@ Json StiffnessJson(const Estimate& estimate) {
   return stiffnesses;
 }
 
-// Of each material whose axis was to be found.
+// Says what is known of each material whose axis was to be found.
 Json AxesJson(const Estimate& estimate) {
   Json axes = Json::array();
   for (const AxisEstimate& axis : estimate.axes) {
@@ -284,7 +284,7 @@ Json DiagnosticsJson(const Estimate& estimate) {
           {"warnings", estimate.Sentences(Severity::kWarning)}};
 }
 
-// Those of several, in their order.
+// Says what is known of several materials, in their order.
 Json MaterialsJson(const Estimate& estimate) {
   Json materials = Json::array();
   for (const MaterialEstimate& material : estimate.materials) {

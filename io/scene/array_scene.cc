@@ -124,7 +124,7 @@ LoadCase ReadLoadCase(const MeshFile& mesh, int number,
   return load_case;
 }
 
-/// Of the first load case and of the numbered ones that follow without a gap.
+/// The first load case comes first, then the numbered ones without a gap.
 int CountLoadCases(const MeshFile& mesh) {
   int count = 1;
   const auto has_next = [&](const std::string& name) {

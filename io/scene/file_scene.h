@@ -20,7 +20,7 @@ struct FileScene {
   Scene scene;
   std::vector<std::string> notices;
   std::optional<FrameSeries> frames;
-  /// Of each load case, where its measurement stands, in the order of nodes or
+  /// Where the measurement of each load case stands, in the order of nodes or
   /// of points; empty where that is no text.
   std::vector<std::vector<FileLines>> measured_lines;
   /// The cell arrays that materials have axes from.

@@ -78,7 +78,7 @@ double RelativeError(const JsonValue& value) {
   return error;
 }
 
-// Of each resultant, the standard deviation over the size of its force, where
+// The standard deviation of each resultant over the size of its force, where
 // it is given so.
 std::vector<std::optional<double>> RelativeErrors(const JsonValue& load_case) {
   std::vector<std::optional<double>> errors;

@@ -38,7 +38,7 @@ class MeasurementReader {
   const MeshFile& mesh_;
   const Mesh& scene_mesh_;
   std::optional<PointLocator> locator_;  ///< Made when there are points.
-  std::string unit_;                     ///< Of the points that were read.
+  std::string unit_;  ///< The unit of the points that were read.
 };
 
 }  // namespace elastimate

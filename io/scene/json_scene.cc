@@ -128,7 +128,7 @@ LoadCase ReadLoadCase(const JsonValue& value, const LoadContext& of_scene,
   return load_case;
 }
 
-/// Of a mesh that was made of measured points, which may end within the
+/// Speaks of a mesh that was made of measured points, which may end within the
 /// specimen.
 void AllowForMarginOf(const JsonValue& mesh, FileScene& file_scene) {
   if (!mesh.IsObject()) {

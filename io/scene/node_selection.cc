@@ -84,7 +84,8 @@ std::vector<const PhysicalGroup*> FindGroups(const JsonValue& name,
   return groups;
 }
 
-/// Of its vertices, which are the first of its nodes; -1 where there are fewer.
+/// Counts its vertices, which are the first of its nodes; -1 where there are
+/// fewer.
 std::array<int, 4> SortedVertices(const MeshFile& mesh,
                                   const Eigen::MatrixXi& facets,
                                   Eigen::Index facet) {

@@ -151,7 +151,7 @@ class SceneNodes {
     return scene;
   }
 
-  /// Of a measurement of all nodes.
+  /// Reads a measurement of all nodes.
   FileLines Filter(const FileLines& all) const {
     FileLines lines = {all.file, {}};
     for (const Eigen::Index node : kept_) {
@@ -210,7 +210,7 @@ class SceneNodes {
   void Renumber(Eigen::MatrixXi& nodes) const {
     nodes = nodes.unaryExpr([this](int node) { return position_[node]; });
   }
-  // Of nodes some of which may have been selected without being used.
+  // Speaks of nodes some of which may have been selected without being used.
   void Renumber(std::vector<int>& nodes) const {
     std::vector<int> kept;
     for (const int node : nodes) {

@@ -25,16 +25,16 @@ struct SectionChoice {
 
 /// Which materials the regions of a mesh have.
 enum class RegionChoice {
-  kAsGiven,      ///< Those of the scene.json, else one isotropic one.
+  kAsGiven,      ///< As the scene.json says, else one isotropic one.
   kOne,          ///< One isotropic one, whatever the scene says.
   kEach,         ///< An isotropic one for each region id.
-  kGivenOrEach,  ///< Those of the scene.json, else one for each region id.
+  kGivenOrEach,  ///< As the scene.json says, else one for each region.
 };
 
 /// The law of all materials of a scene.
 struct LawChoice {
   std::string law;  ///< Empty: of each as it is given, else isotropic.
-  /// Of 3 components, or 2 in the plane; empty: as they are given.
+  /// Has 3 components, or 2 in the plane; empty: as they are given.
   std::vector<Eigen::VectorXd> axes;
   /// Whether the axis is to be found, whatever axes are given.
   bool has_free_axis = false;
@@ -52,7 +52,7 @@ struct SceneReading {
   std::vector<int> file_order;
   /// Empty but where a scene.json has the key "frames".
   std::optional<FrameSeries> frames;
-  /// Of each load case, where its measurement stands, in the order of nodes or
+  /// Where the measurement of each load case stands, in the order of nodes or
   /// of points; empty where that is no text.
   std::vector<std::vector<FileLines>> measured_lines;
   /// The cell arrays that the scene.json names as axes of materials, one column

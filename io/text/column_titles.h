@@ -39,8 +39,8 @@ class ColumnTitles {
   /// those whose titles differ from it by the unit that one of them has and the
   /// other has not.
   std::vector<std::size_t> Find(std::string_view title) const;
-  /// As before; where there is none, those that are the same to PlainName, with
-  /// the same condition for units.
+  /// Finds them as before; where there is none, those that are the same to
+  /// PlainName, with the same condition for units.
   std::vector<std::size_t> FindAlike(std::string_view title) const;
 
   /// "x, y [mm], ...", for messages.

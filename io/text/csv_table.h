@@ -25,7 +25,7 @@ struct CsvTable {
   ColumnTitles titles;
   /// The cells of a row without numbers below the titles; may be fewer.
   std::vector<std::string> units;
-  std::vector<Row> rows;  ///< Of one cell for each column.
+  std::vector<Row> rows;  ///< Each has a cell for each column.
   char delimiter = ',';
 
   /// The place of a column by its title (ColumnTitles::FindAlike).  Throws

@@ -45,7 +45,7 @@ class JsonValue {
   bool Boolean() const;
   /// A list of so many numbers.
   Eigen::VectorXd Vector(Eigen::Index size) const;
-  /// Of how many items it is a list; 0 of anything else.
+  /// How many items it has as a list; 0 for anything else.
   Eigen::Index ListSize() const;
 
   /// The value without where it is.

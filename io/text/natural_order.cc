@@ -77,7 +77,7 @@ class NameReader {
     return parts;
   }
 
-  /// Of the numbers of a name, the most points in one.
+  /// Counts the most points in one of the numbers of a name.
   int MostPoints() {
     int most = 0;
     for (place_ = 0; place_ < name_.size(); ++place_) {

@@ -22,7 +22,7 @@ constexpr std::size_t kLongestSentence = 1000;
 std::string Printable(std::string_view text,
                       std::size_t longest = kLongestQuote);
 
-/// The same for a path.
+/// Makes a path printable likewise.
 inline std::string PrintablePath(const std::filesystem::path& path) {
   return Printable(path.string(), kLongestPath);
 }

@@ -169,7 +169,8 @@ struct ElementCells {
   std::vector<std::size_t> cells;
 };
 
-/// Of dimension 3 where there is one, else of dimension 2.
+/// The cells of dimension 3 count where there is one, else those of
+/// dimension 2.
 std::vector<std::size_t> CellsOfHighestDimension(const VtkGrid& grid) {
   std::array<int, 256> dimension_of_type;
   dimension_of_type.fill(-1);

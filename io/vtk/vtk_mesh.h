@@ -12,7 +12,7 @@ namespace elastimate {
 /// ElementKind.  Throws std::invalid_argument, naming the file.
 MeshFile ReadVtuMesh(const std::filesystem::path& path);
 
-/// The same from VTK's legacy format, text or binary.
+/// Reads VTK's legacy format, text or binary.
 MeshFile ReadLegacyVtkMesh(const std::filesystem::path& path);
 
 }  // namespace elastimate

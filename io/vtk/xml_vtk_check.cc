@@ -288,7 +288,7 @@ class XmlVtkCheck {
                : -1;
   }
 
-  /// The same for compressed data.
+  /// Checks compressed data likewise.
   double BlocksSize(std::int64_t position, bool is_base64, double num_blocks,
                     double block_size, double last_block_size) {
     const double available = Available(position);
@@ -371,7 +371,7 @@ class XmlVtkCheck {
   std::int64_t num_points_ = 0;
   std::int64_t num_cells_ = 0;
   XmlVtkFrame frame_;            ///< With the damage that was found first.
-  std::set<std::string> names_;  ///< Of the point or cell data walked over.
+  std::set<std::string> names_;  ///< In the point or cell data walked over.
 };
 
 }  // namespace
