@@ -24,8 +24,8 @@ struct PhysicalGroup {
   int dimension;
   int number;
   std::string name;  ///< Empty when the file gives it no name.
-  std::vector<int>
-      nodes;  ///< The nodes of its elements; ascending, without repeats.
+  /// The nodes of its elements; ascending, without repeats.
+  std::vector<int> nodes;
   /// Its elements that have the nodes of a face of the mesh's elements
   /// (in a planar mesh, of an edge): num_nodes_of_face x num_facets.
   Eigen::MatrixXi facets;
