@@ -23,7 +23,6 @@
 #include "apps/series.h"
 #include "apps/summary.h"
 #include "elastimate/core/materials/isotropic_law.h"
-#include "elastimate/core/materials/laws.h"
 #include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/estimators/material_fit/law_choice.h"
 #include "elastimate/estimators/material_fit/merge.h"
@@ -332,41 +331,6 @@ int RunEstimate(const std::vector<std::string>& arguments) {
   }
   return RunOne(arguments, *estimator, std::move(reading), options,
                 read_seconds, start, progress);
-}
-
-int RunMaterials(const std::vector<std::string>& arguments) {
-  if (!arguments.empty()) {
-    throw std::invalid_argument("materials takes no arguments" +
-                                ButGot(arguments));
-  }
-  std::string list;
-  for (const Law* const law : Laws()) {
-    list += std::string(law->Name()) +
-            std::string(34 - law->Name().size(), ' ') +
-            std::string(law->Description()) + ": ";
-    for (const LawParameter& parameter : law->Parameters()) {
-      list += (&parameter == &law->Parameters().front() ? "" : ", ") +
-              std::string(parameter.name) + " (" +
-              std::string(parameter.symbol) + ")";
-    }
-    list += "\n";
-  }
-  WriteStandardOutput(list);
-  return 0;
-}
-
-int RunEstimators(const std::vector<std::string>& arguments) {
-  if (!arguments.empty()) {
-    throw std::invalid_argument("estimators takes no arguments" +
-                                ButGot(arguments));
-  }
-  std::string list;
-  for (const std::string_view name : EstimatorNames()) {
-    list += std::string(name) + std::string(21 - name.size(), ' ') +
-            std::string(MakeEstimator(name)->Description()) + "\n";
-  }
-  WriteStandardOutput(list);
-  return 0;
 }
 
 void ApplyComputingFlags() {

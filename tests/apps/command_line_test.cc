@@ -109,7 +109,13 @@ TEST_F(CommandLine, VersionNamesTheBlasInUse) {
 TEST_F(CommandLine, ListsTheEstimators) {
   const std::string list = Succeed("estimators").output;
   for (const std::string_view name : EstimatorNames()) {
-    EXPECT_NE(list.find(std::string(name) + " "), std::string::npos) << list;
+    EXPECT_NE(list.find(std::string(name) + "\n"), std::string::npos) << list;
+  }
+  for (const std::string command : {"estimators", "materials"}) {
+    std::istringstream lines(Succeed(command).output);
+    for (std::string line; std::getline(lines, line);) {
+      EXPECT_LE(line.size(), 80U) << line;
+    }
   }
 }
 
