@@ -5,13 +5,13 @@
 #include <string>
 #include <utility>
 
-#include "benchmarks/facets_where.h"
 #include "elastimate/core/materials/anisotropic_law.h"
 #include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/materials/kelvin_law.h"
 #include "elastimate/core/materials/laws.h"
 #include "elastimate/core/materials/orthotropic_law.h"
 #include "elastimate/core/materials/transversely_isotropic_law.h"
+#include "elastimate/core/mesh/facets.h"
 #include "elastimate/estimators/plan/unit_loads.h"
 #include "elastimate/io/examples/example_scenes.h"
 
@@ -32,7 +32,7 @@ const Eigen::Vector3d kAcrossAxis(1, -1, 0);
 // Forces and moments on the end, and pressures on two sides.
 std::vector<std::vector<Load>> LoadsOfBar(const Mesh& mesh) {
   const auto facets_at = [&](int axis, double place) {
-    return FacetsWhere(mesh, [&mesh, axis, place](int node) {
+    return BoundaryFacetsWhere(mesh, [&mesh, axis, place](int node) {
       return std::abs(mesh.nodes(axis, node) - place) < 1e-9;
     });
   };

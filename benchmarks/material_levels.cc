@@ -6,8 +6,8 @@
 #include <sstream>
 #include <utility>
 
-#include "benchmarks/facets_where.h"
 #include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/mesh/facets.h"
 #include "elastimate/io/examples/example_scenes.h"
 
 namespace elastimate {
@@ -27,7 +27,7 @@ Scene StripUnder(const std::vector<Eigen::Vector2d>& forces) {
   options.section = {SectionModel::kPlaneStrain, 1};
   Scene scene = RectangleScene(options);
   const Mesh& mesh = scene.mesh;
-  const Eigen::MatrixXi end = FacetsWhere(mesh, [&](int node) {
+  const Eigen::MatrixXi end = BoundaryFacetsWhere(mesh, [&](int node) {
     return mesh.nodes(0, node) > kLength * (1 - 1e-9);
   });
   scene.load_cases.resize(forces.size());
@@ -219,7 +219,7 @@ MaterialLevel BarOfTenPieces(int cells) {
   options.size = {1, 1, kHeight};
   Scene specimen = CuboidScene(options);
   const Mesh& mesh = specimen.mesh;
-  const Eigen::MatrixXi end = FacetsWhere(mesh, [&](int node) {
+  const Eigen::MatrixXi end = BoundaryFacetsWhere(mesh, [&](int node) {
     return mesh.nodes(2, node) > kHeight * (1 - 1e-9);
   });
   specimen.load_cases.resize(1);

@@ -9,10 +9,10 @@
 #include <sstream>
 #include <utility>
 
-#include "benchmarks/facets_where.h"
 #include "benchmarks/trial.h"
 #include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
+#include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/mesh/mesh.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/loads.h"
@@ -59,8 +59,8 @@ Nodes NodesAt(const Mesh& mesh, double x) {
 
 Eigen::MatrixXi FacetsAtEnd(const Mesh& mesh, int axis) {
   const double end = mesh.nodes.row(axis).maxCoeff();
-  return FacetsWhere(mesh,
-                     [&](int node) { return mesh.nodes(axis, node) == end; });
+  return BoundaryFacetsWhere(
+      mesh, [&](int node) { return mesh.nodes(axis, node) == end; });
 }
 
 // Held at x = 0, without loads.

@@ -6,7 +6,7 @@
 #include <functional>
 #include <utility>
 
-#include "benchmarks/facets_where.h"
+#include "elastimate/core/mesh/facets.h"
 
 namespace elastimate {
 namespace {
@@ -33,8 +33,8 @@ Region In(const Vector3d& lower, const Vector3d& upper) {
 }
 
 Eigen::MatrixXi FacetsIn(const VoxelMesh& voxels, const Region& region) {
-  return FacetsWhere(voxels.mesh,
-                     [&](int node) { return region(voxels.grid.col(node)); });
+  return BoundaryFacetsWhere(
+      voxels.mesh, [&](int node) { return region(voxels.grid.col(node)); });
 }
 
 LoadedShape Pulled(std::string name, const Region& region,

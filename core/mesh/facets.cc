@@ -196,6 +196,19 @@ Eigen::MatrixXi BoundaryFacets(const Mesh& mesh) {
   return facets;
 }
 
+Eigen::MatrixXi BoundaryFacetsWhere(
+    const Mesh& mesh, const std::function<bool(int)>& accepts_node) {
+  const Eigen::MatrixXi all = BoundaryFacets(mesh);
+  std::vector<Eigen::Index> accepted;
+  for (Eigen::Index i = 0; i < all.cols(); ++i) {
+    const auto facet = all.col(i);
+    if (std::all_of(facet.begin(), facet.end(), accepts_node)) {
+      accepted.push_back(i);
+    }
+  }
+  return all(Eigen::all, accepted);
+}
+
 std::optional<Eigen::Index> FirstThatIsNoFace(const Mesh& mesh,
                                               const Eigen::MatrixXi& facets) {
   const ElementTopology& topology = mesh.Topology();

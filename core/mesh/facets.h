@@ -2,6 +2,7 @@
 #define ELASTIMATE_CORE_MESH_FACETS_H_
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 
 #include "elastimate/core/mesh/mesh.h"
@@ -18,6 +19,11 @@ namespace elastimate {
 /// right of the way from x0 to x1.  In the order of the elements that own them.
 /// O(num_elements).
 [[nodiscard]] Eigen::MatrixXi BoundaryFacets(const Mesh& mesh);
+
+/// The facets of BoundaryFacets, in their order, all of whose nodes are
+/// accepted.  O(num_elements).
+[[nodiscard]] Eigen::MatrixXi BoundaryFacetsWhere(
+    const Mesh& mesh, const std::function<bool(int)>& accepts_node);
 
 /// The first facet that is no face of any element, in any order of vertices
 /// around it, with the middles of its edges where elements are quadratic; empty

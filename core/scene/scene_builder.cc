@@ -108,17 +108,8 @@ Scene UnsupportedScene(Mesh mesh) {
 Eigen::MatrixXi FacetsInBox(const Mesh& mesh, const Eigen::VectorXd& lower,
                             const Eigen::VectorXd& upper) {
   const HeldBox box = MakeBox(mesh, lower, upper).box;
-  const Eigen::MatrixXi boundary = BoundaryFacets(mesh);
-  std::vector<Eigen::Index> chosen;
-  for (Eigen::Index facet = 0; facet < boundary.cols(); ++facet) {
-    const auto nodes = boundary.col(facet);
-    if (std::all_of(nodes.begin(), nodes.end(), [&](int node) {
-          return box.Contains(mesh.nodes.col(node));
-        })) {
-      chosen.push_back(facet);
-    }
-  }
-  return boundary(Eigen::all, chosen);
+  return BoundaryFacetsWhere(
+      mesh, [&](int node) { return box.Contains(mesh.nodes.col(node)); });
 }
 
 Traction TractionInBox(const Mesh& mesh, const Eigen::VectorXd& lower,
