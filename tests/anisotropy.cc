@@ -15,7 +15,7 @@ std::vector<std::array<int, 2>> PairsOfVoigt(Eigen::Index size) {
                    : std::vector<std::array<int, 2>>{{0, 0}, {1, 1}, {0, 1}};
 }
 
-// Of E_1, E_2, E_3, nu_12, nu_13, nu_23, G_12, G_13, G_23.
+// `p` is E_1, E_2, E_3, nu_12, nu_13, nu_23, G_12, G_13, G_23.
 Eigen::MatrixXd OrthotropicCompliance(const Eigen::VectorXd& p) {
   Eigen::MatrixXd s = Eigen::MatrixXd::Zero(6, 6);
   s(0, 0) = 1 / p(0);

@@ -87,7 +87,7 @@ Eigen::MatrixXd SolveDensely(const Eigen::MatrixXd& a,
 /// A^-1 of any matrix that has one, by LU: compiled once.
 Eigen::MatrixXd InvertDensely(const Eigen::MatrixXd& a);
 
-/// Of a symmetric matrix, in ascending order.
+/// Returns the eigenvalues of a symmetric matrix, in ascending order.
 Eigen::VectorXd SymmetricEigenvalues(const Eigen::MatrixXd& a);
 
 /// The free displacements of a load case, 3 num_nodes where all are free.

@@ -112,7 +112,8 @@ Mesh UndistortedMesh(const KindOfSection& parameter, int cells) {
   return mesh;
 }
 
-// Of order 2 where the parameter says so, with every node measured.
+// Makes a scene of order 2 where the parameter says so, with every node
+// measured.
 Scene RaisedScene(const KindOfSection& parameter, int cells,
                   const Scene& scene) {
   if (TopologyOf(parameter.kind).order == 1) {
@@ -301,7 +302,7 @@ void ForEachPointOf(
   });
 }
 
-// Of engineering shear strains.
+// Shears are engineering strains here.
 Eigen::MatrixXd StrainDisplacementOf(const Eigen::MatrixXd& gradients) {
   const Eigen::Index d = gradients.rows();
   Eigen::MatrixXd b =

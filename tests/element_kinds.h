@@ -19,7 +19,7 @@ struct KindOfSection {
 /// Each kind of three dimensions, and each planar one in plane strain and in
 /// plane stress.
 std::vector<KindOfSection> AllKindsOfSections();
-/// Those of them that have this dimension.
+/// Returns those that have this dimension.
 std::vector<KindOfSection> KindsOfDimension(int dimension);
 
 /// "quad4_plane_stress".

@@ -18,8 +18,7 @@ inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// the origin.
 Mesh BoxMesh(const Eigen::Vector3i& cells, const Eigen::Vector3d& size);
 
-/// The same mesh with its nodes moved by a smooth map: bent, twisted and
-/// tapered.
+/// Moves the nodes of a mesh by a smooth map: bent, twisted and tapered.
 Mesh Distorted(Mesh mesh);
 
 /// A scene of this mesh, held where z = 0 before any distortion (pass

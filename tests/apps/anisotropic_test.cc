@@ -111,7 +111,7 @@ TEST_F(AnisotropicCommand, TakesAnAxisFromACellArray) {
           .Json());
 }
 
-// Of a scene.json whose axes are a cell array, and of a mesh file.
+// The scene is a scene.json whose axes are a cell array, and then a mesh file.
 TEST_F(AnisotropicCommand, SimulatesWhatCanBeReadAgain) {
   const Scene scene = CuboidScene({});
   const Mesh& mesh = scene.mesh;

@@ -315,7 +315,8 @@ TEST_F(CommandLine, BoundsAndKnownValuesAreHonoured) {
     EXPECT_NEAR(bounded["poisson_ratio"].get<double>(), 0.3, 1e-9);
     EXPECT_EQ(bounded["diagnostics"]["active_bounds"],
               nlohmann::json({"nu_max"}));
-    // That of a fit without the bound, which the truth lies beyond.
+    // The error is that of a fit without the bound, which the truth lies
+    // beyond.
     EXPECT_GT(bounded["standard_error"]["poisson_ratio"].get<double>(), 0.01);
   }
 }
@@ -739,7 +740,7 @@ TEST_F(CommandLineErrors, RefusesToWriteToAnOpenFile) {
          "--json=.errors is where standard error goes");
   Refuse("estimate exact.vtu --json=/dev/fd/3 --out=link.vtu", "same file",
          ">.output 3>/dev/null");
-  // As a shell makes of >(command).
+  // A shell makes such a file of >(command).
   EXPECT_EQ(Run("estimate exact.vtu --json=/dev/fd/3 3>&1 >/dev/null",
                 "| cat >.output")
                 .Json()["usable"],
@@ -996,7 +997,7 @@ TEST_F(Signals, LeaveNoPartOfAnOutput) {
   }
 }
 
-// As nohup tells it.
+// The caller may be nohup.
 TEST_F(Signals, StayIgnoredWhereTheCallerSaysSo) {
   MakeExactScene();
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
@@ -1186,7 +1187,7 @@ TEST_F(ElementKinds, TakeTheSectionOfTheFlags) {
       "simulate g.vtu --youngs=7e10 --nu=0.33 --thickness=0.002 "
       "--model=plane_strain --out=m.vtu");
   ExpectFound("m.vtu", "", {{"model", "plane_strain"}, {"thickness", 0.002}});
-  // Of twice the thickness, the same forces need half of the stiffness.
+  // The same forces need half of the stiffness at twice the thickness.
   const nlohmann::json report =
       Succeed("estimate m.vtu --thickness=0.004 --json=-").Json();
   EXPECT_NEAR(report["youngs_modulus"].get<double>() / 3.5e10, 1, 1e-6);

@@ -26,7 +26,7 @@ namespace {
 
 using nlohmann::json;
 
-// Of numbers in sample outputs: another BLAS rounds otherwise.
+// Numbers in sample outputs may differ by this: another BLAS rounds otherwise.
 constexpr double kRounding = 1e-2;
 
 std::filesystem::path Source(const std::string& name) {
@@ -84,7 +84,7 @@ void ExpectAlike(const std::string& actual, const std::string& expected) {
   EXPECT_FALSE(actual_words >> word) << "\n" << actual << "\n" << expected;
 }
 
-/// Of the same keys, and alike; times and counts of work may differ.
+/// Expects the same keys and like values; times and counts of work may differ.
 void ExpectAlike(const json& actual, const json& expected) {
   ASSERT_STREQ(actual.type_name(), expected.type_name())
       << actual << " " << expected;

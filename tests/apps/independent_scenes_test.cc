@@ -114,7 +114,7 @@ TEST_F(Hook, TheClosedFormAgreesAndSaysThatItIsNotUsable) {
 
 // What linear elements of this mesh make of a specimen that is finer.
 TEST_F(Hook, LinearElementsAgreeInAFinerWorld) {
-  // The same loads, as nodal forces and as a body force.
+  // The loads are given as nodal forces, and as a body force.
   for (const std::string file :
        {"hook_finer_world.vtu", "hook_finer_world.json"}) {
     for (const std::string name : {"iterative-fe", "reduced-fe"}) {

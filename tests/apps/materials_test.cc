@@ -26,7 +26,7 @@ class MaterialsCommand : public testing::ProgramTest {
     testing::WriteText(folder_ / "truth.json", Parameters().dump());
   }
 
-  // Of regions 1, 2 and 3.
+  // The parameters of regions 1, 2 and 3.
   static Json Parameters() {
     Json list = Json::array();
     for (int region = 1; region <= 3; ++region) {
@@ -71,7 +71,7 @@ TEST_F(MaterialsCommand, SimulatesAndEstimatesEachRegion) {
     EXPECT_EQ(report["covariance"].size(), 6U);
     EXPECT_EQ(report["error_budget"]["noise"].size(), 6U);
   }
-  // Of what is not usable they say nothing of a region.
+  // Estimates that are not usable say nothing of a region.
   Succeed(
       "simulate block.vtu --regions=each --parameters=truth.json --noise=0.05 "
       "--out=noisy.vtu");

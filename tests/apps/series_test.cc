@@ -182,7 +182,7 @@ TEST_F(Series, TellsWhatFramesShare) {
   };
   EXPECT_FALSE(has_finding(alone));
   EXPECT_TRUE(has_finding(shared));
-  // As a fit of one frame: 5^(1/2) of the noise, of which 4/5 is shared by 6.
+  // A fit of one frame has 5^(1/2) of the noise, of which 4/5 is shared by 6.
   const auto error = [](const nlohmann::json& report) {
     return double(report["standard_error"]["poisson_ratio"]);
   };

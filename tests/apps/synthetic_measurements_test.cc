@@ -79,7 +79,7 @@ class SyntheticMeasurements : public testing::ProgramTest {
   }
 };
 
-/// Of the first load case along x, as simulate prints it.
+/// The force of the first load case along x, as simulate prints it.
 std::string PrintedForce(const testing::ProgramRun& run) {
   const std::string begin = "load case 1: force of the displaced supports (";
   EXPECT_EQ(run.output.substr(0, begin.size()), begin);

@@ -33,7 +33,7 @@ class MaterialsStudyRemade : public testing::ProgramTest {
     return own;
   }
 
-  // Of the rows of one factor by iterative-fe, in their order.
+  // Returns the rows of one factor by iterative-fe, in their order.
   std::vector<TableRow> Of(const std::string& factor) const {
     std::vector<TableRow> own;
     for (const TableRow& row : By("iterative-fe")) {

@@ -21,7 +21,7 @@ using testing::kYoungsModulusError;
 using testing::ReadTable;
 using testing::TableRow;
 
-// Of numbers with seven digits, of which one was subtracted.
+// Numbers with seven digits differ by this where one was subtracted.
 constexpr double kTableRounding = 1e-6;
 
 /// Trials by factor, level, estimator and seed.

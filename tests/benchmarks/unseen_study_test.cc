@@ -29,7 +29,7 @@ using testing::TableRow;
 using Rows = std::vector<TableRow>;
 using Condition = std::function<bool(const TableRow&)>;
 
-// Of numbers with seven digits, of which one was subtracted.
+// Numbers with seven digits differ by this where one was subtracted.
 constexpr double kSevenDigits = 1e-6;
 constexpr const char* kNoise = "displacement_deviation [1]";
 

@@ -223,7 +223,7 @@ TEST(MaterialsOfClosedForm, SaysWhenNoiseBiasesIt) {
 struct StatisticsCase {
   std::string estimator;
   double noise;
-  /// Of the root mean square error, in Cramer-Rao bounds.
+  /// The root mean square error may be so many Cramer-Rao bounds.
   double largest_ratio;
 };
 
@@ -246,7 +246,7 @@ TEST_P(MaterialsStatistics, StandardErrorsAreThoseOfTheErrors) {
     scene = exact;
     testing::AddNoise(GetParam().noise, seed, scene);
     if (seed == 1) {
-      // Of a fit of maximum likelihood, the standard errors are the bound.
+      // The standard errors of a fit of maximum likelihood are the bound.
       const Estimate fit = MakeEstimator("iterative-fe")->Run(scene, {});
       ASSERT_TRUE(fit.IsUsable()) << fit.message;
       bound = fit.parameter_covariance.diagonal().array().sqrt();

@@ -108,7 +108,7 @@ Sample PointsSample(const std::string& table) {
           "scene.json"};
 }
 
-/// As GOM Correlate writes it.
+/// GOM Correlate writes such a table.
 std::string GomTable() {
   return "# Units: length:mm\nstage;index;date\n\"Stage 2\";2;\"2024\"\n"
          "id;x [mm];y [mm];z [mm];displacement_x [um];displacement_y [um];"
@@ -310,7 +310,7 @@ TEST_P(DamagedFileTest, EndsWell) {
   }
 }
 
-/// Of so many trials, in suites that may run side by side.
+/// Makes so many trials, in suites that may run side by side.
 std::vector<Trials> TrialsBetween(int least, int most) {
   std::vector<Trials> trials;
   for (const Trials& of_format : AllTrials()) {

@@ -18,7 +18,7 @@ struct VtkEncoding {
   enum class Compression { kNone, kZlib, kLz4, kLzma } compression;
   bool is_64_bit;      ///< Header of the XML form.
   bool is_big_endian;  ///< Byte order of the XML form.
-  int version;         ///< Of the legacy form, e.g. 42.
+  int version;         ///< The version of the legacy form, e.g. 42.
 
   std::string Extension() const { return is_legacy ? ".vtk" : ".vtu"; }
 };

@@ -231,7 +231,7 @@ TEST(ErrorsInSpace, TurnAboutTheAxisOfTheRotation) {
   errors.rigid_motion << 1, 2, 3, third, third, third;
   EXPECT_LT((moved() - Eigen::Vector3d(1 + 6 - 4, 2 + 4 - 5, 3 + 5 - 6)).norm(),
             1e-13);
-  // Of a small turn, (1, 2, 3) + (0.1, 0.2, 0.3) x (4, 5, 6), to first order.
+  // A small turn gives (1, 2, 3) + (0.1, 0.2, 0.3) x (4, 5, 6), to first order.
   errors.rigid_motion << 1, 2, 3, 0.1e-6, 0.2e-6, 0.3e-6;
   EXPECT_LT(
       (moved() - Eigen::Vector3d(1 - 0.3e-6, 2 + 0.6e-6, 3 - 0.3e-6)).norm(),

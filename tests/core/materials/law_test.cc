@@ -125,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(Laws, LawConformance,
                            return name;
                          });
 
-// Of shear stresses that are so many times as large as they should be.
+// This law has shear stresses so many times as large as they should be.
 class WrongShear : public IsotropicLaw {
  public:
   WrongShear(double factor, double factor_of_transpose)

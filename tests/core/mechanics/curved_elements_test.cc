@@ -165,7 +165,7 @@ class RoundBodies : public ::testing::TestWithParam<Round> {
   Mesh MeshOf(int cells) const {
     return UnderPressure(GetParam(), cells, true).mesh;
   }
-  // Of a tube and a ring of length 0.5.
+  // The volume of a tube and of a ring of length 0.5.
   double Volume() const {
     return GetParam() == Round::kBall ? M_PI / 6 * 7 : 0.5 * M_PI / 4 * 3;
   }
@@ -342,7 +342,7 @@ TEST(CurvedElements, MayNotFoldOntoThemselves) {
   EXPECT_THROWS_WITH(ValidateMesh(mesh), "order its nodes as VTK does");
 }
 
-// As at the tip of a crack: the map is singular at a vertex, and only there.
+// The map is singular at a vertex, as at the tip of a crack, and only there.
 TEST(CurvedElements, MayHaveNodesAtTheQuarterOfEdges) {
   Mesh mesh = OneTriangle();
   mesh.nodes.col(3) << 0.25, 0;

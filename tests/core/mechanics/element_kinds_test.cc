@@ -1,4 +1,4 @@
-// Of every element kind and section: the stiffness against the textbook, the
+// Tests every element kind and section: the stiffness against the textbook, the
 // patch test, energies and loads.
 
 #include "tests/element_kinds.h"
@@ -10,8 +10,8 @@
 #include <optional>
 
 #include "elastimate/core/equilibrium/forward_model.h"
-#include "elastimate/core/mechanics/stiffness_assembly.h"
 #include "elastimate/core/mechanics/internal_forces.h"
+#include "elastimate/core/mechanics/stiffness_assembly.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/mechanics/stiffness_traces.h"
 #include "elastimate/core/mechanics/strain_energy.h"

@@ -129,7 +129,7 @@ TEST_F(StiffnessProduct, IsSymmetric) {
   }
 }
 
-// Of q . H q: the energy of a deformation is positive.
+// The energy of a deformation, q . H q, is positive.
 TEST_F(StiffnessProduct, OfHIsPositiveSemidefinite) {
   const StiffnessProducts products = MultiplyStiffnessBasis(mesh_, q_);
   for (Eigen::Index i = 0; i < q_.cols(); ++i) {

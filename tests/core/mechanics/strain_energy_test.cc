@@ -29,8 +29,8 @@ class StrainEnergy : public ::testing::TestWithParam<double> {
             WithBothOrientations(Distorted(BoxMesh({2, 3, 2}, {1, 0.8, 1.2})))),
         elasticity_{2.5, GetParam()} {}
 
-  // The same density in each element, for u = gradient * x.  Strains lose one
-  // or two digits to the differences of node positions.
+  // Each element has this density for u = gradient * x.  Strains lose one or
+  // two digits to the differences of node positions.
   void ExpectDensity(const Eigen::Matrix3d& gradient, double expected) const {
     const Eigen::VectorXd density =
         StrainEnergyDensity(mesh_, elasticity_, gradient * mesh_.nodes);
@@ -123,8 +123,8 @@ TEST_P(StrainEnergy, NoneIsMissedOfWhatTheElementsCanDo) {
   EXPECT_EQ(DiscretizationError(mesh_, elasticity_, 0 * linear), 0);
 }
 
-// Of the linear elements that interpolate a quadratic displacement, which
-// quadratic elements have exactly.
+// Linear elements interpolate a quadratic displacement here, which quadratic
+// elements have exactly.
 TEST_P(StrainEnergy, WhatLinearElementsMissIsFound) {
   for (const int cells : {3, 6, 12}) {
     SCOPED_TRACE(cells);

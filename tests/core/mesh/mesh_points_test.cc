@@ -71,7 +71,7 @@ TEST_P(MeshPointsOfKinds, AreRefusedOutsideTheirElements) {
                      "make them dimension x points");
 }
 
-// As many in each element as its share of the volume is, with the mean of the
+// Each element has as many as its share of the volume, with the mean of the
 // body, which the integrals of shape functions give.
 TEST_P(MeshPointsOfKinds, AreDrawnEvenly) {
   constexpr Eigen::Index kPoints = 20000;

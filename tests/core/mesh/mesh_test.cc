@@ -63,7 +63,7 @@ TEST(ValidateMesh, AcceptsQuadraticTetrahedra) {
     Mesh mesh = WithMidEdgeNodes(Distorted(BoxMesh({2, 1, 1}, {1, 1, 1})));
     mesh.nodes *= unit;
     EXPECT_NO_THROW(ValidateMesh(mesh));
-    // As single precision has it.
+    // Files in single precision round so.
     mesh.nodes = mesh.nodes.cast<float>().cast<double>().eval();
     EXPECT_NO_THROW(ValidateMesh(mesh));
   }

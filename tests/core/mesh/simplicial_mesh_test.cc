@@ -75,7 +75,8 @@ TEST_P(SimplicialMeshOfKind, HasItsSurface) {
   const Eigen::MatrixXi expected = BoundaryFacets(simplices_);
   EXPECT_EQ(facets.cols(), expected.cols());
   EXPECT_EQ(Unordered(facets), Unordered(expected));
-  // The same way round: a closed surface has no area in sum, and a volume.
+  // All go the same way round: a closed surface has no area in sum, and a
+  // volume.
   Eigen::VectorXd area = Eigen::VectorXd::Zero(mesh_.Dimension());
   double volume = 0;
   for (const auto& facet : facets.colwise()) {
@@ -121,7 +122,7 @@ TEST(SimplicialMesh, HasAlternatingDiagonals) {
   for (const int node : simplices.elements.reshaped()) {
     ++num_triangles(node);
   }
-  // Of an inner node, all eight triangles around it, or four that have their
+  // An inner node has all eight triangles around it, or four that have their
   // longest edges elsewhere.
   EXPECT_EQ((num_triangles.array() == 8).count(), 5);
   EXPECT_EQ(num_triangles.maxCoeff(), 8);

@@ -101,7 +101,7 @@ TEST(RemoveFreeRotation, LeavesTheStrain) {
   }
 }
 
-// As large a turn may be that of the specimen itself.
+// So small a turn may be that of the specimen itself.
 TEST(RemoveFreeRotation, LeavesATurnThatIsLessThanTheStrains) {
   for (const double angle : {5e-5, 1e-3, 5e-3}) {
     Scene scene = BarMovedBy([&](const Eigen::Vector3d& x) {
@@ -116,7 +116,7 @@ TEST(RemoveFreeRotation, LeavesATurnThatIsLessThanTheStrains) {
   }
 }
 
-// Those of nodes and of points beside them turn alike.
+// Displacements of nodes and of points beside them turn alike.
 TEST(RemoveFreeRotation, IsOneForNodesAndPoints) {
   const Eigen::Matrix3d rotation =
       Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX()).toRotationMatrix();

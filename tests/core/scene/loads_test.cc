@@ -271,7 +271,7 @@ TEST_F(LoadedBox, WithoutLoadsThereIsNoForce) {
 // ---------------------------------------------------------------------------
 // Quadratic tetrahedra.
 
-// The same box.
+// The box with quadratic elements.
 class QuadraticLoadedBox : public LoadedBox {
  protected:
   QuadraticLoadedBox() : linear_(mesh_) { mesh_ = WithMidEdgeNodes(mesh_); }

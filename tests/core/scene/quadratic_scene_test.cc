@@ -140,7 +140,7 @@ TEST_F(ConvertedOrgan, HoldsMidEdgesAtTheMeanOfTheirEnds) {
   }
 }
 
-// Of half of the force on each mid-edge node at either end of its edge.
+// Either end of an edge gets half of the force of its mid-edge node.
 TEST_F(ConvertedOrgan, SpreadsNodalForces) {
   const Eigen::MatrixXd force =
       AssembleLoads(quadratic_.mesh, quadratic_.load_cases[0].loads);
@@ -295,7 +295,7 @@ TEST_F(BoxToConvert, AHeldVolumeHoldsTheEdgesOfItsInside) {
   Hold(0, Coordinate(2) <= 2);
   const Eigen::MatrixXd middles = HeldMiddles(0);
   const Mesh& mesh = scene_.mesh;
-  // Of each inner node, the edges to all its lower neighbours.
+  // Each inner node has the edges to all its lower neighbours.
   for (Eigen::Index a = 0; a < mesh.NumNodes(); ++a) {
     const auto inner = mesh.nodes.col(a).array();
     if ((inner == 0).any() || (inner == 3).any() || inner(2) > 2) {

@@ -73,7 +73,7 @@ TEST(SpreadLoads, FindsABodyForce) {
                             1e-12);
 }
 
-// As torsion has it; the vertices alone are off by all of it.
+// Torsion has such a traction; the vertices alone are off by all of it.
 TEST(SpreadLoads, FindsALinearTractionNearly) {
   const Scene scene = HeldBlock();
   const Eigen::MatrixXi facets = FacetsWhere(scene.mesh, 1.7);

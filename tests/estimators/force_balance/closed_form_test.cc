@@ -254,7 +254,7 @@ TEST(ClosedForm, SaysThatMidEdgeNodesAreNotMeasured) {
   EXPECT_NE(why.find("use reduced-fe"), std::string::npos) << why;
 }
 
-// As somebody could who simulates.
+// Somebody who simulates could measure so.
 TEST(ClosedForm, TakesQuadraticElementsMeasuredAtEveryNode) {
   Scene scene = QuadraticScene(SmallScene("organ"));
   Measure({5e4, 0.3}, scene);

@@ -90,8 +90,8 @@ struct CoverageCase {
   int degree;
   std::string shape;
   double noise;
-  // Of 1.96 standard errors by Student's t, since the noise is estimated from
-  // few equations, 12, 30 and 60 less the two unknowns.
+  // So often 1.96 standard errors hold the truth by Student's t, since the
+  // noise is estimated from few equations, 12, 30 and 60 less the two unknowns.
   double coverage;
 };
 

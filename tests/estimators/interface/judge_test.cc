@@ -57,8 +57,8 @@ TEST(Judge, TakesTheFirstErrorForTheReason) {
   EXPECT_FALSE(estimate.Has(FindingCode::kSearchFailed));
 }
 
-// As of one material, a ratio that a wrong model pulls to its limit is no
-// estimate; a material may be that of a limit.
+// A ratio that a wrong model pulls to its limit is no estimate; a material may
+// be that of a limit.
 TEST(Judge, RatiosAtTheirLimitNeedAModelThatFits) {
   Evidence evidence;
   evidence.ratios_at_limit = {"nu of region 1"};

@@ -34,7 +34,7 @@ TEST(LeastAbsoluteDeviations, MinimisesTheSumOfAbsoluteDeviations) {
   }
 }
 
-// Of tables [Abramowitz & Stegun 1964, table 26.10].
+// The numbers are those of a table [Abramowitz & Stegun 1964, table 26.10].
 TEST(StudentsT, HasItsQuantiles) {
   EXPECT_NEAR(TwoSidedErrors(1), 12.706, 5e-4);
   EXPECT_NEAR(TwoSidedErrors(10), 2.228, 5e-4);

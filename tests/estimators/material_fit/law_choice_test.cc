@@ -172,7 +172,7 @@ TEST(LawChoice, IsOfMaterialsOfWhichNothingIsKnown) {
             "");
 }
 
-// Of choices that are wrong once in twenty times, 15 are right once in two.
+// Where a choice is wrong once in twenty times, 15 are all right once in two.
 TEST(LawChoiceStatistics, OfIsotropicDataIsIsotropic) {
   EXPECT_EQ(NumChosen("isotropic", IsotropicBlock(), 1e-2), kSeeds);
 }

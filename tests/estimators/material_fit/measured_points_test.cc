@@ -36,7 +36,7 @@ class PointsOfEachKind : public ::testing::TestWithParam<KindOfSection> {
   const Scene scene_ = SceneMeasuredAtPoints(GetParam());
 };
 
-// Of displaced supports, too, which points near them are part of.
+// Supports may be displaced, too, which points near them are part of.
 TEST_P(PointsOfEachKind, GiveTheTruthWithoutNoise) {
   Scene displaced = testing::SceneOfKind(GetParam());
   testing::DisplaceSupports(displaced);
@@ -154,8 +154,8 @@ TEST_F(PointsOfABlock, CountByTheirStandardDeviations) {
     measured.noise_sd.resize(0, 0);
     squares_alike += std::pow(error(), 2);
   }
-  // Of equal weights the variance is (1 + 100) / 2 of the first half's, over
-  // twice the points; of the right ones about that of the first half alone.
+  // With equal weights the variance is (1 + 100) / 2 of the first half's, over
+  // twice the points; with the right ones it is about that of the first half.
   EXPECT_LT(squares, squares_alike / 10);
 }
 

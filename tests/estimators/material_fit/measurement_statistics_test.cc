@@ -114,7 +114,7 @@ TEST(MeasuredSupportStatistics, ErrorsAreTrueOfIndependentNoise) {
   for (int i = 0; i < 2; ++i) {
     // chi^2 / n of n = 60 has the standard deviation .18.
     EXPECT_NEAR(trials.mean_square_score(i), 1, 4 * 0.18);
-    // That of a share of .95 of 60 is .028.
+    // A share of .95 of 60 has a standard deviation of .028.
     EXPECT_GE(trials.coverage(i), 0.95 - 4 * 0.028);
   }
 }

@@ -26,7 +26,7 @@ Eigen::MatrixXd SomeCovariance(Eigen::Index n) {
   return 1e-4 * (root * root.transpose() + Eigen::MatrixXd::Identity(n, n));
 }
 
-// Of groups 0 2, 1: which group has each variable.
+// Says which of the groups 0 2, 1 has each variable.
 Eigen::MatrixXd Spread() {
   Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(6, 4);
   for (int i = 0; i < 2; ++i) {
@@ -124,7 +124,7 @@ TEST(MergePlan, ComparesWhatBecomesDetermined) {
   const MaterialParameters parameters(materials, SectionModel::kSolid);
   Eigen::VectorXd x(6);
   x << 8.5, 0.3, 8.5, 0.3, 8.5, 0.3;
-  // Of the first two, the sum is known to 0.01.
+  // The sum of the first two is known to 0.01.
   Eigen::MatrixXd covariance = 1e-4 * Eigen::MatrixXd::Identity(6, 6);
   for (int i = 0; i < 2; ++i) {
     covariance(i, i) = covariance(2 + i, 2 + i) += 0.04;
@@ -139,7 +139,7 @@ TEST(MergePlan, ComparesWhatBecomesDetermined) {
   }
 }
 
-// Of three members, the first two as far apart as their errors say.
+// The first two of three members are as far apart as their errors say.
 TEST(MergePlan, TellsHowMembersSpread) {
   const std::vector<Material> materials = MaterialsApart(3);
   const MaterialParameters parameters(materials, SectionModel::kSolid);
@@ -170,8 +170,8 @@ TEST(MergePlan, TellsHowMembersSpread) {
   EXPECT_EQ(spreads[1].largest_differences, Eigen::Vector2d::Zero());
 }
 
-// Of ten members, the one that is known best is off by 0.015: it pulls the
-// others, as far as it may be another.
+// The best known one of ten members is off by 0.015: it pulls the others, as
+// far as it may be another.
 TEST(MergePlan, HoldsWhatOneMemberPullsTheOthersBy) {
   constexpr int kMembers = 10;
   const std::vector<Material> materials = MaterialsApart(kMembers);

@@ -97,7 +97,7 @@ struct MergeTrials {
   int num_right = 0;  ///< To the right partition.
   int num_told_apart = 0;
   int num_usable = 0;
-  /// Of intervals of the parameters of regions, in those that are usable.
+  /// Counts intervals of the parameters of regions, in those that are usable.
   int num_intervals = 0;
   int num_covering = 0;
 
@@ -110,7 +110,7 @@ bool IsOfRegion(const ParameterEstimate& parameter, int region) {
                     region) == 1;
 }
 
-// Of regions 1, 2, ...
+// The truth has regions 1, 2, ...
 void CountCoverage(const Estimate& estimate,
                    const std::vector<IsotropicElasticity>& truth,
                    MergeTrials& trials) {
@@ -291,7 +291,7 @@ TEST(MergeMaterials, SaysWhatItDid) {
   EXPECT_LT(estimate.materials[0].largest_differences[0], 0.2);
 }
 
-// Of region 1, all nodes are held.
+// All nodes of region 1 are held.
 TEST(MergeMaterials, LeavesOutWhatNoLoadStrains) {
   Scene scene = BlockOfSixRegions();
   for (Eigen::Index e = 0; e < scene.mesh.NumElements(); ++e) {

@@ -78,7 +78,7 @@ TEST_P(SupportsOfCases, LeaveExactDataExact) {
   }
 }
 
-// Of which those of one load case moved as measured.
+// The supports of one load case moved as measured.
 TEST_P(SupportsOfCases, LeaveExactDataExactWhereSomeWereMeasured) {
   far_.supports.displacement.setZero();
   far_.supports.unknown = far_.supports.held;
@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(All, SupportsOfCases,
                            return testing::NameOf(info.param);
                          });
 
-// Of a specimen that is finer than the mesh.
+// The specimen is finer than the mesh.
 TEST(SupportsOfCasesOfElements, HoldWhatElementsMiss) {
   for (const KindOfSection& kind : testing::AllKindsOfSections()) {
     if (kind.model == SectionModel::kSolid) {

@@ -64,7 +64,7 @@ Scene SceneOfMeasuredSupports(const KindOfSection& kind, int cells = 3) {
   return scene;
 }
 
-// The same without loads, and with what a load cell measured.
+// The scene without loads, and with what a load cell measured.
 Scene SceneOfResultants(const KindOfSection& kind) {
   Scene scene = testing::SceneOfKind(kind);
   for (LoadCase& load_case : scene.load_cases) {
@@ -110,7 +110,7 @@ TEST_P(UnknownMotionOfKinds, OfMeasuredSupportsLeavesExactDataExact) {
   ExpectTruth(RunIterativeFe(SceneOfMeasuredSupports(GetParam())), 1e-8);
 }
 
-// Of a node that a camera lost, as its neighbours tell.
+// A camera lost a node, which its neighbours tell of.
 TEST_P(UnknownMotionOfKinds, OfANodeThatWasLostLeavesExactDataExact) {
   Scene scene = SceneOfMeasuredSupports(GetParam());
   const int lost = HeldNodes(scene)[1];
@@ -183,7 +183,7 @@ double RootMeanSquare(const Scene& scene) {
   return u.norm() / std::sqrt(double(u.size()));
 }
 
-// Of this standard deviation at every node, supports included.
+// Adds noise of this standard deviation at every node, supports included.
 void Disturb(double noise_sd, unsigned seed, Scene& scene) {
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> noise(0, noise_sd);

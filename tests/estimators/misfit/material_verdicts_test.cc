@@ -21,8 +21,8 @@ using Combinations = std::vector<std::string>;
 const Combinations kVariableLabels = {"E of region 1", "E of region 2",
                                       "nu of region 2"};
 
-// Of ln E, ln E and nu: free by 10 largest errors along a direction in units of
-// these, by a tenth across.
+// The covariance of ln E, ln E and nu: free by 10 largest errors along a
+// direction in units of these, by a tenth across.
 Eigen::MatrixXd FreeAlong(const Eigen::Vector3d& direction) {
   const Eigen::Vector3d largest(0.3, 0.3, 0.15);
   const Eigen::Vector3d unit = direction.normalized();
@@ -197,7 +197,7 @@ TEST_F(TenBlocksStatistics, AreKnownAsFarAsIsSaid) {
       EXPECT_EQ(estimate.IsUsable(), are_all_determined) << estimate.message;
     }
     EXPECT_GT(num_determined, (noise < 0.05 ? 8 : 4) * kMeasurements) << noise;
-    // Those of one measurement are alike.
+    // The combinations of one measurement are alike.
     EXPECT_GT(double(num_covering) / num_determined, 0.85) << noise;
     EXPECT_LT(largest_score, 6) << noise;
   }

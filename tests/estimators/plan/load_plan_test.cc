@@ -89,7 +89,7 @@ TEST(PlanLoads, KnowsThatAPullDoesNotDetermineNuWithoutLateralData) {
   EXPECT_NEAR(after(0) / std::sqrt(covariance(0, 0)), 1, 1e-6);
   EXPECT_NEAR(after(1) / std::sqrt(covariance(1, 1)), 1, 1e-6);
 
-  // The same pull again helps E alone.
+  // Pulling so again helps E alone.
   EXPECT_NEAR(
       plan.loads[1].errors.OfParameters()(0) * std::sqrt(2 * sum) / kBarNoise,
       1, 1e-6);
@@ -351,7 +351,7 @@ TEST(PlanLoads, SaysOfALoadOnSupportsThatItMovesNothing) {
 }
 
 TEST(PlanLoads, TriesAllLoadsWhereNoneDeterminesTheParameters) {
-  // Of u_x = -100 nu x / E, nu / E alone, again and again.
+  // u_x = -100 nu x / E tells nu / E alone, again and again.
   Scene scene = BarOnRollers();
   scene.load_cases[0].observed = AxialOnly(scene.mesh);
   scene.load_cases[0].loads = Sideways(scene).load_case.loads;

@@ -76,7 +76,7 @@ TEST(UnitLoads, BendAndTwistAFlatFace) {
   const std::vector<UnitLoad> loads = UnitLoads(mesh, Top(mesh));
   ASSERT_EQ(loads[3].name, "moment about x");
   ASSERT_EQ(loads[5].name, "moment about z");
-  // Of bending, tractions along the normal; of torsion, within the face.
+  // Bending has tractions along the normal; torsion has them within the face.
   EXPECT_LT(loads[3].load.force.topRows(2).norm(), 1e-12);
   EXPECT_GT(loads[3].load.force.row(2).norm(), 0.1);
   EXPECT_LT(loads[5].load.force.row(2).norm(), 1e-12);

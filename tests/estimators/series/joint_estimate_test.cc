@@ -85,8 +85,8 @@ TEST(JointEstimate, AveragesNoiseAlone) {
               1e-9);
 }
 
-// Of nine parts of the variance that is no noise, strains make four, and an
-// unknown thickness one.
+// Strains make four of nine parts of the variance that is no noise, and an
+// unknown thickness makes one.
 TEST(JointEstimate, TellsWhatStrainsAndThicknessDoFromTheModel) {
   const Eigen::Vector2d errors(0.03, 0.06);
   std::vector<FrameEstimate> frames(
@@ -140,7 +140,7 @@ TEST(JointEstimate, DoesNotAverageWhatResidualsShare) {
   EXPECT_NEAR(*joint.PoissonRatioStandardError(), 0.02 * std::sqrt(0.5 + 0.005),
               1e-6);
   EXPECT_TRUE(joint.Has(FindingCode::kFramesAlike));
-  // As large a correlation as chance makes of so few.
+  // Chance makes so large a correlation of so few.
   for (FrameEstimate& frame : frames) {
     frame.likeness = 0.05;
     frame.num_alike = 10;
@@ -305,14 +305,14 @@ TEST(JointEstimate, IsNotMisledByNoiseThatFewDegreesOfFreedomTell) {
                                      *joint.PoissonRatioStandardError(),
                                  2));
   }
-  // Of a probability of .001.
+  // The probability of an alarm is .001.
   EXPECT_LE(num_alarms, 2);
   // chi^2 of 100 degrees of freedom has a standard deviation of 14.
   EXPECT_LT(square_sum.maxCoeff(), kSeries + 4 * 14);
   EXPECT_GT(square_sum.minCoeff(), kSeries - 4 * 14);
 }
 
-// Of many series: the scores of the joint estimate, and how often a trend is
+// The scores of the joint estimates of many series, and how often a trend is
 // found.  `scatter` is that between frames, in standard deviations of noise.
 struct Scores {
   Eigen::Vector2d mean_square = Eigen::Vector2d::Zero();
@@ -357,7 +357,7 @@ TEST(JointEstimateStatistics, ErrorsAreTrueOfIndependentFrames) {
   const Scores scores = ScoresOf(400, 1);
   EXPECT_LT(scores.mean_square.maxCoeff(), 1.2);
   EXPECT_GT(scores.mean_square.minCoeff(), 0.6);
-  // Of a probability of .01, and of .001.
+  // Their probabilities are .01, and .001.
   EXPECT_LT(scores.share_of_trends, 0.03);
   EXPECT_LE(scores.share_of_scatters, 0.01);
 }

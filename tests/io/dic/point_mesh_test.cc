@@ -94,7 +94,7 @@ TEST(LostPoints, AreThoseOfSmallGapsOfAGrid) {
   EXPECT_EQ(LostPoints(Eigen::Matrix2Xd::Random(2, 30)).cols(), 0);
 }
 
-// Of 21 x 8 points, those for which `is_there`.
+// Returns those of 21 x 8 points for which `is_there`.
 Eigen::Matrix2Xd GridWhere(const std::function<bool(int, int)>& is_there) {
   Eigen::Matrix2Xd points(2, 0);
   for (int i = 0; i < 21; ++i) {

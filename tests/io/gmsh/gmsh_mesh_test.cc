@@ -158,7 +158,7 @@ TEST_F(GmshMeshTest, ReadsRegionsFromElementData) {
   EXPECT_FALSE(ReadMeshFile(path).are_regions_groups);
 }
 
-// Of each volume, in which elements are numbered without regard to groups.
+// Each volume is a group; elements are numbered without regard to groups.
 TEST_F(GmshMeshTest, ReadsRegionsFromPhysicalGroups) {
   const std::string two = Replaced(
       Replaced(GmshVersion2Mesh(), "3 1 \"body\"", "3 9 \"body\""),

@@ -47,7 +47,7 @@ class MeasuredPointsTest : public ::testing::Test {
     folder_.Write("points.csv", Table(0, 100));
   }
 
-  // Of the points in [begin, end).
+  // The table has the points in [begin, end).
   std::string Table(Eigen::Index begin, Eigen::Index end) const {
     const PointDisplacements& points = scene_.load_cases[0].points;
     const Eigen::MatrixXd x =

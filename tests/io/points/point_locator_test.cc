@@ -92,7 +92,7 @@ TEST(LocatedPoints, OutsideOfCurvedElementsAreTheNearestOfTheirEdges) {
   EXPECT_TRUE(found.col(3).isApprox(1.99 * middle, 1e-9));
 }
 
-// As files number them: mid-edge nodes before vertices, and one of no element.
+// Files number them so: mid-edge nodes before vertices, and one of no element.
 TEST(LocatedPoints, AreFoundWhateverTheOrderOfNodes) {
   Mesh mesh = QuarterOfRing();
   mesh.elements = 9 - mesh.elements.array();

@@ -185,7 +185,7 @@ TEST_F(PointsFileTest, ReadsFormatsOfCamerasInSpace) {
   EXPECT_EQ(vic.lines, (std::vector<std::size_t>{3}));
 }
 
-// As GOM Correlate, ARAMIS Professional and ZEISS Inspect write a component.
+// GOM Correlate, ARAMIS Professional and ZEISS Inspect write a component so.
 TEST_F(PointsFileTest, ReadsTheTableBelowThatOfTheStage) {
   const PointsFile file = Read(
       "# Units: length:mm angle:deg time:s\n"

@@ -232,7 +232,7 @@ TEST_P(QuadraticFiles, AreCurvedWhereOneEdgeIs) {
 
 TEST_P(QuadraticFiles, ErrOnElementsThatFold) {
   Scene scene = SceneOf(GetParam());
-  // As where nodes are in another order.
+  // The nodes are in another order here.
   scene.mesh.elements.bottomRows(2).row(0).swap(
       scene.mesh.elements.bottomRows(2).row(1));
   const auto path = folder_.Path() / "scene.vtu";

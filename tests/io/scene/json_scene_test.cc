@@ -606,7 +606,7 @@ TEST_F(JsonSceneTest, QuotesOnlyWhatIsFitToPrint) {
     expect("\"noise_sd\": 1e-5", "\"" + text + "\": 1e999",
            "the number 1e999 of the key \"");
   }
-  // Of the parser's own message the ends are kept.
+  // The ends of the parser's own message are kept.
   for (const std::string& text :
        {"\033]0;title\a" + longest, "\xFF" + longest, longest}) {
     try {

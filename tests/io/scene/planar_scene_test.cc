@@ -304,7 +304,7 @@ class PlanarFieldData : public ::testing::Test {
     return "<DataArray type=\"Float64\" Name=\"" + name +
            "\" NumberOfTuples=\"1\" format=\"ascii\">" + value + "</DataArray>";
   }
-  /// Of more strings than it says, which VTK writes beyond its end.
+  /// Has more strings than it says, which VTK writes beyond its end.
   static std::string Strings(const std::string& name) {
     std::string strings = "<Array type=\"String\" Name=\"" + name +
                           "\" NumberOfTuples=\"1\" format=\"ascii\">";

@@ -270,7 +270,7 @@ TEST_F(SceneReaderTest, ReadsSupportsOfOneLoadCase) {
   Fields fields = fields_;
   fields.point.push_back(FieldOf(fields, "fixed"));
   fields.point.back().name = "fixed_2";
-  // The same again are no others.
+  // Supports that are given once more are no others.
   EXPECT_FALSE(HasSupportsOfCases(Read(scene_.mesh, fields).scene));
   fields.point.back().values(0, 0) = 1 - fields.point.back().values(0, 0);
   const Scene scene = Read(scene_.mesh, fields).scene;
@@ -365,7 +365,7 @@ TEST_F(SceneReaderTest, NamesNodesThatAreNotFinite) {
 }
 
 TEST_F(SceneReaderTest, NumbersNodesAsTheFileDoesDespiteUnusedOnes) {
-  // As the scene, with one more point ahead of the others.
+  // This is the scene with one more point ahead of the others.
   Mesh mesh = scene_.mesh;
   mesh.nodes.resize(3, 6);
   mesh.nodes << Eigen::Vector3d(9, 9, 9), scene_.mesh.nodes;
