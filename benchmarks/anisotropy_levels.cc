@@ -109,7 +109,7 @@ MaterialLevel Bar(const std::string& factor, const std::string& level,
                     kUsualNoiseOfBar, Eigen::Vector3d(-10, 20, 5));
 }
 
-// The same bar taken to be of another law.
+// Takes the bar to be of another law.
 MaterialLevel TakenToBe(MaterialLevel level, std::string_view law) {
   const Eigen::VectorXd& fibre = level.parameters;
   if (law == IsotropicLaw::kName) {

@@ -58,7 +58,7 @@ const Scene& Cube(std::int64_t cells) {
   return scenes.emplace(cells, CuboidScene(options)).first->second;
 }
 
-// The same with quadratic elements.
+// Returns the cube with quadratic elements.
 const Scene& QuadraticCube(std::int64_t cells) {
   static std::map<std::int64_t, Scene> scenes;
   const auto known = scenes.find(cells);

@@ -188,7 +188,7 @@ class Cube {
   }
 
  private:
-  // Of a scene that an estimator is prepared for.
+  // Times the measurements of a scene that an estimator is prepared for.
   void AddFurtherMeasurements(std::vector<Kernel>& kernels) {
     // The preparation of more takes long.
     constexpr Eigen::Index kMostElementsOfReducedFe = 50000;
@@ -282,7 +282,7 @@ class Cube {
   StiffnessProducts eight_products_;
 };
 
-// Of one size: the time for each tetrahedron and column, by name, numbering,
+// The times of one size for each tetrahedron and column, by name, numbering,
 // threads and columns [s].
 class Times {
  public:

@@ -59,7 +59,7 @@ HWY_EXPORT(MultiplyAdd);
 
 constexpr int kRuns = 10;
 
-// Of the fastest run [s].
+// Returns the time of the fastest run [s].
 template <class Work>
 double ShortestTime(const Work& work) {
   double shortest = std::numeric_limits<double>::infinity();

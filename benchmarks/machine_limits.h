@@ -6,10 +6,10 @@ namespace elastimate {
 /// What some threads of this machine reach, the best of several short runs: the
 /// roofline that kernels are compared with [Williams et al. 2009].
 struct MachineLimits {
-  /// Of a = b + s c on arrays beyond the caches, 24 byte for each element (what
-  /// is read before it is written is not counted) [byte/s].
+  /// What a = b + s c reaches on arrays beyond the caches, 24 byte for each
+  /// element (what is read before it is written is not counted) [byte/s].
   double memory_bandwidth;
-  /// Of independent fused multiply-adds of the widest vectors [1/s].
+  /// What independent fused multiply-adds of the widest vectors reach [1/s].
   double peak_flops;
 };
 

@@ -105,7 +105,7 @@ Scene PreparedLevel::Measured(int seed) const {
     AddErrors(errors, scene.mesh.nodes, scene.supports.held, generator,
               scene.load_cases[k].displacement);
     if (scene.load_cases.size() > 1) {
-      // Of load cases of unequal noise.
+      // The load cases have unequal noise.
       scene.load_cases[k].noise_sd = noise_sd_[k];
     }
   }

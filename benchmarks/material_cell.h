@@ -35,8 +35,8 @@ class PreparedLevel {
   /// where the estimate has none.
   std::vector<ParameterEstimate> ParametersOfModel(
       const Estimate& estimate) const;
-  /// Of the displacement under the unseen load, relative to it; NaN where the
-  /// parameters are none of a material.
+  /// The error of the displacement under the unseen load, relative to it; NaN
+  /// where the parameters are none of a material.
   double PredictionError(
       const std::vector<ParameterEstimate>& parameters) const;
 
@@ -48,7 +48,7 @@ class PreparedLevel {
   Eigen::VectorXd bounds_;
   double least_energy_share_;
   Scene unseen_;                         ///< The model under the unseen load.
-  Eigen::VectorXd unseen_displacement_;  ///< Of the specimen.
+  Eigen::VectorXd unseen_displacement_;  ///< That the specimen has.
 };
 
 /// The trials of a level by one method.
@@ -63,7 +63,7 @@ class MaterialCell {
   void AddTo(Table& table, const std::string& method) const;
 
  private:
-  /// Of stiffnesses, or of ratios.
+  /// The errors of stiffnesses, or of ratios.
   struct Errors {
     double square_sum = 0;
     int count = 0;

@@ -119,7 +119,7 @@ Eigen::VectorXd ParametersOfModel(const MaterialLevel& level) {
   return parameters;
 }
 
-// The same specimen taken to be of other regions.
+// Takes the specimen to be of other regions.
 MaterialLevel TakenAs(MaterialLevel level, const std::string& assumption,
                       const RegionAt& region_at) {
   Mesh model = level.specimen.mesh;

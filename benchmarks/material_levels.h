@@ -16,11 +16,11 @@ struct MaterialLevel {
   /// "right", or what the model has too few, too many or wrong of.
   std::string assumption;
   Scene specimen;              ///< With its materials, without measurement.
-  Eigen::VectorXd parameters;  ///< Of these.
-  /// Of the same mesh.
+  Eigen::VectorXd parameters;  ///< What these have.
+  /// The regions that the model takes the mesh to have.
   Eigen::VectorXi regions_of_model;
   std::vector<Material> materials_of_model;
-  /// Those of the specimen that the parameters of the model stand for; empty
+  /// The parameters of the specimen that those of the model stand for; empty
   /// where there are none.
   Eigen::VectorXd parameters_of_model;
   double noise;     ///< Standard deviation over the rms displacement.
@@ -32,8 +32,8 @@ struct MaterialLevel {
   bool is_in_quick = true;
 };
 
-/// That of a specimen which the model takes for what it is; `body_force` is the
-/// load that is not measured.
+/// Makes the level of a specimen which the model takes for what it is;
+/// `body_force` is the load that is not measured.
 MaterialLevel RightLevel(const std::string& factor, const std::string& level,
                          const Scene& specimen,
                          const Eigen::VectorXd& parameters, double noise,

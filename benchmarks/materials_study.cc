@@ -29,7 +29,7 @@ struct MaterialMethod {
   bool merges = false;
 };
 
-// As `estimate --regions=merge` does it.
+// Merges as `estimate --regions=merge` does.
 Estimate RunMerged(const Estimator& estimator, Scene scene) {
   const MaterialMerge merge = MergeMaterials(scene, {});
   scene.materials = merge.materials;

@@ -43,8 +43,8 @@ std::vector<int> NodesOf(const Mesh& mesh, Side side) {
   return nodes;
 }
 
-// As it is, and as a camera without noise sees it, with what the load cell
-// shows.
+// The specimen as it is, and as a camera without noise sees it, with what the
+// load cell shows.
 struct World {
   Scene scene;
   double force;  // On the right end, along x.

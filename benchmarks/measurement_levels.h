@@ -33,8 +33,7 @@ struct MeasurementLevel {
 /// `cells` is that of PlateOptions.
 std::vector<MeasurementLevel> MeasurementLevels(int cells);
 
-/// The same at other noise, on a mesh of its own: the levels of the factor
-/// "noise [um]".
+/// Makes the levels of the factor "noise [um]", each on a mesh of its own.
 std::vector<MeasurementLevel> NoiseLevels(int cells);
 
 }  // namespace elastimate

@@ -12,7 +12,7 @@ namespace elastimate {
 namespace {
 
 constexpr const char* kReducedFe = "reduced-fe";
-// Of the noise experiment, for comparison with those of several load cases.
+// The noise experiment is compared at this deviation with several load cases.
 constexpr double kDeviation = 0.09;
 constexpr double kManyCases = 20;
 
@@ -26,7 +26,7 @@ double RelativePoissonRatioError(const Trial& trial) {
   return trial.PoissonRatioError() / trial.truth.poisson_ratio;
 }
 
-// Of one setting; of reduced-fe, or of the other method.
+// Returns the errors of one setting, by reduced-fe or by the other method.
 std::vector<double> Errors(const PaperTrials& trials, bool of_reduced_fe,
                            double setting, Error error) {
   std::vector<double> errors;
@@ -74,7 +74,7 @@ struct LineFit {
   double r_squared;
 };
 
-// Of the median absolute relative error of E against the setting.
+// Fits the median absolute relative error of E against the setting.
 LineFit FitErrors(const PaperTrials& trials, bool of_reduced_fe) {
   std::map<double, double> points;
   for (const PaperTrial& row : trials) {

@@ -29,7 +29,7 @@ constexpr ProcessLimits kLimits = {600, std::int64_t{16} << 30};
 // of a virtual processor may stand still for milliseconds.
 constexpr double kRepeatSeconds = 0.5;
 
-// Of the line through the largest sizes.
+// The line goes through so many of the largest sizes.
 constexpr std::size_t kSizesOfSlope = 3;
 
 constexpr double kMebibyte = 1024.0 * 1024.0;
@@ -99,8 +99,8 @@ const char* OutcomeName(ProcessOutcome outcome) {
   return "";
 }
 
-// Of the line through the logarithms, by least squares, at the largest sizes;
-// NaN with fewer than two of them that are above zero.
+// Returns the slope of the line through the logarithms, by least squares, at
+// the largest sizes; NaN with fewer than two of them that are above zero.
 double Slope(const std::vector<Run>& runs, double Run::*value) {
   std::vector<std::pair<double, double>> points;
   for (const Run& run : runs) {

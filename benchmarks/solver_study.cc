@@ -25,7 +25,7 @@ namespace elastimate {
 namespace {
 
 constexpr double kPoissonRatio = 0.3;
-// Those of a reduced model and of a simulation.
+// The tolerances of a reduced model and of a simulation.
 constexpr double kRoughTolerance = 1e-3;
 constexpr double kTolerance = StiffnessSolver::kAccurate;
 constexpr ProcessLimits kLimits = {1200, std::int64_t{16} << 30};
@@ -82,8 +82,8 @@ struct Measurement {
   double iterations = kUnknown;
 };
 
-// As its manual shows it, with METIS; the best that it does without knowing of
-// nodes.
+// CHOLMOD as its manual shows it, with METIS: the best that it does without
+// knowing of nodes.
 class BareCholmod {
  public:
   BareCholmod(const SymmetricPattern& pattern, Eigen::VectorXd& values) {

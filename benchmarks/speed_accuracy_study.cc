@@ -233,7 +233,7 @@ bool IsWithinOnePercent(const Point& point) {
   return FailureRate(point) == 0 && YoungsModulusError(point) <= kWantedError;
 }
 
-// Of all trials: ok, but wrong by more than they state.
+// The share of all trials that are ok, but wrong by more than they state.
 double DishonestShare(const Point& point) {
   const auto dishonest = std::count_if(
       point.trials.begin(), point.trials.end(), [](const MethodTrial& t) {

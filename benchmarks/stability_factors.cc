@@ -247,9 +247,9 @@ void AddLoads(Levels& levels) {
   add("torsion", torsion);
 }
 
-// As the far part of a bending specimen sees it: each node's deformed position
-// is turned about the y axis through the middle of the support, by an angle
-// that grows linearly from the support to the far end.
+// Turns each node's deformed position about the y axis through the middle of
+// the support, by an angle that grows linearly from the support to the far end,
+// as the far part of a bending specimen sees it.
 Scene Rotated(Scene scene, double degrees) {
   const Mesh& mesh = scene.mesh;
   const Nodes held = NodesAt(mesh, 0);

@@ -19,7 +19,7 @@ struct StabilityLevel {
   /// The scene as the estimators see it, which need not be the one that was
   /// measured.
   std::function<Scene(std::uint64_t seed)> measure;
-  double noise_sd;  ///< Of a measured displacement component [length].
+  double noise_sd;  ///< For a measured displacement component [length].
   /// Whether the estimators with a Huber loss are run with it, too.
   bool is_with_huber = false;
   /// Whether the data could show that the estimate is wrong.

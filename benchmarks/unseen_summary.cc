@@ -17,7 +17,7 @@ using Outcomes = std::vector<const UnseenOutcome*>;
 
 constexpr double kRounding = 1e-6;
 constexpr const char* kAll = "all";
-// As a deviation; behind all others.
+// Stands for all deviations; it comes behind them.
 constexpr double kAllDeviations = std::numeric_limits<double>::infinity();
 
 Value DeviationCell(double deviation) {
@@ -76,7 +76,7 @@ std::map<Key, Outcomes> Grouped(const std::vector<UnseenOutcome>& outcomes,
   return groups;
 }
 
-// Of `auto`, over the cheapest other estimator that would have done.
+// What `auto` costs over the cheapest other estimator that would have done.
 struct Regret {
   int num_measurements = 0;
   int num_done = 0;

@@ -36,7 +36,7 @@ struct UnseenOutcome {
   /// Ok, and IsWrong by its standard errors alone.
   bool is_dishonest;
   Coverage coverage;
-  // As in TrialCells; NaN where unknown.
+  // These are as in TrialCells; NaN where unknown.
   double youngs_modulus_error;
   double poisson_ratio_error;
   double youngs_modulus_standard_error;

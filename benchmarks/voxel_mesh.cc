@@ -87,7 +87,7 @@ void Grid::FindCells() {
   }
 }
 
-// Of the points at corners, those of the undivided grid first.
+// Numbers the points at corners, those of the undivided grid first.
 void Grid::NumberNodes() {
   constexpr int kUnused = -2;
   constexpr int kUsed = -1;

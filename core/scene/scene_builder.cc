@@ -1,6 +1,5 @@
 #include "elastimate/core/scene/scene_builder.h"
 
-#include <algorithm>
 #include <sstream>
 #include <stdexcept>
 #include <string>
