@@ -336,10 +336,11 @@ std::vector<KindOfSection> AllKindsOfSections() {
   return all;
 }
 
-std::vector<KindOfSection> KindsOfDimension(int dimension) {
+std::vector<KindOfSection> KindsOf(int dimension, int order) {
   std::vector<KindOfSection> kinds;
   for (const KindOfSection& kind : AllKindsOfSections()) {
-    if (TopologyOf(kind.kind).dimension == dimension) {
+    const ElementTopology& topology = TopologyOf(kind.kind);
+    if (topology.dimension == dimension && topology.order == order) {
       kinds.push_back(kind);
     }
   }

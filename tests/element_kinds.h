@@ -19,8 +19,8 @@ struct KindOfSection {
 /// Each kind of three dimensions, and each planar one in plane strain and in
 /// plane stress.
 std::vector<KindOfSection> AllKindsOfSections();
-/// Returns those that have this dimension.
-std::vector<KindOfSection> KindsOfDimension(int dimension);
+/// Returns those whose elements have this dimension and this order.
+std::vector<KindOfSection> KindsOf(int dimension, int order);
 
 /// "quad4_plane_stress".
 std::string NameOf(const KindOfSection& parameter);

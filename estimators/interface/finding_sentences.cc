@@ -378,8 +378,7 @@ Finding SmoothResidual(double correlation) {
   return Warning(FindingCode::kSmoothResidual,
                  "neighbouring residuals are alike (correlation " +
                      TwoDigits(correlation) + ")" + kErrorsHold,
-                 "check mesh, supports, loads and smoothing, or give regions: "
-                 "the material may not be the same all over");
+                 "check mesh, supports, loads, smoothing, or give regions");
 }
 
 Finding LargeSmoothResidual(double smooth) {

@@ -641,10 +641,13 @@ INSTANTIATE_TEST_SUITE_P(Auto, Conformance, ::testing::Values("auto"),
 INSTANTIATE_TEST_SUITE_P(IterativeFe, Conformance,
                          ::testing::Values("iterative-fe"),
                          testing::EstimatorTestName);
-INSTANTIATE_TEST_SUITE_P(
-    Others, Conformance,
-    ::testing::ValuesIn(testing::EstimatorNamesBut({"auto", "iterative-fe"})),
-    testing::EstimatorTestName);
+INSTANTIATE_TEST_SUITE_P(ReducedFe, Conformance,
+                         ::testing::Values("reduced-fe"),
+                         testing::EstimatorTestName);
+INSTANTIATE_TEST_SUITE_P(Others, Conformance,
+                         ::testing::ValuesIn(testing::EstimatorNamesBut(
+                             {"auto", "iterative-fe", "reduced-fe"})),
+                         testing::EstimatorTestName);
 
 }  // namespace
 }  // namespace elastimate

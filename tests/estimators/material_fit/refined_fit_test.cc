@@ -58,13 +58,23 @@ TEST_P(RefinedFitOfKinds, HoldsTheTruthOfAFinerSpecimen) {
   EXPECT_GT(estimate.error_budget.noise(0), 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Solid, RefinedFitOfKinds,
-                         ::testing::ValuesIn(testing::KindsOfDimension(3)),
+INSTANTIATE_TEST_SUITE_P(LinearSolids, RefinedFitOfKinds,
+                         ::testing::ValuesIn(testing::KindsOf(3, 1)),
                          [](const auto& info) {
                            return testing::NameOf(info.param);
                          });
-INSTANTIATE_TEST_SUITE_P(Planar, RefinedFitOfKinds,
-                         ::testing::ValuesIn(testing::KindsOfDimension(2)),
+INSTANTIATE_TEST_SUITE_P(QuadraticSolids, RefinedFitOfKinds,
+                         ::testing::ValuesIn(testing::KindsOf(3, 2)),
+                         [](const auto& info) {
+                           return testing::NameOf(info.param);
+                         });
+INSTANTIATE_TEST_SUITE_P(LinearPlanes, RefinedFitOfKinds,
+                         ::testing::ValuesIn(testing::KindsOf(2, 1)),
+                         [](const auto& info) {
+                           return testing::NameOf(info.param);
+                         });
+INSTANTIATE_TEST_SUITE_P(QuadraticPlanes, RefinedFitOfKinds,
+                         ::testing::ValuesIn(testing::KindsOf(2, 2)),
                          [](const auto& info) {
                            return testing::NameOf(info.param);
                          });

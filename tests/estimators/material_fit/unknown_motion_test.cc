@@ -371,13 +371,23 @@ TEST_P(ElementsOfUnknownMotion, HaveAMeshErrorThatIsKnown) {
   EXPECT_GT(*estimate.discretization_error, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Solid, ElementsOfUnknownMotion,
-                         ::testing::ValuesIn(testing::KindsOfDimension(3)),
+INSTANTIATE_TEST_SUITE_P(LinearSolids, ElementsOfUnknownMotion,
+                         ::testing::ValuesIn(testing::KindsOf(3, 1)),
                          [](const auto& info) {
                            return testing::NameOf(info.param);
                          });
-INSTANTIATE_TEST_SUITE_P(Planar, ElementsOfUnknownMotion,
-                         ::testing::ValuesIn(testing::KindsOfDimension(2)),
+INSTANTIATE_TEST_SUITE_P(QuadraticSolids, ElementsOfUnknownMotion,
+                         ::testing::ValuesIn(testing::KindsOf(3, 2)),
+                         [](const auto& info) {
+                           return testing::NameOf(info.param);
+                         });
+INSTANTIATE_TEST_SUITE_P(LinearPlanes, ElementsOfUnknownMotion,
+                         ::testing::ValuesIn(testing::KindsOf(2, 1)),
+                         [](const auto& info) {
+                           return testing::NameOf(info.param);
+                         });
+INSTANTIATE_TEST_SUITE_P(QuadraticPlanes, ElementsOfUnknownMotion,
+                         ::testing::ValuesIn(testing::KindsOf(2, 2)),
                          [](const auto& info) {
                            return testing::NameOf(info.param);
                          });
