@@ -22,8 +22,9 @@ namespace elastimate {
 ///
 /// Exact, through the node graph: about the time of five element passes for
 /// each modulus.  O(num_elements) time, and as much memory for each modulus.
-[[nodiscard]] Eigen::MatrixXd StiffnessTraces(const Mesh& mesh, const InternalForces& forces,
-                                const DegreesOfFreedom& degrees_of_freedom);
+[[nodiscard]] Eigen::MatrixXd StiffnessTraces(
+    const Mesh& mesh, const InternalForces& forces,
+    const DegreesOfFreedom& degrees_of_freedom);
 
 /// Makes `probes`, of num_dofs rows, columns of random signs z in the free
 /// rows, zero in the held ones.  Deterministic.

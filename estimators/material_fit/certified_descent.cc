@@ -22,7 +22,8 @@ Bounds RangeOf(const FreeParameters& free, Eigen::Index place) {
     if (free.All().Free()[i] == place) {
       Bounds bounds = free.VariableBounds()[i];
       if (place == kYoungsModulus) {
-        for (std::optional<double>* const end : {&bounds.lower, &bounds.upper}) {
+        for (std::optional<double>* const end :
+             {&bounds.lower, &bounds.upper}) {
           *end = *end ? std::optional<double>(std::exp(**end)) : *end;
         }
       }
@@ -78,10 +79,10 @@ std::optional<BoundedMinimum> CertifiedDescent::Minimize() {
     return std::nullopt;
   }
   const IsotropicElasticity elasticity =
-      is_regular
-          ? IsotropicElasticity::FromComplianceScale(
-                best.compliance_scale, best.poisson_ratio, fit_.Model().Section())
-          : IsotropicElasticity{1, fit_.Model().Pole()};
+      is_regular ? IsotropicElasticity::FromComplianceScale(
+                       best.compliance_scale, best.poisson_ratio,
+                       fit_.Model().Section())
+                 : IsotropicElasticity{1, fit_.Model().Pole()};
   minimum.variables = free.VariablesOf(
       Eigen::Vector2d(elasticity.youngs_modulus, elasticity.poisson_ratio));
   minimum.cost = best.square_sum / 2;
@@ -89,7 +90,7 @@ std::optional<BoundedMinimum> CertifiedDescent::Minimize() {
     minimum.on_bound.push_back(
         SideOf(free.VariableBounds()[i], minimum.variables(i)));
   }
-  minimum.end = !is_regular            ? End::kSingularStiffness
+  minimum.end = !is_regular           ? End::kSingularStiffness
                 : fit_.HasConverged() ? End::kDone
                                       : End::kNotCertified;
   return minimum;

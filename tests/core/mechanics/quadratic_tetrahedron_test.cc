@@ -8,8 +8,8 @@
 
 #include "elastimate/core/materials/elasticity.h"
 #include "elastimate/core/mechanics/gradient_products.h"
-#include "elastimate/core/mechanics/stiffness_assembly.h"
 #include "elastimate/core/mechanics/internal_forces.h"
+#include "elastimate/core/mechanics/stiffness_assembly.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/mechanics/stiffness_traces.h"
 #include "elastimate/core/mechanics/strain_energy.h"
