@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "apps/commands.h"
+#include "apps/outputs.h"
 #include "elastimate/core/materials/laws.h"
 #include "elastimate/estimators/registry.h"
-#include "elastimate/io/text/file_output.h"
 
 namespace elastimate {
 namespace {
