@@ -3,7 +3,7 @@
 
 namespace elastimate {
 
-// As messages name them.
+// These are the names of the axes in messages.
 inline constexpr const char* kAxisNames[3] = {"x", "y", "z"};
 
 }  // namespace elastimate
