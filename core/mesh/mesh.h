@@ -58,8 +58,7 @@ struct Mesh {
   /// Counts the degrees of freedom: row dimension * node + component of a
   /// vector.
   Eigen::Index NumDofs() const { return Dimension() * NumNodes(); }
-  /// Returns the order of the shape functions: 1 for linear, 2 for quadratic
-  /// elements.
+  /// Returns 1 for linear, 2 for quadratic shape functions.
   int Order() const { return Topology().order; }
   /// Counts the vertices, which come before all other nodes.  O(num_elements)
   /// for quadratic elements.

@@ -5,9 +5,9 @@
 
 namespace elastimate {
 
-/// The same scene modelled with linear simplices of the same nodes
-/// (SimplicialMesh): what nodes are held, are pushed by and were measured at
-/// stays what it is, facets and points become those of the simplices.
+/// Models a scene with linear simplices of the same nodes (SimplicialMesh).
+/// What is held, loaded or measured at nodes stays as it is; facets and points
+/// become facets and points of the simplices.
 ///
 /// Precondition: a valid scene (ValidateScene).  O(num_elements) time and
 /// memory.
