@@ -254,8 +254,8 @@ struct VertexStrains {
     const Vector w12 = FromVertex0(nodes, kMidEdgeNodes[1][2]);
     const Vector w13 = FromVertex0(nodes, kMidEdgeNodes[1][3]);
     const Vector w23 = FromVertex0(nodes, kMidEdgeNodes[2][3]);
-    // As g0 = -(g1 + g2 + g3), the coefficient of g0, which is 4 w_v0 at vertex
-    // v and 0 at vertex 0, is subtracted from the other coefficients.
+    // The coefficient of g0 is 4 w_v0 at vertex v and 0 at vertex 0.  Because
+    // g0 = -(g1 + g2 + g3), it is subtracted from the other coefficients.
     e0 = StrainOf(g, bent(w01, w1), bent(w02, w2), bent(w03, w3));
     e1 = StrainOf(g, three * w1 - four * w01, bent(w12 - w01, w2),
                   bent(w13 - w01, w3));

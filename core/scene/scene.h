@@ -121,7 +121,7 @@ struct Scene {
   Mesh mesh;
   /// The materials; an empty list means one isotropic material.
   std::vector<Material> materials;
-  Supports supports;  ///< Of all load cases that have none of their own.
+  Supports supports;  ///< For the load cases without their own.
   std::vector<LoadCase> load_cases;
   /// Tells that displacements were measured relative to an unknown rigid motion
   /// of the camera or of the whole specimen, another one in each load case.

@@ -43,7 +43,7 @@ struct SupportEnd {
 /// motion that is not known: some components of u = a + w x (x - x0).
 struct RigidFace {
   std::vector<int> nodes;
-  Eigen::Array<bool, Eigen::Dynamic, 1> components;  ///< Of `dimension`.
+  Eigen::Array<bool, Eigen::Dynamic, 1> components;  ///< One for each axis.
 };
 
 /// A node that a refinement put in the middle between two others.
