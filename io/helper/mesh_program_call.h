@@ -15,7 +15,7 @@ struct MeshProgram {
   std::string file;     ///< "elastimate-gmsh"
   std::string library;  ///< Whose work it is, for people: "Gmsh"
   std::string purpose;  ///< "reads Gmsh files"
-  std::string mend;     ///< Of a damaged file: "write it again"
+  std::string mend;     ///< For a damaged file: "write it again"
 };
 
 /// Lets the program read a file, in a process of its own with limits of memory
