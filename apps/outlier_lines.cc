@@ -9,7 +9,7 @@
 namespace elastimate {
 namespace {
 
-// As many as a sentence is read to the end with.
+// A sentence with more lines than this is not read to the end.
 constexpr std::size_t kMostLines = 10;
 
 }  // namespace

@@ -18,7 +18,7 @@ bool IsInPlane(const Eigen::MatrixXd& axis, int dimension);
 /// Returns the law that has the axis of `law` among its parameters, which
 /// "axis": "free" asks for; empty where there is none.
 std::string LawOfFreeAxis(const std::string& law);
-/// Returns "which ...; ...", which goes on about a law without such a law.
+/// Returns the end of a sentence, "which ...; ...", on a law that has none.
 std::string WhyNoFreeAxis();
 
 /// Reads the key "regions" of a scene, {"array": NAME}: takes the regions from
