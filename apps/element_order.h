@@ -12,15 +12,15 @@ namespace elastimate {
 /// Throws std::invalid_argument unless --order is an element order.
 void CheckOrderFlag();
 
-/// QuadraticScene with --order=2 of a scene of linear elements, else nothing.
-/// Adds a notice of what becomes of nodal forces.  Throws
+/// Returns the QuadraticScene of a scene of linear elements for --order=2, else
+/// nothing.  Adds a notice of what becomes of nodal forces.  Throws
 /// std::invalid_argument, naming the flag and `source`, where there are no
-/// quadratic elements for the scene, and for --order=1 of one that has them.
+/// quadratic elements for the scene, and for --order=1 when it has them.
 std::optional<Scene> QuadraticSceneIfAsked(const std::string& source,
                                            const Scene& scene,
                                            std::vector<std::string>& notices);
 
-/// Whether every load of the scene is one of nodal forces.
+/// Tells whether all loads of the scene are nodal forces.
 bool HasNodalForcesOnly(const Scene& scene);
 
 }  // namespace elastimate

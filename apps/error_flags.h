@@ -5,12 +5,13 @@
 
 namespace elastimate {
 
-/// The errors of the simulated measurement that the flags ask for.  Throws
+/// Returns the errors of the simulated measurement that the flags ask for,
+/// without the rigid motion, which depends on the dimension.  Throws
 /// std::invalid_argument for values out of range and flags that contradict each
-/// other.  What of --rigid_motion depends on the dimension is left out.
+/// other.
 MeasurementErrors ErrorsFromFlags();
 
-/// --rigid_motion in this dimension; empty without it.  Throws
+/// Returns --rigid_motion in this dimension; empty without the flag.  Throws
 /// std::invalid_argument where it does not have 3 or 6 finite numbers.
 Eigen::VectorXd RigidMotionFromFlag(int dimension);
 

@@ -58,7 +58,7 @@ SceneReading Read(const std::vector<std::string>& arguments) {
   return reading;
 }
 
-// --nu holds for each material of which no Poisson's ratio is known.
+// Takes --nu for the Poisson's ratio of each material for which none is known.
 void GiveKnownPoissonRatio(Scene& scene, EstimatorOptions& options) {
   if (!options.known_poisson_ratio || IsOneIsotropicMaterial(scene.materials)) {
     return;
@@ -83,7 +83,8 @@ void GiveKnownPoissonRatio(Scene& scene, EstimatorOptions& options) {
   options.known_poisson_ratio.reset();
 }
 
-// The library does not know where the scene came from; the user wants to.
+// Returns the files of the scene, which the library does not know and the user
+// wants to see.
 std::string Sources(const std::vector<std::string>& arguments) {
   std::string sources;
   for (const std::string& argument : arguments) {
@@ -92,8 +93,8 @@ std::string Sources(const std::vector<std::string>& arguments) {
   return sources;
 }
 
-// What of the command line the estimator cannot serve; the scene, unless other
-// flags would help.
+// Returns what of the command line the estimator cannot serve: the scene,
+// unless other flags would help.
 std::string WhatToBlame(const Estimator& estimator, const Scene& scene,
                         const Scene& modelled, const EstimatorOptions& options,
                         const std::string& sources) {
@@ -120,7 +121,8 @@ Estimate RunEstimator(const Estimator& estimator, const Scene& scene,
   }
 }
 
-// Takes the flags, all of which are checked before anything is read.
+// Returns the options of the flags, all of which are checked before anything is
+// read.
 EstimatorOptions CheckFlags(const std::vector<std::string>& arguments) {
   EstimatorOptions options = OptionsFromFlags();
   OriginFromFlag();
@@ -132,7 +134,7 @@ EstimatorOptions CheckFlags(const std::vector<std::string>& arguments) {
   return options;
 }
 
-// The report goes where the flags say, beside the other files.
+// Writes the report to where the flags say, together with the other files.
 void WriteReport(const Estimate& estimate, const Scene& scene,
                  const EstimatorOptions& options, const ReportTimes& times,
                  const std::vector<std::string>& notices, StagedFiles& files) {
@@ -147,7 +149,8 @@ void WriteReport(const Estimate& estimate, const Scene& scene,
   PrintNotices(notices);
 }
 
-// What a series does not go with, and where its table may not go.
+// Throws for flags that do not go with a series, and for places where its table
+// may not go.
 void CheckSeries(const FrameSeries& series) {
   for (const std::string flag : {"out", "order"}) {
     if (IsGiven(flag) && (flag != "order" || FLAGS_order != 1)) {
@@ -168,7 +171,7 @@ void CheckSeries(const FrameSeries& series) {
   }
 }
 
-// The frames of a scene, and what they say together.
+// Estimates from the frames of a scene, and from all of them together.
 int RunSeries(const Estimator& estimator, SceneReading reading,
               const EstimatorOptions& options, double read_seconds,
               Clock::time_point start, std::optional<Progress>& progress) {
@@ -191,7 +194,8 @@ int RunSeries(const Estimator& estimator, SceneReading reading,
 
 bool MergesRegions() { return FLAGS_regions == "merge"; }
 
-// Merging compares fits, and is of one measurement.
+// Throws for what does not go with merging, which compares fits of one
+// measurement of isotropic materials.
 void CheckMerging(const SceneReading& reading) {
   if (FLAGS_estimator != "iterative-fe" && FLAGS_estimator != "auto") {
     throw std::invalid_argument(
@@ -235,7 +239,7 @@ MaterialMerge MergeRegions(const Estimator& estimator,
   return merge;
 }
 
-// One measurement.
+// Estimates from one measurement.
 int RunOne(const std::vector<std::string>& arguments,
            const Estimator& estimator, SceneReading reading,
            EstimatorOptions options, double read_seconds,
@@ -257,7 +261,7 @@ int RunOne(const std::vector<std::string>& arguments,
   }
   std::optional<ChosenLaw> law;
   if (ChoosesLaw()) {
-    // Now, for who would not wait.
+    // The notices are shown now, for users who would not wait for the rest.
     progress.reset();
     PrintNotices(NoticesOfLawChoice(modelled));
     progress.emplace("comparing laws");

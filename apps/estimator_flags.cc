@@ -91,7 +91,7 @@ SolverKind SolverFromFlag() {
   Require(FLAGS_solver == "automatic" || FLAGS_solver == "cholesky" ||
               FLAGS_solver == "multigrid",
           "solver", "it is automatic, cholesky or multigrid");
-  // To ask whether it is there loads it.
+  // Multigrid is looked for only here, since looking for it loads it.
   if (FLAGS_solver == "multigrid") {
     Require(HasMultigrid(), "solver",
             "it is not there (" + WhyNoMultigrid() + "); use cholesky");

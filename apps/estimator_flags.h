@@ -13,19 +13,19 @@ namespace elastimate {
 /// flags, for what the library would refuse by its own names.
 EstimatorOptions OptionsFromFlags();
 
-/// What --origin says; empty where it is not given.  Throws
-/// std::invalid_argument for any other word.
+/// Returns the origin that --origin names; empty where the flag is not given.
+/// Throws std::invalid_argument for any other word.
 std::optional<Origin> OriginFromFlag();
 
-/// Returns the solver of --solver.  Throws std::invalid_argument for any other
-/// word, and for multigrid where it is not there.
+/// Returns the solver that --solver names.  Throws std::invalid_argument for
+/// any other word, and for multigrid where it is not there.
 SolverKind SolverFromFlag();
 
 /// Throws std::invalid_argument unless --nu is a Poisson's ratio.
 void CheckPoissonRatioFlag();
 
-/// The flags behind the options as they were given, such as "--nu_min=0.2
-/// --loss=huber"; empty when there are none.
+/// Returns the flags behind the options as they were given, such as
+/// "--nu_min=0.2 --loss=huber"; empty when there are none.
 std::string GivenOptionFlags();
 
 }  // namespace elastimate

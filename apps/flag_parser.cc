@@ -35,7 +35,7 @@ bool Takes(const Command& command, const std::string& flag) {
       });
 }
 
-// As people write it: gflags has all digits of 0.1.
+// Writes a value as people do, whereas gflags writes all digits of 0.1.
 std::string ValueText(const gflags::CommandLineFlagInfo& info,
                       const std::string& value) {
   if (info.type != "double") {
@@ -60,7 +60,8 @@ void CheckIsTaken(const Program& program, const Command& command,
       " --help");
 }
 
-// In --flag VALUE a flag that follows is not the value, but -1 and - are.
+// In --flag VALUE, an argument that is another flag is not the value, but -1
+// and - may be.
 bool MayBeValue(const std::string& argument) {
   return argument.size() < 2 || argument[0] != '-' || argument[1] == '.' ||
          std::isdigit(static_cast<unsigned char>(argument[1])) != 0;
@@ -87,7 +88,8 @@ void SetFlag(const std::string& name, const std::string& value) {
   }
 }
 
-// gflags would silently take the last value.
+// Throws for two different values, of which gflags would silently take the
+// last.
 void CheckIsTheSame(const std::string& flag, const std::string& first,
                     const std::string& value) {
   if (first != value) {
@@ -115,7 +117,7 @@ std::size_t WidthOfFlags(const Command& command) {
 std::string FlagHelp(const CommandFlag& flag, std::size_t width) {
   gflags::CommandLineFlagInfo info;
   gflags::GetCommandLineFlagInfo(flag.name.c_str(), &info);
-  // A default of 0 stands for "not given", except where it means itself.
+  // A default of 0 stands for "not given", except where 0 is meant.
   const bool shows_default = !info.default_value.empty() &&
                              info.default_value != "0" && info.type != "bool";
   return "  --" + flag.name + std::string(width - flag.name.size(), ' ') +
@@ -163,7 +165,7 @@ std::vector<std::string> ParseFlags(const Program& program,
       continue;
     }
     const std::size_t equals = argument.find('=');
-    // gflags takes -flag as well.
+    // gflags accepts -flag as well as --flag.
     const std::size_t start = argument.compare(0, 2, "--") == 0 ? 2 : 1;
     const std::string name = argument.substr(start, equals - start);
     CheckIsTaken(program, command, name);

@@ -9,8 +9,8 @@ namespace elastimate {
 /// A flag that a command takes.
 struct CommandFlag {
   std::string name;
-  /// What it means to the command.  Where this is empty, the help has the
-  /// description that the flag is defined with.
+  /// The meaning of the flag to the command.  Where this is empty, the help has
+  /// the description with which the flag is defined.
   std::string meaning = {};
 };
 
@@ -46,25 +46,27 @@ std::vector<std::string> ParseFlags(const Program& program,
                                     const Command& command,
                                     const std::vector<std::string>& arguments);
 
-/// Whether the flag was given.
+/// Tells whether the flag was given.
 bool IsGiven(const std::string& flag);
 
-/// The flag with its value, such as "--nu=0.3".
+/// Returns the flag with its value, such as "--nu=0.3".
 std::string AsGiven(const std::string& flag);
 
-/// A list of all commands, without their flags.
+/// Returns a list of all commands, without their flags.
 std::string CommandsHelp(const Program& program);
 
-/// Usage of one command, with a line for each of its flags, by groups.
+/// Returns the usage of one command, with a line for each of its flags, by
+/// groups.
 std::string CommandHelp(const Program& program, const Command& command);
 
-/// The command that arguments name beside what asks for help, null where they
-/// name none.  Throws std::invalid_argument for one that there is not.
+/// Returns the command that arguments name beside what asks for help, or null
+/// where they name none.  Throws std::invalid_argument for one that does not
+/// exist.
 const Command* CommandToExplain(const Program& program,
                                 const std::vector<std::string>& arguments);
 
-/// Whether the arguments ask for help, by "help", or by "--help" or "-h" before
-/// any "--".
+/// Tells whether the arguments ask for help, by "help", or by "--help" or "-h"
+/// before any "--".
 bool AsksForHelp(const std::vector<std::string>& arguments);
 
 }  // namespace elastimate

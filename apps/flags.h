@@ -55,9 +55,9 @@ namespace elastimate {
 /// The program `elastimate`.
 const Program& Elastimate();
 
-/// What arguments that ask for help (AsksForHelp) ask for: the usage of the
-/// command that they name, with the meaning of its flags, else a list of the
-/// commands.  Throws std::invalid_argument where there is no such command.
+/// Returns the help for arguments that ask for it (AsksForHelp): the usage of
+/// the command that they name, with the meaning of its flags, else a list of
+/// the commands.  Throws std::invalid_argument where there is no such command.
 std::string HelpFor(const std::vector<std::string>& arguments);
 
 }  // namespace elastimate

@@ -28,7 +28,8 @@ void RejectFlags(const std::string& geometry,
   }
 }
 
-// The library's sentences begin with an option, which has the name of its flag.
+// Names flags in the library's sentences, which begin with an option of the
+// same name.
 template <typename Make>
 Scene FlagsNamed(Make make) {
   try {
@@ -143,7 +144,7 @@ Scene OrganFromFlags() {
   return FlagsNamed([&] { return OrganScene(options); });
 }
 
-/// What is generated, and the flags that are not for it.
+/// A geometry that can be generated, and the flags that do not go with it.
 struct Geometry {
   const char* name;
   Scene (*make)();

@@ -12,7 +12,8 @@
 namespace elastimate {
 namespace {
 
-// Speaks of the fit without symmetry with which all laws are compared.
+// Counts the parameters of the fit without symmetry, with which all laws are
+// compared.
 std::size_t NumStiffnesses(const Scene& scene) {
   return AnisotropicLaw().Parameters().size() *
          std::max<std::size_t>(scene.materials.size(), 1);
@@ -23,7 +24,8 @@ std::string HowManyStiffnesses(const Scene& scene) {
          std::to_string(NumStiffnesses(scene)) + " parameters";
 }
 
-// Fewer components than parameters determine none of these.
+// Throws for fewer components than parameters, which would determine none of
+// these.
 void RequireMoreDataThanParameters(const Scene& scene) {
   const Eigen::Index num_observed = ObservedDisplacements(scene).Size();
   if (num_observed <= static_cast<Eigen::Index>(NumStiffnesses(scene))) {

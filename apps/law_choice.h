@@ -10,21 +10,21 @@
 
 namespace elastimate {
 
-/// Choosing a law (--material=auto) compares fits, and is of one measurement:
-/// throws std::invalid_argument, naming the flag, where flags, scene or options
-/// do not go with it, and where there are fewer measured components than
-/// stiffnesses of all materials.
+/// Throws std::invalid_argument, naming the flag, where flags, scene or options
+/// do not go with the choice of a law (--material=auto), which compares fits of
+/// one measurement.  Throws as well where there are fewer measured components
+/// than stiffnesses of all materials.
 void CheckLawChoice(const SceneReading& reading,
                     const EstimatorOptions& options);
 
-/// What there is to say before laws are compared: that it takes long for
-/// several materials.
+/// Returns what there is to say before laws are compared: for several materials
+/// it takes long.
 std::vector<std::string> NoticesOfLawChoice(const Scene& scene);
 
-/// Gives a scene, and the same at the element order that was asked for, the
-/// materials of the law that the measurement asks for; where laws cannot be
-/// compared, a notice says why.  Throws std::invalid_argument where no fit
-/// takes the scene.
+/// Gives a scene, and the same scene at the element order that was asked for,
+/// the materials of the law for which the measurement speaks.  Where laws
+/// cannot be compared, a notice says why.  Throws std::invalid_argument where
+/// no fit takes the scene.
 ChosenLaw GiveChosenLaw(const EstimatorOptions& options,
                         const std::string& sources, Scene& modelled,
                         Scene& scene, std::vector<std::string>& notices);

@@ -13,7 +13,8 @@
 #include <string>
 #include <vector>
 
-// What cblas.h of OpenBLAS declares; other BLAS have a cblas.h without it.
+// cblas.h of OpenBLAS declares these functions; other BLAS have a cblas.h
+// without them.
 extern "C" {
 char* openblas_get_config();
 void openblas_set_num_threads(int num_threads);
@@ -26,20 +27,22 @@ void dgemm_(const char* transpose_a, const char* transpose_b, const int* m,
 namespace elastimate {
 namespace {
 
-/// What OpenBLAS 0.3 takes of the address space for each thread, at most.
+/// OpenBLAS 0.3 takes at most this much of the address space for each thread.
 constexpr rlim_t kBlasMemory = rlim_t{1} << 27;
 
-/// What a small scene takes beside that.  Not all libraries bear to get less.
+/// A small scene takes this much beside it.  Not all libraries can bear to get
+/// less.
 constexpr rlim_t kSmallSceneMemory = rlim_t{1} << 25;
 
-/// RLIM_INFINITY where there is no limit (ulimit -v).
+/// Returns RLIM_INFINITY where there is no limit (ulimit -v).
 rlim_t AddressSpace() {
   rlimit limit{};
   getrlimit(RLIMIT_AS, &limit);
   return limit.rlim_cur;
 }
 
-/// As many as take a quarter of what the process may take, one at least.
+/// Returns how many threads take a quarter of the memory that the process may
+/// take, one at least.
 int LargestNumThreads() {
   const rlim_t memory = AddressSpace();
   return memory == RLIM_INFINITY
@@ -55,8 +58,9 @@ int NumProcessors() {
   return CPU_COUNT(&processors);
 }
 
-/// Sets a number of threads in the environment, which is `otherwise` where it
-/// is not there, to what there may be; true when that changes it.
+/// Limits a number of threads in the environment, which is `otherwise` where it
+/// is not there, to the largest number that may be.  Returns true when that
+/// changes it.
 bool LimitThreads(const std::string& name, int otherwise,
                   std::vector<std::string>& variables) {
   const std::string begin = name + "=";
@@ -77,8 +81,8 @@ bool LimitThreads(const std::string& name, int otherwise,
 }
 
 /// Starts the program anew with fewer threads where they need more memory than
-/// there may be.  Runs ahead of all libraries: OpenBLAS starts its threads when
-/// it is loaded, and each tries forever to get its memory.
+/// there may be.  This runs ahead of all libraries: OpenBLAS starts its threads
+/// when it is loaded, and each tries forever to get its memory.
 [[maybe_unused]] void FitThreadsToMemory(int /*argc*/, char** argv,
                                          char** environment) {
   if (AddressSpace() == RLIM_INFINITY) {
@@ -99,7 +103,7 @@ bool LimitThreads(const std::string& name, int otherwise,
       pointers.push_back(variable.data());
     }
     pointers.push_back(nullptr);
-    // Where it cannot be, it goes on with all threads.
+    // Where it cannot be started anew, it goes on with all threads.
     execve("/proc/self/exe", argv, pointers.data());
   }
 }
@@ -144,7 +148,7 @@ void ReserveBlasMemory() {
         std::to_string(AddressSpace() >> 20) + " MiB; raise it (ulimit -v)");
   }
   munmap(memory, kNeeded);
-  // It keeps what it has taken once.
+  // OpenBLAS keeps the memory that it has taken once.
   const int size = 64;
   const double one = 1;
   const std::vector<double> a(size * size, 0.0);

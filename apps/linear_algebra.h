@@ -5,21 +5,21 @@
 
 namespace elastimate {
 
-/// The BLAS that is really in use by this process: its configuration, and the
-/// file that dgemm comes from.
+/// Describes the BLAS that this process really uses: its configuration, and the
+/// file from which dgemm comes.
 std::string DescribeBlas();
 
-/// Limits the threads of the BLAS, which are at most as many as fit into the
+/// Sets the threads of the BLAS, at most to the number that fits into the
 /// memory that the process may take.
 void SetBlasThreads(int num_threads);
 
-/// Has the BLAS take the memory it works with, which it would wait for forever
-/// when it is not there.  Throws std::runtime_error where the process may not
-/// take that much and what a small scene needs (ulimit -v).
+/// Has the BLAS take the memory with which it works, for which it would wait
+/// forever when it is not there.  Throws std::runtime_error where the process
+/// may not take this much and what a small scene needs (ulimit -v).
 ///
-/// So that its other threads, which start before the program does, find theirs,
-/// this file starts the program anew, with fewer of them, where the process may
-/// take too little memory for all.
+/// The other threads of the BLAS start before the program does.  So that they
+/// find their memory, this file starts the program anew, with fewer threads,
+/// where the process may take too little memory for all.
 void ReserveBlasMemory();
 
 }  // namespace elastimate

@@ -34,7 +34,7 @@ constexpr int kNoEstimate = 2;
   _exit(kNoEstimate);
 }
 
-/// Whether the end of the program is none of its own making.
+/// While this is true, an end of the program is not of its own making.
 bool is_at_work = false;
 
 /// Some libraries do not report that they get no memory: they throw where

@@ -14,7 +14,7 @@
 namespace elastimate {
 namespace {
 
-// One direction of 2 or 3 numbers, or two of 3 each.
+// Returns one direction of 2 or 3 numbers, or two of 3 each.
 std::vector<Eigen::VectorXd> AxesFromFlag() {
   const Eigen::Index count =
       1 + std::count(FLAGS_axis.begin(), FLAGS_axis.end(), ',');

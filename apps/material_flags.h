@@ -5,14 +5,15 @@
 
 namespace elastimate {
 
-/// What --material and --axis give.  Throws std::invalid_argument, naming the
-/// flag, for a value that is none.
+/// Returns what --material and --axis give.  Throws std::invalid_argument,
+/// naming the flag, for a wrong value.
 LawChoice LawFromFlags();
 
-/// Whether --material=auto has the measurement choose the law.
+/// Tells whether --material=auto has the measurement choose the law.
 bool ChoosesLaw();
 
-/// What --axis gives then: axes are those of a law that takes as many.
+/// Returns the axes that --axis gives for --material=auto; they are for laws
+/// that take as many.
 LawChoice AxesOfLawsToChoose();
 
 }  // namespace elastimate

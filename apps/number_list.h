@@ -10,9 +10,10 @@
 
 namespace elastimate {
 
-/// The value of a flag as `count` numbers (as many as `Vector` has, where that
-/// is fixed), separated by commas; `kind` names them, such as "finite numbers".
-/// Throws std::invalid_argument, naming the flag, for anything else.
+/// Returns the value of a flag as `count` numbers (as many as `Vector` has,
+/// where that is fixed), separated by commas; `kind` names them, such as
+/// "finite numbers".  Throws std::invalid_argument, naming the flag, for
+/// anything else.
 template <typename Vector>
 Vector NumberList(const std::string& flag, const std::string& value,
                   const std::string& kind,

@@ -9,7 +9,7 @@
 namespace elastimate {
 namespace {
 
-// A sentence with so many is read to the end.
+// A sentence with more lines than this is not read to the end.
 constexpr std::size_t kMostLines = 10;
 
 }  // namespace

@@ -9,9 +9,9 @@
 
 namespace elastimate {
 
-/// "points.csv: 3 outliers are on the lines 6, 10, 11", of many the first: a
-/// sentence for each file
-/// with some, as far as measurements are lines of text (SceneReading).
+/// Returns a sentence for each file with outliers, as far as measurements are
+/// lines of text (SceneReading): "points.csv: 3 outliers are on the lines 6,
+/// 10, 11".  Where there are many, it names the first.
 std::vector<std::string> OutlierLines(
     const std::vector<Outlier>& outliers,
     const std::vector<std::vector<FileLines>>& measured_lines);

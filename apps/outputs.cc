@@ -36,11 +36,12 @@ std::string LowercaseExtension(const fs::path& path) {
   return extension;
 }
 
-// The input, and whatever a scene.json might name: its mesh and its fields.
+// Returns the input, and whatever a scene.json might name: its mesh and its
+// fields.
 std::vector<fs::path> FilesBehind(const fs::path& input) {
   using Json = nlohmann::json;
   std::vector<fs::path> files = {input};
-  // A pipe could not be read twice.
+  // A pipe is not read here, since it could not be read twice.
   if (LowercaseExtension(input) == ".json" && fs::is_regular_file(input)) {
     const auto collect = [&](int, Json::parse_event_t event, Json& value) {
       if (event == Json::parse_event_t::value && value.is_string()) {
@@ -49,13 +50,13 @@ std::vector<fs::path> FilesBehind(const fs::path& input) {
       return true;
     };
     std::ifstream text(input);
-    // What is wrong with the text is for the reader to say.
+    // The reader says what is wrong with the text.
     const Json ignored = Json::parse(text, collect, false);
   }
   return files;
 }
 
-// Whether the file is where the stream goes.  A terminal or /dev/null may well
+// Tells whether the stream goes to the file.  A terminal or /dev/null may well
 // be both.
 bool IsStream(const fs::path& path, int stream) {
   struct stat file = {};
@@ -94,8 +95,9 @@ void CheckOutputFlag(const std::string& flag, const std::string& file,
 void OpenClosedStandardStreams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(stream, F_GETFD) == -1) {
-      // The lowest free descriptor, which is the stream's; for reading, so that
-      // what is written there does not seem to arrive.
+      // This takes the lowest free descriptor, which is the stream's.  It is
+      // opened for reading, so that what is written there does not seem to
+      // arrive.
       open("/dev/null", O_RDONLY);
     }
   }

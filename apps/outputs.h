@@ -11,10 +11,11 @@ namespace elastimate {
 /// would be taken for them.
 void OpenClosedStandardStreams();
 
-/// What --out may be.
+/// The formats that --out may have.
 enum class OutFormats { kVtu, kVtuOrTable };
 
-/// Whether the name of a file ends with `extension`, in letters of any case.
+/// Tells whether the name of a file ends with `extension`, in letters of any
+/// case.
 bool HasExtension(const std::string& file, const std::string& extension);
 
 /// Checks --out and --json before any work is done: that they could be written,

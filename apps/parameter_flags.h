@@ -11,11 +11,11 @@ namespace elastimate {
 /// --youngs or --nu, one of these without the other, and values out of range.
 void CheckParameterFlags();
 
-/// Whether --parameters is given, or --youngs and --nu.
+/// Tells whether --parameters is given, or --youngs and --nu.
 bool AreParametersGiven();
 
-/// The parameters of all materials of the scene: those of --parameters, or E
-/// and nu alike.  Precondition: they are given.
+/// Returns the parameters of all materials of the scene: those of --parameters,
+/// or E and nu alike for each.  Precondition: they are given.
 Eigen::VectorXd ParametersFromFlags(const Scene& scene);
 
 }  // namespace elastimate

@@ -30,10 +30,11 @@
 namespace elastimate {
 namespace {
 
-// The noise is this part of the rms displacement where nothing is known of it.
+// The usual noise over the rms displacement, where nothing is known of the
+// noise.
 constexpr double kUsualNoise = 0.01;
-// Below, a residual is one of simulated data, and says nothing of a measurement
-// to come.
+// A smaller residual is one of simulated data, and says nothing of a
+// measurement to come.
 constexpr double kLeastResidual = 1e-6;
 
 void CheckPlanFlags(const std::vector<std::string>& arguments) {
@@ -96,7 +97,7 @@ SplitCases Split(const Scene& scene, PlanBasis& basis) {
   return split;
 }
 
-// Whether these are parameters of the laws, not held by a bound.
+// Tells whether these are parameters of the laws and no bound holds them.
 bool ArePhysical(const Scene& scene, const Estimate& estimate) {
   const MaterialParameters parameters(scene.materials,
                                       scene.mesh.section.model);
@@ -126,7 +127,7 @@ bool SaysItsNoise(const LoadCase& load_case) {
   return load_case.noise_sd || load_case.points.noise_sd.size() != 0;
 }
 
-// What the residual says about noise that is not given.
+// Takes the noise from the residual where it is not given.
 void TakeNoiseFrom(const Estimate& estimate, Scene& before, PlanBasis& basis) {
   const double residual = estimate.displacement_residual.value_or(0);
   if (IsGiven("noise") || !(residual > kLeastResidual)) {
@@ -140,7 +141,7 @@ void TakeNoiseFrom(const Estimate& estimate, Scene& before, PlanBasis& basis) {
   }
 }
 
-// Takes the parameters of the flags, of the measurement, or typical ones.
+// Returns the parameters of the flags, of the measurement, or typical ones.
 Eigen::VectorXd ChooseParameters(SolverKind solver, Scene& before,
                                  PlanBasis& basis) {
   basis.is_scale_known = true;
@@ -168,7 +169,8 @@ Eigen::VectorXd ChooseParameters(SolverKind solver, Scene& before,
   return TypicalParameters(before, solver);
 }
 
-// A length beside moduli of any size says nothing.
+// Leaves out a noise that is a length, which says nothing beside moduli of any
+// size.
 void LeaveNoiseOut(SplitCases& split, std::vector<std::string>& notices) {
   bool is_given = false;
   const auto leave_out = [&](LoadCase& load_case) {
@@ -190,8 +192,8 @@ void LeaveNoiseOut(SplitCases& split, std::vector<std::string>& notices) {
   }
 }
 
-// What is observed, and the noise, as in the first load case, where a candidate
-// says nothing else.
+// Gives each candidate the observed components and the noise of the first load
+// case, where it says nothing else.
 void CompleteCandidates(SplitCases& split) {
   const LoadCase& first = split.before.load_cases[0];
   for (CandidateLoad& candidate : split.candidates) {

@@ -8,9 +8,9 @@
 
 namespace elastimate {
 
-/// One line on standard error that says what long work is at and for how long;
-/// only when that is a terminal, and only after two seconds.  Cleared at the
-/// end.
+/// Shows on one line of standard error what long work is at, and for how long.
+/// It does so only when that is a terminal, and only after two seconds.  The
+/// line is cleared at the end.
 class Progress {
  public:
   explicit Progress(const std::string& text);
@@ -18,7 +18,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// What the work is at from now on.
+  /// Sets what the work is at from now on.
   void Show(const std::string& text);
 
  private:

@@ -22,7 +22,7 @@ std::string CaseSuffix(Eigen::Index load_case) {
   return load_case == 0 ? "" : "_" + std::to_string(load_case + 1);
 }
 
-// p of the estimate; empty where some are not physical.
+// Returns p of the estimate; empty where some parameters are not physical.
 std::optional<Eigen::VectorXd> PhysicalParameters(const Estimate& estimate) {
   Eigen::VectorXd values(Eigen::Index(estimate.parameters.size()));
   for (Eigen::Index i = 0; i < values.size(); ++i) {
@@ -38,7 +38,7 @@ std::optional<Eigen::VectorXd> PhysicalParameters(const Estimate& estimate) {
 
 class FieldCollector {
  public:
-  // Shows the first nodes, which are those of `shown`.
+  // Shows the first nodes, which are the nodes of `shown`.
   FieldCollector(const Mesh& shown, Fields& fields)
       : shown_(shown), fields_(fields) {}
 
@@ -59,7 +59,7 @@ class FieldCollector {
          forces.EnergyDensity(moduli, all.col(load_case)).transpose()});
   }
 
-  // 1 at the nodes whose measurement was left out.
+  // Adds a field that is 1 at the nodes whose measurement was left out.
   void AddOutliers(const std::vector<Outlier>& outliers) {
     for (const Outlier& outlier : outliers) {
       const std::string name = "outlier" + CaseSuffix(outlier.load_case);
@@ -74,7 +74,7 @@ class FieldCollector {
     }
   }
 
-  // Cell arrays of what is left of the measurement in the material of each
+  // Adds cell arrays of what is left of the measurement in the material of each
   // element.
   void AddResiduals(const Scene& scene, const Estimate& estimate) {
     const std::vector<int> material_of =
@@ -101,7 +101,8 @@ class FieldCollector {
         {"residual_correlation", correlation(material_of).transpose()});
   }
 
-  // A cell array of each parameter, of the material of each element.
+  // Adds a cell array of each parameter, with the value of each element's
+  // material.
   void AddParameters(const Scene& scene, const Estimate& estimate) {
     const std::vector<int> material_of =
         MaterialOfElements(scene.materials, scene.mesh);
@@ -131,8 +132,8 @@ class FieldCollector {
   Fields& fields_;
 };
 
-// Without the rotation of each load case where that is free, as the estimate
-// was made.
+// Subtracts the displacement from the measured one.  Where the rotation of each
+// load case is free, it is taken out first, as the estimate does.
 Eigen::MatrixXd MeasuredMinus(Scene scene,
                               const Eigen::MatrixXd& displacement) {
   RemoveFreeRotation(scene);

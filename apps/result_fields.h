@@ -8,20 +8,23 @@
 
 namespace elastimate {
 
-/// The scene with what the estimate makes of it, for each load case (k > 1
-/// with suffix `_k`).  `modelled` is the scene that was estimated: `scene`, or
-/// its QuadraticScene, of which the values at the vertices are shown, which are
-/// the nodes of `scene`.
+/// Returns the scene with what the estimate makes of it, for each load case (k
+/// > 1 with suffix `_k`).  `modelled` is the scene that was estimated: `scene`,
+/// or its QuadraticScene, whose values are shown at the vertices, which are the
+/// nodes of `scene`.
 ///
-/// With a physical E and nu and a specimen that is held: `fitted_displacement`,
-/// `displacement_residual` (measured minus fitted where observed, else zero),
-/// `outlier` (1 at nodes whose measurement was left out, where there are some),
-/// `reaction_force` at the held degrees of freedom (of a QuadraticScene, with
-/// half of the reaction at each mid-edge node at either end of its edge, which
-/// keeps resultant and moment: MidEdges), and per cell the
-/// `strain_energy_density` of the fitted displacement.  When nothing holds the
-/// specimen: `force_residual` and `strain_energy_density` of the measured
-/// displacement, with linear elements.  Otherwise the scene alone.
+/// With a physical E and nu and a specimen that is held, these are:
+/// `fitted_displacement`; `displacement_residual` (measured minus fitted where
+/// observed, else zero); `outlier` (1 at nodes whose measurement was left out,
+/// where there are some); `reaction_force` at the held degrees of freedom; and
+/// per cell the `strain_energy_density` of the fitted displacement.  The
+/// reactions of a QuadraticScene have half of the reaction at each mid-edge
+/// node added at either end of its edge, which keeps resultant and moment
+/// (MidEdges).
+///
+/// When nothing holds the specimen, these are `force_residual` and
+/// `strain_energy_density` of the measured displacement, with linear elements.
+/// Otherwise the scene alone is returned.
 Fields ResultFields(const Scene& scene, const Scene& modelled,
                     const Estimate& estimate, SolverKind solver);
 

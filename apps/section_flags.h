@@ -5,15 +5,15 @@
 
 namespace elastimate {
 
-/// What --model and --thickness give.  Throws std::invalid_argument, naming the
-/// flag, for a value that is none.
+/// Returns what --model and --thickness give.  Throws std::invalid_argument,
+/// naming the flag, for a wrong value.
 SectionChoice SectionFromFlags();
 
-/// What --regions gives; likewise.
+/// Returns what --regions gives.  Throws as SectionFromFlags does.
 RegionChoice RegionsFromFlag();
 
-/// Throws std::invalid_argument where it asks for merging, which is of
-/// `estimate` alone.
+/// Throws std::invalid_argument where --regions asks for merging, which only
+/// `estimate` does.
 void CheckNoMerging();
 
 }  // namespace elastimate

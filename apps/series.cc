@@ -15,7 +15,7 @@
 namespace elastimate {
 namespace {
 
-// The row of a frame that no estimator has seen.
+// Returns an estimate for a frame that no estimator has seen.
 Estimate NotRun(const std::string& why) {
   Estimate estimate;
   estimate.message = why;
@@ -30,7 +30,7 @@ LoadCase ReadFrame(const FrameSeries& series, std::size_t i) {
   return frame;
 }
 
-// Prepared for a frame, unless there is something already.
+// Prepares the estimator for a frame, unless it is prepared already.
 void Prepare(const Estimator& estimator, const Scene& scene,
              const LoadCase& frame, const EstimatorOptions& options,
              std::optional<PreparedEstimator>& prepared) {
@@ -41,7 +41,8 @@ void Prepare(const Estimator& estimator, const Scene& scene,
   }
 }
 
-// What would be wrong with each frame is wrong with the command.
+// Checks the first frame: what is wrong with each frame is wrong with the
+// command.
 void CheckFirst(const Estimator& estimator, const Scene& scene,
                 const LoadCase& frame, const FrameSeries& series,
                 const EstimatorOptions& options) {
@@ -59,8 +60,8 @@ void CheckFirst(const Estimator& estimator, const Scene& scene,
   }
 }
 
-// What is left of a measurement, without its rotation where that is free; not a
-// number where there is none, or it was left out.
+// Returns what is left of a measurement, without its rotation where that is
+// free; NaN where there is none, or where it was left out.
 Eigen::VectorXd ResidualOf(const Scene& scene, LoadCase frame,
                            const Estimate& estimate) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();

@@ -12,10 +12,11 @@
 
 namespace elastimate {
 
-/// The estimate of each frame, prepared once; one that cannot be read or used
-/// says why.  `scene` is that of the frames, at the given standard deviation of
-/// noise, if any.  `progress` is told what is done next.  Throws
-/// std::invalid_argument where the estimator does not take such frames.
+/// Returns the estimate of each frame from an estimator that is prepared once.
+/// For a frame that cannot be read or used it says why.  `scene` is that of the
+/// frames, at the given standard deviation of noise, if any.  `progress` is
+/// told what is done next.  Throws std::invalid_argument where the estimator
+/// does not take such frames.
 std::vector<FrameEstimate> EstimateFrames(
     const Estimator& estimator, const Scene& scene, const FrameSeries& series,
     const EstimatorOptions& options,

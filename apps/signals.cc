@@ -13,15 +13,15 @@ namespace {
 
 pthread_t main_thread;
 
-// Whoever waits for the program sees that a signal ended it.
+// Ends the program so that whoever waits for it sees that a signal ended it.
 void EndBySignal(int signal_number) {
   UnlinkStagedFiles();
   signal(signal_number, SIG_DFL);
   raise(signal_number);
 }
 
-// The main thread, which writes the outputs, must not make another one after
-// they are removed: so it is the one that removes them.
+// The main thread removes the outputs, because it writes them and must not make
+// another one after they are removed.
 void CleanUpAndEnd(int signal_number) {
   const int reason = errno;
   if (pthread_equal(pthread_self(), main_thread) == 0) {

@@ -9,7 +9,7 @@ namespace elastimate {
 /// is the only one that may write outputs.
 void CleanUpOnSignals();
 
-/// Ends the program as SIGPIPE does one that does not ignore it, and leaves no
+/// Ends the program as SIGPIPE ends one that does not ignore it, and leaves no
 /// part of an output.
 [[noreturn]] void EndByClosedPipe();
 

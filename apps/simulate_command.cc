@@ -35,7 +35,8 @@
 namespace elastimate {
 namespace {
 
-// Whether the measurement is a table of points, in the place of a scene.
+// Tells whether the measurement is written as a table of points rather than a
+// scene.
 bool WritesTable() { return HasExtension(FLAGS_out, ".csv"); }
 
 void CheckPointsFlag() {
@@ -58,7 +59,8 @@ void CheckPointsFlag() {
 /// num_load_cases.
 struct Solution {
   Eigen::MatrixXd displacement;
-  /// Zero where nothing is held; empty where nothing is held away from zero.
+  /// These are zero where nothing is held, and empty where nothing is held away
+  /// from zero.
   Eigen::MatrixXd support_forces;
 };
 
@@ -94,8 +96,8 @@ Solution Solve(const std::string& source, const Scene& modelled,
   return {model.Displacement(), OfHeld(modelled, residual)};
 }
 
-/// What a load cell would show: a line for each load case where supports are
-/// held away from zero.
+/// Returns what a load cell would show, with a line for each load case where
+/// supports are held away from zero.
 std::string ForcesOfDisplacedSupports(const Scene& modelled,
                                       const Solution& solution) {
   std::ostringstream text;
@@ -141,8 +143,8 @@ void Disturb(const std::string& source, const MeasurementErrors& errors,
   }
 }
 
-/// The scene with the displacement of its nodes, which come first of those that
-/// are modelled, as the measurement.
+/// Returns the scene with the displacement of its nodes as the measurement.
+/// The nodes come first among those that are modelled.
 std::string MeasuredScene(const std::string& source,
                           const MeasurementErrors& errors,
                           const Solution& solution, SceneReading& reading) {
@@ -158,7 +160,7 @@ std::string MeasuredScene(const std::string& source,
             generator, displacement);
     scene.load_cases[k].displacement = displacement;
   }
-  // A finite rotation is to be treated as that of a camera.
+  // A finite rotation has to be treated as that of a camera.
   const bool is_of_this_mesh =
       std::max<int>(FLAGS_order, mesh.Order()) == mesh.Order() &&
       errors.rigid_motion.size() == 0;
@@ -170,8 +172,8 @@ std::string MeasuredScene(const std::string& source,
   return VtuContent(FLAGS_out, mesh, fields, reading.file_order);
 }
 
-/// The table of --points random points, or of all nodes of the scene in the
-/// order of the file.  To a camera supports are points like others.
+/// Returns the table of --points random points, or of all nodes of the scene in
+/// the order of the file.  To a camera, points on supports are like others.
 std::string MeasuredPoints(const std::string& source,
                            const MeasurementErrors& errors,
                            const Solution& solution,

@@ -31,14 +31,15 @@ std::string WithError(double value, const std::optional<double>& error) {
                : NumberText(value) + " (no standard error)";
 }
 
-// Near nu = 1/2 and -1, E and nu are not what the data determine.
+// Tells whether nu is near 1/2 or -1, where E and nu are not what the data
+// determine.
 bool ReachesLimit(const Estimate& estimate) {
   return estimate.poisson_ratio_interval->upper == 0.5 ||
          estimate.poisson_ratio_interval->lower == -1;
 }
 
-// What the error of E (place 0, relative) or of nu (1) is made of, the largest
-// part first.
+// Adds the parts of the error of E (place 0, relative) or of nu (1), the
+// largest first.
 void AddErrors(const std::string& name, Eigen::Index place,
                const ErrorBudget& budget, std::ostringstream& text) {
   std::vector<std::pair<double, const char*>> parts;
@@ -57,7 +58,7 @@ void AddErrors(const std::string& name, Eigen::Index place,
     return;
   }
   std::sort(parts.rbegin(), parts.rend());
-  // What is smaller does not show in the sum.
+  // A smaller part does not show in the sum.
   constexpr double kSmallest = 0.05;
   std::string list;
   for (const auto& [error, cause] : parts) {
@@ -69,7 +70,7 @@ void AddErrors(const std::string& name, Eigen::Index place,
   Line("error of " + name, list, text);
 }
 
-// What was done for the elements, and what the errors come from.
+// Adds what was done for the elements, and where the errors come from.
 void AddErrors(const Estimate& estimate, std::ostringstream& text) {
   if (!estimate.YoungsModulusStandardError()) {
     return;
@@ -92,7 +93,7 @@ void AddErrors(const Estimate& estimate, std::ostringstream& text) {
   }
 }
 
-// The lines of one isotropic material.
+// Adds the parameters of one isotropic material.
 void AddElasticity(const Estimate& estimate, std::ostringstream& text) {
   const IsotropicElasticity& elasticity = estimate.elasticity;
   Line("Young's modulus E",
@@ -120,7 +121,8 @@ void AddElasticity(const Estimate& estimate, std::ostringstream& text) {
   }
 }
 
-// "determined, 12 % of the strain energy, residuals of 1.1 of the noise".
+// Returns "determined, 12 % of the strain energy, residuals of 1.1 of the
+// noise".
 std::string Verdict(const MaterialEstimate& material) {
   std::string verdict;
   if (material.determination) {
@@ -146,7 +148,7 @@ std::string Verdict(const MaterialEstimate& material) {
 void AddParameters(const Estimate& estimate, std::ostringstream& text) {
   for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
     const ParameterEstimate& parameter = estimate.parameters[i];
-    // The axis says it in words.
+    // The axis is described in words instead.
     if (AxisOfParameter(estimate, i) != nullptr) {
       continue;
     }
@@ -158,7 +160,7 @@ void AddParameters(const Estimate& estimate, std::ostringstream& text) {
   }
 }
 
-// "0.0012, 0.7066, 0.7076 +- 0.42 degrees".
+// Adds lines such as "0.0012, 0.7066, 0.7076 +- 0.42 degrees".
 void AddAxes(const Estimate& estimate, std::ostringstream& text) {
   for (const AxisEstimate& axis : estimate.axes) {
     std::string components;
@@ -166,7 +168,7 @@ void AddAxes(const Estimate& estimate, std::ostringstream& text) {
          axis.direction.value_or(Eigen::Vector3d::Zero())) {
       components += (components.empty() ? "" : ", ") + NumberText(component, 4);
     }
-    // Without "the".
+    // The label is shown without "the".
     Line(axis.Label().substr(4),
          !axis.direction
              ? "not determined"
@@ -185,7 +187,7 @@ void AddMaterials(const Estimate& estimate, std::ostringstream& text) {
   AddParameters(estimate, text);
   AddAxes(estimate, text);
   for (const MaterialEstimate& material : estimate.materials) {
-    // Some estimators have none.
+    // Some estimators have no verdict.
     const std::string verdict = Verdict(material);
     if (!verdict.empty()) {
       Line(RegionsLabel(material.regions), verdict, text);
@@ -242,7 +244,7 @@ std::string Solving(const Work& work) {
 }
 
 std::string Vector(const Eigen::VectorXd& values) {
-  // What is left of zero by rounding is zero.
+  // Values that differ from zero by rounding only are shown as zero.
   const double rounding = 1e-12 * values.cwiseAbs().maxCoeff();
   std::string text;
   for (const double value : values) {
@@ -252,7 +254,8 @@ std::string Vector(const Eigen::VectorXd& values) {
   return text + ")";
 }
 
-// The loads of one case: each on a line, or all on one where they are many.
+// Adds the loads of one case: each on a line, or all on one where they are
+// many.
 void AddLoads(const std::string& name, const Mesh& mesh,
               const std::vector<Load>& loads, std::ostringstream& text) {
   constexpr std::size_t kMany = 4;
@@ -301,7 +304,7 @@ std::string ListOf(const std::vector<int>& regions) {
   return list;
 }
 
-// The merges that were taken, and the nearest that was not.
+// Adds the merges that were taken, and the nearest one that was not.
 void AddMerges(const std::vector<RegionMerge>& merges,
                std::ostringstream& text) {
   for (const RegionMerge& merge : merges) {
@@ -316,7 +319,7 @@ void AddMerges(const std::vector<RegionMerge>& merges,
   }
 }
 
-// The laws that were compared, the best first.
+// Adds the laws that were compared, the best first.
 void AddLaws(const std::vector<LawComparison>& laws, std::ostringstream& text) {
   for (const LawComparison& law : laws) {
     Line(&law == laws.data() ? "law chosen" : "not",
@@ -344,8 +347,8 @@ void AddSeries(const SeriesSummary& series, std::ostringstream& text) {
        text);
 }
 
-// From the least load to the largest, or in time.
-// "5.1 +- 0.2 %".
+// Returns "5.1 +- 0.2 %", the change from the least load to the largest, or in
+// time.
 std::string ChangeText(double change, double error, bool is_relative) {
   if (!is_relative) {
     return TwoDigits(change) + " +- " + TwoDigits(error);

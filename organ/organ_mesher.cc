@@ -27,7 +27,7 @@ void Run(const std::string& name, Step step) {
   }
 }
 
-/// Gmsh with the options for an organ of this edge length, while it lives.
+/// Holds Gmsh with the options for an organ of this edge length.
 class GmshSession {
  public:
   explicit GmshSession(double edge_length) {
@@ -71,10 +71,10 @@ constexpr int kTriangle = 2;
 constexpr int kTetrahedron = 4;
 constexpr int kPoint = 15;
 
-/// |k| of a lattice point.
+/// Returns |k| of a lattice point.
 int Rest(int i, int j) { return kSteps - std::abs(i) - std::abs(j); }
 
-/// The node at the lattice point whose k has this sign.
+/// Returns the node at the lattice point whose k has this sign.
 std::size_t NodeTag(int i, int j, int sign_k) {
   const bool below = sign_k < 0 && Rest(i, j) > 0;
   return 1 + 2 * ((i + kSteps) * (2 * kSteps + 1) + j + kSteps) + below;
@@ -107,7 +107,8 @@ void AddLatticeNodes() {
   }
 }
 
-/// The lines of the lower or the upper half of the rim, from end to end.
+/// Returns the lines of the lower or the upper half of the rim, from end to
+/// end.
 std::vector<std::size_t> RimLines(int sign_k) {
   std::vector<std::size_t> lines;
   for (int i = -kSteps; i < kSteps; ++i) {
@@ -137,7 +138,7 @@ void AddFace(int sign_i, int sign_j, int sign_k,
   }
 }
 
-/// The triangles of the front or the back.
+/// Returns the triangles of the front or the back.
 std::vector<std::size_t> SideTriangles(int sign_j) {
   std::vector<std::size_t> triangles;
   for (const int sign_i : {-1, 1}) {
@@ -197,8 +198,8 @@ void MeshVolume() {
   gmsh::model::mesh::generate(3);
 }
 
-/// Each pass leaves a few slivers behind that the next, which is asked for a
-/// higher quality, gets out of the way.
+/// Repeats passes: each leaves a few slivers behind, which the next removes
+/// because it is asked for a higher quality.
 void Optimize() {
   for (const double threshold : {0.4, 0.5, 0.6}) {
     GmshSession::SetOption("Mesh.OptimizeThreshold", threshold);
@@ -242,8 +243,8 @@ Mesh MeshWithEdges(double edge_length) {
   return mesh;
 }
 
-/// The edge length that gave `tetrahedra` tetrahedra, by a fit to meshes of
-/// 200 to 2 000 000.
+/// Returns the edge length that gave `tetrahedra` tetrahedra, by a fit to
+/// meshes of 200 to 2 000 000.
 double EstimatedEdgeLength(double tetrahedra) {
   double edge_length = 0.1;
   for (int i = 0; i < 20; ++i) {
@@ -258,7 +259,8 @@ Mesh MeshOrgan(int tetrahedra) {
   constexpr int kMaxTrials = 30;
   constexpr double kTolerance = 0.05;
   constexpr double kGoodAngle = 15.0 * kDegree;
-  // Beyond, another mesh takes too long, and is as likely to have a sliver.
+  // For more tetrahedra, another mesh takes too long, and is as likely to have
+  // a sliver.
   constexpr int kMaxTetrahedraToRepeat = 100000;
   const int max_fitting = tetrahedra <= kMaxTetrahedraToRepeat ? 8 : 1;
   Mesh best;
@@ -279,7 +281,7 @@ Mesh MeshOrgan(int tetrahedra) {
       }
     }
     // The number goes about as the inverse cube of the edge length.  A small
-    // step more, so that no edge length is tried twice.
+    // further step makes sure that no edge length is tried twice.
     edge_length *= 0.999 * std::cbrt(ratio);
   }
   if (num_fitting > 0) {

@@ -5,8 +5,9 @@
 
 namespace elastimate {
 
-/// OrganMesh (io/examples/organ_mesh.h) through the Gmsh library, whose state
-/// is that of the process: for the program elastimate-organ.
+/// Does what OrganMesh (io/examples/organ_mesh.h) does, through the Gmsh
+/// library in this process, whose state is that of the process.  The program
+/// elastimate-organ runs it.
 Mesh MeshOrgan(int tetrahedra);
 
 }  // namespace elastimate

@@ -13,8 +13,8 @@ inline constexpr double kDegree = 0.017453292519943295;  ///< In radians.
 /// what lies behind (+y) and below (-z) it.  Its extent along x is 1.
 Eigen::Vector3d OrganPoint(const Eigen::Vector3d& ball_point);
 
-/// The inverse of OrganPoint: of norm 1 for a point of the organ's surface,
-/// below 1 inside.
+/// Returns the point that OrganPoint maps to this one.  Its norm is 1 for a
+/// point of the organ's surface, and below 1 inside.
 Eigen::Vector3d BallPoint(const Eigen::Vector3d& organ_point);
 
 }  // namespace elastimate

@@ -15,8 +15,9 @@
 namespace elastimate {
 namespace {
 
-// Whether MPI can be started here: where it cannot (no folder for temporary
-// files, no network interface, few files), it ends the process that tries.
+// Tells whether MPI can be started here.  Where it cannot (no folder for
+// temporary files, no network interface, few files), it ends the process that
+// tries.
 bool CanStartMpi() {
   constexpr int kMostMilliseconds = 20000;
   int ends[2];
@@ -48,8 +49,9 @@ bool CanStartMpi() {
   return answer == 'y';
 }
 
-// Neither options, from files or the environment, nor handlers of signals are
-// for a program that only wants its equations solved.
+// Starts PETSc without options from files or the environment and without
+// handlers of signals, which a program does not want that only has its
+// equations solved.
 bool InitializeWithoutOptions() {
   const char* const given = std::getenv("PETSC_OPTIONS");
   const std::optional<std::string> options =

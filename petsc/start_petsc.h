@@ -3,17 +3,18 @@
 
 namespace elastimate {
 
-/// Has PETSc, and MPI for one process with it, started when multigrid is first
-/// used, and ended when the program exits.  For a program that starts neither;
-/// call it once, before there are other threads.  Without it, or a
-/// PetscInitialize of the program's own, there is no multigrid
-/// (WhyNoMultigrid).  It does nothing in a build without PETSc.
+/// Has PETSc, and with it MPI for one process, started when multigrid is first
+/// used, and ended when the program exits.  It is meant for a program that
+/// starts neither, which has to call it once, before there are other threads.
+/// Without this call or a PetscInitialize of the program's own, there is no
+/// multigrid (WhyNoMultigrid).  It does nothing in a build without PETSc.
 ///
-/// What that start does to the process: it forks one that tries whether MPI can
-/// start, for MPI ends the process where it cannot (the stiffness is then
-/// factorised); it sets OMPI_MCA_ess_singleton_isolated in the environment, as
-/// one process needs no daemon to start others; and it takes no options of
-/// PETSc from files or the environment, and no handlers of signals.
+/// The start affects the process in three ways.  It forks a process that tries
+/// whether MPI can start, because MPI ends the process where it cannot; the
+/// stiffness is then factorised.  It sets OMPI_MCA_ess_singleton_isolated in
+/// the environment, as one process needs no daemon to start others.  It takes
+/// no options of PETSc from files or the environment, and installs no handlers
+/// of signals.
 void StartPetscWhenNeeded();
 
 }  // namespace elastimate

@@ -18,24 +18,26 @@ struct QrDecomposition {
 };
 [[nodiscard]] QrDecomposition DecomposeQr(const Eigen::MatrixXd& a);
 
-/// R alone.
+/// Returns R alone.
 [[nodiscard]] Eigen::MatrixXd TriangularFactor(const Eigen::MatrixXd& a);
 
-/// An orthonormal basis, m x rank, of the space of the columns.  A column whose
-/// pivot is not above `threshold` times the largest counts as dependent.
+/// Returns an orthonormal basis, m x rank, of the space that the columns span.
+/// A column counts as dependent where its pivot is at most `threshold` times
+/// the largest pivot.
 [[nodiscard]] Eigen::MatrixXd OrthonormalBasis(const Eigen::MatrixXd& a,
                                                double threshold);
 
-/// The X that minimises ||A X - B||, by QR with column pivoting; of dependent
-/// columns, as above, some get zero.
+/// Returns an X that minimises ||A X - B||, by QR with column pivoting. Rows of
+/// X that belong to dependent columns of A (see OrthonormalBasis) are zero.
 [[nodiscard]] Eigen::MatrixXd SolveLeastSquares(const Eigen::MatrixXd& a,
                                                 const Eigen::MatrixXd& b,
                                                 double threshold);
-/// Solves as above, with Eigen's threshold, which is that of rounding.
+/// This overload takes Eigen's threshold, which counts as dependent what
+/// rounding cannot tell from dependence.
 [[nodiscard]] Eigen::MatrixXd SolveLeastSquares(const Eigen::MatrixXd& a,
                                                 const Eigen::MatrixXd& b);
 
-/// A = U diag(values) V^T, values in descending order.
+/// A decomposition A = U diag(values) V^T has its values in descending order.
 struct SingularValueDecomposition {
   Eigen::VectorXd values;  ///< min(m, n)
   Eigen::MatrixXd u;       ///< m x min(m, n)
@@ -44,20 +46,21 @@ struct SingularValueDecomposition {
 [[nodiscard]] SingularValueDecomposition DecomposeSingularValues(
     const Eigen::MatrixXd& a);
 
-/// A X = B X diag(values), values in ascending order, X^T B X = 1.
+/// A decomposition A X = B X diag(values) has its values in ascending order,
+/// and X^T B X = 1.
 struct SymmetricEigenDecomposition {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;
 };
-/// Decomposes a symmetric matrix, of which the lower triangle is read; B = 1.
+/// Decomposes a symmetric A for B = 1; only its lower triangle is read.
 [[nodiscard]] SymmetricEigenDecomposition DecomposeSymmetric(
     const Eigen::MatrixXd& a);
-/// Decomposes a symmetric A beside a positive definite B, of which the lower
-/// triangles are read.
+/// Decomposes a symmetric A for a positive definite B; only the lower triangles
+/// of both are read.
 [[nodiscard]] SymmetricEigenDecomposition DecomposeSymmetric(
     const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-/// Inverts a square matrix; the entries are not finite when it is singular.
+/// Inverts a square matrix.  Entries are not finite when it is singular.
 [[nodiscard]] Eigen::MatrixXd Inverse(const Eigen::MatrixXd& a);
 
 }  // namespace elastimate

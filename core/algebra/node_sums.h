@@ -18,20 +18,20 @@ double InnerProduct(const Eigen::MatrixBase<X>& x,
   return x.dot(y);
 }
 
-/// x^T x, or that of all columns together.
+/// Returns x^T x, summed over all columns of a matrix.
 template <typename X>
 double SquaredNorm(const Eigen::MatrixBase<X>& x) {
   return x.squaredNorm();
 }
 
-/// ||x||, or that of all columns together.
+/// Returns ||x||, the Frobenius norm of a matrix.
 template <typename X>
 double Norm(const Eigen::MatrixBase<X>& x) {
   return x.norm();
 }
 
-/// X^T Y, of each column of X, which may be sparse, with each of Y: X^T X is a
-/// Gram matrix.
+/// Returns X^T Y, the products of each column of X, which may be sparse, with
+/// each column of Y.  X^T X is a Gram matrix.
 template <typename X, typename Y>
 auto InnerProducts(const Eigen::EigenBase<X>& x, const Eigen::EigenBase<Y>& y) {
   return (x.derived().transpose() * y.derived()).eval();

@@ -17,7 +17,7 @@ class RowBlockQr {
   /// O(num_columns^2) for each row.
   explicit RowBlockQr(Eigen::Index num_columns);
 
-  /// The next row, to be filled in before another call.
+  /// Returns the next row, which has to be filled in before another call.
   Eigen::MatrixXd::RowXpr NextRow() {
     if (num_rows_ == block_.rows()) {
       Factorize();
@@ -25,14 +25,14 @@ class RowBlockQr {
     return block_.row(num_rows_++);
   }
 
-  /// num_columns x num_columns, of all rows so far; zero rows below where there
-  /// were fewer.
+  /// Returns R of all rows so far, num_columns x num_columns.  Its lower rows
+  /// are zero where there were fewer rows than columns.
   Eigen::MatrixXd Triangle();
 
  private:
   void Factorize();
 
-  /// The triangle of the rows before, and below it further rows.
+  /// The triangle of the rows before stands on top, and further rows below it.
   Eigen::MatrixXd block_;
   Eigen::Index num_rows_;
 };

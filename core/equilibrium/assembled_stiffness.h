@@ -11,9 +11,9 @@
 
 namespace elastimate {
 
-/// A stiffness on some supports that is assembled, and solved with by a
-/// StiffnessSolver, which analyses the mesh when it is first needed: a reduced
-/// model may stand in all the time.
+/// A stiffness on some supports that is assembled.  A StiffnessSolver solves
+/// with it; the solver analyses the mesh only when it is first needed, as a
+/// reduced model may take its place all the time.
 class AssembledStiffness : public SupportedStiffness {
  public:
   /// Preconditions and exceptions are those of StiffnessSolver.  The mesh and
@@ -21,8 +21,8 @@ class AssembledStiffness : public SupportedStiffness {
   AssembledStiffness(const Mesh& mesh, const Supports& supports,
                      SolverKind solver);
 
-  /// Factorises K of the coarsest space of `stiffness`, which is to be of the
-  /// mesh.
+  /// Factorises K of the coarsest space of `stiffness`, whose mesh has to be
+  /// this one.
   bool Factorize(const NestedStiffness& stiffness,
                  bool with_held_rows) override;
 

@@ -118,7 +118,8 @@ const NodeGraph& Equilibrium::Graph() const {
 bool Equilibrium::IsRefined() const { return values_->NumSpaces() > 1; }
 
 bool Equilibrium::Solve(const Eigen::VectorXd& moduli) {
-  // Whatever the unit of the moduli, the stiffness that is factorised has none.
+  // The moduli come in any unit.  The stiffness that is factorised is scaled to
+  // moduli of at most 1.
   scale_ = moduli.cwiseAbs().maxCoeff();
   const Eigen::VectorXd scaled = moduli / scale_;
   values_->SetModuli(scaled, stiffness_[0]->GraphOfAssembled());

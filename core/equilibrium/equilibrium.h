@@ -73,48 +73,51 @@ class Equilibrium {
   /// for below.  Precondition: Solve returned true.
   Eigen::MatrixXd Sensitivities(const Eigen::MatrixXd& directions);
 
-  /// K^-1 of the free rows of some forces, n of each load case side by side,
-  /// zero in the held rows: a solve for each.  Precondition as above.
+  /// Returns K^-1 f on the free rows, zero in the held rows, for n columns of
+  /// forces of each load case side by side.  A solve for each column.
+  /// Precondition as above.
   Eigen::MatrixXd SolveFor(const Eigen::MatrixXd& forces);
 
-  /// f, num_dofs x num_load_cases [force].
+  /// Returns the loads f, num_dofs x num_load_cases [force].
   const Eigen::MatrixXd& Load() const { return load_; }
-  /// The given displacements, zero in the free rows: num_dofs x num_load_cases.
+  /// Returns the given displacements, zero in the free rows: num_dofs x
+  /// num_load_cases.
   const Eigen::MatrixXd& HeldDisplacement() const { return held_displacement_; }
 
-  /// u in equilibrium without loads, of displacements of the held degrees of
-  /// freedom alone (zero in the free rows), n of each load case side by side:
-  /// a solve for each.  This, its transpose and forces of supports are there
-  /// for a scene of unknown motion (HasUnknownMotion).  Precondition: Solve
-  /// returned true.
+  /// Returns u in equilibrium without loads where the held degrees of freedom
+  /// are displaced by `held` (zero in the free rows), n columns of each load
+  /// case side by side.  A solve for each column.  Extend, ExtendTransposed and
+  /// the forces of supports are there only for a scene of unknown motion
+  /// (HasUnknownMotion).  Precondition: Solve returned true.
   Eigen::MatrixXd Extend(const Eigen::MatrixXd& held);
-  /// The transpose of Extend, zero in the free rows.
+  /// Multiplies by the transpose of Extend; the free rows are zero.
   Eigen::MatrixXd ExtendTransposed(const Eigen::MatrixXd& values);
-  /// Extends any displacements as in load case `k`: num_dofs x n.
+  /// Does what Extend does for num_dofs x n displacements of load case `k`.
   Eigen::MatrixXd ExtendInCase(Eigen::Index k, const Eigen::MatrixXd& held);
   /// Adds displacements of each load case that Extend returned.
   void Superpose(const Eigen::MatrixXd& displacement);
 
-  /// K of the held rows times some columns, n of each load case side by side,
-  /// zero in the free rows.
+  /// Returns the held rows of K times the columns, n of each load case side by
+  /// side, and zeros in the free rows.
   Eigen::MatrixXd HeldForces(const Eigen::MatrixXd& displacements) const;
-  /// Its transpose, of values in the held rows.
+  /// Multiplies by the transpose of HeldForces; `held` counts in the held rows.
   Eigen::MatrixXd HeldForcesTransposed(const Eigen::MatrixXd& held) const;
-  /// Returns the held forces of any columns as in load case `k`: num_dofs x n.
+  /// Does what HeldForces does for num_dofs x n columns of load case `k`.
   Eigen::MatrixXd HeldForcesInCase(Eigen::Index k,
                                    const Eigen::MatrixXd& displacements) const;
-  /// The forces that the supports exert in each load case, K u - f in the held
-  /// rows, zero in the free ones: num_dofs x num_load_cases [force].
+  /// Returns the forces that the supports exert in each load case, K u - f in
+  /// the held rows and zero in the free ones: num_dofs x num_load_cases
+  /// [force].
   Eigen::MatrixXd SupportForces() const;
-  /// Their derivatives along the directions whose Sensitivities are given, in
-  /// the same order.  A pass for each load case.
+  /// Returns the derivatives of SupportForces along the directions whose
+  /// Sensitivities are given, in the same order.  A pass for each load case.
   Eigen::MatrixXd SupportForceSensitivities(
       const Eigen::MatrixXd& directions, const Eigen::MatrixXd& sensitivities);
 
   const InternalForces& Forces() const;
   const NodeGraph& Graph() const;
   Work WorkDone() const;
-  /// What the first StiffnessSolver that has something to tell says.
+  /// Returns the first StiffnessSolver::Notice that is not empty.
   const std::string& Notice() const;
 
  private:
@@ -122,8 +125,8 @@ class Equilibrium {
   bool IsRefined() const;
   void AddStiffness(const std::vector<const Scene*>& spaces, Eigen::Index k,
                     SolverKind solver, double tolerance);
-  /// What `of_stiffness` makes of columns, n of each load case side by side, by
-  /// the stiffness of theirs.
+  /// Applies `of_stiffness` to the columns of each load case (n side by side)
+  /// with the stiffness on the supports of that load case.
   template <class Function>
   Eigen::MatrixXd ByStiffness(const Eigen::MatrixXd& columns,
                               const Function& of_stiffness) const;
@@ -142,14 +145,15 @@ class Equilibrium {
   Eigen::MatrixXd held_displacement_;  ///< num_dofs x num_load_cases.
   /// The first load case that is held as this one, at the same displacements.
   std::vector<Eigen::Index> first_held_alike_;
-  /// f_k of the held displacements alone, in the first such load case; empty in
-  /// others, and where they are zero.
+  /// The forces f_k of the held displacements alone.  Only the first of the
+  /// load cases held alike has them, and only where the displacements are not
+  /// zero.
   std::vector<Eigen::MatrixXd> held_forces_;
   Eigen::MatrixXd displacement_;
   Eigen::MatrixXd support_response_;
   /// The last sensitivities, with which iterations begin.
   Eigen::MatrixXd sensitivities_;
-  double scale_ = 1;  ///< The moduli are this times those of the factor.
+  double scale_ = 1;  ///< The moduli are `scale_` times those of the factor.
   bool has_unknown_motion_;
   int element_passes_ = 0;
 };

@@ -57,29 +57,30 @@ class ForwardModel {
 
   /// The part t w of u that the loads cause, for t = 1 [length * pressure].
   const Eigen::MatrixXd& UnitLoadResponse() const { return load_response_; }
-  /// dw/dnu.  Precondition: Sensitivities was called at the present nu.
+  /// Returns dw/dnu.  Precondition: Sensitivities was called at the present nu.
   const Eigen::MatrixXd& UnitLoadResponseDerivative() const {
     return load_response_derivative_;
   }
   /// The part v of u that the held displacements cause, one column [length].
   const Eigen::VectorXd& SupportResponse() const { return support_response_; }
 
-  /// w of all load cases and, where supports are displaced, v behind them:
-  /// num_dofs x num_responses.
+  /// Returns w of all load cases and, where supports are displaced, v as the
+  /// last column: num_dofs x num_responses.
   Eigen::MatrixXd Responses() const;
 
-  /// Derivatives at the present nu.  The first call at a nu costs an element
-  /// pass and num_load_cases solves (one more with held displacements).
+  /// Returns the derivatives at the present nu.  The first call at a nu costs
+  /// an element pass and num_load_cases solves (one more with held
+  /// displacements).
   DisplacementSensitivities Sensitivities(double youngs_modulus);
 
-  /// nu of the present factorisation; NaN when there is none.
+  /// Returns nu of the present factorisation, or NaN when there is none.
   double PoissonRatio() const { return solver_.PoissonRatio(); }
   const DegreesOfFreedom& Dofs() const { return solver_.Dofs(); }
-  /// At the present nu.
+  /// Returns the solver, which is factorised at the present nu.
   StiffnessSolver& Solver() { return solver_; }
   const NodeGraph& Graph() const { return solver_.Graph(); }
   Work WorkDone() const;
-  /// What the StiffnessSolver says (StiffnessSolver::Notice).
+  /// Returns StiffnessSolver::Notice.
   const std::string& Notice() const { return solver_.Notice(); }
 
  private:
@@ -88,7 +89,7 @@ class ForwardModel {
   Eigen::MatrixXd force_;
   Eigen::VectorXd held_displacement_;
   bool has_held_displacement_;
-  /// (H u_c, J u_c) for the held displacements alone.
+  /// The products (H u_c, J u_c) for the held displacements alone.
   Eigen::VectorXd held_h_;
   Eigen::VectorXd held_j_;
   bool has_derivatives_ = false;

@@ -13,18 +13,20 @@ namespace elastimate {
 namespace {
 
 constexpr int kMostIterations = 150;
-// The energy that so many steps added tells what the next ones will add.
+// The energy that the last kDelay steps added tells how much the next ones will
+// add.
 constexpr int kDelay = 4;
-// Elements miss this part of the energy of a response by rounding alone.
+// Rounding alone leaves an error of this share of the energy of a response.
 constexpr double kRoundingEnergy = 1e-20;
 
-// Sums of the products of columns.
+// Returns the product of each column of `a` with the same column of `b`.
 Eigen::RowVectorXd ColumnProducts(const Eigen::MatrixXd& a,
                                   const Eigen::MatrixXd& b) {
   return a.cwiseProduct(b).colwise().sum();
 }
 
-// Multiplies blocks side by side with the rows from `first` on.
+// Adds the products of blocks, which stand side by side, with the rows of x
+// from `first` on.
 template <int kDimension>
 void AddBlockProducts(const Eigen::MatrixXd& blocks, const Eigen::MatrixXd& x,
                       Eigen::Index first, Eigen::MatrixXd& sum) {
@@ -46,7 +48,8 @@ void InvertBlocks(Eigen::MatrixXd& blocks) {
   }
 }
 
-// Zero where a column is exact and has no direction left.
+// Divides each pair of numbers.  The quotient is zero where a column is exact
+// and has no direction left.
 Eigen::RowVectorXd Quotients(const Eigen::RowVectorXd& of,
                              const Eigen::RowVectorXd& by) {
   return (by.array() > 0).select(of.array() / by.array(), 0.0);
@@ -68,7 +71,9 @@ std::optional<Eigen::MatrixXd> HierarchicalError::Find(
   Eigen::MatrixXd start = is_free_.asDiagonal() * nodes_.Interpolate(responses);
   start.rightCols(responses.cols() - force_.cols()).colwise() += held_;
   Eigen::MatrixXd product = Multiply(poisson_ratio, start);
-  // All rows count here, since the forces on the free ones are in balance.
+  // This energy takes the forces of all rows: those of the free rows balance,
+  // so that the free rows alone hold no energy for a response to held
+  // displacements.
   const Eigen::RowVectorXd rounding =
       kRoundingEnergy *
       ColumnProducts(start, products_.h + poisson_ratio * products_.j);
@@ -161,7 +166,8 @@ Eigen::MatrixXd HierarchicalError::InverseBlocks(double poisson_ratio) const {
                  i < ElementSizes<kind>::kNodes; ++i) {
               const auto gradient = point.gradient.col(i);
               const auto outer = (gradient * gradient.transpose()).eval();
-              // e grad(N) of a unit displacement, e = sym(c grad(N)^T).
+              // A unit displacement c of the node has e = sym(c grad(N)^T); the
+              // block is e grad(N).
               auto h = (0.5 * outer).eval();
               h.diagonal().array() += 0.5 * gradient.squaredNorm();
               blocks.middleCols(

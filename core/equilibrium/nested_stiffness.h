@@ -44,7 +44,7 @@ class NestedStiffness {
     return nodes_after_[space];
   }
 
-  /// InternalForces::Blocks of the coarsest space.
+  /// Returns InternalForces::Blocks of the coarsest space.
   const Eigen::MatrixXd& CoarsestBlocks() const { return blocks_; }
 
   /// Returns K V in a space.  One element pass.
@@ -52,7 +52,7 @@ class NestedStiffness {
                            const Eigen::MatrixXd& columns) const {
     return forces_[space].Multiply(moduli_, columns);
   }
-  /// InternalForces::DiagonalBlocks of a finer space.
+  /// Returns InternalForces::DiagonalBlocks of a finer space.
   const Eigen::MatrixXd& DiagonalBlocks(std::size_t space) const {
     return finer_[space - 1].diagonal_blocks;
   }
@@ -73,7 +73,7 @@ class NestedStiffness {
     double largest_eigenvalue = 0;
   };
 
-  std::deque<InternalForces> forces_;  ///< Which do not move.
+  std::deque<InternalForces> forces_;  ///< A deque does not move them.
   std::vector<FinerNodes> nodes_after_;
   Eigen::VectorXd moduli_;
   Eigen::MatrixXd blocks_;

@@ -7,8 +7,8 @@
 namespace elastimate {
 namespace {
 
-// Eigenvalues of D^-1 K between these shares of the largest one that was
-// estimated are what is smoothed; the rest is left to the coarser space.
+// The smoother damps eigenvalues of D^-1 K between these shares of the largest
+// one, which is an estimate.  The rest is left to the coarser space.
 constexpr double kUpper = 1.2;
 constexpr double kLower = 0.1;
 // An iterative solver of the coarsest space need not be more accurate than the

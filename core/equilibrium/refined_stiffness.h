@@ -76,8 +76,8 @@ class RefinedStiffness : public SupportedStiffness {
   std::vector<Space> spaces_;  ///< Coarse to fine; the first has no blocks.
   double tolerance_;
   const NestedStiffness* stiffness_ = nullptr;
-  /// The smallest one of the preconditioned stiffness that solutions met so
-  /// far.
+  /// The smallest eigenvalue of the preconditioned stiffness that any solution
+  /// met so far.
   double smallest_eigenvalue_ = 1;
   Work work_;
 };

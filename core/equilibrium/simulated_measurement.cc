@@ -17,11 +17,12 @@
 namespace elastimate {
 namespace {
 
-// Outliers are at least so many standard deviations of the noise.
+// The length of an outlier in standard deviations of the noise.
 constexpr double kSmallestOutlier = 20;
 constexpr double kLargestOutlier = 100;
 
-// Lattice points on either side of a position: the kernel is below 5e-6 there.
+// So many lattice points on either side of a position count; the kernel is
+// below 5e-6 beyond.
 constexpr int kReach = 8;
 constexpr int kStencil = 2 * kReach + 1;
 constexpr double kMostLatticePoints = 2e7;
@@ -57,7 +58,7 @@ class NoiseLattice {
     }
   }
 
-  // Draws one component with standard deviation 1.
+  // Draws noise of one component, of standard deviation 1.
   Eigen::RowVectorXd Draw(std::mt19937_64& generator) const {
     const Eigen::VectorXd white =
         DrawGaussian(counts_[0] * counts_[1] * counts_[2], 1, generator);
@@ -81,7 +82,8 @@ class NoiseLattice {
       }
       const double cell = std::floor(x(axis));
       first[axis] = static_cast<Eigen::Index>(cell);
-      // The lattice points begin `kReach` cells before x; x = 2 r / X.
+      // The distances r from x to the lattice points from `kReach` cells before
+      // x on, in cells of X / 2.
       const Eigen::ArrayXd r =
           Eigen::ArrayXd::LinSpaced(kStencil, -kReach, kReach) -
           (x(axis) - cell);
@@ -117,7 +119,7 @@ std::vector<Eigen::Index> FreePoints(const ComponentMask& held) {
 constexpr const char* kSingular =
     "the stiffness matrix is singular to working precision";
 
-// `displacements` has the load cases side by side.
+// Sets the displacements of all load cases, which stand side by side.
 void SetDisplacements(const Eigen::MatrixXd& displacements, Scene& scene) {
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     scene.load_cases[k].displacement =

@@ -21,22 +21,22 @@ enum class NoiseLaw {
 /// when the stiffness is singular to working precision.  One factorisation.
 void Measure(const IsotropicElasticity& elasticity, Scene& scene);
 
-/// Measures as above with the materials of the scene, whose `parameters` stand
+/// Measures as above with the materials of the scene, whose parameters stand
 /// one behind the other (MaterialParameters).
 void MeasureMaterials(const Eigen::VectorXd& parameters, Scene& scene);
 
-/// Measure with quadratic tetrahedra on the mesh of linear ones
-/// (QuadraticScene), of which the displacements of the vertices are measured.
+/// Measures as above with quadratic tetrahedra on the mesh of linear ones
+/// (QuadraticScene), and keeps the displacements of the vertices.
 void MeasureInFinerWorld(const IsotropicElasticity& elasticity, Scene& scene);
 
-/// Independent noise of mean zero, scaled to exactly this norm.
+/// Draws independent noise of mean zero, scaled to exactly this norm.
 [[nodiscard]] Eigen::VectorXd DrawNoise(NoiseLaw law, Eigen::Index size,
                                         double norm,
                                         std::mt19937_64& generator);
 
-/// Gaussian noise of mean zero and this standard deviation in each component at
-/// each of n positions (dimension x n), independent of the other components:
-/// dimension x n.
+/// Draws Gaussian noise of mean zero and this standard deviation in each
+/// component at each of n positions (dimension x n), independent of the other
+/// components: dimension x n.
 ///
 /// With a correlation length X > 0 it is smooth: white noise on a lattice of
 /// spacing X / 2, convolved with the kernel exp(-r^2 / X^2) and divided by the
@@ -53,37 +53,39 @@ void MeasureInFinerWorld(const IsotropicElasticity& elasticity, Scene& scene);
                                           double correlation_length,
                                           std::mt19937_64& generator);
 
-/// Gross errors of `share` of `candidates` (to the nearest number), which are
-/// columns of dimension x n; zero in all other columns.  Each has a direction
-/// of its own, and a length of 20 to 100 standard deviations, drawn uniformly.
+/// Draws gross errors for `share` of `candidates` (to the nearest number),
+/// which are columns of dimension x n; all other columns are zero.  Each error
+/// has a direction of its own, and a length of 20 to 100 standard deviations,
+/// drawn uniformly.
 [[nodiscard]] Eigen::MatrixXd DrawOutliers(std::vector<Eigen::Index> candidates,
                                            double share,
                                            double standard_deviation,
                                            int dimension, Eigen::Index n,
                                            std::mt19937_64& generator);
 
-/// What a measurement has beside the displacement; nothing by default.
+/// The errors that a measurement adds to the displacement; none by default.
 struct MeasurementErrors {
-  /// The norm of noise of this law beside that of the displacement.
+  /// The norm of the noise over the norm of the displacement.
   double relative_noise = 0;
   NoiseLaw law = NoiseLaw::kUniform;
-  /// The standard deviation of Gaussian noise [length], in the place of
-  /// relative noise, and the length over which it is alike (DrawNoiseAt).
+  /// The standard deviation of Gaussian noise [length], which replaces relative
+  /// noise, and the length over which that noise is alike (DrawNoiseAt).
   double noise_sd = 0;
   double correlation_length = 0;
-  /// Share of the points with gross errors (DrawOutliers), in standard
-  /// deviations of the noise; those of relative noise are its norm over the
-  /// root of the number of components.
+  /// The share of the points with gross errors (DrawOutliers), whose size is
+  /// counted in standard deviations of the noise.  For relative noise that is
+  /// its norm over the root of the number of components.
   double outliers = 0;
-  /// The translation, then the angle or rotation vector [rad] about the origin
-  /// (MovedRigidly), of the camera or of all that was measured; empty for none.
+  /// The rigid motion of the camera or of the whole specimen: the translation,
+  /// then the angle or rotation vector [rad] about the origin (MovedRigidly).
+  /// Empty for none.
   Eigen::VectorXd rigid_motion;
 };
 
-/// Adds the errors to displacements at some positions, both dimension x n. Held
-/// components (dimension x n) have no noise, and points with such no gross
-/// error; the rigid motion is that of all, and takes place before noise and
-/// outliers are added.  First the noise is drawn, then the outliers.  Throws as
+/// Adds the errors to displacements at some positions, both dimension x n.
+/// Held components (dimension x n) get no noise, and points with a held
+/// component no gross error.  The rigid motion moves all points, before noise
+/// and then outliers are added.  The noise is drawn first.  Throws as
 /// DrawNoiseAt does.
 void AddErrors(const MeasurementErrors& errors,
                const Eigen::MatrixXd& positions, const ComponentMask& held,

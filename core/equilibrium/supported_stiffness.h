@@ -21,40 +21,40 @@ class SupportedStiffness {
   SupportedStiffness(const SupportedStiffness&) = delete;
   SupportedStiffness& operator=(const SupportedStiffness&) = delete;
 
-  /// Prepares for the moduli that `stiffness` has now, which it may refer to
-  /// until the next call; the held rows are there where they are asked for.
-  /// False when K_ff is singular to working precision.
+  /// Prepares for the present moduli of `stiffness`, to which it may refer
+  /// until the next call.  `with_held_rows` asks for the held rows as well.
+  /// Returns false when K_ff is singular to working precision.
   virtual bool Factorize(const NestedStiffness& stiffness,
                          bool with_held_rows) = 0;
 
-  /// K_ff^-1 of the free rows of each column of `all`, zero in the held rows;
-  /// NaN where iterations do not converge.  `start` is empty or has a guess of
-  /// each column, of any size, which spares iterations where it is good.
-  /// Precondition: Factorize returned true, as below.
+  /// Returns K_ff^-1 times the free rows of each column of `all`, and zeros in
+  /// the held rows; NaN where iterations do not converge.  `start` is empty or
+  /// has a guess of each column, scaled in any way, which spares iterations
+  /// where it is good.  Precondition, here and below: Factorize returned true.
   virtual Eigen::MatrixXd Solve(const Eigen::MatrixXd& all,
                                 const Eigen::MatrixXd& start) = 0;
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& all) { return Solve(all, {}); }
 
-  /// u in equilibrium without loads, of displacements of the held degrees of
-  /// freedom alone (zero in the free rows): n solves.  This, and what is below,
-  /// needs the held rows.
+  /// Returns u in equilibrium without loads where the held degrees of freedom
+  /// are displaced by `held` (zero in the free rows): n solves.  This function
+  /// and those below need the held rows.
   Eigen::MatrixXd Extend(const Eigen::MatrixXd& held);
-  /// The transpose of Extend, zero in the free rows: n solves.
+  /// Multiplies by the transpose of Extend; the free rows are zero: n solves.
   Eigen::MatrixXd ExtendTransposed(const Eigen::MatrixXd& values);
-  /// K of the held rows times some columns, zero in the free rows.
+  /// Returns the held rows of K times the columns, zero in the free rows.
   virtual Eigen::MatrixXd HeldForces(
       const Eigen::MatrixXd& displacements) const = 0;
-  /// Its transpose, of values in the held rows.
+  /// Multiplies by the transpose of HeldForces; `held` counts in the held rows.
   virtual Eigen::MatrixXd HeldForcesTransposed(
       const Eigen::MatrixXd& held) const = 0;
 
-  /// `values` in the held rows, zero in the free.
+  /// Returns `values` with zeros in the free rows.
   Eigen::MatrixXd OfHeld(Eigen::MatrixXd values) const;
 
-  /// The graph of the mesh whose stiffness is assembled.
+  /// Returns the graph of the mesh whose stiffness is assembled.
   virtual const NodeGraph& GraphOfAssembled() const = 0;
   virtual Work WorkDone() const = 0;
-  /// StiffnessSolver::Notice.
+  /// Returns StiffnessSolver::Notice.
   virtual const std::string& Notice() const = 0;
 
  protected:

@@ -9,7 +9,7 @@
 namespace elastimate {
 namespace {
 
-// Row by row, from the diagonal on.
+// The stiffnesses stand row by row, each row from the diagonal on.
 constexpr std::array<std::string_view, 21> kStiffnessNames = {
     "c11", "c12", "c13", "c14", "c15", "c16", "c22", "c23", "c24", "c25", "c26",
     "c33", "c34", "c35", "c36", "c44", "c45", "c46", "c55", "c56", "c66"};
@@ -17,7 +17,7 @@ constexpr std::array<std::string_view, 21> kStiffnessNames = {
 // The place of a stiffness on the diagonal.
 constexpr int DiagonalPlace(int row) { return row * (13 - row) / 2; }
 
-// The typical stiffness is that of an isotropic material of E = 1, nu = 0.3.
+// Returns the stiffness of an isotropic material of E = 1, nu = 0.3.
 double TypicalStiffness(int row, int column) {
   constexpr double kLambda = 0.3 / (1.3 * 0.4);
   if (row != column) {
@@ -54,7 +54,7 @@ std::vector<Eigen::MatrixXd> StrainModes() {
   return modes;
 }
 
-// Entries of Kelvin's notation.
+// The entries are those of Kelvin's notation.
 std::vector<BlockEntry> StiffnessEntries() {
   const auto weight = [](int i) { return i < 3 ? 1 : std::sqrt(2.0); };
   std::vector<BlockEntry> entries;

@@ -63,26 +63,26 @@ constexpr double ShearShareOfJ(SectionModel model) {
   return model == SectionModel::kPlaneStress ? 1 : 2;
 }
 
-/// E t = (1 + nu)(1 - 2 nu), in plane stress (1 + nu)(1 - nu).
+/// Returns E t = (1 + nu)(1 - 2 nu), in plane stress (1 + nu)(1 - nu).
 template <typename T>
 T ComplianceFactor(const T& poisson_ratio, SectionModel model) {
   const double c = ShearShareOfJ(model);
   return (1.0 + poisson_ratio) * (1.0 - c * poisson_ratio);
 }
 
-/// d (E t) / d nu.
+/// Returns d (E t) / d nu.
 [[nodiscard]] double ComplianceFactorSlope(double poisson_ratio,
                                            SectionModel model);
 
-/// d ln E / d nu of what has the same compliance scale t.
+/// Returns d ln E / d nu among materials of the same compliance scale t.
 [[nodiscard]] double LogYoungsModulusSlope(double poisson_ratio,
                                            SectionModel model);
 
-/// ln((1 + nu) / (1 - 2 nu)) = ln(3 kappa / (2 mu)): the scale on which the
-/// stiffness changes evenly over the whole range of nu.
+/// Returns ln((1 + nu) / (1 - 2 nu)) = ln(3 kappa / (2 mu)), the scale on which
+/// the stiffness changes evenly over the whole range of nu.
 [[nodiscard]] double LogStiffnessRatio(double poisson_ratio);
 
-/// nu of a LogStiffnessRatio.
+/// Returns the nu that has this LogStiffnessRatio.
 [[nodiscard]] double PoissonRatioOfLogStiffnessRatio(
     double log_stiffness_ratio);
 

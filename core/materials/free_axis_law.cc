@@ -17,7 +17,7 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 constexpr SectionModel kModel = SectionModel::kSolid;
 constexpr double kPi = 3.14159265358979323846;
-// The parameters of the law of a known axis, before w_y and w_z.
+// So many parameters of the law of a known axis come before w_y and w_z.
 constexpr Eigen::Index kNumOfKnownAxis = 5;
 
 const TransverselyIsotropicLaw& OfKnownAxis() {
@@ -41,12 +41,12 @@ Eigen::Matrix3d RotationBy(const Eigen::Vector3d& w) {
                    : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
 }
 
-// J of R(w + dw) = (1 + [J dw]_x) R(w), to first order.
+// Returns the J for which R(w + dw) = (1 + [J dw]_x) R(w), to first order.
 Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& w) {
   constexpr double kSmall = 1e-4;
   const double angle = w.norm();
   const Eigen::Matrix3d cross = CrossProductWith(w);
-  // (1 - cos t) / t^2 and (t - sin t) / t^3.
+  // These are (1 - cos t) / t^2 and (t - sin t) / t^3 for the angle t.
   const double first = angle < kSmall ? 0.5 - angle * angle / 24
                                       : (1 - std::cos(angle)) / (angle * angle);
   const double second = angle < kSmall
@@ -55,8 +55,9 @@ Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& w) {
   return Eigen::Matrix3d::Identity() + first * cross + second * cross * cross;
 }
 
-// What a rotation R E R^T of the strain tensor E does to it in the notation of
-// Kelvin; and W E - E W, by which it begins to turn.
+// KelvinRotation is the matrix of E -> R E R^T in the notation of Kelvin, for
+// strain tensors E.  KelvinSpin is that of E -> W E - E W, its derivative where
+// the rotation begins.
 Matrix6d KelvinRotation(const Eigen::Matrix3d& rotation) {
   const Eigen::MatrixXd to_strain = KelvinStrainOfGradient(3);
   Matrix6d turned;
@@ -85,7 +86,7 @@ Matrix6d KelvinStiffness(const Law& law, const Eigen::VectorXd& moduli) {
          to_strain.transpose();
 }
 
-// The 21 stiffnesses of Voigt.
+// Returns the 21 stiffnesses of Voigt.
 Eigen::VectorXd ModuliOf(const Matrix6d& stiffness,
                          const std::vector<BlockEntry>& entries) {
   Eigen::VectorXd moduli(Eigen::Index(entries.size()));
@@ -96,7 +97,8 @@ Eigen::VectorXd ModuliOf(const Matrix6d& stiffness,
   return moduli;
 }
 
-// In the notation of Kelvin, of the known axis.
+// Returns the stiffness for each unit modulus of the known axis, in the
+// notation of Kelvin.
 std::vector<Matrix6d> StiffnessesOfUnitModuli() {
   const int num_moduli = OfKnownAxis().NumModuli();
   std::vector<Matrix6d> stiffnesses;
@@ -108,7 +110,8 @@ std::vector<Matrix6d> StiffnessesOfUnitModuli() {
   return stiffnesses;
 }
 
-// Returns as columns what this rotation makes of unit moduli of the known axis.
+// Returns, as columns, the 21 stiffnesses for each unit modulus of the known
+// axis, seen after this rotation.
 Eigen::MatrixXd UnitModuli(const Eigen::Matrix3d& rotation,
                            const std::vector<BlockEntry>& entries) {
   static const std::vector<Matrix6d> stiffnesses = StiffnessesOfUnitModuli();
@@ -122,7 +125,8 @@ Eigen::MatrixXd UnitModuli(const Eigen::Matrix3d& rotation,
   return units;
 }
 
-// d theta / dw, num_moduli x 3, of a stiffness seen after the rotation by w.
+// Returns d theta / dw, num_moduli x 3, of a stiffness seen after the rotation
+// by w.
 Eigen::MatrixXd RotationJacobian(const Matrix6d& stiffness,
                                  const Eigen::Vector3d& w,
                                  const std::vector<BlockEntry>& entries) {
@@ -135,8 +139,8 @@ Eigen::MatrixXd RotationJacobian(const Matrix6d& stiffness,
   return jacobian;
 }
 
-// The w of directions that are about as far from each other all over a half
-// sphere, by the golden angle.
+// Returns rotation vectors w whose axes are about as far from each other all
+// over a half sphere, by the golden angle.
 std::vector<Eigen::Vector3d> RotationsOfHalfSphere() {
   constexpr int kNumAxes = 48;
   const double golden_angle = kPi * (3 - std::sqrt(5.0));
@@ -149,14 +153,14 @@ std::vector<Eigen::Vector3d> RotationsOfHalfSphere() {
   return rotations;
 }
 
-// The moduli of the known axis that fit best where this is turned by w.
+// The best moduli for an axis that is turned by w.
 struct FitOfAxis {
   Eigen::Vector3d w;
   Eigen::VectorXd moduli;
   double square_sum;
 };
 
-// Empty where their stiffness is not positive definite.
+// Returns nothing where the best moduli have no positive definite stiffness.
 std::optional<FitOfAxis> FitAxis(const Eigen::Vector3d& w,
                                  const Eigen::VectorXd& weighted_moduli,
                                  const Eigen::MatrixXd& weights,
@@ -169,8 +173,8 @@ std::optional<FitOfAxis> FitAxis(const Eigen::Vector3d& w,
   return FitOfAxis{w, moduli, (units * moduli - weighted_moduli).squaredNorm()};
 }
 
-// A Gauss-Newton step of w, with the moduli beside it, halved until it leads
-// down; empty where none does.
+// Takes a Gauss-Newton step of w, with the best moduli for it, which is halved
+// until the sum of squares decreases.  Returns nothing where it never does.
 std::optional<FitOfAxis> NextAxis(const FitOfAxis& fit,
                                   const Eigen::VectorXd& weighted_moduli,
                                   const Eigen::MatrixXd& weights,
@@ -186,7 +190,8 @@ std::optional<FitOfAxis> NextAxis(const FitOfAxis& fit,
       weighted_moduli - jacobian.leftCols(kNumOfKnownAxis) * fit.moduli;
   Eigen::Vector3d step = {0, 0, 0};
   step.tail(2) = SolveLeastSquares(jacobian, residual).bottomRows(2);
-  // Where the axis does hardly anything, any step is as good.
+  // Where the axis makes hardly any difference, steps would be arbitrarily
+  // long.
   constexpr double kLongest = 0.5;
   step *= std::min(1.0, kLongest / step.norm());
   for (int i = 0; i < kHalvings; ++i) {
@@ -200,8 +205,8 @@ std::optional<FitOfAxis> NextAxis(const FitOfAxis& fit,
   return std::nullopt;
 }
 
-// Where the steps from an axis lead; empty where it has no stiffness that is
-// positive definite.
+// Returns the fit to which the steps from an axis lead.  Returns nothing where
+// the best moduli for that axis have no positive definite stiffness.
 std::optional<FitOfAxis> DescendFromAxis(
     const Eigen::Vector3d& w, const Eigen::VectorXd& weighted_moduli,
     const Eigen::MatrixXd& weights, const std::vector<BlockEntry>& entries) {
@@ -227,7 +232,8 @@ LawParameter RotationComponent(std::string_view name, std::string_view symbol) {
   return {name, symbol, false, -kPi, kPi, 0};
 }
 
-// Fits start where the axis makes a difference.
+// The typical values, where fits start, are anisotropic, so that the axis makes
+// a difference there.
 std::vector<LawParameter> ParametersOfFreeAxis() {
   std::vector<LawParameter> parameters = OfKnownAxis().Parameters();
   parameters[0].typical *= 2;
@@ -302,7 +308,7 @@ Eigen::VectorXd FreeAxisLaw::NearestParameters(
     return parameters;
   }
   Eigen::Vector3d& w = best->w;
-  // The axis has two ends, of which the one next to x is taken.
+  // L and -L are one axis; this takes the end that is nearer to x.
   const double angle = std::remainder(w.norm(), kPi);
   w *= w.norm() > 0 ? angle / w.norm() : 1;
   parameters << OfKnownAxis().ParametersOf(best->moduli, kModel), w.tail(2);
@@ -317,7 +323,7 @@ Eigen::Vector3d FreeAxisLaw::Axis(const Eigen::VectorXd& parameters) {
 Eigen::MatrixXd FreeAxisLaw::AxisJacobian(const Eigen::VectorXd& parameters) {
   const Eigen::Vector3d w = RotationVector(parameters);
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(3, parameters.size());
-  // d (R x) = (J dw) x (R x).
+  // The axis changes by d (R x) = (J dw) x (R x).
   jacobian.rightCols(2) =
       (-CrossProductWith(Axis(parameters)) * LeftJacobian(w)).rightCols(2);
   return jacobian;

@@ -8,8 +8,8 @@
 
 namespace elastimate {
 
-/// A law whose axis is a parameter: that of a material which is alike in all
-/// directions across an axis L that is not known.
+/// A law for a material that is alike in all directions across an axis L, where
+/// L is not known but a parameter of the law.
 ///
 /// The chart has the parameters of TransverselyIsotropicLaw, and the rotation
 /// vector w = (0, w_y, w_z) [rad] which turns the direction x into the axis,
@@ -35,33 +35,34 @@ class FreeAxisLaw : public AnisotropicLaw {
     return parameters_;
   }
   int NumAxes() const override { return 0; }
-  /// None: that the stiffness is positive definite is up to the parameters.
+  /// Returns no entries: parameters, not factors, keep the stiffness positive
+  /// definite.
   const std::vector<BlockEntry>& BlockEntries() const override;
   Eigen::VectorXd Moduli(const Eigen::VectorXd& parameters,
                          SectionModel model) const override;
   Eigen::MatrixXd ModuliJacobian(const Eigen::VectorXd& parameters,
                                  SectionModel model) const override;
-  /// Returns the parameters of the nearest stiffness of the law, in the norm
-  /// of C.
+  /// Returns the parameters of the nearest stiffness of the law, in the norm of
+  /// C.
   Eigen::VectorXd ParametersOf(const Eigen::VectorXd& moduli,
                                SectionModel model) const override;
 
-  /// The parameters of which ||W (theta(p) - moduli)|| is least among positive
-  /// definite stiffnesses, by a Gauss-Newton descent from each of 48 axes over
-  /// a half sphere, as there may be several minima; not numbers where none is
-  /// positive definite.  W has 21 columns.  Some hundred least squares of its
-  /// rows and 7 unknowns.
+  /// Returns the parameters for which ||W (theta(p) - moduli)|| is least among
+  /// positive definite stiffnesses, or NaN where no stiffness is positive
+  /// definite.  As there may be several minima, a Gauss-Newton descent starts
+  /// from each of 48 axes over a half sphere.  W has 21 columns.  Cost: some
+  /// hundred least-squares problems with the rows of W and 7 unknowns.
   Eigen::VectorXd NearestParameters(const Eigen::VectorXd& moduli,
                                     const Eigen::MatrixXd& weights) const;
 
-  /// The axis of these parameters, a unit vector with its first component not
-  /// negative, and its derivative, 3 x num_parameters.
+  /// Returns the axis of these parameters, a unit vector whose first component
+  /// is not negative, and (AxisJacobian) its derivative, 3 x num_parameters.
   static Eigen::Vector3d Axis(const Eigen::VectorXd& parameters);
   static Eigen::MatrixXd AxisJacobian(const Eigen::VectorXd& parameters);
 
-  /// (ln(E_L / E_T), nu_LT - nu_TT, ln(2 G_LT (1 + nu_TT) / E_T)), which is
-  /// zero where the material is isotropic, and its derivative, 3 x
-  /// num_parameters.
+  /// Returns (ln(E_L / E_T), nu_LT - nu_TT, ln(2 G_LT (1 + nu_TT) / E_T)),
+  /// which is zero where the material is isotropic, and (AnisotropyJacobian)
+  /// its derivative, 3 x num_parameters.
   static Eigen::Vector3d Anisotropy(const Eigen::VectorXd& parameters);
   static Eigen::MatrixXd AnisotropyJacobian(const Eigen::VectorXd& parameters);
 

@@ -54,8 +54,9 @@ class KelvinLaw : public Law {
 /// gradient: 6 x 9 in three dimensions, 3 x 4 in two.
 Eigen::MatrixXd KelvinStrainOfGradient(Eigen::Index dimension);
 
-/// The stiffness c_ij in the notation of Voigt, s = c e with shears 2 e_23,
-/// 2 e_13 and 2 e_12, of a tangent of small strains: 6 x 6, in the plane 3 x 3.
+/// Returns the stiffness c_ij in the notation of Voigt, s = c e with shears 2
+/// e_23, 2 e_13 and 2 e_12, for a tangent of small strains: 6 x 6, in the plane
+/// 3 x 3.
 Eigen::MatrixXd VoigtStiffness(const Eigen::MatrixXd& tangent);
 
 }  // namespace elastimate

@@ -11,7 +11,7 @@
 
 namespace elastimate {
 
-/// A parameter of a law, as people know it.
+/// A parameter of a law, under the name that people know.
 struct LawParameter {
   std::string_view name;    ///< Such as "youngs_modulus".
   std::string_view symbol;  ///< Such as "E".
@@ -21,38 +21,39 @@ struct LawParameter {
   /// The closed range that fits search.
   double lower;
   double upper;
-  /// A common value, in any unit for a stiffness: where fits start.
+  /// A common value, where fits start.  A stiffness may have any unit here.
   double typical;
-  /// A stiffness off the diagonal is no modulus, as it may have either sign.
-  /// It has here the places of the parameters on the diagonal in its row and
-  /// its column, whose geometric mean it is smaller than.
+  /// This marks a stiffness off the diagonal, which is no modulus because it
+  /// may have either sign.  It is smaller than the geometric mean of the
+  /// diagonal stiffnesses in its row and in its column, whose places among the
+  /// parameters stand here.
   std::optional<std::array<int, 2>> beside = std::nullopt;
 };
 
-/// A modulus as an entry of the stiffness S on the modes of a material,
-/// S(row, column) = factor theta, row <= column: S has a block for each set of
-/// modes that are not independent, and is positive definite when the stiffness
-/// is.
+/// Places a modulus theta in the stiffness S on the modes of a material: S(row,
+/// column) = factor theta, row <= column.  S has a block for each set of modes
+/// that are not independent, and is positive definite when the stiffness is.
 struct BlockEntry {
   int row;
   int column;
   double factor;
 };
 
-/// A law of elasticity: the stress at a point, linear in its moduli theta,
+/// A law of elasticity gives the stress at a point, linear in its moduli theta,
 ///
 ///   P(H; theta) = sum_k theta_k P_k(H),   H = grad u (dimension x dimension,
 ///   H_ij = du_i / dx_j),
 ///
-/// with P_k = dW_k / dH of energy densities W_k; and its chart, which makes
-/// theta of parameters p that people know.
+/// with P_k = dW_k / dH for energy densities W_k.  Its chart is the map
+/// theta(p) from parameters p that people know.
 ///
 /// CONTRIBUTING.md says how to add one, to the library or to a program of its
 /// own (RegisterLaw).  CheckLaw tells what is wrong with it.  Its moduli are
 /// free to choose: small strains make the estimation linear in them.
 ///
 /// A law whose material is not alike in all directions speaks in the frame of
-/// that: direction 1, 2 and 3 are those of its axes (MaterialFrames).
+/// that material: its directions 1, 2 and 3 are those of the axes
+/// (MaterialFrames).
 ///
 /// Matrices over H have dimension^2 rows or columns, H in the order of its
 /// columns.  All functions are pure.
@@ -66,41 +67,43 @@ class Law {
   virtual std::string_view Description() const = 0;
   /// The parameters p of its chart.
   virtual const std::vector<LawParameter>& Parameters() const = 0;
-  /// The length of theta.
+  /// Returns the length of theta.
   virtual int NumModuli() const = 0;
-  /// Whether it knows such a section.
+  /// Tells whether the law covers such a section.
   virtual bool Takes(SectionModel model) const = 0;
 
-  /// How many axes its material has.
+  /// Returns how many axes its material has.
   virtual int NumAxes() const { return 0; }
-  /// Whether these are those of the scene where none are given.
+  /// Tells whether the material takes the axes of the scene where none are
+  /// given.
   virtual bool HasAxesOfScene() const { return NumAxes() == 0; }
-  /// One for each modulus, by which the stiffness is kept positive definite
-  /// (stiffness_factors.h); empty for laws that are fitted by their parameters.
+  /// Returns one entry for each modulus, by which fits keep the stiffness
+  /// positive definite (stiffness_factors.h); none for laws that are fitted by
+  /// their parameters.
   virtual const std::vector<BlockEntry>& BlockEntries() const {
     static const std::vector<BlockEntry> none;
     return none;
   }
 
-  /// W_k(H), one for each modulus [1].
+  /// Returns W_k(H), one for each modulus [1].
   virtual Eigen::VectorXd Energies(const Eigen::MatrixXd& gradient,
                                    SectionModel model) const = 0;
-  /// P_k(H) as columns, dimension^2 x num_moduli [1].
+  /// Returns P_k(H) as columns, dimension^2 x num_moduli [1].
   virtual Eigen::MatrixXd Stresses(const Eigen::MatrixXd& gradient,
                                    SectionModel model) const = 0;
-  /// dP / dH of these moduli, dimension^2 x dimension^2 [pressure]; constant
-  /// for small strains.
+  /// Returns dP / dH for these moduli, dimension^2 x dimension^2 [pressure]; it
+  /// is constant for small strains.
   virtual Eigen::MatrixXd Tangent(const Eigen::VectorXd& moduli,
                                   const Eigen::MatrixXd& gradient,
                                   SectionModel model) const = 0;
 
-  /// theta(p).  Plain formulas, which accept any numbers.
+  /// Returns theta(p) by plain formulas, which accept any numbers.
   virtual Eigen::VectorXd Moduli(const Eigen::VectorXd& parameters,
                                  SectionModel model) const = 0;
-  /// d theta / d p, num_moduli x num_parameters.
+  /// Returns d theta / d p, num_moduli x num_parameters.
   virtual Eigen::MatrixXd ModuliJacobian(const Eigen::VectorXd& parameters,
                                          SectionModel model) const = 0;
-  /// p of theta(p).
+  /// Returns the p of theta(p).
   virtual Eigen::VectorXd ParametersOf(const Eigen::VectorXd& moduli,
                                        SectionModel model) const = 0;
 };

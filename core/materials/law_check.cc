@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kLargestDifferenceDeviation = 1e-6;
 constexpr double kLargestDeviation = 1e-9;
-// Where the error of a central difference, of the order of its square, is about
-// that of rounding.
+// At this step the error of a central difference, which is of the order of the
+// square of the step, is about that of rounding.
 constexpr double kStep = 1e-5;
 
 double LargestEntry(const Eigen::MatrixXd& values) {
@@ -32,7 +32,8 @@ double Deviation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return scale == 0 ? 0 : LargestEntry(a - b) / scale;
 }
 
-// Derivatives of a function of a vector as columns.
+// Returns the derivatives of a function of a vector, one column for each
+// component of the vector.
 template <class Function>
 Eigen::MatrixXd CentralDifferences(const Function& function,
                                    const Eigen::VectorXd& at) {
@@ -58,8 +59,8 @@ Eigen::MatrixXd AnyGradient(Eigen::Index dimension) {
       });
 }
 
-// The typical parameters, ratios and stiffnesses of which are multiplied by
-// factors that differ from one parameter to the next.
+// Returns parameters near the typical ones: ratios and stiffnesses are
+// multiplied by factors that differ from one parameter to the next.
 Eigen::VectorXd ParametersNearTypical(const Law& law) {
   const std::vector<LawParameter>& parameters = law.Parameters();
   return Eigen::VectorXd::NullaryExpr(
@@ -76,7 +77,7 @@ Eigen::VectorXd TypicalValues(const Law& law) {
   return typical;
 }
 
-// Symmetric gradients H as columns, orthonormal.
+// Returns orthonormal symmetric gradients H as columns.
 Eigen::MatrixXd UnitStrains(Eigen::Index dimension) {
   const Eigen::Index size = dimension * dimension;
   Eigen::MatrixXd strains =
@@ -237,7 +238,7 @@ class SectionCheck {
             "Tangent resists rotations, which are gradients of H = -H^T");
   }
 
-  // What the size of a parameter is measured by.
+  // Returns the units in which the sizes of the parameters are measured.
   Eigen::VectorXd UnitsOf(const Eigen::VectorXd& parameters) const {
     return Eigen::VectorXd::NullaryExpr(parameters.size(), [&](Eigen::Index i) {
       const LawParameter& parameter = law_.Parameters()[i];
@@ -251,7 +252,8 @@ class SectionCheck {
 
   void CheckChart(const Eigen::VectorXd& parameters,
                   const Eigen::VectorXd& moduli) {
-    // In units of the parameters, which pressures need not share with ratios.
+    // Moduli are compared in units of the parameters, since pressures and
+    // ratios differ in size.
     const Eigen::VectorXd units = UnitsOf(parameters);
     Compare(
         CentralDifferences(
@@ -323,7 +325,7 @@ class SectionCheck {
   std::string where_;
 };
 
-// What can be told without a value.
+// Checks what a law declares, without evaluating it.
 std::vector<std::string> CheckDeclaration(const Law& law) {
   std::vector<std::string> sentences;
   const std::string subject = "the law '" + std::string(law.Name()) + "' ";

@@ -19,7 +19,7 @@ namespace {
 
 using LawList = std::vector<std::shared_ptr<const Law>>;
 
-// All laws, for one thread at a time.
+// The registry of all laws.  Its mutex admits one thread at a time.
 struct LawRegistry {
   std::mutex mutex;
   LawList laws = {std::make_shared<IsotropicLaw>(),
@@ -35,7 +35,7 @@ LawRegistry& RegistryOfLaws() {
   return registry;
 }
 
-// Whether a material could mean either law.
+// Tells whether a material that names a law could mean either of these.
 bool AreAmbiguous(const Law& a, const Law& b) {
   return a.Name() == b.Name() &&
          std::any_of(std::begin(kAllSectionModels), std::end(kAllSectionModels),

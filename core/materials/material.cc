@@ -82,8 +82,9 @@ void ValidateWhatIsGiven(const Law& law, const Material& material,
   }
 }
 
-// Asks of a material of which all is known, but perhaps shear moduli.  These
-// are positive, and no more is asked of them.
+// Tells whether the values of a material are all known and give a stiffness
+// that is not positive definite.  Shear moduli need not be known, as any
+// positive ones will do.
 bool IsKnownNotPositiveDefinite(const MaterialParameters& parameters) {
   const auto can_be_any = [](const MaterialParameters::Parameter& parameter) {
     return !parameter.known &&
@@ -95,7 +96,7 @@ bool IsKnownNotPositiveDefinite(const MaterialParameters& parameters) {
              parameters.LawOf(0), parameters.Typical(1), parameters.Model());
 }
 
-// The value of the parameter of this name, where there is one and it is known.
+// Returns the value of the parameter of this name, if it is known.
 std::optional<double> KnownValue(const MaterialParameters& parameters,
                                  std::string_view name) {
   for (const MaterialParameters::Parameter& parameter : parameters.All()) {
@@ -106,9 +107,8 @@ std::optional<double> KnownValue(const MaterialParameters& parameters,
   return std::nullopt;
 }
 
-// Whether a stiffness off the diagonal is known with those beside it, or
-// nu_ij with E_i and E_j, and they are those of no material, whatever the
-// others are: c_ij^2 >= c_ii c_jj, or nu_ij^2 >= E_i / E_j.
+// Tells whether known values contradict every material, whatever the others
+// are: c_ij^2 >= c_ii c_jj for stiffnesses, or nu_ij^2 >= E_i / E_j for ratios.
 bool IsTooLarge(const LawParameter& parameter,
                 const MaterialParameters& parameters) {
   constexpr std::string_view kRatio = "poisson_ratio_";
@@ -130,7 +130,8 @@ bool IsTooLarge(const LawParameter& parameter,
 }
 
 // Throws where no values of the other parameters make what is known a material.
-// Finds that of two directions, and where all but shear moduli are known.
+// It finds contradictions between two directions, and any contradiction where
+// all but shear moduli are known.
 void RequirePositiveDefinite(const Material& material, SectionModel model,
                              const std::string& name) {
   const MaterialParameters parameters({material}, model);
@@ -149,7 +150,7 @@ void RequirePositiveDefinite(const Material& material, SectionModel model,
   }
 }
 
-// The material of each region id.
+// Returns the material of each region id.
 std::map<int, int> MaterialOfRegions(const std::vector<Material>& materials) {
   std::map<int, int> material_of;
   for (std::size_t i = 0; i < materials.size(); ++i) {
@@ -165,7 +166,7 @@ std::map<int, int> MaterialOfRegions(const std::vector<Material>& materials) {
   return material_of;
 }
 
-// "1, 2, 5"; of many, the first.
+// Returns "1, 2, 5"; only the first ids where there are many.
 std::string ListOf(const std::set<int>& ids) {
   constexpr std::size_t kMost = 20;
   std::string list;

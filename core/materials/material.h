@@ -10,7 +10,7 @@
 
 namespace elastimate {
 
-/// Closed interval that a parameter must lie in; an absent end is open.
+/// A closed interval in which a parameter must lie; an absent end is open.
 struct Bounds {
   std::optional<double> lower;
   std::optional<double> upper;
@@ -42,36 +42,38 @@ struct KnownParameter {
 /// What a part of a specimen is made of.
 struct Material {
   std::string law = "isotropic";
-  /// The region ids of the mesh that it fills; empty: all elements.
+  /// The region ids of the mesh that it fills; it fills all elements if empty.
   std::vector<int> regions;
   std::vector<KnownParameter> known;
   /// The bounds of parameters that are not known.
   std::vector<BoundsOfParameter> bounds;
-  /// Directions of any length that fix its frame (MaterialFrames), as many as
-  /// its law has: each dimension x 1, or dimension x num_elements, of which
-  /// those of its elements count.
+  /// The directions, of any length, that fix its frame (MaterialFrames), as
+  /// many as its law has axes.  Each is dimension x 1, or dimension x
+  /// num_elements, where only the columns of its own elements count.
   std::vector<Eigen::MatrixXd> axes = {};
 
   bool operator==(const Material& other) const;
 };
 
-/// Throws std::invalid_argument, with one sentence, unless each material has a
-/// law that exists and takes the section, and known parameters and bounds of
-/// parameters of that law, once each, with values in their range; the axes that
-/// its law takes, orthogonal ones; and each element is of one material.
-/// No materials at all are one isotropic one.  O(num_elements).
+/// Throws std::invalid_argument, with one sentence, unless the materials are
+/// valid.  Each needs a law that exists and takes the section; known parameters
+/// and bounds have to be parameters of that law, once each, with values in
+/// their range; axes have to be as many as the law takes, and orthogonal.  Each
+/// element has to be of one material.  An empty list means one isotropic
+/// material.  O(num_elements).
 void ValidateMaterials(const std::vector<Material>& materials,
                        const Mesh& mesh);
 
-/// Whether this is one isotropic material of which nothing is known.
+/// Tells whether this is one isotropic material of which nothing is known.
 [[nodiscard]] bool IsOneIsotropicMaterial(
     const std::vector<Material>& materials);
 
-/// An isotropic material for each region id of the mesh, ascending.
+/// Returns an isotropic material for each region id of the mesh, ascending.
 [[nodiscard]] std::vector<Material> IsotropicMaterialOfEachRegion(
     const Mesh& mesh);
 
-/// The place in `materials` of that of each element.  Precondition: valid ones.
+/// Returns the place in `materials` of each element's material.  Precondition:
+/// valid materials.
 [[nodiscard]] std::vector<int> MaterialOfElements(
     const std::vector<Material>& materials, const Mesh& mesh);
 

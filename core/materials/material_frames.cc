@@ -7,15 +7,16 @@
 namespace elastimate {
 namespace {
 
-// Cosines of the angle between two axes up to here are of rounding.
+// A cosine of the angle between two axes that is at most this comes from
+// rounding.
 constexpr double kLargestCosine = 1e-6;
 
 Eigen::VectorXd AxisAt(const Eigen::MatrixXd& axis, Eigen::Index element) {
   return axis.col(axis.cols() == 1 ? 0 : element);
 }
 
-// Where an axis is zero, as may be in elements of other materials, the
-// identity.
+// Returns the identity where an axis is zero, as it may be in elements of other
+// materials.
 Eigen::MatrixXd FrameOf(const std::vector<Eigen::MatrixXd>& axes,
                         Eigen::Index element, int dimension) {
   const Eigen::VectorXd first = AxisAt(axes[0], element).stableNormalized();

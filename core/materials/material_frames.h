@@ -10,15 +10,17 @@
 namespace elastimate {
 
 /// The frames of some materials in the elements of a mesh, in which their laws
-/// speak: direction 1 is that of the first axis, 2 that of the second, or any
-/// across the first where there is one axis, and 3 their cross product.
+/// speak.  Direction 1 is that of the first axis, direction 2 that of the
+/// second axis (or any direction across the first where there is one axis), and
+/// direction 3 is their cross product.
 class MaterialFrames {
  public:
-  /// Precondition: valid materials; those without axes have those of the scene.
+  /// Precondition: valid materials.  A material without axes has those of the
+  /// scene.
   MaterialFrames(const std::vector<Material>& materials, int dimension);
 
-  /// Its directions as columns, an orthogonal matrix; of a material without
-  /// axes the identity.
+  /// Returns the directions of the frame as columns, an orthogonal matrix; the
+  /// identity for a material without axes.
   template <int kDimension>
   Eigen::Matrix<double, kDimension, kDimension> Of(int material,
                                                    Eigen::Index element) const {
@@ -28,14 +30,14 @@ class MaterialFrames {
   }
 
  private:
-  /// Each material has blocks of dimension x dimension side by side: one, or
-  /// one for each element.
+  /// One matrix for each material: dimension x dimension blocks side by side,
+  /// one block for all elements or one for each.
   std::vector<Eigen::MatrixXd> frames_;
 };
 
-/// What is wrong with the axes of a material of a law that has `num_axes` of
-/// them: "has an axis of length 0 at element 3; ..."; empty when nothing is.
-/// `elements` are those of the material, of all `num_elements`.
+/// Tells what is wrong with the axes of a material whose law has `num_axes` of
+/// them, such as "has an axis of length 0 at element 3; ..."; empty when
+/// nothing is.  `elements` are those of the material, among all `num_elements`.
 [[nodiscard]] std::string WhyNotTheseAxes(
     const std::vector<Eigen::MatrixXd>& axes, int num_axes, int dimension,
     Eigen::Index num_elements, const std::vector<Eigen::Index>& elements);

@@ -29,7 +29,7 @@ std::vector<LawParameter> OrthotropicParameters(SectionModel model) {
           Modulus("shear_modulus_12", "G_12", kTypicalShearModulus)};
 }
 
-// Each component of strain by itself.
+// Returns modes of which each is one component of strain.
 std::vector<Eigen::MatrixXd> ComponentModes(int num_components) {
   std::vector<Eigen::MatrixXd> modes;
   modes.reserve(num_components);
@@ -39,7 +39,7 @@ std::vector<Eigen::MatrixXd> ComponentModes(int num_components) {
   return modes;
 }
 
-// The entries of normal strains come row by row, then the shears.
+// The entries of normal strains come row by row, those of shears behind them.
 std::vector<BlockEntry> OrthotropicEntries(int num_directions) {
   std::vector<BlockEntry> entries;
   for (int i = 0; i < num_directions; ++i) {
@@ -91,7 +91,8 @@ Eigen::VectorXd OrthotropicLaw::Moduli(const Eigen::VectorXd& parameters,
       moduli(k++) = stiffness(i, j);
     }
   }
-  // G_12, G_13, G_23 become c_44 = G_23, c_55 and c_66.
+  // The parameters G_12, G_13, G_23 become c_44 = G_23, c_55 and c_66 in
+  // reverse order.
   const Eigen::Index num_shears = moduli.size() - k;
   moduli.tail(num_shears) = parameters.tail(num_shears).reverse();
   return moduli;

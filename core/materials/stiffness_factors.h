@@ -8,13 +8,13 @@
 
 namespace elastimate {
 
-/// The moduli of any positive definite stiffness, by the factors
+/// Returns the moduli of any positive definite stiffness from the factors
 ///
 ///   S = L D L^T,   x = (ln D_a of S(a, a), L_ba of S(a, b)),
 ///
-/// of its blocks, L with ones on the diagonal: the stiffness is positive
-/// definite by construction, and the unit of pressure changes ln D only.
-/// x is in the order of the entries, one for each modulus.
+/// of its blocks, where L has ones on the diagonal.  The stiffness is positive
+/// definite by construction, and the unit of pressure changes ln D only.  x is
+/// in the order of the entries, one for each modulus.
 Eigen::VectorXd ModuliOfFactors(const std::vector<BlockEntry>& entries,
                                 const Eigen::VectorXd& factors);
 
@@ -22,13 +22,13 @@ Eigen::VectorXd ModuliOfFactors(const std::vector<BlockEntry>& entries,
 Eigen::MatrixXd ModuliOfFactorsJacobian(const std::vector<BlockEntry>& entries,
                                         const Eigen::VectorXd& factors);
 
-/// Whether the stiffness of a law at these parameters is positive definite, as
-/// that of an isotropic one in its range is.
+/// Tells whether the stiffness of a law at these parameters is positive
+/// definite.  An isotropic one is so in the range of its parameters.
 bool IsStiffnessPositiveDefinite(const Law& law,
                                  const Eigen::VectorXd& parameters,
                                  SectionModel model);
 
-/// x of theta; not numbers where the stiffness is not positive definite.
+/// Returns x of theta, or NaN where the stiffness is not positive definite.
 Eigen::VectorXd FactorsOfModuli(const std::vector<BlockEntry>& entries,
                                 const Eigen::VectorXd& moduli);
 

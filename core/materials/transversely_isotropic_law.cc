@@ -10,8 +10,8 @@ namespace {
 
 const double kRootOfTwo = std::sqrt(2.0);
 
-// e_LL, the dilation across the axis, the two shears there, and the two along
-// the axis.
+// The modes are e_LL, the dilation across the axis, the two shears across it,
+// and the two shears along it.
 std::vector<Eigen::MatrixXd> ModesOfAxis() {
   using Strains = Eigen::Matrix<double, 6, Eigen::Dynamic>;
   Strains dilation = Strains::Zero(6, 1);
@@ -25,8 +25,7 @@ std::vector<Eigen::MatrixXd> ModesOfAxis() {
   return {Eigen::VectorXd::Unit(6, 0), dilation, across, along};
 }
 
-// The compliance relates e_LL and the dilation across the axis to their
-// stresses.
+// Returns the compliance of e_LL and the dilation across the axis.
 Eigen::Matrix2d DilationCompliance(const Eigen::VectorXd& p) {
   const double coupling = -kRootOfTwo * p(2) / p(0);
   return (Eigen::Matrix2d() << 1 / p(0), coupling, coupling, (1 - p(3)) / p(1))
@@ -94,7 +93,7 @@ Eigen::VectorXd TransverselyIsotropicLaw::ParametersOf(
   stiffness << moduli(0), kRootOfTwo * moduli(1), kRootOfTwo * moduli(1),
       2 * moduli(2);
   const Eigen::Matrix2d compliance = stiffness.inverse();
-  // (1 - nu_TT) / E_T and (1 + nu_TT) / E_T.
+  // These are (1 - nu_TT) / E_T and (1 + nu_TT) / E_T.
   const double dilation = compliance(1, 1);
   const double shear = 1 / (2 * moduli(3));
   Eigen::VectorXd parameters(5);

@@ -24,7 +24,7 @@ std::vector<ElementBlock> BlocksOf(const Mesh& mesh,
   return blocks;
 }
 
-// Each two neighbours as one.
+// Returns the blocks with each two neighbours merged into one.
 std::vector<ElementBlock> Merged(const std::vector<ElementBlock>& blocks) {
   std::vector<ElementBlock> merged;
   for (std::size_t i = 0; i < blocks.size(); i += 2) {
@@ -38,7 +38,8 @@ std::vector<ElementBlock> Merged(const std::vector<ElementBlock>& blocks) {
   return merged;
 }
 
-// Returns the ranges of the blocks first, first + 2, .., in ascending order.
+// Returns the node ranges of the blocks first, first + 2, .., in ascending
+// order.
 std::vector<NodeRange> NodeRanges(const std::vector<ElementBlock>& blocks,
                                   std::size_t first) {
   std::vector<NodeRange> ranges;
@@ -73,7 +74,7 @@ bool AreSuitable(const std::vector<ElementBlock>& blocks,
          AreDisjoint(NodeRanges(blocks, 1));
 }
 
-// The nodes that are in none of the disjoint ranges.
+// Returns the ranges of the nodes that are in none of the disjoint ranges.
 std::vector<NodeRange> Gaps(const std::vector<NodeRange>& ranges,
                             std::ptrdiff_t num_nodes) {
   std::vector<NodeRange> gaps;

@@ -8,7 +8,7 @@
 
 namespace elastimate {
 
-/// From `first` to before `end`.
+/// The nodes from `first` to before `end`.
 struct NodeRange {
   std::ptrdiff_t first;
   std::ptrdiff_t end;
@@ -16,25 +16,25 @@ struct NodeRange {
   std::ptrdiff_t NumNodes() const { return end - first; }
 };
 
-/// Elements from `first` to before `end`, and the range of nodes that they
-/// touch.
+/// The elements from `first` to before `end`, and the range of the nodes that
+/// they touch.
 struct ElementBlock {
   std::ptrdiff_t first;
   std::ptrdiff_t end;
   NodeRange nodes;
 };
 
-/// The elements of a mesh in blocks, of which those of even number share no
-/// nodes with each other, nor do those of odd number.
+/// The elements of a mesh in blocks.  Blocks of even number share no nodes with
+/// each other, nor do blocks of odd number.
 struct ElementBlocks {
   std::vector<ElementBlock> blocks;
-  std::ptrdiff_t most_nodes = 0;  ///< The largest number in a block.
+  std::ptrdiff_t most_nodes = 0;  ///< The size of the largest block.
   /// The nodes that are in no block of even number.
   std::vector<NodeRange> gaps;
 };
 
-/// Blocks that are as small as they can be while few nodes are in two.  A mesh
-/// whose numbering has no locality is one block.
+/// Chooses blocks that are as small as they can be while few nodes are in two
+/// of them.  A mesh whose numbering has no locality becomes one block.
 /// O(num_elements) time, less than a tenth of an element pass.
 [[nodiscard]] ElementBlocks ChooseElementBlocks(const Mesh& mesh);
 

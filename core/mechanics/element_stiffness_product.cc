@@ -11,7 +11,7 @@ template <ElementKind kKind>
 using NodeVectors = Eigen::Matrix<double, ElementSizes<kKind>::kDimension,
                                   ElementSizes<kKind>::kNodes>;
 
-// Adds to the values of the nodes of an element.
+// Adds `of_element` to the values of the nodes of an element.
 template <ElementKind kKind>
 void Scatter(const NodeVectors<kKind>& of_element, const int* nodes,
              double* values) {
@@ -22,7 +22,7 @@ void Scatter(const NodeVectors<kKind>& of_element, const int* nodes,
   }
 }
 
-// What one column gives to the nodes of an element.
+// The contributions of one column to the nodes of an element.
 template <ElementKind kKind>
 struct ElementProducts {
   NodeVectors<kKind> of_strain = NodeVectors<kKind>::Zero();
@@ -40,7 +40,7 @@ struct ElementProducts {
   }
 };
 
-// One column, whose points need not be kept.
+// Adds the products of one column, for which the points need not be kept.
 template <ElementKind kKind>
 void AddColumnOfKind(const Mesh& mesh, const double* displacement, double* a,
                      double* p) {

@@ -10,9 +10,9 @@
 namespace elastimate {
 namespace {
 
-// The integrals of grad(N_i) grad(N_j)^T over one quadratic tetrahedron: fixed
-// combinations of P_ab = V g_a g_b^T, from the means of lambda_a lambda_b,
-// which are (1 + delta_ab) / 20.
+// The integrals of grad(N_i) grad(N_j)^T over one quadratic tetrahedron.  They
+// are fixed combinations of P_ab = V g_a g_b^T, which follow from the means of
+// lambda_a lambda_b, (1 + delta_ab) / 20.
 class QuadraticElementProducts {
  public:
   explicit QuadraticElementProducts(const TetrahedronGradients& element) {
@@ -39,10 +39,10 @@ class QuadraticElementProducts {
   }
 
  private:
-  // Mean of (4 lambda_a - 1)(4 lambda_b - 1), and of 4 lambda_a (4 lambda_b -
-  // 1).
+  // Returns the mean of (4 lambda_a - 1)(4 lambda_b - 1), and of 4 lambda_a (4
+  // lambda_b - 1).
   static double VertexWeight(int a, int b) { return a == b ? 0.6 : -0.2; }
-  // Mean of 16 lambda_a lambda_b.
+  // Returns the mean of 16 lambda_a lambda_b.
   static double EdgeWeight(int a, int b) { return a == b ? 1.6 : 0.8; }
 
   Eigen::Matrix3d p_[4][4];
@@ -81,7 +81,7 @@ void AddQuadraticProducts(const Mesh& mesh, const NodeGraph& graph,
   }
 }
 
-// Elements of any kind, by its stiffness rule.
+// Adds the products of elements of any kind, by its stiffness rule.
 template <ElementKind kKind>
 void AddProductsOfKind(const Mesh& mesh, const NodeGraph& graph,
                        Eigen::Index first, Eigen::Index end,

@@ -25,7 +25,7 @@ constexpr Eigen::Index ProductRows(int dimension) {
   return dimension == 3 ? 4 : 2;
 }
 
-/// A pair_mask that keeps every pair.
+/// This pair_mask keeps every pair.
 constexpr Eigen::Index kEveryPair = -1;
 
 /// Adds what the elements from `first` to before `end` contribute to M.  The
@@ -39,13 +39,13 @@ void AddGradientProducts(const Mesh& mesh, const NodeGraph& graph,
 template <int kDimension>
 using NodeBlock = Eigen::Matrix<double, kDimension, kDimension>;
 
-/// H_ij from M_ij.
+/// Returns H_ij from M_ij.
 template <int kDimension>
 NodeBlock<kDimension> StiffnessBlockH(const NodeBlock<kDimension>& m) {
   return 0.5 * (m.transpose() + m.trace() * NodeBlock<kDimension>::Identity());
 }
 
-/// J_ij from M_ij, `c` = ShearShareOfJ.
+/// Returns J_ij from M_ij, where `c` is ShearShareOfJ.
 template <int kDimension>
 NodeBlock<kDimension> StiffnessBlockJ(const NodeBlock<kDimension>& m,
                                       double c) {

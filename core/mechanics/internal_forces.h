@@ -15,8 +15,8 @@
 
 namespace elastimate {
 
-/// The internal forces of a mesh of some materials, which are linear in their
-/// moduli,
+/// The internal forces of a mesh of some materials are linear in the moduli of
+/// these,
 ///
 ///   f(u; theta) = sum_k theta_k f_k(u),
 ///   f_k(u)_i = integral of P_k(grad u) grad(N_i) over the material of k,
@@ -25,8 +25,8 @@ namespace elastimate {
 /// K(theta) = sum_k theta_k K_k.  Moduli are in the order of
 /// MaterialParameters.
 ///
-/// All materials share one pass over the elements; of isotropic ones it is that
-/// of StiffnessOperator.
+/// All materials share one pass over the elements.  Isotropic ones take the
+/// pass of StiffnessOperator.
 class InternalForces {
  public:
   /// Preconditions: a valid mesh, valid materials of it.  Refers to `mesh`,
@@ -39,22 +39,22 @@ class InternalForces {
 
   const MaterialParameters& Parameters() const { return parameters_; }
 
-  /// f_k(u) of some displacements, num_dofs x n, for each modulus k.
-  /// One element pass.
+  /// Returns f_k(u) for each modulus k and the columns u of `displacements`:
+  /// num_dofs x n each.  One element pass.
   std::vector<Eigen::MatrixXd> Products(
       const Eigen::MatrixXd& displacements) const;
 
-  /// f_k(u) of one displacement (num_dofs) as columns: num_dofs x num_moduli.
-  /// One element pass.
+  /// Returns f_k(u) for one displacement (num_dofs) as columns: num_dofs x
+  /// num_moduli.  One element pass.
   Eigen::MatrixXd Columns(const Eigen::VectorXd& displacement) const;
 
-  /// K(theta) V of some columns, num_dofs x n.  One element pass.
+  /// Returns K(theta) V for some columns V, num_dofs x n.  One element pass.
   Eigen::MatrixXd Multiply(const Eigen::VectorXd& moduli,
                            const Eigen::MatrixXd& displacements) const;
 
-  /// K_ij(theta) of each pair of the graph of the mesh, dimension x dimension
-  /// blocks side by side: dimension x (dimension num_pairs).
-  /// One element pass; about a microsecond for a tetrahedron.
+  /// Returns K_ij(theta) for each pair of the graph of the mesh, dimension x
+  /// dimension blocks side by side: dimension x (dimension num_pairs).  One
+  /// element pass; about a microsecond for a tetrahedron.
   Eigen::MatrixXd Blocks(const Eigen::VectorXd& moduli,
                          const NodeGraph& graph) const;
 
@@ -63,28 +63,30 @@ class InternalForces {
   /// One element pass.
   Eigen::MatrixXd DiagonalBlocks(const Eigen::VectorXd& moduli) const;
 
-  /// The strain energy of each element over its volume [pressure], of one
-  /// displacement (num_dofs): num_elements values.
+  /// Returns the strain energy of each element over its volume [pressure] for
+  /// one displacement (num_dofs): num_elements values.
   Eigen::VectorXd EnergyDensity(const Eigen::VectorXd& moduli,
                                 const Eigen::VectorXd& displacement) const;
 
  private:
-  /// What each modulus, by its place in its law, gives to each copy of a node.
+  /// Returns what each modulus, by its place in its law, gives to each copy of
+  /// a node in `parts_`.
   std::vector<Eigen::MatrixXd> OfParts(
       const Eigen::MatrixXd& displacements) const;
   /// Returns the moduli of H and of J in each element, 2 x num_elements.
   /// Precondition: all materials are isotropic.
   Eigen::Matrix2Xd ModuliOfElements(const Eigen::VectorXd& moduli) const;
-  /// The tangent of each material.
+  /// Returns the tangent of each material.
   std::vector<Eigen::MatrixXd> Tangents(const Eigen::VectorXd& moduli) const;
-  /// Returns the tangent of each unit modulus of the law of each material.
+  /// Returns, for each material, the tangent of each unit modulus of its law.
   std::vector<std::vector<Eigen::MatrixXd>> UnitTangents() const;
 
   const Mesh& mesh_;
   MaterialParameters parameters_;
   std::vector<int> material_of_element_;
   MaterialFrames frames_;
-  /// Several materials have parts; the part of a single one is the whole mesh.
+  /// The parts of the mesh if there is more than one material; else they are
+  /// empty, and the whole mesh is the part.
   MeshParts parts_;
   bool is_isotropic_;
   std::optional<StiffnessOperator> stiffness_;

@@ -20,7 +20,7 @@ template <ElementKind kKind>
 using Frame = Eigen::Matrix<double, ElementSizes<kKind>::kDimension,
                             ElementSizes<kKind>::kDimension>;
 
-// The point as seen in a frame.
+// Returns the point as it is seen in a frame.
 template <ElementKind kKind>
 ElementPoint<kKind> SeenIn(const Frame<kKind>& frame,
                            ElementPoint<kKind> point) {
@@ -32,8 +32,8 @@ template <ElementKind kKind>
 using ElementVectors = Eigen::Matrix<double, ElementSizes<kKind>::kDimension,
                                      ElementSizes<kKind>::kNodes>;
 
-// The forces on the nodes of an element, as seen in its frame, for displacement
-// gradients at its points and a tangent.
+// Returns the forces on the nodes of an element, as seen in its frame, for
+// displacement gradients at its points and a tangent.
 template <ElementKind kKind>
 ElementVectors<kKind> ForcesOf(const std::vector<ElementPoint<kKind>>& points,
                                const std::vector<Frame<kKind>>& gradients,
@@ -160,7 +160,7 @@ void VisitOwnProducts(const Mesh& mesh, const Visitor& visit) {
   }
 }
 
-// K_ii,ab = sum_cd M_cd C_(ac)(bd), of M as seen in the frame.
+// Adds K_ii,ab = sum_cd M_cd C_(ac)(bd), with M as seen in the frame.
 template <ElementKind kKind>
 void AddDiagonalOfKind(const Mesh& mesh,
                        const std::vector<int>& material_of_element,
@@ -186,7 +186,7 @@ void AddDiagonalOfKind(const Mesh& mesh,
   });
 }
 
-// c_0 H_ii + c_1 J_ii of StiffnessBlockH and StiffnessBlockJ.
+// Adds c_0 H_ii + c_1 J_ii of StiffnessBlockH and StiffnessBlockJ.
 template <ElementKind kKind>
 void AddIsotropicDiagonalOfKind(const Mesh& mesh,
                                 const Eigen::Matrix2Xd& coefficients,

@@ -10,11 +10,11 @@
 
 namespace elastimate {
 
-/// Tangents are those of the frames of the materials, in which each element is
-/// looked at.
+/// Tangents are given in the frame of each material, to which the gradients in
+/// its elements are rotated.
 
-/// Adds, for tangents C_k = dP_k / dH of small strains, of the material of each
-/// element, and each column u of `displacement`,
+/// Adds, for tangents C_k = dP_k / dH of small strains of each element's
+/// material, and each column u of `displacement`,
 ///
 ///   f_k,i = integral of (C_k : grad u) grad(N_i)
 ///
@@ -27,8 +27,8 @@ void AddLawProducts(const Mesh& mesh,
                     const Eigen::MatrixXd& displacement,
                     std::vector<Eigen::MatrixXd>& products);
 
-/// The stiffness blocks K_ij of each pair of the graph, for one tangent C of
-/// each material: K_ij = integral of grad(N_i) . C . grad(N_j), side by side,
+/// Returns the stiffness blocks K_ij = integral of grad(N_i) . C . grad(N_j)
+/// for each pair of the graph and one tangent C of each material, side by side:
 /// dimension x (dimension num_pairs).  One element pass.
 Eigen::MatrixXd StiffnessBlocks(const Mesh& mesh, const NodeGraph& graph,
                                 const std::vector<int>& material_of_element,
@@ -46,9 +46,9 @@ Eigen::MatrixXd DiagonalStiffnessBlocks(
 Eigen::MatrixXd DiagonalStiffnessBlocks(const Mesh& mesh,
                                         const Eigen::Matrix2Xd& coefficients);
 
-/// The strain energy of each element over its volume, of a displacement of
-/// num_dofs values and one tangent C of each material: the mean of
-/// grad u : C : grad u / 2.  num_elements values [pressure].
+/// Returns the strain energy of each element over its volume, for a
+/// displacement of num_dofs values and one tangent C of each material: the mean
+/// of grad u : C : grad u / 2, num_elements values [pressure].
 Eigen::VectorXd LawEnergyDensity(const Mesh& mesh,
                                  const std::vector<int>& material_of_element,
                                  const MaterialFrames& frames,

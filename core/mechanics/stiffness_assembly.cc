@@ -33,7 +33,7 @@ void StiffnessAssembly::PlanStages(const Mesh& mesh) {
   }
   std::reverse(stages_.begin(), stages_.end());
 
-  // A pair is one of its smaller node.
+  // Each pair is counted at its smaller node.
   Eigen::Index most_pairs = 0;
   Eigen::Index end_node = 0;
   Eigen::Index first = 0;
@@ -155,8 +155,8 @@ void StiffnessAssembly::WriteColumns(Eigen::Index node, double shear_share) {
       if (value < 0) {
         continue;
       }
-      // Nearly all blocks: no component of the row is held or above the
-      // diagonal.
+      // Nearly all blocks are whole: no component of the row is held or above
+      // the diagonal.
       if (is_whole) {
         h_.segment<kDimension>(value) = block_h.col(component);
         j_.segment<kDimension>(value) = block_j.col(component);

@@ -26,8 +26,8 @@ struct SymmetricPattern {
 /// one fixed sparse pattern, so that A(nu) = H + nu J is one axpy.
 class StiffnessAssembly {
  public:
-  /// Pattern and values.  Precondition: a valid mesh.
-  /// O(num_elements) time and memory; no triplets.
+  /// Assembles the pattern and the values.  Precondition: a valid mesh.
+  /// O(num_elements) time and memory; it forms no triplets.
   StiffnessAssembly(const Mesh& mesh,
                     const DegreesOfFreedom& degrees_of_freedom);
 
@@ -37,8 +37,8 @@ class StiffnessAssembly {
   /// a random one), so that most of it stays in the cache.
   void Assemble(const Mesh& mesh);
 
-  /// The values, in the pattern, of a matrix whose blocks are given for each
-  /// pair of the graph: dimension x (dimension num_pairs), side by side.
+  /// Returns, in the pattern, the values of a matrix whose blocks are given for
+  /// each pair of the graph, side by side: dimension x (dimension num_pairs).
   Eigen::VectorXd ValuesOf(const Eigen::MatrixXd& blocks) const;
 
   const NodeGraph& Graph() const { return graph_; }
@@ -46,18 +46,19 @@ class StiffnessAssembly {
   const Eigen::VectorXd& H() const { return h_; }
   const Eigen::VectorXd& J() const { return j_; }
 
-  /// The values of H + nu J.
+  /// Returns the values of H + nu J.
   Eigen::VectorXd Combine(double poisson_ratio) const {
     return h_ + poisson_ratio * j_;
   }
-  /// Combines into memory that is used again, which takes half the time.
+  /// Sets `values` to those of H + nu J.  Memory that is used again takes half
+  /// the time.
   void Combine(double poisson_ratio, Eigen::VectorXd& values) const {
     values = h_ + poisson_ratio * j_;
   }
 
  private:
-  /// The elements up to `end_element`, after which no element has one of the
-  /// first `num_complete_nodes`.
+  /// No element after the first `end_element` ones has any of the first
+  /// `num_complete_nodes` nodes.
   struct Stage {
     Eigen::Index end_element;
     Eigen::Index num_complete_nodes;
@@ -73,13 +74,14 @@ class StiffnessAssembly {
 
   NodeGraph graph_;
   SymmetricPattern pattern_;
-  /// Free components of each node, as bits.
+  /// The free components of each node, as bits.
   std::vector<unsigned char> free_components_;
-  /// For each pair of nodes and each component of its column node: where the
-  /// rows of its row node begin in the values, -1 when held.
+  /// For each pair of nodes and each component of its column node, this says
+  /// where the rows of its row node begin in the values; -1 when held.
   std::vector<std::int64_t> pair_values_;
   std::vector<Stage> stages_;
-  /// For AddGradientProducts: the pairs at work, zero between assemblies.
+  /// The mask for AddGradientProducts, and the pairs at work, which are zero
+  /// between assemblies.
   Eigen::Index pair_mask_;
   Eigen::MatrixXd products_;
   Eigen::VectorXd h_;

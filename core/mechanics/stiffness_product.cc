@@ -12,7 +12,7 @@
 namespace elastimate {
 namespace {
 
-// All kinds but linear tetrahedra.
+// Multiplies for all kinds but linear tetrahedra.
 void MultiplyOtherKinds(const Mesh& mesh, const Eigen::MatrixXd& displacement,
                         StiffnessProducts& products) {
   if (mesh.kind == ElementKind::kTet10) {

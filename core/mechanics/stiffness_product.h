@@ -15,8 +15,8 @@ struct StiffnessProducts {
   Eigen::MatrixXd j;  ///< b = J q, same shape as q.
 };
 
-/// a = H q and b = J q in one pass over the elements, for the stiffness bases
-/// of K = s (H + nu J) [Becker & Teschner 2007, eq. 14-22].
+/// Returns a = H q and b = J q after one pass over the elements, for the
+/// stiffness bases of K = s (H + nu J) [Becker & Teschner 2007, eq. 14-22].
 ///
 /// `displacement` is num_dofs x num_columns, row dimension * node + component
 /// [length]; the products have its shape.  With the strain tensor
@@ -25,9 +25,9 @@ struct StiffnessProducts {
 ///   a_i = integral of e grad(N_i),
 ///   b_i = integral of tr(e) grad(N_i) - c a_i,
 ///
-/// c of ShearShareOfJ, so that no element matrix is formed.  In a linear
+/// with c of ShearShareOfJ, so that no element matrix is formed.  In a linear
 /// simplex both factors are constant, in a quadratic one with straight edges
-/// both are linear, and the integrals exact.
+/// both are linear, and the integrals are exact.
 ///
 /// Precondition: a valid mesh (ValidateMesh) and num_dofs rows.
 /// Cost: one element pass, O(num_elements * num_columns) time (for quadratic
@@ -36,9 +36,9 @@ struct StiffnessProducts {
 [[nodiscard]] StiffnessProducts MultiplyStiffnessBasis(
     const Mesh& mesh, const Eigen::MatrixXd& displacement);
 
-/// The stiffness bases H and J of a mesh, to be multiplied many times: what
-/// MultiplyStiffnessBasis does, with threads, and after the mesh has been
-/// numbered for locality if its own numbering has none.
+/// The stiffness bases H and J of a mesh, to be multiplied many times.  This
+/// does what MultiplyStiffnessBasis does, but with threads, and it first
+/// numbers the mesh for locality if its own numbering has none.
 ///
 ///   const StiffnessOperator stiffness(mesh, 2);
 ///   StiffnessProducts products;
@@ -60,10 +60,10 @@ class StiffnessOperator {
   explicit StiffnessOperator(const Mesh& mesh, int num_threads = 1);
   explicit StiffnessOperator(const Mesh&&, int = 1) = delete;
 
-  /// Whether the mesh was numbered again.
+  /// Tells whether the mesh was numbered again.
   bool IsReordered() const { return !places_.empty(); }
 
-  /// Multiplies as MultiplyStiffnessBasis does; matrices of the right shape in
+  /// Does what MultiplyStiffnessBasis does; matrices of the right shape in
   /// `products` are used again.  The bits do not depend on the number of
   /// threads.
   void Multiply(const Eigen::MatrixXd& displacement,
@@ -72,8 +72,8 @@ class StiffnessOperator {
  private:
   const Mesh& mesh_;
   int num_threads_;
-  /// Numbered for locality, and the place of its nodes in mesh_; both empty
-  /// where the numbering of mesh_ is good.
+  /// The mesh numbered for locality, and the place of each of its nodes in
+  /// mesh_.  Both are empty where the numbering of mesh_ is good.
   Mesh reordered_;
   std::vector<int> places_;
   /// The blocks of the mesh that is worked on, if its tetrahedra are linear.

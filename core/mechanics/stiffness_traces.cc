@@ -10,8 +10,8 @@
 namespace elastimate {
 namespace {
 
-// Sets the rows and columns of the held degrees of freedom to zero, and
-// multiplies the blocks of different nodes, which stand for two of the matrix,
+// Sets the rows and columns of the held degrees of freedom to zero.  A block of
+// two different nodes stands for two blocks of the matrix, so it is multiplied
 // by sqrt(2).
 void WeighFreeBlocks(const NodeGraph& graph, const DegreesOfFreedom& dofs,
                      Eigen::MatrixXd& blocks) {
@@ -60,12 +60,12 @@ Eigen::MatrixXd StiffnessTraces(const Mesh& mesh, const InternalForces& forces,
 
 void SetTraceProbes(const ComponentMask& held,
                     Eigen::Ref<Eigen::MatrixXd> probes) {
-  // Looked up, since a branch could not be predicted.
+  // The signs are looked up, since no processor could predict the branch.
   constexpr double kSigns[2] = {-1, 1};
   std::mt19937_64 generator(20071107);
   probes.setZero();
   for (auto probe : probes.colwise()) {
-    // A sign in each bit.
+    // Each bit stands for a sign.
     std::uint64_t signs = 0;
     for (Eigen::Index dof = 0; dof < held.size(); ++dof, signs >>= 1U) {
       if (dof % 64 == 0) {

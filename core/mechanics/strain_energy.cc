@@ -8,12 +8,13 @@
 namespace elastimate {
 namespace {
 
-// mu e:e + (lambda / 2) tr(e)^2.
+// The energy density is mu e:e + (lambda / 2) tr(e)^2.
 class EnergyDensity {
  public:
   EnergyDensity(const IsotropicElasticity& elasticity, SectionModel model)
       : mu_(elasticity.ShearModulus()),
-        // The stress is s (nu tr(e) + (1 - c nu) e), and 2 mu = s (1 - c nu).
+        // The stress is s (nu tr(e) I + (1 - c nu) e), so lambda = s nu and 2
+        // mu = s (1 - c nu).
         lambda_(elasticity.StiffnessScale(model) * elasticity.poisson_ratio) {}
 
   template <class Gradient>
@@ -44,7 +45,7 @@ void VisitGradients(const Mesh& mesh, Eigen::Index element,
   VisitPoints<kKind>(
       mesh, element, rule,
       [&](const ElementPoint<kKind>& point, const auto& at) {
-        // The strain of a linear simplex is the same everywhere.
+        // The gradient of a linear simplex is the same everywhere.
         if (!(kKind == ElementKind::kTet4 || kKind == ElementKind::kTri3) ||
             !is_known) {
           gradient.noalias() = u * point.gradient.transpose();
@@ -64,9 +65,10 @@ void VisitVertices(const Mesh& mesh, Eigen::Index element,
                           [&](const Gradient<kKind>& gradient, double volume,
                               const auto&) { visit(gradient, volume); });
   } else {
-    // The linear function of the reference element nearest to the gradient: at
-    // a vertex itself the map may be singular.  The inverse of the matrix of
-    // the means of lambda_a lambda_b is n (n + 1) (I - 1 1^T / (n + 1)).
+    // This fits the linear function of the reference element that is nearest to
+    // the gradient, since the map may be singular at a vertex itself.  The
+    // inverse of the matrix of the means of lambda_a lambda_b is n (n + 1) (I -
+    // 1 1^T / (n + 1)).
     constexpr int kVertices = ElementSizes<kKind>::kVertices;
     std::array<Gradient<kKind>, kVertices> moments;
     moments.fill(Gradient<kKind>::Zero());
@@ -91,8 +93,8 @@ void VisitVertices(const Mesh& mesh, Eigen::Index element,
   }
 }
 
-// At each node that is a vertex, the mean over the elements around it, weighted
-// by the volumes that the vertices stand for.
+// Returns, at each node that is a vertex, the mean of the gradient over the
+// elements around it, weighted by the volumes that the vertices stand for.
 template <ElementKind kKind>
 std::vector<Gradient<kKind>> RecoveredGradient(const Mesh& mesh,
                                                const double* displacement) {
@@ -116,7 +118,7 @@ std::vector<Gradient<kKind>> RecoveredGradient(const Mesh& mesh,
   return recovered;
 }
 
-// The energies of the elements, and of what they miss.
+// The energy of the elements, and the energy that they miss.
 struct Energies {
   double of_elements = 0;
   double missed = 0;

@@ -15,7 +15,7 @@
 #define HWY_TARGET_INCLUDE \
   "elastimate/core/mechanics/tet10_stiffness_product.cc"
 #include <hwy/foreach_target.h>
-// After foreach_target.h.
+// This header has to come after foreach_target.h.
 #include <hwy/highway.h>
 
 #include "elastimate/core/mechanics/vector_lanes-inl.h"
@@ -27,9 +27,9 @@ namespace {
 
 constexpr std::ptrdiff_t kMostLanes = 8;
 
-// The record of a node has four values, of which the last is zero, for its
-// displacement, for the sum at it, and for the sum of the second product if
-// there are two.
+// The record of a node has groups of four values, of which the last is zero:
+// one group for its displacement, one for the sum at it, and one for the sum of
+// the second product if there are two.
 constexpr std::ptrdiff_t kFour = 4;
 constexpr std::ptrdiff_t kSizeForSum = 2 * kFour;
 constexpr std::ptrdiff_t kSizeForProducts = 3 * kFour;
@@ -39,13 +39,13 @@ constexpr std::ptrdiff_t kSizeForProducts = 3 * kFour;
 struct QuadraticPass {
   const int* elements;  // 10 x num_elements.
   std::ptrdiff_t num_elements;
-  // 3 x num_nodes.  Four values are read at each vertex, behind which there are
-  // nodes in the middle of edges.
+  // These are 3 x num_nodes.  Four values are read at each vertex, which is
+  // within bounds because mid-edge nodes come behind all vertices.
   const double* positions;
   // Where these are null, the products are a = integral of e grad(N) and,
-  // behind it, p = integral of tr(e) grad(N).  Else the sum of both with these
-  // coefficients is the only product; behind those of the elements there are
-  // kMostLanes more, of any value.
+  // behind it, p = integral of tr(e) grad(N).  Else the only product is the sum
+  // of both with these coefficients.  The arrays then have kMostLanes more
+  // values of any size behind those of the elements.
   const double* coefficients_of_a;
   const double* coefficients_of_p;
   double* records;
@@ -60,8 +60,8 @@ namespace elastimate {
 namespace HWY_NAMESPACE {
 namespace {
 
-// The records of the first nodes of as many elements as there are lanes, of
-// this size.  Lanes beyond the last element repeat it.
+// The records, of this size, of the first nodes of as many elements as there
+// are lanes.  Lanes beyond the last element repeat it.
 template <int kNodes, class Value>
 struct NodeRecords {
   Value* record[kNodes][kLanes];
@@ -99,7 +99,7 @@ HWY_INLINE void AddFour(V v, double* p) {
   hn::Store(hn::Add(hn::Load(d, p), v), d, p);
 }
 
-// One element after the other: they may share nodes.
+// Adds for one element after the other, because they may share nodes.
 HWY_INLINE void AddToNode(const Vector& v, double* const (&records)[kLanes],
                           std::ptrdiff_t offset) {
   const Rows rows = Transpose({v.x, v.y, v.z, hn::Zero(Lanes())});
@@ -164,7 +164,7 @@ struct Barycentric {
     g0 = Vector{hn::Zero(d), hn::Zero(d), hn::Zero(d)} - (g1 + g2 + g3);
     mass = hn::Mul(hn::Set(d, 1.0 / 120), hn::Abs(determinant));
     if (count < kLanes) {
-      // Repeated elements add nothing.
+      // Lanes that repeat an element add nothing.
       mass = hn::IfThenElseZero(hn::FirstN(d, count), mass);
     }
   }
@@ -239,7 +239,7 @@ struct VertexStrains {
   HWY_INLINE VertexStrains(const Nodes& nodes, const Barycentric& g) {
     const Values three = hn::Set(Lanes(), 3.0);
     const Values four = hn::Set(Lanes(), 4.0);
-    // Four times one minus the other.
+    // Returns 4 middle - end.
     const auto bent = [&](const Vector& middle, const Vector& end) HWY_ATTR {
       return Vector{hn::MulSub(four, middle.x, end.x),
                     hn::MulSub(four, middle.y, end.y),
@@ -254,8 +254,8 @@ struct VertexStrains {
     const Vector w12 = FromVertex0(nodes, kMidEdgeNodes[1][2]);
     const Vector w13 = FromVertex0(nodes, kMidEdgeNodes[1][3]);
     const Vector w23 = FromVertex0(nodes, kMidEdgeNodes[2][3]);
-    // The coefficient of g0 is taken from those of the others, since
-    // g0 = -(g1 + g2 + g3).  It is 4 w_v0 at vertex v, and 0 at vertex 0.
+    // The coefficient of g0 is 4 w_v0 at vertex v and 0 at vertex 0.  Because
+    // g0 = -(g1 + g2 + g3), it is subtracted from the other coefficients.
     e0 = StrainOf(g, bent(w01, w1), bent(w02, w2), bent(w03, w3));
     e1 = StrainOf(g, three * w1 - four * w01, bent(w12 - w01, w2),
                   bent(w13 - w01, w3));
@@ -273,13 +273,13 @@ HWY_INLINE void AddForces(const Nodes& nodes, std::ptrdiff_t offset,
                           const Stress& s1, const Stress& s2,
                           const Stress& s3) {
   const Stress sum = s0 + s1 + s2 + s3;
-  // Four times tau.
+  // This is the factor of 4 tau.
   const Values mass = hn::Mul(hn::Set(Lanes(), 4.0), g.mass);
   const Stress t0 = mass * (s0 + sum);
   const Stress t1 = mass * (s1 + sum);
   const Stress t2 = mass * (s2 + sum);
   const Stress t3 = mass * (s3 + sum);
-  // The sum of tau: that of the four (s + sum) is five times `sum`.
+  // This is the sum of all tau: the four (s + sum) add up to five times `sum`.
   const Stress all = hn::Mul(hn::Set(Lanes(), 5.0), g.mass) * sum;
   const auto add = [&](int i, const Vector& v)
                        HWY_ATTR { AddToNode(v, nodes.record[i], offset); };
@@ -295,7 +295,7 @@ HWY_INLINE void AddForces(const Nodes& nodes, std::ptrdiff_t offset,
   add(kMidEdgeNodes[2][3], t2.Times(g.g3) + t3.Times(g.g2));
 }
 
-// a e + p tr(e) I.
+// Returns a e + p tr(e) I.
 HWY_INLINE Symmetric StressOf(const Symmetric& e, Values a, Values p) {
   const Values pressure = hn::Mul(p, TraceOf(e));
   return {hn::MulAdd(a, e.xx, pressure),
@@ -306,7 +306,7 @@ HWY_INLINE Symmetric StressOf(const Symmetric& e, Values a, Values p) {
           hn::Mul(a, e.yz)};
 }
 
-// `count` elements from the first on, an element in each lane.
+// Adds `count` elements from the first on, an element in each lane.
 template <bool kIsSum>
 HWY_INLINE void AddElements(const QuadraticPass& pass, std::ptrdiff_t first,
                             std::ptrdiff_t count) {
@@ -372,8 +372,9 @@ Records AllocateRecords(Eigen::Index size) {
   return records;
 }
 
-// The values of each node in the first four of its record, and zeros.  Loops of
-// a length that the compiler knows become vectors rather than calls.
+// Copies the values of each node to the first three of its record, with zeros
+// behind.  Loops of a length that the compiler knows become vectors rather than
+// calls.
 template <Eigen::Index kSize>
 void FillNodeRecords(const double* values, Eigen::Index num_nodes,
                      double* records) {

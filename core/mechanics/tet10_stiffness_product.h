@@ -8,8 +8,9 @@
 
 namespace elastimate {
 
-/// a = H q and b = J q on quadratic tetrahedra with straight edges, for each
-/// column of `displacement`; all three are (3 num_nodes) x num_columns.
+/// Computes a = H q and b = J q on quadratic tetrahedra with straight edges,
+/// for each column q of `displacement`; all three are (3 num_nodes) x
+/// num_columns.
 ///
 /// Gradients are linear in an element.  With the gradients g_i of the
 /// barycentric coordinates and the displacements w of the nodes less that of

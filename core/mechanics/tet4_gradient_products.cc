@@ -12,7 +12,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "elastimate/core/mechanics/tet4_gradient_products.cc"
 #include <hwy/foreach_target.h>
-// After foreach_target.h.
+// This header has to come after foreach_target.h.
 #include <hwy/highway.h>
 
 #ifndef ELASTIMATE_CORE_LINEAR_FACTORS_
@@ -54,7 +54,7 @@ void AddOuterProducts(const Elements& elements, std::ptrdiff_t pair_mask,
     const auto scale = hn::Set(d, elements.factors[e].scale);
     for (int i = 0; i < 4; ++i) {
       for (int j = 0; j <= i; ++j, ++pair) {
-        // Without a branch: the order is as good as random.
+        // There is no branch here, since the order is as good as random.
         const int row = nodes[i] >= nodes[j] ? i : j;
         const int column = i + j - row;
         double* const block = products + 12 * (*pair & pair_mask);
@@ -103,7 +103,8 @@ void AddLinearGradientProducts(const Mesh& mesh, const NodeGraph& graph,
                                Eigen::Index first, Eigen::Index end,
                                Eigen::Index pair_mask,
                                Eigen::MatrixXd& products) {
-  // With so many, the processor waits for no value that it has just written.
+  // In batches of this size the processor never waits for a value that it has
+  // just written.
   constexpr Eigen::Index kElementsAtATime = 64;
   std::array<LinearFactors, kElementsAtATime> factors;
   const auto add_outer_products = HWY_DYNAMIC_DISPATCH(AddOuterProducts);

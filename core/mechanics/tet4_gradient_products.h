@@ -8,9 +8,9 @@
 
 namespace elastimate {
 
-/// AddGradientProducts on linear tetrahedra: with the edges e_i = x_i - x_0 and
-/// the cofactors c_1 = e_2 x e_3 (and so on), c_0 = -(c_1 + c_2 + c_3), an
-/// element adds
+/// Does what AddGradientProducts does, on linear tetrahedra.  With the edges
+/// e_i = x_i - x_0 and the cofactors c_1 = e_2 x e_3 (and so on), c_0 = -(c_1 +
+/// c_2 + c_3), an element adds
 ///
 ///   V grad(N_i) grad(N_j)^T = c_i c_j^T / (6 |det J|).
 ///

@@ -16,7 +16,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "elastimate/core/mechanics/tet4_stiffness_product.cc"
 #include <hwy/foreach_target.h>
-// After foreach_target.h.
+// This header has to come after foreach_target.h.
 #include <hwy/highway.h>
 
 #include "elastimate/core/mechanics/vector_lanes-inl.h"
@@ -59,7 +59,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 // displacement, and the sums of a and of p.  Component i of column k of these
 // three is kColumns i + k after their first.
 struct OneColumn {
-  // Fours, which are loaded whole.
+  // Each is a group of four, which is loaded whole.
   static constexpr std::ptrdiff_t kDisplacement = 4;
   static constexpr std::ptrdiff_t kA = 8;
   static constexpr std::ptrdiff_t kP = 12;
@@ -103,7 +103,7 @@ struct Stress {
   }
 };
 
-// S of the differences d_i = q_i - q_0.
+// Returns S for the differences d_i = q_i - q_0.
 HWY_INLINE Stress MakeStress(const Geometry& g, const Vector& d1,
                              const Vector& d2, const Vector& d3) {
   const auto sum =
@@ -159,8 +159,8 @@ inline std::uintptr_t OriginOf(const double* records, std::ptrdiff_t first_node,
 
 #if ELASTIMATE_HAS_BATCHES
 
-// The vectors at `offset` in the records of corner i minus those of corner 0,
-// an element in each lane.
+// Returns the vectors at `offset` in the records of corner i minus those of
+// corner 0, an element in each lane.
 HWY_INLINE Vector Difference(const Corners& corners, int i,
                              std::ptrdiff_t offset) {
   const auto row = [&](std::size_t k) HWY_ATTR {
@@ -171,8 +171,8 @@ HWY_INLINE Vector Difference(const Corners& corners, int i,
   return {components.row0, components.row1, components.row2};
 }
 
-// Adds the four values in `v1` to those at `offset` in the record of corner 1,
-// and so on, and takes their sum from corner 0.
+// Adds the four values in `v1` to the values at `offset` in the record of
+// corner 1, and so on, and subtracts the sum of all from those of corner 0.
 template <class V>
 HWY_INLINE void AddFours(const Corners& corners, std::size_t lane,
                          std::ptrdiff_t offset, V v1, V v2, V v3) {
@@ -187,8 +187,8 @@ HWY_INLINE void AddFours(const Corners& corners, std::size_t lane,
   hn::Store(hn::Add(hn::Load(d, p3), v3), d, p3);
 }
 
-// Adds vectors with an element in each lane, one element after the other, since
-// these may share nodes.
+// Does what AddFours does for vectors with an element in each lane, for one
+// element after the other, because they may share nodes.
 HWY_INLINE void AddToCorners(const Corners& corners, std::ptrdiff_t offset,
                              const Vector& v1, const Vector& v2,
                              const Vector& v3) {
@@ -229,13 +229,13 @@ HWY_INLINE Geometry GeometryOf(const Corners& corners, std::ptrdiff_t count) {
       MakeGeometry(Difference(corners, 1, 0), Difference(corners, 2, 0),
                    Difference(corners, 3, 0));
   if (count < kLanes) {
-    // Repeated elements add nothing.
+    // Lanes that repeat an element add nothing.
     g.scale = hn::IfThenElseZero(hn::FirstN(Lanes(), count), g.scale);
   }
   return g;
 }
 
-// An element in each lane.
+// Adds a batch with an element in each lane.
 HWY_INLINE void AddBatch(const Corners& corners, std::ptrdiff_t count,
                          OneColumn layout) {
   const Geometry g = GeometryOf(corners, count);
@@ -321,7 +321,7 @@ HWY_INLINE void AddColumns(const Vector& v1, const Vector& v2, const Vector& v3,
   StoreColumns(LoadColumns(p3) + v3, p3);
 }
 
-// One element after the other, a column in each lane.
+// Adds one element after the other, with a column in each lane.
 HWY_INLINE void AddBatch(const Corners& corners, std::ptrdiff_t count,
                          SeveralColumns layout) {
   const GeometryOfEach geometry(corners, count);
@@ -345,9 +345,9 @@ HWY_INLINE void AddBatch(const Corners& corners, std::ptrdiff_t count,
   }
 }
 
-// Nodes of a mesh that was numbered again are scattered over the columns: asks
-// for the values of a later one, so that as many are on their way at a time as
-// a processor can wait for.
+// Asks for the values of a later node.  Nodes of a mesh that was numbered again
+// are scattered over the columns; this keeps as many values on their way at a
+// time as a processor can wait for.
 template <class Layout>
 HWY_INLINE void Prefetch(const NumberedMesh& mesh, const ElementBlock& block,
                          std::ptrdiff_t node, const double* values,
@@ -364,8 +364,9 @@ HWY_INLINE void Prefetch(const NumberedMesh& mesh, const ElementBlock& block,
   }
 }
 
-// Zero from the displacement of a record on.  With std::fill_n that becomes a
-// string instruction, which takes a third of a pass of several columns.
+// Sets the values of a record to zero from the displacement on.  With
+// std::fill_n this becomes a string instruction, which takes a third of a pass
+// of several columns.
 template <class Layout>
 HWY_INLINE void ClearValues(double* record) {
   const hn::CappedTag<double, std::min<std::ptrdiff_t>(kLanes, 4)> d;
@@ -385,8 +386,8 @@ HWY_INLINE void FillDisplacement(const double* q, const Columns&,
   }
 }
 
-// Sets the products at a node to a and b = p - 2 a of its record, or adds
-// these.
+// Sets the products at a node to a and b = p - 2 a of its record, or adds these
+// to them.
 template <bool kIsFirst, class Layout>
 HWY_INLINE void CollectNode(const double* record, const Columns&, double* h,
                             double* j, Layout layout) {
@@ -400,14 +401,15 @@ HWY_INLINE void CollectNode(const double* record, const Columns&, double* h,
 
 #if ELASTIMATE_HAS_BATCHES
 
-// The three values of a node in a column, and one that nothing depends on.
+// Loads the three values of a node in a column, and a fourth on which nothing
+// depends.
 template <class D>
 HWY_INLINE hn::Vec<D> LoadThree(D d, const double* p) {
   const hn::Half<D> two;
   return hn::Combine(d, hn::Set(two, p[2]), hn::LoadU(two, p));
 }
 
-// A column in each lane; lanes beyond the last column repeat it.
+// Fills a column in each lane; lanes beyond the last column repeat it.
 HWY_INLINE void FillDisplacement(const double* q, const Columns& columns,
                                  double* record, SeveralColumns layout) {
   const auto column = [&](std::ptrdiff_t k) {
@@ -437,7 +439,7 @@ HWY_INLINE void CollectThree(V v, double* p) {
   p[2] = kIsFirst ? last : p[2] + last;
 }
 
-// The first four lanes of row k are for column k, the next for column k + 4.
+// The first four lanes of row k belong to column k, the next to column k + 4.
 template <bool kIsFirst>
 HWY_INLINE void CollectRows(const Rows& rows, const Columns& columns,
                             double* p) {
@@ -533,7 +535,7 @@ void MultiplyElements(const NumberedMesh& mesh, const Columns& columns,
 void MultiplyBlock(const NumberedMesh& mesh, const Columns& columns,
                    const ElementBlock& block, bool is_first, double* records) {
 #if ELASTIMATE_HAS_BATCHES
-  // One after the other where most lanes would be idle.
+  // Columns are worked on one after the other where most lanes would be idle.
   if (4 * columns.num_columns <= kLanes) {
     for (std::ptrdiff_t k = 0; k < columns.num_columns; ++k) {
       const std::ptrdiff_t first = k * columns.num_rows;
@@ -582,7 +584,7 @@ void SetZero(const NumberedMesh& mesh, const std::vector<NodeRange>& nodes,
   }
 }
 
-// The memory that a thread works in.
+// The memory in which a thread works.
 using Records = hwy::AlignedFreeUniquePtr<double[]>;
 
 std::vector<Records> AllocateRecords(std::size_t num_values, int num_threads) {
@@ -605,8 +607,8 @@ void MultiplyLinearTetrahedra(const Mesh& mesh, const ElementBlocks& blocks,
   const NumberedMesh numbered = {mesh.elements.data(), mesh.nodes.data(),
                                  places.empty() ? nullptr : places.data()};
   const std::ptrdiff_t num_blocks = std::ptrdiff_t(blocks.blocks.size());
-  // Waiting for a thread may take longer than a fraction of a millisecond of
-  // work does.
+  // A thread needs so many elements, because waiting for it may take longer
+  // than a fraction of a millisecond of work.
   constexpr std::ptrdiff_t kElementsPerThread = 16384;
   const int threads = static_cast<int>(std::clamp<std::ptrdiff_t>(
       std::min(mesh.NumElements() / kElementsPerThread, (num_blocks + 1) / 2),

@@ -10,8 +10,8 @@
 
 namespace elastimate {
 
-/// a = H q and b = J q on linear tetrahedra, for each column of `displacement`;
-/// all three are (3 num_nodes) x num_columns.
+/// Computes a = H q and b = J q on linear tetrahedra, for each column q of
+/// `displacement`; all three are (3 num_nodes) x num_columns.
 ///
 /// With the edges e_i = x_i - x_0, the cofactors c_1 = e_2 x e_3 (and so on),
 /// det J = e_1 . c_1 and w = V / (det J)^2 = 1 / (6 |det J|),
@@ -21,14 +21,14 @@ namespace elastimate {
 ///
 /// for i = 1..3, and the values of node 0 are the negative sums.
 ///
-/// Node i of the mesh has the rows 3 places[i].. of the columns; an empty
-/// `places` stands for i.  That lets a mesh be numbered for locality while the
-/// columns are not.
+/// Node i of the mesh has the rows 3 places[i], 3 places[i] + 1 and 3 places[i]
+/// + 2 of the columns; an empty `places` stands for places[i] = i.  That lets a
+/// mesh be numbered for locality while the columns are not.
 ///
-/// The instructions are those of the processor that the program runs on: for
-/// one column eight (AVX-512), four (AVX2) or one element at a time, for
-/// several as many columns at a time.  On one processor the values of a column
-/// do not depend on the other columns.
+/// The instructions are those of the processor that the program runs on.  One
+/// column is worked on with eight (AVX-512), four (AVX2) elements or one
+/// element at a time, several columns with as many columns at a time.  On one
+/// processor the values of a column do not depend on the other columns.
 ///
 /// Elements are worked on in the blocks that ChooseElementBlocks finds, whose
 /// nodes are copied to memory that stays in the cache: first every second

@@ -1,6 +1,5 @@
-// Vectors of values of elements or of columns, for sources that are compiled
-// once for each kind of processor: to be included by these alone, after
-// <hwy/highway.h>.
+// Vectors of values of elements or of columns.  Only sources that are compiled
+// once for each kind of processor include this, after <hwy/highway.h>.
 
 #if defined(ELASTIMATE_CORE_MECHANICS_VECTOR_LANES_INL_H_) == \
     defined(HWY_TARGET_TOGGLE)
@@ -66,7 +65,8 @@ struct Rows {
   Values row0, row1, row2, row3;
 };
 
-// The first, and the last, two of each four lanes of `low`, then of `high`.
+// LowerPairs returns the first two of each four lanes of `low`, then of `high`;
+// UpperPairs returns the last two.
 HWY_INLINE Values LowerPairs(Values high, Values low) {
 #if HWY_CAP_GE512
   return hn::OddEvenBlocks(hn::SwapAdjacentBlocks(high), low);
@@ -93,8 +93,8 @@ HWY_INLINE Rows Transpose(const Rows& in) {
           UpperPairs(low23, low01), UpperPairs(high23, high01)};
 }
 
-// The four values at `offset` in the records of a node in lane `row` and, in
-// vectors of eight, in lane `row` + 4.
+// Returns the four values at `offset` in the records of the nodes in lane `row`
+// and, in vectors of eight, in lane `row` + 4.
 template <class Value>
 HWY_INLINE Values LoadRow(Value* const (&records)[kLanes], std::size_t row,
                           std::ptrdiff_t offset) {

@@ -3,7 +3,7 @@
 
 namespace elastimate {
 
-// Messages name the axes so.
+// These are the names of the axes in messages.
 inline constexpr const char* kAxisNames[3] = {"x", "y", "z"};
 
 }  // namespace elastimate

@@ -9,8 +9,9 @@
 namespace elastimate {
 namespace {
 
-// This part of the shortest edge is above what a file in text or in single
-// precision makes of equal positions, and far below any gap that is meant.
+// Nodes that are closer than this share of the shortest edge are at the same
+// place.  It is above the rounding of files in text or in single precision, and
+// far below any gap that is meant.
 constexpr double kSamePlace = 1e-4;
 
 Eigen::VectorXd ShortestEdges(const Mesh& mesh) {
@@ -37,7 +38,8 @@ Eigen::VectorXd ShortestEdges(const Mesh& mesh) {
 
 std::vector<std::array<int, 2>> CoincidentNodes(const Mesh& mesh) {
   const Eigen::VectorXd tolerance = kSamePlace * ShortestEdges(mesh);
-  // Along a direction in which the layers of a regular mesh do not lie.
+  // The nodes are sorted along a direction in which the layers of a regular
+  // mesh do not lie.
   const double along[3] = {std::sqrt(0.2), std::sqrt(0.3), std::sqrt(0.5)};
   const auto direction =
       Eigen::Map<const Eigen::RowVectorXd>(along, mesh.Dimension());

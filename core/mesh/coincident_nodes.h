@@ -8,10 +8,10 @@
 
 namespace elastimate {
 
-/// For each node that lies at the place of another node, within a
-/// ten-thousandth of the shortest edge at either of the two, the node and such
-/// another one; ascending.  Elements on such nodes are not connected there,
-/// since no element may have both (ValidateMesh).
+/// Returns, ascending, each node that lies at the place of another node, within
+/// a ten-thousandth of the shortest edge at either of the two, with such
+/// another node.  Elements on such nodes are not connected there, since no
+/// element may have both (ValidateMesh).
 /// Precondition: a valid mesh.
 /// O(num_elements + num_nodes log num_nodes) for the nodes of a mesh, of which
 /// few lie in one of the thin layers that are searched.

@@ -5,7 +5,7 @@
 namespace elastimate {
 namespace {
 
-// Each column of the graph up to that of `low` begins with a pair that is no
+// Each node up to `low` has one pair with itself in the graph, which is no
 // edge.
 Eigen::Index EdgeOfPair(int low, Eigen::Index pair) { return pair - low - 1; }
 

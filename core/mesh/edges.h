@@ -19,8 +19,8 @@ class Edges {
   /// 2 x num_edges nodes, the lower one first.
   const Eigen::Matrix2Xi& Ends() const { return ends_; }
 
-  /// The edge between two nodes; -1 when there is none.  O(log of those of a
-  /// node).
+  /// Returns the edge between two nodes, or -1 when there is none.  O(log of
+  /// the number of edges of a node).
   Eigen::Index Find(int a, int b) const;
 
  private:

@@ -38,17 +38,17 @@ constexpr int DimensionOf(ElementKind kind) {
              : 3;
 }
 
-/// Whether it is a tetrahedron or a triangle.
+/// Tells whether it is a tetrahedron or a triangle.
 constexpr bool IsSimplex(ElementKind kind) {
   return kind != ElementKind::kHex8 && kind != ElementKind::kQuad4;
 }
 
-/// Whether its nodes in the middle of edges may be off the straight line.
+/// Tells whether its nodes in the middle of edges may be off the straight line.
 constexpr bool IsCurved(ElementKind kind) {
   return kind == ElementKind::kCurvedTet10 || kind == ElementKind::kCurvedTri6;
 }
 
-/// Whether the map from the reference element to it is affine.
+/// Tells whether the map from the reference element to it is affine.
 constexpr bool IsAffine(ElementKind kind) {
   return IsSimplex(kind) && !IsCurved(kind);
 }
@@ -69,36 +69,38 @@ struct ElementTopology {
   /// The vertices of each face (in two dimensions of each edge) of an element
   /// of positive orientation, counter-clockwise seen from outside.
   std::vector<std::vector<int>> faces;
-  /// For each vertex the ends of `dimension` edges from it, right-handed in an
-  /// element of positive orientation: an element is flat or folded where these
-  /// are.  One vertex will do for a simplex.
+  /// For each vertex, the ends of `dimension` edges from it, right-handed in an
+  /// element of positive orientation.  An element is flat or folded where these
+  /// edges are.  A simplex needs the corner of one vertex only.
   std::vector<std::vector<int>> corners;
 
-  /// "tetrahedron" for one, "tetrahedra" for another number.
+  /// Returns "tetrahedron" for one, "tetrahedra" for another number.
   std::string_view ShapeName(std::int64_t count) const {
     return count == 1 ? shape : shapes;
   }
   int NumVerticesOfFace() const { return static_cast<int>(faces[0].size()); }
-  /// Vertices, and where the order is 2 the middle of each edge.
+  /// Counts the vertices of a face and, where the order is 2, the middles of
+  /// its edges.
   int NumNodesOfFace() const {
     return order == 1 ? NumVerticesOfFace()
                       : NumVerticesOfFace() + (dimension == 3 ? 3 : 1);
   }
-  /// The node in the middle of the edge between two vertices; -1 where there
-  /// is none.
+  /// Returns the node in the middle of the edge between two vertices, or -1
+  /// where there is none.
   int MidEdgeNode(int a, int b) const;
 };
 
 [[nodiscard]] const ElementTopology& TopologyOf(ElementKind kind);
 
-/// The kind of order 2 with the same vertices.  Precondition: a simplex of
-/// order 1.
+/// Returns the kind of order 2 with the same vertices.  Precondition: a simplex
+/// of order 1.
 [[nodiscard]] ElementKind QuadraticKind(ElementKind kind);
 
-/// Whether there is a QuadraticKind.
+/// Tells whether there is a QuadraticKind.
 [[nodiscard]] bool HasQuadraticKind(ElementKind kind);
 
-/// The curved kind of a quadratic one.  Precondition: a kind of order 2.
+/// Returns the curved kind of a quadratic one.  Precondition: a kind of order
+/// 2.
 [[nodiscard]] ElementKind CurvedKind(ElementKind kind);
 
 }  // namespace elastimate

@@ -41,7 +41,7 @@ std::vector<ElementFace> FacesOf(const Mesh& mesh) {
   return faces;
 }
 
-// Returns the faces that no other element has.
+// Returns the faces that belong to one element only.
 std::vector<ElementFace> OuterFaces(const Mesh& mesh) {
   const std::vector<ElementFace> faces = FacesOf(mesh);
   std::vector<ElementFace> outer;
@@ -63,8 +63,8 @@ std::vector<ElementFace> OuterFaces(const Mesh& mesh) {
   return outer;
 }
 
-// The nodes of a face of an element as those of a facet, which points as the
-// topology has it.
+// Returns the nodes of a face of an element in the order of a facet, whose
+// orientation is that of the topology.
 Eigen::VectorXi NodesOfFace(const Mesh& mesh, Eigen::Index element,
                             const std::vector<int>& vertices) {
   const ElementTopology& topology = mesh.Topology();
@@ -81,8 +81,8 @@ Eigen::VectorXi NodesOfFace(const Mesh& mesh, Eigen::Index element,
   return nodes;
 }
 
-// Two facets of the same nodes have the same circle if their vertices follow
-// each other alike, from whichever vertex on and whichever way around.
+// Returns the vertices of a facet in an order that does not depend on where
+// around the facet they begin and in which direction they run.
 std::vector<int> CircleOf(const Eigen::Ref<const Eigen::VectorXi>& facet,
                           int num_vertices) {
   std::vector<int> circle(facet.begin(), facet.end());
@@ -95,7 +95,7 @@ std::vector<int> CircleOf(const Eigen::Ref<const Eigen::VectorXi>& facet,
   return circle;
 }
 
-// The determinant of the edges from the first corner.
+// Returns the determinant of the edges from the first corner.
 double Orientation(const Mesh& mesh, Eigen::Index element) {
   const std::vector<int>& corner = mesh.Topology().corners[0];
   Eigen::MatrixXd edges(mesh.Dimension(), mesh.Dimension());
@@ -107,8 +107,8 @@ double Orientation(const Mesh& mesh, Eigen::Index element) {
                                : Eigen::Matrix2d(edges).determinant();
 }
 
-// The integral over a facet that is no flat triangle, by the rule of an element
-// of its shape: the cross product of the tangents is the area vector.
+// Integrates over a facet that is no flat triangle, by the rule of an element
+// of its shape.  The cross product of the tangents is the area vector.
 template <ElementKind kFacet>
 FacetWeights WeightsOfSurface(const Mesh& mesh,
                               const Eigen::Ref<const Eigen::VectorXi>& facet) {
@@ -132,7 +132,7 @@ FacetWeights WeightsOfTriangle(const Mesh& mesh,
   const Eigen::Vector3d e1 = mesh.nodes.col(facet(1)) - origin;
   const Eigen::Vector3d e2 = mesh.nodes.col(facet(2)) - origin;
   const Eigen::Vector3d area_vector = e1.cross(e2) / 2;
-  // The vertices of a quadratic triangle get nothing.
+  // The vertices of a quadratic triangle get no share.
   Eigen::VectorXd share = Eigen::VectorXd::Zero(facet.size());
   share.tail<3>().setConstant(1.0 / 3);
   return {area_vector.norm() * share, area_vector * share.transpose()};
@@ -157,8 +157,8 @@ FacetWeights WeightsOfEdge(const Mesh& mesh,
   return {area_vector.norm() * share, area_vector * share.transpose()};
 }
 
-// By three Gauss points of the interval from -1 to 1, where the shape functions
-// are t (t - 1) / 2, t (t + 1) / 2 and 1 - t^2.
+// Integrates by three Gauss points of the interval from -1 to 1, where the
+// shape functions are t (t - 1) / 2, t (t + 1) / 2 and 1 - t^2.
 FacetWeights WeightsOfCurvedEdge(
     const Mesh& mesh, const Eigen::Ref<const Eigen::VectorXi>& facet) {
   FacetWeights weights = {Eigen::VectorXd::Zero(3),

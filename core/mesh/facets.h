@@ -32,22 +32,23 @@ namespace elastimate {
 [[nodiscard]] std::optional<Eigen::Index> FirstThatIsNoFace(
     const Mesh& mesh, const Eigen::MatrixXi& facets);
 
-/// What a facet gives to its nodes of a uniform load.
+/// The shares of the nodes of a facet in a uniform load.
 struct FacetWeights {
   /// The integral of N_i over the facet, for each of its nodes [length^2].
   Eigen::VectorXd area;
-  /// The integral of N_i n, n the outward normal: dimension x num_nodes_of_face
-  /// [length^2].
+  /// The integral of N_i n over the facet, where n is the outward normal:
+  /// dimension x num_nodes_of_face [length^2].
   Eigen::MatrixXd area_vector;
 };
 
-/// Areas contain the thickness of a planar section.  Exact for straight edges
-/// and flat faces; 4 points in a quadrilateral.  The area vectors of curved
-/// facets are exact, and areas are by 3 points in an edge or 6 in a triangle.
+/// Returns the weights of a facet.  Areas contain the thickness of a planar
+/// section.  The weights are exact for straight edges and flat faces; a
+/// quadrilateral takes 4 points.  On curved facets the area vectors are exact,
+/// and areas take 3 points in an edge or 6 in a triangle.
 [[nodiscard]] FacetWeights WeightsOfFacet(
     const Mesh& mesh, const Eigen::Ref<const Eigen::VectorXi>& facet);
 
-/// The area of facets with nodes in range [length^2].  O(num_facets).
+/// Returns the area of facets with nodes in range [length^2].  O(num_facets).
 [[nodiscard]] double FacetArea(const Mesh& mesh, const Eigen::MatrixXi& facets);
 
 }  // namespace elastimate

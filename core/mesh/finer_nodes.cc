@@ -11,8 +11,8 @@ namespace {
 
 using Entries = std::vector<Eigen::Triplet<double, Eigen::Index>>;
 
-// Adds the weights of the nodes of an element in the middle between two of
-// them.
+// Adds the weights of the nodes of an element at the middle between nodes a and
+// b.
 void AddWeights(const Mesh& mesh, Eigen::Index element, int a, int b,
                 Eigen::Index row, Entries& weights) {
   if (mesh.Order() == 1) {
@@ -59,8 +59,8 @@ FinerNodes::FinerNodes(const Mesh& mesh, const Mesh& finer)
   weights_.setFromTriplets(weights.begin(), weights.end());
 }
 
-// By rows rather than as products of matrices, which Eigen spreads over threads
-// that wait for each other longer than they work.
+// These loops run by rows, since Eigen spreads products of matrices over
+// threads that wait for each other longer than they work.
 
 namespace {
 

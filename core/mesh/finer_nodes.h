@@ -8,36 +8,39 @@
 
 namespace elastimate {
 
-/// The nodes that quadratic simplices of the nodes of a mesh (SimplicialMesh)
-/// have behind these, in the middle of their edges, between the two meshes:
-/// displacements and forces are num_dofs x n, row dimension * node + component.
+/// Quadratic simplices of the nodes of a mesh (SimplicialMesh) have further
+/// nodes in the middle of their edges, which come behind the nodes of the mesh.
+/// This carries displacements and forces between the two meshes.  Both are
+/// num_dofs x n, row dimension * node + component.
 ///
 /// The functions of simplices are among those of the finer ones, and so are
-/// taken over as they are: linear ones by the mean of the ends of an edge,
-/// quadratic ones by their values at the middle of edges of half the size, in
-/// reference coordinates where they are curved.
-/// Hexahedra and quadrilaterals are taken as the linear simplices of their
-/// nodes.
+/// taken over as they are.  A linear function has the mean of the ends of an
+/// edge at its middle.  A quadratic function has its own values at the middle
+/// of edges of half the size, in reference coordinates where elements are
+/// curved.  Hexahedra and quadrilaterals are taken as the linear simplices of
+/// their nodes.
 class FinerNodes {
  public:
-  /// `finer` are quadratic simplices of the nodes of `mesh`, as many for each
-  /// of its elements, one after another.  O(num_elements).
+  /// `finer` has quadratic simplices of the nodes of `mesh`, the same number
+  /// for each element of `mesh`, one element after another.  O(num_elements).
   FinerNodes(const Mesh& mesh, const Mesh& finer);
 
-  /// The nodes of the mesh come first, the others behind them.
+  /// Returns the number of nodes of the mesh, behind which the mid-edge nodes
+  /// come.
   Eigen::Index NumNodes() const { return weights_.cols(); }
   Eigen::Index NumMidEdges() const { return weights_.rows(); }
 
-  /// The displacements of the elements of the mesh, given at its nodes, at all
-  /// nodes.
+  /// Returns the displacements, at all nodes, of the elements of the mesh whose
+  /// nodes are displaced by `at_nodes`.
   Eigen::MatrixXd Interpolate(const Eigen::MatrixXd& at_nodes) const;
 
-  /// The transpose: the forces on the nodes of the mesh that do the same work
-  /// as `forces` on every displacement of its elements.
+  /// Multiplies by the transpose of Interpolate.  The result is the forces on
+  /// the nodes of the mesh that do the same work as `forces` on every
+  /// displacement of its elements.
   Eigen::MatrixXd Restrict(const Eigen::MatrixXd& forces) const;
 
   using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor, Eigen::Index>;
-  /// The weights that the nodes of the mesh have at the mid-edge nodes:
+  /// Returns the weights of the nodes of the mesh at the mid-edge nodes,
   /// num_mid_edges x num_nodes.
   const Weights& WeightsOfNodes() const { return weights_; }
 

@@ -33,8 +33,8 @@ std::string ElementName(const Mesh& mesh, Eigen::Index element) {
   return name.str();
 }
 
-// Whether the smallest height of the tetrahedron of these edges, 6 V over twice
-// the largest face area, is below kFlatHeight of the longest edge.
+// Tells whether the smallest height of the tetrahedron of these edges, 6 V over
+// twice the largest face area, is below kFlatHeight of the longest edge.
 bool IsFlat(const Eigen::Matrix3d& edges) {
   const auto e1 = edges.col(0);
   const auto e2 = edges.col(1);
@@ -43,8 +43,8 @@ bool IsFlat(const Eigen::Matrix3d& edges) {
   const double six_volumes = std::abs(e1.dot(c1));
   const double edge_square_at_node_0 =
       std::max({e1.squaredNorm(), e2.squaredNorm(), e3.squaredNorm()});
-  // All that most elements need: no edge is more than twice as long as the
-  // longest at node 0, and twice an area at most the square of an edge.
+  // This is all that most elements need.  No edge is more than twice as long as
+  // the longest at node 0, and twice an area is at most the square of an edge.
   if (six_volumes * six_volumes >
       64 * kFlatHeight * kFlatHeight * edge_square_at_node_0 *
           edge_square_at_node_0 * edge_square_at_node_0) {
@@ -66,7 +66,7 @@ bool IsFlat(const Eigen::Matrix3d& edges) {
                              std::sqrt(largest_area_square));
 }
 
-// Whether the triangle of these edges is flat.
+// Tells whether the triangle of these edges is flat in the same sense.
 bool IsFlat(const Eigen::Matrix2d& edges) {
   const double longest_square =
       std::max({edges.col(0).squaredNorm(), edges.col(1).squaredNorm(),
@@ -74,7 +74,7 @@ bool IsFlat(const Eigen::Matrix2d& edges) {
   return !(std::abs(edges.determinant()) > kFlatHeight * longest_square);
 }
 
-// The edges from a vertex of an element.
+// Returns the edges from a vertex of an element.
 template <int kDimension>
 Eigen::Matrix<double, kDimension, kDimension> EdgesOfCorner(const Mesh& mesh,
                                                             const int* nodes,
@@ -91,7 +91,7 @@ Eigen::Matrix<double, kDimension, kDimension> EdgesOfCorner(const Mesh& mesh,
   return edges;
 }
 
-// Whether the determinant of the map has the sign of `orientation` at all
+// Tells whether the determinant of the map has the sign of `orientation` at all
 // points of integration.
 template <ElementKind kKind>
 bool IsOriented(const Mesh& mesh, Eigen::Index element, double orientation) {
@@ -103,7 +103,7 @@ bool IsOriented(const Mesh& mesh, Eigen::Index element, double orientation) {
   });
 }
 
-// "flat", "folded" or "bent", where an element is; else empty.
+// Returns "flat", "folded" or "bent" for an element that is; else nothing.
 template <int kDimension>
 std::string_view WhyNoElement(const Mesh& mesh, const ElementTopology& topology,
                               Eigen::Index element) {
@@ -207,7 +207,8 @@ std::vector<char> ValidateElements(const Mesh& mesh) {
         " nodes per element; those of kind " + std::string(topology.name) +
         " have " + std::to_string(topology.num_nodes));
   }
-  // Characters are faster to write than bits.
+  // The flags are characters, which are faster to write than the bits of
+  // vector<bool>.
   std::vector<char> used(mesh.NumNodes(), 0);
   for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
     const int* const nodes = mesh.elements.col(element).data();
@@ -273,8 +274,8 @@ void ValidateMidEdgeNodes(const Mesh& mesh) {
   }
 }
 
-// Hexahedra of which one is turned against the other share edges of a side, but
-// not the side, which is then on the surface twice.
+// Throws for hexahedra one of which is turned against the other: they share
+// edges of a side but not the side, which is then on the surface twice.
 void ValidateSidesOfHexahedra(const Mesh& mesh) {
   const Eigen::MatrixXi facets = BoundaryFacets(mesh);
   // Three of the four nodes of each facet, ascending, and the facet.
@@ -303,7 +304,8 @@ void ValidateSidesOfHexahedra(const Mesh& mesh) {
   }
 }
 
-// The nodes, and the elements: whether an element uses each node.
+// Validates the nodes and the elements, and returns whether an element uses
+// each node.
 template <int kDimension>
 std::vector<char> ValidateOfDimension(const Mesh& mesh) {
   ValidateNodes<kDimension>(mesh);

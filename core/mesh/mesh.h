@@ -7,19 +7,19 @@
 
 namespace elastimate {
 
-/// What a mesh stands for in space.
+/// The body in space for which a mesh stands.
 enum class SectionModel {
-  kSolid,        ///< A body of three dimensions.
-  kPlaneStrain,  ///< A slice of a body that cannot strain across it.
-  kPlaneStress,  ///< A thin plate without stress across it.
+  kSolid,        ///< The mesh itself, in three dimensions.
+  kPlaneStrain,  ///< A planar slice of a body that cannot strain across it.
+  kPlaneStress,  ///< A thin planar plate without stress across it.
 };
 
-/// All of them.
+/// All section models.
 inline constexpr SectionModel kAllSectionModels[] = {
     SectionModel::kSolid, SectionModel::kPlaneStrain,
     SectionModel::kPlaneStress};
 
-/// "3d", "plane_strain" or "plane_stress".
+/// Returns "3d", "plane_strain" or "plane_stress".
 [[nodiscard]] std::string_view SectionModelName(SectionModel model);
 
 /// The body that a mesh is a section of.
@@ -28,8 +28,8 @@ struct Section {
   /// The thickness of a planar section [length], which all volumes and areas
   /// contain; 1 in three dimensions.
   double thickness = 1;
-  /// Standard deviation of the thickness, relative to it: it is one of every
-  /// modulus, which no number of measurements averages.
+  /// The standard deviation of the thickness, relative to it.  It is a relative
+  /// error of every modulus, which no number of measurements averages out.
   double thickness_relative_sd = 0;
 };
 
@@ -55,12 +55,13 @@ struct Mesh {
   int Dimension() const { return DimensionOf(kind); }
   Eigen::Index NumNodes() const { return nodes.cols(); }
   Eigen::Index NumElements() const { return elements.cols(); }
-  /// The degrees of freedom: row dimension * node + component of a vector.
+  /// Counts the degrees of freedom: row dimension * node + component of a
+  /// vector.
   Eigen::Index NumDofs() const { return Dimension() * NumNodes(); }
-  /// The order of the shape functions: 1 for linear, 2 for quadratic elements.
+  /// Returns 1 for linear, 2 for quadratic shape functions.
   int Order() const { return Topology().order; }
-  /// The nodes that are vertices come first.  O(num_elements) for quadratic
-  /// elements.
+  /// Counts the vertices, which come before all other nodes.  O(num_elements)
+  /// for quadratic elements.
   Eigen::Index NumVertices() const;
 };
 
@@ -77,20 +78,24 @@ struct Mesh {
 /// or for none.  O(num_elements), of hexahedra times a logarithm.
 void ValidateMesh(const Mesh& mesh);
 
-/// Whether `node` is in the middle between `a` and `b`, to within a millionth
-/// of their distance: what single precision coordinates leave.
+/// Tells whether `node` is in the middle between `a` and `b`, to within a
+/// millionth of their distance, which is the error of single precision
+/// coordinates.
 [[nodiscard]] bool IsInTheMiddle(const Mesh& mesh, int node, int a, int b);
 
-/// The volume of each element [length^3], that of a planar one by its
-/// thickness.  num_elements values.  O(num_elements).
+/// Returns the volume of each element [length^3], num_elements values.  The
+/// volume of a planar element is its area times the thickness.
+/// O(num_elements).
 [[nodiscard]] Eigen::VectorXd ElementVolumes(const Mesh& mesh);
 
-/// The centre of an element: the mean of its vertices, dimension values.
+/// Returns the centre of an element, the mean of its vertices: dimension
+/// values.
 [[nodiscard]] Eigen::VectorXd ElementCentre(const Mesh& mesh,
                                             Eigen::Index element);
 
-/// The smallest dihedral angle of each tetrahedron [rad], the usual measure of
-/// a sliver.  num_elements values.  Precondition: a mesh of tetrahedra.
+/// Returns the smallest dihedral angle of each tetrahedron [rad], the usual
+/// measure of a sliver.  num_elements values.  Precondition: a mesh of
+/// tetrahedra.
 [[nodiscard]] Eigen::VectorXd SmallestDihedralAngles(const Mesh& mesh);
 
 }  // namespace elastimate

@@ -20,7 +20,8 @@ Eigen::MatrixXd MeshParts::Gather(const Eigen::MatrixXd& whole) const {
 
 MeshParts SplitMesh(const Mesh& mesh, const std::vector<int>& part_of_element) {
   using NodeAndPart = std::pair<int, int>;
-  // Ascending, so that copies of vertices stay before those of other nodes.
+  // The nodes are visited in ascending order, so that copies of vertices stay
+  // before those of other nodes.
   std::vector<NodeAndPart> copies;
   copies.reserve(mesh.elements.size());
   for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {

@@ -11,16 +11,17 @@ namespace elastimate {
 /// A mesh whose parts share no nodes: each part has a copy of each of its
 /// nodes, so that one pass over the elements gives what each part contributes.
 struct MeshParts {
-  /// Elements as in the whole mesh; without regions.
+  /// The elements are those of the whole mesh, without regions.
   Mesh mesh;
-  std::vector<int> node;  ///< In the whole mesh, of each copy, ascending.
-  std::vector<int> part;  ///< The part that each copy belongs to.
+  std::vector<int> node;  ///< Each copy's node in the whole mesh, ascending.
+  std::vector<int> part;  ///< Each copy's part, from 0 on.
 
-  /// The rows of the copies, of `whole` (num_dofs x n of the whole mesh).
+  /// Returns the rows of `whole` (num_dofs x n of the whole mesh) for the
+  /// copies.
   Eigen::MatrixXd Gather(const Eigen::MatrixXd& whole) const;
 };
 
-/// `part_of_element` has num_elements values, from 0 on.
+/// Splits a mesh by `part_of_element`, num_elements values from 0 on.
 /// O(num_elements log num_parts).
 [[nodiscard]] MeshParts SplitMesh(const Mesh& mesh,
                                   const std::vector<int>& part_of_element);

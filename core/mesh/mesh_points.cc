@@ -23,7 +23,7 @@ bool IsInReferenceElement(ElementKind kind,
 
 using UnitDistribution = std::uniform_real_distribution<double>;
 
-// Evenly in the reference element.
+// Draws a point evenly in the reference element.
 template <ElementKind kKind>
 auto DrawReferencePoint(std::mt19937_64& generator) {
   UnitDistribution unit(0, 1);
@@ -34,10 +34,10 @@ auto DrawReferencePoint(std::mt19937_64& generator) {
   return IsSimplex(kKind) ? xi : decltype(xi)(2 * xi.array() - 1);
 }
 
-// Evenly in the element: reference points are taken as often as they stand for
-// volume.  The columns of the Jacobian matrix are means of those at the
-// vertices, so that the product of their largest lengths bounds its
-// determinant (Hadamard).
+// Draws a point evenly in the element: a reference point is kept with a
+// probability in proportion to the volume that it stands for.  The columns of
+// the Jacobian matrix are means of those at the vertices, so that the product
+// of their largest lengths bounds its determinant (Hadamard).
 template <ElementKind kKind>
 auto DrawLocalPoint(const Mesh& mesh, Eigen::Index element,
                     std::mt19937_64& generator) {

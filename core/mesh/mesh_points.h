@@ -8,8 +8,9 @@
 
 namespace elastimate {
 
-/// Points of a body, n in all, by the elements that they lie in.  Those of a
-/// mesh of linear simplices are the same points of its mesh of quadratic ones.
+/// Points of a body, n in all, given by the elements in which they lie.  Points
+/// of a mesh of linear simplices are the same points of its mesh of quadratic
+/// ones.
 struct MeshPoints {
   Eigen::VectorXi elements;  ///< n.
   /// Reference coordinates xi as those of ShapeFunctionsAt, dimension x n.
@@ -19,25 +20,24 @@ struct MeshPoints {
 };
 
 /// Throws std::invalid_argument with one sentence that names the point unless
-/// every element exists and every coordinate lies in its reference element, but
-/// for 1e-6.  O(n).
+/// every element exists and every coordinate lies in its reference element, to
+/// within 1e-6.  O(n).
 void ValidatePoints(const Mesh& mesh, const MeshPoints& points);
 
-/// N_i at each point, num_nodes_of_element x n: what the nodes of its element
-/// have in a value there.  Precondition: ValidatePoints.  O(n).
+/// Returns N_i at each point, num_nodes_of_element x n: the weights of the
+/// nodes of its element in a value there.  Precondition: ValidatePoints.  O(n).
 [[nodiscard]] Eigen::MatrixXd ShapeFunctionsOf(const Mesh& mesh,
                                                const MeshPoints& points);
 
-/// The values at the points of a field of the nodes, rows x num_nodes: rows x
-/// n.  The positions are those of the field mesh.nodes.
+/// Returns the values at the points, rows x n, of a field that is given at the
+/// nodes, rows x num_nodes.  The field mesh.nodes gives the positions.
 /// Precondition: ValidatePoints.  O(rows n).
 [[nodiscard]] Eigen::MatrixXd Interpolate(const Mesh& mesh,
                                           const MeshPoints& points,
                                           const Eigen::MatrixXd& field);
 
-/// `count` points anywhere in the mesh: as many in one part of it as in another
-/// of the same volume, but for chance.  Precondition: a valid mesh.
-/// O(num_elements + count), more where elements are sheared.
+/// Draws `count` points evenly over the volume of the mesh.  Precondition: a
+/// valid mesh.  O(num_elements + count), more where elements are sheared.
 [[nodiscard]] MeshPoints DrawPoints(const Mesh& mesh, Eigen::Index count,
                                     std::mt19937_64& generator);
 

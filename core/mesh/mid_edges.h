@@ -7,9 +7,9 @@
 
 namespace elastimate {
 
-/// The nodes of a quadratic mesh in the middle of the edges, between linear
-/// elements of its vertices and itself: displacements and forces are
-/// num_dofs x n, row dimension * node + component.
+/// The nodes in the middle of the edges of a quadratic mesh.  This carries
+/// forces from the mesh to linear elements of its vertices: num_dofs x n, row
+/// dimension * node + component.
 class MidEdges {
  public:
   /// Precondition: a valid mesh; one of order 1 has none.  O(num_elements).
@@ -19,9 +19,9 @@ class MidEdges {
   const Eigen::Matrix2Xi& Ends() const { return ends_; }
   Eigen::Index NumVertices() const { return num_vertices_; }
 
-  /// The forces on the vertices that do the same work as `forces` on every
-  /// displacement which is linear in each element, f_a plus half of each f_ab.
-  /// They have the same resultant and moment.
+  /// Returns the forces on the vertices that do the same work as `forces` on
+  /// every displacement which is linear in each element: f_a plus half of each
+  /// f_ab.  They have the same resultant and moment.
   Eigen::MatrixXd Restrict(const Eigen::MatrixXd& forces) const;
 
  private:

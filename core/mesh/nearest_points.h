@@ -9,8 +9,8 @@
 
 namespace elastimate {
 
-/// The pairs of points of which one is among the `count` points that are
-/// nearest to the other, each pair once, the lesser index first, ascending.
+/// Returns the pairs of points of which one is among the `count` points that
+/// are nearest to the other, each pair once, the lesser index first, ascending.
 /// `positions` is dimension x n, finite.  O(n log n), by a tree of nanoflann.
 [[nodiscard]] std::vector<std::array<Eigen::Index, 2>> NearestPairs(
     const Eigen::MatrixXd& positions, int count);
@@ -21,8 +21,9 @@ struct NearestPoint {
   double distance;  ///< [length]
 };
 
-/// Returns which of n points, dimension x n with n > 0, is the nearest to each
-/// of `others`, dimension x m, all finite.  O((n + m) log n), by the same tree.
+/// Returns, for each of `others` (dimension x m), the nearest of `positions`
+/// (dimension x n with n > 0); all have to be finite.  O((n + m) log n), by the
+/// same tree.
 [[nodiscard]] std::vector<NearestPoint> NearestPoints(
     const Eigen::MatrixXd& positions, const Eigen::MatrixXd& others);
 

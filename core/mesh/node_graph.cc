@@ -12,7 +12,8 @@ NodeGraph::NodeGraph(const Mesh& mesh)
                     mesh.NumElements()) {
   const Eigen::Index nodes_per_element = mesh.elements.rows();
   const ElementsOfNodes elements_of_nodes(mesh);
-  // The pair (node, j) while node j is at work; -1 when not a neighbour.
+  // This holds the pair (node, j) while node j is at work; -1 when not a
+  // neighbour.
   std::vector<int> pair_of_node(mesh.NumNodes(), -1);
   for (Eigen::Index j = 0; j < mesh.NumNodes(); ++j) {
     const auto first =

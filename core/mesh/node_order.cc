@@ -11,8 +11,8 @@
 namespace elastimate {
 namespace {
 
-// The nodes by their coordinate along the longest extent: where the search, and
-// that of each further connected part, begins.
+// Returns the nodes by their coordinate along the longest extent.  The search,
+// and the search of each further connected part, begins with the first of them.
 std::vector<int> NodesAlongLongestExtent(const Mesh& mesh) {
   const Eigen::VectorXd extent =
       mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff();

@@ -7,11 +7,11 @@
 
 namespace elastimate {
 
-/// Whether elements that follow each other are near each other in memory: the
-/// mean distance between the smallest node indices of consecutive elements is
-/// at most 1024, or a sixteenth of the nodes, as in fronts of nodes across a
-/// compact body.  It is about a fifth of the nodes where these, or the
-/// elements, are numbered at random. O(num_elements), much less than an element
+/// Tells whether elements that follow each other are near each other in memory:
+/// the mean distance between the smallest node indices of consecutive elements
+/// is at most 1024, or a sixteenth of the nodes, as in fronts of nodes across a
+/// compact body.  Random numbering of the nodes or of the elements makes it
+/// about a fifth of the nodes.  O(num_elements), much less than an element
 /// pass.
 bool HasLocality(const Mesh& mesh);
 
@@ -22,8 +22,8 @@ struct OrderedMesh {
 
 /// Returns the mesh with its nodes in the order in which a breadth-first search
 /// along the elements finds them, from one end of its longest extent [Cuthill &
-/// McKee 1969], and its elements in that of their first node: the nodes of an
-/// element are then at most two fronts of the search apart.
+/// McKee 1969], and its elements in the order of their first node.  The nodes
+/// of an element are then at most two fronts of the search apart.
 /// Precondition: a valid mesh.
 /// O(num_elements) time and memory, at the speed of random access.
 OrderedMesh OrderForLocality(const Mesh& mesh);

@@ -7,8 +7,8 @@
 namespace elastimate {
 namespace {
 
-// The vertices of the reference hexahedron; of the quadrilateral the first
-// four.
+// The vertices of the reference hexahedron.  The first four are those of the
+// quadrilateral.
 constexpr double kCubeVertices[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1},
                                         {-1, 1, -1},  {-1, -1, 1}, {1, -1, 1},
                                         {1, 1, 1},    {-1, 1, 1}};
@@ -16,7 +16,7 @@ constexpr double kCubeVertices[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1},
 template <ElementKind kKind>
 using Point = Eigen::Matrix<double, ElementSizes<kKind>::kDimension, 1>;
 
-// Values and gradients of the functions of order 1.
+// Sets the values and gradients of the functions of order 1.
 template <ElementKind kKind>
 void SetVertexFunctions(const Point<kKind>& xi, ShapeFunctions<kKind>& at) {
   constexpr int kDimension = ElementSizes<kKind>::kDimension;
@@ -40,7 +40,7 @@ void SetVertexFunctions(const Point<kKind>& xi, ShapeFunctions<kKind>& at) {
   }
 }
 
-// N_a = lambda_a (2 lambda_a - 1), N_ab = 4 lambda_a lambda_b.
+// Sets N_a = lambda_a (2 lambda_a - 1) and N_ab = 4 lambda_a lambda_b.
 template <ElementKind kKind>
 void SetQuadraticFunctions(ShapeFunctions<kKind>& at) {
   constexpr int kVertices = ElementSizes<kKind>::kVertices;
@@ -59,7 +59,7 @@ void SetQuadraticFunctions(ShapeFunctions<kKind>& at) {
   }
 }
 
-// Points that are all permutations of some barycentric coordinates, and the
+// The points at all permutations of some barycentric coordinates, with the
 // weight of each, relative to the size of the reference element.
 struct Orbit {
   double weight;
@@ -108,7 +108,8 @@ std::vector<ShapeFunctions<kKind>> MakeIntegrationRule() {
   if constexpr (IsCurved(kKind)) {
     rule = MakeCurvedRule<kKind>();
   } else if constexpr (IsSimplex(kKind)) {
-    // Barycentric coordinates (b, a, a, a) and its permutations.
+    // The points are the permutations of the barycentric coordinates (b, a, a,
+    // a).
     const double a = kDimension == 3 ? (5 - std::sqrt(5.0)) / 20 : 1.0 / 6;
     const double b = 1 - kDimension * a;
     const double weight = kDimension == 3 ? 1.0 / 24 : 1.0 / 6;

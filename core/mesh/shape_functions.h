@@ -13,8 +13,8 @@
 
 namespace elastimate {
 
-/// Sizes of an element kind that are known to the compiler.  The nodes that the
-/// map from the reference element takes are the first kMapNodes: all of an
+/// The sizes of an element kind, known to the compiler.  The map from the
+/// reference element takes the first kMapNodes nodes: all nodes of an
 /// isoparametric element, the vertices of one with straight edges.
 template <ElementKind kKind>
 struct ElementSizes;
@@ -63,9 +63,9 @@ struct ShapeFunctions {
   /// The functions of order 1 of the vertices alone.
   Eigen::Matrix<double, Sizes::kVertices, 1> vertex_value;
   Eigen::Matrix<double, Sizes::kDimension, Sizes::kVertices> vertex_gradient;
-  double weight;  ///< What the point counts in its rule of integration.
+  double weight;  ///< The weight of this point in its rule.
 
-  /// dM_i / dxi, dimension x kMapNodes: the position in the element is
+  /// Returns dM_i / dxi, dimension x kMapNodes.  The position in the element is
   /// sum_i M_i x_i, over its vertices where edges are straight, else over all
   /// nodes.
   const auto& MapGradient() const {
@@ -77,19 +77,19 @@ struct ShapeFunctions {
   }
 };
 
-/// At the reference coordinates xi: those of the vertices of a tetrahedron are
-/// (0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), of a hexahedron +-1, and alike
-/// in two dimensions.
+/// Evaluates the shape functions at the reference coordinates xi.  The vertices
+/// of a tetrahedron have (0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), those of a
+/// hexahedron +-1, and two dimensions are alike.
 template <ElementKind kKind>
 ShapeFunctions<kKind> ShapeFunctionsAt(
     const Eigen::Matrix<double, ElementSizes<kKind>::kDimension, 1>& xi,
     double weight);
 
-/// Points and weights that integrate over the reference element: products of
-/// two linear functions exactly over a simplex with straight edges (4 points in
-/// a tetrahedron, 3 in a triangle), and cubics along each axis of a hexahedron
-/// (8 points) or a quadrilateral (4) [Zienkiewicz & Taylor, The Finite Element
-/// Method].
+/// Returns points and weights that integrate over the reference element.  They
+/// are exact for products of two linear functions over a simplex with straight
+/// edges (4 points in a tetrahedron, 3 in a triangle), and for cubics along
+/// each axis of a hexahedron (8 points) or a quadrilateral (4) [Zienkiewicz &
+/// Taylor, The Finite Element Method].
 ///
 /// The determinant of the map of a curved simplex is of degree 3 (in a triangle
 /// 2).  Polynomials of degree 5 (4), which is that of a shape function times
@@ -100,21 +100,22 @@ ShapeFunctions<kKind> ShapeFunctionsAt(
 template <ElementKind kKind>
 const std::vector<ShapeFunctions<kKind>>& IntegrationRule();
 
-/// The points that are enough for the stiffness: one in a linear simplex, whose
-/// strain is constant, else those of IntegrationRule.
+/// Returns the points that are enough for the stiffness: one in a linear
+/// simplex, whose strain is constant, else those of IntegrationRule.
 template <ElementKind kKind>
 const std::vector<ShapeFunctions<kKind>>& StiffnessRule();
 
-/// The vertices; their weights are those of IntegrationRule in sum, shared
-/// equally.
+/// Returns the vertices.  The sum of the weights of IntegrationRule is shared
+/// equally among them.
 template <ElementKind kKind>
 const std::vector<ShapeFunctions<kKind>>& VertexRule();
 
-/// The reference coordinates of the nodes of a simplex, dimension x num_nodes.
+/// Returns the reference coordinates of the nodes of a simplex, dimension x
+/// num_nodes.
 Eigen::MatrixXd ReferenceNodes(ElementKind kind);
 
-/// The positions of the nodes of an element that its map takes, dimension x
-/// kMapNodes.
+/// Returns the positions of the nodes of an element that its map takes,
+/// dimension x kMapNodes.
 template <ElementKind kKind>
 Eigen::Matrix<double, ElementSizes<kKind>::kDimension,
               ElementSizes<kKind>::kMapNodes>
@@ -129,8 +130,8 @@ GatherMapNodes(const Mesh& mesh, Eigen::Index element) {
   return x;
 }
 
-/// What the nodes of an element have of a vector of dimension * node +
-/// component, dimension x num_nodes.
+/// Returns, for the nodes of an element, the components of a vector with rows
+/// dimension * node + component: dimension x num_nodes.
 template <ElementKind kKind>
 Eigen::Matrix<double, ElementSizes<kKind>::kDimension,
               ElementSizes<kKind>::kNodes>
@@ -145,8 +146,8 @@ GatherNodes(const Mesh& mesh, Eigen::Index element, const double* values) {
   return u;
 }
 
-/// The map from the reference element to an element at one of its points; at
-/// all of them where IsAffine.
+/// The map from the reference element to an element at one of its points.
+/// Where IsAffine, it is the same at all of them.
 template <ElementKind kKind>
 struct ElementMap {
   using Sizes = ElementSizes<kKind>;
@@ -173,7 +174,7 @@ struct ElementPoint {
   using Sizes = ElementSizes<kKind>;
   /// grad N_i, dimension x num_nodes [1 / length].
   Eigen::Matrix<double, Sizes::kDimension, Sizes::kNodes> gradient;
-  double volume;  ///< The volume that the point stands for [length^3].
+  double volume;  ///< The volume that the point has [length^3].
 
   ElementPoint(const ElementMap<kKind>& map, const ShapeFunctions<kKind>& at)
       : volume(map.volume_ratio * at.weight) {

@@ -12,15 +12,15 @@
 namespace elastimate {
 namespace {
 
-// The nodes of each simplex, of a triangle the first three.
+// The nodes of each simplex; a triangle uses the first three.
 using Simplices = std::vector<std::array<int, 4>>;
 using Triangle = std::array<int, 3>;
 
-// At the vertices of a tetrahedron, by its quadratic nodes.
+// The tetrahedra at the vertices, by the nodes of the quadratic tetrahedron.
 constexpr std::array<std::array<int, 4>, 4> kCornerCuts = {
     {{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3}}};
 
-// The octahedron of the mid-edge nodes: a diagonal, and the way around it.
+// A diagonal of the octahedron of the mid-edge nodes, and the ring around it.
 struct Diagonal {
   int a, b;
   std::array<int, 4> ring;
@@ -28,7 +28,8 @@ struct Diagonal {
 constexpr std::array<Diagonal, 3> kDiagonals = {
     {{4, 9, {5, 6, 7, 8}}, {5, 7, {4, 6, 9, 8}}, {6, 8, {4, 5, 9, 7}}}};
 
-// A triangle, by its quadratic nodes, the same way round.
+// The cuts of a triangle by its quadratic nodes, all with the orientation of
+// the triangle.
 constexpr std::array<Triangle, 4> kTriangleCuts = {
     {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
 
@@ -59,9 +60,9 @@ Simplices CutQuadraticTetrahedron(const Mesh& mesh, Eigen::Index element) {
   return cuts;
 }
 
-// Each node its place in an order in which those of one colour come before
-// those of the other: neighbours along edges have different ones, as far as
-// there is such a colouring.
+// Returns the place of each node in an order in which the nodes of one colour
+// come before those of the other.  Neighbours along edges have different
+// colours, as far as there is such a colouring.
 Eigen::VectorXi RankByColour(const Mesh& mesh) {
   const auto num_nodes = static_cast<int>(mesh.NumNodes());
   std::vector<std::vector<int>> neighbours(num_nodes);
@@ -99,7 +100,8 @@ Eigen::VectorXi RankByColour(const Mesh& mesh) {
   return rank;
 }
 
-// By the diagonal from the first node, the same way round.
+// Cuts along the diagonal from the node of the first rank, and keeps the
+// orientation.
 std::array<Triangle, 2> CutQuadrilateral(const std::array<int, 4>& nodes,
                                          const Eigen::VectorXi& rank) {
   const auto first =
@@ -111,7 +113,8 @@ std::array<Triangle, 2> CutQuadrilateral(const std::array<int, 4>& nodes,
   return {{{node(0), node(1), node(2)}, {node(0), node(2), node(3)}}};
 }
 
-// From the first node to the triangles of the faces that do not have it.
+// Joins the node of the first rank to the triangles of the faces that do not
+// have it.
 Simplices CutHexahedron(const Mesh& mesh, Eigen::Index element,
                         const Eigen::VectorXi& rank) {
   const auto nodes = mesh.elements.col(element);
@@ -162,7 +165,7 @@ Simplices Cut(const Mesh& mesh, Eigen::Index element,
 }
 
 // Cuts a facet of a kind whose facets are no simplices of the vertices alone.
-// The first two nodes of a triangle are those of an edge.
+// A cut of an edge is the first two nodes of a Triangle.
 std::vector<Triangle> CutFacet(const Mesh& mesh,
                                const Eigen::Ref<const Eigen::VectorXi>& nodes,
                                const Eigen::VectorXi& rank) {
@@ -183,7 +186,8 @@ std::vector<Triangle> CutFacet(const Mesh& mesh,
   return cuts;
 }
 
-// The reference coordinates of a point in the simplex of these vertices.
+// Returns the reference coordinates of a point in the simplex of these
+// vertices.
 Eigen::VectorXd LocalIn(const Eigen::MatrixXd& vertices,
                         const Eigen::VectorXd& position) {
   const Eigen::MatrixXd edges =
@@ -191,9 +195,9 @@ Eigen::VectorXd LocalIn(const Eigen::MatrixXd& vertices,
   return edges.partialPivLu().solve(position - vertices.col(0));
 }
 
-// The vertices of a cut of an element, as reference coordinates of the element
-// where that is a simplex, so that a point of a curved one stays in place, else
-// as positions.
+// Returns the vertices of a cut of an element.  They are reference coordinates
+// of the element where that is a simplex, so that a point of a curved one stays
+// in place; else they are positions.
 Eigen::MatrixXd VerticesOfCut(const Mesh& mesh, Eigen::Index element,
                               const Eigen::Ref<const Eigen::VectorXi>& cut) {
   if (!IsSimplex(mesh.kind)) {
@@ -209,7 +213,7 @@ Eigen::MatrixXd VerticesOfCut(const Mesh& mesh, Eigen::Index element,
   return vertices;
 }
 
-// How far within the reference simplex, negative outside.
+// Returns how far a point is within the reference simplex, negative outside.
 double Depth(const Eigen::VectorXd& local) {
   return std::min(local.minCoeff(), 1 - local.sum());
 }

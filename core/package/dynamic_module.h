@@ -5,14 +5,14 @@
 
 namespace elastimate {
 
-/// The function called `function` of a module, a shared library that is loaded
-/// when it is used because it takes long to load.  It is looked for as
-/// FindPackageFile says, then in the system's folders.  Null when it is not
-/// found, and `why` is what the system says then.
+/// Returns the function called `function` of a module, a shared library that is
+/// loaded only when it is used because it takes long to load.  The module is
+/// looked for as FindPackageFile says, then in the system's folders.  Returns
+/// null when it is not found, and `why` then says what the system says.
 void* FindInModule(const std::string& module, const char* function,
                    std::string& why);
 
-/// Finds a function of this type as above.
+/// Returns the function as one of this type.
 template <typename Function>
 Function* FindInModule(const std::string& module, const char* function,
                        std::string& why) {

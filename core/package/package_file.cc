@@ -10,8 +10,8 @@
 namespace elastimate {
 namespace {
 
-/// What the dynamic linker knows the program or shared library by that holds
-/// this code; null when it says nothing.
+/// Returns the handle by which the dynamic linker knows the program or shared
+/// library that holds this code; null when it says nothing.
 void* OwnHandle() {
   Dl_info info{};
   link_map* map = nullptr;

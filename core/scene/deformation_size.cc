@@ -15,21 +15,23 @@ namespace {
 constexpr Eigen::Index kMostPoints = 4000;
 constexpr Eigen::Index kVolumePoints = 1000;
 constexpr int kLargestDegree = 4;
-// Observed values for each coefficient of a polynomial, so that noise is
-// smoothed.
+// So many observed values are needed for each coefficient of a polynomial, so
+// that noise is smoothed.
 constexpr Eigen::Index kValuesPerMonomial = 4;
-// Points on a surface leave polynomials dependent; further from that than
-// rounding, they still amplify noise.
+// Points on a surface make the polynomials dependent.  Polynomials that are
+// dependent to within this share, though not to within rounding, still amplify
+// noise.
 constexpr double kDependent = 1e-4;
 constexpr double kVolumeShare = 0.95;
-// Rotations [rad] that are taken out whatever the strains are, and those that
-// are left to the linear motions that fits eliminate, for rounding.  Of those
-// between, what is less than the strains may be the turn of the specimen
-// itself, and changes them by less than half of their square.
+// A rotation [rad] above kLargeRotation is taken out whatever the strains are.
+// A rotation below the other limit is left to the linear motions that fits
+// eliminate, for rounding.  Between them, a rotation that is less than the
+// strains stays: it may be the turn of the specimen itself, and changes the
+// strains by less than half of its square.
 constexpr double kLargeRotation = 1e-2;
 constexpr double kSmallRotation = 1e-4;
 
-// What was observed of each component: positions, dimension x n, and values.
+// The observations of each component: positions, dimension x n, and values.
 struct Observed {
   Eigen::MatrixXd positions;
   Eigen::VectorXd values;
@@ -78,7 +80,7 @@ Observed ObservedComponent(const Scene& scene, const LoadCase& load_case,
   return observed;
 }
 
-// The exponents of the monomials of degree <= `degree`.
+// Returns the exponents of the monomials of degree <= `degree`.
 std::vector<Eigen::Array3i> ExponentsUpTo(int degree, Eigen::Index dimension) {
   std::vector<Eigen::Array3i> exponents;
   for (int i = 0; i <= degree; ++i) {
@@ -91,7 +93,8 @@ std::vector<Eigen::Array3i> ExponentsUpTo(int degree, Eigen::Index dimension) {
   return exponents;
 }
 
-// The product of the powers of the coordinates, all but `left_out`.
+// Returns the product of the powers of the coordinates, without that of
+// `left_out`.
 Eigen::ArrayXd Powers(const Eigen::MatrixXd& x, const Eigen::Array3i& exponents,
                       Eigen::Index left_out) {
   Eigen::ArrayXd product = Eigen::ArrayXd::Ones(x.cols());
@@ -103,8 +106,8 @@ Eigen::ArrayXd Powers(const Eigen::MatrixXd& x, const Eigen::Array3i& exponents,
   return product;
 }
 
-// The box of the mesh as the cube from -1 to 1, so that slender bodies are well
-// conditioned as well.
+// Maps the box of the mesh to the cube from -1 to 1, so that slender bodies are
+// well conditioned too.
 struct Frame {
   explicit Frame(const Mesh& mesh)
       : middle((mesh.nodes.rowwise().maxCoeff() +
@@ -120,8 +123,8 @@ struct Frame {
   Eigen::VectorXd scale;
 };
 
-// The gradient of the polynomial of least squares, dimension x num_points;
-// empty where there are too few values.
+// Returns the gradient of the polynomial of least squares, dimension x
+// num_points; empty where there are too few values.
 Eigen::MatrixXd GradientAt(const Frame& frame, const Observed& observed,
                            const Eigen::MatrixXd& points) {
   const Eigen::Index dimension = points.rows();
@@ -166,7 +169,7 @@ struct Polar {
   Eigen::VectorXd stretches;
 };
 
-// F = R U.
+// Decomposes F = R U.
 Polar DecomposePolar(const Eigen::MatrixXd& f) {
   const SymmetricEigenDecomposition squares =
       DecomposeSymmetric(f.transpose() * f);
@@ -194,7 +197,7 @@ Eigen::MatrixXd PointsOfTheVolume(const Scene& scene, const LoadCase& load_case,
                      scene.mesh.nodes);
 }
 
-// F at points of the volume; empty where too little was observed.
+// Returns F at points of the volume; empty where too little was observed.
 std::vector<Eigen::MatrixXd> DeformationGradients(const Scene& scene,
                                                   const LoadCase& load_case) {
   const int dimension = scene.mesh.Dimension();
@@ -253,7 +256,8 @@ DeformationSize SizeOf(const std::vector<Eigen::MatrixXd>& gradients,
           *large};
 }
 
-// R of the rotation that takes positions nearest to others, by least squares.
+// Returns the rotation R that takes positions nearest to others, by least
+// squares.
 Eigen::MatrixXd NearestRotation(const Eigen::MatrixXd& from,
                                 const Eigen::MatrixXd& to) {
   const SingularValueDecomposition svd =
@@ -264,8 +268,8 @@ Eigen::MatrixXd NearestRotation(const Eigen::MatrixXd& from,
   return svd.u * signs.asDiagonal() * svd.v.transpose();
 }
 
-// The points of which all components were observed; nothing where some
-// components of a point were, and others were not.
+// Returns the points of which all components were observed, or nothing where
+// some components of a point were observed and others were not.
 std::optional<std::vector<Eigen::Index>> WhollyObserved(
     const ComponentMask& is_observed) {
   std::vector<Eigen::Index> observed;

@@ -8,14 +8,14 @@
 
 namespace elastimate {
 
-/// The free degrees of freedom in ascending order: row i of a vector over the
-/// free ones is row `free[i]` of a vector over all, which is
-/// dimension * node + component.
+/// The free degrees of freedom in ascending order.  Row i of a vector over the
+/// free ones is row `free[i]` of a vector over all, whose rows are dimension *
+/// node + component.
 struct DegreesOfFreedom {
   int dimension;  ///< The components of a node: 2 or 3.
   std::vector<Eigen::Index> free;
-  /// For each of the dimension * num_nodes degrees of freedom its place in
-  /// `free`, or -1 when it is held.
+  /// The place in `free` of each of the dimension * num_nodes degrees of
+  /// freedom, or -1 when it is held.
   std::vector<Eigen::Index> place;
 
   explicit DegreesOfFreedom(const Supports& supports);
@@ -23,18 +23,19 @@ struct DegreesOfFreedom {
   Eigen::Index NumFree() const { return Eigen::Index(free.size()); }
   Eigen::Index NumAll() const { return Eigen::Index(place.size()); }
 
-  /// The free rows of `all` (num_all x n): num_free x n.
+  /// Returns the free rows of `all` (num_all x n): num_free x n.
   Eigen::MatrixXd Restrict(const Eigen::MatrixXd& all) const;
-  /// `values` (num_free x n) in the free rows, zero in the held: num_all x n.
+  /// Returns `values` (num_free x n) in the free rows and zeros in the held:
+  /// num_all x n.
   Eigen::MatrixXd Extend(const Eigen::MatrixXd& values) const;
 };
 
-/// The displacement of the held degrees of freedom, zero in the free rows:
-/// dimension * num_nodes values.
+/// Returns the displacement of the held degrees of freedom, zero in the free
+/// rows: dimension * num_nodes values.
 [[nodiscard]] Eigen::VectorXd HeldDisplacement(const Supports& supports);
 
-/// Returns the values of each load case (num_dofs x num_load_cases) in the rows
-/// that it holds, and zeros elsewhere.
+/// Keeps the values (num_dofs x num_load_cases) in the rows that each load case
+/// holds, and sets the others to zero.
 [[nodiscard]] Eigen::MatrixXd OfHeld(const Scene& scene,
                                      const Eigen::MatrixXd& values);
 

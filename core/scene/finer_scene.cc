@@ -10,7 +10,7 @@
 namespace elastimate {
 namespace {
 
-// Nodal forces were spread over facets that are not curved.
+// Balances nodal forces, which were spread over facets that are not curved.
 void BalanceLoads(const Scene& scene, const FinerNodes& nodes, Scene& finer) {
   const Eigen::MatrixXd rest =
       AssembleLoadCases(scene) - nodes.Restrict(AssembleLoadCases(finer));
@@ -24,8 +24,8 @@ void BalanceLoads(const Scene& scene, const FinerNodes& nodes, Scene& finer) {
   }
 }
 
-// What is held all around a new node moves it as the elements say, rather than
-// by the mean of its two neighbours.
+// Moves a new node as the elements say, rather than by the mean of its two
+// neighbours, where it and all the nodes around it are held.
 void MoveSupports(const FinerNodes& nodes, Supports& supports) {
   const FinerNodes::Weights& weights = nodes.WeightsOfNodes();
   for (Eigen::Index row = 0; row < nodes.NumMidEdges(); ++row) {

@@ -5,13 +5,15 @@
 
 namespace elastimate {
 
-/// Returns the scene modelled with finer elements: for linear elements the
-/// quadratic simplices (QuadraticScene) of what SimplicialScene cuts them into,
-/// for quadratic elements of half the size.
-/// Curved elements are cut into parts of the curved body: the nodes in the
+/// Models a scene with finer elements, whatever its elements are: with the
+/// quadratic simplices (QuadraticScene) of the linear ones into which
+/// SimplicialScene cuts them.  For quadratic elements, these have half the
+/// size.
+///
+/// Simplices of curved elements are parts of the curved body: the nodes in the
 /// middle of their edges are where the map of the element that was cut has
-/// them, and all loads do the work on the displacements of the elements that
-/// they did before.
+/// them, and all loads do the same work as before on the displacements of the
+/// elements.
 ///
 /// Precondition: a valid scene (ValidateScene).  O(num_elements) time and
 /// memory.

@@ -6,7 +6,7 @@
 namespace elastimate {
 namespace {
 
-// Returns the density that all share, or the own one of facet or element i.
+// Returns the column that all share, or column i where each has its own.
 auto ColumnOf(const Eigen::MatrixXd& density, Eigen::Index i) {
   return density.col(density.cols() == 1 ? 0 : i);
 }
@@ -63,7 +63,7 @@ class LoadAssembler {
   Eigen::Ref<Eigen::MatrixXd> force_;
 };
 
-// The resultant of each kind of load.
+// Sums up each kind of load.
 struct Summation {
   const Mesh& mesh;
 

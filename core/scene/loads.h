@@ -11,37 +11,37 @@
 
 namespace elastimate {
 
-/// The consistent nodal forces of `loads`, dimension x num_nodes [force]: f_i =
-/// integral of N_i times the load.  On linear tetrahedra a uniform body force
-/// puts a quarter of an element's share on each node, a uniform traction,
-/// pressure or surface force a third of a facet's; on quadratic ones with
-/// straight edges it is -1/20 at the vertices and 1/5 at the mid-edge nodes of
-/// an element, 0 and 1/3 of a facet [Zienkiewicz & Taylor, The Finite Element
-/// Method].  Precondition: a valid scene (ValidateScene).  O(num_nodes +
-/// num_elements + num_facets) per load.
+/// Returns the consistent nodal forces of `loads`, dimension x num_nodes
+/// [force]: f_i = integral of N_i times the load.  On linear tetrahedra a
+/// uniform body force puts a quarter of an element's share on each node, and a
+/// uniform traction, pressure or surface force a third of a facet's.  On
+/// quadratic ones with straight edges, an element's share is -1/20 at the
+/// vertices and 1/5 at the mid-edge nodes, and a facet's is 0 and 1/3
+/// [Zienkiewicz & Taylor, The Finite Element Method]. Precondition: a valid
+/// scene (ValidateScene).  O(num_nodes + num_elements + num_facets) per load.
 [[nodiscard]] Eigen::MatrixXd AssembleLoads(const Mesh& mesh,
                                             const std::vector<Load>& loads);
 
-/// AssembleLoads for each load case, one column each:
-/// num_dofs x num_load_cases, row dimension * node + component.
+/// Does what AssembleLoads does for each load case, one column each: num_dofs x
+/// num_load_cases, row dimension * node + component.
 [[nodiscard]] Eigen::MatrixXd AssembleLoadCases(const Scene& scene);
-/// Assembles into columns that are there.
+/// Writes the forces into the columns of `force`, which has that shape.
 void AssembleLoadCases(const Scene& scene, Eigen::Ref<Eigen::MatrixXd> force);
 
-/// A load that is so many times another.
+/// Returns a load that is `factor` times another.
 [[nodiscard]] Load Scaled(const Load& load, double factor);
 
-/// A load in sum.
+/// The sum of a load.
 struct LoadResultant {
   std::string_view type;  ///< As a scene.json calls it, such as "traction".
   Eigen::VectorXd force;  ///< The sum of its nodal forces [force], with the
                           ///< share on held components, which the supports
                           ///< take without straining the specimen.
-  std::optional<double> area;  ///< The area of its facets, if any [length^2].
+  std::optional<double> area;  ///< The area of its facets [length^2], if any.
 };
 
-/// The resultant of one load of a valid scene, the same for each element order.
-/// O(num_nodes + num_elements + num_facets).
+/// Returns the resultant of one load of a valid scene, which is the same for
+/// each element order.  O(num_nodes + num_elements + num_facets).
 [[nodiscard]] LoadResultant ResultantOf(const Mesh& mesh, const Load& load);
 
 }  // namespace elastimate

@@ -8,12 +8,12 @@
 namespace elastimate {
 namespace {
 
-// A shape function below it is zero but for rounding.
+// A shape function below this is zero but for rounding.
 constexpr double kNoPart = 1e-9;
-// So many neighbours has a point in a regular grid along the axes.
+// Returns the number of neighbours of a point in a regular grid along the axes.
 int NumNeighbours(int dimension) { return 2 * dimension; }
 
-// What one load case measured of its nodes, and behind them of its points.
+// The measurement of one load case at its nodes, and behind them at its points.
 class Measurement {
  public:
   Measurement(const Scene& scene, Eigen::Index k)
@@ -28,7 +28,7 @@ class Measurement {
                ? load_case_.displacement(component, index)
                : load_case_.points.displacement(component, index - num_nodes_);
   }
-  /// 1 where it is not known.
+  /// Returns 1 where the standard deviation is not known.
   double StandardDeviation(int component, Eigen::Index index) const {
     return index < num_nodes_ || load_case_.points.noise_sd.size() == 0
                ? load_case_.noise_sd.value_or(1)
@@ -40,13 +40,13 @@ class Measurement {
   Eigen::Index num_nodes_;
 };
 
-// Whether a support says where a degree of freedom moves.
+// Tells whether a support says where a degree of freedom moves.
 bool IsKnown(const Scene& scene, const Supports& supports, int component,
              Eigen::Index node) {
   return !scene.is_rigid_motion_free && supports.IsGiven(component, node);
 }
 
-// The rows of all load cases while they are collected.
+// Collects the rows of all load cases.
 struct RowList {
   const Scene& scene;
   std::vector<ObservedDisplacements::Point> points;
@@ -60,8 +60,8 @@ struct RowList {
 
   Eigen::Index Size() const { return Eigen::Index(component.size()); }
 
-  // The components of a node or another point, each the sum of those of
-  // `nodes` times `shape_functions`.
+  // Adds the components of a node or another point, each of which is the sum of
+  // the components of `nodes` times `shape_functions`.
   template <class Nodes, class Values>
   void AddPoint(Eigen::Index k, Eigen::Index index, const Nodes& nodes,
                 const Values& shape_functions) {
@@ -138,7 +138,7 @@ Eigen::VectorXd ToVector(const std::vector<double>& values) {
                                            Eigen::Index(values.size()));
 }
 
-// Computes ObservedDisplacements::GivenNoise; `weights` are not normalised.
+// Returns ObservedDisplacements::GivenNoise; `weights` are not normalised.
 std::optional<double> GivenNoiseOf(const Scene& scene,
                                    const Eigen::VectorXd& weights) {
   const LoadCase& load_case = scene.load_cases.front();
@@ -217,7 +217,7 @@ Eigen::MatrixXd ObservedDisplacements::RestrictTransposed(
 Eigen::VectorXd ObservedDisplacements::BoundingWeights() const {
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(rows_.front().cols());
   for (const Rows& rows : rows_) {
-    // (sum_j b_j u_j)^2 <= sum_j |b_j| sum_j |b_j| u_j^2 of each row b.
+    // Each row b has (sum_j b_j u_j)^2 <= sum_j |b_j| sum_j |b_j| u_j^2.
     const Rows sizes = rows.cwiseAbs();
     const Eigen::VectorXd of_rows = sizes * Eigen::VectorXd::Ones(sizes.cols());
     weights = weights.cwiseMax((sizes.transpose() * of_rows).cwiseSqrt());

@@ -11,24 +11,25 @@
 
 namespace elastimate {
 
-/// The measured displacements of a scene as one vector of rows, those of all
-/// load cases below each other:
+/// The measured displacements of a scene as one vector of rows, the load cases
+/// below each other:
 ///
 ///   q_i = sum_j N_j(x_i) u_j + noise of the standard deviation s_i,
 ///
 /// where x_i is a node, or a point within an element of shape functions N_j.
-/// Held degrees of freedom u_j whose displacement is given are known: their
-/// part is taken from q_i, and a row without others is left out, unless a rigid
-/// motion of all is free, in which they take part.  Rows are weighted by 1 /
-/// s_i where it is known, and normalised so that the first vector of
-/// measurements has norm 1.
+/// Held degrees of freedom u_j whose displacement is given are known.  Their
+/// part is subtracted from q_i, and a row that has no other part is left out;
+/// but where a rigid motion of the whole specimen is free, known displacements
+/// take part in that motion and all rows stay.  Rows are weighted by 1 / s_i
+/// where it is known, and normalised so that the first vector of measurements
+/// has norm 1.
 class ObservedDisplacements {
  public:
   /// The observed components of one node, or of another point, in one load
   /// case: rows [first, first + count) of the vector.
   struct Point {
     Eigen::Index load_case;
-    /// The node, or behind all nodes the number of the point.
+    /// The node; for a point, its number counted on behind all nodes.
     Eigen::Index index;
     Eigen::Index first;
     int count;
@@ -39,52 +40,55 @@ class ObservedDisplacements {
   explicit ObservedDisplacements(const Scene& scene);
 
   /// Takes the measured displacements of a scene that differs in nothing else,
-  /// with the normalisation as it was.
+  /// and keeps the normalisation.
   void Remeasure(const Scene& scene);
 
-  /// Takes these rows for what was measured.
+  /// Replaces the measurement by these rows.
   void SetMeasured(const Eigen::VectorXd& rows) { measured_ = rows; }
 
   int Dimension() const { return dimension_; }
   Eigen::Index NumLoadCases() const {
     return static_cast<Eigen::Index>(rows_.size());
   }
-  /// In the order of their rows.
+  /// Returns the points in the order of their rows.
   const std::vector<Point>& Points() const { return points_; }
-  /// Points that are no nodes and near each other: indices of Points, each pair
-  /// of one load case.
+  /// Returns pairs of points that are near each other and no nodes, as indices
+  /// of Points.  The points of a pair are of one load case.
   const std::vector<std::array<Eigen::Index, 2>>& NeighbouringPoints() const {
     return neighbouring_points_;
   }
   Eigen::Index Size() const { return measured_.size(); }
   const Eigen::VectorXd& Measured() const { return measured_; }
-  /// The norm of the first weighted measurement, which is the unit here.
+  /// Returns the norm of the first weighted measurement, which is the unit
+  /// here.
   double Norm() const { return norm_; }
-  /// The component (0, 1 and, in three dimensions, 2) of a row.
+  /// Returns the component (0, 1 and, in three dimensions, 2) of a row.
   int Component(Eigen::Index row) const { return component_[row]; }
-  /// The root mean square of the standard deviations of the noise [length];
-  /// empty where they are not known.
+  /// Returns the root mean square of the standard deviations of the noise
+  /// [length]; empty where they are not known.
   const std::optional<double>& GivenNoise() const { return given_noise_; }
 
   /// The rows of load case `k` are [CaseStart(k), CaseStart(k + 1)).
   Eigen::Index CaseStart(Eigen::Index k) const { return case_start_[k]; }
 
-  /// Returns these rows of other displacements, num_dofs x num_load_cases, with
+  /// Returns the rows of other displacements, num_dofs x num_load_cases, with
   /// the same weights and normalisation, without the part of held degrees of
   /// freedom.
   Eigen::VectorXd Restrict(const Eigen::MatrixXd& displacements) const;
-  /// The rows of load case `k` of one displacement, num_dofs values.
+  /// Returns the rows of load case `k` of one displacement, num_dofs values.
   Eigen::VectorXd RestrictToCase(Eigen::Index k,
                                  const Eigen::VectorXd& displacement) const;
-  /// The transpose of Restrict: num_dofs x num_load_cases.
+  /// Multiplies by the transpose of Restrict: num_dofs x num_load_cases.
   Eigen::MatrixXd RestrictTransposed(const Eigen::VectorXd& rows) const;
-  /// For each degree of freedom a weight d, so that in no load case the norm of
-  /// the rows of a displacement u is above that of d u, by components.  It is
-  /// equal where only nodes are observed, in one load case.
+  /// Returns a weight d for each degree of freedom, so that in no load case the
+  /// norm of the rows of a displacement u is above the norm of d u, taken by
+  /// components.  The two are equal where only nodes are observed, in one load
+  /// case.
   Eigen::VectorXd BoundingWeights() const;
 
  private:
-  /// One for each load case, rows x num_dofs, without the held ones.
+  /// The matrix of a load case, rows x num_dofs, with zeros for held
+  /// components.
   using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor, Eigen::Index>;
 
   int dimension_;
@@ -94,15 +98,15 @@ class ObservedDisplacements {
   std::vector<int> component_;
   std::vector<Rows> rows_;
   Eigen::VectorXd weights_;
-  /// What the held degrees of freedom add to the rows, weighted.
+  /// The weighted part of the held degrees of freedom in each row.
   Eigen::VectorXd held_part_;
   Eigen::VectorXd measured_;
   double norm_;
   std::optional<double> given_noise_;
 };
 
-/// Whether any component that was measured at a point of a load case, beside
-/// those of nodes, has a row in ObservedDisplacements.  O(num_points).
+/// Tells whether any component that was measured at a point of a load case,
+/// rather than at a node, has a row in ObservedDisplacements.  O(num_points).
 [[nodiscard]] bool AreFreePointsMeasured(const Scene& scene,
                                          Eigen::Index load_case);
 

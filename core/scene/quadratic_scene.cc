@@ -14,7 +14,7 @@
 namespace elastimate {
 namespace {
 
-// `values` with columns for the mid-edge nodes.
+// Returns `values` with further columns for the mid-edge nodes.
 template <typename Array>
 Array WithMidEdges(const Array& values, const Array& mid_edges) {
   Array all(values.rows(), values.cols() + mid_edges.cols());
@@ -47,17 +47,18 @@ Mesh WithMidEdgeNodes(const Mesh& mesh, const Edges& edges) {
   return quadratic;
 }
 
-// The vertices at the ends of mid-edge node i of a facet of a simplex.
+// Returns the vertices at the ends of mid-edge node i of a facet of a simplex.
 std::pair<int, int> EndsOfFacetEdge(Eigen::Index i, Eigen::Index num_vertices) {
   return {static_cast<int>(i), static_cast<int>((i + 1) % num_vertices)};
 }
 
-// How many edges a facet of a simplex has: three of a triangle, one of an edge.
+// Returns how many edges a facet of a simplex has: a triangle three, an edge
+// one.
 Eigen::Index NumFacetEdges(const Mesh& mesh) {
   return mesh.Dimension() == 3 ? 3 : 1;
 }
 
-// Which edges cross the interior from one node of the surface to another.
+// Tells which edges cross the interior from one node of the surface to another.
 std::vector<bool> CrossingEdges(const Mesh& mesh, const Edges& edges) {
   std::vector<bool> node_on_surface(mesh.NumNodes(), false);
   std::vector<bool> edge_on_surface(edges.Size(), false);
@@ -79,8 +80,8 @@ std::vector<bool> CrossingEdges(const Mesh& mesh, const Edges& edges) {
   return crossing;
 }
 
-// The components of the edges of elements that are held at a node inside the
-// specimen, where no support of its surface is.
+// Returns the components of the edges of those elements that are held at a node
+// inside the specimen, where no support of its surface is.
 ComponentMask HeldInVolume(const ComponentMask& held, const Mesh& mesh,
                            const Edges& edges) {
   std::vector<bool> on_surface(mesh.NumNodes(), false);
@@ -106,7 +107,7 @@ ComponentMask HeldInVolume(const ComponentMask& held, const Mesh& mesh,
   return in_volume;
 }
 
-// And the mid-edge nodes between two of the nodes.
+// Returns the nodes, and behind them the mid-edge nodes between two of them.
 template <class Predicate>
 std::vector<int> WithMidEdgeNodes(const std::vector<int>& nodes,
                                   const Mesh& mesh, const Edges& edges,

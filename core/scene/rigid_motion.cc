@@ -19,7 +19,7 @@
 namespace elastimate {
 namespace {
 
-// Sets that are joined one by one; the label of a set is its smallest member.
+// Joins sets one by one; the label of a set is its smallest member.
 class DisjointSets {
  public:
   explicit DisjointSets(Eigen::Index size) : parent_(size) {
@@ -44,7 +44,7 @@ class DisjointSets {
   std::vector<int> parent_;
 };
 
-// The other vertices of a face, ascending, whose smallest node is known; -1
+// The other vertices of a face whose smallest node is known, ascending; -1
 // where there are fewer.
 struct NodeFace {
   std::array<int, 3> others;
@@ -53,7 +53,7 @@ struct NodeFace {
   bool operator<(const NodeFace& other) const { return others < other.others; }
 };
 
-// The elements that are connected through faces.
+// Joins the elements that are connected through faces.
 DisjointSets ElementsJoinedByFaces(const Mesh& mesh) {
   const ElementsOfNodes around(mesh);
   const auto& faces_of_element = mesh.Topology().faces;
@@ -113,7 +113,7 @@ struct Body {
   }
 };
 
-// Bodies by their smallest nodes.
+// Returns the bodies, ordered by their smallest nodes.
 std::vector<Body> BodiesOf(const Mesh& mesh) {
   DisjointSets joined = ElementsJoinedByFaces(mesh);
   std::vector<std::pair<int, int>> nodes;  // Of the label of a body.
@@ -154,7 +154,7 @@ std::vector<Body> BodiesOf(const Mesh& mesh) {
   return bodies;
 }
 
-// Names the direction closest to an axis among those that the orthonormal
+// Returns the direction closest to an axis among those that the orthonormal
 // columns of `span` span: "x", or "(0.6, 0.8, 0)".
 std::string DescribeDirection(const Eigen::MatrixXd& span) {
   const Eigen::MatrixXd projection = span * span.transpose();
@@ -174,10 +174,11 @@ std::string DescribeDirection(const Eigen::MatrixXd& span) {
   return text.str();
 }
 
-// One of the rigid motions that the columns span; a translation if there is
-// one, since any rotation about an axis off the centroid moves that too.
+// Describes one of the rigid motions that the columns span.  It takes a
+// translation if there is one, since any rotation about an axis off the
+// centroid moves the centroid too.
 std::string DescribeRigidMotion(const Eigen::MatrixXd& columns) {
-  // The columns of a part may be dependent.
+  // The columns are dependent where they are rows of a part of all bodies.
   constexpr double kSmall = 1e-5;
   const SingularValueDecomposition span = DecomposeSingularValues(columns);
   const Eigen::MatrixXd motions =
@@ -196,16 +197,17 @@ std::string DescribeRigidMotion(const Eigen::MatrixXd& columns) {
              : "rotate about " + DescribeDirection(rotations.u.leftCols(rank));
 }
 
-// Coefficients of the rigid motions of a body (translations, then rotations
-// about axes through its centroid, by radii) in the displacement of a node:
-// dimension rows.
+// Returns the coefficients of the rigid motions of a body (translations, then
+// rotations about axes through its centroid, by radii) in the displacement of a
+// node: dimension rows.
 Eigen::MatrixXd RigidMotionRows(const Mesh& mesh, const Body& body, int node) {
   return RigidMotionsAt((mesh.nodes.col(node) - body.centroid) / body.radius);
 }
 
-// What holds some bodies: the sum of the squares of what moves their held
-// components, and of how far those that share a node move apart there, is a
-// quadratic form of the rigid motions of all bodies.
+// Returns a quadratic form of the rigid motions of all bodies that is zero
+// where nothing resists them.  It adds up the squared motions of held
+// components, and the squared distances by which bodies that share a node move
+// apart there.
 Eigen::SparseMatrix<double> HoldingForm(
     const Mesh& mesh, const Supports& supports,
     const std::vector<const Body*>& bodies) {
@@ -257,24 +259,25 @@ Eigen::SparseMatrix<double> HoldingForm(
   return form;
 }
 
-// Squares of lever arms below 1e-6 of a radius hold nothing.
+// Squares of lever arms below 1e-6 of a radius count as zero.
 constexpr double kHoldsNothing = 1e-12;
 
-// An orthonormal basis of the motions that nothing holds.
+// Returns an orthonormal basis of the motions that nothing holds.
 Eigen::MatrixXd FreeMotions(const Eigen::SparseMatrix<double>& form) {
   const SymmetricEigenDecomposition eigen =
       DecomposeSymmetric(Eigen::MatrixXd(form));
   return eigen.vectors.leftCols((eigen.values.array() < kHoldsNothing).count());
 }
 
-// One of them, by inverse iteration; no column where there is none.
+// Returns one of these motions, by inverse iteration; no column where there is
+// none.
 Eigen::MatrixXd AFreeMotion(const Eigen::SparseMatrix<double>& form) {
   constexpr int kIterations = 5;
   Eigen::SparseMatrix<double> identity(form.rows(), form.cols());
   identity.setIdentity();
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> inverse(
       form + 0.1 * kHoldsNothing * identity);
-  // Any vector does that has a part along each motion.
+  // The iteration may start from any vector that has a part along each motion.
   Eigen::VectorXd motion = Eigen::VectorXd::NullaryExpr(
       form.rows(),
       [](Eigen::Index i) { return std::cos(static_cast<double>(i * i)); });
@@ -287,7 +290,8 @@ Eigen::MatrixXd AFreeMotion(const Eigen::SparseMatrix<double>& form) {
   return Eigen::MatrixXd(form.rows(), 0);
 }
 
-// The smallest node of body `b` that none of the others has, if there is one.
+// Returns the smallest node of body `b` that no other body has, if there is
+// one.
 int NodeOfItsOwn(Eigen::Index b, const std::vector<const Body*>& bodies) {
   const std::vector<int>& nodes = bodies[b]->nodes;
   const auto is_shared = [&](int node) {
@@ -310,10 +314,12 @@ Body Union(const Mesh& mesh, const std::vector<const Body*>& bodies) {
   return Body(mesh, std::move(nodes));
 }
 
-// A sentence about the first of the bodies that moves; empty when none does.
+// Returns a sentence about the first of the bodies that moves; empty when none
+// does.
 std::string WhyNotHeld(const Mesh& mesh, const Supports& supports,
                        const std::vector<const Body*>& bodies) {
-  // The time of all motions grows with the third power.
+  // The time for all motions grows with the third power of the number of
+  // bodies.
   constexpr std::size_t kMostBodies = 64;
   const Eigen::SparseMatrix<double> form = HoldingForm(mesh, supports, bodies);
   const Eigen::MatrixXd motions =
@@ -374,7 +380,7 @@ std::string WhyNotHeld(const Mesh& mesh, const Supports& supports) {
                               [](const auto& group) { return group.empty(); }),
                groups.end());
   for (const std::vector<const Body*>& group : groups) {
-    // The body is looked at as a whole, and then part by part.
+    // The group is tried as a whole first, and then part by part.
     std::string why;
     if (group.size() > 1) {
       const Body whole = Union(mesh, group);

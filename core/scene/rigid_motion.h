@@ -10,11 +10,12 @@
 
 namespace elastimate {
 
-/// A body has three rigid motions in the plane, and six in space.
+/// Counts the rigid motions of a body: three in the plane, six in space.
 constexpr int NumRigidMotions(int dimension) { return dimension == 3 ? 6 : 3; }
 
-/// What rigid motions move a point: the translations along the axes, then the
-/// rotations about axes at which `arm` starts.  dimension x NumRigidMotions.
+/// Returns how rigid motions move a point: the translations along the axes,
+/// then the rotations about axes at which `arm` starts.  dimension x
+/// NumRigidMotions.
 inline Eigen::MatrixXd RigidMotionsAt(const Eigen::VectorXd& arm) {
   const Eigen::Index dimension = arm.size();
   Eigen::MatrixXd motions(dimension, NumRigidMotions(int(dimension)));
@@ -31,8 +32,7 @@ inline Eigen::MatrixXd RigidMotionsAt(const Eigen::VectorXd& arm) {
   return motions;
 }
 
-/// Returns the rigid motions of some points (dimension x n), each below the
-/// other:
+/// Returns RigidMotionsAt of some points (dimension x n), each below the other:
 /// (dimension n) x NumRigidMotions.
 inline Eigen::MatrixXd RigidMotionsOf(const Eigen::MatrixXd& arms) {
   const Eigen::Index dimension = arms.rows();
@@ -43,17 +43,17 @@ inline Eigen::MatrixXd RigidMotionsOf(const Eigen::MatrixXd& arms) {
   return motions;
 }
 
-/// Where a rigid motion of any size takes points (dimension x n): R x + t, with
-/// the translation t first in `motion`, then the angle [rad] about the origin,
-/// in space the rotation vector: the axis times the angle.  To first order,
-/// RigidMotionsAt(x) * motion is what it adds to x.
+/// Returns where a rigid motion of any size takes points (dimension x n): R x +
+/// t.  `motion` has the translation t first, then the angle [rad] about the
+/// origin, or in space the rotation vector, which is the axis times the angle.
+/// To first order, RigidMotionsAt(x) * motion is what it adds to x.
 [[nodiscard]] Eigen::MatrixXd MovedRigidly(const Eigen::MatrixXd& points,
                                            const Eigen::VectorXd& motion);
 
-/// Why the supports do not hold the specimen: a sentence that names a motion
+/// Tells why the supports do not hold the specimen: the sentence names a motion
 /// without strain which they allow (a translation or a rotation of a part of
-/// the mesh), or an empty string when there is none. A finite element solution
-/// exists only when it is empty.
+/// the mesh).  It is empty when there is none; only then a finite element
+/// solution exists.
 ///
 /// Elements that are connected through their faces move as a rigid body where
 /// they have no strain; bodies that share only an edge or a node are hinged
@@ -64,8 +64,8 @@ inline Eigen::MatrixXd RigidMotionsOf(const Eigen::MatrixXd& arms) {
 [[nodiscard]] std::string WhyNotHeld(const Mesh& mesh,
                                      const Supports& supports);
 
-/// Says so of the supports of each load case of a scene; names the load case
-/// where they are its own.
+/// Checks the supports of each load case of a scene, and names the load case
+/// where the supports are its own.
 [[nodiscard]] std::string WhyNotHeld(const Scene& scene);
 
 }  // namespace elastimate

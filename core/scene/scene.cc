@@ -21,7 +21,7 @@ std::string CaseName(std::size_t index) {
   throw std::invalid_argument(what);
 }
 
-// One row for each dimension and one column for each node.
+// Requires one row for each dimension and one column for each node.
 template <class Values>
 void RequireShape(const Values& values, const Mesh& mesh,
                   const std::string& what) {
@@ -35,7 +35,7 @@ void RequireShape(const Values& values, const Mesh& mesh,
   }
 }
 
-// A vector in space.
+// Requires a vector in space.
 void RequireVector(const Eigen::VectorXd& vector, const Mesh& mesh,
                    const std::string& what) {
   if (vector.size() != mesh.Dimension()) {
@@ -48,7 +48,7 @@ void RequireVector(const Eigen::VectorXd& vector, const Mesh& mesh,
   RequireRepresentable(vector.cwiseAbs().maxCoeff(), what);
 }
 
-// One for all of `count`, or one for each.
+// Requires one vector for all of `count`, or one for each.
 void RequireVectors(const Eigen::MatrixXd& vectors, const Mesh& mesh,
                     Eigen::Index count, const std::string& what) {
   if (vectors.cols() != 1 && vectors.cols() != count) {
@@ -77,7 +77,7 @@ void RequireFinite(const Values& values, const std::string& what) {
   RequireRepresentable(largest, what);
 }
 
-// `of_case` is empty where they are those of the scene.
+// `of_case` is empty where the supports are those of the scene.
 void ValidateSupports(const Mesh& mesh, const Supports& supports,
                       const std::string& of_case) {
   const std::string displacement = "the displacement of the supports" + of_case;

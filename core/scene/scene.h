@@ -56,20 +56,22 @@ using Load =
 /// be nodes.
 struct PointDisplacements {
   MeshPoints points;
-  /// dimension x n [length]; not a number where a component was not measured.
+  /// The displacement, dimension x n [length]; NaN where a component was not
+  /// measured.
   Eigen::MatrixXd displacement;
-  /// Standard deviation of each component, dimension x n [length], where it was
-  /// measured; empty where the one of the load case holds for all.
+  /// The standard deviation of each measured component, dimension x n [length];
+  /// empty where that of the load case holds for all.
   Eigen::MatrixXd noise_sd;
 };
 
-/// The force that the supports of some nodes exert on the specimen, in sum, as
-/// a load cell measured it: where f are the internal forces and F the loads,
+/// The total force that the supports of some nodes exert on the specimen, as a
+/// load cell measured it.  With the internal forces f and the loads F it is
 ///
 ///   R_i = sum of f_i - F_i over the nodes + noise.
 struct Resultant {
   std::vector<int> nodes;
-  /// [force], of `dimension`; not a number where it was not measured.
+  /// The force [force], of `dimension` components; NaN where it was not
+  /// measured.
   Eigen::VectorXd force;
   Eigen::VectorXd noise_sd;  ///< Standard deviations [force], of `dimension`.
 };
@@ -85,12 +87,13 @@ struct LoadCase {
   std::optional<double> noise_sd;  ///< Standard deviation of the measured
                                    ///< displacement per component [length].
   std::vector<Resultant> resultants = {};
-  /// The supports of this load case, where they are not those of the scene.
+  /// The supports of this load case, where they differ from those of the scene.
   std::optional<Supports> supports = {};
 };
 
-/// Whether component `i` of the displacement of `node` is measured: in a load
-/// case without points also where no displacement has been entered yet.
+/// Tells whether component `i` of the displacement of `node` is measured.  In a
+/// load case without points, all nodes count while no displacement has been
+/// entered yet.
 inline bool IsObserved(const LoadCase& load_case, int i, Eigen::Index node) {
   const bool has_nodes =
       load_case.displacement.size() != 0 || load_case.points.points.Size() == 0;
@@ -98,13 +101,13 @@ inline bool IsObserved(const LoadCase& load_case, int i, Eigen::Index node) {
          (load_case.observed.size() == 0 || load_case.observed(i, node));
 }
 
-/// Whether the displacement of any node or point was measured.
+/// Tells whether the displacement of any node or point was measured.
 inline bool IsMeasured(const LoadCase& load_case) {
   return load_case.displacement.size() != 0 ||
          load_case.points.points.Size() != 0;
 }
 
-/// Where displacements come from.
+/// The origin of displacements.
 enum class Origin {
   kMeasured,  ///< A specimen, which its mesh describes but for a mesh error.
   /// A finite element solution of linear elasticity with the very elements of
@@ -116,23 +119,23 @@ enum class Origin {
 /// Geometry, materials, supports, and one or more load cases.
 struct Scene {
   Mesh mesh;
-  /// Empty: one isotropic material.
+  /// The materials; an empty list means one isotropic material.
   std::vector<Material> materials;
-  Supports supports;  ///< For all load cases that have none of their own.
+  Supports supports;  ///< For the load cases without their own.
   std::vector<LoadCase> load_cases;
-  /// Whether the displacements were measured but for a rigid motion, of the
-  /// camera or of the whole specimen, in each load case another.
+  /// Tells that displacements were measured relative to an unknown rigid motion
+  /// of the camera or of the whole specimen, another one in each load case.
   bool is_rigid_motion_free = false;
   Origin origin = Origin::kMeasured;
 };
 
-/// The supports in load case `k`.
+/// Returns the supports in load case `k`.
 inline const Supports& SupportsOf(const Scene& scene, Eigen::Index k) {
   const std::optional<Supports>& own = scene.load_cases[k].supports;
   return own ? *own : scene.supports;
 }
 
-/// Whether supports differ between load cases.  O(num_load_cases).
+/// Tells whether supports differ between load cases.  O(num_load_cases).
 [[nodiscard]] bool HasSupportsOfCases(const Scene& scene);
 
 /// Throws std::invalid_argument with one sentence that names the load case, the
@@ -149,9 +152,9 @@ inline const Supports& SupportsOf(const Scene& scene, Eigen::Index k) {
 /// num_load_cases), and O(num_elements) for each load on facets.
 void ValidateScene(const Scene& scene);
 
-/// The part of ValidateScene that is about observed components, displacements
-/// and noise: for another measurement of a valid scene.
-/// O((num_nodes + num_points) num_load_cases).
+/// Validates observed components, displacements and noise as ValidateScene
+/// does, for another measurement of a valid scene.  O((num_nodes + num_points)
+/// num_load_cases).
 void ValidateMeasurements(const Scene& scene);
 
 }  // namespace elastimate

@@ -26,7 +26,7 @@ std::string ExtentText(const Mesh& mesh) {
          PositionText(mesh.nodes.rowwise().maxCoeff());
 }
 
-// A box of space, and how messages name it.
+// A box of space with its name in messages.
 struct NamedBox {
   HeldBox box;  // A little larger than the one that was given.
   std::string name;

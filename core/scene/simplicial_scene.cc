@@ -8,7 +8,8 @@
 namespace elastimate {
 namespace {
 
-// Columns of one for all, or of one each, for what these were cut into.
+// Repeats the columns of the elements for their cuts, unless one column is for
+// all.
 Eigen::MatrixXd ForCuts(const Eigen::MatrixXd& columns, Eigen::Index num_cuts) {
   return columns.cols() <= 1
              ? columns
@@ -43,7 +44,7 @@ Scene SimplicialScene(const Scene& scene) {
   const SimplicialMesh mesh(scene.mesh);
   Scene simplicial = scene;
   simplicial.mesh = mesh.Simplices();
-  // The simplices of an element have its axes.
+  // The simplices of an element have the axes of that element.
   const Eigen::Index num_elements = scene.mesh.NumElements();
   const Eigen::Index num_cuts = simplicial.mesh.NumElements() / num_elements;
   for (Material& material : simplicial.materials) {

@@ -5,9 +5,9 @@
 
 namespace elastimate {
 
-/// Returns the scene modelled with linear simplices of the same nodes
-/// (SimplicialMesh).  Supports, nodal forces and measurements of nodes stay
-/// what they are; facets and points become those of the simplices.
+/// Models a scene with linear simplices of the same nodes (SimplicialMesh).
+/// What is held, loaded or measured at nodes stays as it is; facets and points
+/// become facets and points of the simplices.
 ///
 /// Precondition: a valid scene (ValidateScene).  O(num_elements) time and
 /// memory.

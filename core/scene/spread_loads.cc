@@ -36,10 +36,10 @@ std::vector<Eigen::Index> LoadedCells(const Eigen::MatrixXi& cells,
   return loaded;
 }
 
-// Facets or elements, over which a force is spread.
+// The facets or elements over which a force is spread.
 struct Cells {
   Eigen::MatrixXi nodes;  ///< nodes_per_cell x num_cells.
-  /// The load of these densities, dimension x num_cells.
+  /// Returns the load of these densities, dimension x num_cells.
   std::function<Load(const Eigen::MatrixXd&)> load;
   bool are_facets;
 };
@@ -69,7 +69,7 @@ Cells CellsOf(const Mesh& mesh, const NodeMask& is_held,
           true};
 }
 
-// For each cell, of its nodes.
+// Returns, for each cell, the mean over its nodes.
 Eigen::RowVectorXd MeansOf(const Eigen::MatrixXi& cells,
                            const Eigen::VectorXd& of_nodes) {
   Eigen::RowVectorXd means(cells.cols());
@@ -79,13 +79,15 @@ Eigen::RowVectorXd MeansOf(const Eigen::MatrixXi& cells,
   return means;
 }
 
-// Nodal forces as densities in cells, and what these leave.
+// The densities in cells that stand for nodal forces, and the forces that are
+// left.
 struct Spread {
   Eigen::MatrixXd densities;  ///< dimension x num_cells.
   Eigen::MatrixXd rest;       ///< dimension x num_nodes.
 };
 
-// Takes what is along directions, one for each cell.
+// Moves the part of `rest` along the directions, one for each cell, into
+// densities.
 void TakeAlong(const Mesh& mesh, const Cells& cells,
                const Eigen::MatrixXd& directions, Spread& spread) {
   constexpr int kSweeps = 3;
@@ -96,7 +98,7 @@ void TakeAlong(const Mesh& mesh, const Cells& cells,
   const Eigen::MatrixXd force = spread.rest;
   Eigen::VectorXd of_nodes = Eigen::VectorXd::Zero(mesh.NumNodes());
   Eigen::MatrixXd densities;
-  // Where directions cancel, forces say nothing of them.
+  // Where directions cancel, forces say nothing about them.
   const double least = 1e-6 * unit.colwise().squaredNorm().maxCoeff();
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (Eigen::Index i = 0; i < of_nodes.size(); ++i) {

@@ -12,7 +12,7 @@
 namespace elastimate {
 namespace {
 
-// Whether something says where the support of a component ends.
+// Tells whether something says where the support of a component ends.
 bool IsToldByPlace(const Supports& supports, const Mesh& mesh, Eigen::Index i,
                    int node) {
   if (supports.delimited.size() != 0 && supports.delimited(i, node)) {
@@ -24,7 +24,7 @@ bool IsToldByPlace(const Supports& supports, const Mesh& mesh, Eigen::Index i,
       });
 }
 
-// The facets of the surface of a mesh, and their edges.
+// The facets of the surface of a mesh.
 class SurfaceFacets {
  public:
   explicit SurfaceFacets(const Mesh& mesh)
@@ -43,11 +43,11 @@ class SurfaceFacets {
   }
 
   const Eigen::MatrixXi& Facets() const { return facets_; }
-  // Whether a facet goes on without a crease from one at a node all of whose
-  // nodes are held.
+  // Tells whether a facet goes on without a crease from one at a node all of
+  // whose nodes are held.
   bool GoesOnFromHeld(Eigen::Index facet, int node,
                       const Eigen::Array<bool, 1, Eigen::Dynamic>& held) const {
-    // This is the cosine of 45 degrees.
+    // This is about the cosine of an angle of 45 degrees.
     constexpr double kSmooth = 0.7;
     return std::any_of(
         of_node_[node].begin(), of_node_[node].end(), [&](Eigen::Index other) {
@@ -62,7 +62,8 @@ class SurfaceFacets {
   std::vector<std::vector<Eigen::Index>> of_node_;
 };
 
-// The components of edges that are open, and the ends that are held.
+// The components of edges where it is open whether they are held, with the ends
+// that are held.
 class OpenEdges {
  public:
   OpenEdges(const Supports& supports, const Mesh& mesh, const Edges& edges,
@@ -77,7 +78,7 @@ class OpenEdges {
   }
 
   const ComponentMask& Open() const { return open_; }
-  // Returns the two ends of an edge that is open.
+  // Returns the held and the free node of an open edge.
   std::pair<int, int> HeldAndFree(Eigen::Index edge) const {
     const int low = edges_.Ends()(0, edge);
     const int high = edges_.Ends()(1, edge);
@@ -90,8 +91,8 @@ class OpenEdges {
   }
 
  private:
-  // The end at which alone a component is held, without a word of where its
-  // support ends; -1 where there is none.
+  // Returns the only end at which a component is held while nothing says where
+  // its support ends; -1 where there is none.
   int HeldEnd(Eigen::Index i, Eigen::Index edge) const {
     const int low = edges_.Ends()(0, edge);
     const int high = edges_.Ends()(1, edge);
@@ -115,7 +116,7 @@ class OpenEdges {
           }
         }
       }
-      // Nodes of a layer that is held in part stick out of it.
+      // The nodes of a layer that is held in part are next to the volume.
       std::vector<bool> is_at_volume = is_in_volume;
       for (Eigen::Index edge = 0; edge < edges_.Size(); ++edge) {
         const int low = edges_.Ends()(0, edge);
@@ -157,7 +158,7 @@ class OpenEdges {
   ComponentMask open_;
 };
 
-// The open edges of each end.
+// Returns the open edges of each end.
 std::vector<std::vector<Eigen::Index>> ConnectedEdges(
     const Mesh& mesh, const Edges& edges, const ComponentMask& open) {
   std::vector<int> parent(mesh.NumNodes());
@@ -186,7 +187,8 @@ std::vector<std::vector<Eigen::Index>> ConnectedEdges(
   return all;
 }
 
-// How far the free points, as columns, are beyond the held ones in a direction.
+// Returns how far the free points, as columns, are beyond the held ones in a
+// direction.
 double Gap(const Eigen::VectorXd& direction, const Eigen::MatrixXd& held,
            const Eigen::MatrixXd& free) {
   return (direction.transpose() * free).minCoeff() -
@@ -198,10 +200,11 @@ Eigen::MatrixXd ScatterMatrix(const Eigen::MatrixXd& points) {
   return centred * centred.transpose();
 }
 
-// In which the free points are beyond the held ones; empty where none is known.
+// Returns a direction in which the free points are beyond the held ones, if one
+// is known.
 std::optional<Eigen::VectorXd> SeparatingDirection(
     const Eigen::MatrixXd& held, const Eigen::MatrixXd& free) {
-  // Parts of the extent.
+  // These are shares of the extent.
   constexpr double kLeastGap = 1e-9;
   constexpr double kRidge = 1e-6;
   const Eigen::Index dimension = held.rows();
@@ -233,7 +236,8 @@ std::optional<Eigen::VectorXd> SeparatingDirection(
   return std::nullopt;
 }
 
-// Edges by how far their middles are in a direction, those as far together.
+// Returns the edges in the order of their middles in a direction; those whose
+// middles are equally far form one step.
 std::vector<std::vector<Eigen::Index>> Steps(
     const std::vector<Eigen::Index>& of_end,
     const Eigen::RowVectorXd& distance) {

@@ -13,11 +13,11 @@ using ComponentMask = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// A part of space in which a specimen is held, bounds included.
 struct HeldBox {
-  Eigen::VectorXd lower;  ///< Has `dimension` coordinates [length].
+  Eigen::VectorXd lower;  ///< The lower corner, `dimension` x 1 [length].
   Eigen::VectorXd upper;
   Eigen::Array<bool, Eigen::Dynamic, 1>
-      components;                ///< Which of them it holds.
-  Eigen::VectorXd displacement;  ///< Has `dimension` components [length].
+      components;                ///< Which components it holds.
+  Eigen::VectorXd displacement;  ///< `dimension` components [length].
 
   bool Contains(const Eigen::Ref<const Eigen::VectorXd>& point) const {
     return (point.array() >= lower.array()).all() &&
@@ -32,8 +32,9 @@ struct HeldComponent {
   double displacement;
 };
 
-/// An end of a support somewhere along edges whose middles are nodes: of these
-/// it holds the first of some steps, or none.  Each step is held as a whole.
+/// An end of a support somewhere along edges whose middles are nodes.  The
+/// support holds the middles of the first so many steps, or none.  Each step is
+/// held as a whole.
 struct SupportEnd {
   std::vector<std::vector<HeldComponent>> steps;
 };
@@ -42,7 +43,7 @@ struct SupportEnd {
 /// motion that is not known: some components of u = a + w x (x - x0).
 struct RigidFace {
   std::vector<int> nodes;
-  Eigen::Array<bool, Eigen::Dynamic, 1> components;  ///< Has `dimension`.
+  Eigen::Array<bool, Eigen::Dynamic, 1> components;  ///< One for each axis.
 };
 
 /// A node that a refinement put in the middle between two others.
@@ -56,27 +57,30 @@ struct Supports {
   ComponentMask held;            ///< dimension x num_nodes.
   Eigen::MatrixXd displacement;  ///< dimension x num_nodes [length]; used where
                                  ///< `held`, ignored elsewhere.
-  /// Where `held` comes from, as far as it was told by place: it decides about
-  /// the nodes that QuadraticScene adds.
+  /// The boxes from which `held` comes, as far as it was told by place.  They
+  /// decide about the nodes that QuadraticScene adds.
   std::vector<HeldBox> boxes = {};
-  /// Held components whose displacement, in each load case another, is not
-  /// known: those of rigid faces, and others as they were measured, with the
-  /// error of a measurement.  dimension x num_nodes; empty when there are none.
+  /// Held components whose displacement is not known and differs between load
+  /// cases: those of rigid faces, and others that moved as they were measured,
+  /// with the error of a measurement.  dimension x num_nodes; empty when there
+  /// are none.
   ComponentMask unknown = {};
   std::vector<RigidFace> rigid_faces = {};
   /// Held components of supports that end with their nodes, as a part of the
   /// mesh does.  dimension x num_nodes; empty when there are none.
   ComponentMask delimited = {};
-  /// Where QuadraticScene cannot tell which of the nodes that it adds are held
-  /// (FindSupportEnds): none of them, unless a fit finds them (EndingAfter).
+  /// The ends at which QuadraticScene cannot tell which of the nodes that it
+  /// adds are held (FindSupportEnds).  None of them is, unless a fit finds them
+  /// (EndingAfter).
   std::vector<SupportEnd> ends = {};
 
   /// The nodes that QuadraticScene put between held nodes of unknown
-  /// displacement, each after the nodes at its ends: where it was not measured
-  /// itself, it moves as their mean.
+  /// displacement, each after the nodes at its ends.  Such a node moves as
+  /// their mean where it was not measured itself.
   std::vector<MiddleNode> middles = {};
 
-  /// Whether component `i` of `node` is held at a displacement that is known.
+  /// Tells whether component `i` of `node` is held at a displacement that is
+  /// known.
   bool IsGiven(int i, Eigen::Index node) const {
     return held(i, node) && (unknown.size() == 0 || !unknown(i, node));
   }

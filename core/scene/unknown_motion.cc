@@ -15,9 +15,9 @@
 namespace elastimate {
 namespace {
 
-// Motions of a face that are smaller than this beside the largest are none:
-// they are about a line that all its nodes are on, or of components that it
-// leaves free.
+// A rigid motion of a face that moves its nodes by less than this share of the
+// largest one is none: a rotation about a line on which all its nodes are, or a
+// motion of components that the face leaves free.
 constexpr double kNoMotion = 1e-6;
 
 [[noreturn]] void Refuse(const std::string& message) {
@@ -28,8 +28,8 @@ std::string NodeText(Eigen::Index node, int component) {
   return "node " + std::to_string(node) + " (" + kAxisNames[component] + ")";
 }
 
-// Rigid motions of some nodes, rotations about their middle by their size:
-// (dimension num_nodes) x 3 or 6.
+// Returns the rigid motions of some nodes, with rotations about their middle,
+// by their size: (dimension num_nodes) x 3 or 6.
 template <class Nodes>
 Eigen::MatrixXd RigidMotionsOfNodes(const Mesh& mesh, const Nodes& nodes) {
   const Eigen::MatrixXd positions = mesh.nodes(Eigen::all, nodes);
@@ -112,9 +112,9 @@ void RefuseTheSameResultant(const Resultant& before, const Resultant& resultant,
   }
 }
 
-// The nodes of some supports that move as the mean of two others, since they
-// were measured in no load case of these supports: those that a refinement put
-// there, and the mid-edge nodes of a mesh of order 2.
+// The nodes of some supports that move as the mean of two others, because they
+// were measured in no load case of these supports.  They are nodes that a
+// refinement put there, and the mid-edge nodes of a mesh of order 2.
 struct TiedNodes {
   TiedNodes(const Scene& scene, const Supports& supports)
       : is_tied(ComponentMask::Constant(supports.held.rows(),
@@ -165,8 +165,9 @@ struct TiedNodes {
   }
 };
 
-// A few nodes may have been lost: their motion follows from their neighbours'.
-// Where there is no measurement of most, the motion is ill-posed.
+// Throws where most nodes have no measurement, since the motion is ill-posed
+// then.  A few nodes may have been lost: their motion follows from their
+// neighbours'.
 void ValidateMeasuredSupports(const Scene& scene, const Supports& supports) {
   ComponentMask measured = AsMeasured(supports);
   if (measured.size() != 0) {
@@ -272,7 +273,7 @@ UnknownMotion::UnknownMotion(const Scene& scene, const Supports& supports)
   Eigen::Index num_columns = 0;
   const ComponentMask measured = AsMeasured(supports);
   const TiedNodes tied(scene, supports);
-  // The columns of each degree of freedom, with their shares.
+  // These are the columns of each degree of freedom, with their shares.
   std::vector<std::map<Eigen::Index, double>> shares(mesh.NumDofs());
   for (Eigen::Index dof = 0; dof < measured.size(); ++dof) {
     if (measured.reshaped()(dof) && !tied.is_tied.reshaped()(dof)) {

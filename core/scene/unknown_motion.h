@@ -8,20 +8,20 @@
 
 namespace elastimate {
 
-/// Whether displacements of supports, or of the whole specimen, are not known,
-/// or forces of supports were measured.  O(1).
+/// Tells whether displacements of supports, or of the whole specimen, are not
+/// known, or forces of supports were measured.  O(1).
 [[nodiscard]] bool HasUnknownMotion(const Scene& scene);
 
-/// The part of ValidateScene about unknown displacements of supports and about
-/// resultants.  O(num_dofs num_load_cases).
+/// Validates unknown displacements of supports and resultants, as a part of
+/// ValidateScene.  O(num_dofs num_load_cases).
 void ValidateUnknownMotion(const Scene& scene);
 
-/// The held components that moved as measured: those of unknown displacement
-/// that are not in rigid faces.  dimension x num_nodes; empty when there are
-/// none of unknown displacement.
+/// Returns the held components that moved as measured: those of unknown
+/// displacement that are not in rigid faces.  dimension x num_nodes; empty when
+/// there are no unknown displacements.
 [[nodiscard]] ComponentMask AsMeasured(const Supports& supports);
 
-/// What moved by unknown amounts b and a in a load case,
+/// The motions by unknown amounts b and a in a load case,
 ///
 ///   u of the supports = given + G b,   what was measured = u + R a + noise.
 ///
@@ -30,22 +30,23 @@ void ValidateUnknownMotion(const Scene& scene);
 /// there, move as the mean of the two nodes at their ends where they were
 /// measured in no load case of these supports.
 struct UnknownMotion {
-  /// G: num_dofs x n.  One column for each displacement that is as measured,
-  /// and the rigid motions of each face, three to six at most.
+  /// G: num_dofs x n.  It has one column for each displacement that is as
+  /// measured, and the rigid motions of each face, three to six at most.
   Eigen::SparseMatrix<double> of_supports;
-  /// R: num_dofs x 3 or 6, where a rigid motion of all is free, else x 0.
+  /// R: num_dofs x 3 or 6 where a rigid motion of the specimen is free, else x
+  /// 0.
   Eigen::MatrixXd of_all;
 
-  /// In the load cases of these supports of the scene.  Precondition: a valid
-  /// scene.  O(num_dofs num_load_cases).
+  /// Takes the load cases of the scene that have these supports.  Precondition:
+  /// a valid scene.  O(num_dofs num_load_cases).
   UnknownMotion(const Scene& scene, const Supports& supports);
 
-  /// How many amounts there are in a load case.
+  /// Returns how many amounts there are in a load case.
   Eigen::Index NumAmounts() const { return of_supports.cols() + of_all.cols(); }
 };
 
-/// The displacement of AsMeasured as measured in load case `k`, zero elsewhere
-/// and where a node was not measured: num_dofs values.
+/// Returns the measured displacement of AsMeasured in load case `k`, num_dofs
+/// values; zero elsewhere and where a node was not measured.
 [[nodiscard]] Eigen::VectorXd MeasuredSupports(const Scene& scene,
                                                Eigen::Index k);
 

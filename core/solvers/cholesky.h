@@ -16,33 +16,34 @@ namespace elastimate {
 /// each set of values.
 ///
 /// The fill-reducing ordering is METIS nested dissection of the graph of the
-/// nodes, whose components stay together: a third of the vertices of the graph
-/// of the degrees of freedom, and as good.
+/// nodes, so that the components of a node stay together.  That graph has a
+/// third of the vertices of the graph of the degrees of freedom, and the
+/// ordering is as good.
 class Cholesky : public LinearSolver {
  public:
-  /// Ordering and symbolic analysis.  `assembly` must outlive this object.
+  /// Orders and analyses the pattern.  `assembly` must outlive this object.
   /// Throws std::bad_alloc when there is not enough memory.
   Cholesky(const StiffnessAssembly& assembly,
            const DegreesOfFreedom& degrees_of_freedom);
   ~Cholesky() override;
 
-  /// L L^T = the matrix of these values (in the order of the pattern).  False
-  /// when the matrix is not positive definite to working precision, so that a
-  /// solution would have no correct digit.
+  /// Factorises the matrix of these values (in the order of the pattern) as L
+  /// L^T.  Returns false when the matrix is not positive definite to working
+  /// precision, so that a solution would have no correct digit.
   ///
   /// Precondition: the supports hold the mesh (WhyNotHeld).  The values cannot
-  /// tell: assembled, a motion that nothing resists has a stiffness of up to
-  /// 1e-14 of the diagonal next to nu = 1/2, made of nothing but rounding, and
-  /// a plate of quadratic elements that is a thousandth as thick as it is wide
-  /// has one of 1e-15 that is right to a few per cent.
+  /// tell whether they do: a motion that nothing resists has, once assembled, a
+  /// stiffness of up to 1e-14 of the diagonal next to nu = 1/2, which is mere
+  /// rounding.  A plate of quadratic elements that is a thousandth as thick as
+  /// it is wide has one of 1e-15 that is right to a few per cent.
   bool Factorize(const Eigen::VectorXd& values) override;
 
   std::optional<Eigen::MatrixXd> Solve(const Eigen::MatrixXd& right_hand_sides,
                                        double tolerance) override;
 
-  /// Floating-point operations of a factorisation.
+  /// Returns the floating-point operations of a factorisation.
   double FactorizationFlops() const;
-  /// Number of stored values of the factor.
+  /// Returns the number of stored values of the factor.
   double FactorValues() const;
 
  private:

@@ -18,8 +18,8 @@ Eigen::RowVectorXd ProductsOfColumns(const Eigen::MatrixXd& a,
 // M A [Golub & Van Loan, Matrix Computations].
 class LanczosMatrix {
  public:
-  // `length` is that of the step along a direction, into which `share` of the
-  // direction before went.
+  // Adds a step of this `length` along a direction, which took `share` of the
+  // direction before.
   void Add(double length, double share) {
     diagonal_.push_back(1 / length);
     if (diagonal_.size() > 1) {
@@ -29,7 +29,7 @@ class LanczosMatrix {
     last_length_ = length;
   }
 
-  // Ascending; none before the first step.
+  // Returns the eigenvalues in ascending order; none before the first step.
   Eigen::VectorXd Eigenvalues() const {
     if (diagonal_.empty()) {
       return {};
@@ -50,7 +50,7 @@ class LanczosMatrix {
   double last_length_ = 0;
 };
 
-// The columns that are not done, side by side.
+// Holds the columns that are not done, side by side.
 class Iterations {
  public:
   Iterations(const ColumnOperator& multiply, const ColumnOperator& precondition,
@@ -61,7 +61,7 @@ class Iterations {
     result_.solution =
         Eigen::MatrixXd::Zero(right_hand_sides.rows(), right_hand_sides.cols());
     for (Eigen::Index k = 0; k < right_hand_sides.cols(); ++k) {
-      // Without a force there is no displacement, whatever the guess.
+      // A column without a force has no displacement, whatever the guess.
       if (!right_hand_sides.col(k).isZero(0)) {
         columns_.push_back(k);
       }
@@ -161,7 +161,7 @@ class Iterations {
     const double most =
         options_.tolerance * options_.tolerance *
         x_.col(column).dot(force_.col(column) - residual_.col(column));
-    // The smallest eigenvalue that is known only falls.
+    // The smallest eigenvalue that is known can only decrease later.
     if (!(rz <= most * result_.smallest_eigenvalue)) {
       return false;
     }

@@ -6,7 +6,7 @@
 
 namespace elastimate {
 
-/// A matrix or a preconditioner, which makes columns of columns: size x n.
+/// A matrix or a preconditioner, which maps columns to columns: size x n.
 using ColumnOperator = std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>;
 
 struct ConjugateGradientOptions {
@@ -19,11 +19,11 @@ struct ConjugateGradientOptions {
 
 struct ConjugateGradientResult {
   Eigen::MatrixXd solution;    ///< As far as it was found: size x n.
-  bool has_converged = false;  ///< Whether all columns have.
+  bool has_converged = false;  ///< Whether all columns have converged.
   int iterations = 0;          ///< The sum over all columns.
-  int products = 0;            ///< With A, each of any number of columns.
-  /// The extreme eigenvalues of M A as the iterations see them (Ritz values);
-  /// the guess and 0 where there was no iteration.
+  int products = 0;            ///< Products with A, of any columns each.
+  /// The extreme eigenvalues of M A as the iterations see them (Ritz values).
+  /// Without any iteration they are the guess and 0.
   double smallest_eigenvalue = 1;
   double largest_eigenvalue = 0;
 };
@@ -32,16 +32,16 @@ struct ConjugateGradientResult {
 /// gradients that are preconditioned by M, which may change a little from one
 /// call to the next [Notay, SIAM J. Sci. Comput. 22 (2000) 1444].
 ///
-/// All columns share the calls of `multiply` (A) and `precondition` (M), which
-/// take those that are not done: both are symmetric and positive definite, and
-/// M is close to A^-1.  A column is done when r^T M r, which is at least the
-/// smallest eigenvalue of M A times the squared energy of the error, tells that
-/// the error is small enough.
+/// All columns that are not done share the calls of `multiply` (A) and
+/// `precondition` (M).  Both have to be symmetric and positive definite, and M
+/// close to A^-1.  A column is done when r^T M r tells that the error is small
+/// enough: it is at least the smallest eigenvalue of M A times the squared
+/// energy of the error.
 ///
-/// `start` is empty or has a guess of each column, of which the multiple with
-/// the least error is taken; a guess that is not finite is none.  The result
-/// has not converged where A or M is not positive definite in the directions
-/// that were met, where a number is not finite, and after too many iterations.
+/// `start` is empty or has a guess of each column, which is first scaled to
+/// have the least error; a guess that is not finite is ignored.  The result has
+/// not converged where A or M is not positive definite in the directions that
+/// were met, where a number is not finite, or after too many iterations.
 ConjugateGradientResult SolveByConjugateGradients(
     const ColumnOperator& multiply, const ColumnOperator& precondition,
     const Eigen::MatrixXd& right_hand_sides, const Eigen::MatrixXd& start,

@@ -18,20 +18,19 @@ class LinearSolver {
   LinearSolver& operator=(const LinearSolver&) = delete;
 
   /// Prepares the matrix of these values (in the order of the pattern) for
-  /// Solve.  False when that fails: the matrix may be singular to working
-  /// precision.
-  /// Throws std::bad_alloc when there is not enough memory.
+  /// Solve.  Returns false when that fails: the matrix may be singular to
+  /// working precision.  Throws std::bad_alloc when there is not enough memory.
   virtual bool Factorize(const Eigen::VectorXd& values) = 0;
 
-  /// The solution x for each column of `right_hand_sides`, size x n, whose
-  /// error is at most `tolerance` |x| in the energy norm
-  /// |x|^2 = x^T A x; a direct solver does as well as it can.  Empty when that
-  /// was not reached.
+  /// Returns the solution x for each column of `right_hand_sides`, size x n.
+  /// Its error is at most `tolerance` |x| in the energy norm |x|^2 = x^T A x; a
+  /// direct solver does as well as it can.  Empty when the tolerance was not
+  /// reached.
   /// Precondition: the last Factorize returned true.
   virtual std::optional<Eigen::MatrixXd> Solve(
       const Eigen::MatrixXd& right_hand_sides, double tolerance) = 0;
 
-  /// Iterations of all columns until now; 0 for a direct solver.
+  /// Returns the iterations of all columns until now; 0 for a direct solver.
   virtual int NumIterations() const { return 0; }
 };
 

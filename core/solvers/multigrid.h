@@ -11,24 +11,25 @@
 
 namespace elastimate {
 
-/// Has this function start PETSc for the process when multigrid is first made:
-/// to start it is the program's affair, for it starts MPI, which there is once
-/// in a process.  Null, the default, leaves PETSc to a PetscInitialize of the
-/// program.  It is called for each solver, under no lock, and does nothing
-/// where PETSc runs.  A program that has none of its own calls
-/// StartPetscWhenNeeded (petsc/start_petsc.h).
+/// Has `start` start PETSc for the process when multigrid is first made.  To
+/// start it is up to the program, because PETSc starts MPI, which starts only
+/// once in a process.  Null, the default, leaves PETSc to a PetscInitialize of
+/// the program.  `start` is called for each solver, under no lock, and has to
+/// do nothing where PETSc runs.  A program without such a function of its own
+/// passes StartPetscWhenNeeded (petsc/start_petsc.h).
 void SetStartOfPetsc(void (*start)());
 
-/// Empty when there is a multigrid solver: the library was built with PETSc,
-/// its module `libelastimate_multigrid` is found at run time, and PETSc runs or
-/// has a function that starts it.  Else why not, in a few words.  The module is
-/// loaded at the first call, for PETSc brings libraries that take longer to
-/// load than a small scene takes to estimate.
+/// Tells in a few words why there is no multigrid solver.  It is empty when
+/// there is one: the library was built with PETSc, its module
+/// `libelastimate_multigrid` is found at run time, and PETSc runs or has a
+/// function that starts it.  The module is loaded at the first call, because
+/// PETSc brings libraries that take longer to load than a small scene takes to
+/// estimate.
 [[nodiscard]] std::string WhyNoMultigrid();
 
 inline bool HasMultigrid() { return WhyNoMultigrid().empty(); }
 
-/// A PetscMultigrid, which cannot be set up where PETSc fails to start.
+/// Returns a PetscMultigrid; its Factorize fails where PETSc fails to start.
 /// `assembly` and `degrees_of_freedom` must outlive it.
 /// Precondition: HasMultigrid().
 [[nodiscard]] std::unique_ptr<LinearSolver> MakeMultigrid(

@@ -13,7 +13,7 @@
 #include <vector>
 
 #ifdef ELASTIMATE_HAS_ML
-// This is declared in ml_utils.h, which would bring in all of Trilinos.
+// ml_utils.h declares this function, but would bring in all of Trilinos.
 extern "C" void ML_set_random_seed(int seed);
 #endif
 
@@ -21,13 +21,13 @@ namespace elastimate {
 namespace {
 
 constexpr int kMostIterations = 500;
-// The norm in which the iterations are stopped, sqrt(r^T B r) for the
-// preconditioner B, is that of the energy of the error where B is A^-1, and
-// smaller in soft modes that B has not got.  Those show as small eigenvalues of
-// B A when the iterations go on; what they make of the norm is checked then.
+// The iterations stop by the norm sqrt(r^T B r) for the preconditioner B.
+// Where B is A^-1, this is the energy norm of the error; in soft modes that B
+// lacks, it is smaller.  Such modes show as small eigenvalues of B A when the
+// iterations go on, and the effect of these on the norm is checked then.
 constexpr double kStricter = 1e-3;
 
-// An error of PETSc other than that memory is short.
+// An error of PETSc other than a lack of memory.
 struct PetscFailure {};
 
 void Check(PetscErrorCode error) {
@@ -45,13 +45,12 @@ std::mutex& PetscMutex() {
   return mutex;
 }
 
-// Trilinos' ML aggregates every mesh well, in a tenth of the time that GAMG of
-// PETSc 3.18 takes, which coarsens meshes with nodes of few neighbours by two
-// only.  Chebyshev smoothing is symmetric, and twice as fast as SOR.  Its
-// largest eigenvalue is estimated by GMRES, since conjugate gradients, which
-// PETSc would take, end early where a matrix is not positive definite, and
-// PETSc reads numbers then that nothing has set, some of which it never ends
-// with.
+// Trilinos' ML aggregates every mesh well, in a tenth of the time of GAMG of
+// PETSc 3.18, which coarsens meshes with nodes of few neighbours by two only.
+// Chebyshev smoothing is symmetric, and twice as fast as SOR.  Its largest
+// eigenvalue is estimated by GMRES.  PETSc would take conjugate gradients,
+// which end early where a matrix is not positive definite; PETSc then reads
+// numbers that nothing has set, and with some of them it never ends.
 constexpr char kOptions[] =
     "-elastimate_ksp_type cg -elastimate_ksp_norm_type natural "
 #ifdef ELASTIMATE_HAS_ML
@@ -70,8 +69,8 @@ bool IsPetscRunning() {
   return is_running == PETSC_TRUE;
 }
 
-// While one of these lives, no other thread is in PETSc, what it writes for an
-// error goes nowhere, and the options above hold instead of the program's.
+// While an object of this class lives, no other thread is in PETSc, PETSc
+// writes no errors, and the options above hold instead of the program's.
 class UseOfPetsc {
  public:
   UseOfPetsc() : lock_(PetscMutex()) {
@@ -98,23 +97,23 @@ class UseOfPetsc {
 
 }  // namespace
 
-// Multigrid needs blocks of equal size, so that the matrix is that of all
-// components of the nodes that have a free one; where a component is held, its
-// row has only a diagonal entry, of the size of the others of its node.
+// Multigrid needs blocks of equal size, so the matrix has all components of
+// each node that has a free one.  Where a component is held, its row has only a
+// diagonal entry, of the size of the others of its node.
 struct PetscMultigrid::Workspace {
   const StiffnessAssembly& assembly;
   const DegreesOfFreedom& degrees_of_freedom;
   int dimension;
-  /// For each node its block, -1 when it has no free component.
+  /// The block of each node, -1 when it has no free component.
   std::vector<int> block;
   int num_blocks = 0;
-  /// Row of the matrix of each free degree of freedom.
+  /// The row of the matrix for each free degree of freedom.
   std::vector<PetscInt> row_of_free;
-  /// Compressed rows of blocks, columns ascending.
+  /// The rows of blocks, compressed, columns ascending.
   std::vector<PetscInt> block_start;
   std::vector<PetscInt> row_start;
   std::vector<PetscInt> column;
-  std::vector<double> entries;  ///< What the matrix has there.
+  std::vector<double> entries;  ///< The entries of the matrix.
   Mat matrix = nullptr;
   Vec right_hand_side = nullptr;
   Vec solution = nullptr;
@@ -142,13 +141,13 @@ struct PetscMultigrid::Workspace {
 
   void NumberBlocks();
   void BuildPattern();
-  /// The rows of numbers that rows of blocks with these columns stand for.
+  /// Finds the rows of numbers for the rows of blocks that have these columns.
   void ExpandBlocks(const std::vector<int>& block_column);
   void Fill(const Eigen::VectorXd& values, double* entries) const;
   void SetNearNullSpace(const Mesh& mesh);
   void CreateSolver(const Mesh& mesh);
-  /// Bounds the error of the last solution, relative to it: ||e||_A^2 =
-  /// r^T A^-1 r is at most r^T B r / (smallest eigenvalue of B A).
+  /// Bounds the energy error of the last solution, relative to the solution:
+  /// ||e||_A^2 = r^T A^-1 r is at most r^T B r / (smallest eigenvalue of B A).
   double EnergyErrorBound(PetscInt iterations) const;
 };
 
@@ -243,7 +242,7 @@ void PetscMultigrid::Workspace::Fill(const Eigen::VectorXd& values,
   const auto is_free = [&](Eigen::Index node, int component) {
     return degrees_of_freedom.place[dimension * node + component] >= 0;
   };
-  // Entry (i, j) of the k-th block of a row of blocks.
+  // Returns entry (i, j) of the k-th block of a row of blocks.
   const auto entry = [&](int a, PetscInt k, int i, int j) -> double& {
     return entries[row_start[dimension * a + i] +
                    dimension * (k - block_start[a]) + j];
@@ -355,7 +354,7 @@ bool PetscMultigrid::Factorize(const Eigen::VectorXd& values) {
     work.Fill(values, entries);
     Check(MatSeqAIJRestoreArray(work.matrix, &entries));
 #ifdef ELASTIMATE_HAS_ML
-    // Largest eigenvalues are estimated from random vectors.
+    // The estimates of largest eigenvalues start from random vectors.
     ML_set_random_seed(1);
 #endif
     Check(KSPSetOperators(work.solver, work.matrix, work.matrix));

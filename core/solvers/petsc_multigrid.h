@@ -40,7 +40,7 @@ class PetscMultigrid : public LinearSolver {
 
 }  // namespace elastimate
 
-// What core/solvers/multigrid.cc looks up in the module.
+// core/solvers/multigrid.cc looks this function up in the module.
 extern "C" __attribute__((visibility("default"))) elastimate::LinearSolver*
 elastimate_make_multigrid(
     const elastimate::Mesh& mesh, const elastimate::StiffnessAssembly& assembly,

@@ -14,9 +14,9 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// Floating-point operations of a factorisation, for each degree of freedom,
-// with which it takes about as long as the set-up and some dozen solves of
-// multigrid on linear and on quadratic elements.
+// A factorisation of so many floating-point operations for each degree of
+// freedom takes about as long as multigrid takes for its set-up and some dozen
+// solves.  The values are for linear and for quadratic elements.
 constexpr double kMostFlops[] = {3e6, 9e6};
 
 }  // namespace

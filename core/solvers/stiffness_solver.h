@@ -19,7 +19,7 @@ struct Work {
   int factorizations = 0;  ///< Numeric Cholesky factorisations.
   int multigrid_set_ups = 0;
   int solves = 0;      ///< Right-hand sides that were solved for.
-  int iterations = 0;  ///< By conjugate gradients, for all solves.
+  int iterations = 0;  ///< Steps of conjugate gradients, all columns.
 };
 
 inline Work operator+(const Work& a, const Work& b) {
@@ -38,9 +38,9 @@ inline Work operator-(const Work& a, const Work& b) {
 
 /// How linear systems are solved.
 enum class SolverKind {
-  /// Multigrid where a factorisation takes longer, as its analysis tells: from
-  /// about 100 000 nodes on in a compact body of linear tetrahedra, 200 000
-  /// of quadratic ones, and from many more in plates and bars.
+  /// Multigrid where a factorisation takes longer, as its analysis tells.  In a
+  /// compact body that is from about 100 000 nodes on with linear tetrahedra
+  /// and 200 000 with quadratic ones, in plates and bars from many more on.
   kAutomatic,
   kCholesky,   ///< Direct.  In a compact body, time grows with nodes squared.
   kMultigrid,  ///< Conjugate gradients; needs PETSc (HasMultigrid).
@@ -60,31 +60,32 @@ class StiffnessSolver {
   /// into memory.
   StiffnessSolver(const Mesh& mesh, const Supports& supports, SolverKind kind);
 
-  /// Factorises A(nu); does nothing when nu is the present one.  False when
-  /// A(nu) is singular to working precision (nu at or beyond -1 or 1/2, or an
-  /// extremely ill-conditioned mesh).
+  /// Factorises A(nu); does nothing when nu is the present one.  Returns false
+  /// when A(nu) is singular to working precision (nu at or beyond -1 or 1/2, or
+  /// an extremely ill-conditioned mesh).
   [[nodiscard]] bool Factorize(double poisson_ratio);
 
-  /// Factorises the stiffness of these blocks instead: for each pair of the
-  /// graph, dimension x (dimension num_pairs), side by side.  False when it is
-  /// singular to working precision.
+  /// Factorises a stiffness that is given by a block for each pair of the graph
+  /// instead, side by side: dimension x (dimension num_pairs).  Returns false
+  /// when it is singular to working precision.
   [[nodiscard]] bool FactorizeBlocks(const Eigen::MatrixXd& blocks);
 
-  /// A^-1 of the free rows of each column of `all` (num_dofs x n), zero in
-  /// the held rows.  Where multigrid does not converge, A is factorised from
-  /// there on; when that shows that it is singular, the solution is NaN.
-  /// Precondition: the last factorisation succeeded.
+  /// Returns A^-1 times the free rows of each column of `all` (num_dofs x n),
+  /// and zeros in the held rows.  Where multigrid does not converge, A is
+  /// factorised from then on; when that shows that it is singular, the solution
+  /// is NaN.  Precondition: the last factorisation succeeded.
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& all,
                         double tolerance = kAccurate);
 
-  /// nu of the present factorisation; NaN when there is none, or one of blocks.
+  /// Returns nu of the present factorisation; NaN when there is none, or when
+  /// it is of blocks.
   double PoissonRatio() const { return poisson_ratio_; }
   const DegreesOfFreedom& Dofs() const { return degrees_of_freedom_; }
   const NodeGraph& Graph() const { return assembly_->Graph(); }
   const Work& WorkDone() const { return work_; }
   bool UsesMultigrid() const { return is_multigrid_; }
-  /// A sentence where systems are solved otherwise than was asked for or is
-  /// best; else empty.
+  /// Returns a sentence where systems are solved in another way than was asked
+  /// for or than is best; else empty.
   const std::string& Notice() const { return notice_; }
 
  private:
@@ -93,10 +94,10 @@ class StiffnessSolver {
 
   DegreesOfFreedom degrees_of_freedom_;
   std::unique_ptr<StiffnessAssembly> assembly_;
-  Eigen::VectorXd values_;  ///< The last matrix, memory to be used again.
+  Eigen::VectorXd values_;  ///< The last matrix; its memory is used again.
   std::unique_ptr<LinearSolver> solver_;
   bool is_multigrid_ = false;
-  /// NaN before the first factorisation and after a failed one.
+  /// This is NaN before the first factorisation and after a failed one.
   double poisson_ratio_;
   Work work_;
   std::string notice_;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kLargestRatio = 10;
 
-// Numbers in a table without an exponent.
+// Tables write numbers from here on without an exponent.
 constexpr double kSmallestPlain = 1e-4;
 constexpr double kLargestPlain = 1e7;
 constexpr int kMostDigits = 10;
@@ -20,7 +20,7 @@ int PlaceOf(double value) {
   return static_cast<int>(std::floor(std::log10(std::abs(value))));
 }
 
-// Rounded to the digit of this power of ten, without an exponent.
+// Rounds to the digit of this power of ten and writes no exponent.
 std::string PlainText(double value, int place) {
   const double unit = std::pow(10, place);
   if (std::abs(value) < unit / 2) {
@@ -64,7 +64,8 @@ std::string ValueWithError(double value, double error) {
     }
     return NumberText(value, digits) + " +- " + NumberText(error, 2);
   }
-  // The second digit of the error is here; rounding may carry it into a third.
+  // This is the place of the second digit of the error, which rounding may
+  // carry into a third.
   int place = PlaceOf(error) - 1;
   place += std::round(error / std::pow(10, place)) > 99 ? 1 : 0;
   const int least = PlaceOf(larger) + 1 - kMostDigits;

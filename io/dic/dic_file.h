@@ -16,14 +16,14 @@ struct DicFrame {
   std::string format;
   Eigen::Matrix2Xd positions;        ///< [length]
   Eigen::Matrix2Xd displacement;     ///< [length]
-  std::vector<std::size_t> lines;    ///< Where each point stands in the file.
+  std::vector<std::size_t> lines;    ///< The line of each point in the file.
   Eigen::Index num_invalid = 0;      ///< Points that were left out.
-  std::vector<std::string> notices;  ///< What is said of units.
+  std::vector<std::string> notices;  ///< Sentences on the units of the table.
 };
 
-/// The points of a table (ReadPointRows) without those that have no finite
-/// position or displacement.  Throws std::invalid_argument, naming the file and
-/// the mend.
+/// Reads the points of a table (ReadPointRows), without those that have no
+/// finite position or displacement.  Throws std::invalid_argument, naming the
+/// file and the mend.
 DicFrame ReadDicFile(const std::filesystem::path& path,
                      const TableOptions& options);
 

@@ -30,7 +30,7 @@ FreeEdges FreeEdgesOf(const Scene& scene) {
   return free;
 }
 
-// By the shoelace formula.
+// Returns the area by the shoelace formula.
 double AreaOf(const Mesh& mesh) {
   double twice = 0;
   for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {

@@ -18,7 +18,8 @@
 namespace elastimate {
 namespace {
 
-// Points may differ by this, beside the least distance between two of them.
+// Points that are closer than this share of the least distance between two
+// points are the same.
 constexpr double kSamePosition = 1e-3;
 
 double LeastDistance(const Eigen::Matrix2Xd& points) {
@@ -41,7 +42,8 @@ std::optional<double> ReadLength(const JsonValue& mesh,
   return length;
 }
 
-// And nodes for what the camera lost of a grid, without a displacement.
+// Adds nodes without a displacement for the points of a grid that the camera
+// lost.
 DicFrame WithLostPoints(DicFrame frame) {
   const Eigen::Matrix2Xd lost = LostPoints(frame.positions);
   Eigen::Matrix2Xd positions(2, frame.positions.cols() + lost.cols());
@@ -68,7 +70,8 @@ Eigen::Index NumBeside(const DicFrame& frame, const PointMesh& points) {
   return frame.positions.cols() - Eigen::Index(points.points.size());
 }
 
-// A mesh of a part of the specimen would bear the force of all of it.
+// Throws where more than a few points are beside the mesh, since the mesh of a
+// part of the specimen would bear the force of all of it.
 void CheckPointsBeside(const std::filesystem::path& path, const DicFrame& frame,
                        const PointMesh& points) {
   constexpr double kMostBeside = 0.05;

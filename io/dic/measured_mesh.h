@@ -13,20 +13,20 @@
 
 namespace elastimate {
 
-/// The key "mesh" of a scene where it is {"points": FILE, "max_edge"} with the
-/// keys of ReadTableOptions: a planar mesh of the points that a camera followed
-/// (ReadDicFile, MeshOfPoints), with their displacements as the node array
-/// "displacement".  What was left out and the size of the mesh,
-/// which scales E, become a notice.  Throws std::invalid_argument, naming the
+/// Reads the key "mesh" of a scene where it is {"points": FILE, "max_edge"}
+/// with the keys of ReadTableOptions.  The mesh is a planar one of the points
+/// that a camera followed (ReadDicFile, MeshOfPoints), with their displacements
+/// as the node array "displacement".  A notice tells what was left out, and the
+/// size of the mesh, which scales E.  Throws std::invalid_argument, naming the
 /// file and the place in it.
 MeshFile ReadMeasuredMesh(const JsonValue& mesh,
                           std::vector<std::string>& notices);
 
-/// Enters what another file of the camera says of the nodes of such a mesh, 2 x
-/// n, which are found by their positions, to a thousandth of the least distance
-/// between two of them: their displacement, and which of them were observed.
-/// Throws std::invalid_argument, naming the file, where fewer than half of them
-/// were.
+/// Enters the displacements that another file of the camera has for the nodes
+/// of such a mesh, 2 x n, and which of the nodes it observed.  Nodes are found
+/// by their positions, to a thousandth of the least distance between two of
+/// them.  Throws std::invalid_argument, naming the file, where fewer than half
+/// of them were observed.
 void ReadMeasuredFrame(const std::filesystem::path& path,
                        const TableOptions& options,
                        const Eigen::Matrix2Xd& nodes, LoadCase& load_case);

@@ -25,14 +25,15 @@ namespace {
 
 using Elements = std::vector<std::vector<int>>;
 
-// A grid may be uneven by this, beside its spacing.
+// A point farther than this share of the spacing from its place is off the
+// grid.
 constexpr double kOffGrid = 0.02;
-// The least height of a triangle of the rim over its longest edge.
+// The least height of a triangle of the rim, over its longest edge.
 constexpr double kLeastHeight = 0.2;
-// Points on a line may be off it by this.
+// Below this height over its longest edge, a triangle is of points on a line.
 constexpr double kFlat = 1e-6;
-// An edge over the one that nine of ten are shorter than, from which on it
-// bridges a gap.
+// An edge bridges a gap if it is longer than kGap times the length below which
+// kMost of the edges are.
 constexpr double kMost = 0.9;
 constexpr double kGap = 1.5;
 
@@ -80,7 +81,7 @@ struct PointGrid {
   }
 };
 
-// Empty when a point is off the grid.
+// Returns nothing when a point is off the grid.
 std::optional<PointGrid> GridOf(const Eigen::Matrix2Xd& positions) {
   if (positions.cols() == 0) {
     return std::nullopt;
@@ -102,8 +103,8 @@ std::optional<PointGrid> GridOf(const Eigen::Matrix2Xd& positions) {
   return grid;
 }
 
-// A quadrilateral wherever four points are the corners of a cell; none when a
-// point is off the grid.
+// Returns a quadrilateral wherever four points are the corners of a cell, and
+// none when a point is off the grid.
 Elements QuadrilateralsOf(const Eigen::Matrix2Xd& positions) {
   const std::optional<PointGrid> grid = GridOf(positions);
   if (!grid) {
@@ -127,8 +128,8 @@ Elements QuadrilateralsOf(const Eigen::Matrix2Xd& positions) {
   return elements;
 }
 
-// The places without a point that hang together with `first` and lie within
-// the box of the grid; they are taken from `empty`.
+// Returns the places without a point that are connected to `first` and lie
+// within the box of the grid, and removes them from `empty`.
 std::vector<GridPlace> TakeGap(const GridPlace& first,
                                std::set<GridPlace>& empty) {
   std::vector<GridPlace> gap = {first};
@@ -146,7 +147,7 @@ std::vector<GridPlace> TakeGap(const GridPlace& first,
 }
 
 // Returns the places of `empty` that lie between two points of the same column
-// (axis 1) or row (axis 0), `most` places at most.
+// (axis 1) or row (axis 0), in gaps of at most `most` places.
 std::set<GridPlace> BetweenPoints(const PointGrid& grid,
                                   const std::set<GridPlace>& empty,
                                   std::size_t axis, long long most) {
@@ -169,8 +170,9 @@ std::set<GridPlace> BetweenPoints(const PointGrid& grid,
   return between;
 }
 
-// Takes rows or columns that were lost over the whole width of what they cross
-// from `empty`.  A slot, which ends at points, is a hole.
+// Returns rows or columns that were lost over the whole width of the points,
+// and removes them from `empty`.  A slot, which ends at points, is a hole
+// instead.
 std::vector<GridPlace> TakeLostLines(const PointGrid& grid, long long most,
                                      std::set<GridPlace>& empty) {
   std::vector<GridPlace> lost;
@@ -249,7 +251,7 @@ Elements DelaunayTriangles(const Eigen::Matrix2Xd& positions) {
   return triangles;
 }
 
-// By edge, the elements that have it.
+// Returns the elements of each edge.
 std::map<std::pair<int, int>, std::vector<std::size_t>> ElementsOfEdges(
     const Elements& elements) {
   std::map<std::pair<int, int>, std::vector<std::size_t>> of_edges;
@@ -263,7 +265,8 @@ std::map<std::pair<int, int>, std::vector<std::size_t>> ElementsOfEdges(
   return of_edges;
 }
 
-// What Delaunay's hull adds where the rim of the points is not convex.
+// Returns the triangles without the slivers that Delaunay's hull adds where the
+// rim of the points is not convex.
 Elements WithoutSlivers(const Eigen::Matrix2Xd& positions, Elements triangles) {
   for (bool has_slivers = true; has_slivers;) {
     std::vector<bool> is_sliver(triangles.size(), false);
@@ -287,7 +290,7 @@ Elements WithoutSlivers(const Eigen::Matrix2Xd& positions, Elements triangles) {
   return triangles;
 }
 
-// The most elements that hang together by edges.
+// Returns the largest set of elements that are connected by edges.
 Elements LargestPart(const Elements& elements) {
   std::vector<std::size_t> parent(elements.size());
   std::iota(parent.begin(), parent.end(), 0);
@@ -333,7 +336,7 @@ double DefaultMaxEdge(const Eigen::Matrix2Xd& positions,
   return kGap * *most;
 }
 
-// Numbers the nodes that are used.
+// Numbers the nodes that elements use.
 PointMesh Number(ElementKind kind, const Elements& elements) {
   PointMesh mesh;
   mesh.kind = kind;
@@ -359,9 +362,9 @@ PointMesh Number(ElementKind kind, const Elements& elements) {
 }  // namespace
 
 Eigen::Matrix2Xd LostPoints(const Eigen::Matrix2Xd& positions) {
-  // More in a row are a hole.
+  // More empty places in a row are a hole.
   constexpr std::size_t kMostLost = 4;
-  // Points fill this share of the box of a grid at least.
+  // Points have to fill at least one place in so many of the box of the grid.
   constexpr long long kSparsest = 8;
   const std::optional<PointGrid> grid = GridOf(positions);
   if (!grid) {

@@ -19,20 +19,21 @@ constexpr int kMaxOrganTetrahedra = 2000000;
 constexpr int kMaxCuboidTetrahedra = 10000000;
 constexpr int kTetrahedraPerCell = 5;
 
-// The magnitudes that a scene may have (RequireRepresentable).
+// A scene may have these magnitudes (RequireRepresentable).
 constexpr double kSmallest = 1e-50;
 constexpr double kLargest = 1e50;
 
-// Beyond, the reader takes the tetrahedra of a cell for flat.
+// Beyond this, the reader takes the tetrahedra of a cell for flat.
 constexpr double kMaxCellAspect = 1e5;
 
-// Square numbers of cells are as many as those of other geometries.
+// This square number of cells is about the largest number of other geometries.
 constexpr int kMaxPlateCells = 1414;
-// Beyond, the cells beside a corner are slivers.
+// Beyond this, the cells beside a corner are slivers.
 constexpr double kMaxPlateAspect = 100;
-// A hole may take this part of the shorter edge: no ligament is left beyond.
+// The largest radius over the shorter edge; beyond it, hardly any ligament is
+// left.
 constexpr double kLargestHole = 0.99;
-// Of W.
+// The usual elongation over W.
 constexpr double kUsualElongation = 1e-3;
 
 template <typename Value>
@@ -71,7 +72,8 @@ void CheckForce(const Eigen::VectorXd& force) {
           "the largest must be " + Range() + ", or all zero");
 }
 
-/// Makes a grid of cells, each cut into no more than five elements.
+/// Checks a grid of cells, each of which is cut into no more than five
+/// elements.
 void CheckGrid(const Eigen::VectorXi& cells, const Eigen::VectorXd& size) {
   Require(cells.minCoeff() >= 1, "cells", CommaSeparated(cells),
           "each must be at least 1");
@@ -99,7 +101,7 @@ void CheckOptions(const CuboidOptions& options) {
   CheckForce(options.force);
 }
 
-/// Makes the scene of a planar `geometry`.
+/// Checks the elements and the section of a planar `geometry`.
 void CheckSheet(const std::string& geometry, ElementKind kind,
                 const Section& section) {
   Require(kind == ElementKind::kTri3 || kind == ElementKind::kQuad4, "elements",
@@ -170,8 +172,8 @@ Eigen::Matrix3Xd CuboidNodes(const CuboidOptions& options) {
   return nodes;
 }
 
-/// Five tetrahedra of a cell: four corners cut off, and what remains. Bits 0, 1
-/// and 2 of a corner are its steps along x, y and z.
+/// The five tetrahedra of a cell: four corners that are cut off, and what
+/// remains.  Bits 0, 1 and 2 of a corner are its steps along x, y and z.
 using CellCut = std::array<std::array<int, 4>, kTetrahedraPerCell>;
 
 /// Faces of neighbouring cells have the same diagonal when every other cell is
@@ -260,8 +262,9 @@ Eigen::MatrixXi RectangleElements(ElementKind kind,
   return elements;
 }
 
-/// Where rays from the origin at about equal angles, one of them through the
-/// corner, leave a rectangle of this size: from (W, 0) to (0, H), 2 x (n + 1).
+/// Returns where rays from the origin at about equal angles, one of them
+/// through the corner, leave a rectangle of this size: from (W, 0) to (0, H), 2
+/// x (n + 1).
 Eigen::Matrix2Xd EndsOfRays(const Eigen::Vector2d& size, int n) {
   constexpr double kRightAngle = 1.5707963267948966;
   const double corner = std::atan2(size.y(), size.x());
@@ -297,7 +300,7 @@ Eigen::Matrix2Xd PlateNodes(const PlateOptions& options) {
   return nodes;
 }
 
-/// The facets all of whose nodes are at the largest x.
+/// Returns the facets all of whose nodes are at the largest x.
 Eigen::MatrixXi EndFacets(const Mesh& mesh) {
   const double end = mesh.nodes.row(0).maxCoeff();
   const Eigen::MatrixXi boundary = BoundaryFacets(mesh);
@@ -328,8 +331,8 @@ Scene HeldAndLoaded(Mesh mesh,
   return scene;
 }
 
-/// The surface nodes about where a liver is tied to the diaphragm: its bare
-/// area, at the back and the top of the right lobe.
+/// Returns the surface nodes about where a liver is tied to the diaphragm, its
+/// bare area, at the back and the top of the right lobe.
 Eigen::Array<bool, 1, Eigen::Dynamic> BareArea(const Mesh& organ) {
   constexpr double kRadius = 0.225;  // Of an organ of length 1.
   const Eigen::Vector3d center(-0.16144296140505487, 0.11372351560737334,
@@ -385,7 +388,7 @@ Scene PlateScene(const PlateOptions& options) {
       {}};
   const Eigen::MatrixXd& nodes = scene.mesh.nodes;
   Supports& supports = scene.supports;
-  // Each component on the line of symmetry across it.
+  // Symmetry holds each component on the line across it.
   supports.held = nodes.array() == 0.0;
   supports.displacement.setZero(2, nodes.cols());
   LoadCase& load_case = scene.load_cases.emplace_back();

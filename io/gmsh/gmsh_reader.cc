@@ -36,7 +36,7 @@ constexpr std::array<GmshKind, 6> kGmshKinds = {{
     {ElementKind::kQuad4, 3, 1},
 }};
 
-/// Null where elements of this type are not for scenes.
+/// Returns null where elements of this type are not for scenes.
 const GmshKind* FindGmshKind(int type) {
   const auto* const found =
       std::find_if(kGmshKinds.begin(), kGmshKinds.end(),
@@ -60,9 +60,9 @@ class Numbering {
                                          return b != a + 1;
                                        }) == numbers_.end()) {}
 
-  /// -1 when `number` is not in the list.
+  /// Returns -1 when `number` is not in the list.
   int Find(std::size_t number) const {
-    // As in most files.
+    // Most files number without a gap.
     if (has_no_gap_ && !numbers_.empty()) {
       return number < numbers_.front() || number > numbers_.back()
                  ? -1
@@ -81,7 +81,7 @@ class Numbering {
   bool has_no_gap_;
 };
 
-/// The permutation that sorts `values`.
+/// Returns the permutation that sorts `values`.
 std::vector<std::size_t> SortingOrder(const std::vector<std::size_t>& values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -91,7 +91,7 @@ std::vector<std::size_t> SortingOrder(const std::vector<std::size_t>& values) {
   return order;
 }
 
-/// What Gmsh says that the file has; -1 where it says nothing.
+/// The counts that Gmsh says the file has; -1 where it says nothing.
 struct FileCounts {
   Eigen::Index nodes = -1;
   Eigen::Index elements = -1;
@@ -136,7 +136,7 @@ FileCounts Merge(const std::filesystem::path& link,
   return counts;
 }
 
-/// Elements of some dimension (-1: of all), by their types.
+/// The elements of some dimension (of all for -1), by their types.
 struct GmshElements {
   explicit GmshElements(int dimension, int entity = -1) {
     gmsh::model::mesh::getElements(types, numbers, nodes, dimension, entity);
@@ -215,10 +215,9 @@ std::string ElementTypeName(int type) {
   return name;
 }
 
-/// The elements of dimension 3 count where there is one, else those of
-/// dimension
-// 2; all are of one kind.
-/// Null where there are none.
+/// Returns the kind of the elements of dimension 3 where there are any, else of
+/// dimension 2; they have to be of one kind.  Returns null where there are
+/// none.
 const GmshKind* FindKind(const std::filesystem::path& path,
                          const GmshElements& elements) {
   const GmshKind* kind = nullptr;
@@ -245,7 +244,7 @@ const GmshKind* FindKind(const std::filesystem::path& path,
   return kind;
 }
 
-/// The elements in ascending order of their numbers.
+/// Reads the elements in ascending order of their numbers.
 Numbering ReadElements(const GmshElements& elements, const Numbering& nodes,
                        MeshFile& mesh) {
   const Eigen::Index num_nodes = mesh.Topology().num_nodes;
@@ -314,7 +313,8 @@ void ReadPhysicalGroups(const Numbering& nodes, int facet_type,
   }
 }
 
-/// One column per entry of `numbering`; not a number where the file has none.
+/// Returns one column per entry of `numbering`, with NaN where the file has
+/// none.
 Eigen::MatrixXd Scatter(const std::vector<std::size_t>& numbers,
                         const std::vector<double>& data, int num_components,
                         const Numbering& numbering) {
@@ -398,8 +398,8 @@ std::string GroupName(const MeshFile& mesh, int number) {
               : " \"" + Printable(group->name) + "\"");
 }
 
-/// Enters `number` for the elements of the entity; says which one has another
-/// number already.
+/// Enters `number` for the elements of the entity, or notes which of them has
+/// another number already.
 void EnterRegion(int number, int entity, const Numbering& elements,
                  Eigen::MatrixXd& regions, MeshFile& mesh) {
   for (const std::vector<std::size_t>& of_type :

@@ -7,10 +7,10 @@
 
 namespace elastimate {
 
-/// Reads a file through the Gmsh library, whose state is that of the process,
-/// and which may crash on a damaged file: for the program elastimate-gmsh.
-/// Opens it as `link`, beside which Gmsh finds no other file to read, and calls
-/// it `path`.  Throws std::invalid_argument, naming the file.
+/// Reads a file through the Gmsh library, for the program elastimate-gmsh: the
+/// state of Gmsh is that of the process, and Gmsh may crash on a damaged file.
+/// Opens the file as `link`, beside which Gmsh finds no other file to read, and
+/// calls it `path`.  Throws std::invalid_argument, naming the file.
 MeshFile ReadByGmsh(const std::filesystem::path& link,
                     const std::filesystem::path& path);
 

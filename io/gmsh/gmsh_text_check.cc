@@ -19,7 +19,7 @@ struct TextSection {
   std::string keyword;
   std::string first_line;
   std::int64_t num_lines = 0;
-  std::vector<std::uint64_t> numbers;  ///< At the begin of each but the first.
+  std::vector<std::uint64_t> numbers;  ///< They begin each line but the first.
 };
 
 bool HasNodes(const TextSection& section) {
@@ -36,7 +36,7 @@ bool IsCounted(const TextSection& section) {
   return HasNodes(section) || kKeywords.count(section.keyword) > 0;
 }
 
-/// The number of lines that the first of them tells.
+/// Returns the number of lines for which the first line of the section calls.
 double DueLines(const TextSection& section, double version) {
   std::istringstream counts(section.first_line);
   double first = 0;
@@ -45,8 +45,8 @@ double DueLines(const TextSection& section, double version) {
   if (version < 4 || section.keyword[0] != '$') {
     return 1 + first;
   }
-  // Blocks with a line each, of which those of nodes have the numbers and the
-  // positions in lines of their own from version 4.1 on.
+  // Each block has a line of its own.  From version 4.1 on, blocks of nodes
+  // have the numbers and the positions in separate lines.
   counts >> second;
   return 1 + first + (HasNodes(section) && version >= 4.1 ? 2 : 1) * second;
 }
@@ -83,7 +83,8 @@ void Append(const std::string& line, TextSection& section) {
   }
 }
 
-/// The next line that has something other than a comment; false at the end.
+/// Takes the next line that has something other than a comment; false at the
+/// end.
 bool TakeLine(std::istream& file, std::string& line) {
   while (std::getline(file, line)) {
     line.erase(line.find_last_not_of(" \t\r") + 1);
@@ -103,7 +104,7 @@ std::string WhyGmshTextIsDamaged(const std::filesystem::path& path) {
   TextSection section;
   std::string line;
   while (TakeLine(file, line)) {
-    // Which format it is: .msh or .mesh.
+    // A keyword begins like this in .msh or in .mesh.
     if (line[0] == '$' || std::isupper(static_cast<unsigned char>(line[0]))) {
       const std::string damage = WhyDamaged(section, version);
       if (!damage.empty()) {

@@ -6,11 +6,11 @@
 
 namespace elastimate {
 
-/// What Gmsh 4.8 does not mind in a text file of nodes and elements (.msh, any
-/// version, or .mesh), although it makes another mesh of it, in a few words, or
-/// an empty string: it stops at a count that is too small, and so loses what
-/// follows, and of several nodes of one number takes the last.  Binary files
-/// are not looked into.
+/// Tells in a few words how a text file of nodes and elements (.msh, any
+/// version, or .mesh) is damaged where Gmsh 4.8 does not mind, although it
+/// makes another mesh of it; empty when it is not.  Gmsh stops at a count that
+/// is too small, and so loses what follows, and takes the last of several nodes
+/// of one number.  Binary files are not looked into.
 std::string WhyGmshTextIsDamaged(const std::filesystem::path& path);
 
 }  // namespace elastimate

@@ -8,7 +8,7 @@
 
 namespace elastimate {
 
-/// What a process has left.
+/// What a process leaves behind.
 struct ChildOutcome {
   std::string output;        ///< What it wrote to its file descriptor 3.
   std::string errors;        ///< The begin of what it wrote to standard error.

@@ -9,7 +9,7 @@
 
 namespace elastimate {
 
-/// What a helper program (io/helper/mesh_program.h) has to tell.
+/// The message of a helper program (io/helper/mesh_program.h).
 struct MeshMessage {
   enum class Kind {
     kNone,         ///< Nothing, or not all: the program did not end well.
@@ -36,9 +36,9 @@ void WriteMesh(std::FILE* file, const MeshFile& mesh);
 void WriteSentence(std::FILE* file, MeshMessage::Kind kind,
                    const std::string& sentence);
 
-/// What `bytes` say.  A message that is not whole, or whose mesh is not one
-/// (sizes that disagree, nodes out of range), is of Kind::kNone, whatever the
-/// bytes.
+/// Returns what `bytes` say, whatever they are.  A message that is not whole,
+/// or whose mesh is not one (sizes that disagree, nodes out of range), is of
+/// Kind::kNone.
 MeshMessage ParseMeshMessage(std::string_view bytes);
 
 }  // namespace elastimate

@@ -18,19 +18,19 @@
 namespace elastimate {
 namespace {
 
-/// Zero where there is none.
+/// The limits are zero where there are none.
 struct Limits {
   std::uint64_t processor_seconds = 0;
   std::uint64_t memory = 0;
 };
 
-/// About ten times what good files need.
+/// Allows about ten times what good files need.
 Limits LimitsOf(const std::filesystem::path& path) {
   const std::uint64_t size = std::filesystem::file_size(path);
   return {10 + size / 1'000'000, 512'000'000 + 60 * size};
 }
 
-/// Has the program run with the arguments.
+/// Runs the program with the arguments.
 std::pair<ChildOutcome, MeshMessage> Run(
     const MeshProgram& program, const Limits& limits,
     const std::vector<std::string>& arguments) {
@@ -45,8 +45,8 @@ std::pair<ChildOutcome, MeshMessage> Run(
                                   std::to_string(limits.processor_seconds),
                                   std::to_string(limits.memory)};
   all.insert(all.end(), arguments.begin(), arguments.end());
-  // Its work is done by one thread; others would only take memory.  It may wait
-  // for a processor or a disk ten times as long as it works.
+  // One thread does the work; others would only take memory.  The program may
+  // wait for a processor or a disk ten times as long as it works.
   const bool is_limited = limits.processor_seconds > 0;
   ChildOutcome outcome = RunChildProcess(
       file, all, {"OMP_NUM_THREADS=1", "OPENBLAS_NUM_THREADS=1"},
@@ -63,11 +63,11 @@ bool HasLimitOfMemory() {
   return getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
 }
 
-/// Throws for a program that has not come to work, or was kept from it.
+/// Throws for a program that did not start its work, or was kept from it.
 void CheckItCouldWork(const MeshProgram& program, const ChildOutcome& outcome,
                       const MeshMessage& message) {
   using Kind = MeshMessage::Kind;
-  // The kernel kills what takes the last memory.
+  // The kernel kills a process that takes the last memory.
   const bool was_killed = outcome.signal == SIGKILL && !outcome.was_stopped;
   const bool is_unable =
       message.kind == Kind::kNone || message.kind == Kind::kOutOfMemory;
@@ -83,7 +83,7 @@ void CheckItCouldWork(const MeshProgram& program, const ChildOutcome& outcome,
   }
 }
 
-/// What a file did to the program.
+/// Describes what a file did to the program.
 std::string DescribeEnd(const MeshProgram& program, const Limits& limits,
                         const ChildOutcome& outcome,
                         const MeshMessage& message) {

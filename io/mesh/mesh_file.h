@@ -23,15 +23,14 @@ struct FileArray {
 struct PhysicalGroup {
   int dimension;
   int number;
-  std::string name;  ///< Empty when the file gives it no name.
-  /// The nodes of its elements; ascending, without repeats.
-  std::vector<int> nodes;
-  /// Its elements that have the nodes of a face of the mesh's elements
-  /// (in a planar mesh, of an edge): num_nodes_of_face x num_facets.
+  std::string name;        ///< Empty when the file gives it no name.
+  std::vector<int> nodes;  ///< The nodes of its elements, ascending, once each.
+  /// The elements of the group that are faces of the mesh's elements (in a
+  /// planar mesh, edges): num_nodes_of_face x num_facets.
   Eigen::MatrixXi facets;
 };
 
-/// A node that is elsewhere than in the file.
+/// A node whose position differs from that in the file.
 struct MovedNode {
   Eigen::Index node;
   Eigen::Vector3d in_file;  ///< Its position there.
@@ -66,20 +65,20 @@ struct MeshFile {
   std::optional<double> thickness;
   Origin origin = Origin::kMeasured;
 
-  /// Mid-edge nodes that rounded positions had beside the straight edges of
-  /// quadratic elements, into the middle of which they were put.
+  /// The mid-edge nodes that were put into the middle of the straight edges of
+  /// quadratic elements, because rounding had put them beside it.
   std::vector<MovedNode> moved;
 
-  Eigen::Array<bool, 1, Eigen::Dynamic> used;  ///< By an element.
+  Eigen::Array<bool, 1, Eigen::Dynamic> used;  ///< Whether an element uses it.
   bool has_other_cells = false;  ///< Cells of lower dimension were ignored.
 
-  /// The lines of nodes that are rows of a table; else empty.
+  /// The line of each node where nodes are rows of a table; else empty.
   std::vector<std::size_t> node_lines;
 
   bool is_vtk = true;
   std::vector<std::size_t> node_numbers;  ///< Gmsh's; empty for a VTK file.
-  /// Nodes of the file that Gmsh left out because no element uses them: the
-  /// positions of all others are then not known.
+  /// The number of nodes of the file that Gmsh left out because no element uses
+  /// them.  The positions of all others are then not known.
   Eigen::Index num_nodes_left_out = 0;
 
   const ElementTopology& Topology() const { return TopologyOf(kind); }
@@ -89,17 +88,17 @@ struct MeshFile {
   std::string Shapes() const { return std::string(Topology().shapes); }
 };
 
-/// What the elements of a scene may be, for error messages.
+/// Lists what the elements of a scene may be, for error messages.
 inline constexpr char kSupportedElements[] =
     "tetrahedra and triangles, linear or quadratic, hexahedra of 8 nodes and "
     "quadrilaterals of 4";
 
-/// ".vtu" of "a.vtu" and of "A.VTU".  Of "a.Vtu" it is ".Vtu": Gmsh tells its
-/// formats by names in all small or all capital letters, and runs a file of any
-/// other name as a script.
+/// Returns ".vtu" for "a.vtu" and for "A.VTU", but ".Vtu" for "a.Vtu": Gmsh
+/// tells its formats by names in all small or all capital letters, and runs a
+/// file of any other name as a script.
 std::string FileExtension(const std::filesystem::path& path);
 
-/// The array called `name`, or null.
+/// Returns the array called `name`, or null.
 inline const Eigen::MatrixXd* FindArray(const std::vector<FileArray>& arrays,
                                         const std::string& name) {
   for (const FileArray& array : arrays) {

@@ -15,8 +15,8 @@
 namespace elastimate {
 namespace {
 
-// This part of the extent of a planar mesh, and of the length of an edge, is
-// what positions of single precision leave.
+// Positions of single precision err by less than this share of the extent of a
+// planar mesh, and of the length of an edge.
 constexpr double kSamePlace = 1e-6;
 
 void CheckHasElements(const MeshFile& mesh) {
@@ -75,7 +75,7 @@ void CheckPlane(const MeshFile& mesh) {
 void CheckElementsDiffer(const MeshFile& mesh) {
   const int num_vertices = mesh.Topology().num_vertices;
   const auto vertices = mesh.elements.topRows(num_vertices);
-  // Ordered by the smallest vertex, which few have in common.
+  // Elements are ordered by their smallest vertex, which few have in common.
   std::vector<Eigen::Index> end(mesh.nodes.cols() + 1, 0);
   for (Eigen::Index i = 0; i < vertices.cols(); ++i) {
     ++end[vertices.col(i).minCoeff() + 1];
@@ -85,7 +85,8 @@ void CheckElementsDiffer(const MeshFile& mesh) {
   for (Eigen::Index i = 0; i < vertices.cols(); ++i) {
     order[end[vertices.col(i).minCoeff()]++] = i;
   }
-  // The vertices of those of one smallest vertex, ascending, and their indices.
+  // The elements of one smallest vertex: their vertices, ascending, and their
+  // indices.
   std::vector<std::pair<std::array<int, 8>, Eigen::Index>> some;
   Eigen::Index first = 0;
   for (Eigen::Index node = 0; node < mesh.nodes.cols(); ++node) {
@@ -146,7 +147,8 @@ void CheckMidEdgeNodes(const MeshFile& mesh) {
 // Puts mid-edge nodes that are beside straight edges by rounding into the
 // middle, or leaves all where they are and makes the elements curved.
 void StraightenOrCurve(MeshFile& mesh) {
-  // Positions of six digits leave this part of the length of an edge.
+  // Positions of six digits err by less than this share of the length of an
+  // edge.
   constexpr double kRounded = 1e-3;
   // Positions of single precision far from the origin may leave more.  A
   // position and the mean of two others err by half a unit in the last place

@@ -19,7 +19,8 @@
 namespace elastimate {
 namespace {
 
-// The place in one element that is nearest to a point, beginning at `local`.
+// Returns the place in one element that is nearest to a point, beginning at
+// `local`.
 template <ElementKind kKind>
 CurvedPlace NearestIn(const Mesh& mesh, Eigen::Index element,
                       const Eigen::Vector3d& x, const Eigen::VectorXd& local) {
@@ -89,7 +90,7 @@ CurvedLocator::CurvedLocator(const Mesh& mesh) : mesh_(mesh) {
           double(simplices.elements.rows());
     }
   }
-  // sum_ab 4 lambda_a lambda_b over the edges is 3 / 2 at most.
+  // The sum over the edges of 4 lambda_a lambda_b is 3 / 2 at most.
   const ElementTopology& topology = mesh.Topology();
   for (const auto& nodes : mesh.elements.colwise()) {
     for (int i = topology.num_vertices; i < topology.num_nodes; ++i) {
@@ -128,7 +129,7 @@ CurvedPlace CurvedLocator::NearestWithin(Eigen::Vector3d x,
 }
 
 CurvedPlace CurvedLocator::Find(Eigen::Vector3d x) const {
-  // Mostly it lies in the element of the simplex that it lies in.
+  // A point mostly lies in the element of the simplex in which it lies.
   CurvedPlace place = NearestWithin(x, rounding_);
   if (!(place.distance <= rounding_)) {
     place = NearestWithin(x, margin_ + rounding_);
@@ -141,8 +142,8 @@ CurvedPlace CurvedLocator::Find(Eigen::Vector3d x) const {
     double squared_distance = 0;
     locator_->FindClosestPoint(x.data(), closest.data(), cell, simplex, part,
                                squared_distance);
-    // The nearest place is at most one margin further away than that of the
-    // simplices, and its simplex another one.
+    // The nearest place is at most one margin further away than the nearest
+    // place of the simplices, and its own simplex another margin.
     place =
         NearestWithin(x, std::sqrt(squared_distance) + 2 * margin_ + rounding_);
   }

@@ -21,29 +21,30 @@ struct CurvedPlace {
 };
 
 /// Finds points in curved elements, of which VTK knows neither the bounds nor
-/// the nearest points: among the straight simplices that the elements are cut
-/// into those around a point, and in their elements the nearest point, by
-/// projection onto the simplex that is tangent to the element at the last one
-/// (Gauss-Newton; inside the element Newton's method).
+/// the nearest points.  It looks at the elements whose straight simplices, into
+/// which they are cut, are around the point.  In each it finds the nearest
+/// point by projection onto the simplex that is tangent to the element at the
+/// last one (Gauss-Newton; inside the element Newton's method).
 class CurvedLocator {
  public:
   /// Keeps a copy of the mesh.  Precondition: valid, but for the order of
   /// nodes and for those that no element uses, and of a curved kind.
   explicit CurvedLocator(const Mesh& mesh);
 
-  /// The nearest place; the distance is zero, but for 1e-9 of the extent,
-  /// within the mesh.  `x` has z = 0 in the plane.
+  /// Returns the nearest place.  Within the mesh its distance is zero to within
+  /// 1e-9 of the extent.  `x` has z = 0 in the plane.
   CurvedPlace Find(Eigen::Vector3d x) const;
 
  private:
-  /// The nearest place in the elements of simplices within `reach` of x.
+  /// Returns the nearest place in the elements of simplices within `reach` of
+  /// x.
   CurvedPlace NearestWithin(Eigen::Vector3d x, double reach) const;
 
   Mesh mesh_;
   vtkNew<vtkUnstructuredGrid> simplices_;
   vtkNew<vtkStaticCellLocator> locator_;
   Eigen::Index num_cuts_;
-  /// Where in its element the centre of each simplex is, dimension x n.
+  /// The place of the centre of each simplex in its element, dimension x n.
   Eigen::MatrixXd starts_;
   /// A bound on how far elements are from their simplices.
   double margin_ = 0;

@@ -14,7 +14,7 @@
 namespace elastimate {
 namespace {
 
-// This is relative to the diagonal of the bounding box.
+// The usual tolerance over the diagonal of the bounding box.
 constexpr double kUsualTolerance = 1e-3;
 
 std::vector<std::filesystem::path> FilesOf(const JsonValue& points) {

@@ -11,16 +11,18 @@
 
 namespace elastimate {
 
-/// The measured points of a load case: `displacement` has the key `points`, a
-/// file (ReadPointsFile) or a list of some, paths relative to its own, and may
-/// have keys that say how they are read (ReadTableOptions), and `tolerance`,
-/// how far a point may lie outside the mesh [length]; without it a thousandth
-/// of the diagonal of the mesh's bounding box.  `unit` is that of files which
-/// were read before, or empty, and becomes that of these, as far as their
-/// titles say. `lines` gets where the points stand, file by file.  Throws
-/// std::invalid_argument, naming the file, the line and the distance, for a
-/// point farther outside, and for files of different units; adds a notice of
-/// points that are nearer.
+/// Reads the measured points of a load case.  `displacement` has the key
+/// `points`, a file (ReadPointsFile) or a list of files, with paths relative to
+/// its own.  It may have keys that say how they are read (ReadTableOptions),
+/// and `tolerance`, which is how far a point may lie outside the mesh [length];
+/// without it, that is a thousandth of the diagonal of the mesh's bounding box.
+/// `unit` is the unit of files that were read before, or empty, and becomes
+/// that of these files if their titles have one.  `lines` gets the lines of the
+/// points, file by file.
+///
+/// Throws std::invalid_argument, naming the file, the line and the distance,
+/// for a point farther outside, and for files of different units.  Adds a
+/// notice of points that are outside but nearer.
 PointDisplacements ReadMeasuredPoints(const JsonValue& displacement,
                                       const Mesh& mesh,
                                       const PointLocator& locator,

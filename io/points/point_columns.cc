@@ -11,15 +11,15 @@
 namespace elastimate {
 namespace {
 
-/// The names that a program gives the columns of x, y, z, u, v and w, without
-/// their units; null where it has no such column.
+/// The titles that a program gives to the columns of x, y, z, u, v and w,
+/// without their units; null where it has no such column.
 struct Format {
   const char* name;
   std::array<const char*, 6> columns;
   /// A number below `least` in this column marks a point as not found.
   const char* quality;
   double least;
-  /// A column without which it is another format.
+  /// A table without this column is of another format.
   const char* mark;
   bool is_in_pixels;
 };
@@ -73,11 +73,11 @@ constexpr Format kFormats[] = {
 };
 constexpr char kOwnFormat[] = "csv";
 
-// The columns that have each of some titles.
+// The columns that match each of some titles.
 using Matches = std::vector<std::vector<std::size_t>>;
 using Names = std::vector<std::string>;
 
-// Empty where a name has no column.
+// Returns nothing where a name has no column.
 template <typename Find>
 Matches MatchesOf(const Names& names, const Find& find) {
   Matches matches;
@@ -90,7 +90,7 @@ Matches MatchesOf(const Names& names, const Find& find) {
   return matches;
 }
 
-// Empty where the format has no such columns.
+// Returns nothing where the format has no such columns.
 Names NamesOf(const Format& format, int dimension) {
   Names names;
   for (int i = 0; i < 2 * dimension; ++i) {
@@ -159,7 +159,7 @@ std::vector<Matches> DisplacementMeanings(const ColumnTitles& titles,
   return meanings;
 }
 
-/// Titles as the columns of a table of points.
+/// Reads titles as the columns of a table of points.
 struct Understanding {
   std::string format;
   const Format* of_program = nullptr;

@@ -12,33 +12,34 @@
 
 namespace elastimate {
 
-/// Where a table of points has what.
+/// The columns of a table of points.
 struct PointColumns {
   std::string format;
   /// The columns of x, y, u, v, or of x, y, z, u, v, w.
   std::vector<std::size_t> columns;
-  /// A number below `least` in it marks a point as not found.
+  /// A number below `least` in this column marks a point as not found.
   std::optional<std::size_t> quality;
   double least = 0;
-  /// What columns without a unit are.
+  /// Tells whether columns without a unit are in pixels.
   bool is_in_pixels = false;
 };
 
 /// "matchid, vic, ...", for messages.
 std::string PointFormatNames();
 
-/// Reads the table (ReadCsvTable) that has the columns which the options name;
-/// else those of their format; else, with "auto", those of the first format
-/// that a table has the columns of, and at last those whose titles say that
-/// they are positions and displacements: "x", "X coordinate", "pos_x"; "ux",
-/// "U", "dx", "Displacement_x".  Throws std::invalid_argument, naming the file
-/// and its columns, where no table has them, or several may be meant.
+/// Reads the table (ReadCsvTable) that has the columns which the options name.
+/// Without such names it has to have the columns of the format that the options
+/// name.  With "auto", the first format that fits a table is taken, and at last
+/// columns whose titles say that they are positions and displacements: "x", "X
+/// coordinate", "pos_x"; "ux", "U", "dx", "Displacement_x".  Throws
+/// std::invalid_argument, naming the file and its columns, where no table has
+/// them, or where several may be meant.
 CsvTable ReadTableOfPoints(const std::filesystem::path& path,
                            const TableOptions& options, int dimension,
                            PointColumns& columns);
 
-/// The columns whose titles say that they are the components of displacements,
-/// in each way in which they may be understood.
+/// Returns the columns whose titles say that they are the components of
+/// displacements, for each way to understand the titles.
 std::vector<std::vector<std::size_t>> DisplacementColumns(
     const ColumnTitles& titles, int dimension);
 

@@ -9,11 +9,12 @@
 
 namespace elastimate {
 
-/// Points by the elements of a mesh that they lie in.
+/// Points with the elements of a mesh in which they lie.
 struct LocatedPoints {
-  /// The given points, or the nearest of the mesh where they lie outside.
+  /// The given points, or the nearest points of the mesh where they lie
+  /// outside.
   MeshPoints points;
-  Eigen::VectorXd distance;  ///< To those [length]; zero inside.
+  Eigen::VectorXd distance;  ///< From the given points [length]; zero inside.
 };
 
 /// Finds the elements of a mesh in which points lie, by VTK's cell locator.

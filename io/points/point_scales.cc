@@ -16,7 +16,7 @@ std::string Quoted(const CsvTable& table, std::size_t column) {
   return "'" + Printable(table.titles[column].text) + "'";
 }
 
-// "'X [mm]', 'Y [mm]'".
+// Returns "'X [mm]', 'Y [mm]'".
 std::string QuotedList(const CsvTable& table,
                        const std::vector<std::size_t>& columns) {
   std::string list;
@@ -26,7 +26,7 @@ std::string QuotedList(const CsvTable& table,
   return list;
 }
 
-// The cell below a title, without brackets.
+// Returns the cell below a title, without brackets.
 std::string CellUnit(const CsvTable& table, std::size_t column) {
   const std::string cell =
       column < table.units.size() ? table.units[column] : "";
@@ -35,7 +35,7 @@ std::string CellUnit(const CsvTable& table, std::size_t column) {
   return has_brackets ? cell.substr(1, cell.size() - 2) : cell;
 }
 
-// Whether the row below the titles has units, rather than other words.
+// Tells whether the row below the titles has units, rather than other words.
 bool HasUnitRow(const CsvTable& table,
                 const std::vector<std::size_t>& columns) {
   return std::any_of(columns.begin(), columns.end(), [&](std::size_t column) {
@@ -45,7 +45,7 @@ bool HasUnitRow(const CsvTable& table,
   });
 }
 
-// The unit as the table writes it, or, where it has none, the options.
+// Returns the unit as the table writes it, or else as the options do.
 std::string UnitText(const CsvTable& table, std::size_t column,
                      bool has_unit_row, const std::string& named) {
   const std::string& own = table.titles[column].unit;
@@ -56,7 +56,7 @@ std::string UnitText(const CsvTable& table, std::size_t column,
   return below.empty() ? ColumnTitle(named).unit : below;
 }
 
-// Columns without a unit get that of the others.
+// Gives columns without a unit the unit of the others.
 void FillUnits(const CsvTable& table, const std::vector<std::size_t>& columns,
                std::size_t num_positions, Units& units,
                std::vector<std::string>& notices) {

@@ -10,33 +10,36 @@
 
 namespace elastimate {
 
-/// The unit of each column: that of its title, of the row below the titles, or
-/// of the title that the options name; empty without one.  Throws
+/// Returns the unit of each column: from its title, from the row below the
+/// titles, or from the title that the options name; empty without one.  Throws
 /// std::invalid_argument, naming the file and the column, where it is not
 /// known.
 std::vector<std::optional<LengthUnit>> UnitsOf(
     const CsvTable& table, const std::vector<std::size_t>& columns,
     const TableOptions& options);
 
-/// By what the numbers of a table are multiplied to be in one unit of length.
+/// The factors that bring the numbers of a table to one unit of length.
 struct PointScales {
-  /// For each of the columns, and the standard deviations behind them.
+  /// The factor of each column, and of each column of standard deviations
+  /// behind.
   std::vector<double> factors;
-  /// That unit, of the titles; empty where they have none.
+  /// This unit, as the titles have it; empty where they have none.
   std::string unit;
-  /// What columns were converted, and which have no unit.
+  /// Sentences on what was converted, and which columns have no unit.
   std::vector<std::string> notices;
 };
 
-/// The unit is that of the options, or that of the first column which has a
-/// unit of length, so that positions keep theirs and displacements are
-/// converted.  Pixels, and tables without any unit, have `length_per_pixel` of
-/// it.  Columns without a unit are in that of the others, with a notice.
-/// `deviations` are those of the displacement, or none, in its unit unless they
-/// have their own. Throws std::invalid_argument, naming the file and the
-/// column, where a unit is not known, pixels have no scale, a scale has no
-/// pixels, or positions without a unit stand beside displacements in pixels, um
-/// or nm.
+/// Chooses the unit and the factors.  The unit is that of the options, or else
+/// of the first column that has a unit of length, so that positions keep theirs
+/// and displacements are converted.  Pixels, and tables without any unit, are
+/// `length_per_pixel` long in this unit.  Columns without a unit are taken in
+/// the unit of the others, with a notice.  `deviations` are the columns of the
+/// standard deviations of the displacement, or none; they have its unit unless
+/// they have their own.
+///
+/// Throws std::invalid_argument, naming the file and the column, where a unit
+/// is not known, pixels have no scale, a scale has no pixels, or positions
+/// without a unit stand beside displacements in pixels, um or nm.
 PointScales ScalesOf(const CsvTable& table, const PointColumns& columns,
                      const std::vector<std::size_t>& deviations,
                      const TableOptions& options);

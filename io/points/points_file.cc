@@ -20,7 +20,7 @@ using Columns = std::vector<std::size_t>;
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-// The columns of standard deviations; none where the file has none of them.
+// Returns the columns of standard deviations, or none where the file has none.
 Columns FindDeviations(const CsvTable& table, int dimension) {
   for (const std::string axes : {"xyz", "uvw"}) {
     const std::string begin = axes == "xyz" ? "sd_u" : "sd_";
@@ -73,7 +73,7 @@ void CheckPoint(const std::filesystem::path& path, const PointsFile& file,
   }
 }
 
-// Where something was measured.
+// Returns the points at which something was measured.
 std::vector<Eigen::Index> MeasuredPoints(const PointsFile& file) {
   std::vector<Eigen::Index> measured;
   for (Eigen::Index point = 0; point < file.positions.cols(); ++point) {
@@ -84,7 +84,7 @@ std::vector<Eigen::Index> MeasuredPoints(const PointsFile& file) {
   return measured;
 }
 
-// A row that is there twice would count as two measurements.
+// Throws where a row is there twice, since it would count as two measurements.
 void CheckRowsDiffer(const std::filesystem::path& path,
                      const PointsFile& file) {
   Eigen::MatrixXd rows(2 * file.positions.rows(), file.positions.cols());
@@ -111,7 +111,7 @@ void CheckRowsDiffer(const std::filesystem::path& path,
   }
 }
 
-// The fewest digits that are read as the same number.
+// Appends the fewest digits that are read as the same number.
 void AppendNumber(double value, std::string& text) {
   std::array<char, 32> digits;
   const auto end =

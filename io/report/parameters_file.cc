@@ -53,8 +53,8 @@ std::string Describe(const MaterialParameters::Parameter& parameter,
   return std::string(parameter.law_parameter->name) + OfRegions(regions);
 }
 
-/// Why no material has a parameter of this name and these regions, and what to
-/// do about it.
+/// Tells why no material has a parameter of this name and these regions, and
+/// what to do about it.
 std::string WhyNoParameter(const std::vector<long long>& regions,
                            const Scene& scene,
                            const MaterialParameters& parameters) {

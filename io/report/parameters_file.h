@@ -8,11 +8,11 @@
 
 namespace elastimate {
 
-/// The parameters of the materials of a scene, in the order of
+/// Reads the parameters of the materials of a scene, in the order of
 /// MaterialParameters, from a JSON file with a list "parameters" of objects
 /// with "name", "region" (null or absent for one material of the whole mesh, an
-/// id, or a list of ids) and "value", as reports have them; other keys are left
-/// alone.
+/// id, or a list of ids) and "value", as reports have them.  Other keys are
+/// ignored.
 ///
 /// Throws std::invalid_argument with one sentence, naming the file and the
 /// entry, for what is no parameter of a material of the scene, is given twice,

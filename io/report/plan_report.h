@@ -10,26 +10,26 @@
 
 namespace elastimate {
 
-/// What a plan was made of.
+/// The basis of a plan.
 struct PlanBasis {
   /// The load cases of the scene that count as measured, from 1 on, and whether
-  /// they have been.
+  /// they have been measured.
   std::vector<int> load_cases;
   bool is_measured;
-  /// Where the parameters come from: "given", "estimate" or "typical".
+  /// The origin of the parameters: "given", "estimate" or "typical".
   std::string_view parameters;
-  /// Whether moduli have the unit of the loads, so that the sizes of loads mean
-  /// something.
+  /// Tells whether moduli have the unit of the loads, so that the sizes of
+  /// loads mean something.
   bool is_scale_known;
-  std::optional<double> noise_sd;  ///< [length]; empty: relative.
+  std::optional<double> noise_sd;  ///< [length]; empty if it is relative.
   double relative_noise;
-  /// The load case of each candidate in the scene, from 1 on; 0 for those that
-  /// are not in it.
+  /// The load case of each candidate in the scene, from 1 on; 0 for a candidate
+  /// that is not in the scene.
   std::vector<int> load_case_of_candidate;
 };
 
-/// A plan as a JSON text, described in docs/report.md.  Numbers round-trip;
-/// what is undetermined is null.
+/// Returns a plan as a JSON text, described in docs/report.md.  Numbers
+/// round-trip; what is undetermined is null.
 [[nodiscard]] std::string JsonPlan(const LoadPlan& plan, const PlanBasis& basis,
                                    const std::vector<CandidateLoad>& candidates,
                                    const std::vector<std::string>& notices);

@@ -57,7 +57,7 @@ Json MeshJson(const Scene& scene, const Estimate& estimate) {
   return json;
 }
 
-// Null where it was not measured.
+// Writes null for a component that was not measured.
 Json MeasuredJson(const Eigen::VectorXd& force) {
   Json components = Json::array();
   for (const double component : force) {
@@ -108,7 +108,8 @@ Json FindingsJson(const std::vector<Finding>& findings) {
   return list;
 }
 
-// null for one material of the whole mesh, an id, or a list of joined ones.
+// Writes null for one material of the whole mesh, else an id or a list of
+// joined ids.
 Json RegionsJson(const std::vector<int>& regions) {
   return regions.empty()       ? Json(nullptr)
          : regions.size() == 1 ? Json(regions[0])
@@ -120,7 +121,7 @@ Json MaterialJson(const Scene& scene) {
   for (const Material& material : scene.materials) {
     regions.push_back(RegionsJson(material.regions));
   }
-  // One law, or that of each material.
+  // The report has one law, or the law of each material.
   Json laws = Json::array();
   for (const Material& material : scene.materials) {
     laws.push_back(material.law);
@@ -163,7 +164,7 @@ Json MatrixJson(const Eigen::MatrixXd& matrix) {
   return rows;
 }
 
-// Says what is known of each material that is not isotropic.
+// Writes the stiffness of each material that is not isotropic.
 Json StiffnessJson(const Estimate& estimate) {
   Json stiffnesses = Json::array();
   for (const StiffnessEstimate& stiffness : estimate.stiffnesses) {
@@ -175,7 +176,7 @@ Json StiffnessJson(const Estimate& estimate) {
   return stiffnesses;
 }
 
-// Says what is known of each material whose axis was to be found.
+// Writes the axis of each material whose axis was to be found.
 Json AxesJson(const Estimate& estimate) {
   Json axes = Json::array();
   for (const AxisEstimate& axis : estimate.axes) {
@@ -194,7 +195,7 @@ Json AxesJson(const Estimate& estimate) {
   return axes;
 }
 
-// By name for one isotropic material, else in the order of the parameters.
+// Writes parameters by name for one isotropic material, else in their order.
 Json BudgetJson(const Scene& scene, const ErrorBudget& budget) {
   const bool is_by_name = IsOneIsotropicMaterial(scene.materials);
   const auto of = [is_by_name](const ParameterErrors& errors) {
@@ -255,7 +256,7 @@ Json RungsJson(const Estimate& estimate) {
   return rungs;
 }
 
-// Load cases count from 1 on, as in the names of arrays.
+// Writes outliers; load cases count from 1 on, as in the names of arrays.
 Json OutliersJson(const std::vector<Outlier>& outliers) {
   Json list = Json::array();
   for (const Outlier& outlier : outliers) {
@@ -284,7 +285,7 @@ Json DiagnosticsJson(const Estimate& estimate) {
           {"warnings", estimate.Sentences(Severity::kWarning)}};
 }
 
-// Says what is known of several materials, in their order.
+// Writes the materials where there are several, in their order.
 Json MaterialsJson(const Estimate& estimate) {
   Json materials = Json::array();
   for (const MaterialEstimate& material : estimate.materials) {

@@ -10,17 +10,17 @@
 
 namespace elastimate {
 
-/// Wall-clock seconds around an estimate.
+/// The wall-clock seconds around an estimate.
 struct ReportTimes {
   double read;   ///< Reading the scene.
   double total;  ///< From the start of the program to the report.
 };
 
-/// The report of an estimate as a JSON text, described in docs/report.md.
-/// `scene` is the one that was estimated, of either element order; its nodes
-/// are counted without those in the middle of edges.  `notices` are what the
-/// reader had to say about it.  Numbers round-trip; what the estimator cannot
-/// know is null.
+/// Returns the report of an estimate as a JSON text, described in
+/// docs/report.md.  `scene` is the one that was estimated, of either element
+/// order; its nodes are counted without those in the middle of edges.
+/// `notices` are what the reader had to say about it.  Numbers round-trip; what
+/// the estimator cannot know is null.
 std::string JsonReport(const Estimate& estimate, const Scene& scene,
                        const EstimatorOptions& options,
                        const ReportTimes& times,

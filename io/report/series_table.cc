@@ -15,7 +15,7 @@ std::string Number(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? nlohmann::json(*value).dump() : "";
 }
 
-// In quotation marks where it needs them.
+// Quotes the text where it needs quotation marks.
 std::string Cell(const std::string& text) {
   if (text.find_first_of(",;\"\n\t ") == std::string::npos) {
     return text;
@@ -44,7 +44,8 @@ std::string Header(const std::vector<ParameterEstimate>& parameters) {
   return header + ",noise_sd,outliers,findings,reason\n";
 }
 
-// From the status on; of as many parameters as the header has.
+// Returns the cells from the status on, for as many parameters as the header
+// has.
 std::string Cells(const Estimate& estimate, std::size_t num_parameters) {
   std::string row(estimate.Has(FindingCode::kNotRun)
                       ? FindingCodeName(FindingCode::kNotRun)

@@ -30,7 +30,7 @@ std::string CaseSuffix(int number) {
                                  ArrayNames(mesh.node_arrays) + ")");
 }
 
-/// Null when there is no such array.
+/// Returns null when there is no such array.
 const Eigen::MatrixXd* FindNodeArray(const MeshFile& mesh,
                                      const std::string& name,
                                      bool one_component_is_enough) {
@@ -60,7 +60,8 @@ const Eigen::MatrixXd& RequireNodeArray(const MeshFile& mesh,
   return *array;
 }
 
-/// The array of a load case, or where it has none that of all.
+/// Returns the name of the array of a load case, or of the array for all load
+/// cases where it has none.
 std::string NameInCase(const MeshFile& mesh, const std::string& name,
                        int number) {
   const std::string own = name + CaseSuffix(number);
@@ -124,7 +125,7 @@ LoadCase ReadLoadCase(const MeshFile& mesh, int number,
   return load_case;
 }
 
-/// The first load case comes first, then the numbered ones without a gap.
+/// Counts the first load case and the numbered ones that follow without a gap.
 int CountLoadCases(const MeshFile& mesh) {
   int count = 1;
   const auto has_next = [&](const std::string& name) {
@@ -141,8 +142,8 @@ bool IsNumber(const std::string& text) {
          text.find_first_not_of("0123456789") == std::string::npos;
 }
 
-/// An array with the number of no load case would otherwise be ignored
-/// silently.
+/// Throws for an array with the number of no load case, which would otherwise
+/// be ignored silently.
 void CheckCaseNumbers(const MeshFile& mesh, int num_cases) {
   for (const FileArray& array : mesh.node_arrays) {
     const std::size_t underscore = array.name.find('_');
@@ -170,8 +171,8 @@ void CheckCaseNumbers(const MeshFile& mesh, int num_cases) {
   }
 }
 
-/// Without these arrays a scene is another one, so that a name that seems to be
-/// misspelt is an error; other arrays are nobody's business.
+/// Throws for a name that seems to be a misspelt one of these arrays, without
+/// which the scene would be another one.  Other arrays are ignored.
 void CheckOptionalNames(const MeshFile& mesh) {
   for (const FileArray& array : mesh.node_arrays) {
     const std::string stem = array.name.substr(0, array.name.find('_'));

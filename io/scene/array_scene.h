@@ -6,9 +6,9 @@
 
 namespace elastimate {
 
-/// The scene that the named arrays of a mesh file make up: `displacement`,
-/// `force`, `fixed` and so on, as ReadScene describes.  Throws
-/// std::invalid_argument, naming the file and the array.
+/// Makes the scene of the named arrays of a mesh file: `displacement`, `force`,
+/// `fixed` and so on, as ReadScene describes.  Throws std::invalid_argument,
+/// naming the file and the array.
 FileScene SceneFromArrays(MeshFile mesh, Measurement measurement,
                           const SectionChoice& section);
 

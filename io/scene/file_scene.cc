@@ -11,7 +11,8 @@
 namespace elastimate {
 namespace {
 
-/// Where `mask` says and an element uses the node.
+/// Throws unless values are finite where `mask` is set and an element uses the
+/// node.
 void RequireFinite(const std::filesystem::path& file, const std::string& what,
                    const MeshFile& mesh, const Eigen::MatrixXd& values,
                    const ComponentMask& mask, const std::string& mend) {

@@ -20,45 +20,47 @@ struct FileScene {
   Scene scene;
   std::vector<std::string> notices;
   std::optional<FrameSeries> frames;
-  /// Where the measurement of each load case stands, in the order of nodes or
-  /// of points; empty where that is no text.
+  /// The lines of the measurement of each load case, in the order of nodes or
+  /// of points; empty where it is not text.
   std::vector<std::vector<FileLines>> measured_lines;
-  /// The cell arrays that materials have axes from.
+  /// The cell arrays from which materials have axes.
   std::map<std::string, Eigen::MatrixXd> axis_arrays;
 };
 
-/// The regions from the cell array MeshFile::region_array; empty when there is
-/// none.  Throws
-/// std::invalid_argument, naming the file, when it is not one of integers.
+/// Returns the regions from the cell array MeshFile::region_array; empty when
+/// there is none.  Throws std::invalid_argument, naming the file, when it is
+/// not one of integers.
 Eigen::VectorXi ReadRegions(const MeshFile& mesh);
 
-/// The mesh of a scene over all nodes of the file.  `elements` are those of
-/// the file, which may be moved from it.
+/// Returns the mesh of a scene over all nodes of the file.  `elements` are
+/// those of the file, which may be moved from it.
 Mesh SceneMesh(const MeshFile& mesh, const Section& section,
                Eigen::MatrixXi elements);
 
-/// The vectors of a field of the file, dimension x num_nodes.  `values` have 3
-/// rows, or 2 for planar elements.  Throws std::invalid_argument unless they
-/// are finite where `mask`, dimension x num_nodes, says and an element uses the
-/// node: "FILE: WHAT of node 7 (x) is nan; MEND"; and unless the third row of
-/// planar ones is zero where any component of the node counts.
+/// Returns the vectors of a field of the file, dimension x num_nodes.  `values`
+/// have 3 rows, or 2 for planar elements.  Throws std::invalid_argument, "FILE:
+/// WHAT of node 7 (x) is nan; MEND", unless they are finite where `mask`
+/// (dimension x num_nodes) is set and an element uses the node.  Throws as well
+/// unless the third row of planar elements is zero where any component of the
+/// node counts.
 Eigen::MatrixXd VectorField(const std::filesystem::path& file,
                             const std::string& what, const MeshFile& mesh,
                             const Eigen::MatrixXd& values,
                             const ComponentMask& mask,
                             const std::string& mend = "correct it");
 
-/// A flag that is set for each component of each node.
+/// Returns a flag that is set for each component of each node.
 ComponentMask AllComponents(const MeshFile& mesh);
 
-/// One flag per component from one number per node or one per component, set
-/// where they are not zero; a third one of planar elements does not count.
-/// Throws std::invalid_argument, naming the file, for nan.
+/// Returns one flag per component from one number per node or one per
+/// component.  Flags are set where numbers are not zero; a third component of
+/// planar elements does not count.  Throws std::invalid_argument, naming the
+/// file, for nan.
 ComponentMask ToComponentMask(const std::filesystem::path& file,
                               const std::string& what, const MeshFile& mesh,
                               const Eigen::MatrixXd& values);
 
-/// Sets what was not observed to zero where it is not a number.
+/// Sets what was not observed to zero where it is NaN.
 void ClearUnobserved(LoadCase& load_case);
 
 }  // namespace elastimate

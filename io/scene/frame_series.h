@@ -17,13 +17,14 @@ namespace elastimate {
 struct FrameSeries {
   /// One for each frame, in their order.
   std::vector<std::filesystem::path> files;
-  /// By which the loads of the scene are multiplied, one for each frame, not a
-  /// number where the load record has none; empty without a record.
+  /// The factors of the loads of the scene, one for each frame; NaN where the
+  /// load record has none, and empty without a record.
   std::vector<double> loads;
   /// The relative error that the loads of all frames have in common, as one
-  /// standard deviation: of the record, else the largest of resultants.
+  /// standard deviation.  It is that of the record, else the largest of the
+  /// resultants.
   LoadError load_error;
-  /// The load case of the scene as frame i measured it, under its loads.
+  /// Reads the load case of the scene as frame i measured it, under its loads.
   /// Throws std::invalid_argument, naming the file and the mend.
   std::function<LoadCase(std::size_t i)> read;
 

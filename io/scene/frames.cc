@@ -27,7 +27,8 @@ bool IsPattern(const std::string& name) {
   return name.find_first_of("*?") != std::string::npos;
 }
 
-// Names of files of a pattern, relative to the scene as the pattern is.
+// Returns the names of the files of a pattern, relative to the scene as the
+// pattern is.
 std::vector<std::string> FindFiles(const JsonValue& value) {
   const fs::path pattern = value.String();
   const fs::path folder = value.File().parent_path() / pattern.parent_path();
@@ -78,8 +79,8 @@ double RelativeError(const JsonValue& value) {
   return error;
 }
 
-// The standard deviation of each resultant over the size of its force, where
-// it is given so.
+// Returns, for each resultant, the standard deviation over the size of its
+// force where it is given in this way.
 std::vector<std::optional<double>> RelativeErrors(const JsonValue& load_case) {
   std::vector<std::optional<double>> errors;
   for (const JsonValue& load : load_case.At("loads").Items()) {
@@ -92,7 +93,8 @@ std::vector<std::optional<double>> RelativeErrors(const JsonValue& load_case) {
   return errors;
 }
 
-// What frames are read by: of the document, which need not outlive it.
+// Reads the frames.  It keeps what it needs of the document, which need not
+// outlive it.
 struct FrameReader {
   fs::path scene_file;
   MeshFile mesh;

@@ -7,13 +7,14 @@
 
 namespace elastimate {
 
-/// The key "frames" of a scene of one load case: {"files", "load_record"}.
-/// `files` is a list, or a pattern with * and ?, whose files are taken in the
-/// order of SortByNumbers.  They are camera files where the mesh is one of
-/// points (the points of a frame are known by their positions), else what the
-/// load case's "displacement" is: points, or a vector per node; points without
-/// one. The numbers of `load_record` (ReadLoadRecord) multiply all loads and
-/// resultants of the load case.
+/// Reads the key "frames" of a scene of one load case: {"files",
+/// "load_record"}. `files` is a list, or a pattern with * and ?, whose files
+/// are taken in the order of SortByNumbers.  The files are camera files where
+/// the mesh is one of points (the points of a frame are known by their
+/// positions), else what the load case's "displacement" is, a table of points
+/// or a vector per node, and points without that key.  The numbers of
+/// `load_record` (ReadLoadRecord) multiply all loads and resultants of the load
+/// case.
 ///
 /// `file_scene` is complete but for its frames.  Throws std::invalid_argument,
 /// naming the file and the place in it, also where a pattern finds no file.

@@ -24,8 +24,8 @@ std::string ListText(const Eigen::VectorXd& values) {
   return text.str();
 }
 
-/// A total that is given as a nodal force would be as many times too large as
-/// there are nodes, and Young's modulus with it.
+/// Notes a total that is given as a nodal force, which would be as many times
+/// too large as there are nodes, and Young's modulus with it.
 void NoteForcePerNode(const JsonValue& load, const Eigen::VectorXd& value,
                       Eigen::Index num_nodes, const LoadContext& context) {
   const JsonValue nodes = load.At("nodes");
@@ -93,7 +93,7 @@ Load ReadLoad(const JsonValue& load, const LoadContext& context) {
             "traction, pressure, resultant");
 }
 
-/// A force that no support exerts is a load.
+/// Throws for a force that no support exerts, which is a load.
 void RequireHeld(const JsonValue& value, const LoadContext& context,
                  const Resultant& resultant) {
   for (Eigen::Index i = 0; i < resultant.force.size(); ++i) {
@@ -116,7 +116,8 @@ void RequireHeld(const JsonValue& value, const LoadContext& context,
   }
 }
 
-/// A force with null where it was not measured, and its standard deviation.
+/// Reads a force, with null where it was not measured, and its standard
+/// deviation.
 Resultant ReadResultant(const JsonValue& value, const LoadContext& context) {
   value.CheckKeys({"type", "value", "surface", "sd", "relative_sd"});
   const int dimension = context.mesh.Dimension();

@@ -12,7 +12,7 @@
 
 namespace elastimate {
 
-/// What the loads of a load case of a scene.json are read against.
+/// The parts of a scene that the loads of a load case refer to.
 struct LoadContext {
   LoadContext(const MeshFile& mesh_file, const Mesh& scene_mesh,
               const Supports& supports_of_scene,
@@ -27,13 +27,13 @@ struct LoadContext {
   std::vector<std::string>& notices;
 };
 
-/// The key "loads" of a load case: loads of all types, and resultants.  What
-/// may be meant otherwise becomes a notice.  Throws std::invalid_argument,
-/// naming the file and the place in it.
+/// Reads the key "loads" of a load case: loads of all types, and resultants.  A
+/// notice tells what may be meant in another way.  Throws
+/// std::invalid_argument, naming the file and the place in it.
 void ReadLoads(const JsonValue& loads, const LoadContext& context,
                LoadCase& load_case);
 
-/// Whether this item of "loads" is a resultant rather than a load.
+/// Tells whether this item of "loads" is a resultant rather than a load.
 bool IsResultant(const JsonValue& load);
 
 }  // namespace elastimate

@@ -21,7 +21,7 @@ int ReadRegion(const JsonValue& value) {
   return static_cast<int>(region);
 }
 
-// The numbers of the groups of that name that are regions of the mesh.
+// Returns the numbers of the groups of that name that are regions of the mesh.
 std::vector<int> ReadNamedRegion(const JsonValue& value, const MeshFile& mesh) {
   const std::string name = value.String();
   std::vector<int> regions;
@@ -81,7 +81,7 @@ std::vector<int> ReadRegions(const JsonValue& value, const MeshFile& mesh) {
             ArrayNames(mesh.element_arrays) + "), " + else_do);
 }
 
-// Numbers and bounds of parameters of a law, by their names.
+// Reads numbers and bounds of parameters of a law, by their names.
 void ReadWhatIsKnown(const JsonValue& value, const Law& law,
                      Material& material) {
   std::vector<std::string> names;
@@ -105,7 +105,7 @@ void ReadWhatIsKnown(const JsonValue& value, const Law& law,
   }
 }
 
-// A direction, or the cell array of one for each element.
+// Reads a direction, or the cell array with a direction for each element.
 Eigen::MatrixXd ReadAxis(const JsonValue& value, const MeshFile& mesh) {
   const int dimension = mesh.Dimension();
   Eigen::MatrixXd axis;

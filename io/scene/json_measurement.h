@@ -14,22 +14,23 @@
 
 namespace elastimate {
 
-/// The key "observed" of a load case: what of the nodes was measured.  Throws
-/// std::invalid_argument, naming the file and the place in it.
+/// Reads the key "observed" of a load case, which says what of the nodes was
+/// measured.  Throws std::invalid_argument, naming the file and the place in
+/// it.
 ComponentMask ReadObserved(const JsonValue& observed, const MeshFile& mesh,
                            const NodeMask& free);
 
 /// Reads the key "displacement" of load cases: points, or a vector per node.
 class MeasurementReader {
  public:
-  /// The objects must outlive it; `scene_mesh` is that of the file.
+  /// The objects must outlive this one; `scene_mesh` is that of the file.
   MeasurementReader(const MeshFile& mesh, const Mesh& scene_mesh)
       : mesh_(mesh), scene_mesh_(scene_mesh) {}
 
-  /// Enters the measurement; what was observed of nodes is there already.
-  /// Returns where it stands: the points file by file, or all nodes of the
-  /// mesh file; nothing of an array.  Throws std::invalid_argument, naming the
-  /// file and the place in it.
+  /// Enters the measurement; what was observed of nodes has to be there
+  /// already.  Returns the lines of the measurement: of points file by file, of
+  /// all nodes of the mesh file, or nothing for an array.  Throws
+  /// std::invalid_argument, naming the file and the place in it.
   std::vector<FileLines> Read(const JsonValue& displacement,
                               LoadCase& load_case,
                               std::vector<std::string>& notices);
@@ -38,7 +39,7 @@ class MeasurementReader {
   const MeshFile& mesh_;
   const Mesh& scene_mesh_;
   std::optional<PointLocator> locator_;  ///< Made when there are points.
-  std::string unit_;  ///< The unit of the points that were read.
+  std::string unit_;                     ///< The unit of the points so far.
 };
 
 }  // namespace elastimate

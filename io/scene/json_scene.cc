@@ -37,7 +37,7 @@ MeshFile ReadNamedMesh(const JsonValue& name,
   return ReadMeshFile(path);
 }
 
-/// The keys `model` and `thickness`.
+/// Reads the keys `model` and `thickness`.
 SectionChoice ReadSection(const JsonValue& document) {
   SectionChoice choice;
   if (document.Has("model")) {
@@ -69,7 +69,8 @@ bool ReadIsRigidMotionFree(const JsonValue& document) {
   return true;
 }
 
-// What the mesh file says holds for the displacements that are its arrays.
+// Reads the origin of the displacements.  Without the key, the origin that the
+// mesh file states holds for displacements that are its arrays.
 Origin ReadOrigin(const JsonValue& document, Origin of_mesh) {
   if (!document.Has("origin")) {
     const std::vector<JsonValue> cases = document.At("cases").Items();
@@ -128,8 +129,8 @@ LoadCase ReadLoadCase(const JsonValue& value, const LoadContext& of_scene,
   return load_case;
 }
 
-/// Speaks of a mesh that was made of measured points, which may end within the
-/// specimen.
+/// Allows for the margin of a mesh that was made of measured points, which may
+/// end within the specimen.
 void AllowForMarginOf(const JsonValue& mesh, FileScene& file_scene) {
   if (!mesh.IsObject()) {
     return;
@@ -144,8 +145,8 @@ void AllowForMarginOf(const JsonValue& mesh, FileScene& file_scene) {
   AllowForMargin(margin, file_scene.scene, file_scene.notices);
 }
 
-/// Where the supports of the scene stand: at the top or, where each load case
-/// has its own, in the first.
+/// Returns the object that has the supports of the scene: the document or,
+/// where each load case has its own, the first load case.
 const JsonValue& OwnerOfSupports(const JsonValue& document,
                                  const std::vector<JsonValue>& cases) {
   const auto has_own = [](const JsonValue& value) {

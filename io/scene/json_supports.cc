@@ -12,7 +12,7 @@ namespace {
 
 using Components = Eigen::Array<bool, Eigen::Dynamic, 1>;
 
-/// What a support says of the displacement.
+/// What a support says about the displacement.
 struct SupportDisplacement {
   Eigen::VectorXd given;  ///< Zero where it is not known.
   bool is_measured = false;
@@ -66,14 +66,14 @@ SupportDisplacement ReadSupportDisplacement(const JsonValue& support,
   return displacement;
 }
 
-/// What the supports before one hold.
+/// What the supports before the present one hold.
 struct HeldSoFar {
   Supports supports;
   /// The last support that holds each component, -1 where none does.
   Eigen::ArrayXXi holder;
 };
 
-/// Whether a support says the same of a component as those before it.
+/// Tells whether a support says the same about a component as those before it.
 bool IsHeldAlike(const HeldSoFar& so_far, Eigen::Index axis, Eigen::Index node,
                  const SupportDisplacement& displacement) {
   const Supports& supports = so_far.supports;

@@ -7,10 +7,10 @@
 
 namespace elastimate {
 
-/// The key "supports" of a scene or a load case: a list of {"nodes",
-/// "components", "displacement"}, of which the last is a vector, zero where it
-/// is left out, "measured" or "rigid".  Throws std::invalid_argument, naming
-/// the file and the place in it.
+/// Reads the key "supports" of a scene or a load case: a list of {"nodes",
+/// "components", "displacement"}.  The displacement is a vector, "measured" or
+/// "rigid", and zero where it is left out.  Throws std::invalid_argument,
+/// naming the file and the place in it.
 Supports ReadSupports(const JsonValue& document, const MeshFile& mesh);
 
 }  // namespace elastimate

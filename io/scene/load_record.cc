@@ -16,7 +16,7 @@
 namespace elastimate {
 namespace {
 
-// The name of a file without its folder, as either system writes it.
+// Returns the name of a file without its folder, whichever system wrote it.
 std::string WithoutFolder(const std::string& name) {
   return name.substr(name.find_last_of("/\\") + 1);
 }
@@ -25,7 +25,7 @@ std::string WithoutExtension(const std::string& name) {
   return std::filesystem::path(name).stem().string();
 }
 
-/// Frames by what a record may call them.
+/// Finds frames by the names that a record may give them.
 class NamedFrames {
  public:
   explicit NamedFrames(const std::vector<std::string>& frames) {
@@ -37,7 +37,7 @@ class NamedFrames {
     }
   }
 
-  /// Empty where no frame or more than one may be meant.
+  /// Returns nothing where no frame or more than one may be meant.
   std::optional<std::size_t> Find(const std::string& cell) const {
     if (const auto found = whole_.find(cell); found != whole_.end()) {
       return found->second;
@@ -65,7 +65,7 @@ bool IsPlainNumber(const std::string& cell) {
   return cell.find_first_not_of("0123456789+-.,eE") == std::string::npos;
 }
 
-// The column that names frames; empty where there is none.
+// Returns the column that names frames, or nothing where there is none.
 std::optional<std::size_t> FindFilesColumn(const JsonValue& record,
                                            const CsvTable& table,
                                            const NamedFrames& frames) {
@@ -90,7 +90,7 @@ std::optional<std::size_t> FindFilesColumn(const JsonValue& record,
   return found;
 }
 
-// For each frame, the row that names it.
+// Returns the row that names each frame.
 std::vector<std::size_t> RowsByName(const CsvTable& table, std::size_t column,
                                     const std::vector<std::string>& files,
                                     const NamedFrames& frames) {
@@ -128,7 +128,7 @@ std::vector<std::size_t> RowsByName(const CsvTable& table, std::size_t column,
   return rows;
 }
 
-// The likely reason why there are not as many rows as frames.
+// Returns the likely reason why there are not as many rows as frames.
 std::string Reason(const CsvTable& table, std::size_t column,
                    std::size_t num_frames) {
   if (table.rows.size() == num_frames + 1) {

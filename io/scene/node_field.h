@@ -13,17 +13,18 @@
 
 namespace elastimate {
 
-/// The file that a string of a scene.json names, relative to its folder.
-/// Throws std::invalid_argument, naming the place, when it is empty.
+/// Returns the file that a string of a scene.json names, relative to its
+/// folder.  Throws std::invalid_argument, naming the place, when the string is
+/// empty.
 std::filesystem::path ResolvePath(const JsonValue& value);
 
-/// The numbers of components that vectors of a mesh file may have.
+/// Vectors of a mesh file may have these numbers of components.
 std::vector<Eigen::Index> VectorSizes(const MeshFile& mesh);
 
-/// A vector per node, dimension x num_nodes, from the one of the keys `file`
-/// and `array` that `value` has; finite where `mask` says.  Throws
-/// std::invalid_argument, naming the file and the node, with this mend. `lines`
-/// gets where the rows of a file stand.
+/// Reads a vector per node, dimension x num_nodes, from the one of the keys
+/// `file` and `array` that `value` has.  It has to be finite where `mask` is
+/// set.  Throws std::invalid_argument, naming the file and the node, with this
+/// mend.  `lines` gets the lines of the rows of a file.
 Eigen::MatrixXd ReadNodeField(const JsonValue& value, const MeshFile& mesh,
                               const ComponentMask& mask,
                               const std::string& mend,

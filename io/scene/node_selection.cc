@@ -33,7 +33,7 @@ void SelectBox(const JsonValue& box, const MeshFile& mesh, NodeMask& mask) {
   for (Eigen::Index node = 0; node < mesh.nodes.cols(); ++node) {
     mask[node] = contains(mesh.nodes.col(node));
   }
-  // A box is made for the positions of the file.
+  // A box is meant for the positions of the file.
   for (const auto& [node, in_file] : mesh.moved) {
     mask[node] = mask[node] || contains(in_file);
   }
@@ -62,8 +62,8 @@ std::string GroupNames(const MeshFile& mesh) {
   return names.empty() ? "none" : names;
 }
 
-/// The groups of that name or number; more than one when they differ in
-/// dimension.
+/// Returns the groups of that name or number; there are several when they
+/// differ in dimension.
 std::vector<const PhysicalGroup*> FindGroups(const JsonValue& name,
                                              const MeshFile& mesh) {
   if (!name.IsString() && !name.IsInteger()) {
@@ -84,8 +84,8 @@ std::vector<const PhysicalGroup*> FindGroups(const JsonValue& name,
   return groups;
 }
 
-/// Counts its vertices, which are the first of its nodes; -1 where there are
-/// fewer.
+/// Returns the vertices of a facet, which are the first of its nodes,
+/// ascending; -1 where there are fewer.
 std::array<int, 4> SortedVertices(const MeshFile& mesh,
                                   const Eigen::MatrixXi& facets,
                                   Eigen::Index facet) {
@@ -96,7 +96,7 @@ std::array<int, 4> SortedVertices(const MeshFile& mesh,
   return vertices;
 }
 
-/// Each facet of the group as the boundary facet of the same vertices.
+/// Finds, for each facet of the group, the boundary facet of the same vertices.
 void MatchFacets(const JsonValue& selection, const MeshFile& mesh,
                  const PhysicalGroup& group, const Eigen::MatrixXi& boundary,
                  std::vector<Eigen::Index>& chosen) {
@@ -121,7 +121,7 @@ void MatchFacets(const JsonValue& selection, const MeshFile& mesh,
   }
 }
 
-/// The groups of facets that `selection` names, if it names any.
+/// Returns the groups of facets that `selection` names, if it names any.
 std::vector<const PhysicalGroup*> FindSurfaceGroups(const JsonValue& selection,
                                                     const MeshFile& mesh) {
   std::vector<const PhysicalGroup*> groups;

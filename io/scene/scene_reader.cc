@@ -29,14 +29,16 @@
 namespace elastimate {
 namespace {
 
-/// Files in text keep fewer digits than others of the same mesh.
+/// Positions are the same to within this share of the largest coordinate, as
+/// files in text keep fewer digits than other files of the same mesh.
 constexpr double kSameLength = 1e-6;  // Of the largest coordinate.
 
 bool AreClose(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return (a - b).cwiseAbs().maxCoeff() <= kSameLength * a.cwiseAbs().maxCoeff();
 }
 
-/// One region all over is none: a mesh of Gmsh mostly has one physical group.
+/// One region all over counts as none, because a mesh of Gmsh mostly has one
+/// physical group.
 bool AreSameRegions(const Eigen::VectorXi& a, const Eigen::VectorXi& b) {
   const auto is_one = [](const Eigen::VectorXi& regions) {
     return regions.size() == 0 || (regions.array() == regions(0)).all();
@@ -45,7 +47,8 @@ bool AreSameRegions(const Eigen::VectorXi& a, const Eigen::VectorXi& b) {
          ((a.size() == 0 || b.size() == 0) && is_one(a) && is_one(b));
 }
 
-/// What differs between the specimens of two scenes; empty when nothing does.
+/// Tells what differs between the specimens of two scenes; empty when nothing
+/// does.
 std::string WhyDifferent(const Scene& first, const Scene& other,
                          RegionChoice regions) {
   const Mesh& mesh = first.mesh;
@@ -126,8 +129,8 @@ class SceneNodes {
 
   Eigen::Index NumDropped() const { return position_.size() - kept_.size(); }
 
-  /// The kept nodes as they are numbered now, in their order before; empty
-  /// where that is the same.
+  /// Returns the kept nodes as they are numbered now, in their order in the
+  /// file; empty where that order is the same.
   std::vector<int> FileOrder() const {
     if (std::is_sorted(kept_.begin(), kept_.end())) {
       return {};
@@ -151,7 +154,7 @@ class SceneNodes {
     return scene;
   }
 
-  /// Reads a measurement of all nodes.
+  /// Keeps the lines of the kept nodes of a measurement of all nodes.
   FileLines Filter(const FileLines& all) const {
     FileLines lines = {all.file, {}};
     for (const Eigen::Index node : kept_) {
@@ -160,7 +163,7 @@ class SceneNodes {
     return lines;
   }
 
-  /// Those of the frames as they are read.
+  /// Filters the frames as they are read.
   FrameSeries Filter(FrameSeries frames) const {
     if (NumDropped() > 0 || !FileOrder().empty()) {
       frames.read = [nodes = *this, read = frames.read](std::size_t i) {
@@ -210,7 +213,8 @@ class SceneNodes {
   void Renumber(Eigen::MatrixXi& nodes) const {
     nodes = nodes.unaryExpr([this](int node) { return position_[node]; });
   }
-  // Speaks of nodes some of which may have been selected without being used.
+  // Numbers nodes anew and leaves out those that no element uses, which may
+  // have been selected all the same.
   void Renumber(std::vector<int>& nodes) const {
     std::vector<int> kept;
     for (const int node : nodes) {
@@ -236,8 +240,8 @@ void CheckObserved(const std::filesystem::path& path, const Scene& scene) {
   }
 }
 
-/// What of a mesh may be meant otherwise than it is read.  `why_no_regions` is
-/// that of its file.
+/// Notes what of a mesh may be meant in another way than it is read.
+/// `why_no_regions` is that of its file.
 void NoteMesh(const std::filesystem::path& path,
               const std::string& why_no_regions, const Scene& scene,
               std::vector<std::string>& notices) {
@@ -279,8 +283,8 @@ bool SayMore(const std::vector<Material>& materials) {
       });
 }
 
-/// Where the materials of the scene, or the choice, need regions that the mesh
-/// does not have.
+/// Throws where the materials of the scene, or the choice, need regions that
+/// the mesh does not have.
 void RequireRegions(const MeshFile& mesh, bool is_one_for_each,
                     const Scene& scene) {
   const bool is_one_named = std::any_of(
@@ -375,7 +379,8 @@ void ChooseLaw(const std::filesystem::path& path, const LawChoice& choice,
   }
 }
 
-/// How many mid-edge nodes were put into the middle, and how far, if any were.
+/// Notes how many mid-edge nodes were put into the middle, and how far, if any
+/// were.
 void NoteMovedNodes(const MeshFile& mesh, std::vector<std::string>& notices) {
   if (mesh.moved.empty()) {
     return;
@@ -396,8 +401,8 @@ void NoteMovedNodes(const MeshFile& mesh, std::vector<std::string>& notices) {
   notices.push_back(sentence.str());
 }
 
-/// The scene without the nodes that no element uses, valid, and their order in
-/// the file.
+/// Returns the valid scene without the nodes that no element uses, and their
+/// order in the file.
 Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
                   RegionChoice regions, const LawChoice& law,
                   SceneReading& reading, std::vector<int>& file_order) {
@@ -447,7 +452,8 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
   return scene;
 }
 
-/// Data counted twice would make the standard errors too small.
+/// Throws for a path given twice: data counted twice would make the standard
+/// errors too small.
 void CheckPathsDiffer(const std::vector<std::filesystem::path>& paths) {
   for (std::size_t i = 0; i < paths.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
@@ -461,7 +467,7 @@ void CheckPathsDiffer(const std::vector<std::filesystem::path>& paths) {
   }
 }
 
-// Entries that are not numbers are the same.
+// Compares points; two entries that are not numbers count as the same.
 bool AreSamePoints(const PointDisplacements& a, const PointDisplacements& b) {
   return a.points.Size() == b.points.Size() &&
          a.points.elements == b.points.elements &&
@@ -481,7 +487,7 @@ bool AreSameMeasurement(const Mesh& mesh, const LoadCase& a,
          AssembleLoads(mesh, a.loads) == AssembleLoads(mesh, b.loads);
 }
 
-/// Where each of the load cases that were read comes from: "load case 1 of
+/// The origin of each of the load cases that were read: "load case 1 of
 /// 'first.vtu'".
 using CaseNames = std::vector<std::string>;
 
@@ -504,7 +510,7 @@ void AddLoadCases(const std::filesystem::path& path,
   }
 }
 
-/// Gives these load cases the supports that they had as those of a scene.
+/// Gives these load cases the supports of the scene that they come from.
 void KeepSupports(const Supports& supports, std::vector<LoadCase>& load_cases) {
   for (LoadCase& load_case : load_cases) {
     if (!load_case.supports) {

@@ -14,46 +14,48 @@
 
 namespace elastimate {
 
-/// Whether a scene without measured displacements is wrong input.
+/// A scene without measured displacements is wrong input if they are required.
 enum class Measurement { kRequired, kOptional };
 
-/// What is known about the section of a planar mesh beside its files.
+/// The section of a planar mesh, as far as it is known beside its files.
 struct SectionChoice {
   std::optional<SectionModel> model;
   std::optional<double> thickness;  ///< [length], positive.
 };
 
-/// Which materials the regions of a mesh have.
+/// The choice of materials for the regions of a mesh.
 enum class RegionChoice {
-  kAsGiven,      ///< As the scene.json says, else one isotropic one.
+  kAsGiven,      ///< As in the scene.json, else one isotropic one.
   kOne,          ///< One isotropic one, whatever the scene says.
   kEach,         ///< An isotropic one for each region id.
-  kGivenOrEach,  ///< As the scene.json says, else one for each region.
+  kGivenOrEach,  ///< As in the scene.json, else one for each region id.
 };
 
 /// The law of all materials of a scene.
 struct LawChoice {
-  std::string law;  ///< Empty: of each as it is given, else isotropic.
-  /// Has 3 components, or 2 in the plane; empty: as they are given.
+  std::string law;  ///< Empty: as given for each, else isotropic.
+  /// Vectors of 3 components, or 2 in the plane.  Empty leaves axes as they are
+  /// given.
   std::vector<Eigen::VectorXd> axes;
-  /// Whether the axis is to be found, whatever axes are given.
+  /// Tells whether the axis is to be found, whatever axes are given.
   bool has_free_axis = false;
 };
 
 /// A scene as read, and what the reader has to say about it.
 struct SceneReading {
   Scene scene;
-  /// For people: what was left out, and what may be meant otherwise than it is
-  /// read (forces per node, regions, nodes at one place).
+  /// Sentences for people: what was left out, and what may be meant in another
+  /// way than it is read (forces per node, regions, nodes at one place).
   std::vector<std::string> notices;
-  /// The nodes of the scene in the order of the file, in which results belong
-  /// (VtuContent); empty where it is the same: everywhere but in a quadratic
-  /// mesh with mid-edge nodes numbered before vertices.
+  /// The nodes of the scene in the order of the file, in which results are
+  /// written (VtuContent).  It is empty where the order is the same, which is
+  /// everywhere but in a quadratic mesh with mid-edge nodes numbered before
+  /// vertices.
   std::vector<int> file_order;
   /// Empty but where a scene.json has the key "frames".
   std::optional<FrameSeries> frames;
-  /// Where the measurement of each load case stands, in the order of nodes or
-  /// of points; empty where that is no text.
+  /// The lines of the measurement of each load case, in the order of nodes or
+  /// of points; empty where it is not text.
   std::vector<std::vector<FileLines>> measured_lines;
   /// The cell arrays that the scene.json names as axes of materials, one column
   /// for each element, by name.

@@ -10,20 +10,20 @@
 
 namespace elastimate {
 
-/// The model of that SectionModelName, if it is one.
+/// Returns the model of that SectionModelName, if there is one.
 std::optional<SectionModel> SectionModelOfName(std::string_view name);
 
-/// The words that it knows, for error messages.
+/// Lists the names of the models, for error messages.
 inline constexpr char kSectionModels[] = "3d, plane_stress or plane_strain";
 
-/// What is given, and where nothing is, what `otherwise` has.
+/// Returns what is given, and what `otherwise` has where nothing is.
 SectionChoice Choose(const SectionChoice& given,
                      const SectionChoice& otherwise);
 
-/// The section of the mesh: what is given, and where nothing is, its field
-/// data.  Throws std::invalid_argument, naming the file and the mend, for
-/// planar elements without a plane model or a thickness, and for solid ones
-/// with either.
+/// Returns the section of the mesh: what is given, and what its field data have
+/// where nothing is.  Throws std::invalid_argument, naming the file and the
+/// mend, for planar elements without a plane model or a thickness, and for
+/// solid ones with either.
 Section SectionOf(const MeshFile& mesh, const SectionChoice& given);
 
 }  // namespace elastimate

@@ -16,7 +16,7 @@ std::string_view Trimmed(std::string_view text) {
              : text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
-// The part of a title that is its unit with what sets it off.
+// Returns the part of a title that is its unit, with what sets it off.
 struct UnitPlace {
   std::size_t begin;
   std::size_t end;
@@ -34,7 +34,7 @@ std::optional<UnitPlace> InBrackets(std::string_view title, char open,
                    Trimmed(title.substr(begin + 1, end - begin - 1))};
 }
 
-// "x / mm", "x, mm", "x_mm", "x mm".
+// These are titles like "x / mm", "x, mm", "x_mm", "x mm".
 std::optional<UnitPlace> AtTheEnd(std::string_view title) {
   const std::size_t begin = title.find_last_of("/,_ ");
   if (begin == std::string_view::npos || begin == 0) {
@@ -42,7 +42,7 @@ std::optional<UnitPlace> AtTheEnd(std::string_view title) {
   }
   const std::string_view unit = Trimmed(title.substr(begin + 1));
   const bool is_set_off = title.find_last_of("/,") != std::string_view::npos;
-  // These are words or letters of names as well.
+  // These units are words or letters of names as well.
   const bool may_be_word = unit == "in" || (unit == "m" && title[begin] == ' ');
   if (!LengthUnitOf(unit) || (may_be_word && !is_set_off)) {
     return std::nullopt;
@@ -84,7 +84,7 @@ std::string PlainName(std::string_view name) {
   for (const char c : name) {
     const bool is_mark =
         std::string_view(" _-.:()\t").find(c) != std::string_view::npos;
-    // In front, a hyphen is a sign.
+    // A hyphen in front is a sign.
     if (!is_mark || (c == '-' && plain.empty())) {
       plain += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     }

@@ -10,7 +10,8 @@
 namespace elastimate {
 
 /// The title of a column, which may have a unit: "X [mm]", "x (mm)", "x / mm",
-/// "x_mm".  In square brackets it may be any, else one of LengthUnitOf.
+/// "x_mm".  A unit in square brackets may be any, another one has to be one of
+/// LengthUnitOf.
 struct ColumnTitle {
   std::string text;  ///< The whole title.
   std::string name;  ///< Without the unit.
@@ -19,8 +20,8 @@ struct ColumnTitle {
   explicit ColumnTitle(std::string_view title);
 };
 
-/// Small letters without spaces, underscores, hyphens, dots and brackets, so
-/// that "Displacement_X" is "displacementx".
+/// Returns small letters without spaces, underscores, hyphens, dots and
+/// brackets: "Displacement_X" becomes "displacementx".
 std::string PlainName(std::string_view name);
 
 /// The titles of a table, in which columns are found by their names.
@@ -35,15 +36,15 @@ class ColumnTitles {
     return titles_[column];
   }
 
-  /// The columns of which `title` is the whole title; where there is none,
-  /// those whose titles differ from it by the unit that one of them has and the
-  /// other has not.
+  /// Returns the columns of which `title` is the whole title.  Where there is
+  /// none, it returns those whose titles are the same but for a unit, which
+  /// only one of the two has.
   std::vector<std::size_t> Find(std::string_view title) const;
-  /// Finds them as before; where there is none, those that are the same to
-  /// PlainName, with the same condition for units.
+  /// Returns what Find returns.  Where it finds none, titles are compared by
+  /// PlainName, under the same condition for units.
   std::vector<std::size_t> FindAlike(std::string_view title) const;
 
-  /// "x, y [mm], ...", for messages.
+  /// Returns "x, y [mm], ...", for messages.
   std::string List() const;
 
  private:

@@ -18,7 +18,7 @@ namespace {
 
 using CellTexts = std::vector<std::string>;
 
-// The cells of one line, by libcsv; empty when quotes are wrong.
+// Returns the cells of one line, by libcsv; nothing when quotes are wrong.
 std::optional<CellTexts> SplitLine(std::string_view line, char delimiter) {
   csv_parser parser;
   if (csv_init(&parser, CSV_STRICT | CSV_STRICT_FINI) != 0) {
@@ -42,11 +42,11 @@ std::optional<CellTexts> SplitLine(std::string_view line, char delimiter) {
 }
 
 constexpr char kSpaces[] = " \t";
-// In the order in which they are tried: a semicolon or a tabulator is no part
-// of a number.
+// Separators are tried in this order: a semicolon or a tabulator is no part of
+// a number.
 constexpr std::array<char, 4> kDelimiters = {';', '\t', ',', ' '};
 
-// The separator that a line has most of; a space where it has none.
+// Returns the separator of which a line has most; a space where it has none.
 char DelimiterOf(std::string_view line) {
   const char delimiter = *std::max_element(
       kDelimiters.begin(), kDelimiters.end() - 1, [&line](char a, char b) {
@@ -60,13 +60,13 @@ bool IsBlank(std::string_view line) {
   return line.find_first_not_of(kSpaces) == std::string_view::npos;
 }
 
-// "# a comment", "*** a comment".
+// Matches "# a comment" and "*** a comment".
 bool IsComment(std::string_view line) {
   const std::size_t begin = line.find_first_not_of(kSpaces);
   return line[begin] == '#' || line.compare(begin, 3, "***") == 0;
 }
 
-// Splits at spaces outside of quotes; empty when quotes are wrong.
+// Splits at spaces outside of quotes; nothing when quotes are wrong.
 std::optional<CellTexts> SplitWords(std::string_view line) {
   CellTexts words;
   bool is_quoted = false;
@@ -95,7 +95,7 @@ std::optional<CellTexts> CellsOf(std::string_view line, char delimiter) {
   return delimiter == ' ' ? SplitWords(line) : SplitLine(line, delimiter);
 }
 
-// The titles that a line has; empty when quotes are wrong.
+// Returns the titles that a line has; nothing when quotes are wrong.
 std::optional<CellTexts> TitlesOf(std::string_view line, char delimiter) {
   std::optional<CellTexts> cells = CellsOf(line, delimiter);
   if (!cells) {
@@ -139,7 +139,7 @@ bool HasOnlyNumbers(const CellTexts& cells) {
   });
 }
 
-// Titles that were found, and what separates them.
+// The titles that were found, and what separates them.
 struct TitleLine {
   ColumnTitles titles;
   char delimiter;
@@ -152,7 +152,7 @@ std::optional<TitleLine> FindTitles(std::string_view line,
     return std::nullopt;
   }
   for (const char delimiter : kDelimiters) {
-    // The first one, where the line has none of it, makes one title of it.
+    // The first separator, of which the line has none, makes one title of it.
     if (delimiter != kDelimiters[0] &&
         line.find(delimiter) == std::string_view::npos) {
       continue;
@@ -192,7 +192,7 @@ class TableReader {
     if (!has_titles_) {
       table_.titles = ColumnTitles(likely_);
     }
-    // Rows that something else separates have no numbers either.
+    // Rows with another separator have no numbers either.
     if (has_titles_ && table_.rows.empty() && !table_.units.empty() &&
         table_.units.size() != table_.titles.Size()) {
       ThrowCount(table_.units.size(), line_of_units_);
@@ -215,7 +215,8 @@ class TableReader {
     }
   }
 
-  // Whether the titles of a comment are those of the row of numbers below it.
+  // Tells whether the titles of a comment belong to the row of numbers below
+  // it.
   bool TakeComment(std::string_view row) {
     const TitleLine comment = std::move(*of_comment_);
     of_comment_.reset();

@@ -23,34 +23,35 @@ struct CsvTable {
 
   std::filesystem::path path;
   ColumnTitles titles;
-  /// The cells of a row without numbers below the titles; may be fewer.
+  /// The cells of a row without numbers below the titles; it may be shorter.
   std::vector<std::string> units;
-  std::vector<Row> rows;  ///< Each has a cell for each column.
+  std::vector<Row> rows;  ///< Each has one cell for each column.
   char delimiter = ',';
 
-  /// The place of a column by its title (ColumnTitles::FindAlike).  Throws
-  /// std::invalid_argument, naming the file and the columns that there are,
-  /// where none has that title, or several.
+  /// Returns the place of a column by its title (ColumnTitles::FindAlike).
+  /// Throws std::invalid_argument, naming the file and the columns that there
+  /// are, where no column or several columns have that title.
   std::size_t At(std::string_view title) const;
   /// Throws, as At does, unless exactly one is found.
   std::size_t One(const std::vector<std::size_t>& found,
                   std::string_view title) const;
-  /// A number, or empty where the cell is.  A comma is a decimal mark where
-  /// cells are not separated by commas.  Throws std::invalid_argument, naming
-  /// the file, the line and the column, for anything else.
+  /// Returns a number, or nothing where the cell is empty.  A comma is a
+  /// decimal mark where cells are not separated by commas.  Throws
+  /// std::invalid_argument, naming the file, the line and the column, for
+  /// anything else.
   std::optional<double> Number(const Row& row, std::size_t column) const;
   /// Throws std::invalid_argument, naming the file and two lines, where numbers
   /// of the columns have decimal commas and decimal points.
   void CheckDecimalMarks(const std::vector<std::size_t>& columns) const;
 };
 
-/// Whether these are the titles of the table that is looked for.
+/// Tells whether these are the titles of the table that is looked for.
 using IsTable = std::function<bool(const ColumnTitles&)>;
 
-/// The first table whose titles `is_table` takes; what stands above it is
-/// skipped.  Cells may be quoted; of words that are separated by spaces, "[mm]"
+/// Reads the first table whose titles `is_table` takes; what stands above it is
+/// skipped.  Cells may be quoted.  Where words are separated by spaces, "[mm]"
 /// and "(mm)" belong to the word before them.  Lines that are blank or begin
-/// with # or *** are skipped.  A comment right above the first row has the
+/// with # or *** are skipped, but a comment right above the first row has the
 /// titles where it names as many.  Without such a table there are no rows, and
 /// the titles are those of the line that looks most like it, for a message.
 ///
@@ -60,7 +61,7 @@ using IsTable = std::function<bool(const ColumnTitles&)>;
 CsvTable ReadCsvTable(const std::filesystem::path& path,
                       const IsTable& is_table);
 
-/// The number in a cell; `nan` and `inf` are numbers.  Throws
+/// Returns the number in a cell; `nan` and `inf` are numbers.  Throws
 /// std::invalid_argument: "FILE: line 3, column 2: 'abc' is not a number;
 /// correct it".
 double NumberOfCell(const std::filesystem::path& path, std::string_view cell,

@@ -7,7 +7,7 @@
 
 namespace elastimate {
 
-/// Where things that follow one another stand in a text file.
+/// The lines of a text file in which things stand that follow one another.
 struct FileLines {
   std::filesystem::path file;
   std::vector<std::size_t> lines;  ///< From 1 on.

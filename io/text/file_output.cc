@@ -20,7 +20,7 @@
 namespace elastimate {
 
 /// The name of a staged file, where a signal handler finds it.  Places for
-/// names are used again, but never freed.
+/// names are reused, but never freed.
 struct StagedName {
   enum class State { kFree, kTaken, kNamed };
   std::atomic<State> state = State::kTaken;
@@ -49,14 +49,14 @@ class FileDescriptor {
   FileDescriptor& operator=(const FileDescriptor&) = delete;
 
   int Get() const { return descriptor_; }
-  /// False, with errno set, when what was written did not arrive.
+  /// Returns false, with errno set, when what was written did not arrive.
   bool Close() { return close(std::exchange(descriptor_, -1)) == 0; }
 
  private:
   int descriptor_;
 };
 
-/// False, with errno set, when not all could be written.
+/// Returns false, with errno set, when not all could be written.
 bool WriteAll(int descriptor, std::string_view content) {
   while (!content.empty()) {
     const ssize_t written = write(descriptor, content.data(), content.size());
@@ -68,7 +68,7 @@ bool WriteAll(int descriptor, std::string_view content) {
   return true;
 }
 
-/// The file that `path` leads to, so that a symbolic link stays one.
+/// Returns the file to which `path` leads, so that a symbolic link stays one.
 fs::path FollowLinks(fs::path path) {
   std::error_code error;
   for (int depth = 0; depth < 40 && fs::is_symlink(path, error); ++depth) {
@@ -85,7 +85,7 @@ fs::path Folder(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-/// Whether `path` names an open file by its number, as /dev/stdout and
+/// Tells whether `path` names an open file by its number, as /dev/stdout and
 /// /dev/fd/3 do, directly or through symbolic links.
 bool IsDescriptor(fs::path path) {
   std::error_code error;
@@ -102,15 +102,16 @@ bool IsDescriptor(fs::path path) {
   return false;
 }
 
-/// Whether `path` is a terminal or the like, or a pipe, which no new file may
-/// replace.
+/// Tells whether `path` is a terminal or the like, or a pipe, which no new file
+/// may replace.
 bool IsWrittenInPlace(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   return fs::is_character_file(status) || fs::is_fifo(status);
 }
 
-/// What could be written in part only, or would lose more than a file.
+/// Throws where `path` could be written in part only, or writing would destroy
+/// more than a file.
 void CheckKindOfFile(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -166,8 +167,8 @@ StagedName* Note(const fs::path& name) {
 
 void Release(StagedName* place) { place->state = StagedName::State::kFree; }
 
-/// A name beside `target` that no other process takes, not even one of the same
-/// number in another container.
+/// Returns a name beside `target` that no other process takes, not even one of
+/// the same number in another container.
 fs::path PartName(const fs::path& target) {
   std::uint64_t random = 0;
   if (getrandom(&random, sizeof random, 0) != sizeof random) {
@@ -177,7 +178,7 @@ fs::path PartName(const fs::path& target) {
                            std::to_string(random) + ".part");
 }
 
-/// Opens a new file beside `target`, whose name goes to `name`; noted at
+/// Opens a new file beside `target`, whose name goes to `name` and is noted at
 /// `place` when that succeeds.
 int OpenNewFile(const fs::path& target, fs::path& name, StagedName*& place) {
   int descriptor = -1;
@@ -187,7 +188,8 @@ int OpenNewFile(const fs::path& target, fs::path& name, StagedName*& place) {
       errno = ENAMETOOLONG;
       return -1;
     }
-    // Before there is a file, so that none is ever without its name here.
+    // The name is noted before there is a file, so that no file is ever unknown
+    // here.
     place = Note(name);
     // Unlike mkstemp's, its permissions follow the user's umask.
     descriptor =

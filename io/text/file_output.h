@@ -9,8 +9,8 @@ namespace elastimate {
 
 struct StagedName;
 
-/// Files that appear together, each whole, or not at all: each is written to a
-/// new file in its folder, which takes the name when all are written.
+/// Files that appear together, each whole, or not at all.  Each is written to a
+/// new file in its folder; the new files take the names when all are written.
 class StagedFiles {
  public:
   StagedFiles() = default;
@@ -19,12 +19,13 @@ class StagedFiles {
   StagedFiles(const StagedFiles&) = delete;
   StagedFiles& operator=(const StagedFiles&) = delete;
 
-  /// Writes `content` beside `path`; to a terminal, /dev/null or a pipe at
-  /// once, so that these are best added last.  Throws std::invalid_argument,
-  /// naming the file, when it cannot be written (CheckWritable).
+  /// Writes `content` beside `path`, or at once if this is a terminal,
+  /// /dev/null or a pipe; such outputs are best added last.  Throws
+  /// std::invalid_argument, naming the file, when it cannot be written
+  /// (CheckWritable).
   void Add(const std::filesystem::path& path, const std::string& content);
 
-  /// Lets the files appear, in place of what had their names.
+  /// Lets the files appear, in place of those that had their names.
   void Commit();
 
  private:
@@ -43,19 +44,19 @@ class StagedFiles {
 void WriteWholeFile(const std::filesystem::path& path,
                     const std::string& content);
 
-/// Removes what StagedFiles of this process have written and not committed:
-/// for the signal handler of a program that is about to end. Async-signal-safe.
-/// Nothing removes them where a process is killed (SIGKILL): then a file
-/// .NAME.NUMBER.part stays beside each output.
+/// Removes what StagedFiles of this process have written and not committed, for
+/// the signal handler of a program that is about to end.  Async-signal-safe.  A
+/// process that is killed (SIGKILL) leaves a file .NAME.NUMBER.part beside each
+/// output.
 void UnlinkStagedFiles();
 
 /// Throws std::invalid_argument, naming the file, when `path` could not be
-/// written: so that long work does not start in vain.  Creates nothing.
-/// Neither disks and sockets nor open files by their number (/dev/fd/3) are
-/// written, unless these are terminals, pipes or the like.
+/// written, so that long work does not start in vain.  Creates nothing.  Disks
+/// and sockets cannot be written, nor open files by their number (/dev/fd/3)
+/// unless these are terminals, pipes or the like.
 void CheckWritable(const std::filesystem::path& path);
 
-/// Whether the two names lead to one file, which need not exist.
+/// Tells whether the two names lead to one file, which need not exist.
 [[nodiscard]] bool AreSameFile(const std::filesystem::path& first,
                                const std::filesystem::path& second);
 

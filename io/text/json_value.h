@@ -11,12 +11,12 @@
 namespace elastimate {
 
 /// Parses a JSON file.  Throws std::invalid_argument, naming the file, line and
-/// column, for anything but one JSON document without repeated keys.
+/// column, unless it is one JSON document without repeated keys.
 nlohmann::json ParseJsonFile(const std::filesystem::path& path);
 
-/// A value of a JSON file that knows where it is, so that what is wrong with it
-/// can be said as "FILE: cases[0].loads[1].surface must be ...".  Every method
-/// throws that as std::invalid_argument when the value is not as asked for.
+/// A value of a JSON file that knows its place in the file, so that an error
+/// can be told as "FILE: cases[0].loads[1].surface must be ...".  Every method
+/// throws this as std::invalid_argument when the value is not as asked for.
 ///
 /// Views `file` and `value`, which must outlive it.
 class JsonValue {
@@ -43,12 +43,12 @@ class JsonValue {
   long long Integer() const;
   double Number() const;
   bool Boolean() const;
-  /// A list of so many numbers.
+  /// Returns a list of so many numbers.
   Eigen::VectorXd Vector(Eigen::Index size) const;
-  /// How many items it has as a list; 0 for anything else.
+  /// Returns the number of items of a list; 0 for anything else.
   Eigen::Index ListSize() const;
 
-  /// The value without where it is.
+  /// Returns the value without its place.
   const nlohmann::json& Json() const { return *value_; }
 
   const std::filesystem::path& File() const { return *file_; }

@@ -19,8 +19,8 @@ struct UnitName {
   LengthUnit unit;
 };
 
-// The sign of micro is a character of its own, the Greek letter, or a byte of
-// Latin-1.
+// The sign of micro may be a character of its own, the Greek letter, or a byte
+// of Latin-1.
 constexpr UnitName kUnitNames[] = {
     {"m", kMetre},
     {"meter", kMetre},

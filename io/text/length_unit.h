@@ -12,15 +12,16 @@ struct LengthUnit {
   double nanometres;  ///< Zero of a pixel.
 
   bool IsPixel() const { return nanometres == 0; }
-  /// Whether displacements are in it rather than specimens: pixel, nm, um.
+  /// Tells whether it is a unit of displacements rather than of specimens:
+  /// pixel, nm, um.
   bool IsSmall() const { return nanometres <= 1e3; }
 };
 
-/// For messages.
+/// Lists the units for messages.
 constexpr char kLengthUnits[] = "m, cm, mm, um, nm, in";
 
-/// The unit of that name or symbol, in small or capital letters; empty where it
-/// is not one of kLengthUnits or a pixel.
+/// Returns the unit of that name or symbol, in small or capital letters;
+/// nothing where it is neither one of kLengthUnits nor a pixel.
 std::optional<LengthUnit> LengthUnitOf(std::string_view name);
 
 }  // namespace elastimate

@@ -77,7 +77,7 @@ class NameReader {
     return parts;
   }
 
-  /// Counts the most points in one of the numbers of a name.
+  /// Returns how many points the number with the most points has.
   int MostPoints() {
     int most = 0;
     for (place_ = 0; place_ < name_.size(); ++place_) {
@@ -130,7 +130,7 @@ class NameReader {
                       is_behind_letter ? 0 : Exponent());
   }
 
-  // Zero where there is none.
+  // Returns zero where there is no exponent.
   long long Exponent() {
     const bool has_sign = At(place_ + 1) == '-' || At(place_ + 1) == '+';
     const std::size_t begin = place_ + (has_sign ? 2 : 1);
@@ -167,9 +167,9 @@ std::vector<NamedParts> SortedParts(const std::vector<std::string>& names,
   return sorted;
 }
 
-// Whether numbers with a point are two integers: where one has two points, and
-// where one ends in a zero that a shorter one in its place has not, as 1.10
-// beside 1.9.
+// Tells whether numbers with a point are two integers.  They are where one has
+// two points, and where one ends in a zero that a shorter one in its place does
+// not have, as 1.10 beside 1.9.
 bool HasCounters(const std::vector<std::string>& names) {
   const std::vector<NamedParts> all = SortedParts(names, true);
   std::map<std::size_t, std::size_t> fewest;

@@ -14,8 +14,8 @@ struct Character {
   bool is_valid;
 };
 
-/// The first character of `text`, which is not empty, by table 3-7 of the
-/// Unicode standard.
+/// Returns the first character of `text`, which is not empty, by table 3-7 of
+/// the Unicode standard.
 Character Decode(std::string_view text) {
   const auto byte = [&text](std::size_t i) -> std::uint32_t {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0;
@@ -39,8 +39,8 @@ Character Decode(std::string_view text) {
   return {code, size, true};
 }
 
-/// Control characters, line separators, and what changes the direction of
-/// writing, so that a name could look like another one.
+/// These are control characters, line separators, and what changes the
+/// direction of writing, so that a name could look like another one.
 bool SpeaksToTheTerminal(std::uint32_t code) {
   return code < 0x20 || (code >= 0x7F && code < 0xA0) || code == 0x61C ||
          code == 0x200B || code == 0x200E || code == 0x200F ||

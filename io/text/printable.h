@@ -8,21 +8,22 @@
 
 namespace elastimate {
 
-/// Characters that a sentence quotes of a name, a cell or a flag, of a path,
-/// and those of a whole sentence.
+/// The number of characters that a sentence quotes of a name, a cell or a flag,
+/// and of a path, and the length of a whole sentence.
 constexpr std::size_t kLongestQuote = 60;
 constexpr std::size_t kLongestPath = 240;
 constexpr std::size_t kLongestSentence = 1000;
 
-/// Text from outside (a file, a file name, a flag) as messages quote it: one
-/// line of valid UTF-8 that says nothing to a terminal.  Control characters,
-/// marks that change the direction of writing, and bytes that are no UTF-8
-/// become \n, \t, \r, \x1b, \u202e; of more than `longest` characters the ones
-/// in the middle become "...".  Idempotent; O(text.size()).
+/// Returns text from outside (a file, a file name, a flag) as messages quote
+/// it: one line of valid UTF-8 that says nothing to a terminal.  Control
+/// characters, marks that change the direction of writing, and bytes that are
+/// no UTF-8 become \n, \t, \r, \x1b, \u202e.  Text of more than `longest`
+/// characters has "..." in the place of its middle.  Idempotent;
+/// O(text.size()).
 std::string Printable(std::string_view text,
                       std::size_t longest = kLongestQuote);
 
-/// Makes a path printable likewise.
+/// Quotes a path in the same way.
 inline std::string PrintablePath(const std::filesystem::path& path) {
   return Printable(path.string(), kLongestPath);
 }

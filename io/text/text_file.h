@@ -6,10 +6,10 @@
 
 namespace elastimate {
 
-/// The content of a text file without its byte order mark.  UTF-16, which has
-/// the mark or a zero byte beside the first character, becomes UTF-8; other
-/// text stays what it is.  Throws std::invalid_argument, naming the file, where
-/// it cannot be read, is empty, or is no valid UTF-16.
+/// Returns the content of a text file without its byte order mark.  UTF-16,
+/// which has the mark or a zero byte beside the first character, becomes UTF-8;
+/// other text stays as it is.  Throws std::invalid_argument, naming the file,
+/// where it cannot be read, is empty, or is no valid UTF-16.
 std::string ReadTextFile(const std::filesystem::path& path);
 
 }  // namespace elastimate

@@ -25,7 +25,8 @@ bool IsLetter(char c) {
   return std::isalpha(static_cast<unsigned char>(c)) != 0;
 }
 
-/// The name of the array that begins after this line, or an empty string.
+/// Returns the name of the array that begins after this line, or an empty
+/// string.
 std::string ArrayName(const std::string& line) {
   static const std::set<std::string> kKinds = {
       "SCALARS",      "VECTORS",       "NORMALS",
@@ -40,7 +41,7 @@ std::string ArrayName(const std::string& line) {
   if (kKinds.count(first) > 0) {
     return second;
   }
-  // In a FIELD: "force 3 6 int".
+  // A FIELD has lines like "force 3 6 int".
   std::istringstream field(line);
   int num_components = 0;
   int num_tuples = 0;
@@ -53,8 +54,8 @@ std::string ArrayName(const std::string& line) {
              : "";
 }
 
-/// Finds what VTK does not tell: it takes the last of several arrays of one
-/// name, and the types of cells from beyond their end.
+/// Finds damage that VTK does not report: it takes the last of several arrays
+/// of one name, and reads types of cells from beyond their end.
 void CheckHeaders(const std::filesystem::path& path, std::int64_t num_cells) {
   constexpr std::size_t kLongestLine = 1000;
   std::ifstream file(path, std::ios::binary);

@@ -44,8 +44,8 @@ struct VtkGrid {
   std::vector<FileArray> cell_arrays;
 };
 
-/// The values of an array of any numeric type, at once in the type and the
-/// place where they are wanted.
+/// Copies the values of an array of any numeric type, and converts them on the
+/// way, so that no second copy is needed.
 template <typename Value>
 void CopyValues(vtkDataArray* array, Value* to) {
   switch (array->GetDataType()) {
@@ -60,7 +60,7 @@ void CopyValues(vtkDataArray* array, Value* to) {
   }
 }
 
-/// One column per tuple.
+/// Returns one column per tuple.
 Eigen::MatrixXd ToMatrix(vtkDataArray* array) {
   Eigen::MatrixXd matrix;
   ResizeInLargePages(array->GetNumberOfComponents(), array->GetNumberOfTuples(),
@@ -69,7 +69,7 @@ Eigen::MatrixXd ToMatrix(vtkDataArray* array) {
   return matrix;
 }
 
-/// The named numeric arrays; strings are left out.
+/// Returns the named numeric arrays; strings are left out.
 std::vector<FileArray> ToArrays(vtkDataSetAttributes* attributes) {
   std::vector<FileArray> arrays;
   for (int i = 0; i < attributes->GetNumberOfArrays(); ++i) {
@@ -103,7 +103,7 @@ VtkGrid ToVtkGrid(vtkUnstructuredGrid* from) {
   ThrowInputError(path, "the file is damaged (" + reason + "); write it again");
 }
 
-/// "vtkQuadraticTetra" as "quadratic tetra".
+/// Turns "vtkQuadraticTetra" into "quadratic tetra".
 std::string CellTypeName(int type) {
   const std::string class_name = vtkCellTypes::GetClassNameFromTypeId(type);
   if (class_name.rfind("vtk", 0) != 0) {
@@ -119,7 +119,7 @@ std::string CellTypeName(int type) {
   return name;
 }
 
-/// The cells that may be elements.
+/// Returns the cells that may be elements.
 constexpr std::array<std::pair<int, ElementKind>, 6> kCellKinds = {
     {{VTK_TETRA, ElementKind::kTet4},
      {VTK_QUADRATIC_TETRA, ElementKind::kTet10},
@@ -137,7 +137,7 @@ std::optional<ElementKind> KindOfCell(int type) {
   return std::nullopt;
 }
 
-/// 3 of a cell of unknown type, which must not be ignored.
+/// Returns 3 for a cell of unknown type, which must not be ignored.
 int DimensionOfCell(int type) {
   if (const std::optional<ElementKind> kind = KindOfCell(type)) {
     return TopologyOf(*kind).dimension;
@@ -163,13 +163,13 @@ void CheckOffsets(const std::filesystem::path& path, const VtkGrid& grid) {
   }
 }
 
-/// Which cells are the elements: those of the highest dimension.
+/// The cells that are the elements: those of the highest dimension.
 struct ElementCells {
   ElementKind kind = ElementKind::kTet4;
   std::vector<std::size_t> cells;
 };
 
-/// The cells of dimension 3 count where there is one, else those of
+/// Returns the cells of dimension 3 where there are any, else those of
 /// dimension 2.
 std::vector<std::size_t> CellsOfHighestDimension(const VtkGrid& grid) {
   std::array<int, 256> dimension_of_type;
@@ -190,7 +190,7 @@ std::vector<std::size_t> CellsOfHighestDimension(const VtkGrid& grid) {
   return cells;
 }
 
-/// The cells that are elements, which must be of one kind.
+/// Returns the cells that are elements, which must be of one kind.
 ElementCells FindElements(const std::filesystem::path& path,
                           const VtkGrid& grid) {
   const vtkTypeInt64Array& offsets = *grid.cells->GetOffsetsArray64();
@@ -251,7 +251,7 @@ void CopyElements(const VtkGrid& grid, const std::vector<std::size_t>& cells,
   }
 }
 
-/// A number of the field data, if there is an array of that name.
+/// Returns a number of the field data, if there is an array of that name.
 std::optional<double> FieldNumber(const std::filesystem::path& path,
                                   const char* name, vtkFieldData* data) {
   if (data->GetAbstractArray(name) == nullptr) {

@@ -11,10 +11,10 @@ class vtkUnstructuredGrid;
 
 namespace elastimate {
 
-/// What a grid that was read from `path` holds.  The elements are the cells of
-/// dimension 3, or, where there is none, of dimension 2; others are ignored.
-/// Throws std::invalid_argument, naming the file, for elements that are not all
-/// of one ElementKind, and for parts that do not agree.
+/// Returns the content of a grid that was read from `path`.  The elements are
+/// the cells of dimension 3, or, where there is none, of dimension 2; others
+/// are ignored.  Throws std::invalid_argument, naming the file, for elements
+/// that are not all of one ElementKind, and for parts that do not agree.
 MeshFile ToMeshFile(const std::filesystem::path& path,
                     vtkUnstructuredGrid* grid);
 

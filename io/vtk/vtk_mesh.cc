@@ -57,7 +57,7 @@ class VtuReader : public vtkXMLUnstructuredGridReader {
 
 vtkStandardNewMacro(VtuReader);
 
-/// Whether there is as much memory as a sound file takes.
+/// Tells whether there is as much memory as a sound file takes.
 bool HasMemoryFor(const std::filesystem::path& path) {
   const std::unique_ptr<char[]> some(new (
       std::nothrow) char[16'000'000 + 20 * std::filesystem::file_size(path)]);

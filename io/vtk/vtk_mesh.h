@@ -12,7 +12,8 @@ namespace elastimate {
 /// ElementKind.  Throws std::invalid_argument, naming the file.
 MeshFile ReadVtuMesh(const std::filesystem::path& path);
 
-/// Reads VTK's legacy format, text or binary.
+/// Reads an unstructured grid in the same way from VTK's legacy format, text or
+/// binary.
 MeshFile ReadLegacyVtkMesh(const std::filesystem::path& path);
 
 }  // namespace elastimate

@@ -62,8 +62,9 @@ class VtkMessageWindow : public vtkOutputWindow {
   bool IsOwnThread() const { return std::this_thread::get_id() == thread_; }
 
   void NoteError(const char* text) {
-    // About what is noted beside an array, not about its data: VTK cannot read
-    // the infinite ranges that it writes there, nor keys of other versions.
+    // This complaint is about what is noted beside an array, not about its
+    // data: VTK cannot read the infinite ranges that it writes there, nor keys
+    // of other versions.
     if (text != nullptr &&
         (std::strstr(text, "InformationKey") != nullptr ||
          std::strstr(text, "Could not locate key") != nullptr)) {

@@ -27,7 +27,8 @@ class VtkMessages {
 
   bool HasError() const;
 
-  /// The first error as one line, without VTK's source file and object address.
+  /// Returns the first error as one line, without VTK's source file and object
+  /// address.
   std::string FirstError() const;
 
  private:

@@ -77,7 +77,7 @@ int CellType(ElementKind kind) {
   return VTK_TETRA;
 }
 
-/// In the order of the points, with z = 0 for vectors of a plane.
+/// Returns vectors in the order of the points, with z = 0 for those of a plane.
 Eigen::MatrixXd AtPoints(const Eigen::MatrixXd& values, const Mesh& mesh,
                          const std::vector<int>& order) {
   Eigen::MatrixXd at_points =
@@ -158,7 +158,8 @@ Eigen::MatrixXd ToNumbers(const ComponentMask& mask) {
   return mask.cast<double>().matrix();
 }
 
-// Without a displacement where all are zero, unless those of the scene are not.
+// The array is left out where all displacements are zero, unless those of the
+// scene are not.
 void AddSupports(const Supports& supports, const std::string& suffix,
                  Fields& fields) {
   fields.point.push_back({"fixed" + suffix, ToNumbers(supports.held)});

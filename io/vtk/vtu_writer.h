@@ -23,17 +23,17 @@ struct Fields {
   Origin origin = Origin::kMeasured;
 };
 
-/// The arrays that ReadScene reads back as `scene`: `fixed`, `prescribed` when
-/// a support is held away from zero, `region`, and for each load case k > 1
-/// with suffix `_k`: `force` (the loads assembled to consistent nodal forces),
-/// `displacement` and `observed` where there are any; and the field data
-/// `computed` (1) where elements of the mesh computed the displacements
-/// (Origin::kComputed).
+/// Returns the arrays that ReadScene reads back as `scene`: `fixed`,
+/// `prescribed` when a support is held away from zero, and `region`.  For each
+/// load case k, with suffix `_k` for k > 1, these are `force` (the loads
+/// assembled to consistent nodal forces), `displacement` and `observed` where
+/// there are any.  The field data have `computed` (1) where elements of the
+/// mesh computed the displacements (Origin::kComputed).
 [[nodiscard]] Fields SceneFields(const Scene& scene);
 
-/// The mesh with its fields as the content of a VTU file (binary, Float64) that
-/// ParaView opens.  What is planar lies at z = 0, its vectors too, with its
-/// `model` and `thickness` as field data.  Point i is node `file_order[i]`
+/// Returns the mesh with its fields as the content of a VTU file (binary,
+/// Float64) that ParaView opens.  A planar mesh and its vectors lie at z = 0,
+/// with `model` and `thickness` as field data.  Point i is node `file_order[i]`
 /// (SceneReading::file_order), or node i where that is empty.  Throws
 /// std::invalid_argument, naming the file, for fields that do not fit the mesh.
 std::string VtuContent(const std::filesystem::path& path, const Mesh& mesh,

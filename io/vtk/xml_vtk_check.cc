@@ -21,7 +21,7 @@
 namespace elastimate {
 namespace {
 
-/// Compressed data are never this much smaller.
+/// Data are at most this many times as large as their compressed form.
 constexpr double kLargestCompression = 1e4;
 
 std::string_view Attribute(vtkXMLDataElement* element, const char* name) {
@@ -29,7 +29,8 @@ std::string_view Attribute(vtkXMLDataElement* element, const char* name) {
   return value == nullptr ? std::string_view() : value;
 }
 
-/// A count in an attribute, `missing` when there is none, -1 when it is none.
+/// Returns a count in an attribute, `missing` when there is none, -1 when it is
+/// no count.
 std::int64_t Count(vtkXMLDataElement* element, const char* name,
                    std::int64_t missing) {
   const std::string_view text = Attribute(element, name);
@@ -42,7 +43,7 @@ std::int64_t Count(vtkXMLDataElement* element, const char* name,
   return error == std::errc() && end == text.data() + text.size() ? count : -1;
 }
 
-/// Zero when the size is not fixed.
+/// Returns zero when the size is not fixed.
 std::int64_t WordSize(std::string_view type) {
   static const std::map<std::string_view, std::int64_t> kSizes = {
       {"Int8", 1},    {"UInt8", 1},  {"Int16", 2}, {"UInt16", 2},
@@ -52,7 +53,7 @@ std::int64_t WordSize(std::string_view type) {
   return found == kSizes.end() ? 0 : found->second;
 }
 
-/// The bytes that base64 text encodes, up to what is no such text.
+/// Returns the bytes that base64 text encodes, up to what is no such text.
 std::string DecodeBase64(std::string_view text) {
   static const std::string_view kDigits =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -152,7 +153,7 @@ class XmlVtkCheck {
     CheckChildren(element);
   }
 
-  /// -1 when the file does not say it outside of the data.
+  /// Returns -1 when the file says it only in the data.
   std::int64_t NumTuples(vtkXMLDataElement* array,
                          vtkXMLDataElement* parent) const {
     const std::string_view place = parent->GetName();
@@ -233,8 +234,8 @@ class XmlVtkCheck {
     }
   }
 
-  /// VTK ignores what is beyond the due number; any number is right when that
-  /// is negative.
+  /// Checks the number of values, of which VTK ignores those beyond the due
+  /// number; any number is right when the due number is negative.
   void CheckNumWords(const std::string& name, double num_words, double due) {
     if (due >= 0 && num_words != due) {
       frame_.damage = "its array '" + Printable(name) + "' has " +
@@ -262,8 +263,8 @@ class XmlVtkCheck {
     return static_cast<double>(count);
   }
 
-  /// The number of bytes that the sizes ahead of the data of an array give, or
-  /// -1 where these do not fit the file.
+  /// Returns the number of bytes that the sizes ahead of the data of an array
+  /// give, or -1 where these do not fit the file.
   double DataSize(vtkXMLDataElement* array, bool is_appended) {
     std::int64_t position = 0;
     if (is_appended) {
@@ -288,7 +289,7 @@ class XmlVtkCheck {
                : -1;
   }
 
-  /// Checks compressed data likewise.
+  /// Returns this number of bytes for compressed data.
   double BlocksSize(std::int64_t position, bool is_base64, double num_blocks,
                     double block_size, double last_block_size) {
     const double available = Available(position);
@@ -322,7 +323,8 @@ class XmlVtkCheck {
     return static_cast<double>(file_size_ - position);
   }
 
-  /// The first words of an array, as doubles; fewer where the file ends.
+  /// Returns the first words of an array, as doubles; fewer where the file
+  /// ends.
   std::vector<double> ReadHeader(std::int64_t position, bool is_base64,
                                  std::int64_t num_words) {
     const std::int64_t num_bytes = num_words * header_size_;
@@ -370,7 +372,7 @@ class XmlVtkCheck {
   bool is_compressed_ = false;
   std::int64_t num_points_ = 0;
   std::int64_t num_cells_ = 0;
-  XmlVtkFrame frame_;            ///< With the damage that was found first.
+  XmlVtkFrame frame_;            ///< It has the damage that was found first.
   std::set<std::string> names_;  ///< In the point or cell data walked over.
 };
 

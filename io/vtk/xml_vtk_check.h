@@ -7,14 +7,14 @@
 
 namespace elastimate {
 
-/// What the frame of a VTK XML file tells ahead of its data.
+/// What the frame of a VTK XML file says ahead of its data.
 struct XmlVtkFrame {
-  /// What is wrong, in a few words, or empty: the kind of the file, its counts,
-  /// names, and where the blocks of its binary arrays lie and how large they
-  /// are.  VTK 9.1 trusts most of these, and crashes or hangs when they are
-  /// wrong.
+  /// The damage in a few words, or empty.  It concerns the kind of the file,
+  /// its counts, names, and where the blocks of its binary arrays lie and how
+  /// large they are.  VTK 9.1 trusts most of these, and crashes or hangs when
+  /// they are wrong.
   std::string damage;
-  /// Arrays of strings, which VTK 9.1 cannot read safely.
+  /// The names of arrays of strings, which VTK 9.1 cannot read safely.
   std::vector<std::string> text_point_arrays;
   std::vector<std::string> text_cell_arrays;
 };
