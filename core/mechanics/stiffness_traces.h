@@ -24,8 +24,9 @@ namespace elastimate {
 /// The traces are exact, by way of the node graph.  They take about the time of
 /// five element passes for each modulus: O(num_elements) time, and as much
 /// memory for each modulus.
-[[nodiscard]] Eigen::MatrixXd StiffnessTraces(const Mesh& mesh, const InternalForces& forces,
-                                const DegreesOfFreedom& degrees_of_freedom);
+[[nodiscard]] Eigen::MatrixXd StiffnessTraces(
+    const Mesh& mesh, const InternalForces& forces,
+    const DegreesOfFreedom& degrees_of_freedom);
 
 /// Fills the columns of `probes`, of num_dofs rows, with random signs z in the
 /// free rows and zeros in the held ones.  The signs are the same in every run.
