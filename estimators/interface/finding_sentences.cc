@@ -378,7 +378,8 @@ Finding SmoothResidual(double correlation) {
   return Warning(FindingCode::kSmoothResidual,
                  "neighbouring residuals are alike (correlation " +
                      TwoDigits(correlation) + ")" + kErrorsHold,
-                 "check mesh, supports, loads, smoothing, or give regions");
+                 "check mesh, supports, loads, smoothing; the material may not "
+                 "be the same all over");
 }
 
 Finding LargeSmoothResidual(double smooth) {
