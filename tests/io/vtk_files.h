@@ -10,7 +10,7 @@
 
 namespace elastimate {
 
-/// An encoding of a VTK file: "xml" or "legacy", and how its data are kept.
+/// Says which form a VTK file has, XML or legacy, and how its data are kept.
 struct VtkEncoding {
   std::string name;
   bool is_legacy;
@@ -18,16 +18,16 @@ struct VtkEncoding {
   enum class Compression { kNone, kZlib, kLz4, kLzma } compression;
   bool is_64_bit;      ///< Header of the XML form.
   bool is_big_endian;  ///< Byte order of the XML form.
-  int version;         ///< Of the legacy form, e.g. 42.
+  int version;         ///< The version of the legacy form, e.g. 42.
 
   std::string Extension() const { return is_legacy ? ".vtk" : ".vtu"; }
 };
 
-/// One of every kind that VTK writes.
+/// Returns one encoding of every kind that VTK writes.
 std::vector<VtkEncoding> AllVtkEncodings();
 
-/// A small scene with two load cases, of which the second is partly observed,
-/// with regions and prescribed displacements.
+/// Returns a small scene with regions, prescribed displacements and two load
+/// cases, of which the second is partly observed.
 Scene TwoTetrahedra();
 
 /// Writes mesh and fields through VTK's own writers.
