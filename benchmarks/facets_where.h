@@ -8,8 +8,8 @@
 
 namespace elastimate {
 
-/// Those of BoundaryFacets, in their order, all of whose nodes are accepted.
-/// O(num_elements).
+/// Returns the columns of BoundaryFacets all of whose nodes are accepted, in
+/// their order.  O(num_elements).
 Eigen::MatrixXi FacetsWhere(const Mesh& mesh,
                             const std::function<bool(int)>& accepts_node);
 
