@@ -25,11 +25,11 @@ constexpr double kUsualRatio = 3;      // E_L over E_T.
 constexpr std::size_t kUsualCases = 3;
 constexpr double kUsualNoiseOfBar = 0.01;
 
-// L, and a direction across it.
+// L is the direction of the fibres, and the other is a direction across it.
 const Eigen::Vector3d kAxis(1, 1, 2);
 const Eigen::Vector3d kAcrossAxis(1, -1, 0);
 
-// Forces and moments on the end, and pressures on two sides.
+// The bar bears forces and moments on its end, and pressures on two sides.
 std::vector<std::vector<Load>> LoadsOfBar(const Mesh& mesh) {
   const auto facets_at = [&](int axis, double place) {
     return BoundaryFacetsWhere(mesh, [&mesh, axis, place](int node) {
@@ -67,7 +67,8 @@ Material MaterialOf(std::string_view law,
   return material;
 }
 
-// E_L, E_T, nu_LT, nu_TT and G_LT, which is isotropic for a ratio of 1.
+// Returns E_L, E_T, nu_LT, nu_TT and G_LT, which are isotropic for a ratio of
+// 1.
 Eigen::VectorXd FibreParameters(double ratio) {
   Eigen::VectorXd parameters(5);
   parameters << ratio * kAcross, kAcross, kPoissonRatio, kPoissonRatio,
@@ -75,7 +76,8 @@ Eigen::VectorXd FibreParameters(double ratio) {
   return parameters;
 }
 
-// E_i, nu_12, nu_13, nu_23, G_12, G_13 and G_23, in the order of the law.
+// Returns E_i, nu_12, nu_13, nu_23, G_12, G_13 and G_23, in the order of the
+// law.
 Eigen::VectorXd NineParameters(const Eigen::VectorXd& fibre) {
   const double shear_across = fibre(1) / (2 * (1 + fibre(3)));
   Eigen::VectorXd parameters(9);
@@ -84,7 +86,7 @@ Eigen::VectorXd NineParameters(const Eigen::VectorXd& fibre) {
   return parameters;
 }
 
-// c_11, c_12, ..., c_66 in the frame of the fibres.
+// Returns c_11, c_12, ..., c_66 in the frame of the fibres.
 Eigen::VectorXd Stiffnesses(const Eigen::VectorXd& fibre) {
   const Law& law = *FindLaw(TransverselyIsotropicLaw::kName);
   const Eigen::MatrixXd voigt = VoigtStiffness(
@@ -100,7 +102,7 @@ Eigen::VectorXd Stiffnesses(const Eigen::VectorXd& fibre) {
   return stiffnesses;
 }
 
-// Fitted by its own law.
+// The bar is fitted by the law that it has.
 MaterialLevel Bar(const std::string& factor, const std::string& level,
                   double ratio, std::size_t num_cases) {
   Scene specimen = BarUnder(num_cases);
@@ -109,7 +111,7 @@ MaterialLevel Bar(const std::string& factor, const std::string& level,
                     kUsualNoiseOfBar, Eigen::Vector3d(-10, 20, 5));
 }
 
-// Takes the bar to be of another law.
+// The bar is fitted by this law in place of the one that it has.
 MaterialLevel TakenToBe(MaterialLevel level, std::string_view law) {
   const Eigen::VectorXd& fibre = level.parameters;
   if (law == IsotropicLaw::kName) {

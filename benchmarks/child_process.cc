@@ -22,8 +22,8 @@ constexpr std::chrono::milliseconds kPollInterval{5};
 
 [[noreturn]] void RunChild(int pipe, int processor_seconds,
                            const std::function<std::string()>& work) {
-  // At the first value comes SIGXCPU, by which the parent knows the reason; at
-  // the second SIGKILL.
+  // At the first limit the child gets SIGXCPU, by which the parent knows the
+  // reason.  At the second it gets SIGKILL.
   const rlimit limit = {rlim_t(processor_seconds),
                         rlim_t(processor_seconds) + 1};
   setrlimit(RLIMIT_CPU, &limit);
@@ -73,8 +73,8 @@ ProcessReport RunInChildProcess(const ProcessLimits& limits,
     RunChild(pipe_ends[1], limits.processor_seconds, work);
   }
   close(pipe_ends[1]);
-  // Watched from outside: a limit of the address space would count what is
-  // reserved and never used.
+  // The parent watches the memory, because a limit of the address space would
+  // count what is reserved and never used.
   bool is_too_large = false;
   int status = 0;
   rusage usage{};

@@ -7,7 +7,7 @@
 
 namespace elastimate {
 
-/// What a child process may use.
+/// Limits what a child process may use.
 struct ProcessLimits {
   int processor_seconds;
   std::int64_t memory;  ///< Resident [byte].

@@ -41,11 +41,12 @@
 namespace elastimate {
 namespace {
 
-// The noise of the measurements that fits of displacements are timed on.
+// Fits of displacements are timed on measurements with this noise.
 constexpr double kNoise = 0.01;
 constexpr std::uint64_t kSeed = 1;
 
-// A cube with this number of cells along each edge, made once.
+// Returns a cube with this number of cells along each edge.  It is made only
+// once.
 const Scene& Cube(std::int64_t cells) {
   static std::map<std::int64_t, Scene> scenes;
   const auto known = scenes.find(cells);
@@ -58,7 +59,7 @@ const Scene& Cube(std::int64_t cells) {
   return scenes.emplace(cells, CuboidScene(options)).first->second;
 }
 
-// Returns the cube with quadratic elements.
+// Returns the cube with quadratic elements.  It is made only once.
 const Scene& QuadraticCube(std::int64_t cells) {
   static std::map<std::int64_t, Scene> scenes;
   const auto known = scenes.find(cells);
@@ -127,7 +128,7 @@ void GraphOfNodes(benchmark::State& state) {
   CountTetrahedra(state, mesh);
 }
 
-// Graph, pattern and values.
+// Times the graph, the pattern and the values together.
 template <SceneOfCells kScene>
 void Assembly(benchmark::State& state) {
   const Scene& scene = kScene(state.range(0));
@@ -214,7 +215,8 @@ void RefinedSolve(benchmark::State& state) {
   Work work;
   while (state.KeepRunning()) {
     state.PauseTiming();
-    // A new equilibrium has no solution to begin with.
+    // A new equilibrium starts without a solution, so that every run does the
+    // same work.
     Equilibrium equilibrium(spaces, SolverKind::kCholesky);
     const Eigen::VectorXd moduli = equilibrium.Forces().Parameters().Moduli(
         Eigen::Vector2d(1, 0.01 * static_cast<double>(state.range(1))));
@@ -233,7 +235,8 @@ void RefinedSolve(benchmark::State& state) {
 // ---------------------------------------------------------------------------
 // Estimators, end to end, on displacements of E = 10 kPa, nu = 0.3.
 
-// With independent noise of this norm, relative to that of the displacement.
+// Returns a cube with independent noise of this norm, relative to the norm of
+// the displacement.
 Scene MeasuredCube(std::int64_t cells, double noise) {
   Scene scene = Cube(cells);
   ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene));
@@ -262,7 +265,7 @@ void RunEstimator(benchmark::State& state, const char* name, double noise) {
   state.counters["solves"] = estimate.work.solves;
 }
 
-// A further measurement of a scene that reduced-fe knows.
+// Times a further measurement of a scene that reduced-fe is prepared for.
 void MeasureAgain(benchmark::State& state) {
   const Scene scene = MeasuredCube(state.range(0), kNoise);
   const ReducedFe reduced_fe;
@@ -330,7 +333,7 @@ void RegisterBenchmarks() {
     single_threaded("Assembly", Assembly<Cube>);
   }
   for (const std::int64_t cells : {kTiny, kSmall, kMedium}) {
-    // BLAS has threads of its own: the time that counts is that of the clock.
+    // BLAS has threads of its own, so wall-clock time counts.
     const auto threaded = [cells](const std::string& name, auto function) {
       const std::string prefix = cells == kMedium ? "Large/" : "";
       return benchmark::RegisterBenchmark((prefix + name).c_str(), function)
@@ -347,7 +350,7 @@ void RegisterBenchmarks() {
         ->ArgNames({"cells", "columns"})
         ->Args({cells, 1})
         ->Args({cells, 4});
-    // The closed form is for data without noise.
+    // The closed form is meant for data without noise.
     for (const char* const name :
          {"closed-form", "reduced-fe", "iterative-fe"}) {
       const double noise = std::string(name) == "closed-form" ? 0 : kNoise;

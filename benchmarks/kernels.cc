@@ -35,12 +35,13 @@ constexpr IsotropicElasticity kElasticity = {10e3, 0.33};
 constexpr std::uint64_t kSeed = 1;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-// Kernels take turns, so that a disturbance of the machine hits them alike; the
-// shortest time of each counts.
+// Kernels take turns, so that a disturbance of the machine hits all of them.
+// The shortest time of each counts.
 constexpr int kRounds = 9;
 
-// How many times as fast as the textbook pass the element pass is at least, in
-// the same run: half of what was measured, so that only a real loss is told.
+// The element pass must be at least so many times as fast as the textbook pass
+// in the same run.  The number is half of what was measured, so that only a
+// real loss is reported.
 constexpr double kLeastSpeedupOfFours = 15;
 constexpr double kLeastSpeedupOfOnes = 8;
 
@@ -59,7 +60,7 @@ void UseInstructions(std::int64_t targets) {
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
-// The instructions that every processor of this architecture has.
+// Returns the instructions that every processor of this architecture has.
 std::int64_t BaselineInstructions() {
   auto targets = static_cast<std::uint64_t>(hwy::SupportedTargets());
   while ((targets & (targets - 1)) != 0) {
@@ -96,15 +97,15 @@ Mesh RandomlyNumbered(const Mesh& mesh) {
   return random;
 }
 
-// What a kernel has to do for each tetrahedron and column: memory that is read
-// or written at least once, floating-point operations.
+// Holds the work of a kernel for each tetrahedron and column: the bytes that it
+// has to read or write at least once, and its floating-point operations.
 struct Work {
   double bytes;
   double flops;
 };
 
-// 16 bytes of node indices, and for each node its position, and q, a and b of
-// each column.
+// A pass reads 16 bytes of node indices for each tetrahedron.  For each node it
+// reads its position, and moves q, a and b of each column.
 Work WorkOfPass(const Mesh& mesh, int columns) {
   constexpr double kGeometry = 42;
   constexpr double kColumn = 155;
@@ -139,7 +140,7 @@ void TimeInTurns(std::vector<Kernel>& kernels, Progress& progress,
   }
 }
 
-// Everything that the kernels of one size work on.
+// Owns everything that the kernels of one size work on.
 class Cube {
  public:
   explicit Cube(int cells)
@@ -188,9 +189,9 @@ class Cube {
   }
 
  private:
-  // Times the measurements of a scene that an estimator is prepared for.
+  // Times a further measurement by an estimator that is prepared for the scene.
   void AddFurtherMeasurements(std::vector<Kernel>& kernels) {
-    // The preparation of more takes long.
+    // Preparing reduced-fe for larger meshes takes too long.
     constexpr Eigen::Index kMostElementsOfReducedFe = 50000;
     for (const std::string name :
          {"closed-form", "virtual-fields", "reduced-fe"}) {
@@ -244,7 +245,8 @@ class Cube {
   }
 
   void AddAssembly(std::vector<Kernel>& kernels) {
-    // For each value of H and J: gradients once per element, ten blocks.
+    // The flops are for each value of H and J: the gradients are computed once
+    // per element, and there are ten blocks.
     constexpr double kFlops = 42 + 21 + 10 * 18;
     const double elements = static_cast<double>(scene_.mesh.NumElements());
     const double values = static_cast<double>(assembly_.H().size()) / elements;
@@ -282,8 +284,8 @@ class Cube {
   StiffnessProducts eight_products_;
 };
 
-// The times of one size for each tetrahedron and column, by name, numbering,
-// threads and columns [s].
+// Holds the times of the kernels of one size for each tetrahedron and column
+// [s], by name, numbering, threads and columns.
 class Times {
  public:
   explicit Times(const std::vector<Kernel>& kernels) {
@@ -344,7 +346,7 @@ std::vector<std::string> Ratios(std::int64_t tetrahedra, const Times& times) {
   return lines;
 }
 
-// A mesh of each element kind that has no vector kernel.
+// Returns a mesh of each element kind that has no vector kernel.
 std::vector<Mesh> MeshesOfOtherKinds(bool is_quick) {
   const int n = is_quick ? 10 : 30;
   CuboidOptions cuboid;
@@ -360,11 +362,11 @@ std::vector<Mesh> MeshesOfOtherKinds(bool is_quick) {
           triangles.mesh, QuadraticScene(triangles).mesh, quadrilaterals.mesh};
 }
 
-// How many times as fast as the textbook pass that of other kinds is at least:
-// half of what was measured for the least of them.
+// The pass of other kinds must be at least so many times as fast as the
+// textbook pass.  The number is half of what was measured for the slowest kind.
 constexpr double kLeastSpeedupOfOtherKinds = 2;
 
-// Adds the time of the pass of other kinds, beside that of the textbook.
+// Adds the time of the pass of other kinds, and that of the textbook pass.
 void CompareOtherKinds(bool is_quick, Progress& progress, KernelTimes& times) {
   for (const Mesh& mesh : MeshesOfOtherKinds(is_quick)) {
     const std::string kind(mesh.Topology().name);

@@ -9,12 +9,12 @@
 
 namespace elastimate {
 
-/// Times of the kernels.
+/// Holds the times of the kernels.
 struct KernelTimes {
   StudyResult result;
-  /// What compares them within this run, one line each.
+  /// Each line compares two of the times of this run.
   std::vector<std::string> ratios;
-  /// The recorded bounds that this run missed.
+  /// Each line names a recorded bound that this run missed.
   std::vector<std::string> regressions;
 };
 

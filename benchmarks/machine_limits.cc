@@ -11,7 +11,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "benchmarks/machine_limits.cc"
 #include <hwy/foreach_target.h>
-// After foreach_target.h.
+// This header has to follow foreach_target.h.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -23,7 +23,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Returns the number of operations; `result` keeps them from being left out.
 double MultiplyAdd(std::ptrdiff_t repetitions, double* result) {
   const hn::CappedTag<double, 8> d;
-  // More than latency times throughput: 4 cycles of two.
+  // Ten independent sums hide the latency: 4 cycles times two operations per
+  // cycle need at least eight.
   auto v0 = hn::Set(d, result[0]);
   auto v1 = v0, v2 = v0, v3 = v0, v4 = v0, v5 = v0, v6 = v0, v7 = v0, v8 = v0,
        v9 = v0;

@@ -3,13 +3,15 @@
 
 namespace elastimate {
 
-/// What some threads of this machine reach, the best of several short runs: the
-/// roofline that kernels are compared with [Williams et al. 2009].
+/// Holds what some threads of this machine reach in the best of several short
+/// runs.  Kernels are compared with this roofline [Williams et al. 2009].
 struct MachineLimits {
-  /// What a = b + s c reaches on arrays beyond the caches, 24 byte for each
-  /// element (what is read before it is written is not counted) [byte/s].
+  /// This is the rate of a = b + s c on arrays beyond the caches [byte/s].  An
+  /// element counts as 24 bytes; reading the line of a before it is written is
+  /// not counted.
   double memory_bandwidth;
-  /// What independent fused multiply-adds of the widest vectors reach [1/s].
+  /// This is the rate of independent fused multiply-adds of the widest vectors,
+  /// each of which counts as two operations per lane [1/s].
   double peak_flops;
 };
 

@@ -57,7 +57,8 @@ Eigen::VectorXd CramerRaoBounds(Scene scene,
       .before.OfParameters();
 }
 
-// Whether these are the regions of the material that a region has become.
+// Returns whether `regions` are those of the material that the region `others`
+// has become by merging.
 bool Hold(const std::vector<int>& regions, const std::vector<int>& others) {
   return regions.empty() || std::includes(regions.begin(), regions.end(),
                                           others.begin(), others.end());
@@ -105,7 +106,7 @@ Scene PreparedLevel::Measured(int seed) const {
     AddErrors(errors, scene.mesh.nodes, scene.supports.held, generator,
               scene.load_cases[k].displacement);
     if (scene.load_cases.size() > 1) {
-      // The load cases have unequal noise.
+      // Unequal noise of load cases has to be stated, since it weights them.
       scene.load_cases[k].noise_sd = noise_sd_[k];
     }
   }
@@ -167,7 +168,7 @@ void MaterialCell::Add(const Estimate& estimate, double seconds) {
   }
 }
 
-// With the truth, and the bound of its error.
+// Compares the parameters with the truth, and with the bound of its error.
 void MaterialCell::Compare(const std::vector<ParameterEstimate>& parameters) {
   const Eigen::VectorXd& truths = prepared_.Level().parameters_of_model;
   const Eigen::VectorXd units = prepared_.OfModel().UnitsOfErrors(truths);
@@ -249,7 +250,8 @@ void MaterialCell::AddTo(Table& table, const std::string& method) const {
        Quantile(seconds_, 0.5)});
 }
 
-// The root mean square of the bounds of all stiffnesses, or of all ratios.
+// Returns the root mean square of the bounds of all stiffnesses, or of all
+// ratios.
 double MaterialCell::BoundOf(bool is_stiffness) const {
   const Eigen::VectorXd& bounds = prepared_.Bounds();
   Errors errors;

@@ -14,7 +14,7 @@
 
 namespace elastimate {
 
-/// What all trials of a level have.
+/// Holds a level with all that its trials have in common.
 class PreparedLevel {
  public:
   /// `level` outlives it.  Cost: three factorisations.
@@ -22,21 +22,22 @@ class PreparedLevel {
 
   const MaterialLevel& Level() const { return level_; }
   const MaterialParameters& OfModel() const { return of_model_; }
-  /// Cramer-Rao, in the units of MaterialParameters::UnitsOfErrors; empty
-  /// without a truth.
+  /// Returns the Cramer-Rao bounds in the units of
+  /// MaterialParameters::UnitsOfErrors; empty where the model has no true
+  /// parameters.
   const Eigen::VectorXd& Bounds() const { return bounds_; }
-  /// The least share of the strain energy of the first load case that a
-  /// material of the specimen has.
+  /// Returns the smallest share that a material of the specimen has of the
+  /// strain energy of the first load case.
   double LeastEnergyShare() const { return least_energy_share_; }
 
-  /// The model with the measurement of a seed.
+  /// Returns the model with the measurement of this seed.
   Scene Measured(int seed) const;
-  /// The parameters of the model, of which merged regions share some; empty
-  /// where the estimate has none.
+  /// Returns the parameters of the model, some of which are equal where regions
+  /// were merged; empty where the estimate has none.
   std::vector<ParameterEstimate> ParametersOfModel(
       const Estimate& estimate) const;
-  /// The error of the displacement under the unseen load, relative to it; NaN
-  /// where the parameters are none of a material.
+  /// Returns the error of the displacement under the unseen load, relative to
+  /// that displacement; NaN where no material has these parameters.
   double PredictionError(
       const std::vector<ParameterEstimate>& parameters) const;
 
@@ -48,13 +49,13 @@ class PreparedLevel {
   Eigen::VectorXd bounds_;
   double least_energy_share_;
   Scene unseen_;                         ///< The model under the unseen load.
-  Eigen::VectorXd unseen_displacement_;  ///< That the specimen has.
+  Eigen::VectorXd unseen_displacement_;  ///< The true one, of `unseen_`.
 };
 
-/// The trials of a level by one method.
+/// Collects the trials of a level by one method.
 class MaterialCell {
  public:
-  /// `prepared` outlives it.
+  /// `prepared` must outlive this object.
   explicit MaterialCell(const PreparedLevel& prepared) : prepared_(prepared) {}
 
   void Add(const Estimate& estimate, double seconds);
@@ -63,7 +64,7 @@ class MaterialCell {
   void AddTo(Table& table, const std::string& method) const;
 
  private:
-  /// The errors of stiffnesses, or of ratios.
+  /// The sums are of stiffnesses or of ratios, which have different units.
   struct Errors {
     double square_sum = 0;
     int count = 0;

@@ -17,7 +17,7 @@ constexpr int kColumns = 24;
 constexpr double kLength = 2;
 constexpr double kUsualNoise = 0.01;
 
-// The region of an element with this centre, from 1 on.
+// Returns the region, from 1 on, of an element with this centre.
 using RegionAt = std::function<int(const Eigen::VectorXd& centre)>;
 
 Scene StripUnder(const std::vector<Eigen::Vector2d>& forces) {
@@ -47,14 +47,15 @@ Eigen::VectorXi RegionsOf(const Mesh& mesh, const RegionAt& region_at) {
   return regions;
 }
 
-// So many pieces of equal length, one behind the other.
+// Returns regions that are so many pieces of equal length, one behind the
+// other.
 RegionAt Pieces(int count) {
   return [count](const Eigen::VectorXd& centre) {
     return 1 + int(count * centre(0) / kLength);
   };
 }
 
-// A square in the middle, of so many columns of cells: region 2.
+// Region 2 is a square in the middle, of so many columns of cells.
 RegionAt InclusionOf(int columns) {
   const double half = columns * kLength / kColumns / 2;
   return [half](const Eigen::VectorXd& centre) {
@@ -77,7 +78,7 @@ Eigen::VectorXd ParametersFrom(
   return parameters;
 }
 
-// Stiff and soft in turn.
+// Returns stiff and soft materials in turn.
 std::vector<IsotropicElasticity> Alternating(int count, double contrast) {
   std::vector<IsotropicElasticity> elasticities;
   elasticities.reserve(std::size_t(count));
@@ -98,7 +99,8 @@ MaterialLevel Right(const std::string& factor, const std::string& level,
                     kUsualNoise, Eigen::Vector2d(1, -2));
 }
 
-// What each region of the model is of, where that is one material.
+// Returns the parameters of each region of the model; empty where a region
+// contains more than one material of the specimen.
 Eigen::VectorXd ParametersOfModel(const MaterialLevel& level) {
   std::map<int, int> region_of_specimen;
   const Eigen::VectorXi& regions = level.specimen.mesh.regions;
@@ -119,7 +121,7 @@ Eigen::VectorXd ParametersOfModel(const MaterialLevel& level) {
   return parameters;
 }
 
-// Takes the specimen to be of other regions.
+// The specimen stays, but the model takes it to have other regions.
 MaterialLevel TakenAs(MaterialLevel level, const std::string& assumption,
                       const RegionAt& region_at) {
   Mesh model = level.specimen.mesh;
@@ -177,7 +179,8 @@ void AddWrongRegions(std::vector<MaterialLevel>& levels) {
       Right("wrong regions", "2", Strip(), Pieces(2), Alternating(2, 2));
   levels.push_back(right);
   levels.push_back(TakenAs(right, "one material", Pieces(1)));
-  // By a twelfth of the strip: the regions stand for the same materials.
+  // The regions are shifted by a twelfth of the strip.  They still stand for
+  // the two materials.
   levels.push_back(TakenAs(right, "shifted", [](const Eigen::VectorXd& centre) {
     return centre(0) < kLength * 7 / 12 ? 1 : 2;
   }));
@@ -209,8 +212,8 @@ void AddModels(std::vector<MaterialLevel>& levels) {
   }
 }
 
-// A bar of 1 x 1 x 3 of ten pieces, one on the other, of this many cells of
-// five tetrahedra across.
+// Returns a bar of 1 x 1 x 3 with ten pieces, one on the other.  It has this
+// many cells of five tetrahedra across.
 MaterialLevel BarOfTenPieces(int cells) {
   constexpr int kPieces = 10;
   constexpr double kHeight = 3;

@@ -9,43 +9,45 @@
 
 namespace elastimate {
 
-/// A specimen, and the materials that an estimator takes it to be of.
+/// Holds a specimen, and the materials that the model of it has.
 struct MaterialLevel {
   std::string factor;  ///< What is varied, with its unit.
   std::string level;
-  /// "right", or what the model has too few, too many or wrong of.
+  /// The assumption is "right", or tells what the model has too few, too many
+  /// or wrong of.
   std::string assumption;
-  Scene specimen;              ///< With its materials, without measurement.
-  Eigen::VectorXd parameters;  ///< What these have.
-  /// The regions that the model takes the mesh to have.
+  Scene specimen;              ///< It has materials, but no measurement.
+  Eigen::VectorXd parameters;  ///< The true ones.
+  /// The regions of the model are on the mesh of the specimen.
   Eigen::VectorXi regions_of_model;
   std::vector<Material> materials_of_model;
-  /// The parameters of the specimen that those of the model stand for; empty
-  /// where there are none.
+  /// These are the true parameters of the model; empty where there are none.
   Eigen::VectorXd parameters_of_model;
   double noise;     ///< Standard deviation over the rms displacement.
   LoadCase unseen;  ///< Another load of the specimen than any measured.
-  /// Whether regions that are not told apart are also made one.
+  /// Whether the level is also run with merging of regions that the data do not
+  /// tell apart.
   bool is_also_merged = false;
-  /// Whether one trial of each fit is all that there is time for.
+  /// Whether there is time for only one trial of each fit.
   bool is_for_fits_alone = false;
   bool is_in_quick = true;
 };
 
-/// Makes the level of a specimen which the model takes for what it is;
-/// `body_force` is the load that is not measured.
+/// Returns a level whose model has the materials of the specimen.  `body_force`
+/// is the load that is not measured.
 MaterialLevel RightLevel(const std::string& factor, const std::string& level,
                          const Scene& specimen,
                          const Eigen::VectorXd& parameters, double noise,
                          const Eigen::VectorXd& body_force);
 
-/// A number as a level.
+/// Returns a number as the text of a level.
 std::string LevelText(double value);
 
-/// A strip of 2 x 1 in plane strain, of 24 x 12 quadrilaterals, held at one end
-/// and pulled askew at the other: of pieces of two materials, one behind the
-/// other, unless the level says otherwise.  Last a bar of ten such pieces, of
-/// more and more tetrahedra.
+/// Returns the levels of a strip of 2 x 1 in plane strain, with 24 x 12
+/// quadrilaterals.  It is held at one end and pulled askew at the other, and
+/// consists of pieces of two materials, one behind the other, unless the level
+/// says otherwise.  The last levels are a bar of ten such pieces, with more and
+/// more tetrahedra.
 std::vector<MaterialLevel> MaterialLevels();
 
 }  // namespace elastimate

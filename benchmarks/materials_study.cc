@@ -18,18 +18,19 @@ namespace {
 
 constexpr int kMaterialTrials = 20;
 constexpr int kQuickMaterialTrials = 1;
-// Fits of more parameters take as many times longer.
+// Fits of many parameters have fewer trials by this factor, since each takes
+// that much longer.
 constexpr int kTimesFewerOfMany = 5;
 constexpr Eigen::Index kManyParameters = 9;
 
-// An estimator, before which regions may be merged.
+// A method is an estimator, before which regions may be merged.
 struct MaterialMethod {
   std::string name;
   std::string estimator;
   bool merges = false;
 };
 
-// Merges as `estimate --regions=merge` does.
+// Merges regions before the estimate, as `estimate --regions=merge` does.
 Estimate RunMerged(const Estimator& estimator, Scene scene) {
   const MaterialMerge merge = MergeMaterials(scene, {});
   scene.materials = merge.materials;
@@ -69,7 +70,8 @@ std::vector<MaterialMethod> MethodsFor(const MaterialLevel& level) {
     methods.push_back({name, name});
   }
   if (!IsOfMany(level)) {
-    // Left out of the others to save time, as its rungs are there.
+    // With many parameters `auto` is left out to save time; the methods above
+    // are its rungs.
     methods.push_back({"auto", "auto"});
   }
   if (level.is_also_merged) {

@@ -43,7 +43,7 @@ std::vector<int> NodesOf(const Mesh& mesh, Side side) {
   return nodes;
 }
 
-// The specimen as it is, and as a camera without noise sees it, with what the
+// Holds the plate as a camera without noise sees it, and the force that the
 // load cell shows.
 struct World {
   Scene scene;
@@ -69,7 +69,8 @@ World MakeWorld(PlateEnds ends, int cells) {
   if (ends == PlateEnds::kTraction) {
     world.force = options.force;
   } else {
-    // Without loads, all forces are internal.
+    // There are no loads, so the internal forces of the right end are its
+    // reaction.
     const Eigen::MatrixXd force =
         model.Forces()
             .Multiply(model.Forces().Parameters().Moduli(truth),
@@ -82,7 +83,7 @@ World MakeWorld(PlateEnds ends, int cells) {
   return world;
 }
 
-// What of a measurement differs from level to level.
+// Holds what differs between the measurements of the levels.
 struct Plan {
   double noise = kNoise;
   double correlation_length = 0;
@@ -113,7 +114,8 @@ void Disturb(const Plan& plan, std::mt19937_64& generator, Scene& scene) {
   }
 }
 
-// The force as the load cell shows it, on what holds the right end.
+// Returns the force of the nodes of the right end, with the error of the load
+// cell.
 Resultant LoadCell(const World& world, const Plan& plan,
                    std::mt19937_64& generator) {
   std::normal_distribution<double> normal;
@@ -132,7 +134,8 @@ void Hold(const Mesh& mesh, Side side, bool along_x, bool along_y,
   }
 }
 
-// Holds both axes of symmetry and the right end, where they were measured.
+// Holds both axes of symmetry and the right end at displacements that were
+// measured.
 void HoldWhereMeasured(Scene& scene) {
   ComponentMask& held = scene.supports.held;
   held.setConstant(false);
@@ -154,7 +157,8 @@ Scene WithMeasuredEnds(const World& world, const Plan& plan,
   return scene;
 }
 
-// The wrong thing to do: what was measured there is taken as exact.
+// This is wrong: the displacements that were measured at the ends are taken as
+// exact.
 Scene WithEndsTakenAsExact(const World& world, const Plan& plan,
                            std::uint64_t seed) {
   Scene scene = WithMeasuredEnds(world, plan, seed);
@@ -163,7 +167,7 @@ Scene WithEndsTakenAsExact(const World& world, const Plan& plan,
   return scene;
 }
 
-// Exact supports on the axes of symmetry, and a right end that moved as a rigid
+// The axes of symmetry are exact supports, and the right end moved as a rigid
 // body.
 Scene WithRigidGrip(const World& world, const Plan& plan, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
@@ -185,7 +189,7 @@ Scene WithRigidGrip(const World& world, const Plan& plan, std::uint64_t seed) {
   return scene;
 }
 
-// The wrong thing to do: the force of a rigid grip as a uniform traction.
+// This is wrong: the force of a rigid grip is taken as a uniform traction.
 Scene WithUniformTraction(const World& world, const World& of_traction,
                           const Plan& plan, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
@@ -199,7 +203,8 @@ Scene WithUniformTraction(const World& world, const World& of_traction,
   return scene;
 }
 
-// Known traction and supports, and a camera that moved, or not.
+// Traction and supports are known.  The camera moved, and `is_said` says
+// whether the scene allows for that.
 Scene WithMovedCamera(const World& world, const Plan& plan, bool is_said,
                       std::uint64_t seed) {
   std::mt19937_64 generator(seed);
@@ -209,7 +214,7 @@ Scene WithMovedCamera(const World& world, const Plan& plan, bool is_said,
   return scene;
 }
 
-// At points inside, of random places, rather than at nodes.
+// Measures at random points inside the elements instead of at the nodes.
 Scene AtPoints(const World& world, const Plan& plan, int num_points,
                std::uint64_t seed) {
   std::mt19937_64 generator(seed);
@@ -239,7 +244,8 @@ std::string Number(double value) {
   return text.back() == '.' ? text.substr(0, text.size() - 1) : text;
 }
 
-// By measured ends and a load cell, at other noise or with other errors.
+// Adds levels with measured ends and a load cell, whose noise or other errors
+// `set` chooses.
 void AddLevels(const World& world, const std::string& factor,
                const std::vector<double>& values,
                const std::function<void(double value, Plan& plan)>& set,

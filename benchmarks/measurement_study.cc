@@ -15,7 +15,7 @@
 namespace elastimate {
 namespace {
 
-// About 3000 nodes for the noise, 600 for all other factors.
+// The factor noise has about 3000 nodes, all other factors have 600.
 constexpr int kFineCells = 54;
 constexpr int kCells = 24;
 constexpr int kQuickCells = 10;
@@ -24,7 +24,8 @@ constexpr int kJackknifeTrials = 40;
 constexpr int kQuickTrials = 4;
 constexpr int kQuickJackknifeTrials = 2;
 
-// One parameter over the trials of a level; errors of E are relative.
+// Sums the errors of one parameter over the trials of a level.  Errors of E are
+// relative.
 class ParameterErrorsOfLevel {
  public:
   void Add(double error, double stated, double noise, bool is_covered) {
@@ -51,7 +52,7 @@ class ParameterErrorsOfLevel {
   int num_covered_ = 0;
 };
 
-// The usable trials of a level, and how many were not.
+// Collects the usable trials of a level, and counts the others.
 class Cell {
  public:
   void Add(const Trial& trial) {
@@ -121,7 +122,7 @@ class Cell {
   ParameterErrorsOfLevel poisson_ratio_;
 };
 
-// The standard errors of noise that is alike at neighbours, beside those of a
+// Compares standard errors under noise that neighbours share with those of a
 // jackknife over blocks, which knows nothing of the correlation.
 Table CompareWithJackknife(const std::vector<MeasurementLevel>& levels,
                            const Estimator& estimator, int num_trials,
@@ -141,8 +142,8 @@ Table CompareWithJackknife(const std::vector<MeasurementLevel>& levels,
     }
     progress.Show("measurement: jackknife, " + level.factor + ", " +
                   level.level);
-    // Root mean squares of errors, and of what is stated: in all, of
-    // independent noise, and by the jackknife.
+    // The columns sum the squares of errors, of standard errors, of the part of
+    // these that independent noise makes, and of errors by the jackknife.
     Eigen::Matrix<double, 2, 4> square_sums =
         Eigen::Matrix<double, 2, 4>::Zero();
     int num_compared = 0;

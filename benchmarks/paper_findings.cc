@@ -12,7 +12,8 @@ namespace elastimate {
 namespace {
 
 constexpr const char* kReducedFe = "reduced-fe";
-// The noise experiment is compared at this deviation with several load cases.
+// The noise experiment is evaluated at this deviation, so that it can be
+// compared with the experiments of several load cases.
 constexpr double kDeviation = 0.09;
 constexpr double kManyCases = 20;
 
@@ -26,7 +27,8 @@ double RelativePoissonRatioError(const Trial& trial) {
   return trial.PoissonRatioError() / trial.truth.poisson_ratio;
 }
 
-// Returns the errors of one setting, by reduced-fe or by the other method.
+// Returns the errors of the trials at this setting, by reduced-fe or else by
+// the method of the paper.
 std::vector<double> Errors(const PaperTrials& trials, bool of_reduced_fe,
                            double setting, Error error) {
   std::vector<double> errors;
@@ -44,7 +46,8 @@ double MedianError(const PaperTrials& trials, bool of_reduced_fe,
   return Median(Errors(trials, of_reduced_fe, setting, error));
 }
 
-// The error that this share of the trials does not exceed in absolute value.
+// Returns the error that this share of the trials does not exceed in absolute
+// value.
 double AbsoluteErrorQuantile(double share, const PaperTrials& trials,
                              bool of_reduced_fe, double setting, Error error) {
   std::vector<double> errors = Errors(trials, of_reduced_fe, setting, error);
@@ -74,7 +77,7 @@ struct LineFit {
   double r_squared;
 };
 
-// Fits the median absolute relative error of E against the setting.
+// Fits a line to the median absolute relative error of E over the setting.
 LineFit FitErrors(const PaperTrials& trials, bool of_reduced_fe) {
   std::map<double, double> points;
   for (const PaperTrial& row : trials) {
@@ -95,7 +98,7 @@ LineFit FitErrors(const PaperTrials& trials, bool of_reduced_fe) {
   return {slope, 1 - (y - slope * x).square().sum() / y.square().sum()};
 }
 
-// What is found, as a function of whether it is asked of reduced-fe.
+// Returns what is found by reduced-fe, or else by the method of the paper.
 using Found = std::function<double(bool)>;
 
 struct Statement {
@@ -103,7 +106,7 @@ struct Statement {
   const char* claim;
   const char* quantity;
   Found found;
-  // What the paper's method must show for the paper to be right.
+  // Says what the method of the paper must show for the claim to hold.
   const char* criterion;
   std::function<bool(double)> agrees;
 };

@@ -25,7 +25,7 @@ constexpr IsotropicElasticity kCuboidElasticity = {10e3, 0.33};
 constexpr IsotropicElasticity kOrganElasticity = {50e3, 0.3};
 constexpr double kLargestOrganPoissonRatio = 0.3;
 
-// Norm of the noise relative to that of the displacement.
+// The norm of the noise is relative to the norm of the displacement.
 constexpr std::array<double, 13> kDeviations = {
     0, 0.002, 0.005, 0.01, 0.02, 0.03, 0.04, 0.05, 0.07, 0.09, 0.12, 0.15, 0.2};
 constexpr double kSpatialNoiseDeviation = 0.10;
@@ -44,7 +44,7 @@ struct NumTrials {
 constexpr NumTrials kFull = {200, 500, 100, 100, 50};
 constexpr NumTrials kQuick = {200, 50, 20, 40, 10};
 
-// The paper's method and reduced-fe on measurements of one scene.
+// Runs the paper's method and reduced-fe on measurements of one scene.
 class Comparison {
  public:
   Comparison(const Scene& exact, const IsotropicElasticity& truth,
@@ -56,7 +56,8 @@ class Comparison {
         prepared_(reduced_fe_.Prepare(exact, options)),
         bound_(CramerRaoBound(exact, truth, NoiseSd(exact, 1))) {
     if (options.poisson_ratio.upper == truth.poisson_ratio) {
-      // No better is nu known that is held by the bound.
+      // Where its bound holds nu at the truth, the bound of E is that for a
+      // known nu.
       bound_(0, 0) -= bound_(0, 1) * bound_(1, 0) / bound_(1, 1);
       bound_(0, 1) = bound_(1, 0) = bound_(1, 1) = 0;
     }
@@ -115,7 +116,8 @@ Table NoisePrediction(const Scene& exact) {
   const auto b = residual.Columns().col(1);
   const double b_squared =
       b.squaredNorm() - std::pow(b.dot(f), 2) / f.squaredNorm();
-  // Without what t fits: ||(x H + y J) f||^2 over f.f.
+  // Returns what the parameter t fits of the traces: ||(x H + y J) f||^2 over
+  // f.f.
   const auto fitted = [&](double x, double y) {
     return residual.StiffenedGram(Eigen::Vector2d(x, y),
                                   Eigen::Vector3d(0, 0, 1))(0, 0) /
@@ -139,7 +141,7 @@ Table NoisePrediction(const Scene& exact) {
   return table;
 }
 
-// The first 1, 2, ... load cases of `exact`.
+// Runs on the first 1, 2, ... load cases of `exact`.
 PaperTrials WithSeveralCases(const Scene& exact, int num_trials) {
   PaperTrials trials;
   for (int num_cases = 1; num_cases <= kNumCases; ++num_cases) {
@@ -160,8 +162,8 @@ Scene SeveralMeasurements() {
   return scene;
 }
 
-// The first force is that of the other experiments; the others have its
-// magnitude and directions that are uniform on the sphere.
+// Returns a scene whose first force is that of the other experiments.  Further
+// forces have its magnitude, and directions that are uniform on the sphere.
 Scene SeveralForces() {
   std::mt19937_64 generator(kForceSeed);
   std::normal_distribution<double> normal;

@@ -25,16 +25,16 @@ constexpr double kDeviation = 0.01;
 constexpr std::uint64_t kSeed = 1;
 constexpr ProcessLimits kLimits = {600, std::int64_t{16} << 30};
 
-// Runs are repeated for a mean until they have taken this together: the clock
-// of a virtual processor may stand still for milliseconds.
+// Runs are repeated until they have taken this long together, and their mean
+// counts: the clock of a virtual processor may stand still for milliseconds.
 constexpr double kRepeatSeconds = 0.5;
 
-// The line goes through so many of the largest sizes.
+// The slope is that of a line through so many of the largest sizes.
 constexpr std::size_t kSizesOfSlope = 3;
 
 constexpr double kMebibyte = 1024.0 * 1024.0;
 
-// Cells along each edge, of five tetrahedra each.
+// Returns the numbers of cells along each edge; a cell has five tetrahedra.
 std::vector<int> Sizes(bool is_quick) {
   return is_quick ? std::vector<int>{6, 9}
                   : std::vector<int>{6, 9, 13, 19, 27, 40, 58};
@@ -99,8 +99,8 @@ const char* OutcomeName(ProcessOutcome outcome) {
   return "";
 }
 
-// Returns the slope of the line through the logarithms, by least squares, at
-// the largest sizes; NaN with fewer than two of them that are above zero.
+// Returns the slope, by least squares, of the line through the logarithms at
+// the largest sizes; NaN if fewer than two values are above zero.
 double Slope(const std::vector<Run>& runs, double Run::*value) {
   std::vector<std::pair<double, double>> points;
   for (const Run& run : runs) {
@@ -124,7 +124,8 @@ std::int64_t NumTetrahedra(int cells) {
   return std::int64_t{5} * cells * cells * cells;
 }
 
-/// The peak memory of a process that only makes the scene, of each size.
+/// Returns, for each size, the peak memory of a process that only makes the
+/// scene.
 std::map<int, double> SceneMemory(const std::vector<int>& sizes,
                                   Progress& progress) {
   std::map<int, double> memory;

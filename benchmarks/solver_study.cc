@@ -25,7 +25,7 @@ namespace elastimate {
 namespace {
 
 constexpr double kPoissonRatio = 0.3;
-// The tolerances of a reduced model and of a simulation.
+// A reduced model solves to the rough tolerance, a simulation to kTolerance.
 constexpr double kRoughTolerance = 1e-3;
 constexpr double kTolerance = StiffnessSolver::kAccurate;
 constexpr ProcessLimits kLimits = {1200, std::int64_t{16} << 30};
@@ -70,7 +70,8 @@ Scene MakeScene(const Body& body) {
   return body.order == 2 ? QuadraticScene(scene) : scene;
 }
 
-// What is measured of one solver on one body; not all apply to each.
+// Holds what is measured of one solver on one body.  Some of it does not apply
+// to every solver.
 struct Measurement {
   double free_dofs = kUnknown;
   double flops = kUnknown;
@@ -82,8 +83,8 @@ struct Measurement {
   double iterations = kUnknown;
 };
 
-// CHOLMOD as its manual shows it, with METIS: the best that it does without
-// knowing of nodes.
+// Uses CHOLMOD as its manual shows, with METIS.  That is the best that CHOLMOD
+// does without knowing which unknowns belong to one node.
 class BareCholmod {
  public:
   BareCholmod(const SymmetricPattern& pattern, Eigen::VectorXd& values) {

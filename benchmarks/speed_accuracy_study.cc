@@ -55,13 +55,13 @@ struct MethodTrial {
   double processor_seconds;
 };
 
-// One method on one scene, world and magnitude of noise.
+// Holds one method on one scene, world and magnitude of noise.
 struct Point {
   Method method;
   std::vector<MethodTrial> trials;
 };
 
-// A force for each volume is the same load in both worlds; forces on nodes are
+// A force for each volume is the same load in both worlds.  Forces on nodes are
 // point loads, under which a finer world gives way at each node.
 Scene UnderBodyForce(Scene scene, const Eigen::Vector3d& force_density) {
   scene.load_cases[0].loads = {BodyForce{force_density}};
@@ -106,7 +106,7 @@ std::vector<Specimen> Specimens(bool is_quick) {
   return specimens;
 }
 
-// Norms of the noise relative to that of the displacement.
+// Returns norms of the noise, relative to the norm of the displacement.
 std::vector<double> Deviations(bool is_quick) {
   return is_quick ? std::vector<double>{0.001, 0.01}
                   : std::vector<double>{0.001, 0.01, 0.05, 0.2};
@@ -126,7 +126,7 @@ std::array<World, 2> Worlds(const Specimen& specimen) {
                                finer_noise)}};
 }
 
-// All estimators, and what can be chosen about them.
+// Returns all estimators, with all choices that each of them has.
 std::vector<Method> Methods() {
   std::vector<Method> methods;
   for (const std::string_view view : EstimatorNames()) {
@@ -208,8 +208,8 @@ double FailureRate(const Point& point) {
          static_cast<double>(point.trials.size());
 }
 
-// Root mean square over the usable estimates; where there is none, over all
-// that have a number.
+// Returns the root mean square over the usable estimates.  If there are none,
+// it is over all estimates that have a number.
 double RootMeanSquareError(const Point& point, double (Trial::*error)() const) {
   const bool all = FailureRate(point) == 1;
   double sum = 0;
@@ -233,7 +233,8 @@ bool IsWithinOnePercent(const Point& point) {
   return FailureRate(point) == 0 && YoungsModulusError(point) <= kWantedError;
 }
 
-// The share of all trials that are ok, but wrong by more than they state.
+// Returns the share, among all trials, of those that are ok but wrong by more
+// than they state.
 double DishonestShare(const Point& point) {
   const auto dishonest = std::count_if(
       point.trials.begin(), point.trials.end(), [](const MethodTrial& t) {
@@ -339,7 +340,7 @@ class Tables {
   Table summary_;
 };
 
-/// What is not run, and why.
+/// Returns what is not run, and why.
 nlohmann::ordered_json LeftOut(bool is_quick) {
   nlohmann::ordered_json left_out = nlohmann::ordered_json::array();
   if (is_quick) {

@@ -27,8 +27,8 @@ using Nodes = std::vector<Eigen::Index>;
 constexpr IsotropicElasticity kTruth = {10e3, 0.3};
 constexpr double kDeviation = 0.01;
 constexpr double kOutlierDistance = 20;  // In standard deviations of the noise.
-// The choice of nodes must not depend on the noise, whose seed is that of the
-// trial.
+// The noise has the seed of the trial.  The choice of nodes adds this offset,
+// so that it does not depend on the noise.
 constexpr std::uint64_t kFirstChoiceSeed = 1000000;
 
 const Eigen::Vector3i kCells = {5, 4, 4};
@@ -63,7 +63,7 @@ Eigen::MatrixXi FacetsAtEnd(const Mesh& mesh, int axis) {
       mesh, [&](int node) { return mesh.nodes(axis, node) == end; });
 }
 
-// Held at x = 0, without loads.
+// Returns a block that is held at x = 0 and bears no loads.
 Scene HeldBlock(const Eigen::Vector3i& cells) {
   CuboidOptions options;
   options.cells = cells;
@@ -148,8 +148,8 @@ double SmallestAngle(const Mesh& mesh) {
   return SmallestDihedralAngles(mesh).minCoeff() * 180 / M_PI;
 }
 
-// Moves the node in the middle towards the facet opposite to it, in one of its
-// tetrahedra, until that is flat enough.
+// Moves the node in the middle, in one of its tetrahedra, towards the opposite
+// facet, until the smallest angle is `angle`.
 Mesh WithSliver(const Mesh& mesh, double angle) {
   const Eigen::Vector3d middle = mesh.nodes.rowwise().mean();
   Eigen::Index node = 0;
@@ -186,7 +186,7 @@ void AddSlivers(Levels& levels) {
   }
 }
 
-// A single tetrahedron, held at three of its nodes.
+// Returns a single tetrahedron that is held at three of its nodes.
 Scene Tetrahedron() {
   Scene scene;
   scene.mesh.nodes =
@@ -247,9 +247,9 @@ void AddLoads(Levels& levels) {
   add("torsion", torsion);
 }
 
-// Turns each node's deformed position about the y axis through the middle of
-// the support, by an angle that grows linearly from the support to the far end,
-// as the far part of a bending specimen sees it.
+// Rotates a measurement as the far part of a bending specimen rotates: each
+// node's deformed position is turned about the y axis through the middle of the
+// support, by an angle that grows linearly from the support to the far end.
 Scene Rotated(Scene scene, double degrees) {
   const Mesh& mesh = scene.mesh;
   const Nodes held = NodesAt(mesh, 0);
@@ -293,8 +293,8 @@ void AddOutliers(Levels& levels) {
   }
 }
 
-// Nodes of the support that the model takes for free, and nodes of the next
-// layer that it takes for held.
+// The model takes nodes of the support for free, or nodes of the next layer for
+// held.
 void AddWrongSupports(Levels& levels) {
   const Scene exact = Base();
   const double noise_sd = NoiseSd(exact, kDeviation)(0);
@@ -365,7 +365,7 @@ Eigen::MatrixXd DenseStiffness(const Mesh& mesh,
          (products.h + nu * products.j);
 }
 
-// The tetrahedra of the cells that are not at the surface.
+// Returns the tetrahedra of the cells that are not at the surface.
 Mesh Inclusion(const Mesh& mesh) {
   const Eigen::Vector3d size = mesh.nodes.rowwise().maxCoeff();
   Mesh inclusion = mesh;

@@ -21,7 +21,7 @@ namespace {
 constexpr int kFullTrials = 30;
 constexpr int kQuickTrials = 2;
 
-// An estimator with its options; a row of the charts.
+// A method is an estimator with its options, and a row of the charts.
 struct Method {
   std::string name;
   std::shared_ptr<const Estimator> estimator;
@@ -69,8 +69,8 @@ struct Judged {
   Outcome outcome;
 };
 
-// NaN where the bound is not defined: without noise, or where the model is not
-// held or singular.
+// Returns NaN where the bound is not defined: without noise, or where the model
+// is not held or singular.
 Eigen::Matrix2d BoundOrNothing(const Scene& scene,
                                const StabilityLevel& level) {
   try {
@@ -92,8 +92,9 @@ Judged Judge(const Method& method, const Scene& scene,
     if (!IsWrong(trial)) {
       return {trial, Outcome::kHonest};
     }
-    // All measurements come from linear elements; quadratic ones are taken
-    // where they explain them as well.
+    // All measurements come from linear elements.  An estimate by quadratic
+    // elements is made where these explain the data as well, so the data cannot
+    // show that it is wrong.
     const bool is_knowable =
         level.is_knowable && trial.estimate.element_order == 1;
     return {trial, is_knowable ? Outcome::kDishonest : Outcome::kNotKnowable};
@@ -132,7 +133,7 @@ void AddTrial(const StabilityLevel& level, const Judged& judged, Table& table) {
                cells);
 }
 
-// The trials of one method at one level.
+// Collects the trials of one method at one level.
 class Cell {
  public:
   void Add(const Judged& judged) {

@@ -37,8 +37,8 @@ constexpr int kMaxReplicates = 4;   // That have seeds.
 constexpr int kMaxExperiments = 2;  // On one shape.
 constexpr double kOutliers = 0.03;  // Of the nodes, 20 to 100 sd of the noise.
 
-// Trilinear hexahedra lock beyond: at 0.45 those of this size are 0.5 to 1 %
-// too stiff, here less than half of that.
+// Trilinear hexahedra lock at larger nu.  At 0.45 hexahedra of this size are
+// 0.5 to 1 % too stiff; up to this nu they are less than half of that.
 constexpr double kMaxPoissonRatioOfHexahedra = 0.3;
 
 enum World { kSameMesh, kFinerWorld, kHexahedra, kNumWorlds };
@@ -70,13 +70,13 @@ std::vector<Method> Methods() {
   return methods;
 }
 
-// Which of the full study: the places in UnseenShapes, kPoissonRatios and
-// kDeviations.
+// Selects a part of the full study, by places in UnseenShapes, kPoissonRatios
+// and kDeviations.
 struct Extent {
   std::vector<int> shapes;
   std::vector<int> poisson_ratios;
   std::vector<int> deviations;
-  /// Else the costly methods see one noisy measurement of each only.
+  /// If false, costly methods see only one noisy measurement of each setting.
   bool has_all_costly = true;
 };
 
@@ -90,7 +90,7 @@ Extent FullExtent() {
   return extent;
 }
 
-// A measurement of one experiment in one world.
+// Holds which measurement of one experiment in one world is made.
 struct Setting {
   int shape;
   int experiment;
@@ -105,7 +105,8 @@ struct Setting {
            std::string(has_outliers ? " with outliers" : "");
   }
 
-  /// Another for each, the same in the quick study as in the full one.
+  /// Returns a seed that no other setting has.  It is the same in the quick
+  /// study and in the full one.
   std::int64_t Seed() const {
     constexpr std::int64_t kOfOutliers = 1'000'000;
     std::int64_t seed = shape;
@@ -118,7 +119,7 @@ struct Setting {
   }
 };
 
-// A shape with the meshes that the worlds need.
+// Holds a shape with the meshes that the worlds need.
 struct Specimen {
   UnseenShape shape;
   Scene scene;
@@ -143,15 +144,15 @@ bool Has(const Specimen& specimen, int world, double poisson_ratio) {
          (specimen.hexahedra && poisson_ratio <= kMaxPoissonRatioOfHexahedra);
 }
 
-// Each experiment is done at every other Poisson's ratio: the others are those
-// of the other experiment, and of the next shape of the half.
+// Each experiment is done at every other Poisson's ratio.  The other experiment
+// of the shape, and the next shape of the half, have the ones between.
 bool IsDone(const Setting& setting) {
   return (setting.shape / 2 + setting.experiment + setting.poisson_ratio) % 2 ==
          0;
 }
 
-// Measures all experiments as quadratic elements of half the size would move,
-// which are too many to be factorised for each measurement.
+// Measures all experiments as quadratic elements of half the size would move.
+// There are too many of these to be factorised for each measurement.
 void MeasureByHalfTheSize(const IsotropicElasticity& truth, Scene& scene) {
   ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene));
   HierarchicalError error(scene);
@@ -172,8 +173,8 @@ void MeasureByHalfTheSize(const IsotropicElasticity& truth, Scene& scene) {
   }
 }
 
-// All experiments, measured without noise at the nodes of the mesh, which are
-// the first of the world.
+// Returns all experiments, measured without noise at the nodes of the mesh,
+// which are the first nodes of the world.
 Scene Measured(const Specimen& specimen, int world,
                const IsotropicElasticity& truth) {
   Scene of_world = world == kSameMesh     ? specimen.scene
@@ -198,7 +199,8 @@ Scene WithOneCase(Scene scene, int load_case) {
   return scene;
 }
 
-// For a deviation of 1; in a finer world that of quadratic elements.
+// Returns the bound for a deviation of 1.  In a finer world it is that of
+// quadratic elements.
 Eigen::Matrix2d Bound(const Scene& exact, int world,
                       const IsotropicElasticity& truth) {
   const Eigen::VectorXd noise_sd = NoiseSd(exact, 1);
@@ -394,7 +396,7 @@ class UnseenStudy {
     if (setting.has_outliers || method.loss != Loss::kNone) {
       return setting.has_outliers && method.sees_outliers;
     }
-    // Quadratic elements are of no use where linear ones made the data.
+    // Where linear elements made the data, quadratic ones are of no use.
     return (method.order == 1 || setting.world != kSameMesh) &&
            (!method.is_costly || extent_.has_all_costly ||
             (setting.replicate == 0 && kDeviations[setting.deviation] > 0));

@@ -17,7 +17,7 @@ using Outcomes = std::vector<const UnseenOutcome*>;
 
 constexpr double kRounding = 1e-6;
 constexpr const char* kAll = "all";
-// Stands for all deviations; it comes behind them.
+// Stands for all deviations in a key, and sorts behind each of them.
 constexpr double kAllDeviations = std::numeric_limits<double>::infinity();
 
 Value DeviationCell(double deviation) {
@@ -60,8 +60,8 @@ double Median(const Outcomes& outcomes, double UnseenOutcome::*number) {
   return MedianMagnitude(values);
 }
 
-// The outcomes with the same value of `key`, which has a deviation and a half,
-// and those of all deviations and both halves.
+// Returns the outcomes by key.  A key has a deviation and a half; further keys
+// collect all deviations and both halves.
 template <typename Key, typename MakeKey>
 std::map<Key, Outcomes> Grouped(const std::vector<UnseenOutcome>& outcomes,
                                 const MakeKey& make_key) {
@@ -76,7 +76,7 @@ std::map<Key, Outcomes> Grouped(const std::vector<UnseenOutcome>& outcomes,
   return groups;
 }
 
-// What `auto` costs over the cheapest other estimator that would have done.
+// Compares `auto` with the cheapest other estimator that would have done.
 struct Regret {
   int num_measurements = 0;
   int num_done = 0;
@@ -84,7 +84,8 @@ struct Regret {
   std::vector<double> time;
   std::vector<double> error;
 
-  // The outcomes of one measurement; nothing where `auto` was not run.
+  // Adds the outcomes of one measurement.  Does nothing where `auto` was not
+  // run.
   void Add(const Outcomes& outcomes) {
     const UnseenOutcome* of_auto = nullptr;
     const UnseenOutcome* cheapest = nullptr;
@@ -105,7 +106,7 @@ struct Regret {
     if (cheapest != nullptr) {
       ++num_done;
       time.push_back(of_auto->processor_seconds / cheapest->processor_seconds);
-      // NaN stays NaN.
+      // std::max keeps an error that is NaN, since it is the first argument.
       error.push_back(std::max(of_auto->Error(), kWantedError) /
                       std::max(cheapest->Error(), kWantedError));
     }

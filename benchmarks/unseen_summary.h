@@ -11,21 +11,21 @@
 
 namespace elastimate {
 
-/// Whether a 95 % interval holds the truth, up to a millionth (of E), which is
-/// rounding; empty without an interval.
+/// Whether 95 % intervals hold the truth; empty without an interval.  A
+/// millionth (of E) beyond an end counts as rounding.
 struct Coverage {
   std::optional<bool> youngs_modulus;
   std::optional<bool> poisson_ratio;
 };
 
-/// The interval of a parameter of one material, by its name; empty when
+/// Returns the interval of a parameter of one material, by its name; empty when
 /// unknown.
 std::optional<Interval> IntervalOf(const Estimate& estimate,
                                    const std::string& parameter);
 
 Coverage CoverageOf(const Trial& trial);
 
-/// What an estimator made of one measurement.
+/// Holds what an estimator made of one measurement.
 struct UnseenOutcome {
   std::string world;
   std::string half;
@@ -33,10 +33,11 @@ struct UnseenOutcome {
   std::string estimator;
   std::int64_t seed;  ///< One for each measurement.
   bool is_ok;
-  /// Ok, and IsWrong by its standard errors alone.
+  /// Whether it is ok, and IsWrong by its standard errors alone.
   bool is_dishonest;
   Coverage coverage;
-  // These are as in TrialCells; NaN where unknown.
+  // Errors are relative to E and absolute in nu, as in TrialCells; NaN where
+  // unknown.
   double youngs_modulus_error;
   double poisson_ratio_error;
   double youngs_modulus_standard_error;
@@ -46,25 +47,27 @@ struct UnseenOutcome {
   /// Whether it serves the purpose: ok, and off by no more than 1 % of E and
   /// 0.01 in nu, or two of its standard errors.
   bool HasDone() const;
-  /// The larger error of relative E and of nu; NaN where unknown.
+  /// Returns the larger of the relative error of E and the error of nu; NaN
+  /// where unknown.
   double Error() const;
 };
 
-/// What counts as done.
+/// HasDone allows these errors.
 inline constexpr double kWantedError = 0.01;  // Of relative E, and of nu.
 inline constexpr double kWantedStandardErrors = 2;
 
-/// Table unseen_cells: for each world, estimator, deviation and half, and for
-/// all deviations and both halves ("all"), the share of ok among the trials,
-/// what the intervals of those cover (a missing one covers nothing), the share
-/// of dishonest ones among all trials, and medians over the ok ones.
+/// Makes the table unseen_cells.  It has rows for each world, estimator,
+/// deviation and half, and for all deviations and both halves ("all").  A row
+/// gives the share of ok trials, the share of those whose intervals hold the
+/// truth (a missing interval does not), the share of dishonest trials among
+/// all, and medians over the ok ones.
 Table UnseenCells(const std::vector<UnseenOutcome>& outcomes);
 
-/// Table unseen_regret: for each world, deviation and half, and for all of
-/// them, what `auto` took and missed by, over that of the cheapest other
-/// estimator that would have done; medians and 90 % quantiles over the
-/// measurements for which there is one.  An error below the wanted one counts
-/// as that.
+/// Makes the table unseen_regret.  It has rows for each world, deviation and
+/// half, and for all of them.  A row compares `auto` with the cheapest other
+/// estimator that would have done: ratios of time and of error, as medians and
+/// 90 % quantiles over the measurements for which there is such an estimator.
+/// An error below the wanted one counts as the wanted one.
 Table UnseenRegret(const std::vector<UnseenOutcome>& outcomes);
 
 }  // namespace elastimate

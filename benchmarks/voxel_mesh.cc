@@ -11,14 +11,15 @@ namespace {
 // Corner i + 2 j + 4 k of a cell is its first corner plus (i, j, k).
 using Corners = std::array<int, 8>;
 
-// Kuhn's triangulation: for each order of the axes the way along them from the
-// first corner to the last, so that the cuts of neighbours match.
+// Kuhn's triangulation has a tetrahedron for each order of the axes, along
+// which it goes from the first corner to the last.  So the cuts of neighbours
+// match.
 constexpr int kTetrahedra[6][4] = {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 3, 7},
                                    {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 4, 6, 7}};
-// In the order of VTK.
+// The corners of a hexahedron are in the order of VTK.
 constexpr int kHexahedron[8] = {0, 1, 3, 2, 4, 5, 7, 6};
 
-// The grid with `parts` cells in place of one along each axis.
+// The grid has `parts` cells along each axis in place of each cell of the body.
 class Grid {
  public:
   Grid(const VoxelBody& body, int parts)
@@ -33,9 +34,9 @@ class Grid {
     NumberNodes();
   }
 
-  /// The nodes at the corners of each cell of the body.
+  /// Returns the nodes at the corners of each cell of the body.
   const std::vector<Corners>& Cells() const { return corners_; }
-  /// The points of the nodes, in cells of the body.
+  /// Returns the positions of the nodes, in units of the cells of the body.
   const Eigen::Matrix3Xd& Nodes() const { return nodes_; }
 
  private:
@@ -87,7 +88,8 @@ void Grid::FindCells() {
   }
 }
 
-// Numbers the points at corners, those of the undivided grid first.
+// Numbers the points that are corners of cells.  The points of the undivided
+// grid come first.
 void Grid::NumberNodes() {
   constexpr int kUnused = -2;
   constexpr int kUsed = -1;

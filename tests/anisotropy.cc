@@ -15,7 +15,7 @@ std::vector<std::array<int, 2>> PairsOfVoigt(Eigen::Index size) {
                    : std::vector<std::array<int, 2>>{{0, 0}, {1, 1}, {0, 1}};
 }
 
-// `p` is E_1, E_2, E_3, nu_12, nu_13, nu_23, G_12, G_13, G_23.
+// The parameters p are E_1, E_2, E_3, nu_12, nu_13, nu_23, G_12, G_13, G_23.
 Eigen::MatrixXd OrthotropicCompliance(const Eigen::VectorXd& p) {
   Eigen::MatrixXd s = Eigen::MatrixXd::Zero(6, 6);
   s(0, 0) = 1 / p(0);
@@ -52,7 +52,8 @@ Eigen::MatrixXd TextbookStiffnessOf(const Law& law, const Eigen::VectorXd& p) {
   if (p.size() == 9) {
     return InvertDensely(OrthotropicCompliance(p));
   }
-  // Q_11 = E_1 / (1 - nu_12 nu_21), ...
+  // The plane stress stiffness is Q_11 = E_1 / (1 - nu_12 nu_21), with nu_21 =
+  // nu_12 E_2 / E_1.
   const double scale = 1 / (1 - p(2) * p(2) * p(1) / p(0));
   Eigen::MatrixXd reduced = Eigen::MatrixXd::Zero(3, 3);
   reduced(0, 0) = scale * p(0);

@@ -8,16 +8,16 @@
 
 namespace elastimate::testing {
 
-/// How displacement noise pulls nu of the closed form: its expectation is
-/// nu + rho (nu_noise - nu).
+/// Displacement noise pulls nu of the closed form: its expectation is nu + rho
+/// (nu_noise - nu).
 struct BiasLaw {
   double rho;
   double noise_poisson_ratio;
 };
 
-/// For noise whose norm over the free components is `relative_noise` times that
-/// of the exact displacement of the scene's only load case; from dense
-/// matrices.
+/// Returns the law for noise whose norm over the free components is
+/// `relative_noise` times that of the exact displacement of the scene's only
+/// load case.  Computed from dense matrices.
 inline BiasLaw BiasLawOf(const Scene& exact, double relative_noise) {
   const DegreesOfFreedom dofs(exact.supports);
   const Eigen::MatrixXd h = DenseStiffness<double>(exact.mesh, DenseDH());
@@ -26,7 +26,7 @@ inline BiasLaw BiasLawOf(const Scene& exact, double relative_noise) {
   const Eigen::MatrixXd j_free = j(dofs.free, dofs.free);
   const Eigen::VectorXd f =
       Eigen::VectorXd(AssembleLoadCases(exact).col(0)(dofs.free)).normalized();
-  // Without the direction of f, which t takes.
+  // The parameter t fits the direction of f, so that direction is left out.
   const Eigen::MatrixXd h_part = h_free - f * (f.transpose() * h_free);
   const Eigen::MatrixXd j_part = j_free - f * (f.transpose() * j_free);
   const double t_jj = j_part.squaredNorm();

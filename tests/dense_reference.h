@@ -9,14 +9,15 @@
 
 namespace elastimate::testing {
 
-/// The textbook element: strain-displacement matrix B (6 x 12, engineering
-/// shear strains) of a linear tetrahedron and its volume, from the inverse of
-/// the matrix of nodal coordinates.  Shares no code with the library.
+/// Returns the strain-displacement matrix B (6 x 12, engineering shear strains)
+/// of a linear tetrahedron with the nodes `x`, and its volume.  Both come from
+/// the inverse of the matrix of nodal coordinates, as in textbooks; no code is
+/// shared with the library.
 Eigen::Matrix<double, 6, 12> StrainDisplacement(
     const Eigen::Matrix<double, 3, 4>& x, double* volume);
 
-/// Sum over the elements of V B^T D B, (3 num_nodes)^2.  T is the scalar of D:
-/// double, or a number with derivatives.
+/// Returns the sum over the elements of V B^T D B, (3 num_nodes)^2.  T is the
+/// scalar of D: double, or a number with derivatives.
 template <typename T>
 Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic> DenseStiffness(
     const Mesh& mesh, const Eigen::Matrix<T, 6, 6>& d) {
@@ -46,7 +47,7 @@ Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic> DenseStiffness(
 extern template Eigen::MatrixXd DenseStiffness<double>(
     const Mesh& mesh, const Eigen::Matrix<double, 6, 6>& d);
 
-/// Hooke's law in Voigt notation from the Lame parameters.
+/// Returns Hooke's law in Voigt notation for these Lame parameters.
 template <typename T>
 Eigen::Matrix<T, 6, 6> HookeMatrix(const T& youngs_modulus,
                                    const T& poisson_ratio) {
@@ -80,17 +81,18 @@ inline Eigen::Matrix<double, 6, 6> DenseDJ() {
   return d;
 }
 
-/// A^-1 B for a symmetric matrix, by LDL^T.
+/// Returns A^-1 B for a symmetric matrix A, by LDL^T.
 Eigen::MatrixXd SolveDensely(const Eigen::MatrixXd& a,
                              const Eigen::MatrixXd& b);
 
-/// A^-1 of any matrix that has one, by LU: compiled once.
+/// Returns A^-1 by LU.  It is not inline, so that LU is compiled only once.
 Eigen::MatrixXd InvertDensely(const Eigen::MatrixXd& a);
 
 /// Returns the eigenvalues of a symmetric matrix, in ascending order.
 Eigen::VectorXd SymmetricEigenvalues(const Eigen::MatrixXd& a);
 
-/// The free displacements of a load case, 3 num_nodes where all are free.
+/// Returns the free displacements of a load case; they are 3 num_nodes where
+/// all are free.
 Eigen::VectorXd DenseFreeDisplacement(const Scene& scene,
                                       const IsotropicElasticity& elasticity,
                                       Eigen::Index load_case);

@@ -16,7 +16,7 @@
 namespace elastimate::testing {
 namespace {
 
-// A grid of hexahedra of unit size.
+// Returns a grid of hexahedra that fills the unit cube.
 Mesh HexahedronGrid(int cells) {
   Mesh mesh;
   mesh.kind = ElementKind::kHex8;
@@ -74,7 +74,7 @@ Mesh TriangleGrid(int cells) {
   return mesh;
 }
 
-// A smooth map of the unit square or cube.
+// Moves the nodes by a smooth map of the unit square or cube.
 void Distort(Mesh& mesh) {
   for (auto x : mesh.nodes.colwise()) {
     const Eigen::VectorXd y = x;
@@ -112,8 +112,8 @@ Mesh UndistortedMesh(const KindOfSection& parameter, int cells) {
   return mesh;
 }
 
-// Makes a scene of order 2 where the parameter says so, with every node
-// measured.
+// Raises the scene to order 2 if the parameter says so.  Every node is
+// measured, mid-edge nodes too.
 Scene RaisedScene(const KindOfSection& parameter, int cells,
                   const Scene& scene) {
   if (TopologyOf(parameter.kind).order == 1) {
@@ -122,7 +122,7 @@ Scene RaisedScene(const KindOfSection& parameter, int cells,
   Scene raised = QuadraticScene(scene);
   raised.load_cases[0].observed.resize(0, 0);
   if (IsCurved(parameter.kind)) {
-    // The edges are bent as the block is.
+    // The map bends the edges too, as it bends the block.
     Scene straight = scene;
     straight.mesh = UndistortedMesh(parameter, cells);
     raised.mesh = QuadraticScene(straight).mesh;
@@ -132,7 +132,7 @@ Scene RaisedScene(const KindOfSection& parameter, int cells,
   return raised;
 }
 
-// The scene without measurements, before its order is raised.
+// Returns the scene without measurements, before its order is raised.
 Scene VertexScene(const KindOfSection& parameter, int cells) {
   Scene scene;
   const Mesh reference = UndistortedMesh(parameter, cells);
@@ -155,7 +155,7 @@ Scene VertexScene(const KindOfSection& parameter, int cells) {
   return scene;
 }
 
-// The reference element: nodes, and the exponents of its monomials.
+// The reference element has these nodes, and these exponents of monomials.
 struct Reference {
   Eigen::MatrixXd nodes;
   std::vector<std::array<int, 3>> exponents;
@@ -168,7 +168,7 @@ Reference ReferenceOf(ElementKind kind) {
   reference.nodes = Eigen::MatrixXd::Zero(d, topology.num_nodes);
   if (IsSimplex(kind)) {
     reference.nodes.block(0, 1, d, d).setIdentity();
-    // VTK's order.
+    // Mid-edge nodes are in the order of VTK.
     const int ends[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
     for (int i = topology.num_vertices; i < topology.num_nodes; ++i) {
       const auto& [a, b] = ends[i - topology.num_vertices];
@@ -202,7 +202,7 @@ double Power(double x, int exponent) {
   return exponent == 0 ? 1 : exponent == 1 ? x : x * x;
 }
 
-// The monomials at a point, or their derivatives along an axis.
+// Returns the monomials at a point, or their derivatives along an axis.
 Eigen::RowVectorXd Monomials(const Reference& reference,
                              const Eigen::VectorXd& xi, int derivative) {
   Eigen::RowVectorXd row(reference.exponents.size());
@@ -219,9 +219,9 @@ Eigen::RowVectorXd Monomials(const Reference& reference,
   return row;
 }
 
-// The points of the library, which are part of what a curved element is: its
-// stiffness is the integral of no polynomial.  How exact they are is tested by
-// themselves.
+// Visits the integration points of the library.  They are part of the
+// definition of a curved element, whose stiffness is no integral of a
+// polynomial.  Tests of their own check how exact they are.
 void ForEachPointOfCurved(
     ElementKind kind,
     const std::function<void(const Eigen::VectorXd&, double)>& visit) {
@@ -233,8 +233,9 @@ void ForEachPointOfCurved(
   });
 }
 
-// Calls visit(xi, weight) at Gauss points: two along each axis of a square or a
-// cube, four of the cube collapsed onto a simplex.
+// Calls visit(xi, weight) at Gauss points.  There are two along each axis of a
+// square or a cube; for a simplex, four along each axis of a cube that is
+// collapsed onto it.
 void ForEachPoint(
     ElementKind kind,
     const std::function<void(const Eigen::VectorXd&, double)>& visit) {
@@ -302,7 +303,7 @@ void ForEachPointOf(
   });
 }
 
-// Shears are engineering strains here.
+// Returns the matrix B, whose shear strains are engineering strains.
 Eigen::MatrixXd StrainDisplacementOf(const Eigen::MatrixXd& gradients) {
   const Eigen::Index d = gradients.rows();
   Eigen::MatrixXd b =

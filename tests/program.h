@@ -15,7 +15,7 @@
 
 namespace elastimate::testing {
 
-/// What a run of the program left.
+/// Holds what a run of the program left.
 struct ProgramRun {
   int exit_code;
   std::string output;  ///< Standard output.
@@ -35,8 +35,8 @@ inline void WriteText(const std::filesystem::path& path,
   std::ofstream(path) << text;
 }
 
-/// A test in an empty folder of its own, which is the current one of the
-/// program; removed afterwards.
+/// The test has an empty folder of its own, which is the current one of the
+/// program and is removed afterwards.
 class ProgramTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -94,8 +94,8 @@ class ProgramTest : public ::testing::Test {
     EXPECT_EQ(after.size(), before.size());
   }
 
-  /// The content of every file, or where it leads, but for those of the
-  /// standard streams.
+  /// Returns the content of every file, or where a link leads, without the
+  /// files of the standard streams.
   std::map<std::string, std::string> Files() const {
     std::map<std::string, std::string> files;
     for (const auto& entry :

@@ -10,31 +10,33 @@
 
 namespace elastimate::testing {
 
-/// SceneOfKind with region 7 where the first coordinate of an element's centre
-/// is below the middle, 3 elsewhere, and an isotropic material in each: that of
-/// region 3 first.
+/// Returns SceneOfKind with region 7 where the first coordinate of an element's
+/// centre is below the middle, and region 3 elsewhere.  Each region has an
+/// isotropic material; that of region 3 is the first.
 Scene TwoRegionScene(const KindOfSection& parameter, int cells = 3);
 
-/// Regions 1, 2, ... of boxes, so many along each axis of a body from zero to
-/// `size`, the first axis fastest, and an isotropic material in each.
+/// Divides a body from zero to `size` into regions 1, 2, ..., which are so many
+/// `boxes` along each axis; the first axis is the fastest.  Each region gets an
+/// isotropic material.
 void DivideIntoRegions(const Eigen::Vector3i& boxes,
                        const Eigen::Vector3d& size, Scene& scene);
 
-/// BoxMesh held at the bottom, with a slanted traction on its top.
+/// Returns a BoxMesh that is held at the bottom, with a slanted traction on its
+/// top.
 Scene BlockUnderTraction(const Eigen::Vector3i& cells,
                          const Eigen::Vector3d& size);
 
-/// TextbookStiffness of the isotropic materials of a scene, one of
-/// `elasticities` for each.
+/// Returns the TextbookStiffness of a scene whose isotropic materials have
+/// these `elasticities`, one for each.
 Eigen::MatrixXd TextbookStiffness(
     const Scene& scene, const std::vector<IsotropicElasticity>& elasticities);
 
-/// A dense solution with that, with held nodes where they are held: num_dofs x
-/// num_load_cases.
+/// Returns the dense solution with that TextbookStiffness, num_dofs x
+/// num_load_cases.  Held components have their given displacements.
 Eigen::MatrixXd SolveByTextbook(
     const Scene& scene, const std::vector<IsotropicElasticity>& elasticities);
 
-/// Measures the scene by it.
+/// Measures the scene by SolveByTextbook.
 void MeasureByTextbook(const std::vector<IsotropicElasticity>& elasticities,
                        Scene& scene);
 

@@ -26,7 +26,8 @@ Mesh BoxMesh(const Eigen::Vector3i& cells, const Eigen::Vector3d& size) {
       }
     }
   }
-  // The six paths along the axes from one corner of a cube to the opposite.
+  // Each path goes along the axes from one corner of a cube to the opposite
+  // one.  It is the order in which the axes are taken.
   constexpr int kPaths[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2},
                                 {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
   mesh.elements.resize(4, 6 * Eigen::Index(cells.prod()));
@@ -173,7 +174,7 @@ Scene ShearedBlock() {
       DenseStiffness<double>(mesh, HookeMatrix(5e4, 0.3));
   NodalForces forces{
       (stiffness * displacement.reshaped()).reshaped(3, mesh.NumNodes())};
-  // Corners at the origin, along x, and along y.
+  // The held corners are those at the origin, along x, and along y.
   scene.supports.held.setConstant(false);
   scene.supports.held.col(0).setConstant(true);
   scene.supports.held.col(3) << false, true, true;

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-// A box of these cells over [-1, 1] x [-1, 1] x [0, 1], moved by a map.
+// Returns a box of these cells over [-1, 1] x [-1, 1] x [0, 1], moved by a map.
 Mesh MappedBox(const Vector3i& cells,
                const std::function<Vector3d(double, double, double)>& map) {
   Mesh mesh = BoxMesh(cells, {2, 2, 1});
@@ -27,7 +27,7 @@ Mesh MappedBox(const Vector3i& cells,
   return mesh;
 }
 
-// The unit cubes of a grid that are kept.
+// Returns the unit cubes of a grid that are kept.
 Mesh Voxels(const Vector3i& cells,
             const std::function<bool(int, int, int)>& is_kept) {
   const Mesh box = BoxMesh(cells, cells.cast<double>());
@@ -63,7 +63,7 @@ Mesh Voxels(const Vector3i& cells,
   return mesh;
 }
 
-// The square [-1, 1]^2 on the unit disk.
+// Maps the square [-1, 1]^2 to the unit disk.
 Vector3d Disk(double x, double y) {
   return {x * std::sqrt(1 - y * y / 2), y * std::sqrt(1 - x * x / 2), 0};
 }

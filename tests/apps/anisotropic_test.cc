@@ -1,4 +1,5 @@
-// Materials that are not alike in all directions, by the command line.
+// Tests of the command line with materials whose stiffness depends on the
+// direction.
 
 #include <gtest/gtest.h>
 
@@ -69,14 +70,15 @@ TEST_F(AnisotropicCommand, SimulatesAndEstimatesFibres) {
     ASSERT_EQ(report["stiffness"].size(), 1);
     const Json& stiffness = report["stiffness"][0];
     EXPECT_TRUE(stiffness["region"].is_null());
-    // G_LT along the axis, and G_TT across it.
+    // c_66 is G_LT, the shear modulus along the axis, and c_44 is G_TT, the one
+    // across it.
     EXPECT_NEAR(stiffness["value"][5][5].get<double>(), 1.5e4, 0.1);
     EXPECT_NEAR(stiffness["value"][3][3].get<double>(), 3e4 / 2.8, 0.1);
     EXPECT_TRUE(stiffness["standard_error"][0][0].is_number());
   }
 }
 
-// A scene.json with another direction in each element.
+// The scene.json names a cell array, which gives each element another axis.
 TEST_F(AnisotropicCommand, TakesAnAxisFromACellArray) {
   const Scene scene = CuboidScene({});
   Eigen::MatrixXd fibre(3, scene.mesh.NumElements());
@@ -111,7 +113,8 @@ TEST_F(AnisotropicCommand, TakesAnAxisFromACellArray) {
           .Json());
 }
 
-// The scene is a scene.json whose axes are a cell array, and then a mesh file.
+// Data that are written into a result can be read from it again: the cell array
+// of axes that a scene.json names, and the array "observed" of a mesh file.
 TEST_F(AnisotropicCommand, SimulatesWhatCanBeReadAgain) {
   const Scene scene = CuboidScene({});
   const Mesh& mesh = scene.mesh;
@@ -171,7 +174,7 @@ TEST_F(AnisotropicCommand, SaysWhichParametersAreOfNoMaterial) {
   }
 }
 
-// A block pulled aside, with fibres along this axis.
+// The block is pulled aside; its fibres run along this axis.
 std::string SceneOfFibres(const std::string& axis,
                           const std::string& displacement) {
   return R"({"origin": "computed", "mesh": "block.vtu", "materials":
@@ -218,7 +221,7 @@ TEST_F(AnisotropicCommand, FindsAnAxis) {
   EXPECT_NE(text.find("axis                  0.33"), std::string::npos) << text;
   EXPECT_NE(text.find(" degrees\n"), std::string::npos) << text;
   EXPECT_EQ(text.find("w_y"), std::string::npos) << text;
-  // An axis that is given takes the place of one to be found.
+  // An axis that --axis gives overrides "free", so that no axis is estimated.
   const Json known = Succeed(
                          "estimate free.json --axis=1,-2,2 "
                          "--estimator=reduced-fe --json=-")

@@ -48,12 +48,12 @@ class CommandLine : public ProgramTest {
   }
 };
 
-// What it refuses, and what becomes of files and streams, in suites that may
-// run side by side.
+// Tests of what the program refuses, and of what becomes of files and streams.
+// They are suites of their own so that they may run side by side.
 class CommandLineErrors : public CommandLine {};
 class CommandLineOutputs : public CommandLine {};
 
-// Lines of at most 100 characters, and no more of them than `max_lines`.
+// Every line has at most 100 characters, and there are at most `max_lines`.
 void ExpectAScreen(const std::string& help, int max_lines) {
   std::istringstream lines(help);
   int num_lines = 0;
@@ -235,7 +235,8 @@ TEST_F(CommandLine, NearOneHalfItGivesAnIntervalOfOneSide) {
   const nlohmann::json report = Succeed(command + " --json=-").Json();
   EXPECT_EQ(report["poisson_ratio_interval"][1], 0.5);
   EXPECT_LT(report["poisson_ratio_interval"][0], 0.4999);
-  // mu and 1 / kappa are determined there: mu = E / (2 (1 + nu)).
+  // Close to nu = 1/2 the data determine mu = E / (2 (1 + nu)) and 1 / kappa =
+  // 3 (1 - 2 nu) / E.
   EXPECT_NEAR((report["shear_modulus"].get<double>() - 1e4 / 2.9998) /
                   report["standard_error"]["shear_modulus"].get<double>(),
               0, 4);
@@ -249,7 +250,8 @@ TEST_F(CommandLine, NearOneHalfItGivesAnIntervalOfOneSide) {
   }
 }
 
-// They take longer to load than everything else.
+// PETSc, which libelastimate_multigrid needs, takes longer to load than
+// everything else.
 TEST_F(CommandLine, LoadsNoModuleThatItDoesNotNeed) {
   MakeExactScene();
   const std::string loaded = (folder_ / "loaded").string();
@@ -315,8 +317,8 @@ TEST_F(CommandLine, BoundsAndKnownValuesAreHonoured) {
     EXPECT_NEAR(bounded["poisson_ratio"].get<double>(), 0.3, 1e-9);
     EXPECT_EQ(bounded["diagnostics"]["active_bounds"],
               nlohmann::json({"nu_max"}));
-    // The error is that of a fit without the bound, which the truth lies
-    // beyond.
+    // The standard error is that of a fit without the bound, since the true nu
+    // of 0.33 lies beyond the bound.
     EXPECT_GT(bounded["standard_error"]["poisson_ratio"].get<double>(), 0.01);
   }
 }
@@ -362,8 +364,8 @@ TEST_F(CommandLine, NoiseHasTheNormThatWasAskedFor) {
                 1e-12);
     const auto held = exact.supports.held;
     EXPECT_EQ(held.select(noise.array(), 0.0).matrix().norm(), 0);
-    // The largest of 216 draws, in standard deviations: below sqrt(3) for the
-    // uniform law, above 2 for a Gaussian (but for a chance of 5e-5).
+    // The largest of 216 draws, in standard deviations, is below sqrt(3) for
+    // the uniform law.  For a Gaussian it is above 2, but for a chance of 5e-5.
     const double largest =
         noise.cwiseAbs().maxCoeff() /
         std::sqrt(noise.squaredNorm() / double((!held).count()));
@@ -410,7 +412,7 @@ TEST_F(CommandLine, ReadsASceneThatIsWrittenOut) {
       {"type": "body_force", "value": [0, 0, -9810]}]}]
   })");
   Succeed("simulate scene.json --youngs=1e5 --nu=0.4 --out=measured.vtu");
-  // 500 Pa on 1 m^2 and 9810 N/m^3 in 0.4 m^3.
+  // The loads are 500 Pa on 1 m^2 and 9810 N/m^3 in 0.4 m^3.
   const Scene scene = Read("measured.vtu");
   EXPECT_NEAR(
       std::get<NodalForces>(scene.load_cases[0].loads[0]).force.row(2).sum(),
@@ -431,7 +433,7 @@ TEST_F(CommandLineOutputs, WritesWhatParaViewShows) {
       EXPECT_NE(result.find("Name=\"" + array + "\""), std::string::npos)
           << array;
     }
-    // It is a scene again.
+    // The result can be estimated again, as a scene.
     EXPECT_NEAR(Succeed("estimate result.vtu --json=-")
                     .Json()["poisson_ratio"]
                     .get<double>(),
@@ -609,7 +611,7 @@ TEST_F(CommandLineOutputs, SaysWhenStandardOutputIsLost) {
     Refuse(arguments, "standard output cannot be written (Bad file descriptor)",
            ">&-");
   }
-  // It has nothing to say there.
+  // `simulate` prints nothing here, so a closed standard output is no error.
   EXPECT_EQ(
       Run("simulate cuboid.vtu --youngs=1 --nu=0 --out=a.vtu", ">&-").exit_code,
       0);
@@ -740,7 +742,7 @@ TEST_F(CommandLineErrors, RefusesToWriteToAnOpenFile) {
          "--json=.errors is where standard error goes");
   Refuse("estimate exact.vtu --json=/dev/fd/3 --out=link.vtu", "same file",
          ">.output 3>/dev/null");
-  // A shell makes such a file of >(command).
+  // A shell makes such a pipe of >(command).
   EXPECT_EQ(Run("estimate exact.vtu --json=/dev/fd/3 3>&1 >/dev/null",
                 "| cat >.output")
                 .Json()["usable"],
@@ -788,7 +790,7 @@ TEST_F(CommandLine, PrintsTheNoticesOfTheReader) {
                                         "VECTORS displacement double\n"
                                         "0 0 0  0 0 0  0 0 0  1 0 1  0 0 0\n");
   EXPECT_EQ(Run("estimate points.vtk").errors, notice);
-  // An error stays the only sentence.
+  // A run that ends with an error prints the error alone, without notices.
   Refuse("estimate points.vtk --nu_max=0.3", "cannot keep bounds");
 }
 
@@ -947,7 +949,7 @@ TEST_F(CommandLineErrors, QuotesOnlyWhatIsFitToPrint) {
 class Signals : public CommandLine {
  protected:
   /// Sends the signal while the program has written one output and waits for a
-  /// reader of the other one; the status that it ends with.
+  /// reader of the other one.  Returns the status that the program ends with.
   int Interrupt(int signal_number, void (*disposition)(int) = SIG_DFL) {
     const pid_t child = fork();
     if (child == 0) {
@@ -962,7 +964,8 @@ class Signals : public CommandLine {
       }
       _exit(99);
     }
-    // The part is there, and whole: that is when the pipe is opened.
+    // The program opens the pipe only after the .part file is complete, so the
+    // signal comes while that file is there.
     for (int i = 0; i < 3000 && NumParts() == 0; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
@@ -997,7 +1000,7 @@ TEST_F(Signals, LeaveNoPartOfAnOutput) {
   }
 }
 
-// The caller may be nohup.
+// nohup starts a program with SIGHUP ignored, and it has to stay ignored.
 TEST_F(Signals, StayIgnoredWhereTheCallerSaysSo) {
   MakeExactScene();
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
@@ -1116,7 +1119,7 @@ TEST_F(Loads, OfNodalForcesFromAFileAreOneEntryForEachCase) {
   Succeed("simulate b.vtu --youngs=1e4 --nu=0.3 --out=mb.vtu");
   const nlohmann::json loads =
       Succeed("estimate ma.vtu mb.vtu --json=-").Json()["loads"];
-  // On each of the 6 x 6 x 2 free nodes.
+  // The force acts on each of the 6 x 6 x 2 free nodes.
   EXPECT_EQ(loads, nlohmann::json::parse(
                        R"([[{"type": "nodal_force", "resultant": [0, 0, -2160],
                 "area": null}],
@@ -1187,7 +1190,7 @@ TEST_F(ElementKinds, TakeTheSectionOfTheFlags) {
       "simulate g.vtu --youngs=7e10 --nu=0.33 --thickness=0.002 "
       "--model=plane_strain --out=m.vtu");
   ExpectFound("m.vtu", "", {{"model", "plane_strain"}, {"thickness", 0.002}});
-  // The same forces need half of the stiffness at twice the thickness.
+  // With twice the thickness, half the stiffness explains the same forces.
   const nlohmann::json report =
       Succeed("estimate m.vtu --thickness=0.004 --json=-").Json();
   EXPECT_NEAR(report["youngs_modulus"].get<double>() / 3.5e10, 1, 1e-6);
@@ -1214,8 +1217,8 @@ TEST_F(ElementKinds, AreModelledWithQuadraticOnesWhereThereAreSuch) {
          "only; leave the flag out");
 }
 
-// A file of quadratic triangles: two of a square of edges 2, mid-edge nodes
-// before vertices.
+// The file has two quadratic triangles, which make a square of edges 2.  Its
+// mid-edge nodes come before its vertices.
 TEST_F(ElementKinds, OfQuadraticFilesStayQuadratic) {
   WriteText(folder_ / "mesh.vtk",
             "# vtk DataFile Version 3.0\nsquare\nASCII\n"
@@ -1237,7 +1240,8 @@ TEST_F(ElementKinds, OfQuadraticFilesStayQuadratic) {
   Refuse("estimate m.vtu --order=1",
          "--order=1: m.vtu has quadratic triangles; leave the flag out, or "
          "give a linear mesh");
-  // Results are in the order of the points of the file: 4, 5 and 8 are held.
+  // A result keeps the order of the points of the file, in which the nodes 4, 5
+  // and 8 are held.
   WriteText(folder_ / "array.json", R"({"mesh": "r.vtu", "supports": [],
     "cases": [{"displacement": {"array": "reaction_force"},
                "observed": {"ids": [4, 5, 8]}, "loads": []}]})");
@@ -1286,8 +1290,8 @@ TEST_F(ElementKinds, RefuseWrongFlags) {
 
 class QuadraticElements : public CommandLine {
  protected:
-  /// scene.json: cuboid.vtu with a traction and a body force, and the
-  /// displacement of `measured` where that is given.
+  /// Writes scene.json: cuboid.vtu with a traction and a body force, or
+  /// `measured` and its displacement where that is given.
   void WriteScene(const std::string& measured) const {
     WriteText(folder_ / "scene.json",
               R"({
@@ -1306,8 +1310,8 @@ class QuadraticElements : public CommandLine {
     })");
   }
 
-  /// cuboid.vtu and, measured at E = 100 kPa, nu = 0.3 with quadratic elements
-  /// and `flags`, measured.vtu; scene.json takes both together.
+  /// Makes cuboid.vtu and, measured at E = 100 kPa, nu = 0.3 with quadratic
+  /// elements and `flags`, measured.vtu, which scene.json then takes.
   void MakeMeasuredScene(const std::string& flags = "") const {
     Succeed("generate cuboid --cells=3,3,2 --out=cuboid.vtu");
     WriteScene("");
@@ -1318,7 +1322,7 @@ class QuadraticElements : public CommandLine {
     WriteScene("measured.vtu");
   }
 
-  /// The array of a result as the displacement of a scene that names it.
+  /// Reads an array of a result by a scene that names it as its displacement.
   Eigen::MatrixXd Array(const std::string& file,
                         const std::string& array) const {
     WriteText(folder_ / "array.json", R"({
@@ -1342,7 +1346,7 @@ TEST_F(QuadraticElements, RecoverWhatTheyMeasured) {
   EXPECT_EQ(report["mesh"]["order"], 2);
   EXPECT_EQ(report["mesh"]["nodes"], 4 * 4 * 3);
   EXPECT_EQ(report["mesh"]["tetrahedra"], 5 * 3 * 3 * 2);
-  // A measurement is fitted with quadratic elements anyway.
+  // A measurement is fitted with quadratic elements even without --order=2.
   const nlohmann::json measured =
       Succeed("estimate scene.json --estimator=iterative-fe --json=-").Json();
   EXPECT_EQ(measured["mesh"]["order"], 2);
@@ -1376,7 +1380,8 @@ TEST_F(QuadraticElements, WriteTheLinearMesh) {
             1e-7 * displacement.norm());
 }
 
-// 500 and 100 Pa on 1 m^2 and 9810 N/m^3 in 0.4 m^3, about the origin.
+// The loads are 500 and 100 Pa on 1 m^2 and 9810 N/m^3 in 0.4 m^3.  The moments
+// are about the origin.
 TEST_F(QuadraticElements, ReactionsBalanceTheLoads) {
   MakeMeasuredScene();
   Succeed(
@@ -1410,7 +1415,7 @@ TEST_F(QuadraticElements, NoiseIsRelativeToTheVertices) {
 TEST_F(QuadraticElements, NoticeWhatNodalForcesMean) {
   MakeExactScene();
   const std::string notice = "notice: nodal forces on all nodes of a face";
-  // Whether the estimate is usable or not.
+  // The notice appears whether the estimate is usable or not.
   const auto has_notice = [&](const std::string& arguments) {
     return Run(arguments).errors.find(notice) != std::string::npos;
   };
@@ -1425,7 +1430,7 @@ TEST_F(QuadraticElements, NoticeWhatNodalForcesMean) {
       has_notice("estimate scene.json --estimator=iterative-fe --order=2"));
 }
 
-// What is written as nodal forces was a traction.
+// The file has nodal forces where the scene had a traction.
 TEST_F(QuadraticElements, NoticeWhatBecomesOfOtherLoads) {
   Succeed("generate cuboid --out=cuboid.vtu");
   WriteScene("");

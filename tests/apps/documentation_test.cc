@@ -1,5 +1,5 @@
-// What README.md and docs/ say that the program prints, takes and has is what
-// it does.
+// README.md and docs/ show output, flags and names of the program.  These tests
+// check that the program agrees with them.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -26,14 +26,15 @@ namespace {
 
 using nlohmann::json;
 
-// Numbers in sample outputs may differ by this: another BLAS rounds otherwise.
+// Numbers in sample outputs may differ by this much, relative to their size,
+// since another BLAS rounds otherwise.
 constexpr double kRounding = 1e-2;
 
 std::filesystem::path Source(const std::string& name) {
   return std::filesystem::path(ELASTIMATE_SOURCE) / name;
 }
 
-/// The blocks of code of that language, "" for none.
+/// Returns the blocks of code of that language; "" stands for no language.
 std::vector<std::string> Blocks(const std::string& document,
                                 const std::string& language) {
   std::vector<std::string> blocks;
@@ -63,7 +64,7 @@ std::vector<std::string> Lines(const std::string& text) {
   return lines;
 }
 
-/// Equal but for what rounding makes of the numbers.
+/// The texts may differ only by what rounding does to their numbers.
 void ExpectAlike(const std::string& actual, const std::string& expected) {
   std::istringstream actual_words(actual);
   std::istringstream expected_words(expected);
@@ -84,7 +85,8 @@ void ExpectAlike(const std::string& actual, const std::string& expected) {
   EXPECT_FALSE(actual_words >> word) << "\n" << actual << "\n" << expected;
 }
 
-/// Expects the same keys and like values; times and counts of work may differ.
+/// The two have the same keys and alike values, except that times and counts of
+/// work may differ.
 void ExpectAlike(const json& actual, const json& expected) {
   ASSERT_STREQ(actual.type_name(), expected.type_name())
       << actual << " " << expected;
@@ -112,7 +114,7 @@ void ExpectAlike(const json& actual, const json& expected) {
   }
 }
 
-/// Names of small letters, '-' and '_' that follow the prefix.
+/// Returns the names of small letters, '-' and '_' that follow the prefix.
 std::set<std::string> NamesAfter(const std::string& prefix,
                                  const std::string& text) {
   std::set<std::string> names;
@@ -160,7 +162,7 @@ TEST_F(Documentation, HasTheOutputOfTheProgram) {
     ASSERT_EQ(actual.size() + 1, expected.size());
     for (std::size_t i = 0; i < actual.size(); ++i) {
       const std::string label = expected[i + 1].substr(0, 5);
-      // These have times.
+      // Lines with these labels hold times, which differ from run to run.
       if (label == "work " || label == "time " || label == "rung ") {
         EXPECT_EQ(actual[i].substr(0, 5), label);
       } else {
@@ -193,7 +195,8 @@ TEST_F(Documentation, HasTheCommandsOfTheTenBlocks) {
   ASSERT_EQ(blocks.size(), 2U);
   const std::string folder =
       std::filesystem::path(ELASTIMATE_PROGRAM).parent_path().string();
-  // What the data do not determine makes the exit code of the last but one 1.
+  // The last command but one exits with 1, because its data do not determine a
+  // parameter; the shell goes on all the same.
   testing::WriteText(folder_ / "commands.sh",
                      "export PATH='" + folder + "':\"$PATH\"\n" + blocks[0]);
   const std::string command =
@@ -206,7 +209,8 @@ TEST_F(Documentation, HasTheCommandsOfTheTenBlocks) {
   EXPECT_GT(std::filesystem::file_size(folder_ / "ten_blocks.png"), 10000U);
 }
 
-// Its estimate is a sample of HasTheOutputOfTheProgram.
+// What the README says of the estimate of this scene is checked by
+// HasTheOutputOfTheProgram.
 TEST_F(Documentation, HasTheSceneOfTheBlock) {
   const std::vector<std::string> scenes = Blocks("README.md", "json");
   ASSERT_EQ(scenes.size(), 1U);

@@ -1,5 +1,5 @@
-// The figures that an independent finite element code and an independent
-// maximum-likelihood fit gave.
+// An independent finite element code and an independent maximum-likelihood fit
+// gave the figures that these tests expect.
 
 #include <gtest/gtest.h>
 
@@ -18,12 +18,12 @@ using testing::ProgramRun;
 using testing::ProgramTest;
 using testing::WriteText;
 
-// What the reports of two fits to the same data may differ by.
+// The reports of two fits to the same data may differ by this much.
 constexpr double kSmallPart = 0.05;  // Of a standard error.
 constexpr double kStandardErrorsDiffer = 0.02;
 
-// E and nu of a report, and what noise alone leaves uncertain, in the same
-// units.
+// Holds E and nu of a report, and the errors that noise alone leaves in them,
+// in the same units.
 struct Fit {
   explicit Fit(const nlohmann::json& report)
       : youngs_modulus(report["youngs_modulus"]),
@@ -46,7 +46,7 @@ struct Fit {
   double poisson_ratio_noise;
 };
 
-// That a specimen is measured is the default.
+// A scene counts as measured by default; these displacements were computed.
 constexpr const char* kComputed = "--origin=computed ";
 
 void ExpectToHold(double youngs_modulus, double poisson_ratio,
@@ -59,7 +59,8 @@ void ExpectToHold(double youngs_modulus, double poisson_ratio,
               3 * error["poisson_ratio"].get<double>());
 }
 
-// tests/data/hook/README.md tells how the scenes were made, with these.
+// These are the parameters with which the scenes were made, as
+// tests/data/hook/README.md tells.
 constexpr double kYoungsModulus = 2e4;
 constexpr double kPoissonRatio = 0.35;
 
@@ -112,9 +113,11 @@ TEST_F(Hook, TheClosedFormAgreesAndSaysThatItIsNotUsable) {
   EXPECT_EQ(report["usable"], false);
 }
 
-// What linear elements of this mesh make of a specimen that is finer.
+// The data are of a finer specimen than this mesh of linear elements can
+// follow.  Two codes have to make the same wrong estimate of it.
 TEST_F(Hook, LinearElementsAgreeInAFinerWorld) {
-  // The loads are given as nodal forces, and as a body force.
+  // The .vtu gives the loads as nodal forces, the .json the same loads as a
+  // body force.
   for (const std::string file :
        {"hook_finer_world.vtu", "hook_finer_world.json"}) {
     for (const std::string name : {"iterative-fe", "reduced-fe"}) {
@@ -171,7 +174,8 @@ TEST_F(Hook, AutoClimbsAsFarAsTheDataDemand) {
   EXPECT_NEAR(noisy["youngs_modulus"].get<double>(), 19980, kSmallPart * 102);
 }
 
-// Scenes on the meshes of other projects, which are not part of this one.
+// These scenes are on meshes of other projects, which are not part of this one,
+// so the tests are skipped where the meshes are missing.
 class IndependentScenes : public ProgramTest {
  protected:
   void SetUp() override {
@@ -239,8 +243,9 @@ TEST_F(IndependentScenes, LinearElementsAgreeInAFinerWorld) {
   EXPECT_NEAR(closed["poisson_ratio"].get<double>(), 0.426, 5e-4);
 }
 
-// The file names nodes and their forces.  Given as the traction and the box of
-// the experiment, load and support do not depend on the mesh.
+// The file names the held nodes and the nodal forces, which depend on the mesh.
+// This scene.json gives the box and the traction of the experiment instead,
+// which do not.
 class FinerWorldLong : public IndependentScenes {
  protected:
   void SetUp() override {
@@ -272,8 +277,9 @@ TEST_F(FinerWorldLong, TheTruthIsHeld) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "auto.vtu"));
 }
 
-// The other code held every node below 24 mm, so also mid-edge nodes of edges
-// with a free upper end.  With these held, both codes have the same equations.
+// The other code held every node below 24 mm, including mid-edge nodes whose
+// edge has a free upper end.  Once these are held here too, both codes have the
+// same equations.
 TEST_F(FinerWorldLong, QuadraticElementsAreThoseOfTheOtherCode) {
   Scene scene = QuadraticScene(
       ReadScene({folder_ / "scene.json"}, Measurement::kRequired).scene);

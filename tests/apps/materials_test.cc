@@ -1,4 +1,4 @@
-// Several materials by the command line.
+// Tests of the command line with several materials.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ class MaterialsCommand : public testing::ProgramTest {
     testing::WriteText(folder_ / "truth.json", Parameters().dump());
   }
 
-  // The parameters of regions 1, 2 and 3.
+  // These are E and nu of the regions 1, 2 and 3.
   static Json Parameters() {
     Json list = Json::array();
     for (int region = 1; region <= 3; ++region) {
@@ -71,7 +71,7 @@ TEST_F(MaterialsCommand, SimulatesAndEstimatesEachRegion) {
     EXPECT_EQ(report["covariance"].size(), 6U);
     EXPECT_EQ(report["error_budget"]["noise"].size(), 6U);
   }
-  // Estimates that are not usable say nothing of a region.
+  // A table of an estimate that is not usable gives no numbers of regions.
   Succeed(
       "simulate block.vtu --regions=each --parameters=truth.json --noise=0.05 "
       "--out=noisy.vtu");
@@ -82,7 +82,7 @@ TEST_F(MaterialsCommand, SimulatesAndEstimatesEachRegion) {
     EXPECT_THAT(table, HasSubstr("NOT USABLE"));
     EXPECT_THAT(table, Not(HasSubstr("\nregion 1  ")));
   }
-  // The wrong model does not fit.
+  // A model of one material for all three regions does not fit.
   const std::string one =
       Run("estimate m.vtu --estimator=iterative-fe --json=-").output;
   EXPECT_EQ(Json::parse(one)["parameters"].size(), 2U);
@@ -97,7 +97,8 @@ TEST_F(MaterialsCommand, WritesWhatReportsAndScenesAreReadFrom) {
       "estimate m.vtu --regions=each --estimator=iterative-fe "
       "--json=report.json --out=r.vtu");
   EXPECT_NE(run.output.find("E of region 2"), std::string::npos) << run.output;
-  // A report is a file of parameters, and its result a scene with cell arrays.
+  // `simulate` reads its parameters from a report, and the result of `estimate`
+  // is a scene with cell arrays.
   Succeed(
       "simulate r.vtu --regions=each --parameters=report.json --out=again.vtu");
   const std::string result = testing::ReadText(folder_ / "r.vtu");
@@ -216,7 +217,7 @@ TEST_F(MaterialsCommand, TakesWhatTheSceneKnows) {
   EXPECT_TRUE(report["parameters"][0]["standard_error"].is_null());
   EXPECT_TRUE(report["covariance"][0][1].is_null());
   EXPECT_FALSE(report["covariance"][1][1].is_null());
-  // --nu is that of all materials of which none is known.
+  // --nu applies to every material whose nu the scene does not give as known.
   const Json known =
       Run("estimate scene.json --estimator=iterative-fe --nu=0.2 --json=-")
           .Json();

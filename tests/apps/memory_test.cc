@@ -1,4 +1,4 @@
-// The program where it may take little memory (ulimit -v).
+// Tests of the program where it may take little memory (ulimit -v).
 
 #include "tests/program.h"
 
@@ -28,8 +28,9 @@ TEST_F(LittleMemory, EndsWithASentenceOrWithTheResult) {
   int num_refused = 0;
   int num_done = 0;
   for (int megabytes = 20; megabytes <= 420; megabytes += 25) {
-    // Where the libraries cannot be loaded, or abort while they are, not a line
-    // of the program has run yet.
+    // With too little memory the libraries cannot be loaded, or abort while
+    // they are.  No line of the program has run then, so there is nothing to
+    // test.
     if (RunWithin(megabytes, "--version").exit_code != 0) continue;
     for (const std::string arguments :
          {"estimate exact.vtu", "estimate exact.vtu --estimator=reduced-fe"}) {
@@ -50,7 +51,7 @@ TEST_F(LittleMemory, EndsWithASentenceOrWithTheResult) {
   EXPECT_GT(num_done, 0);
 }
 
-// Not a word of damage.
+// A lack of memory must not be reported as a damaged file.
 TEST_F(LittleMemory, IsNotTakenForADamagedFile) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the sanitizer takes terabytes of address space";

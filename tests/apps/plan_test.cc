@@ -1,4 +1,4 @@
-// The command plan.
+// Tests of the command plan.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ class PlanCommand : public testing::ProgramTest {
     Succeed("generate cuboid --out=cuboid.vtu");
   }
 
-  // A bar of 4 x 1 x 1 on rollers; `cases` of a scene.json.
+  // Writes a scene.json with a bar of 4 x 1 x 1 on rollers and these `cases`.
   void WriteBar(const Json& cases) {
     Succeed(
         "generate cuboid --elements=hex8 --cells=4,2,2 --size=4,1,1 "
@@ -44,7 +44,7 @@ class PlanCommand : public testing::ProgramTest {
     testing::WriteText(folder_ / "bar.json", scene.dump());
   }
 
-  // Where y = z = 0, of which the rollers leave the x component.
+  // Selects the nodes at y = z = 0, whose x component the rollers leave free.
   static Json Edge() { return {{"box", {{-1, 0, 0}, {9, 0, 0}}}}; }
 
   static Json Pull(int axis) {
@@ -80,7 +80,7 @@ TEST_F(PlanCommand, ComparesUnitLoadsOnTheLoadedSurface) {
   EXPECT_FALSE(plan["before"]["measured"]);
   double last = 0;
   for (const Json& candidate : plan["candidates"]) {
-    // The load has no size where nothing has one.
+    // A candidate has no size where the scene gives none.
     EXPECT_TRUE(candidate["size"].is_null());
     const double error = candidate["worst_combination"]["standard_error"];
     EXPECT_GE(error, (1 - 1e-5) * last);  // Alike but for rounding.
@@ -109,7 +109,7 @@ TEST_F(PlanCommand, ComparesLoadCasesWithoutDisplacement) {
   EXPECT_TRUE(plan["candidates"][0]["determined"]);
   EXPECT_FALSE(plan["candidates"][1]["determined"]);
   EXPECT_THAT(Succeed("plan bar.json").output, HasSubstr("undetermined: nu"));
-  // With a surface, unit loads as well.
+  // With a surface, unit loads on it are candidates as well.
   EXPECT_EQ(
       NamesOf(Succeed("plan bar.json --surface=4,0,0,4,1,1 --json=-").Json())
           .size(),
@@ -143,12 +143,12 @@ TEST_F(PlanCommand, TakesParametersAndNoiseOfAMeasurement) {
       plan["noise_sd"].get<double>() / estimate["noise_sd"].get<double>(), 1,
       1e-9);
   EXPECT_GT(plan["candidates"][0]["size"].get<double>(), 0);
-  // What is expected of the noise is what the estimate says of it.
+  // Before a further load, the plan expects the noise errors of the estimate.
   EXPECT_NEAR(
       plan["before"]["standard_errors"][1].get<double>() /
           estimate["error_budget"]["noise"]["poisson_ratio"].get<double>(),
       1, 0.05);
-  // Noise of twice the size, errors of twice the size.
+  // Twice the noise makes twice the errors.
   const std::string noise =
       std::to_string(2e6 * plan["noise_sd"].get<double>());
   const Json twice =
@@ -169,7 +169,7 @@ TEST_F(PlanCommand, GivenNoiseOfGivenParametersIsALength) {
   EXPECT_NEAR(error("--youngs=1e5 --nu=0.3 --noise_sd=1e-4") / soft, 10, 1e-6);
   const double relative = error("--youngs=1e4 --nu=0.3 --noise=0.01");
   EXPECT_NEAR(error("--youngs=1e5 --nu=0.3 --noise=0.01") / relative, 1, 1e-6);
-  // Nothing says how much a specimen of typical parameters moves.
+  // With typical parameters, nothing tells how much the specimen moves.
   const testing::ProgramRun run =
       Succeed("plan cuboid.vtu --json=- --noise_sd=1e-4");
   EXPECT_TRUE(run.Json()["noise_sd"].is_null());
@@ -193,7 +193,7 @@ TEST_F(PlanCommand, TakesPlanarScenes) {
   EXPECT_EQ(
       NamesOf(Succeed("plan plate.vtu --json=-").Json()),
       std::set<std::string>({"force along x", "force along y", "moment"}));
-  // A box in the plane.
+  // In the plane, a box has four numbers.
   EXPECT_EQ(
       NamesOf(Succeed("plan plate.vtu --surface=10,0,10,10 --json=-").Json())
           .size(),
@@ -217,7 +217,7 @@ TEST_F(PlanCommand, RefusesWrongInput) {
   Refuse("plan cuboid.vtu --estimator=auto", "--estimator");
   WriteBar({{{"loads", Json::array()}}});
   Refuse("plan bar.json --surface=4,0,0,4,1,1", "bar.json: all loads are zero");
-  // Held ends that move, and no load that has a surface.
+  // The scene has held ends that move, and no load on a surface.
   Succeed("generate plate --cells=6 --ends=grips --out=grips.vtu");
   Refuse("plan grips.vtu", "--surface");
 }

@@ -1,4 +1,4 @@
-// Scenes of frames on the command line.
+// Tests of the command line with scenes of several frames.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -27,8 +27,8 @@ constexpr double kYoungs = 2000;
 constexpr double kPoisson = 0.3;
 constexpr double kNoise = 1e-4;
 
-// A strip of 6 x 2 that grips pull, in frames of a camera with a load record,
-// the first of which is under no load.
+// A camera takes frames of a strip of 6 x 2 that grips pull.  A load record
+// gives the force of each frame; the first frame is under no load.
 class Series : public testing::ProgramTest {
  protected:
   void SetUp() override {
@@ -37,9 +37,9 @@ class Series : public testing::ProgramTest {
     WriteScene(R"("load_record": {"file": "load.csv", "column": "Force [N]"})");
   }
 
-  // E falls by a share of `softening` up to the largest load; the reference
-  // image has noise of the standard deviation `shared`, and after it the camera
-  // turned by `angle`.
+  // E falls by the share `softening` up to the largest load.  The reference
+  // image has noise of the standard deviation `shared`, and the camera turned
+  // by `angle` after it.
   void WriteFrames(double softening, double shared = 0,
                    double angle = 0) const {
     std::ostringstream record;
@@ -76,8 +76,9 @@ class Series : public testing::ProgramTest {
     testing::WriteText(folder_ / "load.csv", record.str());
   }
 
-  // So many frames under the same load, whose force is known to 2 %: its error
-  // is the same in all of them, and far above that of noise.
+  // Writes `count` frames under the same load, whose force is known to 2 %.
+  // The error of the force is the same in all frames, and far above their
+  // noise.
   void WriteFramesOfOneLoad(int count) const {
     std::mt19937_64 generator(4);
     std::normal_distribution<double> noise(0, 0.1 * kNoise);
@@ -144,7 +145,8 @@ TEST_F(Series, IsATableOfFramesAndTheirJointEstimate) {
   EXPECT_GT(report["series"]["changes"][0]["p_value"], 0.01);
   const double error = report["standard_error"]["youngs_modulus"];
   EXPECT_NEAR(report["youngs_modulus"], kYoungs, 3 * error);
-  // sd over the strain of the frames, of 130 components each.
+  // The error is about the noise over the strain of the frames, each of which
+  // has 130 components.
   EXPECT_LT(error / kYoungs, 0.02);
   const std::vector<std::string> rows = Rows();
   ASSERT_EQ(rows.size(), 9);
@@ -182,7 +184,9 @@ TEST_F(Series, TellsWhatFramesShare) {
   };
   EXPECT_FALSE(has_finding(alone));
   EXPECT_TRUE(has_finding(shared));
-  // A fit of one frame has 5^(1/2) of the noise, of which 4/5 is shared by 6.
+  // The reference image has twice the noise of a frame.  So a frame has 5^(1/2)
+  // times the noise, and 4/5 of its variance is common to all 6 frames: the
+  // mean is little better than one frame.
   const auto error = [](const nlohmann::json& report) {
     return double(report["standard_error"]["poisson_ratio"]);
   };
@@ -213,12 +217,12 @@ TEST_F(Series, AveragesTheNoiseOfWhatLoadsSayNothingOf) {
   for (const nlohmann::json& finding : report["findings"]) {
     EXPECT_NE(finding["code"], "frames_scatter") << finding["text"];
   }
-  // The error of the load is that of E alone.
+  // The error of the load is an error of E alone: it leaves nu as it is.
   EXPECT_NEAR(double(report["standard_error"]["youngs_modulus"]) / kYoungs,
               0.02, 0.002);
   const double error = report["standard_error"]["poisson_ratio"];
   EXPECT_NEAR(report["poisson_ratio"], kPoisson, 4 * error);
-  // One frame tells nu to 0.0008.
+  // One frame determines nu to 0.0008.
   EXPECT_LT(error, 3 * 0.0008 / std::sqrt(60));
 }
 
@@ -256,8 +260,8 @@ TEST_F(Series, IsRefusedWhereItDoesNotBelong) {
          "--series=a.csv is of a scene of frames");
 }
 
-// A block of gel on a table, into the middle of which an indenter presses in 20
-// steps, while cameras follow 500 points of its sides and top.
+// An indenter presses into the middle of a block of gel on a table in 20 steps,
+// while cameras follow 500 points of its sides and top.
 class Gel : public testing::ProgramTest {
  protected:
   static constexpr int kSteps = 20;

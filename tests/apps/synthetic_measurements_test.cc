@@ -1,4 +1,4 @@
-// Plates with a hole that are generated, measured by a simulated camera, and
+// Plates with a hole are generated, measured by a simulated camera, and
 // estimated, without any file of measurements.
 
 #include <gmock/gmock.h>
@@ -21,7 +21,8 @@ namespace {
 
 class SyntheticMeasurements : public testing::ProgramTest {
  protected:
-  /// plate.vtu, of these flags, and what steel makes of it.
+  /// Makes plate.vtu with these flags, and simulates it with the parameters of
+  /// steel.
   testing::ProgramRun MakePlate(const std::string& flags = "--ends=grips") {
     Succeed("generate plate --cells=20 --out=plate.vtu " + flags);
     return Simulate("--out=exact.csv");
@@ -39,8 +40,8 @@ class SyntheticMeasurements : public testing::ProgramTest {
     return ReadScene({folder_ / file}, Measurement::kOptional).scene;
   }
 
-  /// scene.json: the plate in grips of which `points` were measured, and this
-  /// force along x.
+  /// Writes scene.json: the plate in grips of which `points` were measured, and
+  /// this force along x.
   void WriteScene(const std::string& points, const std::string& force,
                   const std::string& origin = "computed") const {
     testing::WriteText(folder_ / "scene.json", R"({"origin": ")" + origin +
@@ -79,7 +80,7 @@ class SyntheticMeasurements : public testing::ProgramTest {
   }
 };
 
-/// The force of the first load case along x, as simulate prints it.
+/// Returns the force along x of the first load case, as simulate prints it.
 std::string PrintedForce(const testing::ProgramRun& run) {
   const std::string begin = "load case 1: force of the displaced supports (";
   EXPECT_EQ(run.output.substr(0, begin.size()), begin);
@@ -93,7 +94,7 @@ TEST_F(SyntheticMeasurements, OfAPlateInGripsGiveWhatWasSimulated) {
   ExpectExact(Estimate());
 }
 
-// A specimen of quadratic elements, before a camera that moves.
+// The specimen has quadratic elements, and the camera moves.
 TEST_F(SyntheticMeasurements, OfAMovingCameraGiveWhatWasSimulated) {
   Succeed(
       "generate plate --cells=16 --elements=tri3 --ends=grips "
@@ -119,7 +120,7 @@ TEST_F(SyntheticMeasurements, WithOutliersAndSmoothNoiseAreStillEstimated) {
   WriteScene("camera.csv", force);
   const nlohmann::json with_outliers = Estimate();
   ExpectWithinThreeErrors(with_outliers);
-  // All are in the report, the first ten lines of the file in the notice.
+  // The report lists all outliers, but the notice only the first ten lines.
   EXPECT_THAT(
       with_outliers["notices"].back().get<std::string>(),
       ::testing::ContainsRegex("camera.csv: 3[01] outliers are on the lines "
@@ -135,7 +136,7 @@ TEST_F(SyntheticMeasurements, WithOutliersAndSmoothNoiseAreStillEstimated) {
   for (Eigen::Index point = 0; point < gross.cols(); ++point) {
     EXPECT_TRUE(gross.col(point).isZero(0) || found.count(point) == 1) << point;
   }
-  // One in twenty measurements has one by chance.
+  // 30 outliers were added.  One measurement in twenty has one more by chance.
   EXPECT_GE(found.size(), 30U);
   EXPECT_LE(found.size(), 31U);
   Simulate(
@@ -144,7 +145,8 @@ TEST_F(SyntheticMeasurements, WithOutliersAndSmoothNoiseAreStillEstimated) {
   WriteScene("smooth.csv", force);
   const nlohmann::json smooth = Estimate();
   ExpectWithinThreeErrors(smooth);
-  // What is alike at neighbours counts less often.
+  // Noise that neighbours share counts as fewer measurements, so that the
+  // standard error is larger.
   EXPECT_GT(
       smooth["standard_error"]["youngs_modulus"],
       1.5 * with_outliers["standard_error"]["youngs_modulus"].get<double>());
@@ -176,7 +178,8 @@ TEST_F(SyntheticMeasurements, OfAnUniformStressHaveItsForce) {
                           "nodes": {"box": [[4, 2], [4, 2]]}}]}]})");
   const testing::ProgramRun run =
       Succeed("simulate strip.json --youngs=1000 --nu=0.3 --out=m.vtu");
-  // 1000 x 0.01 / 4 on 2 x 0.5; the support takes up what a load carries.
+  // The stress 1000 x 0.01 / 4 acts on the area 2 x 0.5.  In the second load
+  // case a load of 3 acts on the support, whose own force is smaller by that.
   const std::string words = ": force of the displaced supports (";
   EXPECT_THAT(run.output,
               ::testing::MatchesRegex("load case 1: .*\nload case 2: .*\n"));
@@ -210,7 +213,7 @@ TEST_F(SyntheticMeasurements, HaveTheNoiseThatWasAskedFor) {
   const double n = double(noise.size());
   EXPECT_NEAR(noise.square().mean() / 1e-4, 1, 4 * std::sqrt(2 / n));
   EXPECT_TRUE((noise != 0).all());
-  // In a scene, supports are exact.
+  // In a scene, unlike a table of points, the supports stay exact.
   Simulate("--noise_sd=0.01 --out=noisy.vtu");
   Simulate("--out=exact.vtu");
   const Scene scene = SceneOf("noisy.vtu");
@@ -221,7 +224,8 @@ TEST_F(SyntheticMeasurements, HaveTheNoiseThatWasAskedFor) {
   EXPECT_TRUE((scene.supports.held || (of_nodes - noise).abs() < 1e-15).all());
   Simulate("--noise_sd=0.01 --seed=2 --out=other.csv");
   EXPECT_NE(Points("other.csv").displacement, noisy.displacement);
-  // A norm relative to all that is measured.
+  // --noise gives the norm of the noise relative to that of all that is
+  // measured.
   Simulate("--noise=0.1 --out=relative.csv");
   EXPECT_NEAR((Points("relative.csv").displacement - exact.displacement).norm(),
               0.1 * exact.displacement.norm(), 1e-12);
@@ -258,7 +262,7 @@ TEST_F(SyntheticMeasurements, MoveAsRigidBodies) {
     const Eigen::Vector3d x = still.positions.col(point);
     const Eigen::Vector3d y = x + still.displacement.col(point);
     const Eigen::Vector3d expected(1 + y(2), 2 + y(0), 3 + y(1));
-    // The angle has seven digits.
+    // std::to_string gives the angle to seven digits.
     EXPECT_LT((x + moved.displacement.col(point) - expected).norm(),
               1e-6 * y.norm());
   }

@@ -1,4 +1,5 @@
-// Runs the quick materials study, and holds it against what has to be.
+// Runs the quick materials study, and checks its table against what follows
+// from theory.
 
 #include <gtest/gtest.h>
 
@@ -55,10 +56,11 @@ class MaterialsStudyRemade : public testing::ProgramTest {
       const double score = row.Number(kScore);
       EXPECT_EQ(std::isfinite(score), std::isfinite(reduced[i].Number(kScore)));
       if (std::isfinite(score)) {
-        // The mean of chi^2 of two degrees of freedom or more is below 16 but
-        // for 1e-7.
+        // The mean of the chi^2 of two degrees of freedom or more is below 16,
+        // except with a probability of 1e-7.
         EXPECT_LT(score, 4);
-        // Both end in the same minimum, to a tenth of a standard error.
+        // Both estimators find the same minimum, to a tenth of a standard
+        // error.
         EXPECT_NEAR(reduced[i].Number(kScore), score, 0.1);
       }
     }
@@ -83,7 +85,8 @@ class MaterialsStudyRemade : public testing::ProgramTest {
   }
 
   void ExpectBoundsToFollow() const {
-    // Errors grow with the number of regions, and as an inclusion shrinks.
+    // Errors grow with the number of regions, and they grow as an inclusion
+    // shrinks.
     const std::vector<TableRow> regions = Of("regions");
     for (std::size_t i = 1; i < regions.size(); ++i) {
       EXPECT_GT(regions[i].Number(kBoundOfE), regions[i - 1].Number(kBoundOfE));
@@ -98,7 +101,7 @@ class MaterialsStudyRemade : public testing::ProgramTest {
     const std::vector<TableRow> noise = Of("noise [%]");
     EXPECT_NEAR(noise[2].Number(kBoundOfE) / noise[0].Number(kBoundOfE), 50,
                 1e-3);
-    // Each load case says more.
+    // Each further load case adds information, so the bound falls.
     const std::vector<TableRow> cases = Of("load cases at 5 % noise");
     EXPECT_LT(cases[1].Number(kBoundOfE), cases[0].Number(kBoundOfE));
     EXPECT_LT(cases[2].Number(kBoundOfE), cases[1].Number(kBoundOfE));
@@ -128,7 +131,8 @@ class MaterialsStudyRemade : public testing::ProgramTest {
     }
   }
 
-  // Where virtual fields lead astray, a descent from there takes hundreds.
+  // Where virtual fields give a bad start, a plain descent from there takes
+  // hundreds of factorisations.
   void ExpectFewFactorizations() const {
     for (const TableRow& row : By("iterative-fe")) {
       EXPECT_LT(row.Number("factorizations [1]"), 60)
@@ -138,7 +142,8 @@ class MaterialsStudyRemade : public testing::ProgramTest {
 
   void ExpectMerging() const {
     for (const TableRow& row : rows_) {
-      // At 5 % of noise, what is not told apart becomes one.
+      // At 5 % noise the data do not tell the regions of the right model apart,
+      // so these are merged; only the other rows are checked.
       if (row.Text("estimator") == "iterative-fe merged" &&
           row.Number("noise [1]") < 0.05) {
         const double left = row.Number("estimated_parameters [1]");

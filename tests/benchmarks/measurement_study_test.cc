@@ -1,4 +1,4 @@
-// Runs the quick measurement study, and holds it against what has to be.
+// Runs the quick measurement study, and checks its tables against theory.
 
 #include <gtest/gtest.h>
 
@@ -28,8 +28,8 @@ const TableRow& RowOfLevel(const std::vector<TableRow>& rows,
   return rows.front();
 }
 
-// Ten cells a side see too little at 4 um, and take noise that is alike over an
-// eighth of them and more for a fault of the model.
+// With ten cells a side, noise of 4 um is too large to find much.  Noise that
+// neighbours share over two spacings is taken for a fault of the model.
 bool IsTooMuchForTenCells(const TableRow& row) {
   return row.Text("level") == "4" ||
          (row.Text("factor") == "correlation length [spacings]" &&
@@ -52,12 +52,13 @@ TEST_F(MeasurementStudy, TellsRightFromWrong) {
     EXPECT_EQ(row.Number("dishonest_share [1]"), 0);
     if (!IsTooMuchForTenCells(row)) {
       EXPECT_GE(row.Number("usable_share [1]"), 0.5);
-      // Four trials: chi^2 of 4 degrees of freedom is below 25 but for 5e-5.
+      // A mean over four trials: chi^2 of 4 degrees of freedom is below 25,
+      // except with a probability of 5e-5.
       EXPECT_LT(row.Number(error),
                 2.5 * row.Number("youngs_modulus_standard_error [1]"));
     }
   }
-  // Five hundredths of ten nodes a side: 6 of 121.
+  // Five per cent of the 121 nodes are 6.
   EXPECT_NEAR(
       RowOfLevel(rows, "outliers [%]", "5", "right").Number("outliers [1]"), 6,
       1);
@@ -65,18 +66,18 @@ TEST_F(MeasurementStudy, TellsRightFromWrong) {
   EXPECT_GT(
       RowOfLevel(rows, "ends", "rigid grip", "uniform traction").Number(error),
       4 * RowOfLevel(rows, "ends", "rigid grip", "right").Number(error));
-  // What is taken for exact was measured.
+  // The ends that are taken as exact were measured with noise.
   const TableRow& exact =
       RowOfLevel(rows, "ends", "measured", "taken as exact");
   EXPECT_GT(exact.Number(error),
             3 * exact.Number("youngs_modulus_standard_error [1]"));
-  // A camera that moved by a hundredth of a millimetre.
+  // The camera moved by a hundredth of a millimetre, which the scene denies.
   EXPECT_EQ(RowOfLevel(rows, "camera motion [mm]", "0.01", "fixed camera")
                 .Number("usable_share [1]"),
             0);
-  // Where noise is alike at neighbours, a jackknife that knows nothing of that
-  // sees more than independent noise too; it says up to twice too much, since
-  // the blocks at the ends know most.
+  // Where neighbours share noise, a jackknife sees more than independent noise
+  // would make, though it knows nothing of the correlation.  It states up to
+  // twice too much, since the blocks at the ends know most.
   for (const TableRow& row : ReadTable(folder_ / "measurement_jackknife.csv")) {
     if (row.Text("level") == "0.5" || row.Text("level") == "1") {
       EXPECT_GT(row.Number("trials [1]"), 0);

@@ -1,4 +1,4 @@
-// Runs the quick paper study, and holds its trials against theory.
+// Runs the quick paper study, and checks its trials against theory.
 
 #include <gtest/gtest.h>
 
@@ -70,14 +70,16 @@ void ExpectTheBiasLaw(const RowsByDeviation& closed_form) {
     const double mean = sum / count;
     const double variance =
         std::max(square_sum / count - mean * mean, 0.0) / count;
-    // Monte Carlo error; the next order of the law, which has a ratio of means
-    // for a mean of ratios (1 / number of equations); and rounding.
+    // The tolerance covers the Monte Carlo error, rounding, and the next order
+    // of the law, of 1 / number of equations, which comes from a ratio of means
+    // in place of a mean of ratios.
     EXPECT_NEAR(mean, expected,
                 4 * std::sqrt(variance) + expected / 50 + 1e-12);
   }
 }
 
-// Within the Monte Carlo error of a sum of squares of normal values.
+// The mean square error may be below the bound only by the Monte Carlo error of
+// a sum of squares of normal values.
 void ExpectCramerRaoIsNotBeaten(const RowsByDeviation& groups,
                                 const char* error, const char* bound) {
   for (const auto& [deviation, rows] : groups) {
@@ -94,8 +96,8 @@ void ExpectCramerRaoIsNotBeaten(const RowsByDeviation& groups,
   }
 }
 
-// With nu held by its bound at the truth, 1 / E is linear in the noise: one
-// slope for each seed.
+// Where its bound holds nu at the truth, 1 / E is linear in the noise, so that
+// each seed has one slope.
 void ExpectLinearGrowth(const RowsByDeviation& bounded) {
   std::map<std::string, std::vector<double>> slopes;
   for (const auto& [deviation, rows] : bounded) {
@@ -111,7 +113,7 @@ void ExpectLinearGrowth(const RowsByDeviation& bounded) {
     const auto [least, greatest] =
         std::minmax_element(of_seed.begin(), of_seed.end());
     // The table has seven digits of the error, which is the slope times the
-    // deviation to first order; and 1 + error rounds.
+    // deviation to first order.  1 + error is rounded, too.
     EXPECT_NEAR(*least, *greatest, 1e-6 * (std::abs(*least) + 1))
         << "seed " << seed;
   }

@@ -1,5 +1,5 @@
-// Refinement changes neither the body, nor its surface, nor its loads: linear
-// simplices of the nodes of quadratic ones, of unseen shapes.
+// Quadratic elements of unseen shapes are cut into linear simplices on their
+// nodes.  These tests check that the body, its surface and its loads stay.
 
 #include <gtest/gtest.h>
 
@@ -70,8 +70,8 @@ TEST_P(RefinedShape, HasTheSameLoads) {
   }
 }
 
-// The displacements of the mesh are among those of the refined one, which
-// therefore takes up more energy.
+// The refined mesh can take every displacement of the mesh, so it is softer and
+// takes up more energy.
 TEST_P(RefinedShape, IsSofter) {
   Measure(kTruth, scene_);
   Scene finer = refined_;

@@ -1,4 +1,4 @@
-// Runs the quick study of time against accuracy, and holds it against theory.
+// Runs the quick study of time against accuracy, and checks it against theory.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ using testing::TableRow;
 
 class SpeedAccuracyStudyLong : public testing::ProgramTest {};
 
-// By "scene/world/deviation/method".
+// The keys are "scene/world/deviation/method".
 using Points = std::map<std::string, TableRow>;
 
 Points ReadPoints(const std::filesystem::path& path) {
@@ -38,9 +38,9 @@ double YoungsModulusError(const Points& points, const std::string& key) {
   return points.at(key).Number("youngs_modulus_rms_error [1]");
 }
 
-// On the same mesh the fit of displacements is efficient: the mean square of
-// its errors is that of the bound, within the Monte Carlo error of a sum of
-// squares of normal values.
+// On the same mesh the fit of displacements is efficient.  Its mean square
+// error equals the bound, within the Monte Carlo error of a sum of squares of
+// normal values.
 void ExpectReducedFeAtTheBound(const Points& points) {
   for (const char* deviation : {"0.001", "0.01"}) {
     const TableRow& row = points.at(std::string("cuboid/same mesh/") +
@@ -56,8 +56,8 @@ void ExpectReducedFeAtTheBound(const Points& points) {
   }
 }
 
-// Linear elements are too stiff, which is an error of E that no measurement
-// mends; the elements of the world itself have none.
+// Linear elements are too stiff for a finer world, which is an error of E that
+// no measurement mends.  Elements of the order of the world have no such error.
 void ExpectTheOrderOfTheWorldToWin(const Points& points) {
   for (const char* method : {"reduced-fe", "iterative-fe"}) {
     for (const char* deviation : {"0.001", "0.01"}) {

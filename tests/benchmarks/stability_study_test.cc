@@ -1,4 +1,4 @@
-// Runs the quick stability study, and holds its trials against theory.
+// Runs the quick stability study, and checks its trials against theory.
 
 #include <gtest/gtest.h>
 
@@ -21,10 +21,10 @@ using testing::kYoungsModulusError;
 using testing::ReadTable;
 using testing::TableRow;
 
-// Numbers with seven digits differ by this where one was subtracted.
+// The numbers have seven digits, and 1 was subtracted from some of them.
 constexpr double kTableRounding = 1e-6;
 
-/// Trials by factor, level, estimator and seed.
+/// The key of a trial is its factor, level, estimator and seed.
 using Key = std::tuple<std::string, std::string, std::string, std::string>;
 using Trials = std::map<Key, TableRow>;
 
@@ -53,8 +53,8 @@ void ExpectExactDataGiveTheTruth(const Trials& trials) {
   EXPECT_GT(count, 0);
 }
 
-// The first level of each factor is one at which the model is right, and the
-// noise 1 % or none.
+// At the first level of each factor the model is right, and the noise is 1 % or
+// none.
 void ExpectHonestyWhereNothingIsWrong(const std::vector<TableRow>& rows) {
   std::map<std::string, std::string> first_levels;
   for (const TableRow& row : rows) {
@@ -68,7 +68,7 @@ void ExpectHonestyWhereNothingIsWrong(const std::vector<TableRow>& rows) {
   }
 }
 
-// What an inclusion leaves in the residual is not taken for that of the
+// An inclusion leaves a residual, which must not be taken for the error of the
 // elements.
 void ExpectNoElementsToExplainAnInclusion(const Trials& trials) {
   int count = 0;
@@ -103,8 +103,8 @@ void ExpectTheForceScalesE(const Trials& trials) {
   EXPECT_GT(count, 0);
 }
 
-// A block with an inclusion of its own material, which a dense solution of two
-// materials measured, is the base scene.
+// The inclusion of this level has the material of the block, so its trials must
+// be those of the base scene.  A dense solution of two materials measured it.
 void ExpectInclusionOfTheSameMaterialIsNone(const Trials& trials) {
   int count = 0;
   for (const auto& [key, row] : trials) {
@@ -142,8 +142,8 @@ void ExpectHuberWithstandsOutliers(const Trials& trials) {
   }
 }
 
-// Methods of the force balance need all displacements; those that compute
-// displacements need supports.
+// Estimators of the force balance need the displacement of every node; those
+// that compute displacements need supports.
 void ExpectUnsupportedWhereDataAreMissing(const std::vector<TableRow>& rows) {
   for (const TableRow& row : rows) {
     const std::string& estimator = row.Text("estimator");
@@ -161,7 +161,7 @@ void ExpectUnsupportedWhereDataAreMissing(const std::vector<TableRow>& rows) {
   }
 }
 
-// The definition of the README, from the columns of the table.
+// This is the definition in the README, computed from columns of the table.
 bool IsDishonest(const TableRow& row) {
   const auto or_zero = [](double value) {
     return std::isnan(value) ? 0. : value;

@@ -13,11 +13,11 @@
 
 namespace elastimate::testing {
 
-// Columns of several studies.
+// Several studies have these columns.
 inline constexpr const char* kYoungsModulusError = "youngs_modulus_error [1]";
 inline constexpr const char* kPoissonRatioError = "poisson_ratio_error [1]";
 
-/// The cells of a row by their columns.
+/// Holds the cells of a row by their columns.
 class TableRow {
  public:
   explicit TableRow(std::map<std::string, std::string> cells)

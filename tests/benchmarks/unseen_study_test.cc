@@ -1,4 +1,4 @@
-// Runs the quick study of error bars on unseen shapes, and holds its trials
+// Runs the quick study of error bars on unseen shapes, and checks its trials
 // against theory.
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ using testing::TableRow;
 using Rows = std::vector<TableRow>;
 using Condition = std::function<bool(const TableRow&)>;
 
-// Numbers with seven digits differ by this where one was subtracted.
+// The numbers have seven digits, and 1 was subtracted from some of them.
 constexpr double kSevenDigits = 1e-6;
 constexpr const char* kNoise = "displacement_deviation [1]";
 
@@ -53,7 +53,7 @@ int Count(const Rows& rows, const Condition& condition) {
 
 bool IsOk(const TableRow& row) { return row.Text("status") == "ok"; }
 
-// The elements that made the data fit them with the truth.
+// Without noise, the elements that made the data fit them, and find the truth.
 void ExpectTheTruthWithoutNoise(const Rows& rows) {
   for (const char* estimator : {"reduced-fe", "iterative-fe"}) {
     const Rows exact = Of(rows, "same mesh", estimator, "0");
@@ -68,7 +68,7 @@ void ExpectTheTruthWithoutNoise(const Rows& rows) {
   }
 }
 
-// No noise, but a residual: that of the elements.
+// The data have no noise, so the residual is the error of the elements.
 void ExpectTheFinerWorldToBeMissed(const Rows& rows) {
   for (const char* world : {"finer world", "hexahedra"}) {
     const Rows exact = Of(rows, world, "reduced-fe", "0");
@@ -80,7 +80,8 @@ void ExpectTheFinerWorldToBeMissed(const Rows& rows) {
   }
 }
 
-// The probability of at most `count` of `trials`, each with this one.
+// Returns the probability of at most `count` successes in `trials`, each of
+// which has this probability.
 double BinomialProbability(int count, int trials, double probability) {
   double sum = 0;
   for (int k = 0; k <= count; ++k) {
@@ -91,8 +92,9 @@ double BinomialProbability(int count, int trials, double probability) {
   return sum;
 }
 
-// On the same mesh intervals of 95 % hold the truth as often as 95 % of
-// independent trials do, up to what happens in one of 1000 studies.
+// On the same mesh, 95 % intervals hold the truth as often as they say.  The
+// test fails on a count so small that fewer than one in 1000 studies would have
+// it.
 void ExpectCoverageOnTheSameMesh(const Rows& rows) {
   for (const char* estimator : {"reduced-fe", "iterative-fe"}) {
     const Rows ok = Where(Of(rows, "same mesh", estimator, "0.01"), IsOk);
@@ -108,7 +110,7 @@ void ExpectCoverageOnTheSameMesh(const Rows& rows) {
   }
 }
 
-// The definition of the README, from the columns of the table.
+// This is the definition in the README, computed from columns of the table.
 bool IsDishonestByStandardErrors(const TableRow& row) {
   // A missing standard error counts as zero, a missing interval as empty.
   const auto is_off = [&](const char* error, const char* standard_error,
@@ -125,8 +127,9 @@ bool IsDishonestByStandardErrors(const TableRow& row) {
                           nu <= row.Number("poisson_ratio_upper [1]"))));
 }
 
-// In a finer world nine of ten intervals do at least, and one trial of 200 is
-// dishonest at most, in the same sense.
+// In a finer world at least nine of ten intervals hold the truth, and at most
+// one trial of 200 is dishonest.  The test fails on counts that fewer than one
+// in 1000 studies would have.
 void ExpectHonesty(const Rows& rows, const std::string& world,
                    const std::vector<std::string>& estimators) {
   for (const std::string& estimator : estimators) {
@@ -162,7 +165,7 @@ void ExpectIntervalsAndWhatTheyCover(const Rows& rows) {
       EXPECT_EQ(std::isnan(lower), std::isnan(covered));
       if (!std::isnan(lower)) {
         EXPECT_LE(lower, upper);
-        // Rounding may decide at an end.
+        // At an end of the interval, the rounding of the table may decide.
         EXPECT_LE(covered, lower - 2 * kSevenDigits <= truth &&
                                truth <= upper + 2 * kSevenDigits);
         EXPECT_GE(covered, lower <= truth && truth <= upper);
@@ -173,7 +176,7 @@ void ExpectIntervalsAndWhatTheyCover(const Rows& rows) {
   }
 }
 
-// One seed for each measurement, which all estimators see.
+// Each measurement has one seed, and all estimators see that measurement.
 void ExpectOneSeedForEachMeasurement(const Rows& rows) {
   std::map<std::string, std::set<std::string>> settings_of_seeds;
   std::map<std::string, std::set<std::string>> estimators_of_seeds;
@@ -221,7 +224,7 @@ void ExpectCellsAddUpMeasurements(const Rows& rows, const Rows& cells) {
   }
 }
 
-// The definition of the README, from the columns of the table.
+// This is the definition in the README, computed from columns of the table.
 bool HasDone(const TableRow& row) {
   const auto is_within = [&](const char* error, const char* standard_error) {
     const double two_errors = 2 * row.Number(standard_error);

@@ -10,8 +10,8 @@
 
 namespace elastimate::testing {
 
-/// Each kind of vector instruction that this processor has, and the least of
-/// them, which every processor of its architecture has.
+/// Returns each kind of vector instruction that this processor has.  The least
+/// is one that every processor of its architecture has.
 inline std::vector<std::int64_t> InstructionSets() {
   std::vector<std::int64_t> targets;
   const auto supported =
@@ -30,7 +30,8 @@ inline std::string InstructionSetName(
   return hwy::TargetName(test.param);
 }
 
-/// Its tests run with the instructions that are their parameter.
+/// The tests of such a suite run with the instructions that are their
+/// parameter.
 class InstructionSet : public ::testing::TestWithParam<std::int64_t> {
  protected:
   InstructionSet() { Choose(GetParam()); }

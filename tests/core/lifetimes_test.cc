@@ -1,4 +1,5 @@
-// What refers to an argument of its constructor takes no temporary one.
+// A class that keeps a reference to an argument of its constructor must not
+// take a temporary object.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Materials that are not alike in all directions, in the estimators that take
-// materials.
+// Tests of materials whose stiffness depends on the direction, in the
+// estimators that take materials.
 
 #include <gtest/gtest.h>
 
@@ -51,7 +51,8 @@ std::vector<LawAndEstimator> AllLawsAndEstimators() {
   return all;
 }
 
-// A scene of one material of the law, its axes those of a frame.
+// Returns a scene of one material with this law.  Its axes are those of a
+// random frame.
 Scene SceneOfLaw(const Law& law, SectionModel model, int cells) {
   const bool is_solid = model == SectionModel::kSolid;
   Scene scene = testing::SceneOfKind(
@@ -65,7 +66,7 @@ Scene SceneOfLaw(const Law& law, SectionModel model, int cells) {
   return scene;
 }
 
-// Relative to what errors are measured by.
+// The tolerance is relative to the unit in which errors are measured.
 void ExpectNear(const Estimate& estimate, const Eigen::VectorXd& expected,
                 double tolerance) {
   ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
@@ -103,7 +104,8 @@ TEST_P(Anisotropy, IsFoundExactlyWithoutNoise) {
             1e-5 * expected.norm());
 }
 
-// What is turned as a whole has the same parameters, whatever the noise.
+// A scene that is turned as a whole has the same parameters, whatever the
+// noise.
 TEST_P(Anisotropy, IsTheSameInATurnedScene) {
   MeasureMaterials(truth_, scene_);
   testing::AddNoise(1e-3, 3, scene_);
@@ -148,7 +150,8 @@ TEST_P(Anisotropy, ScalesWithTheUnitOfPressure) {
   ExpectNear(Run(scene_), expected, IsDirect() ? 1e-8 : 1e-6);
 }
 
-// Then the variables are the parameters themselves.
+// Where a parameter is known, the fit takes the parameters themselves as
+// variables.
 TEST_P(Anisotropy, OfWhichSomethingIsKnownIsFound) {
   MeasureMaterials(truth_, scene_);
   for (const Eigen::Index known : {Eigen::Index(0), truth_.size() - 2}) {
@@ -178,9 +181,8 @@ TEST(AnisotropyOfClosedForm, IsNotUsableWhereTheStiffnessIsNotPositive) {
   EXPECT_FALSE(estimate.IsUsable());
 }
 
-// The standard errors of the stiffness against those of moduli that are drawn
-// from the covariance of the parameters, to first order: differences of the
-// chart.
+// The expected standard errors of the stiffness follow from the covariance of
+// the parameters to first order, by differences of the chart.
 TEST(AnisotropyOfStiffness, HasTheErrorsOfTheDeltaMethod) {
   const Law& law = *FindLaw("transversely_isotropic");
   Scene scene = SceneOfLaw(law, SectionModel::kSolid, 3);
@@ -223,8 +225,9 @@ struct LawStatistics {
 
 class AnisotropyStatistics : public ::testing::TestWithParam<LawStatistics> {};
 
-// Standard scores of 16 seeds have the variance 1, with a standard deviation of
-// .35, and cover 95 % with one of 5.4 %; 5 of them, for up to 21 parameters.
+// Over 16 seeds the mean square of standard scores has the standard deviation
+// .35, and the coverage of 95 % has one of 5.4 %.  The tolerance is 5 of these,
+// since there are up to 21 parameters.
 TEST_P(AnisotropyStatistics, StandardErrorsAreThoseOfTheErrors) {
   constexpr int kSeeds = 16;
   const Law& law = *FindLaw(GetParam().law, GetParam().model);

@@ -19,8 +19,8 @@ using testing::MeasureInFinerWorld;
 using testing::SmallScene;
 using testing::UnderBodyForce;
 
-// Measured on quadratic elements, which linear ones cannot follow, under a
-// load that is the same for both.
+// Returns a scene measured on quadratic elements, which linear ones cannot
+// follow.  The load is the same for both.
 Scene FinerWorld(const std::string& shape, const IsotropicElasticity& truth) {
   Scene scene = UnderBodyForce(SmallScene(shape));
   MeasureInFinerWorld(truth, scene);
@@ -51,7 +51,8 @@ TEST(Auto, StopsAtTheClosedFormWithoutNoise) {
   ExpectBooksToBalance(estimate);
 }
 
-// The balance of forces knows no mesh error.
+// The balance of forces does not notice the error of the mesh, so auto begins
+// with a fit of displacements.
 TEST(Auto, BeginsWithAFitWhereDisplacementsWereMeasured) {
   for (const std::string shape : {"cuboid", "organ"}) {
     SCOPED_TRACE(shape);

@@ -1,5 +1,5 @@
-// What every estimator of the registry promises of many seeds; a new one is
-// tested here without a further line.
+// Tests over many seeds of what every estimator of the registry promises.  A
+// new estimator is tested here without a further line.
 
 #include <gtest/gtest.h>
 
@@ -49,7 +49,7 @@ TEST_P(ConformanceStatistics, StandardErrorsCoverTheTruth) {
       nu_covered += std::abs(estimate.elasticity.poisson_ratio - 0.3) <
                     1.96 * *estimate.PoissonRatioStandardError();
     }
-    // The number covered is binomial.
+    // The number of covering intervals is binomial.
     const double sd = std::sqrt(kSeeds * 0.95 * 0.05);
     EXPECT_NEAR(youngs_covered, 0.95 * kSeeds, 3.5 * sd);
     EXPECT_NEAR(nu_covered, 0.95 * kSeeds, 3.5 * sd);
@@ -68,8 +68,9 @@ TEST_P(ConformanceStatistics, SeveralLoadCasesBeatOne) {
     const Estimate all = Run(scene);
     scene.load_cases.resize(1);
     const Estimate first = Run(scene);
-    // What elements miss of other forces may be more, as virtual-fields sees,
-    // at which auto stops here.
+    // The elements may miss more of the other forces, so that the whole
+    // standard error may grow.  virtual-fields states such an error, and auto
+    // stops at it here.
     if (GetParam() != "virtual-fields" && GetParam() != "auto") {
       EXPECT_LT(*all.YoungsModulusStandardError(),
                 *first.YoungsModulusStandardError());
@@ -97,8 +98,9 @@ TEST_P(ConformanceStatistics, NoiseWithoutASignalIsNotUsable) {
     options.known_poisson_ratio = 0.3;
     usable_with_known_nu += Run(scene, options).IsUsable() ? 1 : 0;
   }
-  // E is called determined from three standard errors on: by chance in 0.1 %
-  // of the runs with a known nu, and in about 1 % where nu is fitted as well.
+  // E counts as determined from three standard errors on.  Chance makes that in
+  // 0.1 % of the runs with a known nu, and in about 1 % where nu is fitted as
+  // well.
   EXPECT_LE(usable_with_known_nu, 1);
   EXPECT_LE(usable, 2);
 }

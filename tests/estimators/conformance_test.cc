@@ -1,5 +1,5 @@
-// What every estimator of the registry promises; a new one is tested here
-// without a further line.
+// Tests of what every estimator of the registry promises.  A new estimator is
+// tested here without a further line.
 
 #include <gtest/gtest.h>
 
@@ -70,14 +70,15 @@ TEST_P(Conformance, RecoversTheTruthFromExactData) {
   }
 }
 
-// Or it says before it runs that the mid-edge nodes were not measured.
+// An estimator that cannot do this must say, before it runs, that the mid-edge
+// nodes were not measured.
 TEST_P(Conformance, RecoversTheTruthWithQuadraticElements) {
   for (const std::string& shape : SmallSceneNames()) {
     for (const double nu : {-0.5, 0.0, 0.3, 0.45, 0.499}) {
       SCOPED_TRACE(shape + ", nu = " + std::to_string(nu));
       Scene scene = QuadraticScene(SmallScene(shape));
       Measure({5e4, nu}, scene);
-      // Nothing but the vertices was measured.
+      // Only the vertices were measured.
       scene.load_cases[0]
           .displacement
           .rightCols(scene.mesh.NumNodes() - scene.mesh.NumVertices())
@@ -94,8 +95,9 @@ TEST_P(Conformance, RecoversTheTruthWithQuadraticElements) {
   }
 }
 
-// Within a tenth of a standard error, which is what reduced-fe promises; two
-// load cases, one of them with a load that has to be assembled.
+// A prepared estimator may differ by a tenth of a standard error, which is what
+// reduced-fe promises.  One of the two load cases has a load that has to be
+// assembled.
 TEST_P(Conformance, PreparedGivesWhatItGives) {
   Scene scene = testing::WithThreeForces(SmallScene("organ"));
   scene.load_cases.resize(2);
@@ -145,7 +147,8 @@ TEST_P(Conformance, PreparedGivesWhatItGives) {
   }
 }
 
-// Other loads, and other nodes that were measured, as far as it takes them.
+// The load and the measured nodes may differ from those of Prepare, as far as
+// the estimator takes that.
 TEST_P(Conformance, PreparedTakesOtherLoadCases) {
   Scene scene = SmallScene("organ");
   Measure({5e4, 0.3}, scene);
@@ -223,7 +226,7 @@ TEST_P(Conformance, DoesNotDependOnUnits) {
   Scene scene = SmallScene("organ");
   Measure({5e4, 0.3}, scene);
   AddNoise(kSmallNoise, 1, scene);
-  // From m, N, Pa to mm, N, MPa.
+  // The units change from m, N, Pa to mm, N, MPa.
   Scene millimetres = scene;
   millimetres.mesh.nodes *= 1e3;
   millimetres.load_cases[0].displacement *= 1e3;
@@ -287,7 +290,8 @@ TEST_P(Conformance, TheErrorHalvesWhenTheNoiseHalves) {
   Scene exact = SmallScene("organ");
   Measure({5e4, 0.3}, exact);
   Scene noisy = exact;
-  // The next order of the error grows with the square of the noise.
+  // The noise is small, since the next order of the error grows with its
+  // square.
   AddNoise(kSmallNoise / 10, 2, noisy);
   Scene half = exact;
   half.load_cases[0].displacement =
@@ -308,8 +312,8 @@ TEST_P(Conformance, FindsTheNoiseLevel) {
   const double sd = AddNoise(kSmallNoise, 5, scene);
   const Estimate estimate = Run(scene);
   ASSERT_TRUE(estimate.noise_sd.has_value());
-  // 240 free components: relative sd 0.046 for white residuals, and up to
-  // twice that where a stiffness matrix colours them.
+  // With 240 free components the noise has a relative sd of 0.046 for white
+  // residuals, and up to twice that where a stiffness matrix colours them.
   EXPECT_NEAR(*estimate.noise_sd / sd, 1, 4 * 2 * 0.046);
 }
 
@@ -324,7 +328,7 @@ TEST_P(Conformance, KnownNoiseThatDoesNotExplainTheResidualIsSaid) {
   bold.load_cases[0].noise_sd = sd / 10;
   const Estimate estimate = Run(bold);
   EXPECT_TRUE(estimate.Has(FindingCode::kResidualAboveNoise));
-  // A ladder goes on to another estimator.
+  // An estimator that climbs a ladder goes on to another method instead.
   if (estimate.rungs.empty()) {
     EXPECT_NEAR(*estimate.YoungsModulusStandardError() /
                     *Run(scene).YoungsModulusStandardError(),
@@ -363,7 +367,7 @@ TEST_P(Conformance, SaysWhatPureShearDetermines) {
   const Estimate estimate = Run(ShearedBlock());
   EXPECT_EQ(estimate.status, Status::kNotIdentifiable);
   EXPECT_FALSE(estimate.IsUsable());
-  // mu = 5e4 / 2.6.
+  // The shear modulus is mu = 5e4 / 2.6.
   EXPECT_NE(estimate.message.find("the shear modulus = 19230.8"),
             std::string::npos)
       << estimate.message;
@@ -371,7 +375,7 @@ TEST_P(Conformance, SaysWhatPureShearDetermines) {
   EXPECT_FALSE(estimate.why_no_standard_error.empty());
 }
 
-// Every E up to 3 mu has its nu.
+// Pure shear determines mu alone, and every E up to 3 mu has its nu.
 TEST(ConformanceOfBounds, OnYoungsModulusDoNotDetermineIt) {
   const Scene scene = ShearedBlock();
   const double mu = 5e4 / 2.6;
@@ -421,7 +425,7 @@ TEST_P(Conformance, ForcesOfTheWrongSignAreUnphysical) {
   }
 }
 
-// Scenes and options of which most estimates are not usable.
+// Returns scenes and options for which most estimates are not usable.
 std::vector<std::pair<Scene, EstimatorOptions>> HopelessCases() {
   std::vector<std::pair<Scene, EstimatorOptions>> cases;
   Scene scene = SmallScene("cuboid");
@@ -472,7 +476,8 @@ TEST_P(Conformance, AnEstimateThatIsNotUsableHasAReasonAndNoStandardError) {
     EXPECT_EQ(num_errors, estimate.IsUsable() ? 0 : 1);
     if (!estimate.IsUsable()) {
       ++num_failures;
-      // Where some parameters are not determined, how well others are is said.
+      // Where only some parameters are undetermined, the errors of the others
+      // are given all the same.
       if (!estimate.Has(FindingCode::kParametersUndetermined)) {
         EXPECT_TRUE(estimate.covariance.array().isNaN().all());
         EXPECT_FALSE(estimate.YoungsModulusStandardError().has_value());
@@ -497,9 +502,9 @@ TEST_P(Conformance, AMovingSupportIsSaid) {
   EXPECT_TRUE(Run(scene).Has(FindingCode::kHeldNodesMoved));
 }
 
-// Displacements of quadratic elements: a usable estimate by linear ones is off
-// by no more than three times what it states, standard error and discretisation
-// error together.
+// The displacements are those of quadratic elements.  A usable estimate by
+// linear elements may be off by three times what it states, standard error and
+// discretisation error together.
 TEST_P(Conformance, SaysHowWrongItsElementsAre) {
   std::vector<Scene> scenes;
   for (const std::string& shape : SmallSceneNames()) {
@@ -604,7 +609,7 @@ TEST_P(Conformance, TheSameInputGivesTheSameBits) {
   EXPECT_TRUE(first.covariance == second.covariance);
 }
 
-// Large enough for METIS to draw random numbers often.
+// The mesh is so large that METIS draws random numbers often.
 TEST_P(Conformance, ThreadsAtOnceGiveTheSameBits) {
   const Mesh box = BoxMesh({6, 6, 6}, {1, 1, 1});
   Scene scene = HeldAtBottom(Distorted(box), box, {5, -10, 20});
@@ -635,7 +640,7 @@ TEST_P(Conformance, ThreadsAtOnceGiveTheSameBits) {
   }
 }
 
-// In several suites, which may run side by side.
+// The tests are in several suites, so that they may run side by side.
 INSTANTIATE_TEST_SUITE_P(Auto, Conformance, ::testing::Values("auto"),
                          testing::EstimatorTestName);
 INSTANTIATE_TEST_SUITE_P(IterativeFe, Conformance,

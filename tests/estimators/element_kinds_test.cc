@@ -1,4 +1,4 @@
-// Every estimator on every element kind and section.
+// Tests of every estimator on every element kind and section.
 
 #include "tests/element_kinds.h"
 
@@ -56,7 +56,8 @@ class OnEachKind : public ::testing::TestWithParam<KindOfSection> {
   Scene scene_;
 };
 
-// The displacements are those of the textbook's elements: no code is shared.
+// The displacements are those of textbook elements, which share no code with
+// the library.
 TEST_P(OnEachKind, EstimatorsAreExactWithoutNoise) {
   ExpectExact(scene_, {}, kYoungsModulus);
 }
@@ -67,8 +68,8 @@ TEST_P(OnEachKind, EstimatorsTakeAKnownPoissonRatio) {
   ExpectExact(scene_, options, kYoungsModulus);
 }
 
-// At the same displacements: twice the force by twice the modulus, and by the
-// same one at twice the thickness.
+// At the same displacements, twice the force means twice the modulus.  At twice
+// the thickness it means the same modulus.
 TEST_P(OnEachKind, EstimatesScaleWithForceAndThickness) {
   std::vector<Load>& loads = scene_.load_cases[0].loads;
   loads = {NodalForces{2 * AssembleLoads(scene_.mesh, loads)}};
@@ -83,8 +84,8 @@ INSTANTIATE_TEST_SUITE_P(All, OnEachKind,
                          ::testing::ValuesIn(AllKindsOfSections()),
                          [](const auto& info) { return NameOf(info.param); });
 
-// What certificates rest on, for strains of all sorts and those that change the
-// volume alone or not at all.
+// Certificates of the reduced model rest on this ratio.  It is tested for a
+// general strain, for a change of volume and for a shear.
 TEST(SmallestEnergyRatio, HoldsForEverySection) {
   for (const KindOfSection& parameter : AllKindsOfSections()) {
     SCOPED_TRACE(NameOf(parameter));
@@ -107,7 +108,7 @@ TEST(SmallestEnergyRatio, HoldsForEverySection) {
         for (Eigen::Index k = 0; k < 3; ++k) {
           least = std::min(least, energy(k, nu) / energy(k, pole));
         }
-        // And is the largest number that does.
+        // The ratio is also the largest number that holds.
         EXPECT_NEAR(least / ratio, 1, 1e-9) << pole << " " << nu;
       }
     }
@@ -116,7 +117,7 @@ TEST(SmallestEnergyRatio, HoldsForEverySection) {
 
 class FitsOfEachKind : public ::testing::TestWithParam<KindOfSection> {};
 
-// The fits have nothing in common but the elements.
+// The two fits share nothing but the elements, and must agree.
 TEST_P(FitsOfEachKind, AgreeUnderNoise) {
   Scene scene = MeasuredScene(GetParam());
   AddNoise(0.02, 7, scene);
@@ -134,7 +135,8 @@ TEST_P(FitsOfEachKind, AgreeUnderNoise) {
               1, 1e-3);
 }
 
-// Near the bound of Cramer and Rao: the error bars of every kind are right.
+// Errors are near the bound of Cramer and Rao, and error bars are right for
+// every kind.
 class KindStatistics : public ::testing::TestWithParam<KindOfSection> {};
 
 TEST_P(KindStatistics, ReachTheCramerRaoBound) {

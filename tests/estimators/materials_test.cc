@@ -1,4 +1,5 @@
-// Materials other than one isotropic one, in the estimators that take them.
+// Tests of materials other than a single isotropic one, in the estimators that
+// take them.
 
 #include <gtest/gtest.h>
 
@@ -107,7 +108,7 @@ TEST_P(Materials, ThatAreKnownAreNotEstimated) {
   ExpectParameters(Run(), kParameters, 1e-6);
 }
 
-// One material with a known modulus is one of several parameters less.
+// A single material whose modulus is known has one parameter fewer to estimate.
 TEST_P(Materials, MayBeOneWithAKnownModulus) {
   scene_.materials = {{"isotropic", {}, {{"youngs_modulus", 3e3}}, {}}};
   MeasureMaterials(Eigen::Vector2d(3e3, 0.35), scene_);
@@ -128,7 +129,7 @@ TEST_P(Materials, PreparedGiveWhatTheyGive) {
 }
 
 TEST_P(Materials, ScaleWithTheUnits) {
-  // From N and mm to kN and m.
+  // The units change from N and mm to kN and m.
   Scene scaled = scene_;
   scaled.mesh.nodes *= 1e-3;
   for (LoadCase& load_case : scaled.load_cases) {
@@ -159,7 +160,7 @@ TEST_P(Materials, KeepTheBoundsOfTheirs) {
 }
 
 TEST_P(Materials, ThatDoNotStrainAreNotDetermined) {
-  // The first material is held whole.
+  // All nodes of the first material are held.
   for (Eigen::Index e = 0; e < scene_.mesh.NumElements(); ++e) {
     if (scene_.mesh.regions(e) == 3) {
       for (const int node : scene_.mesh.elements.col(e)) {
@@ -223,15 +224,15 @@ TEST(MaterialsOfClosedForm, SaysWhenNoiseBiasesIt) {
 struct StatisticsCase {
   std::string estimator;
   double noise;
-  /// The root mean square error may be so many Cramer-Rao bounds.
+  /// The root mean square error may be at most this many Cramer-Rao bounds.
   double largest_ratio;
 };
 
 class MaterialsStatistics : public ::testing::TestWithParam<StatisticsCase> {};
 
-// Standard scores of 20 seeds have the variance 1, with a standard deviation of
-// .32, root mean squares one of 16 %, and they cover 95 % with one of 4.9 %; so
-// 4 of them each.
+// Over 20 seeds, mean squares of standard scores have the mean 1 and the
+// standard deviation .32, root mean squares have one of 16 %, and the coverage
+// of 95 % has one of 4.9 %.  Each tolerance is four of these.
 TEST_P(MaterialsStatistics, StandardErrorsAreThoseOfTheErrors) {
   constexpr int kSeeds = 20;
   Scene scene = TwoRegionScene({ElementKind::kTet4, SectionModel::kSolid}, 4);
@@ -246,7 +247,8 @@ TEST_P(MaterialsStatistics, StandardErrorsAreThoseOfTheErrors) {
     scene = exact;
     testing::AddNoise(GetParam().noise, seed, scene);
     if (seed == 1) {
-      // The standard errors of a fit of maximum likelihood are the bound.
+      // The standard errors of a maximum-likelihood fit are the Cramer-Rao
+      // bound.
       const Estimate fit = MakeEstimator("iterative-fe")->Run(scene, {});
       ASSERT_TRUE(fit.IsUsable()) << fit.message;
       bound = fit.parameter_covariance.diagonal().array().sqrt();

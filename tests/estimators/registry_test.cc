@@ -1,4 +1,4 @@
-// Estimators that a program adds to those of the library.
+// Tests of estimators that a program adds to those of the library.
 
 #include "elastimate/estimators/registry.h"
 
@@ -22,7 +22,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-// Says what it is told to say.
+// This estimator says what it is told to say.
 class Parrot : public Estimator {
  public:
   Parrot(std::string_view name, std::function<void(Estimate&)> fill)
@@ -63,7 +63,7 @@ Scene MeasuredHalves() {
   return scene;
 }
 
-// E = 5 +- 1, nu = 0.25 without an error.
+// Sets E = 5 +- 1, and nu = 0.25 without an error.
 void SayYoungsModulus(Estimate& estimate) {
   estimate.elasticity = {5, 0.25};
   estimate.covariance(0, 0) = 1;
@@ -136,7 +136,7 @@ TEST(EstimatorBase, FailsSeveralMaterialsWithoutParametersOrCovariance) {
               HasSubstr("gives neither a covariance of its 4 parameters"));
 }
 
-// The estimator would be gone when the measurement comes.
+// Only the PreparedEstimator keeps this estimator alive until it runs.
 TEST(PreparedEstimator, KeepsTheEstimatorThatNobodyElseHas) {
   const Scene scene = MeasuredCuboid();
   const auto fill = [](Estimate& estimate) {

@@ -26,7 +26,7 @@
 namespace elastimate {
 namespace {
 
-/// Files of one scene, of which one is to be damaged.
+/// Holds the files of one scene, of which the file `damaged` is to be damaged.
 struct Sample {
   std::map<std::string, std::string> files;
   std::string damaged;
@@ -37,7 +37,7 @@ Sample OneFile(const std::string& name, const std::string& content) {
   return {{{name, content}}, name, name};
 }
 
-/// A scene in an encoding.
+/// Returns a scene in this encoding.
 Sample VtkSample(const std::string& name, const Scene& scene) {
   const std::vector<VtkEncoding> encodings = AllVtkEncodings();
   const auto encoding =
@@ -53,7 +53,7 @@ Sample VtkSample(const std::string& name) {
   return VtkSample(name, TwoTetrahedra());
 }
 
-/// A mesh as Gmsh writes it, under a scene.json.
+/// Returns a mesh as Gmsh writes it, with a scene.json that names it.
 Sample GmshSample(const std::string& name, double version, bool is_binary) {
   const TemporaryFolder folder;
   const auto source = folder.Write("source.msh", GmshVersion2Mesh());
@@ -73,7 +73,7 @@ Sample GmshSample(const std::string& name, double version, bool is_binary) {
           "scene.json"};
 }
 
-/// A scene.json over a mesh and fields in a CSV file.
+/// Returns a scene.json with a mesh, and with fields in a CSV file.
 Sample JsonSample(const std::string& damaged) {
   const std::string mesh = VtkSample("XmlAscii").files.begin()->second;
   return {
@@ -97,7 +97,7 @@ Sample JsonSample(const std::string& damaged) {
       "scene.json"};
 }
 
-/// A table of points over a mesh.
+/// Returns a mesh, and a table of points that lie in it.
 Sample PointsSample(const std::string& table) {
   const std::string mesh = VtkSample("XmlAscii").files.begin()->second;
   return {{{"mesh.vtu", mesh}, {"points.csv", table}, {"scene.json", R"({
@@ -108,7 +108,7 @@ Sample PointsSample(const std::string& table) {
           "scene.json"};
 }
 
-/// GOM Correlate writes such a table.
+/// Returns a table as GOM Correlate writes it.
 std::string GomTable() {
   return "# Units: length:mm\nstage;index;date\n\"Stage 2\";2;\"2024\"\n"
          "id;x [mm];y [mm];z [mm];displacement_x [um];displacement_y [um];"
@@ -124,7 +124,7 @@ std::string Utf16Table() {
   return table;
 }
 
-/// A scene.json over a planar mesh without field data.
+/// Returns a scene.json with a planar mesh that has no field data.
 Sample PlanarJsonSample() {
   return {{{"mesh.vtk", PlanarVtkText()}, {"scene.json", R"({"mesh": "mesh.vtk",
  "model": "plane_stress", "thickness": 0.5,
@@ -169,8 +169,8 @@ Sample MakeSample(const std::string& name) {
   return found == kOthers.end() ? VtkSample(name) : found->second();
 }
 
-/// A format, and how many of its files are tried; those that need a process of
-/// their own take longer.
+/// Holds a format, and how many of its files are tried.  Files that need a
+/// process of their own take longer.
 struct Trials {
   std::string name;
   int number;
@@ -219,7 +219,7 @@ class DamagedFileTest : public ::testing::TestWithParam<Trials> {
     }
   }
 
-  /// The error message, or "valid".
+  /// Returns the error message, or "valid".
   std::string Read(const std::string& content) const {
     folder_.Write(sample_.damaged, content);
     try {
@@ -243,7 +243,8 @@ TEST_P(DamagedFileTest, IsNeverTakenForAWholeOneWhenItIsCut) {
   if (sample_.damaged == "u.csv" || sample_.damaged == "points.csv") {
     return;  // Its last number may lose digits, or it may lose its last rows.
   }
-  // What is left off at the end may be white space and closing words only.
+  // The last characters of a file may be white space and closing words only, so
+  // that a cut there does no harm.
   const std::size_t harmless = 60;
   const int num_cuts = std::min(GetParam().number, 60);
   for (int i = 0; i < num_cuts; ++i) {
@@ -255,7 +256,8 @@ TEST_P(DamagedFileTest, IsNeverTakenForAWholeOneWhenItIsCut) {
   }
 }
 
-/// One line of bounded length that names a file and has nothing for a terminal.
+/// The message has to be one line of bounded length that names a file and holds
+/// no characters that control a terminal.
 void ExpectSentence(const std::string& message,
                     const std::filesystem::path& folder) {
   EXPECT_EQ(message.find(folder.string() + "/"), 0U) << message;
@@ -285,7 +287,8 @@ int Factor() {
 TEST_P(DamagedFileTest, EndsWell) {
   using Clock = std::chrono::steady_clock;
   const std::string& content = sample_.files.at(sample_.damaged);
-  // Others for each format, so that together they meet more kinds of damage.
+  // Each format has its own seeds, so that together they meet more kinds of
+  // damage.
   const std::uint32_t first_seed = 20071 + 100000 * IndexOfFormat();
   for (int i = 0; i < Factor() * GetParam().number; ++i) {
     const std::uint32_t seed = first_seed + i;
@@ -297,7 +300,8 @@ TEST_P(DamagedFileTest, EndsWell) {
     const Clock::time_point start = Clock::now();
     std::string outcome;
     EXPECT_NO_THROW(outcome = Read(damaged));
-    // Far more than the 10 s of processor time that a small file gets.
+    // The limit is far more than the 10 s of processor time that a small file
+    // gets.
     EXPECT_LT(Clock::now() - start, std::chrono::seconds(180));
     EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
     EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
@@ -310,7 +314,8 @@ TEST_P(DamagedFileTest, EndsWell) {
   }
 }
 
-/// Makes so many trials, in suites that may run side by side.
+/// Selects the formats with so many trials.  Each selection is a suite, and
+/// suites may run side by side.
 std::vector<Trials> TrialsBetween(int least, int most) {
   std::vector<Trials> trials;
   for (const Trials& of_format : AllTrials()) {
@@ -337,7 +342,7 @@ INSTANTIATE_TEST_SUITE_P(OfOthers, DamagedFileTest,
                                                            1000)),
                          NameOfFormat);
 
-// The crashes and hangs that Gmsh and VTK were once found to have.
+// Gmsh and VTK once crashed or hung on these files.
 TEST(KnownDamage, IsTold) {
   const TemporaryFolder folder;
   const auto expect = [&](const std::string& name, const std::string& content,

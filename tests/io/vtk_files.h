@@ -10,7 +10,7 @@
 
 namespace elastimate {
 
-/// An encoding of a VTK file: "xml" or "legacy", and how its data are kept.
+/// Says which form a VTK file has, XML or legacy, and how its data are kept.
 struct VtkEncoding {
   std::string name;
   bool is_legacy;
@@ -23,11 +23,11 @@ struct VtkEncoding {
   std::string Extension() const { return is_legacy ? ".vtk" : ".vtu"; }
 };
 
-/// One of every kind that VTK writes.
+/// Returns one encoding of every kind that VTK writes.
 std::vector<VtkEncoding> AllVtkEncodings();
 
-/// A small scene with two load cases, of which the second is partly observed,
-/// with regions and prescribed displacements.
+/// Returns a small scene with regions, prescribed displacements and two load
+/// cases, of which the second is partly observed.
 Scene TwoTetrahedra();
 
 /// Writes mesh and fields through VTK's own writers.

@@ -5,8 +5,8 @@
 namespace elastimate {
 namespace {
 
-// The third column is the second but for 1e-9: coefficients of 1e9 would fit
-// what differs.
+// The third column differs from the second by 1e-9 only.  Coefficients of 1e9
+// would fit that difference.
 TEST(SolveLeastSquares, LeavesOutColumnsThatAreNearlyDependent) {
   Eigen::MatrixXd a(4, 3);
   a << 1, 1, 1,  //
@@ -17,7 +17,8 @@ TEST(SolveLeastSquares, LeavesOutColumnsThatAreNearlyDependent) {
   EXPECT_GT(SolveLeastSquares(a, b, 1e-14).cwiseAbs().maxCoeff(), 1e8);
   const Eigen::MatrixXd x = SolveLeastSquares(a, b, 1e-6);
   EXPECT_LT(x.cwiseAbs().maxCoeff(), 10);
-  // The residual of a straight line is left: that of 1, 2, 3, 5 on 1, 2, 3, 4.
+  // Without the third column, the residual is that of a straight line through
+  // 1, 2, 3, 5 over 1, 2, 3, 4.
   EXPECT_NEAR((a * x - b).squaredNorm(), 0.3, 1e-6);
 }
 

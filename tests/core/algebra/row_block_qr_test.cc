@@ -17,7 +17,7 @@ Eigen::MatrixXd TriangleOf(const Eigen::MatrixXd& matrix) {
   return qr.Triangle();
 }
 
-// The blocks are of 512 rows.
+// A block has 512 rows, so full blocks, parts of one, and several are tested.
 TEST(RowBlockQr, HasTheGramMatrixOfAllRows) {
   for (const Eigen::Index rows : {4, 511, 512, 513, 3000}) {
     SCOPED_TRACE(rows);
@@ -29,7 +29,8 @@ TEST(RowBlockQr, HasTheGramMatrixOfAllRows) {
   }
 }
 
-// What a Gram matrix, with the square of the condition number, has lost.
+// A Gram matrix would have lost this difference, since it has the square of the
+// condition number.
 TEST(RowBlockQr, KeepsASmallDifferenceOfColumns) {
   Eigen::MatrixXd matrix = RandomMatrix(2000, 2, 2);
   const Eigen::VectorXd difference = 1e-10 * matrix.col(1);

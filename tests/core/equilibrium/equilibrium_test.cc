@@ -59,8 +59,8 @@ TEST_P(EquilibriumOfKinds, HasItsSensitivities) {
   }
 }
 
-// The second load case is held elsewhere too, the third as the first, but
-// moved.
+// The second load case is held at one more node; the third is held where the
+// first is, but moved otherwise.
 TEST_P(EquilibriumOfKinds, HasTheSupportsOfEachLoadCase) {
   scene_.load_cases.push_back(scene_.load_cases[0]);
   Supports other = scene_.supports;
@@ -108,7 +108,7 @@ TEST_P(EquilibriumOfKinds, HasTheSupportsOfEachLoadCase) {
   }
 }
 
-// Random values in the held rows, zero in the free.
+// Returns random values in held rows, and zeros in free rows.
 Eigen::MatrixXd RandomOfHeld(const Scene& scene, Eigen::Index columns) {
   Eigen::MatrixXd values =
       Eigen::MatrixXd::Random(scene.mesh.NumDofs(), columns);

@@ -43,13 +43,13 @@ Supports FreeSupports(const Mesh& mesh) {
           Eigen::MatrixXd::Zero(3, mesh.NumNodes())};
 }
 
-// A condition number from the eigenvalues of the dense stiffness.
+// Returns the condition number, from the eigenvalues of the dense stiffness.
 double Condition(const Eigen::MatrixXd& stiffness) {
   const Eigen::VectorXd eigenvalues = testing::SymmetricEigenvalues(stiffness);
   return eigenvalues(eigenvalues.size() - 1) / eigenvalues(0);
 }
 
-// Largest error relative to the largest expected value.
+// Returns the largest error, relative to the largest expected value.
 double RelativeError(const Eigen::MatrixXd& actual,
                      const Eigen::MatrixXd& expected) {
   return (actual - expected).cwiseAbs().maxCoeff() /
@@ -71,7 +71,7 @@ struct Bar {
   Supports supports = FreeSupports(mesh);
   Eigen::MatrixXd force;
 
-  // Tension at one end or at both.
+  // Pulls at one end, or at both.
   void Pull(bool both_ends) {
     const Eigen::MatrixXi facets = BoundaryFacets(mesh);
     std::vector<Load> loads;
@@ -120,8 +120,8 @@ TEST_P(ForNu, TensionOfABarOnAStaticallyDeterminateSupport) {
   bar.ExpectExact(GetParam());
 }
 
-// Displacements prescribed all around, of a linear field: the patch test, by v
-// alone, whatever E.
+// A linear displacement is prescribed all around and must continue inside.
+// This patch test uses the support response v alone, for any E.
 TEST_P(ForNu, PrescribedLinearFieldContinuesInside) {
   const Mesh box = BoxMesh({3, 3, 4}, {1, 0.8, 1.2});
   const Mesh mesh = WithBothOrientations(Distorted(box));
@@ -141,14 +141,14 @@ TEST_P(ForNu, PrescribedLinearFieldContinuesInside) {
                      Eigen::MatrixXd::Zero(3 * mesh.NumNodes(), 1));
   ASSERT_TRUE(model.SetPoissonRatio(GetParam()));
   const Eigen::MatrixXd expected = exact.reshaped();
-  // Rounding times a condition number of 1e2 / (1 - 2 nu).
+  // The tolerance is rounding times a condition number of 1e2 / (1 - 2 nu).
   EXPECT_LT(RelativeError(model.SupportResponse(), expected), 1e-12);
   EXPECT_TRUE(model.UnitLoadResponse().isZero(0));
   EXPECT_LT(RelativeError(model.Displacement(1), expected), 1e-12);
   EXPECT_LT(RelativeError(model.Displacement(1e6), expected), 1e-12);
 }
 
-// One face pushed in between rollers: the sides give way.
+// One face is pushed in between rollers, and the sides give way.
 TEST_P(ForNu, PrescribedFaceCompressesABar) {
   Bar bar;
   for (int axis = 0; axis < 3; ++axis) {
@@ -174,7 +174,7 @@ TEST_P(ForNu, PrescribedFaceCompressesABar) {
 // ---------------------------------------------------------------------------
 // Convergence to a manufactured solution.
 
-// The L2 norm of the error on a distorted box of n^3 cubes.
+// Returns the L2 norm of the error on a distorted box of n^3 cubes.
 double ManufacturedError(const IsotropicElasticity& elasticity, int n) {
   const PlaneWaves waves;
   const Mesh box = BoxMesh({n, n, n}, {1, 1, 1});
@@ -398,15 +398,15 @@ TEST_P(AgainstDense, SensitivitiesByAutomaticDifferentiation) {
     }
     return values;
   };
-  // A derivative goes through the inverse twice.
+  // A derivative multiplies by the inverse twice, so its rounding is larger.
   const double tolerance = 10 * scene_.Tolerance(nu_);
   EXPECT_LT(RelativeError(actual.log_youngs_modulus, derivative(0)), tolerance);
   EXPECT_LT(RelativeError(actual.poisson_ratio, derivative(1)), tolerance);
 }
 
 TEST_P(AgainstDense, SensitivitiesByCentralDifferences) {
-  // Truncation h^2 u''' / 6, with derivatives that grow like 1 / (1/2 - nu);
-  // rounding 1e-16 condition / h.
+  // The truncation error is h^2 u''' / 6, with derivatives that grow like 1 /
+  // (1/2 - nu).  The rounding error is 1e-16 condition / h.
   const double step = 1e-4 * (0.5 - nu_);
   ASSERT_TRUE(model_.SetPoissonRatio(nu_));
   const DisplacementSensitivities actual = model_.Sensitivities(kYoungs);
@@ -435,7 +435,7 @@ TEST(ForwardModel, IsLinearInTheForce) {
   ForwardModel model(scene.mesh, scene.supports, force);
   ASSERT_TRUE(model.SetPoissonRatio(0.3));
   const Eigen::MatrixXd u = model.Displacement(kYoungs);
-  // Rounding times a condition number of some hundreds.
+  // The tolerance is rounding times a condition number of some hundreds.
   EXPECT_LT(RelativeError(u.col(2), 2 * u.col(0) - 3 * u.col(1)), 1e-12);
   EXPECT_LT(RelativeError(model.Displacement(kYoungs / 4), 4 * u), 1e-15);
 }

@@ -65,8 +65,8 @@ class HierarchicalErrorOfKinds
   static int NumCells() { return IsCostly() ? 2 : 4; }
 };
 
-// In the displacements themselves, beside which the energy of small changes
-// hides large ones of little energy.
+// The displacements themselves are compared.  In the energy norm, large changes
+// of little energy would be hidden by small ones of much energy.
 TEST_P(HierarchicalErrorOfKinds, IsThatToFinerElements) {
   const Scene scene = MovedScene(GetParam(), NumCells());
   const Eigen::Index n = scene.mesh.NumDofs();

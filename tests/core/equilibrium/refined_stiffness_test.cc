@@ -1,5 +1,5 @@
-// Compares Equilibrium in nested spaces with Equilibrium in the finest one by
-// its factor.
+// Compares Equilibrium in nested spaces with Equilibrium that factorises the
+// stiffness of the finest space.
 
 #include "elastimate/core/equilibrium/refined_stiffness.h"
 
@@ -23,7 +23,7 @@ namespace {
 using testing::KindOfSection;
 using testing::RandomMatrix;
 
-// A scene, and so many finer ones of it.
+// Holds a scene, and finer ones that are made of it one after another.
 class Spaces {
  public:
   Spaces(const Scene& scene, int num_finer) : scenes_{scene} {
@@ -112,7 +112,7 @@ TEST_P(RefinedEquilibrium, HasTheSupportsOfEachLoadCase) {
   Supports other = scene_.supports;
   const Eigen::Index last = scene_.mesh.NumNodes() - 1;
   other.held.col(last).setConstant(true);
-  // The node is held in some of its components.
+  // The node is held in some of its components only.
   other.held(0, last) = false;
   other.displacement.col(last).setConstant(0.01);
   scene_.load_cases[1].supports = other;
@@ -136,7 +136,7 @@ TEST_P(RefinedEquilibrium, HasTheSupportsOfEachLoadCase) {
   ExpectSame(refined.Extend(held), direct.Extend(held));
   ExpectSame(refined.ExtendInCase(1, held), direct.ExtendInCase(1, held));
   ExpectSame(refined.ExtendTransposed(values), direct.ExtendTransposed(values));
-  // These need no solution of a system.
+  // These products need no solution of a system, so they agree up to rounding.
   constexpr double kRounding = 1e-12;
   ExpectSame(refined.HeldForces(values), direct.HeldForces(values), kRounding);
   ExpectSame(refined.HeldForcesTransposed(values),
@@ -153,7 +153,7 @@ TEST_P(RefinedEquilibrium, BeginsWithTheLastSolution) {
   Equilibrium equilibrium(spaces.All(), SolverKind::kCholesky);
   const MaterialParameters& chart = equilibrium.Forces().Parameters();
   const Eigen::MatrixXd directions = chart.ModuliJacobian(parameters_);
-  // Counts those of a solution and of its sensitivities.
+  // Counts the iterations of a solution and of its sensitivities.
   const auto iterations = [&](const Eigen::VectorXd& moduli) {
     const int before = equilibrium.WorkDone().iterations;
     EXPECT_TRUE(equilibrium.Solve(moduli));
@@ -245,8 +245,8 @@ TEST(RefinedStiffness, LeavesTheErrorThatItIsAskedFor) {
   }
 }
 
-// A cycle leaves about a quarter of the error at nu = 0.3, more next to 1/2,
-// and as much on each mesh.
+// A cycle leaves about a quarter of the error at nu = 0.3, and more next to
+// 1/2.  The share is about the same on each mesh.
 TEST(RefinedStiffness, IteratesAsOftenOnFinerMeshes) {
   struct Most {
     double nu, tolerance;
@@ -275,7 +275,7 @@ TEST(RefinedStiffness, GivesUpWhereIterationsDoNotConverge) {
   EXPECT_FALSE(equilibrium.Solve(chart.Moduli(Eigen::Vector2d(3, 0.5 - 1e-7))));
   EXPECT_LE(equilibrium.WorkDone().iterations,
             RefinedStiffness::kMostIterations);
-  // What was not found is no start for what is.
+  // The solution that failed must not be the start of the next one.
   ASSERT_TRUE(equilibrium.Solve(chart.Moduli(Eigen::Vector2d(3, 0.3))));
   EXPECT_TRUE(equilibrium.Displacement().allFinite());
 }

@@ -11,8 +11,9 @@
 namespace elastimate {
 namespace {
 
-/// `n` points of the square or cube of edge 10, not evenly spread: twice as
-/// dense on one half as on the other.
+/// Returns `n` points of the square or cube of edge 10.  They are twice as
+/// dense on one half as on the other, since correlated noise must not depend on
+/// that.
 Eigen::MatrixXd UnevenPositions(int dimension, Eigen::Index n) {
   std::mt19937_64 generator(5);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -38,8 +39,9 @@ TEST_P(NoiseAtPositions, IsIndependentWithoutALength) {
   ASSERT_EQ(noise.rows(), GetParam());
   ASSERT_EQ(noise.cols(), kPoints);
   const double n = double(noise.size());
-  // Within four standard deviations of what they estimate: of the mean 1 /
-  // sqrt(n), of the variance sqrt(2 / n), of a correlation 1 / sqrt(points).
+  // Each estimate is within four of its standard deviations, which are 1 /
+  // sqrt(n) for the mean, sqrt(2 / n) for the variance and 1 / sqrt(points) for
+  // a correlation.
   EXPECT_LT(std::abs(noise.mean()), 4 * 3 / std::sqrt(n));
   EXPECT_NEAR(noise.squaredNorm() / n / 9, 1, 4 * std::sqrt(2 / n));
   EXPECT_LT(std::abs(noise.row(0).dot(noise.row(1))) / 9 / kPoints,
@@ -51,8 +53,8 @@ TEST_P(NoiseAtPositions, IsIndependentWithoutALength) {
             4 / std::sqrt(n));
 }
 
-// Over many draws, so that the estimates of a variance and of the correlation
-// of two points have the errors of independent samples.
+// Many independent draws are averaged, so that the estimates of a variance and
+// of the correlation of two points have the errors of independent samples.
 TEST_P(NoiseAtPositions, HasItsCorrelationWhereverThePointsAre) {
   constexpr double kLength = 1.5;
   constexpr int kDraws = 1500;
@@ -80,7 +82,8 @@ TEST_P(NoiseAtPositions, HasItsCorrelationWhereverThePointsAre) {
   }
 }
 
-// The sum of squared weights is exact, whatever the draw.
+// Points at the same place must get the same noise, and the same seed must draw
+// it again.
 TEST_P(NoiseAtPositions, IsTheSameForPointsThatAreTheSame) {
   Eigen::MatrixXd positions = UnevenPositions(GetParam(), 40);
   positions.col(7) = positions.col(30);
@@ -102,7 +105,7 @@ TEST(SmoothNoise, IsRefusedWhereItsLengthIsFarTooShort) {
                      "^correlation_length=0.0001; that is too short");
   EXPECT_THROWS_WITH(DrawNoiseAt(positions, 1, 1e-300, generator),
                      "^correlation_length=1e-300; that is too short");
-  // Over a length far beyond the specimen all points have one noise.
+  // Over a length far beyond the specimen, all points have the same noise.
   const Eigen::MatrixXd noise = DrawNoiseAt(positions, 1, 1e8, generator);
   EXPECT_LT((noise.colwise() - noise.col(0)).cwiseAbs().maxCoeff(), 1e-6);
 }
@@ -130,7 +133,8 @@ TEST(Outliers, AreAsManyAndAsLargeAsAskedFor) {
   }
   EXPECT_GE(drawn.minCoeff(), 20);
   EXPECT_LE(drawn.maxCoeff(), 100);
-  // Uniform on 20 to 100, with a standard deviation of 80 / sqrt(12).
+  // The outliers are uniform on 20 to 100, with a standard deviation of 80 /
+  // sqrt(12).
   EXPECT_NEAR(drawn.mean(), 60, 4 * 80 / std::sqrt(12.0 * 50));
   EXPECT_LT(mean_direction.norm(), 4 / std::sqrt(50.0));
 }
@@ -139,7 +143,7 @@ class Errors : public ::testing::Test {
  protected:
   Errors() { held_.leftCols(50).row(0).setConstant(true); }
 
-  /// What is added to a displacement with every component 2.
+  /// Returns what is added to a displacement all of whose components are 2.
   Eigen::MatrixXd Added(const MeasurementErrors& errors) const {
     std::mt19937_64 generator(9);
     const Eigen::MatrixXd exact = Eigen::MatrixXd::Constant(2, 400, 2);
@@ -165,7 +169,7 @@ TEST_F(Errors, OfNoiseLeaveOutWhatIsHeld) {
     const Eigen::MatrixXd noise = Added(errors);
     EXPECT_TRUE(((noise.array() == 0) == held_).all());
   }
-  // 750 free components of 2.
+  // The displacement has 750 free components of 2.
   EXPECT_NEAR(Added(relative).norm(), 0.05 * 2 * std::sqrt(750.0), 1e-12);
   EXPECT_NEAR(Added(absolute).squaredNorm() / 750 / 0.01, 1,
               4 * std::sqrt(2 / 750.0));
@@ -181,7 +185,8 @@ TEST_F(Errors, OfOutliersAreOnTopOfTheSameNoise) {
     errors.outliers = 0.2;
     const Eigen::ArrayXd sizes =
         (Added(errors) - noise).colwise().norm().transpose().array();
-    // The standard deviation of noise of 0.05 of 2 is 0.1.
+    // Noise of 0.05 relative to components of 2 has a standard deviation of
+    // 0.1.
     EXPECT_EQ((sizes > 1e-9).count(), 70);
     EXPECT_EQ((sizes > 20 * 0.1 - 1e-9).count(), 70);
     EXPECT_EQ(sizes.head(50).abs().maxCoeff(), 0);

@@ -1,4 +1,4 @@
-// Laws of materials that are not alike in all directions.
+// Tests of the laws whose stiffness depends on the direction.
 
 #include <gtest/gtest.h>
 
@@ -54,7 +54,7 @@ TEST(AnisotropicLaws, HaveTheStiffnessOfTheTextbook) {
   }
 }
 
-// With the parameters of a material that is alike in all directions.
+// With the parameters of an isotropic material, every law has its stiffness.
 TEST(AnisotropicLaws, HoldTheIsotropicOne) {
   for (const auto& [law, model] : LawsWithFactors()) {
     Eigen::VectorXd parameters(Eigen::Index(law->Parameters().size()));
@@ -114,7 +114,7 @@ TEST(StiffnessFactors, AreNoneOfAStiffnessThatIsNotPositiveDefinite) {
                   .all());
 }
 
-// The unit of pressure changes ln D only.
+// The unit of pressure changes the logarithms ln D alone.
 TEST(StiffnessFactors, AreWithoutUnitOffTheDiagonal) {
   for (const auto& [law, model] : LawsWithFactors()) {
     const Eigen::VectorXd moduli =
@@ -191,7 +191,7 @@ TEST(MaterialAxes, ThatAreWrongAreNamed) {
                     sheet);
 }
 
-// Elements of another material may have any axis.
+// Elements of another material need no axis.
 TEST(MaterialAxes, CountInTheirElementsOnly) {
   const Mesh mesh =
       testing::TwoRegionScene({ElementKind::kTet4, SectionModel::kSolid}).mesh;

@@ -18,7 +18,8 @@ constexpr SectionModel kSolid = SectionModel::kSolid;
 
 const Law& KnownAxisLaw() { return *FindLaw("transversely_isotropic"); }
 
-// Fibres, and a material that is softer along its axis.
+// Returns the constants of fibres, and of a material that is softer along its
+// axis.
 std::vector<Eigen::VectorXd> ConstantsOfMaterials() {
   Eigen::VectorXd fibres(5);
   fibres << 9, 3, 0.32, 0.4, 1.5;
@@ -30,7 +31,7 @@ std::vector<Eigen::VectorXd> ConstantsOfMaterials() {
   return all;
 }
 
-// Along the directions of the scene, where the chart ends, and between.
+// Returns axes along the coordinates, where the chart ends, and between.
 std::vector<Eigen::Vector3d> AllAxes() {
   std::vector<Eigen::Vector3d> axes = {{1, 0, 0}, {0, 1, 0},  {0, 0, 1},
                                        {0, 1, 1}, {0, 1, -1}, {1e-6, 0.3, 1}};
@@ -43,8 +44,8 @@ std::vector<Eigen::Vector3d> AllAxes() {
   return axes;
 }
 
-// Voigt's stiffness, by the textbook, of which the axis is the first of any
-// frame; row by row.
+// Returns the textbook stiffness in Voigt notation, row by row, for a frame
+// whose first direction is the axis.
 Eigen::VectorXd TextbookModuli(const Eigen::VectorXd& constants,
                                const Eigen::Vector3d& axis) {
   const Eigen::Vector3d across = axis.unitOrthogonal();
@@ -62,7 +63,7 @@ Eigen::VectorXd TextbookModuli(const Eigen::VectorXd& constants,
   return moduli;
 }
 
-// The angle between two axes, which have no ends.
+// Returns the angle between two axes, whose signs do not matter.
 double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::asin(std::min(1.0, a.cross(b).norm()));
 }
@@ -104,7 +105,7 @@ TEST(FreeAxisLaw, HasItsJacobiansAtEachAxis) {
           1e-8 * jacobian.norm());
       const Eigen::Vector3d end = FreeAxisLaw::Axis(more);
       const Eigen::Vector3d start = FreeAxisLaw::Axis(less);
-      // At the rim of the half sphere, the axis may change its end.
+      // At the rim of the half sphere, the axis may change its sign.
       const Eigen::Vector3d change =
           end - (end.dot(start) > 0 ? start : Eigen::Vector3d(-start));
       const double sign = end.dot(FreeAxisLaw::Axis(parameters)) > 0 ? 1 : -1;
@@ -113,8 +114,8 @@ TEST(FreeAxisLaw, HasItsJacobiansAtEachAxis) {
   }
 }
 
-// The nearest of a stiffness that has no axis: no other is nearer, in the norm
-// of any weights.
+// The stiffness has no axis.  The law that is found must be the nearest in the
+// norm of the weights.
 TEST(FreeAxisLaw, FindsTheNearestStiffness) {
   const FreeAxisLaw law;
   const Eigen::VectorXd moduli =

@@ -41,7 +41,7 @@ enum class Mistake {
   kNoSection,
 };
 
-// The isotropic law with one mistake.
+// This is the isotropic law with one mistake.
 class MistakenLaw : public IsotropicLaw {
  public:
   explicit MistakenLaw(Mistake mistake, std::string_view name = "mistaken")
@@ -172,7 +172,7 @@ TEST(CheckLaw, SaysWhatIsWrong) {
   }
 }
 
-// One mistake is one sentence where nothing else follows from it.
+// A mistake from which no other follows is told in one sentence.
 TEST(CheckLaw, SaysEachThingOnce) {
   for (const Mistake mistake :
        {Mistake::kEnergy, Mistake::kJacobian, Mistake::kChart}) {
@@ -198,7 +198,8 @@ TEST(RegisterLaw, LetsMaterialsNameTheLaw) {
   EXPECT_THAT(LawNames(SectionModel::kSolid), HasSubstr("registered"));
   EXPECT_THAT(LawNames(SectionModel::kPlaneStress),
               ::testing::Not(HasSubstr("registered")));
-  // It is the isotropic law, whose pass over the elements is another one.
+  // The registered law is the isotropic one, but takes the pass over the
+  // elements that serves any law.
   Scene expected = testing::SmallScene("cuboid");
   Measure({2e4, 0.3}, expected);
   Scene scene = testing::SmallScene("cuboid");

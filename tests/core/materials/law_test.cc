@@ -1,4 +1,4 @@
-// What every law has to satisfy, in every section that it takes.
+// Tests of what every law has to satisfy, in every section that it takes.
 
 #include "elastimate/core/materials/law.h"
 
@@ -37,7 +37,8 @@ std::vector<LawInSection> AllLawsInSections() {
   return all;
 }
 
-// Numbers with derivatives by the entries of H, of which there are up to nine.
+// The numbers have derivatives by the entries of H, of which there are up to
+// nine.
 using GradientJet = ceres::Jet<double, 9>;
 
 // W_k = 1/2 H : C_k H, where the columns of C_k are stresses of unit gradients.
@@ -60,9 +61,10 @@ std::vector<GradientJet> QuadraticEnergies(const Law& law, SectionModel model,
   return energies;
 }
 
-// How far energies and stresses of a law of small strains are from
-// QuadraticEnergies and their automatic derivatives, and what its tangent makes
-// of H from the derivative for these moduli; relative to the largest of each.
+// Returns how far a law of small strains is from QuadraticEnergies: the largest
+// deviation of its energies, of its stresses from the automatic derivatives,
+// and of what its tangent makes of H for these moduli, each relative to its
+// size.
 double DeviationFromQuadraticEnergies(const Law& law, SectionModel model,
                                       const Eigen::MatrixXd& gradient,
                                       const Eigen::VectorXd& moduli) {
@@ -92,7 +94,7 @@ class LawConformance : public ::testing::TestWithParam<LawInSection> {
   Eigen::Index dimension_ = model_ == SectionModel::kSolid ? 3 : 2;
   Eigen::MatrixXd gradient_ = 0.1 * RandomMatrix(dimension_, dimension_, 1);
 
-  // Parameters near the typical ones.
+  // Returns parameters near the typical ones.
   Eigen::VectorXd Parameters() const {
     Eigen::VectorXd parameters(law_.Parameters().size());
     double factor = 0.8;
@@ -125,7 +127,8 @@ INSTANTIATE_TEST_SUITE_P(Laws, LawConformance,
                            return name;
                          });
 
-// This law has shear stresses so many times as large as they should be.
+// This law has shear stresses that are wrong by these factors, which the
+// comparison with automatic derivatives has to notice.
 class WrongShear : public IsotropicLaw {
  public:
   WrongShear(double factor, double factor_of_transpose)
@@ -154,7 +157,7 @@ TEST(WrongShear, IsFarFromItsQuadraticEnergies) {
     };
     EXPECT_LT(deviation(1, 1), 1e-12);
     EXPECT_GT(deviation(2, 2), 0.01);
-    // A tangent that is not symmetric, though its energy may be right.
+    // This tangent is not symmetric, though the energy may be right.
     EXPECT_GT(deviation(1.1, 0.9), 0.01);
   }
 }
@@ -166,7 +169,7 @@ TEST(Laws, AreFoundByTheirNames) {
         EXPECT_EQ(FindLaw(law->Name(), model), law);
       }
     }
-    // The first of a name has all parameters that the others have.
+    // Among laws of the same name, the first has all parameters of the others.
     std::set<std::string_view> names;
     for (const LawParameter& parameter : FindLaw(law->Name())->Parameters()) {
       names.insert(parameter.name);

@@ -1,4 +1,5 @@
-// Internal forces of materials that are not alike in all directions.
+// Tests of the internal forces of materials whose stiffness depends on the
+// direction.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +17,7 @@ namespace {
 using testing::KindOfSection;
 using testing::RandomMatrix;
 
-// To the order (xx, yy, zz, xy, yz, zx) of TextbookStiffness.
+// Permutes to the order (xx, yy, zz, xy, yz, zx) of TextbookStiffness.
 Eigen::MatrixXd InTextbookOrder(const Eigen::MatrixXd& voigt) {
   const std::vector<int> order = voigt.rows() == 6
                                      ? std::vector<int>{0, 1, 2, 5, 3, 4}
@@ -24,7 +25,8 @@ Eigen::MatrixXd InTextbookOrder(const Eigen::MatrixXd& voigt) {
   return voigt(order, order);
 }
 
-// The first columns of a frame, as many as the law has axes.
+// Returns the first columns of a frame, as many as the law has axes.  They need
+// no unit length.
 std::vector<Eigen::MatrixXd> AxesOf(const Law& law,
                                     const Eigen::MatrixXd& frame) {
   std::vector<Eigen::MatrixXd> axes;
@@ -100,7 +102,7 @@ TEST_P(AnisotropicForces, AreThoseOfTheTextbookInTheirFrame) {
   }
 }
 
-// Other axes in each element, beside elements of an isotropic material.
+// Each element has other axes, and some elements are of an isotropic material.
 TEST_P(AnisotropicForces, AreThoseOfTheAxesOfEachElement) {
   mesh_.regions.setOnes(mesh_.NumElements());
   mesh_.regions.head(2).setZero();
@@ -142,7 +144,8 @@ INSTANTIATE_TEST_SUITE_P(Laws, AnisotropicForces,
                                   testing::NameOf(info.param.kind);
                          });
 
-// What is cut of an element, and a quadratic one on its nodes, have its axis.
+// The simplices that an element is cut into, and a quadratic element on its
+// nodes, keep its axis.
 TEST(AnisotropicScenes, KeepTheAxesOfElements) {
   Scene scene =
       testing::SceneOfKind({ElementKind::kHex8, SectionModel::kSolid}, 2);

@@ -1,5 +1,5 @@
-// Curved quadratic elements of round bodies: quarters of rings and tubes and
-// octants of hollow balls, of radii 1 and 2, against their formulas.
+// Tests of curved quadratic elements of round bodies against their formulas:
+// quarters of rings and tubes and octants of hollow balls, of radii 1 and 2.
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,8 @@ std::string NameOfRound(Round round) {
                                  : "ball";
 }
 
-// The part of a position that a radius is measured of.
+// A radius is the norm of the first coordinates of a position, of which this is
+// the number.
 Eigen::Index NumRoundAxes(Round round) { return round == Round::kBall ? 3 : 2; }
 
 double RadiusAt(Round round, const Eigen::VectorXd& x) {
@@ -71,7 +72,7 @@ Mesh Tube(int cells) {
   return mesh;
 }
 
-// Three blocks around the diagonal, which meet.
+// Three blocks around the diagonal meet in an octant of a ball.
 Mesh Ball(int cells) {
   const Mesh block = testing::BoxMesh({cells, cells, cells}, {1, 1, 1});
   Mesh mesh;
@@ -111,7 +112,7 @@ Mesh LinearMesh(Round round, int cells) {
                                  : Ball(cells);
 }
 
-// The nodes of edges at the mean radius of their ends.
+// Moves the nodes of edges to the mean radius of the ends.
 void Bend(Round round, Mesh& mesh) {
   const MidEdges edges(mesh);
   const Eigen::Index n = NumRoundAxes(round);
@@ -125,7 +126,7 @@ void Bend(Round round, Mesh& mesh) {
   mesh.kind = CurvedKind(mesh.kind);
 }
 
-// Cut out by planes of symmetry, with a pressure of 1 inside.
+// Planes of symmetry cut the body out, and a pressure of 1 acts inside.
 Scene UnderPressure(Round round, int cells, bool is_curved) {
   Scene scene;
   scene.mesh = LinearMesh(round, cells);
@@ -165,7 +166,7 @@ class RoundBodies : public ::testing::TestWithParam<Round> {
   Mesh MeshOf(int cells) const {
     return UnderPressure(GetParam(), cells, true).mesh;
   }
-  // The volume of a tube and of a ring of length 0.5.
+  // The tube and the ring have the length 0.5.
   double Volume() const {
     return GetParam() == Round::kBall ? M_PI / 6 * 7 : 0.5 * M_PI / 4 * 3;
   }
@@ -173,8 +174,9 @@ class RoundBodies : public ::testing::TestWithParam<Round> {
     return GetParam() == Round::kBall ? M_PI / 2 : 0.5 * kQuarter;
   }
 
-  // The radial displacement inside of pressure 1 [Timoshenko & Goodier, Theory
-  // of Elasticity], for radii 1 and 2.
+  // Returns the radial displacement at the inner radius 1 under a pressure of 1
+  // inside, where the outer radius is 2 [Timoshenko & Goodier, Theory of
+  // Elasticity].
   static double Lame(Round round, const IsotropicElasticity& elasticity) {
     const double e = elasticity.youngs_modulus;
     const double nu = elasticity.poisson_ratio;
@@ -183,7 +185,8 @@ class RoundBodies : public ::testing::TestWithParam<Round> {
                : (1 + nu) / e * ((1 - 2 * nu) + 4) / 3;
   }
 
-  // The largest of the vertices inside, relative.
+  // Returns the largest relative error of the radial displacement over the
+  // vertices inside.
   double ErrorOfDisplacement(int cells, bool is_curved) const {
     const IsotropicElasticity elasticity = {3, 0.3};
     const Scene scene = UnderPressure(GetParam(), cells, is_curved);
@@ -227,7 +230,8 @@ TEST_P(RoundBodies, HaveTheirInnerAreaByTheFourthOrder) {
   EXPECT_GT(error(2) / error(4), 12);
 }
 
-// By Gauss's theorem, on the facets of curved elements exactly.
+// By Gauss's theorem, the integral of n x^T over a closed surface is V I.  The
+// facets of curved elements have it exactly.
 TEST_P(RoundBodies, AreClosed) {
   const Mesh mesh = MeshOf(2);
   Eigen::MatrixXd moment =
@@ -264,7 +268,8 @@ TEST_P(RoundBodies, DoNotResistRigidMotions) {
   EXPECT_LT(StrainEnergyDensity(mesh, {1, 0.3}, u).maxCoeff(), 1e-28);
 }
 
-// A uniform strain is exact, in the energy of each element too.
+// Curved elements represent a uniform strain exactly, and the energy density of
+// each element is exact too.
 TEST_P(RoundBodies, HaveAUniformStrain) {
   const Mesh mesh = MeshOf(2);
   const int d = mesh.Dimension();
@@ -281,8 +286,8 @@ TEST_P(RoundBodies, HaveAUniformStrain) {
   EXPECT_NEAR(density.maxCoeff() / expected, 1, 1e-12);
 }
 
-// The finer elements are the same body, with the same loads, and can do what
-// these elements can.
+// The finer elements fill the same body and carry the same loads.  They can
+// take every displacement that these elements can.
 TEST_P(RoundBodies, AreTheSameOfFinerElements) {
   Scene scene = UnderPressure(GetParam(), 2, true);
   const Eigen::MatrixXd nodal =
@@ -306,7 +311,8 @@ TEST_P(RoundBodies, AreTheSameOfFinerElements) {
                field.reshaped(mesh.Dimension(), mesh.NumNodes()))
         .dot(ElementVolumes(mesh));
   };
-  // But for what the rule leaves of quotients of polynomials.
+  // The integrands are quotients of polynomials, which the integration rule
+  // does not integrate exactly.
   EXPECT_NEAR(energy(finer.mesh, nodes.Interpolate(u)) / energy(scene.mesh, u),
               1, 1e-2);
 }
@@ -342,7 +348,8 @@ TEST(CurvedElements, MayNotFoldOntoThemselves) {
   EXPECT_THROWS_WITH(ValidateMesh(mesh), "order its nodes as VTK does");
 }
 
-// The map is singular at a vertex, as at the tip of a crack, and only there.
+// Such elements are used at the tip of a crack: the map is singular at a
+// vertex, and only there.
 TEST(CurvedElements, MayHaveNodesAtTheQuarterOfEdges) {
   Mesh mesh = OneTriangle();
   mesh.nodes.col(3) << 0.25, 0;

@@ -1,5 +1,5 @@
-// Tests every element kind and section: the stiffness against the textbook, the
-// patch test, energies and loads.
+// Tests of every element kind in every section: the stiffness against the
+// textbook, the patch test, energies and loads.
 
 #include "tests/element_kinds.h"
 
@@ -44,12 +44,12 @@ class ElementKinds : public ::testing::TestWithParam<KindOfSection> {
     return elasticity_.StiffnessScale(mesh_.section.model);
   }
 
-  // A displacement that is linear in the position, (dimension x n).
+  // Returns a displacement that is linear in the position (dimension x n).
   Eigen::MatrixXd LinearField(const Eigen::MatrixXd& gradient) const {
     return gradient * mesh_.nodes;
   }
 
-  // Whether each node is on the surface.
+  // Returns whether each node is on the surface.
   std::vector<bool> OnSurface() const {
     std::vector<bool> on_surface(mesh_.NumNodes(), false);
     const Eigen::MatrixXi facets = BoundaryFacets(mesh_);
@@ -165,7 +165,8 @@ TEST_P(ElementKinds, MissNothingOfALinearField) {
   const Eigen::MatrixXd linear =
       LinearField(RandomMatrix(dimension, dimension, 5));
   EXPECT_LT(DiscretizationError(mesh_, elasticity_, linear.reshaped()), 1e-25);
-  // A cubic is more than any of them has, beyond all rounding.
+  // No element kind can represent a cubic displacement, so the error is far
+  // beyond rounding.
   const Eigen::MatrixXd cubic = mesh_.nodes.array().cube();
   EXPECT_GT(DiscretizationError(mesh_, elasticity_, cubic.reshaped()), 1e-6);
 }
@@ -179,15 +180,16 @@ TEST_P(ElementKinds, SpreadABodyForceAsTheTextbook) {
   EXPECT_TRUE(resultant.force.isApprox(force.rowwise().sum(), 1e-12));
 }
 
-// By Gauss's theorem: a pressure p does the work -p dV on any motion, here
-// u = A x, and is in balance.
+// By Gauss's theorem, a pressure p all around is in balance and does the work
+// -p dV on any motion, here on u = A x.
 TEST_P(ElementKinds, BalanceAPressureAllAround) {
   const Eigen::Index dimension = mesh_.Dimension();
   const Eigen::MatrixXd force =
       AssembleLoads(mesh_, {Pressure{BoundaryFacets(mesh_), 2}});
   EXPECT_LT(force.rowwise().sum().cwiseAbs().maxCoeff(), 1e-13);
   const Eigen::MatrixXd gradient = RandomMatrix(dimension, dimension, 7);
-  // Faces of hexahedra are curved, which quadratic terms in them feel.
+  // The faces of distorted hexahedra are curved.  The work is exact only if
+  // their area vectors are integrated as such.
   const double volume = TextbookVolumes(mesh_).sum();
   EXPECT_NEAR(force.cwiseProduct(LinearField(gradient)).sum(),
               -2 * gradient.trace() * volume, 1e-12);
@@ -208,7 +210,7 @@ TEST_P(ElementKinds, SpreadATractionOverItsArea) {
 TEST_P(ElementKinds, TellTheirFacesFromOtherNodes) {
   const Eigen::MatrixXi faces = BoundaryFacets(mesh_);
   EXPECT_EQ(FirstThatIsNoFace(mesh_, faces), std::nullopt);
-  // A vertex of it is far off.
+  // A face with one vertex replaced by a distant node is no face.
   const int num_vertices = mesh_.Topology().NumVerticesOfFace();
   Eigen::Index farthest = 0;
   (mesh_.nodes.colwise() - mesh_.nodes.col(faces(0, 7)))
@@ -238,7 +240,7 @@ TEST_P(ElementKinds, AreHeldOnlyAsAWhole) {
   EXPECT_NE(WhyNotHeld(mesh_, loose).find("rotate"), std::string::npos);
 }
 
-// Derivatives by E and nu against finite differences.
+// The derivatives by ln E and nu are compared with finite differences.
 TEST_P(ElementKinds, HaveTheSensitivitiesOfTheirDisplacements) {
   ForwardModel model(mesh_, scene_.supports, AssembleLoadCases(scene_));
   const auto displacement = [&](double log_youngs, double nu) {

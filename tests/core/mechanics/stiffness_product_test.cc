@@ -39,7 +39,8 @@ class StiffnessProduct : public ::testing::Test {
         dense_j_(DenseStiffness<double>(mesh_, DenseDJ())),
         q_(RandomMatrix(3 * mesh_.NumNodes(), 3, 1)) {}
 
-  // Largest entry of |K| |q|: what rounding is relative to.
+  // Returns the largest entry of |K| |q|, to which rounding errors are
+  // relative.
   double Scale(const Eigen::MatrixXd& q) const {
     return (dense_j_.cwiseAbs() * q.cwiseAbs()).maxCoeff();
   }
@@ -58,7 +59,7 @@ TEST_F(StiffnessProduct, EqualsTheTextbookStiffness) {
   EXPECT_LT((products.j - dense_j_ * q_).cwiseAbs().maxCoeff(), tolerance);
 }
 
-// K = s (H + nu J) is Hooke's law, for any E and nu.
+// K = s (H + nu J) is the stiffness of Hooke's law for any E and nu.
 TEST_F(StiffnessProduct, BasisSpansEveryStiffness) {
   const StiffnessProducts products = MultiplyStiffnessBasis(mesh_, q_);
   for (const double nu : {-0.9, -0.5, 0.0, 0.3, 0.49, 0.499}) {
@@ -97,7 +98,7 @@ TEST_F(StiffnessProduct, OfATranslationIsZero) {
     const Eigen::VectorXd q =
         (1e3 * Eigen::Vector3d::Unit(axis)).replicate(mesh_.NumNodes(), 1);
     const StiffnessProducts products = MultiplyStiffnessBasis(mesh_, q);
-    // Differences of equal numbers have no rounding.
+    // Differences of equal numbers are exactly zero, without rounding.
     EXPECT_TRUE(products.h.isZero(0));
     EXPECT_TRUE(products.j.isZero(0));
   }
@@ -129,7 +130,7 @@ TEST_F(StiffnessProduct, IsSymmetric) {
   }
 }
 
-// The energy of a deformation, q . H q, is positive.
+// q . H q is the energy of a deformation at nu = 0, which is positive.
 TEST_F(StiffnessProduct, OfHIsPositiveSemidefinite) {
   const StiffnessProducts products = MultiplyStiffnessBasis(mesh_, q_);
   for (Eigen::Index i = 0; i < q_.cols(); ++i) {
@@ -137,8 +138,8 @@ TEST_F(StiffnessProduct, OfHIsPositiveSemidefinite) {
   }
 }
 
-// The patch test: a uniform stress is in equilibrium inside, whatever the
-// elements.
+// This is the patch test: a uniform stress is in equilibrium inside, whatever
+// the elements.
 TEST_F(StiffnessProduct, OfALinearFieldIsZeroAtInteriorNodes) {
   Eigen::Matrix3d gradient;
   gradient << 0.1, 0.2, -0.3, 0.4, -0.5, 0.6, 0.7, 0.8, 0.9;
@@ -227,7 +228,7 @@ INSTANTIATE_TEST_SUITE_P(Supported, ProductByInstructionSet,
                          ::testing::ValuesIn(testing::InstructionSets()),
                          testing::InstructionSetName);
 
-// A mesh of many blocks of elements.
+// The mesh has many blocks of elements, which threads share.
 class LargeMesh : public ::testing::Test {
  protected:
   LargeMesh()
@@ -253,7 +254,7 @@ class LargeMesh : public ::testing::Test {
   StiffnessProducts products_;
 };
 
-// Element by element, the products are those of one-element meshes.
+// The products are the sums of those of each element in a mesh of its own.
 TEST_F(LargeMesh, ProductsAreSumsOverTheElements) {
   StiffnessProducts sum;
   sum.h.setZero(q_.rows(), q_.cols());
@@ -282,7 +283,8 @@ TEST_F(LargeMesh, OperatorHasTheSameBitsForAnyNumberOfThreads) {
     SCOPED_TRACE(num_threads);
     const StiffnessOperator stiffness(mesh_, num_threads);
     EXPECT_FALSE(stiffness.IsReordered());
-    // Wrong values in matrices of the right, and of a wrong, shape.
+    // Multiply has to overwrite old values, whether their matrix has the right
+    // shape or not.
     StiffnessProducts products{2 * q_, Eigen::MatrixXd::Ones(2, 2)};
     stiffness.Multiply(q_, products);
     EXPECT_EQ(products.h, products_.h);

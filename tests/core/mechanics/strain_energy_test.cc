@@ -29,8 +29,8 @@ class StrainEnergy : public ::testing::TestWithParam<double> {
             WithBothOrientations(Distorted(BoxMesh({2, 3, 2}, {1, 0.8, 1.2})))),
         elasticity_{2.5, GetParam()} {}
 
-  // Each element has this density for u = gradient * x.  Strains lose one or
-  // two digits to the differences of node positions.
+  // Under u = gradient * x every element has the density `expected`.  Strains
+  // lose one or two digits to the differences of node positions.
   void ExpectDensity(const Eigen::Matrix3d& gradient, double expected) const {
     const Eigen::VectorXd density =
         StrainEnergyDensity(mesh_, elasticity_, gradient * mesh_.nodes);
@@ -44,7 +44,8 @@ class StrainEnergy : public ::testing::TestWithParam<double> {
   IsotropicElasticity elasticity_;
 };
 
-// E / 2 times the square of the strain, where nothing holds the sides.
+// Where nothing holds the sides, the density is E / 2 times the square of the
+// strain.
 TEST_P(StrainEnergy, OfUniaxialStress) {
   const Eigen::Vector3d strain(-GetParam(), -GetParam(), 1);
   ExpectDensity((0.01 * strain).asDiagonal(),
@@ -81,7 +82,8 @@ TEST_P(StrainEnergy, SumsUpToHalfOfDisplacementTimesStiffness) {
   EXPECT_NEAR(energy / expected, 1, 1e-12);
 }
 
-// Clapeyron: at equilibrium the energy is half the work of the loads.
+// By Clapeyron's theorem, the energy at equilibrium is half the work of the
+// loads.
 TEST_P(StrainEnergy, IsHalfTheWorkOfTheLoads) {
   const Scene scene = SmallScene("organ");
   const Eigen::MatrixXd force = AssembleLoadCases(scene);
@@ -92,12 +94,13 @@ TEST_P(StrainEnergy, IsHalfTheWorkOfTheLoads) {
       ElementVolumes(scene.mesh)
           .dot(StrainEnergyDensity(scene.mesh, elasticity_,
                                    u.reshaped(3, scene.mesh.NumNodes())));
-  // A condition number of 1e3 / (1 - 2 nu) is on the safe side.
+  // The tolerance allows for a condition number of 1e3 / (1 - 2 nu), which is
+  // on the safe side.
   EXPECT_NEAR(energy / (0.5 * force.col(0).dot(u)), 1,
               1e-12 / (1 - 2 * GetParam()));
 }
 
-// A displacement that is quadratic in the position.
+// Returns a displacement that is quadratic in the position.
 Eigen::MatrixXd Bent(const Eigen::MatrixXd& x) {
   Eigen::MatrixXd u(3, x.cols());
   u.row(0) =
@@ -123,8 +126,9 @@ TEST_P(StrainEnergy, NoneIsMissedOfWhatTheElementsCanDo) {
   EXPECT_EQ(DiscretizationError(mesh_, elasticity_, 0 * linear), 0);
 }
 
-// Linear elements interpolate a quadratic displacement here, which quadratic
-// elements have exactly.
+// Linear elements interpolate a quadratic displacement at their vertices.
+// Quadratic elements represent it exactly, so the energy of the difference is
+// what the linear ones miss.
 TEST_P(StrainEnergy, WhatLinearElementsMissIsFound) {
   for (const int cells : {3, 6, 12}) {
     SCOPED_TRACE(cells);
@@ -152,12 +156,14 @@ TEST_P(StrainEnergy, WhatLinearElementsMissIsFound) {
         volumes.dot(StrainEnergyDensity(mesh, elasticity_, at_vertices));
     const double found =
         DiscretizationError(mesh, elasticity_, at_vertices.reshaped());
-    // At the surface the recovered strain is that of one side.
+    // At the surface a strain is recovered from elements on one side only, so
+    // the estimate is worse by the share of elements there.
     EXPECT_NEAR(found / (missed / energy), 1, 1.5 / cells);
   }
 }
 
-// Both load cases count by their energy.
+// The error of two load cases is the mean of theirs, weighted by their
+// energies.
 TEST_P(StrainEnergy, LoadCasesAreSummed) {
   Eigen::MatrixXd both(3 * mesh_.NumNodes(), 2);
   both << RandomMatrix(3, mesh_.NumNodes(), 1).reshaped(),

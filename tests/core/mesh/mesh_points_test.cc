@@ -27,7 +27,8 @@ class MeshPointsOfKinds
   const MeshPoints points_ = RandomPoints(mesh_, 50, 1);
 };
 
-// Every element has the linear fields, and its functions add up to one.
+// Every element represents linear fields, and its shape functions add up to
+// one.
 TEST_P(MeshPointsOfKinds, InterpolateLinearFields) {
   const Eigen::MatrixXd gradient = RandomMatrix(2, mesh_.Dimension(), 1);
   const Eigen::MatrixXd at_nodes = (gradient * mesh_.nodes).array() + 0.5;
@@ -71,8 +72,8 @@ TEST_P(MeshPointsOfKinds, AreRefusedOutsideTheirElements) {
                      "make them dimension x points");
 }
 
-// Each element has as many as its share of the volume, with the mean of the
-// body, which the integrals of shape functions give.
+// The number of points in each element is proportional to its volume.  Their
+// mean is the centre of the body, as integrals of shape functions give it.
 TEST_P(MeshPointsOfKinds, AreDrawnEvenly) {
   constexpr Eigen::Index kPoints = 20000;
   std::mt19937_64 generator(1);
@@ -85,7 +86,8 @@ TEST_P(MeshPointsOfKinds, AreDrawnEvenly) {
   }
   const Eigen::ArrayXd volumes = ElementVolumes(mesh_).array();
   const Eigen::ArrayXd expected = kPoints * volumes / volumes.sum();
-  // Chi squared of about as many degrees of freedom n, with variance 2 n.
+  // The sum is chi squared with about n degrees of freedom, which has the
+  // variance 2 n.
   const double n = double(mesh_.NumElements() - 1);
   EXPECT_NEAR(((counts - expected).square() / expected).sum(), n,
               4 * std::sqrt(2 * n));
@@ -114,8 +116,8 @@ TEST(MeshPoints, AreTheSameInQuadraticElements) {
                   .isApprox(Interpolate(mesh, points, mesh.nodes), 1e-13));
 }
 
-// A trapezoid of edges 4 and 1 in one element: reference points beside the one
-// stand for four times the area of those beside the other.
+// The element is a trapezoid with parallel edges of 4 and 1.  Equal areas of
+// the reference square stand for four times the area beside the long edge.
 TEST(MeshPoints, AreDrawnEvenlyInDistortedElements) {
   Mesh mesh;
   mesh.kind = ElementKind::kQuad4;
@@ -128,14 +130,15 @@ TEST(MeshPoints, AreDrawnEvenlyInDistortedElements) {
   std::mt19937_64 generator(4);
   const Eigen::MatrixXd positions =
       Interpolate(mesh, DrawPoints(mesh, kPoints, generator), mesh.nodes);
-  // The part below y has the area 4 y - 3 y^2 / 2 of 5/2.
+  // The part of the trapezoid below y has the area 4 y - 3 y^2 / 2; the whole
+  // has 5/2.
   for (const double y : {0.1, 0.3, 0.5, 0.7, 0.9}) {
     const double share = (4 * y - 1.5 * y * y) / 2.5;
     const double found =
         double((positions.row(1).array() < y).count()) / kPoints;
     EXPECT_NEAR(found, share, 4 * std::sqrt(share * (1 - share) / kPoints));
   }
-  // In a row the points spread evenly from 0 to 4 - 3 y.
+  // At each y the points spread evenly from 0 to 4 - 3 y.
   const Eigen::ArrayXd along =
       (positions.row(0).array() / (4 - 3 * positions.row(1).array()))
           .transpose();

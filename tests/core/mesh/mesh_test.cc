@@ -63,7 +63,8 @@ TEST(ValidateMesh, AcceptsQuadraticTetrahedra) {
     Mesh mesh = WithMidEdgeNodes(Distorted(BoxMesh({2, 1, 1}, {1, 1, 1})));
     mesh.nodes *= unit;
     EXPECT_NO_THROW(ValidateMesh(mesh));
-    // Files in single precision round so.
+    // Positions in single precision are rounded, so mid-edge nodes are off the
+    // middle by that.
     mesh.nodes = mesh.nodes.cast<float>().cast<double>().eval();
     EXPECT_NO_THROW(ValidateMesh(mesh));
   }
@@ -76,7 +77,7 @@ TEST(ValidateMesh, NamesAMidEdgeNodeThatIsNotInTheMiddle) {
       ValidateMesh(mesh),
       "mid-edge node 5 of tetrahedron 0 \\(nodes 0 1 2 3\\) is not in the "
       "middle between 1 and 2");
-  // Another order than that of VTK.
+  // The mid-edge nodes are in another order than that of VTK.
   mesh = WithMidEdgeNodes(OneTetrahedron());
   std::swap(mesh.elements(4), mesh.elements(7));
   EXPECT_THROWS_WITH(ValidateMesh(mesh), "mid-edge node 7 .*as VTK does");
@@ -118,8 +119,8 @@ TEST(ValidateMesh, NamesAFlatElement) {
 }
 
 TEST(ValidateMesh, FlatnessDoesNotDependOnTheOrderOfTheNodes) {
-  // The longest edge is 1, and opposite to the first node in some orders; the
-  // smallest height is just below and just above a millionth.
+  // The longest edge is 1, and in some orders it is opposite to the first node.
+  // The smallest height is just below and just above a millionth.
   for (const double ratio : {0.99, 1.01}) {
     Mesh mesh = OneTetrahedron();
     mesh.nodes.col(2) << 0.5, 0.1, 0;
@@ -165,11 +166,11 @@ TEST(ValidateMesh, RejectsRegionsOfSomeElements) {
   EXPECT_THROWS_WITH(ValidateMesh(mesh), "2 region ids for 1");
 }
 
-// Divergence theorem: a closed surface with outward normals has zero vector
-// area, and encloses the volume (1/3) sum of x . n.
+// By the divergence theorem, a closed surface with outward normals has zero
+// vector area, and encloses the volume (1/3) sum of x . n.
 TEST(BoundaryFacets, EncloseTheVolumeWithOutwardNormals) {
   Mesh mesh = BoxMesh({3, 2, 4}, {1, 2, 3});
-  // Some elements of negative orientation.
+  // Some elements get a negative orientation.
   mesh.elements.row(0).head(20).swap(mesh.elements.row(1).head(20));
   const Eigen::MatrixXi facets = BoundaryFacets(mesh);
   ASSERT_EQ(facets.cols(), 2 * 2 * (3 * 2 + 2 * 4 + 3 * 4));
@@ -191,12 +192,13 @@ TEST(SmallestDihedralAngles, OfTheRegularTetrahedronAndOfACorner) {
   Mesh regular = OneTetrahedron();
   regular.nodes << 1, 1, -1, -1, 1, -1, 1, -1, 1, -1, -1, 1;
   EXPECT_NEAR(SmallestDihedralAngles(regular)(0), std::acos(1.0 / 3), 1e-12);
-  // Between a coordinate plane and the plane x + y + z = 1.
+  // The angle is between a coordinate plane and the plane x + y + z = 1.
   EXPECT_NEAR(SmallestDihedralAngles(OneTetrahedron())(0),
               std::acos(1 / std::sqrt(3.0)), 1e-12);
 }
 
-// Each vertex of the turned one has the right orientation.
+// The upper face is turned by a quarter against the lower one, though every
+// vertex has the right orientation.
 TEST(ValidateMesh, RefusesAHexahedronThatIsTurnedAgainstItsNeighbour) {
   Mesh mesh = testing::MeshOfKind({ElementKind::kHex8, SectionModel::kSolid});
   EXPECT_NO_THROW(ValidateMesh(mesh));

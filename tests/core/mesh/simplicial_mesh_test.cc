@@ -17,7 +17,7 @@ using testing::KindOfSection;
 
 constexpr double kRoundingOfCuts = 1e-12;
 
-// Without a sense of rotation.
+// Returns the nodes of each facet without its sense of rotation.
 std::set<std::array<int, 3>> Unordered(const Eigen::MatrixXi& facets) {
   std::set<std::array<int, 3>> all;
   for (const auto& facet : facets.colwise()) {
@@ -58,7 +58,8 @@ TEST_P(SimplicialMeshOfKind, HasItsNodesAndItsVolume) {
   const Eigen::VectorXd of_simplices = ElementVolumes(simplices_);
   for (Eigen::Index e = 0; e < mesh_.NumElements(); ++e) {
     const auto cuts = of_simplices.segment(num_cuts * e, num_cuts);
-    // Sides of hexahedra of a distorted block are not flat.
+    // The sides of hexahedra in a distorted block are not flat, so cutting them
+    // into triangles changes the volume a little.
     const double tolerance = HasFlatSides() ? kRoundingOfCuts : 0.05;
     EXPECT_NEAR(cuts.sum(), volumes(e), tolerance * volumes(e));
     EXPECT_GT(cuts.minCoeff(), 0);
@@ -69,14 +70,15 @@ TEST_P(SimplicialMeshOfKind, HasItsNodesAndItsVolume) {
   EXPECT_NEAR(of_simplices.sum(), volumes.sum(), 0.01 * volumes.sum());
 }
 
-// Neighbours meet, and facets of loads are faces of the surface.
+// Neighbours have to be cut alike, so that facets of loads are faces of the
+// surface.
 TEST_P(SimplicialMeshOfKind, HasItsSurface) {
   const Eigen::MatrixXi facets = cut_.FacetsOf(BoundaryFacets(mesh_));
   const Eigen::MatrixXi expected = BoundaryFacets(simplices_);
   EXPECT_EQ(facets.cols(), expected.cols());
   EXPECT_EQ(Unordered(facets), Unordered(expected));
-  // All go the same way round: a closed surface has no area in sum, and a
-  // volume.
+  // The facets have to be oriented alike: then a closed surface has no vector
+  // area, and encloses the volume.
   Eigen::VectorXd area = Eigen::VectorXd::Zero(mesh_.Dimension());
   double volume = 0;
   for (const auto& facet : facets.colwise()) {
@@ -103,7 +105,8 @@ TEST_P(SimplicialMeshOfKind, HasItsPoints) {
   if (HasFlatSides()) {
     EXPECT_LT(error.colwise().norm().maxCoeff(), kRoundingOfCuts * size);
   }
-  // Between a side that is not flat and its two triangles.
+  // Points of sides that are not flat are off by at most the distance between a
+  // side and its two triangles.
   EXPECT_LT(error.colwise().norm().maxCoeff(), 0.02 * size);
 }
 
@@ -112,8 +115,8 @@ TEST_P(SimplicialMeshOfKind, LeavesLinearSimplicesAsTheyAre) {
             simplices_.elements);
 }
 
-// So that a grid is cut as a union jack: the nodes at which diagonals meet
-// alternate.
+// A grid is cut in the pattern of a union jack, in which the nodes at which
+// diagonals meet alternate with the others.
 TEST(SimplicialMesh, HasAlternatingDiagonals) {
   const Mesh mesh =
       testing::MeshOfKind({ElementKind::kQuad4, SectionModel::kPlaneStress}, 4);
@@ -122,8 +125,8 @@ TEST(SimplicialMesh, HasAlternatingDiagonals) {
   for (const int node : simplices.elements.reshaped()) {
     ++num_triangles(node);
   }
-  // An inner node has all eight triangles around it, or four that have their
-  // longest edges elsewhere.
+  // An inner node of the grid has either all eight triangles around it, or four
+  // whose longest edges are opposite to it.
   EXPECT_EQ((num_triangles.array() == 8).count(), 5);
   EXPECT_EQ(num_triangles.maxCoeff(), 8);
 }

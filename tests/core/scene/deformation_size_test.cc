@@ -16,7 +16,7 @@ constexpr double kDegree = M_PI / 180;
 
 using Field = std::function<Eigen::Vector3d(const Eigen::Vector3d&)>;
 
-// A bar of 1 x 1 x 8, held where z = 0.
+// Returns a bar of 1 x 1 x 8 that is held where z = 0 and displaced by `field`.
 Scene BarMovedBy(const Field& field) {
   const Mesh mesh = testing::BoxMesh({2, 2, 16}, {1, 1, 8});
   Scene scene = testing::HeldAtBottom(mesh, mesh, {1, 0, 0});
@@ -38,8 +38,8 @@ TEST(DeformationSize, OfAStretchIsItsStrain) {
   EXPECT_NEAR(size.rotation, 0, 1e-6);
 }
 
-// A circular arc, which turns by 20 degrees along the bar and stretches by a
-// half of that times 1 / 8 at the surface.
+// The bar is bent to a circular arc.  It turns by 20 degrees along its length,
+// and stretches by the curvature times 1/2 at the surface.
 TEST(DeformationSize, OfABentBarIsTheRotationOfItsEnd) {
   const double curvature = 20 * kDegree / 8;
   const DeformationSize size =
@@ -90,7 +90,7 @@ TEST(RemoveFreeRotation, LeavesTheStrain) {
     EXPECT_NEAR(MeasureDeformation(scene).rotation, 0, 1e-6);
     RemoveFreeRotation(scene);
     const Eigen::MatrixXd& left = scene.load_cases[0].displacement;
-    // But for a translation.
+    // A translation stays in the displacement; the fits eliminate it.
     for (Eigen::Index node = 0; node < left.cols(); ++node) {
       const Eigen::Vector3d x = scene.mesh.nodes.col(node);
       const Eigen::Vector3d first = scene.mesh.nodes.col(0);
@@ -101,7 +101,8 @@ TEST(RemoveFreeRotation, LeavesTheStrain) {
   }
 }
 
-// So small a turn may be that of the specimen itself.
+// A turn that is no larger than the strains may be that of the specimen itself,
+// so it stays.
 TEST(RemoveFreeRotation, LeavesATurnThatIsLessThanTheStrains) {
   for (const double angle : {5e-5, 1e-3, 5e-3}) {
     Scene scene = BarMovedBy([&](const Eigen::Vector3d& x) {
@@ -116,7 +117,7 @@ TEST(RemoveFreeRotation, LeavesATurnThatIsLessThanTheStrains) {
   }
 }
 
-// Displacements of nodes and of points beside them turn alike.
+// Displacements of nodes and of points must be turned by the same rotation.
 TEST(RemoveFreeRotation, IsOneForNodesAndPoints) {
   const Eigen::Matrix3d rotation =
       Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX()).toRotationMatrix();
@@ -134,7 +135,7 @@ TEST(RemoveFreeRotation, IsOneForNodesAndPoints) {
   const Eigen::MatrixXd at_points =
       Interpolate(scene.mesh, points.points, load_case.displacement);
   EXPECT_LT((points.displacement - at_points).cwiseAbs().maxCoeff(), 1e-9);
-  // A strain of 0.05 over the half of the length.
+  // A strain of 0.05 over half of the length moves the ends by 0.2.
   EXPECT_LT(load_case.displacement.cwiseAbs().maxCoeff(), 0.25);
 }
 

@@ -21,7 +21,8 @@ using testing::QuadraticField;
 using testing::SmallScene;
 using testing::WithMidEdgeNodes;
 
-// Sums of some hundred numbers of size 1 to 10: rounding is far below.
+// Sums of some hundred numbers of size 1 to 10 have rounding errors far below
+// this.
 constexpr double kTolerance = 1e-12;
 
 Eigen::Vector3d Moment(const Mesh& mesh, const Eigen::MatrixXd& force) {
@@ -33,7 +34,7 @@ Eigen::Vector3d Moment(const Mesh& mesh, const Eigen::MatrixXd& force) {
   return moment;
 }
 
-// The boundary facets all of whose nodes have this coordinate.
+// Returns the boundary facets all of whose nodes have this coordinate.
 Eigen::MatrixXi FacetsAt(const Mesh& mesh, int axis, double coordinate) {
   const Eigen::MatrixXi facets = BoundaryFacets(mesh);
   std::vector<Eigen::Index> chosen;
@@ -49,7 +50,8 @@ Eigen::MatrixXi FacetsAt(const Mesh& mesh, int axis, double coordinate) {
   return facets(Eigen::all, chosen);
 }
 
-// The box [0, 2] x [0, 3] x [0, 4], some elements of negative orientation.
+// The box is [0, 2] x [0, 3] x [0, 4]; some of its elements have a negative
+// orientation.
 class LoadedBox : public ::testing::Test {
  protected:
   LoadedBox() : mesh_(BoxMesh({2, 3, 2}, {2, 3, 4})) {
@@ -129,8 +131,8 @@ TEST_F(LoadedBox, PressureAllAroundHasNoResultant) {
   EXPECT_NEAR(Moment(mesh, force).norm(), 0, kTolerance * force.norm() * 50);
 }
 
-// Linear elements represent u = G x + c exactly, so that the virtual work of
-// the nodal forces is the integral over the face: A tau . u(middle).
+// Linear elements represent u = G x + c exactly.  So the virtual work of the
+// nodal forces is the integral over the face, A tau . u(middle).
 TEST_F(LoadedBox, VirtualWorkOfATractionIsExactForLinearFields) {
   Eigen::Matrix3d gradient;
   gradient << 1, 2, 3, -4, 5, 6, 7, 8, -9;
@@ -144,7 +146,8 @@ TEST_F(LoadedBox, VirtualWorkOfATractionIsExactForLinearFields) {
   EXPECT_NEAR(force.cwiseProduct(u).sum(), exact, kTolerance * 1000);
 }
 
-// p = -virtual work per change of volume: for u = G x it is -p tr(G) V.
+// A pressure p does the virtual work -p times the change of volume, which is
+// tr(G) V for u = G x.
 TEST_F(LoadedBox, VirtualWorkOfAPressureIsMinusPressureTimesVolumeChange) {
   Eigen::Matrix3d gradient;
   gradient << 1, 2, 3, -4, 5, 6, 7, 8, -9;
@@ -155,8 +158,8 @@ TEST_F(LoadedBox, VirtualWorkOfAPressureIsMinusPressureTimesVolumeChange) {
               kTolerance * 1000);
 }
 
-// The closed form: on facets of any shape, linear elements take a third of each
-// facet's share at each of its nodes.
+// The closed form on facets of any shape: a third of the force on each facet
+// acts on each of its nodes.
 TEST_F(LoadedBox, SurfaceForceIsSpreadByArea) {
   const Mesh mesh = Distorted(mesh_);
   const Eigen::MatrixXi facets = BoundaryFacets(mesh).leftCols(20);
@@ -194,7 +197,8 @@ TEST_F(LoadedBox, SurfaceForceActsAtTheMiddleOfTheFaceHoweverFineTheMesh) {
   }
 }
 
-// [0, 2] x [0, 3] x [0, 4]: a face of 12 at x = 2, one of 8 at y = 3.
+// The box [0, 2] x [0, 3] x [0, 4] has a face of area 12 at x = 2, and one of
+// area 8 at y = 3.
 TEST_F(LoadedBox, ResultantsFollowFromTheGeometry) {
   Eigen::MatrixXd nodal = Eigen::MatrixXd::Zero(3, mesh_.NumNodes());
   nodal.col(1) << 1, 2, 3;
@@ -271,7 +275,7 @@ TEST_F(LoadedBox, WithoutLoadsThereIsNoForce) {
 // ---------------------------------------------------------------------------
 // Quadratic tetrahedra.
 
-// The box with quadratic elements.
+// The box of LoadedBox, with quadratic elements.
 class QuadraticLoadedBox : public LoadedBox {
  protected:
   QuadraticLoadedBox() : linear_(mesh_) { mesh_ = WithMidEdgeNodes(mesh_); }
@@ -318,13 +322,14 @@ TEST_F(QuadraticLoadedBox, LoadsHaveTheResultantAndMomentOfLinearElements) {
   }
 }
 
-// The integral of x, y, z and of their products over [0, a] x [0, b] (x [0,
-// c]), so that the virtual work is exact for quadratic fields.
+// Integrals of x, y, z and of their products over [0, a] x [0, b] (x [0, c])
+// are known.  The virtual work on quadratic fields must equal them exactly.
 TEST_F(QuadraticLoadedBox, VirtualWorkIsExactForQuadraticFields) {
   const QuadraticField field;
   const Eigen::MatrixXd u = field.Displacements(mesh_.nodes);
   const Eigen::Vector3d load(0.5, -1, 2);
-  // Mean of x x^T over a box: middles m and edges e, m m^T + diag(e^2) / 12.
+  // The mean of x x^T over a box with the middle m and the edges e is m m^T +
+  // diag(e^2) / 12.
   const auto mean = [&](const Eigen::Vector3d& middle,
                         const Eigen::Vector3d& edges) {
     Eigen::Vector3d value = field.Displacement(middle);
@@ -350,7 +355,7 @@ TEST_F(QuadraticLoadedBox, TractionActsAtTheMiddlesOfTheEdges) {
   const Eigen::MatrixXd force = AssembleLoads(
       mesh_, {Traction{FacetsAt(mesh_, 2, 4), Eigen::Vector3d(1, 2, 3)}});
   EXPECT_TRUE(force.leftCols(linear_.NumNodes()).isZero(0));
-  // Inside of the face an edge has two facets of area 1/2.
+  // An edge inside of the face belongs to two facets of area 1/2.
   EXPECT_NEAR(force.row(0).maxCoeff(), 2 * 0.5 / 3, kTolerance);
 }
 

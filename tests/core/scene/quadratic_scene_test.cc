@@ -28,7 +28,7 @@ using testing::SmallScene;
 using testing::WithBothOrientations;
 using testing::WithMidEdgeNodes;
 
-// The mid-edge node between two vertices, by its place; -1 when there is none.
+// Returns the node in the middle between two vertices; -1 where there is none.
 int NodeBetween(const Mesh& mesh, int a, int b) {
   const Eigen::Vector3d middle = (mesh.nodes.col(a) + mesh.nodes.col(b)) / 2;
   for (Eigen::Index node = mesh.NumVertices(); node < mesh.NumNodes(); ++node) {
@@ -39,7 +39,7 @@ int NodeBetween(const Mesh& mesh, int a, int b) {
   return -1;
 }
 
-// The scene "organ" with every kind of load and measurement.
+// The scene "organ" gets every kind of load and measurement.
 class ConvertedOrgan : public ::testing::Test {
  protected:
   ConvertedOrgan() : scene_(SmallScene("organ")) {
@@ -121,7 +121,7 @@ TEST_F(ConvertedOrgan, KeepsTheSupportsOfTheVertices) {
       (supports.held.leftCols(NumVertices()) == scene_.supports.held).all());
   EXPECT_EQ(supports.displacement.leftCols(NumVertices()),
             scene_.supports.displacement);
-  // Held is one face of 4 x 4 nodes: its 24 + 9 edges.
+  // One face of 4 x 4 nodes is held.  It has 24 edges and 9 diagonals.
   EXPECT_EQ(supports.held.rightCols(NumMidEdges()).colwise().all().count(), 33);
   EXPECT_EQ(supports.held.rightCols(NumMidEdges()).count(), 3 * 33);
 }
@@ -140,7 +140,8 @@ TEST_F(ConvertedOrgan, HoldsMidEdgesAtTheMeanOfTheirEnds) {
   }
 }
 
-// Either end of an edge gets half of the force of its mid-edge node.
+// The nodal forces become a force that is spread out.  Adding half of the force
+// on each mid-edge node to either end of its edge gives the nodal forces back.
 TEST_F(ConvertedOrgan, SpreadsNodalForces) {
   const Eigen::MatrixXd force =
       AssembleLoads(quadratic_.mesh, quadratic_.load_cases[0].loads);
@@ -184,7 +185,7 @@ TEST_F(ConvertedOrgan, KeepsWhatTheOtherLoadsAre) {
   EXPECT_EQ(force.facets, BoundaryFacets(quadratic_.mesh).leftCols(5));
 }
 
-// On the displacements of linear elements, the loads do the same work.
+// On displacements that linear elements can take, the loads do the same work.
 TEST_F(ConvertedOrgan, HasTheVertexForcesOfLinearElements) {
   const Eigen::MatrixXd expected = AssembleLoadCases(scene_);
   EXPECT_TRUE(MidEdges(quadratic_.mesh)
@@ -218,7 +219,8 @@ TEST_F(ConvertedOrgan, NeedsFacetsOfTheMesh) {
   EXPECT_THROWS_WITH(QuadraticScene(scene_), "facet 3 .* no face");
 }
 
-// Displacements of supports are ignored where nothing is held, NaN or not.
+// The displacement of a support is ignored in components that are not held,
+// even if it is NaN.
 TEST_F(ConvertedOrgan, IgnoresSupportDisplacementsOfFreeComponents) {
   scene_.supports.displacement =
       scene_.supports.held.select(scene_.supports.displacement.array(), kNan);
@@ -230,7 +232,7 @@ TEST_F(ConvertedOrgan, IgnoresSupportDisplacementsOfFreeComponents) {
 
 class BoxToConvert : public ::testing::Test {
  protected:
-  // Cubes of size 1.
+  // The box consists of cubes of size 1.
   explicit BoxToConvert(const Eigen::Vector3i& cells = {3, 3, 3}) {
     scene_.mesh = BoxMesh(cells, cells.cast<double>());
     scene_.supports.held =
@@ -245,7 +247,7 @@ class BoxToConvert : public ::testing::Test {
         scene_.supports.held.row(component) || nodes;
   }
 
-  // The middles of the held edges, one column each.
+  // Returns the middles of the held edges, one column each.
   Eigen::MatrixXd HeldMiddles(int component) const {
     const Scene quadratic = QuadraticScene(scene_);
     std::vector<Eigen::Index> held;
@@ -272,7 +274,7 @@ TEST_F(BoxToConvert, NothingIsHeldWithoutSupports) {
 TEST_F(BoxToConvert, AHeldFaceHoldsItsEdgesInTheSameComponents) {
   Hold(1, Coordinate(2) == 0);
   const Eigen::MatrixXd middles = HeldMiddles(1);
-  // 2 * 3 * 4 along the axes, and 3 * 3 diagonals.
+  // The face has 2 * 3 * 4 edges along the axes, and 3 * 3 diagonals.
   EXPECT_EQ(middles.cols(), 33);
   EXPECT_TRUE(middles.row(2).isZero(0));
   EXPECT_EQ(HeldMiddles(0).cols(), 0);
@@ -295,7 +297,8 @@ TEST_F(BoxToConvert, AHeldVolumeHoldsTheEdgesOfItsInside) {
   Hold(0, Coordinate(2) <= 2);
   const Eigen::MatrixXd middles = HeldMiddles(0);
   const Mesh& mesh = scene_.mesh;
-  // Each inner node has the edges to all its lower neighbours.
+  // The edges from each inner node to its lower neighbours along the axes are
+  // held.
   for (Eigen::Index a = 0; a < mesh.NumNodes(); ++a) {
     const auto inner = mesh.nodes.col(a).array();
     if ((inner == 0).any() || (inner == 3).any() || inner(2) > 2) {
@@ -320,8 +323,8 @@ TEST_F(BoxToConvert, AHeldVolumeHoldsWhatCrossesItsCorners) {
   }
 }
 
-// A slab of one layer of elements, held on both sides: what is between can
-// bulge.
+// The slab is one layer of elements that is held on both sides.  What is
+// between the sides can bulge.
 class SlabToConvert : public BoxToConvert {
  protected:
   SlabToConvert() : BoxToConvert({3, 3, 1}) {}
@@ -365,7 +368,8 @@ TEST_F(OpenBoxToConvert, APartOfAFaceEndsSomewhereInIt) {
   Hold(1, Coordinate(2) == 0 && Coordinate(0) <= 1);
   const Scene quadratic = QuadraticScene(scene_);
   ASSERT_EQ(quadratic.supports.ends.size(), 1);
-  // 4 edges along x, and 3 diagonals, as far along x as each other.
+  // Four edges along x and three diagonals cross the end, and their middles all
+  // have the same x.
   const SupportEnd& end = quadratic.supports.ends[0];
   ASSERT_EQ(end.steps.size(), 1);
   EXPECT_EQ(end.steps[0].size(), 7);
@@ -423,7 +427,8 @@ TEST_F(OpenBoxToConvert, APartOfTheMeshEndsWithItsNodes) {
   EXPECT_TRUE(Ends().empty());
 }
 
-// A clamp from x = 0 to between two layers of nodes, nearer to the free one.
+// A clamp reaches from x = 0 to a place between two layers of nodes, which is
+// nearer to the free layer.
 TEST(QuadraticSupports, AreDecidedByBoxes) {
   Scene scene = SmallScene("cuboid");
   scene.mesh = BoxMesh({4, 2, 2}, {4, 2, 2});

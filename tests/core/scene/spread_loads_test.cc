@@ -39,7 +39,9 @@ NodalForces NodalForcesOf(const Mesh& mesh, const Load& load) {
   return {AssembleLoads(mesh, {load})};
 }
 
-// On quadratic elements, and on what these are cut into.
+// Expects that nodal forces made of `load`, once they are spread out again, act
+// as `load` itself does, on quadratic elements and on the simplices that these
+// are cut into.
 void ExpectSameOnOtherElements(Scene scene, const Load& load,
                                double tolerance) {
   scene.load_cases[0].loads = {load};
@@ -61,7 +63,7 @@ TEST(SpreadLoads, FindsAUniformTraction) {
       1e-12);
 }
 
-// Around edges, where the forces of two faces add up.
+// At edges of the block, the forces of two faces add up.
 TEST(SpreadLoads, FindsAPressure) {
   const Scene scene = HeldBlock();
   ExpectSameOnOtherElements(scene, Pressure{FacetsWhere(scene.mesh, 0.5), 3},
@@ -73,7 +75,8 @@ TEST(SpreadLoads, FindsABodyForce) {
                             1e-12);
 }
 
-// Torsion has such a traction; the vertices alone are off by all of it.
+// Torsion makes such a traction.  The spread forces are within 30 % of it,
+// while forces that stay at the vertices would be off by all of it.
 TEST(SpreadLoads, FindsALinearTractionNearly) {
   const Scene scene = HeldBlock();
   const Eigen::MatrixXi facets = FacetsWhere(scene.mesh, 1.7);

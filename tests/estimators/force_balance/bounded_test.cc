@@ -63,8 +63,8 @@ TEST(Bounded, IsTheClosedFormOfTheBoundWhenOneIsActive) {
   EXPECT_TRUE(estimate.Has(FindingCode::kParametersOnBounds));
 }
 
-// How far a parameter may be from the bound that it lies on, the data alone
-// say.
+// A bound that is active does not tell how far the parameter may be from it.
+// Only the data do.
 TEST(Bounded, StandardErrorsOnABoundAreThoseWithoutIt) {
   Scene scene = NoisyScene(1e-4);
   const double nu = ClosedForm().Run(scene, {}).elasticity.poisson_ratio;
@@ -80,7 +80,8 @@ TEST(Bounded, StandardErrorsOnABoundAreThoseWithoutIt) {
               1, 0.05);
 }
 
-// Against a scan of the dense residual along the edge E = E_max.
+// The expected nu is the best of a scan of the dense residual along the edge E
+// = E_max.
 TEST(Bounded, KeepsBoundsOnYoungsModulus) {
   const Scene scene = NoisyScene(1e-3);
   const DegreesOfFreedom dofs(scene.supports);

@@ -19,7 +19,7 @@ using testing::AddNoise;
 using testing::Measure;
 using testing::SmallScene;
 
-// Measures with a dense solver that shares no code with the library.
+// Sets the displacement by a dense solver that shares no code with the library.
 void MeasureDensely(const IsotropicElasticity& elasticity, Scene& scene) {
   const DegreesOfFreedom dofs(scene.supports);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(dofs.NumAll());
@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(PoissonRatios, ExactData,
 TEST(ClosedForm, NeedsNoSupports) {
   Scene scene = SmallScene("organ");
   MeasureDensely({5e4, 0.3}, scene);
-  // The reactions become loads.
+  // The reactions of the supports become loads.
   const Eigen::MatrixXd stiffness = testing::DenseStiffness<double>(
       scene.mesh, testing::HookeMatrix(5e4, 0.3));
   scene.load_cases[0].loads = {
@@ -68,7 +68,8 @@ TEST(ClosedForm, NeedsNoSupports) {
   EXPECT_NEAR(estimate.elasticity.poisson_ratio, 0.3, 1e-10);
 }
 
-// Ordinary least squares on the dense matrices, by normal equations.
+// The expected values are ordinary least squares on dense matrices, by normal
+// equations.
 TEST(ClosedForm, IsTheLeastSquaresSolutionUnderNoise) {
   Scene scene = SmallScene("organ");
   Measure({5e4, 0.3}, scene);
@@ -93,7 +94,8 @@ TEST(ClosedForm, IsTheLeastSquaresSolutionUnderNoise) {
               1, 1e-8);
 }
 
-// E[nu_hat] = nu + rho (nu_n - nu): nu is drawn towards that of pure noise.
+// The bias law is E[nu_hat] = nu + rho (nu_n - nu): the estimate is drawn
+// towards nu_n, which pure noise would give.
 TEST(ClosedForm, FollowsTheBiasLaw) {
   constexpr int kSeeds = 100;
   constexpr double kNu = 0.3;
@@ -118,8 +120,8 @@ TEST(ClosedForm, FollowsTheBiasLaw) {
   const double mean = sum / kSeeds;
   const double sd = std::sqrt((square_sum / kSeeds - mean * mean) / kSeeds);
   ASSERT_GT(rho, 0.1) << "the noise is too small to test the law";
-  // Monte Carlo error, and the next order of the law, a ratio
-  // of means for a mean of ratios (1 / number of equations).
+  // The mean has a Monte Carlo error.  The next order of the law, of 1 / number
+  // of equations, comes from a ratio of means in place of a mean of ratios.
   EXPECT_NEAR(mean, expected, 4 * sd + std::abs(expected - kNu) / 50);
   EXPECT_NEAR(attenuation_sum / kSeeds, rho, 0.05 * rho);
 }
@@ -136,7 +138,7 @@ TEST(ClosedForm, SaysThatNoiseMakesItUnusable) {
   EXPECT_FALSE(estimate.why_no_standard_error.empty());
 }
 
-// Twenty measurements under noise that biases nu by more than E.
+// The noise of these twenty measurements biases nu by more than E.
 TEST(ClosedForm, SaysThatNoiseBiasesNu) {
   for (int seed = 1; seed <= 20; ++seed) {
     Scene scene = testing::SmallScene("bar");
@@ -254,7 +256,7 @@ TEST(ClosedForm, SaysThatMidEdgeNodesAreNotMeasured) {
   EXPECT_NE(why.find("use reduced-fe"), std::string::npos) << why;
 }
 
-// Somebody who simulates could measure so.
+// Only a simulation measures mid-edge nodes as well.
 TEST(ClosedForm, TakesQuadraticElementsMeasuredAtEveryNode) {
   Scene scene = QuadraticScene(SmallScene("organ"));
   Measure({5e4, 0.3}, scene);
@@ -272,7 +274,7 @@ TEST(ClosedForm, DoesNotNeedHeldNodesToBeObserved) {
   EXPECT_TRUE(ClosedForm().Run(scene, {}).IsUsable());
 }
 
-// With as many equations as unknowns there is no residual to learn from.
+// With as many equations as unknowns there is no residual that shows the noise.
 TEST(ClosedForm, SaysWhyThereIsNoStandardError) {
   const Mesh mesh = testing::BoxMesh({1, 1, 1}, {1, 2, 3});
   Scene scene = testing::HeldAtBottom(mesh, mesh, {0, 0, -1});
@@ -300,7 +302,8 @@ TEST(ClosedForm, StandardErrorsOfLargeMeshesAreAsGood) {
   Measure({5e4, 0.3}, scene);
   const double sd = AddNoise(1e-5, 1, scene);
   const Estimate estimate = ClosedForm().Run(scene, {});
-  // 6084 free components: 0.9 % for white residuals; and the probes' error.
+  // With 6084 free components, the noise of white residuals is known to 0.9 %;
+  // the probes of the trace add an error of their own.
   EXPECT_NEAR(*estimate.noise_sd / sd, 1, 4 * 2 * 0.009);
   EXPECT_EQ(estimate.work.element_passes, 3);
 }

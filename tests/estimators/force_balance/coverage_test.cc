@@ -1,5 +1,6 @@
-// Monte Carlo: errors against the Cramer-Rao bound, and how often the intervals
-// hold the truth, under more noise than that of the conformance tests.
+// Monte Carlo tests compare errors with the Cramer-Rao bound, and count how
+// often intervals hold the truth, under more noise than the conformance tests
+// have.
 
 #include <gtest/gtest.h>
 
@@ -21,8 +22,8 @@ using testing::AddNoise;
 using testing::Measure;
 using testing::SmallScene;
 
-// Seeds 1, 2, ...; a root mean square of errors has a standard deviation of 5 %
-// over these many.  The study `unseen` counts thousands.
+// The seeds are 1, 2, ...  A root mean square of this many errors has a
+// standard deviation of 5 %.  The study `unseen` counts thousands of trials.
 constexpr int kSeeds = 200;
 
 class CoverageStatistics
@@ -70,8 +71,8 @@ TEST_P(CoverageStatistics, OfReducedFeIsThatOfItsIntervals) {
       "%.3f (nu), coverage %.4f (E), %.4f (nu), Cramer-Rao sd of nu %.3g\n",
       shape.c_str(), nu, noise, num_usable, kSeeds, youngs, poisson,
       num_youngs / n, num_poisson / n, std::sqrt(bound(1, 1)));
-  // At a nu further than three standard errors from the true one, which is as
-  // rare, a specimen of another nu may explain the measurement as well.
+  // A few measurements may be refused: where nu is more than three standard
+  // errors off, a specimen of another nu may explain them as well.
   EXPECT_GE(num_usable, kSeeds - 4);
   EXPECT_NEAR(youngs, 1, 4 * 0.05);
   EXPECT_NEAR(poisson, 1, 4 * 0.05);
@@ -90,8 +91,9 @@ struct CoverageCase {
   int degree;
   std::string shape;
   double noise;
-  // So often 1.96 standard errors hold the truth by Student's t, since the
-  // noise is estimated from few equations, 12, 30 and 60 less the two unknowns.
+  // Student's t has this probability within 1.96 standard errors.  The noise is
+  // estimated from few equations, so the degrees of freedom are 12, 30 or 60
+  // less the two unknowns.
   double coverage;
 };
 
@@ -154,7 +156,8 @@ TEST_P(VirtualFieldsCoverageStatistics, IsThatOfItsStandardErrors) {
             << ", bias in standard deviations of the mean " << bias.transpose()
             << ", coverage " << coverage.transpose() << " (E, nu)\n";
   EXPECT_LT(bias.maxCoeff(), 4);
-  // Three standard deviations of a root mean square, and of a frequency.
+  // The tolerances are three standard deviations of a root mean square, and of
+  // a frequency.
   EXPECT_GT(over_bound.minCoeff(), 1 - 3 / std::sqrt(2.0 * kFewerSeeds));
   const double expected = GetParam().coverage;
   EXPECT_GT(coverage.minCoeff(),

@@ -40,7 +40,7 @@ TEST(VirtualFields, KeepABoundThatTheDataAllow) {
   EXPECT_TRUE(estimate.IsUsable()) << estimate.message;
 }
 
-// Loads along the wrong axes, of the right size.
+// The loads have the right size, but act along the wrong axes.
 TEST(VirtualFields, DenyLoadsOfAnotherDirection) {
   Scene scene = SmallScene("organ");
   Measure({1e3, 0.3}, scene);
@@ -56,7 +56,7 @@ TEST(VirtualFields, DenyLoadsOfAnotherDirection) {
   EXPECT_FALSE(ClosedForm().Run(scene, known).IsUsable());
 }
 
-// Any nu fits pure shear: which one the noise prefers says nothing.
+// Any nu fits pure shear, so the nu that the noise prefers tells nothing.
 TEST(VirtualFieldsStatistics, DoNotTakeNoiseForInformation) {
   const double mu = 5e4 / 2.6;
   for (const Bounds& bounds : {Bounds{}, Bounds{1.2 * mu, 2.8 * mu},
@@ -73,16 +73,16 @@ TEST(VirtualFieldsStatistics, DoNotTakeNoiseForInformation) {
       }
       std::cout << "noise " << noise << ", seeds 1 to " << kSeeds << ": "
                 << num_usable << " usable\n";
-      // One in twenty is what an interval of 95 % allows, which chance
-      // makes more than 4 of 20 in one of 400 experiments.
+      // A 95 % interval allows one usable run in twenty.  Chance makes more
+      // than 4 of 20 in one of 400 experiments.
       EXPECT_LE(num_usable, 4);
     }
   }
 }
 
-// The noise is seen in four equations, so that two standard errors hold the
-// truth in 88 % of the cases, and Student's t in 95 %: of 200 with a standard
-// deviation of 1.5 %.
+// The noise is estimated from four equations.  Two standard errors hold the
+// truth in 88 % of the cases, but Student's t does in 95 %.  The share of 200
+// trials has a standard deviation of 1.5 %.
 TEST(VirtualFieldsStatistics, IntervalsOfFewEquationsCoverTheTruth) {
   constexpr int kSeeds = 200;
   Scene exact = testing::SceneOfKind(

@@ -68,7 +68,7 @@ struct DenseBalance {
     return stiffened.transpose() * stiffened;
   }
 
-  // The least over t of r^T G^-1 r at this nu.
+  // Returns the least value over t of r^T G^-1 r at this nu.
   double SquareSum(const Scene& scene, double nu) const {
     const Eigen::VectorXd q = scene.load_cases[0].displacement.reshaped();
     const Eigen::VectorXd f =
@@ -129,8 +129,8 @@ TEST(WorkBalance, ItsDerivativeIsThatOfTheSquareSum) {
   }
 }
 
-// A material with a bound of its own has the same balance as one without, but
-// several materials take the passes over the elements that one does without.
+// Two regions of equal materials have the balance of one material, though
+// several materials take other passes over the elements.
 TEST(WorkBalance, OfOneMaterialIsThatOfTwoAlike) {
   Scene scene = NoisyScene("organ", 0.3, 0.05);
   Balance one(scene);
@@ -157,8 +157,8 @@ TEST(WorkBalance, OfOneMaterialIsThatOfTwoAlike) {
   EXPECT_NEAR(residual_of_two.norm() / residual.norm(), 1, 1e-9);
   EXPECT_TRUE((jacobian_of_two.transpose() * jacobian_of_two)
                   .isApprox(jacobian.transpose() * jacobian, 1e-8));
-  // Random probes: 24 fields and 16 probes have a relative standard error of
-  // about 7 %.
+  // The probes are random: with 24 fields and 16 probes the relative standard
+  // error is about 7 %.
   const Eigen::MatrixXd by_probes = two.balance.NoiseOfInformation(directions);
   EXPECT_NEAR(by_probes(1, 1) / of_noise(1, 1), 1, 4 * 0.07);
 }

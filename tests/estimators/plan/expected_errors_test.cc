@@ -27,7 +27,8 @@ TEST(ExpectedErrors, AreThoseOfTheInverse) {
 }
 
 TEST(ExpectedErrors, AreInfiniteOfWhatTakesPartInAnUndeterminedDirection) {
-  // The difference of the first two and the third by itself.
+  // The information is on the difference of the first two parameters, and on
+  // the third one.
   const Eigen::Vector3d difference(1, -1, 0);
   const Eigen::Matrix3d information =
       25 * difference * difference.transpose() +

@@ -1,5 +1,5 @@
-// Many measurements of the load that a plan chose: their estimates scatter as
-// the plan said.
+// The load that a plan chose is measured many times.  The estimates must
+// scatter as the plan said.
 
 #include <gtest/gtest.h>
 
@@ -18,13 +18,13 @@ namespace elastimate {
 namespace {
 
 constexpr int kPlannedMeasurements = 100;
-// chi^2 of 100 degrees of freedom over 100, with a probability of 1e-4 to be
-// outside on either side.
+// chi^2 of 100 degrees of freedom, over 100, is outside with a probability of
+// 1e-4 on either side.
 constexpr double kLeastMeanSquare = 0.556;
 constexpr double kMostMeanSquare = 1.615;
 
-// The scene with the best of the unit loads on its loaded surface as one more
-// load case, at its size.
+// Returns the scene with one more load case: the best of the unit loads on its
+// loaded surface, at the size that the plan gives.
 Scene WithBestLoad(const Scene& scene, const Eigen::VectorXd& parameters,
                    double relative_noise, Eigen::VectorXd& expected) {
   const std::vector<CandidateLoad> candidates =
@@ -41,8 +41,8 @@ Scene WithBestLoad(const Scene& scene, const Eigen::VectorXd& parameters,
   return both;
 }
 
-// Mean squares of the standard scores of each parameter, of estimates by
-// maximum likelihood.
+// Returns the mean squares of the standard scores of each parameter, for
+// estimates by maximum likelihood.
 Eigen::VectorXd MeanSquareScores(Scene scene, const Eigen::VectorXd& parameters,
                                  double noise,
                                  const Eigen::VectorXd& expected) {

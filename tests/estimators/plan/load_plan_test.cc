@@ -35,8 +35,8 @@ Eigen::MatrixXi FacesAt(const Mesh& mesh, int axis, double coordinate) {
   return FacetsInBox(mesh, lower, upper);
 }
 
-// A bar of 4 x 1 x 1 on rollers, which is pulled along x by a stress of 100, so
-// that u = 100 / E (x, -nu y, -nu z).
+// A bar of 4 x 1 x 1 on rollers is pulled along x by a stress of 100, so that u
+// = 100 / E (x, -nu y, -nu z).
 Scene BarOnRollers() {
   Scene scene;
   scene.mesh = testing::BoxMesh({4, 2, 2}, {4, 1, 1});
@@ -68,7 +68,8 @@ TEST(PlanLoads, KnowsThatAPullDoesNotDetermineNuWithoutLateralData) {
   CandidateLoad again = {"again", scene.load_cases[0]};
   const LoadPlan plan =
       PlanLoads(scene, {again, Sideways(scene)}, kBarParameters, 0.01);
-  // d u_x / d ln E = -100 x / E.
+  // The scene gives u_x = 100 x / E, with the derivative d u_x / d ln E = -100
+  // x / E.
   const double sum =
       (100 / kBarYoungsModulus * scene.mesh.nodes.row(0)).squaredNorm();
   EXPECT_EQ(plan.before.NumUndetermined(), 1);
@@ -78,7 +79,7 @@ TEST(PlanLoads, KnowsThatAPullDoesNotDetermineNuWithoutLateralData) {
   EXPECT_EQ(CombinationInWords(plan.before.directions.col(0), plan.Free()),
             "nu");
 
-  // Pulled along y, u_x = -100 nu x / E.
+  // A pull along y gives u_x = -100 nu x / E, which adds nu / E.
   ASSERT_EQ(plan.loads[0].candidate, 1U);
   const Eigen::Vector2d s(kBarPoissonRatio, -1);
   const Eigen::Matrix2d information =
@@ -89,7 +90,7 @@ TEST(PlanLoads, KnowsThatAPullDoesNotDetermineNuWithoutLateralData) {
   EXPECT_NEAR(after(0) / std::sqrt(covariance(0, 0)), 1, 1e-6);
   EXPECT_NEAR(after(1) / std::sqrt(covariance(1, 1)), 1, 1e-6);
 
-  // Pulling so again helps E alone.
+  // Another pull along x improves E alone, and leaves nu undetermined.
   EXPECT_NEAR(
       plan.loads[1].errors.OfParameters()(0) * std::sqrt(2 * sum) / kBarNoise,
       1, 1e-6);
@@ -107,7 +108,7 @@ TEST(PlanLoads, KnowsThatLateralDataDetermineNu) {
   EXPECT_EQ(plan.before.NumUndetermined(), 0);
 }
 
-// In pure shear mu = E / (2 (1 + nu)) alone acts.
+// In pure shear, mu = E / (2 (1 + nu)) alone acts on the displacement.
 TEST(PlanLoads, KnowsThatShearDeterminesTheShearModulusAlone) {
   Scene scene = testing::ShearedBlock();
   scene.load_cases[0].noise_sd = kBarNoise;
@@ -123,7 +124,8 @@ TEST(PlanLoads, KnowsThatShearDeterminesTheShearModulusAlone) {
   const Eigen::Vector2d undetermined = plan.before.directions.col(0);
   EXPECT_NEAR(undetermined(1) / undetermined(0), 1 + kBarPoissonRatio, 1e-6);
   EXPECT_EQ(CombinationInWords(undetermined, plan.Free()), "nu up with E up");
-  // ln mu by itself, along which E and nu change with the least norm.
+  // The data determine ln mu alone.  E and nu change it with the least norm
+  // along its gradient.
   const Eigen::Vector2d gradient(1, -1 / (1 + kBarPoissonRatio));
   const double norm = (scene.supports.held.cast<double>() == 1)
                           .select(0, scene.load_cases[0].displacement.array())
@@ -172,7 +174,8 @@ TEST(PlanLoads, AgreesWithTheCramerRaoBound) {
 const std::vector<IsotropicElasticity> kTwoElasticities = {{3e4, 0.3},
                                                            {9e4, 0.2}};
 
-// d u / d (ln E, nu) of both regions by differences of dense solutions.
+// Returns d u / d (ln E, nu) for both regions, by differences of dense
+// solutions.
 Eigen::MatrixXd TextbookSensitivities(const Scene& scene) {
   constexpr double kStep = 1e-4;
   Eigen::MatrixXd sensitivities(scene.mesh.NumDofs(), 4);
@@ -257,7 +260,7 @@ TEST(PlanLoads, ProjectsTheMotionOfTheCameraOut) {
 TEST(PlanLoads, LooksAtPointsAsAtNodes) {
   Scene scene = BarOnRollers();
   const Mesh& mesh = scene.mesh;
-  // Each vertex of the first three elements, as points.
+  // The scene gets 40 measured points.
   LoadCase& load_case = scene.load_cases[0];
   std::mt19937_64 generator(3);
   load_case.points.points = DrawPoints(mesh, 40, generator);
@@ -266,7 +269,7 @@ TEST(PlanLoads, LooksAtPointsAsAtNodes) {
   load_case.points.displacement.row(2).setConstant(testing::kNan);
   const LoadPlan plan = PlanLoads(
       scene, UnitCandidates(scene, FacesAt(mesh, 0, 4)), kBarParameters, 0.01);
-  // u = 100 / E (x, -nu y) at the points.
+  // At the points, u = 100 / E (x, -nu y).
   const Eigen::MatrixXd at =
       100 / kBarYoungsModulus *
       Interpolate(mesh, load_case.points.points, mesh.nodes);
@@ -297,12 +300,14 @@ TEST(PlanLoads, SizesUnitLoadsByTheDisplacementOfTheScene) {
         a_plan.loads.begin(), a_plan.loads.end(),
         [&](const PlannedLoad& load) { return load.candidate == candidate; });
   };
-  // The force of the scene is 100 on an area of 1: the same load again.
+  // The force of the scene is 100 on an area of 1, so this candidate is the
+  // same load again.
   EXPECT_NEAR(of(plan, 0).factor.value(), 100, 1e-6);
   EXPECT_NEAR(of(plan, 0).errors.standard_errors(0) * std::sqrt(2) /
                   plan.before.standard_errors(0),
               1, 1e-8);
-  // Any unit will do, and relative noise of the same size.
+  // The unit of a candidate does not matter, since its factor scales it to the
+  // displacement of the scene.
   for (CandidateLoad& candidate : unit) {
     for (Load& load : candidate.load_case.loads) {
       load = Scaled(load, 7);
@@ -324,7 +329,8 @@ TEST(PlanLoads, TakesNoiseRelativeToEachLoadCaseWhereNoneIsGiven) {
   CandidateLoad large = {"large", scene.load_cases[0]};
   large.load_case.loads[0] = Scaled(large.load_case.loads[0], 1000);
   const LoadPlan plan = PlanLoads(scene, {large}, kBarParameters, 0.01);
-  // E by itself: 1 % over the root of the number of rows, with a known nu.
+  // With a known nu, the error of ln E is 1 % over the root of the number of
+  // rows.
   const Eigen::Index rows = (!scene.supports.held).count();
   const Eigen::Matrix2d information =
       plan.before.directions *
@@ -351,7 +357,8 @@ TEST(PlanLoads, SaysOfALoadOnSupportsThatItMovesNothing) {
 }
 
 TEST(PlanLoads, TriesAllLoadsWhereNoneDeterminesTheParameters) {
-  // u_x = -100 nu x / E tells nu / E alone, again and again.
+  // Each load gives u_x = -100 nu x / E, so that only nu / E is determined,
+  // however often it is repeated.
   Scene scene = BarOnRollers();
   scene.load_cases[0].observed = AxialOnly(scene.mesh);
   scene.load_cases[0].loads = Sideways(scene).load_case.loads;

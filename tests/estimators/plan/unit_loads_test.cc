@@ -15,7 +15,7 @@ namespace {
 
 using testing::BoxMesh;
 
-// Facets of the box mesh at z = 2.
+// Returns the facets of the box mesh at z = 2.
 Eigen::MatrixXi Top(const Mesh& mesh) {
   return FacetsInBox(mesh, Eigen::Vector3d(-9, -9, 2),
                      Eigen::Vector3d(9, 9, 2));
@@ -24,7 +24,8 @@ Eigen::MatrixXi Top(const Mesh& mesh) {
 class UnitLoadsOfKind
     : public ::testing::TestWithParam<testing::KindOfSection> {};
 
-// Sums over the nodes about any point: a pure moment is the same about each.
+// Sums forces and moments over the nodes about a point off the body: a pure
+// moment is the same about every point.
 TEST_P(UnitLoadsOfKind, HaveOneResultantEach) {
   const Mesh mesh = testing::MeshOfKind(GetParam());
   const int dimension = mesh.Dimension();
@@ -76,7 +77,8 @@ TEST(UnitLoads, BendAndTwistAFlatFace) {
   const std::vector<UnitLoad> loads = UnitLoads(mesh, Top(mesh));
   ASSERT_EQ(loads[3].name, "moment about x");
   ASSERT_EQ(loads[5].name, "moment about z");
-  // Bending has tractions along the normal; torsion has them within the face.
+  // Bending is made by tractions along the normal, torsion by tractions within
+  // the face.
   EXPECT_LT(loads[3].load.force.topRows(2).norm(), 1e-12);
   EXPECT_GT(loads[3].load.force.row(2).norm(), 0.1);
   EXPECT_LT(loads[5].load.force.row(2).norm(), 1e-12);

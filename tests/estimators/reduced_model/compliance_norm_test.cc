@@ -12,7 +12,8 @@
 namespace elastimate {
 namespace {
 
-// The square root of the largest eigenvalue of D A^-1 D, by dense algebra.
+// Returns the square root of the largest eigenvalue of D A^-1 D, by dense
+// algebra.
 double DenseNorm(const Scene& scene, double nu,
                  const Eigen::VectorXd& weights) {
   const DegreesOfFreedom dofs(scene.supports);
@@ -26,7 +27,7 @@ double DenseNorm(const Scene& scene, double nu,
   return std::sqrt(testing::SymmetricEigenvalues(compliance).maxCoeff());
 }
 
-// All components, and few, where the spectrum is another one.
+// With few components the spectrum differs from that with all.
 TEST(ComplianceNorm, IsAnUpperBoundAndNearTheLargestCompliance) {
   for (const std::string shape : {"bracket", "dome"}) {
     for (const double nu : {-0.5, 0.3, 0.499}) {

@@ -14,7 +14,7 @@
 namespace elastimate {
 namespace {
 
-// Two regions on displaced supports under three load cases, noise and all.
+// The scene has two regions, displaced supports, three load cases and noise.
 class ReducedEquilibriumTest : public ::testing::Test {
  protected:
   static Scene MakeScene() {
@@ -30,7 +30,8 @@ class ReducedEquilibriumTest : public ::testing::Test {
     return full_.Forces().Parameters().Moduli(parameters);
   }
 
-  // u and du/dp of the full model there, as a basis is made of them.
+  // Returns u and du/dp of the full model at these parameters, from which a
+  // basis is made.
   Eigen::MatrixXd Pole(const Eigen::Vector4d& parameters) {
     EXPECT_TRUE(full_.Solve(ModuliOf(parameters)));
     const Eigen::MatrixXd sensitivities = full_.Sensitivities(
@@ -66,7 +67,7 @@ TEST_F(ReducedEquilibriumTest, IsExactAtThePoleWithItsDerivatives) {
   const Eigen::MatrixXd s = full_.Sensitivities(directions);
   EXPECT_LT((reduced_.DisplacementSensitivities(directions) - s).norm(),
             1e-9 * s.norm());
-  // The few rows have the inner products of all.
+  // The few rows of the reduced model have the inner products of all rows.
   Eigen::MatrixXd rows(observed_.Size(), 4);
   for (Eigen::Index i = 0; i < 4; ++i) {
     rows.col(i) =
@@ -84,7 +85,8 @@ TEST_F(ReducedEquilibriumTest, IsExactAtThePoleWithItsDerivatives) {
       1e-9 * rows.norm() * residual.norm());
 }
 
-// Galerkin's displacements miss the second order of the distance.
+// The error of Galerkin's displacements grows with the square of the distance
+// from the pole.
 TEST_F(ReducedEquilibriumTest, MissesTheSquareOfTheDistance) {
   reduced_.Extend(ModuliOf(pole_), Pole(pole_));
   const Eigen::Vector4d direction(5e2, 0.05, -1e3, 0.05);
@@ -101,7 +103,8 @@ TEST_F(ReducedEquilibriumTest, MissesTheSquareOfTheDistance) {
   EXPECT_LT(near, far / 30);
 }
 
-// With u and the adjoint of its residual, and no derivatives there.
+// The reduced model has u and the adjoint of its residual at these parameters,
+// but no derivatives.
 TEST_F(ReducedEquilibriumTest, HasTheGradientOfTheFullModelByItsAdjoint) {
   reduced_.Extend(ModuliOf(pole_), Pole(pole_));
   const Eigen::Vector4d other(2e3, 0.1, 6e3, 0.42);
@@ -150,7 +153,7 @@ TEST_F(ReducedEquilibriumTest, SolvesNearbyByTheFactorAtHand) {
   ASSERT_TRUE(full_.Solve(near));
   const Eigen::MatrixXd expected = full_.Displacement();
   ASSERT_TRUE(full_.Solve(ModuliOf(pole_)));
-  // In the energy norm, of each load case.
+  // The tolerance is in the energy norm of each load case.
   const Eigen::MatrixXd products = full_.Forces().Multiply(near, expected);
   const Eigen::VectorXd energies =
       expected.cwiseProduct(products).colwise().sum().cwiseSqrt().transpose();

@@ -19,8 +19,9 @@ using testing::SmallScene;
 
 constexpr Bounds kWholeRange = {-0.99, 0.499};
 
-// A noisy scene of two load cases and displaced supports, each third component
-// not observed, and its model, accurate over the range of nu.
+// Holds a noisy scene of two load cases and displaced supports, of which each
+// third component is not observed, and a model that is accurate over the range
+// of nu.
 struct Fixture {
   Fixture() : scene(NoisyScene()), model(scene), observed(scene) {
     for (const double pole : {0.3, 0.49, -0.9}) {
@@ -56,7 +57,8 @@ struct Fixture {
   ObservedDisplacements observed;
 };
 
-// The sum of squares by the full model, with the best t within the bounds.
+// Returns the sum of squares by the full model, with the best t within the
+// bounds.
 ReducedFit::Point FullFit(const Scene& scene,
                           const ObservedDisplacements& observed, double nu,
                           const Bounds& youngs_modulus) {
@@ -74,7 +76,7 @@ ReducedFit::Point FullFit(const Scene& scene,
   return {nu, t, (rest - t * w).squaredNorm()};
 }
 
-// The best of FullFit over nu, by ever finer grids.
+// Returns the best of FullFit over nu, by ever finer grids.
 ReducedFit::Point BruteForce(const Fixture& fixture,
                              const Bounds& poisson_ratio,
                              const Bounds& youngs_modulus) {
@@ -162,9 +164,10 @@ TEST(ReducedFit, SolvesAsTheFullModelDoes) {
   expect_alike(solution.by_poisson_ratio, sensitivities.poisson_ratio, 1e-5);
 }
 
-// The adversary: displacements that the full model explains at a nu where the
-// reduced model, of a single vector, is poor.  Its own best fit is elsewhere,
-// and leaves a large residual; the lower bounds may not exclude the truth.
+// The full model explains these displacements at a nu where the reduced model,
+// which has a single vector, is poor.  The best fit of the reduced model is
+// elsewhere and leaves a large residual.  The lower bounds must not exclude the
+// truth.
 TEST(ReducedFit, LowerBoundsHoldWhereTheModelIsPoor) {
   for (const std::string& shape : testing::ShapeNames()) {
     for (const double nu : {-0.8, 0.1, 0.45, 0.499, 0.4997}) {

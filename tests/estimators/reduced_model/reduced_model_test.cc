@@ -18,7 +18,7 @@ using testing::Measure;
 using testing::SmallScene;
 using testing::SmallSceneNames;
 
-// w or v of the full model.
+// Returns the responses w and v of the full model.
 Eigen::MatrixXd FullResponses(const Scene& scene, double nu) {
   ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene));
   EXPECT_TRUE(model.SetPoissonRatio(nu));
@@ -35,7 +35,7 @@ Eigen::VectorXd ReducedResponse(const ReducedModel& model, Eigen::Index k,
   return model.Basis(k) * (modes.vectors * modes.At(nu));
 }
 
-// ||x||_A by the stiffness products.
+// Returns ||x||_A by the stiffness products.
 double EnergyNorm(const Mesh& mesh, const Eigen::VectorXd& x, double nu) {
   const StiffnessProducts products = MultiplyStiffnessBasis(mesh, x);
   return std::sqrt(
@@ -51,8 +51,8 @@ Scene PulledScene() {
   return scene;
 }
 
-// An upper bound at every nu, of which the most is not lost: with poles far
-// from nu and near, with few vectors and with many.
+// The bound is above the error at every nu, with poles far from nu and near it,
+// with few vectors and with many.
 TEST(ReducedModel, ErrorIsBelowItsBound) {
   for (const std::string& shape : testing::ShapeNames()) {
     Scene scene = testing::ShapeScene(shape, "gravity");
@@ -75,7 +75,8 @@ TEST(ReducedModel, ErrorIsBelowItsBound) {
             for (Eigen::Index k = 0; k < exact.cols(); ++k) {
               const double error = EnergyNorm(
                   scene.mesh, exact.col(k) - ReducedResponse(model, k, nu), nu);
-              // Rounding of the reference, whose condition is 1 / (1 - 2 nu).
+              // The reference has rounding errors, since its condition number
+              // is 1 / (1 - 2 nu).
               const double rounding =
                   1e-9 * EnergyNorm(scene.mesh, exact.col(k), nu);
               EXPECT_LE(error, model.ErrorBound(k, nu) + rounding);
@@ -136,13 +137,14 @@ TEST(ReducedModel, ErrorFallsByOrdersWithEachFewVectors) {
   for (int i = 0; i < 6; ++i) {
     ASSERT_TRUE(model.Enlarge());
   }
-  // Eight vectors from the pole 0.3: 1e-7 at 0.4 and 3e-5 at 0.45 [measured
-  // with another code on another mesh].
+  // Eight vectors from the pole 0.3 leave 1e-7 at 0.4 and 3e-5 at 0.45
+  // [measured with another code on another mesh].
   EXPECT_LT(model.RelativeErrorBound(0.4), 1e-5);
   EXPECT_LT(model.RelativeErrorBound(0.45), 1e-3);
 }
 
-// What stands still under J has a response that is a function of nu at hand.
+// J does not act on this displacement, so the response is a known function of
+// nu, and no vector is left to add.
 TEST(ReducedModel, SaysWhenNoVectorIsLeft) {
   Scene scene = testing::ShearedBlock();
   const IsotropicElasticity unit = {1, 0.3};

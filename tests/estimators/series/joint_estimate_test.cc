@@ -21,8 +21,8 @@ Scene OneMaterial() {
   return testing::HeldAtBottom(mesh, mesh, {0, 0, -1});
 }
 
-// An estimate of these errors, relative of E, of which noise makes the given
-// parts.
+// Returns an estimate with these errors (that of E is relative), and with the
+// part of them that noise makes.
 FrameEstimate FrameOf(double youngs_modulus, double poisson_ratio,
                       const Eigen::Vector2d& errors,
                       const Eigen::Vector2d& noise) {
@@ -63,7 +63,8 @@ TEST(JointEstimate, IsTheMeanOfLeastVariance) {
             FrameOf(100 * std::exp(0.01), 0.31, narrow, narrow)});
   ASSERT_EQ(joint.status, Status::kOk) << joint.message;
   EXPECT_EQ(joint.estimator, "iterative-fe");
-  // Weights of 1 : 4 and of 4 : 1.
+  // The errors of E are 2 : 1, so its weights are 1 : 4.  Those of nu are 4 :
+  // 1.
   EXPECT_NEAR(std::log(joint.elasticity.youngs_modulus / 100), 0.008, 1e-9);
   EXPECT_NEAR(joint.elasticity.poisson_ratio, 0.302, 1e-9);
   EXPECT_NEAR(*joint.PoissonRatioStandardError(), 0.04 / std::sqrt(5), 1e-9);
@@ -75,7 +76,8 @@ TEST(JointEstimate, AveragesNoiseAlone) {
   const std::vector<FrameEstimate> frames(
       100, FrameOf(100, 0.3, errors, errors * std::sqrt(0.5)));
   const Estimate joint = Join(frames, {0.005, false});
-  // Half of the variance is common to all frames, and the error of the loads.
+  // Half of the variance is common to all frames and is not averaged.  The
+  // error of the loads is not averaged either.
   EXPECT_NEAR(*joint.PoissonRatioStandardError(), 0.02 * std::sqrt(0.5 + 0.005),
               1e-9);
   EXPECT_NEAR(*joint.YoungsModulusStandardError() / 100,
@@ -85,8 +87,8 @@ TEST(JointEstimate, AveragesNoiseAlone) {
               1e-9);
 }
 
-// Strains make four of nine parts of the variance that is no noise, and an
-// unknown thickness makes one.
+// The part of the variance that is no noise consists of nine parts.  Large
+// strains make four of them, and an unknown thickness makes one.
 TEST(JointEstimate, TellsWhatStrainsAndThicknessDoFromTheModel) {
   const Eigen::Vector2d errors(0.03, 0.06);
   std::vector<FrameEstimate> frames(
@@ -105,8 +107,8 @@ TEST(JointEstimate, TellsWhatStrainsAndThicknessDoFromTheModel) {
   EXPECT_NEAR(joint.error_budget.model(1), 0.04, 1e-9);
   EXPECT_EQ(joint.deformation.strain, 0.03);
   EXPECT_EQ(joint.deformation.rotation, 0.01);
-  // Frames of small strains have no such part, and half of them make half of
-  // it.
+  // Frames of small strains have no error of kinematics.  If half of the frames
+  // have none, the joint estimate has half of it.
   for (std::size_t i = 0; i < 50; ++i) {
     frames[i].estimate.error_budget.kinematics = {};
   }
@@ -117,7 +119,8 @@ TEST(JointEstimate, TellsWhatStrainsAndThicknessDoFromTheModel) {
   EXPECT_EQ(Join(frames).error_budget.kinematics.size(), 0);
 }
 
-// Each of a hundred frames has it in its error, which is that of noise else.
+// The error of each of a hundred frames includes that of the load; the rest is
+// noise.
 TEST(JointEstimate, CountsTheErrorOfLoadsOnce) {
   const Eigen::Vector2d errors(0.01, 0.02);
   const std::vector<FrameEstimate> frames(100,
@@ -140,7 +143,7 @@ TEST(JointEstimate, DoesNotAverageWhatResidualsShare) {
   EXPECT_NEAR(*joint.PoissonRatioStandardError(), 0.02 * std::sqrt(0.5 + 0.005),
               1e-6);
   EXPECT_TRUE(joint.Has(FindingCode::kFramesAlike));
-  // Chance makes so large a correlation of so few.
+  // Chance makes such a correlation of so few residuals.
   for (FrameEstimate& frame : frames) {
     frame.likeness = 0.05;
     frame.num_alike = 10;
@@ -149,7 +152,8 @@ TEST(JointEstimate, DoesNotAverageWhatResidualsShare) {
   EXPECT_NEAR(*Join(frames).PoissonRatioStandardError(), 0.002, 1e-6);
 }
 
-// Next to nu = 1/2, say, from as much noise under a smaller load.
+// With as much noise under a smaller load, a frame cannot know nu better than
+// the others.  Next to nu = 1/2, its standard error may claim so.
 TEST(JointEstimate, DoesNotTrustAFrameThatKnowsFarMoreThanOthers) {
   const Eigen::Vector2d errors(0.01, 0.01);
   const Eigen::Vector2d small(0.01, 0.0005);
@@ -224,8 +228,9 @@ TEST(JointEstimate, SharesWhatMostFramesFound) {
   EXPECT_TRUE(Join(frames).Has(FindingCode::kSmoothResidual));
 }
 
-// A series of 200 frames that scatter by the noise alone, which the elements'
-// error, the same in all of them, exceeds by far and correlates otherwise.
+// Returns a series of 200 frames that scatter by noise alone.  The error of the
+// elements is far larger, has another correlation of E and nu, and is the same
+// in all frames.
 std::vector<FrameEstimate> FramesOfOneElementError(std::mt19937_64& generator,
                                                    double more_noise = 1) {
   std::normal_distribution<double> normal;
@@ -270,12 +275,12 @@ TEST(JointEstimate, IsNotMisledByWhatElementsAddToTheErrors) {
   }
   // chi^2 of 40 degrees of freedom has a standard deviation of 9.
   EXPECT_NEAR(square_sum, kSeries, 4 * 9);
-  // A scatter beyond all errors is told.
+  // A scatter that no error explains is a finding.
   EXPECT_TRUE(Join(FramesOfOneElementError(generator, 20))
                   .Has(FindingCode::kFramesScatter));
 }
 
-// Each frame knows its noise from four degrees of freedom.
+// Each frame estimates its noise from four degrees of freedom.
 TEST(JointEstimate, IsNotMisledByNoiseThatFewDegreesOfFreedomTell) {
   constexpr int kSeries = 100;
   constexpr double kFreedom = 4;
@@ -305,15 +310,16 @@ TEST(JointEstimate, IsNotMisledByNoiseThatFewDegreesOfFreedomTell) {
                                      *joint.PoissonRatioStandardError(),
                                  2));
   }
-  // The probability of an alarm is .001.
+  // A scatter is a finding when its probability is below .001.
   EXPECT_LE(num_alarms, 2);
   // chi^2 of 100 degrees of freedom has a standard deviation of 14.
   EXPECT_LT(square_sum.maxCoeff(), kSeries + 4 * 14);
   EXPECT_GT(square_sum.minCoeff(), kSeries - 4 * 14);
 }
 
-// The scores of the joint estimates of many series, and how often a trend is
-// found.  `scatter` is that between frames, in standard deviations of noise.
+// Holds the mean squares of the standard scores of E and nu over many series,
+// and how often a trend and a scatter are found.  ScoresOf simulates frames
+// that scatter by `scatter` standard deviations of their noise.
 struct Scores {
   Eigen::Vector2d mean_square = Eigen::Vector2d::Zero();
   double share_of_trends = 0;
@@ -351,13 +357,14 @@ Scores ScoresOf(int num_series, double scatter) {
   return scores;
 }
 
-// chi^2 of 400 series has a relative standard deviation of .07; errors are
-// never below those of noise, so that scores are somewhat below 1.
+// The chi^2 of 400 series has a relative standard deviation of .07.  Joint
+// errors are never below those of noise, so that the scores are somewhat below
+// 1.
 TEST(JointEstimateStatistics, ErrorsAreTrueOfIndependentFrames) {
   const Scores scores = ScoresOf(400, 1);
   EXPECT_LT(scores.mean_square.maxCoeff(), 1.2);
   EXPECT_GT(scores.mean_square.minCoeff(), 0.6);
-  // Their probabilities are .01, and .001.
+  // By chance a trend is found with a probability of .01, a scatter with .001.
   EXPECT_LT(scores.share_of_trends, 0.03);
   EXPECT_LE(scores.share_of_scatters, 0.01);
 }

@@ -14,8 +14,8 @@
 namespace elastimate {
 namespace {
 
-// Points of a grid of spacing (0.5, 0.25) but for those that a hole of radius 1
-// around (2, 2) takes.
+// Returns the points of a grid of spacing (0.5, 0.25), without those in a hole
+// of radius 1 around (2, 2).
 Eigen::Matrix2Xd GridWithHole() {
   std::vector<Eigen::Vector2d> points;
   for (int i = 0; i <= 8; ++i) {
@@ -51,7 +51,7 @@ TEST(PointMesh, OfAGridIsOfQuadrilateralsAndKeepsTheHole) {
   const Eigen::Matrix2Xd positions = GridWithHole();
   const PointMesh mesh = MeshOfPoints(positions, {});
   EXPECT_EQ(mesh.kind, ElementKind::kQuad4);
-  // All cells, without those that have a corner in the hole.
+  // A cell is there unless it has a corner in the hole.
   int cells = 0;
   for (int i = 0; i < 8; ++i) {
     for (int j = 0; j < 16; ++j) {
@@ -67,8 +67,8 @@ TEST(PointMesh, OfAGridIsOfQuadrilateralsAndKeepsTheHole) {
   EXPECT_NEAR(AreaOf(positions, mesh), cells * 0.125, 1e-12);
 }
 
-// One inside, two beside each other, one of the rim; not the hole, nor the
-// outside of a notch.
+// One lost point lies inside, two lie beside each other, and one is on the rim.
+// Points of the hole are not lost, and neither is the outside of a notch.
 TEST(LostPoints, AreThoseOfSmallGapsOfAGrid) {
   const Eigen::Matrix2Xd whole = GridWithHole();
   EXPECT_EQ(LostPoints(whole).cols(), 0);
@@ -115,7 +115,7 @@ TEST(LostPoints, AreWholeRowsAndColumns) {
       LostPoints(GridWhere([](int, int j) { return j != 2 && j != 3; })).cols(),
       42);
   EXPECT_EQ(LostPoints(GridWhere([](int i, int) { return i != 9; })).cols(), 8);
-  // Up to a hole on one side, and through it.
+  // A lost row ends at a hole, and a lost column is interrupted by it.
   const auto is_in_hole = [](int i, int j) {
     return i > 6 && i < 14 && j > 0 && j < 7;
   };
@@ -134,7 +134,7 @@ TEST(LostPoints, AreNoSlotOfTheSpecimen) {
               return j != 3 || i < 5 || i > 15;
             })).cols(),
             0);
-  // One that is open at one end.
+  // This slot is open at one end.
   EXPECT_EQ(LostPoints(GridWhere([](int i, int j) {
               return j != 3 || i > 15;
             })).cols(),
@@ -151,7 +151,8 @@ TEST(PointMesh, OfScatteredPointsIsOfTrianglesWithoutGaps) {
   const PointMesh mesh = MeshOfPoints(positions, 0.9);
   EXPECT_EQ(mesh.kind, ElementKind::kTri3);
   EXPECT_EQ(Eigen::Index(mesh.points.size()), positions.cols());
-  // A square of 4 without a hole of pi, but for triangles along the rims.
+  // The area is a square of 4 x 4 without a hole of pi, apart from triangles
+  // along the rims.
   EXPECT_NEAR(AreaOf(positions, mesh), 16 - M_PI, 1.2);
   for (const auto& element : mesh.elements.colwise()) {
     for (int i = 0; i < 3; ++i) {

@@ -60,7 +60,8 @@ TEST_F(GmshMeshTest, ReadsVersions1And2And4) {
   }
 }
 
-// Gmsh merges the options of a file, which may hold any of its commands.
+// Gmsh reads options from a file beside the mesh, which may hold any of its
+// commands.
 TEST_F(GmshMeshTest, DoesNotRunWhatLiesBesideAFile) {
   const std::string run = (folder_.Path() / "run").string();
   const std::string options =
@@ -115,7 +116,7 @@ TEST_F(GmshMeshTest, ReadsWhatGmshWrites) {
     EXPECT_EQ(mesh.nodes.cols(), 5);
     EXPECT_EQ(mesh.elements.cols(), 2);
     EXPECT_EQ(mesh.nodes.rowwise().sum(), Eigen::Vector3d(1, 1, 0));
-    // The others have no groups where all elements are saved.
+    // The other formats lose the groups when all elements are saved.
     const bool has_groups =
         path.stem().string().rfind("v4", 0) == 0 || path.extension() == ".unv";
     EXPECT_EQ(ReadRegions(mesh),
@@ -158,7 +159,7 @@ TEST_F(GmshMeshTest, ReadsRegionsFromElementData) {
   EXPECT_FALSE(ReadMeshFile(path).are_regions_groups);
 }
 
-// Each volume is a group; elements are numbered without regard to groups.
+// Each volume is a group.  Elements are numbered without regard to groups.
 TEST_F(GmshMeshTest, ReadsRegionsFromPhysicalGroups) {
   const std::string two = Replaced(
       Replaced(GmshVersion2Mesh(), "3 1 \"body\"", "3 9 \"body\""),
@@ -202,7 +203,8 @@ TEST_F(GmshMeshTest, ReadsElementsOfNoGroupAsRegionZero) {
   EXPECT_FALSE(none.are_regions_groups);
 }
 
-// A group of the whole beside groups of its parts is for loads and supports.
+// A group of the whole mesh beside groups of its parts serves loads and
+// supports, so the groups are no regions.
 TEST_F(GmshMeshTest, HasNoRegionsWhereAnElementIsInTwoGroups) {
   const std::string content =
       Replaced(GmshVersion4Scene(), "1 0 0 -1 1 1 1 1 1 0\n",
@@ -276,7 +278,8 @@ TEST_F(GmshMeshTest, ErrsOnDamage) {
                      "mesh.mesh: .*its last line does not begin with END");
 }
 
-// Gmsh stops at the count and loses what follows.
+// Gmsh itself stops reading at a count that is too small, and loses what
+// follows.
 TEST_F(GmshMeshTest, ErrsOnCountsThatAreTooSmallOrTooLarge) {
   const auto expect = [this](const std::string& whole, const std::string& from,
                              const std::string& to,

@@ -33,7 +33,7 @@ const std::string kPointsDocument = R"({
                   "surface": {"box": [[-1, -1, 1], [2, 2, 2]]}} ] } ]
 })";
 
-// A cube, and 100 of its points that an E and a nu moved.
+// The scene is a cube, of which 100 points were moved as an E and a nu say.
 class MeasuredPointsTest : public ::testing::Test {
  protected:
   MeasuredPointsTest() {
@@ -47,7 +47,7 @@ class MeasuredPointsTest : public ::testing::Test {
     folder_.Write("points.csv", Table(0, 100));
   }
 
-  // The table has the points in [begin, end).
+  // Returns the table of the points in [begin, end).
   std::string Table(Eigen::Index begin, Eigen::Index end) const {
     const PointDisplacements& points = scene_.load_cases[0].points;
     const Eigen::MatrixXd x =
@@ -114,7 +114,7 @@ TEST_F(MeasuredPointsTest, AreRefusedOutside) {
               HasSubstr("2 of 3 points lie outside the mesh, up to 0.312"));
 }
 
-// The mesh does not say in which unit it is.
+// A mesh file does not say which unit it has.
 TEST_F(MeasuredPointsTest, AreInTheUnitOfTheScene) {
   const Eigen::MatrixXd displacement = scene_.load_cases[0].points.displacement;
   std::string table = Table(0, 100);
@@ -125,7 +125,7 @@ TEST_F(MeasuredPointsTest, AreInTheUnitOfTheScene) {
              0.1 * displacement)
                 .norm(),
             1e-14 * displacement.norm());
-  // In a cube of 101 mm they would all be in a corner.
+  // In a cube with edges of 101, points in cm would all lie in a corner.
   WriteVtu(folder_.Path() / "cube.vtu",
            testing::BoxMesh({4, 4, 4}, {101, 101, 101}), {});
   const auto with_keys = [](const std::string& keys) {

@@ -55,7 +55,7 @@ TEST(LocatedPoints, OutsideAreTheNearestOfTheSurface) {
       Interpolate(mesh, located.points, mesh.nodes).isApprox(nearest, 1e-9));
 }
 
-// A quarter of a ring of radii 1 and 2 in two curved triangles.
+// Returns a quarter of a ring of radii 1 and 2 in two curved triangles.
 Mesh QuarterOfRing() {
   const double angles[3] = {0, M_PI / 4, M_PI / 2};
   Mesh mesh;
@@ -74,7 +74,8 @@ Mesh QuarterOfRing() {
   return mesh;
 }
 
-// At the nodes of the arcs, where they touch the circles, and off them.
+// The points lie outside and inside of the arcs at their nodes, where the
+// elements touch the circles, beside a straight edge, and within the ring.
 TEST(LocatedPoints, OutsideOfCurvedElementsAreTheNearestOfTheirEdges) {
   const Mesh mesh = QuarterOfRing();
   const Eigen::Vector2d middle(std::sqrt(0.5), std::sqrt(0.5));
@@ -92,7 +93,8 @@ TEST(LocatedPoints, OutsideOfCurvedElementsAreTheNearestOfTheirEdges) {
   EXPECT_TRUE(found.col(3).isApprox(1.99 * middle, 1e-9));
 }
 
-// Files number them so: mid-edge nodes before vertices, and one of no element.
+// Files may number mid-edge nodes before vertices, and have a node of no
+// element.
 TEST(LocatedPoints, AreFoundWhateverTheOrderOfNodes) {
   Mesh mesh = QuarterOfRing();
   mesh.elements = 9 - mesh.elements.array();
@@ -105,7 +107,8 @@ TEST(LocatedPoints, AreFoundWhateverTheOrderOfNodes) {
   EXPECT_TRUE(Interpolate(mesh, located.points, mesh.nodes).isApprox(x, 1e-9));
 }
 
-// No point of the outline is nearer, which is looked at closely.
+// The nearest point has to be as near as the nearest of 4000 points of the
+// outline.
 TEST(LocatedPoints, OutsideOfCurvedElementsHaveNoNearerOnes) {
   const Mesh mesh = QuarterOfRing();
   constexpr int kSteps = 4000;

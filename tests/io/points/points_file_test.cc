@@ -141,7 +141,8 @@ TEST_F(PointsFileTest, ScalesDeviationsAsTheirDisplacements) {
             Eigen::Vector2d(5, 6));
 }
 
-// The unit of the one is taken for the other where both are likely to be in it.
+// If only positions or only displacements have a unit, the others are taken to
+// have it too, but only where that is likely.
 TEST_F(PointsFileTest, SaysWhichColumnsHaveNoUnit) {
   const PointsFile file = Read("X [mm],Y [mm],U,V\n1,2,3,4\n", 2);
   EXPECT_EQ(file.displacement, Eigen::Vector2d(3, 4));
@@ -185,7 +186,8 @@ TEST_F(PointsFileTest, ReadsFormatsOfCamerasInSpace) {
   EXPECT_EQ(vic.lines, (std::vector<std::size_t>{3}));
 }
 
-// GOM Correlate, ARAMIS Professional and ZEISS Inspect write a component so.
+// GOM Correlate, ARAMIS Professional and ZEISS Inspect write a component in
+// this form.
 TEST_F(PointsFileTest, ReadsTheTableBelowThatOfTheStage) {
   const PointsFile file = Read(
       "# Units: length:mm angle:deg time:s\n"

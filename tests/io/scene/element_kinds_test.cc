@@ -1,4 +1,4 @@
-// Scenes of every kind of element, written and read.
+// Tests of scenes of every kind of element, which are written and read.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,8 +29,8 @@ namespace {
 
 class ElementKinds : public ::testing::TestWithParam<std::string> {
  protected:
-  /// The nodes in another order than that of the scene, where mid-edge nodes
-  /// come before vertices.
+  /// Returns the nodes in another order than that of the scene, in which some
+  /// mid-edge nodes come before vertices.
   std::vector<int> ShuffledNodes() const {
     std::vector<int> order(scene_.mesh.NumNodes());
     std::iota(order.begin(), order.end(), 0);
@@ -50,7 +50,7 @@ void ExpectEstimated(const Scene& scene) {
   for (const std::string_view name : EstimatorNames()) {
     const Estimate estimate = MakeEstimator(name)->Run(scene, {});
     EXPECT_TRUE(estimate.IsUsable()) << name << ": " << estimate.message;
-    // What is iterated stops short of rounding.
+    // Iterations stop short of rounding.
     const double tolerance = name == "closed-form" ? 1e-9 : 1e-6;
     EXPECT_NEAR(
         estimate.elasticity.youngs_modulus / kMeasuredElasticity.youngs_modulus,
@@ -151,13 +151,14 @@ double RoundedToSixDigits(double x) {
   return std::atof(text);
 }
 
-// The nodes off the middle of straight edges by rounding.
+// Rounded positions put mid-edge nodes off the middle of straight edges.
 TEST_P(QuadraticFiles, AreStraightenedWhereTheirPositionsAreRounded) {
   const auto to_single = [](double x) { return double(float(x)); };
   for (const bool is_far : {false, true}) {
     Mesh mesh = mesh_;
     mesh.nodes *= 1 / 3.0;
-    // A thousand times the size away, single precision has four digits left.
+    // At a distance of a thousand times the size, single precision has four
+    // digits left.
     mesh.nodes.array() += is_far ? 700 : 0;
     mesh.nodes = is_far ? mesh.nodes.unaryExpr(to_single).eval()
                         : mesh.nodes.unaryExpr(&RoundedToSixDigits).eval();
@@ -195,7 +196,8 @@ TEST_P(QuadraticFiles, AreEstimatedWhereTheirPositionsAreRounded) {
               kMeasuredElasticity.poisson_ratio, 1e-4);
 }
 
-// A box that holds a node where the file has it, and nothing else.
+// A box of one point holds the node at its place in the file, or at the place
+// where reading moved it to, and no other node.
 TEST_P(QuadraticFiles, HaveTheirMovedNodesInTheBoxesOfTheFile) {
   Mesh mesh = mesh_;
   const int node = mesh.elements(mesh.Topology().num_vertices, 0);
@@ -232,7 +234,8 @@ TEST_P(QuadraticFiles, AreCurvedWhereOneEdgeIs) {
 
 TEST_P(QuadraticFiles, ErrOnElementsThatFold) {
   Scene scene = SceneOf(GetParam());
-  // The nodes are in another order here.
+  // Swapping two mid-edge nodes folds an element, as another order of nodes
+  // would.
   scene.mesh.elements.bottomRows(2).row(0).swap(
       scene.mesh.elements.bottomRows(2).row(1));
   const auto path = folder_.Path() / "scene.vtu";

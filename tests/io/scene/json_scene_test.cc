@@ -15,7 +15,7 @@
 namespace elastimate {
 namespace {
 
-/// A document over two tetrahedra.
+/// The document is a scene over two tetrahedra.
 const std::string kDocument = R"({
   "mesh": "mesh.vtu",
   "supports": [ {"nodes": {"ids": [0, 1, 4]}, "components": "xyz"} ],
@@ -28,7 +28,7 @@ const std::string kDocument = R"({
 const std::string kField =
     "ux,uy,uz\n0,0,0\n0,0,0\n0.1,0.2,0.3\n0.4,0.5,0.6\n0,0,0\n";
 
-/// The mesh of GmshVersion2Mesh, without its groups.
+/// Returns the mesh of GmshVersion2Mesh, without its groups.
 Mesh MeshOfDocument() {
   Mesh mesh;
   mesh.nodes.resize(3, 5);
@@ -50,8 +50,8 @@ class JsonSceneTest : public ::testing::Test {
     folder_.Write("u.csv", kField);
   }
 
-  /// For what only files of Gmsh have; each is read in a process of its own,
-  /// which takes most of a test.
+  /// Uses a mesh of Gmsh, for what only such files have.  Each is read in a
+  /// process of its own, which takes most of the time of a test.
   void UseGmshMesh(const std::string& content) {
     mesh_ = folder_.Write("mesh.msh", content).filename();
   }
@@ -80,7 +80,7 @@ class JsonSceneTest : public ::testing::Test {
   static std::string WithNodes(const std::string& selection) {
     return WithSupports("[ {\"nodes\": " + selection + "} ]");
   }
-  /// The nodes that a support's selection holds.
+  /// Returns the nodes that a support's selection holds.
   std::vector<int> Held(const std::string& document) const {
     const Scene scene = Read(document).scene;
     std::vector<int> nodes;
@@ -128,7 +128,7 @@ TEST_F(JsonSceneTest, ReadsSupportsOfALoadCase) {
   EXPECT_EQ(scene.load_cases[0].supports->displacement(2, 2), 0.5);
   EXPECT_FALSE(scene.load_cases[1].supports);
   EXPECT_FALSE(scene.supports.held.col(2).any());
-  // Where each has its own, the scene needs none.
+  // If every load case has supports of its own, the scene needs none.
   const std::string alone = Replaced(
       Replaced(kDocument, R"("noise_sd": 1e-5)",
                R"("supports": [ {"nodes": {"ids": [0, 1, 4]}} ])"),
@@ -170,7 +170,7 @@ TEST_F(JsonSceneTest, SelectsNodesByArray) {
       Replaced(WithNodes(R"({"array": "fixed"})"), "mesh.vtu", "mesh.vtk"),
       R"({"file": "u.csv"})", R"({"array": "displacement"})");
   const SceneReading reading = Read(document);
-  // Points of the file, of which the third is dropped.
+  // The numbers count the points of the file, of which the third is dropped.
   EXPECT_THAT(Held(document), ElementsAre(0, 1, 2));
   EXPECT_EQ(reading.scene.load_cases[0].displacement.col(3),
             Eigen::Vector3d(.1, .2, .3));
@@ -258,7 +258,8 @@ TEST_F(JsonSceneTest, TakesSupportsThatSayTheSameOfANode) {
                         R"(}, {"nodes": {"ids": [1, 4]}, )" + second + "} ]");
   };
   const std::string measured = R"("displacement": "measured")";
-  // The corner of two planes of symmetry, and of two whole clamps.
+  // The shared node is the corner of two planes of symmetry, or of a plane and
+  // a whole clamp.
   for (const char* const components : {"x", "xyz"}) {
     const Supports supports =
         Read(both(R"("components": "x", )" + measured,
@@ -348,7 +349,8 @@ TEST_F(JsonSceneTest, SelectsOutwardFacets) {
         R"({"type": "pressure", "value": 500, "surface": )" + surface + "}"));
     EXPECT_EQ(pressure.pressure, 500);
     ASSERT_EQ(pressure.facets.cols(), 2);
-    // The areas of the facets y = 0 and x + y + z = 1, both pushed inwards.
+    // The total is that of the facets y = 0 and x + y + z = 1, both pushed
+    // inwards.
     const Eigen::Vector3d total =
         AssembleLoads(Read(kDocument).scene.mesh, {pressure}).rowwise().sum();
     EXPECT_TRUE(total.isApprox(Eigen::Vector3d(-250, 0, -250), 1e-12))
@@ -370,7 +372,7 @@ TEST_F(JsonSceneTest, ReadsATotalForceOnASurface) {
   EXPECT_EQ(force.facets.cols(), 2);
   const Scene scene = Read(kDocument).scene;
   const LoadResultant resultant = ResultantOf(scene.mesh, force);
-  // Half a square and an equilateral triangle of edge sqrt(2).
+  // The area is half a square and an equilateral triangle of edge sqrt(2).
   EXPECT_NEAR(*resultant.area, 0.5 + std::sqrt(3) / 2, 1e-15);
   EXPECT_TRUE(AssembleLoads(scene.mesh, {force})
                   .rowwise()
@@ -382,7 +384,7 @@ TEST_F(JsonSceneTest, ReadsATotalForceOnASurface) {
   EXPECT_EQ(other.facets.cols(), 3);
 }
 
-// Facets are numbered anew where points are dropped.
+// Facets get new node numbers when points of the file are dropped.
 TEST_F(JsonSceneTest, PutsATotalForceOnNodesThatAreKept) {
   folder_.Write("mesh.vtk", LegacySceneText());
   const std::string document =
@@ -438,7 +440,9 @@ TEST_F(JsonSceneTest, NotesANodalForceThatMayBeMeantAsATotal) {
             "if [0, 0, -0.5] is the total, give it as \"type\": \"force\" with "
             "a \"surface\"")));
   }
-  // The load of the paper, one node, nodes one by one, no force.
+  // There is no notice for all free nodes (the load of the paper), for all
+  // nodes, for nodes that are named one by one, for a single node, and for no
+  // force.
   for (const std::string nodes : {R"("free")", R"("all")", R"({"ids": [1, 2]})",
                                   R"({"box": [[0, 0, 1], [1, 1, 1]]})"}) {
     EXPECT_THAT(notices(nodes), ::testing::IsEmpty()) << nodes;
@@ -583,7 +587,8 @@ TEST_F(JsonSceneTest, ErrsOnWhatIsNotInTheSchema) {
   EXPECT_THROWS_WITH(Read("[1, 2]"), "scene.json: the document must be");
 }
 
-// A terminal obeys ESC sequences; a long token hides the rest of the sentence.
+// A terminal obeys ESC sequences, and a long token hides the rest of the
+// sentence.
 TEST_F(JsonSceneTest, QuotesOnlyWhatIsFitToPrint) {
   const std::string control = "\\u001b[2J\\n\\u0000";
   const std::string shown = "\\\\x1b\\[2J\\\\n\\\\x00";
@@ -606,7 +611,7 @@ TEST_F(JsonSceneTest, QuotesOnlyWhatIsFitToPrint) {
     expect("\"noise_sd\": 1e-5", "\"" + text + "\": 1e999",
            "the number 1e999 of the key \"");
   }
-  // The ends of the parser's own message are kept.
+  // A message of the parser is cut in its middle, so that both ends are kept.
   for (const std::string& text :
        {"\033]0;title\a" + longest, "\xFF" + longest, longest}) {
     try {
@@ -658,7 +663,8 @@ TEST_F(JsonSceneTest, JoinsWithOtherFilesOfTheMesh) {
   EXPECT_EQ(
       ReadScene({json, msh}, Measurement::kRequired).scene.load_cases.size(),
       2);
-  // Whose one group is a region all over, which is as good as none.
+  // The only group of this mesh is a region that holds all of it, which is as
+  // good as none.
   Scene scene = ReadScene({msh}, Measurement::kRequired).scene;
   EXPECT_EQ(scene.mesh.regions, Eigen::Vector2i(1, 1));
   scene.mesh.regions.resize(0);

@@ -1,4 +1,4 @@
-// Scenes of a plane in a scene.json, and what is solved by hand.
+// Tests of planar scenes in a scene.json, against solutions by hand.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ constexpr double kYoungsModulus = 200;
 constexpr double kPoissonRatio = 0.25;
 constexpr double kTraction = 3;
 
-/// The rectangle of PlanarVtkText, pulled along x.
+/// The rectangle of PlanarVtkText is pulled along x.
 const std::string kPlanarDocument = R"({
   "model": "plane_stress", "thickness": 0.5,
   "mesh": "mesh.vtk",
@@ -36,7 +36,7 @@ const std::string kPlanarDocument = R"({
                   "surface": {"box": [[2, 0], [2, 1]]}} ] } ]
 })";
 
-/// u = (x, y, ...) times the strains along the axes, with all digits.
+/// Returns u = (x, y, ...) times the strains along the axes, with all digits.
 std::string LinearField(const Eigen::MatrixXd& nodes,
                         const Eigen::VectorXd& strain) {
   std::ostringstream text;
@@ -58,7 +58,8 @@ class PlanarSceneTest : public ::testing::Test {
     WriteField(1, -kPoissonRatio);
   }
 
-  /// Strains in units of that along the pull in plane stress.
+  /// Writes a field of these strains, in units of the strain along the pull in
+  /// plane stress.
   void WriteField(double along, double across) const {
     const Eigen::MatrixXd nodes =
         ReadMeshFile(folder_.Path() / "mesh.vtk").nodes.topRows(2);
@@ -96,19 +97,22 @@ void ExpectFound(const Scene& scene) {
   }
 }
 
-// sigma_xx = p, all others zero: eps_xx = p / E, eps_yy = -nu p / E.
+// In plane stress sigma_xx = p and all other stresses are zero, so eps_xx = p /
+// E and eps_yy = -nu p / E.
 TEST_F(PlanarSceneTest, FindsWhatTensionInPlaneStressIsByHand) {
   ExpectFound(Read(kPlanarDocument));
 }
 
-// sigma_zz = nu p: eps_xx = (1 - nu^2) p / E, eps_yy = -nu (1 + nu) p / E.
+// In plane strain sigma_zz = nu p, so eps_xx = (1 - nu^2) p / E and eps_yy =
+// -nu (1 + nu) p / E.
 TEST_F(PlanarSceneTest, FindsWhatTensionInPlaneStrainIsByHand) {
   WriteField(1 - kPoissonRatio * kPoissonRatio,
              -kPoissonRatio * (1 + kPoissonRatio));
   ExpectFound(Read(Replaced(kPlanarDocument, "plane_stress", "plane_strain")));
 }
 
-// eps = p / E (1, -nu, -nu) in two hexahedra with an oblique face between.
+// The strain is eps = p / E (1, -nu, -nu) in two hexahedra with an oblique face
+// between them.
 TEST_F(PlanarSceneTest, FindsWhatTensionOfHexahedraIsByHand) {
   folder_.Write("solid.vtk",
                 "# vtk DataFile Version 3.0\ntwo hexahedra\nASCII\n"
@@ -171,7 +175,8 @@ TEST_F(PlanarSceneTest, TakesFieldsOfThreeColumnsInThePlane) {
   EXPECT_THROWS_WITH(Read(kPlanarDocument),
                      "u.csv: the row of node 0 \\(z\\) is 0.5, but the mesh is "
                      "planar; make it 0");
-  // Not where it was not observed.
+  // A displacement across the plane is no error at a node that was not
+  // observed.
   EXPECT_NO_THROW(Read(Replaced(kPlanarDocument, R"("loads")",
                                 R"("observed": {"ids": [4, 5, 8]}, "loads")")));
 }
@@ -304,7 +309,8 @@ class PlanarFieldData : public ::testing::Test {
     return "<DataArray type=\"Float64\" Name=\"" + name +
            "\" NumberOfTuples=\"1\" format=\"ascii\">" + value + "</DataArray>";
   }
-  /// Has more strings than it says, which VTK writes beyond its end.
+  /// Returns an array of more strings than it says, which VTK would write
+  /// beyond its end.
   static std::string Strings(const std::string& name) {
     std::string strings = "<Array type=\"String\" Name=\"" + name +
                           "\" NumberOfTuples=\"1\" format=\"ascii\">";

@@ -25,7 +25,8 @@ const Eigen::MatrixXd& ForceOf(const LoadCase& load_case) {
   return std::get<NodalForces>(load_case.loads.at(0)).force;
 }
 
-/// Text forms keep eleven digits only.
+/// The scenes agree up to `tolerance`, since text forms keep eleven digits
+/// only.
 void ExpectSameScene(const Scene& actual, const Scene& expected,
                      double tolerance) {
   EXPECT_TRUE(actual.mesh.nodes.isApprox(expected.mesh.nodes, tolerance));
@@ -74,7 +75,7 @@ class SceneReaderTest : public ::testing::Test {
     return ReadScene({folder_.Write("scene.vtk", legacy_text)}, measurement);
   }
 
-  /// Writes the fields as a VTU and reads them.
+  /// Writes the fields as a VTU file and reads them.
   SceneReading Read(const Mesh& mesh, const Fields& fields,
                     Measurement measurement = Measurement::kRequired) const {
     const auto path = folder_.Path() / "scene.vtu";
@@ -142,8 +143,8 @@ TEST_F(SceneReaderTest, NotesRegionsOnce) {
 }
 
 TEST_F(SceneReaderTest, NotesNodesAtOnePlace) {
-  // The second tetrahedron has the face of the first in nodes of its own, and
-  // a point that nothing uses lies there too.
+  // The two tetrahedra share a face, but the second has its own nodes there.  A
+  // point that nothing uses lies there as well.
   const std::string apart = Replaced(
       Replaced(Replaced(Replaced(Replaced(Replaced(LegacySceneText(),
                                                    "POINTS 6", "POINTS 9"),
@@ -172,7 +173,7 @@ TEST_F(SceneReaderTest, NotesNodesAtOnePlace) {
 }
 
 TEST_F(SceneReaderTest, QuotesOnlyWhatIsFitToPrint) {
-  // VTK decodes the names of a legacy file.
+  // VTK decodes %1B and %0A in the names of a legacy file.
   EXPECT_THROWS_WITH(Read(Replaced(LegacySceneText(), "SCALARS fixed",
                                    "SCALARS f%1B[31mixed%0A")),
                      "the point arrays of this file are: "
@@ -270,7 +271,7 @@ TEST_F(SceneReaderTest, ReadsSupportsOfOneLoadCase) {
   Fields fields = fields_;
   fields.point.push_back(FieldOf(fields, "fixed"));
   fields.point.back().name = "fixed_2";
-  // Supports that are given once more are no others.
+  // Supports of a load case that equal those of the scene are not kept apart.
   EXPECT_FALSE(HasSupportsOfCases(Read(scene_.mesh, fields).scene));
   fields.point.back().values(0, 0) = 1 - fields.point.back().values(0, 0);
   const Scene scene = Read(scene_.mesh, fields).scene;
@@ -320,7 +321,7 @@ TEST_F(SceneReaderTest, ErrsOnTwoArraysOfOneName) {
       "a.msh: it has the data 'force' twice");
 }
 
-// VTK crashes on strings that do not end.
+// VTK would crash on strings that do not end.
 TEST_F(SceneReaderTest, LeavesArraysOfStringsAlone) {
   const auto path = folder_.Path() / "scene.vtu";
   WriteEncoded(path, scene_.mesh, fields_, AllVtkEncodings()[0]);
@@ -365,7 +366,7 @@ TEST_F(SceneReaderTest, NamesNodesThatAreNotFinite) {
 }
 
 TEST_F(SceneReaderTest, NumbersNodesAsTheFileDoesDespiteUnusedOnes) {
-  // This is the scene with one more point ahead of the others.
+  // The file has the scene with one more point ahead of the others.
   Mesh mesh = scene_.mesh;
   mesh.nodes.resize(3, 6);
   mesh.nodes << Eigen::Vector3d(9, 9, 9), scene_.mesh.nodes;
@@ -548,7 +549,7 @@ TEST_F(SceneReaderTest, AcceptsExtensionsInCapitals) {
           "cases": [{"displacement": {"array": "displacement"},
                      "loads": [{"type": "nodal_force", "array": "force"}]}]})");
   expect_same("s.json", "S.JSON");
-  // Gmsh would run this as a script.
+  // Gmsh would run such a file as a script.
   EXPECT_THROWS_WITH(
       ReadScene({folder_.Write("s.Mesh", "Exit;\n")}, Measurement::kRequired),
       "s.Mesh: the file name does not end in");
@@ -581,7 +582,7 @@ TEST_F(SceneReaderTest, JoinsFilesOfOneMesh) {
   const auto first = folder_.Path() / "first.vtu";
   const auto second = folder_.Path() / "second.vtk";
   WriteEncoded(first, scene_.mesh, fields_, AllVtkEncodings()[5]);
-  // Fewer digits than the other.
+  // This encoding keeps fewer digits than the other.
   WriteEncoded(second, scene_.mesh, fields_, AllVtkEncodings()[10]);
   const Scene scene = ReadScene({first, second}, Measurement::kRequired).scene;
   ASSERT_EQ(scene.load_cases.size(), 4);

@@ -25,8 +25,9 @@ TEST(Printable, EscapesControlCharacters) {
   EXPECT_EQ(Printable("a\033[31mred\033[0m"), "a\\x1b[31mred\\x1b[0m");
   EXPECT_EQ(Printable("one\ntwo\tthree\r"), "one\\ntwo\\tthree\\r");
   EXPECT_EQ(Printable("nul\0bell\a\x7f"s), "nul\\x00bell\\x07\\x7f");
-  // These are commands in one character, a separator of lines, and marks that
-  // turn the direction: "gpj.exe" would look like "exe.jpg".
+  // Some characters beyond ASCII are as harmful: one that begins a command of a
+  // terminal, a separator of lines, and marks that turn the direction, by which
+  // "gpj.exe" would look like "exe.jpg".
   EXPECT_EQ(Printable("\u009b31m"), "\\u009b31m");
   EXPECT_EQ(Printable("a\u2028b"), "a\\u2028b");
   EXPECT_EQ(Printable("\u202egpj\u202c.exe"), "\\u202egpj\\u202c.exe");
@@ -54,8 +55,8 @@ TEST(Printable, CutsTheMiddleOfLongText) {
   EXPECT_EQ(Printable(std::string(61, '\033')).find("\\x1b\\x1b"), 0);
 }
 
-// Any bytes become one line of UTF-8 without control characters, which stays as
-// it is.
+// Any bytes become one line of UTF-8 without control characters, and that line
+// stays as it is.
 TEST(Printable, HoldsForAnyBytes) {
   std::mt19937 random(1);
   for (int trial = 0; trial < 2000; ++trial) {
