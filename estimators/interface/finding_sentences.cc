@@ -78,24 +78,16 @@ std::string Unchanged(const IsotropicElasticity& elasticity,
   return text;
 }
 
-// "a and 2 more".
-std::string FirstAndMore(const std::vector<std::string>& names) {
-  return names[0] +
-         (names.size() == 1
-              ? ""
-              : " and " + std::to_string(names.size() - 1) + " more");
-}
-
 // "a, b, c and 4 more".
-std::string FirstOf(const std::vector<std::string>& names) {
-  constexpr std::size_t kMostNamed = 3;
+std::string FirstOf(const std::vector<std::string>& names,
+                    std::size_t most_named = 3) {
   std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), kMostNamed); ++i) {
+  for (std::size_t i = 0; i < std::min(names.size(), most_named); ++i) {
     text += (i == 0 ? "" : ", ") + names[i];
   }
-  return names.size() <= kMostNamed
+  return names.size() <= most_named
              ? text
-             : text + " and " + std::to_string(names.size() - kMostNamed) +
+             : text + " and " + std::to_string(names.size() - most_named) +
                    " more";
 }
 
@@ -416,7 +408,7 @@ Finding VirtualWorkImbalance(double force_residual, Severity severity) {
 
 Finding RatiosAtLimit(const std::vector<std::string>& parameters) {
   return Error(FindingCode::kPoissonRatioAtLimit,
-               "the data pull " + FirstAndMore(parameters) +
+               "the data pull " + FirstOf(parameters, 1) +
                    " to the end of its range and leave a residual that is not "
                    "noise",
                kCheckTheModel);
@@ -425,7 +417,7 @@ Finding RatiosAtLimit(const std::vector<std::string>& parameters) {
 Finding OutliersAtLimit(const std::vector<std::string>& parameters) {
   return Error(FindingCode::kPoissonRatioAtLimit,
                "some nodes lie far off, which may be what pulls " +
-                   FirstAndMore(parameters) + " to the end of its range",
+                   FirstOf(parameters, 1) + " to the end of its range",
                "use a loss (huber or cauchy)");
 }
 
