@@ -12,6 +12,7 @@
 #include "apps/element_order.h"
 #include "apps/estimator_flags.h"
 #include "apps/flags.h"
+#include "apps/gap_choice.h"
 #include "apps/law_choice.h"
 #include "apps/linear_algebra.h"
 #include "apps/material_flags.h"
@@ -46,9 +47,12 @@ double SecondsSince(Clock::time_point start) {
 
 SceneReading Read(const std::vector<std::string>& arguments) {
   SceneReading reading =
-      ReadScene({arguments.begin(), arguments.end()}, Measurement::kRequired,
-                SectionFromFlags(), RegionsFromFlag(),
-                ChoosesLaw() ? AxesOfLawsToChoose() : LawFromFlags());
+      ReadWithGapsChosen([&arguments](const std::vector<bool>& is_filled) {
+        return ReadScene(
+            {arguments.begin(), arguments.end()}, Measurement::kRequired,
+            SectionFromFlags(), RegionsFromFlag(),
+            ChoosesLaw() ? AxesOfLawsToChoose() : LawFromFlags(), is_filled);
+      });
   if (IsGiven("noise_sd")) {
     for (LoadCase& load_case : reading.scene.load_cases) {
       load_case.noise_sd = FLAGS_noise_sd;

@@ -569,10 +569,12 @@ Finding LargeDeformation(const DeformationSize& size,
 
 Finding MarginNotGiven(double relative_error) {
   return Warning(FindingCode::kMarginNotGiven,
-                 "the mesh ends at its outermost points; half a spacing more "
-                 "would change E by " +
+                 "the mesh ends at its outermost points, which may lie inside "
+                 "of the specimen; what that may change of E is " +
                      Percent(relative_error),
-                 "give \"margin\", their distance from the free edges");
+                 "give \"margin\", their distance from the free edges, or "
+                 "take a mesh of the specimen, over which points need not be "
+                 "nodes");
 }
 
 Finding NegativePoissonRatio(const ParameterEstimate& poisson_ratio) {

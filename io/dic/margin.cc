@@ -1,6 +1,9 @@
 #include "elastimate/io/dic/margin.h"
 
 #include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
 
 #include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/text/numbers.h"
@@ -8,25 +11,76 @@
 namespace elastimate {
 namespace {
 
+// On a grid, the points inside of a slanted or curved edge make steps.  A
+// straight side of fewer edges is one of them.
+constexpr Eigen::Index kStraightSide = 5;
+
 struct FreeEdges {
   double length = 0;
   double mean_length = 0;
+  double length_of_steps = 0;
 };
 
-FreeEdges FreeEdgesOf(const Scene& scene) {
+// Returns the edges that no support holds.
+Eigen::MatrixXi FreeEdgeNodes(const Scene& scene) {
   const ComponentMask& held = SupportsOf(scene, 0).held;
   const Eigen::MatrixXi edges = BoundaryFacets(scene.mesh);
-  FreeEdges free;
-  Eigen::Index count = 0;
+  std::vector<Eigen::Index> free;
   for (Eigen::Index i = 0; i < edges.cols(); ++i) {
-    const int a = edges(0, i);
-    const int b = edges(1, i);
-    if (!(held.col(a).any() && held.col(b).any())) {
-      free.length += (scene.mesh.nodes.col(a) - scene.mesh.nodes.col(b)).norm();
-      ++count;
+    if (!(held.col(edges(0, i)).any() && held.col(edges(1, i)).any())) {
+      free.push_back(i);
     }
   }
-  free.mean_length = count == 0 ? 0 : free.length / static_cast<double>(count);
+  return edges(Eigen::all, free);
+}
+
+// Returns the number of edges in the straight side of each edge.
+std::vector<Eigen::Index> SidesOf(const Mesh& mesh,
+                                  const Eigen::MatrixXi& edges) {
+  std::vector<Eigen::Index> parent(edges.cols());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&parent](Eigen::Index i) {
+    while (parent[i] != i) {
+      i = parent[i];
+    }
+    return i;
+  };
+  std::map<std::pair<int, bool>, Eigen::Index> first;  // By node, direction.
+  for (Eigen::Index i = 0; i < edges.cols(); ++i) {
+    const Eigen::VectorXd along =
+        mesh.nodes.col(edges(1, i)) - mesh.nodes.col(edges(0, i));
+    const bool is_upright = std::abs(along(1)) > std::abs(along(0));
+    for (const int node : edges.col(i)) {
+      const auto found = first.emplace(std::pair(node, is_upright), i).first;
+      parent[root(i)] = root(found->second);
+    }
+  }
+  std::vector<Eigen::Index> size(edges.cols(), 0);
+  for (Eigen::Index i = 0; i < edges.cols(); ++i) {
+    ++size[root(i)];
+  }
+  std::vector<Eigen::Index> of_edge;
+  for (Eigen::Index i = 0; i < edges.cols(); ++i) {
+    of_edge.push_back(size[root(i)]);
+  }
+  return of_edge;
+}
+
+FreeEdges FreeEdgesOf(const Scene& scene) {
+  const Mesh& mesh = scene.mesh;
+  const Eigen::MatrixXi edges = FreeEdgeNodes(scene);
+  const std::vector<Eigen::Index> sides = SidesOf(mesh, edges);
+  FreeEdges free;
+  for (Eigen::Index i = 0; i < edges.cols(); ++i) {
+    const double length =
+        (mesh.nodes.col(edges(0, i)) - mesh.nodes.col(edges(1, i))).norm();
+    free.length += length;
+    if (mesh.kind == ElementKind::kQuad4 && sides[i] < kStraightSide) {
+      free.length_of_steps += length;
+    }
+  }
+  free.mean_length =
+      edges.cols() == 0 ? 0 : free.length / static_cast<double>(edges.cols());
   return free;
 }
 
@@ -46,22 +100,36 @@ double AreaOf(const Mesh& mesh) {
   return twice / 2;
 }
 
+void AddNotice(const std::string& what, double added,
+               std::vector<std::string>& notices) {
+  if (added > 0) {
+    notices.push_back(what + " adds " + Percent(added) +
+                      " to the cross section, as if the specimen were so much "
+                      "thicker");
+  }
+}
+
 }  // namespace
 
 void AllowForMargin(std::optional<double> margin, Scene& scene,
                     std::vector<std::string>& notices) {
   const FreeEdges free = FreeEdgesOf(scene);
-  const double share_of_length = free.length / AreaOf(scene.mesh);
+  const double area = AreaOf(scene.mesh);
+  Section& section = scene.mesh.section;
   if (!margin) {
-    scene.mesh.section.thickness_relative_sd =
-        free.mean_length / 2 * share_of_length;
-  } else if (*margin > 0) {
-    scene.mesh.section.thickness *= 1 + *margin * share_of_length;
-    notices.push_back("the margin of " + NumberText(*margin) + " adds " +
-                      Percent(*margin * share_of_length) +
-                      " to the cross section, as if the specimen were so much "
-                      "thicker");
+    section.thickness_relative_sd = free.mean_length / 2 * free.length / area;
+    return;
   }
+  // The mean distance of an edge from the steps inside of it is half a spacing.
+  const double of_steps = free.mean_length / 2 * free.length_of_steps / area;
+  const double of_margin = *margin * free.length / area;
+  section.thickness_relative_sd = of_steps;
+  section.thickness *= 1 + of_steps + of_margin;
+  AddNotice("the margin of " + NumberText(*margin), of_margin, notices);
+  AddNotice(
+      "half a spacing of the points at slanted and curved edges, on which no "
+      "points lie,",
+      of_steps, notices);
 }
 
 }  // namespace elastimate

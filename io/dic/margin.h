@@ -15,6 +15,9 @@ namespace elastimate {
 /// specimen: the thickness grows by that share.  Where no margin is given, half
 /// the mean length of free edges of elements is the standard deviation of one,
 /// and m L / A becomes that of the thickness (Section::thickness_relative_sd).
+/// Where one is given, half a spacing is added at the steps that a slanted or
+/// curved edge makes in a grid of points, which lie up to a spacing inside of
+/// it, and the standard deviation is that of these alone.
 /// Edges that a support holds end there by choice, and have no margin.
 /// Precondition: a valid planar scene.  O(num_elements log num_elements).
 void AllowForMargin(std::optional<double> margin, Scene& scene,

@@ -42,18 +42,43 @@ std::optional<double> ReadLength(const JsonValue& mesh,
   return length;
 }
 
-// Adds nodes without a displacement for the points of a grid that the camera
-// lost.
-DicFrame WithLostPoints(DicFrame frame) {
-  const Eigen::Matrix2Xd lost = LostPoints(frame.positions);
-  Eigen::Matrix2Xd positions(2, frame.positions.cols() + lost.cols());
-  positions << frame.positions, lost;
-  Eigen::Matrix2Xd displacement = Eigen::Matrix2Xd::Constant(
-      2, positions.cols(), std::numeric_limits<double>::quiet_NaN());
-  displacement.leftCols(frame.displacement.cols()) = frame.displacement;
-  frame.positions = positions;
-  frame.displacement = displacement;
-  frame.lines.resize(positions.cols(), 0);
+// Tells whether gaps of the grid are filled; nothing where nobody says so.
+std::optional<bool> ReadGaps(const JsonValue& mesh) {
+  if (!mesh.Has("gaps")) {
+    return std::nullopt;
+  }
+  const JsonValue gaps = mesh.At("gaps");
+  if (gaps.String() != "filled" && gaps.String() != "open") {
+    gaps.Fail("is \"" + Printable(gaps.String()) +
+              "\"; make it \"filled\" or \"open\", or leave it out");
+  }
+  return gaps.String() == "filled";
+}
+
+// Adds nodes without a displacement at `places`.
+void AddUnmeasured(const Eigen::Matrix2Xd& places, DicFrame& frame) {
+  const Eigen::Index num_points = frame.positions.cols();
+  frame.positions.conservativeResize(2, num_points + places.cols());
+  frame.positions.rightCols(places.cols()) = places;
+  frame.displacement.conservativeResize(2, num_points + places.cols());
+  frame.displacement.rightCols(places.cols())
+      .setConstant(std::numeric_limits<double>::quiet_NaN());
+  frame.lines.resize(num_points + places.cols(), 0);
+}
+
+DicFrame WithGapsFilled(std::optional<bool> are_filled, DicFrame frame,
+                        PointGaps& gaps) {
+  const GridGaps of_grid = GapsOf(frame.positions);
+  AddUnmeasured(of_grid.lost, frame);
+  for (std::size_t i = 0; i < of_grid.doubtful.size(); ++i) {
+    const Eigen::Matrix2Xd& gap = of_grid.doubtful[i];
+    if (!are_filled) {
+      gaps.found.push_back({gap.cols(), gap.rowwise().mean()});
+    }
+    if (are_filled.value_or(i < gaps.is_filled.size() && gaps.is_filled[i])) {
+      AddUnmeasured(gap, frame);
+    }
+  }
   return frame;
 }
 
@@ -70,20 +95,25 @@ Eigen::Index NumBeside(const DicFrame& frame, const PointMesh& points) {
   return frame.positions.cols() - Eigen::Index(points.points.size());
 }
 
-// Throws where more than a few points are beside the mesh, since the mesh of a
-// part of the specimen would bear the force of all of it.
+// Tells whether more than a few points are beside the mesh, which would bear
+// the force of the whole specimen as a part of it.
+bool AreManyBeside(const DicFrame& frame, const PointMesh& points) {
+  constexpr double kMostBeside = 0.05;
+  return static_cast<double>(NumBeside(frame, points)) >
+         kMostBeside * static_cast<double>(frame.positions.cols());
+}
+
 void CheckPointsBeside(const std::filesystem::path& path, const DicFrame& frame,
                        const PointMesh& points) {
-  constexpr double kMostBeside = 0.05;
-  const Eigen::Index num_beside = NumBeside(frame, points);
-  if (static_cast<double>(num_beside) >
-      kMostBeside * static_cast<double>(frame.positions.cols())) {
+  if (AreManyBeside(frame, points)) {
     ThrowInputError(
-        path, std::to_string(num_beside) + " of its " +
-                  std::to_string(frame.positions.cols()) +
-                  " points do not hang together with the others, of which the "
-                  "mesh is made; leave out those that are not of the specimen, "
-                  "or give \"max_edge\" above the gap between them");
+        path,
+        "the mesh of its points has several parts, of which the largest "
+        "is without " +
+            std::to_string(NumBeside(frame, points)) + " of the " +
+            std::to_string(frame.positions.cols()) +
+            " points; leave out points that are not of the specimen, or "
+            "give \"max_edge\" above the distance between the parts");
   }
 }
 
@@ -106,28 +136,35 @@ std::string Description(const std::filesystem::path& path,
   }
   if (frame.num_invalid + num_beside > 0) {
     text << "; " << frame.num_invalid << " points without a measurement and "
-         << num_beside << " that do not hang together with it are left out";
+         << num_beside << " that are not connected to it are left out";
   }
   if (num_lost > 0) {
-    text << "; " << num_lost
-         << " of its nodes fill gaps of the grid, without a measurement";
+    text << "; nodes without a measurement fill gaps of the grid: " << num_lost;
   }
   return text.str();
 }
 
 }  // namespace
 
-MeshFile ReadMeasuredMesh(const JsonValue& mesh,
+MeshFile ReadMeasuredMesh(const JsonValue& mesh, PointGaps& gaps,
                           std::vector<std::string>& notices) {
-  mesh.CheckKeys(WithTableKeys({"points", "max_edge", "margin"}));
+  mesh.CheckKeys(WithTableKeys({"points", "max_edge", "margin", "gaps"}));
   const JsonValue name = mesh.At("points");
   if (name.String().empty()) {
     name.Fail("is empty; give the path of a file");
   }
   const std::filesystem::path path = name.File().parent_path() / name.String();
-  const DicFrame frame =
-      WithLostPoints(ReadDicFile(path, ReadTableOptions(mesh, 2)));
-  const PointMesh points = MeshOf(path, frame, ReadLength(mesh, "max_edge"));
+  const std::optional<double> max_edge = ReadLength(mesh, "max_edge");
+  const std::optional<bool> are_filled = ReadGaps(mesh);
+  const DicFrame measured = ReadDicFile(path, ReadTableOptions(mesh, 2));
+  DicFrame frame = WithGapsFilled(are_filled, measured, gaps);
+  PointMesh points = MeshOf(path, frame, max_edge);
+  if (!are_filled && AreManyBeside(frame, points)) {
+    // Gaps that take the specimen apart are none of it.
+    frame = WithGapsFilled(true, measured, gaps);
+    points = MeshOf(path, frame, max_edge);
+    gaps.found.clear();
+  }
   CheckPointsBeside(path, frame, points);
   MeshFile file;
   file.path = path;

@@ -7,19 +7,23 @@
 #include <vector>
 
 #include "elastimate/core/scene/scene.h"
+#include "elastimate/io/dic/point_gaps.h"
 #include "elastimate/io/mesh/mesh_file.h"
 #include "elastimate/io/points/table_options.h"
 #include "elastimate/io/text/json_value.h"
 
 namespace elastimate {
 
-/// Reads the key "mesh" of a scene where it is {"points": FILE, "max_edge"}
-/// with the keys of ReadTableOptions.  The mesh is a planar one of the points
-/// that a camera followed (ReadDicFile, MeshOfPoints), with their displacements
-/// as the node array "displacement".  A notice tells what was left out, and the
-/// size of the mesh, which scales E.  Throws std::invalid_argument, naming the
-/// file and the place in it.
-MeshFile ReadMeasuredMesh(const JsonValue& mesh,
+/// Reads the key "mesh" of a scene where it is {"points": FILE, "max_edge",
+/// "gaps"} with the keys of ReadTableOptions.  The mesh is a planar one of the
+/// points that a camera followed (ReadDicFile, MeshOfPoints), with their
+/// displacements as the node array "displacement".  What the camera lost of a
+/// grid (GapsOf) becomes nodes without a displacement, and so do larger gaps
+/// where "gaps" is "filled", or where `gaps.is_filled` says so and the key is
+/// absent; `gaps.found` are those that the key says nothing about.  A notice
+/// tells what was left out, and the size of the mesh, which scales E.  Throws
+/// std::invalid_argument, naming the file and the place in it.
+MeshFile ReadMeasuredMesh(const JsonValue& mesh, PointGaps& gaps,
                           std::vector<std::string>& notices);
 
 /// Enters the displacements that another file of the camera has for the nodes

@@ -71,13 +71,15 @@ struct PointGrid {
   std::array<GridAxis, 2> axes;
   std::map<GridPlace, int> point_at;
 
-  Eigen::Vector2d Position(const GridPlace& place) const {
-    Eigen::Vector2d position;
-    for (int i = 0; i < 2; ++i) {
-      position(i) =
-          axes[i].first + axes[i].spacing * static_cast<double>(place[i]);
+  Eigen::Matrix2Xd Positions(const std::vector<GridPlace>& places) const {
+    Eigen::Matrix2Xd positions(2, Eigen::Index(places.size()));
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      for (int i = 0; i < 2; ++i) {
+        positions(i, Eigen::Index(k)) =
+            axes[i].first + axes[i].spacing * static_cast<double>(places[k][i]);
+      }
     }
-    return position;
+    return positions;
   }
 };
 
@@ -126,6 +128,30 @@ Elements QuadrilateralsOf(const Eigen::Matrix2Xd& positions) {
     }
   }
   return elements;
+}
+
+// Returns the places without a point in the box of the grid; none where points
+// are too few for a box.
+std::set<GridPlace> EmptyPlaces(const PointGrid& grid) {
+  // Points have to fill at least one place in so many of the box of the grid.
+  constexpr long long kSparsest = 8;
+  GridPlace end = {0, 0};
+  for (const auto& [place, point] : grid.point_at) {
+    end = {std::max(end[0], place[0]), std::max(end[1], place[1])};
+  }
+  std::set<GridPlace> empty;
+  const auto num_points = static_cast<long long>(grid.point_at.size());
+  if (end[0] + 1 > kSparsest * num_points / (end[1] + 1)) {
+    return empty;
+  }
+  for (long long i = 0; i <= end[0]; ++i) {
+    for (long long j = 0; j <= end[1]; ++j) {
+      if (grid.point_at.count({i, j}) == 0) {
+        empty.insert({i, j});
+      }
+    }
+  }
+  return empty;
 }
 
 // Returns the places without a point that are connected to `first` and lie
@@ -361,42 +387,31 @@ PointMesh Number(ElementKind kind, const Elements& elements) {
 
 }  // namespace
 
-Eigen::Matrix2Xd LostPoints(const Eigen::Matrix2Xd& positions) {
-  // More empty places in a row are a hole.
-  constexpr std::size_t kMostLost = 4;
-  // Points have to fill at least one place in so many of the box of the grid.
-  constexpr long long kSparsest = 8;
+GridGaps GapsOf(const Eigen::Matrix2Xd& positions) {
+  // A hole of more places would change E by more than a few per cent.
+  constexpr std::size_t kMostLost = 2;
+  constexpr long long kMostLines = 4;
   const std::optional<PointGrid> grid = GridOf(positions);
+  GridGaps gaps;
+  gaps.lost.resize(2, 0);
   if (!grid) {
-    return Eigen::Matrix2Xd(2, 0);
+    return gaps;
   }
-  GridPlace end = {0, 0};
-  for (const auto& [place, point] : grid->point_at) {
-    end = {std::max(end[0], place[0]), std::max(end[1], place[1])};
-  }
-  if (end[0] + 1 > kSparsest * positions.cols() / (end[1] + 1)) {
-    return Eigen::Matrix2Xd(2, 0);
-  }
-  std::set<GridPlace> empty;
-  for (long long i = 0; i <= end[0]; ++i) {
-    for (long long j = 0; j <= end[1]; ++j) {
-      if (grid->point_at.count({i, j}) == 0) {
-        empty.insert({i, j});
-      }
-    }
-  }
-  std::vector<GridPlace> lost = TakeLostLines(*grid, kMostLost, empty);
+  std::set<GridPlace> empty = EmptyPlaces(*grid);
+  std::vector<GridPlace> lost = TakeLostLines(*grid, kMostLines, empty);
   while (!empty.empty()) {
     const std::vector<GridPlace> gap = TakeGap(*empty.begin(), empty);
     if (gap.size() <= kMostLost) {
       lost.insert(lost.end(), gap.begin(), gap.end());
+    } else if (2 * Eigen::Index(gap.size()) < positions.cols()) {
+      gaps.doubtful.push_back(grid->Positions(gap));
     }
   }
-  Eigen::Matrix2Xd found(2, Eigen::Index(lost.size()));
-  for (std::size_t k = 0; k < lost.size(); ++k) {
-    found.col(Eigen::Index(k)) = grid->Position(lost[k]);
-  }
-  return found;
+  gaps.lost = grid->Positions(lost);
+  std::stable_sort(
+      gaps.doubtful.begin(), gaps.doubtful.end(),
+      [](const auto& a, const auto& b) { return a.cols() > b.cols(); });
+  return gaps;
 }
 
 PointMesh MeshOfPoints(const Eigen::Matrix2Xd& positions,

@@ -27,11 +27,20 @@ struct PointMesh {
 PointMesh MeshOfPoints(const Eigen::Matrix2Xd& positions,
                        std::optional<double> max_edge);
 
-/// Returns the places that a camera lost, as opposed to a hole of the specimen:
-/// where a grid along the axes has no point in gaps of up to four places, and
-/// in rows and columns, up to four side by side, that are missing over the
-/// whole width.  2 x n; none where the points are not on a grid.  O(n log n).
-Eigen::Matrix2Xd LostPoints(const Eigen::Matrix2Xd& positions);
+/// Places of a grid without a point, 2 x n each.
+struct GridGaps {
+  /// Places that the camera lost: gaps of one or two places, and rows and
+  /// columns, up to four side by side, that are missing over the whole width.
+  Eigen::Matrix2Xd lost;
+  /// Larger gaps within the box of the grid, where either the camera lost
+  /// points or the specimen has a hole, a slot or a notch; the largest first.
+  std::vector<Eigen::Matrix2Xd> doubtful;
+};
+
+/// Finds the gaps of points on a grid along the axes; none where the points are
+/// on no grid.  A gap of more than half as many places as there are points is
+/// no gap, but beside the specimen.  O(n log n).
+GridGaps GapsOf(const Eigen::Matrix2Xd& positions);
 
 }  // namespace elastimate
 

@@ -77,7 +77,7 @@ void FillUnits(const CsvTable& table, const std::vector<std::size_t>& columns,
   if (without.empty()) {
     return;
   }
-  if (place >= num_positions && unit.IsSmall()) {
+  if (place >= num_positions) {
     ThrowInputError(
         table.path,
         Quoted(table, columns[place]) + " is in " + unit.name + ", but " +

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "elastimate/core/scene/scene.h"
+#include "elastimate/io/dic/point_gaps.h"
 #include "elastimate/io/mesh/mesh_file.h"
 #include "elastimate/io/scene/frame_series.h"
 #include "elastimate/io/text/file_lines.h"
@@ -20,6 +21,7 @@ struct FileScene {
   Scene scene;
   std::vector<std::string> notices;
   std::optional<FrameSeries> frames;
+  PointGaps gaps;  ///< Of a mesh of measured points.
   /// The lines of the measurement of each load case, in the order of nodes or
   /// of points; empty where it is not text.
   std::vector<std::vector<FileLines>> measured_lines;

@@ -23,10 +23,10 @@
 namespace elastimate {
 namespace {
 
-MeshFile ReadNamedMesh(const JsonValue& name,
+MeshFile ReadNamedMesh(const JsonValue& name, PointGaps& gaps,
                        std::vector<std::string>& notices) {
   if (name.IsObject()) {
-    return ReadMeasuredMesh(name, notices);
+    return ReadMeasuredMesh(name, gaps, notices);
   }
   const std::filesystem::path path = ResolvePath(name);
   if (FileExtension(path) == ".json") {
@@ -169,14 +169,17 @@ const JsonValue& OwnerOfSupports(const JsonValue& document,
 }  // namespace
 
 FileScene ReadJsonScene(const std::filesystem::path& path,
-                        Measurement measurement, const SectionChoice& section) {
+                        Measurement measurement, const SectionChoice& section,
+                        const std::vector<bool>& filled_gaps) {
   const nlohmann::json parsed = ParseJsonFile(path);
   const JsonValue document(path, parsed);
   document.CheckKeys({"model", "thickness", "mesh", "regions", "materials",
                       "supports", "rigid_motion", "origin", "cases", "frames"});
   const SectionChoice choice = Choose(section, ReadSection(document));
   FileScene file_scene;
-  file_scene.mesh = ReadNamedMesh(document.At("mesh"), file_scene.notices);
+  file_scene.gaps.is_filled = filled_gaps;
+  file_scene.mesh =
+      ReadNamedMesh(document.At("mesh"), file_scene.gaps, file_scene.notices);
   ChooseRegions(document, file_scene.mesh);
   const MeshFile& mesh = file_scene.mesh;
   file_scene.scene.mesh =

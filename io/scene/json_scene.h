@@ -2,6 +2,7 @@
 #define ELASTIMATE_IO_SCENE_JSON_SCENE_H_
 
 #include <filesystem>
+#include <vector>
 
 #include "elastimate/io/scene/file_scene.h"
 #include "elastimate/io/scene/scene_reader.h"
@@ -11,7 +12,8 @@ namespace elastimate {
 /// Reads a scene.json and the files it names, as ReadScene describes.  Throws
 /// std::invalid_argument, naming the file and the place in it.
 FileScene ReadJsonScene(const std::filesystem::path& path,
-                        Measurement measurement, const SectionChoice& section);
+                        Measurement measurement, const SectionChoice& section,
+                        const std::vector<bool>& filled_gaps);
 
 }  // namespace elastimate
 

@@ -520,9 +520,10 @@ void KeepSupports(const Supports& supports, std::vector<LoadCase>& load_cases) {
 }
 
 FileScene ReadFileScene(const std::filesystem::path& path,
-                        Measurement measurement, const SectionChoice& section) {
+                        Measurement measurement, const SectionChoice& section,
+                        const std::vector<bool>& filled_gaps) {
   return FileExtension(path) == ".json"
-             ? ReadJsonScene(path, measurement, section)
+             ? ReadJsonScene(path, measurement, section, filled_gaps)
              : SceneFromArrays(ReadMeshFile(path), measurement, section);
 }
 
@@ -530,7 +531,8 @@ FileScene ReadFileScene(const std::filesystem::path& path,
 
 SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
                        Measurement measurement, const SectionChoice& section,
-                       RegionChoice regions, const LawChoice& law) {
+                       RegionChoice regions, const LawChoice& law,
+                       const std::vector<bool>& filled_gaps) {
   if (paths.empty()) {
     throw std::invalid_argument("no scene file is given; name one");
   }
@@ -538,11 +540,13 @@ SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
   SceneReading reading;
   CaseNames names;
   for (const std::filesystem::path& path : paths) {
-    FileScene file_scene = ReadFileScene(path, measurement, section);
+    FileScene file_scene =
+        ReadFileScene(path, measurement, section, filled_gaps);
     const std::filesystem::path mesh_path = file_scene.mesh.path;
     const std::string why_no_regions = file_scene.mesh.why_no_regions;
     if (&path == &paths.front()) {
       reading.axis_arrays = file_scene.axis_arrays;
+      reading.gaps = file_scene.gaps.found;
     }
     std::vector<int> file_order;
     Scene scene = FinishScene(path, std::move(file_scene), regions, law,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "elastimate/core/scene/scene.h"
+#include "elastimate/io/dic/point_gaps.h"
 #include "elastimate/io/scene/frame_series.h"
 #include "elastimate/io/text/file_lines.h"
 
@@ -60,6 +61,9 @@ struct SceneReading {
   /// The cell arrays that the scene.json names as axes of materials, one column
   /// for each element, by name.
   std::map<std::string, Eigen::MatrixXd> axis_arrays;
+  /// Gaps between the points of a camera, of which the scene.json does not say
+  /// whether the specimen ends there.
+  std::vector<PointGap> gaps;
 };
 
 /// Reads a scene from files whose arrays make it up (.vtu, .vtk, or .msh with
@@ -82,6 +86,10 @@ struct SceneReading {
 /// points of a VTK file, by ascending node number in a Gmsh file.  That is what
 /// ids and CSV rows in a scene.json refer to, and what messages name.
 ///
+/// `filled_gaps` says of each of SceneReading::gaps whether the camera lost
+/// points there, which become nodes without a displacement; by default, the
+/// specimen ends there.
+///
 /// The scene returned is valid (ValidateScene).  Throws std::invalid_argument
 /// with one sentence that names the file and the array, key, node or element
 /// for anything wrong with the input, std::bad_alloc where memory is lacking,
@@ -94,7 +102,8 @@ SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
                        Measurement measurement,
                        const SectionChoice& section = {},
                        RegionChoice regions = RegionChoice::kAsGiven,
-                       const LawChoice& law = {});
+                       const LawChoice& law = {},
+                       const std::vector<bool>& filled_gaps = {});
 
 }  // namespace elastimate
 

@@ -1,0 +1,184 @@
+#include "apps/gap_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "elastimate/core/scene/observed_displacements.h"
+#include "elastimate/core/text/numbers.h"
+#include "elastimate/estimators/registry.h"
+
+namespace elastimate {
+namespace {
+
+/// Says which gaps are filled, and what a fit then leaves.
+struct Outline {
+  std::vector<bool> is_filled;
+  SceneReading reading;
+  std::optional<Estimate> estimate;  // Nothing where no fit takes the scene.
+  double num_observed = 0;
+
+  double Residual() const {
+    return estimate ? estimate->displacement_residual.value_or(NAN) : NAN;
+  }
+};
+
+// Enters the frame of the largest load as the measurement of the scene.
+void EnterLargestFrame(const FrameSeries& frames, Scene& scene) {
+  std::size_t largest = 0;
+  for (std::size_t i = 1; i < frames.files.size(); ++i) {
+    // Loads that grow are the rule where no record says what they are.
+    if (!(std::abs(frames.Load(i)) < std::abs(frames.Load(largest)))) {
+      largest = i;
+    }
+  }
+  scene.load_cases = {frames.read(largest)};
+}
+
+// Fits the elements as they are, whose error is alike with and without a gap.
+void Fit(Outline& outline) {
+  Scene scene = outline.reading.scene;
+  scene.origin = Origin::kComputed;
+  try {
+    if (outline.reading.frames) {
+      EnterLargestFrame(*outline.reading.frames, scene);
+    }
+    outline.estimate = MakeEstimator("iterative-fe")->Run(scene, {});
+    outline.num_observed =
+        static_cast<double>(ObservedDisplacements(scene).Size());
+  } catch (const std::invalid_argument&) {
+    // The estimator that was asked for says what is wrong with the scene.
+  }
+}
+
+// Returns how much better `b` fits than `a`, as twice the difference of
+// logarithmic likelihoods of independent residuals; NaN without both fits.
+double Evidence(const Outline& a, const Outline& b) {
+  const Outline& better = b.Residual() < a.Residual() ? b : a;
+  const double alike =
+      better.estimate
+          ? std::clamp(better.estimate->residual_correlation.value_or(0), 0.0,
+                       0.99)
+          : 0;
+  const double num_independent =
+      better.num_observed * (1 - alike) / (1 + alike);
+  return 2 * num_independent * std::log(a.Residual() / b.Residual());
+}
+
+// Returns the largest logarithmic change of a modulus.
+double ChangeOfModuli(const Estimate& a, const Estimate& b) {
+  double change = 0;
+  for (std::size_t i = 0;
+       i < std::min(a.parameters.size(), b.parameters.size()); ++i) {
+    const double ratio = b.parameters[i].value / a.parameters[i].value;
+    if (a.parameters[i].IsStiffness() && ratio > 0) {
+      change = std::max(change, std::abs(std::log(ratio)));
+    }
+  }
+  return change;
+}
+
+// Returns "21 places around (10, 5), 6 places around (3, 2) and 4 more gaps" of
+// the gaps that are filled, or of the others; empty without any.
+std::string GapsWhere(bool is_filled, const Outline& outline) {
+  constexpr std::size_t kMostNamed = 3;
+  std::string text;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < outline.is_filled.size(); ++i) {
+    const PointGap& gap = outline.reading.gaps[i];
+    if (outline.is_filled[i] == is_filled && ++count <= kMostNamed) {
+      text += (text.empty() ? "" : ", ") + std::to_string(gap.num_places) +
+              " places around (" + NumberText(gap.center(0)) + ", " +
+              NumberText(gap.center(1)) + ")";
+    }
+  }
+  return count > kMostNamed
+             ? text + " and " + std::to_string(count - kMostNamed) +
+                   " more gaps"
+             : text;
+}
+
+// Says which gaps are filled, and why.
+void AddNotices(double change, Outline& outline) {
+  const std::string why = change > 0
+                              ? "which the displacements do not tell for sure: "
+                                "it may change E by " +
+                                    Percent(change)
+                              : "since displacements fit better so";
+  std::vector<std::string>& notices = outline.reading.notices;
+  const std::string filled = GapsWhere(true, outline);
+  if (!filled.empty()) {
+    notices.push_back("no point was measured at " + filled +
+                      "; the specimen is taken to go on there, " + why +
+                      "; \"gaps\": \"open\" beside \"points\" ends it there");
+  }
+  const std::string open = GapsWhere(false, outline);
+  if (!open.empty()) {
+    notices.push_back("no point was measured at " + open +
+                      "; the specimen is taken to end there, " + why +
+                      "; \"gaps\": \"filled\" beside \"points\" lets it go on");
+  }
+}
+
+/// Starts from the better of all gaps filled and all open, then tries each of
+/// the largest by itself.
+class OutlineSearch {
+ public:
+  explicit OutlineSearch(const ReadOutline& read)
+      : read_(read), best_{{}, read({}), {}, 0} {
+    best_.is_filled.assign(NumGaps(), false);
+  }
+
+  Outline Run() {
+    constexpr std::size_t kMostTried = 8;
+    if (NumGaps() == 0) {
+      return std::move(best_);
+    }
+    Fit(best_);
+    Compare(std::vector<bool>(NumGaps(), true));
+    for (std::size_t i = 0;
+         NumGaps() > 1 && i < std::min(NumGaps(), kMostTried); ++i) {
+      std::vector<bool> is_filled = best_.is_filled;
+      is_filled[i] = !is_filled[i];
+      Compare(std::move(is_filled));
+    }
+    const double change = std::sqrt(variance_);
+    AddNotices(change, best_);
+    double& sd = best_.reading.scene.mesh.section.thickness_relative_sd;
+    sd = std::hypot(sd, change);
+    return std::move(best_);
+  }
+
+ private:
+  std::size_t NumGaps() const { return best_.reading.gaps.size(); }
+
+  void Compare(std::vector<bool> is_filled) {
+    // Twice the logarithm of a likelihood ratio that leaves no doubt.
+    constexpr double kDecisive = 10;
+    Outline other = {is_filled, read_(is_filled), {}, 0};
+    Fit(other);
+    const double evidence = Evidence(best_, other);
+    if (evidence > kDecisive) {
+      best_ = std::move(other);
+    } else if (evidence > -kDecisive) {
+      variance_ +=
+          std::pow(ChangeOfModuli(*best_.estimate, *other.estimate), 2);
+    }
+  }
+
+  ReadOutline read_;
+  Outline best_;
+  double variance_ = 0;
+};
+
+}  // namespace
+
+SceneReading ReadWithGapsChosen(const ReadOutline& read) {
+  return OutlineSearch(read).Run().reading;
+}
+
+}  // namespace elastimate
