@@ -515,7 +515,9 @@ Finding TrendOverFrames(const std::string& parameter, bool is_relative,
                      (trend.is_over_load ? " from the least load to the largest"
                                          : " from the first frame to the last"),
                  trend.is_over_load
-                     ? "take frames of small load"
+                     ? "check that frames and loads are in one order (the load "
+                       "record can name the files), or take frames of small "
+                       "load"
                      : "look for creep, and drift of camera or load");
 }
 
@@ -553,8 +555,8 @@ Finding LargeDeformation(const DeformationSize& size,
     return {FindingCode::kLargeDeformation, severity,
             "the displacements are larger than the body: they are strains of " +
                 TwoDigits(size.strain),
-            "check that displacements and coordinates are in the same unit of "
-            "length"};
+            "check that they are displacements, not positions after the load, "
+            "and in the unit of length of the coordinates"};
   }
   constexpr double kDegreesOfRadian = 57.29578;
   return {FindingCode::kLargeDeformation, severity,

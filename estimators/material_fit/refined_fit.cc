@@ -145,10 +145,13 @@ class Refinement {
     constexpr double kLogLikelihoodRatio = -9;
     // Where the strain is uniform, both are exact; the measurement has norm 1.
     constexpr double kExact = kLimits.exact_residual * kLimits.exact_residual;
+    // Elements that leave half of the measurement did not compute it.
+    constexpr double kOther = 0.25;
     // Supports that follow the noise of their nodes leave another residual of
     // it in each space.
     return linear_ && linear_->Fit().minimum && !HasBounds() &&
            !HasUnknownMotion(scene_) && least_of_quadratic_ > kExact &&
+           linear_->SquareSum() < kOther &&
            static_cast<double>(linear_->NumRows()) *
                    std::log(linear_->SquareSum() / least_of_quadratic_) <
                kLogLikelihoodRatio;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "elastimate/core/text/numbers.h"
 #include "elastimate/io/text/printable.h"
 
 namespace elastimate {
@@ -136,6 +137,19 @@ std::vector<const PhysicalGroup*> FindSurfaceGroups(const JsonValue& selection,
   return groups;
 }
 
+// Returns "(0, 0) and (20, 5)", the corners of the box of all nodes.
+std::string CornersOf(const MeshFile& mesh) {
+  const auto text_of = [&mesh](const Eigen::VectorXd& corner) {
+    std::string text;
+    for (int i = 0; i < DimensionOf(mesh.kind); ++i) {
+      text += (text.empty() ? "(" : ", ") + NumberText(corner(i));
+    }
+    return text + ")";
+  };
+  return text_of(mesh.nodes.rowwise().minCoeff()) + " and " +
+         text_of(mesh.nodes.rowwise().maxCoeff());
+}
+
 }  // namespace
 
 BoxCorners CornersOfBox(const JsonValue& box, const MeshFile& mesh) {
@@ -194,7 +208,8 @@ NodeMask SelectNodes(const JsonValue& selection, const MeshFile& mesh,
   }
   mask = mask && mesh.used;
   if (!mask.any()) {
-    selection.Fail("selects no node that a " + mesh.Shape() + " uses");
+    selection.Fail("selects no node that a " + mesh.Shape() +
+                   " uses; nodes lie between " + CornersOf(mesh));
   }
   return mask;
 }

@@ -388,7 +388,10 @@ double NumberOfCell(const std::filesystem::path& path, std::string_view cell,
   }
   if (error != std::errc() || end != digits.data() + digits.size()) {
     ThrowInputError(path, place() + "'" + Printable(cell) +
-                              "' is not a number; correct it");
+                              (cell.find(',') == std::string_view::npos
+                                   ? "' is not a number; correct it"
+                                   : "' has a comma; write a point, or put "
+                                     "semicolons between the columns"));
   }
   return value;
 }

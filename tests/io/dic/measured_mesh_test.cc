@@ -123,7 +123,7 @@ TEST_F(MeasuredMeshTest, IsNotOfAPartOfThePoints) {
   folder_.Write("frame.csv", apart);
   EXPECT_THAT([&] { Read(kStrip); },
               ::testing::ThrowsMessage<std::invalid_argument>(
-                  HasSubstr("40 of its 105 points")));
+                  HasSubstr("40 of the 105 points")));
 }
 
 TEST_F(MeasuredMeshTest, WithGripsAndALoadCellGivesTheTruth) {
@@ -158,12 +158,62 @@ TEST_F(MeasuredMeshTest, WithLostPointsGivesTheTruth) {
   const SceneReading reading = Read(kStrip);
   EXPECT_EQ(reading.scene.mesh.NumElements(), 48);
   EXPECT_EQ(reading.scene.load_cases[0].observed.count(), 2 * (65 - 3));
-  EXPECT_THAT(reading.notices[0], HasSubstr("; 3 of its nodes fill gaps"));
+  EXPECT_THAT(reading.notices[0], HasSubstr("fill gaps of the grid: 3"));
   const Estimate estimate =
       MakeEstimator("iterative-fe")->Run(reading.scene, {});
   ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
   EXPECT_NEAR(estimate.elasticity.youngs_modulus, kModulus, 1e-8 * kModulus);
   EXPECT_NEAR(estimate.elasticity.poisson_ratio, kRatio, 1e-8);
+}
+
+// Five points of a free edge are lost.
+TEST_F(MeasuredMeshTest, HasTheGapsThatAreFilled) {
+  std::string frame = Frame();
+  for (const std::string point :
+       {"\n2,2,", "\n2.5,2,", "\n3,2,", "\n3.5,2,", "\n4,2,"}) {
+    const std::size_t begin = frame.find(point);
+    ASSERT_NE(begin, std::string::npos) << point;
+    frame.erase(begin, frame.find('\n', begin + 1) - begin);
+  }
+  folder_.Write("frame.csv", frame);
+  const SceneReading open = Read(kStrip);
+  EXPECT_EQ(open.scene.mesh.NumElements(), 48 - 6);
+  ASSERT_EQ(open.gaps.size(), 1);
+  EXPECT_EQ(open.gaps[0].num_places, 5);
+  EXPECT_EQ(open.gaps[0].center, Eigen::Vector2d(3, 2));
+  const SceneReading filled =
+      ReadScene({folder_.Write("scene.json", kStrip)}, Measurement::kRequired,
+                {}, RegionChoice::kAsGiven, {}, {true});
+  EXPECT_EQ(filled.scene.mesh.NumElements(), 48);
+  EXPECT_EQ(filled.scene.load_cases[0].observed.count(), 2 * (65 - 5));
+  for (const auto& [word, num_elements] :
+       {std::pair("filled", 48), std::pair("open", 42)}) {
+    std::string document = kStrip;
+    const std::string margin = "\"margin\": 0";
+    document.replace(document.find(margin), margin.size(),
+                     margin + ", \"gaps\": \"" + word + "\"");
+    const SceneReading given = Read(document);
+    EXPECT_EQ(given.scene.mesh.NumElements(), num_elements);
+    EXPECT_TRUE(given.gaps.empty());
+  }
+}
+
+// Rows of points above and below a slanted edge lie up to a spacing inside.
+TEST_F(MeasuredMeshTest, CountsHalfASpacingAtSlantedEdges) {
+  std::istringstream frame(Frame());
+  std::string below;
+  for (std::string line; std::getline(frame, line);) {
+    const double x = std::atof(line.c_str());
+    const double y = std::atof(line.c_str() + line.find(',') + 1);
+    below += line[0] == 'x' || y <= 0.5 + x / 4 ? line + "\n" : "";
+  }
+  folder_.Write("frame.csv", below);
+  const Section section = Read(kStrip).scene.mesh.section;
+  // Steps of two edges and one, twelve and three in all but the held ones, and
+  // 33 of the 48 elements.
+  EXPECT_GT(section.thickness, 0.5);
+  EXPECT_NEAR(section.thickness / 0.5 - 1, section.thickness_relative_sd,
+              1e-12);
 }
 
 TEST_F(MeasuredMeshTest, WithTractionAndAFreeCameraGivesTheTruth) {

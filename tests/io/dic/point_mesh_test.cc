@@ -1,5 +1,6 @@
 #include "elastimate/io/dic/point_mesh.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -68,10 +69,14 @@ TEST(PointMesh, OfAGridIsOfQuadrilateralsAndKeepsTheHole) {
 }
 
 // One lost point lies inside, two lie beside each other, and one is on the rim.
-// Points of the hole are not lost, and neither is the outside of a notch.
-TEST(LostPoints, AreThoseOfSmallGapsOfAGrid) {
+// Points of the hole may not be lost.
+TEST(GapsOfGrids, AreLostWhereTheyAreSmall) {
   const Eigen::Matrix2Xd whole = GridWithHole();
-  EXPECT_EQ(LostPoints(whole).cols(), 0);
+  EXPECT_EQ(GapsOf(whole).lost.cols(), 0);
+  ASSERT_EQ(GapsOf(whole).doubtful.size(), 1);
+  EXPECT_LT((GapsOf(whole).doubtful[0].rowwise().mean() - Eigen::Vector2d(2, 2))
+                .norm(),
+            1e-9);
   const std::vector<Eigen::Vector2d> lost = {
       {0.5, 0.5}, {3.5, 3.5}, {3.5, 3.25}, {0, 2}};
   std::vector<Eigen::Index> kept;
@@ -86,12 +91,13 @@ TEST(LostPoints, AreThoseOfSmallGapsOfAGrid) {
   }
   ASSERT_EQ(Eigen::Index(kept.size()), whole.cols() - 4);
   const Eigen::Matrix2Xd found =
-      LostPoints(Eigen::Matrix2Xd(whole(Eigen::all, kept)));
+      GapsOf(Eigen::Matrix2Xd(whole(Eigen::all, kept))).lost;
   ASSERT_EQ(found.cols(), 4);
   for (const Eigen::Vector2d& x : lost) {
     EXPECT_LT((found.colwise() - x).colwise().norm().minCoeff(), 1e-9);
   }
-  EXPECT_EQ(LostPoints(Eigen::Matrix2Xd::Random(2, 30)).cols(), 0);
+  EXPECT_EQ(GapsOf(Eigen::Matrix2Xd::Random(2, 30)).lost.cols(), 0);
+  EXPECT_TRUE(GapsOf(Eigen::Matrix2Xd::Random(2, 30)).doubtful.empty());
 }
 
 // Returns those of 21 x 8 points for which `is_there`.
@@ -108,37 +114,54 @@ Eigen::Matrix2Xd GridWhere(const std::function<bool(int, int)>& is_there) {
   return points;
 }
 
-TEST(LostPoints, AreWholeRowsAndColumns) {
-  EXPECT_EQ(LostPoints(GridWhere([](int, int j) { return j != 2; })).cols(),
-            21);
-  EXPECT_EQ(
-      LostPoints(GridWhere([](int, int j) { return j != 2 && j != 3; })).cols(),
-      42);
-  EXPECT_EQ(LostPoints(GridWhere([](int i, int) { return i != 9; })).cols(), 8);
+Eigen::Index NumLost(const std::function<bool(int, int)>& is_there) {
+  return GapsOf(GridWhere(is_there)).lost.cols();
+}
+
+std::vector<Eigen::Index> DoubtfulSizes(
+    const std::function<bool(int, int)>& is_there) {
+  std::vector<Eigen::Index> sizes;
+  for (const Eigen::Matrix2Xd& gap : GapsOf(GridWhere(is_there)).doubtful) {
+    sizes.push_back(gap.cols());
+  }
+  return sizes;
+}
+
+TEST(GapsOfGrids, AreLostRowsAndColumns) {
+  EXPECT_EQ(NumLost([](int, int j) { return j != 2; }), 21);
+  EXPECT_EQ(NumLost([](int, int j) { return j != 2 && j != 3; }), 42);
+  EXPECT_EQ(NumLost([](int i, int) { return i != 9; }), 8);
   // A lost row ends at a hole, and a lost column is interrupted by it.
   const auto is_in_hole = [](int i, int j) {
     return i > 6 && i < 14 && j > 0 && j < 7;
   };
-  EXPECT_EQ(LostPoints(GridWhere([&](int i, int j) {
+  EXPECT_EQ(NumLost([&](int i, int j) {
               return !is_in_hole(i, j) && (j != 3 || i >= 7);
-            })).cols(),
+            }),
             7);
-  EXPECT_EQ(LostPoints(GridWhere([&](int i, int j) {
-              return !is_in_hole(i, j) && i != 9;
-            })).cols(),
+  EXPECT_EQ(NumLost([&](int i, int j) { return !is_in_hole(i, j) && i != 9; }),
             2);
 }
 
-TEST(LostPoints, AreNoSlotOfTheSpecimen) {
-  EXPECT_EQ(LostPoints(GridWhere([](int i, int j) {
-              return j != 3 || i < 5 || i > 15;
-            })).cols(),
-            0);
-  // This slot is open at one end.
-  EXPECT_EQ(LostPoints(GridWhere([](int i, int j) {
-              return j != 3 || i > 15;
-            })).cols(),
-            0);
+// A slot inside, one that is open at one end, a bite out of the free edge and a
+// step of it: either the specimen has them, or the camera lost points.
+TEST(GapsOfGrids, AreDoubtfulWhereTheSpecimenMayEnd) {
+  using ::testing::ElementsAre;
+  EXPECT_THAT(
+      DoubtfulSizes([](int i, int j) { return j != 3 || i < 5 || i > 15; }),
+      ElementsAre(11));
+  EXPECT_THAT(DoubtfulSizes([](int i, int j) { return j != 3 || i > 15; }),
+              ElementsAre(16));
+  EXPECT_THAT(
+      DoubtfulSizes([](int i, int j) { return j < 6 || i < 5 || i > 7; }),
+      ElementsAre(6));
+  EXPECT_THAT(DoubtfulSizes([](int i, int j) {
+                return (j < 7 || i > 9) && (i != 15 || j < 2 || j > 4);
+              }),
+              ElementsAre(10, 3));
+  // More places than half of the points are beside the specimen.
+  EXPECT_THAT(DoubtfulSizes([](int i, int j) { return j < 5 || i < 2; }),
+              ElementsAre());
 }
 
 TEST(PointMesh, OfScatteredPointsIsOfTrianglesWithoutGaps) {
