@@ -66,6 +66,17 @@ std::vector<Eigen::Index> SidesOf(const Mesh& mesh,
   return of_edge;
 }
 
+// Tells whether an edge lies on the box of all nodes, as no step does.
+bool IsOnBox(const Mesh& mesh, const Eigen::Vector2i& edge) {
+  const Eigen::VectorXd low = mesh.nodes.rowwise().minCoeff();
+  const Eigen::VectorXd high = mesh.nodes.rowwise().maxCoeff();
+  const auto a = mesh.nodes.col(edge(0)).array();
+  const auto b = mesh.nodes.col(edge(1)).array();
+  return ((a == low.array() && b == low.array()) ||
+          (a == high.array() && b == high.array()))
+      .any();
+}
+
 FreeEdges FreeEdgesOf(const Scene& scene) {
   const Mesh& mesh = scene.mesh;
   const Eigen::MatrixXi edges = FreeEdgeNodes(scene);
@@ -75,7 +86,8 @@ FreeEdges FreeEdgesOf(const Scene& scene) {
     const double length =
         (mesh.nodes.col(edges(0, i)) - mesh.nodes.col(edges(1, i))).norm();
     free.length += length;
-    if (mesh.kind == ElementKind::kQuad4 && sides[i] < kStraightSide) {
+    if (mesh.kind == ElementKind::kQuad4 && sides[i] < kStraightSide &&
+        !IsOnBox(mesh, edges.col(i))) {
       free.length_of_steps += length;
     }
   }

@@ -32,14 +32,14 @@ struct PointScales {
 /// Chooses the unit and the factors.  The unit is that of the options, or else
 /// of the first column that has a unit of length, so that positions keep theirs
 /// and displacements are converted.  Pixels, and tables without any unit, are
-/// `length_per_pixel` long in this unit.  Columns without a unit are taken in
-/// the unit of the others, with a notice.  `deviations` are the columns of the
+/// `length_per_pixel` long in this unit.  Displacements without a unit are
+/// taken in that of the positions, with a notice.  `deviations` are the columns of the
 /// standard deviations of the displacement, or none; they have its unit unless
 /// they have their own.
 ///
 /// Throws std::invalid_argument, naming the file and the column, where a unit
 /// is not known, pixels have no scale, a scale has no pixels, or positions
-/// without a unit stand beside displacements in pixels, um or nm.
+/// without a unit stand beside displacements with one.
 PointScales ScalesOf(const CsvTable& table, const PointColumns& columns,
                      const std::vector<std::size_t>& deviations,
                      const TableOptions& options);

@@ -91,7 +91,7 @@ TEST_F(CsvTableTest, ReadsDecimalCommasWhereTheySeparateNothing) {
     EXPECT_EQ(table.Number(table.rows[0], 0), -1.5) << text;
   }
   const CsvTable quoted = Read("a,b\n\"1,234\",2\n");
-  EXPECT_THROWS_WITH(quoted.Number(quoted.rows[0], 0), "'1,234' is not");
+  EXPECT_THROWS_WITH(quoted.Number(quoted.rows[0], 0), "'1,234' has a comma");
   const CsvTable mixed = Read("a;b\n1,5;1.5\n1.5;2\n");
   EXPECT_THROWS_WITH(mixed.CheckDecimalMarks({0}),
                      "line 2 has a decimal comma and line 3 a decimal point");
