@@ -165,7 +165,7 @@ class Ladder {
 
 // Decides about the last rung; whether it is the last one.
 bool StopsHere(const std::string& why_not_enough, Ladder& ladder) {
-  ladder.Decide(why_not_enough.empty() ? "stopped: within tolerance"
+  ladder.Decide(why_not_enough.empty() ? "stopped: it is accurate enough"
                                        : "went on: " + why_not_enough);
   return why_not_enough.empty();
 }
@@ -218,9 +218,9 @@ class PreparedUnknownMotion : public Preparation {
 std::string_view Auto::Name() const { return "auto"; }
 
 std::string_view Auto::Description() const {
-  return "climbs from closed-form over virtual-fields to reduced-fe and "
-         "iterative-fe, as far as the scene needs; of measured displacements "
-         "only the last two know the mesh error";
+  return "tries closed-form, virtual-fields, reduced-fe and iterative-fe until "
+         "the estimate is accurate enough; for measured displacements it "
+         "begins with the last two, which alone know the error of the mesh";
 }
 
 Capabilities Auto::WhatItTakes() const {
