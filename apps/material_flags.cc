@@ -42,8 +42,9 @@ LawChoice LawFromFlags() {
   if (IsGiven("material")) {
     choice.law = FLAGS_material;
     if (FindLaw(choice.law) == nullptr) {
-      throw std::invalid_argument(AsGiven("material") + "; the laws are " +
-                                  LawNames() + "; estimate takes auto too");
+      throw std::invalid_argument(AsGiven("material") +
+                                  ", which is no law; make it one of " +
+                                  LawNames() + ", or with estimate also auto");
     }
   }
   if (IsGiven("axis")) {
