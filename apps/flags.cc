@@ -35,9 +35,8 @@ DEFINE_string(refine, "auto",
               "divide the mesh to find its error: 0 never, 1 once, auto if "
               "needed");
 DEFINE_int32(degree, 2, "degree of the polynomials of virtual-fields, 1 to 3");
-DEFINE_int32(
-    order, 1,
-    "1: elements as in the mesh, 2: quadratic elements on the same nodes");
+DEFINE_int32(order, 1,
+             "1: elements of the mesh, 2: quadratic elements on the same mesh");
 DEFINE_string(model, "",
               "3d, plane_stress or plane_strain; overrides the scene");
 DEFINE_double(thickness, 0,
@@ -73,7 +72,7 @@ DEFINE_string(force, "",
               "plate 1500, rectangle 1000,0");
 DEFINE_double(hole, 2.5, "plate: radius of the hole [length]");
 DEFINE_string(ends, "traction",
-              "plate: traction, or grips, which keep the ends rigid");
+              "plate: traction, or grips, which hold the end rigid");
 DEFINE_double(
     elongation, 0,
     "plate with grips: their displacement along x; 0: 0.001 of its size");
