@@ -156,7 +156,7 @@ TEST_F(Series, IsATableOfFramesAndTheirJointEstimate) {
             "poisson_ratio_standard_error,noise_sd,outliers,findings,reason");
   EXPECT_EQ(rows[1],
             "1,frame_5.csv,0.0,not_run,,,,,,0,not_run,\"the load of this frame "
-            "is zero, so that nothing follows from it\"");
+            "is zero, so that it gives no estimate\"");
   EXPECT_THAT(rows[7], HasSubstr("7,frame_11.csv,6.0,ok,"));
   EXPECT_THAT(rows[8], HasSubstr("joint,,,ok,"));
 }

@@ -100,8 +100,8 @@ TEST(EstimatorBase, FailsAnEstimateWithoutErrorsOrAReason) {
   EXPECT_EQ(estimate.status, Status::kNumericalFailure);
   EXPECT_TRUE(estimate.Has(FindingCode::kErrorsMissing));
   EXPECT_THAT(estimate.message,
-              HasSubstr("the estimator silent gives neither a standard error "
-                        "of nu nor a reason"));
+              HasSubstr("the estimator silent returned neither a standard "
+                        "error of nu nor a reason"));
   EXPECT_FALSE(estimate.YoungsModulusStandardError());
   PreparedEstimator prepared = parrot.Prepare(scene, {});
   EXPECT_TRUE(prepared.Run({scene.load_cases[0].displacement})

@@ -192,7 +192,7 @@ TEST_F(MeasuredMeshTest, OtherEstimatorsSayWhichOneToUse) {
   for (const std::string estimator :
        {"closed-form", "bounded", "virtual-fields", "reduced-fe"}) {
     EXPECT_THROWS_WITH(MakeEstimator(estimator)->Run(scene, {}),
-                       "use iterative-fe");
+                       "use --estimator=iterative-fe");
   }
 }
 
@@ -233,7 +233,7 @@ TEST_F(MeasuredMeshTest, TellsWhatIsWrong) {
   expect(R"("relative_sd": 0.01)", R"("nothing": 0.01)", "nothing");
   expect(R"(,
                           "relative_sd": 0.01)",
-         "", "exactly one of the keys sd, relative_sd");
+         "", "exactly one of the keys \"sd\" and \"relative_sd\"");
   expect(R"("relative_sd": 0.01)", R"("relative_sd": 0)", "must be positive");
   expect("[3, null]", "[null, null]", "has no number");
   expect("[3, null]", "[0, null]", "relative to a force of zero");

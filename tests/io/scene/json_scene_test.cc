@@ -435,8 +435,8 @@ TEST_F(JsonSceneTest, NotesANodalForceThatMayBeMeantAsATotal) {
     EXPECT_THAT(
         notices(nodes),
         ElementsAre(::testing::EndsWith(
-            "scene.json: cases[0].loads[0] is a nodal_force, which acts once "
-            "per node: [0, 0, -0.5] on each of 4 nodes, [0, 0, -2] in total; "
+            "scene.json: cases[0].loads[0] is a nodal_force, which acts on "
+            "each node: [0, 0, -0.5] on each of 4 nodes, [0, 0, -2] in total; "
             "if [0, 0, -0.5] is the total, give it as \"type\": \"force\" with "
             "a \"surface\"")));
   }

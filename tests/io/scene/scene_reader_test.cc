@@ -112,7 +112,7 @@ TEST_F(SceneReaderTest, DropsUnusedPointsAndIgnoresLinesAndTriangles) {
   EXPECT_EQ(scene.load_cases[0].displacement.col(4),
             Eigen::Vector3d(.4, .5, .6));
   EXPECT_THAT(reading.notices,
-              ElementsAre(HasSubstr("dropped 1 points that no tetrahedron"),
+              ElementsAre(HasSubstr("1 point that no tetrahedron"),
                           HasSubstr("regions share one material")));
 }
 
@@ -620,8 +620,8 @@ TEST_F(SceneReaderTest, SaysHowFilesDiffer) {
     const auto second = folder_.Path() / "second.vtu";
     WriteEncoded(second, mesh, fields, AllVtkEncodings()[2]);
     EXPECT_THROWS_WITH(ReadScene({first, second}, Measurement::kRequired),
-                       "second.vtu: this is no further load case of "
-                       ".*first.vtu': " +
+                       "second.vtu: this is not a further load case of "
+                       ".*first.vtu', because " +
                            pattern);
   };
   Mesh mesh = scene_.mesh;
@@ -639,7 +639,7 @@ TEST_F(SceneReaderTest, SaysHowFilesDiffer) {
                                        Replaced(LegacySceneText(), "3 10 5 10",
                                                 "3 10 5 5"))},
                 Measurement::kRequired),
-      "smaller.vtk: this is no .*: it has 4 nodes instead of 5");
+      "smaller.vtk: this is not .*, because it has 4 nodes instead of 5");
 }
 
 TEST_F(SceneReaderTest, ReadsTheScenesOfAnIndependentCode) {
