@@ -41,7 +41,7 @@ std::string NumberText(double value, int digits) {
   }
   // With a precision of 3, streams write 13200 as 1.32e+04.
   if (std::abs(value) >= 1 && std::abs(value) < kLargestPlain &&
-      PlaceOf(value) >= digits) {
+      PlaceOf(value) >= digits - 1) {
     return PlainText(value, PlaceOf(value) - digits + 1);
   }
   std::ostringstream text;

@@ -544,7 +544,7 @@ TEST_F(CommandLineErrors, RefusesWrongParametersByTheirFlags) {
 
 TEST_F(CommandLineErrors, RefusesWrongSimulations) {
   Succeed("generate cuboid --out=cuboid.vtu");
-  Refuse("simulate cuboid.vtu --youngs=1 --nu=0.3", "needs --out");
+  Refuse("simulate cuboid.vtu --youngs=1 --nu=0.3", "give --out");
   Refuse("simulate cuboid.vtu --youngs=1 --out=a.vtu", "--nu=NU");
   Refuse("simulate cuboid.vtu --youngs=0 --nu=0.3 --out=a.vtu",
          "--youngs=0; it must be positive");
@@ -569,7 +569,7 @@ TEST_F(CommandLineErrors, RefusesWrongGeometriesByTheirFlags) {
          "cuboid, organ, plate or rectangle; it got sphere");
   Refuse("generate --out=a.vtu",
          "one geometry, cuboid, organ, plate or rectangle; it got none");
-  Refuse("generate cuboid", "needs --out");
+  Refuse("generate cuboid", "give --out");
   const std::string cuboid = "generate cuboid --out=a.vtu ";
   Refuse(cuboid + "--tetrahedra=9", "takes no flag --tetrahedra");
   for (const std::string cells :

@@ -489,7 +489,7 @@ TEST(UnknownMotion, ThatIsInconsistentIsRefused) {
   EXPECT_THROWS_WITH(RunIterativeFe(scene), "positive standard deviation");
   EstimatorOptions robust;
   robust.loss = Loss::kHuber;
-  EXPECT_THROWS_WITH(RunIterativeFe(good, robust), "leave it out");
+  EXPECT_THROWS_WITH(RunIterativeFe(good, robust), "leave out --loss");
 }
 
 }  // namespace
