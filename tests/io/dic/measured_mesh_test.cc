@@ -229,7 +229,7 @@ TEST_F(MeasuredMeshTest, TellsWhatIsWrong) {
          R"(make it "measured", "rigid" or a vector)");
   expect(R"([[6, 0], [6, 2]]}, "displacement": "measured")",
          R"([[0, 0], [6, 2]]}, "displacement": "rigid")",
-         "otherwise than supports\\[0\\] does");
+         "differently from supports\\[0\\]");
   expect(R"("relative_sd": 0.01)", R"("nothing": 0.01)", "nothing");
   expect(R"(,
                           "relative_sd": 0.01)",

@@ -120,8 +120,8 @@ TEST_F(SceneReaderTest, TellsOfForcesThatAreDroppedWithTheirPoints) {
   const SceneReading reading = Read(Replaced(
       LegacySceneText(), "0 0 0 0 0 0 0 0 0 0", "0 0 0 0 0 0 0 9 0 0"));
   EXPECT_THAT(reading.notices,
-              ElementsAre(HasSubstr("'force' has forces on 1 points"),
-                          HasSubstr("dropped 1 points"),
+              ElementsAre(HasSubstr("'force' has forces on 1 point that"),
+                          HasSubstr("1 point that no"),
                           HasSubstr("regions share one material")));
 }
 
@@ -164,7 +164,7 @@ TEST_F(SceneReaderTest, NotesNodesAtOnePlace) {
   EXPECT_THAT(
       reading.notices,
       ElementsAre(
-          HasSubstr("dropped 1 points"),
+          HasSubstr("1 point that no"),
           ::testing::EndsWith(
               "scene.vtk: 6 nodes lie at the same place as another node, such "
               "as at (0, 0, 0), so that the parts around them are not "
@@ -651,9 +651,9 @@ TEST_F(SceneReaderTest, ReadsTheScenesOfAnIndependentCode) {
       ReadScene({folder / "liver_same_mesh.vtu"}, Measurement::kRequired).scene;
   EXPECT_EQ(liver.mesh.NumNodes(), 181);
   EXPECT_EQ(liver.mesh.NumElements(), 596);
-  EXPECT_THROWS_WITH(
-      ReadScene({folder / "liver.msh"}, Measurement::kRequired),
-      "liver.msh: a mesh alone is not a scene; write a scene.json");
+  EXPECT_THROWS_WITH(ReadScene({folder / "liver.msh"}, Measurement::kRequired),
+                     "liver.msh: a mesh alone is not a scene, as it has no "
+                     "supports, loads and displacements; write a scene.json");
 }
 
 }  // namespace
