@@ -68,8 +68,8 @@ DEFINE_string(cells, "5,5,2",
 DEFINE_string(size, "1,1,0.4",
               "edges along x,y,z; rectangle, x,y: 0.1,0.02; plate, x,y: 10,10");
 DEFINE_string(force, "",
-              "on each free node: cuboid 0,0,-30, organ 0,0,-0.02; in total: "
-              "plate 1500, rectangle 1000,0");
+              "per free node: cuboid 0,0,-30, organ 0,0,-0.02; in all: plate "
+              "1500, rectangle 1000,0");
 DEFINE_double(hole, 2.5, "plate: radius of the hole [length]");
 DEFINE_string(ends, "traction",
               "plate: traction, or grips, which hold the end rigid");
@@ -100,7 +100,8 @@ Command TheEstimateCommand() {
           "axis of the material, X,Y,Z; or two axes, 6 numbers; or free to "
           "find it"},
          {"regions",
-          "one material for all, each region its own, or merge regions alike"},
+          "one: the same material everywhere; each: one for each region; "
+          "merge: join alike ones"},
          {"nu", "known Poisson's ratio, above -1 and below 0.5"},
          {"nu_min"},
          {"nu_max"},

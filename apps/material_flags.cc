@@ -42,9 +42,8 @@ LawChoice LawFromFlags() {
   if (IsGiven("material")) {
     choice.law = FLAGS_material;
     if (FindLaw(choice.law) == nullptr) {
-      throw std::invalid_argument(AsGiven("material") +
-                                  ", which is no law; make it one of " +
-                                  LawNames() + ", or with estimate also auto");
+      throw std::invalid_argument(AsGiven("material") + "; it must be one of " +
+                                  LawNames() + " (auto is for estimate only)");
     }
   }
   if (IsGiven("axis")) {

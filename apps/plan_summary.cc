@@ -109,7 +109,7 @@ std::string PlanSummary(const LoadPlan& plan, const PlanBasis& basis,
     text +=
         Padded(i == 0 ? "measure next" : "then", kWidthOfName) + candidate.name;
     if (candidate.is_free_in_size && basis.is_scale_known && load.factor) {
-      text += " of about " + NumberText(*load.factor, 2);
+      text += ", of about " + NumberText(*load.factor, 2);
     }
     text += i == 0 ? "\n"
                    : ", which leaves an error of " +

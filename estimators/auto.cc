@@ -182,7 +182,7 @@ void ClimbFits(const Scene& scene, const EstimatorOptions& options,
         reduced.status != Status::kNumericalFailure) {
       ladder.Decide(reduced.IsUsable()
                         ? "stopped: at the statistical limit of the data"
-                        : "stopped: there is no rung above");
+                        : "stopped: no further estimator would do better");
       return;
     }
     ladder.Decide("went on: " + WhyNotUsable(reduced));
@@ -191,7 +191,7 @@ void ClimbFits(const Scene& scene, const EstimatorOptions& options,
       !ladder.Climb(VirtualFields(), scene, options)) {
     return;
   }
-  ladder.Decide("stopped: there is no rung above");
+  ladder.Decide("stopped: no further estimator would do better");
 }
 
 // Unknown motions have one rung, iterative-fe.

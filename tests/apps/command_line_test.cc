@@ -824,8 +824,8 @@ TEST_F(CommandLine, HelpStatesTheDefaultsOfTheExampleScenes) {
   for (const std::string& words :
        {"(default " + text(cuboid.cells) + ")",
         "(default " + text(cuboid.size) + ")",
-        "on each free node: cuboid " + text(cuboid.force) + ", organ " +
-            text(organ.force) + "; in total: plate " +
+        "per free node: cuboid " + text(cuboid.force) + ", organ " +
+            text(organ.force) + "; in all: plate " +
             std::to_string(int(plate.force)),
         "(default " + std::to_string(organ.tetrahedra) + ")",
         std::string("(default 0.2)"), std::string("(default 2.5)"),
@@ -1272,7 +1272,7 @@ TEST_F(ElementKinds, RefuseWrongFlags) {
          "c.vtu: the mesh is of tetrahedra, which are solid, but a thickness "
          "is given; leave it out");
   const std::string rectangle = "generate rectangle --out=a.vtu ";
-  Refuse(rectangle + "--elements=tet4", "--elements=tet4; a rectangle is of");
+  Refuse(rectangle + "--elements=tet4", "--elements=tet4; a rectangle is made of");
   Refuse(rectangle + "--elements=tri",
          "--elements=tri; it must be tet4, hex8,");
   Refuse(rectangle + "--cells=1,2,3", "it needs two integers below 2^31, as");
@@ -1415,7 +1415,8 @@ TEST_F(QuadraticElements, NoiseIsRelativeToTheVertices) {
 
 TEST_F(QuadraticElements, NoticeWhatNodalForcesMean) {
   MakeExactScene();
-  const std::string notice = "notice: nodal forces on all nodes of a face";
+  const std::string notice =
+      "notice: with --order=2, nodal forces on all nodes of a face";
   // The notice appears whether the estimate is usable or not.
   const auto has_notice = [&](const std::string& arguments) {
     return Run(arguments).errors.find(notice) != std::string::npos;
@@ -1437,7 +1438,7 @@ TEST_F(QuadraticElements, NoticeWhatBecomesOfOtherLoads) {
   WriteScene("");
   const ProgramRun run = Succeed(
       "simulate scene.json --youngs=1 --nu=0 --order=2 --out=measured.vtu");
-  EXPECT_NE(run.errors.find("notice: measured.vtu has the loads as nodal "
+  EXPECT_NE(run.errors.find("notice: measured.vtu holds the loads as nodal "
                             "forces of linear elements"),
             std::string::npos)
       << run.errors;
@@ -1451,7 +1452,7 @@ TEST_F(QuadraticElements, AreRefusedByEstimatorsThatCannot) {
     Refuse("estimate scene.json --order=2 --estimator=" + name,
            "elastimate: --order=2: " + name + ": the force residual");
     Refuse("estimate scene.json --order=2 --estimator=" + name,
-           "not measured; use reduced-fe");
+           "not measured; use --estimator=reduced-fe");
   }
   Refuse("estimate scene.json --order=2 --nu_min=0.1",
          "--nu_min=0.1: closed-form: it cannot keep bounds");

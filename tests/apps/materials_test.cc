@@ -266,7 +266,7 @@ TEST_F(MaterialsCommand, RefusesWhatIsOfNoRegionOrNoMaterial) {
             "regions are 1, 2, 3; correct the region"},
            {R"("region": [1, 2, 3], "law": "anisotropic",
                "known": {"c11": 100, "c22": 100, "c12": 200})",
-            "material 1 gives c12 farther from zero"}}) {
+            "material 1 gives c12 a value too far from zero"}}) {
     testing::WriteText(folder_ / "scene.json", R"({"mesh": "m.vtu",
         "materials": [{)" + material + R"(}],
         "supports": [{"nodes": {"box": [[-1,-1,-1],[2,2,1e-9]]}}],
@@ -305,7 +305,7 @@ TEST_F(MaterialsCommand, NamesWhatIsWrong) {
   Refuse("simulate block.vtu --regions=two --youngs=1 --nu=0 --out=a.vtu",
          "--regions=two; it must be one, each or merge");
   Refuse("simulate block.vtu --parameters=truth.json --nu=0 --out=a.vtu",
-         "give one or the other");
+         "give only one of them");
   Refuse("simulate block.vtu --parameters=truth.json --out=a.vtu",
          "truth.json: parameters[0] (youngs_modulus) names a region, but all "
          "regions share one material; give each its own by --regions=each");
