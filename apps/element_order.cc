@@ -27,7 +27,7 @@ void CheckOrderFlag() {
   if (FLAGS_order != 1 && FLAGS_order != 2) {
     throw std::invalid_argument(
         AsGiven("order") +
-        "; it is 1 for linear elements or 2 for quadratic ones");
+        "; it must be 1 for linear elements or 2 for quadratic ones");
   }
 }
 
@@ -44,16 +44,16 @@ std::optional<Scene> QuadraticSceneIfAsked(const std::string& source,
     return std::nullopt;
   }
   if (!HasQuadraticKind(scene.mesh.kind)) {
-    throw std::invalid_argument(AsGiven("order") + ": " + source + " has " +
-                                shapes +
-                                ", of which there are linear ones only; leave "
-                                "the flag out");
+    throw std::invalid_argument(
+        AsGiven("order") + ": " + source + " has " + shapes +
+        ", for which there are no quadratic elements; leave the flag out");
   }
   if (HasNodalForces(scene)) {
     notices.emplace_back(
-        "nodal forces on all nodes of a face or an element are spread over it, "
-        "others act at vertices, with --order=2; where they stand for another "
-        "force, give that, in a scene.json");
+        "with --order=2, nodal forces on all nodes of a face or an element are "
+        "spread over it, and other nodal forces act at vertices; if they stand "
+        "for a force on a surface, a traction or a pressure, give that in a "
+        "scene.json");
   }
   return QuadraticScene(scene);
 }

@@ -20,19 +20,19 @@ void RequireOfFlag(bool condition, const std::string& flag,
 void CheckRelativeNoise() {
   RequireOfFlag(FLAGS_noise >= 0, "noise", "it must not be negative");
   RequireOfFlag(FLAGS_noise_law == "uniform" || FLAGS_noise_law == "gaussian",
-                "noise_law", "it is uniform or gaussian");
+                "noise_law", "it must be uniform or gaussian");
 }
 
 void CheckAbsoluteNoise() {
   if (!IsGiven("noise_sd")) {
-    RequireOfFlag(!IsGiven("correlation_length"), "correlation_length",
-                  "only noise of a given standard deviation is alike over a "
-                  "length; give --noise_sd");
+    RequireOfFlag(
+        !IsGiven("correlation_length"), "correlation_length",
+        "it belongs to noise of a given standard deviation; give --noise_sd");
     return;
   }
   RequireOfFlag(FLAGS_noise_sd > 0, "noise_sd", "it must be positive");
   RequireOfFlag(!IsGiven("noise"), "noise_sd",
-                "--noise is given, too; give one or the other");
+                "--noise is given as well, so give only one of them");
   RequireOfFlag(!IsGiven("noise_law") || FLAGS_noise_law == "gaussian",
                 "noise_law", "the noise of --noise_sd is gaussian");
   RequireOfFlag(!IsGiven("correlation_length") || FLAGS_correlation_length > 0,
@@ -42,10 +42,9 @@ void CheckAbsoluteNoise() {
 void CheckOutliers() {
   RequireOfFlag(FLAGS_outliers >= 0 && FLAGS_outliers <= 1, "outliers",
                 "it must be from 0 to 1");
-  RequireOfFlag(FLAGS_outliers == 0 || FLAGS_noise > 0 || IsGiven("noise_sd"),
-                "outliers",
-                "their size is in standard deviations of the noise; give "
-                "--noise_sd or --noise");
+  RequireOfFlag(
+      FLAGS_outliers == 0 || FLAGS_noise > 0 || IsGiven("noise_sd"), "outliers",
+      "their size is a multiple of the noise, so give --noise_sd or --noise");
 }
 
 }  // namespace

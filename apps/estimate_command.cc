@@ -71,8 +71,8 @@ void GiveKnownPoissonRatio(Scene& scene, EstimatorOptions& options) {
   for (Material& material : scene.materials) {
     if (material.law != IsotropicLaw::kName) {
       throw std::invalid_argument(
-          AsGiven("nu") + ", but the law " + material.law +
-          " has other parameters; give what is known in a scene.json");
+          AsGiven("nu") + " is for isotropic materials, and the scene has the law " + material.law +
+          "; give its parameters as \"known\" in \"materials\" of a scene.json");
     }
     const auto is_of_nu = [&](const auto& given) {
       return given.name == known.name;
@@ -160,8 +160,8 @@ void CheckSeries(const FrameSeries& series) {
     if (IsGiven(flag) && (flag != "order" || FLAGS_order != 1)) {
       throw std::invalid_argument(
           AsGiven(flag) +
-          " is of one measurement, and the scene has frames; leave it out, or "
-          "make a scene of one frame");
+          " cannot be used with a scene of several frames; leave it out, or make "
+          "a scene of one frame");
     }
   }
   for (const std::string* output : {&FLAGS_series, &FLAGS_json}) {
@@ -204,14 +204,14 @@ void CheckMerging(const SceneReading& reading) {
   if (FLAGS_estimator != "iterative-fe" && FLAGS_estimator != "auto") {
     throw std::invalid_argument(
         AsGiven("regions") +
-        " compares fits of displacements; use it with --estimator=iterative-fe "
-        "or auto");
+        " compares fits of displacements; give --estimator=iterative-fe or "
+        "--estimator=auto");
   }
   if (reading.frames) {
     throw std::invalid_argument(
         AsGiven("regions") +
-        " is of one measurement, and the scene has frames; leave it out, or "
-        "make a scene of one frame");
+        " cannot be used with a scene of several frames; leave it out, or make "
+          "a scene of one frame");
   }
   if (std::any_of(reading.scene.materials.begin(),
                   reading.scene.materials.end(), [](const Material& material) {
@@ -219,7 +219,7 @@ void CheckMerging(const SceneReading& reading) {
                   })) {
     throw std::invalid_argument(
         AsGiven("regions") +
-        " compares isotropic materials, and the scene has others; leave it "
+        " compares isotropic materials only, and the scene has others; leave it "
         "out");
   }
 }
@@ -236,7 +236,7 @@ MaterialMerge MergeRegions(const Estimator& estimator,
   const MaterialMerge merge = MergeMaterials(modelled, options);
   if (!merge.why_not.empty()) {
     notices.push_back(sources + ": the regions could not be compared (" +
-                      merge.why_not + "), so that none were merged");
+                      merge.why_not + "), so none were merged");
   }
   modelled.materials = merge.materials;
   scene.materials = merge.materials;
@@ -310,7 +310,7 @@ int RunEstimate(const std::vector<std::string>& arguments) {
   const Clock::time_point start = Clock::now();
   if (arguments.empty()) {
     throw std::invalid_argument(
-        "estimate needs a scene file (.vtu, .vtk, .msh or .json)");
+        "estimate needs a scene file; name a .json, .vtu, .vtk or .msh file");
   }
   const std::shared_ptr<const Estimator> estimator =
       MakeEstimator(Printable(FLAGS_estimator));
@@ -332,9 +332,9 @@ int RunEstimate(const std::vector<std::string>& arguments) {
   }
   if (!FLAGS_series.empty()) {
     throw std::invalid_argument(
-        AsGiven("series") + " is of a scene of frames, and " +
+        AsGiven("series") + " needs a scene of several frames, and " +
         Sources(arguments) +
-        " has none; give a scene.json the key \"frames\", or leave the flag "
+        " has none; give the key \"frames\" in a scene.json, or leave the flag "
         "out");
   }
   return RunOne(arguments, *estimator, std::move(reading), options,

@@ -38,7 +38,7 @@ void CheckPoissonRatioFlags(const EstimatorOptions& options) {
           options.poisson_ratio.lower ? "nu_min" : "nu_max";
       throw std::invalid_argument(
           AsGiven("nu") + " says that Poisson's ratio is known, and " +
-          AsGiven(bound) + " bounds it; give one or the other");
+          AsGiven(bound) + " bounds it; give only one of them");
     }
   }
   const std::optional<double>& lower = options.poisson_ratio.lower;
@@ -62,7 +62,7 @@ void CheckYoungsModulusFlags(const Bounds& bounds) {
 Loss LossFromFlag() {
   Require(
       FLAGS_loss == "none" || FLAGS_loss == "huber" || FLAGS_loss == "cauchy",
-      "loss", "it is none, huber or cauchy");
+      "loss", "it must be none, huber or cauchy");
   return FLAGS_loss == "huber"    ? Loss::kHuber
          : FLAGS_loss == "cauchy" ? Loss::kCauchy
                                   : Loss::kNone;
@@ -70,7 +70,7 @@ Loss LossFromFlag() {
 
 Refine RefinementFromFlag() {
   Require(FLAGS_refine == "auto" || FLAGS_refine == "0" || FLAGS_refine == "1",
-          "refine", "it is 0, 1 or auto");
+          "refine", "it must be 0, 1 or auto");
   return FLAGS_refine == "0"   ? Refine::kNever
          : FLAGS_refine == "1" ? Refine::kAlways
                                : Refine::kAutomatic;
@@ -83,18 +83,19 @@ std::optional<Origin> OriginFromFlag() {
     return std::nullopt;
   }
   const std::optional<Origin> origin = OriginOfName(FLAGS_origin);
-  Require(origin.has_value(), "origin", "it is measured or computed");
+  Require(origin.has_value(), "origin", "it must be measured or computed");
   return origin;
 }
 
 SolverKind SolverFromFlag() {
   Require(FLAGS_solver == "automatic" || FLAGS_solver == "cholesky" ||
               FLAGS_solver == "multigrid",
-          "solver", "it is automatic, cholesky or multigrid");
+          "solver", "it must be automatic, cholesky or multigrid");
   // Multigrid is looked for only here, since looking for it loads it.
   if (FLAGS_solver == "multigrid") {
     Require(HasMultigrid(), "solver",
-            "it is not there (" + WhyNoMultigrid() + "); use cholesky");
+            "it is not available (" + WhyNoMultigrid() +
+                "), so use --solver=cholesky");
   }
   return FLAGS_solver == "cholesky"    ? SolverKind::kCholesky
          : FLAGS_solver == "multigrid" ? SolverKind::kMultigrid

@@ -19,63 +19,63 @@ DEFINE_double(noise_sd, 0,
 DEFINE_double(noise, 0, "size of the noise relative to the displacements");
 DEFINE_string(noise_law, "uniform", "law of --noise: uniform or gaussian");
 DEFINE_double(correlation_length, 0,
-              "length over which the noise of --noise_sd is alike [length]");
+              "correlation length of the noise of --noise_sd [length]");
 DEFINE_double(outliers, 0, "share of the points with gross errors, 0 to 1");
 DEFINE_string(rigid_motion, "",
               "motion to add: UX,UY,ANGLE or UX,UY,UZ,RX,RY,RZ [length, rad]");
 DEFINE_int32(points, 0,
              "number of random points of --out=FILE.csv; without it all nodes");
-DEFINE_string(loss, "none", "how outliers count: none, huber or cauchy");
-DEFINE_string(origin, "",
-              "where displacements come from: measured, or computed with this "
-              "mesh");
+DEFINE_string(
+    loss, "none",
+    "function that limits the weight of outliers: none, huber or cauchy");
+DEFINE_string(
+    origin, "",
+    "origin of the displacements: measured, or computed with this mesh");
 DEFINE_string(refine, "auto",
               "divide the mesh to find its error: 0 never, 1 once, auto if "
               "needed");
-DEFINE_int32(degree, 2, "degree of the fields of virtual-fields, 1 to 3");
+DEFINE_int32(degree, 2, "degree of the polynomials of virtual-fields, 1 to 3");
 DEFINE_int32(order, 1,
-             "1: the elements of the mesh, 2: quadratic ones on the same mesh");
+             "1: elements of the mesh, 2: quadratic elements on the same mesh");
 DEFINE_string(model, "",
               "3d, plane_stress or plane_strain; overrides the scene");
 DEFINE_double(thickness, 0,
               "thickness of a planar specimen [length]; overrides the scene");
 DEFINE_string(regions, "one",
-              "one: one material for all; each: each region has its own");
+              "one: the same material everywhere; each: one for each region");
 DEFINE_string(material, "isotropic",
               "law of all materials; 'elastimate materials' lists them");
 DEFINE_string(axis, "",
-              "axis of the material, X,Y,Z, or two axes (6 numbers), or free");
+              "axis of the material, X,Y,Z; or two axes, 6 numbers; or free");
 DEFINE_string(parameters, "",
               "JSON file with the list \"parameters\" of a report");
 DEFINE_string(surface, "",
-              "X0,Y0,Z0,X1,Y1,Z1: a box around the surface that could be "
-              "loaded");
+              "box around the surface that could be loaded: X0,Y0,Z0,X1,Y1,Z1");
 DEFINE_string(solver, "automatic", "cholesky, multigrid, or automatic");
 DEFINE_int32(threads, 0,
-             "largest number of threads of the linear algebra; 0: all cores");
+             "largest number of threads for the linear algebra; 0: all cores");
 DEFINE_uint64(seed, 1, "seed of the noise, from 0 on");
 DEFINE_string(json, "",
               "file for the report as JSON, or - for standard output");
 DEFINE_string(series, "",
-              "CSV file with a row for each frame, where the scene has frames");
+              "CSV file for a table of the frames, where the scene has frames");
 DEFINE_string(out, "", "VTU file to write");
-DEFINE_string(elements, "",
-              "cuboid: tet4 or hex8; plate, rectangle: quad4 or tri3; else the "
-              "first");
-DEFINE_string(cells, "5,5,2",
-              "cells along x,y,z (rectangle: x,y; 20,4. plate: N; 54)");
 DEFINE_string(
-    size, "1,1,0.4",
-    "edges along x,y,z (rectangle: x,y; 0.1,0.02. plate: x,y; 10,10)");
+    elements, "",
+    "cuboid: tet4 or hex8; plate, rectangle: quad4 or tri3 (first: default)");
+DEFINE_string(cells, "5,5,2",
+              "cells along x,y,z; rectangle, x,y: 20,4; plate, one number: 54");
+DEFINE_string(size, "1,1,0.4",
+              "edges along x,y,z; rectangle, x,y: 0.1,0.02; plate, x,y: 10,10");
 DEFINE_string(force, "",
-              "per free node (cuboid 0,0,-30; organ 0,0,-0.02); total: plate "
+              "per free node: cuboid 0,0,-30, organ 0,0,-0.02; in all: plate "
               "1500, rectangle 1000,0");
 DEFINE_double(hole, 2.5, "plate: radius of the hole [length]");
 DEFINE_string(ends, "traction",
               "plate: traction, or grips, which hold the end rigid");
 DEFINE_double(
     elongation, 0,
-    "plate with grips: their way along x; 0: a thousandth of its size");
+    "plate with grips: their displacement along x; 0: 0.001 of its size");
 DEFINE_int32(tetrahedra, 1970,
              "organ: number of tetrahedra within 5 %, 200 to 2000000");
 DEFINE_double(length, 0.2, "organ: extent along x [length]");
@@ -87,7 +87,7 @@ Command TheEstimateCommand() {
   return {
       "estimate",
       "SCENE...",
-      "estimates elastic parameters, with errors; more files: load cases",
+      "estimates elastic parameters; further files are further load cases",
       {{"Input",
         {{"noise_sd"},
          {"origin"},
@@ -97,11 +97,11 @@ Command TheEstimateCommand() {
          {"material",
           "law of all materials, or auto; 'elastimate materials' lists them"},
          {"axis",
-          "axis of the material, X,Y,Z, or two axes (6 numbers), or free: "
+          "axis of the material, X,Y,Z; or two axes, 6 numbers; or free to "
           "find it"},
          {"regions",
-          "materials: one for all, each region its own, or merge "
-          "those alike"},
+          "one: the same material everywhere; each: one for each region; "
+          "merge: join alike ones"},
          {"nu", "known Poisson's ratio, above -1 and below 0.5"},
          {"nu_min"},
          {"nu_max"},
@@ -123,7 +123,7 @@ Command TheEstimateCommand() {
 Command TheSimulateCommand() {
   return {"simulate",
           "SCENE",
-          "computes displacements for given parameters, with noise if wanted",
+          "computes displacements for given parameters, with noise on request",
           {{"Input",
             {{"youngs"},
              {"nu"},
@@ -151,7 +151,7 @@ Command TheSimulateCommand() {
 Command ThePlanCommand() {
   return {"plan",
           "SCENE",
-          "says which load to measure next, by the errors to expect",
+          "says which load to measure next to make the errors smallest",
           {{"Input",
             {{"youngs"},
              {"nu"},

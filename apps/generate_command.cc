@@ -50,7 +50,7 @@ ElementKind KindFromFlag(ElementKind otherwise) {
     }
   }
   throw std::invalid_argument(AsGiven("elements") +
-                              "; it is tet4, hex8, tri3 or quad4");
+                              "; it must be tet4, hex8, tri3 or quad4");
 }
 
 Scene CuboidFromFlags() {
@@ -94,7 +94,8 @@ Scene RectangleFromFlags() {
 
 PlateEnds EndsFromFlags() {
   if (FLAGS_ends != "traction" && FLAGS_ends != "grips") {
-    throw std::invalid_argument(AsGiven("ends") + "; it is traction or grips");
+    throw std::invalid_argument(AsGiven("ends") +
+                                "; it must be traction or grips");
   }
   const bool has_grips = FLAGS_ends == "grips";
   const std::string other = has_grips ? "force" : "elongation";
@@ -187,7 +188,8 @@ const Geometry& GeometryFromArguments(
 int RunGenerate(const std::vector<std::string>& arguments) {
   const Geometry& geometry = GeometryFromArguments(arguments);
   if (FLAGS_out.empty()) {
-    throw std::invalid_argument("generate needs --out=FILE.vtu");
+    throw std::invalid_argument(
+        "generate needs a file to write; give --out=FILE.vtu");
   }
   CheckOutputFlags({});
   std::optional<Progress> progress("meshing");

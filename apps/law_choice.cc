@@ -20,8 +20,8 @@ std::size_t NumStiffnesses(const Scene& scene) {
 }
 
 std::string HowManyStiffnesses(const Scene& scene) {
-  return "laws are compared by a fit of the stiffnesses of all materials, " +
-         std::to_string(NumStiffnesses(scene)) + " parameters";
+  return "laws are compared by a fit of all stiffnesses of all materials (" +
+         std::to_string(NumStiffnesses(scene)) + " parameters)";
 }
 
 // Throws for fewer components than parameters, which would determine none of
@@ -30,10 +30,10 @@ void RequireMoreDataThanParameters(const Scene& scene) {
   const Eigen::Index num_observed = ObservedDisplacements(scene).Size();
   if (num_observed <= static_cast<Eigen::Index>(NumStiffnesses(scene))) {
     throw std::invalid_argument(
-        AsGiven("material") + ": " + HowManyStiffnesses(scene) + ", and " +
+        AsGiven("material") + ": " + HowManyStiffnesses(scene) + ", but only " +
         std::to_string(num_observed) +
-        " components were measured; name the law, join regions in the "
-        "\"materials\" of a scene.json, or measure more");
+        " components were measured; name the law by --material, join regions "
+        "in \"materials\" of a scene.json, or measure more");
   }
 }
 
@@ -43,20 +43,22 @@ void CheckLawChoice(const SceneReading& reading,
                     const EstimatorOptions& options) {
   if (FLAGS_estimator != "iterative-fe" && FLAGS_estimator != "reduced-fe" &&
       FLAGS_estimator != "auto") {
-    throw std::invalid_argument(AsGiven("material") +
-                                " compares fits of displacements; use it with "
-                                "--estimator=iterative-fe, reduced-fe or auto");
+    throw std::invalid_argument(
+        AsGiven("material") +
+        " compares fits of displacements; give --estimator=iterative-fe, "
+        "--estimator=reduced-fe or --estimator=auto");
   }
   if (FLAGS_regions == "merge") {
-    throw std::invalid_argument(AsGiven("regions") +
-                                " compares isotropic materials; leave out " +
-                                AsGiven("material"));
+    throw std::invalid_argument(
+        AsGiven("regions") +
+        " compares isotropic materials only; leave out this flag or " +
+        AsGiven("material"));
   }
   if (reading.frames) {
     throw std::invalid_argument(
         AsGiven("material") +
-        " is of one measurement, and the scene has frames; name the law, or "
-        "make a scene of one frame");
+        " cannot be used with a scene of several frames; name a law, or make a "
+        "scene of one frame");
   }
   const std::string why_not = WhyNoLawChoice(reading.scene, options);
   if (!why_not.empty()) {
@@ -70,8 +72,8 @@ std::vector<std::string> NoticesOfLawChoice(const Scene& scene) {
     return {};
   }
   return {AsGiven("material") + ": " + HowManyStiffnesses(scene) +
-          ", which may take many minutes; a law that is named, or fewer "
-          "materials, take less"};
+          ", which may take many minutes; it is quicker with fewer materials, "
+          "and without a comparison, where --material names a law"};
 }
 
 ChosenLaw GiveChosenLaw(const EstimatorOptions& options,
@@ -84,7 +86,7 @@ ChosenLaw GiveChosenLaw(const EstimatorOptions& options,
   ChosenLaw choice = ChooseLaw(modelled, options);
   if (!choice.why_not.empty()) {
     notices.push_back(sources + ": laws could not be compared (" +
-                      choice.why_not + "), so that none was chosen");
+                      choice.why_not + "), so the law of the scene is kept");
   }
   modelled.materials = choice.materials;
   scene.materials = choice.materials;

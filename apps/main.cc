@@ -28,9 +28,9 @@ namespace {
 constexpr int kNoEstimate = 2;
 
 [[noreturn]] void EndForLackOfMemory() {
-  std::cerr << "elastimate: there is not enough memory for this mesh; "
-               "coarsen it, or estimate with --order=1 and "
-               "--estimator=closed-form, which need the least\n";
+  std::cerr << "elastimate: there is not enough memory for this mesh; use a "
+               "coarser one, or --order=1 and --estimator=closed-form, which "
+               "need the least memory\n";
   _exit(kNoEstimate);
 }
 
@@ -85,7 +85,7 @@ int RunCommand(const std::string& name,
 
 int Run(const std::vector<std::string>& arguments) {
   if (arguments.empty()) {
-    throw std::invalid_argument("give a command; see elastimate --help");
+    throw std::invalid_argument("no command is given; see elastimate --help");
   }
   if (AsksForHelp(arguments)) {
     WriteStandardOutput(HelpFor(arguments));

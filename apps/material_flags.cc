@@ -42,8 +42,8 @@ LawChoice LawFromFlags() {
   if (IsGiven("material")) {
     choice.law = FLAGS_material;
     if (FindLaw(choice.law) == nullptr) {
-      throw std::invalid_argument(AsGiven("material") + "; the laws are " +
-                                  LawNames() + "; estimate takes auto too");
+      throw std::invalid_argument(AsGiven("material") + "; it must be one of " +
+                                  LawNames() + " (auto is for estimate only)");
     }
   }
   if (IsGiven("axis")) {

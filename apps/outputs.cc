@@ -115,10 +115,10 @@ void CheckOutputFlags(const std::vector<std::string>& inputs,
         !(may_be_table && HasExtension(FLAGS_out, ".csv"))) {
       throw std::invalid_argument(
           "--out=" + PrintablePath(FLAGS_out) +
-          "; what is written is a VTU file" +
-          (may_be_table ? " or a table of points, so the name must end in .vtu "
-                          "or .csv"
-                        : ", so the name must end in .vtu"));
+          (may_be_table
+               ? "; the name must end in .vtu for a scene, or in .csv for a "
+                 "table of points"
+               : "; the name must end in .vtu, as a VTU file is written"));
     }
   }
   if (FLAGS_series == "-") {
@@ -152,9 +152,9 @@ void WriteStandardOutput(const std::string& text) {
     if (errno == EPIPE) {
       EndByClosedPipe();
     }
-    throw std::invalid_argument("standard output cannot be written (" +
+    throw std::invalid_argument("the standard output cannot be written (" +
                                 std::string(strerror(errno)) +
-                                "); send it elsewhere");
+                                "); send it to another place");
   }
 }
 

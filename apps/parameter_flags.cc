@@ -16,7 +16,7 @@ void CheckParameterFlags() {
     if (IsGiven("youngs") || IsGiven("nu")) {
       throw std::invalid_argument(AsGiven("parameters") + " is given beside " +
                                   AsGiven(IsGiven("youngs") ? "youngs" : "nu") +
-                                  "; give one or the other");
+                                  "; give only one of them");
     }
     return;
   }
@@ -51,8 +51,8 @@ Eigen::VectorXd ParametersFromFlags(const Scene& scene) {
                   })) {
     throw std::invalid_argument(
         AsGiven("youngs") +
-        " is of isotropic materials, and the scene has others; give "
-        "--parameters=FILE.json");
+        " is for isotropic materials, and the scene has others; give "
+        "--parameters=FILE.json instead");
   }
   Eigen::VectorXd values(parameters.NumParameters());
   for (Eigen::Index i = 0; i < values.size(); ++i) {

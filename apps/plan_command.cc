@@ -51,9 +51,8 @@ void CheckPlanFlags(const std::vector<std::string>& arguments) {
     throw std::invalid_argument(AsGiven("noise_sd") + "; it must be positive");
   }
   if (IsGiven("noise") && IsGiven("noise_sd")) {
-    throw std::invalid_argument(AsGiven("noise_sd") +
-                                "; --noise is given, too; give one or the "
-                                "other");
+    throw std::invalid_argument(AsGiven("noise_sd") + " is given beside " +
+                                AsGiven("noise") + "; give only one of them");
   }
   ApplyComputingFlags();
   CheckOutputFlags(arguments);
@@ -186,8 +185,8 @@ void LeaveNoiseOut(SplitCases& split, std::vector<std::string>& notices) {
   }
   if (is_given) {
     notices.emplace_back(
-        "the standard deviation of the noise is left out, because nothing says "
-        "how large displacements will be; give --youngs and --nu, or "
+        "the standard deviation of the noise is ignored, because nothing says "
+        "how large the displacements will be; give --youngs and --nu, or "
         "--parameters");
   }
 }
@@ -215,8 +214,9 @@ Eigen::MatrixXi SurfaceOfUnitLoads(const Scene& before,
     if (facets.cols() == 0) {
       throw std::invalid_argument(
           source +
-          ": there is no loaded surface for unit loads; give one by --surface, "
-          "or load cases without displacements that could be measured");
+          ": no surface is loaded on which other loads could act; give one by "
+          "--surface, or add load cases without displacements, which could be "
+          "measured next");
     }
     return facets;
   }
@@ -281,9 +281,9 @@ int RunPlan(const std::vector<std::string>& arguments) {
       ReadScene({arguments[0]}, Measurement::kOptional, SectionFromFlags(),
                 RegionsFromFlag(), LawFromFlags());
   if (reading.frames) {
-    throw std::invalid_argument(
-        source +
-        ": a plan is of single measurements; leave out the key \"frames\"");
+    throw std::invalid_argument(source +
+                                ": plan cannot be used with a scene of several "
+                                "frames; leave out the key \"frames\"");
   }
   progress->Show("planning");
   const std::string why_not_held = WhyNotHeld(reading.scene);

@@ -109,17 +109,19 @@ std::string PlanSummary(const LoadPlan& plan, const PlanBasis& basis,
     text +=
         Padded(i == 0 ? "measure next" : "then", kWidthOfName) + candidate.name;
     if (candidate.is_free_in_size && basis.is_scale_known && load.factor) {
-      text += " of about " + NumberText(*load.factor, 2);
+      text += ", of about " + NumberText(*load.factor, 2);
     }
-    text +=
-        i == 0 ? "\n" : ", which leaves " + WorstText(load.errors, free) + "\n";
+    text += i == 0 ? "\n"
+                   : ", which leaves an error of " +
+                         WorstText(load.errors, free) + "\n";
   }
   const ExpectedErrors& last =
       plan.sequence.empty() ? plan.before : plan.sequence.back().errors;
   if (!plan.AreDetermined(last)) {
     text += Padded("NOT DETERMINED", kWidthOfName) +
-            "all of these loads leave " + WorstText(last, free) +
-            "; observe more, or load elsewhere\n";
+            "even all of these loads leave an error of " +
+            WorstText(last, free) +
+            "; observe more points, or load another surface (--surface)\n";
   }
   return text;
 }

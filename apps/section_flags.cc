@@ -13,7 +13,7 @@ SectionChoice SectionFromFlags() {
   if (IsGiven("model")) {
     section.model = SectionModelOfName(FLAGS_model);
     if (!section.model) {
-      throw std::invalid_argument(AsGiven("model") + "; it is " +
+      throw std::invalid_argument(AsGiven("model") + "; it must be " +
                                   kSectionModels);
     }
   }
@@ -39,15 +39,16 @@ RegionChoice RegionsFromFlag() {
   }
   if (FLAGS_regions != "one") {
     throw std::invalid_argument(AsGiven("regions") +
-                                "; it is one, each or merge");
+                                "; it must be one, each or merge");
   }
   return RegionChoice::kOne;
 }
 
 void CheckNoMerging() {
   if (FLAGS_regions == "merge") {
-    throw std::invalid_argument(AsGiven("regions") +
-                                " is for estimate; it is one or each here");
+    throw std::invalid_argument(
+        AsGiven("regions") +
+        " is for the command estimate only; give one or each here");
   }
 }
 

@@ -49,9 +49,9 @@ void CheckPointsFlag() {
                                 std::to_string(kMostPoints));
   }
   if (!WritesTable()) {
-    throw std::invalid_argument(AsGiven("points") +
-                                "; points are written to a table, so give "
-                                "--out=FILE.csv");
+    throw std::invalid_argument(
+        AsGiven("points") +
+        "; points are written as a table, so give --out=FILE.csv");
   }
 }
 
@@ -77,7 +77,7 @@ Solution Solve(const std::string& source, const Scene& modelled,
     throw std::invalid_argument(
         source +
         ": the stiffness matrix is singular to working precision; check the "
-        "mesh for slivers and Poisson's ratio");
+        "mesh for flat elements, and Poisson's ratio");
   }
   if (!model.Notice().empty()) {
     notices.push_back(model.Notice());
@@ -183,8 +183,8 @@ std::string MeasuredPoints(const std::string& source,
     throw std::invalid_argument(
         "--out=" + PrintablePath(FLAGS_out) + ": " + source + " has " +
         std::to_string(scene.load_cases.size()) +
-        " load cases, of which a table holds one; give --out=FILE.vtu, or a "
-        "scene for each load case");
+        " load cases, and a table holds only one; give --out=FILE.vtu, or make "
+        "a scene of each load case");
   }
   const Mesh& mesh = modelled.mesh;
   std::mt19937_64 generator(FLAGS_seed);
@@ -216,9 +216,9 @@ void RequireKnownSupports(const std::string& source, const Scene& scene) {
   if (HasUnknownMotion(scene)) {
     throw std::invalid_argument(
         source +
-        ": simulate has to know how supports moved; give their "
-        "\"displacement\" "
-        "as a vector, and leave out resultants and \"rigid_motion\"");
+        ": simulate needs supports whose displacement is known; give their "
+        "\"displacement\" as a vector, and leave out loads of type "
+        "\"resultant\" and the key \"rigid_motion\"");
   }
 }
 
@@ -231,11 +231,13 @@ MeasurementErrors ErrorsFromCheckedFlags(
   }
   if (FLAGS_out.empty()) {
     throw std::invalid_argument(
-        "simulate needs --out=FILE.vtu, or FILE.csv for a table of points");
+        "simulate needs a file to write; give --out=FILE.vtu, or "
+        "--out=FILE.csv for a table of points");
   }
   if (!AreParametersGiven()) {
     throw std::invalid_argument(
-        "simulate needs --youngs=E and --nu=NU, or --parameters=FILE.json");
+        "simulate needs the parameters of the material; give --youngs=E and "
+        "--nu=NU, or --parameters=FILE.json");
   }
   CheckParameterFlags();
   CheckNoMerging();
@@ -269,8 +271,8 @@ int RunSimulate(const std::vector<std::string>& arguments) {
   if (quadratic && !HasNodalForcesOnly(scene) && !WritesTable()) {
     reading.notices.push_back(
         PrintablePath(FLAGS_out) +
-        " has the loads as nodal forces of linear elements; to estimate with "
-        "--order=2, use a scene.json with the loads of " +
+        " holds the loads as nodal forces of linear elements; for an estimate "
+        "with --order=2, write a scene.json with the loads of " +
         source + " and the displacement of " + PrintablePath(FLAGS_out));
   }
   progress->Show("writing " + PrintablePath(FLAGS_out));

@@ -44,7 +44,8 @@ void AddErrors(const std::string& name, Eigen::Index place,
                const ErrorBudget& budget, std::ostringstream& text) {
   std::vector<std::pair<double, const char*>> parts;
   for (const auto& [errors, cause] :
-       {std::pair{&budget.noise, "noise"}, std::pair{&budget.bias, "its bias"},
+       {std::pair{&budget.noise, "noise"},
+        std::pair{&budget.bias, "the bias by noise"},
         std::pair{&budget.model, "the model"},
         std::pair{&budget.outliers, "outliers"},
         std::pair{&budget.discretization, "the mesh"},
@@ -88,7 +89,8 @@ void AddErrors(const Estimate& estimate, std::ostringstream& text) {
           kNotable * estimate.PoissonRatioStandardError().value_or(0)) {
     Line("corrected by",
          PercentOf(correction(0), "E") + " and " +
-             NumberText(correction(1), 2) + " in nu for what the elements miss",
+             NumberText(correction(1), 2) +
+             " in nu for the error of the elements",
          text);
   }
 }
@@ -105,10 +107,9 @@ void AddElasticity(const Estimate& estimate, std::ostringstream& text) {
       WithError(elasticity.poisson_ratio, estimate.PoissonRatioStandardError()),
       text);
   if (estimate.poisson_ratio_interval && ReachesLimit(estimate)) {
-    Line("",
-         "between " + NumberText(estimate.poisson_ratio_interval->lower, 4) +
-             " and " + NumberText(estimate.poisson_ratio_interval->upper, 4) +
-             " (95 %)",
+    Line("95 % interval of nu",
+         NumberText(estimate.poisson_ratio_interval->lower, 4) + " to " +
+             NumberText(estimate.poisson_ratio_interval->upper, 4),
          text);
     Line("shear modulus mu",
          WithError(elasticity.ShearModulus(),
@@ -121,7 +122,7 @@ void AddElasticity(const Estimate& estimate, std::ostringstream& text) {
   }
 }
 
-// Returns "determined, 12 % of the strain energy, residuals of 1.1 of the
+// Returns "determined, 12 % of the strain energy, residuals 1.1 times the
 // noise".
 std::string Verdict(const MaterialEstimate& material) {
   std::string verdict;
@@ -138,9 +139,8 @@ std::string Verdict(const MaterialEstimate& material) {
     add(PercentOf(*material.energy_share, "the strain energy"));
   }
   if (material.residual_chi_square) {
-    add("residuals of " +
-        NumberText(std::sqrt(*material.residual_chi_square), 2) +
-        " of the noise");
+    add("residuals " + NumberText(std::sqrt(*material.residual_chi_square), 2) +
+        " times the noise");
   }
   return verdict;
 }
@@ -208,7 +208,8 @@ void AddDiagnostics(const Estimate& estimate, std::ostringstream& text) {
   }
   if (estimate.displacement_residual) {
     Line("displacement residual",
-         NumberText(*estimate.displacement_residual, 3) + " of the measured",
+         NumberText(*estimate.displacement_residual, 3) +
+             " of the measured displacement",
          text);
   }
   if (estimate.residual_correlation) {
@@ -232,15 +233,15 @@ void AddDiagnostics(const Estimate& estimate, std::ostringstream& text) {
 }
 
 std::string Solving(const Work& work) {
-  const std::string solves = std::to_string(work.solves) + " solves";
+  const std::string solves = Counted(work.solves, "solve");
   const std::string factorizations =
-      std::to_string(work.factorizations) + " factorisations, ";
+      Counted(work.factorizations, "factorisation") + ", ";
   if (work.multigrid_set_ups == 0) {
     return factorizations + solves + ", ";
   }
   return (work.factorizations == 0 ? "" : factorizations) +
-         std::to_string(work.multigrid_set_ups) + " set-ups of multigrid, " +
-         solves + " in " + std::to_string(work.iterations) + " iterations, ";
+         Counted(work.multigrid_set_ups, "multigrid set-up") + ", " + solves +
+         " in " + Counted(work.iterations, "iteration") + ", ";
 }
 
 std::string Vector(const Eigen::VectorXd& values) {
@@ -322,9 +323,9 @@ void AddMerges(const std::vector<RegionMerge>& merges,
 // Adds the laws that were compared, the best first.
 void AddLaws(const std::vector<LawComparison>& laws, std::ostringstream& text) {
   for (const LawComparison& law : laws) {
-    Line(&law == laws.data() ? "law chosen" : "not",
-         law.law + " (" + std::to_string(law.num_parameters) +
-             " parameters, chi^2 " + NumberText(law.chi_square, 3) + ", BIC " +
+    Line(&law == laws.data() ? "law chosen" : "law not chosen",
+         law.law + " (" + Counted(law.num_parameters, "parameter") +
+             ", chi^2 " + NumberText(law.chi_square, 3) + ", BIC " +
              (&law == laws.data() ? "least"
                                   : "+" + NumberText(law.criterion, 3)) +
              ")",
@@ -385,8 +386,7 @@ void AddSceneSize(const Scene& scene, std::ostringstream& text) {
                                       : " ") +
            std::string(
                scene.mesh.Topology().ShapeName(scene.mesh.NumElements())) +
-           ", " + std::to_string(scene.load_cases.size()) + " load case" +
-           (scene.load_cases.size() == 1 ? "" : "s"),
+           ", " + Counted(scene.load_cases.size(), "load case"),
        text);
   if (scene.mesh.Dimension() == 2) {
     Line("section",
@@ -432,7 +432,9 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
     AddTrend(estimate.parameters, *estimate.series->trend, text);
   }
   Line("work",
-       std::to_string(estimate.work.element_passes) + " element passes, " +
+       std::to_string(estimate.work.element_passes) +
+           (estimate.work.element_passes == 1 ? " element pass, "
+                                              : " element passes, ") +
            Solving(estimate.work) + NumberText(estimate.seconds, 3) + " s",
        text);
   Line("time",

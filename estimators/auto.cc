@@ -165,7 +165,7 @@ class Ladder {
 
 // Decides about the last rung; whether it is the last one.
 bool StopsHere(const std::string& why_not_enough, Ladder& ladder) {
-  ladder.Decide(why_not_enough.empty() ? "stopped: within tolerance"
+  ladder.Decide(why_not_enough.empty() ? "stopped: it is accurate enough"
                                        : "went on: " + why_not_enough);
   return why_not_enough.empty();
 }
@@ -182,7 +182,7 @@ void ClimbFits(const Scene& scene, const EstimatorOptions& options,
         reduced.status != Status::kNumericalFailure) {
       ladder.Decide(reduced.IsUsable()
                         ? "stopped: at the statistical limit of the data"
-                        : "stopped: there is no rung above");
+                        : "stopped: no further estimator would do better");
       return;
     }
     ladder.Decide("went on: " + WhyNotUsable(reduced));
@@ -191,7 +191,7 @@ void ClimbFits(const Scene& scene, const EstimatorOptions& options,
       !ladder.Climb(VirtualFields(), scene, options)) {
     return;
   }
-  ladder.Decide("stopped: there is no rung above");
+  ladder.Decide("stopped: no further estimator would do better");
 }
 
 // Unknown motions have one rung, iterative-fe.
@@ -218,9 +218,9 @@ class PreparedUnknownMotion : public Preparation {
 std::string_view Auto::Name() const { return "auto"; }
 
 std::string_view Auto::Description() const {
-  return "climbs from closed-form over virtual-fields to reduced-fe and "
-         "iterative-fe, as far as the scene needs; of measured displacements "
-         "only the last two know the mesh error";
+  return "tries closed-form, virtual-fields, reduced-fe and iterative-fe until "
+         "the estimate is accurate enough; for measured displacements it "
+         "begins with the last two, which alone know the error of the mesh";
 }
 
 Capabilities Auto::WhatItTakes() const {

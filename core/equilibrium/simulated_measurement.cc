@@ -49,8 +49,8 @@ class NoiseLattice {
     if (!(counts.prod() <= kMostLatticePoints)) {
       std::ostringstream message;
       message << "correlation_length=" << correlation_length
-              << "; that is too short beside the extent of what is measured; "
-                 "make it longer, or leave it out for independent noise";
+              << " is too short for the extent of what is measured; make it "
+                 "longer, or leave it out for independent noise";
       throw std::invalid_argument(message.str());
     }
     for (Eigen::Index axis = 0; axis < counts.size(); ++axis) {

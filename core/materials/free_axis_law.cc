@@ -247,7 +247,8 @@ std::vector<LawParameter> ParametersOfFreeAxis() {
 FreeAxisLaw::FreeAxisLaw() : parameters_(ParametersOfFreeAxis()) {}
 
 std::string_view FreeAxisLaw::Description() const {
-  return "the same with an axis that is not known, x turned by a vector w";
+  return "transversely_isotropic with an unknown axis L, which is x turned by "
+         "a rotation vector w";
 }
 
 const std::vector<BlockEntry>& FreeAxisLaw::BlockEntries() const {

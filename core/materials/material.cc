@@ -65,7 +65,8 @@ void ValidateWhatIsGiven(const Law& law, const Material& material,
     if (parameter.beside) {
       throw std::invalid_argument(
           name + " gives bounds of " + bounded.name +
-          ", which the others bound; leave them out, or give its value");
+          ", whose range follows from the other parameters; leave the bounds "
+          "out, or give its value");
     }
     require_once(bounded.name);
     const auto& [lower, upper] = bounded.bounds;
@@ -139,14 +140,15 @@ void RequirePositiveDefinite(const Material& material, SectionModel model,
     if (IsTooLarge(parameter, parameters)) {
       throw std::invalid_argument(
           name + " gives " + std::string(parameter.name) +
-          " farther from zero than any positive definite stiffness has it "
-          "beside the other known parameters; correct them");
+          " a value too far from zero for a positive definite stiffness with "
+          "the other known parameters; correct them");
     }
   }
   if (IsKnownNotPositiveDefinite(parameters)) {
-    throw std::invalid_argument(name +
-                                " gives known parameters of a stiffness that "
-                                "is not positive definite; correct them");
+    throw std::invalid_argument(
+        name +
+        " gives known parameters with which the stiffness is not positive "
+        "definite; correct them");
   }
 }
 
@@ -159,7 +161,7 @@ std::map<int, int> MaterialOfRegions(const std::vector<Material>& materials) {
         throw std::invalid_argument("region " + std::to_string(region) +
                                     " is given to " +
                                     NameOf(material_of[region]) + " and to " +
-                                    NameOf(i) + "; give it to one");
+                                    NameOf(i) + "; give it to one of them");
       }
     }
   }
@@ -266,14 +268,14 @@ void ValidateMaterials(const std::vector<Material>& materials,
     if (FindLaw(materials[i].law) == nullptr) {
       throw std::invalid_argument(
           NameOf(i) + " has the law \"" + materials[i].law +
-          "\", which is none; the laws are " + LawNames());
+          "\", which does not exist; the laws are " + LawNames());
     }
     const SectionModel model = mesh.section.model;
     const Law* const law = FindLaw(materials[i].law, model);
     if (law == nullptr) {
       throw std::invalid_argument(NameOf(i) + " has the law " +
                                   materials[i].law +
-                                  ", which is not there for the model " +
+                                  ", which does not exist for the model " +
                                   std::string(SectionModelName(model)) +
                                   "; its laws are " + LawNames(model));
     }

@@ -50,7 +50,7 @@ TransverselyIsotropicLaw::TransverselyIsotropicLaw()
           {{0, 0, 1}, {0, 1, kRootOfTwo}, {1, 1, 2}, {2, 2, 2}, {3, 3, 2}}) {}
 
 std::string_view TransverselyIsotropicLaw::Description() const {
-  return "alike in all directions T across its axis L, as of fibres";
+  return "alike in all directions T across its axis L, as with fibres along L";
 }
 
 Eigen::VectorXd TransverselyIsotropicLaw::Moduli(

@@ -154,8 +154,7 @@ void ValidateSection(const Mesh& mesh) {
                   " are solid; plane stress and plane strain are for planar "
                   "ones"
             : "elements of kind " + kind +
-                  " are planar; say whether they are in plane stress or plane "
-                  "strain");
+                  " are planar; give the model plane_stress or plane_strain");
   }
   if (!(mesh.section.thickness > 0) || !std::isfinite(mesh.section.thickness)) {
     throw std::invalid_argument(

@@ -193,7 +193,7 @@ Eigen::MatrixXi WithMidEdgeNodes(const Eigen::MatrixXi& facets,
       const Eigen::Index edge = edges.Find(facets(a, facet), facets(b, facet));
       if (edge < 0) {
         throw std::invalid_argument("facet " + std::to_string(facet) +
-                                    " of a load is no face of a " +
+                                    " of a load is not a face of a " +
                                     std::string(mesh.Topology().shape) +
                                     "; take the facets from the mesh");
       }
@@ -263,12 +263,13 @@ LoadCase ToQuadratic(const LoadCase& load_case, const ComponentMask& held,
 Scene QuadraticScene(const Scene& scene) {
   if (scene.mesh.Order() != 1) {
     throw std::invalid_argument(
-        "the scene has quadratic elements already; give it with linear ones");
+        "the scene has quadratic elements already; give a scene with linear "
+        "elements");
   }
   if (!HasQuadraticKind(scene.mesh.kind)) {
     throw std::invalid_argument("there are no quadratic " +
                                 std::string(scene.mesh.Topology().shapes) +
-                                " here; use order 1");
+                                "; use linear elements (--order=1)");
   }
   const Edges edges(scene.mesh);
   Scene quadratic;

@@ -339,8 +339,8 @@ std::string WhyNotHeld(const Mesh& mesh, const Supports& supports,
          std::to_string(NodeOfItsOwn(b, bodies)) + " " +
          DescribeRigidMotion(motions.middleRows(num_motions * b, num_motions)) +
          " without strain; hold more components" +
-         (is_hinged ? ", or mend the mesh: it shares only edges or nodes with "
-                      "the rest"
+         (is_hinged ? ", or mend the mesh, in which this part shares only "
+                      "edges or nodes with the rest"
                     : "");
 }
 

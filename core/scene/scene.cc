@@ -140,8 +140,8 @@ void ValidateFacets(const Mesh& mesh, const Eigen::MatrixXi& facets,
   }
   if (const std::optional<Eigen::Index> facet =
           FirstThatIsNoFace(mesh, facets)) {
-    Fail("facet " + std::to_string(*facet) + " of " + what + " is no " +
-         (mesh.Dimension() == 3 ? "face" : "edge") + " of " +
+    Fail("facet " + std::to_string(*facet) + " of " + what + " is not a" +
+         (mesh.Dimension() == 3 ? " face" : "n edge") + " of " +
          std::string(topology.shapes) +
          "; take the facets from the mesh, as BoundaryFacets has them");
   }

@@ -60,10 +60,9 @@ NamedBox MakeOrderedBox(const Mesh& mesh, const Eigen::VectorXd& lower,
                         const Eigen::VectorXd& upper) {
   NamedBox box = MakeBox(mesh, lower, upper);
   if (!(lower.array() <= upper.array()).all()) {
-    throw std::invalid_argument(
-        box.name +
-        " is none; give a lower corner that is below the upper one in each "
-        "direction");
+    throw std::invalid_argument(box.name +
+                                " is empty; give a lower corner that is below "
+                                "the upper one in each direction");
   }
   return box;
 }
@@ -167,7 +166,8 @@ void HoldInBox(const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
         throw std::invalid_argument(
             held.name + " holds the " + std::string(kAxisNames[i]) +
             " component of node " + std::to_string(node) +
-            ", which is held otherwise already; make one of the two smaller");
+            ", which another support holds differently; make one of the two "
+            "boxes smaller");
       }
       supports.held(i, node) = true;
       supports.displacement(i, node) = displacement(i);

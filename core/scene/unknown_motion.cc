@@ -52,8 +52,8 @@ void ValidateRigidFace(const Mesh& mesh, const Supports& supports,
     for (int i = 0; i < mesh.Dimension(); ++i) {
       if (face.components(i) && supports.IsGiven(i, node)) {
         Refuse(NodeText(node, i) +
-               " of a rigid face is held at a given displacement; take it out "
-               "of one of the two");
+               " of a rigid face is also held at a given displacement; leave "
+               "it out of one of the two");
       }
     }
   }
@@ -93,8 +93,8 @@ void ValidateResultant(const Mesh& mesh, const Supports& supports,
     if (!is_held) {
       Refuse("no support holds component " + std::string(kAxisNames[i]) +
              " of a node of " + where +
-             ", so that nothing exerts it; give it as a load of type force, or "
-             "hold the nodes");
+             ", so that nothing exerts this force; give it as a load of type "
+             "\"force\", or hold the nodes");
     }
   }
 }
@@ -107,8 +107,8 @@ void RefuseTheSameResultant(const Resultant& before, const Resultant& resultant,
       std::set<int>(before.nodes.begin(), before.nodes.end()) ==
           std::set<int>(resultant.nodes.begin(), resultant.nodes.end())) {
     Refuse(where +
-           " has a component of the same nodes as one before it; give the mean "
-           "of both, once");
+           " measures a force on the same nodes as an earlier resultant; give "
+           "the mean of both once");
   }
 }
 
@@ -193,7 +193,8 @@ void ValidateMeasuredSupports(const Scene& scene, const Supports& supports) {
                " nodes of supports that moved as measured, " +
                NodeText(first_lost, i) + " the first, have no measurement in " +
                "load case " + std::to_string(k + 1) +
-               "; leave them out of the support, or make it rigid");
+               "; leave them out of the support, or give it \"displacement\": "
+               "\"rigid\"");
       }
     }
   }
@@ -205,8 +206,8 @@ void ValidateUnknownDisplacements(const Scene& scene,
   if (unknown.size() != 0 && (unknown.rows() != supports.held.rows() ||
                               unknown.cols() != supports.held.cols())) {
     Refuse(
-        "the mask of unknown displacements of supports does not have the "
-        "shape of that of held components; correct it");
+        "the mask of unknown displacements of supports has not the shape of "
+        "the mask of held components; correct it");
   }
   if (unknown.size() == 0 && !supports.rigid_faces.empty()) {
     Refuse(

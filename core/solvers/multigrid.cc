@@ -26,7 +26,7 @@ struct Module {
           ELASTIMATE_MULTIGRID_MODULE, "elastimate_is_petsc_running", why_not);
     }
 #else
-    why_not = "it needs a build with PETSc";
+    why_not = "the program was built without PETSc";
 #endif
   }
 };

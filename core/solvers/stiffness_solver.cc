@@ -42,8 +42,8 @@ StiffnessSolver::StiffnessSolver(const Mesh& mesh, const Supports& supports,
       is_multigrid_ = HasMultigrid();
       notice_ = HasMultigrid()
                     ? ""
-                    : "multigrid, which solves for so many nodes in less time "
-                      "and memory than a factorisation, is not there (" +
+                    : "the mesh is so large that multigrid would be faster "
+                      "than the factorisation, but it is not available (" +
                           WhyNoMultigrid() + ")";
     }
     if (!is_multigrid_) {
@@ -90,7 +90,7 @@ bool StiffnessSolver::FactorizeValues() {
 }
 
 void StiffnessSolver::FallBackToCholesky(const std::string& why) {
-  notice_ = "multigrid " + why + ", so that the stiffness was factorised";
+  notice_ = "multigrid " + why + ", so the stiffness matrix was factorised";
   is_multigrid_ = false;
   solver_.reset();  // Its memory is needed.
   solver_ = std::make_unique<Cholesky>(*assembly_, degrees_of_freedom_);

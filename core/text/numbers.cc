@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kLargestRatio = 10;
 
-// Tables write numbers from here on without an exponent.
+// Numbers between these are written without an exponent.
 constexpr double kSmallestPlain = 1e-4;
 constexpr double kLargestPlain = 1e7;
 constexpr int kMostDigits = 10;
@@ -39,18 +39,20 @@ std::string NumberText(double value, int digits) {
   if (std::isnan(value)) {
     return "nan";  // Streams write the sign of some.
   }
+  // With a precision of 3, streams write 13200 as 1.32e+04.
+  if (std::abs(value) >= 1 && std::abs(value) < kLargestPlain &&
+      PlaceOf(value) >= digits - 1) {
+    return PlainText(value, PlaceOf(value) - digits + 1);
+  }
   std::ostringstream text;
   text << std::setprecision(digits) << value;
   return text.str();
 }
 
-std::string TwoDigits(double value) {
-  if (value == 0 || !std::isfinite(value)) {
-    return NumberText(value);
-  }
-  // With a precision of 2, 100 is 1e+02.
-  const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) - 1);
-  return NumberText(std::round(value / unit) * unit);
+std::string TwoDigits(double value) { return NumberText(value, 2); }
+
+std::string Counted(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
 std::string ValueWithError(double value, double error) {

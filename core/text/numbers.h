@@ -1,18 +1,23 @@
 #ifndef ELASTIMATE_CORE_TEXT_NUMBERS_H_
 #define ELASTIMATE_CORE_TEXT_NUMBERS_H_
 
+#include <cstddef>
 #include <string>
 
 namespace elastimate {
 
 // These functions write numbers for the sentences and tables that people read.
 
-/// Writes so many significant digits, whatever the magnitude: "0.3", "2e-09".
+/// Writes so many significant digits, with an exponent only below 1e-4 and from
+/// 1e7 on: "0.3", "13200", "2e-09".
 std::string NumberText(double value, int digits = 6);
 
-/// Writes two significant digits, without the exponent that NumberText would
-/// give to 100.
+/// Writes two significant digits.
 std::string TwoDigits(double value);
+
+/// Writes a number of things whose name takes an s in the plural: "1 node",
+/// "3 nodes".
+std::string Counted(std::size_t count, const std::string& noun);
 
 /// Writes a value and its standard deviation, which has two digits, to the same
 /// place: "49890 +- 120", "0.348 +- 0.012".  Both have an exponent where both

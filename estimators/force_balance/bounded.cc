@@ -7,7 +7,8 @@ namespace elastimate {
 std::string_view Bounded::Name() const { return "bounded"; }
 
 std::string_view Bounded::Description() const {
-  return "closed-form with bounds on nu and E, by Ceres [Becker & Teschner "
+  return "closed-form with bounds on nu and E, solved by Ceres [Becker & "
+         "Teschner "
          "2007, eq. 24]";
 }
 

@@ -237,7 +237,7 @@ std::optional<double> NoiseVariance(const std::optional<double>& of_residual,
   if (!given_noise_sd && !of_residual) {
     estimate.why_no_standard_error =
         "there are no more equations than unknowns, so that the noise cannot "
-        "be estimated; give its standard deviation";
+        "be estimated; give its standard deviation (--noise_sd)";
     return std::nullopt;
   }
   const double ratio = std::sqrt(of_residual.value_or(1));

@@ -146,7 +146,7 @@ class WorkEstimate {
     if (redundancy <= 0 && !given) {
       estimate_.why_no_standard_error =
           "there are no more virtual fields than unknowns, so that the noise "
-          "cannot be estimated; give its standard deviation";
+          "cannot be estimated; give its standard deviation (--noise_sd)";
       return std::nullopt;
     }
     const auto m = double(std::max<Eigen::Index>(redundancy, 1));
@@ -289,8 +289,8 @@ class WorkPreparation : public Preparation {
 std::string_view VirtualFields::Name() const { return "virtual-fields"; }
 
 std::string_view VirtualFields::Description() const {
-  return "virtual work of polynomial fields, weighted by its own covariance; "
-         "noise does not bias it [Avril & Pierron 2007]";
+  return "balance of the virtual work of polynomial fields, weighted by its "
+         "covariance; noise does not bias it [Avril & Pierron 2007]";
 }
 
 Capabilities VirtualFields::WhatItTakes() const {

@@ -26,8 +26,8 @@ std::string WhyNotAllDisplacements(const Scene& scene) {
     const LoadCase& load_case = scene.load_cases[k];
     if (load_case.points.points.Size() != 0) {
       return "the force residual needs displacements of nodes, but load case " +
-             std::to_string(k + 1) + " was measured at points; use " +
-             FitOf(scene);
+             std::to_string(k + 1) +
+             " was measured at points; use --estimator=" + FitOf(scene);
     }
     if (load_case.observed.size() == 0) {
       continue;
@@ -41,15 +41,16 @@ std::string WhyNotAllDisplacements(const Scene& scene) {
         if (node >= num_vertices) {
           return "the force residual needs the displacement of every node, "
                  "and those of the mid-edge nodes of quadratic elements "
-                 "(order 2) were not measured; use " +
+                 "(order 2) were not measured; use --estimator=" +
                  FitOf(scene) +
-                 ", which can do without, or linear elements (order 1)";
+                 ", which can do without, or linear elements (--order=1)";
         }
         return "the force residual needs the displacement of every node, "
                "and node " +
                std::to_string(node) + " (" + "xyz"[i] + ") of load case " +
-               std::to_string(k + 1) + " was not observed; " + FitOf(scene) +
-               " can do without";
+               std::to_string(k + 1) +
+               " was not observed; use --estimator=" + FitOf(scene) +
+               ", which can do without";
       }
     }
   }
@@ -60,7 +61,9 @@ std::string WhyNotSupported(const Scene& scene) {
   std::string why = WhyNotHeld(scene);
   if (!why.empty() && scene.mesh.Order() == 1 && !HasUnknownMotion(scene) &&
       !HasSupportsOfCases(scene)) {
-    why += ", or use closed-form or virtual-fields, which need no supports";
+    why +=
+        ", or use --estimator=closed-form or --estimator=virtual-fields, which "
+        "need no supports";
   }
   return why;
 }
@@ -72,16 +75,17 @@ std::string WhyNotTheseMaterials(const Capabilities& capabilities,
     return "";
   }
   if (!capabilities.takes_materials) {
-    return "it takes one isotropic material of which nothing is known; use "
-           "iterative-fe or virtual-fields";
+    return "it takes only one isotropic material without known parameters; use "
+           "--estimator=iterative-fe or --estimator=virtual-fields";
   }
   if (!capabilities.takes_free_axes && HasFreeAxis(scene)) {
-    return "it takes materials whose axis is known; use iterative-fe or "
-           "reduced-fe, or give the axis";
+    return "it takes only materials whose axis is known; use "
+           "--estimator=iterative-fe or --estimator=reduced-fe, or give the "
+           "axis";
   }
   if (options.known_poisson_ratio) {
-    return "Poisson's ratio is given for one material, but the scene says what "
-           "its materials are; give it there";
+    return "Poisson's ratio is given for the whole specimen, but the scene has "
+           "materials of its own; give it there, as a known parameter";
   }
   const bool has_bounded_options =
       options.youngs_modulus.AreGiven() || options.poisson_ratio.AreGiven();
@@ -91,34 +95,34 @@ std::string WhyNotTheseMaterials(const Capabilities& capabilities,
   if (has_bounded_options &&
       !std::all_of(scene.materials.begin(), scene.materials.end(),
                    is_isotropic)) {
-    return "bounds on E and nu are of isotropic materials, but the scene has "
-           "others; give bounds of their parameters there";
+    return "bounds on E and nu are for isotropic materials only, but the scene "
+           "has others; give bounds on their parameters in the scene";
   }
   if (MaterialParameters(scene.materials, scene.mesh.section.model)
           .Free()
           .empty()) {
-    return "every parameter of the materials is known; leave one to estimate";
+    return "every parameter of the materials is known, so that there is "
+           "nothing to estimate; leave one out of \"known\"";
   }
   bool has_bounds = false;
   for (const Material& material : scene.materials) {
     has_bounds = has_bounds || !material.bounds.empty();
   }
   return has_bounds && !capabilities.takes_bounds
-             ? "it cannot keep the bounds of a material; use bounded or "
-               "iterative-fe"
+             ? "it cannot keep the bounds of a material; use "
+               "--estimator=bounded or --estimator=iterative-fe"
              : "";
 }
 
 std::string WhyNotTheseMotions(const Capabilities& capabilities,
                                const EstimatorOptions& options) {
   if (!capabilities.takes_unknown_motion) {
-    return "it takes supports whose displacement is given, and no resultants; "
-           "use iterative-fe";
+    return "it takes only supports whose displacement is given, and no "
+           "resultants; use --estimator=iterative-fe";
   }
-  return options.loss != Loss::kNone
-             ? "a loss function is for supports whose displacement is given; "
-               "leave it out"
-             : "";
+  return options.loss != Loss::kNone ? "a loss function needs supports whose "
+                                       "displacement is given; leave out --loss"
+                                     : "";
 }
 
 }  // namespace
@@ -127,22 +131,26 @@ std::string WhyUnsupported(const Capabilities& capabilities, const Scene& scene,
                            const EstimatorOptions& options) {
   if (!capabilities.takes_bounds &&
       (options.poisson_ratio.AreGiven() || options.youngs_modulus.AreGiven())) {
-    return "it cannot keep bounds; use bounded or " + FitOf(scene);
+    return "it cannot keep bounds; use --estimator=bounded or --estimator=" +
+           FitOf(scene);
   }
   if (!capabilities.takes_losses && options.loss != Loss::kNone) {
-    return "a loss function needs displacement residuals; use reduced-fe";
+    return "it takes no loss function; use --estimator=reduced-fe, or leave "
+           "out --loss";
   }
   if (!capabilities.takes_refinement &&
       options.refinement != Refine::kAutomatic) {
-    return "it solves with no finer elements; use reduced-fe";
+    return "it cannot divide the mesh into finer elements; use "
+           "--estimator=reduced-fe, or leave out --refine";
   }
   if (options.refinement == Refine::kAlways &&
       scene.origin == Origin::kComputed) {
-    return "finer elements say nothing of displacements that were computed "
-           "with this mesh; leave the refinement automatic";
+    return "finer elements say nothing about displacements that were computed "
+           "with this mesh; leave out --refine, or give --origin=measured";
   }
   if (!capabilities.takes_degree && options.virtual_field_degree) {
-    return "it has no virtual fields to take a degree; use virtual-fields";
+    return "it has no virtual fields that could have a degree; use "
+           "--estimator=virtual-fields, or leave out --degree";
   }
   std::string why = WhyNotTheseMaterials(capabilities, scene, options);
   if (why.empty() && HasUnknownMotion(scene)) {
@@ -151,8 +159,8 @@ std::string WhyUnsupported(const Capabilities& capabilities, const Scene& scene,
   if (why.empty() && HasSupportsOfCases(scene) &&
       !capabilities.takes_supports_of_cases) {
     why =
-        "it takes supports that are the same in all load cases; use "
-        "iterative-fe";
+        "it takes only supports that are the same in all load cases; use "
+        "--estimator=iterative-fe";
   }
   if (why.empty() && capabilities.needs_all_displacements) {
     why = WhyNotAllDisplacements(scene);

@@ -81,8 +81,8 @@ std::string EstimatorOptions::WhyInvalid() const {
           std::to_string(*virtual_field_degree) + "; it must be 1, 2 or 3";
   }
   if (why.empty() && solver == SolverKind::kMultigrid && !HasMultigrid()) {
-    why = "the solver is multigrid, which is not there (" + WhyNoMultigrid() +
-          "); use cholesky";
+    why = "the solver is multigrid, which is not available (" +
+          WhyNoMultigrid() + "); use cholesky";
   }
   return why;
 }

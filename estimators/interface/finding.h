@@ -88,12 +88,13 @@ enum class Severity {
 };
 
 /// One thing to say about an estimate.  Both sentences are plain English, start
-/// with a small letter, have no full stop, and are not empty.
+/// with a small letter, have no full stop, and are not empty; they have 40 words
+/// together at most.
 struct Finding {
   FindingCode code;
   Severity severity;
-  std::string text;    ///< What was found: one sentence of 25 words at most.
-  std::string advice;  ///< What to do about it.
+  std::string text;    ///< What was found, with its numbers.
+  std::string advice;  ///< What to do, with the exact flag or key.
 };
 
 /// The name of a code in reports, such as "smooth_residual".

@@ -13,14 +13,20 @@
 namespace elastimate {
 namespace {
 
-constexpr char kCheckTheModel[] = "check mesh, supports and loads";
+constexpr char kCheckTheModel[] = "check the mesh, the supports and the loads";
 constexpr char kCheckWhatIsGiven[] =
-    "check mesh, supports, loads and given values";
+    "check the mesh, the supports, the loads and the given parameters";
 constexpr char kCheckTheMeasurement[] =
-    "check mesh, supports, loads, given values and smoothing";
-constexpr char kGiveMore[] = "give Poisson's ratio or another load case";
-constexpr char kUnbiased[] = "use reduced-fe, or give Poisson's ratio";
-constexpr char kErrorsHold[] = ", which the error bars hold";
+    "check the mesh, the supports, the loads, the given parameters and any "
+    "smoothing of the displacements";
+constexpr char kGiveMore[] =
+    "give Poisson's ratio (--nu), or add another load case";
+constexpr char kGiveMoreOfMaterials[] =
+    "give what is known (--nu, or \"known\" of a material), join regions, or "
+    "add load cases";
+constexpr char kUseALoss[] = "use --loss=huber or --loss=cauchy";
+constexpr char kKeepRegionsApart[] = "use --regions=each";
+constexpr char kErrorsHold[] = ", which the error bars include";
 
 // The rate d ln M / d nu along the direction that the data leave free, below
 // which the modulus M is called determined by them [1]. Next to nu = 1/2 it
@@ -64,7 +70,7 @@ std::string ChangesOf(const Eigen::Vector2d& change, const Estimate& estimate) {
                     " by " + TwoDigits(change(1)));
 }
 
-// ", the shear modulus = 3", of the moduli that do not change along
+// ", namely the shear modulus = 3", of the moduli that do not change along
 // `direction`; none if that leaves nu as it is.
 std::string Unchanged(const IsotropicElasticity& elasticity,
                       const Eigen::Vector2d& direction) {
@@ -72,26 +78,38 @@ std::string Unchanged(const IsotropicElasticity& elasticity,
   for (const Modulus& modulus : Moduli(elasticity)) {
     if (std::abs(modulus.gradient.dot(direction)) <
         kUnchanged * std::abs(direction(1))) {
-      text += ", " + modulus.name + " = " + NumberText(modulus.value);
+      text += (text.empty() ? ", namely " : ", ") + modulus.name + " = " +
+              NumberText(modulus.value);
     }
   }
   return text;
 }
 
-// "a, b, c and 4 more".
+// "a, b, c and 4 more", or "a and b" where there are no more than are named.
 std::string FirstOf(const std::vector<std::string>& names,
                     std::size_t most_named = 3) {
+  const std::size_t num_named = std::min(names.size(), most_named);
   std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), most_named); ++i) {
-    text += (i == 0 ? "" : ", ") + names[i];
+  for (std::size_t i = 0; i < num_named; ++i) {
+    text += (i == 0 ? "" : i + 1 < names.size() ? ", " : " and ") + names[i];
   }
-  return names.size() <= most_named
+  return num_named == names.size()
              ? text
-             : text + " and " + std::to_string(names.size() - most_named) +
+             : text + " and " + std::to_string(names.size() - num_named) +
                    " more";
 }
 
 constexpr const char* kRefineTheMesh = "use a finer mesh";
+
+// Rotations that exceed the strains so many times are more often a turn of the
+// whole specimen, or of the camera, than a deformation.
+constexpr double kTurnOfAWhole = 3;
+
+// "500 %", or "more than 1000 %".
+std::string StrainText(double strain) {
+  const std::string percent = Percent(strain);
+  return percent.back() == '%' ? percent : "more than 1000 %";
+}
 
 Finding Error(FindingCode code, std::string text, std::string advice) {
   return {code, Severity::kError, std::move(text), std::move(advice)};
@@ -101,8 +119,8 @@ Finding Warning(FindingCode code, std::string text, std::string advice) {
   return {code, Severity::kWarning, std::move(text), std::move(advice)};
 }
 
-// "E open by 3% and nu by 0.02": the largest error of a stiffness, and that of
-// a ratio, as far as they are known.
+// "E uncertain by 3 % and nu by 0.02": the largest error of a stiffness, and
+// that of a ratio, as far as they are known.
 std::string LargestErrors(const ParameterErrors& errors,
                           const std::vector<ParameterEstimate>& parameters) {
   Eigen::Index stiffness = -1;
@@ -113,113 +131,120 @@ std::string LargestErrors(const ParameterErrors& errors,
       largest = i;
     }
   }
-  const auto text_of = [&](Eigen::Index i, const std::string& open) {
-    return parameters[i].Label() + open + "by " +
+  const auto text_of = [&](Eigen::Index i, const std::string& uncertain) {
+    return parameters[i].Label() + uncertain + "by " +
            (parameters[i].IsStiffness() ? Percent(errors(i))
                                         : TwoDigits(errors(i)));
   };
   if (stiffness < 0 && ratio < 0) {
-    return "the parameters open";
+    return "the parameters uncertain";
   }
   if (stiffness < 0 || ratio < 0) {
-    return text_of(std::max(stiffness, ratio), " open ");
+    return text_of(std::max(stiffness, ratio), " uncertain ");
   }
-  return text_of(stiffness, " open ") + " and " + text_of(ratio, " ");
+  return text_of(stiffness, " uncertain ") + " and " + text_of(ratio, " ");
 }
 
 }  // namespace
 
 Finding NotFinite() {
-  return Error(FindingCode::kNotFinite, "the result is not finite",
+  return Error(FindingCode::kNotFinite, "the estimate is not a finite number",
                kCheckTheModel);
 }
 
 Finding SingularStiffness() {
-  return Error(FindingCode::kSingularStiffness,
-               "the stiffness matrix is singular to working precision",
-               "check the mesh for slivers and loose parts, the supports, and "
-               "known values");
+  return Error(
+      FindingCode::kSingularStiffness,
+      "the stiffness matrix is singular to working precision",
+      "check the supports, the given parameters, and the mesh for flat "
+      "elements and loose parts");
 }
 
 Finding SearchFailed(const std::string& reason) {
-  return Error(
-      FindingCode::kSearchFailed,
-      "the search for the best fit ended without one",
-      "check the mesh for slivers, or use reduced-fe (" + reason + ")");
+  return Error(FindingCode::kSearchFailed,
+               "the search for the best fit failed (" + reason + ")",
+               "check the mesh for flat elements, or use "
+               "--estimator=reduced-fe");
 }
 
 Finding NoConvergence(int max_iterations) {
   return Error(FindingCode::kNoConvergence,
-               "the fit did not converge in " + std::to_string(max_iterations) +
-                   " iterations",
-               "use reduced-fe, or give bounds on parameters");
+               "the fit did not converge in " +
+                   Counted(std::size_t(max_iterations), "iteration"),
+               "use --estimator=reduced-fe, or give bounds on the parameters");
 }
 
 Finding FitNotCertified() {
   return Error(FindingCode::kFitNotCertified,
                "the reduced model did not become accurate enough to exclude a "
                "better fit elsewhere",
-               "use iterative-fe, or give bounds on parameters");
+               "use --estimator=iterative-fe, or give bounds on nu (--nu_min, "
+               "--nu_max)");
 }
 
 Finding ErrorsMissing(const std::string& estimator, const std::string& what) {
-  return Error(
-      FindingCode::kErrorsMissing,
-      "the estimator " + estimator + " gives neither " + what + " nor a reason",
-      "use another one, or enter a covariance or why_no_standard_error");
+  return Error(FindingCode::kErrorsMissing,
+               "the estimator " + estimator + " returned neither " + what +
+                   " nor a reason for its absence",
+               "use another estimator, or let this one set a covariance or "
+               "why_no_standard_error");
 }
 
 Finding UnphysicalParameters(const std::vector<std::string>& parameters,
                              bool is_by_noise) {
-  const std::string text = FirstOf(parameters) +
-                           (parameters.size() == 1 ? " is" : " are") +
-                           " not physical";
+  const std::string text =
+      "the estimate is not physical: " + FirstOf(parameters);
   return is_by_noise
              ? Error(FindingCode::kUnphysical,
-                     text + ", as noise or coarse elements make it here",
-                     kUnbiased)
+                     text +
+                         ", which noise or coarse elements can cause with "
+                         "this estimator",
+                     "use --estimator=reduced-fe, or give Poisson's ratio "
+                     "(--nu)")
              : Error(FindingCode::kUnphysical, text,
-                     std::string("give bounds, and ") + kCheckTheModel);
+                     std::string(kCheckTheModel) + ", or give bounds");
 }
 
 Finding DisplacementsOpposeLoads() {
   return Error(FindingCode::kDisplacementsOpposeLoads,
-               "the measured displacements oppose the loads",
-               "check their signs, order and units, and whether noise "
-               "outweighs them");
+               "the measured displacements point against the loads",
+               "check the signs, the order and the units of both, and whether "
+               "the noise exceeds the displacements");
 }
 
 Finding YoungsModulusDiverges() {
-  return Error(
-      FindingCode::kYoungsModulusDiverges,
-      "the data pull Young's modulus to zero or infinity",
-      std::string(kCheckTheModel) + ", and whether noise outweighs them");
+  return Error(FindingCode::kYoungsModulusDiverges,
+               "the data drive Young's modulus to zero or infinity",
+               "check the mesh, the supports, the loads, and whether the noise "
+               "exceeds the displacements");
 }
 
 Finding PoissonRatioAtMinusOne() {
-  return Error(FindingCode::kPoissonRatioDiverges,
-               "the data pull Poisson's ratio to -1, where no material is",
-               std::string("give Poisson's ratio, or ") + kCheckTheModel);
+  return Error(
+      FindingCode::kPoissonRatioDiverges,
+      "the data drive Poisson's ratio to -1, which no material has",
+      std::string(kCheckTheModel) + ", or give Poisson's ratio (--nu)");
 }
 
 Finding PoissonRatioDivergesByNoise() {
   return Error(FindingCode::kPoissonRatioDiverges,
-               "the data pull Poisson's ratio to the end of its range, as "
-               "noise or coarse elements do here",
-               "give bounds, or use reduced-fe");
+               "the data drive Poisson's ratio to the end of its range, which "
+               "noise or coarse elements can cause with this estimator",
+               "use --estimator=reduced-fe, or give bounds (--nu_min, "
+               "--nu_max)");
 }
 
 Finding LoadsDoNoWork() {
   return Error(FindingCode::kLoadsDoNoWork,
-               "the loads do no work on the virtual fields",
-               "raise their degree, or use reduced-fe");
+               "the loads do no work on any of the virtual fields",
+               "raise --degree, or use --estimator=reduced-fe");
 }
 
 Finding OneCombination(const IsotropicElasticity& elasticity,
                        const Eigen::Vector2d& direction) {
   return Error(FindingCode::kOneCombination,
-               "the data determine one combination of Young's modulus and "
-               "Poisson's ratio only" +
+               "the data determine only one combination of Young's modulus and "
+               "Poisson's ratio" +
                    Unchanged(elasticity, direction),
                kGiveMore);
 }
@@ -227,105 +252,115 @@ Finding OneCombination(const IsotropicElasticity& elasticity,
 Finding ParametersUndetermined(const std::vector<std::string>& parameters) {
   return Error(FindingCode::kParametersUndetermined,
                "the data do not determine " + FirstOf(parameters),
-               "give what is known of them, join regions, or add load cases");
+               kGiveMoreOfMaterials);
 }
 
 Finding ParametersUndeterminedByElements(
     const std::vector<std::string>& parameters) {
-  return Error(FindingCode::kParametersUndetermined,
-               "elements this coarse do not determine " + FirstOf(parameters),
-               kRefineTheMesh);
+  return Error(
+      FindingCode::kParametersUndetermined,
+      "the elements are too coarse to determine " + FirstOf(parameters),
+      kRefineTheMesh);
 }
 
 Finding ParametersUndeterminedOnBounds(
     const std::vector<std::string>& parameters) {
-  return Error(FindingCode::kParametersUndetermined,
-               "on bounds, the data do not determine " + FirstOf(parameters),
-               "check the bounds, which the data may contradict");
+  return Error(
+      FindingCode::kParametersUndetermined,
+      "the fit lies on given bounds, where the data do not determine " +
+          FirstOf(parameters),
+      "check the bounds, which the data may contradict");
 }
 
 Finding AxisUndetermined(const std::vector<std::string>& axes) {
   return Error(FindingCode::kAxisUndetermined,
-               "the data do not determine " + axes[0] +
-                   (axes.size() == 1
-                        ? ""
-                        : " and " + std::to_string(axes.size() - 1) + " more") +
-                   ", as of an isotropic material",
-               "use --material=auto, or give the axis");
+               "the data do not determine " + FirstOf(axes, 1) +
+                   ", so the material may be isotropic",
+               "use --material=auto or --material=isotropic, or give the axis "
+               "(--axis=X,Y,Z)");
 }
 
 Finding CombinationsOnly(const std::vector<std::string>& combinations) {
-  return Warning(FindingCode::kCombinationsOnly,
-                 "data determine only " + combinations[0],
-                 "give what is known of them, join regions, or add load cases");
+  return Warning(
+      FindingCode::kCombinationsOnly,
+      "the data determine only " + combinations[0] + ", and not each parameter",
+      kGiveMoreOfMaterials);
 }
 
 Finding ResidualInRegion(const std::string& region, double correlation) {
   return Warning(FindingCode::kResidualInRegion,
-                 "in " + region + " the residuals of neighbours are alike (" +
-                     TwoDigits(correlation) + "): its material may vary",
-                 "divide it, or check what is known there");
+                 "the residuals of neighbouring nodes in " + region +
+                     " are alike (correlation " + TwoDigits(correlation) +
+                     "), so its material may vary",
+                 "divide it into regions, or check the supports and loads "
+                 "there");
 }
 
 Finding AxisTurned(double angle, const std::string& region, double change) {
   return Warning(FindingCode::kAxisTurned,
                  "axes" + (region.empty() ? "" : " of " + region) +
-                     " turned by " + TwoDigits(kDegreesOfRadian * angle) +
-                     " degrees fit better, with parameters " + Percent(change) +
-                     " away" + kErrorsHold,
-                 "check them, or use --axis=free");
+                     " that are turned by " +
+                     TwoDigits(kDegreesOfRadian * angle) +
+                     " degrees fit better and change parameters by " +
+                     Percent(change) + kErrorsHold,
+                 "check the given axes, or use --axis=free");
 }
 
 Finding RegionsMayDiffer(const std::vector<std::string>& differences,
                          Severity severity) {
   return {FindingCode::kRegionsMayDiffer, severity,
-          "regions that became one material may differ by up to " +
-              FirstOf(differences) + " (95 %)",
-          "use --regions=each"};
+          "regions that were merged into one material may differ by up to " +
+              FirstOf(differences) + " (95 % confidence)",
+          kKeepRegionsApart};
 }
 
 Finding RegionMayBeAnother(const std::string& region,
                            const std::vector<std::string>& differences) {
   return Warning(FindingCode::kRegionsMayDiffer,
-                 region + " may be off the material it became part of by " +
-                     FirstOf(differences) + " (95 %)",
-                 "use --regions=each");
+                 region + " may differ by " + FirstOf(differences) +
+                     " (95 % confidence) from the material into which it was "
+                     "merged",
+                 kKeepRegionsApart);
 }
 
 Finding RegionsNotCompared(const std::vector<std::string>& regions) {
   return {FindingCode::kRegionsNotCompared, Severity::kNotice,
           "the data determine too little of " + FirstOf(regions) +
-              " to compare it with others",
-          "add another load case, or name its material in the scene"};
+              " for a comparison with other regions",
+          "add another load case, or give the material in \"materials\" of a "
+          "scene.json"};
 }
 
 Finding LawsFitAlike(const std::string& chosen, const std::string& other,
                      double difference) {
   return Warning(FindingCode::kLawsFitAlike,
                  "the law " + other + " explains the data about as well as " +
-                     chosen + " (BIC differs by " + TwoDigits(difference) + ")",
-                 "measure another load case, or name the law by --material");
+                     chosen + " (their BIC differ by " + TwoDigits(difference) +
+                     ")",
+                 "add another load case, or name the law by --material");
 }
 
 Finding DependentForces() {
   return Error(FindingCode::kParametersUndetermined,
-               "the data determine combinations of the parameters only",
-               "give what is known of them, join regions, or add load cases");
+               "the data determine only combinations of the parameters",
+               kGiveMoreOfMaterials);
 }
 
 Finding TooFewMeasurements(Eigen::Index num_components) {
   return Error(FindingCode::kTooFewMeasurements,
-               std::to_string(num_components) +
-                   " measured components are too few to tell how good the "
-                   "estimate is",
-               "measure more, or give the standard deviation of the noise");
+               "too few components were measured (" +
+                   std::to_string(num_components) +
+                   ") to tell the noise from the deformation",
+               "measure more, or give the standard deviation of the noise "
+               "(--noise_sd)");
 }
 
 Finding BoundContradicted(const std::string& label, bool is_less_asked_for) {
   return Error(FindingCode::kBoundContradicted,
-               "the data contradict the bound on " + label + ", and ask for " +
-                   (is_less_asked_for ? "less" : "more"),
-               "check the bound, mesh, supports and loads");
+               "the data contradict the bound on " + label +
+                   ", and fit much better with a " +
+                   (is_less_asked_for ? "smaller" : "larger") + " value",
+               "check the bound, the mesh, the supports and the loads");
 }
 
 Finding KnownPoissonRatioContradicted(const std::string& label,
@@ -333,9 +368,9 @@ Finding KnownPoissonRatioContradicted(const std::string& label,
                                       double standard_error,
                                       Severity severity) {
   return {FindingCode::kKnownPoissonRatioContradicted, severity,
-          "the data contradict the given " + label + ": they ask for " +
+          "the data contradict the given " + label + ", and fit best with " +
               TwoDigits(poisson_ratio) + " +- " + TwoDigits(standard_error),
-          "check that value, mesh, supports and loads"};
+          "check the given value, the mesh, the supports and the loads"};
 }
 
 Finding LargeCorrection(double correction) {
@@ -343,14 +378,15 @@ Finding LargeCorrection(double correction) {
                "the loads balance only with displacements that differ from the "
                "measured ones by " +
                    Percent(correction),
-               "check mesh, supports, loads, noise and given values");
+               "check the mesh, the supports, the loads, the given parameters "
+               "and the noise");
 }
 
 Finding LoadsOutOfBalance(double imbalance, Severity severity) {
   return {FindingCode::kLoadsOutOfBalance, severity,
           "the supports leave the specimen free to move, and " +
               PercentOf(imbalance, "the loads") + " push it that way",
-          "complete the supports or the loads"};
+          "add the supports or the loads that are missing"};
 }
 
 Finding ResidualAboveNoise(ResidualKind kind, double ratio) {
@@ -360,26 +396,30 @@ Finding ResidualAboveNoise(ResidualKind kind, double ratio) {
           ? "the displacement residual is " + times + "the given noise"
       : kind == ResidualKind::kForce
           ? "the force residual is " + times + "what the given noise explains"
-          : "virtual work is off balance by " + times +
+          : "the virtual work is out of balance by " + times +
                 "what the given noise explains";
   return Warning(FindingCode::kResidualAboveNoise, what + kErrorsHold,
-                 "check the noise, mesh, supports and loads");
+                 "check the given noise (--noise_sd), the mesh, the supports "
+                 "and the loads");
 }
 
 Finding SmoothResidual(double correlation) {
-  return Warning(FindingCode::kSmoothResidual,
-                 "neighbouring residuals are alike (correlation " +
-                     TwoDigits(correlation) + ")" + kErrorsHold,
-                 "check mesh, supports, loads, smoothing; the material may not "
-                 "be the same all over");
+  return Warning(
+      FindingCode::kSmoothResidual,
+      "the residuals of neighbouring nodes are alike (correlation " +
+          TwoDigits(correlation) + "), so the model misses something" +
+          kErrorsHold,
+      "check the mesh, the supports, the loads, any smoothing of the "
+      "displacements, and whether the material varies");
 }
 
 Finding LargeSmoothResidual(double smooth) {
   return Error(FindingCode::kSmoothResidual,
-               "the model misses a smooth part of the measured displacement, " +
-                   PercentOf(smooth, "it"),
-               "check mesh, supports, loads, given values, and whether the "
-               "material varies");
+               "the model does not explain a smooth part of the measured "
+               "displacement, " +
+                   PercentOf(smooth, "its size"),
+               "check the mesh, the supports, the loads, the given parameters, "
+               "and whether the material varies");
 }
 
 Finding LargeResidual(double displacement_residual) {
@@ -387,52 +427,54 @@ Finding LargeResidual(double displacement_residual) {
       FindingCode::kLargeResidual,
       "the displacement residual is " +
           PercentOf(displacement_residual, "the measured displacement"),
-      std::string(kCheckTheModel) + ", unless the noise is as large");
+      std::string(kCheckTheModel) + ", unless the noise is that large");
 }
 
 Finding VirtualWorkImbalance() {
-  return Warning(
-      FindingCode::kVirtualWorkImbalance,
-      std::string("virtual work is off balance by more than noise explains") +
-          kErrorsHold,
-      kCheckTheMeasurement);
+  return Warning(FindingCode::kVirtualWorkImbalance,
+                 std::string("the virtual work is out of balance by more than "
+                             "noise explains") +
+                     kErrorsHold,
+                 kCheckTheMeasurement);
 }
 
 Finding VirtualWorkImbalance(double force_residual, Severity severity) {
   return {FindingCode::kVirtualWorkImbalance, severity,
-          "virtual-fields finds more than noise in the force residual (" +
-              TwoDigits(force_residual) + " of the load)" +
+          "a check by virtual work finds more than noise in the force "
+          "residual (" +
+              PercentOf(force_residual, "the load") + ")" +
               (severity == Severity::kWarning ? kErrorsHold : ""),
           kCheckWhatIsGiven};
 }
 
 Finding RatiosAtLimit(const std::vector<std::string>& parameters) {
   return Error(FindingCode::kPoissonRatioAtLimit,
-               "the data pull " + FirstOf(parameters, 1) +
-                   " to the end of its range and leave a residual that is not "
-                   "noise",
+               "the data drive " + FirstOf(parameters, 1) +
+                   " to the end of the physical range and leave a residual "
+                   "that is not noise",
                kCheckTheModel);
 }
 
 Finding OutliersAtLimit(const std::vector<std::string>& parameters) {
   return Error(FindingCode::kPoissonRatioAtLimit,
-               "some nodes lie far off, which may be what pulls " +
-                   FirstOf(parameters, 1) + " to the end of its range",
-               "use a loss (huber or cauchy)");
+               "some nodes lie far off the fit, which may be what drives " +
+                   FirstOf(parameters, 1) + " to the end of the physical range",
+               kUseALoss);
 }
 
 Finding Outliers(const Eigen::Vector2d& change, const Estimate& estimate) {
-  return Warning(FindingCode::kOutliers,
-                 "some nodes lie far off; leaving them out would change " +
-                     ChangesOf(change, estimate),
-                 "use a loss (huber or cauchy)");
+  return Warning(
+      FindingCode::kOutliers,
+      "some nodes lie far off the fit, and leaving them out would change " +
+          ChangesOf(change, estimate),
+      kUseALoss);
 }
 
 Finding FarNeighbours() {
   return Warning(FindingCode::kOutliers,
-                 "neighbouring nodes lie far off, so that the material may not "
-                 "be the same all over",
-                 "give it regions, or check mesh, supports and loads");
+                 "several neighbouring nodes lie far off the fit, so the "
+                 "material may vary",
+                 "give the mesh regions, or check the supports and the loads");
 }
 
 Finding OutliersLeftOut(const std::vector<Outlier>& outliers,
@@ -449,59 +491,64 @@ Finding OutliersLeftOut(const std::vector<Outlier>& outliers,
     names += ", ...";
   }
   return Warning(FindingCode::kOutliersLeftOut,
-                 std::to_string(outliers.size()) + " outliers (" + names +
-                     ") are left out, which changes " +
-                     ChangesOf(change, estimate),
-                 "look at them, marked in --out");
+                 Counted(outliers.size(), "outlier") + " (" + names +
+                     (outliers.size() == 1 ? ") is" : ") are") +
+                     " left out, which changes " + ChangesOf(change, estimate),
+                 "look at the array 'outlier' in the file of --out");
 }
 
 Finding HeldNodesMoved(const std::vector<std::size_t>& load_cases) {
   const std::size_t num_others = load_cases.size() - 1;
   return Warning(
       FindingCode::kHeldNodesMoved,
-      "held nodes of load case " + std::to_string(load_cases.front()) +
+      "nodes that supports hold in load case " +
+          std::to_string(load_cases.front()) +
           (num_others == 0 ? ""
                            : " (and " + std::to_string(num_others) + " more)") +
-          " were measured elsewhere, which is not used",
-      "check the supports");
+          " were measured elsewhere, which the estimate ignores",
+      "check the supports, or give \"rigid_motion\": \"free\" if the specimen "
+      "moved as a whole");
 }
 
 Finding ResultantsContradicted(double distance) {
   return Warning(FindingCode::kResultantsContradicted,
-                 "a measured resultant is " + TwoDigits(distance) +
-                     " of its standard deviations from the force of the fit" +
+                 "a measured resultant differs from the force of the fit by " +
+                     TwoDigits(distance) + " times its standard deviation" +
                      kErrorsHold,
-                 "check loads and resultants");
+                 "check the loads and the resultants");
 }
 
 Finding NoFrameUsable(std::size_t num_frames, const std::string& reason) {
   return {FindingCode::kNoFrameUsable, Severity::kError,
-          "none of " + std::to_string(num_frames) +
-              " frames gives an estimate with error bars",
-          "the first says: " + reason};
+          num_frames == 1 ? "the only frame gives no estimate with error bars"
+                          : "none of the " + std::to_string(num_frames) +
+                                " frames gives an estimate with error bars",
+          "see the reasons in the table of --series, of which the first is: " +
+              reason};
 }
 
 Finding FramesScatter(double excess, std::size_t farthest) {
   return Warning(FindingCode::kFramesScatter,
-                 "frames scatter by " + TwoDigits(excess) +
+                 "the estimates of the frames scatter by " + TwoDigits(excess) +
                      " times their noise, frame " + std::to_string(farthest) +
                      " most",
-                 "check the loads of the frames, and that one above all");
+                 "check the loads of the frames, and of that one above all");
 }
 
 Finding FramesAlike(double correlation) {
   return Warning(FindingCode::kFramesAlike,
-                 "the residuals of frames are alike (correlation " +
+                 "the residuals of successive frames are alike (correlation " +
                      TwoDigits(correlation) +
                      "), and what they share does not average out",
-                 "check the reference image, supports and loads");
+                 "check the reference image, the supports and the loads");
 }
 
 Finding FramesLeftOut(std::size_t num_left_out, std::size_t num_frames) {
-  return {FindingCode::kFramesLeftOut, Severity::kNotice,
-          std::to_string(num_left_out) + " of " + std::to_string(num_frames) +
-              " frames are not used",
-          "see why in the table of --series"};
+  return {
+      FindingCode::kFramesLeftOut, Severity::kNotice,
+      std::to_string(num_left_out) + " of " + std::to_string(num_frames) +
+          (num_left_out == 1 ? " frames is not used" : " frames are not used"),
+      "see the column 'reason' in the table of --series"};
 }
 
 Finding TrendOverFrames(const std::string& parameter, bool is_relative,
@@ -515,27 +562,35 @@ Finding TrendOverFrames(const std::string& parameter, bool is_relative,
                      (trend.is_over_load ? " from the least load to the largest"
                                          : " from the first frame to the last"),
                  trend.is_over_load
-                     ? "check that frames and loads are in one order (the load "
-                       "record can name the files), or take frames of small "
-                       "load"
-                     : "look for creep, and drift of camera or load");
+                     ? "check that frames and loads are in the same order (the "
+                       "load record can name the files), or use only frames of "
+                       "small load"
+                     : "look for creep, and for drift of the camera or the "
+                       "load cell");
 }
 
 Finding ParametersOnBounds(const std::vector<std::string>& parameters) {
-  return Warning(
-      FindingCode::kParametersOnBounds,
-      FirstOf(parameters) +
-          (parameters.size() == 1 ? " lies on a bound" : " lie on bounds"),
-      "check the bounds; the standard errors are those without them");
+  return Warning(FindingCode::kParametersOnBounds,
+                 FirstOf(parameters) +
+                     (parameters.size() == 1
+                          ? " lies on a bound, which its error bar ignores"
+                          : " lie on bounds, which their error bars ignore"),
+                 "check the bounds");
 }
 
 Finding ParametersNearLimits(const std::vector<std::string>& parameters,
                              Severity severity) {
+  const bool is_one = parameters.size() == 1;
   return {FindingCode::kParametersNearLimits, severity,
-          FirstOf(parameters) + " may lie at a limit, within errors",
+          (is_one ? "the 95 % interval of " : "the 95 % intervals of ") +
+              FirstOf(parameters) + (is_one ? " reaches" : " reach") +
+              " the end of the physical range (-1 to 0.5), where " +
+              (severity == Severity::kError ? "this estimator is not reliable"
+                                            : "error bars may be too small"),
           severity == Severity::kError
-              ? "give what is known of it, or use iterative-fe"
-              : "give what is known of it; error bars there may be too small"};
+              ? "give what is known of it (--nu), or use "
+                "--estimator=iterative-fe"
+              : "give what is known of it (--nu)"};
 }
 
 Finding ParameterBias(const std::string& parameter, double bias,
@@ -545,75 +600,88 @@ Finding ParameterBias(const std::string& parameter, double bias,
       std::isfinite(bias)
           ? "displacement noise biases " + parameter + " by " +
                 (is_relative ? AboutPercent(bias) : "about " + TwoDigits(bias))
-          : "displacement noise hides " + parameter,
-      "use reduced-fe or virtual-fields, which noise does not bias"};
+          : "displacement noise is too large for this estimator to determine " +
+                parameter,
+      "use --estimator=reduced-fe or --estimator=virtual-fields, which noise "
+      "does not bias"};
 }
 
 Finding LargeDeformation(const DeformationSize& size,
-                         double relative_error_of_modulus, Severity severity) {
+                         double relative_error_of_modulus, Severity severity,
+                         bool is_rigid_motion_free) {
   if (size.strain > kLimits.impossible_strain) {
     return {FindingCode::kLargeDeformation, severity,
-            "the displacements are larger than the body: they are strains of " +
-                TwoDigits(size.strain),
-            "check that they are displacements, not positions after the load, "
-            "and in the unit of length of the coordinates"};
+            "the displacements make strains of " + StrainText(size.strain) +
+                ", so they are probably in another unit of length than the "
+                "coordinates, or are positions after the load",
+            "give displacements in the unit of the coordinates"};
   }
-  constexpr double kDegreesOfRadian = 57.29578;
+  std::string what;
+  if (size.strain >= kLimits.mentioned_strain) {
+    what = "strains of " + Percent(size.strain);
+  }
+  if (size.rotation >= kLimits.mentioned_rotation) {
+    what += (what.empty() ? "" : " and ") + std::string("rotations of ") +
+            TwoDigits(kDegreesOfRadian * size.rotation) + " degrees";
+  }
   return {FindingCode::kLargeDeformation, severity,
-          "strains of " + Percent(size.strain) + " and rotations of " +
-              TwoDigits(kDegreesOfRadian * size.rotation) +
-              " degrees are beyond small-strain elasticity (E +- " +
-              Percent(relative_error_of_modulus) + ")",
-          size.strain < kLimits.mentioned_strain
-              ? "measure at smaller loads, or say \"rigid_motion\": \"free\""
-              : "measure at smaller loads, not larger ones"};
+          what +
+              " are too large for small-strain elasticity, which leaves E "
+              "uncertain by " +
+              Percent(relative_error_of_modulus),
+          !is_rigid_motion_free && size.rotation > kTurnOfAWhole * size.strain
+              ? "give \"rigid_motion\": \"free\" if the specimen or the camera "
+                "turned, or measure at smaller loads"
+              : "measure at smaller loads"};
 }
 
 Finding MarginNotGiven(double relative_error) {
-  return Warning(FindingCode::kMarginNotGiven,
-                 "the mesh ends at its outermost points, which may lie inside "
-                 "of the specimen; what that may change of E is " +
-                     Percent(relative_error),
-                 "give \"margin\", their distance from the free edges, or "
-                 "take a mesh of the specimen, over which points need not be "
-                 "nodes");
+  return Warning(
+      FindingCode::kMarginNotGiven,
+      "the mesh ends at the outermost points, and if the specimen "
+      "ends elsewhere, E changes by about " +
+          Percent(relative_error),
+      "give \"margin\", the distance from these points to the free "
+      "edges, or use a mesh of the specimen, in which the points may "
+      "lie anywhere");
 }
 
 Finding NegativePoissonRatio(const ParameterEstimate& poisson_ratio) {
   return Warning(FindingCode::kNegativePoissonRatio,
-                 poisson_ratio.Label() + " is negative, " +
+                 poisson_ratio.Label() + " is negative (" +
                      TwoDigits(poisson_ratio.value) +
-                     ", as one displacement component of the wrong sign makes "
-                     "it",
-                 "check that x and u, y and v point alike");
+                     "), which a displacement component of the wrong sign can "
+                     "cause",
+                 "check that u points along x, and v along y");
 }
 
 Finding DiscretizationErrorFinding(const Estimate& estimate) {
-  return Warning(
-      FindingCode::kDiscretizationError,
-      "the mesh leaves " + LargestErrors(estimate.error_budget.discretization,
-                                         estimate.parameters),
-      "use a finer mesh if you need a smaller error");
+  return Warning(FindingCode::kDiscretizationError,
+                 "the mesh is so coarse that it leaves " +
+                     LargestErrors(estimate.error_budget.discretization,
+                                   estimate.parameters),
+                 "use a finer mesh if you need a smaller error");
 }
 
 Finding MeshErrorUnknown() {
   return Warning(FindingCode::kMeshErrorUnknown,
-                 "this estimator does not know the mesh error, so that the "
-                 "errors are those of noise",
-                 "use reduced-fe, or --origin=computed for simulated data");
+                 "this estimator does not know the error of the mesh, so the "
+                 "error bars include noise only",
+                 "use --estimator=reduced-fe, or give --origin=computed for "
+                 "simulated data");
 }
 
 Finding ComputedByLinearElements() {
   return Error(FindingCode::kComputedByLinearElements,
                "linear elements of this mesh fit far better than finer ones, "
-               "as if they had computed the data",
-               "if so, give --origin=computed");
+               "as if they had computed the displacements",
+               "if they did, give --origin=computed");
 }
 
 Finding SupportsEndWithinElements(const ParameterErrors& errors,
                                   const Estimate& estimate) {
   return Warning(FindingCode::kSupportsEndWithinElements,
-                 "where supports end within elements is not known, which "
+                 "it is not known where the supports end between nodes, which "
                  "leaves " +
                      LargestErrors(errors, estimate.parameters),
                  "give the supports as boxes");

@@ -45,7 +45,7 @@ Finding LoadsDoNoWork();
 /// at `elasticity`.
 Finding OneCombination(const IsotropicElasticity& elasticity,
                        const Eigen::Vector2d& direction);
-/// `parameters` describes each, such as "E of region 3 (45 %)".
+/// `parameters` describes each, such as "E of region 3 (+- 45 %)".
 Finding ParametersUndetermined(const std::vector<std::string>& parameters);
 /// Says so where most of the errors is what the elements miss.
 Finding ParametersUndeterminedByElements(
@@ -53,7 +53,7 @@ Finding ParametersUndeterminedByElements(
 /// Says so where bounds that a user gave hold some of them.
 Finding ParametersUndeterminedOnBounds(
     const std::vector<std::string>& parameters);
-/// `axes` describes each, such as "the axis of region 3 (24 degrees)".
+/// `axes` describes each, such as "the axis of region 3 (+- 24 degrees)".
 Finding AxisUndetermined(const std::vector<std::string>& axes);
 /// Says the first of them.
 Finding CombinationsOnly(const std::vector<std::string>& combinations);
@@ -64,8 +64,8 @@ Finding AxisTurned(double angle, const std::string& region, double change);
 /// By how much, such as "3 % in E".
 Finding RegionsMayDiffer(const std::vector<std::string>& differences,
                          Severity severity);
-/// "region 3".
-/// The same of one of them, by more than the errors of the material hold.
+/// Says so of one region, "region 3", which is off by more than the errors of
+/// the material include.
 Finding RegionMayBeAnother(const std::string& region,
                            const std::vector<std::string>& differences);
 Finding RegionsNotCompared(const std::vector<std::string>& regions);
@@ -134,9 +134,11 @@ Finding ParametersNearLimits(const std::vector<std::string>& parameters,
 /// Names the parameter that is biased most.
 Finding ParameterBias(const std::string& parameter, double bias,
                       bool is_relative, Severity severity);
-/// What linear kinematics leave out (KinematicErrorOf).
+/// What linear kinematics leave out (KinematicErrorOf).  A turn of the whole
+/// specimen may be the reason, unless the scene has its rigid motion free.
 Finding LargeDeformation(const DeformationSize& size,
-                         double relative_error_of_modulus, Severity severity);
+                         double relative_error_of_modulus, Severity severity,
+                         bool is_rigid_motion_free);
 /// How much a margin of half a spacing of the points changes E.
 Finding MarginNotGiven(double relative_error);
 Finding NegativePoissonRatio(const ParameterEstimate& poisson_ratio);

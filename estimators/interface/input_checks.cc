@@ -94,20 +94,21 @@ std::vector<Finding> CheckMeasurements(const Scene& scene) {
     const LoadCase& load_case = scene.load_cases[k];
     const std::string name = "load case " + std::to_string(k + 1);
     if (!IsMeasured(load_case)) {
-      throw std::invalid_argument(
-          name + " has no measured displacements; an estimate needs them");
+      throw std::invalid_argument(name +
+                                  " has no measured displacements; add them");
     }
     const MeasurementSummary summary = Summarize(scene, Eigen::Index(k));
     if (!summary.any_observed) {
       throw std::invalid_argument(
           "no free component of the displacement was measured in " + name +
-          "; measure some, or free what was measured");
+          "; measure free nodes, or leave what was measured out of the "
+          "supports");
     }
     if (!summary.any_displacement) {
       throw std::invalid_argument(
           "the measured displacement of " + name +
-          " is zero at every free node; nothing moved, so nothing can be "
-          "estimated");
+          " is zero at every free node, so that nothing can be estimated; "
+          "check the columns or arrays that it was read from");
     }
     // Measurement noise on held nodes is no contradiction; a motion is.
     if (summary.held_deviation_square_sum >
@@ -130,13 +131,14 @@ void CheckLoads(const Scene& scene) {
   }
   if (!any_force) {
     throw std::invalid_argument(
-        "the loads are zero on every free degree of freedom; without a known "
-        "force, or a measured resultant, Young's modulus cannot be estimated");
+        "the loads are zero on every free node, so that Young's modulus cannot "
+        "be estimated; give a load, or the measured force of a support as a "
+        "load of type \"resultant\"");
   }
   if (num_with_noise_sd != 0 && num_with_noise_sd != scene.load_cases.size()) {
     throw std::invalid_argument(
-        "the noise standard deviation is given for some load cases only; give "
-        "it for all or for none");
+        "the standard deviation of the noise is given for some load cases "
+        "only; give it for all or for none");
   }
 }
 

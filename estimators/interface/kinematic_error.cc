@@ -81,11 +81,13 @@ void JudgeKinematics(const Scene& scene, const EstimatorOptions& options,
   const KinematicError error = KinematicErrorOf(estimate.deformation);
   if (IsUnusable(error, IsARatioFree(options, estimate))) {
     estimate.Fail(LargeDeformation(estimate.deformation, error.log_modulus,
-                                   Severity::kError));
+                                   Severity::kError,
+                                   scene.is_rigid_motion_free));
     return;
   }
   estimate.Add(LargeDeformation(estimate.deformation, error.log_modulus,
-                                Severity::kWarning));
+                                Severity::kWarning,
+                                scene.is_rigid_motion_free));
   if (estimate.IsUsable()) {
     AddError(error, estimate.error_budget.kinematics, estimate);
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "elastimate/core/text/numbers.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 
 namespace elastimate {
@@ -20,7 +21,7 @@ void FailWithoutParameters(std::string_view estimator, const Scene& scene,
              estimate.parameter_covariance.cols() != size) {
     estimate.Fail(ErrorsMissing(
         std::string(estimator),
-        "a covariance of its " + std::to_string(size) + " parameters"));
+        "a covariance of its " + Counted(std::size_t(size), "parameter")));
   }
 }
 

@@ -94,10 +94,10 @@ bool IsDetermined(const AxisEstimate& axis, const Estimate& estimate) {
          (axis.standard_error || !estimate.why_no_standard_error.empty());
 }
 
-// " (24 degrees)"; of an error that is small enough, or unknown, nothing.
+// " (+- 24 degrees)"; of an error that is small enough, or unknown, nothing.
 std::string ErrorInDegrees(const AxisEstimate& axis) {
   return axis.standard_error.value_or(0) > kLimits.largest_axis_error
-             ? " (" + TwoDigits(*axis.standard_error * kDegreesOfRadian) +
+             ? " (+- " + TwoDigits(*axis.standard_error * kDegreesOfRadian) +
                    " degrees)"
              : "";
 }
@@ -138,7 +138,7 @@ std::vector<std::string> Undetermined(const Estimate& estimate) {
         undetermined.push_back(parameter.Label());
       }
     } else if (!IsDetermined(parameter)) {
-      undetermined.push_back(parameter.Label() + " (" +
+      undetermined.push_back(parameter.Label() + " (+- " +
                              (parameter.IsStiffness()
                                   ? Percent(error / parameter.ErrorUnit())
                                   : TwoDigits(error)) +

@@ -23,7 +23,7 @@ Scene WithoutMeasurement(Scene scene) {
         load_case.points.points.Size() != 0) {
       throw std::invalid_argument("load case " + std::to_string(k + 1) +
                                   " was measured at nodes and at points; "
-                                  "prepare a scene of either");
+                                  "prepare a scene of one of the two");
     }
     load_case.displacement.resize(0, 0);
   }
@@ -111,10 +111,11 @@ Estimate PreparedEstimator::Run(
   Stopwatch stopwatch;
   Scene& scene = state_->scene;
   if (displacements.size() != scene.load_cases.size()) {
-    throw std::invalid_argument(std::to_string(displacements.size()) +
-                                " measured displacements for " +
+    throw std::invalid_argument("the number of measured displacements is " +
+                                std::to_string(displacements.size()) +
+                                ", and that of load cases is " +
                                 std::to_string(scene.load_cases.size()) +
-                                " load cases; give one for each");
+                                "; give one measurement for each load case");
   }
   for (std::size_t k = 0; k < displacements.size(); ++k) {
     LoadCase& load_case = scene.load_cases[k];

@@ -7,8 +7,9 @@ namespace elastimate {
 std::string_view IterativeFe::Name() const { return "iterative-fe"; }
 
 std::string_view IterativeFe::Description() const {
-  return "maximum likelihood fit of the displacements, a finite element "
-         "solution at each step; unbiased, costs factorisations (reference)";
+  return "maximum likelihood fit of the displacements with a finite element "
+         "solution at each step; unbiased, but each step costs a "
+         "factorisation; the reference for the others";
 }
 
 Capabilities IterativeFe::WhatItTakes() const {

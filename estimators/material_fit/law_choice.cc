@@ -247,22 +247,24 @@ Eigen::MatrixXd CovarianceOf(const MaterialFit& fit, const Scene& scene,
 std::string WhyNoLawChoice(const Scene& scene,
                            const EstimatorOptions& options) {
   if (scene.mesh.section.model != kSolid) {
-    return "laws are compared in three dimensions; name one";
+    return "laws can be compared in three dimensions only; name one by "
+           "--material";
   }
   if (options.known_poisson_ratio || options.youngs_modulus.AreGiven() ||
       options.poisson_ratio.AreGiven() || options.loss != Loss::kNone) {
-    return "laws are compared without a loss, and without what is known of E "
-           "and nu; leave that out, or name one";
+    return "laws are compared without a loss function and without known values "
+           "or bounds of E and nu; leave these out, or name a law by "
+           "--material";
   }
   for (const Material& material : scene.materials) {
     if (!material.known.empty() || !material.bounds.empty()) {
-      return "laws are compared of materials of which nothing is known; leave "
-             "out what is, or name one";
+      return "laws are compared for materials without known parameters or "
+             "bounds only; leave these out, or name a law by --material";
     }
     for (const Eigen::MatrixXd& axis : material.axes) {
       if (axis.cols() != 1) {
-        return "laws are compared about axes that are the same in all "
-               "elements; give a direction, or name one";
+        return "laws are compared for axes that are the same in all elements "
+               "only; give one direction, or name a law by --material";
       }
     }
   }
@@ -293,7 +295,7 @@ ChosenLaw ChooseLaw(const Scene& scene, const EstimatorOptions& options) {
   }
   const Eigen::MatrixXd covariance = CovarianceOf(fit, any, options);
   if (!covariance.allFinite()) {
-    choice.why_not = "their errors are not known";
+    choice.why_not = "the errors of the fit are not known";
     return choice;
   }
   const MeasuredStiffness measured = {

@@ -76,9 +76,9 @@ std::string WhyNotCompared(const MaterialFit& apart) {
       apart.errors.total.allFinite() && apart.errors.variance > 0) {
     return "";
   }
-  return apart.estimate.message.empty()
-             ? "there is no noise to tell materials apart by"
-             : apart.estimate.message;
+  return apart.estimate.message.empty() ? "without noise there is no measure "
+                                          "of how far materials have to differ"
+                                        : apart.estimate.message;
 }
 
 // How many of the first steps of a plan a fit bears out.

@@ -193,8 +193,9 @@ std::optional<SpaceChange> DescribeChange(SpaceFit& coarse, bool is_last,
   }
   fine.Describe(change ? &*change : nullptr);
   if (!change) {
-    fine.Fit().estimate.Fail(SearchFailed(
-        "the coarser elements have no equilibrium at the fit of the finer"));
+    fine.Fit().estimate.Fail(
+        SearchFailed("the coarser elements have no equilibrium with the "
+                     "parameters of the finer ones"));
   }
   return change;
 }

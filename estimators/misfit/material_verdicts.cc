@@ -179,7 +179,7 @@ std::string OfTwoModuli(const std::string& first, const std::string& second,
   constexpr double kAlike = 0.8;
   const Eigen::Vector2d size = free.cwiseAbs();
   if (size.minCoeff() < kAlike * size.maxCoeff()) {
-    return first + " and " + second + " in one combination";
+    return "one combination of " + first + " and " + second;
   }
   return free(0) * free(1) > 0 ? "the ratio of " + first + " to " + second
                                : "the product of " + first + " and " + second;
@@ -229,9 +229,9 @@ std::vector<std::string> DeterminedCombinations(
           OfTwoModuli(names[0], names[1], of_group.col(largest)));
     } else {
       combinations.push_back(
-          ListOf(names) + " in " +
-          (num_left == 1 ? "one combination"
-                         : std::to_string(num_left) + " combinations"));
+          (num_left == 1 ? "one combination of "
+                         : std::to_string(num_left) + " combinations of ") +
+          ListOf(names));
     }
   }
   return combinations;

@@ -153,15 +153,15 @@ std::vector<CaseInformation> ExpectedInformation(
   if (!model.Solve(of_materials.Moduli(parameters))) {
     throw std::runtime_error(
         "the stiffness matrix is singular to working precision; check the mesh "
-        "for slivers, and the parameters");
+        "for flat elements, and the parameters");
   }
   Scene measured = scene;
   MeasureByModel(model.Displacement(), first_planned, measured);
   const ObservedDisplacements plain(WithoutNoise(measured));
   if (!(plain.Norm() > 0)) {
     throw std::invalid_argument(
-        "nothing that is observed moves under the loads; give loads that "
-        "deform the specimen");
+        "the loads move nothing that is observed; give loads that deform the "
+        "observed part of the specimen");
   }
   SetRelativeNoise(relative_noise, plain, measured);
   const ObservedDisplacements observed(measured);

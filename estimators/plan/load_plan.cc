@@ -27,7 +27,8 @@ void CheckPlan(const Scene& scene, const std::vector<CandidateLoad>& candidates,
   const MaterialParameters of_materials = ParametersOf(scene);
   if (of_materials.Free().empty()) {
     throw std::invalid_argument(
-        "all parameters are known; leave one of them to be measured");
+        "all parameters are known, so that there is nothing to plan; leave one "
+        "out of \"known\"");
   }
   if (parameters.size() != of_materials.NumParameters() ||
       !parameters.allFinite()) {
@@ -38,8 +39,9 @@ void CheckPlan(const Scene& scene, const std::vector<CandidateLoad>& candidates,
   }
   if (!(relative_noise > 0)) {
     throw std::invalid_argument(
-        "the noise is not positive; without noise each load that determines "
-        "the parameters is as good as another");
+        "the noise is not positive, and without noise every load that "
+        "determines the parameters is as good as another; give a positive "
+        "noise (--noise)");
   }
   const std::string why_not_held = WhyNotHeld(scene);
   if (!why_not_held.empty()) {
@@ -60,7 +62,7 @@ void RequireLoads(const Scene& scene) {
   }
   throw std::invalid_argument(
       "all loads are zero and no support is displaced, so that nothing moves; "
-      "give the load case loads");
+      "give the load case a load");
 }
 
 // The load cases of the scene, and behind them the candidates.
@@ -193,8 +195,8 @@ LoadPlan PlanLoads(const Scene& scene,
   const double rms_of_scene = RmsOfScene(cases, num_cases);
   if (!(rms_of_scene > 0)) {
     throw std::invalid_argument(
-        "nothing that is observed moves under the loads; give loads that "
-        "deform the specimen");
+        "the loads move nothing that is observed; give loads that deform the "
+        "observed part of the specimen");
   }
   Eigen::MatrixXd known = cases[0].information;
   for (std::size_t k = 1; k < num_cases; ++k) {

@@ -450,8 +450,9 @@ void AddSharedFindings(const std::vector<UsedFrame>& frames,
     for (Finding finding : frame.frame->estimate.findings) {
       const std::size_t count = counts[finding.code];
       if (2 * count > frames.size()) {
-        finding.text = "in the first of " + std::to_string(count) +
-                       " such frames, " + finding.text;
+        finding.text = "in " + std::to_string(count) +
+                       " of the frames (with the numbers of the first), " +
+                       finding.text;
         estimate.Add(finding);
       }
     }

@@ -96,7 +96,7 @@ void CheckOptions(const CuboidOptions& options) {
   Require(
       options.kind == ElementKind::kTet4 || options.kind == ElementKind::kHex8,
       "elements", std::string(TopologyOf(options.kind).name),
-      "a cuboid is of tet4 or hex8");
+      "a cuboid is made of tet4 or hex8");
   CheckGrid(options.cells, options.size);
   CheckForce(options.force);
 }
@@ -106,7 +106,7 @@ void CheckSheet(const std::string& geometry, ElementKind kind,
                 const Section& section) {
   Require(kind == ElementKind::kTri3 || kind == ElementKind::kQuad4, "elements",
           std::string(TopologyOf(kind).name),
-          "a " + geometry + " is of tri3 or quad4");
+          "a " + geometry + " is made of tri3 or quad4");
   Require(section.model != SectionModel::kSolid, "model",
           std::string(SectionModelName(section.model)),
           "a " + geometry + " is in plane_stress or plane_strain");
@@ -133,7 +133,7 @@ void CheckOptions(const PlateOptions& options) {
   Require(options.hole >= smallest && options.hole <= largest, "hole",
           TextOf(options.hole),
           "a plate of size " + CommaSeparated(options.size) +
-              " has a hole of radius " + TextOf(smallest) + " to " +
+              " takes a hole of radius " + TextOf(smallest) + " to " +
               TextOf(largest));
   Require(options.cells >= 2 && options.cells <= kMaxPlateCells, "cells",
           TextOf(options.cells),

@@ -163,8 +163,8 @@ void CheckNoElementIsLost(const std::filesystem::path& path,
   if (num_read < num_elements) {
     ThrowInputError(path, "Gmsh can use only " + std::to_string(num_read) +
                               " of its " + std::to_string(num_elements) +
-                              " elements; give each a number of its own, and "
-                              "all the same order");
+                              " elements; give each element its own number, "
+                              "and all elements the same order");
   }
 }
 

@@ -88,7 +88,7 @@ std::string DescribeEnd(const MeshProgram& program, const Limits& limits,
                         const ChildOutcome& outcome,
                         const MeshMessage& message) {
   if (outcome.was_stopped || outcome.signal == SIGXCPU) {
-    return program.library + " does not come to an end with it in " +
+    return program.library + " does not finish with it within " +
            std::to_string(limits.processor_seconds) + " s";
   }
   if (message.kind == MeshMessage::Kind::kOutOfMemory) {

@@ -14,7 +14,7 @@ PrivateLink::PrivateLink(const std::filesystem::path& file,
   std::string folder = (temporary / "elastimate-XXXXXX").string();
   if (error || mkdtemp(folder.data()) == nullptr) {
     throw std::runtime_error(
-        "no folder can be made in that for temporary files (" +
+        "no folder can be made in the folder for temporary files (" +
         (error ? "none" : temporary.string()) +
         "); name another one in the environment variable TMPDIR");
   }

@@ -2,6 +2,7 @@
 
 #include <cctype>
 
+#include "elastimate/core/text/numbers.h"
 #include "elastimate/io/text/input_error.h"
 
 namespace elastimate {
@@ -38,10 +39,11 @@ void RequireNodePositions(const MeshFile& mesh) {
   if (mesh.num_nodes_left_out > 0) {
     ThrowInputError(
         mesh.path,
-        "Gmsh leaves out " + std::to_string(mesh.num_nodes_left_out) +
-            " nodes that no element uses, so that nodes cannot be told by "
-            "their place in the file; save the mesh without these nodes "
-            "(gmsh -save does)");
+        "Gmsh leaves out " +
+            Counted(std::size_t(mesh.num_nodes_left_out), "node") +
+            " that no element uses, so that the order of the nodes in the "
+            "file is lost; save the mesh without such nodes (gmsh -save "
+            "does)");
   }
 }
 

@@ -66,8 +66,8 @@ void CheckPlane(const MeshFile& mesh) {
           mesh.path,
           NodeName(mesh, node) + " is at " + heights.str() + ", but " +
               mesh.Shapes() +
-              " must lie in one plane z = const; turn the mesh into it, or "
-              "mesh the volume where these are only its surface");
+              " must lie in one plane z = const; rotate the mesh into such a "
+              "plane, or mesh the volume if these are only its surface");
     }
   }
 }

@@ -33,9 +33,9 @@ struct PointScales {
 /// of the first column that has a unit of length, so that positions keep theirs
 /// and displacements are converted.  Pixels, and tables without any unit, are
 /// `length_per_pixel` long in this unit.  Displacements without a unit are
-/// taken in that of the positions, with a notice.  `deviations` are the columns of the
-/// standard deviations of the displacement, or none; they have its unit unless
-/// they have their own.
+/// taken in that of the positions, with a notice.  `deviations` are the columns
+/// of the standard deviations of the displacement, or none; they have its unit
+/// unless they have their own.
 ///
 /// Throws std::invalid_argument, naming the file and the column, where a unit
 /// is not known, pixels have no scale, a scale has no pixels, or positions

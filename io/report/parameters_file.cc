@@ -98,9 +98,10 @@ void RequirePositiveDefinite(const std::filesystem::path& path,
             values.segment(parameters.FirstParameter(i),
                            Eigen::Index(law.Parameters().size())),
             parameters.Model())) {
-      ThrowInputError(path, "the stiffness" + OfRegions(RegionsOf(scene, i)) +
-                                " that its parameters make is not positive "
-                                "definite; correct them");
+      ThrowInputError(
+          path,
+          "the stiffness" + OfRegions(RegionsOf(scene, i)) +
+              " is not positive definite with these parameters; correct them");
     }
   }
 }
@@ -126,8 +127,8 @@ Eigen::VectorXd ReadParameters(const std::filesystem::path& path,
         continue;
       }
       if (!std::isnan(values(i))) {
-        entry.Fail("is the second value of " + Describe(parameter, regions) +
-                   "; give one");
+        entry.Fail("is a second value of " + Describe(parameter, regions) +
+                   "; keep one of them");
       }
       const JsonValue value = entry.At("value");
       values(i) = value.Number();

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "elastimate/core/text/numbers.h"
 #include "elastimate/io/scene/section.h"
 #include "elastimate/io/text/input_error.h"
 #include "elastimate/io/text/printable.h"
@@ -19,10 +20,11 @@ std::string CaseSuffix(int number) {
 [[noreturn]] void ThrowMissing(const MeshFile& mesh, const std::string& name) {
   if (!mesh.is_vtk && mesh.node_arrays.empty()) {
     ThrowInputError(mesh.path,
-                    "a mesh alone is not a scene; write a scene.json with "
+                    "a mesh alone is not a scene, as it has no supports, loads "
+                    "and displacements; write a scene.json with "
                     "\"mesh\": \"" +
                         PrintablePath(mesh.path.filename()) +
-                        "\" that also says what was held, pushed and measured");
+                        "\", \"supports\" and \"cases\"");
   }
   ThrowInputError(mesh.path, "the point array '" + name +
                                  "' is missing; add it (the point arrays of "
@@ -183,10 +185,10 @@ void CheckOptionalNames(const MeshFile& mesh) {
                      array.name.begin() + std::min(array.name.size(), kTelling),
                      [](char a, char b) { return a == (b | 0x20); });
       if (is_alike && stem != name) {
-        ThrowInputError(mesh.path, "the point array '" + Printable(array.name) +
-                                       "' is not read; call it '" + name +
-                                       "' if it is that, and otherwise "
-                                       "something else");
+        ThrowInputError(
+            mesh.path, "the point array '" + Printable(array.name) +
+                           "' is not read; rename it to '" + name +
+                           "' if that is meant, and otherwise to another name");
       }
     }
   }
@@ -202,8 +204,8 @@ void NoteLostForces(FileScene& file_scene) {
       file_scene.notices.push_back(
           PrintablePath(file_scene.mesh.path) + ": the array 'force" +
           CaseSuffix(static_cast<int>(i) + 1) + "' has forces on " +
-          std::to_string(lost) + " points that no " + file_scene.mesh.Shape() +
-          " uses; they are dropped with the points");
+          Counted(std::size_t(lost), "point") + " that no " +
+          file_scene.mesh.Shape() + " uses, and these forces are left out");
     }
   }
 }

@@ -44,7 +44,7 @@ std::vector<std::string> FindFiles(const JsonValue& value) {
   SortByNumbers(names);
   if (names.empty()) {
     value.Fail("is \"" + Printable(value.String()) +
-               "\", which no file is called; correct the pattern");
+               "\", which matches no file; correct the pattern");
   }
   return names;
 }
@@ -62,7 +62,8 @@ std::vector<std::string> FrameNames(const JsonValue& files) {
     if (names[i].empty() ||
         std::find(names.begin(), names.begin() + std::ptrdiff_t(i), names[i]) !=
             names.begin() + std::ptrdiff_t(i)) {
-      files.Items()[i].Fail("is empty or named before; name each frame once");
+      files.Items()[i].Fail(
+          "is empty or was named before; name each frame once");
     }
   }
   if (names.empty()) {
@@ -133,7 +134,7 @@ struct FrameReader {
               ? "the load record has no number for this frame"
               : "the load of this frame is " +
                     std::string(factor == 0 ? "zero" : "not finite") +
-                    ", so that nothing follows from it");
+                    ", so that it gives no estimate");
     }
     for (Load& load : frame.loads) {
       load = Scaled(load, factor);
@@ -152,7 +153,7 @@ FrameSeries ReadFrames(const JsonValue& document, const FileScene& file_scene) {
   frames.CheckKeys({"files", "load_record"});
   const std::vector<JsonValue> cases = document.At("cases").Items();
   if (cases.size() != 1) {
-    frames.Fail("are those of one load case, of which there are " +
+    frames.Fail("need exactly one load case, but \"cases\" has " +
                 std::to_string(cases.size()) +
                 "; make a scene of each load case");
   }

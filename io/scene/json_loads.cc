@@ -35,8 +35,10 @@ void NoteForcePerNode(const JsonValue& load, const Eigen::VectorXd& value,
   }
   context.notices.push_back(
       PrintablePath(load.File()) + ": " + load.Place() +
-      " is a nodal_force, which acts once per node: " + ListText(value) +
-      " on each of " + std::to_string(num_nodes) + " nodes, " +
+      " is a nodal_force, which acts on each node: " + ListText(value) +
+      (num_nodes == 1
+           ? " on 1 node, "
+           : " on each of " + std::to_string(num_nodes) + " nodes, ") +
       ListText(static_cast<double>(num_nodes) * value) + " in total; if " +
       ListText(value) +
       " is the total, give it as \"type\": \"force\" with a \"surface\"");
@@ -46,7 +48,9 @@ NodalForces ReadNodalForces(const JsonValue& load, const LoadContext& context) {
   load.CheckKeys({"type", "value", "nodes", "file", "array"});
   if (load.Has("file") || load.Has("array")) {
     if (load.Has("value") || load.Has("nodes")) {
-      load.Fail("must have either value and nodes, or one of file and array");
+      load.Fail(
+          "must have either \"value\" and \"nodes\", or one of \"file\" and "
+          "\"array\"");
     }
     return {ReadNodeField(load, context.mesh, AllComponents(context.mesh),
                           "correct it")};
@@ -108,10 +112,11 @@ void RequireHeld(const JsonValue& value, const LoadContext& context,
                  " there; hold all of them, or make the surface smaller");
     }
     if (!std::isnan(resultant.force(i)) && num_held == 0) {
-      value.Fail("measures the force along " + std::string(kAxisNames[i]) +
-                 " of a surface that no support holds there, so that nothing "
-                 "exerts it; give it as a load of type \"force\", or hold the "
-                 "surface (\"displacement\": \"measured\" or \"rigid\")");
+      value.Fail(
+          "measures the force along " + std::string(kAxisNames[i]) +
+          " of a surface that no support holds there, so that nothing exerts "
+          "this force; give it as a load of type \"force\", or hold the "
+          "surface (\"displacement\": \"measured\" or \"rigid\")");
     }
   }
 }
@@ -141,8 +146,8 @@ Resultant ReadResultant(const JsonValue& value, const LoadContext& context) {
   }
   if (value.Has("sd") == value.Has("relative_sd")) {
     value.Fail(
-        "must have exactly one of the keys sd, relative_sd: how well the load "
-        "cell knows the force");
+        "must have exactly one of the keys \"sd\" and \"relative_sd\", the "
+        "standard deviation of the measured force");
   }
   const JsonValue sd = value.At(value.Has("sd") ? "sd" : "relative_sd");
   const double scale = value.Has("sd") ? 1 : std::sqrt(square_sum);
@@ -150,7 +155,9 @@ Resultant ReadResultant(const JsonValue& value, const LoadContext& context) {
     sd.Fail("must be positive");
   }
   if (!(scale > 0)) {
-    sd.Fail("is relative to a force of zero; give sd, in units of force");
+    sd.Fail(
+        "is relative to a force of zero; give \"sd\" in units of force "
+        "instead");
   }
   resultant.noise_sd.setConstant(dimension, scale * sd.Number());
   const NodeMask nodes =

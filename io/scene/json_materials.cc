@@ -199,8 +199,8 @@ std::string LawOfFreeAxis(const std::string& law) {
 }
 
 std::string WhyNoFreeAxis() {
-  return ", whose axis is not looked for; only that of "
-         "transversely_isotropic, in three dimensions, can be free";
+  return ", whose axis cannot be found; \"free\" is only for "
+         "transversely_isotropic in three dimensions";
 }
 
 void ChooseRegions(const JsonValue& document, MeshFile& mesh) {

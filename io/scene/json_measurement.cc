@@ -28,8 +28,8 @@ std::vector<FileLines> MeasurementReader::Read(
   if (displacement.Has("points")) {
     if (load_case.observed.size() > 0) {
       displacement.Fail(
-          "names points, which \"observed\" does not choose from; leave it "
-          "out");
+          "names measured points, but \"observed\" chooses among nodes; leave "
+          "out \"observed\"");
     }
     if (!locator_) {
       locator_.emplace(scene_mesh_);

@@ -159,8 +159,8 @@ const JsonValue& OwnerOfSupports(const JsonValue& document,
   for (const JsonValue& value : cases) {
     if (!has_own(value)) {
       value.Fail(
-          "has no supports of its own, and the scene has none for all; give it "
-          "some");
+          "has no \"supports\" of its own, and the scene has none for all load "
+          "cases; give one of the two");
     }
   }
   return cases[0];

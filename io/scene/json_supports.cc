@@ -115,8 +115,8 @@ void AddSupport(const JsonValue& support, int number, const MeshFile& mesh,
       if (holder >= 0 && !IsHeldAlike(so_far, axis, node, displacement)) {
         support.Fail("holds the " + std::string(kAxisNames[axis]) +
                      " component of " + NodeName(mesh, node) +
-                     " otherwise than supports[" + std::to_string(holder) +
-                     "] does; leave it out of one of them");
+                     " differently from supports[" + std::to_string(holder) +
+                     "]; leave the node out of one of them");
       }
       // A support that ends with its nodes may go on in another one.
       supports.delimited(axis, node) =

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "elastimate/core/text/numbers.h"
 #include "elastimate/io/text/csv_table.h"
 #include "elastimate/io/text/input_error.h"
 #include "elastimate/io/text/printable.h"
@@ -103,15 +104,14 @@ std::vector<std::size_t> RowsByName(const CsvTable& table, std::size_t column,
     if (!frame) {
       ThrowInputError(table.path,
                       place +
-                          "is the name of no frame, or of several; correct "
-                          "it, leave out the row, or name the file among "
-                          "the frames");
+                          "is not the name of exactly one frame; correct it, "
+                          "leave out the row, or add the file to \"frames\"");
     }
     if (row_of[*frame]) {
       ThrowInputError(table.path,
-                      place + "names the frame of line " +
+                      place + "names the same frame as line " +
                           std::to_string(table.rows[*row_of[*frame]].line) +
-                          "; give one row for each");
+                          "; give one row for each frame");
     }
     row_of[*frame] = row;
   }
@@ -128,21 +128,19 @@ std::vector<std::size_t> RowsByName(const CsvTable& table, std::size_t column,
   return rows;
 }
 
-// Returns the likely reason why there are not as many rows as frames.
-std::string Reason(const CsvTable& table, std::size_t column,
+// Returns what mends it that there are not as many rows as frames.
+std::string Remedy(const CsvTable& table, std::size_t column,
                    std::size_t num_frames) {
   if (table.rows.size() == num_frames + 1) {
     const double first = table.Number(table.rows[0], column).value_or(0);
     const std::string line = std::to_string(table.rows[0].line);
-    return first == 0
-               ? "; line " + line +
-                     " is under no load, as a reference frame is: leave it out"
-               : "; leave out that of a reference frame";
+    return first == 0 ? "leave out line " + line +
+                            ", which has no load, as a reference frame has"
+                      : "leave out the row of a reference frame";
   }
-  if (table.rows.size() + 1 == num_frames) {
-    return "; leave a reference frame out of \"files\"";
-  }
-  return "";
+  return table.rows.size() + 1 == num_frames
+             ? "leave a reference frame out of \"files\""
+             : "give one row for each frame, in their order";
 }
 
 }  // namespace
@@ -170,11 +168,10 @@ std::vector<double> ReadLoadRecord(const JsonValue& record,
   } else {
     ThrowInputError(
         table.path,
-        "the load record has " + std::to_string(table.rows.size()) +
-            " rows for " + std::to_string(frames.size()) +
-            " frames; give one for each, in their order, or name the files of "
-            "the rows in a column (\"files_column\")" +
-            Reason(table, column, frames.size()));
+        "the load record has " + Counted(table.rows.size(), "row") + " for " +
+            Counted(frames.size(), "frame") + "; " +
+            Remedy(table, column, frames.size()) +
+            ", or name the column of the file names (\"files_column\")");
   }
   std::vector<double> loads;
   loads.reserve(rows.size());

@@ -19,7 +19,8 @@ void SelectIds(const JsonValue& ids, const MeshFile& mesh, NodeMask& mask) {
     const long long node = id.Integer();
     if (node < 0 || node >= mesh.nodes.cols()) {
       id.Fail("is " + std::to_string(node) + ", but the mesh has the nodes 0 " +
-              "to " + std::to_string(mesh.nodes.cols() - 1));
+              "to " + std::to_string(mesh.nodes.cols() - 1) +
+              "; correct the id");
     }
     mask[node] = true;
   }
@@ -46,7 +47,7 @@ void SelectByArray(const JsonValue& name, const MeshFile& mesh,
   for (Eigen::Index node = 0; node < values.cols(); ++node) {
     if (mesh.used[node] && std::isnan(values(0, node))) {
       name.Fail("names the array '" + Printable(name.String()) +
-                "', which is nan at " + NodeName(mesh, node));
+                "', which is nan at " + NodeName(mesh, node) + "; correct it");
     }
   }
   mask = values.row(0).array() != 0;
@@ -163,7 +164,9 @@ BoxCorners CornersOfBox(const JsonValue& box, const MeshFile& mesh) {
   const BoxCorners box_corners = {corners[0].Vector(size),
                                   corners[1].Vector(size)};
   if ((box_corners.low.array() > box_corners.high.array()).any()) {
-    box.Fail("has a first corner above its second one; swap them");
+    box.Fail(
+        "has a first corner that is above the second one in some direction; "
+        "give the smallest coordinates first");
   }
   return box_corners;
 }
@@ -178,10 +181,14 @@ NodeMask SelectNodes(const JsonValue& selection, const MeshFile& mesh,
     } else if (word == "free" && free != nullptr) {
       mask = *free;
       if (!mask.any()) {
-        selection.Fail("is \"free\", but the supports hold every node");
+        selection.Fail(
+            "is \"free\", but the supports hold every node; choose other "
+            "nodes");
       }
     } else if (word == "free") {
-      selection.Fail("is \"free\", which cannot be used here");
+      selection.Fail(
+          "is \"free\", which cannot be used here; choose \"all\" or other "
+          "nodes");
     } else {
       selection.Fail("is \"" + Printable(word) +
                      "\"; the words known here are \"all\" " + "and \"free\"");
@@ -209,7 +216,8 @@ NodeMask SelectNodes(const JsonValue& selection, const MeshFile& mesh,
   mask = mask && mesh.used;
   if (!mask.any()) {
     selection.Fail("selects no node that a " + mesh.Shape() +
-                   " uses; nodes lie between " + CornersOf(mesh));
+                   " uses; correct it: the nodes lie between " +
+                   CornersOf(mesh));
   }
   return mask;
 }
@@ -234,7 +242,9 @@ Eigen::MatrixXi SelectFacets(const JsonValue& selection, const MeshFile& mesh,
   std::sort(chosen.begin(), chosen.end());
   chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
   if (chosen.empty()) {
-    selection.Fail("selects no whole facet of the surface");
+    selection.Fail(
+        "selects no whole facet of the surface; choose all nodes of a facet at "
+        "least");
   }
   return boundary(Eigen::all, chosen);
 }

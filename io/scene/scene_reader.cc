@@ -17,6 +17,7 @@
 #include "elastimate/core/materials/transversely_isotropic_law.h"
 #include "elastimate/core/mesh/coincident_nodes.h"
 #include "elastimate/core/scene/loads.h"
+#include "elastimate/core/text/numbers.h"
 #include "elastimate/io/mesh/mesh_file.h"
 #include "elastimate/io/scene/array_scene.h"
 #include "elastimate/io/scene/file_scene.h"
@@ -267,9 +268,9 @@ void NoteMesh(const std::filesystem::path& path,
     }
     first << ")";
     notices.push_back(
-        PrintablePath(path) + ": " + std::to_string(coincident.size()) +
-        " nodes lie at the same place as another node, such as at " +
-        first.str() +
+        PrintablePath(path) + ": " + Counted(coincident.size(), "node") +
+        (coincident.size() == 1 ? " lies" : " lie") +
+        " at the same place as another node, such as at " + first.str() +
         ", so that the parts around them are not connected; merge them in the "
         "mesh tool if the parts should be one");
   }
@@ -294,8 +295,9 @@ void RequireRegions(const MeshFile& mesh, bool is_one_for_each,
     return;
   }
   const std::string none =
-      is_one_for_each ? "there are no regions to have a material each"
-                      : "materials name regions, but the mesh has none";
+      is_one_for_each
+          ? "there are no regions that could have their own materials"
+          : "materials name regions, but the mesh has none";
   if (!mesh.why_no_regions.empty()) {
     ThrowInputError(mesh.path,
                     none + ": " + mesh.why_no_regions +
@@ -361,17 +363,16 @@ void ChooseLaw(const std::filesystem::path& path, const LawChoice& choice,
     if (choice.has_free_axis) {
       const std::string free = LawOfFreeAxis(material.law);
       if (free.empty()) {
-        ThrowInputError(path,
-                        "the axis that is chosen is free, but the law is " +
-                            material.law + WhyNoFreeAxis());
+        ThrowInputError(path, "the axis is to be free, but the law is " +
+                                  material.law + WhyNoFreeAxis());
       }
       material.law = free;
     }
     for (const Eigen::VectorXd& axis : choice.axes) {
       if (!IsInPlane(axis, dimension)) {
         ThrowInputError(path,
-                        "the axis that is chosen is out of the plane of the "
-                        "mesh; make its component z 0");
+                        "the given axis is out of the plane of the mesh; make "
+                        "its component z 0");
       }
       material.axes.emplace_back(
           axis.head(std::min<Eigen::Index>(axis.size(), dimension)));
@@ -415,9 +416,11 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
   file_order = nodes.FileOrder();
   const Eigen::Index num_dropped = nodes.NumDropped() + mesh.num_nodes_left_out;
   if (num_dropped > 0) {
-    notices.push_back(PrintablePath(mesh.path) + ": dropped " +
-                      std::to_string(num_dropped) + " points that no " +
-                      mesh.Shape() + " uses");
+    notices.push_back(
+        PrintablePath(mesh.path) + ": " +
+        Counted(std::size_t(num_dropped), "point") + " that no " +
+        mesh.Shape() +
+        (num_dropped == 1 ? " uses is left out" : " uses are left out"));
   }
   Scene scene = nodes.Filter(std::move(file_scene.scene));
   for (LoadCase& load_case : scene.load_cases) {
@@ -565,21 +568,22 @@ SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
     } else if (const std::string difference =
                    WhyDifferent(reading.scene, scene, regions);
                !difference.empty()) {
-      ThrowInputError(path, "this is no further load case of '" +
-                                PrintablePath(paths.front()) +
-                                "': " + difference + "; use the same mesh");
+      ThrowInputError(path, "this is not a further load case of '" +
+                                PrintablePath(paths.front()) + "', because " +
+                                difference +
+                                "; give files that differ in supports, loads "
+                                "and measurements only");
     } else if (!AreSame(reading.scene.supports, scene.supports)) {
       KeepSupports(scene.supports, load_cases);
-      reading.notices.push_back(PrintablePath(path) +
-                                " has other supports than " +
-                                PrintablePath(paths.front()) +
-                                "; each load case is taken with its own");
+      reading.notices.push_back(
+          PrintablePath(path) + " has other supports than " +
+          PrintablePath(paths.front()) + "; each load case keeps its own");
     }
     if (scene.origin != reading.scene.origin && &path != &paths.front()) {
       reading.scene.origin = Origin::kMeasured;
       reading.notices.push_back(
           "some of the files have computed displacements, others measured "
-          "ones; all are taken as measured (--origin says otherwise)");
+          "ones; all are taken as measured, unless --origin says otherwise");
     }
     AddLoadCases(path, std::move(load_cases), reading.scene, names);
   }

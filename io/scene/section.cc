@@ -51,13 +51,13 @@ void CheckPlanar(const MeshFile& mesh, const SectionChoice& choice) {
     ThrowInputError(
         mesh.path,
         planar + (choice.model ? "the model is 3d" : "no model is given") +
-            "; say --model=plane_stress or --model=plane_strain, "
+            "; give --model=plane_stress or --model=plane_strain, "
             "or \"model\" in a scene.json");
   }
   if (!choice.thickness) {
     ThrowInputError(mesh.path,
                     planar +
-                        "no thickness is given; say --thickness=X, or "
+                        "no thickness is given; give --thickness=X, or "
                         "\"thickness\" in a scene.json");
   }
   if (!(*choice.thickness > 0) || !std::isfinite(*choice.thickness)) {

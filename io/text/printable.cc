@@ -49,6 +49,10 @@ bool SpeaksToTheTerminal(std::uint32_t code) {
 }
 
 std::string Escaped(const Character& character) {
+  constexpr std::uint32_t kMicroOfLatin1 = 0xB5;
+  if (!character.is_valid && character.code == kMicroOfLatin1) {
+    return "\xC2\xB5";
+  }
   switch (character.code) {
     case '\n':
       return "\\n";

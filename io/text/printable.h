@@ -17,7 +17,8 @@ constexpr std::size_t kLongestSentence = 1000;
 /// Returns text from outside (a file, a file name, a flag) as messages quote
 /// it: one line of valid UTF-8 that says nothing to a terminal.  Control
 /// characters, marks that change the direction of writing, and bytes that are
-/// no UTF-8 become \n, \t, \r, \x1b, \u202e.  Text of more than `longest`
+/// no UTF-8 become \n, \t, \r, \x1b, \u202e, except that the micro sign of
+/// Latin-1 becomes that of UTF-8.  Text of more than `longest`
 /// characters has "..." in the place of its middle.  Idempotent;
 /// O(text.size()).
 std::string Printable(std::string_view text,

@@ -244,8 +244,8 @@ TEST_F(CommandLine, NearOneHalfItGivesAnIntervalOfOneSide) {
                   report["standard_error"]["bulk_compliance"].get<double>(),
               0, 4);
   const std::string table = Succeed(command).output;
-  for (const std::string words :
-       {"and 0.5 (95 %)", "shear modulus mu", "1 / bulk modulus"}) {
+  for (const std::string words : {"95 % interval of nu", " to 0.5\n",
+                                  "shear modulus mu", "1 / bulk modulus"}) {
     EXPECT_NE(table.find(words), std::string::npos) << table;
   }
 }
@@ -326,7 +326,7 @@ TEST_F(CommandLine, BoundsAndKnownValuesAreHonoured) {
 TEST_F(CommandLine, SolvesByMultigridWhereAskedTo) {
   MakeExactScene();
   if (!HasMultigrid()) {
-    Refuse("estimate exact.vtu --solver=multigrid", "needs a build with PETSc");
+    Refuse("estimate exact.vtu --solver=multigrid", "built without PETSc");
     return;
   }
   const std::string simulate = "simulate exact.vtu --youngs=1e4 --nu=0.33 ";
@@ -344,7 +344,7 @@ TEST_F(CommandLine, SolvesByMultigridWhereAskedTo) {
     EXPECT_GE(report["work"]["iterations"], 1);
     EXPECT_EQ(report["options"]["solver"], "multigrid");
     EXPECT_NE(Succeed(estimate + " --solver=multigrid")
-                  .output.find(" set-ups of multigrid, "),
+                  .output.find(" multigrid set-up"),
               std::string::npos);
   }
 }
@@ -443,7 +443,7 @@ TEST_F(CommandLineOutputs, WritesWhatParaViewShows) {
 
 TEST_F(CommandLineErrors, RefusesWrongFlags) {
   MakeExactScene();
-  Refuse("", "give a command");
+  Refuse("", "no command is given");
   Refuse("''", "unknown command ''");
   Refuse("estmate exact.vtu", "unknown command 'estmate'");
   Refuse("--nu=0.3 estimate exact.vtu", "the command comes first");
@@ -458,9 +458,9 @@ TEST_F(CommandLineErrors, RefusesWrongFlags) {
          "unknown estimator 'magic'; the estimators are closed-form");
   for (const std::string order : {"0", "3", "-1"}) {
     Refuse("estimate exact.vtu --order=" + order,
-           "--order=" + order + "; it is 1 for linear elements or 2");
+           "--order=" + order + "; it must be 1 for linear elements or 2");
     Refuse("simulate exact.vtu --youngs=1 --nu=0 --out=a.vtu --order=" + order,
-           "--order=" + order + "; it is 1 for linear elements or 2");
+           "--order=" + order + "; it must be 1 for linear elements or 2");
   }
   Refuse("estimate exact.vtu --estimator=reduced-fe --refine=1",
          "computed with this mesh");
@@ -535,16 +535,16 @@ TEST_F(CommandLineErrors, RefusesWrongParametersByTheirFlags) {
   Refuse("estimate exact.vtu --nu_max=0.4 --youngs_min=1",
          "--nu_max=0.4 --youngs_min=1: closed-form: it cannot keep bounds");
   Refuse("estimate exact.vtu --loss=huber",
-         "--loss=huber: closed-form: a loss function needs");
+         "--loss=huber: closed-form: it takes no loss function");
   Refuse("estimate exact.vtu --solver=gmres",
-         "--solver=gmres; it is automatic, cholesky or multigrid");
+         "--solver=gmres; it must be automatic, cholesky or multigrid");
   Refuse("estimate exact.vtu --loss=tukey",
-         "--loss=tukey; it is none, huber or cauchy");
+         "--loss=tukey; it must be none, huber or cauchy");
 }
 
 TEST_F(CommandLineErrors, RefusesWrongSimulations) {
   Succeed("generate cuboid --out=cuboid.vtu");
-  Refuse("simulate cuboid.vtu --youngs=1 --nu=0.3", "needs --out");
+  Refuse("simulate cuboid.vtu --youngs=1 --nu=0.3", "give --out");
   Refuse("simulate cuboid.vtu --youngs=1 --out=a.vtu", "--nu=NU");
   Refuse("simulate cuboid.vtu --youngs=0 --nu=0.3 --out=a.vtu",
          "--youngs=0; it must be positive");
@@ -555,7 +555,7 @@ TEST_F(CommandLineErrors, RefusesWrongSimulations) {
   Refuse("simulate cuboid.vtu --youngs=1 --nu=0.3 --noise_law=x --out=a.vtu",
          "uniform or gaussian");
   Refuse("simulate cuboid.vtu --youngs=1 --nu=0.3 --solver=x --out=a.vtu",
-         "--solver=x; it is automatic, cholesky or multigrid");
+         "--solver=x; it must be automatic, cholesky or multigrid");
   Refuse("simulate --youngs=1 --nu=0.3 --out=a.vtu",
          "one scene file; it got none");
   Refuse("simulate a.vtu b.vtu --youngs=1 --nu=0.3 --out=c.vtu",
@@ -569,7 +569,7 @@ TEST_F(CommandLineErrors, RefusesWrongGeometriesByTheirFlags) {
          "cuboid, organ, plate or rectangle; it got sphere");
   Refuse("generate --out=a.vtu",
          "one geometry, cuboid, organ, plate or rectangle; it got none");
-  Refuse("generate cuboid", "needs --out");
+  Refuse("generate cuboid", "give --out");
   const std::string cuboid = "generate cuboid --out=a.vtu ";
   Refuse(cuboid + "--tetrahedra=9", "takes no flag --tetrahedra");
   for (const std::string cells :
@@ -756,7 +756,7 @@ TEST_F(CommandLineOutputs, WritesVtuFilesOnly) {
         "generate cuboid", "generate organ"}) {
     for (const std::string name : {"out", "out.vtk", "vtu", "/dev/stdout"}) {
       const std::string flag = " --out=" + name;
-      Refuse(command + flag, flag + "; what is written is a VTU file");
+      Refuse(command + flag, flag + "; the name must end in .vtu");
     }
   }
   Succeed("estimate exact.vtu --out=RESULT.VTU");
@@ -781,8 +781,8 @@ TEST_F(CommandLine, PrintsTheNoticesOfTheReader) {
             "VECTORS force double\n"
             "0 0 0  0 0 0  0 0 0  1 0 1  0 0 0\n");
   const std::string notice =
-      "elastimate: notice: points.vtk: dropped 1 points that no tetrahedron "
-      "uses\n";
+      "elastimate: notice: points.vtk: 1 point that no tetrahedron uses is "
+      "left out\n";
   EXPECT_EQ(
       Succeed("simulate points.vtk --youngs=1 --nu=0.25 --out=a.vtu").errors,
       notice);
@@ -824,13 +824,13 @@ TEST_F(CommandLine, HelpStatesTheDefaultsOfTheExampleScenes) {
   for (const std::string& words :
        {"(default " + text(cuboid.cells) + ")",
         "(default " + text(cuboid.size) + ")",
-        "per free node (cuboid " + text(cuboid.force) + "; organ " +
-            text(organ.force) + "); total: plate " +
+        "per free node: cuboid " + text(cuboid.force) + ", organ " +
+            text(organ.force) + "; in all: plate " +
             std::to_string(int(plate.force)),
         "(default " + std::to_string(organ.tetrahedra) + ")",
         std::string("(default 0.2)"), std::string("(default 2.5)"),
-        "plate: N; " + std::to_string(plate.cells) + ")",
-        "plate: x,y; " + size + ")"}) {
+        "plate, one number: " + std::to_string(plate.cells) + " (",
+        "plate, x,y: " + size + " ("}) {
     EXPECT_NE(help.find(words), std::string::npos) << words;
   }
   Succeed("generate cuboid --out=cuboid.vtu");
@@ -1213,8 +1213,8 @@ TEST_F(ElementKinds, AreModelledWithQuadraticOnesWhereThereAreSuch) {
               {{"kind", "tri6"}, {"order", 2}});
   Succeed("generate rectangle --out=g.vtu");
   Refuse("simulate g.vtu --order=2 --youngs=7e10 --nu=0.33 --out=m2.vtu",
-         "--order=2: g.vtu has quadrilaterals, of which there are linear ones "
-         "only; leave the flag out");
+         "--order=2: g.vtu has quadrilaterals, for which there are no "
+         "quadratic elements; leave the flag out");
 }
 
 // The file has two quadratic triangles, which make a square of edges 2.  Its
@@ -1259,7 +1259,7 @@ TEST_F(ElementKinds, RefuseWrongFlags) {
   Succeed("generate cuboid --out=c.vtu");
   const std::string simulate = " --youngs=1 --nu=0.3 --out=m.vtu ";
   Refuse("simulate g.vtu --model=2d" + simulate,
-         "--model=2d; it is 3d, plane_stress or plane_strain");
+         "--model=2d; it must be 3d, plane_stress or plane_strain");
   Refuse("simulate g.vtu --thickness=0" + simulate,
          "--thickness=0; it must be positive");
   Refuse("simulate g.vtu --model=3d" + simulate,
@@ -1272,8 +1272,9 @@ TEST_F(ElementKinds, RefuseWrongFlags) {
          "c.vtu: the mesh is of tetrahedra, which are solid, but a thickness "
          "is given; leave it out");
   const std::string rectangle = "generate rectangle --out=a.vtu ";
-  Refuse(rectangle + "--elements=tet4", "--elements=tet4; a rectangle is of");
-  Refuse(rectangle + "--elements=tri", "--elements=tri; it is tet4, hex8,");
+  Refuse(rectangle + "--elements=tet4", "--elements=tet4; a rectangle is made of");
+  Refuse(rectangle + "--elements=tri",
+         "--elements=tri; it must be tet4, hex8,");
   Refuse(rectangle + "--cells=1,2,3", "it needs two integers below 2^31, as");
   Refuse(rectangle + "--cells=0,3", "--cells=0,3; each must be at least 1");
   Refuse(rectangle + "--force=1e60,0", "--force=1e+60,0; the largest must be");
@@ -1281,7 +1282,7 @@ TEST_F(ElementKinds, RefuseWrongFlags) {
   Refuse(rectangle + "--thickness=1e60", "--thickness=1e+60; it must be from");
   Refuse(rectangle + "--length=1", "generate rectangle takes no flag --length");
   Refuse("generate cuboid --elements=quad4 --out=a.vtu",
-         "--elements=quad4; a cuboid is of tet4 or hex8");
+         "--elements=quad4; a cuboid is made of tet4 or hex8");
   Refuse("generate cuboid --thickness=1 --out=a.vtu",
          "generate cuboid takes no flag --thickness");
   Refuse("generate organ --elements=tet4 --out=a.vtu",
@@ -1414,7 +1415,8 @@ TEST_F(QuadraticElements, NoiseIsRelativeToTheVertices) {
 
 TEST_F(QuadraticElements, NoticeWhatNodalForcesMean) {
   MakeExactScene();
-  const std::string notice = "notice: nodal forces on all nodes of a face";
+  const std::string notice =
+      "notice: with --order=2, nodal forces on all nodes of a face";
   // The notice appears whether the estimate is usable or not.
   const auto has_notice = [&](const std::string& arguments) {
     return Run(arguments).errors.find(notice) != std::string::npos;
@@ -1436,7 +1438,7 @@ TEST_F(QuadraticElements, NoticeWhatBecomesOfOtherLoads) {
   WriteScene("");
   const ProgramRun run = Succeed(
       "simulate scene.json --youngs=1 --nu=0 --order=2 --out=measured.vtu");
-  EXPECT_NE(run.errors.find("notice: measured.vtu has the loads as nodal "
+  EXPECT_NE(run.errors.find("notice: measured.vtu holds the loads as nodal "
                             "forces of linear elements"),
             std::string::npos)
       << run.errors;
@@ -1450,7 +1452,7 @@ TEST_F(QuadraticElements, AreRefusedByEstimatorsThatCannot) {
     Refuse("estimate scene.json --order=2 --estimator=" + name,
            "elastimate: --order=2: " + name + ": the force residual");
     Refuse("estimate scene.json --order=2 --estimator=" + name,
-           "not measured; use reduced-fe");
+           "not measured; use --estimator=reduced-fe");
   }
   Refuse("estimate scene.json --order=2 --nu_min=0.1",
          "--nu_min=0.1: closed-form: it cannot keep bounds");

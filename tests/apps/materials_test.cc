@@ -189,10 +189,9 @@ TEST_F(MaterialsCommand, ReportsEAndNuOfOneMaterialOfWhichSomethingIsKnown) {
 TEST_F(MaterialsCommand, RefusesToMergeWhatItCannotCompare) {
   Succeed(
       "simulate block.vtu --regions=each --parameters=truth.json --out=m.vtu");
-  Refuse("estimate m.vtu --regions=merge",
-         "use it with --estimator=iterative-fe");
+  Refuse("estimate m.vtu --regions=merge", "give --estimator=iterative-fe");
   Refuse("simulate block.vtu --regions=merge --youngs=1 --nu=0 --out=x.vtu",
-         "is for estimate");
+         "is for the command estimate");
 }
 
 TEST_F(MaterialsCommand, TakesWhatTheSceneKnows) {
@@ -267,7 +266,7 @@ TEST_F(MaterialsCommand, RefusesWhatIsOfNoRegionOrNoMaterial) {
             "regions are 1, 2, 3; correct the region"},
            {R"("region": [1, 2, 3], "law": "anisotropic",
                "known": {"c11": 100, "c22": 100, "c12": 200})",
-            "material 1 gives c12 farther from zero"}}) {
+            "material 1 gives c12 a value too far from zero"}}) {
     testing::WriteText(folder_ / "scene.json", R"({"mesh": "m.vtu",
         "materials": [{)" + material + R"(}],
         "supports": [{"nodes": {"box": [[-1,-1,-1],[2,2,1e-9]]}}],
@@ -282,9 +281,9 @@ TEST_F(MaterialsCommand, SaysHowManyStiffnessesAChoiceOfLawsFits) {
   Succeed("generate cuboid --cells=1,1,1 --out=cell.vtu");
   Succeed("simulate cell.vtu --youngs=1 --nu=0.3 --out=one.vtu");
   Refuse("estimate one.vtu --material=auto --estimator=iterative-fe",
-         "--material=auto: laws are compared by a fit of the stiffnesses of "
-         "all materials, 21 parameters, and 12 components were measured; name "
-         "the law");
+         "--material=auto: laws are compared by a fit of all stiffnesses of "
+         "all materials (21 parameters), but only 12 components were measured; "
+         "name the law");
   const std::string materials =
       R"({"mesh": "m.vtu", "materials": [{"region": 1}, {"region": [2, 3]}],
           "supports": [{"nodes": {"box": [[-1,-1,-1],[2,2,1e-9]]}}],
@@ -294,9 +293,9 @@ TEST_F(MaterialsCommand, SaysHowManyStiffnessesAChoiceOfLawsFits) {
   Succeed("simulate block.vtu --youngs=1e4 --nu=0.3 --out=m.vtu");
   EXPECT_THAT(
       Run("estimate two.json --material=auto --estimator=reduced-fe").errors,
-      HasSubstr("notice: --material=auto: laws are compared by a fit "
-                "of the stiffnesses of all materials, 42 parameters, "
-                "which may take many minutes; "));
+      HasSubstr("notice: --material=auto: laws are compared by a fit of all "
+                "stiffnesses of all materials (42 parameters), which may take "
+                "many minutes; "));
 }
 
 TEST_F(MaterialsCommand, NamesWhatIsWrong) {
@@ -304,9 +303,9 @@ TEST_F(MaterialsCommand, NamesWhatIsWrong) {
   Refuse("simulate plain.vtu --regions=each --youngs=1 --nu=0 --out=a.vtu",
          "plain.vtu: there are no regions");
   Refuse("simulate block.vtu --regions=two --youngs=1 --nu=0 --out=a.vtu",
-         "--regions=two; it is one, each or merge");
+         "--regions=two; it must be one, each or merge");
   Refuse("simulate block.vtu --parameters=truth.json --nu=0 --out=a.vtu",
-         "give one or the other");
+         "give only one of them");
   Refuse("simulate block.vtu --parameters=truth.json --out=a.vtu",
          "truth.json: parameters[0] (youngs_modulus) names a region, but all "
          "regions share one material; give each its own by --regions=each");
@@ -356,7 +355,7 @@ TEST_F(MaterialsCommand, NamesTheParameterThatIsWrong) {
   testing::WriteText(folder_ / "twice.json", twice.dump());
   Refuse(
       "simulate block.vtu --regions=each --parameters=twice.json --out=a.vtu",
-      "parameters[6] is the second value of youngs_modulus of region 1");
+      "parameters[6] is a second value of youngs_modulus of region 1");
 }
 
 TEST_F(MaterialsCommand, NamesTheMaterialThatIsWrong) {

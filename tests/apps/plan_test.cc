@@ -210,7 +210,7 @@ TEST_F(PlanCommand, RefusesWrongInput) {
   Refuse("plan cuboid.vtu --regions=merge", "one or each");
   Refuse("plan cuboid.vtu --noise=0", "--noise=0");
   Refuse("plan cuboid.vtu --noise_sd=-1", "--noise_sd=-1");
-  Refuse("plan cuboid.vtu --noise_sd=1 --noise=1", "one or the other");
+  Refuse("plan cuboid.vtu --noise_sd=1 --noise=1", "only one of them");
   Refuse("plan cuboid.vtu --surface=1,2,3", "six finite numbers");
   Refuse("plan cuboid.vtu --surface=5,5,5,6,6,6", "no face of the surface");
   Refuse("plan cuboid.vtu --json=cuboid.vtu", "cuboid.vtu");

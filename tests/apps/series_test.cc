@@ -156,7 +156,7 @@ TEST_F(Series, IsATableOfFramesAndTheirJointEstimate) {
             "poisson_ratio_standard_error,noise_sd,outliers,findings,reason");
   EXPECT_EQ(rows[1],
             "1,frame_5.csv,0.0,not_run,,,,,,0,not_run,\"the load of this frame "
-            "is zero, so that nothing follows from it\"");
+            "is zero, so that it gives no estimate\"");
   EXPECT_THAT(rows[7], HasSubstr("7,frame_11.csv,6.0,ok,"));
   EXPECT_THAT(rows[8], HasSubstr("joint,,,ok,"));
 }
@@ -239,13 +239,13 @@ TEST_F(Series, IsNotUsableWithoutAUsableFrame) {
   const testing::ProgramRun run =
       Run("estimate scene.json --estimator=auto --series=series.csv");
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_THAT(run.output, HasSubstr("none of 7 frames"));
+  EXPECT_THAT(run.output, HasSubstr("none of the 7 frames"));
   EXPECT_EQ(Rows().size(), 9);
 }
 
 TEST_F(Series, IsRefusedWhereItDoesNotBelong) {
   Refuse("estimate scene.json --estimator=auto --out=a.vtu",
-         "--out=a.vtu is of one measurement");
+         "--out=a.vtu cannot be used");
   Refuse("estimate scene.json --estimator=auto --order=2", "--order=2");
   Refuse("estimate scene.json --estimator=reduced-fe",
          "frame_5.csv: reduced-fe: ");
@@ -257,7 +257,7 @@ TEST_F(Series, IsRefusedWhereItDoesNotBelong) {
   Succeed("generate cuboid --out=cuboid.vtu");
   Succeed("simulate cuboid.vtu --youngs=1 --nu=0.3 --out=exact.vtu");
   Refuse("estimate exact.vtu --series=a.csv",
-         "--series=a.csv is of a scene of frames");
+         "--series=a.csv needs a scene of several frames");
 }
 
 // An indenter presses into the middle of a block of gel on a table in 20 steps,

@@ -193,10 +193,9 @@ TEST_F(SyntheticMeasurements, OfAnUniformStressHaveItsForce) {
   EXPECT_NEAR(force("load case 2"), 2.5 - 3, 1e-8);
   Refuse("simulate strip.json --youngs=1000 --nu=0.3 --out=m2.vtu",
          "standard output cannot be written", ">/dev/full");
-  Refuse(
-      "simulate strip.json --youngs=1000 --nu=0.3 --out=m.csv",
-      "--out=m.csv: strip.json has 2 load cases, of which a table holds one; "
-      "give --out=FILE.vtu, or a scene for each load case");
+  Refuse("simulate strip.json --youngs=1000 --nu=0.3 --out=m.csv",
+         "--out=m.csv: strip.json has 2 load cases, and a table holds only "
+         "one; give --out=FILE.vtu, or make a scene of each load case");
   Succeed("generate plate --out=plate.vtu");
   EXPECT_EQ(Simulate("--out=m.csv").output, "");
 }
@@ -319,19 +318,20 @@ TEST_F(SyntheticMeasurements, RefuseWrongFlags) {
   const std::string csv = "simulate plate.vtu --youngs=1 --nu=0 --out=a.csv ";
   Refuse(csv + "--noise_sd=0", "--noise_sd=0; it must be positive");
   Refuse(csv + "--noise_sd=1 --noise=0.1",
-         "--noise_sd=1; --noise is given, too; give one or the other");
+         "--noise_sd=1; --noise is given as well, so give only one of them");
   Refuse(csv + "--noise_sd=1 --noise_law=uniform",
          "--noise_law=uniform; the noise of --noise_sd is gaussian");
   Refuse(csv + "--correlation_length=1",
-         "--correlation_length=1; only noise of a given standard deviation");
+         "--correlation_length=1; it belongs to noise of a given standard "
+         "deviation");
   Refuse(csv + "--noise_sd=1 --correlation_length=-1",
          "--correlation_length=-1; it must be positive");
   Refuse(csv + "--noise_sd=1 --correlation_length=1e-9",
-         "--correlation_length=1e-09; that is too short beside the extent");
+         "--correlation_length=1e-09 is too short for the extent");
   Refuse(csv + "--outliers=1.5", "--outliers=1.5; it must be from 0 to 1");
   Refuse(csv + "--outliers=0.1",
-         "--outliers=0.1; their size is in standard deviations of the noise; "
-         "give --noise_sd or --noise");
+         "--outliers=0.1; their size is a multiple of the noise, so give "
+         "--noise_sd or --noise");
   Refuse(csv + "--rigid_motion=1,2",
          "--rigid_motion=1,2; it needs three finite numbers, as in "
          "--rigid_motion=1,2,3");
@@ -339,11 +339,12 @@ TEST_F(SyntheticMeasurements, RefuseWrongFlags) {
          "plate.vtu: the simulated displacement has the magnitude 1e+60");
   Refuse(csv + "--points=0", "--points=0; it must be from 1 to 10000000");
   Refuse(vtu + "--points=10",
-         "--points=10; points are written to a table, so give --out=FILE.csv");
+         "--points=10; points are written as a table, so give --out=FILE.csv");
   Refuse("simulate plate.vtu --youngs=1 --nu=0 --out=a.txt",
-         "--out=a.txt; what is written is a VTU file or a table of points, so "
-         "the name must end in .vtu or .csv");
-  Refuse("simulate plate.vtu --youngs=1 --nu=0", "or FILE.csv for a table");
+         "--out=a.txt; the name must end in .vtu for a scene, or in .csv for a "
+         "table of points");
+  Refuse("simulate plate.vtu --youngs=1 --nu=0",
+         "or --out=FILE.csv for a table");
   Refuse("estimate plate.vtu --out=a.csv", "the name must end in .vtu");
   Succeed("generate cuboid --out=cuboid.vtu");
   Refuse(
@@ -355,7 +356,7 @@ TEST_F(SyntheticMeasurements, RefuseWrongFlags) {
 TEST_F(SyntheticMeasurements, RefuseWrongPlates) {
   const std::string plate = "generate plate --out=a.vtu ";
   EXPECT_EQ(Succeed(plate).output, "3025 nodes, 2916 quadrilaterals\n");
-  Refuse(plate + "--ends=pins", "--ends=pins; it is traction or grips");
+  Refuse(plate + "--ends=pins", "--ends=pins; it must be traction or grips");
   Refuse(plate + "--ends=grips --force=3",
          "--force=3 is not for --ends=grips, which move by --elongation; leave "
          "it out");
@@ -368,11 +369,12 @@ TEST_F(SyntheticMeasurements, RefuseWrongPlates) {
          "--cells=3,4; it needs one integer below 2^31, as in --cells=1");
   Refuse(plate + "--cells=1", "--cells=1; it must be from 2 to 1414");
   Refuse(plate + "--size=3", "--size=3; it needs two finite numbers, as in");
-  Refuse(plate + "--size=2,2",
-         "--hole=2.5; a plate of size 2,2 has a hole of radius 2e-05 to 1.98");
+  Refuse(
+      plate + "--size=2,2",
+      "--hole=2.5; a plate of size 2,2 takes a hole of radius 2e-05 to 1.98");
   Refuse(plate + "--force=1,2", "--force=1,2; it needs one finite number, as");
   Refuse(plate + "--elements=hex8",
-         "--elements=hex8; a plate is of tri3 or quad4");
+         "--elements=hex8; a plate is made of tri3 or quad4");
   Refuse(plate + "--model=3d", "--model=3d; a plate is in plane_stress or");
   Refuse(plate + "--length=3", "generate plate takes no flag --length");
   for (const std::string flag :

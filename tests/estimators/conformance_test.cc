@@ -140,7 +140,8 @@ TEST_P(Conformance, PreparedGivesWhatItGives) {
       EXPECT_NEAR(*actual.YoungsModulusStandardError() / youngs_error, 1, 0.05);
       EXPECT_NEAR(*actual.PoissonRatioStandardError() / poisson_error, 1, 0.05);
     }
-    EXPECT_THROWS_WITH(prepared.Run({}), "0 measured displacements for 2");
+    EXPECT_THROWS_WITH(prepared.Run({}),
+                       "number of measured displacements is 0");
     EXPECT_THROWS_WITH(prepared.Run({Eigen::MatrixXd::Zero(3, 4),
                                      scene.load_cases[1].displacement}),
                        "the measured displacement of load case 1");

@@ -178,7 +178,7 @@ TEST_P(Materials, ThatDoNotStrainAreNotDetermined) {
 TEST_P(Materials, ThatAreAllKnownAreRefused) {
   scene_.materials[0].known = {{"youngs_modulus", 2e3}, {"poisson_ratio", 0.2}};
   scene_.materials[1].known = {{"youngs_modulus", 5e3}, {"poisson_ratio", 0.4}};
-  EXPECT_THROWS_WITH(Run(), "leave one to estimate");
+  EXPECT_THROWS_WITH(Run(), "there is nothing to estimate");
 }
 
 TEST_P(Materials, NextToIncompressibleOnesAreFound) {
@@ -190,7 +190,7 @@ TEST_P(Materials, NextToIncompressibleOnesAreFound) {
 TEST_P(Materials, RefuseWhatIsForOneMaterial) {
   EstimatorOptions options;
   options.known_poisson_ratio = 0.3;
-  EXPECT_THROWS_WITH(Run(options), "given for one material");
+  EXPECT_THROWS_WITH(Run(options), "given for the whole specimen");
 }
 
 INSTANTIATE_TEST_SUITE_P(Estimators, Materials,
@@ -207,7 +207,7 @@ TEST(MaterialsRefusal, NamesTheAlternative) {
   scene.load_cases.push_back(scene.load_cases[0]);
   scene.load_cases[1].supports = scene.supports;
   EXPECT_THROWS_WITH(MakeEstimator("reduced-fe")->Run(scene, {}),
-                     "use iterative-fe");
+                     "use --estimator=iterative-fe");
 }
 
 TEST(MaterialsOfClosedForm, SaysWhenNoiseBiasesIt) {

@@ -100,8 +100,8 @@ TEST(EstimatorBase, FailsAnEstimateWithoutErrorsOrAReason) {
   EXPECT_EQ(estimate.status, Status::kNumericalFailure);
   EXPECT_TRUE(estimate.Has(FindingCode::kErrorsMissing));
   EXPECT_THAT(estimate.message,
-              HasSubstr("the estimator silent gives neither a standard error "
-                        "of nu nor a reason"));
+              HasSubstr("the estimator silent returned neither a standard "
+                        "error of nu nor a reason"));
   EXPECT_FALSE(estimate.YoungsModulusStandardError());
   PreparedEstimator prepared = parrot.Prepare(scene, {});
   EXPECT_TRUE(prepared.Run({scene.load_cases[0].displacement})
@@ -125,7 +125,7 @@ TEST(EstimatorBase, TakesAReasonOrAKnownValueForAnError) {
 TEST(EstimatorBase, FailsSeveralMaterialsWithoutParametersOrCovariance) {
   const Scene scene = MeasuredHalves();
   EXPECT_THAT(Parrot("empty", SayYoungsModulus).Run(scene, {}).message,
-              HasSubstr("gives neither parameters of the materials"));
+              HasSubstr("returned neither parameters of the materials"));
   EXPECT_THAT(Parrot("short",
                      [](Estimate& estimate) {
                        SayYoungsModulus(estimate);
@@ -133,7 +133,7 @@ TEST(EstimatorBase, FailsSeveralMaterialsWithoutParametersOrCovariance) {
                      })
                   .Run(scene, {})
                   .message,
-              HasSubstr("gives neither a covariance of its 4 parameters"));
+              HasSubstr("returned neither a covariance of its 4 parameters"));
 }
 
 // Only the PreparedEstimator keeps this estimator alive until it runs.

@@ -102,9 +102,9 @@ TEST(SmoothNoise, IsRefusedWhereItsLengthIsFarTooShort) {
   const Eigen::MatrixXd positions = UnevenPositions(2, 30);
   std::mt19937_64 generator(1);
   EXPECT_THROWS_WITH(DrawNoiseAt(positions, 1, 1e-4, generator),
-                     "^correlation_length=0.0001; that is too short");
+                     "^correlation_length=0.0001 is too short");
   EXPECT_THROWS_WITH(DrawNoiseAt(positions, 1, 1e-300, generator),
-                     "^correlation_length=1e-300; that is too short");
+                     "^correlation_length=1e-300 is too short");
   // Over a length far beyond the specimen, all points have the same noise.
   const Eigen::MatrixXd noise = DrawNoiseAt(positions, 1, 1e8, generator);
   EXPECT_LT((noise.colwise() - noise.col(0)).cwiseAbs().maxCoeff(), 1e-6);

@@ -185,7 +185,7 @@ TEST(MaterialAxes, ThatAreWrongAreNamed) {
           .mesh;
   EXPECT_THROWS_WITH(
       ValidateMaterials({{"anisotropic", {}, {}, {}}}, sheet),
-      "not there for the model plane_stress; its laws are isotropic, "
+      "not exist for the model plane_stress; its laws are isotropic, "
       "orthotropic");
   ValidateMaterials({{"orthotropic", {}, {}, {}, {Eigen::Vector2d(1, 1)}}},
                     sheet);

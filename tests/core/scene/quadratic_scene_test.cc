@@ -216,7 +216,7 @@ TEST_F(ConvertedOrgan, CannotBeConvertedAgain) {
 
 TEST_F(ConvertedOrgan, NeedsFacetsOfTheMesh) {
   std::get<Traction>(scene_.load_cases[1].loads[1]).facets.col(3) << 0, 1, 79;
-  EXPECT_THROWS_WITH(QuadraticScene(scene_), "facet 3 .* no face");
+  EXPECT_THROWS_WITH(QuadraticScene(scene_), "facet 3 .* not a face");
 }
 
 // The displacement of a support is ignored in components that are not held,

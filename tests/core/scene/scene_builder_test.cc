@@ -111,7 +111,8 @@ TEST(SceneBuilder, RefusesToHoldANodeTwice) {
   EXPECT_THROWS_WITH(
       HoldInBox(kOrigin, kEndOfBottom, Eigen::Array3<bool>(false, false, true),
                 Eigen::Vector3d(0, 0, 0.1), scene),
-      "holds the z component of node 0, which is held otherwise already");
+      "holds the z component of node 0, which another support holds "
+      "differently");
   EXPECT_EQ(scene.supports.boxes.size(), 2U);
   EXPECT_THROWS_WITH(
       HoldInBox(kOrigin, kEndOfBottom, Eigen::Array3<bool>(false, false, false),

@@ -152,7 +152,7 @@ TEST_F(ValidatedScene, NeedsFacetsThatAreFaces) {
     facets.col(3) = none;
     EXPECT_THROWS_WITH(ValidateScene(scene_),
                        "facet 3 of the force on a surface in load 4 of load "
-                       "case 2 is no face");
+                       "case 2 is not a face");
   }
 }
 

@@ -140,7 +140,7 @@ TEST(UnknownMotionOfScene, IsRefusedWithOneResultantTwice) {
   EXPECT_NO_THROW(ValidateUnknownMotion(scene));
   scene.load_cases[0].resultants.push_back(resultant);
   EXPECT_THROWS_WITH(ValidateUnknownMotion(scene),
-                     "resultant 2 of load case 1 has a component of the same");
+                     "resultant 2 of load case 1 measures a force on the same");
   // Another component of the same nodes is another measurement.
   scene.load_cases[0].resultants[0].force << testing::kNan, 1, testing::kNan;
   scene.load_cases[0].resultants[1].force << 1, testing::kNan, testing::kNan;

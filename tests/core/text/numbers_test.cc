@@ -11,9 +11,19 @@ TEST(NumbersInSentences, HaveSignificantDigits) {
   EXPECT_EQ(NumberText(2e-9), "2e-09");
   EXPECT_EQ(NumberText(0.123456789, 3), "0.123");
   EXPECT_EQ(NumberText(-std::numeric_limits<double>::quiet_NaN()), "nan");
+  EXPECT_EQ(NumberText(13234, 3), "13200");
+  EXPECT_EQ(NumberText(-999.6, 3), "-1000");
+  EXPECT_EQ(NumberText(1234567), "1234570");
+  EXPECT_EQ(NumberText(1.25e7, 2), "1.2e+07");
   EXPECT_EQ(TwoDigits(104), "100");
   EXPECT_EQ(TwoDigits(-0.0123), "-0.012");
   EXPECT_EQ(TwoDigits(0), "0");
+}
+
+TEST(NumbersInSentences, CountThings) {
+  EXPECT_EQ(Counted(0, "node"), "0 nodes");
+  EXPECT_EQ(Counted(1, "node"), "1 node");
+  EXPECT_EQ(Counted(2, "node"), "2 nodes");
 }
 
 TEST(NumbersInTables, HaveTwoDigitsOfTheErrorAndNoExponent) {
@@ -38,7 +48,7 @@ TEST(NumbersInTables, CarryWhatRoundingOfTheErrorMakesLonger) {
 TEST(NumbersInTables, HaveAnExponentWhereTheyAreVeryLargeOrSmall) {
   EXPECT_EQ(ValueWithError(1.23456e9, 1.2e7), "1.2346e+09 +- 1.2e+07");
   EXPECT_EQ(ValueWithError(3e-5, 1e-5), "3e-05 +- 1e-05");
-  EXPECT_EQ(ValueWithError(2000, 4e8), "2e+03 +- 4e+08");
+  EXPECT_EQ(ValueWithError(2000, 4e8), "2000 +- 4e+08");
 }
 
 TEST(NumbersInTables, HaveTenDigitsAtMost) {

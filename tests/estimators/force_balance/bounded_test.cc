@@ -156,7 +156,8 @@ TEST(Bounded, SaysWhenTheNoiseBiasesNuBesideABoundOnYoungsModulus) {
 TEST(Bounded, RefusesALoss) {
   EstimatorOptions options;
   options.loss = Loss::kCauchy;
-  EXPECT_THROWS_WITH(Bounded().Run(NoisyScene(0), options), "use reduced-fe");
+  EXPECT_THROWS_WITH(Bounded().Run(NoisyScene(0), options),
+                     "use --estimator=reduced-fe");
 }
 
 }  // namespace

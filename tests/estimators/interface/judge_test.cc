@@ -102,7 +102,7 @@ TEST(Judge, SpeaksOfErrorBarsWhereThereAreSome) {
         estimate.Sentences(Severity::kWarning);
     ASSERT_EQ(warnings.size(), 1U);
     EXPECT_EQ(
-        warnings[0].find("which the error bars hold") != std::string::npos,
+        warnings[0].find("which the error bars include") != std::string::npos,
         is_usable);
   }
 }
@@ -174,7 +174,7 @@ TEST(Judge, ARatioThatOutliersMayPullToItsLimitIsNoEstimate) {
   evidence.outlier_change = {0.02, 0};
   const Estimate estimate = Judged(evidence);
   EXPECT_FALSE(estimate.IsUsable());
-  EXPECT_NE(estimate.message.find("use a loss"), std::string::npos)
+  EXPECT_NE(estimate.message.find("--loss=huber"), std::string::npos)
       << estimate.message;
 }
 
@@ -216,16 +216,17 @@ Estimate OfTwoMaterials(double missed) {
 TEST(JudgeParameters, SaysWhatLeavesThemUndetermined) {
   Estimate by_data = OfTwoMaterials(0.1);
   JudgeParameters(by_data);
-  EXPECT_EQ(by_data.message,
-            "the data do not determine E of region 2 (60 %); give what is "
-            "known of them, join regions, or add load cases");
+  EXPECT_EQ(
+      by_data.message,
+      "the data do not determine E of region 2 (+- 60 %); give what is known "
+      "(--nu, or \"known\" of a material), join regions, or add load cases");
   EXPECT_FALSE(AreUndeterminedByElements(by_data));
 
   Estimate by_elements = OfTwoMaterials(0.59);
   by_elements.element_order = 2;
   JudgeParameters(by_elements);
   EXPECT_EQ(by_elements.message,
-            "elements this coarse do not determine E of region 2 (60 %); "
+            "the elements are too coarse to determine E of region 2 (+- 60 %); "
             "use a finer mesh");
   EXPECT_TRUE(AreUndeterminedByElements(by_elements));
 

@@ -165,8 +165,8 @@ TEST(FreeAxis, IsRefusedByWhatCannotFindIt) {
        {"closed-form", "bounded", "virtual-fields"}) {
     EXPECT_THROWS_WITH(
         RunOn(scene, estimator),
-        "it takes materials whose axis is known; use iterative-fe or "
-        "reduced-fe, or give the axis");
+        "it takes only materials whose axis is known; use "
+        "--estimator=iterative-fe or --estimator=reduced-fe, or give the axis");
   }
   Scene beside = scene;
   beside.materials[0].axes = {Eigen::Vector3d(1, 0, 0)};

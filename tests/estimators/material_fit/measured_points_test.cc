@@ -75,8 +75,9 @@ TEST_P(PointsOfEachKind, AreRefusedWhereAllAreHeld) {
 
 TEST_P(PointsOfEachKind, AreRefusedWhereNodesAreNeeded) {
   for (const std::string name : {"closed-form", "bounded", "virtual-fields"}) {
-    EXPECT_THROWS_WITH(MakeEstimator(name)->Run(scene_, {}),
-                       "load case 1 was measured at points; use reduced-fe");
+    EXPECT_THROWS_WITH(
+        MakeEstimator(name)->Run(scene_, {}),
+        "load case 1 was measured at points; use --estimator=reduced-fe");
   }
 }
 

@@ -300,7 +300,7 @@ TEST(PreparedReducedFe, RefusesWhatDoesNotFit) {
   Measure({5e4, 0.3}, scene);
   const Eigen::MatrixXd displacement = scene.load_cases[0].displacement;
   PreparedEstimator prepared = kReducedFe.Prepare(scene, {});
-  EXPECT_THROWS_WITH(prepared.Run({}), "0 measured displacements for 1");
+  EXPECT_THROWS_WITH(prepared.Run({}), "number of measured displacements is 0");
   EXPECT_THROWS_WITH(prepared.Run({displacement.leftCols(3)}), "3 columns");
   Eigen::MatrixXd broken = displacement;
   broken(1, 40) = std::nan("");

@@ -164,7 +164,7 @@ TEST(SupportsOfCasesOfEstimators, AreRefusedByThoseThatShareThem) {
   for (const std::string name :
        {"closed-form", "bounded", "virtual-fields", "reduced-fe"}) {
     EXPECT_THROWS_WITH(RunNamed(name, Together(near, far)),
-                       "same in all load cases; use iterative-fe");
+                       "same in all load cases; use --estimator=iterative-fe");
   }
 }
 

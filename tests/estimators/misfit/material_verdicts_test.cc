@@ -43,14 +43,13 @@ TEST(DeterminedCombinations, AreNamed) {
             Combinations({"the ratio of E of region 1 to E of region 2"}));
   EXPECT_EQ(
       CombinationsOf(FreeAlong({1, 0.5, 0})),
-      Combinations({"E of region 1 and E of region 2 in one combination"}));
+      Combinations({"one combination of E of region 1 and E of region 2"}));
   EXPECT_EQ(
       CombinationsOf(FreeAlong({0, 1, 1})),
-      Combinations({"E of region 2 and nu of region 2 in one combination"}));
-  EXPECT_EQ(
-      CombinationsOf(FreeAlong({1, 1, 1})),
-      Combinations({"E of region 1, E of region 2 and nu of region 2 in 2 "
-                    "combinations"}));
+      Combinations({"one combination of E of region 2 and nu of region 2"}));
+  EXPECT_EQ(CombinationsOf(FreeAlong({1, 1, 1})),
+            Combinations({"2 combinations of E of region 1, E of region 2 and "
+                          "nu of region 2"}));
 }
 
 TEST(DeterminedCombinations, AreNoneOfWhatIsDeterminedOrNotAtAll) {

@@ -242,7 +242,7 @@ TEST_F(MeasuredMeshTest, OtherEstimatorsSayWhichOneToUse) {
   for (const std::string estimator :
        {"closed-form", "bounded", "virtual-fields", "reduced-fe"}) {
     EXPECT_THROWS_WITH(MakeEstimator(estimator)->Run(scene, {}),
-                       "use iterative-fe");
+                       "use --estimator=iterative-fe");
   }
 }
 
@@ -279,11 +279,11 @@ TEST_F(MeasuredMeshTest, TellsWhatIsWrong) {
          R"(make it "measured", "rigid" or a vector)");
   expect(R"([[6, 0], [6, 2]]}, "displacement": "measured")",
          R"([[0, 0], [6, 2]]}, "displacement": "rigid")",
-         "otherwise than supports\\[0\\] does");
+         "differently from supports\\[0\\]");
   expect(R"("relative_sd": 0.01)", R"("nothing": 0.01)", "nothing");
   expect(R"(,
                           "relative_sd": 0.01)",
-         "", "exactly one of the keys sd, relative_sd");
+         "", "exactly one of the keys \"sd\" and \"relative_sd\"");
   expect(R"("relative_sd": 0.01)", R"("relative_sd": 0)", "must be positive");
   expect("[3, null]", "[null, null]", "has no number");
   expect("[3, null]", "[0, null]", "relative to a force of zero");

@@ -180,7 +180,7 @@ TEST(RectangleSceneTest, NamesTheOptionThatIsWrong) {
             }),
             "cells=2000001,1; the product must be at most 2000000");
   EXPECT_EQ(why([](RectangleOptions& o) { o.kind = ElementKind::kTri6; }),
-            "elements=tri6; a rectangle is of tri3 or quad4");
+            "elements=tri6; a rectangle is made of tri3 or quad4");
   EXPECT_EQ(
       why([](RectangleOptions& o) { o.section.model = SectionModel::kSolid; }),
       "model=3d; a rectangle is in plane_stress or plane_strain");
@@ -343,10 +343,11 @@ TEST(PlateSceneTest, NamesTheOptionThatIsWrong) {
   EXPECT_EQ(why([](PlateOptions& o) { o.cells = 1415; }),
             "cells=1415; it must be from 2 to 1414");
   EXPECT_EQ(why([](PlateOptions& o) { o.hole = 10; }),
-            "hole=10; a plate of size 10,10 has a hole of radius 0.0001 to "
+            "hole=10; a plate of size 10,10 takes a hole of radius 0.0001 to "
             "9.9");
-  EXPECT_EQ(why([](PlateOptions& o) { o.hole = 0; }),
-            "hole=0; a plate of size 10,10 has a hole of radius 0.0001 to 9.9");
+  EXPECT_EQ(
+      why([](PlateOptions& o) { o.hole = 0; }),
+      "hole=0; a plate of size 10,10 takes a hole of radius 0.0001 to 9.9");
   EXPECT_EQ(why([](PlateOptions& o) { o.size.x() = 1001; }),
             "size=1001,10; the plate is too slender; its longer edge must be "
             "at most 100 times the shorter");
@@ -357,7 +358,7 @@ TEST(PlateSceneTest, NamesTheOptionThatIsWrong) {
   EXPECT_EQ(why([](PlateOptions& o) { o.elongation = 0; }),
             "elongation=0; its magnitude must be from 1e-50 to 1e+50");
   EXPECT_EQ(why([](PlateOptions& o) { o.kind = ElementKind::kTet4; }),
-            "elements=tet4; a plate is of tri3 or quad4");
+            "elements=tet4; a plate is made of tri3 or quad4");
   EXPECT_EQ(
       why([](PlateOptions& o) { o.section.model = SectionModel::kSolid; }),
       "model=3d; a plate is in plane_stress or plane_strain");

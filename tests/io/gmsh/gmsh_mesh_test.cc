@@ -217,7 +217,8 @@ TEST_F(GmshMeshTest, HasNoRegionsWhereAnElementIsInTwoGroups) {
                                    "0 is in the physical groups 1")));
   EXPECT_THROWS_WITH(
       ReadScene({path}, Measurement::kRequired, {}, RegionChoice::kEach),
-      "scene.msh: there are no regions to have a material each: tetrahedron 0 "
+      "scene.msh: there are no regions that could have their own materials: "
+      "tetrahedron 0 "
       "is in the physical groups 1 \"body\" and 3; put it into one");
 }
 
@@ -228,7 +229,8 @@ TEST_F(GmshMeshTest, SaysHowAMeshHasRegions) {
                "4 4 2 0 1 10 2 3 5\n5 4 2 0 1 10 2 3 7"));
   EXPECT_THROWS_WITH(
       ReadScene({path}, Measurement::kRequired, {}, RegionChoice::kEach),
-      "scene.msh: there are no regions to have a material each; put the "
+      "scene.msh: there are no regions that could have their own materials; "
+      "put the "
       "elements into physical groups, or add the element data \"region\"");
 }
 
@@ -246,9 +248,10 @@ TEST_F(GmshMeshTest, NotesRegionsThatShareOneMaterial) {
 
 TEST_F(GmshMeshTest, SaysThatAMeshIsNoScene) {
   const auto path = folder_.Write("liver.msh", GmshVersion1Mesh());
-  EXPECT_THROWS_WITH(ReadScene({path}, Measurement::kRequired),
-                     "liver.msh: a mesh alone is not a scene; write a "
-                     "scene.json with \"mesh\": \"liver.msh\"");
+  EXPECT_THROWS_WITH(
+      ReadScene({path}, Measurement::kRequired),
+      "liver.msh: a mesh alone is not a scene, as it has no supports, loads "
+      "and displacements; write a scene.json with \"mesh\": \"liver.msh\"");
 }
 
 TEST_F(GmshMeshTest, KnowsOfNodesThatGmshLeavesOut) {

@@ -174,7 +174,7 @@ TEST_F(MeasuredPointsTest, NameWhatIsWrong) {
                      "tolerance must not be negative");
   EXPECT_THROWS_WITH(Read(Replaced(kPointsDocument, R"("loads")",
                                    R"("observed": "all", "loads")")),
-                     "\"observed\" does not choose from; leave it out");
+                     "leave out \"observed\"");
   folder_.Write("sd.csv",
                 "x,y,z,ux,uy,uz,sd_ux,sd_uy,sd_uz\n.5,.5,.5,0,0,1,1,1,1\n");
   EXPECT_THROWS_WITH(Read(with(R"({"points": ["points.csv", "sd.csv"]})")),

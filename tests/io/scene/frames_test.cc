@@ -189,10 +189,11 @@ TEST_F(FramesTest, NeedARowEachAndRowsAFrame) {
   EXPECT_THROWS_WITH(Read(kFilmedStrip),
                      "load.csv: no row names the frame frame_10.csv");
   folder_.Write("load.csv", rows + "frame_3,6\n");
-  EXPECT_THROWS_WITH(Read(kFilmedStrip), "line 4: 'frame_3' is the name of no");
+  EXPECT_THROWS_WITH(Read(kFilmedStrip),
+                     "line 4: 'frame_3' is not the name of exactly one frame");
   folder_.Write("load.csv", rows + "frame_2.tif,6\n");
   EXPECT_THROWS_WITH(Read(kFilmedStrip),
-                     "line 4: 'frame_2.tif' names the frame of line 3");
+                     "line 4: 'frame_2.tif' names the same frame as line 3");
   folder_.Write("load.csv",
                 "a,b,Force [N]\nframe_1,frame_1,5\n,,6\nframe_2,frame_2,7\n");
   EXPECT_THROWS_WITH(Read(kFilmedStrip),
@@ -203,8 +204,8 @@ TEST_F(FramesTest, NeedARowEachAndRowsAFrame) {
 TEST_F(FramesTest, HaveNoRowOfAReferenceFrame) {
   folder_.Write("load.csv", "Force [N]\n0\n1\n2\n3\n");
   EXPECT_THROWS_WITH(Read(kFilmedStrip),
-                     "4 rows for 3 frames; .*; line 2 is under no load, as a "
-                     "reference frame is: leave it out");
+                     "4 rows for 3 frames; leave out line 2, which has no "
+                     "load, as a reference frame has");
   folder_.Write("load.csv", "Force [N]\n1\n2\n");
   EXPECT_THROWS_WITH(Read(kFilmedStrip), "leave a reference frame out");
 }
@@ -225,10 +226,10 @@ TEST_F(FramesTest, MayBeTablesOfOtherTitles) {
 
 TEST_F(FramesTest, TellWhatIsWrong) {
   EXPECT_THROWS_WITH(Read(Replaced(kFilmedStrip, "frame_*.csv", "image_*.csv")),
-                     "csv\", which no file is called");
+                     "csv\", which matches no file");
   EXPECT_THROWS_WITH(
       Read(Replaced(kFilmedStrip, "\"frame_*.csv\"", R"(["a.csv", "a.csv"])")),
-      "is empty or named before");
+      "is empty or was named before");
   EXPECT_THROWS_WITH(Read(Replaced(kFilmedStrip, "\"frame_*.csv\"", "[]")),
                      "frames.files is empty");
   EXPECT_THROWS_WITH(Read(Replaced(kFilmedStrip, "Force [N]", "Kraft")),
@@ -238,7 +239,7 @@ TEST_F(FramesTest, TellWhatIsWrong) {
                      "frames.load_record.relative_sd must not be negative");
   EXPECT_THROWS_WITH(Read(Replaced(kFilmedStrip, "\"cases\": [", R"("cases": [
       {"loads": [{"type": "body_force", "value": [1, 0]}]}, )")),
-                     "frames are those of one load case, of which there are 2");
+                     "frames need exactly one load case, but \"cases\" has 2");
   folder_.Write("load.csv", "Force [N]\n1\n2\n");
   EXPECT_THROWS_WITH(Read(kFilmedStrip), "has 2 rows for 3 frames");
   folder_.Write("load.csv", "Force [N]\n1\n0\ninf\n");

@@ -199,9 +199,9 @@ TEST_F(PlanarSceneTest, ErrsOnWhatIsNotOfAPlane) {
   };
   expect(R"("model": "plane_stress",)", "",
          "mesh.vtk: the mesh is of quadrilaterals, which are planar, but no "
-         "model is given; say --model=plane_stress or --model=plane_strain");
+         "model is given; give --model=plane_stress or --model=plane_strain");
   expect(R"("thickness": 0.5,)", "",
-         "mesh.vtk: .* which are planar, but no thickness is given; say "
+         "mesh.vtk: .* which are planar, but no thickness is given; give "
          "--thickness=X, or \"thickness\" in a scene.json");
   expect("plane_stress", "3d", "which are planar, but the model is 3d");
   expect("plane_stress", "flat",

@@ -112,7 +112,7 @@ TEST_F(SceneReaderTest, DropsUnusedPointsAndIgnoresLinesAndTriangles) {
   EXPECT_EQ(scene.load_cases[0].displacement.col(4),
             Eigen::Vector3d(.4, .5, .6));
   EXPECT_THAT(reading.notices,
-              ElementsAre(HasSubstr("dropped 1 points that no tetrahedron"),
+              ElementsAre(HasSubstr("1 point that no tetrahedron"),
                           HasSubstr("regions share one material")));
 }
 
@@ -120,8 +120,8 @@ TEST_F(SceneReaderTest, TellsOfForcesThatAreDroppedWithTheirPoints) {
   const SceneReading reading = Read(Replaced(
       LegacySceneText(), "0 0 0 0 0 0 0 0 0 0", "0 0 0 0 0 0 0 9 0 0"));
   EXPECT_THAT(reading.notices,
-              ElementsAre(HasSubstr("'force' has forces on 1 points"),
-                          HasSubstr("dropped 1 points"),
+              ElementsAre(HasSubstr("'force' has forces on 1 point that"),
+                          HasSubstr("1 point that no"),
                           HasSubstr("regions share one material")));
 }
 
@@ -164,7 +164,7 @@ TEST_F(SceneReaderTest, NotesNodesAtOnePlace) {
   EXPECT_THAT(
       reading.notices,
       ElementsAre(
-          HasSubstr("dropped 1 points"),
+          HasSubstr("1 point that no"),
           ::testing::EndsWith(
               "scene.vtk: 6 nodes lie at the same place as another node, such "
               "as at (0, 0, 0), so that the parts around them are not "
@@ -620,8 +620,8 @@ TEST_F(SceneReaderTest, SaysHowFilesDiffer) {
     const auto second = folder_.Path() / "second.vtu";
     WriteEncoded(second, mesh, fields, AllVtkEncodings()[2]);
     EXPECT_THROWS_WITH(ReadScene({first, second}, Measurement::kRequired),
-                       "second.vtu: this is no further load case of "
-                       ".*first.vtu': " +
+                       "second.vtu: this is not a further load case of "
+                       ".*first.vtu', because " +
                            pattern);
   };
   Mesh mesh = scene_.mesh;
@@ -639,7 +639,7 @@ TEST_F(SceneReaderTest, SaysHowFilesDiffer) {
                                        Replaced(LegacySceneText(), "3 10 5 10",
                                                 "3 10 5 5"))},
                 Measurement::kRequired),
-      "smaller.vtk: this is no .*: it has 4 nodes instead of 5");
+      "smaller.vtk: this is not .*, because it has 4 nodes instead of 5");
 }
 
 TEST_F(SceneReaderTest, ReadsTheScenesOfAnIndependentCode) {
@@ -651,9 +651,9 @@ TEST_F(SceneReaderTest, ReadsTheScenesOfAnIndependentCode) {
       ReadScene({folder / "liver_same_mesh.vtu"}, Measurement::kRequired).scene;
   EXPECT_EQ(liver.mesh.NumNodes(), 181);
   EXPECT_EQ(liver.mesh.NumElements(), 596);
-  EXPECT_THROWS_WITH(
-      ReadScene({folder / "liver.msh"}, Measurement::kRequired),
-      "liver.msh: a mesh alone is not a scene; write a scene.json");
+  EXPECT_THROWS_WITH(ReadScene({folder / "liver.msh"}, Measurement::kRequired),
+                     "liver.msh: a mesh alone is not a scene, as it has no "
+                     "supports, loads and displacements; write a scene.json");
 }
 
 }  // namespace

@@ -42,6 +42,10 @@ TEST(Printable, EscapesWhatIsNoUtf8) {
   EXPECT_EQ(Printable("\xE8\x82"), "\\xe8\\x82");  // Cut short.
 }
 
+TEST(Printable, WritesTheMicroSignOfLatin1AsThatOfUtf8) {
+  EXPECT_EQ(Printable("u [\xB5m]"), "u [\xC2\xB5m]");
+}
+
 TEST(Printable, CutsTheMiddleOfLongText) {
   const std::string sixty(60, 'a');
   EXPECT_EQ(Printable(sixty), sixty);
