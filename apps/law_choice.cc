@@ -60,6 +60,11 @@ void CheckLawChoice(const SceneReading& reading,
         " cannot be used with a scene of several frames; name a law, or make a "
         "scene of one frame");
   }
+  if (HasPriors(reading.scene.materials)) {
+    throw std::invalid_argument(AsGiven("material") +
+                                " compares what the measurement says of laws; "
+                                "leave out the key \"prior\"");
+  }
   const std::string why_not = WhyNoLawChoice(reading.scene, options);
   if (!why_not.empty()) {
     throw std::invalid_argument(AsGiven("material") + ": " + why_not);

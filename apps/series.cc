@@ -37,6 +37,10 @@ void Prepare(const Estimator& estimator, const Scene& scene,
   if (!prepared) {
     Scene of_frame = scene;
     of_frame.load_cases = {frame};
+    // Priors count once, in the joint estimate.
+    for (Material& material : of_frame.materials) {
+      material.priors.clear();
+    }
     prepared = estimator.Prepare(of_frame, options);
   }
 }

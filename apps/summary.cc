@@ -50,7 +50,8 @@ void AddErrors(const std::string& name, Eigen::Index place,
         std::pair{&budget.outliers, "outliers"},
         std::pair{&budget.discretization, "the mesh"},
         std::pair{&budget.kinematics, "large deformations"},
-        std::pair{&budget.section, "the margin"}}) {
+        std::pair{&budget.section, "the margin"},
+        std::pair{&budget.prior, "the prior"}}) {
     if (errors->size() > place && (*errors)(place) > 0) {
       parts.emplace_back((*errors)(place), cause);
     }

@@ -90,7 +90,8 @@ std::string WhyNotEnough(const Scene& scene, const EstimatorOptions& options,
     if (finding.severity == Severity::kWarning &&
         finding.code != FindingCode::kLargeDeformation &&
         finding.code != FindingCode::kNegativePoissonRatio &&
-        finding.code != FindingCode::kMarginNotGiven) {
+        finding.code != FindingCode::kMarginNotGiven &&
+        finding.code != FindingCode::kPriorContradicted) {
       return "it warns: " + finding.text;
     }
   }

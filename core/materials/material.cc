@@ -1,6 +1,7 @@
 #include "elastimate/core/materials/material.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -79,6 +80,28 @@ void ValidateWhatIsGiven(const Law& law, const Material& material,
       throw std::invalid_argument(name + " gives crossed bounds on " +
                                   bounded.name +
                                   "; the first must be the smaller one");
+    }
+  }
+}
+
+void ValidatePriors(const Law& law, const Material& material,
+                    const std::string& name) {
+  std::set<std::string> names;
+  for (const KnownParameter& known : material.known) {
+    names.insert(known.name);
+  }
+  for (const Prior& prior : material.priors) {
+    const LawParameter& parameter = FindParameter(law, prior.name, name);
+    if (!names.insert(prior.name).second) {
+      throw std::invalid_argument(name + " gives " + prior.name +
+                                  " twice; give it once, as known or by a "
+                                  "prior");
+    }
+    RequireInRange(parameter, prior.value, name + " gives the prior ");
+    if (!(prior.sd > 0 && std::isfinite(prior.sd))) {
+      throw std::invalid_argument(
+          name + " gives the prior of " + prior.name +
+          " a standard deviation that is not positive and finite; correct it");
     }
   }
 }
@@ -251,7 +274,7 @@ void ValidateAxes(const std::vector<Material>& materials, const Mesh& mesh) {
 
 bool Material::operator==(const Material& other) const {
   return law == other.law && regions == other.regions && known == other.known &&
-         bounds == other.bounds &&
+         bounds == other.bounds && priors == other.priors &&
          std::equal(
              axes.begin(), axes.end(), other.axes.begin(), other.axes.end(),
              [](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
@@ -280,10 +303,17 @@ void ValidateMaterials(const std::vector<Material>& materials,
                                   "; its laws are " + LawNames(model));
     }
     ValidateWhatIsGiven(*law, materials[i], NameOf(i));
+    ValidatePriors(*law, materials[i], NameOf(i));
     RequirePositiveDefinite(materials[i], model, NameOf(i));
   }
   ValidateRegions(materials, mesh);
   ValidateAxes(materials, mesh);
+}
+
+bool HasPriors(const std::vector<Material>& materials) {
+  return std::any_of(
+      materials.begin(), materials.end(),
+      [](const Material& material) { return !material.priors.empty(); });
 }
 
 bool IsOneIsotropicMaterial(const std::vector<Material>& materials) {

@@ -39,6 +39,18 @@ struct KnownParameter {
   }
 };
 
+/// What is believed of a parameter of a law before anything is measured: a
+/// normal distribution, of ln p for a modulus with sd / value.
+struct Prior {
+  std::string name;
+  double value;
+  double sd;  ///< In the unit of the value.
+
+  bool operator==(const Prior& other) const {
+    return name == other.name && value == other.value && sd == other.sd;
+  }
+};
+
 /// What a part of a specimen is made of.
 struct Material {
   std::string law = "isotropic";
@@ -47,6 +59,8 @@ struct Material {
   std::vector<KnownParameter> known;
   /// The bounds of parameters that are not known.
   std::vector<BoundsOfParameter> bounds;
+  /// The priors of parameters that are not known.
+  std::vector<Prior> priors = {};
   /// The directions, of any length, that fix its frame (MaterialFrames), as
   /// many as its law has axes.  Each is dimension x 1, or dimension x
   /// num_elements, where only the columns of its own elements count.
@@ -56,15 +70,19 @@ struct Material {
 };
 
 /// Throws std::invalid_argument, with one sentence, unless the materials are
-/// valid.  Each needs a law that exists and takes the section; known parameters
-/// and bounds have to be parameters of that law, once each, with values in
-/// their range; axes have to be as many as the law takes, and orthogonal.  Each
-/// element has to be of one material.  An empty list means one isotropic
-/// material.  O(num_elements).
+/// valid.  Each needs a law that exists and takes the section; known
+/// parameters, bounds and priors have to be parameters of that law, once each,
+/// with values in their range; axes have to be as many as the law takes, and
+/// orthogonal.  Each element has to be of one material.  An empty list means
+/// one isotropic material.  O(num_elements).
 void ValidateMaterials(const std::vector<Material>& materials,
                        const Mesh& mesh);
 
-/// Tells whether this is one isotropic material of which nothing is known.
+/// Tells whether any material has a prior.
+[[nodiscard]] bool HasPriors(const std::vector<Material>& materials);
+
+/// Tells whether this is one isotropic material without known parameters or
+/// bounds.
 [[nodiscard]] bool IsOneIsotropicMaterial(
     const std::vector<Material>& materials);
 

@@ -13,10 +13,15 @@ MaterialParameters::MaterialParameters(const std::vector<Material>& materials,
   for (const Material& material : materials.empty() ? one : materials) {
     const Law* const law = FindLaw(material.law, model);
     for (const LawParameter& law_parameter : law->Parameters()) {
-      Parameter parameter = {&law_parameter, laws_.size(), std::nullopt};
+      Parameter parameter = {&law_parameter, laws_.size(), {}, {}};
       for (const KnownParameter& known : material.known) {
         if (known.name == law_parameter.name) {
           parameter.known = known.value;
+        }
+      }
+      for (const Prior& prior : material.priors) {
+        if (prior.name == law_parameter.name) {
+          parameter.prior = prior;
         }
       }
       if (!parameter.known) {

@@ -19,6 +19,7 @@ class MaterialParameters {
     const LawParameter* law_parameter;
     std::size_t material;         ///< Its place among the materials.
     std::optional<double> known;  ///< Its value, if that is given.
+    std::optional<Prior> prior = {};
   };
 
   /// Precondition: valid materials.  An empty list means one isotropic

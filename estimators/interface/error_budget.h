@@ -31,6 +31,8 @@ struct ErrorBudget {
   ParameterErrors kinematics;
   /// By the thickness (Section::thickness_relative_sd); empty without any.
   ParameterErrors section;
+  /// By the priors (ApplyPriors); empty without any.
+  ParameterErrors prior;
 };
 
 }  // namespace elastimate

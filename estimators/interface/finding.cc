@@ -41,6 +41,7 @@ constexpr Row kRows[] = {
     {"large_deformation", FindingCode::kLargeDeformation},
     {"negative_poisson_ratio", FindingCode::kNegativePoissonRatio},
     {"margin_not_given", FindingCode::kMarginNotGiven},
+    {"prior_contradicted", FindingCode::kPriorContradicted},
     {"bound_contradicted", FindingCode::kBoundContradicted},
     {"known_poisson_ratio_contradicted",
      FindingCode::kKnownPoissonRatioContradicted},

@@ -48,6 +48,7 @@ enum class FindingCode {
   kNegativePoissonRatio,
   kMarginNotGiven,
   kBoundContradicted,
+  kPriorContradicted,
   kKnownPoissonRatioContradicted,
   kLargeCorrection,
   kLoadsOutOfBalance,
@@ -88,8 +89,8 @@ enum class Severity {
 };
 
 /// One thing to say about an estimate.  Both sentences are plain English, start
-/// with a small letter, have no full stop, and are not empty; they have 40 words
-/// together at most.
+/// with a small letter, have no full stop, and are not empty; they have 40
+/// words together at most.
 struct Finding {
   FindingCode code;
   Severity severity;

@@ -646,6 +646,17 @@ Finding MarginNotGiven(double relative_error) {
       "lie anywhere");
 }
 
+Finding PriorContradicted(const ParameterEstimate& of_data,
+                          double probability) {
+  return Warning(
+      FindingCode::kPriorContradicted,
+      "the data alone give " + of_data.Label() + " = " +
+          ValueWithError(of_data.value, *of_data.standard_error) +
+          ", which the prior makes improbable (p = " + TwoDigits(probability) +
+          "); the estimate lies between the two",
+      "check the loads, the units and the value and deviation of the prior");
+}
+
 Finding NegativePoissonRatio(const ParameterEstimate& poisson_ratio) {
   return Warning(FindingCode::kNegativePoissonRatio,
                  poisson_ratio.Label() + " is negative (" +

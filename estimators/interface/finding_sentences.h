@@ -141,6 +141,10 @@ Finding LargeDeformation(const DeformationSize& size,
                          bool is_rigid_motion_free);
 /// How much a margin of half a spacing of the points changes E.
 Finding MarginNotGiven(double relative_error);
+
+/// How far a parameter, as the data alone have it, is from its prior, and the
+/// probability of a larger distance by chance.
+Finding PriorContradicted(const ParameterEstimate& of_data, double probability);
 Finding NegativePoissonRatio(const ParameterEstimate& poisson_ratio);
 /// `errors` are of (ln E, nu).
 Finding SupportsEndWithinElements(const ParameterErrors& errors,

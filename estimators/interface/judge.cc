@@ -9,6 +9,7 @@
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/missing_errors.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
+#include "elastimate/estimators/interface/priors.h"
 #include "elastimate/estimators/interface/rules.h"
 #include "elastimate/estimators/interface/statistics.h"
 #include "elastimate/estimators/interface/stiffness_estimate.h"
@@ -85,6 +86,7 @@ void FinishEstimate(std::string_view estimator, const Scene& scene,
     EnterParametersOfElasticity(scene, options, estimate);
     FailWithoutErrors(estimate);
   }
+  ApplyPriors(scene, estimate);
   estimate.stiffnesses = StiffnessesOf(scene, estimate);
   estimate.axes = AxesOf(scene, estimate);
   JudgeParameters(estimate);

@@ -186,13 +186,13 @@ Information InformationOf(const FreeParameters& free,
 
 // Notes what the rows of one isotropic material leave free, where what is known
 // beforehand does not determine it.
-void NoteFreeDirection(const FreeParameters& free,
+void NoteFreeDirection(const Scene& scene, const FreeParameters& free,
                        const Information& information,
                        const Eigen::VectorXd& variables, Evidence& evidence) {
   const Eigen::MatrixXd& free_combinations = information.free_combinations;
   const Eigen::VectorXd parameters = free.ParametersAt(variables);
-  if (free_combinations.cols() != 1 || free.Size() != 2 ||
-      parameters.size() != 2 ||
+  if (HasPriors(scene.materials) || free_combinations.cols() != 1 ||
+      free.Size() != 2 || parameters.size() != 2 ||
       !(information.of_free_combinations.diagonal().cwiseSqrt().array() >
         LargestErrorsOfVariables(free).array())
            .any()) {
@@ -397,9 +397,14 @@ struct Minimum {
   Eigen::MatrixXd sensitivities;
 };
 
-// The errors of variables that the data say nothing of are not known.
-void EnterErrorsOfKnown(const FreeParameters& free, const MinimumErrors& errors,
-                        Estimate& estimate) {
+// The errors of variables that the data say nothing of are not known, unless
+// priors may say something.
+void EnterErrorsOfKnown(const Scene& scene, const FreeParameters& free,
+                        const MinimumErrors& errors, Estimate& estimate) {
+  if (HasPriors(scene.materials)) {
+    EnterCovariance(free, errors.corrected, errors.total, estimate);
+    return;
+  }
   const Eigen::ArrayXd limits = LargestErrorsOfVariables(free).array();
   Eigen::MatrixXd known = errors.total;
   for (Eigen::Index i = 0; i < known.cols(); ++i) {
@@ -453,7 +458,7 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
   const Information information =
       InformationOf(free, errors.variables, sensitivities, variance.variance);
   const Eigen::MatrixXd& inverse = information.inverse;
-  NoteFreeDirection(free, information, errors.variables, evidence);
+  NoteFreeDirection(scene, free, information, errors.variables, evidence);
   NoteBoundExcess(free, minimum.found, rows, sensitivities, inverse, estimate,
                   evidence);
   EnterIdentifiabilityAngle(free, of_rows, estimate);
@@ -487,7 +492,7 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
     evidence.smooth_residual_error =
         std::sqrt(errors.total.diagonal().maxCoeff());
   }
-  EnterErrorsOfKnown(free, errors, estimate);
+  EnterErrorsOfKnown(scene, free, errors, estimate);
   return errors;
 }
 

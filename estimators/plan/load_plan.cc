@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -147,6 +148,19 @@ void EnterLoads(Eigen::MatrixXd known,
   }
 }
 
+// What the priors of the free parameters say of them.
+Eigen::VectorXd InformationOfPriors(const MaterialParameters& parameters,
+                                    const Eigen::VectorXd& units) {
+  Eigen::VectorXd information =
+      Eigen::VectorXd::Zero(Eigen::Index(parameters.Free().size()));
+  for (Eigen::Index i = 0; i < information.size(); ++i) {
+    const Eigen::Index place = parameters.Free()[i];
+    const std::optional<Prior>& prior = parameters.All()[place].prior;
+    information(i) = prior ? std::pow(units(place) / prior->sd, 2) : 0;
+  }
+  return information;
+}
+
 }  // namespace
 
 std::vector<ParameterEstimate> LoadPlan::Free() const {
@@ -199,6 +213,7 @@ LoadPlan PlanLoads(const Scene& scene,
         "observed part of the specimen");
   }
   Eigen::MatrixXd known = cases[0].information;
+  known.diagonal() += InformationOfPriors(of_scene, units);
   for (std::size_t k = 1; k < num_cases; ++k) {
     known += cases[k].information;
   }

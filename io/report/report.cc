@@ -217,7 +217,8 @@ Json BudgetJson(const Scene& scene, const ErrorBudget& budget) {
           {"discretization", of(budget.discretization)},
           {"law", of(budget.law)},
           {"kinematics", of(budget.kinematics)},
-          {"section", of(budget.section)}};
+          {"section", of(budget.section)},
+          {"prior", of(budget.prior)}};
 }
 
 Json CorrectionJson(const Estimate& estimate) {

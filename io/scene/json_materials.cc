@@ -1,5 +1,6 @@
 #include "elastimate/io/scene/json_materials.h"
 
+#include <cmath>
 #include <limits>
 #include <map>
 #include <string>
@@ -81,7 +82,19 @@ std::vector<int> ReadRegions(const JsonValue& value, const MeshFile& mesh) {
             ArrayNames(mesh.element_arrays) + "), " + else_do);
 }
 
-// Reads numbers and bounds of parameters of a law, by their names.
+// Reads {"value", "sd"} or {"value", "relative_sd"}.
+Prior ReadPrior(const std::string& name, const JsonValue& value) {
+  value.CheckKeys({"value", "sd", "relative_sd"});
+  const double mean = value.At("value").Number();
+  if (value.Has("sd") == value.Has("relative_sd")) {
+    value.Fail("must have exactly one of the keys sd, relative_sd");
+  }
+  return {name, mean,
+          value.Has("sd") ? value.At("sd").Number()
+                          : value.At("relative_sd").Number() * std::abs(mean)};
+}
+
+// Reads numbers, bounds and priors of parameters of a law, by their names.
 void ReadWhatIsKnown(const JsonValue& value, const Law& law,
                      Material& material) {
   std::vector<std::string> names;
@@ -94,7 +107,13 @@ void ReadWhatIsKnown(const JsonValue& value, const Law& law,
   if (value.Has("bounds")) {
     value.At("bounds").CheckKeys(names);
   }
+  if (value.Has("prior")) {
+    value.At("prior").CheckKeys(names);
+  }
   for (const std::string& name : names) {
+    if (value.Has("prior") && value.At("prior").Has(name)) {
+      material.priors.push_back(ReadPrior(name, value.At("prior").At(name)));
+    }
     if (value.Has("known") && value.At("known").Has(name)) {
       material.known.push_back({name, value.At("known").At(name).Number()});
     }
@@ -158,7 +177,8 @@ std::vector<Eigen::MatrixXd> ReadAxes(const JsonValue& value,
 }
 
 Material ReadMaterial(const JsonValue& value, const MeshFile& mesh) {
-  value.CheckKeys({"law", "region", "known", "bounds", "axis", "axes"});
+  value.CheckKeys(
+      {"law", "region", "known", "bounds", "prior", "axis", "axes"});
   Material material;
   if (value.Has("law")) {
     material.law = value.At("law").String();
