@@ -67,8 +67,11 @@ void GiveKnownPoissonRatio(Scene& scene, EstimatorOptions& options) {
   for (Material& material : scene.materials) {
     if (material.law != IsotropicLaw::kName) {
       throw std::invalid_argument(
-          AsGiven("nu") + " is for isotropic materials, and the scene has the law " + material.law +
-          "; give its parameters as \"known\" in \"materials\" of a scene.json");
+          AsGiven("nu") +
+          " is for isotropic materials, and the scene has the law " +
+          material.law +
+          "; give its parameters as \"known\" in \"materials\" of a "
+          "scene.json");
     }
     const auto is_of_nu = [&](const auto& given) {
       return given.name == known.name;
@@ -154,10 +157,10 @@ void WriteReport(const Estimate& estimate, const Scene& scene,
 void CheckSeries(const FrameSeries& series) {
   for (const std::string flag : {"out", "order"}) {
     if (IsGiven(flag) && (flag != "order" || FLAGS_order != 1)) {
-      throw std::invalid_argument(
-          AsGiven(flag) +
-          " cannot be used with a scene of several frames; leave it out, or make "
-          "a scene of one frame");
+      throw std::invalid_argument(AsGiven(flag) +
+                                  " cannot be used with a scene of several "
+                                  "frames; leave it out, or make "
+                                  "a scene of one frame");
     }
   }
   for (const std::string* output : {&FLAGS_series, &FLAGS_json}) {
@@ -207,16 +210,16 @@ void CheckMerging(const SceneReading& reading) {
     throw std::invalid_argument(
         AsGiven("regions") +
         " cannot be used with a scene of several frames; leave it out, or make "
-          "a scene of one frame");
+        "a scene of one frame");
   }
   if (std::any_of(reading.scene.materials.begin(),
                   reading.scene.materials.end(), [](const Material& material) {
                     return material.law != IsotropicLaw::kName;
                   })) {
-    throw std::invalid_argument(
-        AsGiven("regions") +
-        " compares isotropic materials only, and the scene has others; leave it "
-        "out");
+    throw std::invalid_argument(AsGiven("regions") +
+                                " compares isotropic materials only, and the "
+                                "scene has others; leave it "
+                                "out");
   }
 }
 
