@@ -88,8 +88,8 @@ enum class Severity {
 };
 
 /// One thing to say about an estimate.  Both sentences are plain English, start
-/// with a small letter, have no full stop, and are not empty; they have 40 words
-/// together at most.
+/// with a small letter, have no full stop, and are not empty; they have 40
+/// words together at most.
 struct Finding {
   FindingCode code;
   Severity severity;
