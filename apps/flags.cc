@@ -100,8 +100,8 @@ Command TheEstimateCommand() {
           "axis of the material, X,Y,Z; or two axes, 6 numbers; or free to "
           "find it"},
          {"regions",
-          "one: the same material everywhere; each: one for each region; "
-          "merge: join alike ones"},
+          "one: the same everywhere; each: one per region; merge: join alike "
+          "ones"},
          {"nu", "known Poisson's ratio, above -1 and below 0.5"},
          {"nu_min"},
          {"nu_max"},

@@ -556,8 +556,8 @@ SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
                               reading, file_order);
     if (reading.frames && paths.size() > 1) {
       ThrowInputError(path,
-                      "a scene of frames stands alone; leave the other files "
-                      "out, or the key \"frames\"");
+                      "a scene of several frames cannot be combined with other "
+                      "files; leave these out, or the key \"frames\"");
     }
     std::vector<LoadCase> load_cases = std::move(scene.load_cases);
     if (&path == &paths.front()) {

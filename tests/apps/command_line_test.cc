@@ -1272,7 +1272,8 @@ TEST_F(ElementKinds, RefuseWrongFlags) {
          "c.vtu: the mesh is of tetrahedra, which are solid, but a thickness "
          "is given; leave it out");
   const std::string rectangle = "generate rectangle --out=a.vtu ";
-  Refuse(rectangle + "--elements=tet4", "--elements=tet4; a rectangle is made of");
+  Refuse(rectangle + "--elements=tet4",
+         "--elements=tet4; a rectangle is made of");
   Refuse(rectangle + "--elements=tri",
          "--elements=tri; it must be tet4, hex8,");
   Refuse(rectangle + "--cells=1,2,3", "it needs two integers below 2^31, as");
