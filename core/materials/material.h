@@ -59,12 +59,12 @@ struct Material {
   std::vector<KnownParameter> known;
   /// The bounds of parameters that are not known.
   std::vector<BoundsOfParameter> bounds;
-  /// The priors of parameters that are not known.
-  std::vector<Prior> priors = {};
   /// The directions, of any length, that fix its frame (MaterialFrames), as
   /// many as its law has axes.  Each is dimension x 1, or dimension x
   /// num_elements, where only the columns of its own elements count.
   std::vector<Eigen::MatrixXd> axes = {};
+  /// The priors of parameters that are not known.
+  std::vector<Prior> priors = {};
 
   bool operator==(const Material& other) const;
 };

@@ -205,11 +205,10 @@ void ReadMeasuredFrame(const std::filesystem::path& path,
   }
   if (2 * num_found < nodes.cols()) {
     ThrowInputError(path,
-                    "it has " + std::to_string(num_found) + " of the " +
+                    "only " + std::to_string(num_found) + " of the " +
                         std::to_string(nodes.cols()) +
-                        " points of the mesh, which are known by their "
-                        "positions before the load; give the frames of one "
-                        "reference image");
+                        " points of the mesh have the same position in this "
+                        "frame; give frames that share one reference image");
   }
 }
 

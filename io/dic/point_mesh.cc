@@ -418,8 +418,7 @@ PointMesh MeshOfPoints(const Eigen::Matrix2Xd& positions,
                        std::optional<double> max_edge) {
   if (positions.cols() < 3) {
     throw std::invalid_argument(
-        "there are fewer than three points, of which no mesh can be made; "
-        "give more");
+        "there are fewer than three points, too few for a mesh; give more");
   }
   const Elements quadrilaterals = QuadrilateralsOf(positions);
   if (!quadrilaterals.empty()) {

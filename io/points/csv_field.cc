@@ -45,8 +45,8 @@ void CheckUnits(const CsvTable& table,
       ThrowInputError(table.path,
                       "the column '" +
                           Printable(table.titles[columns[i]].text) +
-                          "' is hardly in the unit of the mesh; give all in "
-                          "that, and titles without a unit");
+                          "' is in another unit than the mesh; convert it, and "
+                          "leave the unit out of the title");
     }
   }
 }

@@ -109,9 +109,9 @@ void CheckUnit(const std::filesystem::path& path, const std::string& own,
                std::string& unit) {
   if (!own.empty() && !unit.empty() && own != unit) {
     ThrowInputError(
-        path, "positions are in " + own +
-                  ", but those of other files of the scene in " + unit +
-                  "; give all in that of the mesh, or name that as \"unit\"");
+        path, "the positions are in " + own +
+                  ", but those of another file of the scene are in " + unit +
+                  "; give \"unit\", the unit of the mesh");
   }
   unit = own.empty() ? unit : own;
 }
@@ -129,9 +129,8 @@ void CheckSpan(const std::filesystem::path& path, const PointsFile& file,
     ThrowInputError(
         path, "its points span " + LengthText(span) +
                   (file.unit.empty() ? "" : " " + file.unit) +
-                  " of a mesh that spans " + LengthText(size) +
-                  "; if both are as they should be, give the \"unit\" of the "
-                  "mesh beside \"points\"");
+                  ", but the mesh spans " + LengthText(size) +
+                  "; give \"unit\", the unit of the mesh, beside \"points\"");
   }
 }
 
@@ -179,8 +178,8 @@ PointDisplacements ReadMeasuredPoints(const JsonValue& displacement,
     lines.push_back({path, file.lines});
     if (all.noise_sd.cols() != 0 && all.noise_sd.cols() != all.points.Size()) {
       ThrowInputError(path,
-                      "some files of the load case have columns of standard "
-                      "deviations and some have none; give them in all");
+                      "only some files of the load case have columns of "
+                      "standard deviations; give them in all files or in none");
     }
   }
   if (all.noise_sd.cols() == 0) {

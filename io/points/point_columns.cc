@@ -210,7 +210,7 @@ void AppendColumns(const CsvTable& table, const std::vector<Matches>& meanings,
   }
   if (meanings.size() > 1) {
     ThrowInputError(table.path,
-                    "its columns may be understood in several ways ('" +
+                    "its columns can be read in several ways ('" +
                         Printable(table.titles[meanings[0][0][0]].text) +
                         "' or '" +
                         Printable(table.titles[meanings[1][0][0]].text) +

@@ -105,9 +105,9 @@ void CheckRowsDiffer(const std::filesystem::path& path,
       [&](Eigen::Index a, Eigen::Index b) { return !is_less(a, b); });
   if (twin != order.end()) {
     ThrowInputError(path, "line " + std::to_string(file.lines[twin[1]]) +
-                              " has the same point and displacement as line " +
+                              " repeats the point and displacement of line " +
                               std::to_string(file.lines[twin[0]]) +
-                              "; leave one out");
+                              "; leave one of them out");
   }
 }
 
@@ -164,7 +164,8 @@ PointsFile ReadPointsFile(const std::filesystem::path& path, int dimension,
   const std::vector<Eigen::Index> measured = MeasuredPoints(file);
   if (measured.empty()) {
     ThrowInputError(path,
-                    "no row has a displacement; give those of the points");
+                    "no row has a displacement; check the columns of "
+                    "displacements");
   }
   file.positions = file.positions(Eigen::all, measured).eval();
   file.displacement = file.displacement(Eigen::all, measured).eval();

@@ -117,9 +117,11 @@ LoadCase ReadLoadCase(const JsonValue& value, const LoadContext& of_scene,
     load_case.displacement =
         *FindArray(context.mesh.node_arrays, "displacement");
     const ComponentMask measured = !load_case.displacement.array().isNaN();
-    load_case.observed = load_case.observed.size() == 0
-                             ? measured
-                             : load_case.observed && measured;
+    if (load_case.observed.size() != 0) {
+      load_case.observed = load_case.observed && measured;
+    } else {
+      load_case.observed = measured;
+    }
     ClearUnobserved(load_case);
     lines.push_back({context.mesh.path, context.mesh.node_lines});
   } else if (value.Has("displacement") ||

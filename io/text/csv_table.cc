@@ -200,7 +200,7 @@ class TableReader {
     if (has_titles_ ? table_.rows.empty() : likely_.empty()) {
       ThrowInputError(
           table_.path,
-          "the file has no row of numbers below a header; add them");
+          "the file has no row of numbers below a line of titles; add both");
     }
     return std::move(table_);
   }
@@ -281,8 +281,8 @@ class TableReader {
     ThrowInputError(
         table_.path,
         "line " + std::to_string(line) + " has " + std::to_string(num_cells) +
-            " columns where " + std::to_string(table_.titles.Size()) +
-            " are due; correct it" +
+            " columns, but the titles have " +
+            std::to_string(table_.titles.Size()) + "; correct it" +
             (table_.delimiter == ',' && num_cells > table_.titles.Size()
                  ? ", and separate the columns by semicolons where the comma "
                    "is the decimal mark"
