@@ -1,6 +1,7 @@
 #include "elastimate/core/equilibrium/equilibrium.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "elastimate/core/equilibrium/assembled_stiffness.h"
 #include "elastimate/core/equilibrium/nested_stiffness.h"
@@ -270,6 +271,17 @@ const std::string& Equilibrium::Notice() const {
     }
   }
   return stiffness_[0]->Notice();
+}
+
+Eigen::MatrixXd DisplacementsAt(const Scene& scene,
+                                const Eigen::VectorXd& parameters,
+                                SolverKind solver) {
+  Equilibrium model(scene, solver);
+  if (!model.Solve(model.Forces().Parameters().Moduli(parameters))) {
+    throw std::runtime_error(
+        "the stiffness matrix is singular to working precision");
+  }
+  return model.Displacement();
 }
 
 }  // namespace elastimate

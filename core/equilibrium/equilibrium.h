@@ -21,8 +21,13 @@ class SupportedStiffness;
 ///   K(theta) u = f on the free degrees of freedom, u given on the held ones,
 ///
 /// in each load case, and its sensitivities du / d theta_k = -K^-1 K_k u.  Load
-/// cases that hold the same degrees of freedom share a factor.  ForwardModel is
-/// faster for one isotropic material on supports that all load cases share.
+/// cases that hold the same degrees of freedom share a factor.
+///
+///   Equilibrium model(scene, SolverKind::kAutomatic);
+///   const MaterialParameters& chart = model.Forces().Parameters();
+///   if (model.Solve(chart.Moduli(parameters))) {
+///     Eigen::MatrixXd u = model.Displacement();
+///   }
 class Equilibrium {
  public:
   /// Assembles the pattern and analyses it.  Refers to `scene`, which has to
@@ -157,6 +162,14 @@ class Equilibrium {
   bool has_unknown_motion_;
   int element_passes_ = 0;
 };
+
+/// Returns Equilibrium::Displacement of a scene at these parameters of its
+/// materials, in the order of MaterialParameters.  Throws std::invalid_argument
+/// as Equilibrium does, and std::runtime_error when the stiffness is singular
+/// to working precision.
+[[nodiscard]] Eigen::MatrixXd DisplacementsAt(
+    const Scene& scene, const Eigen::VectorXd& parameters,
+    SolverKind solver = SolverKind::kAutomatic);
 
 }  // namespace elastimate
 

@@ -13,9 +13,9 @@
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/estimators/material_fit/reduced_fe.h"
+#include "elastimate/estimators/plan/expected_information.h"
 #include "elastimate/estimators/reduced_model/krylov_bound.h"
 #include "elastimate/estimators/registry.h"
-#include "elastimate/estimators/statistics/cramer_rao.h"
 #include "tests/scenes.h"
 
 namespace elastimate {
@@ -145,7 +145,7 @@ TEST_P(KindStatistics, ReachTheCramerRaoBound) {
   Scene noisy = exact;
   const double noise_sd = AddNoise(0.01, 1, noisy);
   const Eigen::Matrix2d bound =
-      CramerRaoBound(exact, {kYoungsModulus, kPoissonRatio},
+      CramerRaoBound(exact, Eigen::Vector2d(kYoungsModulus, kPoissonRatio),
                      Eigen::VectorXd::Constant(1, noise_sd));
   const ReducedFe reduced_fe;
   PreparedEstimator prepared = reduced_fe.Prepare(exact, {});
