@@ -82,7 +82,7 @@ TEST_P(OnEachKind, EstimatesScaleWithForceAndThickness) {
 
 INSTANTIATE_TEST_SUITE_P(All, OnEachKind,
                          ::testing::ValuesIn(AllKindsOfSections()),
-                         [](const auto& info) { return NameOf(info.param); });
+                         testing::KindTestName);
 
 // Certificates of the reduced model rest on this ratio.  It is tested for a
 // general strain, for a change of volume and for a shear.
@@ -171,7 +171,7 @@ TEST_P(KindStatistics, ReachTheCramerRaoBound) {
 
 INSTANTIATE_TEST_SUITE_P(All, FitsOfEachKind,
                          ::testing::ValuesIn(AllKindsOfSections()),
-                         [](const auto& info) { return NameOf(info.param); });
+                         testing::KindTestName);
 
 INSTANTIATE_TEST_SUITE_P(
     Planar, KindStatistics,
@@ -179,7 +179,7 @@ INSTANTIATE_TEST_SUITE_P(
         KindOfSection{ElementKind::kHex8, SectionModel::kSolid},
         KindOfSection{ElementKind::kQuad4, SectionModel::kPlaneStress},
         KindOfSection{ElementKind::kTri6, SectionModel::kPlaneStrain}),
-    [](const auto& info) { return NameOf(info.param); });
+    testing::KindTestName);
 
 }  // namespace
 }  // namespace elastimate

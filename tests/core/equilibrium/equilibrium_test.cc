@@ -246,9 +246,7 @@ TEST(Equilibrium, SaysWhyTheSupportsDoNotHold) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, EquilibriumOfKinds,
                          ::testing::ValuesIn(testing::AllKindsOfSections()),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 
 }  // namespace
 }  // namespace elastimate

@@ -253,9 +253,7 @@ TEST_P(ElementKinds, AreSolvedByMultigridToo) {
 
 INSTANTIATE_TEST_SUITE_P(All, ElementKinds,
                          ::testing::ValuesIn(AllKindsOfSections()),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 
 }  // namespace
 }  // namespace elastimate

@@ -82,9 +82,7 @@ TEST_P(PointsOfEachKind, AreRefusedWhereNodesAreNeeded) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, PointsOfEachKind,
                          ::testing::ValuesIn(testing::AllKindsOfSections()),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 
 class PointsOfABlock : public ::testing::Test {
  protected:
