@@ -30,7 +30,6 @@
 #include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/finer_scene.h"
-#include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/solvers/cholesky.h"
 #include "elastimate/estimators/material_fit/reduced_fe.h"

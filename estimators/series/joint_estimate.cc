@@ -72,7 +72,7 @@ Eigen::ArrayXd NoiseShare(const Estimate& estimate, const Eigen::VectorXi& free,
                           const Eigen::VectorXd& by_loads,
                           const Eigen::MatrixXd& covariance) {
   const ParameterErrors& noise = estimate.error_budget.noise;
-  const Eigen::ArrayXd unknown = Eigen::ArrayXd::Zero(free.size());
+  Eigen::ArrayXd unknown = Eigen::ArrayXd::Zero(free.size());
   if (noise.size() != Eigen::Index(estimate.parameters.size())) {
     return unknown;
   }
