@@ -24,14 +24,12 @@
 
 #include "benchmarks/random_matrix.h"
 #include "elastimate/core/equilibrium/equilibrium.h"
-#include "elastimate/core/equilibrium/forward_model.h"
 #include "elastimate/core/mechanics/stiffness_assembly.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/mechanics/stiffness_traces.h"
 #include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/finer_scene.h"
-#include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/solvers/cholesky.h"
 #include "elastimate/estimators/material_fit/reduced_fe.h"
@@ -239,11 +237,11 @@ void RefinedSolve(benchmark::State& state) {
 // the displacement.
 Scene MeasuredCube(std::int64_t cells, double noise) {
   Scene scene = Cube(cells);
-  ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene));
-  model.SetPoissonRatio(0.3);
-  const Eigen::VectorXd displacement = model.Displacement(1e4);
+  const Eigen::VectorXd displacement =
+      DisplacementsAt(scene, Eigen::Vector2d(1e4, 0.3));
+  const DegreesOfFreedom dofs(scene.supports);
   const Eigen::VectorXd random =
-      model.Dofs().Extend(RandomMatrix(model.Dofs().NumFree(), 1, kSeed));
+      dofs.Extend(RandomMatrix(dofs.NumFree(), 1, kSeed));
   scene.load_cases[0].displacement =
       (displacement + noise * displacement.norm() / random.norm() * random)
           .reshaped(3, scene.mesh.NumNodes());

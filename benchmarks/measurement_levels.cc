@@ -58,8 +58,7 @@ World MakeWorld(PlateEnds ends, int cells) {
   World world = {PlateScene(options), 0};
   Scene& scene = world.scene;
   Equilibrium model(scene, SolverKind::kCholesky);
-  const Eigen::Vector2d truth(kMeasuredSteel.youngs_modulus,
-                              kMeasuredSteel.poisson_ratio);
+  const Eigen::Vector2d truth = kMeasuredSteel.Parameters();
   if (!model.Solve(model.Forces().Parameters().Moduli(truth))) {
     throw std::runtime_error("the plate of the study has no solution");
   }

@@ -14,8 +14,8 @@
 #include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/estimators/force_balance/force_residual.h"
 #include "elastimate/estimators/material_fit/reduced_fe.h"
+#include "elastimate/estimators/plan/expected_information.h"
 #include "elastimate/estimators/registry.h"
-#include "elastimate/estimators/statistics/cramer_rao.h"
 #include "elastimate/io/examples/example_scenes.h"
 
 namespace elastimate {
@@ -54,7 +54,7 @@ class Comparison {
         options_(options),
         paper_method_(MakeEstimator(paper_method)),
         prepared_(reduced_fe_.Prepare(exact, options)),
-        bound_(CramerRaoBound(exact, truth, NoiseSd(exact, 1))) {
+        bound_(CramerRaoBound(exact, truth.Parameters(), NoiseSd(exact, 1))) {
     if (options.poisson_ratio.upper == truth.poisson_ratio) {
       // Where its bound holds nu at the truth, the bound of E is that for a
       // known nu.

@@ -16,8 +16,8 @@
 #include "benchmarks/trial.h"
 #include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/estimators/plan/expected_information.h"
 #include "elastimate/estimators/registry.h"
-#include "elastimate/estimators/statistics/cramer_rao.h"
 #include "elastimate/io/examples/example_scenes.h"
 
 namespace elastimate {
@@ -120,10 +120,10 @@ std::array<World, 2> Worlds(const Specimen& specimen) {
   const Eigen::VectorXd same_noise = NoiseSd(same, 1);
   const Eigen::VectorXd finer_noise = NoiseSd(finer, 1);
   return {World{"same mesh", same,
-                CramerRaoBound(same, specimen.truth, same_noise)},
+                CramerRaoBound(same, specimen.truth.Parameters(), same_noise)},
           World{"finer world", finer,
-                CramerRaoBound(QuadraticScene(specimen.scene), specimen.truth,
-                               finer_noise)}};
+                CramerRaoBound(QuadraticScene(specimen.scene),
+                               specimen.truth.Parameters(), finer_noise)}};
 }
 
 // Returns all estimators, with all choices that each of them has.

@@ -12,8 +12,8 @@
 #include "benchmarks/quantile.h"
 #include "benchmarks/stability_factors.h"
 #include "benchmarks/trial.h"
+#include "elastimate/estimators/plan/expected_information.h"
 #include "elastimate/estimators/registry.h"
-#include "elastimate/estimators/statistics/cramer_rao.h"
 
 namespace elastimate {
 namespace {
@@ -73,8 +73,11 @@ struct Judged {
 // is not held or singular.
 Eigen::Matrix2d BoundOrNothing(const Scene& scene,
                                const StabilityLevel& level) {
+  if (!(level.noise_sd > 0)) {
+    return Eigen::Matrix2d::Constant(Estimate::kUnknown);
+  }
   try {
-    return CramerRaoBound(scene, level.truth,
+    return CramerRaoBound(scene, level.truth.Parameters(),
                           Eigen::VectorXd::Constant(1, level.noise_sd));
   } catch (const std::exception&) {
     return Eigen::Matrix2d::Constant(Estimate::kUnknown);

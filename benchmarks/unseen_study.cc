@@ -17,14 +17,13 @@
 #include "benchmarks/trial.h"
 #include "benchmarks/unseen_shapes.h"
 #include "benchmarks/unseen_summary.h"
-#include "elastimate/core/equilibrium/forward_model.h"
-#include "elastimate/core/equilibrium/hierarchical_error.h"
+#include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/equilibrium/simulated_measurement.h"
-#include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/simplicial_scene.h"
+#include "elastimate/estimators/plan/expected_information.h"
 #include "elastimate/estimators/registry.h"
-#include "elastimate/estimators/statistics/cramer_rao.h"
 
 namespace elastimate {
 namespace {
@@ -36,6 +35,8 @@ constexpr int kReplicates = 2;      // Of each size of noise.
 constexpr int kMaxReplicates = 4;   // That have seeds.
 constexpr int kMaxExperiments = 2;  // On one shape.
 constexpr double kOutliers = 0.03;  // Of the nodes, 20 to 100 sd of the noise.
+// What the displacements of a finer world may be wrong by, in the energy norm.
+constexpr double kTolerance = 1e-4;
 
 // Trilinear hexahedra lock at larger nu.  At 0.45 hexahedra of this size are
 // 0.5 to 1 % too stiff; up to this nu they are less than half of that.
@@ -154,21 +155,16 @@ bool IsDone(const Setting& setting) {
 // Measures all experiments as quadratic elements of half the size would move.
 // There are too many of these to be factorised for each measurement.
 void MeasureByHalfTheSize(const IsotropicElasticity& truth, Scene& scene) {
-  ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene));
-  HierarchicalError error(scene);
-  std::optional<Eigen::MatrixXd> change;
-  if (model.SetPoissonRatio(truth.poisson_ratio)) {
-    change = error.Find(truth.poisson_ratio, model.Responses(), model.Solver());
-  }
-  if (!change) {
+  const Scene finer = FinerScene(scene);
+  Equilibrium model({&scene, &finer}, SolverKind::kAutomatic, kTolerance);
+  if (!model.Solve(model.Forces().Parameters().Moduli(truth.Parameters()))) {
     throw std::runtime_error("the finer world has no displacements");
   }
-  const Eigen::MatrixXd displacement =
-      model.Displacement(truth.youngs_modulus) +
-      truth.ComplianceScale(scene.mesh.section.model) * *change;
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     scene.load_cases[k].displacement =
-        displacement.col(Eigen::Index(k))
+        model.Displacement()
+            .col(Eigen::Index(k))
+            .head(scene.mesh.NumDofs())
             .reshaped(scene.mesh.Dimension(), scene.mesh.NumNodes());
   }
 }
@@ -205,7 +201,7 @@ Eigen::Matrix2d Bound(const Scene& exact, int world,
                       const IsotropicElasticity& truth) {
   const Eigen::VectorXd noise_sd = NoiseSd(exact, 1);
   return CramerRaoBound(world == kSameMesh ? exact : QuadraticScene(exact),
-                        truth, noise_sd);
+                        truth.Parameters(), noise_sd);
 }
 
 Scene Noisy(const Scene& exact, const Setting& setting) {

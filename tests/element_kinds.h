@@ -1,6 +1,8 @@
 #ifndef ELASTIMATE_TESTS_ELEMENT_KINDS_H_
 #define ELASTIMATE_TESTS_ELEMENT_KINDS_H_
 
+#include <gtest/gtest.h>
+
 #include <Eigen/Core>
 #include <string>
 #include <vector>
@@ -24,6 +26,12 @@ std::vector<KindOfSection> KindsOf(int dimension, int order);
 
 /// "quad4_plane_stress".
 std::string NameOf(const KindOfSection& parameter);
+
+/// Names the instances of a test of kinds.
+inline std::string KindTestName(
+    const ::testing::TestParamInfo<KindOfSection>& info) {
+  return NameOf(info.param);
+}
 
 /// A distorted block, or a rectangle of thickness 0.7, of `cells` elements (or
 /// pairs of triangles, or sixes of tetrahedra) along each axis.  Every other

@@ -1,6 +1,7 @@
 #include "elastimate/core/equilibrium/equilibrium.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "elastimate/core/equilibrium/assembled_stiffness.h"
 #include "elastimate/core/equilibrium/nested_stiffness.h"
@@ -65,18 +66,18 @@ Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
 void Equilibrium::AddStiffness(const std::vector<const Scene*>& spaces,
                                Eigen::Index k, SolverKind solver,
                                double tolerance) {
-  const Mesh& coarsest = spaces.front()->mesh;
+  std::vector<const Mesh*> meshes;
   std::vector<const Supports*> supports;
-  supports.reserve(spaces.size());
   for (const Scene* const space : spaces) {
+    meshes.push_back(&space->mesh);
     supports.push_back(&SupportsOf(*space, k));
   }
   if (spaces.size() > 1) {
-    stiffness_.push_back(std::make_unique<RefinedStiffness>(coarsest, supports,
+    stiffness_.push_back(std::make_unique<RefinedStiffness>(meshes, supports,
                                                             solver, tolerance));
   } else {
     stiffness_.push_back(
-        std::make_unique<AssembledStiffness>(coarsest, *supports[0], solver));
+        std::make_unique<AssembledStiffness>(*meshes[0], *supports[0], solver));
   }
 }
 
@@ -102,10 +103,6 @@ Eigen::MatrixXd Equilibrium::ByStiffness(const Eigen::MatrixXd& columns,
 Equilibrium::~Equilibrium() = default;
 Equilibrium::Equilibrium(Equilibrium&&) noexcept = default;
 Equilibrium& Equilibrium::operator=(Equilibrium&&) noexcept = default;
-
-bool Equilibrium::IsRefinable(const std::vector<const Scene*>& spaces) {
-  return AreNested(spaces);
-}
 
 const InternalForces& Equilibrium::Forces() const {
   return values_->Forces(values_->NumSpaces() - 1);
@@ -270,6 +267,17 @@ const std::string& Equilibrium::Notice() const {
     }
   }
   return stiffness_[0]->Notice();
+}
+
+Eigen::MatrixXd DisplacementsAt(const Scene& scene,
+                                const Eigen::VectorXd& parameters,
+                                SolverKind solver) {
+  Equilibrium model(scene, solver);
+  if (!model.Solve(model.Forces().Parameters().Moduli(parameters))) {
+    throw std::runtime_error(
+        "the stiffness matrix is singular to working precision");
+  }
+  return model.Displacement();
 }
 
 }  // namespace elastimate

@@ -21,8 +21,13 @@ class SupportedStiffness;
 ///   K(theta) u = f on the free degrees of freedom, u given on the held ones,
 ///
 /// in each load case, and its sensitivities du / d theta_k = -K^-1 K_k u.  Load
-/// cases that hold the same degrees of freedom share a factor.  ForwardModel is
-/// faster for one isotropic material on supports that all load cases share.
+/// cases that hold the same degrees of freedom share a factor.
+///
+///   Equilibrium model(scene, SolverKind::kAutomatic);
+///   const MaterialParameters& chart = model.Forces().Parameters();
+///   if (model.Solve(chart.Moduli(parameters))) {
+///     Eigen::MatrixXd u = model.Displacement();
+///   }
 class Equilibrium {
  public:
   /// Assembles the pattern and analyses it.  Refers to `scene`, which has to
@@ -33,9 +38,10 @@ class Equilibrium {
 
   /// Solves in the last of some spaces of one specimen, which are given from
   /// coarse to fine; the scenes have to stay as they are.  Where the spaces
-  /// contain each other (IsRefinable), only the stiffness of the first one is
+  /// contain each other (AreNested), only the stiffness of the first one is
   /// factorised.  Iterations (RefinedStiffness) then solve the systems of the
   /// last one, and leave a relative error of `tolerance` in the energy norm.
+  /// Once they do not converge, the stiffness of the last one is factorised.
   /// They begin with the solutions for the last moduli, so a Solve whose moduli
   /// change displacements by less than the tolerance leaves them as they are
   /// but for a factor.  Where the spaces do not contain each other, the
@@ -46,13 +52,6 @@ class Equilibrium {
   ~Equilibrium();
   Equilibrium(Equilibrium&&) noexcept;
   Equilibrium& operator=(Equilibrium&&) noexcept;
-
-  /// Tells whether the spaces contain each other: there are two or more, all
-  /// elements are simplices with straight edges, those of the finer scenes are
-  /// quadratic, and the first nodes of each scene are those of the one before,
-  /// as FinerScene has them.  O(num_nodes).
-  [[nodiscard]] static bool IsRefinable(
-      const std::vector<const Scene*>& spaces);
 
   /// Solves for u at these moduli: an element pass, for each set of held
   /// degrees of freedom a factorisation, and a solve for each load case (one
@@ -69,8 +68,7 @@ class Equilibrium {
 
   /// du / dp for directions d theta / d p (num_moduli x n): one num_dofs x
   /// n matrix for each load case, side by side.  A pass and n solves for each
-  /// load case.  NaN where iterations do not converge, as in all that is solved
-  /// for below.  Precondition: Solve returned true.
+  /// load case.  Precondition: Solve returned true.
   Eigen::MatrixXd Sensitivities(const Eigen::MatrixXd& directions);
 
   /// Returns K^-1 f on the free rows, zero in the held rows, for n columns of
@@ -157,6 +155,14 @@ class Equilibrium {
   bool has_unknown_motion_;
   int element_passes_ = 0;
 };
+
+/// Returns Equilibrium::Displacement of a scene at these parameters of its
+/// materials, in the order of MaterialParameters.  Throws std::invalid_argument
+/// as Equilibrium does, and std::runtime_error when the stiffness is singular
+/// to working precision.
+[[nodiscard]] Eigen::MatrixXd DisplacementsAt(
+    const Scene& scene, const Eigen::VectorXd& parameters,
+    SolverKind solver = SolverKind::kAutomatic);
 
 }  // namespace elastimate
 

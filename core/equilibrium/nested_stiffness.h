@@ -44,7 +44,11 @@ class NestedStiffness {
     return nodes_after_[space];
   }
 
-  /// Returns InternalForces::Blocks of the coarsest space.
+  /// Returns InternalForces::Blocks of a space, whose graph is given.
+  Eigen::MatrixXd Blocks(std::size_t space, const NodeGraph& graph) const {
+    return forces_[space].Blocks(moduli_, graph);
+  }
+  /// Returns those of the coarsest space.
   const Eigen::MatrixXd& CoarsestBlocks() const { return blocks_; }
 
   /// Returns K V in a space.  One element pass.

@@ -17,11 +17,14 @@ constexpr double kCoarseTolerance = 1e-2;
 
 }  // namespace
 
-RefinedStiffness::RefinedStiffness(const Mesh& coarsest,
+RefinedStiffness::RefinedStiffness(const std::vector<const Mesh*>& meshes,
                                    const std::vector<const Supports*>& supports,
                                    SolverKind solver, double tolerance)
     : SupportedStiffness(*supports.back()),
-      coarsest_(coarsest, *supports.front(), solver),
+      coarsest_(*meshes.front(), *supports.front(), solver),
+      make_finest_([mesh = meshes.back(), held = supports.back(), solver] {
+        return std::make_unique<StiffnessSolver>(*mesh, *held, solver);
+      }),
       tolerance_(tolerance) {
   for (const Supports* const of_space : supports) {
     spaces_.push_back(
@@ -32,6 +35,9 @@ RefinedStiffness::RefinedStiffness(const Mesh& coarsest,
 bool RefinedStiffness::Factorize(const NestedStiffness& stiffness,
                                  bool /*with_held_rows*/) {
   stiffness_ = &stiffness;
+  if (finest_) {
+    return FactorizeFinest();
+  }
   if (!coarsest_.FactorizeBlocks(stiffness.CoarsestBlocks())) {
     return false;
   }
@@ -45,8 +51,17 @@ bool RefinedStiffness::Factorize(const NestedStiffness& stiffness,
   return true;
 }
 
+bool RefinedStiffness::FactorizeFinest() {
+  return finest_->FactorizeBlocks(
+      stiffness_->Blocks(spaces_.size() - 1, finest_->Graph()));
+}
+
 Eigen::MatrixXd RefinedStiffness::Solve(const Eigen::MatrixXd& all,
                                         const Eigen::MatrixXd& start) {
+  work_.solves += static_cast<int>(all.cols());
+  if (finest_) {
+    return finest_->Solve(all);
+  }
   const std::size_t finest = spaces_.size() - 1;
   const Eigen::VectorXd& is_free = spaces_[finest].is_free;
   ConjugateGradientOptions options;
@@ -61,11 +76,13 @@ Eigen::MatrixXd RefinedStiffness::Solve(const Eigen::MatrixXd& all,
       is_free.asDiagonal() * all,
       start.size() > 0 ? Eigen::MatrixXd(is_free.asDiagonal() * start) : start,
       options);
-  work_.solves += static_cast<int>(all.cols());
   work_.iterations += result.iterations;
   if (!result.has_converged) {
-    return Eigen::MatrixXd::Constant(all.rows(), all.cols(),
-                                     std::numeric_limits<double>::quiet_NaN());
+    finest_ = make_finest_();
+    return FactorizeFinest() ? finest_->Solve(all)
+                             : Eigen::MatrixXd::Constant(
+                                   all.rows(), all.cols(),
+                                   std::numeric_limits<double>::quiet_NaN());
   }
   smallest_eigenvalue_ = result.smallest_eigenvalue;
   return std::move(result.solution);
@@ -129,10 +146,13 @@ Eigen::MatrixXd RefinedStiffness::HeldForcesTransposed(
 }
 
 Work RefinedStiffness::WorkDone() const {
-  Work of_coarsest = coarsest_.WorkDone();
-  of_coarsest.element_passes = 0;
-  of_coarsest.solves = 0;
-  return of_coarsest + work_;
+  Work of_solvers = coarsest_.WorkDone();
+  of_solvers.element_passes = 0;
+  if (finest_) {
+    of_solvers = of_solvers + finest_->WorkDone();
+  }
+  of_solvers.solves = 0;
+  return of_solvers + work_;
 }
 
 }  // namespace elastimate

@@ -2,6 +2,8 @@
 #define ELASTIMATE_CORE_EQUILIBRIUM_REFINED_STIFFNESS_H_
 
 #include <Eigen/Core>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,7 +12,7 @@
 namespace elastimate {
 
 /// The stiffness, on some supports, of the finest of some spaces that contain
-/// each other.  It is never assembled: conjugate gradients solve with it, and
+/// each other.  It is not assembled: conjugate gradients solve with it, and
 /// one V(1,1)-cycle over the spaces preconditions them.  On each finer space,
 /// two steps of Chebyshev's iteration with the diagonal blocks of the nodes
 /// [Adams, Brezina, Hu & Tuminaro, J. Comput. Phys. 188 (2003) 593] come before
@@ -20,16 +22,17 @@ namespace elastimate {
 /// The iterations do not grow with the mesh.  On blocks and bars an error of
 /// 1e-8 (1e-2) takes 12 to 20 (4) of them at nu = 0.3, 20 to 32 (7) at 0.45 and
 /// 45 to 70 (15) at 0.49.  Flat elements take many more: ten times as many
-/// where they are five times as wide as thick.
+/// where they are five times as wide as thick.  Once iterations do not
+/// converge, the stiffness is factorised, then and from then on.
 class RefinedStiffness : public SupportedStiffness {
  public:
   static constexpr int kMostIterations = 200;
 
-  /// `supports` are those of each space, from coarse to fine, and `coarsest` is
-  /// the mesh of the first.  A solution may differ by `tolerance` of itself in
-  /// the energy norm.  Preconditions and exceptions are those of
-  /// StiffnessSolver, for the coarsest space.
-  RefinedStiffness(const Mesh& coarsest,
+  /// `meshes` and `supports` are those of each space, from coarse to fine,
+  /// which must outlive this object.  A solution may differ by `tolerance` of
+  /// itself in the energy norm.  Preconditions and exceptions are those of
+  /// StiffnessSolver.
+  RefinedStiffness(const std::vector<const Mesh*>& meshes,
                    const std::vector<const Supports*>& supports,
                    SolverKind solver,
                    double tolerance = StiffnessSolver::kAccurate);
@@ -53,7 +56,9 @@ class RefinedStiffness : public SupportedStiffness {
   }
   /// The solves and element passes are those of the finest space.
   Work WorkDone() const override;
-  const std::string& Notice() const override { return coarsest_.Notice(); }
+  const std::string& Notice() const override {
+    return finest_ ? finest_->Notice() : coarsest_.Notice();
+  }
 
  private:
   struct Space {
@@ -61,6 +66,7 @@ class RefinedStiffness : public SupportedStiffness {
     Eigen::MatrixXd inverse_blocks;
   };
 
+  bool FactorizeFinest();
   /// Returns K x in a finer space, held rows included.
   Eigen::MatrixXd Multiply(std::size_t space, const Eigen::MatrixXd& x);
   /// Returns force - K x in the free rows, and zeros in the held ones.
@@ -73,6 +79,10 @@ class RefinedStiffness : public SupportedStiffness {
   Eigen::MatrixXd Precondition(std::size_t space, const Eigen::MatrixXd& force);
 
   StiffnessSolver coarsest_;
+  /// Makes the solver of the finest space, which is null as long as iterations
+  /// converge.
+  std::function<std::unique_ptr<StiffnessSolver>()> make_finest_;
+  std::unique_ptr<StiffnessSolver> finest_;
   std::vector<Space> spaces_;  ///< Coarse to fine; the first has no blocks.
   double tolerance_;
   const NestedStiffness* stiffness_ = nullptr;

@@ -8,9 +8,7 @@
 
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/equilibrium/equilibrium.h"
-#include "elastimate/core/equilibrium/forward_model.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
-#include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/rigid_motion.h"
 
@@ -116,9 +114,6 @@ std::vector<Eigen::Index> FreePoints(const ComponentMask& held) {
   return points;
 }
 
-constexpr const char* kSingular =
-    "the stiffness matrix is singular to working precision";
-
 // Sets the displacements of all load cases, which stand side by side.
 void SetDisplacements(const Eigen::MatrixXd& displacements, Scene& scene) {
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
@@ -132,19 +127,13 @@ void SetDisplacements(const Eigen::MatrixXd& displacements, Scene& scene) {
 }  // namespace
 
 void Measure(const IsotropicElasticity& elasticity, Scene& scene) {
-  ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene));
-  if (!model.SetPoissonRatio(elasticity.poisson_ratio)) {
-    throw std::runtime_error(kSingular);
-  }
-  SetDisplacements(model.Displacement(elasticity.youngs_modulus), scene);
+  Scene uniform = scene;
+  uniform.materials.clear();
+  SetDisplacements(DisplacementsAt(uniform, elasticity.Parameters()), scene);
 }
 
 void MeasureMaterials(const Eigen::VectorXd& parameters, Scene& scene) {
-  Equilibrium model(scene, SolverKind::kAutomatic);
-  if (!model.Solve(model.Forces().Parameters().Moduli(parameters))) {
-    throw std::runtime_error(kSingular);
-  }
-  SetDisplacements(model.Displacement(), scene);
+  SetDisplacements(DisplacementsAt(scene, parameters), scene);
 }
 
 void MeasureInFinerWorld(const IsotropicElasticity& elasticity, Scene& scene) {

@@ -16,9 +16,9 @@ enum class NoiseLaw {
   kGaussian,  ///< Normal.
 };
 
-/// Measures every load case without noise, by the forward model.
-/// Throws std::invalid_argument as ForwardModel does, and std::runtime_error
-/// when the stiffness is singular to working precision.  One factorisation.
+/// Measures every load case without noise, in a scene that is of this one
+/// material.  Throws as DisplacementsAt does.  One factorisation for each set
+/// of held degrees of freedom.
 void Measure(const IsotropicElasticity& elasticity, Scene& scene);
 
 /// Measures as above with the materials of the scene, whose parameters stand

@@ -28,7 +28,7 @@ class SupportedStiffness {
                          bool with_held_rows) = 0;
 
   /// Returns K_ff^-1 times the free rows of each column of `all`, and zeros in
-  /// the held rows; NaN where iterations do not converge.  `start` is empty or
+  /// the held rows; NaN where no solver converges.  `start` is empty or
   /// has a guess of each column, scaled in any way, which spares iterations
   /// where it is good.  Precondition, here and below: Factorize returned true.
   virtual Eigen::MatrixXd Solve(const Eigen::MatrixXd& all,

@@ -34,6 +34,8 @@ struct IsotropicElasticity {
                                                  double poisson_ratio,
                                                  SectionModel model);
 
+  /// (E, nu), as the isotropic law has them.
+  Eigen::Vector2d Parameters() const { return {youngs_modulus, poisson_ratio}; }
   /// mu = E / (2 (1 + nu)).
   double ShearModulus() const;
   /// lambda = E nu / ((1 + nu)(1 - 2 nu)).

@@ -7,6 +7,7 @@
 #include <limits>
 #include <set>
 
+#include "elastimate/core/materials/stiffness_factors.h"
 #include "elastimate/core/text/numbers.h"
 
 namespace elastimate {
@@ -291,7 +292,6 @@ class SectionCheck {
           std::to_string(moduli.size()) + " moduli, or none");
       return;
     }
-    int size = 0;
     for (const BlockEntry& entry : entries) {
       if (entry.row < 0 || entry.row > entry.column) {
         Say("BlockEntries has an entry in row " + std::to_string(entry.row) +
@@ -299,16 +299,8 @@ class SectionCheck {
             "; it must have 0 <= row <= column");
         return;
       }
-      size = std::max(size, entry.column + 1);
     }
-    Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(size, size);
-    for (std::size_t k = 0; k < entries.size(); ++k) {
-      const BlockEntry& entry = entries[k];
-      stiffness(entry.row, entry.column) += entry.factor * moduli(k);
-      if (entry.row != entry.column) {
-        stiffness(entry.column, entry.row) += entry.factor * moduli(k);
-      }
-    }
+    const Eigen::MatrixXd stiffness = BlocksOfModuli(entries, moduli);
     const double smallest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(
                                 stiffness, Eigen::EigenvaluesOnly)
                                 .eigenvalues()(0);

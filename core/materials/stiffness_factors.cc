@@ -84,8 +84,8 @@ bool IsStiffnessPositiveDefinite(const Law& law,
              .allFinite();
 }
 
-Eigen::VectorXd FactorsOfModuli(const std::vector<BlockEntry>& entries,
-                                const Eigen::VectorXd& moduli) {
+Eigen::MatrixXd BlocksOfModuli(const std::vector<BlockEntry>& entries,
+                               const Eigen::VectorXd& moduli) {
   const Eigen::Index size = NumModes(entries);
   Eigen::MatrixXd blocks = Eigen::MatrixXd::Zero(size, size);
   for (Eigen::Index k = 0; k < moduli.size(); ++k) {
@@ -93,7 +93,12 @@ Eigen::VectorXd FactorsOfModuli(const std::vector<BlockEntry>& entries,
     blocks(entry.row, entry.column) = blocks(entry.column, entry.row) =
         entry.factor * moduli(k);
   }
-  const Eigen::LLT<Eigen::MatrixXd> cholesky(blocks);
+  return blocks;
+}
+
+Eigen::VectorXd FactorsOfModuli(const std::vector<BlockEntry>& entries,
+                                const Eigen::VectorXd& moduli) {
+  const Eigen::LLT<Eigen::MatrixXd> cholesky(BlocksOfModuli(entries, moduli));
   Eigen::VectorXd factors = Eigen::VectorXd::Constant(
       moduli.size(), std::numeric_limits<double>::quiet_NaN());
   if (cholesky.info() != Eigen::Success || !moduli.allFinite()) {

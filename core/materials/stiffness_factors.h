@@ -28,6 +28,10 @@ bool IsStiffnessPositiveDefinite(const Law& law,
                                  const Eigen::VectorXd& parameters,
                                  SectionModel model);
 
+/// Returns S of theta.
+Eigen::MatrixXd BlocksOfModuli(const std::vector<BlockEntry>& entries,
+                               const Eigen::VectorXd& moduli);
+
 /// Returns x of theta, or NaN where the stiffness is not positive definite.
 Eigen::VectorXd FactorsOfModuli(const std::vector<BlockEntry>& entries,
                                 const Eigen::VectorXd& moduli);

@@ -73,10 +73,10 @@ Eigen::VectorXi NodesOfFace(const Mesh& mesh, Eigen::Index element,
   for (int k = 0; k < num_vertices; ++k) {
     nodes(k) = mesh.elements(vertices[k], element);
   }
-  for (int k = num_vertices; k < nodes.size(); ++k) {
-    const int a = vertices[k - num_vertices];
-    const int b = vertices[(k - num_vertices + 1) % num_vertices];
-    nodes(k) = mesh.elements(topology.MidEdgeNode(a, b), element);
+  for (int k = 0; num_vertices + k < nodes.size(); ++k) {
+    const int next = k + 1 == num_vertices ? 0 : k + 1;
+    nodes(num_vertices + k) = mesh.elements(
+        topology.MidEdgeNode(vertices[k], vertices[next]), element);
   }
   return nodes;
 }

@@ -196,7 +196,7 @@ void PetscMultigrid::Workspace::BuildPattern() {
   for_pairs([&](int a, int b) {
     ++count[a];
     count[b] += a != b;
-    num_entries += (a != b ? 2 : 1) * dimension * dimension;
+    num_entries += (a != b ? 2 : 1) * Eigen::Index{dimension} * dimension;
   });
   if (num_entries > std::numeric_limits<PetscInt>::max()) {
     throw std::bad_alloc();
@@ -300,8 +300,8 @@ void PetscMultigrid::Workspace::SetNearNullSpace(const Mesh& mesh) {
   Check(VecGetArray(positions, &values));
   for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
     if (block[node] >= 0) {
-      Eigen::VectorXd::Map(values + dimension * block[node], dimension) =
-          mesh.nodes.col(node);
+      Eigen::VectorXd::Map(values + Eigen::Index{dimension} * block[node],
+                           dimension) = mesh.nodes.col(node);
     }
   }
   Check(VecRestoreArray(positions, &values));

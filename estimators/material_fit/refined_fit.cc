@@ -87,11 +87,6 @@ bool IsMeshErrorSmall(const Estimate& estimate) {
   return true;
 }
 
-bool IsSolved(const MaterialFit& fit) {
-  return fit.minimum && fit.minimum->end != End::kSingularStiffness &&
-         fit.minimum->end != End::kSearchFailed;
-}
-
 // The fits of one scene on finer and finer elements.
 class Refinement {
  public:
@@ -130,12 +125,6 @@ class Refinement {
     auto space = std::make_unique<SpaceFit>(scene, options_, coarser);
     space->Misfit().SetNeighbours(neighbours_);
     space->Minimize(descent_, start);
-    // Iterations may not converge for flat elements and next to nu = 1/2.
-    if (!coarser.empty() && !IsSolved(space->Fit())) {
-      space = std::make_unique<SpaceFit>(scene, options_);
-      space->Misfit().SetNeighbours(neighbours_);
-      space->Minimize(descent_, start);
-    }
     return space;
   }
   /// Whether linear elements explain so much more than quadratic ones that they

@@ -224,31 +224,18 @@ std::optional<SpaceChange> SpaceFit::ChangeFrom(SpaceFit& coarse) {
   change.is_of_quadratic = coarse.scene_.mesh.Order() == 2;
   coarse.misfit_.SetNoise(misfit_.Noise());
   coarse.misfit_.SetWeights(misfit_.RowWeights());
+  const Work before = coarse.WorkDone();
   Eigen::VectorXd of_coarse;
-  if (!misfit_.Evaluate(variables, &change.rows, nullptr) ||
-      !coarse.ResidualAt(variables, of_coarse)) {
+  const bool are_solved =
+      misfit_.Evaluate(variables, &change.rows, nullptr) &&
+      coarse.misfit_.Evaluate(variables, &of_coarse, nullptr);
+  Work& work = coarse.fit_.estimate.work;
+  work = work + (coarse.WorkDone() - before);
+  if (!are_solved) {
     return std::nullopt;
   }
   change.rows -= of_coarse;
   return change;
-}
-
-bool SpaceFit::ResidualAt(const Eigen::VectorXd& variables,
-                          Eigen::VectorXd& residual) {
-  const Work before = WorkDone();
-  bool is_solved = misfit_.Evaluate(variables, &residual, nullptr);
-  Work work = WorkDone() - before;
-  // Iterations over coarser spaces may not converge next to nu = 1/2, where
-  // this fit did not end itself.
-  if (!is_solved && is_finest_of_several_) {
-    DisplacementMisfit factorized({&scene_}, options_);
-    factorized.SetNoise(misfit_.Noise());
-    factorized.SetWeights(misfit_.RowWeights());
-    is_solved = factorized.Evaluate(variables, &residual, nullptr);
-    work = work + factorized.Model().WorkDone();
-  }
-  fit_.estimate.work = fit_.estimate.work + work;
-  return is_solved;
 }
 
 MaterialFit FitSpace(const Scene& scene, const EstimatorOptions& options,

@@ -82,9 +82,6 @@ class SpaceFit {
  private:
   /// Enters what is there at the minimum before it is described.
   void EnterMinimum();
-  /// Computes the residual at some variables; false where the model cannot be
-  /// solved there.
-  bool ResidualAt(const Eigen::VectorXd& variables, Eigen::VectorXd& residual);
   /// Moves to the minimum with the loss of the options, by reweighting.
   void Reweigh();
   std::optional<BoundedMinimum> FindMinimum(

@@ -85,8 +85,8 @@ Least LeastSquareSum(const Eigen::VectorXd& rows,
   return {square_sum - std::clamp(gain, 0.0, square_sum), others * step};
 }
 
-Eigen::MatrixXd InformationOf(const Eigen::MatrixXd& sensitivities,
-                              const Eigen::VectorXd& beforehand) {
+Eigen::MatrixXd InformationMatrix(const Eigen::MatrixXd& sensitivities,
+                                  const Eigen::VectorXd& beforehand) {
   Eigen::MatrixXd information = InnerProducts(sensitivities, sensitivities);
   information.diagonal() += beforehand;
   return information;
@@ -123,9 +123,9 @@ std::optional<Look> LookAt(const Eigen::VectorXd& moved,
   if (way == 0 || !misfit.Evaluate(moved, &rows, &sensitivities)) {
     return std::nullopt;
   }
-  const Least least =
-      LeastSquareSum(rows, sensitivities,
-                     InformationOf(sensitivities, beforehand), combination.a);
+  const Least least = LeastSquareSum(
+      rows, sensitivities, InformationMatrix(sensitivities, beforehand),
+      combination.a);
   const Least of_linear_model = LeastSquareSum(
       combination.rows + combination.sensitivities * (moved - combination.x),
       combination.sensitivities, combination.information, combination.a);
@@ -214,7 +214,8 @@ Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,
   if (!covariance.allFinite() || !misfit.Evaluate(x, &rows, nullptr)) {
     return added;
   }
-  const Eigen::MatrixXd information = InformationOf(sensitivities, beforehand);
+  const Eigen::MatrixXd information =
+      InformationMatrix(sensitivities, beforehand);
   const Eigen::MatrixXd inverse = Inverse(information);
   const Eigen::VectorXd newton = inverse * InnerProducts(sensitivities, rows);
   const Eigen::MatrixXd jacobian = ScaledJacobian(misfit.Free(), x);

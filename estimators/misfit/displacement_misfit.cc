@@ -86,7 +86,7 @@ bool DisplacementMisfit::Evaluate(const Eigen::VectorXd& x,
   *residual = residual_;
   if (jacobian != nullptr) {
     *jacobian = Sensitivities(x);
-    // Iterations that do not converge leave none.
+    // A solver that does not converge leaves none.
     if (!jacobian->allFinite()) {
       return false;
     }

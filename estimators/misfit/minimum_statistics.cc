@@ -133,7 +133,7 @@ Eigen::VectorXd KnownBeforehand(const FreeParameters& free,
 }
 
 // What rows say of the variables, with what is known beforehand.
-struct Information {
+struct InverseInformation {
   /// The inverse of S^T S; without the combinations below.
   Eigen::MatrixXd inverse;
   /// Combinations that the rows say nothing of, up to rounding, as columns, and
@@ -142,10 +142,10 @@ struct Information {
   Eigen::MatrixXd of_free_combinations;
 };
 
-Information InformationOf(const FreeParameters& free,
-                          const Eigen::VectorXd& variables,
-                          const Eigen::MatrixXd& sensitivities,
-                          double variance) {
+InverseInformation InvertInformation(const FreeParameters& free,
+                                     const Eigen::VectorXd& variables,
+                                     const Eigen::MatrixXd& sensitivities,
+                                     double variance) {
   // The sine of the angle between columns below which rounding decides, which
   // comes from the square root of a difference.
   constexpr double kCollinear = 1e-6;
@@ -159,7 +159,7 @@ Information InformationOf(const FreeParameters& free,
       DecomposeSymmetric(scale.asDiagonal() * gram * scale.asDiagonal());
   const Eigen::Index num_free =
       (modes.values.array() < kCollinear * kCollinear).count();
-  Information information;
+  InverseInformation information;
   information.free_combinations =
       scale.asDiagonal() * modes.vectors.leftCols(num_free);
   information.free_combinations.colwise().normalize();
@@ -187,7 +187,7 @@ Information InformationOf(const FreeParameters& free,
 // Notes what the rows of one isotropic material leave free, where what is known
 // beforehand does not determine it.
 void NoteFreeDirection(const Scene& scene, const FreeParameters& free,
-                       const Information& information,
+                       const InverseInformation& information,
                        const Eigen::VectorXd& variables, Evidence& evidence) {
   const Eigen::MatrixXd& free_combinations = information.free_combinations;
   const Eigen::VectorXd parameters = free.ParametersAt(variables);
@@ -455,8 +455,8 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
   WeighResultants(misfit, variance.variance, sensitivities);
   evidence.is_explained_by_given_noise = variance.is_explained_by_given_noise;
   const Eigen::MatrixXd of_rows = sensitivities.topRows(observed.Size());
-  const Information information =
-      InformationOf(free, errors.variables, sensitivities, variance.variance);
+  const InverseInformation information = InvertInformation(
+      free, errors.variables, sensitivities, variance.variance);
   const Eigen::MatrixXd& inverse = information.inverse;
   NoteFreeDirection(scene, free, information, errors.variables, evidence);
   NoteBoundExcess(free, minimum.found, rows, sensitivities, inverse, estimate,

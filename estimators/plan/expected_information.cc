@@ -8,6 +8,7 @@
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/misfit/motion_elimination.h"
+#include "elastimate/estimators/plan/expected_errors.h"
 
 namespace elastimate {
 namespace {
@@ -178,6 +179,30 @@ std::vector<CaseInformation> ExpectedInformation(
                            RootMeanSquare(plain, rows, k)});
   }
   return information;
+}
+
+Eigen::MatrixXd CramerRaoBound(Scene scene, const Eigen::VectorXd& parameters,
+                               const Eigen::VectorXd& noise_sd) {
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    scene.load_cases[k].noise_sd = noise_sd(Eigen::Index(k));
+    scene.load_cases[k].points.noise_sd.resize(0, 0);
+  }
+  const MaterialParameters chart(scene.materials, scene.mesh.section.model);
+  const Eigen::VectorXd units = chart.UnitsOfErrors(parameters)(chart.Free());
+  Eigen::MatrixXd information =
+      Eigen::MatrixXd::Zero(units.size(), units.size());
+  for (const CaseInformation& of_case :
+       ExpectedInformation(scene, 0, parameters, 1, SolverKind::kAutomatic)) {
+    information += of_case.information;
+  }
+  const ExpectedErrors errors = ExpectedErrors::Of(information);
+  if (errors.NumUndetermined() > 0) {
+    return Eigen::MatrixXd::Constant(units.size(), units.size(),
+                                     errors.standard_errors(0));
+  }
+  const Eigen::MatrixXd root = units.asDiagonal() * errors.directions *
+                               errors.standard_errors.asDiagonal();
+  return root * root.transpose();
 }
 
 }  // namespace elastimate

@@ -40,6 +40,15 @@ std::vector<CaseInformation> ExpectedInformation(
     const Eigen::VectorXd& parameters, double relative_noise,
     SolverKind solver);
 
+/// Returns the Cramer-Rao bound of the free parameters [Cramer 1946], in their
+/// own units: no unbiased estimator has a smaller covariance under independent
+/// Gaussian noise with these standard deviations [length], one for each load
+/// case.  Measured displacements say only what is observed.  Infinite where the
+/// data do not determine all free parameters.
+/// Preconditions, exceptions and cost are those of ExpectedInformation.
+Eigen::MatrixXd CramerRaoBound(Scene scene, const Eigen::VectorXd& parameters,
+                               const Eigen::VectorXd& noise_sd);
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_ESTIMATORS_PLAN_EXPECTED_INFORMATION_H_

@@ -72,7 +72,7 @@ Eigen::ArrayXd NoiseShare(const Estimate& estimate, const Eigen::VectorXi& free,
                           const Eigen::VectorXd& by_loads,
                           const Eigen::MatrixXd& covariance) {
   const ParameterErrors& noise = estimate.error_budget.noise;
-  const Eigen::ArrayXd unknown = Eigen::ArrayXd::Zero(free.size());
+  Eigen::ArrayXd unknown = Eigen::ArrayXd::Zero(free.size());
   if (noise.size() != Eigen::Index(estimate.parameters.size())) {
     return unknown;
   }
@@ -505,12 +505,8 @@ void EnterWork(const std::vector<FrameEstimate>& frames, Estimate& estimate) {
   }
 }
 
-}  // namespace
-
-Estimate JointEstimate(const Scene& scene, const EstimatorOptions& options,
-                       const Estimator& estimator,
-                       const std::vector<FrameEstimate>& frames,
-                       const LoadError& load_error) {
+std::vector<UsedFrame> UsedOf(const std::vector<FrameEstimate>& frames,
+                              const LoadError& load_error) {
   std::vector<UsedFrame> used;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (const std::optional<UsedFrame> use =
@@ -518,6 +514,52 @@ Estimate JointEstimate(const Scene& scene, const EstimatorOptions& options,
       used.push_back(*use);
     }
   }
+  return used;
+}
+
+// Enters what all frames share but for their noise.
+void EnterCommonErrors(const std::vector<UsedFrame>& frames,
+                       const Eigen::VectorXi& free, Estimate& estimate) {
+  for (const UsedFrame& frame : frames) {
+    const DeformationSize& size = frame.frame->estimate.deformation;
+    DeformationSize& largest = estimate.deformation;
+    largest.strain = std::max(largest.strain, size.strain);
+    largest.rotation = std::max(largest.rotation, size.rotation);
+  }
+  const auto part = [&](ParameterErrors ErrorBudget::*cause, Missing missing) {
+    estimate.error_budget.*cause = MeanPart(
+        frames, cause, missing, free, Eigen::Index(estimate.parameters.size()));
+  };
+  part(&ErrorBudget::discretization, Missing::kUnknown);
+  part(&ErrorBudget::kinematics, Missing::kZero);
+  part(&ErrorBudget::section, Missing::kZero);
+}
+
+void AddFindings(const std::vector<UsedFrame>& used, const Scatter& scatter,
+                 double likeness, const Eigen::VectorXi& free,
+                 Estimate& joint) {
+  AddSharedFindings(used, joint);
+  const double excess = std::sqrt(scatter.Excess().maxCoeff());
+  if (!AddTrend(free, joint) && scatter.p_value < kProbabilityOfScatter &&
+      excess > kNotableScatter) {
+    joint.Add(FramesScatter(excess, scatter.farthest));
+  }
+  if (likeness > kNotableLikeness) {
+    joint.Add(FramesAlike(likeness));
+  }
+  const std::size_t num_frames = joint.series->num_frames;
+  if (used.size() < num_frames) {
+    joint.Add(FramesLeftOut(num_frames - used.size(), num_frames));
+  }
+}
+
+}  // namespace
+
+Estimate JointEstimate(const Scene& scene, const EstimatorOptions& options,
+                       const Estimator& estimator,
+                       const std::vector<FrameEstimate>& frames,
+                       const LoadError& load_error) {
+  std::vector<UsedFrame> used = UsedOf(frames, load_error);
   Estimate joint;
   EnterWork(frames, joint);
   joint.series =
@@ -544,39 +586,16 @@ Estimate JointEstimate(const Scene& scene, const EstimatorOptions& options,
   joint.element_order = first.element_order;
   joint.parameters = first.parameters;
   const Eigen::VectorXi free = FreeParametersOf(first);
-  const auto num_parameters = Eigen::Index(first.parameters.size());
-  for (const UsedFrame& frame : used) {
-    const DeformationSize& size = frame.frame->estimate.deformation;
-    joint.deformation.strain = std::max(joint.deformation.strain, size.strain);
-    joint.deformation.rotation =
-        std::max(joint.deformation.rotation, size.rotation);
-  }
-  const auto part = [&](ParameterErrors ErrorBudget::*cause, Missing missing) {
-    joint.error_budget.*cause =
-        MeanPart(used, cause, missing, free, num_parameters);
-  };
-  part(&ErrorBudget::discretization, Missing::kUnknown);
-  part(&ErrorBudget::kinematics, Missing::kZero);
-  part(&ErrorBudget::section, Missing::kZero);
+  EnterCommonErrors(used, free, joint);
   const Mean mean = MeanOf(used, WeightsOfFrames(usual, used));
   EnterMean(mean, free, load_error.relative, joint);
   if (IsOneIsotropicMaterial(scene.materials)) {
     EnterOneIsotropicMaterial(joint);
   }
   joint.noise_sd = MeanNoise(used);
-  joint.series->trend = TrendOver(used, free, num_parameters);
-  AddSharedFindings(used, joint);
-  const double scatter = std::sqrt(mean.scatter.Excess().maxCoeff());
-  if (!AddTrend(free, joint) && mean.scatter.p_value < kProbabilityOfScatter &&
-      scatter > kNotableScatter) {
-    joint.Add(FramesScatter(scatter, mean.scatter.farthest));
-  }
-  if (likeness > kNotableLikeness) {
-    joint.Add(FramesAlike(likeness));
-  }
-  if (used.size() < frames.size()) {
-    joint.Add(FramesLeftOut(frames.size() - used.size(), frames.size()));
-  }
+  joint.series->trend =
+      TrendOver(used, free, Eigen::Index(joint.parameters.size()));
+  AddFindings(used, mean.scatter, likeness, free, joint);
   FinishEstimate(estimator.Name(), scene, options, {}, joint);
   return joint;
 }

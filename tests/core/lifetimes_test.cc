@@ -6,7 +6,6 @@
 #include <type_traits>
 
 #include "elastimate/core/equilibrium/equilibrium.h"
-#include "elastimate/core/equilibrium/forward_model.h"
 #include "elastimate/core/mechanics/internal_forces.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/mesh/simplicial_mesh.h"
@@ -24,10 +23,6 @@ constexpr bool TakesLastingOnesOnly() {
 
 TEST(Lifetimes, TemporariesAreNotReferredTo) {
   EXPECT_TRUE((TakesLastingOnesOnly<Equilibrium, Scene, SolverKind>()));
-  EXPECT_TRUE((TakesLastingOnesOnly<ForwardModel, Mesh, const Supports&,
-                                    const Eigen::MatrixXd&>()));
-  EXPECT_TRUE((TakesLastingOnesOnly<ForwardModel, Mesh, const Supports&,
-                                    const Eigen::MatrixXd&, SolverKind>()));
   EXPECT_TRUE((TakesLastingOnesOnly<InternalForces, Mesh,
                                     const std::vector<Material>&>()));
   EXPECT_TRUE((TakesLastingOnesOnly<StiffnessOperator, Mesh>()));

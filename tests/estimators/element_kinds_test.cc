@@ -13,9 +13,9 @@
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/estimators/material_fit/reduced_fe.h"
+#include "elastimate/estimators/plan/expected_information.h"
 #include "elastimate/estimators/reduced_model/krylov_bound.h"
 #include "elastimate/estimators/registry.h"
-#include "elastimate/estimators/statistics/cramer_rao.h"
 #include "tests/scenes.h"
 
 namespace elastimate {
@@ -82,7 +82,7 @@ TEST_P(OnEachKind, EstimatesScaleWithForceAndThickness) {
 
 INSTANTIATE_TEST_SUITE_P(All, OnEachKind,
                          ::testing::ValuesIn(AllKindsOfSections()),
-                         [](const auto& info) { return NameOf(info.param); });
+                         testing::KindTestName);
 
 // Certificates of the reduced model rest on this ratio.  It is tested for a
 // general strain, for a change of volume and for a shear.
@@ -145,7 +145,7 @@ TEST_P(KindStatistics, ReachTheCramerRaoBound) {
   Scene noisy = exact;
   const double noise_sd = AddNoise(0.01, 1, noisy);
   const Eigen::Matrix2d bound =
-      CramerRaoBound(exact, {kYoungsModulus, kPoissonRatio},
+      CramerRaoBound(exact, Eigen::Vector2d(kYoungsModulus, kPoissonRatio),
                      Eigen::VectorXd::Constant(1, noise_sd));
   const ReducedFe reduced_fe;
   PreparedEstimator prepared = reduced_fe.Prepare(exact, {});
@@ -171,7 +171,7 @@ TEST_P(KindStatistics, ReachTheCramerRaoBound) {
 
 INSTANTIATE_TEST_SUITE_P(All, FitsOfEachKind,
                          ::testing::ValuesIn(AllKindsOfSections()),
-                         [](const auto& info) { return NameOf(info.param); });
+                         testing::KindTestName);
 
 INSTANTIATE_TEST_SUITE_P(
     Planar, KindStatistics,
@@ -179,7 +179,7 @@ INSTANTIATE_TEST_SUITE_P(
         KindOfSection{ElementKind::kHex8, SectionModel::kSolid},
         KindOfSection{ElementKind::kQuad4, SectionModel::kPlaneStress},
         KindOfSection{ElementKind::kTri6, SectionModel::kPlaneStrain}),
-    [](const auto& info) { return NameOf(info.param); });
+    testing::KindTestName);
 
 }  // namespace
 }  // namespace elastimate

@@ -1,9 +1,15 @@
 #include "elastimate/core/equilibrium/equilibrium.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/rigid_motion.h"
 #include "tests/regions.h"
 
 namespace elastimate {
@@ -191,16 +197,56 @@ TEST_P(EquilibriumOfKinds, HasForcesOfSupportsThatBalanceTheLoads) {
 TEST_P(EquilibriumOfKinds, RefusesAStiffnessThatIsNotPositive) {
   Equilibrium equilibrium(scene_, SolverKind::kCholesky);
   const MaterialParameters& chart = equilibrium.Forces().Parameters();
-  EXPECT_FALSE(
-      equilibrium.Solve(chart.Moduli(Eigen::Vector4d(2, 0.1, -5, 0.4))));
-  EXPECT_TRUE(equilibrium.Solve(chart.Moduli(parameters_)));
+  for (const Eigen::Vector4d& bad :
+       {Eigen::Vector4d(2, 0.1, -5, 0.4), Eigen::Vector4d(2, 0.1, 5, -1.5),
+        Eigen::Vector4d(2, 0.1, 5, 1.5), Eigen::Vector4d(2, 0.1, 5, NAN),
+        Eigen::Vector4d(2, 0.1, INFINITY, 0.4)}) {
+    EXPECT_FALSE(equilibrium.Solve(chart.Moduli(bad))) << bad.transpose();
+    EXPECT_TRUE(equilibrium.Solve(chart.Moduli(parameters_)));
+  }
+}
+
+TEST_P(EquilibriumOfKinds, HoldsTheHeldDegreesOfFreedomExactly) {
+  Equilibrium equilibrium(scene_, SolverKind::kCholesky);
+  const MaterialParameters& chart = equilibrium.Forces().Parameters();
+  ASSERT_TRUE(equilibrium.Solve(chart.Moduli(parameters_)));
+  EXPECT_EQ(OfHeld(scene_, equilibrium.Displacement()),
+            equilibrium.HeldDisplacement());
+  const Eigen::MatrixXd slopes =
+      equilibrium.Sensitivities(chart.ModuliJacobian(parameters_));
+  EXPECT_TRUE(OfHeld(scene_, slopes(Eigen::all, {0, 4})).isZero(0));
+}
+
+void ExpectWork(const Equilibrium& model, int passes, int factorizations,
+                int solves) {
+  EXPECT_EQ(model.WorkDone().element_passes, passes);
+  EXPECT_EQ(model.WorkDone().factorizations, factorizations);
+  EXPECT_EQ(model.WorkDone().solves, solves);
+}
+
+// One pass is for the displaced supports, another one for the pattern.
+TEST_P(EquilibriumOfKinds, CountsItsWork) {
+  Equilibrium equilibrium(scene_, SolverKind::kCholesky);
+  const MaterialParameters& chart = equilibrium.Forces().Parameters();
+  ASSERT_TRUE(equilibrium.Solve(chart.Moduli(parameters_)));
+  ExpectWork(equilibrium, 3, 1, 3);
+  (void)equilibrium.Sensitivities(chart.ModuliJacobian(parameters_));
+  ExpectWork(equilibrium, 5, 1, 3 + 2 * 4);
+}
+
+TEST(Equilibrium, SaysWhyTheSupportsDoNotHold) {
+  Scene scene =
+      testing::SceneOfKind({ElementKind::kTet4, SectionModel::kSolid});
+  scene.supports.held.row(0).setConstant(false);
+  const std::string why = WhyNotHeld(scene.mesh, scene.supports);
+  EXPECT_THAT(why, ::testing::HasSubstr("move along x"));
+  EXPECT_THAT([&] { (void)DisplacementsAt(scene, Eigen::Vector2d(1, 0.3)); },
+              ::testing::ThrowsMessage<std::invalid_argument>(why));
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, EquilibriumOfKinds,
                          ::testing::ValuesIn(testing::AllKindsOfSections()),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 
 }  // namespace
 }  // namespace elastimate

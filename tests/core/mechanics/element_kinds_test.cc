@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "elastimate/core/equilibrium/forward_model.h"
+#include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/mechanics/internal_forces.h"
 #include "elastimate/core/mechanics/stiffness_assembly.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
@@ -143,10 +143,8 @@ TEST_P(ElementKinds, PassThePatchTest) {
   }
   ASSERT_FALSE(supports.held.all());
   supports.displacement = u;
-  ForwardModel model(mesh_, supports,
-                     Eigen::MatrixXd::Zero(mesh_.NumDofs(), 1));
-  ASSERT_TRUE(model.SetPoissonRatio(elasticity_.poisson_ratio));
-  EXPECT_TRUE(model.Displacement(elasticity_.youngs_modulus)
+  const Scene scene = {mesh_, {}, supports, {LoadCase()}};
+  EXPECT_TRUE(DisplacementsAt(scene, elasticity_.Parameters())
                   .isApprox(u.reshaped(), 1e-12));
 }
 
@@ -240,46 +238,22 @@ TEST_P(ElementKinds, AreHeldOnlyAsAWhole) {
   EXPECT_NE(WhyNotHeld(mesh_, loose).find("rotate"), std::string::npos);
 }
 
-// The derivatives by ln E and nu are compared with finite differences.
-TEST_P(ElementKinds, HaveTheSensitivitiesOfTheirDisplacements) {
-  ForwardModel model(mesh_, scene_.supports, AssembleLoadCases(scene_));
-  const auto displacement = [&](double log_youngs, double nu) {
-    EXPECT_TRUE(model.SetPoissonRatio(nu));
-    return Eigen::MatrixXd(model.Displacement(std::exp(log_youngs)));
-  };
-  const double h = 1e-5;
-  const double log_youngs = std::log(2.5);
-  const Eigen::MatrixXd by_youngs =
-      (displacement(log_youngs + h, 0.3) - displacement(log_youngs - h, 0.3)) /
-      (2 * h);
-  const Eigen::MatrixXd by_poisson =
-      (displacement(log_youngs, 0.3 + h) - displacement(log_youngs, 0.3 - h)) /
-      (2 * h);
-  ASSERT_TRUE(model.SetPoissonRatio(0.3));
-  const DisplacementSensitivities sensitivities = model.Sensitivities(2.5);
-  EXPECT_TRUE(sensitivities.log_youngs_modulus.isApprox(by_youngs, 1e-8));
-  EXPECT_TRUE(sensitivities.poisson_ratio.isApprox(by_poisson, 1e-7));
-}
-
 TEST_P(ElementKinds, AreSolvedByMultigridToo) {
   if (!HasMultigrid()) {
     GTEST_SKIP() << WhyNoMultigrid();
   }
-  const Eigen::MatrixXd force = AssembleLoadCases(scene_);
-  ForwardModel direct(mesh_, scene_.supports, force, SolverKind::kCholesky);
-  ForwardModel iterative(mesh_, scene_.supports, force, SolverKind::kMultigrid);
-  ASSERT_TRUE(direct.SetPoissonRatio(0.3));
-  ASSERT_TRUE(iterative.SetPoissonRatio(0.3));
+  const Eigen::Vector2d parameters(2.5, 0.3);
+  Equilibrium iterative(scene_, SolverKind::kMultigrid);
+  ASSERT_TRUE(
+      iterative.Solve(iterative.Forces().Parameters().Moduli(parameters)));
   EXPECT_EQ(iterative.Notice(), "");
-  EXPECT_TRUE(
-      iterative.Displacement(2.5).isApprox(direct.Displacement(2.5), 1e-6));
+  EXPECT_TRUE(iterative.Displacement().isApprox(
+      DisplacementsAt(scene_, parameters, SolverKind::kCholesky), 1e-6));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ElementKinds,
                          ::testing::ValuesIn(AllKindsOfSections()),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 
 }  // namespace
 }  // namespace elastimate

@@ -102,9 +102,7 @@ TEST_P(InternalForcesOfKinds, OfOneMaterialAreThoseOfTheBasis) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, InternalForcesOfKinds,
                          ::testing::ValuesIn(testing::AllKindsOfSections()),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 
 }  // namespace
 }  // namespace elastimate

@@ -60,9 +60,7 @@ TEST_P(FinerNodesOfKinds, RestrictByTheTranspose) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, FinerNodesOfKinds,
                          ::testing::ValuesIn(testing::AllKindsOfSections()),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 
 }  // namespace
 }  // namespace elastimate

@@ -47,9 +47,7 @@ TEST_P(MeshPartsOfKinds, ShareNoNodesAndAreTheSameElements) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, MeshPartsOfKinds,
                          ::testing::ValuesIn(testing::AllKindsOfSections()),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 
 }  // namespace
 }  // namespace elastimate

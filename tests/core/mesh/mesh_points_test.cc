@@ -104,9 +104,7 @@ TEST_P(MeshPointsOfKinds, AreDrawnEvenly) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, MeshPointsOfKinds,
                          ::testing::ValuesIn(testing::AllKindsOfSections()),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 
 TEST(MeshPoints, AreTheSameInQuadraticElements) {
   const Mesh mesh = testing::SmallScene("organ").mesh;

@@ -56,7 +56,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         testing::KindOfSection{ElementKind::kTet4, SectionModel::kSolid},
         testing::KindOfSection{ElementKind::kTri3, SectionModel::kPlaneStress}),
-    [](const auto& info) { return testing::NameOf(info.param); });
+    testing::KindTestName);
 
 }  // namespace
 }  // namespace elastimate

@@ -133,9 +133,7 @@ TEST(SimplicialMesh, HasAlternatingDiagonals) {
 
 INSTANTIATE_TEST_SUITE_P(All, SimplicialMeshOfKind,
                          ::testing::ValuesIn(testing::AllKindsOfSections()),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 
 }  // namespace
 }  // namespace elastimate

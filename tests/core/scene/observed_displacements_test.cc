@@ -105,9 +105,7 @@ TEST_P(ObservedPoints, WeightsBoundTheRows) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, ObservedPoints,
                          ::testing::ValuesIn(testing::AllKindsOfSections()),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 
 // A point on a held node says nothing.
 TEST(ObservedPointsOfSupports, HaveNoRows) {

@@ -76,9 +76,7 @@ TEST_P(SimplicialSceneOfKind, BecomesOneOfFinerElements) {
 
 INSTANTIATE_TEST_SUITE_P(All, SimplicialSceneOfKind,
                          ::testing::ValuesIn(testing::AllKindsOfSections()),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 
 }  // namespace
 }  // namespace elastimate

@@ -12,7 +12,7 @@
 
 #include "elastimate/estimators/force_balance/virtual_fields.h"
 #include "elastimate/estimators/material_fit/reduced_fe.h"
-#include "elastimate/estimators/statistics/cramer_rao.h"
+#include "elastimate/estimators/plan/expected_information.h"
 #include "tests/scenes.h"
 
 namespace elastimate {
@@ -37,8 +37,8 @@ TEST_P(CoverageStatistics, OfReducedFeIsThatOfItsIntervals) {
   Measure(truth, exact);
   Scene noisy = exact;
   const double sd = AddNoise(noise, 1, noisy);
-  const Eigen::Matrix2d bound =
-      CramerRaoBound(exact, truth, Eigen::VectorXd::Constant(1, sd));
+  const Eigen::Matrix2d bound = CramerRaoBound(
+      exact, truth.Parameters(), Eigen::VectorXd::Constant(1, sd));
   const ReducedFe reduced_fe;
   PreparedEstimator prepared = reduced_fe.Prepare(exact, {});
   int num_usable = 0;
@@ -112,8 +112,8 @@ TEST_P(VirtualFieldsCoverageStatistics, IsThatOfItsStandardErrors) {
   Measure(truth, exact);
   Scene noisy = exact;
   const double sd = AddNoise(GetParam().noise, 1, noisy);
-  const Eigen::Matrix2d bound =
-      CramerRaoBound(exact, truth, Eigen::VectorXd::Constant(1, sd));
+  const Eigen::Matrix2d bound = CramerRaoBound(
+      exact, truth.Parameters(), Eigen::VectorXd::Constant(1, sd));
   EstimatorOptions options;
   options.virtual_field_degree = GetParam().degree;
   Eigen::Array2d sum = Eigen::Array2d::Zero();

@@ -6,40 +6,14 @@
 #include <vector>
 
 #include "elastimate/core/scene/loads.h"
-#include "tests/dense_reference.h"
+#include "tests/estimators/force_balance/dense_virtual_work.h"
 #include "tests/scenes.h"
 
 namespace elastimate {
 namespace {
 
-using testing::DenseDH;
-using testing::DenseDJ;
-using testing::DenseStiffness;
 using testing::SmallScene;
 using testing::SmallSceneNames;
-
-// The fields, and H V and J V in the free rows, by dense matrices.
-struct DenseVirtualWork {
-  DenseVirtualWork(const VirtualWork& work, const Scene& scene)
-      : fields(work.Fields()),
-        h(DenseStiffness<double>(scene.mesh, DenseDH())),
-        j(DenseStiffness<double>(scene.mesh, DenseDJ())) {
-    for (Eigen::Index i = 0; i < scene.supports.held.size(); ++i) {
-      if (!scene.supports.held.reshaped()(i)) {
-        free.push_back(i);
-      }
-    }
-    h_fields = (h * fields)(free, Eigen::all);
-    j_fields = (j * fields)(free, Eigen::all);
-  }
-
-  Eigen::MatrixXd fields;
-  Eigen::MatrixXd h;
-  Eigen::MatrixXd j;
-  Eigen::MatrixXd h_fields;
-  Eigen::MatrixXd j_fields;
-  std::vector<Eigen::Index> free;
-};
 
 TEST(VirtualWork, ItsTriangleHasTheProductsOfTheDenseStiffness) {
   for (const std::string& shape : SmallSceneNames()) {
@@ -47,7 +21,7 @@ TEST(VirtualWork, ItsTriangleHasTheProductsOfTheDenseStiffness) {
       SCOPED_TRACE(shape + ", degree " + std::to_string(degree));
       const Scene scene = SmallScene(shape);
       const VirtualWork work(scene.mesh, scene.supports, degree);
-      const DenseVirtualWork dense(work, scene);
+      const testing::DenseVirtualWork dense(scene, work);
       EXPECT_TRUE((dense.fields.transpose() * dense.fields).isIdentity(1e-12));
       const auto near = [](const Eigen::MatrixXd& actual,
                            const Eigen::MatrixXd& expected) {

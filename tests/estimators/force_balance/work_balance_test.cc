@@ -7,18 +7,16 @@
 #include <limits>
 #include <string>
 
-#include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/estimators/force_balance/virtual_work_regression.h"
 #include "elastimate/estimators/interface/free_parameters.h"
-#include "tests/dense_reference.h"
+#include "tests/estimators/force_balance/dense_virtual_work.h"
 #include "tests/scenes.h"
 
 namespace elastimate {
 namespace {
 
 using testing::AddNoise;
-using testing::DenseStiffness;
 using testing::Measure;
 using testing::SmallScene;
 
@@ -52,16 +50,8 @@ struct Balance {
   WorkBalance balance;
 };
 
-// H V, J V and V^T of a scene by dense matrices.
-struct DenseBalance {
-  DenseBalance(const Scene& scene, const VirtualWork& work)
-      : fields(work.Fields()),
-        h(DenseStiffness<double>(scene.mesh, testing::DenseDH())),
-        j(DenseStiffness<double>(scene.mesh, testing::DenseDJ())),
-        free(DegreesOfFreedom(scene.supports).free) {
-    h_fields = (h * fields)(free, Eigen::all);
-    j_fields = (j * fields)(free, Eigen::all);
-  }
+struct DenseBalance : testing::DenseVirtualWork {
+  using DenseVirtualWork::DenseVirtualWork;
 
   Eigen::MatrixXd Gram(double nu) const {
     const Eigen::MatrixXd stiffened = h_fields + nu * j_fields;
@@ -78,13 +68,6 @@ struct DenseBalance {
     const double t = a.dot(gram.solve(f)) / f.dot(gram.solve(f));
     return (a - t * f).dot(gram.solve(a - t * f));
   }
-
-  Eigen::MatrixXd fields;
-  Eigen::MatrixXd h;
-  Eigen::MatrixXd j;
-  Eigen::MatrixXd h_fields;
-  Eigen::MatrixXd j_fields;
-  std::vector<Eigen::Index> free;
 };
 
 TEST(WorkBalance, ItsMinimumIsTheLeastOfTheDenseBalance) {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "elastimate/core/equilibrium/equilibrium.h"
+#include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/estimators/registry.h"
 #include "tests/anisotropy.h"
 #include "tests/element_kinds.h"
@@ -32,15 +32,9 @@ void MeasureMaterials(const std::vector<Material>& materials,
                       const Eigen::VectorXd& parameters, Scene& scene) {
   Scene known = scene;
   known.materials = materials;
-  Equilibrium equilibrium(known, SolverKind::kCholesky);
-  ASSERT_TRUE(
-      equilibrium.Solve(equilibrium.Forces().Parameters().Moduli(parameters)));
-  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-    scene.load_cases[k].displacement = equilibrium.Displacement()
-                                           .col(Eigen::Index(k))
-                                           .reshaped(3, scene.mesh.NumNodes());
-    scene.origin = Origin::kComputed;
-  }
+  elastimate::MeasureMaterials(parameters, known);
+  known.materials = scene.materials;
+  scene = known;
 }
 
 // One load of a clamped block of a material with this axis, which is not known.

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "elastimate/core/equilibrium/equilibrium.h"
+#include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/estimators/registry.h"
 #include "tests/anisotropy.h"
 #include "tests/element_kinds.h"
@@ -28,15 +28,7 @@ Scene BlockOfMaterials(const std::vector<Material>& materials,
   Scene scene = testing::WithThreeForces(
       testing::SceneOfKind({ElementKind::kTet4, SectionModel::kSolid}, cells));
   scene.materials = materials;
-  Equilibrium equilibrium(scene, SolverKind::kCholesky);
-  EXPECT_TRUE(
-      equilibrium.Solve(equilibrium.Forces().Parameters().Moduli(parameters)));
-  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-    scene.load_cases[k].displacement = equilibrium.Displacement()
-                                           .col(Eigen::Index(k))
-                                           .reshaped(3, scene.mesh.NumNodes());
-    scene.origin = Origin::kComputed;
-  }
+  MeasureMaterials(parameters, scene);
   scene.materials.clear();
   return scene;
 }

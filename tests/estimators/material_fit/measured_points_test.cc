@@ -6,8 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "elastimate/estimators/plan/expected_information.h"
 #include "elastimate/estimators/registry.h"
-#include "elastimate/estimators/statistics/cramer_rao.h"
 #include "tests/element_kinds.h"
 #include "tests/random_points.h"
 #include "tests/scenes.h"
@@ -83,9 +83,7 @@ TEST_P(PointsOfEachKind, AreRefusedWhereNodesAreNeeded) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, PointsOfEachKind,
                          ::testing::ValuesIn(testing::AllKindsOfSections()),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 
 class PointsOfABlock : public ::testing::Test {
  protected:
@@ -105,7 +103,7 @@ class PointsOfABlock : public ::testing::Test {
 TEST_F(PointsOfABlock, ReachTheCramerRaoBound) {
   constexpr int kSeeds = 100;
   const Eigen::Matrix2d bound =
-      CramerRaoBound(scene_, {kModulusOfPoints, kRatioOfPoints},
+      CramerRaoBound(scene_, Eigen::Vector2d(kModulusOfPoints, kRatioOfPoints),
                      Eigen::VectorXd::Constant(1, deviation_));
   const auto reduced_fe = MakeEstimator("reduced-fe");
   PreparedEstimator prepared = reduced_fe->Prepare(scene_, {});

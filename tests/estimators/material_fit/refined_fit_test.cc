@@ -60,24 +60,16 @@ TEST_P(RefinedFitOfKinds, HoldsTheTruthOfAFinerSpecimen) {
 
 INSTANTIATE_TEST_SUITE_P(LinearSolids, RefinedFitOfKinds,
                          ::testing::ValuesIn(testing::KindsOf(3, 1)),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 INSTANTIATE_TEST_SUITE_P(QuadraticSolids, RefinedFitOfKinds,
                          ::testing::ValuesIn(testing::KindsOf(3, 2)),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 INSTANTIATE_TEST_SUITE_P(LinearPlanes, RefinedFitOfKinds,
                          ::testing::ValuesIn(testing::KindsOf(2, 1)),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 INSTANTIATE_TEST_SUITE_P(QuadraticPlanes, RefinedFitOfKinds,
                          ::testing::ValuesIn(testing::KindsOf(2, 2)),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 
 TEST(RefinedFit, OfBothDescentsIsTheSame) {
   Scene scene = Block({2, 2, 4});

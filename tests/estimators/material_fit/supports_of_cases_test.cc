@@ -113,9 +113,7 @@ TEST_P(SupportsOfCases, AddTheirInformation) {
 
 INSTANTIATE_TEST_SUITE_P(All, SupportsOfCases,
                          ::testing::ValuesIn(testing::AllKindsOfSections()),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 
 // The specimen is finer than the mesh.
 TEST(SupportsOfCasesOfElements, HoldWhatElementsMiss) {

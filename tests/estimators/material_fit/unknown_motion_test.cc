@@ -167,9 +167,7 @@ TEST_P(UnknownMotionOfKinds, OfTheCameraLeavesExactDataExact) {
 
 INSTANTIATE_TEST_SUITE_P(All, UnknownMotionOfKinds,
                          ::testing::ValuesIn(testing::AllKindsOfSections()),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 
 // A plate under a known pull at its free end, whose other end moved as
 // measured.
@@ -373,24 +371,16 @@ TEST_P(ElementsOfUnknownMotion, HaveAMeshErrorThatIsKnown) {
 
 INSTANTIATE_TEST_SUITE_P(LinearSolids, ElementsOfUnknownMotion,
                          ::testing::ValuesIn(testing::KindsOf(3, 1)),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 INSTANTIATE_TEST_SUITE_P(QuadraticSolids, ElementsOfUnknownMotion,
                          ::testing::ValuesIn(testing::KindsOf(3, 2)),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 INSTANTIATE_TEST_SUITE_P(LinearPlanes, ElementsOfUnknownMotion,
                          ::testing::ValuesIn(testing::KindsOf(2, 1)),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 INSTANTIATE_TEST_SUITE_P(QuadraticPlanes, ElementsOfUnknownMotion,
                          ::testing::ValuesIn(testing::KindsOf(2, 2)),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 
 // Linear elements bend too little, and a support follows the noise of its
 // nodes.
@@ -423,7 +413,7 @@ INSTANTIATE_TEST_SUITE_P(
         KindOfSection{ElementKind::kTri3, SectionModel::kPlaneStress},
         KindOfSection{ElementKind::kQuad4, SectionModel::kPlaneStress},
         KindOfSection{ElementKind::kHex8, SectionModel::kSolid}),
-    [](const auto& info) { return testing::NameOf(info.param); });
+    testing::KindTestName);
 
 TEST(UnknownMotion, LeavesOutliersOutByName) {
   Scene scene = Plate(12);

@@ -58,9 +58,7 @@ TEST_P(UnitLoadsOfKind, HaveOneResultantEach) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, UnitLoadsOfKind,
                          ::testing::ValuesIn(testing::AllKindsOfSections()),
-                         [](const auto& info) {
-                           return testing::NameOf(info.param);
-                         });
+                         testing::KindTestName);
 
 TEST(UnitLoads, ActOnTheFacetsAlone) {
   const Mesh mesh = BoxMesh({2, 2, 3}, {1, 1, 2});

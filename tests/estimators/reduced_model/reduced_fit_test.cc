@@ -5,8 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "elastimate/core/equilibrium/forward_model.h"
-#include "elastimate/core/scene/loads.h"
+#include "elastimate/core/equilibrium/equilibrium.h"
 #include "tests/scenes.h"
 #include "tests/shapes.h"
 
@@ -62,13 +61,14 @@ struct Fixture {
 ReducedFit::Point FullFit(const Scene& scene,
                           const ObservedDisplacements& observed, double nu,
                           const Bounds& youngs_modulus) {
-  ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene));
-  EXPECT_TRUE(model.SetPoissonRatio(nu));
-  const Eigen::VectorXd w = observed.Restrict(model.UnitLoadResponse());
-  const Eigen::VectorXd rest =
-      observed.Measured() - observed.Restrict(model.SupportResponse().replicate(
-                                1, Eigen::Index(scene.load_cases.size())));
   const double range = (1 + nu) * (1 - 2 * nu);
+  Equilibrium model(scene, SolverKind::kCholesky);
+  EXPECT_TRUE(model.Solve(
+      model.Forces().Parameters().Moduli(Eigen::Vector2d(range, nu))));
+  const Eigen::VectorXd w =
+      observed.Restrict(model.Displacement() - model.SupportResponse());
+  const Eigen::VectorXd rest =
+      observed.Measured() - observed.Restrict(model.SupportResponse());
   double t = w.dot(rest) / w.squaredNorm();
   t = std::max(t, range / youngs_modulus.upper.value_or(
                               std::numeric_limits<double>::infinity()));
@@ -145,9 +145,9 @@ TEST(ReducedFit, SolvesAsTheFullModelDoes) {
   const Fixture fixture;
   const IsotropicElasticity elasticity = {4e4, 0.4};
   const ReducedSolution solution = SolveReduced(fixture.model, elasticity);
-  ForwardModel model(fixture.scene.mesh, fixture.scene.supports,
-                     AssembleLoadCases(fixture.scene));
-  ASSERT_TRUE(model.SetPoissonRatio(elasticity.poisson_ratio));
+  Equilibrium model(fixture.scene, SolverKind::kCholesky);
+  const MaterialParameters& chart = model.Forces().Parameters();
+  ASSERT_TRUE(model.Solve(chart.Moduli(elasticity.Parameters())));
   const auto& observed = fixture.observed;
   const auto expect_alike = [&](const Eigen::MatrixXd& reduced,
                                 const Eigen::MatrixXd& full, double tolerance) {
@@ -155,13 +155,15 @@ TEST(ReducedFit, SolvesAsTheFullModelDoes) {
     EXPECT_LT((observed.Restrict(reduced) - rows).norm(),
               tolerance * rows.norm());
   };
-  expect_alike(solution.displacement,
-               model.Displacement(elasticity.youngs_modulus), 1e-6);
-  const DisplacementSensitivities sensitivities =
-      model.Sensitivities(elasticity.youngs_modulus);
-  expect_alike(solution.by_log_youngs_modulus, sensitivities.log_youngs_modulus,
+  expect_alike(solution.displacement, model.Displacement(), 1e-6);
+  const Eigen::MatrixXd sensitivities =
+      model.Sensitivities(chart.ModuliJacobian(elasticity.Parameters()));
+  expect_alike(solution.by_log_youngs_modulus,
+               elasticity.youngs_modulus *
+                   sensitivities(Eigen::all, Eigen::seq(0, Eigen::last, 2)),
                1e-6);
-  expect_alike(solution.by_poisson_ratio, sensitivities.poisson_ratio, 1e-5);
+  expect_alike(solution.by_poisson_ratio,
+               sensitivities(Eigen::all, Eigen::seq(1, Eigen::last, 2)), 1e-5);
 }
 
 // The full model explains these displacements at a nu where the reduced model,

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "elastimate/core/equilibrium/forward_model.h"
+#include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
-#include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/degrees_of_freedom.h"
 #include "tests/scenes.h"
 #include "tests/shapes.h"
 
@@ -20,12 +20,15 @@ using testing::SmallSceneNames;
 
 // Returns the responses w and v of the full model.
 Eigen::MatrixXd FullResponses(const Scene& scene, double nu) {
-  ForwardModel model(scene.mesh, scene.supports, AssembleLoadCases(scene));
-  EXPECT_TRUE(model.SetPoissonRatio(nu));
-  Eigen::MatrixXd responses = model.UnitLoadResponse();
-  responses.conservativeResize(Eigen::NoChange, responses.cols() + 1);
-  responses.rightCols<1>() =
-      model.SupportResponse() - HeldDisplacement(scene.supports);
+  Equilibrium model(scene, SolverKind::kCholesky);
+  const auto elasticity =
+      IsotropicElasticity::FromComplianceScale(1, nu, scene.mesh.section.model);
+  EXPECT_TRUE(
+      model.Solve(model.Forces().Parameters().Moduli(elasticity.Parameters())));
+  const Eigen::MatrixXd& of_supports = model.SupportResponse();
+  Eigen::MatrixXd responses(of_supports.rows(), of_supports.cols() + 1);
+  responses << model.Displacement() - of_supports,
+      of_supports.col(0) - HeldDisplacement(scene.supports);
   return responses;
 }
 

@@ -1,4 +1,4 @@
-#include "elastimate/estimators/statistics/cramer_rao.h"
+#include "elastimate/estimators/plan/expected_information.h"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,8 @@
 #include <cmath>
 
 #include "elastimate/core/scene/degrees_of_freedom.h"
-#include "elastimate/core/scene/loads.h"
 #include "tests/dense_reference.h"
 #include "tests/scenes.h"
-#include "tests/throws.h"
 
 namespace elastimate {
 namespace {
@@ -43,7 +41,8 @@ TEST(CramerRaoBound, IsTheInverseInformationOfFiniteDifferences) {
     }
   }
   const Eigen::Matrix2d expected = information.inverse();
-  const Eigen::Matrix2d bound = CramerRaoBound(scene, {5e4, 0.3}, noise_sd);
+  const Eigen::Matrix2d bound =
+      CramerRaoBound(scene, Eigen::Vector2d(5e4, 0.3), noise_sd);
   EXPECT_NEAR(bound(0, 0) / expected(0, 0), 1, 1e-4);
   EXPECT_NEAR(bound(1, 1) / expected(1, 1), 1, 1e-4);
   EXPECT_NEAR(bound(0, 1) / expected(0, 1), 1, 1e-4);
@@ -54,20 +53,8 @@ TEST(CramerRaoBound, IsInfiniteWhereOneCombinationOnlyIsDetermined) {
   scene.load_cases[0].observed =
       ComponentMask::Constant(3, scene.mesh.NumNodes(), false);
   scene.load_cases[0].observed(2, scene.mesh.NumNodes() - 1) = true;
-  EXPECT_TRUE(std::isinf(
-      CramerRaoBound(scene, {5e4, 0.3}, Eigen::VectorXd::Ones(1))(0, 0)));
-}
-
-TEST(CramerRaoBound, RefusesWhatHasNone) {
-  Scene scene = SmallScene("cuboid");
-  const Eigen::VectorXd one = Eigen::VectorXd::Ones(1);
-  EXPECT_THROWS_WITH(CramerRaoBound(scene, {5e4, 0.5}, one), "between");
-  EXPECT_THROWS_WITH(CramerRaoBound(scene, {5e4, 0.3}, -one), "positive");
-  EXPECT_THROWS_WITH(
-      CramerRaoBound(scene, {5e4, 0.3}, Eigen::VectorXd::Ones(2)),
-      "each load case");
-  scene.supports.held.setConstant(false);
-  EXPECT_THROWS_WITH(CramerRaoBound(scene, {5e4, 0.3}, one), "without strain");
+  EXPECT_TRUE(std::isinf(CramerRaoBound(scene, Eigen::Vector2d(5e4, 0.3),
+                                        Eigen::VectorXd::Ones(1))(0, 0)));
 }
 
 }  // namespace
