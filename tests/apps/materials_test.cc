@@ -161,7 +161,8 @@ TEST_F(MaterialsCommand, ReportsEAndNuOfOneMaterialOfWhichSomethingIsKnown) {
   for (const std::string material :
        {R"({"known": {"poisson_ratio": 0.3}})",
         R"({"bounds": {"poisson_ratio": [0.1, 0.45]}})",
-        R"({"region": [1, 2, 3], "known": {"youngs_modulus": 1e4}})"}) {
+        R"({"region": [1, 2, 3], "known": {"youngs_modulus": 1e4}})",
+        R"({"prior": {"poisson_ratio": {"value": 0.3, "sd": 1e-5}}})"}) {
     SCOPED_TRACE(material);
     testing::WriteText(folder_ / "scene.json",
                        R"({"mesh": "m.vtu", "materials": [)" + material +
@@ -183,6 +184,11 @@ TEST_F(MaterialsCommand, ReportsEAndNuOfOneMaterialOfWhichSomethingIsKnown) {
       }
     }
     EXPECT_FALSE(report["shear_modulus"].is_null());
+    if (material.find("prior") != std::string::npos) {
+      EXPECT_NEAR(double(errors["poisson_ratio"]), 1e-5, 1e-6);
+      EXPECT_NEAR(double(report["error_budget"]["prior"]["poisson_ratio"]),
+                  1e-5, 1e-6);
+    }
   }
 }
 
@@ -372,6 +378,10 @@ TEST_F(MaterialsCommand, NamesTheMaterialThatIsWrong) {
            "poisson_ratio = 0.5"},
           {R"([{"region": [1, 2, 3], "bounds": {"poisson_ratio": [0.3, 0.1]}}])",
            "crossed"},
+          {R"([{"prior": {"poisson_ratio": {"value": 0.3}}}])",
+           "exactly one of the keys sd, relative_sd"},
+          {R"([{"prior": {"nu": {"value": 0.3, "sd": 1}}}])",
+           "materials[0].prior"},
           {R"([{"region": 1e10}])", "materials[0].region"},
           {"[]", "materials is empty"}}) {
     testing::WriteText(

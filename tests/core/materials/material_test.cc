@@ -92,6 +92,20 @@ TEST(Materials, ThatAreWrongAreNamed) {
   for (const auto& [materials, why] : wrong) {
     EXPECT_THROWS_WITH(ValidateMaterials(materials, mesh), why);
   }
+  const std::vector<std::pair<std::vector<Prior>, std::string>> wrong_priors = {
+      {{{"poisson_ratio", 0.6, 0.1}}, "gives the prior poisson_ratio = 0.6"},
+      {{{"poisson_ratio", 0.3, 0}}, "not positive and finite"},
+      {{{"shear_modulus", 1, 1}}, "youngs_modulus, poisson_ratio only"},
+      {{{"youngs_modulus", 1, 1}, {"youngs_modulus", 2, 1}}, "twice"}};
+  for (const auto& [priors, why] : wrong_priors) {
+    Material material;
+    material.priors = priors;
+    EXPECT_THROWS_WITH(ValidateMaterials({material}, mesh), why);
+  }
+  Material known;
+  known.known = {{"poisson_ratio", 0.3}};
+  known.priors = {{"poisson_ratio", 0.3, 0.1}};
+  EXPECT_THROWS_WITH(ValidateMaterials({known}, mesh), "twice");
   Mesh without = mesh;
   without.regions.resize(0);
   EXPECT_THROWS_WITH(ValidateMaterials({{"isotropic", {3}, {}, {}}}, without),

@@ -146,6 +146,15 @@ std::vector<Finding> OfElements() {
         return nu;
       }()),
       MarginNotGiven(0.06),
+      PriorContradicted(
+          [] {
+            ParameterEstimate nu;
+            nu.symbol = "nu";
+            nu.value = 0.3;
+            nu.standard_error = 0.01;
+            return nu;
+          }(),
+          0.0004),
       DiscretizationErrorFinding(EstimateOfElements(0.0312345)),
       MeshErrorUnknown(),
       ComputedByLinearElements(),

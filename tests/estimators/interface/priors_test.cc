@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(All, PriorsOfEveryEstimator,
                          testing::EstimatorTestName);
 
 TEST(Priors, DetermineWhatNoiseHides) {
-  const Scene scene = NoisyScene(0.3);
+  const Scene scene = NoisyScene(1);
   const std::shared_ptr<const Estimator> estimator =
       MakeEstimator("reduced-fe");
   ASSERT_EQ(estimator->Run(scene, {}).status, Status::kNotIdentifiable);

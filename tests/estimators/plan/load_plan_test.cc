@@ -101,6 +101,21 @@ TEST(PlanLoads, KnowsThatAPullDoesNotDetermineNuWithoutLateralData) {
   EXPECT_TRUE(plan.AreDetermined(plan.sequence[0].errors));
 }
 
+// Axial data say all of E and nothing of nu, and the prior the other way round.
+TEST(PlanLoads, CountsPriors) {
+  Scene scene = BarOnRollers();
+  scene.load_cases[0].observed = AxialOnly(scene.mesh);
+  const LoadPlan without = PlanLoads(scene, {}, kBarParameters, 0.01);
+  Material material;
+  material.priors = {{"poisson_ratio", 0.25, 0.05}};
+  scene.materials = {material};
+  const LoadPlan with = PlanLoads(scene, {}, kBarParameters, 0.01);
+  EXPECT_NEAR(with.before.OfParameters()(0), without.before.OfParameters()(0),
+              1e-9);
+  EXPECT_NEAR(with.before.OfParameters()(1), 0.05, 1e-9);
+  EXPECT_TRUE(with.AreDetermined(with.before));
+}
+
 TEST(PlanLoads, KnowsThatLateralDataDetermineNu) {
   const Scene scene = BarOnRollers();
   const LoadPlan plan =

@@ -45,7 +45,7 @@ TEST_F(CsvFieldTest, ReadsTwoColumnsOfAPlane) {
   EXPECT_EQ(ReadCsvField(three, 2, 2).values.rows(), 3);
   const auto mixed = folder_.Write("u.csv", "x,y\n1,-2.5,0\n0.1,5\n");
   EXPECT_THROWS_WITH(ReadCsvField(mixed, 2, 2),
-                     "line 2 has 3 columns where 2 are due");
+                     "line 2 has 3 columns, but the titles have 2");
 }
 
 TEST_F(CsvFieldTest, NamesLineAndColumn) {
@@ -85,7 +85,7 @@ TEST_F(CsvFieldTest, KnowsWhereRowsStand) {
 // The unit of the mesh is not known.
 TEST_F(CsvFieldTest, RefusesUnitsThatDifferOrAreSmall) {
   EXPECT_THROWS_WITH(Read("U [um],V [um],W [um]\n1,2,3\n4,5,6\n"),
-                     "column 'U \\[um\\]' is hardly in the unit of the mesh");
+                     "column 'U \\[um\\]' is in another unit than the mesh");
   EXPECT_THROWS_WITH(Read("U [mm],V [m],W [mm]\n1,2,3\n4,5,6\n"), "'V ");
   EXPECT_THROWS_WITH(Read("U [mm],V [ell],W [mm]\n1,2,3\n4,5,6\n"), "'ell'");
 }

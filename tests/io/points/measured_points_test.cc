@@ -135,7 +135,7 @@ TEST_F(MeasuredPointsTest, AreInTheUnitOfTheScene) {
            R"(}, "loads": [{"type": "body_force", "value": [0, 0, 1]}]} ]})";
   };
   EXPECT_THROWS_WITH(Read(with_keys("")),
-                     "points.csv: its points span .* cm of a mesh that spans "
+                     "points.csv: its points span .* cm, but the mesh spans "
                      "175; .* \"unit\"");
   const Scene scene = Read(with_keys(R"(, "unit": "mm")")).scene;
   EXPECT_LT((scene.load_cases[0].points.displacement - displacement).norm(),
@@ -150,10 +150,11 @@ TEST_F(MeasuredPointsTest, AreInOneUnitInAllFiles) {
   folder_.Write("b.csv",
                 Replaced(titles, "x [mm],y [mm],z [mm]", "x [m],y [m],z [m]") +
                     ".5,.5,.5,0,0,1\n");
-  EXPECT_THROWS_WITH(Read(Replaced(kPointsDocument, R"("points.csv")",
-                                   R"(["a.csv", "b.csv"])")),
-                     "b.csv: positions are in m, but those of other files of "
-                     "the scene in mm");
+  EXPECT_THROWS_WITH(
+      Read(Replaced(kPointsDocument, R"("points.csv")",
+                    R"(["a.csv", "b.csv"])")),
+      "b.csv: the positions are in m, but those of another file of "
+      "the scene are in mm");
 }
 
 TEST_F(MeasuredPointsTest, NameWhatIsWrong) {

@@ -223,11 +223,11 @@ TEST_F(PointsFileTest, NamesLineAndColumn) {
   EXPECT_THROWS_WITH(Read("x,y,ux,uy,sd_ux,sd_uy\n1,2,3,4,0,1\n", 2),
                      "line 2: x of the standard deviation must be positive");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy\n1,2,3,4\n1,2,3\n", 2),
-                     "line 3 has 3 columns where 4 are due");
+                     "line 3 has 3 columns, but the titles have 4");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy\n1,2,3,\"4\n", 2),
                      "line 2: the quotes do not match");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy\n1,2,3,4\n5,6,7,8\n1,2,3,4\n", 2),
-                     "line 4 has the same point and displacement as line 2");
+                     "line 4 repeats the point and displacement of line 2");
   EXPECT_THROWS_WITH(Read("x,y,ux,uy\n", 2), "no row of numbers");
   EXPECT_THROWS_WITH(Read("\n", 2), "no row of numbers");
   EXPECT_THROWS_WITH(Read("", 2), "the file is empty");

@@ -108,7 +108,7 @@ TEST_F(FramesTest, MayHaveLostPoints) {
   EXPECT_FALSE(frame.observed(0, 0));
   folder_.Write("frame_2.csv", Frame(2, 2.5));
   EXPECT_THROWS_WITH(Read(kFilmedStrip).read(1),
-                     "frame_2.csv: it has 20 of the 45 points of the mesh");
+                     "frame_2.csv: only 20 of the 45 points of the mesh");
 }
 
 TEST_F(FramesTest, MayBeOfPointsOrOfNodes) {
