@@ -638,12 +638,11 @@ Finding LargeDeformation(const DeformationSize& size,
 Finding MarginNotGiven(double relative_error) {
   return Warning(
       FindingCode::kMarginNotGiven,
-      "the mesh ends at the outermost points, and if the specimen "
-      "ends elsewhere, E changes by about " +
+      "the mesh ends at the outermost points, and where the specimen ends "
+      "elsewhere, E changes by about " +
           Percent(relative_error),
-      "give \"margin\", the distance from these points to the free "
-      "edges, or use a mesh of the specimen, in which the points may "
-      "lie anywhere");
+      "give \"margin\", the distance from these points to the free edges, or "
+      "use a mesh of the specimen");
 }
 
 Finding PriorContradicted(const ParameterEstimate& of_data,

@@ -105,11 +105,12 @@ TEST(PlanLoads, KnowsThatAPullDoesNotDetermineNuWithoutLateralData) {
 TEST(PlanLoads, CountsPriors) {
   Scene scene = BarOnRollers();
   scene.load_cases[0].observed = AxialOnly(scene.mesh);
-  const LoadPlan without = PlanLoads(scene, {}, kBarParameters, 0.01);
+  const std::vector<CandidateLoad> again = {{"again", scene.load_cases[0]}};
+  const LoadPlan without = PlanLoads(scene, again, kBarParameters, 0.01);
   Material material;
   material.priors = {{"poisson_ratio", 0.25, 0.05}};
   scene.materials = {material};
-  const LoadPlan with = PlanLoads(scene, {}, kBarParameters, 0.01);
+  const LoadPlan with = PlanLoads(scene, again, kBarParameters, 0.01);
   EXPECT_NEAR(with.before.OfParameters()(0), without.before.OfParameters()(0),
               1e-9);
   EXPECT_NEAR(with.before.OfParameters()(1), 0.05, 1e-9);

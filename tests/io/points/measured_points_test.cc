@@ -179,7 +179,7 @@ TEST_F(MeasuredPointsTest, NameWhatIsWrong) {
   folder_.Write("sd.csv",
                 "x,y,z,ux,uy,uz,sd_ux,sd_uy,sd_uz\n.5,.5,.5,0,0,1,1,1,1\n");
   EXPECT_THROWS_WITH(Read(with(R"({"points": ["points.csv", "sd.csv"]})")),
-                     "sd.csv: some files of the load case have columns");
+                     "sd.csv: only some files of the load case have");
 }
 
 TEST_F(MeasuredPointsTest, AreNoFurtherLoadCaseTwice) {
