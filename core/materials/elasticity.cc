@@ -81,14 +81,4 @@ Eigen::Matrix2d ShearAndBulkJacobian(const IsotropicElasticity& elasticity) {
   return jacobian;
 }
 
-Eigen::Matrix2d ComplianceScaleJacobian(const IsotropicElasticity& elasticity,
-                                        SectionModel model) {
-  const double youngs = elasticity.youngs_modulus;
-  Eigen::Matrix2d jacobian;
-  jacobian << 0, 1,  //
-      -elasticity.ComplianceScale(model) / youngs,
-      ComplianceFactorSlope(elasticity.poisson_ratio, model) / youngs;
-  return jacobian;
-}
-
 }  // namespace elastimate

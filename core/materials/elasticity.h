@@ -92,10 +92,6 @@ T ComplianceFactor(const T& poisson_ratio, SectionModel model) {
 [[nodiscard]] Eigen::Matrix2d ShearAndBulkJacobian(
     const IsotropicElasticity& elasticity);
 
-/// d (nu, t) / d (E, nu): rows (nu, t), columns (E, nu).
-[[nodiscard]] Eigen::Matrix2d ComplianceScaleJacobian(
-    const IsotropicElasticity& elasticity, SectionModel model);
-
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_CORE_MATERIALS_ELASTICITY_H_

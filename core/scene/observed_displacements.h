@@ -43,9 +43,6 @@ class ObservedDisplacements {
   /// and keeps the normalisation.
   void Remeasure(const Scene& scene);
 
-  /// Replaces the measurement by these rows.
-  void SetMeasured(const Eigen::VectorXd& rows) { measured_ = rows; }
-
   int Dimension() const { return dimension_; }
   Eigen::Index NumLoadCases() const {
     return static_cast<Eigen::Index>(rows_.size());

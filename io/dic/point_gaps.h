@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "elastimate/core/algebra/eigen_abi.h"
+
 namespace elastimate {
 
 /// A gap of more than two places between the measured points of a grid.

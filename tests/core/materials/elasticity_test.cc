@@ -47,27 +47,6 @@ TEST_P(Conversions, StiffnessScaleGivesLameParameters) {
   EXPECT_NEAR(3 * e.BulkModulus(), s * (1 + GetParam()), 1e-12 * s);
 }
 
-TEST_P(Conversions, JacobianMatchesFiniteDifferences) {
-  const IsotropicElasticity e{2.5, GetParam()};
-  const Eigen::Matrix2d jacobian =
-      ComplianceScaleJacobian(e, SectionModel::kSolid);
-  const double step = 1e-6;
-  const auto t = [](double youngs, double nu) {
-    return IsotropicElasticity{youngs, nu}.ComplianceScale(
-        SectionModel::kSolid);
-  };
-  EXPECT_NEAR(
-      jacobian(1, 0),
-      (t(2.5 + step, GetParam()) - t(2.5 - step, GetParam())) / (2 * step),
-      1e-9);
-  EXPECT_NEAR(
-      jacobian(1, 1),
-      (t(2.5, GetParam() + step) - t(2.5, GetParam() - step)) / (2 * step),
-      1e-9);
-  EXPECT_EQ(jacobian(0, 0), 0);
-  EXPECT_EQ(jacobian(0, 1), 1);
-}
-
 TEST_P(Conversions, ShearAndBulkJacobianMatchesFiniteDifferences) {
   const double youngs = 2.5;
   const double nu = GetParam();

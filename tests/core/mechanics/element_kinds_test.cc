@@ -158,17 +158,6 @@ TEST_P(ElementKinds, StoreTheWorkOfTheirForces) {
               1, 1e-12);
 }
 
-TEST_P(ElementKinds, MissNothingOfALinearField) {
-  const Eigen::Index dimension = mesh_.Dimension();
-  const Eigen::MatrixXd linear =
-      LinearField(RandomMatrix(dimension, dimension, 5));
-  EXPECT_LT(DiscretizationError(mesh_, elasticity_, linear.reshaped()), 1e-25);
-  // No element kind can represent a cubic displacement, so the error is far
-  // beyond rounding.
-  const Eigen::MatrixXd cubic = mesh_.nodes.array().cube();
-  EXPECT_GT(DiscretizationError(mesh_, elasticity_, cubic.reshaped()), 1e-6);
-}
-
 TEST_P(ElementKinds, SpreadABodyForceAsTheTextbook) {
   const Eigen::VectorXd density = RandomMatrix(mesh_.Dimension(), 1, 6);
   const Eigen::MatrixXd force = AssembleLoads(mesh_, {BodyForce{density}});
