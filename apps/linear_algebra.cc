@@ -83,7 +83,8 @@ bool LimitThreads(const std::string& name, int otherwise,
 /// Starts the program anew with fewer threads where they need more memory than
 /// there may be.  This runs ahead of all libraries: OpenBLAS starts its threads
 /// when it is loaded, and each tries forever to get its memory.
-[[maybe_unused]] void FitThreadsToMemory(char** argv, char** environment) {
+[[maybe_unused]] void FitThreadsToMemory(int /*argc*/, char** argv,
+                                         char** environment) {
   if (AddressSpace() == RLIM_INFINITY) {
     return;
   }
@@ -107,30 +108,10 @@ bool LimitThreads(const std::string& name, int otherwise,
   }
 }
 
-/// Names kernels that this processor has, where nobody else does.  OpenBLAS
-/// chooses them when it is loaded, and takes those of 2004 on processors that
-/// are newer than itself, with which a factorisation takes half as long again.
-[[maybe_unused]] void NameBlasKernels() {
-  __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-      __builtin_cpu_supports("avx512bw") &&
-      __builtin_cpu_supports("avx512vl")) {
-    setenv("OPENBLAS_CORETYPE", "SkylakeX", 0);
-  } else if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
-    setenv("OPENBLAS_CORETYPE", "Haswell", 0);
-  }
-}
-
-[[maybe_unused]] void PrepareLibraries(int /*argc*/, char** argv,
-                                       char** environment) {
-  FitThreadsToMemory(argv, environment);
-  NameBlasKernels();
-}
-
 #ifndef __SANITIZE_ADDRESS__  // It does not work with little memory.
 [[gnu::section(".preinit_array"),
   gnu::used]] void (*const before_libraries)(int, char**,
-                                             char**) = PrepareLibraries;
+                                             char**) = FitThreadsToMemory;
 #endif
 
 }  // namespace
@@ -146,6 +127,21 @@ std::string DescribeBlas() {
   const bool is_openblas = file.find("openblas") != std::string::npos;
   return (is_openblas ? openblas_get_config() : std::string("not OpenBLAS")) +
          " (" + file + ")";
+}
+
+void UseBlasKernelsOfProcessor(char** argv) {
+  constexpr const char* kVariable = "OPENBLAS_CORETYPE";
+  const bool is_unknown = DescribeBlas().find("Prescott") != std::string::npos;
+  if (!is_unknown || std::getenv(kVariable) != nullptr ||
+      !__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) {
+    return;
+  }
+  const bool has_avx512 =
+      __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
+  setenv(kVariable, has_avx512 ? "SkylakeX" : "Haswell", 1);
+  // Where it cannot be started anew, it goes on with those kernels.
+  execv("/proc/self/exe", argv);
 }
 
 void SetBlasThreads(int num_threads) {

@@ -9,6 +9,13 @@ namespace elastimate {
 /// file from which dgemm comes.
 std::string DescribeBlas();
 
+/// Starts the program anew with kernels of the BLAS that this processor has,
+/// where OpenBLAS does not know the processor, as it is newer, and has taken
+/// those of 2004, with which a factorisation takes half as long again. OpenBLAS
+/// chooses when it is loaded.  OPENBLAS_CORETYPE in the environment has the
+/// last word.
+void UseBlasKernelsOfProcessor(char** argv);
+
 /// Sets the threads of the BLAS, at most to the number that fits into the
 /// memory that the process may take.
 void SetBlasThreads(int num_threads);

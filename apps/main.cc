@@ -116,6 +116,7 @@ std::string ButGot(const std::vector<std::string>& arguments) {
 }  // namespace elastimate
 
 int main(int argc, char** argv) {
+  elastimate::UseBlasKernelsOfProcessor(argv);
   elastimate::OpenClosedStandardStreams();
   // A pipe or a file that takes no more is told by the call that writes to it.
   std::signal(SIGPIPE, SIG_IGN);
