@@ -10,6 +10,7 @@
 #include "elastimate/core/mesh/mid_edges.h"
 #include "elastimate/core/scene/deformation_size.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
+#include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/rigid_motion.h"
@@ -51,12 +52,22 @@ class FieldCollector {
              .reshaped(shown_.Dimension(), shown_.NumNodes())});
   }
 
-  void AddStrainEnergy(const InternalForces& forces,
+  // Adds the mean over the elements of `mesh` that each element was cut into.
+  void AddStrainEnergy(const Mesh& mesh, const InternalForces& forces,
                        const Eigen::VectorXd& moduli, Eigen::Index load_case,
                        const Eigen::MatrixXd& all) {
+    const Eigen::VectorXd volumes = ElementVolumes(mesh);
+    const Eigen::VectorXd energies =
+        volumes.cwiseProduct(forces.EnergyDensity(moduli, all.col(load_case)));
+    const Eigen::Index num_elements = shown_.NumElements();
+    const Eigen::Index num_parts = mesh.NumElements() / num_elements;
     fields_.cell.push_back(
         {"strain_energy_density" + CaseSuffix(load_case),
-         forces.EnergyDensity(moduli, all.col(load_case)).transpose()});
+         energies.reshaped(num_parts, num_elements)
+             .colwise()
+             .sum()
+             .cwiseQuotient(
+                 volumes.reshaped(num_parts, num_elements).colwise().sum())});
   }
 
   // Adds a field that is 1 at the nodes whose measurement was left out.
@@ -153,6 +164,33 @@ Eigen::MatrixXd MeasuredMinus(Scene scene,
   return difference;
 }
 
+// Returns the scene with supports where a fit of unknown motion found them.
+Scene WithFittedSupports(Scene scene, const Eigen::MatrixXd& fitted) {
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    Supports supports = SupportsOf(scene, Eigen::Index(k));
+    supports.displacement = supports.held.select(
+        fitted.col(Eigen::Index(k))
+            .reshaped(scene.mesh.Dimension(), scene.mesh.NumNodes()),
+        supports.displacement);
+    supports.unknown.resize(0, 0);
+    supports.rigid_faces.clear();
+    scene.load_cases[k].supports = supports;
+  }
+  return scene;
+}
+
+// Returns the scene of the fit, or with finer elements, of which a fit of
+// unknown motion tells the displacements at the nodes of `scene` alone.
+Scene SolvedScene(const Scene& scene, const Scene& modelled,
+                  const Eigen::MatrixXd& fitted) {
+  if (fitted.size() == 0) {
+    return modelled;
+  }
+  return fitted.rows() == modelled.mesh.NumDofs()
+             ? WithFittedSupports(modelled, fitted)
+             : FinerScene(WithFittedSupports(scene, fitted));
+}
+
 }  // namespace
 
 Fields ResultFields(const Scene& scene, const Scene& modelled,
@@ -177,32 +215,31 @@ Fields ResultFields(const Scene& scene, const Scene& modelled,
     const Eigen::MatrixXd residual = forces.Multiply(moduli, measured) - force;
     for (Eigen::Index k = 0; k < num_cases; ++k) {
       collector.AddPoint("force_residual", k, residual);
-      collector.AddStrainEnergy(forces, moduli, k, measured);
+      collector.AddStrainEnergy(scene.mesh, forces, moduli, k, measured);
     }
     return fields;
   }
-  Equilibrium model(modelled, solver);
+  const Scene solved =
+      SolvedScene(scene, modelled, estimate.fitted_displacement);
+  Equilibrium model(solved, solver);
   const Eigen::VectorXd moduli = model.Forces().Parameters().Moduli(*values);
   if (!model.Solve(moduli)) {
     return fields;
   }
-  const Eigen::MatrixXd& fitted = estimate.fitted_displacement.size() == 0
-                                      ? model.Displacement()
-                                      : estimate.fitted_displacement;
-  const Eigen::MatrixXd difference = MeasuredMinus(modelled, fitted);
+  const Eigen::MatrixXd& fitted = model.Displacement();
+  const Eigen::MatrixXd difference = MeasuredMinus(solved, fitted);
   const Eigen::MatrixXd imbalance =
-      model.Forces().Multiply(moduli, fitted) - AssembleLoadCases(modelled);
-  const Eigen::MatrixXd held_imbalance = OfHeld(modelled, imbalance);
+      model.Forces().Multiply(moduli, fitted) - AssembleLoadCases(solved);
+  const Eigen::MatrixXd held_imbalance = OfHeld(solved, imbalance);
   const Eigen::MatrixXd reaction =
-      scene.mesh.Order() == 2
-          ? held_imbalance
-          : MidEdges(modelled.mesh).Restrict(held_imbalance);
+      scene.mesh.Order() == 2 ? held_imbalance
+                              : MidEdges(solved.mesh).Restrict(held_imbalance);
   collector.AddOutliers(estimate.outliers);
   for (Eigen::Index k = 0; k < num_cases; ++k) {
     collector.AddPoint("fitted_displacement", k, fitted);
     collector.AddPoint("displacement_residual", k, difference);
     collector.AddPoint("reaction_force", k, reaction);
-    collector.AddStrainEnergy(model.Forces(), moduli, k, fitted);
+    collector.AddStrainEnergy(solved.mesh, model.Forces(), moduli, k, fitted);
   }
   return fields;
 }

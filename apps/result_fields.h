@@ -10,8 +10,9 @@ namespace elastimate {
 
 /// Returns the scene with what the estimate makes of it, for each load case (k
 /// > 1 with suffix `_k`).  `modelled` is the scene that was estimated: `scene`,
-/// or its QuadraticScene, whose values are shown at the vertices, which are the
-/// nodes of `scene`.
+/// or one with finer elements (QuadraticScene, FinerScene), whose values are
+/// shown at the nodes of `scene`, and over its elements as means.  Supports of
+/// unknown motion are where the fit found them.
 ///
 /// With a physical E and nu and a specimen that is held, these are:
 /// `fitted_displacement`; `displacement_residual` (measured minus fitted where
