@@ -55,15 +55,18 @@ void Fit(Outline& outline) {
   }
 }
 
+double CorrelationOf(const Outline& outline) {
+  return outline.estimate
+             ? std::clamp(outline.estimate->residual_correlation.value_or(0),
+                          0.0, 0.99)
+             : 0;
+}
+
 // Returns how much better `b` fits than `a`, as twice the difference of
 // logarithmic likelihoods of independent residuals; NaN without both fits.
 double Evidence(const Outline& a, const Outline& b) {
   const Outline& better = b.Residual() < a.Residual() ? b : a;
-  const double alike =
-      better.estimate
-          ? std::clamp(better.estimate->residual_correlation.value_or(0), 0.0,
-                       0.99)
-          : 0;
+  const double alike = CorrelationOf(better);
   const double num_independent =
       better.num_observed * (1 - alike) / (1 + alike);
   return 2 * num_independent * std::log(a.Residual() / b.Residual());
@@ -104,11 +107,14 @@ std::string GapsWhere(bool is_filled, const Outline& outline) {
 
 // Says which gaps are filled, and why.
 void AddNotices(double change, Outline& outline) {
-  const std::string why = change > 0
-                              ? "which the displacements do not tell for sure: "
-                                "it may change E by " +
-                                    Percent(change)
-                              : "since displacements fit better so";
+  // A change of less is said in the error alone.
+  constexpr double kNotable = 0.01;
+  const std::string why =
+      change > kNotable
+          ? "which the displacements do not tell for sure: it may "
+            "change E by " +
+                Percent(change)
+          : "since displacements fit better so";
   std::vector<std::string>& notices = outline.reading.notices;
   const std::string filled = GapsWhere(true, outline);
   if (!filled.empty()) {
@@ -130,7 +136,9 @@ class OutlineSearch {
  public:
   explicit OutlineSearch(const ReadOutline& read)
       : read_(read), best_{{}, read({}), {}, 0} {
-    best_.is_filled.assign(NumGaps(), false);
+    for (const PointGap& gap : best_.reading.gaps) {
+      best_.is_filled.push_back(gap.is_filled);
+    }
   }
 
   Outline Run() {
@@ -159,15 +167,31 @@ class OutlineSearch {
   void Compare(std::vector<bool> is_filled) {
     // Twice the logarithm of a likelihood ratio that leaves no doubt.
     constexpr double kDecisive = 10;
-    Outline other = {is_filled, read_(is_filled), {}, 0};
+    if (is_filled == best_.is_filled) {
+      return;
+    }
+    Outline other = {is_filled, {}, {}, 0};
+    try {
+      other.reading = read_(is_filled);
+    } catch (const std::invalid_argument&) {
+      return;  // No mesh has such gaps.
+    }
     Fit(other);
     const double evidence = Evidence(best_, other);
+    if (std::isnan(evidence)) {
+      return;
+    }
+    const double change = ChangeOfModuli(*best_.estimate, *other.estimate);
+    const double ratio = other.Residual() / best_.Residual();
     if (evidence > kDecisive) {
       best_ = std::move(other);
-    } else if (evidence > -kDecisive) {
-      variance_ +=
-          std::pow(ChangeOfModuli(*best_.estimate, *other.estimate), 2);
     }
+    // Where the better fit leaves more than noise, and hardly less than the
+    // other one, it may not be right either.
+    const double doubt = std::abs(evidence) > kDecisive
+                             ? CorrelationOf(best_) * std::min(ratio, 1 / ratio)
+                             : 1;
+    variance_ += std::pow(doubt * change, 2);
   }
 
   ReadOutline read_;

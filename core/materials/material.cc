@@ -98,6 +98,15 @@ void ValidatePriors(const Law& law, const Material& material,
                                   "prior");
     }
     RequireInRange(parameter, prior.value, name + " gives the prior ");
+    for (const BoundsOfParameter& bounded : material.bounds) {
+      const auto& [lower, upper] = bounded.bounds;
+      if (bounded.name == prior.name &&
+          !(prior.value >= lower.value_or(prior.value) &&
+            prior.value <= upper.value_or(prior.value))) {
+        throw std::invalid_argument(name + " gives a prior of " + prior.name +
+                                    " beyond its bounds; correct one of them");
+      }
+    }
     if (!(prior.sd > 0 && std::isfinite(prior.sd))) {
       throw std::invalid_argument(
           name + " gives the prior of " + prior.name +

@@ -86,7 +86,7 @@ void FinishEstimate(std::string_view estimator, const Scene& scene,
     EnterParametersOfElasticity(scene, options, estimate);
     FailWithoutErrors(estimate);
   }
-  ApplyPriors(scene, estimate);
+  ApplyPriors(scene, options, estimate);
   estimate.stiffnesses = StiffnessesOf(scene, estimate);
   estimate.axes = AxesOf(scene, estimate);
   JudgeParameters(estimate);

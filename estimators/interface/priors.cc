@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <vector>
 
 #include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/statistics.h"
@@ -64,6 +66,48 @@ Eigen::VectorXd UnitsOf(const Estimate& estimate,
   return units;
 }
 
+// Between which the combination may lie: as bounds say, and a ratio between the
+// ends of its range, which the linear combination does not know.
+std::vector<Interval> AllowedOf(const Scene& scene,
+                                const EstimatorOptions& options,
+                                const Estimate& estimate,
+                                const std::vector<Eigen::Index>& estimated) {
+  const MaterialParameters parameters(scene.materials,
+                                      scene.mesh.section.model);
+  std::vector<Interval> allowed;
+  for (const Eigen::Index place : estimated) {
+    const ParameterEstimate& of = estimate.parameters[place];
+    const bool is_isotropic =
+        parameters.LawOf(parameters.All()[place].material).Name() ==
+        IsotropicLaw::kName;
+    Interval interval = {-std::numeric_limits<double>::infinity(),
+                         std::numeric_limits<double>::infinity()};
+    const auto narrow = [&interval](const Bounds& bounds) {
+      if (bounds.lower) {
+        interval.lower = *bounds.lower;
+      }
+      if (bounds.upper) {
+        interval.upper = *bounds.upper;
+      }
+    };
+    if (is_isotropic) {
+      narrow(of.is_modulus ? options.youngs_modulus : options.poisson_ratio);
+    }
+    for (const BoundsOfParameter& given :
+         scene.materials[parameters.All()[place].material].bounds) {
+      if (given.name == of.name) {
+        narrow(given.bounds);
+      }
+    }
+    if (is_isotropic && !of.is_modulus) {
+      interval = {std::max(interval.lower, kSmallestPoissonRatio),
+                  std::min(interval.upper, kLargestPoissonRatio)};
+    }
+    allowed.push_back(interval);
+  }
+  return allowed;
+}
+
 // Scales the parts of the errors as the errors from all causes change.
 void EnterBudget(const std::vector<Eigen::Index>& estimated,
                  const Eigen::VectorXd& before, const Eigen::MatrixXd& of_data,
@@ -87,7 +131,8 @@ void EnterBudget(const std::vector<Eigen::Index>& estimated,
 
 }  // namespace
 
-void ApplyPriors(const Scene& scene, Estimate& estimate) {
+void ApplyPriors(const Scene& scene, const EstimatorOptions& options,
+                 Estimate& estimate) {
   constexpr double kChance = 0.01;
   const std::vector<Eigen::Index> estimated = EstimatedPlaces(estimate);
   if (!HasPriors(scene.materials) || !estimate.IsUsable() ||
@@ -117,6 +162,8 @@ void ApplyPriors(const Scene& scene, Estimate& estimate) {
   EnterBudget(estimated, covariance.diagonal(), total - of_priors, of_priors,
               estimate.error_budget);
   std::vector<ParameterEstimate> without = estimate.parameters;
+  const std::vector<Interval> allowed =
+      AllowedOf(scene, options, estimate, estimated);
   for (std::size_t k = 0; k < estimated.size(); ++k) {
     ParameterEstimate& parameter = estimate.parameters[estimated[k]];
     without[estimated[k]].standard_error =
@@ -124,6 +171,8 @@ void ApplyPriors(const Scene& scene, Estimate& estimate) {
     parameter.value = parameter.is_modulus
                           ? parameter.value * std::exp(change(k))
                           : parameter.value + change(k) * units(k);
+    parameter.value =
+        std::clamp(parameter.value, allowed[k].lower, allowed[k].upper);
   }
   const Eigen::VectorXd units_after = UnitsOf(estimate, estimated);
   estimate.parameter_covariance(estimated, estimated) =

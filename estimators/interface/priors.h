@@ -3,6 +3,7 @@
 
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
+#include "elastimate/estimators/interface/estimator.h"
 
 namespace elastimate {
 
@@ -18,10 +19,14 @@ namespace elastimate {
 /// (y_0 - y)^T (C + P)^-1 (y_0 - y) is larger than chance makes it once in a
 /// hundred times, the finding `prior_contradicted` says so.
 ///
+/// The result is moved into the bounds that are given, and into the range of
+/// Poisson's ratio.
+///
 /// An estimate that is not usable, or that has been through this, stays as it
 /// is.  O(m^3) for m parameters.  [Tarantola, Inverse Problem Theory (2005),
 /// section 3.2]
-void ApplyPriors(const Scene& scene, Estimate& estimate);
+void ApplyPriors(const Scene& scene, const EstimatorOptions& options,
+                 Estimate& estimate);
 
 }  // namespace elastimate
 

@@ -1,5 +1,6 @@
 #include "elastimate/io/dic/margin.h"
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -10,10 +11,6 @@
 
 namespace elastimate {
 namespace {
-
-// On a grid, the points inside of a slanted or curved edge make steps.  A
-// straight side of fewer edges is one of them.
-constexpr Eigen::Index kStraightSide = 5;
 
 struct FreeEdges {
   double length = 0;
@@ -34,9 +31,15 @@ Eigen::MatrixXi FreeEdgeNodes(const Scene& scene) {
   return edges(Eigen::all, free);
 }
 
-// Returns the number of edges in the straight side of each edge.
-std::vector<Eigen::Index> SidesOf(const Mesh& mesh,
-                                  const Eigen::MatrixXi& edges) {
+// Tells of each edge whether its straight side is a step: on a grid, the points
+// inside of a slanted or curved edge make a stair, whose sides have a corner of
+// one element at one end and of three at the other, or are short, as around a
+// small hole.
+std::vector<bool> AreSteps(const Mesh& mesh, const Eigen::MatrixXi& edges) {
+  std::vector<int> num_elements(mesh.NumNodes(), 0);
+  for (const int node : mesh.elements.reshaped()) {
+    ++num_elements[node];
+  }
   std::vector<Eigen::Index> parent(edges.cols());
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&parent](Eigen::Index i) {
@@ -55,15 +58,23 @@ std::vector<Eigen::Index> SidesOf(const Mesh& mesh,
       parent[root(i)] = root(found->second);
     }
   }
+  constexpr Eigen::Index kShort = 5;
   std::vector<Eigen::Index> size(edges.cols(), 0);
+  std::vector<std::array<bool, 2>> has_corner(edges.cols(), {false, false});
   for (Eigen::Index i = 0; i < edges.cols(); ++i) {
     ++size[root(i)];
+    for (const int node : edges.col(i)) {
+      std::array<bool, 2>& of_side = has_corner[root(i)];
+      of_side[0] = of_side[0] || num_elements[node] == 1;
+      of_side[1] = of_side[1] || num_elements[node] == 3;
+    }
   }
-  std::vector<Eigen::Index> of_edge;
+  std::vector<bool> are_steps;
   for (Eigen::Index i = 0; i < edges.cols(); ++i) {
-    of_edge.push_back(size[root(i)]);
+    are_steps.push_back(size[root(i)] < kShort ||
+                        (has_corner[root(i)][0] && has_corner[root(i)][1]));
   }
-  return of_edge;
+  return are_steps;
 }
 
 // Tells whether an edge lies on the box of all nodes, as no step does.
@@ -80,13 +91,13 @@ bool IsOnBox(const Mesh& mesh, const Eigen::Vector2i& edge) {
 FreeEdges FreeEdgesOf(const Scene& scene) {
   const Mesh& mesh = scene.mesh;
   const Eigen::MatrixXi edges = FreeEdgeNodes(scene);
-  const std::vector<Eigen::Index> sides = SidesOf(mesh, edges);
+  const std::vector<bool> are_steps = AreSteps(mesh, edges);
   FreeEdges free;
   for (Eigen::Index i = 0; i < edges.cols(); ++i) {
     const double length =
         (mesh.nodes.col(edges(0, i)) - mesh.nodes.col(edges(1, i))).norm();
     free.length += length;
-    if (mesh.kind == ElementKind::kQuad4 && sides[i] < kStraightSide &&
+    if (mesh.kind == ElementKind::kQuad4 && are_steps[i] &&
         !IsOnBox(mesh, edges.col(i))) {
       free.length_of_steps += length;
     }

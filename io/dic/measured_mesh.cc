@@ -69,13 +69,14 @@ void AddUnmeasured(const Eigen::Matrix2Xd& places, DicFrame& frame) {
 DicFrame WithGapsFilled(std::optional<bool> are_filled, DicFrame frame,
                         PointGaps& gaps) {
   const GridGaps of_grid = GapsOf(frame.positions);
+  gaps.found.clear();
   AddUnmeasured(of_grid.lost, frame);
   for (std::size_t i = 0; i < of_grid.doubtful.size(); ++i) {
     const Eigen::Matrix2Xd& gap = of_grid.doubtful[i];
-    if (!are_filled) {
-      gaps.found.push_back({gap.cols(), gap.rowwise().mean()});
-    }
-    if (are_filled.value_or(i < gaps.is_filled.size() && gaps.is_filled[i])) {
+    const bool is_filled =
+        are_filled.value_or(i < gaps.is_filled.size() && gaps.is_filled[i]);
+    gaps.found.push_back({gap.cols(), gap.rowwise().mean(), is_filled});
+    if (is_filled) {
       AddUnmeasured(gap, frame);
     }
   }
@@ -101,6 +102,21 @@ bool AreManyBeside(const DicFrame& frame, const PointMesh& points) {
   constexpr double kMostBeside = 0.05;
   return static_cast<double>(NumBeside(frame, points)) >
          kMostBeside * static_cast<double>(frame.positions.cols());
+}
+
+// Throws where nodes without a measurement are more than a third, which may as
+// well be beside the specimen.
+void CheckShareOfFilled(const std::filesystem::path& path,
+                        const DicFrame& measured, const DicFrame& filled) {
+  const Eigen::Index size = filled.positions.cols();
+  const Eigen::Index num_filled = size - measured.positions.cols();
+  if (3 * num_filled > size) {
+    ThrowInputError(path,
+                    "its grid has no point at " + std::to_string(num_filled) +
+                        " of " + std::to_string(size) +
+                        " places; if the specimen is there, give \"gaps\": "
+                        "\"filled\", else \"open\"");
+  }
 }
 
 void CheckPointsBeside(const std::filesystem::path& path, const DicFrame& frame,
@@ -159,11 +175,15 @@ MeshFile ReadMeasuredMesh(const JsonValue& mesh, PointGaps& gaps,
   const DicFrame measured = ReadDicFile(path, ReadTableOptions(mesh, 2));
   DicFrame frame = WithGapsFilled(are_filled, measured, gaps);
   PointMesh points = MeshOf(path, frame, max_edge);
-  if (!are_filled && AreManyBeside(frame, points)) {
+  if (!are_filled && gaps.is_filled.empty() && AreManyBeside(frame, points)) {
     // Gaps that take the specimen apart are none of it.
     frame = WithGapsFilled(true, measured, gaps);
     points = MeshOf(path, frame, max_edge);
+  }
+  if (are_filled) {
     gaps.found.clear();
+  } else {
+    CheckShareOfFilled(path, measured, frame);
   }
   CheckPointsBeside(path, frame, points);
   MeshFile file;

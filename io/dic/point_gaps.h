@@ -12,6 +12,7 @@ namespace elastimate {
 struct PointGap {
   Eigen::Index num_places;
   Eigen::Vector2d center;  ///< [length]
+  bool is_filled;          ///< With nodes that were not measured.
 };
 
 /// Gaps between measured points, where either the camera lost points or the

@@ -56,40 +56,46 @@ std::string UnitText(const CsvTable& table, std::size_t column,
   return below.empty() ? ColumnTitle(named).unit : below;
 }
 
-// Gives columns without a unit the unit of the others.
+// Gives displacements without a unit that of the other displacements, or else
+// of the positions, and positions that of the other positions.
 void FillUnits(const CsvTable& table, const std::vector<std::size_t>& columns,
                std::size_t num_positions, Units& units,
                std::vector<std::string>& notices) {
-  const auto first = std::find_if(units.begin(), units.end(),
-                                  [](const auto& unit) { return bool(unit); });
-  if (first == units.end()) {
-    return;
-  }
-  const LengthUnit unit = **first;
-  const std::size_t place = first - units.begin();
-  std::vector<std::size_t> without;
-  for (std::size_t i = 0; i < units.size(); ++i) {
-    if (!units[i]) {
-      without.push_back(columns[i]);
-      units[i] = unit;
-    }
-  }
-  if (without.empty()) {
-    return;
-  }
-  if (place >= num_positions) {
+  const auto is_known = [](const auto& unit) { return unit.has_value(); };
+  const auto displacements = units.begin() + std::ptrdiff_t(num_positions);
+  const auto of_positions =
+      std::find_if(units.begin(), displacements, is_known);
+  const auto of_displacements =
+      std::find_if(displacements, units.end(), is_known);
+  if (of_positions == displacements && of_displacements != units.end()) {
+    const std::size_t column = columns[of_displacements - units.begin()];
     ThrowInputError(
         table.path,
-        Quoted(table, columns[place]) + " is in " + unit.name + ", but " +
-            Quoted(table, columns[0]) +
+        Quoted(table, column) + " is in " + (*of_displacements)->name +
+            ", but " + Quoted(table, columns[0]) +
             " has no unit; give it one in the title, or name the columns with "
             "their units, such as \"columns\": {\"x\": \"" +
             Printable(table.titles[columns[0]].name) + " [mm]\", ...}");
   }
-  notices.push_back(PrintablePath(table.path) +
-                    ": columns without a unit are taken in " + unit.name +
-                    ", as " + Quoted(table, columns[place]) +
-                    " is: " + QuotedList(table, without));
+  if (of_positions == displacements) {
+    return;
+  }
+  const LengthUnit positions = **of_positions;
+  const LengthUnit others =
+      of_displacements == units.end() ? positions : **of_displacements;
+  std::vector<std::size_t> without;
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    if (!units[i]) {
+      units[i] = i < num_positions ? positions : others;
+      without.push_back(columns[i]);
+    }
+  }
+  if (!without.empty()) {
+    notices.push_back(PrintablePath(table.path) +
+                      ": columns without a unit are taken in that of the "
+                      "columns beside them: " +
+                      QuotedList(table, without));
+  }
 }
 
 void CheckScale(const CsvTable& table, const std::vector<std::size_t>& columns,

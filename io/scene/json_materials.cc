@@ -89,6 +89,9 @@ Prior ReadPrior(const std::string& name, const JsonValue& value) {
   if (value.Has("sd") == value.Has("relative_sd")) {
     value.Fail("must have exactly one of the keys sd, relative_sd");
   }
+  if (value.Has("relative_sd") && mean == 0) {
+    value.At("relative_sd").Fail("is relative to the value 0; give \"sd\"");
+  }
   return {name, mean,
           value.Has("sd") ? value.At("sd").Number()
                           : value.At("relative_sd").Number() * std::abs(mean)};

@@ -143,6 +143,12 @@ void AllowForMarginOf(const JsonValue& mesh, FileScene& file_scene) {
     if (!(*margin >= 0)) {
       mesh.At("margin").Fail("is negative; give 0 or a length");
     }
+    const Eigen::MatrixXd& nodes = file_scene.scene.mesh.nodes;
+    if (*margin >
+        (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).minCoeff()) {
+      mesh.At("margin").Fail(
+          "is larger than the mesh of the points; give it in their unit");
+    }
   }
   AllowForMargin(margin, file_scene.scene, file_scene.notices);
 }

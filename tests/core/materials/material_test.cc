@@ -106,6 +106,10 @@ TEST(Materials, ThatAreWrongAreNamed) {
   known.known = {{"poisson_ratio", 0.3}};
   known.priors = {{"poisson_ratio", 0.3, 0.1}};
   EXPECT_THROWS_WITH(ValidateMaterials({known}, mesh), "twice");
+  Material bounded;
+  bounded.bounds = {{"poisson_ratio", {0.4, 0.45}}};
+  bounded.priors = {{"poisson_ratio", 0.3, 0.1}};
+  EXPECT_THROWS_WITH(ValidateMaterials({bounded}, mesh), "beyond its bounds");
   Mesh without = mesh;
   without.regions.resize(0);
   EXPECT_THROWS_WITH(ValidateMaterials({{"isotropic", {3}, {}, {}}}, without),

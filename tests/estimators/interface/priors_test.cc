@@ -104,6 +104,22 @@ TEST(Priors, DetermineWhatNoiseHides) {
               3 * *estimate.YoungsModulusStandardError());
 }
 
+// The linear combination would go beyond 1/2.
+TEST(Priors, KeepTheRangeAndTheBounds) {
+  const Scene scene = NoisyScene(kSmallNoise);
+  const Scene tight = WithPriors(scene, {{"youngs_modulus", 2e4, 1}});
+  const Estimate estimate = MakeEstimator("reduced-fe")->Run(tight, {});
+  ASSERT_TRUE(std::isfinite(estimate.elasticity.poisson_ratio));
+  EXPECT_LE(estimate.elasticity.poisson_ratio, kLargestPoissonRatio);
+  EXPECT_GE(estimate.elasticity.poisson_ratio, kSmallestPoissonRatio);
+  EstimatorOptions options;
+  options.poisson_ratio.upper = 0.31;
+  const Estimate bounded =
+      MakeEstimator("reduced-fe")
+          ->Run(WithPriors(scene, {{"poisson_ratio", 0.4, 1e-6}}), options);
+  EXPECT_LE(bounded.elasticity.poisson_ratio, 0.31);
+}
+
 TEST(Priors, OfNothingThatIsEstimatedLeaveAllAsItIs) {
   const Scene scene = NoisyScene(kSmallNoise);
   EstimatorOptions options;

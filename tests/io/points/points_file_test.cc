@@ -147,6 +147,9 @@ TEST_F(PointsFileTest, SaysWhichColumnsHaveNoUnit) {
   const PointsFile file = Read("X [mm],Y [mm],U,V\n1,2,3,4\n", 2);
   EXPECT_EQ(file.displacement, Eigen::Vector2d(3, 4));
   EXPECT_EQ(file.notices.size(), 1U);
+  // The other displacement says the unit, rather than the positions.
+  EXPECT_EQ(Read("X [mm],Y [mm],U [um],V\n1,2,3,4\n", 2).displacement,
+            Eigen::Vector2d(3e-3, 4e-3));
   for (const std::string unit : {"m", "cm", "mm", "um", "nm", "px"}) {
     EXPECT_THROWS_WITH(
         Read("X,Y,U [" + unit + "],V [" + unit + "]\n1,2,3,4\n", 2),
