@@ -71,16 +71,11 @@ std::string WhyNotUsable(const Estimate& estimate) {
   return "not usable: " + estimate.message;
 }
 
-// No other estimator takes displacements that are too large for this one.
-bool IsRefusedForItsSize(const Estimate& estimate) {
-  return !estimate.IsUsable() && !estimate.findings.empty() &&
-         estimate.findings[0].code == FindingCode::kLargeDeformation;
-}
-
 // For a rung whose errors may come from its method; empty when it will do.
 std::string WhyNotEnough(const Scene& scene, const EstimatorOptions& options,
                          const Estimate& estimate) {
-  if (IsRefusedForItsSize(estimate)) {
+  // No other estimator takes displacements that are too large for this one.
+  if (estimate.IsRefusedFor(FindingCode::kLargeDeformation)) {
     return "";
   }
   if (!estimate.IsUsable()) {

@@ -70,6 +70,13 @@ bool Estimate::Has(FindingCode code) const {
       [code](const Finding& finding) { return finding.code == code; });
 }
 
+bool Estimate::IsRefusedFor(FindingCode code) const {
+  return std::any_of(
+      findings.begin(), findings.end(), [code](const Finding& finding) {
+        return finding.code == code && finding.severity == Severity::kError;
+      });
+}
+
 std::vector<std::string> Estimate::Sentences(Severity severity) const {
   std::vector<std::string> sentences;
   for (const Finding& finding : findings) {
@@ -87,12 +94,6 @@ void Estimate::Add(const Finding& finding) {
   }
 }
 
-void Estimate::Remove(FindingCode code) {
-  RemoveFindings(
-      [code](const Finding& finding) { return finding.code == code; },
-      findings);
-}
-
 void Estimate::Accept() {
   status = Status::kOk;
   message = "";
@@ -106,7 +107,9 @@ void Estimate::Accept() {
 void Estimate::Fail(const Finding& finding) {
   assert(finding.severity == Severity::kError);
   Accept();
-  Remove(finding.code);
+  RemoveFindings(
+      [&](const Finding& other) { return other.code == finding.code; },
+      findings);
   findings.insert(findings.begin(), finding);
   status = StatusOf(finding.code);
   message = Sentence(finding);

@@ -297,12 +297,12 @@ struct Estimate {
   bool IsUsable() const { return status == Status::kOk; }
   /// Whether something of this code was found.
   bool Has(FindingCode code) const;
+  /// Whether the error has this code.
+  bool IsRefusedFor(FindingCode code) const;
   /// The sentences of the findings of this severity.
   std::vector<std::string> Sentences(Severity severity) const;
   /// Enters a finding that is no error, unless there is one of its code.
   void Add(const Finding& finding);
-  /// Takes the finding of this code back, if there is one.
-  void Remove(FindingCode code);
   /// Makes it usable: without an error.
   void Accept();
   /// Makes it one that is not usable, with the status of the code and without

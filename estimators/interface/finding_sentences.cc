@@ -148,20 +148,20 @@ std::string LargestErrors(const ParameterErrors& errors,
 }  // namespace
 
 Finding NotFinite() {
-  return Error(FindingCode::kNotFinite, "the estimate is not a finite number",
-               kCheckTheModel);
+  return Error(FindingCode::kNumericalFailure,
+               "the estimate is not a finite number", kCheckTheModel);
 }
 
 Finding SingularStiffness() {
   return Error(
-      FindingCode::kSingularStiffness,
+      FindingCode::kNumericalFailure,
       "the stiffness matrix is singular to working precision",
       "check the supports, the given parameters, and the mesh for flat "
       "elements and loose parts");
 }
 
 Finding SearchFailed(const std::string& reason) {
-  return Error(FindingCode::kSearchFailed,
+  return Error(FindingCode::kNumericalFailure,
                "the search for the best fit failed (" + reason + ")",
                "check the mesh for flat elements, or use "
                "--estimator=reduced-fe");
@@ -206,14 +206,14 @@ Finding UnphysicalParameters(const std::vector<std::string>& parameters,
 }
 
 Finding DisplacementsOpposeLoads() {
-  return Error(FindingCode::kDisplacementsOpposeLoads,
+  return Error(FindingCode::kUnphysical,
                "the measured displacements point against the loads",
                "check the signs, the order and the units of both, and whether "
                "the noise exceeds the displacements");
 }
 
 Finding YoungsModulusDiverges() {
-  return Error(FindingCode::kYoungsModulusDiverges,
+  return Error(FindingCode::kUnphysical,
                "the data drive Young's modulus to zero or infinity",
                "check the mesh, the supports, the loads, and whether the noise "
                "exceeds the displacements");
@@ -221,13 +221,13 @@ Finding YoungsModulusDiverges() {
 
 Finding PoissonRatioAtMinusOne() {
   return Error(
-      FindingCode::kPoissonRatioDiverges,
+      FindingCode::kUnphysical,
       "the data drive Poisson's ratio to -1, which no material has",
       std::string(kCheckTheModel) + ", or give Poisson's ratio (--nu)");
 }
 
 Finding PoissonRatioDivergesByNoise() {
-  return Error(FindingCode::kPoissonRatioDiverges,
+  return Error(FindingCode::kUnphysical,
                "the data drive Poisson's ratio to the end of its range, which "
                "noise or coarse elements can cause with this estimator",
                "use --estimator=reduced-fe, or give bounds (--nu_min, "
@@ -235,14 +235,14 @@ Finding PoissonRatioDivergesByNoise() {
 }
 
 Finding LoadsDoNoWork() {
-  return Error(FindingCode::kLoadsDoNoWork,
+  return Error(FindingCode::kParametersUndetermined,
                "the loads do no work on any of the virtual fields",
                "raise --degree, or use --estimator=reduced-fe");
 }
 
 Finding OneCombination(const IsotropicElasticity& elasticity,
                        const Eigen::Vector2d& direction) {
-  return Error(FindingCode::kOneCombination,
+  return Error(FindingCode::kParametersUndetermined,
                "the data determine only one combination of Young's modulus and "
                "Poisson's ratio" +
                    Unchanged(elasticity, direction),
@@ -273,7 +273,7 @@ Finding ParametersUndeterminedOnBounds(
 }
 
 Finding AxisUndetermined(const std::vector<std::string>& axes) {
-  return Error(FindingCode::kAxisUndetermined,
+  return Error(FindingCode::kParametersUndetermined,
                "the data do not determine " + FirstOf(axes, 1) +
                    ", so the material may be isotropic",
                "use --material=auto or --material=isotropic, or give the axis "
@@ -282,13 +282,13 @@ Finding AxisUndetermined(const std::vector<std::string>& axes) {
 
 Finding CombinationsOnly(const std::vector<std::string>& combinations) {
   return Warning(
-      FindingCode::kCombinationsOnly,
+      FindingCode::kParametersUndetermined,
       "the data determine only " + combinations[0] + ", and not each parameter",
       kGiveMoreOfMaterials);
 }
 
 Finding ResidualInRegion(const std::string& region, double correlation) {
-  return Warning(FindingCode::kResidualInRegion,
+  return Warning(FindingCode::kSmoothResidual,
                  "the residuals of neighbouring nodes in " + region +
                      " are alike (correlation " + TwoDigits(correlation) +
                      "), so its material may vary",
@@ -297,7 +297,7 @@ Finding ResidualInRegion(const std::string& region, double correlation) {
 }
 
 Finding AxisTurned(double angle, const std::string& region, double change) {
-  return Warning(FindingCode::kAxisTurned,
+  return Warning(FindingCode::kGivenValueContradicted,
                  "axes" + (region.empty() ? "" : " of " + region) +
                      " that are turned by " +
                      TwoDigits(kDegreesOfRadian * angle) +
@@ -324,7 +324,7 @@ Finding RegionMayBeAnother(const std::string& region,
 }
 
 Finding RegionsNotCompared(const std::vector<std::string>& regions) {
-  return {FindingCode::kRegionsNotCompared, Severity::kNotice,
+  return {FindingCode::kParametersUndetermined, Severity::kNotice,
           "the data determine too little of " + FirstOf(regions) +
               " for a comparison with other regions",
           "add another load case, or give the material in \"materials\" of a "
@@ -347,7 +347,7 @@ Finding DependentForces() {
 }
 
 Finding TooFewMeasurements(Eigen::Index num_components) {
-  return Error(FindingCode::kTooFewMeasurements,
+  return Error(FindingCode::kParametersUndetermined,
                "too few components were measured (" +
                    std::to_string(num_components) +
                    ") to tell the noise from the deformation",
@@ -356,7 +356,7 @@ Finding TooFewMeasurements(Eigen::Index num_components) {
 }
 
 Finding BoundContradicted(const std::string& label, bool is_less_asked_for) {
-  return Error(FindingCode::kBoundContradicted,
+  return Error(FindingCode::kParametersOnBounds,
                "the data contradict the bound on " + label +
                    ", and fit much better with a " +
                    (is_less_asked_for ? "smaller" : "larger") + " value",
@@ -367,14 +367,14 @@ Finding KnownPoissonRatioContradicted(const std::string& label,
                                       double poisson_ratio,
                                       double standard_error,
                                       Severity severity) {
-  return {FindingCode::kKnownPoissonRatioContradicted, severity,
+  return {FindingCode::kGivenValueContradicted, severity,
           "the data contradict the given " + label + ", and fit best with " +
               TwoDigits(poisson_ratio) + " +- " + TwoDigits(standard_error),
           "check the given value, the mesh, the supports and the loads"};
 }
 
 Finding LargeCorrection(double correction) {
-  return Error(FindingCode::kLargeCorrection,
+  return Error(FindingCode::kResidualAboveNoise,
                "the loads balance only with displacements that differ from the "
                "measured ones by " +
                    Percent(correction),
@@ -424,14 +424,14 @@ Finding LargeSmoothResidual(double smooth) {
 
 Finding LargeResidual(double displacement_residual) {
   return Warning(
-      FindingCode::kLargeResidual,
+      FindingCode::kResidualAboveNoise,
       "the displacement residual is " +
           PercentOf(displacement_residual, "the measured displacement"),
       std::string(kCheckTheModel) + ", unless the noise is that large");
 }
 
 Finding VirtualWorkImbalance() {
-  return Warning(FindingCode::kVirtualWorkImbalance,
+  return Warning(FindingCode::kResidualAboveNoise,
                  std::string("the virtual work is out of balance by more than "
                              "noise explains") +
                      kErrorsHold,
@@ -439,7 +439,7 @@ Finding VirtualWorkImbalance() {
 }
 
 Finding VirtualWorkImbalance(double force_residual, Severity severity) {
-  return {FindingCode::kVirtualWorkImbalance, severity,
+  return {FindingCode::kResidualAboveNoise, severity,
           "a check by virtual work finds more than noise in the force "
           "residual (" +
               PercentOf(force_residual, "the load") + ")" +
@@ -448,7 +448,7 @@ Finding VirtualWorkImbalance(double force_residual, Severity severity) {
 }
 
 Finding RatiosAtLimit(const std::vector<std::string>& parameters) {
-  return Error(FindingCode::kPoissonRatioAtLimit,
+  return Error(FindingCode::kParametersNearLimits,
                "the data drive " + FirstOf(parameters, 1) +
                    " to the end of the physical range and leave a residual "
                    "that is not noise",
@@ -456,7 +456,7 @@ Finding RatiosAtLimit(const std::vector<std::string>& parameters) {
 }
 
 Finding OutliersAtLimit(const std::vector<std::string>& parameters) {
-  return Error(FindingCode::kPoissonRatioAtLimit,
+  return Error(FindingCode::kParametersNearLimits,
                "some nodes lie far off the fit, which may be what drives " +
                    FirstOf(parameters, 1) + " to the end of the physical range",
                kUseALoss);
@@ -519,7 +519,7 @@ Finding ResultantsContradicted(double distance) {
 }
 
 Finding NoFrameUsable(std::size_t num_frames, const std::string& reason) {
-  return {FindingCode::kNoFrameUsable, Severity::kError,
+  return {FindingCode::kFramesLeftOut, Severity::kError,
           num_frames == 1 ? "the only frame gives no estimate with error bars"
                           : "none of the " + std::to_string(num_frames) +
                                 " frames gives an estimate with error bars",

@@ -47,6 +47,7 @@ bool IsDiscretizationErrorNotable(const Estimate& estimate) {
 
 void Judge(const Evidence& evidence, const EstimatorOptions& options,
            Estimate& estimate) {
+  estimate.Accept();
   std::optional<Finding> error;
   for (const Rule rule : Rules()) {
     const std::optional<Finding> finding = rule(evidence, options, estimate);
@@ -61,9 +62,7 @@ void Judge(const Evidence& evidence, const EstimatorOptions& options,
   }
   if (error) {
     estimate.Fail(*error);
-    return;
   }
-  estimate.Accept();
 }
 
 void FinishEstimate(std::string_view estimator, const Scene& scene,

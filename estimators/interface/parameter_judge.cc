@@ -435,8 +435,7 @@ void JudgeParameters(Estimate& estimate) {
     }
   }
   if (estimate.IsUsable() ||
-      estimate.Has(FindingCode::kParametersUndetermined) ||
-      estimate.Has(FindingCode::kAxisUndetermined)) {
+      estimate.IsRefusedFor(FindingCode::kParametersUndetermined)) {
     EnterDetermination(estimate);
   }
 }

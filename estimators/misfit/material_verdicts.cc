@@ -99,6 +99,7 @@ void DescribeResiduals(const Scene& scene, const MinimumErrors& errors,
   const bool is_rounding =
       Norm(errors.residual) < kRounding * Norm(observed.Measured());
   double highest_score = kLimits.significant_score;
+  const MaterialEstimate* worst = nullptr;
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     MaterialEstimate& material = estimate.materials[i];
     const Eigen::VectorXd rows =
@@ -121,10 +122,12 @@ void DescribeResiduals(const Scene& scene, const MinimumErrors& errors,
         neighbours->correlation / neighbours->standard_deviation;
     if (score > highest_score && !is_rounding) {
       highest_score = score;
-      estimate.Remove(FindingCode::kResidualInRegion);
-      estimate.Add(ResidualInRegion(RegionsLabel(material.regions),
-                                    *material.residual_correlation));
+      worst = &material;
     }
+  }
+  if (worst != nullptr) {
+    estimate.Add(ResidualInRegion(RegionsLabel(worst->regions),
+                                  *worst->residual_correlation));
   }
 }
 

@@ -479,7 +479,8 @@ TEST_P(Conformance, AnEstimateThatIsNotUsableHasAReasonAndNoStandardError) {
       ++num_failures;
       // Where only some parameters are undetermined, the errors of the others
       // are given all the same.
-      if (!estimate.Has(FindingCode::kParametersUndetermined)) {
+      if (estimate.message.find("not determine ") == std::string::npos &&
+          estimate.message.find("coarse to determine ") == std::string::npos) {
         EXPECT_TRUE(estimate.covariance.array().isNaN().all());
         EXPECT_FALSE(estimate.YoungsModulusStandardError().has_value());
         EXPECT_FALSE(estimate.ShearModulusStandardError().has_value());
@@ -595,7 +596,9 @@ TEST_P(Conformance, DisplacementsThatOpposeTheLoadsAreNamed) {
   scene.load_cases[0].displacement *= -1;
   const Estimate estimate = Run(scene);
   EXPECT_EQ(estimate.status, Status::kUnphysical);
-  EXPECT_TRUE(estimate.Has(FindingCode::kDisplacementsOpposeLoads))
+  EXPECT_EQ(estimate.message.find(
+                "the measured displacements point against the loads"),
+            0)
       << estimate.message;
 }
 

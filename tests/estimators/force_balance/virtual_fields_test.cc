@@ -24,7 +24,7 @@ TEST(VirtualFields, SayThatABoundContradictsTheData) {
     options.youngs_modulus = bounds;
     const Estimate estimate = VirtualFields().Run(scene, options);
     EXPECT_EQ(estimate.status, Status::kNotIdentifiable);
-    EXPECT_TRUE(estimate.Has(FindingCode::kBoundContradicted))
+    EXPECT_TRUE(estimate.IsRefusedFor(FindingCode::kParametersOnBounds))
         << estimate.message;
     EXPECT_FALSE(Bounded().Run(scene, options).IsUsable());
   }

@@ -47,6 +47,8 @@ TEST(Finding, AFailureLeavesItsReasonAndNoStandardError) {
   EXPECT_TRUE(estimate.covariance.array().isNaN().all());
   EXPECT_FALSE(estimate.why_no_standard_error.empty());
   EXPECT_TRUE(estimate.Has(FindingCode::kOutliers));
+  EXPECT_FALSE(estimate.IsRefusedFor(FindingCode::kOutliers));
+  EXPECT_TRUE(estimate.IsRefusedFor(FindingCode::kUnphysical));
   // There is one reason.
   estimate.Fail({FindingCode::kOutliers, Severity::kError, "e", "f"});
   ASSERT_EQ(estimate.findings.size(), 1U);

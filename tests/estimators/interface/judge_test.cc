@@ -48,13 +48,13 @@ TEST(Judge, TakesTheFirstErrorForTheReason) {
   evidence.outlier_change = {0.5, 0};
   Estimate estimate = Judged(evidence);
   EXPECT_EQ(estimate.status, Status::kNumericalFailure);
-  EXPECT_TRUE(estimate.Has(FindingCode::kSearchFailed));
-  EXPECT_FALSE(estimate.Has(FindingCode::kLargeCorrection));
+  EXPECT_TRUE(estimate.Has(FindingCode::kNumericalFailure));
+  EXPECT_FALSE(estimate.Has(FindingCode::kResidualAboveNoise));
   EXPECT_TRUE(estimate.Has(FindingCode::kOutliers));
   evidence.do_displacements_oppose_loads = true;
   estimate = Judged(evidence);
   EXPECT_EQ(estimate.status, Status::kUnphysical);
-  EXPECT_FALSE(estimate.Has(FindingCode::kSearchFailed));
+  EXPECT_FALSE(estimate.Has(FindingCode::kNumericalFailure));
 }
 
 // A ratio that a wrong model pulls to its limit is no estimate; a material may
@@ -69,7 +69,7 @@ TEST(Judge, RatiosAtTheirLimitNeedAModelThatFits) {
   EXPECT_TRUE(estimate.IsUsable());
   Judge(evidence, {}, estimate);
   EXPECT_FALSE(estimate.IsUsable());
-  EXPECT_TRUE(estimate.Has(FindingCode::kPoissonRatioAtLimit));
+  EXPECT_TRUE(estimate.IsRefusedFor(FindingCode::kParametersNearLimits));
 }
 
 TEST(Judge, WarnsOfAMeshErrorThatIsUnknown) {
@@ -114,13 +114,26 @@ TEST(Judge, SaysTheSameWhenAskedAgain) {
   Estimate estimate = Judged(evidence);
   EXPECT_TRUE(estimate.IsUsable());
   ASSERT_EQ(estimate.findings.size(), 2U);
-  evidence.correction = 1;
+  evidence.do_displacements_oppose_loads = true;
   for (int i = 0; i < 2; ++i) {
     Judge(evidence, {}, estimate);
-    EXPECT_EQ(estimate.status, Status::kNotIdentifiable);
+    EXPECT_EQ(estimate.status, Status::kUnphysical);
     EXPECT_EQ(estimate.findings.size(), 3U);
     EXPECT_TRUE(estimate.covariance.array().isNaN().all());
   }
+}
+
+TEST(Judge, WarnsWhereAnErrorOfTheSameCodeIsGone) {
+  Evidence evidence;
+  evidence.above_noise = {ResidualKind::kVirtualWork, 2};
+  evidence.correction = 1;
+  Estimate estimate = Judged(evidence);
+  EXPECT_TRUE(estimate.IsRefusedFor(FindingCode::kResidualAboveNoise));
+  EXPECT_EQ(estimate.findings.size(), 1U);
+  evidence.correction.reset();
+  Judge(evidence, {}, estimate);
+  EXPECT_TRUE(estimate.IsUsable());
+  EXPECT_TRUE(estimate.Has(FindingCode::kResidualAboveNoise));
 }
 
 TEST(Judge, WarnsBeforeItRefuses) {
@@ -147,7 +160,7 @@ TEST(Judge, WarnsBeforeItRefuses) {
 TEST(Judge, ABoundIsContradictedWhereItMattersAndIsSignificant) {
   Evidence evidence;
   evidence.bound_excess = {26, 1, 120, 100, "E"};
-  EXPECT_TRUE(Judged(evidence).Has(FindingCode::kBoundContradicted));
+  EXPECT_TRUE(Judged(evidence).IsRefusedFor(FindingCode::kParametersOnBounds));
   evidence.bound_excess = {24, 1, 120, 100, "E"};
   EXPECT_TRUE(Judged(evidence).IsUsable());
   evidence.bound_excess = {26, 1, 105, 100, "E"};
@@ -189,7 +202,7 @@ TEST(Judge, ALargeResidualThatIsSmoothIsNoNoise) {
   estimate.displacement_residual = 0.25;
   Judge(evidence, {}, estimate);
   EXPECT_TRUE(estimate.IsUsable());
-  EXPECT_TRUE(estimate.Has(FindingCode::kLargeResidual));
+  EXPECT_TRUE(estimate.Has(FindingCode::kResidualAboveNoise));
 }
 
 // Two materials, of the second of which too little is known; elements miss this

@@ -178,7 +178,7 @@ TEST_P(DisplacementEstimators, SayThatTheDataContradictABound) {
       options.known_poisson_ratio = nu;
       const Estimate estimate = Run(scene, options);
       EXPECT_EQ(estimate.status, Status::kNotIdentifiable);
-      EXPECT_TRUE(estimate.Has(FindingCode::kBoundContradicted))
+      EXPECT_TRUE(estimate.IsRefusedFor(FindingCode::kParametersOnBounds))
           << estimate.message;
     }
   }

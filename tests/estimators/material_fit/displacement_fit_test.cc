@@ -188,7 +188,7 @@ TEST(DisplacementFit, NuAtTheLowerEndOfItsRangeIsNotBelieved) {
   const Estimate estimate = ReducedFe().Run(scene, {});
   ASSERT_LT(estimate.elasticity.poisson_ratio, -0.999);
   EXPECT_EQ(estimate.status, Status::kUnphysical);
-  EXPECT_TRUE(estimate.Has(FindingCode::kPoissonRatioDiverges))
+  EXPECT_NE(estimate.message.find("Poisson's ratio to -1"), std::string::npos)
       << estimate.message;
   // Iterations approach the end of the range, but do not come to it.
   EXPECT_FALSE(IterativeFe().Run(scene, {}).IsUsable());
@@ -240,7 +240,7 @@ TEST(DisplacementFit, TooFewComponentsAreNotUsable) {
   mask(0, scene.mesh.NumNodes() - 2) = true;
   const Estimate estimate = IterativeFe().Run(scene, {});
   EXPECT_EQ(estimate.status, Status::kNotIdentifiable);
-  EXPECT_TRUE(estimate.Has(FindingCode::kTooFewMeasurements));
+  EXPECT_EQ(estimate.message.find("too few components"), 0);
   EXPECT_FALSE(estimate.why_no_standard_error.empty());
 
   // One unknown less, or a fifth component, is enough.

@@ -144,7 +144,8 @@ TEST(AxisOfIsotropyStatistics, IsNotDetermined) {
       if (seed == 0) {
         continue;  // Exact displacements may be refused for another reason.
       }
-      EXPECT_TRUE(estimate.Has(FindingCode::kAxisUndetermined))
+      EXPECT_NE(estimate.message.find("the material may be isotropic"),
+                std::string::npos)
           << seed << " " << estimator << " " << estimate.message;
       EXPECT_EQ(estimate.status, Status::kNotIdentifiable);
       ASSERT_EQ(estimate.axes.size(), 1U);

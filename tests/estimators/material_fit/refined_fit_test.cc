@@ -92,7 +92,7 @@ TEST(RefinedFit, NextToIncompressibleTheMeshErrorIsKnown) {
   const Estimate estimate = Fitted(scene);
   EXPECT_GT(estimate.elasticity.poisson_ratio, 0.49);
   EXPECT_FALSE(estimate.Has(FindingCode::kMeshErrorUnknown));
-  EXPECT_FALSE(estimate.Has(FindingCode::kSearchFailed));
+  EXPECT_FALSE(estimate.Has(FindingCode::kNumericalFailure));
 }
 
 TEST(RefinedFit, DividesTheMeshAsOftenAsIsAskedFor) {

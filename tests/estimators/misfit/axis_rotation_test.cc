@@ -86,7 +86,8 @@ TEST_P(WrongAxis, IsSaidAndHeldByTheErrors) {
       continue;
     }
     EXPECT_EQ(NumMissed(estimate, truth), 0) << degrees;
-    const Finding* const said = FindingOf(estimate, FindingCode::kAxisTurned);
+    const Finding* const said =
+        FindingOf(estimate, FindingCode::kGivenValueContradicted);
     EXPECT_TRUE(said != nullptr || degrees < 2) << degrees;
     EXPECT_TRUE(said == nullptr || said->severity == Severity::kWarning);
   }
@@ -98,7 +99,7 @@ TEST_P(WrongAxis, IsNotSaidWhereItIsRight) {
                                  SectionModel::kSolid, noise, 5);
     const Estimate estimate = MakeEstimator(GetParam())->Run(scene, {});
     ASSERT_TRUE(estimate.IsUsable()) << estimate.message;
-    EXPECT_FALSE(estimate.Has(FindingCode::kAxisTurned)) << noise;
+    EXPECT_FALSE(estimate.Has(FindingCode::kGivenValueContradicted)) << noise;
   }
 }
 
@@ -159,7 +160,7 @@ TEST(AxisRotation, IsOneInThePlane) {
   scene.materials = {lamina};
   const Estimate estimate = MakeEstimator("iterative-fe")->Run(scene, {});
   ASSERT_TRUE(estimate.IsUsable()) << estimate.message;
-  EXPECT_TRUE(estimate.Has(FindingCode::kAxisTurned));
+  EXPECT_TRUE(estimate.Has(FindingCode::kGivenValueContradicted));
   EXPECT_EQ(NumMissed(estimate, truth), 0);
 }
 

@@ -196,7 +196,7 @@ TEST(JointEstimate, LeavesOutWhatIsNotUsable) {
   EXPECT_TRUE(joint.Has(FindingCode::kFramesLeftOut));
   const Estimate none = Join({failed, failed});
   EXPECT_EQ(none.status, Status::kNotIdentifiable);
-  EXPECT_TRUE(none.Has(FindingCode::kNoFrameUsable));
+  EXPECT_TRUE(none.IsRefusedFor(FindingCode::kFramesLeftOut));
 }
 
 TEST(JointEstimate, TellsOfAMaterialThatIsNotLinear) {
