@@ -100,8 +100,7 @@ std::string GapsWhere(bool is_filled, const Outline& outline) {
     }
   }
   return count > kMostNamed
-             ? text + " and " + std::to_string(count - kMostNamed) +
-                   " more gaps"
+             ? text + " and " + Counted(count - kMostNamed, "more gap")
              : text;
 }
 

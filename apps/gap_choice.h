@@ -18,7 +18,8 @@ using ReadOutline =
 /// displacements around it differ: fits with and without the material (two, and
 /// one more for each of the eight largest gaps where there are several) are
 /// compared by their square sums.  Where these do not tell, the change of the
-/// moduli becomes an error (Section::thickness_relative_sd).  A scene of frames
+/// moduli becomes an error, and so does a part of it where the better fit
+/// leaves more than noise (Section::thickness_relative_sd).  A scene of frames
 /// is decided by the frame of the largest load.  Notices say what was found,
 /// and how to say it instead.
 SceneReading ReadWithGapsChosen(const ReadOutline& read);

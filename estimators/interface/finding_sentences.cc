@@ -651,7 +651,8 @@ Finding PriorContradicted(const ParameterEstimate& of_data,
       FindingCode::kPriorContradicted,
       "the data alone give " + of_data.Label() + " = " +
           ValueWithError(of_data.value, *of_data.standard_error) +
-          ", which the prior makes improbable (p = " + TwoDigits(probability) +
+          ", which the prior makes improbable (p " +
+          (probability < 1e-6 ? "< 1e-6" : "= " + TwoDigits(probability)) +
           "); the estimate lies between the two",
       "check the loads, the units and the value and deviation of the prior");
 }

@@ -1,10 +1,10 @@
 #include "elastimate/io/dic/margin.h"
 
-#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <utility>
+#include <vector>
 
 #include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/text/numbers.h"
@@ -31,15 +31,9 @@ Eigen::MatrixXi FreeEdgeNodes(const Scene& scene) {
   return edges(Eigen::all, free);
 }
 
-// Tells of each edge whether its straight side is a step: on a grid, the points
-// inside of a slanted or curved edge make a stair, whose sides have a corner of
-// one element at one end and of three at the other, or are short, as around a
-// small hole.
-std::vector<bool> AreSteps(const Mesh& mesh, const Eigen::MatrixXi& edges) {
-  std::vector<int> num_elements(mesh.NumNodes(), 0);
-  for (const int node : mesh.elements.reshaped()) {
-    ++num_elements[node];
-  }
+// Returns the straight side of each edge, as the place of one of its edges.
+std::vector<Eigen::Index> SidesOf(const Mesh& mesh,
+                                  const Eigen::MatrixXi& edges) {
   std::vector<Eigen::Index> parent(edges.cols());
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&parent](Eigen::Index i) {
@@ -58,21 +52,43 @@ std::vector<bool> AreSteps(const Mesh& mesh, const Eigen::MatrixXi& edges) {
       parent[root(i)] = root(found->second);
     }
   }
-  constexpr Eigen::Index kShort = 5;
-  std::vector<Eigen::Index> size(edges.cols(), 0);
-  std::vector<std::array<bool, 2>> has_corner(edges.cols(), {false, false});
+  std::vector<Eigen::Index> sides;
   for (Eigen::Index i = 0; i < edges.cols(); ++i) {
-    ++size[root(i)];
+    sides.push_back(root(i));
+  }
+  return sides;
+}
+
+// Tells of each edge whether its straight side is a step: on a grid, the points
+// inside of a slanted or curved edge make a stair, whose sides have a corner of
+// one element at one end and of three at the other, or are short, as around a
+// small hole.
+std::vector<bool> AreSteps(const Mesh& mesh, const Eigen::MatrixXi& edges) {
+  constexpr Eigen::Index kShort = 5;
+  struct Side {
+    Eigen::Index num_edges = 0;
+    bool has_outer_corner = false;
+    bool has_inner_corner = false;
+  };
+  std::vector<int> num_elements(mesh.NumNodes(), 0);
+  for (const int node : mesh.elements.reshaped()) {
+    ++num_elements[node];
+  }
+  const std::vector<Eigen::Index> side_of = SidesOf(mesh, edges);
+  std::vector<Side> sides(edges.cols());
+  for (Eigen::Index i = 0; i < edges.cols(); ++i) {
+    Side& side = sides[side_of[i]];
+    ++side.num_edges;
     for (const int node : edges.col(i)) {
-      std::array<bool, 2>& of_side = has_corner[root(i)];
-      of_side[0] = of_side[0] || num_elements[node] == 1;
-      of_side[1] = of_side[1] || num_elements[node] == 3;
+      side.has_outer_corner |= num_elements[node] == 1;
+      side.has_inner_corner |= num_elements[node] == 3;
     }
   }
   std::vector<bool> are_steps;
-  for (Eigen::Index i = 0; i < edges.cols(); ++i) {
-    are_steps.push_back(size[root(i)] < kShort ||
-                        (has_corner[root(i)][0] && has_corner[root(i)][1]));
+  for (const Eigen::Index place : side_of) {
+    const Side& side = sides[place];
+    are_steps.push_back(side.num_edges < kShort ||
+                        (side.has_outer_corner && side.has_inner_corner));
   }
   return are_steps;
 }
