@@ -418,8 +418,9 @@ Finding LargeSmoothResidual(double smooth) {
                "the model does not explain a smooth part of the measured "
                "displacement, " +
                    PercentOf(smooth, "its size"),
-               "check the mesh, the supports, the loads, the given parameters, "
-               "and whether the material varies");
+               "check the signs and units of displacements, the mesh, the "
+               "supports, the loads, the given parameters, and whether the "
+               "material varies");
 }
 
 Finding LargeResidual(double displacement_residual) {

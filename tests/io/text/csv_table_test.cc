@@ -99,8 +99,9 @@ TEST_F(CsvTableTest, ReadsDecimalCommasWhereTheySeparateNothing) {
 }
 
 TEST_F(CsvTableTest, RefusesRowsThatDoNotFit) {
-  EXPECT_THROWS_WITH(Read("a,b\n1,5,2,5\n"),
-                     "line 2 has 4 columns, but the titles have 2; .* semicolons");
+  EXPECT_THROWS_WITH(
+      Read("a,b\n1,5,2,5\n"),
+      "line 2 has 4 columns, but the titles have 2; .* semicolons");
   EXPECT_THROWS_WITH(Read("a,b\n1;2\n"), "line 2 has 1 columns");
   EXPECT_THROWS_WITH(Read("a;b\n1,2\n"), "line 2 has 1 columns");
   EXPECT_THROWS_WITH(Read("a,b\n"), "no row of numbers");
