@@ -15,13 +15,19 @@
 namespace elastimate {
 namespace {
 
-/// Says which gaps are filled, and what a fit then leaves.
+/// A scene with some gaps filled, and what a fit of it leaves.
 struct Outline {
-  std::vector<bool> is_filled;
   SceneReading reading;
   std::optional<Estimate> estimate;  // Nothing where no fit takes the scene.
   double num_observed = 0;
 
+  std::vector<bool> IsFilled() const {
+    std::vector<bool> is_filled;
+    for (const PointGap& gap : reading.gaps) {
+      is_filled.push_back(gap.is_filled);
+    }
+    return is_filled;
+  }
   double Residual() const {
     return estimate ? estimate->displacement_residual.value_or(NAN) : NAN;
   }
@@ -91,9 +97,8 @@ std::string GapsWhere(bool is_filled, const Outline& outline) {
   constexpr std::size_t kMostNamed = 3;
   std::string text;
   std::size_t count = 0;
-  for (std::size_t i = 0; i < outline.is_filled.size(); ++i) {
-    const PointGap& gap = outline.reading.gaps[i];
-    if (outline.is_filled[i] == is_filled && ++count <= kMostNamed) {
+  for (const PointGap& gap : outline.reading.gaps) {
+    if (gap.is_filled == is_filled && ++count <= kMostNamed) {
       text += (text.empty() ? "" : ", ") + std::to_string(gap.num_places) +
               " places around (" + NumberText(gap.center(0)) + ", " +
               NumberText(gap.center(1)) + ")";
@@ -134,11 +139,7 @@ void AddNotices(double change, Outline& outline) {
 class OutlineSearch {
  public:
   explicit OutlineSearch(const ReadOutline& read)
-      : read_(read), best_{{}, read({}), {}, 0} {
-    for (const PointGap& gap : best_.reading.gaps) {
-      best_.is_filled.push_back(gap.is_filled);
-    }
-  }
+      : read_(read), best_{read({}), {}, 0} {}
 
   Outline Run() {
     constexpr std::size_t kMostTried = 8;
@@ -149,9 +150,9 @@ class OutlineSearch {
     Compare(std::vector<bool>(NumGaps(), true));
     for (std::size_t i = 0;
          NumGaps() > 1 && i < std::min(NumGaps(), kMostTried); ++i) {
-      std::vector<bool> is_filled = best_.is_filled;
+      std::vector<bool> is_filled = best_.IsFilled();
       is_filled[i] = !is_filled[i];
-      Compare(std::move(is_filled));
+      Compare(is_filled);
     }
     const double change = std::sqrt(variance_);
     AddNotices(change, best_);
@@ -163,13 +164,13 @@ class OutlineSearch {
  private:
   std::size_t NumGaps() const { return best_.reading.gaps.size(); }
 
-  void Compare(std::vector<bool> is_filled) {
+  void Compare(const std::vector<bool>& is_filled) {
     // Twice the logarithm of a likelihood ratio that leaves no doubt.
     constexpr double kDecisive = 10;
-    if (is_filled == best_.is_filled) {
+    if (is_filled == best_.IsFilled()) {
       return;
     }
-    Outline other = {is_filled, {}, {}, 0};
+    Outline other;
     try {
       other.reading = read_(is_filled);
     } catch (const std::invalid_argument&) {

@@ -65,7 +65,7 @@ TEST_P(PriorsOfEveryEstimator, AddInformation) {
   EXPECT_NEAR(
       *both.YoungsModulusStandardError() / both.elasticity.youngs_modulus,
       std::sqrt(expected(0, 0)), 1e-6 * std::sqrt(expected(0, 0)));
-  // Of the variance of nu, the prior bears expected / sd^2.
+  // The prior bears the share expected / sd^2 of the variance of nu.
   EXPECT_NEAR(both.error_budget.prior(1), expected(1, 1) / prior.sd, 1e-6 * sd);
   EXPECT_LT(both.error_budget.noise(1), data.error_budget.noise(1));
   EXPECT_FALSE(both.Has(FindingCode::kPriorContradicted));
