@@ -139,20 +139,6 @@ Eigen::MatrixXd RotationJacobian(const Matrix6d& stiffness,
   return jacobian;
 }
 
-// Returns rotation vectors w whose axes are about as far from each other all
-// over a half sphere, by the golden angle.
-std::vector<Eigen::Vector3d> RotationsOfHalfSphere() {
-  constexpr int kNumAxes = 48;
-  const double golden_angle = kPi * (3 - std::sqrt(5.0));
-  std::vector<Eigen::Vector3d> rotations;
-  for (int i = 0; i < kNumAxes; ++i) {
-    const double angle = std::acos((i + 0.5) / kNumAxes);
-    rotations.emplace_back(0, angle * std::cos(golden_angle * i),
-                           angle * std::sin(golden_angle * i));
-  }
-  return rotations;
-}
-
 // The best moduli for an axis that is turned by w.
 struct FitOfAxis {
   Eigen::Vector3d w;
@@ -295,8 +281,9 @@ Eigen::VectorXd FreeAxisLaw::NearestParameters(
     const Eigen::VectorXd& moduli, const Eigen::MatrixXd& weights) const {
   const std::vector<BlockEntry>& entries = AnisotropicLaw::BlockEntries();
   const Eigen::VectorXd weighted = weights * moduli;
+  constexpr int kNumAxes = 48;
   std::optional<FitOfAxis> best;
-  for (const Eigen::Vector3d& w : RotationsOfHalfSphere()) {
+  for (const Eigen::Vector3d& w : RotationsOfHalfSphere(kNumAxes)) {
     const std::optional<FitOfAxis> fit =
         DescendFromAxis(w, weighted, weights, entries);
     if (fit && !(best && best->square_sum <= fit->square_sum)) {
@@ -308,12 +295,28 @@ Eigen::VectorXd FreeAxisLaw::NearestParameters(
   if (!best) {
     return parameters;
   }
-  Eigen::Vector3d& w = best->w;
-  // L and -L are one axis; this takes the end that is nearer to x.
-  const double angle = std::remainder(w.norm(), kPi);
-  w *= w.norm() > 0 ? angle / w.norm() : 1;
-  parameters << OfKnownAxis().ParametersOf(best->moduli, kModel), w.tail(2);
+  parameters << OfKnownAxis().ParametersOf(best->moduli, kModel),
+      best->w.tail(2);
+  return WithNearerEnd(parameters);
+}
+
+Eigen::VectorXd FreeAxisLaw::WithNearerEnd(Eigen::VectorXd parameters) {
+  const double angle = parameters.tail(2).norm();
+  if (angle > 0) {
+    parameters.tail(2) *= std::remainder(angle, kPi) / angle;
+  }
   return parameters;
+}
+
+std::vector<Eigen::Vector3d> FreeAxisLaw::RotationsOfHalfSphere(int num_axes) {
+  const double golden_angle = kPi * (3 - std::sqrt(5.0));
+  std::vector<Eigen::Vector3d> rotations;
+  for (int i = 0; i < num_axes; ++i) {
+    const double angle = std::acos((i + 0.5) / num_axes);
+    rotations.emplace_back(0, angle * std::cos(golden_angle * i),
+                           angle * std::sin(golden_angle * i));
+  }
+  return rotations;
 }
 
 Eigen::Vector3d FreeAxisLaw::Axis(const Eigen::VectorXd& parameters) {

@@ -51,6 +51,21 @@ bool HasFreeAxis(const Scene& scene) {
                      });
 }
 
+bool AreAxesApart(const MaterialParameters& all, const Eigen::VectorXd& a,
+                  const Eigen::VectorXd& b) {
+  const double near = std::cos(3 * kLimits.largest_axis_error);
+  for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
+    const Eigen::Index first = all.FirstParameter(i);
+    const auto count = Eigen::Index(all.LawOf(i).Parameters().size());
+    if (all.LawOf(i).Name() == FreeAxisLaw::kName &&
+        std::abs(FreeAxisLaw::Axis(a.segment(first, count))
+                     .dot(FreeAxisLaw::Axis(b.segment(first, count)))) < near) {
+      return true;
+    }
+  }
+  return false;
+}
+
 std::vector<AxisEstimate> AxesOf(const Scene& scene, const Estimate& estimate) {
   std::vector<AxisEstimate> axes;
   if (estimate.parameters.empty() || !HasFreeAxis(scene)) {

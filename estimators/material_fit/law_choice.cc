@@ -22,12 +22,22 @@
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/free_parameters.h"
 #include "elastimate/estimators/material_fit/material_fit.h"
-#include "elastimate/estimators/material_fit/nearest_symmetry.h"
 #include "elastimate/estimators/material_fit/outliers.h"
 #include "elastimate/estimators/misfit/displacement_misfit.h"
 
 namespace elastimate {
 namespace {
+
+// Returns the W of W^T W = C^-1, where what is less certain than the rest of a
+// covariance by rounding counts as known to that.
+Eigen::MatrixXd WeightsOf(const Eigen::MatrixXd& covariance) {
+  constexpr double kRounding = 1e-12;
+  const SymmetricEigenDecomposition modes = DecomposeSymmetric(covariance);
+  const Eigen::VectorXd variances =
+      modes.values.cwiseMax(kRounding * modes.values.maxCoeff());
+  return variances.cwiseSqrt().cwiseInverse().asDiagonal() *
+         modes.vectors.transpose();
+}
 
 constexpr SectionModel kSolid = SectionModel::kSolid;
 constexpr Eigen::Index kNumStiffnesses = 21;

@@ -7,6 +7,8 @@
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/node_sums.h"
+#include "elastimate/core/materials/free_axis_law.h"
+#include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/material_fit/material_descent.h"
 #include "elastimate/estimators/reduced_model/nearby_solve.h"
 #include "elastimate/estimators/reduced_model/reduced_equilibrium.h"
@@ -38,6 +40,9 @@ class ReducedDescent {
   /// Sets the pole at typical values, where the model is solved but for the
   /// scale; empty where displacements oppose the loads.
   std::optional<Eigen::VectorXd> SetTypicalPole();
+  /// Sets the pole at x, with the derivatives by all moduli.  False where the
+  /// stiffness is singular.
+  bool SetPoleOfAllModuli(const Eigen::VectorXd& x);
   int NumPoles() const { return num_poles_; }
   /// Whether the last minimum is farther from the pole than the reduced model
   /// is trusted.
@@ -100,6 +105,17 @@ bool ReducedDescent::SetPole(const Eigen::VectorXd& x) {
   return true;
 }
 
+bool ReducedDescent::SetPoleOfAllModuli(const Eigen::VectorXd& x) {
+  if (!misfit_.SolveAt(x)) {
+    return false;
+  }
+  const Eigen::Index num_moduli = misfit_.Free().All().NumModuli();
+  AddPole(x, misfit_.Model().Displacement(),
+          misfit_.Model().Sensitivities(
+              Eigen::MatrixXd::Identity(num_moduli, num_moduli)));
+  return true;
+}
+
 std::optional<Eigen::VectorXd> ReducedDescent::SetTypicalPole() {
   const std::optional<Eigen::VectorXd> x = TypicalStart(misfit_);
   if (!x) {
@@ -127,7 +143,7 @@ void ReducedDescent::AddPole(const Eigen::VectorXd& x,
                              const Eigen::MatrixXd& displacement,
                              const Eigen::MatrixXd& sensitivities) {
   const Eigen::MatrixXd u = WithoutHeld(displacement);
-  const Eigen::Index n = misfit_.Free().Size();
+  const Eigen::Index n = sensitivities.cols() / u.cols();
   Eigen::MatrixXd vectors(u.rows(), (n + 1) * u.cols());
   for (Eigen::Index k = 0; k < u.cols(); ++k) {
     vectors.col((n + 1) * k) = u.col(k);
@@ -360,7 +376,81 @@ BoundedMinimum DescendFromPole(const Eigen::VectorXd& pole, int most_poles,
   }
 }
 
+// Returns the parameters with those of each material whose axis is to be found
+// replaced by what `change` makes of them.
+template <class Function>
+Eigen::VectorXd WithFreeAxes(const MaterialParameters& all,
+                             Eigen::VectorXd parameters,
+                             const Function& change) {
+  for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
+    if (all.LawOf(i).Name() == FreeAxisLaw::kName) {
+      auto own =
+          parameters.segment(all.FirstParameter(i),
+                             Eigen::Index(all.LawOf(i).Parameters().size()));
+      own = change(Eigen::VectorXd(own)).eval();
+    }
+  }
+  return parameters;
+}
+
 }  // namespace
+
+std::vector<Eigen::VectorXd> StartsOverAxes(const Scene& scene,
+                                            DisplacementMisfit& misfit) {
+  constexpr int kNumAxes = 13;
+  // A minimum whose log likelihood is so much less than that of the least one
+  // is no start.  The reduced model is exact to that near its pole only.
+  constexpr double kOutOfReach = 25;
+  const std::optional<Eigen::VectorXd> typical = TypicalStart(misfit);
+  if (!typical) {
+    return {};
+  }
+  const FreeParameters& free = misfit.Free();
+  const auto changed = [&](const Eigen::VectorXd& x, const auto& change) {
+    return free.VariablesOf(
+        WithFreeAxes(free.All(), free.ParametersAt(x), change));
+  };
+  std::vector<Eigen::VectorXd> along_axes;
+  for (const Eigen::Vector3d& w :
+       FreeAxisLaw::RotationsOfHalfSphere(kNumAxes)) {
+    along_axes.push_back(changed(*typical, [&](Eigen::VectorXd own) {
+      own.tail(2) = w.tail(2);
+      return own;
+    }));
+  }
+  // With E_T for E_L, typical values are nearly alike in all directions.
+  const Eigen::VectorXd pole = changed(*typical, [](Eigen::VectorXd own) {
+    own(0) = own(1);
+    return own;
+  });
+  ReducedDescent descent(misfit);
+  if (HasUnknownMotion(scene) || !descent.SetPoleOfAllModuli(pole)) {
+    return along_axes;
+  }
+  std::vector<BoundedMinimum> minima;
+  minima.reserve(along_axes.size());
+  for (const Eigen::VectorXd& start : along_axes) {
+    minima.push_back(descent.MinimumFrom(start));
+  }
+  std::sort(minima.begin(), minima.end(),
+            [](const BoundedMinimum& a, const BoundedMinimum& b) {
+              return a.cost < b.cost;
+            });
+  const double least = minima[0].cost;
+  std::vector<Eigen::VectorXd> starts;
+  for (const BoundedMinimum& minimum : minima) {
+    const bool is_another = std::all_of(
+        starts.begin(), starts.end(), [&](const Eigen::VectorXd& other) {
+          return AreAxesApart(free.All(), free.ParametersAt(minimum.variables),
+                              free.ParametersAt(other));
+        });
+    if (is_another &&
+        minimum.cost <= least + kOutOfReach * misfit.Variance(least)) {
+      starts.push_back(changed(minimum.variables, FreeAxisLaw::WithNearerEnd));
+    }
+  }
+  return starts;
+}
 
 std::optional<BoundedMinimum> ReducedMinimum(
     const std::optional<Eigen::VectorXd>& start,

@@ -295,6 +295,9 @@ MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start) {
     }
   }
   MaterialFit fit = chain.Finest().Fit();
+  if (linear_) {
+    fit.has_rival_axis = linear_->Fit().has_rival_axis;
+  }
   fit.estimate.mesh_divisions = chain.divided ? 1 : 0;
   fit.estimate.work = work + chain.work;
   EnterOutliers(chain.left_out, chain.of_all, chain.of_inliers, fit.estimate);

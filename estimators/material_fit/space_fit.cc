@@ -7,7 +7,9 @@
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/materials/material.h"
+#include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/interface/judge.h"
+#include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 #include "elastimate/estimators/material_fit/material_descent.h"
@@ -115,6 +117,9 @@ std::optional<BoundedMinimum> SpaceFit::FindMinimum(
                             End::kDone, ""};
     }
   }
+  if (!start && HasFreeAxis(scene_)) {
+    return FindOverAxes(descent);
+  }
   if (descent == Descent::kFull) {
     return start ? DescendFrom(options_, *start, Distance::kNear, misfit_)
                  : BestMinimum(scene_, options_, misfit_, fit_.estimate);
@@ -133,6 +138,36 @@ std::optional<BoundedMinimum> SpaceFit::FindMinimum(
                  : ReducedMinimum(
                        VirtualFieldsStart(scene_, options_, fit_.estimate),
                        options_, misfit_, fit_.estimate);
+}
+
+// The best minimum of all starts, with another axis that is nearly as probable.
+std::optional<BoundedMinimum> SpaceFit::FindOverAxes(Descent descent) {
+  std::vector<BoundedMinimum> minima;
+  for (const Eigen::VectorXd& start : StartsOverAxes(scene_, misfit_)) {
+    if (descent == Descent::kFull) {
+      minima.push_back(DescendFrom(options_, start, Distance::kFar, misfit_));
+    } else if (const auto minimum =
+                   ReducedMinimum(start, options_, misfit_, fit_.estimate)) {
+      minima.push_back(*minimum);
+    }
+  }
+  if (minima.empty()) {
+    return std::nullopt;
+  }
+  std::sort(minima.begin(), minima.end(),
+            [](const BoundedMinimum& a, const BoundedMinimum& b) {
+              return a.cost < b.cost;
+            });
+  const FreeParameters& free = misfit_.Free();
+  const double reach = minima[0].cost + kLimits.least_axis_preference / 2 *
+                                            misfit_.Variance(minima[0].cost);
+  fit_.has_rival_axis = std::any_of(
+      minima.begin(), minima.end(), [&](const BoundedMinimum& minimum) {
+        return minimum.cost < reach &&
+               AreAxesApart(free.All(), free.ParametersAt(minimum.variables),
+                            free.ParametersAt(minima[0].variables));
+      });
+  return minima[0];
 }
 
 void SpaceFit::Minimize(Descent descent,

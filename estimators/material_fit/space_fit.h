@@ -30,6 +30,8 @@ struct MaterialFit {
   MinimumErrors errors;
   /// The fitted displacement; empty where there is no fit.
   Eigen::MatrixXd displacement;
+  /// Whether the data hardly prefer an axis that was found to another one.
+  bool has_rival_axis = false;
 
   std::optional<Eigen::VectorXd> Variables() const {
     return minimum ? std::optional<Eigen::VectorXd>(minimum->variables)
@@ -86,6 +88,7 @@ class SpaceFit {
   void Reweigh();
   std::optional<BoundedMinimum> FindMinimum(
       Descent descent, const std::optional<Eigen::VectorXd>& start);
+  std::optional<BoundedMinimum> FindOverAxes(Descent descent);
   Work WorkDone();
   const std::string& SolverNotice();
 

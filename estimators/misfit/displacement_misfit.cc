@@ -77,6 +77,17 @@ void DisplacementMisfit::SetNoise(double standard_deviation) {
   }
 }
 
+double DisplacementMisfit::Variance(double cost) const {
+  if (observed_.GivenNoise()) {
+    return 1 / (observed_.Norm() * observed_.Norm());
+  }
+  const Eigen::Index redundancy =
+      observed_.Size() - NumAmounts() - free_.Size();
+  return std::max(
+      2 * cost / static_cast<double>(std::max<Eigen::Index>(redundancy, 1)),
+      kLeastNoise * kLeastNoise);
+}
+
 bool DisplacementMisfit::Evaluate(const Eigen::VectorXd& x,
                                   Eigen::VectorXd* residual,
                                   Eigen::MatrixXd* jacobian) {
