@@ -34,7 +34,7 @@ class ComputedFit {
           }
           space_.Measure(others, SpaceFit::Rows::kOther);
           has_other_rows_ = true;
-          return FitFrom(IsCertified(others) ? std::nullopt : from);
+          return FitFrom(from);
         },
         of_all);
     EnterOutliers(inliers.left_out, of_all.estimate, inliers.fit.estimate,
@@ -50,13 +50,10 @@ class ComputedFit {
   }
 
  private:
-  bool IsCertified(const Scene& scene) const {
-    return descent_ == Descent::kReduced && CertifiedDescent::Takes(scene);
-  }
   MaterialFit FitFrom(const std::optional<Eigen::VectorXd>& start) {
     space_.Minimize(descent_, start);
     if (space_.Fit().minimum) {
-      space_.Describe(nullptr);
+      space_.Describe(nullptr, &space_);
     }
     return space_.Fit();
   }

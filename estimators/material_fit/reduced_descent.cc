@@ -27,7 +27,9 @@ constexpr double kNoiseOfExactData = 1e-8;
 // gradient is.
 constexpr double kUndetermined = 3;
 constexpr double kSensitivityAccuracy = 1e-4;
-constexpr int kMostIterationsNearby = 8;
+// A cycle over coarser spaces is a fifth of a solve.
+constexpr int kMostIterationsByFactor = 8;
+constexpr int kMostIterationsByCycle = 40;
 constexpr int kMostPoles = 10;
 
 class ReducedDescent {
@@ -97,11 +99,14 @@ class ReducedDescent {
 };
 
 bool ReducedDescent::SetPole(const Eigen::VectorXd& x) {
-  if (!misfit_.SolveAt(x)) {
+  // The first pole may be where an earlier descent ended, with the factor of
+  // that.  A further one is set where that factor is too far away.
+  Eigen::MatrixXd sensitivities;
+  if ((num_poles_ > 0 && !misfit_.Factorize(x)) ||
+      !misfit_.SolutionAt(x, &displacement_, &sensitivities)) {
     return false;
   }
-  AddPole(x, misfit_.Model().Displacement(),
-          misfit_.Model().Sensitivities(misfit_.Free().ModuliJacobian(x)));
+  AddPole(x, displacement_, sensitivities);
   return true;
 }
 
@@ -252,9 +257,11 @@ Eigen::MatrixXd ReducedDescent::ForcesOfVariables() {
 bool ReducedDescent::SolveNear(const Eigen::MatrixXd& forces,
                                const Eigen::VectorXd& tolerances,
                                Eigen::MatrixXd& x) {
-  const std::optional<int> iterations = SolveNearby(
-      moduli_, forces, tolerances, kMostIterationsNearby, misfit_.Model(), x);
-  element_passes_ += 1 + iterations.value_or(kMostIterationsNearby);
+  const int most = misfit_.Model().IsRefined() ? kMostIterationsByCycle
+                                               : kMostIterationsByFactor;
+  const std::optional<int> iterations =
+      SolveNearby(moduli_, forces, tolerances, most, misfit_.Model(), x);
+  element_passes_ += 1 + iterations.value_or(most);
   return iterations.has_value();
 }
 

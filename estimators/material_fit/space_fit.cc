@@ -124,7 +124,9 @@ std::optional<BoundedMinimum> SpaceFit::FindMinimum(
     return start ? DescendFrom(options_, *start, Distance::kNear, misfit_)
                  : BestMinimum(scene_, options_, misfit_, fit_.estimate);
   }
-  if (!start && !is_finest_of_several_ && CertifiedDescent::Takes(scene_)) {
+  // Once there is a certificate, no start is needed.
+  if (certified_ ||
+      (!start && !is_finest_of_several_ && CertifiedDescent::Takes(scene_))) {
     if (!certified_) {
       certified_.emplace(scene_, options_, misfit_);
       misfit_.SetNeighbours(certified_->Graph());
@@ -222,7 +224,7 @@ void SpaceFit::Reweigh() {
   }
 }
 
-void SpaceFit::Describe(const SpaceChange* change) {
+void SpaceFit::Describe(const SpaceChange* change, SpaceFit* curved) {
   // What was said before is said anew.
   Estimate estimate;
   estimate.work = fit_.estimate.work;
@@ -236,8 +238,14 @@ void SpaceFit::Describe(const SpaceChange* change) {
   EnterParameters(scene_, misfit_.Free(),
                   misfit_.Free().ParametersAt(variables), estimate);
   NoteVariablesOnBounds(misfit_.Free(), *fit_.minimum, evidence, estimate);
-  fit_.errors = DescribeMinimum(scene_, *fit_.minimum, change, misfit_,
-                                evidence, estimate);
+  const std::optional<CurvedMisfit> of_curvature =
+      curved == nullptr
+          ? std::nullopt
+          : std::optional<CurvedMisfit>(
+                {curved->misfit_, curved->fit_.minimum->variables});
+  fit_.errors = DescribeMinimum(scene_, *fit_.minimum, change,
+                                of_curvature ? &*of_curvature : nullptr,
+                                misfit_, evidence, estimate);
   Eigen::VectorXd rows;
   if (misfit_.Evaluate(variables, &rows, nullptr)) {
     DescribeMaterials(scene_, fit_.errors, misfit_, estimate);
@@ -283,7 +291,7 @@ MaterialFit FitSpace(const Scene& scene, const EstimatorOptions& options,
   std::vector<StageTime>& stages = space.Fit().estimate.stages;
   stages.insert(stages.begin(), assembly);
   if (space.Fit().minimum) {
-    space.Describe(nullptr);
+    space.Describe(nullptr, &space);
   }
   return space.Fit();
 }

@@ -57,9 +57,10 @@ class SpaceFit {
   void Minimize(Descent descent, const std::optional<Eigen::VectorXd>& start);
 
   /// Describes the minimum, with the mesh error that `change` from coarser
-  /// elements tells of; null where the elements are taken as exact.
-  /// Precondition: there is a minimum.
-  void Describe(const SpaceChange* change);
+  /// elements tells of; null where the elements are taken as exact.  `curved`
+  /// is this fit or a coarser one, whose curvature adds to the errors, or null
+  /// (DescribeMinimum).  Precondition: there is a minimum.
+  void Describe(const SpaceChange* change, SpaceFit* curved);
 
   /// What the elements of this fit changed from those of a coarser one of the
   /// same measurement: one solution of the coarse model.  Empty where that

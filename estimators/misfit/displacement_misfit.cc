@@ -45,14 +45,31 @@ DisplacementMisfit::DisplacementMisfit(const std::vector<const Scene*>& spaces,
 
 void DisplacementMisfit::Remeasure(const Scene& scene) {
   observed_.Remeasure(scene);
-  x_.resize(0);
-  placed_.reset();
+  CompareAnew();
 }
 
 void DisplacementMisfit::ObserveAnew(const Scene& scene) {
   observed_ = ObservedDisplacements(scene);
-  x_.resize(0);
-  placed_.reset();
+  CompareAnew();
+}
+
+void DisplacementMisfit::CompareAnew() {
+  if (x_.size() != 0) {
+    residual_ = observed_.Restrict(Displacement()) - observed_.Measured();
+  }
+}
+
+bool DisplacementMisfit::SolutionAt(const Eigen::VectorXd& x,
+                                    Eigen::MatrixXd* displacement,
+                                    Eigen::MatrixXd* sensitivities) {
+  if (!MoveTo(x)) {
+    return false;
+  }
+  *displacement = Displacement();
+  *sensitivities = placed_
+                       ? placed_->sensitivities
+                       : equilibrium_.Sensitivities(free_.ModuliJacobian(x));
+  return true;
 }
 
 Eigen::Index DisplacementMisfit::NumRows() const {
