@@ -12,13 +12,13 @@
 #include "elastimate/core/mechanics/stiffness_assembly.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/mechanics/stiffness_traces.h"
-#include "elastimate/core/mechanics/strain_energy.h"
 #include "elastimate/core/mechanics/tet10_stiffness_product.h"
 #include "elastimate/core/mesh/mesh.h"
 #include "elastimate/core/mesh/mid_edges.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "tests/core/instruction_sets.h"
+#include "tests/core/mechanics/strain_energy.h"
 #include "tests/core/random_values.h"
 #include "tests/dense_reference.h"
 #include "tests/element_kinds.h"
@@ -38,6 +38,7 @@ using testing::QuadraticField;
 using testing::QuadraticShapeFunctions;
 using testing::RandomMatrix;
 using testing::RandomSupports;
+using testing::StrainEnergyDensity;
 using testing::TextbookStiffness;
 using testing::WithBothOrientations;
 using testing::WithMidEdgeNodes;
