@@ -13,7 +13,7 @@ namespace elastimate {
 inline constexpr double kDegreesOfRadian = 57.295779513082323;
 
 /// Whether a material has an axis that is to be found (FreeAxisLaw).
-bool HasFreeAxis(const Scene& scene);
+bool HasFreeAxis(const std::vector<Material>& materials);
 
 /// The axis of each material whose axis is a parameter, from the parameters of
 /// the estimate and their covariance C: the error of its direction is the

@@ -148,7 +148,7 @@ class CertifiedPreparation : public Preparation {
 MaterialFit FitMaterialsFrom(const std::optional<Eigen::VectorXd>& start,
                              const Scene& scene,
                              const EstimatorOptions& options, Descent descent) {
-  if (start || !HasFreeAxis(scene)) {
+  if (start || !HasFreeAxis(scene.materials)) {
     return FitByOrigin(scene, options, descent, start);
   }
   Work work;

@@ -51,9 +51,6 @@ std::optional<Eigen::VectorXd> NearestVariables(
             ? FreeAxisLaw().NearestParameters(of_material, WeightsOf(block))
             : law.ParametersOf(of_material, all.Model());
   }
-  for (Eigen::Index i = 0; i < parameters.size(); ++i) {
-    parameters(i) = all.All()[i].known.value_or(parameters(i));
-  }
   const Eigen::VectorXd nearest = free.VariablesOf(parameters);
   return nearest.allFinite() ? std::optional<Eigen::VectorXd>(nearest)
                              : std::nullopt;

@@ -31,8 +31,7 @@ Eigen::VectorXd AwayFromEnds(const FreeParameters& free,
   constexpr double kShareOfRange = 0.02;
   for (Eigen::Index i = 0; i < free.Size(); ++i) {
     const Bounds& bounds = free.VariableBounds()[i];
-    const LawParameter& parameter =
-        *free.All().All()[free.All().Free()[i]].law_parameter;
+    const LawParameter& parameter = *free.Free(i).law_parameter;
     if (bounds.lower && bounds.upper && !parameter.is_modulus) {
       const double margin = kShareOfRange * (*bounds.upper - *bounds.lower);
       variables(i) = std::clamp(variables(i), *bounds.lower + margin,
