@@ -256,8 +256,8 @@ int RunSimulate(const std::vector<std::string>& arguments) {
   const std::string source = PrintablePath(arguments[0]);
   std::optional<Progress> progress("reading " + source);
   SceneReading reading =
-      ReadScene({arguments[0]}, Measurement::kOptional, SectionFromFlags(),
-                RegionsFromFlag(), LawFromFlags());
+      ReadScene({arguments[0]}, Measurement::kOptional,
+                {SectionFromFlags(), RegionsFromFlag(), LawFromFlags(), {}});
   Scene& scene = reading.scene;
   errors.rigid_motion = RigidMotionFromFlag(scene.mesh.Dimension());
 

@@ -86,17 +86,6 @@ Matrix6d KelvinStiffness(const Law& law, const Eigen::VectorXd& moduli) {
          to_strain.transpose();
 }
 
-// Returns the 21 stiffnesses of Voigt.
-Eigen::VectorXd ModuliOf(const Matrix6d& stiffness,
-                         const std::vector<BlockEntry>& entries) {
-  Eigen::VectorXd moduli(Eigen::Index(entries.size()));
-  for (Eigen::Index k = 0; k < moduli.size(); ++k) {
-    moduli(k) =
-        stiffness(entries[k].row, entries[k].column) / entries[k].factor;
-  }
-  return moduli;
-}
-
 // Returns the stiffness for each unit modulus of the known axis, in the
 // notation of Kelvin.
 std::vector<Matrix6d> StiffnessesOfUnitModuli() {
@@ -120,7 +109,7 @@ Eigen::MatrixXd UnitModuli(const Eigen::Matrix3d& rotation,
                         Eigen::Index(stiffnesses.size()));
   for (std::size_t k = 0; k < stiffnesses.size(); ++k) {
     units.col(Eigen::Index(k)) =
-        ModuliOf(turned * stiffnesses[k] * turned.transpose(), entries);
+        ModuliOfBlocks(entries, turned * stiffnesses[k] * turned.transpose());
   }
   return units;
 }
@@ -134,7 +123,7 @@ Eigen::MatrixXd RotationJacobian(const Matrix6d& stiffness,
   Eigen::MatrixXd jacobian(Eigen::Index(entries.size()), 3);
   for (Eigen::Index i = 0; i < 3; ++i) {
     const Matrix6d half = KelvinSpin(left.col(i)) * stiffness;
-    jacobian.col(i) = ModuliOf(half + half.transpose(), entries);
+    jacobian.col(i) = ModuliOfBlocks(entries, half + half.transpose());
   }
   return jacobian;
 }

@@ -50,6 +50,9 @@ class KelvinLaw : public Law {
   std::vector<Eigen::MatrixXd> bases_;
 };
 
+/// Returns modes of which each is one component of strain.
+std::vector<Eigen::MatrixXd> ComponentModes(int num_components);
+
 /// The strain of a gradient in the notation of Kelvin is this matrix times the
 /// gradient: 6 x 9 in three dimensions, 3 x 4 in two.
 Eigen::MatrixXd KelvinStrainOfGradient(Eigen::Index dimension);

@@ -1,12 +1,13 @@
 #include "elastimate/core/materials/law_check.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
 #include <set>
 
+#include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/materials/kelvin_law.h"
 #include "elastimate/core/materials/stiffness_factors.h"
 #include "elastimate/core/text/numbers.h"
 
@@ -76,22 +77,6 @@ Eigen::VectorXd TypicalValues(const Law& law) {
     typical(i) = law.Parameters()[i].typical;
   }
   return typical;
-}
-
-// Returns orthonormal symmetric gradients H as columns.
-Eigen::MatrixXd UnitStrains(Eigen::Index dimension) {
-  const Eigen::Index size = dimension * dimension;
-  Eigen::MatrixXd strains =
-      Eigen::MatrixXd::Zero(size, dimension * (dimension + 1) / 2);
-  Eigen::Index column = 0;
-  for (Eigen::Index i = 0; i < dimension; ++i) {
-    for (Eigen::Index j = i; j < dimension; ++j, ++column) {
-      const double entry = i == j ? 1 : std::sqrt(0.5);
-      strains(i + dimension * j, column) = entry;
-      strains(j + dimension * i, column) = entry;
-    }
-  }
-  return strains;
 }
 
 // Collects what is wrong with a law in one section.
@@ -223,12 +208,13 @@ class SectionCheck {
         moduli, Eigen::MatrixXd::Zero(dimension_, dimension_), model_);
     Compare(tangent, tangent.transpose(), kLargestDeviation,
             "Tangent is not symmetric");
-    const Eigen::MatrixXd strains = UnitStrains(dimension_);
+    // These are orthonormal symmetric gradients, as columns.
+    const Eigen::MatrixXd strains =
+        KelvinStrainOfGradient(dimension_).transpose();
     const Eigen::VectorXd eigenvalues =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(
-            strains.transpose() * (tangent + tangent.transpose()) * strains / 2,
-            Eigen::EigenvaluesOnly)
-            .eigenvalues();
+        DecomposeSymmetric(strains.transpose() *
+                           (tangent + tangent.transpose()) * strains / 2)
+            .values;
     if (!(eigenvalues(0) > kLargestDeviation * LargestEntry(tangent))) {
       Say("the stiffness is not positive definite at " + where_ +
           ": its eigenvalues on strains range from " +
@@ -301,9 +287,7 @@ class SectionCheck {
       }
     }
     const Eigen::MatrixXd stiffness = BlocksOfModuli(entries, moduli);
-    const double smallest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(
-                                stiffness, Eigen::EigenvaluesOnly)
-                                .eigenvalues()(0);
+    const double smallest = DecomposeSymmetric(stiffness).values(0);
     if (!(smallest > kLargestDeviation * LargestEntry(stiffness))) {
       Say("the matrix of BlockEntries is not positive definite at " + where_ +
           ": its smallest eigenvalue is " + NumberText(smallest));

@@ -44,18 +44,8 @@ bool AreAmbiguous(const Law& a, const Law& b) {
                      });
 }
 
-template <class Predicate>
-std::string NamesOf(const Predicate& is_named) {
-  std::vector<std::string_view> names;
-  std::string list;
-  for (const Law* const law : Laws()) {
-    if (is_named(*law) &&
-        std::find(names.begin(), names.end(), law->Name()) == names.end()) {
-      list += (names.empty() ? "" : ", ") + std::string(law->Name());
-      names.push_back(law->Name());
-    }
-  }
-  return list;
+bool IsTaken(const Law& law, std::optional<SectionModel> model) {
+  return !model || law.Takes(*model);
 }
 
 }  // namespace
@@ -98,12 +88,17 @@ void RegisterLaw(std::shared_ptr<const Law> law) {
   registry.laws.push_back(std::move(law));
 }
 
-std::string LawNames() {
-  return NamesOf([](const Law&) { return true; });
-}
-
-std::string LawNames(SectionModel model) {
-  return NamesOf([model](const Law& law) { return law.Takes(model); });
+std::string LawNames(std::optional<SectionModel> model) {
+  std::vector<std::string_view> names;
+  std::string list;
+  for (const Law* const law : Laws()) {
+    if (IsTaken(*law, model) &&
+        std::find(names.begin(), names.end(), law->Name()) == names.end()) {
+      list += (names.empty() ? "" : ", ") + std::string(law->Name());
+      names.push_back(law->Name());
+    }
+  }
+  return list;
 }
 
 std::string WhyOutOfRange(const LawParameter& parameter, double value) {
@@ -121,18 +116,9 @@ std::string WhyOutOfRange(const LawParameter& parameter, double value) {
   return why.str();
 }
 
-const Law* FindLaw(std::string_view name) {
+const Law* FindLaw(std::string_view name, std::optional<SectionModel> model) {
   for (const Law* const law : Laws()) {
-    if (law->Name() == name) {
-      return law;
-    }
-  }
-  return nullptr;
-}
-
-const Law* FindLaw(std::string_view name, SectionModel model) {
-  for (const Law* const law : Laws()) {
-    if (law->Name() == name && law->Takes(model)) {
+    if (law->Name() == name && IsTaken(*law, model)) {
       return law;
     }
   }

@@ -29,16 +29,6 @@ std::vector<LawParameter> OrthotropicParameters(SectionModel model) {
           Modulus("shear_modulus_12", "G_12", kTypicalShearModulus)};
 }
 
-// Returns modes of which each is one component of strain.
-std::vector<Eigen::MatrixXd> ComponentModes(int num_components) {
-  std::vector<Eigen::MatrixXd> modes;
-  modes.reserve(num_components);
-  for (int i = 0; i < num_components; ++i) {
-    modes.emplace_back(Eigen::VectorXd::Unit(num_components, i));
-  }
-  return modes;
-}
-
 // The entries of normal strains come row by row, those of shears behind them.
 std::vector<BlockEntry> OrthotropicEntries(int num_directions) {
   std::vector<BlockEntry> entries;

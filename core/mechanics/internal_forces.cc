@@ -167,6 +167,9 @@ std::vector<Eigen::MatrixXd> InternalForces::Tangents(
 
 Eigen::MatrixXd InternalForces::Blocks(const Eigen::VectorXd& moduli,
                                        const NodeGraph& graph) const {
+  if (is_isotropic_) {
+    return StiffnessBlocks(mesh_, graph, ModuliOfElements(moduli));
+  }
   return StiffnessBlocks(mesh_, graph, material_of_element_, frames_,
                          Tangents(moduli));
 }

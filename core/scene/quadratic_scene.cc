@@ -276,7 +276,7 @@ Scene QuadraticScene(const Scene& scene) {
   quadratic.mesh = WithMidEdgeNodes(scene.mesh, edges);
   quadratic.materials = scene.materials;
   quadratic.supports = WithMidEdgeSupports(scene.supports, scene.mesh, edges);
-  quadratic.supports.ends =
+  quadratic.supports.in_doubt =
       FindSupportEnds(scene.supports, scene.mesh, edges,
                       quadratic.supports.held.rightCols(edges.Size()));
   quadratic.is_rigid_motion_free = scene.is_rigid_motion_free;

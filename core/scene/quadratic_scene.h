@@ -21,8 +21,7 @@ namespace elastimate {
 /// supports with the specimen between them; but it is held if an element of the
 /// edge is held at a node inside the specimen, because that is a held volume.
 /// Where supports are boxes, the boxes decide instead about each node within.
-/// Where a support may end along an edge (FindSupportEnds), Supports::ends says
-/// so.
+/// Where a support may end along an edge, Supports::in_doubt says so.
 /// - Loads: nodal forces are zero there, so that their virtual work is that of
 /// the given forces on the displacements of the vertices.  Body forces,
 /// tractions and pressures stay what they are; facets get their mid-edge nodes.

@@ -1,11 +1,6 @@
 #include "elastimate/core/scene/support_ends.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
-#include <map>
-#include <numeric>
-#include <optional>
-#include <utility>
 
 #include "elastimate/core/mesh/facets.h"
 
@@ -62,8 +57,7 @@ class SurfaceFacets {
   std::vector<std::vector<Eigen::Index>> of_node_;
 };
 
-// The components of edges where it is open whether they are held, with the ends
-// that are held.
+// The components of edges where it is open whether they are held.
 class OpenEdges {
  public:
   OpenEdges(const Supports& supports, const Mesh& mesh, const Edges& edges,
@@ -78,19 +72,6 @@ class OpenEdges {
   }
 
   const ComponentMask& Open() const { return open_; }
-  // Returns the held and the free node of an open edge.
-  std::pair<int, int> HeldAndFree(Eigen::Index edge) const {
-    const int low = edges_.Ends()(0, edge);
-    const int high = edges_.Ends()(1, edge);
-    for (Eigen::Index i = 0; i < open_.rows(); ++i) {
-      if (open_(i, edge) && supports_.held(i, high)) {
-        return {high, low};
-      }
-    }
-    return {low, high};
-  }
-
- private:
   // Returns the only end at which a component is held while nothing says where
   // its support ends; -1 where there is none.
   int HeldEnd(Eigen::Index i, Eigen::Index edge) const {
@@ -106,6 +87,7 @@ class OpenEdges {
                : -1;
   }
 
+ private:
   void OpenInVolumes() {
     for (Eigen::Index i = 0; i < open_.rows(); ++i) {
       std::vector<bool> is_in_volume(mesh_.NumNodes(), false);
@@ -158,165 +140,23 @@ class OpenEdges {
   ComponentMask open_;
 };
 
-// Returns the open edges of each end.
-std::vector<std::vector<Eigen::Index>> ConnectedEdges(
-    const Mesh& mesh, const Edges& edges, const ComponentMask& open) {
-  std::vector<int> parent(mesh.NumNodes());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int node) {
-    while (parent[node] != node) {
-      node = parent[node] = parent[parent[node]];
-    }
-    return node;
-  };
-  for (Eigen::Index edge = 0; edge < edges.Size(); ++edge) {
-    if (open.col(edge).any()) {
-      parent[root(edges.Ends()(0, edge))] = root(edges.Ends()(1, edge));
-    }
-  }
-  std::map<int, std::vector<Eigen::Index>> of_root;
-  for (Eigen::Index edge = 0; edge < edges.Size(); ++edge) {
-    if (open.col(edge).any()) {
-      of_root[root(edges.Ends()(0, edge))].push_back(edge);
-    }
-  }
-  std::vector<std::vector<Eigen::Index>> all;
-  for (const auto& [unused, of_end] : of_root) {
-    all.push_back(of_end);
-  }
-  return all;
-}
-
-// Returns how far the free points, as columns, are beyond the held ones in a
-// direction.
-double Gap(const Eigen::VectorXd& direction, const Eigen::MatrixXd& held,
-           const Eigen::MatrixXd& free) {
-  return (direction.transpose() * free).minCoeff() -
-         (direction.transpose() * held).maxCoeff();
-}
-
-Eigen::MatrixXd ScatterMatrix(const Eigen::MatrixXd& points) {
-  const Eigen::MatrixXd centred = points.colwise() - points.rowwise().mean();
-  return centred * centred.transpose();
-}
-
-// Returns a direction in which the free points are beyond the held ones, if one
-// is known.
-std::optional<Eigen::VectorXd> SeparatingDirection(
-    const Eigen::MatrixXd& held, const Eigen::MatrixXd& free) {
-  // These are shares of the extent.
-  constexpr double kLeastGap = 1e-9;
-  constexpr double kRidge = 1e-6;
-  const Eigen::Index dimension = held.rows();
-  std::vector<Eigen::VectorXd> directions;
-  for (Eigen::Index i = 0; i < dimension; ++i) {
-    directions.push_back(Eigen::VectorXd::Unit(dimension, i));
-    directions.push_back(-Eigen::VectorXd::Unit(dimension, i));
-  }
-  const auto widest = std::max_element(
-      directions.begin(), directions.end(), [&](const auto& a, const auto& b) {
-        return Gap(a, held, free) < Gap(b, held, free);
-      });
-  const Eigen::MatrixXd scatter = ScatterMatrix(held) + ScatterMatrix(free);
-  const Eigen::MatrixXd ridge = kRidge * scatter.trace() *
-                                Eigen::MatrixXd::Identity(dimension, dimension);
-  const Eigen::VectorXd fisher =
-      (scatter + ridge)
-          .ldlt()
-          .solve(free.rowwise().mean() - held.rowwise().mean())
-          .normalized();
-  const double least_gap =
-      kLeastGap *
-      (free.rowwise().maxCoeff() - free.rowwise().minCoeff()).norm();
-  for (const Eigen::VectorXd& direction : {*widest, fisher}) {
-    if (Gap(direction, held, free) > least_gap) {
-      return direction;
-    }
-  }
-  return std::nullopt;
-}
-
-// Returns the edges in the order of their middles in a direction; those whose
-// middles are equally far form one step.
-std::vector<std::vector<Eigen::Index>> Steps(
-    const std::vector<Eigen::Index>& of_end,
-    const Eigen::RowVectorXd& distance) {
-  constexpr double kSamePlace = 1e-6;
-  const double tolerance =
-      kSamePlace * (distance.maxCoeff() - distance.minCoeff());
-  std::vector<std::size_t> order(of_end.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return distance(Eigen::Index(a)) < distance(Eigen::Index(b));
-  });
-  std::vector<std::vector<Eigen::Index>> steps;
-  double last = 0;
-  for (const std::size_t i : order) {
-    const double here = distance(Eigen::Index(i));
-    if (steps.empty() || here > last + tolerance) {
-      steps.emplace_back();
-    }
-    steps.back().push_back(of_end[i]);
-    last = here;
-  }
-  return steps;
-}
-
 }  // namespace
 
-std::vector<SupportEnd> FindSupportEnds(const Supports& supports,
-                                        const Mesh& mesh, const Edges& edges,
-                                        const ComponentMask& held) {
+std::vector<HeldComponent> FindSupportEnds(const Supports& supports,
+                                           const Mesh& mesh, const Edges& edges,
+                                           const ComponentMask& held) {
   const OpenEdges open_edges(supports, mesh, edges, held);
-  const ComponentMask& open = open_edges.Open();
-  std::vector<SupportEnd> ends;
-  for (const auto& of_end : ConnectedEdges(mesh, edges, open)) {
-    const Eigen::Index size = Eigen::Index(of_end.size());
-    Eigen::MatrixXd held_points(mesh.Dimension(), size);
-    Eigen::MatrixXd free_points(mesh.Dimension(), size);
-    for (Eigen::Index k = 0; k < size; ++k) {
-      const auto [held_node, free_node] = open_edges.HeldAndFree(of_end[k]);
-      held_points.col(k) = mesh.nodes.col(held_node);
-      free_points.col(k) = mesh.nodes.col(free_node);
-    }
-    const std::optional<Eigen::VectorXd> direction =
-        SeparatingDirection(held_points, free_points);
-    const Eigen::RowVectorXd distance =
-        direction ? Eigen::RowVectorXd(direction->transpose() *
-                                       (held_points + free_points) / 2)
-                  : Eigen::RowVectorXd::Zero(size);
-    SupportEnd end;
-    for (const auto& step : Steps(of_end, distance)) {
-      end.steps.emplace_back();
-      for (const Eigen::Index edge : step) {
-        const int held_node = open_edges.HeldAndFree(edge).first;
-        for (Eigen::Index i = 0; i < open.rows(); ++i) {
-          if (open(i, edge)) {
-            end.steps.back().push_back({i, mesh.NumNodes() + edge,
-                                        supports.displacement(i, held_node)});
-          }
-        }
-      }
-    }
-    ends.push_back(std::move(end));
-  }
-  return ends;
-}
-
-Supports EndingAfter(const std::vector<std::size_t>& num_steps,
-                     const Supports& supports) {
-  Supports ended = supports;
-  ended.ends.clear();
-  for (std::size_t k = 0; k < num_steps.size(); ++k) {
-    for (std::size_t step = 0; step < num_steps[k]; ++step) {
-      for (const HeldComponent& component : supports.ends[k].steps[step]) {
-        ended.held(component.component, component.node) = true;
-        ended.displacement(component.component, component.node) =
-            component.displacement;
+  std::vector<HeldComponent> in_doubt;
+  for (Eigen::Index edge = 0; edge < edges.Size(); ++edge) {
+    for (Eigen::Index i = 0; i < mesh.Dimension(); ++i) {
+      if (open_edges.Open()(i, edge)) {
+        in_doubt.push_back(
+            {i, mesh.NumNodes() + edge,
+             supports.displacement(i, open_edges.HeldEnd(i, edge))});
       }
     }
   }
-  return ended;
+  return in_doubt;
 }
 
 }  // namespace elastimate

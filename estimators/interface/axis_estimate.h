@@ -14,7 +14,7 @@ namespace elastimate {
 inline constexpr double kDegreesOfRadian = 57.295779513082323;
 
 /// Whether a material has an axis that is to be found (FreeAxisLaw).
-bool HasFreeAxis(const Scene& scene);
+bool HasFreeAxis(const std::vector<Material>& materials);
 
 /// Whether an axis that is to be found is so far from itself in two sets of
 /// parameters that it is another one: three of the largest errors that an axis

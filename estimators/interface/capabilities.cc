@@ -78,7 +78,7 @@ std::string WhyNotTheseMaterials(const Capabilities& capabilities,
     return "it takes only one isotropic material without known parameters; use "
            "--estimator=iterative-fe or --estimator=virtual-fields";
   }
-  if (!capabilities.takes_free_axes && HasFreeAxis(scene)) {
+  if (!capabilities.takes_free_axes && HasFreeAxis(scene.materials)) {
     return "it takes only materials whose axis is known; use "
            "--estimator=iterative-fe or --estimator=reduced-fe, or give the "
            "axis";

@@ -16,9 +16,11 @@
 #include "elastimate/core/materials/material_frames.h"
 #include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/materials/orthotropic_law.h"
+#include "elastimate/core/materials/stiffness_factors.h"
 #include "elastimate/core/materials/transversely_isotropic_law.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/unknown_motion.h"
+#include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/free_parameters.h"
 #include "elastimate/estimators/material_fit/material_fit.h"
@@ -126,16 +128,11 @@ Eigen::MatrixXd UnitsInScene(const std::vector<Material>& materials) {
 }
 
 bool ArePositiveDefinite(const Eigen::VectorXd& stiffnesses) {
+  const AnisotropicLaw law;
   for (Eigen::Index first = 0; first < stiffnesses.size();
        first += kNumStiffnesses) {
-    Eigen::Matrix<double, 6, 6> stiffness;
-    Eigen::Index place = first;
-    for (Eigen::Index i = 0; i < 6; ++i) {
-      for (Eigen::Index j = i; j < 6; ++j) {
-        stiffness(i, j) = stiffness(j, i) = stiffnesses(place++);
-      }
-    }
-    if (!(DecomposeSymmetric(stiffness).values.minCoeff() > 0)) {
+    if (!IsStiffnessPositiveDefinite(
+            law, stiffnesses.segment(first, kNumStiffnesses), kSolid)) {
       return false;
     }
   }
@@ -199,10 +196,7 @@ double ChiSquareOfFreeAxes(const std::vector<Material>& materials,
 double ChiSquareOf(const std::vector<Material>& materials,
                    const MeasuredStiffness& measured) {
   const Eigen::MatrixXd units = UnitsInScene(materials);
-  if (std::any_of(materials.begin(), materials.end(),
-                  [](const Material& material) {
-                    return material.law == FreeAxisLaw::kName;
-                  })) {
+  if (HasFreeAxis(materials)) {
     return ChiSquareOfFreeAxes(materials, units, measured);
   }
   const Eigen::VectorXd expected = measured.weights * measured.stiffnesses;

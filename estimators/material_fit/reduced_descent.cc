@@ -172,8 +172,7 @@ std::vector<Bounds> ReducedDescent::TrustBounds() const {
   const FreeParameters& free = misfit_.Free();
   std::vector<Bounds> bounds = free.VariableBounds();
   for (Eigen::Index i = 0; i < free.Size(); ++i) {
-    const LawParameter& parameter =
-        *free.All().All()[free.All().Free()[i]].law_parameter;
+    const LawParameter& parameter = *free.Free(i).law_parameter;
     Bounds& own = bounds[i];
     double lower = pole_(i) - kLargestChange;
     double upper = pole_(i) + kLargestChange;

@@ -10,7 +10,6 @@
 #include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/core/scene/simplicial_scene.h"
-#include "elastimate/core/scene/support_ends.h"
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
@@ -32,8 +31,7 @@ Eigen::VectorXd AwayFromEnds(const FreeParameters& free,
   constexpr double kShareOfRange = 0.02;
   for (Eigen::Index i = 0; i < free.Size(); ++i) {
     const Bounds& bounds = free.VariableBounds()[i];
-    const LawParameter& parameter =
-        *free.All().All()[free.All().Free()[i]].law_parameter;
+    const LawParameter& parameter = *free.Free(i).law_parameter;
     if (bounds.lower && bounds.upper && !parameter.is_modulus) {
       const double margin = kShareOfRange * (*bounds.upper - *bounds.lower);
       variables(i) = std::clamp(variables(i), *bounds.lower + margin,
@@ -43,30 +41,12 @@ Eigen::VectorXd AwayFromEnds(const FreeParameters& free,
   return variables;
 }
 
-bool HasOpenEnds(const Scene& scene) {
-  return !scene.supports.ends.empty() ||
-         std::any_of(scene.load_cases.begin(), scene.load_cases.end(),
-                     [](const LoadCase& load_case) {
-                       return load_case.supports &&
-                              !load_case.supports->ends.empty();
-                     });
-}
-
-// Holds all nodes in doubt, or none.
-Supports Ended(const Supports& supports, bool are_held) {
-  std::vector<std::size_t> num_steps;
-  for (const SupportEnd& end : supports.ends) {
-    num_steps.push_back(are_held ? end.steps.size() : 0);
-  }
-  return EndingAfter(num_steps, supports);
-}
-
-Scene WithEnds(Scene scene, bool are_held) {
-  scene.supports = Ended(scene.supports, are_held);
-  for (LoadCase& load_case : scene.load_cases) {
-    if (load_case.supports) {
-      load_case.supports = Ended(*load_case.supports, are_held);
-    }
+// Holds all nodes in doubt.
+Scene WithEndsHeld(Scene scene) {
+  Supports& supports = scene.supports;
+  for (const auto& [component, node, displacement] : supports.in_doubt) {
+    supports.held(component, node) = true;
+    supports.displacement(component, node) = displacement;
   }
   return scene;
 }
@@ -315,9 +295,9 @@ MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start) {
   }
   const Scene quadratic =
       scene_.mesh.Order() == 1 ? FinerScene(scene_) : scene_;
-  Chain chain = FitQuadratic(WithEnds(quadratic, false), last);
-  if (HasOpenEnds(quadratic) && chain.Finest().Fit().minimum) {
-    Chain held = FitQuadratic(WithEnds(quadratic, true), last);
+  Chain chain = FitQuadratic(quadratic, last);
+  if (!quadratic.supports.in_doubt.empty() && chain.Finest().Fit().minimum) {
+    Chain held = FitQuadratic(WithEndsHeld(quadratic), last);
     if (held.Finest().Fit().minimum) {
       chain = MeanOf(std::move(held), std::move(chain));
     }

@@ -27,8 +27,8 @@ DisplacementMisfit::Weights WeightsOf(Loss loss,
                                       const Eigen::VectorXd& residual) {
   // Exact data have no scale.
   constexpr double kExactFit = 1e-12;
-  const NodeLosses losses(
-      loss, std::max(RobustStandardDeviation(residual), kExactFit));
+  const double deviation =
+      std::max(RobustStandardDeviation(residual), kExactFit);
   DisplacementMisfit::Weights weights;
   weights.factors.resize(residual.size());
   double sum_of_slopes = 0;
@@ -36,7 +36,7 @@ DisplacementMisfit::Weights WeightsOf(Loss loss,
     const double square_sum =
         residual.segment(point.first, point.count).squaredNorm();
     const auto [value, first, second] =
-        losses.Evaluate(point.count, square_sum);
+        EvaluateLoss(loss, deviation, point.count, square_sum);
     weights.factors.segment(point.first, point.count)
         .setConstant(std::sqrt(first));
     sum_of_slopes += point.count * first + 2 * square_sum * second;
@@ -117,7 +117,7 @@ std::optional<BoundedMinimum> SpaceFit::FindMinimum(
                             End::kDone, ""};
     }
   }
-  if (!start && HasFreeAxis(scene_)) {
+  if (!start && HasFreeAxis(scene_.materials)) {
     return FindOverAxes(descent);
   }
   if (descent == Descent::kFull) {
