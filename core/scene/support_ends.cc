@@ -62,48 +62,58 @@ class SurfaceFacets {
   std::vector<std::vector<Eigen::Index>> of_node_;
 };
 
-// The components of edges where it is open whether they are held, with the ends
-// that are held.
-class OpenEdges {
+// The components of middles where it is open whether they are held, with the
+// vertices that hold them.
+class OpenMiddles {
  public:
-  OpenEdges(const Supports& supports, const Mesh& mesh, const Edges& edges,
-            const ComponentMask& held)
+  OpenMiddles(const Supports& supports, const Mesh& mesh,
+              const Middles& middles, const ComponentMask& held)
       : supports_(supports),
         mesh_(mesh),
-        edges_(edges),
+        middles_(middles),
         held_(held),
-        open_(ComponentMask::Constant(mesh.Dimension(), edges.Size(), false)) {
+        open_(
+            ComponentMask::Constant(mesh.Dimension(), middles.Size(), false)) {
     OpenInVolumes();
     OpenOnSurface();
   }
 
   const ComponentMask& Open() const { return open_; }
-  // Returns the held and the free node of an open edge.
-  std::pair<int, int> HeldAndFree(Eigen::Index edge) const {
-    const int low = edges_.Ends()(0, edge);
-    const int high = edges_.Ends()(1, edge);
-    for (Eigen::Index i = 0; i < open_.rows(); ++i) {
-      if (open_(i, edge) && supports_.held(i, high)) {
-        return {high, low};
-      }
+  // Returns the vertices of an open middle that hold its first open component,
+  // or those that leave it free.
+  std::vector<int> VerticesWhere(bool is_held, Eigen::Index middle) const {
+    Eigen::Index component = 0;
+    while (!open_(component, middle)) {
+      ++component;
     }
-    return {low, high};
+    return VerticesWhere(is_held, component, middle);
   }
 
  private:
-  // Returns the only end at which a component is held while nothing says where
-  // its support ends; -1 where there is none.
-  int HeldEnd(Eigen::Index i, Eigen::Index edge) const {
-    const int low = edges_.Ends()(0, edge);
-    const int high = edges_.Ends()(1, edge);
-    if (held_(i, edge) || supports_.held(i, low) == supports_.held(i, high)) {
-      return -1;
+  std::vector<int> VerticesWhere(bool is_held, Eigen::Index i,
+                                 Eigen::Index middle) const {
+    std::vector<int> vertices;
+    for (const int node : middles_.Vertices()[middle]) {
+      if (supports_.held(i, node) == is_held) {
+        vertices.push_back(node);
+      }
     }
-    const int end = supports_.held(i, low) ? low : high;
-    return supports_.IsGiven(static_cast<int>(i), end) &&
-                   !IsToldByPlace(supports_, mesh_, i, end)
-               ? end
-               : -1;
+    return vertices;
+  }
+
+  // Returns the vertices that hold a component which others leave free, while
+  // nothing says where the support ends; else none.
+  std::vector<int> HeldVertices(Eigen::Index i, Eigen::Index middle) const {
+    std::vector<int> vertices = VerticesWhere(true, i, middle);
+    if (held_(i, middle) ||
+        Eigen::Index(vertices.size()) == middles_.Vertices()[middle].size() ||
+        std::any_of(vertices.begin(), vertices.end(), [&](int node) {
+          return !supports_.IsGiven(static_cast<int>(i), node) ||
+                 IsToldByPlace(supports_, mesh_, i, node);
+        })) {
+      vertices.clear();
+    }
+    return vertices;
   }
 
   void OpenInVolumes() {
@@ -118,33 +128,39 @@ class OpenEdges {
       }
       // The nodes of a layer that is held in part are next to the volume.
       std::vector<bool> is_at_volume = is_in_volume;
-      for (Eigen::Index edge = 0; edge < edges_.Size(); ++edge) {
-        const int low = edges_.Ends()(0, edge);
-        const int high = edges_.Ends()(1, edge);
-        if (is_in_volume[low] || is_in_volume[high]) {
-          is_at_volume[low] = is_at_volume[high] = true;
+      for (Eigen::Index middle = 0; middle < middles_.Size(); ++middle) {
+        const auto vertices = middles_.Vertices()[middle];
+        if (vertices.size() == 2 &&
+            (is_in_volume[vertices(0)] || is_in_volume[vertices(1)])) {
+          is_at_volume[vertices(0)] = is_at_volume[vertices(1)] = true;
         }
       }
-      for (Eigen::Index edge = 0; edge < edges_.Size(); ++edge) {
-        const int end = HeldEnd(i, edge);
-        open_(i, edge) = end >= 0 && is_at_volume[end];
+      for (Eigen::Index middle = 0; middle < middles_.Size(); ++middle) {
+        const std::vector<int> vertices = HeldVertices(i, middle);
+        open_(i, middle) =
+            std::any_of(vertices.begin(), vertices.end(),
+                        [&](int node) { return is_at_volume[node]; });
       }
     }
   }
 
   void OpenOnSurface() {
     const SurfaceFacets surface(mesh_);
+    std::vector<int> around;
     for (Eigen::Index facet = 0; facet < surface.Facets().cols(); ++facet) {
-      const auto nodes = surface.Facets().col(facet);
-      for (Eigen::Index a = 0; a < nodes.size(); ++a) {
-        for (Eigen::Index b = 0; b < a; ++b) {
-          const Eigen::Index edge = edges_.Find(nodes(a), nodes(b));
-          for (Eigen::Index i = 0; i < open_.rows(); ++i) {
-            const int end = HeldEnd(i, edge);
-            if (end >= 0 &&
-                surface.GoesOnFromHeld(facet, end, supports_.held.row(i))) {
-              open_(i, edge) = true;
-            }
+      for (const auto& places : mesh_.Topology().middles_of_face) {
+        around.clear();
+        for (const int place : places) {
+          around.push_back(surface.Facets()(place, facet));
+        }
+        const Eigen::Index middle = middles_.Find(around);
+        for (Eigen::Index i = 0; i < open_.rows(); ++i) {
+          const std::vector<int> vertices = HeldVertices(i, middle);
+          if (std::any_of(vertices.begin(), vertices.end(), [&](int node) {
+                return surface.GoesOnFromHeld(facet, node,
+                                              supports_.held.row(i));
+              })) {
+            open_(i, middle) = true;
           }
         }
       }
@@ -153,14 +169,14 @@ class OpenEdges {
 
   const Supports& supports_;
   const Mesh& mesh_;
-  const Edges& edges_;
+  const Middles& middles_;
   const ComponentMask& held_;
   ComponentMask open_;
 };
 
-// Returns the open edges of each end.
-std::vector<std::vector<Eigen::Index>> ConnectedEdges(
-    const Mesh& mesh, const Edges& edges, const ComponentMask& open) {
+// Returns the open middles of each end.
+std::vector<std::vector<Eigen::Index>> ConnectedMiddles(
+    const Mesh& mesh, const Middles& middles, const ComponentMask& open) {
   std::vector<int> parent(mesh.NumNodes());
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](int node) {
@@ -169,15 +185,18 @@ std::vector<std::vector<Eigen::Index>> ConnectedEdges(
     }
     return node;
   };
-  for (Eigen::Index edge = 0; edge < edges.Size(); ++edge) {
-    if (open.col(edge).any()) {
-      parent[root(edges.Ends()(0, edge))] = root(edges.Ends()(1, edge));
+  for (Eigen::Index middle = 0; middle < middles.Size(); ++middle) {
+    if (open.col(middle).any()) {
+      const auto vertices = middles.Vertices()[middle];
+      for (const int node : vertices) {
+        parent[root(vertices(0))] = root(node);
+      }
     }
   }
   std::map<int, std::vector<Eigen::Index>> of_root;
-  for (Eigen::Index edge = 0; edge < edges.Size(); ++edge) {
-    if (open.col(edge).any()) {
-      of_root[root(edges.Ends()(0, edge))].push_back(edge);
+  for (Eigen::Index middle = 0; middle < middles.Size(); ++middle) {
+    if (open.col(middle).any()) {
+      of_root[root(middles.Vertices()[middle](0))].push_back(middle);
     }
   }
   std::vector<std::vector<Eigen::Index>> all;
@@ -236,8 +255,8 @@ std::optional<Eigen::VectorXd> SeparatingDirection(
   return std::nullopt;
 }
 
-// Returns the edges in the order of their middles in a direction; those whose
-// middles are equally far form one step.
+// Returns the middles in their order in a direction; those that are equally far
+// form one step.
 std::vector<std::vector<Eigen::Index>> Steps(
     const std::vector<Eigen::Index>& of_end,
     const Eigen::RowVectorXd& distance) {
@@ -265,35 +284,41 @@ std::vector<std::vector<Eigen::Index>> Steps(
 }  // namespace
 
 std::vector<SupportEnd> FindSupportEnds(const Supports& supports,
-                                        const Mesh& mesh, const Edges& edges,
+                                        const Mesh& mesh,
+                                        const Middles& middles,
                                         const ComponentMask& held) {
-  const OpenEdges open_edges(supports, mesh, edges, held);
-  const ComponentMask& open = open_edges.Open();
+  const OpenMiddles open_middles(supports, mesh, middles, held);
+  const ComponentMask& open = open_middles.Open();
   std::vector<SupportEnd> ends;
-  for (const auto& of_end : ConnectedEdges(mesh, edges, open)) {
+  for (const auto& of_end : ConnectedMiddles(mesh, middles, open)) {
     const Eigen::Index size = Eigen::Index(of_end.size());
     Eigen::MatrixXd held_points(mesh.Dimension(), size);
     Eigen::MatrixXd free_points(mesh.Dimension(), size);
+    Eigen::MatrixXd positions(mesh.Dimension(), size);
     for (Eigen::Index k = 0; k < size; ++k) {
-      const auto [held_node, free_node] = open_edges.HeldAndFree(of_end[k]);
-      held_points.col(k) = mesh.nodes.col(held_node);
-      free_points.col(k) = mesh.nodes.col(free_node);
+      const auto mean = [&](const auto& vertices) {
+        return mesh.nodes(Eigen::all, vertices).rowwise().mean();
+      };
+      held_points.col(k) = mean(open_middles.VerticesWhere(true, of_end[k]));
+      free_points.col(k) = mean(open_middles.VerticesWhere(false, of_end[k]));
+      positions.col(k) = mean(middles.Vertices()[of_end[k]]);
     }
     const std::optional<Eigen::VectorXd> direction =
         SeparatingDirection(held_points, free_points);
     const Eigen::RowVectorXd distance =
-        direction ? Eigen::RowVectorXd(direction->transpose() *
-                                       (held_points + free_points) / 2)
+        direction ? Eigen::RowVectorXd(direction->transpose() * positions)
                   : Eigen::RowVectorXd::Zero(size);
     SupportEnd end;
     for (const auto& step : Steps(of_end, distance)) {
       end.steps.emplace_back();
-      for (const Eigen::Index edge : step) {
-        const int held_node = open_edges.HeldAndFree(edge).first;
+      for (const Eigen::Index middle : step) {
+        const std::vector<int> vertices =
+            open_middles.VerticesWhere(true, middle);
         for (Eigen::Index i = 0; i < open.rows(); ++i) {
-          if (open(i, edge)) {
-            end.steps.back().push_back({i, mesh.NumNodes() + edge,
-                                        supports.displacement(i, held_node)});
+          if (open(i, middle)) {
+            end.steps.back().push_back(
+                {i, mesh.NumNodes() + middle,
+                 supports.displacement.row(i)(vertices).mean()});
           }
         }
       }

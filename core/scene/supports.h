@@ -32,9 +32,9 @@ struct HeldComponent {
   double displacement;
 };
 
-/// An end of a support somewhere along edges whose middles are nodes.  The
-/// support holds the middles of the first so many steps, or none.  Each step is
-/// held as a whole.
+/// An end of a support somewhere within edges, faces and elements whose middles
+/// are nodes.  The support holds the middles of the first so many steps, or
+/// none.  Each step is held as a whole.
 struct SupportEnd {
   std::vector<std::vector<HeldComponent>> steps;
 };
@@ -46,10 +46,10 @@ struct RigidFace {
   Eigen::Array<bool, Eigen::Dynamic, 1> components;  ///< One for each axis.
 };
 
-/// A node that a refinement put in the middle between two others.
+/// A node that a refinement put in the middle of some others.
 struct MiddleNode {
   int node;
-  int ends[2];
+  std::vector<int> vertices;
 };
 
 /// The held degrees of freedom, and the displacement they are held at.
@@ -75,8 +75,8 @@ struct Supports {
   std::vector<SupportEnd> ends = {};
 
   /// The nodes that QuadraticScene put between held nodes of unknown
-  /// displacement, each after the nodes at its ends.  Such a node moves as
-  /// their mean where it was not measured itself.
+  /// displacement, each after its vertices.  Such a node moves as their mean
+  /// where it was not measured itself.
   std::vector<MiddleNode> middles = {};
 
   /// Tells whether component `i` of `node` is held at a displacement that is
