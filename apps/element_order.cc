@@ -43,11 +43,6 @@ std::optional<Scene> QuadraticSceneIfAsked(const std::string& source,
   if (FLAGS_order == 1 || scene.mesh.Order() == 2) {
     return std::nullopt;
   }
-  if (!HasQuadraticKind(scene.mesh.kind)) {
-    throw std::invalid_argument(
-        AsGiven("order") + ": " + source + " has " + shapes +
-        ", for which there are no quadratic elements; leave the flag out");
-  }
   if (HasNodalForces(scene)) {
     notices.emplace_back(
         "with --order=2, nodal forces on all nodes of a face or an element are "

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "elastimate/core/equilibrium/equilibrium.h"
-#include "elastimate/core/mesh/mid_edges.h"
+#include "elastimate/core/mesh/middle_nodes.h"
 #include "elastimate/core/scene/deformation_size.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/finer_scene.h"
@@ -232,8 +232,9 @@ Fields ResultFields(const Scene& scene, const Scene& modelled,
       model.Forces().Multiply(moduli, fitted) - AssembleLoadCases(solved);
   const Eigen::MatrixXd held_imbalance = OfHeld(solved, imbalance);
   const Eigen::MatrixXd reaction =
-      scene.mesh.Order() == 2 ? held_imbalance
-                              : MidEdges(solved.mesh).Restrict(held_imbalance);
+      scene.mesh.Order() == 2
+          ? held_imbalance
+          : MiddleNodes(solved.mesh).Restrict(held_imbalance);
   collector.AddOutliers(estimate.outliers);
   for (Eigen::Index k = 0; k < num_cases; ++k) {
     collector.AddPoint("fitted_displacement", k, fitted);

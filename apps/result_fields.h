@@ -21,7 +21,7 @@ namespace elastimate {
 /// per cell the `strain_energy_density` of the fitted displacement.  The
 /// reactions of a QuadraticScene have half of the reaction at each mid-edge
 /// node added at either end of its edge, which keeps resultant and moment
-/// (MidEdges).
+/// (MiddleNodes).
 ///
 /// When nothing holds the specimen, these are `force_residual` and
 /// `strain_energy_density` of the measured displacement, with linear elements.

@@ -20,8 +20,8 @@
 #include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/core/scene/finer_scene.h"
+#include "elastimate/core/scene/linear_scene.h"
 #include "elastimate/core/scene/quadratic_scene.h"
-#include "elastimate/core/scene/simplicial_scene.h"
 #include "elastimate/estimators/plan/expected_information.h"
 #include "elastimate/estimators/registry.h"
 
@@ -131,8 +131,7 @@ struct Specimen {
 Specimen MakeSpecimen(const UnseenShape& shape) {
   Specimen specimen = {
       shape, UnmeasuredScene(shape, TetrahedralMesh(shape.body)), {}, {}};
-  specimen.finer =
-      QuadraticScene(SimplicialScene(QuadraticScene(specimen.scene)));
+  specimen.finer = QuadraticScene(LinearScene(QuadraticScene(specimen.scene)));
   if (shape.hexahedra_per_edge > 0) {
     specimen.hexahedra = UnmeasuredScene(
         shape, HexahedralMesh(shape.body, shape.hexahedra_per_edge));

@@ -1,6 +1,7 @@
 #include "tests/element_kinds.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -96,6 +97,7 @@ Mesh UndistortedMesh(const KindOfSection& parameter, int cells) {
       mesh = BoxMesh({cells, cells, cells}, {1, 1, 1});
       break;
     case ElementKind::kHex8:
+    case ElementKind::kHex27:
       mesh = HexahedronGrid(cells);
       break;
     case ElementKind::kTri3:
@@ -104,6 +106,7 @@ Mesh UndistortedMesh(const KindOfSection& parameter, int cells) {
       mesh = TriangleGrid(cells);
       break;
     case ElementKind::kQuad4:
+    case ElementKind::kQuad9:
       mesh = QuadrilateralGrid(cells);
       break;
   }
@@ -155,11 +158,35 @@ Scene VertexScene(const KindOfSection& parameter, int cells) {
   return scene;
 }
 
-// The reference element has these nodes, and these exponents of monomials.
+// The reference element has these nodes, and these exponents of monomials.  The
+// map of an element with straight edges takes the vertices alone.
 struct Reference {
   Eigen::MatrixXd nodes;
   std::vector<std::array<int, 3>> exponents;
 };
+
+// Returns where VTK has the nodes of a quadratic cube, or those of a square,
+// which are the first four of each list.
+Eigen::MatrixXd NodesOfCube(int dimension, int num_nodes) {
+  constexpr double kVertices[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1},
+                                      {-1, 1, -1},  {-1, -1, 1}, {1, -1, 1},
+                                      {1, 1, 1},    {-1, 1, 1}};
+  constexpr double kMiddles[19][3] = {
+      {0, -1, -1}, {1, 0, -1}, {0, 1, -1}, {-1, 0, -1}, {0, -1, 1},
+      {1, 0, 1},   {0, 1, 1},  {-1, 0, 1}, {-1, -1, 0}, {1, -1, 0},
+      {1, 1, 0},   {-1, 1, 0}, {-1, 0, 0}, {1, 0, 0},   {0, -1, 0},
+      {0, 1, 0},   {0, 0, -1}, {0, 0, 1},  {0, 0, 0}};
+  const int num_vertices = dimension == 3 ? 8 : 4;
+  Eigen::MatrixXd nodes(dimension, num_nodes);
+  for (int i = 0; i < num_nodes; ++i) {
+    const int middle = i - num_vertices;
+    const double* const x = middle < 0                     ? kVertices[i]
+                            : dimension == 3 || middle < 4 ? kMiddles[middle]
+                                                           : kMiddles[18];
+    nodes.col(i) = Eigen::Map<const Eigen::VectorXd>(x, dimension);
+  }
+  return nodes;
+}
 
 Reference ReferenceOf(ElementKind kind) {
   const ElementTopology& topology = TopologyOf(kind);
@@ -176,19 +203,14 @@ Reference ReferenceOf(ElementKind kind) {
           (reference.nodes.col(a) + reference.nodes.col(b)) / 2;
     }
   } else {
-    for (int i = 0; i < topology.num_nodes; ++i) {
-      reference.nodes(0, i) = i % 4 == 1 || i % 4 == 2 ? 1 : -1;
-      reference.nodes(1, i) = i % 4 >= 2 ? 1 : -1;
-      if (d == 3) {
-        reference.nodes(2, i) = i >= 4 ? 1 : -1;
-      }
-    }
+    reference.nodes = NodesOfCube(d, topology.num_nodes);
   }
   for (int a = 0; a <= 2; ++a) {
     for (int b = 0; b <= 2; ++b) {
       for (int c = 0; c <= (d == 3 ? 2 : 0); ++c) {
-        const bool is_used = IsSimplex(kind) ? a + b + c <= topology.order
-                                             : a <= 1 && b <= 1 && c <= 1;
+        const bool is_used = IsSimplex(kind)
+                                 ? a + b + c <= topology.order
+                                 : std::max({a, b, c}) <= topology.order;
         if (is_used) {
           reference.exponents.push_back({a, b, c});
         }
@@ -234,8 +256,8 @@ void ForEachPointOfCurved(
 }
 
 // Calls visit(xi, weight) at Gauss points.  There are two along each axis of a
-// square or a cube; for a simplex, four along each axis of a cube that is
-// collapsed onto it.
+// square or a cube, three if its order is 2; for a simplex, four along each
+// axis of a cube that is collapsed onto it.
 void ForEachPoint(
     ElementKind kind,
     const std::function<void(const Eigen::VectorXd&, double)>& visit) {
@@ -246,6 +268,10 @@ void ForEachPoint(
   const int d = TopologyOf(kind).dimension;
   std::vector<double> points = {-1 / std::sqrt(3.0), 1 / std::sqrt(3.0)};
   std::vector<double> weights = {1, 1};
+  if (TopologyOf(kind).order == 2) {
+    points = {-std::sqrt(0.6), 0, std::sqrt(0.6)};
+    weights = {5.0 / 9, 8.0 / 9, 5.0 / 9};
+  }
   if (IsSimplex(kind)) {
     const GaussPoints gauss;
     points.assign(gauss.point.begin(), gauss.point.end());

@@ -65,7 +65,7 @@ Eigen::VectorXd TextbookVolumes(const Mesh& mesh);
 void MeasureByTextbook(const IsotropicElasticity& elasticity, Scene& scene);
 
 /// Measures the scene at its nodes in a world of finer elements than those that
-/// an estimator may look at: quadratic simplices, cut twice.
+/// an estimator may look at: quadratic elements, divided once.
 void MeasureInCutWorld(const IsotropicElasticity& elasticity, Scene& scene);
 
 }  // namespace elastimate::testing

@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "elastimate/core/scene/degrees_of_freedom.h"
+#include "elastimate/core/scene/linear_scene.h"
 #include "elastimate/core/scene/quadratic_scene.h"
-#include "elastimate/core/scene/simplicial_scene.h"
 #include "tests/dense_reference.h"
 
 namespace elastimate::testing {
@@ -137,7 +137,7 @@ void TakeDisplacements(const Scene& finer, Scene& scene) {
 
 void MeasureInRefinedWorld(const IsotropicElasticity& elasticity,
                            Scene& scene) {
-  Scene finer = QuadraticScene(SimplicialScene(QuadraticScene(scene)));
+  Scene finer = QuadraticScene(LinearScene(QuadraticScene(scene)));
   Measure(elasticity, finer);
   TakeDisplacements(finer, scene);
 }

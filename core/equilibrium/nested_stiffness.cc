@@ -79,7 +79,7 @@ bool AreNested(const std::vector<const Scene*>& spaces) {
   }
   for (std::size_t i = 0; i < spaces.size(); ++i) {
     const Mesh& mesh = spaces[i]->mesh;
-    if (!IsAffine(mesh.kind) || (i > 0 && mesh.Order() != 2)) {
+    if (IsCurved(mesh.kind) || (i > 0 && mesh.Order() != 2)) {
       return false;
     }
     if (i > 0 && !BeginsWithNodesOf(spaces[i - 1]->mesh, mesh)) {

@@ -13,8 +13,8 @@
 namespace elastimate {
 
 /// Tells whether RefinedStiffness takes these scenes, from coarse to fine:
-/// there are two or more, all elements are simplices with straight edges, those
-/// of the finer scenes are quadratic, and the first nodes of each scene are
+/// there are two or more, all elements have straight edges, those of the finer
+/// scenes are quadratic, and the first nodes of each scene are
 /// those of the one before, as FinerScene has them.  O(num_nodes).
 [[nodiscard]] bool AreNested(const std::vector<const Scene*>& spaces);
 

@@ -6,6 +6,7 @@
 
 #include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/mechanics/law_products.h"
+#include "elastimate/core/mechanics/tensor_stiffness_product.h"
 #include "elastimate/core/mechanics/tet10_stiffness_product.h"
 
 namespace elastimate {
@@ -130,6 +131,10 @@ Eigen::MatrixXd InternalForces::Multiply(
   if (mesh_.kind == ElementKind::kTet10) {
     return MultiplyQuadraticTetrahedra(mesh_, ModuliOfElements(moduli),
                                        displacements);
+  }
+  if (mesh_.kind == ElementKind::kHex27 || mesh_.kind == ElementKind::kQuad9) {
+    return MultiplyTensorElements(mesh_, ModuliOfElements(moduli),
+                                  displacements);
   }
   const std::vector<Eigen::MatrixXd> products = OfParts(displacements);
   const Eigen::Index dimension = mesh_.Dimension();

@@ -5,6 +5,7 @@
 
 #include "elastimate/core/materials/elasticity.h"
 #include "elastimate/core/mechanics/element_stiffness_product.h"
+#include "elastimate/core/mechanics/tensor_stiffness_product.h"
 #include "elastimate/core/mechanics/tet10_stiffness_product.h"
 #include "elastimate/core/mechanics/tet4_stiffness_product.h"
 #include "elastimate/core/mesh/node_order.h"
@@ -17,6 +18,10 @@ void MultiplyOtherKinds(const Mesh& mesh, const Eigen::MatrixXd& displacement,
                         StiffnessProducts& products) {
   if (mesh.kind == ElementKind::kTet10) {
     MultiplyQuadraticTetrahedra(mesh, displacement, products);
+    return;
+  }
+  if (mesh.kind == ElementKind::kHex27 || mesh.kind == ElementKind::kQuad9) {
+    MultiplyTensorElements(mesh, displacement, products);
     return;
   }
   products.h.setZero(displacement.rows(), displacement.cols());

@@ -1,12 +1,9 @@
 #include "elastimate/core/mechanics/tet10_stiffness_product.h"
 
-#include <hwy/aligned_allocator.h>
-
-#include <algorithm>
 #include <cassert>
 #include <cstddef>
-#include <new>
 
+#include "elastimate/core/mechanics/quadratic_pass.h"
 #include "elastimate/core/mesh/tet10.h"
 
 // The rest of this file is compiled once for each kind of processor, and the
@@ -18,132 +15,21 @@
 // This header has to come after foreach_target.h.
 #include <hwy/highway.h>
 
-#include "elastimate/core/mechanics/vector_lanes-inl.h"
-
-#ifndef ELASTIMATE_CORE_QUADRATIC_PASS_
-#define ELASTIMATE_CORE_QUADRATIC_PASS_
-namespace elastimate {
-namespace {
-
-constexpr std::ptrdiff_t kMostLanes = 8;
-
-// The record of a node has groups of four values, of which the last is zero:
-// one group for its displacement, one for the sum at it, and one for the sum of
-// the second product if there are two.
-constexpr std::ptrdiff_t kFour = 4;
-constexpr std::ptrdiff_t kSizeForSum = 2 * kFour;
-constexpr std::ptrdiff_t kSizeForProducts = 3 * kFour;
-
-// A pass is for one column.  Columns that share the geometry of an element save
-// less than it costs that their records do not fit into the cache together.
-struct QuadraticPass {
-  const int* elements;  // 10 x num_elements.
-  std::ptrdiff_t num_elements;
-  // These are 3 x num_nodes.  Four values are read at each vertex, which is
-  // within bounds because mid-edge nodes come behind all vertices.
-  const double* positions;
-  // Where these are null, the products are a = integral of e grad(N) and,
-  // behind it, p = integral of tr(e) grad(N).  Else the only product is the sum
-  // of both with these coefficients.  The arrays then have kMostLanes more
-  // values of any size behind those of the elements.
-  const double* coefficients_of_a;
-  const double* coefficients_of_p;
-  double* records;
-};
-
-}  // namespace
-}  // namespace elastimate
-#endif
+#include "elastimate/core/mechanics/quadratic_pass-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace elastimate {
 namespace HWY_NAMESPACE {
 namespace {
 
-// The records, of this size, of the first nodes of as many elements as there
-// are lanes.  Lanes beyond the last element repeat it.
-template <int kNodes, class Value>
-struct NodeRecords {
-  Value* record[kNodes][kLanes];
-
-  HWY_INLINE NodeRecords(const int* elements, std::ptrdiff_t count,
-                         Value* records, std::ptrdiff_t size) {
-    for (std::ptrdiff_t lane = 0; lane < kLanes; ++lane) {
-      const int* const nodes = elements + 10 * std::min(lane, count - 1);
-      for (int i = 0; i < kNodes; ++i) {
-        record[i][lane] = records + size * nodes[i];
-      }
-    }
-  }
-};
-
-using Corners = NodeRecords<4, const double>;
-using Nodes = NodeRecords<10, double>;
-
-#if ELASTIMATE_HAS_BATCHES
+using Corners = NodeRecords<4, 10, const double>;
+using Nodes = NodeRecords<10, 10, double>;
 
 // Returns the vectors of node i minus those of node 0.
 template <class Records>
 HWY_INLINE Vector FromVertex0(const Records& nodes, int i) {
-  const auto row = [&](std::size_t k) HWY_ATTR {
-    return hn::Sub(LoadRow(nodes.record[i], k, 0),
-                   LoadRow(nodes.record[0], k, 0));
-  };
-  const Rows components = Transpose({row(0), row(1), row(2), row(3)});
-  return {components.row0, components.row1, components.row2};
+  return LoadVector(nodes.record[i]) - LoadVector(nodes.record[0]);
 }
-
-template <class V>
-HWY_INLINE void AddFour(V v, double* p) {
-  const hn::DFromV<V> d;
-  hn::Store(hn::Add(hn::Load(d, p), v), d, p);
-}
-
-// Adds for one element after the other, because they may share nodes.
-HWY_INLINE void AddToNode(const Vector& v, double* const (&records)[kLanes],
-                          std::ptrdiff_t offset) {
-  const Rows rows = Transpose({v.x, v.y, v.z, hn::Zero(Lanes())});
-#if HWY_CAP_GE512
-  const hn::Half<Lanes> half;
-  AddFour(hn::LowerHalf(half, rows.row0), records[0] + offset);
-  AddFour(hn::LowerHalf(half, rows.row1), records[1] + offset);
-  AddFour(hn::LowerHalf(half, rows.row2), records[2] + offset);
-  AddFour(hn::LowerHalf(half, rows.row3), records[3] + offset);
-  AddFour(hn::UpperHalf(half, rows.row0), records[4] + offset);
-  AddFour(hn::UpperHalf(half, rows.row1), records[5] + offset);
-  AddFour(hn::UpperHalf(half, rows.row2), records[6] + offset);
-  AddFour(hn::UpperHalf(half, rows.row3), records[7] + offset);
-#else
-  AddFour(rows.row0, records[0] + offset);
-  AddFour(rows.row1, records[1] + offset);
-  AddFour(rows.row2, records[2] + offset);
-  AddFour(rows.row3, records[3] + offset);
-#endif
-}
-
-#else
-
-HWY_INLINE Vector LoadVector(const double* p) {
-  const Lanes d;
-  return {hn::Load(d, p), hn::Load(d, p + 1), hn::Load(d, p + 2)};
-}
-
-template <class Records>
-HWY_INLINE Vector FromVertex0(const Records& nodes, int i) {
-  return LoadVector(nodes.record[i][0]) - LoadVector(nodes.record[0][0]);
-}
-
-HWY_INLINE void AddToNode(const Vector& v, double* const (&records)[kLanes],
-                          std::ptrdiff_t offset) {
-  const Lanes d;
-  double* const p = records[0] + offset;
-  const Vector sum = LoadVector(p) + v;
-  hn::Store(sum.x, d, p);
-  hn::Store(sum.y, d, p + 1);
-  hn::Store(sum.z, d, p + 2);
-}
-
-#endif
 
 // The gradients of the barycentric coordinates, and V / 20.
 struct Barycentric {
@@ -362,55 +248,8 @@ namespace {
 
 HWY_EXPORT(RunQuadraticPass);
 
-using Records = hwy::AlignedFreeUniquePtr<double[]>;
-
-Records AllocateRecords(Eigen::Index size) {
-  Records records = hwy::AllocateAligned<double>(std::size_t(size));
-  if (!records) {
-    throw std::bad_alloc();
-  }
-  return records;
-}
-
-// Copies the values of each node to the first three of its record, with zeros
-// behind.  Loops of a length that the compiler knows become vectors rather than
-// calls.
-template <Eigen::Index kSize>
-void FillNodeRecords(const double* values, Eigen::Index num_nodes,
-                     double* records) {
-  for (Eigen::Index i = 0; i < num_nodes; ++i, records += kSize, values += 3) {
-    const double x = values[0];
-    const double y = values[1];
-    const double z = values[2];
-    records[0] = x;
-    records[1] = y;
-    records[2] = z;
-    for (Eigen::Index k = 3; k < kSize; ++k) {
-      records[k] = 0;
-    }
-  }
-}
-
-// Calls collect(column, records) for one column after the other.
-template <Eigen::Index kSize, class Collect>
-void RunInColumns(const Mesh& mesh, const double* coefficients_of_a,
-                  const double* coefficients_of_p,
-                  const Eigen::MatrixXd& displacement, const Collect& collect) {
-  const Eigen::Index num_nodes = mesh.NumNodes();
-  const Records records = AllocateRecords(kSize * num_nodes);
-  QuadraticPass pass;
-  pass.elements = mesh.elements.data();
-  pass.num_elements = mesh.NumElements();
-  pass.positions = mesh.nodes.data();
-  pass.coefficients_of_a = coefficients_of_a;
-  pass.coefficients_of_p = coefficients_of_p;
-  pass.records = records.get();
-  for (Eigen::Index column = 0; column < displacement.cols(); ++column) {
-    FillNodeRecords<kSize>(displacement.col(column).data(), num_nodes,
-                           records.get());
-    HWY_DYNAMIC_DISPATCH(RunQuadraticPass)(pass);
-    collect(column, records.get());
-  }
+void RunBestPass(const QuadraticPass& pass) {
+  HWY_DYNAMIC_DISPATCH(RunQuadraticPass)(pass);
 }
 
 }  // namespace
@@ -419,45 +258,14 @@ void MultiplyQuadraticTetrahedra(const Mesh& mesh,
                                  const Eigen::MatrixXd& displacement,
                                  StiffnessProducts& products) {
   assert(mesh.kind == ElementKind::kTet10);
-  products.h.resize(displacement.rows(), displacement.cols());
-  products.j.resize(displacement.rows(), displacement.cols());
-  RunInColumns<kSizeForProducts>(
-      mesh, nullptr, nullptr, displacement,
-      [&](Eigen::Index column, const double* record) {
-        double* h = products.h.col(column).data();
-        double* j = products.j.col(column).data();
-        for (Eigen::Index i = 0; i < mesh.NumNodes();
-             ++i, record += kSizeForProducts, h += 3, j += 3) {
-          for (int k = 0; k < 3; ++k) {
-            const double a = record[kFour + k];
-            h[k] = a;
-            j[k] = record[2 * kFour + k] - 2 * a;
-          }
-        }
-      });
+  MultiplyByPass(mesh, displacement, RunBestPass, products);
 }
 
 Eigen::MatrixXd MultiplyQuadraticTetrahedra(
     const Mesh& mesh, const Eigen::Matrix2Xd& coefficients,
     const Eigen::MatrixXd& displacement) {
   assert(mesh.kind == ElementKind::kTet10);
-  // J q = p - 2 a.
-  Eigen::VectorXd of_a = Eigen::VectorXd::Zero(mesh.NumElements() + kMostLanes);
-  Eigen::VectorXd of_p = of_a;
-  of_a.head(mesh.NumElements()) = coefficients.row(0) - 2 * coefficients.row(1);
-  of_p.head(mesh.NumElements()) = coefficients.row(1);
-  Eigen::MatrixXd forces(displacement.rows(), displacement.cols());
-  RunInColumns<kSizeForSum>(mesh, of_a.data(), of_p.data(), displacement,
-                            [&](Eigen::Index column, const double* record) {
-                              double* force = forces.col(column).data();
-                              for (Eigen::Index i = 0; i < mesh.NumNodes();
-                                   ++i, record += kSizeForSum, force += 3) {
-                                for (int k = 0; k < 3; ++k) {
-                                  force[k] = record[kFour + k];
-                                }
-                              }
-                            });
-  return forces;
+  return MultiplyByPass(mesh, coefficients, displacement, RunBestPass);
 }
 
 }  // namespace elastimate

@@ -14,6 +14,8 @@ namespace {
 // far below any gap that is meant.
 constexpr double kSamePlace = 1e-4;
 
+// Returns the shortest edge at each vertex, and for a node in the middle of
+// vertices the shortest at one of these.
 Eigen::VectorXd ShortestEdges(const Mesh& mesh) {
   Eigen::VectorXd squares = Eigen::VectorXd::Constant(
       mesh.NumNodes(), std::numeric_limits<double>::infinity());
@@ -23,11 +25,16 @@ Eigen::VectorXd ShortestEdges(const Mesh& mesh) {
       const double square = (mesh.nodes.col(mesh.elements(i, element)) -
                              mesh.nodes.col(mesh.elements(k, element)))
                                 .squaredNorm();
-      for (const int local : {i, k, topology.MidEdgeNode(i, k)}) {
-        if (local >= 0) {
-          double& least = squares(mesh.elements(local, element));
-          least = std::min(least, square);
-        }
+      double& of_i = squares(mesh.elements(i, element));
+      double& of_k = squares(mesh.elements(k, element));
+      of_i = std::min(of_i, square);
+      of_k = std::min(of_k, square);
+    }
+  }
+  for (const auto& nodes : mesh.elements.colwise()) {
+    for (int i = topology.num_vertices; i < topology.num_nodes; ++i) {
+      for (const int vertex : topology.middles[i - topology.num_vertices]) {
+        squares(nodes(i)) = std::min(squares(nodes(i)), squares(nodes(vertex)));
       }
     }
   }

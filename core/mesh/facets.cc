@@ -74,9 +74,12 @@ Eigen::VectorXi NodesOfFace(const Mesh& mesh, Eigen::Index element,
     nodes(k) = mesh.elements(vertices[k], element);
   }
   for (int k = 0; num_vertices + k < nodes.size(); ++k) {
-    const int next = k + 1 == num_vertices ? 0 : k + 1;
-    nodes(num_vertices + k) = mesh.elements(
-        topology.MidEdgeNode(vertices[k], vertices[next]), element);
+    std::vector<int> around;
+    for (const int place : topology.middles_of_face[k]) {
+      around.push_back(vertices[place]);
+    }
+    nodes(num_vertices + k) =
+        mesh.elements(topology.MiddleNode(around), element);
   }
   return nodes;
 }
@@ -253,7 +256,9 @@ FacetWeights WeightsOfFacet(const Mesh& mesh,
                  ? WeightsOfSurface<ElementKind::kCurvedTri6>(mesh, facet)
                  : WeightsOfTriangle(mesh, facet);
     default:
-      return WeightsOfSurface<ElementKind::kQuad4>(mesh, facet);
+      return mesh.Order() == 1
+                 ? WeightsOfSurface<ElementKind::kQuad4>(mesh, facet)
+                 : WeightsOfSurface<ElementKind::kQuad9>(mesh, facet);
   }
 }
 

@@ -11,7 +11,8 @@ namespace elastimate {
 
 // Facets are faces of elements, in two dimensions edges:
 // num_nodes_of_face x num_facets node indices, vertices first, then the middle
-// of the edges 01, 12, 20 of a triangle or of the edge 01.
+// of the edges 01, 12, 20 of a triangle or of the edge 01.  A quadrilateral has
+// the middles of the edges 01, 12, 23, 30, and then its own.
 
 /// The outer surface: the faces that belong to one element only, each
 /// counter-clockwise seen from outside, so that in three dimensions
@@ -26,7 +27,7 @@ namespace elastimate {
     const Mesh& mesh, const std::function<bool(int)>& accepts_node);
 
 /// The first facet that is no face of any element, in any order of vertices
-/// around it, with the middles of its edges where elements are quadratic; empty
+/// around it, with its middles where elements are quadratic; empty
 /// if each is one.  Precondition: NumNodesOfFace() nodes in range.
 /// O(num_elements + num_facets log num_facets).
 [[nodiscard]] std::optional<Eigen::Index> FirstThatIsNoFace(
@@ -43,8 +44,9 @@ struct FacetWeights {
 
 /// Returns the weights of a facet.  Areas contain the thickness of a planar
 /// section.  The weights are exact for straight edges and flat faces; a
-/// quadrilateral takes 4 points.  On curved facets the area vectors are exact,
-/// and areas take 3 points in an edge or 6 in a triangle.
+/// quadrilateral takes 4 points, of order 2 it takes 9.  On curved facets the
+/// area vectors are exact, and areas take 3 points in an edge or 6 in a
+/// triangle.
 [[nodiscard]] FacetWeights WeightsOfFacet(
     const Mesh& mesh, const Eigen::Ref<const Eigen::VectorXi>& facet);
 

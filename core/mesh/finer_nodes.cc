@@ -11,24 +11,27 @@ namespace {
 
 using Entries = std::vector<Eigen::Triplet<double, Eigen::Index>>;
 
-// Adds the weights of the nodes of an element at the middle between nodes a and
-// b.
-void AddWeights(const Mesh& mesh, Eigen::Index element, int a, int b,
-                Eigen::Index row, Entries& weights) {
+// Adds the weights of the nodes of an element at the middle of some of its
+// nodes.
+void AddWeights(const Mesh& mesh, Eigen::Index element,
+                const std::vector<int>& around, Eigen::Index row,
+                Entries& weights) {
   if (mesh.Order() == 1) {
-    weights.emplace_back(row, a, 0.5);
-    weights.emplace_back(row, b, 0.5);
+    for (const int node : around) {
+      weights.emplace_back(row, node, 1 / double(around.size()));
+    }
     return;
   }
   const auto nodes = mesh.elements.col(element);
   const Eigen::MatrixXd reference = ReferenceNodes(mesh.kind);
-  const auto reference_of = [&](int node) {
-    return reference.col(std::find(nodes.begin(), nodes.end(), node) -
-                         nodes.begin());
-  };
-  const Eigen::VectorXd values =
-      ShapeFunctionsOf(mesh, {Eigen::VectorXi::Constant(1, int(element)),
-                              0.5 * (reference_of(a) + reference_of(b))});
+  Eigen::VectorXd middle = Eigen::VectorXd::Zero(reference.rows());
+  for (const int node : around) {
+    middle += reference.col(std::find(nodes.begin(), nodes.end(), node) -
+                            nodes.begin()) /
+              double(around.size());
+  }
+  const Eigen::VectorXd values = ShapeFunctionsOf(
+      mesh, {Eigen::VectorXi::Constant(1, int(element)), middle});
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     if (values(i) != 0) {
       weights.emplace_back(row, nodes(i), values(i));
@@ -45,14 +48,17 @@ FinerNodes::FinerNodes(const Mesh& mesh, const Mesh& finer)
   const Eigen::Index num_cuts = finer.NumElements() / mesh.NumElements();
   std::vector<bool> is_known(std::size_t(weights_.rows()), false);
   Entries weights;
+  std::vector<int> around;
   for (Eigen::Index e = 0; e < finer.NumElements(); ++e) {
     for (int i = topology.num_vertices; i < topology.num_nodes; ++i) {
       const Eigen::Index row = finer.elements(i, e) - mesh.NumNodes();
       if (!is_known[row]) {
         is_known[row] = true;
-        const auto& [a, b] = topology.edges[i - topology.num_vertices];
-        AddWeights(mesh, e / num_cuts, finer.elements(a, e),
-                   finer.elements(b, e), row, weights);
+        around.clear();
+        for (const int place : topology.middles[i - topology.num_vertices]) {
+          around.push_back(finer.elements(place, e));
+        }
+        AddWeights(mesh, e / num_cuts, around, row, weights);
       }
     }
   }
@@ -66,7 +72,7 @@ namespace {
 
 template <int kDimension>
 void InterpolateColumn(const FinerNodes::Weights& weights,
-                       const double* at_nodes, double* at_mid_edges) {
+                       const double* at_nodes, double* at_middles) {
   using Values = Eigen::Matrix<double, kDimension, 1>;
   for (Eigen::Index row = 0; row < weights.rows(); ++row) {
     Values sum = Values::Zero();
@@ -75,17 +81,17 @@ void InterpolateColumn(const FinerNodes::Weights& weights,
       sum += weight.value() *
              Eigen::Map<const Values>(at_nodes + kDimension * weight.col());
     }
-    Eigen::Map<Values>(at_mid_edges + kDimension * row) = sum;
+    Eigen::Map<Values>(at_middles + kDimension * row) = sum;
   }
 }
 
 template <int kDimension>
 void RestrictColumn(const FinerNodes::Weights& weights,
-                    const double* at_mid_edges, double* on_nodes) {
+                    const double* at_middles, double* on_nodes) {
   using Values = Eigen::Matrix<double, kDimension, 1>;
   for (Eigen::Index row = 0; row < weights.rows(); ++row) {
     const Values of_row =
-        Eigen::Map<const Values>(at_mid_edges + kDimension * row);
+        Eigen::Map<const Values>(at_middles + kDimension * row);
     for (FinerNodes::Weights::InnerIterator weight(weights, row); weight;
          ++weight) {
       Eigen::Map<Values>(on_nodes + kDimension * weight.col()) +=
@@ -98,7 +104,7 @@ void RestrictColumn(const FinerNodes::Weights& weights,
 
 Eigen::MatrixXd FinerNodes::Interpolate(const Eigen::MatrixXd& at_nodes) const {
   const Eigen::Index first = dimension_ * NumNodes();
-  Eigen::MatrixXd all(first + dimension_ * NumMidEdges(), at_nodes.cols());
+  Eigen::MatrixXd all(first + dimension_ * NumMiddles(), at_nodes.cols());
   all.topRows(first) = at_nodes;
   for (Eigen::Index k = 0; k < all.cols(); ++k) {
     double* const values = all.col(k).data();
@@ -115,11 +121,11 @@ Eigen::MatrixXd FinerNodes::Restrict(const Eigen::MatrixXd& forces) const {
   const Eigen::Index first = dimension_ * NumNodes();
   Eigen::MatrixXd on_nodes = forces.topRows(first);
   for (Eigen::Index k = 0; k < forces.cols(); ++k) {
-    const double* const at_mid_edges = forces.col(k).data() + first;
+    const double* const at_middles = forces.col(k).data() + first;
     if (dimension_ == 3) {
-      RestrictColumn<3>(weights_, at_mid_edges, on_nodes.col(k).data());
+      RestrictColumn<3>(weights_, at_middles, on_nodes.col(k).data());
     } else {
-      RestrictColumn<2>(weights_, at_mid_edges, on_nodes.col(k).data());
+      RestrictColumn<2>(weights_, at_middles, on_nodes.col(k).data());
     }
   }
   return on_nodes;

@@ -8,27 +8,26 @@
 
 namespace elastimate {
 
-/// Quadratic simplices of the nodes of a mesh (SimplicialMesh) have further
-/// nodes in the middle of their edges, which come behind the nodes of the mesh.
-/// This carries displacements and forces between the two meshes.  Both are
-/// num_dofs x n, row dimension * node + component.
+/// Quadratic elements of the nodes of a mesh (LinearMesh) have further nodes in
+/// the middle of their vertices, which come behind the nodes of the mesh.  This
+/// carries displacements and forces between the two meshes.  Both are num_dofs
+/// x n, row dimension * node + component.
 ///
-/// The functions of simplices are among those of the finer ones, and so are
-/// taken over as they are.  A linear function has the mean of the ends of an
-/// edge at its middle.  A quadratic function has its own values at the middle
-/// of edges of half the size, in reference coordinates where elements are
-/// curved.  Hexahedra and quadrilaterals are taken as the linear simplices of
-/// their nodes.
+/// The functions of the elements are among those of the finer ones, and so are
+/// taken over as they are.  A linear (bilinear, trilinear) function has the
+/// mean of the vertices in their middle.  A quadratic function has its own
+/// values at the middles of elements of half the size, in reference coordinates
+/// where elements are curved.
 class FinerNodes {
  public:
-  /// `finer` has quadratic simplices of the nodes of `mesh`, the same number
+  /// `finer` has quadratic elements of the nodes of `mesh`, the same number
   /// for each element of `mesh`, one element after another.  O(num_elements).
   FinerNodes(const Mesh& mesh, const Mesh& finer);
 
-  /// Returns the number of nodes of the mesh, behind which the mid-edge nodes
+  /// Returns the number of nodes of the mesh, behind which the middle nodes
   /// come.
   Eigen::Index NumNodes() const { return weights_.cols(); }
-  Eigen::Index NumMidEdges() const { return weights_.rows(); }
+  Eigen::Index NumMiddles() const { return weights_.rows(); }
 
   /// Returns the displacements, at all nodes, of the elements of the mesh whose
   /// nodes are displaced by `at_nodes`.
@@ -40,8 +39,8 @@ class FinerNodes {
   Eigen::MatrixXd Restrict(const Eigen::MatrixXd& forces) const;
 
   using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor, Eigen::Index>;
-  /// Returns the weights of the nodes of the mesh at the mid-edge nodes,
-  /// num_mid_edges x num_nodes.
+  /// Returns the weights of the nodes of the mesh at the middle nodes,
+  /// num_middles x num_nodes.
   const Weights& WeightsOfNodes() const { return weights_; }
 
  private:

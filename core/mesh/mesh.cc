@@ -133,10 +133,12 @@ std::string_view WhyNoElement(const Mesh& mesh, const ElementTopology& topology,
     }
     orientation = determinant;
   }
-  return mesh.kind == ElementKind::kHex8 &&
-                 !IsOriented<ElementKind::kHex8>(mesh, element, orientation)
-             ? "folded"
-             : "";
+  const bool is_oriented =
+      mesh.kind == ElementKind::kHex8
+          ? IsOriented<ElementKind::kHex8>(mesh, element, orientation)
+          : mesh.kind != ElementKind::kHex27 ||
+                IsOriented<ElementKind::kHex27>(mesh, element, orientation);
+  return is_oriented ? "" : "folded";
 }
 
 void ValidateSection(const Mesh& mesh) {
@@ -246,28 +248,43 @@ std::vector<char> ValidateElements(const Mesh& mesh) {
   return used;
 }
 
-void ValidateMidEdgeNodes(const Mesh& mesh) {
+// Returns "0 and 1" or "0, 1, 2 and 3".
+std::string NodeList(const std::vector<int>& nodes) {
+  std::string list = std::to_string(nodes[0]);
+  for (std::size_t i = 1; i < nodes.size(); ++i) {
+    list += (i + 1 == nodes.size() ? " and " : ", ") + std::to_string(nodes[i]);
+  }
+  return list;
+}
+
+void ValidateMiddleNodes(const Mesh& mesh) {
   const Eigen::Index num_vertices = mesh.NumVertices();
   const ElementTopology& topology = mesh.Topology();
+  std::vector<int> vertices;
   for (Eigen::Index element = 0; element < mesh.NumElements(); ++element) {
-    for (int i = 0; i < static_cast<int>(topology.edges.size()); ++i) {
-      const int node = mesh.elements(topology.num_vertices + i, element);
-      const int a = mesh.elements(topology.edges[i][0], element);
-      const int b = mesh.elements(topology.edges[i][1], element);
-      if (node < num_vertices) {
-        throw std::invalid_argument(
-            "mid-edge node " + std::to_string(node) + " of " +
-            ElementName(mesh, element) + " is numbered before vertex " +
-            std::to_string(num_vertices - 1) + "; number all vertices first");
+    for (int i = topology.num_vertices; i < topology.num_nodes; ++i) {
+      const int node = mesh.elements(i, element);
+      vertices.clear();
+      for (const int vertex : topology.middles[i - topology.num_vertices]) {
+        vertices.push_back(mesh.elements(vertex, element));
       }
-      if (!IsCurved(mesh.kind) && !IsInTheMiddle(mesh, node, a, b)) {
+      const auto name = [&] {
+        return (vertices.size() == 2 ? "mid-edge node " : "middle node ") +
+               std::to_string(node) + " of " + ElementName(mesh, element);
+      };
+      if (node < num_vertices) {
+        throw std::invalid_argument(name() + " is numbered before vertex " +
+                                    std::to_string(num_vertices - 1) +
+                                    "; number all vertices first");
+      }
+      if (!IsCurved(mesh.kind) && !IsInTheMiddle(mesh, node, vertices)) {
         throw std::invalid_argument(
-            "mid-edge node " + std::to_string(node) + " of " +
-            ElementName(mesh, element) + " is not in the middle between " +
-            std::to_string(a) + " and " + std::to_string(b) +
-            "; straighten the edges, and order the nodes as VTK does, or make "
-            "the elements of kind " +
-            std::string(TopologyOf(CurvedKind(mesh.kind)).name));
+            name() + " is not in the middle between " + NodeList(vertices) +
+            "; straighten the edges, and order the nodes as VTK does" +
+            (IsSimplex(mesh.kind)
+                 ? ", or make the elements of kind " +
+                       std::string(TopologyOf(CurvedKind(mesh.kind)).name)
+                 : ""));
       }
     }
   }
@@ -295,8 +312,8 @@ void ValidateSidesOfHexahedra(const Mesh& mesh) {
       [](const auto& a, const auto& b) { return a.first == b.first; });
   if (twin != corners.end()) {
     std::ostringstream text;
-    text << "the sides (" << facets.col(twin->second).transpose() << ") and ("
-         << facets.col((twin + 1)->second).transpose()
+    text << "the sides (" << facets.col(twin->second).head<4>().transpose()
+         << ") and (" << facets.col((twin + 1)->second).head<4>().transpose()
          << ") of two hexahedra share three nodes, but not the fourth; order "
             "the nodes of each as VTK does";
     throw std::invalid_argument(text.str());
@@ -337,9 +354,9 @@ void ValidateMesh(const Mesh& mesh) {
                                      ? ValidateOfDimension<3>(mesh)
                                      : ValidateOfDimension<2>(mesh);
   if (mesh.Order() == 2) {
-    ValidateMidEdgeNodes(mesh);
+    ValidateMiddleNodes(mesh);
   }
-  if (mesh.kind == ElementKind::kHex8) {
+  if (mesh.Dimension() == 3 && !IsSimplex(mesh.kind)) {
     ValidateSidesOfHexahedra(mesh);
   }
   const auto unused = std::find(used.begin(), used.end(), 0);
@@ -356,11 +373,17 @@ void ValidateMesh(const Mesh& mesh) {
   }
 }
 
-bool IsInTheMiddle(const Mesh& mesh, int node, int a, int b) {
-  const auto xa = mesh.nodes.col(a);
-  const auto xb = mesh.nodes.col(b);
-  return (mesh.nodes.col(node) - 0.5 * (xa + xb)).norm() <=
-         1e-6 * (xb - xa).norm();
+bool IsInTheMiddle(const Mesh& mesh, int node,
+                   const std::vector<int>& vertices) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(mesh.Dimension());
+  double size = 0;
+  for (const int vertex : vertices) {
+    const auto x = mesh.nodes.col(vertex);
+    sum += x;
+    size = std::max(size, (x - mesh.nodes.col(vertices[0])).norm());
+  }
+  return (mesh.nodes.col(node) - sum / double(vertices.size())).norm() <=
+         1e-6 * size;
 }
 
 Eigen::VectorXd ElementVolumes(const Mesh& mesh) {

@@ -2,6 +2,7 @@
 #define ELASTIMATE_CORE_MESH_MESH_H_
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "elastimate/core/mesh/element_kind.h"
 
@@ -43,10 +44,11 @@ struct Mesh {
   Section section;
   Eigen::MatrixXd nodes;  ///< dimension x num_nodes, positions [length].
   /// num_nodes of the kind x num_elements, zero-based node indices in the order
-  /// of VTK: the vertices, then, in quadratic elements, the nodes of the edges
-  /// (ElementTopology), which are in the middle unless the kind is curved.  In
-  /// a quadratic mesh all vertices are numbered before all mid-edge nodes, and
-  /// elements that share an edge share its node.
+  /// of VTK: the vertices, then, in quadratic elements, the nodes in the middle
+  /// of edges, faces and elements (ElementTopology::middles), which may be
+  /// beside the middle if the kind is curved.  In a quadratic mesh all vertices
+  /// are numbered before all middle nodes, and elements that share an edge or a
+  /// face share its node.
   Eigen::MatrixXi elements;
   Eigen::VectorXi regions;  ///< num_elements material region ids, or empty.
 
@@ -72,16 +74,17 @@ struct Mesh {
 /// 1e-50 and 1e50, node indices in range, every node used by an element, no
 /// flat or folded element (a height at a vertex below 1e-6 of the longest edge
 /// there, or vertices or integration points of different orientation), no
-/// hexahedra with 3 nodes of a side in common but not the fourth, mid-edge
-/// nodes after all vertices and, unless elements are curved, in the middle of
-/// their edges (within 1e-6 of their length), and region ids for all elements
-/// or for none.  O(num_elements), of hexahedra times a logarithm.
+/// hexahedra with 3 nodes of a side in common but not the fourth, middle nodes
+/// after all vertices and, unless elements are curved, in the middle of their
+/// vertices (IsInTheMiddle), and region ids for all elements or for none.
+/// O(num_elements), of hexahedra times a logarithm.
 void ValidateMesh(const Mesh& mesh);
 
-/// Tells whether `node` is in the middle between `a` and `b`, to within a
-/// millionth of their distance, which is the error of single precision
-/// coordinates.
-[[nodiscard]] bool IsInTheMiddle(const Mesh& mesh, int node, int a, int b);
+/// Tells whether `node` is in the middle of some vertices, to within a
+/// millionth of their largest distance from the first of them, which is the
+/// error of single precision coordinates.
+[[nodiscard]] bool IsInTheMiddle(const Mesh& mesh, int node,
+                                 const std::vector<int>& vertices);
 
 /// Returns the volume of each element [length^3], num_elements values.  The
 /// volume of a planar element is its area times the thickness.

@@ -59,6 +59,38 @@ void SetQuadraticFunctions(ShapeFunctions<kKind>& at) {
   }
 }
 
+// The three quadratic functions of an interval from -1 to 1 that are 1 at -1, 0
+// and 1.
+struct IntervalFunctions {
+  explicit IntervalFunctions(double t)
+      : value{t * (t - 1) / 2, 1 - t * t, t * (t + 1) / 2},
+        derivative{t - 0.5, -2 * t, t + 0.5} {}
+
+  double value[3];
+  double derivative[3];
+};
+
+// Sets the products of the functions of intervals.
+template <ElementKind kKind>
+void SetTensorFunctions(const Point<kKind>& xi, ShapeFunctions<kKind>& at) {
+  constexpr int kDimension = ElementSizes<kKind>::kDimension;
+  // The place of each node along each axis, 0 to 2.
+  static const Eigen::MatrixXi places =
+      (ReferenceNodes(kKind).array() + 1).matrix().cast<int>();
+  for (int i = 0; i < ElementSizes<kKind>::kNodes; ++i) {
+    at.value(i) = 1;
+    at.gradient.col(i).setOnes();
+    for (int k = 0; k < kDimension; ++k) {
+      const IntervalFunctions along(xi(k));
+      at.value(i) *= along.value[places(k, i)];
+      for (int l = 0; l < kDimension; ++l) {
+        at.gradient(l, i) *=
+            (k == l ? along.derivative : along.value)[places(k, i)];
+      }
+    }
+  }
+}
+
 // The points at all permutations of some barycentric coordinates, with the
 // weight of each, relative to the size of the reference element.
 struct Orbit {
@@ -120,13 +152,24 @@ std::vector<ShapeFunctions<kKind>> MakeIntegrationRule() {
       }
       rule.push_back(ShapeFunctionsAt<kKind>(xi, weight));
     }
-  } else {
+  } else if constexpr (ElementSizes<kKind>::kNodes ==
+                       ElementSizes<kKind>::kVertices) {
     for (int i = 0; i < ElementSizes<kKind>::kVertices; ++i) {
       Point<kKind> xi;
       for (int k = 0; k < kDimension; ++k) {
         xi(k) = kCubeVertices[i][k] / std::sqrt(3.0);
       }
       rule.push_back(ShapeFunctionsAt<kKind>(xi, 1));
+    }
+  } else {
+    // The points of three along each axis lie as the nodes do.
+    const Eigen::MatrixXd nodes = ReferenceNodes(kKind);
+    for (const auto& node : nodes.colwise()) {
+      double weight = 1;
+      for (int k = 0; k < kDimension; ++k) {
+        weight *= (node(k) == 0 ? 8.0 : 5.0) / 9;
+      }
+      rule.push_back(ShapeFunctionsAt<kKind>(std::sqrt(0.6) * node, weight));
     }
   }
   return rule;
@@ -166,6 +209,8 @@ ShapeFunctions<kKind> ShapeFunctionsAt(
   if constexpr (ElementSizes<kKind>::kNodes == ElementSizes<kKind>::kVertices) {
     at.value = at.vertex_value;
     at.gradient = at.vertex_gradient;
+  } else if constexpr (!IsSimplex(kKind)) {
+    SetTensorFunctions<kKind>(xi, at);
   } else {
     SetQuadraticFunctions<kKind>(at);
   }
@@ -202,10 +247,19 @@ Eigen::MatrixXd ReferenceNodes(ElementKind kind) {
   const ElementTopology& topology = TopologyOf(kind);
   const int dimension = topology.dimension;
   Eigen::MatrixXd nodes = Eigen::MatrixXd::Zero(dimension, topology.num_nodes);
-  nodes.middleCols(1, dimension).setIdentity();
+  if (IsSimplex(kind)) {
+    nodes.middleCols(1, dimension).setIdentity();
+  } else {
+    for (int i = 0; i < topology.num_vertices; ++i) {
+      nodes.col(i) =
+          Eigen::Map<const Eigen::VectorXd>(kCubeVertices[i], dimension);
+    }
+  }
   for (int i = topology.num_vertices; i < topology.num_nodes; ++i) {
-    const auto [a, b] = topology.edges[i - topology.num_vertices];
-    nodes.col(i) = 0.5 * (nodes.col(a) + nodes.col(b));
+    nodes.col(i) =
+        nodes(Eigen::all, topology.middles[i - topology.num_vertices])
+            .rowwise()
+            .mean();
   }
   return nodes;
 }
@@ -222,9 +276,11 @@ ELASTIMATE_INSTANTIATE(ElementKind::kTet4)
 ELASTIMATE_INSTANTIATE(ElementKind::kTet10)
 ELASTIMATE_INSTANTIATE(ElementKind::kCurvedTet10)
 ELASTIMATE_INSTANTIATE(ElementKind::kHex8)
+ELASTIMATE_INSTANTIATE(ElementKind::kHex27)
 ELASTIMATE_INSTANTIATE(ElementKind::kTri3)
 ELASTIMATE_INSTANTIATE(ElementKind::kTri6)
 ELASTIMATE_INSTANTIATE(ElementKind::kCurvedTri6)
 ELASTIMATE_INSTANTIATE(ElementKind::kQuad4)
+ELASTIMATE_INSTANTIATE(ElementKind::kQuad9)
 
 }  // namespace elastimate

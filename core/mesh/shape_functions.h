@@ -37,6 +37,11 @@ struct ElementSizes<ElementKind::kHex8> {
   static constexpr int kDimension = 3, kNodes = 8, kVertices = 8, kMapNodes = 8;
 };
 template <>
+struct ElementSizes<ElementKind::kHex27> {
+  static constexpr int kDimension = 3, kNodes = 27, kVertices = 8,
+                       kMapNodes = 8;
+};
+template <>
 struct ElementSizes<ElementKind::kTri3> {
   static constexpr int kDimension = 2, kNodes = 3, kVertices = 3, kMapNodes = 3;
 };
@@ -51,6 +56,10 @@ struct ElementSizes<ElementKind::kCurvedTri6> {
 template <>
 struct ElementSizes<ElementKind::kQuad4> {
   static constexpr int kDimension = 2, kNodes = 4, kVertices = 4, kMapNodes = 4;
+};
+template <>
+struct ElementSizes<ElementKind::kQuad9> {
+  static constexpr int kDimension = 2, kNodes = 9, kVertices = 4, kMapNodes = 4;
 };
 
 /// The shape functions of an element kind at a point of its reference element.
@@ -89,7 +98,8 @@ ShapeFunctions<kKind> ShapeFunctionsAt(
 /// are exact for products of two linear functions over a simplex with straight
 /// edges (4 points in a tetrahedron, 3 in a triangle), and for cubics along
 /// each axis of a hexahedron (8 points) or a quadrilateral (4) [Zienkiewicz &
-/// Taylor, The Finite Element Method].
+/// Taylor, The Finite Element Method].  In those of order 2 they are exact for
+/// polynomials of degree 5 along each axis (27 points, 9).
 ///
 /// The determinant of the map of a curved simplex is of degree 3 (in a triangle
 /// 2).  Polynomials of degree 5 (4), which is that of a shape function times
@@ -110,7 +120,7 @@ const std::vector<ShapeFunctions<kKind>>& StiffnessRule();
 template <ElementKind kKind>
 const std::vector<ShapeFunctions<kKind>>& VertexRule();
 
-/// Returns the reference coordinates of the nodes of a simplex, dimension x
+/// Returns the reference coordinates of the nodes of an element, dimension x
 /// num_nodes.
 Eigen::MatrixXd ReferenceNodes(ElementKind kind);
 
@@ -214,6 +224,9 @@ decltype(auto) VisitElementKind(ElementKind kind, Function&& function) {
     case ElementKind::kHex8:
       return function(
           std::integral_constant<ElementKind, ElementKind::kHex8>());
+    case ElementKind::kHex27:
+      return function(
+          std::integral_constant<ElementKind, ElementKind::kHex27>());
     case ElementKind::kTri3:
       return function(
           std::integral_constant<ElementKind, ElementKind::kTri3>());
@@ -224,9 +237,12 @@ decltype(auto) VisitElementKind(ElementKind kind, Function&& function) {
       return function(
           std::integral_constant<ElementKind, ElementKind::kCurvedTri6>());
     case ElementKind::kQuad4:
+      return function(
+          std::integral_constant<ElementKind, ElementKind::kQuad4>());
+    case ElementKind::kQuad9:
       break;
   }
-  return function(std::integral_constant<ElementKind, ElementKind::kQuad4>());
+  return function(std::integral_constant<ElementKind, ElementKind::kQuad9>());
 }
 
 }  // namespace elastimate

@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "elastimate/core/mesh/finer_nodes.h"
+#include "elastimate/core/scene/linear_scene.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
-#include "elastimate/core/scene/simplicial_scene.h"
 
 namespace elastimate {
 namespace {
@@ -28,7 +28,7 @@ void BalanceLoads(const Scene& scene, const FinerNodes& nodes, Scene& finer) {
 // neighbours, where it and all the nodes around it are held.
 void MoveSupports(const FinerNodes& nodes, Supports& supports) {
   const FinerNodes::Weights& weights = nodes.WeightsOfNodes();
-  for (Eigen::Index row = 0; row < nodes.NumMidEdges(); ++row) {
+  for (Eigen::Index row = 0; row < nodes.NumMiddles(); ++row) {
     const Eigen::Index node = nodes.NumNodes() + row;
     for (Eigen::Index i = 0; i < supports.held.rows(); ++i) {
       bool is_held = supports.held(i, node);
@@ -48,7 +48,7 @@ void MoveSupports(const FinerNodes& nodes, Supports& supports) {
 }  // namespace
 
 Scene FinerScene(const Scene& scene) {
-  Scene finer = QuadraticScene(SimplicialScene(scene));
+  Scene finer = QuadraticScene(LinearScene(scene));
   if (IsCurved(scene.mesh.kind)) {
     const FinerNodes nodes(scene.mesh, finer.mesh);
     finer.mesh.kind = scene.mesh.kind;

@@ -6,9 +6,8 @@
 namespace elastimate {
 
 /// Models a scene with finer elements, whatever its elements are: with the
-/// quadratic simplices (QuadraticScene) of the linear ones into which
-/// SimplicialScene cuts them.  For quadratic elements, these have half the
-/// size.
+/// quadratic elements (QuadraticScene) of its linear ones.  Quadratic elements
+/// are first divided into linear ones of half the size (LinearScene).
 ///
 /// Simplices of curved elements are parts of the curved body: the nodes in the
 /// middle of their edges are where the map of the element that was cut has

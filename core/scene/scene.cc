@@ -128,13 +128,15 @@ void ValidateFacets(const Mesh& mesh, const Eigen::MatrixXi& facets,
     }
     for (int i = num_vertices;
          !IsCurved(mesh.kind) && i < topology.NumNodesOfFace(); ++i) {
-      const int a = i - num_vertices;
-      const int b = (a + 1) % num_vertices;
-      if (!IsInTheMiddle(mesh, facets(i, facet), facets(a, facet),
-                         facets(b, facet))) {
+      std::vector<int> vertices;
+      for (const int place : topology.middles_of_face[i - num_vertices]) {
+        vertices.push_back(facets(place, facet));
+      }
+      if (!IsInTheMiddle(mesh, facets(i, facet), vertices)) {
         Fail("node " + std::to_string(facets(i, facet)) + " of facet " +
-             std::to_string(facet) + " of " + what +
-             " is not in the middle of its edge; order the nodes as VTK does");
+             std::to_string(facet) + " of " + what + " is not in the middle " +
+             (vertices.size() == 2 ? "of its edge" : "of it") +
+             "; order the nodes as VTK does");
       }
     }
   }

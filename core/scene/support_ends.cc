@@ -57,37 +57,49 @@ class SurfaceFacets {
   std::vector<std::vector<Eigen::Index>> of_node_;
 };
 
-// The components of edges where it is open whether they are held.
-class OpenEdges {
+// The components of middles where it is open whether they are held.
+class OpenMiddles {
  public:
-  OpenEdges(const Supports& supports, const Mesh& mesh, const Edges& edges,
-            const ComponentMask& held)
+  OpenMiddles(const Supports& supports, const Mesh& mesh,
+              const Middles& middles, const ComponentMask& held)
       : supports_(supports),
         mesh_(mesh),
-        edges_(edges),
+        middles_(middles),
         held_(held),
-        open_(ComponentMask::Constant(mesh.Dimension(), edges.Size(), false)) {
+        open_(
+            ComponentMask::Constant(mesh.Dimension(), middles.Size(), false)) {
     OpenInVolumes();
     OpenOnSurface();
   }
 
   const ComponentMask& Open() const { return open_; }
-  // Returns the only end at which a component is held while nothing says where
-  // its support ends; -1 where there is none.
-  int HeldEnd(Eigen::Index i, Eigen::Index edge) const {
-    const int low = edges_.Ends()(0, edge);
-    const int high = edges_.Ends()(1, edge);
-    if (held_(i, edge) || supports_.held(i, low) == supports_.held(i, high)) {
-      return -1;
+  // Returns the vertices of a middle that hold a component.
+  std::vector<int> HeldVertices(Eigen::Index i, Eigen::Index middle) const {
+    std::vector<int> vertices;
+    for (const int node : middles_.Vertices()[middle]) {
+      if (supports_.held(i, node)) {
+        vertices.push_back(node);
+      }
     }
-    const int end = supports_.held(i, low) ? low : high;
-    return supports_.IsGiven(static_cast<int>(i), end) &&
-                   !IsToldByPlace(supports_, mesh_, i, end)
-               ? end
-               : -1;
+    return vertices;
   }
 
  private:
+  // Returns the vertices that hold a component which others leave free, while
+  // nothing says where the support ends; else none.
+  std::vector<int> VerticesOfEnd(Eigen::Index i, Eigen::Index middle) const {
+    std::vector<int> vertices = HeldVertices(i, middle);
+    if (held_(i, middle) ||
+        Eigen::Index(vertices.size()) == middles_.Vertices()[middle].size() ||
+        std::any_of(vertices.begin(), vertices.end(), [&](int node) {
+          return !supports_.IsGiven(static_cast<int>(i), node) ||
+                 IsToldByPlace(supports_, mesh_, i, node);
+        })) {
+      vertices.clear();
+    }
+    return vertices;
+  }
+
   void OpenInVolumes() {
     for (Eigen::Index i = 0; i < open_.rows(); ++i) {
       std::vector<bool> is_in_volume(mesh_.NumNodes(), false);
@@ -100,33 +112,39 @@ class OpenEdges {
       }
       // The nodes of a layer that is held in part are next to the volume.
       std::vector<bool> is_at_volume = is_in_volume;
-      for (Eigen::Index edge = 0; edge < edges_.Size(); ++edge) {
-        const int low = edges_.Ends()(0, edge);
-        const int high = edges_.Ends()(1, edge);
-        if (is_in_volume[low] || is_in_volume[high]) {
-          is_at_volume[low] = is_at_volume[high] = true;
+      for (Eigen::Index middle = 0; middle < middles_.Size(); ++middle) {
+        const auto vertices = middles_.Vertices()[middle];
+        if (vertices.size() == 2 &&
+            (is_in_volume[vertices(0)] || is_in_volume[vertices(1)])) {
+          is_at_volume[vertices(0)] = is_at_volume[vertices(1)] = true;
         }
       }
-      for (Eigen::Index edge = 0; edge < edges_.Size(); ++edge) {
-        const int end = HeldEnd(i, edge);
-        open_(i, edge) = end >= 0 && is_at_volume[end];
+      for (Eigen::Index middle = 0; middle < middles_.Size(); ++middle) {
+        const std::vector<int> vertices = VerticesOfEnd(i, middle);
+        open_(i, middle) =
+            std::any_of(vertices.begin(), vertices.end(),
+                        [&](int node) { return is_at_volume[node]; });
       }
     }
   }
 
   void OpenOnSurface() {
     const SurfaceFacets surface(mesh_);
+    std::vector<int> around;
     for (Eigen::Index facet = 0; facet < surface.Facets().cols(); ++facet) {
-      const auto nodes = surface.Facets().col(facet);
-      for (Eigen::Index a = 0; a < nodes.size(); ++a) {
-        for (Eigen::Index b = 0; b < a; ++b) {
-          const Eigen::Index edge = edges_.Find(nodes(a), nodes(b));
-          for (Eigen::Index i = 0; i < open_.rows(); ++i) {
-            const int end = HeldEnd(i, edge);
-            if (end >= 0 &&
-                surface.GoesOnFromHeld(facet, end, supports_.held.row(i))) {
-              open_(i, edge) = true;
-            }
+      for (const auto& places : mesh_.Topology().middles_of_face) {
+        around.clear();
+        for (const int place : places) {
+          around.push_back(surface.Facets()(place, facet));
+        }
+        const Eigen::Index middle = middles_.Find(around);
+        for (Eigen::Index i = 0; i < open_.rows(); ++i) {
+          const std::vector<int> vertices = VerticesOfEnd(i, middle);
+          if (std::any_of(vertices.begin(), vertices.end(), [&](int node) {
+                return surface.GoesOnFromHeld(facet, node,
+                                              supports_.held.row(i));
+              })) {
+            open_(i, middle) = true;
           }
         }
       }
@@ -135,7 +153,7 @@ class OpenEdges {
 
   const Supports& supports_;
   const Mesh& mesh_;
-  const Edges& edges_;
+  const Middles& middles_;
   const ComponentMask& held_;
   ComponentMask open_;
 };
@@ -143,16 +161,17 @@ class OpenEdges {
 }  // namespace
 
 std::vector<HeldComponent> FindSupportEnds(const Supports& supports,
-                                           const Mesh& mesh, const Edges& edges,
+                                           const Mesh& mesh,
+                                           const Middles& middles,
                                            const ComponentMask& held) {
-  const OpenEdges open_edges(supports, mesh, edges, held);
+  const OpenMiddles open_middles(supports, mesh, middles, held);
   std::vector<HeldComponent> in_doubt;
-  for (Eigen::Index edge = 0; edge < edges.Size(); ++edge) {
+  for (Eigen::Index middle = 0; middle < middles.Size(); ++middle) {
     for (Eigen::Index i = 0; i < mesh.Dimension(); ++i) {
-      if (open_edges.Open()(i, edge)) {
-        in_doubt.push_back(
-            {i, mesh.NumNodes() + edge,
-             supports.displacement(i, open_edges.HeldEnd(i, edge))});
+      if (open_middles.Open()(i, middle)) {
+        const std::vector<int> holding = open_middles.HeldVertices(i, middle);
+        in_doubt.push_back({i, mesh.NumNodes() + middle,
+                            supports.displacement.row(i)(holding).mean()});
       }
     }
   }

@@ -39,10 +39,10 @@ struct RigidFace {
   Eigen::Array<bool, Eigen::Dynamic, 1> components;  ///< One for each axis.
 };
 
-/// A node that a refinement put in the middle between two others.
+/// A node that a refinement put in the middle of some others.
 struct MiddleNode {
   int node;
-  int ends[2];
+  std::vector<int> vertices;
 };
 
 /// The held degrees of freedom, and the displacement they are held at.
@@ -66,8 +66,8 @@ struct Supports {
   /// cannot tell whether it holds them (FindSupportEnds).  None is held.
   std::vector<HeldComponent> in_doubt = {};
   /// The nodes that QuadraticScene put between held nodes of unknown
-  /// displacement, each after the nodes at its ends.  Such a node moves as
-  /// their mean where it was not measured itself.
+  /// displacement, each after its vertices.  Such a node moves as their mean
+  /// where it was not measured itself.
   std::vector<MiddleNode> middles = {};
 
   /// Tells whether component `i` of `node` is held at a displacement that is

@@ -9,7 +9,7 @@
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/mesh/axis_names.h"
-#include "elastimate/core/mesh/mid_edges.h"
+#include "elastimate/core/mesh/middle_nodes.h"
 #include "elastimate/core/scene/rigid_motion.h"
 
 namespace elastimate {
@@ -112,9 +112,9 @@ void RefuseTheSameResultant(const Resultant& before, const Resultant& resultant,
   }
 }
 
-// The nodes of some supports that move as the mean of two others, because they
-// were measured in no load case of these supports.  They are nodes that a
-// refinement put there, and the mid-edge nodes of a mesh of order 2.
+// The nodes of some supports that move as the mean of others, because they were
+// measured in no load case of these supports.  They are nodes that a refinement
+// put there, and the middle nodes of a mesh of order 2.
 struct TiedNodes {
   TiedNodes(const Scene& scene, const Supports& supports)
       : is_tied(ComponentMask::Constant(supports.held.rows(),
@@ -129,25 +129,26 @@ struct TiedNodes {
     if (scene.mesh.Order() == 1) {
       return;
     }
-    const MidEdges edges(scene.mesh);
-    for (Eigen::Index edge = 0; edge < edges.Ends().cols(); ++edge) {
+    const MiddleNodes nodes(scene.mesh);
+    for (Eigen::Index i = 0; i < nodes.Vertices().Size(); ++i) {
+      const auto vertices = nodes.Vertices()[i];
       Tie(scene, supports, measured,
-          {static_cast<int>(edges.NumVertices() + edge),
-           {edges.Ends()(0, edge), edges.Ends()(1, edge)}});
+          {static_cast<int>(nodes.NumVertices() + i),
+           {vertices.begin(), vertices.end()}});
     }
   }
 
   ComponentMask is_tied;            // dimension x num_nodes.
-  std::vector<MiddleNode> middles;  // Each after the nodes at its ends.
+  std::vector<MiddleNode> middles;  // Each after its vertices.
 
  private:
   void Tie(const Scene& scene, const Supports& supports,
            const ComponentMask& measured, const MiddleNode& middle) {
-    const auto& [node, ends] = middle;
+    const auto& [node, vertices] = middle;
     bool is_any_new = false;
     for (int i = 0; i < measured.rows(); ++i) {
-      if (is_tied(i, node) || !measured(i, node) || !measured(i, ends[0]) ||
-          !measured(i, ends[1])) {
+      if (is_tied(i, node) || !measured(i, node) ||
+          !measured.row(i)(vertices).all()) {
         continue;
       }
       bool is_observed = false;
@@ -281,15 +282,16 @@ UnknownMotion::UnknownMotion(const Scene& scene, const Supports& supports)
       shares[dof][num_columns++] = 1;
     }
   }
-  for (const auto& [node, ends] : tied.middles) {
+  for (const auto& [node, vertices] : tied.middles) {
     for (int i = 0; i < dimension; ++i) {
       if (!tied.is_tied(i, node)) {
         continue;
       }
-      for (const int end : ends) {
+      for (const int vertex : vertices) {
         for (const auto& [column, share] :
-             shares[dimension * Eigen::Index(end) + i]) {
-          shares[dimension * Eigen::Index(node) + i][column] += share / 2;
+             shares[dimension * Eigen::Index(vertex) + i]) {
+          shares[dimension * Eigen::Index(node) + i][column] +=
+              share / double(vertices.size());
         }
       }
     }

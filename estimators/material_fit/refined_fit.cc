@@ -9,7 +9,6 @@
 
 #include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/finer_scene.h"
-#include "elastimate/core/scene/simplicial_scene.h"
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
@@ -147,8 +146,6 @@ class Refinement {
   NodeGraph neighbours_;
   /// Where the elements of the scene are linear.
   std::unique_ptr<SpaceFit> linear_;
-  /// Its simplices, which the quadratic ones are nested in.
-  std::optional<Scene> simplicial_;
   /// The least residual of the second fits, on any support ends.
   double least_of_quadratic_ = std::numeric_limits<double>::infinity();
 };
@@ -190,8 +187,8 @@ Refinement::Chain Refinement::FitQuadratic(
   Chain chain;
   std::vector<const Scene*> coarser;
   // The elimination of motions asks for a solution for each of its steps.
-  if (simplicial_ && !HasUnknownMotion(scene_)) {
-    coarser.push_back(&*simplicial_);
+  if (linear_ && !HasUnknownMotion(scene_)) {
+    coarser.push_back(&scene_);
   }
   chain.quadratic = MinimizeOn(quadratic, start, coarser);
   chain.work = chain.quadratic->Fit().estimate.work;
@@ -284,7 +281,6 @@ MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start) {
   bool has_rival_axis = false;
   if (scene_.mesh.Order() == 1) {
     linear_ = MinimizeOn(scene_, start);
-    simplicial_ = SimplicialScene(scene_);
     if (!linear_->Fit().minimum) {
       return linear_->Fit();
     }

@@ -15,10 +15,9 @@ namespace elastimate {
 /// the last one:
 ///
 /// 1. the elements of the mesh, where these are linear;
-/// 2. quadratic elements of the same mesh, of quadrilaterals and hexahedra
-///    those of the simplices that they are cut into;
+/// 2. quadratic elements of the same mesh;
 /// 3. quadratic elements of the mesh divided once (8 children of each
-///    tetrahedron, 4 of each triangle).
+///    tetrahedron or hexahedron, 4 of each triangle or quadrilateral).
 ///
 /// The finest fit is reported, corrected by a part of the last change, of which
 /// a part is the mesh error (MeshErrorOf).  Outliers are those of the second

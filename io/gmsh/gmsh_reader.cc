@@ -27,14 +27,21 @@ struct GmshKind {
   int facet_type;
 };
 
-constexpr std::array<GmshKind, 6> kGmshKinds = {{
+constexpr std::array<GmshKind, 8> kGmshKinds = {{
     {ElementKind::kTet4, 4, 2},
     {ElementKind::kTet10, 11, 9},
     {ElementKind::kHex8, 5, 3},
+    {ElementKind::kHex27, 12, 10},
     {ElementKind::kTri3, 2, 1},
     {ElementKind::kTri6, 9, 8},
     {ElementKind::kQuad4, 3, 1},
+    {ElementKind::kQuad9, 10, 8},
 }};
+
+/// The place in Gmsh's hexahedron of 27 nodes of each node in VTK's order.
+constexpr std::array<int, 27> kHexahedronInGmsh = {
+    0,  1,  2,  3,  4,  5,  6,  7,  8,  11, 13, 9,  16, 18,
+    19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20, 25, 26};
 
 /// Returns null where elements of this type are not for scenes.
 const GmshKind* FindGmshKind(int type) {
@@ -265,6 +272,9 @@ Numbering ReadElements(const GmshElements& elements, const Numbering& nodes,
     if (mesh.kind == ElementKind::kTet10) {
       // Gmsh has the middle of edge 23 before that of 13.
       mesh.elements.row(8).swap(mesh.elements.row(9));
+    }
+    if (mesh.kind == ElementKind::kHex27) {
+      mesh.elements = mesh.elements(kHexahedronInGmsh, Eigen::all).eval();
     }
     return Numbering(std::move(sorted));
   }

@@ -46,7 +46,7 @@ struct MeshFile {
   Eigen::Matrix3Xd nodes;
   ElementKind kind = ElementKind::kTet4;
   /// num_nodes of the kind x num_elements, in range, at least one.  Vertices
-  /// and mid-edge nodes are numbered in any order.
+  /// and middle nodes are numbered in any order.
   Eigen::MatrixXi elements;
   std::vector<FileArray> node_arrays;
   std::vector<FileArray> element_arrays;
@@ -65,8 +65,9 @@ struct MeshFile {
   std::optional<double> thickness;
   Origin origin = Origin::kMeasured;
 
-  /// The mid-edge nodes that were put into the middle of the straight edges of
-  /// quadratic elements, because rounding had put them beside it.
+  /// The nodes that were put into the middle of the vertices of straight edges,
+  /// of faces and of quadratic elements, because rounding had put them beside
+  /// it.
   std::vector<MovedNode> moved;
 
   Eigen::Array<bool, 1, Eigen::Dynamic> used;  ///< Whether an element uses it.
@@ -90,8 +91,8 @@ struct MeshFile {
 
 /// Lists what the elements of a scene may be, for error messages.
 inline constexpr char kSupportedElements[] =
-    "tetrahedra and triangles, linear or quadratic, hexahedra of 8 nodes and "
-    "quadrilaterals of 4";
+    "tetrahedra and triangles, linear or quadratic, hexahedra of 8 or 27 nodes "
+    "and quadrilaterals of 4 or 9";
 
 /// Returns ".vtu" for "a.vtu" and for "A.VTU", but ".Vtu" for "a.Vtu": Gmsh
 /// tells its formats by names in all small or all capital letters, and runs a

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -114,67 +115,84 @@ void CheckElementsDiffer(const MeshFile& mesh) {
   }
 }
 
-// Calls visit(element, edge, mid-edge node) of quadratic elements.
+// Calls visit(element, vertices in the element, node in the middle of them) for
+// quadratic elements.
 template <class Visitor>
-void VisitMidEdgeNodes(const MeshFile& mesh, const Visitor& visit) {
+void VisitMiddleNodes(const MeshFile& mesh, const Visitor& visit) {
   const ElementTopology& topology = mesh.Topology();
   for (Eigen::Index element = 0; element < mesh.elements.cols(); ++element) {
     for (Eigen::Index i = topology.num_vertices; i < topology.num_nodes; ++i) {
-      visit(element, topology.edges[i - topology.num_vertices],
+      visit(element, topology.middles[i - topology.num_vertices],
             mesh.elements(i, element));
     }
   }
 }
 
-void CheckMidEdgeNodes(const MeshFile& mesh) {
+void CheckMiddleNodes(const MeshFile& mesh) {
   std::vector<char> is_vertex(mesh.nodes.cols(), 0);
   for (const int node :
        mesh.elements.topRows(mesh.Topology().num_vertices).reshaped()) {
     is_vertex[node] = 1;
   }
-  VisitMidEdgeNodes(
-      mesh, [&](Eigen::Index element, const std::array<int, 2>&, int node) {
-        if (is_vertex[node] != 0) {
-          ThrowInputError(mesh.path,
-                          "the mid-edge " + NodeName(mesh, node) + " of " +
-                              mesh.Shape() + " " + std::to_string(element) +
-                              " is a vertex of another one; mesh the specimen "
-                              "with elements that share whole edges");
-        }
-      });
+  VisitMiddleNodes(mesh, [&](Eigen::Index element,
+                             const std::vector<int>& vertices, int node) {
+    if (is_vertex[node] != 0) {
+      ThrowInputError(
+          mesh.path,
+          (vertices.size() == 2 ? "the mid-edge " : "the middle ") +
+              NodeName(mesh, node) + " of " + mesh.Shape() + " " +
+              std::to_string(element) +
+              " is a vertex of another one; mesh the specimen with elements "
+              "that share whole edges");
+    }
+  });
 }
 
-// Puts mid-edge nodes that are beside straight edges by rounding into the
+// Puts nodes that are beside the middle of their vertices by rounding into the
 // middle, or leaves all where they are and makes the elements curved.
 void StraightenOrCurve(MeshFile& mesh) {
   // Positions of six digits err by less than this share of the length of an
   // edge.
   constexpr double kRounded = 1e-3;
   // Positions of single precision far from the origin may leave more.  A
-  // position and the mean of two others err by half a unit in the last place
-  // each, 2^-24 of the largest coordinate, along three axes.
+  // position and the mean of others err by half a unit in the last place each,
+  // 2^-24 of the largest coordinate, along three axes.
   constexpr double kMostRounded = 1e-2;
   const double of_single_precision =
       2 * std::sqrt(3.0) * std::ldexp(1.0, -24) *
       mesh.nodes(Eigen::all, mesh.elements.reshaped()).cwiseAbs().maxCoeff();
   std::map<int, Eigen::Vector3d> middles;
-  bool is_curved = false;
-  VisitMidEdgeNodes(mesh, [&](Eigen::Index element,
-                              const std::array<int, 2>& ends, int node) {
-    const Eigen::Vector3d a = mesh.nodes.col(mesh.elements(ends[0], element));
-    const Eigen::Vector3d b = mesh.nodes.col(mesh.elements(ends[1], element));
-    const double length = (b - a).norm();
-    const Eigen::Vector3d middle = 0.5 * (a + b);
+  std::optional<Eigen::Index> curved;
+  VisitMiddleNodes(mesh, [&](Eigen::Index element,
+                             const std::vector<int>& vertices, int node) {
+    const Eigen::Vector3d first =
+        mesh.nodes.col(mesh.elements(vertices[0], element));
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    double length = 0;
+    for (const int vertex : vertices) {
+      const Eigen::Vector3d x = mesh.nodes.col(mesh.elements(vertex, element));
+      middle += x / double(vertices.size());
+      length = std::max(length, (x - first).norm());
+    }
     const double distance = (mesh.nodes.col(node) - middle).norm();
-    is_curved = is_curved ||
-                !(distance <=
-                  std::max(kRounded * length, std::min(kMostRounded * length,
-                                                       of_single_precision)));
+    if (!curved && !(distance <= std::max(kRounded * length,
+                                          std::min(kMostRounded * length,
+                                                   of_single_precision)))) {
+      curved = element;
+    }
     if (distance > kSamePlace * length) {
       middles.emplace(node, middle);
     }
   });
-  if (is_curved) {
+  if (curved && !IsSimplex(mesh.kind)) {
+    ThrowInputError(mesh.path,
+                    mesh.Shape() + " " + std::to_string(*curved) +
+                        " is curved, which only tetrahedra and triangles may "
+                        "be; mesh the specimen with straight edges (in Gmsh, "
+                        "Mesh.SecondOrderLinear=1), or with " +
+                        (mesh.Dimension() == 3 ? "tetrahedra" : "triangles"));
+  }
+  if (curved) {
     mesh.kind = CurvedKind(mesh.kind);
     return;
   }
@@ -193,7 +211,7 @@ void CheckMeshFile(MeshFile& mesh) {
   CheckPlane(mesh);
   CheckElementsDiffer(mesh);
   if (mesh.Topology().order == 2) {
-    CheckMidEdgeNodes(mesh);
+    CheckMiddleNodes(mesh);
     StraightenOrCurve(mesh);
   }
 }

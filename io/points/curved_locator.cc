@@ -12,8 +12,8 @@
 #include <cmath>
 #include <type_traits>
 
+#include "elastimate/core/mesh/linear_mesh.h"
 #include "elastimate/core/mesh/shape_functions.h"
-#include "elastimate/core/mesh/simplicial_mesh.h"
 #include "elastimate/io/points/point_grid.h"
 
 namespace elastimate {
@@ -71,8 +71,8 @@ CurvedPlace NearestIn(const Mesh& mesh, Eigen::Index element,
 }  // namespace
 
 CurvedLocator::CurvedLocator(const Mesh& mesh) : mesh_(mesh) {
-  const SimplicialMesh cuts(mesh_);
-  const Mesh& simplices = cuts.Simplices();
+  const LinearMesh cuts(mesh_);
+  const Mesh& simplices = cuts.Parts();
   num_cuts_ = simplices.NumElements() / mesh.NumElements();
   SetCells(simplices, simplices_);
   locator_->SetDataSet(simplices_);

@@ -11,13 +11,10 @@ namespace elastimate {
 namespace {
 
 int CellTypeOfVertices(ElementKind kind) {
-  if (kind == ElementKind::kHex8) {
-    return VTK_HEXAHEDRON;
+  if (IsSimplex(kind)) {
+    return DimensionOf(kind) == 3 ? VTK_TETRA : VTK_TRIANGLE;
   }
-  if (kind == ElementKind::kQuad4) {
-    return VTK_QUAD;
-  }
-  return DimensionOf(kind) == 3 ? VTK_TETRA : VTK_TRIANGLE;
+  return DimensionOf(kind) == 3 ? VTK_HEXAHEDRON : VTK_QUAD;
 }
 
 }  // namespace

@@ -120,13 +120,15 @@ std::string CellTypeName(int type) {
 }
 
 /// Returns the cells that may be elements.
-constexpr std::array<std::pair<int, ElementKind>, 6> kCellKinds = {
+constexpr std::array<std::pair<int, ElementKind>, 8> kCellKinds = {
     {{VTK_TETRA, ElementKind::kTet4},
      {VTK_QUADRATIC_TETRA, ElementKind::kTet10},
      {VTK_HEXAHEDRON, ElementKind::kHex8},
+     {VTK_TRIQUADRATIC_HEXAHEDRON, ElementKind::kHex27},
      {VTK_TRIANGLE, ElementKind::kTri3},
      {VTK_QUADRATIC_TRIANGLE, ElementKind::kTri6},
-     {VTK_QUAD, ElementKind::kQuad4}}};
+     {VTK_QUAD, ElementKind::kQuad4},
+     {VTK_BIQUADRATIC_QUAD, ElementKind::kQuad9}}};
 
 std::optional<ElementKind> KindOfCell(int type) {
   for (const auto& [cell_type, kind] : kCellKinds) {

@@ -64,6 +64,8 @@ int CellType(ElementKind kind) {
       return VTK_QUADRATIC_TETRA;
     case ElementKind::kHex8:
       return VTK_HEXAHEDRON;
+    case ElementKind::kHex27:
+      return VTK_TRIQUADRATIC_HEXAHEDRON;
     case ElementKind::kTri3:
       return VTK_TRIANGLE;
     case ElementKind::kTri6:
@@ -71,6 +73,8 @@ int CellType(ElementKind kind) {
       return VTK_QUADRATIC_TRIANGLE;
     case ElementKind::kQuad4:
       return VTK_QUAD;
+    case ElementKind::kQuad9:
+      return VTK_BIQUADRATIC_QUAD;
     case ElementKind::kTet4:
       break;
   }

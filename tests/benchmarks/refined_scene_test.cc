@@ -8,9 +8,9 @@
 #include "benchmarks/unseen_shapes.h"
 #include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/core/mesh/facets.h"
+#include "elastimate/core/scene/linear_scene.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
-#include "elastimate/core/scene/simplicial_scene.h"
 
 namespace elastimate {
 namespace {
@@ -29,7 +29,7 @@ double WorkOfLoads(const Scene& scene, std::size_t k) {
 class RefinedShape : public ::testing::TestWithParam<UnseenShape> {
  protected:
   Scene scene_ = UnmeasuredScene(GetParam(), TetrahedralMesh(GetParam().body));
-  Scene refined_ = SimplicialScene(QuadraticScene(scene_));
+  Scene refined_ = LinearScene(QuadraticScene(scene_));
 };
 
 TEST_P(RefinedShape, IsTheSameBody) {

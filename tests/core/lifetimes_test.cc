@@ -8,7 +8,7 @@
 #include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/mechanics/internal_forces.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
-#include "elastimate/core/mesh/simplicial_mesh.h"
+#include "elastimate/core/mesh/linear_mesh.h"
 
 namespace elastimate {
 namespace {
@@ -27,7 +27,7 @@ TEST(Lifetimes, TemporariesAreNotReferredTo) {
                                     const std::vector<Material>&>()));
   EXPECT_TRUE((TakesLastingOnesOnly<StiffnessOperator, Mesh>()));
   EXPECT_TRUE((TakesLastingOnesOnly<StiffnessOperator, Mesh, int>()));
-  EXPECT_TRUE((TakesLastingOnesOnly<SimplicialMesh, Mesh>()));
+  EXPECT_TRUE((TakesLastingOnesOnly<LinearMesh, Mesh>()));
 }
 
 }  // namespace

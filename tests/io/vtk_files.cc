@@ -21,10 +21,12 @@ const std::map<ElementKind, int> kCellTypes = {
     {ElementKind::kTet10, VTK_QUADRATIC_TETRA},
     {ElementKind::kCurvedTet10, VTK_QUADRATIC_TETRA},
     {ElementKind::kHex8, VTK_HEXAHEDRON},
+    {ElementKind::kHex27, VTK_TRIQUADRATIC_HEXAHEDRON},
     {ElementKind::kTri3, VTK_TRIANGLE},
     {ElementKind::kTri6, VTK_QUADRATIC_TRIANGLE},
     {ElementKind::kCurvedTri6, VTK_QUADRATIC_TRIANGLE},
-    {ElementKind::kQuad4, VTK_QUAD}};
+    {ElementKind::kQuad4, VTK_QUAD},
+    {ElementKind::kQuad9, VTK_BIQUADRATIC_QUAD}};
 
 void AddFields(const std::vector<Field>& fields, vtkDataSetAttributes* to) {
   for (const Field& field : fields) {

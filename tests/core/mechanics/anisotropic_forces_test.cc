@@ -5,8 +5,8 @@
 
 #include "elastimate/core/materials/laws.h"
 #include "elastimate/core/mechanics/internal_forces.h"
+#include "elastimate/core/scene/linear_scene.h"
 #include "elastimate/core/scene/quadratic_scene.h"
-#include "elastimate/core/scene/simplicial_scene.h"
 #include "tests/anisotropy.h"
 #include "tests/core/random_values.h"
 #include "tests/element_kinds.h"
@@ -144,30 +144,30 @@ INSTANTIATE_TEST_SUITE_P(Laws, AnisotropicForces,
                                   testing::NameOf(info.param.kind);
                          });
 
-// The simplices that an element is cut into, and a quadratic element on its
+// The parts that an element is divided into, and a quadratic element on its
 // nodes, keep its axis.
 TEST(AnisotropicScenes, KeepTheAxesOfElements) {
   Scene scene =
-      testing::SceneOfKind({ElementKind::kHex8, SectionModel::kSolid}, 2);
+      testing::SceneOfKind({ElementKind::kHex27, SectionModel::kSolid}, 2);
   Eigen::MatrixXd axis(3, scene.mesh.NumElements());
   for (Eigen::Index e = 0; e < axis.cols(); ++e) {
     axis.col(e) = testing::RandomFrame(3, unsigned(e)).col(0);
   }
   scene.materials = {{"transversely_isotropic", {}, {}, {}, {axis}}};
-  const Scene simplicial = SimplicialScene(scene);
-  ValidateScene(simplicial);
+  const Scene divided = LinearScene(scene);
+  ValidateScene(divided);
   const Eigen::Index cuts =
-      simplicial.mesh.NumElements() / scene.mesh.NumElements();
+      divided.mesh.NumElements() / scene.mesh.NumElements();
   ASSERT_GT(cuts, 1);
-  for (Eigen::Index e = 0; e < simplicial.mesh.NumElements(); ++e) {
-    EXPECT_EQ(simplicial.materials[0].axes[0].col(e), axis.col(e / cuts));
-    const Eigen::VectorXi& nodes = simplicial.mesh.elements.col(e);
+  for (Eigen::Index e = 0; e < divided.mesh.NumElements(); ++e) {
+    EXPECT_EQ(divided.materials[0].axes[0].col(e), axis.col(e / cuts));
+    const Eigen::VectorXi& nodes = divided.mesh.elements.col(e);
     for (const int node : nodes) {
       EXPECT_TRUE((scene.mesh.elements.col(e / cuts).array() == node).any());
     }
   }
-  EXPECT_EQ(QuadraticScene(simplicial).materials[0].axes[0],
-            simplicial.materials[0].axes[0]);
+  EXPECT_EQ(QuadraticScene(divided).materials[0].axes[0],
+            divided.materials[0].axes[0]);
 }
 
 }  // namespace

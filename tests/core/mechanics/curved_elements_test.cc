@@ -12,7 +12,7 @@
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/mesh/finer_nodes.h"
-#include "elastimate/core/mesh/mid_edges.h"
+#include "elastimate/core/mesh/middle_nodes.h"
 #include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
@@ -116,12 +116,12 @@ Mesh LinearMesh(Round round, int cells) {
 
 // Moves the nodes of edges to the mean radius of the ends.
 void Bend(Round round, Mesh& mesh) {
-  const MidEdges edges(mesh);
+  const MiddleNodes nodes(mesh);
   const Eigen::Index n = NumRoundAxes(round);
-  for (Eigen::Index i = 0; i < edges.Ends().cols(); ++i) {
-    const Eigen::VectorXd a = mesh.nodes.col(edges.Ends()(0, i)).head(n);
-    const Eigen::VectorXd b = mesh.nodes.col(edges.Ends()(1, i)).head(n);
-    mesh.nodes.col(edges.NumVertices() + i).head(n) =
+  for (Eigen::Index i = 0; i < nodes.Vertices().Size(); ++i) {
+    const Eigen::VectorXd a = mesh.nodes.col(nodes.Vertices()[i](0)).head(n);
+    const Eigen::VectorXd b = mesh.nodes.col(nodes.Vertices()[i](1)).head(n);
+    mesh.nodes.col(nodes.NumVertices() + i).head(n) =
         (a.norm() + b.norm()) / 2 *
         (a.normalized() + b.normalized()).normalized();
   }

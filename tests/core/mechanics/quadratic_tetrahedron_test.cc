@@ -13,7 +13,7 @@
 #include "elastimate/core/mechanics/stiffness_traces.h"
 #include "elastimate/core/mechanics/tet10_stiffness_product.h"
 #include "elastimate/core/mesh/mesh.h"
-#include "elastimate/core/mesh/mid_edges.h"
+#include "elastimate/core/mesh/middle_nodes.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "tests/core/instruction_sets.h"
@@ -275,13 +275,15 @@ TEST_F(QuadraticTetrahedra, ContainTheLinearOnes) {
   const StiffnessProducts products =
       MultiplyStiffnessBasis(mesh_, interpolated);
   const double tolerance = kQuadraticRounding * Scale(interpolated);
-  EXPECT_LT(
-      (MidEdges(mesh_).Restrict(products.h) - expected.h).cwiseAbs().maxCoeff(),
-      tolerance);
-  EXPECT_LT(
-      (MidEdges(mesh_).Restrict(products.j) - expected.j).cwiseAbs().maxCoeff(),
-      tolerance);
-  EXPECT_EQ(MidEdges(linear_).Restrict(expected.h), expected.h);
+  EXPECT_LT((MiddleNodes(mesh_).Restrict(products.h) - expected.h)
+                .cwiseAbs()
+                .maxCoeff(),
+            tolerance);
+  EXPECT_LT((MiddleNodes(mesh_).Restrict(products.j) - expected.j)
+                .cwiseAbs()
+                .maxCoeff(),
+            tolerance);
+  EXPECT_EQ(MiddleNodes(linear_).Restrict(expected.h), expected.h);
 }
 
 TEST_F(QuadraticTetrahedra, AssembleIntoTheTextbookStiffness) {

@@ -25,7 +25,10 @@ TEST(ElementTopology, HasTheNumbersOfEuler) {
     EXPECT_EQ(topology.num_nodes,
               topology.order == 1
                   ? topology.num_vertices
-                  : topology.num_vertices + int(topology.edges.size()));
+                  : topology.num_vertices + int(topology.middles.size()));
+    const bool is_simplex = topology.num_vertices == topology.dimension + 1;
+    EXPECT_EQ(int(topology.middles.size()),
+              int(topology.edges.size()) + (is_simplex ? 0 : faces + 1));
   }
 }
 
@@ -56,22 +59,29 @@ TEST(ElementTopology, HasFacesThatCloseItsSurface) {
   }
 }
 
-TEST(ElementTopology, FindsTheNodeInTheMiddleOfAnEdge) {
+TEST(ElementTopology, FindsTheNodeInTheMiddleOfVertices) {
   const ElementTopology& tet10 = TopologyOf(ElementKind::kTet10);
-  EXPECT_EQ(tet10.MidEdgeNode(0, 1), 4);
-  EXPECT_EQ(tet10.MidEdgeNode(3, 2), 9);
-  EXPECT_EQ(TopologyOf(ElementKind::kTri6).MidEdgeNode(2, 0), 5);
-  EXPECT_EQ(TopologyOf(ElementKind::kHex8).MidEdgeNode(0, 1), -1);
+  EXPECT_EQ(tet10.MiddleNode({0, 1}), 4);
+  EXPECT_EQ(tet10.MiddleNode({3, 2}), 9);
+  EXPECT_EQ(tet10.MiddleNode({0, 1, 2}), -1);
+  EXPECT_EQ(TopologyOf(ElementKind::kTri6).MiddleNode({2, 0}), 5);
+  EXPECT_EQ(TopologyOf(ElementKind::kHex8).MiddleNode({0, 1}), -1);
+  const ElementTopology& hex27 = TopologyOf(ElementKind::kHex27);
+  EXPECT_EQ(hex27.MiddleNode({6, 2}), 18);
+  EXPECT_EQ(hex27.MiddleNode({7, 4, 0, 3}), 20);
+  EXPECT_EQ(hex27.MiddleNode({0, 1, 2, 3, 4, 5, 6, 7}), 26);
+  EXPECT_EQ(TopologyOf(ElementKind::kQuad9).MiddleNode({0, 1, 2, 3}), 8);
 }
 
-TEST(ElementTopology, KnowsWhichKindsCanBeRaised) {
-  EXPECT_EQ(QuadraticKind(ElementKind::kTet4), ElementKind::kTet10);
-  EXPECT_EQ(QuadraticKind(ElementKind::kTri3), ElementKind::kTri6);
-  for (const ElementKind kind :
-       {ElementKind::kHex8, ElementKind::kQuad4, ElementKind::kTet10,
-        ElementKind::kTri6, ElementKind::kCurvedTet10,
-        ElementKind::kCurvedTri6}) {
-    EXPECT_FALSE(HasQuadraticKind(kind));
+TEST(ElementTopology, KnowsTheKindsOfEachOrder) {
+  for (const ElementKind kind : kElementKinds) {
+    const ElementTopology& topology = TopologyOf(kind);
+    SCOPED_TRACE(topology.name);
+    for (const ElementKind other : {LinearKind(kind), QuadraticKind(kind)}) {
+      EXPECT_EQ(TopologyOf(other).order, other == LinearKind(kind) ? 1 : 2);
+      EXPECT_EQ(TopologyOf(other).shape, topology.shape);
+      EXPECT_FALSE(IsCurved(other));
+    }
   }
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "elastimate/core/scene/finer_scene.h"
+#include "elastimate/core/scene/quadratic_scene.h"
 #include "tests/element_kinds.h"
 
 namespace elastimate {
@@ -21,7 +22,9 @@ class FinerNodesOfKinds
   FinerNodes nodes_;
 };
 
-// All second powers of the coordinates, each as a component.
+// All second powers of the coordinates, each as a component.  In elements whose
+// map is not affine these are no functions of the elements, but their positions
+// are.
 Eigen::MatrixXd PowersAt(const Mesh& mesh) {
   const int dimension = mesh.Dimension();
   Eigen::MatrixXd powers(mesh.NumDofs(), dimension);
@@ -36,15 +39,42 @@ Eigen::MatrixXd PowersAt(const Mesh& mesh) {
 TEST_P(FinerNodesOfKinds, InterpolateWhatTheElementsCanDo) {
   const auto fields = [&](const Mesh& mesh) {
     // The places in a curved element are all of its functions that are known.
-    return scene_.mesh.Order() == 1 || IsCurved(scene_.mesh.kind)
+    return scene_.mesh.Order() == 1 || !IsAffine(scene_.mesh.kind)
                ? Eigen::MatrixXd(mesh.nodes.reshaped())
                : PowersAt(mesh);
   };
   EXPECT_EQ(nodes_.NumNodes(), scene_.mesh.NumNodes());
-  EXPECT_EQ(nodes_.NumMidEdges(),
+  EXPECT_EQ(nodes_.NumMiddles(),
             finer_.mesh.NumNodes() - scene_.mesh.NumNodes());
   EXPECT_TRUE(nodes_.Interpolate(fields(scene_.mesh))
                   .isApprox(fields(finer_.mesh), 1e-13));
+}
+
+// All products of second powers of the coordinates along the axes of a block.
+TEST(FinerNodes, KeepWhatIsQuadraticAlongEachAxis) {
+  for (const ElementKind kind : {ElementKind::kHex8, ElementKind::kQuad4}) {
+    Scene scene = testing::SceneOfKind(
+        {kind, DimensionOf(kind) == 3 ? SectionModel::kSolid
+                                      : SectionModel::kPlaneStress});
+    const int dimension = scene.mesh.Dimension();
+    // The first 4^dimension nodes are a grid before they are distorted.
+    for (Eigen::Index i = 0; i < scene.mesh.NumNodes(); ++i) {
+      for (int k = 0; k < dimension; ++k) {
+        scene.mesh.nodes(k, i) = (i >> (2 * k)) % 4 - 0.7 * k;
+      }
+    }
+    const Scene quadratic = QuadraticScene(scene);
+    const Scene finer = FinerScene(quadratic);
+    const auto field = [&](const Mesh& mesh) {
+      const Eigen::RowVectorXd product =
+          mesh.nodes.array().square().colwise().prod();
+      return Eigen::MatrixXd(
+          product.replicate(dimension, 1).reshaped(mesh.NumDofs(), 1));
+    };
+    EXPECT_TRUE(FinerNodes(quadratic.mesh, finer.mesh)
+                    .Interpolate(field(quadratic.mesh))
+                    .isApprox(field(finer.mesh), 1e-13));
+  }
 }
 
 TEST_P(FinerNodesOfKinds, RestrictByTheTranspose) {

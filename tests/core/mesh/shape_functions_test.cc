@@ -11,7 +11,8 @@ namespace {
 template <ElementKind kKind>
 using Point = Eigen::Matrix<double, ElementSizes<kKind>::kDimension, 1>;
 
-// The nodes of a reference element: the vertices, and the middle of the edges.
+// The nodes of a reference element: the vertices, and the middles of edges,
+// faces and the element.
 template <ElementKind kKind>
 std::vector<Point<kKind>> ReferenceNodes() {
   const ElementTopology& topology = TopologyOf(kKind);
@@ -26,8 +27,13 @@ std::vector<Point<kKind>> ReferenceNodes() {
     nodes.push_back(xi);
   }
   for (int i = topology.num_vertices; i < topology.num_nodes; ++i) {
-    const auto [a, b] = topology.edges[i - topology.num_vertices];
-    nodes.push_back((nodes[a] + nodes[b]) / 2);
+    Point<kKind> sum = Point<kKind>::Zero();
+    const std::vector<int>& middle =
+        topology.middles[i - topology.num_vertices];
+    for (const int vertex : middle) {
+      sum += nodes[vertex];
+    }
+    nodes.push_back(sum / double(middle.size()));
   }
   return nodes;
 }
@@ -161,6 +167,44 @@ void ExpectExactUpTo(int degree) {
 TEST(IntegrationRule, IsExactForWhatCurvedElementsHoldOfAUniformForce) {
   ExpectExactUpTo<ElementKind::kCurvedTet10>(5);
   ExpectExactUpTo<ElementKind::kCurvedTri6>(4);
+}
+
+// The integral of x^a y^b z^c over the cube is the product of 2 / (a + 1) for
+// even a, and 0 for odd ones.
+template <ElementKind kKind>
+void ExpectExactAlongAxesUpTo(int degree) {
+  constexpr int kDimension = ElementSizes<kKind>::kDimension;
+  const auto nodes = ReferenceNodes<kKind>();
+  const auto along_axis = [](int power) {
+    return power % 2 == 0 ? 2.0 / (power + 1) : 0.0;
+  };
+  for (int a = 0; a <= degree; ++a) {
+    for (int b = 0; b <= degree; ++b) {
+      for (int c = 0; c <= (kDimension == 3 ? degree : 0); ++c) {
+        double sum = 0;
+        for (const auto& at : IntegrationRule<kKind>()) {
+          Point<kKind> xi = Point<kKind>::Zero();
+          for (int i = 0; i < ElementSizes<kKind>::kVertices; ++i) {
+            xi += at.vertex_value(i) * nodes[i];
+          }
+          sum += at.weight * std::pow(xi(0), a) * std::pow(xi(1), b) *
+                 std::pow(xi(kDimension - 1), c);
+        }
+        EXPECT_NEAR(sum,
+                    along_axis(a) * along_axis(b) *
+                        (kDimension == 3 ? along_axis(c) : 1),
+                    1e-14)
+            << a << b << c;
+      }
+    }
+  }
+}
+
+TEST(IntegrationRule, IsExactForProductsOfPolynomialsOfEachAxis) {
+  ExpectExactAlongAxesUpTo<ElementKind::kHex8>(3);
+  ExpectExactAlongAxesUpTo<ElementKind::kQuad4>(3);
+  ExpectExactAlongAxesUpTo<ElementKind::kHex27>(5);
+  ExpectExactAlongAxesUpTo<ElementKind::kQuad9>(5);
 }
 
 }  // namespace

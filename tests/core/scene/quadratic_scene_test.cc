@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "elastimate/core/mesh/edges.h"
-#include "elastimate/core/mesh/mid_edges.h"
+#include "elastimate/core/mesh/middle_nodes.h"
+#include "elastimate/core/mesh/middles.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/core/scene/support_ends.h"
@@ -149,10 +149,11 @@ TEST_F(ConvertedOrgan, SpreadsNodalForces) {
   const Eigen::MatrixXd& given =
       std::get<NodalForces>(scene_.load_cases[0].loads[0]).force;
   Eigen::MatrixXd at_vertices = force.leftCols(NumVertices());
-  const Eigen::Matrix2Xi ends = Edges(scene_.mesh).Ends();
+  const Middles middles(scene_.mesh);
   for (Eigen::Index i = 0; i < NumMidEdges(); ++i) {
-    at_vertices.col(ends(0, i)) += force.col(NumVertices() + i) / 2;
-    at_vertices.col(ends(1, i)) += force.col(NumVertices() + i) / 2;
+    for (const int end : middles.Vertices()[i]) {
+      at_vertices.col(end) += force.col(NumVertices() + i) / 2;
+    }
   }
   EXPECT_LT((at_vertices - given).norm(), 1e-12 * given.norm());
 }
@@ -188,7 +189,7 @@ TEST_F(ConvertedOrgan, KeepsWhatTheOtherLoadsAre) {
 // On displacements that linear elements can take, the loads do the same work.
 TEST_F(ConvertedOrgan, HasTheVertexForcesOfLinearElements) {
   const Eigen::MatrixXd expected = AssembleLoadCases(scene_);
-  EXPECT_TRUE(MidEdges(quadratic_.mesh)
+  EXPECT_TRUE(MiddleNodes(quadratic_.mesh)
                   .Restrict(AssembleLoadCases(quadratic_))
                   .isApprox(expected, 1e-13));
 }

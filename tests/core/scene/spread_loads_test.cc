@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "elastimate/core/mesh/facets.h"
+#include "elastimate/core/scene/linear_scene.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
-#include "elastimate/core/scene/simplicial_scene.h"
 #include "tests/regions.h"
 #include "tests/scenes.h"
 
@@ -40,19 +40,19 @@ NodalForces NodalForcesOf(const Mesh& mesh, const Load& load) {
 }
 
 // Expects that nodal forces made of `load`, once they are spread out again, act
-// as `load` itself does, on quadratic elements and on the simplices that these
-// are cut into.
+// as `load` itself does, on quadratic elements and on the linear ones that
+// these are divided into.
 void ExpectSameOnOtherElements(Scene scene, const Load& load,
                                double tolerance) {
   scene.load_cases[0].loads = {load};
   const Scene meant = QuadraticScene(scene);
-  const Eigen::MatrixXd cut_meant = AssembleLoadCases(SimplicialScene(meant));
+  const Eigen::MatrixXd cut_meant = AssembleLoadCases(LinearScene(meant));
   scene.load_cases[0].loads = {NodalForcesOf(scene.mesh, load)};
   const Scene spread = QuadraticScene(scene);
   const Eigen::MatrixXd force = AssembleLoadCases(meant);
   EXPECT_LT((AssembleLoadCases(spread) - force).norm(),
             tolerance * force.norm());
-  EXPECT_LT((AssembleLoadCases(SimplicialScene(spread)) - cut_meant).norm(),
+  EXPECT_LT((AssembleLoadCases(LinearScene(spread)) - cut_meant).norm(),
             tolerance * cut_meant.norm());
 }
 

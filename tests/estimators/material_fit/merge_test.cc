@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "elastimate/core/equilibrium/simulated_measurement.h"
+#include "elastimate/core/scene/linear_scene.h"
 #include "elastimate/core/scene/quadratic_scene.h"
-#include "elastimate/core/scene/simplicial_scene.h"
 #include "elastimate/estimators/registry.h"
 #include "tests/element_kinds.h"
 #include "tests/regions.h"
@@ -216,8 +216,8 @@ TEST(MergeStatistics, FindsTwoPoissonRatios) {
 TEST(MergeStatistics, TellsNothingApartByWhatElementsMiss) {
   Scene scene = testing::BlockUnderTraction({9, 6, 6}, {1.5, 1, 1});
   testing::DivideIntoRegions({3, 2, 1}, {1.5, 1, 1}, scene);
-  const Scene finer = QuadraticScene(SimplicialScene(scene));
-  MeasureInWorld(QuadraticScene(SimplicialScene(finer)), kOneMaterial, scene);
+  const Scene finer = QuadraticScene(LinearScene(scene));
+  MeasureInWorld(QuadraticScene(LinearScene(finer)), kOneMaterial, scene);
   for (const double noise : {0.0, 0.01, 0.05}) {
     const MergeTrials trials =
         TryMerging(scene, kOneMaterial, {}, noise, noise == 0 ? 1 : 3);

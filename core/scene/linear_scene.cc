@@ -1,8 +1,8 @@
-#include "elastimate/core/scene/simplicial_scene.h"
+#include "elastimate/core/scene/linear_scene.h"
 
 #include <variant>
 
-#include "elastimate/core/mesh/simplicial_mesh.h"
+#include "elastimate/core/mesh/linear_mesh.h"
 #include "elastimate/core/scene/spread_loads.h"
 
 namespace elastimate {
@@ -19,12 +19,11 @@ Eigen::MatrixXd ForCuts(const Eigen::MatrixXd& columns, Eigen::Index num_cuts) {
 
 // One overload per kind of load.
 struct LoadCutter {
-  const SimplicialMesh& mesh;
+  const LinearMesh& mesh;
 
   Load operator()(const NodalForces& load) const { return load; }
   Load operator()(const BodyForce& load) const {
-    return BodyForce{
-        ForCuts(load.force_density, mesh.Simplices().NumElements())};
+    return BodyForce{ForCuts(load.force_density, mesh.Parts().NumElements())};
   }
   Load operator()(const Traction& load) const {
     const Eigen::MatrixXi facets = mesh.FacetsOf(load.facets);
@@ -40,14 +39,14 @@ struct LoadCutter {
 
 }  // namespace
 
-Scene SimplicialScene(const Scene& scene) {
-  const SimplicialMesh mesh(scene.mesh);
-  Scene simplicial = scene;
-  simplicial.mesh = mesh.Simplices();
-  // The simplices of an element have the axes of that element.
+Scene LinearScene(const Scene& scene) {
+  const LinearMesh mesh(scene.mesh);
+  Scene linear = scene;
+  linear.mesh = mesh.Parts();
+  // The parts of an element have the axes of that element.
   const Eigen::Index num_elements = scene.mesh.NumElements();
-  const Eigen::Index num_cuts = simplicial.mesh.NumElements() / num_elements;
-  for (Material& material : simplicial.materials) {
+  const Eigen::Index num_cuts = linear.mesh.NumElements() / num_elements;
+  for (Material& material : linear.materials) {
     for (Eigen::MatrixXd& axis : material.axes) {
       if (axis.cols() > 1) {
         axis = axis.replicate(num_cuts, 1)
@@ -56,7 +55,7 @@ Scene SimplicialScene(const Scene& scene) {
       }
     }
   }
-  for (LoadCase& load_case : simplicial.load_cases) {
+  for (LoadCase& load_case : linear.load_cases) {
     if (scene.mesh.Order() == 1) {
       load_case.loads =
           SpreadLoads(scene.mesh, scene.supports.held, load_case.loads);
@@ -66,7 +65,7 @@ Scene SimplicialScene(const Scene& scene) {
     }
     load_case.points.points = mesh.PointsOf(load_case.points.points);
   }
-  return simplicial;
+  return linear;
 }
 
 }  // namespace elastimate

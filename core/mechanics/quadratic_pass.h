@@ -1,0 +1,56 @@
+#ifndef ELASTIMATE_CORE_MECHANICS_QUADRATIC_PASS_H_
+#define ELASTIMATE_CORE_MECHANICS_QUADRATIC_PASS_H_
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <functional>
+
+#include "elastimate/core/mechanics/stiffness_product.h"
+#include "elastimate/core/mesh/mesh.h"
+
+namespace elastimate {
+
+/// The record of a node has groups of four values, of which the last is zero:
+/// one group for its displacement, one for the sum at it, and one for the sum
+/// of the second product if there are two.  In the plane the third value is
+/// zero, too.
+inline constexpr std::ptrdiff_t kFour = 4;
+inline constexpr std::ptrdiff_t kSizeForSum = 2 * kFour;
+inline constexpr std::ptrdiff_t kSizeForProducts = 3 * kFour;
+
+/// One pass over quadratic elements with straight edges, for one column.
+/// Columns that share the geometry of an element save less than it costs that
+/// their records do not fit into the cache together.
+struct QuadraticPass {
+  const int* elements;  ///< num_nodes of the kind x num_elements.
+  std::ptrdiff_t num_elements;
+  /// These are dimension x num_nodes.  Four values may be read at each vertex,
+  /// which is within bounds because middle nodes come behind all vertices.
+  const double* positions;
+  double thickness;
+  /// Where these are null, the products are a = integral of e grad(N) and,
+  /// behind it, p = integral of tr(e) grad(N).  Else the only product is the
+  /// sum of both with these coefficients.  The arrays then have some more
+  /// values, as many as the most lanes, behind those of the elements.
+  const double* coefficients_of_a;
+  const double* coefficients_of_p;
+  double* records;
+};
+
+/// Adds what the elements contribute to the records.
+using RunPass = std::function<void(const QuadraticPass&)>;
+
+/// Sets the products H q and J q of MultiplyStiffnessBasis.
+void MultiplyByPass(const Mesh& mesh, const Eigen::MatrixXd& displacement,
+                    const RunPass& run, StiffnessProducts& products);
+
+/// Returns the sum over the elements of c_0 H_e q + c_1 J_e q, with the
+/// coefficients c of each element (2 x num_elements).
+Eigen::MatrixXd MultiplyByPass(const Mesh& mesh,
+                               const Eigen::Matrix2Xd& coefficients,
+                               const Eigen::MatrixXd& displacement,
+                               const RunPass& run);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_MECHANICS_QUADRATIC_PASS_H_
