@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -52,6 +55,69 @@ class MaterialsCommand : public testing::ProgramTest {
     }
   }
 };
+
+// A closed form: a column of Hooke's law is as stiff as E, and becomes narrower
+// by nu, whatever the law is called that turns with it.
+TEST_F(MaterialsCommand, DrawsTheCurveOfAMaterial) {
+  const std::string corotated =
+      "materials --curve=corotated,youngs_modulus=10,poisson_ratio=0.25";
+  std::istringstream lines(Succeed(corotated).output);
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_THAT(line, HasSubstr("stretch     uniaxial  equibiaxial"));
+  int count = 0;
+  for (double stretch = 0; lines >> stretch; std::getline(lines, line)) {
+    double stress = 0;
+    lines >> stress;
+    EXPECT_NEAR(stress, 10 * (stretch - 1), 1e-5 * std::abs(stress));
+    ++count;
+  }
+  EXPECT_EQ(count, 26);
+  EXPECT_EQ(Succeed(corotated + " --out=curve.csv").output, "");
+  const std::string table = testing::ReadText(folder_ / "curve.csv");
+  EXPECT_EQ(table.rfind("stretch,uniaxial,equibiaxial,pure_shear,simple_shear,"
+                        "volumetric\n0.5,-5",
+                        0),
+            0U)
+      << table;
+  // Where the law gives way there is a dash.
+  EXPECT_THAT(Succeed("materials --curve=st_venant_kirchhoff,"
+                      "youngs_modulus=1,poisson_ratio=0.45")
+                  .output,
+              HasSubstr(" - "));
+}
+
+TEST_F(MaterialsCommand, RefusesACurveOfNoMaterial) {
+  Refuse("materials --curve=rubber", "the first part must be a law");
+  Refuse("materials --curve=neo_hookean,youngs_modulus=1",
+         "needs poisson_ratio as well");
+  Refuse("materials --curve=neo_hookean,youngs_modulus=1,poisson_ratio=0.5",
+         "poisson_ratio must be between");
+  Refuse("materials --curve=neo_hookean,youngs_modulus", "NAME=NUMBER");
+  Refuse("materials --curve=yeoh,c10=1,c10=2", "gives c10 twice");
+  Refuse(
+      "materials "
+      "--curve=neo_hookean,youngs_modulus=1,poisson_ratio=0.3,c10=1",
+      "which is no parameter of neo_hookean");
+  Refuse(
+      "materials --curve=neo_hookean,youngs_modulus=1,poisson_ratio=0.3 "
+      "--out=curve.txt",
+      "the name must end in .csv");
+  Refuse("materials --out=laws.csv", "the list of laws is not written");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "curve.txt"));
+}
+
+TEST_F(MaterialsCommand, EstimatesNoLawOfLargeStrains) {
+  Succeed("simulate block.vtu --youngs=1e4 --nu=0.3 --out=m.vtu");
+  for (const std::string estimator :
+       {"closed-form", "bounded", "virtual-fields", "reduced-fe",
+        "iterative-fe", "auto"}) {
+    Refuse("estimate m.vtu --material=neo_hookean --estimator=" + estimator,
+           "the law neo_hookean is for large strains");
+  }
+  Refuse("plan m.vtu --material=neo_hookean --youngs=1e4 --nu=0.3",
+         "the law neo_hookean is for large strains");
+}
 
 TEST_F(MaterialsCommand, SimulatesAndEstimatesEachRegion) {
   Succeed(
