@@ -28,7 +28,7 @@ using testing::RandomMatrix;
 template <class T>
 using Square = Eigen::Matrix<T, 3, 3>;
 
-constexpr SectionModel kSolid = SectionModel::kSolid;
+constexpr SectionModel kAnySection = SectionModel::kSolid;
 
 // Returns U = C^(1/2) by the iteration of Denman and Beavers.
 template <class T>
@@ -110,7 +110,7 @@ class LargeStrainLaws : public ::testing::TestWithParam<const LargeStrainLaw*> {
     for (Eigen::Index i = 0; i < parameters.size(); ++i) {
       parameters(i) = law_.Parameters()[i].typical * (1 + 0.1 * double(i));
     }
-    return law_.Moduli(parameters, kSolid);
+    return law_.Moduli(parameters, kAnySection);
   }
 
   // Returns a rotation times stretches by up to 40 %.
@@ -134,8 +134,8 @@ TEST_P(LargeStrainLaws, HaveTheDerivativesOfTheTextbookEnergies) {
     const LongVector h = gradient.reshaped().cast<Long>();
     const std::vector<Jet> expected = EnergiesAt(name_, h);
     ASSERT_EQ(int(expected.size()), law_.NumModuli());
-    const Eigen::MatrixXd stresses = law_.Stresses(gradient, kSolid);
-    const Eigen::VectorXd energies = law_.Energies(gradient, kSolid);
+    const Eigen::MatrixXd stresses = law_.Stresses(gradient, kAnySection);
+    const Eigen::VectorXd energies = law_.Energies(gradient, kAnySection);
     for (int k = 0; k < law_.NumModuli(); ++k) {
       EXPECT_NEAR(energies(k), double(expected[k].a), 1e-13);
       EXPECT_LT((stresses.col(k) - expected[k].v.cast<double>()).norm(),
@@ -150,7 +150,7 @@ TEST_P(LargeStrainLaws, HaveTheDerivativesOfTheTextbookEnergies) {
                             .cast<double>();
       }
       const Eigen::MatrixXd tangent = law_.Tangent(
-          Eigen::VectorXd::Unit(law_.NumModuli(), k), gradient, kSolid);
+          Eigen::VectorXd::Unit(law_.NumModuli(), k), gradient, kAnySection);
       EXPECT_LT((tangent - slopes).norm(), 1e-10 * (1 + slopes.norm())) << k;
     }
   }
@@ -161,11 +161,11 @@ TEST_P(LargeStrainLaws, AreObjective) {
   const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d turn(
       Eigen::AngleAxisd(2.5, Eigen::Vector3d(1, -2, 0.5).normalized()));
-  const Eigen::MatrixXd stresses = law_.Stresses(h, kSolid);
+  const Eigen::MatrixXd stresses = law_.Stresses(h, kAnySection);
   const Eigen::MatrixXd turned =
-      law_.Stresses(turn * (identity + h) - identity, kSolid);
+      law_.Stresses(turn * (identity + h) - identity, kAnySection);
   const Eigen::MatrixXd stretched_after =
-      law_.Stresses((identity + h) * turn - identity, kSolid);
+      law_.Stresses((identity + h) * turn - identity, kAnySection);
   for (int k = 0; k < law_.NumModuli(); ++k) {
     const Eigen::Matrix3d stress = stresses.col(k).reshaped(3, 3);
     EXPECT_TRUE(turned.col(k).reshaped(3, 3).isApprox(turn * stress, 1e-12));
@@ -183,25 +183,27 @@ TEST_P(LargeStrainLaws, HaveNoStressInAnyRigidRotation) {
         Eigen::AngleAxisd(angle, Eigen::Vector3d(2, 1, 2) / 3)
             .toRotationMatrix() -
         Eigen::Matrix3d::Identity();
-    EXPECT_LT(law_.Stresses(h, kSolid).norm(), 1e-14);
+    EXPECT_LT(law_.Stresses(h, kAnySection).norm(), 1e-14);
   }
 }
 
 TEST_P(LargeStrainLaws, AreTheIsotropicLawNearRest) {
   const Eigen::VectorXd moduli = Moduli();
   const Eigen::MatrixXd tangent =
-      law_.Tangent(moduli, Eigen::Matrix3d::Zero(), kSolid);
+      law_.Tangent(moduli, Eigen::Matrix3d::Zero(), kAnySection);
   // mu and lambda are what shear and volume feel.
   const double mu = tangent(1, 1);
   const double lambda = tangent(0, 4);
   const Eigen::Vector2d parameters(mu * (3 * lambda + 2 * mu) / (lambda + mu),
                                    lambda / (2 * (lambda + mu)));
   const IsotropicLaw isotropic;
-  const Eigen::MatrixXd expected = isotropic.Tangent(
-      isotropic.Moduli(parameters, kSolid), Eigen::Matrix3d::Zero(), kSolid);
+  const Eigen::MatrixXd expected =
+      isotropic.Tangent(isotropic.Moduli(parameters, kAnySection),
+                        Eigen::Matrix3d::Zero(), kAnySection);
   EXPECT_TRUE(tangent.isApprox(expected, 1e-13));
   if (law_.Parameters()[0].name == "youngs_modulus") {
-    EXPECT_TRUE(parameters.isApprox(law_.ParametersOf(moduli, kSolid), 1e-13));
+    EXPECT_TRUE(
+        parameters.isApprox(law_.ParametersOf(moduli, kAnySection), 1e-13));
   } else {
     const bool has_c01 = law_.Parameters()[1].name == "c01";
     EXPECT_NEAR(mu, 2 * (moduli(0) + (has_c01 ? moduli(1) : 0)), 1e-13);
@@ -212,7 +214,7 @@ TEST_P(LargeStrainLaws, AreTheIsotropicLawNearRest) {
 TEST_P(LargeStrainLaws, KeepTheirDigitsNearRest) {
   for (const double size : {1e-4, 1e-6, 1e-8, 1e-10}) {
     const Eigen::Matrix3d h = size * RandomMatrix(3, 3, 7);
-    const Eigen::MatrixXd stresses = law_.Stresses(h, kSolid);
+    const Eigen::MatrixXd stresses = law_.Stresses(h, kAnySection);
     // The textbook loses digits too, but has 19 of them.
     const std::vector<Jet> expected =
         EnergiesAt(name_, h.reshaped().cast<Long>());
@@ -245,8 +247,8 @@ TEST_P(LargeStrainLaws, GiveTheSameAtManyPointsAsAtOne) {
   law_.TangentsAtPoints(Moduli(), gradients, kCount, tangents);
   for (int p = 0; p < kCount; ++p) {
     const Eigen::Matrix3d h = LargeGradient(p);
-    const Eigen::MatrixXd stresses = law_.Stresses(h, kSolid);
-    const Eigen::MatrixXd tangent = law_.Tangent(Moduli(), h, kSolid);
+    const Eigen::MatrixXd stresses = law_.Stresses(h, kAnySection);
+    const Eigen::MatrixXd tangent = law_.Tangent(Moduli(), h, kAnySection);
     for (int i = 0; i < 9; ++i) {
       for (int k = 0; k < law_.NumModuli(); ++k) {
         EXPECT_NEAR(columns[k].row[i][p], stresses(i, k), 1e-12);
@@ -306,12 +308,12 @@ TEST(LargeStrainLawsAtOnePoint, HavePublishedValues) {
                           std::vector<double> curvature) {
     const Law& law = *FindLaw(name);
     const Eigen::VectorXd stresses =
-        law.Stresses(h, kSolid).transpose() * d.reshaped();
+        law.Stresses(h, kAnySection).transpose() * d.reshaped();
     for (std::size_t k = 0; k < work.size(); ++k) {
       EXPECT_NEAR(stresses(Eigen::Index(k)), work[k], 1e-9) << name;
       const Eigen::VectorXd along =
           law.Tangent(Eigen::VectorXd::Unit(law.NumModuli(), Eigen::Index(k)),
-                      h, kSolid) *
+                      h, kAnySection) *
           d.reshaped();
       EXPECT_NEAR(along.dot(d.reshaped()), curvature[k], 1e-9) << name;
     }
