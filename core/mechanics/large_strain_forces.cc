@@ -9,6 +9,7 @@
 #include "elastimate/core/large_strain/cross_gradient.h"
 #include "elastimate/core/large_strain/large_strain_law.h"
 #include "elastimate/core/mechanics/mean_dilatation.h"
+#include "elastimate/core/mechanics/tet4_point_forces.h"
 #include "elastimate/core/mesh/shape_functions.h"
 
 namespace elastimate {
@@ -203,6 +204,26 @@ void AddColumns(const MaterialPass& pass, const Eigen::VectorXd& displacement,
       }
     }
   });
+}
+
+// Does that for linear tetrahedra.
+void AddTet4Columns(const MaterialPass& pass,
+                    const Eigen::VectorXd& displacement,
+                    Eigen::Ref<Eigen::MatrixXd> columns) {
+  PointMatrices gradients;
+  std::vector<PointMatrices> stresses(pass.law.NumModuli());
+  const std::size_t num_elements = pass.elements.size();
+  for (std::size_t first = 0; first < num_elements;
+       first += PointMatrices::kPoints) {
+    const int count = int(
+        std::min<std::size_t>(PointMatrices::kPoints, num_elements - first));
+    const Tet4Points points(pass.mesh, pass.elements.data() + first, count);
+    points.SetGradients(displacement.data(), gradients);
+    pass.law.StressesAtPoints(gradients, count, stresses.data());
+    for (std::size_t k = 0; k < stresses.size(); ++k) {
+      points.AddForces(stresses[k], columns.col(Eigen::Index(k)).data());
+    }
+  }
 }
 
 // The entries of dP / dH in the plane of a planar mesh, or all of them; in
@@ -453,12 +474,16 @@ Eigen::MatrixXd LargeStrainForces::Columns(
   assert(displacement.size() == mesh_.NumDofs());
   Eigen::MatrixXd columns =
       Eigen::MatrixXd::Zero(mesh_.NumDofs(), parameters_.NumModuli());
-  ForEachMaterial(
-      moduli, [&](auto kind, const MaterialPass& pass, std::size_t i) {
-        AddColumns<kind>(pass, displacement,
-                         columns.middleCols(parameters_.FirstModulus(i),
-                                            pass.law.NumModuli()));
-      });
+  ForEachMaterial(moduli,
+                  [&](auto kind, const MaterialPass& pass, std::size_t i) {
+                    const auto own = columns.middleCols(
+                        parameters_.FirstModulus(i), pass.law.NumModuli());
+                    if constexpr (kind == ElementKind::kTet4) {
+                      AddTet4Columns(pass, displacement, own);
+                    } else {
+                      AddColumns<kind>(pass, displacement, own);
+                    }
+                  });
   return columns;
 }
 

@@ -1,0 +1,38 @@
+#ifndef ELASTIMATE_CORE_MECHANICS_TET4_POINT_FORCES_H_
+#define ELASTIMATE_CORE_MECHANICS_TET4_POINT_FORCES_H_
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "elastimate/core/large_strain/large_strain_law.h"
+#include "elastimate/core/mesh/mesh.h"
+
+namespace elastimate {
+
+/// Some linear tetrahedra, whose gradients and forces are computed several at
+/// once by vector instructions.
+///
+///   H = sum_i u_i grad(N_i)^T,   f_i = P V grad(N_i)
+class Tet4Points {
+ public:
+  /// Takes `count` elements, at most PointMatrices::kPoints, of a mesh of
+  /// linear tetrahedra.
+  Tet4Points(const Mesh& mesh, const Eigen::Index* elements, int count);
+
+  /// Sets `gradients` to H of each element.
+  void SetGradients(const double* displacement, PointMatrices& gradients) const;
+
+  /// Adds the forces of these stresses to those of the nodes, num_dofs.
+  void AddForces(const PointMatrices& stresses, double* forces) const;
+
+ private:
+  int count_;
+  /// The first degree of freedom of each corner of each element.
+  alignas(64) std::int64_t row_[4][PointMatrices::kPoints];
+  PointMatrices gradients_;  ///< grad(N_i), i = 1, 2, 3, as columns.
+  PointValues<1> volumes_;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_MECHANICS_TET4_POINT_FORCES_H_
