@@ -14,7 +14,7 @@ namespace {
 // The residual over the forces of loads and supports at which a state is in
 // equilibrium.
 constexpr double kResidual = 1e-10;
-constexpr int kMostIterations = 25;
+constexpr int kMostNewtonSteps = 25;
 // A step of the load that takes no more iterations is followed by a longer one.
 constexpr int kEasyIterations = 6;
 constexpr double kSmallestLoadStep = 1.0 / 1024;
@@ -129,7 +129,7 @@ EquilibriumStatus LargeStrainEquilibrium::Newton(const Eigen::VectorXd& moduli,
   // What the held degrees of freedom have yet to move; zero in the free rows.
   Eigen::VectorXd held_change =
       t * held_displacement_.col(k) - (u - dofs.Extend(dofs.Restrict(u)));
-  for (int iteration = 0; iteration <= kMostIterations; ++iteration) {
+  for (int iteration = 0; iteration <= kMostNewtonSteps; ++iteration) {
     const Eigen::VectorXd forces = forces_.Forces(moduli, u);
     const Eigen::VectorXd residual = dofs.Restrict(t * load_.col(k) - forces);
     const double scale =

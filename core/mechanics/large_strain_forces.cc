@@ -206,12 +206,12 @@ void AddColumns(const MaterialPass& pass, const Eigen::VectorXd& displacement,
   });
 }
 
-// Does that for linear tetrahedra.
-void AddTet4Columns(const MaterialPass& pass,
-                    const Eigen::VectorXd& displacement,
-                    Eigen::Ref<Eigen::MatrixXd> columns) {
+// Calls visit(points, gradients, count) for all linear tetrahedra of a pass.
+template <class Visitor>
+void VisitTet4Points(const MaterialPass& pass,
+                     const Eigen::VectorXd& displacement,
+                     const Visitor& visit) {
   PointMatrices gradients;
-  std::vector<PointMatrices> stresses(pass.law.NumModuli());
   const std::size_t num_elements = pass.elements.size();
   for (std::size_t first = 0; first < num_elements;
        first += PointMatrices::kPoints) {
@@ -219,11 +219,61 @@ void AddTet4Columns(const MaterialPass& pass,
         std::min<std::size_t>(PointMatrices::kPoints, num_elements - first));
     const Tet4Points points(pass.mesh, pass.elements.data() + first, count);
     points.SetGradients(displacement.data(), gradients);
-    pass.law.StressesAtPoints(gradients, count, stresses.data());
-    for (std::size_t k = 0; k < stresses.size(); ++k) {
-      points.AddForces(stresses[k], columns.col(Eigen::Index(k)).data());
-    }
+    visit(points, gradients, count);
   }
+}
+
+void AddTet4Columns(const MaterialPass& pass,
+                    const Eigen::VectorXd& displacement,
+                    Eigen::Ref<Eigen::MatrixXd> columns) {
+  std::vector<PointMatrices> stresses(pass.law.NumModuli());
+  VisitTet4Points(
+      pass, displacement,
+      [&](const Tet4Points& points, const PointMatrices& gradients, int count) {
+        pass.law.StressesAtPoints(gradients, count, stresses.data());
+        for (std::size_t k = 0; k < stresses.size(); ++k) {
+          points.AddForces(stresses[k], columns.col(Eigen::Index(k)).data());
+        }
+      });
+}
+
+void AddTet4Blocks(const MaterialPass& pass,
+                   const Eigen::VectorXd& displacement, const NodeGraph& graph,
+                   Eigen::MatrixXd& blocks) {
+  PointTangents tangents;
+  VisitTet4Points(
+      pass, displacement,
+      [&](const Tet4Points& points, const PointMatrices& gradients, int count) {
+        pass.law.TangentsAtPoints(pass.moduli, gradients, count, tangents);
+        points.AddBlocks(tangents, graph, blocks);
+      });
+}
+
+void AddTet4Products(const MaterialPass& pass,
+                     const Eigen::VectorXd& displacement,
+                     const Eigen::MatrixXd& directions,
+                     Eigen::MatrixXd& products) {
+  PointTangents tangents;
+  PointMatrices change;
+  PointMatrices stresses;
+  VisitTet4Points(
+      pass, displacement,
+      [&](const Tet4Points& points, const PointMatrices& gradients, int count) {
+        pass.law.TangentsAtPoints(pass.moduli, gradients, count, tangents);
+        for (Eigen::Index column = 0; column < directions.cols(); ++column) {
+          points.SetGradients(directions.col(column).data(), change);
+          stresses = {};
+          for (int a = 0; a < 9; ++a) {
+            for (int b = 0; b < 9; ++b) {
+              const double* const tangent = tangents.row[TangentRow(a, b)];
+              for (int p = 0; p < count; ++p) {
+                stresses.row[a][p] += tangent[p] * change.row[b][p];
+              }
+            }
+          }
+          points.AddForces(stresses, products.col(column).data());
+        }
+      });
 }
 
 // The entries of dP / dH in the plane of a planar mesh, or all of them; in
@@ -494,7 +544,11 @@ Eigen::MatrixXd LargeStrainForces::TangentBlocks(
       mesh_.Dimension(), mesh_.Dimension() * graph.NumPairs());
   ForEachMaterial(moduli,
                   [&](auto kind, const MaterialPass& pass, std::size_t) {
-                    AddBlocks<kind>(pass, displacement, graph, blocks);
+                    if constexpr (kind == ElementKind::kTet4) {
+                      AddTet4Blocks(pass, displacement, graph, blocks);
+                    } else {
+                      AddBlocks<kind>(pass, displacement, graph, blocks);
+                    }
                   });
   return blocks;
 }
@@ -504,10 +558,14 @@ Eigen::MatrixXd LargeStrainForces::TangentProducts(
     const Eigen::MatrixXd& directions) const {
   Eigen::MatrixXd products =
       Eigen::MatrixXd::Zero(directions.rows(), directions.cols());
-  ForEachMaterial(moduli,
-                  [&](auto kind, const MaterialPass& pass, std::size_t) {
-                    AddProducts<kind>(pass, displacement, directions, products);
-                  });
+  ForEachMaterial(
+      moduli, [&](auto kind, const MaterialPass& pass, std::size_t) {
+        if constexpr (kind == ElementKind::kTet4) {
+          AddTet4Products(pass, displacement, directions, products);
+        } else {
+          AddProducts<kind>(pass, displacement, directions, products);
+        }
+      });
   return products;
 }
 

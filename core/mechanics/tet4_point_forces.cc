@@ -17,6 +17,9 @@ namespace {
 
 using CornerRows = std::int64_t[4][PointMatrices::kPoints];
 
+// The blocks of the ten pairs of corners, in the order of LocalPair.
+using PairBlocks = PointValues<90>;
+
 }  // namespace
 }  // namespace elastimate
 #endif
@@ -101,6 +104,56 @@ void AddCornerForces(const CornerRows& rows, int count,
   }
 }
 
+void SetPairBlocks(int count, const PointMatrices& shape_gradients,
+                   const PointValues<1>& volumes, const PointTangents& tangents,
+                   PairBlocks& blocks) {
+  for (int p = 0; p < count; p += int(hn::Lanes(PointLanes()))) {
+    const Matrix3 g = LoadMatrix(shape_gradients, p);
+    const Matrix3 scaled = LoadNumber(volumes.row[0] + p) * g;
+    Matrix3 k[3][3];
+    for (int j = 0; j < 3; ++j) {
+      // A . grad(N_j): entry (a, b) with a = r + 3 c.
+      Number of_column[9][3];
+      for (int a = 0; a < 9; ++a) {
+        for (int b = 0; b < 3; ++b) {
+          const auto entry = [&](int d) HWY_ATTR {
+            return LoadNumber(tangents.row[TangentRow(a, b + 3 * d)] + p);
+          };
+          of_column[a][b] = Dot3(entry(0), scaled(0, j), entry(1), scaled(1, j),
+                                 entry(2), scaled(2, j));
+        }
+      }
+      for (int i = j; i < 3; ++i) {
+        for (int b = 0; b < 3; ++b) {
+          for (int r = 0; r < 3; ++r) {
+            k[i][j](r, b) =
+                Dot3(g(0, i), of_column[r][b], g(1, i), of_column[r + 3][b],
+                     g(2, i), of_column[r + 6][b]);
+            k[j][i](b, r) = k[i][j](r, b);
+          }
+        }
+      }
+    }
+    const auto store = [&](const Matrix3& block, int pair) HWY_ATTR {
+      for (int entry = 0; entry < 9; ++entry) {
+        StoreNumber(block.entry[entry], blocks.row[9 * pair + entry] + p);
+      }
+    };
+    // The gradients of all corners have the sum zero.
+    Matrix3 sum = Number(0) * g;
+    for (int i = 0; i < 3; ++i) {
+      const Matrix3 of_first = Number(-1) * (k[i][0] + k[i][1] + k[i][2]);
+      AddScaled(-1, of_first, sum);
+      const int first_pair = (i + 1) * (i + 2) / 2;
+      store(of_first, first_pair);
+      for (int j = 0; j <= i; ++j) {
+        store(k[i][j], first_pair + 1 + j);
+      }
+    }
+    store(sum, 0);
+  }
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace elastimate
@@ -113,12 +166,17 @@ namespace {
 HWY_EXPORT(SetShapeGradients);
 HWY_EXPORT(SetFieldGradients);
 HWY_EXPORT(AddCornerForces);
+HWY_EXPORT(SetPairBlocks);
+
+// Where the entries of a block are in itself, and in its transpose.
+constexpr int kOwnPlace[9] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+constexpr int kTransposedPlace[9] = {0, 3, 6, 1, 4, 7, 2, 5, 8};
 
 }  // namespace
 
 Tet4Points::Tet4Points(const Mesh& mesh, const Eigen::Index* elements,
                        int count)
-    : count_(count) {
+    : count_(count), elements_(elements) {
   for (int p = 0; p < PointMatrices::kPoints; ++p) {
     // Points beyond the last element repeat it, so that all are finite.
     const int* const nodes =
@@ -141,6 +199,29 @@ void Tet4Points::AddForces(const PointMatrices& stresses,
                            double* forces) const {
   HWY_DYNAMIC_DISPATCH(AddCornerForces)
   (row_, count_, gradients_, volumes_, stresses, forces);
+}
+
+void Tet4Points::AddBlocks(const PointTangents& tangents,
+                           const NodeGraph& graph,
+                           Eigen::MatrixXd& blocks) const {
+  PairBlocks of_pairs;
+  HWY_DYNAMIC_DISPATCH(SetPairBlocks)
+  (count_, gradients_, volumes_, tangents, of_pairs);
+  for (int p = 0; p < count_; ++p) {
+    const int* const pairs = graph.element_pairs.col(elements_[p]).data();
+    int pair = 0;
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j <= i; ++j, ++pair) {
+        // The pair has the greater node first.
+        const int* const place =
+            row_[i][p] >= row_[j][p] ? kOwnPlace : kTransposedPlace;
+        double* const block = blocks.data() + 9 * Eigen::Index(pairs[pair]);
+        for (int entry = 0; entry < 9; ++entry) {
+          block[place[entry]] += of_pairs.row[9 * pair + entry][p];
+        }
+      }
+    }
+  }
 }
 
 }  // namespace elastimate

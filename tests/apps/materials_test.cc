@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -117,6 +118,60 @@ TEST_F(MaterialsCommand, EstimatesNoLawOfLargeStrains) {
   }
   Refuse("plan m.vtu --material=neo_hookean --youngs=1e4 --nu=0.3",
          "the law neo_hookean is for large strains");
+}
+
+// The corotated law stretches as Hooke's law does, by E times the strain times
+// the undeformed area of 1 x 0.4.
+TEST_F(MaterialsCommand, SimulatesLargeStrains) {
+  const auto write_pull = [&](const std::string& law, double displacement) {
+    const Json materials = {{{"law", law}}};
+    const auto support = [](Json box, const std::string& components, double x) {
+      return Json{{"nodes", {{"box", std::move(box)}}},
+                  {"components", components},
+                  {"displacement", {x, 0, 0}}};
+    };
+    testing::WriteText(
+        folder_ / "pull.json",
+        Json{{"mesh", "block.vtu"},
+             {"materials", materials},
+             {"supports",
+              {support({{0, -1, -1}, {0, 2, 2}}, "x", 0),
+               support({{-1, 0, -1}, {2, 0, 2}}, "y", 0),
+               support({{-1, -1, 0}, {2, 2, 0}}, "z", 0),
+               support({{1, -1, -1}, {1, 2, 2}}, "x", displacement)}},
+             {"cases", {{{"loads", Json::array()}}}}}
+            .dump());
+  };
+  write_pull("corotated", 0.5);
+  const std::string flags = " --youngs=1e4 --nu=0.3 --out=pulled.vtu";
+  const std::string output = Succeed("simulate pull.json" + flags).output;
+  EXPECT_THAT(output, HasSubstr("force of the displaced supports (2000"));
+  // Far beyond what the elements bear nothing is written.
+  write_pull("corotated", -1.5);
+  std::filesystem::remove(folder_ / "pulled.vtu");
+  Refuse("simulate pull.json" + flags, "of the load");
+  write_pull("neo_hookean", 0.5);
+  Refuse("simulate pull.json --solver=multigrid" + flags, "--solver=cholesky");
+  write_pull("yeoh", 0.5);
+  Refuse("simulate pull.json" + flags, "give --parameters=FILE.json");
+}
+
+TEST_F(MaterialsCommand, SimulatesLargeStrainsOfSmallLoadsAsSmallOnes) {
+  const std::string flags = " --youngs=1e12 --nu=0.3 --out=";
+  Succeed("simulate block.vtu" + flags + "small.csv");
+  Succeed("simulate block.vtu --material=neo_hookean" + flags + "large.csv");
+  std::istringstream small(testing::ReadText(folder_ / "small.csv"));
+  std::istringstream large(testing::ReadText(folder_ / "large.csv"));
+  std::string line;
+  std::string other;
+  int count = 0;
+  while (std::getline(small, line) && std::getline(large, other)) {
+    const double expected = std::atof(line.substr(line.rfind(',') + 1).c_str());
+    const double actual = std::atof(other.substr(other.rfind(',') + 1).c_str());
+    EXPECT_NEAR(actual, expected, 1e-5 * std::abs(expected));
+    ++count;
+  }
+  EXPECT_EQ(count, 109);
 }
 
 TEST_F(MaterialsCommand, SimulatesAndEstimatesEachRegion) {
