@@ -187,8 +187,9 @@ NodeColumns<kKind> StressForces(const ElementBatch<kKind>& batch, std::size_t e,
 }
 
 template <ElementKind kKind>
-void AddColumns(const MaterialPass& pass, const Eigen::VectorXd& displacement,
-                Eigen::Ref<Eigen::MatrixXd> columns) {
+void AddStressColumns(const MaterialPass& pass,
+                      const Eigen::VectorXd& displacement,
+                      Eigen::Ref<Eigen::MatrixXd> columns) {
   VisitBatches<kKind>(pass, displacement, [&](const auto& batch) {
     const std::vector<PointMatrices> stresses = batch.Stresses();
     for (std::size_t k = 0; k < stresses.size(); ++k) {
@@ -531,7 +532,7 @@ Eigen::MatrixXd LargeStrainForces::Columns(
                     if constexpr (kind == ElementKind::kTet4) {
                       AddTet4Columns(pass, displacement, own);
                     } else {
-                      AddColumns<kind>(pass, displacement, own);
+                      AddStressColumns<kind>(pass, displacement, own);
                     }
                   });
   return columns;
