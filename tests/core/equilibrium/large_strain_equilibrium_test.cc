@@ -246,6 +246,55 @@ TEST(LargeStrainEquilibrium, InflatesASphereAsTheClosedForm) {
   }
 }
 
+// A cylinder of incompressible neo-Hookean material, twisted by t a length,
+// bears the moment pi mu t R^4 / 2, and pushes its ends apart by
+// pi mu t^2 R^4 / 4 [Rivlin, Phil. Trans. R. Soc. A 242 (1949) 173].
+TEST(LargeStrainEquilibrium, TwistsACylinderAsTheClosedForm) {
+  const double lambda = 1e4;
+  const double twist = 0.6;
+  const double length = 0.25;
+  const Eigen::Vector2d parameters((3 * lambda + 2) / (lambda + 1),
+                                   lambda / (2 * (lambda + 1)));
+  const Mesh mesh =
+      GridMesh(Eigen::Vector3i(8, 8, 6), [&](const Eigen::VectorXd& at) {
+        // A square becomes a disk.
+        const double u = 2 * at(0) - 1;
+        const double v = 2 * at(1) - 1;
+        return Eigen::VectorXd(Eigen::Vector3d(u * std::sqrt(1 - v * v / 2),
+                                               v * std::sqrt(1 - u * u / 2),
+                                               length * at(2)));
+      });
+  Scene scene = SceneOf(mesh, "neo_hookean");
+  for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
+    const Eigen::Vector3d x = mesh.nodes.col(node);
+    if (x(2) < 1e-9 || x(2) > length - 1e-9) {
+      scene.supports.held.col(node).setConstant(true);
+      scene.supports.displacement.col(node) =
+          Eigen::AngleAxisd(twist * x(2), Eigen::Vector3d::UnitZ()) * x - x;
+    }
+  }
+  LargeStrainEquilibrium model(scene);
+  const Eigen::VectorXd moduli = model.Forces().Parameters().Moduli(parameters);
+  const LargeStrainState state = model.Solve(moduli, 0);
+  ASSERT_EQ(state.status, EquilibriumStatus::kDone);
+  const Eigen::VectorXd forces =
+      model.Forces().Forces(moduli, state.displacement);
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  double push = 0;
+  for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
+    const Eigen::Vector3d x = mesh.nodes.col(node);
+    if (x(2) > length - 1e-9) {
+      const Eigen::Vector3d force = forces.segment<3>(3 * node);
+      moment += (x + state.displacement.segment<3>(3 * node)).cross(force);
+      push -= force(2);
+    }
+  }
+  const double pi = 2 * std::acos(0.0);
+  // A polygon of 32 sides has a polar moment that is 1.3 % smaller.
+  EXPECT_NEAR(moment(2) / (pi * twist / 2), 1, 0.02);
+  EXPECT_NEAR(push / (pi * twist * twist / 4), 1, 0.02);
+}
+
 // A column of slenderness 20 that is clamped below and loaded above buckles at
 // pi^2 E I / (4 L^2).
 TEST(LargeStrainEquilibrium, SaysThatAColumnBuckles) {
@@ -312,8 +361,7 @@ TEST(LargeStrainEquilibrium, IsTheLinearEquilibriumOfSmallLoads) {
     Scene scene = testing::SceneOfKind(
         {kind, DimensionOf(kind) == 3 ? SectionModel::kSolid
                                       : SectionModel::kPlaneStress});
-    scene.load_cases[0].loads = {
-        Scaled(scene.load_cases[0].loads[0], 1e-6)};
+    scene.load_cases[0].loads = {Scaled(scene.load_cases[0].loads[0], 1e-6)};
     const Eigen::Vector2d parameters(2, 0.3);
     const Eigen::MatrixXd linear = DisplacementsAt(scene, parameters);
     scene.materials.resize(1);
