@@ -111,11 +111,13 @@ bool LargeStrainEquilibrium::Factorize(const Eigen::VectorXd& moduli,
     shear_blocks_ = linear.Blocks(Eigen::Vector2d(1, 0), solver.Graph());
   }
   const double shear = ShearModulusAtRest(forces_.Parameters(), moduli);
-  for (double shift = 1; shift <= most_shift; shift *= kShiftFactor) {
+  double shift = 1;
+  while (shift <= most_shift) {
     ++state.num_tangents;
     if (solver.FactorizeBlocks(tangent + shift * shear * shear_blocks_)) {
       return true;
     }
+    shift *= kShiftFactor;
   }
   return false;
 }

@@ -102,10 +102,8 @@ bool ReleaseAxes(const Law& law, const Eigen::VectorXd& moduli,
   if (axes.empty()) {
     return true;
   }
-  std::vector<int> places;
-  for (const int axis : axes) {
-    places.push_back(Diagonal(axis));
-  }
+  std::vector<int> places(axes.size());
+  std::transform(axes.begin(), axes.end(), places.begin(), Diagonal);
   const auto tractions = [&](const Eigen::Matrix3d& h) {
     return Eigen::VectorXd(
         (law.Stresses(h, SectionModel::kSolid) * moduli)(places));
