@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "elastimate/core/materials/law_parameters.h"
+#include "elastimate/core/laws/law_parameters.h"
 
 namespace elastimate {
 namespace {

@@ -7,6 +7,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "elastimate/core/large_strain/corotated_law.h"
+#include "elastimate/core/large_strain/mooney_rivlin_law.h"
+#include "elastimate/core/large_strain/neo_hookean_law.h"
+#include "elastimate/core/large_strain/st_venant_kirchhoff_law.h"
+#include "elastimate/core/large_strain/yeoh_law.h"
 #include "elastimate/core/materials/anisotropic_law.h"
 #include "elastimate/core/materials/free_axis_law.h"
 #include "elastimate/core/materials/isotropic_law.h"
@@ -27,7 +32,12 @@ struct LawRegistry {
                   std::make_shared<FreeAxisLaw>(),
                   std::make_shared<OrthotropicLaw>(SectionModel::kSolid),
                   std::make_shared<OrthotropicLaw>(SectionModel::kPlaneStress),
-                  std::make_shared<AnisotropicLaw>()};
+                  std::make_shared<AnisotropicLaw>(),
+                  std::make_shared<CorotatedLaw>(),
+                  std::make_shared<StVenantKirchhoffLaw>(),
+                  std::make_shared<NeoHookeanLaw>(),
+                  std::make_shared<MooneyRivlinLaw>(),
+                  std::make_shared<YeohLaw>()};
 };
 
 LawRegistry& RegistryOfLaws() {

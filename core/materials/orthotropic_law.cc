@@ -2,7 +2,7 @@
 
 #include <Eigen/LU>
 
-#include "elastimate/core/materials/law_parameters.h"
+#include "elastimate/core/laws/law_parameters.h"
 
 namespace elastimate {
 namespace {

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "elastimate/core/materials/law.h"
+#include "elastimate/core/laws/law.h"
 
 namespace elastimate {
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "elastimate/core/materials/isotropic_law.h"
@@ -21,6 +23,10 @@ InternalForces::InternalForces(const Mesh& mesh,
                                 [](const Material& material) {
                                   return material.law == IsotropicLaw::kName;
                                 })) {
+  const std::string why = WhyNotSmallStrains(parameters_);
+  if (!why.empty()) {
+    throw std::invalid_argument(why);
+  }
   if (parameters_.NumMaterials() > 1) {
     parts_ = SplitMesh(mesh, material_of_element_);
   }

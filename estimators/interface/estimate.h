@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/laws/elasticity.h"
 #include "elastimate/core/scene/deformation_size.h"
 #include "elastimate/core/solvers/stiffness_solver.h"
 #include "elastimate/estimators/interface/error_budget.h"

@@ -1,7 +1,7 @@
 #ifndef ELASTIMATE_TESTS_CORE_MECHANICS_STRAIN_ENERGY_H_
 #define ELASTIMATE_TESTS_CORE_MECHANICS_STRAIN_ENERGY_H_
 
-#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/laws/elasticity.h"
 #include "elastimate/core/mechanics/internal_forces.h"
 
 namespace elastimate::testing {

@@ -1,5 +1,5 @@
-#ifndef ELASTIMATE_CORE_MATERIALS_ELASTICITY_H_
-#define ELASTIMATE_CORE_MATERIALS_ELASTICITY_H_
+#ifndef ELASTIMATE_CORE_LAWS_ELASTICITY_H_
+#define ELASTIMATE_CORE_LAWS_ELASTICITY_H_
 
 #include <Eigen/Core>
 
@@ -89,4 +89,4 @@ T ComplianceFactor(const T& poisson_ratio, SectionModel model) {
 
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_CORE_MATERIALS_ELASTICITY_H_
+#endif  // ELASTIMATE_CORE_LAWS_ELASTICITY_H_

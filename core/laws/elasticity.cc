@@ -1,4 +1,4 @@
-#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/laws/elasticity.h"
 
 #include <cmath>
 
