@@ -32,7 +32,10 @@ Eigen::Matrix2d LameChart::ModuliJacobian(const Eigen::VectorXd& parameters) {
 }
 
 Eigen::Vector2d LameChart::ParametersOf(const Eigen::VectorXd& moduli) {
-  return IsotropicElasticity::FromLame(moduli(1), moduli(0)).Parameters();
+  const double mu = moduli(0);
+  const double lambda = moduli(1);
+  return {mu * (3 * lambda + 2 * mu) / (lambda + mu),
+          lambda / (2 * (lambda + mu))};
 }
 
 }  // namespace elastimate
