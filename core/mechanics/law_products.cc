@@ -24,7 +24,7 @@ using Frame = Eigen::Matrix<double, ElementSizes<kKind>::kDimension,
 template <ElementKind kKind>
 ElementPoint<kKind> SeenIn(const Frame<kKind>& frame,
                            ElementPoint<kKind> point) {
-  point.gradient = (frame.transpose() * point.gradient).eval();
+  point.gradient = frame.transpose().lazyProduct(point.gradient).eval();
   return point;
 }
 
@@ -43,9 +43,10 @@ ElementVectors<kKind> ForcesOf(const std::vector<ElementPoint<kKind>>& points,
   ElementVectors<kKind> forces = ElementVectors<kKind>::Zero();
   for (std::size_t i = 0; i < points.size(); ++i) {
     Frame<kKind> stress;
-    Eigen::Map<Values>(stress.data()).noalias() =
-        points[i].volume * (c * Eigen::Map<const Values>(gradients[i].data()));
-    forces.noalias() += stress * points[i].gradient;
+    Eigen::Map<Values>(stress.data()) =
+        points[i].volume *
+        c.lazyProduct(Eigen::Map<const Values>(gradients[i].data()));
+    forces += stress.lazyProduct(points[i].gradient);
   }
   return forces;
 }
@@ -69,15 +70,14 @@ void AddOfKind(const Mesh& mesh, const std::vector<int>& material_of_element,
                          points.push_back(SeenIn<kKind>(frame, point));
                        });
     for (Eigen::Index column = 0; column < displacement.cols(); ++column) {
-      const ElementVectors<kKind> u =
-          frame.transpose() *
-          GatherNodes<kKind>(mesh, e, displacement.col(column).data());
+      const ElementVectors<kKind> u = frame.transpose().lazyProduct(
+          GatherNodes<kKind>(mesh, e, displacement.col(column).data()));
       for (std::size_t i = 0; i < points.size(); ++i) {
-        gradients[i].noalias() = u * points[i].gradient.transpose();
+        gradients[i] = u.lazyProduct(points[i].gradient.transpose());
       }
       for (std::size_t k = 0; k < tangents[material].size(); ++k) {
-        const ElementVectors<kKind> forces =
-            frame * ForcesOf<kKind>(points, gradients, tangents[material][k]);
+        const ElementVectors<kKind> forces = frame.lazyProduct(
+            ForcesOf<kKind>(points, gradients, tangents[material][k]));
         double* const values = products[k].col(column).data();
         for (int i = 0; i < ElementSizes<kKind>::kNodes; ++i) {
           Eigen::Map<Eigen::Matrix<double, kDimension, 1>>(

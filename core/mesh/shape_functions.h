@@ -188,7 +188,8 @@ struct ElementPoint {
 
   ElementPoint(const ElementMap<kKind>& map, const ShapeFunctions<kKind>& at)
       : volume(map.volume_ratio * at.weight) {
-    gradient.noalias() = map.inverse_transpose * at.gradient;
+    // Eigen would pack matrices of 27 columns for a large product.
+    gradient = map.inverse_transpose.lazyProduct(at.gradient);
   }
 };
 

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <random>
 #include <string>
+#include <vector>
 
+#include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/estimators/registry.h"
@@ -259,6 +261,97 @@ TEST(RefinedFitOfSpecialScenes, HoldsWhatTheEndOfASupportLeavesOpen) {
   ExpectToHold(kSpecimen, of_mask);
   EXPECT_GT(*of_mask.YoungsModulusStandardError(),
             *of_box.YoungsModulusStandardError());
+}
+
+// A bar of four by one (by one), of so many cells along each axis, that is held
+// at x = 0 and bent by its weight.
+Scene BentBar(const std::vector<int>& cells) {
+  const auto dimension = Eigen::Index(cells.size());
+  std::vector<Eigen::Index> num_nodes;
+  std::vector<Eigen::Index> steps = {1};
+  for (const int along : cells) {
+    num_nodes.push_back(along + 1);
+    steps.push_back(steps.back() * (along + 1));
+  }
+  Scene scene;
+  scene.mesh.kind = dimension == 3 ? ElementKind::kHex8 : ElementKind::kQuad4;
+  scene.mesh.section.model =
+      dimension == 3 ? SectionModel::kSolid : SectionModel::kPlaneStrain;
+  scene.mesh.nodes.resize(dimension, steps.back());
+  std::vector<int> first_nodes;
+  for (Eigen::Index node = 0; node < steps.back(); ++node) {
+    bool is_first = true;
+    for (Eigen::Index k = 0; k < dimension; ++k) {
+      const Eigen::Index place = node / steps[k] % num_nodes[k];
+      scene.mesh.nodes(k, node) = (k == 0 ? 4.0 : 1.0) * place / cells[k];
+      is_first = is_first && place < cells[k];
+    }
+    if (is_first) {
+      first_nodes.push_back(static_cast<int>(node));
+    }
+  }
+  scene.mesh.elements.resize(scene.mesh.Topology().num_nodes,
+                             Eigen::Index(first_nodes.size()));
+  for (Eigen::Index i = 0; i < scene.mesh.elements.rows(); ++i) {
+    const Eigen::Index away = (i % 4 == 1 || i % 4 == 2 ? steps[0] : 0) +
+                              (i % 4 >= 2 ? steps[1] : 0) +
+                              (i >= 4 ? steps[2] : 0);
+    for (Eigen::Index e = 0; e < scene.mesh.NumElements(); ++e) {
+      scene.mesh.elements(i, e) = first_nodes[e] + static_cast<int>(away);
+    }
+  }
+  scene.supports.held =
+      (scene.mesh.nodes.row(0).array() == 0).replicate(dimension, 1);
+  scene.supports.displacement =
+      Eigen::MatrixXd::Zero(dimension, scene.mesh.NumNodes());
+  scene.load_cases.resize(1);
+  BodyForce weight = {Eigen::VectorXd::Constant(dimension, 1)};
+  weight.force_density(dimension - 1) = -2;
+  scene.load_cases[0].loads = {weight};
+  return scene;
+}
+
+// Returns the fit of a coarse bar whose displacements are those of linear
+// elements of a sixth of the size (an eighth in the plane).
+Estimate FittedToFinerBar(const std::vector<int>& cells) {
+  const int finer = cells.size() == 3 ? 6 : 8;
+  std::vector<int> many = cells;
+  for (int& along : many) {
+    along *= finer;
+  }
+  Scene scene = BentBar(cells);
+  Scene specimen = BentBar(many);
+  Measure(kSpecimen, specimen);
+  // Each node of the coarse grid is one of the finer grid.
+  scene.load_cases[0].displacement = scene.mesh.nodes;
+  for (Eigen::Index i = 0; i < scene.mesh.NumNodes(); ++i) {
+    Eigen::Index node = 0;
+    (specimen.mesh.nodes.colwise() - scene.mesh.nodes.col(i))
+        .colwise()
+        .squaredNorm()
+        .minCoeff(&node);
+    scene.load_cases[0].displacement.col(i) =
+        specimen.load_cases[0].displacement.col(node);
+  }
+  return Fitted(scene);
+}
+
+// Simplices into which these hexahedra are cut leave errors of 420 and 0.047.
+TEST(RefinedFitOfBlocks, HoldsTheTruthOfManyHexahedra) {
+  const Estimate estimate = FittedToFinerBar({8, 2, 2});
+  ExpectToHold(kSpecimen, estimate);
+  EXPECT_EQ(estimate.mesh_divisions, 1);
+  EXPECT_LT(*estimate.YoungsModulusStandardError(), 300);
+  EXPECT_LT(*estimate.PoissonRatioStandardError(), 0.035);
+}
+
+// Triangles into which these quadrilaterals are cut leave 1070 and 0.021.
+TEST(RefinedFitOfBlocks, HoldsTheTruthOfManyQuadrilaterals) {
+  const Estimate estimate = FittedToFinerBar({8, 2});
+  ExpectToHold(kSpecimen, estimate);
+  EXPECT_EQ(estimate.mesh_divisions, 1);
+  EXPECT_LT(*estimate.YoungsModulusStandardError(), 1050);
+  EXPECT_LT(*estimate.PoissonRatioStandardError(), 0.02);
 }
 
 }  // namespace
