@@ -1,6 +1,5 @@
 #include "elastimate/core/materials/law_check.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>

@@ -1206,15 +1206,15 @@ TEST_F(ElementKinds, AreInTheTable) {
                   ::testing::HasSubstr("nodal_force, resultant (1000, 0)\n")));
 }
 
-TEST_F(ElementKinds, AreModelledWithQuadraticOnesWhereThereAreSuch) {
-  Succeed("generate rectangle --elements=tri3 --out=g.vtu");
-  Succeed("simulate g.vtu --order=2 --youngs=7e10 --nu=0.33 --out=m.vtu");
-  ExpectFound("m.vtu", "--order=2 --origin=computed --estimator=iterative-fe",
-              {{"kind", "tri6"}, {"order", 2}});
-  Succeed("generate rectangle --out=g.vtu");
-  Refuse("simulate g.vtu --order=2 --youngs=7e10 --nu=0.33 --out=m2.vtu",
-         "--order=2: g.vtu has quadrilaterals, for which there are no "
-         "quadratic elements; leave the flag out");
+TEST_F(ElementKinds, AreModelledWithQuadraticOnes) {
+  for (const auto& [linear, quadratic] :
+       {std::pair<std::string, std::string>("tri3", "tri6"),
+        {"quad4", "quad9"}}) {
+    Succeed("generate rectangle --elements=" + linear + " --out=g.vtu");
+    Succeed("simulate g.vtu --order=2 --youngs=7e10 --nu=0.33 --out=m.vtu");
+    ExpectFound("m.vtu", "--order=2 --origin=computed --estimator=iterative-fe",
+                {{"kind", quadratic}, {"order", 2}});
+  }
 }
 
 // The file has two quadratic triangles, which make a square of edges 2.  Its

@@ -43,16 +43,16 @@ Scene UnmeasuredScene(const std::string& kind, SectionModel model) {
     }
     return scene;
   }
-  if (kind == "tet10") {
-    return Quadratic(LinearScene(ElementKind::kTet4, model));
-  }
-  if (kind == "tri6") {
-    return Quadratic(LinearScene(ElementKind::kTri3, model));
-  }
   for (const ElementKind one : kElementKinds) {
-    if (TopologyOf(one).name == kind) {
-      return LinearScene(one, model);
+    if (TopologyOf(one).name != kind) {
+      continue;
     }
+    for (const ElementKind linear : kElementKinds) {
+      if (TopologyOf(linear).order == 1 && QuadraticKind(linear) == one) {
+        return Quadratic(LinearScene(linear, model));
+      }
+    }
+    return LinearScene(one, model);
   }
   throw std::logic_error("no scene " + kind);
 }
