@@ -11,7 +11,7 @@ namespace {
 
 const std::string kPlaneStrain = "_plane_strain";
 
-Scene LinearScene(ElementKind kind, SectionModel model) {
+Scene SceneOfLinear(ElementKind kind, SectionModel model) {
   if (TopologyOf(kind).dimension == 3) {
     CuboidOptions options;
     options.cells = {2, 2, 1};
@@ -43,15 +43,10 @@ Scene UnmeasuredScene(const std::string& kind, SectionModel model) {
     }
     return scene;
   }
-  if (kind == "tet10") {
-    return Quadratic(LinearScene(ElementKind::kTet4, model));
-  }
-  if (kind == "tri6") {
-    return Quadratic(LinearScene(ElementKind::kTri3, model));
-  }
   for (const ElementKind one : kElementKinds) {
     if (TopologyOf(one).name == kind) {
-      return LinearScene(one, model);
+      const Scene linear = SceneOfLinear(LinearKind(one), model);
+      return LinearKind(one) == one ? linear : Quadratic(linear);
     }
   }
   throw std::logic_error("no scene " + kind);
