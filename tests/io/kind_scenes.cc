@@ -11,7 +11,7 @@ namespace {
 
 const std::string kPlaneStrain = "_plane_strain";
 
-Scene LinearScene(ElementKind kind, SectionModel model) {
+Scene SceneOfLinear(ElementKind kind, SectionModel model) {
   if (TopologyOf(kind).dimension == 3) {
     CuboidOptions options;
     options.cells = {2, 2, 1};
@@ -44,15 +44,10 @@ Scene UnmeasuredScene(const std::string& kind, SectionModel model) {
     return scene;
   }
   for (const ElementKind one : kElementKinds) {
-    if (TopologyOf(one).name != kind) {
-      continue;
+    if (TopologyOf(one).name == kind) {
+      const Scene linear = SceneOfLinear(LinearKind(one), model);
+      return LinearKind(one) == one ? linear : Quadratic(linear);
     }
-    for (const ElementKind linear : kElementKinds) {
-      if (TopologyOf(linear).order == 1 && QuadraticKind(linear) == one) {
-        return Quadratic(LinearScene(linear, model));
-      }
-    }
-    return LinearScene(one, model);
   }
   throw std::logic_error("no scene " + kind);
 }

@@ -76,14 +76,11 @@ class GmshKinds : public ::testing::TestWithParam<ElementKind> {
 TEST_P(GmshKinds, AreRead) {
   std::vector<std::filesystem::path> paths = {
       folder_.Path() / "v2.msh", folder_.Path() / "v41.msh",
-      folder_.Path() / "v41_binary.msh"};
-  std::vector<std::pair<double, int>> versions = {{2.2, 0}, {4.1, 0}, {4.1, 1}};
-  // Universal files have no elements with nodes in the middle of faces.
-  if (GetParam() != ElementKind::kHex27 && GetParam() != ElementKind::kQuad9) {
-    paths.push_back(folder_.Path() / "m.unv");
-    versions.emplace_back(4.1, 0);
+      folder_.Path() / "v41_binary.msh", folder_.Path() / "m.unv"};
+  if (GetParam() == ElementKind::kHex27 || GetParam() == ElementKind::kQuad9) {
+    paths.pop_back();  // Which has no such elements.
   }
-  WriteByGmsh(GetParam(), paths, versions);
+  WriteByGmsh(GetParam(), paths, {{2.2, 0}, {4.1, 0}, {4.1, 1}, {4.1, 0}});
   const ElementTopology& topology = TopologyOf(GetParam());
   for (const std::filesystem::path& path : paths) {
     SCOPED_TRACE(path.filename());
@@ -109,7 +106,7 @@ TEST_P(GmshKinds, AreRead) {
   }
 }
 
-// Their volumes, areas and mid-edge nodes are those of the specimen.
+// Their volumes, areas and middle nodes are those of the specimen.
 TEST_P(GmshKinds, AreScenes) {
   WriteByGmsh(GetParam(), {folder_.Path() / "mesh.msh"}, {{4.1, 0}});
   const bool is_solid = TopologyOf(GetParam()).dimension == 3;

@@ -1,10 +1,16 @@
 #include "elastimate/io/vtk/vtu_writer.h"
 
 #include <gtest/gtest.h>
+#include <vtkCell.h>
+#include <vtkCellType.h>
+#include <vtkGenericCell.h>
+#include <vtkSmartPointer.h>
 
 #include <limits>
 #include <numeric>
+#include <utility>
 
+#include "elastimate/core/mesh/shape_functions.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/io/mesh/mesh_file.h"
 #include "elastimate/io/scene/mesh_reader.h"
@@ -94,6 +100,31 @@ TEST(VtuWriterTest, ErrsWhereNothingCanBeWritten) {
                      "/dev/full: cannot be written \\(No space left");
   EXPECT_THROWS_WITH(WriteVtu("/no/folder/out.vtu", TwoTetrahedra().mesh, {}),
                      "out.vtu: there is no folder '/no/folder'");
+}
+
+// VTK says where the nodes of its cells are: from 0 to 1 along each axis.
+TEST(VtuWriterTest, HasTheNodesInTheOrderOfVtk) {
+  const std::pair<ElementKind, int> cells[] = {
+      {ElementKind::kTet4, VTK_TETRA},
+      {ElementKind::kTet10, VTK_QUADRATIC_TETRA},
+      {ElementKind::kHex8, VTK_HEXAHEDRON},
+      {ElementKind::kHex27, VTK_TRIQUADRATIC_HEXAHEDRON},
+      {ElementKind::kTri3, VTK_TRIANGLE},
+      {ElementKind::kTri6, VTK_QUADRATIC_TRIANGLE},
+      {ElementKind::kQuad4, VTK_QUAD},
+      {ElementKind::kQuad9, VTK_BIQUADRATIC_QUAD}};
+  for (const auto& [kind, type] : cells) {
+    SCOPED_TRACE(TopologyOf(kind).name);
+    const auto cell =
+        vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
+    const Eigen::MatrixXd nodes = ReferenceNodes(kind);
+    ASSERT_EQ(cell->GetNumberOfPoints(), nodes.cols());
+    const Eigen::Map<const Eigen::Matrix3Xd> in_vtk(cell->GetParametricCoords(),
+                                                    3, nodes.cols());
+    const Eigen::MatrixXd expected =
+        IsSimplex(kind) ? nodes : Eigen::MatrixXd((nodes.array() + 1) / 2);
+    EXPECT_TRUE(in_vtk.topRows(nodes.rows()).isApprox(expected, 1e-14));
+  }
 }
 
 }  // namespace
