@@ -1206,15 +1206,18 @@ TEST_F(ElementKinds, AreInTheTable) {
                   ::testing::HasSubstr("nodal_force, resultant (1000, 0)\n")));
 }
 
-TEST_F(ElementKinds, AreModelledWithQuadraticOnesWhereThereAreSuch) {
-  Succeed("generate rectangle --elements=tri3 --out=g.vtu");
-  Succeed("simulate g.vtu --order=2 --youngs=7e10 --nu=0.33 --out=m.vtu");
-  ExpectFound("m.vtu", "--order=2 --origin=computed --estimator=iterative-fe",
-              {{"kind", "tri6"}, {"order", 2}});
-  Succeed("generate rectangle --out=g.vtu");
-  Refuse("simulate g.vtu --order=2 --youngs=7e10 --nu=0.33 --out=m2.vtu",
-         "--order=2: g.vtu has quadrilaterals, for which there are no "
-         "quadratic elements; leave the flag out");
+TEST_F(ElementKinds, AreModelledWithQuadraticOnes) {
+  for (const auto& [linear, quadratic] :
+       {std::pair{"rectangle --elements=tri3", "tri6"},
+        std::pair{"rectangle --elements=quad4", "quad9"},
+        std::pair{"cuboid --cells=2,2,2 --elements=hex8", "hex27"}}) {
+    Succeed("generate " + std::string(linear) + " --out=g.vtu");
+    Succeed("simulate g.vtu --order=2 --youngs=7e10 --nu=0.33 --out=m.vtu");
+    ExpectFound("m.vtu", "--order=2 --origin=computed --estimator=iterative-fe",
+                {{"kind", quadratic}, {"order", 2}});
+    std::filesystem::remove(folder_ / "g.vtu");
+    std::filesystem::remove(folder_ / "m.vtu");
+  }
 }
 
 // The file has two quadratic triangles, which make a square of edges 2.  Its
