@@ -50,8 +50,8 @@ SceneReading Read(const std::vector<std::string>& arguments) {
       ReadWithGapsChosen([&arguments](const std::vector<bool>& is_filled) {
         return ReadScene(
             {arguments.begin(), arguments.end()}, Measurement::kRequired,
-            SectionFromFlags(), RegionsFromFlag(),
-            ChoosesLaw() ? AxesOfLawsToChoose() : LawFromFlags(), is_filled);
+            {SectionFromFlags(), RegionsFromFlag(),
+             ChoosesLaw() ? AxesOfLawsToChoose() : LawFromFlags(), is_filled});
       });
   if (IsGiven("noise_sd")) {
     for (LoadCase& load_case : reading.scene.load_cases) {
@@ -213,7 +213,7 @@ void CheckMerging(const SceneReading& reading) {
   if (HasPriors(reading.scene.materials)) {
     throw std::invalid_argument(
         AsGiven("regions") +
-        " compares what the measurement says of regions; leave out the key "
+        " compares regions by the measurement alone; leave out the key "
         "\"prior\"");
   }
   if (reading.frames) {

@@ -47,6 +47,7 @@ DEFINE_string(material, "isotropic",
               "law of all materials; 'elastimate materials' lists them");
 DEFINE_string(axis, "",
               "axis of the material, X,Y,Z; or two axes, 6 numbers; or free");
+DEFINE_string(curve, "", "law and all its parameters, LAW,NAME=X,NAME=X,...");
 DEFINE_string(parameters, "",
               "JSON file with the list \"parameters\" of a report");
 DEFINE_string(surface, "",
@@ -198,7 +199,14 @@ const Program& Elastimate() {
        ThePlanCommand(),
        TheGenerateCommand(),
        {"estimators", "", "lists the methods of --estimator", {}},
-       {"materials", "", "lists the laws of --material", {}}}};
+       {"materials",
+        "",
+        "lists the laws of --material, or shows the stress of one",
+        {{"Curve",
+          {{"curve"},
+           {"out",
+            "CSV file for the table of --curve, which else is "
+            "printed"}}}}}}};
   return program;
 }
 

@@ -115,22 +115,24 @@ void AddNotices(double change, Outline& outline) {
   constexpr double kNotable = 0.01;
   const std::string why =
       change > kNotable
-          ? "which the displacements do not tell for sure: it may "
-            "change E by " +
+          ? "although the displacements do not decide that, and E may change "
+            "by " +
                 Percent(change)
-          : "since displacements fit better so";
+          : "because that fits the displacements better";
   std::vector<std::string>& notices = outline.reading.notices;
   const std::string filled = GapsWhere(true, outline);
   if (!filled.empty()) {
     notices.push_back("no point was measured at " + filled +
-                      "; the specimen is taken to go on there, " + why +
-                      "; \"gaps\": \"open\" beside \"points\" ends it there");
+                      "; the specimen is assumed to go on there, " + why +
+                      "; if it ends there, give \"gaps\": \"open\" beside "
+                      "\"points\"");
   }
   const std::string open = GapsWhere(false, outline);
   if (!open.empty()) {
     notices.push_back("no point was measured at " + open +
-                      "; the specimen is taken to end there, " + why +
-                      "; \"gaps\": \"filled\" beside \"points\" lets it go on");
+                      "; the specimen is assumed to end there, " + why +
+                      "; if it goes on there, give \"gaps\": \"filled\" beside "
+                      "\"points\"");
   }
 }
 

@@ -13,15 +13,15 @@ using ReadOutline =
     std::function<SceneReading(const std::vector<bool>& is_filled)>;
 
 /// Decides for each gap between the points of a camera (SceneReading::gaps)
-/// whether the camera lost points there, or the specimen ends.  The material
-/// carries force across the one and none across the other, so that the
-/// displacements around it differ: fits with and without the material (two, and
-/// one more for each of the eight largest gaps where there are several) are
-/// compared by their square sums.  Where these do not tell, the change of the
-/// moduli becomes an error, and so does a part of it where the better fit
-/// leaves more than noise (Section::thickness_relative_sd).  A scene of frames
-/// is decided by the frame of the largest load.  Notices say what was found,
-/// and how to say it instead.
+/// whether the camera lost points there, or the specimen ends.  Material in the
+/// gap carries force and a hole does not, so the displacements around it
+/// differ.  Fits with and without this material are compared by their square
+/// sums: two fits, and one more for each of the eight largest gaps where there
+/// are several.  Where these do not decide, the change of the moduli becomes an
+/// error (Section::thickness_relative_sd).  A part of the change becomes one
+/// where the better fit leaves more than noise.  A scene of frames is decided
+/// by the frame of the largest load.  Notices say what was decided, and which
+/// key decides otherwise.
 SceneReading ReadWithGapsChosen(const ReadOutline& read);
 
 }  // namespace elastimate

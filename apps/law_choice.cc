@@ -62,7 +62,7 @@ void CheckLawChoice(const SceneReading& reading,
   }
   if (HasPriors(reading.scene.materials)) {
     throw std::invalid_argument(AsGiven("material") +
-                                " compares what the measurement says of laws; "
+                                " compares laws by the measurement alone; "
                                 "leave out the key \"prior\"");
   }
   const std::string why_not = WhyNoLawChoice(reading.scene, options);

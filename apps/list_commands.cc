@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "apps/commands.h"
+#include "apps/flag_parser.h"
+#include "apps/material_curve.h"
 #include "apps/outputs.h"
 #include "elastimate/core/materials/laws.h"
 #include "elastimate/estimators/registry.h"
@@ -56,6 +58,16 @@ std::string DescribeLaw(const Law& law) {
 
 int RunMaterials(const std::vector<std::string>& arguments) {
   CheckNoArguments("materials", arguments);
+  if (IsGiven("curve")) {
+    WriteMaterialCurve();
+    return 0;
+  }
+  if (IsGiven("out")) {
+    throw std::invalid_argument(
+        AsGiven("out") +
+        "; the list of laws is not written to a file; leave it out, or give a "
+        "material by --curve");
+  }
   std::string list;
   for (const Law* const law : Laws()) {
     list += ListEntry(law->Name(), DescribeLaw(*law));

@@ -90,6 +90,19 @@ void CheckOutputFlag(const std::string& flag, const std::string& file,
   CheckWritable(file);
 }
 
+// Ends a sentence on the name of a file.
+std::string EndsOfNames(OutFormats formats) {
+  switch (formats) {
+    case OutFormats::kVtu:
+      break;
+    case OutFormats::kVtuOrTable:
+      return ".vtu for a scene, or in .csv for a table of points";
+    case OutFormats::kTable:
+      return ".csv, as a table is written";
+  }
+  return ".vtu, as a VTU file is written";
+}
+
 }  // namespace
 
 void OpenClosedStandardStreams() {
@@ -109,16 +122,14 @@ bool HasExtension(const std::string& file, const std::string& extension) {
 
 void CheckOutputFlags(const std::vector<std::string>& inputs,
                       OutFormats formats) {
-  const bool may_be_table = formats == OutFormats::kVtuOrTable;
   if (!FLAGS_out.empty()) {
-    if (!HasExtension(FLAGS_out, ".vtu") &&
-        !(may_be_table && HasExtension(FLAGS_out, ".csv"))) {
-      throw std::invalid_argument(
-          "--out=" + PrintablePath(FLAGS_out) +
-          (may_be_table
-               ? "; the name must end in .vtu for a scene, or in .csv for a "
-                 "table of points"
-               : "; the name must end in .vtu, as a VTU file is written"));
+    const bool is_right =
+        (formats != OutFormats::kTable && HasExtension(FLAGS_out, ".vtu")) ||
+        (formats != OutFormats::kVtu && HasExtension(FLAGS_out, ".csv"));
+    if (!is_right) {
+      throw std::invalid_argument("--out=" + PrintablePath(FLAGS_out) +
+                                  "; the name must end in " +
+                                  EndsOfNames(formats));
     }
   }
   if (FLAGS_series == "-") {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string_view>
 
 #include "apps/estimator_flags.h"
 #include "apps/flags.h"
-#include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/io/report/parameters_file.h"
 
@@ -45,14 +45,15 @@ Eigen::VectorXd ParametersFromFlags(const Scene& scene) {
   }
   const MaterialParameters parameters(scene.materials,
                                       scene.mesh.section.model);
-  if (std::any_of(scene.materials.begin(), scene.materials.end(),
-                  [](const Material& material) {
-                    return material.law != IsotropicLaw::kName;
-                  })) {
+  const auto is_other = [](const MaterialParameters::Parameter& parameter) {
+    const std::string_view name = parameter.law_parameter->name;
+    return name != "youngs_modulus" && name != "poisson_ratio";
+  };
+  if (std::any_of(parameters.All().begin(), parameters.All().end(), is_other)) {
     throw std::invalid_argument(
         AsGiven("youngs") +
-        " is for isotropic materials, and the scene has others; give "
-        "--parameters=FILE.json instead");
+        " is for materials that have E and nu, such as isotropic ones, and the "
+        "scene has others; give --parameters=FILE.json instead");
   }
   Eigen::VectorXd values(parameters.NumParameters());
   for (Eigen::Index i = 0; i < values.size(); ++i) {

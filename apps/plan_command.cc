@@ -114,14 +114,6 @@ bool ArePhysical(const Scene& scene, const Estimate& estimate) {
   return true;
 }
 
-Eigen::VectorXd ValuesOf(const Estimate& estimate) {
-  Eigen::VectorXd values(Eigen::Index(estimate.parameters.size()));
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    values(i) = estimate.parameters[i].value;
-  }
-  return values;
-}
-
 bool SaysItsNoise(const LoadCase& load_case) {
   return load_case.noise_sd || load_case.points.noise_sd.size() != 0;
 }
@@ -153,7 +145,7 @@ Eigen::VectorXd ChooseParameters(SolverKind solver, Scene& before,
     if (!AreParametersGiven() && estimate.IsUsable() &&
         ArePhysical(before, estimate)) {
       basis.parameters = "estimate";
-      return ValuesOf(estimate);
+      return estimate.ParameterValues();
     }
   }
   if (AreParametersGiven()) {
@@ -278,8 +270,8 @@ int RunPlan(const std::vector<std::string>& arguments) {
   const std::string source = PrintablePath(arguments[0]);
   std::optional<Progress> progress("reading " + source);
   SceneReading reading =
-      ReadScene({arguments[0]}, Measurement::kOptional, SectionFromFlags(),
-                RegionsFromFlag(), LawFromFlags());
+      ReadScene({arguments[0]}, Measurement::kOptional,
+                {SectionFromFlags(), RegionsFromFlag(), LawFromFlags(), {}});
   if (reading.frames) {
     throw std::invalid_argument(source +
                                 ": plan cannot be used with a scene of several "

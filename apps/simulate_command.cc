@@ -19,7 +19,9 @@
 #include "apps/progress.h"
 #include "apps/section_flags.h"
 #include "elastimate/core/equilibrium/equilibrium.h"
+#include "elastimate/core/equilibrium/large_strain_equilibrium.h"
 #include "elastimate/core/equilibrium/simulated_measurement.h"
+#include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/mesh/mesh_points.h"
 #include "elastimate/core/mesh/representable.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
@@ -68,8 +70,63 @@ ComponentMask Displaced(const Supports& supports) {
   return supports.held && supports.displacement.array() != 0.0;
 }
 
+bool HasLargeStrains(const Scene& scene) {
+  return !WhyNotSmallStrains(
+              MaterialParameters(scene.materials, scene.mesh.section.model))
+              .empty();
+}
+
+bool IsAnyDisplaced(const Scene& scene) {
+  bool is_any_displaced = false;
+  for (Eigen::Index k = 0; k < Eigen::Index(scene.load_cases.size()); ++k) {
+    is_any_displaced =
+        is_any_displaced || Displaced(SupportsOf(scene, k)).any();
+  }
+  return is_any_displaced;
+}
+
+Solution SolveLargeStrains(const std::string& source, const Scene& modelled,
+                           SolverKind solver, Progress& progress) {
+  if (solver == SolverKind::kMultigrid) {
+    throw std::invalid_argument(
+        "--solver=multigrid cannot tell whether an equilibrium of large "
+        "strains "
+        "is stable; give --solver=cholesky, or leave it out");
+  }
+  const Eigen::VectorXd values = ParametersFromFlags(modelled);
+  LargeStrainEquilibrium model(modelled);
+  const Eigen::VectorXd moduli = model.Forces().Parameters().Moduli(values);
+  const Eigen::Index num_cases = Eigen::Index(modelled.load_cases.size());
+  Solution solution;
+  solution.displacement.resize(modelled.mesh.NumDofs(), num_cases);
+  for (Eigen::Index k = 0; k < num_cases; ++k) {
+    const std::string load_case = "load case " + std::to_string(k + 1);
+    progress.Show("searching the equilibrium of " + load_case);
+    const LargeStrainState state = model.Solve(moduli, k);
+    if (state.status != EquilibriumStatus::kDone) {
+      throw std::invalid_argument(source + ": " + load_case + ": " +
+                                  WhyNotInEquilibrium(state));
+    }
+    solution.displacement.col(k) = state.displacement;
+  }
+  if (IsAnyDisplaced(modelled)) {
+    Eigen::MatrixXd residual = -AssembleLoadCases(modelled);
+    for (Eigen::Index k = 0; k < num_cases; ++k) {
+      residual.col(k) +=
+          model.Forces().Forces(moduli, solution.displacement.col(k));
+    }
+    solution.support_forces = OfHeld(modelled, residual);
+  }
+  return solution;
+}
+
 Solution Solve(const std::string& source, const Scene& modelled,
-               SolverKind solver, std::vector<std::string>& notices) {
+               SolverKind solver, Progress& progress,
+               std::vector<std::string>& notices) {
+  progress.Show("factorising");
+  if (HasLargeStrains(modelled)) {
+    return SolveLargeStrains(source, modelled, solver, progress);
+  }
   const Eigen::VectorXd values = ParametersFromFlags(modelled);
   Equilibrium model(modelled, solver);
   const Eigen::VectorXd moduli = model.Forces().Parameters().Moduli(values);
@@ -82,12 +139,7 @@ Solution Solve(const std::string& source, const Scene& modelled,
   if (!model.Notice().empty()) {
     notices.push_back(model.Notice());
   }
-  bool is_any_displaced = false;
-  for (Eigen::Index k = 0; k < Eigen::Index(modelled.load_cases.size()); ++k) {
-    is_any_displaced =
-        is_any_displaced || Displaced(SupportsOf(modelled, k)).any();
-  }
-  if (!is_any_displaced) {
+  if (!IsAnyDisplaced(modelled)) {
     return {model.Displacement(), {}};
   }
   const Eigen::MatrixXd residual =
@@ -160,10 +212,11 @@ std::string MeasuredScene(const std::string& source,
             generator, displacement);
     scene.load_cases[k].displacement = displacement;
   }
-  // A finite rotation has to be treated as that of a camera.
+  // A finite rotation has to be treated as that of a camera, and large strains
+  // as those of a specimen: only linear elasticity counts as computed.
   const bool is_of_this_mesh =
       std::max<int>(FLAGS_order, mesh.Order()) == mesh.Order() &&
-      errors.rigid_motion.size() == 0;
+      errors.rigid_motion.size() == 0 && !HasLargeStrains(scene);
   scene.origin = is_of_this_mesh ? Origin::kComputed : Origin::kMeasured;
   Fields fields = SceneFields(scene);
   for (const auto& [name, axes] : reading.axis_arrays) {
@@ -256,17 +309,17 @@ int RunSimulate(const std::vector<std::string>& arguments) {
   const std::string source = PrintablePath(arguments[0]);
   std::optional<Progress> progress("reading " + source);
   SceneReading reading =
-      ReadScene({arguments[0]}, Measurement::kOptional, SectionFromFlags(),
-                RegionsFromFlag(), LawFromFlags());
+      ReadScene({arguments[0]}, Measurement::kOptional,
+                {SectionFromFlags(), RegionsFromFlag(), LawFromFlags(), {}});
   Scene& scene = reading.scene;
   errors.rigid_motion = RigidMotionFromFlag(scene.mesh.Dimension());
 
-  progress->Show("factorising");
   RequireKnownSupports(source, scene);
   const std::optional<Scene> quadratic =
       QuadraticSceneIfAsked(source, scene, reading.notices);
   const Scene& modelled = quadratic ? *quadratic : scene;
-  const Solution solution = Solve(source, modelled, solver, reading.notices);
+  const Solution solution =
+      Solve(source, modelled, solver, *progress, reading.notices);
   const std::string forces = ForcesOfDisplacedSupports(modelled, solution);
   if (quadratic && !HasNodalForcesOnly(scene) && !WritesTable()) {
     reading.notices.push_back(

@@ -138,16 +138,6 @@ void Assembly(benchmark::State& state) {
   CountTetrahedra(state, scene.mesh);
 }
 
-void QuadraticReassembly(benchmark::State& state) {
-  const Scene& scene = QuadraticCube(state.range(0));
-  StiffnessAssembly assembly(scene.mesh, DegreesOfFreedom(scene.supports));
-  while (state.KeepRunning()) {
-    assembly.Assemble(scene.mesh);
-    benchmark::DoNotOptimize(assembly.H().data());
-  }
-  CountTetrahedra(state, scene.mesh);
-}
-
 // ---------------------------------------------------------------------------
 // Factorisation.
 
@@ -296,7 +286,6 @@ void RegisterQuadraticBenchmarks() {
     };
     add("Quadratic/ElementPass", QuadraticElementPass)->Args({cells, 8});
     add("Quadratic/Assembly", Assembly<QuadraticCube>);
-    add("Quadratic/Reassembly", QuadraticReassembly);
     const std::string prefix = cells == kSmall ? "Large/" : "";
     add(prefix + "Quadratic/CholeskyAnalysis", CholeskyAnalysis<QuadraticCube>);
     add(prefix + "Quadratic/CholeskyFactorization",

@@ -179,7 +179,7 @@ class Cube {
         AddOperator("vector", "reordered", random_, threads, columns, kernels);
       }
     }
-    AddAssembly(kernels);
+    AddCombination(kernels);
     kernels.push_back(
         {"closed-form", "natural", 1, 1, {kUnknown, kUnknown}, [&] {
            static_cast<void>(closed_form_->Run(scene_, {}));
@@ -244,19 +244,9 @@ class Cube {
     }
   }
 
-  void AddAssembly(std::vector<Kernel>& kernels) {
-    // The flops are for each value of H and J: the gradients are computed once
-    // per element, and there are ten blocks.
-    constexpr double kFlops = 42 + 21 + 10 * 18;
-    const double elements = static_cast<double>(scene_.mesh.NumElements());
-    const double values = static_cast<double>(assembly_.H().size()) / elements;
-    const double nodes = static_cast<double>(scene_.mesh.NumNodes()) / elements;
-    kernels.push_back({"re-assembly of H and J",
-                       "natural",
-                       1,
-                       1,
-                       {16 + 40 + 24 * nodes + 16 * values, kFlops},
-                       [this] { assembly_.Assemble(scene_.mesh); }});
+  void AddCombination(std::vector<Kernel>& kernels) {
+    const double values = static_cast<double>(assembly_.H().size()) /
+                          static_cast<double>(scene_.mesh.NumElements());
     kernels.push_back(
         {"K from H and J", "natural", 1, 1, {24 * values, 2 * values}, [this] {
            assembly_.Combine(0.3, stiffness_);

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <utility>
 
-#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/laws/elasticity.h"
 #include "elastimate/core/mesh/facets.h"
 #include "elastimate/io/examples/example_scenes.h"
 

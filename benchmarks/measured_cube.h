@@ -1,7 +1,7 @@
 #ifndef ELASTIMATE_BENCHMARKS_MEASURED_CUBE_H_
 #define ELASTIMATE_BENCHMARKS_MEASURED_CUBE_H_
 
-#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/laws/elasticity.h"
 #include "elastimate/core/scene/scene.h"
 
 namespace elastimate {

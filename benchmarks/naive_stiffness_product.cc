@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/laws/elasticity.h"
 #include "elastimate/core/mesh/shape_functions.h"
 
 namespace elastimate {

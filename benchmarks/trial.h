@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "benchmarks/table.h"
-#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/laws/elasticity.h"
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
 

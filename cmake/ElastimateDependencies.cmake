@@ -15,9 +15,9 @@ find_dependency(CHOLMOD)
 find_dependency(hwy 1.0)
 find_dependency(nanoflann 1.4)
 find_dependency(OpenMP COMPONENTS CXX)
+find_dependency(Boost 1.74)
 
 if("estimators" IN_LIST ELASTIMATE_COMPONENTS OR "io" IN_LIST ELASTIMATE_COMPONENTS)
-  find_dependency(Boost 1.74)
   find_dependency(Ceres 2.1)
   # Debian's Ceres names ATLAS in its link interface, although the shared library needs nothing more from its users;
   # left there, ATLAS's dgemm_ can come before OpenBLAS's.

@@ -25,31 +25,15 @@ EstimatorOptions WithoutDegree(EstimatorOptions options) {
 
 // Why the standard errors of an estimate are too large; empty when they are
 // not.
-std::string WhyNotWithinTolerance(const EstimatorOptions& options,
-                                  const Estimate& estimate) {
-  const std::optional<double> youngs = estimate.YoungsModulusStandardError();
-  const std::optional<double> poisson = estimate.PoissonRatioStandardError();
-  if (!estimate.active_bounds.empty()) {
-    return "a parameter lies on a bound";
-  }
-  if (!youngs || (!poisson && !options.known_poisson_ratio)) {
-    return "no standard error is known";
-  }
-  const double relative = *youngs / estimate.elasticity.youngs_modulus;
-  if (relative > kLimits.notable_youngs_modulus_error) {
-    return "the standard error of E is " + Percent(relative);
-  }
-  if (poisson.value_or(0) > kLimits.notable_poisson_ratio_error) {
-    return "the standard error of nu is " + TwoDigits(*poisson);
-  }
-  return "";
-}
-
-// Says so for the parameters of any materials.
-std::string WhyParametersNotWithinTolerance(const Estimate& estimate) {
+std::string WhyNotWithinTolerance(const Estimate& estimate) {
   for (const ParameterEstimate& parameter : estimate.parameters) {
-    const double error =
-        parameter.standard_error.value_or(0) / parameter.ErrorUnit();
+    if (parameter.is_known) {
+      continue;
+    }
+    if (!parameter.standard_error) {
+      return "no standard error is known";
+    }
+    const double error = *parameter.standard_error / parameter.ErrorUnit();
     const double tolerance = parameter.IsStiffness()
                                  ? kLimits.notable_youngs_modulus_error
                                  : kLimits.notable_poisson_ratio_error;
@@ -72,8 +56,7 @@ std::string WhyNotUsable(const Estimate& estimate) {
 }
 
 // For a rung whose errors may come from its method; empty when it will do.
-std::string WhyNotEnough(const Scene& scene, const EstimatorOptions& options,
-                         const Estimate& estimate) {
+std::string WhyNotEnough(const Estimate& estimate) {
   // No other estimator takes displacements that are too large for this one.
   if (estimate.IsRefusedFor(FindingCode::kLargeDeformation)) {
     return "";
@@ -90,9 +73,7 @@ std::string WhyNotEnough(const Scene& scene, const EstimatorOptions& options,
       return "it warns: " + finding.text;
     }
   }
-  return IsOneIsotropicMaterial(scene.materials)
-             ? WhyNotWithinTolerance(options, estimate)
-             : WhyParametersNotWithinTolerance(estimate);
+  return WhyNotWithinTolerance(estimate);
 }
 
 // Climbs, and keeps the books.
@@ -247,12 +228,12 @@ Estimate Auto::DoRun(const Scene& scene,
   // The balance of forces knows no mesh error of measured displacements.
   if (scene.origin == Origin::kComputed) {
     if (ladder.Climb(ClosedForm(), scene, without_degree) &&
-        StopsHere(WhyNotEnough(scene, options, ladder.Last()), ladder)) {
+        StopsHere(WhyNotEnough(ladder.Last()), ladder)) {
       return ladder.Finish();
     }
     if (IsOneIsotropicMaterial(scene.materials) &&
         ladder.Climb(VirtualFields(), scene, options) &&
-        StopsHere(WhyNotEnough(scene, options, ladder.Last()), ladder)) {
+        StopsHere(WhyNotEnough(ladder.Last()), ladder)) {
       return ladder.Finish();
     }
   }

@@ -2,7 +2,7 @@
 // that it has.
 
 #include <elastimate/core/equilibrium/simulated_measurement.h>
-#include <elastimate/core/mechanics/strain_energy.h>
+#include <elastimate/core/mechanics/internal_forces.h>
 #include <elastimate/core/scene/loads.h>
 #include <elastimate/core/scene/scene_builder.h>
 #include <elastimate/estimators/registry.h>
@@ -54,7 +54,9 @@ class Clapeyron : public elastimate::Estimator {
                  const EstimatorOptions& options) const override {
     const double nu = *options.known_poisson_ratio;
     const Eigen::MatrixXd force = elastimate::AssembleLoadCases(scene);
-    const Eigen::VectorXd volumes = elastimate::ElementVolumes(scene.mesh);
+    const elastimate::InternalForces internal(scene.mesh, scene.materials);
+    const Eigen::VectorXd moduli =
+        internal.Parameters().Moduli(Eigen::Vector2d(1, nu));
     double work = 0;
     double unit_energy = 0;
     for (Eigen::Index k = 0; k < force.cols(); ++k) {
@@ -63,8 +65,9 @@ class Clapeyron : public elastimate::Estimator {
           0.0, scene.load_cases[k].displacement.array());
       work += force.col(k).dot(displacement.reshaped()) / 2;
       unit_energy +=
-          elastimate::StrainEnergyDensity(scene.mesh, {1, nu}, displacement)
-              .dot(volumes);
+          displacement.reshaped().dot(
+              internal.Multiply(moduli, displacement.reshaped()).reshaped()) /
+          2;
     }
     Estimate estimate;
     estimate.elasticity = {work / unit_energy, nu};

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "elastimate/core/materials/law.h"
+#include "elastimate/core/laws/law.h"
 
 namespace elastimate::testing {
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/laws/elasticity.h"
 #include "elastimate/core/mesh/mesh.h"
 #include "elastimate/core/scene/scene.h"
 

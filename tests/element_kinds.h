@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/laws/elasticity.h"
 #include "elastimate/core/scene/scene.h"
 
 namespace elastimate::testing {

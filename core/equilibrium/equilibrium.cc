@@ -172,6 +172,14 @@ Eigen::MatrixXd Equilibrium::SolveFor(const Eigen::MatrixXd& forces) {
   return SolveFrom({}, forces);
 }
 
+Eigen::MatrixXd Equilibrium::Precondition(const Eigen::MatrixXd& forces) {
+  return ByStiffness(
+      forces, [&](SupportedStiffness& stiffness, const Eigen::MatrixXd& columns,
+                  const auto& /*own*/) {
+        return Eigen::MatrixXd(stiffness.Precondition(columns) / scale_);
+      });
+}
+
 Eigen::MatrixXd Equilibrium::SolveFrom(const Eigen::MatrixXd& start,
                                        const Eigen::MatrixXd& forces) {
   return ByStiffness(forces, [&](SupportedStiffness& stiffness,

@@ -76,6 +76,12 @@ class Equilibrium {
   /// Precondition as above.
   Eigen::MatrixXd SolveFor(const Eigen::MatrixXd& forces);
 
+  /// Does what SolveFor does with the factor of the stiffness, or without one
+  /// as far as one application of the preconditioner of the iterations does it.
+  Eigen::MatrixXd Precondition(const Eigen::MatrixXd& forces);
+  /// Tells whether iterations solve the systems.
+  bool IsRefined() const;
+
   /// Returns the loads f, num_dofs x num_load_cases [force].
   const Eigen::MatrixXd& Load() const { return load_; }
   /// Returns the given displacements, zero in the free rows: num_dofs x
@@ -120,7 +126,6 @@ class Equilibrium {
 
  private:
   Eigen::Index NumLoadCases() const { return load_.cols(); }
-  bool IsRefined() const;
   void AddStiffness(const std::vector<const Scene*>& spaces, Eigen::Index k,
                     SolverKind solver, double tolerance);
   /// Applies `of_stiffness` to the columns of each load case (n side by side)

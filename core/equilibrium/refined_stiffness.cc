@@ -72,7 +72,7 @@ Eigen::MatrixXd RefinedStiffness::Solve(const Eigen::MatrixXd& all,
       [&](const Eigen::MatrixXd& x) {
         return Eigen::MatrixXd(is_free.asDiagonal() * Multiply(finest, x));
       },
-      [&](const Eigen::MatrixXd& x) { return Precondition(finest, x); },
+      [&](const Eigen::MatrixXd& x) { return Cycle(finest, x); },
       is_free.asDiagonal() * all,
       start.size() > 0 ? Eigen::MatrixXd(is_free.asDiagonal() * start) : start,
       options);
@@ -86,6 +86,14 @@ Eigen::MatrixXd RefinedStiffness::Solve(const Eigen::MatrixXd& all,
   }
   smallest_eigenvalue_ = result.smallest_eigenvalue;
   return std::move(result.solution);
+}
+
+Eigen::MatrixXd RefinedStiffness::Precondition(const Eigen::MatrixXd& all) {
+  if (finest_) {
+    return finest_->Solve(all);
+  }
+  const std::size_t finest = spaces_.size() - 1;
+  return Cycle(finest, spaces_[finest].is_free.asDiagonal() * all);
 }
 
 Eigen::MatrixXd RefinedStiffness::Multiply(std::size_t space,
@@ -120,16 +128,16 @@ Eigen::MatrixXd RefinedStiffness::Smooth(std::size_t space,
   return x;
 }
 
-Eigen::MatrixXd RefinedStiffness::Precondition(std::size_t space,
-                                               const Eigen::MatrixXd& force) {
+Eigen::MatrixXd RefinedStiffness::Cycle(std::size_t space,
+                                        const Eigen::MatrixXd& force) {
   if (space == 0) {
     return coarsest_.Solve(force, kCoarseTolerance);
   }
   const FinerNodes& nodes = stiffness_->NodesAfter(space - 1);
   Eigen::MatrixXd x = Smooth(space, force);
   const Eigen::MatrixXd coarse =
-      Precondition(space - 1, spaces_[space - 1].is_free.asDiagonal() *
-                                  nodes.Restrict(RestOf(space, force, x)));
+      Cycle(space - 1, spaces_[space - 1].is_free.asDiagonal() *
+                           nodes.Restrict(RestOf(space, force, x)));
   x += spaces_[space].is_free.asDiagonal() * nodes.Interpolate(coarse);
   x += Smooth(space, RestOf(space, force, x));
   return x;

@@ -45,6 +45,7 @@ class RefinedStiffness : public SupportedStiffness {
   using SupportedStiffness::Solve;
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& all,
                         const Eigen::MatrixXd& start) override;
+  Eigen::MatrixXd Precondition(const Eigen::MatrixXd& all) override;
 
   Eigen::MatrixXd HeldForces(
       const Eigen::MatrixXd& displacements) const override;
@@ -76,7 +77,7 @@ class RefinedStiffness : public SupportedStiffness {
   /// x = 0.
   Eigen::MatrixXd Smooth(std::size_t space, const Eigen::MatrixXd& force);
   /// Runs the V-cycle from a space down.
-  Eigen::MatrixXd Precondition(std::size_t space, const Eigen::MatrixXd& force);
+  Eigen::MatrixXd Cycle(std::size_t space, const Eigen::MatrixXd& force);
 
   StiffnessSolver coarsest_;
   /// Makes the solver of the finest space, which is null as long as iterations

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/laws/elasticity.h"
 #include "elastimate/core/scene/scene.h"
 
 namespace elastimate {

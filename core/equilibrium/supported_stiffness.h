@@ -35,6 +35,12 @@ class SupportedStiffness {
                                 const Eigen::MatrixXd& start) = 0;
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& all) { return Solve(all, {}); }
 
+  /// Does what Solve does as far as one application of the preconditioner does
+  /// it, where there is no factor; symmetric and positive definite.
+  virtual Eigen::MatrixXd Precondition(const Eigen::MatrixXd& all) {
+    return Solve(all);
+  }
+
   /// Returns u in equilibrium without loads where the held degrees of freedom
   /// are displaced by `held` (zero in the free rows): n solves.  This function
   /// and those below need the held rows.

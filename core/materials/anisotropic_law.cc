@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "elastimate/core/materials/law_parameters.h"
+#include "elastimate/core/laws/law_parameters.h"
 
 namespace elastimate {
 namespace {
@@ -45,15 +45,6 @@ std::vector<LawParameter> Stiffnesses() {
   return all;
 }
 
-std::vector<Eigen::MatrixXd> StrainModes() {
-  std::vector<Eigen::MatrixXd> modes;
-  modes.reserve(6);
-  for (int i = 0; i < 6; ++i) {
-    modes.emplace_back(Eigen::VectorXd::Unit(6, i));
-  }
-  return modes;
-}
-
 // The entries are those of Kelvin's notation.
 std::vector<BlockEntry> StiffnessEntries() {
   const auto weight = [](int i) { return i < 3 ? 1 : std::sqrt(2.0); };
@@ -69,7 +60,7 @@ std::vector<BlockEntry> StiffnessEntries() {
 }  // namespace
 
 AnisotropicLaw::AnisotropicLaw()
-    : KelvinLaw(SectionModel::kSolid, Stiffnesses(), StrainModes(),
+    : KelvinLaw(SectionModel::kSolid, Stiffnesses(), ComponentModes(6),
                 StiffnessEntries()) {}
 
 std::string_view AnisotropicLaw::Description() const {

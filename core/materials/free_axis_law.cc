@@ -86,17 +86,6 @@ Matrix6d KelvinStiffness(const Law& law, const Eigen::VectorXd& moduli) {
          to_strain.transpose();
 }
 
-// Returns the 21 stiffnesses of Voigt.
-Eigen::VectorXd ModuliOf(const Matrix6d& stiffness,
-                         const std::vector<BlockEntry>& entries) {
-  Eigen::VectorXd moduli(Eigen::Index(entries.size()));
-  for (Eigen::Index k = 0; k < moduli.size(); ++k) {
-    moduli(k) =
-        stiffness(entries[k].row, entries[k].column) / entries[k].factor;
-  }
-  return moduli;
-}
-
 // Returns the stiffness for each unit modulus of the known axis, in the
 // notation of Kelvin.
 std::vector<Matrix6d> StiffnessesOfUnitModuli() {
@@ -120,7 +109,7 @@ Eigen::MatrixXd UnitModuli(const Eigen::Matrix3d& rotation,
                         Eigen::Index(stiffnesses.size()));
   for (std::size_t k = 0; k < stiffnesses.size(); ++k) {
     units.col(Eigen::Index(k)) =
-        ModuliOf(turned * stiffnesses[k] * turned.transpose(), entries);
+        ModuliOfBlocks(entries, turned * stiffnesses[k] * turned.transpose());
   }
   return units;
 }
@@ -134,23 +123,9 @@ Eigen::MatrixXd RotationJacobian(const Matrix6d& stiffness,
   Eigen::MatrixXd jacobian(Eigen::Index(entries.size()), 3);
   for (Eigen::Index i = 0; i < 3; ++i) {
     const Matrix6d half = KelvinSpin(left.col(i)) * stiffness;
-    jacobian.col(i) = ModuliOf(half + half.transpose(), entries);
+    jacobian.col(i) = ModuliOfBlocks(entries, half + half.transpose());
   }
   return jacobian;
-}
-
-// Returns rotation vectors w whose axes are about as far from each other all
-// over a half sphere, by the golden angle.
-std::vector<Eigen::Vector3d> RotationsOfHalfSphere() {
-  constexpr int kNumAxes = 48;
-  const double golden_angle = kPi * (3 - std::sqrt(5.0));
-  std::vector<Eigen::Vector3d> rotations;
-  for (int i = 0; i < kNumAxes; ++i) {
-    const double angle = std::acos((i + 0.5) / kNumAxes);
-    rotations.emplace_back(0, angle * std::cos(golden_angle * i),
-                           angle * std::sin(golden_angle * i));
-  }
-  return rotations;
 }
 
 // The best moduli for an axis that is turned by w.
@@ -295,8 +270,9 @@ Eigen::VectorXd FreeAxisLaw::NearestParameters(
     const Eigen::VectorXd& moduli, const Eigen::MatrixXd& weights) const {
   const std::vector<BlockEntry>& entries = AnisotropicLaw::BlockEntries();
   const Eigen::VectorXd weighted = weights * moduli;
+  constexpr int kNumAxes = 48;
   std::optional<FitOfAxis> best;
-  for (const Eigen::Vector3d& w : RotationsOfHalfSphere()) {
+  for (const Eigen::Vector3d& w : RotationsOfHalfSphere(kNumAxes)) {
     const std::optional<FitOfAxis> fit =
         DescendFromAxis(w, weighted, weights, entries);
     if (fit && !(best && best->square_sum <= fit->square_sum)) {
@@ -308,12 +284,28 @@ Eigen::VectorXd FreeAxisLaw::NearestParameters(
   if (!best) {
     return parameters;
   }
-  Eigen::Vector3d& w = best->w;
-  // L and -L are one axis; this takes the end that is nearer to x.
-  const double angle = std::remainder(w.norm(), kPi);
-  w *= w.norm() > 0 ? angle / w.norm() : 1;
-  parameters << OfKnownAxis().ParametersOf(best->moduli, kModel), w.tail(2);
+  parameters << OfKnownAxis().ParametersOf(best->moduli, kModel),
+      best->w.tail(2);
+  return WithNearerEnd(parameters);
+}
+
+Eigen::VectorXd FreeAxisLaw::WithNearerEnd(Eigen::VectorXd parameters) {
+  const double angle = parameters.tail(2).norm();
+  if (angle > 0) {
+    parameters.tail(2) *= std::remainder(angle, kPi) / angle;
+  }
   return parameters;
+}
+
+std::vector<Eigen::Vector3d> FreeAxisLaw::RotationsOfHalfSphere(int num_axes) {
+  const double golden_angle = kPi * (3 - std::sqrt(5.0));
+  std::vector<Eigen::Vector3d> rotations;
+  for (int i = 0; i < num_axes; ++i) {
+    const double angle = std::acos((i + 0.5) / num_axes);
+    rotations.emplace_back(0, angle * std::cos(golden_angle * i),
+                           angle * std::sin(golden_angle * i));
+  }
+  return rotations;
 }
 
 Eigen::Vector3d FreeAxisLaw::Axis(const Eigen::VectorXd& parameters) {

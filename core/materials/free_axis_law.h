@@ -55,6 +55,14 @@ class FreeAxisLaw : public AnisotropicLaw {
   Eigen::VectorXd NearestParameters(const Eigen::VectorXd& moduli,
                                     const Eigen::MatrixXd& weights) const;
 
+  /// Returns the parameters with |w| <= pi / 2, for the end of the same axis
+  /// that is nearer to x.
+  static Eigen::VectorXd WithNearerEnd(Eigen::VectorXd parameters);
+
+  /// Returns rotation vectors w whose axes are about as far from each other all
+  /// over a half sphere, by the golden angle.
+  static std::vector<Eigen::Vector3d> RotationsOfHalfSphere(int num_axes);
+
   /// Returns the axis of these parameters, a unit vector whose first component
   /// is not negative, and (AxisJacobian) its derivative, 3 x num_parameters.
   static Eigen::Vector3d Axis(const Eigen::VectorXd& parameters);

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/laws/elasticity.h"
 
 namespace elastimate {
 namespace {

@@ -1,7 +1,7 @@
 #ifndef ELASTIMATE_CORE_MATERIALS_ISOTROPIC_LAW_H_
 #define ELASTIMATE_CORE_MATERIALS_ISOTROPIC_LAW_H_
 
-#include "elastimate/core/materials/law.h"
+#include "elastimate/core/laws/law.h"
 
 namespace elastimate {
 

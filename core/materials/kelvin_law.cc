@@ -18,6 +18,15 @@ std::vector<std::array<int, 2>> ComponentPairs(Eigen::Index dimension) {
 
 }  // namespace
 
+std::vector<Eigen::MatrixXd> ComponentModes(int num_components) {
+  std::vector<Eigen::MatrixXd> modes;
+  modes.reserve(num_components);
+  for (int i = 0; i < num_components; ++i) {
+    modes.emplace_back(Eigen::VectorXd::Unit(num_components, i));
+  }
+  return modes;
+}
+
 Eigen::MatrixXd KelvinStrainOfGradient(Eigen::Index dimension) {
   const auto pairs = ComponentPairs(dimension);
   Eigen::MatrixXd strain =

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "elastimate/core/materials/law.h"
+#include "elastimate/core/laws/law.h"
 
 namespace elastimate {
 
@@ -49,6 +49,9 @@ class KelvinLaw : public Law {
   std::vector<BlockEntry> entries_;
   std::vector<Eigen::MatrixXd> bases_;
 };
+
+/// Returns modes of which each is one component of strain.
+std::vector<Eigen::MatrixXd> ComponentModes(int num_components);
 
 /// The strain of a gradient in the notation of Kelvin is this matrix times the
 /// gradient: 6 x 9 in three dimensions, 3 x 4 in two.

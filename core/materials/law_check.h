@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "elastimate/core/materials/law.h"
+#include "elastimate/core/laws/law.h"
 
 namespace elastimate {
 
@@ -14,7 +14,8 @@ namespace elastimate {
 /// At the typical parameters, and at others within 20 % of these:
 ///
 ///   P_k = dW_k / dH, and dP / dH = Tangent, against central differences;
-///   P(2 H) = 2 P(H), because equilibria are those of small strains;
+///   P(2 H) = 2 P(H) for small strains; for large ones P(Q F) = Q P(F), and a
+///   symmetric tangent at H;
 ///   the tangent is symmetric, positive definite on strains H = H^T, and zero
 ///   on rotations H = -H^T, and stress and energy are zero for H = 0;
 ///   d theta / d p = ModuliJacobian, against central differences;

@@ -7,6 +7,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "elastimate/core/large_strain/corotated_law.h"
+#include "elastimate/core/large_strain/mooney_rivlin_law.h"
+#include "elastimate/core/large_strain/neo_hookean_law.h"
+#include "elastimate/core/large_strain/st_venant_kirchhoff_law.h"
+#include "elastimate/core/large_strain/yeoh_law.h"
 #include "elastimate/core/materials/anisotropic_law.h"
 #include "elastimate/core/materials/free_axis_law.h"
 #include "elastimate/core/materials/isotropic_law.h"
@@ -27,7 +32,12 @@ struct LawRegistry {
                   std::make_shared<FreeAxisLaw>(),
                   std::make_shared<OrthotropicLaw>(SectionModel::kSolid),
                   std::make_shared<OrthotropicLaw>(SectionModel::kPlaneStress),
-                  std::make_shared<AnisotropicLaw>()};
+                  std::make_shared<AnisotropicLaw>(),
+                  std::make_shared<CorotatedLaw>(),
+                  std::make_shared<StVenantKirchhoffLaw>(),
+                  std::make_shared<NeoHookeanLaw>(),
+                  std::make_shared<MooneyRivlinLaw>(),
+                  std::make_shared<YeohLaw>()};
 };
 
 LawRegistry& RegistryOfLaws() {
@@ -44,18 +54,8 @@ bool AreAmbiguous(const Law& a, const Law& b) {
                      });
 }
 
-template <class Predicate>
-std::string NamesOf(const Predicate& is_named) {
-  std::vector<std::string_view> names;
-  std::string list;
-  for (const Law* const law : Laws()) {
-    if (is_named(*law) &&
-        std::find(names.begin(), names.end(), law->Name()) == names.end()) {
-      list += (names.empty() ? "" : ", ") + std::string(law->Name());
-      names.push_back(law->Name());
-    }
-  }
-  return list;
+bool IsTaken(const Law& law, std::optional<SectionModel> model) {
+  return !model || law.Takes(*model);
 }
 
 }  // namespace
@@ -98,12 +98,17 @@ void RegisterLaw(std::shared_ptr<const Law> law) {
   registry.laws.push_back(std::move(law));
 }
 
-std::string LawNames() {
-  return NamesOf([](const Law&) { return true; });
-}
-
-std::string LawNames(SectionModel model) {
-  return NamesOf([model](const Law& law) { return law.Takes(model); });
+std::string LawNames(std::optional<SectionModel> model) {
+  std::vector<std::string_view> names;
+  std::string list;
+  for (const Law* const law : Laws()) {
+    if (IsTaken(*law, model) &&
+        std::find(names.begin(), names.end(), law->Name()) == names.end()) {
+      list += (names.empty() ? "" : ", ") + std::string(law->Name());
+      names.push_back(law->Name());
+    }
+  }
+  return list;
 }
 
 std::string WhyOutOfRange(const LawParameter& parameter, double value) {
@@ -121,18 +126,9 @@ std::string WhyOutOfRange(const LawParameter& parameter, double value) {
   return why.str();
 }
 
-const Law* FindLaw(std::string_view name) {
+const Law* FindLaw(std::string_view name, std::optional<SectionModel> model) {
   for (const Law* const law : Laws()) {
-    if (law->Name() == name) {
-      return law;
-    }
-  }
-  return nullptr;
-}
-
-const Law* FindLaw(std::string_view name, SectionModel model) {
-  for (const Law* const law : Laws()) {
-    if (law->Name() == name && law->Takes(model)) {
+    if (law->Name() == name && IsTaken(*law, model)) {
       return law;
     }
   }

@@ -2,11 +2,12 @@
 #define ELASTIMATE_CORE_MATERIALS_LAWS_H_
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "elastimate/core/materials/law.h"
+#include "elastimate/core/laws/law.h"
 
 namespace elastimate {
 
@@ -27,21 +28,21 @@ namespace elastimate {
 /// of CheckLaw.  May be called from several threads at once.
 void RegisterLaw(std::shared_ptr<const Law> law);
 
-/// "isotropic, ...", for messages; of those that take the section.
-[[nodiscard]] std::string LawNames();
-[[nodiscard]] std::string LawNames(SectionModel model);
+/// "isotropic, ...", for messages; only laws that take the section, if it is
+/// given.
+[[nodiscard]] std::string LawNames(
+    std::optional<SectionModel> model = std::nullopt);
 
 /// What is wrong with the value of a parameter of a law: "must be positive and
 /// finite"; empty when nothing is.
 [[nodiscard]] std::string WhyOutOfRange(const LawParameter& parameter,
                                         double value);
 
-/// The first law of this name, which has all parameters that another of that
-/// name has; null when there is none.
-[[nodiscard]] const Law* FindLaw(std::string_view name);
-
 /// The law of this name that takes the section; null when there is none.
-[[nodiscard]] const Law* FindLaw(std::string_view name, SectionModel model);
+/// Without a section, the first law of this name, which has all parameters that
+/// another of that name has.
+[[nodiscard]] const Law* FindLaw(
+    std::string_view name, std::optional<SectionModel> model = std::nullopt);
 
 }  // namespace elastimate
 

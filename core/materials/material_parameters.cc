@@ -106,4 +106,17 @@ Eigen::VectorXd MaterialParameters::ParametersOf(
   return parameters;
 }
 
+std::string WhyNotSmallStrains(const MaterialParameters& parameters) {
+  for (std::size_t i = 0; i < parameters.NumMaterials(); ++i) {
+    const Law& law = parameters.LawOf(i);
+    if (law.ForLargeStrains() != nullptr) {
+      return "the law " + std::string(law.Name()) +
+             " is for large strains, but only small strains are computed "
+             "here; give the material a law of small strains, such as "
+             "isotropic";
+    }
+  }
+  return "";
+}
+
 }  // namespace elastimate

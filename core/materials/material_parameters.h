@@ -3,9 +3,10 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "elastimate/core/materials/law.h"
+#include "elastimate/core/laws/law.h"
 #include "elastimate/core/materials/material.h"
 
 namespace elastimate {
@@ -74,6 +75,11 @@ class MaterialParameters {
   std::vector<Parameter> parameters_;
   std::vector<Eigen::Index> free_;
 };
+
+/// Says why small strains are not enough for one of the laws, and what mends
+/// it; empty when all laws are of small strains.
+[[nodiscard]] std::string WhyNotSmallStrains(
+    const MaterialParameters& parameters);
 
 }  // namespace elastimate
 

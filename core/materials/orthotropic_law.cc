@@ -2,7 +2,7 @@
 
 #include <Eigen/LU>
 
-#include "elastimate/core/materials/law_parameters.h"
+#include "elastimate/core/laws/law_parameters.h"
 
 namespace elastimate {
 namespace {
@@ -27,16 +27,6 @@ std::vector<LawParameter> OrthotropicParameters(SectionModel model) {
           Modulus("youngs_modulus_2", "E_2", 1),
           DirectedPoissonRatio("poisson_ratio_12", "nu_12"),
           Modulus("shear_modulus_12", "G_12", kTypicalShearModulus)};
-}
-
-// Returns modes of which each is one component of strain.
-std::vector<Eigen::MatrixXd> ComponentModes(int num_components) {
-  std::vector<Eigen::MatrixXd> modes;
-  modes.reserve(num_components);
-  for (int i = 0; i < num_components; ++i) {
-    modes.emplace_back(Eigen::VectorXd::Unit(num_components, i));
-  }
-  return modes;
 }
 
 // The entries of normal strains come row by row, those of shears behind them.

@@ -37,15 +37,6 @@ BlockFactors FactorsAt(const std::vector<BlockEntry>& entries,
   return blocks;
 }
 
-Eigen::VectorXd ModuliOfBlocks(const std::vector<BlockEntry>& entries,
-                               const Eigen::MatrixXd& blocks) {
-  Eigen::VectorXd moduli(Eigen::Index(entries.size()));
-  for (Eigen::Index k = 0; k < moduli.size(); ++k) {
-    moduli(k) = blocks(entries[k].row, entries[k].column) / entries[k].factor;
-  }
-  return moduli;
-}
-
 }  // namespace
 
 Eigen::VectorXd ModuliOfFactors(const std::vector<BlockEntry>& entries,
@@ -94,6 +85,15 @@ Eigen::MatrixXd BlocksOfModuli(const std::vector<BlockEntry>& entries,
         entry.factor * moduli(k);
   }
   return blocks;
+}
+
+Eigen::VectorXd ModuliOfBlocks(const std::vector<BlockEntry>& entries,
+                               const Eigen::MatrixXd& blocks) {
+  Eigen::VectorXd moduli(Eigen::Index(entries.size()));
+  for (Eigen::Index k = 0; k < moduli.size(); ++k) {
+    moduli(k) = blocks(entries[k].row, entries[k].column) / entries[k].factor;
+  }
+  return moduli;
 }
 
 Eigen::VectorXd FactorsOfModuli(const std::vector<BlockEntry>& entries,

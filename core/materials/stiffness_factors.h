@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "elastimate/core/materials/law.h"
+#include "elastimate/core/laws/law.h"
 
 namespace elastimate {
 
@@ -28,9 +28,11 @@ bool IsStiffnessPositiveDefinite(const Law& law,
                                  const Eigen::VectorXd& parameters,
                                  SectionModel model);
 
-/// Returns S of theta.
+/// Returns S of theta, and theta of S.
 Eigen::MatrixXd BlocksOfModuli(const std::vector<BlockEntry>& entries,
                                const Eigen::VectorXd& moduli);
+Eigen::VectorXd ModuliOfBlocks(const std::vector<BlockEntry>& entries,
+                               const Eigen::MatrixXd& blocks);
 
 /// Returns x of theta, or NaN where the stiffness is not positive definite.
 Eigen::VectorXd FactorsOfModuli(const std::vector<BlockEntry>& entries,

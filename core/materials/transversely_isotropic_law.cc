@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "elastimate/core/materials/law_parameters.h"
+#include "elastimate/core/laws/law_parameters.h"
 
 namespace elastimate {
 namespace {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "elastimate/core/materials/isotropic_law.h"
@@ -21,6 +23,10 @@ InternalForces::InternalForces(const Mesh& mesh,
                                 [](const Material& material) {
                                   return material.law == IsotropicLaw::kName;
                                 })) {
+  const std::string why = WhyNotSmallStrains(parameters_);
+  if (!why.empty()) {
+    throw std::invalid_argument(why);
+  }
   if (parameters_.NumMaterials() > 1) {
     parts_ = SplitMesh(mesh, material_of_element_);
   }
@@ -172,6 +178,9 @@ std::vector<Eigen::MatrixXd> InternalForces::Tangents(
 
 Eigen::MatrixXd InternalForces::Blocks(const Eigen::VectorXd& moduli,
                                        const NodeGraph& graph) const {
+  if (is_isotropic_) {
+    return StiffnessBlocks(mesh_, graph, ModuliOfElements(moduli));
+  }
   return StiffnessBlocks(mesh_, graph, material_of_element_, frames_,
                          Tangents(moduli));
 }

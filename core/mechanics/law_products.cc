@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/laws/elasticity.h"
 #include "elastimate/core/mesh/shape_functions.h"
 
 namespace elastimate {
@@ -137,6 +137,60 @@ void AddBlocksOfKind(const Mesh& mesh, const NodeGraph& graph,
   }
 }
 
+// A combination of H and J as one of H and M: c_0 H + c_1 J = of_h H + of_m M.
+struct IsotropicCombination {
+  IsotropicCombination(const Mesh& mesh, const Eigen::Vector2d& coefficients)
+      : of_h(coefficients(0) -
+             ShearShareOfJ(mesh.section.model) * coefficients(1)),
+        of_m(coefficients(1)) {}
+
+  // Adds the block that follows from a block of M.
+  template <class Products, class Block>
+  void Add(const Products& products, Block block) const {
+    block += of_h / 2 * products.transpose() + of_m * products;
+    block.diagonal().array() += of_h / 2 * products.trace();
+  }
+
+  double of_h;
+  double of_m;
+};
+
+template <ElementKind kKind>
+void AddIsotropicBlocksOfKind(const Mesh& mesh, const NodeGraph& graph,
+                              const Eigen::Matrix2Xd& coefficients,
+                              Eigen::MatrixXd& blocks) {
+  constexpr int kDimension = ElementSizes<kKind>::kDimension;
+  constexpr int kNodes = ElementSizes<kKind>::kNodes;
+  constexpr int kRows = kDimension * kNodes;
+  const auto& rule = StiffnessRule<kKind>();
+  // The gradients at each point of an element, and their products M.
+  Eigen::Matrix<double, kRows, Eigen::Dynamic> gradients(kRows, rule.size());
+  Eigen::VectorXd volumes(rule.size());
+  Eigen::Matrix<double, kRows, kRows> products;
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    Eigen::Index next = 0;
+    VisitPoints<kKind>(mesh, e, rule, [&](const auto& point, const auto&) {
+      gradients.col(next) = point.gradient.reshaped();
+      volumes(next++) = point.volume;
+    });
+    products.noalias() =
+        (gradients * volumes.asDiagonal()).lazyProduct(gradients.transpose());
+    const IsotropicCombination combination(mesh, coefficients.col(e));
+    const int* const nodes = mesh.elements.col(e).data();
+    for (int i = 0; i < kNodes; ++i) {
+      for (int j = 0; j <= i; ++j) {
+        const int row = nodes[i] >= nodes[j] ? i : j;
+        const int column = i + j - row;
+        combination.Add(products.template block<kDimension, kDimension>(
+                            kDimension * row, kDimension * column),
+                        blocks.middleCols<kDimension>(
+                            kDimension * Eigen::Index(graph.element_pairs(
+                                             NodeGraph::LocalPair(i, j), e))));
+      }
+    }
+  }
+}
+
 // Calls visit(e, i, M) with M = integral of grad(N_i) grad(N_i)^T over element
 // e, for each of its nodes i.
 template <ElementKind kKind, class Visitor>
@@ -186,20 +240,16 @@ void AddDiagonalOfKind(const Mesh& mesh,
   });
 }
 
-// Adds c_0 H_ii + c_1 J_ii of StiffnessBlockH and StiffnessBlockJ.
 template <ElementKind kKind>
 void AddIsotropicDiagonalOfKind(const Mesh& mesh,
                                 const Eigen::Matrix2Xd& coefficients,
                                 Eigen::MatrixXd& blocks) {
   constexpr int kDimension = ElementSizes<kKind>::kDimension;
-  const double share = ShearShareOfJ(mesh.section.model);
   VisitOwnProducts<kKind>(
       mesh, [&](Eigen::Index e, int i, const Frame<kKind>& products) {
-        const double of_h = coefficients(0, e) - share * coefficients(1, e);
-        auto block = blocks.middleCols<kDimension>(
-            kDimension * Eigen::Index(mesh.elements(i, e)));
-        block += (of_h / 2 + coefficients(1, e)) * products;
-        block.diagonal().array() += of_h / 2 * products.trace();
+        IsotropicCombination(mesh, coefficients.col(e))
+            .Add(products, blocks.middleCols<kDimension>(
+                               kDimension * Eigen::Index(mesh.elements(i, e))));
       });
 }
 
@@ -266,6 +316,16 @@ Eigen::MatrixXd StiffnessBlocks(const Mesh& mesh, const NodeGraph& graph,
   VisitElementKind(mesh.kind, [&](auto kind) {
     AddBlocksOfKind<kind>(mesh, graph, material_of_element, frames, tangents,
                           blocks);
+  });
+  return blocks;
+}
+
+Eigen::MatrixXd StiffnessBlocks(const Mesh& mesh, const NodeGraph& graph,
+                                const Eigen::Matrix2Xd& coefficients) {
+  Eigen::MatrixXd blocks = Eigen::MatrixXd::Zero(
+      mesh.Dimension(), mesh.Dimension() * graph.NumPairs());
+  VisitElementKind(mesh.kind, [&](auto kind) {
+    AddIsotropicBlocksOfKind<kind>(mesh, graph, coefficients, blocks);
   });
   return blocks;
 }

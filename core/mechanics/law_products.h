@@ -35,14 +35,21 @@ Eigen::MatrixXd StiffnessBlocks(const Mesh& mesh, const NodeGraph& graph,
                                 const MaterialFrames& frames,
                                 const std::vector<Eigen::MatrixXd>& tangents);
 
+/// Returns the blocks c_0 H_ij + c_1 J_ij of isotropic materials, for these
+/// coefficients of each element, 2 x num_elements, in a fifth of the time: with
+/// M_ij = integral of grad(N_i) grad(N_j)^T and c of ShearShareOfJ they are
+///
+///   H_ij = (M_ij^T + tr(M_ij) I) / 2,   J_ij = M_ij - c H_ij.
+Eigen::MatrixXd StiffnessBlocks(const Mesh& mesh, const NodeGraph& graph,
+                                const Eigen::Matrix2Xd& coefficients);
+
 /// Returns only the blocks K_ii of StiffnessBlocks, those of all nodes side by
 /// side: dimension x num_dofs.  One element pass, which needs no graph.
 Eigen::MatrixXd DiagonalStiffnessBlocks(
     const Mesh& mesh, const std::vector<int>& material_of_element,
     const MaterialFrames& frames, const std::vector<Eigen::MatrixXd>& tangents);
 
-/// Returns these blocks for isotropic materials, whose coefficients of H and of
-/// J in each element are 2 x num_elements.  It takes a third of the time.
+/// Returns these blocks for isotropic materials, in a third of the time.
 Eigen::MatrixXd DiagonalStiffnessBlocks(const Mesh& mesh,
                                         const Eigen::Matrix2Xd& coefficients);
 

@@ -31,12 +31,6 @@ class StiffnessAssembly {
   StiffnessAssembly(const Mesh& mesh,
                     const DegreesOfFreedom& degrees_of_freedom);
 
-  /// Assembles the values of H and J again, for moved nodes of the same mesh.
-  /// Cost: one element pass, in memory for the pairs of a front of nodes: 96
-  /// byte for each (3 MB for a million tetrahedra of good numbering, 135 MB of
-  /// a random one), so that most of it stays in the cache.
-  void Assemble(const Mesh& mesh);
-
   /// Returns, in the pattern, the values of a matrix whose blocks are given for
   /// each pair of the graph, side by side: dimension x (dimension num_pairs).
   Eigen::VectorXd ValuesOf(const Eigen::MatrixXd& blocks) const;
@@ -57,19 +51,6 @@ class StiffnessAssembly {
   }
 
  private:
-  /// No element after the first `end_element` ones has any of the first
-  /// `num_complete_nodes` nodes.
-  struct Stage {
-    Eigen::Index end_element;
-    Eigen::Index num_complete_nodes;
-  };
-
-  void PlanStages(const Mesh& mesh);
-  template <int kDimension>
-  void AssembleOfDimension(const Mesh& mesh);
-  /// Writes the values of the pairs of a node.
-  template <int kDimension>
-  void WriteColumns(Eigen::Index node, double shear_share);
   void BuildPattern(const DegreesOfFreedom& degrees_of_freedom);
 
   NodeGraph graph_;
@@ -79,11 +60,6 @@ class StiffnessAssembly {
   /// For each pair of nodes and each component of its column node, this says
   /// where the rows of its row node begin in the values; -1 when held.
   std::vector<std::int64_t> pair_values_;
-  std::vector<Stage> stages_;
-  /// The mask for AddGradientProducts, and the pairs at work, which are zero
-  /// between assemblies.
-  Eigen::Index pair_mask_;
-  Eigen::MatrixXd products_;
   Eigen::VectorXd h_;
   Eigen::VectorXd j_;
 };

@@ -3,7 +3,7 @@
 #include <cassert>
 #include <utility>
 
-#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/laws/elasticity.h"
 #include "elastimate/core/mechanics/element_stiffness_product.h"
 #include "elastimate/core/mechanics/tensor_stiffness_product.h"
 #include "elastimate/core/mechanics/tet10_stiffness_product.h"

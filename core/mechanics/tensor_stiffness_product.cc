@@ -258,9 +258,9 @@ HWY_INLINE Values ComponentOf(const Vector& v, int k) {
 
 // Adds forces at the Gauss points to the records of the nodes.
 template <int kDimension, class Nodes>
-HWY_INLINE void AddForces(const TensorTables<kDimension>& tables,
-                          const Nodes& nodes, std::ptrdiff_t offset,
-                          VectorField<kDimension> (&stress)[kDimension]) {
+HWY_INLINE void AddTensorForces(const TensorTables<kDimension>& tables,
+                                const Nodes& nodes, std::ptrdiff_t offset,
+                                VectorField<kDimension> (&stress)[kDimension]) {
   for (int c = 0; c < kDimension; ++c) {
     Field<kDimension>& sum = stress[0].of[c];
     MultiplyLines<kDimension, 0, true>(tables.derivative, sum);
@@ -282,9 +282,9 @@ HWY_INLINE void AddForces(const TensorTables<kDimension>& tables,
 
 // Adds `count` elements from the first on, an element in each lane.
 template <int kDimension, bool kIsSum>
-HWY_INLINE void AddElements(const QuadraticPass& pass,
-                            const TensorTables<kDimension>& tables,
-                            std::ptrdiff_t first, std::ptrdiff_t count) {
+HWY_INLINE void AddLanes(const QuadraticPass& pass,
+                         const TensorTables<kDimension>& tables,
+                         std::ptrdiff_t first, std::ptrdiff_t count) {
   constexpr int kNodes = PowerOfThree(kDimension);
   const Lanes d;
   const int* const elements = pass.elements + kNodes * first;
@@ -369,18 +369,18 @@ HWY_INLINE void AddElements(const QuadraticPass& pass,
       }
     }
   }
-  AddForces<kDimension>(tables, nodes, kFour, gradient);
+  AddTensorForces<kDimension>(tables, nodes, kFour, gradient);
   if (!kIsSum) {
-    AddForces<kDimension>(tables, nodes, 2 * kFour, of_trace);
+    AddTensorForces<kDimension>(tables, nodes, 2 * kFour, of_trace);
   }
 }
 
 template <int kDimension, bool kIsSum>
-void AddAllElements(const QuadraticPass& pass) {
+void AddAllLanes(const QuadraticPass& pass) {
   static const TensorTables<kDimension> tables;
   std::ptrdiff_t first = 0;
   for (; first < pass.num_elements; first += kLanes) {
-    AddElements<kDimension, kIsSum>(
+    AddLanes<kDimension, kIsSum>(
         pass, tables, first,
         std::min<std::ptrdiff_t>(kLanes, pass.num_elements - first));
   }
@@ -389,9 +389,9 @@ void AddAllElements(const QuadraticPass& pass) {
 template <int kDimension>
 void RunPassOf(const QuadraticPass& pass) {
   if (pass.coefficients_of_a != nullptr) {
-    AddAllElements<kDimension, true>(pass);
+    AddAllLanes<kDimension, true>(pass);
   } else {
-    AddAllElements<kDimension, false>(pass);
+    AddAllLanes<kDimension, false>(pass);
   }
 }
 

@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "elastimate/core/algebra/eigen_abi.h"
+
 namespace elastimate {
 
 /// Some lists of vertices of a mesh, such as the two ends of each edge.

@@ -58,8 +58,8 @@ Observed ObservedComponent(const Scene& scene, const LoadCase& load_case,
       others.push_back(i);
     }
   }
-  const auto num_nodes = static_cast<Eigen::Index>(nodes.size());
-  const Eigen::Index all = num_nodes + static_cast<Eigen::Index>(others.size());
+  const auto num_nodes = Eigen::Index(nodes.size());
+  const Eigen::Index all = num_nodes + Eigen::Index(others.size());
   const Eigen::Index stride = std::max<Eigen::Index>(1, all / kMostPoints);
   const Eigen::Index count = (all + stride - 1) / stride;
   Observed observed = {Eigen::MatrixXd(scene.mesh.Dimension(), count),
@@ -67,12 +67,11 @@ Observed ObservedComponent(const Scene& scene, const LoadCase& load_case,
   for (Eigen::Index i = 0; i < count; ++i) {
     const Eigen::Index at = i * stride;
     if (at < num_nodes) {
-      const Eigen::Index node = nodes[static_cast<std::size_t>(at)];
+      const Eigen::Index node = nodes[at];
       observed.positions.col(i) = scene.mesh.nodes.col(node);
       observed.values(i) = load_case.displacement(component, node);
     } else {
-      const Eigen::Index point =
-          others[static_cast<std::size_t>(at - num_nodes)];
+      const Eigen::Index point = others[at - num_nodes];
       observed.positions.col(i) = points.col(point);
       observed.values(i) = load_case.points.displacement(component, point);
     }
@@ -130,26 +129,25 @@ Eigen::MatrixXd GradientAt(const Frame& frame, const Observed& observed,
   const Eigen::Index dimension = points.rows();
   int degree = kLargestDegree;
   std::vector<Eigen::Array3i> exponents = ExponentsUpTo(degree, dimension);
-  while (degree > 0 &&
-         kValuesPerMonomial * static_cast<Eigen::Index>(exponents.size()) >
-             observed.values.size()) {
+  while (degree > 0 && kValuesPerMonomial * Eigen::Index(exponents.size()) >
+                           observed.values.size()) {
     exponents = ExponentsUpTo(--degree, dimension);
   }
   if (degree == 0) {
     return {};
   }
-  const auto num_monomials = static_cast<Eigen::Index>(exponents.size());
+  const auto num_monomials = Eigen::Index(exponents.size());
   const Eigen::MatrixXd x = frame.Coordinates(observed.positions);
   Eigen::MatrixXd monomials(x.cols(), num_monomials);
   for (Eigen::Index m = 0; m < num_monomials; ++m) {
-    monomials.col(m) = Powers(x, exponents[static_cast<std::size_t>(m)], -1);
+    monomials.col(m) = Powers(x, exponents[m], -1);
   }
   const Eigen::VectorXd coefficients =
       SolveLeastSquares(monomials, observed.values, kDependent);
   const Eigen::MatrixXd at = frame.Coordinates(points);
   Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(dimension, points.cols());
   for (Eigen::Index m = 0; m < num_monomials; ++m) {
-    const Eigen::Array3i& powers = exponents[static_cast<std::size_t>(m)];
+    const Eigen::Array3i& powers = exponents[m];
     for (Eigen::Index j = 0; j < dimension; ++j) {
       if (powers(j) > 0) {
         const Eigen::ArrayXd along =
@@ -220,8 +218,7 @@ std::vector<Eigen::MatrixXd> DeformationGradients(const Scene& scene,
       return {};
     }
     for (Eigen::Index i = 0; i < at.cols(); ++i) {
-      gradients[static_cast<std::size_t>(i)].row(component) +=
-          gradient.col(i).transpose();
+      gradients[i].row(component) += gradient.col(i).transpose();
     }
   }
   return gradients;
@@ -248,9 +245,9 @@ DeformationSize SizeOf(const std::vector<Eigen::MatrixXd>& gradients,
     square_sum += (polar.stretches.array() - 1).square().maxCoeff();
     angles.push_back(AngleOf(polar.rotation));
   }
-  const auto large = angles.begin() +
-                     static_cast<std::ptrdiff_t>(
-                         kVolumeShare * static_cast<double>(angles.size() - 1));
+  const auto large =
+      angles.begin() +
+      std::ptrdiff_t(kVolumeShare * static_cast<double>(angles.size() - 1));
   std::nth_element(angles.begin(), large, angles.end());
   return {std::sqrt(square_sum / static_cast<double>(gradients.size())),
           *large};
@@ -289,9 +286,8 @@ DeformationSize MeasureDeformation(const Scene& scene) {
   DeformationSize size;
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     const LoadCase& load_case = scene.load_cases[k];
-    const bool is_free =
-        scene.is_rigid_motion_free ||
-        !SupportsOf(scene, static_cast<Eigen::Index>(k)).held.any();
+    const bool is_free = scene.is_rigid_motion_free ||
+                         !SupportsOf(scene, Eigen::Index(k)).held.any();
     const DeformationSize of_case =
         SizeOf(DeformationGradients(scene, load_case), is_free);
     size.strain = std::max(size.strain, of_case.strain);
@@ -321,8 +317,8 @@ void RemoveFreeRotation(const Scene& scene, LoadCase& load_case) {
   if (!nodes || !points || nodes->size() + points->size() == 0) {
     return;
   }
-  const auto num_nodes = static_cast<Eigen::Index>(nodes->size());
-  const auto num_points = static_cast<Eigen::Index>(points->size());
+  const auto num_nodes = Eigen::Index(nodes->size());
+  const auto num_points = Eigen::Index(points->size());
   Eigen::MatrixXd before(scene.mesh.Dimension(), num_nodes + num_points);
   Eigen::MatrixXd after = before;
   if (num_nodes > 0) {

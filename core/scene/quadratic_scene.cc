@@ -271,7 +271,7 @@ Scene QuadraticScene(const Scene& scene) {
   quadratic.mesh = WithMiddleNodes(scene.mesh, middles);
   quadratic.materials = scene.materials;
   quadratic.supports = WithMiddleSupports(scene.supports, scene.mesh, middles);
-  quadratic.supports.ends =
+  quadratic.supports.in_doubt =
       FindSupportEnds(scene.supports, scene.mesh, middles,
                       quadratic.supports.held.rightCols(middles.Size()));
   quadratic.is_rigid_motion_free = scene.is_rigid_motion_free;

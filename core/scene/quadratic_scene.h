@@ -24,7 +24,7 @@ namespace elastimate {
 /// element of it is held at a node inside the specimen, because that is a held
 /// volume.  Where supports are boxes, the boxes decide instead about each node
 /// within.  Where a support may end within elements (FindSupportEnds),
-/// Supports::ends says so.
+/// Supports::in_doubt says so.
 /// - Loads: nodal forces are zero there, so that their virtual work is that of
 /// the given forces on the displacements of the vertices.  Body forces,
 /// tractions and pressures stay what they are; facets get their middle nodes.

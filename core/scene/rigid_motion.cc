@@ -5,9 +5,9 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <array>
+#include <boost/pending/disjoint_sets.hpp>
 #include <cmath>
 #include <iomanip>
-#include <numeric>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -19,30 +19,7 @@
 namespace elastimate {
 namespace {
 
-// Joins sets one by one; the label of a set is its smallest member.
-class DisjointSets {
- public:
-  explicit DisjointSets(Eigen::Index size) : parent_(size) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-
-  int Label(int member) {
-    while (parent_[member] != member) {
-      parent_[member] = parent_[parent_[member]];
-      member = parent_[member];
-    }
-    return member;
-  }
-
-  void Join(int a, int b) {
-    a = Label(a);
-    b = Label(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
+using DisjointSets = boost::disjoint_sets_with_storage<>;
 
 // The other vertices of a face whose smallest node is known, ascending; -1
 // where there are fewer.
@@ -87,7 +64,7 @@ DisjointSets ElementsJoinedByFaces(const Mesh& mesh) {
     std::sort(faces.begin(), faces.end());
     for (std::size_t i = 1; i < faces.size(); ++i) {
       if (faces[i].others == faces[i - 1].others) {
-        sets.Join(faces[i].element, faces[i - 1].element);
+        sets.union_set(faces[i].element, faces[i - 1].element);
       }
     }
   }
@@ -116,18 +93,18 @@ struct Body {
 // Returns the bodies, ordered by their smallest nodes.
 std::vector<Body> BodiesOf(const Mesh& mesh) {
   DisjointSets joined = ElementsJoinedByFaces(mesh);
-  std::vector<std::pair<int, int>> nodes;  // Of the label of a body.
+  std::vector<std::pair<int, int>> nodes;  // Of the root of a body.
   nodes.reserve(mesh.NumNodes());
   std::vector<int> first(mesh.NumNodes(), -1);
-  for (int e = 0; e < mesh.NumElements(); ++e) {
-    const int label = joined.Label(e);
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    const int root = static_cast<int>(joined.find_set(e));
     for (const int node : mesh.elements.col(e)) {
       if (first[node] < 0) {
-        first[node] = label;
+        first[node] = root;
       }
       // Elements around a node nearly always belong to one body.
-      if (first[node] != label) {
-        nodes.emplace_back(label, node);
+      if (first[node] != root) {
+        nodes.emplace_back(root, node);
       }
     }
   }
@@ -363,22 +340,25 @@ Eigen::MatrixXd MovedRigidly(const Eigen::MatrixXd& points,
 std::string WhyNotHeld(const Mesh& mesh, const Supports& supports) {
   const std::vector<Body> bodies = BodiesOf(mesh);
   std::vector<int> first(mesh.NumNodes(), -1);
-  DisjointSets hinged(Eigen::Index(bodies.size()));
+  DisjointSets hinged(bodies.size());
   for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
     for (const int node : bodies[b].nodes) {
       if (first[node] < 0) {
         first[node] = b;
       }
-      hinged.Join(first[node], b);
+      hinged.union_set(first[node], b);
     }
   }
-  std::vector<std::vector<const Body*>> groups(bodies.size());
+  std::vector<std::vector<const Body*>> groups;
+  std::vector<int> group_of(bodies.size(), -1);
   for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
-    groups[hinged.Label(b)].push_back(&bodies[b]);
+    int& group = group_of[hinged.find_set(b)];
+    if (group < 0) {
+      group = static_cast<int>(groups.size());
+      groups.emplace_back();
+    }
+    groups[group].push_back(&bodies[b]);
   }
-  groups.erase(std::remove_if(groups.begin(), groups.end(),
-                              [](const auto& group) { return group.empty(); }),
-               groups.end());
   for (const std::vector<const Body*>& group : groups) {
     // The group is tried as a whole first, and then part by part.
     std::string why;

@@ -1,11 +1,6 @@
 #include "elastimate/core/scene/support_ends.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
-#include <map>
-#include <numeric>
-#include <optional>
-#include <utility>
 
 #include "elastimate/core/mesh/facets.h"
 
@@ -62,8 +57,7 @@ class SurfaceFacets {
   std::vector<std::vector<Eigen::Index>> of_node_;
 };
 
-// The components of middles where it is open whether they are held, with the
-// vertices that hold them.
+// The components of middles where it is open whether they are held.
 class OpenMiddles {
  public:
   OpenMiddles(const Supports& supports, const Mesh& mesh,
@@ -79,32 +73,22 @@ class OpenMiddles {
   }
 
   const ComponentMask& Open() const { return open_; }
-  // Returns the vertices of an open middle that hold its first open component,
-  // or those that leave it free.
-  std::vector<int> VerticesWhere(bool is_held, Eigen::Index middle) const {
-    Eigen::Index component = 0;
-    while (!open_(component, middle)) {
-      ++component;
-    }
-    return VerticesWhere(is_held, component, middle);
-  }
-
- private:
-  std::vector<int> VerticesWhere(bool is_held, Eigen::Index i,
-                                 Eigen::Index middle) const {
+  // Returns the vertices of a middle that hold a component.
+  std::vector<int> HeldVertices(Eigen::Index i, Eigen::Index middle) const {
     std::vector<int> vertices;
     for (const int node : middles_.Vertices()[middle]) {
-      if (supports_.held(i, node) == is_held) {
+      if (supports_.held(i, node)) {
         vertices.push_back(node);
       }
     }
     return vertices;
   }
 
+ private:
   // Returns the vertices that hold a component which others leave free, while
   // nothing says where the support ends; else none.
-  std::vector<int> HeldVertices(Eigen::Index i, Eigen::Index middle) const {
-    std::vector<int> vertices = VerticesWhere(true, i, middle);
+  std::vector<int> VerticesOfEnd(Eigen::Index i, Eigen::Index middle) const {
+    std::vector<int> vertices = HeldVertices(i, middle);
     if (held_(i, middle) ||
         Eigen::Index(vertices.size()) == middles_.Vertices()[middle].size() ||
         std::any_of(vertices.begin(), vertices.end(), [&](int node) {
@@ -136,7 +120,7 @@ class OpenMiddles {
         }
       }
       for (Eigen::Index middle = 0; middle < middles_.Size(); ++middle) {
-        const std::vector<int> vertices = HeldVertices(i, middle);
+        const std::vector<int> vertices = VerticesOfEnd(i, middle);
         open_(i, middle) =
             std::any_of(vertices.begin(), vertices.end(),
                         [&](int node) { return is_at_volume[node]; });
@@ -155,7 +139,7 @@ class OpenMiddles {
         }
         const Eigen::Index middle = middles_.Find(around);
         for (Eigen::Index i = 0; i < open_.rows(); ++i) {
-          const std::vector<int> vertices = HeldVertices(i, middle);
+          const std::vector<int> vertices = VerticesOfEnd(i, middle);
           if (std::any_of(vertices.begin(), vertices.end(), [&](int node) {
                 return surface.GoesOnFromHeld(facet, node,
                                               supports_.held.row(i));
@@ -174,174 +158,24 @@ class OpenMiddles {
   ComponentMask open_;
 };
 
-// Returns the open middles of each end.
-std::vector<std::vector<Eigen::Index>> ConnectedMiddles(
-    const Mesh& mesh, const Middles& middles, const ComponentMask& open) {
-  std::vector<int> parent(mesh.NumNodes());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int node) {
-    while (parent[node] != node) {
-      node = parent[node] = parent[parent[node]];
-    }
-    return node;
-  };
-  for (Eigen::Index middle = 0; middle < middles.Size(); ++middle) {
-    if (open.col(middle).any()) {
-      const auto vertices = middles.Vertices()[middle];
-      for (const int node : vertices) {
-        parent[root(vertices(0))] = root(node);
-      }
-    }
-  }
-  std::map<int, std::vector<Eigen::Index>> of_root;
-  for (Eigen::Index middle = 0; middle < middles.Size(); ++middle) {
-    if (open.col(middle).any()) {
-      of_root[root(middles.Vertices()[middle](0))].push_back(middle);
-    }
-  }
-  std::vector<std::vector<Eigen::Index>> all;
-  for (const auto& [unused, of_end] : of_root) {
-    all.push_back(of_end);
-  }
-  return all;
-}
-
-// Returns how far the free points, as columns, are beyond the held ones in a
-// direction.
-double Gap(const Eigen::VectorXd& direction, const Eigen::MatrixXd& held,
-           const Eigen::MatrixXd& free) {
-  return (direction.transpose() * free).minCoeff() -
-         (direction.transpose() * held).maxCoeff();
-}
-
-Eigen::MatrixXd ScatterMatrix(const Eigen::MatrixXd& points) {
-  const Eigen::MatrixXd centred = points.colwise() - points.rowwise().mean();
-  return centred * centred.transpose();
-}
-
-// Returns a direction in which the free points are beyond the held ones, if one
-// is known.
-std::optional<Eigen::VectorXd> SeparatingDirection(
-    const Eigen::MatrixXd& held, const Eigen::MatrixXd& free) {
-  // These are shares of the extent.
-  constexpr double kLeastGap = 1e-9;
-  constexpr double kRidge = 1e-6;
-  const Eigen::Index dimension = held.rows();
-  std::vector<Eigen::VectorXd> directions;
-  for (Eigen::Index i = 0; i < dimension; ++i) {
-    directions.push_back(Eigen::VectorXd::Unit(dimension, i));
-    directions.push_back(-Eigen::VectorXd::Unit(dimension, i));
-  }
-  const auto widest = std::max_element(
-      directions.begin(), directions.end(), [&](const auto& a, const auto& b) {
-        return Gap(a, held, free) < Gap(b, held, free);
-      });
-  const Eigen::MatrixXd scatter = ScatterMatrix(held) + ScatterMatrix(free);
-  const Eigen::MatrixXd ridge = kRidge * scatter.trace() *
-                                Eigen::MatrixXd::Identity(dimension, dimension);
-  const Eigen::VectorXd fisher =
-      (scatter + ridge)
-          .ldlt()
-          .solve(free.rowwise().mean() - held.rowwise().mean())
-          .normalized();
-  const double least_gap =
-      kLeastGap *
-      (free.rowwise().maxCoeff() - free.rowwise().minCoeff()).norm();
-  for (const Eigen::VectorXd& direction : {*widest, fisher}) {
-    if (Gap(direction, held, free) > least_gap) {
-      return direction;
-    }
-  }
-  return std::nullopt;
-}
-
-// Returns the middles in their order in a direction; those that are equally far
-// form one step.
-std::vector<std::vector<Eigen::Index>> Steps(
-    const std::vector<Eigen::Index>& of_end,
-    const Eigen::RowVectorXd& distance) {
-  constexpr double kSamePlace = 1e-6;
-  const double tolerance =
-      kSamePlace * (distance.maxCoeff() - distance.minCoeff());
-  std::vector<std::size_t> order(of_end.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return distance(Eigen::Index(a)) < distance(Eigen::Index(b));
-  });
-  std::vector<std::vector<Eigen::Index>> steps;
-  double last = 0;
-  for (const std::size_t i : order) {
-    const double here = distance(Eigen::Index(i));
-    if (steps.empty() || here > last + tolerance) {
-      steps.emplace_back();
-    }
-    steps.back().push_back(of_end[i]);
-    last = here;
-  }
-  return steps;
-}
-
 }  // namespace
 
-std::vector<SupportEnd> FindSupportEnds(const Supports& supports,
-                                        const Mesh& mesh,
-                                        const Middles& middles,
-                                        const ComponentMask& held) {
+std::vector<HeldComponent> FindSupportEnds(const Supports& supports,
+                                           const Mesh& mesh,
+                                           const Middles& middles,
+                                           const ComponentMask& held) {
   const OpenMiddles open_middles(supports, mesh, middles, held);
-  const ComponentMask& open = open_middles.Open();
-  std::vector<SupportEnd> ends;
-  for (const auto& of_end : ConnectedMiddles(mesh, middles, open)) {
-    const Eigen::Index size = Eigen::Index(of_end.size());
-    Eigen::MatrixXd held_points(mesh.Dimension(), size);
-    Eigen::MatrixXd free_points(mesh.Dimension(), size);
-    Eigen::MatrixXd positions(mesh.Dimension(), size);
-    for (Eigen::Index k = 0; k < size; ++k) {
-      const auto mean = [&](const auto& vertices) {
-        return mesh.nodes(Eigen::all, vertices).rowwise().mean();
-      };
-      held_points.col(k) = mean(open_middles.VerticesWhere(true, of_end[k]));
-      free_points.col(k) = mean(open_middles.VerticesWhere(false, of_end[k]));
-      positions.col(k) = mean(middles.Vertices()[of_end[k]]);
-    }
-    const std::optional<Eigen::VectorXd> direction =
-        SeparatingDirection(held_points, free_points);
-    const Eigen::RowVectorXd distance =
-        direction ? Eigen::RowVectorXd(direction->transpose() * positions)
-                  : Eigen::RowVectorXd::Zero(size);
-    SupportEnd end;
-    for (const auto& step : Steps(of_end, distance)) {
-      end.steps.emplace_back();
-      for (const Eigen::Index middle : step) {
-        const std::vector<int> vertices =
-            open_middles.VerticesWhere(true, middle);
-        for (Eigen::Index i = 0; i < open.rows(); ++i) {
-          if (open(i, middle)) {
-            end.steps.back().push_back(
-                {i, mesh.NumNodes() + middle,
-                 supports.displacement.row(i)(vertices).mean()});
-          }
-        }
-      }
-    }
-    ends.push_back(std::move(end));
-  }
-  return ends;
-}
-
-Supports EndingAfter(const std::vector<std::size_t>& num_steps,
-                     const Supports& supports) {
-  Supports ended = supports;
-  ended.ends.clear();
-  for (std::size_t k = 0; k < num_steps.size(); ++k) {
-    for (std::size_t step = 0; step < num_steps[k]; ++step) {
-      for (const HeldComponent& component : supports.ends[k].steps[step]) {
-        ended.held(component.component, component.node) = true;
-        ended.displacement(component.component, component.node) =
-            component.displacement;
+  std::vector<HeldComponent> in_doubt;
+  for (Eigen::Index middle = 0; middle < middles.Size(); ++middle) {
+    for (Eigen::Index i = 0; i < mesh.Dimension(); ++i) {
+      if (open_middles.Open()(i, middle)) {
+        const std::vector<int> holding = open_middles.HeldVertices(i, middle);
+        in_doubt.push_back({i, mesh.NumNodes() + middle,
+                            supports.displacement.row(i)(holding).mean()});
       }
     }
   }
-  return ended;
+  return in_doubt;
 }
 
 }  // namespace elastimate

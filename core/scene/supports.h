@@ -32,13 +32,6 @@ struct HeldComponent {
   double displacement;
 };
 
-/// An end of a support somewhere within edges, faces and elements whose middles
-/// are nodes.  The support holds the middles of the first so many steps, or
-/// none.  Each step is held as a whole.
-struct SupportEnd {
-  std::vector<std::vector<HeldComponent>> steps;
-};
-
 /// A part of the specimen that a grip or a platen moves as a rigid body, by a
 /// motion that is not known: some components of u = a + w x (x - x0).
 struct RigidFace {
@@ -69,11 +62,9 @@ struct Supports {
   /// Held components of supports that end with their nodes, as a part of the
   /// mesh does.  dimension x num_nodes; empty when there are none.
   ComponentMask delimited = {};
-  /// The ends at which QuadraticScene cannot tell which of the nodes that it
-  /// adds are held (FindSupportEnds).  None of them is, unless a fit finds them
-  /// (EndingAfter).
-  std::vector<SupportEnd> ends = {};
-
+  /// The components of nodes where a support ends, of which QuadraticScene
+  /// cannot tell whether it holds them (FindSupportEnds).  None is held.
+  std::vector<HeldComponent> in_doubt = {};
   /// The nodes that QuadraticScene put between held nodes of unknown
   /// displacement, each after its vertices.  Such a node moves as their mean
   /// where it was not measured itself.

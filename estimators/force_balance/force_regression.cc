@@ -142,19 +142,6 @@ std::optional<Eigen::VectorXd> LinearMinimum(const ForceResidual& forces) {
   return moduli / solution(given);
 }
 
-// These moduli, but for what is known, moved into the bounds; empty where they
-// are not physical.
-std::optional<Eigen::VectorXd> VariablesOfModuli(const Eigen::VectorXd& moduli,
-                                                 const FreeParameters& free) {
-  Eigen::VectorXd parameters = free.All().ParametersOf(moduli);
-  for (Eigen::Index i = 0; i < parameters.size(); ++i) {
-    parameters(i) = free.All().All()[i].known.value_or(parameters(i));
-  }
-  const Eigen::VectorXd variables = free.VariablesOf(parameters);
-  return variables.allFinite() ? std::optional<Eigen::VectorXd>(variables)
-                               : std::nullopt;
-}
-
 // These variables at the scale that fits the loads best [eq. 20], where no
 // known modulus gives another; empty when the displacements oppose the loads.
 std::optional<Eigen::VectorXd> AtScaleOfLoads(
@@ -166,7 +153,7 @@ std::optional<Eigen::VectorXd> AtScaleOfLoads(
   const Eigen::VectorXd moduli = free.ModuliAt(*variables);
   const double scale = forces.Loads().squaredNorm() /
                        (forces.Columns() * moduli).dot(forces.Loads());
-  return scale > 0 ? VariablesOfModuli(scale * moduli, free) : std::nullopt;
+  return scale > 0 ? free.VariablesOfModuli(scale * moduli) : std::nullopt;
 }
 
 // The better of the minima of the residual over the mean stiffness that these
@@ -322,12 +309,8 @@ void CheckKnownRatios(const Scene& scene, const EstimatorOptions& options,
   if (all.Size() == free.Size()) {
     return;
   }
-  Eigen::VectorXd parameters(Eigen::Index(estimate.parameters.size()));
-  for (Eigen::Index i = 0; i < parameters.size(); ++i) {
-    parameters(i) = estimate.parameters[i].value;
-  }
   const UnbiasedFit fit =
-      FitWithoutBias(all, all.VariablesOf(parameters), forces);
+      FitWithoutBias(all, all.VariablesOf(estimate.ParameterValues()), forces);
   const std::optional<Eigen::MatrixXd> covariance =
       CovarianceOf(fit, all, forces);
   if (!covariance) {
@@ -403,9 +386,9 @@ class ForceRegression {
     const Eigen::VectorXd typical = free_.VariablesOf(
         free_.All().Typical(free_.All().KnownModulus().value_or(1)));
     const std::optional<BoundedMinimum> minimum = BestMinimumOf(
-        {moduli_ ? AtScaleOfLoads(VariablesOfModuli(*moduli_, free_), forces_,
-                                  free_)
-                 : std::nullopt,
+        {moduli_
+             ? AtScaleOfLoads(free_.VariablesOfModuli(*moduli_), forces_, free_)
+             : std::nullopt,
          AtScaleOfLoads(typical, forces_, free_)},
         forces_, free_);
     if (!minimum) {

@@ -5,7 +5,7 @@
 #include "elastimate/core/algebra/row_block_qr.h"
 #include "elastimate/core/materials/material.h"
 #include "elastimate/core/mechanics/stiffness_traces.h"
-#include "elastimate/estimators/force_balance/weighted_load_cases.h"
+#include "elastimate/core/scene/loads.h"
 
 namespace elastimate {
 namespace {
@@ -52,6 +52,36 @@ Eigen::VectorXd WeightsOf(const Scene& scene,
     weights(parameters.FirstModulus(std::size_t(material_of[e]))) += volumes(e);
   }
   return weights / volumes.sum();
+}
+
+// All load cases are taken at once, each divided by its noise_sd where that is
+// given, so that the noise of the weighted displacements has standard deviation
+// 1: measured displacements where the supports leave the nodes free, given ones
+// where they hold them, and the loads, num_dofs x num_load_cases each.
+
+Eigen::MatrixXd WeightedDisplacements(const Scene& scene) {
+  const Supports& supports = scene.supports;
+  Eigen::MatrixXd q;
+  ResizeInLargePages(scene.mesh.NumDofs(),
+                     Eigen::Index(scene.load_cases.size()), q);
+  for (Eigen::Index k = 0; k < q.cols(); ++k) {
+    const LoadCase& load_case = scene.load_cases[k];
+    q.col(k).reshaped(supports.held.rows(), scene.mesh.NumNodes()) =
+        1 / load_case.noise_sd.value_or(1) *
+        supports.held.select(supports.displacement, load_case.displacement);
+  }
+  return q;
+}
+
+Eigen::MatrixXd WeightedLoads(const Scene& scene) {
+  Eigen::MatrixXd f;
+  ResizeInLargePages(scene.mesh.NumDofs(),
+                     Eigen::Index(scene.load_cases.size()), f);
+  AssembleLoadCases(scene, f);
+  for (Eigen::Index k = 0; k < f.cols(); ++k) {
+    f.col(k) *= 1 / scene.load_cases[k].noise_sd.value_or(1);
+  }
+  return f;
 }
 
 }  // namespace

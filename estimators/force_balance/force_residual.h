@@ -41,7 +41,7 @@ class ForceScene {
 /// The force residual F theta - f of a measurement, F = [f_1(q) ... f_m(q)], of
 /// the moduli theta of any materials, over the free degrees of freedom of all
 /// load cases, compressed to the triangle of a QR factorisation of [F f].  Load
-/// cases are weighted (weighted_load_cases.h).
+/// cases are weighted: each is divided by its noise_sd where that is given.
 class ForceResidual {
  public:
   /// One element pass.  `prepared` is of this scene, and outlives this object.

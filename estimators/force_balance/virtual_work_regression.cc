@@ -34,19 +34,6 @@ std::optional<Eigen::VectorXd> Start(const FreeParameters& free,
   return free.VariablesOf(values_at(scale));
 }
 
-// Starts from the moduli which balance the work without weights, but for what
-// is known; empty where their stiffness is not positive definite.
-std::optional<Eigen::VectorXd> LinearStart(const FreeParameters& free,
-                                           const WorkBalance& balance) {
-  Eigen::VectorXd parameters = free.All().ParametersOf(balance.LeastSquares());
-  for (Eigen::Index i = 0; i < parameters.size(); ++i) {
-    parameters(i) = free.All().All()[i].known.value_or(parameters(i));
-  }
-  const Eigen::VectorXd variables = free.VariablesOf(parameters);
-  return variables.allFinite() ? std::optional<Eigen::VectorXd>(variables)
-                               : std::nullopt;
-}
-
 bool AreIsotropic(const MaterialParameters& parameters) {
   for (std::size_t i = 0; i < parameters.NumMaterials(); ++i) {
     if (!parameters.LawOf(i).BlockEntries().empty()) {
@@ -156,9 +143,10 @@ std::optional<BoundedMinimum> MinimizeWorkBalance(const FreeParameters& free,
   // Ceres' tolerances ask for displacements of this unit.
   const double unit = forces.DisplacementNorm();
   if (!AreIsotropic(free.All())) {
-    // Where there are many moduli, typical values are far off.
+    // Where there are many moduli, typical values are far off, and those which
+    // balance the work without weights are near.
     if (const std::optional<Eigen::VectorXd> start =
-            LinearStart(free, balance)) {
+            free.VariablesOfModuli(balance.LeastSquares())) {
       return MinimizeFrom(free, *start, max_iterations, unit, balance);
     }
   }

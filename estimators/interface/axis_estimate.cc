@@ -14,20 +14,6 @@ namespace {
 // The components of w are at the end of the parameters of the law.
 constexpr std::size_t kNumRotations = 2;
 
-// Returns the covariance from parameter `first` on; what is given has no error.
-Eigen::MatrixXd CovarianceOfParameters(const Estimate& estimate,
-                                       Eigen::Index first, Eigen::Index count) {
-  Eigen::MatrixXd covariance =
-      estimate.parameter_covariance.block(first, first, count, count);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    if (estimate.parameters[first + k].is_known) {
-      covariance.row(k).setZero();
-      covariance.col(k).setZero();
-    }
-  }
-  return covariance;
-}
-
 double ChiSquareOfAnisotropy(const Eigen::VectorXd& parameters,
                              const Eigen::MatrixXd& covariance) {
   // Exact displacements, and parameters that are given, leave no more than
@@ -44,18 +30,35 @@ double ChiSquareOfAnisotropy(const Eigen::VectorXd& parameters,
 
 }  // namespace
 
-bool HasFreeAxis(const Scene& scene) {
-  return std::any_of(scene.materials.begin(), scene.materials.end(),
+bool HasFreeAxis(const std::vector<Material>& materials) {
+  return std::any_of(materials.begin(), materials.end(),
                      [](const Material& material) {
                        return material.law == FreeAxisLaw::kName;
                      });
 }
 
+bool AreAxesApart(const MaterialParameters& all, const Eigen::VectorXd& a,
+                  const Eigen::VectorXd& b) {
+  const double near = std::cos(3 * kLimits.largest_axis_error);
+  for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
+    const Eigen::Index first = all.FirstParameter(i);
+    const auto count = Eigen::Index(all.LawOf(i).Parameters().size());
+    if (all.LawOf(i).Name() == FreeAxisLaw::kName &&
+        std::abs(FreeAxisLaw::Axis(a.segment(first, count))
+                     .dot(FreeAxisLaw::Axis(b.segment(first, count)))) < near) {
+      return true;
+    }
+  }
+  return false;
+}
+
 std::vector<AxisEstimate> AxesOf(const Scene& scene, const Estimate& estimate) {
   std::vector<AxisEstimate> axes;
-  if (estimate.parameters.empty() || !HasFreeAxis(scene)) {
+  if (estimate.parameters.empty() || !HasFreeAxis(scene.materials)) {
     return axes;
   }
+  const Eigen::VectorXd values = estimate.ParameterValues();
+  const Eigen::MatrixXd of_all = estimate.CovarianceWithGiven();
   const MaterialParameters all(scene.materials, scene.mesh.section.model);
   for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
     if (all.LawOf(i).Name() != FreeAxisLaw::kName) {
@@ -63,9 +66,7 @@ std::vector<AxisEstimate> AxesOf(const Scene& scene, const Estimate& estimate) {
     }
     const Eigen::Index first = all.FirstParameter(i);
     const auto count = Eigen::Index(all.LawOf(i).Parameters().size());
-    const Eigen::VectorXd parameters = Eigen::VectorXd::NullaryExpr(
-        count,
-        [&](Eigen::Index k) { return estimate.parameters[first + k].value; });
+    const Eigen::VectorXd parameters = values.segment(first, count);
     AxisEstimate axis;
     axis.regions = estimate.parameters[first].regions;
     axis.first_rotation = std::size_t(first + count) - kNumRotations;
@@ -75,7 +76,7 @@ std::vector<AxisEstimate> AxesOf(const Scene& scene, const Estimate& estimate) {
     }
     const Eigen::MatrixXd jacobian =
         FreeAxisLaw::AxisJacobian(parameters).rightCols(kNumRotations);
-    const Eigen::MatrixXd own = CovarianceOfParameters(estimate, first, count);
+    const Eigen::MatrixXd own = of_all.block(first, first, count, count);
     const Eigen::MatrixXd covariance =
         jacobian * own.bottomRightCorner(kNumRotations, kNumRotations) *
         jacobian.transpose();

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
 
@@ -13,7 +14,13 @@ namespace elastimate {
 inline constexpr double kDegreesOfRadian = 57.295779513082323;
 
 /// Whether a material has an axis that is to be found (FreeAxisLaw).
-bool HasFreeAxis(const Scene& scene);
+bool HasFreeAxis(const std::vector<Material>& materials);
+
+/// Whether an axis that is to be found is so far from itself in two sets of
+/// parameters that it is another one: three of the largest errors that an axis
+/// may have.
+bool AreAxesApart(const MaterialParameters& all, const Eigen::VectorXd& a,
+                  const Eigen::VectorXd& b);
 
 /// The axis of each material whose axis is a parameter, from the parameters of
 /// the estimate and their covariance C: the error of its direction is the

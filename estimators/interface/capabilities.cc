@@ -74,11 +74,17 @@ std::string WhyNotTheseMaterials(const Capabilities& capabilities,
   if (IsOneIsotropicMaterial(scene.materials)) {
     return "";
   }
+  const MaterialParameters parameters(scene.materials,
+                                      scene.mesh.section.model);
+  const std::string why_large = WhyNotSmallStrains(parameters);
+  if (!why_large.empty()) {
+    return why_large;
+  }
   if (!capabilities.takes_materials) {
     return "it takes only one isotropic material without known parameters; use "
            "--estimator=iterative-fe or --estimator=virtual-fields";
   }
-  if (!capabilities.takes_free_axes && HasFreeAxis(scene)) {
+  if (!capabilities.takes_free_axes && HasFreeAxis(scene.materials)) {
     return "it takes only materials whose axis is known; use "
            "--estimator=iterative-fe or --estimator=reduced-fe, or give the "
            "axis";
@@ -98,9 +104,7 @@ std::string WhyNotTheseMaterials(const Capabilities& capabilities,
     return "bounds on E and nu are for isotropic materials only, but the scene "
            "has others; give bounds on their parameters in the scene";
   }
-  if (MaterialParameters(scene.materials, scene.mesh.section.model)
-          .Free()
-          .empty()) {
+  if (parameters.Free().empty()) {
     return "every parameter of the materials is known, so that there is "
            "nothing to estimate; leave one out of \"known\"";
   }

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 
 #include "elastimate/core/algebra/eigen_abi.h"
-#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/laws/elasticity.h"
 
 namespace elastimate {
 

@@ -4,8 +4,6 @@
 #include <cassert>
 #include <cmath>
 
-#include "elastimate/estimators/interface/limits.h"
-
 namespace elastimate {
 namespace {
 
@@ -126,6 +124,23 @@ void Estimate::Fail(const Finding& finding) {
   why_no_standard_error = "the estimate is not usable";
 }
 
+Eigen::VectorXd Estimate::ParameterValues() const {
+  return Eigen::VectorXd::NullaryExpr(
+      Eigen::Index(parameters.size()),
+      [this](Eigen::Index i) { return parameters[i].value; });
+}
+
+Eigen::MatrixXd Estimate::CovarianceWithGiven() const {
+  Eigen::MatrixXd covariance_of_all = parameter_covariance;
+  for (Eigen::Index i = 0; i < covariance_of_all.rows(); ++i) {
+    if (parameters[i].is_known) {
+      covariance_of_all.row(i).setZero();
+      covariance_of_all.col(i).setZero();
+    }
+  }
+  return covariance_of_all;
+}
+
 std::optional<double> Estimate::YoungsModulusStandardError() const {
   return FiniteOrNothing(std::sqrt(covariance(0, 0)));
 }
@@ -147,17 +162,6 @@ std::optional<double> Estimate::BulkComplianceStandardError() const {
 std::optional<double> Estimate::Correlation() const {
   return FiniteOrNothing(covariance(0, 1) /
                          std::sqrt(covariance(0, 0) * covariance(1, 1)));
-}
-
-void WidenInterval(double variance, Estimate& estimate) {
-  if (!estimate.poisson_ratio_interval) {
-    return;
-  }
-  auto& [lower, upper] = *estimate.poisson_ratio_interval;
-  const double nu = estimate.elasticity.poisson_ratio;
-  const double distance = kTwoSidedErrors * std::sqrt(variance);
-  lower = std::max(nu - std::hypot(nu - lower, distance), -1.0);
-  upper = std::min(nu + std::hypot(upper - nu, distance), 0.5);
 }
 
 }  // namespace elastimate

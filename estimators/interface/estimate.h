@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/laws/elasticity.h"
 #include "elastimate/core/scene/deformation_size.h"
 #include "elastimate/core/solvers/stiffness_solver.h"
 #include "elastimate/estimators/interface/error_budget.h"
@@ -309,6 +309,10 @@ struct Estimate {
   /// covariance, standard errors and those of noise.  Precondition: the finding
   /// is an error.
   void Fail(const Finding& finding);
+  /// The values of `parameters`.
+  Eigen::VectorXd ParameterValues() const;
+  /// `parameter_covariance`, in which what is given has no error.
+  Eigen::MatrixXd CovarianceWithGiven() const;
   /// Square roots of the diagonal of `covariance`; empty when unknown.
   std::optional<double> YoungsModulusStandardError() const;
   std::optional<double> PoissonRatioStandardError() const;
@@ -321,10 +325,6 @@ struct Estimate {
 
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 };
-
-/// Widens the interval of nu, where there is one, by an independent error of
-/// this variance.
-void WidenInterval(double variance, Estimate& estimate);
 
 }  // namespace elastimate
 

@@ -9,7 +9,6 @@
 #include "elastimate/core/text/numbers.h"
 #include "elastimate/estimators/interface/input_checks.h"
 #include "elastimate/estimators/interface/judge.h"
-#include "elastimate/estimators/interface/missing_errors.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 
 namespace elastimate {
@@ -107,7 +106,6 @@ Estimate Estimator::Run(const Scene& measured,
   CheckLoads(scene);
   CheckSupported(*this, scene, options);
   Estimate estimate = DoRun(scene, options);
-  FailWithoutParameters(Name(), scene, estimate);
   FinishEstimate(Name(), scene, options, findings, estimate);
   estimate.seconds = stopwatch.Lap();
   return estimate;

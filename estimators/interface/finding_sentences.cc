@@ -280,6 +280,15 @@ Finding AxisUndetermined(const std::vector<std::string>& axes) {
                "(--axis=X,Y,Z)");
 }
 
+Finding OtherAxisAlike() {
+  return Error(
+      FindingCode::kParametersUndetermined,
+      "another direction of the axis explains the data nearly as "
+      "well, or the material may be isotropic",
+      "give the axis (--axis=X,Y,Z), add load cases that pull in other "
+      "directions, or use --material=auto");
+}
+
 Finding CombinationsOnly(const std::vector<std::string>& combinations) {
   return Warning(
       FindingCode::kParametersUndetermined,

@@ -55,6 +55,7 @@ Finding ParametersUndeterminedOnBounds(
     const std::vector<std::string>& parameters);
 /// `axes` describes each, such as "the axis of region 3 (+- 24 degrees)".
 Finding AxisUndetermined(const std::vector<std::string>& axes);
+Finding OtherAxisAlike();
 /// Says the first of them.
 Finding CombinationsOnly(const std::vector<std::string>& combinations);
 /// "region 3".

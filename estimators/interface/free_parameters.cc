@@ -127,8 +127,10 @@ Eigen::VectorXd FreeParameters::ParametersAt(
   return parameters;
 }
 
-Eigen::VectorXd FreeParameters::VariablesOf(
-    const Eigen::VectorXd& parameters) const {
+Eigen::VectorXd FreeParameters::VariablesOf(Eigen::VectorXd parameters) const {
+  for (Eigen::Index i = 0; i < parameters.size(); ++i) {
+    parameters(i) = all_.All()[i].known.value_or(parameters(i));
+  }
   const Eigen::VectorXd units = all_.UnitsOfErrors(parameters);
   Eigen::VectorXd variables(Size());
   for (Eigen::Index i = 0; i < Size(); ++i) {
@@ -151,6 +153,13 @@ Eigen::VectorXd FreeParameters::VariablesOf(
         law.Moduli(parameters.segment(all_.Free()[first], size), all_.Model()));
   }
   return variables;
+}
+
+std::optional<Eigen::VectorXd> FreeParameters::VariablesOfModuli(
+    const Eigen::VectorXd& moduli) const {
+  const Eigen::VectorXd variables = VariablesOf(all_.ParametersOf(moduli));
+  return variables.allFinite() ? std::optional<Eigen::VectorXd>(variables)
+                               : std::nullopt;
 }
 
 Eigen::MatrixXd FreeParameters::ParameterJacobian(

@@ -2,6 +2,7 @@
 #define ELASTIMATE_ESTIMATORS_INTERFACE_FREE_PARAMETERS_H_
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "elastimate/core/materials/material_parameters.h"
@@ -23,6 +24,10 @@ class FreeParameters {
 
   const MaterialParameters& All() const { return all_; }
   Eigen::Index Size() const { return Eigen::Index(all_.Free().size()); }
+  /// The parameter of a variable.
+  const MaterialParameters::Parameter& Free(Eigen::Index variable) const {
+    return all_.All()[all_.Free()[variable]];
+  }
 
   /// The bounds of each variable: as given for its material, else by the
   /// options, and the range of its law.
@@ -33,10 +38,13 @@ class FreeParameters {
   /// where none is given, or on one side of a modulus alone.
   Eigen::VectorXd ErrorsByBounds(const Eigen::VectorXd& variables) const;
 
-  /// All parameters p(x), and x of them, moved into the bounds; not numbers
-  /// where a stiffness is not positive definite.
+  /// All parameters p(x), and x of those that are not known, moved into the
+  /// bounds; not numbers where a stiffness is not positive definite.
   Eigen::VectorXd ParametersAt(const Eigen::VectorXd& variables) const;
-  Eigen::VectorXd VariablesOf(const Eigen::VectorXd& parameters) const;
+  Eigen::VectorXd VariablesOf(Eigen::VectorXd parameters) const;
+  /// The variables of some moduli; empty where VariablesOf are not numbers.
+  std::optional<Eigen::VectorXd> VariablesOfModuli(
+      const Eigen::VectorXd& moduli) const;
   /// dp / dx of the free parameters, size x size.
   Eigen::MatrixXd ParameterJacobian(const Eigen::VectorXd& variables) const;
   /// dp / dx in the units of the errors: for moduli it is d ln p / dx.
@@ -46,9 +54,6 @@ class FreeParameters {
   Eigen::MatrixXd ModuliJacobian(const Eigen::VectorXd& variables) const;
 
  private:
-  const MaterialParameters::Parameter& Free(Eigen::Index variable) const {
-    return all_.All()[all_.Free()[variable]];
-  }
   bool IsOfFactors(Eigen::Index variable) const {
     return has_factors_[Free(variable).material];
   }

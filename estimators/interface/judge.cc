@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "elastimate/core/text/numbers.h"
 #include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/kinematic_error.h"
 #include "elastimate/estimators/interface/limits.h"
-#include "elastimate/estimators/interface/missing_errors.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
 #include "elastimate/estimators/interface/priors.h"
 #include "elastimate/estimators/interface/rules.h"
@@ -33,29 +33,54 @@ void JudgeMeshError(const Scene& scene, Estimate& estimate) {
       estimate.error_budget.discretization.array().isFinite().any();
   if (scene.origin == Origin::kMeasured && !is_known) {
     estimate.Add(MeshErrorUnknown());
-  } else if (IsDiscretizationErrorNotable(estimate) &&
+  } else if (AreNotable(estimate.error_budget.discretization, estimate) &&
              !estimate.Has(FindingCode::kSupportsEndWithinElements)) {
     estimate.Add(DiscretizationErrorFinding(estimate));
   }
 }
 
-}  // namespace
-
-bool IsDiscretizationErrorNotable(const Estimate& estimate) {
-  return AreNotable(estimate.error_budget.discretization, estimate);
+// Fails an estimate that claims to be usable without parameters of the
+// materials or the covariance of these.
+void RequireParameters(Estimate& estimate) {
+  const auto size = Eigen::Index(estimate.parameters.size());
+  if (!estimate.IsUsable()) {
+    return;
+  }
+  if (size == 0) {
+    estimate.Fail(
+        ErrorsMissing(estimate.estimator, "parameters of the materials"));
+  } else if (estimate.parameter_covariance.rows() != size ||
+             estimate.parameter_covariance.cols() != size) {
+    estimate.Fail(ErrorsMissing(
+        estimate.estimator,
+        "a covariance of its " + Counted(std::size_t(size), "parameter")));
+  }
 }
+
+// Fails an estimate that claims to be usable without the variance of a
+// parameter or a reason for that: nobody could tell how far to trust the value.
+void RequireErrors(Estimate& estimate) {
+  for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
+    const ParameterEstimate& parameter = estimate.parameters[i];
+    const auto place = Eigen::Index(i);
+    if (estimate.IsUsable() && estimate.why_no_standard_error.empty() &&
+        !parameter.is_known &&
+        std::isnan(estimate.parameter_covariance(place, place))) {
+      estimate.Fail(ErrorsMissing(estimate.estimator,
+                                  "a standard error of " + parameter.Label()));
+    }
+  }
+}
+
+}  // namespace
 
 void Judge(const Evidence& evidence, const EstimatorOptions& options,
            Estimate& estimate) {
   estimate.Accept();
   std::optional<Finding> error;
-  for (const Rule rule : Rules()) {
-    const std::optional<Finding> finding = rule(evidence, options, estimate);
-    if (!finding) {
-      continue;
-    }
-    if (finding->severity != Severity::kError) {
-      estimate.Add(*finding);
+  for (const Finding& finding : ApplyRules(evidence, options, estimate)) {
+    if (finding.severity != Severity::kError) {
+      estimate.Add(finding);
     } else if (!error) {
       error = finding;
     }
@@ -79,12 +104,13 @@ void FinishEstimate(std::string_view estimator, const Scene& scene,
       estimate.findings.insert(estimate.findings.begin(), *finding);
     }
   }
-  JudgeKinematics(scene, options, estimate);
-  JudgeThickness(scene, estimate);
   if (estimate.parameters.empty() && IsOneIsotropicMaterial(scene.materials)) {
     EnterParametersOfElasticity(scene, options, estimate);
-    FailWithoutErrors(estimate);
+    RequireErrors(estimate);
   }
+  RequireParameters(estimate);
+  JudgeKinematics(scene, estimate);
+  JudgeThickness(scene, estimate);
   ApplyPriors(scene, options, estimate);
   estimate.stiffnesses = StiffnessesOf(scene, estimate);
   estimate.axes = AxesOf(scene, estimate);

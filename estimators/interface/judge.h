@@ -18,15 +18,12 @@ namespace elastimate {
 void Judge(const Evidence& evidence, const EstimatorOptions& options,
            Estimate& estimate);
 
-/// Whether the discretisation error is larger than 1 % and than half a standard
-/// error of E, or that of nu than 0.01 and half its standard error.
-bool IsDiscretizationErrorNotable(const Estimate& estimate);
-
-/// Enters the estimator's name, the findings of its input, and an interval of
-/// nu where only its standard error is known; warns of a mesh error that is
-/// notable or unknown; and turns an estimate
-/// that claims to be ok into what it is, when it is not finite, not physical,
-/// or not determined.
+/// Enters the estimator's name, the findings of its input, and what follows
+/// from the parameters and their covariance: the errors of other causes,
+/// standard errors and intervals.  Warns of a mesh error that is notable or
+/// unknown, and turns an estimate that claims to be ok into what it is, when it
+/// is not finite, not physical, not determined, or without errors or a reason
+/// for that.
 void FinishEstimate(std::string_view estimator, const Scene& scene,
                     const EstimatorOptions& options,
                     const std::vector<Finding>& findings, Estimate& estimate);

@@ -16,13 +16,12 @@ bool IsMentioned(const DeformationSize& size) {
 
 // A failed estimate may have no parameters, of which a ratio is then taken to
 // be free.
-bool IsARatioFree(const EstimatorOptions& options, const Estimate& estimate) {
-  return !options.known_poisson_ratio &&
-         (estimate.parameters.empty() ||
-          std::any_of(estimate.parameters.begin(), estimate.parameters.end(),
-                      [](const ParameterEstimate& parameter) {
-                        return !parameter.is_known && !parameter.IsStiffness();
-                      }));
+bool IsARatioFree(const Estimate& estimate) {
+  return estimate.parameters.empty() ||
+         std::any_of(estimate.parameters.begin(), estimate.parameters.end(),
+                     [](const ParameterEstimate& parameter) {
+                       return !parameter.is_known && !parameter.IsStiffness();
+                     });
 }
 
 bool IsUnusable(const KinematicError& error, bool is_ratio_free) {
@@ -35,26 +34,14 @@ bool IsUnusable(const KinematicError& error, bool is_ratio_free) {
 // them as those of a cause.
 void AddError(const KinematicError& error, ParameterErrors& of_cause,
               Estimate& estimate) {
-  estimate.covariance(0, 0) +=
-      std::pow(error.log_modulus * estimate.elasticity.youngs_modulus, 2);
-  estimate.covariance(1, 1) += std::pow(error.ratio, 2);
-  WidenInterval(std::pow(error.ratio, 2), estimate);
-  const auto size = static_cast<Eigen::Index>(estimate.parameters.size());
-  if (size == 0) {
-    of_cause = Eigen::Vector2d(error.log_modulus, error.ratio);
-    return;
-  }
-  of_cause.resize(size);
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const ParameterEstimate& parameter =
-        estimate.parameters[static_cast<std::size_t>(i)];
+  of_cause.resize(Eigen::Index(estimate.parameters.size()));
+  for (Eigen::Index i = 0; i < of_cause.size(); ++i) {
+    const ParameterEstimate& parameter = estimate.parameters[i];
     const double relative =
         parameter.IsStiffness() ? error.log_modulus : error.ratio;
     of_cause(i) = parameter.is_known ? Estimate::kUnknown : relative;
-    if (estimate.parameter_covariance.size() != 0) {
-      estimate.parameter_covariance(i, i) +=
-          std::pow(relative * parameter.ErrorUnit(), 2);
-    }
+    estimate.parameter_covariance(i, i) +=
+        std::pow(relative * parameter.ErrorUnit(), 2);
   }
 }
 
@@ -69,8 +56,7 @@ KinematicError KinematicErrorOf(const DeformationSize& size) {
           0.35 * size.strain + 0.25 * square};
 }
 
-void JudgeKinematics(const Scene& scene, const EstimatorOptions& options,
-                     Estimate& estimate) {
+void JudgeKinematics(const Scene& scene, Estimate& estimate) {
   if (estimate.Has(FindingCode::kLargeDeformation) || estimate.series) {
     return;
   }
@@ -79,7 +65,7 @@ void JudgeKinematics(const Scene& scene, const EstimatorOptions& options,
     return;
   }
   const KinematicError error = KinematicErrorOf(estimate.deformation);
-  if (IsUnusable(error, IsARatioFree(options, estimate))) {
+  if (IsUnusable(error, IsARatioFree(estimate))) {
     estimate.Fail(LargeDeformation(estimate.deformation, error.log_modulus,
                                    Severity::kError,
                                    scene.is_rigid_motion_free));

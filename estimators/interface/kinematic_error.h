@@ -3,7 +3,6 @@
 
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
-#include "elastimate/estimators/interface/estimator.h"
 
 namespace elastimate {
 
@@ -29,8 +28,7 @@ KinematicError KinematicErrorOf(const DeformationSize& size);
 /// computed (Origin::kComputed) have no such error.  An estimate
 /// that has been through this stays as it is, and so does the joint one of a
 /// series, whose frames have.
-void JudgeKinematics(const Scene& scene, const EstimatorOptions& options,
-                     Estimate& estimate);
+void JudgeKinematics(const Scene& scene, Estimate& estimate);
 
 /// Adds the standard deviation of the thickness to those of moduli, and warns
 /// of it, once.

@@ -70,6 +70,10 @@ struct Limits {
   /// A standard error of the direction of an axis above this [rad] says that
   /// the data do not determine it; its scale is a right angle.
   double largest_axis_error = 0.15;
+  /// Where chi^2 of the best fit with another axis is larger by less than this,
+  /// the data do not determine the axis: by noise, the wrong one of two is so
+  /// far ahead in about one scene of a hundred.
+  double least_axis_preference = 9;
   /// A distance from isotropy below this (chi^2 with 3 degrees of freedom,
   /// about the one of all axes where chance makes it largest) says that there
   /// is none, however small the error about a minimum that noise made is.

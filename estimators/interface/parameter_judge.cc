@@ -25,11 +25,18 @@ std::string NameOfBound(const ParameterEstimate& parameter, bool is_lower) {
   return parameter.Label() + (is_lower ? " (lower)" : " (upper)");
 }
 
-std::vector<ParameterEstimate> ParametersWithoutValues(
-    const Scene& scene, const MaterialParameters& parameters) {
+std::vector<ParameterEstimate> DescribeParameters(
+    const Scene& scene, const MaterialParameters& parameters,
+    const Eigen::VectorXd& values) {
+  const Eigen::VectorXd units = parameters.UnitsOfErrors(values);
   std::vector<ParameterEstimate> all;
   for (const MaterialParameters::Parameter& parameter : parameters.All()) {
+    const auto place = Eigen::Index(all.size());
     ParameterEstimate estimate;
+    estimate.value = values(place);
+    if (parameter.law_parameter->beside) {
+      estimate.beside = units(place);
+    }
     estimate.name = parameter.law_parameter->name;
     estimate.symbol = parameter.law_parameter->symbol;
     estimate.is_modulus = parameter.law_parameter->is_modulus;
@@ -217,23 +224,26 @@ Interval IntervalOf(const ParameterEstimate& parameter,
   return {std::max(lowest, value - width), std::min(highest, value + width)};
 }
 
+void EnterError(std::size_t place, Estimate& estimate) {
+  ParameterEstimate& parameter = estimate.parameters[place];
+  const auto i = Eigen::Index(place);
+  parameter.standard_error = std::sqrt(estimate.parameter_covariance(i, i));
+  parameter.interval = IntervalOf(parameter, estimate);
+}
+
 // What has no finite variance is not determined, unless it is known why there
 // is none.
 void EnterErrors(Estimate& estimate) {
   bool are_all_finite = true;
   for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
-    ParameterEstimate& parameter = estimate.parameters[i];
-    if (parameter.is_known) {
+    if (estimate.parameters[i].is_known) {
       continue;
     }
-    if (!HasFiniteVariance(estimate, i)) {
+    if (HasFiniteVariance(estimate, i)) {
+      EnterError(i, estimate);
+    } else {
       are_all_finite = false;
-      continue;
     }
-    const double error = std::sqrt(
-        estimate.parameter_covariance(Eigen::Index(i), Eigen::Index(i)));
-    parameter.standard_error = error;
-    parameter.interval = IntervalOf(parameter, estimate);
   }
   if (!are_all_finite && estimate.why_no_standard_error.empty()) {
     FailUndetermined(estimate);
@@ -361,14 +371,7 @@ void JudgeBiasOfParameters(Estimate& estimate) {
 void EnterParameters(const Scene& scene, const FreeParameters& free,
                      const Eigen::VectorXd& values, Estimate& estimate) {
   estimate.element_order = scene.mesh.Order();
-  estimate.parameters = ParametersWithoutValues(scene, free.All());
-  const Eigen::VectorXd units = free.All().UnitsOfErrors(values);
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    estimate.parameters[i].value = values(i);
-    if (free.All().All()[i].law_parameter->beside) {
-      estimate.parameters[i].beside = units(i);
-    }
-  }
+  estimate.parameters = DescribeParameters(scene, free.All(), values);
   estimate.parameter_covariance.setConstant(values.size(), values.size(),
                                             Estimate::kUnknown);
 }
@@ -395,8 +398,7 @@ ParameterErrors ErrorsOfVariables(const FreeParameters& free,
 Eigen::VectorXd LargestErrorsOfVariables(const FreeParameters& free) {
   Eigen::VectorXd errors(free.Size());
   for (Eigen::Index i = 0; i < errors.size(); ++i) {
-    const LawParameter& parameter =
-        *free.All().All()[free.All().Free()[i]].law_parameter;
+    const LawParameter& parameter = *free.Free(i).law_parameter;
     errors(i) = parameter.is_modulus || parameter.beside
                     ? kLimits.largest_youngs_modulus_error
                     : kLimits.largest_poisson_ratio_error;
@@ -440,7 +442,12 @@ void JudgeParameters(Estimate& estimate) {
   }
 }
 
-void JudgeDetermination(Estimate& estimate) {
+void JudgeGrownErrors(Estimate& estimate) {
+  for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
+    if (estimate.parameters[i].standard_error) {
+      EnterError(i, estimate);
+    }
+  }
   if (estimate.IsUsable()) {
     JudgeDeterminationOfParameters(estimate);
   }

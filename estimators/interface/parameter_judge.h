@@ -16,9 +16,11 @@ namespace elastimate {
 /// the options have it, else as "nu of region 3 (upper)".
 std::string NameOfBound(const ParameterEstimate& parameter, bool is_lower);
 
-/// The parameters of the materials of a scene, of which no value is entered.
-std::vector<ParameterEstimate> ParametersWithoutValues(
-    const Scene& scene, const MaterialParameters& parameters);
+/// The parameters of the materials of a scene with these values, without
+/// errors.
+std::vector<ParameterEstimate> DescribeParameters(
+    const Scene& scene, const MaterialParameters& parameters,
+    const Eigen::VectorXd& values);
 
 /// Enters all parameters with these values, without errors.
 void EnterParameters(const Scene& scene, const FreeParameters& free,
@@ -46,8 +48,9 @@ Eigen::VectorXd LargestErrorsOfVariables(const FreeParameters& free);
 /// of the others stay.  Says of each of several materials how many are.
 void JudgeParameters(Estimate& estimate);
 
-/// Judges again what is determined, where standard errors have grown.
-void JudgeDetermination(Estimate& estimate);
+/// Enters standard errors and intervals again from a covariance that has grown,
+/// and judges again what is determined.
+void JudgeGrownErrors(Estimate& estimate);
 
 /// Whether most of the errors of all parameters that are not determined is what
 /// the elements miss.

@@ -10,7 +10,6 @@
 #include "elastimate/estimators/interface/estimator.h"
 #include "elastimate/estimators/interface/input_checks.h"
 #include "elastimate/estimators/interface/judge.h"
-#include "elastimate/estimators/interface/missing_errors.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 
 namespace elastimate {
@@ -136,7 +135,6 @@ Estimate PreparedEstimator::RunHere() {
   const Scene& scene = state_->scene;
   const std::vector<Finding> findings = CheckMeasurements(scene);
   Estimate estimate = state_->preparation->Run(scene);
-  FailWithoutParameters(state_->name, scene, estimate);
   FinishEstimate(state_->name, scene, state_->options, findings, estimate);
   return estimate;
 }

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <vector>
 
 #include "elastimate/core/algebra/dense_algebra.h"
-#include "elastimate/core/materials/isotropic_law.h"
-#include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
+#include "elastimate/estimators/interface/free_parameters.h"
 #include "elastimate/estimators/interface/statistics.h"
 
 namespace elastimate {
@@ -23,28 +21,15 @@ struct Priors {
   Eigen::VectorXd variance;          // The diagonal of P.
 };
 
-std::vector<Eigen::Index> EstimatedPlaces(const Estimate& estimate) {
-  std::vector<Eigen::Index> places;
-  for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
-    if (!estimate.parameters[i].is_known) {
-      places.push_back(Eigen::Index(i));
-    }
-  }
-  return places;
-}
-
-Priors PriorsOf(const Scene& scene, const Estimate& estimate,
-                const std::vector<Eigen::Index>& estimated) {
-  const MaterialParameters parameters(scene.materials,
-                                      scene.mesh.section.model);
+Priors PriorsOf(const FreeParameters& free, const Estimate& estimate) {
   Priors priors;
   std::vector<double> distance;
   std::vector<double> variance;
-  for (std::size_t k = 0; k < estimated.size(); ++k) {
-    const ParameterEstimate& of = estimate.parameters[estimated[k]];
-    const std::optional<Prior>& prior = parameters.All()[estimated[k]].prior;
+  for (Eigen::Index k = 0; k < free.Size(); ++k) {
+    const ParameterEstimate& of = estimate.parameters[free.All().Free()[k]];
+    const std::optional<Prior>& prior = free.Free(k).prior;
     if (prior) {
-      priors.places.push_back(Eigen::Index(k));
+      priors.places.push_back(k);
       distance.push_back(of.is_modulus
                              ? std::log(prior->value / of.value)
                              : (prior->value - of.value) / of.ErrorUnit());
@@ -66,46 +51,15 @@ Eigen::VectorXd UnitsOf(const Estimate& estimate,
   return units;
 }
 
-// Between which the combination may lie: as bounds say, and a ratio between the
-// ends of its range, which the linear combination does not know.
-std::vector<Interval> AllowedOf(const Scene& scene,
-                                const EstimatorOptions& options,
-                                const Estimate& estimate,
-                                const std::vector<Eigen::Index>& estimated) {
-  const MaterialParameters parameters(scene.materials,
-                                      scene.mesh.section.model);
-  std::vector<Interval> allowed;
-  for (const Eigen::Index place : estimated) {
-    const ParameterEstimate& of = estimate.parameters[place];
-    const bool is_isotropic =
-        parameters.LawOf(parameters.All()[place].material).Name() ==
-        IsotropicLaw::kName;
-    Interval interval = {-std::numeric_limits<double>::infinity(),
-                         std::numeric_limits<double>::infinity()};
-    const auto narrow = [&interval](const Bounds& bounds) {
-      if (bounds.lower) {
-        interval.lower = *bounds.lower;
-      }
-      if (bounds.upper) {
-        interval.upper = *bounds.upper;
-      }
-    };
-    if (is_isotropic) {
-      narrow(of.is_modulus ? options.youngs_modulus : options.poisson_ratio);
-    }
-    for (const BoundsOfParameter& given :
-         scene.materials[parameters.All()[place].material].bounds) {
-      if (given.name == of.name) {
-        narrow(given.bounds);
-      }
-    }
-    if (is_isotropic && !of.is_modulus) {
-      interval = {std::max(interval.lower, kSmallestPoissonRatio),
-                  std::min(interval.upper, kLargestPoissonRatio)};
-    }
-    allowed.push_back(interval);
-  }
-  return allowed;
+// Changes a parameter by `change` in the units of errors, within the bounds of
+// its variable: the linear combination knows no ends of ranges.
+void Move(double change, const Bounds& bounds, ParameterEstimate& parameter) {
+  const double unit = parameter.ErrorUnit();
+  double y = change + (parameter.is_modulus ? std::log(parameter.value)
+                                            : parameter.value / unit);
+  y = std::max(y, bounds.lower.value_or(y));
+  y = std::min(y, bounds.upper.value_or(y));
+  parameter.value = parameter.is_modulus ? std::exp(y) : y * unit;
 }
 
 // Scales the parts of the errors as the errors from all causes change.
@@ -134,12 +88,13 @@ void EnterBudget(const std::vector<Eigen::Index>& estimated,
 void ApplyPriors(const Scene& scene, const EstimatorOptions& options,
                  Estimate& estimate) {
   constexpr double kChance = 0.01;
-  const std::vector<Eigen::Index> estimated = EstimatedPlaces(estimate);
   if (!HasPriors(scene.materials) || !estimate.IsUsable() ||
-      estimate.error_budget.prior.size() > 0 || estimated.empty()) {
+      estimate.error_budget.prior.size() > 0) {
     return;
   }
-  const Priors priors = PriorsOf(scene, estimate, estimated);
+  const FreeParameters free(scene, options);
+  const std::vector<Eigen::Index>& estimated = free.All().Free();
+  const Priors priors = PriorsOf(free, estimate);
   const Eigen::MatrixXd given =
       estimate.parameter_covariance(estimated, estimated);
   if (priors.places.empty() || !given.allFinite()) {
@@ -162,17 +117,11 @@ void ApplyPriors(const Scene& scene, const EstimatorOptions& options,
   EnterBudget(estimated, covariance.diagonal(), total - of_priors, of_priors,
               estimate.error_budget);
   std::vector<ParameterEstimate> without = estimate.parameters;
-  const std::vector<Interval> allowed =
-      AllowedOf(scene, options, estimate, estimated);
   for (std::size_t k = 0; k < estimated.size(); ++k) {
-    ParameterEstimate& parameter = estimate.parameters[estimated[k]];
-    without[estimated[k]].standard_error =
-        std::sqrt(given(Eigen::Index(k), Eigen::Index(k)));
-    parameter.value = parameter.is_modulus
-                          ? parameter.value * std::exp(change(k))
-                          : parameter.value + change(k) * units(k);
-    parameter.value =
-        std::clamp(parameter.value, allowed[k].lower, allowed[k].upper);
+    const auto place = Eigen::Index(k);
+    without[estimated[k]].standard_error = std::sqrt(given(place, place));
+    Move(change(place), free.VariableBounds()[k],
+         estimate.parameters[estimated[k]]);
   }
   const Eigen::VectorXd units_after = UnitsOf(estimate, estimated);
   estimate.parameter_covariance(estimated, estimated) =

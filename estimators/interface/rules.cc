@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
@@ -9,230 +10,213 @@
 namespace elastimate {
 namespace {
 
-using Result = std::optional<Finding>;
+// Collects what the rules find.
+class RuleBook {
+ public:
+  RuleBook(const Evidence& evidence, const EstimatorOptions& options,
+           const Estimate& estimate)
+      : evidence_(evidence), options_(options), estimate_(estimate) {}
 
-Result JudgeLoadBalance(const Evidence& evidence, const EstimatorOptions&,
-                        const Estimate&) {
-  const double imbalance = evidence.load_imbalance.value_or(0);
-  if (!(imbalance > kLimits.notable_youngs_modulus_error)) {
-    return std::nullopt;
+  std::vector<Finding> Apply() && {
+    JudgeData();
+    NoteWhatIsUsable();
+    JudgeModel();
+    return std::move(findings_);
   }
-  return LoadsOutOfBalance(imbalance, imbalance > kLimits.unusable_error
-                                          ? Severity::kError
-                                          : Severity::kWarning);
+
+ private:
+  void Add(Finding finding) { findings_.push_back(std::move(finding)); }
+
+  // Whether there is anything to estimate.
+  void JudgeData();
+  // What to say of a usable estimate.
+  void NoteWhatIsUsable();
+  // Whether the data determine it, and the model explains them.
+  void JudgeModel();
+
+  void JudgeLoadBalance();
+  void JudgeEnd();
+  void NoteOutliers();
+  void NoteAxes();
+  void JudgeBoundExcess();
+  void JudgeLargeResidual();
+  void JudgeKnownRatio();
+  void JudgeRatiosAtLimit();
+  void JudgeWorkCheck();
+
+  const Evidence& evidence_;
+  const EstimatorOptions& options_;
+  const Estimate& estimate_;
+  std::vector<Finding> findings_;
+};
+
+void RuleBook::JudgeData() {
+  JudgeLoadBalance();
+  if (!evidence_.do_loads_work) {
+    Add(LoadsDoNoWork());
+  }
+  if (evidence_.do_displacements_oppose_loads) {
+    Add(DisplacementsOpposeLoads());
+  }
+  if (evidence_.does_youngs_modulus_diverge) {
+    Add(YoungsModulusDiverges());
+  }
+  if (const auto& free = evidence_.free_direction) {
+    Add(OneCombination(free->at, free->direction));
+  }
+  if (evidence_.are_forces_dependent) {
+    Add(DependentForces());
+  }
+  JudgeEnd();
+  if (evidence_.too_few_components) {
+    Add(TooFewMeasurements(*evidence_.too_few_components));
+  }
 }
 
-Result JudgeLoadWork(const Evidence& evidence, const EstimatorOptions&,
-                     const Estimate&) {
-  return evidence.do_loads_work ? Result() : LoadsDoNoWork();
+void RuleBook::NoteWhatIsUsable() {
+  if (const auto& residual = evidence_.above_noise) {
+    Add(ResidualAboveNoise(residual->kind, residual->ratio));
+  }
+  NoteOutliers();
+  if (evidence_.smooth_residual_error.value_or(0) >
+      kLimits.notable_youngs_modulus_error) {
+    Add(SmoothResidual(*estimate_.residual_correlation));
+  }
+  NoteAxes();
+  if (evidence_.virtual_work_error.value_or(0) >
+      kLimits.notable_youngs_modulus_error) {
+    Add(VirtualWorkImbalance());
+  }
+  if (const auto& misfit = evidence_.resultant_misfit;
+      misfit && misfit->Excess() > 1) {
+    Add(ResultantsContradicted(misfit->distances.cwiseAbs().maxCoeff()));
+  }
+  if (const auto& errors = evidence_.support_errors;
+      errors && AreNotable(*errors, estimate_)) {
+    Add(SupportsEndWithinElements(*errors, estimate_));
+  }
 }
 
-Result JudgeSigns(const Evidence& evidence, const EstimatorOptions&,
-                  const Estimate&) {
-  return evidence.do_displacements_oppose_loads ? DisplacementsOpposeLoads()
-                                                : Result();
+void RuleBook::JudgeModel() {
+  JudgeBoundExcess();
+  JudgeLargeResidual();
+  JudgeKnownRatio();
+  JudgeRatiosAtLimit();
+  JudgeWorkCheck();
+  if (evidence_.correction.value_or(0) > kLimits.large_residual) {
+    Add(LargeCorrection(*evidence_.correction));
+  }
+  if (evidence_.end == End::kNotCertified) {
+    Add(FitNotCertified());
+  }
+  if (!evidence_.solver_notice.empty()) {
+    Add(SolverFallback(evidence_.solver_notice));
+  }
 }
 
-Result JudgeDivergence(const Evidence& evidence, const EstimatorOptions&,
-                       const Estimate&) {
-  return evidence.does_youngs_modulus_diverge ? YoungsModulusDiverges()
-                                              : Result();
+void RuleBook::JudgeLoadBalance() {
+  const double imbalance = evidence_.load_imbalance.value_or(0);
+  if (imbalance > kLimits.notable_youngs_modulus_error) {
+    Add(LoadsOutOfBalance(imbalance, imbalance > kLimits.unusable_error
+                                         ? Severity::kError
+                                         : Severity::kWarning));
+  }
 }
 
-Result JudgeFreeDirection(const Evidence& evidence, const EstimatorOptions&,
-                          const Estimate&) {
-  return evidence.free_direction
-             ? OneCombination(evidence.free_direction->at,
-                              evidence.free_direction->direction)
-             : Result();
-}
-
-Result JudgeDependence(const Evidence& evidence, const EstimatorOptions&,
-                       const Estimate&) {
-  return evidence.are_forces_dependent ? DependentForces() : Result();
-}
-
-Result JudgeEnd(const Evidence& evidence, const EstimatorOptions& options,
-                const Estimate&) {
-  switch (evidence.end) {
+void RuleBook::JudgeEnd() {
+  switch (evidence_.end) {
     case End::kSingularStiffness:
-      return SingularStiffness();
+      return Add(SingularStiffness());
     case End::kSearchFailed:
-      return SearchFailed(evidence.search_message);
+      return Add(SearchFailed(evidence_.search_message));
     case End::kIterationLimit:
-      return NoConvergence(options.max_iterations);
+      return Add(NoConvergence(options_.max_iterations));
     case End::kNotCertified:  // Matters to what is usable otherwise.
     case End::kDone:
       break;
   }
-  return std::nullopt;
 }
 
-Result JudgeCount(const Evidence& evidence, const EstimatorOptions&,
-                  const Estimate&) {
-  return evidence.too_few_components
-             ? TooFewMeasurements(*evidence.too_few_components)
-             : Result();
+void RuleBook::NoteOutliers() {
+  const std::optional<Eigen::Vector2d>& change = evidence_.outlier_change;
+  if (change && std::abs((*change)(0)) > kLimits.notable_youngs_modulus_error) {
+    Add(estimate_.is_model_in_doubt ? FarNeighbours()
+                                    : Outliers(*change, estimate_));
+  }
 }
 
-Result NoteResidualAboveNoise(const Evidence& evidence, const EstimatorOptions&,
-                              const Estimate&) {
-  return evidence.above_noise ? ResidualAboveNoise(evidence.above_noise->kind,
-                                                   evidence.above_noise->ratio)
-                              : Result();
-}
-
-Result NoteOutliers(const Evidence& evidence, const EstimatorOptions&,
-                    const Estimate& estimate) {
-  return evidence.outlier_change && std::abs((*evidence.outlier_change)(0)) >
-                                        kLimits.notable_youngs_modulus_error
-             ? (estimate.is_model_in_doubt
-                    ? FarNeighbours()
-                    : Outliers(*evidence.outlier_change, estimate))
-             : Result();
-}
-
-Result NoteSmoothResidual(const Evidence& evidence, const EstimatorOptions&,
-                          const Estimate& estimate) {
-  return evidence.smooth_residual_error &&
-                 *evidence.smooth_residual_error >
-                     kLimits.notable_youngs_modulus_error
-             ? SmoothResidual(*estimate.residual_correlation)
-             : Result();
-}
-
-Result NoteAxes(const Evidence& evidence, const EstimatorOptions&,
-                const Estimate&) {
-  const std::optional<AxisTurn>& turn = evidence.axis_turn;
-  return turn && turn->probability < kLimits.axis_significance &&
-                 turn->change > kLimits.notable_youngs_modulus_error &&
-                 turn->change_in_errors > 1
-             ? AxisTurned(turn->angle, turn->region, turn->change)
-             : Result();
-}
-
-Result NoteVirtualWork(const Evidence& evidence, const EstimatorOptions&,
-                       const Estimate&) {
-  return evidence.virtual_work_error.value_or(0) >
-                 kLimits.notable_youngs_modulus_error
-             ? VirtualWorkImbalance()
-             : Result();
+void RuleBook::NoteAxes() {
+  const std::optional<AxisTurn>& turn = evidence_.axis_turn;
+  if (turn && turn->probability < kLimits.axis_significance &&
+      turn->change > kLimits.notable_youngs_modulus_error &&
+      turn->change_in_errors > 1) {
+    Add(AxisTurned(turn->angle, turn->region, turn->change));
+  }
 }
 
 // A bound that the data contradict leaves much that is no noise.
-Result JudgeBoundExcess(const Evidence& evidence, const EstimatorOptions&,
-                        const Estimate&) {
-  if (!evidence.bound_excess) {
-    return std::nullopt;
+void RuleBook::JudgeBoundExcess() {
+  const std::optional<BoundExcess>& bound = evidence_.bound_excess;
+  if (bound &&
+      std::abs(bound->without / bound->with - 1) > kLimits.unusable_error &&
+      bound->excess > kLimits.significant_score * kLimits.significant_score *
+                          bound->variance) {
+    Add(BoundContradicted(bound->label, bound->without < bound->with));
   }
-  const BoundExcess& bound = *evidence.bound_excess;
-  return std::abs(bound.without / bound.with - 1) > kLimits.unusable_error &&
-                 bound.excess > kLimits.significant_score *
-                                    kLimits.significant_score * bound.variance
-             ? BoundContradicted(bound.label, bound.without < bound.with)
-             : Result();
 }
 
-Result JudgeLargeResidual(const Evidence& evidence, const EstimatorOptions&,
-                          const Estimate& estimate) {
+void RuleBook::JudgeLargeResidual() {
   // What is not known to be the best fit may leave more than the model does.
-  if (!evidence.smooth_part || evidence.end == End::kNotCertified) {
-    return std::nullopt;
+  if (!evidence_.smooth_part || evidence_.end == End::kNotCertified) {
+    return;
   }
-  if (*evidence.smooth_part > kLimits.large_residual) {
-    return LargeSmoothResidual(*evidence.smooth_part);
+  if (*evidence_.smooth_part > kLimits.large_residual) {
+    Add(LargeSmoothResidual(*evidence_.smooth_part));
+  } else if (*estimate_.displacement_residual > kLimits.large_residual &&
+             *evidence_.smooth_part == 0 &&
+             !evidence_.is_explained_by_given_noise) {
+    Add(LargeResidual(*estimate_.displacement_residual));
   }
-  return *estimate.displacement_residual > kLimits.large_residual &&
-                 *evidence.smooth_part == 0 &&
-                 !evidence.is_explained_by_given_noise
-             ? LargeResidual(*estimate.displacement_residual)
-             : Result();
 }
 
-Result JudgeKnownRatio(const Evidence& evidence, const EstimatorOptions&,
-                       const Estimate&) {
+void RuleBook::JudgeKnownRatio() {
   // Rounding has no standard error.
   constexpr double kRounding = 1e-6;
-  if (!evidence.known_ratio) {
-    return std::nullopt;
+  const std::optional<KnownRatio>& known = evidence_.known_ratio;
+  if (known &&
+      std::abs(known->difference) >
+          kLimits.significant_score * known->standard_error + kRounding) {
+    Add(KnownPoissonRatioContradicted(
+        known->label, known->asked_for, known->standard_error,
+        known->change_of_moduli <= kLimits.unusable_error ? Severity::kWarning
+                                                          : Severity::kError));
   }
-  const KnownRatio& known = *evidence.known_ratio;
-  if (!(std::abs(known.difference) >
-        kLimits.significant_score * known.standard_error + kRounding)) {
-    return std::nullopt;
-  }
-  return KnownPoissonRatioContradicted(
-      known.label, known.asked_for, known.standard_error,
-      known.change_of_moduli <= kLimits.unusable_error ? Severity::kWarning
-                                                       : Severity::kError);
 }
 
-Result JudgeWorkCheck(const Evidence& evidence, const EstimatorOptions&,
-                      const Estimate& estimate) {
-  switch (evidence.work_check) {
-    case WorkCheck::kIsMore:
-      return VirtualWorkImbalance(*estimate.force_residual, Severity::kWarning);
-    case WorkCheck::kContradicts:
-      return VirtualWorkImbalance(*estimate.force_residual, Severity::kError);
-    case WorkCheck::kIsNoise:
-    case WorkCheck::kNotMade:
-      break;
+void RuleBook::JudgeRatiosAtLimit() {
+  const std::vector<std::string>& ratios = evidence_.ratios_at_limit;
+  if (ratios.empty()) {
+    return;
   }
-  return std::nullopt;
-}
-
-Result NoteResultants(const Evidence& evidence, const EstimatorOptions&,
-                      const Estimate&) {
-  return evidence.resultant_misfit && evidence.resultant_misfit->Excess() > 1
-             ? ResultantsContradicted(
-                   evidence.resultant_misfit->distances.cwiseAbs().maxCoeff())
-             : Result();
-}
-
-Result JudgeCorrection(const Evidence& evidence, const EstimatorOptions&,
-                       const Estimate&) {
-  return evidence.correction.value_or(0) > kLimits.large_residual
-             ? LargeCorrection(*evidence.correction)
-             : Result();
-}
-
-Result JudgeRatiosAtLimit(const Evidence& evidence, const EstimatorOptions&,
-                          const Estimate& estimate) {
-  if (evidence.ratios_at_limit.empty()) {
-    return std::nullopt;
+  if (evidence_.is_a_ratio_at_minus_one) {
+    Add(PoissonRatioAtMinusOne());
+  } else if (estimate_.noise_attenuation) {
+    Add(PoissonRatioDivergesByNoise());
+  } else if (evidence_.outlier_change) {
+    // The fit without them is too far for a linear model.
+    Add(OutliersAtLimit(ratios));
+  } else if (estimate_.is_model_in_doubt) {
+    Add(RatiosAtLimit(ratios));
   }
-  if (evidence.is_a_ratio_at_minus_one) {
-    return PoissonRatioAtMinusOne();
-  }
-  if (estimate.noise_attenuation) {
-    return PoissonRatioDivergesByNoise();
-  }
-  // The fit without them is too far for a linear model.
-  if (evidence.outlier_change) {
-    return OutliersAtLimit(evidence.ratios_at_limit);
-  }
-  return estimate.is_model_in_doubt ? RatiosAtLimit(evidence.ratios_at_limit)
-                                    : Result();
 }
 
-Result NoteSupportEnds(const Evidence& evidence, const EstimatorOptions&,
-                       const Estimate& estimate) {
-  return evidence.support_errors &&
-                 AreNotable(*evidence.support_errors, estimate)
-             ? SupportsEndWithinElements(*evidence.support_errors, estimate)
-             : Result();
-}
-
-Result JudgeCertificate(const Evidence& evidence, const EstimatorOptions&,
-                        const Estimate&) {
-  return evidence.end == End::kNotCertified ? FitNotCertified() : Result();
-}
-
-Result NoteSolver(const Evidence& evidence, const EstimatorOptions&,
-                  const Estimate&) {
-  return evidence.solver_notice.empty()
-             ? Result()
-             : SolverFallback(evidence.solver_notice);
+void RuleBook::JudgeWorkCheck() {
+  const WorkCheck check = evidence_.work_check;
+  if (check == WorkCheck::kIsMore || check == WorkCheck::kContradicts) {
+    Add(VirtualWorkImbalance(
+        *estimate_.force_residual,
+        check == WorkCheck::kIsMore ? Severity::kWarning : Severity::kError));
+  }
 }
 
 }  // namespace
@@ -257,18 +241,10 @@ bool AreNotable(const ParameterErrors& errors, const Estimate& estimate) {
   return false;
 }
 
-const std::vector<Rule>& Rules() {
-  static const std::vector<Rule> rules = {
-      // Whether there is anything to estimate.
-      JudgeLoadBalance, JudgeLoadWork, JudgeSigns, JudgeDivergence,
-      JudgeFreeDirection, JudgeDependence, JudgeEnd, JudgeCount,
-      // What to say of a usable estimate.
-      NoteResidualAboveNoise, NoteOutliers, NoteSmoothResidual, NoteAxes,
-      NoteVirtualWork, NoteResultants, NoteSupportEnds,
-      // Whether the data determine it, and the model explains them.
-      JudgeBoundExcess, JudgeLargeResidual, JudgeKnownRatio, JudgeRatiosAtLimit,
-      JudgeWorkCheck, JudgeCorrection, JudgeCertificate, NoteSolver};
-  return rules;
+std::vector<Finding> ApplyRules(const Evidence& evidence,
+                                const EstimatorOptions& options,
+                                const Estimate& estimate) {
+  return RuleBook(evidence, options, estimate).Apply();
 }
 
 }  // namespace elastimate

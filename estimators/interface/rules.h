@@ -1,8 +1,6 @@
 #ifndef ELASTIMATE_ESTIMATORS_INTERFACE_RULES_H_
 #define ELASTIMATE_ESTIMATORS_INTERFACE_RULES_H_
 
-#include <Eigen/Core>
-#include <optional>
 #include <vector>
 
 #include "elastimate/estimators/interface/estimate.h"
@@ -12,14 +10,11 @@
 
 namespace elastimate {
 
-/// What one rule says of an estimate; empty when nothing.
-using Rule = std::optional<Finding> (*)(const Evidence& evidence,
-                                        const EstimatorOptions& options,
-                                        const Estimate& estimate);
-
-/// All rules about evidence, in the order in which they are applied: of several
-/// errors the first is the reason of the status.
-const std::vector<Rule>& Rules();
+/// What all rules about evidence find of an estimate, in the order in which
+/// they are applied: of several errors the first is the reason of the status.
+std::vector<Finding> ApplyRules(const Evidence& evidence,
+                                const EstimatorOptions& options,
+                                const Estimate& estimate);
 
 /// Whether one of some errors of the parameters, in their order and units of
 /// errors, is more than a part of its standard error that a user wants to be

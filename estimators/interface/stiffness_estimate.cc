@@ -23,18 +23,6 @@ Eigen::MatrixXd UnitStiffnesses(const Law& law, const Mesh& mesh) {
   return units;
 }
 
-// What is given has no error.
-Eigen::MatrixXd CovarianceOf(const Estimate& estimate) {
-  Eigen::MatrixXd covariance = estimate.parameter_covariance;
-  for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
-    if (estimate.parameters[i].is_known) {
-      covariance.row(i).setZero();
-      covariance.col(i).setZero();
-    }
-  }
-  return covariance;
-}
-
 }  // namespace
 
 std::vector<StiffnessEstimate> StiffnessesOf(const Scene& scene,
@@ -45,7 +33,8 @@ std::vector<StiffnessEstimate> StiffnessesOf(const Scene& scene,
   }
   const SectionModel model = scene.mesh.section.model;
   const MaterialParameters all(scene.materials, model);
-  const Eigen::MatrixXd covariance = CovarianceOf(estimate);
+  const Eigen::VectorXd values = estimate.ParameterValues();
+  const Eigen::MatrixXd covariance = estimate.CovarianceWithGiven();
   for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
     const Law& law = all.LawOf(i);
     if (law.Name() == IsotropicLaw::kName) {
@@ -53,9 +42,7 @@ std::vector<StiffnessEstimate> StiffnessesOf(const Scene& scene,
     }
     const Eigen::Index first = all.FirstParameter(i);
     const Eigen::Index count = Eigen::Index(law.Parameters().size());
-    const Eigen::VectorXd parameters = Eigen::VectorXd::NullaryExpr(
-        count,
-        [&](Eigen::Index k) { return estimate.parameters[first + k].value; });
+    const Eigen::VectorXd parameters = values.segment(first, count);
     const Eigen::MatrixXd units = UnitStiffnesses(law, scene.mesh);
     const Eigen::MatrixXd jacobian =
         units * law.ModuliJacobian(parameters, model);

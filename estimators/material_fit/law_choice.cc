@@ -16,18 +16,30 @@
 #include "elastimate/core/materials/material_frames.h"
 #include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/materials/orthotropic_law.h"
+#include "elastimate/core/materials/stiffness_factors.h"
 #include "elastimate/core/materials/transversely_isotropic_law.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/unknown_motion.h"
+#include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/free_parameters.h"
 #include "elastimate/estimators/material_fit/material_fit.h"
-#include "elastimate/estimators/material_fit/nearest_symmetry.h"
 #include "elastimate/estimators/material_fit/outliers.h"
 #include "elastimate/estimators/misfit/displacement_misfit.h"
 
 namespace elastimate {
 namespace {
+
+// Returns the W of W^T W = C^-1, where what is less certain than the rest of a
+// covariance by rounding counts as known to that.
+Eigen::MatrixXd WeightsOf(const Eigen::MatrixXd& covariance) {
+  constexpr double kRounding = 1e-12;
+  const SymmetricEigenDecomposition modes = DecomposeSymmetric(covariance);
+  const Eigen::VectorXd variances =
+      modes.values.cwiseMax(kRounding * modes.values.maxCoeff());
+  return variances.cwiseSqrt().cwiseInverse().asDiagonal() *
+         modes.vectors.transpose();
+}
 
 constexpr SectionModel kSolid = SectionModel::kSolid;
 constexpr Eigen::Index kNumStiffnesses = 21;
@@ -116,16 +128,11 @@ Eigen::MatrixXd UnitsInScene(const std::vector<Material>& materials) {
 }
 
 bool ArePositiveDefinite(const Eigen::VectorXd& stiffnesses) {
+  const AnisotropicLaw law;
   for (Eigen::Index first = 0; first < stiffnesses.size();
        first += kNumStiffnesses) {
-    Eigen::Matrix<double, 6, 6> stiffness;
-    Eigen::Index place = first;
-    for (Eigen::Index i = 0; i < 6; ++i) {
-      for (Eigen::Index j = i; j < 6; ++j) {
-        stiffness(i, j) = stiffness(j, i) = stiffnesses(place++);
-      }
-    }
-    if (!(DecomposeSymmetric(stiffness).values.minCoeff() > 0)) {
+    if (!IsStiffnessPositiveDefinite(
+            law, stiffnesses.segment(first, kNumStiffnesses), kSolid)) {
       return false;
     }
   }
@@ -189,10 +196,7 @@ double ChiSquareOfFreeAxes(const std::vector<Material>& materials,
 double ChiSquareOf(const std::vector<Material>& materials,
                    const MeasuredStiffness& measured) {
   const Eigen::MatrixXd units = UnitsInScene(materials);
-  if (std::any_of(materials.begin(), materials.end(),
-                  [](const Material& material) {
-                    return material.law == FreeAxisLaw::kName;
-                  })) {
+  if (HasFreeAxis(materials)) {
     return ChiSquareOfFreeAxes(materials, units, measured);
   }
   const Eigen::VectorXd expected = measured.weights * measured.stiffnesses;

@@ -8,27 +8,10 @@
 #include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/material_fit/certified_descent.h"
 #include "elastimate/estimators/material_fit/inlier_fit.h"
-#include "elastimate/estimators/material_fit/nearest_symmetry.h"
 #include "elastimate/estimators/material_fit/refined_fit.h"
 
 namespace elastimate {
 namespace {
-
-// Where the fit of a scene with free axes starts: next to that of the same
-// moduli without a symmetry.  Adds its work.
-std::optional<Eigen::VectorXd> StartOfFreeAxes(const Scene& scene,
-                                               const EstimatorOptions& options,
-                                               Descent descent, Work& work) {
-  const Scene without = WithoutFreeAxes(scene);
-  const MaterialFit fit = FitSpace(without, options, descent, std::nullopt);
-  work = work + fit.estimate.work;
-  if (fit.errors.total.size() == 0) {
-    return std::nullopt;
-  }
-  return NearestVariables(FreeParameters(scene, options),
-                          FreeParameters(without, options),
-                          fit.errors.variables, fit.errors.total);
-}
 
 // The fit of a scene whose elements computed it, without outliers.
 class ComputedFit {
@@ -51,7 +34,7 @@ class ComputedFit {
           }
           space_.Measure(others, SpaceFit::Rows::kOther);
           has_other_rows_ = true;
-          return FitFrom(IsCertified(others) ? std::nullopt : from);
+          return FitFrom(from);
         },
         of_all);
     EnterOutliers(inliers.left_out, of_all.estimate, inliers.fit.estimate,
@@ -67,13 +50,10 @@ class ComputedFit {
   }
 
  private:
-  bool IsCertified(const Scene& scene) const {
-    return descent_ == Descent::kReduced && CertifiedDescent::Takes(scene);
-  }
   MaterialFit FitFrom(const std::optional<Eigen::VectorXd>& start) {
     space_.Minimize(descent_, start);
     if (space_.Fit().minimum) {
-      space_.Describe(nullptr);
+      space_.Describe(nullptr, &space_);
     }
     return space_.Fit();
   }
@@ -83,20 +63,6 @@ class ComputedFit {
   SpaceFit space_;
   bool has_other_rows_ = false;
 };
-
-// The fit of the scene as its origin asks for it, without outliers.
-MaterialFit FitByOrigin(const Scene& scene, const EstimatorOptions& options,
-                        Descent descent,
-                        const std::optional<Eigen::VectorXd>& start) {
-  MaterialFit fit =
-      scene.origin == Origin::kMeasured
-          ? FitRefined(scene, options, descent, start)
-          : ComputedFit(scene, options, descent).Fit(scene, start);
-  if (HasUnknownMotion(scene)) {
-    fit.estimate.fitted_displacement = fit.displacement;
-  }
-  return fit;
-}
 
 // Starts where the last usable fit ended.
 class MaterialFitPreparation : public Preparation {
@@ -148,14 +114,16 @@ class CertifiedPreparation : public Preparation {
 MaterialFit FitMaterialsFrom(const std::optional<Eigen::VectorXd>& start,
                              const Scene& scene,
                              const EstimatorOptions& options, Descent descent) {
-  if (start || !HasFreeAxis(scene)) {
-    return FitByOrigin(scene, options, descent, start);
+  MaterialFit fit =
+      scene.origin == Origin::kMeasured
+          ? FitRefined(scene, options, descent, start)
+          : ComputedFit(scene, options, descent).Fit(scene, start);
+  if (fit.has_rival_axis && fit.estimate.IsUsable()) {
+    fit.estimate.Fail(OtherAxisAlike());
   }
-  Work work;
-  const std::optional<Eigen::VectorXd> nearest =
-      StartOfFreeAxes(scene, options, descent, work);
-  MaterialFit fit = FitByOrigin(scene, options, descent, nearest);
-  fit.estimate.work = fit.estimate.work + work;
+  if (HasUnknownMotion(scene)) {
+    fit.estimate.fitted_displacement = fit.displacement;
+  }
   return fit;
 }
 

@@ -23,8 +23,9 @@ namespace elastimate {
 /// (OutlierSearch); covariance as by DescribeMinimum.  Of parameters on bounds,
 /// the covariance is that without bounds.
 ///
-/// Where an axis is to be found, the fit starts next to that of a material of
-/// no symmetry (NearestVariables), which costs as much again and more.
+/// Where an axis is to be found, descents start from several (StartsOverAxes).
+/// The estimate is not usable where another axis explains the data nearly as
+/// well as the best one.
 ///
 /// Where supports or the whole specimen moved by unknown amounts, these are
 /// fitted with the parameters (MotionElimination), and resultants count by

@@ -52,7 +52,7 @@ std::vector<std::vector<int>> NotCompared(
   std::vector<bool> are_left_out(materials.size(), false);
   for (Eigen::Index i = 0; i < free.Size(); ++i) {
     if (!(std::sqrt(covariance(i, i)) <= limits(i))) {
-      are_left_out[free.All().All()[free.All().Free()[i]].material] = true;
+      are_left_out[free.Free(i).material] = true;
     }
   }
   for (const PlannedMerge& step : plan.path) {
@@ -100,23 +100,6 @@ std::size_t NumBorneOut(const MergePlan& plan, const Scene& scene,
   return 0;
 }
 
-// Makes an error of a parameter `factor` times as large.
-void Widen(double factor, ParameterEstimate& parameter) {
-  *parameter.standard_error *= factor;
-  if (!parameter.interval) {
-    return;
-  }
-  double& lower = parameter.interval->lower;
-  double& upper = parameter.interval->upper;
-  if (parameter.is_modulus && lower > 0) {
-    lower = parameter.value * std::pow(lower / parameter.value, factor);
-    upper = parameter.value * std::pow(upper / parameter.value, factor);
-  } else {
-    lower = parameter.value + factor * (lower - parameter.value);
-    upper = parameter.value + factor * (upper - parameter.value);
-  }
-}
-
 // Adds this variance of its variable to that of a parameter.
 void AddVariance(double variance, Eigen::Index place, Estimate& estimate) {
   ParameterEstimate& parameter = estimate.parameters[std::size_t(place)];
@@ -124,25 +107,12 @@ void AddVariance(double variance, Eigen::Index place, Estimate& estimate) {
     return;
   }
   const double unit = parameter.is_modulus ? parameter.value : 1;
-  const double error = *parameter.standard_error / unit;
-  Widen(std::sqrt(1 + variance / (error * error)), parameter);
-  estimate.parameter_covariance(place, place) += variance * unit * unit;
+  double& of_parameter = estimate.parameter_covariance(place, place);
+  of_parameter += variance * unit * unit;
+  parameter.standard_error = std::sqrt(of_parameter);
   ParameterErrors& model = estimate.error_budget.model;
   if (model.size() > place) {
     model(place) = std::hypot(model(place), std::sqrt(variance));
-  }
-}
-
-// E and nu of one isotropic material are the first two parameters.
-void EnterOneIsotropicMaterial(Estimate& estimate) {
-  if (std::isnan(estimate.elasticity.youngs_modulus)) {
-    return;
-  }
-  estimate.covariance = estimate.parameter_covariance;
-  if (estimate.poisson_ratio_interval && estimate.parameters[1].interval) {
-    Interval& interval = *estimate.parameters[1].interval;
-    interval = {std::max(interval.lower, -1.0), std::min(interval.upper, 0.5)};
-    estimate.poisson_ratio_interval = interval;
   }
 }
 
@@ -299,8 +269,8 @@ void EnterMerge(const MaterialMerge& merge, Estimate& estimate) {
           spread.largest_differences.begin(), spread.largest_differences.end()};
     }
   }
-  EnterOneIsotropicMaterial(estimate);
-  JudgeDetermination(estimate);
+  JudgeGrownErrors(estimate);
+  EnterElasticity(estimate);
   constexpr double kManyErrors = 3;
   if (farthest.in_errors > kManyErrors) {
     estimate.Add(

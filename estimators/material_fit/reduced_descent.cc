@@ -7,6 +7,8 @@
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/node_sums.h"
+#include "elastimate/core/materials/free_axis_law.h"
+#include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/material_fit/material_descent.h"
 #include "elastimate/estimators/reduced_model/nearby_solve.h"
 #include "elastimate/estimators/reduced_model/reduced_equilibrium.h"
@@ -25,7 +27,9 @@ constexpr double kNoiseOfExactData = 1e-8;
 // gradient is.
 constexpr double kUndetermined = 3;
 constexpr double kSensitivityAccuracy = 1e-4;
-constexpr int kMostIterationsNearby = 8;
+// A cycle over coarser spaces is a fifth of a solve.
+constexpr int kMostIterationsByFactor = 8;
+constexpr int kMostIterationsByCycle = 40;
 constexpr int kMostPoles = 10;
 
 class ReducedDescent {
@@ -38,6 +42,9 @@ class ReducedDescent {
   /// Sets the pole at typical values, where the model is solved but for the
   /// scale; empty where displacements oppose the loads.
   std::optional<Eigen::VectorXd> SetTypicalPole();
+  /// Sets the pole at x, with the derivatives by all moduli.  False where the
+  /// stiffness is singular.
+  bool SetPoleOfAllModuli(const Eigen::VectorXd& x);
   int NumPoles() const { return num_poles_; }
   /// Whether the last minimum is farther from the pole than the reduced model
   /// is trusted.
@@ -92,11 +99,25 @@ class ReducedDescent {
 };
 
 bool ReducedDescent::SetPole(const Eigen::VectorXd& x) {
+  // The first pole may be where an earlier descent ended, with the factor of
+  // that.  A further one is set where that factor is too far away.
+  Eigen::MatrixXd sensitivities;
+  if ((num_poles_ > 0 && !misfit_.Factorize(x)) ||
+      !misfit_.SolutionAt(x, &displacement_, &sensitivities)) {
+    return false;
+  }
+  AddPole(x, displacement_, sensitivities);
+  return true;
+}
+
+bool ReducedDescent::SetPoleOfAllModuli(const Eigen::VectorXd& x) {
   if (!misfit_.SolveAt(x)) {
     return false;
   }
+  const Eigen::Index num_moduli = misfit_.Free().All().NumModuli();
   AddPole(x, misfit_.Model().Displacement(),
-          misfit_.Model().Sensitivities(misfit_.Free().ModuliJacobian(x)));
+          misfit_.Model().Sensitivities(
+              Eigen::MatrixXd::Identity(num_moduli, num_moduli)));
   return true;
 }
 
@@ -127,7 +148,7 @@ void ReducedDescent::AddPole(const Eigen::VectorXd& x,
                              const Eigen::MatrixXd& displacement,
                              const Eigen::MatrixXd& sensitivities) {
   const Eigen::MatrixXd u = WithoutHeld(displacement);
-  const Eigen::Index n = misfit_.Free().Size();
+  const Eigen::Index n = sensitivities.cols() / u.cols();
   Eigen::MatrixXd vectors(u.rows(), (n + 1) * u.cols());
   for (Eigen::Index k = 0; k < u.cols(); ++k) {
     vectors.col((n + 1) * k) = u.col(k);
@@ -151,8 +172,7 @@ std::vector<Bounds> ReducedDescent::TrustBounds() const {
   const FreeParameters& free = misfit_.Free();
   std::vector<Bounds> bounds = free.VariableBounds();
   for (Eigen::Index i = 0; i < free.Size(); ++i) {
-    const LawParameter& parameter =
-        *free.All().All()[free.All().Free()[i]].law_parameter;
+    const LawParameter& parameter = *free.Free(i).law_parameter;
     Bounds& own = bounds[i];
     double lower = pole_(i) - kLargestChange;
     double upper = pole_(i) + kLargestChange;
@@ -236,9 +256,11 @@ Eigen::MatrixXd ReducedDescent::ForcesOfVariables() {
 bool ReducedDescent::SolveNear(const Eigen::MatrixXd& forces,
                                const Eigen::VectorXd& tolerances,
                                Eigen::MatrixXd& x) {
-  const std::optional<int> iterations = SolveNearby(
-      moduli_, forces, tolerances, kMostIterationsNearby, misfit_.Model(), x);
-  element_passes_ += 1 + iterations.value_or(kMostIterationsNearby);
+  const int most = misfit_.Model().IsRefined() ? kMostIterationsByCycle
+                                               : kMostIterationsByFactor;
+  const std::optional<int> iterations =
+      SolveNearby(moduli_, forces, tolerances, most, misfit_.Model(), x);
+  element_passes_ += 1 + iterations.value_or(most);
   return iterations.has_value();
 }
 
@@ -360,7 +382,81 @@ BoundedMinimum DescendFromPole(const Eigen::VectorXd& pole, int most_poles,
   }
 }
 
+// Returns the parameters with those of each material whose axis is to be found
+// replaced by what `change` makes of them.
+template <class Function>
+Eigen::VectorXd WithFreeAxes(const MaterialParameters& all,
+                             Eigen::VectorXd parameters,
+                             const Function& change) {
+  for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
+    if (all.LawOf(i).Name() == FreeAxisLaw::kName) {
+      auto own =
+          parameters.segment(all.FirstParameter(i),
+                             Eigen::Index(all.LawOf(i).Parameters().size()));
+      own = change(Eigen::VectorXd(own)).eval();
+    }
+  }
+  return parameters;
+}
+
 }  // namespace
+
+std::vector<Eigen::VectorXd> StartsOverAxes(const Scene& scene,
+                                            DisplacementMisfit& misfit) {
+  constexpr int kNumAxes = 13;
+  // A minimum whose log likelihood is so much less than that of the least one
+  // is no start.  The reduced model is exact to that near its pole only.
+  constexpr double kOutOfReach = 25;
+  const std::optional<Eigen::VectorXd> typical = TypicalStart(misfit);
+  if (!typical) {
+    return {};
+  }
+  const FreeParameters& free = misfit.Free();
+  const auto changed = [&](const Eigen::VectorXd& x, const auto& change) {
+    return free.VariablesOf(
+        WithFreeAxes(free.All(), free.ParametersAt(x), change));
+  };
+  std::vector<Eigen::VectorXd> along_axes;
+  for (const Eigen::Vector3d& w :
+       FreeAxisLaw::RotationsOfHalfSphere(kNumAxes)) {
+    along_axes.push_back(changed(*typical, [&](Eigen::VectorXd own) {
+      own.tail(2) = w.tail(2);
+      return own;
+    }));
+  }
+  // With E_T for E_L, typical values are nearly alike in all directions.
+  const Eigen::VectorXd pole = changed(*typical, [](Eigen::VectorXd own) {
+    own(0) = own(1);
+    return own;
+  });
+  ReducedDescent descent(misfit);
+  if (HasUnknownMotion(scene) || !descent.SetPoleOfAllModuli(pole)) {
+    return along_axes;
+  }
+  std::vector<BoundedMinimum> minima;
+  minima.reserve(along_axes.size());
+  for (const Eigen::VectorXd& start : along_axes) {
+    minima.push_back(descent.MinimumFrom(start));
+  }
+  std::sort(minima.begin(), minima.end(),
+            [](const BoundedMinimum& a, const BoundedMinimum& b) {
+              return a.cost < b.cost;
+            });
+  const double least = minima[0].cost;
+  std::vector<Eigen::VectorXd> starts;
+  for (const BoundedMinimum& minimum : minima) {
+    const bool is_another = std::all_of(
+        starts.begin(), starts.end(), [&](const Eigen::VectorXd& other) {
+          return AreAxesApart(free.All(), free.ParametersAt(minimum.variables),
+                              free.ParametersAt(other));
+        });
+    if (is_another &&
+        minimum.cost <= least + kOutOfReach * misfit.Variance(least)) {
+      starts.push_back(changed(minimum.variables, FreeAxisLaw::WithNearerEnd));
+    }
+  }
+  return starts;
+}
 
 std::optional<BoundedMinimum> ReducedMinimum(
     const std::optional<Eigen::VectorXd>& start,

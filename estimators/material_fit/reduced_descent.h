@@ -3,7 +3,9 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
+#include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/misfit/displacement_misfit.h"
 #include "elastimate/estimators/statistics/bounded_variables.h"
@@ -35,9 +37,10 @@ namespace elastimate {
 /// left with u and du/dx at the minimum, by conjugate gradients too, to 1e-4
 /// of their energy norms.
 ///
-/// The first pole is at `start`, else at typical values (TypicalStart).  Empty
-/// where displacements oppose the loads.  Adds the work that the equilibrium
-/// does not count to the estimate.
+/// The first pole is at `start`, else at typical values (TypicalStart), or
+/// where an axis is to be found, at StartOverAxes.  Empty where displacements
+/// oppose the loads.  Adds the work that the equilibrium does not count to the
+/// estimate.
 ///
 /// Precondition: no unknown motions.  Cost: 1 to 3 factorisations and, for each
 /// load case and pole, a solve for each variable; and about five times as many
@@ -46,6 +49,18 @@ std::optional<BoundedMinimum> ReducedMinimum(
     const std::optional<Eigen::VectorXd>& start,
     const EstimatorOptions& options, DisplacementMisfit& misfit,
     Estimate& estimate);
+
+/// Returns the starts of a fit of materials whose axis is to be found, the best
+/// first: the misfit has a minimum near several axes.  The model is reduced to
+/// u and its derivatives by all moduli, so to those of every axis, at typical
+/// values that are alike in all directions.  Descents of this reduced model
+/// start along 13 axes over a half sphere.  Returned are the minima they lead
+/// to that are apart and nearly as probable as the least one.  Where motions
+/// are unknown, these are typical values along each axis.  Empty where
+/// displacements oppose the loads.  Cost: two factorisations and a solve for
+/// each modulus.
+[[nodiscard]] std::vector<Eigen::VectorXd> StartsOverAxes(
+    const Scene& scene, DisplacementMisfit& misfit);
 
 }  // namespace elastimate
 

@@ -9,7 +9,6 @@
 
 #include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/finer_scene.h"
-#include "elastimate/core/scene/support_ends.h"
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
@@ -34,8 +33,7 @@ Eigen::VectorXd AwayFromEnds(const FreeParameters& free,
   constexpr double kShareOfRange = 0.02;
   for (Eigen::Index i = 0; i < free.Size(); ++i) {
     const Bounds& bounds = free.VariableBounds()[i];
-    const LawParameter& parameter =
-        *free.All().All()[free.All().Free()[i]].law_parameter;
+    const LawParameter& parameter = *free.Free(i).law_parameter;
     if (bounds.lower && bounds.upper && !parameter.is_modulus) {
       const double margin = kShareOfRange * (*bounds.upper - *bounds.lower);
       variables(i) = std::clamp(variables(i), *bounds.lower + margin,
@@ -45,48 +43,14 @@ Eigen::VectorXd AwayFromEnds(const FreeParameters& free,
   return variables;
 }
 
-bool HasOpenEnds(const Scene& scene) {
-  return !scene.supports.ends.empty() ||
-         std::any_of(scene.load_cases.begin(), scene.load_cases.end(),
-                     [](const LoadCase& load_case) {
-                       return load_case.supports &&
-                              !load_case.supports->ends.empty();
-                     });
-}
-
-// Holds all nodes in doubt, or none.
-Supports Ended(const Supports& supports, bool are_held) {
-  std::vector<std::size_t> num_steps;
-  for (const SupportEnd& end : supports.ends) {
-    num_steps.push_back(are_held ? end.steps.size() : 0);
-  }
-  return EndingAfter(num_steps, supports);
-}
-
-Scene WithEnds(Scene scene, bool are_held) {
-  scene.supports = Ended(scene.supports, are_held);
-  for (LoadCase& load_case : scene.load_cases) {
-    if (load_case.supports) {
-      load_case.supports = Ended(*load_case.supports, are_held);
-    }
+// Holds all nodes in doubt.
+Scene WithEndsHeld(Scene scene) {
+  Supports& supports = scene.supports;
+  for (const auto& [component, node, displacement] : supports.in_doubt) {
+    supports.held(component, node) = true;
+    supports.displacement(component, node) = displacement;
   }
   return scene;
-}
-
-// Whether a divided mesh could hardly lower the errors, of which noise has
-// more.
-bool IsMeshErrorSmall(const Estimate& estimate) {
-  const ParameterErrors& mesh = estimate.error_budget.discretization;
-  const ParameterErrors& noise = estimate.error_budget.noise;
-  if (!estimate.IsUsable() || mesh.size() == 0 || noise.size() != mesh.size()) {
-    return false;
-  }
-  for (Eigen::Index i = 0; i < mesh.size(); ++i) {
-    if (!estimate.parameters[i].is_known && !(mesh(i) <= noise(i))) {
-      return false;
-    }
-  }
-  return true;
 }
 
 // The fits of one scene on finer and finer elements.
@@ -107,6 +71,9 @@ class Refinement {
   struct Chain {
     std::unique_ptr<SpaceFit> quadratic;
     std::unique_ptr<SpaceFit> divided;
+    /// The fit before the last one; null where the last one is the only one.
+    SpaceFit* coarser = nullptr;
+    /// Empty where the coarser one has no equilibrium at the last minimum.
     std::optional<SpaceChange> change;
     std::vector<Outlier> left_out;
     Estimate of_all;      ///< Before outliers were left out of the second fit.
@@ -121,6 +88,8 @@ class Refinement {
   void LeaveOut(const MaterialFit& of_all, const Scene& quadratic,
                 const std::vector<const Scene*>& coarser, Chain& chain);
   static Chain MeanOf(Chain held, Chain free);
+  bool IsMeshErrorSmall(Chain& chain) const;
+  static void Describe(Chain& chain, SpaceFit* curved);
   std::unique_ptr<SpaceFit> MinimizeOn(
       const Scene& scene, const std::optional<Eigen::VectorXd>& start,
       const std::vector<const Scene*>& coarser = {}) const {
@@ -128,6 +97,17 @@ class Refinement {
     space->Misfit().SetNeighbours(neighbours_);
     space->Minimize(descent_, start);
     return space;
+  }
+  /// Fits what another scene measured of the same specimen in the same space.
+  void Refit(const Scene& others, const std::optional<Eigen::VectorXd>& start,
+             const std::vector<const Scene*>& coarser,
+             std::unique_ptr<SpaceFit>& space) const {
+    if (HasUnknownMotion(scene_)) {
+      space = MinimizeOn(others, start, coarser);
+    } else {
+      space->Measure(others, SpaceFit::Rows::kOther);
+      space->Minimize(descent_, start);
+    }
   }
   /// Whether linear elements explain so much more than quadratic ones that they
   /// computed the measurement: displacements of a specimen never ask for that,
@@ -173,44 +153,35 @@ class Refinement {
   double least_of_quadratic_ = std::numeric_limits<double>::infinity();
 };
 
-// Describes the finer one of two fits by what changed.
-std::optional<SpaceChange> DescribeChange(SpaceFit& coarse, bool is_last,
-                                          SpaceFit& fine) {
-  std::optional<SpaceChange> change = fine.ChangeFrom(coarse);
-  if (change) {
-    change->is_kept_for_its_size = is_last;
-  }
-  fine.Describe(change ? &*change : nullptr);
-  if (!change) {
-    fine.Fit().estimate.Fail(
-        SearchFailed("the coarser elements have no equilibrium with the "
-                     "parameters of the finer ones"));
-  }
-  return change;
-}
-
 void Refinement::LeaveOut(const MaterialFit& of_all, const Scene& quadratic,
                           const std::vector<const Scene*>& coarser,
                           Chain& chain) {
   const InlierFit inliers = LeaveOutliersOut(
       quadratic,
       [&](const Scene& others, const std::optional<Eigen::VectorXd>& from) {
-        return MinimizeOn(others, from, coarser)->Fit();
+        Refit(others, from, coarser, chain.quadratic);
+        return chain.quadratic->Fit();
       },
       of_all);
   chain.work = inliers.fit.estimate.work;
-  if (inliers.left_out.empty() || !inliers.fit.minimum) {
-    return;
-  }
-  chain.left_out = inliers.left_out;
-  chain.of_inliers = inliers.fit.estimate;
-  chain.quadratic = MinimizeOn(WithoutOutliers(quadratic, inliers.left_out),
-                               inliers.fit.Variables(), coarser);
+  const bool are_some_left_out =
+      !inliers.left_out.empty() && inliers.fit.minimum;
+  const std::vector<Outlier> left_out =
+      are_some_left_out ? inliers.left_out : std::vector<Outlier>();
+  const std::optional<Eigen::VectorXd> variables =
+      are_some_left_out ? inliers.fit.Variables() : of_all.Variables();
+  // The last fit of the search may have been of others.
+  Refit(WithoutOutliers(quadratic, left_out), variables, coarser,
+        chain.quadratic);
   chain.work = chain.work + chain.quadratic->Fit().estimate.work;
-  if (linear_) {
-    linear_ = MinimizeOn(WithoutOutliers(scene_, inliers.left_out),
-                         linear_->Fit().Variables());
-    chain.work = chain.work + linear_->Fit().estimate.work;
+  if (are_some_left_out) {
+    chain.left_out = left_out;
+    chain.of_inliers = inliers.fit.estimate;
+    if (linear_) {
+      Refit(WithoutOutliers(scene_, left_out), linear_->Fit().Variables(), {},
+            linear_);
+      chain.work = chain.work + linear_->Fit().estimate.work;
+    }
   }
 }
 
@@ -236,13 +207,14 @@ Refinement::Chain Refinement::FitQuadratic(
   SpaceFit& fit = *chain.quadratic;
   least_of_quadratic_ = std::min(least_of_quadratic_, fit.SquareSum());
   if (linear_ && linear_->Fit().minimum) {
-    chain.change = DescribeChange(*linear_, true, fit);
-  } else {
-    fit.Describe(nullptr);
+    chain.coarser = linear_.get();
+    chain.change = fit.ChangeFrom(*linear_);
+    if (chain.change) {
+      chain.change->is_kept_for_its_size = true;
+    }
   }
-  if (!IsOfLinearElements() && MayDivide(quadratic) &&
-      (options_.refinement == Refine::kAlways ||
-       !IsMeshErrorSmall(fit.Fit().estimate))) {
+  if (MayDivide(quadratic) && !IsOfLinearElements() &&
+      !IsMeshErrorSmall(chain)) {
     if (!HasUnknownMotion(scene_)) {
       coarser.push_back(&fit.OwnScene());
     }
@@ -250,11 +222,46 @@ Refinement::Chain Refinement::FitQuadratic(
         MinimizeOn(FinerScene(fit.OwnScene()), fit.Fit().Variables(), coarser);
     chain.work = chain.work + divided->Fit().estimate.work;
     if (divided->Fit().minimum) {
-      chain.change = DescribeChange(fit, false, *divided);
+      chain.coarser = &fit;
+      chain.change = divided->ChangeFrom(fit);
       chain.divided = std::move(divided);
     }
   }
   return chain;
+}
+
+// Tells whether a divided mesh could hardly lower the errors, of which noise
+// has more.
+bool Refinement::IsMeshErrorSmall(Chain& chain) const {
+  if (options_.refinement == Refine::kAlways) {
+    return false;
+  }
+  Describe(chain, nullptr);
+  const Estimate& estimate = chain.quadratic->Fit().estimate;
+  const ParameterErrors& mesh = estimate.error_budget.discretization;
+  const ParameterErrors& noise = estimate.error_budget.noise;
+  if (!estimate.IsUsable() || mesh.size() == 0 || noise.size() != mesh.size()) {
+    return false;
+  }
+  for (Eigen::Index i = 0; i < mesh.size(); ++i) {
+    if (!estimate.parameters[i].is_known && !(mesh(i) <= noise(i))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Describes the finest fit by what changed to it.
+void Refinement::Describe(Chain& chain, SpaceFit* curved) {
+  SpaceFit& fit = chain.Finest();
+  const Work before = fit.Fit().estimate.work;
+  fit.Describe(chain.change ? &*chain.change : nullptr, curved);
+  chain.work = chain.work + (fit.Fit().estimate.work - before);
+  if (chain.coarser != nullptr && !chain.change) {
+    fit.Fit().estimate.Fail(
+        SearchFailed("the coarser elements have no equilibrium with the "
+                     "parameters of the finer ones"));
+  }
 }
 
 // Takes the ends of supports that leave less, shifted to the mean of both.
@@ -266,7 +273,6 @@ Refinement::Chain Refinement::MeanOf(Chain held, Chain free) {
     best.change->by_supports = (other.Finest().Fit().minimum->variables -
                                 best.Finest().Fit().minimum->variables) /
                                2;
-    best.Finest().Describe(&*best.change);
   }
   best.work = best.work + other.work;
   return std::move(best);
@@ -275,25 +281,32 @@ Refinement::Chain Refinement::MeanOf(Chain held, Chain free) {
 MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start) {
   std::optional<Eigen::VectorXd> last = start;
   Work work;
+  bool has_rival_axis = false;
   if (scene_.mesh.Order() == 1) {
     linear_ = MinimizeOn(scene_, start);
     if (!linear_->Fit().minimum) {
       return linear_->Fit();
     }
     work = linear_->Fit().estimate.work;
+    has_rival_axis = linear_->Fit().has_rival_axis;
     last = AwayFromEnds(linear_->Misfit().Free(),
                         linear_->Fit().minimum->variables);
   }
   const Scene quadratic =
       scene_.mesh.Order() == 1 ? FinerScene(scene_) : scene_;
-  Chain chain = FitQuadratic(WithEnds(quadratic, false), last);
-  if (HasOpenEnds(quadratic) && chain.Finest().Fit().minimum) {
-    Chain held = FitQuadratic(WithEnds(quadratic, true), last);
+  Chain chain = FitQuadratic(quadratic, last);
+  if (!quadratic.supports.in_doubt.empty() && chain.Finest().Fit().minimum) {
+    Chain held = FitQuadratic(WithEndsHeld(quadratic), last);
     if (held.Finest().Fit().minimum) {
       chain = MeanOf(std::move(held), std::move(chain));
     }
   }
+  if (chain.Finest().Fit().minimum) {
+    // A divided mesh would hardly change the curvature.
+    Describe(chain, chain.quadratic.get());
+  }
   MaterialFit fit = chain.Finest().Fit();
+  fit.has_rival_axis = fit.has_rival_axis || has_rival_axis;
   fit.estimate.mesh_divisions = chain.divided ? 1 : 0;
   fit.estimate.work = work + chain.work;
   EnterOutliers(chain.left_out, chain.of_all, chain.of_inliers, fit.estimate);

@@ -29,9 +29,10 @@ namespace elastimate {
 /// solved for here.  Half of what is notable (Limits) is then part of the error
 /// at least, since some changes are small by accident.
 ///
-/// Where a support ends within quadratic elements (Supports::ends), the second
-/// and third fit are made with all of the nodes in doubt held and with all of
-/// them free.  The estimate is the mean, and half of the difference an error.
+/// Where a support ends within quadratic elements (Supports::in_doubt), the
+/// second and third fit are made with all of the nodes in doubt held and with
+/// all of them free.  The estimate is the mean, and half of the difference an
+/// error.
 ///
 /// The estimate is refused with FindingCode::kComputedByLinearElements where
 /// linear elements explain the measurement so much better than quadratic ones

@@ -7,7 +7,9 @@
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/materials/material.h"
+#include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/interface/judge.h"
+#include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 #include "elastimate/estimators/material_fit/material_descent.h"
@@ -25,8 +27,8 @@ DisplacementMisfit::Weights WeightsOf(Loss loss,
                                       const Eigen::VectorXd& residual) {
   // Exact data have no scale.
   constexpr double kExactFit = 1e-12;
-  const NodeLosses losses(
-      loss, std::max(RobustStandardDeviation(residual), kExactFit));
+  const double deviation =
+      std::max(RobustStandardDeviation(residual), kExactFit);
   DisplacementMisfit::Weights weights;
   weights.factors.resize(residual.size());
   double sum_of_slopes = 0;
@@ -34,7 +36,7 @@ DisplacementMisfit::Weights WeightsOf(Loss loss,
     const double square_sum =
         residual.segment(point.first, point.count).squaredNorm();
     const auto [value, first, second] =
-        losses.Evaluate(point.count, square_sum);
+        EvaluateLoss(loss, deviation, point.count, square_sum);
     weights.factors.segment(point.first, point.count)
         .setConstant(std::sqrt(first));
     sum_of_slopes += point.count * first + 2 * square_sum * second;
@@ -115,11 +117,16 @@ std::optional<BoundedMinimum> SpaceFit::FindMinimum(
                             End::kDone, ""};
     }
   }
+  if (!start && HasFreeAxis(scene_.materials)) {
+    return FindOverAxes(descent);
+  }
   if (descent == Descent::kFull) {
     return start ? DescendFrom(options_, *start, Distance::kNear, misfit_)
                  : BestMinimum(scene_, options_, misfit_, fit_.estimate);
   }
-  if (!start && !is_finest_of_several_ && CertifiedDescent::Takes(scene_)) {
+  // Once there is a certificate, no start is needed.
+  if (certified_ ||
+      (!start && !is_finest_of_several_ && CertifiedDescent::Takes(scene_))) {
     if (!certified_) {
       certified_.emplace(scene_, options_, misfit_);
       misfit_.SetNeighbours(certified_->Graph());
@@ -133,6 +140,36 @@ std::optional<BoundedMinimum> SpaceFit::FindMinimum(
                  : ReducedMinimum(
                        VirtualFieldsStart(scene_, options_, fit_.estimate),
                        options_, misfit_, fit_.estimate);
+}
+
+// The best minimum of all starts, with another axis that is nearly as probable.
+std::optional<BoundedMinimum> SpaceFit::FindOverAxes(Descent descent) {
+  std::vector<BoundedMinimum> minima;
+  for (const Eigen::VectorXd& start : StartsOverAxes(scene_, misfit_)) {
+    if (descent == Descent::kFull) {
+      minima.push_back(DescendFrom(options_, start, Distance::kFar, misfit_));
+    } else if (const auto minimum =
+                   ReducedMinimum(start, options_, misfit_, fit_.estimate)) {
+      minima.push_back(*minimum);
+    }
+  }
+  if (minima.empty()) {
+    return std::nullopt;
+  }
+  std::sort(minima.begin(), minima.end(),
+            [](const BoundedMinimum& a, const BoundedMinimum& b) {
+              return a.cost < b.cost;
+            });
+  const FreeParameters& free = misfit_.Free();
+  const double reach = minima[0].cost + kLimits.least_axis_preference / 2 *
+                                            misfit_.Variance(minima[0].cost);
+  fit_.has_rival_axis = std::any_of(
+      minima.begin(), minima.end(), [&](const BoundedMinimum& minimum) {
+        return minimum.cost < reach &&
+               AreAxesApart(free.All(), free.ParametersAt(minimum.variables),
+                            free.ParametersAt(minima[0].variables));
+      });
+  return minima[0];
 }
 
 void SpaceFit::Minimize(Descent descent,
@@ -187,7 +224,7 @@ void SpaceFit::Reweigh() {
   }
 }
 
-void SpaceFit::Describe(const SpaceChange* change) {
+void SpaceFit::Describe(const SpaceChange* change, SpaceFit* curved) {
   // What was said before is said anew.
   Estimate estimate;
   estimate.work = fit_.estimate.work;
@@ -201,8 +238,14 @@ void SpaceFit::Describe(const SpaceChange* change) {
   EnterParameters(scene_, misfit_.Free(),
                   misfit_.Free().ParametersAt(variables), estimate);
   NoteVariablesOnBounds(misfit_.Free(), *fit_.minimum, evidence, estimate);
-  fit_.errors = DescribeMinimum(scene_, *fit_.minimum, change, misfit_,
-                                evidence, estimate);
+  const std::optional<CurvedMisfit> of_curvature =
+      curved == nullptr
+          ? std::nullopt
+          : std::optional<CurvedMisfit>(
+                {curved->misfit_, curved->fit_.minimum->variables});
+  fit_.errors = DescribeMinimum(scene_, *fit_.minimum, change,
+                                of_curvature ? &*of_curvature : nullptr,
+                                misfit_, evidence, estimate);
   Eigen::VectorXd rows;
   if (misfit_.Evaluate(variables, &rows, nullptr)) {
     DescribeMaterials(scene_, fit_.errors, misfit_, estimate);
@@ -248,7 +291,7 @@ MaterialFit FitSpace(const Scene& scene, const EstimatorOptions& options,
   std::vector<StageTime>& stages = space.Fit().estimate.stages;
   stages.insert(stages.begin(), assembly);
   if (space.Fit().minimum) {
-    space.Describe(nullptr);
+    space.Describe(nullptr, &space);
   }
   return space.Fit();
 }

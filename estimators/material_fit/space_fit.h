@@ -30,6 +30,8 @@ struct MaterialFit {
   MinimumErrors errors;
   /// The fitted displacement; empty where there is no fit.
   Eigen::MatrixXd displacement;
+  /// Whether the data hardly prefer an axis that was found to another one.
+  bool has_rival_axis = false;
 
   std::optional<Eigen::VectorXd> Variables() const {
     return minimum ? std::optional<Eigen::VectorXd>(minimum->variables)
@@ -55,9 +57,10 @@ class SpaceFit {
   void Minimize(Descent descent, const std::optional<Eigen::VectorXd>& start);
 
   /// Describes the minimum, with the mesh error that `change` from coarser
-  /// elements tells of; null where the elements are taken as exact.
-  /// Precondition: there is a minimum.
-  void Describe(const SpaceChange* change);
+  /// elements tells of; null where the elements are taken as exact.  `curved`
+  /// is this fit or a coarser one, whose curvature adds to the errors, or null
+  /// (DescribeMinimum).  Precondition: there is a minimum.
+  void Describe(const SpaceChange* change, SpaceFit* curved);
 
   /// What the elements of this fit changed from those of a coarser one of the
   /// same measurement: one solution of the coarse model.  Empty where that
@@ -86,6 +89,7 @@ class SpaceFit {
   void Reweigh();
   std::optional<BoundedMinimum> FindMinimum(
       Descent descent, const std::optional<Eigen::VectorXd>& start);
+  std::optional<BoundedMinimum> FindOverAxes(Descent descent);
   Work WorkDone();
   const std::string& SolverNotice();
 

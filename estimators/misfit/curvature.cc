@@ -206,12 +206,12 @@ double LargestError(const FreeParameters& free, const Eigen::VectorXd& x,
 
 Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,
                                       const Eigen::MatrixXd& covariance,
-                                      const Eigen::MatrixXd& sensitivities,
                                       const Eigen::VectorXd& beforehand,
                                       DisplacementMisfit& misfit) {
   Eigen::MatrixXd added = Eigen::MatrixXd::Zero(x.size(), x.size());
   Eigen::VectorXd rows;
-  if (!covariance.allFinite() || !misfit.Evaluate(x, &rows, nullptr)) {
+  Eigen::MatrixXd sensitivities;
+  if (!covariance.allFinite() || !misfit.Evaluate(x, &rows, &sensitivities)) {
     return added;
   }
   const Eigen::MatrixXd information =

@@ -28,14 +28,14 @@ namespace elastimate {
 /// Nothing is added where all errors are small, which costs nothing, or so
 /// large that the parameter is not determined anyway; else each of at most two
 /// combinations takes two to four evaluations of the misfit, a factorisation
-/// each, for each look.  `sensitivities` is S at x in the rows of the misfit,
-/// `beforehand` the diagonal of what is known without them, in the unit of S^T
-/// S.
+/// each, for each look.  `beforehand` is the diagonal of what is known without
+/// the rows of the misfit, in the unit of S^T S, S being their derivatives at
+/// x. Where x is not a minimum of the misfit, the rise is that beyond its
+/// slope.
 ///
 /// See Seber & Wild, Nonlinear Regression, 1989, section 5.2.
 Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,
                                       const Eigen::MatrixXd& covariance,
-                                      const Eigen::MatrixXd& sensitivities,
                                       const Eigen::VectorXd& beforehand,
                                       DisplacementMisfit& misfit);
 

@@ -45,14 +45,31 @@ DisplacementMisfit::DisplacementMisfit(const std::vector<const Scene*>& spaces,
 
 void DisplacementMisfit::Remeasure(const Scene& scene) {
   observed_.Remeasure(scene);
-  x_.resize(0);
-  placed_.reset();
+  CompareAnew();
 }
 
 void DisplacementMisfit::ObserveAnew(const Scene& scene) {
   observed_ = ObservedDisplacements(scene);
-  x_.resize(0);
-  placed_.reset();
+  CompareAnew();
+}
+
+void DisplacementMisfit::CompareAnew() {
+  if (x_.size() != 0) {
+    residual_ = observed_.Restrict(Displacement()) - observed_.Measured();
+  }
+}
+
+bool DisplacementMisfit::SolutionAt(const Eigen::VectorXd& x,
+                                    Eigen::MatrixXd* displacement,
+                                    Eigen::MatrixXd* sensitivities) {
+  if (!MoveTo(x)) {
+    return false;
+  }
+  *displacement = Displacement();
+  *sensitivities = placed_
+                       ? placed_->sensitivities
+                       : equilibrium_.Sensitivities(free_.ModuliJacobian(x));
+  return true;
 }
 
 Eigen::Index DisplacementMisfit::NumRows() const {
@@ -75,6 +92,17 @@ void DisplacementMisfit::SetNoise(double standard_deviation) {
   if (x_.size() != 0) {
     residual_ = motion_->Refit();
   }
+}
+
+double DisplacementMisfit::Variance(double cost) const {
+  if (observed_.GivenNoise()) {
+    return 1 / (observed_.Norm() * observed_.Norm());
+  }
+  const Eigen::Index redundancy =
+      observed_.Size() - NumAmounts() - free_.Size();
+  return std::max(
+      2 * cost / static_cast<double>(std::max<Eigen::Index>(redundancy, 1)),
+      kLeastNoise * kLeastNoise);
 }
 
 bool DisplacementMisfit::Evaluate(const Eigen::VectorXd& x,

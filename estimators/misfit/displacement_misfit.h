@@ -62,6 +62,9 @@ class DisplacementMisfit {
   void SetSolution(Solution solution) { solution_ = std::move(solution); }
 
   Eigen::Index NumRows() const;
+  /// Returns the variance of a row of displacements: as given, else by what a
+  /// fit of this cost leaves.
+  double Variance(double cost) const;
   /// The numbers of unknown motions, which are fitted as the variables are, and
   /// of measured resultants.
   Eigen::Index NumAmounts() const;
@@ -100,6 +103,12 @@ class DisplacementMisfit {
   void Place(const Eigen::VectorXd& x, const Eigen::MatrixXd& displacement,
              const Eigen::MatrixXd& sensitivities);
 
+  /// Returns u and, side by side for each load case, du/dx at x as Place takes
+  /// them, and solves only where it has to.  False when the stiffness is
+  /// singular there.
+  bool SolutionAt(const Eigen::VectorXd& x, Eigen::MatrixXd* displacement,
+                  Eigen::MatrixXd* sensitivities);
+
   /// u with all motions where the last Evaluate was, num_dofs x
   /// num_load_cases.
   Eigen::MatrixXd FittedDisplacement() const {
@@ -129,6 +138,8 @@ class DisplacementMisfit {
   bool IsAt(const Eigen::VectorXd& x) const {
     return x_.size() == x.size() && x_ == x;
   }
+  /// Enters the residual of new measurements.
+  void CompareAnew();
   bool MoveTo(const Eigen::VectorXd& x);
   bool MoveModelTo(const Eigen::VectorXd& x);
   Eigen::MatrixXd Sensitivities(const Eigen::VectorXd& x);

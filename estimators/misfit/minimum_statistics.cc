@@ -380,13 +380,13 @@ void AddAxisRotation(const Scene& scene, const Eigen::VectorXd& variables,
 }
 
 // Where resultants are weighed in the rows, these are not those of the misfit.
-void AddCurvature(const Eigen::VectorXd& variables,
-                  const Eigen::MatrixXd& sensitivities,
-                  DisplacementMisfit& misfit, MinimumErrors& errors) {
-  if (misfit.NumResultants() == 0) {
+void AddCurvature(const CurvedMisfit& curved, MinimumErrors& errors) {
+  if (curved.misfit.NumResultants() == 0) {
     errors.total += CovarianceOfCurvature(
-        variables, errors.total, sensitivities,
-        KnownBeforehand(misfit.Free(), variables, errors.variance), misfit);
+        curved.minimum, errors.total,
+        KnownBeforehand(curved.misfit.Free(), errors.variables,
+                        errors.variance),
+        curved.misfit);
   }
 }
 
@@ -431,8 +431,9 @@ void EnterErrorsOfKnown(const Scene& scene, const FreeParameters& free,
 
 // What is known of the minimum.
 MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
-                       const SpaceChange* change, DisplacementMisfit& misfit,
-                       Evidence& evidence, Estimate& estimate) {
+                       const SpaceChange* change, const CurvedMisfit* curved,
+                       DisplacementMisfit& misfit, Evidence& evidence,
+                       Estimate& estimate) {
   const FreeParameters& free = misfit.Free();
   const ObservedDisplacements& observed = misfit.Observed();
   const Eigen::VectorXd& rows = minimum.rows;
@@ -487,7 +488,9 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
               errors.total, evidence, estimate);
   AddAxisRotation(scene, errors.variables, rows, sensitivities, inverse, misfit,
                   errors, evidence, estimate);
-  AddCurvature(errors.variables, sensitivities, misfit, errors);
+  if (curved != nullptr) {
+    AddCurvature(*curved, errors);
+  }
   if (!by_correlation.isZero(0)) {
     evidence.smooth_residual_error =
         std::sqrt(errors.total.diagonal().maxCoeff());
@@ -500,6 +503,7 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
 
 MinimumErrors DescribeMinimum(const Scene& scene, const BoundedMinimum& found,
                               const SpaceChange* change,
+                              const CurvedMisfit* curved,
                               DisplacementMisfit& misfit, Evidence& evidence,
                               Estimate& estimate) {
   Minimum minimum = {found, {}, {}};
@@ -508,7 +512,7 @@ MinimumErrors DescribeMinimum(const Scene& scene, const BoundedMinimum& found,
     evidence.end = End::kSingularStiffness;
     return {};
   }
-  return Describe(scene, minimum, change, misfit, evidence, estimate);
+  return Describe(scene, minimum, change, curved, misfit, evidence, estimate);
 }
 
 }  // namespace elastimate

@@ -28,6 +28,12 @@ struct MinimumErrors {
   Eigen::VectorXd residual;  ///< What is left in the observed rows.
 };
 
+/// A misfit whose curvature adds to errors, and its minimum.
+struct CurvedMisfit {
+  DisplacementMisfit& misfit;
+  const Eigen::VectorXd& minimum;
+};
+
 /// Enters the noise and the covariance of a minimum into the estimate, whose
 /// parameters are entered, and what there is to judge into the evidence:
 ///
@@ -46,13 +52,17 @@ struct MinimumErrors {
 /// that a minimum lies on one is not, so that its errors are those without it.
 /// Variables that the data say nothing of have no covariance.
 ///
-/// An evaluation, and O(n^2) for n points in a load case (CorrelateResiduals).
+/// The last of these takes evaluations away from the minimum, of `curved`: the
+/// misfit itself, or that of the same measurement in a coarser space, which
+/// costs less; null leaves it out.  Else an evaluation, and O(n^2) for n points
+/// in a load case (CorrelateResiduals).
 ///
 /// `change` to the elements of the misfit from coarser ones corrects the
 /// parameters that are entered for the mesh error, and adds its covariance to
 /// theirs (MeshErrorOf); null where nothing is known of it.
 MinimumErrors DescribeMinimum(const Scene& scene, const BoundedMinimum& found,
                               const SpaceChange* change,
+                              const CurvedMisfit* curved,
                               DisplacementMisfit& misfit, Evidence& evidence,
                               Estimate& estimate);
 

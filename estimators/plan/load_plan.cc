@@ -195,13 +195,7 @@ LoadPlan PlanLoads(const Scene& scene,
   LoadPlan plan;
   const MaterialParameters of_scene = ParametersOf(scene);
   const Eigen::VectorXd units = of_scene.UnitsOfErrors(parameters);
-  plan.parameters = ParametersWithoutValues(scene, of_scene);
-  for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
-    plan.parameters[i].value = parameters(Eigen::Index(i));
-    if (of_scene.All()[i].law_parameter->beside) {
-      plan.parameters[i].beside = units(Eigen::Index(i));
-    }
-  }
+  plan.parameters = DescribeParameters(scene, of_scene, parameters);
   const std::size_t num_cases = scene.load_cases.size();
   const std::vector<CaseInformation> cases =
       ExpectedInformation(WithCandidates(scene, candidates), num_cases,

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/laws/elasticity.h"
 
 namespace elastimate {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "elastimate/core/algebra/dense_algebra.h"
-#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/laws/elasticity.h"
 
 namespace elastimate {
 

@@ -26,7 +26,7 @@ std::optional<int> SolveNearby(const Eigen::VectorXd& moduli,
                                Eigen::MatrixXd& x) {
   const InternalForces& of_mesh = equilibrium.Forces();
   Eigen::MatrixXd residual = forces - of_mesh.Multiply(moduli, x);
-  Eigen::MatrixXd preconditioned = equilibrium.SolveFor(residual);
+  Eigen::MatrixXd preconditioned = equilibrium.Precondition(residual);
   Eigen::MatrixXd direction = preconditioned;
   Eigen::VectorXd products = ColumnProducts(residual, preconditioned);
   Eigen::VectorXd last_steps;
@@ -49,7 +49,7 @@ std::optional<int> SolveNearby(const Eigen::VectorXd& moduli,
       return i;
     }
     last_steps = steps;
-    preconditioned = equilibrium.SolveFor(residual);
+    preconditioned = equilibrium.Precondition(residual);
     const Eigen::VectorXd next = ColumnProducts(residual, preconditioned);
     direction =
         preconditioned + direction * Ratios(next, products).asDiagonal();

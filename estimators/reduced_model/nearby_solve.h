@@ -9,16 +9,17 @@
 namespace elastimate {
 
 /// Solves K(theta) x = b in the free rows by conjugate gradients, with the
-/// factor at hand of other moduli as preconditioner: b and x are num_dofs x n
-/// of each load case side by side, and x starts at what it is, of which the
-/// held rows are kept.
+/// factor at hand of other moduli as preconditioner, or where there is none,
+/// the cycle over coarser spaces of those moduli (Equilibrium::Precondition): b
+/// and x are num_dofs x n of each load case side by side, and x starts at what
+/// it is, of which the held rows are kept.
 ///
 /// Ends where the error of each column is expected to be below its tolerance in
 /// the energy norm: a step lowers the square of the error by its own energy
 /// [Hestenes & Stiefel 1952], and the next one is at most as long in proportion
 /// as this one is to the last.  Returns how many it took; empty when more than
-/// `most_iterations` are needed.  Cost: an element pass and a solve for each
-/// column in each iteration.
+/// `most_iterations` are needed.  Cost: an element pass and an application of
+/// the preconditioner for each column in each iteration.
 ///
 /// Precondition: the last Solve of the equilibrium returned true.
 std::optional<int> SolveNearby(const Eigen::VectorXd& moduli,

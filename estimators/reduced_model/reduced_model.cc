@@ -7,7 +7,7 @@
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/node_sums.h"
-#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/laws/elasticity.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/loads.h"

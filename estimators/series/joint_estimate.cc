@@ -425,17 +425,6 @@ std::optional<double> IfFinite(double value) {
   return std::isfinite(value) ? std::optional<double>(value) : std::nullopt;
 }
 
-// What stands outside of the parameters for one isotropic material.
-void EnterOneIsotropicMaterial(Estimate& estimate) {
-  estimate.elasticity = {estimate.parameters[0].value,
-                         estimate.parameters[1].value};
-  estimate.covariance = estimate.parameter_covariance;
-  estimate.discretization_error =
-      IfFinite(estimate.error_budget.discretization(0));
-  estimate.poisson_ratio_discretization_error =
-      IfFinite(estimate.error_budget.discretization(1));
-}
-
 // Adds the findings that more than half of the used frames have, as the first
 // has them.
 void AddSharedFindings(const std::vector<UsedFrame>& frames,
@@ -590,7 +579,9 @@ Estimate JointEstimate(const Scene& scene, const EstimatorOptions& options,
   const Mean mean = MeanOf(used, WeightsOfFrames(usual, used));
   EnterMean(mean, free, load_error.relative, joint);
   if (IsOneIsotropicMaterial(scene.materials)) {
-    EnterOneIsotropicMaterial(joint);
+    const ParameterErrors& by_elements = joint.error_budget.discretization;
+    joint.discretization_error = IfFinite(by_elements(0));
+    joint.poisson_ratio_discretization_error = IfFinite(by_elements(1));
   }
   joint.noise_sd = MeanNoise(used);
   joint.series->trend =

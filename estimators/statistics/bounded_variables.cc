@@ -3,10 +3,10 @@
 #include <ceres/cost_function.h>
 #include <ceres/problem.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "elastimate/estimators/interface/finding_sentences.h"
-#include "elastimate/estimators/statistics/bounded_parameter.h"
 
 namespace elastimate {
 namespace {
@@ -49,6 +49,132 @@ class VariablesCost : public ceres::CostFunction {
   Eigen::Index num_variables_;
 };
 
+End EndOf(const ceres::Solver::Summary& summary) {
+  switch (summary.termination_type) {
+    case ceres::CONVERGENCE:
+      return End::kDone;
+    case ceres::NO_CONVERGENCE:
+      return End::kIterationLimit;
+    default:
+      return End::kSearchFailed;
+  }
+}
+
+// The projected steps of a trust region method stall on a bound, since they
+// take the step of the other variables from the unbounded problem.  So
+// variables that reach a bound are held there while the others converge, and
+// released again when the gradient points into the interior.
+class BoundedSearch {
+ public:
+  BoundedSearch(const ResidualFunction& residual, Eigen::Index num_residuals,
+                const std::vector<Bounds>& bounds, const Eigen::VectorXd& start)
+      : lower_(start.size()), upper_(start.size()), x_(start) {
+    std::vector<double*> blocks;
+    for (Eigen::Index i = 0; i < x_.size(); ++i) {
+      lower_(i) = bounds[i].lower.value_or(start(i) - kLargestChange);
+      upper_(i) = bounds[i].upper.value_or(start(i) + kLargestChange);
+      x_(i) = std::min(std::max(x_(i), lower_(i)), upper_(i));
+      blocks.push_back(&x_(i));
+    }
+    problem_.AddResidualBlock(
+        new VariablesCost(residual, num_residuals, x_.size()), nullptr, blocks);
+    for (Eigen::Index i = 0; i < x_.size(); ++i) {
+      problem_.SetParameterLowerBound(&x_(i), 0, lower_(i));
+      problem_.SetParameterUpperBound(&x_(i), 0, upper_(i));
+    }
+  }
+
+  BoundedMinimum Minimize(const ceres::Solver::Options& options) {
+    constexpr int kMaxRounds = 4;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem_, &summary);
+    for (int round = 0; round < kMaxRounds && summary.IsSolutionUsable();
+         ++round) {
+      const Eigen::Index num_held = HoldOnBounds();
+      if (num_held == 0) {
+        break;
+      }
+      if (num_held < x_.size()) {
+        ceres::Solve(options, &problem_, &summary);
+      }
+      if (!ReleaseInwards()) {
+        break;
+      }
+      ceres::Solve(options, &problem_, &summary);
+    }
+    BoundedMinimum minimum;
+    minimum.variables = x_;
+    for (Eigen::Index i = 0; i < x_.size(); ++i) {
+      minimum.on_bound.push_back(SideOf(i));
+    }
+    // Where there is no value at the start, Ceres knows no cost.
+    minimum.cost = summary.IsSolutionUsable()
+                       ? summary.final_cost
+                       : std::numeric_limits<double>::infinity();
+    minimum.end = EndOf(summary);
+    minimum.message = "Ceres: " + summary.message;
+    return minimum;
+  }
+
+ private:
+  Side SideOf(Eigen::Index i) const {
+    // A variable this close to a bound lies on it.
+    constexpr double kOnBound = 1e-9;
+    if (x_(i) - lower_(i) < kOnBound) {
+      return Side::kLower;
+    }
+    return upper_(i) - x_(i) < kOnBound ? Side::kUpper : Side::kNone;
+  }
+
+  // Holds the variables that lie on a bound, and says how many these are.
+  Eigen::Index HoldOnBounds() {
+    Eigen::Index num_held = 0;
+    for (Eigen::Index i = 0; i < x_.size(); ++i) {
+      if (SideOf(i) != Side::kNone) {
+        problem_.SetParameterBlockConstant(&x_(i));
+        ++num_held;
+      }
+    }
+    return num_held;
+  }
+
+  // Releases the variables on a bound from which the cost falls towards the
+  // interior, and says whether there are any.
+  bool ReleaseInwards() {
+    bool is_any_released = false;
+    for (Eigen::Index i = 0; i < x_.size(); ++i) {
+      const Side side = SideOf(i);
+      if (side == Side::kNone) {
+        continue;
+      }
+      problem_.SetParameterBlockVariable(&x_(i));
+      if (FallsInwards(side, &x_(i))) {
+        is_any_released = true;
+      } else {
+        problem_.SetParameterBlockConstant(&x_(i));
+      }
+    }
+    return is_any_released;
+  }
+
+  bool FallsInwards(Side side, double* block) {
+    // Relative to the cost, a smaller gradient is rounding.
+    constexpr double kInwardGradient = 1e-6;
+    ceres::Problem::EvaluateOptions options;
+    options.parameter_blocks = {block};
+    double cost = 0;
+    std::vector<double> gradient;
+    problem_.Evaluate(options, &cost, nullptr, &gradient, nullptr);
+    const double inward = side == Side::kLower ? -gradient[0] : gradient[0];
+    return inward > kInwardGradient * cost;
+  }
+
+  Eigen::VectorXd lower_;
+  Eigen::VectorXd upper_;
+  Eigen::VectorXd x_;
+  ceres::Problem problem_;
+};
+
 }  // namespace
 
 BoundedMinimum MinimizeOverVariables(const ResidualFunction& residual,
@@ -56,37 +182,8 @@ BoundedMinimum MinimizeOverVariables(const ResidualFunction& residual,
                                      const std::vector<Bounds>& bounds,
                                      const Eigen::VectorXd& start,
                                      const ceres::Solver::Options& options) {
-  std::vector<BoundedParameter> variables;
-  std::vector<double*> blocks;
-  std::vector<BoundedParameter*> pointers;
-  variables.reserve(bounds.size());
-  for (std::size_t i = 0; i < bounds.size(); ++i) {
-    const double first = start(Eigen::Index(i));
-    variables.emplace_back(
-        first, Bounds{bounds[i].lower.value_or(first - kLargestChange),
-                      bounds[i].upper.value_or(first + kLargestChange)});
-    blocks.push_back(variables.back().Block());
-    pointers.push_back(&variables.back());
-  }
-  ceres::Problem problem;
-  problem.AddResidualBlock(
-      new VariablesCost(residual, num_residuals, start.size()), nullptr,
-      blocks);
-  const ceres::Solver::Summary summary =
-      MinimizeWithinBounds(options, pointers, problem);
-  BoundedMinimum minimum;
-  minimum.variables.resize(start.size());
-  for (std::size_t i = 0; i < variables.size(); ++i) {
-    minimum.variables(Eigen::Index(i)) = variables[i].Value();
-    minimum.on_bound.push_back(variables[i].OnBound());
-  }
-  // Where there is no value at the start, Ceres knows no cost.
-  minimum.cost = summary.IsSolutionUsable()
-                     ? summary.final_cost
-                     : std::numeric_limits<double>::infinity();
-  minimum.end = EndOf(summary);
-  minimum.message = "Ceres: " + summary.message;
-  return minimum;
+  return BoundedSearch(residual, num_residuals, bounds, start)
+      .Minimize(options);
 }
 
 void NoteVariablesOnBounds(const FreeParameters& free,

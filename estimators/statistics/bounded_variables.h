@@ -11,9 +11,11 @@
 #include "elastimate/estimators/interface/evidence.h"
 #include "elastimate/estimators/interface/free_parameters.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
-#include "elastimate/estimators/statistics/bounded_parameter.h"
 
 namespace elastimate {
+
+/// The bound that a variable lies on.
+enum class Side { kNone, kLower, kUpper };
 
 /// A minimum of ||r(x)||^2 / 2 over the variables within their bounds.
 struct BoundedMinimum {
@@ -30,9 +32,9 @@ using ResidualFunction =
     std::function<bool(const Eigen::VectorXd& variables,
                        Eigen::VectorXd* residual, Eigen::MatrixXd* jacobian)>;
 
-/// By Ceres' trust region method from `start` on, as MinimizeWithinBounds does.
-/// `residual` is asked for a value before its Jacobian at the same x.  What has
-/// no bound keeps within a factor of e^14, a million, of the start.
+/// By Ceres' trust region method from `start` on.  `residual` is asked for a
+/// value before its Jacobian at the same x.  What has no bound keeps within a
+/// factor of e^14, a million, of the start.
 BoundedMinimum MinimizeOverVariables(const ResidualFunction& residual,
                                      Eigen::Index num_residuals,
                                      const std::vector<Bounds>& bounds,

@@ -132,9 +132,8 @@ Eigen::VectorXd RobustChange(const ObservedDisplacements& observed,
   Eigen::VectorXd change = Eigen::VectorXd::Zero(sensitivities.cols());
   for (int i = 0; i < kReweightings; ++i) {
     const Eigen::VectorXd moved = residual + sensitivities * change;
-    const NodeLosses losses(
-        Loss::kHuber,
-        RobustStandardDeviation(Eigen::VectorXd(moved.head(observed.Size()))));
+    const double deviation =
+        RobustStandardDeviation(Eigen::VectorXd(moved.head(observed.Size())));
     const Eigen::Index num_others = moved.size() - observed.Size();
     const auto others = sensitivities.bottomRows(num_others);
     Eigen::MatrixXd gram = others.transpose() * others;
@@ -142,7 +141,8 @@ Eigen::VectorXd RobustChange(const ObservedDisplacements& observed,
     for (const ObservedDisplacements::Point& node : observed.Points()) {
       const auto r = moved.segment(node.first, node.count);
       const auto s = sensitivities.middleRows(node.first, node.count);
-      const double weight = losses.Evaluate(node.count, r.squaredNorm())[1];
+      const double weight =
+          EvaluateLoss(Loss::kHuber, deviation, node.count, r.squaredNorm())[1];
       gram += weight * s.transpose() * s;
       gradient += weight * s.transpose() * r;
     }

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/laws/elasticity.h"
 
 namespace elastimate {
 

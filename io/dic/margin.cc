@@ -1,8 +1,8 @@
 #include "elastimate/io/dic/margin.h"
 
+#include <boost/pending/disjoint_sets.hpp>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -34,14 +34,7 @@ Eigen::MatrixXi FreeEdgeNodes(const Scene& scene) {
 // Returns the straight side of each edge, as the place of one of its edges.
 std::vector<Eigen::Index> SidesOf(const Mesh& mesh,
                                   const Eigen::MatrixXi& edges) {
-  std::vector<Eigen::Index> parent(edges.cols());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&parent](Eigen::Index i) {
-    while (parent[i] != i) {
-      i = parent[i];
-    }
-    return i;
-  };
+  boost::disjoint_sets_with_storage<> sets(edges.cols());
   std::map<std::pair<int, bool>, Eigen::Index> first;  // By node, direction.
   for (Eigen::Index i = 0; i < edges.cols(); ++i) {
     const Eigen::VectorXd along =
@@ -49,12 +42,12 @@ std::vector<Eigen::Index> SidesOf(const Mesh& mesh,
     const bool is_upright = std::abs(along(1)) > std::abs(along(0));
     for (const int node : edges.col(i)) {
       const auto found = first.emplace(std::pair(node, is_upright), i).first;
-      parent[root(i)] = root(found->second);
+      sets.union_set(i, found->second);
     }
   }
   std::vector<Eigen::Index> sides;
   for (Eigen::Index i = 0; i < edges.cols(); ++i) {
-    sides.push_back(root(i));
+    sides.push_back(Eigen::Index(sets.find_set(i)));
   }
   return sides;
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "elastimate/core/mesh/nearest_points.h"
+#include "elastimate/core/text/numbers.h"
 #include "elastimate/io/dic/dic_file.h"
 #include "elastimate/io/dic/point_mesh.h"
 #include "elastimate/io/mesh/mesh_file_check.h"
@@ -114,8 +115,8 @@ void CheckShareOfFilled(const std::filesystem::path& path,
     ThrowInputError(path,
                     "its grid has no point at " + std::to_string(num_filled) +
                         " of " + std::to_string(size) +
-                        " places; if the specimen is there, give \"gaps\": "
-                        "\"filled\", else \"open\"");
+                        " places; give \"gaps\": \"filled\" if the specimen "
+                        "is there, or \"gaps\": \"open\" if it is not");
   }
 }
 
@@ -155,7 +156,8 @@ std::string Description(const std::filesystem::path& path,
          << num_beside << " that are not connected to it are left out";
   }
   if (num_lost > 0) {
-    text << "; nodes without a measurement fill gaps of the grid: " << num_lost;
+    text << "; gaps of the grid are filled with "
+         << Counted(std::size_t(num_lost), "node") << " without a measurement";
   }
   return text.str();
 }

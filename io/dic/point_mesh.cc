@@ -9,10 +9,10 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/pending/disjoint_sets.hpp>
 #include <cmath>
 #include <cstddef>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -318,28 +318,21 @@ Elements WithoutSlivers(const Eigen::Matrix2Xd& positions, Elements triangles) {
 
 // Returns the largest set of elements that are connected by edges.
 Elements LargestPart(const Elements& elements) {
-  std::vector<std::size_t> parent(elements.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](std::size_t e) {
-    while (parent[e] != e) {
-      e = parent[e] = parent[parent[e]];
-    }
-    return e;
-  };
+  boost::disjoint_sets_with_storage<> parts(elements.size());
   for (const auto& [edge, of_edge] : ElementsOfEdges(elements)) {
     for (const std::size_t e : of_edge) {
-      parent[root(e)] = root(of_edge.front());
+      parts.union_set(e, of_edge.front());
     }
   }
   std::vector<std::size_t> size(elements.size(), 0);
   for (std::size_t e = 0; e < elements.size(); ++e) {
-    ++size[root(e)];
+    ++size[parts.find_set(e)];
   }
   const std::size_t largest = static_cast<std::size_t>(
       std::max_element(size.begin(), size.end()) - size.begin());
   Elements part;
   for (std::size_t e = 0; e < elements.size(); ++e) {
-    if (root(e) == largest) {
+    if (parts.find_set(e) == largest) {
       part.push_back(elements[e]);
     }
   }

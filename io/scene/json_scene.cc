@@ -177,15 +177,14 @@ const JsonValue& OwnerOfSupports(const JsonValue& document,
 }  // namespace
 
 FileScene ReadJsonScene(const std::filesystem::path& path,
-                        Measurement measurement, const SectionChoice& section,
-                        const std::vector<bool>& filled_gaps) {
+                        Measurement measurement, const SceneChoices& choices) {
   const nlohmann::json parsed = ParseJsonFile(path);
   const JsonValue document(path, parsed);
   document.CheckKeys({"model", "thickness", "mesh", "regions", "materials",
                       "supports", "rigid_motion", "origin", "cases", "frames"});
-  const SectionChoice choice = Choose(section, ReadSection(document));
+  const SectionChoice choice = Choose(choices.section, ReadSection(document));
   FileScene file_scene;
-  file_scene.gaps.is_filled = filled_gaps;
+  file_scene.gaps.is_filled = choices.filled_gaps;
   file_scene.mesh =
       ReadNamedMesh(document.At("mesh"), file_scene.gaps, file_scene.notices);
   ChooseRegions(document, file_scene.mesh);

@@ -12,8 +12,7 @@ namespace elastimate {
 /// Reads a scene.json and the files it names, as ReadScene describes.  Throws
 /// std::invalid_argument, naming the file and the place in it.
 FileScene ReadJsonScene(const std::filesystem::path& path,
-                        Measurement measurement, const SectionChoice& section,
-                        const std::vector<bool>& filled_gaps);
+                        Measurement measurement, const SceneChoices& choices);
 
 }  // namespace elastimate
 

@@ -405,8 +405,8 @@ void NoteMovedNodes(const MeshFile& mesh, std::vector<std::string>& notices) {
 /// Returns the valid scene without the nodes that no element uses, and their
 /// order in the file.
 Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
-                  RegionChoice regions, const LawChoice& law,
-                  SceneReading& reading, std::vector<int>& file_order) {
+                  const SceneChoices& choices, SceneReading& reading,
+                  std::vector<int>& file_order) {
   std::vector<std::string>& notices = reading.notices;
   const MeshFile& mesh = file_scene.mesh;
   notices.insert(notices.end(), file_scene.notices.begin(),
@@ -439,8 +439,8 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
   if (file_scene.frames) {
     reading.frames = nodes.Filter(*file_scene.frames);
   }
-  ChooseMaterials(path, mesh, regions, scene, notices);
-  ChooseLaw(path, law, scene);
+  ChooseMaterials(path, mesh, choices.regions, scene, notices);
+  ChooseLaw(path, choices.law, scene);
   try {
     ValidateScene(scene);
   } catch (const std::invalid_argument& error) {
@@ -523,19 +523,17 @@ void KeepSupports(const Supports& supports, std::vector<LoadCase>& load_cases) {
 }
 
 FileScene ReadFileScene(const std::filesystem::path& path,
-                        Measurement measurement, const SectionChoice& section,
-                        const std::vector<bool>& filled_gaps) {
+                        Measurement measurement, const SceneChoices& choices) {
   return FileExtension(path) == ".json"
-             ? ReadJsonScene(path, measurement, section, filled_gaps)
-             : SceneFromArrays(ReadMeshFile(path), measurement, section);
+             ? ReadJsonScene(path, measurement, choices)
+             : SceneFromArrays(ReadMeshFile(path), measurement,
+                               choices.section);
 }
 
 }  // namespace
 
 SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
-                       Measurement measurement, const SectionChoice& section,
-                       RegionChoice regions, const LawChoice& law,
-                       const std::vector<bool>& filled_gaps) {
+                       Measurement measurement, const SceneChoices& choices) {
   if (paths.empty()) {
     throw std::invalid_argument("no scene file is given; name one");
   }
@@ -543,8 +541,7 @@ SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
   SceneReading reading;
   CaseNames names;
   for (const std::filesystem::path& path : paths) {
-    FileScene file_scene =
-        ReadFileScene(path, measurement, section, filled_gaps);
+    FileScene file_scene = ReadFileScene(path, measurement, choices);
     const std::filesystem::path mesh_path = file_scene.mesh.path;
     const std::string why_no_regions = file_scene.mesh.why_no_regions;
     if (&path == &paths.front()) {
@@ -552,8 +549,8 @@ SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
       reading.gaps = file_scene.gaps.found;
     }
     std::vector<int> file_order;
-    Scene scene = FinishScene(path, std::move(file_scene), regions, law,
-                              reading, file_order);
+    Scene scene =
+        FinishScene(path, std::move(file_scene), choices, reading, file_order);
     if (reading.frames && paths.size() > 1) {
       ThrowInputError(path,
                       "a scene of several frames cannot be combined with other "
@@ -566,7 +563,7 @@ SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
       reading.scene = std::move(scene);
       reading.file_order = std::move(file_order);
     } else if (const std::string difference =
-                   WhyDifferent(reading.scene, scene, regions);
+                   WhyDifferent(reading.scene, scene, choices.regions);
                !difference.empty()) {
       ThrowInputError(path, "this is not a further load case of '" +
                                 PrintablePath(paths.front()) + "', because " +

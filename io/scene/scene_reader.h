@@ -42,6 +42,17 @@ struct LawChoice {
   bool has_free_axis = false;
 };
 
+/// What is said of a scene beside its files.
+struct SceneChoices {
+  SectionChoice section;
+  RegionChoice regions = RegionChoice::kAsGiven;
+  LawChoice law;
+  /// Whether the camera lost the points of each of SceneReading::gaps, which
+  /// then become nodes without a displacement.  Where this is empty, the
+  /// specimen ends at the gaps.
+  std::vector<bool> filled_gaps;
+};
+
 /// A scene as read, and what the reader has to say about it.
 struct SceneReading {
   Scene scene;
@@ -75,7 +86,7 @@ struct SceneReading {
 ///
 /// The elements are the cells of the highest dimension, which are of one
 /// ElementKind.  Planar ones lie in a plane z = const and need a model and a
-/// thickness: of `section`, else of the scene.json, else of the field data of
+/// thickness: of `choices`, else of the scene.json, else of the field data of
 /// the mesh file.  Their arrays have 2 components, or 3 of which the third is
 /// zero.  The mid-edge nodes of quadratic elements are numbered after the
 /// vertices in the scene, whatever the file does.
@@ -85,10 +96,6 @@ struct SceneReading {
 /// all nodes of its file, also those without an element: in the order of the
 /// points of a VTK file, by ascending node number in a Gmsh file.  That is what
 /// ids and CSV rows in a scene.json refer to, and what messages name.
-///
-/// `filled_gaps` says of each of SceneReading::gaps whether the camera lost
-/// points there, which become nodes without a displacement; by default, the
-/// specimen ends there.
 ///
 /// The scene returned is valid (ValidateScene).  Throws std::invalid_argument
 /// with one sentence that names the file and the array, key, node or element
@@ -100,10 +107,7 @@ struct SceneReading {
 /// after the other.
 SceneReading ReadScene(const std::vector<std::filesystem::path>& paths,
                        Measurement measurement,
-                       const SectionChoice& section = {},
-                       RegionChoice regions = RegionChoice::kAsGiven,
-                       const LawChoice& law = {},
-                       const std::vector<bool>& filled_gaps = {});
+                       const SceneChoices& choices = {});
 
 }  // namespace elastimate
 

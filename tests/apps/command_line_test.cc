@@ -1208,15 +1208,12 @@ TEST_F(ElementKinds, AreInTheTable) {
 
 TEST_F(ElementKinds, AreModelledWithQuadraticOnes) {
   for (const auto& [linear, quadratic] :
-       {std::pair{"rectangle --elements=tri3", "tri6"},
-        std::pair{"rectangle --elements=quad4", "quad9"},
-        std::pair{"cuboid --cells=2,2,2 --elements=hex8", "hex27"}}) {
-    Succeed("generate " + std::string(linear) + " --out=g.vtu");
+       {std::pair<std::string, std::string>("tri3", "tri6"),
+        {"quad4", "quad9"}}) {
+    Succeed("generate rectangle --elements=" + linear + " --out=g.vtu");
     Succeed("simulate g.vtu --order=2 --youngs=7e10 --nu=0.33 --out=m.vtu");
     ExpectFound("m.vtu", "--order=2 --origin=computed --estimator=iterative-fe",
                 {{"kind", quadratic}, {"order", 2}});
-    std::filesystem::remove(folder_ / "g.vtu");
-    std::filesystem::remove(folder_ / "m.vtu");
   }
 }
 

@@ -96,13 +96,13 @@ bool IsBeyondBite(double x, double y) { return y < 4 || x < 3 || x > 17; }
 TEST_F(GapChoice, LetsTheSpecimenGoOnWherePointsWereLostAtAFreeEdge) {
   Measure(IsAll, IsBeyondBite);
   EXPECT_THAT(NoticesOfRightEstimate(),
-              HasSubstr("specimen is taken to go on there"));
+              HasSubstr("specimen is assumed to go on there"));
 }
 
 TEST_F(GapChoice, EndsTheSpecimenAtANarrowPart) {
   Measure(IsBeyondBite, IsAll);
   EXPECT_THAT(NoticesOfRightEstimate(),
-              HasSubstr("specimen is taken to end there"));
+              HasSubstr("specimen is assumed to end there"));
 }
 
 TEST_F(GapChoice, TellsAHoleFromPointsThatWereLost) {
@@ -111,9 +111,9 @@ TEST_F(GapChoice, TellsAHoleFromPointsThatWereLost) {
   // Linear elements, which made the data, are stiff around the hole.
   const std::string notices = NoticesOfRightEstimate(0.3);
   EXPECT_THAT(notices,
-              HasSubstr("around (5, 2.5); the specimen is taken to go on"));
+              HasSubstr("around (5, 2.5); the specimen is assumed to go on"));
   EXPECT_THAT(notices,
-              HasSubstr("around (14, 2.5); the specimen is taken to end"));
+              HasSubstr("around (14, 2.5); the specimen is assumed to end"));
 }
 
 // The last of three frames of the same specimen decides.
@@ -123,7 +123,7 @@ TEST_F(GapChoice, DecidesForFramesByTheLargestLoad) {
   scene.replace(scene.rfind('}'), 1, R"(, "frames": {"files": "points.csv"}})");
   testing::WriteText(folder_ / "scene.json", scene);
   EXPECT_THAT(NoticesOfRightEstimate(),
-              HasSubstr("specimen is taken to go on there"));
+              HasSubstr("specimen is assumed to go on there"));
 }
 
 // Noise hides what three points of a free edge would change.
@@ -132,7 +132,7 @@ TEST_F(GapChoice, SaysWhatItMayChangeWhereDisplacementsDoNotTell) {
       IsAll, [](double x, double y) { return y < 5 || x < 10 || x > 11; },
       0.02);
   EXPECT_THAT(NoticesOfRightEstimate(0.1),
-              HasSubstr("which the displacements do not tell for sure"));
+              HasSubstr("although the displacements do not decide that"));
 }
 
 }  // namespace

@@ -3,7 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -52,6 +56,123 @@ class MaterialsCommand : public testing::ProgramTest {
     }
   }
 };
+
+// A closed form: a column of Hooke's law is as stiff as E, and becomes narrower
+// by nu, whatever the law is called that turns with it.
+TEST_F(MaterialsCommand, DrawsTheCurveOfAMaterial) {
+  const std::string corotated =
+      "materials --curve=corotated,youngs_modulus=10,poisson_ratio=0.25";
+  std::istringstream lines(Succeed(corotated).output);
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_THAT(line, HasSubstr("stretch     uniaxial  equibiaxial"));
+  int count = 0;
+  for (double stretch = 0; lines >> stretch; std::getline(lines, line)) {
+    double stress = 0;
+    lines >> stress;
+    EXPECT_NEAR(stress, 10 * (stretch - 1), 1e-5 * std::abs(stress));
+    ++count;
+  }
+  EXPECT_EQ(count, 26);
+  EXPECT_EQ(Succeed(corotated + " --out=curve.csv").output, "");
+  const std::string table = testing::ReadText(folder_ / "curve.csv");
+  EXPECT_EQ(table.rfind("stretch,uniaxial,equibiaxial,pure_shear,simple_shear,"
+                        "volumetric\n0.5,-5",
+                        0),
+            0U)
+      << table;
+  // Where the law gives way there is a dash.
+  EXPECT_THAT(Succeed("materials --curve=st_venant_kirchhoff,"
+                      "youngs_modulus=1,poisson_ratio=0.45")
+                  .output,
+              HasSubstr(" - "));
+}
+
+TEST_F(MaterialsCommand, RefusesACurveOfNoMaterial) {
+  Refuse("materials --curve=rubber", "the first part must be a law");
+  Refuse("materials --curve=neo_hookean,youngs_modulus=1",
+         "needs poisson_ratio as well");
+  Refuse("materials --curve=neo_hookean,youngs_modulus=1,poisson_ratio=0.5",
+         "poisson_ratio must be between");
+  Refuse("materials --curve=neo_hookean,youngs_modulus", "NAME=NUMBER");
+  Refuse("materials --curve=yeoh,c10=1,c10=2", "gives c10 twice");
+  Refuse(
+      "materials "
+      "--curve=neo_hookean,youngs_modulus=1,poisson_ratio=0.3,c10=1",
+      "which is no parameter of neo_hookean");
+  Refuse(
+      "materials --curve=neo_hookean,youngs_modulus=1,poisson_ratio=0.3 "
+      "--out=curve.txt",
+      "the name must end in .csv");
+  Refuse("materials --out=laws.csv", "the list of laws is not written");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "curve.txt"));
+}
+
+TEST_F(MaterialsCommand, EstimatesNoLawOfLargeStrains) {
+  Succeed("simulate block.vtu --youngs=1e4 --nu=0.3 --out=m.vtu");
+  for (const std::string estimator :
+       {"closed-form", "bounded", "virtual-fields", "reduced-fe",
+        "iterative-fe", "auto"}) {
+    Refuse("estimate m.vtu --material=neo_hookean --estimator=" + estimator,
+           "the law neo_hookean is for large strains");
+  }
+  Refuse("plan m.vtu --material=neo_hookean --youngs=1e4 --nu=0.3",
+         "the law neo_hookean is for large strains");
+}
+
+// The corotated law stretches as Hooke's law does, by E times the strain times
+// the undeformed area of 1 x 0.4.
+TEST_F(MaterialsCommand, SimulatesLargeStrains) {
+  const auto write_pull = [&](const std::string& law, double displacement) {
+    const Json materials = {{{"law", law}}};
+    const auto support = [](Json box, const std::string& components, double x) {
+      return Json{{"nodes", {{"box", std::move(box)}}},
+                  {"components", components},
+                  {"displacement", {x, 0, 0}}};
+    };
+    testing::WriteText(
+        folder_ / "pull.json",
+        Json{{"mesh", "block.vtu"},
+             {"materials", materials},
+             {"supports",
+              {support({{0, -1, -1}, {0, 2, 2}}, "x", 0),
+               support({{-1, 0, -1}, {2, 0, 2}}, "y", 0),
+               support({{-1, -1, 0}, {2, 2, 0}}, "z", 0),
+               support({{1, -1, -1}, {1, 2, 2}}, "x", displacement)}},
+             {"cases", {{{"loads", Json::array()}}}}}
+            .dump());
+  };
+  write_pull("corotated", 0.5);
+  const std::string flags = " --youngs=1e4 --nu=0.3 --out=pulled.vtu";
+  const std::string output = Succeed("simulate pull.json" + flags).output;
+  EXPECT_THAT(output, HasSubstr("force of the displaced supports (2000"));
+  // Far beyond what the elements bear nothing is written.
+  write_pull("corotated", -1.5);
+  std::filesystem::remove(folder_ / "pulled.vtu");
+  Refuse("simulate pull.json" + flags, "of the load");
+  write_pull("neo_hookean", 0.5);
+  Refuse("simulate pull.json --solver=multigrid" + flags, "--solver=cholesky");
+  write_pull("yeoh", 0.5);
+  Refuse("simulate pull.json" + flags, "give --parameters=FILE.json");
+}
+
+TEST_F(MaterialsCommand, SimulatesLargeStrainsOfSmallLoadsAsSmallOnes) {
+  const std::string flags = " --youngs=1e12 --nu=0.3 --out=";
+  Succeed("simulate block.vtu" + flags + "small.csv");
+  Succeed("simulate block.vtu --material=neo_hookean" + flags + "large.csv");
+  std::istringstream small(testing::ReadText(folder_ / "small.csv"));
+  std::istringstream large(testing::ReadText(folder_ / "large.csv"));
+  std::string line;
+  std::string other;
+  int count = 0;
+  while (std::getline(small, line) && std::getline(large, other)) {
+    const double expected = std::atof(line.substr(line.rfind(',') + 1).c_str());
+    const double actual = std::atof(other.substr(other.rfind(',') + 1).c_str());
+    EXPECT_NEAR(actual, expected, 1e-5 * std::abs(expected));
+    ++count;
+  }
+  EXPECT_EQ(count, 109);
+}
 
 TEST_F(MaterialsCommand, SimulatesAndEstimatesEachRegion) {
   Succeed(

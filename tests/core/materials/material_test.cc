@@ -92,6 +92,10 @@ TEST(Materials, ThatAreWrongAreNamed) {
   for (const auto& [materials, why] : wrong) {
     EXPECT_THROWS_WITH(ValidateMaterials(materials, mesh), why);
   }
+}
+
+TEST(Materials, WithWrongPriorsAreNamed) {
+  const Mesh mesh = TwoRegionMesh();
   const std::vector<std::pair<std::vector<Prior>, std::string>> wrong_priors = {
       {{{"poisson_ratio", 0.6, 0.1}}, "gives the prior poisson_ratio = 0.6"},
       {{{"poisson_ratio", 0.3, 0}}, "not positive and finite"},

@@ -10,19 +10,21 @@
 
 #include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
-#include "elastimate/core/mechanics/strain_energy.h"
 #include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/mesh/finer_nodes.h"
 #include "elastimate/core/mesh/middle_nodes.h"
 #include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
+#include "tests/core/mechanics/strain_energy.h"
 #include "tests/core/random_values.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
 
 namespace elastimate {
 namespace {
+
+using testing::StrainEnergyDensity;
 
 constexpr double kQuarter = M_PI / 2;
 

@@ -14,11 +14,11 @@
 #include "elastimate/core/mechanics/stiffness_assembly.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/mechanics/stiffness_traces.h"
-#include "elastimate/core/mechanics/strain_energy.h"
 #include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/core/solvers/multigrid.h"
+#include "tests/core/mechanics/strain_energy.h"
 #include "tests/core/random_values.h"
 
 namespace elastimate {
@@ -30,6 +30,7 @@ using testing::KindOfSection;
 using testing::MeshOfKind;
 using testing::RandomMatrix;
 using testing::SceneOfKind;
+using testing::StrainEnergyDensity;
 using testing::TextbookStiffness;
 using testing::TextbookVolumes;
 

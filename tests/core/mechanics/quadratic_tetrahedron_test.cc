@@ -6,19 +6,18 @@
 #include <string>
 #include <vector>
 
-#include "elastimate/core/materials/elasticity.h"
-#include "elastimate/core/mechanics/gradient_products.h"
+#include "elastimate/core/laws/elasticity.h"
 #include "elastimate/core/mechanics/internal_forces.h"
 #include "elastimate/core/mechanics/stiffness_assembly.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
 #include "elastimate/core/mechanics/stiffness_traces.h"
-#include "elastimate/core/mechanics/strain_energy.h"
 #include "elastimate/core/mechanics/tet10_stiffness_product.h"
 #include "elastimate/core/mesh/mesh.h"
 #include "elastimate/core/mesh/middle_nodes.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "tests/core/instruction_sets.h"
+#include "tests/core/mechanics/strain_energy.h"
 #include "tests/core/random_values.h"
 #include "tests/dense_reference.h"
 #include "tests/element_kinds.h"
@@ -38,6 +37,7 @@ using testing::QuadraticField;
 using testing::QuadraticShapeFunctions;
 using testing::RandomMatrix;
 using testing::RandomSupports;
+using testing::StrainEnergyDensity;
 using testing::TextbookStiffness;
 using testing::WithBothOrientations;
 using testing::WithMidEdgeNodes;
@@ -86,38 +86,6 @@ TEST_F(QuadraticTetrahedra, AreAValidMesh) {
   EXPECT_EQ(mesh_.NumVertices(), linear_.NumNodes());
   EXPECT_EQ(linear_.Order(), 1);
   EXPECT_EQ(linear_.NumVertices(), linear_.NumNodes());
-}
-
-TEST_F(QuadraticTetrahedra, GradientProductsAreThoseOfTheShapeFunctions) {
-  const Eigen::Index size = 3 * mesh_.NumNodes();
-  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(size, size);
-  for (Eigen::Index e = 0; e < mesh_.NumElements(); ++e) {
-    const QuadraticShapeFunctions shape(mesh_, e);
-    ForEachGaussPoint([&](const Eigen::Vector4d& point, double weight) {
-      const Eigen::Matrix<double, 10, 3> gradients =
-          shape.Gradients(shape.Position(point));
-      for (int i = 0; i < 10; ++i) {
-        for (int j = 0; j < 10; ++j) {
-          const Eigen::Index row = mesh_.elements(i, e);
-          const Eigen::Index column = mesh_.elements(j, e);
-          expected.block<3, 3>(3 * row, 3 * column) +=
-              shape.Volume() * weight * gradients.row(i).transpose() *
-              gradients.row(j);
-        }
-      }
-    });
-  }
-  const NodeGraph graph(mesh_);
-  const Eigen::Matrix4Xd products = GradientProducts(mesh_, graph);
-  ASSERT_EQ(products.cols(), 3 * graph.NumPairs());
-  const double tolerance = kReferenceRounding * expected.cwiseAbs().maxCoeff();
-  for (Eigen::Index j = 0; j < mesh_.NumNodes(); ++j) {
-    for (Eigen::Index k = graph.start[j]; k < graph.start[j + 1]; ++k) {
-      const Eigen::Matrix3d block =
-          expected.block<3, 3>(3 * Eigen::Index(graph.row[k]), 3 * j);
-      EXPECT_LT((products.block<3, 3>(0, 3 * k) - block).norm(), tolerance);
-    }
-  }
 }
 
 TEST_F(QuadraticTetrahedra, ProductEqualsTheTextbookStiffness) {

@@ -1,4 +1,4 @@
-#include "elastimate/core/mechanics/strain_energy.h"
+#include "tests/core/mechanics/strain_energy.h"
 
 #include <gtest/gtest.h>
 
@@ -20,6 +20,7 @@ using testing::Distorted;
 using testing::HookeMatrix;
 using testing::RandomMatrix;
 using testing::SmallScene;
+using testing::StrainEnergyDensity;
 using testing::WithBothOrientations;
 
 class StrainEnergy : public ::testing::TestWithParam<double> {

@@ -101,6 +101,7 @@ std::vector<Finding> OfParameters() {
       RatiosAtLimit(ManyParameters()),
       AxisUndetermined({"the axis of region 3 (+- 24 degrees)"}),
       AxisUndetermined(ManyParameters()),
+      OtherAxisAlike(),
       DependentForces(),
       CombinationsOnly({"the product of E of regions 1, 2 and 17 more and E "
                         "of regions 3, 4 and 17 more"}),

@@ -158,7 +158,7 @@ TEST_F(MeasuredMeshTest, WithLostPointsGivesTheTruth) {
   const SceneReading reading = Read(kStrip);
   EXPECT_EQ(reading.scene.mesh.NumElements(), 48);
   EXPECT_EQ(reading.scene.load_cases[0].observed.count(), 2 * (65 - 3));
-  EXPECT_THAT(reading.notices[0], HasSubstr("fill gaps of the grid: 3"));
+  EXPECT_THAT(reading.notices[0], HasSubstr("filled with 3 nodes"));
   const Estimate estimate =
       MakeEstimator("iterative-fe")->Run(reading.scene, {});
   ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
@@ -183,7 +183,7 @@ TEST_F(MeasuredMeshTest, HasTheGapsThatAreFilled) {
   EXPECT_EQ(open.gaps[0].center, Eigen::Vector2d(3, 2));
   const SceneReading filled =
       ReadScene({folder_.Write("scene.json", kStrip)}, Measurement::kRequired,
-                {}, RegionChoice::kAsGiven, {}, {true});
+                {{}, {}, {}, {true}});
   EXPECT_EQ(filled.scene.mesh.NumElements(), 48);
   EXPECT_EQ(filled.scene.load_cases[0].observed.count(), 2 * (65 - 5));
   for (const auto& [word, num_elements] :

@@ -216,7 +216,8 @@ TEST_F(GmshMeshTest, HasNoRegionsWhereAnElementIsInTwoGroups) {
                                    "its physical groups overlap (tetrahedron "
                                    "0 is in the physical groups 1")));
   EXPECT_THROWS_WITH(
-      ReadScene({path}, Measurement::kRequired, {}, RegionChoice::kEach),
+      ReadScene({path}, Measurement::kRequired,
+                {{}, RegionChoice::kEach, {}, {}}),
       "scene.msh: there are no regions that could have their own materials: "
       "tetrahedron 0 "
       "is in the physical groups 1 \"body\" and 3; put it into one");
@@ -228,7 +229,8 @@ TEST_F(GmshMeshTest, SaysHowAMeshHasRegions) {
       Replaced(GmshVersion2Scene(), "4 4 2 1 1 10 2 3 5\n5 4 2 1 1 10 2 3 7",
                "4 4 2 0 1 10 2 3 5\n5 4 2 0 1 10 2 3 7"));
   EXPECT_THROWS_WITH(
-      ReadScene({path}, Measurement::kRequired, {}, RegionChoice::kEach),
+      ReadScene({path}, Measurement::kRequired,
+                {{}, RegionChoice::kEach, {}, {}}),
       "scene.msh: there are no regions that could have their own materials; "
       "put the "
       "elements into physical groups, or add the element data \"region\"");
@@ -241,7 +243,8 @@ TEST_F(GmshMeshTest, NotesRegionsThatShareOneMaterial) {
   EXPECT_THAT(ReadScene({path}, Measurement::kRequired).notices,
               ElementsAre(::testing::HasSubstr(
                   "the mesh has 2 regions, but all regions share one")));
-  EXPECT_THAT(ReadScene({path}, Measurement::kRequired, {}, RegionChoice::kEach)
+  EXPECT_THAT(ReadScene({path}, Measurement::kRequired,
+                        {{}, RegionChoice::kEach, {}, {}})
                   .scene.materials,
               ::testing::SizeIs(2));
 }

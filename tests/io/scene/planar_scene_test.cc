@@ -71,7 +71,7 @@ class PlanarSceneTest : public ::testing::Test {
   Scene Read(const std::string& document,
              const SectionChoice& section = {}) const {
     return ReadScene({folder_.Write("scene.json", document)},
-                     Measurement::kRequired, section)
+                     Measurement::kRequired, {section, {}, {}, {}})
         .scene;
   }
 
@@ -237,15 +237,15 @@ TEST_F(PlanarSceneTest, ErrsOnASectionOfASolid) {
   const Scene solid = TwoTetrahedra();
   const auto path = folder_.Path() / "solid.vtu";
   WriteVtu(path, solid.mesh, SceneFields(solid));
-  SectionChoice section;
-  section.model = SectionModel::kSolid;
-  EXPECT_NO_THROW(ReadScene({path}, Measurement::kRequired, section));
-  section.model = SectionModel::kPlaneStrain;
-  EXPECT_THROWS_WITH(ReadScene({path}, Measurement::kRequired, section),
+  SceneChoices choices;
+  choices.section.model = SectionModel::kSolid;
+  EXPECT_NO_THROW(ReadScene({path}, Measurement::kRequired, choices));
+  choices.section.model = SectionModel::kPlaneStrain;
+  EXPECT_THROWS_WITH(ReadScene({path}, Measurement::kRequired, choices),
                      "solid.vtu: the mesh is of tetrahedra, which are solid, "
                      "but the model is plane_strain; leave it out");
-  section = {std::nullopt, 1.0};
-  EXPECT_THROWS_WITH(ReadScene({path}, Measurement::kRequired, section),
+  choices.section = {std::nullopt, 1.0};
+  EXPECT_THROWS_WITH(ReadScene({path}, Measurement::kRequired, choices),
                      "which are solid, but a thickness is given; leave it out");
 }
 

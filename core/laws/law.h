@@ -1,5 +1,5 @@
-#ifndef ELASTIMATE_CORE_MATERIALS_LAW_H_
-#define ELASTIMATE_CORE_MATERIALS_LAW_H_
+#ifndef ELASTIMATE_CORE_LAWS_LAW_H_
+#define ELASTIMATE_CORE_LAWS_LAW_H_
 
 #include <Eigen/Core>
 #include <array>
@@ -10,6 +10,8 @@
 #include "elastimate/core/mesh/mesh.h"
 
 namespace elastimate {
+
+class LargeStrainLaw;
 
 /// A parameter of a law, under the name that people know.
 struct LawParameter {
@@ -23,10 +25,11 @@ struct LawParameter {
   double upper;
   /// A common value, where fits start.  A stiffness may have any unit here.
   double typical;
-  /// This marks a stiffness off the diagonal, which is no modulus because it
-  /// may have either sign.  It is smaller than the geometric mean of the
-  /// diagonal stiffnesses in its row and in its column, whose places among the
-  /// parameters stand here.
+  /// This marks a stiffness that is no modulus because it may have either sign.
+  /// It is measured in units of the geometric mean of two moduli, whose places
+  /// among the parameters stand here.  In a law with BlockEntries it is off the
+  /// diagonal, these are the diagonal stiffnesses in its row and in its column,
+  /// and it is smaller than their mean.
   std::optional<std::array<int, 2>> beside = std::nullopt;
 };
 
@@ -56,7 +59,8 @@ struct BlockEntry {
 /// (MaterialFrames).
 ///
 /// Matrices over H have dimension^2 rows or columns, H in the order of its
-/// columns.  All functions are pure.
+/// columns; a law of large strains takes H of the solid in every section
+/// (LargeStrainLaw).  All functions are pure.
 class Law {
  public:
   virtual ~Law() = default;
@@ -71,6 +75,10 @@ class Law {
   virtual int NumModuli() const = 0;
   /// Tells whether the law covers such a section.
   virtual bool Takes(SectionModel model) const = 0;
+
+  /// Returns this law if it describes deformations of any size, or null if it
+  /// describes small strains only.
+  virtual const LargeStrainLaw* ForLargeStrains() const { return nullptr; }
 
   /// Returns how many axes its material has.
   virtual int NumAxes() const { return 0; }
@@ -110,4 +118,4 @@ class Law {
 
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_CORE_MATERIALS_LAW_H_
+#endif  // ELASTIMATE_CORE_LAWS_LAW_H_

@@ -1,10 +1,11 @@
-#ifndef ELASTIMATE_CORE_MATERIALS_LAW_PARAMETERS_H_
-#define ELASTIMATE_CORE_MATERIALS_LAW_PARAMETERS_H_
+#ifndef ELASTIMATE_CORE_LAWS_LAW_PARAMETERS_H_
+#define ELASTIMATE_CORE_LAWS_LAW_PARAMETERS_H_
 
+#include <array>
 #include <limits>
 #include <string_view>
 
-#include "elastimate/core/materials/law.h"
+#include "elastimate/core/laws/law.h"
 
 namespace elastimate {
 
@@ -17,6 +18,20 @@ inline LawParameter Modulus(std::string_view name, std::string_view symbol,
           std::numeric_limits<double>::min(),
           std::numeric_limits<double>::max(),
           typical};
+}
+
+/// A stiffness of either sign, in units of the modulus that is the parameter of
+/// this place.
+inline LawParameter SignedModulus(std::string_view name,
+                                  std::string_view symbol, double typical,
+                                  int unit) {
+  return {name,
+          symbol,
+          false,
+          std::numeric_limits<double>::lowest(),
+          std::numeric_limits<double>::max(),
+          typical,
+          std::array<int, 2>{unit, unit}};
 }
 
 /// Poisson's ratio of one direction to another in a material that is not alike
@@ -41,4 +56,4 @@ inline constexpr double kTypicalShearModulus = 1 / 2.6;
 
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_CORE_MATERIALS_LAW_PARAMETERS_H_
+#endif  // ELASTIMATE_CORE_LAWS_LAW_PARAMETERS_H_

@@ -1,5 +1,5 @@
-#ifndef ELASTIMATE_CORE_MATERIALS_ELASTICITY_H_
-#define ELASTIMATE_CORE_MATERIALS_ELASTICITY_H_
+#ifndef ELASTIMATE_CORE_LAWS_ELASTICITY_H_
+#define ELASTIMATE_CORE_LAWS_ELASTICITY_H_
 
 #include <Eigen/Core>
 
@@ -24,11 +24,6 @@ struct IsotropicElasticity {
   double youngs_modulus;  ///< E [pressure].
   double poisson_ratio;   ///< nu [-].
 
-  /// E = mu (3 lambda + 2 mu) / (lambda + mu), nu = lambda / (2 (lambda + mu)).
-  static IsotropicElasticity FromLame(double lame_lambda, double shear_modulus);
-  /// E = 9 kappa mu / (3 kappa + mu), nu = (3 kappa - 2 mu) / (6 kappa + 2 mu).
-  static IsotropicElasticity FromBulkAndShear(double bulk_modulus,
-                                              double shear_modulus);
   /// E of the compliance scale t = 1 / s of K = s (H + nu J).
   static IsotropicElasticity FromComplianceScale(double compliance_scale,
                                                  double poisson_ratio,
@@ -94,4 +89,4 @@ T ComplianceFactor(const T& poisson_ratio, SectionModel model) {
 
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_CORE_MATERIALS_ELASTICITY_H_
+#endif  // ELASTIMATE_CORE_LAWS_ELASTICITY_H_

@@ -1,22 +1,8 @@
-#include "elastimate/core/materials/elasticity.h"
+#include "elastimate/core/laws/elasticity.h"
 
 #include <cmath>
 
 namespace elastimate {
-
-IsotropicElasticity IsotropicElasticity::FromLame(double lame_lambda,
-                                                  double shear_modulus) {
-  const double sum = lame_lambda + shear_modulus;
-  return {shear_modulus * (3 * lame_lambda + 2 * shear_modulus) / sum,
-          lame_lambda / (2 * sum)};
-}
-
-IsotropicElasticity IsotropicElasticity::FromBulkAndShear(
-    double bulk_modulus, double shear_modulus) {
-  const double sum = 3 * bulk_modulus + shear_modulus;
-  return {9 * bulk_modulus * shear_modulus / sum,
-          (3 * bulk_modulus - 2 * shear_modulus) / (2 * sum)};
-}
 
 IsotropicElasticity IsotropicElasticity::FromComplianceScale(
     double compliance_scale, double poisson_ratio, SectionModel model) {

@@ -1,0 +1,215 @@
+#include "elastimate/core/equilibrium/large_strain_equilibrium.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "elastimate/core/mechanics/internal_forces.h"
+#include "elastimate/core/scene/degrees_of_freedom.h"
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/core/text/numbers.h"
+
+namespace elastimate {
+namespace {
+
+// The residual over the forces of loads and supports at which a state is in
+// equilibrium.
+constexpr double kResidual = 1e-10;
+constexpr int kMostNewtonSteps = 25;
+// A step of the load that takes no more iterations is followed by a longer one.
+constexpr int kEasyIterations = 6;
+constexpr double kSmallestLoadStep = 1.0 / 1024;
+constexpr double kSmallestVolumeRatio = 0.01;
+// Shear moduli that are added to a tangent that is not positive definite.
+constexpr double kMostShift = 1e4;
+constexpr double kShiftFactor = 8;
+
+// Returns the largest shear modulus of the materials.
+double ShearModulusAtRest(const MaterialParameters& parameters,
+                          const Eigen::VectorXd& moduli) {
+  double largest = 0;
+  for (std::size_t i = 0; i < parameters.NumMaterials(); ++i) {
+    const Law& law = parameters.LawOf(i);
+    const Eigen::MatrixXd tangent =
+        law.Tangent(moduli.segment(parameters.FirstModulus(i), law.NumModuli()),
+                    Eigen::Matrix3d::Zero(), SectionModel::kSolid);
+    largest = std::max(largest, tangent(1, 1));
+  }
+  return largest;
+}
+
+}  // namespace
+
+std::string WhyNotInEquilibrium(const LargeStrainState& state) {
+  if (state.status == EquilibriumStatus::kDone) {
+    return "";
+  }
+  const std::string reached = Percent(state.load_share) + " of the load";
+  const std::string element =
+      "element " + std::to_string(state.smallest_volume.element);
+  switch (state.status) {
+    case EquilibriumStatus::kDone:
+      break;
+    case EquilibriumStatus::kUnstable:
+      return "beyond " + reached +
+             " the equilibrium is unstable, so that the specimen buckles or "
+             "snaps (" +
+             element +
+             " is deformed most); reduce the load, or hold more of the "
+             "specimen";
+    case EquilibriumStatus::kInverted:
+      return "beyond " + reached + " " + element +
+             " is turned inside out; reduce the load, or make the mesh finer "
+             "there";
+    case EquilibriumStatus::kNoEquilibrium:
+      break;
+  }
+  return "beyond " + reached + " no equilibrium is found (" + element +
+         " is deformed most); reduce the load, or check the parameters of the "
+         "materials";
+}
+
+LargeStrainEquilibrium::LargeStrainEquilibrium(const Scene& scene,
+                                               Dilatation dilatation)
+    : scene_(scene),
+      forces_(scene.mesh, scene.materials, dilatation),
+      load_(AssembleLoadCases(scene)),
+      held_displacement_(load_.rows(), load_.cols()) {
+  std::vector<const Supports*> supports_of_solver;
+  for (Eigen::Index k = 0; k < load_.cols(); ++k) {
+    const Supports& supports = SupportsOf(scene, k);
+    held_displacement_.col(k) = HeldDisplacement(supports);
+    const auto same = std::find_if(
+        supports_of_solver.begin(), supports_of_solver.end(),
+        [&](const Supports* other) {
+          return other == &supports || (other->held == supports.held).all();
+        });
+    solver_of_case_.push_back(std::size_t(same - supports_of_solver.begin()));
+    if (same == supports_of_solver.end()) {
+      supports_of_solver.push_back(&supports);
+      solvers_.push_back(std::make_unique<StiffnessSolver>(
+          scene.mesh, supports, SolverKind::kCholesky));
+    }
+  }
+}
+
+bool LargeStrainEquilibrium::Factorize(const Eigen::VectorXd& moduli,
+                                       const Eigen::VectorXd& u,
+                                       double most_shift,
+                                       StiffnessSolver& solver,
+                                       LargeStrainState& state) {
+  const Eigen::MatrixXd tangent =
+      forces_.TangentBlocks(moduli, u, solver.Graph());
+  ++state.num_tangents;
+  if (solver.FactorizeBlocks(tangent)) {
+    return true;
+  }
+  if (most_shift == 0) {
+    return false;
+  }
+  if (shear_blocks_.size() == 0) {
+    const InternalForces linear(scene_.mesh, {});
+    shear_blocks_ = linear.Blocks(Eigen::Vector2d(1, 0), solver.Graph());
+  }
+  const double shear = ShearModulusAtRest(forces_.Parameters(), moduli);
+  double shift = 1;
+  while (shift <= most_shift) {
+    ++state.num_tangents;
+    if (solver.FactorizeBlocks(tangent + shift * shear * shear_blocks_)) {
+      return true;
+    }
+    shift *= kShiftFactor;
+  }
+  return false;
+}
+
+EquilibriumStatus LargeStrainEquilibrium::Newton(const Eigen::VectorXd& moduli,
+                                                 Eigen::Index k, double t,
+                                                 LargeStrainState& state,
+                                                 Eigen::VectorXd& u) {
+  StiffnessSolver& solver = SolverOf(k);
+  const DegreesOfFreedom& dofs = solver.Dofs();
+  // What the held degrees of freedom have yet to move; zero in the free rows.
+  Eigen::VectorXd held_change =
+      t * held_displacement_.col(k) - (u - dofs.Extend(dofs.Restrict(u)));
+  for (int iteration = 0; iteration <= kMostNewtonSteps; ++iteration) {
+    const Eigen::VectorXd forces = forces_.Forces(moduli, u);
+    const Eigen::VectorXd residual = dofs.Restrict(t * load_.col(k) - forces);
+    const double scale =
+        std::max(t * load_.col(k).norm(),
+                 (forces - dofs.Extend(dofs.Restrict(forces))).norm());
+    const bool is_held = held_change.isZero(0);
+    if (!residual.allFinite()) {
+      return EquilibriumStatus::kNoEquilibrium;
+    }
+    const bool is_equilibrium = is_held && residual.norm() <= kResidual * scale;
+    if (!Factorize(moduli, u, is_equilibrium ? 0 : kMostShift, solver, state)) {
+      return EquilibriumStatus::kUnstable;
+    }
+    if (is_equilibrium) {
+      return EquilibriumStatus::kDone;
+    }
+    Eigen::VectorXd right = dofs.Extend(residual);
+    if (!is_held) {
+      right -= forces_.TangentProducts(moduli, u, held_change);
+    }
+    const Eigen::VectorXd change = solver.Solve(right) + held_change;
+    // A half or less of a step leaves the same share of what the supports have
+    // to move.
+    double factor = 1;
+    for (;; factor /= 2) {
+      state.smallest_volume = forces_.SmallestVolumeRatio(u + factor * change);
+      if (state.smallest_volume.value > kSmallestVolumeRatio) {
+        break;
+      }
+      constexpr double kSmallestFactor = 1.0 / 64;
+      if (factor <= kSmallestFactor) {
+        return EquilibriumStatus::kInverted;
+      }
+    }
+    u += factor * change;
+    held_change *= 1 - factor;
+  }
+  return EquilibriumStatus::kNoEquilibrium;
+}
+
+LargeStrainState LargeStrainEquilibrium::Solve(const Eigen::VectorXd& moduli,
+                                               Eigen::Index k,
+                                               const Eigen::VectorXd& start) {
+  LargeStrainState state;
+  state.displacement = Eigen::VectorXd::Zero(load_.rows());
+  if (start.size() > 0 &&
+      forces_.SmallestVolumeRatio(start).value > kSmallestVolumeRatio) {
+    Eigen::VectorXd u = start;
+    ++state.num_steps;
+    if (Newton(moduli, k, 1, state, u) == EquilibriumStatus::kDone) {
+      state.status = EquilibriumStatus::kDone;
+      state.load_share = 1;
+      state.displacement = u;
+      return state;
+    }
+  }
+  double step = 1;
+  while (state.load_share < 1) {
+    const double t = std::min(1.0, state.load_share + step);
+    Eigen::VectorXd u = state.displacement;
+    const int tangents_before = state.num_tangents;
+    ++state.num_steps;
+    state.status = Newton(moduli, k, t, state, u);
+    if (state.status == EquilibriumStatus::kDone) {
+      state.load_share = t;
+      state.displacement = u;
+      if (state.num_tangents - tangents_before <= kEasyIterations) {
+        step *= 2;
+      }
+    } else {
+      step = (t - state.load_share) / 2;
+      if (step < kSmallestLoadStep) {
+        return state;
+      }
+    }
+  }
+  state.smallest_volume = forces_.SmallestVolumeRatio(state.displacement);
+  return state;
+}
+
+}  // namespace elastimate

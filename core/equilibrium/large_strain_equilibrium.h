@@ -1,0 +1,109 @@
+#ifndef ELASTIMATE_CORE_EQUILIBRIUM_LARGE_STRAIN_EQUILIBRIUM_H_
+#define ELASTIMATE_CORE_EQUILIBRIUM_LARGE_STRAIN_EQUILIBRIUM_H_
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "elastimate/core/mechanics/large_strain_forces.h"
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/core/solvers/stiffness_solver.h"
+
+namespace elastimate {
+
+/// How the search for an equilibrium ended.
+enum class EquilibriumStatus {
+  kDone,
+  /// Beyond the share of the load that was reached, the tangent is not positive
+  /// definite: the specimen buckles or snaps.
+  kUnstable,
+  kInverted,       ///< Beyond it, an element is turned inside out.
+  kNoEquilibrium,  ///< Beyond it, Newton's method finds nothing.
+};
+
+/// A state of a specimen in one load case.
+struct LargeStrainState {
+  EquilibriumStatus status = EquilibriumStatus::kNoEquilibrium;
+  /// The share of the loads and of the displacements of supports at which
+  /// `displacement` is in stable equilibrium: 1 if the search was successful.
+  double load_share = 0;
+  Eigen::VectorXd displacement;  ///< num_dofs [length].
+  /// The element that is deformed most, where the search ended.
+  VolumeRatio smallest_volume = {1, 0};
+  int num_steps = 0;     ///< Steps of the load, with those that failed.
+  int num_tangents = 0;  ///< Factorisations.
+};
+
+/// Says why a state is not at the whole load, and what mends it; empty if it
+/// is.
+[[nodiscard]] std::string WhyNotInEquilibrium(const LargeStrainState& state);
+
+/// Equilibrium of large strains of the materials of a scene,
+///
+///   f(u; theta) = t F on the free degrees of freedom,
+///   u = t u_held on the held ones,
+///
+/// at the share t = 1 of the load.  Loads are dead: nodal forces F stay as they
+/// are on the undeformed specimen, those of pressures as well.
+///
+/// Newton's method begins at the whole load.  Where it fails, the load is
+/// divided into steps, each half as long as the last one that failed and twice
+/// as long as one that was easy.  A Newton step is shortened where det F would
+/// fall below a hundredth.  The tangent has to be positive definite at the end,
+/// since Newton's method finds unstable states as well [Wriggers, Nonlinear
+/// Finite Element Methods, 2008, chapter 5].  On the way there, where a nearly
+/// incompressible material has a wrong volume, its large pressure makes the
+/// tangent indefinite; then a multiple of a stiffness against shear alone is
+/// added, which leaves the correction of the volume as it is.
+///
+///   LargeStrainEquilibrium model(scene);
+///   const MaterialParameters& chart = model.Forces().Parameters();
+///   const auto state = model.Solve(chart.Moduli(parameters), 0);
+///   if (state.status == EquilibriumStatus::kDone) { ... }
+class LargeStrainEquilibrium {
+ public:
+  /// Assembles the pattern and analyses it.  Refers to `scene`, which has to
+  /// stay as it is; a temporary one does not compile.  Throws as
+  /// LargeStrainForces and StiffnessSolver do.  Precondition: a valid scene
+  /// without unknown motion.
+  explicit LargeStrainEquilibrium(
+      const Scene& scene, Dilatation dilatation = Dilatation::kMeanOfElement);
+  explicit LargeStrainEquilibrium(
+      const Scene&&, Dilatation = Dilatation::kMeanOfElement) = delete;
+
+  /// Finds the equilibrium in load case `k`.  A start (num_dofs), such as the
+  /// solution for moduli that are nearly the same, is tried first where it is
+  /// given.  About five tangents for each step of the load.
+  LargeStrainState Solve(const Eigen::VectorXd& moduli, Eigen::Index k,
+                         const Eigen::VectorXd& start = {});
+
+  const LargeStrainForces& Forces() const { return forces_; }
+
+ private:
+  /// Factorises the tangent, with so many shear moduli added as it takes; false
+  /// where it takes more than `most_shift`.
+  bool Factorize(const Eigen::VectorXd& moduli, const Eigen::VectorXd& u,
+                 double most_shift, StiffnessSolver& solver,
+                 LargeStrainState& state);
+  /// Solves at the share `t` from `u`.
+  EquilibriumStatus Newton(const Eigen::VectorXd& moduli, Eigen::Index k,
+                           double t, LargeStrainState& state,
+                           Eigen::VectorXd& u);
+  StiffnessSolver& SolverOf(Eigen::Index k) {
+    return *solvers_[solver_of_case_[k]];
+  }
+
+  const Scene& scene_;
+  LargeStrainForces forces_;
+  Eigen::MatrixXd load_;               ///< num_dofs x num_load_cases.
+  Eigen::MatrixXd held_displacement_;  ///< num_dofs x num_load_cases.
+  std::vector<std::unique_ptr<StiffnessSolver>> solvers_;
+  std::vector<std::size_t> solver_of_case_;
+  /// The small strains stiffness of lambda = 0 and 2 mu = 1, once it is needed.
+  Eigen::MatrixXd shear_blocks_;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_EQUILIBRIUM_LARGE_STRAIN_EQUILIBRIUM_H_

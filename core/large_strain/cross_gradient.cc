@@ -1,0 +1,83 @@
+#include "elastimate/core/large_strain/cross_gradient.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace elastimate {
+namespace {
+
+constexpr int kCross = 8;  // The row of H_33.
+
+// Returns H_33 of the law of small strains, in proportion to the logarithms of
+// the stretches.
+double FirstGuess(const PointMatrices& gradients, int point, double ratio) {
+  const double area =
+      (1 + gradients.row[0][point]) * (1 + gradients.row[4][point]) -
+      gradients.row[1][point] * gradients.row[3][point];
+  return area > 0 ? std::expm1(-ratio * std::log(area)) : 0;
+}
+
+// Returns the contraction across a plate over the growth of its area at rest,
+// nu / (1 - nu).
+double RatioAtRest(const LargeStrainLaw& law, const Eigen::VectorXd& moduli) {
+  const Eigen::MatrixXd tangent =
+      law.Tangent(moduli, Eigen::Matrix3d::Zero(), SectionModel::kSolid);
+  return tangent(kCross, 0) / tangent(kCross, kCross);
+}
+
+}  // namespace
+
+void SetCrossGradients(const LargeStrainLaw& law, const Eigen::VectorXd& moduli,
+                       int count, PointMatrices& gradients) {
+  constexpr int kMostSteps = 50;
+  constexpr double kTolerance = 1e-14;
+  const double ratio = RatioAtRest(law, moduli);
+  for (const int row : {2, 5, 6, 7}) {
+    std::fill_n(gradients.row[row], PointMatrices::kPoints, 0.0);
+  }
+  double* const cross = gradients.row[kCross];
+  std::fill_n(cross, PointMatrices::kPoints, 0.0);
+  for (int p = 0; p < count; ++p) {
+    cross[p] = FirstGuess(gradients, p, ratio);
+  }
+  std::vector<PointMatrices> columns(law.NumModuli());
+  PointTangents tangents;
+  for (int step = 0; step < kMostSteps; ++step) {
+    law.StressesAtPoints(gradients, count, columns.data());
+    law.TangentsAtPoints(moduli, gradients, count, tangents);
+    bool is_found = true;
+    for (int p = 0; p < count; ++p) {
+      double stress = 0;
+      for (int k = 0; k < law.NumModuli(); ++k) {
+        stress += moduli(k) * columns[k].row[kCross][p];
+      }
+      const double slope = tangents.row[TangentRow(kCross, kCross)][p];
+      // Where the slope is negative, the step goes the way of the stress.  The
+      // stretch becomes half or twice of what it is at most.
+      const double stretch = 1 + cross[p];
+      const double change =
+          std::clamp(-stress / std::abs(slope), -stretch / 2, stretch);
+      cross[p] += change;
+      is_found = is_found && std::abs(change) <= kTolerance * stretch;
+    }
+    if (is_found) {
+      return;
+    }
+  }
+  for (int p = 0; p < count; ++p) {
+    double stress = 0;
+    for (int k = 0; k < law.NumModuli(); ++k) {
+      stress += moduli(k) * columns[k].row[kCross][p];
+    }
+    // Rounding may be all that is left.
+    constexpr double kRounding = 1e-9;
+    const double slope = tangents.row[TangentRow(kCross, kCross)][p];
+    if (!(std::abs(stress) <= kRounding * std::abs(slope))) {
+      cross[p] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+}
+
+}  // namespace elastimate

@@ -1,0 +1,72 @@
+#ifndef ELASTIMATE_CORE_LARGE_STRAIN_LARGE_STRAIN_LAW_H_
+#define ELASTIMATE_CORE_LARGE_STRAIN_LARGE_STRAIN_LAW_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "elastimate/core/laws/law.h"
+
+namespace elastimate {
+
+/// Numbers at some points, a row of `kPoints` for each of `kRows` entries, so
+/// that the entries of neighbouring points fill vector registers.
+template <int kRows>
+struct PointValues {
+  static constexpr int kPoints = 64;  ///< A multiple of all vector lengths.
+  alignas(64) double row[kRows][kPoints];
+};
+
+/// 3 x 3 matrices at some points; entry (i, j) is in row i + 3 j.
+using PointMatrices = PointValues<9>;
+
+/// The 9 x 9 symmetric tangents dP / dH at some points; entry (a, b), a >= b,
+/// is in row TangentRow(a, b).
+using PointTangents = PointValues<45>;
+
+constexpr int TangentRow(int a, int b) {
+  return a >= b ? a * (a + 1) / 2 + b : b * (b + 1) / 2 + a;
+}
+
+/// A law for deformations of any size.  It is objective: for a rotation Q and
+/// F = I + H,
+///
+///   P(Q F) = Q P(F),
+///
+/// so that P F^T is symmetric.  P is the first Piola-Kirchhoff stress, the
+/// force per undeformed area.  Near rest it is the law of small strains of the
+/// same parameters, and keeps its digits: the relative error of P stays near
+/// that of double precision however small H is.
+///
+/// The gradient H is that of the solid, 3 x 3, in every section, since the
+/// stretch across a plate depends on the moduli; CrossGradient finds it.  The
+/// section therefore changes neither stresses nor moduli.
+///
+/// Numbers at points where det F <= 0 mean nothing.
+class LargeStrainLaw : public Law {
+ public:
+  const LargeStrainLaw* ForLargeStrains() const override { return this; }
+  bool Takes(SectionModel /*model*/) const override { return true; }
+
+  Eigen::MatrixXd Stresses(const Eigen::MatrixXd& gradient,
+                           SectionModel model) const override;
+  Eigen::MatrixXd Tangent(const Eigen::VectorXd& moduli,
+                          const Eigen::MatrixXd& gradient,
+                          SectionModel model) const override;
+
+  /// Sets columns[k] to P_k at the first `count` points, at most
+  /// PointMatrices::kPoints.  The gradients of other points are finite.
+  virtual void StressesAtPoints(const PointMatrices& gradients, int count,
+                                PointMatrices* columns) const = 0;
+  /// Sets `tangents` to dP / dH for these moduli at these points.
+  virtual void TangentsAtPoints(const Eigen::VectorXd& moduli,
+                                const PointMatrices& gradients, int count,
+                                PointTangents& tangents) const = 0;
+};
+
+/// Returns det F - 1 of F = I + H without forming F, so that it keeps its
+/// digits near rest.
+[[nodiscard]] double VolumeChange(const Eigen::Matrix3d& gradient);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_LARGE_STRAIN_LARGE_STRAIN_LAW_H_

@@ -1,0 +1,580 @@
+#include "elastimate/core/mechanics/large_strain_forces.h"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "elastimate/core/large_strain/cross_gradient.h"
+#include "elastimate/core/large_strain/large_strain_law.h"
+#include "elastimate/core/mechanics/mean_dilatation.h"
+#include "elastimate/core/mechanics/tet4_point_forces.h"
+#include "elastimate/core/mesh/shape_functions.h"
+
+namespace elastimate {
+namespace {
+
+using Matrix9 = Eigen::Matrix<double, 9, 9>;
+
+// The material of some elements, and how they are evaluated.
+struct MaterialPass {
+  const Mesh& mesh;
+  const std::vector<Eigen::Index>& elements;
+  const LargeStrainLaw& law;
+  Eigen::VectorXd moduli;
+  Dilatation dilatation;
+};
+
+template <ElementKind kKind>
+constexpr int kDimensionOf = ElementSizes<kKind>::kDimension;
+
+template <ElementKind kKind>
+using NodeColumns = Eigen::Matrix<double, ElementSizes<kKind>::kDimension,
+                                  ElementSizes<kKind>::kNodes>;
+
+// Whether elements of this kind take the mean of their dilatation.
+template <ElementKind kKind>
+constexpr bool kHasMean =
+    kKind == ElementKind::kHex8 || kKind == ElementKind::kQuad4;
+
+template <ElementKind kKind>
+bool TakesMean(const MaterialPass& pass) {
+  return kHasMean<kKind> && pass.dilatation == Dilatation::kMeanOfElement &&
+         pass.mesh.section.model != SectionModel::kPlaneStress;
+}
+
+// Some elements whose points are evaluated together.
+template <ElementKind kKind>
+class ElementBatch {
+ public:
+  static constexpr int kDimension = kDimensionOf<kKind>;
+
+  // Gathers elements of the pass from the place `first` on.
+  ElementBatch(const MaterialPass& pass, std::size_t first,
+               const Eigen::VectorXd& displacement)
+      : pass_(pass), points_per_element_(int(StiffnessRule<kKind>().size())) {
+    const std::size_t num_elements =
+        std::min(std::size_t(PointMatrices::kPoints / points_per_element_),
+                 pass.elements.size() - first);
+    for (std::size_t i = 0; i < num_elements; ++i) {
+      const Eigen::Index e = pass.elements[first + i];
+      elements_.push_back(e);
+      const NodeColumns<kKind> u =
+          GatherNodes<kKind>(pass.mesh, e, displacement.data());
+      VisitPoints<kKind>(pass.mesh, e, StiffnessRule<kKind>(),
+                         [&](const auto& point, const auto&) {
+                           SetGradient(int(points_.size()),
+                                       u * point.gradient.transpose());
+                           points_.push_back(point);
+                         });
+    }
+    if (pass.mesh.section.model == SectionModel::kPlaneStress) {
+      SetCrossGradients(pass.law, pass.moduli, NumPoints(), gradients_);
+    }
+    if (TakesMean<kKind>(pass)) {
+      ReplaceByMeans();
+    }
+  }
+
+  int NumPoints() const { return int(points_.size()); }
+  std::size_t NumElements() const { return elements_.size(); }
+  Eigen::Index Element(std::size_t i) const { return elements_[i]; }
+  int PointsPerElement() const { return points_per_element_; }
+  const ElementPoint<kKind>& Point(std::size_t element, int i) const {
+    return points_[element * std::size_t(points_per_element_) + i];
+  }
+  // Only where elements take the mean of their dilatation.
+  const MeanDilatation& Mean(std::size_t element) const {
+    return means_[element];
+  }
+
+  // Returns P_k of each modulus.
+  std::vector<PointMatrices> Stresses() const {
+    std::vector<PointMatrices> columns(pass_.law.NumModuli());
+    pass_.law.StressesAtPoints(gradients_, NumPoints(), columns.data());
+    return columns;
+  }
+  void SetTangents(PointTangents& tangents) const {
+    pass_.law.TangentsAtPoints(pass_.moduli, gradients_, NumPoints(), tangents);
+  }
+
+  std::vector<Eigen::Matrix3d> OfElement(const PointMatrices& matrices,
+                                         std::size_t element) const {
+    std::vector<Eigen::Matrix3d> of_points(points_per_element_);
+    for (int i = 0; i < points_per_element_; ++i) {
+      for (int entry = 0; entry < 9; ++entry) {
+        of_points[i](entry) = matrices.row[entry][PlaceOf(element, i)];
+      }
+    }
+    return of_points;
+  }
+  int PlaceOf(std::size_t element, int i) const {
+    return int(element) * points_per_element_ + i;
+  }
+
+ private:
+  void SetGradient(
+      int place,
+      const Eigen::Matrix<double, kDimension, kDimension>& gradient) {
+    for (int j = 0; j < kDimension; ++j) {
+      for (int i = 0; i < kDimension; ++i) {
+        gradients_.row[i + 3 * j][place] = gradient(i, j);
+      }
+    }
+  }
+
+  void ReplaceByMeans() {
+    for (std::size_t e = 0; e < elements_.size(); ++e) {
+      Eigen::VectorXd volumes(points_per_element_);
+      for (int i = 0; i < points_per_element_; ++i) {
+        volumes(i) = Point(e, i).volume;
+      }
+      means_.emplace_back(OfElement(gradients_, e), volumes);
+      for (int i = 0; i < points_per_element_; ++i) {
+        for (int entry = 0; entry < 9; ++entry) {
+          gradients_.row[entry][PlaceOf(e, i)] =
+              means_[e].Gradients()[i](entry);
+        }
+      }
+    }
+  }
+
+  const MaterialPass& pass_;
+  int points_per_element_;
+  std::vector<Eigen::Index> elements_;
+  std::vector<ElementPoint<kKind>> points_;
+  PointMatrices gradients_ = {};
+  std::vector<MeanDilatation> means_;
+};
+
+// Calls visit(batch) for all elements of a pass.
+template <ElementKind kKind, class Visitor>
+void VisitBatches(const MaterialPass& pass, const Eigen::VectorXd& displacement,
+                  const Visitor& visit) {
+  for (std::size_t first = 0; first < pass.elements.size();) {
+    const ElementBatch<kKind> batch(pass, first, displacement);
+    visit(batch);
+    first += batch.NumElements();
+  }
+}
+
+template <ElementKind kKind>
+void AddToNodes(const Mesh& mesh, Eigen::Index element,
+                const NodeColumns<kKind>& forces, double* values) {
+  constexpr int kDimension = kDimensionOf<kKind>;
+  for (int i = 0; i < ElementSizes<kKind>::kNodes; ++i) {
+    Eigen::Map<Eigen::Matrix<double, kDimension, 1>>(
+        values + kDimension * Eigen::Index(mesh.elements(i, element))) +=
+        forces.col(i);
+  }
+}
+
+// Returns the forces of a stress at each point of an element.
+template <ElementKind kKind>
+NodeColumns<kKind> StressForces(const ElementBatch<kKind>& batch, std::size_t e,
+                                const std::vector<Eigen::Matrix3d>& stresses) {
+  constexpr int kDimension = kDimensionOf<kKind>;
+  NodeColumns<kKind> forces = NodeColumns<kKind>::Zero();
+  for (int i = 0; i < batch.PointsPerElement(); ++i) {
+    const ElementPoint<kKind>& point = batch.Point(e, i);
+    forces.noalias() +=
+        point.volume *
+        stresses[i].template topLeftCorner<kDimension, kDimension>() *
+        point.gradient;
+  }
+  return forces;
+}
+
+template <ElementKind kKind>
+void AddStressColumns(const MaterialPass& pass,
+                      const Eigen::VectorXd& displacement,
+                      Eigen::Ref<Eigen::MatrixXd> columns) {
+  VisitBatches<kKind>(pass, displacement, [&](const auto& batch) {
+    const std::vector<PointMatrices> stresses = batch.Stresses();
+    for (std::size_t k = 0; k < stresses.size(); ++k) {
+      for (std::size_t e = 0; e < batch.NumElements(); ++e) {
+        std::vector<Eigen::Matrix3d> of_points =
+            batch.OfElement(stresses[k], e);
+        if (TakesMean<kKind>(pass)) {
+          of_points = batch.Mean(e).Stresses(of_points);
+        }
+        AddToNodes<kKind>(pass.mesh, batch.Element(e),
+                          StressForces<kKind>(batch, e, of_points),
+                          columns.col(Eigen::Index(k)).data());
+      }
+    }
+  });
+}
+
+// Calls visit(points, gradients, count) for all linear tetrahedra of a pass.
+template <class Visitor>
+void VisitTet4Points(const MaterialPass& pass,
+                     const Eigen::VectorXd& displacement,
+                     const Visitor& visit) {
+  PointMatrices gradients;
+  const std::size_t num_elements = pass.elements.size();
+  for (std::size_t first = 0; first < num_elements;
+       first += PointMatrices::kPoints) {
+    const int count = int(
+        std::min<std::size_t>(PointMatrices::kPoints, num_elements - first));
+    const Tet4Points points(pass.mesh, pass.elements.data() + first, count);
+    points.SetGradients(displacement.data(), gradients);
+    visit(points, gradients, count);
+  }
+}
+
+void AddTet4Columns(const MaterialPass& pass,
+                    const Eigen::VectorXd& displacement,
+                    Eigen::Ref<Eigen::MatrixXd> columns) {
+  std::vector<PointMatrices> stresses(pass.law.NumModuli());
+  VisitTet4Points(
+      pass, displacement,
+      [&](const Tet4Points& points, const PointMatrices& gradients, int count) {
+        pass.law.StressesAtPoints(gradients, count, stresses.data());
+        for (std::size_t k = 0; k < stresses.size(); ++k) {
+          points.AddForces(stresses[k], columns.col(Eigen::Index(k)).data());
+        }
+      });
+}
+
+void AddTet4Blocks(const MaterialPass& pass,
+                   const Eigen::VectorXd& displacement, const NodeGraph& graph,
+                   Eigen::MatrixXd& blocks) {
+  PointTangents tangents;
+  VisitTet4Points(
+      pass, displacement,
+      [&](const Tet4Points& points, const PointMatrices& gradients, int count) {
+        pass.law.TangentsAtPoints(pass.moduli, gradients, count, tangents);
+        points.AddBlocks(tangents, graph, blocks);
+      });
+}
+
+void AddTet4Products(const MaterialPass& pass,
+                     const Eigen::VectorXd& displacement,
+                     const Eigen::MatrixXd& directions,
+                     Eigen::MatrixXd& products) {
+  PointTangents tangents;
+  PointMatrices change;
+  PointMatrices stresses;
+  VisitTet4Points(
+      pass, displacement,
+      [&](const Tet4Points& points, const PointMatrices& gradients, int count) {
+        pass.law.TangentsAtPoints(pass.moduli, gradients, count, tangents);
+        for (Eigen::Index column = 0; column < directions.cols(); ++column) {
+          points.SetGradients(directions.col(column).data(), change);
+          stresses = {};
+          for (int a = 0; a < 9; ++a) {
+            for (int b = 0; b < 9; ++b) {
+              const double* const tangent = tangents.row[TangentRow(a, b)];
+              for (int p = 0; p < count; ++p) {
+                stresses.row[a][p] += tangent[p] * change.row[b][p];
+              }
+            }
+          }
+          points.AddForces(stresses, products.col(column).data());
+        }
+      });
+}
+
+// The entries of dP / dH in the plane of a planar mesh, or all of them; in
+// plane stress at P_33 = 0.
+template <ElementKind kKind>
+auto TangentIn(const PointTangents& tangents, int point, SectionModel model) {
+  constexpr int kDimension = kDimensionOf<kKind>;
+  constexpr int kSize = kDimension * kDimension;
+  constexpr int kCross = 8;
+  const auto entry = [&](int a, int b) {
+    return tangents.row[TangentRow(a, b)][point];
+  };
+  Eigen::Matrix<double, kSize, kSize> tangent;
+  for (int column = 0; column < kSize; ++column) {
+    const int b = column % kDimension + 3 * (column / kDimension);
+    for (int row = 0; row < kSize; ++row) {
+      const int a = row % kDimension + 3 * (row / kDimension);
+      tangent(row, column) = entry(a, b);
+      if (model == SectionModel::kPlaneStress) {
+        tangent(row, column) -=
+            entry(a, kCross) * entry(kCross, b) / entry(kCross, kCross);
+      }
+    }
+  }
+  return tangent;
+}
+
+// The displacements of the nodes of an element, in the order of nodes.
+template <ElementKind kKind>
+constexpr int kElementDofs =
+    ElementSizes<kKind>::kDimension* ElementSizes<kKind>::kNodes;
+
+template <ElementKind kKind>
+using ElementMatrix =
+    Eigen::Matrix<double, kElementDofs<kKind>, kElementDofs<kKind>>;
+
+// Adds volume grad(N_i) . A . grad(N_j) for all nodes.
+template <ElementKind kKind, class Tangent>
+void AddPointTangent(const ElementPoint<kKind>& point, const Tangent& tangent,
+                     ElementMatrix<kKind>& matrix) {
+  constexpr int kDimension = kDimensionOf<kKind>;
+  constexpr int kNodes = ElementSizes<kKind>::kNodes;
+  for (int j = 0; j < kNodes; ++j) {
+    Eigen::Matrix<double, kDimension * kDimension, kDimension> of_column =
+        point.volume * point.gradient(0, j) *
+        tangent.template middleCols<kDimension>(0);
+    for (int d = 1; d < kDimension; ++d) {
+      of_column += point.volume * point.gradient(d, j) *
+                   tangent.template middleCols<kDimension>(kDimension * d);
+    }
+    for (int i = j; i < kNodes; ++i) {
+      auto block = matrix.template block<kDimension, kDimension>(
+          kDimension * i, kDimension * j);
+      for (int c = 0; c < kDimension; ++c) {
+        block += point.gradient(c, i) *
+                 of_column.template middleRows<kDimension>(kDimension * c);
+      }
+    }
+  }
+}
+
+// Returns the lower triangle of the stiffness of an element with the mean of
+// its dilatation.
+template <ElementKind kKind>
+ElementMatrix<kKind> MeanTangent(const ElementBatch<kKind>& batch,
+                                 std::size_t e, const Eigen::VectorXd& moduli,
+                                 const std::vector<PointMatrices>& columns,
+                                 const PointTangents& tangents) {
+  constexpr int kDimension = kDimensionOf<kKind>;
+  const int num_points = batch.PointsPerElement();
+  std::vector<Eigen::Matrix3d> stresses(num_points, Eigen::Matrix3d::Zero());
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const std::vector<Eigen::Matrix3d> of_modulus =
+        batch.OfElement(columns[k], e);
+    for (int i = 0; i < num_points; ++i) {
+      stresses[i] += moduli(Eigen::Index(k)) * of_modulus[i];
+    }
+  }
+  std::vector<Matrix9> of_points(num_points);
+  for (int i = 0; i < num_points; ++i) {
+    of_points[i] = TangentIn<ElementKind::kHex8>(tangents, batch.PlaceOf(e, i),
+                                                 SectionModel::kSolid);
+  }
+  const MeanDilatation& mean = batch.Mean(e);
+  const MeanDilatation::Curvature curvature =
+      mean.CurvatureOf(stresses, of_points);
+  ElementMatrix<kKind> matrix = ElementMatrix<kKind>::Zero();
+  NodeColumns<kKind> slope = NodeColumns<kKind>::Zero();
+  NodeColumns<kKind> coupling = NodeColumns<kKind>::Zero();
+  for (int i = 0; i < num_points; ++i) {
+    const ElementPoint<kKind>& point = batch.Point(e, i);
+    const Eigen::Matrix3d of_volume = mean.DilatationSlope(i);
+    slope += point.volume * of_volume.topLeftCorner<kDimension, kDimension>() *
+             point.gradient;
+    coupling += point.volume *
+                curvature.coupling[i].topLeftCorner<kDimension, kDimension>() *
+                point.gradient;
+    if constexpr (kDimension == 3) {
+      AddPointTangent<kKind>(point, curvature.local[i], matrix);
+    } else {
+      const int plane[] = {0, 1, 3, 4};
+      const Eigen::Matrix4d local = curvature.local[i](plane, plane);
+      AddPointTangent<kKind>(point, local, matrix);
+    }
+  }
+  const auto g = slope.reshaped();
+  const auto c = coupling.reshaped();
+  matrix += g * c.transpose() + c * g.transpose() +
+            curvature.dilatation * g * g.transpose();
+  return matrix;
+}
+
+// Calls visit(element, matrix) with the lower triangle of the stiffness of each
+// element.
+template <ElementKind kKind, class Visitor>
+void VisitTangents(const MaterialPass& pass,
+                   const Eigen::VectorXd& displacement, const Visitor& visit) {
+  PointTangents tangents;
+  VisitBatches<kKind>(pass, displacement, [&](const auto& batch) {
+    batch.SetTangents(tangents);
+    if (TakesMean<kKind>(pass)) {
+      const std::vector<PointMatrices> columns = batch.Stresses();
+      for (std::size_t e = 0; e < batch.NumElements(); ++e) {
+        visit(batch.Element(e),
+              MeanTangent<kKind>(batch, e, pass.moduli, columns, tangents));
+      }
+      return;
+    }
+    for (std::size_t e = 0; e < batch.NumElements(); ++e) {
+      ElementMatrix<kKind> matrix = ElementMatrix<kKind>::Zero();
+      for (int i = 0; i < batch.PointsPerElement(); ++i) {
+        AddPointTangent<kKind>(batch.Point(e, i),
+                               TangentIn<kKind>(tangents, batch.PlaceOf(e, i),
+                                                pass.mesh.section.model),
+                               matrix);
+      }
+      visit(batch.Element(e), matrix);
+    }
+  });
+}
+
+template <ElementKind kKind>
+void AddBlocks(const MaterialPass& pass, const Eigen::VectorXd& displacement,
+               const NodeGraph& graph, Eigen::MatrixXd& blocks) {
+  constexpr int kDimension = kDimensionOf<kKind>;
+  VisitTangents<kKind>(
+      pass, displacement,
+      [&](Eigen::Index e, const ElementMatrix<kKind>& matrix) {
+        const int* const nodes = pass.mesh.elements.col(e).data();
+        for (int j = 0; j < ElementSizes<kKind>::kNodes; ++j) {
+          for (int i = j; i < ElementSizes<kKind>::kNodes; ++i) {
+            auto block = blocks.middleCols<kDimension>(
+                kDimension * Eigen::Index(graph.element_pairs(
+                                 NodeGraph::LocalPair(i, j), e)));
+            const auto own = matrix.template block<kDimension, kDimension>(
+                kDimension * i, kDimension * j);
+            // The pair has the greater node first.
+            if (nodes[i] >= nodes[j]) {
+              block += own;
+            } else {
+              block += own.transpose();
+            }
+          }
+        }
+      });
+}
+
+template <ElementKind kKind>
+void AddProducts(const MaterialPass& pass, const Eigen::VectorXd& displacement,
+                 const Eigen::MatrixXd& directions, Eigen::MatrixXd& products) {
+  VisitTangents<kKind>(
+      pass, displacement,
+      [&](Eigen::Index e, const ElementMatrix<kKind>& matrix) {
+        for (Eigen::Index column = 0; column < directions.cols(); ++column) {
+          const NodeColumns<kKind> v =
+              GatherNodes<kKind>(pass.mesh, e, directions.col(column).data());
+          NodeColumns<kKind> forces;
+          forces.reshaped() =
+              matrix.template selfadjointView<Eigen::Lower>() * v.reshaped();
+          AddToNodes<kKind>(pass.mesh, e, forces, products.col(column).data());
+        }
+      });
+}
+
+template <ElementKind kKind>
+VolumeRatio SmallestRatio(const Mesh& mesh,
+                          const Eigen::VectorXd& displacement) {
+  constexpr int kDimension = kDimensionOf<kKind>;
+  VolumeRatio smallest = {std::numeric_limits<double>::infinity(), 0};
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    const NodeColumns<kKind> u =
+        GatherNodes<kKind>(mesh, e, displacement.data());
+    VisitPoints<kKind>(mesh, e, StiffnessRule<kKind>(),
+                       [&](const auto& point, const auto&) {
+                         Eigen::Matrix<double, kDimension, kDimension> f =
+                             u * point.gradient.transpose();
+                         f.diagonal().array() += 1;
+                         const double ratio = f.determinant();
+                         if (!(ratio >= smallest.value)) {
+                           smallest = {ratio, e};
+                         }
+                       });
+  }
+  return smallest;
+}
+
+}  // namespace
+
+LargeStrainForces::LargeStrainForces(const Mesh& mesh,
+                                     const std::vector<Material>& materials,
+                                     Dilatation dilatation)
+    : mesh_(mesh),
+      parameters_(materials, mesh.section.model),
+      elements_of_material_(parameters_.NumMaterials()),
+      dilatation_(dilatation) {
+  for (std::size_t i = 0; i < parameters_.NumMaterials(); ++i) {
+    const Law& law = parameters_.LawOf(i);
+    if (law.ForLargeStrains() == nullptr) {
+      throw std::invalid_argument(
+          "the law " + std::string(law.Name()) +
+          " is for small strains, but another material of the scene has a law "
+          "of large strains; give all materials laws of large strains, such as "
+          "corotated");
+    }
+  }
+  const std::vector<int> material_of_element =
+      MaterialOfElements(materials, mesh);
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    elements_of_material_[material_of_element[e]].push_back(e);
+  }
+}
+
+template <class Function>
+void LargeStrainForces::ForEachMaterial(const Eigen::VectorXd& moduli,
+                                        const Function& function) const {
+  for (std::size_t i = 0; i < elements_of_material_.size(); ++i) {
+    const LargeStrainLaw& law = *parameters_.LawOf(i).ForLargeStrains();
+    const MaterialPass pass = {
+        mesh_, elements_of_material_[i], law,
+        moduli.segment(parameters_.FirstModulus(i), law.NumModuli()),
+        dilatation_};
+    VisitElementKind(mesh_.kind, [&](auto kind) { function(kind, pass, i); });
+  }
+}
+
+Eigen::MatrixXd LargeStrainForces::Columns(
+    const Eigen::VectorXd& moduli, const Eigen::VectorXd& displacement) const {
+  assert(displacement.size() == mesh_.NumDofs());
+  Eigen::MatrixXd columns =
+      Eigen::MatrixXd::Zero(mesh_.NumDofs(), parameters_.NumModuli());
+  ForEachMaterial(moduli,
+                  [&](auto kind, const MaterialPass& pass, std::size_t i) {
+                    const auto own = columns.middleCols(
+                        parameters_.FirstModulus(i), pass.law.NumModuli());
+                    if constexpr (kind == ElementKind::kTet4) {
+                      AddTet4Columns(pass, displacement, own);
+                    } else {
+                      AddStressColumns<kind>(pass, displacement, own);
+                    }
+                  });
+  return columns;
+}
+
+Eigen::MatrixXd LargeStrainForces::TangentBlocks(
+    const Eigen::VectorXd& moduli, const Eigen::VectorXd& displacement,
+    const NodeGraph& graph) const {
+  Eigen::MatrixXd blocks = Eigen::MatrixXd::Zero(
+      mesh_.Dimension(), mesh_.Dimension() * graph.NumPairs());
+  ForEachMaterial(moduli,
+                  [&](auto kind, const MaterialPass& pass, std::size_t) {
+                    if constexpr (kind == ElementKind::kTet4) {
+                      AddTet4Blocks(pass, displacement, graph, blocks);
+                    } else {
+                      AddBlocks<kind>(pass, displacement, graph, blocks);
+                    }
+                  });
+  return blocks;
+}
+
+Eigen::MatrixXd LargeStrainForces::TangentProducts(
+    const Eigen::VectorXd& moduli, const Eigen::VectorXd& displacement,
+    const Eigen::MatrixXd& directions) const {
+  Eigen::MatrixXd products =
+      Eigen::MatrixXd::Zero(directions.rows(), directions.cols());
+  ForEachMaterial(
+      moduli, [&](auto kind, const MaterialPass& pass, std::size_t) {
+        if constexpr (kind == ElementKind::kTet4) {
+          AddTet4Products(pass, displacement, directions, products);
+        } else {
+          AddProducts<kind>(pass, displacement, directions, products);
+        }
+      });
+  return products;
+}
+
+VolumeRatio LargeStrainForces::SmallestVolumeRatio(
+    const Eigen::VectorXd& displacement) const {
+  return VisitElementKind(mesh_.kind, [&](auto kind) {
+    return SmallestRatio<kind>(mesh_, displacement);
+  });
+}
+
+}  // namespace elastimate

@@ -1,0 +1,121 @@
+#include "elastimate/core/mechanics/mean_dilatation.h"
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "elastimate/core/large_strain/large_strain_law.h"
+
+namespace elastimate {
+namespace {
+
+using Matrix9 = Eigen::Matrix<double, 9, 9>;
+using Vector9 = Eigen::Matrix<double, 9, 1>;
+
+Eigen::Map<const Vector9> AsVector(const Eigen::Matrix3d& matrix) {
+  return Eigen::Map<const Vector9>(matrix.data());
+}
+
+// Returns T with dF : T : dF = tr(F^-1 dF F^-1 dF), for G = F^-T.
+Matrix9 TraceOfSquares(const Eigen::Matrix3d& g) {
+  Matrix9 t;
+  for (int row = 0; row < 9; ++row) {
+    for (int column = 0; column < 9; ++column) {
+      t(row, column) = g(row % 3, column / 3) * g(column % 3, row / 3);
+    }
+  }
+  return t;
+}
+
+}  // namespace
+
+MeanDilatation::MeanDilatation(const std::vector<Eigen::Matrix3d>& gradients,
+                               const Eigen::VectorXd& volumes)
+    : volumes_(volumes), total_volume_(volumes.sum()) {
+  Eigen::VectorXd changes(volumes.size());
+  for (std::size_t i = 0; i < gradients.size(); ++i) {
+    const double change = VolumeChange(gradients[i]);
+    changes(Eigen::Index(i)) = change;
+    jacobian_.push_back(1 + change);
+    f_.emplace_back(Eigen::Matrix3d::Identity() + gradients[i]);
+    cofactors_.emplace_back(jacobian_[i] * f_[i].inverse().transpose());
+  }
+  const double mean_change = volumes.dot(changes) / total_volume_;
+  theta_ = 1 + mean_change;
+  for (std::size_t i = 0; i < gradients.size(); ++i) {
+    const double scale_change = std::expm1(
+        (std::log1p(mean_change) - std::log1p(changes(Eigen::Index(i)))) / 3);
+    scale_.push_back(1 + scale_change);
+    Eigen::Matrix3d scaled = scale_[i] * gradients[i];
+    scaled.diagonal().array() += scale_change;
+    gradients_.push_back(scaled);
+  }
+}
+
+double MeanDilatation::Work(std::size_t point,
+                            const Eigen::Matrix3d& stress) const {
+  return scale_[point] * stress.cwiseProduct(f_[point]).sum();
+}
+
+double MeanDilatation::Pressure(
+    const std::vector<Eigen::Matrix3d>& stresses) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < stresses.size(); ++i) {
+    sum += volumes_(Eigen::Index(i)) * Work(i, stresses[i]);
+  }
+  return sum / (3 * theta_ * total_volume_);
+}
+
+std::vector<Eigen::Matrix3d> MeanDilatation::Stresses(
+    const std::vector<Eigen::Matrix3d>& stresses) const {
+  const double pressure = Pressure(stresses);
+  std::vector<Eigen::Matrix3d> acting;
+  for (std::size_t i = 0; i < stresses.size(); ++i) {
+    const double own = Work(i, stresses[i]) / (3 * jacobian_[i]);
+    acting.emplace_back(scale_[i] * stresses[i] +
+                        (pressure - own) * cofactors_[i]);
+  }
+  return acting;
+}
+
+MeanDilatation::Curvature MeanDilatation::CurvatureOf(
+    const std::vector<Eigen::Matrix3d>& stresses,
+    const std::vector<Matrix9>& tangents) const {
+  // With sigma = dTheta / (3 Theta) - F^-T : dF / 3,
+  //
+  //   dFbar = s (dF + sigma F),
+  //   Pbar : d2Fbar = pi (sigma^2 + dsigma) + 2 s sigma Pbar : dF,
+  //   dsigma = (d2Theta / Theta - (dTheta / Theta)^2
+  //             + tr(F^-1 dF F^-1 dF)) / 3,
+  //
+  // and the mean of pi d2Theta / (3 Theta) is p times that of d2J.
+  const double pressure = Pressure(stresses);
+  Curvature curvature;
+  for (std::size_t i = 0; i < stresses.size(); ++i) {
+    const double s = scale_[i];
+    const double work = Work(i, stresses[i]);
+    const Eigen::Matrix3d g = cofactors_[i] / jacobian_[i];
+    const auto f9 = AsVector(f_[i]);
+    const auto g9 = AsVector(g);
+    const auto p9 = AsVector(stresses[i]);
+    const Matrix9 project = Matrix9::Identity() - f9 * g9.transpose() / 3;
+    const Matrix9 trace = TraceOfSquares(g);
+    const double of_volume = pressure * jacobian_[i];
+    Matrix9 local = s * s * project.transpose() * tangents[i] * project;
+    local += (work / 9 + of_volume) * g9 * g9.transpose();
+    local += (work / 3 - of_volume) * trace;
+    local -= s / 3 * (g9 * p9.transpose() + p9 * g9.transpose());
+    curvature.local.push_back(local);
+    const Vector9 stretched = tangents[i] * f9;
+    const Vector9 coupling =
+        (s * s * project.transpose() * stretched - work / 3 * g9 + s * p9) /
+        (3 * theta_);
+    curvature.coupling.emplace_back(
+        Eigen::Map<const Eigen::Matrix3d>(coupling.data()));
+    curvature.dilatation +=
+        volumes_(Eigen::Index(i)) *
+        ((s * s * f9.dot(stretched) + work) / 9 - work / 3) / (theta_ * theta_);
+  }
+  return curvature;
+}
+
+}  // namespace elastimate
