@@ -9,7 +9,7 @@
 namespace elastimate {
 
 /// Points of a body, n in all, given by the elements in which they lie.  Points
-/// of a mesh of linear simplices are the same points of its mesh of quadratic
+/// of a mesh of linear elements are the same points of its mesh of quadratic
 /// ones.
 struct MeshPoints {
   Eigen::VectorXi elements;  ///< n.

@@ -264,7 +264,7 @@ struct Estimate {
   std::optional<double> discretization_error;
   std::optional<double> poisson_ratio_discretization_error;
   /// By how much E (relative) and nu were corrected for what the elements miss,
-  /// in fits of displacements of simplices, and for where supports end within
+  /// in fits of measured displacements, and for where supports end within
   /// them.  Also of what was refused, as far as that was corrected.
   std::optional<Eigen::Vector2d> discretization_correction;
   /// Points that lie too far off for noise, and were left out.

@@ -18,9 +18,12 @@
 namespace elastimate {
 namespace {
 
-// Elements of the mesh that is divided.
-Eigen::Index MostDividedElements(int dimension) {
-  return dimension == 3 ? 20000 : 100000;
+// Elements of the mesh that is divided.  A hexahedron has the nodes of six
+// tetrahedra, and a quadrilateral those of two triangles.
+Eigen::Index MostDividedElements(ElementKind kind) {
+  const bool is_simplex = IsSimplex(kind);
+  return DimensionOf(kind) == 3 ? (is_simplex ? 20000 : 3300)
+                                : (is_simplex ? 100000 : 50000);
 }
 
 // Next to the end of the range of a ratio a misfit hardly has a slope: where
@@ -137,7 +140,7 @@ class Refinement {
     return options_.refinement != Refine::kNever &&
            (options_.refinement == Refine::kAlways ||
             quadratic.mesh.NumElements() <=
-                MostDividedElements(scene_.mesh.Dimension()));
+                MostDividedElements(scene_.mesh.kind));
   }
 
   const Scene& scene_;

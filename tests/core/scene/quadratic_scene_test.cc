@@ -14,6 +14,7 @@
 #include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/core/scene/support_ends.h"
 #include "tests/core/random_values.h"
+#include "tests/element_kinds.h"
 #include "tests/quadratic_reference.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
@@ -450,6 +451,36 @@ TEST(QuadraticSupports, AreDecidedByBoxes) {
     num_between += inside(x) && x(0) > 1 ? 1 : 0;
   }
   EXPECT_GT(num_between, 9);
+}
+
+// A block of 3 x 3 x 3 hexahedra is held on the first third of its bottom.  The
+// middles of the next edges along x and of the faces between them are open.
+TEST(QuadraticSupports, MayEndWithinFacesOfHexahedra) {
+  Scene scene =
+      testing::SceneOfKind({ElementKind::kHex8, SectionModel::kSolid});
+  for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
+    scene.mesh.nodes.col(node) << double(node % 4), double(node / 4 % 4),
+        double(node / 16);
+    scene.supports.held.col(node).setConstant(scene.mesh.nodes(0, node) <= 1 &&
+                                              scene.mesh.nodes(2, node) == 0);
+  }
+  scene.supports.displacement.setConstant(0.5);
+  const Scene quadratic = QuadraticScene(scene);
+  ASSERT_EQ(quadratic.supports.ends.size(), 1U);
+  const auto& steps = quadratic.supports.ends[0].steps;
+  ASSERT_EQ(steps.size(), 1U);
+  std::set<Eigen::Index> open;
+  for (const HeldComponent& component : steps[0]) {
+    open.insert(component.node);
+    EXPECT_EQ(component.displacement, 0.5);
+  }
+  EXPECT_EQ(steps[0].size(), 3 * open.size());
+  EXPECT_EQ(open.size(), 4U + 3U);
+  for (Eigen::Index node = 0; node < quadratic.mesh.NumNodes(); ++node) {
+    const Eigen::Vector3d x = quadratic.mesh.nodes.col(node);
+    EXPECT_EQ(open.count(node), x(0) == 1.5 && x(2) == 0 ? 1U : 0U);
+    EXPECT_EQ(quadratic.supports.held(1, node), x(0) <= 1 && x(2) == 0);
+  }
 }
 
 }  // namespace
