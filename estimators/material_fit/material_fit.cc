@@ -39,6 +39,8 @@ class ComputedFit {
         of_all);
     EnterOutliers(inliers.left_out, of_all.estimate, inliers.fit.estimate,
                   inliers.fit.estimate);
+    // Only the fit without a start looks for another axis.
+    inliers.fit.has_rival_axis = of_all.has_rival_axis;
     return inliers.fit;
   }
 

@@ -53,6 +53,22 @@ Scene WithEndsHeld(Scene scene) {
   return scene;
 }
 
+// Whether a divided mesh could hardly lower the errors, of which noise has
+// more.
+bool IsMeshErrorSmall(const Estimate& estimate) {
+  const ParameterErrors& mesh = estimate.error_budget.discretization;
+  const ParameterErrors& noise = estimate.error_budget.noise;
+  if (!estimate.IsUsable() || mesh.size() == 0 || noise.size() != mesh.size()) {
+    return false;
+  }
+  for (Eigen::Index i = 0; i < mesh.size(); ++i) {
+    if (!estimate.parameters[i].is_known && !(mesh(i) <= noise(i))) {
+      return false;
+    }
+  }
+  return true;
+}
+
 // The fits of one scene on finer and finer elements.
 class Refinement {
  public:
@@ -88,20 +104,23 @@ class Refinement {
   void LeaveOut(const MaterialFit& of_all, const Scene& quadratic,
                 const std::vector<const Scene*>& coarser, Chain& chain);
   static Chain MeanOf(Chain held, Chain free);
-  bool IsMeshErrorSmall(Chain& chain) const;
+  /// Whether the mesh is to be divided.  Describes the second fit where its
+  /// errors decide that.
+  bool AsksForDivision(const Scene& quadratic, Chain& chain) const;
   static void Describe(Chain& chain, SpaceFit* curved);
   std::unique_ptr<SpaceFit> MinimizeOn(
       const Scene& scene, const std::optional<Eigen::VectorXd>& start,
-      const std::vector<const Scene*>& coarser = {}) const {
+      const std::vector<const Scene*>& coarser = {}) {
     auto space = std::make_unique<SpaceFit>(scene, options_, coarser);
     space->Misfit().SetNeighbours(neighbours_);
     space->Minimize(descent_, start);
+    has_rival_axis_ = has_rival_axis_ || space->Fit().has_rival_axis;
     return space;
   }
   /// Fits what another scene measured of the same specimen in the same space.
   void Refit(const Scene& others, const std::optional<Eigen::VectorXd>& start,
              const std::vector<const Scene*>& coarser,
-             std::unique_ptr<SpaceFit>& space) const {
+             std::unique_ptr<SpaceFit>& space) {
     if (HasUnknownMotion(scene_)) {
       space = MinimizeOn(others, start, coarser);
     } else {
@@ -151,19 +170,26 @@ class Refinement {
   std::unique_ptr<SpaceFit> linear_;
   /// The least residual of the second fits, on any support ends.
   double least_of_quadratic_ = std::numeric_limits<double>::infinity();
+  /// Only fits without a start look for one.
+  bool has_rival_axis_ = false;
 };
 
 void Refinement::LeaveOut(const MaterialFit& of_all, const Scene& quadratic,
                           const std::vector<const Scene*>& coarser,
                           Chain& chain) {
+  bool is_refitted = false;
   const InlierFit inliers = LeaveOutliersOut(
       quadratic,
       [&](const Scene& others, const std::optional<Eigen::VectorXd>& from) {
+        is_refitted = true;
         Refit(others, from, coarser, chain.quadratic);
         return chain.quadratic->Fit();
       },
       of_all);
   chain.work = inliers.fit.estimate.work;
+  if (!is_refitted) {
+    return;
+  }
   const bool are_some_left_out =
       !inliers.left_out.empty() && inliers.fit.minimum;
   const std::vector<Outlier> left_out =
@@ -213,8 +239,7 @@ Refinement::Chain Refinement::FitQuadratic(
       chain.change->is_kept_for_its_size = true;
     }
   }
-  if (MayDivide(quadratic) && !IsOfLinearElements() &&
-      !IsMeshErrorSmall(chain)) {
+  if (AsksForDivision(quadratic, chain)) {
     if (!HasUnknownMotion(scene_)) {
       coarser.push_back(&fit.OwnScene());
     }
@@ -230,25 +255,15 @@ Refinement::Chain Refinement::FitQuadratic(
   return chain;
 }
 
-// Tells whether a divided mesh could hardly lower the errors, of which noise
-// has more.
-bool Refinement::IsMeshErrorSmall(Chain& chain) const {
-  if (options_.refinement == Refine::kAlways) {
+bool Refinement::AsksForDivision(const Scene& quadratic, Chain& chain) const {
+  if (!MayDivide(quadratic) || IsOfLinearElements()) {
     return false;
+  }
+  if (options_.refinement == Refine::kAlways) {
+    return true;
   }
   Describe(chain, nullptr);
-  const Estimate& estimate = chain.quadratic->Fit().estimate;
-  const ParameterErrors& mesh = estimate.error_budget.discretization;
-  const ParameterErrors& noise = estimate.error_budget.noise;
-  if (!estimate.IsUsable() || mesh.size() == 0 || noise.size() != mesh.size()) {
-    return false;
-  }
-  for (Eigen::Index i = 0; i < mesh.size(); ++i) {
-    if (!estimate.parameters[i].is_known && !(mesh(i) <= noise(i))) {
-      return false;
-    }
-  }
-  return true;
+  return !IsMeshErrorSmall(chain.quadratic->Fit().estimate);
 }
 
 // Describes the finest fit by what changed to it.
@@ -281,14 +296,12 @@ Refinement::Chain Refinement::MeanOf(Chain held, Chain free) {
 MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start) {
   std::optional<Eigen::VectorXd> last = start;
   Work work;
-  bool has_rival_axis = false;
   if (scene_.mesh.Order() == 1) {
     linear_ = MinimizeOn(scene_, start);
     if (!linear_->Fit().minimum) {
       return linear_->Fit();
     }
     work = linear_->Fit().estimate.work;
-    has_rival_axis = linear_->Fit().has_rival_axis;
     last = AwayFromEnds(linear_->Misfit().Free(),
                         linear_->Fit().minimum->variables);
   }
@@ -306,7 +319,7 @@ MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start) {
     Describe(chain, chain.quadratic.get());
   }
   MaterialFit fit = chain.Finest().Fit();
-  fit.has_rival_axis = fit.has_rival_axis || has_rival_axis;
+  fit.has_rival_axis = has_rival_axis_;
   fit.estimate.mesh_divisions = chain.divided ? 1 : 0;
   fit.estimate.work = work + chain.work;
   EnterOutliers(chain.left_out, chain.of_all, chain.of_inliers, fit.estimate);

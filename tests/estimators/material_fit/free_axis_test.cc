@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "elastimate/core/equilibrium/simulated_measurement.h"
+#include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/estimators/material_fit/material_fit.h"
 #include "elastimate/estimators/registry.h"
 #include "tests/anisotropy.h"
 #include "tests/element_kinds.h"
@@ -49,16 +51,20 @@ Scene BlockOfAxis(const Eigen::VectorXd& constants, const Eigen::Vector3d& axis,
   return scene;
 }
 
+Eigen::VectorXd ConstantsOfBar() {
+  Eigen::VectorXd constants(5);
+  constants << 3000, 1000, 0.3, 0.35, 500;
+  return constants;
+}
+
 // One slanted traction on an end of a bar of fibres with this axis, which is
 // not known.
 Scene PulledBarOfAxis(const Eigen::Vector3d& axis) {
   Scene scene = testing::BlockUnderTraction({4, 4, 6}, {2, 2, 3});
   std::get<Traction>(scene.load_cases[0].loads[0]).traction =
-      Eigen::Vector3d(20, 10, 30);
-  Eigen::VectorXd constants(5);
-  constants << 3000, 1000, 0.3, 0.35, 500;
-  MeasureMaterials({{"transversely_isotropic", {}, {}, {}, {axis}}}, constants,
-                   scene);
+      Eigen::Vector3d(0.02, 0.01, 0.03);
+  MeasureMaterials({{"transversely_isotropic", {}, {}, {}, {axis}}},
+                   ConstantsOfBar(), scene);
   scene.materials = {{kFreeAxis, {}, {}, {}}};
   return scene;
 }
@@ -124,6 +130,32 @@ TEST(FreeAxis, IsThatOfTheLeastMisfit) {
     }
   }
   EXPECT_GT(num_usable, 15);
+}
+
+// A fit without outliers starts where an earlier one ended, which knows of one
+// axis only.
+TEST(FreeAxis, HasARivalWhereOutliersAreLeftOutOrElementsAreQuadratic) {
+  const Eigen::Vector3d axis = {0, 1, 0};
+  EstimatorOptions options;
+  options.refinement = Refine::kNever;
+  for (const Origin origin : {Origin::kComputed, Origin::kMeasured}) {
+    Scene scene = PulledBarOfAxis(axis);
+    if (origin == Origin::kMeasured) {
+      scene = QuadraticScene(scene);
+      scene.load_cases[0].observed.resize(0, 0);
+      MeasureMaterials({{"transversely_isotropic", {}, {}, {}, {axis}}},
+                       ConstantsOfBar(), scene);
+      scene.materials = {{kFreeAxis, {}, {}, {}}};
+    }
+    scene.origin = origin;
+    testing::AddNoise(8e-2, 3, scene);
+    Eigen::MatrixXd& u = scene.load_cases[0].displacement;
+    u.col(u.cols() / 2).array() += 5 * u.cwiseAbs().maxCoeff();
+    const MaterialFit fit =
+        FitMaterialsFrom(std::nullopt, scene, options, Descent::kReduced);
+    EXPECT_EQ(fit.estimate.outliers.size(), 1U);
+    EXPECT_TRUE(fit.has_rival_axis);
+  }
 }
 
 // A specimen of an isotropic and a fibrous half, with the error of the axis
