@@ -37,14 +37,22 @@ bool HasFreeAxis(const std::vector<Material>& materials) {
                      });
 }
 
+std::vector<FreeAxisPlace> FreeAxisParameters(const MaterialParameters& all) {
+  std::vector<FreeAxisPlace> places;
+  for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
+    if (all.LawOf(i).Name() == FreeAxisLaw::kName) {
+      places.push_back({all.FirstParameter(i),
+                        Eigen::Index(all.LawOf(i).Parameters().size())});
+    }
+  }
+  return places;
+}
+
 bool AreAxesApart(const MaterialParameters& all, const Eigen::VectorXd& a,
                   const Eigen::VectorXd& b) {
   const double near = std::cos(3 * kLimits.largest_axis_error);
-  for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
-    const Eigen::Index first = all.FirstParameter(i);
-    const auto count = Eigen::Index(all.LawOf(i).Parameters().size());
-    if (all.LawOf(i).Name() == FreeAxisLaw::kName &&
-        std::abs(FreeAxisLaw::Axis(a.segment(first, count))
+  for (const auto& [first, count] : FreeAxisParameters(all)) {
+    if (std::abs(FreeAxisLaw::Axis(a.segment(first, count))
                      .dot(FreeAxisLaw::Axis(b.segment(first, count)))) < near) {
       return true;
     }
@@ -60,12 +68,7 @@ std::vector<AxisEstimate> AxesOf(const Scene& scene, const Estimate& estimate) {
   const Eigen::VectorXd values = estimate.ParameterValues();
   const Eigen::MatrixXd of_all = estimate.CovarianceWithGiven();
   const MaterialParameters all(scene.materials, scene.mesh.section.model);
-  for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
-    if (all.LawOf(i).Name() != FreeAxisLaw::kName) {
-      continue;
-    }
-    const Eigen::Index first = all.FirstParameter(i);
-    const auto count = Eigen::Index(all.LawOf(i).Parameters().size());
+  for (const auto& [first, count] : FreeAxisParameters(all)) {
     const Eigen::VectorXd parameters = values.segment(first, count);
     AxisEstimate axis;
     axis.regions = estimate.parameters[first].regions;

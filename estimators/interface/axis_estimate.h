@@ -16,6 +16,13 @@ inline constexpr double kDegreesOfRadian = 57.295779513082323;
 /// Whether a material has an axis that is to be found (FreeAxisLaw).
 bool HasFreeAxis(const std::vector<Material>& materials);
 
+/// Where the parameters of a material are whose axis is to be found.
+struct FreeAxisPlace {
+  Eigen::Index first;
+  Eigen::Index count;
+};
+std::vector<FreeAxisPlace> FreeAxisParameters(const MaterialParameters& all);
+
 /// Whether an axis that is to be found is so far from itself in two sets of
 /// parameters that it is another one: three of the largest errors that an axis
 /// may have.

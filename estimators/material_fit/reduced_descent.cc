@@ -71,7 +71,6 @@ class ReducedDescent {
   /// Returns the bounds of the variables, narrowed to where the model is
   /// trusted.
   std::vector<Bounds> TrustBounds() const;
-  double Noise(const Eigen::VectorXd& residual) const;
   Eigen::MatrixXd WithoutHeld(const Eigen::MatrixXd& displacement) const {
     return displacement - misfit_.Model().HeldDisplacement();
   }
@@ -231,17 +230,6 @@ BoundedMinimum ReducedDescent::MinimumFrom(const Eigen::VectorXd& x) {
   return minimum;
 }
 
-double ReducedDescent::Noise(const Eigen::VectorXd& residual) const {
-  const ObservedDisplacements& observed = misfit_.Observed();
-  const Eigen::Index redundancy = observed.Size() - misfit_.Free().Size();
-  const double noise =
-      observed.GivenNoise()
-          ? 1 / observed.Norm()
-          : Norm(residual) / std::sqrt(static_cast<double>(
-                                 std::max<Eigen::Index>(redundancy, 1)));
-  return std::max(noise, kNoiseOfExactData);
-}
-
 Eigen::MatrixXd ReducedDescent::ForcesOfVariables() {
   const Eigen::Index n = directions_.cols();
   Eigen::MatrixXd forces(displacement_.rows(), n * displacement_.cols());
@@ -273,7 +261,9 @@ bool ReducedDescent::Check(const BoundedMinimum& minimum) {
     return false;
   }
   const Eigen::Index num_cases = misfit_.Observed().NumLoadCases();
-  const double noise = Noise(reduced_.Residual());
+  const double noise =
+      std::max(std::sqrt(misfit_.Variance(SquaredNorm(reduced_.Residual()))),
+               kNoiseOfExactData);
   const Eigen::MatrixXd sensitivities = reduced_.Sensitivities(directions_);
   const SymmetricEigenDecomposition modes =
       DecomposeSymmetric(InnerProducts(sensitivities, sensitivities));
@@ -388,13 +378,9 @@ template <class Function>
 Eigen::VectorXd WithFreeAxes(const MaterialParameters& all,
                              Eigen::VectorXd parameters,
                              const Function& change) {
-  for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
-    if (all.LawOf(i).Name() == FreeAxisLaw::kName) {
-      auto own =
-          parameters.segment(all.FirstParameter(i),
-                             Eigen::Index(all.LawOf(i).Parameters().size()));
-      own = change(Eigen::VectorXd(own)).eval();
-    }
+  for (const auto& [first, count] : FreeAxisParameters(all)) {
+    const Eigen::VectorXd own = parameters.segment(first, count);
+    parameters.segment(first, count) = change(own);
   }
   return parameters;
 }
@@ -451,7 +437,7 @@ std::vector<Eigen::VectorXd> StartsOverAxes(const Scene& scene,
                               free.ParametersAt(other));
         });
     if (is_another &&
-        minimum.cost <= least + kOutOfReach * misfit.Variance(least)) {
+        minimum.cost <= least + kOutOfReach * misfit.Variance(2 * least)) {
       starts.push_back(changed(minimum.variables, FreeAxisLaw::WithNearerEnd));
     }
   }

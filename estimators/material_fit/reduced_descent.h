@@ -37,10 +37,9 @@ namespace elastimate {
 /// left with u and du/dx at the minimum, by conjugate gradients too, to 1e-4
 /// of their energy norms.
 ///
-/// The first pole is at `start`, else at typical values (TypicalStart), or
-/// where an axis is to be found, at StartOverAxes.  Empty where displacements
-/// oppose the loads.  Adds the work that the equilibrium does not count to the
-/// estimate.
+/// The first pole is at `start`, else at typical values (TypicalStart).  Empty
+/// where displacements oppose the loads.  Adds the work that the equilibrium
+/// does not count to the estimate.
 ///
 /// Precondition: no unknown motions.  Cost: 1 to 3 factorisations and, for each
 /// load case and pole, a solve for each variable; and about five times as many

@@ -161,8 +161,9 @@ std::optional<BoundedMinimum> SpaceFit::FindOverAxes(Descent descent) {
               return a.cost < b.cost;
             });
   const FreeParameters& free = misfit_.Free();
-  const double reach = minima[0].cost + kLimits.least_axis_preference / 2 *
-                                            misfit_.Variance(minima[0].cost);
+  const double reach =
+      minima[0].cost +
+      kLimits.least_axis_preference / 2 * misfit_.Variance(2 * minima[0].cost);
   fit_.has_rival_axis = std::any_of(
       minima.begin(), minima.end(), [&](const BoundedMinimum& minimum) {
         return minimum.cost < reach &&

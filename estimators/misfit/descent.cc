@@ -39,20 +39,16 @@ BoundedMinimum Descend(const EstimatorOptions& estimator_options,
 }
 
 // The standard deviation of a displacement row at x, as given or from what is
-// left there; zero where there is none.
+// left there, at least kLeastNoise.
 double NoiseAt(const Eigen::VectorXd& x, DisplacementMisfit& misfit) {
   const ObservedDisplacements& observed = misfit.Observed();
-  if (observed.GivenNoise()) {
-    return 1 / observed.Norm();
-  }
   Eigen::VectorXd residual;
-  if (!misfit.Evaluate(x, &residual, nullptr)) {
-    return 0;
+  // What is given costs no evaluation.
+  if (observed.GivenNoise() || !misfit.Evaluate(x, &residual, nullptr)) {
+    return std::sqrt(misfit.Variance(0));
   }
-  const Eigen::Index redundancy =
-      observed.Size() - misfit.NumAmounts() - misfit.Free().Size();
-  return Norm(residual.head(observed.Size())) /
-         std::sqrt(static_cast<double>(std::max<Eigen::Index>(redundancy, 1)));
+  return std::sqrt(
+      misfit.Variance(SquaredNorm(residual.head(observed.Size()))));
 }
 
 // From the start on, with resultants that weigh as much as their errors say
@@ -63,12 +59,12 @@ BoundedMinimum DescendWithResultants(const EstimatorOptions& options,
                                      DisplacementMisfit& misfit) {
   constexpr int kWeightings = 5;
   constexpr double kSettled = 0.05;
-  double noise = std::max(NoiseAt(start, misfit), kLeastNoise);
+  double noise = NoiseAt(start, misfit);
   misfit.SetNoise(noise);
   BoundedMinimum minimum = Descend(options, start, distance, misfit);
   for (int i = 0; i < kWeightings; ++i) {
     const double last = noise;
-    noise = std::max(NoiseAt(minimum.variables, misfit), kLeastNoise);
+    noise = NoiseAt(minimum.variables, misfit);
     if (std::abs(noise - last) < kSettled * last) {
       break;
     }

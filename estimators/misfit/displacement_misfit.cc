@@ -94,15 +94,15 @@ void DisplacementMisfit::SetNoise(double standard_deviation) {
   }
 }
 
-double DisplacementMisfit::Variance(double cost) const {
-  if (observed_.GivenNoise()) {
-    return 1 / (observed_.Norm() * observed_.Norm());
-  }
+double DisplacementMisfit::Variance(double square_sum) const {
   const Eigen::Index redundancy =
       observed_.Size() - NumAmounts() - free_.Size();
-  return std::max(
-      2 * cost / static_cast<double>(std::max<Eigen::Index>(redundancy, 1)),
-      kLeastNoise * kLeastNoise);
+  const double variance =
+      observed_.GivenNoise()
+          ? 1 / (observed_.Norm() * observed_.Norm())
+          : square_sum /
+                static_cast<double>(std::max<Eigen::Index>(redundancy, 1));
+  return std::max(variance, kLeastNoise * kLeastNoise);
 }
 
 bool DisplacementMisfit::Evaluate(const Eigen::VectorXd& x,

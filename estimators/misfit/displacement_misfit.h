@@ -62,9 +62,9 @@ class DisplacementMisfit {
   void SetSolution(Solution solution) { solution_ = std::move(solution); }
 
   Eigen::Index NumRows() const;
-  /// Returns the variance of a row of displacements: as given, else by what a
-  /// fit of this cost leaves.
-  double Variance(double cost) const;
+  /// Returns the variance of a row of displacements: as given, else by the
+  /// square sum that a fit leaves of them.
+  double Variance(double square_sum) const;
   /// The numbers of unknown motions, which are fitted as the variables are, and
   /// of measured resultants.
   Eigen::Index NumAmounts() const;
