@@ -209,18 +209,22 @@ Eigen::MatrixXd CovarianceOfCurvature(const Eigen::VectorXd& x,
                                       const Eigen::VectorXd& beforehand,
                                       DisplacementMisfit& misfit) {
   Eigen::MatrixXd added = Eigen::MatrixXd::Zero(x.size(), x.size());
+  if (!covariance.allFinite()) {
+    return added;
+  }
+  const Eigen::MatrixXd jacobian = ScaledJacobian(misfit.Free(), x);
+  const SymmetricEigenDecomposition modes =
+      DecomposeSymmetric(jacobian * covariance * jacobian.transpose());
   Eigen::VectorXd rows;
   Eigen::MatrixXd sensitivities;
-  if (!covariance.allFinite() || !misfit.Evaluate(x, &rows, &sensitivities)) {
+  if (!(modes.values.maxCoeff() >= kLeastError * kLeastError) ||
+      !misfit.Evaluate(x, &rows, &sensitivities)) {
     return added;
   }
   const Eigen::MatrixXd information =
       InformationMatrix(sensitivities, beforehand);
   const Eigen::MatrixXd inverse = Inverse(information);
   const Eigen::VectorXd newton = inverse * InnerProducts(sensitivities, rows);
-  const Eigen::MatrixXd jacobian = ScaledJacobian(misfit.Free(), x);
-  const SymmetricEigenDecomposition modes =
-      DecomposeSymmetric(jacobian * covariance * jacobian.transpose());
   int num_looked_at = 0;
   for (Eigen::Index i = x.size() - 1;
        i >= 0 && num_looked_at < kMostCombinations; --i) {

@@ -28,6 +28,8 @@ class Curvature : public ::testing::Test {
   double Added(double standard_error) {
     const Eigen::VectorXd x =
         misfit_->Free().VariablesOf(Eigen::Vector2d(kYoungsModulus, 0.3));
+    Eigen::VectorXd rows;
+    EXPECT_TRUE(misfit_->Evaluate(x, &rows, nullptr));
     return CovarianceOfCurvature(
         x, Eigen::MatrixXd::Constant(1, 1, standard_error * standard_error),
         Eigen::VectorXd::Zero(1), *misfit_)(0, 0);
