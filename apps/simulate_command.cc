@@ -90,8 +90,7 @@ Solution SolveLargeStrains(const std::string& source, const Scene& modelled,
   if (solver == SolverKind::kMultigrid) {
     throw std::invalid_argument(
         "--solver=multigrid cannot tell whether an equilibrium of large "
-        "strains "
-        "is stable; give --solver=cholesky, or leave it out");
+        "strains is stable; give --solver=cholesky, or leave it out");
   }
   const Eigen::VectorXd values = ParametersFromFlags(modelled);
   LargeStrainEquilibrium model(modelled);

@@ -1,12 +1,12 @@
 #include "elastimate/core/equilibrium/equilibrium.h"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "elastimate/core/equilibrium/assembled_stiffness.h"
 #include "elastimate/core/equilibrium/nested_stiffness.h"
 #include "elastimate/core/equilibrium/refined_stiffness.h"
 #include "elastimate/core/equilibrium/supported_stiffness.h"
+#include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/unknown_motion.h"
 
@@ -33,20 +33,14 @@ Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
       held_forces_(load_.cols()),
       has_unknown_motion_(HasUnknownMotion(*spaces.back())) {
   const Scene& scene = *spaces.back();
-  std::vector<const Supports*> supports_of_stiffness;
+  const HeldGroups groups = GroupByHeld(scene);
+  stiffness_of_case_ = groups.of_case;
+  for (const Eigen::Index k : groups.first_cases) {
+    AddStiffness(UsedSpaces(spaces), k, solver, tolerance);
+  }
   for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
-    const Supports& supports = SupportsOf(scene, k);
-    const auto same = std::find_if(
-        supports_of_stiffness.begin(), supports_of_stiffness.end(),
-        [&](const Supports* other) {
-          return other == &supports || (other->held == supports.held).all();
-        });
-    stiffness_of_case_.push_back(same - supports_of_stiffness.begin());
-    if (same == supports_of_stiffness.end()) {
-      supports_of_stiffness.push_back(&supports);
-      AddStiffness(UsedSpaces(spaces), k, solver, tolerance);
-    }
-    held_displacement_.col(k) = elastimate::HeldDisplacement(supports);
+    held_displacement_.col(k) =
+        elastimate::HeldDisplacement(SupportsOf(scene, k));
     Eigen::Index first = 0;
     while (stiffness_of_case_[first] != stiffness_of_case_[k] ||
            held_displacement_.col(first) != held_displacement_.col(k)) {

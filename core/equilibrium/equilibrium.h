@@ -2,6 +2,7 @@
 #define ELASTIMATE_CORE_EQUILIBRIUM_EQUILIBRIUM_H_
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -143,7 +144,7 @@ class Equilibrium {
   std::vector<std::unique_ptr<SupportedStiffness>> stiffness_;
   /// The graph of the finest mesh where its stiffness is not assembled.
   std::optional<NodeGraph> graph_;
-  std::vector<Eigen::Index> stiffness_of_case_;
+  std::vector<std::size_t> stiffness_of_case_;
   Eigen::MatrixXd load_;
   Eigen::MatrixXd held_displacement_;  ///< num_dofs x num_load_cases.
   /// The first load case that is held as this one, at the same displacements.

@@ -74,21 +74,14 @@ LargeStrainEquilibrium::LargeStrainEquilibrium(const Scene& scene,
       forces_(scene.mesh, scene.materials, dilatation),
       load_(AssembleLoadCases(scene)),
       held_displacement_(load_.rows(), load_.cols()) {
-  std::vector<const Supports*> supports_of_solver;
+  const HeldGroups groups = GroupByHeld(scene);
+  solver_of_case_ = groups.of_case;
+  for (const Eigen::Index k : groups.first_cases) {
+    solvers_.push_back(std::make_unique<StiffnessSolver>(
+        scene.mesh, SupportsOf(scene, k), SolverKind::kCholesky));
+  }
   for (Eigen::Index k = 0; k < load_.cols(); ++k) {
-    const Supports& supports = SupportsOf(scene, k);
-    held_displacement_.col(k) = HeldDisplacement(supports);
-    const auto same = std::find_if(
-        supports_of_solver.begin(), supports_of_solver.end(),
-        [&](const Supports* other) {
-          return other == &supports || (other->held == supports.held).all();
-        });
-    solver_of_case_.push_back(std::size_t(same - supports_of_solver.begin()));
-    if (same == supports_of_solver.end()) {
-      supports_of_solver.push_back(&supports);
-      solvers_.push_back(std::make_unique<StiffnessSolver>(
-          scene.mesh, supports, SolverKind::kCholesky));
-    }
+    held_displacement_.col(k) = HeldDisplacement(SupportsOf(scene, k));
   }
 }
 

@@ -280,6 +280,78 @@ HWY_INLINE void AddTensorForces(const TensorTables<kDimension>& tables,
   }
 }
 
+// Sets gradient[a] to the derivatives of the displacement along axis a of the
+// reference element at the Gauss points.
+template <int kDimension, class Nodes>
+HWY_INLINE void SetReferenceGradient(
+    const TensorTables<kDimension>& tables, const Nodes& nodes,
+    VectorField<kDimension> (&gradient)[kDimension]) {
+  // A translation is taken out, so that it leaves no rounding.
+  const Vector origin = LoadVector(nodes.record[0]);
+  VectorField<kDimension> u;
+  for (int i = 0; i < PowerOfThree(kDimension); ++i) {
+    const Vector v = LoadVector(nodes.record[tables.node[i]]) - origin;
+    for (int c = 0; c < kDimension; ++c) {
+      u.of[c][i] = ComponentOf(v, c);
+    }
+  }
+  for (int c = 0; c < kDimension; ++c) {
+    MultiplyByValues<kDimension, false>(tables, u.of[c]);
+    Differentiate<kDimension, 0>(tables, u.of[c], gradient[0].of[c]);
+    Differentiate<kDimension, 1>(tables, u.of[c], gradient[1].of[c]);
+    if constexpr (kDimension == 3) {
+      Differentiate<kDimension, 2>(tables, u.of[c], gradient[2].of[c]);
+    }
+  }
+}
+
+// Replaces the reference gradient at a Gauss point by the stress that works on
+// it, and sets `of_trace` to that of the trace alone unless kIsSum.
+template <int kDimension, bool kIsSum>
+HWY_INLINE void ReplaceByStress(
+    const PointMap<kDimension>& map, const Values& of_a, const Values& of_p,
+    int point, VectorField<kDimension> (&gradient)[kDimension],
+    VectorField<kDimension> (&of_trace)[kDimension]) {
+  // The displacement gradient times the determinant.
+  Values h[kDimension][kDimension];
+  for (int c = 0; c < kDimension; ++c) {
+    for (int x = 0; x < kDimension; ++x) {
+      h[c][x] =
+          hn::Mul(gradient[0].of[c][point], ComponentOf(map.adjugate[0], x));
+      for (int axis = 1; axis < kDimension; ++axis) {
+        h[c][x] = hn::MulAdd(gradient[axis].of[c][point],
+                             ComponentOf(map.adjugate[axis], x), h[c][x]);
+      }
+    }
+  }
+  Values sum = hn::Add(h[0][0], h[1][1]);
+  if constexpr (kDimension == 3) {
+    sum = hn::Add(sum, h[2][2]);
+  }
+  sum = hn::Mul(sum, map.scale);
+  const Values half = hn::Mul(hn::Set(Lanes(), 0.5), hn::Mul(of_a, map.scale));
+  const Values pressure = hn::Mul(of_p, sum);
+  for (int c = 0; c < kDimension; ++c) {
+    Values stress[kDimension];
+    for (int x = 0; x < kDimension; ++x) {
+      stress[x] = hn::Mul(half, hn::Add(h[c][x], h[x][c]));
+    }
+    stress[c] = hn::Add(stress[c], pressure);
+    for (int axis = 0; axis < kDimension; ++axis) {
+      Values force = hn::Mul(stress[0], ComponentOf(map.adjugate[axis], 0));
+      for (int x = 1; x < kDimension; ++x) {
+        force =
+            hn::MulAdd(stress[x], ComponentOf(map.adjugate[axis], x), force);
+      }
+      gradient[axis].of[c][point] = force;
+      if (!kIsSum) {
+        of_trace[axis].of[c][point] =
+            hn::Mul(sum, ComponentOf(map.adjugate[axis], c));
+      }
+    }
+  }
+}
+
 // Adds `count` elements from the first on, an element in each lane.
 template <int kDimension, bool kIsSum>
 HWY_INLINE void AddLanes(const QuadraticPass& pass,
@@ -291,25 +363,8 @@ HWY_INLINE void AddLanes(const QuadraticPass& pass,
   const Tangents<kDimension> tangents(elements, count, pass.positions);
   const NodeRecords<kNodes, kNodes, double> nodes(
       elements, count, pass.records, kIsSum ? kSizeForSum : kSizeForProducts);
-  // A translation is taken out, so that it leaves no rounding.
-  const Vector origin = LoadVector(nodes.record[0]);
-  VectorField<kDimension> u;
-  for (int i = 0; i < kNodes; ++i) {
-    const Vector v = LoadVector(nodes.record[tables.node[i]]) - origin;
-    for (int c = 0; c < kDimension; ++c) {
-      u.of[c][i] = ComponentOf(v, c);
-    }
-  }
-  // Derivatives along each axis, which become stresses.
   VectorField<kDimension> gradient[kDimension];
-  for (int c = 0; c < kDimension; ++c) {
-    MultiplyByValues<kDimension, false>(tables, u.of[c]);
-    Differentiate<kDimension, 0>(tables, u.of[c], gradient[0].of[c]);
-    Differentiate<kDimension, 1>(tables, u.of[c], gradient[1].of[c]);
-    if constexpr (kDimension == 3) {
-      Differentiate<kDimension, 2>(tables, u.of[c], gradient[2].of[c]);
-    }
-  }
+  SetReferenceGradient<kDimension>(tables, nodes, gradient);
   Values thickness = hn::Set(d, pass.thickness);
   if (count < kLanes) {
     // Lanes that repeat an element add nothing.
@@ -327,45 +382,8 @@ HWY_INLINE void AddLanes(const QuadraticPass& pass,
     for (int j = 0; j < kThree; ++j) {
       for (int i = 0; i < kThree; ++i, ++point) {
         const PointMap<kDimension> map(tangents, tables, i, j, k, thickness);
-        // The displacement gradient times the determinant.
-        Values h[kDimension][kDimension];
-        for (int c = 0; c < kDimension; ++c) {
-          for (int x = 0; x < kDimension; ++x) {
-            h[c][x] = hn::Mul(gradient[0].of[c][point],
-                              ComponentOf(map.adjugate[0], x));
-            for (int axis = 1; axis < kDimension; ++axis) {
-              h[c][x] = hn::MulAdd(gradient[axis].of[c][point],
-                                   ComponentOf(map.adjugate[axis], x), h[c][x]);
-            }
-          }
-        }
-        Values sum = hn::Add(h[0][0], h[1][1]);
-        if constexpr (kDimension == 3) {
-          sum = hn::Add(sum, h[2][2]);
-        }
-        sum = hn::Mul(sum, map.scale);
-        const Values half = hn::Mul(hn::Set(d, 0.5), hn::Mul(of_a, map.scale));
-        const Values pressure = hn::Mul(of_p, sum);
-        for (int c = 0; c < kDimension; ++c) {
-          Values stress[kDimension];
-          for (int x = 0; x < kDimension; ++x) {
-            stress[x] = hn::Mul(half, hn::Add(h[c][x], h[x][c]));
-          }
-          stress[c] = hn::Add(stress[c], pressure);
-          for (int axis = 0; axis < kDimension; ++axis) {
-            Values force =
-                hn::Mul(stress[0], ComponentOf(map.adjugate[axis], 0));
-            for (int x = 1; x < kDimension; ++x) {
-              force = hn::MulAdd(stress[x], ComponentOf(map.adjugate[axis], x),
-                                 force);
-            }
-            gradient[axis].of[c][point] = force;
-            if (!kIsSum) {
-              of_trace[axis].of[c][point] =
-                  hn::Mul(sum, ComponentOf(map.adjugate[axis], c));
-            }
-          }
-        }
+        ReplaceByStress<kDimension, kIsSum>(map, of_a, of_p, point, gradient,
+                                            of_trace);
       }
     }
   }

@@ -9,46 +9,85 @@ namespace {
 
 using Vertices = std::vector<std::vector<int>>;
 
+// What does not depend on the order of an element.
+struct Shape {
+  std::string_view name;
+  std::string_view plural;
+  int dimension;
+  int num_vertices;
+  std::vector<std::array<int, 2>> edges;
+  Vertices faces;
+  Vertices corners;
+};
+
 // Face i of a tetrahedron is opposite to vertex i.
-const Vertices kTetrahedronFaces = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-const std::vector<std::array<int, 2>> kTetrahedronEdges = {
-    {0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
-const Vertices kTetrahedronCorners = {{0, 1, 2, 3}};
+const Shape kTetrahedron = {"tetrahedron",
+                            "tetrahedra",
+                            3,
+                            4,
+                            {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}},
+                            {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}},
+                            {{0, 1, 2, 3}}};
 
 // The faces are in the order in which VTK has the nodes in their middles.
-const Vertices kHexahedronFaces = {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4},
-                                   {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}};
-const std::vector<std::array<int, 2>> kHexahedronEdges = {
-    {0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
-    {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
-const Vertices kHexahedronCorners = {{0, 1, 3, 4}, {1, 2, 0, 5}, {2, 3, 1, 6},
-                                     {3, 0, 2, 7}, {4, 7, 5, 0}, {5, 4, 6, 1},
-                                     {6, 5, 7, 2}, {7, 6, 4, 3}};
+const Shape kHexahedron = {"hexahedron",
+                           "hexahedra",
+                           3,
+                           8,
+                           {{0, 1},
+                            {1, 2},
+                            {2, 3},
+                            {3, 0},
+                            {4, 5},
+                            {5, 6},
+                            {6, 7},
+                            {7, 4},
+                            {0, 4},
+                            {1, 5},
+                            {2, 6},
+                            {3, 7}},
+                           {{0, 4, 7, 3},
+                            {1, 2, 6, 5},
+                            {0, 1, 5, 4},
+                            {3, 7, 6, 2},
+                            {0, 3, 2, 1},
+                            {4, 5, 6, 7}},
+                           {{0, 1, 3, 4},
+                            {1, 2, 0, 5},
+                            {2, 3, 1, 6},
+                            {3, 0, 2, 7},
+                            {4, 7, 5, 0},
+                            {5, 4, 6, 1},
+                            {6, 5, 7, 2},
+                            {7, 6, 4, 3}}};
 
-const Vertices kTriangleFaces = {{0, 1}, {1, 2}, {2, 0}};
-const std::vector<std::array<int, 2>> kTriangleEdges = {{0, 1}, {1, 2}, {2, 0}};
-const Vertices kTriangleCorners = {{0, 1, 2}};
+const Shape kTriangle = {"triangle",
+                         "triangles",
+                         2,
+                         3,
+                         {{0, 1}, {1, 2}, {2, 0}},
+                         {{0, 1}, {1, 2}, {2, 0}},
+                         {{0, 1, 2}}};
 
-const Vertices kQuadrilateralFaces = {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
-const std::vector<std::array<int, 2>> kQuadrilateralEdges = {
-    {0, 1}, {1, 2}, {2, 3}, {3, 0}};
-const Vertices kQuadrilateralCorners = {
-    {0, 1, 3}, {1, 2, 0}, {2, 3, 1}, {3, 0, 2}};
+const Shape kQuadrilateral = {"quadrilateral",
+                              "quadrilaterals",
+                              2,
+                              4,
+                              {{0, 1}, {1, 2}, {2, 3}, {3, 0}},
+                              {{0, 1}, {1, 2}, {2, 3}, {3, 0}},
+                              {{0, 1, 3}, {1, 2, 0}, {2, 3, 1}, {3, 0, 2}}};
 
-Vertices MiddlesOf(const std::vector<std::array<int, 2>>& edges,
-                   const Vertices& faces, int num_vertices) {
-  // Each face of a simplex is opposite to a vertex.
-  const bool is_simplex = faces.size() == std::size_t(num_vertices) &&
-                          faces[0].size() + 1 == std::size_t(num_vertices);
+Vertices MiddlesOf(const Shape& shape) {
   Vertices middles;
-  for (const auto& [a, b] : edges) {
+  for (const auto& [a, b] : shape.edges) {
     middles.push_back({a, b});
   }
-  if (faces[0].size() == 4) {
-    middles.insert(middles.end(), faces.begin(), faces.end());
+  if (shape.faces[0].size() == 4) {
+    middles.insert(middles.end(), shape.faces.begin(), shape.faces.end());
   }
+  const bool is_simplex = shape.num_vertices == shape.dimension + 1;
   if (!is_simplex) {
-    std::vector<int> all(num_vertices);
+    std::vector<int> all(shape.num_vertices);
     std::iota(all.begin(), all.end(), 0);
     middles.push_back(all);
   }
@@ -59,83 +98,38 @@ Vertices MiddlesOfFace(std::size_t num_vertices) {
   if (num_vertices == 2) {
     return {{0, 1}};
   }
-  return num_vertices == 3
-             ? MiddlesOf(kTriangleEdges, kTriangleFaces, 3)
-             : MiddlesOf(kQuadrilateralEdges, kQuadrilateralFaces, 4);
+  return MiddlesOf(num_vertices == 3 ? kTriangle : kQuadrilateral);
 }
 
-ElementTopology Tetrahedron(std::string_view name, int order) {
+ElementTopology Topology(std::string_view name, int order, const Shape& shape) {
+  const Vertices middles = MiddlesOf(shape);
+  const int num_middles = order == 1 ? 0 : static_cast<int>(middles.size());
   return {name,
-          "tetrahedron",
-          "tetrahedra",
-          3,
+          shape.name,
+          shape.plural,
+          shape.dimension,
           order,
-          order == 1 ? 4 : 10,
-          4,
-          kTetrahedronEdges,
-          kTetrahedronFaces,
-          MiddlesOf(kTetrahedronEdges, kTetrahedronFaces, 4),
-          MiddlesOfFace(3),
-          kTetrahedronCorners};
-}
-
-ElementTopology Hexahedron(std::string_view name, int order) {
-  return {name,
-          "hexahedron",
-          "hexahedra",
-          3,
-          order,
-          order == 1 ? 8 : 27,
-          8,
-          kHexahedronEdges,
-          kHexahedronFaces,
-          MiddlesOf(kHexahedronEdges, kHexahedronFaces, 8),
-          MiddlesOfFace(4),
-          kHexahedronCorners};
-}
-
-ElementTopology Triangle(std::string_view name, int order) {
-  return {name,
-          "triangle",
-          "triangles",
-          2,
-          order,
-          order == 1 ? 3 : 6,
-          3,
-          kTriangleEdges,
-          kTriangleFaces,
-          MiddlesOf(kTriangleEdges, kTriangleFaces, 3),
-          MiddlesOfFace(2),
-          kTriangleCorners};
-}
-
-ElementTopology Quadrilateral(std::string_view name, int order) {
-  return {name,
-          "quadrilateral",
-          "quadrilaterals",
-          2,
-          order,
-          order == 1 ? 4 : 9,
-          4,
-          kQuadrilateralEdges,
-          kQuadrilateralFaces,
-          MiddlesOf(kQuadrilateralEdges, kQuadrilateralFaces, 4),
-          MiddlesOfFace(2),
-          kQuadrilateralCorners};
+          shape.num_vertices + num_middles,
+          shape.num_vertices,
+          shape.edges,
+          shape.faces,
+          middles,
+          MiddlesOfFace(shape.faces[0].size()),
+          shape.corners};
 }
 
 // In the order of ElementKind.
 const std::array<ElementTopology, kElementKinds.size()> kTopologies = {
-    Tetrahedron("tet4", 1),
-    Tetrahedron("tet10", 2),
-    Tetrahedron("curved_tet10", 2),
-    Hexahedron("hex8", 1),
-    Hexahedron("hex27", 2),
-    Triangle("tri3", 1),
-    Triangle("tri6", 2),
-    Triangle("curved_tri6", 2),
-    Quadrilateral("quad4", 1),
-    Quadrilateral("quad9", 2)};
+    Topology("tet4", 1, kTetrahedron),
+    Topology("tet10", 2, kTetrahedron),
+    Topology("curved_tet10", 2, kTetrahedron),
+    Topology("hex8", 1, kHexahedron),
+    Topology("hex27", 2, kHexahedron),
+    Topology("tri3", 1, kTriangle),
+    Topology("tri6", 2, kTriangle),
+    Topology("curved_tri6", 2, kTriangle),
+    Topology("quad4", 1, kQuadrilateral),
+    Topology("quad9", 2, kQuadrilateral)};
 
 }  // namespace
 

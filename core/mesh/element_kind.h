@@ -74,7 +74,7 @@ struct ElementTopology {
   /// vertices of each face; in a hexahedron or a quadrilateral last all
   /// vertices.
   std::vector<std::vector<int>> middles;
-  /// Those of a facet, by the places of its vertices in it.
+  /// The middles of a facet, by the places of its vertices in it.
   std::vector<std::vector<int>> middles_of_face;
   /// For each vertex, the ends of `dimension` edges from it, right-handed in an
   /// element of positive orientation.  An element is flat or folded where these

@@ -1,5 +1,7 @@
 #include "elastimate/core/scene/degrees_of_freedom.h"
 
+#include <algorithm>
+
 namespace elastimate {
 
 DegreesOfFreedom::DegreesOfFreedom(const Supports& supports)
@@ -28,6 +30,24 @@ Eigen::VectorXd HeldDisplacement(const Supports& supports) {
   return supports.held.select(supports.displacement.array(), 0.0)
       .reshaped()
       .matrix();
+}
+
+HeldGroups GroupByHeld(const Scene& scene) {
+  HeldGroups groups;
+  std::vector<Eigen::Index>& first_cases = groups.first_cases;
+  for (Eigen::Index k = 0; k < Eigen::Index(scene.load_cases.size()); ++k) {
+    const Supports& supports = SupportsOf(scene, k);
+    const auto group = std::find_if(
+        first_cases.begin(), first_cases.end(), [&](Eigen::Index first) {
+          const Supports& other = SupportsOf(scene, first);
+          return &other == &supports || (other.held == supports.held).all();
+        });
+    groups.of_case.push_back(std::size_t(group - first_cases.begin()));
+    if (group == first_cases.end()) {
+      first_cases.push_back(k);
+    }
+  }
+  return groups;
 }
 
 Eigen::MatrixXd OfHeld(const Scene& scene, const Eigen::MatrixXd& values) {

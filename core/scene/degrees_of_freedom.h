@@ -2,6 +2,7 @@
 #define ELASTIMATE_CORE_SCENE_DEGREES_OF_FREEDOM_H_
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <vector>
 
 #include "elastimate/core/scene/scene.h"
@@ -33,6 +34,14 @@ struct DegreesOfFreedom {
 /// Returns the displacement of the held degrees of freedom, zero in the free
 /// rows: dimension * num_nodes values.
 [[nodiscard]] Eigen::VectorXd HeldDisplacement(const Supports& supports);
+
+/// The load cases by the degrees of freedom that they hold, which decide
+/// whether they can share the factor of a stiffness.
+struct HeldGroups {
+  std::vector<std::size_t> of_case;       ///< The group of each load case.
+  std::vector<Eigen::Index> first_cases;  ///< The first of each group.
+};
+[[nodiscard]] HeldGroups GroupByHeld(const Scene& scene);
 
 /// Keeps the values (num_dofs x num_load_cases) in the rows that each load case
 /// holds, and sets the others to zero.

@@ -241,7 +241,7 @@ TEST(LargeStrainEquilibrium, InflatesASphereAsTheClosedForm) {
       }
     }
     const double area = 2 * std::acos(0.0) / 2 * stretch * stretch;
-    // Of the order of the square of the size of the elements.
+    // The error decreases with the square of the size of the elements.
     EXPECT_NEAR(work / area / published, 1, 0.03) << stretch;
   }
 }
