@@ -64,6 +64,11 @@ class LargeStrainForces {
     return Columns(moduli, displacement) * moduli;
   }
 
+  Eigen::MatrixXd ModuliDerivatives(const Eigen::VectorXd& moduli,
+                                    const Eigen::VectorXd& displacement) const {
+    return Columns(moduli, displacement);
+  }
+
   /// Returns K_ij(u; theta) for each pair of the graph of the mesh, dimension x
   /// dimension blocks side by side: dimension x (dimension num_pairs).  One
   /// element pass.
