@@ -15,7 +15,10 @@ namespace {
 // The residual over the forces of loads and supports at which a state is in
 // equilibrium.
 constexpr double kResidual = 1e-10;
-constexpr int kMostNewtonSteps = 25;
+// Newton's method that has not converged with so many tangents hardly will.
+constexpr int kMostTangents = 20;
+// A step of the load that fails is followed by one that is shorter by this.
+constexpr double kCut = 0.25;
 // A step of the load that takes no more iterations is followed by a longer one.
 constexpr int kEasyIterations = 6;
 constexpr double kSmallestLoadStep = 1.0 / 1024;
@@ -142,7 +145,8 @@ EquilibriumStatus LargeStrainEquilibrium::Newton(const Eigen::VectorXd& moduli,
   // What the held degrees of freedom have yet to move; zero in the free rows.
   Eigen::VectorXd held_change =
       t * held_displacement_.col(k) - (u - dofs.Extend(dofs.Restrict(u)));
-  for (int iteration = 0; iteration <= kMostNewtonSteps; ++iteration) {
+  const int tangents_before = state.num_tangents;
+  for (;;) {
     const Eigen::VectorXd forces = forces_.Forces(moduli, u);
     ++element_passes_;
     const Eigen::VectorXd residual = dofs.Restrict(t * load_.col(k) - forces);
@@ -159,6 +163,9 @@ EquilibriumStatus LargeStrainEquilibrium::Newton(const Eigen::VectorXd& moduli,
     }
     if (is_equilibrium) {
       return EquilibriumStatus::kDone;
+    }
+    if (state.num_tangents - tangents_before >= kMostTangents) {
+      return EquilibriumStatus::kNoEquilibrium;
     }
     Eigen::VectorXd right = dofs.Extend(residual);
     if (!is_held) {
@@ -181,7 +188,6 @@ EquilibriumStatus LargeStrainEquilibrium::Newton(const Eigen::VectorXd& moduli,
     u += factor * change;
     held_change *= 1 - factor;
   }
-  return EquilibriumStatus::kNoEquilibrium;
 }
 
 LargeStrainState LargeStrainEquilibrium::Solve(const Eigen::VectorXd& moduli,
@@ -214,7 +220,7 @@ LargeStrainState LargeStrainEquilibrium::Solve(const Eigen::VectorXd& moduli,
         step *= 2;
       }
     } else {
-      step = (t - state.load_share) / 2;
+      step = (t - state.load_share) * kCut;
       if (step < kSmallestLoadStep) {
         return state;
       }

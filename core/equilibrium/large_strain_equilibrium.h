@@ -54,8 +54,8 @@ struct LargeStrainState {
 /// are on the undeformed specimen, those of pressures as well.
 ///
 /// Newton's method begins at the whole load.  Where it fails, the load is
-/// divided into steps, each half as long as the last one that failed and twice
-/// as long as one that was easy.  A Newton step is shortened where det F would
+/// divided into steps, each a quarter as long as the last one that failed and
+/// twice as long as one that was easy.  A Newton step is shortened where det F would
 /// fall below a hundredth.  The tangent has to be positive definite at the end,
 /// since Newton's method finds unstable states as well [Wriggers, Nonlinear
 /// Finite Element Methods, 2008, chapter 5].  On the way there, where a nearly
