@@ -1,0 +1,256 @@
+// Tests of iterative-fe for laws of large strains, on bars that
+// LargeStrainEquilibrium bent.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "elastimate/core/equilibrium/large_strain_equilibrium.h"
+#include "elastimate/core/scene/finer_scene.h"
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/scene_builder.h"
+#include "elastimate/estimators/registry.h"
+#include "tests/element_kinds.h"
+#include "tests/random_points.h"
+#include "tests/throws.h"
+
+namespace elastimate {
+namespace {
+
+using testing::KindOfSection;
+
+constexpr KindOfSection kHex8 = {ElementKind::kHex8, SectionModel::kSolid};
+constexpr KindOfSection kTet4 = {ElementKind::kTet4, SectionModel::kSolid};
+const Eigen::Vector2d kTruth(2000, 0.3);
+
+Eigen::VectorXd TrueParameters(const std::string& law) {
+  if (law == "mooney_rivlin") {
+    return Eigen::Vector3d(300, 80, 1500);
+  }
+  if (law == "yeoh") {
+    return Eigen::Vector4d(350, -40, 60, 1500);
+  }
+  return kTruth;
+}
+
+// A bar six times as long as it is thick, of one material, that is clamped at
+// its bottom.  A force on its top bends it, so much that small strains of the
+// true E would make it turn there by `rotation`.
+Scene Cantilever(const KindOfSection& kind, const std::string& law,
+                 double rotation) {
+  Scene scene = testing::SceneOfKind(kind, 2);
+  const int last = scene.mesh.Dimension() - 1;
+  scene.mesh.nodes.row(last) *= 6;
+  scene.materials.resize(1);
+  scene.materials[0].law = law;
+  const double length = scene.mesh.nodes.row(last).maxCoeff();
+  const Eigen::VectorXd size = scene.mesh.nodes.rowwise().maxCoeff() -
+                               scene.mesh.nodes.rowwise().minCoeff();
+  const double width = last == 2 ? size(1) : scene.mesh.section.thickness;
+  const double stiffness = kTruth(0) * width * std::pow(size(0), 3) / 12;
+  const double force = 2 * rotation * stiffness / (length * length);
+  Eigen::MatrixXd forces =
+      Eigen::MatrixXd::Zero(scene.mesh.Dimension(), scene.mesh.NumNodes());
+  int num_loaded = 0;
+  for (Eigen::Index node = 0; node < scene.mesh.NumNodes(); ++node) {
+    if (scene.mesh.nodes(last, node) > 0.9 * length) {
+      forces(0, node) = force;
+      ++num_loaded;
+    }
+  }
+  scene.load_cases.resize(1);
+  scene.load_cases[0].loads = {NodalForces{forces / num_loaded}};
+  return scene;
+}
+
+void MeasureLargeStrains(const Eigen::VectorXd& parameters, Scene& scene) {
+  LargeStrainEquilibrium model(scene);
+  const Eigen::VectorXd moduli = model.Forces().Parameters().Moduli(parameters);
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    const LargeStrainState state = model.Solve(moduli, Eigen::Index(k));
+    ASSERT_EQ(state.status, EquilibriumStatus::kDone)
+        << WhyNotInEquilibrium(state);
+    scene.load_cases[k].displacement = state.displacement.reshaped(
+        scene.mesh.Dimension(), scene.mesh.NumNodes());
+  }
+  scene.origin = Origin::kComputed;
+}
+
+// Adds noise of this part of the largest displacement where nothing is held.
+double AddNoise(double part, std::uint64_t seed, Scene& scene) {
+  std::mt19937_64 generator(seed);
+  std::normal_distribution<double> gaussian;
+  const double sd =
+      part * scene.load_cases[0].displacement.cwiseAbs().maxCoeff();
+  for (LoadCase& load_case : scene.load_cases) {
+    for (Eigen::Index i = 0; i < load_case.displacement.size(); ++i) {
+      if (!scene.supports.held(i)) {
+        load_case.displacement(i) += sd * gaussian(generator);
+      }
+    }
+  }
+  return sd;
+}
+
+Estimate RunIterativeFe(const Scene& scene) {
+  return MakeEstimator("iterative-fe")->Run(scene, {});
+}
+
+void ExpectParameters(const Estimate& estimate, const Eigen::VectorXd& expected,
+                      double tolerance) {
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  ASSERT_EQ(estimate.parameters.size(), std::size_t(expected.size()));
+  for (Eigen::Index i = 0; i < expected.size(); ++i) {
+    EXPECT_NEAR(estimate.parameters[i].value / expected(i), 1, tolerance)
+        << estimate.parameters[i].name;
+  }
+}
+
+class IterativeFeOfKinds : public ::testing::TestWithParam<KindOfSection> {};
+
+TEST_P(IterativeFeOfKinds, FindsTheMaterialOfABentBar) {
+  Scene scene = Cantilever(GetParam(), "neo_hookean", 0.5);
+  MeasureLargeStrains(kTruth, scene);
+  const Estimate estimate = RunIterativeFe(scene);
+  ExpectParameters(estimate, kTruth, 1e-7);
+  EXPECT_LE(estimate.work.factorizations, 25);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, IterativeFeOfKinds,
+                         ::testing::ValuesIn(testing::AllKindsOfSections()),
+                         testing::KindTestName);
+
+class IterativeFeOfLaws : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(IterativeFeOfLaws, FindsTheParametersFromLoadSteps) {
+  for (const KindOfSection& kind : {kHex8, kTet4}) {
+    Scene scene = Cantilever(kind, GetParam(), 0.5);
+    scene.load_cases.resize(3, scene.load_cases[0]);
+    const Eigen::MatrixXd bending =
+        std::get<NodalForces>(scene.load_cases[0].loads[0]).force;
+    Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(3, scene.mesh.NumNodes());
+    pull.row(2) = 8 * bending.row(0);
+    scene.load_cases[1].loads = {NodalForces{2 * bending}};
+    scene.load_cases[2].loads = {NodalForces{pull}};
+    MeasureLargeStrains(TrueParameters(GetParam()), scene);
+    ExpectParameters(RunIterativeFe(scene), TrueParameters(GetParam()), 1e-6);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, IterativeFeOfLaws,
+                         ::testing::Values("corotated", "st_venant_kirchhoff",
+                                           "neo_hookean", "mooney_rivlin",
+                                           "yeoh"));
+
+TEST(IterativeFeOfLargeStrains, StartsFarFromAStronglyBentBar) {
+  for (const double rotation : {1.0, 2.5, 8.0}) {
+    Scene scene = Cantilever(kHex8, "corotated", rotation);
+    MeasureLargeStrains(kTruth, scene);
+    ExpectParameters(RunIterativeFe(scene), kTruth, 1e-6);
+  }
+}
+
+TEST(IterativeFeOfLargeStrains, IsAtTheCramerRaoBound) {
+  // The mean square of 20 errors of two parameters over the stated ones has a
+  // standard deviation of about 1 / sqrt(20).
+  constexpr int kSeeds = 20;
+  for (const double noise : {0.01, 0.05}) {
+    double of_modulus = 0;
+    double of_ratio = 0;
+    for (int seed = 0; seed < kSeeds; ++seed) {
+      Scene scene = Cantilever(kTet4, "neo_hookean", 0.5);
+      MeasureLargeStrains(kTruth, scene);
+      scene.load_cases[0].noise_sd = AddNoise(noise, seed, scene);
+      const Estimate estimate = RunIterativeFe(scene);
+      ASSERT_EQ(estimate.parameters.size(), 2u);
+      ASSERT_TRUE(estimate.parameters[1].standard_error) << estimate.message;
+      of_modulus += std::pow((estimate.parameters[0].value - kTruth(0)) /
+                                 *estimate.parameters[0].standard_error,
+                             2);
+      of_ratio += std::pow((estimate.parameters[1].value - kTruth(1)) /
+                               *estimate.parameters[1].standard_error,
+                           2);
+    }
+    EXPECT_LT(of_modulus / kSeeds, 2);
+    EXPECT_LT(of_ratio / kSeeds, 2);
+    EXPECT_GT(of_modulus / kSeeds, 0.4);
+    EXPECT_GT(of_ratio / kSeeds, 0.4);
+  }
+}
+
+TEST(IterativeFeOfLargeStrains, TakesPointsRegionsAndKnownParameters) {
+  Scene scene = Cantilever(kHex8, "neo_hookean", 0.5);
+  scene.mesh.regions.resize(scene.mesh.NumElements());
+  const Eigen::VectorXd heights = scene.mesh.nodes.row(2);
+  for (Eigen::Index e = 0; e < scene.mesh.NumElements(); ++e) {
+    const bool is_upper =
+        heights(scene.mesh.elements.col(e)).mean() > heights.maxCoeff() / 2;
+    scene.mesh.regions[e] = is_upper ? 2 : 1;
+  }
+  scene.materials = {{"neo_hookean", {1}, {}, {}},
+                     {"corotated", {2}, {{"poisson_ratio", 0.4}}, {}}};
+  const Eigen::Vector4d truth(2000, 0.3, 1200, 0.4);
+  MeasureLargeStrains(truth, scene);
+  testing::MeasureAtPoints(60, 3, scene);
+  ExpectParameters(RunIterativeFe(scene), truth, 1e-6);
+}
+
+TEST(IterativeFeOfLargeStrains, TakesMeasuredSupportsAndResultants) {
+  Scene scene = Cantilever(kHex8, "neo_hookean", 0.5);
+  // The top is held where the force moved it to, and a load cell measures.
+  MeasureLargeStrains(kTruth, scene);
+  const Eigen::MatrixXd bent = scene.load_cases[0].displacement;
+  const Eigen::MatrixXd force =
+      std::get<NodalForces>(scene.load_cases[0].loads[0]).force;
+  Resultant resultant;
+  resultant.force = force.rowwise().sum();
+  resultant.noise_sd = Eigen::Vector3d::Constant(1e-3 * resultant.force.norm());
+  for (int node = 0; node < scene.mesh.NumNodes(); ++node) {
+    if (force(0, node) != 0) {
+      resultant.nodes.push_back(node);
+      scene.supports.held.col(node).setConstant(true);
+    }
+  }
+  scene.load_cases[0].loads.clear();
+  scene.load_cases[0].resultants = {resultant};
+  scene.supports.displacement.setZero(3, scene.mesh.NumNodes());
+  scene.supports.unknown = scene.supports.held;
+  const Estimate estimate = RunIterativeFe(scene);
+  ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+  EXPECT_NEAR(estimate.parameters[0].value / kTruth(0), 1, 1e-6);
+  EXPECT_NEAR(estimate.parameters[1].value / kTruth(1), 1, 1e-6);
+}
+
+TEST(IterativeFeOfLargeStrains, KeepsThreeErrorsInAFinerWorld) {
+  for (const KindOfSection& kind : {kTet4, kHex8}) {
+    Scene scene = Cantilever(kind, "neo_hookean", 0.5);
+    Scene finer = FinerScene(FinerScene(scene));
+    MeasureLargeStrains(kTruth, finer);
+    scene.load_cases[0].displacement =
+        finer.load_cases[0].displacement.leftCols(scene.mesh.NumNodes());
+    AddNoise(0.01, 5, scene);
+    const Estimate estimate = RunIterativeFe(scene);
+    ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
+    for (Eigen::Index i = 0; i < 2; ++i) {
+      EXPECT_NEAR(estimate.parameters[i].value, kTruth(i),
+                  3 * *estimate.parameters[i].standard_error);
+    }
+    EXPECT_LT(*estimate.parameters[0].standard_error, 0.1 * kTruth(0));
+  }
+}
+
+TEST(IterativeFeOfLargeStrains, SaysWhyThereIsNoEquilibrium) {
+  // Displacements that oppose the load.
+  Scene scene = Cantilever(kTet4, "neo_hookean", 0.5);
+  MeasureLargeStrains(kTruth, scene);
+  scene.load_cases[0].displacement *= -1;
+  const Estimate estimate = RunIterativeFe(scene);
+  EXPECT_FALSE(estimate.IsUsable());
+  EXPECT_NE(estimate.message, "");
+}
+
+}  // namespace
+}  // namespace elastimate
