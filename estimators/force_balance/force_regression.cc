@@ -38,7 +38,7 @@ SizeFunction MeanStiffness(const ForceResidual& forces) {
 }
 
 SizeFunction NoiseOfForces(const ForceResidual& forces) {
-  const Eigen::MatrixXd& traces = forces.Prepared().Traces();
+  const Eigen::MatrixXd& traces = forces.Traces();
   return [&traces](const Eigen::VectorXd& moduli) {
     const Eigen::RowVectorXd product = (traces * moduli).transpose();
     const double size = std::sqrt(product.dot(moduli));
@@ -208,11 +208,10 @@ NoiseOfMinimum NoiseAt(const FreeParameters& free,
   const Eigen::MatrixXd x = TriangleOf(forces) * combinations.derivatives;
   const Eigen::MatrixXd of_moduli =
       combinations.derivatives.topRows(forces.Columns().cols());
-  return {
-      variance, x.transpose() * x,
-      variance * of_moduli.transpose() * forces.Prepared().Traces() * of_moduli,
-      forces.StiffenedGram(combinations.residual.head(of_moduli.rows()),
-                           combinations.derivatives)};
+  return {variance, x.transpose() * x,
+          variance * of_moduli.transpose() * forces.Traces() * of_moduli,
+          forces.StiffenedGram(combinations.residual.head(of_moduli.rows()),
+                               combinations.derivatives)};
 }
 
 // The variance of the weighted noise as given, or from the residual where

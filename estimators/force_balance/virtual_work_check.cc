@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
@@ -33,6 +34,7 @@ WorkCheck CheckByVirtualWork(const Scene& scene,
                              const EstimatorOptions& options,
                              Estimate& estimate) {
   if (!(estimate.force_residual.value_or(0) > kLimits.small_force_residual) ||
+      HasLargeStrainLaw(scene.materials, scene.mesh.section.model) ||
       !WouldBeUsable(estimate)) {
     return WorkCheck::kNotMade;
   }

@@ -14,7 +14,8 @@ namespace elastimate {
 /// tells.  Where it finds more than noise, its covariance is added to that of
 /// the estimate; WorkCheck::kContradicts when virtual-fields is not usable.
 ///
-/// Does nothing for a residual below a tenth of the load.  Cost: that of
+/// Does nothing for a residual below a tenth of the load, and for laws of large
+/// strains.  Cost: that of
 /// virtual-fields of degree 1, which is added to the work of the estimate.
 /// Preconditions: those of VirtualFields::Run.
 WorkCheck CheckByVirtualWork(const Scene& scene,

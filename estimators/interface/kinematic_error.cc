@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
 
@@ -61,7 +62,8 @@ void JudgeKinematics(const Scene& scene, Estimate& estimate) {
     return;
   }
   estimate.deformation = MeasureDeformation(scene);
-  if (scene.origin == Origin::kComputed || !IsMentioned(estimate.deformation)) {
+  if (HasLargeStrainLaw(scene.materials, scene.mesh.section.model) ||
+      scene.origin == Origin::kComputed || !IsMentioned(estimate.deformation)) {
     return;
   }
   const KinematicError error = KinematicErrorOf(estimate.deformation);
