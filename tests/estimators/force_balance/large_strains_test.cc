@@ -322,7 +322,7 @@ TEST(LargeStrainForceBalance, KnowsWhatNoiseMakesOfItsResidual) {
     }
     Eigen::MatrixXd columns(q.size(), 3);
     columns << forces.Columns(moduli, q),
-        AssembleLoads(scene.mesh, load_case.loads);
+        AssembleLoads(scene.mesh, load_case.loads).reshaped();
     const Eigen::MatrixXd stiffened =
         (moduli(0) * derivatives[0] + moduli(1) * derivatives[1]) *
         prepared.Dofs().Restrict(columns * combinations) /
