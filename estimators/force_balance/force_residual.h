@@ -70,6 +70,11 @@ class ForceResidual {
   const Eigen::VectorXd& Loads() const { return loads_; }
   /// f_k(q) of all load cases, num_dofs x num_load_cases, for each modulus.
   const std::vector<Eigen::MatrixXd>& Products() const { return products_; }
+  /// The displacements of laws of large strains without weights, num_dofs x
+  /// num_load_cases; empty for small strains.
+  const Eigen::MatrixXd& LargeDisplacements() const {
+    return large_displacements_;
+  }
   /// T of ForceScene, with the tangents at the measured q for large strains.
   const Eigen::MatrixXd& Traces() const {
     return traces_.size() != 0 ? traces_ : prepared_.Traces();
@@ -98,8 +103,7 @@ class ForceResidual {
 
   const ForceScene& prepared_;
   double displacement_norm_;
-  /// The displacements without weights, num_dofs x num_load_cases, and T; empty
-  /// for small strains.
+  /// These are empty for small strains.
   Eigen::MatrixXd large_displacements_;
   Eigen::MatrixXd traces_;
   std::vector<Eigen::MatrixXd> products_;

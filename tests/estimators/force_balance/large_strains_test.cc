@@ -407,6 +407,30 @@ INSTANTIATE_TEST_SUITE_P(Laws, LargeStrainNoise,
                                            "mooney_rivlin"),
                          [](const auto& info) { return info.param; });
 
+// Virtual work tells a wrong law from noise, which leaves as much of the load.
+TEST(LargeStrainForceBalance, TellsAWrongLawFromNoise) {
+  const Eigen::Vector2d parameters(2000, 0.3);
+  Scene exact = BentBar(kHex8, "neo_hookean");
+  MeasureBent(parameters, exact);
+  Scene wrong = exact;
+  wrong.materials[0].law = "corotated";
+  const Estimate of_wrong = MakeEstimator("closed-form")->Run(wrong, {});
+  EXPECT_GT(of_wrong.force_residual.value(), 0.1);
+  EXPECT_TRUE(of_wrong.Has(FindingCode::kResidualAboveNoise));
+  EXPECT_TRUE(of_wrong.is_model_in_doubt);
+  ASSERT_TRUE(of_wrong.parameters[0].standard_error.has_value());
+  EXPECT_LT(std::abs(of_wrong.parameters[0].value - 2000),
+            2 * *of_wrong.parameters[0].standard_error);
+  for (int seed = 1; seed <= 10; ++seed) {
+    Scene scene = exact;
+    testing::AddNoise(2e-4, seed, scene);
+    const Estimate estimate = MakeEstimator("closed-form")->Run(scene, {});
+    EXPECT_GT(estimate.force_residual.value(), 0.1);
+    EXPECT_FALSE(estimate.is_model_in_doubt) << seed;
+    EXPECT_TRUE(estimate.error_budget.model.isZero(0)) << seed;
+  }
+}
+
 TEST(LargeStrainForceBalance, NamesAnElementThatIsInsideOut) {
   Scene scene = BentBar(kTet4, "corotated");
   MeasureBent(Eigen::Vector2d(2000, 0.3), scene);
