@@ -17,6 +17,9 @@ namespace {
 
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
+// The place of the entry across a plate, (3, 3), in a matrix of nine.
+constexpr int kCrossEntry = 8;
+
 // The material of some elements, and how they are evaluated.
 struct MaterialPass {
   const Mesh& mesh;
@@ -43,6 +46,9 @@ bool TakesMean(const MaterialPass& pass) {
   return kHasMean<kKind> && pass.dilatation == Dilatation::kMeanOfElement &&
          pass.mesh.section.model != SectionModel::kPlaneStress;
 }
+
+// What the stretch across a plate does where the moduli change.
+enum class CrossStretch { kStays, kFollows };
 
 // Some elements whose points are evaluated together.
 template <ElementKind kKind>
@@ -93,6 +99,28 @@ class ElementBatch {
   std::vector<PointMatrices> Stresses() const {
     std::vector<PointMatrices> columns(pass_.law.NumModuli());
     pass_.law.StressesAtPoints(gradients_, NumPoints(), columns.data());
+    return columns;
+  }
+  // Returns the derivatives of the stress by each modulus.  In plane stress,
+  // P_33(H, theta) = 0 makes H_33 change by -P_k,33 / (dP_33 / dH_33).
+  std::vector<PointMatrices> StressDerivatives() const {
+    std::vector<PointMatrices> columns = Stresses();
+    if (pass_.mesh.section.model != SectionModel::kPlaneStress) {
+      return columns;
+    }
+    PointTangents tangents;
+    SetTangents(tangents);
+    const double* const cross_slope =
+        tangents.row[TangentRow(kCrossEntry, kCrossEntry)];
+    for (PointMatrices& stress : columns) {
+      for (int p = 0; p < NumPoints(); ++p) {
+        const double change = -stress.row[kCrossEntry][p] / cross_slope[p];
+        for (int entry = 0; entry < 9; ++entry) {
+          stress.row[entry][p] +=
+              tangents.row[TangentRow(entry, kCrossEntry)][p] * change;
+        }
+      }
+    }
     return columns;
   }
   void SetTangents(PointTangents& tangents) const {
@@ -189,9 +217,12 @@ NodeColumns<kKind> StressForces(const ElementBatch<kKind>& batch, std::size_t e,
 template <ElementKind kKind>
 void AddStressColumns(const MaterialPass& pass,
                       const Eigen::VectorXd& displacement,
+                      CrossStretch cross_stretch,
                       Eigen::Ref<Eigen::MatrixXd> columns) {
   VisitBatches<kKind>(pass, displacement, [&](const auto& batch) {
-    const std::vector<PointMatrices> stresses = batch.Stresses();
+    const std::vector<PointMatrices> stresses =
+        cross_stretch == CrossStretch::kStays ? batch.Stresses()
+                                              : batch.StressDerivatives();
     for (std::size_t k = 0; k < stresses.size(); ++k) {
       for (std::size_t e = 0; e < batch.NumElements(); ++e) {
         std::vector<Eigen::Matrix3d> of_points =
@@ -283,7 +314,6 @@ template <ElementKind kKind>
 auto TangentIn(const PointTangents& tangents, int point, SectionModel model) {
   constexpr int kDimension = kDimensionOf<kKind>;
   constexpr int kSize = kDimension * kDimension;
-  constexpr int kCross = 8;
   const auto entry = [&](int a, int b) {
     return tangents.row[TangentRow(a, b)][point];
   };
@@ -294,8 +324,8 @@ auto TangentIn(const PointTangents& tangents, int point, SectionModel model) {
       const int a = row % kDimension + 3 * (row / kDimension);
       tangent(row, column) = entry(a, b);
       if (model == SectionModel::kPlaneStress) {
-        tangent(row, column) -=
-            entry(a, kCross) * entry(kCross, b) / entry(kCross, kCross);
+        tangent(row, column) -= entry(a, kCrossEntry) * entry(kCrossEntry, b) /
+                                entry(kCrossEntry, kCrossEntry);
       }
     }
   }
@@ -520,22 +550,44 @@ void LargeStrainForces::ForEachMaterial(const Eigen::VectorXd& moduli,
   }
 }
 
+template <class Adder>
+Eigen::MatrixXd LargeStrainForces::SumOfColumns(const Eigen::VectorXd& moduli,
+                                                const Adder& add) const {
+  Eigen::MatrixXd columns =
+      Eigen::MatrixXd::Zero(mesh_.NumDofs(), parameters_.NumModuli());
+  ForEachMaterial(moduli, [&](auto kind, const MaterialPass& pass,
+                              std::size_t i) {
+    add(kind, pass,
+        columns.middleCols(parameters_.FirstModulus(i), pass.law.NumModuli()));
+  });
+  return columns;
+}
+
 Eigen::MatrixXd LargeStrainForces::Columns(
     const Eigen::VectorXd& moduli, const Eigen::VectorXd& displacement) const {
   assert(displacement.size() == mesh_.NumDofs());
-  Eigen::MatrixXd columns =
-      Eigen::MatrixXd::Zero(mesh_.NumDofs(), parameters_.NumModuli());
-  ForEachMaterial(moduli,
-                  [&](auto kind, const MaterialPass& pass, std::size_t i) {
-                    const auto own = columns.middleCols(
-                        parameters_.FirstModulus(i), pass.law.NumModuli());
-                    if constexpr (kind == ElementKind::kTet4) {
-                      AddTet4Columns(pass, displacement, own);
-                    } else {
-                      AddStressColumns<kind>(pass, displacement, own);
-                    }
-                  });
-  return columns;
+  return SumOfColumns(moduli, [&](auto kind, const MaterialPass& pass,
+                                  auto columns) {
+    if constexpr (kind == ElementKind::kTet4) {
+      AddTet4Columns(pass, displacement, columns);
+    } else {
+      AddStressColumns<kind>(pass, displacement, CrossStretch::kStays, columns);
+    }
+  });
+}
+
+Eigen::MatrixXd LargeStrainForces::ModuliDerivatives(
+    const Eigen::VectorXd& moduli, const Eigen::VectorXd& displacement) const {
+  if (mesh_.section.model != SectionModel::kPlaneStress) {
+    return Columns(moduli, displacement);
+  }
+  return SumOfColumns(
+      moduli, [&](auto kind, const MaterialPass& pass, auto columns) {
+        if constexpr (kDimensionOf<kind> == 2) {
+          AddStressColumns<kind>(pass, displacement, CrossStretch::kFollows,
+                                 columns);
+        }
+      });
 }
 
 Eigen::MatrixXd LargeStrainForces::TangentBlocks(

@@ -40,8 +40,9 @@ struct VolumeRatio {
 /// and volume [Simo, Taylor & Pister, Comput. Methods Appl. Mech. Eng. 51
 /// (1985) 177] after these two are eliminated.
 ///
-/// In plane stress, the stretch across the plate depends on the moduli, and a
-/// column f_k is that at the stretch of these moduli.
+/// In plane stress, the stretch across the plate depends on the moduli.  A
+/// column f_k is evaluated at the stretch that belongs to the given moduli, so
+/// that the columns differ from the derivatives of f by the moduli.
 class LargeStrainForces {
  public:
   /// Preconditions: a valid mesh, valid materials of it.  Refers to `mesh`,
@@ -64,6 +65,12 @@ class LargeStrainForces {
     return Columns(moduli, displacement) * moduli;
   }
 
+  /// Returns df(u; theta) / dtheta_k as columns, num_dofs x num_moduli. Outside
+  /// plane stress these are f_k(u).  One element pass, and one more of tangents
+  /// in plane stress.
+  Eigen::MatrixXd ModuliDerivatives(const Eigen::VectorXd& moduli,
+                                    const Eigen::VectorXd& displacement) const;
+
   /// Returns K_ij(u; theta) for each pair of the graph of the mesh, dimension x
   /// dimension blocks side by side: dimension x (dimension num_pairs).  One
   /// element pass.
@@ -85,6 +92,10 @@ class LargeStrainForces {
   template <class Function>
   void ForEachMaterial(const Eigen::VectorXd& moduli,
                        const Function& function) const;
+  /// Returns the columns that add(kind, pass, columns of the material) makes.
+  template <class Adder>
+  Eigen::MatrixXd SumOfColumns(const Eigen::VectorXd& moduli,
+                               const Adder& add) const;
 
   const Mesh& mesh_;
   MaterialParameters parameters_;

@@ -125,6 +125,26 @@ TEST_P(LargeStrainKinds, AreLinearInTheirModuli) {
   }
 }
 
+TEST_P(LargeStrainKinds, HaveTheirDerivativesByTheModuli) {
+  const Eigen::VectorXd u = Displacement();
+  const Eigen::MatrixXd derivatives = forces_.ModuliDerivatives(moduli_, u);
+  constexpr double kStep = 1e-5;
+  for (int k = 0; k < 2; ++k) {
+    const Eigen::Vector2d step = kStep * Eigen::Vector2d::Unit(k);
+    const Eigen::VectorXd expected = (forces_.Forces(moduli_ + step, u) -
+                                      forces_.Forces(moduli_ - step, u)) /
+                                     (2 * kStep);
+    EXPECT_LT((derivatives.col(k) - expected).norm(),
+              1e-8 * derivatives.norm());
+  }
+  const Eigen::MatrixXd columns = forces_.Columns(moduli_, u);
+  if (mesh_.section.model == SectionModel::kPlaneStress) {
+    EXPECT_GT((derivatives - columns).norm(), 0.01 * columns.norm());
+  } else {
+    EXPECT_EQ(derivatives, columns);
+  }
+}
+
 TEST_P(LargeStrainKinds, TurnWithTheMesh) {
   const Eigen::VectorXd u = Displacement();
   const Eigen::MatrixXd turn = Turn(1.3);
