@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "elastimate/core/equilibrium/equilibrium.h"
+#include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/mesh/middle_nodes.h"
 #include "elastimate/core/scene/deformation_size.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
@@ -204,6 +205,10 @@ Fields ResultFields(const Scene& scene, const Scene& modelled,
   if (!IsOneIsotropicMaterial(scene.materials)) {
     collector.AddParameters(scene, estimate);
     collector.AddResiduals(scene, estimate);
+  }
+  // The fields below are of small strains.
+  if (HasLargeStrainLaw(scene.materials, scene.mesh.section.model)) {
+    return fields;
   }
   const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
   if (!WhyNotHeld(scene).empty()) {

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <utility>
 
 #include "elastimate/core/algebra/node_sums.h"
-#include "elastimate/core/mesh/node_graph.h"
 
 namespace elastimate {
 namespace {
@@ -46,7 +46,16 @@ Eigen::MatrixXd StiffnessTraces(const Mesh& mesh, const InternalForces& forces,
   std::vector<Eigen::MatrixXd> blocks;
   for (Eigen::Index k = 0; k < m; ++k) {
     blocks.push_back(forces.Blocks(Eigen::VectorXd::Unit(m, k), graph));
-    WeighFreeBlocks(graph, degrees_of_freedom, blocks.back());
+  }
+  return StiffnessTraces(graph, degrees_of_freedom, std::move(blocks));
+}
+
+Eigen::MatrixXd StiffnessTraces(const NodeGraph& graph,
+                                const DegreesOfFreedom& degrees_of_freedom,
+                                std::vector<Eigen::MatrixXd> blocks) {
+  const auto m = Eigen::Index(blocks.size());
+  for (Eigen::MatrixXd& of_modulus : blocks) {
+    WeighFreeBlocks(graph, degrees_of_freedom, of_modulus);
   }
   Eigen::MatrixXd traces(m, m);
   for (Eigen::Index k = 0; k < m; ++k) {

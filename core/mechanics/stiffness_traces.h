@@ -6,6 +6,7 @@
 
 #include "elastimate/core/mechanics/internal_forces.h"
 #include "elastimate/core/mesh/mesh.h"
+#include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/scene.h"
 
@@ -27,6 +28,13 @@ namespace elastimate {
 [[nodiscard]] Eigen::MatrixXd StiffnessTraces(
     const Mesh& mesh, const InternalForces& forces,
     const DegreesOfFreedom& degrees_of_freedom);
+
+/// Returns these traces of matrices whose blocks for each pair of the graph are
+/// given (InternalForces::Blocks), one for each modulus.  O(num_pairs
+/// num_moduli^2).
+[[nodiscard]] Eigen::MatrixXd StiffnessTraces(
+    const NodeGraph& graph, const DegreesOfFreedom& degrees_of_freedom,
+    std::vector<Eigen::MatrixXd> blocks);
 
 /// Fills the columns of `probes`, of num_dofs rows, with random signs z in the
 /// free rows and zeros in the held ones.  The signs are the same in every run.

@@ -17,6 +17,7 @@ Capabilities Bounded::WhatItTakes() const {
   capabilities.needs_all_displacements = true;
   capabilities.takes_bounds = true;
   capabilities.takes_materials = true;
+  capabilities.takes_large_strains = true;
   return capabilities;
 }
 

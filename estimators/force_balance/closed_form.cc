@@ -16,6 +16,7 @@ Capabilities ClosedForm::WhatItTakes() const {
   Capabilities capabilities;
   capabilities.needs_all_displacements = true;
   capabilities.takes_materials = true;
+  capabilities.takes_large_strains = true;
   return capabilities;
 }
 

@@ -38,7 +38,7 @@ SizeFunction MeanStiffness(const ForceResidual& forces) {
 }
 
 SizeFunction NoiseOfForces(const ForceResidual& forces) {
-  const Eigen::MatrixXd& traces = forces.Prepared().Traces();
+  const Eigen::MatrixXd& traces = forces.Traces();
   return [&traces](const Eigen::VectorXd& moduli) {
     const Eigen::RowVectorXd product = (traces * moduli).transpose();
     const double size = std::sqrt(product.dot(moduli));
@@ -208,11 +208,10 @@ NoiseOfMinimum NoiseAt(const FreeParameters& free,
   const Eigen::MatrixXd x = TriangleOf(forces) * combinations.derivatives;
   const Eigen::MatrixXd of_moduli =
       combinations.derivatives.topRows(forces.Columns().cols());
-  return {
-      variance, x.transpose() * x,
-      variance * of_moduli.transpose() * forces.Prepared().Traces() * of_moduli,
-      forces.StiffenedGram(combinations.residual.head(of_moduli.rows()),
-                           combinations.derivatives)};
+  return {variance, x.transpose() * x,
+          variance * of_moduli.transpose() * forces.Traces() * of_moduli,
+          forces.StiffenedGram(combinations.residual.head(of_moduli.rows()),
+                               combinations.derivatives)};
 }
 
 // The variance of the weighted noise as given, or from the residual where
@@ -364,7 +363,7 @@ class ForceRegression {
     }
     estimate_.work = forces_.WorkDone();
     Judge(evidence_, options_, estimate_);
-    evidence_.work_check = CheckByVirtualWork(scene_, options_, estimate_);
+    CheckWork();
     Judge(evidence_, options_, estimate_);
     return estimate_;
   }
@@ -430,13 +429,14 @@ class ForceRegression {
   // Enters the noise, the covariance and the bias of the variables.
   void DescribeErrors() {
     const UnbiasedFit unbiased = FitWithoutBias(free_, variables_, forces_);
-    const std::optional<double> variance =
+    noise_variance_ =
         NoiseVariance(unbiased.noise_variance,
                       scene_.load_cases.front().noise_sd, evidence_, estimate_);
-    if (!variance) {
+    if (!noise_variance_) {
       return;
     }
-    const NoiseOfMinimum noise = NoiseAt(free_, variables_, *variance, forces_);
+    const NoiseOfMinimum noise =
+        NoiseAt(free_, variables_, *noise_variance_, forces_);
     Eigen::MatrixXd covariance = noise.Covariance(noise.bread);
     estimate_.noise_attenuation = std::min(1.0, noise.Attenuation());
     estimate_.error_budget.noise =
@@ -447,10 +447,20 @@ class ForceRegression {
     EnterCovariance(free_, variables_, covariance + of_bias, estimate_);
   }
 
+  void CheckWork() {
+    if (forces_.Prepared().LargeForces() == nullptr) {
+      evidence_.work_check = CheckByVirtualWork(scene_, options_, estimate_);
+    } else if (noise_variance_) {
+      evidence_.work_check = CheckByLargeVirtualWork(
+          scene_, free_, variables_, *noise_variance_, forces_, estimate_);
+    }
+  }
+
   const Scene& scene_;
   const EstimatorOptions& options_;
   ForceResidual& forces_;
   FreeParameters free_;
+  std::optional<double> noise_variance_;
   std::optional<Eigen::VectorXd> moduli_;
   Eigen::VectorXd variables_;
   Evidence evidence_;

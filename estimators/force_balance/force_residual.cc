@@ -1,11 +1,19 @@
 #include "elastimate/estimators/force_balance/force_residual.h"
 
+#include <stdexcept>
+#include <string>
+#include <utility>
+
 #include "elastimate/core/algebra/large_pages.h"
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/algebra/row_block_qr.h"
+#include "elastimate/core/large_strain/large_strain_law.h"
 #include "elastimate/core/materials/material.h"
+#include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/mechanics/stiffness_traces.h"
+#include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/loads.h"
+#include "elastimate/core/text/numbers.h"
 
 namespace elastimate {
 namespace {
@@ -38,18 +46,63 @@ Eigen::MatrixXd TracesOf(const Scene& scene, const InternalForces& forces,
   return EstimateStiffnessTraces(dofs, forces.Products(probes));
 }
 
+// T of one load case at its displacement.
+Eigen::MatrixXd LargeTracesOf(const Scene& scene,
+                              const LargeStrainForces& forces,
+                              const DegreesOfFreedom& dofs,
+                              const Eigen::VectorXd& displacement) {
+  const Eigen::Index m = forces.Parameters().NumModuli();
+  std::vector<Eigen::MatrixXd> of_moduli;
+  if (scene.mesh.NumElements() <= kMostElementsForExactTraces) {
+    const NodeGraph graph(scene.mesh);
+    for (Eigen::Index k = 0; k < m; ++k) {
+      of_moduli.push_back(forces.TangentBlocks(Eigen::VectorXd::Unit(m, k),
+                                               displacement, graph));
+    }
+    return StiffnessTraces(graph, dofs, std::move(of_moduli));
+  }
+  Eigen::MatrixXd probes(dofs.NumAll(), kNumTraceProbes);
+  SetTraceProbes(scene.supports.held, probes);
+  for (Eigen::Index k = 0; k < m; ++k) {
+    of_moduli.push_back(forces.TangentProducts(Eigen::VectorXd::Unit(m, k),
+                                               displacement, probes));
+  }
+  return EstimateStiffnessTraces(dofs, of_moduli);
+}
+
+// What each modulus of a law adds to its stiffness: the first one for small
+// strains, and the shear modulus at rest for large ones.
+Eigen::VectorXd StiffnessWeightsOf(const Law& law) {
+  const Eigen::Index m = law.NumModuli();
+  Eigen::VectorXd weights = Eigen::VectorXd::Unit(m, 0);
+  if (law.ForLargeStrains() != nullptr) {
+    for (Eigen::Index k = 0; k < m; ++k) {
+      weights(k) =
+          law.Tangent(Eigen::VectorXd::Unit(m, k), Eigen::Matrix3d::Zero(),
+                      SectionModel::kSolid)(1, 1);
+    }
+  }
+  return weights;
+}
+
 Eigen::VectorXd WeightsOf(const Scene& scene,
                           const MaterialParameters& parameters) {
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(parameters.NumModuli());
   if (parameters.NumMaterials() == 1) {
-    weights(0) = 1;
-    return weights;
+    return StiffnessWeightsOf(parameters.LawOf(0));
   }
   const std::vector<int> material_of =
       MaterialOfElements(scene.materials, scene.mesh);
   const Eigen::VectorXd volumes = ElementVolumes(scene.mesh);
+  Eigen::VectorXd volume_of =
+      Eigen::VectorXd::Zero(Eigen::Index(parameters.NumMaterials()));
   for (Eigen::Index e = 0; e < volumes.size(); ++e) {
-    weights(parameters.FirstModulus(std::size_t(material_of[e]))) += volumes(e);
+    volume_of(material_of[e]) += volumes(e);
+  }
+  Eigen::VectorXd weights(parameters.NumModuli());
+  for (std::size_t i = 0; i < parameters.NumMaterials(); ++i) {
+    const Law& law = parameters.LawOf(i);
+    weights.segment(parameters.FirstModulus(i), law.NumModuli()) =
+        volume_of(Eigen::Index(i)) * StiffnessWeightsOf(law);
   }
   return weights / volumes.sum();
 }
@@ -84,16 +137,36 @@ Eigen::MatrixXd WeightedLoads(const Scene& scene) {
   return f;
 }
 
+void RequireNoInvertedElement(const LargeStrainForces& forces,
+                              const Eigen::VectorXd& displacement,
+                              std::size_t load_case) {
+  const VolumeRatio smallest = forces.SmallestVolumeRatio(displacement);
+  if (!(smallest.value > 0)) {
+    throw std::invalid_argument(
+        "the measured displacements of load case " +
+        std::to_string(load_case + 1) + " turn element " +
+        std::to_string(smallest.element) +
+        " inside out (its volume ratio falls to " + TwoDigits(smallest.value) +
+        "), where laws of large strains have no forces; correct the "
+        "displacements of its nodes, measure them with less noise, or make the "
+        "mesh coarser");
+  }
+}
+
 }  // namespace
 
 ForceScene::ForceScene(const Scene& scene)
-    : forces_(scene.mesh, scene.materials),
-      dofs_(scene.supports),
-      loads_(WeightedLoads(scene)),
-      traces_(double(scene.load_cases.size()) *
-              TracesOf(scene, forces_, dofs_)),
-      weights_(WeightsOf(scene, forces_.Parameters())) {
+    : dofs_(scene.supports), loads_(WeightedLoads(scene)) {
   SetHeldRowsToZero(dofs_, loads_);
+  if (HasLargeStrainLaw(scene.materials, scene.mesh.section.model)) {
+    large_forces_ =
+        std::make_unique<LargeStrainForces>(scene.mesh, scene.materials);
+    weights_ = WeightsOf(scene, large_forces_->Parameters());
+    return;
+  }
+  forces_ = std::make_unique<InternalForces>(scene.mesh, scene.materials);
+  traces_ = double(scene.load_cases.size()) * TracesOf(scene, *forces_, dofs_);
+  weights_ = WeightsOf(scene, forces_->Parameters());
 }
 
 ForceResidual::ForceResidual(const ForceScene& prepared, const Scene& scene)
@@ -101,10 +174,14 @@ ForceResidual::ForceResidual(const ForceScene& prepared, const Scene& scene)
       num_equations_(
           double(prepared.Dofs().NumFree() * prepared.Loads().cols())) {
   Eigen::MatrixXd q = WeightedDisplacements(scene);
-  products_ = prepared.Forces().Products(q);
+  work_.element_passes = 2;
+  if (prepared.LargeForces() != nullptr) {
+    SetLargeStrains(scene, q);
+  } else {
+    products_ = prepared.Forces().Products(q);
+  }
   SetHeldRowsToZero(prepared.Dofs(), q);
   displacement_norm_ = Norm(q);
-  work_.element_passes = 2;
   const auto m = Eigen::Index(products_.size());
   RowBlockQr qr(m + 1);
   for (Eigen::Index k = 0; k < prepared.Loads().cols(); ++k) {
@@ -119,6 +196,46 @@ ForceResidual::ForceResidual(const ForceScene& prepared, const Scene& scene)
   const Eigen::MatrixXd triangle = qr.Triangle();
   columns_ = triangle.leftCols(m);
   loads_ = triangle.col(m);
+}
+
+void ForceResidual::SetLargeStrains(const Scene& scene,
+                                    const Eigen::MatrixXd& q) {
+  const LargeStrainForces& forces = *prepared_.LargeForces();
+  const MaterialParameters& parameters = forces.Parameters();
+  const Eigen::Index m = parameters.NumModuli();
+  // Columns do not depend on the moduli, since there is no plane stress.
+  const Eigen::VectorXd any = Eigen::VectorXd::Ones(m);
+  large_displacements_ = q;
+  products_.assign(m, Eigen::MatrixXd(q.rows(), q.cols()));
+  traces_ = Eigen::MatrixXd::Zero(m, m);
+  for (Eigen::Index k = 0; k < q.cols(); ++k) {
+    const double noise_sd = scene.load_cases[k].noise_sd.value_or(1);
+    large_displacements_.col(k) *= noise_sd;
+    RequireNoInvertedElement(forces, large_displacements_.col(k), k);
+    const Eigen::MatrixXd columns =
+        forces.Columns(any, large_displacements_.col(k)) / noise_sd;
+    for (Eigen::Index i = 0; i < m; ++i) {
+      products_[i].col(k) = columns.col(i);
+    }
+    traces_ += LargeTracesOf(scene, forces, prepared_.Dofs(),
+                             large_displacements_.col(k));
+  }
+  work_.element_passes = int(q.cols() * (1 + m));
+}
+
+Eigen::MatrixXd ForceResidual::Stiffen(const Eigen::VectorXd& moduli,
+                                       const Eigen::MatrixXd& x) const {
+  if (prepared_.LargeForces() == nullptr) {
+    return prepared_.Forces().Multiply(moduli, x);
+  }
+  const Eigen::Index num_cases = large_displacements_.cols();
+  Eigen::MatrixXd stiffened(x.rows(), x.cols());
+  for (Eigen::Index k = 0; k < num_cases; ++k) {
+    const auto of_case = Eigen::seqN(k, x.cols() / num_cases, num_cases);
+    stiffened(Eigen::all, of_case) = prepared_.LargeForces()->TangentProducts(
+        moduli, large_displacements_.col(k), x(Eigen::all, of_case));
+  }
+  return stiffened;
 }
 
 Eigen::MatrixXd ForceResidual::StiffenedGram(
@@ -138,8 +255,9 @@ Eigen::MatrixXd ForceResidual::StiffenedGram(
     }
   }
   SetHeldRowsToZero(prepared_.Dofs(), x);
-  Eigen::MatrixXd stiffened = prepared_.Forces().Multiply(moduli, x);
-  ++work_.element_passes;
+  Eigen::MatrixXd stiffened = Stiffen(moduli, x);
+  work_.element_passes +=
+      prepared_.LargeForces() != nullptr ? int(num_cases) : 1;
   SetHeldRowsToZero(prepared_.Dofs(), stiffened);
   Eigen::MatrixXd gram(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {

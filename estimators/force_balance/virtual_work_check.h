@@ -1,10 +1,14 @@
 #ifndef ELASTIMATE_ESTIMATORS_FORCE_BALANCE_VIRTUAL_WORK_CHECK_H_
 #define ELASTIMATE_ESTIMATORS_FORCE_BALANCE_VIRTUAL_WORK_CHECK_H_
 
+#include <Eigen/Core>
+
 #include "elastimate/core/scene/scene.h"
+#include "elastimate/estimators/force_balance/force_residual.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/estimators/interface/estimator.h"
 #include "elastimate/estimators/interface/evidence.h"
+#include "elastimate/estimators/interface/free_parameters.h"
 
 namespace elastimate {
 
@@ -20,6 +24,24 @@ namespace elastimate {
 WorkCheck CheckByVirtualWork(const Scene& scene,
                              const EstimatorOptions& options,
                              Estimate& estimate);
+
+/// Does what CheckByVirtualWork does for laws of large strains, whose tangents
+/// K_c at the measured q differ between load cases c.  With the same fields V
+/// and L_c L_c^T = V^T K_c K_c V, noise of variance sigma^2 makes
+///
+///   z_c = L_c^-1 V^T (F_c theta - f_c)
+///
+/// of covariance sigma^2.  With D = dz / dx, what changes of the variables x
+/// cannot explain, z - D D^+ z, tells whether there is more than noise of this
+/// variance.  Then |z - D D^+ z|^2 (D^T D)^-1 is added to the covariance of the
+/// variables.
+/// Cost: an element pass for each load case.
+WorkCheck CheckByLargeVirtualWork(const Scene& scene,
+                                  const FreeParameters& free,
+                                  const Eigen::VectorXd& variables,
+                                  double noise_variance,
+                                  const ForceResidual& forces,
+                                  Estimate& estimate);
 
 }  // namespace elastimate
 

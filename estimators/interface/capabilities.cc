@@ -76,11 +76,9 @@ std::string WhyNotTheseMaterials(const Capabilities& capabilities,
   }
   const MaterialParameters parameters(scene.materials,
                                       scene.mesh.section.model);
-  if (!capabilities.takes_large_strains) {
-    const std::string why_large = WhyNotSmallStrains(parameters);
-    if (!why_large.empty()) {
-      return why_large;
-    }
+  const std::string why_large = WhyNotSmallStrains(parameters);
+  if (!why_large.empty() && !capabilities.takes_large_strains) {
+    return why_large + ", or use --estimator=iterative-fe";
   }
   if (!capabilities.takes_materials) {
     return "it takes only one isotropic material without known parameters; use "
@@ -166,6 +164,14 @@ std::string WhyUnsupported(const Capabilities& capabilities, const Scene& scene,
       !capabilities.takes_supports_of_cases) {
     why =
         "it takes only supports that are the same in all load cases; use "
+        "--estimator=iterative-fe";
+  }
+  if (why.empty() && capabilities.needs_all_displacements &&
+      scene.mesh.section.model == SectionModel::kPlaneStress &&
+      HasLargeStrainLaw(scene.materials, scene.mesh.section.model)) {
+    why =
+        "in plane stress the forces of large strains are not linear in the "
+        "moduli, on which the thinning of the plate depends; use "
         "--estimator=iterative-fe";
   }
   if (why.empty() && capabilities.needs_all_displacements) {

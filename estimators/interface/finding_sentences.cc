@@ -612,8 +612,7 @@ Finding ParameterBias(const std::string& parameter, double bias,
                 (is_relative ? AboutPercent(bias) : "about " + TwoDigits(bias))
           : "displacement noise is too large for this estimator to determine " +
                 parameter,
-      "use --estimator=reduced-fe or --estimator=virtual-fields, which noise "
-      "does not bias"};
+      "use --estimator=auto, whose fit of displacements noise does not bias"};
 }
 
 Finding LargeDeformation(const DeformationSize& size,
@@ -685,11 +684,12 @@ Finding DiscretizationErrorFinding(const Estimate& estimate) {
 }
 
 Finding MeshErrorUnknown() {
-  return Warning(FindingCode::kMeshErrorUnknown,
-                 "this estimator does not know the error of the mesh, so the "
-                 "error bars include noise only",
-                 "use --estimator=reduced-fe, or give --origin=computed for "
-                 "simulated data");
+  return Warning(
+      FindingCode::kMeshErrorUnknown,
+      "this estimator does not know the error of the mesh, so the "
+      "error bars include noise only",
+      "use --estimator=auto, or give --origin=computed for simulated "
+      "data");
 }
 
 Finding ComputedByLinearElements() {

@@ -28,9 +28,10 @@ Bounds GivenBounds(const Scene& scene, const EstimatorOptions& options,
   return name == "poisson_ratio" ? options.poisson_ratio : Bounds{};
 }
 
-Bounds BoundsOfVariable(const LawParameter& parameter, Bounds bounds) {
+Bounds BoundsOfVariable(const Law& law, const LawParameter& parameter,
+                        Bounds bounds) {
   if (parameter.beside) {
-    return {-1, 1};
+    return law.BlockEntries().empty() ? Bounds{} : Bounds{-1, 1};
   }
   if (parameter.is_modulus) {
     // Without bounds: a logarithm needs none.
@@ -73,7 +74,8 @@ FreeParameters::FreeParameters(const Scene& scene,
     const Bounds given = GivenBounds(scene, options, Free(i));
     bounds_.push_back(IsOfFactors(i)
                           ? Bounds{}
-                          : BoundsOfVariable(*Free(i).law_parameter, given));
+                          : BoundsOfVariable(all_.LawOf(Free(i).material),
+                                             *Free(i).law_parameter, given));
     are_bounds_given_.push_back(given.AreGiven());
   }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/limits.h"
 

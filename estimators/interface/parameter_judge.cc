@@ -42,9 +42,13 @@ std::vector<ParameterEstimate> DescribeParameters(
     estimate.is_modulus = parameter.law_parameter->is_modulus;
     estimate.is_known = parameter.known.has_value();
     // The stiffness as a whole says what is physical for other laws.
-    if (parameters.LawOf(parameter.material).Name() == IsotropicLaw::kName) {
-      estimate.limits = estimate.is_modulus ? Interval{0, estimate.limits.upper}
-                                            : Interval{-1, 0.5};
+    const Law& law = parameters.LawOf(parameter.material);
+    if (law.Name() == IsotropicLaw::kName || law.ForLargeStrains() != nullptr) {
+      if (estimate.is_modulus) {
+        estimate.limits.lower = 0;
+      } else if (!estimate.beside) {
+        estimate.limits = {-1, 0.5};
+      }
     }
     if (!scene.materials.empty()) {
       estimate.regions = scene.materials[parameter.material].regions;

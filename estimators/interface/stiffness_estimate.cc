@@ -37,7 +37,7 @@ std::vector<StiffnessEstimate> StiffnessesOf(const Scene& scene,
   const Eigen::MatrixXd covariance = estimate.CovarianceWithGiven();
   for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
     const Law& law = all.LawOf(i);
-    if (law.Name() == IsotropicLaw::kName) {
+    if (law.Name() == IsotropicLaw::kName || law.ForLargeStrains() != nullptr) {
       continue;
     }
     const Eigen::Index first = all.FirstParameter(i);
