@@ -24,7 +24,9 @@
 #include "apps/series.h"
 #include "apps/summary.h"
 #include "elastimate/core/materials/isotropic_law.h"
+#include "elastimate/core/materials/laws.h"
 #include "elastimate/core/scene/finer_scene.h"
+#include "elastimate/estimators/material_fit/large_strain_choice.h"
 #include "elastimate/estimators/material_fit/law_choice.h"
 #include "elastimate/estimators/material_fit/merge.h"
 #include "elastimate/estimators/registry.h"
@@ -69,13 +71,16 @@ void GiveKnownPoissonRatio(Scene& scene, EstimatorOptions& options) {
   }
   const KnownParameter known = {"poisson_ratio", *options.known_poisson_ratio};
   for (Material& material : scene.materials) {
-    if (material.law != IsotropicLaw::kName) {
+    const std::vector<LawParameter>& parameters =
+        FindLaw(material.law)->Parameters();
+    if (std::none_of(parameters.begin(), parameters.end(),
+                     [&](const LawParameter& parameter) {
+                       return parameter.name == known.name;
+                     })) {
       throw std::invalid_argument(
-          AsGiven("nu") +
-          " is for isotropic materials, and the scene has the law " +
-          material.law +
-          "; give its parameters as \"known\" in \"materials\" of a "
-          "scene.json");
+          AsGiven("nu") + " is not a parameter of the law " + material.law +
+          ", which the scene has; give its parameters as \"known\" in "
+          "\"materials\" of a scene.json");
     }
     const auto is_of_nu = [&](const auto& given) {
       return given.name == known.name;
@@ -222,10 +227,7 @@ void CheckMerging(const SceneReading& reading) {
         " cannot be used with a scene of several frames; leave it out, or make "
         "a scene of one frame");
   }
-  if (std::any_of(reading.scene.materials.begin(),
-                  reading.scene.materials.end(), [](const Material& material) {
-                    return material.law != IsotropicLaw::kName;
-                  })) {
+  if (!AreIsotropic(reading.scene.materials)) {
     throw std::invalid_argument(AsGiven("regions") +
                                 " compares isotropic materials only, and the "
                                 "scene has others; leave it "
@@ -283,6 +285,11 @@ int RunOne(const std::vector<std::string>& arguments,
   }
   Estimate estimate =
       RunEstimator(estimator, scene, modelled, options, Sources(arguments));
+  if (!estimate.large_strain_law.empty()) {
+    modelled.materials =
+        MaterialsOfLargeStrains(modelled.materials, estimate.large_strain_law);
+    scene.materials = modelled.materials;
+  }
   if (merge) {
     EnterMerge(*merge, estimate);
   }

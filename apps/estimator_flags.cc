@@ -76,6 +76,15 @@ Refine RefinementFromFlag() {
                                : Refine::kAutomatic;
 }
 
+Kinematics KinematicsFromFlag() {
+  Require(FLAGS_kinematics == "small" || FLAGS_kinematics == "large" ||
+              FLAGS_kinematics == "auto",
+          "kinematics", "it must be small, large or auto");
+  return FLAGS_kinematics == "small"   ? Kinematics::kSmall
+         : FLAGS_kinematics == "large" ? Kinematics::kLarge
+                                       : Kinematics::kAutomatic;
+}
+
 }  // namespace
 
 std::optional<Origin> OriginFromFlag() {
@@ -111,6 +120,7 @@ EstimatorOptions OptionsFromFlags() {
                             Given("youngs_max", FLAGS_youngs_max)};
   options.loss = LossFromFlag();
   options.refinement = RefinementFromFlag();
+  options.kinematics = KinematicsFromFlag();
   options.solver = SolverFromFlag();
   if (IsGiven("degree")) {
     Require(FLAGS_degree >= 1 && FLAGS_degree <= 3, "degree",
@@ -129,8 +139,9 @@ void CheckPoissonRatioFlag() {
 
 std::string GivenOptionFlags() {
   std::string given;
-  for (const std::string flag : {"nu", "nu_min", "nu_max", "youngs_min",
-                                 "youngs_max", "loss", "refine", "degree"}) {
+  for (const std::string flag :
+       {"nu", "nu_min", "nu_max", "youngs_min", "youngs_max", "loss", "refine",
+        "kinematics", "degree"}) {
     if (IsGiven(flag)) {
       given += (given.empty() ? "" : " ") + AsGiven(flag);
     }

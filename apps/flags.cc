@@ -31,6 +31,8 @@ DEFINE_string(
 DEFINE_string(
     origin, "",
     "origin of the displacements: measured, or computed with this mesh");
+DEFINE_string(kinematics, "auto",
+              "small or large deformations of isotropic materials, or auto");
 DEFINE_string(refine, "auto",
               "divide the mesh to find its error: 0 never, 1 once, auto if "
               "needed");
@@ -110,6 +112,7 @@ Command TheEstimateCommand() {
          {"youngs_max"}}},
        {"Method",
         {{"estimator"},
+         {"kinematics"},
          {"refine"},
          {"loss"},
          {"degree"},

@@ -24,6 +24,7 @@ DECLARE_string(rigid_motion);
 DECLARE_int32(points);
 DECLARE_string(loss);
 DECLARE_string(origin);
+DECLARE_string(kinematics);
 DECLARE_string(refine);
 DECLARE_int32(degree);
 DECLARE_int32(order);

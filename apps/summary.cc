@@ -49,6 +49,7 @@ void AddErrors(const std::string& name, Eigen::Index place,
         std::pair{&budget.model, "the model"},
         std::pair{&budget.outliers, "outliers"},
         std::pair{&budget.discretization, "the mesh"},
+        std::pair{&budget.law, "the choice of the law"},
         std::pair{&budget.kinematics, "large deformations"},
         std::pair{&budget.section, "the margin"},
         std::pair{&budget.prior, "the prior"}}) {

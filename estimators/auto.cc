@@ -12,6 +12,7 @@
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 #include "elastimate/estimators/material_fit/iterative_fe.h"
+#include "elastimate/estimators/material_fit/large_strain_choice.h"
 #include "elastimate/estimators/material_fit/material_fit.h"
 #include "elastimate/estimators/material_fit/reduced_fe.h"
 
@@ -171,6 +172,28 @@ void ClimbFits(const Scene& scene, const EstimatorOptions& options,
   ladder.Decide("stopped: no further estimator would do better");
 }
 
+// Laws of large strains in place of isotropic ones, where they are asked for.
+// Tells whether they end the climb: what is not usable may have another cause,
+// which fits of small strains name.
+bool ClimbLargeStrains(const Scene& scene, const EstimatorOptions& options,
+                       Ladder& ladder) {
+  if (!AsksForLargeStrains(scene, options)) {
+    return false;
+  }
+  EstimatorOptions large = WithoutDegree(options);
+  large.kinematics = Kinematics::kLarge;
+  if (!ladder.Climb(IterativeFe(), scene, large)) {
+    return false;
+  }
+  const Estimate& estimate = ladder.Last();
+  if (estimate.IsUsable() || options.kinematics == Kinematics::kLarge) {
+    ladder.Decide("stopped: laws of large strains were fitted");
+    return true;
+  }
+  ladder.Decide("went on: " + WhyNotUsable(estimate));
+  return false;
+}
+
 // Unknown motions have one rung, iterative-fe.
 class PreparedUnknownMotion : public Preparation {
  public:
@@ -208,6 +231,8 @@ Capabilities Auto::WhatItTakes() const {
   capabilities.takes_degree = true;
   capabilities.takes_materials = true;
   capabilities.takes_free_axes = true;
+  capabilities.takes_large_strains = true;
+  capabilities.compares_large_strain_laws = true;
   capabilities.takes_unknown_motion = true;
   capabilities.takes_supports_of_cases = true;
   return capabilities;
@@ -225,6 +250,9 @@ Estimate Auto::DoRun(const Scene& scene,
                      const EstimatorOptions& options) const {
   const EstimatorOptions without_degree = WithoutDegree(options);
   Ladder ladder;
+  if (ClimbLargeStrains(scene, options, ladder)) {
+    return ladder.Finish();
+  }
   // The balance of forces knows no mesh error of measured displacements.
   if (scene.origin == Origin::kComputed) {
     if (ladder.Climb(ClosedForm(), scene, without_degree) &&

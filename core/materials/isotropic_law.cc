@@ -1,5 +1,6 @@
 #include "elastimate/core/materials/isotropic_law.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "elastimate/core/laws/elasticity.h"
@@ -12,6 +13,13 @@ Eigen::MatrixXd Strain(const Eigen::MatrixXd& gradient) {
 }
 
 }  // namespace
+
+bool AreIsotropic(const std::vector<Material>& materials) {
+  return std::all_of(materials.begin(), materials.end(),
+                     [](const Material& material) {
+                       return material.law == IsotropicLaw::kName;
+                     });
+}
 
 std::string_view IsotropicLaw::Description() const {
   return "Hooke's law of a material that is alike in all directions";

@@ -1,7 +1,10 @@
 #ifndef ELASTIMATE_CORE_MATERIALS_ISOTROPIC_LAW_H_
 #define ELASTIMATE_CORE_MATERIALS_ISOTROPIC_LAW_H_
 
+#include <vector>
+
 #include "elastimate/core/laws/law.h"
+#include "elastimate/core/materials/material.h"
 
 namespace elastimate {
 
@@ -34,6 +37,9 @@ class IsotropicLaw : public Law {
   Eigen::VectorXd ParametersOf(const Eigen::VectorXd& moduli,
                                SectionModel model) const override;
 };
+
+/// Tells whether all materials have that law, as an empty list has.
+[[nodiscard]] bool AreIsotropic(const std::vector<Material>& materials);
 
 }  // namespace elastimate
 

@@ -95,12 +95,7 @@ std::string WhyNotTheseMaterials(const Capabilities& capabilities,
   }
   const bool has_bounded_options =
       options.youngs_modulus.AreGiven() || options.poisson_ratio.AreGiven();
-  const auto is_isotropic = [](const Material& material) {
-    return material.law == IsotropicLaw::kName;
-  };
-  if (has_bounded_options &&
-      !std::all_of(scene.materials.begin(), scene.materials.end(),
-                   is_isotropic)) {
+  if (has_bounded_options && !AreIsotropic(scene.materials)) {
     return "bounds on E and nu are for isotropic materials only, but the scene "
            "has others; give bounds on their parameters in the scene";
   }
@@ -152,11 +147,31 @@ std::string WhyUnsupported(const Capabilities& capabilities, const Scene& scene,
     return "finer elements say nothing about displacements that were computed "
            "with this mesh; leave out --refine, or give --origin=measured";
   }
+  if (options.kinematics == Kinematics::kLarge) {
+    if (!capabilities.compares_large_strain_laws) {
+      return "it does not compare laws of large strains; use "
+             "--estimator=iterative-fe, or name a law instead of "
+             "--kinematics=large, such as --material=neo_hookean";
+    }
+    if (!AreIsotropic(scene.materials)) {
+      return "only isotropic materials have laws of large strains that can be "
+             "compared; name laws in the scene or by --material instead of "
+             "--kinematics=large";
+    }
+  }
   if (!capabilities.takes_degree && options.virtual_field_degree) {
     return "it has no virtual fields that could have a degree; use "
            "--estimator=virtual-fields, or leave out --degree";
   }
   std::string why = WhyNotTheseMaterials(capabilities, scene, options);
+  if (why.empty() && scene.is_rigid_motion_free &&
+      (options.kinematics == Kinematics::kLarge ||
+       HasLargeStrainLaw(scene.materials, scene.mesh.section.model))) {
+    why =
+        "a free rigid motion cannot be told from the rotations of large "
+        "strains; leave out \"rigid_motion\", and measure relative to the "
+        "supports";
+  }
   if (why.empty() && HasUnknownMotion(scene)) {
     why = WhyNotTheseMotions(capabilities, options);
   }

@@ -28,6 +28,8 @@ struct Capabilities {
   bool takes_free_axes = false;
   /// Laws of large strains.
   bool takes_large_strains = false;
+  /// Kinematics::kLarge.
+  bool compares_large_strain_laws = false;
   /// Supports that moved by unknown amounts, resultants of supports, and a
   /// rigid motion of all that is free.
   bool takes_unknown_motion = false;

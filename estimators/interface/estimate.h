@@ -285,6 +285,9 @@ struct Estimate {
   std::vector<RegionMerge> merges;
   /// The best first, where the law was to be chosen; empty for others.
   std::vector<LawComparison> laws;
+  /// The law of large strains that was fitted in place of the isotropic one;
+  /// empty for others.
+  std::string large_strain_law;
   /// What the frames of a joint estimate say together; empty for others.
   std::optional<SeriesSummary> series;
 

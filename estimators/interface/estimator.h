@@ -30,6 +30,15 @@ enum class Refine {
   kAlways,     ///< Once.
 };
 
+/// The size of deformations for which isotropic materials are fitted.
+enum class Kinematics {
+  /// `auto` fits laws of large strains where small strains leave out what
+  /// anybody would mention (KinematicErrorOf); others fit small strains.
+  kAutomatic,
+  kSmall,
+  kLarge,  ///< Laws of large strains are fitted and compared.
+};
+
 /// The defaults suit a scene of which nothing more is known.
 struct EstimatorOptions {
   // What is estimated.  What is known of one of several materials stands in
@@ -49,6 +58,7 @@ struct EstimatorOptions {
   /// Treatment of outliers among the measured displacements.
   Loss loss = Loss::kNone;
   Refine refinement = Refine::kAutomatic;
+  Kinematics kinematics = Kinematics::kAutomatic;
   /// Degree of the polynomial virtual fields, 1 to 3, for the estimators that
   /// have some; the others refuse it.
   std::optional<int> virtual_field_degree;

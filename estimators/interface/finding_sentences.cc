@@ -615,6 +615,23 @@ Finding ParameterBias(const std::string& parameter, double bias,
       "use --estimator=auto, whose fit of displacements noise does not bias"};
 }
 
+namespace {
+
+// "strains of 5.0 % and rotations of 20 degrees", as far as they are mentioned.
+std::string DeformationText(const DeformationSize& size) {
+  std::string what;
+  if (size.strain >= kLimits.mentioned_strain) {
+    what = "strains of " + Percent(size.strain);
+  }
+  if (size.rotation >= kLimits.mentioned_rotation) {
+    what += (what.empty() ? "" : " and ") + std::string("rotations of ") +
+            TwoDigits(kDegreesOfRadian * size.rotation) + " degrees";
+  }
+  return what;
+}
+
+}  // namespace
+
 Finding LargeDeformation(const DeformationSize& size,
                          double relative_error_of_modulus, Severity severity,
                          bool is_rigid_motion_free) {
@@ -625,23 +642,39 @@ Finding LargeDeformation(const DeformationSize& size,
                 "coordinates, or are positions after the load",
             "give displacements in the unit of the coordinates"};
   }
-  std::string what;
-  if (size.strain >= kLimits.mentioned_strain) {
-    what = "strains of " + Percent(size.strain);
-  }
-  if (size.rotation >= kLimits.mentioned_rotation) {
-    what += (what.empty() ? "" : " and ") + std::string("rotations of ") +
-            TwoDigits(kDegreesOfRadian * size.rotation) + " degrees";
-  }
   return {FindingCode::kLargeDeformation, severity,
-          what +
+          DeformationText(size) +
               " are too large for small-strain elasticity, which leaves E "
               "uncertain by " +
               Percent(relative_error_of_modulus),
           !is_rigid_motion_free && size.rotation > kTurnOfAWhole * size.strain
               ? "give \"rigid_motion\": \"free\" if the specimen or the camera "
                 "turned, or measure at smaller loads"
-              : "measure at smaller loads"};
+              : "give --kinematics=large or a law (--material=neo_hookean), or "
+                "measure at smaller loads"};
+}
+
+Finding LargeStrainsFitted(const DeformationSize& size,
+                           const std::string& law) {
+  const std::string what = DeformationText(size);
+  return {FindingCode::kLargeDeformation, Severity::kNotice,
+          (what.empty() ? "" : "for " + what + ", ") + "the law " + law +
+              " of large strains was fitted",
+          "name another law by --material if you know it, or give "
+          "--kinematics=small"};
+}
+
+Finding LargeStrainLawsFitAlike(const std::string& chosen,
+                                const std::vector<std::string>& others) {
+  std::string names;
+  for (const std::string& name : others) {
+    names += (names.empty() ? "" : " and ") + name;
+  }
+  return {FindingCode::kLawsFitAlike, Severity::kNotice,
+          names + (others.size() == 1 ? " explains" : " explain") +
+              " the data about as well as " + chosen +
+              "; the spread of the parameters is a part of the errors",
+          "measure larger deformations, or name the law by --material"};
 }
 
 Finding MarginNotGiven(double relative_error) {

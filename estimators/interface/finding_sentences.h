@@ -135,6 +135,11 @@ Finding ParametersNearLimits(const std::vector<std::string>& parameters,
 /// Names the parameter that is biased most.
 Finding ParameterBias(const std::string& parameter, double bias,
                       bool is_relative, Severity severity);
+/// Laws of large strains were fitted.
+Finding LargeStrainsFitted(const DeformationSize& size, const std::string& law);
+/// Other laws of large strains explain the data about as well.
+Finding LargeStrainLawsFitAlike(const std::string& chosen,
+                                const std::vector<std::string>& others);
 /// What linear kinematics leave out (KinematicErrorOf).  A turn of the whole
 /// specimen may be the reason, unless the scene has its rigid motion free.
 Finding LargeDeformation(const DeformationSize& size,

@@ -10,11 +10,6 @@
 namespace elastimate {
 namespace {
 
-bool IsMentioned(const DeformationSize& size) {
-  return size.strain >= kLimits.mentioned_strain ||
-         size.rotation >= kLimits.mentioned_rotation;
-}
-
 // A failed estimate may have no parameters, of which a ratio is then taken to
 // be free.
 bool IsARatioFree(const Estimate& estimate) {
@@ -47,6 +42,11 @@ void AddError(const KinematicError& error, ParameterErrors& of_cause,
 }
 
 }  // namespace
+
+bool IsMentioned(const DeformationSize& size) {
+  return size.strain >= kLimits.mentioned_strain ||
+         size.rotation >= kLimits.mentioned_rotation;
+}
 
 KinematicError KinematicErrorOf(const DeformationSize& size) {
   if (!IsMentioned(size)) {

@@ -19,6 +19,8 @@ struct KinematicError {
   double ratio;
 };
 KinematicError KinematicErrorOf(const DeformationSize& size);
+/// Tells whether a deformation has 1 % of strain or 3 degrees of rotation.
+[[nodiscard]] bool IsMentioned(const DeformationSize& size);
 
 /// Measures the deformation and, from 1 % of strain or 3 degrees of rotation
 /// on, adds what linear kinematics leave out to the covariances, the error

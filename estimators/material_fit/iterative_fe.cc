@@ -1,5 +1,6 @@
 #include "elastimate/estimators/material_fit/iterative_fe.h"
 
+#include "elastimate/estimators/material_fit/large_strain_choice.h"
 #include "elastimate/estimators/material_fit/material_fit.h"
 
 namespace elastimate {
@@ -21,6 +22,7 @@ Capabilities IterativeFe::WhatItTakes() const {
   capabilities.takes_materials = true;
   capabilities.takes_free_axes = true;
   capabilities.takes_large_strains = true;
+  capabilities.compares_large_strain_laws = true;
   capabilities.takes_unknown_motion = true;
   capabilities.takes_supports_of_cases = true;
   return capabilities;
@@ -28,12 +30,16 @@ Capabilities IterativeFe::WhatItTakes() const {
 
 Estimate IterativeFe::DoRun(const Scene& scene,
                             const EstimatorOptions& options) const {
-  return FitMaterials(scene, options, Descent::kFull);
+  return options.kinematics == Kinematics::kLarge
+             ? FitLargeStrainLaws(scene, options)
+             : FitMaterials(scene, options, Descent::kFull);
 }
 
 std::unique_ptr<Preparation> IterativeFe::DoPrepare(
     const Scene& scene, const EstimatorOptions& options) const {
-  return PrepareMaterialFit(scene, options, Descent::kFull);
+  return options.kinematics == Kinematics::kLarge
+             ? Estimator::DoPrepare(scene, options)
+             : PrepareMaterialFit(scene, options, Descent::kFull);
 }
 
 }  // namespace elastimate

@@ -414,6 +414,7 @@ void EnterMean(const Mean& mean, const Eigen::VectorXi& free, double load_error,
   estimate.error_budget.noise(free) = noise.diagonal().cwiseSqrt();
   const ErrorBudget& budget = estimate.error_budget;
   const Eigen::ArrayXd others = KnownSquares(budget.discretization, free) +
+                                KnownSquares(budget.law, free) +
                                 KnownSquares(budget.kinematics, free) +
                                 KnownSquares(budget.section, free);
   estimate.error_budget.model = unknown;
@@ -520,6 +521,7 @@ void EnterCommonErrors(const std::vector<UsedFrame>& frames,
         frames, cause, missing, free, Eigen::Index(estimate.parameters.size()));
   };
   part(&ErrorBudget::discretization, Missing::kUnknown);
+  part(&ErrorBudget::law, Missing::kZero);
   part(&ErrorBudget::kinematics, Missing::kZero);
   part(&ErrorBudget::section, Missing::kZero);
 }
