@@ -70,12 +70,6 @@ ComponentMask Displaced(const Supports& supports) {
   return supports.held && supports.displacement.array() != 0.0;
 }
 
-bool HasLargeStrains(const Scene& scene) {
-  return !WhyNotSmallStrains(
-              MaterialParameters(scene.materials, scene.mesh.section.model))
-              .empty();
-}
-
 bool IsAnyDisplaced(const Scene& scene) {
   bool is_any_displaced = false;
   for (Eigen::Index k = 0; k < Eigen::Index(scene.load_cases.size()); ++k) {
@@ -123,7 +117,7 @@ Solution Solve(const std::string& source, const Scene& modelled,
                SolverKind solver, Progress& progress,
                std::vector<std::string>& notices) {
   progress.Show("factorising");
-  if (HasLargeStrains(modelled)) {
+  if (HasLargeStrainLaw(modelled.materials, modelled.mesh.section.model)) {
     return SolveLargeStrains(source, modelled, solver, progress);
   }
   const Eigen::VectorXd values = ParametersFromFlags(modelled);
@@ -211,11 +205,10 @@ std::string MeasuredScene(const std::string& source,
             generator, displacement);
     scene.load_cases[k].displacement = displacement;
   }
-  // A finite rotation has to be treated as that of a camera, and large strains
-  // as those of a specimen: only linear elasticity counts as computed.
+  // A finite rotation has to be treated as that of a camera.
   const bool is_of_this_mesh =
       std::max<int>(FLAGS_order, mesh.Order()) == mesh.Order() &&
-      errors.rigid_motion.size() == 0 && !HasLargeStrains(scene);
+      errors.rigid_motion.size() == 0;
   scene.origin = is_of_this_mesh ? Origin::kComputed : Origin::kMeasured;
   Fields fields = SceneFields(scene);
   for (const auto& [name, axes] : reading.axis_arrays) {

@@ -106,6 +106,11 @@ const NodeGraph& Equilibrium::Graph() const {
   return graph_ ? *graph_ : stiffness_[0]->GraphOfAssembled();
 }
 
+const std::string& Equilibrium::WhyNotSolved() const {
+  static const std::string none;
+  return none;
+}
+
 bool Equilibrium::IsRefined() const { return values_->NumSpaces() > 1; }
 
 bool Equilibrium::Solve(const Eigen::VectorXd& moduli) {
@@ -205,8 +210,9 @@ Eigen::MatrixXd Equilibrium::ExtendInCase(Eigen::Index k,
   return stiffness_[stiffness_of_case_[k]]->Extend(held);
 }
 
-void Equilibrium::Superpose(const Eigen::MatrixXd& displacement) {
-  displacement_ += displacement;
+bool Equilibrium::MoveSupports(const Eigen::MatrixXd& held) {
+  displacement_ += Extend(held);
+  return true;
 }
 
 Eigen::MatrixXd Equilibrium::HeldForces(

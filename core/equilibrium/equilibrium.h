@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "elastimate/core/equilibrium/forward_model.h"
 #include "elastimate/core/mechanics/internal_forces.h"
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/core/solvers/stiffness_solver.h"
@@ -29,7 +30,7 @@ class SupportedStiffness;
 ///   if (model.Solve(chart.Moduli(parameters))) {
 ///     Eigen::MatrixXd u = model.Displacement();
 ///   }
-class Equilibrium {
+class Equilibrium : public ForwardModel {
  public:
   /// Assembles the pattern and analyses it.  Refers to `scene`, which has to
   /// stay as it is; a temporary one does not compile.  Preconditions and
@@ -50,7 +51,7 @@ class Equilibrium {
   Equilibrium(const std::vector<const Scene*>& spaces, SolverKind solver,
               double tolerance = StiffnessSolver::kAccurate);
 
-  ~Equilibrium();
+  ~Equilibrium() override;
   Equilibrium(Equilibrium&&) noexcept;
   Equilibrium& operator=(Equilibrium&&) noexcept;
 
@@ -58,24 +59,23 @@ class Equilibrium {
   /// degrees of freedom a factorisation, and a solve for each load case (one
   /// more for each set of held displacements).  False when the stiffness is not
   /// positive definite to working precision; there is no u then.
-  [[nodiscard]] bool Solve(const Eigen::VectorXd& moduli);
+  [[nodiscard]] bool Solve(const Eigen::VectorXd& moduli) override;
+  const std::string& WhyNotSolved() const override;
 
-  /// u of all load cases, num_dofs x num_load_cases [length].
-  const Eigen::MatrixXd& Displacement() const { return displacement_; }
+  const Eigen::MatrixXd& Displacement() const override { return displacement_; }
 
   /// The part of u that the held displacements cause, which does not change
   /// when all moduli are multiplied by a factor: num_dofs x num_load_cases.
   const Eigen::MatrixXd& SupportResponse() const { return support_response_; }
 
-  /// du / dp for directions d theta / d p (num_moduli x n): one num_dofs x
-  /// n matrix for each load case, side by side.  A pass and n solves for each
-  /// load case.  Precondition: Solve returned true.
-  Eigen::MatrixXd Sensitivities(const Eigen::MatrixXd& directions);
-
-  /// Returns K^-1 f on the free rows, zero in the held rows, for n columns of
-  /// forces of each load case side by side.  A solve for each column.
-  /// Precondition as above.
-  Eigen::MatrixXd SolveFor(const Eigen::MatrixXd& forces);
+  /// A pass and n solves for each load case.
+  Eigen::MatrixXd Sensitivities(const Eigen::MatrixXd& directions) override;
+  /// A solve for each column.
+  Eigen::MatrixXd SolveFor(const Eigen::MatrixXd& forces) override;
+  /// A pass.
+  Eigen::MatrixXd ForceColumns(Eigen::Index k) const override {
+    return Forces().Columns(displacement_.col(k));
+  }
 
   /// Does what SolveFor does with the factor of the stiffness, or without one
   /// as far as one application of the preconditioner of the iterations does it.
@@ -83,47 +83,41 @@ class Equilibrium {
   /// Tells whether iterations solve the systems.
   bool IsRefined() const;
 
-  /// Returns the loads f, num_dofs x num_load_cases [force].
-  const Eigen::MatrixXd& Load() const { return load_; }
+  const Eigen::MatrixXd& Load() const override { return load_; }
   /// Returns the given displacements, zero in the free rows: num_dofs x
   /// num_load_cases.
   const Eigen::MatrixXd& HeldDisplacement() const { return held_displacement_; }
 
-  /// Returns u in equilibrium without loads where the held degrees of freedom
-  /// are displaced by `held` (zero in the free rows), n columns of each load
-  /// case side by side.  A solve for each column.  Extend, ExtendTransposed and
-  /// the forces of supports are there only for a scene of unknown motion
-  /// (HasUnknownMotion).  Precondition: Solve returned true.
-  Eigen::MatrixXd Extend(const Eigen::MatrixXd& held);
-  /// Multiplies by the transpose of Extend; the free rows are zero.
-  Eigen::MatrixXd ExtendTransposed(const Eigen::MatrixXd& values);
-  /// Does what Extend does for num_dofs x n displacements of load case `k`.
-  Eigen::MatrixXd ExtendInCase(Eigen::Index k, const Eigen::MatrixXd& held);
-  /// Adds displacements of each load case that Extend returned.
-  void Superpose(const Eigen::MatrixXd& displacement);
+  // A solve for each column of the next four.
+  Eigen::MatrixXd Extend(const Eigen::MatrixXd& held) override;
+  Eigen::MatrixXd ExtendTransposed(const Eigen::MatrixXd& values) override;
+  Eigen::MatrixXd ExtendInCase(Eigen::Index k,
+                               const Eigen::MatrixXd& held) override;
+  [[nodiscard]] bool MoveSupports(const Eigen::MatrixXd& held) override;
+  [[nodiscard]] bool SolveMoved(const Eigen::VectorXd& moduli,
+                                const Eigen::MatrixXd& held) override {
+    return Solve(moduli) && MoveSupports(held);
+  }
+  bool IsLinear() const override { return true; }
 
-  /// Returns the held rows of K times the columns, n of each load case side by
-  /// side, and zeros in the free rows.
-  Eigen::MatrixXd HeldForces(const Eigen::MatrixXd& displacements) const;
-  /// Multiplies by the transpose of HeldForces; `held` counts in the held rows.
-  Eigen::MatrixXd HeldForcesTransposed(const Eigen::MatrixXd& held) const;
-  /// Does what HeldForces does for num_dofs x n columns of load case `k`.
-  Eigen::MatrixXd HeldForcesInCase(Eigen::Index k,
-                                   const Eigen::MatrixXd& displacements) const;
-  /// Returns the forces that the supports exert in each load case, K u - f in
-  /// the held rows and zero in the free ones: num_dofs x num_load_cases
-  /// [force].
-  Eigen::MatrixXd SupportForces() const;
-  /// Returns the derivatives of SupportForces along the directions whose
-  /// Sensitivities are given, in the same order.  A pass for each load case.
+  Eigen::MatrixXd HeldForces(
+      const Eigen::MatrixXd& displacements) const override;
+  Eigen::MatrixXd HeldForcesTransposed(
+      const Eigen::MatrixXd& held) const override;
+  Eigen::MatrixXd HeldForcesInCase(
+      Eigen::Index k, const Eigen::MatrixXd& displacements) const override;
+  Eigen::MatrixXd SupportForces() const override;
   Eigen::MatrixXd SupportForceSensitivities(
-      const Eigen::MatrixXd& directions, const Eigen::MatrixXd& sensitivities);
+      const Eigen::MatrixXd& directions,
+      const Eigen::MatrixXd& sensitivities) override;
 
   const InternalForces& Forces() const;
-  const NodeGraph& Graph() const;
-  Work WorkDone() const;
-  /// Returns the first StiffnessSolver::Notice that is not empty.
-  const std::string& Notice() const;
+  const MaterialParameters& Parameters() const override {
+    return Forces().Parameters();
+  }
+  const NodeGraph& Graph() const override;
+  Work WorkDone() const override;
+  const std::string& Notice() const override;
 
  private:
   Eigen::Index NumLoadCases() const { return load_.cols(); }

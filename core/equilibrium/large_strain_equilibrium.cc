@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "elastimate/core/mechanics/internal_forces.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
@@ -14,7 +15,10 @@ namespace {
 // The residual over the forces of loads and supports at which a state is in
 // equilibrium.
 constexpr double kResidual = 1e-10;
-constexpr int kMostNewtonSteps = 25;
+// Newton's method that has not converged with so many tangents hardly will.
+constexpr int kMostTangents = 20;
+// A step of the load that fails is followed by one that is shorter by this.
+constexpr double kCut = 0.25;
 // A step of the load that takes no more iterations is followed by a longer one.
 constexpr int kEasyIterations = 6;
 constexpr double kSmallestLoadStep = 1.0 / 1024;
@@ -69,20 +73,36 @@ std::string WhyNotInEquilibrium(const LargeStrainState& state) {
 }
 
 LargeStrainEquilibrium::LargeStrainEquilibrium(const Scene& scene,
-                                               Dilatation dilatation)
+                                               Dilatation dilatation,
+                                               KeptFactors kept)
     : scene_(scene),
       forces_(scene.mesh, scene.materials, dilatation),
       load_(AssembleLoadCases(scene)),
       held_displacement_(load_.rows(), load_.cols()) {
-  const HeldGroups groups = GroupByHeld(scene);
+  HeldGroups groups = GroupByHeld(scene);
+  if (kept == KeptFactors::kOfEachCase) {
+    groups.first_cases.resize(load_.cols());
+    std::iota(groups.first_cases.begin(), groups.first_cases.end(), 0);
+    groups.of_case.assign(groups.first_cases.begin(), groups.first_cases.end());
+  }
   solver_of_case_ = groups.of_case;
   for (const Eigen::Index k : groups.first_cases) {
     solvers_.push_back(std::make_unique<StiffnessSolver>(
         scene.mesh, SupportsOf(scene, k), SolverKind::kCholesky));
   }
   for (Eigen::Index k = 0; k < load_.cols(); ++k) {
-    held_displacement_.col(k) = HeldDisplacement(SupportsOf(scene, k));
+    held_displacement_.col(k) =
+        elastimate::HeldDisplacement(SupportsOf(scene, k));
   }
+}
+
+Work LargeStrainEquilibrium::WorkDone() const {
+  Work work;
+  for (const std::unique_ptr<StiffnessSolver>& solver : solvers_) {
+    work = work + solver->WorkDone();
+  }
+  work.element_passes += element_passes_;
+  return work;
 }
 
 bool LargeStrainEquilibrium::Factorize(const Eigen::VectorXd& moduli,
@@ -92,6 +112,7 @@ bool LargeStrainEquilibrium::Factorize(const Eigen::VectorXd& moduli,
                                        LargeStrainState& state) {
   const Eigen::MatrixXd tangent =
       forces_.TangentBlocks(moduli, u, solver.Graph());
+  ++element_passes_;
   ++state.num_tangents;
   if (solver.FactorizeBlocks(tangent)) {
     return true;
@@ -119,13 +140,15 @@ EquilibriumStatus LargeStrainEquilibrium::Newton(const Eigen::VectorXd& moduli,
                                                  Eigen::Index k, double t,
                                                  LargeStrainState& state,
                                                  Eigen::VectorXd& u) {
-  StiffnessSolver& solver = SolverOf(k);
+  StiffnessSolver& solver = TangentSolver(k);
   const DegreesOfFreedom& dofs = solver.Dofs();
   // What the held degrees of freedom have yet to move; zero in the free rows.
   Eigen::VectorXd held_change =
       t * held_displacement_.col(k) - (u - dofs.Extend(dofs.Restrict(u)));
-  for (int iteration = 0; iteration <= kMostNewtonSteps; ++iteration) {
+  const int tangents_before = state.num_tangents;
+  for (;;) {
     const Eigen::VectorXd forces = forces_.Forces(moduli, u);
+    ++element_passes_;
     const Eigen::VectorXd residual = dofs.Restrict(t * load_.col(k) - forces);
     const double scale =
         std::max(t * load_.col(k).norm(),
@@ -140,6 +163,9 @@ EquilibriumStatus LargeStrainEquilibrium::Newton(const Eigen::VectorXd& moduli,
     }
     if (is_equilibrium) {
       return EquilibriumStatus::kDone;
+    }
+    if (state.num_tangents - tangents_before >= kMostTangents) {
+      return EquilibriumStatus::kNoEquilibrium;
     }
     Eigen::VectorXd right = dofs.Extend(residual);
     if (!is_held) {
@@ -162,7 +188,6 @@ EquilibriumStatus LargeStrainEquilibrium::Newton(const Eigen::VectorXd& moduli,
     u += factor * change;
     held_change *= 1 - factor;
   }
-  return EquilibriumStatus::kNoEquilibrium;
 }
 
 LargeStrainState LargeStrainEquilibrium::Solve(const Eigen::VectorXd& moduli,
@@ -195,7 +220,7 @@ LargeStrainState LargeStrainEquilibrium::Solve(const Eigen::VectorXd& moduli,
         step *= 2;
       }
     } else {
-      step = (t - state.load_share) / 2;
+      step = (t - state.load_share) * kCut;
       if (step < kSmallestLoadStep) {
         return state;
       }

@@ -12,6 +12,12 @@
 
 namespace elastimate {
 
+/// Which factors of tangents stay.
+enum class KeptFactors {
+  kLast,        ///< The last one for each set of held degrees of freedom.
+  kOfEachCase,  ///< The last one of each load case.
+};
+
 /// How the search for an equilibrium ended.
 enum class EquilibriumStatus {
   kDone,
@@ -48,8 +54,8 @@ struct LargeStrainState {
 /// are on the undeformed specimen, those of pressures as well.
 ///
 /// Newton's method begins at the whole load.  Where it fails, the load is
-/// divided into steps, each half as long as the last one that failed and twice
-/// as long as one that was easy.  A Newton step is shortened where det F would
+/// divided into steps, each a quarter as long as the last one that failed and
+/// twice as long as one that was easy.  A Newton step is shortened where det F would
 /// fall below a hundredth.  The tangent has to be positive definite at the end,
 /// since Newton's method finds unstable states as well [Wriggers, Nonlinear
 /// Finite Element Methods, 2008, chapter 5].  On the way there, where a nearly
@@ -65,12 +71,22 @@ class LargeStrainEquilibrium {
  public:
   /// Assembles the pattern and analyses it.  Refers to `scene`, which has to
   /// stay as it is; a temporary one does not compile.  Throws as
-  /// LargeStrainForces and StiffnessSolver do.  Precondition: a valid scene
-  /// without unknown motion.
+  /// LargeStrainForces and StiffnessSolver do.  Precondition: a valid scene.
   explicit LargeStrainEquilibrium(
-      const Scene& scene, Dilatation dilatation = Dilatation::kMeanOfElement);
-  explicit LargeStrainEquilibrium(
-      const Scene&&, Dilatation = Dilatation::kMeanOfElement) = delete;
+      const Scene& scene, Dilatation dilatation = Dilatation::kMeanOfElement,
+      KeptFactors kept = KeptFactors::kLast);
+  explicit LargeStrainEquilibrium(const Scene&&,
+                                  Dilatation = Dilatation::kMeanOfElement,
+                                  KeptFactors = KeptFactors::kLast) = delete;
+
+  /// Sets the displacement of the held degrees of freedom in load case `k`
+  /// (num_dofs, zero in the free rows), in place of that of the scene.
+  void SetHeldDisplacement(Eigen::Index k, const Eigen::VectorXd& held) {
+    held_displacement_.col(k) = held;
+  }
+  const Eigen::MatrixXd& HeldDisplacement() const { return held_displacement_; }
+  /// Returns the loads F, num_dofs x num_load_cases [force].
+  const Eigen::MatrixXd& Load() const { return load_; }
 
   /// Finds the equilibrium in load case `k`.  A start (num_dofs), such as the
   /// solution for moduli that are nearly the same, is tried first where it is
@@ -78,6 +94,14 @@ class LargeStrainEquilibrium {
   LargeStrainState Solve(const Eigen::VectorXd& moduli, Eigen::Index k,
                          const Eigen::VectorXd& start = {});
 
+  /// Returns the solver of load case `k`.  After a Solve of that load case that
+  /// was successful, and as long as its factor is kept, it has the factor of
+  /// the tangent there.
+  StiffnessSolver& TangentSolver(Eigen::Index k) {
+    return *solvers_[solver_of_case_[k]];
+  }
+
+  Work WorkDone() const;
   const LargeStrainForces& Forces() const { return forces_; }
 
  private:
@@ -90,10 +114,6 @@ class LargeStrainEquilibrium {
   EquilibriumStatus Newton(const Eigen::VectorXd& moduli, Eigen::Index k,
                            double t, LargeStrainState& state,
                            Eigen::VectorXd& u);
-  StiffnessSolver& SolverOf(Eigen::Index k) {
-    return *solvers_[solver_of_case_[k]];
-  }
-
   const Scene& scene_;
   LargeStrainForces forces_;
   Eigen::MatrixXd load_;               ///< num_dofs x num_load_cases.
@@ -102,6 +122,7 @@ class LargeStrainEquilibrium {
   std::vector<std::size_t> solver_of_case_;
   /// The small strains stiffness of lambda = 0 and 2 mu = 1, once it is needed.
   Eigen::MatrixXd shear_blocks_;
+  int element_passes_ = 0;
 };
 
 }  // namespace elastimate

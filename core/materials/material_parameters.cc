@@ -106,6 +106,11 @@ Eigen::VectorXd MaterialParameters::ParametersOf(
   return parameters;
 }
 
+bool HasLargeStrainLaw(const std::vector<Material>& materials,
+                       SectionModel model) {
+  return !WhyNotSmallStrains(MaterialParameters(materials, model)).empty();
+}
+
 std::string WhyNotSmallStrains(const MaterialParameters& parameters) {
   for (std::size_t i = 0; i < parameters.NumMaterials(); ++i) {
     const Law& law = parameters.LawOf(i);

@@ -76,6 +76,10 @@ class MaterialParameters {
   std::vector<Eigen::Index> free_;
 };
 
+/// Tells whether one of the materials has a law of large strains.
+[[nodiscard]] bool HasLargeStrainLaw(const std::vector<Material>& materials,
+                                     SectionModel model);
+
 /// Says why small strains are not enough for one of the laws, and what mends
 /// it; empty when all laws are of small strains.
 [[nodiscard]] std::string WhyNotSmallStrains(

@@ -110,10 +110,13 @@ inline bool IsMeasured(const LoadCase& load_case) {
 /// The origin of displacements.
 enum class Origin {
   kMeasured,  ///< A specimen, which its mesh describes but for a mesh error.
-  /// A finite element solution of linear elasticity with the very elements of
-  /// the mesh, so that there is no mesh error, and strains and rotations of any
-  /// size are exact.
+  /// A finite element solution with the very elements of the mesh and laws of
+  /// the kind that the materials have, of small or of large strains, so that
+  /// there is no mesh error, and strains and rotations of any size are exact.
   kComputed,
+  /// Such a solution with laws of large strains, as a file says it that knows
+  /// nothing of the materials.  A scene has one of the others.
+  kComputedAtLargeStrains,
 };
 
 /// Geometry, materials, supports, and one or more load cases.

@@ -76,9 +76,11 @@ std::string WhyNotTheseMaterials(const Capabilities& capabilities,
   }
   const MaterialParameters parameters(scene.materials,
                                       scene.mesh.section.model);
-  const std::string why_large = WhyNotSmallStrains(parameters);
-  if (!why_large.empty()) {
-    return why_large;
+  if (!capabilities.takes_large_strains) {
+    const std::string why_large = WhyNotSmallStrains(parameters);
+    if (!why_large.empty()) {
+      return why_large;
+    }
   }
   if (!capabilities.takes_materials) {
     return "it takes only one isotropic material without known parameters; use "

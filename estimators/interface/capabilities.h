@@ -26,6 +26,8 @@ struct Capabilities {
   bool takes_materials = false;
   /// Materials whose axis is to be found with their parameters.
   bool takes_free_axes = false;
+  /// Laws of large strains.
+  bool takes_large_strains = false;
   /// Supports that moved by unknown amounts, resultants of supports, and a
   /// rigid motion of all that is free.
   bool takes_unknown_motion = false;

@@ -20,6 +20,7 @@ Capabilities IterativeFe::WhatItTakes() const {
   capabilities.takes_refinement = true;
   capabilities.takes_materials = true;
   capabilities.takes_free_axes = true;
+  capabilities.takes_large_strains = true;
   capabilities.takes_unknown_motion = true;
   capabilities.takes_supports_of_cases = true;
   return capabilities;

@@ -35,7 +35,8 @@ constexpr int kMostPoles = 10;
 class ReducedDescent {
  public:
   explicit ReducedDescent(DisplacementMisfit& misfit)
-      : misfit_(misfit), reduced_(misfit.Model(), misfit.Observed()) {}
+      : misfit_(misfit),
+        reduced_(misfit.SmallStrainModel(), misfit.Observed()) {}
 
   /// False where the stiffness is singular.
   bool SetPole(const Eigen::VectorXd& x);
@@ -72,7 +73,7 @@ class ReducedDescent {
   /// trusted.
   std::vector<Bounds> TrustBounds() const;
   Eigen::MatrixXd WithoutHeld(const Eigen::MatrixXd& displacement) const {
-    return displacement - misfit_.Model().HeldDisplacement();
+    return displacement - misfit_.SmallStrainModel().HeldDisplacement();
   }
   void AddPole(const Eigen::VectorXd& x, const Eigen::MatrixXd& displacement,
                const Eigen::MatrixXd& sensitivities);
@@ -114,8 +115,8 @@ bool ReducedDescent::SetPoleOfAllModuli(const Eigen::VectorXd& x) {
     return false;
   }
   const Eigen::Index num_moduli = misfit_.Free().All().NumModuli();
-  AddPole(x, misfit_.Model().Displacement(),
-          misfit_.Model().Sensitivities(
+  AddPole(x, misfit_.SmallStrainModel().Displacement(),
+          misfit_.SmallStrainModel().Sensitivities(
               Eigen::MatrixXd::Identity(num_moduli, num_moduli)));
   return true;
 }
@@ -135,7 +136,7 @@ std::optional<Eigen::VectorXd> ReducedDescent::SetTypicalPole() {
     return SetPole(*x) ? x : std::nullopt;
   }
   // The factor at hand is that of the pole but for the scale.
-  Equilibrium& model = misfit_.Model();
+  Equilibrium& model = misfit_.SmallStrainModel();
   const Eigen::MatrixXd& held = model.SupportResponse();
   displacement_ = held + (model.Displacement() - held) / scale;
   directions_ = free.ModuliJacobian(*x);
@@ -236,7 +237,8 @@ Eigen::MatrixXd ReducedDescent::ForcesOfVariables() {
   for (Eigen::Index k = 0; k < displacement_.cols(); ++k) {
     ++element_passes_;
     forces.middleCols(n * k, n) =
-        misfit_.Model().Forces().Columns(displacement_.col(k)) * directions_;
+        misfit_.SmallStrainModel().Forces().Columns(displacement_.col(k)) *
+        directions_;
   }
   return forces;
 }
@@ -244,10 +246,11 @@ Eigen::MatrixXd ReducedDescent::ForcesOfVariables() {
 bool ReducedDescent::SolveNear(const Eigen::MatrixXd& forces,
                                const Eigen::VectorXd& tolerances,
                                Eigen::MatrixXd& x) {
-  const int most = misfit_.Model().IsRefined() ? kMostIterationsByCycle
-                                               : kMostIterationsByFactor;
-  const std::optional<int> iterations =
-      SolveNearby(moduli_, forces, tolerances, most, misfit_.Model(), x);
+  const int most = misfit_.SmallStrainModel().IsRefined()
+                       ? kMostIterationsByCycle
+                       : kMostIterationsByFactor;
+  const std::optional<int> iterations = SolveNearby(
+      moduli_, forces, tolerances, most, misfit_.SmallStrainModel(), x);
   element_passes_ += 1 + iterations.value_or(most);
   return iterations.has_value();
 }
@@ -276,7 +279,7 @@ bool ReducedDescent::Check(const BoundedMinimum& minimum) {
       modes.values.tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
   const double tolerance = kStepAccuracy * noise;
   displacement_ = reduced_.Displacement();
-  if (!SolveNear(misfit_.Model().Load(),
+  if (!SolveNear(misfit_.SmallStrainModel().Load(),
                  Eigen::VectorXd::Constant(
                      num_cases, tolerance / reduced_.ComplianceNorm()),
                  displacement_)) {

@@ -14,6 +14,7 @@
 #include "elastimate/estimators/interface/stopwatch.h"
 #include "elastimate/estimators/material_fit/material_descent.h"
 #include "elastimate/estimators/material_fit/reduced_descent.h"
+#include "elastimate/estimators/material_fit/small_strain_start.h"
 #include "elastimate/estimators/misfit/descent.h"
 #include "elastimate/estimators/misfit/material_verdicts.h"
 #include "elastimate/estimators/statistics/node_losses.h"
@@ -116,6 +117,14 @@ std::optional<BoundedMinimum> SpaceFit::FindMinimum(
                             std::vector<Side>(robust->size(), Side::kNone),
                             End::kDone, ""};
     }
+  }
+  if (misfit_.HasLargeStrains()) {
+    const std::optional<Eigen::VectorXd> from =
+        start ? start
+              : SmallStrainStart(scene_, options_, misfit_, fit_.estimate.work);
+    return from ? std::optional<BoundedMinimum>(
+                      DescendFrom(options_, *from, Distance::kNear, misfit_))
+                : std::nullopt;
   }
   if (!start && HasFreeAxis(scene_.materials)) {
     return FindOverAxes(descent);

@@ -110,7 +110,8 @@ std::optional<AxisRotation> FindAxisRotation(
     const Eigen::MatrixXd& sensitivities, const Eigen::MatrixXd& inverse,
     const std::optional<double>& given_variance, DisplacementMisfit& misfit) {
   const std::vector<TurnedMaterial> all = AllRotations(scene);
-  if (all.empty() || misfit.NumAmounts() > 0 || !misfit.Factorize(x)) {
+  if (all.empty() || misfit.HasLargeStrains() || misfit.NumAmounts() > 0 ||
+      !misfit.Factorize(x)) {
     return std::nullopt;
   }
   const Eigen::MatrixXd of_rotations = RowsOfRotations(scene, all, x, misfit);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "elastimate/core/algebra/node_sums.h"
+#include "elastimate/core/equilibrium/large_strain_model.h"
 #include "elastimate/estimators/interface/statistics.h"
 
 namespace elastimate {
@@ -30,16 +31,26 @@ double ToleranceFor(const Scene& scene) {
                                  : kOfDisplacements;
 }
 
+std::unique_ptr<ForwardModel> MakeModel(const std::vector<const Scene*>& spaces,
+                                        SolverKind solver) {
+  const Scene& scene = *spaces.back();
+  if (HasLargeStrainLaw(scene.materials, scene.mesh.section.model)) {
+    return std::make_unique<LargeStrainModel>(scene);
+  }
+  return std::make_unique<Equilibrium>(spaces, solver, ToleranceFor(scene));
+}
+
 }  // namespace
 
 DisplacementMisfit::DisplacementMisfit(const std::vector<const Scene*>& spaces,
                                        const EstimatorOptions& options)
     : free_(*spaces.back(), options),
-      equilibrium_(spaces, options.solver, ToleranceFor(*spaces.back())),
+      model_(MakeModel(spaces, options.solver)),
+      small_strain_model_(dynamic_cast<Equilibrium*>(model_.get())),
       observed_(*spaces.back()),
       on_factorization_(options.on_factorization) {
   if (HasUnknownMotion(*spaces.back())) {
-    motion_.emplace(*spaces.back(), observed_, equilibrium_);
+    motion_.emplace(*spaces.back(), observed_, *model_);
   }
 }
 
@@ -66,9 +77,8 @@ bool DisplacementMisfit::SolutionAt(const Eigen::VectorXd& x,
     return false;
   }
   *displacement = Displacement();
-  *sensitivities = placed_
-                       ? placed_->sensitivities
-                       : equilibrium_.Sensitivities(free_.ModuliJacobian(x));
+  *sensitivities = placed_ ? placed_->sensitivities
+                           : model_->Sensitivities(free_.ModuliJacobian(x));
   return true;
 }
 
@@ -90,7 +100,12 @@ void DisplacementMisfit::SetNoise(double standard_deviation) {
   }
   motion_->SetNoise(standard_deviation);
   if (x_.size() != 0) {
-    residual_ = motion_->Refit();
+    const std::optional<Eigen::VectorXd> rows = motion_->Refit();
+    if (rows) {
+      residual_ = *rows;
+    } else {
+      x_.resize(0);
+    }
   }
 }
 
@@ -133,11 +148,11 @@ std::optional<DisplacementMisfit::ScaleFit> DisplacementMisfit::FitScale(
     const Eigen::VectorXd& unit_moduli, Loss loss) {
   x_.resize(0);
   placed_.reset();
-  if (!equilibrium_.Solve(unit_moduli)) {
+  if (!model_->Solve(unit_moduli)) {
     return std::nullopt;
   }
-  const Eigen::MatrixXd& held = equilibrium_.SupportResponse();
-  const Eigen::MatrixXd loaded = equilibrium_.Displacement() - held;
+  const Eigen::MatrixXd& held = small_strain_model_->SupportResponse();
+  const Eigen::MatrixXd loaded = model_->Displacement() - held;
   if (motion_) {
     motion_->SetNoise(0);
   }
@@ -156,9 +171,9 @@ std::optional<DisplacementMisfit::ScaleFit> DisplacementMisfit::FitScale(
   if (!motion_) {
     return std::nullopt;
   }
-  motion_->Fit();
-  const Eigen::VectorXd of_unit =
-      motion_->Resultants(equilibrium_.SupportForces());
+  static_cast<void>(model_->MoveSupports(motion_->HeldMotion()) &&
+                    motion_->Fit());
+  const Eigen::VectorXd of_unit = motion_->Resultants(model_->SupportForces());
   const Eigen::VectorXd measured = motion_->MeasuredResultants();
   return IfPositive({of_unit.squaredNorm() / of_unit.dot(measured), 0});
 }
@@ -170,8 +185,10 @@ bool DisplacementMisfit::SolveAt(const Eigen::VectorXd& x) {
     on_factorization_(++num_factorizations_);
   }
   const Eigen::VectorXd moduli = free_.ModuliAt(x);
-  return moduli.allFinite() && equilibrium_.Solve(moduli) &&
-         equilibrium_.Displacement().allFinite();
+  return moduli.allFinite() &&
+         (motion_ ? model_->SolveMoved(moduli, motion_->HeldMotion())
+                  : model_->Solve(moduli)) &&
+         model_->Displacement().allFinite();
 }
 
 bool DisplacementMisfit::Factorize(const Eigen::VectorXd& x) {
@@ -202,9 +219,16 @@ bool DisplacementMisfit::MoveModelTo(const Eigen::VectorXd& x) {
   if (!SolveAt(x)) {
     return false;
   }
-  residual_ = motion_ ? motion_->Fit()
-                      : observed_.Restrict(equilibrium_.Displacement()) -
-                            observed_.Measured();
+  if (motion_) {
+    const std::optional<Eigen::VectorXd> rows = motion_->Fit();
+    if (!rows) {
+      return false;
+    }
+    residual_ = *rows;
+  } else {
+    residual_ =
+        observed_.Restrict(model_->Displacement()) - observed_.Measured();
+  }
   x_ = x;
   return true;
 }
@@ -213,9 +237,9 @@ Eigen::MatrixXd DisplacementMisfit::Sensitivities(const Eigen::VectorXd& x) {
   const Eigen::Index n = free_.Size();
   const Eigen::MatrixXd directions = free_.ModuliJacobian(x);
   const Eigen::MatrixXd of_cases =
-      placed_ ? placed_->sensitivities : equilibrium_.Sensitivities(directions);
+      placed_ ? placed_->sensitivities : model_->Sensitivities(directions);
   const Eigen::MatrixXd forces =
-      motion_ ? equilibrium_.SupportForceSensitivities(directions, of_cases)
+      motion_ ? model_->SupportForceSensitivities(directions, of_cases)
               : Eigen::MatrixXd();
   Eigen::MatrixXd sensitivities(NumRows(), n);
   for (Eigen::Index i = 0; i < n; ++i) {

@@ -3,11 +3,13 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "elastimate/core/equilibrium/equilibrium.h"
+#include "elastimate/core/equilibrium/forward_model.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimator.h"
@@ -31,21 +33,24 @@ class DisplacementMisfit {
       : DisplacementMisfit(std::vector<const Scene*>{&scene}, options) {}
 
   /// Takes the last of some spaces of one specimen, from coarse to fine, by
-  /// which systems are solved without its factor (Equilibrium).  All must
-  /// outlive this.
+  /// which systems of small strains are solved without its factor
+  /// (Equilibrium).  All must outlive this.
   DisplacementMisfit(const std::vector<const Scene*>& spaces,
                      const EstimatorOptions& options);
 
   const FreeParameters& Free() const { return free_; }
   const ObservedDisplacements& Observed() const { return observed_; }
-  Equilibrium& Model() { return equilibrium_; }
+  ForwardModel& Model() { return *model_; }
+  /// Precondition: the materials have laws of small strains.
+  Equilibrium& SmallStrainModel() { return *small_strain_model_; }
+  bool HasLargeStrains() const { return small_strain_model_ == nullptr; }
 
   /// Takes these nodes for neighbours in statistics of the residual: those of
   /// the mesh that was measured, whose nodes have none in a finer one.
   /// `graph` must outlive this.
   void SetNeighbours(const NodeGraph& graph) { neighbours_ = &graph; }
   const NodeGraph& Neighbours() const {
-    return neighbours_ != nullptr ? *neighbours_ : equilibrium_.Graph();
+    return neighbours_ != nullptr ? *neighbours_ : model_->Graph();
   }
 
   /// Takes what a scene that differs in its measured displacements alone has
@@ -123,6 +128,7 @@ class DisplacementMisfit {
   /// What explains displacements or resultants best where the moduli are 1, in
   /// the sum of squares or, with a loss, that of absolute deviations; empty
   /// when they oppose the loads.  Of resultants alone the cost is zero.
+  /// Precondition: small strains.
   std::optional<ScaleFit> FitScale(const Eigen::VectorXd& unit_moduli,
                                    Loss loss);
 
@@ -133,7 +139,7 @@ class DisplacementMisfit {
   };
 
   const Eigen::MatrixXd& Displacement() const {
-    return placed_ ? placed_->displacement : equilibrium_.Displacement();
+    return placed_ ? placed_->displacement : model_->Displacement();
   }
   bool IsAt(const Eigen::VectorXd& x) const {
     return x_.size() == x.size() && x_ == x;
@@ -146,7 +152,8 @@ class DisplacementMisfit {
   Eigen::VectorXd WithoutMotion(const Eigen::MatrixXd& displacements);
 
   FreeParameters free_;
-  Equilibrium equilibrium_;
+  std::unique_ptr<ForwardModel> model_;
+  Equilibrium* small_strain_model_;  ///< `model_`, or null.
   ObservedDisplacements observed_;
   std::optional<MotionElimination> motion_;
   std::function<void(int)> on_factorization_;

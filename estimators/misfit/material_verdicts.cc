@@ -15,16 +15,17 @@
 namespace elastimate {
 namespace {
 
-// The strain energy of each material, in all load cases together.
-Eigen::VectorXd EnergiesOf(const InternalForces& forces,
-                           const Eigen::VectorXd& moduli,
-                           const Eigen::MatrixXd& displacement) {
-  const MaterialParameters& parameters = forces.Parameters();
+// What the stresses of each material do on the displacements, in all load cases
+// together: twice its strain energy where strains are small.
+Eigen::VectorXd WorkOf(const ForwardModel& model, const Eigen::VectorXd& moduli,
+                       const Eigen::MatrixXd& displacement) {
+  const MaterialParameters& parameters = model.Parameters();
   const auto num_materials = Eigen::Index(parameters.NumMaterials());
   Eigen::VectorXd energies = Eigen::VectorXd::Zero(num_materials);
-  for (const auto& u : displacement.colwise()) {
+  for (Eigen::Index k = 0; k < displacement.cols(); ++k) {
     const Eigen::VectorXd of_moduli =
-        InnerProducts(forces.Columns(u), u).cwiseProduct(moduli) / 2;
+        InnerProducts(model.ForceColumns(k), displacement.col(k))
+            .cwiseProduct(moduli);
     for (Eigen::Index i = 0; i < num_materials; ++i) {
       const Eigen::Index first = parameters.FirstModulus(i);
       energies(i) += of_moduli
@@ -247,8 +248,8 @@ void DescribeMaterials(const Scene& scene, const MinimumErrors& errors,
   }
   const FreeParameters& free = misfit.Free();
   const Eigen::VectorXd energies =
-      EnergiesOf(misfit.Model().Forces(), free.ModuliAt(errors.variables),
-                 misfit.FittedDisplacement());
+      WorkOf(misfit.Model(), free.ModuliAt(errors.variables),
+             misfit.FittedDisplacement());
   estimate.materials.clear();
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     MaterialEstimate material;

@@ -30,7 +30,7 @@ constexpr double kDependentAmounts = 1e-13;
 
 MotionElimination::MotionElimination(const Scene& scene,
                                      const ObservedDisplacements& observed,
-                                     Equilibrium& model)
+                                     ForwardModel& model)
     : scene_(scene), observed_(observed), model_(model) {
   const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
   std::vector<const Supports*> supports_of_motion;
@@ -82,21 +82,32 @@ void MotionElimination::SetNoise(double standard_deviation) {
   InvertGrams();
 }
 
-Eigen::VectorXd MotionElimination::Fit() {
+std::optional<Eigen::VectorXd> MotionElimination::Fit() {
   SolveForColumns();
-  model_.Superpose(SupportMotion(amounts_));
   return Refit();
 }
 
-Eigen::VectorXd MotionElimination::Refit() {
-  Eigen::VectorXd rows = RowsOf(
-      WithMotionOfAll(amounts_, model_.Displacement()), model_.SupportForces());
-  rows.head(observed_.Size()) -= observed_.Measured();
-  rows.tail(NumResultants()) -= noise_ * MeasuredResultants();
-  const Eigen::VectorXd surplus = Minimize(kExact, rows);
-  amounts_ -= surplus;
-  model_.Superpose(-SupportMotion(surplus));
-  return rows;
+std::optional<Eigen::VectorXd> MotionElimination::Refit() {
+  // A step that changes the rows by a smaller part of them is the last.
+  constexpr double kSettled = 1e-8;
+  constexpr int kMostSteps = 10;
+  for (int i = 0; i < kMostSteps; ++i) {
+    Eigen::VectorXd rows =
+        RowsOf(WithMotionOfAll(amounts_, model_.Displacement()),
+               model_.SupportForces());
+    rows.head(observed_.Size()) -= observed_.Measured();
+    rows.tail(NumResultants()) -= noise_ * MeasuredResultants();
+    const double before = Norm(rows);
+    const Eigen::VectorXd surplus = Minimize(kExact, rows);
+    amounts_ -= surplus;
+    if (!model_.MoveSupports(-HeldMotion(surplus))) {
+      return std::nullopt;
+    }
+    if (model_.IsLinear() || before - Norm(rows) <= kSettled * before) {
+      return rows;
+    }
+  }
+  return std::nullopt;
 }
 
 Eigen::VectorXd MotionElimination::Eliminate(

@@ -2,9 +2,10 @@
 #define ELASTIMATE_ESTIMATORS_MISFIT_MOTION_ELIMINATION_H_
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
-#include "elastimate/core/equilibrium/equilibrium.h"
+#include "elastimate/core/equilibrium/forward_model.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/core/scene/unknown_motion.h"
@@ -32,7 +33,7 @@ class MotionElimination {
   /// Preconditions: a valid scene, with a measurement in each load case.  The
   /// objects must outlive this one.
   MotionElimination(const Scene& scene, const ObservedDisplacements& observed,
-                    Equilibrium& model);
+                    ForwardModel& model);
 
   /// The numbers of all rows, and of the amounts of all load cases.
   Eigen::Index NumRows() const {
@@ -48,12 +49,18 @@ class MotionElimination {
   void SetNoise(double standard_deviation);
   double Noise() const { return noise_; }
 
-  /// Moves the displacements that the model solved for by the amounts that fit
-  /// the measurement best, and returns the rows of what is left, model -
-  /// measurement.
-  Eigen::VectorXd Fit();
+  /// Returns the motion of supports by the amounts of the last fit: num_dofs x
+  /// num_load_cases, zero in the free rows.
+  Eigen::MatrixXd HeldMotion() const { return HeldMotion(amounts_); }
+
+  /// Moves the displacements of the model, which was solved with HeldMotion(),
+  /// by the amounts that fit the measurement best, and returns the rows of what
+  /// is left, model - measurement.  Where the model is not linear in the motion
+  /// of supports, by Gauss-Newton steps.  Empty where the model cannot be
+  /// solved on the way.
+  std::optional<Eigen::VectorXd> Fit();
   /// Fits again at the moduli of the last Fit, under another noise.
-  Eigen::VectorXd Refit();
+  std::optional<Eigen::VectorXd> Refit();
 
   /// The displacements of the model with the motion of all of the last Fit:
   /// num_dofs x num_load_cases.
@@ -135,7 +142,7 @@ class MotionElimination {
 
   const Scene& scene_;
   const ObservedDisplacements& observed_;
-  Equilibrium& model_;
+  ForwardModel& model_;
   std::vector<UnknownMotion> motions_;  ///< One for each set of supports.
   std::vector<std::size_t> motion_of_case_;
   std::vector<Eigen::Index> first_amount_;  ///< By load cases.

@@ -14,6 +14,7 @@
 #include <variant>
 
 #include "elastimate/core/materials/free_axis_law.h"
+#include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/materials/transversely_isotropic_law.h"
 #include "elastimate/core/mesh/coincident_nodes.h"
 #include "elastimate/core/scene/loads.h"
@@ -450,6 +451,12 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
         error.what() + (numbers_differ ? " (counting only " + mesh.Shapes() +
                                              " and the nodes they use)"
                                        : ""));
+  }
+  if (scene.origin == Origin::kComputedAtLargeStrains) {
+    scene.origin =
+        HasLargeStrainLaw(scene.materials, scene.mesh.section.model)
+            ? Origin::kComputed
+            : Origin::kMeasured;
   }
   CheckObserved(path, scene);
   return scene;

@@ -315,9 +315,11 @@ MeshFile ToMeshFile(const std::filesystem::path& path,
   MeshFile mesh = ToMeshFile(path, ToVtkGrid(grid));
   mesh.model = FieldNumber(path, "model", grid->GetFieldData());
   mesh.thickness = FieldNumber(path, "thickness", grid->GetFieldData());
-  if (FieldNumber(path, "computed", grid->GetFieldData()).value_or(0) == 1) {
-    mesh.origin = Origin::kComputed;
-  }
+  const double computed =
+      FieldNumber(path, "computed", grid->GetFieldData()).value_or(0);
+  mesh.origin = computed == 1   ? Origin::kComputed
+                : computed == 2 ? Origin::kComputedAtLargeStrains
+                                : Origin::kMeasured;
   return mesh;
 }
 

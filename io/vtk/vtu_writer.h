@@ -27,8 +27,8 @@ struct Fields {
 /// `prescribed` when a support is held away from zero, and `region`.  For each
 /// load case k, with suffix `_k` for k > 1, these are `force` (the loads
 /// assembled to consistent nodal forces), `displacement` and `observed` where
-/// there are any.  The field data have `computed` (1) where elements of the
-/// mesh computed the displacements (Origin::kComputed).
+/// there are any.  The field data have `computed` where elements of the
+/// mesh computed the displacements: 1, or 2 with laws of large strains.
 [[nodiscard]] Fields SceneFields(const Scene& scene);
 
 /// Returns the mesh with its fields as the content of a VTU file (binary,

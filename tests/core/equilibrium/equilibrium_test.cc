@@ -158,7 +158,7 @@ TEST_P(EquilibriumOfKinds, HasForcesOfSupportsThatBalanceTheLoads) {
   Equilibrium equilibrium(scene_, SolverKind::kCholesky);
   const MaterialParameters& chart = equilibrium.Forces().Parameters();
   ASSERT_TRUE(equilibrium.Solve(chart.Moduli(parameters_)));
-  equilibrium.Superpose(equilibrium.Extend(1e-3 * RandomOfHeld(scene_, 2)));
+  ASSERT_TRUE(equilibrium.MoveSupports(1e-3 * RandomOfHeld(scene_, 2)));
   const Eigen::MatrixXd forces = equilibrium.SupportForces();
   const Eigen::MatrixXd loads = AssembleLoadCases(scene_);
   const int dimension = scene_.mesh.Dimension();
@@ -182,11 +182,9 @@ TEST_P(EquilibriumOfKinds, HasForcesOfSupportsThatBalanceTheLoads) {
   }
   Equilibrium of_motion(without_loads, SolverKind::kCholesky);
   ASSERT_TRUE(of_motion.Solve(chart.Moduli(parameters_)));
-  of_motion.Superpose(equilibrium.Displacement() - [&] {
-    Equilibrium still(scene_, SolverKind::kCholesky);
-    EXPECT_TRUE(still.Solve(chart.Moduli(parameters_)));
-    return still.Displacement();
-  }());
+  ASSERT_TRUE(
+      of_motion.MoveSupports(OfHeld(scene_, equilibrium.Displacement()) -
+                             equilibrium.HeldDisplacement()));
   const Eigen::MatrixXd expected = of_motion.SupportForces();
   for (Eigen::Index k = 0; k < 2; ++k) {
     const Eigen::VectorXd slope = slopes.middleCols(4 * k, 4) * growth;

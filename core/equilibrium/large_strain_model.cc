@@ -1,0 +1,190 @@
+#include "elastimate/core/equilibrium/large_strain_model.h"
+
+#include <utility>
+
+#include "elastimate/core/scene/unknown_motion.h"
+
+namespace elastimate {
+
+LargeStrainModel::LargeStrainModel(const Scene& scene)
+    : scene_(scene),
+      equilibrium_(scene, Dilatation::kMeanOfElement,
+                   HasUnknownMotion(scene) ? KeptFactors::kOfEachCase
+                                           : KeptFactors::kLast),
+      graph_(scene.mesh),
+      given_(equilibrium_.HeldDisplacement()),
+      states_(scene.load_cases.size()),
+      displacement_(Load().rows(), Load().cols()) {}
+
+bool LargeStrainModel::SolveInCase(Eigen::Index k,
+                                   const Eigen::VectorXd& start) {
+  const LargeStrainState found = equilibrium_.Solve(moduli_, k, start);
+  if (found.status != EquilibriumStatus::kDone) {
+    why_not_solved_ = "in load case " + std::to_string(k + 1) + ", " +
+                      WhyNotInEquilibrium(found);
+    return false;
+  }
+  StiffnessSolver& solver = equilibrium_.TangentSolver(k);
+  case_of_factor_[&solver] = k;
+  CaseState& state = states_[k];
+  state.moduli = moduli_;
+  state.displacement = found.displacement;
+  displacement_.col(k) = found.displacement;
+  state.sensitivities = -solver.Solve(
+      equilibrium_.Forces().ModuliDerivatives(moduli_, found.displacement));
+  return true;
+}
+
+bool LargeStrainModel::Solve(const Eigen::VectorXd& moduli) {
+  return SolveMoved(moduli,
+                    Eigen::MatrixXd::Zero(given_.rows(), given_.cols()));
+}
+
+bool LargeStrainModel::SolveMoved(const Eigen::VectorXd& moduli,
+                                  const Eigen::MatrixXd& held) {
+  why_not_solved_.clear();
+  moduli_ = moduli;
+  for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
+    equilibrium_.SetHeldDisplacement(k, given_.col(k) + held.col(k));
+    const CaseState& last = states_[k];
+    Eigen::VectorXd start;
+    if (last.moduli.size() > 0) {
+      start = last.displacement + last.sensitivities * (moduli - last.moduli);
+    }
+    if (!SolveInCase(k, start)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool LargeStrainModel::MoveSupports(const Eigen::MatrixXd& held) {
+  for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
+    equilibrium_.SetHeldDisplacement(
+        k, equilibrium_.HeldDisplacement().col(k) + held.col(k));
+    if (!SolveInCase(k, states_[k].displacement)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+template <class Function>
+Eigen::MatrixXd LargeStrainModel::ByCase(const Eigen::MatrixXd& columns,
+                                         const Function& of_case) const {
+  const Eigen::Index n = columns.cols() / NumLoadCases();
+  Eigen::MatrixXd results(columns.rows(), columns.cols());
+  for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
+    results.middleCols(n * k, n) = of_case(k, columns.middleCols(n * k, n));
+  }
+  return results;
+}
+
+StiffnessSolver& LargeStrainModel::TangentSolver(Eigen::Index k) {
+  StiffnessSolver& solver = equilibrium_.TangentSolver(k);
+  if (std::exchange(case_of_factor_[&solver], k) != k) {
+    // It was positive definite when the equilibrium was found.
+    static_cast<void>(
+        solver.FactorizeBlocks(equilibrium_.Forces().TangentBlocks(
+            moduli_, displacement_.col(k), solver.Graph())));
+  }
+  return solver;
+}
+
+Eigen::MatrixXd LargeStrainModel::TangentProducts(
+    Eigen::Index k, const Eigen::MatrixXd& columns) const {
+  return equilibrium_.Forces().TangentProducts(moduli_, displacement_.col(k),
+                                               columns);
+}
+
+Eigen::MatrixXd LargeStrainModel::OfHeldInCase(Eigen::Index k,
+                                               Eigen::MatrixXd values) const {
+  const auto& held = SupportsOf(scene_, k).held;
+  for (Eigen::Index dof = 0; dof < values.rows(); ++dof) {
+    if (!held(dof)) {
+      values.row(dof).setZero();
+    }
+  }
+  return values;
+}
+
+Eigen::MatrixXd LargeStrainModel::Sensitivities(
+    const Eigen::MatrixXd& directions) {
+  Eigen::MatrixXd sensitivities(displacement_.rows(),
+                                directions.cols() * NumLoadCases());
+  for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
+    sensitivities.middleCols(directions.cols() * k, directions.cols()) =
+        states_[k].sensitivities * directions;
+  }
+  return sensitivities;
+}
+
+Eigen::MatrixXd LargeStrainModel::SolveFor(const Eigen::MatrixXd& forces) {
+  return ByCase(forces, [&](Eigen::Index k, const Eigen::MatrixXd& columns) {
+    return TangentSolver(k).Solve(columns);
+  });
+}
+
+Eigen::MatrixXd LargeStrainModel::ForceColumns(Eigen::Index k) const {
+  return equilibrium_.Forces().Columns(moduli_, displacement_.col(k));
+}
+
+Eigen::MatrixXd LargeStrainModel::ExtendInCase(Eigen::Index k,
+                                               const Eigen::MatrixXd& held) {
+  return held - TangentSolver(k).Solve(TangentProducts(k, held));
+}
+
+Eigen::MatrixXd LargeStrainModel::Extend(const Eigen::MatrixXd& held) {
+  return ByCase(held, [&](Eigen::Index k, const Eigen::MatrixXd& columns) {
+    return ExtendInCase(k, columns);
+  });
+}
+
+Eigen::MatrixXd LargeStrainModel::ExtendTransposed(
+    const Eigen::MatrixXd& values) {
+  return ByCase(values, [&](Eigen::Index k, const Eigen::MatrixXd& columns) {
+    return Eigen::MatrixXd(
+        OfHeldInCase(k, columns) -
+        HeldForcesInCase(k, TangentSolver(k).Solve(columns)));
+  });
+}
+
+Eigen::MatrixXd LargeStrainModel::HeldForcesInCase(
+    Eigen::Index k, const Eigen::MatrixXd& displacements) const {
+  return OfHeldInCase(k, TangentProducts(k, displacements));
+}
+
+Eigen::MatrixXd LargeStrainModel::HeldForces(
+    const Eigen::MatrixXd& displacements) const {
+  return ByCase(displacements,
+                [&](Eigen::Index k, const Eigen::MatrixXd& columns) {
+                  return HeldForcesInCase(k, columns);
+                });
+}
+
+Eigen::MatrixXd LargeStrainModel::HeldForcesTransposed(
+    const Eigen::MatrixXd& held) const {
+  return ByCase(held, [&](Eigen::Index k, const Eigen::MatrixXd& columns) {
+    return TangentProducts(k, OfHeldInCase(k, columns));
+  });
+}
+
+Eigen::MatrixXd LargeStrainModel::SupportForces() const {
+  return ByCase(displacement_, [&](Eigen::Index k, const Eigen::MatrixXd& u) {
+    return OfHeldInCase(
+        k, equilibrium_.Forces().Forces(moduli_, u.col(0)) - Load().col(k));
+  });
+}
+
+Eigen::MatrixXd LargeStrainModel::SupportForceSensitivities(
+    const Eigen::MatrixXd& directions, const Eigen::MatrixXd& sensitivities) {
+  return ByCase(
+      sensitivities, [&](Eigen::Index k, const Eigen::MatrixXd& of_case) {
+        return OfHeldInCase(k, TangentProducts(k, of_case) +
+                                   equilibrium_.Forces().ModuliDerivatives(
+                                       moduli_, displacement_.col(k)) *
+                                       directions);
+      });
+}
+
+}  // namespace elastimate

@@ -1,0 +1,107 @@
+#ifndef ELASTIMATE_CORE_EQUILIBRIUM_LARGE_STRAIN_MODEL_H_
+#define ELASTIMATE_CORE_EQUILIBRIUM_LARGE_STRAIN_MODEL_H_
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "elastimate/core/equilibrium/forward_model.h"
+#include "elastimate/core/equilibrium/large_strain_equilibrium.h"
+#include "elastimate/core/mesh/node_graph.h"
+
+namespace elastimate {
+
+/// The forward model of materials of large strains: all load cases of
+/// LargeStrainEquilibrium, with tangents and sensitivities there.
+///
+/// A Solve begins with what the sensitivities of the last one predict,
+/// u + S (theta - theta_last), from where two or three tangents lead to
+/// equilibrium where theta is near.  After a Solve that failed, the next one
+/// begins with the last that did not.
+class LargeStrainModel : public ForwardModel {
+ public:
+  /// Preconditions and exceptions are those of LargeStrainEquilibrium.
+  explicit LargeStrainModel(const Scene& scene);
+  explicit LargeStrainModel(const Scene&&) = delete;
+
+  /// About five tangents for each load case at first, later three.
+  [[nodiscard]] bool Solve(const Eigen::VectorXd& moduli) override;
+  const std::string& WhyNotSolved() const override { return why_not_solved_; }
+
+  const Eigen::MatrixXd& Displacement() const override { return displacement_; }
+  const Eigen::MatrixXd& Load() const override { return equilibrium_.Load(); }
+
+  /// Costs nothing: Solve has solved for all moduli.
+  Eigen::MatrixXd Sensitivities(const Eigen::MatrixXd& directions) override;
+  // Another factorisation for each load case whose factor is not kept.
+  Eigen::MatrixXd SolveFor(const Eigen::MatrixXd& forces) override;
+  Eigen::MatrixXd ForceColumns(Eigen::Index k) const override;
+
+  Eigen::MatrixXd Extend(const Eigen::MatrixXd& held) override;
+  Eigen::MatrixXd ExtendTransposed(const Eigen::MatrixXd& values) override;
+  Eigen::MatrixXd ExtendInCase(Eigen::Index k,
+                               const Eigen::MatrixXd& held) override;
+  /// Newton's method from what Extend predicts.
+  [[nodiscard]] bool MoveSupports(const Eigen::MatrixXd& held) override;
+  /// Begins as Solve does, from where the supports were at last.
+  [[nodiscard]] bool SolveMoved(const Eigen::VectorXd& moduli,
+                                const Eigen::MatrixXd& held) override;
+  bool IsLinear() const override { return false; }
+
+  Eigen::MatrixXd HeldForces(
+      const Eigen::MatrixXd& displacements) const override;
+  Eigen::MatrixXd HeldForcesTransposed(
+      const Eigen::MatrixXd& held) const override;
+  Eigen::MatrixXd HeldForcesInCase(
+      Eigen::Index k, const Eigen::MatrixXd& displacements) const override;
+  Eigen::MatrixXd SupportForces() const override;
+  Eigen::MatrixXd SupportForceSensitivities(
+      const Eigen::MatrixXd& directions,
+      const Eigen::MatrixXd& sensitivities) override;
+
+  const MaterialParameters& Parameters() const override {
+    return equilibrium_.Forces().Parameters();
+  }
+  const NodeGraph& Graph() const override { return graph_; }
+  Work WorkDone() const override { return equilibrium_.WorkDone(); }
+  const std::string& Notice() const override { return no_notice_; }
+
+ private:
+  /// The last equilibrium of a load case that was found.
+  struct CaseState {
+    Eigen::VectorXd moduli;
+    Eigen::VectorXd displacement;
+    Eigen::MatrixXd sensitivities;  ///< num_dofs x num_moduli.
+  };
+
+  Eigen::Index NumLoadCases() const { return Load().cols(); }
+  /// Finds the equilibrium of load case `k` from this start on, or from rest
+  /// where it is empty.
+  bool SolveInCase(Eigen::Index k, const Eigen::VectorXd& start);
+  /// Has the factor of the tangent of load case `k`.
+  StiffnessSolver& TangentSolver(Eigen::Index k);
+  Eigen::MatrixXd TangentProducts(Eigen::Index k,
+                                  const Eigen::MatrixXd& columns) const;
+  /// Keeps the rows that load case `k` holds.
+  Eigen::MatrixXd OfHeldInCase(Eigen::Index k, Eigen::MatrixXd values) const;
+  /// Applies of_case(k, columns of k) to the columns of each load case.
+  template <class Function>
+  Eigen::MatrixXd ByCase(const Eigen::MatrixXd& columns,
+                         const Function& of_case) const;
+
+  const Scene& scene_;
+  LargeStrainEquilibrium equilibrium_;
+  NodeGraph graph_;
+  Eigen::MatrixXd given_;  ///< The displacement of supports in the scene.
+  Eigen::VectorXd moduli_;
+  std::vector<CaseState> states_;
+  Eigen::MatrixXd displacement_;
+  std::map<const StiffnessSolver*, Eigen::Index> case_of_factor_;
+  std::string why_not_solved_;
+  std::string no_notice_;
+};
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_CORE_EQUILIBRIUM_LARGE_STRAIN_MODEL_H_

@@ -1,0 +1,122 @@
+#include "elastimate/estimators/material_fit/small_strain_start.h"
+
+#include "elastimate/core/laws/elasticity.h"
+#include "elastimate/core/materials/isotropic_law.h"
+#include "elastimate/estimators/material_fit/material_descent.h"
+#include "elastimate/estimators/misfit/descent.h"
+
+namespace elastimate {
+namespace {
+
+// Returns what a material of a law of large strains is at rest.
+IsotropicElasticity AtRest(const Law& law, const Eigen::VectorXd& parameters) {
+  const Eigen::MatrixXd tangent =
+      law.Tangent(law.Moduli(parameters, SectionModel::kSolid),
+                  Eigen::Matrix3d::Zero(), SectionModel::kSolid);
+  // dP_11 / dH_11 is lambda + 2 mu, and dP_21 / dH_21 is mu.
+  const double mu = tangent(1, 1);
+  const double lambda = tangent(0, 0) - 2 * mu;
+  return {mu * (3 * lambda + 2 * mu) / (lambda + mu),
+          lambda / (2 * (lambda + mu))};
+}
+
+// Multiplies the free moduli of material `i`.
+void MultiplyModuli(const MaterialParameters& all, std::size_t i, double factor,
+                    Eigen::VectorXd& parameters) {
+  for (const Eigen::Index place : all.Free()) {
+    const MaterialParameters::Parameter& parameter = all.All()[place];
+    if (parameter.material == i && (parameter.law_parameter->is_modulus ||
+                                    parameter.law_parameter->beside)) {
+      parameters(place) *= factor;
+    }
+  }
+}
+
+bool HasFreeModulus(const MaterialParameters& all, std::size_t i) {
+  for (const Eigen::Index place : all.Free()) {
+    if (all.All()[place].material == i &&
+        all.All()[place].law_parameter->is_modulus) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// E of each isotropic material of these Poisson's ratios; of those whose moduli
+// are known, E is given.
+std::optional<Eigen::VectorXd> FitYoungsModuli(
+    Scene scene, const std::vector<IsotropicElasticity>& at_rest,
+    const MaterialParameters& all, const EstimatorOptions& options,
+    Work& work) {
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    Material& material = scene.materials[i];
+    material = {std::string(IsotropicLaw::kName), material.regions, {}, {}};
+    material.known = {{"poisson_ratio", at_rest[i].poisson_ratio}};
+    if (!HasFreeModulus(all, i)) {
+      material.known.push_back({"youngs_modulus", at_rest[i].youngs_modulus});
+    }
+  }
+  EstimatorOptions of_start = options;
+  of_start.known_poisson_ratio.reset();
+  of_start.poisson_ratio = {};
+  of_start.youngs_modulus = {};
+  DisplacementMisfit misfit(scene, of_start);
+  std::optional<Eigen::VectorXd> variables = TypicalStart(misfit);
+  if (variables && misfit.Free().Size() > 1) {
+    variables =
+        DescendFrom(of_start, *variables, Distance::kFar, misfit).variables;
+  }
+  work = work + misfit.Model().WorkDone();
+  if (!variables) {
+    return std::nullopt;
+  }
+  const Eigen::VectorXd parameters = misfit.Free().ParametersAt(*variables);
+  return parameters(Eigen::seq(0, Eigen::last, 2));
+}
+
+}  // namespace
+
+std::optional<Eigen::VectorXd> SmallStrainStart(const Scene& scene,
+                                                const EstimatorOptions& options,
+                                                DisplacementMisfit& misfit,
+                                                Work& work) {
+  const MaterialParameters& all = misfit.Free().All();
+  Eigen::VectorXd parameters = all.Typical(all.KnownModulus().value_or(1));
+  std::vector<IsotropicElasticity> at_rest;
+  for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
+    const Law& law = all.LawOf(i);
+    at_rest.push_back(
+        AtRest(law, parameters.segment(all.FirstParameter(i),
+                                       Eigen::Index(law.Parameters().size()))));
+  }
+  bool has_free_modulus = false;
+  for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
+    has_free_modulus = has_free_modulus || HasFreeModulus(all, i);
+  }
+  if (has_free_modulus) {
+    const std::optional<Eigen::VectorXd> youngs_moduli =
+        FitYoungsModuli(scene, at_rest, all, options, work);
+    if (!youngs_moduli) {
+      return std::nullopt;
+    }
+    for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
+      MultiplyModuli(
+          all, i, (*youngs_moduli)(Eigen::Index(i)) / at_rest[i].youngs_modulus,
+          parameters);
+    }
+  }
+  constexpr int kMostDoublings = 6;
+  for (int doubling = 0; doubling <= kMostDoublings; ++doubling) {
+    const Eigen::VectorXd variables = misfit.Free().VariablesOf(parameters);
+    Eigen::VectorXd residual;
+    if (misfit.Evaluate(variables, &residual, nullptr)) {
+      return variables;
+    }
+    for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
+      MultiplyModuli(all, i, 2, parameters);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace elastimate
