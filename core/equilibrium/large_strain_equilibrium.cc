@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "elastimate/core/mechanics/internal_forces.h"
@@ -77,8 +78,16 @@ LargeStrainEquilibrium::LargeStrainEquilibrium(const Scene& scene,
                                                KeptFactors kept)
     : scene_(scene),
       forces_(scene.mesh, scene.materials, dilatation),
-      load_(AssembleLoadCases(scene)),
+      load_(scene.mesh.NumDofs(), scene.load_cases.size()),
       held_displacement_(load_.rows(), load_.cols()) {
+  for (Eigen::Index k = 0; k < load_.cols(); ++k) {
+    const std::vector<elastimate::Load>& loads = scene.load_cases[k].loads;
+    std::vector<elastimate::Load> dead;
+    std::remove_copy_if(loads.begin(), loads.end(), std::back_inserter(dead),
+                        Follows);
+    load_.col(k) = AssembleLoads(scene.mesh, dead).reshaped();
+    pressures_.emplace_back(scene.mesh, loads);
+  }
   HeldGroups groups = GroupByHeld(scene);
   if (kept == KeptFactors::kOfEachCase) {
     groups.first_cases.resize(load_.cols());
@@ -106,12 +115,13 @@ Work LargeStrainEquilibrium::WorkDone() const {
 }
 
 bool LargeStrainEquilibrium::Factorize(const Eigen::VectorXd& moduli,
+                                       Eigen::Index k, double t,
                                        const Eigen::VectorXd& u,
                                        double most_shift,
-                                       StiffnessSolver& solver,
                                        LargeStrainState& state) {
-  const Eigen::MatrixXd tangent =
-      forces_.TangentBlocks(moduli, u, solver.Graph());
+  StiffnessSolver& solver = TangentSolver(k);
+  Eigen::MatrixXd tangent = forces_.TangentBlocks(moduli, u, solver.Graph());
+  pressures_[k].AddSymmetricBlocks(u, -t, solver.Graph(), tangent);
   ++element_passes_;
   ++state.num_tangents;
   if (solver.FactorizeBlocks(tangent)) {
@@ -149,16 +159,16 @@ EquilibriumStatus LargeStrainEquilibrium::Newton(const Eigen::VectorXd& moduli,
   for (;;) {
     const Eigen::VectorXd forces = forces_.Forces(moduli, u);
     ++element_passes_;
-    const Eigen::VectorXd residual = dofs.Restrict(t * load_.col(k) - forces);
-    const double scale =
-        std::max(t * load_.col(k).norm(),
-                 (forces - dofs.Extend(dofs.Restrict(forces))).norm());
+    const Eigen::VectorXd load = t * LoadAt(k, u);
+    const Eigen::VectorXd residual = dofs.Restrict(load - forces);
+    const double scale = std::max(
+        load.norm(), (forces - dofs.Extend(dofs.Restrict(forces))).norm());
     const bool is_held = held_change.isZero(0);
     if (!residual.allFinite()) {
       return EquilibriumStatus::kNoEquilibrium;
     }
     const bool is_equilibrium = is_held && residual.norm() <= kResidual * scale;
-    if (!Factorize(moduli, u, is_equilibrium ? 0 : kMostShift, solver, state)) {
+    if (!Factorize(moduli, k, t, u, is_equilibrium ? 0 : kMostShift, state)) {
       return EquilibriumStatus::kUnstable;
     }
     if (is_equilibrium) {

@@ -7,14 +7,18 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "elastimate/core/equilibrium/equilibrium.h"
+#include "elastimate/core/mechanics/follower_pressure.h"
+#include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/scene_builder.h"
@@ -270,6 +274,69 @@ TEST(LargeStrainEquilibrium, InflatesASphereAsTheClosedForm) {
     // The error decreases with the square of the size of the elements.
     EXPECT_NEAR(work / area / published, 1, 0.03) << stretch;
   }
+}
+
+// The volume within the inner surface of an eighth of a sphere over that at
+// rest, for facets whose area vectors point inwards.
+double InnerGrowth(const Mesh& mesh, const Eigen::MatrixXi& facets,
+                   const Eigen::VectorXd& u) {
+  // A pressure of 1 on each x does the work 3 V.
+  const FollowerPressure pressure(mesh, {Pressure{facets, 1, true}});
+  const auto volume = [&](const Eigen::VectorXd& at) {
+    return pressure.Forces(at).dot(mesh.nodes.reshaped() + at);
+  };
+  return volume(u) / volume(Eigen::VectorXd::Zero(u.size()));
+}
+
+// The pressure of the closed form at an inner stretch.
+double PressureOfSphere(double la) {
+  const double lb = std::cbrt(1 + (la * la * la - 1) / 8);
+  return (4 / lb + std::pow(lb, -4) - 4 / la - std::pow(la, -4)) / 2;
+}
+
+// The sphere of the test above, inflated by a pressure on the deformed surface.
+// The pressure at the stretch 2 is beyond its maximum, which is at 1.83, so
+// that the stable state at that pressure has another stretch of the closed
+// form.
+TEST(LargeStrainEquilibrium, InflatesASphereByPressureThatFollows) {
+  const double lambda = 1e3;
+  const Eigen::Vector2d parameters((3 * lambda + 2) / (lambda + 1),
+                                   lambda / (2 * (lambda + 1)));
+  Scene linear = SceneOf(SphereMesh(2, 2), "neo_hookean");
+  for (int axis = 0; axis < 3; ++axis) {
+    HoldPlane(axis, 0, 0, linear);
+  }
+  const Eigen::MatrixXi facets = BoundaryFacetsWhere(
+      linear.mesh,
+      [&](int node) { return linear.mesh.nodes.col(node).norm() < 1 + 1e-9; });
+  Eigen::VectorXd start;
+  for (const auto& [stretch, published] :
+       {std::pair(1.2, 0.480160), std::pair(1.5, 0.755433),
+        std::pair(1.682, 0.806927)}) {
+    linear.load_cases[0].loads = {Pressure{facets, published, true}};
+    const Scene scene = QuadraticScene(linear);
+    LargeStrainEquilibrium model(scene);
+    const LargeStrainState state =
+        model.Solve(model.Forces().Parameters().Moduli(parameters), 0, start);
+    ASSERT_EQ(state.status, EquilibriumStatus::kDone) << stretch;
+    start = state.displacement;
+    const auto& inner = std::get<Pressure>(scene.load_cases[0].loads[0]);
+    const double reached =
+        std::cbrt(InnerGrowth(scene.mesh, inner.facets, state.displacement));
+    EXPECT_NEAR(published / PressureOfSphere(reached), 1, 1e-3);
+    EXPECT_NEAR(reached, stretch, 2e-3);
+  }
+  double largest = 0;
+  for (double la = 1.5; la < 2.5; la += 0.01) {
+    largest = std::max(largest, PressureOfSphere(la));
+  }
+  linear.load_cases[0].loads = {Pressure{facets, 1.0, true}};
+  const Scene scene = QuadraticScene(linear);
+  LargeStrainEquilibrium model(scene);
+  const LargeStrainState state =
+      model.Solve(model.Forces().Parameters().Moduli(parameters), 0);
+  EXPECT_NE(state.status, EquilibriumStatus::kDone);
+  EXPECT_NEAR(state.load_share, largest, 3e-3);
 }
 
 // A cylinder of incompressible neo-Hookean material, twisted by t a length,
