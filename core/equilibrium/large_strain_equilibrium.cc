@@ -49,8 +49,7 @@ std::string WhyNotInEquilibrium(const LargeStrainState& state) {
     return "";
   }
   const std::string reached = Percent(state.load_share) + " of the load";
-  const std::string element =
-      "element " + std::to_string(state.smallest_volume.element);
+  const std::string element = "element " + std::to_string(state.element);
   switch (state.status) {
     case EquilibriumStatus::kDone:
       break;
@@ -59,8 +58,7 @@ std::string WhyNotInEquilibrium(const LargeStrainState& state) {
              " the equilibrium is unstable, so that the specimen buckles or "
              "snaps (" +
              element +
-             " is deformed most); reduce the load, or hold more of the "
-             "specimen";
+             " moves most); reduce the load, or hold more of the specimen";
     case EquilibriumStatus::kInverted:
       return "beyond " + reached + " " + element +
              " is turned inside out; reduce the load, or make the mesh finer "
@@ -144,6 +142,34 @@ bool LargeStrainEquilibrium::Factorize(const Eigen::VectorXd& moduli,
     shift *= kShiftFactor;
   }
   return false;
+}
+
+Eigen::Index LargeStrainEquilibrium::ElementOfLowestMode(
+    const Eigen::VectorXd& moduli, Eigen::Index k, LargeStrainState& state) {
+  constexpr int kIterations = 8;
+  if (!Factorize(moduli, k, state.load_share, state.displacement, kMostShift,
+                 state)) {
+    return state.smallest_volume.element;
+  }
+  // Inverse iterations converge quickly, because the state is nearly unstable.
+  Eigen::MatrixXd mode = Eigen::VectorXd::NullaryExpr(
+      load_.rows(), [](Eigen::Index i) { return std::sin(double(i + 1)); });
+  for (int i = 0; i < kIterations; ++i) {
+    mode = TangentSolver(k).Solve(mode).normalized();
+  }
+  const Mesh& mesh = scene_.mesh;
+  const Eigen::VectorXd of_nodes =
+      mode.reshaped(mesh.Dimension(), mesh.NumNodes()).colwise().squaredNorm();
+  Eigen::Index most = 0;
+  double largest = 0;
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    const double sum = of_nodes(mesh.elements.col(e)).sum();
+    if (sum > largest) {
+      largest = sum;
+      most = e;
+    }
+  }
+  return most;
 }
 
 EquilibriumStatus LargeStrainEquilibrium::Newton(const Eigen::VectorXd& moduli,
@@ -232,6 +258,9 @@ LargeStrainState LargeStrainEquilibrium::Solve(const Eigen::VectorXd& moduli,
     } else {
       step = (t - state.load_share) * kCut;
       if (step < kSmallestLoadStep) {
+        state.element = state.status == EquilibriumStatus::kUnstable
+                            ? ElementOfLowestMode(moduli, k, state)
+                            : state.smallest_volume.element;
         return state;
       }
     }

@@ -36,8 +36,12 @@ struct LargeStrainState {
   /// `displacement` is in stable equilibrium: 1 if the search was successful.
   double load_share = 0;
   Eigen::VectorXd displacement;  ///< num_dofs [length].
-  /// The element that is deformed most, where the search ended.
+  /// The volume of the element that is deformed most, where the search ended.
   VolumeRatio smallest_volume = {1, 0};
+  /// Where the search ended without success: the element that moves most in the
+  /// lowest mode of the tangent if it ended at an unstable state, else the one
+  /// that is deformed most.
+  Eigen::Index element = 0;
   int num_steps = 0;     ///< Steps of the load, with those that failed.
   int num_tangents = 0;  ///< Factorisations.
 };
@@ -120,6 +124,10 @@ class LargeStrainEquilibrium {
   bool Factorize(const Eigen::VectorXd& moduli, Eigen::Index k, double t,
                  const Eigen::VectorXd& u, double most_shift,
                  LargeStrainState& state);
+  /// Returns the element that moves most in the lowest mode of the tangent at
+  /// the last stable state.  One tangent and a few solves.
+  Eigen::Index ElementOfLowestMode(const Eigen::VectorXd& moduli,
+                                   Eigen::Index k, LargeStrainState& state);
   /// Solves at the share `t` from `u`.
   EquilibriumStatus Newton(const Eigen::VectorXd& moduli, Eigen::Index k,
                            double t, LargeStrainState& state,
