@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numeric>
 
 #include "elastimate/core/mechanics/internal_forces.h"
@@ -16,6 +17,10 @@ namespace {
 // The residual over the forces of loads and supports at which a state is in
 // equilibrium.
 constexpr double kResidual = 1e-10;
+// A step of Newton's method that changes the displacement by less, relative to
+// its size, leaves nothing but rounding.  Where the material is nearly
+// incompressible, that of the residual may be above kResidual.
+constexpr double kRounding = 1e-12;
 // Newton's method that has not converged with so many tangents hardly will.
 constexpr int kMostTangents = 20;
 // A step of the load that fails is followed by one that is shorter by this.
@@ -182,6 +187,7 @@ EquilibriumStatus LargeStrainEquilibrium::Newton(const Eigen::VectorXd& moduli,
   Eigen::VectorXd held_change =
       t * held_displacement_.col(k) - (u - dofs.Extend(dofs.Restrict(u)));
   const int tangents_before = state.num_tangents;
+  double last_change = std::numeric_limits<double>::infinity();
   for (;;) {
     const Eigen::VectorXd forces = forces_.Forces(moduli, u);
     ++element_passes_;
@@ -193,7 +199,9 @@ EquilibriumStatus LargeStrainEquilibrium::Newton(const Eigen::VectorXd& moduli,
     if (!residual.allFinite()) {
       return EquilibriumStatus::kNoEquilibrium;
     }
-    const bool is_equilibrium = is_held && residual.norm() <= kResidual * scale;
+    const bool is_equilibrium =
+        is_held && (residual.norm() <= kResidual * scale ||
+                    last_change <= kRounding * u.norm());
     if (!Factorize(moduli, k, t, u, is_equilibrium ? 0 : kMostShift, state)) {
       return EquilibriumStatus::kUnstable;
     }
@@ -222,6 +230,7 @@ EquilibriumStatus LargeStrainEquilibrium::Newton(const Eigen::VectorXd& moduli,
       }
     }
     u += factor * change;
+    last_change = change.norm();
     held_change *= 1 - factor;
   }
 }

@@ -157,6 +157,8 @@ TEST(LargeStrainEquilibrium, DoesNotLockWithQuadraticElements) {
   };
   const double fine = corner(16, 1, Dilatation::kMeanOfElement);
   EXPECT_NEAR(corner(2, 2, Dilatation::kMeanOfElement) / fine, 1, 0.02);
+  // Rounding of the large bulk modulus is most of the residual here.
+  EXPECT_NEAR(corner(8, 2, Dilatation::kMeanOfElement) / fine, 1, 0.02);
   EXPECT_LT(corner(2, 2, Dilatation::kOfPoints) / fine, 0.75);
 }
 
