@@ -103,10 +103,10 @@ Solution SolveLargeStrains(const std::string& source, const Scene& modelled,
     solution.displacement.col(k) = state.displacement;
   }
   if (IsAnyDisplaced(modelled)) {
-    Eigen::MatrixXd residual = -AssembleLoadCases(modelled);
+    Eigen::MatrixXd residual(modelled.mesh.NumDofs(), num_cases);
     for (Eigen::Index k = 0; k < num_cases; ++k) {
-      residual.col(k) +=
-          model.Forces().Forces(moduli, solution.displacement.col(k));
+      const Eigen::VectorXd u = solution.displacement.col(k);
+      residual.col(k) = model.Forces().Forces(moduli, u) - model.LoadAt(k, u);
     }
     solution.support_forces = OfHeld(modelled, residual);
   }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <numeric>
 
 #include "elastimate/core/mechanics/internal_forces.h"
@@ -15,6 +17,10 @@ namespace {
 // The residual over the forces of loads and supports at which a state is in
 // equilibrium.
 constexpr double kResidual = 1e-10;
+// A step of Newton's method that changes the displacement by less, relative to
+// its size, leaves nothing but rounding.  Where the material is nearly
+// incompressible, that of the residual may be above kResidual.
+constexpr double kRounding = 1e-12;
 // Newton's method that has not converged with so many tangents hardly will.
 constexpr int kMostTangents = 20;
 // A step of the load that fails is followed by one that is shorter by this.
@@ -48,8 +54,7 @@ std::string WhyNotInEquilibrium(const LargeStrainState& state) {
     return "";
   }
   const std::string reached = Percent(state.load_share) + " of the load";
-  const std::string element =
-      "element " + std::to_string(state.smallest_volume.element);
+  const std::string element = "element " + std::to_string(state.element);
   switch (state.status) {
     case EquilibriumStatus::kDone:
       break;
@@ -58,8 +63,7 @@ std::string WhyNotInEquilibrium(const LargeStrainState& state) {
              " the equilibrium is unstable, so that the specimen buckles or "
              "snaps (" +
              element +
-             " is deformed most); reduce the load, or hold more of the "
-             "specimen";
+             " moves most); reduce the load, or hold more of the specimen";
     case EquilibriumStatus::kInverted:
       return "beyond " + reached + " " + element +
              " is turned inside out; reduce the load, or make the mesh finer "
@@ -77,8 +81,16 @@ LargeStrainEquilibrium::LargeStrainEquilibrium(const Scene& scene,
                                                KeptFactors kept)
     : scene_(scene),
       forces_(scene.mesh, scene.materials, dilatation),
-      load_(AssembleLoadCases(scene)),
+      load_(scene.mesh.NumDofs(), scene.load_cases.size()),
       held_displacement_(load_.rows(), load_.cols()) {
+  for (Eigen::Index k = 0; k < load_.cols(); ++k) {
+    const std::vector<elastimate::Load>& loads = scene.load_cases[k].loads;
+    std::vector<elastimate::Load> dead;
+    std::remove_copy_if(loads.begin(), loads.end(), std::back_inserter(dead),
+                        Follows);
+    load_.col(k) = AssembleLoads(scene.mesh, dead).reshaped();
+    pressures_.emplace_back(scene.mesh, loads);
+  }
   HeldGroups groups = GroupByHeld(scene);
   if (kept == KeptFactors::kOfEachCase) {
     groups.first_cases.resize(load_.cols());
@@ -106,12 +118,13 @@ Work LargeStrainEquilibrium::WorkDone() const {
 }
 
 bool LargeStrainEquilibrium::Factorize(const Eigen::VectorXd& moduli,
+                                       Eigen::Index k, double t,
                                        const Eigen::VectorXd& u,
                                        double most_shift,
-                                       StiffnessSolver& solver,
                                        LargeStrainState& state) {
-  const Eigen::MatrixXd tangent =
-      forces_.TangentBlocks(moduli, u, solver.Graph());
+  StiffnessSolver& solver = TangentSolver(k);
+  Eigen::MatrixXd tangent = forces_.TangentBlocks(moduli, u, solver.Graph());
+  pressures_[k].AddSymmetricBlocks(u, -t, solver.Graph(), tangent);
   ++element_passes_;
   ++state.num_tangents;
   if (solver.FactorizeBlocks(tangent)) {
@@ -136,6 +149,34 @@ bool LargeStrainEquilibrium::Factorize(const Eigen::VectorXd& moduli,
   return false;
 }
 
+Eigen::Index LargeStrainEquilibrium::ElementOfLowestMode(
+    const Eigen::VectorXd& moduli, Eigen::Index k, LargeStrainState& state) {
+  constexpr int kIterations = 8;
+  if (!Factorize(moduli, k, state.load_share, state.displacement, kMostShift,
+                 state)) {
+    return state.smallest_volume.element;
+  }
+  // Inverse iterations converge quickly, because the state is nearly unstable.
+  Eigen::MatrixXd mode = Eigen::VectorXd::NullaryExpr(
+      load_.rows(), [](Eigen::Index i) { return std::sin(double(i + 1)); });
+  for (int i = 0; i < kIterations; ++i) {
+    mode = TangentSolver(k).Solve(mode).normalized();
+  }
+  const Mesh& mesh = scene_.mesh;
+  const Eigen::VectorXd of_nodes =
+      mode.reshaped(mesh.Dimension(), mesh.NumNodes()).colwise().squaredNorm();
+  Eigen::Index most = 0;
+  double largest = 0;
+  for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+    const double sum = of_nodes(mesh.elements.col(e)).sum();
+    if (sum > largest) {
+      largest = sum;
+      most = e;
+    }
+  }
+  return most;
+}
+
 EquilibriumStatus LargeStrainEquilibrium::Newton(const Eigen::VectorXd& moduli,
                                                  Eigen::Index k, double t,
                                                  LargeStrainState& state,
@@ -146,19 +187,22 @@ EquilibriumStatus LargeStrainEquilibrium::Newton(const Eigen::VectorXd& moduli,
   Eigen::VectorXd held_change =
       t * held_displacement_.col(k) - (u - dofs.Extend(dofs.Restrict(u)));
   const int tangents_before = state.num_tangents;
+  double last_change = std::numeric_limits<double>::infinity();
   for (;;) {
     const Eigen::VectorXd forces = forces_.Forces(moduli, u);
     ++element_passes_;
-    const Eigen::VectorXd residual = dofs.Restrict(t * load_.col(k) - forces);
-    const double scale =
-        std::max(t * load_.col(k).norm(),
-                 (forces - dofs.Extend(dofs.Restrict(forces))).norm());
+    const Eigen::VectorXd load = t * LoadAt(k, u);
+    const Eigen::VectorXd residual = dofs.Restrict(load - forces);
+    const double scale = std::max(
+        load.norm(), (forces - dofs.Extend(dofs.Restrict(forces))).norm());
     const bool is_held = held_change.isZero(0);
     if (!residual.allFinite()) {
       return EquilibriumStatus::kNoEquilibrium;
     }
-    const bool is_equilibrium = is_held && residual.norm() <= kResidual * scale;
-    if (!Factorize(moduli, u, is_equilibrium ? 0 : kMostShift, solver, state)) {
+    const bool is_equilibrium =
+        is_held && (residual.norm() <= kResidual * scale ||
+                    last_change <= kRounding * u.norm());
+    if (!Factorize(moduli, k, t, u, is_equilibrium ? 0 : kMostShift, state)) {
       return EquilibriumStatus::kUnstable;
     }
     if (is_equilibrium) {
@@ -186,6 +230,7 @@ EquilibriumStatus LargeStrainEquilibrium::Newton(const Eigen::VectorXd& moduli,
       }
     }
     u += factor * change;
+    last_change = change.norm();
     held_change *= 1 - factor;
   }
 }
@@ -222,6 +267,9 @@ LargeStrainState LargeStrainEquilibrium::Solve(const Eigen::VectorXd& moduli,
     } else {
       step = (t - state.load_share) * kCut;
       if (step < kSmallestLoadStep) {
+        state.element = state.status == EquilibriumStatus::kUnstable
+                            ? ElementOfLowestMode(moduli, k, state)
+                            : state.smallest_volume.element;
         return state;
       }
     }

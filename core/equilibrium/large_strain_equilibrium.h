@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "elastimate/core/mechanics/follower_pressure.h"
 #include "elastimate/core/mechanics/large_strain_forces.h"
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/core/solvers/stiffness_solver.h"
@@ -35,8 +36,12 @@ struct LargeStrainState {
   /// `displacement` is in stable equilibrium: 1 if the search was successful.
   double load_share = 0;
   Eigen::VectorXd displacement;  ///< num_dofs [length].
-  /// The element that is deformed most, where the search ended.
+  /// The volume of the element that is deformed most, where the search ended.
   VolumeRatio smallest_volume = {1, 0};
+  /// Where the search ended without success: the element that moves most in the
+  /// lowest mode of the tangent if it ended at an unstable state, else the one
+  /// that is deformed most.
+  Eigen::Index element = 0;
   int num_steps = 0;     ///< Steps of the load, with those that failed.
   int num_tangents = 0;  ///< Factorisations.
 };
@@ -51,17 +56,21 @@ struct LargeStrainState {
 ///   u = t u_held on the held ones,
 ///
 /// at the share t = 1 of the load.  Loads are dead: nodal forces F stay as they
-/// are on the undeformed specimen, those of pressures as well.
+/// are on the undeformed specimen, except those of pressures that follow the
+/// surface (FollowerPressure).  The tangent takes the symmetric part of their
+/// derivative, which is all of it where the edge of their surface is held or
+/// there is none.  Elsewhere Newton's method converges linearly, and the check
+/// of stability is that of the symmetric part.
 ///
 /// Newton's method begins at the whole load.  Where it fails, the load is
 /// divided into steps, each a quarter as long as the last one that failed and
-/// twice as long as one that was easy.  A Newton step is shortened where det F would
-/// fall below a hundredth.  The tangent has to be positive definite at the end,
-/// since Newton's method finds unstable states as well [Wriggers, Nonlinear
-/// Finite Element Methods, 2008, chapter 5].  On the way there, where a nearly
-/// incompressible material has a wrong volume, its large pressure makes the
-/// tangent indefinite; then a multiple of a stiffness against shear alone is
-/// added, which leaves the correction of the volume as it is.
+/// twice as long as one that was easy.  A Newton step is shortened where det F
+/// would fall below a hundredth.  The tangent has to be positive definite at
+/// the end, since Newton's method finds unstable states as well [Wriggers,
+/// Nonlinear Finite Element Methods, 2008, chapter 5].  On the way there, where
+/// a nearly incompressible material has a wrong volume, its large pressure
+/// makes the tangent indefinite; then a multiple of a stiffness against shear
+/// alone is added, which leaves the correction of the volume as it is.
 ///
 ///   LargeStrainEquilibrium model(scene);
 ///   const MaterialParameters& chart = model.Forces().Parameters();
@@ -85,8 +94,13 @@ class LargeStrainEquilibrium {
     held_displacement_.col(k) = held;
   }
   const Eigen::MatrixXd& HeldDisplacement() const { return held_displacement_; }
-  /// Returns the loads F, num_dofs x num_load_cases [force].
+  /// Returns the dead loads, num_dofs x num_load_cases [force].
   const Eigen::MatrixXd& Load() const { return load_; }
+  /// Returns all loads F of load case `k` at a displacement, num_dofs [force].
+  Eigen::VectorXd LoadAt(Eigen::Index k,
+                         const Eigen::VectorXd& displacement) const {
+    return load_.col(k) + pressures_[k].Forces(displacement);
+  }
 
   /// Finds the equilibrium in load case `k`.  A start (num_dofs), such as the
   /// solution for moduli that are nearly the same, is tried first where it is
@@ -107,17 +121,22 @@ class LargeStrainEquilibrium {
  private:
   /// Factorises the tangent, with so many shear moduli added as it takes; false
   /// where it takes more than `most_shift`.
-  bool Factorize(const Eigen::VectorXd& moduli, const Eigen::VectorXd& u,
-                 double most_shift, StiffnessSolver& solver,
+  bool Factorize(const Eigen::VectorXd& moduli, Eigen::Index k, double t,
+                 const Eigen::VectorXd& u, double most_shift,
                  LargeStrainState& state);
+  /// Returns the element that moves most in the lowest mode of the tangent at
+  /// the last stable state.  One tangent and a few solves.
+  Eigen::Index ElementOfLowestMode(const Eigen::VectorXd& moduli,
+                                   Eigen::Index k, LargeStrainState& state);
   /// Solves at the share `t` from `u`.
   EquilibriumStatus Newton(const Eigen::VectorXd& moduli, Eigen::Index k,
                            double t, LargeStrainState& state,
                            Eigen::VectorXd& u);
   const Scene& scene_;
   LargeStrainForces forces_;
-  Eigen::MatrixXd load_;               ///< num_dofs x num_load_cases.
-  Eigen::MatrixXd held_displacement_;  ///< num_dofs x num_load_cases.
+  Eigen::MatrixXd load_;                     ///< num_dofs x num_load_cases.
+  std::vector<FollowerPressure> pressures_;  ///< One for each load case.
+  Eigen::MatrixXd held_displacement_;        ///< num_dofs x num_load_cases.
   std::vector<std::unique_ptr<StiffnessSolver>> solvers_;
   std::vector<std::size_t> solver_of_case_;
   /// The small strains stiffness of lambda = 0 and 2 mu = 1, once it is needed.

@@ -14,6 +14,7 @@
 #include "elastimate/core/large_strain/yeoh_law.h"
 #include "elastimate/core/materials/anisotropic_law.h"
 #include "elastimate/core/materials/free_axis_law.h"
+#include "elastimate/core/materials/green_strain_law.h"
 #include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/materials/law_check.h"
 #include "elastimate/core/materials/orthotropic_law.h"
@@ -27,17 +28,23 @@ using LawList = std::vector<std::shared_ptr<const Law>>;
 // The registry of all laws.  Its mutex admits one thread at a time.
 struct LawRegistry {
   std::mutex mutex;
-  LawList laws = {std::make_shared<IsotropicLaw>(),
-                  std::make_shared<TransverselyIsotropicLaw>(),
-                  std::make_shared<FreeAxisLaw>(),
-                  std::make_shared<OrthotropicLaw>(SectionModel::kSolid),
-                  std::make_shared<OrthotropicLaw>(SectionModel::kPlaneStress),
-                  std::make_shared<AnisotropicLaw>(),
-                  std::make_shared<CorotatedLaw>(),
-                  std::make_shared<StVenantKirchhoffLaw>(),
-                  std::make_shared<NeoHookeanLaw>(),
-                  std::make_shared<MooneyRivlinLaw>(),
-                  std::make_shared<YeohLaw>()};
+  LawList laws = {
+      std::make_shared<IsotropicLaw>(),
+      std::make_shared<TransverselyIsotropicLaw>(),
+      std::make_shared<FreeAxisLaw>(),
+      std::make_shared<OrthotropicLaw>(SectionModel::kSolid),
+      std::make_shared<OrthotropicLaw>(SectionModel::kPlaneStress),
+      std::make_shared<AnisotropicLaw>(),
+      std::make_shared<CorotatedLaw>(),
+      std::make_shared<StVenantKirchhoffLaw>(),
+      std::make_shared<GreenStrainLaw>(
+          std::make_unique<TransverselyIsotropicLaw>()),
+      std::make_shared<GreenStrainLaw>(
+          std::make_unique<OrthotropicLaw>(SectionModel::kSolid)),
+      std::make_shared<GreenStrainLaw>(std::make_unique<AnisotropicLaw>()),
+      std::make_shared<NeoHookeanLaw>(),
+      std::make_shared<MooneyRivlinLaw>(),
+      std::make_shared<YeohLaw>()};
 };
 
 LawRegistry& RegistryOfLaws() {

@@ -27,6 +27,11 @@ struct MaterialPass {
   const LargeStrainLaw& law;
   Eigen::VectorXd moduli;
   Dilatation dilatation;
+  const MaterialFrames& frames;
+  int material;
+
+  // Whether the law speaks in the frame of the material.
+  bool HasFrames() const { return law.NumAxes() > 0; }
 };
 
 template <ElementKind kKind>
@@ -36,10 +41,9 @@ template <ElementKind kKind>
 using NodeColumns = Eigen::Matrix<double, ElementSizes<kKind>::kDimension,
                                   ElementSizes<kKind>::kNodes>;
 
-// Whether elements of this kind take the mean of their dilatation.
+// Whether elements of this kind smooth their dilatation.
 template <ElementKind kKind>
-constexpr bool kHasMean =
-    kKind == ElementKind::kHex8 || kKind == ElementKind::kQuad4;
+constexpr bool kHasMean = !IsSimplex(kKind);
 
 template <ElementKind kKind>
 bool TakesMean(const MaterialPass& pass) {
@@ -50,7 +54,14 @@ bool TakesMean(const MaterialPass& pass) {
 // What the stretch across a plate does where the moduli change.
 enum class CrossStretch { kStays, kFollows };
 
-// Some elements whose points are evaluated together.
+// Returns the frame of an element of the pass.
+template <ElementKind kKind>
+auto FrameOf(const MaterialPass& pass, Eigen::Index element) {
+  return pass.frames.Of<kDimensionOf<kKind>>(pass.material, element);
+}
+
+// Some elements whose points are evaluated together, as seen in the frame of
+// the material.
 template <ElementKind kKind>
 class ElementBatch {
  public:
@@ -66,20 +77,28 @@ class ElementBatch {
     for (std::size_t i = 0; i < num_elements; ++i) {
       const Eigen::Index e = pass.elements[first + i];
       elements_.push_back(e);
-      const NodeColumns<kKind> u =
+      NodeColumns<kKind> u =
           GatherNodes<kKind>(pass.mesh, e, displacement.data());
-      VisitPoints<kKind>(pass.mesh, e, StiffnessRule<kKind>(),
-                         [&](const auto& point, const auto&) {
-                           SetGradient(int(points_.size()),
-                                       u * point.gradient.transpose());
-                           points_.push_back(point);
-                         });
+      if (pass.HasFrames()) {
+        u = (FrameOf<kKind>(pass, e).transpose() * u).eval();
+      }
+      VisitPoints<kKind>(
+          pass.mesh, e, StiffnessRule<kKind>(),
+          [&](ElementPoint<kKind> point, const auto&) {
+            if (pass.HasFrames()) {
+              point.gradient =
+                  (FrameOf<kKind>(pass, e).transpose() * point.gradient).eval();
+            }
+            SetGradient(int(points_.size()), u * point.gradient.transpose());
+            points_.push_back(point);
+          });
+      if (TakesMean<kKind>(pass)) {
+        SetPolynomials(e);
+        ReplaceByMean(i);
+      }
     }
     if (pass.mesh.section.model == SectionModel::kPlaneStress) {
       SetCrossGradients(pass.law, pass.moduli, NumPoints(), gradients_);
-    }
-    if (TakesMean<kKind>(pass)) {
-      ReplaceByMeans();
     }
   }
 
@@ -90,7 +109,7 @@ class ElementBatch {
   const ElementPoint<kKind>& Point(std::size_t element, int i) const {
     return points_[element * std::size_t(points_per_element_) + i];
   }
-  // Only where elements take the mean of their dilatation.
+  // Only where elements smooth their dilatation.
   const MeanDilatation& Mean(std::size_t element) const {
     return means_[element];
   }
@@ -152,18 +171,33 @@ class ElementBatch {
     }
   }
 
-  void ReplaceByMeans() {
-    for (std::size_t e = 0; e < elements_.size(); ++e) {
-      Eigen::VectorXd volumes(points_per_element_);
-      for (int i = 0; i < points_per_element_; ++i) {
-        volumes(i) = Point(e, i).volume;
+  // Sets the polynomials that smooth the dilatation of an element: 1, and in
+  // elements of order 2 the coordinates as well.
+  void SetPolynomials(Eigen::Index element) {
+    const int order = pass_.mesh.Order();
+    polynomials_.setOnes(points_per_element_, order == 1 ? 1 : 1 + kDimension);
+    if (order == 1) {
+      return;
+    }
+    const auto nodes = GatherMapNodes<kKind>(pass_.mesh, element);
+    const auto& rule = StiffnessRule<kKind>();
+    for (int i = 0; i < points_per_element_; ++i) {
+      if constexpr (!IsCurved(kKind)) {
+        polynomials_.row(i).tail(kDimension) =
+            (nodes * rule[i].vertex_value - nodes.col(0)).transpose();
       }
-      means_.emplace_back(OfElement(gradients_, e), volumes);
-      for (int i = 0; i < points_per_element_; ++i) {
-        for (int entry = 0; entry < 9; ++entry) {
-          gradients_.row[entry][PlaceOf(e, i)] =
-              means_[e].Gradients()[i](entry);
-        }
+    }
+  }
+
+  void ReplaceByMean(std::size_t e) {
+    Eigen::VectorXd volumes(points_per_element_);
+    for (int i = 0; i < points_per_element_; ++i) {
+      volumes(i) = Point(e, i).volume;
+    }
+    means_.emplace_back(OfElement(gradients_, e), volumes, polynomials_);
+    for (int i = 0; i < points_per_element_; ++i) {
+      for (int entry = 0; entry < 9; ++entry) {
+        gradients_.row[entry][PlaceOf(e, i)] = means_[e].Gradients()[i](entry);
       }
     }
   }
@@ -173,6 +207,7 @@ class ElementBatch {
   std::vector<Eigen::Index> elements_;
   std::vector<ElementPoint<kKind>> points_;
   PointMatrices gradients_ = {};
+  Eigen::MatrixXd polynomials_;
   std::vector<MeanDilatation> means_;
 };
 
@@ -198,7 +233,8 @@ void AddToNodes(const Mesh& mesh, Eigen::Index element,
   }
 }
 
-// Returns the forces of a stress at each point of an element.
+// Returns the forces of a stress at each point of an element, as seen in its
+// frame.
 template <ElementKind kKind>
 NodeColumns<kKind> StressForces(const ElementBatch<kKind>& batch, std::size_t e,
                                 const std::vector<Eigen::Matrix3d>& stresses) {
@@ -230,8 +266,11 @@ void AddStressColumns(const MaterialPass& pass,
         if (TakesMean<kKind>(pass)) {
           of_points = batch.Mean(e).Stresses(of_points);
         }
-        AddToNodes<kKind>(pass.mesh, batch.Element(e),
-                          StressForces<kKind>(batch, e, of_points),
+        NodeColumns<kKind> forces = StressForces<kKind>(batch, e, of_points);
+        if (pass.HasFrames()) {
+          forces = (FrameOf<kKind>(pass, batch.Element(e)) * forces).eval();
+        }
+        AddToNodes<kKind>(pass.mesh, batch.Element(e), forces,
                           columns.col(Eigen::Index(k)).data());
       }
     }
@@ -366,8 +405,8 @@ void AddPointTangent(const ElementPoint<kKind>& point, const Tangent& tangent,
   }
 }
 
-// Returns the lower triangle of the stiffness of an element with the mean of
-// its dilatation.
+// Returns the lower triangle of the stiffness of an element that smooths its
+// dilatation.
 template <ElementKind kKind>
 ElementMatrix<kKind> MeanTangent(const ElementBatch<kKind>& batch,
                                  std::size_t e, const Eigen::VectorXd& moduli,
@@ -391,17 +430,27 @@ ElementMatrix<kKind> MeanTangent(const ElementBatch<kKind>& batch,
   const MeanDilatation& mean = batch.Mean(e);
   const MeanDilatation::Curvature curvature =
       mean.CurvatureOf(stresses, of_points);
+  // dTheta_a and the forces that go with it, by the displacements of the nodes.
+  const Eigen::MatrixXd& polynomials = mean.Polynomials();
+  Eigen::MatrixXd slopes =
+      Eigen::MatrixXd::Zero(kElementDofs<kKind>, polynomials.cols());
+  Eigen::MatrixXd couplings = slopes;
+  Eigen::VectorXd dilatations(num_points);
   ElementMatrix<kKind> matrix = ElementMatrix<kKind>::Zero();
-  NodeColumns<kKind> slope = NodeColumns<kKind>::Zero();
-  NodeColumns<kKind> coupling = NodeColumns<kKind>::Zero();
+  const auto of_nodes = [](const ElementPoint<kKind>& point,
+                           const Eigen::Matrix3d& stress) {
+    const NodeColumns<kKind> forces =
+        point.volume * stress.topLeftCorner<kDimension, kDimension>() *
+        point.gradient;
+    return forces;
+  };
   for (int i = 0; i < num_points; ++i) {
     const ElementPoint<kKind>& point = batch.Point(e, i);
-    const Eigen::Matrix3d of_volume = mean.DilatationSlope(i);
-    slope += point.volume * of_volume.topLeftCorner<kDimension, kDimension>() *
-             point.gradient;
-    coupling += point.volume *
-                curvature.coupling[i].topLeftCorner<kDimension, kDimension>() *
-                point.gradient;
+    slopes +=
+        of_nodes(point, mean.Cofactors(i)).reshaped() * polynomials.row(i);
+    couplings +=
+        of_nodes(point, curvature.coupling[i]).reshaped() * polynomials.row(i);
+    dilatations(i) = point.volume * curvature.dilatation(i);
     if constexpr (kDimension == 3) {
       AddPointTangent<kKind>(point, curvature.local[i], matrix);
     } else {
@@ -410,11 +459,24 @@ ElementMatrix<kKind> MeanTangent(const ElementBatch<kKind>& batch,
       AddPointTangent<kKind>(point, local, matrix);
     }
   }
-  const auto g = slope.reshaped();
-  const auto c = coupling.reshaped();
-  matrix += g * c.transpose() + c * g.transpose() +
-            curvature.dilatation * g * g.transpose();
+  const Eigen::MatrixXd half =
+      couplings + slopes * (polynomials.transpose() * dilatations.asDiagonal() *
+                            polynomials / 2);
+  matrix += slopes * half.transpose() + half * slopes.transpose();
   return matrix;
+}
+
+// Turns the lower triangle of a stiffness that is seen in a frame.
+template <ElementKind kKind, class Frame>
+void TurnBlocks(const Frame& frame, ElementMatrix<kKind>& matrix) {
+  constexpr int kDimension = kDimensionOf<kKind>;
+  for (int j = 0; j < ElementSizes<kKind>::kNodes; ++j) {
+    for (int i = j; i < ElementSizes<kKind>::kNodes; ++i) {
+      auto block = matrix.template block<kDimension, kDimension>(
+          kDimension * i, kDimension * j);
+      block = (frame * block * frame.transpose()).eval();
+    }
+  }
 }
 
 // Calls visit(element, matrix) with the lower triangle of the stiffness of each
@@ -425,21 +487,24 @@ void VisitTangents(const MaterialPass& pass,
   PointTangents tangents;
   VisitBatches<kKind>(pass, displacement, [&](const auto& batch) {
     batch.SetTangents(tangents);
+    std::vector<PointMatrices> columns;
     if (TakesMean<kKind>(pass)) {
-      const std::vector<PointMatrices> columns = batch.Stresses();
-      for (std::size_t e = 0; e < batch.NumElements(); ++e) {
-        visit(batch.Element(e),
-              MeanTangent<kKind>(batch, e, pass.moduli, columns, tangents));
-      }
-      return;
+      columns = batch.Stresses();
     }
     for (std::size_t e = 0; e < batch.NumElements(); ++e) {
       ElementMatrix<kKind> matrix = ElementMatrix<kKind>::Zero();
-      for (int i = 0; i < batch.PointsPerElement(); ++i) {
-        AddPointTangent<kKind>(batch.Point(e, i),
-                               TangentIn<kKind>(tangents, batch.PlaceOf(e, i),
-                                                pass.mesh.section.model),
-                               matrix);
+      if (TakesMean<kKind>(pass)) {
+        matrix = MeanTangent<kKind>(batch, e, pass.moduli, columns, tangents);
+      } else {
+        for (int i = 0; i < batch.PointsPerElement(); ++i) {
+          AddPointTangent<kKind>(batch.Point(e, i),
+                                 TangentIn<kKind>(tangents, batch.PlaceOf(e, i),
+                                                  pass.mesh.section.model),
+                                 matrix);
+        }
+      }
+      if (pass.HasFrames()) {
+        TurnBlocks<kKind>(FrameOf<kKind>(pass, batch.Element(e)), matrix);
       }
       visit(batch.Element(e), matrix);
     }
@@ -518,6 +583,7 @@ LargeStrainForces::LargeStrainForces(const Mesh& mesh,
                                      Dilatation dilatation)
     : mesh_(mesh),
       parameters_(materials, mesh.section.model),
+      frames_(materials, mesh.Dimension()),
       elements_of_material_(parameters_.NumMaterials()),
       dilatation_(dilatation) {
   for (std::size_t i = 0; i < parameters_.NumMaterials(); ++i) {
@@ -543,9 +609,13 @@ void LargeStrainForces::ForEachMaterial(const Eigen::VectorXd& moduli,
   for (std::size_t i = 0; i < elements_of_material_.size(); ++i) {
     const LargeStrainLaw& law = *parameters_.LawOf(i).ForLargeStrains();
     const MaterialPass pass = {
-        mesh_, elements_of_material_[i], law,
+        mesh_,
+        elements_of_material_[i],
+        law,
         moduli.segment(parameters_.FirstModulus(i), law.NumModuli()),
-        dilatation_};
+        dilatation_,
+        frames_,
+        int(i)};
     VisitElementKind(mesh_.kind, [&](auto kind) { function(kind, pass, i); });
   }
 }
@@ -569,10 +639,12 @@ Eigen::MatrixXd LargeStrainForces::Columns(
   return SumOfColumns(moduli, [&](auto kind, const MaterialPass& pass,
                                   auto columns) {
     if constexpr (kind == ElementKind::kTet4) {
-      AddTet4Columns(pass, displacement, columns);
-    } else {
-      AddStressColumns<kind>(pass, displacement, CrossStretch::kStays, columns);
+      if (!pass.HasFrames()) {
+        AddTet4Columns(pass, displacement, columns);
+        return;
+      }
     }
+    AddStressColumns<kind>(pass, displacement, CrossStretch::kStays, columns);
   });
 }
 
@@ -598,10 +670,12 @@ Eigen::MatrixXd LargeStrainForces::TangentBlocks(
   ForEachMaterial(moduli,
                   [&](auto kind, const MaterialPass& pass, std::size_t) {
                     if constexpr (kind == ElementKind::kTet4) {
-                      AddTet4Blocks(pass, displacement, graph, blocks);
-                    } else {
-                      AddBlocks<kind>(pass, displacement, graph, blocks);
+                      if (!pass.HasFrames()) {
+                        AddTet4Blocks(pass, displacement, graph, blocks);
+                        return;
+                      }
                     }
+                    AddBlocks<kind>(pass, displacement, graph, blocks);
                   });
   return blocks;
 }
@@ -614,10 +688,12 @@ Eigen::MatrixXd LargeStrainForces::TangentProducts(
   ForEachMaterial(
       moduli, [&](auto kind, const MaterialPass& pass, std::size_t) {
         if constexpr (kind == ElementKind::kTet4) {
-          AddTet4Products(pass, displacement, directions, products);
-        } else {
-          AddProducts<kind>(pass, displacement, directions, products);
+          if (!pass.HasFrames()) {
+            AddTet4Products(pass, displacement, directions, products);
+            return;
+          }
         }
+        AddProducts<kind>(pass, displacement, directions, products);
       });
   return products;
 }

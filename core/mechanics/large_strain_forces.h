@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "elastimate/core/materials/material.h"
+#include "elastimate/core/materials/material_frames.h"
 #include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/mesh/mesh.h"
 #include "elastimate/core/mesh/node_graph.h"
@@ -14,8 +15,9 @@ namespace elastimate {
 /// The volume that an element evaluates.
 enum class Dilatation {
   kOfPoints,  ///< J = det F at each point of the integration.
-  /// The mean of J over each hexahedron, or quadrilateral in plane strain,
-  /// which does not lock where the material is nearly incompressible.  Other
+  /// The mean of J over each linear hexahedron, or quadrilateral in plane
+  /// strain, and its least-squares fit by a linear function over each quadratic
+  /// one, which do not lock where the material is nearly incompressible.  Other
   /// elements are as above.
   kMeanOfElement,
 };
@@ -34,11 +36,11 @@ struct VolumeRatio {
 ///
 /// over the undeformed mesh, and their tangent K = df / du is symmetric.
 ///
-/// With the mean dilatation Theta = (integral of J) / V of an element, laws
-/// have Fbar = (Theta / J)^(1/3) F in place of F, and forces are derivatives of
-/// their energy: those of the method of three fields with a constant pressure
-/// and volume [Simo, Taylor & Pister, Comput. Methods Appl. Mech. Eng. 51
-/// (1985) 177] after these two are eliminated.
+/// With the mean dilatation Theta = (integral of J) / V of an element, or its
+/// linear fit, laws have Fbar = (Theta / J)^(1/3) F in place of F, and forces
+/// are derivatives of their energy: those of the method of three fields with a
+/// constant (linear) pressure and volume [Simo, Taylor & Pister, Comput.
+/// Methods Appl. Mech. Eng. 51 (1985) 177] after these two are eliminated.
 ///
 /// In plane stress, the stretch across the plate depends on the moduli.  A
 /// column f_k is evaluated at the stretch that belongs to the given moduli, so
@@ -99,6 +101,7 @@ class LargeStrainForces {
 
   const Mesh& mesh_;
   MaterialParameters parameters_;
+  MaterialFrames frames_;
   std::vector<std::vector<Eigen::Index>> elements_of_material_;
   Dilatation dilatation_;
 };

@@ -1,5 +1,6 @@
 #include "elastimate/core/mechanics/mean_dilatation.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
 
@@ -26,11 +27,20 @@ Matrix9 TraceOfSquares(const Eigen::Matrix3d& g) {
   return t;
 }
 
+// Returns polynomials that are orthonormal over the points of these volumes.
+Eigen::MatrixXd Orthonormal(const Eigen::MatrixXd& polynomials,
+                            const Eigen::VectorXd& volumes) {
+  const Eigen::MatrixXd products =
+      polynomials.transpose() * volumes.asDiagonal() * polynomials;
+  return products.llt().matrixL().solve(polynomials.transpose()).transpose();
+}
+
 }  // namespace
 
 MeanDilatation::MeanDilatation(const std::vector<Eigen::Matrix3d>& gradients,
-                               const Eigen::VectorXd& volumes)
-    : volumes_(volumes), total_volume_(volumes.sum()) {
+                               const Eigen::VectorXd& volumes,
+                               const Eigen::MatrixXd& polynomials)
+    : volumes_(volumes), polynomials_(Orthonormal(polynomials, volumes)) {
   Eigen::VectorXd changes(volumes.size());
   for (std::size_t i = 0; i < gradients.size(); ++i) {
     const double change = VolumeChange(gradients[i]);
@@ -39,11 +49,12 @@ MeanDilatation::MeanDilatation(const std::vector<Eigen::Matrix3d>& gradients,
     f_.emplace_back(Eigen::Matrix3d::Identity() + gradients[i]);
     cofactors_.emplace_back(jacobian_[i] * f_[i].inverse().transpose());
   }
-  const double mean_change = volumes.dot(changes) / total_volume_;
-  theta_ = 1 + mean_change;
+  const Eigen::VectorXd smoothed = Fit(changes);
+  theta_ = smoothed.array() + 1;
   for (std::size_t i = 0; i < gradients.size(); ++i) {
+    const Eigen::Index point = Eigen::Index(i);
     const double scale_change = std::expm1(
-        (std::log1p(mean_change) - std::log1p(changes(Eigen::Index(i)))) / 3);
+        (std::log1p(smoothed(point)) - std::log1p(changes(point))) / 3);
     scale_.push_back(1 + scale_change);
     Eigen::Matrix3d scaled = scale_[i] * gradients[i];
     scaled.diagonal().array() += scale_change;
@@ -56,23 +67,29 @@ double MeanDilatation::Work(std::size_t point,
   return scale_[point] * stress.cwiseProduct(f_[point]).sum();
 }
 
-double MeanDilatation::Pressure(
+Eigen::VectorXd MeanDilatation::Fit(const Eigen::VectorXd& values) const {
+  return polynomials_ *
+         (polynomials_.transpose() * volumes_.cwiseProduct(values));
+}
+
+Eigen::VectorXd MeanDilatation::Pressures(
     const std::vector<Eigen::Matrix3d>& stresses) const {
-  double sum = 0;
+  Eigen::VectorXd values(volumes_.size());
   for (std::size_t i = 0; i < stresses.size(); ++i) {
-    sum += volumes_(Eigen::Index(i)) * Work(i, stresses[i]);
+    const Eigen::Index point = Eigen::Index(i);
+    values(point) = Work(i, stresses[i]) / (3 * theta_(point));
   }
-  return sum / (3 * theta_ * total_volume_);
+  return Fit(values);
 }
 
 std::vector<Eigen::Matrix3d> MeanDilatation::Stresses(
     const std::vector<Eigen::Matrix3d>& stresses) const {
-  const double pressure = Pressure(stresses);
+  const Eigen::VectorXd pressures = Pressures(stresses);
   std::vector<Eigen::Matrix3d> acting;
   for (std::size_t i = 0; i < stresses.size(); ++i) {
     const double own = Work(i, stresses[i]) / (3 * jacobian_[i]);
     acting.emplace_back(scale_[i] * stresses[i] +
-                        (pressure - own) * cofactors_[i]);
+                        (pressures(Eigen::Index(i)) - own) * cofactors_[i]);
   }
   return acting;
 }
@@ -87,9 +104,10 @@ MeanDilatation::Curvature MeanDilatation::CurvatureOf(
   //   dsigma = (d2Theta / Theta - (dTheta / Theta)^2
   //             + tr(F^-1 dF F^-1 dF)) / 3,
   //
-  // and the mean of pi d2Theta / (3 Theta) is p times that of d2J.
-  const double pressure = Pressure(stresses);
+  // and the sum of v pi d2Theta / (3 Theta) over the points is that of v p d2J.
+  const Eigen::VectorXd pressures = Pressures(stresses);
   Curvature curvature;
+  curvature.dilatation.resize(volumes_.size());
   for (std::size_t i = 0; i < stresses.size(); ++i) {
     const double s = scale_[i];
     const double work = Work(i, stresses[i]);
@@ -99,7 +117,8 @@ MeanDilatation::Curvature MeanDilatation::CurvatureOf(
     const auto p9 = AsVector(stresses[i]);
     const Matrix9 project = Matrix9::Identity() - f9 * g9.transpose() / 3;
     const Matrix9 trace = TraceOfSquares(g);
-    const double of_volume = pressure * jacobian_[i];
+    const double theta = theta_(Eigen::Index(i));
+    const double of_volume = pressures(Eigen::Index(i)) * jacobian_[i];
     Matrix9 local = s * s * project.transpose() * tangents[i] * project;
     local += (work / 9 + of_volume) * g9 * g9.transpose();
     local += (work / 3 - of_volume) * trace;
@@ -108,12 +127,11 @@ MeanDilatation::Curvature MeanDilatation::CurvatureOf(
     const Vector9 stretched = tangents[i] * f9;
     const Vector9 coupling =
         (s * s * project.transpose() * stretched - work / 3 * g9 + s * p9) /
-        (3 * theta_);
+        (3 * theta);
     curvature.coupling.emplace_back(
         Eigen::Map<const Eigen::Matrix3d>(coupling.data()));
-    curvature.dilatation +=
-        volumes_(Eigen::Index(i)) *
-        ((s * s * f9.dot(stretched) + work) / 9 - work / 3) / (theta_ * theta_);
+    curvature.dilatation(Eigen::Index(i)) =
+        ((s * s * f9.dot(stretched) + work) / 9 - work / 3) / (theta * theta);
   }
   return curvature;
 }

@@ -6,21 +6,24 @@
 
 namespace elastimate {
 
-/// The mean dilatation of an element (LargeStrainForces): Fbar = s F with
-/// s = (Theta / J)^(1/3) at its points.
+/// The smoothed dilatation of an element (LargeStrainForces): Fbar = s F with
+/// s = (Theta / J)^(1/3) at its points.  Theta is the least-squares fit of J by
+/// some polynomials over the element; if the only one is 1, it is the mean.
 ///
 /// With the stress Pbar of a law at Fbar, an energy W(Fbar) has
 ///
 ///   dW = (s Pbar - pi / 3 F^-T) : dF + pi / (3 Theta) dTheta,
 ///   pi = s Pbar : F,
 ///
-/// and dTheta is the mean of cof F : dF, so that the pressure
-/// p = mean of pi / (3 Theta) acts on cof F at each point.
+/// and dTheta is the fit of cof F : dF, so that the pressure p, the fit of
+/// pi / (3 Theta), acts on cof F at each point.
 class MeanDilatation {
  public:
-  /// Takes the gradients H = F - I at the points, and their volumes.
+  /// Takes the gradients H = F - I at the points, their volumes v, and the
+  /// values of the polynomials there, num_points x num_polynomials.
   MeanDilatation(const std::vector<Eigen::Matrix3d>& gradients,
-                 const Eigen::VectorXd& volumes);
+                 const Eigen::VectorXd& volumes,
+                 const Eigen::MatrixXd& polynomials);
 
   /// Returns Fbar - I at each point.
   const std::vector<Eigen::Matrix3d>& Gradients() const { return gradients_; }
@@ -29,32 +32,39 @@ class MeanDilatation {
   std::vector<Eigen::Matrix3d> Stresses(
       const std::vector<Eigen::Matrix3d>& stresses) const;
 
-  /// The second derivative of the energy of the element,
+  /// The second derivative of the energy of the element, the sum over the
+  /// points of
   ///
-  ///   sum over the points of v (dF : local : dF + 2 coupling : dF dTheta)
-  ///   + dilatation dTheta^2,   dTheta = sum of v cof F : dF / V.
+  ///   v (dF : local : dF + 2 coupling : dF dTheta + dilatation dTheta^2).
   struct Curvature {
     std::vector<Eigen::Matrix<double, 9, 9>> local;
     std::vector<Eigen::Matrix3d> coupling;
-    double dilatation = 0;
+    Eigen::VectorXd dilatation;
   };
   /// Returns it for Pbar and dPbar / dFbar at each point.
   Curvature CurvatureOf(
       const std::vector<Eigen::Matrix3d>& stresses,
       const std::vector<Eigen::Matrix<double, 9, 9>>& tangents) const;
 
-  /// Returns cof F / V at each point, the derivative of Theta over v.
-  Eigen::Matrix3d DilatationSlope(std::size_t point) const {
-    return cofactors_[point] / total_volume_;
+  /// Returns orthonormal polynomials phi_a at the points, num_points x
+  /// num_polynomials, with which dTheta = sum_a phi_a dTheta_a, and dTheta_a is
+  /// the sum of v phi_a cof F : dF over the points.
+  const Eigen::MatrixXd& Polynomials() const { return polynomials_; }
+  /// Returns cof F.
+  const Eigen::Matrix3d& Cofactors(std::size_t point) const {
+    return cofactors_[point];
   }
 
  private:
   double Work(std::size_t point, const Eigen::Matrix3d& stress) const;
-  double Pressure(const std::vector<Eigen::Matrix3d>& stresses) const;
+  /// Returns the fit of these values at the points.
+  Eigen::VectorXd Fit(const Eigen::VectorXd& values) const;
+  /// Returns p at each point.
+  Eigen::VectorXd Pressures(const std::vector<Eigen::Matrix3d>& stresses) const;
 
   Eigen::VectorXd volumes_;
-  double total_volume_;
-  double theta_;                            ///< The mean of J.
+  Eigen::MatrixXd polynomials_;
+  Eigen::VectorXd theta_;                   ///< Theta.
   std::vector<double> jacobian_;            ///< J.
   std::vector<double> scale_;               ///< s.
   std::vector<Eigen::Matrix3d> f_;          ///< F.

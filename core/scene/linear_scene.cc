@@ -30,7 +30,7 @@ struct LoadCutter {
     return Traction{facets, ForCuts(load.traction, facets.cols())};
   }
   Load operator()(const Pressure& load) const {
-    return Pressure{mesh.FacetsOf(load.facets), load.pressure};
+    return Pressure{mesh.FacetsOf(load.facets), load.pressure, load.follows};
   }
   Load operator()(const SurfaceForce& load) const {
     return SurfaceForce{mesh.FacetsOf(load.facets), load.force};

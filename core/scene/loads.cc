@@ -157,6 +157,11 @@ void AssembleLoadCases(const Scene& scene, Eigen::Ref<Eigen::MatrixXd> force) {
   }
 }
 
+bool Follows(const Load& load) {
+  const Pressure* const pressure = std::get_if<Pressure>(&load);
+  return pressure != nullptr && pressure->follows;
+}
+
 Load Scaled(const Load& load, double factor) {
   return std::visit(Scaling{factor}, load);
 }

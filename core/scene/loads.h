@@ -28,6 +28,10 @@ namespace elastimate {
 /// Writes the forces into the columns of `force`, which has that shape.
 void AssembleLoadCases(const Scene& scene, Eigen::Ref<Eigen::MatrixXd> force);
 
+/// Tells whether a load is a pressure that follows the deformed surface.  Above
+/// it acts as it does on the undeformed one.
+[[nodiscard]] bool Follows(const Load& load);
+
 /// Returns a load that is `factor` times another.
 [[nodiscard]] Load Scaled(const Load& load, double factor);
 

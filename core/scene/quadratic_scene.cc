@@ -218,7 +218,8 @@ struct LoadConverter {
     return Traction{WithMiddleNodes(load.facets, mesh, middles), load.traction};
   }
   Load operator()(const Pressure& load) const {
-    return Pressure{WithMiddleNodes(load.facets, mesh, middles), load.pressure};
+    return Pressure{WithMiddleNodes(load.facets, mesh, middles), load.pressure,
+                    load.follows};
   }
   Load operator()(const SurfaceForce& load) const {
     return SurfaceForce{WithMiddleNodes(load.facets, mesh, middles),

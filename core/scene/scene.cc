@@ -4,9 +4,11 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/mesh/axis_names.h"
 #include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/mesh/representable.h"
+#include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/core/text/numbers.h"
 
@@ -281,6 +283,8 @@ void ValidateScene(const Scene& scene) {
   if (scene.load_cases.empty()) {
     Fail("the scene has no load case; give at least one");
   }
+  const bool has_large_strains =
+      HasLargeStrainLaw(scene.materials, scene.mesh.section.model);
   for (std::size_t i = 0; i < scene.load_cases.size(); ++i) {
     const LoadCase& load_case = scene.load_cases[i];
     if (load_case.supports) {
@@ -290,6 +294,12 @@ void ValidateScene(const Scene& scene) {
       const std::string where =
           "load " + std::to_string(k + 1) + " of " + CaseName(i);
       std::visit(LoadValidator{scene.mesh, where}, load_case.loads[k]);
+      if (Follows(load_case.loads[k]) && !has_large_strains) {
+        Fail("the pressure in " + where +
+             " follows the deformed surface, but the materials have laws of "
+             "small strains; give them a law of large strains, such as "
+             "--material=neo_hookean, or leave out \"follows\"");
+      }
     }
   }
   ValidateMeasurements(scene);

@@ -38,6 +38,9 @@ struct Traction {
 struct Pressure {
   Eigen::MatrixXi facets;  ///< As those of BoundaryFacets, in their order.
   double pressure;         ///< [force / length^2].
+  /// Whether it acts along the normals and on the area of the deformed surface,
+  /// which needs laws of large strains, in place of the undeformed one.
+  bool follows = false;
 };
 
 /// A total force that is spread uniformly over some facets: the traction

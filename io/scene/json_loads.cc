@@ -85,8 +85,9 @@ Load ReadLoad(const JsonValue& load, const LoadContext& context) {
     return Traction{facets(), vector()};
   }
   if (name == "pressure") {
-    load.CheckKeys({"type", "value", "surface"});
-    return Pressure{facets(), load.At("value").Number()};
+    load.CheckKeys({"type", "value", "surface", "follows"});
+    return Pressure{facets(), load.At("value").Number(),
+                    load.Has("follows") && load.At("follows").Boolean()};
   }
   if (name == "force") {
     load.CheckKeys({"type", "value", "surface"});

@@ -42,6 +42,7 @@ std::vector<LawAndEstimator> AllLawsAndEstimators() {
     for (const Law* const law : Laws()) {
       for (const std::string_view name : EstimatorNames()) {
         if (!law->BlockEntries().empty() && law->Takes(model) &&
+            law->ForLargeStrains() == nullptr &&
             MakeEstimator(name)->WhatItTakes().takes_materials) {
           all.push_back({law, model, std::string(name)});
         }

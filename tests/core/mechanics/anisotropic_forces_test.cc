@@ -45,7 +45,8 @@ std::vector<LawOfKind> AllLawsOfKinds() {
   std::vector<LawOfKind> all;
   for (const KindOfSection& kind : testing::AllKindsOfSections()) {
     for (const Law* const law : Laws()) {
-      if (!law->BlockEntries().empty() && law->Takes(kind.model)) {
+      if (!law->BlockEntries().empty() && law->Takes(kind.model) &&
+          law->ForLargeStrains() == nullptr) {
         all.push_back({law, kind});
       }
     }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <cmath>
 #include <string>
 #include <tuple>
@@ -15,6 +16,7 @@
 #include "elastimate/core/mechanics/internal_forces.h"
 #include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/mesh/shape_functions.h"
+#include "tests/anisotropy.h"
 #include "tests/core/random_values.h"
 #include "tests/element_kinds.h"
 #include "tests/throws.h"
@@ -241,12 +243,15 @@ INSTANTIATE_TEST_SUITE_P(
                                                                : "_mean");
     });
 
-// The energy of an element with the mean of its dilatation is that of
-// Fbar = (Theta / J)^(1/3) F.
+// The energy of an element that smooths its dilatation is that of
+// Fbar = (Theta / J)^(1/3) F, where Theta is the mean of J or, in elements of
+// order 2, its linear least-squares fit.
 TEST(MeanOfElement, HasTheForcesOfItsEnergy) {
   for (const KindOfSection kind :
        {KindOfSection{ElementKind::kHex8, SectionModel::kSolid},
-        KindOfSection{ElementKind::kQuad4, SectionModel::kPlaneStrain}}) {
+        KindOfSection{ElementKind::kQuad4, SectionModel::kPlaneStrain},
+        KindOfSection{ElementKind::kHex27, SectionModel::kSolid},
+        KindOfSection{ElementKind::kQuad9, SectionModel::kPlaneStrain}}) {
     const Mesh mesh = testing::MeshOfKind(kind, 1);
     const LargeStrainForces forces(mesh, {MaterialOf("neo_hookean")});
     const Law& law = forces.Parameters().LawOf(0);
@@ -256,32 +261,45 @@ TEST(MeanOfElement, HasTheForcesOfItsEnergy) {
       VisitElementKind(mesh.kind, [&](auto element_kind) {
         std::vector<Eigen::Matrix3d> f;
         std::vector<double> volumes;
-        double volume = 0;
-        double theta = 0;
+        std::vector<Eigen::VectorXd> polynomials;
         const auto nodes = GatherNodes<element_kind>(mesh, 0, u.data());
+        const auto places =
+            GatherNodes<element_kind>(mesh, 0, mesh.nodes.data());
         VisitPoints<element_kind>(
             mesh, 0, StiffnessRule<element_kind>(),
-            [&](const auto& point, const auto&) {
+            [&](const auto& point, const auto& shape) {
               Eigen::Matrix3d at = Eigen::Matrix3d::Identity();
               at.topLeftCorner(mesh.Dimension(), mesh.Dimension()) +=
                   nodes * point.gradient.transpose();
               f.push_back(at);
               volumes.push_back(point.volume);
-              volume += point.volume;
-              theta += point.volume * at.determinant();
+              Eigen::VectorXd values(mesh.Dimension() + 1);
+              values << places * shape.value, 1;
+              polynomials.push_back(
+                  mesh.Order() == 2 ? values : Eigen::VectorXd(values.tail(1)));
             });
-        theta /= volume;
+        const Eigen::Index size = polynomials[0].size();
+        Eigen::MatrixXd products = Eigen::MatrixXd::Zero(size, size);
+        Eigen::VectorXd right = Eigen::VectorXd::Zero(size);
+        for (std::size_t i = 0; i < f.size(); ++i) {
+          products += volumes[i] * polynomials[i] * polynomials[i].transpose();
+          right += volumes[i] * f[i].determinant() * polynomials[i];
+        }
+        const Eigen::VectorXd coefficients = products.inverse() * right;
         for (std::size_t i = 0; i < f.size(); ++i) {
           const Eigen::Matrix3d h =
-              std::cbrt(theta / f[i].determinant()) * f[i] -
+              std::cbrt(coefficients.dot(polynomials[i]) / f[i].determinant()) *
+                  f[i] -
               Eigen::Matrix3d::Identity();
           sum += volumes[i] * law.Energies(h, SectionModel::kSolid).dot(moduli);
         }
       });
       return sum;
     };
-    const Eigen::VectorXd u =
-        0.1 * RandomMatrix(mesh.NumDofs(), 1, 9) * mesh.nodes.maxCoeff();
+    const Eigen::VectorXd u = 0.1 / mesh.Order() *
+                              RandomMatrix(mesh.NumDofs(), 1, 9) *
+                              mesh.nodes.maxCoeff();
+    ASSERT_GT(forces.SmallestVolumeRatio(u).value, 0);
     const Eigen::VectorXd actual = forces.Forces(moduli, u);
     constexpr double kStep = 1e-6;
     for (Eigen::Index i = 0; i < u.size(); ++i) {
@@ -331,6 +349,55 @@ TEST(LargeStrainForces, TakeEachLawAndSeveralMaterials) {
       (both.Forces(moduli, u + 1e-7 * v) - both.Forces(moduli, u - 1e-7 * v)) /
       2e-7;
   EXPECT_TRUE(both.TangentProducts(moduli, u, v).isApprox(slope, 1e-6));
+}
+
+// A material that is stiffer along its axes, which are others in each element.
+TEST(LargeStrainForces, SeeAMaterialInItsFrame) {
+  for (const auto& [kind, dilatation] :
+       {std::pair(ElementKind::kTet4, Dilatation::kOfPoints),
+        std::pair(ElementKind::kTet10, Dilatation::kOfPoints),
+        std::pair(ElementKind::kHex8, Dilatation::kOfPoints),
+        std::pair(ElementKind::kHex8, Dilatation::kMeanOfElement)}) {
+    const Mesh mesh = testing::MeshOfKind({kind, SectionModel::kSolid}, 2);
+    Material material = MaterialOf("st_venant_kirchhoff_orthotropic");
+    material.axes.assign(2, Eigen::MatrixXd(3, mesh.NumElements()));
+    for (Eigen::Index e = 0; e < mesh.NumElements(); ++e) {
+      const Eigen::MatrixXd frame = testing::RandomFrame(3, unsigned(e));
+      material.axes[0].col(e) = frame.col(0);
+      material.axes[1].col(e) = frame.col(1);
+    }
+    const LargeStrainForces forces(mesh, {material}, dilatation);
+    const Law& law = forces.Parameters().LawOf(0);
+    const Eigen::VectorXd moduli =
+        forces.Parameters().Moduli(testing::UnlikeTypical(law, 3));
+    const double size = mesh.nodes.maxCoeff();
+    const Eigen::VectorXd u = 0.03 * size * RandomMatrix(mesh.NumDofs(), 1, 6);
+    const Eigen::VectorXd v = RandomMatrix(u.size(), 1, 2);
+    const double step = 1e-6 * size;
+    const Eigen::VectorXd slope = (forces.Forces(moduli, u + step * v) -
+                                   forces.Forces(moduli, u - step * v)) /
+                                  (2 * step);
+    EXPECT_TRUE(forces.TangentProducts(moduli, u, v).isApprox(slope, 1e-7));
+    const NodeGraph graph(mesh);
+    EXPECT_TRUE((DenseOf(forces.TangentBlocks(moduli, u, graph), graph) * v)
+                    .isApprox(slope, 1e-7));
+    // A turn of the whole changes nothing.
+    const Eigen::Matrix3d turn(
+        Eigen::AngleAxisd(1.3, Eigen::Vector3d(2, 1, 2) / 3));
+    const Eigen::MatrixXd turned =
+        turn * (mesh.nodes + u.reshaped(3, mesh.NumNodes())) - mesh.nodes;
+    EXPECT_TRUE(forces.Forces(moduli, turned.reshaped())
+                    .reshaped(3, mesh.NumNodes())
+                    .isApprox(turn * forces.Forces(moduli, u).reshaped(
+                                         3, mesh.NumNodes()),
+                              1e-10));
+    if (dilatation == Dilatation::kOfPoints) {
+      material.law = "orthotropic";
+      const InternalForces linear(mesh, {material});
+      EXPECT_TRUE((1e7 * forces.Forces(moduli, 1e-7 * u))
+                      .isApprox(linear.Multiply(moduli, u), 1e-5));
+    }
+  }
 }
 
 TEST(LargeStrainForces, FindTheInvertedElement) {

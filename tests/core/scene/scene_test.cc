@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "elastimate/core/mesh/facets.h"
 #include "tests/quadratic_reference.h"
 #include "tests/scenes.h"
 #include "tests/throws.h"
@@ -56,6 +57,20 @@ TEST_F(ValidatedScene, MayHaveNoMeasurementAndNoMask) {
 
 TEST_F(ValidatedScene, MayBeFree) {
   scene_.supports.held.setConstant(false);
+  EXPECT_NO_THROW(ValidateScene(scene_));
+}
+
+TEST_F(ValidatedScene, NeedsLargeStrainsForAPressureThatFollows) {
+  Pressure pressure = {BoundaryFacets(scene_.mesh), 1};
+  scene_.load_cases[0].loads = {pressure};
+  EXPECT_NO_THROW(ValidateScene(scene_));
+  pressure.follows = true;
+  scene_.load_cases[0].loads = {pressure};
+  EXPECT_THROWS_WITH(ValidateScene(scene_),
+                     "load 1 of load case 1 follows .*laws of small strains; "
+                     "give them a law of large strains");
+  scene_.materials.resize(1);
+  scene_.materials[0].law = "neo_hookean";
   EXPECT_NO_THROW(ValidateScene(scene_));
 }
 

@@ -342,6 +342,17 @@ TEST_F(JsonSceneTest, SaysThatNothingIsFree) {
       "loads\\[0\\].nodes is \"free\", but the supports hold every node");
 }
 
+TEST_F(JsonSceneTest, LetsAPressureFollowTheSurface) {
+  UseGmshMesh(GmshVersion2Mesh());
+  const std::string document =
+      Replaced(WithLoad(R"({"type": "pressure", "value": 500, "follows": true,
+                   "surface": {"physical": "top"}})"),
+               "\"mesh\"", R"("materials": [{"law": "neo_hookean"}], "mesh")");
+  EXPECT_TRUE(
+      std::get<Pressure>(Read(document).scene.load_cases.at(0).loads.at(0))
+          .follows);
+}
+
 TEST_F(JsonSceneTest, SelectsOutwardFacets) {
   UseGmshMesh(GmshVersion2Mesh());
   for (const std::string surface :
@@ -349,6 +360,7 @@ TEST_F(JsonSceneTest, SelectsOutwardFacets) {
     const auto pressure = std::get<Pressure>(ReadLoad(
         R"({"type": "pressure", "value": 500, "surface": )" + surface + "}"));
     EXPECT_EQ(pressure.pressure, 500);
+    EXPECT_FALSE(pressure.follows);
     ASSERT_EQ(pressure.facets.cols(), 2);
     // The total is that of the facets y = 0 and x + y + z = 1, both pushed
     // inwards.
