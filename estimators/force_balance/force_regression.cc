@@ -348,8 +348,21 @@ class ForceRegression {
         free_(scene, options),
         moduli_(LinearMinimum(forces)) {}
 
-  Estimate Run(bool is_bounded) {
-    if (!FindMinimum(is_bounded)) {
+  // The moduli of the least residual of physical materials; empty when the
+  // displacements oppose the loads.
+  std::optional<Eigen::VectorXd> PhysicalMinimum() {
+    return FindMinimum(/*is_bounded=*/true)
+               ? std::optional<Eigen::VectorXd>(
+                     free_.All().Moduli(estimate_.ParameterValues()))
+               : std::nullopt;
+  }
+
+  Estimate Run(bool is_bounded, End end_of_moduli = End::kDone) {
+    const bool has_minimum = FindMinimum(is_bounded);
+    if (end_of_moduli != End::kDone) {
+      evidence_.end = end_of_moduli;
+    }
+    if (!has_minimum) {
       evidence_.do_displacements_oppose_loads = true;
       Judge(evidence_, options_, estimate_);
       estimate_.work = forces_.WorkDone();
@@ -474,11 +487,41 @@ class ForcePreparation : public Preparation {
       : forces_(scene), options_(options), is_bounded_(is_bounded) {}
 
   Estimate Run(const Scene& scene) override {
+    if (forces_.AreNonlinearInModuli()) {
+      return RunNonlinear(scene);
+    }
     ForceResidual forces(forces_, scene);
     return ForceRegression(scene, options_, forces).Run(is_bounded_);
   }
 
  private:
+  // Gauss-Newton: takes the derivatives by the moduli at the last minimum,
+  // until the ratios of the moduli stay.
+  Estimate RunNonlinear(const Scene& scene) {
+    // Convergence is quadratic where the residual is small.
+    constexpr double kSameRatios = 1e-9;
+    const MaterialParameters& all = forces_.LargeForces()->Parameters();
+    Eigen::VectorXd moduli =
+        all.Moduli(all.Typical(all.KnownModulus().value_or(1))).normalized();
+    Work work;
+    for (int i = 0;; ++i) {
+      ForceResidual forces(forces_, scene, moduli);
+      const std::optional<Eigen::VectorXd> minimum =
+          ForceRegression(scene, options_, forces).PhysicalMinimum();
+      const bool is_done =
+          !minimum || (minimum->normalized() - moduli).norm() <= kSameRatios;
+      if (is_done || i == options_.max_iterations) {
+        Estimate estimate =
+            ForceRegression(scene, options_, forces)
+                .Run(is_bounded_, is_done ? End::kDone : End::kIterationLimit);
+        estimate.work = estimate.work + work;
+        return estimate;
+      }
+      work = work + forces.WorkDone();
+      moduli = minimum->normalized();
+    }
+  }
+
   ForceScene forces_;
   const EstimatorOptions& options_;
   bool is_bounded_;

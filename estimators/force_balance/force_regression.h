@@ -42,9 +42,18 @@ namespace elastimate {
 /// whether the data contradict them.  For a force residual above a tenth of the
 /// loads, the balance of virtual work says whether noise explains it.
 ///
+/// For laws of large strains, f_k(q) are the columns of LargeStrainForces at
+/// measured displacements of any size, and noise adds the tangent K(theta) at q
+/// times the noise, to first order.  In plane stress, where f is not linear in
+/// theta, F has the derivatives df / dtheta_k at the last minimum
+/// (Gauss-Newton), until the ratios of the moduli stay: about four times.
+/// Throws std::invalid_argument where a displacement turns an element inside
+/// out.
+///
 /// Preconditions are those of Estimator::Run; every free component is observed.
 /// Cost: three element passes, one more for known Poisson's ratios, and that of
-/// virtual-fields of degree 1 where it is asked.
+/// virtual-fields of degree 1 where it is asked; for large strains that of
+/// ForceResidual instead of two of the passes.
 Estimate RegressForces(const Scene& scene, const EstimatorOptions& options,
                        bool is_bounded);
 

@@ -46,28 +46,47 @@ Eigen::MatrixXd TracesOf(const Scene& scene, const InternalForces& forces,
   return EstimateStiffnessTraces(dofs, forces.Products(probes));
 }
 
+// Calls add(dA / dtheta_k) for each modulus, where A(theta) is a matrix that
+// grows as a factor on all moduli: linear, or else by central differences.
+template <class Function, class Adder>
+void VisitDerivatives(const Eigen::VectorXd& moduli, bool is_linear,
+                      const Function& matrix_at, const Adder& add) {
+  constexpr double kStep = 1e-4;
+  const double step = kStep * moduli.norm();
+  for (Eigen::Index k = 0; k < moduli.size(); ++k) {
+    const Eigen::VectorXd unit = Eigen::VectorXd::Unit(moduli.size(), k);
+    add(is_linear ? matrix_at(unit)
+                  : Eigen::MatrixXd((matrix_at(moduli + step * unit) -
+                                     matrix_at(moduli - step * unit)) /
+                                    (2 * step)));
+  }
+}
+
 // T of one load case at its displacement.
-Eigen::MatrixXd LargeTracesOf(const Scene& scene,
-                              const LargeStrainForces& forces,
-                              const DegreesOfFreedom& dofs,
+Eigen::MatrixXd LargeTracesOf(const Scene& scene, const ForceScene& prepared,
+                              const Eigen::VectorXd& moduli,
                               const Eigen::VectorXd& displacement) {
-  const Eigen::Index m = forces.Parameters().NumModuli();
+  const LargeStrainForces& forces = *prepared.LargeForces();
+  const bool is_linear = !prepared.AreNonlinearInModuli();
   std::vector<Eigen::MatrixXd> of_moduli;
+  const auto add = [&](const Eigen::MatrixXd& of_modulus) {
+    of_moduli.push_back(of_modulus);
+  };
   if (scene.mesh.NumElements() <= kMostElementsForExactTraces) {
     const NodeGraph graph(scene.mesh);
-    for (Eigen::Index k = 0; k < m; ++k) {
-      of_moduli.push_back(forces.TangentBlocks(Eigen::VectorXd::Unit(m, k),
-                                               displacement, graph));
-    }
-    return StiffnessTraces(graph, dofs, std::move(of_moduli));
+    const auto blocks_at = [&](const Eigen::VectorXd& theta) {
+      return forces.TangentBlocks(theta, displacement, graph);
+    };
+    VisitDerivatives(moduli, is_linear, blocks_at, add);
+    return StiffnessTraces(graph, prepared.Dofs(), std::move(of_moduli));
   }
-  Eigen::MatrixXd probes(dofs.NumAll(), kNumTraceProbes);
+  Eigen::MatrixXd probes(prepared.Dofs().NumAll(), kNumTraceProbes);
   SetTraceProbes(scene.supports.held, probes);
-  for (Eigen::Index k = 0; k < m; ++k) {
-    of_moduli.push_back(forces.TangentProducts(Eigen::VectorXd::Unit(m, k),
-                                               displacement, probes));
-  }
-  return EstimateStiffnessTraces(dofs, of_moduli);
+  const auto products_at = [&](const Eigen::VectorXd& theta) {
+    return forces.TangentProducts(theta, displacement, probes);
+  };
+  VisitDerivatives(moduli, is_linear, products_at, add);
+  return EstimateStiffnessTraces(prepared.Dofs(), of_moduli);
 }
 
 // What each modulus of a law adds to its stiffness: the first one for small
@@ -169,14 +188,15 @@ ForceScene::ForceScene(const Scene& scene)
   weights_ = WeightsOf(scene, forces_->Parameters());
 }
 
-ForceResidual::ForceResidual(const ForceScene& prepared, const Scene& scene)
+ForceResidual::ForceResidual(const ForceScene& prepared, const Scene& scene,
+                             const Eigen::VectorXd& moduli)
     : prepared_(prepared),
       num_equations_(
           double(prepared.Dofs().NumFree() * prepared.Loads().cols())) {
   Eigen::MatrixXd q = WeightedDisplacements(scene);
   work_.element_passes = 2;
   if (prepared.LargeForces() != nullptr) {
-    SetLargeStrains(scene, q);
+    SetLargeStrains(scene, q, moduli);
   } else {
     products_ = prepared.Forces().Products(q);
   }
@@ -199,12 +219,12 @@ ForceResidual::ForceResidual(const ForceScene& prepared, const Scene& scene)
 }
 
 void ForceResidual::SetLargeStrains(const Scene& scene,
-                                    const Eigen::MatrixXd& q) {
+                                    const Eigen::MatrixXd& q,
+                                    const Eigen::VectorXd& moduli) {
   const LargeStrainForces& forces = *prepared_.LargeForces();
-  const MaterialParameters& parameters = forces.Parameters();
-  const Eigen::Index m = parameters.NumModuli();
-  // Columns do not depend on the moduli, since there is no plane stress.
-  const Eigen::VectorXd any = Eigen::VectorXd::Ones(m);
+  const Eigen::Index m = forces.Parameters().NumModuli();
+  const Eigen::VectorXd at =
+      moduli.size() > 0 ? moduli : Eigen::VectorXd::Ones(m);
   large_displacements_ = q;
   products_.assign(m, Eigen::MatrixXd(q.rows(), q.cols()));
   traces_ = Eigen::MatrixXd::Zero(m, m);
@@ -213,12 +233,11 @@ void ForceResidual::SetLargeStrains(const Scene& scene,
     large_displacements_.col(k) *= noise_sd;
     RequireNoInvertedElement(forces, large_displacements_.col(k), k);
     const Eigen::MatrixXd columns =
-        forces.Columns(any, large_displacements_.col(k)) / noise_sd;
+        forces.ModuliDerivatives(at, large_displacements_.col(k)) / noise_sd;
     for (Eigen::Index i = 0; i < m; ++i) {
       products_[i].col(k) = columns.col(i);
     }
-    traces_ += LargeTracesOf(scene, forces, prepared_.Dofs(),
-                             large_displacements_.col(k));
+    traces_ += LargeTracesOf(scene, prepared_, at, large_displacements_.col(k));
   }
   work_.element_passes = int(q.cols() * (1 + m));
 }

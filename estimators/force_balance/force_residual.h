@@ -25,6 +25,13 @@ class ForceScene {
   const InternalForces& Forces() const { return *forces_; }
   /// The forces of large strains; null where the laws are of small strains.
   const LargeStrainForces* LargeForces() const { return large_forces_.get(); }
+  /// Whether the forces are not linear in the moduli: those of large strains in
+  /// plane stress are not, since the moduli determine the stretch across the
+  /// plate.
+  bool AreNonlinearInModuli() const {
+    return large_forces_ != nullptr &&
+           large_forces_->Parameters().Model() == SectionModel::kPlaneStress;
+  }
   const DegreesOfFreedom& Dofs() const { return dofs_; }
   /// The weighted loads in the free rows, zero in the held ones.
   const Eigen::MatrixXd& Loads() const { return loads_; }
@@ -55,14 +62,20 @@ class ForceScene {
 /// For small strains, noise n in q adds K(theta) n to the residual.  For large
 /// strains it does so to first order, with the tangent K(theta) = sum_k theta_k
 /// K_k at the measured q of each load case.
+///
+/// Where forces are not linear in the moduli, F has their derivatives df /
+/// dtheta_k at some moduli, and K_k those of the tangent.  F theta is f(q;
+/// theta) at these moduli, since forces grow as a factor on all moduli.
 class ForceResidual {
  public:
   /// One element pass; for large strains one for each load case, and one more
   /// for each of its moduli.  `prepared` is of this scene, and outlives this
-  /// object.  Throws std::invalid_argument where a displacement turns an
-  /// element inside out, and the law is of large strains. Preconditions: what
-  /// Estimator::Run checks, and every free component is observed.
-  ForceResidual(const ForceScene& prepared, const Scene& scene);
+  /// object.  The moduli count only where forces are not linear in them. Throws
+  /// std::invalid_argument where a displacement turns an element inside out,
+  /// and the law is of large strains. Preconditions: what Estimator::Run
+  /// checks, and every free component is observed.
+  ForceResidual(const ForceScene& prepared, const Scene& scene,
+                const Eigen::VectorXd& moduli = {});
 
   const ForceScene& Prepared() const { return prepared_; }
   /// ||Columns() theta - Loads()|| is the norm of the residual: (m + 1) rows.
@@ -96,7 +109,8 @@ class ForceResidual {
  private:
   /// Sets the products and the traces of laws of large strains at the weighted
   /// displacements `q`.
-  void SetLargeStrains(const Scene& scene, const Eigen::MatrixXd& q);
+  void SetLargeStrains(const Scene& scene, const Eigen::MatrixXd& q,
+                       const Eigen::VectorXd& moduli);
   /// Returns K(theta) X for the load cases of each combination side by side.
   Eigen::MatrixXd Stiffen(const Eigen::VectorXd& moduli,
                           const Eigen::MatrixXd& x) const;

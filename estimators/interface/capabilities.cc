@@ -181,14 +181,6 @@ std::string WhyUnsupported(const Capabilities& capabilities, const Scene& scene,
         "it takes only supports that are the same in all load cases; use "
         "--estimator=iterative-fe";
   }
-  if (why.empty() && capabilities.needs_all_displacements &&
-      scene.mesh.section.model == SectionModel::kPlaneStress &&
-      HasLargeStrainLaw(scene.materials, scene.mesh.section.model)) {
-    why =
-        "in plane stress the forces of large strains are not linear in the "
-        "moduli, on which the thinning of the plate depends; use "
-        "--estimator=iterative-fe";
-  }
   if (why.empty() && capabilities.needs_all_displacements) {
     why = WhyNotAllDisplacements(scene);
   }
