@@ -57,6 +57,10 @@ class LargeStrainForces {
 
   const MaterialParameters& Parameters() const { return parameters_; }
 
+  /// Evaluates the volume in another way from now on.
+  void SetDilatation(Dilatation dilatation) { dilatation_ = dilatation; }
+  Dilatation GetDilatation() const { return dilatation_; }
+
   /// Returns f_k(u) as columns, num_dofs x num_moduli.  One element pass.
   Eigen::MatrixXd Columns(const Eigen::VectorXd& moduli,
                           const Eigen::VectorXd& displacement) const;
