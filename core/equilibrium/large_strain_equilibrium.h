@@ -94,6 +94,10 @@ class LargeStrainEquilibrium {
     held_displacement_.col(k) = held;
   }
   const Eigen::MatrixXd& HeldDisplacement() const { return held_displacement_; }
+  /// Evaluates the volume of elements in another way from now on.
+  void SetDilatation(Dilatation dilatation) {
+    forces_.SetDilatation(dilatation);
+  }
   /// Returns the dead loads, num_dofs x num_load_cases [force].
   const Eigen::MatrixXd& Load() const { return load_; }
   /// Returns all loads F of load case `k` at a displacement, num_dofs [force].
@@ -113,6 +117,14 @@ class LargeStrainEquilibrium {
   /// the tangent there.
   StiffnessSolver& TangentSolver(Eigen::Index k) {
     return *solvers_[solver_of_case_[k]];
+  }
+
+  /// Has that factor again, at a state that Solve found.
+  void FactorizeAgain(const Eigen::VectorXd& moduli, Eigen::Index k,
+                      const Eigen::VectorXd& displacement) {
+    LargeStrainState state;
+    // The tangent was positive definite when the state was found.
+    static_cast<void>(Factorize(moduli, k, 1, displacement, 0, state));
   }
 
   Work WorkDone() const;

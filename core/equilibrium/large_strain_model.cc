@@ -83,10 +83,7 @@ Eigen::MatrixXd LargeStrainModel::ByCase(const Eigen::MatrixXd& columns,
 StiffnessSolver& LargeStrainModel::TangentSolver(Eigen::Index k) {
   StiffnessSolver& solver = equilibrium_.TangentSolver(k);
   if (std::exchange(case_of_factor_[&solver], k) != k) {
-    // It was positive definite when the equilibrium was found.
-    static_cast<void>(
-        solver.FactorizeBlocks(equilibrium_.Forces().TangentBlocks(
-            moduli_, displacement_.col(k), solver.Graph())));
+    equilibrium_.FactorizeAgain(moduli_, k, displacement_.col(k));
   }
   return solver;
 }
@@ -171,8 +168,8 @@ Eigen::MatrixXd LargeStrainModel::HeldForcesTransposed(
 
 Eigen::MatrixXd LargeStrainModel::SupportForces() const {
   return ByCase(displacement_, [&](Eigen::Index k, const Eigen::MatrixXd& u) {
-    return OfHeldInCase(
-        k, equilibrium_.Forces().Forces(moduli_, u.col(0)) - Load().col(k));
+    return OfHeldInCase(k, equilibrium_.Forces().Forces(moduli_, u.col(0)) -
+                               equilibrium_.LoadAt(k, u.col(0)));
   });
 }
 

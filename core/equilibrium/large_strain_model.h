@@ -25,6 +25,11 @@ class LargeStrainModel : public ForwardModel {
   explicit LargeStrainModel(const Scene& scene);
   explicit LargeStrainModel(const Scene&&) = delete;
 
+  /// Evaluates the volume of elements in another way from the next Solve on.
+  void SetDilatation(Dilatation dilatation) {
+    equilibrium_.SetDilatation(dilatation);
+  }
+
   /// About five tangents for each load case at first, later three.
   [[nodiscard]] bool Solve(const Eigen::VectorXd& moduli) override;
   const std::string& WhyNotSolved() const override { return why_not_solved_; }

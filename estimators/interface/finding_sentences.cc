@@ -649,9 +649,9 @@ Finding LargeDeformation(const DeformationSize& size,
               Percent(relative_error_of_modulus),
           !is_rigid_motion_free && size.rotation > kTurnOfAWhole * size.strain
               ? "give \"rigid_motion\": \"free\" if the specimen or the camera "
-                "turned, or measure at smaller loads"
-              : "give --kinematics=large or a law (--material=neo_hookean), or "
-                "measure at smaller loads"};
+                "turned, or use --estimator=auto, which fits large strains"
+              : "use --estimator=auto, or give a law of large strains, such as "
+                "--material=neo_hookean"};
 }
 
 Finding LargeStrainsFitted(const DeformationSize& size,

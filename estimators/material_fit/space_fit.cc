@@ -119,12 +119,7 @@ std::optional<BoundedMinimum> SpaceFit::FindMinimum(
     }
   }
   if (misfit_.HasLargeStrains()) {
-    const std::optional<Eigen::VectorXd> from =
-        start ? start
-              : SmallStrainStart(scene_, options_, misfit_, fit_.estimate.work);
-    return from ? std::optional<BoundedMinimum>(
-                      DescendFrom(options_, *from, Distance::kNear, misfit_))
-                : std::nullopt;
+    return FindAtLargeStrains(start);
   }
   if (!start && HasFreeAxis(scene_.materials)) {
     return FindOverAxes(descent);
@@ -149,6 +144,34 @@ std::optional<BoundedMinimum> SpaceFit::FindMinimum(
                  : ReducedMinimum(
                        VirtualFieldsStart(scene_, options_, fit_.estimate),
                        options_, misfit_, fit_.estimate);
+}
+
+// Linear hexahedra and quadrilaterals of other codes take the volume of points
+// where materials are compressible.  Which ones computed the displacements is
+// not known, and of a specimen neither explains much more.
+std::optional<BoundedMinimum> SpaceFit::FindAtLargeStrains(
+    const std::optional<Eigen::VectorXd>& start) {
+  misfit_.SetDilatation(Dilatation::kMeanOfElement);
+  const std::optional<Eigen::VectorXd> from =
+      start ? start
+            : SmallStrainStart(scene_, options_, misfit_, fit_.estimate.work);
+  if (!from) {
+    return std::nullopt;
+  }
+  const BoundedMinimum of_means =
+      DescendFrom(options_, *from, Distance::kNear, misfit_);
+  if (IsSimplex(scene_.mesh.kind) || scene_.mesh.Order() > 1 ||
+      scene_.mesh.section.model == SectionModel::kPlaneStress) {
+    return of_means;
+  }
+  misfit_.SetDilatation(Dilatation::kOfPoints);
+  const BoundedMinimum of_points =
+      DescendFrom(options_, of_means.variables, Distance::kNear, misfit_);
+  if (of_points.cost < of_means.cost) {
+    return of_points;
+  }
+  misfit_.SetDilatation(Dilatation::kMeanOfElement);
+  return of_means;
 }
 
 // The best minimum of all starts, with another axis that is nearly as probable.

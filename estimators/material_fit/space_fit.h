@@ -90,6 +90,8 @@ class SpaceFit {
   std::optional<BoundedMinimum> FindMinimum(
       Descent descent, const std::optional<Eigen::VectorXd>& start);
   std::optional<BoundedMinimum> FindOverAxes(Descent descent);
+  std::optional<BoundedMinimum> FindAtLargeStrains(
+      const std::optional<Eigen::VectorXd>& start);
   Work WorkDone();
   const std::string& SolverNotice();
 

@@ -64,6 +64,11 @@ void DisplacementMisfit::ObserveAnew(const Scene& scene) {
   CompareAnew();
 }
 
+void DisplacementMisfit::SetDilatation(Dilatation dilatation) {
+  static_cast<LargeStrainModel&>(*model_).SetDilatation(dilatation);
+  x_.resize(0);
+}
+
 void DisplacementMisfit::CompareAnew() {
   if (x_.size() != 0) {
     residual_ = observed_.Restrict(Displacement()) - observed_.Measured();

@@ -10,6 +10,7 @@
 
 #include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/equilibrium/forward_model.h"
+#include "elastimate/core/mechanics/large_strain_forces.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/core/scene/scene.h"
 #include "elastimate/estimators/interface/estimator.h"
@@ -44,6 +45,9 @@ class DisplacementMisfit {
   /// Precondition: the materials have laws of small strains.
   Equilibrium& SmallStrainModel() { return *small_strain_model_; }
   bool HasLargeStrains() const { return small_strain_model_ == nullptr; }
+  /// Evaluates the volume of elements in another way from now on.
+  /// Precondition: HasLargeStrains.
+  void SetDilatation(Dilatation dilatation);
 
   /// Takes these nodes for neighbours in statistics of the residual: those of
   /// the mesh that was measured, whose nodes have none in a finer one.
