@@ -22,18 +22,20 @@ namespace {
 
 using testing::KindOfSection;
 
-constexpr KindOfSection kHex8 = {ElementKind::kHex8, SectionModel::kSolid};
-constexpr KindOfSection kTet4 = {ElementKind::kTet4, SectionModel::kSolid};
-const Eigen::Vector2d kTruth(2000, 0.3);
+constexpr KindOfSection kBarOfHex8 = {ElementKind::kBarOfHex8,
+                                      SectionModel::kSolid};
+constexpr KindOfSection kBarOfTet4 = {ElementKind::kBarOfTet4,
+                                      SectionModel::kSolid};
+const Eigen::Vector2d kBentTruth(2000, 0.3);
 
-Eigen::VectorXd TrueParameters(const std::string& law) {
+Eigen::VectorXd BarParameters(const std::string& law) {
   if (law == "mooney_rivlin") {
     return Eigen::Vector3d(300, 80, 1500);
   }
   if (law == "yeoh") {
     return Eigen::Vector4d(350, -40, 60, 1500);
   }
-  return kTruth;
+  return kBentTruth;
 }
 
 // A bar six times as long as it is thick, of one material, that is clamped at
@@ -50,7 +52,7 @@ Scene Cantilever(const KindOfSection& kind, const std::string& law,
   const Eigen::VectorXd size = scene.mesh.nodes.rowwise().maxCoeff() -
                                scene.mesh.nodes.rowwise().minCoeff();
   const double width = last == 2 ? size(1) : scene.mesh.section.thickness;
-  const double stiffness = kTruth(0) * width * std::pow(size(0), 3) / 12;
+  const double stiffness = kBentTruth(0) * width * std::pow(size(0), 3) / 12;
   const double force = 2 * rotation * stiffness / (length * length);
   Eigen::MatrixXd forces =
       Eigen::MatrixXd::Zero(scene.mesh.Dimension(), scene.mesh.NumNodes());
@@ -66,7 +68,7 @@ Scene Cantilever(const KindOfSection& kind, const std::string& law,
   return scene;
 }
 
-void MeasureLargeStrains(const Eigen::VectorXd& parameters, Scene& scene) {
+void MeasureBar(const Eigen::VectorXd& parameters, Scene& scene) {
   LargeStrainEquilibrium model(scene);
   const Eigen::VectorXd moduli = model.Forces().Parameters().Moduli(parameters);
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
@@ -80,7 +82,7 @@ void MeasureLargeStrains(const Eigen::VectorXd& parameters, Scene& scene) {
 }
 
 // Adds noise of this part of the largest displacement where nothing is held.
-double AddNoise(double part, std::uint64_t seed, Scene& scene) {
+double AddNoiseOfBar(double part, std::uint64_t seed, Scene& scene) {
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> gaussian;
   const double sd =
@@ -95,12 +97,12 @@ double AddNoise(double part, std::uint64_t seed, Scene& scene) {
   return sd;
 }
 
-Estimate RunIterativeFe(const Scene& scene) {
+Estimate FitBar(const Scene& scene) {
   return MakeEstimator("iterative-fe")->Run(scene, {});
 }
 
-void ExpectParameters(const Estimate& estimate, const Eigen::VectorXd& expected,
-                      double tolerance) {
+void ExpectBarParameters(const Estimate& estimate,
+                         const Eigen::VectorXd& expected, double tolerance) {
   ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
   ASSERT_EQ(estimate.parameters.size(), std::size_t(expected.size()));
   for (Eigen::Index i = 0; i < expected.size(); ++i) {
@@ -113,9 +115,9 @@ class IterativeFeOfKinds : public ::testing::TestWithParam<KindOfSection> {};
 
 TEST_P(IterativeFeOfKinds, FindsTheMaterialOfABentBar) {
   Scene scene = Cantilever(GetParam(), "neo_hookean", 0.5);
-  MeasureLargeStrains(kTruth, scene);
-  const Estimate estimate = RunIterativeFe(scene);
-  ExpectParameters(estimate, kTruth, 1e-7);
+  MeasureBar(kBentTruth, scene);
+  const Estimate estimate = FitBar(scene);
+  ExpectBarParameters(estimate, kBentTruth, 1e-7);
   EXPECT_LE(estimate.work.factorizations, 25);
 }
 
@@ -126,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(All, IterativeFeOfKinds,
 class IterativeFeOfLaws : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(IterativeFeOfLaws, FindsTheParametersFromLoadSteps) {
-  for (const KindOfSection& kind : {kHex8, kTet4}) {
+  for (const KindOfSection& kind : {kBarOfHex8, kBarOfTet4}) {
     Scene scene = Cantilever(kind, GetParam(), 0.5);
     scene.load_cases.resize(3, scene.load_cases[0]);
     const Eigen::MatrixXd bending =
@@ -135,8 +137,8 @@ TEST_P(IterativeFeOfLaws, FindsTheParametersFromLoadSteps) {
     pull.row(2) = 8 * bending.row(0);
     scene.load_cases[1].loads = {NodalForces{2 * bending}};
     scene.load_cases[2].loads = {NodalForces{pull}};
-    MeasureLargeStrains(TrueParameters(GetParam()), scene);
-    ExpectParameters(RunIterativeFe(scene), TrueParameters(GetParam()), 1e-6);
+    MeasureBar(BarParameters(GetParam()), scene);
+    ExpectBarParameters(FitBar(scene), BarParameters(GetParam()), 1e-6);
   }
 }
 
@@ -147,9 +149,9 @@ INSTANTIATE_TEST_SUITE_P(All, IterativeFeOfLaws,
 
 TEST(IterativeFeOfLargeStrains, StartsFarFromAStronglyBentBar) {
   for (const double rotation : {1.0, 2.5, 8.0}) {
-    Scene scene = Cantilever(kHex8, "corotated", rotation);
-    MeasureLargeStrains(kTruth, scene);
-    ExpectParameters(RunIterativeFe(scene), kTruth, 1e-6);
+    Scene scene = Cantilever(kBarOfHex8, "corotated", rotation);
+    MeasureBar(kBentTruth, scene);
+    ExpectBarParameters(FitBar(scene), kBentTruth, 1e-6);
   }
 }
 
@@ -161,16 +163,16 @@ TEST(IterativeFeOfLargeStrains, IsAtTheCramerRaoBound) {
     double of_modulus = 0;
     double of_ratio = 0;
     for (int seed = 0; seed < kSeeds; ++seed) {
-      Scene scene = Cantilever(kTet4, "neo_hookean", 0.5);
-      MeasureLargeStrains(kTruth, scene);
-      scene.load_cases[0].noise_sd = AddNoise(noise, seed, scene);
-      const Estimate estimate = RunIterativeFe(scene);
+      Scene scene = Cantilever(kBarOfTet4, "neo_hookean", 0.5);
+      MeasureBar(kBentTruth, scene);
+      scene.load_cases[0].noise_sd = AddNoiseOfBar(noise, seed, scene);
+      const Estimate estimate = FitBar(scene);
       ASSERT_EQ(estimate.parameters.size(), 2u);
       ASSERT_TRUE(estimate.parameters[1].standard_error) << estimate.message;
-      of_modulus += std::pow((estimate.parameters[0].value - kTruth(0)) /
+      of_modulus += std::pow((estimate.parameters[0].value - kBentTruth(0)) /
                                  *estimate.parameters[0].standard_error,
                              2);
-      of_ratio += std::pow((estimate.parameters[1].value - kTruth(1)) /
+      of_ratio += std::pow((estimate.parameters[1].value - kBentTruth(1)) /
                                *estimate.parameters[1].standard_error,
                            2);
     }
@@ -182,7 +184,7 @@ TEST(IterativeFeOfLargeStrains, IsAtTheCramerRaoBound) {
 }
 
 TEST(IterativeFeOfLargeStrains, TakesPointsRegionsAndKnownParameters) {
-  Scene scene = Cantilever(kHex8, "neo_hookean", 0.5);
+  Scene scene = Cantilever(kBarOfHex8, "neo_hookean", 0.5);
   scene.mesh.regions.resize(scene.mesh.NumElements());
   const Eigen::VectorXd heights = scene.mesh.nodes.row(2);
   for (Eigen::Index e = 0; e < scene.mesh.NumElements(); ++e) {
@@ -193,15 +195,15 @@ TEST(IterativeFeOfLargeStrains, TakesPointsRegionsAndKnownParameters) {
   scene.materials = {{"neo_hookean", {1}, {}, {}},
                      {"corotated", {2}, {{"poisson_ratio", 0.4}}, {}}};
   const Eigen::Vector4d truth(2000, 0.3, 1200, 0.4);
-  MeasureLargeStrains(truth, scene);
+  MeasureBar(truth, scene);
   testing::MeasureAtPoints(60, 3, scene);
-  ExpectParameters(RunIterativeFe(scene), truth, 1e-6);
+  ExpectBarParameters(FitBar(scene), truth, 1e-6);
 }
 
 TEST(IterativeFeOfLargeStrains, TakesMeasuredSupportsAndResultants) {
-  Scene scene = Cantilever(kHex8, "neo_hookean", 0.5);
+  Scene scene = Cantilever(kBarOfHex8, "neo_hookean", 0.5);
   // The top is held where the force moved it to, and a load cell measures.
-  MeasureLargeStrains(kTruth, scene);
+  MeasureBar(kBentTruth, scene);
   const Eigen::MatrixXd bent = scene.load_cases[0].displacement;
   const Eigen::MatrixXd force =
       std::get<NodalForces>(scene.load_cases[0].loads[0]).force;
@@ -218,36 +220,36 @@ TEST(IterativeFeOfLargeStrains, TakesMeasuredSupportsAndResultants) {
   scene.load_cases[0].resultants = {resultant};
   scene.supports.displacement.setZero(3, scene.mesh.NumNodes());
   scene.supports.unknown = scene.supports.held;
-  const Estimate estimate = RunIterativeFe(scene);
+  const Estimate estimate = FitBar(scene);
   ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
-  EXPECT_NEAR(estimate.parameters[0].value / kTruth(0), 1, 1e-6);
-  EXPECT_NEAR(estimate.parameters[1].value / kTruth(1), 1, 1e-6);
+  EXPECT_NEAR(estimate.parameters[0].value / kBentTruth(0), 1, 1e-6);
+  EXPECT_NEAR(estimate.parameters[1].value / kBentTruth(1), 1, 1e-6);
 }
 
 TEST(IterativeFeOfLargeStrains, KeepsThreeErrorsInAFinerWorld) {
-  for (const KindOfSection& kind : {kTet4, kHex8}) {
+  for (const KindOfSection& kind : {kBarOfTet4, kBarOfHex8}) {
     Scene scene = Cantilever(kind, "neo_hookean", 0.5);
     Scene finer = FinerScene(FinerScene(scene));
-    MeasureLargeStrains(kTruth, finer);
+    MeasureBar(kBentTruth, finer);
     scene.load_cases[0].displacement =
         finer.load_cases[0].displacement.leftCols(scene.mesh.NumNodes());
-    AddNoise(0.01, 5, scene);
-    const Estimate estimate = RunIterativeFe(scene);
+    AddNoiseOfBar(0.01, 5, scene);
+    const Estimate estimate = FitBar(scene);
     ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
     for (Eigen::Index i = 0; i < 2; ++i) {
-      EXPECT_NEAR(estimate.parameters[i].value, kTruth(i),
+      EXPECT_NEAR(estimate.parameters[i].value, kBentTruth(i),
                   3 * *estimate.parameters[i].standard_error);
     }
-    EXPECT_LT(*estimate.parameters[0].standard_error, 0.1 * kTruth(0));
+    EXPECT_LT(*estimate.parameters[0].standard_error, 0.1 * kBentTruth(0));
   }
 }
 
 TEST(IterativeFeOfLargeStrains, SaysWhyThereIsNoEquilibrium) {
   // Displacements that oppose the load.
-  Scene scene = Cantilever(kTet4, "neo_hookean", 0.5);
-  MeasureLargeStrains(kTruth, scene);
+  Scene scene = Cantilever(kBarOfTet4, "neo_hookean", 0.5);
+  MeasureBar(kBentTruth, scene);
   scene.load_cases[0].displacement *= -1;
-  const Estimate estimate = RunIterativeFe(scene);
+  const Estimate estimate = FitBar(scene);
   EXPECT_FALSE(estimate.IsUsable());
   EXPECT_NE(estimate.message, "");
 }
