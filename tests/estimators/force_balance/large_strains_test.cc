@@ -11,6 +11,7 @@
 
 #include "elastimate/core/equilibrium/large_strain_equilibrium.h"
 #include "elastimate/core/mechanics/stiffness_traces.h"
+#include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/estimators/force_balance/force_regression.h"
@@ -187,6 +188,20 @@ TEST(LargeStrainForceBalance, IsExactWhereAnEndLoadBendsABar) {
   EXPECT_LT(angle, 89);
   ExpectParameters(MakeEstimator("closed-form")->Run(scene, {}), parameters,
                    1e-8);
+}
+
+// A pressure on the whole surface pushes against the bent one.
+TEST(LargeStrainForceBalance, IsExactUnderPressureThatFollowsTheSurface) {
+  const Eigen::Vector2d parameters(2000, 0.3);
+  Scene scene = BentBar(kHex8, "neo_hookean");
+  scene.load_cases[0].loads = {
+      Pressure{BoundaryFacets(scene.mesh), 40, /*follows=*/true}};
+  scene.load_cases[0].noise_sd = 1e-3;
+  scene.load_cases[1].noise_sd = 1e-4;
+  MeasureBent(parameters, scene);
+  const Estimate estimate = MakeEstimator("closed-form")->Run(scene, {});
+  ExpectParameters(estimate, parameters, 1e-8);
+  EXPECT_LT(estimate.force_residual.value(), 1e-8);
 }
 
 // Gives the lower half of a bar region 1, and the upper half region 2.
