@@ -10,6 +10,7 @@
 #include "elastimate/core/large_strain/large_strain_law.h"
 #include "elastimate/core/materials/material.h"
 #include "elastimate/core/materials/material_parameters.h"
+#include "elastimate/core/mechanics/follower_pressure.h"
 #include "elastimate/core/mechanics/stiffness_traces.h"
 #include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/loads.h"
@@ -210,7 +211,7 @@ ForceResidual::ForceResidual(const ForceScene& prepared, const Scene& scene,
       for (Eigen::Index i = 0; i < m; ++i) {
         row(i) = products_[i](dof, k);
       }
-      row(m) = prepared.Loads()(dof, k);
+      row(m) = NodalLoads()(dof, k);
     }
   }
   const Eigen::MatrixXd triangle = qr.Triangle();
@@ -228,6 +229,7 @@ void ForceResidual::SetLargeStrains(const Scene& scene,
   large_displacements_ = q;
   products_.assign(m, Eigen::MatrixXd(q.rows(), q.cols()));
   traces_ = Eigen::MatrixXd::Zero(m, m);
+  nodal_loads_ = prepared_.Loads();
   for (Eigen::Index k = 0; k < q.cols(); ++k) {
     const double noise_sd = scene.load_cases[k].noise_sd.value_or(1);
     large_displacements_.col(k) *= noise_sd;
@@ -238,7 +240,13 @@ void ForceResidual::SetLargeStrains(const Scene& scene,
       products_[i].col(k) = columns.col(i);
     }
     traces_ += LargeTracesOf(scene, prepared_, at, large_displacements_.col(k));
+    // The loads of the scene have the pressures on the undeformed surface.
+    const FollowerPressure pressure(scene.mesh, scene.load_cases[k].loads);
+    nodal_loads_.col(k) += (pressure.Forces(large_displacements_.col(k)) -
+                            pressure.Forces(Eigen::VectorXd::Zero(q.rows()))) /
+                           noise_sd;
   }
+  SetHeldRowsToZero(prepared_.Dofs(), nodal_loads_);
   work_.element_passes = int(q.cols() * (1 + m));
 }
 
@@ -266,7 +274,7 @@ Eigen::MatrixXd ForceResidual::StiffenedGram(
   ResizeInLargePages(prepared_.Dofs().NumAll(), n * num_cases, x);
   for (Eigen::Index i = 0; i < n; ++i) {
     auto of_combination = x.middleCols(i * num_cases, num_cases);
-    of_combination = combinations(m, i) * prepared_.Loads();
+    of_combination = combinations(m, i) * NodalLoads();
     for (Eigen::Index k = 0; k < m; ++k) {
       if (combinations(k, i) != 0) {
         of_combination += combinations(k, i) * products_[k];

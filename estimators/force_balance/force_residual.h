@@ -81,6 +81,12 @@ class ForceResidual {
   /// ||Columns() theta - Loads()|| is the norm of the residual: (m + 1) rows.
   const Eigen::MatrixXd& Columns() const { return columns_; }
   const Eigen::VectorXd& Loads() const { return loads_; }
+  /// The weighted loads in the free rows, zero in the held ones: those of the
+  /// prepared scene, but for pressures that follow the surface, which act on
+  /// the measured one.  What noise makes of these is left out.
+  const Eigen::MatrixXd& NodalLoads() const {
+    return nodal_loads_.size() != 0 ? nodal_loads_ : prepared_.Loads();
+  }
   /// f_k(q) of all load cases, num_dofs x num_load_cases, for each modulus.
   const std::vector<Eigen::MatrixXd>& Products() const { return products_; }
   /// The displacements of laws of large strains without weights, num_dofs x
@@ -107,8 +113,8 @@ class ForceResidual {
   const Work& WorkDone() const { return work_; }
 
  private:
-  /// Sets the products and the traces of laws of large strains at the weighted
-  /// displacements `q`.
+  /// Sets the products, the traces and the loads of laws of large strains at
+  /// the weighted displacements `q`.
   void SetLargeStrains(const Scene& scene, const Eigen::MatrixXd& q,
                        const Eigen::VectorXd& moduli);
   /// Returns K(theta) X for the load cases of each combination side by side.
@@ -120,6 +126,7 @@ class ForceResidual {
   /// These are empty for small strains.
   Eigen::MatrixXd large_displacements_;
   Eigen::MatrixXd traces_;
+  Eigen::MatrixXd nodal_loads_;
   std::vector<Eigen::MatrixXd> products_;
   Eigen::MatrixXd columns_;
   Eigen::VectorXd loads_;

@@ -50,7 +50,7 @@ Eigen::MatrixXd LargeBalance(const Scene& scene, const FreeParameters& free,
       columns.col(i) = forces.Products()[i].col(k);
     }
     Eigen::MatrixXd residual(fields.rows(), balance.cols());
-    residual << columns * moduli - forces.Prepared().Loads().col(k),
+    residual << columns * moduli - forces.NodalLoads().col(k),
         columns * directions;
     const Eigen::MatrixXd stiffened = forces.Prepared().Dofs().Restrict(
         forces.Prepared().LargeForces()->TangentProducts(

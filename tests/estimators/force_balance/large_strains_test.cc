@@ -11,6 +11,7 @@
 
 #include "elastimate/core/equilibrium/large_strain_equilibrium.h"
 #include "elastimate/core/mechanics/stiffness_traces.h"
+#include "elastimate/core/mesh/facets.h"
 #include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/estimators/force_balance/force_regression.h"
@@ -28,10 +29,11 @@ using testing::KindOfSection;
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kRightAngle = kPi / 2;
 constexpr double kBending = 80.0 / 90 * kRightAngle;
-constexpr KindOfSection kHex8 = {ElementKind::kHex8, SectionModel::kSolid};
-constexpr KindOfSection kTet4 = {ElementKind::kTet4, SectionModel::kSolid};
+constexpr KindOfSection kHexahedra = {ElementKind::kHex8, SectionModel::kSolid};
+constexpr KindOfSection kTetrahedra = {ElementKind::kTet4,
+                                       SectionModel::kSolid};
 
-Eigen::VectorXd TrueParameters(const std::string& law) {
+Eigen::VectorXd ParametersOfLaw(const std::string& law) {
   if (law == "mooney_rivlin") {
     return Eigen::Vector3d(300, 80, 3000);
   }
@@ -63,8 +65,8 @@ Eigen::MatrixXd ArcDisplacement(const Mesh& mesh, double angle) {
 // Returns a bar of distorted elements, five times as long as it is thick, whose
 // ends are held where an arc of this angle has them, with forces on all nodes.
 // Its load cases are load steps of one specimen.
-Scene BentBar(const KindOfSection& kind, const std::string& law,
-              double angle = kBending) {
+Scene BarOnArc(const KindOfSection& kind, const std::string& law,
+               double angle = kBending) {
   Scene scene = testing::SceneOfKind(kind);
   const int last = scene.mesh.Dimension() - 1;
   scene.mesh.nodes.row(last) *= 5;
@@ -99,8 +101,8 @@ void MeasureBent(const Eigen::VectorXd& parameters, Scene& scene,
   }
 }
 
-void ExpectParameters(const Estimate& estimate, const Eigen::VectorXd& expected,
-                      double tolerance) {
+void ExpectValues(const Estimate& estimate, const Eigen::VectorXd& expected,
+                  double tolerance) {
   ASSERT_EQ(estimate.status, Status::kOk) << estimate.message;
   ASSERT_EQ(estimate.parameters.size(), expected.size());
   for (Eigen::Index i = 0; i < expected.size(); ++i) {
@@ -122,8 +124,8 @@ std::vector<KindAndLaw> KindsAndLaws() {
   std::vector<KindAndLaw> all;
   for (const std::string law : {"corotated", "st_venant_kirchhoff",
                                 "neo_hookean", "mooney_rivlin", "yeoh"}) {
-    all.push_back({kTet4, law});
-    all.push_back({kHex8, law});
+    all.push_back({kTetrahedra, law});
+    all.push_back({kHexahedra, law});
   }
   for (const std::string law :
        {"corotated", "st_venant_kirchhoff", "mooney_rivlin"}) {
@@ -141,12 +143,12 @@ class LargeStrainsOfForces : public ::testing::TestWithParam<KindAndLaw> {};
 
 TEST_P(LargeStrainsOfForces, AreExactWhereABarIsBentBy80Degrees) {
   const auto& [kind, law] = GetParam();
-  const Eigen::VectorXd parameters = TrueParameters(law);
-  Scene scene = BentBar(kind, law);
+  const Eigen::VectorXd parameters = ParametersOfLaw(law);
+  Scene scene = BarOnArc(kind, law);
   MeasureBent(parameters, scene);
   for (const std::string& estimator : ForceEstimators()) {
     const Estimate estimate = MakeEstimator(estimator)->Run(scene, {});
-    ExpectParameters(estimate, parameters, 1e-8);
+    ExpectValues(estimate, parameters, 1e-8);
     EXPECT_FALSE(estimate.Has(FindingCode::kLargeDeformation));
     EXPECT_GT(estimate.deformation.rotation, 0.3);
   }
@@ -185,8 +187,21 @@ TEST(LargeStrainForceBalance, IsExactWhereAnEndLoadBendsABar) {
   const double angle = std::atan2(edge(0), edge(2)) * 90 / kRightAngle;
   EXPECT_GT(angle, 75);
   EXPECT_LT(angle, 89);
-  ExpectParameters(MakeEstimator("closed-form")->Run(scene, {}), parameters,
-                   1e-8);
+  ExpectValues(MakeEstimator("closed-form")->Run(scene, {}), parameters, 1e-8);
+}
+
+// A pressure on the whole surface pushes against the bent one.
+TEST(LargeStrainForceBalance, IsExactUnderPressureThatFollowsTheSurface) {
+  const Eigen::Vector2d parameters(2000, 0.3);
+  Scene scene = BarOnArc(kHexahedra, "neo_hookean");
+  scene.load_cases[0].loads = {
+      Pressure{BoundaryFacets(scene.mesh), 40, /*follows=*/true}};
+  scene.load_cases[0].noise_sd = 1e-3;
+  scene.load_cases[1].noise_sd = 1e-4;
+  MeasureBent(parameters, scene);
+  const Estimate estimate = MakeEstimator("closed-form")->Run(scene, {});
+  ExpectValues(estimate, parameters, 1e-8);
+  EXPECT_LT(estimate.force_residual.value(), 1e-8);
 }
 
 // Gives the lower half of a bar region 1, and the upper half region 2.
@@ -205,7 +220,7 @@ void DivideBar(Scene& scene) {
 }
 
 TEST(LargeStrainForceBalance, TakesRegionsOfDifferentLaws) {
-  Scene scene = BentBar(kHex8, "corotated");
+  Scene scene = BarOnArc(kHexahedra, "corotated");
   DivideBar(scene);
   scene.materials[1].law = "mooney_rivlin";
   Eigen::VectorXd parameters(5);
@@ -215,14 +230,13 @@ TEST(LargeStrainForceBalance, TakesRegionsOfDifferentLaws) {
   scene.load_cases[0].noise_sd = 1e-4;
   scene.load_cases[1].noise_sd = 3e-4;
   for (const std::string& estimator : ForceEstimators()) {
-    ExpectParameters(MakeEstimator(estimator)->Run(scene, {}), parameters,
-                     1e-8);
+    ExpectValues(MakeEstimator(estimator)->Run(scene, {}), parameters, 1e-8);
   }
   scene.materials[0].known = {{"poisson_ratio", 0.3}};
   scene.materials[1].known = {{"bulk_modulus", 2000}};
   for (const std::string& estimator : ForceEstimators()) {
     const Estimate estimate = MakeEstimator(estimator)->Run(scene, {});
-    ExpectParameters(estimate, parameters, 1e-8);
+    ExpectValues(estimate, parameters, 1e-8);
     EXPECT_TRUE(estimate.parameters[4].is_known);
     EXPECT_TRUE(estimate.parameters[3].standard_error.has_value());
   }
@@ -231,16 +245,15 @@ TEST(LargeStrainForceBalance, TakesRegionsOfDifferentLaws) {
 // The second invariant alone leaves nothing for the first modulus.
 TEST(LargeStrainForceBalance, FindsAModulusThatIsLargerThanTheFirst) {
   const Eigen::Vector3d parameters(40, 300, 2000);
-  Scene scene = BentBar(kHex8, "mooney_rivlin");
+  Scene scene = BarOnArc(kHexahedra, "mooney_rivlin");
   MeasureBent(parameters, scene);
   for (const std::string& estimator : ForceEstimators()) {
-    ExpectParameters(MakeEstimator(estimator)->Run(scene, {}), parameters,
-                     1e-8);
+    ExpectValues(MakeEstimator(estimator)->Run(scene, {}), parameters, 1e-8);
   }
 }
 
 TEST(LargeStrainForceBalance, KeepsBounds) {
-  Scene scene = BentBar(kTet4, "neo_hookean");
+  Scene scene = BarOnArc(kTetrahedra, "neo_hookean");
   MeasureBent(Eigen::Vector2d(2000, 0.3), scene);
   scene.materials[0].bounds = {{"poisson_ratio", {0.1, 0.28}}};
   const Estimate estimate = MakeEstimator("bounded")->Run(scene, {});
@@ -252,7 +265,7 @@ TEST(LargeStrainForceBalance, KeepsBounds) {
 }
 
 TEST(LargeStrainForceBalance, PreparedGivesWhatItGives) {
-  Scene scene = BentBar(kHex8, "neo_hookean");
+  Scene scene = BarOnArc(kHexahedra, "neo_hookean");
   MeasureBent(Eigen::Vector2d(2000, 0.3), scene);
   testing::AddNoise(1e-4, 1, scene);
   const auto estimator = MakeEstimator("closed-form");
@@ -296,7 +309,7 @@ std::vector<Eigen::MatrixXd> ColumnDerivatives(const LargeStrainForces& forces,
 // Noise n in q changes F by its derivatives K_k n, each load case with its own.
 TEST(LargeStrainForceBalance, KnowsWhatNoiseMakesOfItsResidual) {
   const Eigen::Vector2d parameters(2000, 0.3);
-  Scene scene = BentBar(kHex8, "neo_hookean");
+  Scene scene = BarOnArc(kHexahedra, "neo_hookean");
   MeasureBent(parameters, scene);
   scene.load_cases[1].displacement =
       scene.supports.held.select(scene.load_cases[1].displacement,
@@ -366,8 +379,8 @@ class LargeStrainNoise : public ::testing::TestWithParam<KindAndLaw> {};
 TEST_P(LargeStrainNoise, IsAsLargeAsStated) {
   constexpr int kSeeds = 20;
   const auto& [kind, law] = GetParam();
-  const Eigen::VectorXd parameters = TrueParameters(law);
-  Scene exact = BentBar(kind, law);
+  const Eigen::VectorXd parameters = ParametersOfLaw(law);
+  Scene exact = BarOnArc(kind, law);
   MeasureBent(parameters, exact);
   const FreeParameters free(exact, {});
   const Eigen::VectorXd truth = free.VariablesOf(parameters);
@@ -408,9 +421,9 @@ TEST_P(LargeStrainNoise, IsAsLargeAsStated) {
 
 INSTANTIATE_TEST_SUITE_P(
     Laws, LargeStrainNoise,
-    ::testing::Values(KindAndLaw{kHex8, "corotated"},
-                      KindAndLaw{kHex8, "neo_hookean"},
-                      KindAndLaw{kHex8, "mooney_rivlin"},
+    ::testing::Values(KindAndLaw{kHexahedra, "corotated"},
+                      KindAndLaw{kHexahedra, "neo_hookean"},
+                      KindAndLaw{kHexahedra, "mooney_rivlin"},
                       KindAndLaw{
                           {ElementKind::kQuad4, SectionModel::kPlaneStress},
                           "neo_hookean"}),
@@ -421,7 +434,7 @@ INSTANTIATE_TEST_SUITE_P(
 // Virtual work tells a wrong law from noise, which leaves as much of the load.
 TEST(LargeStrainForceBalance, TellsAWrongLawFromNoise) {
   const Eigen::Vector2d parameters(2000, 0.3);
-  Scene exact = BentBar(kHex8, "neo_hookean");
+  Scene exact = BarOnArc(kHexahedra, "neo_hookean");
   MeasureBent(parameters, exact);
   Scene wrong = exact;
   wrong.materials[0].law = "mooney_rivlin";
@@ -442,7 +455,7 @@ TEST(LargeStrainForceBalance, TellsAWrongLawFromNoise) {
 }
 
 TEST(LargeStrainForceBalance, NamesAnElementThatIsInsideOut) {
-  Scene scene = BentBar(kTet4, "corotated");
+  Scene scene = BarOnArc(kTetrahedra, "corotated");
   MeasureBent(Eigen::Vector2d(2000, 0.3), scene);
   // The first node of the middle layer moves beyond its neighbours.
   const Eigen::Index node = 18;
@@ -460,7 +473,7 @@ TEST(LargeStrainForceBalance, IsExactInPlaneStress) {
   const KindOfSection kind = {ElementKind::kQuad4, SectionModel::kPlaneStress};
   for (const double ratio : {-0.2, 0.0, 0.3, 0.49}) {
     const Eigen::Vector2d parameters(2000, ratio);
-    Scene scene = BentBar(kind, "neo_hookean");
+    Scene scene = BarOnArc(kind, "neo_hookean");
     MeasureBent(parameters, scene);
     for (const std::string& estimator : ForceEstimators()) {
       const Estimate estimate = MakeEstimator(estimator)->Run(scene, {});
@@ -472,7 +485,7 @@ TEST(LargeStrainForceBalance, IsExactInPlaneStress) {
 }
 
 TEST(LargeStrainForceBalance, RefusesLawsOfBothKindsInOneScene) {
-  Scene scene = BentBar(kHex8, "corotated");
+  Scene scene = BarOnArc(kHexahedra, "corotated");
   MeasureBent(Eigen::Vector2d(2000, 0.3), scene);
   DivideBar(scene);
   scene.materials[1].law = "isotropic";
@@ -481,7 +494,7 @@ TEST(LargeStrainForceBalance, RefusesLawsOfBothKindsInOneScene) {
 }
 
 TEST(LargeStrainForceBalance, IsNotForVirtualFields) {
-  Scene scene = BentBar(kHex8, "corotated");
+  Scene scene = BarOnArc(kHexahedra, "corotated");
   MeasureBent(Eigen::Vector2d(2000, 0.3), scene);
   EXPECT_THROWS_WITH(MakeEstimator("virtual-fields")->Run(scene, {}),
                      "law corotated is for large strains.*iterative-fe");
