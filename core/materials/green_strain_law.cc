@@ -30,10 +30,10 @@ GreenStrainLaw::GreenStrainLaw(std::unique_ptr<const Law> small_strains)
       name_("st_venant_kirchhoff_" + std::string(law_->Name())),
       description_("large rotations: " + std::string(law_->Name()) +
                    " in Green's strain") {
-  for (int k = 0; k < NumModuli(); ++k) {
-    stiffnesses_.emplace_back(
-        law_->Tangent(Eigen::VectorXd::Unit(NumModuli(), k),
-                      Eigen::Matrix3d::Zero(), kSolid));
+  const int num_moduli = law_->NumModuli();
+  for (int k = 0; k < num_moduli; ++k) {
+    stiffnesses_.emplace_back(law_->Tangent(
+        Eigen::VectorXd::Unit(num_moduli, k), Eigen::Matrix3d::Zero(), kSolid));
   }
 }
 
@@ -70,14 +70,15 @@ void GreenStrainLaw::TangentsAtPoints(const Eigen::VectorXd& moduli,
     Eigen::Matrix3d f = GradientAt(gradients, p);
     const Vector9 s = stiffness * StrainOf(f).reshaped();
     f.diagonal().array() += 1;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j <= i; ++j) {
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      for (Eigen::Index j = 0; j <= i; ++j) {
         Eigen::Matrix3d block =
             f * stiffness.block<3, 3>(3 * i, 3 * j) * f.transpose();
         block.diagonal().array() += s(i + 3 * j);
-        for (int b = 0; b < 3; ++b) {
-          for (int a = i == j ? b : 0; a < 3; ++a) {
-            tangents.row[TangentRow(a + 3 * i, b + 3 * j)][p] = block(a, b);
+        for (Eigen::Index b = 0; b < 3; ++b) {
+          for (Eigen::Index a = i == j ? b : 0; a < 3; ++a) {
+            tangents.row[TangentRow(int(a + 3 * i), int(b + 3 * j))][p] =
+                block(a, b);
           }
         }
       }

@@ -439,10 +439,9 @@ ElementMatrix<kKind> MeanTangent(const ElementBatch<kKind>& batch,
   ElementMatrix<kKind> matrix = ElementMatrix<kKind>::Zero();
   const auto of_nodes = [](const ElementPoint<kKind>& point,
                            const Eigen::Matrix3d& stress) {
-    const NodeColumns<kKind> forces =
-        point.volume * stress.topLeftCorner<kDimension, kDimension>() *
-        point.gradient;
-    return forces;
+    return NodeColumns<kKind>(point.volume *
+                              stress.topLeftCorner<kDimension, kDimension>() *
+                              point.gradient);
   };
   for (int i = 0; i < num_points; ++i) {
     const ElementPoint<kKind>& point = batch.Point(e, i);
