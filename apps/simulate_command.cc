@@ -209,7 +209,10 @@ std::string MeasuredScene(const std::string& source,
   const bool is_of_this_mesh =
       std::max<int>(FLAGS_order, mesh.Order()) == mesh.Order() &&
       errors.rigid_motion.size() == 0;
-  scene.origin = is_of_this_mesh ? Origin::kComputed : Origin::kMeasured;
+  scene.origin = !is_of_this_mesh ? Origin::kMeasured
+                 : HasLargeStrainLaw(scene.materials, scene.mesh.section.model)
+                     ? Origin::kComputedAtLargeStrains
+                     : Origin::kComputed;
   Fields fields = SceneFields(scene);
   for (const auto& [name, axes] : reading.axis_arrays) {
     fields.cell.push_back({name, axes});

@@ -254,7 +254,7 @@ Estimate Auto::DoRun(const Scene& scene,
     return ladder.Finish();
   }
   // The balance of forces knows no mesh error of measured displacements.
-  if (scene.origin == Origin::kComputed) {
+  if (scene.origin != Origin::kMeasured) {
     if (ladder.Climb(ClosedForm(), scene, without_degree) &&
         StopsHere(WhyNotEnough(ladder.Last()), ladder)) {
       return ladder.Finish();

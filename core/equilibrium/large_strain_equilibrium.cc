@@ -21,6 +21,9 @@ constexpr double kResidual = 1e-10;
 // its size, leaves nothing but rounding.  Where the material is nearly
 // incompressible, that of the residual may be above kResidual.
 constexpr double kRounding = 1e-12;
+// A tangent where so little was left is that of the equilibrium, and serves to
+// the end.
+constexpr double kNearby = 1e-6;
 // Newton's method that has not converged with so many tangents hardly will.
 constexpr int kMostTangents = 20;
 // A step of the load that fails is followed by one that is shorter by this.
@@ -188,6 +191,8 @@ EquilibriumStatus LargeStrainEquilibrium::Newton(const Eigen::VectorXd& moduli,
       t * held_displacement_.col(k) - (u - dofs.Extend(dofs.Restrict(u)));
   const int tangents_before = state.num_tangents;
   double last_change = std::numeric_limits<double>::infinity();
+  double last_size = std::numeric_limits<double>::infinity();
+  bool has_nearby_tangent = false;
   for (;;) {
     const Eigen::VectorXd forces = forces_.Forces(moduli, u);
     ++element_passes_;
@@ -202,9 +207,16 @@ EquilibriumStatus LargeStrainEquilibrium::Newton(const Eigen::VectorXd& moduli,
     const bool is_equilibrium =
         is_held && (residual.norm() <= kResidual * scale ||
                     last_change <= kRounding * u.norm());
-    if (!Factorize(moduli, k, t, u, is_equilibrium ? 0 : kMostShift, state)) {
-      return EquilibriumStatus::kUnstable;
+    const double size = residual.norm() / scale;
+    if (!has_nearby_tangent || size > last_size / 2) {
+      const int tangents = state.num_tangents;
+      if (!Factorize(moduli, k, t, u, is_equilibrium ? 0 : kMostShift, state)) {
+        return EquilibriumStatus::kUnstable;
+      }
+      const bool is_shifted = state.num_tangents > tangents + 1;
+      has_nearby_tangent = !is_shifted && is_held && size <= kNearby;
     }
+    last_size = size;
     if (is_equilibrium) {
       return EquilibriumStatus::kDone;
     }

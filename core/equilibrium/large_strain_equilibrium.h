@@ -65,7 +65,8 @@ struct LargeStrainState {
 /// Newton's method begins at the whole load.  Where it fails, the load is
 /// divided into steps, each a quarter as long as the last one that failed and
 /// twice as long as one that was easy.  A Newton step is shortened where det F
-/// would fall below a hundredth.  The tangent has to be positive definite at
+/// would fall below a hundredth.  Where little is left, the factor is kept. The
+/// tangent has to be positive definite at
 /// the end, since Newton's method finds unstable states as well [Wriggers,
 /// Nonlinear Finite Element Methods, 2008, chapter 5].  On the way there, where
 /// a nearly incompressible material has a wrong volume, its large pressure

@@ -117,8 +117,8 @@ enum class Origin {
   /// the kind that the materials have, of small or of large strains, so that
   /// there is no mesh error, and strains and rotations of any size are exact.
   kComputed,
-  /// Such a solution with laws of large strains, as a file says it that knows
-  /// nothing of the materials.  A scene has one of the others.
+  /// Such a solution by LargeStrainEquilibrium, whose hexahedra and
+  /// quadrilaterals have a mean dilatation; that of others is not known.
   kComputedAtLargeStrains,
 };
 

@@ -143,7 +143,7 @@ std::string WhyUnsupported(const Capabilities& capabilities, const Scene& scene,
            "--estimator=reduced-fe, or leave out --refine";
   }
   if (options.refinement == Refine::kAlways &&
-      scene.origin == Origin::kComputed) {
+      scene.origin != Origin::kMeasured) {
     return "finer elements say nothing about displacements that were computed "
            "with this mesh; leave out --refine, or give --origin=measured";
   }

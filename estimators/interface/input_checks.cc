@@ -129,13 +129,6 @@ void CheckLoads(const Scene& scene) {
     any_force = any_force || !load_case.resultants.empty() ||
                 IsLoaded(scene, Eigen::Index(k));
     num_with_noise_sd += HasKnownNoise(load_case) ? 1 : 0;
-    if (std::any_of(load_case.loads.begin(), load_case.loads.end(), Follows)) {
-      throw std::invalid_argument(
-          "load case " + std::to_string(k + 1) +
-          " has a pressure that follows the deformed surface, which only "
-          "simulate takes; leave out \"follows\" if the surface hardly turns "
-          "or grows");
-    }
   }
   if (!any_force) {
     throw std::invalid_argument(

@@ -58,7 +58,6 @@ double Difference(const LawFit& fit, const LawFit& best) {
 
 // Adds the spread of the laws to the errors of the best, which is the first.
 void AddSpread(const std::vector<LawFit>& fits, Estimate& estimate) {
-  const Eigen::VectorXd best = fits[0].fit.errors.corrected;
   double sum_of_weights = 1;
   Eigen::MatrixXd spread =
       Eigen::MatrixXd::Zero(Eigen::Index(estimate.parameters.size()),
@@ -75,7 +74,7 @@ void AddSpread(const std::vector<LawFit>& fits, Estimate& estimate) {
     Eigen::VectorXd distance(spread.rows());
     for (Eigen::Index p = 0; p < distance.size(); ++p) {
       distance(p) = fits[i].fit.estimate.parameters[p].value -
-                    estimate.parameters[p].value;
+                    fits[0].fit.estimate.parameters[p].value;
     }
     spread += weight * distance * distance.transpose();
   }
@@ -141,21 +140,29 @@ Estimate FitLargeStrainLaws(const Scene& scene,
   of_fit.youngs_modulus = {};
   of_fit.poisson_ratio = {};
   Work work;
-  std::vector<LawFit> fits;
   const auto fit_law = [&](const std::string& law,
-                           const std::optional<Eigen::VectorXd>& start) {
+                           const std::optional<Eigen::VectorXd>& start,
+                           Refine refinement) {
     large.materials = MaterialsOfLargeStrains(large.materials, law);
+    of_fit.refinement = refinement;
     MaterialFit fit = FitMaterialsFrom(start, large, of_fit, Descent::kFull);
     work = work + fit.estimate.work;
     const double square_sum = SquaredNorm(fit.errors.residual);
-    fits.push_back({law, std::move(fit), square_sum});
+    return LawFit{law, std::move(fit), square_sum};
   };
-  fit_law(kRotated, std::nullopt);
   const DeformationSize size = MeasureDeformation(scene);
+  const bool are_laws_compared = size.strain > kLimits.mentioned_strain / 2;
+  // Finer elements change laws alike, so that only the best is fitted on them.
+  const bool is_divided_last = are_laws_compared &&
+                               scene.origin == Origin::kMeasured &&
+                               options.refinement != Refine::kNever;
+  const Refine first = is_divided_last ? Refine::kNever : options.refinement;
+  std::vector<LawFit> fits;
+  fits.push_back(fit_law(kRotated, std::nullopt, first));
   const std::optional<Eigen::VectorXd> start = fits[0].fit.Variables();
-  if (start && size.strain > kLimits.mentioned_strain / 2) {
+  if (start && are_laws_compared) {
     for (const char* const law : kStretched) {
-      fit_law(law, start);
+      fits.push_back(fit_law(law, start, first));
     }
   }
   // A law that has no fit is not compared.
@@ -171,7 +178,11 @@ Estimate FitLargeStrainLaws(const Scene& scene,
   std::sort(fits.begin(), fits.end(), [](const LawFit& a, const LawFit& b) {
     return a.square_sum < b.square_sum;
   });
-  Estimate estimate = fits[0].fit.estimate;
+  Estimate estimate =
+      is_divided_last
+          ? fit_law(fits[0].law, fits[0].fit.Variables(), options.refinement)
+                .fit.estimate
+          : fits[0].fit.estimate;
   estimate.large_strain_law = fits[0].law;
   if (fits.size() > 1) {
     AddSpread(fits, estimate);

@@ -36,8 +36,11 @@ namespace elastimate {
 /// weight exp(-d / 2), and the mean square of the distances of the parameters
 /// from those of the best is added to their covariance (ErrorBudget::law).
 ///
+/// The laws are compared on quadratic elements of the mesh, which is divided
+/// for the best alone.
+///
 /// Preconditions: those of FitMaterials; the materials are isotropic.  Cost:
-/// one to three fits.
+/// one to four fits.
 [[nodiscard]] Estimate FitLargeStrainLaws(const Scene& scene,
                                           const EstimatorOptions& options);
 

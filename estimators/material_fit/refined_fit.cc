@@ -20,10 +20,15 @@ namespace {
 
 // Elements of the mesh that is divided.  A hexahedron has the nodes of six
 // tetrahedra, and a quadrilateral those of two triangles.
-Eigen::Index MostDividedElements(ElementKind kind) {
-  const bool is_simplex = IsSimplex(kind);
-  return DimensionOf(kind) == 3 ? (is_simplex ? 20000 : 3300)
-                                : (is_simplex ? 100000 : 50000);
+Eigen::Index MostDividedElements(const Scene& scene) {
+  // A fit of large strains factorises the finest tangent several dozen times.
+  constexpr Eigen::Index kOfLargeStrains = 16;
+  const bool is_simplex = IsSimplex(scene.mesh.kind);
+  return (scene.mesh.Dimension() == 3 ? (is_simplex ? 20000 : 3300)
+                                      : (is_simplex ? 100000 : 50000)) /
+         (HasLargeStrainLaw(scene.materials, scene.mesh.section.model)
+              ? kOfLargeStrains
+              : 1);
 }
 
 // Next to the end of the range of a ratio a misfit hardly has a slope: where
@@ -158,8 +163,7 @@ class Refinement {
   bool MayDivide(const Scene& quadratic) const {
     return options_.refinement != Refine::kNever &&
            (options_.refinement == Refine::kAlways ||
-            quadratic.mesh.NumElements() <=
-                MostDividedElements(scene_.mesh.kind));
+            quadratic.mesh.NumElements() <= MostDividedElements(scene_));
   }
 
   const Scene& scene_;

@@ -93,7 +93,22 @@ std::optional<Eigen::VectorXd> SmallStrainStart(const Scene& scene,
   for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
     has_free_modulus = has_free_modulus || HasFreeModulus(all, i);
   }
-  if (has_free_modulus) {
+  if (has_free_modulus && misfit.NumResultants() > 0 &&
+      misfit.Model().Load().isZero(0)) {
+    // Displaced supports alone move the specimen alike at any unit of moduli.
+    Eigen::VectorXd residual;
+    std::optional<double> stiffness;
+    if (misfit.Evaluate(misfit.Free().VariablesOf(parameters), &residual,
+                        nullptr)) {
+      stiffness = misfit.FitStiffness();
+    }
+    if (!stiffness) {
+      return std::nullopt;
+    }
+    for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
+      MultiplyModuli(all, i, *stiffness, parameters);
+    }
+  } else if (has_free_modulus) {
     const std::optional<Eigen::VectorXd> youngs_moduli =
         FitYoungsModuli(scene, at_rest, all, options, work);
     if (!youngs_moduli) {

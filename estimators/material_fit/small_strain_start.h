@@ -18,6 +18,7 @@ namespace elastimate {
 /// specimen that factor is too large by about half of the square of the
 /// rotation, which Poisson's ratio would not survive.  Where the model has no
 /// stable equilibrium there, all free moduli are doubled until it has one.
+/// Without loads, resultants give one factor for all.
 ///
 /// Empty where displacements oppose the loads, and where no equilibrium is
 /// found.  A factorisation of small strains for one material, some for several,

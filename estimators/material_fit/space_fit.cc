@@ -161,17 +161,24 @@ std::optional<BoundedMinimum> SpaceFit::FindAtLargeStrains(
   const BoundedMinimum of_means =
       DescendFrom(options_, *from, Distance::kNear, misfit_);
   if (IsSimplex(scene_.mesh.kind) || scene_.mesh.Order() > 1 ||
-      scene_.mesh.section.model == SectionModel::kPlaneStress) {
+      scene_.mesh.section.model == SectionModel::kPlaneStress ||
+      scene_.origin == Origin::kComputedAtLargeStrains) {
     return of_means;
   }
   misfit_.SetDilatation(Dilatation::kOfPoints);
-  const BoundedMinimum of_points =
+  BoundedMinimum best =
       DescendFrom(options_, of_means.variables, Distance::kNear, misfit_);
-  if (of_points.cost < of_means.cost) {
-    return of_points;
+  BoundedMinimum other = of_means;
+  if (of_means.cost <= best.cost) {
+    std::swap(best, other);
+    misfit_.SetDilatation(Dilatation::kMeanOfElement);
   }
-  misfit_.SetDilatation(Dilatation::kMeanOfElement);
-  return of_means;
+  // Chi^2 of models between which the data do not decide differ by less.
+  constexpr double kAlike = 9;
+  if (2 * (other.cost - best.cost) < kAlike * misfit_.Variance(2 * best.cost)) {
+    best.of_other_model = other.variables;
+  }
+  return best;
 }
 
 // The best minimum of all starts, with another axis that is nearly as probable.

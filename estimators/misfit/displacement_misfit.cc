@@ -178,9 +178,18 @@ std::optional<DisplacementMisfit::ScaleFit> DisplacementMisfit::FitScale(
   }
   static_cast<void>(model_->MoveSupports(motion_->HeldMotion()) &&
                     motion_->Fit());
-  const Eigen::VectorXd of_unit = motion_->Resultants(model_->SupportForces());
-  const Eigen::VectorXd measured = motion_->MeasuredResultants();
-  return IfPositive({of_unit.squaredNorm() / of_unit.dot(measured), 0});
+  const std::optional<double> stiffness = FitStiffness();
+  return stiffness ? IfPositive({1 / *stiffness, 0}) : std::nullopt;
+}
+
+std::optional<double> DisplacementMisfit::FitStiffness() {
+  if (!motion_) {
+    return std::nullopt;
+  }
+  const Eigen::VectorXd of_model = motion_->Resultants(model_->SupportForces());
+  const double stiffness =
+      of_model.dot(motion_->MeasuredResultants()) / of_model.squaredNorm();
+  return stiffness > 0 ? std::optional<double>(stiffness) : std::nullopt;
 }
 
 bool DisplacementMisfit::SolveAt(const Eigen::VectorXd& x) {

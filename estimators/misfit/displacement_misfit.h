@@ -135,6 +135,10 @@ class DisplacementMisfit {
   /// Precondition: small strains.
   std::optional<ScaleFit> FitScale(const Eigen::VectorXd& unit_moduli,
                                    Loss loss);
+  /// The factor on all moduli by which the forces of supports, which nothing
+  /// but their motion causes, explain the resultants best; empty where it is
+  /// not positive.  The model is where the last Evaluate was.
+  std::optional<double> FitStiffness();
 
  private:
   struct Placed {

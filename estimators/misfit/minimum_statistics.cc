@@ -379,6 +379,22 @@ void AddAxisRotation(const Scene& scene, const Eigen::VectorXd& variables,
   model = (model.array().square() + of_axes.array().square()).sqrt();
 }
 
+// Adds the distance to the minimum of another model that may be the right one,
+// as an error of the elements.
+void AddOtherModel(const BoundedMinimum& found, const FreeParameters& free,
+                   MinimumErrors& errors, Estimate& estimate) {
+  const Eigen::VectorXd distance = found.of_other_model - found.variables;
+  const Eigen::MatrixXd added = distance * distance.transpose();
+  errors.total += added;
+  const ParameterErrors of_model =
+      ErrorsOfVariables(free, errors.variables, added);
+  ParameterErrors& mesh = estimate.error_budget.discretization;
+  mesh = mesh.size() == 0
+             ? of_model
+             : ParameterErrors(
+                   (mesh.array().square() + of_model.array().square()).sqrt());
+}
+
 // Where resultants are weighed in the rows, these are not those of the misfit.
 void AddCurvature(const CurvedMisfit& curved, MinimumErrors& errors) {
   if (curved.misfit.NumResultants() == 0) {
@@ -478,6 +494,9 @@ MinimumErrors Describe(const Scene& scene, const Minimum& minimum,
   if (change != nullptr) {
     AddMeshError(scene, *change, sensitivities, inverse, misfit, evidence,
                  errors, estimate);
+  }
+  if (minimum.found.of_other_model.size() != 0) {
+    AddOtherModel(minimum.found, free, errors, estimate);
   }
   estimate.error_budget.noise =
       ErrorsOfVariables(free, errors.variables, errors.of_noise);

@@ -45,6 +45,8 @@ struct CurvedMisfit {
 ///   + the square of what outliers that are left pull the parameters by,
 ///   + the square of what a rotation of given axes would change, as far as the
 ///     residual asks for it by more than chance (FindAxisRotation),
+///   + the square of the distance to the minimum of another model of the
+///     elements that explains the data about as well,
 ///   + what the first two understate far from the minimum
 ///     (CovarianceOfCurvature).
 ///

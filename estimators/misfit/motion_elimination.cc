@@ -88,7 +88,7 @@ std::optional<Eigen::VectorXd> MotionElimination::Fit() {
 }
 
 std::optional<Eigen::VectorXd> MotionElimination::Refit() {
-  // A step that changes the rows by a smaller part of them is the last.
+  // A step that changes the amounts or the rows by a smaller part is the last.
   constexpr double kSettled = 1e-8;
   constexpr int kMostSteps = 10;
   for (int i = 0; i < kMostSteps; ++i) {
@@ -103,7 +103,8 @@ std::optional<Eigen::VectorXd> MotionElimination::Refit() {
     if (!model_.MoveSupports(-HeldMotion(surplus))) {
       return std::nullopt;
     }
-    if (model_.IsLinear() || before - Norm(rows) <= kSettled * before) {
+    if (model_.IsLinear() || before - Norm(rows) <= kSettled * before ||
+        Norm(surplus) <= kSettled * Norm(amounts_)) {
       return rows;
     }
   }

@@ -24,6 +24,9 @@ struct BoundedMinimum {
   std::vector<Side> on_bound;  ///< Which bound each variable lies on.
   End end;
   std::string message;  ///< What Ceres says of its end.
+  /// The variables where another model of the specimen that may be the right
+  /// one explains the data about as well; empty where there is none.
+  Eigen::VectorXd of_other_model = {};
 };
 
 /// r and, where it is asked for, dr/dx (of the size of r x that of x); false

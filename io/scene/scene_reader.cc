@@ -452,11 +452,9 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
                                              " and the nodes they use)"
                                        : ""));
   }
-  if (scene.origin == Origin::kComputedAtLargeStrains) {
-    scene.origin =
-        HasLargeStrainLaw(scene.materials, scene.mesh.section.model)
-            ? Origin::kComputed
-            : Origin::kMeasured;
+  if (scene.origin == Origin::kComputedAtLargeStrains &&
+      !HasLargeStrainLaw(scene.materials, scene.mesh.section.model)) {
+    scene.origin = Origin::kMeasured;
   }
   CheckObserved(path, scene);
   return scene;

@@ -16,7 +16,6 @@
 
 #include <algorithm>
 
-#include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/io/mesh/section_number.h"
 #include "elastimate/io/text/file_output.h"
@@ -181,10 +180,6 @@ void AddSupports(const Supports& supports, const std::string& suffix,
 Fields SceneFields(const Scene& scene) {
   Fields fields;
   fields.origin = scene.origin;
-  if (scene.origin == Origin::kComputed &&
-      HasLargeStrainLaw(scene.materials, scene.mesh.section.model)) {
-    fields.origin = Origin::kComputedAtLargeStrains;
-  }
   AddSupports(scene.supports, "", fields);
   for (std::size_t i = 0; i < scene.load_cases.size(); ++i) {
     const LoadCase& load_case = scene.load_cases[i];
