@@ -137,39 +137,104 @@ class Documentation : public testing::ProgramTest {
     testing::ProgramTest::SetUp();
     std::filesystem::create_symlink(Source("examples"), folder_ / "examples");
   }
+
+  /// Runs the commands with which blocks of the documents begin, and expects
+  /// the output below them; returns how many there are.
+  std::size_t ExpectOutputs(const std::vector<std::string>& documents) const {
+    const std::string prompt = "$ elastimate ";
+    std::size_t num_samples = 0;
+    for (const std::string& document : documents) {
+      for (const std::string& block : Blocks(document, "")) {
+        if (block.rfind(prompt, 0) != 0) {
+          continue;
+        }
+        ++num_samples;
+        const std::vector<std::string> expected = Lines(block);
+        const std::vector<std::string> actual =
+            Lines(Succeed(expected[0].substr(prompt.size())).output);
+        EXPECT_EQ(actual.size() + 1, expected.size()) << block;
+        for (std::size_t i = 0; i < actual.size() && i + 1 < expected.size();
+             ++i) {
+          const std::string label = expected[i + 1].substr(0, 5);
+          // Lines with these labels hold times, which differ from run to run.
+          if (label == "work " || label == "time " || label == "rung ") {
+            EXPECT_EQ(actual[i].substr(0, 5), label);
+          } else {
+            ExpectAlike(actual[i], expected[i + 1]);
+          }
+        }
+      }
+    }
+    return num_samples;
+  }
+
+  /// Runs commands of a shell, which finds the program by its name, and returns
+  /// what they print.
+  std::string RunCommands(const std::string& commands) const {
+    const std::string programs =
+        std::filesystem::path(ELASTIMATE_PROGRAM).parent_path().string();
+    testing::WriteText(folder_ / "commands.sh",
+                       "export PATH='" + programs + "':\"$PATH\"\n" + commands);
+    const std::string command =
+        "cd '" + folder_.string() + "' && sh commands.sh >output 2>errors";
+    EXPECT_EQ(std::system(command.c_str()), 0)
+        << testing::ReadText(folder_ / "errors");
+    return testing::ReadText(folder_ / "output");
+  }
 };
 
+/// These commands take some ten seconds.
+class DocumentationLong : public Documentation {};
+
 TEST_F(Documentation, HasTheOutputOfTheProgram) {
-  const std::string prompt = "$ elastimate ";
   testing::WriteText(folder_ / "plate.json",
                      Blocks("docs/measurements.md", "json").at(1));
-  std::vector<std::string> samples;
   testing::WriteText(folder_ / "bar.json",
                      Blocks("docs/plan.md", "json").at(0));
-  for (const std::string document : {"README.md", "docs/measurements.md",
-                                     "docs/materials.md", "docs/plan.md"}) {
-    for (const std::string& block : Blocks(document, "")) {
-      if (block.rfind(prompt, 0) == 0) {
-        samples.push_back(block);
-      }
-    }
+  EXPECT_GE(ExpectOutputs({"README.md", "docs/measurements.md",
+                           "docs/materials.md", "docs/plan.md"}),
+            8U);
+}
+
+TEST_F(DocumentationLong, HasTheOutputOfLargeDeformations) {
+  EXPECT_EQ(Blocks("docs/large_deformations.md", "json").at(0),
+            testing::ReadText(Source("examples/bent_arm/scene.json")));
+  EXPECT_EQ(ExpectOutputs({"docs/large_deformations.md",
+                           "examples/cook_membrane/README.md"}),
+            3U);
+}
+
+TEST_F(DocumentationLong, HasTheDataOfLargeDeformations) {
+  const auto displacement_of = [](const std::filesystem::path& path) {
+    return ReadScene({path}, Measurement::kRequired)
+        .scene.load_cases.at(0)
+        .points.displacement;
+  };
+  for (const std::string example :
+       {"examples/bent_arm/", "examples/cook_membrane/"}) {
+    RunCommands(Blocks(example + "README.md", "").at(0));
+    const std::filesystem::path scene = folder_ / "scene.json";
+    testing::WriteText(scene,
+                       testing::ReadText(Source(example + "scene.json")));
+    EXPECT_TRUE(displacement_of(scene).isApprox(
+        displacement_of(Source(example + "scene.json")), 1e-6));
   }
-  EXPECT_GE(samples.size(), 8U);
-  for (const std::string& block : samples) {
-    const std::vector<std::string> expected = Lines(block);
-    const std::vector<std::string> actual =
-        Lines(Succeed(expected[0].substr(prompt.size())).output);
-    ASSERT_EQ(actual.size() + 1, expected.size());
-    for (std::size_t i = 0; i < actual.size(); ++i) {
-      const std::string label = expected[i + 1].substr(0, 5);
-      // Lines with these labels hold times, which differ from run to run.
-      if (label == "work " || label == "time " || label == "rung ") {
-        EXPECT_EQ(actual[i].substr(0, 5), label);
-      } else {
-        ExpectAlike(actual[i], expected[i + 1]);
-      }
-    }
-  }
+}
+
+// Stresses of an incompressible material are linear in the moduli.  Least
+// squares of these, with errors of 5 %, give the numbers below.
+TEST_F(DocumentationLong, FitsTheRubberOfTreloar) {
+  RunCommands(Blocks("examples/rubber_treloar/README.md", "").at(0));
+  const auto value = [this](const std::string& report, std::size_t i) {
+    return json::parse(
+               testing::ReadText(folder_ / report))["parameters"][i]["value"]
+        .get<double>();
+  };
+  EXPECT_NEAR(value("mooney_rivlin.report", 0), 0.18678, 3e-4);
+  EXPECT_NEAR(value("mooney_rivlin.report", 1), 0.00296, 1e-4);
+  EXPECT_NEAR(value("yeoh.report", 0), 0.19732, 4e-4);
+  EXPECT_NEAR(value("yeoh.report", 1), -0.00142, 5e-5);
+  EXPECT_NEAR(value("yeoh.report", 2), 3.84e-5, 2e-6);
 }
 
 TEST_F(Documentation, HasTheSceneOfTheSteelPlate) {
@@ -193,19 +258,11 @@ TEST_F(Documentation, HasTheCommandsOfTheTenBlocks) {
   const std::vector<std::string> blocks =
       Blocks("examples/ten_blocks/README.md", "");
   ASSERT_EQ(blocks.size(), 2U);
-  const std::string folder =
-      std::filesystem::path(ELASTIMATE_PROGRAM).parent_path().string();
   // The last command but one exits with 1, because its data do not determine a
   // parameter; the shell goes on all the same.
-  testing::WriteText(folder_ / "commands.sh",
-                     "export PATH='" + folder + "':\"$PATH\"\n" + blocks[0]);
-  const std::string command =
-      "cd '" + folder_.string() + "' && sh commands.sh >output 2>errors";
-  EXPECT_EQ(std::system(command.c_str()), 0)
-      << testing::ReadText(folder_ / "errors");
-  EXPECT_NE(testing::ReadText(folder_ / "output")
-                .find("the data do not determine E of region 10 ("),
-            std::string::npos);
+  EXPECT_THAT(
+      RunCommands(blocks[0]),
+      ::testing::HasSubstr("the data do not determine E of region 10 ("));
   EXPECT_GT(std::filesystem::file_size(folder_ / "ten_blocks.png"), 10000U);
 }
 
