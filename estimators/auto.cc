@@ -197,15 +197,17 @@ bool ClimbLargeStrains(const Scene& scene, const EstimatorOptions& options,
   return false;
 }
 
-// Which laws computed displacements is not said: where they are large, and laws
-// of large strains leave less, these did.
+// Which laws computed displacements is not said: where they are large, small
+// strains leave more than noise, and laws of large strains less, these did.
 void ClimbComputedLargeStrains(const Scene& scene,
                                const EstimatorOptions& options,
                                Ladder& ladder) {
   const Estimate small = ladder.Last();
   if (options.kinematics != Kinematics::kAutomatic ||
       scene.origin != Origin::kComputed || scene.is_rigid_motion_free ||
-      !AreIsotropic(scene.materials) || !IsMentioned(small.deformation)) {
+      !AreIsotropic(scene.materials) || !IsMentioned(small.deformation) ||
+      !(small.Has(FindingCode::kSmoothResidual) ||
+        small.Has(FindingCode::kResidualAboveNoise))) {
     return;
   }
   EstimatorOptions large = WithoutDegree(options);
