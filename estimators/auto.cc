@@ -203,9 +203,12 @@ void ClimbComputedLargeStrains(const Scene& scene,
                                const EstimatorOptions& options,
                                Ladder& ladder) {
   const Estimate small = ladder.Last();
+  const bool has_minimum = small.status != Status::kIterationLimit &&
+                           small.status != Status::kNumericalFailure;
   if (options.kinematics != Kinematics::kAutomatic ||
       scene.origin != Origin::kComputed || scene.is_rigid_motion_free ||
       !AreIsotropic(scene.materials) || !IsMentioned(small.deformation) ||
+      !has_minimum ||
       !(small.Has(FindingCode::kSmoothResidual) ||
         small.Has(FindingCode::kResidualAboveNoise))) {
     return;
