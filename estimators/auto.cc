@@ -3,12 +3,14 @@
 #include <cmath>
 #include <memory>
 
+#include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/core/text/numbers.h"
 #include "elastimate/estimators/force_balance/closed_form.h"
 #include "elastimate/estimators/force_balance/virtual_fields.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/judge.h"
+#include "elastimate/estimators/interface/kinematic_error.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 #include "elastimate/estimators/material_fit/iterative_fe.h"
@@ -186,12 +188,43 @@ bool ClimbLargeStrains(const Scene& scene, const EstimatorOptions& options,
     return false;
   }
   const Estimate& estimate = ladder.Last();
-  if (estimate.IsUsable() || options.kinematics == Kinematics::kLarge) {
+  if (estimate.IsUsable() || options.kinematics == Kinematics::kLarge ||
+      estimate.Has(FindingCode::kComputedByLinearElements)) {
     ladder.Decide("stopped: laws of large strains were fitted");
     return true;
   }
   ladder.Decide("went on: " + WhyNotUsable(estimate));
   return false;
+}
+
+// Which laws computed displacements is not said: where they are large, small
+// strains leave more than noise, and laws of large strains less, these did.
+void ClimbComputedLargeStrains(const Scene& scene,
+                               const EstimatorOptions& options,
+                               Ladder& ladder) {
+  const Estimate small = ladder.Last();
+  const bool has_minimum = small.status != Status::kIterationLimit &&
+                           small.status != Status::kNumericalFailure;
+  if (options.kinematics != Kinematics::kAutomatic ||
+      scene.origin != Origin::kComputed || scene.is_rigid_motion_free ||
+      !AreIsotropic(scene.materials) || !IsMentioned(small.deformation) ||
+      !has_minimum ||
+      !(small.Has(FindingCode::kSmoothResidual) ||
+        small.Has(FindingCode::kResidualAboveNoise))) {
+    return;
+  }
+  EstimatorOptions large = WithoutDegree(options);
+  large.kinematics = Kinematics::kLarge;
+  if (!ladder.Climb(IterativeFe(), scene, large)) {
+    return;
+  }
+  if (ladder.Last().IsUsable() &&
+      ladder.Last().displacement_residual < small.displacement_residual) {
+    ladder.Decide("stopped: laws of large strains explain more");
+  } else {
+    ladder.Decide("not taken: laws of large strains do not explain more");
+    ladder.Last() = small;
+  }
 }
 
 // Unknown motions have one rung, iterative-fe.
@@ -266,6 +299,7 @@ Estimate Auto::DoRun(const Scene& scene,
     }
   }
   ClimbFits(scene, options, nullptr, ladder);
+  ClimbComputedLargeStrains(scene, options, ladder);
   return ladder.Finish();
 }
 

@@ -73,8 +73,9 @@ class Equilibrium : public ForwardModel {
   /// A solve for each column.
   Eigen::MatrixXd SolveFor(const Eigen::MatrixXd& forces) override;
   /// A pass.
-  Eigen::MatrixXd ForceColumns(Eigen::Index k) const override {
-    return Forces().Columns(displacement_.col(k));
+  Eigen::MatrixXd ForceColumns(
+      const Eigen::VectorXd& displacement) const override {
+    return Forces().Columns(displacement);
   }
 
   /// Does what SolveFor does with the factor of the stiffness, or without one

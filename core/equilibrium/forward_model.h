@@ -46,8 +46,10 @@ class ForwardModel {
   /// Returns K^-1 f on the free rows, zero in the held rows, for n columns of
   /// forces of each load case.
   virtual Eigen::MatrixXd SolveFor(const Eigen::MatrixXd& forces) = 0;
-  /// Returns f_k(u) in load case `k` as columns, num_dofs x num_moduli.
-  virtual Eigen::MatrixXd ForceColumns(Eigen::Index k) const = 0;
+  /// Returns f_k(u) of a displacement (num_dofs) as columns, num_dofs x
+  /// num_moduli.
+  virtual Eigen::MatrixXd ForceColumns(
+      const Eigen::VectorXd& displacement) const = 0;
 
   /// Returns the change of u without a change of loads where the held degrees
   /// of freedom move by `held` (zero in the free rows), to first order; n

@@ -23,7 +23,7 @@ constexpr double kResidual = 1e-10;
 constexpr double kRounding = 1e-12;
 // A tangent where so little was left is that of the equilibrium, and serves to
 // the end.
-constexpr double kNearby = 1e-6;
+constexpr double kNearby = 1e-7;
 // Newton's method that has not converged with so many tangents hardly will.
 constexpr int kMostTangents = 20;
 // A step of the load that fails is followed by one that is shorter by this.

@@ -122,10 +122,6 @@ Eigen::MatrixXd LargeStrainModel::SolveFor(const Eigen::MatrixXd& forces) {
   });
 }
 
-Eigen::MatrixXd LargeStrainModel::ForceColumns(Eigen::Index k) const {
-  return equilibrium_.Forces().Columns(moduli_, displacement_.col(k));
-}
-
 Eigen::MatrixXd LargeStrainModel::ExtendInCase(Eigen::Index k,
                                                const Eigen::MatrixXd& held) {
   return held - TangentSolver(k).Solve(TangentProducts(k, held));

@@ -41,7 +41,10 @@ class LargeStrainModel : public ForwardModel {
   Eigen::MatrixXd Sensitivities(const Eigen::MatrixXd& directions) override;
   // Another factorisation for each load case whose factor is not kept.
   Eigen::MatrixXd SolveFor(const Eigen::MatrixXd& forces) override;
-  Eigen::MatrixXd ForceColumns(Eigen::Index k) const override;
+  Eigen::MatrixXd ForceColumns(
+      const Eigen::VectorXd& displacement) const override {
+    return equilibrium_.Forces().Columns(moduli_, displacement);
+  }
 
   Eigen::MatrixXd Extend(const Eigen::MatrixXd& held) override;
   Eigen::MatrixXd ExtendTransposed(const Eigen::MatrixXd& values) override;

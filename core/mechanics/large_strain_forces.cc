@@ -56,7 +56,7 @@ enum class CrossStretch { kStays, kFollows };
 
 // Returns the frame of an element of the pass.
 template <ElementKind kKind>
-auto FrameOf(const MaterialPass& pass, Eigen::Index element) {
+auto FrameOfElement(const MaterialPass& pass, Eigen::Index element) {
   return pass.frames.Of<kDimensionOf<kKind>>(pass.material, element);
 }
 
@@ -80,14 +80,15 @@ class ElementBatch {
       NodeColumns<kKind> u =
           GatherNodes<kKind>(pass.mesh, e, displacement.data());
       if (pass.HasFrames()) {
-        u = (FrameOf<kKind>(pass, e).transpose() * u).eval();
+        u = (FrameOfElement<kKind>(pass, e).transpose() * u).eval();
       }
       VisitPoints<kKind>(
           pass.mesh, e, StiffnessRule<kKind>(),
           [&](ElementPoint<kKind> point, const auto&) {
             if (pass.HasFrames()) {
               point.gradient =
-                  (FrameOf<kKind>(pass, e).transpose() * point.gradient).eval();
+                  (FrameOfElement<kKind>(pass, e).transpose() * point.gradient)
+                      .eval();
             }
             SetGradient(int(points_.size()), u * point.gradient.transpose());
             points_.push_back(point);
@@ -268,7 +269,8 @@ void AddStressColumns(const MaterialPass& pass,
         }
         NodeColumns<kKind> forces = StressForces<kKind>(batch, e, of_points);
         if (pass.HasFrames()) {
-          forces = (FrameOf<kKind>(pass, batch.Element(e)) * forces).eval();
+          forces =
+              (FrameOfElement<kKind>(pass, batch.Element(e)) * forces).eval();
         }
         AddToNodes<kKind>(pass.mesh, batch.Element(e), forces,
                           columns.col(Eigen::Index(k)).data());
@@ -503,7 +505,8 @@ void VisitTangents(const MaterialPass& pass,
         }
       }
       if (pass.HasFrames()) {
-        TurnBlocks<kKind>(FrameOf<kKind>(pass, batch.Element(e)), matrix);
+        TurnBlocks<kKind>(FrameOfElement<kKind>(pass, batch.Element(e)),
+                          matrix);
       }
       visit(batch.Element(e), matrix);
     }

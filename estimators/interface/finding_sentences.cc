@@ -654,6 +654,15 @@ Finding LargeDeformation(const DeformationSize& size,
                 "--material=neo_hookean"};
 }
 
+Finding NoEquilibrium(const std::string& reason) {
+  const std::size_t end = std::min(reason.find("; "), reason.size());
+  return Error(
+      FindingCode::kNumericalFailure,
+      "the fit found no parameters to begin with: " + reason.substr(0, end),
+      end < reason.size() ? reason.substr(end + 2)
+                          : "check the loads and their unit");
+}
+
 Finding LargeStrainsFitted(const DeformationSize& size,
                            const std::string& law) {
   const std::string what = DeformationText(size);

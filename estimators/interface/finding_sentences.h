@@ -135,6 +135,9 @@ Finding ParametersNearLimits(const std::vector<std::string>& parameters,
 /// Names the parameter that is biased most.
 Finding ParameterBias(const std::string& parameter, double bias,
                       bool is_relative, Severity severity);
+/// A fit found no parameters with an equilibrium, for a reason
+/// "text; advice" (ForwardModel::WhyNotSolved).
+Finding NoEquilibrium(const std::string& reason);
 /// Laws of large strains were fitted.
 Finding LargeStrainsFitted(const DeformationSize& size, const std::string& law);
 /// Other laws of large strains explain the data about as well.

@@ -8,6 +8,7 @@
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/materials/material.h"
 #include "elastimate/estimators/interface/axis_estimate.h"
+#include "elastimate/estimators/interface/finding_sentences.h"
 #include "elastimate/estimators/interface/judge.h"
 #include "elastimate/estimators/interface/limits.h"
 #include "elastimate/estimators/interface/parameter_judge.h"
@@ -226,10 +227,14 @@ void SpaceFit::Minimize(Descent descent,
   if (fit_.minimum) {
     EnterMinimum();
   } else {
+    const std::string& why_not_solved = misfit_.Model().WhyNotSolved();
     Evidence evidence;
-    evidence.do_displacements_oppose_loads = true;
+    evidence.do_displacements_oppose_loads = why_not_solved.empty();
     evidence.solver_notice = SolverNotice();
     Judge(evidence, options_, estimate);
+    if (!why_not_solved.empty()) {
+      estimate.Fail(NoEquilibrium(why_not_solved));
+    }
   }
   estimate.stages.push_back({"fit", stopwatch.Lap()});
   estimate.work = estimate.work + (WorkDone() - before);

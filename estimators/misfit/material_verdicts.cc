@@ -22,10 +22,9 @@ Eigen::VectorXd WorkOf(const ForwardModel& model, const Eigen::VectorXd& moduli,
   const MaterialParameters& parameters = model.Parameters();
   const auto num_materials = Eigen::Index(parameters.NumMaterials());
   Eigen::VectorXd energies = Eigen::VectorXd::Zero(num_materials);
-  for (Eigen::Index k = 0; k < displacement.cols(); ++k) {
+  for (const auto& u : displacement.colwise()) {
     const Eigen::VectorXd of_moduli =
-        InnerProducts(model.ForceColumns(k), displacement.col(k))
-            .cwiseProduct(moduli);
+        InnerProducts(model.ForceColumns(u), u).cwiseProduct(moduli);
     for (Eigen::Index i = 0; i < num_materials; ++i) {
       const Eigen::Index first = parameters.FirstModulus(i);
       energies(i) += of_moduli

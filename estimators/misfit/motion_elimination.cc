@@ -189,7 +189,7 @@ Eigen::VectorXd MotionElimination::MultiplyColumnsTransposed(
 
 Eigen::MatrixXd MotionElimination::HeldMotion(
     const Eigen::VectorXd& amounts) const {
-  Eigen::MatrixXd held(model_.Displacement().rows(), observed_.NumLoadCases());
+  Eigen::MatrixXd held(model_.Load().rows(), observed_.NumLoadCases());
   for (Eigen::Index k = 0; k < held.cols(); ++k) {
     const Eigen::SparseMatrix<double>& of_supports = MotionOf(k).of_supports;
     held.col(k) = of_supports * AmountsOf(k, amounts).head(of_supports.cols());
