@@ -147,6 +147,11 @@ std::string WhyUnsupported(const Capabilities& capabilities, const Scene& scene,
     return "finer elements say nothing about displacements that were computed "
            "with this mesh; leave out --refine, or give --origin=measured";
   }
+  if (options.kinematics == Kinematics::kSmall &&
+      HasLargeStrainLaw(scene.materials, scene.mesh.section.model)) {
+    return "a material has a law of large strains, which --kinematics=small "
+           "excludes; leave out one of them";
+  }
   if (options.kinematics == Kinematics::kLarge) {
     if (!capabilities.compares_large_strain_laws) {
       return "it does not compare laws of large strains; use "

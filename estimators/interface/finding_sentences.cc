@@ -649,9 +649,9 @@ Finding LargeDeformation(const DeformationSize& size,
               Percent(relative_error_of_modulus),
           !is_rigid_motion_free && size.rotation > kTurnOfAWhole * size.strain
               ? "give \"rigid_motion\": \"free\" if the specimen or the camera "
-                "turned, or use --estimator=auto, which fits large strains"
-              : "use --estimator=auto, or give a law of large strains, such as "
-                "--material=neo_hookean"};
+                "turned, or use --estimator=auto --kinematics=large"
+              : "use --estimator=auto --kinematics=large, or a law of large "
+                "strains, such as --material=neo_hookean"};
 }
 
 Finding NoEquilibrium(const std::string& reason) {

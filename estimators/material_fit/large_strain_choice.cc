@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -56,8 +57,32 @@ double Difference(const LawFit& fit, const LawFit& best) {
                       std::max(best.square_sum, kExact));
 }
 
-// Adds the spread of the laws to the errors of the best, which is the first.
-void AddSpread(const std::vector<LawFit>& fits, Estimate& estimate) {
+Eigen::VectorXd ValuesOf(const Estimate& estimate) {
+  Eigen::VectorXd values(Eigen::Index(estimate.parameters.size()));
+  std::transform(
+      estimate.parameters.begin(), estimate.parameters.end(), values.begin(),
+      [](const ParameterEstimate& parameter) { return parameter.value; });
+  return values;
+}
+
+// Returns half of the distance of each parameter from that of the nearest of
+// other laws: a specimen may be of a law that was not fitted.
+Eigen::VectorXd LeastErrors(const std::vector<Eigen::VectorXd>& of_others,
+                            const Eigen::VectorXd& best) {
+  Eigen::VectorXd least = Eigen::VectorXd::Constant(
+      best.size(), std::numeric_limits<double>::infinity());
+  for (const Eigen::VectorXd& values : of_others) {
+    if (values.allFinite()) {
+      least = least.cwiseMin((values - best).cwiseAbs() / 2);
+    }
+  }
+  return least.allFinite() ? least : Eigen::VectorXd::Zero(best.size());
+}
+
+// Adds the spread of the laws to the errors of the best, which is the first,
+// `least` of each parameter at least.
+void AddSpread(const std::vector<LawFit>& fits, const Eigen::VectorXd& least,
+               Estimate& estimate) {
   double sum_of_weights = 1;
   Eigen::MatrixXd spread =
       Eigen::MatrixXd::Zero(Eigen::Index(estimate.parameters.size()),
@@ -71,14 +96,14 @@ void AddSpread(const std::vector<LawFit>& fits, Estimate& estimate) {
     alike.push_back(fits[i].law);
     const double weight = std::exp(-difference / 2);
     sum_of_weights += weight;
-    Eigen::VectorXd distance(spread.rows());
-    for (Eigen::Index p = 0; p < distance.size(); ++p) {
-      distance(p) = fits[i].fit.estimate.parameters[p].value -
-                    fits[0].fit.estimate.parameters[p].value;
-    }
+    const Eigen::VectorXd distance =
+        ValuesOf(fits[i].fit.estimate) - ValuesOf(fits[0].fit.estimate);
     spread += weight * distance * distance.transpose();
   }
   spread /= sum_of_weights;
+  for (Eigen::Index p = 0; p < spread.rows(); ++p) {
+    spread(p, p) = std::max(spread(p, p), least(p) * least(p));
+  }
   estimate.error_budget.law.resize(spread.rows());
   for (Eigen::Index p = 0; p < spread.rows(); ++p) {
     const ParameterEstimate& parameter = estimate.parameters[p];
@@ -165,6 +190,12 @@ Estimate FitLargeStrainLaws(const Scene& scene,
       fits.push_back(fit_law(law, start, first));
     }
   }
+  std::vector<std::pair<std::string, Eigen::VectorXd>> of_laws;
+  for (const LawFit& fit : fits) {
+    if (fit.fit.minimum) {
+      of_laws.emplace_back(fit.law, ValuesOf(fit.fit.estimate));
+    }
+  }
   // A law that has no fit is not compared.
   fits.erase(std::remove_if(fits.begin() + 1, fits.end(),
                             [](const LawFit& fit) {
@@ -184,8 +215,17 @@ Estimate FitLargeStrainLaws(const Scene& scene,
                 .fit.estimate
           : fits[0].fit.estimate;
   estimate.large_strain_law = fits[0].law;
+  if (are_laws_compared && start && estimate.IsUsable()) {
+    std::vector<Eigen::VectorXd> of_others;
+    for (const auto& [law, values] : of_laws) {
+      if (law != fits[0].law && scene.origin == Origin::kMeasured) {
+        of_others.push_back(values);
+      }
+    }
+    AddSpread(fits, LeastErrors(of_others, ValuesOf(fits[0].fit.estimate)),
+              estimate);
+  }
   if (fits.size() > 1) {
-    AddSpread(fits, estimate);
     estimate.laws = Compare(fits, Eigen::Index(start->size()));
   }
   estimate.work = work;

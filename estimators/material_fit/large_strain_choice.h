@@ -34,7 +34,9 @@ namespace elastimate {
 /// them.  The best one is reported (Estimate::large_strain_law).  Others whose
 /// difference d is below 9 explain the data about as well.  Each law has the
 /// weight exp(-d / 2), and the mean square of the distances of the parameters
-/// from those of the best is added to their covariance (ErrorBudget::law).
+/// from those of the best is added to their covariance (ErrorBudget::law).  Of
+/// measured displacements, the error by the law is half of the distance from
+/// the nearest other law at least, since the specimen may follow none of them.
 ///
 /// The laws are compared on quadratic elements of the mesh, which is divided
 /// for the best alone.
