@@ -32,6 +32,8 @@ std::vector<Method> Methods() {
   std::vector<Method> methods;
   for (const std::string_view name : EstimatorNames()) {
     methods.push_back({std::string(name), MakeEstimator(name), {}});
+    // The worlds are of linear elasticity, however large displacements are.
+    methods.back().options.kinematics = Kinematics::kSmall;
   }
   for (const char* name : {"reduced-fe", "iterative-fe"}) {
     methods.push_back({name + std::string(" huber"), MakeEstimator(name), {}});

@@ -410,6 +410,8 @@ class UnseenStudy {
       const double start = ProcessorSeconds();
       EstimatorOptions options;
       options.loss = method.loss;
+      // The worlds are of linear elasticity, however large displacements are.
+      options.kinematics = Kinematics::kSmall;
       trial.estimate = method.estimator->Run(scene, options);
       const double seconds = ProcessorSeconds() - start;
       trial.estimate.estimator = method.name;
