@@ -70,21 +70,18 @@ void GiveKnownPoissonRatio(Scene& scene, EstimatorOptions& options) {
     return;
   }
   const KnownParameter known = {"poisson_ratio", *options.known_poisson_ratio};
+  const auto is_of_nu = [&](const auto& given) {
+    return given.name == known.name;
+  };
   for (Material& material : scene.materials) {
     const std::vector<LawParameter>& parameters =
         FindLaw(material.law)->Parameters();
-    if (std::none_of(parameters.begin(), parameters.end(),
-                     [&](const LawParameter& parameter) {
-                       return parameter.name == known.name;
-                     })) {
+    if (std::none_of(parameters.begin(), parameters.end(), is_of_nu)) {
       throw std::invalid_argument(
           AsGiven("nu") + " is not a parameter of the law " + material.law +
           ", which the scene has; give its parameters as \"known\" in "
           "\"materials\" of a scene.json");
     }
-    const auto is_of_nu = [&](const auto& given) {
-      return given.name == known.name;
-    };
     if (std::none_of(material.known.begin(), material.known.end(), is_of_nu)) {
       material.known.push_back(known);
       material.bounds.erase(std::remove_if(material.bounds.begin(),

@@ -207,7 +207,7 @@ Fields ResultFields(const Scene& scene, const Scene& modelled,
     collector.AddResiduals(scene, estimate);
   }
   // The fields below are of small strains.
-  if (HasLargeStrainLaw(scene.materials, scene.mesh.section.model)) {
+  if (HasLargeStrainLaw(scene.materials)) {
     return fields;
   }
   const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());

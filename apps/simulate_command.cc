@@ -117,7 +117,7 @@ Solution Solve(const std::string& source, const Scene& modelled,
                SolverKind solver, Progress& progress,
                std::vector<std::string>& notices) {
   progress.Show("factorising");
-  if (HasLargeStrainLaw(modelled.materials, modelled.mesh.section.model)) {
+  if (HasLargeStrainLaw(modelled.materials)) {
     return SolveLargeStrains(source, modelled, solver, progress);
   }
   const Eigen::VectorXd values = ParametersFromFlags(modelled);
@@ -210,7 +210,7 @@ std::string MeasuredScene(const std::string& source,
       std::max<int>(FLAGS_order, mesh.Order()) == mesh.Order() &&
       errors.rigid_motion.size() == 0;
   scene.origin = !is_of_this_mesh ? Origin::kMeasured
-                 : HasLargeStrainLaw(scene.materials, scene.mesh.section.model)
+                 : HasLargeStrainLaw(scene.materials)
                      ? Origin::kComputedAtLargeStrains
                      : Origin::kComputed;
   Fields fields = SceneFields(scene);

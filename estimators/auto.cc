@@ -60,7 +60,8 @@ std::string WhyNotUsable(const Estimate& estimate) {
 
 // For a rung whose errors may come from its method; empty when it will do.
 std::string WhyNotEnough(const Estimate& estimate) {
-  // No other estimator takes displacements that are too large for this one.
+  // No other fit of small strains takes displacements that are too large for
+  // this one.
   if (estimate.IsRefusedFor(FindingCode::kLargeDeformation)) {
     return "";
   }
@@ -174,17 +175,20 @@ void ClimbFits(const Scene& scene, const EstimatorOptions& options,
   ladder.Decide("stopped: no further estimator would do better");
 }
 
+bool ClimbLargeStrainLaws(const Scene& scene, const EstimatorOptions& options,
+                          Ladder& ladder) {
+  EstimatorOptions large = WithoutDegree(options);
+  large.kinematics = Kinematics::kLarge;
+  return ladder.Climb(IterativeFe(), scene, large);
+}
+
 // Laws of large strains in place of isotropic ones, where they are asked for.
 // Tells whether they end the climb: what is not usable may have another cause,
 // which fits of small strains name.
 bool ClimbLargeStrains(const Scene& scene, const EstimatorOptions& options,
                        Ladder& ladder) {
-  if (!AsksForLargeStrains(scene, options)) {
-    return false;
-  }
-  EstimatorOptions large = WithoutDegree(options);
-  large.kinematics = Kinematics::kLarge;
-  if (!ladder.Climb(IterativeFe(), scene, large)) {
+  if (!AsksForLargeStrains(scene, options) ||
+      !ClimbLargeStrainLaws(scene, options, ladder)) {
     return false;
   }
   const Estimate& estimate = ladder.Last();
@@ -210,12 +214,8 @@ void ClimbComputedLargeStrains(const Scene& scene,
       !AreIsotropic(scene.materials) || !IsMentioned(small.deformation) ||
       !has_minimum ||
       !(small.Has(FindingCode::kSmoothResidual) ||
-        small.Has(FindingCode::kResidualAboveNoise))) {
-    return;
-  }
-  EstimatorOptions large = WithoutDegree(options);
-  large.kinematics = Kinematics::kLarge;
-  if (!ladder.Climb(IterativeFe(), scene, large)) {
+        small.Has(FindingCode::kResidualAboveNoise)) ||
+      !ClimbLargeStrainLaws(scene, options, ladder)) {
     return;
   }
   if (ladder.Last().IsUsable() &&

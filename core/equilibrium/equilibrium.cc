@@ -106,11 +106,6 @@ const NodeGraph& Equilibrium::Graph() const {
   return graph_ ? *graph_ : stiffness_[0]->GraphOfAssembled();
 }
 
-const std::string& Equilibrium::WhyNotSolved() const {
-  static const std::string none;
-  return none;
-}
-
 bool Equilibrium::IsRefined() const { return values_->NumSpaces() > 1; }
 
 bool Equilibrium::Solve(const Eigen::VectorXd& moduli) {

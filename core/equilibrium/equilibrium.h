@@ -60,7 +60,6 @@ class Equilibrium : public ForwardModel {
   /// more for each set of held displacements).  False when the stiffness is not
   /// positive definite to working precision; there is no u then.
   [[nodiscard]] bool Solve(const Eigen::VectorXd& moduli) override;
-  const std::string& WhyNotSolved() const override;
 
   const Eigen::MatrixXd& Displacement() const override { return displacement_; }
 
@@ -95,10 +94,6 @@ class Equilibrium : public ForwardModel {
   Eigen::MatrixXd ExtendInCase(Eigen::Index k,
                                const Eigen::MatrixXd& held) override;
   [[nodiscard]] bool MoveSupports(const Eigen::MatrixXd& held) override;
-  [[nodiscard]] bool SolveMoved(const Eigen::VectorXd& moduli,
-                                const Eigen::MatrixXd& held) override {
-    return Solve(moduli) && MoveSupports(held);
-  }
   bool IsLinear() const override { return true; }
 
   Eigen::MatrixXd HeldForces(

@@ -33,7 +33,10 @@ class ForwardModel {
   [[nodiscard]] virtual bool Solve(const Eigen::VectorXd& moduli) = 0;
   /// Says why the last Solve returned false, and what mends it; empty where
   /// there is nothing more to say than that the stiffness is singular.
-  virtual const std::string& WhyNotSolved() const = 0;
+  virtual const std::string& WhyNotSolved() const {
+    static const std::string none;
+    return none;
+  }
 
   /// u of all load cases, num_dofs x num_load_cases [length].
   virtual const Eigen::MatrixXd& Displacement() const = 0;
@@ -68,7 +71,9 @@ class ForwardModel {
   [[nodiscard]] virtual bool MoveSupports(const Eigen::MatrixXd& held) = 0;
   /// Does what Solve and then MoveSupports do.
   [[nodiscard]] virtual bool SolveMoved(const Eigen::VectorXd& moduli,
-                                        const Eigen::MatrixXd& held) = 0;
+                                        const Eigen::MatrixXd& held) {
+    return Solve(moduli) && MoveSupports(held);
+  }
   /// Tells whether u is linear in the motion of supports, so that Extend is
   /// exact.
   virtual bool IsLinear() const = 0;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "elastimate/core/large_strain/large_strain_law.h"
 #include "elastimate/core/mechanics/internal_forces.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/loads.h"
@@ -42,10 +43,10 @@ double ShearModulusAtRest(const MaterialParameters& parameters,
   double largest = 0;
   for (std::size_t i = 0; i < parameters.NumMaterials(); ++i) {
     const Law& law = parameters.LawOf(i);
-    const Eigen::MatrixXd tangent =
-        law.Tangent(moduli.segment(parameters.FirstModulus(i), law.NumModuli()),
-                    Eigen::Matrix3d::Zero(), SectionModel::kSolid);
-    largest = std::max(largest, tangent(1, 1));
+    largest = std::max(
+        largest,
+        LameModuliAtRest(law, moduli.segment(parameters.FirstModulus(i),
+                                             law.NumModuli()))(0));
   }
   return largest;
 }

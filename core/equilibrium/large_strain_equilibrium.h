@@ -128,6 +128,7 @@ class LargeStrainEquilibrium {
     static_cast<void>(Factorize(moduli, k, 1, displacement, 0, state));
   }
 
+  const NodeGraph& Graph() const { return solvers_.front()->Graph(); }
   Work WorkDone() const;
   const LargeStrainForces& Forces() const { return forces_; }
 

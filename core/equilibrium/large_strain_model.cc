@@ -11,7 +11,6 @@ LargeStrainModel::LargeStrainModel(const Scene& scene)
       equilibrium_(scene, Dilatation::kMeanOfElement,
                    HasUnknownMotion(scene) ? KeptFactors::kOfEachCase
                                            : KeptFactors::kLast),
-      graph_(scene.mesh),
       given_(equilibrium_.HeldDisplacement()),
       states_(scene.load_cases.size()),
       displacement_(Load().rows(), Load().cols()) {}

@@ -71,7 +71,7 @@ class LargeStrainModel : public ForwardModel {
   const MaterialParameters& Parameters() const override {
     return equilibrium_.Forces().Parameters();
   }
-  const NodeGraph& Graph() const override { return graph_; }
+  const NodeGraph& Graph() const override { return equilibrium_.Graph(); }
   Work WorkDone() const override { return equilibrium_.WorkDone(); }
   const std::string& Notice() const override { return no_notice_; }
 
@@ -100,7 +100,6 @@ class LargeStrainModel : public ForwardModel {
 
   const Scene& scene_;
   LargeStrainEquilibrium equilibrium_;
-  NodeGraph graph_;
   Eigen::MatrixXd given_;  ///< The displacement of supports in the scene.
   Eigen::VectorXd moduli_;
   std::vector<CaseState> states_;

@@ -51,6 +51,14 @@ Eigen::MatrixXd LargeStrainLaw::Tangent(const Eigen::VectorXd& moduli,
   return tangent;
 }
 
+Eigen::Vector2d LameModuliAtRest(const Law& law,
+                                 const Eigen::VectorXd& moduli) {
+  const Eigen::MatrixXd tangent =
+      law.Tangent(moduli, Eigen::Matrix3d::Zero(), SectionModel::kSolid);
+  // dP_21 / dH_21 is mu, and dP_11 / dH_11 is lambda + 2 mu.
+  return {tangent(1, 1), tangent(0, 0) - 2 * tangent(1, 1)};
+}
+
 double VolumeChange(const Eigen::Matrix3d& gradient) {
   const double trace = gradient.trace();
   const double squares = gradient.cwiseProduct(gradient.transpose()).sum();

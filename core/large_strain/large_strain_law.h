@@ -63,6 +63,12 @@ class LargeStrainLaw : public Law {
                                 PointTangents& tangents) const = 0;
 };
 
+/// Returns (mu, lambda) of the small strains that a law of large strains has at
+/// rest; of transversely isotropic and other materials those along its axes 1
+/// and 2.
+[[nodiscard]] Eigen::Vector2d LameModuliAtRest(const Law& law,
+                                               const Eigen::VectorXd& moduli);
+
 /// Returns det F - 1 of F = I + H without forming F, so that it keeps its
 /// digits near rest.
 [[nodiscard]] double VolumeChange(const Eigen::Matrix3d& gradient);

@@ -1,5 +1,6 @@
 #include "elastimate/core/materials/material_parameters.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "elastimate/core/materials/laws.h"
@@ -106,9 +107,11 @@ Eigen::VectorXd MaterialParameters::ParametersOf(
   return parameters;
 }
 
-bool HasLargeStrainLaw(const std::vector<Material>& materials,
-                       SectionModel model) {
-  return !WhyNotSmallStrains(MaterialParameters(materials, model)).empty();
+bool HasLargeStrainLaw(const std::vector<Material>& materials) {
+  return std::any_of(
+      materials.begin(), materials.end(), [](const Material& material) {
+        return FindLaw(material.law)->ForLargeStrains() != nullptr;
+      });
 }
 
 std::string WhyNotSmallStrains(const MaterialParameters& parameters) {

@@ -77,8 +77,7 @@ class MaterialParameters {
 };
 
 /// Tells whether one of the materials has a law of large strains.
-[[nodiscard]] bool HasLargeStrainLaw(const std::vector<Material>& materials,
-                                     SectionModel model);
+[[nodiscard]] bool HasLargeStrainLaw(const std::vector<Material>& materials);
 
 /// Says why small strains are not enough for one of the laws, and what mends
 /// it; empty when all laws are of small strains.

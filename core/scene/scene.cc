@@ -283,8 +283,7 @@ void ValidateScene(const Scene& scene) {
   if (scene.load_cases.empty()) {
     Fail("the scene has no load case; give at least one");
   }
-  const bool has_large_strains =
-      HasLargeStrainLaw(scene.materials, scene.mesh.section.model);
+  const bool has_large_strains = HasLargeStrainLaw(scene.materials);
   for (std::size_t i = 0; i < scene.load_cases.size(); ++i) {
     const LoadCase& load_case = scene.load_cases[i];
     if (load_case.supports) {

@@ -97,9 +97,7 @@ Eigen::VectorXd StiffnessWeightsOf(const Law& law) {
   Eigen::VectorXd weights = Eigen::VectorXd::Unit(m, 0);
   if (law.ForLargeStrains() != nullptr) {
     for (Eigen::Index k = 0; k < m; ++k) {
-      weights(k) =
-          law.Tangent(Eigen::VectorXd::Unit(m, k), Eigen::Matrix3d::Zero(),
-                      SectionModel::kSolid)(1, 1);
+      weights(k) = LameModuliAtRest(law, Eigen::VectorXd::Unit(m, k))(0);
     }
   }
   return weights;
@@ -178,7 +176,7 @@ void RequireNoInvertedElement(const LargeStrainForces& forces,
 ForceScene::ForceScene(const Scene& scene)
     : dofs_(scene.supports), loads_(WeightedLoads(scene)) {
   SetHeldRowsToZero(dofs_, loads_);
-  if (HasLargeStrainLaw(scene.materials, scene.mesh.section.model)) {
+  if (HasLargeStrainLaw(scene.materials)) {
     large_forces_ =
         std::make_unique<LargeStrainForces>(scene.mesh, scene.materials);
     weights_ = WeightsOf(scene, large_forces_->Parameters());

@@ -113,6 +113,33 @@ std::string WhyNotTheseMaterials(const Capabilities& capabilities,
              : "";
 }
 
+std::string WhyNotTheseKinematics(const Capabilities& capabilities,
+                                  const Scene& scene,
+                                  const EstimatorOptions& options) {
+  const bool has_large_strains = HasLargeStrainLaw(scene.materials);
+  const bool are_large_asked_for = options.kinematics == Kinematics::kLarge;
+  if (has_large_strains && options.kinematics == Kinematics::kSmall) {
+    return "a material has a law of large strains, which --kinematics=small "
+           "excludes; leave out one of them";
+  }
+  if (are_large_asked_for && !capabilities.compares_large_strain_laws) {
+    return "it does not compare laws of large strains; use "
+           "--estimator=iterative-fe, or name a law instead of "
+           "--kinematics=large, such as --material=neo_hookean";
+  }
+  if (are_large_asked_for && !AreIsotropic(scene.materials)) {
+    return "only isotropic materials have laws of large strains that can be "
+           "compared; name laws in the scene or by --material instead of "
+           "--kinematics=large";
+  }
+  return (are_large_asked_for || has_large_strains) &&
+                 scene.is_rigid_motion_free
+             ? "a free rigid motion cannot be told from the rotations of large "
+               "strains; leave out \"rigid_motion\", and measure relative to "
+               "the supports"
+             : "";
+}
+
 std::string WhyNotTheseMotions(const Capabilities& capabilities,
                                const EstimatorOptions& options) {
   if (!capabilities.takes_unknown_motion) {
@@ -147,35 +174,13 @@ std::string WhyUnsupported(const Capabilities& capabilities, const Scene& scene,
     return "finer elements say nothing about displacements that were computed "
            "with this mesh; leave out --refine, or give --origin=measured";
   }
-  if (options.kinematics == Kinematics::kSmall &&
-      HasLargeStrainLaw(scene.materials, scene.mesh.section.model)) {
-    return "a material has a law of large strains, which --kinematics=small "
-           "excludes; leave out one of them";
-  }
-  if (options.kinematics == Kinematics::kLarge) {
-    if (!capabilities.compares_large_strain_laws) {
-      return "it does not compare laws of large strains; use "
-             "--estimator=iterative-fe, or name a law instead of "
-             "--kinematics=large, such as --material=neo_hookean";
-    }
-    if (!AreIsotropic(scene.materials)) {
-      return "only isotropic materials have laws of large strains that can be "
-             "compared; name laws in the scene or by --material instead of "
-             "--kinematics=large";
-    }
-  }
   if (!capabilities.takes_degree && options.virtual_field_degree) {
     return "it has no virtual fields that could have a degree; use "
            "--estimator=virtual-fields, or leave out --degree";
   }
   std::string why = WhyNotTheseMaterials(capabilities, scene, options);
-  if (why.empty() && scene.is_rigid_motion_free &&
-      (options.kinematics == Kinematics::kLarge ||
-       HasLargeStrainLaw(scene.materials, scene.mesh.section.model))) {
-    why =
-        "a free rigid motion cannot be told from the rotations of large "
-        "strains; leave out \"rigid_motion\", and measure relative to the "
-        "supports";
+  if (why.empty()) {
+    why = WhyNotTheseKinematics(capabilities, scene, options);
   }
   if (why.empty() && HasUnknownMotion(scene)) {
     why = WhyNotTheseMotions(capabilities, options);

@@ -145,6 +145,19 @@ std::string LargestErrors(const ParameterErrors& errors,
   return text_of(stiffness, " uncertain ") + " and " + text_of(ratio, " ");
 }
 
+// "strains of 5.0 % and rotations of 20 degrees", as far as they are mentioned.
+std::string DeformationText(const DeformationSize& size) {
+  std::string what;
+  if (size.strain >= kLimits.mentioned_strain) {
+    what = "strains of " + Percent(size.strain);
+  }
+  if (size.rotation >= kLimits.mentioned_rotation) {
+    what += (what.empty() ? "" : " and ") + std::string("rotations of ") +
+            TwoDigits(kDegreesOfRadian * size.rotation) + " degrees";
+  }
+  return what;
+}
+
 }  // namespace
 
 Finding NotFinite() {
@@ -614,23 +627,6 @@ Finding ParameterBias(const std::string& parameter, double bias,
                 parameter,
       "use --estimator=auto, whose fit of displacements noise does not bias"};
 }
-
-namespace {
-
-// "strains of 5.0 % and rotations of 20 degrees", as far as they are mentioned.
-std::string DeformationText(const DeformationSize& size) {
-  std::string what;
-  if (size.strain >= kLimits.mentioned_strain) {
-    what = "strains of " + Percent(size.strain);
-  }
-  if (size.rotation >= kLimits.mentioned_rotation) {
-    what += (what.empty() ? "" : " and ") + std::string("rotations of ") +
-            TwoDigits(kDegreesOfRadian * size.rotation) + " degrees";
-  }
-  return what;
-}
-
-}  // namespace
 
 Finding LargeDeformation(const DeformationSize& size,
                          double relative_error_of_modulus, Severity severity,

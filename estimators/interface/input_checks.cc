@@ -1,6 +1,5 @@
 #include "elastimate/estimators/interface/input_checks.h"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 

@@ -62,8 +62,8 @@ void JudgeKinematics(const Scene& scene, Estimate& estimate) {
     return;
   }
   estimate.deformation = MeasureDeformation(scene);
-  if (HasLargeStrainLaw(scene.materials, scene.mesh.section.model) ||
-      scene.origin == Origin::kComputed || !IsMentioned(estimate.deformation)) {
+  if (HasLargeStrainLaw(scene.materials) || scene.origin == Origin::kComputed ||
+      !IsMentioned(estimate.deformation)) {
     return;
   }
   const KinematicError error = KinematicErrorOf(estimate.deformation);

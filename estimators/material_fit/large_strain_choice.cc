@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -22,23 +23,22 @@ constexpr const char* kStretched[] = {"neo_hookean", "st_venant_kirchhoff"};
 // Laws whose chi^2 differ by less explain the data about as well.
 constexpr double kAlike = 9;
 
-// Options for one isotropic material, as a property of that.
-void MoveOptions(EstimatorOptions& options, Material& material) {
+// Gives a material what the options say of isotropic ones.
+void MoveOptions(const EstimatorOptions& options, Material& material) {
   if (options.known_poisson_ratio) {
     material.known.push_back({"poisson_ratio", *options.known_poisson_ratio});
   }
-  options.known_poisson_ratio.reset();
-  for (auto [name, bounds] :
-       {std::pair{"youngs_modulus", &options.youngs_modulus},
-        std::pair{"poisson_ratio", &options.poisson_ratio}}) {
-    const auto is_of_it = [name = name](const auto& given) {
-      return given.name == name;
+  for (const BoundsOfParameter& given :
+       {BoundsOfParameter{"youngs_modulus", options.youngs_modulus},
+        BoundsOfParameter{"poisson_ratio", options.poisson_ratio}}) {
+    const auto is_of_it = [&](const auto& other) {
+      return other.name == given.name;
     };
-    if (bounds->AreGiven() &&
+    if (given.bounds.AreGiven() &&
         std::none_of(material.known.begin(), material.known.end(), is_of_it) &&
         std::none_of(material.bounds.begin(), material.bounds.end(),
                      is_of_it)) {
-      material.bounds.push_back({name, *bounds});
+      material.bounds.push_back(given);
     }
   }
 }
@@ -47,6 +47,8 @@ struct LawFit {
   std::string law;
   MaterialFit fit;
   double square_sum = 0;
+
+  Eigen::VectorXd Values() const { return fit.estimate.ParameterValues(); }
 };
 
 // What two fits of one measurement differ by, in chi^2.
@@ -57,26 +59,19 @@ double Difference(const LawFit& fit, const LawFit& best) {
                       std::max(best.square_sum, kExact));
 }
 
-Eigen::VectorXd ValuesOf(const Estimate& estimate) {
-  Eigen::VectorXd values(Eigen::Index(estimate.parameters.size()));
-  std::transform(
-      estimate.parameters.begin(), estimate.parameters.end(), values.begin(),
-      [](const ParameterEstimate& parameter) { return parameter.value; });
-  return values;
-}
-
 // Returns half of the distance of each parameter from that of the nearest of
 // other laws: a specimen may be of a law that was not fitted.
-Eigen::VectorXd LeastErrors(const std::vector<Eigen::VectorXd>& of_others,
-                            const Eigen::VectorXd& best) {
+Eigen::VectorXd LeastErrors(const std::vector<LawFit>& fits,
+                            const LawFit& best) {
+  const Eigen::VectorXd of_best = best.Values();
   Eigen::VectorXd least = Eigen::VectorXd::Constant(
-      best.size(), std::numeric_limits<double>::infinity());
-  for (const Eigen::VectorXd& values : of_others) {
-    if (values.allFinite()) {
-      least = least.cwiseMin((values - best).cwiseAbs() / 2);
+      of_best.size(), std::numeric_limits<double>::infinity());
+  for (const LawFit& fit : fits) {
+    if (fit.law != best.law && fit.fit.minimum && fit.Values().allFinite()) {
+      least = least.cwiseMin((fit.Values() - of_best).cwiseAbs() / 2);
     }
   }
-  return least.allFinite() ? least : Eigen::VectorXd::Zero(best.size());
+  return least.allFinite() ? least : Eigen::VectorXd::Zero(of_best.size());
 }
 
 // Adds the spread of the laws to the errors of the best, which is the first,
@@ -96,8 +91,7 @@ void AddSpread(const std::vector<LawFit>& fits, const Eigen::VectorXd& least,
     alike.push_back(fits[i].law);
     const double weight = std::exp(-difference / 2);
     sum_of_weights += weight;
-    const Eigen::VectorXd distance =
-        ValuesOf(fits[i].fit.estimate) - ValuesOf(fits[0].fit.estimate);
+    const Eigen::VectorXd distance = fits[i].Values() - fits[0].Values();
     spread += weight * distance * distance.transpose();
   }
   spread /= sum_of_weights;
@@ -128,6 +122,56 @@ std::vector<LawComparison> Compare(const std::vector<LawFit>& fits,
   return laws;
 }
 
+// Returns the usable fits, the best first; where there are none, the first fit.
+std::vector<LawFit> UsableFits(const std::vector<LawFit>& fits) {
+  std::vector<LawFit> candidates;
+  std::copy_if(fits.begin(), fits.end(), std::back_inserter(candidates),
+               [](const LawFit& fit) {
+                 return fit.fit.estimate.IsUsable() &&
+                        fit.fit.errors.residual.size() > 0;
+               });
+  if (candidates.empty()) {
+    return {fits[0]};
+  }
+  std::sort(candidates.begin(), candidates.end(),
+            [](const LawFit& a, const LawFit& b) {
+              return a.square_sum < b.square_sum;
+            });
+  return candidates;
+}
+
+// The fits of laws of large strains in place of isotropic ones.
+class LargeStrainFits {
+ public:
+  LargeStrainFits(const Scene& scene, const EstimatorOptions& options)
+      : scene_(scene), options_(options) {
+    scene_.materials = MaterialsOfLargeStrains(scene.materials, kRotated);
+    for (Material& material : scene_.materials) {
+      MoveOptions(options, material);
+    }
+    options_.kinematics = Kinematics::kAutomatic;
+    options_.known_poisson_ratio.reset();
+    options_.youngs_modulus = {};
+    options_.poisson_ratio = {};
+  }
+
+  LawFit Fit(const std::string& law,
+             const std::optional<Eigen::VectorXd>& start, Refine refinement) {
+    scene_.materials = MaterialsOfLargeStrains(scene_.materials, law);
+    options_.refinement = refinement;
+    MaterialFit fit = FitMaterialsFrom(start, scene_, options_, Descent::kFull);
+    work_ = work_ + fit.estimate.work;
+    const double square_sum = SquaredNorm(fit.errors.residual);
+    return {law, std::move(fit), square_sum};
+  }
+  const Work& WorkDone() const { return work_; }
+
+ private:
+  Scene scene_;
+  EstimatorOptions options_;
+  Work work_;
+};
+
 }  // namespace
 
 std::vector<Material> MaterialsOfLargeStrains(std::vector<Material> materials,
@@ -153,83 +197,41 @@ bool AsksForLargeStrains(const Scene& scene, const EstimatorOptions& options) {
 
 Estimate FitLargeStrainLaws(const Scene& scene,
                             const EstimatorOptions& options) {
-  Scene large = scene;
-  large.materials = MaterialsOfLargeStrains(scene.materials, kRotated);
-  EstimatorOptions of_fit = options;
-  of_fit.kinematics = Kinematics::kAutomatic;
-  for (Material& material : large.materials) {
-    EstimatorOptions of_material = options;
-    MoveOptions(of_material, material);
-  }
-  of_fit.known_poisson_ratio.reset();
-  of_fit.youngs_modulus = {};
-  of_fit.poisson_ratio = {};
-  Work work;
-  const auto fit_law = [&](const std::string& law,
-                           const std::optional<Eigen::VectorXd>& start,
-                           Refine refinement) {
-    large.materials = MaterialsOfLargeStrains(large.materials, law);
-    of_fit.refinement = refinement;
-    MaterialFit fit = FitMaterialsFrom(start, large, of_fit, Descent::kFull);
-    work = work + fit.estimate.work;
-    const double square_sum = SquaredNorm(fit.errors.residual);
-    return LawFit{law, std::move(fit), square_sum};
-  };
+  LargeStrainFits all(scene, options);
   const DeformationSize size = MeasureDeformation(scene);
-  const bool are_laws_compared = size.strain > kLimits.mentioned_strain / 2;
+  const bool are_compared = size.strain > kLimits.mentioned_strain / 2;
   // Finer elements change laws alike, so that only the best is fitted on them.
-  const bool is_divided_last = are_laws_compared &&
+  const bool is_divided_last = are_compared &&
                                scene.origin == Origin::kMeasured &&
                                options.refinement != Refine::kNever;
   const Refine first = is_divided_last ? Refine::kNever : options.refinement;
   std::vector<LawFit> fits;
-  fits.push_back(fit_law(kRotated, std::nullopt, first));
+  fits.push_back(all.Fit(kRotated, std::nullopt, first));
   const std::optional<Eigen::VectorXd> start = fits[0].fit.Variables();
-  if (start && are_laws_compared) {
+  if (start && are_compared) {
     for (const char* const law : kStretched) {
-      fits.push_back(fit_law(law, start, first));
+      fits.push_back(all.Fit(law, start, first));
     }
   }
-  std::vector<std::pair<std::string, Eigen::VectorXd>> of_laws;
-  for (const LawFit& fit : fits) {
-    if (fit.fit.minimum) {
-      of_laws.emplace_back(fit.law, ValuesOf(fit.fit.estimate));
-    }
-  }
-  // A law that has no fit is not compared.
-  fits.erase(std::remove_if(fits.begin() + 1, fits.end(),
-                            [](const LawFit& fit) {
-                              return !fit.fit.estimate.IsUsable() ||
-                                     fit.fit.errors.residual.size() == 0;
-                            }),
-             fits.end());
-  if (fits.size() > 1 && !fits[0].fit.estimate.IsUsable()) {
-    fits.erase(fits.begin());
-  }
-  std::sort(fits.begin(), fits.end(), [](const LawFit& a, const LawFit& b) {
-    return a.square_sum < b.square_sum;
-  });
-  Estimate estimate =
-      is_divided_last
-          ? fit_law(fits[0].law, fits[0].fit.Variables(), options.refinement)
-                .fit.estimate
-          : fits[0].fit.estimate;
-  estimate.large_strain_law = fits[0].law;
-  if (are_laws_compared && start && estimate.IsUsable()) {
-    std::vector<Eigen::VectorXd> of_others;
-    for (const auto& [law, values] : of_laws) {
-      if (law != fits[0].law && scene.origin == Origin::kMeasured) {
-        of_others.push_back(values);
-      }
-    }
-    AddSpread(fits, LeastErrors(of_others, ValuesOf(fits[0].fit.estimate)),
+  const std::vector<LawFit> candidates = UsableFits(fits);
+  const LawFit& best = candidates[0];
+  Estimate estimate = is_divided_last ? all.Fit(best.law, best.fit.Variables(),
+                                                options.refinement)
+                                            .fit.estimate
+                                      : best.fit.estimate;
+  estimate.large_strain_law = best.law;
+  if (are_compared && start && estimate.IsUsable()) {
+    AddSpread(candidates,
+              scene.origin == Origin::kMeasured
+                  ? LeastErrors(fits, best)
+                  : Eigen::VectorXd::Zero(best.Values().size()),
               estimate);
   }
-  if (fits.size() > 1) {
-    estimate.laws = Compare(fits, Eigen::Index(start->size()));
+  if (candidates.size() > 1) {
+    estimate.laws = Compare(candidates, start->size());
   }
-  estimate.work = work;
-  estimate.Add(LargeStrainsFitted(size, fits[0].law));
+  estimate.work = all.WorkDone();
+  estimate.Add(LargeStrainsFitted(size, best.law));
   return estimate;
 }
 

@@ -26,9 +26,7 @@ Eigen::Index MostDividedElements(const Scene& scene) {
   const bool is_simplex = IsSimplex(scene.mesh.kind);
   return (scene.mesh.Dimension() == 3 ? (is_simplex ? 20000 : 3300)
                                       : (is_simplex ? 100000 : 50000)) /
-         (HasLargeStrainLaw(scene.materials, scene.mesh.section.model)
-              ? kOfLargeStrains
-              : 1);
+         (HasLargeStrainLaw(scene.materials) ? kOfLargeStrains : 1);
 }
 
 // Next to the end of the range of a ratio a misfit hardly has a slope: where

@@ -1,5 +1,9 @@
 #include "elastimate/estimators/material_fit/small_strain_start.h"
 
+#include <algorithm>
+
+#include "elastimate/core/large_strain/charts.h"
+#include "elastimate/core/large_strain/large_strain_law.h"
 #include "elastimate/core/laws/elasticity.h"
 #include "elastimate/core/materials/isotropic_law.h"
 #include "elastimate/estimators/material_fit/material_descent.h"
@@ -10,14 +14,9 @@ namespace {
 
 // Returns what a material of a law of large strains is at rest.
 IsotropicElasticity AtRest(const Law& law, const Eigen::VectorXd& parameters) {
-  const Eigen::MatrixXd tangent =
-      law.Tangent(law.Moduli(parameters, SectionModel::kSolid),
-                  Eigen::Matrix3d::Zero(), SectionModel::kSolid);
-  // dP_11 / dH_11 is lambda + 2 mu, and dP_21 / dH_21 is mu.
-  const double mu = tangent(1, 1);
-  const double lambda = tangent(0, 0) - 2 * mu;
-  return {mu * (3 * lambda + 2 * mu) / (lambda + mu),
-          lambda / (2 * (lambda + mu))};
+  const Eigen::Vector2d elasticity = LameChart::ParametersOf(
+      LameModuliAtRest(law, law.Moduli(parameters, SectionModel::kSolid)));
+  return {elasticity(0), elasticity(1)};
 }
 
 // Multiplies the free moduli of material `i`.
@@ -33,13 +32,19 @@ void MultiplyModuli(const MaterialParameters& all, std::size_t i, double factor,
 }
 
 bool HasFreeModulus(const MaterialParameters& all, std::size_t i) {
-  for (const Eigen::Index place : all.Free()) {
-    if (all.All()[place].material == i &&
-        all.All()[place].law_parameter->is_modulus) {
-      return true;
-    }
+  return std::any_of(all.Free().begin(), all.Free().end(),
+                     [&](Eigen::Index place) {
+                       return all.All()[place].material == i &&
+                              all.All()[place].law_parameter->is_modulus;
+                     });
+}
+
+// Multiplies the free moduli of all materials.
+void MultiplyModuli(const MaterialParameters& all, double factor,
+                    Eigen::VectorXd& parameters) {
+  for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
+    MultiplyModuli(all, i, factor, parameters);
   }
-  return false;
 }
 
 // E of each isotropic material of these Poisson's ratios; of those whose moduli
@@ -83,14 +88,12 @@ std::optional<Eigen::VectorXd> SmallStrainStart(const Scene& scene,
   const MaterialParameters& all = misfit.Free().All();
   Eigen::VectorXd parameters = all.Typical(all.KnownModulus().value_or(1));
   std::vector<IsotropicElasticity> at_rest;
+  bool has_free_modulus = false;
   for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
     const Law& law = all.LawOf(i);
     at_rest.push_back(
         AtRest(law, parameters.segment(all.FirstParameter(i),
                                        Eigen::Index(law.Parameters().size()))));
-  }
-  bool has_free_modulus = false;
-  for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
     has_free_modulus = has_free_modulus || HasFreeModulus(all, i);
   }
   if (has_free_modulus && misfit.NumResultants() > 0 &&
@@ -105,9 +108,7 @@ std::optional<Eigen::VectorXd> SmallStrainStart(const Scene& scene,
     if (!stiffness) {
       return std::nullopt;
     }
-    for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
-      MultiplyModuli(all, i, *stiffness, parameters);
-    }
+    MultiplyModuli(all, *stiffness, parameters);
   } else if (has_free_modulus) {
     const std::optional<Eigen::VectorXd> youngs_moduli =
         FitYoungsModuli(scene, at_rest, all, options, work);
@@ -127,9 +128,7 @@ std::optional<Eigen::VectorXd> SmallStrainStart(const Scene& scene,
     if (misfit.Evaluate(variables, &residual, nullptr)) {
       return variables;
     }
-    for (std::size_t i = 0; i < all.NumMaterials(); ++i) {
-      MultiplyModuli(all, i, 2, parameters);
-    }
+    MultiplyModuli(all, 2, parameters);
   }
   return std::nullopt;
 }

@@ -34,7 +34,7 @@ double ToleranceFor(const Scene& scene) {
 std::unique_ptr<ForwardModel> MakeModel(const std::vector<const Scene*>& spaces,
                                         SolverKind solver) {
   const Scene& scene = *spaces.back();
-  if (HasLargeStrainLaw(scene.materials, scene.mesh.section.model)) {
+  if (HasLargeStrainLaw(scene.materials)) {
     return std::make_unique<LargeStrainModel>(scene);
   }
   return std::make_unique<Equilibrium>(spaces, solver, ToleranceFor(scene));

@@ -453,7 +453,7 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
                                        : ""));
   }
   if (scene.origin == Origin::kComputedAtLargeStrains &&
-      !HasLargeStrainLaw(scene.materials, scene.mesh.section.model)) {
+      !HasLargeStrainLaw(scene.materials)) {
     scene.origin = Origin::kMeasured;
   }
   CheckObserved(path, scene);

@@ -66,8 +66,9 @@ Scene Cantilever(const KindOfSection& kind, const std::string& law,
   return scene;
 }
 
-void MeasureBar(const Eigen::VectorXd& parameters, Scene& scene) {
-  LargeStrainEquilibrium model(scene);
+void MeasureBar(const Eigen::VectorXd& parameters, Scene& scene,
+                Dilatation dilatation = Dilatation::kMeanOfElement) {
+  LargeStrainEquilibrium model(scene, dilatation);
   const Eigen::VectorXd moduli = model.Forces().Parameters().Moduli(parameters);
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     const LargeStrainState state = model.Solve(moduli, Eigen::Index(k));
@@ -260,14 +261,7 @@ TEST(IterativeFeOfLargeStrains, TakesEitherDilatationOfOtherCodes) {
   for (const Dilatation dilatation :
        {Dilatation::kOfPoints, Dilatation::kMeanOfElement}) {
     Scene scene = BentAndPulled(ElementKind::kHex8, SectionModel::kSolid, 2);
-    LargeStrainEquilibrium model(scene, dilatation);
-    for (Eigen::Index k = 0; k < 2; ++k) {
-      const LargeStrainState state =
-          model.Solve(model.Forces().Parameters().Moduli(kBentTruth), k);
-      ASSERT_EQ(state.status, EquilibriumStatus::kDone);
-      scene.load_cases[k].displacement =
-          state.displacement.reshaped(3, scene.mesh.NumNodes());
-    }
+    MeasureBar(kBentTruth, scene, dilatation);
     scene.origin = Origin::kComputed;
     ExpectBarParameters(FitBar(scene), kBentTruth, 1e-7);
     AddNoiseOfBar(0.02, 7, scene);
