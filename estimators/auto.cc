@@ -286,6 +286,7 @@ Estimate Auto::DoRun(const Scene& scene,
   if (ClimbLargeStrains(scene, options, ladder)) {
     return ladder.Finish();
   }
+  const Estimate of_large_strains = ladder.Last();
   // The balance of forces knows no mesh error of measured displacements.
   if (scene.origin != Origin::kMeasured) {
     if (ladder.Climb(ClosedForm(), scene, without_degree) &&
@@ -300,6 +301,12 @@ Estimate Auto::DoRun(const Scene& scene,
   }
   ClimbFits(scene, options, nullptr, ladder);
   ClimbComputedLargeStrains(scene, options, ladder);
+  // Where small strains do not do, it matters why large ones did not either.
+  if (!of_large_strains.findings.empty() &&
+      ladder.Last().IsRefusedFor(FindingCode::kLargeDeformation)) {
+    ladder.Decide("not taken: the strains are too large for it");
+    ladder.Last() = of_large_strains;
+  }
   return ladder.Finish();
 }
 

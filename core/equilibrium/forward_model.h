@@ -31,6 +31,10 @@ class ForwardModel {
   /// Finds u at these moduli.  False when there is none that is stable to
   /// working precision.
   [[nodiscard]] virtual bool Solve(const Eigen::VectorXd& moduli) = 0;
+  /// Gives displacements (num_dofs x num_load_cases) that are near those of the
+  /// first Solve, such as those of coarser elements.  A model that does not
+  /// iterate has no use for them.
+  virtual void BeginWith(const Eigen::MatrixXd& /*displacement*/) {}
   /// Says why the last Solve returned false, and what mends it; empty where
   /// there is nothing more to say than that the stiffness is singular.
   virtual const std::string& WhyNotSolved() const {

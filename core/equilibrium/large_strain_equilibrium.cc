@@ -248,22 +248,26 @@ EquilibriumStatus LargeStrainEquilibrium::Newton(const Eigen::VectorXd& moduli,
   }
 }
 
+LargeStrainState LargeStrainEquilibrium::SolveFrom(
+    const Eigen::VectorXd& start, const Eigen::VectorXd& moduli,
+    Eigen::Index k) {
+  LargeStrainState state;
+  state.displacement = start;
+  state.num_steps = 1;
+  state.smallest_volume = forces_.SmallestVolumeRatio(start);
+  state.status = state.smallest_volume.value > kSmallestVolumeRatio
+                     ? Newton(moduli, k, 1, state, state.displacement)
+                     : EquilibriumStatus::kInverted;
+  state.load_share = state.status == EquilibriumStatus::kDone ? 1 : 0;
+  state.element = state.smallest_volume.element;
+  return state;
+}
+
 LargeStrainState LargeStrainEquilibrium::Solve(const Eigen::VectorXd& moduli,
                                                Eigen::Index k,
-                                               const Eigen::VectorXd& start) {
+                                               int most_tangents) {
   LargeStrainState state;
   state.displacement = Eigen::VectorXd::Zero(load_.rows());
-  if (start.size() > 0 &&
-      forces_.SmallestVolumeRatio(start).value > kSmallestVolumeRatio) {
-    Eigen::VectorXd u = start;
-    ++state.num_steps;
-    if (Newton(moduli, k, 1, state, u) == EquilibriumStatus::kDone) {
-      state.status = EquilibriumStatus::kDone;
-      state.load_share = 1;
-      state.displacement = u;
-      return state;
-    }
-  }
   double step = 1;
   while (state.load_share < 1) {
     const double t = std::min(1.0, state.load_share + step);
@@ -279,7 +283,7 @@ LargeStrainState LargeStrainEquilibrium::Solve(const Eigen::VectorXd& moduli,
       }
     } else {
       step = (t - state.load_share) * kCut;
-      if (step < kSmallestLoadStep) {
+      if (step < kSmallestLoadStep || state.num_tangents > most_tangents) {
         state.element = state.status == EquilibriumStatus::kUnstable
                             ? ElementOfLowestMode(moduli, k, state)
                             : state.smallest_volume.element;

@@ -2,6 +2,7 @@
 #define ELASTIMATE_CORE_EQUILIBRIUM_LARGE_STRAIN_EQUILIBRIUM_H_
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -107,11 +108,18 @@ class LargeStrainEquilibrium {
     return load_.col(k) + pressures_[k].Forces(displacement);
   }
 
-  /// Finds the equilibrium in load case `k`.  A start (num_dofs), such as the
-  /// solution for moduli that are nearly the same, is tried first where it is
-  /// given.  About five tangents for each step of the load.
+  /// Finds the equilibrium in load case `k`.  About five tangents for each step
+  /// of the load; the search gives up after a step with which there are more
+  /// than `most_tangents`.
   LargeStrainState Solve(const Eigen::VectorXd& moduli, Eigen::Index k,
-                         const Eigen::VectorXd& start = {});
+                         int most_tangents = std::numeric_limits<int>::max());
+
+  /// Finds the equilibrium in load case `k` near `start` (num_dofs), such as
+  /// that of moduli that are nearly the same.  Newton's method begins there at
+  /// the whole load and is not helped by steps of the load, so that a failure
+  /// costs little.  Two or three tangents; about twenty where it fails.
+  LargeStrainState SolveFrom(const Eigen::VectorXd& start,
+                             const Eigen::VectorXd& moduli, Eigen::Index k);
 
   /// Returns the solver of load case `k`.  After a Solve of that load case that
   /// was successful, and as long as its factor is kept, it has the factor of

@@ -5,6 +5,13 @@
 #include "elastimate/core/scene/unknown_motion.h"
 
 namespace elastimate {
+namespace {
+
+// Steps of the load to where there is an equilibrium take 10 to 60 tangents;
+// those of moduli that are far too soft take hundreds.
+constexpr int kMostTangentsFromRest = 100;
+
+}  // namespace
 
 LargeStrainModel::LargeStrainModel(const Scene& scene)
     : scene_(scene),
@@ -15,9 +22,32 @@ LargeStrainModel::LargeStrainModel(const Scene& scene)
       states_(scene.load_cases.size()),
       displacement_(Load().rows(), Load().cols()) {}
 
+void LargeStrainModel::BeginWith(const Eigen::MatrixXd& displacement) {
+  why_not_solved_.clear();
+  for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
+    states_[k] = {{}, displacement.col(k), {}};
+  }
+}
+
+void LargeStrainModel::SetDilatation(Dilatation dilatation) {
+  equilibrium_.SetDilatation(dilatation);
+  why_not_solved_.clear();
+  // The displacements of elements that lock may be far from those of others.
+  for (CaseState& state : states_) {
+    state.moduli.resize(0);
+  }
+}
+
 bool LargeStrainModel::SolveInCase(Eigen::Index k,
                                    const Eigen::VectorXd& start) {
-  const LargeStrainState found = equilibrium_.Solve(moduli_, k, start);
+  LargeStrainState found;
+  if (start.size() > 0) {
+    found = equilibrium_.SolveFrom(start, moduli_, k);
+  }
+  if (found.status != EquilibriumStatus::kDone &&
+      states_[k].moduli.size() == 0) {
+    found = equilibrium_.Solve(moduli_, k, kMostTangentsFromRest);
+  }
   if (found.status != EquilibriumStatus::kDone) {
     why_not_solved_ = "in load case " + std::to_string(k + 1) + ", " +
                       WhyNotInEquilibrium(found);
@@ -35,6 +65,10 @@ bool LargeStrainModel::SolveInCase(Eigen::Index k,
 }
 
 bool LargeStrainModel::Solve(const Eigen::VectorXd& moduli) {
+  // A search asks again where it begins.
+  if (!why_not_solved_.empty() && moduli == moduli_) {
+    return false;
+  }
   return SolveMoved(moduli,
                     Eigen::MatrixXd::Zero(given_.rows(), given_.cols()));
 }
@@ -46,9 +80,9 @@ bool LargeStrainModel::SolveMoved(const Eigen::VectorXd& moduli,
   for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
     equilibrium_.SetHeldDisplacement(k, given_.col(k) + held.col(k));
     const CaseState& last = states_[k];
-    Eigen::VectorXd start;
+    Eigen::VectorXd start = last.displacement;
     if (last.moduli.size() > 0) {
-      start = last.displacement + last.sensitivities * (moduli - last.moduli);
+      start += last.sensitivities * (moduli - last.moduli);
     }
     if (!SolveInCase(k, start)) {
       return false;

@@ -19,6 +19,10 @@ namespace elastimate {
 /// u + S (theta - theta_last), from where two or three tangents lead to
 /// equilibrium where theta is near.  After a Solve that failed, the next one
 /// begins with the last that did not.
+///
+/// Only the first Solve divides the load into steps.  Whoever searches for
+/// moduli and meets some without an equilibrium nearby takes a shorter step,
+/// which costs less than steps of the load.
 class LargeStrainModel : public ForwardModel {
  public:
   /// Preconditions and exceptions are those of LargeStrainEquilibrium.
@@ -26,12 +30,11 @@ class LargeStrainModel : public ForwardModel {
   explicit LargeStrainModel(const Scene&&) = delete;
 
   /// Evaluates the volume of elements in another way from the next Solve on.
-  void SetDilatation(Dilatation dilatation) {
-    equilibrium_.SetDilatation(dilatation);
-  }
+  void SetDilatation(Dilatation dilatation);
 
   /// About five tangents for each load case at first, later three.
   [[nodiscard]] bool Solve(const Eigen::VectorXd& moduli) override;
+  void BeginWith(const Eigen::MatrixXd& displacement) override;
   const std::string& WhyNotSolved() const override { return why_not_solved_; }
 
   const Eigen::MatrixXd& Displacement() const override { return displacement_; }
@@ -78,14 +81,15 @@ class LargeStrainModel : public ForwardModel {
  private:
   /// The last equilibrium of a load case that was found.
   struct CaseState {
-    Eigen::VectorXd moduli;
+    Eigen::VectorXd moduli;  ///< Empty where none was found.
+    /// Where none was found, what is near the first one; empty if unknown.
     Eigen::VectorXd displacement;
     Eigen::MatrixXd sensitivities;  ///< num_dofs x num_moduli.
   };
 
   Eigen::Index NumLoadCases() const { return Load().cols(); }
-  /// Finds the equilibrium of load case `k` from this start on, or from rest
-  /// where it is empty.
+  /// Finds the equilibrium of load case `k` from this start on.  Where none was
+  /// found yet and the start is empty or leads to none, it begins at rest.
   bool SolveInCase(Eigen::Index k, const Eigen::VectorXd& start);
   /// Has the factor of the tangent of load case `k`.
   StiffnessSolver& TangentSolver(Eigen::Index k);

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "elastimate/core/mesh/finer_nodes.h"
 #include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/core/scene/unknown_motion.h"
@@ -111,11 +112,19 @@ class Refinement {
   /// errors decide that.
   bool AsksForDivision(const Scene& quadratic, Chain& chain) const;
   static void Describe(Chain& chain, SpaceFit* curved);
+  /// Begins at the displacements of `last`, a fit of coarser elements, where
+  /// that is not null.
   std::unique_ptr<SpaceFit> MinimizeOn(
       const Scene& scene, const std::optional<Eigen::VectorXd>& start,
-      const std::vector<const Scene*>& coarser = {}) {
+      const std::vector<const Scene*>& coarser = {},
+      const SpaceFit* last = nullptr) {
     auto space = std::make_unique<SpaceFit>(scene, options_, coarser);
     space->Misfit().SetNeighbours(neighbours_);
+    if (last != nullptr) {
+      space->Misfit().Model().BeginWith(
+          FinerNodes(last->OwnScene().mesh, scene.mesh)
+              .Interpolate(last->Fit().displacement));
+    }
     space->Minimize(descent_, start);
     has_rival_axis_ = has_rival_axis_ || space->Fit().has_rival_axis;
     return space;
@@ -221,7 +230,7 @@ Refinement::Chain Refinement::FitQuadratic(
   if (linear_ && !HasUnknownMotion(scene_)) {
     coarser.push_back(&scene_);
   }
-  chain.quadratic = MinimizeOn(quadratic, start, coarser);
+  chain.quadratic = MinimizeOn(quadratic, start, coarser, linear_.get());
   chain.work = chain.quadratic->Fit().estimate.work;
   if (!chain.quadratic->Fit().minimum) {
     return chain;
@@ -245,8 +254,8 @@ Refinement::Chain Refinement::FitQuadratic(
     if (!HasUnknownMotion(scene_)) {
       coarser.push_back(&fit.OwnScene());
     }
-    std::unique_ptr<SpaceFit> divided =
-        MinimizeOn(FinerScene(fit.OwnScene()), fit.Fit().Variables(), coarser);
+    std::unique_ptr<SpaceFit> divided = MinimizeOn(
+        FinerScene(fit.OwnScene()), fit.Fit().Variables(), coarser, &fit);
     chain.work = chain.work + divided->Fit().estimate.work;
     if (divided->Fit().minimum) {
       chain.coarser = &fit;

@@ -314,9 +314,12 @@ std::optional<SpaceChange> SpaceFit::ChangeFrom(SpaceFit& coarse) {
   coarse.misfit_.SetWeights(misfit_.RowWeights());
   const Work before = coarse.WorkDone();
   Eigen::VectorXd of_coarse;
-  const bool are_solved =
-      misfit_.Evaluate(variables, &change.rows, nullptr) &&
-      coarse.misfit_.Evaluate(variables, &of_coarse, nullptr);
+  bool are_solved = misfit_.Evaluate(variables, &change.rows, nullptr);
+  if (are_solved) {
+    coarse.misfit_.Model().BeginWith(
+        misfit_.FittedDisplacement().topRows(coarse.scene_.mesh.NumDofs()));
+    are_solved = coarse.misfit_.Evaluate(variables, &of_coarse, nullptr);
+  }
   Work& work = coarse.fit_.estimate.work;
   work = work + (coarse.WorkDone() - before);
   if (!are_solved) {

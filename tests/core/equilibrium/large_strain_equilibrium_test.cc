@@ -311,7 +311,6 @@ TEST(LargeStrainEquilibrium, InflatesASphereByPressureThatFollows) {
   const Eigen::MatrixXi facets = BoundaryFacetsWhere(
       linear.mesh,
       [&](int node) { return linear.mesh.nodes.col(node).norm() < 1 + 1e-9; });
-  Eigen::VectorXd start;
   for (const auto& [stretch, published] :
        {std::pair(1.2, 0.480160), std::pair(1.5, 0.755433),
         std::pair(1.682, 0.806927)}) {
@@ -319,9 +318,8 @@ TEST(LargeStrainEquilibrium, InflatesASphereByPressureThatFollows) {
     const Scene scene = QuadraticScene(linear);
     LargeStrainEquilibrium model(scene);
     const LargeStrainState state =
-        model.Solve(model.Forces().Parameters().Moduli(parameters), 0, start);
+        model.Solve(model.Forces().Parameters().Moduli(parameters), 0);
     ASSERT_EQ(state.status, EquilibriumStatus::kDone) << stretch;
-    start = state.displacement;
     const auto& inner = std::get<Pressure>(scene.load_cases[0].loads[0]);
     const double reached =
         std::cbrt(InnerGrowth(scene.mesh, inner.facets, state.displacement));
@@ -484,10 +482,10 @@ TEST(LargeStrainEquilibrium, BeginsWhereItIsTold) {
   ASSERT_EQ(first.status, EquilibriumStatus::kDone);
   // The tip moves by nearly half of the length.
   EXPECT_GT(first.displacement.maxCoeff(), 2.5);
-  const LargeStrainState again = model.Solve(moduli, 0, first.displacement);
+  const LargeStrainState again = model.SolveFrom(first.displacement, moduli, 0);
   EXPECT_EQ(again.num_tangents, 1);
   const LargeStrainState nearby =
-      model.Solve(1.01 * moduli, 0, first.displacement);
+      model.SolveFrom(first.displacement, 1.01 * moduli, 0);
   EXPECT_EQ(nearby.status, EquilibriumStatus::kDone);
   EXPECT_LE(nearby.num_tangents, 5);
 }

@@ -10,6 +10,7 @@
 
 #include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/scene_builder.h"
 #include "tests/element_kinds.h"
 
 namespace elastimate {
@@ -160,6 +161,52 @@ TEST(LargeStrainModel, GoesOnAfterModuliWithoutEquilibrium) {
   ASSERT_TRUE(model.Solve(moduli));
   EXPECT_EQ(model.WhyNotSolved(), "");
   EXPECT_LT((model.Displacement() - u).norm(), 1e-9 * u.norm());
+}
+
+TEST(LargeStrainModel, LosesLittleByModuliWithoutEquilibrium) {
+  Scene scene =
+      testing::SceneOfKind({ElementKind::kHex8, SectionModel::kSolid});
+  scene.materials.resize(1);
+  scene.materials[0].law = "corotated";
+  LargeStrainModel model(scene);
+  const double load =
+      AssembleLoads(scene.mesh, scene.load_cases[0].loads).norm();
+  const Eigen::Vector2d moduli(load, load);
+  ASSERT_TRUE(model.Solve(moduli));
+  const int before = model.WorkDone().factorizations;
+  EXPECT_FALSE(model.Solve(1e-9 * moduli));
+  const int after = model.WorkDone().factorizations;
+  EXPECT_LE(after - before, 30);
+  // The same question has the same answer.
+  EXPECT_FALSE(model.Solve(1e-9 * moduli));
+  EXPECT_EQ(model.WorkDone().factorizations, after);
+}
+
+TEST(LargeStrainModel, BeginsWithDisplacementsThatAreNear) {
+  const Mesh mesh = BoxGrid(Eigen::Vector3i(2, 2, 6), Eigen::Vector3d(1, 1, 6));
+  Scene scene = UnsupportedScene(mesh);
+  scene.load_cases.resize(1);
+  HoldInBox(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 0), scene);
+  scene.materials.resize(1);
+  scene.materials[0].law = "neo_hookean";
+  scene.load_cases[0].loads = {TractionInBox(mesh, Eigen::Vector3d(0, 0, 6),
+                                             Eigen::Vector3d(1, 1, 6),
+                                             Eigen::Vector3d(0.005, 0, 0))};
+  LargeStrainModel from_rest(scene);
+  const Eigen::VectorXd moduli =
+      from_rest.Parameters().Moduli(Eigen::Vector2d(1, 0.3));
+  ASSERT_TRUE(from_rest.Solve(moduli));
+  EXPECT_GT(from_rest.WorkDone().factorizations, 5);
+  LargeStrainModel from_nearby(scene);
+  from_nearby.BeginWith(from_rest.Displacement());
+  ASSERT_TRUE(from_nearby.Solve(moduli));
+  EXPECT_EQ(from_nearby.WorkDone().factorizations, 1);
+  // What is far leads to steps of the load.
+  LargeStrainModel from_afar(scene);
+  from_afar.BeginWith(-5 * from_rest.Displacement());
+  ASSERT_TRUE(from_afar.Solve(moduli));
+  EXPECT_LT((from_afar.Displacement() - from_rest.Displacement()).norm(),
+            1e-8 * from_rest.Displacement().norm());
 }
 
 }  // namespace

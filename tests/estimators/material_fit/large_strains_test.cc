@@ -298,5 +298,17 @@ TEST(IterativeFeOfLargeStrains, SaysWhyThereIsNoEquilibrium) {
   EXPECT_NE(estimate.message, "");
 }
 
+TEST(AutoOfLargeStrains, SaysWhatIsWrongBesideLargeStrains) {
+  Scene scene = Cantilever(kBarOfTet4, "neo_hookean", 0.5);
+  MeasureBar(kBentTruth, scene);
+  scene.load_cases[0].displacement *= -1;
+  scene.materials.clear();
+  scene.origin = Origin::kMeasured;
+  const Estimate estimate = MakeEstimator("auto")->Run(scene, {});
+  EXPECT_FALSE(estimate.IsUsable());
+  EXPECT_TRUE(estimate.Has(FindingCode::kDisplacementsOpposeLoads));
+  EXPECT_FALSE(estimate.IsRefusedFor(FindingCode::kLargeDeformation));
+}
+
 }  // namespace
 }  // namespace elastimate
