@@ -12,9 +12,15 @@ namespace {
 
 // Balances nodal forces, which were spread over facets that are not curved.
 void BalanceLoads(const Scene& scene, const FinerNodes& nodes, Scene& finer) {
-  const Eigen::MatrixXd rest =
-      AssembleLoadCases(scene) - nodes.Restrict(AssembleLoadCases(finer));
+  // Facets and elements that are flat leave rounding, which is no load.
+  constexpr double kRounding = 1e-12;
+  const Eigen::MatrixXd loads = AssembleLoadCases(scene);
+  const Eigen::MatrixXd rest = loads - nodes.Restrict(AssembleLoadCases(finer));
   for (std::size_t k = 0; k < finer.load_cases.size(); ++k) {
+    if (rest.col(Eigen::Index(k)).norm() <=
+        kRounding * loads.col(Eigen::Index(k)).norm()) {
+      continue;
+    }
     NodalForces forces{
         Eigen::MatrixXd::Zero(scene.mesh.Dimension(), finer.mesh.NumNodes())};
     forces.force.leftCols(scene.mesh.NumNodes()) =

@@ -113,14 +113,14 @@ class Refinement {
   bool AsksForDivision(const Scene& quadratic, Chain& chain) const;
   static void Describe(Chain& chain, SpaceFit* curved);
   /// Begins at the displacements of `last`, a fit of coarser elements, where
-  /// that is not null.
+  /// there are some.
   std::unique_ptr<SpaceFit> MinimizeOn(
       const Scene& scene, const std::optional<Eigen::VectorXd>& start,
       const std::vector<const Scene*>& coarser = {},
       const SpaceFit* last = nullptr) {
     auto space = std::make_unique<SpaceFit>(scene, options_, coarser);
     space->Misfit().SetNeighbours(neighbours_);
-    if (last != nullptr) {
+    if (last != nullptr && last->Fit().displacement.size() > 0) {
       space->Misfit().Model().BeginWith(
           FinerNodes(last->OwnScene().mesh, scene.mesh)
               .Interpolate(last->Fit().displacement));
