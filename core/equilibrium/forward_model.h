@@ -22,21 +22,23 @@ namespace elastimate {
 /// f_k(u) = K_k u, and K does not depend on u (Equilibrium); at large strains
 /// Newton's method finds u (LargeStrainModel).
 ///
-/// Columns of several load cases stand side by side, the same number of each.
-/// All functions but Solve have the precondition that it returned true.
+/// Matrices for several load cases hold the columns of the first load case,
+/// then those of the second, and so on, the same number for each.  Functions
+/// that describe a solution have the precondition that the last Solve returned
+/// true.
 class ForwardModel {
  public:
   virtual ~ForwardModel() = default;
 
-  /// Finds u at these moduli.  False when there is none that is stable to
-  /// working precision.
+  /// Finds the equilibrium u at these moduli.  Returns false if none is found
+  /// that is stable to working precision.
   [[nodiscard]] virtual bool Solve(const Eigen::VectorXd& moduli) = 0;
-  /// Gives displacements (num_dofs x num_load_cases) that are near those of the
-  /// first Solve, such as those of coarser elements.  A model that does not
-  /// iterate has no use for them.
+  /// Tells the model displacements (num_dofs x num_load_cases) near which the
+  /// first Solve is to search, such as those of coarser elements.  A model that
+  /// does not iterate ignores them.
   virtual void BeginWith(const Eigen::MatrixXd& /*displacement*/) {}
-  /// Says why the last Solve returned false, and what mends it; empty where
-  /// there is nothing more to say than that the stiffness is singular.
+  /// Says why the last Solve returned false, and what the user can do about it.
+  /// Empty if the only known reason is a singular stiffness.
   virtual const std::string& WhyNotSolved() const {
     static const std::string none;
     return none;
@@ -47,8 +49,8 @@ class ForwardModel {
   /// Returns the loads F, num_dofs x num_load_cases [force].
   virtual const Eigen::MatrixXd& Load() const = 0;
 
-  /// du / dp = -K^-1 df/dtheta dtheta/dp for directions d theta / d p
-  /// (num_moduli x n): n columns of each load case.
+  /// Returns du/dp = -K^-1 df/dtheta dtheta/dp for the directions dtheta/dp
+  /// (num_moduli x n), n columns for each load case.
   virtual Eigen::MatrixXd Sensitivities(const Eigen::MatrixXd& directions) = 0;
   /// Returns K^-1 f on the free rows, zero in the held rows, for n columns of
   /// forces of each load case.
@@ -58,22 +60,24 @@ class ForwardModel {
   virtual Eigen::MatrixXd ForceColumns(
       const Eigen::VectorXd& displacement) const = 0;
 
-  /// Returns the change of u without a change of loads where the held degrees
-  /// of freedom move by `held` (zero in the free rows), to first order; n
-  /// columns of each load case.  Extend, ExtendTransposed, MoveSupports and the
-  /// forces of supports are there only for a scene of unknown motion
-  /// (HasUnknownMotion).
+  /// Returns the change of u, to first order and at constant loads, if the held
+  /// degrees of freedom move by `held` (zero in the free rows); n columns for
+  /// each load case.  Extend, ExtendTransposed, MoveSupports and the functions
+  /// of support forces may be called only if the motion of some supports is
+  /// unknown (HasUnknownMotion).
   virtual Eigen::MatrixXd Extend(const Eigen::MatrixXd& held) = 0;
   /// Multiplies by the transpose of Extend; the free rows are zero.
   virtual Eigen::MatrixXd ExtendTransposed(const Eigen::MatrixXd& values) = 0;
-  /// Does what Extend does for num_dofs x n displacements of load case `k`.
+  /// Does what Extend does, for load case `k` only: num_dofs x n.
   virtual Eigen::MatrixXd ExtendInCase(Eigen::Index k,
                                        const Eigen::MatrixXd& held) = 0;
   /// Moves the supports of each load case by `held` (num_dofs x
-  /// num_load_cases), beside what the scene gives and former calls moved since
-  /// Solve.  False as Solve.
+  /// num_load_cases), in addition to the displacement that the scene gives and
+  /// to earlier calls since Solve, and finds the new equilibrium.  Returns
+  /// false as Solve does.
   [[nodiscard]] virtual bool MoveSupports(const Eigen::MatrixXd& held) = 0;
-  /// Does what Solve and then MoveSupports do.
+  /// Finds the equilibrium at these moduli with supports that are moved by
+  /// `held`, as Solve and then MoveSupports do.
   [[nodiscard]] virtual bool SolveMoved(const Eigen::VectorXd& moduli,
                                         const Eigen::MatrixXd& held) {
     return Solve(moduli) && MoveSupports(held);
@@ -82,11 +86,12 @@ class ForwardModel {
   /// exact.
   virtual bool IsLinear() const = 0;
 
-  /// Returns the held rows of K times the columns, n of each load case, and
-  /// zeros in the free rows.
+  /// Returns the product of K and `displacements` in the held rows, and zeros
+  /// in the free rows; n columns for each load case.
   virtual Eigen::MatrixXd HeldForces(
       const Eigen::MatrixXd& displacements) const = 0;
-  /// Multiplies by the transpose of HeldForces; `held` counts in the held rows.
+  /// Multiplies by the transpose of HeldForces.  Only the held rows of `held`
+  /// are used.
   virtual Eigen::MatrixXd HeldForcesTransposed(
       const Eigen::MatrixXd& held) const = 0;
   /// Does what HeldForces does for num_dofs x n columns of load case `k`.

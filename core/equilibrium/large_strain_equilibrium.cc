@@ -15,25 +15,28 @@
 namespace elastimate {
 namespace {
 
-// The residual over the forces of loads and supports at which a state is in
-// equilibrium.
+// A state is in equilibrium if the norm of its residual is at most this share
+// of the norm of the forces of loads or supports.
 constexpr double kResidual = 1e-10;
-// A step of Newton's method that changes the displacement by less, relative to
-// its size, leaves nothing but rounding.  Where the material is nearly
-// incompressible, that of the residual may be above kResidual.
+// If an iteration changes the displacement by less than this share of its size,
+// only rounding is left.  In a nearly incompressible material, the rounding of
+// the residual may be above kResidual.
 constexpr double kRounding = 1e-12;
-// A tangent where so little was left is that of the equilibrium, and serves to
-// the end.
+// At a relative residual below this, the tangent is practically that of the
+// equilibrium, and is used for the remaining iterations.
 constexpr double kNearby = 1e-7;
-// Newton's method that has not converged with so many tangents hardly will.
+// Newton's method gives up after so many factorisations.
 constexpr int kMostTangents = 20;
-// A step of the load that fails is followed by one that is shorter by this.
+// After a step of the load that failed, the next one is shorter by this factor.
 constexpr double kCut = 0.25;
-// A step of the load that takes no more iterations is followed by a longer one.
+// After a step of the load with at most so many factorisations, the next one is
+// twice as long.
 constexpr int kEasyIterations = 6;
 constexpr double kSmallestLoadStep = 1.0 / 1024;
 constexpr double kSmallestVolumeRatio = 0.01;
-// Shear moduli that are added to a tangent that is not positive definite.
+// A tangent that is not positive definite is made so by adding a stiffness
+// against shear: the largest multiple of the shear modulus, and the factor from
+// one attempt to the next.
 constexpr double kMostShift = 1e4;
 constexpr double kShiftFactor = 8;
 
@@ -229,8 +232,8 @@ EquilibriumStatus LargeStrainEquilibrium::Newton(const Eigen::VectorXd& moduli,
       right -= forces_.TangentProducts(moduli, u, held_change);
     }
     const Eigen::VectorXd change = solver.Solve(right) + held_change;
-    // A half or less of a step leaves the same share of what the supports have
-    // to move.
+    // A shortened iteration moves the supports by the same share of their way,
+    // and leaves the rest to later iterations.
     double factor = 1;
     for (;; factor /= 2) {
       state.smallest_volume = forces_.SmallestVolumeRatio(u + factor * change);

@@ -14,7 +14,7 @@
 
 namespace elastimate {
 
-/// Which factors of tangents stay.
+/// Which factorised tangents are kept.
 enum class KeptFactors {
   kLast,        ///< The last one for each set of held degrees of freedom.
   kOfEachCase,  ///< The last one of each load case.
@@ -26,8 +26,8 @@ enum class EquilibriumStatus {
   /// Beyond the share of the load that was reached, the tangent is not positive
   /// definite: the specimen buckles or snaps.
   kUnstable,
-  kInverted,       ///< Beyond it, an element is turned inside out.
-  kNoEquilibrium,  ///< Beyond it, Newton's method finds nothing.
+  kInverted,       ///< Beyond that share, an element is turned inside out.
+  kNoEquilibrium,  ///< Beyond that share, Newton's method does not converge.
 };
 
 /// A state of a specimen in one load case.
@@ -37,42 +37,46 @@ struct LargeStrainState {
   /// `displacement` is in stable equilibrium: 1 if the search was successful.
   double load_share = 0;
   Eigen::VectorXd displacement;  ///< num_dofs [length].
-  /// The volume of the element that is deformed most, where the search ended.
+  /// The smallest volume ratio of the mesh at the end of the search, and its
+  /// element.
   VolumeRatio smallest_volume = {1, 0};
-  /// Where the search ended without success: the element that moves most in the
-  /// lowest mode of the tangent if it ended at an unstable state, else the one
-  /// that is deformed most.
+  /// If the search failed at an unstable state, this is the element that moves
+  /// most in the lowest mode of the tangent.  If it failed otherwise, this is
+  /// the element with the smallest volume ratio.
   Eigen::Index element = 0;
-  int num_steps = 0;     ///< Steps of the load, with those that failed.
+  int num_steps = 0;     ///< Steps of the load, including failed ones.
   int num_tangents = 0;  ///< Factorisations.
 };
 
-/// Says why a state is not at the whole load, and what mends it; empty if it
-/// is.
+/// Says why the whole load was not reached, and what the user can do about it.
+/// Empty if it was reached.
 [[nodiscard]] std::string WhyNotInEquilibrium(const LargeStrainState& state);
 
-/// Equilibrium of large strains of the materials of a scene,
+/// Finds the equilibrium of the specimen of a scene at large strains,
 ///
 ///   f(u; theta) = t F on the free degrees of freedom,
 ///   u = t u_held on the held ones,
 ///
 /// at the share t = 1 of the load.  Loads are dead: nodal forces F stay as they
 /// are on the undeformed specimen, except those of pressures that follow the
-/// surface (FollowerPressure).  The tangent takes the symmetric part of their
-/// derivative, which is all of it where the edge of their surface is held or
-/// there is none.  Elsewhere Newton's method converges linearly, and the check
-/// of stability is that of the symmetric part.
+/// surface (FollowerPressure).  The tangent contains the symmetric part of the
+/// derivative of these pressures.  The derivative is symmetric if the edge of
+/// the loaded surface is held, or if the surface is closed.  Otherwise Newton's
+/// method converges linearly, and only the symmetric part of the tangent is
+/// checked for stability.
 ///
-/// Newton's method begins at the whole load.  Where it fails, the load is
-/// divided into steps, each a quarter as long as the last one that failed and
-/// twice as long as one that was easy.  A Newton step is shortened where det F
-/// would fall below a hundredth.  Where little is left, the factor is kept. The
-/// tangent has to be positive definite at
-/// the end, since Newton's method finds unstable states as well [Wriggers,
-/// Nonlinear Finite Element Methods, 2008, chapter 5].  On the way there, where
-/// a nearly incompressible material has a wrong volume, its large pressure
-/// makes the tangent indefinite; then a multiple of a stiffness against shear
-/// alone is added, which leaves the correction of the volume as it is.
+/// Newton's method begins at the whole load.  If it fails, the load is divided
+/// into steps.  After a step that failed, the next one is a quarter as long;
+/// after an easy one, it is twice as long.  An iteration is shortened if det F
+/// would fall below a hundredth.  Once the residual is small, the last factor
+/// is used again.  The tangent has to be positive definite at the end, because
+/// Newton's method converges to unstable states as well [Wriggers, Nonlinear
+/// Finite Element Methods, 2008, chapter 5].
+///
+/// On the way there, the volume of a nearly incompressible material may be
+/// wrong, so that its pressure is large and the tangent is indefinite.  Then a
+/// multiple of a stiffness against shear alone is added, which does not impede
+/// the correction of the volume.
 ///
 ///   LargeStrainEquilibrium model(scene);
 ///   const MaterialParameters& chart = model.Forces().Parameters();
@@ -80,9 +84,10 @@ struct LargeStrainState {
 ///   if (state.status == EquilibriumStatus::kDone) { ... }
 class LargeStrainEquilibrium {
  public:
-  /// Assembles the pattern and analyses it.  Refers to `scene`, which has to
-  /// stay as it is; a temporary one does not compile.  Throws as
-  /// LargeStrainForces and StiffnessSolver do.  Precondition: a valid scene.
+  /// Assembles the sparsity pattern of the tangent and analyses it.  Refers to
+  /// `scene`, which has to stay as it is; a temporary one does not compile.
+  /// Throws as LargeStrainForces and StiffnessSolver do.  Precondition: a valid
+  /// scene.
   explicit LargeStrainEquilibrium(
       const Scene& scene, Dilatation dilatation = Dilatation::kMeanOfElement,
       KeptFactors kept = KeptFactors::kLast);
@@ -96,7 +101,7 @@ class LargeStrainEquilibrium {
     held_displacement_.col(k) = held;
   }
   const Eigen::MatrixXd& HeldDisplacement() const { return held_displacement_; }
-  /// Evaluates the volume of elements in another way from now on.
+  /// Changes how elements evaluate their volume, from the next call on.
   void SetDilatation(Dilatation dilatation) {
     forces_.SetDilatation(dilatation);
   }
@@ -128,7 +133,8 @@ class LargeStrainEquilibrium {
     return *solvers_[solver_of_case_[k]];
   }
 
-  /// Has that factor again, at a state that Solve found.
+  /// Factorises the tangent of load case `k` again, at a displacement that
+  /// Solve found.
   void FactorizeAgain(const Eigen::VectorXd& moduli, Eigen::Index k,
                       const Eigen::VectorXd& displacement) {
     LargeStrainState state;
@@ -141,8 +147,9 @@ class LargeStrainEquilibrium {
   const LargeStrainForces& Forces() const { return forces_; }
 
  private:
-  /// Factorises the tangent, with so many shear moduli added as it takes; false
-  /// where it takes more than `most_shift`.
+  /// Factorises the tangent.  If it is not positive definite, a stiffness
+  /// against shear is added, whose multiple of the shear modulus grows from 1
+  /// up to `most_shift` until the sum is.  Returns false if that is not enough.
   bool Factorize(const Eigen::VectorXd& moduli, Eigen::Index k, double t,
                  const Eigen::VectorXd& u, double most_shift,
                  LargeStrainState& state);
@@ -150,7 +157,7 @@ class LargeStrainEquilibrium {
   /// the last stable state.  One tangent and a few solves.
   Eigen::Index ElementOfLowestMode(const Eigen::VectorXd& moduli,
                                    Eigen::Index k, LargeStrainState& state);
-  /// Solves at the share `t` from `u`.
+  /// Runs Newton's method at the share `t` of the load, beginning at `u`.
   EquilibriumStatus Newton(const Eigen::VectorXd& moduli, Eigen::Index k,
                            double t, LargeStrainState& state,
                            Eigen::VectorXd& u);
@@ -161,7 +168,8 @@ class LargeStrainEquilibrium {
   Eigen::MatrixXd held_displacement_;        ///< num_dofs x num_load_cases.
   std::vector<std::unique_ptr<StiffnessSolver>> solvers_;
   std::vector<std::size_t> solver_of_case_;
-  /// The small strains stiffness of lambda = 0 and 2 mu = 1, once it is needed.
+  /// The stiffness of small strains for lambda = 0 and 2 mu = 1; empty until it
+  /// is needed.
   Eigen::MatrixXd shear_blocks_;
   int element_passes_ = 0;
 };

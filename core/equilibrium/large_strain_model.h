@@ -12,27 +12,28 @@
 
 namespace elastimate {
 
-/// The forward model of materials of large strains: all load cases of
-/// LargeStrainEquilibrium, with tangents and sensitivities there.
+/// The forward model at large strains.  It solves all load cases by
+/// LargeStrainEquilibrium, and keeps the sensitivities at each solution.
 ///
-/// A Solve begins with what the sensitivities of the last one predict,
-/// u + S (theta - theta_last), from where two or three tangents lead to
-/// equilibrium where theta is near.  After a Solve that failed, the next one
-/// begins with the last that did not.
+/// Solve begins at u + S (theta - theta_last), which the sensitivities S of the
+/// last successful Solve predict.  If theta has changed little, two or three
+/// factorisations lead from there to the equilibrium.
 ///
-/// Only the first Solve divides the load into steps.  Whoever searches for
-/// moduli and meets some without an equilibrium nearby takes a shorter step,
-/// which costs less than steps of the load.
+/// Only until a Solve has been successful is the load divided into steps.  If a
+/// later Solve finds no equilibrium near its start, it returns false, and the
+/// search for moduli takes a shorter step, which costs less than steps of the
+/// load.
 class LargeStrainModel : public ForwardModel {
  public:
   /// Preconditions and exceptions are those of LargeStrainEquilibrium.
   explicit LargeStrainModel(const Scene& scene);
   explicit LargeStrainModel(const Scene&&) = delete;
 
-  /// Evaluates the volume of elements in another way from the next Solve on.
+  /// Changes how elements evaluate their volume, from the next Solve on.
   void SetDilatation(Dilatation dilatation);
 
-  /// About five tangents for each load case at first, later three.
+  /// Takes about five factorisations for each load case in the first call, and
+  /// about three in later ones.
   [[nodiscard]] bool Solve(const Eigen::VectorXd& moduli) override;
   void BeginWith(const Eigen::MatrixXd& displacement) override;
   const std::string& WhyNotSolved() const override { return why_not_solved_; }
@@ -53,9 +54,10 @@ class LargeStrainModel : public ForwardModel {
   Eigen::MatrixXd ExtendTransposed(const Eigen::MatrixXd& values) override;
   Eigen::MatrixXd ExtendInCase(Eigen::Index k,
                                const Eigen::MatrixXd& held) override;
-  /// Newton's method from what Extend predicts.
+  /// Runs Newton's method, whose first iteration is what Extend predicts.
   [[nodiscard]] bool MoveSupports(const Eigen::MatrixXd& held) override;
-  /// Begins as Solve does, from where the supports were at last.
+  /// Begins as Solve does.  The supports move from where they were in the last
+  /// equilibrium.
   [[nodiscard]] bool SolveMoved(const Eigen::VectorXd& moduli,
                                 const Eigen::MatrixXd& held) override;
   bool IsLinear() const override { return false; }
@@ -91,11 +93,11 @@ class LargeStrainModel : public ForwardModel {
   /// Finds the equilibrium of load case `k` from this start on.  Where none was
   /// found yet and the start is empty or leads to none, it begins at rest.
   bool SolveInCase(Eigen::Index k, const Eigen::VectorXd& start);
-  /// Has the factor of the tangent of load case `k`.
+  /// Returns the solver of load case `k`, with the factor of its tangent.
   StiffnessSolver& TangentSolver(Eigen::Index k);
   Eigen::MatrixXd TangentProducts(Eigen::Index k,
                                   const Eigen::MatrixXd& columns) const;
-  /// Keeps the rows that load case `k` holds.
+  /// Returns `values` with zeros in the rows that load case `k` does not hold.
   Eigen::MatrixXd OfHeldInCase(Eigen::Index k, Eigen::MatrixXd values) const;
   /// Applies of_case(k, columns of k) to the columns of each load case.
   template <class Function>

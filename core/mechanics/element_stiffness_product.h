@@ -13,7 +13,7 @@ namespace elastimate {
 ///   a_i = integral of e grad(N_i),   p_i = integral of tr(e) grad(N_i),
 ///
 /// with e = sym(grad u).  All matrices are num_dofs x num_columns.  No element
-/// matrix is formed: for a hexahedron a tenth of the operations.
+/// matrix is formed; for a hexahedron, that takes a tenth of the operations.
 void AddStrainProducts(const Mesh& mesh, const Eigen::MatrixXd& displacement,
                        Eigen::MatrixXd& a, Eigen::MatrixXd& p);
 

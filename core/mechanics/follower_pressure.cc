@@ -17,8 +17,8 @@ Eigen::Matrix3d CrossProductBy(const Eigen::Vector3d& a) {
   return matrix;
 }
 
-// Returns the matrix that makes the area vector of an edge in the plane from
-// its tangent, for a thickness of 1.
+// Returns the matrix that turns the tangent of an edge in the plane into its
+// area vector, for a thickness of 1.
 Eigen::Matrix2d OutwardTurn() {
   return (Eigen::Matrix2d() << 0, 1, -1, 0).finished();
 }

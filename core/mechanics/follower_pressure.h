@@ -20,16 +20,16 @@ namespace elastimate {
 /// has the thickness of the undeformed section.
 class FollowerPressure {
  public:
-  /// Takes those of the loads that follow the surface (Follows).
+  /// Keeps the pressures among `loads` that follow the surface (Follows).
   FollowerPressure(const Mesh& mesh, const std::vector<Load>& loads);
 
   /// Returns F(u), num_dofs.
   Eigen::VectorXd Forces(const Eigen::VectorXd& displacement) const;
 
   /// Adds `factor` times the symmetric part of dF / du to the blocks of the
-  /// pairs of the graph of the mesh, dimension x (dimension num_pairs).  All of
-  /// dF / du is symmetric where the edge of the surface is held, or there is
-  /// none.
+  /// pairs of the graph of the mesh, dimension x (dimension num_pairs).
+  /// dF/du itself is symmetric if the edge of the surface is held, or if the
+  /// surface is closed.
   void AddSymmetricBlocks(const Eigen::VectorXd& displacement, double factor,
                           const NodeGraph& graph,
                           Eigen::MatrixXd& blocks) const;

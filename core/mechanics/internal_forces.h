@@ -15,13 +15,13 @@
 
 namespace elastimate {
 
-/// The internal forces of a mesh of some materials are linear in the moduli of
-/// these,
+/// The internal forces of a mesh at small strains.  They are linear in the
+/// moduli of its materials,
 ///
 ///   f(u; theta) = sum_k theta_k f_k(u),
 ///   f_k(u)_i = integral of P_k(grad u) grad(N_i) over the material of k,
 ///
-/// and for small strains f_k(u) = K_k u, so that the stiffness is
+/// which is f_k(u) = K_k u, so that the stiffness is
 /// K(theta) = sum_k theta_k K_k.  Moduli are in the order of
 /// MaterialParameters.
 ///
@@ -71,8 +71,8 @@ class InternalForces {
                                 const Eigen::VectorXd& displacement) const;
 
  private:
-  /// Returns what each modulus, by its place in its law, gives to each copy of
-  /// a node in `parts_`.
+  /// Returns the forces of each modulus, by its place in its law, on each copy
+  /// of a node in `parts_`.
   std::vector<Eigen::MatrixXd> OfParts(
       const Eigen::MatrixXd& displacements) const;
   /// Returns the moduli of H and of J in each element, 2 x num_elements.

@@ -30,7 +30,7 @@ struct MaterialPass {
   const MaterialFrames& frames;
   int material;
 
-  // Whether the law speaks in the frame of the material.
+  // Whether the law is given along axes of the material.
   bool HasFrames() const { return law.NumAxes() > 0; }
 };
 
@@ -51,7 +51,7 @@ bool TakesMean(const MaterialPass& pass) {
          pass.mesh.section.model != SectionModel::kPlaneStress;
 }
 
-// What the stretch across a plate does where the moduli change.
+// Whether the stretch across a plate changes with the moduli.
 enum class CrossStretch { kStays, kFollows };
 
 // Returns the frame of an element of the pass.
@@ -432,7 +432,8 @@ ElementMatrix<kKind> MeanTangent(const ElementBatch<kKind>& batch,
   const MeanDilatation& mean = batch.Mean(e);
   const MeanDilatation::Curvature curvature =
       mean.CurvatureOf(stresses, of_points);
-  // dTheta_a and the forces that go with it, by the displacements of the nodes.
+  // The derivatives of Theta_a with respect to the displacements of the nodes,
+  // and the coupling forces of each dTheta_a.
   const Eigen::MatrixXd& polynomials = mean.Polynomials();
   Eigen::MatrixXd slopes =
       Eigen::MatrixXd::Zero(kElementDofs<kKind>, polynomials.cols());
@@ -467,7 +468,8 @@ ElementMatrix<kKind> MeanTangent(const ElementBatch<kKind>& batch,
   return matrix;
 }
 
-// Turns the lower triangle of a stiffness that is seen in a frame.
+// Rotates the lower triangle of an element stiffness from the frame of the
+// material to the axes of the mesh.
 template <ElementKind kKind, class Frame>
 void TurnBlocks(const Frame& frame, ElementMatrix<kKind>& matrix) {
   constexpr int kDimension = kDimensionOf<kKind>;

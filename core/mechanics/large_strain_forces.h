@@ -12,20 +12,20 @@
 
 namespace elastimate {
 
-/// The volume that an element evaluates.
+/// How an element evaluates its change of volume.
 enum class Dilatation {
   kOfPoints,  ///< J = det F at each point of the integration.
-  /// The mean of J over each linear hexahedron, or quadrilateral in plane
-  /// strain, and its least-squares fit by a linear function over each quadratic
-  /// one, which do not lock where the material is nearly incompressible.  Other
-  /// elements are as above.
+  /// Linear hexahedra, and linear quadrilaterals in plane strain, use the mean
+  /// of J over the element.  Quadratic ones use the least-squares fit of J by a
+  /// linear function over the element.  These elements do not lock if the
+  /// material is nearly incompressible.  Other elements use J at each point.
   kMeanOfElement,
 };
 
-/// How much the volume changes.
+/// The change of volume at a place of the mesh.
 struct VolumeRatio {
-  double value;          ///< det F, in the plane that of a planar mesh.
-  Eigen::Index element;  ///< Where it is.
+  double value;          ///< det F; in a planar mesh, that in the plane.
+  Eigen::Index element;  ///< The element of this place.
 };
 
 /// The internal forces of a mesh of some materials at a displacement u of any
@@ -37,14 +37,15 @@ struct VolumeRatio {
 /// over the undeformed mesh, and their tangent K = df / du is symmetric.
 ///
 /// With the mean dilatation Theta = (integral of J) / V of an element, or its
-/// linear fit, laws have Fbar = (Theta / J)^(1/3) F in place of F, and forces
-/// are derivatives of their energy: those of the method of three fields with a
-/// constant (linear) pressure and volume [Simo, Taylor & Pister, Comput.
-/// Methods Appl. Mech. Eng. 51 (1985) 177] after these two are eliminated.
+/// linear fit, laws are evaluated at Fbar = (Theta / J)^(1/3) F in place of F,
+/// and forces are the derivatives of that energy.  This is the three-field
+/// method with constant (linear) pressure and volume [Simo, Taylor & Pister,
+/// Comput. Methods Appl. Mech. Eng. 51 (1985) 177], after pressure and volume
+/// are eliminated in each element.
 ///
-/// In plane stress, the stretch across the plate depends on the moduli.  A
-/// column f_k is evaluated at the stretch that belongs to the given moduli, so
-/// that the columns differ from the derivatives of f by the moduli.
+/// In plane stress, the stretch across the plate depends on the moduli.
+/// Columns f_k are evaluated at the stretch of the given moduli, so they are
+/// not the derivatives of f with respect to the moduli (ModuliDerivatives).
 class LargeStrainForces {
  public:
   /// Preconditions: a valid mesh, valid materials of it.  Refers to `mesh`,
@@ -89,8 +90,9 @@ class LargeStrainForces {
                                   const Eigen::VectorXd& displacement,
                                   const Eigen::MatrixXd& directions) const;
 
-  /// Returns where det F is smallest.  Forces and tangents mean nothing where
-  /// it is not positive.  One pass, which is several times shorter than others.
+  /// Returns the smallest det F and its element.  Forces and tangents have no
+  /// meaning unless it is positive.  One pass, which takes a fraction of the
+  /// time of the others.
   VolumeRatio SmallestVolumeRatio(const Eigen::VectorXd& displacement) const;
 
  private:

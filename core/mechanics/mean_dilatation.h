@@ -6,9 +6,10 @@
 
 namespace elastimate {
 
-/// The smoothed dilatation of an element (LargeStrainForces): Fbar = s F with
-/// s = (Theta / J)^(1/3) at its points.  Theta is the least-squares fit of J by
-/// some polynomials over the element; if the only one is 1, it is the mean.
+/// The smoothed dilatation of an element (LargeStrainForces): Fbar = s F with s
+/// = (Theta / J)^(1/3) at its points.  Theta is the least-squares fit of J by
+/// some polynomials over the element; the fit by the constant 1 alone is the
+/// mean of J.
 ///
 /// With the stress Pbar of a law at Fbar, an energy W(Fbar) has
 ///
@@ -28,7 +29,8 @@ class MeanDilatation {
   /// Returns Fbar - I at each point.
   const std::vector<Eigen::Matrix3d>& Gradients() const { return gradients_; }
 
-  /// Returns the stress that does the work on dF, for Pbar at each point.
+  /// Returns, for the stresses Pbar of the law at each point, the stresses that
+  /// do work on dF.
   std::vector<Eigen::Matrix3d> Stresses(
       const std::vector<Eigen::Matrix3d>& stresses) const;
 
@@ -41,7 +43,7 @@ class MeanDilatation {
     std::vector<Eigen::Matrix3d> coupling;
     Eigen::VectorXd dilatation;
   };
-  /// Returns it for Pbar and dPbar / dFbar at each point.
+  /// Returns this second derivative, for Pbar and dPbar / dFbar at each point.
   Curvature CurvatureOf(
       const std::vector<Eigen::Matrix3d>& stresses,
       const std::vector<Eigen::Matrix<double, 9, 9>>& tangents) const;

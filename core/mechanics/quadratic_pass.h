@@ -19,8 +19,8 @@ inline constexpr std::ptrdiff_t kSizeForSum = 2 * kFour;
 inline constexpr std::ptrdiff_t kSizeForProducts = 3 * kFour;
 
 /// One pass over quadratic elements with straight edges, for one column.
-/// Columns that share the geometry of an element save less than it costs that
-/// their records do not fit into the cache together.
+/// Several columns in one pass would share the geometry of an element, but
+/// their records would not fit into the cache together, which costs more.
 struct QuadraticPass {
   const int* elements;  ///< num_nodes of the kind x num_elements.
   std::ptrdiff_t num_elements;
@@ -28,10 +28,11 @@ struct QuadraticPass {
   /// which is within bounds because middle nodes come behind all vertices.
   const double* positions;
   double thickness;
-  /// Where these are null, the products are a = integral of e grad(N) and,
-  /// behind it, p = integral of tr(e) grad(N).  Else the only product is the
-  /// sum of both with these coefficients.  The arrays then have some more
-  /// values, as many as the most lanes, behind those of the elements.
+  /// If these are null, the record of a node receives two products, a =
+  /// integral of e grad(N) and then p = integral of tr(e) grad(N).  Otherwise
+  /// it receives their sum with these coefficients of each element.  Both
+  /// arrays then are longer than the number of elements, by the largest number
+  /// of lanes.
   const double* coefficients_of_a;
   const double* coefficients_of_p;
   double* records;

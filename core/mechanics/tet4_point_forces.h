@@ -17,7 +17,8 @@ namespace elastimate {
 class Tet4Points {
  public:
   /// Takes `count` elements, at most PointMatrices::kPoints, of a mesh of
-  /// linear tetrahedra.  Their numbers have to stay where they are.
+  /// linear tetrahedra.  `elements` is not copied, and has to outlive this
+  /// object.
   Tet4Points(const Mesh& mesh, const Eigen::Index* elements, int count);
 
   /// Sets `gradients` to H of each element.

@@ -23,7 +23,8 @@ constexpr const char* kStretched[] = {"neo_hookean", "st_venant_kirchhoff"};
 // Laws whose chi^2 differ by less explain the data about as well.
 constexpr double kAlike = 9;
 
-// Gives a material what the options say of isotropic ones.
+// Copies known values and bounds of isotropic materials from the options to a
+// material.
 void MoveOptions(const EstimatorOptions& options, Material& material) {
   if (options.known_poisson_ratio) {
     material.known.push_back({"poisson_ratio", *options.known_poisson_ratio});
@@ -51,7 +52,7 @@ struct LawFit {
   Eigen::VectorXd Values() const { return fit.estimate.ParameterValues(); }
 };
 
-// What two fits of one measurement differ by, in chi^2.
+// Returns the difference of chi^2 between two fits of one measurement.
 double Difference(const LawFit& fit, const LawFit& best) {
   const auto n = static_cast<double>(best.fit.errors.residual.size());
   constexpr double kExact = kLimits.exact_residual * kLimits.exact_residual;
@@ -59,8 +60,9 @@ double Difference(const LawFit& fit, const LawFit& best) {
                       std::max(best.square_sum, kExact));
 }
 
-// Returns half of the distance of each parameter from that of the nearest of
-// other laws: a specimen may be of a law that was not fitted.
+// Returns, for each parameter, half of the distance between its value for the
+// best law and the nearest value for another law, because the specimen may
+// follow a law that was not fitted.
 Eigen::VectorXd LeastErrors(const std::vector<LawFit>& fits,
                             const LawFit& best) {
   const Eigen::VectorXd of_best = best.Values();
@@ -111,7 +113,7 @@ void AddSpread(const std::vector<LawFit>& fits, const Eigen::VectorXd& least,
   }
 }
 
-// The laws, the best first.
+// Returns the compared laws, the best first.
 std::vector<LawComparison> Compare(const std::vector<LawFit>& fits,
                                    Eigen::Index num_parameters) {
   std::vector<LawComparison> laws;
@@ -200,7 +202,8 @@ Estimate FitLargeStrainLaws(const Scene& scene,
   LargeStrainFits all(scene, options);
   const DeformationSize size = MeasureDeformation(scene);
   const bool are_compared = size.strain > kLimits.mentioned_strain / 2;
-  // Finer elements change laws alike, so that only the best is fitted on them.
+  // Finer elements change the fits of all laws by about as much, so only the
+  // best law is fitted on them.
   const bool is_divided_last = are_compared &&
                                scene.origin == Origin::kMeasured &&
                                options.refinement != Refine::kNever;

@@ -10,36 +10,39 @@
 
 namespace elastimate {
 
-/// Returns the materials with this law in place of the isotropic one; an empty
-/// list becomes one material.
+/// Returns the materials with their law replaced by `law`; an empty list
+/// becomes one material of this law.
 [[nodiscard]] std::vector<Material> MaterialsOfLargeStrains(
     std::vector<Material> materials, const std::string& law);
 
 /// Tells whether laws of large strains are to be fitted in place of isotropic
-/// ones: where the options say so, and where they leave it open, displacements
-/// were measured, and strains or rotations are mentioned (IsMentioned).
+/// ones.  The options decide if they ask for small or large kinematics.  If
+/// they leave it open, it is true for measured displacements of isotropic
+/// materials without a free rigid motion, if strains or rotations are large
+/// enough to be mentioned (IsMentioned) and strains are not impossible.
 [[nodiscard]] bool AsksForLargeStrains(const Scene& scene,
                                        const EstimatorOptions& options);
 
 /// Fits laws of large strains in place of isotropic ones (FitMaterials).
 ///
-/// The first is the corotated one, which differs from small strains by
-/// rotations alone.  Where strains exceed half of what is mentioned, the
-/// neo-Hookean law and that of St Venant and Kirchhoff are fitted as well, from
-/// there, and the likelihoods are compared,
+/// The corotated law is fitted first, because it differs from small strains by
+/// rotations alone.  If strains exceed half of the size that is mentioned, the
+/// neo-Hookean and the St Venant-Kirchhoff law are fitted as well, starting at
+/// the parameters of the corotated fit.  The likelihoods are compared,
 ///
 ///   chi^2_i - chi^2_best = n ln(RSS_i / RSS_best),
 ///
-/// for n rows of displacements and the square sum RSS that each law leaves of
-/// them.  The best one is reported (Estimate::large_strain_law).  Others whose
-/// difference d is below 9 explain the data about as well.  Each law has the
-/// weight exp(-d / 2), and the mean square of the distances of the parameters
-/// from those of the best is added to their covariance (ErrorBudget::law).  Of
-/// measured displacements, the error by the law is half of the distance from
-/// the nearest other law at least, since the specimen may follow none of them.
+/// for n rows of displacements and the sum of squared residuals RSS of each
+/// law.  The best law is reported (Estimate::large_strain_law).  Other laws
+/// whose difference d is below 9 explain the data about as well.  Each of them
+/// has the weight exp(-d / 2), and the weighted mean square of the distances
+/// between their parameters and those of the best law is added to the
+/// covariance (ErrorBudget::law).  The specimen may follow none of these laws.
+/// So for measured displacements, ErrorBudget::law is at least half of the
+/// distance to the nearest other law.
 ///
-/// The laws are compared on quadratic elements of the mesh, which is divided
-/// for the best alone.
+/// The laws are compared on quadratic elements of the mesh.  Only the best law
+/// is fitted on the divided mesh as well.
 ///
 /// Preconditions: those of FitMaterials; the materials are isotropic.  Cost:
 /// one to four fits.

@@ -12,7 +12,7 @@
 namespace elastimate {
 namespace {
 
-// Returns what a material of a law of large strains is at rest.
+// Returns E and nu of a law of large strains near the undeformed state.
 IsotropicElasticity AtRest(const Law& law, const Eigen::VectorXd& parameters) {
   const Eigen::Vector2d elasticity = LameChart::ParametersOf(
       LameModuliAtRest(law, law.Moduli(parameters, SectionModel::kSolid)));
@@ -47,8 +47,8 @@ void MultiplyModuli(const MaterialParameters& all, double factor,
   }
 }
 
-// E of each isotropic material of these Poisson's ratios; of those whose moduli
-// are known, E is given.
+// Fits E of isotropic materials that have the Poisson's ratios of `at_rest`.  A
+// material without free moduli keeps its E.
 std::optional<Eigen::VectorXd> FitYoungsModuli(
     Scene scene, const std::vector<IsotropicElasticity>& at_rest,
     const MaterialParameters& all, const EstimatorOptions& options,
@@ -98,7 +98,8 @@ std::optional<Eigen::VectorXd> SmallStrainStart(const Scene& scene,
   }
   if (has_free_modulus && misfit.NumResultants() > 0 &&
       misfit.Model().Load().isZero(0)) {
-    // Displaced supports alone move the specimen alike at any unit of moduli.
+    // If only displaced supports load the specimen, its displacements do not
+    // depend on the unit of the moduli.
     Eigen::VectorXd residual;
     std::optional<double> stiffness;
     if (misfit.Evaluate(misfit.Free().VariablesOf(parameters), &residual,

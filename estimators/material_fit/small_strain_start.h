@@ -11,19 +11,22 @@
 
 namespace elastimate {
 
-/// The variables from which a fit of materials of large strains starts: typical
-/// values, the free moduli of each material multiplied by a factor of its own,
-/// by which isotropic materials of small strains, of the Poisson's ratios that
-/// typical values have at rest, explain the displacements best.  In a bent
-/// specimen that factor is too large by about half of the square of the
-/// rotation, which Poisson's ratio would not survive.  Where the model has no
-/// stable equilibrium there, all free moduli are doubled until it has one.
-/// Without loads, resultants give one factor for all.
+/// Returns the variables at which a fit of materials of large strains starts.
+/// They are typical values of the parameters, but the free moduli of each
+/// material are multiplied by a factor.
 ///
-/// Empty where displacements oppose the loads, and where no equilibrium is
-/// found.  A factorisation of small strains for one material, some for several,
-/// and one Solve of the model, the result of which stays in `misfit`.  The work
-/// of small strains is added to `work`.
+/// The factors come from a fit of isotropic materials of small strains.  Their
+/// Poisson's ratios are fixed at those of the typical values at rest: a bent
+/// specimen makes the factor too large by about half of the square of the
+/// rotation [rad], but would make a fitted Poisson's ratio useless.  If the
+/// model has no stable equilibrium at the start, all free moduli are doubled
+/// until it has one.  If the scene has no loads but resultants, these give one
+/// factor for all materials.
+///
+/// Returns nothing if the displacements oppose the loads, or if no equilibrium
+/// is found.  Cost: one factorisation of small strains for one material, some
+/// for several, and a Solve of the model for each attempt; the result of the
+/// last Solve stays in `misfit`.  The work of small strains is added to `work`.
 std::optional<Eigen::VectorXd> SmallStrainStart(const Scene& scene,
                                                 const EstimatorOptions& options,
                                                 DisplacementMisfit& misfit,
