@@ -78,12 +78,13 @@ NamedMaterial ReadCurveFlag() {
     material.parameters(Eigen::Index(i)) = value->second;
     values.erase(value);
   }
-  if (!missing.empty()) {
-    FailCurve(" needs " + missing + " as well, as in " + kExample);
-  }
   if (!values.empty()) {
     FailCurve(" gives " + Printable(values.begin()->first) +
-              ", which is no parameter of " + name + "; leave it out");
+              ", which is no parameter of " + name +
+              (missing.empty() ? "; leave it out" : "; give " + missing));
+  }
+  if (!missing.empty()) {
+    FailCurve(" needs " + missing + " as well");
   }
   return material;
 }

@@ -75,12 +75,18 @@ void AddErrors(const std::string& name, Eigen::Index place,
 
 // Adds what was done for the elements, and where the errors come from.
 void AddErrors(const Estimate& estimate, std::ostringstream& text) {
-  if (!estimate.YoungsModulusStandardError()) {
+  const std::vector<ParameterEstimate>& parameters = estimate.parameters;
+  if (parameters.size() != 2 || parameters[0].symbol != "E" ||
+      parameters[1].symbol != "nu") {
     return;
   }
-  AddErrors("E", 0, estimate.error_budget, text);
-  if (estimate.PoissonRatioStandardError()) {
-    AddErrors("nu", 1, estimate.error_budget, text);
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    if (parameters[i].standard_error) {
+      AddErrors(parameters[i].symbol, i, estimate.error_budget, text);
+    }
+  }
+  if (!estimate.YoungsModulusStandardError()) {
+    return;
   }
   constexpr double kNotable = 0.1;  // Of a standard error.
   const Eigen::Vector2d correction =
@@ -246,9 +252,8 @@ std::string Solving(const Work& work) {
          " in " + Counted(work.iterations, "iteration") + ", ";
 }
 
-std::string Vector(const Eigen::VectorXd& values) {
-  // Values that differ from zero by rounding only are shown as zero.
-  const double rounding = 1e-12 * values.cwiseAbs().maxCoeff();
+// Values below `rounding` are shown as zero.
+std::string Vector(const Eigen::VectorXd& values, double rounding) {
   std::string text;
   for (const double value : values) {
     text += (text.empty() ? "(" : ", ") +
@@ -262,14 +267,20 @@ std::string Vector(const Eigen::VectorXd& values) {
 void AddLoads(const std::string& name, const Mesh& mesh,
               const std::vector<Load>& loads, std::ostringstream& text) {
   constexpr std::size_t kMany = 4;
+  std::vector<LoadResultant> resultants;
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(mesh.Dimension());
+  double largest = 0;
   for (const Load& load : loads) {
-    const LoadResultant resultant = ResultantOf(mesh, load);
-    sum += resultant.force;
+    resultants.push_back(ResultantOf(mesh, load));
+    sum += resultants.back().force;
+    largest = std::max(largest, resultants.back().force.cwiseAbs().maxCoeff());
+  }
+  const double rounding = 1e-12 * largest;
+  for (const LoadResultant& resultant : resultants) {
     if (loads.size() <= kMany) {
       Line(name,
            std::string(resultant.type) + ", resultant " +
-               Vector(resultant.force) +
+               Vector(resultant.force, rounding) +
                (resultant.area
                     ? " on an area of " + NumberText(*resultant.area, 4)
                     : ""),
@@ -278,7 +289,8 @@ void AddLoads(const std::string& name, const Mesh& mesh,
   }
   if (loads.size() > kMany) {
     Line(name,
-         std::to_string(loads.size()) + " loads, resultant " + Vector(sum),
+         std::to_string(loads.size()) + " loads, resultant " +
+             Vector(sum, rounding),
          text);
   }
 }
@@ -422,10 +434,10 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
   }
   if (IsOneIsotropicMaterial(scene.materials)) {
     AddElasticity(estimate, text);
-    AddErrors(estimate, text);
   } else {
     AddMaterials(estimate, text);
   }
+  AddErrors(estimate, text);
   if (!estimate.why_no_standard_error.empty()) {
     Line("", "no standard error: " + estimate.why_no_standard_error, text);
   }

@@ -62,6 +62,14 @@ std::string WhyNotInEquilibrium(const LargeStrainState& state) {
   }
   const std::string reached = Percent(state.load_share) + " of the load";
   const std::string element = "element " + std::to_string(state.element);
+  // Specimens that fail under a load that is nearly right reach more of it.
+  constexpr double kFarTooSmall = 0.02;
+  if (state.load_share < kFarTooSmall) {
+    return "beyond " + reached +
+           " no stable equilibrium is found, so that the loads are far too "
+           "large for the specimen; check the units of the loads and of the "
+           "parameters of the materials";
+  }
   switch (state.status) {
     case EquilibriumStatus::kDone:
       break;

@@ -176,15 +176,15 @@ Finding SingularStiffness() {
 Finding SearchFailed(const std::string& reason) {
   return Error(FindingCode::kNumericalFailure,
                "the search for the best fit failed (" + reason + ")",
-               "check the mesh for flat elements, or use "
-               "--estimator=reduced-fe");
+               "check the mesh for flat elements, and the loads and their "
+               "units");
 }
 
 Finding NoConvergence(int max_iterations) {
   return Error(FindingCode::kNoConvergence,
                "the fit did not converge in " +
                    Counted(std::size_t(max_iterations), "iteration"),
-               "use --estimator=reduced-fe, or give bounds on the parameters");
+               "use --estimator=auto, or give bounds on the parameters");
 }
 
 Finding FitNotCertified() {
@@ -212,8 +212,7 @@ Finding UnphysicalParameters(const std::vector<std::string>& parameters,
                      text +
                          ", which noise or coarse elements can cause with "
                          "this estimator",
-                     "use --estimator=reduced-fe, or give Poisson's ratio "
-                     "(--nu)")
+                     "use --estimator=auto, or give Poisson's ratio (--nu)")
              : Error(FindingCode::kUnphysical, text,
                      std::string(kCheckTheModel) + ", or give bounds");
 }
@@ -243,14 +242,13 @@ Finding PoissonRatioDivergesByNoise() {
   return Error(FindingCode::kUnphysical,
                "the data drive Poisson's ratio to the end of its range, which "
                "noise or coarse elements can cause with this estimator",
-               "use --estimator=reduced-fe, or give bounds (--nu_min, "
-               "--nu_max)");
+               "use --estimator=auto, or give bounds (--nu_min, --nu_max)");
 }
 
 Finding LoadsDoNoWork() {
   return Error(FindingCode::kParametersUndetermined,
                "the loads do no work on any of the virtual fields",
-               "raise --degree, or use --estimator=reduced-fe");
+               "raise --degree, or use --estimator=auto");
 }
 
 Finding OneCombination(const IsotropicElasticity& elasticity,
@@ -638,12 +636,18 @@ Finding LargeDeformation(const DeformationSize& size,
                 "coordinates, or are positions after the load",
             "give displacements in the unit of the coordinates"};
   }
-  return {FindingCode::kLargeDeformation, severity,
-          DeformationText(size) +
-              " are too large for small-strain elasticity, which leaves E "
-              "uncertain by " +
-              Percent(relative_error_of_modulus),
-          !is_rigid_motion_free && size.rotation > kTurnOfAWhole * size.strain
+  const std::string text =
+      DeformationText(size) +
+      " are too large for small-strain elasticity, which leaves E uncertain "
+      "by " +
+      Percent(relative_error_of_modulus);
+  if (is_rigid_motion_free) {
+    return {FindingCode::kLargeDeformation, severity, text,
+            "measure displacements relative to the supports, leave out "
+            "\"rigid_motion\", and use --estimator=auto --kinematics=large"};
+  }
+  return {FindingCode::kLargeDeformation, severity, text,
+          size.rotation > kTurnOfAWhole * size.strain
               ? "give \"rigid_motion\": \"free\" if the specimen or the camera "
                 "turned, or use --estimator=auto --kinematics=large"
               : "use --estimator=auto --kinematics=large, or a law of large "

@@ -149,11 +149,14 @@ std::vector<std::string> Undetermined(const Estimate& estimate) {
         undetermined.push_back(parameter.Label());
       }
     } else if (!IsDetermined(parameter)) {
-      undetermined.push_back(parameter.Label() + " (+- " +
-                             (parameter.IsStiffness()
-                                  ? Percent(error / parameter.ErrorUnit())
-                                  : TwoDigits(error)) +
-                             ")");
+      // What is relative to other parameters is no share of this one.
+      undetermined.push_back(
+          parameter.Label() + " (" +
+          (parameter.beside ? ValueWithError(parameter.value, error)
+           : parameter.is_modulus
+               ? "+- " + Percent(error / parameter.ErrorUnit())
+               : "+- " + TwoDigits(error)) +
+          ")");
     }
   }
   return undetermined;

@@ -234,7 +234,9 @@ Estimate FitLargeStrainLaws(const Scene& scene,
     estimate.laws = Compare(candidates, start->size());
   }
   estimate.work = all.WorkDone();
-  estimate.Add(LargeStrainsFitted(size, best.law));
+  if (best.fit.minimum) {
+    estimate.Add(LargeStrainsFitted(size, best.law));
+  }
   return estimate;
 }
 
