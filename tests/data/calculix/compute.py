@@ -22,7 +22,7 @@ BODIES = {
     "cone": (0.15, 0, 2.9, 2),
     "cross": (3.51, 0.93, 4000, 1),
     "ell": (0.1, 0, 0.6, 1),
-    "pillar": (0.1, 0, 14 / 15, 1),
+    "pillar": (0.1, 0, 14 / 15, 2),
 }
 # By number of vertices: VTK cell type, element of CalculiX, edges, faces.
 KINDS = {
