@@ -205,6 +205,13 @@ TEST_P(LargeStrainLaws, AreObjective) {
       law_.Stresses(turn * (identity + h) - identity, kAnySection);
   const Eigen::MatrixXd stretched_after =
       law_.Stresses((identity + h) * turn - identity, kAnySection);
+  const Eigen::VectorXd energies = law_.Energies(h, kAnySection);
+  EXPECT_TRUE(law_.Energies(turn * (identity + h) - identity, kAnySection)
+                  .isApprox(energies, 1e-12));
+  if (law_.NumAxes() == 0) {
+    EXPECT_TRUE(law_.Energies((identity + h) * turn - identity, kAnySection)
+                    .isApprox(energies, 1e-12));
+  }
   for (int k = 0; k < law_.NumModuli(); ++k) {
     const Eigen::Matrix3d stress = stresses.col(k).reshaped(3, 3);
     EXPECT_TRUE(turned.col(k).reshaped(3, 3).isApprox(turn * stress, 1e-12));
