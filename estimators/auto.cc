@@ -192,8 +192,7 @@ bool ClimbLargeStrains(const Scene& scene, const EstimatorOptions& options,
     return false;
   }
   const Estimate& estimate = ladder.Last();
-  if (estimate.IsUsable() || options.kinematics == Kinematics::kLarge ||
-      estimate.Has(FindingCode::kComputedByLinearElements)) {
+  if (estimate.IsUsable() || options.kinematics == Kinematics::kLarge) {
     ladder.Decide("stopped: laws of large strains were fitted");
     return true;
   }

@@ -734,11 +734,17 @@ Finding MeshErrorUnknown() {
       "data");
 }
 
-Finding ComputedByLinearElements() {
-  return Error(FindingCode::kComputedByLinearElements,
-               "linear elements of this mesh fit far better than finer ones, "
-               "as if they had computed the displacements",
-               "if they did, give --origin=computed");
+Finding ComputedByLinearElements(Severity severity) {
+  const std::string text =
+      "linear elements of this mesh fit far better than finer ones, as if they "
+      "had computed the displacements";
+  return severity == Severity::kError
+             ? Error(FindingCode::kComputedByLinearElements, text,
+                     "if they did, give --origin=computed")
+             : Warning(FindingCode::kComputedByLinearElements,
+                       text + "; the error bars include the difference",
+                       "if they did, give --origin=computed; else try another "
+                       "law (--material)");
 }
 
 Finding SupportsEndWithinElements(const ParameterErrors& errors,

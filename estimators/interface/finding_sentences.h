@@ -163,7 +163,8 @@ Finding DiscretizationErrorFinding(const Estimate& estimate);
 /// Measured displacements and a method that sees no mesh error.
 Finding MeshErrorUnknown();
 /// Displacements that are said to be measured, and are those of the elements.
-Finding ComputedByLinearElements();
+/// A warning where the errors include the difference from linear elements.
+Finding ComputedByLinearElements(Severity severity);
 /// Says nothing of error bars, of which there are none.
 Finding WithoutErrorBars(Finding finding);
 Finding SolverFallback(const std::string& notice);

@@ -325,6 +325,14 @@ MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start) {
       chain = MeanOf(std::move(held), std::move(chain));
     }
   }
+  const bool is_of_linear_elements = IsOfLinearElements();
+  // A wrong law of large strains may explain more with stiffer elements.
+  const bool may_be_of_another_law =
+      is_of_linear_elements && linear_->Misfit().HasLargeStrains();
+  if (may_be_of_another_law) {
+    chain.Finest().Fit().minimum->of_other_model =
+        linear_->Fit().minimum->variables;
+  }
   if (chain.Finest().Fit().minimum) {
     // A divided mesh would hardly change the curvature.
     Describe(chain, chain.quadratic.get());
@@ -334,10 +342,12 @@ MaterialFit Refinement::Fit(const std::optional<Eigen::VectorXd>& start) {
   fit.estimate.mesh_divisions = chain.divided ? 1 : 0;
   fit.estimate.work = work + chain.work;
   EnterOutliers(chain.left_out, chain.of_all, chain.of_inliers, fit.estimate);
-  if (IsOfLinearElements()) {
+  if (may_be_of_another_law) {
+    fit.estimate.Add(ComputedByLinearElements(Severity::kWarning));
+  } else if (is_of_linear_elements) {
     // What else there is to say follows from that.
     fit.estimate.findings.clear();
-    fit.estimate.Fail(ComputedByLinearElements());
+    fit.estimate.Fail(ComputedByLinearElements(Severity::kError));
   }
   if (fit.displacement.size() != 0) {
     fit.displacement = fit.displacement.topRows(scene_.mesh.NumDofs()).eval();

@@ -36,8 +36,9 @@ namespace elastimate {
 ///
 /// The estimate is refused with FindingCode::kComputedByLinearElements where
 /// linear elements explain the measurement so much better than quadratic ones
-/// that they must have computed it.  Where motions are unknown or bounds are
-/// given, nothing tells.
+/// that they must have computed it.  At large strains, where a wrong law may
+/// have the same effect, the difference of both is an error instead.  Where
+/// motions are unknown or bounds are given, nothing tells.
 ///
 /// Preconditions are those of Estimator::Run; the supports hold the specimen.
 MaterialFit FitRefined(const Scene& scene, const EstimatorOptions& options,

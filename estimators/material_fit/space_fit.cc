@@ -305,27 +305,38 @@ void SpaceFit::Describe(const SpaceChange* change, SpaceFit* curved) {
   fit_.estimate = estimate;
 }
 
+bool SpaceFit::CompareRows(SpaceFit& coarse, const Eigen::VectorXd& variables,
+                           Eigen::VectorXd& change) {
+  Eigen::VectorXd of_coarse;
+  if (!misfit_.Evaluate(variables, &change, nullptr)) {
+    return false;
+  }
+  coarse.misfit_.Model().BeginWith(
+      misfit_.FittedDisplacement().topRows(coarse.scene_.mesh.NumDofs()));
+  if (!coarse.misfit_.Evaluate(variables, &of_coarse, nullptr)) {
+    return false;
+  }
+  change -= of_coarse;
+  return true;
+}
+
 std::optional<SpaceChange> SpaceFit::ChangeFrom(SpaceFit& coarse) {
   const Eigen::VectorXd& variables = fit_.minimum->variables;
+  const Eigen::VectorXd& of_coarse = coarse.fit_.minimum->variables;
   SpaceChange change;
-  change.variables = variables - coarse.fit_.minimum->variables;
+  change.variables = variables - of_coarse;
   change.is_of_quadratic = coarse.scene_.mesh.Order() == 2;
   coarse.misfit_.SetNoise(misfit_.Noise());
   coarse.misfit_.SetWeights(misfit_.RowWeights());
   const Work before = coarse.WorkDone();
-  Eigen::VectorXd of_coarse;
-  bool are_solved = misfit_.Evaluate(variables, &change.rows, nullptr);
-  if (are_solved) {
-    coarse.misfit_.Model().BeginWith(
-        misfit_.FittedDisplacement().topRows(coarse.scene_.mesh.NumDofs()));
-    are_solved = coarse.misfit_.Evaluate(variables, &of_coarse, nullptr);
-  }
+  // Large strains may have an equilibrium at one of the minima alone.
+  const bool are_solved = CompareRows(coarse, variables, change.rows) ||
+                          CompareRows(coarse, of_coarse, change.rows);
   Work& work = coarse.fit_.estimate.work;
   work = work + (coarse.WorkDone() - before);
   if (!are_solved) {
     return std::nullopt;
   }
-  change.rows -= of_coarse;
   return change;
 }
 

@@ -63,8 +63,8 @@ class SpaceFit {
   void Describe(const SpaceChange* change, SpaceFit* curved);
 
   /// What the elements of this fit changed from those of a coarser one of the
-  /// same measurement: one solution of the coarse model.  Empty where that
-  /// model cannot be solved at this minimum.  Precondition: both have a
+  /// same measurement: one solution of the coarse model.  Empty where one of
+  /// both models cannot be solved at either minimum.  Precondition: both have a
   /// minimum.
   std::optional<SpaceChange> ChangeFrom(SpaceFit& coarse);
 
@@ -92,6 +92,10 @@ class SpaceFit {
   std::optional<BoundedMinimum> FindOverAxes(Descent descent);
   std::optional<BoundedMinimum> FindAtLargeStrains(
       const std::optional<Eigen::VectorXd>& start);
+  /// Enters what the elements change in the rows of a coarser fit at these
+  /// variables; false where one of both has no solution.
+  bool CompareRows(SpaceFit& coarse, const Eigen::VectorXd& variables,
+                   Eigen::VectorXd& change);
   Work WorkDone();
   const std::string& SolverNotice();
 

@@ -158,7 +158,8 @@ std::vector<Finding> OfElements() {
           0.0004),
       DiscretizationErrorFinding(EstimateOfElements(0.0312345)),
       MeshErrorUnknown(),
-      ComputedByLinearElements(),
+      ComputedByLinearElements(Severity::kError),
+      ComputedByLinearElements(Severity::kWarning),
       SupportsEndWithinElements(Eigen::Vector2d(0.0312345, 0.0212345),
                                 EstimateOfElements(0.0312345)),
       SolverFallback("multigrid did not converge, so the stiffness matrix was "
