@@ -34,7 +34,7 @@ class ForwardModel {
   /// that is stable to working precision.
   [[nodiscard]] virtual bool Solve(const Eigen::VectorXd& moduli) = 0;
   /// Tells the model displacements (num_dofs x num_load_cases) near which the
-  /// first Solve is to search, such as those of coarser elements.  A model that
+  /// next Solve is to search, such as those of coarser elements.  A model that
   /// does not iterate ignores them.
   virtual void BeginWith(const Eigen::MatrixXd& /*displacement*/) {}
   /// Says why the last Solve returned false, and what the user can do about it.

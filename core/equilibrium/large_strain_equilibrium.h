@@ -114,8 +114,8 @@ class LargeStrainEquilibrium {
   }
 
   /// Finds the equilibrium in load case `k`.  About five tangents for each step
-  /// of the load; the search gives up after a step with which there are more
-  /// than `most_tangents`.
+  /// of the load.  After a step that failed, the search goes on only if it has
+  /// taken at most `most_tangents` until then.
   LargeStrainState Solve(const Eigen::VectorXd& moduli, Eigen::Index k,
                          int most_tangents = std::numeric_limits<int>::max());
 

@@ -23,18 +23,16 @@ LargeStrainModel::LargeStrainModel(const Scene& scene)
       displacement_(Load().rows(), Load().cols()) {}
 
 void LargeStrainModel::BeginWith(const Eigen::MatrixXd& displacement) {
+  begin_ = displacement;
   why_not_solved_.clear();
-  for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
-    states_[k] = {{}, displacement.col(k), {}};
-  }
 }
 
 void LargeStrainModel::SetDilatation(Dilatation dilatation) {
   equilibrium_.SetDilatation(dilatation);
   why_not_solved_.clear();
   // The displacements of elements that lock may be far from those of others.
-  for (CaseState& state : states_) {
-    state.moduli.resize(0);
+  if (!IsFirstSolve()) {
+    BeginWith(displacement_);
   }
 }
 
@@ -44,9 +42,9 @@ bool LargeStrainModel::SolveInCase(Eigen::Index k,
   if (start.size() > 0) {
     found = equilibrium_.SolveFrom(start, moduli_, k);
   }
-  if (found.status != EquilibriumStatus::kDone &&
-      states_[k].moduli.size() == 0) {
-    found = equilibrium_.Solve(moduli_, k, kMostTangentsFromRest);
+  if (found.status != EquilibriumStatus::kDone) {
+    found = equilibrium_.Solve(moduli_, k,
+                               IsFirstSolve() ? kMostTangentsFromRest : 0);
   }
   if (found.status != EquilibriumStatus::kDone) {
     why_not_solved_ = "in load case " + std::to_string(k + 1) + ", " +
@@ -80,14 +78,18 @@ bool LargeStrainModel::SolveMoved(const Eigen::VectorXd& moduli,
   for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
     equilibrium_.SetHeldDisplacement(k, given_.col(k) + held.col(k));
     const CaseState& last = states_[k];
-    Eigen::VectorXd start = last.displacement;
-    if (last.moduli.size() > 0) {
-      start += last.sensitivities * (moduli - last.moduli);
+    Eigen::VectorXd start;
+    if (begin_) {
+      start = begin_->col(k);
+    } else if (last.moduli.size() > 0) {
+      start = last.displacement + last.sensitivities * (moduli - last.moduli);
     }
     if (!SolveInCase(k, start)) {
       return false;
     }
   }
+  begin_.reset();
+  is_solved_once_ = true;
   return true;
 }
 

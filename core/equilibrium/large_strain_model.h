@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,9 @@ namespace elastimate {
 /// factorisations lead from there to the equilibrium.
 ///
 /// Only until a Solve has been successful is the load divided into steps.  If a
-/// later Solve finds no equilibrium near its start, it returns false, and the
-/// search for moduli takes a shorter step, which costs less than steps of the
-/// load.
+/// later Solve finds no equilibrium from its start nor from rest at the whole
+/// load, it returns false, and the search for moduli takes a shorter step,
+/// which costs less than steps of the load.
 class LargeStrainModel : public ForwardModel {
  public:
   /// Preconditions and exceptions are those of LargeStrainEquilibrium.
@@ -83,15 +84,16 @@ class LargeStrainModel : public ForwardModel {
  private:
   /// The last equilibrium of a load case that was found.
   struct CaseState {
-    Eigen::VectorXd moduli;  ///< Empty where none was found.
-    /// Where none was found, what is near the first one; empty if unknown.
+    Eigen::VectorXd moduli;  ///< Empty if none was found.
     Eigen::VectorXd displacement;
     Eigen::MatrixXd sensitivities;  ///< num_dofs x num_moduli.
   };
 
+  /// Whether nothing is known to be near the equilibrium that is searched for.
+  bool IsFirstSolve() const { return begin_ || !is_solved_once_; }
   Eigen::Index NumLoadCases() const { return Load().cols(); }
-  /// Finds the equilibrium of load case `k` from this start on.  Where none was
-  /// found yet and the start is empty or leads to none, it begins at rest.
+  /// Finds the equilibrium of load case `k`, beginning at this start.  If the
+  /// start is empty or leads to none, the search begins again at rest.
   bool SolveInCase(Eigen::Index k, const Eigen::VectorXd& start);
   /// Returns the solver of load case `k`, with the factor of its tangent.
   StiffnessSolver& TangentSolver(Eigen::Index k);
@@ -109,6 +111,9 @@ class LargeStrainModel : public ForwardModel {
   Eigen::MatrixXd given_;  ///< The displacement of supports in the scene.
   Eigen::VectorXd moduli_;
   std::vector<CaseState> states_;
+  /// Where the next Solve begins, in place of a prediction.
+  std::optional<Eigen::MatrixXd> begin_;
+  bool is_solved_once_ = false;
   Eigen::MatrixXd displacement_;
   std::map<const StiffnessSolver*, Eigen::Index> case_of_factor_;
   std::string why_not_solved_;

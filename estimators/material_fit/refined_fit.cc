@@ -267,7 +267,8 @@ Refinement::Chain Refinement::FitQuadratic(
 }
 
 bool Refinement::AsksForDivision(const Scene& quadratic, Chain& chain) const {
-  if (!MayDivide(quadratic) || IsOfLinearElements()) {
+  if (!MayDivide(quadratic) || IsOfLinearElements() ||
+      chain.quadratic->Fit().minimum->end == End::kSearchFailed) {
     return false;
   }
   if (options_.refinement == Refine::kAlways) {

@@ -122,14 +122,21 @@ std::optional<Eigen::VectorXd> SmallStrainStart(const Scene& scene,
           parameters);
     }
   }
+  return StiffenedStart(misfit.Free().VariablesOf(parameters), misfit);
+}
+
+std::optional<Eigen::VectorXd> StiffenedStart(const Eigen::VectorXd& variables,
+                                              DisplacementMisfit& misfit) {
   constexpr int kMostDoublings = 6;
+  Eigen::VectorXd stiffened = variables;
   for (int doubling = 0; doubling <= kMostDoublings; ++doubling) {
-    const Eigen::VectorXd variables = misfit.Free().VariablesOf(parameters);
     Eigen::VectorXd residual;
-    if (misfit.Evaluate(variables, &residual, nullptr)) {
-      return variables;
+    if (misfit.Evaluate(stiffened, &residual, nullptr)) {
+      return stiffened;
     }
-    MultiplyModuli(all, 2, parameters);
+    Eigen::VectorXd parameters = misfit.Free().ParametersAt(stiffened);
+    MultiplyModuli(misfit.Free().All(), 2, parameters);
+    stiffened = misfit.Free().VariablesOf(parameters);
   }
   return std::nullopt;
 }

@@ -18,10 +18,9 @@ namespace elastimate {
 /// The factors come from a fit of isotropic materials of small strains.  Their
 /// Poisson's ratios are fixed at those of the typical values at rest: a bent
 /// specimen makes the factor too large by about half of the square of the
-/// rotation [rad], but would make a fitted Poisson's ratio useless.  If the
-/// model has no stable equilibrium at the start, all free moduli are doubled
-/// until it has one.  If the scene has no loads but resultants, these give one
-/// factor for all materials.
+/// rotation [rad], but would make a fitted Poisson's ratio useless.  The values
+/// are stiffened (StiffenedStart).  If the scene has no loads but resultants,
+/// these give one factor for all materials.
 ///
 /// Returns nothing if the displacements oppose the loads, or if no equilibrium
 /// is found.  Cost: one factorisation of small strains for one material, some
@@ -31,6 +30,13 @@ std::optional<Eigen::VectorXd> SmallStrainStart(const Scene& scene,
                                                 const EstimatorOptions& options,
                                                 DisplacementMisfit& misfit,
                                                 Work& work);
+
+/// Returns `variables` with all free moduli doubled until the model has a
+/// stable equilibrium, which quadratic elements may not have at the minimum of
+/// stiffer linear ones.  Returns nothing if six times are not enough.  Cost: a
+/// Solve for each attempt.
+std::optional<Eigen::VectorXd> StiffenedStart(const Eigen::VectorXd& variables,
+                                              DisplacementMisfit& misfit);
 
 }  // namespace elastimate
 

@@ -154,7 +154,7 @@ std::optional<BoundedMinimum> SpaceFit::FindAtLargeStrains(
     const std::optional<Eigen::VectorXd>& start) {
   misfit_.SetDilatation(Dilatation::kMeanOfElement);
   const std::optional<Eigen::VectorXd> from =
-      start ? start
+      start ? StiffenedStart(*start, misfit_)
             : SmallStrainStart(scene_, options_, misfit_, fit_.estimate.work);
   if (!from) {
     return std::nullopt;

@@ -30,10 +30,22 @@ BoundedMinimum Descend(const EstimatorOptions& estimator_options,
   options.gradient_tolerance = 1e-14;
   options.parameter_tolerance = 1e-11;
   options.logging_type = ceres::SILENT;
+  // A trial without an equilibrium costs more than a step of the search, and a
+  // search that meets many of them ends in nothing.
+  constexpr int kMostFailures = 8;
+  int failures = 0;
+  if (misfit.HasLargeStrains()) {
+    options.max_num_line_search_step_size_iterations = 5;
+  }
   return MinimizeOverVariables(
       [&](const Eigen::VectorXd& x, Eigen::VectorXd* residual,
           Eigen::MatrixXd* jacobian) {
-        return misfit.Evaluate(x, residual, jacobian);
+        if (misfit.HasLargeStrains() && failures >= kMostFailures) {
+          return false;
+        }
+        const bool is_solved = misfit.Evaluate(x, residual, jacobian);
+        failures += is_solved ? 0 : 1;
+        return is_solved;
       },
       misfit.NumRows(), misfit.Free().VariableBounds(), start, options);
 }
