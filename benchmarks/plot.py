@@ -34,6 +34,7 @@ STYLES = {
     "auto": {"color": "#000000", "marker": "*", "linestyle": "-"},
     "reduced-fe huber": {"color": "#0072B2", "marker": "P", "linestyle": ":"},
     "auto huber": {"color": "#CC79A7", "marker": "p", "linestyle": "-"},
+    "small strains": {"color": "#56B4E9", "marker": "D", "linestyle": "--"},
     "Cramér-Rao bound": {"color": "#000000", "marker": "", "linestyle": ":"},
     "prediction": {"color": "#000000", "marker": "", "linestyle": "-."},
 }
@@ -698,12 +699,118 @@ def materials_cells(path):
     }
 
 
+BIAS_ROWS = (
+    ("ln_youngs_modulus_error [1]", 100, "error of $\\ln E$ [%]"),
+    ("poisson_ratio_error [1]", 1, r"error of $\nu$ [1]"),
+)
+BIAS_COLUMNS = {
+    "bending": "turn of the end of a bar [degrees]",
+    "stretch": "elongation of a bar [%]",
+}
+BIAS_STYLES = {
+    ("small strains", "neo_hookean"): {"color": "#D55E00", "marker": "o", "linestyle": "-"},
+    ("small strains", "st_venant_kirchhoff"): {"color": "#0072B2", "marker": "s",
+                                               "linestyle": "--"},
+    ("large strains", "neo_hookean"): {"color": "#000000", "marker": "x", "linestyle": ":"},
+    ("large strains", "st_venant_kirchhoff"): {"color": "#000000", "marker": "+",
+                                               "linestyle": ":"},
+}
+
+
+def large_deformation_bias(path):
+    """What fits of small and of large strains make of displacements without noise."""
+    rows = read(path)
+    figure, panels = plt.subplots(2, 2, figsize=(8, 5.6), sharex="col")
+    for line, (column, scale, label) in zip(panels, BIAS_ROWS):
+        for axes, (deformation, xlabel) in zip(line, BIAS_COLUMNS.items()):
+            own = [row for row in rows if row["deformation"] == deformation]
+            for (fit, law), trials in group(own, "fit", "law").items():
+                axes.plot(numbers(trials, "size [degrees or %]"), scale * numbers(trials, column),
+                          label=f"fit of {fit}, bar of {law}", **BIAS_STYLES[fit, law])
+            axes.set_ylabel(label)
+            if line is panels[1]:
+                axes.set_xlabel(xlabel)
+    finish(figure, "What small strains do to the estimate of a bar that bends or stretches far,"
+           " without noise")
+    return figure
+
+
+LARGE_DEFORMATION_ROWS = (
+    ("error_over_cramer_rao [1]", "rms error over\nCramér-Rao bound [1]", "log"),
+    ("coverage [1]", "95 % intervals of usable\ntrials that hold the truth [1]", "linear"),
+    ("usable_share [1]", "trials that are\nusable [1]", "linear"),
+    ("right_law_share [1]", "trials in which auto\nchooses the right law [1]", "linear"),
+)
+
+
+def set_rotation_axis(axes, rows):
+    rotations = sorted(set(numbers(rows, "rotation [degrees]")))
+    axes.set_xscale("log")
+    axes.minorticks_off()
+    axes.set_xticks(rotations, [f"{rotation:g}" for rotation in rotations])
+
+
+def draw_large_deformation_errors(rows):
+    noises = list(dict.fromkeys(row["noise [1]"] for row in rows))
+    figure, panels = plt.subplots(len(LARGE_DEFORMATION_ROWS), len(noises), sharex=True,
+                                  sharey="row", squeeze=False, figsize=(2.7 * len(noises), 8))
+    for line, (column, label, scale) in zip(panels, LARGE_DEFORMATION_ROWS):
+        for axes, noise in zip(line, noises):
+            own = [row for row in rows if row["noise [1]"] == noise]
+            for (estimator,), trials in group(own, "estimator").items():
+                values = numbers(trials, column)
+                if np.isfinite(values).any():
+                    axes.plot(numbers(trials, "rotation [degrees]"), values, label=estimator,
+                              **STYLES[estimator])
+            set_rotation_axis(axes, own)
+            axes.set_yscale(scale)
+            if scale == "linear":
+                axes.set_ylim(-0.05, 1.05)
+        line[0].set_ylabel(label)
+    for axes, noise in zip(panels[0], noises):
+        axes.set_title(f"noise {100 * float(noise):g} %", fontsize=9)
+        axes.axhline(1, color="black", linewidth=0.8, linestyle=":")
+    for axes in panels[1]:
+        axes.axhline(0.95, color="black", linewidth=0.8, linestyle=":")
+    for axes in panels[-1]:
+        axes.set_xlabel("turn of the end [degrees]")
+    finish(figure, "A bent neo-Hookean bar: errors, intervals, and the choice of a law", columns=5)
+    return figure
+
+
+def draw_large_deformation_cost(rows):
+    least = min(numbers(rows, "noise [1]"))
+    own = [row for row in rows if float(row["noise [1]"]) == least]
+    figure, panels = two_panels()
+    for axes, column, label in zip(
+            panels, ("time_over_small_strains [1]", "factorizations [1]"),
+            ("time over that of small strains [1]", "factorised tangents [1]")):
+        for (estimator,), trials in group(own, "estimator").items():
+            axes.plot(numbers(trials, "rotation [degrees]"), numbers(trials, column),
+                      label=estimator, **STYLES[estimator])
+        set_rotation_axis(axes, own)
+        axes.set_yscale("log" if column.startswith("time") else "linear")
+        axes.set_xlabel("turn of the end [degrees]")
+        axes.set_ylabel(label)
+    finish(figure, f"What a fit of a bent neo-Hookean bar costs, noise {100 * least:g} % (medians)",
+           columns=5)
+    return figure
+
+
+def large_deformation_cells(path):
+    rows = read(path)
+    return {
+        "large_deformation_cells": draw_large_deformation_errors(rows),
+        "large_deformation_cost": draw_large_deformation_cost(rows),
+    }
+
+
 FIGURES = {
     function.__name__: function
     for function in (paper_noise, paper_spatial_noise, paper_measurements, paper_forces,
                      paper_organ, paper_cuboid_choice, speed_accuracy_points, scaling,
                      stability_cells, unseen_cells, unseen_regret, measurement_cells,
-                     materials_cells)
+                     materials_cells, large_deformation_bias, large_deformation_cells)
 }
 
 

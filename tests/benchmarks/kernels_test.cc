@@ -45,6 +45,16 @@ TEST_F(Kernels, QuickRunTimesEachKernelAtEachSize) {
   EXPECT_EQ(numberings,
             (std::set<std::string>{"natural", "random", "reordered"}));
   EXPECT_EQ(sizes, (std::set<double>{10985, 98415}));
+  std::set<std::string> kinds;
+  for (const TableRow& row : ReadTable(folder_ / "kernels_large_strains.csv")) {
+    kinds.insert(row.Text("kind"));
+    for (const std::string of : {"forces", "tangent"}) {
+      // Law, gradient and stress come to the work of small strains.
+      EXPECT_GT(row.Number("large_" + of + "_per_element [ns]"),
+                row.Number("small_" + of + "_per_element [ns]"));
+    }
+  }
+  EXPECT_EQ(kinds.size(), 6U);
   const auto metadata =
       nlohmann::json::parse(testing::ReadText(folder_ / "kernels.json"));
   EXPECT_TRUE(metadata.contains("commit"));
