@@ -20,9 +20,9 @@ std::string BarLoadName(BarLoad load);
 /// E [pressure] and nu of the bar.
 inline const Eigen::Vector2d kBarParameters(1e4, 0.3);
 
-/// Returns a bar of 1 x 1 x 6, of 2 x 2 x 6 cells of five tetrahedra, clamped
-/// at z = 0, of a law of large strains with the parameters above.  Its load
-/// case has the dead force that deforms it by `size`, and the displacement
+/// Returns a bar of 1 x 1 x 6, of 2 x 2 x 6 cells of five quadratic tetrahedra,
+/// clamped at z = 0, of a law of large strains with the parameters above.  Its
+/// load case has the dead force that deforms it by `size`, and the displacement
 /// without noise.  Throws std::runtime_error where no equilibrium is found.
 Scene DeformedBar(BarLoad load, const std::string& law, double size);
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,7 @@ std::vector<double> Rotations(bool is_quick) {
 
 std::vector<double> Noises(bool is_quick) {
   return is_quick ? std::vector<double>{0.01}
-                  : std::vector<double>{0.01, 0.03, 0.05};
+                  : std::vector<double>{0.0001, 0.01, 0.03, 0.05};
 }
 
 // A method is an estimator, and what it is told of the law.
@@ -72,25 +73,27 @@ Scene SceneFor(const BarMethod& method, Scene scene) {
 void AddBias(BarLoad load, const std::string& law, double size, Table& table) {
   const Scene bar = DeformedBar(load, law, size);
   for (const BarMethod& method : BarMethods()) {
-    if (method.estimator != "iterative-fe") {
+    if (method.estimator == "closed-form" || method.estimator == "bounded") {
       continue;
     }
     const Estimate estimate =
         MakeEstimator(method.estimator)->Run(SceneFor(method, bar), {});
     const Eigen::VectorXd values = estimate.ParameterValues();
-    table.AddRow(
-        {BarLoadName(load), law, size,
-         method.law.empty() ? std::string("large strains") : method.name,
-         std::log(values(0) / kBarParameters(0)), values(1) - kBarParameters(1),
-         estimate.deformation.strain, estimate.deformation.rotation,
-         std::string(StatusName(estimate.status)),
-         std::int64_t{estimate.work.factorizations}});
+    const bool is_told = method.law.empty();
+    table.AddRow({BarLoadName(load), law, size,
+                  is_told ? std::string("large strains") : method.name,
+                  is_told ? std::string("") : estimate.large_strain_law,
+                  std::log(values(0) / kBarParameters(0)),
+                  values(1) - kBarParameters(1), estimate.deformation.strain,
+                  estimate.deformation.rotation,
+                  std::string(StatusName(estimate.status)),
+                  std::int64_t{estimate.work.factorizations}});
   }
 }
 
 Table MakeBiasTable(bool is_quick, Progress& progress) {
   Table table("large_deformation_bias",
-              {"deformation", "law", "size [degrees or %]", "fit",
+              {"deformation", "law", "size [degrees or %]", "fit", "law_chosen",
                "ln_youngs_modulus_error [1]", "poisson_ratio_error [1]",
                "measured_strain [1]", "measured_rotation [rad]", "status",
                "factorizations [1]"});
@@ -223,6 +226,16 @@ Scene MeasuredBar(Scene bar, double noise_sd, int seed) {
   return bar;
 }
 
+// Noise may turn elements inside out, which estimators from forces refuse as a
+// wrong input.  Such a trial has no number.
+Estimate RunOnNoise(const Estimator& estimator, const Scene& scene) {
+  try {
+    return estimator.Run(scene, {});
+  } catch (const std::invalid_argument&) {
+    return {};
+  }
+}
+
 Table MakeCellTable(bool is_quick, Progress& progress) {
   Table table = BarCell::MakeTable();
   const int num_trials = is_quick ? kQuickBarTrials : kBarTrials;
@@ -245,7 +258,7 @@ Table MakeCellTable(bool is_quick, Progress& progress) {
         for (int seed = 1; seed <= num_trials; ++seed) {
           const Scene scene = SceneFor(method, MeasuredBar(bar, sd, seed));
           const double start = ProcessorSeconds();
-          const Estimate estimate = estimator->Run(scene, {});
+          const Estimate estimate = RunOnNoise(*estimator, scene);
           cell.Add(seed, estimate, ProcessorSeconds() - start);
         }
         if (std::isnan(reference)) {
@@ -269,7 +282,8 @@ StudyResult RunLargeDeformationStudy(bool is_quick, Progress& progress) {
   return {
       {bias, cells, limits},
       {{"bar",
-        "1 x 1 x 6, of 120 linear tetrahedra, clamped at one end; a dead force "
+        "1 x 1 x 6, of 120 quadratic tetrahedra, clamped at one end; a dead "
+        "force "
         "across or along at the other; E = 10 000 and nu = 0.3"},
        {"law", "neo_hookean unless said otherwise"},
        {"rotation", "of the end of the bar"},

@@ -27,6 +27,9 @@ class LargeDeformationStudy : public testing::ProgramTest {
                    row.Text("size [degrees or %]") + ", " + row.Text("fit"));
       const double of_modulus = row.Number("ln_youngs_modulus_error [1]");
       const double of_ratio = row.Number("poisson_ratio_error [1]");
+      if (row.Text("fit") == "auto") {
+        continue;
+      }
       if (row.Text("fit") == "large strains") {
         EXPECT_EQ(row.Text("status"), "ok");
         EXPECT_NEAR(of_modulus, 0, 1e-5);
