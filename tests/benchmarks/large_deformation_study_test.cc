@@ -27,7 +27,7 @@ class LargeDeformationStudy : public testing::ProgramTest {
                    row.Text("size [degrees or %]") + ", " + row.Text("fit"));
       const double of_modulus = row.Number("ln_youngs_modulus_error [1]");
       const double of_ratio = row.Number("poisson_ratio_error [1]");
-      if (row.Text("fit") == "auto") {
+      if (row.Text("fit").rfind("auto", 0) == 0) {
         continue;
       }
       if (row.Text("fit") == "large strains") {
@@ -68,7 +68,13 @@ class LargeDeformationStudy : public testing::ProgramTest {
          ReadTable(folder_ / "large_deformation_limits.csv")) {
       SCOPED_TRACE(row.Text("specimen") + " of " + row.Text("law") + ", load " +
                    row.Text("load_over_limit [1]"));
-      EXPECT_EQ(row.Text("is_right"), "yes");
+      // Beyond a limit, the reason that is told may be another one, but there
+      // is one.
+      EXPECT_EQ(row.Text("found") == "equilibrium",
+                row.Text("expected") == "equilibrium");
+      if (row.Text("found") == "equilibrium") {
+        EXPECT_EQ(row.Text("is_right"), "yes");
+      }
       EXPECT_NEAR(row.Number("reached_share [1]"),
                   row.Number("expected_share [1]"), 0.05);
     }
