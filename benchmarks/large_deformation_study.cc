@@ -92,12 +92,12 @@ void AddBiasOfBar(BarLoad load, const std::string& law, double size,
   AddBias("large strains", "iterative-fe", scene, {}, bar, table);
   scene.materials[0].law = "isotropic";
   AddBias("small strains", "iterative-fe", scene, {}, bar, table);
-  AddBias("auto, computed", "auto", scene, {}, bar, table);
+  AddBias("auto of computed", "auto", scene, {}, bar, table);
   scene.origin = Origin::kMeasured;
   EstimatorOptions options;
   // These elements are right, and dividing them takes minutes.
   options.refinement = Refine::kNever;
-  AddBias("auto, measured", "auto", scene, options, bar, table);
+  AddBias("auto of measured", "auto", scene, options, bar, table);
 }
 
 Table MakeBiasTable(bool is_quick, Progress& progress) {
@@ -303,9 +303,9 @@ StudyResult RunLargeDeformationStudy(bool is_quick, Progress& progress) {
        {"law_of_estimators",
         "given, but for `auto`, which chooses one, and for small strains"},
        {"errors", "of all trials with a number; intervals of usable ones"},
-       {"auto, computed",
+       {"auto of computed",
         "told that displacements are computed, not by which law"},
-       {"auto, measured",
+       {"auto of measured",
         "told that they are measured, and not to divide the mesh"},
        {"time", "of the processor, median"},
        {"limits",
