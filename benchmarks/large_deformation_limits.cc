@@ -163,8 +163,7 @@ void AddPressedBlock(const std::string& law, double limit, double load,
 }
 
 // The force of St Venant and Kirchhoff, E (s - s^3) / 2 at the stretch s, is
-// largest at s = 1 / sqrt(3).  No state of the block bears more, so that a
-// search that finds nothing is right as well.
+// largest at s = 1 / sqrt(3).
 void AddForcesOnBlocks(LimitTable& table) {
   const double limit = 1 / std::sqrt(27.0);
   for (const double load : {0.5, 0.9, 0.999, 1.001, 1.1, 2.0}) {
@@ -173,7 +172,8 @@ void AddForcesOnBlocks(LimitTable& table) {
     const double stretch = 2 / std::sqrt(3.0) * std::cos(std::acos(-load) / 3);
     AddPressedBlock("st_venant_kirchhoff", limit, load,
                     load < 1 ? Theory{EquilibriumStatus::kDone, 1, stretch - 1}
-                             : Theory{EquilibriumStatus::kUnstable, 1 / load},
+                             : Theory{EquilibriumStatus::kUnstable, 1 / load,
+                                      kNotKnown, true},
                     table);
   }
   // The force of the corotated law is E (1 - s).
