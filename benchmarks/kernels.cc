@@ -21,8 +21,11 @@
 #include "benchmarks/measured_cube.h"
 #include "benchmarks/naive_stiffness_product.h"
 #include "benchmarks/random_matrix.h"
+#include "elastimate/core/mechanics/internal_forces.h"
+#include "elastimate/core/mechanics/large_strain_forces.h"
 #include "elastimate/core/mechanics/stiffness_assembly.h"
 #include "elastimate/core/mechanics/stiffness_product.h"
+#include "elastimate/core/mesh/node_graph.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/estimators/interface/stopwatch.h"
 #include "elastimate/estimators/registry.h"
@@ -392,6 +395,85 @@ void CompareOtherKinds(bool is_quick, Progress& progress, KernelTimes& times) {
   }
 }
 
+// Returns the shortest times [s] of works that take turns.
+std::vector<double> ShortestSeconds(
+    const std::vector<std::function<void()>>& works) {
+  std::vector<double> seconds(works.size(),
+                              std::numeric_limits<double>::infinity());
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t i = 0; i < works.size(); ++i) {
+      seconds[i] = std::min(seconds[i], SecondsOf(works[i]));
+    }
+  }
+  return seconds;
+}
+
+// Returns a smooth displacement that turns no element inside out.
+Eigen::VectorXd SmoothDisplacement(const Mesh& mesh) {
+  const Eigen::VectorXd size =
+      mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff();
+  Eigen::MatrixXd u(mesh.Dimension(), mesh.NumNodes());
+  for (Eigen::Index node = 0; node < mesh.NumNodes(); ++node) {
+    const Eigen::VectorXd place = mesh.nodes.col(node).cwiseQuotient(size);
+    for (Eigen::Index i = 0; i < u.rows(); ++i) {
+      u(i, node) = 0.1 * size(i) * place(i) * place((i + 1) % u.rows());
+    }
+  }
+  return u.reshaped();
+}
+
+// Adds the times of forces and tangents at large strains, and those of small
+// strains in the same run.  Quadrilaterals are in plane strain.
+Table CompareLargeStrains(bool is_quick, Progress& progress,
+                          KernelTimes& times) {
+  Table table("kernels_large_strains",
+              {"kind", "elements [1]", "small_forces_per_element [ns]",
+               "large_forces_per_element [ns]", "ratio_of_forces [1]",
+               "small_tangent_per_element [ns]",
+               "large_tangent_per_element [ns]", "ratio_of_tangents [1]"});
+  std::vector<Mesh> meshes = MeshesOfOtherKinds(is_quick);
+  CuboidOptions tetrahedra;
+  tetrahedra.cells.setConstant(is_quick ? 10 : 30);
+  meshes.insert(meshes.begin(), CuboidScene(tetrahedra).mesh);
+  for (Mesh& mesh : meshes) {
+    if (mesh.Dimension() == 2) {
+      mesh.section.model = SectionModel::kPlaneStrain;
+    }
+    const std::string kind(mesh.Topology().name);
+    progress.Show("kernels: large strains of " + kind);
+    Material material;
+    material.law = "neo_hookean";
+    const InternalForces small(mesh, {});
+    const LargeStrainForces large(mesh, {material});
+    const NodeGraph graph(mesh);
+    const Eigen::VectorXd u = SmoothDisplacement(mesh);
+    const Eigen::Vector2d parameters(kElasticity.youngs_modulus,
+                                     kElasticity.poisson_ratio);
+    const Eigen::VectorXd of_small = small.Parameters().Moduli(parameters);
+    const Eigen::VectorXd of_large = large.Parameters().Moduli(parameters);
+    Eigen::MatrixXd result;
+    std::vector<double> ns = ShortestSeconds(
+        {[&] { result = small.Columns(u); },
+         [&] { result = large.Columns(of_large, u); },
+         [&] { result = small.Blocks(of_small, graph); },
+         [&] { result = large.TangentBlocks(of_large, u, graph); }});
+    for (double& time : ns) {
+      time *= 1e9 / static_cast<double>(mesh.NumElements());
+    }
+    const double of_forces = ns[1] / ns[0];
+    const double of_tangents = ns[3] / ns[2];
+    table.AddRow({kind, std::int64_t{mesh.NumElements()}, ns[0], ns[1],
+                  of_forces, ns[2], ns[3], of_tangents});
+    std::ostringstream line;
+    line << mesh.NumElements() << " " << kind << std::fixed
+         << std::setprecision(1) << ", large / small strains: forces " << ns[1]
+         << " / " << ns[0] << " ns = " << of_forces << ", tangent " << ns[3]
+         << " / " << ns[2] << " ns = " << of_tangents;
+    times.ratios.push_back(line.str());
+  }
+  return table;
+}
+
 std::string WhyRegressed(const Times& times) {
   const double least =
       HasVectorsOfFour() ? kLeastSpeedupOfFours : kLeastSpeedupOfOnes;
@@ -464,8 +546,9 @@ KernelTimes TimeKernels(bool is_quick, Progress& progress) {
     }
   }
   CompareOtherKinds(is_quick, progress, times);
+  const Table large_strains = CompareLargeStrains(is_quick, progress, times);
   times.result = {
-      {table},
+      {table, large_strains},
       {{"cube", "of five tetrahedra in each of n x n x n cells"},
        {"instructions",
         hwy::TargetName(hwy::SupportedTargets() & -hwy::SupportedTargets())},
@@ -475,6 +558,10 @@ KernelTimes TimeKernels(bool is_quick, Progress& progress) {
         "read or written at least once: 16 for the nodes of an element, 24 for "
         "the position of a node, 72 for q, a and b of each column"},
        {"flops", "42 for each tetrahedron, 155 for each of its columns"},
+       {"large_strains",
+        "forces of both unit moduli and the assembled tangent of neo_hookean, "
+        "hexahedra and quadrilaterals with mean dilatation, planar elements in "
+        "plane strain; over those of the isotropic law of small strains"},
        {"seed", kSeed},
        {"blas_threads", 1},
        {"ratios", times.ratios}}};

@@ -22,7 +22,8 @@ struct KernelTimes {
 /// numbering; one and eight columns; one and two threads), assembly and the
 /// closed form on cubes of 10 000 to a million tetrahedra, beside the memory
 /// bandwidth and the peak flops of the same run; and the passes of the other
-/// element kinds beside the textbook's.  `is_quick` stops at 100 000.
+/// element kinds beside the textbook's; and the forces and tangents of large
+/// strains beside those of small ones.  `is_quick` stops at 100 000.
 KernelTimes TimeKernels(bool is_quick, Progress& progress);
 
 }  // namespace elastimate

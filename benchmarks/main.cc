@@ -16,6 +16,7 @@
 #include "apps/flag_parser.h"
 #include "apps/progress.h"
 #include "benchmarks/kernels.h"
+#include "benchmarks/large_deformation_study.h"
 #include "benchmarks/materials_study.h"
 #include "benchmarks/measurement_study.h"
 #include "benchmarks/metadata.h"
@@ -58,6 +59,8 @@ constexpr NamedStudy kStudies[] = {
      RunMeasurementStudy},
     {"materials", "how well several materials are told apart, and how many",
      RunMaterialsStudy},
+    {"large_deformation", "what bending and stretch do to the estimate",
+     RunLargeDeformationStudy},
 };
 
 const Program& Benchmark() {

@@ -34,6 +34,7 @@ STYLES = {
     "auto": {"color": "#000000", "marker": "*", "linestyle": "-"},
     "reduced-fe huber": {"color": "#0072B2", "marker": "P", "linestyle": ":"},
     "auto huber": {"color": "#CC79A7", "marker": "p", "linestyle": "-"},
+    "small strains": {"color": "#56B4E9", "marker": "D", "linestyle": "--"},
     "Cramér-Rao bound": {"color": "#000000", "marker": "", "linestyle": ":"},
     "prediction": {"color": "#000000", "marker": "", "linestyle": "-."},
 }
@@ -698,12 +699,128 @@ def materials_cells(path):
     }
 
 
+BIAS_ROWS = (
+    ("ln_youngs_modulus_error [1]", 100, "error of $\\ln E$ [%]"),
+    ("poisson_ratio_error [1]", 1, r"error of $\nu$ [1]"),
+)
+BIAS_COLUMNS = {
+    "bending": "turn of the end of a bar [degrees]",
+    "stretch": "elongation of a bar [%]",
+}
+BIAS_STYLES = {
+    ("small strains", "neo_hookean"): {"color": "#D55E00", "marker": "o", "linestyle": "-"},
+    ("small strains", "st_venant_kirchhoff"): {"color": "#0072B2", "marker": "s",
+                                               "linestyle": "--"},
+    ("large strains", "neo_hookean"): {"color": "#000000", "marker": "x", "linestyle": ":"},
+    ("large strains", "st_venant_kirchhoff"): {"color": "#000000", "marker": "+",
+                                               "linestyle": ":"},
+}
+
+
+def large_deformation_bias(path):
+    """What fits of small and of large strains make of displacements without noise."""
+    rows = [row for row in read(path) if (row["fit"], row["law"]) in BIAS_STYLES]
+    figure, panels = plt.subplots(2, 2, figsize=(8, 5.6), sharex="col")
+    for axes, xlabel in zip(panels[1], BIAS_COLUMNS.values()):
+        axes.set_xlabel(xlabel)
+    for line, (column, scale, label) in zip(panels, BIAS_ROWS):
+        for axes, deformation in zip(line, BIAS_COLUMNS):
+            own = [row for row in rows if row["deformation"] == deformation]
+            for (fit, law), trials in group(own, "fit", "law").items():
+                axes.plot(numbers(trials, "size [degrees or %]"), scale * numbers(trials, column),
+                          label=f"fit of {fit}, bar of {law}", **BIAS_STYLES[fit, law])
+            axes.set_ylabel(label)
+    finish(figure, "What small strains do to the estimate of a bar that bends or stretches far,"
+           " without noise")
+    return figure
+
+
+# With the limits of the axis; errors beyond are those of refused trials.
+LARGE_DEFORMATION_ROWS = (
+    ("error_over_cramer_rao [1]", "rms error over\nCramér-Rao bound [1]", (0.5, 1e5)),
+    ("coverage [1]", "95 % intervals of usable\ntrials that hold the truth [1]", (0.48, 1.02)),
+    ("usable_share [1]", "trials that are\nusable [1]", (-0.05, 1.05)),
+    ("right_law_share [1]", "trials in which auto\nchooses the right law [1]", (-0.05, 1.05)),
+)
+COST_NOISE = 0.01
+
+
+def draw_large_deformation(axes, own, column):
+    """One line for each estimator.  `auto` is often one of the others, which shall show below
+    it."""
+    for (estimator,), trials in group(own, "estimator").items():
+        values = numbers(trials, column)
+        if np.isfinite(values).any():
+            is_auto = estimator == "auto"
+            axes.plot(numbers(trials, "rotation [degrees]"), values, label=estimator,
+                      **{**STYLES[estimator], "linewidth": 0.8 if is_auto else 2,
+                         "markersize": 4 if is_auto else 7})
+
+
+def set_rotation_axis(axes, rows):
+    rotations = sorted(set(numbers(rows, "rotation [degrees]")))
+    axes.set_xscale("log")
+    axes.minorticks_off()
+    axes.set_xticks(rotations, [f"{rotation:g}" for rotation in rotations])
+
+
+def draw_large_deformation_errors(rows):
+    noises = list(dict.fromkeys(row["noise [1]"] for row in rows))
+    figure, panels = plt.subplots(len(LARGE_DEFORMATION_ROWS), len(noises), sharex=True,
+                                  sharey="row", squeeze=False, figsize=(2.7 * len(noises), 8))
+    for line, (column, label, limits) in zip(panels, LARGE_DEFORMATION_ROWS):
+        for axes, noise in zip(line, noises):
+            own = [row for row in rows if row["noise [1]"] == noise]
+            draw_large_deformation(axes, own, column)
+            set_rotation_axis(axes, own)
+            axes.set_yscale("log" if limits[1] > 2 else "linear")
+            axes.set_ylim(*limits)
+            if axes in panels[0]:
+                refused = [row for row in own if float(row["usable_share [1]"]) <= 0.5]
+                axes.plot(numbers(refused, "rotation [degrees]"), numbers(refused, column), "kx",
+                          markersize=5, label="refused in half of the trials or more")
+        line[0].set_ylabel(label)
+    for axes, noise in zip(panels[0], noises):
+        axes.set_title(f"noise {100 * float(noise):g} %", fontsize=9)
+        axes.axhline(1, color="black", linewidth=0.8, linestyle=":")
+    for axes in panels[1]:
+        axes.axhline(0.95, color="black", linewidth=0.8, linestyle=":")
+    for axes in panels[-1]:
+        axes.set_xlabel("turn of the end [degrees]")
+    finish(figure, "A bent neo-Hookean bar: errors, intervals, and the choice of a law", columns=3)
+    return figure
+
+
+def draw_large_deformation_cost(rows):
+    own = [row for row in rows if float(row["noise [1]"]) == COST_NOISE]
+    figure, panels = two_panels()
+    for axes, column, label in zip(
+            panels, ("time_over_small_strains [1]", "factorizations [1]"),
+            ("time over that of small strains [1]", "factorised tangents [1]")):
+        draw_large_deformation(axes, own, column)
+        set_rotation_axis(axes, own)
+        axes.set_yscale("log" if column.startswith("time") else "linear")
+        axes.set_xlabel("turn of the end [degrees]")
+        axes.set_ylabel(label)
+    finish(figure, "What a fit of a bent neo-Hookean bar costs, noise"
+           f" {100 * COST_NOISE:g} % (medians)", columns=5)
+    return figure
+
+
+def large_deformation_cells(path):
+    rows = read(path)
+    return {
+        "large_deformation_cells": draw_large_deformation_errors(rows),
+        "large_deformation_cost": draw_large_deformation_cost(rows),
+    }
+
+
 FIGURES = {
     function.__name__: function
     for function in (paper_noise, paper_spatial_noise, paper_measurements, paper_forces,
                      paper_organ, paper_cuboid_choice, speed_accuracy_points, scaling,
                      stability_cells, unseen_cells, unseen_regret, measurement_cells,
-                     materials_cells)
+                     materials_cells, large_deformation_bias, large_deformation_cells)
 }
 
 

@@ -5,10 +5,12 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 #include "elastimate/core/large_strain/cross_gradient.h"
 #include "elastimate/core/large_strain/large_strain_law.h"
 #include "elastimate/core/mechanics/mean_dilatation.h"
+#include "elastimate/core/mechanics/tet10_point_forces.h"
 #include "elastimate/core/mechanics/tet4_point_forces.h"
 #include "elastimate/core/mesh/shape_functions.h"
 
@@ -279,30 +281,32 @@ void AddStressColumns(const MaterialPass& pass,
   });
 }
 
-// Calls visit(points, gradients, count) for all linear tetrahedra of a pass.
-template <class Visitor>
-void VisitTet4Points(const MaterialPass& pass,
+// Calls visit(points, gradients, count) for all tetrahedra of a pass, in the
+// form of Tet4Points or Tet10Points, with so many points.
+template <class Points, class Visitor>
+void VisitTetrahedra(const MaterialPass& pass,
                      const Eigen::VectorXd& displacement,
                      const Visitor& visit) {
   PointMatrices gradients;
   const std::size_t num_elements = pass.elements.size();
   for (std::size_t first = 0; first < num_elements;
-       first += PointMatrices::kPoints) {
-    const int count = int(
-        std::min<std::size_t>(PointMatrices::kPoints, num_elements - first));
-    const Tet4Points points(pass.mesh, pass.elements.data() + first, count);
+       first += Points::kElements) {
+    const int count =
+        int(std::min<std::size_t>(Points::kElements, num_elements - first));
+    const Points points(pass.mesh, pass.elements.data() + first, count);
     points.SetGradients(displacement.data(), gradients);
-    visit(points, gradients, count);
+    visit(points, gradients, points.NumPoints());
   }
 }
 
-void AddTet4Columns(const MaterialPass& pass,
-                    const Eigen::VectorXd& displacement,
-                    Eigen::Ref<Eigen::MatrixXd> columns) {
+template <class Points>
+void AddTetrahedraColumns(const MaterialPass& pass,
+                          const Eigen::VectorXd& displacement,
+                          Eigen::Ref<Eigen::MatrixXd> columns) {
   std::vector<PointMatrices> stresses(pass.law.NumModuli());
-  VisitTet4Points(
+  VisitTetrahedra<Points>(
       pass, displacement,
-      [&](const Tet4Points& points, const PointMatrices& gradients, int count) {
+      [&](const Points& points, const PointMatrices& gradients, int count) {
         pass.law.StressesAtPoints(gradients, count, stresses.data());
         for (std::size_t k = 0; k < stresses.size(); ++k) {
           points.AddForces(stresses[k], columns.col(Eigen::Index(k)).data());
@@ -314,7 +318,7 @@ void AddTet4Blocks(const MaterialPass& pass,
                    const Eigen::VectorXd& displacement, const NodeGraph& graph,
                    Eigen::MatrixXd& blocks) {
   PointTangents tangents;
-  VisitTet4Points(
+  VisitTetrahedra<Tet4Points>(
       pass, displacement,
       [&](const Tet4Points& points, const PointMatrices& gradients, int count) {
         pass.law.TangentsAtPoints(pass.moduli, gradients, count, tangents);
@@ -329,7 +333,7 @@ void AddTet4Products(const MaterialPass& pass,
   PointTangents tangents;
   PointMatrices change;
   PointMatrices stresses;
-  VisitTet4Points(
+  VisitTetrahedra<Tet4Points>(
       pass, displacement,
       [&](const Tet4Points& points, const PointMatrices& gradients, int count) {
         pass.law.TangentsAtPoints(pass.moduli, gradients, count, tangents);
@@ -642,9 +646,11 @@ Eigen::MatrixXd LargeStrainForces::Columns(
   assert(displacement.size() == mesh_.NumDofs());
   return SumOfColumns(moduli, [&](auto kind, const MaterialPass& pass,
                                   auto columns) {
-    if constexpr (kind == ElementKind::kTet4) {
+    if constexpr (kind == ElementKind::kTet4 || kind == ElementKind::kTet10) {
+      using Points = std::conditional_t<kind == ElementKind::kTet4, Tet4Points,
+                                        Tet10Points>;
       if (!pass.HasFrames()) {
-        AddTet4Columns(pass, displacement, columns);
+        AddTetrahedraColumns<Points>(pass, displacement, columns);
         return;
       }
     }

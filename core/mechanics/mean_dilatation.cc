@@ -115,23 +115,24 @@ MeanDilatation::Curvature MeanDilatation::CurvatureOf(
     const auto f9 = AsVector(f_[i]);
     const auto g9 = AsVector(g);
     const auto p9 = AsVector(stresses[i]);
-    const Matrix9 project = Matrix9::Identity() - f9 * g9.transpose() / 3;
-    const Matrix9 trace = TraceOfSquares(g);
     const double theta = theta_(Eigen::Index(i));
     const double of_volume = pressures(Eigen::Index(i)) * jacobian_[i];
-    Matrix9 local = s * s * project.transpose() * tangents[i] * project;
-    local += (work / 9 + of_volume) * g9 * g9.transpose();
-    local += (work / 3 - of_volume) * trace;
-    local -= s / 3 * (g9 * p9.transpose() + p9 * g9.transpose());
+    // The tangent T acts on dF - F (F^-T : dF) / 3, which adds outer products
+    // of F^-T and T F.
+    const Vector9 stretched = s * s * tangents[i] * f9;
+    const double of_stretch = f9.dot(stretched);
+    const Vector9 beside_g = ((of_stretch + work) / 9 + of_volume) / 2 * g9 -
+                             (stretched + s * p9) / 3;
+    Matrix9 local = s * s * tangents[i];
+    local += beside_g * g9.transpose() + g9 * beside_g.transpose();
+    local += (work / 3 - of_volume) * TraceOfSquares(g);
     curvature.local.push_back(local);
-    const Vector9 stretched = tangents[i] * f9;
     const Vector9 coupling =
-        (s * s * project.transpose() * stretched - work / 3 * g9 + s * p9) /
-        (3 * theta);
+        (stretched + s * p9 - (of_stretch + work) / 3 * g9) / (3 * theta);
     curvature.coupling.emplace_back(
         Eigen::Map<const Eigen::Matrix3d>(coupling.data()));
     curvature.dilatation(Eigen::Index(i)) =
-        ((s * s * f9.dot(stretched) + work) / 9 - work / 3) / (theta * theta);
+        ((of_stretch + work) / 9 - work / 3) / (theta * theta);
   }
   return curvature;
 }

@@ -16,10 +16,13 @@ namespace elastimate {
 ///   H = sum_i u_i grad(N_i)^T,   f_i = V P grad(N_i)
 class Tet4Points {
  public:
-  /// Takes `count` elements, at most PointMatrices::kPoints, of a mesh of
-  /// linear tetrahedra.  `elements` is not copied, and has to outlive this
-  /// object.
+  static constexpr int kElements = PointMatrices::kPoints;
+
+  /// Takes `count` elements, at most kElements, of a mesh of linear tetrahedra.
+  /// `elements` is not copied, and has to outlive this object.
   Tet4Points(const Mesh& mesh, const Eigen::Index* elements, int count);
+
+  int NumPoints() const { return count_; }
 
   /// Sets `gradients` to H of each element.
   void SetGradients(const double* displacement, PointMatrices& gradients) const;

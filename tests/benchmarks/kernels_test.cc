@@ -45,6 +45,13 @@ TEST_F(Kernels, QuickRunTimesEachKernelAtEachSize) {
   EXPECT_EQ(numberings,
             (std::set<std::string>{"natural", "random", "reordered"}));
   EXPECT_EQ(sizes, (std::set<double>{10985, 98415}));
+  std::set<std::string> kinds;
+  for (const TableRow& row : ReadTable(folder_ / "kernels_large_strains.csv")) {
+    kinds.insert(row.Text("kind"));
+    EXPECT_GT(row.Number("ratio_of_forces [1]"), 0);
+    EXPECT_GT(row.Number("ratio_of_tangents [1]"), 0);
+  }
+  EXPECT_EQ(kinds.size(), 6U);
   const auto metadata =
       nlohmann::json::parse(testing::ReadText(folder_ / "kernels.json"));
   EXPECT_TRUE(metadata.contains("commit"));
