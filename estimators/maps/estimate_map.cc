@@ -1,0 +1,286 @@
+#include "elastimate/estimators/maps/estimate_map.h"
+
+#include <algorithm>
+#include <boost/pending/disjoint_sets.hpp>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "elastimate/core/laws/elasticity.h"
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/estimators/interface/finding_sentences.h"
+#include "elastimate/estimators/maps/field_prior.h"
+#include "elastimate/estimators/maps/level_fit.h"
+#include "elastimate/estimators/maps/map_errors.h"
+#include "elastimate/estimators/maps/map_problem.h"
+#include "elastimate/estimators/maps/region_map.h"
+#include "elastimate/estimators/maps/sharpen_map.h"
+#include "elastimate/estimators/maps/smooth_map.h"
+#include "elastimate/estimators/misfit/displacement_misfit.h"
+
+namespace elastimate {
+namespace {
+
+// ln B from which on a body is not homogeneous.
+constexpr double kLeastEvidence = 3;
+// The number of measurements over that of supported parameters below which the
+// data do not tell noise from structure.
+constexpr double kLeastRedundancy = 4;
+// Structure of a measured body below this standard deviation of ln E may come
+// from its mesh.
+constexpr double kOfTheMesh = 0.05;
+constexpr double kResolved = 3;
+constexpr double kUsualPoissonRatio = 0.3;
+// How far the square sum may be from its mean, in standard deviations.
+constexpr double kMisfit = 5;
+// nu of maps was off by twice what the linearised model says.
+constexpr double kWideningOfPoissonRatio = 2;
+
+// Returns the scene of one isotropic material with the elements of the fit.
+Scene ModelledScene(Scene scene) {
+  scene.materials.clear();
+  scene.mesh.regions.resize(0);
+  return scene.origin == Origin::kMeasured && scene.mesh.Order() == 1
+             ? QuadraticScene(scene)
+             : scene;
+}
+
+bool HasForces(const Scene& scene) {
+  return !AssembleLoadCases(scene).isZero(0) ||
+         std::any_of(scene.load_cases.begin(), scene.load_cases.end(),
+                     [](const LoadCase& load_case) {
+                       return !load_case.resultants.empty();
+                     });
+}
+
+// Returns E of the displacements; empty where they oppose the loads.
+std::optional<double> StartOf(const Scene& scene,
+                              const EstimatorOptions& options, double nu) {
+  EstimatorOptions of_start;
+  of_start.solver = options.solver;
+  DisplacementMisfit misfit(scene, of_start);
+  const double scale =
+      IsotropicElasticity{1, nu}.StiffnessScale(scene.mesh.section.model);
+  const std::optional<DisplacementMisfit::ScaleFit> fit =
+      misfit.FitScale(Eigen::Vector2d(scale, nu * scale), Loss::kNone);
+  return fit ? std::optional<double>(1 / fit->compliance) : std::nullopt;
+}
+
+double SpreadOf(const Eigen::VectorXd& log_moduli,
+                const Eigen::VectorXd& volumes) {
+  const double mean = volumes.dot(log_moduli) / volumes.sum();
+  return std::sqrt(volumes.dot((log_moduli.array() - mean).square().matrix()) /
+                   volumes.sum());
+}
+
+// Returns the volume of the largest connected part of each region.
+Eigen::VectorXd LargestParts(const std::vector<int>& region_of_element,
+                             Eigen::Index num_regions,
+                             const FieldPrior& prior) {
+  boost::disjoint_sets_with_storage<> parts(region_of_element.size());
+  for (std::size_t e = 0; e < region_of_element.size(); ++e) {
+    parts.make_set(e);
+  }
+  for (const auto& sides : prior.Facets().elements.colwise()) {
+    if (sides(1) >= 0 &&
+        region_of_element[sides(0)] == region_of_element[sides(1)]) {
+      parts.union_set(std::size_t(sides(0)), std::size_t(sides(1)));
+    }
+  }
+  Eigen::VectorXd of_parts = Eigen::VectorXd::Zero(prior.NumElements());
+  Eigen::VectorXd largest = Eigen::VectorXd::Zero(num_regions);
+  for (std::size_t e = 0; e < region_of_element.size(); ++e) {
+    double& volume = of_parts(Eigen::Index(parts.find_set(e)));
+    volume += prior.Volumes()(Eigen::Index(e));
+    largest(region_of_element[e]) =
+        std::max(largest(region_of_element[e]), volume);
+  }
+  return largest;
+}
+
+// Returns the diameter of a disc or a ball.
+double DiameterOf(double volume, int dimension) {
+  constexpr double kPi = 3.14159265358979323846;
+  return dimension == 2 ? std::sqrt(4 * volume / kPi)
+                        : std::cbrt(6 * volume / kPi);
+}
+
+class MapBuilder {
+ public:
+  MapBuilder(const Scene& scene, const EstimatorOptions& options)
+      : scene_(scene),
+        prior_(scene.mesh),
+        model_(scene, options.solver),
+        problem_{model_, options.known_poisson_ratio, GivenNoise()} {}
+
+  MapEstimate Build(const std::optional<double>& start) {
+    map_.element_order = scene_.mesh.Order();
+    map_.is_scale_known = start.has_value();
+    const std::vector<int> whole(std::size_t(prior_.NumElements()), 0);
+    const std::optional<LevelFit> homogeneous =
+        FitLevels(problem_, whole,
+                  Eigen::VectorXd::Constant(1, std::log(start.value_or(1))),
+                  problem_.known_poisson_ratio.value_or(kUsualPoissonRatio));
+    if (!homogeneous) {
+      return Failed(SingularStiffness());
+    }
+    const SmoothMap smooth = FitSmoothMap(problem_, prior_, *homogeneous);
+    const MapErrors errors = DescribeMap(problem_, prior_, smooth);
+    const MapState sharpened = SharpenMap(problem_, prior_, smooth);
+    const std::optional<RegionMap> regions =
+        FitRegions(problem_, prior_, sharpened, *homogeneous);
+    map_.field_log_evidence = smooth.log_evidence;
+    map_.region_log_evidence = regions ? regions->log_evidence : 0;
+    map_.supported_parameters = smooth.effective_number;
+    map_.resolution_length = errors.resolution_length;
+    const double best =
+        std::max(map_.field_log_evidence, map_.region_log_evidence);
+    if (best < kLeastEvidence) {
+      const double variance = problem_.Variance(
+          homogeneous->square_sum,
+          double(model_.NumIndependentRows() - homogeneous->unknowns.Rank()));
+      EnterRegions(whole, *homogeneous, variance,
+                   variance * homogeneous->unknowns.InverseGram());
+    } else if (regions && map_.region_log_evidence == best) {
+      map_.verdict = MapVerdict::kRegions;
+      EnterRegions(regions->region_of_element, regions->fit, regions->variance,
+                   regions->covariance);
+    } else {
+      map_.verdict = MapVerdict::kField;
+      EnterField(smooth, errors);
+      if (!smooth.has_converged) {
+        return Failed(SearchFailed("the smooth map did not settle"));
+      }
+    }
+    map_.status = Status::kOk;
+    Judge();
+    map_.work = model_.WorkDone();
+    return map_;
+  }
+
+ private:
+  std::optional<double> GivenNoise() const {
+    const ObservedDisplacements& observed = model_.Observed();
+    return observed.GivenNoise() ? std::optional<double>(1 / observed.Norm())
+                                 : std::nullopt;
+  }
+
+  MapEstimate Failed(const Finding& finding) {
+    map_.status = StatusOf(finding.code);
+    map_.findings.push_back(finding);
+    map_.work = model_.WorkDone();
+    return map_;
+  }
+
+  void EnterNoise(double square_sum, double variance) {
+    const ObservedDisplacements& observed = model_.Observed();
+    square_sum_ = square_sum;
+    map_.noise_sd =
+        observed.GivenNoise().value_or(std::sqrt(variance) * observed.Norm());
+  }
+
+  void EnterRegions(const std::vector<int>& region_of_element,
+                    const LevelFit& fit, double variance,
+                    const Eigen::MatrixXd& covariance) {
+    const Eigen::Index n = fit.levels.size();
+    const double nu = fit.state.poisson_ratio;
+    Eigen::VectorXd volumes = Eigen::VectorXd::Zero(n);
+    Eigen::VectorXd lengths = Eigen::VectorXd::Zero(n);
+    for (Eigen::Index e = 0; e < prior_.NumElements(); ++e) {
+      const double volume = prior_.Volumes()(e);
+      volumes(region_of_element[e]) += volume;
+      lengths(region_of_element[e]) += volume * map_.resolution_length(e);
+    }
+    const Eigen::VectorXd largest = LargestParts(region_of_element, n, prior_);
+    const Eigen::VectorXd sd = covariance.diagonal().cwiseSqrt();
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double modulus = std::exp(fit.levels(i));
+      const double diameter = DiameterOf(largest(i), prior_.Dimension());
+      map_.regions.push_back(
+          {modulus, modulus * sd(i), scene_.mesh.section.thickness * volumes(i),
+           diameter,
+           n == 1 || diameter * volumes(i) >= kResolved * lengths(i)});
+    }
+    map_.region_of_element = region_of_element;
+    map_.youngs_modulus = fit.state.log_moduli.array().exp();
+    map_.youngs_modulus_standard_error.resize(prior_.NumElements());
+    for (Eigen::Index e = 0; e < prior_.NumElements(); ++e) {
+      map_.youngs_modulus_standard_error(e) =
+          map_.regions[region_of_element[e]].standard_error;
+    }
+    map_.poisson_ratio = nu;
+    map_.poisson_ratio_standard_error = (n == 1 ? 1 : kWideningOfPoissonRatio) *
+                                        sd(n) * (1 + nu) * (1 - 2 * nu) / 3;
+    EnterNoise(fit.square_sum, variance);
+  }
+
+  void EnterField(const SmoothMap& smooth, const MapErrors& errors) {
+    map_.youngs_modulus = smooth.state.log_moduli.array().exp();
+    map_.youngs_modulus_standard_error =
+        map_.youngs_modulus.cwiseProduct(errors.log_modulus_sd);
+    map_.poisson_ratio = smooth.state.poisson_ratio;
+    map_.poisson_ratio_standard_error =
+        kWideningOfPoissonRatio * errors.poisson_ratio_sd;
+    EnterNoise(smooth.square_sum, smooth.variance);
+  }
+
+  // Says what the numbers of the map mean.
+  void Judge() {
+    const double num_rows = double(model_.NumIndependentRows());
+    if (!problem_.noise && map_.verdict == MapVerdict::kField &&
+        num_rows < kLeastRedundancy * map_.supported_parameters) {
+      map_.findings.push_back(NoiseNeeded(num_rows, map_.supported_parameters));
+    }
+    const double freedom = num_rows - (map_.verdict == MapVerdict::kField
+                                           ? map_.supported_parameters
+                                           : double(map_.regions.size()));
+    if (problem_.noise && freedom > 0) {
+      const double ratio = square_sum_ / (problem_.Variance(0, 1) * freedom);
+      if (ratio > 1 + kMisfit * std::sqrt(2 / freedom)) {
+        map_.findings.push_back(Misfit(std::sqrt(ratio)));
+      }
+    }
+    const double spread =
+        SpreadOf(map_.youngs_modulus.array().log(), prior_.Volumes());
+    if (scene_.origin == Origin::kMeasured &&
+        map_.verdict != MapVerdict::kHomogeneous && spread < kOfTheMesh) {
+      map_.findings.push_back(MayBeTheMesh(spread));
+    }
+    for (std::size_t i = 0; i < map_.regions.size(); ++i) {
+      if (!map_.regions[i].is_resolved) {
+        map_.findings.push_back(
+            NotResolved(int(i) + 1, map_.regions[i].diameter));
+        break;
+      }
+    }
+  }
+
+  const Scene& scene_;
+  FieldPrior prior_;
+  FieldSensitivity model_;
+  MapProblem problem_;
+  MapEstimate map_;
+  double square_sum_ = 0;
+};
+
+}  // namespace
+
+MapEstimate EstimateMap(const Scene& scene, const EstimatorOptions& options) {
+  const Scene modelled = ModelledScene(scene);
+  std::optional<double> start;
+  if (HasForces(modelled)) {
+    start = StartOf(modelled, options,
+                    options.known_poisson_ratio.value_or(kUsualPoissonRatio));
+    if (!start) {
+      MapEstimate map;
+      const Finding finding = DisplacementsOpposeLoads();
+      map.status = StatusOf(finding.code);
+      map.findings = {finding};
+      return map;
+    }
+  }
+  return MapBuilder(modelled, options).Build(start);
+}
+
+}  // namespace elastimate
