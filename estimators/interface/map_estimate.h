@@ -57,8 +57,11 @@ struct MapEstimate {
   /// homogeneous, none where it is a field.
   std::vector<MapRegion> regions;
   std::vector<int> region_of_element;  ///< From 0 on; empty for a field.
+  /// The geometric mean of E over the volume [pressure].
+  double mean_youngs_modulus = 0;
   double poisson_ratio = 0;
-  double poisson_ratio_standard_error = 0;  ///< Zero where nu is known.
+  /// Of the two above.  nu has a zero row and column where it is known.
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
   /// The standard deviation of the noise of a component, given or found
   /// [length].
   double noise_sd = 0;

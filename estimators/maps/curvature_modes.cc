@@ -12,7 +12,8 @@ namespace elastimate {
 namespace {
 
 constexpr Eigen::Index kFirstModes = 64;
-constexpr double kMostEntries = 4e7;  // Of each of three matrices: 1 GB in all.
+constexpr double kMostModeEntries =
+    4e7;  // Of each of three matrices: 1 GB in all.
 constexpr Eigen::Index kProbes = 8;
 
 }  // namespace
@@ -20,8 +21,8 @@ constexpr Eigen::Index kProbes = 8;
 void CurvatureModes::AddUntil(double least, const ColumnOperator& multiply) {
   const Eigen::Index size = basis_.rows();
   const Eigen::Index most = std::min<Eigen::Index>(
-      size, std::max<Eigen::Index>(kFirstModes,
-                                   Eigen::Index(kMostEntries / double(size))));
+      size, std::max<Eigen::Index>(
+                kFirstModes, Eigen::Index(kMostModeEntries / double(size))));
   while (basis_.cols() < most && (Size() == 0 || values_(Size() - 1) > least)) {
     const Eigen::Index old = basis_.cols();
     const Eigen::Index more =
@@ -94,12 +95,13 @@ void CurvatureModes::Decompose(const ColumnOperator& multiply) {
 }
 
 double CurvatureModes::LogDeterminant(double k) const {
-  return (k * values_.array()).log1p().sum() + k * trace_left_;
+  return (k * values_.array()).log1p().sum() +
+         NumLeft() * std::log1p(k * LeastValue());
 }
 
 double CurvatureModes::EffectiveNumber(double k) const {
   return (k * values_.array() / (1 + k * values_.array())).sum() +
-         k * trace_left_;
+         NumLeft() * k * LeastValue() / (1 + k * LeastValue());
 }
 
 Eigen::MatrixXd CurvatureModes::Solve(double k,

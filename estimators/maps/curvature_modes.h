@@ -35,8 +35,8 @@ class CurvatureModes {
   /// Descending.
   const Eigen::VectorXd& Values() const { return values_; }
 
-  /// Returns ln det(I + k H), where what the modes leave out counts to first
-  /// order.
+  /// Returns ln det(I + k H), where the trace that the modes leave out counts
+  /// as that of further modes of the least lambda.
   double LogDeterminant(double k) const;
   /// Returns tr(k H (I + k H)^-1), likewise.
   double EffectiveNumber(double k) const;
@@ -45,6 +45,11 @@ class CurvatureModes {
 
  private:
   void Decompose(const ColumnOperator& multiply);
+  double LeastValue() const { return values_(Size() - 1); }
+  /// How many modes of the least lambda have the trace that is left out.
+  double NumLeft() const {
+    return trace_left_ > 0 ? trace_left_ / LeastValue() : 0;
+  }
 
   Eigen::MatrixXd basis_;     ///< Random orthonormal columns.
   Eigen::MatrixXd products_;  ///< H times these.

@@ -33,12 +33,12 @@ constexpr double kOfTheMesh = 0.05;
 constexpr double kResolved = 3;
 constexpr double kUsualPoissonRatio = 0.3;
 // How far the square sum may be from its mean, in standard deviations.
-constexpr double kMisfit = 5;
+constexpr double kMostMisfit = 5;
 // nu of maps was off by twice what the linearised model says.
 constexpr double kWideningOfPoissonRatio = 2;
 
 // Returns the scene of one isotropic material with the elements of the fit.
-Scene ModelledScene(Scene scene) {
+Scene SceneOfMap(Scene scene) {
   scene.materials.clear();
   scene.mesh.regions.resize(0);
   return scene.origin == Origin::kMeasured && scene.mesh.Order() == 1
@@ -46,7 +46,7 @@ Scene ModelledScene(Scene scene) {
              : scene;
 }
 
-bool HasForces(const Scene& scene) {
+bool HasAnyForce(const Scene& scene) {
   return !AssembleLoadCases(scene).isZero(0) ||
          std::any_of(scene.load_cases.begin(), scene.load_cases.end(),
                      [](const LoadCase& load_case) {
@@ -55,8 +55,8 @@ bool HasForces(const Scene& scene) {
 }
 
 // Returns E of the displacements; empty where they oppose the loads.
-std::optional<double> StartOf(const Scene& scene,
-                              const EstimatorOptions& options, double nu) {
+std::optional<double> ScaleAtStart(const Scene& scene,
+                                   const EstimatorOptions& options, double nu) {
   EstimatorOptions of_start;
   of_start.solver = options.solver;
   DisplacementMisfit misfit(scene, of_start);
@@ -67,8 +67,8 @@ std::optional<double> StartOf(const Scene& scene,
   return fit ? std::optional<double>(1 / fit->compliance) : std::nullopt;
 }
 
-double SpreadOf(const Eigen::VectorXd& log_moduli,
-                const Eigen::VectorXd& volumes) {
+double SpreadOfLog(const Eigen::VectorXd& log_moduli,
+                   const Eigen::VectorXd& volumes) {
   const double mean = volumes.dot(log_moduli) / volumes.sum();
   return std::sqrt(volumes.dot((log_moduli.array() - mean).square().matrix()) /
                    volumes.sum());
@@ -180,11 +180,21 @@ class MapBuilder {
         observed.GivenNoise().value_or(std::sqrt(variance) * observed.Norm());
   }
 
+  // Enters the means with their covariance as (ln E, LogStiffnessRatio).
+  void EnterMeans(const MapState& state, const Eigen::Matrix2d& covariance) {
+    const double nu = state.poisson_ratio;
+    map_.mean_youngs_modulus = std::exp(prior_.Volumes().dot(state.log_moduli) /
+                                        prior_.Volumes().sum());
+    map_.poisson_ratio = nu;
+    const Eigen::Vector2d slopes(map_.mean_youngs_modulus,
+                                 (1 + nu) * (1 - 2 * nu) / 3);
+    map_.covariance = slopes.asDiagonal() * covariance * slopes.asDiagonal();
+  }
+
   void EnterRegions(const std::vector<int>& region_of_element,
                     const LevelFit& fit, double variance,
                     const Eigen::MatrixXd& covariance) {
     const Eigen::Index n = fit.levels.size();
-    const double nu = fit.state.poisson_ratio;
     Eigen::VectorXd volumes = Eigen::VectorXd::Zero(n);
     Eigen::VectorXd lengths = Eigen::VectorXd::Zero(n);
     for (Eigen::Index e = 0; e < prior_.NumElements(); ++e) {
@@ -209,9 +219,11 @@ class MapBuilder {
       map_.youngs_modulus_standard_error(e) =
           map_.regions[region_of_element[e]].standard_error;
     }
-    map_.poisson_ratio = nu;
-    map_.poisson_ratio_standard_error = (n == 1 ? 1 : kWideningOfPoissonRatio) *
-                                        sd(n) * (1 + nu) * (1 - 2 * nu) / 3;
+    // The mean of ln E and nu are linear in the levels and the last unknown.
+    Eigen::MatrixXd means = Eigen::MatrixXd::Zero(2, n + 1);
+    means.row(0).head(n) = volumes.transpose() / volumes.sum();
+    means(1, n) = n == 1 ? 1 : kWideningOfPoissonRatio;
+    EnterMeans(fit.state, means * covariance * means.transpose());
     EnterNoise(fit.square_sum, variance);
   }
 
@@ -219,9 +231,10 @@ class MapBuilder {
     map_.youngs_modulus = smooth.state.log_moduli.array().exp();
     map_.youngs_modulus_standard_error =
         map_.youngs_modulus.cwiseProduct(errors.log_modulus_sd);
-    map_.poisson_ratio = smooth.state.poisson_ratio;
-    map_.poisson_ratio_standard_error =
-        kWideningOfPoissonRatio * errors.poisson_ratio_sd;
+    const Eigen::Vector2d widening(1, kWideningOfPoissonRatio);
+    EnterMeans(smooth.state, widening.asDiagonal() *
+                                 errors.covariance_of_means *
+                                 widening.asDiagonal());
     EnterNoise(smooth.square_sum, smooth.variance);
   }
 
@@ -237,12 +250,12 @@ class MapBuilder {
                                            : double(map_.regions.size()));
     if (problem_.noise && freedom > 0) {
       const double ratio = square_sum_ / (problem_.Variance(0, 1) * freedom);
-      if (ratio > 1 + kMisfit * std::sqrt(2 / freedom)) {
+      if (ratio > 1 + kMostMisfit * std::sqrt(2 / freedom)) {
         map_.findings.push_back(Misfit(std::sqrt(ratio)));
       }
     }
     const double spread =
-        SpreadOf(map_.youngs_modulus.array().log(), prior_.Volumes());
+        SpreadOfLog(map_.youngs_modulus.array().log(), prior_.Volumes());
     if (scene_.origin == Origin::kMeasured &&
         map_.verdict != MapVerdict::kHomogeneous && spread < kOfTheMesh) {
       map_.findings.push_back(MayBeTheMesh(spread));
@@ -267,11 +280,12 @@ class MapBuilder {
 }  // namespace
 
 MapEstimate EstimateMap(const Scene& scene, const EstimatorOptions& options) {
-  const Scene modelled = ModelledScene(scene);
+  const Scene modelled = SceneOfMap(scene);
   std::optional<double> start;
-  if (HasForces(modelled)) {
-    start = StartOf(modelled, options,
-                    options.known_poisson_ratio.value_or(kUsualPoissonRatio));
+  if (HasAnyForce(modelled)) {
+    start =
+        ScaleAtStart(modelled, options,
+                     options.known_poisson_ratio.value_or(kUsualPoissonRatio));
     if (!start) {
       MapEstimate map;
       const Finding finding = DisplacementsOpposeLoads();

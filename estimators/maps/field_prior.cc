@@ -13,11 +13,12 @@ constexpr double kRelativeLength = 0.4;
 // The Robin coefficient of the surface is kappa over this number, which makes
 // the variance of the field even.
 constexpr double kRobin = 1.42;
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kPiOfPrior = 3.14159265358979323846;
 
 // The variance of the Matern field of unit white noise.
 double MaternVariance(double kappa, int dimension) {
-  return dimension == 2 ? 1 / (4 * kPi * kappa * kappa) : 1 / (8 * kPi * kappa);
+  return dimension == 2 ? 1 / (4 * kPiOfPrior * kappa * kappa)
+                        : 1 / (8 * kPiOfPrior * kappa);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace elastimate {
 namespace {
 
 // Solves with so many columns at a time are nearly as quick as they get.
-constexpr Eigen::Index kColumnsAtATime = 64;
+constexpr Eigen::Index kFieldColumns = 64;
 
 Scene WithMaterialOfEachElement(Scene scene) {
   const int num_elements = static_cast<int>(scene.mesh.NumElements());
@@ -35,8 +35,8 @@ template <class Function>
 Eigen::MatrixXd ByColumns(const Eigen::MatrixXd& columns, Eigen::Index num_rows,
                           const Function& function) {
   Eigen::MatrixXd results(num_rows, columns.cols());
-  for (Eigen::Index j = 0; j < columns.cols(); j += kColumnsAtATime) {
-    const Eigen::Index n = std::min(kColumnsAtATime, columns.cols() - j);
+  for (Eigen::Index j = 0; j < columns.cols(); j += kFieldColumns) {
+    const Eigen::Index n = std::min(kFieldColumns, columns.cols() - j);
     results.middleCols(j, n) = function(columns.middleCols(j, n));
   }
   return results;

@@ -5,11 +5,11 @@
 namespace elastimate {
 namespace {
 
-constexpr int kMostSteps = 30;
-constexpr int kMostHalvings = 6;
+constexpr int kMostLevelSteps = 30;
+constexpr int kMostLevelHalvings = 6;
 // A step is the last where it would take less than this from the square sum,
-// relative to the square of one row: a thousandth of a standard deviation.
-constexpr double kSettled = 1e-6;
+// relative to the square of one row: a hundredth of a standard deviation.
+constexpr double kSettledLevels = 1e-4;
 
 }  // namespace
 
@@ -43,13 +43,15 @@ std::optional<LevelFit> FitLevels(const MapProblem& problem,
         square_sum - unknowns.Project(model.Residual()).squaredNorm();
     const Eigen::VectorXd step = unknowns.Solve(model.Residual());
     LevelFit fit = {z, state, square_sum, unknowns};
-    if (i == kMostSteps || gain <= kSettled * square_sum / num_rows) {
+    if (i == kMostLevelSteps ||
+        gain <= kSettledLevels * square_sum / num_rows) {
       return fit;
     }
     const Eigen::Index n = levels.size();
     double factor = LargestStep(step.head(n), step(n));
     bool is_better = false;
-    for (int halving = 0; halving < kMostHalvings && !is_better; ++halving) {
+    for (int halving = 0; halving < kMostLevelHalvings && !is_better;
+         ++halving) {
       const MapState next =
           Stepped(state, factor * (parts * step.head(n)), factor * step(n));
       is_better = model.MoveTo(next.log_moduli, next.poisson_ratio, noise) &&

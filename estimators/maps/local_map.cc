@@ -18,8 +18,8 @@
 namespace elastimate {
 namespace {
 
-constexpr int kMostSteps = 20;
-constexpr double kSettled = 1e-13;
+constexpr int kMostLocalSteps = 20;
+constexpr double kSettledLocally = 1e-13;
 
 // The equations of the free degrees of freedom of all load cases.
 class LocalEquations {
@@ -94,13 +94,13 @@ class LocalEquations {
   Eigen::VectorXd forces_;
 };
 
-struct Solution {
+struct LocalSolution {
   Eigen::VectorXd values;
   bool is_determined;
 };
 
-Solution SolveSparse(Eigen::SparseMatrix<double> columns,
-                     const Eigen::VectorXd& rows) {
+LocalSolution SolveSparse(Eigen::SparseMatrix<double> columns,
+                          const Eigen::VectorXd& rows) {
   columns.makeCompressed();
   const Eigen::SparseQR<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>>
       qr(columns);
@@ -108,12 +108,12 @@ Solution SolveSparse(Eigen::SparseMatrix<double> columns,
 }
 
 // Returns E at this nu.
-Solution ModuliAt(const LocalEquations& equations, double nu) {
+LocalSolution LocalModuliAt(const LocalEquations& equations, double nu) {
   return SolveSparse(equations.Columns(nu, {}), equations.Forces());
 }
 
-double ResidualAt(const LocalEquations& equations, double nu,
-                  const Eigen::VectorXd& moduli) {
+double LocalResidualAt(const LocalEquations& equations, double nu,
+                       const Eigen::VectorXd& moduli) {
   return (equations.Columns(nu, {}) * moduli - equations.Forces()).norm();
 }
 
@@ -124,22 +124,22 @@ LocalMap EstimateLocalMap(const Scene& scene, const EstimatorOptions& options) {
   LocalMap map;
   if (options.known_poisson_ratio) {
     map.poisson_ratio = *options.known_poisson_ratio;
-    const Solution solution = ModuliAt(equations, map.poisson_ratio);
+    const LocalSolution solution = LocalModuliAt(equations, map.poisson_ratio);
     map.youngs_modulus = solution.values;
     map.is_determined = solution.is_determined;
   } else {
     double least = std::numeric_limits<double>::infinity();
     for (const double nu : {-0.4, 0.0, 0.2, 0.3, 0.4, 0.45, 0.49}) {
-      const Eigen::VectorXd moduli = ModuliAt(equations, nu).values;
-      const double residual = ResidualAt(equations, nu, moduli);
+      const Eigen::VectorXd moduli = LocalModuliAt(equations, nu).values;
+      const double residual = LocalResidualAt(equations, nu, moduli);
       if (residual < least) {
         least = residual;
         map.poisson_ratio = nu;
         map.youngs_modulus = moduli;
       }
     }
-    for (int i = 0; i < kMostSteps; ++i) {
-      const Solution solution =
+    for (int i = 0; i < kMostLocalSteps; ++i) {
+      const LocalSolution solution =
           SolveSparse(equations.Columns(map.poisson_ratio, map.youngs_modulus),
                       equations.Forces());
       // The columns of E give F at the moduli themselves, so the solution is
@@ -148,15 +148,15 @@ LocalMap EstimateLocalMap(const Scene& scene, const EstimatorOptions& options) {
       map.poisson_ratio =
           std::clamp(last + solution.values(solution.values.size() - 1),
                      kSmallestPoissonRatio, kLargestPoissonRatio);
-      map.youngs_modulus = ModuliAt(equations, map.poisson_ratio).values;
+      map.youngs_modulus = LocalModuliAt(equations, map.poisson_ratio).values;
       map.is_determined = solution.is_determined;
-      if (std::abs(map.poisson_ratio - last) <= kSettled) {
+      if (std::abs(map.poisson_ratio - last) <= kSettledLocally) {
         break;
       }
     }
   }
   map.force_residual =
-      ResidualAt(equations, map.poisson_ratio, map.youngs_modulus) /
+      LocalResidualAt(equations, map.poisson_ratio, map.youngs_modulus) /
       equations.Forces().norm();
   return map;
 }

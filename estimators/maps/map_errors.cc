@@ -13,7 +13,7 @@ namespace {
 constexpr Eigen::Index kDraws = 64;
 // The square of this is the error of a draw in the norm of the posterior,
 // relative to the number of its unknowns.
-constexpr double kAccurate = 0.1;
+constexpr double kAccurateDraws = 0.1;
 
 }  // namespace
 
@@ -28,7 +28,7 @@ MapErrors DescribeMap(const MapProblem& problem, const FieldPrior& prior,
       sigma * StandardNormal(model.NumRows(), kDraws, generator));
   const Eigen::MatrixXd zeta = StandardNormal(n, kDraws, generator);
   ConjugateGradientOptions options;
-  options.tolerance = kAccurate;
+  options.tolerance = kAccurateDraws;
   const Eigen::MatrixXd y =
       SolveByConjugateGradients(
           [&](const Eigen::MatrixXd& columns) {
@@ -51,9 +51,10 @@ MapErrors DescribeMap(const MapProblem& problem, const FieldPrior& prior,
   MapErrors errors;
   errors.log_modulus_sd =
       (fields.rowwise().squaredNorm() / double(kDraws)).cwiseSqrt();
-  const double nu = map.state.poisson_ratio;
-  errors.poisson_ratio_sd = (1 + nu) * (1 - 2 * nu) / 3 * flat.row(1).norm() /
-                            std::sqrt(double(kDraws));
+  Eigen::Matrix2Xd means(2, kDraws);
+  means << prior.Volumes().transpose() * fields / prior.Volumes().sum(),
+      flat.row(1);
+  errors.covariance_of_means = means * means.transpose() / double(kDraws);
   const Eigen::VectorXd share = map.ratio * map.modes.Values().array() /
                                 (1 + map.ratio * map.modes.Values().array());
   const Eigen::VectorXd resolved =

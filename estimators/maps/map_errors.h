@@ -16,9 +16,9 @@ struct MapErrors {
   /// l_e = (V_e / R_ee)^(1/d), the size of what the data resolve around each
   /// element, at most that of the body [length].
   Eigen::VectorXd resolution_length;
-  /// The standard deviation of nu by the linearised model; zero where nu is
-  /// known.
-  double poisson_ratio_sd = 0;
+  /// The covariance of the mean of ln E over the volume and of the
+  /// LogStiffnessRatio of nu, by the linearised model.
+  Eigen::Matrix2d covariance_of_means;
 };
 
 /// Draws fields from the posterior of the linearised model: noise eta and zeta

@@ -11,8 +11,8 @@ namespace elastimate {
 namespace {
 
 // A column that is so small beside the largest one is rounding.
-constexpr double kNothing = 1e-9;
-constexpr double kMostChange = 2;
+constexpr double kNothingOfColumns = 1e-9;
+constexpr double kMostChangeOfMap = 2;
 
 }  // namespace
 
@@ -33,7 +33,7 @@ FlatUnknowns::FlatUnknowns(const MapProblem& problem, const MapState& state,
     columns_.rightCols(1) =
         problem.model.OfPoissonRatio() * ((1 + nu) * (1 - 2 * nu) / 3);
   }
-  basis_ = OrthonormalBasis(columns_, kNothing);
+  basis_ = OrthonormalBasis(columns_, kNothingOfColumns);
 }
 
 Eigen::MatrixXd FlatUnknowns::Project(const Eigen::MatrixXd& rows) const {
@@ -41,7 +41,8 @@ Eigen::MatrixXd FlatUnknowns::Project(const Eigen::MatrixXd& rows) const {
 }
 
 Eigen::MatrixXd FlatUnknowns::Solve(const Eigen::MatrixXd& rows) const {
-  Eigen::MatrixXd solution = SolveLeastSquares(columns_, rows, kNothing);
+  Eigen::MatrixXd solution =
+      SolveLeastSquares(columns_, rows, kNothingOfColumns);
   if (!has_free_ratio_) {
     solution.conservativeResize(solution.rows() + 1, Eigen::NoChange);
     solution.bottomRows(1).setZero();
@@ -69,8 +70,8 @@ MapState Stepped(const MapState& state, const Eigen::VectorXd& of_log_moduli,
 double LargestStep(const Eigen::VectorXd& of_log_moduli,
                    double of_log_stiffness_ratio) {
   return std::min(
-      1.0, kMostChange / std::max(of_log_moduli.lpNorm<Eigen::Infinity>(),
-                                  std::abs(of_log_stiffness_ratio)));
+      1.0, kMostChangeOfMap / std::max(of_log_moduli.lpNorm<Eigen::Infinity>(),
+                                       std::abs(of_log_stiffness_ratio)));
 }
 
 }  // namespace elastimate

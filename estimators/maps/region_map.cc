@@ -12,11 +12,11 @@ namespace elastimate {
 namespace {
 
 constexpr Eigen::Index kMostRegions = 3;
-constexpr int kMostRounds = 40;
+constexpr int kMostRegionRounds = 15;
 
 // Means of values with weights, ascending, from quantiles on (Lloyd).
-Eigen::VectorXd MeansOf(const Eigen::VectorXd& values,
-                        const Eigen::VectorXd& weights, Eigen::Index k) {
+Eigen::VectorXd ClusterMeans(const Eigen::VectorXd& values,
+                             const Eigen::VectorXd& weights, Eigen::Index k) {
   Eigen::VectorXd means =
       Eigen::VectorXd::LinSpaced(k, values.minCoeff(), values.maxCoeff());
   for (int i = 0; i < 100; ++i) {
@@ -35,7 +35,7 @@ Eigen::VectorXd MeansOf(const Eigen::VectorXd& values,
 
 // An element at a boundary, the region on the other side, and what the misfit
 // and the boundary gain where it goes there.
-struct Move {
+struct RegionMove {
   int element;
   int region;
   double cost;
@@ -51,11 +51,11 @@ class RegionSearch {
         fit_(std::move(fit)) {}
 
   void Improve() {
-    for (int round = 0; round < kMostRounds; ++round) {
-      std::vector<Move> moves = Moves();
+    for (int round = 0; round < kMostRegionRounds; ++round) {
+      std::vector<RegionMove> moves = Moves();
       moves.erase(
           std::remove_if(moves.begin(), moves.end(),
-                         [](const Move& move) { return move.cost >= 0; }),
+                         [](const RegionMove& move) { return move.cost >= 0; }),
           moves.end());
       // The model is linearised and moves act on each other, so fewer of them
       // may do where all of them do not.
@@ -107,7 +107,7 @@ class RegionSearch {
   }
 
   // Returns the change of the number of facets between regions.
-  std::vector<Move> Neighbours() const {
+  std::vector<RegionMove> Neighbours() const {
     const Eigen::Index num_regions = fit_.levels.size();
     std::vector<std::vector<int>> counts(
         regions_.size(), std::vector<int>(std::size_t(num_regions), 0));
@@ -117,7 +117,7 @@ class RegionSearch {
         ++counts[sides(1)][regions_[sides(0)]];
       }
     }
-    std::vector<Move> moves;
+    std::vector<RegionMove> moves;
     for (std::size_t e = 0; e < regions_.size(); ++e) {
       for (int region = 0; region < num_regions; ++region) {
         if (region != regions_[e] && counts[e][region] > 0) {
@@ -130,10 +130,10 @@ class RegionSearch {
   }
 
   // Returns the possible moves, the best first.  The model is at the fit.
-  std::vector<Move> Moves() {
-    std::vector<Move> moves = Neighbours();
+  std::vector<RegionMove> Moves() {
+    std::vector<RegionMove> moves = Neighbours();
     elements_.clear();
-    for (const Move& move : moves) {
+    for (const RegionMove& move : moves) {
       if (elements_.empty() || elements_.back() != move.element) {
         elements_.push_back(move.element);
       }
@@ -149,7 +149,7 @@ class RegionSearch {
         -(own.transpose() * problem_.model.Residual()) / Variance();
     const Eigen::VectorXd curvature =
         own.colwise().squaredNorm().transpose() / Variance();
-    for (Move& move : moves) {
+    for (RegionMove& move : moves) {
       const auto place =
           std::lower_bound(elements_.begin(), elements_.end(), move.element) -
           elements_.begin();
@@ -157,20 +157,21 @@ class RegionSearch {
       move.cost +=
           gradient(place) * delta + curvature(place) * delta * delta / 2;
     }
-    std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) {
-      return std::make_pair(a.cost, a.element) <
-             std::make_pair(b.cost, b.element);
-    });
+    std::sort(moves.begin(), moves.end(),
+              [](const RegionMove& a, const RegionMove& b) {
+                return std::make_pair(a.cost, a.element) <
+                       std::make_pair(b.cost, b.element);
+              });
     return moves;
   }
 
-  double DeltaOf(const Move& move) const {
+  double DeltaOf(const RegionMove& move) const {
     return fit_.levels(move.region) - fit_.levels(regions_[move.element]);
   }
 
-  bool Take(const std::vector<Move>& moves) {
+  bool Take(const std::vector<RegionMove>& moves) {
     std::vector<int> regions = regions_;
-    for (const Move& move : moves) {
+    for (const RegionMove& move : moves) {
       // An element has its best move first.
       if (regions[move.element] == regions_[move.element]) {
         regions[move.element] = move.region;
@@ -190,9 +191,9 @@ class RegionSearch {
   // there with the probability p = 1 / (1 + e^c), which shifts the levels by
   // (Z^T Z)^-1 Z^T S e delta.
   void AddUncertainElements(Eigen::MatrixXd& covariance) {
-    const std::vector<Move> moves = Moves();
+    const std::vector<RegionMove> moves = Moves();
     const Eigen::MatrixXd shifts = fit_.unknowns.Solve(columns_);
-    for (const Move& move : moves) {
+    for (const RegionMove& move : moves) {
       const auto place =
           std::lower_bound(elements_.begin(), elements_.end(), move.element) -
           elements_.begin();
@@ -223,7 +224,7 @@ std::optional<RegionMap> FitRegions(const MapProblem& problem,
       homogeneous);
   for (Eigen::Index k = 2; k <= kMostRegions; ++k) {
     const Eigen::VectorXd means =
-        MeansOf(sharpened.log_moduli, prior.Volumes(), k);
+        ClusterMeans(sharpened.log_moduli, prior.Volumes(), k);
     std::vector<int> regions(std::size_t(prior.NumElements()));
     for (std::size_t e = 0; e < regions.size(); ++e) {
       Eigen::Index nearest = 0;

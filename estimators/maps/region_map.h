@@ -40,7 +40,7 @@ struct RegionMap {
 /// falls, with |r|^2 / sigma^2 for the first term where sigma is known.  The
 /// best of both numbers k of regions is returned; empty where no region could
 /// be fitted.  Cost: a solve for each element at a boundary and some fits of
-/// levels in each round; at most 40 rounds.
+/// levels in each round; at most 15 rounds.
 [[nodiscard]] std::optional<RegionMap> FitRegions(const MapProblem& problem,
                                                   const FieldPrior& prior,
                                                   const MapState& sharpened,

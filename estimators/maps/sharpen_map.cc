@@ -12,18 +12,18 @@
 namespace elastimate {
 namespace {
 
-constexpr double kBeta = 0.02;
-constexpr int kMostSteps = 20;
-constexpr int kMostHalvings = 6;
-constexpr double kSettled = 3e-3;
-constexpr double kAccurate = 1e-3;
-constexpr int kMostIterations = 300;
+constexpr double kSharpBeta = 0.02;
+constexpr int kMostSharpSteps = 20;
+constexpr int kMostSharpHalvings = 6;
+constexpr double kSettledSharp = 3e-3;
+constexpr double kAccurateSharp = 1e-3;
+constexpr int kMostSharpIterations = 300;
 // Modes of the smooth map that the preconditioner takes: their cost grows with
 // the square of the number.
 constexpr Eigen::Index kMostModes = 256;
 // What the preconditioner adds to alpha R, relative to its diagonal, so that it
 // has an inverse.
-constexpr double kShift = 1e-4;
+constexpr double kSharpShift = 1e-4;
 
 // The penalty on jumps, divided by alpha.
 class JumpPenalty {
@@ -33,7 +33,7 @@ class JumpPenalty {
   double Of(const Eigen::VectorXd& field) const {
     double penalty = 0;
     Visit(field, [&](int, int, double area, double root) {
-      penalty += area * (root - kBeta);
+      penalty += area * (root - kSharpBeta);
     });
     return penalty;
   }
@@ -59,7 +59,8 @@ class JumpPenalty {
       const int a = facets_.elements(0, i);
       const int b = facets_.elements(1, i);
       if (b >= 0) {
-        function(a, b, facets_.area(i), std::hypot(field(a) - field(b), kBeta));
+        function(a, b, facets_.area(i),
+                 std::hypot(field(a) - field(b), kSharpBeta));
       }
     }
   }
@@ -75,7 +76,7 @@ class SharpPreconditioner {
                       const Eigen::MatrixXd& modes)
       : modes_(modes) {
     const Eigen::VectorXd diagonal = penalty.diagonal();
-    const double shift = kShift * diagonal.mean();
+    const double shift = kSharpShift * diagonal.mean();
     for (Eigen::Index e = 0; e < penalty.rows(); ++e) {
       penalty.coeffRef(e, e) += shift;
     }
@@ -117,7 +118,7 @@ MapState SharpenMap(const MapProblem& problem, const FieldPrior& prior,
           .asDiagonal();
   MapState state = smooth.state;
   double alpha = 0;
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < kMostSharpSteps; ++i) {
     const double jumps = penalty.Of(state.log_moduli);
     if (!(jumps > 0)) {
       break;
@@ -135,8 +136,8 @@ MapState SharpenMap(const MapProblem& problem, const FieldPrior& prior,
         curvature * state.log_moduli;
     const SharpPreconditioner preconditioner(curvature, modes);
     ConjugateGradientOptions options;
-    options.tolerance = kAccurate;
-    options.most_iterations = kMostIterations;
+    options.tolerance = kAccurateSharp;
+    options.most_iterations = kMostSharpIterations;
     const Eigen::VectorXd field =
         SolveByConjugateGradients(
             [&](const Eigen::MatrixXd& x) {
@@ -155,7 +156,8 @@ MapState SharpenMap(const MapProblem& problem, const FieldPrior& prior,
         residual.squaredNorm() / (2 * variance) + alpha * jumps;
     double factor = LargestStep(step, flat(1));
     bool is_better = false;
-    for (int halving = 0; halving < kMostHalvings && !is_better; ++halving) {
+    for (int halving = 0; halving < kMostSharpHalvings && !is_better;
+         ++halving) {
       const MapState next = Stepped(state, factor * step, factor * flat(1));
       is_better = model.MoveTo(next.log_moduli, next.poisson_ratio, noise) &&
                   model.Residual().squaredNorm() / (2 * variance) +
@@ -171,7 +173,7 @@ MapState SharpenMap(const MapProblem& problem, const FieldPrior& prior,
           model.MoveTo(state.log_moduli, state.poisson_ratio, noise));
     }
     const double change = step.norm() / std::sqrt(double(step.size()));
-    if ((!is_better || change < kSettled) && change_of_alpha < 0.02) {
+    if ((!is_better || change < kSettledSharp) && change_of_alpha < 0.02) {
       break;
     }
   }

@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "elastimate/core/solvers/conjugate_gradients.h"
 
 namespace elastimate {
 namespace {
 
-constexpr int kMostSteps = 20;
-constexpr int kMostHalvings = 5;
+constexpr int kMostSmoothSteps = 20;
+constexpr int kMostSmoothHalvings = 5;
 // The evidence is flat about its maximum, where k might push the field to and
 // fro.  After so many steps it stays.
 constexpr int kMostRatios = 10;
@@ -18,12 +19,12 @@ constexpr int kMostRatios = 10;
 constexpr double kSettledField = 3e-3;
 constexpr double kSettledRatio = 0.03;
 // The modes are renewed where ln E has changed by so much since.
-constexpr double kStale = 0.1;
+constexpr double kStaleModes = 0.1;
 // Modes beyond k lambda = 0.3 count to first order.
 constexpr double kLeastOfModes = 0.3;
-constexpr double kAccurate = 1e-3;
+constexpr double kAccurateSmooth = 1e-3;
 
-double RootMeanSquare(const Eigen::VectorXd& values) {
+double RootMeanSquareOf(const Eigen::VectorXd& values) {
   return std::sqrt(values.squaredNorm() / double(values.size()));
 }
 
@@ -32,7 +33,7 @@ double RootMeanSquare(const Eigen::VectorXd& values) {
 // (I / k + H) delta = g, g = A^T S^T Pi r - y / k,
 //
 //   q = |Pi r|^2 + |y|^2 / k - g^T delta.
-struct Evidence {
+struct FieldEvidence {
   const MapProblem& problem;
   const CurvatureModes& modes;
   double square_sum;         // |Pi r|^2.
@@ -58,17 +59,27 @@ struct Evidence {
 };
 
 // Returns the k of the greatest evidence: of a scan, and then between its
-// points.
-double BestRatio(const Evidence& evidence) {
+// points.  Where the noise is not known, the data cannot support nearly as many
+// parameters as there are measurements, because the noise would then be found
+// to be zero.
+double BestRatio(const FieldEvidence& evidence) {
   constexpr int kPoints = 65;
+  constexpr double kMostSupported = 1.0 / 3;
   const double largest = std::max(evidence.modes.Values()(0), 1e-300);
   const double lower = std::log(1e-4 / largest);
   const double upper = std::log(1e12 / largest);
   const double step = (upper - lower) / (kPoints - 1);
+  const auto value_at = [&](double log_k) {
+    return !evidence.problem.noise &&
+                   evidence.modes.EffectiveNumber(std::exp(log_k)) >
+                       kMostSupported * evidence.degrees_of_freedom
+               ? std::numeric_limits<double>::infinity()
+               : evidence.At(log_k);
+  };
   double best = lower;
-  double least = evidence.At(lower);
+  double least = value_at(lower);
   for (int i = 1; i < kPoints; ++i) {
-    const double value = evidence.At(lower + i * step);
+    const double value = value_at(lower + i * step);
     if (value < least) {
       least = value;
       best = lower + i * step;
@@ -80,8 +91,8 @@ double BestRatio(const Evidence& evidence) {
   while (b - a > 1e-3) {
     const double left = b - kGolden * (b - a);
     const double right = a + kGolden * (b - a);
-    (evidence.At(left) < evidence.At(right) ? b : a) =
-        evidence.At(left) < evidence.At(right) ? right : left;
+    (value_at(left) < value_at(right) ? b : a) =
+        value_at(left) < value_at(right) ? right : left;
   }
   return std::exp((a + b) / 2);
 }
@@ -116,16 +127,17 @@ SmoothMap FitSmoothMap(const MapProblem& problem, const FieldPrior& prior,
     const Eigen::VectorXd residual = model.Residual();
     map.square_sum = residual.squaredNorm();
     const Eigen::VectorXd data = unknowns.Project(residual);
-    Evidence evidence = {problem,
-                         map.modes,
-                         data.squaredNorm(),
-                         prior.ApplyTransposed(model.MultiplyTransposed(data)),
-                         map.y,
-                         num_rows - double(unknowns.Rank())};
+    FieldEvidence evidence = {
+        problem,
+        map.modes,
+        data.squaredNorm(),
+        prior.ApplyTransposed(model.MultiplyTransposed(data)),
+        map.y,
+        num_rows - double(unknowns.Rank())};
     const double last_ratio = map.ratio;
     if (map.modes.Size() == 0) {
       map.modes.AddUntil(kLeastOfModes / 1e3, curvature);
-    } else if (change_since_modes > kStale) {
+    } else if (change_since_modes > kStaleModes) {
       map.modes.Renew(curvature);
       change_since_modes = 0;
     }
@@ -136,7 +148,7 @@ SmoothMap FitSmoothMap(const MapProblem& problem, const FieldPrior& prior,
       map.modes.AddUntil(kLeastOfModes / map.ratio, curvature);
     }
     ConjugateGradientOptions options;
-    options.tolerance = kAccurate;
+    options.tolerance = kAccurateSmooth;
     options.most_iterations = 500;
     const Eigen::VectorXd delta =
         SolveByConjugateGradients(
@@ -159,7 +171,7 @@ SmoothMap FitSmoothMap(const MapProblem& problem, const FieldPrior& prior,
     const Eigen::VectorXd flat =
         unknowns.Solve(residual - model.Multiply(field));
     const Eigen::VectorXd step = field + flat(0) * ones;
-    const double change = RootMeanSquare(step);
+    const double change = RootMeanSquareOf(step);
     const bool is_settled =
         change < kSettledField &&
         std::abs(std::log(map.ratio / last_ratio)) < kSettledRatio;
@@ -168,17 +180,18 @@ SmoothMap FitSmoothMap(const MapProblem& problem, const FieldPrior& prior,
       return map;
     }
     if (is_settled) {
-      change_since_modes = 2 * kStale;  // Renews the modes for the end.
+      change_since_modes = 2 * kStaleModes;  // Renews the modes for the end.
       continue;
     }
-    if (i == kMostSteps) {
+    if (i == kMostSmoothSteps) {
       return map;
     }
     const double noise = std::sqrt(map.variance);
     const double before = map.square_sum + map.y.squaredNorm() / map.ratio;
     double factor = LargestStep(step, flat(1));
     bool is_better = false;
-    for (int halving = 0; halving < kMostHalvings && !is_better; ++halving) {
+    for (int halving = 0; halving < kMostSmoothHalvings && !is_better;
+         ++halving) {
       const MapState next = Stepped(map.state, factor * step, factor * flat(1));
       const Eigen::VectorXd next_y = map.y + factor * delta;
       is_better =
