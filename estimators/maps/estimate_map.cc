@@ -37,13 +37,17 @@ constexpr double kMostMisfit = 5;
 // nu of maps was off by twice what the linearised model says.
 constexpr double kWideningOfPoissonRatio = 2;
 
-// Returns the scene of one isotropic material with the elements of the fit.
-Scene SceneOfMap(Scene scene) {
+// What linear and then quadratic elements change, of which half is taken for
+// the error of the latter, and what their displacements change beside.
+constexpr double kOfMeshChange = 0.5;
+constexpr double kOfDisplacementChange = 0.03;
+constexpr double kLeastOfRatio = 0.2;
+
+// Returns the scene of one isotropic material.
+Scene OfOneMaterial(Scene scene) {
   scene.materials.clear();
   scene.mesh.regions.resize(0);
-  return scene.origin == Origin::kMeasured && scene.mesh.Order() == 1
-             ? QuadraticScene(scene)
-             : scene;
+  return scene;
 }
 
 bool HasAnyForce(const Scene& scene) {
@@ -108,8 +112,12 @@ double DiameterOf(double volume, int dimension) {
 
 class MapBuilder {
  public:
-  MapBuilder(const Scene& scene, const EstimatorOptions& options)
+  // `linear` has the linear elements that those of `scene` refine, or is null.
+  MapBuilder(const Scene& scene, const Scene* linear,
+             const EstimatorOptions& options)
       : scene_(scene),
+        linear_(linear),
+        solver_(options.solver),
         prior_(scene.mesh),
         model_(scene, options.solver),
         problem_{model_, options.known_poisson_ratio, GivenNoise()} {}
@@ -180,6 +188,48 @@ class MapBuilder {
         observed.GivenNoise().value_or(std::sqrt(variance) * observed.Norm());
   }
 
+  // Returns what the elements may miss, by the change from linear ones: with
+  // the change d of the parameters and that of the displacements, du,
+  //
+  //   c^2 d d^T + (b |du|)^2 (Z^T Z)^-1,   c = 1/2,   b = 0.03 (2 / m)^(1/2)
+  //
+  // for m parameters, and |d nu| not below 0.2 of the largest |d ln E|.
+  Eigen::MatrixXd MeshCovariance(const std::vector<int>& region_of_element,
+                                 const LevelFit& fit) {
+    const Eigen::Index n = fit.levels.size();
+    const double nu = fit.state.poisson_ratio;
+    const double noise = problem_.noise.value_or(0);
+    FieldSensitivity coarse(*linear_, solver_);
+    const MapProblem of_coarse = {coarse, problem_.known_poisson_ratio,
+                                  problem_.noise};
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n + 1, n + 1);
+    if (!coarse.MoveTo(fit.state.log_moduli, nu, noise) ||
+        !model_.MoveTo(fit.state.log_moduli, nu, noise)) {
+      return covariance;
+    }
+    const double change = (coarse.Residual() - model_.Residual()).norm();
+    const double b = kOfDisplacementChange * std::sqrt(2.0 / double(n + 1));
+    covariance = b * b * change * change * fit.unknowns.InverseGram();
+    const std::optional<LevelFit> of_linear =
+        FitLevels(of_coarse, region_of_element, fit.levels, nu);
+    if (of_linear) {
+      Eigen::VectorXd d(n + 1);
+      d.head(n) = fit.levels - of_linear->levels;
+      if (!problem_.known_poisson_ratio) {
+        const double least = kLeastOfRatio *
+                             d.head(n).lpNorm<Eigen::Infinity>() * 3 /
+                             ((1 + nu) * (1 - 2 * nu));
+        d(n) = LogStiffnessRatio(nu) -
+               LogStiffnessRatio(of_linear->state.poisson_ratio);
+        d(n) = std::copysign(std::max(std::abs(d(n)), least), d(n));
+      } else {
+        d(n) = 0;
+      }
+      covariance += kOfMeshChange * kOfMeshChange * d * d.transpose();
+    }
+    return covariance;
+  }
+
   // Enters the means with their covariance as (ln E, LogStiffnessRatio).
   void EnterMeans(const MapState& state, const Eigen::Matrix2d& covariance) {
     const double nu = state.poisson_ratio;
@@ -193,7 +243,10 @@ class MapBuilder {
 
   void EnterRegions(const std::vector<int>& region_of_element,
                     const LevelFit& fit, double variance,
-                    const Eigen::MatrixXd& covariance) {
+                    Eigen::MatrixXd covariance) {
+    if (linear_ != nullptr) {
+      covariance += MeshCovariance(region_of_element, fit);
+    }
     const Eigen::Index n = fit.levels.size();
     Eigen::VectorXd volumes = Eigen::VectorXd::Zero(n);
     Eigen::VectorXd lengths = Eigen::VectorXd::Zero(n);
@@ -270,6 +323,8 @@ class MapBuilder {
   }
 
   const Scene& scene_;
+  const Scene* linear_;
+  SolverKind solver_;
   FieldPrior prior_;
   FieldSensitivity model_;
   MapProblem problem_;
@@ -280,7 +335,10 @@ class MapBuilder {
 }  // namespace
 
 MapEstimate EstimateMap(const Scene& scene, const EstimatorOptions& options) {
-  const Scene modelled = SceneOfMap(scene);
+  const Scene given = OfOneMaterial(scene);
+  const bool is_raised =
+      scene.origin == Origin::kMeasured && scene.mesh.Order() == 1;
+  const Scene modelled = is_raised ? QuadraticScene(given) : given;
   std::optional<double> start;
   if (HasAnyForce(modelled)) {
     start =
@@ -294,7 +352,8 @@ MapEstimate EstimateMap(const Scene& scene, const EstimatorOptions& options) {
       return map;
     }
   }
-  return MapBuilder(modelled, options).Build(start);
+  return MapBuilder(modelled, is_raised ? &given : nullptr, options)
+      .Build(start);
 }
 
 }  // namespace elastimate

@@ -23,7 +23,8 @@ namespace elastimate {
 /// Nodes, points, resultants, supports that moved by unknown amounts, free
 /// rigid motions and several load cases count as in a fit of few parameters.
 /// Displacements of Origin::kMeasured are fitted with quadratic elements,
-/// because what linear ones miss would look like structure.  Of `options`, a
+/// because what linear ones miss would look like structure; the errors of
+/// regions then include what their elements may miss.  Of `options`, a
 /// known Poisson's ratio and the solver count.  Materials of the scene do not.
 ///
 ///   const MapEstimate map = EstimateMap(scene, {});

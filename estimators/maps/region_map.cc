@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -129,33 +130,23 @@ class RegionSearch {
     return moves;
   }
 
-  // Returns the possible moves, the best first.  The model is at the fit.
+  // Returns the possible moves, the best first.  The model is at the fit.  The
+  // response to each element is solved for once: it changes little from round
+  // to round, whereas the gradient is that of here.
   std::vector<RegionMove> Moves() {
     std::vector<RegionMove> moves = Neighbours();
-    elements_.clear();
-    for (const RegionMove& move : moves) {
-      if (elements_.empty() || elements_.back() != move.element) {
-        elements_.push_back(move.element);
-      }
-    }
-    Eigen::MatrixXd units = Eigen::MatrixXd::Zero(
-        Eigen::Index(regions_.size()), Eigen::Index(elements_.size()));
-    for (std::size_t i = 0; i < elements_.size(); ++i) {
-      units(elements_[i], Eigen::Index(i)) = 1;
-    }
-    columns_ = problem_.model.Multiply(units);
-    const Eigen::MatrixXd own = fit_.unknowns.Project(columns_);
+    SolveForResponses(moves);
     const Eigen::VectorXd gradient =
-        -(own.transpose() * problem_.model.Residual()) / Variance();
-    const Eigen::VectorXd curvature =
-        own.colwise().squaredNorm().transpose() / Variance();
+        -problem_.model.MultiplyTransposed(
+            fit_.unknowns.Project(problem_.model.Residual())) /
+        Variance();
     for (RegionMove& move : moves) {
-      const auto place =
-          std::lower_bound(elements_.begin(), elements_.end(), move.element) -
-          elements_.begin();
+      const double curvature =
+          fit_.unknowns.Project(responses_.at(move.element)).squaredNorm() /
+          Variance();
       const double delta = DeltaOf(move);
       move.cost +=
-          gradient(place) * delta + curvature(place) * delta * delta / 2;
+          gradient(move.element) * delta + curvature * delta * delta / 2;
     }
     std::sort(moves.begin(), moves.end(),
               [](const RegionMove& a, const RegionMove& b) {
@@ -163,6 +154,26 @@ class RegionSearch {
                        std::make_pair(b.cost, b.element);
               });
     return moves;
+  }
+
+  // Solves for the responses S e to elements that are not there yet.
+  void SolveForResponses(const std::vector<RegionMove>& moves) {
+    std::vector<int> missing;
+    for (const RegionMove& move : moves) {
+      if (responses_.count(move.element) == 0 &&
+          (missing.empty() || missing.back() != move.element)) {
+        missing.push_back(move.element);
+      }
+    }
+    Eigen::MatrixXd units = Eigen::MatrixXd::Zero(Eigen::Index(regions_.size()),
+                                                  Eigen::Index(missing.size()));
+    for (std::size_t i = 0; i < missing.size(); ++i) {
+      units(missing[i], Eigen::Index(i)) = 1;
+    }
+    const Eigen::MatrixXd columns = problem_.model.Multiply(units);
+    for (std::size_t i = 0; i < missing.size(); ++i) {
+      responses_[missing[i]] = columns.col(Eigen::Index(i));
+    }
   }
 
   double DeltaOf(const RegionMove& move) const {
@@ -191,14 +202,10 @@ class RegionSearch {
   // there with the probability p = 1 / (1 + e^c), which shifts the levels by
   // (Z^T Z)^-1 Z^T S e delta.
   void AddUncertainElements(Eigen::MatrixXd& covariance) {
-    const std::vector<RegionMove> moves = Moves();
-    const Eigen::MatrixXd shifts = fit_.unknowns.Solve(columns_);
-    for (const RegionMove& move : moves) {
-      const auto place =
-          std::lower_bound(elements_.begin(), elements_.end(), move.element) -
-          elements_.begin();
+    for (const RegionMove& move : Moves()) {
       const double p = 1 / (1 + std::exp(std::max(move.cost, 0.0)));
-      const Eigen::VectorXd shift = DeltaOf(move) * shifts.col(place);
+      const Eigen::VectorXd shift =
+          DeltaOf(move) * fit_.unknowns.Solve(responses_.at(move.element));
       covariance += p * (1 - p) * shift * shift.transpose();
     }
   }
@@ -207,8 +214,7 @@ class RegionSearch {
   const ElementFacets& facets_;
   std::vector<int> regions_;
   LevelFit fit_;
-  std::vector<int> elements_;  // At boundaries, ascending.
-  Eigen::MatrixXd columns_;    // S for these.
+  std::map<int, Eigen::VectorXd> responses_;  // S e, by elements.
 };
 
 }  // namespace

@@ -39,11 +39,14 @@ TEST(CurvatureModes, KnowDeterminantTraceAndInverse) {
       Eigen::MatrixXd::Identity(kSize, kSize) + kRatio * h;
   const double log_determinant =
       shifted.partialPivLu().matrixLU().diagonal().array().abs().log().sum();
-  EXPECT_NEAR(modes.LogDeterminant(kRatio), log_determinant,
-              0.01 * log_determinant);
+  // What is left out is overestimated, because it is a part of modes that count
+  // in full, too.
+  EXPECT_GT(modes.LogDeterminant(kRatio), 0.99 * log_determinant);
+  EXPECT_LT(modes.LogDeterminant(kRatio), 1.05 * log_determinant);
   const Eigen::MatrixXd inverse = shifted.inverse();
   const double number = double(kSize) - inverse.trace();
-  EXPECT_NEAR(modes.EffectiveNumber(kRatio), number, 0.02 * number);
+  EXPECT_GT(modes.EffectiveNumber(kRatio), 0.99 * number);
+  EXPECT_LT(modes.EffectiveNumber(kRatio), 1.1 * number);
   const Eigen::MatrixXd preconditioned = modes.Solve(kRatio, shifted / kRatio);
   EXPECT_LT(
       (preconditioned - Eigen::MatrixXd::Identity(kSize, kSize)).operatorNorm(),

@@ -49,7 +49,7 @@ TEST(EstimateMap, FindsInclusions) {
        {std::tuple("inc5", kQuads, 16, 5.0),
         std::tuple("inc2", kQuads, 16, 2.0), std::tuple("two", kQuads, 16, 5.0),
         std::tuple("inc5", ElementKind::kHex8, 6, 5.0),
-        std::tuple("inc5", ElementKind::kTri3, 10, 5.0)}) {
+        std::tuple("inc5", ElementKind::kTri3, 12, 5.0)}) {
     const MapScene truth = MakeMapScene(name, kind, cells, 0.01);
     const MapEstimate map = EstimateMap(truth.scene, {});
     ASSERT_TRUE(map.IsUsable()) << name;
@@ -68,6 +68,22 @@ TEST(EstimateMap, FindsInclusions) {
     EXPECT_NEAR(map.poisson_ratio, 0.3, 4 * std::sqrt(map.covariance(1, 1)))
         << name;
   }
+}
+
+// A stiff box off the centre of a block of tetrahedra, whose displacements a
+// finer world made.
+TEST(EstimateMap, FindsABoxThatAFinerWorldMeasured) {
+  const MapScene truth = HeldOutBlock(4, 0.01);
+  const MapEstimate map = EstimateMap(truth.scene, {});
+  ASSERT_TRUE(map.IsUsable());
+  EXPECT_EQ(map.element_order, 2);
+  ASSERT_EQ(map.verdict, MapVerdict::kRegions);
+  ASSERT_EQ(map.regions.size(), 2U);
+  EXPECT_NEAR(map.regions[0].youngs_modulus, 2,
+              3 * map.regions[0].standard_error);
+  EXPECT_NEAR(map.regions[1].youngs_modulus, 6,
+              3 * map.regions[1].standard_error);
+  EXPECT_FALSE(HasFinding(map, FindingCode::kMayBeTheMesh));
 }
 
 TEST(EstimateMap, FindsLayers) {

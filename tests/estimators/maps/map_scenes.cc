@@ -6,6 +6,9 @@
 #include <vector>
 
 #include "elastimate/core/equilibrium/equilibrium.h"
+#include "elastimate/core/equilibrium/simulated_measurement.h"
+#include "elastimate/core/scene/linear_scene.h"
+#include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/scene_builder.h"
 #include "tests/scenes.h"
 
@@ -133,6 +136,36 @@ MapScene MakeMapScene(const std::string& name, ElementKind kind, int cells,
   if (relative_noise > 0) {
     map.noise_sd = AddNoise(relative_noise, seed, scene);
   }
+  map.scene = scene;
+  return map;
+}
+
+MapScene HeldOutBlock(int cells, double relative_noise) {
+  MapScene map;
+  Scene scene =
+      UnsupportedScene(BoxMesh({cells, cells, cells + 1}, {1, 1, 1.2}));
+  HoldInBox(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 0), scene);
+  scene.load_cases.resize(1);
+  scene.load_cases[0].loads = {
+      TractionInBox(scene.mesh, Eigen::Vector3d(0, 0, 1.2),
+                    Eigen::Vector3d(1, 1, 1.2), Eigen::Vector3d(0.3, 0, -1))};
+  const Eigen::Index num_elements = scene.mesh.NumElements();
+  map.log_moduli.resize(num_elements);
+  scene.mesh.regions.resize(num_elements);
+  for (Eigen::Index e = 0; e < num_elements; ++e) {
+    const Eigen::Vector3d centre = ElementCentre(scene.mesh, e);
+    const bool is_stiff = centre(0) > 0.35 && centre(1) < 0.7 &&
+                          centre(2) > 0.4 && centre(2) < 1.05;
+    scene.mesh.regions(e) = is_stiff ? 1 : 0;
+    map.log_moduli(e) = std::log(is_stiff ? 6.0 : 2.0);
+  }
+  scene.materials = IsotropicMaterialOfEachRegion(scene.mesh);
+  Scene world = QuadraticScene(LinearScene(QuadraticScene(scene)));
+  MeasureMaterials(Eigen::Vector4d(2, 0.35, 6, 0.35), world);
+  TakeDisplacements(world, scene);
+  scene.materials.clear();
+  scene.mesh.regions.resize(0);
+  map.noise_sd = AddNoise(relative_noise, 1, scene);
   map.scene = scene;
   return map;
 }

@@ -64,7 +64,7 @@ TEST(MapStages, ReachTheirFigures) {
         Figures{"inc2", ElementKind::kQuad4, 16, 0.4, 0.25, 0.01},
         Figures{"two", ElementKind::kQuad4, 16, 0.4, 0.25, 0.02},
         Figures{"lay", ElementKind::kQuad4, 16, 0.3, 0.15, 0.05},
-        Figures{"inc5", ElementKind::kHex8, 7, 0.4, 0.2, 0.02}}) {
+        Figures{"inc5", ElementKind::kHex8, 6, 0.4, 0.2, 0.02}}) {
     Stages stages(figures.name, figures.kind, figures.cells, 0.01);
     ASSERT_TRUE(stages.smooth->has_converged) << figures.name;
     EXPECT_LT(stages.ErrorOf(stages.smooth->state), figures.smooth)
