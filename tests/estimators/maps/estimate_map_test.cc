@@ -70,22 +70,6 @@ TEST(EstimateMap, FindsInclusions) {
   }
 }
 
-// A stiff box off the centre of a block of tetrahedra, whose displacements a
-// finer world made.
-TEST(EstimateMap, FindsABoxThatAFinerWorldMeasured) {
-  const MapScene truth = HeldOutBlock(4, 0.01);
-  const MapEstimate map = EstimateMap(truth.scene, {});
-  ASSERT_TRUE(map.IsUsable());
-  EXPECT_EQ(map.element_order, 2);
-  ASSERT_EQ(map.verdict, MapVerdict::kRegions);
-  ASSERT_EQ(map.regions.size(), 2U);
-  EXPECT_NEAR(map.regions[0].youngs_modulus, 2,
-              3 * map.regions[0].standard_error);
-  EXPECT_NEAR(map.regions[1].youngs_modulus, 6,
-              3 * map.regions[1].standard_error);
-  EXPECT_FALSE(HasFinding(map, FindingCode::kMayBeTheMesh));
-}
-
 TEST(EstimateMap, FindsLayers) {
   const MapScene truth = MakeMapScene("lay", kQuads, 16, 0.01);
   const MapEstimate map = EstimateMap(truth.scene, {});
