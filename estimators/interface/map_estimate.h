@@ -62,6 +62,9 @@ struct MapEstimate {
   double poisson_ratio = 0;
   /// Of the two above.  nu has a zero row and column where it is known.
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+  /// The part of the covariance that comes from what the elements may miss;
+  /// zero where nothing is missed, and for a field, where it is not known.
+  Eigen::Matrix2d mesh_covariance = Eigen::Matrix2d::Zero();
   /// The standard deviation of the noise of a component, given or found
   /// [length].
   double noise_sd = 0;

@@ -140,8 +140,13 @@ class MapBuilder {
         FitRegions(problem_, prior_, sharpened, *homogeneous);
     map_.field_log_evidence = smooth.log_evidence;
     map_.region_log_evidence = regions ? regions->log_evidence : 0;
-    map_.supported_parameters = smooth.effective_number;
-    map_.resolution_length = errors.resolution_length;
+    // A field that explains less than one material does supports nothing.
+    const bool is_supported = smooth.log_evidence > 0;
+    map_.supported_parameters = is_supported ? smooth.effective_number : 0;
+    map_.resolution_length =
+        is_supported
+            ? errors.resolution_length
+            : Eigen::VectorXd::Constant(prior_.NumElements(), prior_.Size());
     const double best =
         std::max(map_.field_log_evidence, map_.region_log_evidence);
     if (best < kLeastEvidence) {
@@ -236,17 +241,26 @@ class MapBuilder {
     map_.mean_youngs_modulus = std::exp(prior_.Volumes().dot(state.log_moduli) /
                                         prior_.Volumes().sum());
     map_.poisson_ratio = nu;
+    map_.covariance = OfParameters(state, covariance);
+  }
+
+  // Returns the covariance of (E, nu) for that of (ln E, LogStiffnessRatio).
+  Eigen::Matrix2d OfParameters(const MapState& state,
+                               const Eigen::Matrix2d& covariance) const {
+    const double nu = state.poisson_ratio;
     const Eigen::Vector2d slopes(map_.mean_youngs_modulus,
                                  (1 + nu) * (1 - 2 * nu) / 3);
-    map_.covariance = slopes.asDiagonal() * covariance * slopes.asDiagonal();
+    return slopes.asDiagonal() * covariance * slopes.asDiagonal();
   }
 
   void EnterRegions(const std::vector<int>& region_of_element,
                     const LevelFit& fit, double variance,
                     Eigen::MatrixXd covariance) {
-    if (linear_ != nullptr) {
-      covariance += MeshCovariance(region_of_element, fit);
-    }
+    const Eigen::MatrixXd of_mesh =
+        linear_ != nullptr
+            ? MeshCovariance(region_of_element, fit)
+            : Eigen::MatrixXd::Zero(covariance.rows(), covariance.cols());
+    covariance += of_mesh;
     const Eigen::Index n = fit.levels.size();
     Eigen::VectorXd volumes = Eigen::VectorXd::Zero(n);
     Eigen::VectorXd lengths = Eigen::VectorXd::Zero(n);
@@ -277,6 +291,8 @@ class MapBuilder {
     means.row(0).head(n) = volumes.transpose() / volumes.sum();
     means(1, n) = n == 1 ? 1 : kWideningOfPoissonRatio;
     EnterMeans(fit.state, means * covariance * means.transpose());
+    map_.mesh_covariance =
+        OfParameters(fit.state, means * of_mesh * means.transpose());
     EnterNoise(fit.square_sum, variance);
   }
 

@@ -59,20 +59,19 @@ struct FieldEvidence {
 };
 
 // Returns the k of the greatest evidence: of a scan, and then between its
-// points.  Where the noise is not known, the data cannot support nearly as many
-// parameters as there are measurements, because the noise would then be found
-// to be zero.
+// points.  The data cannot support nearly as many parameters as there are
+// measurements: noise that is not known would then be found to be zero, and
+// where it is known, the model is wrong rather than the body that uneven.
 double BestRatio(const FieldEvidence& evidence) {
   constexpr int kPoints = 65;
-  constexpr double kMostSupported = 1.0 / 3;
+  const double most_supported =
+      evidence.degrees_of_freedom * (evidence.problem.noise ? 2.0 : 1.0) / 3;
   const double largest = std::max(evidence.modes.Values()(0), 1e-300);
   const double lower = std::log(1e-4 / largest);
   const double upper = std::log(1e12 / largest);
   const double step = (upper - lower) / (kPoints - 1);
   const auto value_at = [&](double log_k) {
-    return !evidence.problem.noise &&
-                   evidence.modes.EffectiveNumber(std::exp(log_k)) >
-                       kMostSupported * evidence.degrees_of_freedom
+    return evidence.modes.EffectiveNumber(std::exp(log_k)) > most_supported
                ? std::numeric_limits<double>::infinity()
                : evidence.At(log_k);
   };

@@ -44,11 +44,11 @@ struct SmoothMap {
 ///   -2 ln ev = (N - p) ln q + ln det(I + k H),   sigma^2 = q / (N - p),
 ///   q = min over delta of |Pi (r - S A delta)|^2 + |y + delta|^2 / k,
 ///
-/// and gamma at most (N - p) / 3, lest noise pass for structure; with q /
-/// sigma^2 for the first term, and without that limit, where sigma is known, N
-/// rows and p flat unknowns.  Cost: a factorisation and some ten solves for
-/// each of about six steps, and some 1.5 gamma solves, many columns at a time,
-/// each time the modes are renewed (two or three times); memory for
+/// with q / sigma^2 for the first term where sigma is known, N rows and p flat
+/// unknowns; gamma is at most (N - p) / 3, or twice that where sigma is known,
+/// lest noise pass for structure.  Cost: a factorisation and some ten solves
+/// for each of about six steps, and some 1.5 gamma solves, many columns at a
+/// time, each time the modes are renewed (two or three times); memory for
 /// num_elements x 1.5 gamma numbers, at most 1 GB.  The model is at the map
 /// afterwards.
 [[nodiscard]] SmoothMap FitSmoothMap(const MapProblem& problem,
