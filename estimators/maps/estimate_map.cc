@@ -113,14 +113,16 @@ double DiameterOf(double volume, int dimension) {
 class MapBuilder {
  public:
   // `linear` has the linear elements that those of `scene` refine, or is null.
+  // `trusts_noise` takes the noise that is given.
   MapBuilder(const Scene& scene, const Scene* linear,
-             const EstimatorOptions& options)
+             const EstimatorOptions& options, bool trusts_noise)
       : scene_(scene),
         linear_(linear),
         solver_(options.solver),
         prior_(scene.mesh),
         model_(scene, options.solver),
-        problem_{model_, options.known_poisson_ratio, GivenNoise()} {}
+        problem_{model_, options.known_poisson_ratio,
+                 trusts_noise ? GivenNoise() : std::nullopt} {}
 
   MapEstimate Build(const std::optional<double>& start) {
     map_.element_order = scene_.mesh.Order();
@@ -187,10 +189,8 @@ class MapBuilder {
   }
 
   void EnterNoise(double square_sum, double variance) {
-    const ObservedDisplacements& observed = model_.Observed();
     square_sum_ = square_sum;
-    map_.noise_sd =
-        observed.GivenNoise().value_or(std::sqrt(variance) * observed.Norm());
+    map_.noise_sd = std::sqrt(variance) * model_.Observed().Norm();
   }
 
   // Returns what the elements may miss, by the change from linear ones: with
@@ -368,8 +368,21 @@ MapEstimate EstimateMap(const Scene& scene, const EstimatorOptions& options) {
       return map;
     }
   }
-  return MapBuilder(modelled, is_raised ? &given : nullptr, options)
-      .Build(start);
+  const Scene* const linear = is_raised ? &given : nullptr;
+  const MapEstimate map =
+      MapBuilder(modelled, linear, options, true).Build(start);
+  const auto misfit = std::find_if(
+      map.findings.begin(), map.findings.end(), [](const Finding& finding) {
+        return finding.code == FindingCode::kMisfit;
+      });
+  if (misfit == map.findings.end()) {
+    return map;
+  }
+  // What is left beside the noise would pass for structure, so it counts as
+  // noise.
+  MapEstimate other = MapBuilder(modelled, linear, options, false).Build(start);
+  other.findings.insert(other.findings.begin(), *misfit);
+  return other;
 }
 
 }  // namespace elastimate

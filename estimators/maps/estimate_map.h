@@ -32,6 +32,10 @@ namespace elastimate {
 ///     std::cout << map.regions[1].youngs_modulus;
 ///   }
 ///
+/// Where the best map differs from the measurement by more than the given
+/// noise, the noise is found as if it had not been given, and a finding says
+/// so.
+///
 /// Preconditions are those of Estimator::Run; the supports hold the specimen.
 /// Numerical outcomes are statuses.  The same input gives the same bits.  Cost:
 /// about 50 factorisations, and a few times gamma solves (see the functions
