@@ -64,6 +64,17 @@ SceneReading Read(const std::vector<std::string>& arguments) {
   return reading;
 }
 
+// Takes --map for the parameter that differs between elements.
+void GiveMap(Scene& scene) {
+  if (FLAGS_map.empty()) {
+    return;
+  }
+  if (scene.materials.empty()) {
+    scene.materials.emplace_back();
+  }
+  scene.materials[0].fields = {FLAGS_map};
+}
+
 // Takes --nu for the Poisson's ratio of each material for which none is known.
 void GiveKnownPoissonRatio(Scene& scene, EstimatorOptions& options) {
   if (!options.known_poisson_ratio || IsOneIsotropicMaterial(scene.materials)) {
@@ -137,6 +148,9 @@ EstimatorOptions CheckFlags(const std::vector<std::string>& arguments) {
   OriginFromFlag();
   if (IsGiven("noise_sd") && !(FLAGS_noise_sd > 0)) {
     throw std::invalid_argument(AsGiven("noise_sd") + "; it must be positive");
+  }
+  if (IsGiven("map") && FLAGS_map != "youngs_modulus") {
+    throw std::invalid_argument(AsGiven("map") + "; it must be youngs_modulus");
   }
   ApplyComputingFlags();
   CheckOutputFlags(arguments);
@@ -334,6 +348,7 @@ int RunEstimate(const std::vector<std::string>& arguments) {
   if (ChoosesLaw()) {
     CheckLawChoice(reading, options);
   }
+  GiveMap(reading.scene);
   GiveKnownPoissonRatio(reading.scene, options);
   if (MergesRegions()) {
     CheckMerging(reading);

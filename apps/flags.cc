@@ -47,6 +47,8 @@ DEFINE_string(regions, "one",
               "one: the same material everywhere; each: one for each region");
 DEFINE_string(material, "isotropic",
               "law of all materials; 'elastimate materials' lists them");
+DEFINE_string(map, "",
+              "parameter that differs between elements: youngs_modulus");
 DEFINE_string(axis, "",
               "axis of the material, X,Y,Z; or two axes, 6 numbers; or free");
 DEFINE_string(curve, "", "law and all its parameters, LAW,NAME=X,NAME=X,...");
@@ -105,6 +107,7 @@ Command TheEstimateCommand() {
          {"regions",
           "one: the same everywhere; each: one per region; merge: join alike "
           "ones"},
+         {"map"},
          {"nu", "known Poisson's ratio, above -1 and below 0.5"},
          {"nu_min"},
          {"nu_max"},

@@ -32,6 +32,7 @@ DECLARE_string(model);
 DECLARE_double(thickness);
 DECLARE_string(regions);
 DECLARE_string(material);
+DECLARE_string(map);
 DECLARE_string(axis);
 DECLARE_string(curve);
 DECLARE_string(parameters);

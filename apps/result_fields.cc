@@ -113,6 +113,15 @@ class FieldCollector {
         {"residual_correlation", correlation(material_of).transpose()});
   }
 
+  // Adds the map of a modulus, with its error and its resolution.
+  void AddMap(const MapEstimate& map) {
+    fields_.cell.push_back({"youngs_modulus", map.youngs_modulus.transpose()});
+    fields_.cell.push_back({"youngs_modulus_standard_error",
+                            map.youngs_modulus_standard_error.transpose()});
+    fields_.cell.push_back(
+        {"resolution_length", map.resolution_length.transpose()});
+  }
+
   // Adds a cell array of each parameter, with the value of each element's
   // material.
   void AddParameters(const Scene& scene, const Estimate& estimate) {
@@ -192,44 +201,50 @@ Scene SolvedScene(const Scene& scene, const Scene& modelled,
              : FinerScene(WithFittedSupports(scene, fitted));
 }
 
-}  // namespace
+// Returns the scene with a material of each element, to which ValuesOfMap
+// belong.
+Scene WithMaterialsOfMap(Scene scene) {
+  const int num_elements = static_cast<int>(scene.mesh.NumElements());
+  scene.mesh.regions.setLinSpaced(num_elements, 0, num_elements - 1);
+  scene.materials.assign(std::size_t(num_elements), Material());
+  for (int e = 0; e < num_elements; ++e) {
+    scene.materials[std::size_t(e)].regions = {e};
+  }
+  return scene;
+}
 
-Fields ResultFields(const Scene& scene, const Scene& modelled,
-                    const Estimate& estimate, SolverKind solver) {
-  Fields fields = SceneFields(scene);
-  const std::optional<Eigen::VectorXd> values = PhysicalParameters(estimate);
-  if (!values) {
-    return fields;
-  }
-  FieldCollector collector(scene.mesh, fields);
-  if (!IsOneIsotropicMaterial(scene.materials)) {
-    collector.AddParameters(scene, estimate);
-    collector.AddResiduals(scene, estimate);
-  }
-  // The fields below are of small strains.
-  if (HasLargeStrainLaw(scene.materials)) {
-    return fields;
-  }
+Eigen::VectorXd ValuesOfMap(const MapEstimate& map) {
+  Eigen::VectorXd values(2 * map.youngs_modulus.size());
+  values(Eigen::seq(0, Eigen::last, 2)) = map.youngs_modulus;
+  values(Eigen::seq(1, Eigen::last, 2)).setConstant(map.poisson_ratio);
+  return values;
+}
+
+// Adds what the model says at these parameters of its materials, which have
+// laws of small strains.
+void AddModel(const Scene& scene, const Scene& modelled,
+              const Eigen::VectorXd& values, const Estimate& estimate,
+              SolverKind solver, FieldCollector& collector) {
   const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
   if (!WhyNotHeld(scene).empty()) {
     const Eigen::MatrixXd force = AssembleLoadCases(scene);
     const Eigen::MatrixXd measured =
         MeasuredMinus(scene, Eigen::MatrixXd::Zero(force.rows(), num_cases));
     const InternalForces forces(scene.mesh, scene.materials);
-    const Eigen::VectorXd moduli = forces.Parameters().Moduli(*values);
+    const Eigen::VectorXd moduli = forces.Parameters().Moduli(values);
     const Eigen::MatrixXd residual = forces.Multiply(moduli, measured) - force;
     for (Eigen::Index k = 0; k < num_cases; ++k) {
       collector.AddPoint("force_residual", k, residual);
       collector.AddStrainEnergy(scene.mesh, forces, moduli, k, measured);
     }
-    return fields;
+    return;
   }
   const Scene solved =
       SolvedScene(scene, modelled, estimate.fitted_displacement);
   Equilibrium model(solved, solver);
-  const Eigen::VectorXd moduli = model.Forces().Parameters().Moduli(*values);
+  const Eigen::VectorXd moduli = model.Forces().Parameters().Moduli(values);
   if (!model.Solve(moduli)) {
-    return fields;
+    return;
   }
   const Eigen::MatrixXd& fitted = model.Displacement();
   const Eigen::MatrixXd difference = MeasuredMinus(solved, fitted);
@@ -246,6 +261,31 @@ Fields ResultFields(const Scene& scene, const Scene& modelled,
     collector.AddPoint("displacement_residual", k, difference);
     collector.AddPoint("reaction_force", k, reaction);
     collector.AddStrainEnergy(solved.mesh, model.Forces(), moduli, k, fitted);
+  }
+}
+
+}  // namespace
+
+Fields ResultFields(const Scene& scene, const Scene& modelled,
+                    const Estimate& estimate, SolverKind solver) {
+  Fields fields = SceneFields(scene);
+  const std::optional<Eigen::VectorXd> values = PhysicalParameters(estimate);
+  if (!values) {
+    return fields;
+  }
+  FieldCollector collector(scene.mesh, fields);
+  if (estimate.map) {
+    collector.AddMap(*estimate.map);
+    AddModel(WithMaterialsOfMap(scene), WithMaterialsOfMap(modelled),
+             ValuesOfMap(*estimate.map), estimate, solver, collector);
+    return fields;
+  }
+  if (!IsOneIsotropicMaterial(scene.materials)) {
+    collector.AddParameters(scene, estimate);
+    collector.AddResiduals(scene, estimate);
+  }
+  if (!HasLargeStrainLaw(scene.materials)) {
+    AddModel(scene, modelled, *values, estimate, solver, collector);
   }
   return fields;
 }

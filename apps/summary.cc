@@ -391,6 +391,33 @@ void AddTrend(const std::vector<ParameterEstimate>& parameters,
        text);
 }
 
+// Says what the map is, the verdict first.
+void AddMap(const MapEstimate& map, std::ostringstream& text) {
+  Line("map",
+       map.verdict == MapVerdict::kHomogeneous ? "one material"
+       : map.verdict == MapVerdict::kField
+           ? "a field that varies smoothly"
+           : std::to_string(map.regions.size()) + " regions",
+       text);
+  Line("",
+       "ln evidence over one material: " +
+           NumberText(map.region_log_evidence, 3) + " for regions, " +
+           NumberText(map.field_log_evidence, 3) + " for a field",
+       text);
+  Line("",
+       "the data support " + NumberText(map.supported_parameters, 3) + " of " +
+           std::to_string(map.youngs_modulus.size()) + " parameters",
+       text);
+  for (std::size_t i = 0; i < map.regions.size() && map.regions.size() > 1;
+       ++i) {
+    const MapRegion& region = map.regions[i];
+    Line("region " + std::to_string(i + 1),
+         "E = " + ValueWithError(region.youngs_modulus, region.standard_error) +
+             ", volume " + NumberText(region.volume, 3),
+         text);
+  }
+}
+
 void AddSceneSize(const Scene& scene, std::ostringstream& text) {
   Line("scene",
        std::to_string(scene.mesh.NumVertices()) + " nodes, " +
@@ -431,6 +458,9 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
        text);
   if (!estimate.message.empty()) {
     Line("", estimate.message, text);
+  }
+  if (estimate.map) {
+    AddMap(*estimate.map, text);
   }
   if (IsOneIsotropicMaterial(scene.materials)) {
     AddElasticity(estimate, text);

@@ -263,6 +263,7 @@ Capabilities Auto::WhatItTakes() const {
   capabilities.takes_degree = true;
   capabilities.takes_materials = true;
   capabilities.takes_free_axes = true;
+  capabilities.takes_fields = true;
   capabilities.takes_large_strains = true;
   capabilities.compares_large_strain_laws = true;
   capabilities.takes_unknown_motion = true;

@@ -30,7 +30,6 @@ Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
     : values_(std::make_unique<NestedStiffness>(UsedSpaces(spaces))),
       load_(AssembleLoadCases(*spaces.back())),
       held_displacement_(load_.rows(), load_.cols()),
-      held_forces_(load_.cols()),
       has_unknown_motion_(HasUnknownMotion(*spaces.back())) {
   const Scene& scene = *spaces.back();
   const HeldGroups groups = GroupByHeld(scene);
@@ -47,10 +46,6 @@ Equilibrium::Equilibrium(const std::vector<const Scene*>& spaces,
       ++first;
     }
     first_held_alike_.push_back(first);
-    if (first == k && !held_displacement_.col(k).isZero(0)) {
-      held_forces_[k] = Forces().Columns(held_displacement_.col(k));
-      ++element_passes_;
-    }
   }
   if (IsRefined()) {
     graph_.emplace(scene.mesh);
@@ -136,9 +131,10 @@ void Equilibrium::SolveForSupports(const Eigen::VectorXd& scaled_moduli) {
   for (Eigen::Index k = 0; k < NumLoadCases(); ++k) {
     if (first_held_alike_[k] != k) {
       support_response_.col(k) = support_response_.col(first_held_alike_[k]);
-    } else if (held_forces_[k].size() > 0) {
+    } else if (!held_displacement_.col(k).isZero(0)) {
+      ++element_passes_;
       support_response_.col(k) -= stiffness_[stiffness_of_case_[k]]->Solve(
-          held_forces_[k] * scaled_moduli,
+          Forces().Multiply(scaled_moduli, held_displacement_.col(k)),
           start.size() > 0 ? Eigen::MatrixXd(start.col(k)) : start);
     }
   }

@@ -57,8 +57,9 @@ class Equilibrium : public ForwardModel {
 
   /// Solves for u at these moduli: an element pass, for each set of held
   /// degrees of freedom a factorisation, and a solve for each load case (one
-  /// more for each set of held displacements).  False when the stiffness is not
-  /// positive definite to working precision; there is no u then.
+  /// more, and a pass, for each set of held displacements that are not zero).
+  /// False when the stiffness is not positive definite to working precision;
+  /// there is no u then.
   [[nodiscard]] bool Solve(const Eigen::VectorXd& moduli) override;
 
   const Eigen::MatrixXd& Displacement() const override { return displacement_; }
@@ -139,10 +140,6 @@ class Equilibrium : public ForwardModel {
   Eigen::MatrixXd held_displacement_;  ///< num_dofs x num_load_cases.
   /// The first load case that is held as this one, at the same displacements.
   std::vector<Eigen::Index> first_held_alike_;
-  /// The forces f_k of the held displacements alone.  Only the first of the
-  /// load cases held alike has them, and only where the displacements are not
-  /// zero.
-  std::vector<Eigen::MatrixXd> held_forces_;
   Eigen::MatrixXd displacement_;
   Eigen::MatrixXd support_response_;
   /// The last sensitivities, with which iterations begin.

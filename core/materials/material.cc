@@ -279,11 +279,25 @@ void ValidateAxes(const std::vector<Material>& materials, const Mesh& mesh) {
   }
 }
 
+void ValidateFields(const Law& law, const Material& material,
+                    const std::string& name) {
+  for (const std::string& field : material.fields) {
+    if (FindParameter(law, field, name).name != "youngs_modulus" ||
+        law.Name() != IsotropicLaw::kName || material.fields.size() > 1) {
+      throw std::invalid_argument(name + " has " + field +
+                                  " as a field, but only youngs_modulus of the "
+                                  "law isotropic may differ "
+                                  "between elements; correct \"fields\"");
+    }
+  }
+}
+
 }  // namespace
 
 bool Material::operator==(const Material& other) const {
   return law == other.law && regions == other.regions && known == other.known &&
          bounds == other.bounds && priors == other.priors &&
+         fields == other.fields &&
          std::equal(
              axes.begin(), axes.end(), other.axes.begin(), other.axes.end(),
              [](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
@@ -313,10 +327,17 @@ void ValidateMaterials(const std::vector<Material>& materials,
     }
     ValidateWhatIsGiven(*law, materials[i], NameOf(i));
     ValidatePriors(*law, materials[i], NameOf(i));
+    ValidateFields(*law, materials[i], NameOf(i));
     RequirePositiveDefinite(materials[i], model, NameOf(i));
   }
   ValidateRegions(materials, mesh);
   ValidateAxes(materials, mesh);
+}
+
+bool HasFields(const std::vector<Material>& materials) {
+  return std::any_of(
+      materials.begin(), materials.end(),
+      [](const Material& material) { return !material.fields.empty(); });
 }
 
 bool HasPriors(const std::vector<Material>& materials) {

@@ -65,6 +65,9 @@ struct Material {
   std::vector<Eigen::MatrixXd> axes = {};
   /// The priors of parameters that are not known.
   std::vector<Prior> priors = {};
+  /// The names of parameters that differ between its elements, each with a
+  /// value of its own: "youngs_modulus", or none.
+  std::vector<std::string> fields = {};
 
   bool operator==(const Material& other) const;
 };
@@ -77,6 +80,9 @@ struct Material {
 /// one isotropic material.  O(num_elements).
 void ValidateMaterials(const std::vector<Material>& materials,
                        const Mesh& mesh);
+
+/// Tells whether a parameter of any material differs between elements.
+[[nodiscard]] bool HasFields(const std::vector<Material>& materials);
 
 /// Tells whether any material has a prior.
 [[nodiscard]] bool HasPriors(const std::vector<Material>& materials);

@@ -270,4 +270,30 @@ double FacetArea(const Mesh& mesh, const Eigen::MatrixXi& facets) {
   return area;
 }
 
+ElementFacets FacetsOfElements(const Mesh& mesh) {
+  const std::vector<ElementFace> faces = FacesOf(mesh);
+  std::vector<const ElementFace*> firsts;
+  std::vector<int> others;
+  for (const ElementFace& face : faces) {
+    if (!firsts.empty() && firsts.back()->sorted == face.sorted) {
+      others.back() = static_cast<int>(face.element);
+    } else {
+      firsts.push_back(&face);
+      others.push_back(-1);
+    }
+  }
+  const Eigen::Index num_facets = Eigen::Index(firsts.size());
+  ElementFacets facets = {Eigen::Matrix2Xi(2, num_facets),
+                          Eigen::VectorXd(num_facets)};
+  for (Eigen::Index i = 0; i < num_facets; ++i) {
+    const ElementFace& face = *firsts[i];
+    facets.elements.col(i) << static_cast<int>(face.element), others[i];
+    facets.area(i) =
+        WeightsOfFacet(mesh, NodesOfFace(mesh, face.element,
+                                         mesh.Topology().faces[face.index]))
+            .area.sum();
+  }
+  return facets;
+}
+
 }  // namespace elastimate

@@ -53,6 +53,17 @@ struct FacetWeights {
 /// Returns the area of facets with nodes in range [length^2].  O(num_facets).
 [[nodiscard]] double FacetArea(const Mesh& mesh, const Eigen::MatrixXi& facets);
 
+/// All facets of a mesh, with the elements on either side.
+struct ElementFacets {
+  /// 2 x num_facets; the second is -1 for a facet of the outer surface.
+  Eigen::Matrix2Xi elements;
+  Eigen::VectorXd area;  ///< num_facets values [length^2].
+};
+
+/// Returns each facet of the mesh once.  Precondition: a valid mesh.
+/// O(num_elements log num_elements).
+[[nodiscard]] ElementFacets FacetsOfElements(const Mesh& mesh);
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_CORE_MESH_FACETS_H_

@@ -113,6 +113,29 @@ std::string WhyNotTheseMaterials(const Capabilities& capabilities,
              : "";
 }
 
+std::string WhyNotTheseFields(const Capabilities& capabilities,
+                              const Scene& scene,
+                              const EstimatorOptions& options) {
+  if (!HasFields(scene.materials)) {
+    return "";
+  }
+  if (!capabilities.takes_fields) {
+    return "it estimates no map of a modulus; use --estimator=iterative-fe, or "
+           "leave out --map and \"fields\"";
+  }
+  if (!IsOneIsotropicMaterial(scene.materials) || HasPriors(scene.materials)) {
+    return "a map is for one isotropic material; leave out other materials, "
+           "\"known\", \"bounds\" and \"prior\", and give a known Poisson's "
+           "ratio by --nu";
+  }
+  if (options.youngs_modulus.AreGiven() || options.poisson_ratio.AreGiven()) {
+    return "a map keeps no bounds; leave out the bounds on E and nu";
+  }
+  return options.loss != Loss::kNone
+             ? "a map takes no loss function; leave out --loss"
+             : "";
+}
+
 std::string WhyNotTheseKinematics(const Capabilities& capabilities,
                                   const Scene& scene,
                                   const EstimatorOptions& options) {
@@ -178,7 +201,10 @@ std::string WhyUnsupported(const Capabilities& capabilities, const Scene& scene,
     return "it has no virtual fields that could have a degree; use "
            "--estimator=virtual-fields, or leave out --degree";
   }
-  std::string why = WhyNotTheseMaterials(capabilities, scene, options);
+  std::string why = WhyNotTheseFields(capabilities, scene, options);
+  if (why.empty()) {
+    why = WhyNotTheseMaterials(capabilities, scene, options);
+  }
   if (why.empty()) {
     why = WhyNotTheseKinematics(capabilities, scene, options);
   }

@@ -26,6 +26,8 @@ struct Capabilities {
   bool takes_materials = false;
   /// Materials whose axis is to be found with their parameters.
   bool takes_free_axes = false;
+  /// Materials with a parameter that differs between elements.
+  bool takes_fields = false;
   /// Laws of large strains.
   bool takes_large_strains = false;
   /// Kinematics::kLarge.

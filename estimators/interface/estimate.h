@@ -14,6 +14,7 @@
 #include "elastimate/core/solvers/stiffness_solver.h"
 #include "elastimate/estimators/interface/error_budget.h"
 #include "elastimate/estimators/interface/finding.h"
+#include "elastimate/estimators/interface/map_estimate.h"
 
 namespace elastimate {
 
@@ -288,6 +289,9 @@ struct Estimate {
   /// The law of large strains that was fitted in place of the isotropic one;
   /// empty for others.
   std::string large_strain_law;
+  /// The map of the modulus where one was asked for (Material::fields); E above
+  /// is then its geometric mean over the volume.  Empty for others.
+  std::optional<MapEstimate> map;
   /// What the frames of a joint estimate say together; empty for others.
   std::optional<SeriesSummary> series;
 

@@ -50,6 +50,10 @@ constexpr Row kRows[] = {
     {"computed_by_linear_elements", FindingCode::kComputedByLinearElements},
     {"supports_end_within_elements", FindingCode::kSupportsEndWithinElements},
     {"solver_fallback", FindingCode::kSolverFallback},
+    {"misfit", FindingCode::kMisfit},
+    {"not_resolved", FindingCode::kNotResolved},
+    {"noise_sd_needed", FindingCode::kNoiseNeeded},
+    {"may_be_the_mesh", FindingCode::kMayBeTheMesh},
 };
 
 const Row& RowOf(FindingCode code) {

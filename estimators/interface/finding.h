@@ -60,6 +60,11 @@ enum class FindingCode {
   kComputedByLinearElements,
   kSupportsEndWithinElements,
   kSolverFallback,
+  // What a map does not tell.
+  kMisfit,
+  kNotResolved,
+  kNoiseNeeded,
+  kMayBeTheMesh,
 };
 
 /// What a finding means for the estimate.

@@ -769,4 +769,36 @@ Finding SolverFallback(const std::string& notice) {
           "expect more time and memory than multigrid takes"};
 }
 
+Finding Misfit(double ratio) {
+  return {FindingCode::kMisfit, Severity::kWarning,
+          "the displacements differ from the map by " + TwoDigits(ratio) +
+              " times what the given noise explains",
+          "check --noise_sd, then the supports and the loads"};
+}
+
+Finding NotResolved(int region, double diameter) {
+  return {FindingCode::kNotResolved, Severity::kWarning,
+          "region " + std::to_string(region) + " of the map, " +
+              TwoDigits(diameter) +
+              " wide, is narrower than three resolution lengths, so that its "
+              "contrast is a lower bound",
+          "reduce the noise, or add load cases"};
+}
+
+Finding NoiseNeeded(double num_rows, double supported_parameters) {
+  return {FindingCode::kNoiseNeeded, Severity::kWarning,
+          "the " + NumberText(num_rows) +
+              " measured components are few beside " +
+              TwoDigits(supported_parameters) +
+              " parameters of the map, so that noise may pass for structure",
+          "give the standard deviation of the noise (--noise_sd)"};
+}
+
+Finding MayBeTheMesh(double spread) {
+  return {FindingCode::kMayBeTheMesh, Severity::kWarning,
+          "the modulus varies by " + Percent(spread) +
+              " only, which what the elements miss may cause",
+          "use a finer mesh, and see whether the structure stays"};
+}
+
 }  // namespace elastimate

@@ -169,6 +169,15 @@ Finding ComputedByLinearElements(Severity severity);
 Finding WithoutErrorBars(Finding finding);
 Finding SolverFallback(const std::string& notice);
 
+// What a map does not tell.
+/// The residual is `ratio` times as large as the given noise explains.
+Finding Misfit(double ratio);
+/// Region `region`, from 1 on, is narrower than the data resolve.
+Finding NotResolved(int region, double diameter);
+Finding NoiseNeeded(double num_rows, double supported_parameters);
+/// `spread` is the standard deviation of ln E.
+Finding MayBeTheMesh(double spread);
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_ESTIMATORS_INTERFACE_FINDING_SENTENCES_H_

@@ -1,5 +1,6 @@
 #include "elastimate/estimators/material_fit/iterative_fe.h"
 
+#include "elastimate/estimators/maps/map_fit.h"
 #include "elastimate/estimators/material_fit/large_strain_choice.h"
 #include "elastimate/estimators/material_fit/material_fit.h"
 
@@ -21,6 +22,7 @@ Capabilities IterativeFe::WhatItTakes() const {
   capabilities.takes_refinement = true;
   capabilities.takes_materials = true;
   capabilities.takes_free_axes = true;
+  capabilities.takes_fields = true;
   capabilities.takes_large_strains = true;
   capabilities.compares_large_strain_laws = true;
   capabilities.takes_unknown_motion = true;
@@ -30,6 +32,9 @@ Capabilities IterativeFe::WhatItTakes() const {
 
 Estimate IterativeFe::DoRun(const Scene& scene,
                             const EstimatorOptions& options) const {
+  if (HasFields(scene.materials)) {
+    return FitMap(scene, options);
+  }
   return options.kinematics == Kinematics::kLarge
              ? FitLargeStrainLaws(scene, options)
              : FitMaterials(scene, options, Descent::kFull);
@@ -37,7 +42,7 @@ Estimate IterativeFe::DoRun(const Scene& scene,
 
 std::unique_ptr<Preparation> IterativeFe::DoPrepare(
     const Scene& scene, const EstimatorOptions& options) const {
-  return options.kinematics == Kinematics::kLarge
+  return options.kinematics == Kinematics::kLarge || HasFields(scene.materials)
              ? Estimator::DoPrepare(scene, options)
              : PrepareMaterialFit(scene, options, Descent::kFull);
 }

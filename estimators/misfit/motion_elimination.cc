@@ -142,6 +142,19 @@ Eigen::VectorXd MotionElimination::ResultantsOfCase(
   return forces;
 }
 
+Eigen::MatrixXd MotionElimination::ResultantsTransposed(
+    const Eigen::VectorXd& rows) const {
+  Eigen::MatrixXd forces =
+      Eigen::MatrixXd::Zero(model_.Load().rows(), observed_.NumLoadCases());
+  for (Eigen::Index i = 0; i < NumResultants(); ++i) {
+    const ResultantRow& row = resultants_[i];
+    for (const Eigen::Index dof : row.held) {
+      forces(dof, row.load_case) += noise_ / row.noise_sd * rows(i);
+    }
+  }
+  return forces;
+}
+
 Eigen::VectorXd MotionElimination::MeasuredResultants() const {
   Eigen::VectorXd forces(NumResultants());
   std::transform(
@@ -226,17 +239,9 @@ Eigen::VectorXd MotionElimination::MultiplyTransposed(
   }
   const Eigen::MatrixXd of_nodes =
       observed_.RestrictTransposed(rows.head(observed_.Size()));
-  Eigen::MatrixXd forces =
-      Eigen::MatrixXd::Zero(of_nodes.rows(), of_nodes.cols());
-  for (Eigen::Index i = 0; i < NumResultants(); ++i) {
-    const ResultantRow& row = resultants_[i];
-    for (const Eigen::Index dof : row.held) {
-      forces(dof, row.load_case) +=
-          noise_ / row.noise_sd * rows(observed_.Size() + i);
-    }
-  }
-  const Eigen::MatrixXd of_held =
-      model_.ExtendTransposed(of_nodes + model_.HeldForcesTransposed(forces));
+  const Eigen::MatrixXd of_held = model_.ExtendTransposed(
+      of_nodes + model_.HeldForcesTransposed(
+                     ResultantsTransposed(rows.tail(NumResultants()))));
   Eigen::VectorXd amounts(amounts_.size());
   for (Eigen::Index k = 0; k < of_nodes.cols(); ++k) {
     const UnknownMotion& motion = MotionOf(k);

@@ -79,6 +79,9 @@ class MotionElimination {
   /// Picks the measured ones of the forces of supports, each over its standard
   /// deviation.
   Eigen::VectorXd Resultants(const Eigen::MatrixXd& support_forces) const;
+  /// Multiplies rows of resultants, weighted as all rows are, by the transpose
+  /// of what makes them of the forces of supports: num_dofs x num_load_cases.
+  Eigen::MatrixXd ResultantsTransposed(const Eigen::VectorXd& rows) const;
   /// What was measured of them, likewise.
   Eigen::VectorXd MeasuredResultants() const;
 

@@ -326,6 +326,30 @@ Json LawsJson(const Estimate& estimate) {
   return laws;
 }
 
+// Writes the map of a modulus; its arrays are in the VTU file.
+Json MapJson(const std::optional<MapEstimate>& map) {
+  if (!map) {
+    return nullptr;
+  }
+  Json regions = Json::array();
+  for (const MapRegion& region : map->regions) {
+    regions.push_back({{"youngs_modulus", OrNull(region.youngs_modulus)},
+                       {"standard_error", OrNull(region.standard_error)},
+                       {"volume", region.volume},
+                       {"diameter", region.diameter},
+                       {"resolved", region.is_resolved}});
+  }
+  return {{"parameter", "youngs_modulus"},
+          {"verdict", MapVerdictName(map->verdict)},
+          {"log_evidence",
+           {{"homogeneous", 0},
+            {"regions", OrNull(map->region_log_evidence)},
+            {"field", OrNull(map->field_log_evidence)}}},
+          {"supported_parameters", OrNull(map->supported_parameters)},
+          {"elements", map->youngs_modulus.size()},
+          {"regions", regions}};
+}
+
 Json SeriesJson(const Estimate& estimate) {
   if (!estimate.series) {
     return nullptr;
@@ -414,6 +438,7 @@ std::string JsonReport(const Estimate& estimate, const Scene& scene,
       {"combinations", estimate.combinations},
       {"merges", MergesJson(estimate)},
       {"laws", LawsJson(estimate)},
+      {"map", MapJson(estimate.map)},
       {"series", SeriesJson(estimate)},
       {"work", WorkJson(estimate.work)},
       {"rungs", RungsJson(estimate)},

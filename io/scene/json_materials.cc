@@ -127,6 +127,19 @@ void ReadWhatIsKnown(const JsonValue& value, const Law& law,
   }
 }
 
+// Reads the parameters that differ between elements,
+// {"youngs_modulus": {"over": "elements"}}.
+std::vector<std::string> ReadFields(const JsonValue& value) {
+  value.CheckKeys({"youngs_modulus"});
+  const JsonValue field = value.At("youngs_modulus");
+  field.CheckKeys({"over"});
+  if (field.At("over").String() != "elements") {
+    field.At("over").Fail("is \"" + Printable(field.At("over").String()) +
+                          "\"; it must be \"elements\"");
+  }
+  return {"youngs_modulus"};
+}
+
 // Reads a direction, or the cell array with a direction for each element.
 Eigen::MatrixXd ReadAxis(const JsonValue& value, const MeshFile& mesh) {
   const int dimension = mesh.Dimension();
@@ -181,7 +194,7 @@ std::vector<Eigen::MatrixXd> ReadAxes(const JsonValue& value,
 
 Material ReadMaterial(const JsonValue& value, const MeshFile& mesh) {
   value.CheckKeys(
-      {"law", "region", "known", "bounds", "prior", "axis", "axes"});
+      {"law", "region", "known", "bounds", "prior", "fields", "axis", "axes"});
   Material material;
   if (value.Has("law")) {
     material.law = value.At("law").String();
@@ -204,6 +217,9 @@ Material ReadMaterial(const JsonValue& value, const MeshFile& mesh) {
     material.regions = ReadRegions(value.At("region"), mesh);
   }
   ReadWhatIsKnown(value, *law, material);
+  if (value.Has("fields")) {
+    material.fields = ReadFields(value.At("fields"));
+  }
   material.axes = ReadAxes(value, mesh);
   return material;
 }

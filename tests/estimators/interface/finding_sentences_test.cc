@@ -166,10 +166,16 @@ std::vector<Finding> OfElements() {
                      "factorised")};
 }
 
+std::vector<Finding> OfMaps() {
+  return {Misfit(1.23), NotResolved(2, 0.123), NoiseNeeded(123456, 12345),
+          MayBeTheMesh(0.0123)};
+}
+
 std::vector<Finding> EveryFinding() {
   std::vector<Finding> findings = Estimate().findings;
-  for (const auto& group : {OfSolutions(), OfUndeterminedParameters(),
-                            OfResiduals(), OfParameters(), OfElements()}) {
+  for (const auto& group :
+       {OfSolutions(), OfUndeterminedParameters(), OfResiduals(),
+        OfParameters(), OfElements(), OfMaps()}) {
     findings.insert(findings.end(), group.begin(), group.end());
   }
   return findings;

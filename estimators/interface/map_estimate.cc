@@ -1,0 +1,17 @@
+#include "elastimate/estimators/interface/map_estimate.h"
+
+namespace elastimate {
+
+std::string_view MapVerdictName(MapVerdict verdict) {
+  switch (verdict) {
+    case MapVerdict::kHomogeneous:
+      return "homogeneous";
+    case MapVerdict::kRegions:
+      return "regions";
+    case MapVerdict::kField:
+      break;
+  }
+  return "field";
+}
+
+}  // namespace elastimate

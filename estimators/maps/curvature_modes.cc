@@ -1,0 +1,114 @@
+#include "elastimate/estimators/maps/curvature_modes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/estimators/maps/random_columns.h"
+
+namespace elastimate {
+namespace {
+
+constexpr Eigen::Index kFirstModes = 64;
+constexpr double kMostModeEntries =
+    4e7;  // Of each of three matrices: 1 GB in all.
+constexpr Eigen::Index kProbes = 8;
+
+}  // namespace
+
+void CurvatureModes::AddUntil(double least, const ColumnOperator& multiply) {
+  const Eigen::Index size = basis_.rows();
+  const Eigen::Index most = std::min<Eigen::Index>(
+      size, std::max<Eigen::Index>(
+                kFirstModes, Eigen::Index(kMostModeEntries / double(size))));
+  while (basis_.cols() < most && (Size() == 0 || values_(Size() - 1) > least)) {
+    const Eigen::Index old = basis_.cols();
+    const Eigen::Index more =
+        std::min(std::max(kFirstModes, old / 2), most - old);
+    std::mt19937_64 generator(old + 1);
+    Eigen::MatrixXd columns = StandardNormal(size, more, generator);
+    for (int i = 0; i < 2; ++i) {
+      columns -= basis_ * (basis_.transpose() * columns);
+      columns = DecomposeQr(columns).q;
+    }
+    basis_.conservativeResize(Eigen::NoChange, old + more);
+    products_.conservativeResize(Eigen::NoChange, old + more);
+    basis_.rightCols(more) = columns;
+    products_.rightCols(more) = multiply(columns);
+    Decompose(multiply);
+  }
+}
+
+void CurvatureModes::Renew(const ColumnOperator& multiply) {
+  products_ = multiply(basis_);
+  Decompose(multiply);
+}
+
+void CurvatureModes::Decompose(const ColumnOperator& multiply) {
+  const Eigen::Index size = basis_.rows();
+  // A small shift keeps the factor of the sketch definite.
+  const double shift = std::sqrt(double(size)) *
+                       std::numeric_limits<double>::epsilon() *
+                       products_.norm();
+  Eigen::MatrixXd sketch = basis_.transpose() * products_;
+  sketch = (sketch + sketch.transpose()).eval() / 2;
+  sketch.diagonal().array() += shift;
+  const SymmetricEigenDecomposition of_sketch = DecomposeSymmetric(sketch);
+  const Eigen::MatrixXd root =
+      of_sketch.vectors *
+      of_sketch.values.cwiseMax(shift).cwiseSqrt().cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd columns = (products_ + shift * basis_) * root;
+  const SymmetricEigenDecomposition gram =
+      DecomposeSymmetric(columns.transpose() * columns);
+  const Eigen::Index r = columns.cols();
+  values_ = (gram.values.reverse().array() - shift).cwiseMax(0.0);
+  vectors_ = columns * gram.vectors.rowwise().reverse() *
+             gram.values.reverse()
+                 .cwiseMax(std::numeric_limits<double>::min())
+                 .cwiseSqrt()
+                 .cwiseInverse()
+                 .asDiagonal();
+  // The last vectors are rounding where H has a null space.
+  Eigen::Index kept = r;
+  while (kept > 0 && values_(kept - 1) <= 1e-13 * values_(0)) {
+    --kept;
+  }
+  kept = std::max<Eigen::Index>(kept, 1);
+  const bool is_all = r == size;
+  values_.conservativeResize(kept);
+  vectors_.conservativeResize(Eigen::NoChange, kept);
+  trace_left_ = 0;
+  if (!is_all) {
+    std::mt19937_64 generator(0);
+    Eigen::MatrixXd probes = StandardNormal(size, kProbes, generator);
+    probes -= basis_ * (basis_.transpose() * probes);
+    const double by_modes =
+        (values_.cwiseSqrt().asDiagonal() * (vectors_.transpose() * probes))
+            .squaredNorm();
+    // A mean over directions beside the basis is that of all of them there.
+    trace_left_ =
+        std::max(0.0, (probes.cwiseProduct(multiply(probes)).sum() - by_modes) /
+                          double(kProbes));
+  }
+}
+
+double CurvatureModes::LogDeterminant(double k) const {
+  return (k * values_.array()).log1p().sum() +
+         NumLeft() * std::log1p(k * LeastValue());
+}
+
+double CurvatureModes::EffectiveNumber(double k) const {
+  return (k * values_.array() / (1 + k * values_.array())).sum() +
+         NumLeft() * k * LeastValue() / (1 + k * LeastValue());
+}
+
+Eigen::MatrixXd CurvatureModes::Solve(double k,
+                                      const Eigen::MatrixXd& b) const {
+  // (I / k + H)^-1 = k (I - U diag(k lambda / (1 + k lambda)) U^T).
+  const Eigen::VectorXd share = k * values_.array() / (1 + k * values_.array());
+  return k * (b - vectors_ * (share.asDiagonal() * (vectors_.transpose() * b)));
+}
+
+}  // namespace elastimate

@@ -1,0 +1,388 @@
+#include "elastimate/estimators/maps/estimate_map.h"
+
+#include <algorithm>
+#include <boost/pending/disjoint_sets.hpp>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "elastimate/core/laws/elasticity.h"
+#include "elastimate/core/scene/loads.h"
+#include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/estimators/interface/finding_sentences.h"
+#include "elastimate/estimators/maps/field_prior.h"
+#include "elastimate/estimators/maps/level_fit.h"
+#include "elastimate/estimators/maps/map_errors.h"
+#include "elastimate/estimators/maps/map_problem.h"
+#include "elastimate/estimators/maps/region_map.h"
+#include "elastimate/estimators/maps/sharpen_map.h"
+#include "elastimate/estimators/maps/smooth_map.h"
+#include "elastimate/estimators/misfit/displacement_misfit.h"
+
+namespace elastimate {
+namespace {
+
+// ln B from which on a body is not homogeneous.
+constexpr double kLeastEvidence = 3;
+// The number of measurements over that of supported parameters below which the
+// data do not tell noise from structure.
+constexpr double kLeastRedundancy = 4;
+// Structure of a measured body below this standard deviation of ln E may come
+// from its mesh.
+constexpr double kOfTheMesh = 0.05;
+constexpr double kResolved = 3;
+constexpr double kUsualPoissonRatio = 0.3;
+// How far the square sum may be from its mean, in standard deviations.
+constexpr double kMostMisfit = 5;
+// nu of maps was off by twice what the linearised model says.
+constexpr double kWideningOfPoissonRatio = 2;
+
+// What linear and then quadratic elements change, of which half is taken for
+// the error of the latter, and what their displacements change beside.
+constexpr double kOfMeshChange = 0.5;
+constexpr double kOfDisplacementChange = 0.03;
+constexpr double kLeastOfRatio = 0.2;
+
+// Returns the scene of one isotropic material.
+Scene OfOneMaterial(Scene scene) {
+  scene.materials.clear();
+  scene.mesh.regions.resize(0);
+  return scene;
+}
+
+bool HasAnyForce(const Scene& scene) {
+  return !AssembleLoadCases(scene).isZero(0) ||
+         std::any_of(scene.load_cases.begin(), scene.load_cases.end(),
+                     [](const LoadCase& load_case) {
+                       return !load_case.resultants.empty();
+                     });
+}
+
+// Returns E of the displacements; empty where they oppose the loads.
+std::optional<double> ScaleAtStart(const Scene& scene,
+                                   const EstimatorOptions& options, double nu) {
+  EstimatorOptions of_start;
+  of_start.solver = options.solver;
+  DisplacementMisfit misfit(scene, of_start);
+  const double scale =
+      IsotropicElasticity{1, nu}.StiffnessScale(scene.mesh.section.model);
+  const std::optional<DisplacementMisfit::ScaleFit> fit =
+      misfit.FitScale(Eigen::Vector2d(scale, nu * scale), Loss::kNone);
+  return fit ? std::optional<double>(1 / fit->compliance) : std::nullopt;
+}
+
+double SpreadOfLog(const Eigen::VectorXd& log_moduli,
+                   const Eigen::VectorXd& volumes) {
+  const double mean = volumes.dot(log_moduli) / volumes.sum();
+  return std::sqrt(volumes.dot((log_moduli.array() - mean).square().matrix()) /
+                   volumes.sum());
+}
+
+// Returns the volume of the largest connected part of each region.
+Eigen::VectorXd LargestParts(const std::vector<int>& region_of_element,
+                             Eigen::Index num_regions,
+                             const FieldPrior& prior) {
+  boost::disjoint_sets_with_storage<> parts(region_of_element.size());
+  for (std::size_t e = 0; e < region_of_element.size(); ++e) {
+    parts.make_set(e);
+  }
+  for (const auto& sides : prior.Facets().elements.colwise()) {
+    if (sides(1) >= 0 &&
+        region_of_element[sides(0)] == region_of_element[sides(1)]) {
+      parts.union_set(std::size_t(sides(0)), std::size_t(sides(1)));
+    }
+  }
+  Eigen::VectorXd of_parts = Eigen::VectorXd::Zero(prior.NumElements());
+  Eigen::VectorXd largest = Eigen::VectorXd::Zero(num_regions);
+  for (std::size_t e = 0; e < region_of_element.size(); ++e) {
+    double& volume = of_parts(Eigen::Index(parts.find_set(e)));
+    volume += prior.Volumes()(Eigen::Index(e));
+    largest(region_of_element[e]) =
+        std::max(largest(region_of_element[e]), volume);
+  }
+  return largest;
+}
+
+// Returns the diameter of a disc or a ball.
+double DiameterOf(double volume, int dimension) {
+  constexpr double kPi = 3.14159265358979323846;
+  return dimension == 2 ? std::sqrt(4 * volume / kPi)
+                        : std::cbrt(6 * volume / kPi);
+}
+
+class MapBuilder {
+ public:
+  // `linear` has the linear elements that those of `scene` refine, or is null.
+  // `trusts_noise` takes the noise that is given.
+  MapBuilder(const Scene& scene, const Scene* linear,
+             const EstimatorOptions& options, bool trusts_noise)
+      : scene_(scene),
+        linear_(linear),
+        solver_(options.solver),
+        prior_(scene.mesh),
+        model_(scene, options.solver),
+        problem_{model_, options.known_poisson_ratio,
+                 trusts_noise ? GivenNoise() : std::nullopt} {}
+
+  MapEstimate Build(const std::optional<double>& start) {
+    map_.element_order = scene_.mesh.Order();
+    map_.is_scale_known = start.has_value();
+    const std::vector<int> whole(std::size_t(prior_.NumElements()), 0);
+    const std::optional<LevelFit> homogeneous =
+        FitLevels(problem_, whole,
+                  Eigen::VectorXd::Constant(1, std::log(start.value_or(1))),
+                  problem_.known_poisson_ratio.value_or(kUsualPoissonRatio));
+    if (!homogeneous) {
+      return Failed(SingularStiffness());
+    }
+    const SmoothMap smooth = FitSmoothMap(problem_, prior_, *homogeneous);
+    const MapErrors errors = DescribeMap(problem_, prior_, smooth);
+    const MapState sharpened = SharpenMap(problem_, prior_, smooth);
+    const std::optional<RegionMap> regions =
+        FitRegions(problem_, prior_, sharpened, *homogeneous);
+    map_.field_log_evidence = smooth.log_evidence;
+    map_.region_log_evidence = regions ? regions->log_evidence : 0;
+    // A field that explains less than one material does supports nothing.
+    const bool is_supported = smooth.log_evidence > 0;
+    map_.supported_parameters = is_supported ? smooth.effective_number : 0;
+    map_.resolution_length =
+        is_supported
+            ? errors.resolution_length
+            : Eigen::VectorXd::Constant(prior_.NumElements(), prior_.Size());
+    const double best =
+        std::max(map_.field_log_evidence, map_.region_log_evidence);
+    if (best < kLeastEvidence) {
+      const double variance = problem_.Variance(
+          homogeneous->square_sum,
+          double(model_.NumIndependentRows() - homogeneous->unknowns.Rank()));
+      EnterRegions(whole, *homogeneous, variance,
+                   variance * homogeneous->unknowns.InverseGram());
+    } else if (regions && map_.region_log_evidence == best) {
+      map_.verdict = MapVerdict::kRegions;
+      EnterRegions(regions->region_of_element, regions->fit, regions->variance,
+                   regions->covariance);
+    } else {
+      map_.verdict = MapVerdict::kField;
+      EnterField(smooth, errors);
+      if (!smooth.has_converged) {
+        return Failed(SearchFailed("the smooth map did not settle"));
+      }
+    }
+    map_.status = Status::kOk;
+    Judge();
+    map_.work = model_.WorkDone();
+    return map_;
+  }
+
+ private:
+  std::optional<double> GivenNoise() const {
+    const ObservedDisplacements& observed = model_.Observed();
+    return observed.GivenNoise() ? std::optional<double>(1 / observed.Norm())
+                                 : std::nullopt;
+  }
+
+  MapEstimate Failed(const Finding& finding) {
+    map_.status = StatusOf(finding.code);
+    map_.findings.push_back(finding);
+    map_.work = model_.WorkDone();
+    return map_;
+  }
+
+  void EnterNoise(double square_sum, double variance) {
+    square_sum_ = square_sum;
+    map_.noise_sd = std::sqrt(variance) * model_.Observed().Norm();
+  }
+
+  // Returns what the elements may miss, by the change from linear ones: with
+  // the change d of the parameters and that of the displacements, du,
+  //
+  //   c^2 d d^T + (b |du|)^2 (Z^T Z)^-1,   c = 1/2,   b = 0.03 (2 / m)^(1/2)
+  //
+  // for m parameters, and |d nu| not below 0.2 of the largest |d ln E|.
+  Eigen::MatrixXd MeshCovariance(const std::vector<int>& region_of_element,
+                                 const LevelFit& fit) {
+    const Eigen::Index n = fit.levels.size();
+    const double nu = fit.state.poisson_ratio;
+    const double noise = problem_.noise.value_or(0);
+    FieldSensitivity coarse(*linear_, solver_);
+    const MapProblem of_coarse = {coarse, problem_.known_poisson_ratio,
+                                  problem_.noise};
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n + 1, n + 1);
+    if (!coarse.MoveTo(fit.state.log_moduli, nu, noise) ||
+        !model_.MoveTo(fit.state.log_moduli, nu, noise)) {
+      return covariance;
+    }
+    const double change = (coarse.Residual() - model_.Residual()).norm();
+    const double b = kOfDisplacementChange * std::sqrt(2.0 / double(n + 1));
+    covariance = b * b * change * change * fit.unknowns.InverseGram();
+    const std::optional<LevelFit> of_linear =
+        FitLevels(of_coarse, region_of_element, fit.levels, nu);
+    if (of_linear) {
+      Eigen::VectorXd d(n + 1);
+      d.head(n) = fit.levels - of_linear->levels;
+      if (!problem_.known_poisson_ratio) {
+        const double least = kLeastOfRatio *
+                             d.head(n).lpNorm<Eigen::Infinity>() * 3 /
+                             ((1 + nu) * (1 - 2 * nu));
+        d(n) = LogStiffnessRatio(nu) -
+               LogStiffnessRatio(of_linear->state.poisson_ratio);
+        d(n) = std::copysign(std::max(std::abs(d(n)), least), d(n));
+      } else {
+        d(n) = 0;
+      }
+      covariance += kOfMeshChange * kOfMeshChange * d * d.transpose();
+    }
+    return covariance;
+  }
+
+  // Enters the means with their covariance as (ln E, LogStiffnessRatio).
+  void EnterMeans(const MapState& state, const Eigen::Matrix2d& covariance) {
+    const double nu = state.poisson_ratio;
+    map_.mean_youngs_modulus = std::exp(prior_.Volumes().dot(state.log_moduli) /
+                                        prior_.Volumes().sum());
+    map_.poisson_ratio = nu;
+    map_.covariance = OfParameters(state, covariance);
+  }
+
+  // Returns the covariance of (E, nu) for that of (ln E, LogStiffnessRatio).
+  Eigen::Matrix2d OfParameters(const MapState& state,
+                               const Eigen::Matrix2d& covariance) const {
+    const double nu = state.poisson_ratio;
+    const Eigen::Vector2d slopes(map_.mean_youngs_modulus,
+                                 (1 + nu) * (1 - 2 * nu) / 3);
+    return slopes.asDiagonal() * covariance * slopes.asDiagonal();
+  }
+
+  void EnterRegions(const std::vector<int>& region_of_element,
+                    const LevelFit& fit, double variance,
+                    Eigen::MatrixXd covariance) {
+    const Eigen::MatrixXd of_mesh =
+        linear_ != nullptr
+            ? MeshCovariance(region_of_element, fit)
+            : Eigen::MatrixXd::Zero(covariance.rows(), covariance.cols());
+    covariance += of_mesh;
+    const Eigen::Index n = fit.levels.size();
+    Eigen::VectorXd volumes = Eigen::VectorXd::Zero(n);
+    Eigen::VectorXd lengths = Eigen::VectorXd::Zero(n);
+    for (Eigen::Index e = 0; e < prior_.NumElements(); ++e) {
+      const double volume = prior_.Volumes()(e);
+      volumes(region_of_element[e]) += volume;
+      lengths(region_of_element[e]) += volume * map_.resolution_length(e);
+    }
+    const Eigen::VectorXd largest = LargestParts(region_of_element, n, prior_);
+    const Eigen::VectorXd sd = covariance.diagonal().cwiseSqrt();
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double modulus = std::exp(fit.levels(i));
+      const double diameter = DiameterOf(largest(i), prior_.Dimension());
+      map_.regions.push_back(
+          {modulus, modulus * sd(i), scene_.mesh.section.thickness * volumes(i),
+           diameter,
+           n == 1 || diameter * volumes(i) >= kResolved * lengths(i)});
+    }
+    map_.region_of_element = region_of_element;
+    map_.youngs_modulus = fit.state.log_moduli.array().exp();
+    map_.youngs_modulus_standard_error.resize(prior_.NumElements());
+    for (Eigen::Index e = 0; e < prior_.NumElements(); ++e) {
+      map_.youngs_modulus_standard_error(e) =
+          map_.regions[region_of_element[e]].standard_error;
+    }
+    // The mean of ln E and nu are linear in the levels and the last unknown.
+    Eigen::MatrixXd means = Eigen::MatrixXd::Zero(2, n + 1);
+    means.row(0).head(n) = volumes.transpose() / volumes.sum();
+    means(1, n) = n == 1 ? 1 : kWideningOfPoissonRatio;
+    EnterMeans(fit.state, means * covariance * means.transpose());
+    map_.mesh_covariance =
+        OfParameters(fit.state, means * of_mesh * means.transpose());
+    EnterNoise(fit.square_sum, variance);
+  }
+
+  void EnterField(const SmoothMap& smooth, const MapErrors& errors) {
+    map_.youngs_modulus = smooth.state.log_moduli.array().exp();
+    map_.youngs_modulus_standard_error =
+        map_.youngs_modulus.cwiseProduct(errors.log_modulus_sd);
+    const Eigen::Vector2d widening(1, kWideningOfPoissonRatio);
+    EnterMeans(smooth.state, widening.asDiagonal() *
+                                 errors.covariance_of_means *
+                                 widening.asDiagonal());
+    EnterNoise(smooth.square_sum, smooth.variance);
+  }
+
+  // Says what the numbers of the map mean.
+  void Judge() {
+    const double num_rows = double(model_.NumIndependentRows());
+    if (!problem_.noise && map_.verdict == MapVerdict::kField &&
+        num_rows < kLeastRedundancy * map_.supported_parameters) {
+      map_.findings.push_back(NoiseNeeded(num_rows, map_.supported_parameters));
+    }
+    const double freedom = num_rows - (map_.verdict == MapVerdict::kField
+                                           ? map_.supported_parameters
+                                           : double(map_.regions.size()));
+    if (problem_.noise && freedom > 0) {
+      const double ratio = square_sum_ / (problem_.Variance(0, 1) * freedom);
+      if (ratio > 1 + kMostMisfit * std::sqrt(2 / freedom)) {
+        map_.findings.push_back(Misfit(std::sqrt(ratio)));
+      }
+    }
+    const double spread =
+        SpreadOfLog(map_.youngs_modulus.array().log(), prior_.Volumes());
+    if (scene_.origin == Origin::kMeasured &&
+        map_.verdict != MapVerdict::kHomogeneous && spread < kOfTheMesh) {
+      map_.findings.push_back(MayBeTheMesh(spread));
+    }
+    for (std::size_t i = 0; i < map_.regions.size(); ++i) {
+      if (!map_.regions[i].is_resolved) {
+        map_.findings.push_back(
+            NotResolved(int(i) + 1, map_.regions[i].diameter));
+        break;
+      }
+    }
+  }
+
+  const Scene& scene_;
+  const Scene* linear_;
+  SolverKind solver_;
+  FieldPrior prior_;
+  FieldSensitivity model_;
+  MapProblem problem_;
+  MapEstimate map_;
+  double square_sum_ = 0;
+};
+
+}  // namespace
+
+MapEstimate EstimateMap(const Scene& scene, const EstimatorOptions& options) {
+  const Scene given = OfOneMaterial(scene);
+  const bool is_raised =
+      scene.origin == Origin::kMeasured && scene.mesh.Order() == 1;
+  const Scene modelled = is_raised ? QuadraticScene(given) : given;
+  std::optional<double> start;
+  if (HasAnyForce(modelled)) {
+    start =
+        ScaleAtStart(modelled, options,
+                     options.known_poisson_ratio.value_or(kUsualPoissonRatio));
+    if (!start) {
+      MapEstimate map;
+      const Finding finding = DisplacementsOpposeLoads();
+      map.status = StatusOf(finding.code);
+      map.findings = {finding};
+      return map;
+    }
+  }
+  const Scene* const linear = is_raised ? &given : nullptr;
+  const MapEstimate map =
+      MapBuilder(modelled, linear, options, true).Build(start);
+  const auto misfit = std::find_if(
+      map.findings.begin(), map.findings.end(), [](const Finding& finding) {
+        return finding.code == FindingCode::kMisfit;
+      });
+  if (misfit == map.findings.end()) {
+    return map;
+  }
+  // What is left beside the noise would pass for structure, so it counts as
+  // noise.
+  MapEstimate other = MapBuilder(modelled, linear, options, false).Build(start);
+  other.findings.insert(other.findings.begin(), *misfit);
+  return other;
+}
+
+}  // namespace elastimate

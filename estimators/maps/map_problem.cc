@@ -1,0 +1,77 @@
+#include "elastimate/estimators/maps/map_problem.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "elastimate/core/algebra/dense_algebra.h"
+#include "elastimate/core/laws/elasticity.h"
+#include "elastimate/estimators/misfit/displacement_misfit.h"
+
+namespace elastimate {
+namespace {
+
+// A column that is so small beside the largest one is rounding.
+constexpr double kNothingOfColumns = 1e-9;
+constexpr double kMostChangeOfMap = 2;
+
+}  // namespace
+
+double MapProblem::Variance(double square_sum,
+                            double degrees_of_freedom) const {
+  const double variance =
+      noise ? *noise * *noise : square_sum / std::max(degrees_of_freedom, 1.0);
+  return std::max(variance, kLeastNoise * kLeastNoise);
+}
+
+FlatUnknowns::FlatUnknowns(const MapProblem& problem, const MapState& state,
+                           const Eigen::MatrixXd& parts)
+    : has_free_ratio_(!problem.known_poisson_ratio) {
+  columns_ = problem.model.Multiply(parts);
+  if (has_free_ratio_) {
+    const double nu = state.poisson_ratio;
+    columns_.conservativeResize(Eigen::NoChange, parts.cols() + 1);
+    columns_.rightCols(1) =
+        problem.model.OfPoissonRatio() * ((1 + nu) * (1 - 2 * nu) / 3);
+  }
+  basis_ = OrthonormalBasis(columns_, kNothingOfColumns);
+}
+
+Eigen::MatrixXd FlatUnknowns::Project(const Eigen::MatrixXd& rows) const {
+  return rows - basis_ * (basis_.transpose() * rows);
+}
+
+Eigen::MatrixXd FlatUnknowns::Solve(const Eigen::MatrixXd& rows) const {
+  Eigen::MatrixXd solution =
+      SolveLeastSquares(columns_, rows, kNothingOfColumns);
+  if (!has_free_ratio_) {
+    solution.conservativeResize(solution.rows() + 1, Eigen::NoChange);
+    solution.bottomRows(1).setZero();
+  }
+  return solution;
+}
+
+Eigen::MatrixXd FlatUnknowns::InverseGram() const {
+  const Eigen::MatrixXd root = Solve(basis_);
+  return root * root.transpose();
+}
+
+MapState Stepped(const MapState& state, const Eigen::VectorXd& of_log_moduli,
+                 double of_log_stiffness_ratio) {
+  MapState stepped = {state.log_moduli + of_log_moduli, state.poisson_ratio};
+  if (of_log_stiffness_ratio != 0) {
+    stepped.poisson_ratio = std::clamp(
+        PoissonRatioOfLogStiffnessRatio(LogStiffnessRatio(state.poisson_ratio) +
+                                        of_log_stiffness_ratio),
+        kSmallestPoissonRatio, kLargestPoissonRatio);
+  }
+  return stepped;
+}
+
+double LargestStep(const Eigen::VectorXd& of_log_moduli,
+                   double of_log_stiffness_ratio) {
+  return std::min(
+      1.0, kMostChangeOfMap / std::max(of_log_moduli.lpNorm<Eigen::Infinity>(),
+                                       std::abs(of_log_stiffness_ratio)));
+}
+
+}  // namespace elastimate

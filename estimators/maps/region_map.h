@@ -1,0 +1,51 @@
+#ifndef ELASTIMATE_ESTIMATORS_MAPS_REGION_MAP_H_
+#define ELASTIMATE_ESTIMATORS_MAPS_REGION_MAP_H_
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "elastimate/estimators/maps/field_prior.h"
+#include "elastimate/estimators/maps/level_fit.h"
+#include "elastimate/estimators/maps/map_problem.h"
+
+namespace elastimate {
+
+/// Regions of one modulus each, in the order of their moduli.
+struct RegionMap {
+  std::vector<int> region_of_element;
+  LevelFit fit;
+  /// ln B over a homogeneous body.
+  double log_evidence = 0;
+  /// Of ln E of each region, and last of the LogStiffnessRatio of nu: with the
+  /// variance sigma^2 (Z^T Z)^-1 of noise, and that of elements whose region
+  /// is not certain.  For a unit standard deviation of a row it is multiplied
+  /// by `variance` already.
+  Eigen::MatrixXd covariance;
+  double variance = 0;  ///< sigma^2 of a row.
+};
+
+/// Divides a body into regions by a sharpened map.  Two and then three means of
+/// ln E (by volume) are the start.  Then elements at the boundary of a region
+/// go to the one on the other side where that is worth it,
+///
+///   g delta + h delta^2 / 2 + change of the number of facets < 0,
+///
+/// with g the gradient and h the curvature of |r|^2 / (2 sigma^2) by ln E of
+/// the element and delta its change, and the moduli are fitted again, as long
+/// as
+///
+///   BIC = N ln |r|^2 + k ln N + 2 (facets between regions)
+///
+/// falls, with |r|^2 / sigma^2 for the first term where sigma is known.  The
+/// best of both numbers k of regions is returned; empty where no region could
+/// be fitted.  Cost: a solve for each element at a boundary and some fits of
+/// levels in each round; at most 15 rounds.
+[[nodiscard]] std::optional<RegionMap> FitRegions(const MapProblem& problem,
+                                                  const FieldPrior& prior,
+                                                  const MapState& sharpened,
+                                                  const LevelFit& homogeneous);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_ESTIMATORS_MAPS_REGION_MAP_H_

@@ -1,0 +1,216 @@
+#include "elastimate/estimators/maps/smooth_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "elastimate/core/solvers/conjugate_gradients.h"
+
+namespace elastimate {
+namespace {
+
+constexpr int kMostSmoothSteps = 20;
+constexpr int kMostSmoothHalvings = 5;
+// The evidence is flat about its maximum, where k might push the field to and
+// fro.  After so many steps it stays.
+constexpr int kMostRatios = 10;
+// Steps end where ln E changes by less, as a root mean square, and k by less,
+// relative to it.
+constexpr double kSettledField = 3e-3;
+constexpr double kSettledRatio = 0.03;
+// The modes are renewed where ln E has changed by so much since.
+constexpr double kStaleModes = 0.1;
+// Modes beyond k lambda = 0.3 count to first order.
+constexpr double kLeastOfModes = 0.3;
+constexpr double kAccurateSmooth = 1e-3;
+
+double RootMeanSquareOf(const Eigen::VectorXd& values) {
+  return std::sqrt(values.squaredNorm() / double(values.size()));
+}
+
+// The evidence as a function of k where the field is y so far.  Changes of the
+// field count from there, so that modes of a state nearby do no harm: for
+// (I / k + H) delta = g, g = A^T S^T Pi r - y / k,
+//
+//   q = |Pi r|^2 + |y|^2 / k - g^T delta.
+struct FieldEvidence {
+  const MapProblem& problem;
+  const CurvatureModes& modes;
+  double square_sum;         // |Pi r|^2.
+  Eigen::VectorXd gradient;  // A^T S^T Pi r.
+  Eigen::VectorXd y;
+  double degrees_of_freedom;  // N - p.
+
+  Eigen::VectorXd SlopeAt(double k) const { return gradient - y / k; }
+  double QuadraticAt(double k, const Eigen::VectorXd& delta) const {
+    return square_sum + y.squaredNorm() / k - SlopeAt(k).dot(delta);
+  }
+  // Returns -2 ln ev + a constant, for q of this k.
+  double Of(double k, double q) const {
+    const double least = degrees_of_freedom * problem.Variance(0, 1);
+    return (problem.noise ? q / problem.Variance(0, 1)
+                          : degrees_of_freedom * std::log(std::max(q, least))) +
+           modes.LogDeterminant(k);
+  }
+  double At(double log_k) const {
+    const double k = std::exp(log_k);
+    return Of(k, QuadraticAt(k, modes.Solve(k, SlopeAt(k))));
+  }
+};
+
+// Returns the k of the greatest evidence: of a scan, and then between its
+// points.  The data cannot support nearly as many parameters as there are
+// measurements: noise that is not known would then be found to be zero, and
+// where it is known, the model is wrong rather than the body that uneven.
+double BestRatio(const FieldEvidence& evidence) {
+  constexpr int kPoints = 65;
+  const double most_supported =
+      evidence.degrees_of_freedom * (evidence.problem.noise ? 2.0 : 1.0) / 3;
+  const double largest = std::max(evidence.modes.Values()(0), 1e-300);
+  const double lower = std::log(1e-4 / largest);
+  const double upper = std::log(1e12 / largest);
+  const double step = (upper - lower) / (kPoints - 1);
+  const auto value_at = [&](double log_k) {
+    return evidence.modes.EffectiveNumber(std::exp(log_k)) > most_supported
+               ? std::numeric_limits<double>::infinity()
+               : evidence.At(log_k);
+  };
+  double best = lower;
+  double least = value_at(lower);
+  for (int i = 1; i < kPoints; ++i) {
+    const double value = value_at(lower + i * step);
+    if (value < least) {
+      least = value;
+      best = lower + i * step;
+    }
+  }
+  constexpr double kGolden = 0.618033988749894848;
+  double a = best - step;
+  double b = best + step;
+  while (b - a > 1e-3) {
+    const double left = b - kGolden * (b - a);
+    const double right = a + kGolden * (b - a);
+    (value_at(left) < value_at(right) ? b : a) =
+        value_at(left) < value_at(right) ? right : left;
+  }
+  return std::exp((a + b) / 2);
+}
+
+}  // namespace
+
+Eigen::MatrixXd MultiplyByCurvature(const MapProblem& problem,
+                                    const FieldPrior& prior,
+                                    const FlatUnknowns& unknowns,
+                                    const Eigen::MatrixXd& y) {
+  return prior.ApplyTransposed(problem.model.MultiplyTransposed(
+      unknowns.Project(problem.model.Multiply(prior.Apply(y)))));
+}
+
+SmoothMap FitSmoothMap(const MapProblem& problem, const FieldPrior& prior,
+                       const LevelFit& homogeneous) {
+  FieldSensitivity& model = problem.model;
+  const Eigen::Index n = prior.NumElements();
+  const double num_rows = double(model.NumIndependentRows());
+  const Eigen::MatrixXd ones = Eigen::MatrixXd::Ones(n, 1);
+  SmoothMap map = {
+      homogeneous.state, Eigen::VectorXd::Zero(n), 0, 0, 0, 0, 0, false,
+      CurvatureModes(n)};
+  map.variance = problem.Variance(homogeneous.square_sum,
+                                  num_rows - homogeneous.unknowns.Rank());
+  double change_since_modes = 0;
+  for (int i = 0;; ++i) {
+    const FlatUnknowns unknowns(problem, map.state, ones);
+    const ColumnOperator curvature = [&](const Eigen::MatrixXd& y) {
+      return MultiplyByCurvature(problem, prior, unknowns, y);
+    };
+    const Eigen::VectorXd residual = model.Residual();
+    map.square_sum = residual.squaredNorm();
+    const Eigen::VectorXd data = unknowns.Project(residual);
+    FieldEvidence evidence = {
+        problem,
+        map.modes,
+        data.squaredNorm(),
+        prior.ApplyTransposed(model.MultiplyTransposed(data)),
+        map.y,
+        num_rows - double(unknowns.Rank())};
+    const double last_ratio = map.ratio;
+    if (map.modes.Size() == 0) {
+      map.modes.AddUntil(kLeastOfModes / 1e3, curvature);
+    } else if (change_since_modes > kStaleModes) {
+      map.modes.Renew(curvature);
+      change_since_modes = 0;
+    }
+    for (Eigen::Index size = -1; size != map.modes.Size();) {
+      size = map.modes.Size();
+      const double best = BestRatio(evidence);
+      map.ratio = i <= kMostRatios ? best : last_ratio;
+      map.modes.AddUntil(kLeastOfModes / map.ratio, curvature);
+    }
+    ConjugateGradientOptions options;
+    options.tolerance = kAccurateSmooth;
+    options.most_iterations = 500;
+    const Eigen::VectorXd delta =
+        SolveByConjugateGradients(
+            [&](const Eigen::MatrixXd& columns) {
+              return Eigen::MatrixXd(columns / map.ratio + curvature(columns));
+            },
+            [&](const Eigen::MatrixXd& columns) {
+              return map.modes.Solve(map.ratio, columns);
+            },
+            evidence.SlopeAt(map.ratio), {}, options)
+            .solution;
+    const double q = evidence.QuadraticAt(map.ratio, delta);
+    map.variance = problem.Variance(q, evidence.degrees_of_freedom);
+    map.effective_number = map.modes.EffectiveNumber(map.ratio);
+    map.log_evidence =
+        (evidence.Of(0, homogeneous.square_sum) - evidence.Of(map.ratio, q)) /
+        2;
+
+    const Eigen::VectorXd field = prior.Apply(delta);
+    const Eigen::VectorXd flat =
+        unknowns.Solve(residual - model.Multiply(field));
+    const Eigen::VectorXd step = field + flat(0) * ones;
+    const double change = RootMeanSquareOf(step);
+    const bool is_settled =
+        change < kSettledField &&
+        std::abs(std::log(map.ratio / last_ratio)) < kSettledRatio;
+    if (is_settled && change_since_modes == 0) {
+      map.has_converged = true;
+      return map;
+    }
+    if (is_settled) {
+      change_since_modes = 2 * kStaleModes;  // Renews the modes for the end.
+      continue;
+    }
+    if (i == kMostSmoothSteps) {
+      return map;
+    }
+    const double noise = std::sqrt(map.variance);
+    const double before = map.square_sum + map.y.squaredNorm() / map.ratio;
+    double factor = LargestStep(step, flat(1));
+    bool is_better = false;
+    for (int halving = 0; halving < kMostSmoothHalvings && !is_better;
+         ++halving) {
+      const MapState next = Stepped(map.state, factor * step, factor * flat(1));
+      const Eigen::VectorXd next_y = map.y + factor * delta;
+      is_better =
+          model.MoveTo(next.log_moduli, next.poisson_ratio, noise) &&
+          model.Residual().squaredNorm() + next_y.squaredNorm() / map.ratio <
+              before;
+      if (is_better) {
+        map.state = next;
+        map.y = next_y;
+        change_since_modes += factor * change;
+      }
+      factor /= 2;
+    }
+    if (!is_better) {
+      map.has_converged = change < 10 * kSettledField;
+      static_cast<void>(
+          model.MoveTo(map.state.log_moduli, map.state.poisson_ratio, noise));
+      return map;
+    }
+  }
+}
+
+}  // namespace elastimate

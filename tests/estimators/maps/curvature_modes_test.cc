@@ -1,0 +1,75 @@
+#include "elastimate/estimators/maps/curvature_modes.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <cmath>
+
+namespace elastimate {
+namespace {
+
+// A matrix whose eigenvalues fall off as those of smoothing problems do.
+Eigen::MatrixXd Decaying(Eigen::Index n) {
+  const Eigen::MatrixXd root =
+      Eigen::MatrixXd::NullaryExpr(n, n, [n](Eigen::Index i, Eigen::Index j) {
+        return std::cos(double(1 + i) * double(1 + j) * double(n + i * j));
+      });
+  const Eigen::MatrixXd q =
+      Eigen::HouseholderQR<Eigen::MatrixXd>(root).householderQ();
+  const Eigen::VectorXd values =
+      Eigen::VectorXd::LinSpaced(n, 1, double(n)).array().pow(-3);
+  return q * values.asDiagonal() * q.transpose();
+}
+
+TEST(CurvatureModes, KnowDeterminantTraceAndInverse) {
+  constexpr Eigen::Index kSize = 300;
+  const Eigen::MatrixXd h = Decaying(kSize);
+  CurvatureModes modes(kSize);
+  Eigen::Index num_products = 0;
+  constexpr double kRatio = 1e4;
+  modes.AddUntil(0.3 / kRatio, [&](const Eigen::MatrixXd& x) {
+    num_products += x.cols();
+    return Eigen::MatrixXd(h * x);
+  });
+  EXPECT_LT(num_products, 150);
+  const Eigen::MatrixXd shifted =
+      Eigen::MatrixXd::Identity(kSize, kSize) + kRatio * h;
+  const double log_determinant =
+      shifted.partialPivLu().matrixLU().diagonal().array().abs().log().sum();
+  // What is left out is overestimated, because it is a part of modes that count
+  // in full, too.
+  EXPECT_GT(modes.LogDeterminant(kRatio), 0.99 * log_determinant);
+  EXPECT_LT(modes.LogDeterminant(kRatio), 1.05 * log_determinant);
+  const Eigen::MatrixXd inverse = shifted.inverse();
+  const double number = double(kSize) - inverse.trace();
+  EXPECT_GT(modes.EffectiveNumber(kRatio), 0.99 * number);
+  EXPECT_LT(modes.EffectiveNumber(kRatio), 1.1 * number);
+  const Eigen::MatrixXd preconditioned = modes.Solve(kRatio, shifted / kRatio);
+  EXPECT_LT(
+      (preconditioned - Eigen::MatrixXd::Identity(kSize, kSize)).operatorNorm(),
+      0.3);
+}
+
+TEST(CurvatureModes, AreExactWhereAllAreAskedFor) {
+  constexpr Eigen::Index kSize = 40;
+  Eigen::MatrixXd h = Decaying(kSize);
+  // A direction of no curvature does no harm.
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(kSize).normalized();
+  h -= ones * (ones.transpose() * h).eval();
+  h -= (h * ones).eval() * ones.transpose();
+  CurvatureModes modes(kSize);
+  modes.AddUntil(
+      0, [&](const Eigen::MatrixXd& x) { return Eigen::MatrixXd(h * x); });
+  const Eigen::MatrixXd shifted =
+      Eigen::MatrixXd::Identity(kSize, kSize) / 1e6 + h;
+  EXPECT_LT(
+      (modes.Solve(1e6, shifted) - Eigen::MatrixXd::Identity(kSize, kSize))
+          .norm(),
+      1e-5);
+}
+
+}  // namespace
+}  // namespace elastimate
