@@ -396,7 +396,7 @@ void CompareOtherKinds(bool is_quick, Progress& progress, KernelTimes& times) {
 }
 
 // Returns the shortest times [s] of works that take turns.
-std::vector<double> ShortestSeconds(
+std::vector<double> ShortestOfEach(
     const std::vector<std::function<void()>>& works) {
   std::vector<double> seconds(works.size(),
                               std::numeric_limits<double>::infinity());
@@ -452,7 +452,7 @@ Table CompareLargeStrains(bool is_quick, Progress& progress,
     const Eigen::VectorXd of_small = small.Parameters().Moduli(parameters);
     const Eigen::VectorXd of_large = large.Parameters().Moduli(parameters);
     Eigen::MatrixXd result;
-    std::vector<double> ns = ShortestSeconds(
+    std::vector<double> ns = ShortestOfEach(
         {[&] { result = small.Columns(u); },
          [&] { result = large.Columns(of_large, u); },
          [&] { result = small.Blocks(of_small, graph); },

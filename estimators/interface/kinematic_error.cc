@@ -54,7 +54,7 @@ KinematicError KinematicErrorOf(const DeformationSize& size) {
   }
   const double square = size.rotation * size.rotation;
   return {0.8 * size.strain + 0.54 * square,
-          0.35 * size.strain + 0.25 * square};
+          0.35 * size.strain + 0.8 * square};
 }
 
 void JudgeKinematics(const Scene& scene, Estimate& estimate) {

@@ -9,7 +9,7 @@ namespace elastimate {
 /// One standard deviation of what small-strain elasticity leaves out, for a
 /// strain e and a rotation theta [rad]:
 ///
-///   of ln E  .8 e + .54 theta^2,    of nu  .35 e + .25 theta^2.
+///   of ln E  .8 e + .54 theta^2,    of nu  .35 e + .8 theta^2.
 ///
 /// The first terms are the spread of the bias over neo-Hookean and St
 /// Venant-Kirchhoff materials in tension and compression, of which it is not
