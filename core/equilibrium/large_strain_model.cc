@@ -9,7 +9,7 @@ namespace {
 
 // Steps of the load to where there is an equilibrium take 10 to 60 tangents;
 // those of moduli that are far too soft take hundreds.
-constexpr int kMostTangentsFromRest = 100;
+constexpr int kMostTangentsFromRest = 150;
 
 }  // namespace
 

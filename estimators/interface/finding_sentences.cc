@@ -654,6 +654,14 @@ Finding LargeDeformation(const DeformationSize& size,
                 "strains, such as --material=neo_hookean"};
 }
 
+Finding TakenAsLinear(const DeformationSize& size) {
+  return {FindingCode::kLargeDeformation, Severity::kNotice,
+          "computed displacements with " + DeformationText(size) +
+              " were taken as those of small-strain elasticity",
+          "if large strains were computed, name their law, such as "
+          "--material=neo_hookean"};
+}
+
 Finding NoEquilibrium(const std::string& reason) {
   const std::size_t end = std::min(reason.find("; "), reason.size());
   return Error(

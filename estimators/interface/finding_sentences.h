@@ -137,6 +137,8 @@ Finding ParameterBias(const std::string& parameter, double bias,
                       bool is_relative, Severity severity);
 /// A fit found no parameters with an equilibrium, for a reason
 /// "text; advice" (ForwardModel::WhyNotSolved).
+/// Computed displacements, which fits of small strains take as exact.
+Finding TakenAsLinear(const DeformationSize& size);
 Finding NoEquilibrium(const std::string& reason);
 /// Laws of large strains were fitted.
 Finding LargeStrainsFitted(const DeformationSize& size, const std::string& law);

@@ -53,8 +53,7 @@ KinematicError KinematicErrorOf(const DeformationSize& size) {
     return {0, 0};
   }
   const double square = size.rotation * size.rotation;
-  return {0.8 * size.strain + 0.54 * square,
-          0.35 * size.strain + 0.8 * square};
+  return {0.8 * size.strain + 0.54 * square, 0.35 * size.strain + 0.8 * square};
 }
 
 void JudgeKinematics(const Scene& scene, Estimate& estimate) {
@@ -62,8 +61,12 @@ void JudgeKinematics(const Scene& scene, Estimate& estimate) {
     return;
   }
   estimate.deformation = MeasureDeformation(scene);
-  if (HasLargeStrainLaw(scene.materials) || scene.origin == Origin::kComputed ||
+  if (HasLargeStrainLaw(scene.materials) ||
       !IsMentioned(estimate.deformation)) {
+    return;
+  }
+  if (scene.origin == Origin::kComputed) {
+    estimate.Add(TakenAsLinear(estimate.deformation));
     return;
   }
   const KinematicError error = KinematicErrorOf(estimate.deformation);

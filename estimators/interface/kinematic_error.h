@@ -27,7 +27,8 @@ KinematicError KinematicErrorOf(const DeformationSize& size);
 /// budget (ErrorBudget::kinematics) and the findings of an estimate, or turns
 /// it into one that is not usable, where that is more than Limits allow for
 /// biases (finding `large_deformation`).  Displacements that linear elasticity
-/// computed (Origin::kComputed) have no such error, and laws of large strains
+/// computed (Origin::kComputed) have no such error, so that a notice only asks
+/// whether they did; laws of large strains
 /// leave nothing out.  An estimate that has been through this stays as it is,
 /// and so does the joint one of a series, whose frames have.
 void JudgeKinematics(const Scene& scene, Estimate& estimate);

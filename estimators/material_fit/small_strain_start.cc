@@ -110,6 +110,8 @@ std::optional<Eigen::VectorXd> SmallStrainStart(const Scene& scene,
       return std::nullopt;
     }
     MultiplyModuli(all, *stiffness, parameters);
+    // Where other moduli are known, these are far from the first ones.
+    misfit.Model().BeginWith(misfit.Model().Displacement());
   } else if (has_free_modulus) {
     const std::optional<Eigen::VectorXd> youngs_moduli =
         FitYoungsModuli(scene, at_rest, all, options, work);
