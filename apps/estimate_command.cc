@@ -64,6 +64,8 @@ SceneReading Read(const std::vector<std::string>& arguments) {
   return reading;
 }
 
+bool MergesRegions() { return FLAGS_regions == "merge"; }
+
 // Takes --map for the parameter that differs between elements.
 void GiveMap(Scene& scene) {
   if (FLAGS_map.empty()) {
@@ -152,6 +154,11 @@ EstimatorOptions CheckFlags(const std::vector<std::string>& arguments) {
   if (IsGiven("map") && FLAGS_map != "youngs_modulus") {
     throw std::invalid_argument(AsGiven("map") + "; it must be youngs_modulus");
   }
+  if (IsGiven("map") && (ChoosesLaw() || MergesRegions())) {
+    throw std::invalid_argument(
+        "--map is for one isotropic material; leave out --material=auto and "
+        "--regions=merge");
+  }
   ApplyComputingFlags();
   CheckOutputFlags(arguments);
   return options;
@@ -214,8 +221,6 @@ int RunSeries(const Estimator& estimator, SceneReading reading,
               {read_seconds, SecondsSince(start)}, reading.notices, files);
   return joint.IsUsable() ? 0 : 1;
 }
-
-bool MergesRegions() { return FLAGS_regions == "merge"; }
 
 // Throws for what does not go with merging, which compares fits of one
 // measurement of isotropic materials.

@@ -131,6 +131,9 @@ std::string WhyNotTheseFields(const Capabilities& capabilities,
   if (options.youngs_modulus.AreGiven() || options.poisson_ratio.AreGiven()) {
     return "a map keeps no bounds; leave out the bounds on E and nu";
   }
+  if (options.kinematics == Kinematics::kLarge) {
+    return "a map is of small strains; leave out --kinematics=large";
+  }
   return options.loss != Loss::kNone
              ? "a map takes no loss function; leave out --loss"
              : "";

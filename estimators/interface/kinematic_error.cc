@@ -66,6 +66,9 @@ void JudgeKinematics(const Scene& scene, Estimate& estimate) {
     return;
   }
   if (scene.origin == Origin::kComputed) {
+    if (estimate.deformation.strain > kLimits.impossible_strain) {
+      return;
+    }
     estimate.Add(TakenAsLinear(estimate.deformation));
     return;
   }

@@ -94,7 +94,8 @@ void MeasureBent(const Eigen::VectorXd& parameters, Scene& scene,
   const Eigen::VectorXd moduli = model.Forces().Parameters().Moduli(parameters);
   const Eigen::VectorXd arc = ArcDisplacement(scene.mesh, angle).reshaped();
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-    const LargeStrainState state = model.SolveFrom(arc, moduli, Eigen::Index(k));
+    const LargeStrainState state =
+        model.SolveFrom(arc, moduli, Eigen::Index(k));
     ASSERT_EQ(state.status, EquilibriumStatus::kDone);
     scene.load_cases[k].displacement = state.displacement.reshaped(
         scene.mesh.Dimension(), scene.mesh.NumNodes());

@@ -1,0 +1,79 @@
+// Maps of a modulus as a user of the program asks for them.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "elastimate/core/scene/scene.h"
+#include "elastimate/io/scene/mesh_reader.h"
+#include "tests/apps/region_scene.h"
+#include "tests/program.h"
+
+namespace elastimate {
+namespace {
+
+// A bar whose middle is five times as stiff as its ends, measured with
+// noise.
+class MapsOfBars : public testing::ProgramTest {
+ protected:
+  void SetUp() override {
+    testing::ProgramTest::SetUp();
+    testing::WriteRegions(folder_ / "bar.vtu");
+    testing::WriteText(folder_ / "parameters.json", R"({"parameters": [
+      {"name": "youngs_modulus", "region": 1, "value": 1e4},
+      {"name": "poisson_ratio", "region": 1, "value": 0.3},
+      {"name": "youngs_modulus", "region": 2, "value": 5e4},
+      {"name": "poisson_ratio", "region": 2, "value": 0.3},
+      {"name": "youngs_modulus", "region": 3, "value": 1e4},
+      {"name": "poisson_ratio", "region": 3, "value": 0.3}]})");
+    Succeed(
+        "simulate bar.vtu --regions=each --parameters=parameters.json "
+        "--noise=0.005 "
+        "--noise_law=gaussian --out=measured.vtu");
+  }
+};
+
+TEST_F(MapsOfBars, ShowTheStiffPart) {
+  const auto report =
+      Succeed(
+          "estimate measured.vtu --estimator=auto --map=youngs_modulus "
+          "--json=- --out=map.vtu")
+          .Json();
+  EXPECT_NE(report["map"]["verdict"], "homogeneous");
+  EXPECT_GT(report["map"]["supported_parameters"].get<double>(), 1);
+  const MeshFile map = ReadMeshFile(folder_ / "map.vtu");
+  for (const char* const name : {"youngs_modulus", "resolution_length",
+                                 "youngs_modulus_standard_error"}) {
+    EXPECT_NE(FindArray(map.element_arrays, name), nullptr) << name;
+  }
+  const Eigen::MatrixXd& moduli =
+      *FindArray(map.element_arrays, "youngs_modulus");
+  const Eigen::MatrixXd& regions = *FindArray(map.element_arrays, "region");
+  double of_middle = 0;
+  double of_ends = 0;
+  for (Eigen::Index e = 0; e < moduli.cols(); ++e) {
+    (regions(e) == 2 ? of_middle : of_ends) += std::log(moduli(e));
+  }
+  const double num_middle = double((regions.array() == 2).count());
+  EXPECT_GT(of_middle / num_middle,
+            of_ends / (double(moduli.cols()) - num_middle) + std::log(2.5));
+}
+
+TEST_F(MapsOfBars, RefuseWhatTheyDoNotTake) {
+  const std::string map = "estimate measured.vtu --map=youngs_modulus ";
+  Refuse("estimate measured.vtu --estimator=auto --map=nu",
+         "--map=nu; it must be youngs_modulus");
+  Refuse(map + "--estimator=reduced-fe", "it estimates no map of a modulus");
+  Refuse(map + "--estimator=auto --material=auto",
+         "--map is for one isotropic material");
+  Refuse(map + "--estimator=auto --regions=merge",
+         "--map is for one isotropic material");
+  Refuse(map + "--estimator=iterative-fe --kinematics=large",
+         "a map is of small strains");
+  Refuse(map + "--estimator=iterative-fe --nu_min=0.1",
+         "a map keeps no bounds");
+}
+
+}  // namespace
+}  // namespace elastimate
