@@ -20,7 +20,7 @@ LargeStrainModel::LargeStrainModel(const Scene& scene)
                                            : KeptFactors::kLast),
       given_(equilibrium_.HeldDisplacement()),
       states_(scene.load_cases.size()),
-      displacement_(Load().rows(), Load().cols()) {}
+      displacement_(given_.rows(), given_.cols()) {}
 
 void LargeStrainModel::BeginWith(const Eigen::MatrixXd& displacement) {
   begin_ = displacement;

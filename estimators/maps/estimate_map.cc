@@ -369,8 +369,7 @@ MapEstimate EstimateMap(const Scene& scene, const EstimatorOptions& options) {
     }
   }
   const Scene* const linear = is_raised ? &given : nullptr;
-  const MapEstimate map =
-      MapBuilder(modelled, linear, options, true).Build(start);
+  MapEstimate map = MapBuilder(modelled, linear, options, true).Build(start);
   const auto misfit = std::find_if(
       map.findings.begin(), map.findings.end(), [](const Finding& finding) {
         return finding.code == FindingCode::kMisfit;
