@@ -16,6 +16,7 @@
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/estimators/interface/estimator.h"
+#include "elastimate/estimators/maps/field_sensitivity.h"
 
 namespace elastimate {
 namespace {
@@ -201,18 +202,7 @@ Scene SolvedScene(const Scene& scene, const Scene& modelled,
              : FinerScene(WithFittedSupports(scene, fitted));
 }
 
-// Returns the scene with a material of each element, to which ValuesOfMap
-// belong.
-Scene WithMaterialsOfMap(Scene scene) {
-  const int num_elements = static_cast<int>(scene.mesh.NumElements());
-  scene.mesh.regions.setLinSpaced(num_elements, 0, num_elements - 1);
-  scene.materials.assign(std::size_t(num_elements), Material());
-  for (int e = 0; e < num_elements; ++e) {
-    scene.materials[std::size_t(e)].regions = {e};
-  }
-  return scene;
-}
-
+// Returns the parameters of WithMaterialOfEachElement.
 Eigen::VectorXd ValuesOfMap(const MapEstimate& map) {
   Eigen::VectorXd values(2 * map.youngs_modulus.size());
   values(Eigen::seq(0, Eigen::last, 2)) = map.youngs_modulus;
@@ -276,8 +266,9 @@ Fields ResultFields(const Scene& scene, const Scene& modelled,
   FieldCollector collector(scene.mesh, fields);
   if (estimate.map) {
     collector.AddMap(*estimate.map);
-    AddModel(WithMaterialsOfMap(scene), WithMaterialsOfMap(modelled),
-             ValuesOfMap(*estimate.map), estimate, solver, collector);
+    AddModel(WithMaterialOfEachElement(scene),
+             WithMaterialOfEachElement(modelled), ValuesOfMap(*estimate.map),
+             estimate, solver, collector);
     return fields;
   }
   if (!IsOneIsotropicMaterial(scene.materials)) {

@@ -183,7 +183,7 @@ void AddForcesOnBlocks(LimitTable& table) {
                              : Theory{EquilibriumStatus::kInverted, 1 / load},
                     table);
   }
-  // That of the neo-Hookean law, E (1 / s - s) / 2, has no limit.
+  // The force of the neo-Hookean law, E (1 / s - s) / 2, has no limit.
   for (const double load : {1.0, 10.0, 40.0}) {
     const double stretch = std::sqrt(load * load + 1) - load;
     AddPressedBlock("neo_hookean", 1, load,

@@ -89,7 +89,6 @@ bool LargeStrainModel::SolveMoved(const Eigen::VectorXd& moduli,
     }
   }
   begin_.reset();
-  is_solved_once_ = true;
   return true;
 }
 

@@ -90,7 +90,9 @@ class LargeStrainModel : public ForwardModel {
   };
 
   /// Whether nothing is known to be near the equilibrium that is searched for.
-  bool IsFirstSolve() const { return begin_ || !is_solved_once_; }
+  bool IsFirstSolve() const {
+    return begin_ || states_.back().moduli.size() == 0;
+  }
   Eigen::Index NumLoadCases() const { return Load().cols(); }
   /// Finds the equilibrium of load case `k`, beginning at this start.  If the
   /// start is empty or leads to none, the search begins again at rest.
@@ -113,7 +115,6 @@ class LargeStrainModel : public ForwardModel {
   std::vector<CaseState> states_;
   /// Where the next Solve begins, in place of a prediction.
   std::optional<Eigen::MatrixXd> begin_;
-  bool is_solved_once_ = false;
   Eigen::MatrixXd displacement_;
   std::map<const StiffnessSolver*, Eigen::Index> case_of_factor_;
   std::string why_not_solved_;

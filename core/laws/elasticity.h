@@ -79,6 +79,11 @@ T ComplianceFactor(const T& poisson_ratio, SectionModel model) {
 /// the stiffness changes evenly over the whole range of nu.
 [[nodiscard]] double LogStiffnessRatio(double poisson_ratio);
 
+/// Returns d nu / d LogStiffnessRatio at this nu.
+[[nodiscard]] inline double PoissonRatioSlope(double poisson_ratio) {
+  return (1 + poisson_ratio) * (1 - 2 * poisson_ratio) / 3;
+}
+
 /// Returns the nu that has this LogStiffnessRatio.
 [[nodiscard]] double PoissonRatioOfLogStiffnessRatio(
     double log_stiffness_ratio);

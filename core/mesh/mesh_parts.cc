@@ -1,6 +1,7 @@
 #include "elastimate/core/mesh/mesh_parts.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace elastimate {
@@ -57,6 +58,12 @@ MeshParts SplitMesh(const Mesh& mesh, const std::vector<int>& part_of_element) {
     }
   }
   return parts;
+}
+
+MeshParts SplitIntoElements(const Mesh& mesh) {
+  std::vector<int> part(std::size_t(mesh.NumElements()));
+  std::iota(part.begin(), part.end(), 0);
+  return SplitMesh(mesh, part);
 }
 
 }  // namespace elastimate

@@ -26,6 +26,9 @@ struct MeshParts {
 [[nodiscard]] MeshParts SplitMesh(const Mesh& mesh,
                                   const std::vector<int>& part_of_element);
 
+/// Splits a mesh into its elements, in their order.
+[[nodiscard]] MeshParts SplitIntoElements(const Mesh& mesh);
+
 }  // namespace elastimate
 
 #endif  // ELASTIMATE_CORE_MESH_MESH_PARTS_H_

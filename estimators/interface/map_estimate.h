@@ -60,7 +60,8 @@ struct MapEstimate {
   /// The geometric mean of E over the volume [pressure].
   double mean_youngs_modulus = 0;
   double poisson_ratio = 0;
-  /// Of the two above.  nu has a zero row and column where it is known.
+  /// The covariance of the mean of E and of nu.  The row and the column of nu
+  /// are zero if it is known.
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
   /// The part of the covariance that comes from what the elements may miss;
   /// zero where nothing is missed, and for a field, where it is not known.

@@ -12,8 +12,8 @@ namespace elastimate {
 namespace {
 
 constexpr Eigen::Index kFirstModes = 64;
-constexpr double kMostModeEntries =
-    4e7;  // Of each of three matrices: 1 GB in all.
+// Each of three matrices has at most so many entries, which take 1 GB in all.
+constexpr double kMostModeEntries = 4e7;
 constexpr Eigen::Index kProbes = 8;
 
 }  // namespace
@@ -109,6 +109,18 @@ Eigen::MatrixXd CurvatureModes::Solve(double k,
   // (I / k + H)^-1 = k (I - U diag(k lambda / (1 + k lambda)) U^T).
   const Eigen::VectorXd share = k * values_.array() / (1 + k * values_.array());
   return k * (b - vectors_ * (share.asDiagonal() * (vectors_.transpose() * b)));
+}
+
+Eigen::MatrixXd CurvatureModes::SolveFor(
+    double k, const ColumnOperator& multiply, const Eigen::MatrixXd& b,
+    const ConjugateGradientOptions& options) const {
+  return SolveByConjugateGradients(
+             [&](const Eigen::MatrixXd& columns) {
+               return Eigen::MatrixXd(columns / k + multiply(columns));
+             },
+             [&](const Eigen::MatrixXd& columns) { return Solve(k, columns); },
+             b, {}, options)
+      .solution;
 }
 
 }  // namespace elastimate

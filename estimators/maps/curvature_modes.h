@@ -42,6 +42,11 @@ class CurvatureModes {
   double EffectiveNumber(double k) const;
   /// Returns (I / k + H)^-1 B where H ~ 0 beside the modes; n x num_columns.
   Eigen::MatrixXd Solve(double k, const Eigen::MatrixXd& b) const;
+  /// Returns (I / k + H)^-1 B by conjugate gradients with the above for a
+  /// preconditioner; `multiply` is H.
+  Eigen::MatrixXd SolveFor(double k, const ColumnOperator& multiply,
+                           const Eigen::MatrixXd& b,
+                           const ConjugateGradientOptions& options) const;
 
  private:
   void Decompose(const ColumnOperator& multiply);

@@ -136,7 +136,6 @@ class MapBuilder {
       return Failed(SingularStiffness());
     }
     const SmoothMap smooth = FitSmoothMap(problem_, prior_, *homogeneous);
-    const MapErrors errors = DescribeMap(problem_, prior_, smooth);
     const MapState sharpened = SharpenMap(problem_, prior_, smooth);
     const std::optional<RegionMap> regions =
         FitRegions(problem_, prior_, sharpened, *homogeneous);
@@ -147,7 +146,7 @@ class MapBuilder {
     map_.supported_parameters = is_supported ? smooth.effective_number : 0;
     map_.resolution_length =
         is_supported
-            ? errors.resolution_length
+            ? ResolutionLengths(prior_, smooth)
             : Eigen::VectorXd::Constant(prior_.NumElements(), prior_.Size());
     const double best =
         std::max(map_.field_log_evidence, map_.region_log_evidence);
@@ -163,7 +162,7 @@ class MapBuilder {
                    regions->covariance);
     } else {
       map_.verdict = MapVerdict::kField;
-      EnterField(smooth, errors);
+      EnterField(smooth);
       if (!smooth.has_converged) {
         return Failed(SearchFailed("the smooth map did not settle"));
       }
@@ -222,8 +221,8 @@ class MapBuilder {
       d.head(n) = fit.levels - of_linear->levels;
       if (!problem_.known_poisson_ratio) {
         const double least = kLeastOfRatio *
-                             d.head(n).lpNorm<Eigen::Infinity>() * 3 /
-                             ((1 + nu) * (1 - 2 * nu));
+                             d.head(n).lpNorm<Eigen::Infinity>() /
+                             PoissonRatioSlope(nu);
         d(n) = LogStiffnessRatio(nu) -
                LogStiffnessRatio(of_linear->state.poisson_ratio);
         d(n) = std::copysign(std::max(std::abs(d(n)), least), d(n));
@@ -249,7 +248,7 @@ class MapBuilder {
                                const Eigen::Matrix2d& covariance) const {
     const double nu = state.poisson_ratio;
     const Eigen::Vector2d slopes(map_.mean_youngs_modulus,
-                                 (1 + nu) * (1 - 2 * nu) / 3);
+                                 PoissonRatioSlope(nu));
     return slopes.asDiagonal() * covariance * slopes.asDiagonal();
   }
 
@@ -296,7 +295,12 @@ class MapBuilder {
     EnterNoise(fit.square_sum, variance);
   }
 
-  void EnterField(const SmoothMap& smooth, const MapErrors& errors) {
+  void EnterField(const SmoothMap& smooth) {
+    // The model was solved there before.
+    static_cast<void>(model_.MoveTo(smooth.state.log_moduli,
+                                    smooth.state.poisson_ratio,
+                                    std::sqrt(smooth.variance)));
+    const MapErrors errors = DescribeMap(problem_, prior_, smooth);
     map_.youngs_modulus = smooth.state.log_moduli.array().exp();
     map_.youngs_modulus_standard_error =
         map_.youngs_modulus.cwiseProduct(errors.log_modulus_sd);
@@ -381,6 +385,7 @@ MapEstimate EstimateMap(const Scene& scene, const EstimatorOptions& options) {
   // noise.
   MapEstimate other = MapBuilder(modelled, linear, options, false).Build(start);
   other.findings.insert(other.findings.begin(), *misfit);
+  other.work = map.work + other.work;
   return other;
 }
 

@@ -13,8 +13,8 @@ namespace elastimate {
 ///
 /// 1. a homogeneous body is fitted (FitLevels);
 /// 2. a smooth field, whose size and noise maximise the evidence
-///    (FitSmoothMap), with the error and the resolution of each element
-///    (DescribeMap);
+///    (FitSmoothMap), with the resolution of each element
+///    (ResolutionLengths) and, if it is the verdict, the error (DescribeMap);
 /// 3. the field is sharpened (SharpenMap), divided into two or three regions,
 ///    and these are fitted (FitRegions);
 /// 4. the one of the greatest evidence is the verdict; a body is homogeneous

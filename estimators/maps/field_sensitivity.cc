@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "elastimate/core/laws/elasticity.h"
 #include "elastimate/core/scene/unknown_motion.h"
@@ -12,23 +11,6 @@ namespace {
 
 // Solves with so many columns at a time are nearly as quick as they get.
 constexpr Eigen::Index kFieldColumns = 64;
-
-Scene WithMaterialOfEachElement(Scene scene) {
-  const int num_elements = static_cast<int>(scene.mesh.NumElements());
-  scene.mesh.regions.setLinSpaced(num_elements, 0, num_elements - 1);
-  scene.materials.resize(num_elements);
-  for (int e = 0; e < num_elements; ++e) {
-    scene.materials[e] = Material();
-    scene.materials[e].regions = {e};
-  }
-  return scene;
-}
-
-std::vector<int> PartOfEachElement(const Mesh& mesh) {
-  std::vector<int> part(mesh.NumElements());
-  std::iota(part.begin(), part.end(), 0);
-  return part;
-}
 
 // Applies `function` to some columns at a time.
 template <class Function>
@@ -44,12 +26,22 @@ Eigen::MatrixXd ByColumns(const Eigen::MatrixXd& columns, Eigen::Index num_rows,
 
 }  // namespace
 
+Scene WithMaterialOfEachElement(Scene scene) {
+  const int num_elements = static_cast<int>(scene.mesh.NumElements());
+  scene.mesh.regions.setLinSpaced(num_elements, 0, num_elements - 1);
+  scene.materials.assign(std::size_t(num_elements), Material());
+  for (int e = 0; e < num_elements; ++e) {
+    scene.materials[std::size_t(e)].regions = {e};
+  }
+  return scene;
+}
+
 FieldSensitivity::FieldSensitivity(const Scene& scene, SolverKind solver)
     : mesh_(scene.mesh),
       scene_(WithMaterialOfEachElement(scene)),
       model_(scene_, solver),
       observed_(scene_),
-      parts_(SplitMesh(scene.mesh, PartOfEachElement(scene.mesh))),
+      parts_(SplitIntoElements(scene.mesh)),
       of_parts_(parts_.mesh),
       forces_(scene.load_cases.size()),
       forces_by_poisson_ratio_(scene.load_cases.size()) {

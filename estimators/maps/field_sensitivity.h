@@ -13,6 +13,10 @@
 
 namespace elastimate {
 
+/// Returns a scene whose elements have an isotropic material each, in their
+/// order.
+[[nodiscard]] Scene WithMaterialOfEachElement(Scene scene);
+
 /// What a field of moduli and one Poisson's ratio make of a scene,
 ///
 ///   K = sum_e exp(m_e) K_e(nu),   m_e = ln E_e,   K u = F,

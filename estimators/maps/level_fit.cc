@@ -48,25 +48,16 @@ std::optional<LevelFit> FitLevels(const MapProblem& problem,
       return fit;
     }
     const Eigen::Index n = levels.size();
-    double factor = LargestStep(step.head(n), step(n));
-    bool is_better = false;
-    for (int halving = 0; halving < kMostLevelHalvings && !is_better;
-         ++halving) {
-      const MapState next =
-          Stepped(state, factor * (parts * step.head(n)), factor * step(n));
-      is_better = model.MoveTo(next.log_moduli, next.poisson_ratio, noise) &&
-                  model.Residual().squaredNorm() < square_sum;
-      if (is_better) {
-        z += factor * step.head(n);
-        state = next;
-      }
-      factor /= 2;
-    }
-    if (!is_better) {
-      static_cast<void>(
-          model.MoveTo(state.log_moduli, state.poisson_ratio, noise));
+    const double share = TakeStep(
+        problem, parts * step.head(n), step(n), noise, kMostLevelHalvings,
+        [&](double, const MapState&) {
+          return model.Residual().squaredNorm() < square_sum;
+        },
+        state);
+    if (share == 0) {
       return fit;
     }
+    z += share * step.head(n);
   }
 }
 

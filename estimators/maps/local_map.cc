@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -27,9 +26,7 @@ class LocalEquations {
   explicit LocalEquations(const Scene& scene)
       : model_(scene.mesh.section.model),
         num_elements_(scene.mesh.NumElements()) {
-    std::vector<int> part(std::size_t(num_elements_), 0);
-    std::iota(part.begin(), part.end(), 0);
-    const MeshParts parts = SplitMesh(scene.mesh, part);
+    const MeshParts parts = SplitIntoElements(scene.mesh);
     const Eigen::MatrixXd load = AssembleLoadCases(scene);
     const int dimension = scene.mesh.Dimension();
     for (Eigen::Index k = 0; k < load.cols(); ++k) {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <random>
 
-#include "elastimate/core/solvers/conjugate_gradients.h"
 #include "elastimate/estimators/maps/random_columns.h"
 
 namespace elastimate {
@@ -29,21 +28,14 @@ MapErrors DescribeMap(const MapProblem& problem, const FieldPrior& prior,
   const Eigen::MatrixXd zeta = StandardNormal(n, kDraws, generator);
   ConjugateGradientOptions options;
   options.tolerance = kAccurateDraws;
-  const Eigen::MatrixXd y =
-      SolveByConjugateGradients(
-          [&](const Eigen::MatrixXd& columns) {
-            return Eigen::MatrixXd(
-                columns / map.ratio +
-                MultiplyByCurvature(problem, prior, unknowns, columns));
-          },
-          [&](const Eigen::MatrixXd& columns) {
-            return map.modes.Solve(map.ratio, columns);
-          },
-          prior.ApplyTransposed(
-              model.MultiplyTransposed(unknowns.Project(eta))) +
-              sigma / std::sqrt(map.ratio) * zeta,
-          {}, options)
-          .solution;
+  const Eigen::MatrixXd y = map.modes.SolveFor(
+      map.ratio,
+      [&](const Eigen::MatrixXd& columns) {
+        return MultiplyByCurvature(problem, prior, unknowns, columns);
+      },
+      prior.ApplyTransposed(model.MultiplyTransposed(unknowns.Project(eta))) +
+          sigma / std::sqrt(map.ratio) * zeta,
+      options);
   Eigen::MatrixXd fields = prior.Apply(y);
   const Eigen::MatrixXd flat = unknowns.Solve(eta - model.Multiply(fields));
   fields.rowwise() += flat.row(0);
@@ -55,6 +47,11 @@ MapErrors DescribeMap(const MapProblem& problem, const FieldPrior& prior,
   means << prior.Volumes().transpose() * fields / prior.Volumes().sum(),
       flat.row(1);
   errors.covariance_of_means = means * means.transpose() / double(kDraws);
+  return errors;
+}
+
+Eigen::VectorXd ResolutionLengths(const FieldPrior& prior,
+                                  const SmoothMap& map) {
   const Eigen::VectorXd share = map.ratio * map.modes.Values().array() /
                                 (1 + map.ratio * map.modes.Values().array());
   const Eigen::VectorXd resolved =
@@ -62,13 +59,13 @@ MapErrors DescribeMap(const MapProblem& problem, const FieldPrior& prior,
           .cwiseProduct(prior.ApplyInverseTransposed(map.modes.Vectors())) *
       share;
   const double root = 1.0 / prior.Dimension();
-  errors.resolution_length.resize(n);
-  for (Eigen::Index e = 0; e < n; ++e) {
+  Eigen::VectorXd lengths(prior.NumElements());
+  for (Eigen::Index e = 0; e < lengths.size(); ++e) {
     const double least = prior.Volumes()(e) / prior.Volumes().sum();
-    errors.resolution_length(e) = std::pow(
+    lengths(e) = std::pow(
         prior.Volumes()(e) / std::clamp(resolved(e), least, 1.0), root);
   }
-  return errors;
+  return lengths;
 }
 
 }  // namespace elastimate

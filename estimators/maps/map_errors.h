@@ -13,9 +13,6 @@ namespace elastimate {
 struct MapErrors {
   /// The standard deviation of ln E of each element, with the level.
   Eigen::VectorXd log_modulus_sd;
-  /// l_e = (V_e / R_ee)^(1/d), the size of what the data resolve around each
-  /// element, at most that of the body [length].
-  Eigen::VectorXd resolution_length;
   /// The covariance of the mean of ln E over the volume and of the
   /// LogStiffnessRatio of nu, by the linearised model.
   Eigen::Matrix2d covariance_of_means;
@@ -27,13 +24,18 @@ struct MapErrors {
 ///   (I / k + H) y = sigma A^T S^T Pi eta + sigma zeta / k^(1/2),
 ///
 /// and the flat unknowns with them.  A standard deviation from the 64 draws has
-/// an error of 9 %.  R = A W A^-1 with W = k H (I + k H)^-1 is the resolution,
-/// whose trace is gamma; its diagonal follows from the modes of H.
-/// Precondition: the model is at the map.  Cost: 64 solves of the system by
-/// preconditioned conjugate gradients, all at once.
+/// an error of 9 %.  Precondition: the model is at the map.  Cost: 64 solves of
+/// the system by preconditioned conjugate gradients, all at once.
 [[nodiscard]] MapErrors DescribeMap(const MapProblem& problem,
                                     const FieldPrior& prior,
                                     const SmoothMap& map);
+
+/// Returns l_e = (V_e / R_ee)^(1/d) [length], the size of what the data resolve
+/// around each element, at most that of the body.  R = A W A^-1 with
+/// W = k H (I + k H)^-1 is the resolution, whose trace is gamma; its diagonal
+/// follows from the modes of H.  No solves.
+[[nodiscard]] Eigen::VectorXd ResolutionLengths(const FieldPrior& prior,
+                                                const SmoothMap& map);
 
 }  // namespace elastimate
 

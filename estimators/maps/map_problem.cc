@@ -31,7 +31,7 @@ FlatUnknowns::FlatUnknowns(const MapProblem& problem, const MapState& state,
     const double nu = state.poisson_ratio;
     columns_.conservativeResize(Eigen::NoChange, parts.cols() + 1);
     columns_.rightCols(1) =
-        problem.model.OfPoissonRatio() * ((1 + nu) * (1 - 2 * nu) / 3);
+        problem.model.OfPoissonRatio() * PoissonRatioSlope(nu);
   }
   basis_ = OrthonormalBasis(columns_, kNothingOfColumns);
 }
@@ -72,6 +72,26 @@ double LargestStep(const Eigen::VectorXd& of_log_moduli,
   return std::min(
       1.0, kMostChangeOfMap / std::max(of_log_moduli.lpNorm<Eigen::Infinity>(),
                                        std::abs(of_log_stiffness_ratio)));
+}
+
+double TakeStep(const MapProblem& problem, const Eigen::VectorXd& of_log_moduli,
+                double of_log_stiffness_ratio, double noise, int most_attempts,
+                const MapImprovement& is_better, MapState& state) {
+  FieldSensitivity& model = problem.model;
+  double share = LargestStep(of_log_moduli, of_log_stiffness_ratio);
+  for (int i = 0; i < most_attempts; ++i) {
+    const MapState next =
+        Stepped(state, share * of_log_moduli, share * of_log_stiffness_ratio);
+    if (model.MoveTo(next.log_moduli, next.poisson_ratio, noise) &&
+        is_better(share, next)) {
+      state = next;
+      return share;
+    }
+    share /= 2;
+  }
+  // The model was solved there before.
+  static_cast<void>(model.MoveTo(state.log_moduli, state.poisson_ratio, noise));
+  return 0;
 }
 
 }  // namespace elastimate

@@ -2,6 +2,7 @@
 #define ELASTIMATE_ESTIMATORS_MAPS_MAP_PROBLEM_H_
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 
 #include "elastimate/estimators/maps/field_sensitivity.h"
@@ -65,6 +66,18 @@ class FlatUnknowns {
 /// than twofold in ln E, nor nu as much.
 [[nodiscard]] double LargestStep(const Eigen::VectorXd& of_log_moduli,
                                  double of_log_stiffness_ratio);
+
+/// Tells whether the model, which is at `next`, is better there; `next` is this
+/// share of a step away.
+using MapImprovement = std::function<bool(double share, const MapState& next)>;
+
+/// Takes the largest share of a step that is better: LargestStep or, with at
+/// most so many attempts, a half of it, a quarter, and so on.  Moves `state`
+/// and the model there.  Returns the share; zero if none is better, and the
+/// model is back at `state` then.  A factorisation for each attempt.
+double TakeStep(const MapProblem& problem, const Eigen::VectorXd& of_log_moduli,
+                double of_log_stiffness_ratio, double noise, int most_attempts,
+                const MapImprovement& is_better, MapState& state);
 
 }  // namespace elastimate
 

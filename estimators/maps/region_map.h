@@ -17,10 +17,9 @@ struct RegionMap {
   LevelFit fit;
   /// ln B over a homogeneous body.
   double log_evidence = 0;
-  /// Of ln E of each region, and last of the LogStiffnessRatio of nu: with the
-  /// variance sigma^2 (Z^T Z)^-1 of noise, and that of elements whose region
-  /// is not certain.  For a unit standard deviation of a row it is multiplied
-  /// by `variance` already.
+  /// The covariance of ln E of each region and, in the last row and column, of
+  /// the LogStiffnessRatio of nu: sigma^2 (Z^T Z)^-1 by noise, and what
+  /// elements add whose region is not certain.
   Eigen::MatrixXd covariance;
   double variance = 0;  ///< sigma^2 of a row.
 };

@@ -154,24 +154,15 @@ MapState SharpenMap(const MapProblem& problem, const FieldPrior& prior,
     const Eigen::VectorXd step = field + flat(0) * ones;
     const double before =
         residual.squaredNorm() / (2 * variance) + alpha * jumps;
-    double factor = LargestStep(step, flat(1));
-    bool is_better = false;
-    for (int halving = 0; halving < kMostSharpHalvings && !is_better;
-         ++halving) {
-      const MapState next = Stepped(state, factor * step, factor * flat(1));
-      is_better = model.MoveTo(next.log_moduli, next.poisson_ratio, noise) &&
-                  model.Residual().squaredNorm() / (2 * variance) +
-                          alpha * penalty.Of(next.log_moduli) <
-                      before;
-      if (is_better) {
-        state = next;
-      }
-      factor /= 2;
-    }
-    if (!is_better) {
-      static_cast<void>(
-          model.MoveTo(state.log_moduli, state.poisson_ratio, noise));
-    }
+    const bool is_better =
+        TakeStep(
+            problem, step, flat(1), noise, kMostSharpHalvings,
+            [&](double, const MapState& next) {
+              return model.Residual().squaredNorm() / (2 * variance) +
+                         alpha * penalty.Of(next.log_moduli) <
+                     before;
+            },
+            state) > 0;
     const double change = step.norm() / std::sqrt(double(step.size()));
     if ((!is_better || change < kSettledSharp) && change_of_alpha < 0.02) {
       break;

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "elastimate/core/solvers/conjugate_gradients.h"
-
 namespace elastimate {
 namespace {
 
@@ -90,10 +88,25 @@ double BestRatio(const FieldEvidence& evidence) {
   while (b - a > 1e-3) {
     const double left = b - kGolden * (b - a);
     const double right = a + kGolden * (b - a);
-    (value_at(left) < value_at(right) ? b : a) =
-        value_at(left) < value_at(right) ? right : left;
+    if (value_at(left) < value_at(right)) {
+      b = right;
+    } else {
+      a = left;
+    }
   }
   return std::exp((a + b) / 2);
+}
+
+// Finds k, unless it stays, and as many modes as count at that k.
+void FindRatio(const FieldEvidence& evidence, bool stays,
+               const ColumnOperator& curvature, SmoothMap& map) {
+  for (Eigen::Index size = -1; size != map.modes.Size();) {
+    size = map.modes.Size();
+    if (!stays) {
+      map.ratio = BestRatio(evidence);
+    }
+    map.modes.AddUntil(kLeastOfModes / map.ratio, curvature);
+  }
 }
 
 }  // namespace
@@ -140,25 +153,12 @@ SmoothMap FitSmoothMap(const MapProblem& problem, const FieldPrior& prior,
       map.modes.Renew(curvature);
       change_since_modes = 0;
     }
-    for (Eigen::Index size = -1; size != map.modes.Size();) {
-      size = map.modes.Size();
-      const double best = BestRatio(evidence);
-      map.ratio = i <= kMostRatios ? best : last_ratio;
-      map.modes.AddUntil(kLeastOfModes / map.ratio, curvature);
-    }
+    FindRatio(evidence, i > kMostRatios, curvature, map);
     ConjugateGradientOptions options;
     options.tolerance = kAccurateSmooth;
     options.most_iterations = 500;
-    const Eigen::VectorXd delta =
-        SolveByConjugateGradients(
-            [&](const Eigen::MatrixXd& columns) {
-              return Eigen::MatrixXd(columns / map.ratio + curvature(columns));
-            },
-            [&](const Eigen::MatrixXd& columns) {
-              return map.modes.Solve(map.ratio, columns);
-            },
-            evidence.SlopeAt(map.ratio), {}, options)
-            .solution;
+    const Eigen::VectorXd delta = map.modes.SolveFor(
+        map.ratio, curvature, evidence.SlopeAt(map.ratio), options);
     const double q = evidence.QuadraticAt(map.ratio, delta);
     map.variance = problem.Variance(q, evidence.degrees_of_freedom);
     map.effective_number = map.modes.EffectiveNumber(map.ratio);
@@ -187,29 +187,20 @@ SmoothMap FitSmoothMap(const MapProblem& problem, const FieldPrior& prior,
     }
     const double noise = std::sqrt(map.variance);
     const double before = map.square_sum + map.y.squaredNorm() / map.ratio;
-    double factor = LargestStep(step, flat(1));
-    bool is_better = false;
-    for (int halving = 0; halving < kMostSmoothHalvings && !is_better;
-         ++halving) {
-      const MapState next = Stepped(map.state, factor * step, factor * flat(1));
-      const Eigen::VectorXd next_y = map.y + factor * delta;
-      is_better =
-          model.MoveTo(next.log_moduli, next.poisson_ratio, noise) &&
-          model.Residual().squaredNorm() + next_y.squaredNorm() / map.ratio <
-              before;
-      if (is_better) {
-        map.state = next;
-        map.y = next_y;
-        change_since_modes += factor * change;
-      }
-      factor /= 2;
-    }
-    if (!is_better) {
+    const double share = TakeStep(
+        problem, step, flat(1), noise, kMostSmoothHalvings,
+        [&](double of_step, const MapState&) {
+          return model.Residual().squaredNorm() +
+                     (map.y + of_step * delta).squaredNorm() / map.ratio <
+                 before;
+        },
+        map.state);
+    if (share == 0) {
       map.has_converged = change < 10 * kSettledField;
-      static_cast<void>(
-          model.MoveTo(map.state.log_moduli, map.state.poisson_ratio, noise));
       return map;
     }
+    map.y += share * delta;
+    change_since_modes += share * change;
   }
 }
 

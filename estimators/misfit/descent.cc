@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "elastimate/core/algebra/node_sums.h"
 #include "elastimate/core/scene/observed_displacements.h"
@@ -32,19 +33,17 @@ BoundedMinimum Descend(const EstimatorOptions& estimator_options,
   options.logging_type = ceres::SILENT;
   // A trial without an equilibrium costs more than a step of the search, and a
   // search that meets many of them ends in nothing.
-  constexpr int kMostFailures = 8;
-  int failures = 0;
+  int failures_left = std::numeric_limits<int>::max();
   if (misfit.HasLargeStrains()) {
+    failures_left = 8;
     options.max_num_line_search_step_size_iterations = 5;
   }
   return MinimizeOverVariables(
       [&](const Eigen::VectorXd& x, Eigen::VectorXd* residual,
           Eigen::MatrixXd* jacobian) {
-        if (misfit.HasLargeStrains() && failures >= kMostFailures) {
-          return false;
-        }
-        const bool is_solved = misfit.Evaluate(x, residual, jacobian);
-        failures += is_solved ? 0 : 1;
+        const bool is_solved =
+            failures_left > 0 && misfit.Evaluate(x, residual, jacobian);
+        failures_left -= is_solved ? 0 : 1;
         return is_solved;
       },
       misfit.NumRows(), misfit.Free().VariableBounds(), start, options);
