@@ -82,7 +82,7 @@ Scene DeformedBar(BarLoad load, const std::string& law, double size) {
   // the place of the force.
   const std::function<double(double)> excess = [&](double log_force) {
     const LargeStrainState state =
-        model.Solve(moduli * std::exp(-log_force), 0, u);
+        model.Solve(moduli * std::exp(-log_force), 0);
     if (state.status != EquilibriumStatus::kDone) {
       throw std::runtime_error(BarLoadName(load) + " of a bar of " + law +
                                ": " + WhyNotInEquilibrium(state));
