@@ -11,6 +11,7 @@ namespace elastimate {
 // std::invalid_argument.
 
 int RunEstimate(const std::vector<std::string>& arguments);
+int RunValidate(const std::vector<std::string>& arguments);
 int RunSimulate(const std::vector<std::string>& arguments);
 int RunPlan(const std::vector<std::string>& arguments);
 int RunGenerate(const std::vector<std::string>& arguments);

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -12,19 +11,17 @@
 #include "apps/element_order.h"
 #include "apps/estimator_flags.h"
 #include "apps/flags.h"
-#include "apps/gap_choice.h"
 #include "apps/law_choice.h"
 #include "apps/linear_algebra.h"
 #include "apps/material_flags.h"
+#include "apps/measured_scene.h"
 #include "apps/outlier_lines.h"
 #include "apps/outputs.h"
 #include "apps/progress.h"
 #include "apps/result_fields.h"
-#include "apps/section_flags.h"
 #include "apps/series.h"
 #include "apps/summary.h"
 #include "elastimate/core/materials/isotropic_law.h"
-#include "elastimate/core/materials/laws.h"
 #include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/estimators/material_fit/large_strain_choice.h"
 #include "elastimate/estimators/material_fit/law_choice.h"
@@ -47,23 +44,6 @@ double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-SceneReading Read(const std::vector<std::string>& arguments) {
-  SceneReading reading =
-      ReadWithGapsChosen([&arguments](const std::vector<bool>& is_filled) {
-        return ReadScene(
-            {arguments.begin(), arguments.end()}, Measurement::kRequired,
-            {SectionFromFlags(), RegionsFromFlag(),
-             ChoosesLaw() ? AxesOfLawsToChoose() : LawFromFlags(), is_filled});
-      });
-  if (IsGiven("noise_sd")) {
-    for (LoadCase& load_case : reading.scene.load_cases) {
-      load_case.noise_sd = FLAGS_noise_sd;
-    }
-  }
-  reading.scene.origin = OriginFromFlag().value_or(reading.scene.origin);
-  return reading;
-}
-
 bool MergesRegions() { return FLAGS_regions == "merge"; }
 
 // Takes --map for the parameter that differs between elements.
@@ -75,44 +55,6 @@ void GiveMap(Scene& scene) {
     scene.materials.emplace_back();
   }
   scene.materials[0].fields = {FLAGS_map};
-}
-
-// Takes --nu for the Poisson's ratio of each material for which none is known.
-void GiveKnownPoissonRatio(Scene& scene, EstimatorOptions& options) {
-  if (!options.known_poisson_ratio || IsOneIsotropicMaterial(scene.materials)) {
-    return;
-  }
-  const KnownParameter known = {"poisson_ratio", *options.known_poisson_ratio};
-  const auto is_of_nu = [&](const auto& given) {
-    return given.name == known.name;
-  };
-  for (Material& material : scene.materials) {
-    const std::vector<LawParameter>& parameters =
-        FindLaw(material.law)->Parameters();
-    if (std::none_of(parameters.begin(), parameters.end(), is_of_nu)) {
-      throw std::invalid_argument(
-          AsGiven("nu") + " is not a parameter of the law " + material.law +
-          ", which the scene has; give its parameters as \"known\" in "
-          "\"materials\" of a scene.json");
-    }
-    if (std::none_of(material.known.begin(), material.known.end(), is_of_nu)) {
-      material.known.push_back(known);
-      material.bounds.erase(std::remove_if(material.bounds.begin(),
-                                           material.bounds.end(), is_of_nu),
-                            material.bounds.end());
-    }
-  }
-  options.known_poisson_ratio.reset();
-}
-
-// Returns the files of the scene, which the library does not know and the user
-// wants to see.
-std::string Sources(const std::vector<std::string>& arguments) {
-  std::string sources;
-  for (const std::string& argument : arguments) {
-    sources += (sources.empty() ? "" : ", ") + PrintablePath(argument);
-  }
-  return sources;
 }
 
 // Returns what of the command line the estimator cannot serve: the scene,
@@ -349,7 +291,7 @@ int RunEstimate(const std::vector<std::string>& arguments) {
   EstimatorOptions options = CheckFlags(arguments);
 
   std::optional<Progress> progress("reading " + Sources(arguments));
-  SceneReading reading = Read(arguments);
+  SceneReading reading = ReadMeasuredScene(arguments);
   if (ChoosesLaw()) {
     CheckLawChoice(reading, options);
   }

@@ -117,9 +117,12 @@ std::size_t WidthOfFlags(const Command& command) {
 std::string FlagHelp(const CommandFlag& flag, std::size_t width) {
   gflags::CommandLineFlagInfo info;
   gflags::GetCommandLineFlagInfo(flag.name.c_str(), &info);
-  // A default of 0 stands for "not given", except where 0 is meant.
-  const bool shows_default = !info.default_value.empty() &&
-                             info.default_value != "0" && info.type != "bool";
+  // A default of 0 stands for "not given", except where 0 is meant.  Some
+  // commands have another default, which the meaning of the flag says.
+  const bool shows_default =
+      !info.default_value.empty() && info.default_value != "0" &&
+      info.type != "bool" &&
+      flag.meaning.find("without the flag") == std::string::npos;
   return "  --" + flag.name + std::string(width - flag.name.size(), ' ') +
          "  " + (flag.meaning.empty() ? info.description : flag.meaning) +
          (shows_default

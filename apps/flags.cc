@@ -56,6 +56,13 @@ DEFINE_string(parameters, "",
               "JSON file with the list \"parameters\" of a report");
 DEFINE_string(surface, "",
               "box around the surface that could be loaded: X0,Y0,Z0,X1,Y1,Z1");
+DEFINE_string(hold_out, "",
+              "what to predict: points or load_cases; without it load cases if "
+              "there are several");
+DEFINE_int32(folds, 5, "number of parts that are predicted one by one");
+DEFINE_string(compare, "",
+              "further models: one_material, each_region, linear, or laws, "
+              "separated by commas");
 DEFINE_string(solver, "automatic", "cholesky, multigrid, or automatic");
 DEFINE_int32(threads, 0,
              "largest number of threads for the linear algebra; 0: all cores");
@@ -125,6 +132,41 @@ Command TheEstimateCommand() {
         {{"json"},
          {"out", "VTU file with fitted displacements, residuals and reactions"},
          {"series"}}}}};
+}
+
+Command TheValidateCommand() {
+  return {"validate",
+          "SCENE...",
+          "predicts each part of a measurement from the rest of it",
+          {{"Input",
+            {{"noise_sd"},
+             {"origin"},
+             {"model"},
+             {"thickness"},
+             {"order"},
+             {"material"},
+             {"axis"},
+             {"regions"},
+             {"nu", "known Poisson's ratio, above -1 and below 0.5"},
+             {"nu_min"},
+             {"nu_max"},
+             {"youngs_min"},
+             {"youngs_max"}}},
+           {"Method",
+            {{"hold_out"},
+             {"folds"},
+             {"compare"},
+             {"estimator",
+              "the method, auto without the flag; 'elastimate estimators' "
+              "lists them"},
+             {"kinematics"},
+             {"refine"},
+             {"loss"},
+             {"degree"},
+             {"solver"},
+             {"threads"}}},
+           {"Output",
+            {{"json"}, {"out", "VTU file with the errors of prediction"}}}}};
 }
 
 Command TheSimulateCommand() {
@@ -201,6 +243,7 @@ const Program& Elastimate() {
   static const Program program = {
       "elastimate",
       {TheEstimateCommand(),
+       TheValidateCommand(),
        TheSimulateCommand(),
        ThePlanCommand(),
        TheGenerateCommand(),

@@ -68,6 +68,9 @@ int RunCommand(const std::string& name,
   if (name == "estimate") {
     return RunEstimate(others);
   }
+  if (name == "validate") {
+    return RunValidate(others);
+  }
   if (name == "simulate") {
     return RunSimulate(others);
   }

@@ -59,6 +59,8 @@ class ObservedDisplacements {
   /// Returns the norm of the first weighted measurement, which is the unit
   /// here.
   double Norm() const { return norm_; }
+  /// Returns the displacement that is 1 in each row [length].
+  Eigen::VectorXd RowUnits() const { return weights_.cwiseInverse(); }
   /// Returns the component (0, 1 and, in three dimensions, 2) of a row.
   int Component(Eigen::Index row) const { return component_[row]; }
   /// Returns the root mean square of the standard deviations of the noise

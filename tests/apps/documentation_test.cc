@@ -280,7 +280,7 @@ TEST_F(Documentation, HasEveryFlag) {
   EXPECT_EQ(flags.erase("help") + flags.erase("version"), 2U);
   std::set<std::string> of_help;
   for (const std::string command :
-       {"estimate", "simulate", "plan", "generate", "materials"}) {
+       {"estimate", "simulate", "plan", "validate", "generate", "materials"}) {
     of_help.merge(NamesAfter("\n  --", Succeed(command + " --help").output));
   }
   EXPECT_EQ(flags, of_help);
