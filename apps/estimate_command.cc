@@ -202,7 +202,7 @@ MaterialMerge MergeRegions(const Estimator& estimator,
   if (!why_not.empty()) {
     throw std::invalid_argument(sources + ": " + why_not);
   }
-  const MaterialMerge merge = MergeMaterials(modelled, options);
+  MaterialMerge merge = MergeMaterials(modelled, options);
   if (!merge.why_not.empty()) {
     notices.push_back(sources + ": the regions could not be compared (" +
                       merge.why_not + "), so none were merged");

@@ -45,6 +45,7 @@ std::vector<Scene> FittedSpaces(Scene scene, const Estimate& estimate) {
 // need a factorisation there.
 std::vector<const Scene*> SpacesOfMisfit(const std::vector<Scene>& spaces) {
   std::vector<const Scene*> list;
+  list.reserve(spaces.size());
   for (const Scene& scene : spaces) {
     list.push_back(&scene);
   }
