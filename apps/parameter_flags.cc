@@ -49,11 +49,19 @@ Eigen::VectorXd ParametersFromFlags(const Scene& scene) {
     const std::string_view name = parameter.law_parameter->name;
     return name != "youngs_modulus" && name != "poisson_ratio";
   };
-  if (std::any_of(parameters.All().begin(), parameters.All().end(), is_other)) {
+  const auto other =
+      std::find_if(parameters.All().begin(), parameters.All().end(), is_other);
+  if (other != parameters.All().end()) {
+    const Law& law = parameters.LawOf(other->material);
+    std::string names;
+    for (const LawParameter& parameter : law.Parameters()) {
+      names += (names.empty() ? "" : ", ") + std::string(parameter.name);
+    }
     throw std::invalid_argument(
         AsGiven("youngs") +
-        " is for materials that have E and nu, such as isotropic ones, and the "
-        "scene has others; give --parameters=FILE.json instead");
+        " is for materials that have E and nu, and the law " +
+        std::string(law.Name()) + " of the scene has " + names +
+        "; give these by --parameters=FILE.json");
   }
   Eigen::VectorXd values(parameters.NumParameters());
   for (Eigen::Index i = 0; i < values.size(); ++i) {

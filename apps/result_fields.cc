@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "elastimate/core/equilibrium/equilibrium.h"
+#include "elastimate/core/equilibrium/large_strain_equilibrium.h"
 #include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/mesh/middle_nodes.h"
 #include "elastimate/core/scene/deformation_size.h"
@@ -210,6 +211,25 @@ Eigen::VectorXd ValuesOfMap(const MapEstimate& map) {
   return values;
 }
 
+// Adds the displacements of a model, and what they leave of the measured ones
+// and, by `imbalance` of internal forces and loads, of the supports.
+void AddFitted(const Scene& scene, const Scene& solved,
+               const Eigen::MatrixXd& fitted, const Eigen::MatrixXd& imbalance,
+               const Estimate& estimate, FieldCollector& collector) {
+  const Eigen::MatrixXd difference = MeasuredMinus(solved, fitted);
+  const Eigen::MatrixXd held_imbalance = OfHeld(solved, imbalance);
+  const Eigen::MatrixXd reaction =
+      scene.mesh.Order() == 2
+          ? held_imbalance
+          : MiddleNodes(solved.mesh).Restrict(held_imbalance);
+  collector.AddOutliers(estimate.outliers);
+  for (Eigen::Index k = 0; k < fitted.cols(); ++k) {
+    collector.AddPoint("fitted_displacement", k, fitted);
+    collector.AddPoint("displacement_residual", k, difference);
+    collector.AddPoint("reaction_force", k, reaction);
+  }
+}
+
 // Adds what the model says at these parameters of its materials, which have
 // laws of small strains.
 void AddModel(const Scene& scene, const Scene& modelled,
@@ -237,21 +257,40 @@ void AddModel(const Scene& scene, const Scene& modelled,
     return;
   }
   const Eigen::MatrixXd& fitted = model.Displacement();
-  const Eigen::MatrixXd difference = MeasuredMinus(solved, fitted);
-  const Eigen::MatrixXd imbalance =
-      model.Forces().Multiply(moduli, fitted) - AssembleLoadCases(solved);
-  const Eigen::MatrixXd held_imbalance = OfHeld(solved, imbalance);
-  const Eigen::MatrixXd reaction =
-      scene.mesh.Order() == 2
-          ? held_imbalance
-          : MiddleNodes(solved.mesh).Restrict(held_imbalance);
-  collector.AddOutliers(estimate.outliers);
+  AddFitted(scene, solved, fitted,
+            model.Forces().Multiply(moduli, fitted) - AssembleLoadCases(solved),
+            estimate, collector);
   for (Eigen::Index k = 0; k < num_cases; ++k) {
-    collector.AddPoint("fitted_displacement", k, fitted);
-    collector.AddPoint("displacement_residual", k, difference);
-    collector.AddPoint("reaction_force", k, reaction);
     collector.AddStrainEnergy(solved.mesh, model.Forces(), moduli, k, fitted);
   }
+}
+
+// Adds what the model says at these parameters of its laws of large strains;
+// nothing where supports do not hold the specimen, or where there is no
+// equilibrium.
+void AddLargeStrainModel(const Scene& scene, const Scene& modelled,
+                         const Eigen::VectorXd& values,
+                         const Estimate& estimate, FieldCollector& collector) {
+  if (!WhyNotHeld(scene).empty()) {
+    return;
+  }
+  const Scene solved =
+      SolvedScene(scene, modelled, estimate.fitted_displacement);
+  LargeStrainEquilibrium model(solved);
+  const Eigen::VectorXd moduli = model.Forces().Parameters().Moduli(values);
+  const Eigen::Index num_cases = Eigen::Index(solved.load_cases.size());
+  Eigen::MatrixXd fitted(solved.mesh.NumDofs(), num_cases);
+  Eigen::MatrixXd imbalance(fitted.rows(), num_cases);
+  for (Eigen::Index k = 0; k < num_cases; ++k) {
+    const LargeStrainState state = model.Solve(moduli, k);
+    if (state.status != EquilibriumStatus::kDone) {
+      return;
+    }
+    fitted.col(k) = state.displacement;
+    imbalance.col(k) = model.Forces().Forces(moduli, state.displacement) -
+                       model.LoadAt(k, state.displacement);
+  }
+  AddFitted(scene, solved, fitted, imbalance, estimate, collector);
 }
 
 }  // namespace
@@ -275,7 +314,9 @@ Fields ResultFields(const Scene& scene, const Scene& modelled,
     collector.AddParameters(scene, estimate);
     collector.AddResiduals(scene, estimate);
   }
-  if (!HasLargeStrainLaw(scene.materials)) {
+  if (HasLargeStrainLaw(scene.materials)) {
+    AddLargeStrainModel(scene, modelled, *values, estimate, collector);
+  } else {
     AddModel(scene, modelled, *values, estimate, solver, collector);
   }
   return fields;

@@ -334,15 +334,19 @@ void AddMerges(const std::vector<RegionMerge>& merges,
   }
 }
 
-// Adds the laws that were compared, the best first.
-void AddLaws(const std::vector<LawComparison>& laws, std::ostringstream& text) {
+// Adds the laws that were compared, the best first.  The chi^2 of laws of large
+// strains is their distance from the best, as their BIC is.
+void AddLaws(const Estimate& estimate, std::ostringstream& text) {
+  const std::vector<LawComparison>& laws = estimate.laws;
   for (const LawComparison& law : laws) {
-    Line(&law == laws.data() ? "law chosen" : "law not chosen",
+    const bool is_chosen = &law == laws.data();
+    Line(is_chosen ? "law chosen" : "law not chosen",
          law.law + " (" + Counted(law.num_parameters, "parameter") +
-             ", chi^2 " + NumberText(law.chi_square, 3) + ", BIC " +
-             (&law == laws.data() ? "least"
-                                  : "+" + NumberText(law.criterion, 3)) +
-             ")",
+             (estimate.large_strain_law.empty()
+                  ? ", chi^2 " + NumberText(law.chi_square, 3)
+                  : "") +
+             ", BIC " +
+             (is_chosen ? "least" : "+" + NumberText(law.criterion, 3)) + ")",
          text);
   }
 }
@@ -447,7 +451,7 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
   AddSceneSize(scene, text);
   AddLoads(scene, text);
   AddMerges(estimate.merges, text);
-  AddLaws(estimate.laws, text);
+  AddLaws(estimate, text);
   if (estimate.series) {
     AddSeries(*estimate.series, text);
   }

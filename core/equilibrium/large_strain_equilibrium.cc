@@ -192,6 +192,21 @@ Eigen::Index LargeStrainEquilibrium::ElementOfLowestMode(
   return most;
 }
 
+void LargeStrainEquilibrium::NameFailure(const Eigen::VectorXd& moduli,
+                                         Eigen::Index k,
+                                         LargeStrainState& state) {
+  // Beyond the largest load that a material bears, Newton's method turns
+  // elements inside out that are far from flat at that load.
+  constexpr double kNearlyFlat = 0.2;
+  if (state.status == EquilibriumStatus::kInverted &&
+      forces_.SmallestVolumeRatio(state.displacement).value > kNearlyFlat) {
+    state.status = EquilibriumStatus::kNoEquilibrium;
+  }
+  state.element = state.status == EquilibriumStatus::kUnstable
+                      ? ElementOfLowestMode(moduli, k, state)
+                      : state.smallest_volume.element;
+}
+
 EquilibriumStatus LargeStrainEquilibrium::Newton(const Eigen::VectorXd& moduli,
                                                  Eigen::Index k, double t,
                                                  LargeStrainState& state,
@@ -295,9 +310,7 @@ LargeStrainState LargeStrainEquilibrium::Solve(const Eigen::VectorXd& moduli,
     } else {
       step = (t - state.load_share) * kCut;
       if (step < kSmallestLoadStep || state.num_tangents > most_tangents) {
-        state.element = state.status == EquilibriumStatus::kUnstable
-                            ? ElementOfLowestMode(moduli, k, state)
-                            : state.smallest_volume.element;
+        NameFailure(moduli, k, state);
         return state;
       }
     }

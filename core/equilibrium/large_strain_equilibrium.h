@@ -153,6 +153,10 @@ class LargeStrainEquilibrium {
   bool Factorize(const Eigen::VectorXd& moduli, Eigen::Index k, double t,
                  const Eigen::VectorXd& u, double most_shift,
                  LargeStrainState& state);
+  /// Sets the element of a search that failed, and says what a failure of
+  /// Newton's method means at the last equilibrium.
+  void NameFailure(const Eigen::VectorXd& moduli, Eigen::Index k,
+                   LargeStrainState& state);
   /// Returns the element that moves most in the lowest mode of the tangent at
   /// the last stable state.  One tangent and a few solves.
   Eigen::Index ElementOfLowestMode(const Eigen::VectorXd& moduli,

@@ -1,8 +1,10 @@
 #include "elastimate/core/mechanics/large_strain_forces.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -16,8 +18,6 @@
 
 namespace elastimate {
 namespace {
-
-using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 // The place of the entry across a plate, (3, 3), in a matrix of nine.
 constexpr int kCrossEntry = 8;
@@ -76,6 +76,8 @@ class ElementBatch {
     const std::size_t num_elements =
         std::min(std::size_t(PointMatrices::kPoints / points_per_element_),
                  pass.elements.size() - first);
+    elements_.reserve(num_elements);
+    points_.reserve(PointMatrices::kPoints);
     for (std::size_t i = 0; i < num_elements; ++i) {
       const Eigen::Index e = pass.elements[first + i];
       elements_.push_back(e);
@@ -95,10 +97,9 @@ class ElementBatch {
             SetGradient(int(points_.size()), u * point.gradient.transpose());
             points_.push_back(point);
           });
-      if (TakesMean<kKind>(pass)) {
-        SetPolynomials(e);
-        ReplaceByMean(i);
-      }
+    }
+    if (TakesMean<kKind>(pass)) {
+      SmoothDilatation();
     }
     if (pass.mesh.section.model == SectionModel::kPlaneStress) {
       SetCrossGradients(pass.law, pass.moduli, NumPoints(), gradients_);
@@ -113,9 +114,7 @@ class ElementBatch {
     return points_[element * std::size_t(points_per_element_) + i];
   }
   // Only where elements smooth their dilatation.
-  const MeanDilatation& Mean(std::size_t element) const {
-    return means_[element];
-  }
+  const MeanDilatation& Mean() const { return *mean_; }
 
   // Returns P_k of each modulus.
   std::vector<PointMatrices> Stresses() const {
@@ -149,16 +148,6 @@ class ElementBatch {
     pass_.law.TangentsAtPoints(pass_.moduli, gradients_, NumPoints(), tangents);
   }
 
-  std::vector<Eigen::Matrix3d> OfElement(const PointMatrices& matrices,
-                                         std::size_t element) const {
-    std::vector<Eigen::Matrix3d> of_points(points_per_element_);
-    for (int i = 0; i < points_per_element_; ++i) {
-      for (int entry = 0; entry < 9; ++entry) {
-        of_points[i](entry) = matrices.row[entry][PlaceOf(element, i)];
-      }
-    }
-    return of_points;
-  }
   int PlaceOf(std::size_t element, int i) const {
     return int(element) * points_per_element_ + i;
   }
@@ -174,33 +163,36 @@ class ElementBatch {
     }
   }
 
-  // Sets the polynomials that smooth the dilatation of an element: 1, and in
-  // elements of order 2 the coordinates as well.
-  void SetPolynomials(Eigen::Index element) {
-    const int order = pass_.mesh.Order();
-    polynomials_.setOnes(points_per_element_, order == 1 ? 1 : 1 + kDimension);
-    if (order == 1) {
-      return;
+  // Smooths the dilatation by the constant 1 and, in elements of order 2, by
+  // the coordinates as well.
+  void SmoothDilatation() {
+    ElementPoints points = {kDimension, NumPoints(), points_per_element_,
+                            {},         {},          1};
+    for (int p = 0; p < NumPoints(); ++p) {
+      points.volumes.row[0][p] = points_[p].volume;
+      points.polynomials.row[0][p] = 1;
     }
-    const auto nodes = GatherMapNodes<kKind>(pass_.mesh, element);
-    const auto& rule = StiffnessRule<kKind>();
-    for (int i = 0; i < points_per_element_; ++i) {
-      if constexpr (!IsCurved(kKind)) {
-        polynomials_.row(i).tail(kDimension) =
-            (nodes * rule[i].vertex_value - nodes.col(0)).transpose();
+    if (pass_.mesh.Order() == 2) {
+      points.num_polynomials = 1 + kDimension;
+      for (std::size_t e = 0; e < NumElements(); ++e) {
+        SetCoordinates(e, points.polynomials);
       }
     }
+    mean_.emplace(points, gradients_);
+    gradients_ = mean_->Gradients();
   }
 
-  void ReplaceByMean(std::size_t e) {
-    Eigen::VectorXd volumes(points_per_element_);
-    for (int i = 0; i < points_per_element_; ++i) {
-      volumes(i) = Point(e, i).volume;
-    }
-    means_.emplace_back(OfElement(gradients_, e), volumes, polynomials_);
-    for (int i = 0; i < points_per_element_; ++i) {
-      for (int entry = 0; entry < 9; ++entry) {
-        gradients_.row[entry][PlaceOf(e, i)] = means_[e].Gradients()[i](entry);
+  // Sets the coordinates of the points of an element, from its first node on.
+  void SetCoordinates(std::size_t e, PointValues<4>& polynomials) const {
+    if constexpr (!IsCurved(kKind)) {
+      const auto nodes = GatherMapNodes<kKind>(pass_.mesh, elements_[e]);
+      const auto& rule = StiffnessRule<kKind>();
+      for (int i = 0; i < points_per_element_; ++i) {
+        const Eigen::Matrix<double, kDimension, 1> x =
+            nodes * rule[i].vertex_value - nodes.col(0);
+        for (int d = 0; d < kDimension; ++d) {
+          polynomials.row[1 + d][PlaceOf(e, i)] = x(d);
+        }
       }
     }
   }
@@ -210,8 +202,7 @@ class ElementBatch {
   std::vector<Eigen::Index> elements_;
   std::vector<ElementPoint<kKind>> points_;
   PointMatrices gradients_ = {};
-  Eigen::MatrixXd polynomials_;
-  std::vector<MeanDilatation> means_;
+  std::optional<MeanDilatation> mean_;
 };
 
 // Calls visit(batch) for all elements of a pass.
@@ -236,21 +227,19 @@ void AddToNodes(const Mesh& mesh, Eigen::Index element,
   }
 }
 
-// Returns the forces of a stress at each point of an element, as seen in its
-// frame.
+// Returns the forces of a matrix at each point of an element, such as a stress,
+// on its nodes, as seen in its frame.
 template <ElementKind kKind>
-NodeColumns<kKind> StressForces(const ElementBatch<kKind>& batch, std::size_t e,
-                                const std::vector<Eigen::Matrix3d>& stresses) {
+NodeColumns<kKind> NodeForces(const ElementPoint<kKind>& point,
+                              const PointMatrices& matrices, int place) {
   constexpr int kDimension = kDimensionOf<kKind>;
-  NodeColumns<kKind> forces = NodeColumns<kKind>::Zero();
-  for (int i = 0; i < batch.PointsPerElement(); ++i) {
-    const ElementPoint<kKind>& point = batch.Point(e, i);
-    forces.noalias() +=
-        point.volume *
-        stresses[i].template topLeftCorner<kDimension, kDimension>() *
-        point.gradient;
+  Eigen::Matrix<double, kDimension, kDimension> matrix;
+  for (int j = 0; j < kDimension; ++j) {
+    for (int i = 0; i < kDimension; ++i) {
+      matrix(i, j) = point.volume * matrices.row[i + 3 * j][place];
+    }
   }
-  return forces;
+  return matrix * point.gradient;
 }
 
 template <ElementKind kKind>
@@ -259,17 +248,19 @@ void AddStressColumns(const MaterialPass& pass,
                       CrossStretch cross_stretch,
                       Eigen::Ref<Eigen::MatrixXd> columns) {
   VisitBatches<kKind>(pass, displacement, [&](const auto& batch) {
-    const std::vector<PointMatrices> stresses =
-        cross_stretch == CrossStretch::kStays ? batch.Stresses()
+    std::vector<PointMatrices> stresses = cross_stretch == CrossStretch::kStays
+                                              ? batch.Stresses()
                                               : batch.StressDerivatives();
     for (std::size_t k = 0; k < stresses.size(); ++k) {
+      if (TakesMean<kKind>(pass)) {
+        batch.Mean().ReplaceStresses(stresses[k]);
+      }
       for (std::size_t e = 0; e < batch.NumElements(); ++e) {
-        std::vector<Eigen::Matrix3d> of_points =
-            batch.OfElement(stresses[k], e);
-        if (TakesMean<kKind>(pass)) {
-          of_points = batch.Mean(e).Stresses(of_points);
+        NodeColumns<kKind> forces = NodeColumns<kKind>::Zero();
+        for (int i = 0; i < batch.PointsPerElement(); ++i) {
+          forces += NodeForces<kKind>(batch.Point(e, i), stresses[k],
+                                      batch.PlaceOf(e, i));
         }
-        NodeColumns<kKind> forces = StressForces<kKind>(batch, e, of_points);
         if (pass.HasFrames()) {
           forces =
               (FrameOfElement<kKind>(pass, batch.Element(e)) * forces).eval();
@@ -411,65 +402,67 @@ void AddPointTangent(const ElementPoint<kKind>& point, const Tangent& tangent,
   }
 }
 
-// Returns the lower triangle of the stiffness of an element that smooths its
-// dilatation.
+// Adds to the stiffness of an element what comes with the change of its
+// smoothed dilatation.
 template <ElementKind kKind>
-ElementMatrix<kKind> MeanTangent(const ElementBatch<kKind>& batch,
-                                 std::size_t e, const Eigen::VectorXd& moduli,
-                                 const std::vector<PointMatrices>& columns,
-                                 const PointTangents& tangents) {
-  constexpr int kDimension = kDimensionOf<kKind>;
-  const int num_points = batch.PointsPerElement();
-  std::vector<Eigen::Matrix3d> stresses(num_points, Eigen::Matrix3d::Zero());
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    const std::vector<Eigen::Matrix3d> of_modulus =
-        batch.OfElement(columns[k], e);
-    for (int i = 0; i < num_points; ++i) {
-      stresses[i] += moduli(Eigen::Index(k)) * of_modulus[i];
-    }
-  }
-  std::vector<Matrix9> of_points(num_points);
-  for (int i = 0; i < num_points; ++i) {
-    of_points[i] = TangentIn<ElementKind::kHex8>(tangents, batch.PlaceOf(e, i),
-                                                 SectionModel::kSolid);
-  }
-  const MeanDilatation& mean = batch.Mean(e);
-  const MeanDilatation::Curvature curvature =
-      mean.CurvatureOf(stresses, of_points);
+void AddDilatation(const ElementBatch<kKind>& batch, std::size_t e,
+                   const MeanDilatation::Curvature& curvature,
+                   ElementMatrix<kKind>& matrix) {
+  constexpr int kMostPolynomials = 4;
+  using Column = Eigen::Matrix<double, kElementDofs<kKind>, 1>;
+  const MeanDilatation& mean = batch.Mean();
+  const int size = mean.NumPolynomials();
   // The derivatives of Theta_a with respect to the displacements of the nodes,
   // and the coupling forces of each dTheta_a.
-  const Eigen::MatrixXd& polynomials = mean.Polynomials();
-  Eigen::MatrixXd slopes =
-      Eigen::MatrixXd::Zero(kElementDofs<kKind>, polynomials.cols());
-  Eigen::MatrixXd couplings = slopes;
-  Eigen::VectorXd dilatations(num_points);
-  ElementMatrix<kKind> matrix = ElementMatrix<kKind>::Zero();
-  const auto of_nodes = [](const ElementPoint<kKind>& point,
-                           const Eigen::Matrix3d& stress) {
-    return NodeColumns<kKind>(point.volume *
-                              stress.topLeftCorner<kDimension, kDimension>() *
-                              point.gradient);
-  };
-  for (int i = 0; i < num_points; ++i) {
+  std::array<Column, kMostPolynomials> slopes;
+  std::array<Column, kMostPolynomials> halves;
+  std::fill_n(slopes.begin(), size, Column::Zero());
+  std::fill_n(halves.begin(), size, Column::Zero());
+  Eigen::Matrix4d dilatation = Eigen::Matrix4d::Zero();
+  for (int i = 0; i < batch.PointsPerElement(); ++i) {
     const ElementPoint<kKind>& point = batch.Point(e, i);
-    slopes +=
-        of_nodes(point, mean.Cofactors(i)).reshaped() * polynomials.row(i);
-    couplings +=
-        of_nodes(point, curvature.coupling[i]).reshaped() * polynomials.row(i);
-    dilatations(i) = point.volume * curvature.dilatation(i);
-    if constexpr (kDimension == 3) {
-      AddPointTangent<kKind>(point, curvature.local[i], matrix);
-    } else {
-      const int plane[] = {0, 1, 3, 4};
-      const Eigen::Matrix4d local = curvature.local[i](plane, plane);
-      AddPointTangent<kKind>(point, local, matrix);
+    const int place = batch.PlaceOf(e, i);
+    const NodeColumns<kKind> slope =
+        NodeForces<kKind>(point, mean.Cofactors(), place);
+    const NodeColumns<kKind> coupling =
+        NodeForces<kKind>(point, curvature.coupling, place);
+    for (int a = 0; a < size; ++a) {
+      const double polynomial = mean.Polynomials().row[a][place];
+      slopes[a] += polynomial * slope.reshaped();
+      halves[a] += polynomial * coupling.reshaped();
+      for (int b = 0; b < size; ++b) {
+        dilatation(a, b) += point.volume * curvature.dilatation.row[0][place] *
+                            polynomial * mean.Polynomials().row[b][place];
+      }
     }
   }
-  const Eigen::MatrixXd half =
-      couplings + slopes * (polynomials.transpose() * dilatations.asDiagonal() *
-                            polynomials / 2);
-  matrix += slopes * half.transpose() + half * slopes.transpose();
-  return matrix;
+  for (int a = 0; a < size; ++a) {
+    for (int b = 0; b < size; ++b) {
+      halves[a] += dilatation(a, b) / 2 * slopes[b];
+    }
+    for (int j = 0; j < kElementDofs<kKind>; ++j) {
+      matrix.col(j) += halves[a](j) * slopes[a] + slopes[a](j) * halves[a];
+    }
+  }
+}
+
+// Sets the curvature of elements that smooth their dilatation, for the tangents
+// of their law.
+template <ElementKind kKind>
+void SetCurvature(const ElementBatch<kKind>& batch,
+                  const Eigen::VectorXd& moduli, const PointTangents& tangents,
+                  MeanDilatation::Curvature& curvature) {
+  const std::vector<PointMatrices> columns = batch.Stresses();
+  PointMatrices stresses = {};
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    for (int entry = 0; entry < 9; ++entry) {
+      for (int p = 0; p < PointMatrices::kPoints; ++p) {
+        stresses.row[entry][p] +=
+            moduli(Eigen::Index(k)) * columns[k].row[entry][p];
+      }
+    }
+  }
+  batch.Mean().SetCurvature(stresses, tangents, curvature);
 }
 
 // Rotates the lower triangle of an element stiffness from the frame of the
@@ -492,23 +485,24 @@ template <ElementKind kKind, class Visitor>
 void VisitTangents(const MaterialPass& pass,
                    const Eigen::VectorXd& displacement, const Visitor& visit) {
   PointTangents tangents;
+  MeanDilatation::Curvature curvature;
   VisitBatches<kKind>(pass, displacement, [&](const auto& batch) {
     batch.SetTangents(tangents);
-    std::vector<PointMatrices> columns;
     if (TakesMean<kKind>(pass)) {
-      columns = batch.Stresses();
+      SetCurvature<kKind>(batch, pass.moduli, tangents, curvature);
     }
+    const PointTangents& of_points =
+        TakesMean<kKind>(pass) ? curvature.local : tangents;
     for (std::size_t e = 0; e < batch.NumElements(); ++e) {
       ElementMatrix<kKind> matrix = ElementMatrix<kKind>::Zero();
+      for (int i = 0; i < batch.PointsPerElement(); ++i) {
+        AddPointTangent<kKind>(batch.Point(e, i),
+                               TangentIn<kKind>(of_points, batch.PlaceOf(e, i),
+                                                pass.mesh.section.model),
+                               matrix);
+      }
       if (TakesMean<kKind>(pass)) {
-        matrix = MeanTangent<kKind>(batch, e, pass.moduli, columns, tangents);
-      } else {
-        for (int i = 0; i < batch.PointsPerElement(); ++i) {
-          AddPointTangent<kKind>(batch.Point(e, i),
-                                 TangentIn<kKind>(tangents, batch.PlaceOf(e, i),
-                                                  pass.mesh.section.model),
-                                 matrix);
-        }
+        AddDilatation<kKind>(batch, e, curvature, matrix);
       }
       if (pass.HasFrames()) {
         TurnBlocks<kKind>(FrameOfElement<kKind>(pass, batch.Element(e)),

@@ -1,102 +1,172 @@
 #include "elastimate/core/mechanics/mean_dilatation.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <cmath>
-
-#include "elastimate/core/large_strain/large_strain_law.h"
 
 namespace elastimate {
 namespace {
 
-using Matrix9 = Eigen::Matrix<double, 9, 9>;
-using Vector9 = Eigen::Matrix<double, 9, 1>;
+constexpr int kPoints = PointNumbers::kPoints;
 
-Eigen::Map<const Vector9> AsVector(const Eigen::Matrix3d& matrix) {
-  return Eigen::Map<const Vector9>(matrix.data());
-}
-
-// Returns T with dF : T : dF = tr(F^-1 dF F^-1 dF), for G = F^-T.
-Matrix9 TraceOfSquares(const Eigen::Matrix3d& g) {
-  Matrix9 t;
-  for (int row = 0; row < 9; ++row) {
-    for (int column = 0; column < 9; ++column) {
-      t(row, column) = g(row % 3, column / 3) * g(column % 3, row / 3);
-    }
-  }
-  return t;
-}
-
-// Returns polynomials that are orthonormal over the points of these volumes.
-Eigen::MatrixXd Orthonormal(const Eigen::MatrixXd& polynomials,
-                            const Eigen::VectorXd& volumes) {
-  const Eigen::MatrixXd products =
-      polynomials.transpose() * volumes.asDiagonal() * polynomials;
-  return products.llt().matrixL().solve(polynomials.transpose()).transpose();
-}
+// Polynomials and their products at the points of an element, without memory
+// of the heap.
+using Products = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic,
+                               Eigen::ColMajor, 4, 4>;
+using PolynomialsAtPoint =
+    Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 4, 1>;
 
 }  // namespace
 
-MeanDilatation::MeanDilatation(const std::vector<Eigen::Matrix3d>& gradients,
-                               const Eigen::VectorXd& volumes,
-                               const Eigen::MatrixXd& polynomials)
-    : volumes_(volumes), polynomials_(Orthonormal(polynomials, volumes)) {
-  Eigen::VectorXd changes(volumes.size());
-  for (std::size_t i = 0; i < gradients.size(); ++i) {
-    const double change = VolumeChange(gradients[i]);
-    changes(Eigen::Index(i)) = change;
-    jacobian_.push_back(1 + change);
-    f_.emplace_back(Eigen::Matrix3d::Identity() + gradients[i]);
-    cofactors_.emplace_back(jacobian_[i] * f_[i].inverse().transpose());
+MeanDilatation::Entries MeanDilatation::EntriesOf(int dimension) {
+  return dimension == 3 ? Entries{9, 9, {0, 1, 2, 3, 4, 5, 6, 7, 8}}
+                        : Entries{5, 4, {0, 1, 3, 4, 8}};
+}
+
+MeanDilatation::MeanDilatation(const ElementPoints& points,
+                               const PointMatrices& gradients)
+    : points_(points), entries_(EntriesOf(points.dimension)) {
+  MakeOrthonormal();
+  SetDeformation(gradients);
+  // det(I + H) - 1 keeps its digits near rest.
+  PointNumbers changes;
+  const auto& h = gradients.row;
+  for (int p = 0; p < kPoints; ++p) {
+    const double trace = h[0][p] + h[4][p] + h[8][p];
+    const double minors = h[0][p] * h[4][p] - h[1][p] * h[3][p] +
+                          h[0][p] * h[8][p] - h[2][p] * h[6][p] +
+                          h[4][p] * h[8][p] - h[5][p] * h[7][p];
+    const double determinant =
+        h[0][p] * (h[4][p] * h[8][p] - h[5][p] * h[7][p]) -
+        h[3][p] * (h[1][p] * h[8][p] - h[2][p] * h[7][p]) +
+        h[6][p] * (h[1][p] * h[5][p] - h[2][p] * h[4][p]);
+    changes.row[0][p] = trace + minors + determinant;
+    jacobian_.row[0][p] = 1 + changes.row[0][p];
   }
-  const Eigen::VectorXd smoothed = Fit(changes);
-  theta_ = smoothed.array() + 1;
-  for (std::size_t i = 0; i < gradients.size(); ++i) {
-    const Eigen::Index point = Eigen::Index(i);
-    const double scale_change = std::expm1(
-        (std::log1p(smoothed(point)) - std::log1p(changes(point))) / 3);
-    scale_.push_back(1 + scale_change);
-    Eigen::Matrix3d scaled = scale_[i] * gradients[i];
-    scaled.diagonal().array() += scale_change;
-    gradients_.push_back(scaled);
+  const PointNumbers smoothed = Fit(changes);
+  for (int p = 0; p < kPoints; ++p) {
+    theta_.row[0][p] = 1 + smoothed.row[0][p];
+    // s - 1 = r / (s^2 + s + 1) for s^3 = 1 + r.
+    const double r =
+        (smoothed.row[0][p] - changes.row[0][p]) / jacobian_.row[0][p];
+    const double s = std::cbrt(1 + r);
+    const double scale_change = r / (s * s + s + 1);
+    scale_.row[0][p] = 1 + scale_change;
+    for (int entry = 0; entry < 9; ++entry) {
+      gradients_.row[entry][p] = scale_.row[0][p] * h[entry][p];
+    }
+    for (const int entry : {0, 4, 8}) {
+      gradients_.row[entry][p] += scale_change;
+    }
   }
 }
 
-double MeanDilatation::Work(std::size_t point,
-                            const Eigen::Matrix3d& stress) const {
-  return scale_[point] * stress.cwiseProduct(f_[point]).sum();
+void MeanDilatation::MakeOrthonormal() {
+  const int size = points_.num_polynomials;
+  auto& rows = points_.polynomials.row;
+  for (int first = 0; first < points_.num_points;
+       first += points_.per_element) {
+    Products products = Products::Zero(size, size);
+    for (int p = first; p < first + points_.per_element; ++p) {
+      for (int a = 0; a < size; ++a) {
+        for (int b = 0; b <= a; ++b) {
+          products(a, b) += points_.volumes.row[0][p] * rows[a][p] * rows[b][p];
+        }
+      }
+    }
+    const Eigen::LLT<Products> factor(products);
+    for (int p = first; p < first + points_.per_element; ++p) {
+      PolynomialsAtPoint values(size);
+      for (int a = 0; a < size; ++a) {
+        values(a) = rows[a][p];
+      }
+      factor.matrixL().solveInPlace(values);
+      for (int a = 0; a < size; ++a) {
+        rows[a][p] = values(a);
+      }
+    }
+  }
 }
 
-Eigen::VectorXd MeanDilatation::Fit(const Eigen::VectorXd& values) const {
-  return polynomials_ *
-         (polynomials_.transpose() * volumes_.cwiseProduct(values));
+void MeanDilatation::SetDeformation(const PointMatrices& gradients) {
+  f_ = gradients;
+  for (const int entry : {0, 4, 8}) {
+    for (int p = 0; p < kPoints; ++p) {
+      f_.row[entry][p] += 1;
+    }
+  }
+  const auto& f = f_.row;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const int i1 = (i + 1) % 3;
+      const int i2 = (i + 2) % 3;
+      const int j1 = 3 * ((j + 1) % 3);
+      const int j2 = 3 * ((j + 2) % 3);
+      double* const cofactor = cofactors_.row[i + 3 * j];
+      for (int p = 0; p < kPoints; ++p) {
+        cofactor[p] =
+            f[i1 + j1][p] * f[i2 + j2][p] - f[i1 + j2][p] * f[i2 + j1][p];
+      }
+    }
+  }
 }
 
-Eigen::VectorXd MeanDilatation::Pressures(
-    const std::vector<Eigen::Matrix3d>& stresses) const {
-  Eigen::VectorXd values(volumes_.size());
-  for (std::size_t i = 0; i < stresses.size(); ++i) {
-    const Eigen::Index point = Eigen::Index(i);
-    values(point) = Work(i, stresses[i]) / (3 * theta_(point));
+PointNumbers MeanDilatation::Work(const PointMatrices& stresses) const {
+  PointNumbers work = {};
+  for (int n = 0; n < entries_.size; ++n) {
+    const double* const stress = stresses.row[entries_.places[n]];
+    const double* const f = f_.row[entries_.places[n]];
+    for (int p = 0; p < kPoints; ++p) {
+      work.row[0][p] += scale_.row[0][p] * stress[p] * f[p];
+    }
+  }
+  return work;
+}
+
+PointNumbers MeanDilatation::Fit(const PointNumbers& values) const {
+  PointNumbers fit = {};
+  for (int a = 0; a < points_.num_polynomials; ++a) {
+    const double* const polynomial = points_.polynomials.row[a];
+    for (int first = 0; first < points_.num_points;
+         first += points_.per_element) {
+      double amount = 0;
+      for (int p = first; p < first + points_.per_element; ++p) {
+        amount += points_.volumes.row[0][p] * polynomial[p] * values.row[0][p];
+      }
+      for (int p = first; p < first + points_.per_element; ++p) {
+        fit.row[0][p] += amount * polynomial[p];
+      }
+    }
+  }
+  return fit;
+}
+
+PointNumbers MeanDilatation::Pressures(const PointNumbers& work) const {
+  PointNumbers values;
+  for (int p = 0; p < kPoints; ++p) {
+    values.row[0][p] = work.row[0][p] / (3 * theta_.row[0][p]);
   }
   return Fit(values);
 }
 
-std::vector<Eigen::Matrix3d> MeanDilatation::Stresses(
-    const std::vector<Eigen::Matrix3d>& stresses) const {
-  const Eigen::VectorXd pressures = Pressures(stresses);
-  std::vector<Eigen::Matrix3d> acting;
-  for (std::size_t i = 0; i < stresses.size(); ++i) {
-    const double own = Work(i, stresses[i]) / (3 * jacobian_[i]);
-    acting.emplace_back(scale_[i] * stresses[i] +
-                        (pressures(Eigen::Index(i)) - own) * cofactors_[i]);
+void MeanDilatation::ReplaceStresses(PointMatrices& stresses) const {
+  const PointNumbers work = Work(stresses);
+  PointNumbers pressures = Pressures(work);
+  for (int p = 0; p < kPoints; ++p) {
+    pressures.row[0][p] -= work.row[0][p] / (3 * jacobian_.row[0][p]);
   }
-  return acting;
+  for (int n = 0; n < entries_.in_plane; ++n) {
+    double* const stress = stresses.row[entries_.places[n]];
+    const double* const cofactor = cofactors_.row[entries_.places[n]];
+    for (int p = 0; p < kPoints; ++p) {
+      stress[p] =
+          scale_.row[0][p] * stress[p] + pressures.row[0][p] * cofactor[p];
+    }
+  }
 }
 
-MeanDilatation::Curvature MeanDilatation::CurvatureOf(
-    const std::vector<Eigen::Matrix3d>& stresses,
-    const std::vector<Matrix9>& tangents) const {
+void MeanDilatation::SetCurvature(const PointMatrices& stresses,
+                                  const PointTangents& tangents,
+                                  Curvature& curvature) const {
   // With sigma = dTheta / (3 Theta) - F^-T : dF / 3,
   //
   //   dFbar = s (dF + sigma F),
@@ -105,36 +175,73 @@ MeanDilatation::Curvature MeanDilatation::CurvatureOf(
   //             + tr(F^-1 dF F^-1 dF)) / 3,
   //
   // and the sum of v pi d2Theta / (3 Theta) over the points is that of v p d2J.
-  const Eigen::VectorXd pressures = Pressures(stresses);
-  Curvature curvature;
-  curvature.dilatation.resize(volumes_.size());
-  for (std::size_t i = 0; i < stresses.size(); ++i) {
-    const double s = scale_[i];
-    const double work = Work(i, stresses[i]);
-    const Eigen::Matrix3d g = cofactors_[i] / jacobian_[i];
-    const auto f9 = AsVector(f_[i]);
-    const auto g9 = AsVector(g);
-    const auto p9 = AsVector(stresses[i]);
-    const double theta = theta_(Eigen::Index(i));
-    const double of_volume = pressures(Eigen::Index(i)) * jacobian_[i];
-    // The tangent T acts on dF - F (F^-T : dF) / 3, which adds outer products
-    // of F^-T and T F.
-    const Vector9 stretched = s * s * tangents[i] * f9;
-    const double of_stretch = f9.dot(stretched);
-    const Vector9 beside_g = ((of_stretch + work) / 9 + of_volume) / 2 * g9 -
-                             (stretched + s * p9) / 3;
-    Matrix9 local = s * s * tangents[i];
-    local += beside_g * g9.transpose() + g9 * beside_g.transpose();
-    local += (work / 3 - of_volume) * TraceOfSquares(g);
-    curvature.local.push_back(local);
-    const Vector9 coupling =
-        (stretched + s * p9 - (of_stretch + work) / 3 * g9) / (3 * theta);
-    curvature.coupling.emplace_back(
-        Eigen::Map<const Eigen::Matrix3d>(coupling.data()));
-    curvature.dilatation(Eigen::Index(i)) =
-        ((of_stretch + work) / 9 - work / 3) / (theta * theta);
+  // The tangent T acts on dF - F (F^-T : dF) / 3, which adds outer products of
+  // G = F^-T and s^2 T F to s^2 T.
+  const PointNumbers work = Work(stresses);
+  const PointNumbers pressures = Pressures(work);
+  PointMatrices g;
+  PointMatrices pulled = {};  // s^2 T F + s Pbar.
+  PointNumbers of_stretch = {};
+  for (int n = 0; n < entries_.size; ++n) {
+    const int a = entries_.places[n];
+    for (int m = 0; m < entries_.size; ++m) {
+      const int b = entries_.places[m];
+      const double* const tangent = tangents.row[TangentRow(a, b)];
+      for (int p = 0; p < kPoints; ++p) {
+        pulled.row[a][p] += tangent[p] * f_.row[b][p];
+      }
+    }
+    for (int p = 0; p < kPoints; ++p) {
+      const double s = scale_.row[0][p];
+      const double stretched = s * s * pulled.row[a][p];
+      of_stretch.row[0][p] += f_.row[a][p] * stretched;
+      pulled.row[a][p] = stretched + s * stresses.row[a][p];
+      g.row[a][p] = cofactors_.row[a][p] / jacobian_.row[0][p];
+    }
   }
-  return curvature;
+  PointNumbers twist;      // The factor of tr(F^-1 dF F^-1 dF).
+  PointNumbers of_g;       // The factor of the outer product of G.
+  PointNumbers sum_third;  // (F : s^2 T F + pi) / 3.
+  PointNumbers per_theta;  // 1 / (3 Theta).
+  for (int p = 0; p < kPoints; ++p) {
+    const double sum = of_stretch.row[0][p] + work.row[0][p];
+    const double theta = theta_.row[0][p];
+    const double of_volume = pressures.row[0][p] * jacobian_.row[0][p];
+    twist.row[0][p] = work.row[0][p] / 3 - of_volume;
+    of_g.row[0][p] = (sum / 9 + of_volume) / 2;
+    sum_third.row[0][p] = sum / 3;
+    per_theta.row[0][p] = 1 / (3 * theta);
+    curvature.dilatation.row[0][p] =
+        (sum / 9 - work.row[0][p] / 3) / (theta * theta);
+  }
+  PointMatrices beside;  // The outer product with G, and its transpose.
+  for (int n = 0; n < entries_.in_plane; ++n) {
+    const int a = entries_.places[n];
+    for (int p = 0; p < kPoints; ++p) {
+      beside.row[a][p] = of_g.row[0][p] * g.row[a][p] - pulled.row[a][p] / 3;
+      curvature.coupling.row[a][p] =
+          (pulled.row[a][p] - sum_third.row[0][p] * g.row[a][p]) *
+          per_theta.row[0][p];
+    }
+  }
+  for (int n = 0; n < entries_.in_plane; ++n) {
+    const int a = entries_.places[n];
+    for (int m = 0; m <= n; ++m) {
+      const int b = entries_.places[m];
+      const double* const ga = g.row[a];
+      const double* const gb = g.row[b];
+      const double* const cross_a = g.row[a % 3 + 3 * (b / 3)];
+      const double* const cross_b = g.row[b % 3 + 3 * (a / 3)];
+      const double* const tangent = tangents.row[TangentRow(a, b)];
+      double* const local = curvature.local.row[TangentRow(a, b)];
+      for (int p = 0; p < kPoints; ++p) {
+        const double s = scale_.row[0][p];
+        local[p] = s * s * tangent[p] + beside.row[a][p] * gb[p] +
+                   ga[p] * beside.row[b][p] +
+                   twist.row[0][p] * cross_a[p] * cross_b[p];
+      }
+    }
+  }
 }
 
 }  // namespace elastimate

@@ -2,14 +2,30 @@
 #define ELASTIMATE_CORE_MECHANICS_MEAN_DILATATION_H_
 
 #include <Eigen/Core>
-#include <vector>
+
+#include "elastimate/core/large_strain/large_strain_law.h"
 
 namespace elastimate {
 
-/// The smoothed dilatation of an element (LargeStrainForces): Fbar = s F with s
-/// = (Theta / J)^(1/3) at its points.  Theta is the least-squares fit of J by
-/// some polynomials over the element; the fit by the constant 1 alone is the
-/// mean of J.
+/// A number at some points.
+using PointNumbers = PointValues<1>;
+
+/// The points of some elements: those of the first element, then those of the
+/// second, and so on, as many for each.
+struct ElementPoints {
+  int dimension;  ///< In the plane, only F_33 = 1 and entries in the plane.
+  int num_points;
+  int per_element;
+  PointNumbers volumes;  ///< v; zero behind the points.
+  /// The polynomials that smooth the dilatation: 1, and further ones.
+  PointValues<4> polynomials;
+  int num_polynomials;
+};
+
+/// The smoothed dilatation of some elements (LargeStrainForces): Fbar = s F
+/// with s = (Theta / J)^(1/3) at their points.  In each element, Theta is the
+/// least-squares fit of J by some polynomials; the fit by the constant 1 alone
+/// is the mean of J.
 ///
 /// With the stress Pbar of a law at Fbar, an energy W(Fbar) has
 ///
@@ -18,60 +34,66 @@ namespace elastimate {
 ///
 /// and dTheta is the fit of cof F : dF, so that the pressure p, the fit of
 /// pi / (3 Theta), acts on cof F at each point.
+///
+/// All loops go over rows of points, so that compilers use vector instructions.
 class MeanDilatation {
  public:
-  /// Takes the gradients H = F - I at the points, their volumes v, and the
-  /// values of the polynomials there, num_points x num_polynomials.
-  MeanDilatation(const std::vector<Eigen::Matrix3d>& gradients,
-                 const Eigen::VectorXd& volumes,
-                 const Eigen::MatrixXd& polynomials);
+  /// Takes the gradients H = F - I at the points; zero behind the points.
+  MeanDilatation(const ElementPoints& points, const PointMatrices& gradients);
 
-  /// Returns Fbar - I at each point.
-  const std::vector<Eigen::Matrix3d>& Gradients() const { return gradients_; }
+  /// Returns Fbar - I.
+  const PointMatrices& Gradients() const { return gradients_; }
 
-  /// Returns, for the stresses Pbar of the law at each point, the stresses that
-  /// do work on dF.
-  std::vector<Eigen::Matrix3d> Stresses(
-      const std::vector<Eigen::Matrix3d>& stresses) const;
+  /// Replaces the stresses Pbar of the law by those that do work on dF.
+  void ReplaceStresses(PointMatrices& stresses) const;
 
-  /// The second derivative of the energy of the element, the sum over the
-  /// points of
+  /// The second derivative of the energy of an element, the sum over its points
+  /// of
   ///
   ///   v (dF : local : dF + 2 coupling : dF dTheta + dilatation dTheta^2).
   struct Curvature {
-    std::vector<Eigen::Matrix<double, 9, 9>> local;
-    std::vector<Eigen::Matrix3d> coupling;
-    Eigen::VectorXd dilatation;
+    PointTangents local;
+    PointMatrices coupling;
+    PointNumbers dilatation;
   };
-  /// Returns this second derivative, for Pbar and dPbar / dFbar at each point.
-  Curvature CurvatureOf(
-      const std::vector<Eigen::Matrix3d>& stresses,
-      const std::vector<Eigen::Matrix<double, 9, 9>>& tangents) const;
+  /// Sets this second derivative, for Pbar and dPbar / dFbar.  In the plane,
+  /// only the entries in the plane.
+  void SetCurvature(const PointMatrices& stresses,
+                    const PointTangents& tangents, Curvature& curvature) const;
 
-  /// Returns orthonormal polynomials phi_a at the points, num_points x
-  /// num_polynomials, with which dTheta = sum_a phi_a dTheta_a, and dTheta_a is
-  /// the sum of v phi_a cof F : dF over the points.
-  const Eigen::MatrixXd& Polynomials() const { return polynomials_; }
+  /// Returns orthonormal polynomials phi_a, with which dTheta = sum_a phi_a
+  /// dTheta_a, and dTheta_a is the sum of v phi_a cof F : dF over the points of
+  /// the element.
+  const PointValues<4>& Polynomials() const { return points_.polynomials; }
+  int NumPolynomials() const { return points_.num_polynomials; }
   /// Returns cof F.
-  const Eigen::Matrix3d& Cofactors(std::size_t point) const {
-    return cofactors_[point];
-  }
+  const PointMatrices& Cofactors() const { return cofactors_; }
 
  private:
-  double Work(std::size_t point, const Eigen::Matrix3d& stress) const;
-  /// Returns the fit of these values at the points.
-  Eigen::VectorXd Fit(const Eigen::VectorXd& values) const;
-  /// Returns p at each point.
-  Eigen::VectorXd Pressures(const std::vector<Eigen::Matrix3d>& stresses) const;
+  /// The entries of F that are not zero, and those in the plane of them.
+  struct Entries {
+    int size;
+    int in_plane;
+    int places[9];
+  };
+  static Entries EntriesOf(int dimension);
+  void MakeOrthonormal();
+  void SetDeformation(const PointMatrices& gradients);
+  /// Returns pi at each point.
+  PointNumbers Work(const PointMatrices& stresses) const;
+  /// Returns the fit of these values in each element.
+  PointNumbers Fit(const PointNumbers& values) const;
+  /// Returns p at each point, for `work` pi.
+  PointNumbers Pressures(const PointNumbers& work) const;
 
-  Eigen::VectorXd volumes_;
-  Eigen::MatrixXd polynomials_;
-  Eigen::VectorXd theta_;                   ///< Theta.
-  std::vector<double> jacobian_;            ///< J.
-  std::vector<double> scale_;               ///< s.
-  std::vector<Eigen::Matrix3d> f_;          ///< F.
-  std::vector<Eigen::Matrix3d> cofactors_;  ///< cof F.
-  std::vector<Eigen::Matrix3d> gradients_;
+  ElementPoints points_;
+  Entries entries_;
+  PointNumbers theta_;       ///< Theta.
+  PointNumbers jacobian_;    ///< J.
+  PointNumbers scale_;       ///< s.
+  PointMatrices f_;          ///< F.
+  PointMatrices cofactors_;  ///< cof F.
+  PointMatrices gradients_;
 };
 
 }  // namespace elastimate

@@ -91,8 +91,8 @@ class Estimator : public std::enable_shared_from_this<Estimator> {
   /// (ValidateScene), invalid options, options or a scene that this estimator
   /// does not support (WhyUnsupported), a load case without measured
   /// displacements or with zero displacement, and loads that are zero on all
-  /// free degrees of freedom.  Numerical outcomes never throw: they are
-  /// statuses of the estimate.
+  /// free degrees of freedom unless a modulus is known.  Numerical outcomes
+  /// never throw: they are statuses of the estimate.
   ///
   /// An estimate that the method calls usable, but that has neither a standard
   /// error of each parameter that it estimates nor a reason for that

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/core/scene/observed_displacements.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
@@ -129,11 +130,13 @@ void CheckLoads(const Scene& scene) {
                 IsLoaded(scene, Eigen::Index(k));
     num_with_noise_sd += HasKnownNoise(load_case) ? 1 : 0;
   }
-  if (!any_force) {
+  if (!any_force &&
+      !MaterialParameters(scene.materials, scene.mesh.section.model)
+           .KnownModulus()) {
     throw std::invalid_argument(
-        "the loads are zero on every free node, so that Young's modulus cannot "
-        "be estimated; give a load, or the measured force of a support as a "
-        "load of type \"resultant\"");
+        "the loads are zero on every free node, so that no modulus can be "
+        "estimated; give a load, the measured force of a support as a load of "
+        "type \"resultant\", or a known modulus");
   }
   if (num_with_noise_sd != 0 && num_with_noise_sd != scene.load_cases.size()) {
     throw std::invalid_argument(

@@ -12,6 +12,7 @@
 #include "elastimate/io/points/point_scales.h"
 #include "elastimate/io/text/csv_table.h"
 #include "elastimate/io/text/input_error.h"
+#include "elastimate/io/text/printable.h"
 
 namespace elastimate {
 namespace {
@@ -166,6 +167,13 @@ PointsFile ReadPointsFile(const std::filesystem::path& path, int dimension,
     ThrowInputError(path,
                     "no row has a displacement; check the columns of "
                     "displacements");
+  }
+  const std::size_t num_rows = file.lines.size();
+  if (measured.size() < num_rows) {
+    file.notices.push_back(PrintablePath(path) + ": " +
+                           std::to_string(num_rows - measured.size()) + " of " +
+                           std::to_string(num_rows) +
+                           " points have no displacement and are left out");
   }
   file.positions = file.positions(Eigen::all, measured).eval();
   file.displacement = file.displacement(Eigen::all, measured).eval();

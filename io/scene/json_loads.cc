@@ -73,6 +73,11 @@ Load ReadLoad(const JsonValue& load, const LoadContext& context) {
   };
   const JsonValue type = load.At("type");
   const std::string name = type.String();
+  if (load.Has("follows") && name != "pressure") {
+    load.At("follows").Fail(
+        "is for loads of the type pressure only; other loads keep their "
+        "direction, so leave it out");
+  }
   if (name == "nodal_force") {
     return ReadNodalForces(load, context);
   }

@@ -317,7 +317,7 @@ TEST_F(AnisotropicCommand, RefusesWhatIsWrong) {
             "is only for transversely_isotropic"},
            {"--material=transversely_isotropic --axis=1", "it needs three"},
            {"--material=transversely_isotropic --axis=1,0,0",
-            "give --parameters=FILE.json"}}) {
+            "by --parameters=FILE.json"}}) {
     Refuse("simulate block.vtu --youngs=1 --nu=0 --out=a.vtu " + flags, says);
   }
   for (const auto& [material, says] :

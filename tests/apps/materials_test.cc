@@ -124,6 +124,8 @@ TEST_F(MaterialsCommand, EstimatesLawsOfLargeStrainsFromForces) {
     Refuse("estimate m.vtu --material=neo_hookean --estimator=" + estimator,
            "the law neo_hookean is for large strains");
   }
+  Refuse("simulate block.vtu --material=yeoh --youngs=1 --nu=0.3 --out=y.vtu",
+         "the law yeoh of the scene has c10, c20, c30, bulk_modulus");
   Refuse("plan m.vtu --material=neo_hookean --youngs=1e4 --nu=0.3",
          "the law neo_hookean is for large strains");
 }
@@ -161,7 +163,7 @@ TEST_F(MaterialsCommand, SimulatesLargeStrains) {
   write_pull("neo_hookean", 0.5);
   Refuse("simulate pull.json --solver=multigrid" + flags, "--solver=cholesky");
   write_pull("yeoh", 0.5);
-  Refuse("simulate pull.json" + flags, "give --parameters=FILE.json");
+  Refuse("simulate pull.json" + flags, "by --parameters=FILE.json");
 }
 
 TEST_F(MaterialsCommand, SimulatesLargeStrainsOfSmallLoadsAsSmallOnes) {

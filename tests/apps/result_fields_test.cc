@@ -79,5 +79,33 @@ TEST_F(ResultFieldsOfPlanes, AreRightForSupportsThatDidNotMove) {
       R"({"type": "force", "value": [3, 0])"));
 }
 
+class ResultFieldsOfLargeStrains : public testing::ProgramTest {};
+
+TEST_F(ResultFieldsOfLargeStrains, AreInEquilibriumWithTheLoads) {
+  Succeed(
+      "generate cuboid --elements=hex8 --cells=2,2,3 --size=1,1,2 "
+      "--force=0.4,0,-1 --out=cuboid.vtu");
+  Succeed(
+      "simulate cuboid.vtu --material=neo_hookean --youngs=500 --nu=0.3 "
+      "--out=measured.vtu");
+  Succeed(
+      "estimate measured.vtu --material=neo_hookean "
+      "--estimator=iterative-fe --out=fields.vtu");
+  const MeshFile fields = ReadMeshFile(folder_ / "fields.vtu");
+  const auto array = [&](const std::string& name) {
+    const Eigen::MatrixXd* const values = FindArray(fields.node_arrays, name);
+    EXPECT_NE(values, nullptr) << name;
+    return values != nullptr ? *values : Eigen::MatrixXd();
+  };
+  const Eigen::MatrixXd measured = array("displacement");
+  EXPECT_GT(measured.cwiseAbs().maxCoeff(), 0.05);
+  EXPECT_LT((array("fitted_displacement") - measured).norm(),
+            1e-6 * measured.norm());
+  EXPECT_LT(array("displacement_residual").norm(), 1e-6 * measured.norm());
+  const Eigen::VectorXd load = array("force").rowwise().sum();
+  EXPECT_LT((array("reaction_force").rowwise().sum() + load).norm(),
+            1e-6 * load.norm());
+}
+
 }  // namespace
 }  // namespace elastimate

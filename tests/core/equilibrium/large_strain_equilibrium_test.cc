@@ -425,7 +425,9 @@ TEST(LargeStrainEquilibrium, SaysAtWhichLoadTheMaterialGivesWay) {
                                              Eigen::Vector3d(1, 1, 1),
                                              Eigen::Vector3d(0, 0, -0.3))};
   const LargeStrainState state = SolveOf(scene, Eigen::Vector2d(1, 0.0));
-  EXPECT_NE(state.status, EquilibriumStatus::kDone);
+  // Newton's method ends in elements that are inside out, but at the last
+  // equilibrium none is nearly flat.
+  EXPECT_EQ(state.status, EquilibriumStatus::kNoEquilibrium);
   EXPECT_NEAR(state.load_share, 1 / std::sqrt(27.0) / 0.3, 2e-3);
   EXPECT_THAT(WhyNotInEquilibrium(state), HasSubstr("% of the load"));
 }

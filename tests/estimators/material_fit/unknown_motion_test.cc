@@ -451,7 +451,7 @@ TEST(UnknownMotion, WithoutAnyForceIsRefused) {
   Scene scene = Plate();
   scene.load_cases[0].loads.clear();
   EXPECT_THROWS_WITH(RunIterativeFe(scene),
-                     "or the measured force of a support");
+                     "the measured force of a support");
 }
 
 TEST(UnknownMotion, ThatIsInconsistentIsRefused) {

@@ -181,6 +181,9 @@ TEST_F(PointsFileTest, ReadsFormatsOfCamerasInSpace) {
       "1,5;2;3;4;5;6\nNaN;NaN;NaN;NaN;NaN;NaN\n;;;;;\n");
   EXPECT_EQ(matchid.positions, Eigen::Vector3d(1.5, 2, 3));
   EXPECT_EQ(matchid.displacement, Eigen::Vector3d(4, 5, 6));
+  ASSERT_FALSE(matchid.notices.empty());
+  EXPECT_THAT(matchid.notices.back(),
+              ::testing::HasSubstr(" of 3 points have no displacement"));
   const PointsFile vic = Read(
       "\"X [mm]\",\"Y [mm]\",\"Z [mm]\",\"U [mm]\",\"V [mm]\",\"W [mm]\",x,y,"
       "\"sigma [pixel]\"\n0,0,0,9,9,9,0,0,-1\n1,2,3,4,5,6,0,0,0.01\n");

@@ -421,6 +421,8 @@ TEST_F(JsonSceneTest, ErrsOnAForceThatIsNone) {
   expect(R"({"type": "force", "value": [0, 0, -5], "nodes": "free"})",
          " has the unknown key \"nodes\"; the keys known here are type, value, "
          "surface");
+  expect(R"({"type": "force", "value": [0, 0, -5], "follows": true})",
+         ".follows is for loads of the type pressure only");
   expect(R"({"type": "force", "value": [0, 0, -5]})",
          ".surface is missing; add it");
   expect(R"({"type": "force", "surface": {"physical": "top"}})",
