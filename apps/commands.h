@@ -17,9 +17,15 @@ int RunPlan(const std::vector<std::string>& arguments);
 int RunGenerate(const std::vector<std::string>& arguments);
 int RunEstimators(const std::vector<std::string>& arguments);
 int RunMaterials(const std::vector<std::string>& arguments);
+int RunCompletion(const std::vector<std::string>& arguments);
+int RunDoctor(const std::vector<std::string>& arguments);
 
 /// Checks the flags that estimate and simulate share, and sets the threads.
 void ApplyComputingFlags();
+
+/// Throws std::invalid_argument unless there are no arguments.
+void CheckNoArguments(const std::string& command,
+                      const std::vector<std::string>& arguments);
 
 /// Ends a sentence on wrong arguments: "; it got a b".
 std::string ButGot(const std::vector<std::string>& arguments);

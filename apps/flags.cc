@@ -247,6 +247,8 @@ const Program& Elastimate() {
        TheSimulateCommand(),
        ThePlanCommand(),
        TheGenerateCommand(),
+       {"completion", "bash", "prints a script that completes commands", {}},
+       {"doctor", "", "says what this installation can do here", {}},
        {"estimators", "", "lists the methods of --estimator", {}},
        {"materials",
         "",

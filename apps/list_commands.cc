@@ -17,14 +17,6 @@
 namespace elastimate {
 namespace {
 
-void CheckNoArguments(const std::string& command,
-                      const std::vector<std::string>& arguments) {
-  if (!arguments.empty()) {
-    throw std::invalid_argument(command + " takes no arguments" +
-                                ButGot(arguments));
-  }
-}
-
 // The name, and below it the text in lines of 80 characters.
 std::string ListEntry(std::string_view name, const std::string& text) {
   constexpr std::size_t kMostCharacters = 80;
@@ -55,6 +47,14 @@ std::string DescribeLaw(const Law& law) {
 }
 
 }  // namespace
+
+void CheckNoArguments(const std::string& command,
+                      const std::vector<std::string>& arguments) {
+  if (!arguments.empty()) {
+    throw std::invalid_argument(command + " takes no arguments" +
+                                ButGot(arguments));
+  }
+}
 
 int RunMaterials(const std::vector<std::string>& arguments) {
   CheckNoArguments("materials", arguments);

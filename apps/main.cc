@@ -83,6 +83,12 @@ int RunCommand(const std::string& name,
   if (name == "materials") {
     return RunMaterials(others);
   }
+  if (name == "completion") {
+    return RunCompletion(others);
+  }
+  if (name == "doctor") {
+    return RunDoctor(others);
+  }
   return RunEstimators(others);
 }
 

@@ -119,6 +119,39 @@ TEST_F(CommandLine, ListsTheEstimators) {
   }
 }
 
+TEST_F(CommandLine, DoctorSaysWhatIsThere) {
+  const std::string output = Succeed("doctor").output;
+  for (const std::string part : {"version", "processors", "vector instructions",
+                                 "BLAS", "multigrid of PETSc", "Gmsh"}) {
+    EXPECT_THAT(output, ::testing::HasSubstr(part));
+  }
+  Refuse("doctor scene.vtu", "doctor takes no arguments");
+}
+
+TEST_F(CommandLine, CompletesCommandsFlagsAndNames) {
+  testing::WriteText(folder_ / "complete.bash",
+                     Succeed("completion bash").output +
+                         "compopt() { :; }\n"
+                         "COMP_WORDS=(elastimate \"$@\")\n"
+                         "COMP_CWORD=$#\n"
+                         "_elastimate\n"
+                         "echo \"${COMPREPLY[@]}\"\n");
+  testing::WriteText(folder_ / "mine.vtu", "");
+  const auto completions = [&](const std::string& words) {
+    const std::string command = "cd '" + folder_.string() +
+                                "' && bash complete.bash " + words +
+                                " > completed";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    return testing::ReadText(folder_ / "completed");
+  };
+  EXPECT_EQ(completions("sim"), "simulate\n");
+  EXPECT_EQ(completions("estimate --est"), "--estimator=\n");
+  EXPECT_EQ(completions("estimate --estimator = red"), "reduced-fe\n");
+  EXPECT_EQ(completions("estimate --material = neo"), "neo_hookean\n");
+  EXPECT_EQ(completions("estimate mi"), "mine.vtu\n");
+  Refuse("completion", "completion takes the name of a shell");
+}
+
 TEST_F(CommandLine, GeneratesThePapersCuboid) {
   const ProgramRun run = Succeed("generate cuboid --out=cuboid.vtu");
   EXPECT_NE(run.output.find("250 tetrahedra"), std::string::npos) << run.output;
