@@ -6,7 +6,7 @@ packages=(
   g++ cmake ninja-build
   libboost-dev libceres-dev libeigen3-dev libsuitesparse-dev libopenblas-pthread-dev
   libhwy-dev libnanoflann-dev libgoogle-glog-dev libgflags-dev libgtest-dev libgmock-dev libbenchmark-dev
-  nlohmann-json3-dev libcsv-dev libvtk9-dev libgmsh-dev
+  nlohmann-json3-dev libpugixml-dev libcsv-dev libvtk9-dev libgmsh-dev
   petsc-dev pkg-config
   python3-matplotlib
 )

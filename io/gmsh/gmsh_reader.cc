@@ -8,12 +8,12 @@
 #include <limits>
 #include <map>
 #include <new>
-#include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "elastimate/io/mesh/numbering.h"
 #include "elastimate/io/text/input_error.h"
 #include "elastimate/io/text/printable.h"
 
@@ -55,47 +55,6 @@ void StartGmsh() {
   gmsh::initialize(0, nullptr, false);
   gmsh::option::setNumber("General.Terminal", 0);
   gmsh::logger::start();
-}
-
-/// The position of each of Gmsh's numbers in an ascending list of them.
-class Numbering {
- public:
-  explicit Numbering(std::vector<std::size_t> numbers)
-      : numbers_(std::move(numbers)),
-        has_no_gap_(std::adjacent_find(numbers_.begin(), numbers_.end(),
-                                       [](std::size_t a, std::size_t b) {
-                                         return b != a + 1;
-                                       }) == numbers_.end()) {}
-
-  /// Returns -1 when `number` is not in the list.
-  int Find(std::size_t number) const {
-    // Most files number without a gap.
-    if (has_no_gap_ && !numbers_.empty()) {
-      return number < numbers_.front() || number > numbers_.back()
-                 ? -1
-                 : static_cast<int>(number - numbers_.front());
-    }
-    const auto found =
-        std::lower_bound(numbers_.begin(), numbers_.end(), number);
-    return found == numbers_.end() || *found != number
-               ? -1
-               : static_cast<int>(found - numbers_.begin());
-  }
-  const std::vector<std::size_t>& Numbers() const { return numbers_; }
-
- private:
-  std::vector<std::size_t> numbers_;
-  bool has_no_gap_;
-};
-
-/// Returns the permutation that sorts `values`.
-std::vector<std::size_t> SortingOrder(const std::vector<std::size_t>& values) {
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return values[a] < values[b];
-  });
-  return order;
 }
 
 /// The counts that Gmsh says the file has; -1 where it says nothing.
@@ -285,6 +244,7 @@ void AddEntity(const Numbering& nodes, int entity, int facet_type,
                const MeshFile& mesh, PhysicalGroup& group) {
   const GmshElements elements(group.dimension, entity);
   const Eigen::Index num_nodes = mesh.Topology().NumNodesOfFace();
+  const Eigen::Index num_vertices = mesh.Topology().NumVerticesOfFace();
   for (std::size_t i = 0; i < elements.types.size(); ++i) {
     std::vector<int> positions;
     positions.reserve(elements.nodes[i].size());
@@ -295,9 +255,10 @@ void AddEntity(const Numbering& nodes, int entity, int facet_type,
     if (elements.types[i] == facet_type) {
       const Eigen::Index before = group.facets.cols();
       const Eigen::Index count = elements.numbers[i].size();
-      group.facets.conservativeResize(num_nodes, before + count);
+      group.facets.conservativeResize(num_vertices, before + count);
       group.facets.rightCols(count) =
-          Eigen::Map<const Eigen::MatrixXi>(positions.data(), num_nodes, count);
+          Eigen::Map<const Eigen::MatrixXi>(positions.data(), num_nodes, count)
+              .topRows(num_vertices);
     }
   }
 }

@@ -144,12 +144,13 @@ void ReadGroups(Reader& reader, MeshFile& mesh) {
     group.name = reader.Text();
     reader.Values(group.nodes);
     reader.Entries(group.facets);
-    reader.Require(AreInRange(Eigen::Map<const Eigen::VectorXi>(
-                                  group.nodes.data(), group.nodes.size()),
-                              mesh.nodes.cols()) &&
-                   (group.facets.rows() == mesh.Topology().NumNodesOfFace() ||
-                    group.facets.size() == 0) &&
-                   AreInRange(group.facets, mesh.nodes.cols()));
+    reader.Require(
+        AreInRange(Eigen::Map<const Eigen::VectorXi>(group.nodes.data(),
+                                                     group.nodes.size()),
+                   mesh.nodes.cols()) &&
+        (group.facets.rows() == mesh.Topology().NumVerticesOfFace() ||
+         group.facets.size() == 0) &&
+        AreInRange(group.facets, mesh.nodes.cols()));
   }
 }
 

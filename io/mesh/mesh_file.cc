@@ -1,5 +1,6 @@
 #include "elastimate/io/mesh/mesh_file.h"
 
+#include <boost/algorithm/string/predicate.hpp>
 #include <cctype>
 
 #include "elastimate/core/text/numbers.h"
@@ -32,7 +33,14 @@ std::string NodeName(const MeshFile& mesh, Eigen::Index node) {
     return "node " + std::to_string(node);
   }
   return "node " + std::to_string(node) + " (number " +
-         std::to_string(mesh.node_numbers[node]) + " in Gmsh)";
+         std::to_string(mesh.node_numbers[node]) + " in " +
+         (mesh.sets_of.empty() ? "Gmsh" : mesh.sets_of) + ")";
+}
+
+bool HasName(const MeshFile& mesh, const PhysicalGroup& group,
+             const std::string& name) {
+  return mesh.sets_of.empty() ? group.name == name
+                              : boost::iequals(group.name, name);
 }
 
 void RequireNodePositions(const MeshFile& mesh) {

@@ -19,14 +19,16 @@ struct FileArray {
   Eigen::MatrixXd values;
 };
 
-/// A physical group of a Gmsh file.
+/// A physical group of a Gmsh file, or a set of nodes, of facets or of elements
+/// of a finite element program.
 struct PhysicalGroup {
-  int dimension;
+  int dimension;  ///< Zero for a set of nodes.
+  /// In a mesh of sets the region that the set is, or zero.
   int number;
   std::string name;        ///< Empty when the file gives it no name.
   std::vector<int> nodes;  ///< The nodes of its elements, ascending, once each.
-  /// The elements of the group that are faces of the mesh's elements (in a
-  /// planar mesh, edges): num_nodes_of_face x num_facets.
+  /// The vertices of the elements of the group that may be faces of the mesh's
+  /// elements (in a planar mesh, edges): num_vertices_of_face x num_facets.
   Eigen::MatrixXi facets;
 };
 
@@ -36,11 +38,11 @@ struct MovedNode {
   Eigen::Vector3d in_file;  ///< Its position there.
 };
 
-/// What a VTK or Gmsh file holds, in one form.
+/// What a mesh file holds, in one form.
 ///
 /// A node is known by its zero-based position among all nodes of the file,
 /// those without an element included: the order of the points in a VTK file,
-/// ascending node numbers in a file read by Gmsh.
+/// ascending node numbers in files of other formats.
 struct MeshFile {
   std::filesystem::path path;
   Eigen::Matrix3Xd nodes;
@@ -60,7 +62,8 @@ struct MeshFile {
   /// empty.
   std::string why_no_regions;
 
-  /// The field data of these names in a VTK file.
+  /// The field data of these names in a VTK file, or what the element types and
+  /// sections of Abaqus say.
   std::optional<double> model;  ///< A place in kNumberedModels, if valid.
   std::optional<double> thickness;
   Origin origin = Origin::kMeasured;
@@ -77,7 +80,13 @@ struct MeshFile {
   std::vector<std::size_t> node_lines;
 
   bool is_vtk = true;
-  std::vector<std::size_t> node_numbers;  ///< Gmsh's; empty for a VTK file.
+  /// The program whose sets the groups are ("Abaqus"): their names may be
+  /// written in letters of any case, and a set of nodes goes before one of
+  /// elements with the same name.  Empty for VTK and Gmsh.
+  std::string sets_of;
+  std::vector<std::size_t> node_numbers;  ///< Empty for a VTK file.
+  /// Sentences for people about what is read in another way than it is written.
+  std::vector<std::string> notices;
   /// The number of nodes of the file that Gmsh left out because no element uses
   /// them.  The positions of all others are then not known.
   Eigen::Index num_nodes_left_out = 0;
@@ -115,6 +124,11 @@ std::string ArrayNames(const std::vector<FileArray>& arrays);
 
 /// "node 7" or "node 7 (number 12 in Gmsh)", for error messages.
 std::string NodeName(const MeshFile& mesh, Eigen::Index node);
+
+/// Tells whether the group has this name, in which letters of any case count
+/// as the same where the groups are sets.
+bool HasName(const MeshFile& mesh, const PhysicalGroup& group,
+             const std::string& name);
 
 /// Throws std::invalid_argument when the positions of the nodes in the file are
 /// not known (num_nodes_left_out).

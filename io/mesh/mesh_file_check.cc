@@ -108,9 +108,10 @@ void CheckElementsDiffer(const MeshFile& mesh) {
           mesh.path,
           mesh.Shapes() + " " + std::to_string(twin->second) + " and " +
               std::to_string((twin + 1)->second) + " have the same nodes; " +
-              (mesh.is_vtk ? "keep one of them"
-                           : "save the mesh as .msh of version 4 (older ones "
-                             "repeat what is in several physical groups)"));
+              (mesh.is_vtk || !mesh.sets_of.empty()
+                   ? "keep one of them"
+                   : "save the mesh as .msh of version 4 (older ones "
+                     "repeat what is in several physical groups)"));
     }
   }
 }

@@ -29,11 +29,11 @@ std::vector<int> ReadNamedRegion(const JsonValue& value, const MeshFile& mesh) {
   std::string names;
   for (const PhysicalGroup& group : mesh.groups) {
     if (!mesh.are_regions_groups || group.dimension != mesh.Dimension() ||
-        group.name.empty()) {
+        group.name.empty() || (!mesh.sets_of.empty() && group.number == 0)) {
       continue;
     }
     names += (names.empty() ? "\"" : ", \"") + Printable(group.name) + "\"";
-    if (group.name == name) {
+    if (HasName(mesh, group, name)) {
       regions.push_back(group.number);
     }
   }

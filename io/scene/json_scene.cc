@@ -32,7 +32,7 @@ MeshFile ReadNamedMesh(const JsonValue& name, PointGaps& gaps,
   if (FileExtension(path) == ".json") {
     name.Fail("is '" + Printable(name.String()) +
               "', which is a scene; name a mesh file (.vtu, .vtk, .msh, .mesh, "
-              ".unv or .bdf)");
+              ".unv, .bdf, .inp or .feb)");
   }
   return ReadMeshFile(path);
 }

@@ -100,7 +100,8 @@ void AddSupport(const JsonValue& support, int number, const MeshFile& mesh,
   const SupportDisplacement displacement =
       ReadSupportDisplacement(support, dimension);
   const JsonValue selection = support.At("nodes");
-  const bool is_group = !selection.IsString() && selection.Has("physical");
+  const bool is_group = !selection.IsString() &&
+                        (selection.Has("physical") || selection.Has("set"));
   RigidFace face = {{}, components};
   for (int node = 0; node < nodes.size(); ++node) {
     if (!nodes[node]) {

@@ -3,6 +3,8 @@
 #include <set>
 #include <string>
 
+#include "elastimate/io/abaqus/abaqus_mesh.h"
+#include "elastimate/io/febio/febio_mesh.h"
 #include "elastimate/io/gmsh/gmsh_mesh.h"
 #include "elastimate/io/mesh/mesh_file_check.h"
 #include "elastimate/io/text/input_error.h"
@@ -22,11 +24,16 @@ MeshFile ReadMeshFile(const std::filesystem::path& path) {
   } else if (std::set<std::string>{".msh", ".mesh", ".unv", ".bdf"}.count(
                  extension) > 0) {
     mesh = ReadGmshMesh(path);
+  } else if (extension == ".inp") {
+    mesh = ReadAbaqusMesh(path);
+  } else if (extension == ".feb") {
+    mesh = ReadFebioMesh(path);
   } else {
-    ThrowInputError(path,
-                    "the file name does not end in .vtu, .vtk, .msh, .mesh, "
-                    ".unv or .bdf (a mesh) or in .json (a scene); give a file "
-                    "of one of these formats");
+    ThrowInputError(
+        path,
+        "the file name does not end in .vtu, .vtk, .msh, .mesh, "
+        ".unv, .bdf, .inp or .feb (a mesh) or in .json (a scene); give a file "
+        "of one of these formats");
   }
   mesh.path = path;
   CheckMeshFile(mesh);

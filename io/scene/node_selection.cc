@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -54,36 +55,66 @@ void SelectByArray(const JsonValue& name, const MeshFile& mesh,
 }
 
 std::string GroupNames(const MeshFile& mesh) {
-  std::string names;
+  std::set<std::string> names;
+  std::string list;
   for (const PhysicalGroup& group : mesh.groups) {
-    names += (names.empty() ? "" : ", ") + std::to_string(group.number);
-    if (!group.name.empty()) {
-      names += " \"" + Printable(group.name) + "\"";
+    std::string name =
+        mesh.sets_of.empty() ? std::to_string(group.number) + " " : "";
+    name += group.name.empty() ? "" : "\"" + Printable(group.name) + "\"";
+    name.erase(name.find_last_not_of(' ') + 1);
+    if (names.insert(name).second) {
+      list += (list.empty() ? "" : ", ") + name;
     }
   }
-  return names.empty() ? "none" : names;
+  return list.empty() ? "none" : list;
 }
 
 /// Returns the groups of that name or number; there are several when they
 /// differ in dimension.
 std::vector<const PhysicalGroup*> FindGroups(const JsonValue& name,
                                              const MeshFile& mesh) {
-  if (!name.IsString() && !name.IsInteger()) {
-    name.Fail("must be the name or the number of a physical group");
+  const std::string group_word =
+      mesh.sets_of.empty() ? "physical group" : "set";
+  if (!name.IsString() && (!name.IsInteger() || !mesh.sets_of.empty())) {
+    name.Fail("must be the name " +
+              std::string(mesh.sets_of.empty() ? "or the number " : "") +
+              "of a " + group_word);
   }
   const std::string wanted =
       name.IsString() ? name.String() : std::to_string(name.Integer());
   std::vector<const PhysicalGroup*> groups;
   for (const PhysicalGroup& group : mesh.groups) {
-    if (group.name == wanted || std::to_string(group.number) == wanted) {
+    if (HasName(mesh, group, wanted) ||
+        (mesh.sets_of.empty() && std::to_string(group.number) == wanted)) {
       groups.push_back(&group);
     }
   }
   if (groups.empty()) {
-    name.Fail("names no physical group of '" + PrintablePath(mesh.path) +
-              "'; its groups are: " + GroupNames(mesh));
+    name.Fail("names no " + group_word + " of '" + PrintablePath(mesh.path) +
+              "'; its " + (mesh.sets_of.empty() ? "groups" : "sets") +
+              " are: " + GroupNames(mesh));
   }
   return groups;
+}
+
+/// Returns the value of the key "physical" or "set".
+JsonValue GroupName(const JsonValue& selection) {
+  return selection.At(selection.Has("set") ? "set" : "physical");
+}
+
+/// Selects the nodes of the groups of a name or number.  The elements at a face
+/// often make up a set with the name of that of its nodes, which is meant then.
+void SelectGroups(const JsonValue& name, const MeshFile& mesh, NodeMask& mask) {
+  const std::vector<const PhysicalGroup*> groups = FindGroups(name, mesh);
+  int lowest = 3;
+  for (const PhysicalGroup* group : groups) {
+    lowest = std::min(lowest, group->dimension);
+  }
+  for (const PhysicalGroup* group : groups) {
+    if (mesh.sets_of.empty() || group->dimension == lowest) {
+      mask(group->nodes).setConstant(true);
+    }
+  }
 }
 
 /// Returns the vertices of a facet, which are the first of its nodes,
@@ -114,8 +145,9 @@ void MatchFacets(const JsonValue& selection, const MeshFile& mesh,
                                 : mesh.Topology().NumVerticesOfFace() == 3
                                     ? "triangle "
                                     : "quadrilateral ";
-      selection.Fail("names a physical group whose " + facet +
-                     std::to_string(i) + " is not " +
+      selection.Fail(std::string("names a ") +
+                     (mesh.sets_of.empty() ? "physical group" : "set") +
+                     " whose " + facet + std::to_string(i) + " is not " +
                      (is_solid ? "a face" : "an edge") +
                      " on the boundary of the " + mesh.Shapes());
     }
@@ -127,8 +159,9 @@ void MatchFacets(const JsonValue& selection, const MeshFile& mesh,
 std::vector<const PhysicalGroup*> FindSurfaceGroups(const JsonValue& selection,
                                                     const MeshFile& mesh) {
   std::vector<const PhysicalGroup*> groups;
-  if (!selection.IsString() && selection.Has("physical")) {
-    groups = FindGroups(selection.At("physical"), mesh);
+  if (!selection.IsString() &&
+      (selection.Has("physical") || selection.Has("set"))) {
+    groups = FindGroups(GroupName(selection), mesh);
     groups.erase(std::remove_if(groups.begin(), groups.end(),
                                 [](const PhysicalGroup* group) {
                                   return group->facets.cols() == 0;
@@ -194,11 +227,10 @@ NodeMask SelectNodes(const JsonValue& selection, const MeshFile& mesh,
                      "\"; the words known here are \"all\" " + "and \"free\"");
     }
   } else {
-    selection.CheckKeys({"ids", "box", "array", "physical"});
+    selection.CheckKeys({"ids", "box", "array", "physical", "set"});
     if (selection.NumKeys() != 1) {
       selection.Fail(
-          "must have exactly one of the keys ids, box, array, "
-          "physical");
+          "must have exactly one of the keys ids, box, array, physical, set");
     }
     if (selection.Has("ids")) {
       SelectIds(selection.At("ids"), mesh, mask);
@@ -207,10 +239,7 @@ NodeMask SelectNodes(const JsonValue& selection, const MeshFile& mesh,
     } else if (selection.Has("array")) {
       SelectByArray(selection.At("array"), mesh, mask);
     } else {
-      for (const PhysicalGroup* group :
-           FindGroups(selection.At("physical"), mesh)) {
-        mask(group->nodes).setConstant(true);
-      }
+      SelectGroups(GroupName(selection), mesh, mask);
     }
   }
   mask = mask && mesh.used;

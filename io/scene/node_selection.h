@@ -27,15 +27,16 @@ BoxCorners CornersOfBox(const JsonValue& box, const MeshFile& mesh);
 /// (null where it cannot be used); {"ids": [...]}, zero-based positions among
 /// all nodes of the file; {"box": [low, high]}, bounds included, of 3
 /// coordinates or, in a plane z = const, also of 2; {"array": "name"}, where
-/// the node array of one component is not zero; {"physical": "name"}, a Gmsh
-/// group by its name or number.  Throws std::invalid_argument, naming the file
-/// and the place in it, also when nothing is selected.
+/// the node array of one component is not zero; {"physical": "name"} or {"set":
+/// "name"}, a group by its name or, of Gmsh, its number.  Throws
+/// std::invalid_argument, naming the file and the place in it, also when
+/// nothing is selected.
 NodeMask SelectNodes(const JsonValue& selection, const MeshFile& mesh,
                      const NodeMask* free);
 
 /// Returns the boundary facets that `selection` selects, with the outward
 /// orientation of BoundaryFacets: those all of whose nodes are selected, or
-/// exactly the facets of a Gmsh group.  `boundary` has all boundary facets
+/// exactly the facets of a group.  `boundary` has all boundary facets
 /// (BoundaryFacets).
 Eigen::MatrixXi SelectFacets(const JsonValue& selection, const MeshFile& mesh,
                              const NodeMask& free,

@@ -249,8 +249,8 @@ void NoteMesh(const std::filesystem::path& path,
               std::vector<std::string>& notices) {
   const Mesh& mesh = scene.mesh;
   if (!why_no_regions.empty()) {
-    notices.push_back(PrintablePath(path) + ": its physical groups overlap (" +
-                      why_no_regions +
+    notices.push_back(PrintablePath(path) +
+                      ": its groups of elements overlap (" + why_no_regions +
                       "), so that they are not the regions of materials");
   }
   const std::set<int> regions(mesh.regions.begin(), mesh.regions.end());
@@ -311,9 +311,11 @@ void RequireRegions(const MeshFile& mesh, bool is_one_for_each,
       none + (mesh.is_vtk ? "; add the cell array 'region', or name another "
                             "by \"regions\": {\"array\": NAME} "
                             "in a scene.json"
-                          : "; put the elements into physical "
-                            "groups, or add the element data "
-                            "\"region\""));
+              : !mesh.sets_of.empty()
+                  ? "; make sets of elements that do not overlap"
+                  : "; put the elements into physical "
+                    "groups, or add the element data "
+                    "\"region\""));
 }
 
 /// Gives the scene, which `path` describes, the materials that were chosen for
@@ -412,6 +414,9 @@ Scene FinishScene(const std::filesystem::path& path, FileScene file_scene,
   const MeshFile& mesh = file_scene.mesh;
   notices.insert(notices.end(), file_scene.notices.begin(),
                  file_scene.notices.end());
+  for (const std::string& notice : mesh.notices) {
+    notices.push_back(PrintablePath(mesh.path) + ": " + notice);
+  }
   NoteMovedNodes(mesh, notices);
   const SceneNodes nodes(mesh, file_scene.scene.mesh);
   file_order = nodes.FileOrder();

@@ -17,6 +17,8 @@
 #include <random>
 
 #include "elastimate/io/scene/scene_reader.h"
+#include "tests/io/abaqus_files.h"
+#include "tests/io/febio_files.h"
 #include "tests/io/gmsh_files.h"
 #include "tests/io/kind_scenes.h"
 #include "tests/io/mutations.h"
@@ -124,6 +126,26 @@ std::string Utf16Table() {
   return table;
 }
 
+/// Returns a scene of the sets of a mesh.
+Sample SetsSample(const std::string& name, const std::string& content,
+                  const std::string& support, const std::string& surface) {
+  return {{{name, content},
+           {"scene.json", R"({"mesh": ")" + name +
+                              R"(", "supports": [{"nodes": {"set": ")" +
+                              support + R"("}}], "cases": [{"loads": [
+           {"type": "pressure", "value": 1, "surface": {"set": ")" +
+                              surface + R"("}}]}]})"}},
+          name,
+          "scene.json"};
+}
+
+Sample AbaqusSample() {
+  const std::string text = AbaqusDeckText();
+  // A cut between the assembly and the first step cannot be seen.
+  return SetsSample("mesh.inp", text.substr(0, text.find("*Material")), "Set-1",
+                    "Top");
+}
+
 /// Returns a scene.json with a planar mesh that has no field data.
 Sample PlanarJsonSample() {
   return {{{"mesh.vtk", PlanarVtkText()}, {"scene.json", R"({"mesh": "mesh.vtk",
@@ -161,6 +183,11 @@ Sample MakeSample(const std::string& name) {
       {"LegacyQuad4",
        [] { return VtkSample("LegacyBinary51", SceneOf("quad4")); }},
       {"PlanarJson", PlanarJsonSample},
+      {"Abaqus", AbaqusSample},
+      {"Febio3",
+       [] { return SetsSample("mesh.feb", FebioText(false), "held", "top"); }},
+      {"Febio4",
+       [] { return SetsSample("mesh.feb", FebioText(true), "held", "top"); }},
       {"Json", [] { return JsonSample("scene.json"); }},
       {"Csv", [] { return JsonSample("u.csv"); }},
       {"Points", [] { return PointsSample(GomTable()); }},
@@ -195,7 +222,8 @@ std::vector<Trials> AllTrials() {
        {"XmlHex8", "XmlTet10", "XmlQuad4", "PlanarJson", "Json", "Csv"}) {
     trials.push_back({name, 50});
   }
-  for (const std::string name : {"Points", "PointsUtf16"}) {
+  for (const std::string name :
+       {"Points", "PointsUtf16", "Abaqus", "Febio3", "Febio4"}) {
     trials.push_back({name, 100});
   }
   return trials;

@@ -98,7 +98,7 @@ TEST_P(GmshKinds, AreRead) {
       continue;  // Which has the groups of nodes only.
     }
     ASSERT_NE(end, file.groups.end());
-    EXPECT_EQ(end->facets.rows(), topology.NumNodesOfFace());
+    EXPECT_EQ(end->facets.rows(), topology.NumVerticesOfFace());
     EXPECT_GT(end->facets.cols(), 1);
     for (const int node : end->facets.reshaped()) {
       EXPECT_DOUBLE_EQ(file.nodes(0, node), 2);

@@ -212,9 +212,10 @@ TEST_F(GmshMeshTest, HasNoRegionsWhereAnElementIsInTwoGroups) {
   const auto path = folder_.Write("scene.msh", content);
   const SceneReading reading = ReadScene({path}, Measurement::kRequired);
   EXPECT_EQ(reading.scene.mesh.regions.size(), 0);
-  EXPECT_THAT(reading.notices, ElementsAre(::testing::HasSubstr(
-                                   "its physical groups overlap (tetrahedron "
-                                   "0 is in the physical groups 1")));
+  EXPECT_THAT(reading.notices,
+              ElementsAre(::testing::HasSubstr(
+                  "its groups of elements overlap (tetrahedron "
+                  "0 is in the physical groups 1")));
   EXPECT_THROWS_WITH(
       ReadScene({path}, Measurement::kRequired,
                 {{}, RegionChoice::kEach, {}, {}}),
