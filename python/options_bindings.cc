@@ -101,7 +101,24 @@ EstimatorOptions MakeOptions(
 }  // namespace
 
 void BindOptions(py::module_& module) {
-  py::class_<EstimatorOptions>(module, "Options")
+  py::class_<EstimatorOptions>(module, "Options",
+                               R"(The options of an estimator, as keywords.
+
+nu              Poisson's ratio of one isotropic material, if it is known [1]
+nu_min, nu_max  bounds on Poisson's ratio [1], within [-1, 1/2]
+youngs_min, youngs_max
+                bounds on Young's modulus [pressure], positive
+loss            "none", "huber" or "cauchy": the treatment of outliers
+refine          "auto", "0" or "1": how often fits divide the mesh
+kinematics      "auto", "small" or "large" strains and rotations
+degree          of virtual fields, 1 to 3
+solver          "automatic", "cholesky" or "multigrid"
+max_iterations  after which an iterative estimator gives up
+on_factorization
+                called with the number of each factorisation, from 1 on, before
+                it begins; what it raises ends the estimate
+
+Raises ValueError, with one sentence, for a value out of its range.)")
       .def(py::init(&MakeOptions), py::kw_only(), py::arg("nu") = py::none(),
            py::arg("nu_min") = py::none(), py::arg("nu_max") = py::none(),
            py::arg("youngs_min") = py::none(),

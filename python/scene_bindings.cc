@@ -230,9 +230,9 @@ std::vector<ParameterEstimate> ParametersOf(const PythonScene& self) {
   if (materials.empty()) {
     materials.emplace_back();
   }
+  const MaterialParameters chart(materials, scene.mesh.section.model);
   std::vector<ParameterEstimate> parameters;
-  for (const MaterialParameters::Parameter& parameter :
-       MaterialParameters(materials, scene.mesh.section.model).All()) {
+  for (const MaterialParameters::Parameter& parameter : chart.All()) {
     ParameterEstimate described;
     described.name = std::string(parameter.law_parameter->name);
     described.symbol = std::string(parameter.law_parameter->symbol);
@@ -326,7 +326,16 @@ void BindLoads(py::module_& module) {
 
 void BindMaterial(py::module_& module) {
   py::class_<Material>(module, "Material",
-                       "What a part of a specimen is made of.")
+                       R"(What a part of a specimen is made of.
+
+law      one of elastimate.laws()
+regions  the region ids that it fills; the whole mesh if there are none
+known    values of parameters, by their name
+bounds   (lower, upper) of parameters that are not known, by their name; None
+         for an end that is open
+priors   (value, standard deviation) of such parameters, by their name
+axes     directions, shape (d,) or (m, d), as many as the law has axes
+fields   names of parameters with a value for each element: "youngs_modulus")")
       .def(py::init(&MakeMaterial), py::arg("law") = "isotropic", py::kw_only(),
            py::arg("regions") = std::vector<int>(),
            py::arg("known") = std::map<std::string, double>(),

@@ -9,8 +9,8 @@
 #include "elastimate/core/equilibrium/large_strain_equilibrium.h"
 #include "elastimate/core/equilibrium/simulated_measurement.h"
 #include "elastimate/core/materials/material_parameters.h"
-#include "elastimate/core/scene/degrees_of_freedom.h"
 #include "elastimate/core/scene/quadratic_scene.h"
+#include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/core/scene/unknown_motion.h"
 
 namespace elastimate {

@@ -18,7 +18,7 @@ from ._foreign_mesh import is_mesh, is_planar, one_kind, take_mesh
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Box:
     """A part of space, bounds included: the corners have d coordinates [length].
 
@@ -32,7 +32,7 @@ class Box:
     displacement: ArrayLike | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Traction:
     """A force per area [force / length^2], shape (d,), on facets.
 
@@ -44,7 +44,7 @@ class Traction:
     where: Union[Box, ArrayLike]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Pressure:
     """A pressure [force / length^2] on facets (see Traction); positive pushes inwards.
 
@@ -56,7 +56,7 @@ class Pressure:
     follows: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SurfaceForce:
     """A total force [force], shape (d,), that is spread evenly over facets (see Traction)."""
 
@@ -64,7 +64,7 @@ class SurfaceForce:
     where: Union[Box, ArrayLike]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class BodyForce:
     """A force per volume [force / length^3], shape (d,), or (m, d) for each element."""
 
@@ -74,7 +74,7 @@ class BodyForce:
 Load = Union[Traction, Pressure, SurfaceForce, BodyForce]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LoadCase:
     """One experiment on a specimen with n nodes in d dimensions.
 
@@ -163,7 +163,8 @@ class Scene:
         self._core.set_origin(origin)
         self._core.set_rigid_motion_free(rigid_motion_free)
         one = LoadCase(forces, loads, displacements, points, noise_sd)
-        if cases is not None and one != LoadCase():
+        given = [forces, displacements, points, noise_sd]
+        if cases is not None and (loads or any(value is not None for value in given)):
             raise ValueError(
                 "cases are given, and so are forces, loads, displacements, points or noise_sd; give "
                 "these in the LoadCase that they belong to"
@@ -450,7 +451,7 @@ def _facets(core: _core.Scene, where: Any) -> NDArray[np.int32]:
     return facets
 
 
-def _core_load(core: _core.Scene, load: Load) -> _core.Load:
+def _core_load(core: _core.Scene, load: Load) -> _core._Load:
     if isinstance(load, Traction):
         return _core.Traction(_facets(core, load.where), np.atleast_2d(_vector(load.traction)))
     if isinstance(load, Pressure):

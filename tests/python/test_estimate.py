@@ -60,7 +60,7 @@ def test_every_estimator_gives_what_the_command_line_gives(estimator, command_li
         (ORGAN, ["--nu=0.3"], {"nu": 0.3}),
         (ORGAN, ["--nu_max=0.28", "--youngs_min=1"], {"nu_max": 0.28, "youngs_min": 1}),
         (ORGAN, ["--loss=huber", "--noise_sd=1e-4"], {"loss": "huber", "noise_sd": 1e-4}),
-        (ORGAN, ["--order=2", "--origin=measured"], {"order": 2, "origin": "measured"}),
+        (REGIONS, ["--order=2", "--origin=measured"], {"order": 2, "origin": "measured"}),
         (BLOCK, ["--refine=0", "--kinematics=small"], {"refine": "0", "kinematics": "small"}),
         (REGIONS, [], {}),
     ],
@@ -77,7 +77,10 @@ def test_arrays_give_what_a_file_of_them_gives(command_line, tmp_path):
     command_line("simulate", ORGAN, "--youngs=5e4", "--nu=0.3", f"--out={file}", "--noise_sd=1e-5", "--seed=3")
     simulated = read.simulate(E=5e4, nu=0.3, noise_sd=1e-5, seed=3)
     expected = em.read(file)
-    np.testing.assert_allclose(simulated.displacements, expected.displacements, rtol=1e-12, atol=1e-18)
+    largest = np.abs(expected.displacements).max()
+    np.testing.assert_allclose(
+        simulated.displacements, expected.displacements, rtol=0, atol=1e-12 * largest
+    )
 
 
 def test_the_table_is_that_of_the_command_line(command_line):
@@ -111,9 +114,10 @@ def test_refused_estimates_say_why(arrays):
     scene = em.Scene(**arrays, displacements=-em.Scene(**arrays).simulate(E=1e4, nu=0.3).displacements)
     estimate = scene.estimate("closed-form")
     assert not estimate.is_usable
-    assert estimate.status == "unphysical"
-    assert [f.code for f in estimate.findings if f.severity == "error"] == ["unphysical"]
-    assert estimate.message.startswith(estimate.findings[0].text)
+    assert estimate.status in ("not_identifiable", "unphysical")
+    (error,) = [f for f in estimate.findings if f.severity == "error"]
+    assert estimate.message == f"{error.text}; {error.advice}"
+    assert estimate["E"].standard_error is None
 
 
 def test_notebooks_and_figures(arrays):
@@ -190,12 +194,12 @@ def test_what_a_caller_raises_ends_a_fit():
 
 
 def test_other_threads_run_during_a_fit():
-    scene = large_scene(10)
+    scene = large_scene(8)
     done = threading.Event()
     ticks = 0
 
     def estimate():
-        scene.estimate("iterative-fe", order=2)
+        scene.estimate("iterative-fe")
         done.set()
 
     thread = threading.Thread(target=estimate)

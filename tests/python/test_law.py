@@ -49,5 +49,5 @@ def test_wrong_laws_are_refused():
     assert em.check_law(Skewed()) != []
     with pytest.raises(ValueError, match="skewed"):
         em.register_law(Skewed())
-    with pytest.raises(NotImplementedError):
+    with pytest.raises(ValueError, match="has no name"):
         em.register_law(em.Law())

@@ -1,29 +1,10 @@
-"""The package: its types, its documents, and what they say."""
+"""The package: its documents, and what they say."""
 
 import re
-import subprocess
-import sys
-from pathlib import Path
 
-import pytest
 from conftest import SOURCE
 
 import elastimate as em
-
-PACKAGE = Path(em.__file__).parent
-
-
-def run(*arguments):
-    done = subprocess.run([sys.executable, "-m", *arguments], capture_output=True, text=True, cwd=SOURCE)
-    assert done.returncode == 0, done.stdout + done.stderr
-
-
-def test_types(tmp_path):
-    run("mypy", f"--cache-dir={tmp_path}", "python/elastimate")
-
-
-def test_stubs_are_those_of_the_module():
-    run("mypy.stubtest", "--mypy-config-file=pyproject.toml", "elastimate._core")
 
 
 def test_everything_public_has_a_docstring():
