@@ -114,7 +114,7 @@ function(elastimate_add_module target)
   target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/include)
   target_link_libraries(${target} PRIVATE ${ARG_LIBRARIES})
   elastimate_compile_options(${target})
-  install(TARGETS ${target} DESTINATION ${ELASTIMATE_PACKAGE_FILES})
+  install(TARGETS ${target} DESTINATION ${ELASTIMATE_PACKAGE_FILES} COMPONENT package_files)
 endfunction()
 
 # elastimate_add_helper(<target> SOURCES ... LIBRARIES ...)
@@ -129,7 +129,7 @@ function(elastimate_add_helper target)
   target_link_libraries(${target} PRIVATE ${ARG_LIBRARIES})
   target_link_options(${target} PRIVATE LINKER:--as-needed)  # It starts for each file.
   elastimate_compile_options(${target})
-  install(TARGETS ${target} RUNTIME DESTINATION ${ELASTIMATE_PACKAGE_FILES})
+  install(TARGETS ${target} RUNTIME DESTINATION ${ELASTIMATE_PACKAGE_FILES} COMPONENT package_files)
 endfunction()
 
 function(elastimate_install_package)

@@ -1,5 +1,5 @@
 # Checks that no folder uses one further down in the table of CONTRIBUTING.md.
-file(STRINGS ${SOURCE}/CONTRIBUTING.md rows REGEX "^\\| `(core|estimators|io|organ|petsc|apps|benchmarks)/")
+file(STRINGS ${SOURCE}/CONTRIBUTING.md rows REGEX "^\\| `(core|estimators|io|organ|petsc|python|apps|benchmarks)/")
 set(folders)
 foreach(row ${rows})
   string(REGEX REPLACE "^\\| ([^|]*) \\|.*" "\\1" names "${row}")
@@ -9,7 +9,7 @@ endforeach()
 
 file(GLOB_RECURSE sources RELATIVE ${SOURCE} ${SOURCE}/core/*.h ${SOURCE}/core/*.cc ${SOURCE}/estimators/*.h
      ${SOURCE}/estimators/*.cc ${SOURCE}/io/*.h ${SOURCE}/io/*.cc ${SOURCE}/organ/*.h ${SOURCE}/organ/*.cc
-     ${SOURCE}/petsc/*.h ${SOURCE}/petsc/*.cc)
+     ${SOURCE}/petsc/*.h ${SOURCE}/petsc/*.cc ${SOURCE}/python/*.h ${SOURCE}/python/*.cc)
 set(errors "")
 foreach(source ${sources})
   cmake_path(GET source PARENT_PATH user)
@@ -17,7 +17,7 @@ foreach(source ${sources})
   if(place EQUAL -1)
     string(APPEND errors "${user}/ is not in the table\n")
   endif()
-  file(STRINGS ${SOURCE}/${source} includes REGEX "^#include \"(elastimate|apps|benchmarks|tests)/")
+  file(STRINGS ${SOURCE}/${source} includes REGEX "^#include \"(elastimate|python|apps|benchmarks|tests)/")
   foreach(include ${includes})
     string(REGEX REPLACE "^#include \"(elastimate/)?(.*)\"" "\\2" used "${include}")
     cmake_path(GET used PARENT_PATH used)

@@ -1,5 +1,5 @@
-#ifndef ELASTIMATE_APPS_SUMMARY_H_
-#define ELASTIMATE_APPS_SUMMARY_H_
+#ifndef ELASTIMATE_IO_REPORT_SUMMARY_H_
+#define ELASTIMATE_IO_REPORT_SUMMARY_H_
 
 #include <string>
 
@@ -17,4 +17,4 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
 
 }  // namespace elastimate
 
-#endif  // ELASTIMATE_APPS_SUMMARY_H_
+#endif  // ELASTIMATE_IO_REPORT_SUMMARY_H_

@@ -1,4 +1,4 @@
-#include "apps/summary.h"
+#include "elastimate/io/report/summary.h"
 
 #include <algorithm>
 #include <cmath>

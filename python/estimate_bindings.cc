@@ -1,0 +1,170 @@
+// Estimates, and estimators that are prepared for many measurements.
+
+#include <pybind11/eigen.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "elastimate/estimators/registry.h"
+#include "elastimate/io/report/report.h"
+#include "elastimate/io/report/summary.h"
+#include "python/arrays.h"
+#include "python/bindings.h"
+#include "python/python_scene.h"
+#include "python/reported_scene.h"
+
+namespace py = pybind11;
+
+namespace elastimate {
+namespace {
+
+using Released = py::call_guard<py::gil_scoped_release>;
+
+/// An estimate with what a report on it needs.
+struct PythonEstimate {
+  SharedScene modelled;
+  EstimatorOptions options;
+  Estimate estimate;
+  double seconds;
+
+  ReportTimes Times() const {
+    return {modelled->read_seconds, modelled->read_seconds + seconds};
+  }
+  std::string Summary() const {
+    return elastimate::Summary(
+        estimate, ReportedScene(modelled->scene, estimate), Times());
+  }
+  std::string Json() const {
+    return JsonReport(estimate, ReportedScene(modelled->scene, estimate),
+                      options, Times(), modelled->notices);
+  }
+};
+
+template <class Function>
+PythonEstimate Timed(const SharedScene& scene, const EstimatorOptions& options,
+                     const Function& run) {
+  const auto start = std::chrono::steady_clock::now();
+  Estimate estimate = run();
+  const std::chrono::duration<double> seconds =
+      std::chrono::steady_clock::now() - start;
+  return {scene, options, std::move(estimate), seconds.count()};
+}
+
+PythonEstimate Run(const std::shared_ptr<PythonScene>& scene,
+                   const std::string& estimator,
+                   const EstimatorOptions& options) {
+  return Timed(scene, options, [&] {
+    return MakeEstimator(estimator)->Run(scene->scene, options);
+  });
+}
+
+/// An estimator for many measurements, which threads of Python may share.
+class PythonPrepared {
+ public:
+  PythonPrepared(const std::shared_ptr<PythonScene>& scene,
+                 const std::string& estimator, const EstimatorOptions& options)
+      : scene_(scene),
+        options_(options),
+        prepared_(MakeEstimator(estimator)->Prepare(scene->scene, options)) {}
+
+  PythonEstimate Run(const std::vector<Array<double>>& displacements) {
+    std::vector<Eigen::MatrixXd> columns;
+    columns.reserve(displacements.size());
+    for (const Array<double>& rows : displacements) {
+      columns.emplace_back(ColumnsOf(rows));
+    }
+    const py::gil_scoped_release release;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return Timed(scene_, options_, [&] { return prepared_.Run(columns); });
+  }
+
+ private:
+  SharedScene scene_;
+  EstimatorOptions options_;
+  PreparedEstimator prepared_;
+  std::mutex mutex_;
+};
+
+std::vector<std::pair<std::string, std::string>> Estimators() {
+  std::vector<std::pair<std::string, std::string>> described;
+  for (const std::string_view name : EstimatorNames()) {
+    described.emplace_back(name, MakeEstimator(name)->Description());
+  }
+  return described;
+}
+
+void BindFinding(py::module_& module) {
+  py::class_<Finding>(module, "Finding", "One thing to say about an estimate.")
+      .def_property_readonly(
+          "code",
+          [](const Finding& self) {
+            return std::string(FindingCodeName(self.code));
+          },
+          "Such as \"smooth_residual\"; docs/findings.md explains each.")
+      .def_property_readonly(
+          "severity",
+          [](const Finding& self) {
+            return std::string(SeverityName(self.severity));
+          },
+          "\"notice\", \"warning\" or \"error\".")
+      .def_readonly("text", &Finding::text, "What was found.")
+      .def_readonly("advice", &Finding::advice, "What to do.")
+      .def("__repr__", [](const Finding& self) {
+        return "<Finding " + std::string(FindingCodeName(self.code)) + ": " +
+               Sentence(self) + ">";
+      });
+}
+
+}  // namespace
+
+void BindEstimate(py::module_& module) {
+  BindFinding(module);
+  py::class_<PythonEstimate>(module, "Estimate")
+      .def_property_readonly(
+          "estimator",
+          [](const PythonEstimate& self) { return self.estimate.estimator; })
+      .def_property_readonly(
+          "status",
+          [](const PythonEstimate& self) {
+            return std::string(StatusName(self.estimate.status));
+          })
+      .def_property_readonly(
+          "message",
+          [](const PythonEstimate& self) { return self.estimate.message; })
+      .def_property_readonly(
+          "is_usable",
+          [](const PythonEstimate& self) { return self.estimate.IsUsable(); })
+      .def_property_readonly(
+          "parameters",
+          [](const PythonEstimate& self) { return self.estimate.parameters; })
+      .def_property_readonly(
+          "findings",
+          [](const PythonEstimate& self) { return self.estimate.findings; })
+      .def_property_readonly("covariance",
+                             [](const py::object& self) {
+                               return RowsOf(self.cast<const PythonEstimate&>()
+                                                 .estimate.parameter_covariance,
+                                             self);
+                             })
+      .def("summary", &PythonEstimate::Summary, Released())
+      .def("json", &PythonEstimate::Json, Released());
+
+  py::class_<PythonPrepared>(module, "Prepared")
+      .def(py::init<const std::shared_ptr<PythonScene>&, const std::string&,
+                    const EstimatorOptions&>(),
+           py::arg("scene"), py::arg("estimator"), py::arg("options"),
+           Released())
+      .def("run", &PythonPrepared::Run, py::arg("displacements"));
+
+  module.def("run", &Run, py::arg("scene"), py::arg("estimator"),
+             py::arg("options"), Released());
+  module.def("estimators", &Estimators, Released());
+}
+
+}  // namespace elastimate

@@ -1,0 +1,53 @@
+"""Laws that are written in Python."""
+
+import numpy as np
+import pytest
+
+import elastimate as em
+
+
+class Isotropic(em.Law):
+    """Isotropic elasticity, P = 2 mu e + lambda tr(e) I, by other means than the library's."""
+
+    name = "python_isotropic"
+    description = "isotropic elasticity, for a test"
+    parameters = [em.LawParameter("lame_mu", "mu"), em.LawParameter("lame_lambda", "lambda")]
+
+    def stresses(self, gradient, section):
+        strain = (gradient + gradient.T) / 2
+        return np.stack([2 * strain, np.trace(strain) * np.eye(len(strain))])
+
+
+class Skewed(Isotropic):
+    name = "skewed"
+
+    def stresses(self, gradient, section):
+        stresses = Isotropic.stresses(self, gradient, section)
+        stresses[1, 0, 1] += gradient[0, 1] ** 2
+        return stresses
+
+
+def test_a_law_gives_what_that_of_the_library_gives(arrays):
+    E, nu = 1e4, 0.3
+    mu, lame = E / (2 * (1 + nu)), E * nu / ((1 + nu) * (1 - 2 * nu))
+    assert em.check_law(Isotropic()) == []
+    em.register_law(Isotropic())
+    assert "python_isotropic" in [law.name for law in em.laws()]
+    scene = em.Scene(**arrays, materials=[em.Material("python_isotropic")])
+    built_in = em.Scene(**arrays).simulate(E=E, nu=nu, noise_sd=1e-5)
+    simulated = scene.simulate({"mu": mu, "lambda": lame}, noise_sd=1e-5)
+    np.testing.assert_allclose(simulated.displacements, built_in.displacements, rtol=1e-9, atol=1e-12)
+
+    estimate = simulated.estimate("iterative-fe")
+    expected = built_in.estimate("iterative-fe")
+    m, l = estimate["mu"].value, estimate["lambda"].value
+    assert m * (3 * l + 2 * m) / (l + m) == pytest.approx(expected["E"].value, rel=1e-6)
+    assert l / (2 * (l + m)) == pytest.approx(expected["nu"].value, rel=1e-6)
+
+
+def test_wrong_laws_are_refused():
+    assert em.check_law(Skewed()) != []
+    with pytest.raises(ValueError, match="skewed"):
+        em.register_law(Skewed())
+    with pytest.raises(ValueError, match="has no name"):
+        em.register_law(em.Law())
