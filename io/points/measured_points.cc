@@ -14,7 +14,6 @@
 namespace elastimate {
 namespace {
 
-
 std::vector<std::filesystem::path> FilesOf(const JsonValue& points) {
   const std::filesystem::path folder = points.File().parent_path();
   if (points.IsString()) {
