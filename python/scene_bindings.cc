@@ -5,8 +5,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -19,6 +19,7 @@
 #include "elastimate/core/materials/material_parameters.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/scene_builder.h"
+#include "elastimate/core/text/numbers.h"
 #include "elastimate/estimators/interface/estimate.h"
 #include "elastimate/io/points/point_locator.h"
 #include "elastimate/io/scene/origin.h"
@@ -107,30 +108,29 @@ void HoldBox(
             self.scene);
 }
 
-// Points that lie further outside than this part of the extent of the mesh are
-// those of something else.
-constexpr double kFarthest = 0.01;
-
 PointDisplacements Locate(const Mesh& mesh, const Numbers& positions,
-                          const Numbers& displacement) {
+                          const Numbers& displacement,
+                          std::optional<double> given_tolerance) {
   const Eigen::MatrixXd columns = ColumnsOf(positions);
   if (columns.rows() != mesh.Dimension() || !columns.allFinite()) {
     throw std::invalid_argument(
         "points need " + std::to_string(mesh.Dimension()) +
         " finite coordinates each; give an array of one row for each point");
   }
-  const LocatedPoints located = PointLocator(mesh).Locate(columns);
-  const double extent =
+  const double tolerance = given_tolerance.value_or(
+      kUsualPointTolerance *
       (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff())
-          .maxCoeff();
+          .norm());
+  const LocatedPoints located = PointLocator(mesh).Locate(columns);
   Eigen::Index farthest = 0;
-  if (columns.cols() > 0 &&
-      located.distance.maxCoeff(&farthest) > kFarthest * extent) {
+  if (columns.cols() > 0 && located.distance.maxCoeff(&farthest) > tolerance) {
     throw std::invalid_argument(
         "point " + std::to_string(farthest) + " lies " +
-        std::to_string(located.distance(farthest)) +
-        " outside the mesh; give points in its unit and coordinates, or leave "
-        "the point out");
+        NumberText(located.distance(farthest), 4) +
+        " outside the mesh, more than the tolerance of " +
+        NumberText(tolerance, 4) +
+        "; give points in the unit and the coordinates of the mesh, leave the "
+        "point out, or give a larger tolerance");
   }
   return {located.points, ColumnsOf(displacement), {}};
 }
@@ -140,7 +140,7 @@ void AddCase(PythonScene& self, const std::vector<Load>& loads,
              const std::optional<Flags>& observed,
              const std::optional<Numbers>& points,
              const std::optional<Numbers>& point_displacement,
-             std::optional<double> noise_sd) {
+             std::optional<double> tolerance, std::optional<double> noise_sd) {
   LoadCase load_case;
   load_case.loads = loads;
   if (displacement) {
@@ -150,7 +150,8 @@ void AddCase(PythonScene& self, const std::vector<Load>& loads,
     load_case.observed = ColumnsOf(*observed).array();
   }
   if (points && point_displacement) {
-    load_case.points = Locate(self.scene.mesh, *points, *point_displacement);
+    load_case.points =
+        Locate(self.scene.mesh, *points, *point_displacement, tolerance);
   }
   load_case.noise_sd = noise_sd;
   self.scene.load_cases.push_back(std::move(load_case));
@@ -428,7 +429,8 @@ void BindScene(py::module_& module) {
           py::arg("origin"))
       .def("add_case", &AddCase, py::arg("loads"), py::arg("displacement"),
            py::arg("observed"), py::arg("points"),
-           py::arg("point_displacement"), py::arg("noise_sd"))
+           py::arg("point_displacement"), py::arg("tolerance"),
+           py::arg("noise_sd"))
       .def(
           "validate",
           [](const PythonScene& self) { ValidateScene(self.scene); },

@@ -14,9 +14,6 @@
 namespace elastimate {
 namespace {
 
-// The usual tolerance over the diagonal of the bounding box.
-constexpr double kUsualTolerance = 1e-3;
-
 std::vector<std::filesystem::path> FilesOf(const JsonValue& points) {
   const std::filesystem::path folder = points.File().parent_path();
   if (points.IsString()) {
@@ -46,7 +43,7 @@ double SpanOf(const Eigen::MatrixXd& positions) {
 
 double ToleranceOf(const JsonValue& displacement, const Mesh& mesh) {
   if (!displacement.Has("tolerance")) {
-    return kUsualTolerance * SpanOf(mesh.nodes);
+    return kUsualPointTolerance * SpanOf(mesh.nodes);
   }
   const double tolerance = displacement.At("tolerance").Number();
   if (!(tolerance >= 0)) {

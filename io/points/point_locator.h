@@ -17,6 +17,10 @@ struct LocatedPoints {
   Eigen::VectorXd distance;  ///< From the given points [length]; zero inside.
 };
 
+/// How far outside a mesh a measured point may lie where nothing else is said,
+/// over the diagonal of the bounding box of the mesh.
+inline constexpr double kUsualPointTolerance = 1e-3;
+
 /// Finds the elements of a mesh in which points lie, by VTK's cell locator.
 class PointLocator {
  public:

@@ -93,6 +93,7 @@ class Scene:
         observed: _Flags | None,
         points: _Floats | None,
         point_displacement: _Floats | None,
+        tolerance: float | None,
         noise_sd: float | None,
     ) -> None: ...
     def validate(self) -> None: ...

@@ -85,6 +85,8 @@ class LoadCase:
     points         positions, shape (p, d) [length], where displacements were measured; at the nodes
                    where it is None
     noise_sd       standard deviation of a measured component [length], if it is known
+    tolerance      how far a point may lie outside the mesh [length]; by default a thousandth of the
+                   diagonal of its bounding box
     """
 
     forces: ArrayLike | None = None
@@ -92,6 +94,7 @@ class LoadCase:
     displacements: ArrayLike | None = None
     points: ArrayLike | None = None
     noise_sd: float | None = None
+    tolerance: float | None = None
 
 
 class Scene:
@@ -476,7 +479,9 @@ def _add_case(core: _core.Scene, case: LoadCase, where: str) -> None:
         if case.displacements is None:
             raise ValueError(f"{where}points are given without displacements; give both")
         of_points = _rows(f"{where}displacements", case.displacements, len(points), d, "point")
-        core.add_case(loads, None, None, points, of_points, case.noise_sd)
+        core.add_case(
+            loads, None, None, points, of_points, case.tolerance, case.noise_sd
+        )
         return
     displacement = observed = None
     if case.displacements is not None:
@@ -485,4 +490,4 @@ def _add_case(core: _core.Scene, case: LoadCase, where: str) -> None:
         if missing.any():
             observed = ~missing
             displacement = np.where(missing, 0, displacement)
-    core.add_case(loads, displacement, observed, None, None, case.noise_sd)
+    core.add_case(loads, displacement, observed, None, None, None, case.noise_sd)

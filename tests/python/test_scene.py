@@ -104,6 +104,15 @@ def test_points_need_not_be_nodes(arrays):
     assert scene.estimate("iterative-fe")["E"].value == pytest.approx(1e4, rel=1e-6)
 
 
+def test_points_outside_the_mesh_are_refused(arrays):
+    outside = {"points": [[0.05, 0.05, 0.102]], "displacements": [[0, 0, 1e-3]]}
+    with pytest.raises(ValueError, match="point 0 lies 0.002 outside the mesh"):
+        em.Scene(**arrays, **outside)
+    forces = arrays.pop("forces")
+    case = em.LoadCase(forces=forces, tolerance=0.003, **outside)
+    assert em.Scene(**arrays, cases=[case]).num_cases == 1
+
+
 def test_load_cases_stand_beside_each_other(arrays):
     forces = arrays.pop("forces")
     cases = [em.LoadCase(forces=forces), em.LoadCase(forces=2 * forces)]
