@@ -1,5 +1,7 @@
 """Laws that are written in Python."""
 
+import threading
+
 import numpy as np
 import pytest
 
@@ -43,6 +45,28 @@ def test_a_law_gives_what_that_of_the_library_gives(arrays):
     m, l = estimate["mu"].value, estimate["lambda"].value
     assert m * (3 * l + 2 * m) / (l + m) == pytest.approx(expected["E"].value, rel=1e-6)
     assert l / (2 * (l + m)) == pytest.approx(expected["nu"].value, rel=1e-6)
+
+
+def test_laws_are_listed_and_registered_while_another_thread_calls_one(arrays):
+    class Other(Isotropic):
+        name = "other"
+
+    class Third(Isotropic):
+        name = "third"
+
+    em.register_law(Other())
+    scene = em.Scene(**arrays, materials=[em.Material("other")]).simulate({"mu": 1, "lambda": 2})
+    found = []
+    threads = [
+        threading.Thread(target=lambda: found.append(scene.estimate("closed-form")["mu"].value))
+        for _ in range(3)
+    ]
+    for thread in threads:
+        thread.start()
+    em.register_law(Third())
+    while any(thread.is_alive() for thread in threads):
+        assert "third" in [law.name for law in em.laws()]
+    assert found == pytest.approx([1, 1, 1], rel=1e-9)
 
 
 def test_wrong_laws_are_refused():
