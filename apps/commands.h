@@ -14,6 +14,8 @@ int RunEstimate(const std::vector<std::string>& arguments);
 int RunValidate(const std::vector<std::string>& arguments);
 int RunSimulate(const std::vector<std::string>& arguments);
 int RunPlan(const std::vector<std::string>& arguments);
+int RunScene(const std::vector<std::string>& arguments);
+int RunCheck(const std::vector<std::string>& arguments);
 int RunGenerate(const std::vector<std::string>& arguments);
 int RunEstimators(const std::vector<std::string>& arguments);
 int RunMaterials(const std::vector<std::string>& arguments);

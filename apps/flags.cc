@@ -23,8 +23,11 @@ DEFINE_double(correlation_length, 0,
 DEFINE_double(outliers, 0, "share of the points with gross errors, 0 to 1");
 DEFINE_string(rigid_motion, "",
               "motion to add: UX,UY,ANGLE or UX,UY,UZ,RX,RY,RZ [length, rad]");
-DEFINE_int32(points, 0,
-             "number of random points of --out=FILE.csv; without it all nodes");
+DEFINE_string(
+    points, "",
+    "number of random points of --out=FILE.csv; without it all nodes");
+DEFINE_string(support, "",
+              "names of what is held, separated by commas: FIX,LEFT");
 DEFINE_string(
     loss, "none",
     "function that limits the weight of outliers: none, huber or cauchy");
@@ -220,6 +223,30 @@ Command ThePlanCommand() {
            {"Output", {{"json"}}}}};
 }
 
+Command TheSceneCommand() {
+  return {"scene",
+          "MESH",
+          "lists what a mesh offers, and writes a first scene.json",
+          {{"Scene",
+            {{"support"},
+             {"force", "total force on a surface of that name: NAME,X,Y,Z"},
+             {"points", "table of measured points"},
+             {"model", "3d, plane_stress or plane_strain"},
+             {"thickness", "thickness of a planar specimen [length]"}}},
+           {"Output",
+            {{"out",
+              "file to write; without it scene.json beside the mesh, if that "
+              "is not there yet"}}}}};
+}
+
+Command TheCheckCommand() {
+  return {"check",
+          "SCENE...",
+          "says what a scene does, before anything is estimated",
+          {{"Input", {{"model"}, {"thickness"}}},
+           {"Output", {{"out", "VTU file of the scene for ParaView"}}}}};
+}
+
 Command TheGenerateCommand() {
   return {"generate",
           "cuboid|organ|plate|rectangle",
@@ -246,6 +273,8 @@ const Program& Elastimate() {
        TheValidateCommand(),
        TheSimulateCommand(),
        ThePlanCommand(),
+       TheSceneCommand(),
+       TheCheckCommand(),
        TheGenerateCommand(),
        {"completion", "bash", "prints a script that completes commands", {}},
        {"doctor", "", "says what this installation can do here", {}},

@@ -77,6 +77,12 @@ int RunCommand(const std::string& name,
   if (name == "plan") {
     return RunPlan(others);
   }
+  if (name == "scene") {
+    return RunScene(others);
+  }
+  if (name == "check") {
+    return RunCheck(others);
+  }
   if (name == "generate") {
     return RunGenerate(others);
   }

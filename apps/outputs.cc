@@ -99,6 +99,8 @@ std::string EndsOfNames(OutFormats formats) {
       return ".vtu for a scene, or in .csv for a table of points";
     case OutFormats::kTable:
       return ".csv, as a table is written";
+    case OutFormats::kJson:
+      return ".json, as a scene is written";
   }
   return ".vtu, as a VTU file is written";
 }
@@ -123,9 +125,14 @@ bool HasExtension(const std::string& file, const std::string& extension) {
 void CheckOutputFlags(const std::vector<std::string>& inputs,
                       OutFormats formats) {
   if (!FLAGS_out.empty()) {
+    const bool takes_vtu =
+        formats == OutFormats::kVtu || formats == OutFormats::kVtuOrTable;
+    const bool takes_table =
+        formats == OutFormats::kTable || formats == OutFormats::kVtuOrTable;
     const bool is_right =
-        (formats != OutFormats::kTable && HasExtension(FLAGS_out, ".vtu")) ||
-        (formats != OutFormats::kVtu && HasExtension(FLAGS_out, ".csv"));
+        (takes_vtu && HasExtension(FLAGS_out, ".vtu")) ||
+        (takes_table && HasExtension(FLAGS_out, ".csv")) ||
+        (formats == OutFormats::kJson && HasExtension(FLAGS_out, ".json"));
     if (!is_right) {
       throw std::invalid_argument("--out=" + PrintablePath(FLAGS_out) +
                                   "; the name must end in " +

@@ -14,6 +14,7 @@
 #include "apps/estimator_flags.h"
 #include "apps/flags.h"
 #include "apps/material_flags.h"
+#include "apps/number_list.h"
 #include "apps/outputs.h"
 #include "apps/parameter_flags.h"
 #include "apps/progress.h"
@@ -41,12 +42,18 @@ namespace {
 // scene.
 bool WritesTable() { return HasExtension(FLAGS_out, ".csv"); }
 
+// Returns the value of --points, which is given.
+int NumPointsFromFlag() {
+  return NumberList<Eigen::Matrix<int, 1, 1>>("points", FLAGS_points,
+                                              "integer from 1 to 10000000")(0);
+}
+
 void CheckPointsFlag() {
   constexpr int kMostPoints = 10000000;
   if (!IsGiven("points")) {
     return;
   }
-  if (FLAGS_points < 1 || FLAGS_points > kMostPoints) {
+  if (const int count = NumPointsFromFlag(); count < 1 || count > kMostPoints) {
     throw std::invalid_argument(AsGiven("points") + "; it must be from 1 to " +
                                 std::to_string(kMostPoints));
   }
@@ -241,7 +248,7 @@ std::string MeasuredPoints(const std::string& source,
       solution.displacement.reshaped(mesh.Dimension(), mesh.NumNodes())
           .leftCols(scene.mesh.NumNodes());
   if (IsGiven("points")) {
-    const MeshPoints points = DrawPoints(mesh, FLAGS_points, generator);
+    const MeshPoints points = DrawPoints(mesh, NumPointsFromFlag(), generator);
     positions = Interpolate(mesh, points, mesh.nodes);
     displacement = Interpolate(
         mesh, points,

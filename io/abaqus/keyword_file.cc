@@ -8,17 +8,10 @@
 
 #include "elastimate/io/text/input_error.h"
 #include "elastimate/io/text/text_file.h"
+#include "elastimate/io/text/trimmed.h"
 
 namespace elastimate {
 namespace {
-
-std::string_view Trimmed(std::string_view text) {
-  constexpr char kBlanks[] = " \t\r";
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  return first == std::string_view::npos
-             ? std::string_view()
-             : text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
 
 std::string PlainKeyword(std::string_view text) {
   std::string name(text);

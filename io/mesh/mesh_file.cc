@@ -37,10 +37,9 @@ std::string NodeName(const MeshFile& mesh, Eigen::Index node) {
          (mesh.sets_of.empty() ? "Gmsh" : mesh.sets_of) + ")";
 }
 
-bool HasName(const MeshFile& mesh, const PhysicalGroup& group,
-             const std::string& name) {
-  return mesh.sets_of.empty() ? group.name == name
-                              : boost::iequals(group.name, name);
+bool AreSameNames(const MeshFile& mesh, const std::string& name,
+                  const std::string& other) {
+  return mesh.sets_of.empty() ? name == other : boost::iequals(name, other);
 }
 
 void RequireNodePositions(const MeshFile& mesh) {

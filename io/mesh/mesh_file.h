@@ -103,6 +103,10 @@ inline constexpr char kSupportedElements[] =
     "tetrahedra and triangles, linear or quadratic, hexahedra of 8 or 27 nodes "
     "and quadrilaterals of 4 or 9";
 
+/// Lists the extensions of mesh files, for messages.
+inline constexpr char kMeshExtensions[] =
+    ".vtu, .vtk, .msh, .mesh, .unv, .bdf, .inp or .feb";
+
 /// Returns ".vtu" for "a.vtu" and for "A.VTU", but ".Vtu" for "a.Vtu": Gmsh
 /// tells its formats by names in all small or all capital letters, and runs a
 /// file of any other name as a script.
@@ -125,10 +129,10 @@ std::string ArrayNames(const std::vector<FileArray>& arrays);
 /// "node 7" or "node 7 (number 12 in Gmsh)", for error messages.
 std::string NodeName(const MeshFile& mesh, Eigen::Index node);
 
-/// Tells whether the group has this name, in which letters of any case count
-/// as the same where the groups are sets.
-bool HasName(const MeshFile& mesh, const PhysicalGroup& group,
-             const std::string& name);
+/// Tells whether two names of groups are the same; where groups are sets,
+/// letters may be of any case.
+bool AreSameNames(const MeshFile& mesh, const std::string& name,
+                  const std::string& other);
 
 /// Throws std::invalid_argument when the positions of the nodes in the file are
 /// not known (num_nodes_left_out).

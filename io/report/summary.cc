@@ -1,27 +1,19 @@
 #include "elastimate/io/report/summary.h"
+#include "elastimate/io/report/summary_lines.h"
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <optional>
 #include <sstream>
 #include <utility>
 #include <vector>
 
-#include "elastimate/core/scene/loads.h"
 #include "elastimate/core/text/numbers.h"
 #include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
 
 namespace elastimate {
 namespace {
-
-void Line(const std::string& name, const std::string& value,
-          std::ostringstream& text) {
-  constexpr std::size_t kWidth = 22;
-  text << std::left << std::setw(int(kWidth)) << name
-       << (name.size() < kWidth ? "" : " ") << value << "\n";
-}
 
 std::string WithError(double value, const std::optional<double>& error) {
   if (!std::isfinite(value)) {
@@ -70,7 +62,7 @@ void AddErrors(const std::string& name, Eigen::Index place,
               (place == 0 ? Percent(error) : TwoDigits(error)) + ")";
     }
   }
-  Line("error of " + name, list, text);
+  AddLine("error of " + name, list, text);
 }
 
 // Adds what was done for the elements, and where the errors come from.
@@ -95,38 +87,38 @@ void AddErrors(const Estimate& estimate, std::ostringstream& text) {
           kNotable * *estimate.YoungsModulusStandardError() ||
       std::abs(correction(1)) >
           kNotable * estimate.PoissonRatioStandardError().value_or(0)) {
-    Line("corrected by",
-         PercentOf(correction(0), "E") + " and " +
-             NumberText(correction(1), 2) +
-             " in nu for the error of the elements",
-         text);
+    AddLine("corrected by",
+            PercentOf(correction(0), "E") + " and " +
+                NumberText(correction(1), 2) +
+                " in nu for the error of the elements",
+            text);
   }
 }
 
 // Adds the parameters of one isotropic material.
 void AddElasticity(const Estimate& estimate, std::ostringstream& text) {
   const IsotropicElasticity& elasticity = estimate.elasticity;
-  Line("Young's modulus E",
-       WithError(elasticity.youngs_modulus,
-                 estimate.YoungsModulusStandardError()),
-       text);
-  Line(
+  AddLine("Young's modulus E",
+          WithError(elasticity.youngs_modulus,
+                    estimate.YoungsModulusStandardError()),
+          text);
+  AddLine(
       "Poisson's ratio nu",
       WithError(elasticity.poisson_ratio, estimate.PoissonRatioStandardError()),
       text);
   if (estimate.poisson_ratio_interval && ReachesLimit(estimate)) {
-    Line("95 % interval of nu",
-         NumberText(estimate.poisson_ratio_interval->lower, 4) + " to " +
-             NumberText(estimate.poisson_ratio_interval->upper, 4),
-         text);
-    Line("shear modulus mu",
-         WithError(elasticity.ShearModulus(),
-                   estimate.ShearModulusStandardError()),
-         text);
-    Line("1 / bulk modulus",
-         WithError(elasticity.BulkCompliance(),
-                   estimate.BulkComplianceStandardError()),
-         text);
+    AddLine("95 % interval of nu",
+            NumberText(estimate.poisson_ratio_interval->lower, 4) + " to " +
+                NumberText(estimate.poisson_ratio_interval->upper, 4),
+            text);
+    AddLine("shear modulus mu",
+            WithError(elasticity.ShearModulus(),
+                      estimate.ShearModulusStandardError()),
+            text);
+    AddLine("1 / bulk modulus",
+            WithError(elasticity.BulkCompliance(),
+                      estimate.BulkComplianceStandardError()),
+            text);
   }
 }
 
@@ -160,11 +152,11 @@ void AddParameters(const Estimate& estimate, std::ostringstream& text) {
     if (AxisOfParameter(estimate, i) != nullptr) {
       continue;
     }
-    Line(parameter.Label(),
-         parameter.is_known
-             ? NumberText(parameter.value, 6) + " (known)"
-             : WithError(parameter.value, parameter.standard_error),
-         text);
+    AddLine(parameter.Label(),
+            parameter.is_known
+                ? NumberText(parameter.value, 6) + " (known)"
+                : WithError(parameter.value, parameter.standard_error),
+            text);
   }
 }
 
@@ -177,17 +169,17 @@ void AddAxes(const Estimate& estimate, std::ostringstream& text) {
       components += (components.empty() ? "" : ", ") + NumberText(component, 4);
     }
     // The label is shown without "the".
-    Line(axis.Label().substr(4),
-         !axis.direction
-             ? "not determined"
-             : components +
-                   (axis.standard_error
-                        ? " +- " +
-                              NumberText(
-                                  kDegreesOfRadian * *axis.standard_error, 2) +
-                              " degrees"
-                        : " (no standard error)"),
-         text);
+    AddLine(axis.Label().substr(4),
+            !axis.direction
+                ? "not determined"
+                : components + (axis.standard_error
+                                    ? " +- " +
+                                          NumberText(kDegreesOfRadian *
+                                                         *axis.standard_error,
+                                                     2) +
+                                          " degrees"
+                                    : " (no standard error)"),
+            text);
   }
 }
 
@@ -198,45 +190,47 @@ void AddMaterials(const Estimate& estimate, std::ostringstream& text) {
     // Some estimators have no verdict.
     const std::string verdict = Verdict(material);
     if (!verdict.empty()) {
-      Line(RegionsLabel(material.regions), verdict, text);
+      AddLine(RegionsLabel(material.regions), verdict, text);
     }
   }
   for (const std::string& combination : estimate.combinations) {
-    Line("determined only", combination, text);
+    AddLine("determined only", combination, text);
   }
 }
 
 void AddDiagnostics(const Estimate& estimate, std::ostringstream& text) {
   if (estimate.noise_sd) {
-    Line("noise sd", NumberText(*estimate.noise_sd, 3), text);
+    AddLine("noise sd", NumberText(*estimate.noise_sd, 3), text);
   }
   if (estimate.force_residual) {
-    Line("force residual",
-         NumberText(*estimate.force_residual, 3) + " of the load", text);
+    AddLine("force residual",
+            NumberText(*estimate.force_residual, 3) + " of the load", text);
   }
   if (estimate.displacement_residual) {
-    Line("displacement residual",
-         NumberText(*estimate.displacement_residual, 3) +
-             " of the measured displacement",
-         text);
+    AddLine("displacement residual",
+            NumberText(*estimate.displacement_residual, 3) +
+                " of the measured displacement",
+            text);
   }
   if (estimate.residual_correlation) {
-    Line("residual correlation",
-         NumberText(*estimate.residual_correlation, 2) + " between neighbours" +
-             (estimate.correlation_length.value_or(0) > 0
-                  ? ", alike over a length of " +
-                        NumberText(*estimate.correlation_length, 2)
-                  : ""),
-         text);
+    AddLine("residual correlation",
+            NumberText(*estimate.residual_correlation, 2) +
+                " between neighbours" +
+                (estimate.correlation_length.value_or(0) > 0
+                     ? ", alike over a length of " +
+                           NumberText(*estimate.correlation_length, 2)
+                     : ""),
+            text);
   }
   if (estimate.noise_attenuation) {
-    Line("noise attenuation", NumberText(*estimate.noise_attenuation, 3), text);
+    AddLine("noise attenuation", NumberText(*estimate.noise_attenuation, 3),
+            text);
   }
   if (estimate.identifiability_angle) {
-    Line("identifiability angle",
-         NumberText(kDegreesOfRadian * *estimate.identifiability_angle, 3) +
-             " degrees",
-         text);
+    AddLine("identifiability angle",
+            NumberText(kDegreesOfRadian * *estimate.identifiability_angle, 3) +
+                " degrees",
+            text);
   }
 }
 
@@ -252,65 +246,6 @@ std::string Solving(const Work& work) {
          " in " + Counted(work.iterations, "iteration") + ", ";
 }
 
-// Values below `rounding` are shown as zero.
-std::string Vector(const Eigen::VectorXd& values, double rounding) {
-  std::string text;
-  for (const double value : values) {
-    text += (text.empty() ? "(" : ", ") +
-            NumberText(std::abs(value) > rounding ? value : 0, 4);
-  }
-  return text + ")";
-}
-
-// Adds the loads of one case: each on a line, or all on one where they are
-// many.
-void AddLoads(const std::string& name, const Mesh& mesh,
-              const std::vector<Load>& loads, std::ostringstream& text) {
-  constexpr std::size_t kMany = 4;
-  std::vector<LoadResultant> resultants;
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(mesh.Dimension());
-  double largest = 0;
-  for (const Load& load : loads) {
-    resultants.push_back(ResultantOf(mesh, load));
-    sum += resultants.back().force;
-    largest = std::max(largest, resultants.back().force.cwiseAbs().maxCoeff());
-  }
-  const double rounding = 1e-12 * largest;
-  for (const LoadResultant& resultant : resultants) {
-    if (loads.size() <= kMany) {
-      Line(name,
-           std::string(resultant.type) + ", resultant " +
-               Vector(resultant.force, rounding) +
-               (resultant.area
-                    ? " on an area of " + NumberText(*resultant.area, 4)
-                    : ""),
-           text);
-    }
-  }
-  if (loads.size() > kMany) {
-    Line(name,
-         std::to_string(loads.size()) + " loads, resultant " +
-             Vector(sum, rounding),
-         text);
-  }
-}
-
-void AddLoads(const Scene& scene, std::ostringstream& text) {
-  constexpr std::size_t kMany = 8;
-  const std::size_t num_cases = scene.load_cases.size();
-  const std::size_t num_shown = num_cases > kMany ? kMany - 1 : num_cases;
-  for (std::size_t i = 0; i < num_shown; ++i) {
-    AddLoads(num_cases == 1 ? "load" : "load case " + std::to_string(i + 1),
-             scene.mesh, scene.load_cases[i].loads, text);
-  }
-  if (num_shown < num_cases) {
-    Line("load cases",
-         "and " + std::to_string(num_cases - num_shown) +
-             " more; --json has the loads of all",
-         text);
-  }
-}
-
 std::string ListOf(const std::vector<int>& regions) {
   std::string list;
   for (const int region : regions) {
@@ -323,11 +258,11 @@ std::string ListOf(const std::vector<int>& regions) {
 void AddMerges(const std::vector<RegionMerge>& merges,
                std::ostringstream& text) {
   for (const RegionMerge& merge : merges) {
-    Line(merge.is_taken ? "merged" : "told apart",
-         "regions " + ListOf(merge.first) + " and " + ListOf(merge.second) +
-             " (chi^2 " + NumberText(merge.chi_square, 3) + ", limit " +
-             NumberText(merge.limit, 3) + ")",
-         text);
+    AddLine(merge.is_taken ? "merged" : "told apart",
+            "regions " + ListOf(merge.first) + " and " + ListOf(merge.second) +
+                " (chi^2 " + NumberText(merge.chi_square, 3) + ", limit " +
+                NumberText(merge.limit, 3) + ")",
+            text);
     if (!merge.is_taken) {
       break;
     }
@@ -340,14 +275,15 @@ void AddLaws(const Estimate& estimate, std::ostringstream& text) {
   const std::vector<LawComparison>& laws = estimate.laws;
   for (const LawComparison& law : laws) {
     const bool is_chosen = &law == laws.data();
-    Line(is_chosen ? "law chosen" : "law not chosen",
-         law.law + " (" + Counted(law.num_parameters, "parameter") +
-             (estimate.large_strain_law.empty()
-                  ? ", chi^2 " + NumberText(law.chi_square, 3)
-                  : "") +
-             ", BIC " +
-             (is_chosen ? "least" : "+" + NumberText(law.criterion, 3)) + ")",
-         text);
+    AddLine(is_chosen ? "law chosen" : "law not chosen",
+            law.law + " (" + Counted(law.num_parameters, "parameter") +
+                (estimate.large_strain_law.empty()
+                     ? ", chi^2 " + NumberText(law.chi_square, 3)
+                     : "") +
+                ", BIC " +
+                (is_chosen ? "least" : "+" + NumberText(law.criterion, 3)) +
+                ")",
+            text);
   }
 }
 
@@ -360,10 +296,10 @@ void AddSeries(const SeriesSummary& series, std::ostringstream& text) {
         (loads.lower < loads.upper ? " to " + NumberText(loads.upper, 4) : "") +
         " times the loads";
   }
-  Line("frames",
-       std::to_string(series.num_used) + " of " +
-           std::to_string(series.num_frames) + " used" + under,
-       text);
+  AddLine("frames",
+          std::to_string(series.num_used) + " of " +
+              std::to_string(series.num_frames) + " used" + under,
+          text);
 }
 
 // Returns "5.1 +- 0.2 %", the change from the least load to the largest, or in
@@ -391,55 +327,57 @@ void AddTrend(const std::vector<ParameterEstimate>& parameters,
                ChangeText(trend.change(place), trend.standard_error(place),
                           parameters[i].is_modulus);
   }
-  Line(trend.is_over_load ? "change over the load" : "change in time", changes,
-       text);
+  AddLine(trend.is_over_load ? "change over the load" : "change in time",
+          changes, text);
 }
 
 // Says what the map is, the verdict first.
 void AddMap(const MapEstimate& map, std::ostringstream& text) {
-  Line("map",
-       map.verdict == MapVerdict::kHomogeneous ? "one material"
-       : map.verdict == MapVerdict::kField
-           ? "a field that varies smoothly"
-           : std::to_string(map.regions.size()) + " regions",
-       text);
-  Line("",
-       "ln evidence over one material: " +
-           NumberText(map.region_log_evidence, 3) + " for regions, " +
-           NumberText(map.field_log_evidence, 3) + " for a field",
-       text);
-  Line("",
-       "the data support " + NumberText(map.supported_parameters, 3) + " of " +
-           std::to_string(map.youngs_modulus.size()) + " parameters",
-       text);
+  AddLine("map",
+          map.verdict == MapVerdict::kHomogeneous ? "one material"
+          : map.verdict == MapVerdict::kField
+              ? "a field that varies smoothly"
+              : std::to_string(map.regions.size()) + " regions",
+          text);
+  AddLine("",
+          "ln evidence over one material: " +
+              NumberText(map.region_log_evidence, 3) + " for regions, " +
+              NumberText(map.field_log_evidence, 3) + " for a field",
+          text);
+  AddLine("",
+          "the data support " + NumberText(map.supported_parameters, 3) +
+              " of " + std::to_string(map.youngs_modulus.size()) +
+              " parameters",
+          text);
   for (std::size_t i = 0; i < map.regions.size() && map.regions.size() > 1;
        ++i) {
     const MapRegion& region = map.regions[i];
-    Line("region " + std::to_string(i + 1),
-         "E = " + ValueWithError(region.youngs_modulus, region.standard_error) +
-             ", volume " + NumberText(region.volume, 3),
-         text);
+    AddLine(
+        "region " + std::to_string(i + 1),
+        "E = " + ValueWithError(region.youngs_modulus, region.standard_error) +
+            ", volume " + NumberText(region.volume, 3),
+        text);
   }
 }
 
 void AddSceneSize(const Scene& scene, std::ostringstream& text) {
-  Line("scene",
-       std::to_string(scene.mesh.NumVertices()) + " nodes, " +
-           std::to_string(scene.mesh.NumElements()) +
-           (IsCurved(scene.mesh.kind) ? " curved quadratic "
-            : scene.mesh.Order() == 2 ? " quadratic "
-                                      : " ") +
-           std::string(
-               scene.mesh.Topology().ShapeName(scene.mesh.NumElements())) +
-           ", " + Counted(scene.load_cases.size(), "load case"),
-       text);
+  AddLine("scene",
+          std::to_string(scene.mesh.NumVertices()) + " nodes, " +
+              std::to_string(scene.mesh.NumElements()) +
+              (IsCurved(scene.mesh.kind) ? " curved quadratic "
+               : scene.mesh.Order() == 2 ? " quadratic "
+                                         : " ") +
+              std::string(
+                  scene.mesh.Topology().ShapeName(scene.mesh.NumElements())) +
+              ", " + Counted(scene.load_cases.size(), "load case"),
+          text);
   if (scene.mesh.Dimension() == 2) {
-    Line("section",
-         std::string(scene.mesh.section.model == SectionModel::kPlaneStress
-                         ? "plane stress"
-                         : "plane strain") +
-             ", thickness " + NumberText(scene.mesh.section.thickness, 4),
-         text);
+    AddLine("section",
+            std::string(scene.mesh.section.model == SectionModel::kPlaneStress
+                            ? "plane stress"
+                            : "plane strain") +
+                ", thickness " + NumberText(scene.mesh.section.thickness, 4),
+            text);
   }
 }
 
@@ -449,19 +387,19 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
                     const ReportTimes& times) {
   std::ostringstream text;
   AddSceneSize(scene, text);
-  AddLoads(scene, text);
+  AddLoadLines(scene, text);
   AddMerges(estimate.merges, text);
   AddLaws(estimate, text);
   if (estimate.series) {
     AddSeries(*estimate.series, text);
   }
-  Line("estimator", estimate.estimator, text);
-  Line("status",
-       std::string(StatusName(estimate.status)) +
-           (estimate.IsUsable() ? "" : ": NOT USABLE"),
-       text);
+  AddLine("estimator", estimate.estimator, text);
+  AddLine("status",
+          std::string(StatusName(estimate.status)) +
+              (estimate.IsUsable() ? "" : ": NOT USABLE"),
+          text);
   if (!estimate.message.empty()) {
-    Line("", estimate.message, text);
+    AddLine("", estimate.message, text);
   }
   if (estimate.map) {
     AddMap(*estimate.map, text);
@@ -473,24 +411,24 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
   }
   AddErrors(estimate, text);
   if (!estimate.why_no_standard_error.empty()) {
-    Line("", "no standard error: " + estimate.why_no_standard_error, text);
+    AddLine("", "no standard error: " + estimate.why_no_standard_error, text);
   }
   AddDiagnostics(estimate, text);
   if (estimate.series && estimate.series->trend) {
     AddTrend(estimate.parameters, *estimate.series->trend, text);
   }
-  Line("work",
-       std::to_string(estimate.work.element_passes) +
-           (estimate.work.element_passes == 1 ? " element pass, "
-                                              : " element passes, ") +
-           Solving(estimate.work) + NumberText(estimate.seconds, 3) + " s",
-       text);
-  Line("time",
-       NumberText(times.read, 3) + " s to read the scene, " +
-           NumberText(times.total, 3) + " s in all",
-       text);
+  AddLine("work",
+          std::to_string(estimate.work.element_passes) +
+              (estimate.work.element_passes == 1 ? " element pass, "
+                                                 : " element passes, ") +
+              Solving(estimate.work) + NumberText(estimate.seconds, 3) + " s",
+          text);
+  AddLine("time",
+          NumberText(times.read, 3) + " s to read the scene, " +
+              NumberText(times.total, 3) + " s in all",
+          text);
   for (const Rung& rung : estimate.rungs) {
-    Line(
+    AddLine(
         "rung",
         rung.estimator +
             (rung.element_order == 2 ? " with quadratic elements" : "") +
@@ -500,7 +438,7 @@ std::string Summary(const Estimate& estimate, const Scene& scene,
   }
   for (const Severity severity : {Severity::kWarning, Severity::kNotice}) {
     for (const std::string& sentence : estimate.Sentences(severity)) {
-      Line(std::string(SeverityName(severity)), sentence, text);
+      AddLine(std::string(SeverityName(severity)), sentence, text);
     }
   }
   return text.str();

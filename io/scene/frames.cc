@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <pugixml.hpp>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -15,6 +16,9 @@
 #include "elastimate/io/scene/json_loads.h"
 #include "elastimate/io/scene/json_measurement.h"
 #include "elastimate/io/scene/load_record.h"
+#include "elastimate/io/scene/mesh_reader.h"
+#include "elastimate/io/text/input_error.h"
+#include "elastimate/io/text/input_file.h"
 #include "elastimate/io/text/natural_order.h"
 #include "elastimate/io/text/printable.h"
 
@@ -25,6 +29,41 @@ namespace fs = std::filesystem;
 
 bool IsPattern(const std::string& name) {
   return name.find_first_of("*?") != std::string::npos;
+}
+
+bool IsVtkFile(const std::string& name) {
+  const std::string extension = FileExtension(name);
+  return extension == ".vtu" || extension == ".vtk";
+}
+
+// Returns the names of the files of a series of ParaView (.pvd), relative to
+// the scene, in the order of their times.
+std::vector<std::string> FilesOfSeries(const JsonValue& value) {
+  const fs::path series = value.String();
+  const fs::path path = value.File().parent_path() / series;
+  CheckReadable(path);
+  pugi::xml_document document;
+  if (const auto parsed = document.load_file(path.c_str()); !parsed) {
+    ThrowDamagedFile(path, parsed.description());
+  }
+  std::vector<std::pair<double, std::string>> files;
+  for (const pugi::xml_node& set :
+       document.child("VTKFile").child("Collection").children("DataSet")) {
+    files.emplace_back(
+        set.attribute("timestep").as_double(),
+        (series.parent_path() / set.attribute("file").value()).string());
+  }
+  if (files.empty()) {
+    ThrowDamagedFile(path, "it names no data sets");
+  }
+  std::stable_sort(
+      files.begin(), files.end(),
+      [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::string> names;
+  for (auto& [time, name] : files) {
+    names.push_back(std::move(name));
+  }
+  return names;
 }
 
 // Returns the names of the files of a pattern, relative to the scene as the
@@ -50,6 +89,9 @@ std::vector<std::string> FindFiles(const JsonValue& value) {
 }
 
 std::vector<std::string> FrameNames(const JsonValue& files) {
+  if (files.IsString() && FileExtension(files.String()) == ".pvd") {
+    return FilesOfSeries(files);
+  }
   if (files.IsString()) {
     return IsPattern(files.String()) ? FindFiles(files)
                                      : std::vector{files.String()};
@@ -121,10 +163,31 @@ struct FrameReader {
       reader.emplace(mesh, scene_mesh);
     }
     nlohmann::json of_frame = displacement;
-    of_frame[file_key] = names[i];
+    if (IsVtkFile(names[i])) {
+      ReadArrays(scene_file.parent_path() / names[i]);
+    } else {
+      of_frame.erase("array");
+      of_frame[file_key] = names[i];
+    }
     std::vector<std::string> notices;
     reader->Read(JsonValue(scene_file, of_frame, "frames"), frame, notices);
     return frame;
+  }
+
+  // Takes the point arrays of a file of the same mesh.
+  void ReadArrays(const fs::path& path) {
+    constexpr double kSameLength = 1e-6;  // Of the largest coordinate.
+    MeshFile file = ReadMeshFile(path);
+    const bool is_same = file.nodes.cols() == mesh.nodes.cols() &&
+                         (file.nodes - mesh.nodes).cwiseAbs().maxCoeff() <=
+                             kSameLength * mesh.nodes.cwiseAbs().maxCoeff();
+    if (!is_same) {
+      ThrowInputError(path,
+                      "its points are not those of the mesh of the scene; give "
+                      "files that differ in their arrays only");
+    }
+    mesh.path = path;
+    mesh.node_arrays = std::move(file.node_arrays);
   }
 
   void Multiply(double factor, LoadCase& frame) const {
@@ -173,9 +236,12 @@ FrameSeries ReadFrames(const JsonValue& document, const FileScene& file_scene) {
   reader->file_key = "points";
   if (cases[0].Has("displacement")) {
     const JsonValue displacement = cases[0].At("displacement");
-    reader->file_key = displacement.Has("points") ? "points" : "file";
+    for (const std::string key : {"nodes", "file", "points"}) {
+      if (displacement.Has(key)) {
+        reader->file_key = key;
+      }
+    }
     reader->displacement = displacement.Json();
-    reader->displacement.erase("array");
   }
   FrameSeries series;
   for (const std::string& name : reader->names) {

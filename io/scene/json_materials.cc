@@ -33,7 +33,7 @@ std::vector<int> ReadNamedRegion(const JsonValue& value, const MeshFile& mesh) {
       continue;
     }
     names += (names.empty() ? "\"" : ", \"") + Printable(group.name) + "\"";
-    if (HasName(mesh, group, name)) {
+    if (AreSameNames(mesh, group.name, name)) {
       regions.push_back(group.number);
     }
   }

@@ -31,8 +31,8 @@ MeshFile ReadNamedMesh(const JsonValue& name, PointGaps& gaps,
   const std::filesystem::path path = ResolvePath(name);
   if (FileExtension(path) == ".json") {
     name.Fail("is '" + Printable(name.String()) +
-              "', which is a scene; name a mesh file (.vtu, .vtk, .msh, .mesh, "
-              ".unv, .bdf, .inp or .feb)");
+              "', which is a scene; name a mesh file (" + kMeshExtensions +
+              ")");
   }
   return ReadMeshFile(path);
 }

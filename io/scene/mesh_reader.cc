@@ -12,6 +12,27 @@
 #include "elastimate/io/vtk/vtk_mesh.h"
 
 namespace elastimate {
+namespace {
+
+/// Tells what to do with a file of another format.
+std::string MendOfFormat(const std::filesystem::path& path,
+                         const std::string& extension) {
+  const std::set<std::string> of_meshio = {".med", ".xdmf", ".e",
+                                           ".exo", ".ex2",  ".cgns"};
+  const std::string file = PrintablePath(path.filename());
+  if (of_meshio.count(extension) > 0) {
+    return "convert it by: meshio convert " + file +
+           " mesh.vtu (Debian package meshio-tools)";
+  }
+  if (extension == ".cdb") {
+    return "convert it by: python3 -c \"from mapdl_archive import Archive; "
+           "Archive('" +
+           file + "').grid.save('mesh.vtu')\" (pip install mapdl-archive)";
+  }
+  return "give a file of one of these formats";
+}
+
+}  // namespace
 
 MeshFile ReadMeshFile(const std::filesystem::path& path) {
   CheckReadable(path);
@@ -29,11 +50,10 @@ MeshFile ReadMeshFile(const std::filesystem::path& path) {
   } else if (extension == ".feb") {
     mesh = ReadFebioMesh(path);
   } else {
-    ThrowInputError(
-        path,
-        "the file name does not end in .vtu, .vtk, .msh, .mesh, "
-        ".unv, .bdf, .inp or .feb (a mesh) or in .json (a scene); give a file "
-        "of one of these formats");
+    ThrowInputError(path, "the file name does not end in " +
+                              std::string(kMeshExtensions) +
+                              " (a mesh) or in .json (a scene); " +
+                              MendOfFormat(path, extension));
   }
   mesh.path = path;
   CheckMeshFile(mesh);

@@ -84,7 +84,7 @@ std::vector<const PhysicalGroup*> FindGroups(const JsonValue& name,
       name.IsString() ? name.String() : std::to_string(name.Integer());
   std::vector<const PhysicalGroup*> groups;
   for (const PhysicalGroup& group : mesh.groups) {
-    if (HasName(mesh, group, wanted) ||
+    if (AreSameNames(mesh, group.name, wanted) ||
         (mesh.sets_of.empty() && std::to_string(group.number) == wanted)) {
       groups.push_back(&group);
     }

@@ -79,10 +79,10 @@ struct SceneReading {
 
 /// Reads a scene from files whose arrays make it up (.vtu, .vtk, or .msh with
 /// node data), or from a scene.json over a mesh file (.vtu, .vtk, .msh, .mesh,
-/// .unv, .bdf); docs/scenes.md describes both.  Several files are further load
-/// cases of one specimen: the same nodes (to a millionth of the largest
-/// coordinate), cells, regions and supports.  A load case given twice is an
-/// error: its noise would count as that of two measurements.
+/// .unv, .bdf, .inp, .feb); docs/scenes.md describes both.  Several files are
+/// further load cases of one specimen: the same nodes (to a millionth of the
+/// largest coordinate), cells, regions and supports.  A load case given twice
+/// is an error: its noise would count as that of two measurements.
 ///
 /// The elements are the cells of the highest dimension, which are of one
 /// ElementKind.  Planar ones lie in a plane z = const and need a model and a
@@ -94,8 +94,9 @@ struct SceneReading {
 /// The array `prescribed` (optional) is the displacement at which
 /// held components are held.  A node is known by its zero-based position among
 /// all nodes of its file, also those without an element: in the order of the
-/// points of a VTK file, by ascending node number in a Gmsh file.  That is what
-/// ids and CSV rows in a scene.json refer to, and what messages name.
+/// points of a VTK file, by ascending node number in files of other formats.
+/// That is what ids and CSV rows in a scene.json refer to, and what messages
+/// name.
 ///
 /// The scene returned is valid (ValidateScene).  Throws std::invalid_argument
 /// with one sentence that names the file and the array, key, node or element

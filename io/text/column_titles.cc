@@ -5,16 +5,11 @@
 
 #include "elastimate/io/text/length_unit.h"
 #include "elastimate/io/text/printable.h"
+#include "elastimate/io/text/trimmed.h"
+#include "elastimate/io/text/trimmed.h"
 
 namespace elastimate {
 namespace {
-
-std::string_view Trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(" \t");
-  return begin == std::string_view::npos
-             ? std::string_view()
-             : text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
-}
 
 // Returns the part of a title that is its unit, with what sets it off.
 struct UnitPlace {

@@ -280,7 +280,8 @@ TEST_F(Documentation, HasEveryFlag) {
   EXPECT_EQ(flags.erase("help") + flags.erase("version"), 2U);
   std::set<std::string> of_help;
   for (const std::string command :
-       {"estimate", "simulate", "plan", "validate", "generate", "materials"}) {
+       {"estimate", "simulate", "plan", "validate", "generate", "materials",
+        "scene", "check"}) {
     of_help.merge(NamesAfter("\n  --", Succeed(command + " --help").output));
   }
   EXPECT_EQ(flags, of_help);

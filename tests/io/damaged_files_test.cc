@@ -146,6 +146,21 @@ Sample AbaqusSample() {
                     "Top");
 }
 
+/// Returns a mesh of Abaqus, and displacements of its nodes that FEBio might
+/// have written.
+Sample NodesSample() {
+  return {{{"mesh.inp", AbaqusDeckText()},
+           {"u.csv",
+            "*Step  = 1\n*Time  = 0.5\n*Data  = ux;uy;uz\n2,0,0,0\n3,0,0,0\n"
+            "5,.1,.2,.3\n7,-1e-3,2E-4,0.25\n10,0,0,0\n"},
+           {"scene.json", R"({"mesh": "mesh.inp",
+ "supports": [{"nodes": {"set": "Set-1"}}],
+ "cases": [{"displacement": {"nodes": "u.csv"},
+            "loads": [{"type": "body_force", "value": [0, 0, -1]}]}]})"}},
+          "u.csv",
+          "scene.json"};
+}
+
 /// Returns a scene.json with a planar mesh that has no field data.
 Sample PlanarJsonSample() {
   return {{{"mesh.vtk", PlanarVtkText()}, {"scene.json", R"({"mesh": "mesh.vtk",
@@ -184,6 +199,7 @@ Sample MakeSample(const std::string& name) {
        [] { return VtkSample("LegacyBinary51", SceneOf("quad4")); }},
       {"PlanarJson", PlanarJsonSample},
       {"Abaqus", AbaqusSample},
+      {"Nodes", NodesSample},
       {"Febio3",
        [] { return SetsSample("mesh.feb", FebioText(false), "held", "top"); }},
       {"Febio4",
@@ -223,7 +239,7 @@ std::vector<Trials> AllTrials() {
     trials.push_back({name, 50});
   }
   for (const std::string name :
-       {"Points", "PointsUtf16", "Abaqus", "Febio3", "Febio4"}) {
+       {"Points", "PointsUtf16", "Nodes", "Abaqus", "Febio3", "Febio4"}) {
     trials.push_back({name, 100});
   }
   return trials;

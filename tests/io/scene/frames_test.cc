@@ -69,6 +69,47 @@ class FramesTest : public ::testing::Test {
   const TemporaryFolder folder_;
 };
 
+// A series of ParaView names its files in any order, with their times.
+TEST_F(FramesTest, AreTheArraysOfVtkFiles) {
+  RectangleOptions options;
+  options.cells = {2, 1};
+  Scene scene = RectangleScene(options);
+  const auto write = [&](const std::string& name, double size) {
+    scene.load_cases[0].displacement.setConstant(2, scene.mesh.NumNodes(),
+                                                 size);
+    WriteVtu(folder_.Path() / name, scene.mesh, SceneFields(scene));
+  };
+  write("u_1.vtu", 1);
+  write("u_2.vtu", 2);
+  write("u_10.vtu", 10);
+  folder_.Write("u.pvd", R"(<?xml version="1.0"?>
+<VTKFile type="Collection"><Collection>
+ <DataSet timestep="3" part="0" file="u_1.vtu"/>
+ <DataSet timestep="1" part="0" file="u_2.vtu"/>
+ <DataSet timestep="2" part="0" file="u_10.vtu"/></Collection></VTKFile>)");
+  const auto document = [](const std::string& files) {
+    return R"({"mesh": "u_1.vtu", "supports": [{"nodes": {"ids": [0, 1, 2]}}],
+      "cases": [{"displacement": {"array": "displacement"},
+                 "loads": [{"type": "body_force", "value": [0, 1]}]}],
+      "frames": {"files": ")" +
+           files + "\"}}";
+  };
+  const auto sizes = [&](const std::string& files) {
+    const FrameSeries series = Read(document(files));
+    std::vector<double> found;
+    for (std::size_t i = 0; i < series.files.size(); ++i) {
+      found.push_back(series.read(i).displacement(1, 3));
+    }
+    return found;
+  };
+  EXPECT_THAT(sizes("u_*.vtu"), ElementsAre(1, 2, 10));
+  EXPECT_THAT(sizes("u.pvd"), ElementsAre(2, 10, 1));
+  options.cells = {3, 1};
+  scene = RectangleScene(options);
+  write("u_2.vtu", 2);
+  EXPECT_THROWS_WITH(sizes("u.pvd"), "u_2.vtu: its points are not those");
+}
+
 TEST_F(FramesTest, AreInTheOrderOfTheirNumbers) {
   const FrameSeries series = Read(kFilmedStrip);
   std::vector<std::string> names;

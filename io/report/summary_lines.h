@@ -1,0 +1,25 @@
+#ifndef ELASTIMATE_IO_REPORT_SUMMARY_LINES_H_
+#define ELASTIMATE_IO_REPORT_SUMMARY_LINES_H_
+
+#include <Eigen/Core>
+#include <sstream>
+#include <string>
+
+#include "elastimate/core/scene/scene.h"
+
+namespace elastimate {
+
+/// Adds a line of a table: a name, and a value from a fixed column on.
+void AddLine(const std::string& name, const std::string& value,
+             std::ostringstream& text);
+
+/// Returns "(0, 0, -5)"; values below `rounding` are shown as zero.
+std::string VectorText(const Eigen::VectorXd& values, double rounding = 0);
+
+/// Adds the resultants of the loads of each case, and their areas: each on a
+/// line, or all on one where they are many.
+void AddLoadLines(const Scene& scene, std::ostringstream& text);
+
+}  // namespace elastimate
+
+#endif  // ELASTIMATE_IO_REPORT_SUMMARY_LINES_H_
