@@ -5,10 +5,21 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "apps/flag_parser.h"
 
 namespace elastimate {
+
+/// Returns what stands between the commas of a list.
+inline std::vector<std::string> WordsOf(const std::string& list) {
+  std::vector<std::string> words;
+  std::istringstream stream(list);
+  for (std::string word; std::getline(stream, word, ',');) {
+    words.push_back(word);
+  }
+  return words;
+}
 
 /// Returns the value of a flag as `count` numbers (as many as `Vector` has,
 /// where that is fixed), separated by commas; `kind` names them, such as

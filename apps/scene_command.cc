@@ -24,15 +24,6 @@
 namespace elastimate {
 namespace {
 
-std::vector<std::string> SplitNames(const std::string& list) {
-  std::vector<std::string> names;
-  std::istringstream text(list);
-  for (std::string name; std::getline(text, name, ',');) {
-    names.push_back(name);
-  }
-  return names;
-}
-
 // Reads --force=NAME,X,Y,Z.
 void ReadForce(FirstScene& scene) {
   const std::size_t comma = FLAGS_force.find(',');
@@ -54,7 +45,7 @@ FirstScene SceneFromFlags() {
   FirstScene scene;
   scene.section = SectionFromFlags();
   if (IsGiven("support")) {
-    scene.supports = SplitNames(FLAGS_support);
+    scene.supports = WordsOf(FLAGS_support);
   }
   if (IsGiven("force")) {
     ReadForce(scene);

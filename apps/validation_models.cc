@@ -1,26 +1,17 @@
 #include "apps/validation_models.h"
 
 #include <algorithm>
-#include <sstream>
 #include <stdexcept>
 
 #include "apps/flags.h"
 #include "apps/measured_scene.h"
+#include "apps/number_list.h"
 #include "elastimate/core/materials/laws.h"
 #include "elastimate/core/materials/material.h"
 #include "elastimate/io/text/printable.h"
 
 namespace elastimate {
 namespace {
-
-std::vector<std::string> WordsOf(const std::string& list) {
-  std::vector<std::string> words;
-  std::istringstream stream(list);
-  for (std::string word; std::getline(stream, word, ',');) {
-    words.push_back(word);
-  }
-  return words;
-}
 
 // Keeps what is said of the parameters that a law has.
 template <class Said>

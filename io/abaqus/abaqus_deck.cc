@@ -291,7 +291,7 @@ class DeckParser {
   /// Returns a parameter that has to be there.
   static std::string NameIn(const KeywordBlock& block,
                             const std::string& option) {
-    const std::string name = block.Option(option);
+    std::string name = block.Option(option);
     if (name.empty()) {
       block.Fail("*" + block.name + " has no " + option + "; give " + option +
                  "=NAME");

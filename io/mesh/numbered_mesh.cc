@@ -265,6 +265,7 @@ class Conversion {
     }
     for (const std::vector<std::size_t>& numbers : set.facets) {
       std::vector<int> facet;
+      facet.reserve(numbers.size());
       for (const std::size_t number : numbers) {
         facet.push_back(PlaceOfNode(number, of));
       }

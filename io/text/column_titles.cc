@@ -6,7 +6,6 @@
 #include "elastimate/io/text/length_unit.h"
 #include "elastimate/io/text/printable.h"
 #include "elastimate/io/text/trimmed.h"
-#include "elastimate/io/text/trimmed.h"
 
 namespace elastimate {
 namespace {
