@@ -1,5 +1,4 @@
 #include "elastimate/io/report/summary.h"
-#include "elastimate/io/report/summary_lines.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include "elastimate/core/text/numbers.h"
 #include "elastimate/estimators/interface/axis_estimate.h"
 #include "elastimate/estimators/interface/finding_sentences.h"
+#include "elastimate/io/report/summary_lines.h"
 
 namespace elastimate {
 namespace {
