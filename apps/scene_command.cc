@@ -79,7 +79,7 @@ std::filesystem::path OutputFile(const std::filesystem::path& mesh) {
   if (IsGiven("out")) {
     return FLAGS_out;
   }
-  const std::filesystem::path file = mesh.parent_path() / "scene.json";
+  std::filesystem::path file = mesh.parent_path() / "scene.json";
   if (std::filesystem::exists(file)) {
     throw std::invalid_argument(PrintablePath(file) +
                                 " is there already; give --out=FILE.json");

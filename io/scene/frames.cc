@@ -60,6 +60,7 @@ std::vector<std::string> FilesOfSeries(const JsonValue& value) {
       files.begin(), files.end(),
       [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<std::string> names;
+  names.reserve(files.size());
   for (auto& [time, name] : files) {
     names.push_back(std::move(name));
   }

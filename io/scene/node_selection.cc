@@ -194,8 +194,7 @@ BoxCorners CornersOfBox(const JsonValue& box, const MeshFile& mesh) {
   }
   const Eigen::Index size =
       corners[0].ListSize() == 3 ? 3 : Eigen::Index{mesh.Dimension()};
-  const BoxCorners box_corners = {corners[0].Vector(size),
-                                  corners[1].Vector(size)};
+  BoxCorners box_corners = {corners[0].Vector(size), corners[1].Vector(size)};
   if ((box_corners.low.array() > box_corners.high.array()).any()) {
     box.Fail(
         "has a first corner that is above the second one in some direction; "
