@@ -307,11 +307,8 @@ std::string HelpFor(const std::vector<std::string>& arguments) {
          "  elastimate simulate organ.vtu --youngs=50000 --nu=0.3 --noise=0.02 "
          "--out=measured.vtu\n"
          "  elastimate estimate measured.vtu --estimator=auto\n\n"
-         "After -- every argument is a file name, also one that begins with "
-         "-.\n"
-         "Exit code: 0 the estimate is usable; 1 it is not, and its status "
-         "says why (plan: no\nload determines the parameters); 2 wrong input "
-         "or flags, and nothing is written.\n";
+         "After -- every argument is a file name. Exit code: 0 usable, 1 not "
+         "usable, 2 wrong input or flags.\n";
 }
 
 }  // namespace elastimate

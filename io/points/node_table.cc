@@ -46,7 +46,7 @@ Cells Split(std::string_view line, std::string_view separators) {
 }
 
 template <typename Number>
-std::optional<Number> ToNumber(std::string_view cell) {
+std::optional<Number> ParsedNumber(std::string_view cell) {
   Number number = 0;
   const char* const end = cell.data() + cell.size();
   const char* const begin =
@@ -189,7 +189,7 @@ class NodeTableReader {
       return;
     }
     const std::optional<std::size_t> number =
-        ToNumber<std::size_t>(cells[columns_->number]);
+        ParsedNumber<std::size_t>(cells[columns_->number]);
     if (!number) {
       if (!separators_.empty()) {
         Fail(at, cells[columns_->number], "no number of a node");
@@ -199,7 +199,7 @@ class NodeTableReader {
     for (const std::size_t place : columns_->components) {
       const std::string_view cell =
           place < cells.size() ? cells[place] : std::string_view();
-      const std::optional<double> value = ToNumber<double>(cell);
+      const std::optional<double> value = ParsedNumber<double>(cell);
       if (!value || !std::isfinite(*value)) {
         Fail(at, cell, "no finite number");
       }

@@ -450,8 +450,7 @@ TEST(UnknownMotion, FindsOutliersOfSupports) {
 TEST(UnknownMotion, WithoutAnyForceIsRefused) {
   Scene scene = Plate();
   scene.load_cases[0].loads.clear();
-  EXPECT_THROWS_WITH(RunIterativeFe(scene),
-                     "the measured force of a support");
+  EXPECT_THROWS_WITH(RunIterativeFe(scene), "the measured force of a support");
 }
 
 TEST(UnknownMotion, ThatIsInconsistentIsRefused) {
