@@ -127,6 +127,20 @@ Command TheEstimateCommand() {
          {"series"}}}}};
 }
 
+// The command takes the flags of `estimate`.
+Command TheReportCommand() {
+  Command command = TheEstimateCommand();
+  command.name = "report";
+  command.summary =
+      "estimates, and writes a page for people that shows all of it";
+  for (CommandFlag& flag : command.groups.back().flags) {
+    if (flag.name == "out") {
+      flag.meaning = "HTML file of the page, which a browser opens";
+    }
+  }
+  return command;
+}
+
 Command TheSimulateCommand() {
   return {"simulate",
           "SCENE",
@@ -201,6 +215,7 @@ const Program& Elastimate() {
   static const Program program = {
       "elastimate",
       {TheEstimateCommand(),
+       TheReportCommand(),
        TheSimulateCommand(),
        ThePlanCommand(),
        TheGenerateCommand(),

@@ -99,6 +99,8 @@ std::string EndsOfNames(OutFormats formats) {
       return ".vtu for a scene, or in .csv for a table of points";
     case OutFormats::kTable:
       return ".csv, as a table is written";
+    case OutFormats::kPage:
+      return ".html, as a page is written";
   }
   return ".vtu, as a VTU file is written";
 }
@@ -123,9 +125,14 @@ bool HasExtension(const std::string& file, const std::string& extension) {
 void CheckOutputFlags(const std::vector<std::string>& inputs,
                       OutFormats formats) {
   if (!FLAGS_out.empty()) {
+    const bool is_table =
+        formats == OutFormats::kTable || formats == OutFormats::kVtuOrTable;
+    const bool is_vtu =
+        formats == OutFormats::kVtu || formats == OutFormats::kVtuOrTable;
     const bool is_right =
-        (formats != OutFormats::kTable && HasExtension(FLAGS_out, ".vtu")) ||
-        (formats != OutFormats::kVtu && HasExtension(FLAGS_out, ".csv"));
+        (is_vtu && HasExtension(FLAGS_out, ".vtu")) ||
+        (is_table && HasExtension(FLAGS_out, ".csv")) ||
+        (formats == OutFormats::kPage && HasExtension(FLAGS_out, ".html"));
     if (!is_right) {
       throw std::invalid_argument("--out=" + PrintablePath(FLAGS_out) +
                                   "; the name must end in " +

@@ -8,6 +8,7 @@
 
 #include "elastimate/core/equilibrium/equilibrium.h"
 #include "elastimate/core/materials/material_parameters.h"
+#include "elastimate/core/mesh/mesh_points.h"
 #include "elastimate/core/mesh/middle_nodes.h"
 #include "elastimate/core/scene/deformation_size.h"
 #include "elastimate/core/scene/degrees_of_freedom.h"
@@ -25,8 +26,9 @@ std::string CaseSuffix(Eigen::Index load_case) {
   return load_case == 0 ? "" : "_" + std::to_string(load_case + 1);
 }
 
-// Returns p of the estimate; empty where some parameters are not physical.
-std::optional<Eigen::VectorXd> PhysicalParameters(const Estimate& estimate) {
+// Returns p of the fit, without the correction for what its elements miss;
+// empty where some parameters are not physical.
+std::optional<Eigen::VectorXd> FittedParameters(const Estimate& estimate) {
   Eigen::VectorXd values(Eigen::Index(estimate.parameters.size()));
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     const ParameterEstimate& parameter = estimate.parameters[i];
@@ -34,6 +36,11 @@ std::optional<Eigen::VectorXd> PhysicalParameters(const Estimate& estimate) {
     if (!parameter.IsPhysical() || !std::isfinite(parameter.value)) {
       return std::nullopt;
     }
+  }
+  if (values.size() == 2 && estimate.discretization_correction) {
+    const Eigen::Vector2d& correction = *estimate.discretization_correction;
+    values(0) *= std::exp(-correction(0));
+    values(1) -= correction(1);
   }
   return values.size() == 0 ? std::nullopt
                             : std::optional<Eigen::VectorXd>(values);
@@ -175,12 +182,34 @@ Eigen::MatrixXd MeasuredMinus(Scene scene,
   return difference;
 }
 
-// Returns the scene with supports where a fit of unknown motion found them.
+// Does what MeasuredMinus does at the points of each load case: dimension x
+// num_points.
+std::vector<Eigen::MatrixXd> MeasuredMinusAtPoints(
+    Scene scene, const Eigen::MatrixXd& displacement) {
+  RemoveFreeRotation(scene);
+  const Mesh& mesh = scene.mesh;
+  std::vector<Eigen::MatrixXd> differences;
+  for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
+    const PointDisplacements& points = scene.load_cases[k].points;
+    differences.emplace_back(points.displacement);
+    if (points.points.Size() != 0) {
+      differences.back() -=
+          Interpolate(mesh, points.points,
+                      displacement.col(Eigen::Index(k))
+                          .reshaped(mesh.Dimension(), mesh.NumNodes()));
+    }
+  }
+  return differences;
+}
+
+// Returns the scene with supports where a fit of unknown motion found them, as
+// displacements that begin with those of its nodes tell.
 Scene WithFittedSupports(Scene scene, const Eigen::MatrixXd& fitted) {
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
     Supports supports = SupportsOf(scene, Eigen::Index(k));
     supports.displacement = supports.held.select(
         fitted.col(Eigen::Index(k))
+            .head(scene.mesh.NumDofs())
             .reshaped(scene.mesh.Dimension(), scene.mesh.NumNodes()),
         supports.displacement);
     supports.unknown.resize(0, 0);
@@ -190,10 +219,11 @@ Scene WithFittedSupports(Scene scene, const Eigen::MatrixXd& fitted) {
   return scene;
 }
 
-// Returns the scene of the fit, or with finer elements, of which a fit of
+// Returns the scene of the fit before any division, or with finer elements, of
+// which a fit of
 // unknown motion tells the displacements at the nodes of `scene` alone.
-Scene SolvedScene(const Scene& scene, const Scene& modelled,
-                  const Eigen::MatrixXd& fitted) {
+Scene UndividedScene(const Scene& scene, const Scene& modelled,
+                     const Eigen::MatrixXd& fitted) {
   if (fitted.size() == 0) {
     return modelled;
   }
@@ -210,11 +240,31 @@ Eigen::VectorXd ValuesOfMap(const MapEstimate& map) {
   return values;
 }
 
+// Adds by how much the displacement of finer elements differs from that of the
+// elements of `scene`, of the same supports.
+void AddMeshError(const Scene& scene, const Eigen::MatrixXd& finer,
+                  const Eigen::VectorXd& values, const Estimate& estimate,
+                  SolverKind solver, FieldCollector& collector) {
+  const Eigen::MatrixXd& fitted = estimate.fitted_displacement;
+  const Scene held =
+      fitted.size() == 0 ? scene : WithFittedSupports(scene, fitted);
+  Equilibrium model(held, solver);
+  if (!model.Solve(model.Forces().Parameters().Moduli(values))) {
+    return;
+  }
+  const Eigen::MatrixXd error =
+      finer.topRows(scene.mesh.NumDofs()) - model.Displacement();
+  for (Eigen::Index k = 0; k < error.cols(); ++k) {
+    collector.AddPoint("mesh_error", k, error);
+  }
+}
+
 // Adds what the model says at these parameters of its materials, which have
 // laws of small strains.
 void AddModel(const Scene& scene, const Scene& modelled,
               const Eigen::VectorXd& values, const Estimate& estimate,
-              SolverKind solver, FieldCollector& collector) {
+              SolverKind solver, FieldCollector& collector,
+              std::vector<Eigen::MatrixXd>& point_residuals) {
   const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
   if (!WhyNotHeld(scene).empty()) {
     const Eigen::MatrixXd force = AssembleLoadCases(scene);
@@ -229,8 +279,13 @@ void AddModel(const Scene& scene, const Scene& modelled,
     }
     return;
   }
-  const Scene solved =
-      SolvedScene(scene, modelled, estimate.fitted_displacement);
+  const Scene undivided =
+      UndividedScene(scene, modelled, estimate.fitted_displacement);
+  const std::optional<Scene> divided =
+      estimate.mesh_divisions > 0 && !estimate.map
+          ? std::optional<Scene>(FinerScene(undivided))
+          : std::nullopt;
+  const Scene& solved = divided ? *divided : undivided;
   Equilibrium model(solved, solver);
   const Eigen::VectorXd moduli = model.Forces().Parameters().Moduli(values);
   if (!model.Solve(moduli)) {
@@ -240,11 +295,13 @@ void AddModel(const Scene& scene, const Scene& modelled,
   const Eigen::MatrixXd difference = MeasuredMinus(solved, fitted);
   const Eigen::MatrixXd imbalance =
       model.Forces().Multiply(moduli, fitted) - AssembleLoadCases(solved);
-  const Eigen::MatrixXd held_imbalance = OfHeld(solved, imbalance);
-  const Eigen::MatrixXd reaction =
-      scene.mesh.Order() == 2
-          ? held_imbalance
-          : MiddleNodes(solved.mesh).Restrict(held_imbalance);
+  Eigen::MatrixXd reaction = OfHeld(solved, imbalance);
+  if (divided) {
+    reaction = MiddleNodes(solved.mesh).Restrict(reaction);
+  }
+  if (scene.mesh.Order() == 1) {
+    reaction = MiddleNodes(undivided.mesh).Restrict(reaction);
+  }
   collector.AddOutliers(estimate.outliers);
   for (Eigen::Index k = 0; k < num_cases; ++k) {
     collector.AddPoint("fitted_displacement", k, fitted);
@@ -252,33 +309,38 @@ void AddModel(const Scene& scene, const Scene& modelled,
     collector.AddPoint("reaction_force", k, reaction);
     collector.AddStrainEnergy(solved.mesh, model.Forces(), moduli, k, fitted);
   }
+  point_residuals = MeasuredMinusAtPoints(solved, fitted);
+  if (solved.mesh.NumNodes() > scene.mesh.NumNodes()) {
+    AddMeshError(scene, fitted, values, estimate, solver, collector);
+  }
 }
 
 }  // namespace
 
-Fields ResultFields(const Scene& scene, const Scene& modelled,
-                    const Estimate& estimate, SolverKind solver) {
-  Fields fields = SceneFields(scene);
-  const std::optional<Eigen::VectorXd> values = PhysicalParameters(estimate);
+SceneResults ResultsOf(const Scene& scene, const Scene& modelled,
+                       const Estimate& estimate, SolverKind solver) {
+  SceneResults results = {SceneFields(scene), {}};
+  const std::optional<Eigen::VectorXd> values = FittedParameters(estimate);
   if (!values) {
-    return fields;
+    return results;
   }
-  FieldCollector collector(scene.mesh, fields);
+  FieldCollector collector(scene.mesh, results.fields);
   if (estimate.map) {
     collector.AddMap(*estimate.map);
     AddModel(WithMaterialOfEachElement(scene),
              WithMaterialOfEachElement(modelled), ValuesOfMap(*estimate.map),
-             estimate, solver, collector);
-    return fields;
+             estimate, solver, collector, results.point_residuals);
+    return results;
   }
   if (!IsOneIsotropicMaterial(scene.materials)) {
     collector.AddParameters(scene, estimate);
     collector.AddResiduals(scene, estimate);
   }
   if (!HasLargeStrainLaw(scene.materials)) {
-    AddModel(scene, modelled, *values, estimate, solver, collector);
+    AddModel(scene, modelled, *values, estimate, solver, collector,
+             results.point_residuals);
   }
-  return fields;
+  return results;
 }
 
 }  // namespace elastimate

@@ -11,6 +11,9 @@ packages=(
   python3-matplotlib
 )
 
+# The page of `elastimate report` is bundled by npm, of Debian or another one.
+command -v npm >/dev/null || packages+=(nodejs npm)
+
 missing=()
 for package in "${packages[@]}"; do
   if [ "$(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null || true)" != installed ]; then
