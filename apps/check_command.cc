@@ -14,6 +14,7 @@
 #include "apps/progress.h"
 #include "apps/section_flags.h"
 #include "elastimate/core/mesh/axis_names.h"
+#include "elastimate/core/mesh/bounding_box.h"
 #include "elastimate/core/mesh/mesh_points.h"
 #include "elastimate/core/scene/rigid_motion.h"
 #include "elastimate/core/text/numbers.h"
@@ -27,15 +28,8 @@ namespace elastimate {
 namespace {
 
 void AddMesh(const Mesh& mesh, std::ostringstream& text) {
-  const Eigen::VectorXd low = mesh.nodes.rowwise().minCoeff();
-  const Eigen::VectorXd high = mesh.nodes.rowwise().maxCoeff();
-  AddLine("mesh",
-          std::to_string(mesh.NumElements()) + " " +
-              std::string(mesh.Topology().ShapeName(mesh.NumElements())) +
-              " (" + std::string(mesh.Topology().name) + "), " +
-              Counted(std::size_t(mesh.NumNodes()), "node") + ", from " +
-              VectorText(low) + " to " + VectorText(high),
-          text);
+  AddMeshLine(mesh.Topology(), mesh.NumElements(), mesh.NumNodes(), mesh.nodes,
+              text);
   const std::set<int> regions(mesh.regions.begin(), mesh.regions.end());
   if (regions.size() > 1) {
     AddLine("regions", std::to_string(regions.size()), text);
@@ -92,13 +86,12 @@ std::string Measured(const Mesh& mesh, const LoadCase& load_case) {
     num_measured = load_case.observed.colwise().any().count();
   }
   const double largest = displacement.colwise().norm().maxCoeff();
-  const double size =
-      (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff())
-          .norm();
   return Counted(std::size_t(num_measured), has_points ? "point" : "node") +
          (has_points ? " located in elements" : "") +
          ", largest displacement " + NumberText(largest, 3) + " (" +
-         PercentOf(largest / size, "the diagonal of the mesh") + ")" +
+         PercentOf(largest / DiagonalOf(mesh.nodes),
+                   "the diagonal of the mesh") +
+         ")" +
          (load_case.noise_sd ? ", noise " + NumberText(*load_case.noise_sd, 3)
                              : "");
 }

@@ -21,8 +21,7 @@
 #include "apps/result_fields.h"
 #include "apps/series.h"
 #include "elastimate/core/materials/isotropic_law.h"
-#include "elastimate/core/scene/finer_scene.h"
-#include "elastimate/estimators/material_fit/large_strain_choice.h"
+#include "elastimate/estimators/material_fit/fitted_scene.h"
 #include "elastimate/estimators/material_fit/law_choice.h"
 #include "elastimate/estimators/material_fit/merge.h"
 #include "elastimate/estimators/registry.h"
@@ -45,17 +44,6 @@ double SecondsSince(Clock::time_point start) {
 }
 
 bool MergesRegions() { return FLAGS_regions == "merge"; }
-
-// Takes --map for the parameter that differs between elements.
-void GiveMap(Scene& scene) {
-  if (FLAGS_map.empty()) {
-    return;
-  }
-  if (scene.materials.empty()) {
-    scene.materials.emplace_back();
-  }
-  scene.materials[0].fields = {FLAGS_map};
-}
 
 // Returns what of the command line the estimator cannot serve: the scene,
 // unless other flags would help.
@@ -243,23 +231,17 @@ int RunOne(const std::vector<std::string>& arguments,
   }
   Estimate estimate =
       RunEstimator(estimator, scene, modelled, options, Sources(arguments));
-  if (!estimate.large_strain_law.empty()) {
-    modelled.materials =
-        MaterialsOfLargeStrains(modelled.materials, estimate.large_strain_law);
-    scene.materials = modelled.materials;
-  }
   if (merge) {
     EnterMerge(*merge, estimate);
   }
   if (law) {
     EnterLawChoice(*law, estimate);
   }
-  // Fits of measured displacements raise the order themselves.
-  const std::optional<Scene> raised =
-      estimate.element_order > modelled.mesh.Order()
-          ? std::optional<Scene>(FinerScene(modelled))
-          : std::nullopt;
-  const Scene& reported = raised ? *raised : modelled;
+  const std::optional<Scene> fitted = FittedScene(modelled, estimate);
+  const Scene& reported = fitted ? *fitted : modelled;
+  if (!estimate.large_strain_law.empty()) {
+    scene.materials = reported.materials;
+  }
   StagedFiles files;
   if (!FLAGS_out.empty()) {
     progress->Show("writing " + PrintablePath(FLAGS_out));
@@ -295,7 +277,9 @@ int RunEstimate(const std::vector<std::string>& arguments) {
   if (ChoosesLaw()) {
     CheckLawChoice(reading, options);
   }
-  GiveMap(reading.scene);
+  if (!FLAGS_map.empty()) {
+    GiveField(FLAGS_map, reading.scene.materials);
+  }
   GiveKnownPoissonRatio(reading.scene, options);
   if (MergesRegions()) {
     CheckMerging(reading);

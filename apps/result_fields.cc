@@ -22,10 +22,6 @@
 namespace elastimate {
 namespace {
 
-std::string CaseSuffix(Eigen::Index load_case) {
-  return load_case == 0 ? "" : "_" + std::to_string(load_case + 1);
-}
-
 // Returns p of the estimate; empty where some parameters are not physical.
 std::optional<Eigen::VectorXd> PhysicalParameters(const Estimate& estimate) {
   Eigen::VectorXd values(Eigen::Index(estimate.parameters.size()));
@@ -278,19 +274,11 @@ void AddLargeStrainModel(const Scene& scene, const Scene& modelled,
       SolvedScene(scene, modelled, estimate.fitted_displacement);
   LargeStrainEquilibrium model(solved);
   const Eigen::VectorXd moduli = model.Forces().Parameters().Moduli(values);
-  const Eigen::Index num_cases = Eigen::Index(solved.load_cases.size());
-  Eigen::MatrixXd fitted(solved.mesh.NumDofs(), num_cases);
-  Eigen::MatrixXd imbalance(fitted.rows(), num_cases);
-  for (Eigen::Index k = 0; k < num_cases; ++k) {
-    const LargeStrainState state = model.Solve(moduli, k);
-    if (state.status != EquilibriumStatus::kDone) {
-      return;
-    }
-    fitted.col(k) = state.displacement;
-    imbalance.col(k) = model.Forces().Forces(moduli, state.displacement) -
-                       model.LoadAt(k, state.displacement);
+  const LargeStrainSolution solution = SolveLoadCases(moduli, model);
+  if (solution.why_not.empty()) {
+    AddFitted(scene, solved, solution.displacement, solution.imbalance,
+              estimate, collector);
   }
-  AddFitted(scene, solved, fitted, imbalance, estimate, collector);
 }
 
 }  // namespace

@@ -58,15 +58,8 @@ FirstScene SceneFromFlags() {
 
 std::string Contents(const MeshFile& mesh) {
   std::ostringstream text;
-  const auto num_elements = static_cast<std::int64_t>(mesh.elements.cols());
-  AddLine("mesh",
-          std::to_string(num_elements) + " " +
-              std::string(mesh.Topology().ShapeName(num_elements)) + " (" +
-              std::string(mesh.Topology().name) + "), " +
-              Counted(std::size_t(mesh.used.count()), "node") + ", from " +
-              VectorText(mesh.nodes.rowwise().minCoeff()) + " to " +
-              VectorText(mesh.nodes.rowwise().maxCoeff()),
-          text);
+  AddMeshLine(mesh.Topology(), mesh.elements.cols(), mesh.used.count(),
+              mesh.nodes, text);
   for (const MeshName& name : NamesOf(mesh)) {
     AddLine(name.key + " \"" + Printable(name.name) + "\"", name.what, text);
   }

@@ -22,14 +22,6 @@ Estimate NotRun(const std::string& why) {
   return estimate;
 }
 
-LoadCase ReadFrame(const FrameSeries& series, std::size_t i) {
-  LoadCase frame = series.read(i);
-  if (IsGiven("noise_sd")) {
-    frame.noise_sd = FLAGS_noise_sd;
-  }
-  return frame;
-}
-
 // Prepares the estimator for a frame, unless it is prepared already.
 void Prepare(const Estimator& estimator, const Scene& scene,
              const LoadCase& frame, const EstimatorOptions& options,
@@ -110,6 +102,14 @@ void CompareWith(const Eigen::VectorXd& before, const Eigen::VectorXd& residual,
 }
 
 }  // namespace
+
+LoadCase ReadFrame(const FrameSeries& series, std::size_t i) {
+  LoadCase frame = series.read(i);
+  if (IsGiven("noise_sd")) {
+    frame.noise_sd = FLAGS_noise_sd;
+  }
+  return frame;
+}
 
 std::vector<FrameEstimate> EstimateFrames(
     const Estimator& estimator, const Scene& scene, const FrameSeries& series,

@@ -12,6 +12,10 @@
 
 namespace elastimate {
 
+/// Reads frame `i`, with the standard deviation of --noise_sd if that is given.
+/// Throws as FrameSeries::read does.
+LoadCase ReadFrame(const FrameSeries& series, std::size_t i);
+
 /// Returns the estimate of each frame from an estimator that is prepared once.
 /// For a frame that cannot be read or used it says why.  `scene` is that of the
 /// frames, at the given standard deviation of noise, if any.  `progress` is

@@ -96,28 +96,16 @@ Solution SolveLargeStrains(const std::string& source, const Scene& modelled,
   const Eigen::VectorXd values = ParametersFromFlags(modelled);
   LargeStrainEquilibrium model(modelled);
   const Eigen::VectorXd moduli = model.Forces().Parameters().Moduli(values);
-  const Eigen::Index num_cases = Eigen::Index(modelled.load_cases.size());
-  Solution solution;
-  solution.displacement.resize(modelled.mesh.NumDofs(), num_cases);
-  for (Eigen::Index k = 0; k < num_cases; ++k) {
-    const std::string load_case = "load case " + std::to_string(k + 1);
-    progress.Show("searching the equilibrium of " + load_case);
-    const LargeStrainState state = model.Solve(moduli, k);
-    if (state.status != EquilibriumStatus::kDone) {
-      throw std::invalid_argument(source + ": " + load_case + ": " +
-                                  WhyNotInEquilibrium(state));
-    }
-    solution.displacement.col(k) = state.displacement;
+  const LargeStrainSolution solution =
+      SolveLoadCases(moduli, model, [&progress](const std::string& load_case) {
+        progress.Show("searching the equilibrium of " + load_case);
+      });
+  if (!solution.why_not.empty()) {
+    throw std::invalid_argument(source + ": " + solution.why_not);
   }
-  if (IsAnyDisplaced(modelled)) {
-    Eigen::MatrixXd residual(modelled.mesh.NumDofs(), num_cases);
-    for (Eigen::Index k = 0; k < num_cases; ++k) {
-      const Eigen::VectorXd u = solution.displacement.col(k);
-      residual.col(k) = model.Forces().Forces(moduli, u) - model.LoadAt(k, u);
-    }
-    solution.support_forces = OfHeld(modelled, residual);
-  }
-  return solution;
+  return {solution.displacement, IsAnyDisplaced(modelled)
+                                     ? OfHeld(modelled, solution.imbalance)
+                                     : Eigen::MatrixXd()};
 }
 
 Solution Solve(const std::string& source, const Scene& modelled,

@@ -13,6 +13,7 @@
 #include "apps/outputs.h"
 #include "apps/progress.h"
 #include "apps/section_flags.h"
+#include "apps/series.h"
 #include "apps/validation_models.h"
 #include "apps/validation_summary.h"
 #include "elastimate/estimators/registry.h"
@@ -66,18 +67,14 @@ void JoinFrames(SceneReading& reading) {
   }
   reading.scene.load_cases.clear();
   for (std::size_t i = 0; i < reading.frames->files.size(); ++i) {
-    LoadCase& frame =
-        reading.scene.load_cases.emplace_back(reading.frames->read(i));
-    if (IsGiven("noise_sd")) {
-      frame.noise_sd = FLAGS_noise_sd;
-    }
+    reading.scene.load_cases.push_back(ReadFrame(*reading.frames, i));
   }
 }
 
 Fields ErrorFields(const Scene& scene, const CrossValidation& validation) {
   Fields fields = SceneFields(scene);
   for (std::size_t k = 0; k < validation.errors.size(); ++k) {
-    const std::string suffix = k == 0 ? "" : "_" + std::to_string(k + 1);
+    const std::string suffix = CaseSuffix(k);
     const PredictionErrors& errors = validation.errors[k];
     fields.point.push_back({"prediction_error" + suffix, errors.of_nodes});
     fields.point.push_back(

@@ -11,13 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include "elastimate/estimators/material_fit/fitted_scene.h"
 #include "elastimate/estimators/registry.h"
 #include "elastimate/io/report/report.h"
 #include "elastimate/io/report/summary.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/python_scene.h"
-#include "python/reported_scene.h"
 
 namespace py = pybind11;
 
@@ -37,12 +37,16 @@ struct PythonEstimate {
     return {modelled->read_seconds, modelled->read_seconds + seconds};
   }
   std::string Summary() const {
-    return elastimate::Summary(
-        estimate, ReportedScene(modelled->scene, estimate), Times());
+    return elastimate::Summary(estimate, Reported(), Times());
   }
   std::string Json() const {
-    return JsonReport(estimate, ReportedScene(modelled->scene, estimate),
-                      options, Times(), modelled->notices);
+    return JsonReport(estimate, Reported(), options, Times(),
+                      modelled->notices);
+  }
+
+ private:
+  Scene Reported() const {
+    return FittedScene(modelled->scene, estimate).value_or(modelled->scene);
   }
 };
 

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "elastimate/core/materials/material_parameters.h"
+#include "elastimate/core/mesh/bounding_box.h"
 #include "elastimate/core/scene/quadratic_scene.h"
 #include "elastimate/core/scene/scene_builder.h"
 #include "elastimate/core/text/numbers.h"
@@ -117,10 +118,8 @@ PointDisplacements Locate(const Mesh& mesh, const Numbers& positions,
         "points need " + std::to_string(mesh.Dimension()) +
         " finite coordinates each; give an array of one row for each point");
   }
-  const double tolerance = given_tolerance.value_or(
-      kUsualPointTolerance *
-      (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff())
-          .norm());
+  const double tolerance =
+      given_tolerance.value_or(kUsualPointTolerance * DiagonalOf(mesh.nodes));
   const LocatedPoints located = PointLocator(mesh).Locate(columns);
   Eigen::Index farthest = 0;
   if (columns.cols() > 0 && located.distance.maxCoeff(&farthest) > tolerance) {
@@ -213,10 +212,7 @@ std::shared_ptr<PythonScene> WithChoices(
   }
   scene.origin = origin ? OriginNamed(*origin) : scene.origin;
   if (map) {
-    if (scene.materials.empty()) {
-      scene.materials.emplace_back();
-    }
-    scene.materials[0].fields = {*map};
+    GiveField(*map, scene.materials);
   }
   ValidateScene(scene);
   if (order > scene.mesh.Order()) {
@@ -351,11 +347,7 @@ fields   names of parameters with a value for each element: "youngs_modulus")")
       .def_readonly("regions", &Material::regions);
 }
 
-}  // namespace
-
-void BindScene(py::module_& module) {
-  BindLoads(module);
-  BindMaterial(module);
+void BindParameter(py::module_& module) {
   py::class_<ParameterEstimate>(module, "Parameter",
                                 "What is said of one parameter of a material.")
       .def_readonly("name", &ParameterEstimate::name,
@@ -388,7 +380,14 @@ void BindScene(py::module_& module) {
         return "<Parameter " + self.Label() + " = " +
                py::str(py::float_(self.value)).cast<std::string>() + ">";
       });
+}
 
+}  // namespace
+
+void BindScene(py::module_& module) {
+  BindLoads(module);
+  BindMaterial(module);
+  BindParameter(module);
   py::class_<PythonScene, std::shared_ptr<PythonScene>>(module, "Scene")
       .def(py::init(&MakeScene), py::arg("kind"), py::arg("nodes"),
            py::arg("elements"), py::arg("section"), py::arg("thickness"))

@@ -32,17 +32,11 @@ Eigen::MatrixXd LargeDisplacements(const Scene& scene,
                                    const Eigen::VectorXd& parameters) {
   LargeStrainEquilibrium model(scene);
   const Eigen::VectorXd moduli = model.Forces().Parameters().Moduli(parameters);
-  const Eigen::Index num_cases = Eigen::Index(scene.load_cases.size());
-  Eigen::MatrixXd displacements(scene.mesh.NumDofs(), num_cases);
-  for (Eigen::Index k = 0; k < num_cases; ++k) {
-    const LargeStrainState state = model.Solve(moduli, k);
-    if (state.status != EquilibriumStatus::kDone) {
-      throw std::invalid_argument("load case " + std::to_string(k + 1) + ": " +
-                                  WhyNotInEquilibrium(state));
-    }
-    displacements.col(k) = state.displacement;
+  const LargeStrainSolution solution = SolveLoadCases(moduli, model);
+  if (!solution.why_not.empty()) {
+    throw std::invalid_argument(solution.why_not);
   }
-  return displacements;
+  return solution.displacement;
 }
 
 Eigen::MatrixXd SmallDisplacements(const Scene& scene,

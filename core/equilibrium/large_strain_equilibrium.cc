@@ -319,4 +319,29 @@ LargeStrainState LargeStrainEquilibrium::Solve(const Eigen::VectorXd& moduli,
   return state;
 }
 
+LargeStrainSolution SolveLoadCases(
+    const Eigen::VectorXd& moduli, LargeStrainEquilibrium& model,
+    const std::function<void(const std::string&)>& progress) {
+  const Eigen::Index num_cases = model.Load().cols();
+  LargeStrainSolution solution;
+  solution.displacement.resize(model.Load().rows(), num_cases);
+  solution.imbalance.resize(model.Load().rows(), num_cases);
+  for (Eigen::Index k = 0; k < num_cases; ++k) {
+    const std::string load_case = "load case " + std::to_string(k + 1);
+    if (progress) {
+      progress(load_case);
+    }
+    const LargeStrainState state = model.Solve(moduli, k);
+    if (state.status != EquilibriumStatus::kDone) {
+      solution.why_not = load_case + ": " + WhyNotInEquilibrium(state);
+      return solution;
+    }
+    solution.displacement.col(k) = state.displacement;
+    solution.imbalance.col(k) =
+        model.Forces().Forces(moduli, state.displacement) -
+        model.LoadAt(k, state.displacement);
+  }
+  return solution;
+}
+
 }  // namespace elastimate

@@ -2,6 +2,7 @@
 #define ELASTIMATE_CORE_EQUILIBRIUM_LARGE_STRAIN_EQUILIBRIUM_H_
 
 #include <Eigen/Core>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <string>
@@ -177,6 +178,24 @@ class LargeStrainEquilibrium {
   Eigen::MatrixXd shear_blocks_;
   int element_passes_ = 0;
 };
+
+/// The equilibria of all load cases.
+struct LargeStrainSolution {
+  Eigen::MatrixXd displacement;  ///< num_dofs x num_load_cases [length].
+  /// f(u) - F, num_dofs x num_load_cases [force]; in the held rows, these are
+  /// the forces of the supports.
+  Eigen::MatrixXd imbalance;
+  /// "load case 2: beyond ..." of the first load case without equilibrium, of
+  /// which and of later ones the columns mean nothing; empty where all have
+  /// one.
+  std::string why_not;
+};
+
+/// Finds the equilibrium of one load case after the other.  `progress` is
+/// called with "load case 2" before each search; it may be empty.
+[[nodiscard]] LargeStrainSolution SolveLoadCases(
+    const Eigen::VectorXd& moduli, LargeStrainEquilibrium& model,
+    const std::function<void(const std::string&)>& progress = {});
 
 }  // namespace elastimate
 

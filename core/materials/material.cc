@@ -340,6 +340,13 @@ bool HasFields(const std::vector<Material>& materials) {
       [](const Material& material) { return !material.fields.empty(); });
 }
 
+void GiveField(const std::string& parameter, std::vector<Material>& materials) {
+  if (materials.empty()) {
+    materials.emplace_back();
+  }
+  materials[0].fields = {parameter};
+}
+
 bool HasPriors(const std::vector<Material>& materials) {
   return std::any_of(
       materials.begin(), materials.end(),

@@ -84,6 +84,10 @@ void ValidateMaterials(const std::vector<Material>& materials,
 /// Tells whether a parameter of any material differs between elements.
 [[nodiscard]] bool HasFields(const std::vector<Material>& materials);
 
+/// Has a parameter of the first material, which is an isotropic one if there is
+/// none, differ between elements.
+void GiveField(const std::string& parameter, std::vector<Material>& materials);
+
 /// Tells whether any material has a prior.
 [[nodiscard]] bool HasPriors(const std::vector<Material>& materials);
 

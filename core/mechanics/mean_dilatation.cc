@@ -164,6 +164,32 @@ void MeanDilatation::ReplaceStresses(PointMatrices& stresses) const {
   }
 }
 
+MeanDilatation::StretchedTangent MeanDilatation::Stretch(
+    const PointMatrices& stresses, const PointTangents& tangents) const {
+  StretchedTangent stretch;
+  stretch.pulled = {};
+  stretch.of_stretch = {};
+  for (int n = 0; n < entries_.size; ++n) {
+    const int a = entries_.places[n];
+    double* const pulled = stretch.pulled.row[a];
+    for (int m = 0; m < entries_.size; ++m) {
+      const int b = entries_.places[m];
+      const double* const tangent = tangents.row[TangentRow(a, b)];
+      for (int p = 0; p < kPoints; ++p) {
+        pulled[p] += tangent[p] * f_.row[b][p];
+      }
+    }
+    for (int p = 0; p < kPoints; ++p) {
+      const double s = scale_.row[0][p];
+      const double stretched = s * s * pulled[p];
+      stretch.of_stretch.row[0][p] += f_.row[a][p] * stretched;
+      pulled[p] = stretched + s * stresses.row[a][p];
+      stretch.g.row[a][p] = cofactors_.row[a][p] / jacobian_.row[0][p];
+    }
+  }
+  return stretch;
+}
+
 void MeanDilatation::SetCurvature(const PointMatrices& stresses,
                                   const PointTangents& tangents,
                                   Curvature& curvature) const {
@@ -179,32 +205,15 @@ void MeanDilatation::SetCurvature(const PointMatrices& stresses,
   // G = F^-T and s^2 T F to s^2 T.
   const PointNumbers work = Work(stresses);
   const PointNumbers pressures = Pressures(work);
-  PointMatrices g;
-  PointMatrices pulled = {};  // s^2 T F + s Pbar.
-  PointNumbers of_stretch = {};
-  for (int n = 0; n < entries_.size; ++n) {
-    const int a = entries_.places[n];
-    for (int m = 0; m < entries_.size; ++m) {
-      const int b = entries_.places[m];
-      const double* const tangent = tangents.row[TangentRow(a, b)];
-      for (int p = 0; p < kPoints; ++p) {
-        pulled.row[a][p] += tangent[p] * f_.row[b][p];
-      }
-    }
-    for (int p = 0; p < kPoints; ++p) {
-      const double s = scale_.row[0][p];
-      const double stretched = s * s * pulled.row[a][p];
-      of_stretch.row[0][p] += f_.row[a][p] * stretched;
-      pulled.row[a][p] = stretched + s * stresses.row[a][p];
-      g.row[a][p] = cofactors_.row[a][p] / jacobian_.row[0][p];
-    }
-  }
+  const StretchedTangent stretched = Stretch(stresses, tangents);
+  const PointMatrices& g = stretched.g;
+  const PointMatrices& pulled = stretched.pulled;
   PointNumbers twist;      // The factor of tr(F^-1 dF F^-1 dF).
   PointNumbers of_g;       // The factor of the outer product of G.
   PointNumbers sum_third;  // (F : s^2 T F + pi) / 3.
   PointNumbers per_theta;  // 1 / (3 Theta).
   for (int p = 0; p < kPoints; ++p) {
-    const double sum = of_stretch.row[0][p] + work.row[0][p];
+    const double sum = stretched.of_stretch.row[0][p] + work.row[0][p];
     const double theta = theta_.row[0][p];
     const double of_volume = pressures.row[0][p] * jacobian_.row[0][p];
     twist.row[0][p] = work.row[0][p] / 3 - of_volume;

@@ -81,6 +81,14 @@ class MeanDilatation {
   void SetDeformation(const PointMatrices& gradients);
   /// Returns pi at each point.
   PointNumbers Work(const PointMatrices& stresses) const;
+  /// The tangent T of the law, applied to F.
+  struct StretchedTangent {
+    PointMatrices g;          ///< G = F^-T.
+    PointMatrices pulled;     ///< s^2 T F + s Pbar.
+    PointNumbers of_stretch;  ///< s^2 F : T F.
+  };
+  StretchedTangent Stretch(const PointMatrices& stresses,
+                           const PointTangents& tangents) const;
   /// Returns the fit of these values in each element.
   PointNumbers Fit(const PointNumbers& values) const;
   /// Returns p at each point, for `work` pi.

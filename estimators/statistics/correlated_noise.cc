@@ -7,6 +7,7 @@
 
 #include "elastimate/core/algebra/dense_algebra.h"
 #include "elastimate/core/algebra/node_sums.h"
+#include "elastimate/core/mesh/bounding_box.h"
 #include "elastimate/core/mesh/mesh_points.h"
 #include "elastimate/core/mesh/nearest_points.h"
 #include "elastimate/estimators/interface/limits.h"
@@ -105,16 +106,11 @@ Eigen::MatrixXd PositivePart(const Eigen::MatrixXd& symmetric) {
          parts.vectors.transpose();
 }
 
-double SizeOf(const Mesh& mesh) {
-  return (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff())
-      .norm();
-}
-
 // How far residuals of which some are alike over this length are those of a
 // model that is wrong rather than of noise: wholly from an eighth of the
 // specimen on, as a wave of its size is alike, and quickly less below.
 double ShareOfModel(const Mesh& mesh, double length) {
-  return std::min(1.0, std::pow(8 * length / SizeOf(mesh), 4));
+  return std::min(1.0, std::pow(8 * length / DiagonalOf(mesh.nodes), 4));
 }
 
 // Over pairs of rows by steps of their distance.
@@ -173,7 +169,8 @@ Autocorrelation CorrelateResiduals(const Scene& scene,
   // Neighbours are a little nearer or farther than a step.
   correlation.step *= 1.5;
   const Eigen::Index num_steps =
-      1 + static_cast<Eigen::Index>(SizeOf(scene.mesh) / correlation.step);
+      1 + static_cast<Eigen::Index>(DiagonalOf(scene.mesh.nodes) /
+                                    correlation.step);
   const PairSums sums = SumPairs(all, residual, correlation.step, num_steps);
   const Eigen::VectorXd& counts = sums.counts;
   const double variance =

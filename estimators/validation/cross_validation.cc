@@ -12,7 +12,7 @@
 #include "elastimate/core/scene/finer_scene.h"
 #include "elastimate/core/scene/unknown_motion.h"
 #include "elastimate/estimators/interface/free_parameters.h"
-#include "elastimate/estimators/material_fit/large_strain_choice.h"
+#include "elastimate/estimators/material_fit/fitted_scene.h"
 #include "elastimate/estimators/misfit/displacement_misfit.h"
 
 namespace elastimate {
@@ -26,16 +26,15 @@ constexpr double kChance = 4;
 
 // Returns the spaces of a fit, from coarse to fine: the scene with the elements
 // of its mesh, and with those that the fit had in place of them.
-std::vector<Scene> FittedSpaces(Scene scene, const Estimate& estimate) {
-  if (!estimate.large_strain_law.empty()) {
-    scene.materials =
-        MaterialsOfLargeStrains(scene.materials, estimate.large_strain_law);
+std::vector<Scene> FittedSpaces(const Scene& scene, const Estimate& estimate) {
+  std::vector<Scene> spaces = {scene};
+  if (std::optional<Scene> fitted = FittedScene(scene, estimate)) {
+    spaces.front().materials = fitted->materials;
+    if (fitted->mesh.Order() > scene.mesh.Order()) {
+      spaces.push_back(std::move(*fitted));
+    }
   }
-  std::vector<Scene> spaces = {std::move(scene)};
-  const int refinements =
-      estimate.mesh_divisions +
-      (estimate.element_order > spaces.front().mesh.Order() ? 1 : 0);
-  for (int i = 0; i < refinements; ++i) {
+  for (int i = 0; i < estimate.mesh_divisions; ++i) {
     spaces.push_back(FinerScene(spaces.back()));
   }
   return spaces;

@@ -49,7 +49,7 @@ struct FoldPrediction {
 struct PredictionErrors {
   Eigen::MatrixXd of_nodes;   ///< dimension x num_nodes [length], or NaN.
   Eigen::MatrixXd of_points;  ///< dimension x num_points [length], or NaN.
-  /// The same over their stated standard errors.
+  /// These have the errors above, divided by their stated standard errors.
   Eigen::MatrixXd standardised_of_nodes;
   Eigen::MatrixXd standardised_of_points;
 };

@@ -1,19 +1,17 @@
 #include "elastimate/estimators/validation/folds.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
-#include <limits>
 #include <stdexcept>
+#include <utility>
 
+#include "elastimate/core/mesh/axis_names.h"
 #include "elastimate/core/mesh/mesh_points.h"
 #include "elastimate/core/text/numbers.h"
+#include "elastimate/estimators/material_fit/outliers.h"
 
 namespace elastimate {
 namespace {
-
-constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
-constexpr const char* kAxisNames[] = {"x", "y", "z"};
 
 bool IsNodeMeasured(const LoadCase& load_case, Eigen::Index node,
                     int dimension) {
@@ -165,44 +163,32 @@ Folds DivideLoadCases(const Scene& scene, int num_folds) {
   return folds;
 }
 
-// Returns the load case with the measurement of those nodes and points whose
-// folds are kept.
-LoadCase Kept(LoadCase load_case, const Eigen::VectorXi& of_nodes,
-              const Eigen::VectorXi& of_points,
-              const std::function<bool(int)>& is_kept) {
-  if (load_case.displacement.size() != 0) {
-    ComponentMask observed = load_case.observed;
-    if (observed.size() == 0) {
-      observed.setConstant(load_case.displacement.rows(),
-                           load_case.displacement.cols(), true);
-    }
-    for (Eigen::Index node = 0; node < of_nodes.size(); ++node) {
-      if (of_nodes(node) >= 0 && !is_kept(of_nodes(node))) {
-        observed.col(node) = false;
-      }
-    }
-    load_case.observed = observed;
-  }
-  for (Eigen::Index point = 0; point < of_points.size(); ++point) {
-    if (!is_kept(of_points(point))) {
-      load_case.points.displacement.col(point).setConstant(kNotMeasured);
-    }
-  }
-  return load_case;
-}
-
+// Returns the scene with the measurement of those nodes and points whose folds
+// are kept.
 PartOfScene Part(const Scene& scene, const Folds& folds,
                  const std::function<bool(int)>& is_kept) {
-  const auto has = [&](const Eigen::VectorXi& of) {
-    return std::any_of(of.begin(), of.end(),
-                       [&](int fold) { return fold >= 0 && is_kept(fold); });
+  std::vector<Outlier> left_out;
+  std::vector<bool> has_any(scene.load_cases.size(), false);
+  const auto sort = [&](std::size_t k, const Eigen::VectorXi& of,
+                        bool is_point) {
+    for (Eigen::Index i = 0; i < of.size(); ++i) {
+      if (of(i) >= 0 && is_kept(of(i))) {
+        has_any[k] = true;
+      } else if (of(i) >= 0) {
+        left_out.push_back({Eigen::Index(k), i, is_point});
+      }
+    }
   };
-  PartOfScene part = {scene, {}};
-  part.scene.load_cases.clear();
   for (std::size_t k = 0; k < scene.load_cases.size(); ++k) {
-    if (has(folds.of_nodes[k]) || has(folds.of_points[k])) {
-      part.scene.load_cases.push_back(Kept(
-          scene.load_cases[k], folds.of_nodes[k], folds.of_points[k], is_kept));
+    sort(k, folds.of_nodes[k], false);
+    sort(k, folds.of_points[k], true);
+  }
+  PartOfScene part = {WithoutOutliers(scene, left_out), {}};
+  std::vector<LoadCase> load_cases = std::move(part.scene.load_cases);
+  part.scene.load_cases.clear();
+  for (std::size_t k = 0; k < load_cases.size(); ++k) {
+    if (has_any[k]) {
+      part.scene.load_cases.push_back(std::move(load_cases[k]));
       part.load_cases.push_back(Eigen::Index(k));
     }
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <boost/algorithm/string/case_conv.hpp>
 #include <boost/algorithm/string/trim.hpp>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include "elastimate/io/abaqus/abaqus_elements.h"
+#include "elastimate/io/text/parsed_number.h"
 #include "elastimate/io/text/printable.h"
 
 namespace elastimate {
@@ -20,12 +20,9 @@ using Cells = std::vector<std::string_view>;
 using Members = NumberedSet::Members;
 
 std::optional<std::size_t> ToNumber(std::string_view cell) {
-  std::size_t number = 0;
-  const auto [end, error] =
-      std::from_chars(cell.data(), cell.data() + cell.size(), number);
-  return error == std::errc() && end == cell.data() + cell.size()
-             ? std::optional(number)
-             : std::nullopt;
+  // Numbers of nodes and elements have no sign.
+  return cell.substr(0, 1) == "+" ? std::nullopt
+                                  : ParsedNumber<std::size_t>(cell);
 }
 
 std::size_t NumberIn(const KeywordBlock& block, const KeywordData& data,
@@ -45,15 +42,12 @@ double RealIn(const KeywordBlock& block, const KeywordData& data,
   std::string text(cell);
   boost::to_lower(text);
   std::replace(text.begin(), text.end(), 'd', 'e');
-  const char* const begin = text.data() + (text[0] == '+' ? 1 : 0);
-  const char* const end = text.data() + text.size();
-  double value = 0;
-  const auto [stop, error] = std::from_chars(begin, end, value);
-  if (!text.empty() && (error != std::errc() || stop != end)) {
+  const std::optional<double> value = ParsedNumber<double>(text);
+  if (!text.empty() && !value) {
     block.FailAt(data.line,
                  "'" + Printable(cell) + "' is not a number; correct it");
   }
-  return value;  // An empty cell is zero.
+  return value.value_or(0);  // An empty cell is zero.
 }
 
 Eigen::VectorXd RealsIn(const KeywordBlock& block, const KeywordData& data,

@@ -54,7 +54,7 @@ struct AbaqusDeck {
   /// The parts by their names in small letters.
   std::map<std::string, AbaqusScope> parts;
   std::vector<AbaqusInstance> instances;
-  /// Of planar elements; zero where no *SOLID SECTION says it.
+  /// The thickness of planar elements is zero where no *SOLID SECTION says it.
   double thickness = 0;
 };
 

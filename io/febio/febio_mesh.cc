@@ -1,9 +1,9 @@
 #include "elastimate/io/febio/febio_mesh.h"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <new>
+#include <optional>
 #include <pugixml.hpp>
 #include <string>
 #include <string_view>
@@ -13,6 +13,7 @@
 #include "elastimate/core/text/numbers.h"
 #include "elastimate/io/mesh/numbered_mesh.h"
 #include "elastimate/io/text/input_error.h"
+#include "elastimate/io/text/parsed_number.h"
 
 namespace elastimate {
 namespace {
@@ -105,14 +106,11 @@ class FebioReader {
       const std::size_t end =
           std::min(text.find_first_of(kSeparators, first), text.size());
       const std::string_view word = text.substr(first, end - first);
-      const char* const begin = word.data() + (word[0] == '+' ? 1 : 0);
-      const char* const past = word.data() + word.size();
-      Number number = 0;
-      const auto [stop, error] = std::from_chars(begin, past, number);
-      if (error != std::errc() || stop != past) {
+      const std::optional<Number> number = ParsedNumber<Number>(word);
+      if (!number) {
         Fail(part, "has '" + Printable(word) + "' where a number is due");
       }
-      numbers.push_back(number);
+      numbers.push_back(*number);
       first = end;
     }
     return numbers;

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <utility>
 
+#include "elastimate/core/mesh/bounding_box.h"
 #include "elastimate/io/points/points_file.h"
 #include "elastimate/io/points/table_options.h"
 #include "elastimate/io/text/input_error.h"
@@ -35,15 +36,9 @@ std::vector<std::filesystem::path> FilesOf(const JsonValue& points) {
   return files;
 }
 
-// The diagonal of the bounding box.
-double SpanOf(const Eigen::MatrixXd& positions) {
-  return (positions.rowwise().maxCoeff() - positions.rowwise().minCoeff())
-      .norm();
-}
-
 double ToleranceOf(const JsonValue& displacement, const Mesh& mesh) {
   if (!displacement.Has("tolerance")) {
-    return kUsualPointTolerance * SpanOf(mesh.nodes);
+    return kUsualPointTolerance * DiagonalOf(mesh.nodes);
   }
   const double tolerance = displacement.At("tolerance").Number();
   if (!(tolerance >= 0)) {
@@ -119,8 +114,8 @@ void CheckSpan(const std::filesystem::path& path, const PointsFile& file,
                const Mesh& mesh, const TableOptions& options) {
   constexpr double kLeastSpan = 0.01;
   constexpr Eigen::Index kFewPoints = 3;
-  const double span = SpanOf(file.positions);
-  const double size = SpanOf(mesh.nodes);
+  const double span = DiagonalOf(file.positions);
+  const double size = DiagonalOf(mesh.nodes);
   if (file.positions.cols() > kFewPoints && span < kLeastSpan * size &&
       !options.unit) {
     ThrowInputError(

@@ -4,7 +4,6 @@
 #include <array>
 #include <boost/algorithm/string/erase.hpp>
 #include <boost/algorithm/string/predicate.hpp>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -13,6 +12,7 @@
 
 #include "elastimate/io/text/column_titles.h"
 #include "elastimate/io/text/input_error.h"
+#include "elastimate/io/text/parsed_number.h"
 #include "elastimate/io/text/text_file.h"
 #include "elastimate/io/text/trimmed.h"
 
@@ -43,17 +43,6 @@ Cells Split(std::string_view line, std::string_view separators) {
     first = end + 1;
   }
   return cells;
-}
-
-template <typename Number>
-std::optional<Number> ParsedNumber(std::string_view cell) {
-  Number number = 0;
-  const char* const end = cell.data() + cell.size();
-  const char* const begin =
-      cell.data() + (!cell.empty() && cell[0] == '+' ? 1 : 0);
-  const auto [stop, error] = std::from_chars(begin, end, number);
-  return error == std::errc() && stop == end ? std::optional(number)
-                                             : std::nullopt;
 }
 
 /// The places of what is read in the cells of a row.

@@ -1,9 +1,9 @@
 #include "elastimate/io/report/plan_report.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "elastimate/core/package/version.h"
+#include "elastimate/io/report/json_number.h"
 #include "elastimate/io/text/printable.h"
 
 namespace elastimate {
@@ -11,21 +11,17 @@ namespace {
 
 using PlanJson = nlohmann::ordered_json;
 
-PlanJson FiniteOrNull(double value) {
-  return std::isfinite(value) ? PlanJson(value) : PlanJson(nullptr);
-}
-
 PlanJson ErrorsJson(const LoadPlan& plan, const ExpectedErrors& errors) {
   PlanJson of_parameters = PlanJson::array();
   for (const double error : errors.OfParameters()) {
-    of_parameters.push_back(FiniteOrNull(error));
+    of_parameters.push_back(OrNull(error));
   }
   const Eigen::VectorXd worst = errors.directions.col(0);
   return {{"standard_errors", of_parameters},
           {"determined", plan.AreDetermined(errors)},
           {"undetermined_combinations", errors.NumUndetermined()},
           {"worst_combination",
-           {{"standard_error", FiniteOrNull(errors.standard_errors(0))},
+           {{"standard_error", OrNull(errors.standard_errors(0))},
             {"direction", std::vector<double>(worst.begin(), worst.end())},
             {"text", CombinationInWords(worst, plan.Free())}}}};
 }
@@ -56,7 +52,7 @@ PlanJson LoadJson(const LoadPlan& plan, const PlannedLoad& load,
                    : PlanJson(nullptr)}};
   json.update(ErrorsJson(plan, load.errors));
   json["standard_error_of_worst_before"] =
-      FiniteOrNull(load.errors.Along(plan.before.directions.col(0)));
+      OrNull(load.errors.Along(plan.before.directions.col(0)));
   return json;
 }
 
@@ -81,8 +77,7 @@ std::string JsonPlan(const LoadPlan& plan, const PlanBasis& basis,
       {"elastimate", Version()},
       {"parameters", FreeParametersJson(plan)},
       {"parameters_from", basis.parameters},
-      {"noise_sd",
-       basis.noise_sd ? PlanJson(*basis.noise_sd) : PlanJson(nullptr)},
+      {"noise_sd", OrNull(basis.noise_sd)},
       {"relative_noise",
        basis.noise_sd ? PlanJson(nullptr) : PlanJson(basis.relative_noise)},
       {"before", PlanJson({{"load_cases", basis.load_cases},

@@ -10,6 +10,7 @@
 #include "elastimate/core/package/version.h"
 #include "elastimate/core/scene/loads.h"
 #include "elastimate/estimators/interface/axis_estimate.h"
+#include "elastimate/io/report/json_number.h"
 #include "elastimate/io/scene/origin.h"
 #include "elastimate/io/text/printable.h"
 
@@ -17,10 +18,6 @@ namespace elastimate {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json OrNull(const std::optional<double>& value) {
-  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
-}
 
 Json OptionsJson(const EstimatorOptions& options) {
   const char* const loss_names[] = {"none", "huber", "cauchy"};

@@ -63,6 +63,19 @@ void AddLine(const std::string& name, const std::string& value,
        << (name.size() < kWidth ? "" : " ") << value << "\n";
 }
 
+void AddMeshLine(const ElementTopology& topology, Eigen::Index num_elements,
+                 Eigen::Index num_nodes, const Eigen::MatrixXd& nodes,
+                 std::ostringstream& text) {
+  AddLine("mesh",
+          std::to_string(num_elements) + " " +
+              std::string(topology.ShapeName(num_elements)) + " (" +
+              std::string(topology.name) + "), " +
+              Counted(std::size_t(num_nodes), "node") + ", from " +
+              VectorText(nodes.rowwise().minCoeff()) + " to " +
+              VectorText(nodes.rowwise().maxCoeff()),
+          text);
+}
+
 void AddLoadLines(const Scene& scene, std::ostringstream& text) {
   constexpr std::size_t kMany = 8;
   const std::size_t num_cases = scene.load_cases.size();

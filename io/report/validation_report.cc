@@ -1,9 +1,9 @@
 #include "elastimate/io/report/validation_report.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "elastimate/core/package/version.h"
+#include "elastimate/io/report/json_number.h"
 #include "elastimate/io/text/printable.h"
 
 namespace elastimate {
@@ -11,15 +11,11 @@ namespace {
 
 using ValidationJson = nlohmann::ordered_json;
 
-ValidationJson NumberOrNull(double value) {
-  return std::isfinite(value) ? ValidationJson(value) : ValidationJson(nullptr);
-}
-
 ValidationJson PredictionJson(const Prediction& prediction) {
   return {{"values", prediction.num_values},
-          {"rms_error", NumberOrNull(prediction.RmsError())},
-          {"relative_error", NumberOrNull(prediction.RelativeError())},
-          {"error_ratio", NumberOrNull(prediction.ErrorRatio())},
+          {"rms_error", OrNull(prediction.RmsError())},
+          {"relative_error", OrNull(prediction.RelativeError())},
+          {"error_ratio", OrNull(prediction.ErrorRatio())},
           {"is_off", prediction.IsOff()}};
 }
 
@@ -29,9 +25,8 @@ ValidationJson FoldJson(const std::string& name, const FoldPrediction& fold) {
     parameters.push_back(
         {{"name", parameter.name},
          {"regions", parameter.regions},
-         {"value", NumberOrNull(parameter.value)},
-         {"standard_error", NumberOrNull(parameter.standard_error.value_or(
-                                Estimate::kUnknown))}});
+         {"value", OrNull(parameter.value)},
+         {"standard_error", OrNull(parameter.standard_error)}});
   }
   ValidationJson json = {
       {"held_out", name},

@@ -177,13 +177,17 @@ void AddSupports(const Supports& supports, const std::string& suffix,
 
 }  // namespace
 
+std::string CaseSuffix(std::size_t k) {
+  return k == 0 ? "" : "_" + std::to_string(k + 1);
+}
+
 Fields SceneFields(const Scene& scene) {
   Fields fields;
   fields.origin = scene.origin;
   AddSupports(scene.supports, "", fields);
   for (std::size_t i = 0; i < scene.load_cases.size(); ++i) {
     const LoadCase& load_case = scene.load_cases[i];
-    const std::string suffix = i == 0 ? "" : "_" + std::to_string(i + 1);
+    const std::string suffix = CaseSuffix(i);
     fields.point.push_back(
         {"force" + suffix, AssembleLoads(scene.mesh, load_case.loads)});
     if (load_case.supports) {

@@ -23,6 +23,10 @@ struct Fields {
   Origin origin = Origin::kMeasured;
 };
 
+/// Returns what ends the names of the arrays of load case `k`, from 0 on: "" of
+/// the first one, "_2" of the second one.
+[[nodiscard]] std::string CaseSuffix(std::size_t k);
+
 /// Returns the arrays that ReadScene reads back as `scene`: `fixed`,
 /// `prescribed` when a support is held away from zero, and `region`.  For each
 /// load case k, with suffix `_k` for k > 1, these are `force` (the loads

@@ -14,6 +14,7 @@
 #include "elastimate/io/scene/mesh_reader.h"
 #include "elastimate/io/scene/scene_reader.h"
 #include "tests/io/abaqus_files.h"
+#include "tests/io/mesh_text.h"
 #include "tests/io/scene_files.h"
 #include "tests/throws.h"
 
@@ -23,19 +24,9 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-class AbaqusMeshTest : public ::testing::Test {
+class AbaqusMeshTest : public MeshTextTest {
  protected:
-  MeshFile Read(const std::string& content) const {
-    return ReadMeshFile(folder_.Write("mesh.inp", content));
-  }
-  std::string WhyNot(const std::string& content) const {
-    try {
-      Read(content);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "it is read";
-  }
+  AbaqusMeshTest() : MeshTextTest("mesh.inp") {}
   SceneReading ReadWith(const std::string& content,
                         const std::string& rest) const {
     folder_.Write("mesh.inp", content);
@@ -43,8 +34,6 @@ class AbaqusMeshTest : public ::testing::Test {
         {folder_.Write("scene.json", "{\"mesh\": \"mesh.inp\", " + rest + "}")},
         Measurement::kOptional);
   }
-
-  const TemporaryFolder folder_;
 };
 
 const PhysicalGroup& GroupOf(const MeshFile& mesh, const std::string& name,

@@ -11,6 +11,7 @@
 #include "elastimate/io/scene/mesh_reader.h"
 #include "elastimate/io/scene/scene_reader.h"
 #include "tests/io/febio_files.h"
+#include "tests/io/mesh_text.h"
 #include "tests/io/scene_files.h"
 
 namespace elastimate {
@@ -19,21 +20,9 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-class FebioMeshTest : public ::testing::Test {
+class FebioMeshTest : public MeshTextTest {
  protected:
-  MeshFile Read(const std::string& content) const {
-    return ReadMeshFile(folder_.Write("mesh.feb", content));
-  }
-  std::string WhyNot(const std::string& content) const {
-    try {
-      Read(content);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "it is read";
-  }
-
-  const TemporaryFolder folder_;
+  FebioMeshTest() : MeshTextTest("mesh.feb") {}
 };
 
 const PhysicalGroup& FebioGroup(const MeshFile& mesh, const std::string& name) {
